@@ -88,7 +88,7 @@ means, halves = half_sums(q), by_half_sums(q)
 midway, gap_half = (e(m).subs(means, simultaneous=True) for e in (midpoint, half_gap))
 d.step(
     "Middle and distance of the tips",
-    "They are written in half sums A and half differences of the angles of both arms (alpha for "
+    "Both are written in half sums A and half differences of the angles of both arms (alpha for "
     "the upper arms, beta for the fore-arms).  This form keeps the digits of the distance of the "
     "tips if the tips are close together.",
     {"(r, h)_I": midpoint(m), "(r, h)_R - (r, h)_I": half_gap(m)},
@@ -105,7 +105,8 @@ wrist_line = base * rotation("z", phi) * rotation("x", psi) * sp.Matrix([0, 1, 0
 d.step(
     "Base line in fore-arm axes",
     "The line from the middle of the tips to the right tip is half the base line.  Here it is "
-    "given in the axes of the virtual fore-arm: x (up at home), y (to the right) and z (along it).",
+    "given in the axes of the virtual fore-arm: x (upwards at home), y (to the right) and z (along "
+    "it).",
     {r"R_{03}^T (p_R - p_I)": line},
     published=("(3)", "(4)", "(5)", "(6)"),
     equal=[(forearm.T * sp.Matrix([ahead, -m.d, higher]), line)],
@@ -496,7 +497,7 @@ d.inverses.append(
             lemmas,
             joints,
             sp.diag(MID_PLANE_ROWS, sp.Matrix.vstack(closure, turned_line * difference)),
-            kept_of=2,
+            solutions_per_branch=2,
             because="the virtual arm is bent to the same side as the right arm",
         ),
     )

@@ -296,7 +296,7 @@ class TestRefuted:
             Refuted(TRUE, "why", "so", FALSE).judge()
 
     def test_correction_without_a_proof_is_refused(self) -> None:
-        with pytest.raises(ValueError, match="without a proof"):
+        with pytest.raises(ValueError, match="has no proof"):
             Refuted(TRUE, "why", "so").judge()
 
 

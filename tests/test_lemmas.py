@@ -159,5 +159,5 @@ def test_lens_of_two_balls() -> None:
 def test_positive_form_refuses_what_is_not_evident() -> None:
     u, v = (real(n, positive=True) for n in "uv")
     assert positive_form(a - b, [(a, b + u), (b, v)]) == u
-    with pytest.raises(ValueError, match="not evidently positive"):
+    with pytest.raises(ValueError, match="has a negative coefficient"):
         positive_form(u - v, [])

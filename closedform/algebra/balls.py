@@ -1,11 +1,11 @@
 """Rigorous evaluation of symbolic expressions in ball arithmetic (Arb).
 
 `Evaluator` compiles expressions once to steps over numbered registers, one step for each distinct
-sub-expression, and runs them at as many points as wanted. A float counts as the binary number it
-is. The precision doubles until every enclosure is tight relative to the terms it was added up
-from, so that a sum that cancels to zero is tight as well.
+sub-expression, and runs them at any number of points. A float has its exact binary value. The
+precision doubles until every enclosure is tight relative to the terms of its sum, so a sum that
+cancels to zero is also tight.
 
-Multiples of `pi` given as values stay exact in sines and cosines: `sin(theta)` at `pi` is 0, and
+Values that are multiples of `pi` stay exact in sines and cosines: `sin(theta)` at `pi` is 0, and
 `atan2(sin(theta), -1)` is `pi`, not a ball across the branch cut. A comparison with an undefined
 value is false, as in IEEE arithmetic.
 """
@@ -32,11 +32,11 @@ Compare: TypeAlias = "Callable[[arb, arb], bool | None]"
 Test: TypeAlias = "Callable[[Registers], bool | None]"
 
 _SPARE_BITS = 40
-_UNDEFINED = arb("nan")  # told from the nan of a too wide ball by identity
+_UNDEFINED = arb("nan")  # compared by identity: a ball that is too wide is nan as well
 
 
 class Undetermined(ArithmeticError):  # noqa: N818
-    """A comparison, a branch or a value stayed open at the highest precision."""
+    """A comparison, a branch or a value is not decided at the highest precision."""
 
 
 class _Undefined(Exception):  # noqa: N818
@@ -44,7 +44,7 @@ class _Undefined(Exception):  # noqa: N818
 
 
 class _Open(Exception):  # noqa: N818
-    """A comparison is open at this precision."""
+    """A comparison is not decided at this precision."""
 
 
 def evaluate(
@@ -61,13 +61,13 @@ class Evaluator:
     """Enclosures of fixed expressions at many points.
 
     Every returned ball has radius at most `2**-rel_bits` times the larger of its midpoint and its
-    natural scale (the sum of the moduli of the terms, where the expression is a sum). An entry
-    that is provably undefined at a point (a square root of a negative number, a division by zero,
-    `atan2(0, 0)`) is the ball `nan`; `Undetermined` is raised if `max_bits` do not settle the
-    point. A radicand that cannot be told from zero is taken to be nonnegative.
+    natural scale (for a sum, the sum of the absolute values of the terms). An entry that is
+    provably undefined at a point (a square root of a negative number, a division by zero,
+    `atan2(0, 0)`) is the ball `nan`. `Undetermined` is raised if `max_bits` are not enough to
+    decide. A radicand that cannot be distinguished from zero is taken to be nonnegative.
 
-    The expressions may hold the names of `named`, which stand for what was computed before; the
-    name of a condition stands for its truth.
+    The expressions may contain the names in `named`, which stand for their values; the name of a
+    condition stands for its truth value.
     """
 
     def __init__(
@@ -103,7 +103,7 @@ class Evaluator:
                     balls = [registers[i] for i in self._program.outputs]
                     if self._are_tight(balls, registers):
                         return balls
-                    obstacle = "a value stays wide"
+                    obstacle = "a value is not accurate enough"
                 except _Open as reason:
                     obstacle = "".join(map(str, reason.args))
             if bits == self.max_bits:
@@ -127,7 +127,7 @@ class Evaluator:
 
 
 def free_symbols(exprs: Iterable[Expr]) -> set[Expr]:
-    """The symbols in expressions; a part that occurs many times is looked at once."""
+    """The symbols in expressions; a part that occurs many times is visited once."""
     seen: set[Expr] = set()
     pending = list(exprs)
     while pending:
@@ -153,7 +153,7 @@ def to_float(ball: arb) -> float:
 
 
 class _Point:
-    """One exact value: its ball at the current precision, and its turns if a multiple of pi."""
+    """One exact value: its ball at the current precision, and its multiple of pi if rational."""
 
     def __init__(self, value: Value) -> None:
         self.turns: fmpq | None = None
@@ -181,7 +181,7 @@ def _fraction(value: Value) -> Fraction:
 
 
 class _Program:
-    """Straight-line code; a branch of a `Piecewise` is a block that runs only if it is chosen."""
+    """Straight-line code; a case of a `Piecewise` is a block that runs only if it is chosen."""
 
     def __init__(
         self, symbols: Sequence[Symbol], exprs: Sequence[Expr], named: Mapping[Symbol, Expr]
@@ -206,7 +206,7 @@ class _Program:
         self._scales = tuple(map(self._scale, exprs))
 
     def run(self, point: Sequence[_Point]) -> Registers:
-        """All registers at a point, at the precision that is set."""
+        """All registers at a point, at the current precision."""
         bits = flint.ctx.prec
         if bits not in self._initial:
             self._initial[bits] = [arb(0)] * self._size
@@ -219,7 +219,7 @@ class _Program:
         return registers
 
     def scales(self, registers: Registers) -> list[arb]:
-        """Sizes of what was added up to the outputs: the measure for the width of a ball."""
+        """The sizes of the terms of the outputs; the width of a ball is compared with them."""
         sizes: Registers = []
         for step in self._scale_steps:
             sizes.append(step(registers, sizes))
@@ -307,7 +307,7 @@ class _Program:
             for test, block, result in arms:
                 holds = test(registers)
                 if holds is None:
-                    raise _Open("a condition of ", e, " stays open")
+                    raise _Open("a condition of ", e, " is not decided")
                 if holds:
                     _execute(block, registers)
                     return registers[result]
@@ -316,7 +316,7 @@ class _Program:
         return self._step(choose, None)
 
     def _branch(self, e: Expr) -> tuple[list[Step], int]:
-        """The steps that only this branch needs; what they compute is not known outside."""
+        """The steps that only this case needs; their results are not available outside."""
         outer, known = self._block, self._register.copy()
         self._block = []
         result = self._compile(e)
@@ -360,14 +360,14 @@ def _not(truth: bool | None) -> bool | None:
 
 
 def _combine(decisive: bool, truths: Sequence[bool | None]) -> bool | None:
-    """`Or` is decided by one True, `And` by one False."""
+    """The truth of an `Or`, which one True decides, or of an `And`, which one False decides."""
     if decisive in truths:
         return decisive
     return None if None in truths else not decisive
 
 
 def _comparison(holds: Compare, fails: Compare, undefined: bool = False) -> Compare:
-    """True or False where the balls prove it, otherwise open; exact equal balls prove equality."""
+    """True or False if the balls prove it, otherwise None; equal exact balls prove equality."""
 
     def compare(a: arb, b: arb) -> bool | None:
         if a is _UNDEFINED or b is _UNDEFINED:
@@ -394,7 +394,7 @@ def _inverse(x: arb) -> arb:
 
 
 def _monotone(function: Callable[[arb], arb], low: int, high: float) -> Callable[[arb], arb]:
-    """A monotone function on its domain; a ball that reaches beyond the domain is cut."""
+    """A monotone function on its domain; a ball is intersected with the domain."""
 
     def restricted(x: arb) -> arb:
         if (x >= low and x <= high) or not x.is_finite():
@@ -418,7 +418,7 @@ def _atan2(y: arb, x: arb) -> arb:
 def _sign(x: arb) -> arb:
     sign = x.sgn()
     if not sign.is_exact():
-        raise _Open("a sign stays open")
+        raise _Open("a sign is not decided")
     return sign
 
 
@@ -440,7 +440,7 @@ def _power(e: Expr) -> Callable[[arb], arb]:
 
 
 def _whole_power(x: arb, n: int) -> arb:
-    """By squaring: the `**` of python-flint gives nan for a ball that holds zero."""
+    """The power by squaring: `**` of python-flint gives nan for a ball that contains zero."""
     result = arb(1)
     while n:
         if n & 1:

@@ -1,4 +1,4 @@
-"""Counterexamples that a person can check: simple exact points where a difference is not zero."""
+"""Counterexamples that a person can check: simple exact points at which two sides differ."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _BITS = 300  # tells a difference of 1e-80 from zero
 
 @dataclass(frozen=True)
 class Counterexample:
-    """A point, and an enclosure there of one entry of the difference, which excludes zero."""
+    """A point, and an enclosure of one entry of the difference there, which excludes zero."""
 
     point: dict[Symbol, Expr]
     ball: arb
@@ -59,14 +59,15 @@ def find_counterexample(
     seed: int = 0,
     sides: Sequence[Sequence[Expr]] = (),
 ) -> Counterexample | None:
-    """The simplest point found where some entry provably differs from zero.
+    """The simplest point at which some entry provably differs from zero.
 
-    Points are tried from the simplest on: small integers for coordinates, 1, 2, 3 for positive
-    symbols, the usual fractions of `pi` for angles; then random rationals, the same on every run.
-    Every condition must provably hold at the point. None if no point serves, which proves nothing.
+    The simplest points are tried first: small integers for coordinates, 1, 2, 3 for positive
+    symbols, the usual fractions of `pi` for angles. Then come random rationals, the same on every
+    run. Every condition must provably hold at the point. The result is None if no point is found,
+    which proves nothing.
 
-    ``sides`` holds, for each entry, the expressions that it is the difference of: all of them have
-    a value at the point, which therefore names their symbols too, even those that cancel.
+    ``sides`` contains, for each entry, the expressions of which it is the difference. They have
+    values at the point, so the point also gives values for symbols that cancel.
     """
     entries: list[Expr] = sp.Matrix([difference]).flat()
     gaps = [_gap(c) for c in conditions]
@@ -94,7 +95,7 @@ def find_counterexample(
 
 
 class _Completion:
-    """Extends a point so that expressions have values there which hold more symbols than it has."""
+    """Extends a point with values for further symbols, so that expressions have values there."""
 
     def __init__(self, names: Sequence[Symbol], exprs: Sequence[Expr], seed: int):
         free = {s for e in exprs for s in e.free_symbols}
@@ -104,7 +105,7 @@ class _Completion:
         self.seed = seed
 
     def __call__(self, point: dict[Symbol, Expr]) -> dict[Symbol, Expr] | None:
-        """The point with a value for each missing symbol, by name; None if none is found."""
+        """The point with a value for each missing symbol, sorted by name; None if none is found."""
         draw = random.Random(self.seed)
         for values in _points(self.missing, self.angles, draw, _COMPLETIONS, _COMPLETIONS):
             completed = point | dict(zip(self.missing, values, strict=True))
@@ -118,7 +119,7 @@ class _Completion:
 
 
 def _gap(condition: Relational) -> tuple[Expr, bool]:
-    """A condition as an expression that must be positive, or (not strict) nonnegative."""
+    """An expression that must not be negative, and whether it must not be zero either."""
     if isinstance(condition, sp.Ge | sp.Gt):
         return condition.lhs - condition.rhs, isinstance(condition, sp.Gt)
     if isinstance(condition, sp.Le | sp.Lt):
@@ -131,7 +132,7 @@ def _gap(condition: Relational) -> tuple[Expr, bool]:
 
 
 def _angles(entries: Sequence[Expr]) -> set[Symbol]:
-    """Symbols that occur in the argument of a sine or cosine only as an angle."""
+    """Symbols that occur only as angles in the arguments of sines and cosines."""
     return {
         atom
         for e in entries
@@ -148,7 +149,7 @@ def _points(
     simple: int = _SIMPLE_POINTS,
     drawn: int = _RANDOM_POINTS,
 ) -> Iterator[tuple[Expr, ...]]:
-    """Points from simple to random, each coordinate within the assumptions on its symbol."""
+    """Points from simple to random; each coordinate obeys the assumptions on its symbol."""
     menus = [_menu(s, s in angles) for s in names]
     yield from itertools.islice(_simplest(menus), simple)
     for _ in range(drawn):
@@ -172,7 +173,7 @@ def _admits(s: Symbol, value: Expr) -> bool:
 
 
 def _simplest(menus: Sequence[Sequence[Expr]]) -> Iterator[tuple[Expr, ...]]:
-    """The product of the menus in the order of total rank, so that few values are unusual."""
+    """The product of the menus, ordered by total rank, so that few values are unusual."""
     longest = sum(len(menu) - 1 for menu in menus)
     for total in range(longest + 1):
         for ranks in _compositions(total, [len(menu) - 1 for menu in menus]):

@@ -1,8 +1,8 @@
-"""Reads a formula from text that is not trusted: the text is parsed, and never run.
+"""Reads a formula from untrusted text: the text is parsed and never executed.
 
-A formula holds numbers, names, ``pi``, ``+ - * / **``, parentheses and the functions below.
-Numbers are exact: 0.1 is 1/10.  Whatever else Python can express is refused, and so is a formula
-that is too long, too deep, or too large when it is written out.
+A formula consists of numbers, names, ``pi``, ``+ - * / **``, parentheses and the functions below.
+Numbers are exact: 0.1 is 1/10.  Everything else that Python can express is refused, and so is a
+formula that is too long, too deep, or too large when it is expanded.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ import sympy as sp
 
 
 class FormulaError(ValueError):
-    """A text that is not a formula, or that exceeds a limit, and why."""
+    """A text is not a formula or exceeds a limit; the message says why."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What a formula may cost: characters, nesting, and terms and degree once it is expanded."""
+    """The limits of a formula: characters, nesting, and terms and degree when it is expanded."""
 
     length: int = 200
     depth: int = 30
@@ -32,12 +32,12 @@ class Limits:
 
 TABLE = Limits()
 PRINTED = Limits(length=100_000, depth=100, terms=10**9, degree=10**9)
-"""For a formula that this toolkit has printed itself."""
+"""The limits of a formula that this toolkit has printed itself."""
 BITS = 1024
-"""Of a numerator or a denominator: the range of double precision."""
+"""The largest numerator or denominator, in bits: the range of double precision."""
 EXPONENT = 9
 CANCELLED = sp.Rational(1, 10**20)
-"""A sum of numbers this far below its terms counts as zero, which SymPy could take hours to see."""
+"""A sum of numbers below this fraction of its terms counts as zero: SymPy could need hours."""
 
 FUNCTIONS: dict[str, tuple[int, Callable[..., sp.Expr]]] = {
     "Abs": (1, sp.Abs),
@@ -48,7 +48,7 @@ FUNCTIONS: dict[str, tuple[int, Callable[..., sp.Expr]]] = {
     "sqrt": (1, sp.sqrt),
     "tan": (1, lambda x: sp.sin(x) / sp.cos(x)),
 }
-"""The number of arguments of each function, and what makes it."""
+"""The number of arguments of each function, and its implementation."""
 NUMBER = re.compile(r"(\d{1,400}(?:\.\d{0,400})?|\.\d{1,400})(?:[eE]([-+]?\d{1,3}))?", re.ASCII)
 TOKEN = re.compile(rf"(?P<space>[ \t]+)|(?P<number>{NUMBER.pattern})(?![\w.])"
                    r"|(?P<name>[A-Za-z_]\w*)|(?P<sign>\*\*|[-+*/(),])", re.ASCII)  # fmt: skip
@@ -70,9 +70,9 @@ def number(text: str) -> Fraction:
 
 
 def formula(text: str, symbol: Callable[[str], sp.Expr], limits: Limits = TABLE) -> sp.Expr:
-    """The exact expression that a text stands for; ``symbol`` says what a name is, or raises.
+    """The exact expression for a text; ``symbol`` gives the expression for a name, or raises.
 
-    Raises :class:`FormulaError` where the text is anything but a formula within the limits.
+    Raises :class:`FormulaError` if the text is not a formula within the limits.
     """
     if len(text) > limits.length:
         raise FormulaError(
@@ -88,7 +88,7 @@ def formula(text: str, symbol: Callable[[str], sp.Expr], limits: Limits = TABLE)
 
 
 def shown(text: object) -> str:
-    """A text of a table in a message: in one line, without control characters, cut short."""
+    """A text of a table for a message: on one line, without control characters, shortened."""
     quoted = ascii(text) if isinstance(text, str | int | bool) else f"a {type(text).__name__}"
     return quoted if len(quoted) <= 60 else f"{quoted[:56]} ..."
 
@@ -98,7 +98,7 @@ def _unread(text: str, why: str = "a formula has symbols, numbers and + - * /") 
 
 
 def _names(text: str) -> Iterator[str]:
-    """The names of symbols in a text of which every token is one that a formula may hold."""
+    """The names of symbols in a text; raises if a token cannot occur in a formula."""
     place = 0
     while place < len(text):
         token = TOKEN.match(text, place)
@@ -121,7 +121,7 @@ def _names(text: str) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class _Part:
-    """An expression, with bounds of its terms and of its degree when it is expanded."""
+    """An expression, with bounds on the number of its terms and on its degree when expanded."""
 
     value: sp.Expr
     terms: int = 1
@@ -130,7 +130,7 @@ class _Part:
 
 @dataclass(frozen=True)
 class _Reader:
-    """Turns the nodes of a syntax tree into SymPy objects; nodes it does not know are refused."""
+    """Turns the nodes of a syntax tree into SymPy objects; unknown nodes are refused."""
 
     text: str
     names: dict[str, sp.Expr]

@@ -1,7 +1,7 @@
 """The zero test that proves identities.
 
-`is_zero` proves: the normal form (see `closedform.algebra.tower`) of every entry is zero.  `decide`
-also refutes, by a counterexample, and raises `Undecided` where it can do neither.
+`is_zero` proves that the normal form (see `closedform.algebra.tower`) of every entry is zero.
+`decide` can also refute by a counterexample, and raises `Undecided` if it can do neither.
 """
 
 from __future__ import annotations
@@ -41,15 +41,15 @@ __all__ = [
 
 @dataclass(frozen=True)
 class ZeroResult:
-    """Outcome of the zero test; `zero` means that every normal form is zero, which is a proof."""
+    """Result of the zero test; `zero` means that every normal form is zero, which is a proof."""
 
     zero: bool
     nonzero: tuple[int, ...]
     """Indices of the entries whose normal form is not zero."""
     assumptions: tuple[Expr, ...]
-    """Expressions that were taken to be nonnegative, of those the caller licensed."""
+    """The assumptions of the caller that were used: these expressions are nonnegative."""
     terms: int
-    """The largest number of terms of any polynomial on the way."""
+    """The largest number of terms of any intermediate polynomial."""
     _tower: Tower = field(repr=False, compare=False)
     _residues: tuple[Fraction, ...] = field(repr=False, compare=False)
 
@@ -58,7 +58,7 @@ class ZeroResult:
 
     @property
     def denominators(self) -> tuple[Expr, ...]:
-        """The identity is claimed where none of these vanishes."""
+        """The identity is claimed only for points at which none of these vanishes."""
         return self._tower.denominators()
 
     @property
@@ -69,7 +69,7 @@ class ZeroResult:
 
 @dataclass(frozen=True)
 class Decision:
-    """A proof or a refutation, and nothing in between."""
+    """A proof or a refutation."""
 
     holds: bool
     verdict: str
@@ -82,8 +82,8 @@ class Decision:
 def is_zero(problem: Problem, nonnegative: Iterable[Expr] = ()) -> ZeroResult:
     """Whether the normal form of every entry is zero.
 
-    `nonnegative` lists expressions (or relations `a >= b`) that the caller assumes; they license
-    `sqrt(p*q) = sqrt(p)*sqrt(q)` and `|p| = p`, and the result names those that were used.
+    `nonnegative` lists the assumptions of the caller: expressions, or relations `a >= b`. They
+    allow `sqrt(p*q) = sqrt(p)*sqrt(q)` and `|p| = p`; the result names those that were used.
     """
     tower, residues = converted(problem, nonnegative)
     nonzero = tuple(i for i, a in enumerate(residues) if not a.num.is_zero())
@@ -108,8 +108,8 @@ def normal(e: Expr, nonnegative: Iterable[Expr] = ()) -> Expr:
 def determinant(J: sp.MatrixBase) -> Expr:
     """The normal form of a determinant without denominators, expanded by minors.
 
-    Every minor of the first columns is reduced at once, which keeps twists of general axes short;
-    the sparsest columns come first.
+    Every minor of the first columns is reduced immediately, which keeps twists of general axes
+    short. The sparsest columns come first.
     """
     tower, entries = converted(J, ())
     n = J.rows
@@ -132,15 +132,15 @@ def determinant(J: sp.MatrixBase) -> Expr:
 
 
 def positive_form(expr: Expr, slack: Sequence[tuple[sp.Symbol, Expr]]) -> Expr:
-    """``expr`` with symbols written in nonnegative ones, so that all its coefficients are positive.
+    """``expr`` rewritten in nonnegative symbols, so that all its coefficients are positive.
 
-    Such a form proves that the expression is not negative where the new symbols are not.
+    Such a form proves that the expression is not negative if the new symbols are not negative.
     """
     top, bottom = sp.fraction(sp.together(sp.expand(expr.subs(slack))))
     for part in (top, bottom):
         polynomial = sp.Poly(part, sp.Dummy("one"), *sorted(part.free_symbols, key=str))
         if any(c.is_negative for c in polynomial.coeffs()):
-            raise ValueError(f"{expr}: not evidently positive as {polynomial.as_expr()}")
+            raise ValueError(f"{expr}: {polynomial.as_expr()} has a negative coefficient")
     return sp.expand(top) / bottom
 
 
@@ -151,10 +151,10 @@ def decide(
     *,
     sides: Sequence[Sequence[Expr]] = (),
 ) -> Decision:
-    """Prove that every entry is zero, or refute it at a point where the assumptions hold.
+    """Prove that every entry is zero, or refute it at a point at which the assumptions hold.
 
-    With ``sides``, the expressions that each entry is the difference of, the counterexample is a
-    point where these have values too.
+    ``sides`` contains, for each entry, the expressions of which it is the difference; the
+    counterexample is a point at which they have values too.
     """
     guards = [guard(g) for g in nonnegative]
     try:
@@ -171,8 +171,8 @@ def decide(
         return Decision(False, "refuted", tuple(guards), result, witness)
     if result is not None:
         entry = result.nonzero[0]
-        obstacle = f"entry {entry} leaves {shortened(result.remainders[entry])}"
+        obstacle = f"the normal form of entry {entry} is {shortened(result.remainders[entry])}"
     raise Undecided(
         f"{shortened(entries_of(problem))}: {obstacle}, and no counterexample was found; "
-        "give the guards under which its square roots split as `nonnegative`"
+        "list in `nonnegative` the expressions that must not be negative for its roots to split"
     )

@@ -1,4 +1,4 @@
-"""The shape of the equation that a lemma solves, to say early and plainly that another is meant."""
+"""The shape of the equation that a lemma solves, so that a wrong one is reported early."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from closedform.algebra.tower import shortened
 LINEAR = "a sin x + b cos x = c"
 """The lemma for an equation that is linear in the sine and the cosine of the unknown."""
 PAIR = "atan2 of a linear pair"
-"""The lemma that reads a direction; what it is read from may turn with other joints."""
+"""The lemma for an angle given by its direction, which may also turn with other joints."""
 
 
 class ShapeError(ValueError):
-    """A lemma applied to an equation of another shape."""
+    """A lemma is applied to an equation of another shape."""
 
 
 def require_shape(lemma: str, equation: Any, unknown: sp.Symbol) -> None:
-    """Raise :class:`ShapeError` if ``equation = 0`` is nothing that the lemma solves."""
+    """Raise :class:`ShapeError` if the lemma cannot solve ``equation = 0``."""
     if lemma == LINEAR:
         coefficients(equation, unknown)
     elif lemma == PAIR and not equation.has(unknown):
         raise ShapeError(
             f"the lemma {lemma!r} for {unknown} needs an equation in sin({unknown}) and "
-            f"cos({unknown}); 0 = {shortened(equation)} does not hold {unknown} at all"
+            f"cos({unknown}); 0 = {shortened(equation)} does not contain {unknown}"
         )
 
 
@@ -41,13 +41,14 @@ def coefficients(equation: Any, x: sp.Symbol) -> tuple[sp.Expr, sp.Expr, sp.Expr
     renamed = expanded.xreplace({sp.sin(x): s, sp.cos(x): c})
     needs = f"the lemma {LINEAR!r} for {x} needs an equation that is linear in sin({x}), cos({x})"
     if renamed.has(x):
-        raise ShapeError(f"{needs}; in 0 = {shortened(equation)} the unknown stands elsewhere")
+        raise ShapeError(f"{needs}; in 0 = {shortened(equation)} the unknown occurs elsewhere")
     try:
         polynomial = sp.Poly(renamed, s, c)
     except sp.PolynomialError as error:
-        raise ShapeError(f"{needs}; 0 = {shortened(equation)} is no polynomial in them") from error
+        what = "is not a polynomial in them"
+        raise ShapeError(f"{needs}; 0 = {shortened(equation)} {what}") from error
     if polynomial.is_ground:
-        raise ShapeError(f"{needs}; 0 = {shortened(equation)} does not hold {x} at all")
+        raise ShapeError(f"{needs}; 0 = {shortened(equation)} does not contain {x}")
     for (i, j), value in polynomial.terms():
         if i + j > 1:
             term = value * sp.sin(x) ** i * sp.cos(x) ** j

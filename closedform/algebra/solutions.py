@@ -1,4 +1,4 @@
-"""How many solutions a kinematic system has: the measure of whether an inverse is complete.
+"""The number of solutions of a kinematic system, which decides whether an inverse is complete.
 
 The unknown angles become pairs `s, c` on the unit circle, which turns the forward equations into
 polynomials over the field of rational functions in parameters and targets. The number of solutions
@@ -30,7 +30,7 @@ _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc)
 
 
 class InfinitelyManyError(ValueError):
-    """The system has a continuum of solutions for generic parameters."""
+    """The system has infinitely many solutions for generic parameters."""
 
 
 @dataclass(frozen=True)
@@ -40,9 +40,9 @@ class SolutionCount:
     count: int
     """Solutions over the complex numbers, with multiplicity."""
     distinct: bool
-    """Whether all of them are provably different from each other."""
+    """Whether all of them provably differ from each other."""
     method: Method
-    """`generic`: proved over the function field; `specialised`: the same at all `points`."""
+    """`generic`: proved over the function field; `specialised`: equal at all `points`."""
     points: tuple[dict[Symbol, Expr], ...] = ()
 
     def __int__(self) -> int:
@@ -64,9 +64,9 @@ def count_solutions(
     An unknown that occurs in a sine or cosine is an angle, counted modulo a full turn. Every other
     symbol is a parameter. `target_substitution` replaces target symbols that are not independent
     by rational functions of free parameters (see `rotation_parametrisation`); `saturate` lists
-    expressions that must not vanish. Denominators that hold unknowns are saturated as well.
+    expressions that must not vanish. Denominators that contain unknowns are also saturated.
 
-    Raises `InfinitelyManyError` at a continuum of solutions.
+    Raises `InfinitelyManyError` if there are infinitely many solutions.
     """
     system = _System(list(equations), unknowns, target_substitution or {}, list(saturate))
     draw = random.Random(seed)
@@ -92,14 +92,14 @@ def count_solutions(
         counts.add(len(monomials))
         points.append(point)
     if len(counts) != 1:
-        raise ValueError(f"the count differs between parameters ({sorted(counts)}): change `seed`")
+        raise ValueError(f"the count depends on the parameters ({sorted(counts)}): change `seed`")
     return SolutionCount(counts.pop(), distinct, "specialised", tuple(points))
 
 
 def rotation_parametrisation(
     parameters: tuple[Symbol, Symbol, Symbol] | None = None,
 ) -> sp.ImmutableMatrix:
-    """Every rotation but the half turns, by the quaternion `(1, a, b, c)` (Euler-Rodrigues).
+    """Every rotation except half turns, by the quaternion `(1, a, b, c)` (Euler-Rodrigues).
 
     `(1 + |v|**2) R = (1 - |v|**2) I + 2 [v] + 2 v v^T` with `v = (a, b, c)`.
     """
@@ -146,7 +146,7 @@ class _System:
         self.parameters = sorted(free - set(self.variables), key=str)
 
     def _merge_parameters(self) -> None:
-        """Of parameters that occur only as one sum or difference, such as `a + b`, keep one.
+        """Keep one of two parameters that occur only as one sum or difference, such as `a + b`.
 
         The system at `(a, b)` is the system at `(a + b, 0)`; fewer parameters are much faster.
         """
@@ -160,7 +160,7 @@ class _System:
             self.polynomials = [p.subs(b, 0) for p in self.polynomials]
 
     def blocks(self) -> list[tuple[list[Symbol], list[Expr]]]:
-        """Parts without a common variable: their solutions combine freely, so counts multiply."""
+        """Parts without common variables: their solutions combine freely, so counts multiply."""
         parts: list[tuple[list[Symbol], list[Expr]]] = [([v], []) for v in self.variables]
         for polynomial in self.polynomials:
             touched = [part for part in parts if polynomial.has(*part[0])] or parts[:1]
@@ -171,7 +171,7 @@ class _System:
         return parts
 
     def _without_angles(self, e: Expr) -> Expr:
-        """Unknown angles by sine and cosine, known ones by the tangent of their half."""
+        """Write unknown angles by sine and cosine, known ones by the tangent of half the angle."""
         e = sp.expand_trig(e.rewrite([sp.tan, sp.cot, sp.sec, sp.csc], sp.cos))
         replaced = {f: self._algebraic(f) for f in sorted(e.atoms(sp.sin, sp.cos), key=str)}
         return e.xreplace(replaced)
@@ -179,7 +179,7 @@ class _System:
     def _algebraic(self, f: Expr) -> Expr:
         angle = f.args[0]
         if not angle.is_Symbol:
-            raise ValueError(f"{f}: take an angle of which all others are integer multiples")
+            raise ValueError(f"{f}: use an angle so that all angles are integer multiples of it")
         if angle in self._unknowns:
             if angle not in self._circles:
                 self._circles[angle] = (sp.Dummy(f"s_{angle}"), sp.Dummy(f"c_{angle}"))
@@ -190,23 +190,23 @@ class _System:
 
 
 def _rank(pair: tuple[Symbol, Symbol], equations: Sequence[Expr]) -> tuple[int, str]:
-    """What occurs in most equations goes first: for a Puma arm 15 times faster than last."""
+    """Variables in the most equations come first: for a Puma arm 15 times faster than last."""
     return -sum(e.has(*pair) for e in equations), pair[0].name
 
 
 def _absolute_angles(
     unknowns: Sequence[Symbol], equations: Sequence[Expr]
 ) -> tuple[list[Symbol], list[Expr]]:
-    """New unknown angles, such as `theta1 + theta2` for `theta2`, where that lowers the degree.
+    """New unknown angles, such as `theta1 + theta2` for `theta2`, if that lowers the degree.
 
-    The change is invertible over the integers, so it keeps the number of solutions; it is sought
-    among the arguments of the sines and cosines, for the smallest sum of all multiples.
+    The change is invertible over the integers, so it keeps the number of solutions. It is chosen
+    among the arguments of the sines and cosines, to minimise the sum of all multiples.
     """
     functions = {f for e in equations for f in e.atoms(*_TRIGONOMETRIC)}
     terms = [sp.expand(f.args[0]).as_coefficients_dict() for f in functions]
     angles = [u for u in unknowns if any(u in t for t in terms)]
     if any(t[u] % 1 for t in terms for u in angles):
-        raise ValueError("an unknown angle occurs divided: take its fraction as the unknown")
+        raise ValueError("a fraction of an unknown angle occurs: use this fraction as the unknown")
     rows = {tuple(int(t[u]) for u in angles) for t in terms}
     units = {tuple(int(i == j) for j in range(len(angles))) for i in range(len(angles))}
     best, least = sp.eye(len(angles)), sum(abs(k) for row in rows for k in row)
@@ -231,15 +231,15 @@ def _element(ring: PolyRing, e: Expr) -> PolyElement:
     try:
         polynomial = sp.Poly(e, *ring.symbols, domain=ring.domain)
     except sp.PolynomialError as reason:
-        raise ValueError(f"not rational: {e}; name each root as an unknown with its square") from (
-            reason
-        )
+        raise ValueError(
+            f"{e} is not rational: make each root an unknown, with an equation for its square"
+        ) from reason
     element: PolyElement = ring.from_dict(polynomial.rep.to_dict())
     return element
 
 
 def _standard_monomials(basis: Sequence[PolyElement], ring: PolyRing) -> list[Monomial]:
-    """The monomials that no leading monomial divides; finitely many, or an error."""
+    """The monomials that no leading monomial divides; raises if there are infinitely many."""
     leading = [g.LM for g in basis]
     bounds = [
         min((m[i] for m in leading if not any(m[:i] + m[i + 1 :])), default=None)
@@ -259,8 +259,8 @@ def _divides(a: Monomial, b: Monomial) -> bool:
 def _are_distinct(basis: Sequence[PolyElement], monomials: Sequence[Monomial]) -> bool:
     """Whether the trace form of the quotient algebra over QQ is regular (Hermite).
 
-    The entries of the form are polynomials in the coefficients of the basis; so if the form is
-    regular at one specialisation, it is regular for generic parameters.
+    The entries of the form are polynomials in the coefficients of the basis. So a form that is
+    regular at one specialisation is regular for generic parameters.
     """
     if not monomials:
         return True

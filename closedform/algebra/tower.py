@@ -9,14 +9,14 @@ An expression becomes a fraction of polynomials over the rationals in one ring, 
   sign; a modulus of unknown sign is a generator `a` with `a**2 = f**2`;
 - sine and cosine of `atan2`, `acos`, `asin`, `atan` are algebraic in their arguments.
 
-Each generator is larger, in the lexicographic order, than all that its relation mentions. So the
-relations are a Groebner basis and division by them, newest first, gives the normal form. A normal
-form of zero is a proof wherever the recorded denominators do not vanish. The converse fails only
-when two generators are related in a way that the tower does not see: then look for a
-counterexample, as `closedform.algebra.normal_form.decide` does.
+In the lexicographic order, each generator is larger than all others in its relation. So the
+relations are a Groebner basis, and division by them, newest first, gives the normal form. A normal
+form of zero is a proof if the recorded denominators do not vanish. The converse fails only if two
+generators have a relation that the tower does not know. Then a counterexample must be found, as
+`closedform.algebra.normal_form.decide` does.
 
-Every symbol stands for a real number, and every square root for a real one: points where a
-radicand is negative are outside the domain of the identity.
+All symbols and all square roots are real: points with a negative radicand are outside the domain
+of the identity.
 """
 
 from __future__ import annotations
@@ -46,11 +46,11 @@ _OPAQUE = (sp.Symbol, sp.NumberSymbol, AppliedUndef, sp.Derivative, *_INVERSE)
 
 
 class Undecided(ValueError):  # noqa: N818
-    """The normal form neither proves nor can express the claim; the message says what to do."""
+    """The normal form cannot prove or cannot express the claim; the message says what to do."""
 
 
 class InexactNumberError(TypeError):
-    """A float in an expression that must be exact."""
+    """An expression that must be exact contains a float."""
 
 
 class Fraction(NamedTuple):
@@ -68,7 +68,7 @@ class Rotation(NamedTuple):
 
 
 class _Full(Exception):  # noqa: N818
-    """More generators are needed than the ring has."""
+    """The ring has too few generators."""
 
 
 class Tower:
@@ -122,7 +122,7 @@ class Tower:
             return self._polynomial(self._generator(e, sign))
         raise Undecided(
             f"{shortened(e)} has no algebraic normal form ({type(e).__name__}); "
-            "state the case (its sign, its branch) as an assumption and treat each case alone"
+            "state the case (its sign, its branch) as an assumption and treat each case separately"
         )
 
     # Arithmetic of fractions
@@ -134,7 +134,7 @@ class Tower:
         return Fraction(p, self.one.den)
 
     def _reduced(self, p: fmpq_mpoly) -> fmpq_mpoly:
-        """Remainder by the relations; they are stored newest, that is largest, last."""
+        """Remainder modulo the relations; the newest, which is the largest, is stored last."""
         self.peak = max(self.peak, len(p))
         degrees = p.degrees()
         for slot in reversed(self._relations):
@@ -167,7 +167,7 @@ class Tower:
         return self._cancelled(a.num * b.num, a.den * b.den)
 
     def _inverse(self, a: Fraction) -> Fraction:
-        """1/a; a root that divides the denominator goes up, as `1/w = w/radicand`."""
+        """1/a; a root that divides the denominator moves to the numerator: `1/w = w/radicand`."""
         num, den = a.den, a.num
         if not den.is_constant():
             self._denominators.setdefault(str(den), den)
@@ -258,7 +258,7 @@ class Tower:
         return Rotation(self.convert(c), self.convert(s))
 
     def _inverse_rotation(self, atom: Expr, q: Rational) -> Rotation:
-        """cos and sin of `q` times an inverse function; of an even multiple, without a root."""
+        """cos and sin of `q` times an inverse function; an even multiple needs no root."""
         direction, unit = self._direction(atom)
         n, halvings = int(q.p), int(q.q).bit_length() - 1
         if q.q != 1 << halvings:
@@ -279,13 +279,13 @@ class Tower:
         return Rotation(self._mul(a.cos, factor), self._mul(a.sin, factor))
 
     def _halved(self, a: Rotation) -> Rotation:
-        """Half of an angle in (-pi, pi), whose cosine is therefore positive."""
+        """Half of an angle in (-pi, pi); its cosine is therefore positive."""
         half = self._constant(fmpq(1, 2))
         c = self._sqrt(self._mul(self._add(self.one, a.cos), half))
         return Rotation(c, self._mul(self._mul(a.sin, half), self._inverse(c)))
 
     def _direction(self, atom: Expr) -> tuple[Rotation, bool]:
-        """A vector along the principal value of an inverse function; is it a unit vector?"""
+        """A vector along the value of an inverse function, and whether it is a unit vector."""
         x = self.convert(atom.args[0])
         if isinstance(atom, sp.atan2):
             return Rotation(self.convert(atom.args[1]), x), False
@@ -297,7 +297,7 @@ class Tower:
     # Square roots
 
     def _sqrt(self, a: Fraction) -> Fraction:
-        """Square factors come out, factors of known sign get a root each, the rest share one."""
+        """A root: square factors leave it, factors of known sign get one each, the rest one."""
         if a.num.is_zero():
             return self.zero
         constant, powers = self._factored(a)
@@ -358,10 +358,10 @@ class Tower:
         return constant, [(factors[key], power) for key, power in powers.items() if power]
 
     def _irreducible(self, p: fmpq_mpoly) -> Iterator[tuple[fmpq_mpoly, int]]:
-        """Factors over the tangents of half angles, where `1 - c**2` is seen to be a square.
+        """Factors over the tangents of half angles, in which `1 - c**2` is a square.
 
-        The ring with `s, c` has no unique factors, that with `t = s/(1 + c)` has; a factor is
-        returned in `s, c` again, times the power of `1 + c` that makes it a polynomial.
+        Factors are unique in the ring with `t = s/(1 + c)`, but not in that with `s, c`. A factor
+        is returned in `s, c`, multiplied by the power of `1 + c` that makes it a polynomial.
         """
         degrees = p.degrees()
         pairs = [(s, c) for s, c in self._pairs.items() if degrees[s] or degrees[c]]
@@ -377,7 +377,7 @@ class Tower:
             yield f, power
 
     def _to_tangent(self, p: fmpq_mpoly, s: int, c: int) -> tuple[fmpq_mpoly, int]:
-        """`(1 + t**2)**d * p` with `t` in the place of `s`, and the degree `d`."""
+        """`(1 + t**2)**d * p` with `t` instead of `s`, and the degree `d`."""
         t = self._gens[s]
         degree = max(m[s] + m[c] for m in p.monoms())
         terms = (
@@ -409,7 +409,7 @@ class Tower:
     # Signs
 
     def _known_sign(self, f: fmpq_mpoly) -> int:
-        """Sign of a factor, from its form or from a licence, which is then on record."""
+        """Sign of a factor, from its form or from an assumption, which is then recorded."""
         sign = self._evident_sign(f)
         if not sign and (licence := self._licences.get(frozenset([str(f)]))):
             sign, guard = licence
@@ -459,7 +459,7 @@ class Tower:
     # Back to SymPy
 
     def expression(self, p: fmpq_mpoly) -> Expr:
-        """A polynomial of the tower in the symbols it stands for."""
+        """A polynomial of the tower as a SymPy expression."""
         return sp.Add(
             *(
                 sp.Mul(
@@ -471,7 +471,7 @@ class Tower:
         )
 
     def rationalised(self, a: Fraction) -> Fraction:
-        """The same value with no root and no sine in the denominator."""
+        """The same value without roots and sines in the denominator."""
         num, den = a
         for slot in reversed(self._relations):
             if den.degrees()[slot]:
@@ -483,7 +483,7 @@ class Tower:
         return [-g if i == slot else g for i, g in enumerate(self._gens)]
 
     def denominators(self) -> tuple[Expr, ...]:
-        """The irreducible expressions that were assumed not to vanish."""
+        """The irreducible expressions that are assumed not to vanish."""
         factors: dict[str, fmpq_mpoly] = {}
         for den in self._denominators.values():
             factors |= {str(f): f for f, _ in den.factor()[1]}
@@ -516,7 +516,7 @@ def entries_of(problem: Problem) -> list[Expr]:
 
 
 def _subexpressions(problem: Sequence[Expr]) -> list[Expr]:
-    """Each distinct sub-expression once; refuses floats."""
+    """Every distinct sub-expression once; raises if one is a float."""
     found: dict[Expr, None] = {}
     stack = list(reversed(problem))
     while stack:
@@ -552,7 +552,7 @@ def _negative(a: Fraction) -> Fraction:
 
 
 def content(p: fmpq_mpoly) -> fmpq:
-    """The rational that leaves coprime integer coefficients and a positive first one."""
+    """The rational factor; without it the coefficients are coprime integers, the first positive."""
     coefficients = p.coeffs()
     numerator = gcd(*(int(a.p) for a in coefficients))
     denominator = lcm(*(int(a.q) for a in coefficients))

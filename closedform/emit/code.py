@@ -1,7 +1,7 @@
-"""What every printer shares: names for values, which values get a name, and precedence.
+"""The common part of all printers: names for values, which values get a name, and precedence.
 
-A value that is used once is printed where it is used; one that is used twice, or whose text grows
-too long, is named first.  A language is a subclass with one method per operator of
+A value that is used once is printed inline; one that is used twice, or whose text is too long, gets
+a name.  A language is a subclass with one method per operator of
 :mod:`closedform.lower.operators`; a class that lacks one is refused when it is made.
 """
 
@@ -24,7 +24,7 @@ ATOM, UNARY, PRODUCT, SUM, COMPARE, LOGIC = 7, 6, 5, 4, 3, 2
 
 @dataclass(frozen=True)
 class Text:
-    """Code and how tightly its outermost operator binds."""
+    """Code and the precedence of its outermost operator."""
 
     code: str
     precedence: int = ATOM
@@ -35,7 +35,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Line:
-    """``name = code``; ``boolean`` tells languages with types which one."""
+    """``name = code``; ``boolean`` is for languages with types."""
 
     name: str
     code: str
@@ -43,7 +43,7 @@ class Line:
 
 
 class Names:
-    """Hands out identifiers that are not taken, and have no meaning in the language."""
+    """Makes identifiers that are not taken and have no meaning in the language."""
 
     def __init__(self, reserved: Iterable[str], has_meaning: Callable[[str], bool]):
         self.taken = set(reserved)
@@ -87,7 +87,7 @@ def literal(value: sp.Expr) -> str:
 
 
 def _inverse_power_of_two(node: Node) -> sp.Expr | None:
-    """What to multiply by instead of dividing by a constant, where that is exact."""
+    """The factor that replaces division by a constant, or None if that is not exact."""
     value = constant_of(node)
     if value is None or not value.is_Integer or value & (value - 1):
         return None
@@ -101,7 +101,7 @@ class Printer:
     """
 
     has_meaning: Callable[[str], bool]
-    """Whether a name has a meaning of its own in the language."""
+    """Whether a name already has a meaning in the language."""
 
     def __init_subclass__(cls) -> None:
         missing = [o.method for o in PRINTED if not hasattr(cls, o.method)]

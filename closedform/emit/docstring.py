@@ -1,4 +1,4 @@
-"""The documentation of a function for Python and C, in numpydoc's conventions.
+"""The documentation of a function for Python and C, by the conventions of numpydoc.
 
 Names, shapes and statuses follow from the function; its summary and notes say what is special.
 """
@@ -195,7 +195,7 @@ def _output_text(derivation: Derivation, function: Function, array: Array) -> st
 
 
 def _matrix_text(derivation: Derivation, entries: Sequence[sp.Expr], shape: Sequence[int]) -> str:
-    """What a matrix is: what an inverse requires of a matrix of this shape, or its columns."""
+    """A sentence about a matrix: the requirement of an inverse for this shape, or its columns."""
     for function in derivation.functions:
         for statement in function.body:
             if isinstance(statement, Require) and any(
@@ -213,7 +213,7 @@ def _matrix_text(derivation: Derivation, entries: Sequence[sp.Expr], shape: Sequ
 def _listed(
     names: Sequence[str], units: Mapping[str, str], shape: Sequence[int], angle: str
 ) -> str:
-    """Coordinates with their units; neighbours with the same unit are grouped."""
+    """Coordinates with their units; neighbours with the same unit are joined."""
     parts = []
     for unit, group in groupby(names, lambda name: units.get(name, "")):
         shown = angle if unit == ANGLE else unit
@@ -239,8 +239,7 @@ def _span(names: Sequence[str]) -> str:
 
 
 def _units(derivation: Derivation) -> dict[str, str]:
-    """The units of joints, the task and other angles, as far as they are known."""
-
+    """The known units of joints, task coordinates and other angles."""
     units: dict[str, str] = {}
     angles = {str(s) for i in derivation.inverses for s in i.angles}
     for function in derivation.functions:

@@ -1,7 +1,8 @@
-"""Text as it stands in each language: printed faithfully, and unable to end what it stands in.
+"""Escapes text for each language: it is printed faithfully and cannot end its string or comment.
 
-The templates apply these filters where text enters them.  LaTeX has its own module,
-:mod:`closedform.emit.backends.latex.prose`, which also makes formulas of what reads like one.
+The templates apply these filters to every text.  LaTeX has its own module,
+:mod:`closedform.emit.backends.latex.prose`, which also typesets parts of sentences that look like
+formulas.
 """
 
 from __future__ import annotations
@@ -9,11 +10,11 @@ from __future__ import annotations
 import re
 
 MARKUP = re.compile(r"([\\`*_<>\[\]|#~$&]|^(?=[-+=]))")
-"""What means something in Markdown, or would at the start of a line."""
+"""Characters with a meaning in Markdown, also those with one only at the start of a line."""
 
 
 def c_comment(text: str) -> str:
-    """Text inside ``/* */``: a space parts what would end it, begin another or be a trigraph."""
+    """Text inside ``/* */``; a space breaks ends and starts of comments, and trigraphs."""
     return re.sub(r"(?<=\*)(?=/)|(?<=/)(?=\*)|(?<=\?)(?=\?)", " ", text)
 
 
@@ -32,7 +33,7 @@ def _c_character(byte: int) -> str:
 
 
 def python_comment(text: str) -> str:
-    """Text behind ``#``: a space parts what would declare the encoding of the file."""
+    """Text after ``#``; a space breaks anything that would declare the encoding of the file."""
     return re.sub(r"(?<=coding)(?=[:=])", " ", text)
 
 

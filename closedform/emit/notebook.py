@@ -1,6 +1,6 @@
 """Prints records as the LaTeX that a notebook shows.
 
-Importing this module is enough: it registers its printers with :mod:`closedform.model.display`.
+Importing this module registers its printers with :mod:`closedform.model.display`.
 """
 
 # mypy: allow-untyped-calls
@@ -18,7 +18,7 @@ from closedform.proof.prove import Proof
 
 @prints(Derivation)
 def notebook(derivation: Derivation) -> str:
-    """What Jupyter shows of a derivation: the forward map and the inverse."""
+    """The LaTeX of a derivation for Jupyter: the forward map and the inverse."""
     page = Page(derivation, Proof(derivation.name, derivation.paper.key, (), 0, ()))
     rows = [rf"&\textbf{{{escape(derivation.title)}}}"]
     for function in derivation.functions:

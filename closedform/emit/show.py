@@ -26,9 +26,9 @@ def show(
     *,
     pretty: bool = True,
 ) -> str:
-    """A derivation on the terminal: plain text of at most 100 columns, or the LaTeX article.
+    """A derivation for the terminal: plain text of at most 100 columns, or the LaTeX article.
 
-    Formulas are drawn in Unicode, or in ASCII if not ``pretty``.
+    Formulas are drawn in Unicode, or in ASCII unless ``pretty``.
     """
     if format == "latex":
         from closedform.emit.backends.latex.article import document
@@ -127,17 +127,17 @@ def _statement(statement: Statement) -> str:
 
 
 def _text(value: sp.Expr) -> str:
-    """A choice as a person writes it, else as SymPy does."""
+    """An expression as text; a choice is written as a person would write it."""
     if isinstance(value, sp.Piecewise):
         return ", ".join(f"else {e}" if c == sp.true else f"{e} if {c}" for e, c in value.args)
     return str(value)
 
 
 def _equation(lhs: str, value: Any, pretty: bool) -> list[str]:
-    """Two-dimensional where it fits, else on lines of text; a value may be LaTeX."""
+    """An equation in two dimensions if it fits, else on lines of text; a value may be LaTeX."""
     if isinstance(value, str):
         return _wrap(f"{lhs} = {value}", 3)
-    before = pretty_use_unicode(pretty)  # roots and brackets go by this, not by the setting
+    before = pretty_use_unicode(pretty)  # roots and brackets depend on this, not on the setting
     try:
         form = PrettyPrinter({"use_unicode": pretty, "wrap_line": False})._print(
             sp.sympify(value, strict=True)

@@ -1,17 +1,17 @@
-"""The numbers of the sine and cosine in double precision, once for C and NumPy.
+"""The constants of the sine and cosine in double precision, for both C and NumPy.
 
-A status that rests on a sine is the same in both only if the sine is the same to the last bit.  How
-the numbers were found stands in ``closedform.h``.
+A status that depends on a sine is the same in both only if the sine is the same to the last bit.
+``closedform.h`` says how the constants were computed.
 """
 
 LIMIT = 400000.0
-"""The largest angle whose quarter turns are taken away by ``RIGHT_ANGLE``."""
+"""The largest angle that is reduced with ``RIGHT_ANGLE``."""
 RIGHT_ANGLES = 0.6366197723675814
 """2/pi."""
 RIGHT_ANGLE = (1.5707963267923333, 2.5633441515839558e-12, 1.0562999066987428e-23)
 """pi/2 in three parts; a multiple of either of the first two is exact."""
 ROUND = 4503599627370496.0
-"""Rounds to an integer where it is added."""
+"""Adding this constant rounds to an integer."""
 SINE = (
     -0.1666666666666663,
     0.0083333333333218424,

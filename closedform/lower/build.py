@@ -1,9 +1,9 @@
 """From SymPy to the graph.
 
-Sines and cosines are taken of single joint angles only; those of sums and multiples follow by the
-addition theorem.  That costs four multiplications where one addition would do, and buys an error
-that does not grow with the angle: the double nearest to ``theta1 + theta2`` is off by an ulp of the
-sum, which for a joint that has turned a million times is far more than an ulp of the sine.
+Sines and cosines are computed for single joint angles only; those of sums and multiples follow from
+the addition theorem.  This costs four multiplications instead of one addition, but the error does
+not grow with the angle: the double nearest to ``theta1 + theta2`` is off by an ulp of the sum,
+which for a joint that has turned a million times is far more than an ulp of the sine.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class Builder:
         if isinstance(expr, sp.atan2):
             turned = self._principal_value(*expr.args)
             return turned or graph.atan2(*map(self, expr.args))
-        if isinstance(expr, sp.atan):  # SymPy writes atan2(y, x) so where x is positive
+        if isinstance(expr, sp.atan):  # SymPy's form of atan2(y, x) if x is positive
             top, bottom = sp.fraction(expr.args[0])
             if not bottom.is_nonnegative:
                 top, bottom = expr.args[0], sp.S.One
@@ -131,9 +131,10 @@ class Builder:
         return self.graph.product(factors)
 
     def _principal_value(self, sine: sp.Expr, cosine: sp.Expr) -> Node | None:
-        """``atan2(sin t, cos t)``, or of ``-t``: of a whole combination of inputs no trigonometry.
+        """``atan2(sin t, cos t)`` for an integer combination ``t`` of inputs, without trigonometry.
 
-        Each input is brought to one turn by itself, for the reason that sines are taken of each.
+        ``sine`` may also belong to ``-t``.  Each input is reduced to one turn separately, for the
+        same reason as the sines are computed separately.
         """
         opposite = sine.could_extract_minus_sign()
         sine = -sine if opposite else sine
@@ -167,13 +168,13 @@ class Builder:
             return self(sp.sin(angle)), self(sp.cos(angle))
         coefficient, symbol = angle.as_coeff_Mul()
         if symbol not in self.known:
-            raise TypeError(f"the sine of {angle} is not one of a multiple of an input")
+            raise TypeError(f"the sine of {angle} is not that of a multiple of an input")
         divisor = self.divisors.get(symbol, 1)
         node = self.known[symbol]
         unit = node if divisor == 1 else graph.div(node, graph.const(divisor))
         multiple = coefficient * divisor
         if not multiple.is_Integer:
-            raise TypeError(f"the sine of {angle} is not one of a rational multiple of an input")
+            raise TypeError(f"the sine of {angle} is not that of a rational multiple of an input")
         sine, cosine = graph.odd("sin", unit), graph.even("cos", unit)
         result = (graph.const(0), graph.const(1))
         for _ in range(abs(int(multiple))):
@@ -194,7 +195,7 @@ class Builder:
 
 
 def angle_divisors(expressions: Iterable[sp.Basic]) -> dict[sp.Basic, int]:
-    """The common denominator of each angle's multiples: 2 where ``theta / 2`` occurs, else 1."""
+    """The common denominator of the multiples of each angle: 2 if ``theta / 2`` occurs, else 1."""
     divisors: dict[sp.Basic, int] = {}
     for expr in expressions:
         for function in expr.atoms(sp.sin, sp.cos):

@@ -1,10 +1,10 @@
-"""The common case of a program: what is left of it where no flag holds.
+"""The common case of a program: the part that remains if no flag holds.
 
-An inverse of a long chain spends half its operations on what is as good as zero: which value a
-joint then takes, and how far rounding may have moved a target.  The common case has none of that,
-but tells whether something vanishes; then the whole program is evaluated in its place.  A flag is
-itself judged on the common case.  That is no loss: where no flag holds there, those that it rests
-on do not hold either, so that it is judged on the values of the whole program.
+An inverse of a long chain spends half its operations on quantities that count as zero: which value
+a joint then takes, and how far rounding may have moved a target.  The common case leaves this out
+but reports whether a quantity vanishes; the whole program is then evaluated instead.  The flags
+themselves are evaluated in the common case.  This is correct: if no flag holds there, the flags
+that a flag depends on do not hold either, so its value is that of the whole program.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from closedform.lower.share import same
 def common_case(
     graph: Graph, roots: Sequence[Node], names: Mapping[int, str]
 ) -> tuple[list[Node], Node, dict[int, str]]:
-    """Of ``roots`` what is left, the condition that something vanishes, and the names of nodes."""
+    """The remaining ``roots``, the condition that a quantity vanishes, and the names of nodes."""
     raised: list[Node] = []
     kept: dict[int, str] = {}
     within = _within_rare_conditions(roots)
@@ -54,7 +54,7 @@ def _is_rare_choice(node: Node) -> bool:
 
 
 def _within_rare_conditions(roots: Sequence[Node]) -> set[int]:
-    """The conditions that hardly ever hold, and those that these are made of."""
+    """The conditions that hardly ever hold, and the conditions in them."""
     rare = [n for n in reachable(roots) if hardly_ever(n)]
     values = frozenset(n.op for n in reachable(rare)) - BOOLEAN
     return {n.id for n in reachable(rare, values) if n.op in BOOLEAN}

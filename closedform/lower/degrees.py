@@ -1,8 +1,8 @@
-"""How the values of a program go with the size of the mechanism.
+"""How the values of a program scale with the size of the mechanism.
 
-If all lengths double, an angle stays, a distance doubles and an area becomes four times as large:
-their degrees are 0, 1 and 2.  The degrees follow from the program itself, for what is added or
-compared has one degree, and what a sine is taken of has degree 0.
+If all lengths double, an angle does not change, a distance doubles and an area becomes four times
+as large: their degrees are 0, 1 and 2.  The degrees follow from the program itself, because the
+operands of a sum or a comparison have the same degree and the argument of a sine has degree 0.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ ONE = Fraction(1)
 
 
 class MixedError(ValueError):
-    """Values of different degrees are added or compared."""
+    """The program adds or compares values of different degrees."""
 
 
 @dataclass(frozen=True)
 class Degrees:
     """The inputs that are lengths, the degree of every entry of the results, and the highest.
 
-    The highest counts the values in between too, and takes a negative degree without its sign.
+    The highest is the largest absolute value of a degree, intermediate values included.
     """
 
     lengths: frozenset[str]
@@ -44,10 +44,10 @@ class Degrees:
 def degrees(
     results: Sequence[Sequence[Node]], known: Mapping[str, int], preferred: Sequence[str]
 ) -> Degrees | None:
-    """The degrees of a program, or None where it has none, as with a constant among its lengths.
+    """The degrees of a program, or None if it has none, for example with a constant length in it.
 
-    ``known`` are degrees of inputs.  Those ``preferred`` are lengths unless something speaks
-    against it, the others only if something speaks for it.
+    ``known`` contains degrees of inputs.  The inputs in ``preferred`` are lengths unless the
+    program excludes it; the others are lengths only if the program requires it.
     """
     roots = [n for nodes in results for n in nodes]
     nodes = list(reachable(roots))
@@ -79,12 +79,12 @@ def degrees(
 
 @dataclass
 class _System:
-    """Linear equations between unknown degrees, solved one after the other."""
+    """Linear equations between unknown degrees, solved one after another."""
 
     solved: dict[str, Degree] = field(default_factory=dict)
 
     def reduced(self, degree: Degree) -> Degree:
-        """The same in terms of what is still free."""
+        """The same degree in terms of those that are still free."""
         result: Degree = {}
         for name, factor in degree.items():
             for other, f in self.solved.get(name, {name: ONE}).items():
@@ -105,12 +105,12 @@ class _System:
         self.solved = {name: self.reduced(value) for name, value in self.solved.items()}
 
     def prefer(self, name: str, degree: int) -> None:
-        """Give an input this degree if it may have any."""
+        """Give an input this degree if its degree is still free."""
         if any(self.reduced({name: ONE})):
             self.equate({name: ONE}, {"": Fraction(degree)})
 
     def value(self, degree: Degree | None) -> Fraction:
-        """The number that a degree is, once nothing is free; that of zero counts as 0."""
+        """The value of a degree when nothing is free any more; the degree of zero counts as 0."""
         return self.reduced(degree or {}).get("", Fraction(0))
 
 
@@ -122,7 +122,7 @@ def _combined(a: Degree, b: Degree, factor: int) -> Degree:
 
 
 def _of_nodes(nodes: Iterable[Node], system: _System) -> dict[int, Degree | None]:
-    """The degree of every node; None is that of zero and of NaN, which have any."""
+    """The degree of every node; None for zero and NaN, which may have any degree."""
     found: dict[int, Degree | None] = {}
 
     def one_degree(args: Iterable[Node]) -> Degree | None:
@@ -153,7 +153,7 @@ def _of_nodes(nodes: Iterable[Node], system: _System) -> dict[int, Degree | None
                 if (a := found[args[0].id]) is not None:
                     degree = {name: f / 2 for name, f in a.items()}
             case "select":
-                # A constant in the place of a length chooses a direction, where any would do.
+                # A constant instead of a length selects a direction if every direction is valid.
                 degree = one_degree([n for n in args[1:] if constant_of(n) is None] or args[1:])
             case "atan2":
                 one_degree(args)

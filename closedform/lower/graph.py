@@ -1,8 +1,8 @@
 """The expression graph: hash-consed nodes with their local identities applied.
 
-A node knows its operator and its operands and nothing of any language.  Negation is kept outside of
-products and sums, so that a value and its negative share one node ("sign twins").  Sums and
-products are n-ary until :mod:`closedform.lower.share` has looked for common parts in them.
+A node has an operator and operands, and does not depend on any language.  Negation stays outside
+products and sums, so that a value and its negative share one node.  Sums and products are n-ary
+until :mod:`closedform.lower.share` has looked for common parts in them.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Node:
 
 @dataclass
 class Graph:
-    """Makes nodes; equal nodes are one."""
+    """Makes nodes; equal nodes are the same object."""
 
     _nodes: dict[Hashable, Node] = field(default_factory=dict)
 
@@ -60,7 +60,7 @@ class Graph:
         return self.node("neg", a)
 
     def sum(self, terms: Iterable[Node]) -> Node:
-        """An n-ary sum; its first term is positive, the sign of the whole stands outside."""
+        """An n-ary sum with a positive first term, or the negative of one."""
         kept: list[Node] = []
         for term in terms:
             opposite = self.neg(term)
@@ -79,7 +79,7 @@ class Graph:
         return self.node("sum", *kept)
 
     def product(self, factors: Iterable[Node]) -> Node:
-        """An n-ary product of unsigned factors; the sign of the whole stands outside."""
+        """An n-ary product of unsigned factors, or the negative of one."""
         negative = False
         kept: list[Node] = []
         for factor in factors:
@@ -143,7 +143,7 @@ class Graph:
         return condition.args[0] if condition.op == "not" else self.node("not", condition)
 
     def atan2(self, y: Node, x: Node) -> Node:
-        """``atan2`` is odd in y, but for the cut: the callers wrap the result."""
+        """``atan2`` is odd in y except on the branch cut; the callers wrap the result."""
         if is_const(y, 0) and x.op == "const":
             return y
         if y.op == "neg":
@@ -151,17 +151,17 @@ class Graph:
         return self.node("atan2", y, x)
 
     def odd(self, op: str, a: Node) -> Node:
-        """An odd function: the sign goes outside."""
+        """An odd function: the sign moves outside."""
         return self.neg(self.node(op, a.args[0])) if a.op == "neg" else self.node(op, a)
 
     def even(self, op: str, a: Node) -> Node:
-        """An even function: the sign goes away."""
+        """An even function: the sign is dropped."""
         return self.node(op, strip_sign(a))
 
     def _constants_together(
         self, operands: list[Node], combine: Callable[..., sp.Expr], neutral: int
     ) -> list[Node]:
-        """Several constants as one, with their exact value; the neutral one goes away."""
+        """Combine several constants into one exact constant; drop a neutral one."""
         values = [constant_of(n) for n in operands]
         found = [v for v in values if v is not None]
         if len(found) < 2:
@@ -212,8 +212,8 @@ def reachable(
 ) -> Iterator[Node]:
     """Every node below ``roots`` once, operands before operators, without recursion.
 
-    The operands of the operators in ``stop`` are not visited; ``operands`` may stand in for those
-    that a node has itself.
+    The operands of the operators in ``stop`` are not visited.  ``operands`` may replace those of a
+    node.
     """
     seen: set[int] = set()
     stack: list[tuple[Node, bool]] = [(root, False) for root in reversed(list(roots))]
@@ -230,7 +230,7 @@ def reachable(
 
 
 def hardly_ever(condition: Node) -> bool:
-    """Whether a condition takes a flag to hold: something is as good as zero."""
+    """Whether a condition holds only if a flag does: a quantity counts as zero."""
     if condition.op == "or":
         return all(map(hardly_ever, condition.args))
     if condition.op == "and":
@@ -247,7 +247,7 @@ def rebuild(
     change: Callable[[Node, tuple[Node, ...]], Node],
     operands: Callable[[Node], tuple[Node, ...]] = operands_of,
 ) -> list[Node]:
-    """The images of ``roots`` when every node is replaced, operands first, by ``change``."""
+    """The images of ``roots`` after ``change`` has replaced every node, operands first."""
     image: dict[int, Node] = {}
     for node in reachable(roots, operands=operands):
         image[node.id] = change(node, tuple(image[a.id] for a in operands(node)))

@@ -1,4 +1,4 @@
-"""A Function lowered: inputs, the sines and cosines it needs, and a list of named values."""
+"""A lowered Function: inputs, the sines and cosines it needs, and a list of named values."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ from closedform.model.functions import (
 from closedform.model.tolerances import HIGHEST_DEGREE
 
 SPARED = 0.15
-"""Which part of the operations a common case must spare to be worth a program of its own."""
+"""The fraction of the operations that a common case must save to get a separate program."""
 ALONE = 0.6
-"""Which part of the operations of all branches one of them may have to be worth one."""
+"""The largest fraction of the operations of all branches for which one branch gets a program."""
 
 
 class UnboundedAngleError(TypeError):
-    """An output is an angle of a size that is not known."""
+    """An output is an angle whose size is not known."""
 
 
 @dataclass(frozen=True)
@@ -56,13 +56,13 @@ class Result:
 class Lowered:
     """A straight-line program.
 
-    ``angles`` are the nodes whose sine and cosine are taken, ``turned`` those of which whole turns
-    are taken away, in the order of first use; they depend on the inputs alone.  ``names`` gives
-    preferred names (from the derivation) to nodes.  ``common`` is the program where nothing
-    vanishes, if that is much shorter: its last result, ``rare``, is whether something does.
-    ``branch`` is one branch of that, if it is short enough to be taken several times: its last
-    input is the signs of the branch.  ``degrees`` tells how values go with the size of the
-    mechanism, where they go with a power of it.
+    ``angles`` are the nodes whose sine and cosine are computed, ``turned`` those that are reduced
+    by whole turns, both in the order of first use; they depend only on the inputs.  ``names`` gives
+    preferred names (from the derivation) to nodes.  ``common`` is the program for the case that
+    nothing vanishes, if it is much shorter; its last result, ``rare``, says whether something
+    does.  ``branch`` is one branch of that program, if it is short enough to be called several
+    times; its last input is the signs of the branch.  ``degrees`` says how values scale with the
+    size of the mechanism, if they scale with a power of it.
     """
 
     name: str
@@ -81,26 +81,26 @@ class Lowered:
         return [n for r in self.results for n in r.nodes]
 
     def schedule(self) -> list[Node]:
-        """Every node of the body, operands before operators."""
+        """All nodes of the body, operands before operators."""
         return list(reachable(self.roots))
 
     def used_inputs(self, *, below_angles: bool = True) -> frozenset[str]:
-        """The inputs and parameters that are read; with ``below_angles`` off, by the body alone."""
+        """The inputs and parameters that are read; without ``below_angles``, only by the body."""
         nodes = self.schedule() if below_angles else reachable(self.roots, LEAVES)
         return frozenset(str(n.payload) for n in nodes if n.op == "input")
 
     def deciding(self) -> list[Node]:
-        """Every node that a status or a condition rests on, operands before operators."""
+        """All nodes that a status or a condition depends on, operands before operators."""
         deciding = [n for n in self.schedule() if n.op == "status"]
         deciding += [n for result in self.results if result.kind == "bool" for n in result.nodes]
         return list(reachable(deciding))
 
     def deciding_angles(self) -> frozenset[int]:
-        """The angles on whose sine or cosine a status or a condition rests."""
+        """The angles whose sine or cosine determines a status or a condition."""
         return frozenset(n.args[0].id for n in self.deciding() if n.op in ("sin", "cos"))
 
     def operations(self) -> dict[str, int]:
-        """How many operators of each kind there are (a sincos counts once)."""
+        """The number of operators of each kind (a sincos counts once)."""
         counts: Counter[str] = Counter()
         for node in self.schedule():
             if node.op in COUNTED:
@@ -115,7 +115,7 @@ class Lowered:
 
     @property
     def length(self) -> int:
-        """How many operators there are in all."""
+        """The total number of operators."""
         return sum(self.operations().values())
 
 
@@ -133,7 +133,7 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
 
 
 def _with_degrees(program: Lowered, derivation: Derivation) -> Lowered:
-    """The program and its degrees, the highest of which is also that of the common case."""
+    """The program with its degrees; the highest one includes the common case."""
     known = {j.name: int(j.kind == "prismatic") for j in derivation.joints}
     known |= {p.name: 0 for p in derivation.parameters if p.unit in NUMBERS}
     preferred = [p.name for p in derivation.parameters if p.name not in known]
@@ -147,7 +147,7 @@ def _with_degrees(program: Lowered, derivation: Derivation) -> Lowered:
 def _one_branch(
     function: Function, derivation: Derivation, entries: Sequence[tuple[sp.Expr, bool]]
 ) -> Lowered | None:
-    """The common case of a branch, whose signs are inputs."""
+    """The common case of one branch, with the signs of the branch as inputs."""
     assert function.branches
     signs = list(function.branches.signs[0])
     one = replace(
@@ -157,7 +157,7 @@ def _one_branch(
     )
     try:
         return _lower(one, derivation, entries, [("", {})], signs)[1]
-    except UnboundedAngleError:  # a sign enters an angle in another way than as a factor
+    except UnboundedAngleError:  # a sign occurs in an angle, but not as a factor
         return None
 
 
@@ -168,7 +168,7 @@ def _lower(
     cases: Sequence[tuple[str, Mapping[sp.Symbol, int]]],
     signs: Sequence[sp.Symbol] = (),
 ) -> tuple[Lowered, Lowered]:
-    """The whole program and its common case; ``signs`` are inputs that are 1 or -1."""
+    """The whole program and its common case; ``signs`` are inputs with the values 1 or -1."""
     graph = Graph()
     parameters = [p.symbol for p in derivation.parameters]
     leaves = {s: graph.input(s.name) for s in (*function.symbols, *parameters)}
@@ -209,7 +209,8 @@ def _finished(
 ) -> Lowered:
     """The program of these results, with common parts shared."""
     flat = [n for r in results for n in r.nodes]
-    # An inverse is judged by what its answers give, a forward map by the last digit of its values.
+    # Reciprocals cost an ulp.  An inverse is judged by the image of its answers and can afford
+    # them; a forward map is judged by the last digit of its values.
     renamed, named = _share_named(graph, ranges, flat, names, by_reciprocals=function.has_status)
     remaining = iter(renamed)
     used = {str(n.payload) for n in reachable(renamed) if n.op == "input"}
@@ -232,7 +233,7 @@ def _share_named(
     *,
     by_reciprocals: bool,
 ) -> tuple[list[Node], dict[int, str]]:
-    """Spare roots and share common parts; names of the derivation follow their nodes."""
+    """Save roots and share common parts; names of the derivation stay with their nodes."""
     live = [n for n in reachable(roots) if n.id in names]
     spared = fewer_roots(graph, roots, live, ranges)
     body, images = spared[: len(roots)], dict(zip(spared[len(roots) :], live, strict=True))
@@ -245,12 +246,12 @@ def _share_named(
 
 
 def _guarded(function: Function) -> bool:
-    """Whether a failure is to be marked: by a status, or by NaN for a missing branch."""
+    """Whether a failure must be reported, by a status or by NaN for a missing branch."""
     return function.has_status or any(isinstance(s, (Bound, Match)) for s in function.body)
 
 
 def _ranges(function: Function, derivation: Derivation, signs: Sequence[sp.Symbol]) -> Ranges:
-    """Where an answer with a negative length is marked, lengths count as not negative."""
+    """The ranges of the values; lengths count as nonnegative if negative ones are reported."""
     marked = _guarded(function)
     lengths = [p.name for p in derivation.parameters if marked and p.nonnegative]
     return Ranges(lengths, [s.name for s in signs])
@@ -324,7 +325,7 @@ class _Branch:
                 allowed = limit("rotation", statement.scale)
                 valid += [graph.node("le", size, allowed) for size in sizes]
 
-        # Written so that a comparison with NaN, after an overflow, counts as a failure.
+        # In this form a comparison with NaN, after an overflow, counts as a failure.
         bad_input = graph.negate(graph.every(valid))
         out_of_reach = graph.negate(graph.every(reachable))
         failed = (
@@ -341,7 +342,7 @@ class _Branch:
         return outputs, self._status(bad_input, out_of_reach, graph.any(singular))
 
     def _output(self, build: Builder, failed: Node, entry: sp.Expr, angle: bool) -> Node:
-        """The value of an entry; adding NaN to a failed one is one selection for all entries."""
+        """The value of an entry; NaN is added if the branch fails, with one selection for all."""
         node = build(entry)
         if self.function.boolean:
             return self.graph.every([self.graph.negate(failed), node])
@@ -350,8 +351,8 @@ class _Branch:
                 node = self.ranges.wrapped(self.graph, node)
             except UnboundedError:
                 raise UnboundedAngleError(
-                    f"{self.function.name}: the size of the angle {entry} is not known, so that it "
-                    f"cannot be brought into (-pi, pi]; write it as atan2(sin, cos)"
+                    f"{self.function.name}: the size of the angle {entry} is not known, so it "
+                    f"cannot be moved to (-pi, pi]; write it as atan2(sin, cos)"
                 ) from None
         if failed.op == "false":
             return node
@@ -361,10 +362,11 @@ class _Branch:
         return self.graph.node("status", invalid, unreachable, singular)
 
     def _valid_input(self) -> list[Node]:
-        """Every input and parameter is finite, and no length is negative.
+        """The conditions that every input and parameter is finite and no length is negative.
 
-        What has a status tests parameters that it does not use too: dimensions that are none make
-        no robot.  An input that a requirement compares needs no such test: it fails there.
+        A function with a status also tests parameters that it does not use, because impossible
+        dimensions are an error for the whole robot.  An input in a requirement needs no test here:
+        the requirement fails if it is not finite.
         """
         graph = self.graph
         used = {s for e in _expressions(self.function) for s in e.free_symbols}
@@ -382,7 +384,7 @@ class _Branch:
             tested = [self.leaves[s] for s in symbols if s not in required]
             return [graph.node("finite", *tested)] if tested else []
 
-        # The parameters first: what is the same for all postures is tested once a batch.
+        # Parameters come first: if all postures share them, a batch tests them only once.
         return [
             *finite(p.symbol for p in parameters),
             *(

@@ -1,7 +1,7 @@
-"""Between which multiples of pi an angle lies: how much it takes to bring it to (-pi, pi].
+"""Bounds on angles, in multiples of pi, and the cheapest way to move an angle to (-pi, pi].
 
-The bounds are halves of pi, and hold after rounding: sums of such multiples of the double (or the
-float) nearest to pi are exact up to 2 pi, and rounding keeps order.
+The bounds are multiples of pi/2 and hold after rounding: sums of such multiples of the double (or
+float) nearest to pi are exact up to 2 pi, and rounding is monotone.
 """
 
 from __future__ import annotations
@@ -21,12 +21,14 @@ Range: TypeAlias = "tuple[Fraction, Fraction]"
 
 
 class UnboundedError(ValueError):
-    """Nothing is known of the size of an angle."""
+    """Nothing is known about the size of an angle."""
 
 
 class Ranges:
-    """Ranges of the nodes of a graph; the inputs named in ``lengths`` are not negative, those in
-    ``signs`` 1 or -1."""
+    """Ranges of the nodes of a graph.
+
+    The inputs in ``lengths`` are not negative; those in ``signs`` are 1 or -1.
+    """
 
     def __init__(self, lengths: Collection[str] = (), signs: Collection[str] = ()):
         self.lengths = frozenset(lengths)
@@ -34,9 +36,9 @@ class Ranges:
         self._not_negative: dict[int, bool] = {}
 
     def wrapped(self, graph: Graph, angle: Node) -> Node:
-        """The angle in (-pi, pi], by the cheapest of the wraps that its range allows.
+        """The angle moved to (-pi, pi] by the cheapest wrap that its range allows.
 
-        Raises :class:`UnboundedError` where no range is known.
+        Raises :class:`UnboundedError` if no range is known.
         """
         found = self.of(angle)
         if found is None:
@@ -47,7 +49,7 @@ class Ranges:
         return graph.node("wrap_cut" if low == -1 and high <= 1 else "wrap", angle)
 
     def of(self, node: Node) -> Range | None:
-        """The least and the largest value in units of pi, if anything is known of them."""
+        """The smallest and the largest value in units of pi, or None if they are not known."""
         value = constant_of(node)
         if value is not None:
             multiple = 2 * sp.sympify(value, strict=True) / sp.pi
@@ -77,7 +79,7 @@ class Ranges:
         return None
 
     def _product(self, node: Node) -> Range | None:
-        """Of one angle and whole numbers, be they signs that were computed."""
+        """The range of a product of one angle and integers, which may be computed signs."""
         factors = [self._whole_numbers(a) for a in node.args]
         others = [a for a, f in zip(node.args, factors, strict=True) if f is None]
         found = self.of(others[0]) if len(others) == 1 else None
@@ -94,7 +96,7 @@ class Ranges:
             return True
         if node.op == "sqrt":
             return self.positive(node.args[0])
-        if node.op == "max":  # the other operand is returned where it is larger
+        if node.op == "max":  # the other operand is returned only if it is larger than zero
             return is_const(node.args[1], 0)
         if node.op == "product":
             return all(n % 2 == 0 or self.positive(f) for f, n in Counter(node.args).items())
@@ -116,7 +118,7 @@ class Ranges:
                 return node.payload in self.lengths
             case "sum":
                 return all(map(self.not_negative, node.args))
-            case "div":  # by the negative zero it would be
+            case "div":  # division by the negative zero changes the sign
                 return self.not_negative(node.args[0]) and self.positive(node.args[1])
             case "select":
                 return all(map(self.not_negative, node.args[1:]))
@@ -128,7 +130,7 @@ class Ranges:
         return False
 
     def _whole_numbers(self, node: Node) -> set[int] | None:
-        """The values of a node that is a whole number: of signs, and of choices between such."""
+        """The possible values of an integer node, made of constants, signs and choices."""
         value = constant_of(node)
         if value is not None:
             return {int(value)} if value.is_Integer else None

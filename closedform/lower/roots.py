@@ -1,9 +1,10 @@
-"""Fewer square roots and divisions, each of which takes as long as several products.
+"""Fewer square roots and divisions: each takes as long as several products.
 
-``sqrt(a) sqrt(b)`` is ``sqrt(a b)``, and twice ``atan2(sqrt(a), sqrt(b))`` is
-``atan2(2 sqrt(a b), b - a)``, where neither a nor b is negative; ``atan2(y / d, x / d)`` is
-``atan2(y, x)`` where d is not.  The products have up to four times the exponent of a length;
-lengths with which they would leave the range are multiplied by a power of two first.
+If neither a nor b is negative, ``sqrt(a) sqrt(b)`` is ``sqrt(a b)``, and twice
+``atan2(sqrt(a), sqrt(b))`` is ``atan2(2 sqrt(a b), b - a)``.  If d is not negative,
+``atan2(y / d, x / d)`` is ``atan2(y, x)``.  The exponents of these products are up to four times
+those of a length; lengths for which they would leave the range are first multiplied by a power of
+two.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from closedform.lower.share import same
 def fewer_roots(
     graph: Graph, roots: Sequence[Node], followers: Sequence[Node], ranges: Ranges
 ) -> list[Node]:
-    """The images of ``roots`` and ``followers``, of which only the former count as uses."""
+    """The images of ``roots`` and ``followers``; only ``roots`` count as uses of a node."""
 
     def simpler_angles(node: Node, args: tuple[Node, ...]) -> Node:
         found = None
@@ -51,7 +52,7 @@ def fewer_roots(
 
 
 def _whole_angle(graph: Graph, ranges: Ranges, factors: Sequence[Node]) -> Node | None:
-    """The product of an even number and an angle with the tangent ``sqrt(a) / sqrt(b)``."""
+    """The product of an even number and the angle ``atan2(sqrt(a), sqrt(b))``."""
     angle = next((f for f in factors if f.op == "atan2"), None)
     number, half = next(((f, h) for f in factors if (h := _half(f)) is not None), (None, None))
     if angle is None or half is None:
@@ -66,13 +67,13 @@ def _whole_angle(graph: Graph, ranges: Ranges, factors: Sequence[Node]) -> Node 
 
 
 def _half(node: Node) -> sp.Expr | None:
-    """Half an even number."""
+    """Half of a constant, or None if the constant is not even."""
     value = constant_of(node)
     return value / 2 if value is not None and (value / 2).is_Integer else None
 
 
 def _undivided(graph: Graph, ranges: Ranges, y: Node, x: Node) -> Node | None:
-    """The angle of a pair that is divided by the same value, which is not negative."""
+    """The angle of a pair of quotients with the same divisor, which is not negative."""
     quotients = [strip_sign(n) for n in (y, x)]
     if any(q.op != "div" for q in quotients):
         return None
@@ -85,7 +86,7 @@ def _undivided(graph: Graph, ranges: Ranges, y: Node, x: Node) -> Node | None:
 
 
 def _square(graph: Graph, ranges: Ranges, node: Node) -> Node | None:
-    """The square of a product of roots, no factor of which is negative."""
+    """The square of a product of roots whose radicands are not negative."""
     factors = node.args if node.op == "product" else (node,)
     if all(f.op == "sqrt" and ranges.not_negative(f.args[0]) for f in factors):
         return graph.product([f.args[0] for f in factors])
@@ -93,7 +94,7 @@ def _square(graph: Graph, ranges: Ranges, node: Node) -> Node | None:
 
 
 def _products_by_root(roots: Sequence[Node], ranges: Ranges) -> dict[int, frozenset[int]]:
-    """In which products a root stands, for those that stand nowhere else."""
+    """For every root that occurs only in products, the products in which it occurs."""
     users: defaultdict[int, set[int]] = defaultdict(set)
     elsewhere = {r.id for r in roots}
     for node in reachable(roots):

@@ -1,7 +1,7 @@
 """Common parts of sums, products and quotients, and the step from n-ary to binary operators.
 
-Sums (products) that have two terms (factors) in common get them computed once.  The pair that
-occurs most often is taken out first, then the next, until no pair occurs twice.
+If two sums (products) have two terms (factors) in common, these are computed once.  The most
+frequent pair is extracted first, then the next, until no pair occurs twice.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ Pair = tuple[int, int, int]
 
 
 def share(graph: Graph, roots: Sequence[Node], *, by_reciprocals: bool = False) -> list[Node]:
-    """``roots`` with common pairs taken out of products and then of sums, in binary operators.
+    """``roots`` in binary operators, with common pairs extracted from products and then from sums.
 
-    With ``by_reciprocals`` quotients by the same value become products with its reciprocal: a
-    division takes as long as several products, but the product is rounded once more.
+    With ``by_reciprocals``, quotients by the same value become products with its reciprocal.  A
+    division takes as long as several products, but the product has one more rounding.
     """
     shared = _by_reciprocals(graph, list(roots)) if by_reciprocals else list(roots)
     shared = _take_out(graph, shared, "product")
@@ -33,7 +33,7 @@ def share(graph: Graph, roots: Sequence[Node], *, by_reciprocals: bool = False) 
 
 
 def _by_reciprocals(graph: Graph, roots: list[Node]) -> list[Node]:
-    """One division for all quotients by the same value, be it no constant."""
+    """Use one division for all quotients by the same value, unless that is a constant."""
     divisors = Counter(n.args[1].id for n in reachable(roots) if n.op == "div")
 
     def change(node: Node, args: tuple[Node, ...]) -> Node:
@@ -45,7 +45,7 @@ def _by_reciprocals(graph: Graph, roots: list[Node]) -> list[Node]:
 
 
 def _turn_differences(graph: Graph, roots: list[Node]) -> list[Node]:
-    """``-(a - b)`` as ``b - a``, where ``a - b`` itself is not needed."""
+    """Replace ``-(a - b)`` by ``b - a`` if ``a - b`` itself is not needed."""
     uses = Counter(a.id for n in reachable(roots) for a in n.args)
     uses.update(r.id for r in roots)
 
@@ -59,8 +59,11 @@ def _turn_differences(graph: Graph, roots: list[Node]) -> list[Node]:
 
 
 def _take_out(graph: Graph, roots: list[Node], op: str) -> list[Node]:
-    """One operator's common pairs. The pairs of all nodes are kept in a table and in a heap, so
-    that a part taken out costs the nodes it occurs in, not the whole graph."""
+    """Extract the common pairs of one operator.
+
+    The pairs of all nodes are in a table and in a heap.  So extracting a part takes time for the
+    nodes in which it occurs, not for the whole graph.
+    """
     table = _Table(n for n in reachable(roots) if n.op == op)
     while pair := table.most_frequent():
         first, second = (table.node[i] for i in pair[:2])
@@ -80,7 +83,7 @@ def _take_out(graph: Graph, roots: list[Node], op: str) -> list[Node]:
 
 
 class _Table:
-    """The operands of every sum (or product), and for each pair of them the nodes that have it."""
+    """The operands of every sum (or product), and for each pair of operands the nodes with it."""
 
     def __init__(self, nodes: Iterable[Node]):
         self.node: dict[int, Node] = {}
@@ -105,7 +108,7 @@ class _Table:
             heapq.heappush(self.heap, (-count, pair[0], pair[1], -pair[2]))
 
     def most_frequent(self) -> Pair | None:
-        """The pair in the most nodes that is worth taking out, the oldest of several."""
+        """The most frequent pair that is worth extracting; the oldest if there are several."""
         while self.heap:
             count, first, second, opposite = heapq.heappop(self.heap)
             pair = (first, second, -opposite)
@@ -115,7 +118,7 @@ class _Table:
         return None
 
     def replace(self, pair: Pair, part: Node) -> None:
-        """``part`` instead of ``pair`` wherever that stands among more than two operands."""
+        """Replace ``pair`` by ``part`` in all nodes with more than two operands."""
         changed: set[Pair] = set()
         for holder in [h for h in self.holders[pair] if len(self.operands[h]) > 2]:
             signed = self.operands[holder]

@@ -1,9 +1,9 @@
-"""Which outputs are angles, and what their terms have to be for their size to be known.
+"""Finds the outputs that are angles, and writes them so that their size is known.
 
-An output is an angle if it is a revolute joint of an inverse, or if there is an arctangent in it or
-in a name that it is computed from.  An angle of the input may have any size: where it enters a sum
-it is read from its sine and cosine.  How much of a wrap an angle then needs is seen on its nodes:
-:mod:`closedform.lower.ranges`.
+An output is an angle if it is a revolute joint of an inverse, or if it, or a name from which it is
+computed, contains an arctangent.  An angle of the input may have any size; in a sum it is therefore
+computed from its sine and cosine.  :mod:`closedform.lower.ranges` then decides from the nodes which
+wrap an angle needs.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Turns:
     function: Function
     lets: Mapping[Expr, Expr]
     joints: frozenset[int]
-    """Which entries of the outputs, counted through, are revolute joints of an inverse."""
+    """The indices of the entries of all outputs that are revolute joints of an inverse."""
 
     @classmethod
     def of(cls, function: Function, derivation: Derivation) -> Turns:
@@ -40,13 +40,13 @@ class Turns:
         )
 
     def entries(self) -> list[tuple[Expr, bool]]:
-        """The outputs, and whether they are angles; those can then be bounded."""
+        """The outputs, and whether they are angles; angles are written so that bounds are known."""
         flat = [e for output in self.function.outputs for e in output.entries]
         angles = [k in self.joints or self._is_angle(e) for k, e in enumerate(flat)]
         return [(self._read(e) if a else e, a) for e, a in zip(flat, angles, strict=True)]
 
     def _is_angle(self, e: Expr) -> bool:
-        """Whether an arctangent is a term, or that times numbers and signs (not times a length)."""
+        """Whether a term is an arctangent, possibly times numbers and signs (but not lengths)."""
         if e in self.lets:
             return self._is_angle(self.lets[e])
         if isinstance(e, sp.Mul):
@@ -59,14 +59,14 @@ class Turns:
         return isinstance(e, sp.atan2 | sp.atan)
 
     def _is_number(self, e: Expr) -> bool:
-        """A number, a sign of the branch, or a sign that was computed."""
+        """Whether this is a number, a sign of the branch, or a computed sign."""
         if isinstance(e, sp.Piecewise):
             return all(self._is_number(value) for value, _ in e.args)
         signs = {s for _, chosen in self.function.cases() for s in chosen}
         return self._is_number(self.lets[e]) if e in self.lets else bool(e.free_symbols <= signs)
 
     def _read(self, e: Expr) -> Expr:
-        """The same angle up to whole turns, with what comes from the input as one arctangent."""
+        """The same angle up to whole turns, with all input angles in one arctangent."""
         if isinstance(e, sp.Piecewise):
             return sp.Piecewise(*((self._read(value), c) for value, c in e.args))
         terms = list(sp.Add.make_args(e))
@@ -85,7 +85,7 @@ class Turns:
         return sp.Add(sp.atan2(sp.sin(total), sp.cos(total)), *kept)
 
     def _holds_input(self, e: Expr) -> bool:
-        """Whether a coordinate of the input is a term of a sum, in the names of the body too."""
+        """Whether a term of a sum is a coordinate of the input, also through names of the body."""
         if e in self.lets:
             parts = sp.Add.make_args(self.lets[e])
             return any(self._holds_input(a.as_coeff_Mul()[1]) for a in parts)

@@ -1,4 +1,4 @@
-"""What a check of a claim is, and the verdicts that it may give."""
+"""Checks of claims and the verdicts that they give."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ VERDICTS = (PROVED, PROVED_UNDER, APPROXIMATION, REFUTED, NOT_DECIDABLE)
 
 @dataclass(frozen=True)
 class Verdict:
-    """What was found.
+    """The result of a check.
 
     ``evidence`` is a sentence: the assumption, the counterexample, the order of the error, or the
-    reason.  ``corrected`` is the LaTeX of the form that was proved instead; there is none that was
-    not proved.
+    reason.  ``corrected`` is the LaTeX of the form that was proved instead; a form that is not
+    proved is never given.
     """
 
     kind: str

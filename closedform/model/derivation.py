@@ -2,8 +2,7 @@
 
 A script builds one :class:`Derivation`: it names the paper, the parameters and the joints, proceeds
 in steps, solves for the unknowns with named lemmas, exports functions and transcribes the claims of
-the paper.  Every later room (proof, lowering, emission, LaTeX, reference) reads this object and
-nothing else.
+the paper.  All later stages (proof, lowering, emission, LaTeX, reference) read only this object.
 """
 
 from __future__ import annotations
@@ -79,7 +78,7 @@ class Parameter:
 class Joint:
     """A joint variable.
 
-    A passive joint is moved by the others; a coupled joint is a function of the others.
+    The other joints move a passive joint; a coupled joint is a function of the other joints.
     """
 
     symbol: sp.Symbol
@@ -87,7 +86,7 @@ class Joint:
     passive: bool = False
     coupling: sp.Expr | None = None
     beside: sp.Symbol | None = None
-    """A joint that this one stays close to, as in a twin arm; samples are drawn accordingly."""
+    """A joint that this one stays close to, as in a twin arm; samples respect this."""
 
     @property
     def name(self) -> str:
@@ -96,9 +95,9 @@ class Joint:
 
 @dataclass(frozen=True)
 class Step:
-    """One step: why, what was derived, and what must be zero for the step to hold.
+    """One step: its reason, the derived expressions, and the differences that must vanish.
 
-    The left-hand sides in ``shown`` are LaTeX, the other texts are plain.
+    The left-hand sides in ``shown`` are LaTeX; the other texts are plain.
     """
 
     title: str
@@ -108,8 +107,8 @@ class Step:
     vanishes: tuple[Any, ...] = ()
     nonnegative: tuple[sp.Expr, ...] = ()
     rows: tuple[tuple[Any, ...], ...] = ()
-    """A table, its head first.  A cell is a sentence, an expression or an increasing chain of
-    expressions, ``(0, x, 1)`` for 0 <= x <= 1."""
+    """The rows of a table; the first is its head.  A cell is a sentence, an expression or an
+    increasing chain of expressions, such as ``(0, x, 1)`` for 0 <= x <= 1."""
 
 
 @dataclass(frozen=True)
@@ -121,15 +120,15 @@ class Solved:
     lemma: Lemma
     equation: sp.Expr
     posture: Mapping[sp.Symbol, sp.Expr] | None = None
-    """The inputs in terms of joints, passive ones too, where the inverse does not say it itself."""
+    """The inputs in terms of the joints (including passive ones), unless the inverse gives them."""
 
 
 @dataclass(frozen=True)
 class Continuum:
-    """A flagged case: on ``locus`` a joint is free, and ``relation`` says what the others keep.
+    """A flagged case: on ``locus`` a joint is free; ``relation`` (LaTeX) holds for the others.
 
-    It occurs in the named ``branches``; in all of them if none is named.  The locus may be written
-    in the unknowns of earlier stages, where there are stages.  The relation is LaTeX.
+    It occurs in the named ``branches``, or in all branches if none is named.  If the inverse has
+    stages, the locus may be written in the unknowns of earlier stages.
     """
 
     flag: sp.Symbol
@@ -146,17 +145,16 @@ class Continuum:
 
 @dataclass(frozen=True)
 class Stage:
-    """One of several steps in which the solutions of a system are counted.
+    """One of several stages in which the solutions of a system are counted.
 
-    ``equations`` are places in the system; they hold no unknowns but those of this stage and of
-    earlier ones.  ``given`` writes the inputs in the unknowns that were solved before, so that the
-    equations of those earlier stages hold identically whose unknowns occur.  ``mixed``, an
-    orthogonal matrix in the earlier unknowns, multiplies the equations where that makes them
-    simpler.
+    ``equations`` are indices of equations of the system, which contain only the unknowns of this
+    and earlier stages.  ``given`` writes the inputs in terms of earlier unknowns; every equation of
+    an earlier stage whose unknowns occur in it then holds identically.  ``mixed``, an orthogonal
+    matrix in the earlier unknowns, multiplies the equations if that makes them simpler.
 
-    An inverse that is solved in the same stages is proved sound in them, if its stages say which
-    names of the program are ``carried`` into them, and what these are in the earlier unknowns: the
-    earlier stages are proved to hand them on so.
+    If the inverse is solved in the same stages, its soundness can be proved stage by stage.  Then
+    ``carried`` lists names of the program that a stage takes from earlier ones, with their values
+    in the earlier unknowns.  The proof of an earlier stage includes these values.
     """
 
     unknowns: tuple[sp.Symbol, ...]
@@ -168,24 +166,25 @@ class Stage:
 
 @dataclass(frozen=True)
 class Reduction:
-    """An inverse that is too large for one Groebner basis, certified lemma by lemma.
+    """An inverse that is too large for one Groebner basis and is proved lemma by lemma.
 
     ``joints`` gives each unknown of the inverse in the unknowns of the ``lemmas`` and names of the
     program.  The equations of the lemmas, multiplied by the invertible matrix ``combination``, are
-    those of the inverse: so both have the same solutions, and each lemma is proved to give all of
-    its own.  Where a side condition keeps one in ``kept_of`` of them, ``because`` says why.
+    those of the inverse.  So both have the same solutions, and each lemma is proved to give all of
+    its own.  If a side condition keeps only one of every ``solutions_per_branch`` solutions,
+    ``because`` is the reason.
     """
 
     lemmas: tuple[Lemma, ...]
     joints: Mapping[sp.Symbol, sp.Expr]
     combination: sp.Matrix
-    kept_of: int = 1
+    solutions_per_branch: int = 1
     because: str = ""
 
 
 @dataclass(frozen=True)
 class Degenerate:
-    """A flagged case of a lemma: on ``locus``, for its coefficients, the joint ``free`` is free."""
+    """A flagged case of a lemma: with its coefficients on ``locus``, the joint ``free`` is free."""
 
     flags: tuple[sp.Symbol, ...]
     locus: Mapping[sp.Symbol, sp.Expr]
@@ -195,7 +194,7 @@ class Degenerate:
 
 @dataclass(frozen=True)
 class Link:
-    """A lemma in a chain: the statements it added, and what its names ``means`` at a posture.
+    """A lemma in a chain, with the statements it added; ``means`` are its names at a posture.
 
     ``given`` writes coefficients that depend on each other in free symbols.
     """
@@ -209,20 +208,21 @@ class Link:
 
 @dataclass(frozen=True)
 class Inverse:
-    """What an inverse must satisfy: ``forward`` in the ``unknowns`` equals the ``targets``.
+    """The equations of an inverse: ``forward``, in the ``unknowns``, equals the ``targets``.
 
     Targets that depend on each other (the entries of a rotation) have a ``parametrisation``: the
-    same number of expressions in free symbols.  Of the targets in ``angles`` only the sine and the
+    same number of expressions in free symbols.  For targets in ``angles`` only the sine and the
     cosine count.
 
-    A closed loop gives equations in unknowns and inputs together: they are ``forward``, the
-    ``targets`` are zeros, and ``images`` names the function whose values, in each assembly mode,
-    are inputs with a known solution.  ``stages`` count the solutions step by step.
+    A closed loop gives equations that contain both unknowns and inputs.  They are ``forward``, and
+    the ``targets`` are zeros.  ``images`` names a function whose values, in each assembly mode, are
+    inputs with a known solution.  ``stages`` count the solutions stage by stage.
 
-    Where the equations that are solved are not the forward map itself, targets are expressions in
-    the inputs (such as ``tan(psi)``), and ``forward`` may hold inputs too; then ``reduction``
-    proves the inverse lemma by lemma, a step shows that the map named by ``images`` satisfies the
-    equations, and the cross-check puts the answers into that map.
+    If the solved equations are not the forward map itself, the targets are expressions in the
+    inputs (such as ``tan(psi)``), and ``forward`` may contain inputs.  Then ``reduction`` proves
+    the inverse lemma by lemma; a step shows that the map named by ``images`` satisfies the
+    equations; the cross-check substitutes the answers into that map.
+
     An inverse with a ``chain`` is proved link by link.
     """
 
@@ -236,25 +236,25 @@ class Inverse:
     images: str = ""
     stages: tuple[Stage, ...] = ()
     nonnegative: tuple[sp.Symbol, ...] = ()
-    """Unknowns that are lengths: of two solutions that differ in their sign one counts."""
+    """Unknowns that are lengths: two solutions that differ only in their sign count as one."""
     chain: tuple[Link, ...] = ()
     meaning: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    """What names of the program stand for at a posture, in the unknowns."""
+    """The values of names of the program at a posture, in the unknowns."""
     defined: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     """Auxiliary angles: sums of the unknowns."""
     lengths: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     """Auxiliary lengths, at a posture."""
     units: tuple[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]], ...] = ()
-    """Sines and cosines of free choices, and the names that may have any value in them."""
+    """Sine and cosine of angles that may be chosen freely, and the names that are free in them."""
     reduction: Reduction | None = None
 
     def posed(self, inputs: tuple[sp.Symbol, ...], image: tuple[sp.Expr, ...]) -> Inverse:
-        """The same inverse with the forward map, ``image``, for its equations."""
+        """The same inverse with the forward map ``image`` as its equations."""
         return replace(self, targets=inputs, forward=image, images="")
 
     @property
     def equations(self) -> tuple[sp.Expr, ...]:
-        """What vanishes at a solution."""
+        """The expressions that vanish at a solution."""
         return tuple(
             equation
             for f, x in zip(self.forward, self.targets, strict=True)
@@ -266,9 +266,9 @@ class Inverse:
 
 @dataclass(frozen=True)
 class Table:
-    """Numbers to print: ``columns`` of expressions in one ``variable``, a row for each value.
+    """A table of numbers: ``columns`` of expressions in one ``variable``, and a row for each value.
 
-    The parameters have their example values.  The header of a column names its unit.
+    The parameters have their example values.  The header of a column gives its unit.
     """
 
     name: str
@@ -286,7 +286,7 @@ class Table:
 class Claim:
     """A statement of the paper, transcribed as printed, and the computation that judges it.
 
-    In ``printed`` formulas stand between dollar signs, as LaTeX; all else is plain text.
+    In ``printed``, formulas are LaTeX between dollar signs; the rest is plain text.
     """
 
     label: str
@@ -300,12 +300,12 @@ class Claim:
 
 
 RESULTS = {"Solutions": "q", "Positions": "p"}
-"""The results with a status, each with the name of its values."""
+"""The results with a status, and the name of the values of each."""
 
 
 @dataclass
 class Derivation(Shown):
-    """A mechanism, derived."""
+    """The derivation of one mechanism."""
 
     name: str
     title: str
@@ -324,7 +324,7 @@ class Derivation(Shown):
     tables: list[Table] = field(default_factory=list)
     claims: list[Claim] = field(default_factory=list)
     without_inverse: str = ""
-    """Why there is no inverse, as a clause; empty where there is one, or nobody says why."""
+    """Why there is no inverse, as a clause; empty if there is one, or if no reason is given."""
 
     def parameter(
         self,
@@ -336,10 +336,10 @@ class Derivation(Shown):
         source: str = "the paper's example",
         nonnegative: bool = True,
     ) -> sp.Symbol:
-        """Declare a parameter; a length is ``nonnegative`` unless said otherwise.
+        """Declare a parameter, which is ``nonnegative`` by default, as a length is.
 
-        Inside the algebra a nonnegative parameter counts as positive: what holds on the open set
-        holds on its closure, and a zero length is treated by the flags of the inverse.
+        In the algebra a nonnegative parameter counts as positive: an identity that holds on the
+        open set also holds on its closure.  The flags of the inverse handle a zero length.
         """
         self._check_new(name)
         check_text(f"{self.name}: {name}", meaning, unit, source)
@@ -399,8 +399,8 @@ class Derivation(Shown):
     ) -> None:
         """Record a step.  ``shown`` maps a LaTeX left-hand side to the derived expression.
 
-        Each pair in ``equal`` is proved equal; the build fails where the proof does.  ``rows`` is
-        a table, see :class:`Step`.
+        Each pair in ``equal`` is proved to be equal; the build fails if the proof does.  ``rows``
+        is a table, see :class:`Step`.
         """
         for value in (*shown.values(), *(e for pair in equal for e in pair)):
             self._reject_floats(value, f"{self.name}, step {title!r}")
@@ -455,11 +455,11 @@ class Derivation(Shown):
         return function
 
     def claim(self, label: str, printed: str, check: Check, where: str = "") -> None:
-        """Transcribe a statement of the paper, with the check that will judge it."""
+        """Transcribe a statement of the paper, with the check that judges it."""
         self.claims.append(Claim(label, printed, check, where))
 
     def no_inverse(self, because: str) -> None:
-        """Say why there is no inverse, in a clause such as ``"axes 5 and 6 do not intersect"``."""
+        """Give the reason why there is no inverse, such as ``"axes 5 and 6 do not intersect"``."""
         check_text(f"{self.name}: no_inverse", because)
         self.without_inverse = because
 
@@ -480,7 +480,7 @@ class Derivation(Shown):
                     reject_floats(entry, where)
 
     def __setattr__(self, attribute: str, value: Any) -> None:
-        """Check names and texts when they are given, the later ones too."""
+        """Check names and texts on every assignment, not only in the constructor."""
         where = f"{attribute} of {value if attribute == 'name' else self.name}"
         if attribute == "name":
             check_robot(value)

@@ -1,7 +1,7 @@
-"""How a record shows itself in a notebook.
+"""The display of records in a notebook.
 
-A record does not know how it is printed: :mod:`closedform.emit.notebook`, which does, registers a
-printer for each kind of record here.
+A record does not know how to print itself.  :mod:`closedform.emit.notebook` registers a printer for
+each kind of record here.
 """
 
 from __future__ import annotations

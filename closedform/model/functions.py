@@ -1,26 +1,26 @@
-"""What a derivation exports: functions as short programs of exact expressions.
+"""The exported functions of a derivation: short programs of exact expressions.
 
-A :class:`Function` is a list of statements and the outputs computed from them.  It is the symbolic
-truth that the proofs, the Arb reference and the lowering all read; nothing in it is approximate.
-The six statements are
+A :class:`Function` is a list of statements and the outputs computed from them.  The proofs, the Arb
+reference and the lowering all read this exact form; nothing in it is approximate.  The six
+statements are
 
 ``Let``
     names an expression;
 ``Bound``
-    names a quantity that must not be negative; where it is, the target is UNREACHABLE;
+    names a quantity that must not be negative; if it is, the target is UNREACHABLE;
 ``Match``
-    a quantity that must vanish; where it does not, the target is UNREACHABLE;
+    a quantity that must vanish; if it does not, the target is UNREACHABLE;
 ``Vanishes``
-    a flag, true where a nonnegative quantity vanishes; may free a joint (SINGULAR); generated code
-    is fastest where none holds;
+    a flag that is true if a nonnegative quantity vanishes; it may free a joint (SINGULAR);
+    generated code is fastest if no flag holds;
 ``Determined``
-    a quantity that the joints lose the posture without (a parallel singularity); where it is too
-    small for the round trip in floating-point numbers, the answer is SINGULAR;
+    a quantity that vanishes if the joints do not determine the posture (a parallel singularity); if
+    it is too small for the round trip in floating-point numbers, the answer is SINGULAR;
 ``Require``
-    a condition on the input itself; where it fails, the input is INVALID.
+    a condition on the input itself; if it fails, the input is INVALID.
 
-Tolerances are no part of a derivation: a statement carries the natural scale of its quantity, and
-:mod:`closedform.model.tolerances` says which fraction of it counts as zero.
+Tolerances are not part of a derivation.  A statement has the natural scale of its quantity, and
+:mod:`closedform.model.tolerances` defines which fraction of the scale counts as zero.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def real(name: str, **assumptions: bool) -> sp.Symbol:
 
 
 def reject_text(value: Any, where: str) -> None:
-    """Raise TypeError where a text stands for an expression: SymPy would run it as Python."""
+    """Raise ``TypeError`` if a text is given as an expression: SymPy would run it as Python."""
     if isinstance(value, str):
         raise TypeError(f"{where}: {value!r} is a text; write the expression without quotes")
     if isinstance(value, list | tuple):
@@ -52,7 +52,7 @@ def reject_text(value: Any, where: str) -> None:
 
 
 def reject_floats(expr: sp.Basic, where: str) -> None:
-    """Raise ``TypeError`` if a floating-point number stands in ``expr``."""
+    """Raise ``TypeError`` if ``expr`` contains a floating-point number."""
     floats = sorted(expr.atoms(sp.Float), key=str)
     if floats:
         raise TypeError(
@@ -71,10 +71,11 @@ class Let:
 
 @dataclass(frozen=True)
 class Bound:
-    """``symbol = value``, where a negative ``value`` means that the target is out of reach.
+    """``symbol = value``; a negative ``value`` means that the target is out of reach.
 
-    Generated code clamps it at zero; with ``positive`` just above, where a zero would lose the side
-    on which an arm is bent: such a value goes with the square of the angle.
+    Generated code clamps the value at zero.  With ``positive`` it clamps just above zero, because a
+    zero would lose the side to which an arm is bent; such a value is proportional to the square of
+    the angle.
     """
 
     symbol: sp.Symbol
@@ -95,7 +96,7 @@ class Match:
 
 @dataclass(frozen=True)
 class Vanishes:
-    """``symbol`` is true where the nonnegative ``value`` is zero; then ``free`` joints are free."""
+    """``symbol`` is true if the nonnegative ``value`` is zero; then ``free`` joints are free."""
 
     symbol: sp.Symbol
     value: sp.Expr
@@ -106,11 +107,11 @@ class Vanishes:
 
 @dataclass(frozen=True)
 class Determined:
-    """Rounded joints determine the posture, unless ``value`` is small against ``scale``.
+    """Rounded joints determine the posture unless ``value`` is small compared with ``scale``.
 
-    Both are nonnegative, and the forward map amplifies roundings by up to ``scale / value``; or
-    they are squares of such quantities.  Where that is more than the round trip bears, the status
-    is SINGULAR; the answer stays what it is.
+    Both are nonnegative, and the forward map amplifies rounding errors by up to ``scale / value``;
+    with ``squares`` they are squares of such quantities.  If this amplification is too large for
+    the round trip, the status is SINGULAR; the answer does not change.
     """
 
     value: sp.Expr
@@ -121,7 +122,7 @@ class Determined:
 
 @dataclass(frozen=True)
 class Require:
-    """Every one of ``values`` must be zero, or the input is INVALID."""
+    """All ``values`` must be zero, or the input is INVALID."""
 
     values: tuple[sp.Expr, ...]
     scale: sp.Expr
@@ -202,8 +203,8 @@ def branches(*choices: tuple[sp.Symbol, Mapping[int, str]]) -> Branches:
 class Function:
     """One exported function.
 
-    With ``branches`` every output gets a leading axis over them.  With ``result`` set to
-    ``"Solutions"`` or ``"Positions"`` a status per branch is returned beside the single output.
+    With ``branches``, every output gets a leading axis over the branches.  If ``result`` is
+    ``"Solutions"`` or ``"Positions"``, a status per branch is returned with the single output.
     """
 
     name: str
@@ -224,7 +225,7 @@ class Function:
                 if not isinstance(entry, sp.Symbol) or entry in known:
                     raise ValueError(
                         f"{self.name}: the entry {entry} of the input {argument.name} must be a "
-                        f"symbol that stands in no other place"
+                        f"symbol that does not occur in any other entry"
                     )
                 known.add(entry)
         names = [s.symbol.name for s in self.body if isinstance(s, (Let, Bound, Vanishes))]
@@ -248,7 +249,7 @@ class Function:
         return tuple(e for a in self.inputs for e in a.entries if isinstance(e, sp.Symbol))
 
     def cases(self) -> Iterator[tuple[str, Mapping[sp.Symbol, int]]]:
-        """The branches, or one nameless case where there are none."""
+        """The branches, or one case without a name if there are none."""
         if self.branches is None:
             yield "", {}
         else:
@@ -257,7 +258,7 @@ class Function:
     def values(self, signs: Mapping[sp.Symbol, int]) -> tuple[sp.Expr, ...]:
         """The outputs of one branch as explicit expressions of inputs and parameters.
 
-        Flags are false: the generic case.  See :meth:`at` for the others.
+        All flags are false: this is the generic case.  See :meth:`at` for the other cases.
         """
         return self.at(signs, {})
 
@@ -267,12 +268,12 @@ class Function:
         flags: Mapping[sp.Symbol, bool],
         locus: Mapping[sp.Symbol, sp.Expr] | None = None,
     ) -> tuple[sp.Expr, ...]:
-        """The outputs of a branch with the given ``flags`` true, on ``locus``, a substitution."""
+        """The outputs of a branch if the given ``flags`` hold; ``locus`` is a substitution."""
         outputs = [e for a in self.outputs for e in a.entries]
         return self.explicit(outputs, signs, flags, locus)[0]
 
     def bounds(self, signs: Mapping[sp.Symbol, int]) -> tuple[sp.Expr, ...]:
-        """The explicit expressions that are nonnegative wherever this branch exists."""
+        """The explicit expressions that are nonnegative if this branch exists."""
         every = [s.symbol for s in self.body if isinstance(s, Bound)]
         return self.explicit(every, signs)[1]
 
@@ -284,10 +285,10 @@ class Function:
         locus: Mapping[sp.Symbol, sp.Expr] | None = None,
         carried: Mapping[sp.Symbol, sp.Expr] | None = None,
     ) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]:
-        """Expressions in the names of the body, written out, and the bounds they rest on.
+        """Expressions without the names of the body, and the bounds that they depend on.
 
-        The flags that ``flags`` does not name are false, ``locus`` replaces inputs and parameters,
-        and a name that is ``carried`` has the given value in the place of its own.
+        Flags that are not in ``flags`` are false.  ``locus`` replaces inputs and parameters.  A
+        name in ``carried`` has the value given there instead of its own.
         """
         given = {**(locus or {}), **(carried or {})}
         known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()} | given
@@ -310,11 +311,11 @@ class Function:
 
 
 SIMPLE = 50
-"""Nodes of an argument up to which SymPy may look for relations between it and the others."""
+"""The largest number of nodes of an argument that SymPy may compare with the other arguments."""
 
 
 def substitute(expr: sp.Basic, known: Mapping[sp.Basic, sp.Basic]) -> Any:
-    """Replace symbols all at once; only what occurs is passed to SymPy, which is much faster."""
+    """Replace symbols simultaneously; SymPy gets only those that occur, which is much faster."""
     occurring = {s: known[s] for s in expr.free_symbols if s in known}
     if not occurring:
         return expr
@@ -324,8 +325,8 @@ def substitute(expr: sp.Basic, known: Mapping[sp.Basic, sp.Basic]) -> Any:
 def _rebuilt(expr: sp.Basic, known: Mapping[sp.Basic, sp.Basic]) -> Any:
     """The same for an expression with ``Max`` or ``Min``.
 
-    SymPy factors the arguments of these, and expands that of ``Abs``, whenever they are made anew;
-    of large ones that takes a minute and finds nothing.
+    SymPy factors the arguments of a new ``Max`` or ``Min`` and expands that of a new ``Abs``.  For
+    large arguments this takes a minute and finds nothing.
     """
     if expr in known:
         return known[expr]
@@ -343,7 +344,7 @@ def _is_simple(expr: sp.Basic) -> bool:
 
 @dataclass
 class Program:
-    """Collects statements in the order a derivation makes them, then closes into a Function."""
+    """The statements of a function, in the order in which a derivation makes them."""
 
     body: list[Statement] = field(default_factory=list)
     taken: frozenset[str] = frozenset()
@@ -395,7 +396,7 @@ class Program:
         self.body.append(Require(tuple(values), sp.sympify(scale, strict=True), meaning))
 
     def explicit(self, value: Any) -> Any:
-        """An expression or a matrix in the names of the program, written out."""
+        """An expression or a matrix with the names of the program replaced by their values."""
         known: dict[sp.Basic, sp.Basic] = {}
         for statement in self.body:
             if isinstance(statement, (Let, Bound)):
@@ -426,18 +427,18 @@ class Program:
 
 
 def choose(flag: sp.Basic, when_true: Number, otherwise: Number) -> sp.Expr:
-    """``when_true`` where a flag, or a condition of flags, holds; else ``otherwise``."""
+    """``when_true`` if a flag, or a condition on flags, holds; else ``otherwise``."""
     return sp.Piecewise((when_true, flag), (otherwise, True))
 
 
 def sign_of(value: Number) -> sp.Expr:
-    """1 where ``value`` is not negative, else -1."""
+    """1 if ``value`` is not negative, else -1."""
     return sp.Piecewise((1, value >= 0), (-1, True))
 
 
-def used_up(room: Number) -> sp.Expr:
-    """What vanishes where ``room`` does, or falls short by so little that an easing may mend it."""
-    return sp.Max(room, -room / 2**40)
+def used_up(margin: Number) -> sp.Expr:
+    """A nonnegative expression that counts as zero if ``margin`` is zero or slightly negative."""
+    return sp.Max(margin, -margin / 2**40)
 
 
 __all__ = [

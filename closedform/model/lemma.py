@@ -1,4 +1,4 @@
-"""What a lemma is: equations, and the closed forms that solve them."""
+"""Lemmas: equations, and the closed forms that solve them."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from closedform.model.functions import Statement
 
 @dataclass(frozen=True)
 class Lemma:
-    """A lemma applied: ``equations`` vanish at ``solution`` (unknown -> closed form).
+    """One application of a lemma: ``equations`` vanish at ``solution`` (unknown -> closed form).
 
-    ``excluded`` solutions of the equations violate the inequality that ``statement`` names.
-    ``means`` holds names for the steps that follow, and what they are in the unknowns: cosine and
-    sine of one, or of a sum, computed without the angle.  ``body`` are the statements that the
-    lemma added to the program.  ``premises`` says what names of earlier statements must stand for;
-    where the inverse is proved, so is that.
+    ``excluded`` is the number of solutions of the equations that violate the inequality in
+    ``statement``.  ``means`` maps names for later steps to their meaning in the unknowns: cosine
+    and sine of an unknown or of a sum, computed without the angle.  ``body`` contains the
+    statements that the lemma added to the program.  ``premises`` maps names of earlier statements
+    to the values that they must have; the proof of the inverse includes these.
     """
 
     name: str
@@ -35,7 +35,7 @@ class Lemma:
         return self.solution[unknown]
 
     def known(self, value: sp.Expr) -> sp.Symbol:
-        """The name of a value in the unknowns, as ``cos(x)``."""
+        """The name of a value in the unknowns, such as ``cos(x)``."""
         return next(name for name, meaning in self.means.items() if meaning == value)
 
     def pair(self, angle: sp.Expr) -> tuple[sp.Symbol, sp.Symbol]:
@@ -44,5 +44,5 @@ class Lemma:
 
 
 def label(joint: sp.Symbol) -> str:
-    """What tells a joint from the others in the names of its sine and cosine: 1 of theta1."""
+    """The short label of a joint in the names of its sine and cosine: 1 for theta1."""
     return str(joint.name).removeprefix("theta")

@@ -1,8 +1,9 @@
-"""Which names and texts a derivation may have.
+"""The names and texts that a derivation may use.
 
-Names become identifiers of Python, C and JavaScript, and names of files: one that means something
-else there is refused where it is declared.  A text may say anything that prints, because
-:mod:`closedform.emit.escape` escapes it for each language; only control characters are refused.
+Names become identifiers of Python, C and JavaScript and names of files.  A name that already means
+something there is refused when it is declared.  A text may contain any printable characters,
+because :mod:`closedform.emit.escape` escapes it for each language; only control characters are
+refused.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ C_WORDS = frozenset({
     "PDP_ENDIAN", "SNAN", "SNANF", "SNANL", "TMP_MAX", "assert", "complex", "errno", "far",
     "i386", "imaginary", "linux", "math_errhandling", "near", "stderr", "stdin", "stdout", "unix",
 })  # fmt: skip
-"""Words of C and, for those who include the headers there, of C++; types and macros of headers."""
+"""Keywords of C and C++ (the headers may be included there); types and macros of headers."""
 C_FAMILIES = re.compile(
     r"u?int\w*_t|(size|ptrdiff|wchar|fpos|div|max_align)_t"
     r"|(S|U)?(CHAR|SHRT|INT|LONG|LLONG|LONG_LONG)_(BIT|MIN|MAX|WIDTH)"
@@ -37,21 +38,21 @@ C_FAMILIES = re.compile(
     r"|(HUGE_VAL_|SNAN)F\d+X?|BOOL_(MAX|WIDTH)|L?ULL?ONG_(MAX|WIDTH)|RENAME_[A-Z]+"
 )
 """Families of types and macros of the headers of C."""
-OURS = ("cf_", "CF_", "closedform_", "CLOSEDFORM_")
-"""How the names of the shared C header begin."""
+RESERVED_PREFIXES = ("cf_", "CF_", "closedform_", "CLOSEDFORM_")
+"""Prefixes of the names in the shared C header."""
 C_LOCALS = frozenset({
     "params", "local", "lanes", "sines", "cosines", "n", "i", "length", "start",
     "single", "opposite", "adjacent", "angles", "principals", "turned", "wide", "rare", "signs",
     "k", "exponent", "excess", "dimensions", "params_scaled", "one",
 })  # fmt: skip
-"""What the C functions call their own."""
+"""Names of local variables in the generated C functions."""
 C_SUFFIXES = ("_i", "_stride", "_real", "_lanes")
-"""What the C functions append to the names of arrays."""
+"""Suffixes that the C functions append to the names of arrays."""
 PYTHON_LOCALS = frozenset({
     "np", "params", "out", "Any", "ArrayLike", "NamedTuple", "Parameters", "Positions",
     "Solutions", "Status", "ASSEMBLY_MODES", "BRANCHES", "JOINTS", "SINGULARITIES", "TASK",
 })  # fmt: skip
-"""What the NumPy modules call their own."""
+"""Names that the NumPy modules define or import themselves."""
 JAVASCRIPT_WORDS = frozenset({
     "arguments", "await", "break", "case", "catch", "class", "const", "continue", "debugger",
     "default", "delete", "do", "else", "enum", "eval", "export", "extends", "false", "finally",
@@ -60,18 +61,18 @@ JAVASCRIPT_WORDS = frozenset({
     "this", "throw", "true", "try", "typeof", "undefined", "var", "void", "while", "with", "yield",
     "Infinity", "Math", "NaN", "Number", "Object",
 })  # fmt: skip
-"""Words of JavaScript, and what its modules use of what is there everywhere."""
+"""Words of JavaScript, and the global objects that its modules use."""
 JAVASCRIPT_LOCALS = frozenset({"parameters"})
-"""What the functions of the JavaScript modules call their own."""
-FUNCTIONS = frozenset({"default", "fields", "params", "runtime", "values"})
-"""What, behind the name of the robot or an underscore, is a name in the printed code already."""
-FORMS = frozenset({
+"""Names that the functions of the JavaScript modules use themselves."""
+RESERVED_FUNCTIONS = frozenset({"default", "fields", "params", "runtime", "values"})
+"""Names that the printed code uses itself, after the name of the robot or an underscore."""
+FUNCTION_SUFFIXES = frozenset({
     "batch", "branch", "branches", "common", "in", "kernel", "many", "one", "out", "whole",
 })  # fmt: skip
-"""What the printed code appends to the name of a function."""
+"""Suffixes that the printed code appends to the name of a function."""
 NOT_FINITE = frozenset({"nan", "inf", "infinity", "oo", "zoo"})
-FILES = frozenset({"closedform", "extension"})
-"""Files beside those of the robots, in a folder of generated code."""
+RESERVED_FILES = frozenset({"closedform", "extension"})
+"""Other files in the folders of generated code."""
 HEADERS = frozenset({
     "aio", "alloca", "assert", "complex", "conio", "cpio", "ctype", "dirent", "dlfcn", "endian",
     "errno", "features", "fcntl", "fenv", "float", "fmtmsg", "fnmatch", "ftw", "getopt", "glob",
@@ -83,20 +84,20 @@ HEADERS = frozenset({
     "stropts", "syslog", "tar", "termios", "tgmath", "threads", "time", "trace", "uchar",
     "ulimit", "unistd", "utime", "utmpx", "values", "wchar", "wctype", "windows", "wordexp",
 })  # fmt: skip
-"""Headers of C, POSIX and Windows, which a header of that name would hide."""
+"""Headers of C, POSIX and Windows: a generated header with the same name would hide them."""
 DEVICES = re.compile(r"aux|con|nul|prn|(com|lpt)\d")
-"""Names that no file of Windows can have."""
-LONGEST = 63
-"""C promises to tell names apart by this many characters."""
+"""Names that a file cannot have on Windows."""
+MAX_LENGTH = 63
+"""C guarantees that this many characters of a name are significant."""
 
 
 def in_c(name: str) -> bool:
-    """Whether a name has a meaning of its own in C."""
+    """Whether a name already has a meaning in C."""
     return name in C_WORDS or C_FAMILIES.fullmatch(name) is not None
 
 
 def in_python(name: str) -> bool:
-    """Whether a name has a meaning of its own in a NumPy module."""
+    """Whether a name already has a meaning in a NumPy module."""
     return keyword.iskeyword(name) or name in PYTHON_LOCALS
 
 
@@ -115,9 +116,9 @@ def check_identifier(name: str, where: str) -> None:
         raise ValueError(
             f"{where}: {name!r} is not a name: use letters, digits and _, with a letter first"
         )
-    if len(name) > LONGEST:
-        raise ValueError(f"{where}: {name} is longer than {LONGEST} characters")
-    if name.startswith(OURS):
+    if len(name) > MAX_LENGTH:
+        raise ValueError(f"{where}: {name} is longer than {MAX_LENGTH} characters")
+    if name.startswith(RESERVED_PREFIXES):
         raise ValueError(f"{where}: names like {name} belong to closedform.h; take another one")
 
 
@@ -135,7 +136,7 @@ def check_symbol(name: str, where: str) -> None:
 
 
 def check_argument(name: str, others: Collection[str], where: str) -> None:
-    """Raise ``ValueError`` unless an input or an output may have this name beside the others."""
+    """Raise ``ValueError`` unless an input or an output may have this name next to the others."""
     check_symbol(name, where)
     base = next((name.removesuffix(s) for s in C_SUFFIXES if name.endswith(s)), "")
     taken = C_LOCALS | JAVASCRIPT_LOCALS | frozenset(others)
@@ -144,15 +145,16 @@ def check_argument(name: str, others: Collection[str], where: str) -> None:
 
 
 def check_function(name: str, others: Collection[str], where: str) -> None:
-    """Raise ``ValueError`` unless a function may have this name beside the others."""
+    """Raise ``ValueError`` unless a function may have this name next to the others."""
     check_identifier(name, where)
     if name != name.lower():
         raise ValueError(f"{where}: write the function {name} in lower-case letters")
-    if in_python(name) or in_javascript(name) or name in FUNCTIONS:
+    if in_python(name) or in_javascript(name) or name in RESERVED_FUNCTIONS:
         raise ValueError(f"{where}: the name {name} is taken; call the function {name}_0, say")
     for other in others:
         short, long = sorted((name, other), key=len)
-        if long.startswith(f"{short}_") and FORMS.issuperset(long[len(short) + 1 :].split("_")):
+        suffixes = long[len(short) + 1 :].split("_")
+        if long.startswith(f"{short}_") and FUNCTION_SUFFIXES.issuperset(suffixes):
             raise ValueError(
                 f"{where}: the printed code of {short} uses the name {long} itself; call the "
                 f"function {name}_0, say"
@@ -160,7 +162,7 @@ def check_function(name: str, others: Collection[str], where: str) -> None:
 
 
 def check_own(name: str, robot: str, functions: Collection[str], where: str) -> None:
-    """Raise ``ValueError`` if a name is one that the C code of the robot declares."""
+    """Raise ``ValueError`` if the C code of the robot declares this name."""
     parts = ("params", *functions)
     if name == f"{robot.upper()}_DEFAULTS" or (
         name.startswith(f"{robot}_") and name[len(robot) + 1 :].startswith(parts)
@@ -169,7 +171,7 @@ def check_own(name: str, robot: str, functions: Collection[str], where: str) -> 
 
 
 def check_label(label: str, where: str) -> None:
-    """Raise ``ValueError`` unless a branch, a mode or a task coordinate may be called so."""
+    """Raise ``ValueError`` unless a branch, a mode or a task coordinate may have this name."""
     if not re.fullmatch("[A-Za-z0-9][A-Za-z0-9_]*", label):
         raise ValueError(
             f"{where}: {label!r} is not a name: use letters, digits and _, not with a _ first"
@@ -177,7 +179,7 @@ def check_label(label: str, where: str) -> None:
 
 
 def check_labels(labels: Collection[str], where: str) -> None:
-    """Raise ``ValueError`` unless these are names, each of them once."""
+    """Raise ``ValueError`` unless these are distinct names."""
     if isinstance(labels, str):
         raise TypeError(f"{where}: give a sequence of names, not the text {labels!r}")
     for label in labels:
@@ -193,9 +195,9 @@ def check_key(key: str, where: str) -> None:
 
 
 def check_text(where: str, *texts: str, lines: bool = False) -> None:
-    """Raise ``ValueError`` unless texts are printable, on one line unless ``lines`` may be several.
+    """Raise ``ValueError`` unless the texts are printable, each on one line unless ``lines``.
 
-    Refused are control characters, among them those that change the direction of writing.
+    Control characters are refused, including those that change the direction of writing.
     """
     for text in texts:
         if not isinstance(text, str):
@@ -212,17 +214,21 @@ def check_text(where: str, *texts: str, lines: bool = False) -> None:
 
 
 def check_robot(name: str) -> None:
-    """Raise ``ValueError`` unless a robot, with its module and its C files, may have this name."""
-    if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name) or len(name) > LONGEST:
+    """Raise ``ValueError`` unless a robot, its module and its C files may have this name."""
+    if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name) or len(name) > MAX_LENGTH:
         raise ValueError(
             f"{name!r} is not a name of a module: use letters, digits and _, with a letter first, "
-            f"{LONGEST} characters at most"
+            f"{MAX_LENGTH} characters at most"
         )
     if name.lower() in HEADERS or DEVICES.fullmatch(name.lower()):
         raise ValueError(
             f"{name}.h is a header of the system; choose another name, such as {name}_0"
         )
-    if keyword.iskeyword(name) or name.lower() in FILES or name.startswith(OURS):
+    if (
+        keyword.iskeyword(name)
+        or name.lower() in RESERVED_FILES
+        or name.startswith(RESERVED_PREFIXES)
+    ):
         raise ValueError(f"the name {name} is taken; choose another, such as {name}_0")
 
 

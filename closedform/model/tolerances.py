@@ -1,6 +1,6 @@
-"""Every tolerance of the project, once, with its reason.
+"""All tolerances of the project, each with its reason.
 
-The generated code repeats these numbers; ``test_tolerances_are_honoured`` sees that it does so.
+The generated code repeats these numbers; ``test_tolerances_are_honoured`` checks this.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 HIGHEST_DEGREE = 16
-"""Of the powers of a length that generated code keeps in range."""
+"""The highest power of a length that generated code keeps in range."""
 
 
 @dataclass(frozen=True)
@@ -16,37 +16,38 @@ class Tolerances:
     """Tolerances of one floating-point type.
 
     feasibility
-        A bound (a distance that must not be negative) may be violated by this fraction of its
-        natural scale, and then counts as zero: a target that is on the boundary up to the rounding
-        of whoever computed it is a target on the boundary.
+        A bound (a distance that must not be negative) may be negative by this fraction of its
+        natural scale and then counts as zero.  So a target that is on the boundary up to the
+        rounding of its computation counts as a target on the boundary.
     vanishing
         A quantity below this fraction of its scale counts as zero, and its joint as free.  It is
         four units in the last place: ``sin`` of the double nearest to pi is 1.2e-16, so a smaller
         value would not recognise a wrist turned by pi; a larger one would declare 1e-12 singular.
     determined
-        Where a closed loop amplifies roundings by more than the reciprocal of this, joints do not
-        determine the posture.  What four units in the last place become there, ``vanishing``
-        over this, is less than ``forward``.
+        If a closed loop amplifies rounding errors by more than the reciprocal of this, the joints
+        do not determine the posture.  At that limit four units in the last place become
+        ``vanishing / determined``, which is less than ``forward``.
     rotation
-        A matrix whose columns miss orthonormality (and right-handedness) by less is a rotation.
-        It admits matrices that went through single precision, and nothing that a person would
-        call a different matrix.
+        A matrix counts as a rotation if its columns are orthonormal and right-handed up to this.
+        Matrices that were stored in single precision pass; a matrix that a person would call
+        different does not.
     round_trip
-        By how much answers may violate the equations of the mechanism, in their natural scale; it
-        holds of targets that count as reachable without being so, too.
+        The largest violation of the equations of the mechanism by an answer, in their natural
+        scale.  It also holds for unreachable targets that count as reachable.
     forward
-        ``|fk(ik(x)) - x|`` in units of the sum of the lengths (an angle by itself), of what is
-        reached and ``OK``, with the exact map for ``fk``.
+        ``|fk(ik(x)) - x|`` for reachable targets with the status ``OK``, in units of the sum of the
+        lengths (for an angle, absolute), with the exact map for ``fk``.
     ulps
-        The error of a function that is no inverse, in units in the last place of its natural
+        The error of a function that is not an inverse, in units in the last place of its natural
         scale, against the Arb reference.
     ulps_per_operation
-        What every operation of a function adds to that: roundings add up along a long program.
+        The error that every operation of a function adds to ``ulps``: rounding errors add up along
+        a long program.
     least_exponent, most_exponent
-        Between these powers of two the powers of the size of a mechanism are kept, its largest
-        length; one of another size is computed at a size near 1.  Above there is room for numbers
-        and sums; below half of the range is left to lengths that are smaller than the largest, and
-        to what of a difference of their powers is left.
+        The powers of the size of a mechanism, its largest length, stay between these powers of two;
+        other mechanisms are computed at a size near 1.  The margin above is for numbers and sums.
+        Below, half of the range is left for lengths that are smaller than the largest, and for
+        differences of their powers.
     """
 
     feasibility: float
@@ -61,7 +62,7 @@ class Tolerances:
     ulps_per_operation: float = 0.01
 
     def sizes(self, degree: int) -> tuple[float, float]:
-        """Between which sizes no power up to ``degree`` leaves the range."""
+        """The smallest and largest size whose powers up to ``degree`` stay in the range."""
         return 2.0 ** -(-self.least_exponent // degree), 2.0 ** (self.most_exponent // degree)
 
 
@@ -88,9 +89,9 @@ FLOAT = Tolerances(
     most_exponent=112,
 )
 GENERATED = ("feasibility", "vanishing", "determined", "rotation")
-"""Those that generated code holds by name."""
+"""The tolerances that generated code contains by name."""
 UNIT_LENGTH = 1e-3
-"""A direction or a rotation given in decimals may miss the unit length by this: three decimals.
+"""How far a direction or a rotation in decimals may be from unit length: three decimals.
 
-It decides what ``closedform new`` reads as a rounded unit vector; a mistake is usually larger.
+``closedform new`` reads such a vector as a rounded unit vector; a mistake is usually larger.
 """

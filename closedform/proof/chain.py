@@ -1,18 +1,18 @@
 """The proof of an inverse that is a chain of lemmas.
 
-Sound and complete follow from four facts, each computed:
+Soundness and completeness follow from four computed facts:
 
-1. every lemma, with its coefficients as free symbols, satisfies its equations in every branch,
-   also in its degenerate cases, and its equations have no other solutions;
-2. the equations of every lemma hold at every posture, if the target is its image: so each posture
+1. every lemma, with its coefficients as free symbols, satisfies its equations in every branch and
+   in its degenerate cases, and its equations have no other solutions;
+2. the equations of every lemma hold at every posture if the target is its image, so each posture
    is among the branches;
 3. no lemma is applied to an equation whose coefficients vanish at every posture;
 4. the equations of all lemmas are linear in the target (and in auxiliary lengths) and determine it
-   from the joints.  By 2 the image of the joints is a solution, so it is the only one: each answer
-   is taken to the target.
+   from the joints.  By 2 the image of the joints is a solution, so it is the only one: the forward
+   map takes each answer to the target.
 
-4 is the rank of a matrix at a random exact posture: full rank at one posture is full rank at
-almost all, and the answers depend continuously on the target where they exist.
+Fact 4 is computed as the rank of a matrix at a random exact posture.  Full rank at one posture
+means full rank at almost all, and the answers are continuous in the target where they exist.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ Expr = Any
 
 
 def prove_chain(derivation: Derivation, inverse: Inverse) -> tuple[int, tuple[Expr, ...], int]:
-    """The number of solutions, what was assumed, and how many degenerate cases were proved."""
+    """The number of solutions, the assumptions, and the number of proved degenerate cases."""
     function = derivation[inverse.function]
     where = f"{derivation.name}.{function.name}"
     assumptions: dict[Expr, None] = {}
@@ -54,7 +54,7 @@ def prove_chain(derivation: Derivation, inverse: Inverse) -> tuple[int, tuple[Ex
 
 
 def _signs(link: Link) -> list[dict[Expr, int]]:
-    """The branches of a lemma; the signs that come with its coefficients stay symbols."""
+    """The branches of a lemma; the signs in its coefficients stay symbols."""
     made = {s.symbol for s in link.body if isinstance(s, (Let, Bound))}
     used = {s for st in link.body if isinstance(st, (Let, Bound)) for s in st.value.free_symbols}
     used |= {s for e in link.lemma.solution.values() for s in e.free_symbols}
@@ -65,7 +65,7 @@ def _signs(link: Link) -> list[dict[Expr, int]]:
 def _values(
     link: Link, exprs: Sequence[Expr], known: Mapping[Expr, Expr]
 ) -> tuple[list[Expr], list[Expr]]:
-    """Expressions in the coefficients of a link alone, and the bounds they rest on."""
+    """Expressions in terms of the coefficients of a link, and the bounds they depend on."""
     held: dict[Expr, Expr] = dict(known)
     flags = {s.symbol: sp.false for s in link.body if isinstance(s, Vanishes)}
     flags |= {s: v for s, v in known.items() if s in flags}
@@ -89,7 +89,7 @@ def _values(
 
 
 def _lemma_sound(link: Link, where: str) -> list[Expr]:
-    """In every branch, and in every degenerate case."""
+    """Prove that a lemma satisfies its equations in every branch and every degenerate case."""
     lemma, found = link.lemma, list[Expr]()
     settings: list[tuple[dict[Expr, Expr], Mapping[Expr, Expr], str]] = [
         (
@@ -120,7 +120,7 @@ def _lemma_sound(link: Link, where: str) -> list[Expr]:
 
 
 def _free_choices_are_units(inverse: Inverse, where: str) -> None:
-    """What a degenerate case took for the sine and cosine of some angle is one, in either case."""
+    """Prove that a freely chosen sine and cosine in a degenerate case are those of an angle."""
     body = tuple(statement for link in inverse.chain for statement in link.body)
     whole = Link(inverse.chain[0].lemma, body, {}, {})
     for s, c, free in inverse.units:
@@ -160,7 +160,7 @@ def _lemma_complete(link: Link, where: str) -> None:
 
 
 class Graph:
-    """What every name of the program is at a posture whose image is the target."""
+    """The values of all names of the program at a posture whose image is the target."""
 
     def __init__(self, derivation: Derivation, inverse: Inverse, function: Function):
         self.inverse = inverse
@@ -169,7 +169,7 @@ class Graph:
         self.sums: dict[Expr, Expr] = {}
         taken: set[Expr] = set()
         for symbol, value in inverse.defined.items():
-            # the newest joint of a sum makes way for the sum, which leaves single angles
+            # a sum replaces its newest joint, so that only single angles remain
             joint = next(
                 (j for j in reversed(self.unknowns) if value.has(j) and j not in taken), None
             )
@@ -189,7 +189,7 @@ class Graph:
         return e
 
     def named(self, e: Expr) -> Expr:
-        """In the unknowns and the target alone."""
+        """An expression in terms of the unknowns and the target only."""
         return self.in_sums(self._written_out(e))
 
     def _written_out(self, e: Expr) -> Expr:
@@ -199,7 +199,7 @@ class Graph:
         return substitute(e, self.names)
 
     def __call__(self, e: Expr) -> Expr:
-        """At the image of a posture."""
+        """The value of an expression at a posture, with its image as the target."""
         return substitute(substitute(self.named(e), self.lengths), self.targets)
 
 
@@ -219,7 +219,7 @@ def _random_posture(draw: random.Random, symbols: Sequence[Expr]) -> dict[Expr, 
 
 
 def _not_degenerate(link: Link, graph: Graph, where: str) -> None:
-    """The flags of a lemma are false at some posture."""
+    """Prove that the flags of a lemma are false at some posture."""
     draw = random.Random(1)
     for statement in link.body:
         if not (isinstance(statement, Vanishes) and statement.free):
@@ -240,7 +240,7 @@ def _without_signs(e: Expr) -> Expr:
 
 
 def _determines_target(inverse: Inverse, graph: Graph, where: str) -> None:
-    """The equations, linear in the target and the auxiliary lengths, have full column rank."""
+    """Prove that the equations are linear in target and auxiliary lengths and have full rank."""
     draw = random.Random(2)
     columns: list[Expr] = []
     circle: dict[Expr, Expr] = {}
@@ -281,7 +281,7 @@ def _determines_target(inverse: Inverse, graph: Graph, where: str) -> None:
 
 
 def _certain_rank(rows: list[list[Any]]) -> int:
-    """The rank of a matrix of balls, counting only pivots that certainly differ from zero."""
+    """The rank of a matrix of balls; only pivots that certainly differ from zero count."""
     rank = 0
     for column in range(len(rows[0])):
         certain = [row for row in rows[rank:] if not row[column].contains(0)]
@@ -298,7 +298,7 @@ def _certain_rank(rows: list[list[Any]]) -> int:
 
 
 def _constant_targets(inverse: Inverse) -> dict[Expr, Expr]:
-    """Entries of the target that no joint moves, as the last row of a pose."""
+    """Entries of the target that no joint moves, such as the last row of a pose."""
     return {x: f for x, f in zip(inverse.targets, inverse.forward, strict=True) if f.is_number}
 
 

@@ -1,7 +1,7 @@
-"""Checks that judge what a paper says.  A verdict is computed, never typed in.
+"""Checks of the claims of a paper.  A verdict is always computed, never written by hand.
 
-A check holds the statement *as printed*, beside what was derived, and :meth:`Check.judge` compares
-them exactly.  There are five verdicts; a statement that can be neither proved nor refuted raises
+A check contains the statement *as printed* and the derived form, and :meth:`Check.judge` compares
+them exactly.  There are five verdicts.  A statement that can neither be proved nor refuted raises
 :class:`~closedform.algebra.normal_form.Undecided`, which fails the build.
 """
 
@@ -37,17 +37,17 @@ Exact: TypeAlias = Any  # an expression, a matrix or a sequence of them
 
 _SEVERITY = (PROVED, PROVED_UNDER, APPROXIMATION, NOT_DECIDABLE, REFUTED)
 _READABLE = 24
-"""Longest exact value, in characters, that is shown as it is and not as a decimal."""
+"""The longest exact value, in characters, that is not shown as a decimal."""
 
 
 @dataclass(frozen=True)
 class Identity(Check):
     """``printed`` equals ``derived`` for all values of the symbols.
 
-    ``nonnegative`` lists what may be assumed.  ``small`` names a symbol that tends to zero: then a
-    refuted equation whose error vanishes with it is an approximation, and the order is derived.
-    ``corrected`` is a form in the paper's own terms that is proved equal to ``derived``; without it
-    the derived form itself stands as the correction.
+    ``nonnegative`` lists expressions that may be assumed to be nonnegative.  ``small`` is a symbol
+    that tends to zero: a refuted equation whose error vanishes with it is an approximation, and its
+    order is derived.  ``corrected`` is a form in the terms of the paper that is proved equal to
+    ``derived``; the default correction is the derived form itself.
     """
 
     printed: Exact
@@ -72,7 +72,7 @@ class Identity(Check):
         return Verdict(REFUTED, where, self._correction(corrected))
 
     def _point(self, found: Counterexample) -> str:
-        """The counterexample with the values of both sides, for a reader to check by hand."""
+        """The counterexample with the values of both sides, so that a reader can check it."""
         shape = getattr(self.printed, "shape", None)
         entry = ""
         if shape is not None:
@@ -99,7 +99,7 @@ class Identity(Check):
         return f"the error is {term} + O({small}**{degree + 1})" if degree > 0 else ""
 
     def _correction(self, corrected: Exact) -> str:
-        """Of a matrix only the wrong entries, by their places."""
+        """The corrected form in LaTeX; for a matrix, only the wrong entries with their indices."""
         if not isinstance(corrected, sp.MatrixBase) or corrected.shape == (1, 1):
             return _latex(corrected)
         difference = _difference(self.printed, self.derived)
@@ -113,9 +113,9 @@ class Identity(Check):
 
 @dataclass(frozen=True)
 class Decimal(Check):
-    """A printed decimal is the exact value, rounded to the digits that are printed.
+    """A printed decimal is the exact value, rounded to the printed digits.
 
-    Halfway between two decimals either of them is right.
+    If the value is halfway between two decimals, both are right.
     """
 
     printed: str
@@ -143,10 +143,10 @@ class Decimal(Check):
 
 @dataclass(frozen=True)
 class Posture(Check):
-    """Worked joint angles: ``forward`` takes the ``printed`` angles to ``target``.
+    """Joint angles of an example: ``forward`` takes the ``printed`` angles to ``target``.
 
-    ``corrected`` holds the angles of the branch that was meant; they are proved to reach the
-    target, and printed in degrees.
+    ``corrected`` gives the angles of the intended branch.  They are proved to reach the target and
+    are printed in degrees.
     """
 
     forward: Exact
@@ -179,8 +179,8 @@ class Posture(Check):
 class Count(Check):
     """A system of equations has the printed number of solutions (``None``: infinitely many).
 
-    They are counted over the complex numbers, two that coincide as one.  ``given`` replaces
-    dependent targets by free parameters.
+    The solutions are counted over the complex numbers; coincident ones count once.  ``given``
+    replaces dependent targets by free parameters.
     """
 
     equations: Sequence[Expr]
@@ -210,12 +210,12 @@ class Count(Check):
         parameters = {s for e in equations for s in e.free_symbols} - set(self.unknowns)
         if counted.count == 2 and not parameters:
             return 1
-        raise Undecided(f"{counted.count} solutions, of which some may coincide")
+        raise Undecided(f"there are {counted.count} solutions, but some may coincide")
 
 
 @dataclass(frozen=True)
 class Enumeration(Check):
-    """A number or a list that is found by going through all cases; ``meaning`` says which."""
+    """A number or a list found by enumeration of all cases; ``meaning`` describes it."""
 
     printed: Any
     found: Callable[[], Any]
@@ -230,9 +230,9 @@ class Enumeration(Check):
 
 @dataclass(frozen=True)
 class Holds(Check):
-    """Relations between constants, by name: all of them hold, or the statement is refuted.
+    """Named relations between constants: the statement is proved if all hold, else refuted.
 
-    They are decided by enclosures; an equation by the exact zero test.
+    Enclosures decide inequalities; the exact zero test decides equations.
     """
 
     relations: Mapping[str, Expr]
@@ -248,7 +248,7 @@ class Holds(Check):
 
 @dataclass(frozen=True)
 class Under(Check):
-    """A check that holds under an ``assumption`` which the paper leaves open."""
+    """A check that holds under an ``assumption`` that the paper does not state."""
 
     check: Check
     assumption: str
@@ -261,7 +261,7 @@ class Under(Check):
 
 @dataclass(frozen=True)
 class Every(Check):
-    """A statement with several parts: it is worth what its worst part is worth."""
+    """A statement with several parts; its verdict is the worst verdict of its parts."""
 
     parts: Mapping[str, Check]
 
@@ -284,7 +284,7 @@ class Every(Check):
 
 @dataclass(frozen=True)
 class Deferred(Check):
-    """A check whose expressions take a while to write down: ``make`` does so when it is judged."""
+    """A check with expressions that take long to build; ``make`` builds them when it is judged."""
 
     make: Callable[[], Check]
 
@@ -294,9 +294,9 @@ class Deferred(Check):
 
 @dataclass(frozen=True)
 class Refuted(Check):
-    """A statement about all cases that a witness contradicts: ``witness`` must be provable.
+    """A statement about all cases, contradicted by a ``witness``, which must be provable.
 
-    ``corrected`` says what holds instead, in LaTeX or in words; it is what ``proof`` proves.
+    ``corrected`` is the statement that holds instead, in LaTeX or in words; ``proof`` proves it.
     """
 
     witness: Check
@@ -306,7 +306,7 @@ class Refuted(Check):
 
     def judge(self) -> Verdict:
         if self.corrected and self.proof is None:
-            raise ValueError(f"the correction {self.corrected} comes without a proof")
+            raise ValueError(f"the correction {self.corrected} has no proof")
         for check in (self.witness, self.proof):
             if check is not None and check.judge().kind not in (PROVED, PROVED_UNDER):
                 raise ValueError(f"the witness against a claim does not hold: {self.explanation}")
@@ -315,7 +315,7 @@ class Refuted(Check):
 
 @dataclass(frozen=True)
 class Undecidable(Check):
-    """A figure, a measurement or a judgement of value; ``reason`` says which."""
+    """A figure, a measurement or a judgement of value; ``reason`` explains it."""
 
     reason: str
 
@@ -342,7 +342,7 @@ def _constant(value: Expr) -> Expr:
 def _difference(a: Exact, b: Exact) -> Exact:
     shape = getattr(a, "shape", None)
     if shape != getattr(b, "shape", None):
-        raise ValueError(f"a matrix stands against something of another shape: {a}, {b}")
+        raise ValueError(f"the two sides have different shapes: {a}, {b}")
     differences = [x - y for x, y in zip(_entries(a), _entries(b), strict=True)]
     if shape is not None:
         return sp.Matrix(*shape, differences)
@@ -361,7 +361,7 @@ def _latex(value: Exact) -> str:
 
 
 def _value(e: Expr, point: Mapping[sp.Symbol, Expr]) -> str:
-    """The value at a point: exact where that is short, else six digits."""
+    """The value at a point: exact if that is short, else six digits."""
     exact = e.subs(point)
     if not exact.free_symbols and exact.is_finite and len(str(exact)) <= _READABLE:
         return str(exact)
@@ -373,7 +373,7 @@ def _values(entries: Sequence[Expr], point: Mapping[sp.Symbol, Expr]) -> str:
 
 
 def _at(found: Counterexample) -> str:
-    """Where a counterexample is; nothing is said of constants."""
+    """The point of a counterexample as text; empty for constants."""
     at = ", ".join(f"{s} = {v}" for s, v in found.point.items())
     return f"at {at} " if at else ""
 
@@ -388,14 +388,14 @@ def _degrees(angle: Expr) -> str:
 
 
 def _denested(e: Expr) -> Expr:
-    """Roots of ``a + b sqrt(c)`` that are of this form themselves are written so."""
+    """Write roots of ``a + b sqrt(c)`` in this form too, if possible."""
     roots = [p for p in e.atoms(sp.Pow) if p.exp.is_Rational and not p.exp.is_Integer]
     plain = {p: sp.sqrtdenest(sp.sqrt(sp.expand(p.base))) ** (2 * p.exp) for p in roots}
     return e.xreplace(plain)
 
 
 def _sign(e: Expr) -> int:
-    """The sign of a constant; zero only if it is proved to vanish."""
+    """The sign of a constant; zero only if the constant is proved to vanish."""
     e = _constant(e)
     if e.is_Rational:
         return int(sp.sign(e))
@@ -404,11 +404,11 @@ def _sign(e: Expr) -> int:
         return 1 if ball > 0 else -1
     if decide(_denested(e)).holds:
         return 0
-    raise Undecided(f"the sign of {e}")
+    raise Undecided(f"the sign of {e} cannot be decided")
 
 
 def _holds(relation: Expr) -> bool:
-    """Whether a relation between constants holds; SymPy may have decided it already."""
+    """Whether a relation between constants holds; SymPy may already have decided it."""
     if relation in (sp.true, sp.false):
         return bool(relation)
     if not isinstance(relation, Relational):
@@ -426,7 +426,7 @@ def _holds(relation: Expr) -> bool:
 
 
 def _nearest(e: Expr) -> int:
-    """The integer nearest to a constant; halfway the one farther from zero."""
+    """The integer nearest to a constant; of two, the one farther from zero."""
     size = abs(e)
     floor = int(str(evaluate([size], {})[0].mid().floor().unique_fmpz()))
     below = floor if _sign(size - floor) >= 0 else floor - 1

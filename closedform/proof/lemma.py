@@ -1,4 +1,4 @@
-"""Proves a lemma, for the coefficients it was applied to."""
+"""Proves a lemma for the coefficients to which it is applied."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from closedform.proof.require import ProofError, require
 def prove_lemma(
     lemma: Lemma, program: Program, given: Mapping[sp.Symbol, sp.Expr] | None = None
 ) -> None:
-    """Prove a lemma for the coefficients it was applied to: symbols, so for all.
+    """Prove a lemma for the coefficients to which it is applied: symbols, so for all values.
 
-    Its solutions satisfy its equations for either sign, its names are what they are said to
-    mean, and the equations have no others.  ``given`` writes dependent coefficients in free
+    Its solutions satisfy its equations for both signs, its names have the values in ``means``, and
+    the equations have no other solutions.  ``given`` writes dependent coefficients in free
     parameters.
     """
     given = dict(given or {})

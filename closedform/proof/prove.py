@@ -1,8 +1,8 @@
-"""Proves a derivation: its steps, its inverses, the lemmas they use, and the paper's claims.
+"""Proves a derivation: its steps, its inverses, the lemmas they use, and the claims of the paper.
 
-Everything here ends in the exact zero test of :mod:`closedform.algebra.normal_form` or in a count
-of solutions by a Groebner basis.  A step or an inverse that does not hold raises
-:class:`ProofError`; a claim that does not hold gets its verdict.
+Every proof uses the exact zero test of :mod:`closedform.algebra.normal_form` or a count of
+solutions by a Groebner basis.  A step or an inverse that does not hold raises :class:`ProofError`;
+a claim that does not hold gets its verdict.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class ClaimResult:
 
 @dataclass(frozen=True)
 class InverseResult:
-    """What was proved of an inverse."""
+    """The proved facts about one inverse."""
 
     function: str
     branches: int
@@ -57,7 +57,7 @@ class InverseResult:
 
 @dataclass(frozen=True)
 class Proof:
-    """Everything that was proved of one derivation; plain data, so that it can be stored."""
+    """All proved facts about one derivation, as plain data that can be stored."""
 
     name: str
     paper: str
@@ -68,12 +68,12 @@ class Proof:
     without_inverse: str = ""
 
     def verdicts(self) -> dict[str, int]:
-        """How many claims got each verdict, in the order of :data:`VERDICTS`."""
+        """The number of claims for each verdict, in the order of :data:`VERDICTS`."""
         counts = Counter(c.kind for c in self.claims)
         return {kind: counts[kind] for kind in VERDICTS if counts[kind]}
 
     def summary(self) -> str:
-        """One line: what was proved."""
+        """One line about what was proved."""
         inverses = ", ".join(
             f"{i.function} {i.branches} branch{'es' if i.branches > 1 else ''} sound and complete"
             for i in self.inverses
@@ -84,7 +84,7 @@ class Proof:
         return "; ".join(p for p in [*parts, f"claims: {claims}" if claims else ""] if p)
 
     def outcome(self) -> str:
-        """How many branches were proved, or why there is no inverse."""
+        """The number of proved branches, or the reason why there is no inverse."""
         if not self.inverses:
             return f"no inverse, because {self.without_inverse or 'the script has none'}"
         alone = len(self.inverses) == 1
@@ -166,7 +166,7 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
 
 
 def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
-    """Sound: each branch satisfies the equations.  Complete: there are no other solutions."""
+    """Prove that all branches satisfy the equations and that there are no other solutions."""
     function = derivation[inverse.function]
     if inverse.chain:
         return _prove_by_chain(derivation, function, inverse)
@@ -193,7 +193,7 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
 def _require_all_branches(
     derivation: Derivation, function: Function, inverse: Inverse, count: int, found: str
 ) -> int:
-    """The number of branches; if it is not the ``count``, say so, with a posture that is lost."""
+    """The number of branches; raises if it is not ``count``, with a posture that is not covered."""
     branches = len(function.branches) if function.branches else 1
     if count != branches:
         raise ProofError(
@@ -226,7 +226,7 @@ def _prove_by_reduction(
 
 
 def _targets(inverse: Inverse) -> dict[sp.Symbol, sp.Expr]:
-    """Dependent targets in free parameters; empty where the targets are independent."""
+    """Dependent targets in terms of free parameters; empty if the targets are independent."""
     if not inverse.parametrisation:
         return {}
     return dict(zip(inverse.targets, inverse.parametrisation, strict=True))
@@ -247,7 +247,7 @@ def _prove_sound(
 def _prove_continuum(
     derivation: Derivation, function: Function, inverse: Inverse, continuum: Continuum
 ) -> None:
-    """On its locus the flagged case returns a solution, whatever the convention."""
+    """Prove that a flagged case returns a solution on its locus."""
     for label, signs in function.cases():
         if continuum.branches and label not in continuum.branches:
             continue
@@ -269,7 +269,7 @@ class _Case:
 
 
 def _prove_case(function: Function, inverse: Inverse, case: _Case) -> tuple[sp.Expr, ...]:
-    """The outputs satisfy the equations; returns what had to be assumed."""
+    """Prove that the outputs satisfy the equations; return the assumptions."""
     outputs = [e for a in function.outputs for e in a.entries]
     solved = dict(zip(inverse.unknowns, outputs, strict=True))
     if any(stage.carried for stage in inverse.stages):
@@ -286,7 +286,7 @@ def _prove_case(function: Function, inverse: Inverse, case: _Case) -> tuple[sp.E
 def _prove_case_in_stages(
     function: Function, inverse: Inverse, case: _Case, outputs: Mapping[sp.Symbol, sp.Expr]
 ) -> tuple[sp.Expr, ...]:
-    """Stage by stage, with the earlier unknowns as symbols and what they hand on proved."""
+    """The same stage by stage; earlier unknowns are symbols, and carried values are proved."""
     assumptions: tuple[sp.Expr, ...] = ()
     carried: dict[sp.Symbol, sp.Expr] = {}
     due = {name: e for stage in inverse.stages for name, e in stage.carried.items()}
@@ -320,7 +320,7 @@ def _prove_case_in_stages(
 
 
 def _names_of(inverse: Inverse) -> list[str]:
-    """What each equation of an inverse is about, to tell a user which one fails."""
+    """The name of each equation of an inverse, to tell a user which one fails."""
     names = []
     for k, x in enumerate(inverse.targets, 1):
         name = str(x) if isinstance(x, sp.Symbol) else f"equation {k}"
@@ -335,7 +335,7 @@ def _equations_of(inverse: Inverse, stage: Stage) -> list[sp.Expr]:
 
 
 def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, ...]:
-    """The equation that each lemma solves vanishes on the graph of the forward map."""
+    """Prove that the equation of each lemma holds on the graph of the forward map."""
     graph = dict(zip(inverse.targets, inverse.forward, strict=True))
     lemmas = []
     for solved in derivation.solved:

@@ -20,7 +20,7 @@ from closedform.proof.require import ProofError, require
 def prove_reduction(
     derivation: Derivation, function: Function, inverse: Inverse
 ) -> tuple[int, str, tuple[str, ...]]:
-    """The lemmas have all their solutions; their equations are equivalent to the system.
+    """Prove that the lemmas are complete and that their equations are equivalent to the system.
 
     Returns the number of branches, the method in words and the names of the lemmas.
     """
@@ -53,7 +53,7 @@ def prove_reduction(
             )
     count = math.prod(lemma.branches for lemma in reduction.lemmas)
     branches = len(function.branches) if function.branches else 1
-    if count != branches * reduction.kept_of:
+    if count != branches * reduction.solutions_per_branch:
         raise ProofError(f"{where}: the lemmas give {count} solutions, not {branches}")
     names = tuple(dict.fromkeys(lemma.name for lemma in reduction.lemmas))
     method = "lemma by lemma" + (f"; {reduction.because}" if reduction.because else "")
@@ -61,9 +61,9 @@ def prove_reduction(
 
 
 def _meanings(function: Function, reduction: Reduction) -> dict[sp.Basic, sp.Basic]:
-    """What the names of a program stand for, in inputs, parameters and unknowns of the lemmas.
+    """The values of the names of a program in inputs, parameters and unknowns of the lemmas.
 
-    As everywhere in a proof of the generic case, flags are false.
+    Flags are false, as in every proof of the generic case.
     """
     known: dict[sp.Basic, sp.Basic] = {}
     inside: set[int] = set()
@@ -79,7 +79,7 @@ def _meanings(function: Function, reduction: Reduction) -> dict[sp.Basic, sp.Bas
 
 
 def _cases(expr: sp.Expr) -> Iterator[sp.Expr]:
-    """The values of an expression for every outcome of its choices between sides."""
+    """The values of an expression for all outcomes of its choices between sides."""
     choices = [c for p in expr.atoms(sp.Piecewise) for _, c in p.args if c.is_Relational]
     if not choices:
         yield expr
@@ -89,7 +89,7 @@ def _cases(expr: sp.Expr) -> Iterator[sp.Expr]:
 
 
 def _generic(expr: sp.Expr) -> sp.Expr:
-    """The first case of every choice between sides, the last of every choice by a flag."""
+    """The expression with the first case of choices between sides and the last of those by flag."""
     cases = {
         p: p.args[0 if p.args[0][1].is_Relational else -1][0] for p in expr.atoms(sp.Piecewise)
     }

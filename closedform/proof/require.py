@@ -1,4 +1,4 @@
-"""The demand that something vanishes, and what a derivation that does not meet it is told."""
+"""Requires that an expression vanishes, and explains a failure to the author of a derivation."""
 
 from __future__ import annotations
 
@@ -14,27 +14,26 @@ from closedform.algebra.tower import shortened
 
 
 class ProofError(ValueError):
-    """A step or an inverse of a derivation is wrong, and how."""
+    """A step or an inverse of a derivation is wrong; the message says how."""
 
 
 @lru_cache(maxsize=32)
 def _decide(difference: sp.ImmutableMatrix, nonnegative: tuple[sp.Expr, ...]) -> Decision:
-    """Branches that share a stage leave the same to prove."""
+    """Decide, with a cache: branches that share a stage have the same equations."""
     return decide(difference, nonnegative)
 
 
 def require(
     difference: Any, nonnegative: tuple[sp.Expr, ...], fault: str, names: Sequence[str] = ()
 ) -> Decision:
-    """Prove that a difference vanishes, or say what is left of it and at which simple point.
+    """Prove that a difference vanishes, or raise with its residual and a simple counterexample.
 
-    ``fault`` says what is wrong if it does not: a place and a clause; ``names`` say what the
-    entries are about.
+    ``fault`` is the message of the error: a place and a clause.  ``names`` describe the entries.
     """
     try:
         decision = _decide(sp.ImmutableMatrix([difference]), nonnegative)
     except Undecided as error:
-        raise ProofError(f"{fault}, as far as can be decided: {error}") from error
+        raise ProofError(f"{fault}, or this cannot be decided: {error}") from error
     if not decision.holds:
         assert isinstance(decision.counterexample, Counterexample)
         entry = decision.counterexample.entry

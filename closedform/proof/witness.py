@@ -1,4 +1,4 @@
-"""Postures that an inverse has lost, by numbers: to show what a failed proof means."""
+"""Finds postures that an inverse misses, by numbers, to explain a failed proof."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ _POSTURES = 60
 
 
 def uncovered(derivation: Derivation, function: Function, inverse: Inverse) -> str:
-    """A posture that no branch gives back for its own image, and what the branches give.
+    """A sentence with a posture that no branch returns for its own image.
 
-    Empty if the targets are no images of the unknowns, or if no such posture turns up.
+    Empty if the targets are not images of the unknowns, or if no such posture is found.
     """
     if tuple(inverse.targets) != function.symbols:
         return ""
     parameters = [p.symbol for p in derivation.parameters]
-    values = [np.float64(p.value) for p in derivation.parameters]  # divides by zero in silence
+    values = [np.float64(p.value) for p in derivation.parameters]  # division by zero must not raise
     revolute = [j.symbol for j in derivation.joints if j.kind == "revolute"]
     angular = np.array([u in revolute for u in inverse.unknowns])
     forward = sp.lambdify([*inverse.unknowns, *parameters], list(inverse.forward), "numpy")

@@ -1,4 +1,4 @@
-"""Exact postures and inequalities of the five-bar linkage that claims are judged by."""
+"""Exact postures and inequalities of the five-bar linkage, the evidence for and against claims."""
 
 from functools import partial
 from typing import NamedTuple
@@ -15,7 +15,7 @@ Eq, Ne, Lt, Gt = (partial(relation, evaluate=False) for relation in (sp.Eq, sp.N
 
 
 class FiveBar(NamedTuple):
-    """What the derivation derived."""
+    """The results of the derivation."""
 
     lengths: tuple[sp.Symbol, ...]
     angles: tuple[sp.Symbol, ...]
@@ -45,7 +45,7 @@ class FiveBar(NamedTuple):
 
 
 def signs(bar: FiveBar) -> Check:
-    """The sine between the bars of a leg has the sign of its branch: 2 sigma atan2(a, b)."""
+    """The sine of the angle between the bars of a leg, 2 sigma atan2(a, b), has the sign sigma."""
     a, b = real("a", positive=True), real("b", positive=True)
     sigma = real("sigma")
     return Every(
@@ -59,7 +59,7 @@ def signs(bar: FiveBar) -> Check:
 
 
 class Plane(NamedTuple):
-    """A posture in the plane of the linkage: AC, BD, P as (y, rho), for given lengths."""
+    """A posture in the plane of the linkage: C, D and P as (y, rho), for given lengths."""
 
     lengths: tuple[int, int, int]
     C: sp.Matrix
@@ -89,7 +89,7 @@ class Plane(NamedTuple):
 
     @property
     def cross(self) -> sp.Expr:
-        """CP x DP, L2^2 times the sine between them."""
+        """CP x DP: L2^2 times the sine of the angle between them."""
         return sp.Matrix.hstack(self.P - self.C, self.P - self.D).det()
 
     @property
@@ -97,7 +97,7 @@ class Plane(NamedTuple):
         return (self.P - self.C).dot(self.P - self.D)
 
     def other_mode(self) -> "Plane":
-        """The leg over C turned over: C reflected about AP."""
+        """The posture with the leg over C reflected about AP."""
         C = 2 * self.C.dot(self.P) / square(self.P) * self.P - self.C
         return self._replace(C=C)
 
@@ -107,14 +107,14 @@ def square(v: sp.Matrix) -> sp.Expr:
 
 
 def coincident(lengths: tuple[int, int, int] = DEFAULT) -> Plane:
-    """C = D, and P beside them at the distance L2, parallel to AB."""
+    """C = D, and P at the distance L2 from them, parallel to AB."""
     L0, L1, L2 = lengths
     C = sp.Matrix([sp.Rational(L0, 2), sqrt(L1**2 - sp.Rational(L0, 2) ** 2)])
     return Plane(lengths, C, C, C - sp.Matrix([L2, 0]))
 
 
 def isotropic() -> Plane:
-    """CD parallel to AB and sqrt 2 L2 long, P between A and CD or beyond: the symmetric posture."""
+    """The symmetric isotropic posture: CD is parallel to AB and sqrt(2) L2 long."""
     L0, L1, L2 = DEFAULT
     half = L2 / sqrt(2)
     C_y = sp.Rational(L0, 2) - half
@@ -124,7 +124,7 @@ def isotropic() -> Plane:
 
 
 def on_the_axis() -> Holds:
-    """P on AB, inside the workspace: the default lengths, AP = BP = 7/2."""
+    """P on AB inside the workspace: the default lengths, AP = BP = 7/2."""
     L0, L1, L2 = DEFAULT
     half = sp.Rational(L0, 2)
     C_y = (L1**2 - L2**2 + half**2) / (2 * half)
@@ -134,7 +134,7 @@ def on_the_axis() -> Holds:
 
 
 def serial(bar: FiveBar) -> Check:
-    """The diagonal of B: rho L2, and what vanishes where AP or BP is L1 + L2 or |L1 - L2|."""
+    """The diagonal of B: rho L2, and entries that vanish if AP or BP is L1 + L2 or |L1 - L2|."""
     L0, L1, L2 = bar.lengths
     rho = bar.by_legs[0].dot(bar.k.cross(sp.Matrix([0, 1, 0])))
     parts = {"rho": Identity(bar.B[0, 0], L2 * rho)}
@@ -148,7 +148,7 @@ def serial(bar: FiveBar) -> Check:
 
 
 def without_parallel(L0: int, L1: int, L2: int) -> dict[str, sp.Expr]:
-    """The conditions for a design without parallel singularities, for numbers."""
+    """The conditions for a design without parallel singularities, for given numbers."""
     return {
         f"{L0} > 2*{L1}, C and D stay apart": sp.sympify(L0 > 2 * L1),
         f"2*{L2} > {L0} + 2*{L1}, C, P, D are never in line": sp.sympify(2 * L2 > L0 + 2 * L1),
@@ -161,5 +161,5 @@ def longest(bar: FiveBar) -> Check:
 
 
 def shortest(bar: FiveBar) -> Check:
-    """CD is at least L0 - 2 L1, if this is not negative."""
+    """CD is at least L0 - 2 L1 if this is not negative."""
     return Identity(*design.shortest(bar.CD, *bar.angles[1:3]))

@@ -1,4 +1,4 @@
-"""What Rao and Raju say of the H6AR, judged against the mechanism whose loop closes."""
+"""Claims of Rao and Raju about the H6AR, checked on the mechanism with a closed loop."""
 
 from functools import partial
 from typing import Any, NamedTuple
@@ -21,7 +21,7 @@ from closedform import (
 
 
 class Robot(NamedTuple):
-    """What the derivation derived; angles of the mid-plane are A (upper arm) and B (fore-arm)."""
+    """The results of the derivation; A (upper arm) and B (fore-arm) are angles of the mid-plane."""
 
     m: Any
     theta1: sp.Symbol
@@ -61,8 +61,9 @@ def mobility(d: Derivation) -> None:
         r"$M = \sum_{i=1}^{p} f_i - 6l$, “hence l = 1 and [...] M = 6”",
         Under(
             Enumeration(6, lambda: sum(freedoms) - 6, "the formula"),
-            "both wrist joints are counted as free, though the gears couple them: with one freedom "
-            "less it gives 5, unless one of the six conditions of the loop follows from the others",
+            "both wrist joints are counted as free, although the gears couple them; with one "
+            "freedom less the formula gives 5, unless one of the six loop conditions follows from "
+            "the others",
         ),
     )
     claim(
@@ -103,7 +104,7 @@ def tips(d: Derivation, r: Robot) -> None:
 def invariant(d: Derivation, r: Robot) -> None:
     m, psi, phi, theta1 = r.m, r.psi, r.phi, r.theta1
     c1, s1, cB, sB = cos(theta1), sin(theta1), cos(r.B), sin(r.B)
-    # half of what the right tip is ahead of the left one, and above it, when the loop closes
+    # half the distances by which the right tip is ahead of the left one and above it (closed loop)
     ahead = m.d * (sB * tan(psi) / cos(phi) - cB * tan(phi))
     above = -m.d * (cB * tan(psi) / cos(phi) + sB * tan(phi))
     claim = partial(d.claim, where="3.2 Invariant point")
@@ -178,24 +179,23 @@ def invariant(d: Derivation, r: Robot) -> None:
     claim(
         "invariant",
         "“the fact that the point $(x, y, z)_I$ is invariant to the reflective-symmetric motions”, "
-        "read as: averages that stay keep the middle of the tips",
+        "read as: if the averages do not change, the middle of the tips does not move",
         Identity(list(r.arm(r.A, r.B)), list(middle)),
     )
 
     claim(
         "virtual mechanism",
-        "“the link lengths of this virtual mechanism are $L_1$ and $L_2$ and [...] its "
-        "joint angles are "
-        "the averages of the respective actual joint angles”",
+        "“the link lengths of this virtual mechanism are $L_1$ and $L_2$ and [...] its joint "
+        "angles are the averages of the respective actual joint angles”",
         Identity(list(r.arm(r.A, r.B)), list(middle)),
         where="3.3 Equivalent serial mechanism",
     )
     gap = (r.arm(*moved["R"]) - r.arm(*moved["L"])) / 2
     claim(
         "unique angles",
-        "“unique shoulders' and elbows' joint angles can be found that yield the given "
-        "yaw and roll "
-        "angles”, read as: one pair of half differences alpha, beta for given averages",
+        "“unique shoulders' and elbows' joint angles can be found that yield the given yaw and "
+        "roll angles”, read as: for given averages there is one pair of half differences alpha, "
+        "beta",
         Count(list(gap - point), (r.alpha, r.beta), 1),
     )
     claim(
@@ -211,9 +211,8 @@ def wrist(d: Derivation, r: Robot) -> None:
     right, left = sp.Matrix([m.gs - half, length]), sp.Matrix([half - m.gs, length])
     d.claim(
         "symmetric wrist",
-        "“The gearset also ensures that the wrist assembly remains symmetric during the "
-        "yaw and roll "
-        "motions.”",
+        "“The gearset also ensures that the wrist assembly remains symmetric during the yaw and "
+        "roll motions.”",
         Identity(right.dot(right), left.dot(left)),
         where="2 Description of the H6AR",
     )
@@ -245,9 +244,7 @@ def wrist(d: Derivation, r: Robot) -> None:
         "$(X, Y, Z)_3$ and $(X, Y, Z)_4$”",
         Every(
             {
-                "fore-arms that are parallel": Identity(
-                    virtual, [e.subs(r.beta, 0) for e in right_arm]
-                ),
+                "parallel fore-arms": Identity(virtual, [e.subs(r.beta, 0) for e in right_arm]),
                 "any posture": Identity(virtual, right_arm),
             }
         ),
@@ -298,7 +295,7 @@ def wrist(d: Derivation, r: Robot) -> None:
     claim(
         "passive joints",
         "“no angular constraints are imposed on the passive joints J_1 and J_2”",
-        Undecidable("a choice of construction; the paper gives no ranges"),
+        Undecidable("a choice of design; the paper gives no ranges"),
     )
 
 
@@ -419,11 +416,9 @@ def inverse(d: Derivation, r: Robot) -> None:
     claim(
         "only one set of angles",
         "“Since the average of the twin shoulder and elbow angles [...] are known, it is "
-        "sufficient "
-        "to find only one set of angles”",
-        Identity(
-            by_average, mirrored
-        ),  # where the left tip comes to be, and where (3) to (5) want it
+        "sufficient to find only one set of angles”",
+        # the left tip by the averages, and the left tip that (3) to (5) require
+        Identity(by_average, mirrored),
     )
     claim(
         "no yaw, no roll",
@@ -432,18 +427,19 @@ def inverse(d: Derivation, r: Robot) -> None:
         Under(
             Every(
                 {
-                    "half differences that vanish, the tips": Identity(
+                    "with half differences of zero, the tips": Identity(
                         list(right.subs({r.alpha: 0, r.beta: 0})), list(r.arm(A, B))
                     ),
-                    "yaw and roll that vanish, the sines of the half differences": Identity(
+                    "with yaw and roll of zero, the sines of the half differences": Identity(
                         [v[1] * gap[0] - v[0] * gap[1], u[0] * gap[1] - u[1] * gap[0]],
                         [area * sin(r.alpha), area * sin(r.beta)],
                     ),
                 }
             ),
             "the gap of the tips is linear in the sines of the half differences, and its "
-            "determinant vanishes only where the virtual arm is straight or folded: elsewhere the "
-            "sines are zero, and so the half differences of arms less than half a turn apart",
+            "determinant vanishes only if the virtual arm is straight or folded; otherwise the "
+            "sines are zero, and so are the half differences if the arms are less than half a turn "
+            "apart",
         ),
     )
     claim(

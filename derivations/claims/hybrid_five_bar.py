@@ -1,4 +1,4 @@
-"""What Chablat, Wenger and Angeles say of the hybrid five-bar linkage: its kinematics."""
+"""Claims of Chablat, Wenger and Angeles about the kinematics of the hybrid five-bar linkage."""
 
 from functools import partial
 from math import prod
@@ -96,7 +96,7 @@ def kinematics(d: Derivation, bar: FiveBar) -> None:
         "eq. (5)",
         r"$\dot{\boldsymbol\theta} = [\dot\theta_1, \dot\theta_2, \dot\theta_3]^T,\ "
         r"\dot{\mathbf p} = [\dot x, \dot y, \dot z]^T$",
-        Undecidable("names, no statement"),
+        Undecidable("only names are defined, nothing is stated"),
     )
 
 
@@ -129,7 +129,7 @@ def working_modes(d: Derivation, bar: FiveBar) -> None:
         Enumeration(
             8,
             lambda: prod(count_solutions([e.subs(at)], (u,)).count for e, u, at in steps),
-            "solutions, by theta1 and then by leg",
+            "solutions for theta1, times those of each leg",
         ),
     )
     mirror = {t: -t for t in (t2, t3, t4, t5)}
@@ -139,7 +139,7 @@ def working_modes(d: Derivation, bar: FiveBar) -> None:
         "four ... are depicted, the remaining four being the mirror image about line AB",
         Every(
             {
-                "the mirror image has the opposite signs in B": Identity(
+                "the mirror image has opposite signs in B": Identity(
                     [e.subs(mirror) for e in diagonal], [-e for e in diagonal]
                 ),
                 "and P is reflected": Identity(
@@ -177,7 +177,7 @@ def parallel_singularities(d: Derivation, bar: FiveBar) -> None:
         r"these singularities occur whenever $\theta_4 - \theta_5 = k(\pi/2)$",
         Refuted(
             Identity((bar.A * bar.A.T).subs(t4, t5 + pi / 2), L2**2 * sp.eye(3)),
-            "for k = 1, CP and DP are at right angles and A*A^T is L2^2 times the unit matrix",
+            "for k = 1, CP and DP are at right angles and A*A^T is L2^2 times the identity matrix",
             r"\theta_4 - \theta_5 = k\pi",
             Identity(bar.det_A, -(L2**3) * sin(t4 - t5)),
         ),
@@ -204,7 +204,7 @@ def parallel_singularities(d: Derivation, bar: FiveBar) -> None:
         Every(
             {
                 "the equations of D hold for every angle of DP": Identity(same, sp.zeros(2, 1)),
-                "that of C is the same": Identity(
+                "the equation of C is the same": Identity(
                     sum(((x - a) ** 2 for x, a in zip(bar.p, D, strict=True)), -(L2**2)) / 2,
                     bar.loop[2],
                 ),
@@ -261,8 +261,8 @@ def serial_singularities(d: Derivation, bar: FiveBar) -> None:
         "CP are aligned",
         Refuted(
             on_the_axis(),
-            "det B vanishes on the axis AB too, inside the workspace: for (7, 8, 5) at AP = BP = "
-            "7/2",
+            "det(B) also vanishes on the axis AB inside the workspace, for example for (7, 8, 5) "
+            "at AP = BP = 7/2",
             "on AB, or at the boundary with BD and DP or AC and CP aligned",
             serial(bar),
         ),
@@ -275,7 +275,7 @@ def serial_singularities(d: Derivation, bar: FiveBar) -> None:
         "they cannot be avoided",
         Under(
             Identity([P.dot(P), square(P - sp.Matrix([L0, 0]))], [R**2, R**2], (2 * R - L0,)),
-            "where the loop closes at all, L0 <= 2 (L1 + L2), there is a point with AP = BP = "
-            "L1 + L2, and both legs are stretched there",
+            "if the loop can close, L0 <= 2 (L1 + L2), there is a point with AP = BP = L1 + L2; "
+            "both legs are stretched there",
         ),
     )

@@ -1,4 +1,4 @@
-"""What Chablat, Wenger and Angeles say of the hybrid five-bar linkage: its design."""
+"""Claims of Chablat, Wenger and Angeles about the design of the hybrid five-bar linkage."""
 
 from functools import partial
 
@@ -33,7 +33,7 @@ from closedform.proof.checks import (
     Under,
 )
 
-NO_DIMENSIONS = "a figure, drawn for lengths that are not given"
+NO_DIMENSIONS = "a figure for lengths that the paper does not give"
 
 
 def workspace(d: Derivation, bar: FiveBar) -> None:
@@ -71,7 +71,7 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
         "parallel singular configurations",
         Every(
             {
-                "both legs obey one equation, so equal signs mean C = D": Identity(
+                "both legs have the same equation, so equal signs mean C = D": Identity(
                     same_legs, sp.S.Zero
                 ),
                 "unequal signs are regular": Holds(
@@ -95,8 +95,9 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
                     "0 < AP < 2": sp.sympify(0 < 1 < 2),
                 }
             ),
-            "with L0 = 0, L1 = L2 = 1 the axis is singular inside the workspace, as P = (0, 1, 0)",
-            "the serial ones lie at the border, or on AB",
+            "for L0 = 0, L1 = L2 = 1 the points of the axis inside the workspace are singular, for "
+            "example P = (0, 1, 0)",
+            "the serial ones lie at the border or on AB",
             serial(bar),
         ),
     )
@@ -118,7 +119,7 @@ def by_design(d: Derivation, bar: FiveBar) -> None:
         "$L_0$, we eliminate a parallel singularity type, C and D coinciding",
         Refuted(
             Holds({**default.closed(), "2 L1 > L0": sp.sympify(16 > 7)}),
-            "for (7, 8, 5), 16 > 7, C and D coincide 7/2 along AB: the condition is what lets the "
+            "for (7, 8, 5), 16 > 7, C and D coincide at 7/2 along AB: the condition makes the "
             "circles of C and D meet",
             r"L_0 > 2 L_1",
             stay_apart,
@@ -132,7 +133,7 @@ def by_design(d: Derivation, bar: FiveBar) -> None:
         Refuted(
             Holds({**small.closed(), "2 L2 - 2 L1 > L0": sp.sympify(4 - 2 > 1)}),
             "for (1, 1, 2), 4 - 2 > 1, C and D coincide at theta2 = 60 and theta3 = 120 degrees; "
-            "the condition keeps C, P, D from being in line, and nothing else",
+            "the condition only prevents C, P, D from being in line",
             r"L_0 > 2 L_1 \text{ and } 2 L_2 > L_0 + 2 L_1",
             Every({"C and D stay apart": stay_apart, "CD < 2 L2": longest(bar)}),
         ),
@@ -181,8 +182,7 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         "a serial singularity, located at the boundary of the Cartesian workspace",
         Refuted(
             on_the_axis(),
-            "the sign of rho, and with it the working mode, changes on the axis AB, inside the "
-            "workspace",
+            "the sign of rho, and so the working mode, changes on the axis AB inside the workspace",
             "at the boundary, where a leg is stretched or folded, or on AB",
             serial(bar),
         ),
@@ -199,8 +199,8 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         "by doing so, we can reach a workspace that is twice as large as each of those displayed",
         Refuted(
             one_workspace,
-            "the conditions on P hold no sign: every working mode reaches the same workspace, and "
-            "a change of mode adds nothing to it",
+            "the conditions on P contain no sign: every working mode reaches the same workspace, "
+            "and a change of mode adds nothing",
             "all working modes have the same workspace",
             one_workspace,
         ),
@@ -210,7 +210,7 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         "parallel singularities not being avoidable",
         Refuted(
             Holds(without_parallel(3, 1, 3)),
-            "(3, 1, 3) has none; section 3.2 itself avoids them",
+            "(3, 1, 3) has none, and section 3.2 itself avoids them",
             r"L_0 > 2 L_1 \text{ and } 2 L_2 > L_0 + 2 L_1 \text{ avoid them}",
             Every({"C and D stay apart": shortest(bar), "CD < 2 L2": longest(bar)}),
         ),
@@ -223,7 +223,7 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         "counterpart of the same size",
         Refuted(
             Identity(at_zero, sp.Rational(4, 3) * pi * ((M + m) ** 3 - (M - m) ** 3)),
-            "for L0 = 0 it is the hollow sphere of the serial arm with the same bars",
+            "for L0 = 0 it is the same hollow sphere as that of the serial arm with the same bars",
             r"V(L_0) \le V(0)",
             Every({f"regime {i}": Identity(*p) for i, p in enumerate(decrease(bar.volumes), 1)}),
         ),
@@ -238,7 +238,7 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
             {
                 **start.closed(),
                 "CP and DP at right angles": Eq(start.dot, 0),
-                "the leg turned over, not": Ne(start.other_mode().dot, 0),
+                "not so with the leg reflected": Ne(start.other_mode().dot, 0),
             }
         ),
     )
@@ -247,16 +247,16 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         "and those of the inverse-kinematics matrix",
         Refuted(
             Identity(4 * bar.B[1, 1] ** 2, ((L1 + L2) ** 2 - reach) * (reach - (L1 - L2) ** 2)),
-            "up to their signs, the entries of B depend on P alone: rho*L2, and by leg twice the "
-            "area of the triangle over AP or BP",
-            "the condition number of B depends on P alone",
+            "up to their signs, the entries of B depend only on P: rho*L2, and for each leg twice "
+            "the area of the triangle over AP or BP",
+            "the condition number of B depends only on P",
             serial(bar),
         ),
     )
 
 
 def half_angle(bar: FiveBar, sign: int) -> Check:
-    """kappa by u, the cotangent of half the angle between CP and DP, for a sign of its cosine."""
+    """kappa from u, the cotangent of half the angle between CP and DP, for a sign of its cosine."""
     u = real("u", positive=True)
     cosine = Abs(cos(bar.angles[3] - bar.angles[4]))
     by_u = (bar.kappa**2).subs(cosine, sign * (u**2 - 1) / (u**2 + 1))
@@ -300,19 +300,22 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
         Refuted(
             Holds(
                 {
-                    "as printed, not kappa": Ne((printed_kappa(t3) / bar.kappa).subs(wide), 1),
-                    "with theta5, the inverse": Eq((printed_kappa(t5) * bar.kappa).subs(wide), 1),
+                    "as printed it is not kappa": Ne((printed_kappa(t3) / bar.kappa).subs(wide), 1),
+                    "with theta5 it is the inverse": Eq(
+                        (printed_kappa(t5) * bar.kappa).subs(wide), 1
+                    ),
                     "which is not kappa": Ne(bar.kappa.subs(wide), 1),
                 }
             ),
-            "theta3 stands for theta5, the angle of DP; and with theta5 it is right only where "
-            "cos(theta4 - theta5) is not negative.  Where CD is longer than sqrt(2)*L2 it is the "
-            "inverse: at theta4 = 2*pi/3, theta5 = 0 it gives sqrt(3)/3, and kappa is sqrt(3)",
+            "theta3 is printed instead of theta5, the angle of DP.  With theta5 the formula is "
+            "right only if cos(theta4 - theta5) is not negative.  If CD is longer than sqrt(2)*L2, "
+            "it gives the inverse: at theta4 = 2*pi/3, theta5 = 0 it is sqrt(3)/3, but kappa is "
+            "sqrt(3)",
             r"\max(|\tan\tfrac{\theta_4-\theta_5}{2}|,\ 1/|\tan\tfrac{\theta_4-\theta_5}{2}|)",
             Every(
                 {
                     "the cosine is not negative": half_angle(bar, 1),
-                    "it is not positive": half_angle(bar, -1),
+                    "the cosine is not positive": half_angle(bar, -1),
                 }
             ),
         ),
@@ -329,8 +332,8 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
         r"$\kappa(\mathbf A)$ attains its minimum of 1 when $|\theta_3-\theta_4| = \pi/2$",
         Refuted(
             Holds({"kappa is not 1": Ne(bar.kappa.subs(right_angle), 1)}),
-            "theta3 stands for theta5, as in eq. (8): at theta3 = pi/6, theta4 = 2*pi/3, "
-            "theta5 = 0 it is sqrt(3)",
+            "theta3 is printed instead of theta5, as in eq. (8); kappa is sqrt(3) at "
+            "theta3 = pi/6, theta4 = 2*pi/3, theta5 = 0",
             r"|\theta_5-\theta_4| = \pi/2",
             Identity(bar.kappa.subs(t4, t5 + pi / 2), sp.S.One),
         ),
@@ -340,7 +343,8 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
         r"$\kappa(\mathbf A)$ tends to infinity when $\theta_3-\theta_4 = k\pi$",
         Refuted(
             Holds({"kappa is 1": Eq(bar.kappa.subs(aligned), 1)}),
-            "theta3 stands for theta5: at theta3 = 0, theta4 = pi, theta5 = pi/2 it is 1",
+            "theta3 is printed instead of theta5; kappa is 1 at theta3 = 0, theta4 = pi, "
+            "theta5 = pi/2",
             r"\theta_5-\theta_4 = k\pi",
             Identity(bar.det_A, L2**3 * sin(t5 - t4)),
         ),
@@ -353,7 +357,7 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
     claim(
         "most accurate",
         "postures with a right angle are the most accurate for the direct kinematics",
-        Undecidable("accuracy is not defined but by the condition number itself"),
+        Undecidable("the paper defines accuracy only by the condition number itself"),
     )
     inside = coincident()
     claim(
@@ -378,10 +382,10 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
             Every(
                 {
                     "CD is at most L0 + 2 L1": longest(bar),
-                    "for (1, 1, 3) that is too short": Holds({"3 < 3 sqrt 2": Lt(3, 3 * sqrt(2))}),
+                    "for (1, 1, 3) this is too short": Holds({"3 < 3 sqrt 2": Lt(3, 3 * sqrt(2))}),
                 }
             ),
-            "it takes CD = sqrt(2)*L2, but CD <= L0 + 2*L1; for (1, 1, 3) 4.24 against 3",
+            "it needs CD = sqrt(2)*L2, but CD <= L0 + 2*L1; for (1, 1, 3) that is 4.24 against 3",
             r"\max(0, L_0 - 2 L_1) \le \sqrt{2} L_2 \le L_0 + 2 L_1",
             Every({"longest": longest(bar), "shortest": shortest(bar)}),
         ),
@@ -405,6 +409,6 @@ def conditioning(d: Derivation, bar: FiveBar) -> None:
         "isoconditioning curves are, by definition, the sets of points at equal distance from the "
         "singularities",
         Undecidable(
-            "the distance is not defined; 1/kappa is one between matrices, not between points"
+            "the distance is not defined; 1/kappa is a distance of matrices, not of points"
         ),
     )

@@ -1,4 +1,4 @@
-"""What Shi, Zhu and Li say of the double parallelogram and of the IRB 260."""
+"""Claims of Shi, Zhu and Li about the double parallelogram and the IRB 260."""
 
 from functools import partial
 
@@ -48,8 +48,8 @@ def mechanism(d: Derivation, arm: Palletiser) -> None:
         "“This manipulator includes two parallel four-bar mechanisms that make the kinematics and "
         "dynamic analysis complicated.”",
         Undecidable(
-            "of the machine, not of its kinematics; if motor 3 sits on the turret, a third "
-            "parallelogram drives the upper arm"
+            "a statement about the machine, not about its kinematics; if motor 3 is on the turret, "
+            "a third parallelogram drives the upper arm"
         ),
         where="Abstract",
     )
@@ -79,14 +79,14 @@ def mechanism(d: Derivation, arm: Palletiser) -> None:
                 R.subs(dict.fromkeys(arm.actuated, 0) | {theta5: pi / 2}), rotation("z", pi / 2)
             ),
             "at theta5 = pi/2, all others 0, the hand is turned by a right angle about z",
-            r"$R = R_z(\theta_1 + \theta_5)$: the hand stays level, and turns about the vertical",
+            r"$R = R_z(\theta_1 + \theta_5)$: the hand stays level and turns about the vertical",
             Identity(R, rotation("z", arm.thetas[0] + theta5)),
         ),
     )
     claim(
         "ground frame",
         "“The coupler of the lower one is the “ground frame” of the upper one.”",
-        Undecidable("read off a drawing, Fig. 3; the derivation starts from it"),
+        Undecidable("taken from a drawing, Fig. 3; the derivation starts from it"),
     )
     claim = partial(d.claim, where="III. Modeling")
     free, reach, lift = symbols("turn", 1), symbols("a", 1), real("lift")
@@ -100,10 +100,10 @@ def mechanism(d: Derivation, arm: Palletiser) -> None:
         "confined”",
         Refuted(
             Identity(scara[:3, 2], z),
-            "a SCARA arm is an open chain, with three upright axes and a vertical slide, and its "
-            "hand stays level as well",
-            "it is none because its links close two loops: the arm has eight joints between seven "
-            "bodies, and an open chain has six",
+            "a SCARA arm is an open chain with three vertical axes and a vertical slide, and its "
+            "hand also stays level",
+            "it is not an open chain because its links close two loops: the arm has eight joints "
+            "between seven bodies, and an open chain has six",
             Enumeration(2, loops_of_the_arm, "independent loops"),
         ),
     )
@@ -153,7 +153,7 @@ def mechanism(d: Derivation, arm: Palletiser) -> None:
                 }
             ),
             "both loops are assembled as parallelograms; each has one other assembly, the "
-            "antiparallelogram, which they can enter where they are flat",
+            "antiparallelogram, which it can enter when it is flat",
         ),
     )
     across = sp.Matrix([-cos(arm.thetas[0]), -sin(arm.thetas[0]), 0])
@@ -163,8 +163,8 @@ def mechanism(d: Derivation, arm: Palletiser) -> None:
         "the axis X”",
         Refuted(
             Identity(arm.moved[1][3:, :].subs(arm.thetas[0], pi / 2), sp.Matrix([0, -1, 0])),
-            "the axes turn with the turret; at theta1 = pi/2 that of joint 2 is along -y",
-            r"they give it along $-(\cos\theta_1, \sin\theta_1, 0)$, the axis X of the turret",
+            "the axes turn with the turret; at theta1 = pi/2 the axis of joint 2 is along -y",
+            r"the rotation is about $-(\cos\theta_1, \sin\theta_1, 0)$, the axis X of the turret",
             Identity(sp.Matrix.hstack(*(arm.moved[i][3:, :] for i in (1, 2, 3))),
                      sp.Matrix.hstack(*[across] * 3))
         )
@@ -176,7 +176,7 @@ def mechanism(d: Derivation, arm: Palletiser) -> None:
         Every(
             {
                 "axes of the chain": Enumeration(5, lambda: len(arm.moves), "joints"),
-                "its wrist bracket turns as that of the loops": Identity(
+                "its wrist bracket turns like that of the loops": Identity(
                     arm.couple(arm.moves[1] * arm.moves[2] * arm.moves[3])[:3, :3],
                     rotation("x", -bracket),
                 ),
@@ -186,7 +186,7 @@ def mechanism(d: Derivation, arm: Palletiser) -> None:
 
 
 def loops_of_the_arm() -> int:
-    """The joints of the double parallelogram less those that a tree of its bodies needs."""
+    """The number of joints of the double parallelogram beyond those of a tree of its bodies."""
     joints = [
         ("turret", "lower arm"), ("turret", "lower rod"), ("plate", "lower arm"),
         ("plate", "lower rod"), ("lower arm", "upper arm"), ("plate", "upper rod"),
@@ -220,8 +220,8 @@ def verification(d: Derivation, arm: Palletiser) -> None:
                     ),
                 }
             ),
-            "a derivative leaves the constants open: another initial pose has the same Jacobian, "
-            "and the height z may be wrong by any constant",
+            "a derivative does not determine constants: another initial pose has the same "
+            "Jacobian, and the height z may be wrong by any constant",
             r"a correct spatial Jacobian verifies the pose up to $g_{st}(0)$",
             same,
         ),
@@ -236,7 +236,7 @@ def verification(d: Derivation, arm: Palletiser) -> None:
             "Fig. 7",
             "“From this comparison it is obvious to see that two groups of curves are almost the "
             "same, Fig. 7.”",
-            "curves in a figure, without dimensions or numbers; the calculated ones are derived, "
+            "curves in a figure, without dimensions or numbers; the calculated curves are derived "
             "as a table, for the dimensions of public models",
         ),
         (
@@ -254,7 +254,7 @@ def verification(d: Derivation, arm: Palletiser) -> None:
             "valid technique",
             "“Hence it is concluded that the new proposed technique is valid for the hybrid "
             "manipulator.”",
-            "an inference from the curves of one path in two figures",
+            "an inference from the curves of a single path in two figures",
         ),
     ):
         claim(label, printed, Undecidable(reason))

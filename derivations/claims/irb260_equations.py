@@ -1,4 +1,4 @@
-"""The numbered equations of Shi, Zhu and Li, and what they say with them."""
+"""The numbered equations of Shi, Zhu and Li, and the claims that go with them."""
 
 from functools import partial
 from typing import NamedTuple
@@ -33,11 +33,11 @@ FIVE_TERMS = " + ".join(
     rf"\dot{{\theta}}_{i}"
     for i in range(1, 6)
 )
-"""The sum that eqs. (15) and (17) print in full."""
+"""The sum that is printed in full in eqs. (15) and (17)."""
 
 
 class Palletiser(NamedTuple):
-    """What the derivation derived; ``free`` is the pose with five independent joints."""
+    """The results of the derivation; ``free`` is the pose with five independent joints."""
 
     lengths: tuple[sp.Symbol, ...]
     thetas: tuple[sp.Symbol, ...]
@@ -67,7 +67,7 @@ class Palletiser(NamedTuple):
         return e.xreplace({theta4: -(theta2 + theta3)})
 
     def rate(self, e: sp.Matrix) -> sp.Matrix:
-        """The derivative in time of what depends on the actuated joints."""
+        """The time derivative of a matrix that depends on the actuated joints."""
         pairs = zip(self.actuated, self.rates, strict=True)
         return sum((e.diff(angle) * rate for angle, rate in pairs), sp.zeros(*e.shape))
 
@@ -92,7 +92,7 @@ def screws(d: Derivation, arm: Palletiser) -> None:
         "unit axis w direction passing through the point q”",
         Every(
             {
-                "its points stay": Identity(
+                "points of the axis do not move": Identity(
                     exponential(twist, theta) * sp.Matrix([*p, 1]), sp.Matrix([*p, 1])
                 ),
                 "no pitch": Identity(w.dot(twist[:3, :]), 0),
@@ -148,7 +148,7 @@ def screws(d: Derivation, arm: Palletiser) -> None:
         "“the group $se(3)$ is defined as”",
         Refuted(
             Identity((twist_matrix(sp.Matrix([0, 0, 0, 0, 0, 1])) ** 2)[0, 0], -1),
-            "the square of the twist about z has the entry (1,1) = -1, and a skew matrix has 0",
+            "the square of the twist about z has the entry (1,1) = -1; a skew matrix has 0 there",
             "the Lie algebra $se(3)$: closed under sums and commutators, not under products",
             Identity(bracket, twist_matrix(twist_of(bracket))),
         ),
@@ -166,11 +166,11 @@ def screws(d: Derivation, arm: Palletiser) -> None:
         Refuted(
             Every(
                 {
-                    "this v has no part along the axis": Identity(w.dot(-w.cross(p)), 0),
-                    "that of a screw has": Identity(w.dot(-w.cross(p) + pitch * w), pitch),
+                    "this v has no component along the axis": Identity(w.dot(-w.cross(p)), 0),
+                    "the v of a screw has one": Identity(w.dot(-w.cross(p) + pitch * w), pitch),
                 }
             ),
-            "eq. (7) admits every v, and this is one without pitch: of a revolute joint",
+            "eq. (7) allows every v, but this v has no pitch: it is that of a revolute joint",
             r"v = -\omega \times q + h\omega, \text{ with } h = 0 \text{ for a revolute joint}",
             Identity(twist[:3, :], -w.cross(p)),
         ),
@@ -283,9 +283,9 @@ def velocities(d: Derivation, arm: Palletiser) -> None:
                     "the derivative has no inverse": Identity(velocity[3, :], sp.zeros(1, 4)),
                 }
             ),
-            "the factors are in the wrong order: with the derivative of the inverse this is minus "
-            "the velocity, and the derivative itself has no inverse; in eqs. (15) and (23) the V "
-            "has a hat, and no dot",
+            "the factors are in the wrong order: with the derivative of the inverse the product is "
+            "minus the velocity, and the derivative itself has no inverse; in eqs. (15) and (23) "
+            "the V has a hat and no dot",
             r"\hat{V}_{st}^s = \dot{g}_{st}(\theta) g_{st}^{-1}(\theta)",
             Identity(velocity * back, arm.V),
         ),
@@ -338,7 +338,7 @@ def velocities(d: Derivation, arm: Palletiser) -> None:
         r"\hat{\xi}_4' & \hat{\xi}_5' \end{bmatrix} \dot{\theta}$",
         Refuted(
             Enumeration((4, 16), lambda: row.shape, "the shape of the row of 4x4 matrices"),
-            "a 4x16 matrix does not multiply the 4 joint rates; without hats it does",
+            "a 4x16 matrix cannot multiply the 4 joint rates; without the hats it can",
             r"V_{st}^s = \begin{bmatrix} \xi_1' & \xi_2' - \xi_4' & \xi_3' - \xi_4' & \xi_5' "
             r"\end{bmatrix} \dot{\theta}",
             Identity(columns * arm.rates, twist_of(velocity * back)),
@@ -374,8 +374,8 @@ def adjoints(d: Derivation, arm: Palletiser) -> None:
         r"\dot{\theta}_i$",
         Refuted(
             witness,
-            "the primed twists are moved already, and here they are moved again: for i = 2 at "
-            "theta1 = pi/2 the axis comes out along x, not -y.  The primes must go",
+            "the primed twists are already moved, and here they are moved again: for i = 2 at "
+            "theta1 = pi/2 the axis is along x instead of -y.  The primes must be dropped",
             r"\left(e^{\hat{\xi}_1 \theta_1} \dots e^{\hat{\xi}_{i-1} \theta_{i-1}} \hat{\xi}_i "
             r"e^{-\hat{\xi}_{i-1} \theta_{i-1}} \dots e^{-\hat{\xi}_1 \theta_1} \right) "
             r"\dot{\theta}_i",
@@ -388,7 +388,7 @@ def adjoints(d: Derivation, arm: Palletiser) -> None:
         r"Ad_{(e^{\hat{\xi}_1' \theta_1} \dots e^{\hat{\xi}_{i-1}' \theta_{i-1}})} \hat{\xi}_i'$",
         Refuted(
             witness,
-            "as in eq. (19), the primed twists are moved twice; and Ad multiplies the six "
+            "as in eq. (19), the primed twists are moved twice; also, Ad multiplies the six "
             "coordinates of a twist, not the 4x4 matrix with the hat",
             r"\xi_i' = Ad_{(e^{\hat{\xi}_1 \theta_1} \dots "
             r"e^{\hat{\xi}_{i-1} \theta_{i-1}})} \xi_i",
@@ -433,10 +433,10 @@ def adjoints(d: Derivation, arm: Palletiser) -> None:
                 .diff(arm.rates[0]),
                 sp.Matrix([[-rho, 0], [0, -rho], [0, 0], [0, 0]])
             ),
-            "q5 of eq. (5) is where the hand is at home; for theta1 = pi/2 and a turning turret "
-            "the constant point would move along x, and the hand moves along -y",
-            r"$q_5^s$ is where the point is now, $g_{st}(\theta)(0, 0, 0, 1)^T$, in homogeneous "
-            r"coordinates",
+            "q5 of eq. (5) is the position of the hand at home; at theta1 = pi/2 with a turning "
+            "turret this constant point would move along x, but the hand moves along -y",
+            r"$q_5^s$ is the present position of the point, $g_{st}(\theta)(0, 0, 0, 1)^T$, in "
+            r"homogeneous coordinates",
             Identity(arm.V * position, arm.rate(position))
         )
     )  # fmt: skip
@@ -462,7 +462,7 @@ def chain_rule(arm: Palletiser) -> Every:
 
 
 def partial_twists(arm: Palletiser) -> Identity:
-    """Each derivative in eq. (16) is the matrix of a twist, the primed one."""
+    """Each derivative in eq. (16) is the matrix of the primed twist."""
     g = sp.prod(arm.links)
     found = sp.Matrix.hstack(*(arm.couple(g.diff(q) * inverse(g)) for q in arm.thetas))
     return Identity(found, sp.Matrix.hstack(*(twist_matrix(x) for x in arm.moved)))
@@ -490,13 +490,13 @@ def adjoint_twists(arm: Palletiser) -> Identity:
 
 
 def unit_axis() -> sp.Matrix:
-    """Any unit vector, by its polar angles."""
+    """An arbitrary unit vector, given by its polar angles."""
     lam, mu = real("lambda"), real("mu")
     return sp.Matrix([sin(lam) * cos(mu), sin(lam) * sin(mu), cos(lam)])
 
 
 def euler_angles(name: str) -> sp.Matrix:
-    """Any rotation."""
+    """An arbitrary rotation."""
     return sp.prod(rotation(axis, real(f"{name}_{i}")) for i, axis in enumerate("zyz"))
 
 

@@ -1,4 +1,4 @@
-"""What Reddy and Babu say of the planar arm and of the Denavit-Hartenberg convention."""
+"""Claims of Reddy and Babu about the planar arm and the Denavit-Hartenberg convention."""
 
 from functools import partial
 from typing import NamedTuple
@@ -28,7 +28,7 @@ DENAVIT_HARTENBERG = "Kinematic Analysis By Denavit – Hartenberg Convention"
 
 
 class Arm(NamedTuple):
-    """What the derivation derived; the paper's ``a_1``, ``a_2`` are its ``l_1``, ``l_2``."""
+    """The results of the derivation; the paper's ``a_1``, ``a_2`` are its ``l_1``, ``l_2``."""
 
     l1: sp.Symbol
     l2: sp.Symbol
@@ -87,7 +87,7 @@ def geometry(d: Derivation, arm: Arm) -> None:
         Every(
             {
                 "there are two": Count((x - px, y - py), (theta1, theta2), 2),
-                "the elbow is above the line to the hand where sin(theta2) < 0": Identity(
+                "the elbow is above the line to the hand if sin(theta2) < 0": Identity(
                     x * l1 * s1 - y * l1 * c1, -l1 * l2 * s2
                 ),
             }
@@ -112,18 +112,18 @@ def geometry(d: Derivation, arm: Arm) -> None:
     claim(
         "infinitely many solutions",
         "“There may even be an infinite number of solutions in some cases.”",
-        Identity(position.subs({l2: l1, theta2: pi}), sp.zeros(2, 1)),  # whatever theta1
+        Identity(position.subs({l2: l1, theta2: pi}), sp.zeros(2, 1)),  # for every theta1
     )
     claim(
         "cos θ2, before eq. (3)",
         r"$\cos\theta_2 = \frac{x^2 + y^2 - l_1^2 - l_2^2}{2l_1l_2} = D$",
         Identity((x**2 + y**2 - l1**2 - l2**2) / (2 * l1 * l2), c2),
     )
-    D = c2  # as was just proved
+    D = c2  # the claim above proves it
     claim(
         "sin θ2, before eq. (3)",
         r"$\sin\theta_2 = \pm\sqrt{1 - D^2}$",
-        Identity(1 - D**2, s2**2),  # of a square both roots are meant
+        Identity(1 - D**2, s2**2),  # the claim includes both roots of the square
     )
     cosine_law = l1**2 + l2**2 + 2 * l1 * l2 * c2 - px**2 - py**2
     claim(
@@ -177,7 +177,7 @@ def geometry(d: Derivation, arm: Arm) -> None:
 
 
 def convention(d: Derivation) -> None:
-    """Eqs. (6) and (7), of any arm."""
+    """Eqs. (6) and (7), for any arm."""
     claim = partial(d.claim, where=DENAVIT_HARTENBERG)
     a, alpha, offset, theta = real("a_i"), real("alpha_i"), real("d_i"), real("theta_i")
     ca, sa, ct, st = cos(alpha), sin(alpha), cos(theta), sin(theta)
@@ -221,8 +221,8 @@ def convention(d: Derivation) -> None:
         r"0 & 1 \end{bmatrix}$",
         Every(
             {
-                "of one link": Identity(homogeneous(turn, shift), A),
-                "of one link more": Identity(
+                "for one link": Identity(homogeneous(turn, shift), A),
+                "with one more link": Identity(
                     homogeneous(R * turn, R * shift + p), homogeneous(R, p) * A
                 ),
                 "where R is a rotation": Identity(
@@ -262,7 +262,7 @@ def convention(d: Derivation) -> None:
     claim(
         "redundant arms",
         "“D-H Convention method is also applicable to redundant robot arms”",
-        Identity(  # such as three parallel joints for a position in the plane
+        Identity(  # for example three parallel joints for a position in the plane
             sp.prod(denavit_hartenberg(L[i], 0, 0, t[i]) for i in range(3))[:3, 3],
             sum((L[i] * directions[i] for i in range(3)), origin),
         ),
@@ -388,7 +388,7 @@ def inverse(d: Derivation, arm: Arm) -> None:
 
 
 def results(d: Derivation, arm: Arm) -> None:
-    """The worked numbers, and the sentences on them."""
+    """The numerical example, and the sentences about it."""
     l1, l2, theta1, theta2, position, *_, pose = arm
     px, py = real("px"), real("py")
     given = {l1: sp.Integer(10), l2: sp.Integer(8)}
@@ -407,7 +407,7 @@ def results(d: Derivation, arm: Arm) -> None:
         "use of eqs. (3) and (4)",
         "“The inverse kinematic solution can be obtained from eq. (3), (4)”",
         Every(
-            {  # the quadrant that the tangent leaves open is that of numerator and denominator
+            {  # numerator and denominator give the quadrant, which the tangent does not
                 name: Identity(position.subs(inverse(px, py, sign)), sp.Matrix([px, py]))
                 for name, sign in (("elbow down", +1), ("elbow up", -1))
             }
@@ -447,7 +447,7 @@ def results(d: Derivation, arm: Arm) -> None:
 
 
 def values(d: Derivation) -> None:
-    """Sentences that read like findings, and what keeps them from being judged."""
+    """Sentences that read like findings, and why they cannot be decided."""
     claim = d.claim
     claim(
         "better results",
@@ -473,7 +473,7 @@ def values(d: Derivation) -> None:
     claim(
         "MATLAB, abstract",
         "“The codes so developed were tested and verified with suitable numerical examples.”",
-        Undecidable("the paper prints no code and no protocol of a test"),
+        Undecidable("the paper prints no code and no record of a test"),
         where="Abstract",
     )
     claim(

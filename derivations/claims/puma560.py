@@ -1,7 +1,7 @@
-"""What the textbooks say of the Puma 560, judged by computation.
+"""Claims of the textbooks about the Puma 560, checked by computation.
 
-The books are cited for results that are common knowledge; the formulas are written in their form.
-Craig has modified (proximal) Denavit-Hartenberg frames, Corke and Spong have standard ones.
+The books are cited for results that are common knowledge; the formulas have the form of the books.
+Craig uses modified (proximal) Denavit-Hartenberg frames, Corke and Spong use standard ones.
 """
 
 from functools import partial
@@ -27,7 +27,7 @@ LEE = "Lee, Ziegler: arm configurations"
 
 
 class Puma(NamedTuple):
-    """What the derivation derived."""
+    """The results of the derivation."""
 
     lengths: tuple[sp.Symbol, ...]
     q: tuple[sp.Symbol, ...]
@@ -69,7 +69,7 @@ def craig_chain(puma: Puma) -> sp.Matrix:
 
 
 def craig_forward(d: Derivation, puma: Puma) -> None:
-    """The twelve entries of the pose, and how the two conventions are related."""
+    """The twelve entries of the pose, and the relation of the two conventions."""
     a2, a3, d3, d4 = puma.lengths
     c1, c2, _, c4, c5, c6 = (cos(x) for x in puma.q)
     s1, s2, _, s4, s5, s6 = (sin(x) for x in puma.q)
@@ -148,8 +148,8 @@ def craig_forward(d: Derivation, puma: Puma) -> None:
     half = sp.diag(rotation("x", pi), 1)
     claim(
         "the two conventions",
-        "Craig's arm, with its base turned by $180^\\circ$ about $x$ and with $-\\theta_1$, is "
-        "that of the standard table",
+        "with its base turned by $180^\\circ$ about $x$ and with $-\\theta_1$, Craig's arm is that "
+        "of the standard table",
         Identity(half * T.subs(mirrored, simultaneous=True), puma.pose()),
     )
 
@@ -232,7 +232,7 @@ def craig_inverse(d: Derivation, puma: Puma) -> None:
 
 
 def printed_position(puma: Puma, p: sp.Matrix) -> Check:
-    """Craig's first three angles, put into his forward map, for all signs of both roots."""
+    """Craig's first three angles, substituted into his forward map, for all signs of both roots."""
     a2, a3, d3, d4 = puma.lengths
     theta1, theta2, theta3 = puma.q[:3]
     forward = craig_chain(puma)[:3, 3]
@@ -311,7 +311,7 @@ def printed_jacobian(d: Derivation, puma: Puma, rows: tuple[tuple[str, ...], ...
 
 
 def singularities(d: Derivation, puma: Puma) -> None:
-    """Decoupling, and the elbow manipulator of Spong as a special case."""
+    """Decoupling, and Spong's elbow manipulator as a special case."""
     a2, a3, d3, d4 = puma.lengths
     theta2, theta3 = puma.q[1:3]
     claim = partial(d.claim, where=SPONG)
@@ -337,7 +337,7 @@ def singularities(d: Derivation, puma: Puma) -> None:
     )
     claim(
         "wrist singularity",
-        r"the wrist is singular where $\theta_5 = 0$ or $\pi$: $z_3$ and $z_5$ are collinear",
+        r"the wrist is singular if $\theta_5 = 0$ or $\pi$: $z_3$ and $z_5$ are collinear",
         Every(
             {
                 "determinant": Identity(wrist.det() ** 2, sin(puma.q[4]) ** 2),
@@ -351,7 +351,7 @@ def singularities(d: Derivation, puma: Puma) -> None:
 
 
 def configurations(d: Derivation, puma: Puma) -> None:
-    """How many solutions there are."""
+    """The number of solutions."""
     claim = partial(d.claim, where=LEE)
     p = [real(n) for n in ("p_x", "p_y", "p_z")]
     R = rotation_parametrisation()

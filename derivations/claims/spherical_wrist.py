@@ -1,4 +1,4 @@
-"""What Reddy and Babu say of rotations and of the spherical wrist."""
+"""Claims of Reddy and Babu about rotations and the spherical wrist."""
 
 from functools import partial
 from itertools import product
@@ -33,7 +33,7 @@ SIGNS = {"upper signs": +1, "lower signs": -1}
 
 
 class Wrist(NamedTuple):
-    """What the derivation derived; the paper's phi, theta, varphi are theta4, theta5, theta6."""
+    """The results of the derivation; the paper's phi, theta, varphi are theta4, theta5, theta6."""
 
     d6: sp.Symbol
     theta4: sp.Symbol
@@ -85,7 +85,7 @@ def rotations(d: Derivation, wrist: Wrist) -> None:
     claim(
         "revolute joints",
         "“These joints must be of the revolute type.”",
-        Identity(turn.diff(offset), sp.zeros(3)),  # a prismatic joint changes no orientation
+        Identity(turn.diff(offset), sp.zeros(3)),  # a prismatic joint does not turn anything
     )
     claim(
         "spherical joint",
@@ -151,7 +151,7 @@ def euler_angles(d: Derivation, wrist: Wrist) -> None:
         Enumeration(
             [axes for axes in SEQUENCES if axes[0] != axes[1] != axes[2]],
             independent_sequences,
-            "those of all 27 whose rates are independent",
+            "sequences, of all 27, with independent rates",
         ),
     )
     claim(
@@ -187,7 +187,7 @@ def denavit_hartenberg_wrist(d: Derivation, wrist: Wrist) -> None:
     table = ((0, -pi / 2, 0, theta4), (0, pi / 2, 0, theta5), (0, 0, d6, theta6))
     by_angles = sp.Matrix.vstack(
         sp.Matrix.hstack(R, d6 * R[:, 2]), sp.Matrix([[0, 0, 0, 1]])
-    )  # the rotation of the Euler angles, and the hand d6 along its last axis
+    )  # the rotation by Euler angles, with the hand at the distance d6 along its last axis
     claim(
         "Table II",
         r"$\begin{array}{ccccc} \text{Link} & a^i & \alpha^i & d^i & \theta^i \\ "
@@ -215,7 +215,8 @@ def denavit_hartenberg_wrist(d: Derivation, wrist: Wrist) -> None:
         "rotation matrix from the above equation is”",
         Refuted(
             Identity(pose[2, 0].subs(at), sp.Integer(-1)),
-            "the entry (3,1) of eq. (6) is 0, that of eq. (14) is -1 at theta5 = pi/2, theta6 = 0",
+            "the entry (3,1) of eq. (6) is 0, but at theta5 = pi/2, theta6 = 0 that of eq. (14) is "
+            "-1",
             r"it is in the form of eq. (7), $\begin{bmatrix} {}^3R_6 & {}^3p_6 \\ 0 & 1 "
             r"\end{bmatrix}$",
             Identity(pose, by_angles),
@@ -240,12 +241,12 @@ def denavit_hartenberg_wrist(d: Derivation, wrist: Wrist) -> None:
 
 
 def results(d: Derivation, wrist: Wrist) -> None:
-    """The worked orientation."""
+    """The numerical example of an orientation."""
     claim = partial(d.claim, where="Results and Discussion, C")
     claim(
         "Results C, figure",
         "“The hands orientation after rotation is given by”",
-        Undecidable("the orientation is read off a drawing, Fig. 7"),
+        Undecidable("the orientation is taken from a drawing, Fig. 7"),
     )
     hand = sp.Matrix([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
     printed = dict(zip(wrist.angles, (-pi / 2, pi / 2, pi / 2), strict=True))
@@ -291,7 +292,7 @@ def results(d: Derivation, wrist: Wrist) -> None:
 def inverse_claims(
     claim: partial[None], wrist: Wrist, forward: sp.Matrix, label: str, middle: str, others: str
 ) -> None:
-    """The inverse that the paper prints twice; its theta is theta5 in eq. (16)."""
+    """The inverse, which the paper prints twice; theta is theta5 in eq. (16)."""
     solutions = {name: printed_inverse(forward, sign) for name, sign in SIGNS.items()}
     claim(
         f"middle angle, before {label}",
@@ -311,7 +312,7 @@ def inverse_claims(
         r"“If $\sin \theta \neq 0$, we have”",
         Every(
             {
-                f"theta = {angle}: the other two are not determined": Count(
+                f"theta = {angle}: the other two angles are not determined": Count(
                     list(
                         forward
                         - forward.subs(dict.fromkeys(wrist.angles, 0) | {wrist.theta5: angle})
@@ -327,9 +328,9 @@ def inverse_claims(
 
 
 def every_rotation(forward: sp.Matrix, angles: tuple[sp.Symbol, ...]) -> Check:
-    """Eqs. (13), (16) solve ``forward(angles) = R`` for every rotation R, and nothing else does.
+    """Eqs. (13) and (16) give all solutions of ``forward(angles) = R`` for every rotation R.
 
-    The parametrisation leaves out the half turns; what holds around them holds for them too.
+    The parametrisation excludes half turns.  Equations that hold around them also hold for them.
     """
 
     def check() -> Check:
@@ -386,7 +387,7 @@ def euler(axes: str, angles: tuple[sp.Expr, ...]) -> sp.Matrix:
 
 
 def independent_sequences() -> list[str]:
-    """The sequences of axes whose angular velocities span the space for some middle angle."""
+    """The sequences of axes with independent angular velocities for some middle angle."""
     middle = real("middle")
     rates = (
         sp.Matrix.hstack(AXES[i], AXES[j], rotation(j, middle) * AXES[k]) for i, j, k in SEQUENCES
@@ -401,18 +402,18 @@ def twelve(wrist: Wrist) -> Check:
             "12": Enumeration(
                 12,
                 lambda: len(independent_sequences()),
-                "those of all 27 whose rates are independent",
+                "sequences, of all 27, with independent rates",
             ),
-            "each reaches what ZYZ reaches": Identity(*as_zyz(wrist)),
+            "each reaches the same rotations as ZYZ": Identity(*as_zyz(wrist)),
             "ZYZ reaches every rotation": every_rotation(wrist.R, wrist.angles),
         }
     )
 
 
 def as_zyz(wrist: Wrist) -> tuple[list[sp.Expr], list[sp.Expr]]:
-    """Each of the twelve sequences, and ZYZ between constant rotations that makes it.
+    """Each of the twelve sequences, and the same rotation by ZYZ between constant rotations.
 
-    C takes z and y to the first two axes, and a quarter turn about y takes z to the third.
+    C takes z and y to the first two axes, and a turn by ``shift`` about y takes z to the third.
     """
     left, right = [], []
     for axes in independent_sequences():
@@ -427,7 +428,7 @@ def as_zyz(wrist: Wrist) -> tuple[list[sp.Expr], list[sp.Expr]]:
 
 
 def representations(wrist: Wrist) -> Check:
-    """Each of the listed representations of the rotation by ZYZ angles gives that rotation."""
+    """Each listed representation of the rotation by ZYZ angles gives that rotation."""
     R = wrist.R
     z, y = (0, 0, 1), (0, 1, 0)
     turns = zip((z, y, z), wrist.angles, strict=True)
@@ -440,7 +441,7 @@ def representations(wrist: Wrist) -> Check:
     return Every(
         {
             "Euler angles": Identity(euler("zyz", wrist.angles), R),
-            "Gibbs vector, but for half turns": Identity(
+            "Gibbs vector, except for half turns": Identity(
                 sp.Matrix(rotation_parametrisation(gibbs)).subs(
                     dict(zip(gibbs, vector / w, strict=True))
                 ),

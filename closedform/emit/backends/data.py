@@ -1,4 +1,4 @@
-"""The tables of a derivation as comma-separated values: the nearest doubles."""
+"""Prints the tables of a derivation as comma-separated values, rounded to doubles."""
 
 from __future__ import annotations
 

@@ -133,7 +133,7 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> N
 
 
 def _size(program: Lowered) -> str:
-    """Which planes are lengths, the degrees of the results, and between which sizes they hold."""
+    """The code for the size: the planes that are lengths, the degrees and the range of sizes."""
     if program.degrees is None or not program.is_scaled:
         return ""
     entries = [str(e) for a in program.inputs for e in a.entries] + list(program.parameters)
@@ -177,9 +177,9 @@ def _kernel(name: str, comment: str, program: Lowered) -> NumpyKernel:
 
 
 def _until_last_use(lines: Sequence[str], values: Sequence[str]) -> Iterator[str]:
-    """The lines, each followed by the deletion of what no later one uses.
+    """The lines, each followed by the deletion of values that no later line uses.
 
-    The array that is made next then takes the place of one that is still in the cache.
+    The next array then reuses memory that is still in the cache.
     """
     name = re.compile(r"\b[A-Za-z_]\w*")
     made = {n for line in lines for n in name.findall(line.partition(" = ")[0])}
@@ -196,7 +196,7 @@ def _until_last_use(lines: Sequence[str], values: Sequence[str]) -> Iterator[str
 
 
 def _wrapped(arguments: str, around: str) -> str:
-    """An argument list, on lines of its own where it would be too long."""
+    """An argument list, on separate lines if it is too long."""
     if len(arguments) + len(around) <= WIDTH:
         return arguments
     return "\n" + textwrap.indent(textwrap.fill(arguments, WIDTH - 4), "    ") + "\n"
@@ -211,7 +211,7 @@ def _arrays(specs: Any) -> str:
 
 
 def tuple_code(items: Iterable[str]) -> str:
-    """A tuple as Python writes it, on one line."""
+    """The Python code of a tuple, on one line."""
     listed = list(items)
     return f"({listed[0]},)" if len(listed) == 1 else f"({', '.join(listed)})"
 

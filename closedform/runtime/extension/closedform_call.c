@@ -7,13 +7,13 @@
 #error "CF_MAX_AXES is too small for this NumPy"
 #endif
 
-/* Handing the GIL back and forth costs about as much as this many postures. */
+/* Releasing and taking the GIL takes about as long as this many postures. */
 enum { RELEASE_GIL_MIN = 64 };
 
 typedef struct {
     const cf_call *call;
     PyArrayObject *in[CF_MAX_IN];
-    PyArrayObject *field[CF_MAX_PARAMS]; /* NULL where the parameter is the number below */
+    PyArrayObject *field[CF_MAX_PARAMS]; /* NULL if the parameter is the number below */
     double number[CF_MAX_PARAMS];
     PyArrayObject *out[CF_MAX_OUT];
     int n_axes; /* leading axes after broadcasting */
@@ -130,7 +130,7 @@ take_params(operands *o)
         Py_XDECREF(what);
         return -1;
     }
-    /* A tuple of our own, since converting a field may run code that changes a list. */
+    /* A new tuple, because converting a field may run code that changes a list. */
     PyObject *fields = PySequence_Tuple(params);
     if (fields == NULL) {
         return -1;
@@ -158,9 +158,9 @@ check_kind(const cf_function *f, const char *prefix, const char *name, PyArrayOb
     return -1;
 }
 
-/* Looks at the converted arrays once nothing is left to convert: converting an argument may run
- * code of the caller that gives an array converted before it another shape or dtype. From here to
- * the end of the sweep no such code runs, or what it changes is no longer read. */
+/* Checks the converted arrays after all conversions: converting an argument may run code of the
+ * caller that changes the shape or dtype of an array that is already converted. From here to the
+ * end of the sweep no such code runs, or its changes are not read any more. */
 static int
 check_arrays(const operands *o)
 {
@@ -207,7 +207,7 @@ broadcast(operands *o, PyArrayObject *array, int n_lead)
     return 1;
 }
 
-/* Appends "params.l1 (4,)" to `list`, unless there are no leading axes to speak of. */
+/* Appends a text such as "params.l1 (4,)" to `list` if there are leading axes. */
 static int
 append_lead(PyObject *list, const char *prefix, const char *name, PyArrayObject *array, int n_lead)
 {
@@ -268,7 +268,7 @@ broadcast_all(operands *o)
     return 0;
 }
 
-/* The array that the caller gave for output k, borrowed and not yet checked. */
+/* The array of the caller for output k, borrowed and not yet checked. */
 static PyArrayObject *
 given_output(const cf_call *call, size_t k)
 {
@@ -383,7 +383,7 @@ detach(const operands *o, PyArrayObject **array)
 {
     for (size_t k = 0; k < o->call->function->n_out; k++) {
         if (overlap(*array, o->out[k])) {
-            /* A plain array: a copy of the caller's class would run its __array_finalize__. */
+            /* A plain array: a copy in the class of the caller would run its __array_finalize__. */
             PyObject *copy = PyArray_NewLikeArray(*array, NPY_KEEPORDER, NULL, 0);
             if (copy == NULL || PyArray_CopyInto((PyArrayObject *)copy, *array) < 0) {
                 Py_XDECREF(copy);
@@ -396,7 +396,7 @@ detach(const operands *o, PyArrayObject **array)
     return 0;
 }
 
-/* Copies whatever an output given by the caller might overwrite before it is read. */
+/* Copies arguments that an output of the caller might overwrite before they are read. */
 static int
 detach_all(operands *o)
 {
@@ -493,7 +493,7 @@ evaluate(operands *o)
     return sweep(o);
 }
 
-/* Scalars come back as NumPy scalars, as from a ufunc; arrays of the caller as they are. */
+/* Returns scalars as NumPy scalars, as a ufunc does, and arrays of the caller unchanged. */
 static PyObject *
 finish(operands *o)
 {

@@ -1,4 +1,4 @@
-/* Converts what a caller gives to arrays of doubles, or says why it is not real numbers. */
+/* Converts the arguments of a caller to arrays of doubles; raises if they are not real numbers. */
 #define NO_IMPORT_ARRAY
 #include "closedform_numpy.h"
 
@@ -31,7 +31,7 @@ cf_is_masked(PyObject *object)
     return masked;
 }
 
-/* Whether an object is a real number: text is none, though float() would read it. */
+/* Whether an object is a real number; text is not, although float() would accept it. */
 static int
 is_real(PyObject *object)
 {
@@ -67,7 +67,7 @@ check_objects(const cf_function *f, const char *prefix, const char *name, PyArra
     return PyErr_Occurred() ? -1 : status;
 }
 
-/* Long doubles as doubles. NumPy's own conversion warns of those that are too large. */
+/* Long doubles as doubles. NumPy's own conversion warns about values that are too large. */
 static PyArrayObject *
 narrow(PyArrayObject *array)
 {
@@ -86,8 +86,8 @@ narrow(PyArrayObject *array)
     return real;
 }
 
-/* Complex numbers and text are refused because NumPy would only warn of the former and parse the
- * latter. */
+/* Complex numbers and text are refused, because NumPy would only warn about complex numbers and
+ * would parse text. */
 PyArrayObject *
 cf_real_array(const cf_function *f, const char *prefix, const char *name, PyObject *object)
 {

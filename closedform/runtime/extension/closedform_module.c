@@ -1,13 +1,13 @@
-/* The extension module through which Python sees generated C.
+/* The extension module that makes generated C functions available in Python.
  *
- * The table of closedform_module.h becomes callables of one type. A call with a single posture in
- * plain arrays or lists is answered by closedform_single.c; everything else goes to
- * closedform_call.c, which broadcasts, and from there to closedform_sweep.c, which knows nothing
- * of Python and runs the kernels.
+ * The rows of the table of closedform_module.h become callables of one type. closedform_single.c
+ * answers a call with a single posture in plain arrays or lists. All other calls go to
+ * closedform_call.c, which broadcasts, and from there to closedform_sweep.c, which runs the kernels
+ * and does not use Python.
  *
- * There is no mutable state but the module's type and NumPy's table of functions. NumPy exists
- * once a process, so the module declines subinterpreters with a GIL of their own. It does not
- * declare itself safe without a GIL either: lists are read while nothing else may change them.
+ * The only mutable state is the type of the module and NumPy's table of functions. NumPy exists
+ * once per process, so the module declines subinterpreters with a GIL of their own. It does not
+ * declare itself safe without a GIL either: nothing may change a list while it is read.
  */
 #include "closedform_numpy.h"
 
@@ -43,8 +43,8 @@ argument(cf_call *call, size_t k)
     return k == f->n_in && f->n_params > 0 ? &call->params : &call->out;
 }
 
-/* The index of a keyword among the argument names, or their number if it is none of them.
- * Keywords written in a call are interned, so identity decides all but the odd one. */
+/* The index of a keyword among the argument names, or their number if it is not one of them.
+ * Keywords in a call are interned, so a comparison by identity is nearly always enough. */
 static Py_ssize_t
 find_name(PyObject *names, PyObject *keyword)
 {
@@ -170,8 +170,8 @@ function_repr(PyObject *object)
     return PyUnicode_FromFormat("<compiled function %s>", ((Function *)object)->function->name);
 }
 
-/* Stored on a class, a function stays what it is. Having __get__ makes help() and inspect treat
- * the object as a routine and read __text_signature__. */
+/* A function stored on a class does not become a method. With __get__, help() and inspect treat the
+ * object as a routine and read __text_signature__. */
 static PyObject *
 function_get(PyObject *object, PyObject *Py_UNUSED(instance), PyObject *Py_UNUSED(owner))
 {
@@ -291,7 +291,7 @@ text_signature(const cf_function *f)
     return text;
 }
 
-/* Beside this module in its package: "closedform.generated.c" and "planar_2r". */
+/* The name of a module in the package of this one, such as "closedform.generated.c.planar_2r". */
 static PyObject *
 python_module(PyObject *module, const cf_function *f)
 {
@@ -336,7 +336,7 @@ function_dict(PyObject *module, const cf_function *f)
     return dict;
 }
 
-/* The class must name the outputs as the table does, and in the same order. */
+/* The class must have the names of the outputs in the table, in the same order. */
 static int
 check_results(const cf_function *f, PyObject *results)
 {
@@ -411,7 +411,7 @@ module_function(PyObject *module, PyObject *args)
 PyDoc_STRVAR(module_function_doc,
              "function(name, results=tuple, /)\n--\n\n"
              "The compiled function of that name, such as 'planar_2r.fk'.\n\n"
-             "Several outputs come in a `results`, a NamedTuple whose fields are the outputs.");
+             "Several outputs are returned as `results`, a NamedTuple with the outputs as fields.");
 
 static PyMethodDef module_methods[] = {
     {"function", module_function, METH_VARARGS, module_function_doc},

@@ -1,13 +1,13 @@
-/* The table by which generated C is seen from Python.
+/* The table that makes generated C functions available in Python.
  *
  * A generator prints one file that includes this header and defines `cf_functions` and
- * `cf_function_count`; closedform_module.c and its two companions turn every row into a Python
+ * `cf_function_count`. closedform_module.c and its companions turn every row into a Python
  * callable with the signature
  *
  *     f(in[0], ..., in[n_in - 1], params=defaults, *, out=None)
  *
- * All leading axes of inputs and of parameter fields broadcast. Nothing here needs Python.h, so
- * the table can be compiled and tested without it.
+ * All leading axes of inputs and of parameter fields broadcast. This header does not need Python.h,
+ * so the table can be compiled and tested without it.
  */
 #ifndef CLOSEDFORM_MODULE_H
 #define CLOSEDFORM_MODULE_H
@@ -17,7 +17,7 @@
 /* Limits of a table; a row that exceeds one makes the import fail. */
 enum { CF_MAX_IN = 8, CF_MAX_OUT = 8, CF_MAX_PARAMS = 32, CF_MAX_CORE = 3 };
 
-/* What an output holds. Inputs are always CF_REAL. */
+/* The type of the elements of an output. Inputs are always CF_REAL. */
 typedef enum {
     CF_REAL,   /* double,  numpy.float64 */
     CF_STATUS, /* uint8_t, numpy.uint8 */
@@ -37,12 +37,12 @@ typedef struct {
 typedef void cf_single(const double *params, const double *const *in, void *const *out);
 
 /* `n` postures as structures of arrays: coordinate j of posture i of input k is
- * in[k][j * in_stride[k] + i]. Outputs alike, in elements of their own type. No output overlaps an
- * input. Strides are not negative; an input's may be 0. */
+ * in[k][j * in_stride[k] + i]. The same holds for outputs, in elements of their own type. No output
+ * overlaps an input. Strides are not negative; the stride of an input may be 0. */
 typedef void cf_batch(size_t n, const double *params, const double *const *in,
                       const size_t *in_stride, void *const *out, const size_t *out_stride);
 
-/* Both kernels are called without the GIL, from several threads at once, with the same row. */
+/* Several threads may call both kernels at the same time with the same row, without the GIL. */
 typedef struct {
     const char *name; /* "planar_2r.fk": the Python module, a dot, the function */
     const char *doc;  /* becomes __doc__; __text_signature__ is made from the row */
@@ -57,7 +57,7 @@ typedef struct {
     cf_batch *batch;
 } cf_function;
 
-/* Hidden, so that two extensions in one process never see each other's table. */
+/* Hidden, so that two extensions in one process do not share their tables. */
 #if defined(__GNUC__)
 #define CF_INTERNAL __attribute__((visibility("hidden")))
 #else

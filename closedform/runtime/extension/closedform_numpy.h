@@ -1,4 +1,4 @@
-/* Python and NumPy as the Python-facing files of the runtime see them, and what they share. */
+/* Python, NumPy and the common declarations of the files that use them. */
 #ifndef CLOSEDFORM_NUMPY_H
 #define CLOSEDFORM_NUMPY_H
 
@@ -15,7 +15,7 @@
 
 #include "closedform_module.h"
 
-/* A call with its arguments told apart; references are borrowed from the caller's frame. */
+/* A call with its arguments assigned; references are borrowed from the frame of the caller. */
 typedef struct {
     const cf_function *function;
     PyTypeObject *results;   /* the class of several outputs: tuple or a NamedTuple */
@@ -24,21 +24,21 @@ typedef struct {
     PyObject *out;           /* NULL: allocate */
 } cf_call;
 
-/* Answers a call for one posture in plain form, with *result NULL if there is an exception.
- * Returns 0 if the call is not of that form; nothing has been written then. */
+/* Answers a call for one posture in plain form; *result is NULL if an exception is set.
+ * Returns 0 if the call does not have that form; then nothing has been written. */
 CF_INTERNAL int cf_call_single(const cf_call *call, PyObject **result);
 
-/* A call of any shape: converts, broadcasts, allocates and sweeps. */
+/* Answers a call of any shape: converts, broadcasts, allocates and sweeps. */
 CF_INTERNAL PyObject *cf_call_any(const cf_call *call);
 
-/* What the caller gets for `items`, one for each output; steals them, also on failure. */
+/* The return value of a call for `items`, one for each output; steals them, also on failure. */
 CF_INTERNAL PyObject *cf_result(const cf_call *call, PyObject **items);
 
 /* Raises "toy.f: q holds str", with the name of the type of `object`. */
 CF_INTERNAL void cf_raise_type(const cf_function *f, const char *what, PyObject *object,
                                const char *more);
 
-/* Whether it is a masked array, whose mask a conversion would drop; -1 with an exception. */
+/* Whether `object` is a masked array, whose mask a conversion would drop; -1 with an exception. */
 CF_INTERNAL int cf_is_masked(PyObject *object);
 
 /* An array of native doubles, of any strides and alignment. */
@@ -51,7 +51,7 @@ cf_type_number(cf_kind kind)
     return kind == CF_REAL ? NPY_DOUBLE : kind == CF_STATUS ? NPY_UBYTE : NPY_BOOL;
 }
 
-/* A new array for one output; `n_axes` and `length` count all axes, the core included. */
+/* A new array for one output; `n_axes` and `length` cover all axes, including the core. */
 static inline PyArrayObject *
 cf_new_output(const cf_array *spec, int n_axes, const npy_intp *length)
 {
@@ -67,7 +67,8 @@ cf_has_kind(PyArrayObject *array, cf_kind kind)
     return PyArray_TYPE(array) == cf_type_number(kind) && PyArray_ISNOTSWAPPED(array);
 }
 
-/* A Python number that needs no array to become a double: 1 yes, 0 no, -1 with an exception. */
+/* Converts a Python number to a double without an array: 1 if it is one, 0 if not, -1 with an
+ * exception. */
 static inline int
 cf_number(PyObject *object, double *value)
 {

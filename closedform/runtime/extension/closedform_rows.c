@@ -1,13 +1,13 @@
-/* Rows are moved in runs of postures along one axis; how, depends on what is adjacent in memory:
- * neighbouring postures, the coordinates of a posture, or neither. What an operand says is read
- * before the loops: for all the compiler knows, what they store might change it. */
+/* Rows are moved in runs of postures along one axis. The method depends on what is adjacent in
+ * memory: neighbouring postures, the coordinates of a posture, or neither. The fields of an operand
+ * are read before the loops, because the compiler must assume that the stores may change them. */
 #include "closedform_rows.h"
 
 #include <string.h>
 
 enum { TILE = 16 }; /* postures moved at a time, so that both sides stay cached */
 
-/* Fixed-size memcpy is how C loads and stores what may be unaligned; it compiles to one move. */
+/* A memcpy of fixed size loads and stores unaligned memory in C; it compiles to one instruction. */
 static inline void
 gather_tile(const cf_operand *o, const char *from, ptrdiff_t step, size_t at, size_t count)
 {
@@ -54,15 +54,15 @@ in_pairs(const cf_operand *o, size_t count)
     return o->adjacent && o->spec->size >= 2 && count >= 2;
 }
 
-/* The k-th pair of n things; of an odd number, the last pair shares one with the pair before. */
+/* The k-th pair of n items; if n is odd, the last pair shares an item with the pair before. */
 static inline size_t
 pair(size_t k, size_t n)
 {
     return k + 2 <= n ? k : n - 2;
 }
 
-/* Adjacent coordinates, as of an (N, n) array, two by two of two postures at a time: so what lies
- * in memory is walked from one end to the other. */
+/* Moves adjacent coordinates, as in an (N, n) array, in blocks of two coordinates of two postures,
+ * so that memory is traversed from one end to the other. */
 static void
 gather_pairs(const cf_operand *o, const char *from, ptrdiff_t step, size_t at, size_t count)
 {
@@ -97,7 +97,7 @@ scatter_pairs(const cf_operand *o, char *to, ptrdiff_t step, size_t at, size_t c
     }
 }
 
-/* What the compiler knows makes these fast: that a full tile has a fixed length, or that postures
+/* These are fast because the compiler knows that a full tile has a fixed length, or that postures
  * are adjacent. */
 void
 cf_gather(const cf_operand *o, char *memory, ptrdiff_t step, size_t at, size_t count)

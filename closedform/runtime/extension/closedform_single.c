@@ -1,13 +1,13 @@
-/* The short path of a call: one posture in contiguous arrays or lists of numbers, parameters in
- * numbers. Nothing is allocated but the result. */
+/* The short path of a call: one posture in contiguous arrays or lists of numbers, with numbers as
+ * parameters. Only the result is allocated. */
 #define NO_IMPORT_ARRAY
 #include "closedform_numpy.h"
 
-/* Room for the coordinates of all inputs together; a function with more never gets here. */
+/* Space for the coordinates of all inputs together; a function with more takes the general path. */
 enum { SPARE = 64 };
 
-/* tuple.__new__(results, items), without its argument tuples where a tuple is nothing but its
- * items. Since 3.14 it also caches its hash, which only its own constructor resets. */
+/* tuple.__new__(results, items), without its argument tuples if a tuple consists only of its items.
+ * Since 3.14 a tuple also caches its hash, which only its own constructor resets. */
 static PyObject *
 new_tuple(PyTypeObject *results, Py_ssize_t n, PyObject **items)
 {
@@ -68,7 +68,7 @@ is_core(PyArrayObject *array, const cf_array *spec, int flags)
     return 1;
 }
 
-/* A refused number is left to the general path, which then raises for it. */
+/* A number that cannot be converted is left to the general path, which then raises. */
 static int
 plain_number(PyObject *object, double *value)
 {
@@ -94,8 +94,8 @@ plain_numbers(PyObject *sequence, size_t n, double *values)
     return 1;
 }
 
-/* Where one posture's input lies, or NULL if the general path is needed. Python numbers are put
- * into `spare`, which has room for the input. */
+/* The values of one posture's input, or NULL if the general path is needed. Python numbers are
+ * written to `spare`, which has space for the input. */
 static const double *
 core_values(const cf_array *spec, PyObject *object, double *spare)
 {
@@ -119,8 +119,8 @@ disjoint(const double *values, size_t n, PyArrayObject *array)
     return low + n * sizeof *values <= start || start + (npy_uintp)PyArray_NBYTES(array) <= low;
 }
 
-/* Writes into the caller's arrays; 0 if the general path is needed. Inputs that share memory with
- * an output are moved to `spare`. */
+/* Writes to the arrays of the caller; 0 if the general path is needed. Inputs that share memory
+ * with an output are copied to `spare`. */
 static int
 single_into(const cf_call *call, const double *params, const double **in, double *spare)
 {

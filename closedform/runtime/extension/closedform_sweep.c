@@ -1,8 +1,8 @@
-/* A sweep splits the leading axes in two: outer axes, along which parameters vary, and inner ones,
- * along which they do not. For each outer index the inner postures go through the batch kernel in
- * blocks. Operands that already lie in planes are passed as they are; the others are gathered into
- * scratch planes and scattered from them. Where too few postures share their parameters, all axes
- * are outer, a block is one posture, and the single kernel is called. */
+/* A sweep divides the leading axes into outer axes, along which parameters vary, and inner axes,
+ * along which they do not. For each outer index the batch kernel computes the inner postures in
+ * blocks. Operands that are already in planes are passed unchanged; the others are gathered into
+ * scratch planes and scattered from them. If too few postures share their parameters, all axes are
+ * outer, a block is one posture, and the single kernel is called. */
 #include "closedform_sweep.h"
 #include "closedform_rows.h"
 
@@ -13,20 +13,20 @@
 
 enum {
     BATCH_MIN = 4,          /* fewer postures than this are cheaper one at a time */
-    BLOCK_MIN = 32,         /* long enough to amortise a kernel call ... */
-    BLOCK_MAX = 512,        /* ... and no longer than the first-level cache holds of a few planes */
-    SCRATCH_BYTES = 131072, /* aimed at for all planes of a block: the second-level cache holds
-                               them, and many planes in memory ask for long runs */
-    SHORT_RUN = 64,         /* an innermost axis below this yields to the longest one */
+    BLOCK_MIN = 32,         /* long enough to amortise a kernel call */
+    BLOCK_MAX = 512,        /* a few planes of this length fit into the first-level cache */
+    SCRATCH_BYTES = 131072, /* target for all planes of a block: they fit into the second-level
+                               cache, and many planes in memory need long runs */
+    SHORT_RUN = 64,         /* an innermost axis below this is exchanged for the longest one */
     LINE = 64,              /* bytes in a cache line */
-    ALIAS = 4096,           /* planes a multiple of this apart contend for the same cache lines, */
-    ALIAS_WAYS = 4,         /* which so many of them do without harm */
-    CROWD = 16              /* more planes than this, written at once, miss the address cache */
+    ALIAS = 4096,           /* planes at a multiple of this distance use the same cache lines */
+    ALIAS_WAYS = 4,         /* this many of such planes do no harm */
+    CROWD = 16              /* more planes than this, written together, miss the address cache */
 };
 
 typedef struct {
     cf_sweep *sweep;
-    size_t n_outer; /* of the sweep's axes, the first are outer */
+    size_t n_outer; /* this many of the first axes of the sweep are outer */
     size_t n_inner; /* postures along the inner axes */
     size_t block;   /* postures in a kernel call */
     bool single;
@@ -55,7 +55,7 @@ position(const ptrdiff_t *step, const size_t *index, size_t n)
     return result;
 }
 
-/* Moves a row-major index by `by` places; past the end it starts again. */
+/* Moves a row-major index forward by `by`; after the end it starts again. */
 static void
 advance(size_t *index, const size_t *length, size_t n, size_t by)
 {
@@ -70,7 +70,7 @@ advance(size_t *index, const size_t *length, size_t n, size_t by)
     }
 }
 
-/* The views of a sweep, numbered through: parameters, inputs, outputs. */
+/* The k-th view of a sweep, in the order parameters, inputs, outputs. */
 static cf_view *
 view_at(cf_sweep *sweep, size_t k)
 {
@@ -136,7 +136,7 @@ params_vary(const cf_sweep *sweep, size_t axis)
     return false;
 }
 
-/* Brings the axes along which parameters vary to the front, keeping the order within each kind. */
+/* Moves the axes along which parameters vary to the front; keeps the order within each kind. */
 static size_t
 outer_axes_first(cf_sweep *sweep)
 {
@@ -165,7 +165,7 @@ axes_join(cf_sweep *sweep, size_t a)
     return true;
 }
 
-/* Joins neighbouring inner axes that every operand walks with one step. */
+/* Joins neighbouring inner axes that have a common step in every operand. */
 static void
 join_inner_axes(cf_sweep *sweep, size_t n_outer)
 {
@@ -231,7 +231,7 @@ core_step(const cf_operand *o)
     return step;
 }
 
-/* The planes start at as many places modulo ALIAS as the largest power of two in the step leaves. */
+/* Modulo ALIAS, the planes start at ALIAS / power different places only. */
 static bool
 planes_contend(size_t n, size_t step)
 {
@@ -239,7 +239,7 @@ planes_contend(size_t n, size_t step)
     return n * (power < ALIAS ? power : ALIAS) > (size_t)ALIAS_WAYS * ALIAS;
 }
 
-/* A batch kernel takes planes whose postures are adjacent, a single kernel a contiguous core. */
+/* A batch kernel needs planes with adjacent postures, a single kernel a contiguous core. */
 static bool
 usable_in_place(const plan *p, const cf_operand *o)
 {
@@ -284,7 +284,7 @@ fill_offsets(cf_operand *o)
     }
 }
 
-/* Operands are numbered through: inputs, outputs. */
+/* The k-th operand, in the order inputs, outputs. */
 static cf_operand *
 operand_at(plan *p, size_t k)
 {
@@ -326,7 +326,7 @@ whole_lines(size_t bytes)
     return (bytes + LINE - 1) / LINE * LINE;
 }
 
-/* Chooses the block and hands out scratch from one allocation. */
+/* Chooses the block and divides one allocation into the scratch planes. */
 static int
 allocate(plan *p)
 {
@@ -391,7 +391,7 @@ make_plan(plan *p, cf_sweep *sweep)
     return allocate(p);
 }
 
-/* Moves `count` postures, from inner index `start` on, run by run along the last axis. */
+/* Moves `count` postures, starting at inner index `start`, run by run along the last axis. */
 static inline void
 move(const plan *p, const cf_operand *o, char *base, const size_t *start, size_t count,
      cf_mover *run)

@@ -1,4 +1,4 @@
-/* Running a kernel over every posture of arrays with arbitrary strides. Knows nothing of Python. */
+/* Runs a kernel over all postures of arrays with arbitrary strides. Does not use Python. */
 #ifndef CLOSEDFORM_SWEEP_H
 #define CLOSEDFORM_SWEEP_H
 
@@ -6,10 +6,10 @@
 
 enum { CF_MAX_AXES = 64 };
 
-/* Where an operand lies; steps are in bytes, of any sign and alignment. */
+/* The memory of an operand; steps are in bytes, with any sign and alignment. */
 typedef struct {
     char *data;
-    ptrdiff_t lead[CF_MAX_AXES]; /* one for each leading axis, 0 where it is broadcast */
+    ptrdiff_t lead[CF_MAX_AXES]; /* one for each leading axis, 0 if it is broadcast */
     ptrdiff_t core[CF_MAX_CORE];
 } cf_view;
 
@@ -22,8 +22,8 @@ typedef struct {
     cf_view out[CF_MAX_OUT];
 } cf_sweep;
 
-/* Evaluates all postures, reordering the axes of `sweep` as it likes. An output must not overlap
- * an input or a parameter. Returns -1 if memory is exhausted, and has then written nothing. */
+/* Evaluates all postures; may reorder the axes of `sweep`. An output must not overlap an input or a
+ * parameter. Returns -1 if memory is exhausted; then nothing has been written. */
 CF_INTERNAL int cf_sweep_run(cf_sweep *sweep);
 
 #endif

@@ -1,7 +1,7 @@
-"""What the C of a program must know of its values: where they are not used, and what they may be.
+"""Facts about the values of a program that its C code needs to avoid floating-point exceptions.
 
-A single call raises no floating-point exception: it neither divides by zero nor takes the square
-root of what is negative, although nothing would use the result.
+A single call neither divides by zero nor takes the square root of a negative number, even if
+nothing would use the result.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from closedform.lower.graph import Node, constant_of, reachable, strip_sign
 
 
 def unused_where(schedule: Sequence[Node], roots: Sequence[Node]) -> dict[int, tuple[Node, ...]]:
-    """The quotients that conditions, known before, always select away; any of them does."""
+    """The quotients that are not used if any of some conditions holds, which are known before."""
     place = {node.id: k for k, node in enumerate(schedule)}
     away: dict[int, frozenset[int]] = {root.id: frozenset() for root in roots}
     for node in reversed(schedule):
@@ -32,10 +32,10 @@ def unused_where(schedule: Sequence[Node], roots: Sequence[Node]) -> dict[int, t
 
 
 def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
-    """For quotients of a common case the condition that their divisor is as good as zero.
+    """For quotients of a common case, the condition that their divisor counts as zero.
 
-    Where it holds the whole program is evaluated instead.  Of the conditions known by then it is
-    the one of the value that is nearest to the divisor.
+    If it holds, the whole program is evaluated instead.  Of the conditions that are already known,
+    it is the one whose value is nearest to the divisor.
     """
     if lowered.results[-1].name != "rare":
         return
@@ -53,7 +53,7 @@ def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
 
 
 def final_values(lowered: Lowered) -> frozenset[int]:
-    """The nodes with which nothing is computed but what leaves infinity as it is, or NaN."""
+    """The nodes whose further operations keep an infinity or a NaN unchanged."""
     schedule, roots = lowered.schedule(), {n.id for n in lowered.roots}
     users: dict[int, list[Node]] = {n.id: [] for n in schedule}
     for node in schedule:
@@ -69,7 +69,7 @@ def final_values(lowered: Lowered) -> frozenset[int]:
 
 
 def _keeps_infinity(node: Node) -> bool:
-    """Whether an operator raises no exception where an operand is infinite."""
+    """Whether an operator does not raise an exception if an operand is infinite."""
     if node.op in ("add", "sub"):
         return any(a.op == "poison" for a in node.args)
     if node.op == "mul":
@@ -78,7 +78,7 @@ def _keeps_infinity(node: Node) -> bool:
 
 
 def not_negative(node: Node) -> bool:
-    """Whether a value is never below zero, whatever the parameters are; it may be NaN."""
+    """Whether a value is never below zero for any parameters; it may be NaN."""
     match node.op:
         case "const" | "tolerance" | "abs" | "sqrt":
             return True
@@ -96,10 +96,10 @@ def not_negative(node: Node) -> bool:
 
 
 def deciding_products(lowered: Lowered) -> Iterator[int]:
-    """The products that are added to something, where a status or a condition rests on the sum.
+    """The products in sums on which a status or a condition depends.
 
-    They are rounded before the addition, as NumPy does it; a fused multiply-add could decide
-    differently at a threshold.
+    They are rounded before the addition, as in NumPy; a fused multiply-add could decide differently
+    at a threshold.
     """
     for node in lowered.deciding():
         if node.op in ("add", "sub"):
@@ -108,7 +108,7 @@ def deciding_products(lowered: Lowered) -> Iterator[int]:
 
 
 def _is_exact_factor(node: Node) -> bool:
-    """Whether a product with it needs no rounding: a sign, or a power of two."""
+    """Whether a product with this factor is exact: it is a sign or a power of two."""
     value = constant_of(node)
     if value is None:
         return node.op == "sign"

@@ -1,7 +1,7 @@
-"""The C of one lowered program: a kernel over scalars, and what the functions around it need.
+"""The C code of one lowered program: a kernel over scalars, and the functions around it.
 
 The kernel has no trigonometry: the sines and cosines of its angles are arguments.  A single call
-takes them as the lanes of a vector, a batch in blocks, and the compiler inlines the kernel.
+computes them as the lanes of a vector, a batch in blocks, and the compiler inlines the kernel.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ from closedform.model.names import C_LOCALS, in_c
 
 LANES = 8
 FEW = 2
-"""So many quotients by one divisor are worth a jump each, to be infinite where it is zero."""
+"""Up to this many quotients by one divisor get a jump each, to be infinite if it is zero."""
 
 
 class CPrinter(Printer):
     """C code of a kernel over scalars.
 
-    The ``atan2`` whose arguments need no other ``atan2`` are taken together: all lines above
-    ``head`` come first, then ``arctangents`` (pairs of y and x), then the rest.  So one call can
-    evaluate them in one vector.
+    All ``atan2`` whose arguments need no other ``atan2`` are computed together, so that one call
+    can evaluate them in one vector.  The lines above ``head`` come first, then ``arctangents``
+    (pairs of y and x), then the rest.
     """
 
     has_meaning = staticmethod(in_c)
@@ -69,7 +69,7 @@ class CPrinter(Printer):
         return node.op == "atan2" and all(a.id in self._arguments for a in node.args)
 
     def schedule(self) -> list[Node]:
-        """Arguments of the joint ``atan2`` first, these next, then what needs them.
+        """First the arguments of the joint ``atan2``, then these, then the nodes that need them.
 
         A quotient comes after the condition under which nothing uses it.
         """
@@ -137,9 +137,10 @@ class CPrinter(Printer):
     def _quotient(self, node: Node, dividend: Text, divisor: Text) -> Text:
         """Divides by 1 where nothing uses the quotient: its divisor may vanish there.
 
-        Elsewhere a division by zero is not carried out.  It gives what it would give where nothing
-        more is computed with it; NaN where something is, and of many quotients by one divisor, each
-        of which would need a jump.  The loop over the branches is part of a single call.
+        If nothing uses the quotient, its divisor may vanish, and the divisor is replaced by 1.
+        Otherwise a division by zero is avoided.  The value is infinite, as in IEEE arithmetic, if
+        no further operation uses it.  It is NaN if one does, or if there are many quotients by one
+        divisor, each of which would need a jump.  The loop over branches is part of a single call.
         """
         unused = self._unused_where.get(node.id)
         if unused is not None:
@@ -155,7 +156,7 @@ class CPrinter(Printer):
         return Text(f"{dividend.at(PRODUCT)} / {self._nonzero(node.args[1])}", PRODUCT)
 
     def _nonzero(self, divisor: Node) -> str:
-        """The divisor, NaN where it is zero; tested once for all quotients by it."""
+        """The divisor, or NaN if it is zero; tested once for all quotients by it."""
         code = f"cf_nonzero(single, {self.text[divisor.id].code})"
         if self._divided[divisor.id] < 2:
             return code
@@ -166,12 +167,12 @@ class CPrinter(Printer):
 
     @staticmethod
     def _spares(select: Node) -> bool:
-        """Whether a jump spares the work for a value that is hardly ever selected."""
+        """Whether a jump avoids the computation of a value that is hardly ever selected."""
         condition, value, _ = select.args
         return hardly_ever(condition) and strip_sign(value).op not in LEAVES
 
     def deserves_name(self, node: Node, text: Text, uses: int) -> bool:
-        """Comparisons of calls get a name: clang warns of ``&`` between them, names are int."""
+        """Comparisons of calls get a name, an int, because clang warns about ``&`` between them."""
         if self._together(node):
             return False
         compares_calls = node.op in ("lt", "le", "eq", "finite") and "cf_" in text.code
@@ -199,14 +200,14 @@ class CArray:
         return f"{self.const}{self.type} *{self.name}, size_t {self.name}_stride"
 
     def plane(self, k: int) -> str:
-        """The place of coordinate k of the posture ``start``, as an offset from the array."""
+        """The offset of coordinate k of the posture ``start`` in the array."""
         offset = {0: "", 1: f"{self.name}_stride + "}.get(k, f"{k} * {self.name}_stride + ")
         return f"{offset}start"
 
 
 @dataclass(frozen=True)
 class CProgram:
-    """The plain strings of one program: its kernel, and what the forms that call it are made of."""
+    """The plain strings of one program: its kernel and the parts of the functions that call it."""
 
     full: str
     unused_single: tuple[str, ...]
@@ -236,19 +237,19 @@ def _array(name: str, shape: Sequence[int], kind: str, const: str = "") -> CArra
 
 
 def folded(arguments: Sequence[str]) -> str:
-    """An argument list, folded where a line would be too long for its function's name."""
+    """An argument list, folded if a line with the name of the function would be too long."""
     whole = ", ".join(a.replace(" ", "\0") for a in arguments)  # no break within an argument
     lines = textwrap.wrap(whole, WIDTH - 44, break_long_words=False)
     return "\n    ".join(lines).replace("\0", " ") or "void"
 
 
 def _occurs(name: str, lines: Sequence[str]) -> bool:
-    """Whether a variable occurs; the field of a structure is another name."""
+    """Whether a variable occurs; a field of a structure is a different name."""
     return any(re.search(rf"(?<!->)\b{name}\b", line) for line in lines)
 
 
 def _lanes(n: int) -> int:
-    """``n`` numbers, and zeros up to whole vectors: 2, 4 or a multiple of 8."""
+    """The number of lanes for ``n`` numbers, padded to whole vectors: 2, 4 or a multiple of 8."""
     return 1 << (n - 1).bit_length() if n <= LANES else -(-n // LANES) * LANES
 
 
@@ -357,7 +358,7 @@ class Emission:
         )
 
     def call(self, single: str, params: str, *arrays: Sequence[str]) -> str:
-        """The arguments of a call of the kernel; the first three where it takes them."""
+        """The arguments of a call of the kernel; the first three only if it takes them."""
         leading = [single] * self.distinguishes_single + ["one"] * self.takes_one
         leading += [params] * bool(self.parameters)
         return ", ".join([*leading, *(name for names in arrays for name in names)])
@@ -389,7 +390,7 @@ class Emission:
         return lines
 
     def _arctangents(self) -> list[str]:
-        """All angles at once: in one vector for a single posture, one by one in a batch."""
+        """All arctangents together: one vector for a single posture, one by one in a batch."""
         pairs = self.printer.arctangents
         if not pairs:
             return []
@@ -409,7 +410,7 @@ class Emission:
         ]
 
     def _angle(self, node: Node) -> tuple[str, CArray | None, int, int]:
-        """The input, its place and the divisor of an angle."""
+        """The input of an angle, its index in an array and its divisor."""
         divisor = 1
         if node.op == "div":
             node, divisor = node.args[0], int(str(node.args[1].payload))
@@ -469,7 +470,7 @@ class Emission:
         return lines
 
     def _plane(self, angle: Node, name: str) -> tuple[str, list[str]]:
-        """Where the values of an angle stand for a block, and the lines that put them there."""
+        """The array with the values of an angle for a block, and the lines that fill it."""
         symbol, argument, k, divisor = self._angle(angle)
         if argument and divisor == 1:
             return f"{argument.name} + {argument.plane(k)}", []

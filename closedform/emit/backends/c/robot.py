@@ -1,8 +1,8 @@
-"""Prints a derivation as C99: one header and one source a robot, and the table for Python.
+"""Prints a derivation as C99: a header and a source for each robot, and the table for Python.
 
-A function of many flags has three kernels: one for every case, which few postures need, one for
-where nothing vanishes, and one for a single branch of that, so that a single call can take all
-branches as the lanes of vectors.
+A function with many flags has three kernels: one for all cases, which few postures need, one for
+the case that nothing vanishes, and one for a single branch of that case, so that a single call can
+compute all branches as the lanes of vectors.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class CBranch:
 class CFunction:
     """The plain strings of one function, for the templates.
 
-    Where there is a common case, ``whole`` is what its rare postures are handed on to.
+    If there is a common case, its rare postures are passed on to ``whole``.
     """
 
     name: str

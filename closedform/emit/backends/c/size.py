@@ -1,8 +1,8 @@
-"""The C that takes a mechanism of any size, by computing it at a size near 1.
+"""The C code for mechanisms of any size: it computes them at a size near 1.
 
-The size is the largest length of a posture and its mechanism.  Where powers of it might leave the
-range of the type, all lengths are multiplied by a power of two first, which is exact, and the
-results afterwards by the powers that belong to their degrees.
+The size is the largest length of a posture and its mechanism.  If powers of it might leave the
+range of the type, all lengths are first multiplied by a power of two, which is exact.  The results
+are then multiplied by the powers for their degrees.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class CScaled:
 
 @dataclass(frozen=True)
 class CSize:
-    """The plain strings of one function: how its size is found, and what goes with it."""
+    """The plain strings of one function: how its size is computed, and what scales with it."""
 
     limits: str
     single: str
@@ -49,7 +49,7 @@ def size_of(
     inputs: Sequence[CArray],
     outputs: Sequence[CArray],
 ) -> CSize | None:
-    """None where no power of the size can leave the range."""
+    """The strings for the size of a function; None if no power of it can leave the range."""
     if program.degrees is None or not program.is_scaled:
         return None
     lengths = program.degrees.lengths
@@ -101,7 +101,7 @@ def _scaled(array: CArray, degrees: Sequence[int]) -> CScaled:
 
 
 def _largest(values: Sequence[str], first: str = "") -> str:
-    """The largest magnitude, found in a tree, so that no comparison waits for all before it."""
+    """The largest magnitude, computed as a tree, so that comparisons can overlap."""
     terms = [first] * bool(first) + [f"cf_abs({v})" for v in values]
     while len(terms) > 1:
         pairs = [terms[k : k + 2] for k in range(0, len(terms), 2)]

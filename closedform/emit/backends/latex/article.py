@@ -1,8 +1,8 @@
 """Prints a derivation as a LaTeX article.
 
-Python prepares the formulas and the sentences; the templates lay them out.  A formula that fits is
-aligned; a longer one is set in a paragraph, where TeX itself breaks it at operators.  For that the
-printer writes no ``\\left(``, between which TeX never breaks.
+Python prepares the formulas and the sentences; the templates lay them out.  A formula that fits on
+a line is aligned; a longer one is set in a paragraph, and TeX breaks it at operators.  The printer
+does not write ``\\left(``, because TeX never breaks inside it.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ from closedform.proof.prove import InverseResult, Proof
 __all__ = ["Page", "document"]
 
 FITS = 84.0
-"""Widest formula that is set on one line, in average letters of 10 pt."""
+"""The widest formula that is set on one line, in average letters of 10 pt."""
 
 
 class Printer(LatexPrinter):  # type: ignore[misc]
@@ -142,7 +142,7 @@ class Page:
         """Names for parts of formulas that are too wide for a line, within one list of them."""
 
     def legend(self) -> list[tuple[str, str]]:
-        """The abbreviated sines and cosines that were printed so far."""
+        """The abbreviated sines and cosines that have been printed so far."""
         return sorted(self.printer.legend.items(), key=lambda e: (len(e[1]), e[0][9:], e[0]))
 
     def joint(self, joint: Joint) -> tuple[str, str, str, str]:
@@ -170,7 +170,7 @@ class Page:
 
     def cell(self, value: Any) -> str:
         """A cell of a table: a sentence, an expression or an increasing chain of them."""
-        if isinstance(value, str):  # behind \\ a star or a bracket would be an argument
+        if isinstance(value, str):  # after \\ a star or a bracket would be an argument
             return "{}" * value.startswith(("*", "[")) + self.prose(value)
         chain = value if isinstance(value, tuple) else (value,)
         text = r" \le ".join(map(self.math, chain))
@@ -217,7 +217,7 @@ class Page:
         }
 
     def shared_statements(self, function: Function) -> list[tuple[str, str]]:
-        """As :meth:`statements`, but what an earlier function says already is not said again."""
+        """Like :meth:`statements`, but statements of an earlier function are not repeated."""
         functions = self.derivation.functions
         earlier = functions[: functions.index(function)]
         shared = [f for f in earlier if f.body and function.body[: len(f.body)] == f.body]
@@ -229,7 +229,7 @@ class Page:
         return [("as in", rf"\texttt{{{escape(model.name)}}}{place}"), *rest]
 
     def statements(self, body: Sequence[Statement]) -> list[tuple[str, str]]:
-        """One line a statement, but neighbours that name or match alike share theirs."""
+        """One line for each statement, but neighbours of the same kind may share a line."""
         self.parts.clear()
         lines: list[tuple[str, str]] = []
         for kind, text in map(self.statement, body):
@@ -244,7 +244,7 @@ class Page:
         return lines
 
     def statement(self, statement: Statement) -> tuple[str, str]:
-        """The kind of a statement, and the sentence that says it."""
+        """The kind of a statement, and a sentence for it."""
         if isinstance(statement, Let | Bound):
             equations = [f"{a} = {b}" for a, b in self.equations(statement.symbol, statement.value)]
             if isinstance(statement, Let):
@@ -267,7 +267,7 @@ class Page:
         return kind, f"{conditions}: {self.prose(statement.meaning)}"
 
     def continuum(self, function: Function, inverse: Inverse, case: Continuum) -> dict[str, str]:
-        """Where a joint is free, what is returned, and what all solutions there share."""
+        """The set on which a joint is free, the returned value, and what all solutions share."""
         given = [e for a in function.inputs for e in self.assigned(a, case.locus)]
         others = {p.symbol for p in self.derivation.parameters} & set(case.locus)
         given += [e for s in sorted(others, key=str) for e in self.equations(s, case.locus[s])]
@@ -293,8 +293,8 @@ class Page:
         )
         given = [rf"{e} \ge 0" for e in assumed]
         how = {
-            "generic": "a Groebner basis over the field of parameters and targets",
-            "specialised": "Groebner bases, the same at several rational points",
+            "generic": "by a Groebner basis over the field of parameters and targets",
+            "specialised": "by Groebner bases, with the same result at several rational points",
         }
         return {
             "where": f", where {formulas(given)}" if given else "",
@@ -305,10 +305,10 @@ class Page:
         }
 
     def named_bounds(self, function: Function, assumed: Sequence[str]) -> dict[str, sp.Symbol]:
-        """The name of each bound by its explicit form, in whichever branch.
+        """The name of each bound by its explicit form, for all branches.
 
-        Only of bounds that rest on what some assumption holds: the others cannot be one, and may
-        be very long.
+        Only bounds with the symbols of an assumption are included: the others cannot be an
+        assumption, and may be very long.
         """
         held = [set(re.findall(r"\w+", text)) for text in assumed]
         rests: dict[sp.Basic, set[str]] = {}
@@ -329,7 +329,7 @@ class Page:
         }
 
     def claims(self) -> list[dict[str, Any]]:
-        """The rows of the table; ``where`` stands once above the claims of one place."""
+        """The rows of the table; ``where`` is given once above the claims of one section."""
         rows, where = [], ""
         for claim in self.proof.claims:
             rows.append(
@@ -346,7 +346,7 @@ class Page:
         return rows
 
     def singular_set(self) -> list[tuple[str, str]]:
-        """The name of each factor, and the equation that it vanishes."""
+        """The name of each factor, and the equation that sets it to zero."""
         names = list(map(escape, self.derivation.singularities)) or ["factor"]
         found = [f.outputs[0] for f in self.derivation.functions if f.name == "singularities"]
         vanish = [formulas([f"{self.math(e)} = 0"]) for a in found for e in a.entries]
@@ -357,7 +357,7 @@ class Page:
         return [e for a in function.outputs for e in self.array(a)]
 
     def assigned(self, array: Array, locus: Mapping[sp.Symbol, sp.Expr]) -> list[tuple[str, str]]:
-        """An argument and its entries; on ``locus``, what these are there."""
+        """An argument and its entries, or the values of the entries on ``locus``."""
         if not locus or all(e in locus for e in array.entries):
             entries = [locus.get(e, e) for e in array.entries]
             matrix = len(array.shape) == 2
@@ -384,7 +384,7 @@ class Page:
         return [e for n, v in zip(names, array.entries, strict=True) for e in self.equations(n, v)]
 
     def equations(self, lhs: Any, value: Any) -> list[tuple[str, str]]:
-        """A value as one equation or, where it is too wide, as several."""
+        """A value as one equation or, if it is too wide, as several."""
         left = lhs if isinstance(lhs, str) else self.math(lhs)
         if isinstance(value, sp.Expr | sp.MatrixBase) and (inner := self._unbreakable(value)):
             known = inner in self.parts
@@ -407,9 +407,9 @@ class Page:
         return real(next(n for n in map("u{}".format, count(1)) if n not in taken))
 
     def _unbreakable(self, value: sp.Basic) -> sp.Expr | None:
-        """The smallest part between whose terms TeX cannot break, in a formula that is too wide.
+        """The smallest part of a formula that is too wide and inside which TeX cannot break.
 
-        That is a radicand, a denominator, a sum in a numerator, or cases beside other terms.
+        This is a radicand, a denominator, a sum in a numerator, or cases next to other terms.
         """
         powers = (p for p in value.atoms(sp.Pow) if not p.exp.is_Integer or p.exp.is_negative)
         wide = [p.base for p in powers if measure(self.math(p.base)) > FITS - 12]
@@ -424,7 +424,7 @@ class Page:
         return min(wide, key=lambda e: (sp.count_ops(e), str(e)), default=None)
 
     def _matrix(self, lhs: str, matrix: sp.MatrixBase) -> list[tuple[str, str]]:
-        """The widest entries get names, until the rest fits on a line."""
+        """The equations of a matrix; the widest entries get names until the rest fits on a line."""
         cells = [[self.math(e) for e in matrix.row(i)] for i in range(matrix.rows)]
         base, named = lhs.partition("=")[0].strip(), []
         while measure(lhs) + sum(max(map(measure, c)) + 2 for c in zip(*cells, strict=True)) > FITS:
@@ -442,7 +442,7 @@ class Page:
 
 
 def decimal(value: sp.Rational) -> str:
-    """A rational as a decimal where that is exact and short, else as a fraction."""
+    """A rational as a decimal if that is exact and short, else as a fraction."""
     digits = next((k for k in range(7) if (value * 10**k).is_Integer), None)
     return str(value) if digits is None else f"{float(value):.{digits}f}"
 
@@ -459,7 +459,7 @@ def element(base: str, index: str) -> str:
 
 
 def blocks(equations: Sequence[tuple[str, str]]) -> list[str]:
-    """Neighbours that fit on a line, aligned; longer ones as paragraphs."""
+    """Neighbours that fit on a line as one aligned block, longer equations as paragraphs."""
     done: list[str] = []
     for fits, group in groupby(equations, lambda e: measure(e[0] + e[1]) + 4 <= FITS):
         if fits:

@@ -16,7 +16,7 @@ from closedform.proof.prove import ClaimResult, Proof
 
 @dataclass(frozen=True)
 class Part:
-    """What one mechanism adds to the errata, in plain strings."""
+    """The errata of one mechanism, in plain strings."""
 
     paper: dict[str, str]
     mechanism: dict[str, Any]
@@ -24,7 +24,7 @@ class Part:
 
 
 def part(derivation: Derivation, proof: Proof) -> Part | None:
-    """The part of a mechanism; None where its paper claims nothing."""
+    """The part of a mechanism; None if there are no claims."""
     if not proof.claims:
         return None
     prose = Prose(derivation)
@@ -43,7 +43,7 @@ def part(derivation: Derivation, proof: Proof) -> Part | None:
 
 
 def together(parts: Iterable[Part | None]) -> dict[str, Any]:
-    """The context of ``errata.md.jinja``: per paper, what is not simply proved."""
+    """The context of ``errata.md.jinja``: for each paper, the claims that are not simply proved."""
     papers: dict[str, dict[str, Any]] = {}
     counts: dict[str, Counter[str]] = {}
     for found in parts:
@@ -71,7 +71,7 @@ def _entry(claim: ClaimResult, prose: Prose) -> dict[str, str]:
 
 
 def markdown(text: str) -> str:
-    """Text and formulas between dollar signs, as GitHub renders them: ``$`...`$`` is left alone."""
+    """Text with formulas between dollar signs, in the form ``$`...`$`` that GitHub renders."""
     parts = text.split("$")
     for i, part in enumerate(parts):
         if i % 2:

@@ -44,7 +44,7 @@ IN_FORMULA = {
     **{c: "\\" + c for c in "&%$#_{}"},
     **{c: rf"{formula}{{}}" for c, formula in UNICODE.items()},
 }
-"""What means something to TeX, where a formula in a sentence has it as it is."""
+"""Characters with a meaning in TeX, for formulas in sentences that are not translated."""
 
 FUNCTIONS = r"(?:sqrt|sin|cos|tan|atan2|acos|asin|atan|det|max|min|Abs)"
 PAREN = r"\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)"
@@ -62,7 +62,7 @@ TOKEN = re.compile(
 SIGNS = {"+/-": r"\pm ", "<=": r"\le ", ">=": r"\ge ", "!=": r"\ne ", "*": r"\,", "×": r"\times "}
 GREEK_NAME = re.compile(rf"(?:{'|'.join(sorted(GREEK))})\d*(?:_\w+)?")
 WORD = r"\\mathrm\{[A-Za-z]{2,}\}(?:_\{(?:[^{}]|\{[^{}]*\})*\})?"
-"""A symbol that is a word; as a factor it takes a space."""
+"""A symbol that is a word; as a factor it needs a space."""
 VARIABLE = r"\\(?:mathrm|mathit|sigma|theta|alpha|beta|psi|kappa|sqrt|frac|sin|cos)\b"
 
 
@@ -99,7 +99,7 @@ def _subscript(text: str) -> str:
 
 
 def escape(text: str) -> str:
-    """Plain text; letters and signs of mathematics that LaTeX's fonts lack become formulas."""
+    """Plain text; mathematical characters that are missing in LaTeX's fonts become formulas."""
     text = re.sub(r'"([^"]*)"', "“\\1”", text)
     parts = re.split(r"([α-ωϕ])(\d+)", text)
     for i, part in enumerate(parts):
@@ -111,7 +111,7 @@ def escape(text: str) -> str:
 
 
 def mixed(text: str) -> str:
-    """Text with formulas between dollar signs; a formula that is one matrix shrinks to fit."""
+    """Text with formulas between dollar signs; a formula that is a matrix shrinks to fit."""
     parts = text.split("$")
     for i, part in enumerate(parts):
         formula = "".join(f"{UNICODE.get(c, c)} " if c in UNICODE else c for c in part)
@@ -125,7 +125,7 @@ def mixed(text: str) -> str:
 
 
 class Prose:
-    """Sentences as derivations have them: ``theta1 = pi/6`` in the text becomes a formula."""
+    """The sentences of a derivation: ``theta1 = pi/6`` in the text becomes a formula."""
 
     def __init__(self, derivation: Derivation):
         functions = derivation.functions
@@ -143,13 +143,13 @@ class Prose:
             if i % 2 == 0:
                 parts[i] = escape(part)
             elif part == "A" and not re.search(r"(^|[.;?!]\s+)$", "".join(parts[:i])):
-                parts[i] = "$A$"  # an article would stand at the start of a sentence
+                parts[i] = "$A$"  # the article would be at the start of a sentence
             else:
                 parts[i] = self._part(part)
         return "".join(parts)
 
     def _part(self, text: str) -> str:
-        """A formula, or text; in parentheses that hold words there may be formulas."""
+        """A formula, or text; parentheses with words in them may contain formulas."""
         if self._is_formula(text):
             return f"${self.formula(text)}$"
         return f"({self(text[1:-1])})" if re.fullmatch(PAREN, text) else escape(text)
@@ -214,14 +214,14 @@ class Prose:
 
 
 def _symbols(step: Step) -> set[sp.Symbol]:
-    """The symbols of what a step shows."""
+    """The symbols in the formulas of a step."""
     shown = [value for _, value in step.shown]
     parts = [p for v in shown for p in (v if isinstance(v, list | tuple) else [v])]
     return {s for p in parts if isinstance(p, sp.Basic | sp.MatrixBase) for s in p.free_symbols}
 
 
 def upright(text: str) -> str:
-    """Words inside a formula, such as ``area`` or ``any``, set as words."""
+    """A formula with words in it, such as ``area`` or ``any``, set as words."""
     if r"\begin" in text or r"\text" in text or r"\mathrm" in text:
         return text
     spaced = re.sub(r"(?<=\S) +(?=[A-Za-z]{3})", r"\\ ", text)
@@ -229,7 +229,7 @@ def upright(text: str) -> str:
 
 
 def loosen(text: str) -> str:
-    """Parentheses of a fixed size for ``\\left( \\right)``, unless a matrix stands inside."""
+    """Replace ``\\left( \\right)`` by parentheses of fixed size, unless a matrix is inside."""
     opened: list[tuple[int, str]] = []
     parts = re.split(r"(\\left[(\[]|\\right[)\]]|\\left\S|\\right\S)", text)
     for i, part in enumerate(parts):
@@ -247,5 +247,5 @@ def loosen(text: str) -> str:
 
 
 def spaced(text: str) -> str:
-    """Thin spaces beside symbols that are words, where they are factors."""
+    """Add thin spaces next to symbols that are words and factors."""
     return re.sub(rf"(?<=[\w}}]) (?={WORD})|({WORD}) (?=[A-Za-z]|{VARIABLE})", r"\1\\, ", text)

@@ -8,6 +8,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.lemmas.pairs import Pair
 from closedform.model.derivation import Degenerate
 from closedform.model.lemma import Lemma
 
@@ -21,3 +22,5 @@ class Applied:
     means: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     degenerate: tuple[Degenerate, ...] = ()
+    halves: Mapping[sp.Symbol, tuple[Pair, sp.Expr]] = field(default_factory=dict)
+    """Angles as that of a pair, the same in every branch, and none or half a turn."""

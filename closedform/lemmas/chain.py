@@ -14,7 +14,7 @@ every robot (see :mod:`closedform.proof.chain`):
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import sympy as sp
@@ -43,13 +43,15 @@ class Chain:
     """Collects the links of an inverse.
 
     ``forward`` is the 4x4 pose of the tool, or the task coordinates in joint variables; those
-    named in ``angles`` count modulo a turn.
+    named in ``angles`` count modulo a turn.  Tolerances are relative to the ``size`` of the arm,
+    the sum of its lengths unless another is given.
     """
 
     d: Derivation
     forward: Any
     angles: Sequence[str] = ()
     name: str = "ik"
+    size: Any = None
     program: Program = field(default_factory=Program)
     links: list[Link] = field(default_factory=list)
     choices: list[tuple[sp.Symbol, Choice]] = field(default_factory=list)
@@ -59,16 +61,16 @@ class Chain:
     lengths: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = field(default_factory=list)
+    halves: dict[sp.Symbol, tuple[Pair, sp.Expr]] = field(default_factory=dict)
+    directions: dict[sp.Expr, Pair] = field(default_factory=dict)
     coefficients: set[sp.Symbol] = field(default_factory=set)
     """Names of the coefficients of lemmas, which are proved for all values of them."""
 
     def __post_init__(self) -> None:
         self.joints = self.d.actuated
-        lengths = [p for p in self.d.parameters if p.nonnegative or p.unit != "rad"]
-        sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
+        self.program.taken = self.d.program().taken
         self.is_pose = isinstance(self.forward, sp.MatrixBase) and self.forward.shape == (4, 4)
-        places = self.forward[:3, 3] if self.is_pose else self.forward
-        self.size = sp.Add(*sized) + max(map(lengths_in_numbers, places))
+        self.size = self.let("size", self._sum_of_lengths() if self.size is None else self.size)
         if self.is_pose:
             self.T = sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
             self.R, self.p = self.T[:3, :3], self.T[:3, 3]
@@ -84,6 +86,12 @@ class Chain:
         else:
             self.x = tuple(real(f"x_{name}") for name in self.d.task)
             self.targets, self.images = self.x, tuple(self.forward)
+
+    def _sum_of_lengths(self) -> sp.Expr:
+        lengths = [p for p in self.d.parameters if p.nonnegative or p.unit != "rad"]
+        sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
+        places = self.forward[:3, 3] if self.is_pose else self.forward
+        return sp.Add(*sized) + max(map(lengths_in_numbers, places))
 
     def target(self, name: str) -> sp.Symbol:
         """The target value of a task coordinate."""
@@ -131,6 +139,7 @@ class Chain:
         pair = Pair(choose(nothing, 0, y / length), choose(nothing, 1, x / length))
         named = pair.known_as(p, f"_{name}")
         self.meaning |= {named.s: y / sp.sqrt(x**2 + y**2), named.c: x / sp.sqrt(x**2 + y**2)}
+        self.directions[sp.atan2(y, x)] = named
         return named
 
     def angle(self, name: str, value: sp.Expr) -> sp.Symbol:
@@ -170,6 +179,7 @@ class Chain:
             Link(applied.lemma, body, dict(applied.means), dict(applied.given), applied.degenerate)
         )
         self.meaning |= applied.means
+        self.halves |= applied.halves
         solved = {u: substitute(v, self.values) for u, v in applied.lemma.solution.items()}
         self.values |= solved
         self.notes += [f"SINGULAR: {case.meaning}" for case in applied.degenerate if case.free]
@@ -207,12 +217,13 @@ class Chain:
                 f"{early[0]} before, or take an equation without it"
             )
 
-    def pair_of(self, total: sp.Expr) -> Pair | None:
+    def pair_of(self, total: sp.Expr, known: Mapping[sp.Expr, Pair] | None = None) -> Pair | None:
         """The sine and the cosine of a sum of angles that have pairs, of the target or solved.
 
         An angle that is read from them needs no reduction: a sum of angles may need several turns.
-        None if an angle has no pair, or stands there more than once.
+        None if an angle has no pair, or stands there more than once.  Pairs in ``known`` go before.
         """
+        known = {**self.directions, **(known or {})}
         pairs: dict[sp.Basic, dict[type, sp.Expr]] = {}
         for name, meaning in self.meaning.items():
             if isinstance(meaning, sp.sin | sp.cos):
@@ -220,8 +231,10 @@ class Chain:
         result = Pair(sp.S.Zero, sp.S.One)
         given = {*self.targets, *(p.symbol for p in self.d.parameters)}
         for term, factor in sp.expand(total).as_coefficients_dict().items():
-            known = pairs.get(term, {})
-            s, c = known.get(sp.sin), known.get(sp.cos)
+            made = pairs.get(term, {})
+            s, c = made.get(sp.sin), made.get(sp.cos)
+            if term in known:
+                s, c = known[term].s, known[term].c
             if not term.free_symbols:
                 s, c, factor = sp.sin(factor * term), sp.cos(factor * term), sp.S.One
             elif term in given:
@@ -255,9 +268,38 @@ class Chain:
                 if symbol in self.values and len(left) == 1:
                     (joint,) = left
                     (solved,) = sp.solve(value - symbol, joint)
-                    pair = self.pair_of(solved)
-                    self.values[joint] = pair.angle if pair else substitute(solved, self.values)
+                    self.values[joint] = self._angle_of(solved)
                     progress = True
+
+    def _angle_of(self, total: sp.Expr) -> sp.Expr:
+        """A sum of solved angles, with the half turns that some of them have in some branches."""
+        half = [self.halves[s] for s in total.free_symbols if s in self.halves]
+        pair = self.pair_of(total, {s: found for s, (found, _) in self.halves.items()})
+        if pair is None:
+            return substitute(total, self.values)
+        return pair.angle + sp.Add(*(flip for _, flip in half))
+
+    def _leave_out_unused(self) -> None:
+        """Names that a lemma hands on, and nobody takes."""
+        needed = {s for j in self.joints for s in self.values[j].free_symbols}
+        needed |= {s for link in self.links for e in link.lemma.equations for s in e.free_symbols}
+        needed |= {s for pair in self.units for e in pair[:2] for s in e.free_symbols}
+        kept: list[Statement] = []
+        for statement in reversed(self.program.body):
+            if not isinstance(statement, Let) or statement.symbol in needed:
+                values = [getattr(statement, "value", None), getattr(statement, "scale", None)]
+                values += getattr(statement, "values", ())
+                needed |= {s for e in values if e is not None for s in e.free_symbols}
+                kept.insert(0, statement)
+        self.program.body[:] = kept
+        self.links[:] = [
+            replace(
+                link,
+                body=tuple(s for s in link.body if s in kept),
+                means={s: e for s, e in link.means.items() if s in needed or s.is_number},
+            )
+            for link in self.links
+        ]
 
     def finish(self, summary: str, *, source: str = "", notes: Sequence[str] = ()) -> Inverse:
         """Export the inverse."""
@@ -269,6 +311,7 @@ class Chain:
                 f"{d.name}: no lemma solves for {missing[0]}; ik.finish needs every joint, solved "
                 f"for itself or left over in an auxiliary angle"
             )
+        self._leave_out_unused()
         choices = branches(*self.choices) if self.choices else SINGLE
         if self.name == "ik":
             d.branches = choices.labels

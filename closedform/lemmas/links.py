@@ -20,7 +20,7 @@ from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
-from closedform.lemmas.pairs import Pair, amplitude_lemma, nearly_tangent
+from closedform.lemmas.pairs import LinksAtHeight, Pair, amplitude_lemma, direction, nearly_tangent
 from closedform.lemmas.registry import chain_lemma
 from closedform.lemmas.tangent import Links, Turn, Turned, leaving
 from closedform.lemmas.triangle import heron_factors
@@ -74,6 +74,17 @@ def degenerate(
     return tuple(Degenerate((flag,), locus, free, meaning) for locus in loci if locus is not None)
 
 
+@dataclass(frozen=True)
+class Facing(Turned):
+    """The pair of a joint that turns a vector into a plane, and the coordinate ``ahead`` in it.
+
+    For ``a sin x + b cos x = c`` this is ``a cos x - b sin x``, and it has the sign ``-side``.
+    """
+
+    ahead: sp.Expr
+    side: sp.Symbol
+
+
 @chain_lemma("a sin x + b cos x = c", "the pair of x")
 def turn(
     chain: Chain,
@@ -83,7 +94,7 @@ def turn(
     c: sp.Expr,
     choice: Choice,
     *,
-    toward: Links | None = None,
+    toward: Links | LinksAtHeight | None = None,
     name: str = "",
 ) -> Applied:
     """``a sin x + b cos x = c``: both solutions.  x is free where ``a = b = c = 0``.
@@ -105,18 +116,24 @@ def turn(
         flag = p.vanishes(f"free{tag}", h, chain.size, f"the axis of {x.name} is met", free=(x,))
     root = p.let(f"root{tag}", sp.sqrt(below) * sp.sqrt(above), nonnegative=True)
     width = p.let(f"width{tag}", below + above, nonnegative=True)
+    lever = root
+    if isinstance(toward, LinksAtHeight):
+        root, width = toward.reached(p, (below, above), (root, width), h, chain.size, tag)
     away = Pair(2 * sigma * root / width, (above - below) / width)
     both = Pair(a / h, b / h) + away
     found = Pair(choose(flag, 0, both.s), choose(flag, 1, both.c))
-    if toward is not None:
+    if isinstance(toward, Links):
         tangent = nearly_tangent(p, root, chain.size, tag)
         near = toward.reached(Turn(chain, found, root, c, tag).renamed(found, f"{tag}_1"))
         found = Pair(choose(tangent, near.s, found.s), choose(tangent, near.c, found.c))
     pair, means = named(chain, x, found)
+    across = a * pair.c - b * pair.s if isinstance(toward, Links) else -sigma * root
+    ahead = p.let(f"ahead{tag}", across)
+    means[ahead] = a * sp.cos(x) - b * sp.sin(x)
     lemma = amplitude_lemma(x, a, b, c, pair)
     meaning = f"all coefficients of the equation for {x} vanish; {x} is free, 0 is returned."
     cases = degenerate(flag, [vanishing(a, b, c)], x, meaning)
-    return Applied(lemma, Turned(pair.s, pair.c, root), means, {}, cases)
+    return Applied(lemma, Facing(pair.s, pair.c, lever, ahead, sigma), means, {}, cases)
 
 
 @chain_lemma("l1 u(x1) + l2 u(x1 + x2) = (x, y)", "both pairs")
@@ -131,6 +148,7 @@ def two_links(
     choice: Choice,
     *,
     scale: sp.Expr | None = None,
+    mirrored: sp.Expr = sp.S.One,
     name: str = "elbow",
 ) -> Applied:
     """The planar two-link arm: ``l1 u(first) + l2 u(first + second) = (x, y)``, two elbows.
@@ -140,10 +158,11 @@ def two_links(
         (cos, sin)(second) = (BC - SA, 2 sigma sqrt(SABC)) / (BC + SA),
 
     and first is the direction of (x, y) less the angle at the base of the triangle.  ``scale`` is
-    the size of what x and y are differences of, by default that of the whole arm.
+    the size of what x and y are differences of, by default that of the whole arm.  ``mirrored`` is
+    a sign that the elbow's is multiplied by: that of a turn before, say, which mirrors the plane.
     """
     p, scale = chain.program, chain.size if scale is None else scale
-    sigma = chain.sign(name, choice)
+    sigma = mirrored * chain.sign(name, choice)
     for length in (l1, l2):
         if length.is_negative:
             raise ShapeError(
@@ -181,13 +200,12 @@ def two_links(
             choose(no_link, 1, (B * C - S * A) / at_elbow),
         ),
     )
+    unturned = sp.Or(no_link, folded)
     off = Pair(
-        choose(no_link, 0, sigma * root / at_base), choose(no_link, 1, (S * B - A * C) / at_base)
+        choose(unturned, 0, sigma * root / at_base), choose(unturned, 1, (S * B - A * C) / at_base)
     )
-    bearing = Pair(y / r, x / r) - off.known_as(p, f"_base_{name}")
-    lift, more = named(
-        chain, first, Pair(choose(folded, 0, bearing.s), choose(folded, 1, bearing.c))
-    )
+    bearing = direction(y, x, r, folded)
+    lift, more = named(chain, first, bearing - off.known_as(p, f"_base_{name}"))
     lemma = Lemma(
         "two-link arm",
         r"l_1 u(\theta) + l_2 u(\theta + \varphi) = (x, y) \;\Rightarrow\; "
@@ -316,8 +334,9 @@ def zyz(
 ) -> Applied:
     """``Rz(first) Ry(middle) Rz(last) = R``: two solutions, by the sign of sin(middle).
 
-    The last angle is read from the rotation that the first leaves, which keeps the product exact
-    near ``middle = 0``.  There only ``first + last`` or ``first - last`` is determined; first is 0,
+    The second solution is the first with a half turn of both outer angles.  The last angle is read
+    from the rotation that the first leaves, which keeps the product exact near ``middle = 0``.
+    There only ``first + last`` or ``first - last`` is determined; first is 0,
     or what keeps the rest of the arm within reach.
     """
     p = chain.program
@@ -329,12 +348,15 @@ def zyz(
     aligned = p.vanishes(
         f"aligned_{name}", h, 16, "the first and the last axis are parallel", free=(free,)
     )
-    raw = Pair(sigma * R[1, 2] / h, sigma * R[0, 2] / h)
     start, unit, near = Pair(sp.S.Zero, sp.S.One), {}, []
-    if reaching is not None:
+    side, flip = sp.S.One, sp.S.Zero
+    if reaching is None:
+        raw, side = Pair(R[1, 2] / h, R[0, 2] / h), sigma
+        flip = p.let(f"flip_{name}", choose(aligned, 0, (1 - sigma) * sp.pi / 2))
+    else:
         raw = Pair(
-            p.let(f"s_{first}", choose(aligned, 0, raw.s)),
-            p.let(f"c_{first}", choose(aligned, 1, raw.c)),
+            p.let(f"s_{first}", choose(aligned, 0, sigma * R[1, 2] / h)),
+            p.let(f"c_{first}", choose(aligned, 1, sigma * R[0, 2] / h)),
         )
         start = reaching.middle() + Pair(-reaching.ahead.s, reaching.ahead.c)
         close, moves, inside, moved = reaching.moved(raw + reaching.ahead, h)
@@ -348,10 +370,21 @@ def zyz(
         raw = Pair(choose(close, s_near, raw.s), choose(close, c_near, raw.c))
         t = real("t")
         unit = {start.s: sp.sin(t), start.c: sp.cos(t), off.s: sp.sin(t), off.c: sp.cos(t)}
-    pair, means = named(
-        chain, first, Pair(choose(aligned, start.s, raw.s), choose(aligned, start.c, raw.c))
-    )
-    s, c = pair.s, pair.c
+    found = Pair(choose(aligned, start.s, raw.s), choose(aligned, start.c, raw.c))
+    if reaching is None:
+        found = found.known_as(p, f"_{name}")
+        pair, means = named(
+            chain,
+            first,
+            Pair(
+                choose(aligned, found.s, sigma * found.s), choose(aligned, found.c, sigma * found.c)
+            ),
+        )
+    else:
+        found, means = named(chain, first, found)
+        pair = found
+    s, c = found.s, found.c
+    rest = Pair(c * R[1, 0] - s * R[0, 0], c * R[1, 1] - s * R[0, 1])
     lemma = Lemma(
         "ZYZ angles",
         r"(c_1, s_1) = \sigma (R_{13}, R_{23})/h,\ h = \sqrt{R_{13}^2 + R_{23}^2};\quad "
@@ -371,9 +404,9 @@ def zyz(
             )
         ),
         {
-            first: pair.angle,
-            middle: sp.atan2(c * R[0, 2] + s * R[1, 2], R[2, 2]),
-            last: sp.atan2(c * R[1, 0] - s * R[0, 0], c * R[1, 1] - s * R[0, 1]),
+            first: found.angle + flip,
+            middle: side * sp.atan2(c * R[0, 2] + s * R[1, 2], R[2, 2]),
+            last: rest.angle + flip,
         },
         2,
     )
@@ -388,7 +421,8 @@ def zyz(
         for flags in ((aligned,), *near)
         for turned in _aligned(real("psi"))
     ]
-    return Applied(lemma, pair, means, given, tuple(cases))
+    halves = {first: (found, flip), last: (rest, flip)} if reaching is None else {}
+    return Applied(lemma, pair, means, given, tuple(cases), halves)
 
 
 def _aligned(psi: sp.Symbol) -> tuple[sp.Matrix, sp.Matrix]:

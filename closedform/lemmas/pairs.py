@@ -112,6 +112,47 @@ def nearly_tangent(program: Program, lever: sp.Expr, scale: sp.Expr, suffix: str
     return program.vanishes(f"tangent{suffix}", lever - scale / 2**8, scale, "the turn is tangent")
 
 
+@dataclass(frozen=True)
+class LinksAtHeight:
+    """Two links that have to reach a point at a ``height``, whose other coordinate a turn gives.
+
+    That is the root of the turn.  Where the root is small, rounding changes it by a multiple, and
+    links much shorter than the amplitude might seem too short.
+    """
+
+    l1: sp.Expr
+    l2: sp.Expr
+    height: sp.Expr
+
+    def reached(
+        self,
+        program: Program,
+        bounds: tuple[sp.Expr, sp.Expr],
+        of_turn: tuple[sp.Expr, sp.Expr],
+        amplitude: sp.Expr,
+        scale: sp.Expr,
+        suffix: str,
+    ) -> tuple[sp.Expr, sp.Expr]:
+        """The root and the width of a turn; of the roots that rounding allows one within reach."""
+        (below, above), (root, width) = bounds, of_turn
+        tangent = nearly_tangent(program, root, amplitude, suffix)
+        square = below * above
+        farthest = (self.l1 + self.l2) ** 2 - self.height**2
+        nearest = (self.l1 - self.l2) ** 2 - self.height**2
+        wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
+        rounding = 2 * amplitude * scale / 2**44
+        held = program.let(
+            f"held{suffix}",
+            sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True)),
+            nonnegative=True,
+        )
+        whole = sp.sqrt(4 * held + (above - below) ** 2)
+        return (
+            program.let(f"kept{suffix}", choose(tangent, sp.sqrt(held), root), nonnegative=True),
+            program.let(f"span{suffix}", choose(tangent, whole, width), nonnegative=True),
+        )
+
+
 def _root_in_reach(
     program: Program,
     square: sp.Expr,

@@ -176,7 +176,8 @@ class Graph:
             if joint is not None:
                 taken.add(joint)
                 (self.sums[joint],) = sp.solve(value - symbol, joint)
-        self.names: dict[Expr, Expr] = dict(inverse.meaning)
+        self.names: dict[Expr, Expr] = {}
+        self.meaning = inverse.meaning
         self.made = {s.symbol: s.value for s in function.body if isinstance(s, (Let, Bound))}
         self.targets = {
             x: self.in_sums(f) for x, f in zip(inverse.targets, inverse.forward, strict=True)
@@ -194,8 +195,8 @@ class Graph:
 
     def _written_out(self, e: Expr) -> Expr:
         for s in e.free_symbols:
-            if s in self.made and s not in self.names:
-                self.names[s] = self._written_out(self.made[s])
+            if s not in self.names and (s in self.meaning or s in self.made):
+                self.names[s] = self._written_out(self.meaning.get(s, self.made.get(s)))
         return substitute(e, self.names)
 
     def __call__(self, e: Expr) -> Expr:

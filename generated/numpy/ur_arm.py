@@ -9,8 +9,8 @@
 #   singularities: 6 add, 11 multiply, 4 sincos
 #   jacobian_space: 29 add, 57 multiply, 5 sincos
 #   jacobian_body: 27 add, 58 multiply, 5 sincos
-#   ik: 712 compare and select, 705 add, 32 atan2, 171 divide, 1086 multiply, 80 sqrt
-#   ik where nothing vanishes: 158 compare and select, 198 add, 30 atan2, 33 divide, 226 multiply,
+#   ik: 708 compare and select, 675 add, 32 atan2, 141 divide, 1082 multiply, 80 sqrt
+#   ik where nothing vanishes: 158 compare and select, 183 add, 30 atan2, 18 divide, 218 multiply,
 #     12 sqrt
 """UR-type arm (three parallel axes).
 
@@ -700,2157 +700,2150 @@ def _ik(
     t2 = d4 + h1
     above1 = np.maximum(t2, 0.0)
     root1 = np.sqrt(below1 * above1)
-    t3 = L2 * 0.00390625 + L3 * 0.00390625 + d1 * 0.00390625
-    t4 = t3 + d4 * 0.00390625 + d5 * 0.00390625 + d6 * 0.00390625
-    del t3
     full_1_1 = L2 + L3
-    t5 = d5 + full_1_1
-    size_1_1 = d1 + d4 + d6 + t5
-    t6 = _runtime.VANISHING * size_1_1
-    tangent1 = root1 - t4 <= t6
-    del t4
-    free1 = h1 <= t6
-    t7 = below1 - above1
-    t8 = 1.0 / (h1 * (below1 + above1))
+    t3 = d5 + full_1_1
+    size = d1 + d4 + d6 + t3
+    t4 = _runtime.VANISHING * size
+    tangent1 = root1 - size * 0.00390625 <= t4
+    free1 = h1 <= t4
+    t5 = below1 - above1
+    t6 = 1.0 / (h1 * (below1 + above1))
     del above1, below1, h1
-    t9 = w_y * t7 * t8
-    t10 = 2.0 * root1
-    t11 = t8 * (w_x * t10)
-    c_1_1 = _runtime.select(free1, 1.0, t9 - t11)
-    t12 = L2 * 2.384185791015625e-07 + L3 * 2.384185791015625e-07
-    t13 = t12 + d1 * 2.384185791015625e-07 + d4 * 2.384185791015625e-07
-    del t12
-    t14 = t13 + d5 * 2.384185791015625e-07 + d6 * 2.384185791015625e-07
-    del t13
-    t15 = np.maximum(root1, t14)
-    del t14
-    t16 = T33 * T33
-    t17 = w_x * t7 * t8
-    del t7
-    t18 = t8 * (w_y * t10)
-    del t10, t8
-    t19 = _runtime.select(free1, 0.0, t17 + t18)
-    axisx_1_1 = T13 * c_1_1 - T23 * t19
-    h_1_1 = np.sqrt(t16 + axisx_1_1 * axisx_1_1)
-    t20 = size_1_1 * 1.4210854715202004e-14
-    t21 = t15 * h_1_1 <= t20
-    qx_1_1 = w_x * c_1_1 - w_y * t19
-    t22 = 1.0 / h_1_1
-    uc_1_1 = T33 * t22
-    t23 = d5 * uc_1_1
-    x_1_1 = _runtime.select(t21, qx_1_1, qx_1_1 - t23)
-    dqx_1_1 = w_y * c_1_1 + w_x * t19
-    us_1_1_left_flip_up = axisx_1_1 * t22
-    del axisx_1_1, t22
-    t24 = d5 * (T33 * (T13 * t19 + T23 * c_1_1)) / (h_1_1 * h_1_1)
+    t7 = w_y * t5 * t6
+    t8 = 2.0 * root1
+    t9 = t6 * (w_x * t8)
+    c_1_1 = _runtime.select(free1, 1.0, t7 - t9)
+    t10 = np.maximum(root1, size * 2.384185791015625e-07)
+    t11 = T33 * T33
+    t12 = w_x * t5 * t6
+    del t5
+    t13 = t6 * (w_y * t8)
+    del t6, t8
+    t14 = _runtime.select(free1, 0.0, t12 + t13)
+    axisx_1_1 = T13 * c_1_1 - T23 * t14
+    h_1_1 = np.sqrt(t11 + axisx_1_1 * axisx_1_1)
+    t15 = size * 1.4210854715202004e-14
+    t16 = t10 * h_1_1 <= t15
+    qx_1_1 = w_x * c_1_1 - w_y * t14
+    t17 = 1.0 / h_1_1
+    uc_1_1 = T33 * t17
+    t18 = d5 * uc_1_1
+    x_1_1 = _runtime.select(t16, qx_1_1, qx_1_1 - t18)
+    dqx_1_1 = w_y * c_1_1 + w_x * t14
+    us_1_1_left_flip_up = axisx_1_1 * t17
+    del axisx_1_1, t17
+    t19 = d5 * (T33 * (T13 * t14 + T23 * c_1_1)) / (h_1_1 * h_1_1)
     del h_1_1
-    t25 = us_1_1_left_flip_up * t24
-    dx_1_1 = _runtime.select(t21, dqx_1_1, dqx_1_1 + t25)
-    t26 = d1 - (T34 - T33 * d6)
-    t27 = d5 * us_1_1_left_flip_up
+    t20 = us_1_1_left_flip_up * t19
+    dx_1_1 = _runtime.select(t16, dqx_1_1, dqx_1_1 + t20)
+    t21 = d1 - (T34 - T33 * d6)
+    t22 = d5 * us_1_1_left_flip_up
     del us_1_1_left_flip_up
-    t28 = _runtime.select(t21, t26, t26 - t27)
-    dy_1_1 = _runtime.select(t21, 0.0, uc_1_1 * t24)
-    del t24, uc_1_1
-    slope_1_1 = x_1_1 * dx_1_1 - t28 * dy_1_1
-    square_1_1 = x_1_1 * x_1_1 + t28 * t28
-    del t28, x_1_1
-    t29 = L2 - L3
-    fold_1_1 = np.abs(t29)
-    t30 = np.maximum(0.0, np.maximum(fold_1_1 - d5, d5 - full_1_1))
-    nearest_1_1 = _runtime.select(t21, t30, fold_1_1)
+    t23 = _runtime.select(t16, t21, t21 - t22)
+    dy_1_1 = _runtime.select(t16, 0.0, uc_1_1 * t19)
+    del t19, uc_1_1
+    slope_1_1 = x_1_1 * dx_1_1 - t23 * dy_1_1
+    square_1_1 = x_1_1 * x_1_1 + t23 * t23
+    del t23, x_1_1
+    t24 = L2 - L3
+    fold_1_1 = np.abs(t24)
+    t25 = np.maximum(0.0, np.maximum(fold_1_1 - d5, d5 - full_1_1))
+    nearest_1_1 = _runtime.select(t16, t25, fold_1_1)
     low_1_1 = nearest_1_1 * nearest_1_1
     del nearest_1_1
-    farthest_1_1 = _runtime.select(t21, t5, full_1_1)
+    farthest_1_1 = _runtime.select(t16, t3, full_1_1)
     high_1_1 = farthest_1_1 * farthest_1_1
     del farthest_1_1
-    t31 = np.maximum(low_1_1, np.minimum(high_1_1, square_1_1))
-    miss_1_1 = square_1_1 - t31
-    del square_1_1, t31
-    t32 = dy_1_1 * dy_1_1
-    bend_1_1 = dx_1_1 * dx_1_1 + t32
+    t26 = np.maximum(low_1_1, np.minimum(high_1_1, square_1_1))
+    miss_1_1 = square_1_1 - t26
+    del square_1_1, t26
+    t27 = dy_1_1 * dy_1_1
+    bend_1_1 = dx_1_1 * dx_1_1 + t27
     del dx_1_1
     inner_1_1 = slope_1_1 * slope_1_1 - miss_1_1 * bend_1_1
-    t33 = _runtime.sign(slope_1_1) * np.sqrt(np.maximum(0.0, inner_1_1))
-    t34 = _runtime.select(inner_1_1 < 0.0, slope_1_1 / (2.0 * bend_1_1), miss_1_1 / (2.0 * (slope_1_1 + t33)))
-    del bend_1_1, inner_1_1, miss_1_1, slope_1_1, t33
-    t35 = t34 * t34
-    t36 = 1.0 / (1.0 + t35)
-    t37 = 2.0 * t34 * t36
-    del t34
-    by_c_1_1 = t36 * (1.0 - t35)
-    del t35, t36
-    cost_1_1 = d4 * (t37 * t37) / (1.0 + np.abs(by_c_1_1)) + root1 * np.abs(t37)
-    t38 = L2 * 5.684341886080802e-14 + L3 * 5.684341886080802e-14
-    t39 = t38 + d1 * 5.684341886080802e-14 + d4 * 5.684341886080802e-14
-    del t38
-    whole_1_1 = t39 + d5 * 5.684341886080802e-14 + d6 * 5.684341886080802e-14
-    del t39
-    t40 = (cost_1_1 <= whole_1_1) & (0.0 < by_c_1_1)
+    t28 = _runtime.sign(slope_1_1) * np.sqrt(np.maximum(0.0, inner_1_1))
+    t29 = _runtime.select(inner_1_1 < 0.0, slope_1_1 / (2.0 * bend_1_1), miss_1_1 / (2.0 * (slope_1_1 + t28)))
+    del bend_1_1, inner_1_1, miss_1_1, slope_1_1, t28
+    t30 = t29 * t29
+    t31 = 1.0 / (1.0 + t30)
+    t32 = 2.0 * t29 * t31
+    del t29
+    by_c_1_1 = t31 * (1.0 - t30)
+    del t30, t31
+    cost_1_1 = d4 * (t32 * t32) / (1.0 + np.abs(by_c_1_1)) + root1 * np.abs(t32)
+    whole_1_1 = size * 5.684341886080802e-14
+    t33 = (cost_1_1 <= whole_1_1) & (0.0 < by_c_1_1)
     del cost_1_1
-    cosine_1_1 = _runtime.select(t40, by_c_1_1, 1.0)
+    cosine_1_1 = _runtime.select(t33, by_c_1_1, 1.0)
     del by_c_1_1
-    sine_1_1 = _runtime.select(t40, -t37, 0.0)
-    del t37, t40
-    c_1_1_2 = c_1_1 * cosine_1_1 + t19 * sine_1_1
-    s_1_1_2 = c_1_1 * sine_1_1 - t19 * cosine_1_1
+    sine_1_1 = _runtime.select(t33, -t32, 0.0)
+    del t32, t33
+    c_1_1_2 = c_1_1 * cosine_1_1 + t14 * sine_1_1
+    s_1_1_2 = c_1_1 * sine_1_1 - t14 * cosine_1_1
     del cosine_1_1, sine_1_1
     axisx_1_1_2 = T13 * c_1_1_2 + T23 * s_1_1_2
-    t41 = axisx_1_1_2 * axisx_1_1_2
-    t42 = T13 * s_1_1_2 - T23 * c_1_1_2
-    most_1_1_2 = np.sqrt(t41 + t42 * t42)
-    t43 = np.abs(T33) <= 1.4210854715202004e-14
-    t44 = t26 * t26
+    t34 = axisx_1_1_2 * axisx_1_1_2
+    t35 = T13 * s_1_1_2 - T23 * c_1_1_2
+    most_1_1_2 = np.sqrt(t34 + t35 * t35)
+    t36 = np.abs(T33) <= 1.4210854715202004e-14
+    t37 = t21 * t21
     qx_1_1_2 = w_x * c_1_1_2 + w_y * s_1_1_2
-    r_1_1_2 = np.sqrt(t44 + qx_1_1_2 * qx_1_1_2)
-    t45 = L2 * 8.881784197001252e-16 + L3 * 8.881784197001252e-16
-    t46 = t45 + d1 * 8.881784197001252e-16 + d4 * 8.881784197001252e-16
-    del t45
-    t47 = t46 + d5 * 8.881784197001252e-16 + d6 * 8.881784197001252e-16
-    del t46
-    t48 = r_1_1_2 <= t47
-    t49 = d5 + r_1_1_2
-    t50 = 1.0 / np.sqrt(t16 + t41)
+    r_1_1_2 = np.sqrt(t37 + qx_1_1_2 * qx_1_1_2)
+    t38 = size * 8.881784197001252e-16
+    t39 = r_1_1_2 <= t38
+    t40 = d5 + r_1_1_2
+    t41 = 1.0 / np.sqrt(t11 + t34)
+    del t34
+    uc_1_1_2 = T33 * t41
+    t42 = qx_1_1_2 - d5 * uc_1_1_2
+    t43 = axisx_1_1_2 * t41
     del t41
-    uc_1_1_2 = T33 * t50
-    t51 = qx_1_1_2 - d5 * uc_1_1_2
-    t52 = axisx_1_1_2 * t50
-    del t50
-    t53 = t26 - d5 * t52
-    there_1_1_2 = np.sqrt(t51 * t51 + t53 * t53)
-    del t51, t53
+    t44 = t21 - d5 * t43
+    there_1_1_2 = np.sqrt(t42 * t42 + t44 * t44)
+    del t42, t44
     goal_1_1_2 = np.minimum(full_1_1, np.maximum(there_1_1_2, fold_1_1))
-    k_v_1_1_2 = np.maximum(0.0, (t49 - goal_1_1_2) * (t49 + goal_1_1_2))
-    del t49
-    t54 = d5 - r_1_1_2
-    d_v_1_1_2 = np.maximum(0.0, (goal_1_1_2 - t54) * (goal_1_1_2 + t54))
-    del t54
+    k_v_1_1_2 = np.maximum(0.0, (t40 - goal_1_1_2) * (t40 + goal_1_1_2))
+    del t40
+    t45 = d5 - r_1_1_2
+    d_v_1_1_2 = np.maximum(0.0, (goal_1_1_2 - t45) * (goal_1_1_2 + t45))
+    del t45
     n_v_1_1_2 = k_v_1_1_2 + d_v_1_1_2
-    t55 = size_1_1 * size_1_1
-    t56 = t55 * 8.881784197001252e-16
-    t57 = n_v_1_1_2 <= t56
-    t58 = 1.0 / n_v_1_1_2
+    t46 = size * size
+    t47 = t46 * 8.881784197001252e-16
+    t48 = n_v_1_1_2 <= t47
+    t49 = 1.0 / n_v_1_1_2
     del n_v_1_1_2
-    uc_v_1_1_2 = _runtime.select(t57, 1.0, (k_v_1_1_2 - d_v_1_1_2) * t58)
-    t59 = qx_1_1_2 * uc_v_1_1_2
-    side_1_1_2 = _runtime.sign(t26 * uc_1_1_2 - qx_1_1_2 * t52)
-    del t52, uc_1_1_2
-    t60 = 2.0 * side_1_1_2 * np.sqrt(k_v_1_1_2 * d_v_1_1_2)
+    uc_v_1_1_2 = _runtime.select(t48, 1.0, (k_v_1_1_2 - d_v_1_1_2) * t49)
+    t50 = qx_1_1_2 * uc_v_1_1_2
+    side_1_1_2 = _runtime.sign(t21 * uc_1_1_2 - qx_1_1_2 * t43)
+    del t43, uc_1_1_2
+    t51 = 2.0 * side_1_1_2 * np.sqrt(k_v_1_1_2 * d_v_1_1_2)
     del d_v_1_1_2, k_v_1_1_2, side_1_1_2
-    us_v_1_1_2 = _runtime.select(t57, 0.0, t58 * t60)
-    del t57, t58, t60
-    t61 = t26 * us_v_1_1_2
-    t62 = 1.0 / r_1_1_2
+    us_v_1_1_2 = _runtime.select(t48, 0.0, t49 * t51)
+    del t48, t49, t51
+    t52 = t21 * us_v_1_1_2
+    t53 = 1.0 / r_1_1_2
     del r_1_1_2
-    c_v_1_1_2 = _runtime.select(t48, 1.0, (t59 + t61) * t62)
-    t63 = T33 * c_v_1_1_2 < 0.0
-    t64 = qx_1_1_2 * us_v_1_1_2
+    c_v_1_1_2 = _runtime.select(t39, 1.0, (t50 + t52) * t53)
+    t54 = T33 * c_v_1_1_2 < 0.0
+    t55 = qx_1_1_2 * us_v_1_1_2
     del qx_1_1_2, us_v_1_1_2
-    t65 = t26 * uc_v_1_1_2
+    t56 = t21 * uc_v_1_1_2
     del uc_v_1_1_2
-    to_c_1_1_2 = _runtime.select(t63, _runtime.select(t48, 0.0, t62 * (t64 + t65)), -_runtime.select(t48, 0.0, t62 * (t64 - t65)))
-    del t64, t65
-    to_s_1_1_2 = _runtime.select(t63, _runtime.select(t48, 1.0, t62 * (t59 - t61)), c_v_1_1_2)
-    del c_v_1_1_2, t48, t59, t61, t62, t63
-    wanted_1_1_2 = _runtime.select(t43, 0.0, T33 * to_c_1_1_2 / to_s_1_1_2)
+    to_c_1_1_2 = _runtime.select(t54, _runtime.select(t39, 0.0, t53 * (t55 + t56)), -_runtime.select(t39, 0.0, t53 * (t55 - t56)))
+    del t55, t56
+    to_s_1_1_2 = _runtime.select(t54, _runtime.select(t39, 1.0, t53 * (t50 - t52)), c_v_1_1_2)
+    del c_v_1_1_2, t39, t50, t52, t53, t54
+    wanted_1_1_2 = _runtime.select(t36, 0.0, T33 * to_c_1_1_2 / to_s_1_1_2)
     del to_c_1_1_2, to_s_1_1_2
     kept_1_1_2 = np.maximum(-most_1_1_2, np.minimum(most_1_1_2, wanted_1_1_2))
     del wanted_1_1_2
-    t66 = (most_1_1_2 - kept_1_1_2) * (most_1_1_2 + kept_1_1_2)
-    rest_1_1_2 = np.sqrt(t66) * _runtime.sign(-t42)
-    del t66
-    t67 = 1.0 / (most_1_1_2 * most_1_1_2)
+    t57 = (most_1_1_2 - kept_1_1_2) * (most_1_1_2 + kept_1_1_2)
+    rest_1_1_2 = np.sqrt(t57) * _runtime.sign(-t35)
+    del t57
+    t58 = 1.0 / (most_1_1_2 * most_1_1_2)
     del most_1_1_2
-    t68 = (axisx_1_1_2 * rest_1_1_2 + t42 * kept_1_1_2) * t67
-    by_c_1_1_2 = t67 * (axisx_1_1_2 * kept_1_1_2 - t42 * rest_1_1_2)
-    del axisx_1_1_2, kept_1_1_2, rest_1_1_2, t42, t67
-    t69 = d4 * (t68 * t68) / (1.0 + np.abs(by_c_1_1_2))
-    t70 = (t69 + root1 * np.abs(t68) <= whole_1_1) & (0.0 < by_c_1_1_2)
-    del t69
-    t71 = t70 & (t47 < np.abs(there_1_1_2 - goal_1_1_2))
-    del goal_1_1_2, t70, there_1_1_2
-    cosine_1_1_2 = _runtime.select(t71, by_c_1_1_2, 1.0)
+    t59 = (axisx_1_1_2 * rest_1_1_2 + t35 * kept_1_1_2) * t58
+    by_c_1_1_2 = t58 * (axisx_1_1_2 * kept_1_1_2 - t35 * rest_1_1_2)
+    del axisx_1_1_2, kept_1_1_2, rest_1_1_2, t35, t58
+    t60 = d4 * (t59 * t59) / (1.0 + np.abs(by_c_1_1_2))
+    t61 = (t60 + root1 * np.abs(t59) <= whole_1_1) & (0.0 < by_c_1_1_2)
+    del t60
+    t62 = 1125899906842624.0 * np.abs(there_1_1_2 - goal_1_1_2)
+    del goal_1_1_2, there_1_1_2
+    t63 = t61 & (size < t62)
+    del t61, t62
+    cosine_1_1_2 = _runtime.select(t63, by_c_1_1_2, 1.0)
     del by_c_1_1_2
-    sine_1_1_2 = _runtime.select(t71, -t68, 0.0)
-    del t68, t71
+    sine_1_1_2 = _runtime.select(t63, -t59, 0.0)
+    del t59, t63
     c_1_1_2_3 = c_1_1_2 * cosine_1_1_2 - s_1_1_2 * sine_1_1_2
     s_1_1_2_3 = c_1_1_2 * sine_1_1_2 + s_1_1_2 * cosine_1_1_2
     del c_1_1_2, cosine_1_1_2, s_1_1_2, sine_1_1_2
     axisx_1_1_2_3 = T13 * c_1_1_2_3 + T23 * s_1_1_2_3
-    h_1_1_2_3 = np.sqrt(t16 + axisx_1_1_2_3 * axisx_1_1_2_3)
-    t72 = size_1_1 * h_1_1_2_3 <= t20
+    h_1_1_2_3 = np.sqrt(t11 + axisx_1_1_2_3 * axisx_1_1_2_3)
+    t64 = size * h_1_1_2_3 <= t15
     qx_1_1_2_3 = w_x * c_1_1_2_3 + w_y * s_1_1_2_3
-    t73 = 1.0 / h_1_1_2_3
-    uc_1_1_2_3 = T33 * t73
-    x_1_1_2_3 = _runtime.select(t72, qx_1_1_2_3, qx_1_1_2_3 - d5 * uc_1_1_2_3)
+    t65 = 1.0 / h_1_1_2_3
+    uc_1_1_2_3 = T33 * t65
+    x_1_1_2_3 = _runtime.select(t64, qx_1_1_2_3, qx_1_1_2_3 - d5 * uc_1_1_2_3)
     del qx_1_1_2_3
     dqx_1_1_2_3 = w_y * c_1_1_2_3 - w_x * s_1_1_2_3
-    t74 = axisx_1_1_2_3 * t73
-    del axisx_1_1_2_3, t73
-    t75 = d5 * (T33 * (T13 * s_1_1_2_3 - T23 * c_1_1_2_3))
-    rate_1_1_2_3 = t75 / (h_1_1_2_3 * h_1_1_2_3)
-    del h_1_1_2_3, t75
-    dx_1_1_2_3 = _runtime.select(t72, dqx_1_1_2_3, dqx_1_1_2_3 - t74 * rate_1_1_2_3)
+    t66 = axisx_1_1_2_3 * t65
+    del axisx_1_1_2_3, t65
+    t67 = d5 * (T33 * (T13 * s_1_1_2_3 - T23 * c_1_1_2_3))
+    rate_1_1_2_3 = t67 / (h_1_1_2_3 * h_1_1_2_3)
+    del h_1_1_2_3, t67
+    dx_1_1_2_3 = _runtime.select(t64, dqx_1_1_2_3, dqx_1_1_2_3 - t66 * rate_1_1_2_3)
     del dqx_1_1_2_3
-    t76 = _runtime.select(t72, t26, t26 - d5 * t74)
-    del t74
-    t77 = _runtime.select(t72, 0.0, uc_1_1_2_3 * rate_1_1_2_3)
+    t68 = _runtime.select(t64, t21, t21 - d5 * t66)
+    del t66
+    t69 = _runtime.select(t64, 0.0, uc_1_1_2_3 * rate_1_1_2_3)
     del rate_1_1_2_3, uc_1_1_2_3
-    slope_1_1_2_3 = x_1_1_2_3 * dx_1_1_2_3 + t76 * t77
-    square_1_1_2_3 = x_1_1_2_3 * x_1_1_2_3 + t76 * t76
-    del t76, x_1_1_2_3
-    nearest_1_1_2_3 = _runtime.select(t72, t30, fold_1_1)
-    farthest_1_1_2_3 = _runtime.select(t72, t5, full_1_1)
-    del t72
-    t78 = np.minimum(farthest_1_1_2_3 * farthest_1_1_2_3, square_1_1_2_3)
+    slope_1_1_2_3 = x_1_1_2_3 * dx_1_1_2_3 + t68 * t69
+    square_1_1_2_3 = x_1_1_2_3 * x_1_1_2_3 + t68 * t68
+    del t68, x_1_1_2_3
+    nearest_1_1_2_3 = _runtime.select(t64, t25, fold_1_1)
+    farthest_1_1_2_3 = _runtime.select(t64, t3, full_1_1)
+    del t64
+    t70 = np.minimum(farthest_1_1_2_3 * farthest_1_1_2_3, square_1_1_2_3)
     del farthest_1_1_2_3
-    t79 = np.maximum(nearest_1_1_2_3 * nearest_1_1_2_3, t78)
-    del nearest_1_1_2_3, t78
-    miss_1_1_2_3 = square_1_1_2_3 - t79
-    del square_1_1_2_3, t79
-    bend_1_1_2_3 = dx_1_1_2_3 * dx_1_1_2_3 + t77 * t77
-    del dx_1_1_2_3, t77
+    t71 = np.maximum(nearest_1_1_2_3 * nearest_1_1_2_3, t70)
+    del nearest_1_1_2_3, t70
+    miss_1_1_2_3 = square_1_1_2_3 - t71
+    del square_1_1_2_3, t71
+    bend_1_1_2_3 = dx_1_1_2_3 * dx_1_1_2_3 + t69 * t69
+    del dx_1_1_2_3, t69
     inner_1_1_2_3 = slope_1_1_2_3 * slope_1_1_2_3 - miss_1_1_2_3 * bend_1_1_2_3
-    t80 = _runtime.sign(slope_1_1_2_3) * np.sqrt(np.maximum(0.0, inner_1_1_2_3))
-    t81 = _runtime.select(inner_1_1_2_3 < 0.0, slope_1_1_2_3 / (2.0 * bend_1_1_2_3), miss_1_1_2_3 / (2.0 * (slope_1_1_2_3 + t80)))
-    del bend_1_1_2_3, inner_1_1_2_3, miss_1_1_2_3, slope_1_1_2_3, t80
-    t82 = t81 * t81
-    t83 = 1.0 / (1.0 + t82)
-    t84 = 2.0 * t81 * t83
-    del t81
-    by_c_1_1_2_3 = t83 * (1.0 - t82)
-    del t82, t83
-    t85 = d4 * (t84 * t84) / (1.0 + np.abs(by_c_1_1_2_3))
-    t86 = (t85 + root1 * np.abs(t84) <= whole_1_1) & (0.0 < by_c_1_1_2_3)
-    del t85
-    cosine_1_1_2_3 = _runtime.select(t86, by_c_1_1_2_3, 1.0)
+    t72 = _runtime.sign(slope_1_1_2_3) * np.sqrt(np.maximum(0.0, inner_1_1_2_3))
+    t73 = _runtime.select(inner_1_1_2_3 < 0.0, slope_1_1_2_3 / (2.0 * bend_1_1_2_3), miss_1_1_2_3 / (2.0 * (slope_1_1_2_3 + t72)))
+    del bend_1_1_2_3, inner_1_1_2_3, miss_1_1_2_3, slope_1_1_2_3, t72
+    t74 = t73 * t73
+    t75 = 1.0 / (1.0 + t74)
+    t76 = 2.0 * t73 * t75
+    del t73
+    by_c_1_1_2_3 = t75 * (1.0 - t74)
+    del t74, t75
+    t77 = d4 * (t76 * t76) / (1.0 + np.abs(by_c_1_1_2_3))
+    t78 = (t77 + root1 * np.abs(t76) <= whole_1_1) & (0.0 < by_c_1_1_2_3)
+    del t77
+    cosine_1_1_2_3 = _runtime.select(t78, by_c_1_1_2_3, 1.0)
     del by_c_1_1_2_3
-    sine_1_1_2_3 = _runtime.select(t86, -t84, 0.0)
-    del t84, t86
+    sine_1_1_2_3 = _runtime.select(t78, -t76, 0.0)
+    del t76, t78
     c_1_1_2_3_4 = c_1_1_2_3 * cosine_1_1_2_3 - s_1_1_2_3 * sine_1_1_2_3
     s_1_1_2_3_4 = c_1_1_2_3 * sine_1_1_2_3 + s_1_1_2_3 * cosine_1_1_2_3
     del c_1_1_2_3, cosine_1_1_2_3, s_1_1_2_3, sine_1_1_2_3
     axisx_1_1_2_3_4 = T13 * c_1_1_2_3_4 + T23 * s_1_1_2_3_4
-    h_1_1_2_3_4 = np.sqrt(t16 + axisx_1_1_2_3_4 * axisx_1_1_2_3_4)
-    t87 = size_1_1 * h_1_1_2_3_4 <= t20
+    h_1_1_2_3_4 = np.sqrt(t11 + axisx_1_1_2_3_4 * axisx_1_1_2_3_4)
+    t79 = size * h_1_1_2_3_4 <= t15
     qx_1_1_2_3_4 = w_x * c_1_1_2_3_4 + w_y * s_1_1_2_3_4
-    t88 = 1.0 / h_1_1_2_3_4
-    uc_1_1_2_3_4 = T33 * t88
-    x_1_1_2_3_4 = _runtime.select(t87, qx_1_1_2_3_4, qx_1_1_2_3_4 - d5 * uc_1_1_2_3_4)
+    t80 = 1.0 / h_1_1_2_3_4
+    uc_1_1_2_3_4 = T33 * t80
+    x_1_1_2_3_4 = _runtime.select(t79, qx_1_1_2_3_4, qx_1_1_2_3_4 - d5 * uc_1_1_2_3_4)
     del qx_1_1_2_3_4
     dqx_1_1_2_3_4 = w_y * c_1_1_2_3_4 - w_x * s_1_1_2_3_4
-    t89 = axisx_1_1_2_3_4 * t88
-    del axisx_1_1_2_3_4, t88
-    t90 = T33 * (T13 * s_1_1_2_3_4 - T23 * c_1_1_2_3_4)
-    rate_1_1_2_3_4 = d5 * t90 / (h_1_1_2_3_4 * h_1_1_2_3_4)
-    del h_1_1_2_3_4, t90
-    dx_1_1_2_3_4 = _runtime.select(t87, dqx_1_1_2_3_4, dqx_1_1_2_3_4 - t89 * rate_1_1_2_3_4)
+    t81 = axisx_1_1_2_3_4 * t80
+    del axisx_1_1_2_3_4, t80
+    t82 = T33 * (T13 * s_1_1_2_3_4 - T23 * c_1_1_2_3_4)
+    rate_1_1_2_3_4 = d5 * t82 / (h_1_1_2_3_4 * h_1_1_2_3_4)
+    del h_1_1_2_3_4, t82
+    dx_1_1_2_3_4 = _runtime.select(t79, dqx_1_1_2_3_4, dqx_1_1_2_3_4 - t81 * rate_1_1_2_3_4)
     del dqx_1_1_2_3_4
-    t91 = _runtime.select(t87, t26, t26 - d5 * t89)
-    del t89
-    t92 = _runtime.select(t87, 0.0, uc_1_1_2_3_4 * rate_1_1_2_3_4)
+    t83 = _runtime.select(t79, t21, t21 - d5 * t81)
+    del t81
+    t84 = _runtime.select(t79, 0.0, uc_1_1_2_3_4 * rate_1_1_2_3_4)
     del rate_1_1_2_3_4, uc_1_1_2_3_4
-    slope_1_1_2_3_4 = x_1_1_2_3_4 * dx_1_1_2_3_4 + t91 * t92
-    square_1_1_2_3_4 = x_1_1_2_3_4 * x_1_1_2_3_4 + t91 * t91
-    del t91, x_1_1_2_3_4
-    nearest_1_1_2_3_4 = _runtime.select(t87, t30, fold_1_1)
-    farthest_1_1_2_3_4 = _runtime.select(t87, t5, full_1_1)
-    del t87
-    t93 = np.minimum(farthest_1_1_2_3_4 * farthest_1_1_2_3_4, square_1_1_2_3_4)
+    slope_1_1_2_3_4 = x_1_1_2_3_4 * dx_1_1_2_3_4 + t83 * t84
+    square_1_1_2_3_4 = x_1_1_2_3_4 * x_1_1_2_3_4 + t83 * t83
+    del t83, x_1_1_2_3_4
+    nearest_1_1_2_3_4 = _runtime.select(t79, t25, fold_1_1)
+    farthest_1_1_2_3_4 = _runtime.select(t79, t3, full_1_1)
+    del t79
+    t85 = np.minimum(farthest_1_1_2_3_4 * farthest_1_1_2_3_4, square_1_1_2_3_4)
     del farthest_1_1_2_3_4
-    t94 = np.maximum(nearest_1_1_2_3_4 * nearest_1_1_2_3_4, t93)
-    del nearest_1_1_2_3_4, t93
-    miss_1_1_2_3_4 = square_1_1_2_3_4 - t94
-    del square_1_1_2_3_4, t94
-    bend_1_1_2_3_4 = dx_1_1_2_3_4 * dx_1_1_2_3_4 + t92 * t92
-    del dx_1_1_2_3_4, t92
+    t86 = np.maximum(nearest_1_1_2_3_4 * nearest_1_1_2_3_4, t85)
+    del nearest_1_1_2_3_4, t85
+    miss_1_1_2_3_4 = square_1_1_2_3_4 - t86
+    del square_1_1_2_3_4, t86
+    bend_1_1_2_3_4 = dx_1_1_2_3_4 * dx_1_1_2_3_4 + t84 * t84
+    del dx_1_1_2_3_4, t84
     inner_1_1_2_3_4 = slope_1_1_2_3_4 * slope_1_1_2_3_4 - miss_1_1_2_3_4 * bend_1_1_2_3_4
-    t95 = _runtime.sign(slope_1_1_2_3_4) * np.sqrt(np.maximum(0.0, inner_1_1_2_3_4))
-    t96 = miss_1_1_2_3_4 / (2.0 * (slope_1_1_2_3_4 + t95))
-    del miss_1_1_2_3_4, t95
-    t97 = _runtime.select(inner_1_1_2_3_4 < 0.0, slope_1_1_2_3_4 / (2.0 * bend_1_1_2_3_4), t96)
-    del bend_1_1_2_3_4, inner_1_1_2_3_4, slope_1_1_2_3_4, t96
-    t98 = t97 * t97
-    t99 = 1.0 / (1.0 + t98)
-    t100 = 2.0 * t97 * t99
-    del t97
-    by_c_1_1_2_3_4 = t99 * (1.0 - t98)
-    del t98, t99
-    t101 = d4 * (t100 * t100) / (1.0 + np.abs(by_c_1_1_2_3_4))
-    t102 = (t101 + root1 * np.abs(t100) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4)
-    del t101
-    sine_1_1_2_3_4 = _runtime.select(t102, -t100, 0.0)
-    del t100
-    cosine_1_1_2_3_4 = _runtime.select(t102, by_c_1_1_2_3_4, 1.0)
-    del by_c_1_1_2_3_4, t102
-    t103 = c_1_1_2_3_4 * sine_1_1_2_3_4 + s_1_1_2_3_4 * cosine_1_1_2_3_4
-    s1 = _runtime.select(tangent1, t103, -t19)
-    del t103
-    t104 = c_1_1_2_3_4 * cosine_1_1_2_3_4 - s_1_1_2_3_4 * sine_1_1_2_3_4
+    t87 = _runtime.sign(slope_1_1_2_3_4) * np.sqrt(np.maximum(0.0, inner_1_1_2_3_4))
+    t88 = miss_1_1_2_3_4 / (2.0 * (slope_1_1_2_3_4 + t87))
+    del miss_1_1_2_3_4, t87
+    t89 = _runtime.select(inner_1_1_2_3_4 < 0.0, slope_1_1_2_3_4 / (2.0 * bend_1_1_2_3_4), t88)
+    del bend_1_1_2_3_4, inner_1_1_2_3_4, slope_1_1_2_3_4, t88
+    t90 = t89 * t89
+    t91 = 1.0 / (1.0 + t90)
+    t92 = 2.0 * t89 * t91
+    del t89
+    by_c_1_1_2_3_4 = t91 * (1.0 - t90)
+    del t90, t91
+    t93 = d4 * (t92 * t92) / (1.0 + np.abs(by_c_1_1_2_3_4))
+    t94 = (t93 + root1 * np.abs(t92) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4)
+    del t93
+    sine_1_1_2_3_4 = _runtime.select(t94, -t92, 0.0)
+    del t92
+    cosine_1_1_2_3_4 = _runtime.select(t94, by_c_1_1_2_3_4, 1.0)
+    del by_c_1_1_2_3_4, t94
+    t95 = c_1_1_2_3_4 * sine_1_1_2_3_4 + s_1_1_2_3_4 * cosine_1_1_2_3_4
+    s1 = _runtime.select(tangent1, t95, -t14)
+    del t95
+    t96 = c_1_1_2_3_4 * cosine_1_1_2_3_4 - s_1_1_2_3_4 * sine_1_1_2_3_4
     del c_1_1_2_3_4, cosine_1_1_2_3_4, s_1_1_2_3_4, sine_1_1_2_3_4
-    c1 = _runtime.select(tangent1, t104, c_1_1)
-    del t104
-    t105 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
-    t106 = t105 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
-    del t105
-    t107 = t106 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
-    del t106
-    t108 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t109 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t110 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t111 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t112 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t113 = t107 & t108 & t109 & t110 & t111 & (t112 <= _runtime.ROTATION)
-    del t107, t108, t109, t110, t111, t112
-    t114 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t115 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t116 = t113 & (t114 <= _runtime.ROTATION) & t115 & (np.abs(T41) <= _runtime.ROTATION)
-    del t113, t114, t115
-    t117 = t116 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    del t116
-    t118 = t117 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
-    del t117
-    invalid = np.logical_not(t118)
-    del t118
-    t119 = L2 * 0.5 + L3 * 0.5 + d1 * 0.5 + d4 * 0.5 + d5 * 0.5
-    t120 = -(_runtime.FEASIBILITY * (t119 + d6 * 0.5))
-    del t119
-    t121 = (t120 <= t1) & (t120 <= t2)
+    c1 = _runtime.select(tangent1, t96, c_1_1)
+    del t96
+    t97 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
+    t98 = t97 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
+    del t97
+    t99 = t98 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    del t98
+    t100 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t101 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t102 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t103 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t104 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t105 = t99 & t100 & t101 & t102 & t103 & (t104 <= _runtime.ROTATION)
+    del t100, t101, t102, t103, t104, t99
+    t106 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t107 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t108 = t105 & (t106 <= _runtime.ROTATION) & t107 & (np.abs(T41) <= _runtime.ROTATION)
+    del t105, t106, t107
+    t109 = t108 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    del t108
+    t110 = t109 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t109
+    invalid = np.logical_not(t110)
+    del t110
+    t111 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t112 = (t111 <= t1) & (t111 <= t2)
     del t1, t2
     across = w_x * c1 + w_y * s1
     M_13 = T13 * c1 + T23 * s1
-    h_wrist = np.sqrt(t16 + M_13 * M_13)
-    t122 = _runtime.VANISHING * 16.0
-    aligned_wrist = h_wrist <= t122
-    r_hub = np.sqrt(t44 + across * across)
-    hub_mid = r_hub <= t6
-    t123 = d5 + r_hub
-    t124 = d5 - r_hub
-    mid_reach = np.minimum(full_1_1, t123) * 0.5 + np.maximum(fold_1_1, np.abs(t124)) * 0.5
-    k_mid = np.maximum(0.0, (t123 - mid_reach) * (t123 + mid_reach))
-    d_mid = np.maximum(0.0, -((t124 - mid_reach) * (t124 + mid_reach)))
+    h_wrist = np.sqrt(t11 + M_13 * M_13)
+    t113 = _runtime.VANISHING * 16.0
+    aligned_wrist = h_wrist <= t113
+    r_hub = np.sqrt(t37 + across * across)
+    hub_mid = r_hub <= t4
+    t114 = d5 + r_hub
+    t115 = d5 - r_hub
+    mid_reach = np.minimum(full_1_1, t114) * 0.5 + np.maximum(fold_1_1, np.abs(t115)) * 0.5
+    k_mid = np.maximum(0.0, (t114 - mid_reach) * (t114 + mid_reach))
+    d_mid = np.maximum(0.0, -((t115 - mid_reach) * (t115 + mid_reach)))
     del mid_reach
     n_mid = k_mid + d_mid
-    t125 = _runtime.VANISHING * t55
-    del t55
-    any_mid = n_mid <= t125
-    t126 = 1.0 / n_mid
+    t116 = _runtime.VANISHING * t46
+    del t46
+    any_mid = n_mid <= t116
+    t117 = 1.0 / n_mid
     del n_mid
-    uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) * t126)
-    us_mid = _runtime.select(any_mid, 0.0, t126 * (2.0 * np.sqrt(k_mid * d_mid)))
-    del any_mid, d_mid, k_mid, t126
-    t127 = 1.0 / r_hub
+    uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) * t117)
+    us_mid = _runtime.select(any_mid, 0.0, t117 * (2.0 * np.sqrt(k_mid * d_mid)))
+    del any_mid, d_mid, k_mid, t117
+    t118 = 1.0 / r_hub
     del r_hub
-    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t26 * us_mid) * t127)
-    t128 = L2 * 0.00048828125 + L3 * 0.00048828125 + (d1 * 0.00048828125 + d4 * 0.00048828125)
-    t129 = d5 * 0.00048828125 + d6 * 0.00048828125 + t128
-    del t128
-    close = root1 * h_wrist - t129 <= t6
-    t130 = 1.0 / h_wrist
-    s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t130)
-    t131 = across - d5 * s_phi
-    c_phi = _runtime.select(aligned_wrist, 1.0, M_13 * t130)
-    del t130
-    t132 = t26 - d5 * c_phi
-    here = np.sqrt(t131 * t131 + t132 * t132)
-    del t131, t132
+    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t21 * us_mid) * t118)
+    t119 = size * 0.00048828125
+    close = root1 * h_wrist - t119 <= t4
+    t120 = 1.0 / h_wrist
+    s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t120)
+    t121 = across - d5 * s_phi
+    c_phi = _runtime.select(aligned_wrist, 1.0, M_13 * t120)
+    del t120
+    t122 = t21 - d5 * c_phi
+    here = np.sqrt(t121 * t121 + t122 * t122)
+    del t121, t122
     in_reach = np.minimum(full_1_1, np.maximum(here, fold_1_1))
-    k_near = np.maximum(0.0, (t123 - in_reach) * (t123 + in_reach))
-    del t123
-    d_near = np.maximum(0.0, -((t124 - in_reach) * (t124 + in_reach)))
-    del t124
+    k_near = np.maximum(0.0, (t114 - in_reach) * (t114 + in_reach))
+    del t114
+    d_near = np.maximum(0.0, -((t115 - in_reach) * (t115 + in_reach)))
+    del t115
     n_near = k_near + d_near
-    any_near = n_near <= t125
-    t133 = 1.0 / n_near
+    any_near = n_near <= t116
+    t123 = 1.0 / n_near
     del n_near
-    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t133)
-    t134 = across * c_phi - t26 * s_phi
-    t135 = np.abs(t134)
-    side = _runtime.select(t135 <= t6, 1.0, -(t134 / t135))
-    del t134, t135
-    t136 = t133 * (2.0 * side * np.sqrt(k_near * d_near))
-    del d_near, k_near, side, t133
-    us_near = _runtime.select(any_near, 0.0, t136)
-    del any_near, t136
-    c_near = _runtime.select(hub_mid, 1.0, t127 * (across * uc_near + t26 * us_near))
-    t137 = s_phi - c_near
-    s_near = _runtime.select(hub_mid, 0.0, t127 * (across * us_near - t26 * uc_near))
+    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t123)
+    t124 = across * c_phi - t21 * s_phi
+    t125 = np.abs(t124)
+    side = _runtime.select(t125 <= t4, 1.0, -(t124 / t125))
+    del t124, t125
+    t126 = t123 * (2.0 * side * np.sqrt(k_near * d_near))
+    del d_near, k_near, side, t123
+    us_near = _runtime.select(any_near, 0.0, t126)
+    del any_near, t126
+    c_near = _runtime.select(hub_mid, 1.0, t118 * (across * uc_near + t21 * us_near))
+    t127 = s_phi - c_near
+    s_near = _runtime.select(hub_mid, 0.0, t118 * (across * us_near - t21 * uc_near))
     del uc_near, us_near
-    t138 = c_phi + s_near
-    t139 = h_wrist * np.sqrt(t137 * t137 + t138 * t138) - 2.2737367544323206e-13
-    del h_wrist, t137, t138
-    t140 = _runtime.VANISHING * 4.0
-    t141 = np.logical_not(np.abs(here - in_reach) <= t6)
+    t128 = c_phi + s_near
+    t129 = h_wrist * np.sqrt(t127 * t127 + t128 * t128) - 2.2737367544323206e-13
+    del h_wrist, t127, t128
+    t130 = _runtime.VANISHING * 4.0
+    t131 = np.logical_not(np.abs(here - in_reach) <= t4)
     del here, in_reach
-    t142 = (t139 <= t140) & t141
-    del t139, t141
-    t143 = _runtime.select(close, _runtime.select(t142, c_near, s_phi), s_phi)
+    t132 = (t129 <= t130) & t131
+    del t129, t131
+    t133 = _runtime.select(close, _runtime.select(t132, c_near, s_phi), s_phi)
     del c_near, s_phi
-    sphi = _runtime.select(aligned_wrist, c_mid, t143)
-    del c_mid, t143
-    t144 = across - d5 * sphi
-    s_mid = _runtime.select(hub_mid, 0.0, t127 * (across * us_mid - t26 * uc_mid))
-    del across, hub_mid, t127, uc_mid, us_mid
-    t145 = _runtime.select(close, _runtime.select(t142, -s_near, c_phi), c_phi)
-    del c_phi, close, s_near, t142
-    cphi = _runtime.select(aligned_wrist, -s_mid, t145)
-    del s_mid, t145
-    ey = t26 - d5 * cphi
-    r_elbow = np.sqrt(t144 * t144 + ey * ey)
-    t146 = full_1_1 - r_elbow
-    t147 = t29 + r_elbow
-    t148 = r_elbow - t29
-    t149 = t121 & (t120 <= t146) & (t120 <= t147) & (t120 <= t148)
-    unreachable = np.logical_not(t149)
-    del t149
-    t150 = _runtime.poison(invalid | unreachable)
-    t151 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t150
-    folded_elbow = r_elbow <= t6
+    sphi = _runtime.select(aligned_wrist, c_mid, t133)
+    del c_mid, t133
+    t134 = across - d5 * sphi
+    s_mid = _runtime.select(hub_mid, 0.0, t118 * (across * us_mid - t21 * uc_mid))
+    del across, hub_mid, t118, uc_mid, us_mid
+    t135 = _runtime.select(close, _runtime.select(t132, -s_near, c_phi), c_phi)
+    del c_phi, close, s_near, t132
+    cphi = _runtime.select(aligned_wrist, -s_mid, t135)
+    del s_mid, t135
+    ey = t21 - d5 * cphi
+    r_elbow = np.sqrt(t134 * t134 + ey * ey)
+    t136 = full_1_1 - r_elbow
+    t137 = t24 + r_elbow
+    t138 = r_elbow - t24
+    t139 = t112 & (t111 <= t136) & (t111 <= t137) & (t111 <= t138)
+    unreachable = np.logical_not(t139)
+    del t139
+    t140 = _runtime.poison(invalid | unreachable)
+    t141 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t140
+    folded_elbow = r_elbow <= t4
     no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1)
-    A_elbow = np.maximum(t146, 0.0)
-    del t146
-    C_elbow = np.maximum(t148, 0.0)
-    del t148
-    t152 = A_elbow * C_elbow
+    t142 = folded_elbow | no_link_elbow
+    A_elbow = np.maximum(t136, 0.0)
+    del t136
+    C_elbow = np.maximum(t138, 0.0)
+    del t138
+    t143 = A_elbow * C_elbow
     S_elbow = full_1_1 + r_elbow
-    B_elbow = np.maximum(t147, 0.0)
-    del t147
-    t153 = S_elbow * B_elbow
-    t154 = 1.0 / (t152 + t153)
-    c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t152 - t153) * t154))
-    t155 = 1.0 / r_elbow
+    B_elbow = np.maximum(t137, 0.0)
+    del t137
+    t144 = S_elbow * B_elbow
+    t145 = 1.0 / (t143 + t144)
+    c_base_elbow = _runtime.select(t142, 1.0, -((t143 - t144) * t145))
+    t146 = 1.0 / r_elbow
     del r_elbow
-    t156 = ey * c_base_elbow * t155
-    area_elbow = 2.0 * np.sqrt(t152 * t153)
-    del t152, t153
-    s_base_elbow = _runtime.select(no_link_elbow, 0.0, t154 * area_elbow)
-    del t154
-    t157 = t155 * (t144 * s_base_elbow)
-    s2 = _runtime.select(folded_elbow, 0.0, t156 + t157)
-    t158 = t155 * (ey * s_base_elbow)
-    del ey, s_base_elbow
-    t159 = t155 * (t144 * c_base_elbow)
-    del c_base_elbow, t144, t155
-    c2 = _runtime.select(folded_elbow, 1.0, t158 - t159)
-    t160 = A_elbow * S_elbow
+    t147 = _runtime.select(folded_elbow, 0.0, ey * t146)
+    del ey
+    t148 = c_base_elbow * t147
+    area_elbow = 2.0 * np.sqrt(t143 * t144)
+    del t143, t144
+    s_base_elbow = _runtime.select(t142, 0.0, t145 * area_elbow)
+    del t142, t145
+    t149 = _runtime.select(folded_elbow, 1.0, -(t134 * t146))
+    del t134, t146
+    t150 = s_base_elbow * t149
+    s2 = t148 - t150
+    t151 = c_base_elbow * t149
+    del c_base_elbow, t149
+    t152 = t147 * s_base_elbow
+    del s_base_elbow, t147
+    c2 = t151 + t152
+    t153 = A_elbow * S_elbow
     del A_elbow, S_elbow
-    t161 = C_elbow * B_elbow
+    t154 = C_elbow * B_elbow
     del B_elbow, C_elbow
-    t162 = 1.0 / (t160 + t161)
-    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t162)
+    t155 = 1.0 / (t153 + t154)
+    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t155)
     del area_elbow
-    c3 = _runtime.select(no_link_elbow, 1.0, -(t162 * (t160 - t161)))
-    del t160, t161, t162
-    t163 = np.arctan2(s3, c3)
-    t164 = sphi * c2 - cphi * s2
-    t165 = cphi * c2 + sphi * s2
-    t166 = np.arctan2(c3 * t164 - s3 * t165, c3 * t165 + s3 * t164)
-    del t164, t165
-    t167 = np.arctan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1)
+    c3 = _runtime.select(no_link_elbow, 1.0, -(t155 * (t153 - t154)))
+    del t153, t154, t155
+    t156 = np.arctan2(s3, c3)
+    t157 = sphi * c2 - cphi * s2
+    t158 = cphi * c2 + sphi * s2
+    t159 = np.arctan2(c3 * t157 - s3 * t158, c3 * t158 + s3 * t157)
+    del t157, t158
+    t160 = np.arctan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1)
     del M_13
-    t168 = _runtime.wrap_cut(-t167) + t150
-    del t167
-    t169 = np.arctan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12 * c1 + T22 * s1))
+    t161 = _runtime.wrap_cut(-t160) + t140
+    del t160
+    t162 = np.arctan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12 * c1 + T22 * s1))
     del c1, s1
-    t170 = _runtime.wrap_cut(-t169) + t150
-    del t169
-    s2_left_noflip_down = _runtime.select(folded_elbow, 0.0, t156 - t157)
-    del t156, t157
-    c2_left_noflip_down = _runtime.select(folded_elbow, 1.0, -(t159 + t158))
-    del t158, t159
-    t171 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
-    t172 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
-    t173 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
+    t163 = _runtime.wrap_cut(-t162) + t140
+    del t162
+    s2_left_noflip_down = t148 + t150
+    del t148, t150
+    c2_left_noflip_down = t151 - t152
+    del t151, t152
+    t164 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
+    t165 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
+    t166 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
     del c2_left_noflip_down, cphi, s2_left_noflip_down, sphi
-    t174 = np.arctan2(c3 * t172 + s3 * t173, c3 * t173 - s3 * t172)
-    del c3, s3, t172, t173
-    x_1_1_left_flip_up = _runtime.select(t21, qx_1_1, qx_1_1 + t23)
-    del qx_1_1, t23
-    dx_1_1_left_flip_up = _runtime.select(t21, dqx_1_1, dqx_1_1 - t25)
-    del dqx_1_1, t25
-    t175 = _runtime.select(t21, t26, t26 + t27)
-    del t21, t27
-    slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t175
+    t167 = np.arctan2(c3 * t165 + s3 * t166, c3 * t166 - s3 * t165)
+    del c3, s3, t165, t166
+    x_1_1_left_flip_up = _runtime.select(t16, qx_1_1, qx_1_1 + t18)
+    del qx_1_1, t18
+    dx_1_1_left_flip_up = _runtime.select(t16, dqx_1_1, dqx_1_1 - t20)
+    del dqx_1_1, t20
+    t168 = _runtime.select(t16, t21, t21 + t22)
+    del t16, t22
+    slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t168
     del dy_1_1
-    t176 = slope_1_1_left_flip_up * slope_1_1_left_flip_up
-    square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t175 * t175
-    del t175, x_1_1_left_flip_up
-    t177 = np.minimum(high_1_1, square_1_1_left_flip_up)
+    t169 = slope_1_1_left_flip_up * slope_1_1_left_flip_up
+    square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t168 * t168
+    del t168, x_1_1_left_flip_up
+    t170 = np.minimum(high_1_1, square_1_1_left_flip_up)
     del high_1_1
-    miss_1_1_left_flip_up = square_1_1_left_flip_up - np.maximum(low_1_1, t177)
-    del low_1_1, square_1_1_left_flip_up, t177
-    bend_1_1_left_flip_up = t32 + dx_1_1_left_flip_up * dx_1_1_left_flip_up
-    del dx_1_1_left_flip_up, t32
-    t178 = miss_1_1_left_flip_up * bend_1_1_left_flip_up
-    inner_1_1_left_flip_up = t176 - t178
-    del t176, t178
-    t179 = slope_1_1_left_flip_up / (2.0 * bend_1_1_left_flip_up)
+    miss_1_1_left_flip_up = square_1_1_left_flip_up - np.maximum(low_1_1, t170)
+    del low_1_1, square_1_1_left_flip_up, t170
+    bend_1_1_left_flip_up = t27 + dx_1_1_left_flip_up * dx_1_1_left_flip_up
+    del dx_1_1_left_flip_up, t27
+    t171 = miss_1_1_left_flip_up * bend_1_1_left_flip_up
+    inner_1_1_left_flip_up = t169 - t171
+    del t169, t171
+    t172 = slope_1_1_left_flip_up / (2.0 * bend_1_1_left_flip_up)
     del bend_1_1_left_flip_up
-    t180 = np.sqrt(np.maximum(0.0, inner_1_1_left_flip_up))
-    outer_1_1_left_flip_up = slope_1_1_left_flip_up + _runtime.sign(slope_1_1_left_flip_up) * t180
-    del slope_1_1_left_flip_up, t180
-    t181 = miss_1_1_left_flip_up / (2.0 * outer_1_1_left_flip_up)
+    t173 = np.sqrt(np.maximum(0.0, inner_1_1_left_flip_up))
+    outer_1_1_left_flip_up = slope_1_1_left_flip_up + _runtime.sign(slope_1_1_left_flip_up) * t173
+    del slope_1_1_left_flip_up, t173
+    t174 = miss_1_1_left_flip_up / (2.0 * outer_1_1_left_flip_up)
     del miss_1_1_left_flip_up, outer_1_1_left_flip_up
-    t182 = _runtime.select(inner_1_1_left_flip_up < 0.0, t179, t181)
-    del inner_1_1_left_flip_up, t179, t181
-    t183 = t182 * t182
-    t184 = 1.0 / (1.0 + t183)
-    t185 = 2.0 * t182 * t184
-    del t182
-    by_c_1_1_left_flip_up = t184 * (1.0 - t183)
-    del t183, t184
-    t186 = d4 * (t185 * t185) / (1.0 + np.abs(by_c_1_1_left_flip_up))
-    t187 = (t186 + root1 * np.abs(t185) <= whole_1_1) & (0.0 < by_c_1_1_left_flip_up)
-    del t186
-    cosine_1_1_left_flip_up = _runtime.select(t187, by_c_1_1_left_flip_up, 1.0)
+    t175 = _runtime.select(inner_1_1_left_flip_up < 0.0, t172, t174)
+    del inner_1_1_left_flip_up, t172, t174
+    t176 = t175 * t175
+    t177 = 1.0 / (1.0 + t176)
+    t178 = 2.0 * t175 * t177
+    del t175
+    by_c_1_1_left_flip_up = t177 * (1.0 - t176)
+    del t176, t177
+    t179 = d4 * (t178 * t178) / (1.0 + np.abs(by_c_1_1_left_flip_up))
+    t180 = (t179 + root1 * np.abs(t178) <= whole_1_1) & (0.0 < by_c_1_1_left_flip_up)
+    del t179
+    cosine_1_1_left_flip_up = _runtime.select(t180, by_c_1_1_left_flip_up, 1.0)
     del by_c_1_1_left_flip_up
-    sine_1_1_left_flip_up = _runtime.select(t187, -t185, 0.0)
-    del t185, t187
-    c_1_1_2_left_flip_up = c_1_1 * cosine_1_1_left_flip_up + t19 * sine_1_1_left_flip_up
-    s_1_1_2_left_flip_up = c_1_1 * sine_1_1_left_flip_up - t19 * cosine_1_1_left_flip_up
+    sine_1_1_left_flip_up = _runtime.select(t180, -t178, 0.0)
+    del t178, t180
+    c_1_1_2_left_flip_up = c_1_1 * cosine_1_1_left_flip_up + t14 * sine_1_1_left_flip_up
+    s_1_1_2_left_flip_up = c_1_1 * sine_1_1_left_flip_up - t14 * cosine_1_1_left_flip_up
     del cosine_1_1_left_flip_up, sine_1_1_left_flip_up
     axisx_1_1_2_left_flip_up = T13 * c_1_1_2_left_flip_up + T23 * s_1_1_2_left_flip_up
-    t188 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up
-    t189 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up
-    most_1_1_2_left_flip_up = np.sqrt(t188 + t189 * t189)
+    t181 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up
+    t182 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up
+    most_1_1_2_left_flip_up = np.sqrt(t181 + t182 * t182)
     qx_1_1_2_left_flip_up = w_x * c_1_1_2_left_flip_up + w_y * s_1_1_2_left_flip_up
-    t190 = qx_1_1_2_left_flip_up * qx_1_1_2_left_flip_up
-    r_1_1_2_left_flip_up = np.sqrt(t44 + t190)
+    t183 = qx_1_1_2_left_flip_up * qx_1_1_2_left_flip_up
+    r_1_1_2_left_flip_up = np.sqrt(t37 + t183)
+    del t183
+    t184 = r_1_1_2_left_flip_up <= t38
+    t185 = d5 + r_1_1_2_left_flip_up
+    t186 = 1.0 / np.sqrt(t11 + t181)
+    del t181
+    t187 = T33 * t186
+    t188 = qx_1_1_2_left_flip_up + d5 * t187
+    us_1_1_2_left_flip_up = axisx_1_1_2_left_flip_up * t186
+    del t186
+    t189 = t21 + d5 * us_1_1_2_left_flip_up
+    there_1_1_2_left_flip_up = np.sqrt(t188 * t188 + t189 * t189)
+    del t188, t189
+    t190 = np.maximum(there_1_1_2_left_flip_up, fold_1_1)
+    goal_1_1_2_left_flip_up = np.minimum(full_1_1, t190)
     del t190
-    t191 = r_1_1_2_left_flip_up <= t47
-    t192 = d5 + r_1_1_2_left_flip_up
-    t193 = 1.0 / np.sqrt(t16 + t188)
-    del t188
-    t194 = T33 * t193
-    t195 = qx_1_1_2_left_flip_up + d5 * t194
-    us_1_1_2_left_flip_up = axisx_1_1_2_left_flip_up * t193
-    del t193
-    t196 = t26 + d5 * us_1_1_2_left_flip_up
-    there_1_1_2_left_flip_up = np.sqrt(t195 * t195 + t196 * t196)
-    del t195, t196
-    t197 = np.maximum(there_1_1_2_left_flip_up, fold_1_1)
-    goal_1_1_2_left_flip_up = np.minimum(full_1_1, t197)
-    del t197
-    t198 = (t192 - goal_1_1_2_left_flip_up) * (t192 + goal_1_1_2_left_flip_up)
+    t191 = (t185 - goal_1_1_2_left_flip_up) * (t185 + goal_1_1_2_left_flip_up)
+    del t185
+    k_v_1_1_2_left_flip_up = np.maximum(0.0, t191)
+    del t191
+    t192 = d5 - r_1_1_2_left_flip_up
+    t193 = (goal_1_1_2_left_flip_up - t192) * (goal_1_1_2_left_flip_up + t192)
     del t192
-    k_v_1_1_2_left_flip_up = np.maximum(0.0, t198)
-    del t198
-    t199 = d5 - r_1_1_2_left_flip_up
-    t200 = (goal_1_1_2_left_flip_up - t199) * (goal_1_1_2_left_flip_up + t199)
-    del t199
-    d_v_1_1_2_left_flip_up = np.maximum(0.0, t200)
-    del t200
+    d_v_1_1_2_left_flip_up = np.maximum(0.0, t193)
+    del t193
     n_v_1_1_2_left_flip_up = k_v_1_1_2_left_flip_up + d_v_1_1_2_left_flip_up
-    t201 = n_v_1_1_2_left_flip_up <= t56
-    t202 = k_v_1_1_2_left_flip_up - d_v_1_1_2_left_flip_up
-    t203 = 1.0 / n_v_1_1_2_left_flip_up
+    t194 = n_v_1_1_2_left_flip_up <= t47
+    t195 = k_v_1_1_2_left_flip_up - d_v_1_1_2_left_flip_up
+    t196 = 1.0 / n_v_1_1_2_left_flip_up
     del n_v_1_1_2_left_flip_up
-    uc_v_1_1_2_left_flip_up = _runtime.select(t201, 1.0, t202 * t203)
-    del t202
-    t204 = qx_1_1_2_left_flip_up * uc_v_1_1_2_left_flip_up
-    t205 = qx_1_1_2_left_flip_up * us_1_1_2_left_flip_up
+    uc_v_1_1_2_left_flip_up = _runtime.select(t194, 1.0, t195 * t196)
+    del t195
+    t197 = qx_1_1_2_left_flip_up * uc_v_1_1_2_left_flip_up
+    t198 = qx_1_1_2_left_flip_up * us_1_1_2_left_flip_up
     del us_1_1_2_left_flip_up
-    t206 = k_v_1_1_2_left_flip_up * d_v_1_1_2_left_flip_up
+    t199 = k_v_1_1_2_left_flip_up * d_v_1_1_2_left_flip_up
     del d_v_1_1_2_left_flip_up, k_v_1_1_2_left_flip_up
-    t207 = 2.0 * _runtime.sign(t205 - t26 * t194) * np.sqrt(t206)
-    del t194, t205, t206
-    us_v_1_1_2_left_flip_up = _runtime.select(t201, 0.0, t203 * t207)
-    del t201, t203, t207
-    t208 = t26 * us_v_1_1_2_left_flip_up
-    t209 = 1.0 / r_1_1_2_left_flip_up
+    t200 = 2.0 * _runtime.sign(t198 - t21 * t187) * np.sqrt(t199)
+    del t187, t198, t199
+    us_v_1_1_2_left_flip_up = _runtime.select(t194, 0.0, t196 * t200)
+    del t194, t196, t200
+    t201 = t21 * us_v_1_1_2_left_flip_up
+    t202 = 1.0 / r_1_1_2_left_flip_up
     del r_1_1_2_left_flip_up
-    c_v_1_1_2_left_flip_up = _runtime.select(t191, 1.0, (t204 + t208) * t209)
-    t210 = -(T33 * c_v_1_1_2_left_flip_up) < 0.0
-    t211 = qx_1_1_2_left_flip_up * us_v_1_1_2_left_flip_up
+    c_v_1_1_2_left_flip_up = _runtime.select(t184, 1.0, (t197 + t201) * t202)
+    t203 = -(T33 * c_v_1_1_2_left_flip_up) < 0.0
+    t204 = qx_1_1_2_left_flip_up * us_v_1_1_2_left_flip_up
     del qx_1_1_2_left_flip_up, us_v_1_1_2_left_flip_up
-    t212 = t26 * uc_v_1_1_2_left_flip_up
+    t205 = t21 * uc_v_1_1_2_left_flip_up
     del uc_v_1_1_2_left_flip_up
-    wc_1_1_2_left_flip_up = _runtime.select(t191, 0.0, t209 * (t211 + t212))
-    s_v_1_1_2_left_flip_up = _runtime.select(t191, 0.0, t209 * (t211 - t212))
-    del t211, t212
-    to_c_1_1_2_left_flip_up = _runtime.select(t210, wc_1_1_2_left_flip_up, -s_v_1_1_2_left_flip_up)
+    wc_1_1_2_left_flip_up = _runtime.select(t184, 0.0, t202 * (t204 + t205))
+    s_v_1_1_2_left_flip_up = _runtime.select(t184, 0.0, t202 * (t204 - t205))
+    del t204, t205
+    to_c_1_1_2_left_flip_up = _runtime.select(t203, wc_1_1_2_left_flip_up, -s_v_1_1_2_left_flip_up)
     del s_v_1_1_2_left_flip_up, wc_1_1_2_left_flip_up
-    c_w_1_1_2_left_flip_up = _runtime.select(t191, 1.0, t209 * (t204 - t208))
-    del t191, t204, t208, t209
-    to_s_1_1_2_left_flip_up = _runtime.select(t210, c_w_1_1_2_left_flip_up, c_v_1_1_2_left_flip_up)
-    del c_v_1_1_2_left_flip_up, c_w_1_1_2_left_flip_up, t210
-    t213 = T33 * to_c_1_1_2_left_flip_up / to_s_1_1_2_left_flip_up
+    c_w_1_1_2_left_flip_up = _runtime.select(t184, 1.0, t202 * (t197 - t201))
+    del t184, t197, t201, t202
+    to_s_1_1_2_left_flip_up = _runtime.select(t203, c_w_1_1_2_left_flip_up, c_v_1_1_2_left_flip_up)
+    del c_v_1_1_2_left_flip_up, c_w_1_1_2_left_flip_up, t203
+    t206 = T33 * to_c_1_1_2_left_flip_up / to_s_1_1_2_left_flip_up
     del to_c_1_1_2_left_flip_up, to_s_1_1_2_left_flip_up
-    t214 = np.minimum(most_1_1_2_left_flip_up, _runtime.select(t43, 0.0, t213))
-    del t213
-    kept_1_1_2_left_flip_up = np.maximum(-most_1_1_2_left_flip_up, t214)
-    del t214
-    t215 = most_1_1_2_left_flip_up - kept_1_1_2_left_flip_up
-    t216 = most_1_1_2_left_flip_up + kept_1_1_2_left_flip_up
-    rest_1_1_2_left_flip_up = np.sqrt(t215 * t216) * _runtime.sign(-t189)
-    del t215, t216
-    t217 = axisx_1_1_2_left_flip_up * rest_1_1_2_left_flip_up
-    t218 = most_1_1_2_left_flip_up * most_1_1_2_left_flip_up
+    t207 = np.minimum(most_1_1_2_left_flip_up, _runtime.select(t36, 0.0, t206))
+    del t206
+    kept_1_1_2_left_flip_up = np.maximum(-most_1_1_2_left_flip_up, t207)
+    del t207
+    t208 = most_1_1_2_left_flip_up - kept_1_1_2_left_flip_up
+    t209 = most_1_1_2_left_flip_up + kept_1_1_2_left_flip_up
+    rest_1_1_2_left_flip_up = np.sqrt(t208 * t209) * _runtime.sign(-t182)
+    del t208, t209
+    t210 = axisx_1_1_2_left_flip_up * rest_1_1_2_left_flip_up
+    t211 = most_1_1_2_left_flip_up * most_1_1_2_left_flip_up
     del most_1_1_2_left_flip_up
-    t219 = 1.0 / t218
-    del t218
-    t220 = (t217 + t189 * kept_1_1_2_left_flip_up) * t219
-    del t217
-    t221 = axisx_1_1_2_left_flip_up * kept_1_1_2_left_flip_up
+    t212 = 1.0 / t211
+    del t211
+    t213 = (t210 + t182 * kept_1_1_2_left_flip_up) * t212
+    del t210
+    t214 = axisx_1_1_2_left_flip_up * kept_1_1_2_left_flip_up
     del axisx_1_1_2_left_flip_up, kept_1_1_2_left_flip_up
-    by_c_1_1_2_left_flip_up = t219 * (t221 - t189 * rest_1_1_2_left_flip_up)
-    del rest_1_1_2_left_flip_up, t189, t219, t221
-    t222 = d4 * (t220 * t220) / (1.0 + np.abs(by_c_1_1_2_left_flip_up))
-    t223 = (t222 + root1 * np.abs(t220) <= whole_1_1) & (0.0 < by_c_1_1_2_left_flip_up)
-    del t222
-    t224 = there_1_1_2_left_flip_up - goal_1_1_2_left_flip_up
+    by_c_1_1_2_left_flip_up = t212 * (t214 - t182 * rest_1_1_2_left_flip_up)
+    del rest_1_1_2_left_flip_up, t182, t212, t214
+    t215 = d4 * (t213 * t213) / (1.0 + np.abs(by_c_1_1_2_left_flip_up))
+    t216 = (t215 + root1 * np.abs(t213) <= whole_1_1) & (0.0 < by_c_1_1_2_left_flip_up)
+    del t215
+    t217 = there_1_1_2_left_flip_up - goal_1_1_2_left_flip_up
     del goal_1_1_2_left_flip_up, there_1_1_2_left_flip_up
-    t225 = t223 & (t47 < np.abs(t224))
-    del t223, t224
-    cosine_1_1_2_left_flip_up = _runtime.select(t225, by_c_1_1_2_left_flip_up, 1.0)
+    t218 = t216 & (size < 1125899906842624.0 * np.abs(t217))
+    del t216, t217
+    cosine_1_1_2_left_flip_up = _runtime.select(t218, by_c_1_1_2_left_flip_up, 1.0)
     del by_c_1_1_2_left_flip_up
-    t226 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
-    sine_1_1_2_left_flip_up = _runtime.select(t225, -t220, 0.0)
-    del t220, t225
-    t227 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
-    c_1_1_2_3_left_flip_up = t226 - t227
-    del t226, t227
-    t228 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
+    t219 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
+    sine_1_1_2_left_flip_up = _runtime.select(t218, -t213, 0.0)
+    del t213, t218
+    t220 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
+    c_1_1_2_3_left_flip_up = t219 - t220
+    del t219, t220
+    t221 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
     del c_1_1_2_left_flip_up, sine_1_1_2_left_flip_up
-    t229 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
+    t222 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
     del cosine_1_1_2_left_flip_up, s_1_1_2_left_flip_up
-    s_1_1_2_3_left_flip_up = t228 + t229
-    del t228, t229
+    s_1_1_2_3_left_flip_up = t221 + t222
+    del t221, t222
     axisx_1_1_2_3_left_flip_up = T13 * c_1_1_2_3_left_flip_up + T23 * s_1_1_2_3_left_flip_up
-    t230 = axisx_1_1_2_3_left_flip_up * axisx_1_1_2_3_left_flip_up
-    h_1_1_2_3_left_flip_up = np.sqrt(t16 + t230)
-    del t230
-    t231 = size_1_1 * h_1_1_2_3_left_flip_up <= t20
+    t223 = axisx_1_1_2_3_left_flip_up * axisx_1_1_2_3_left_flip_up
+    h_1_1_2_3_left_flip_up = np.sqrt(t11 + t223)
+    del t223
+    t224 = size * h_1_1_2_3_left_flip_up <= t15
     qx_1_1_2_3_left_flip_up = w_x * c_1_1_2_3_left_flip_up + w_y * s_1_1_2_3_left_flip_up
-    t232 = 1.0 / h_1_1_2_3_left_flip_up
-    t233 = T33 * t232
-    x_1_1_2_3_left_flip_up = _runtime.select(t231, qx_1_1_2_3_left_flip_up, qx_1_1_2_3_left_flip_up + d5 * t233)
+    t225 = 1.0 / h_1_1_2_3_left_flip_up
+    t226 = T33 * t225
+    x_1_1_2_3_left_flip_up = _runtime.select(t224, qx_1_1_2_3_left_flip_up, qx_1_1_2_3_left_flip_up + d5 * t226)
     del qx_1_1_2_3_left_flip_up
     dqx_1_1_2_3_left_flip_up = w_y * c_1_1_2_3_left_flip_up - w_x * s_1_1_2_3_left_flip_up
-    us_1_1_2_3_left_flip_up = axisx_1_1_2_3_left_flip_up * t232
-    del axisx_1_1_2_3_left_flip_up, t232
-    t234 = T13 * s_1_1_2_3_left_flip_up - T23 * c_1_1_2_3_left_flip_up
-    t235 = h_1_1_2_3_left_flip_up * h_1_1_2_3_left_flip_up
+    us_1_1_2_3_left_flip_up = axisx_1_1_2_3_left_flip_up * t225
+    del axisx_1_1_2_3_left_flip_up, t225
+    t227 = T13 * s_1_1_2_3_left_flip_up - T23 * c_1_1_2_3_left_flip_up
+    t228 = h_1_1_2_3_left_flip_up * h_1_1_2_3_left_flip_up
     del h_1_1_2_3_left_flip_up
-    rate_1_1_2_3_left_flip_up = d5 * (T33 * t234) / t235
-    del t234, t235
-    t236 = us_1_1_2_3_left_flip_up * rate_1_1_2_3_left_flip_up
-    dx_1_1_2_3_left_flip_up = _runtime.select(t231, dqx_1_1_2_3_left_flip_up, dqx_1_1_2_3_left_flip_up + t236)
-    del dqx_1_1_2_3_left_flip_up, t236
-    t237 = x_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
-    t238 = _runtime.select(t231, t26, t26 + d5 * us_1_1_2_3_left_flip_up)
+    rate_1_1_2_3_left_flip_up = d5 * (T33 * t227) / t228
+    del t227, t228
+    t229 = us_1_1_2_3_left_flip_up * rate_1_1_2_3_left_flip_up
+    dx_1_1_2_3_left_flip_up = _runtime.select(t224, dqx_1_1_2_3_left_flip_up, dqx_1_1_2_3_left_flip_up + t229)
+    del dqx_1_1_2_3_left_flip_up, t229
+    t230 = x_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
+    t231 = _runtime.select(t224, t21, t21 + d5 * us_1_1_2_3_left_flip_up)
     del us_1_1_2_3_left_flip_up
-    dy_1_1_2_3_left_flip_up = _runtime.select(t231, 0.0, t233 * rate_1_1_2_3_left_flip_up)
-    del rate_1_1_2_3_left_flip_up, t233
-    slope_1_1_2_3_left_flip_up = t237 - t238 * dy_1_1_2_3_left_flip_up
-    del t237
-    t239 = slope_1_1_2_3_left_flip_up * slope_1_1_2_3_left_flip_up
-    t240 = x_1_1_2_3_left_flip_up * x_1_1_2_3_left_flip_up
+    dy_1_1_2_3_left_flip_up = _runtime.select(t224, 0.0, t226 * rate_1_1_2_3_left_flip_up)
+    del rate_1_1_2_3_left_flip_up, t226
+    slope_1_1_2_3_left_flip_up = t230 - t231 * dy_1_1_2_3_left_flip_up
+    del t230
+    t232 = slope_1_1_2_3_left_flip_up * slope_1_1_2_3_left_flip_up
+    t233 = x_1_1_2_3_left_flip_up * x_1_1_2_3_left_flip_up
     del x_1_1_2_3_left_flip_up
-    square_1_1_2_3_left_flip_up = t240 + t238 * t238
-    del t238, t240
-    nearest_1_1_2_3_left_flip_up = _runtime.select(t231, t30, fold_1_1)
+    square_1_1_2_3_left_flip_up = t233 + t231 * t231
+    del t231, t233
+    nearest_1_1_2_3_left_flip_up = _runtime.select(t224, t25, fold_1_1)
     low_1_1_2_3_left_flip_up = nearest_1_1_2_3_left_flip_up * nearest_1_1_2_3_left_flip_up
     del nearest_1_1_2_3_left_flip_up
-    farthest_1_1_2_3_left_flip_up = _runtime.select(t231, t5, full_1_1)
-    del t231
+    farthest_1_1_2_3_left_flip_up = _runtime.select(t224, t3, full_1_1)
+    del t224
     high_1_1_2_3_left_flip_up = farthest_1_1_2_3_left_flip_up * farthest_1_1_2_3_left_flip_up
     del farthest_1_1_2_3_left_flip_up
-    t241 = np.minimum(high_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up)
+    t234 = np.minimum(high_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up)
     del high_1_1_2_3_left_flip_up
-    miss_1_1_2_3_left_flip_up = square_1_1_2_3_left_flip_up - np.maximum(low_1_1_2_3_left_flip_up, t241)
-    del low_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up, t241
-    t242 = dx_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
+    miss_1_1_2_3_left_flip_up = square_1_1_2_3_left_flip_up - np.maximum(low_1_1_2_3_left_flip_up, t234)
+    del low_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up, t234
+    t235 = dx_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
     del dx_1_1_2_3_left_flip_up
-    t243 = dy_1_1_2_3_left_flip_up * dy_1_1_2_3_left_flip_up
+    t236 = dy_1_1_2_3_left_flip_up * dy_1_1_2_3_left_flip_up
     del dy_1_1_2_3_left_flip_up
-    bend_1_1_2_3_left_flip_up = t242 + t243
-    del t242, t243
-    t244 = miss_1_1_2_3_left_flip_up * bend_1_1_2_3_left_flip_up
-    inner_1_1_2_3_left_flip_up = t239 - t244
-    del t239, t244
-    t245 = slope_1_1_2_3_left_flip_up / (2.0 * bend_1_1_2_3_left_flip_up)
+    bend_1_1_2_3_left_flip_up = t235 + t236
+    del t235, t236
+    t237 = miss_1_1_2_3_left_flip_up * bend_1_1_2_3_left_flip_up
+    inner_1_1_2_3_left_flip_up = t232 - t237
+    del t232, t237
+    t238 = slope_1_1_2_3_left_flip_up / (2.0 * bend_1_1_2_3_left_flip_up)
     del bend_1_1_2_3_left_flip_up
-    t246 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_left_flip_up))
-    t247 = _runtime.sign(slope_1_1_2_3_left_flip_up) * t246
+    t239 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_left_flip_up))
+    t240 = _runtime.sign(slope_1_1_2_3_left_flip_up) * t239
+    del t239
+    t241 = miss_1_1_2_3_left_flip_up / (2.0 * (slope_1_1_2_3_left_flip_up + t240))
+    del miss_1_1_2_3_left_flip_up, slope_1_1_2_3_left_flip_up, t240
+    t242 = _runtime.select(inner_1_1_2_3_left_flip_up < 0.0, t238, t241)
+    del inner_1_1_2_3_left_flip_up, t238, t241
+    t243 = t242 * t242
+    t244 = 1.0 / (1.0 + t243)
+    t245 = 2.0 * t242 * t244
+    del t242
+    by_c_1_1_2_3_left_flip_up = t244 * (1.0 - t243)
+    del t243, t244
+    t246 = d4 * (t245 * t245) / (1.0 + np.abs(by_c_1_1_2_3_left_flip_up))
+    t247 = (t246 + root1 * np.abs(t245) <= whole_1_1) & (0.0 < by_c_1_1_2_3_left_flip_up)
     del t246
-    t248 = miss_1_1_2_3_left_flip_up / (2.0 * (slope_1_1_2_3_left_flip_up + t247))
-    del miss_1_1_2_3_left_flip_up, slope_1_1_2_3_left_flip_up, t247
-    t249 = _runtime.select(inner_1_1_2_3_left_flip_up < 0.0, t245, t248)
-    del inner_1_1_2_3_left_flip_up, t245, t248
-    t250 = t249 * t249
-    t251 = 1.0 / (1.0 + t250)
-    t252 = 2.0 * t249 * t251
-    del t249
-    by_c_1_1_2_3_left_flip_up = t251 * (1.0 - t250)
-    del t250, t251
-    t253 = d4 * (t252 * t252) / (1.0 + np.abs(by_c_1_1_2_3_left_flip_up))
-    t254 = (t253 + root1 * np.abs(t252) <= whole_1_1) & (0.0 < by_c_1_1_2_3_left_flip_up)
-    del t253
-    cosine_1_1_2_3_left_flip_up = _runtime.select(t254, by_c_1_1_2_3_left_flip_up, 1.0)
+    cosine_1_1_2_3_left_flip_up = _runtime.select(t247, by_c_1_1_2_3_left_flip_up, 1.0)
     del by_c_1_1_2_3_left_flip_up
-    t255 = c_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
-    sine_1_1_2_3_left_flip_up = _runtime.select(t254, -t252, 0.0)
-    del t252, t254
-    t256 = s_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
-    c_1_1_2_3_4_left_flip_up = t255 - t256
-    del t255, t256
-    t257 = c_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
+    t248 = c_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
+    sine_1_1_2_3_left_flip_up = _runtime.select(t247, -t245, 0.0)
+    del t245, t247
+    t249 = s_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
+    c_1_1_2_3_4_left_flip_up = t248 - t249
+    del t248, t249
+    t250 = c_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
     del c_1_1_2_3_left_flip_up, sine_1_1_2_3_left_flip_up
-    t258 = s_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
+    t251 = s_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
     del cosine_1_1_2_3_left_flip_up, s_1_1_2_3_left_flip_up
-    s_1_1_2_3_4_left_flip_up = t257 + t258
-    del t257, t258
+    s_1_1_2_3_4_left_flip_up = t250 + t251
+    del t250, t251
     axisx_1_1_2_3_4_left_flip_up = T13 * c_1_1_2_3_4_left_flip_up + T23 * s_1_1_2_3_4_left_flip_up
-    t259 = axisx_1_1_2_3_4_left_flip_up * axisx_1_1_2_3_4_left_flip_up
-    h_1_1_2_3_4_left_flip_up = np.sqrt(t16 + t259)
-    del t259
-    t260 = size_1_1 * h_1_1_2_3_4_left_flip_up <= t20
+    t252 = axisx_1_1_2_3_4_left_flip_up * axisx_1_1_2_3_4_left_flip_up
+    h_1_1_2_3_4_left_flip_up = np.sqrt(t11 + t252)
+    del t252
+    t253 = size * h_1_1_2_3_4_left_flip_up <= t15
     qx_1_1_2_3_4_left_flip_up = w_x * c_1_1_2_3_4_left_flip_up + w_y * s_1_1_2_3_4_left_flip_up
-    t261 = 1.0 / h_1_1_2_3_4_left_flip_up
-    t262 = T33 * t261
-    x_1_1_2_3_4_left_flip_up = _runtime.select(t260, qx_1_1_2_3_4_left_flip_up, qx_1_1_2_3_4_left_flip_up + d5 * t262)
+    t254 = 1.0 / h_1_1_2_3_4_left_flip_up
+    t255 = T33 * t254
+    x_1_1_2_3_4_left_flip_up = _runtime.select(t253, qx_1_1_2_3_4_left_flip_up, qx_1_1_2_3_4_left_flip_up + d5 * t255)
     del qx_1_1_2_3_4_left_flip_up
     dqx_1_1_2_3_4_left_flip_up = w_y * c_1_1_2_3_4_left_flip_up - w_x * s_1_1_2_3_4_left_flip_up
-    us_1_1_2_3_4_left_flip_up = axisx_1_1_2_3_4_left_flip_up * t261
-    del axisx_1_1_2_3_4_left_flip_up, t261
-    t263 = T13 * s_1_1_2_3_4_left_flip_up - T23 * c_1_1_2_3_4_left_flip_up
-    t264 = h_1_1_2_3_4_left_flip_up * h_1_1_2_3_4_left_flip_up
+    us_1_1_2_3_4_left_flip_up = axisx_1_1_2_3_4_left_flip_up * t254
+    del axisx_1_1_2_3_4_left_flip_up, t254
+    t256 = T13 * s_1_1_2_3_4_left_flip_up - T23 * c_1_1_2_3_4_left_flip_up
+    t257 = h_1_1_2_3_4_left_flip_up * h_1_1_2_3_4_left_flip_up
     del h_1_1_2_3_4_left_flip_up
-    rate_1_1_2_3_4_left_flip_up = d5 * (T33 * t263) / t264
-    del t263, t264
-    t265 = us_1_1_2_3_4_left_flip_up * rate_1_1_2_3_4_left_flip_up
-    dx_1_1_2_3_4_left_flip_up = _runtime.select(t260, dqx_1_1_2_3_4_left_flip_up, dqx_1_1_2_3_4_left_flip_up + t265)
-    del dqx_1_1_2_3_4_left_flip_up, t265
-    t266 = x_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
-    t267 = _runtime.select(t260, t26, t26 + d5 * us_1_1_2_3_4_left_flip_up)
+    rate_1_1_2_3_4_left_flip_up = d5 * (T33 * t256) / t257
+    del t256, t257
+    t258 = us_1_1_2_3_4_left_flip_up * rate_1_1_2_3_4_left_flip_up
+    dx_1_1_2_3_4_left_flip_up = _runtime.select(t253, dqx_1_1_2_3_4_left_flip_up, dqx_1_1_2_3_4_left_flip_up + t258)
+    del dqx_1_1_2_3_4_left_flip_up, t258
+    t259 = x_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
+    t260 = _runtime.select(t253, t21, t21 + d5 * us_1_1_2_3_4_left_flip_up)
     del us_1_1_2_3_4_left_flip_up
-    dy_1_1_2_3_4_left_flip_up = _runtime.select(t260, 0.0, t262 * rate_1_1_2_3_4_left_flip_up)
-    del rate_1_1_2_3_4_left_flip_up, t262
-    slope_1_1_2_3_4_left_flip_up = t266 - t267 * dy_1_1_2_3_4_left_flip_up
-    del t266
-    t268 = slope_1_1_2_3_4_left_flip_up * slope_1_1_2_3_4_left_flip_up
-    t269 = x_1_1_2_3_4_left_flip_up * x_1_1_2_3_4_left_flip_up
+    dy_1_1_2_3_4_left_flip_up = _runtime.select(t253, 0.0, t255 * rate_1_1_2_3_4_left_flip_up)
+    del rate_1_1_2_3_4_left_flip_up, t255
+    slope_1_1_2_3_4_left_flip_up = t259 - t260 * dy_1_1_2_3_4_left_flip_up
+    del t259
+    t261 = slope_1_1_2_3_4_left_flip_up * slope_1_1_2_3_4_left_flip_up
+    t262 = x_1_1_2_3_4_left_flip_up * x_1_1_2_3_4_left_flip_up
     del x_1_1_2_3_4_left_flip_up
-    square_1_1_2_3_4_left_flip_up = t269 + t267 * t267
-    del t267, t269
-    nearest_1_1_2_3_4_left_flip_up = _runtime.select(t260, t30, fold_1_1)
+    square_1_1_2_3_4_left_flip_up = t262 + t260 * t260
+    del t260, t262
+    nearest_1_1_2_3_4_left_flip_up = _runtime.select(t253, t25, fold_1_1)
     low_1_1_2_3_4_left_flip_up = nearest_1_1_2_3_4_left_flip_up * nearest_1_1_2_3_4_left_flip_up
     del nearest_1_1_2_3_4_left_flip_up
-    farthest_1_1_2_3_4_left_flip_up = _runtime.select(t260, t5, full_1_1)
-    del t260
+    farthest_1_1_2_3_4_left_flip_up = _runtime.select(t253, t3, full_1_1)
+    del t253
     high_1_1_2_3_4_left_flip_up = farthest_1_1_2_3_4_left_flip_up * farthest_1_1_2_3_4_left_flip_up
     del farthest_1_1_2_3_4_left_flip_up
-    t270 = np.minimum(high_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up)
+    t263 = np.minimum(high_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up)
     del high_1_1_2_3_4_left_flip_up
-    miss_1_1_2_3_4_left_flip_up = square_1_1_2_3_4_left_flip_up - np.maximum(low_1_1_2_3_4_left_flip_up, t270)
-    del low_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up, t270
-    t271 = dx_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
+    miss_1_1_2_3_4_left_flip_up = square_1_1_2_3_4_left_flip_up - np.maximum(low_1_1_2_3_4_left_flip_up, t263)
+    del low_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up, t263
+    t264 = dx_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
     del dx_1_1_2_3_4_left_flip_up
-    t272 = dy_1_1_2_3_4_left_flip_up * dy_1_1_2_3_4_left_flip_up
+    t265 = dy_1_1_2_3_4_left_flip_up * dy_1_1_2_3_4_left_flip_up
     del dy_1_1_2_3_4_left_flip_up
-    bend_1_1_2_3_4_left_flip_up = t271 + t272
-    del t271, t272
-    t273 = miss_1_1_2_3_4_left_flip_up * bend_1_1_2_3_4_left_flip_up
-    inner_1_1_2_3_4_left_flip_up = t268 - t273
-    del t268, t273
-    t274 = slope_1_1_2_3_4_left_flip_up / (2.0 * bend_1_1_2_3_4_left_flip_up)
+    bend_1_1_2_3_4_left_flip_up = t264 + t265
+    del t264, t265
+    t266 = miss_1_1_2_3_4_left_flip_up * bend_1_1_2_3_4_left_flip_up
+    inner_1_1_2_3_4_left_flip_up = t261 - t266
+    del t261, t266
+    t267 = slope_1_1_2_3_4_left_flip_up / (2.0 * bend_1_1_2_3_4_left_flip_up)
     del bend_1_1_2_3_4_left_flip_up
-    t275 = np.maximum(0.0, inner_1_1_2_3_4_left_flip_up)
-    t276 = _runtime.sign(slope_1_1_2_3_4_left_flip_up) * np.sqrt(t275)
+    t268 = np.maximum(0.0, inner_1_1_2_3_4_left_flip_up)
+    t269 = _runtime.sign(slope_1_1_2_3_4_left_flip_up) * np.sqrt(t268)
+    del t268
+    t270 = miss_1_1_2_3_4_left_flip_up / (2.0 * (slope_1_1_2_3_4_left_flip_up + t269))
+    del miss_1_1_2_3_4_left_flip_up, slope_1_1_2_3_4_left_flip_up, t269
+    t271 = _runtime.select(inner_1_1_2_3_4_left_flip_up < 0.0, t267, t270)
+    del inner_1_1_2_3_4_left_flip_up, t267, t270
+    t272 = t271 * t271
+    t273 = 1.0 / (1.0 + t272)
+    t274 = 2.0 * t271 * t273
+    del t271
+    by_c_1_1_2_3_4_left_flip_up = t273 * (1.0 - t272)
+    del t272, t273
+    t275 = d4 * (t274 * t274) / (1.0 + np.abs(by_c_1_1_2_3_4_left_flip_up))
+    t276 = (t275 + root1 * np.abs(t274) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_left_flip_up)
     del t275
-    t277 = miss_1_1_2_3_4_left_flip_up / (2.0 * (slope_1_1_2_3_4_left_flip_up + t276))
-    del miss_1_1_2_3_4_left_flip_up, slope_1_1_2_3_4_left_flip_up, t276
-    t278 = _runtime.select(inner_1_1_2_3_4_left_flip_up < 0.0, t274, t277)
-    del inner_1_1_2_3_4_left_flip_up, t274, t277
-    t279 = t278 * t278
-    t280 = 1.0 / (1.0 + t279)
-    t281 = 2.0 * t278 * t280
-    del t278
-    by_c_1_1_2_3_4_left_flip_up = t280 * (1.0 - t279)
-    del t279, t280
-    t282 = d4 * (t281 * t281) / (1.0 + np.abs(by_c_1_1_2_3_4_left_flip_up))
-    t283 = (t282 + root1 * np.abs(t281) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_left_flip_up)
-    del t282
-    sine_1_1_2_3_4_left_flip_up = _runtime.select(t283, -t281, 0.0)
-    del t281
-    t284 = c_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
-    cosine_1_1_2_3_4_left_flip_up = _runtime.select(t283, by_c_1_1_2_3_4_left_flip_up, 1.0)
-    del by_c_1_1_2_3_4_left_flip_up, t283
-    t285 = s_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
-    s1_left_flip_up = _runtime.select(tangent1, t284 + t285, -t19)
-    del t19, t284, t285
-    t286 = c_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
+    sine_1_1_2_3_4_left_flip_up = _runtime.select(t276, -t274, 0.0)
+    del t274
+    t277 = c_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
+    cosine_1_1_2_3_4_left_flip_up = _runtime.select(t276, by_c_1_1_2_3_4_left_flip_up, 1.0)
+    del by_c_1_1_2_3_4_left_flip_up, t276
+    t278 = s_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
+    s1_left_flip_up = _runtime.select(tangent1, t277 + t278, -t14)
+    del t14, t277, t278
+    t279 = c_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
     del c_1_1_2_3_4_left_flip_up, cosine_1_1_2_3_4_left_flip_up
-    t287 = s_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
+    t280 = s_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
     del s_1_1_2_3_4_left_flip_up, sine_1_1_2_3_4_left_flip_up
-    c1_left_flip_up = _runtime.select(tangent1, t286 - t287, c_1_1)
-    del c_1_1, t286, t287
-    t288 = _runtime.wrap_cut(np.arctan2(s1_left_flip_up, c1_left_flip_up))
+    c1_left_flip_up = _runtime.select(tangent1, t279 - t280, c_1_1)
+    del c_1_1, t279, t280
+    t281 = _runtime.wrap_cut(np.arctan2(s1_left_flip_up, c1_left_flip_up))
     across_left_flip_up = w_x * c1_left_flip_up + w_y * s1_left_flip_up
     M_13_left_flip_up = T13 * c1_left_flip_up + T23 * s1_left_flip_up
-    h_wrist_left_flip_up = np.sqrt(t16 + M_13_left_flip_up * M_13_left_flip_up)
-    aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t122
-    t289 = t44 + across_left_flip_up * across_left_flip_up
-    r_hub_left_flip_up = np.sqrt(t289)
-    del t289
-    hub_mid_left_flip_up = r_hub_left_flip_up <= t6
-    t290 = d5 + r_hub_left_flip_up
-    t291 = d5 - r_hub_left_flip_up
-    mid_reach_left_flip_up = np.minimum(full_1_1, t290) * 0.5 + np.maximum(fold_1_1, np.abs(t291)) * 0.5
-    t292 = (t290 - mid_reach_left_flip_up) * (t290 + mid_reach_left_flip_up)
-    k_mid_left_flip_up = np.maximum(0.0, t292)
-    del t292
-    t293 = (t291 - mid_reach_left_flip_up) * (t291 + mid_reach_left_flip_up)
+    h_wrist_left_flip_up = np.sqrt(t11 + M_13_left_flip_up * M_13_left_flip_up)
+    aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t113
+    t282 = t37 + across_left_flip_up * across_left_flip_up
+    r_hub_left_flip_up = np.sqrt(t282)
+    del t282
+    hub_mid_left_flip_up = r_hub_left_flip_up <= t4
+    t283 = d5 + r_hub_left_flip_up
+    t284 = d5 - r_hub_left_flip_up
+    mid_reach_left_flip_up = np.minimum(full_1_1, t283) * 0.5 + np.maximum(fold_1_1, np.abs(t284)) * 0.5
+    t285 = (t283 - mid_reach_left_flip_up) * (t283 + mid_reach_left_flip_up)
+    k_mid_left_flip_up = np.maximum(0.0, t285)
+    del t285
+    t286 = (t284 - mid_reach_left_flip_up) * (t284 + mid_reach_left_flip_up)
     del mid_reach_left_flip_up
-    d_mid_left_flip_up = np.maximum(0.0, -t293)
-    del t293
+    d_mid_left_flip_up = np.maximum(0.0, -t286)
+    del t286
     n_mid_left_flip_up = k_mid_left_flip_up + d_mid_left_flip_up
-    any_mid_left_flip_up = n_mid_left_flip_up <= t125
-    t294 = 1.0 / n_mid_left_flip_up
+    any_mid_left_flip_up = n_mid_left_flip_up <= t116
+    t287 = 1.0 / n_mid_left_flip_up
     del n_mid_left_flip_up
-    t295 = (k_mid_left_flip_up - d_mid_left_flip_up) * t294
-    uc_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 1.0, t295)
-    del t295
-    t296 = np.sqrt(k_mid_left_flip_up * d_mid_left_flip_up)
-    del d_mid_left_flip_up, k_mid_left_flip_up
-    us_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 0.0, t294 * (2.0 * t296))
-    del any_mid_left_flip_up, t294, t296
-    t297 = across_left_flip_up * uc_mid_left_flip_up + t26 * us_mid_left_flip_up
-    t298 = 1.0 / r_hub_left_flip_up
-    del r_hub_left_flip_up
-    c_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t297 * t298)
-    del t297
-    close_left_flip_up = root1 * h_wrist_left_flip_up - t129 <= t6
-    t299 = 1.0 / h_wrist_left_flip_up
-    t300 = _runtime.select(aligned_wrist_left_flip_up, 0.0, T33 * t299)
-    t301 = across_left_flip_up + d5 * t300
-    c_phi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, 1.0, -(M_13_left_flip_up * t299))
-    del t299
-    t302 = t26 - d5 * c_phi_left_flip_up
-    here_left_flip_up = np.sqrt(t301 * t301 + t302 * t302)
-    del t301, t302
-    in_reach_left_flip_up = np.minimum(full_1_1, np.maximum(here_left_flip_up, fold_1_1))
-    t303 = (t290 - in_reach_left_flip_up) * (t290 + in_reach_left_flip_up)
-    del t290
-    k_near_left_flip_up = np.maximum(0.0, t303)
-    del t303
-    t304 = (t291 - in_reach_left_flip_up) * (t291 + in_reach_left_flip_up)
-    del t291
-    d_near_left_flip_up = np.maximum(0.0, -t304)
-    del t304
-    n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
-    any_near_left_flip_up = n_near_left_flip_up <= t125
-    t305 = 1.0 / n_near_left_flip_up
-    del n_near_left_flip_up
-    t306 = (k_near_left_flip_up - d_near_left_flip_up) * t305
-    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t306)
-    del t306
-    t307 = across_left_flip_up * c_phi_left_flip_up + t26 * t300
-    t308 = np.abs(t307)
-    side_left_flip_up = _runtime.select(t308 <= t6, 1.0, -(t307 / t308))
-    del t307, t308
-    t309 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
-    del d_near_left_flip_up, k_near_left_flip_up
-    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t305 * (2.0 * side_left_flip_up * t309))
-    del any_near_left_flip_up, side_left_flip_up, t305, t309
-    t310 = across_left_flip_up * uc_near_left_flip_up + t26 * us_near_left_flip_up
-    c_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t298 * t310)
-    del t310
-    t311 = t300 + c_near_left_flip_up
-    t312 = across_left_flip_up * us_near_left_flip_up - t26 * uc_near_left_flip_up
-    del uc_near_left_flip_up, us_near_left_flip_up
-    s_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t298 * t312)
-    del t312
-    t313 = c_phi_left_flip_up + s_near_left_flip_up
-    t314 = h_wrist_left_flip_up * np.sqrt(t311 * t311 + t313 * t313)
-    del h_wrist_left_flip_up, t311, t313
-    t315 = np.abs(here_left_flip_up - in_reach_left_flip_up)
-    del here_left_flip_up, in_reach_left_flip_up
-    t316 = (t314 - 2.2737367544323206e-13 <= t140) & np.logical_not(t315 <= t6)
-    del t314, t315
-    s_kept_left_flip_up = _runtime.select(t316, c_near_left_flip_up, -t300)
-    del c_near_left_flip_up
-    t317 = _runtime.select(close_left_flip_up, s_kept_left_flip_up, -t300)
-    del s_kept_left_flip_up, t300
-    sphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, c_mid_left_flip_up, t317)
-    del c_mid_left_flip_up, t317
-    t318 = across_left_flip_up - d5 * sphi_left_flip_up
-    t319 = across_left_flip_up * us_mid_left_flip_up - t26 * uc_mid_left_flip_up
-    del across_left_flip_up, uc_mid_left_flip_up, us_mid_left_flip_up
-    s_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t298 * t319)
-    del hub_mid_left_flip_up, t298, t319
-    c_kept_left_flip_up = _runtime.select(t316, -s_near_left_flip_up, c_phi_left_flip_up)
-    del s_near_left_flip_up, t316
-    t320 = _runtime.select(close_left_flip_up, c_kept_left_flip_up, c_phi_left_flip_up)
-    del c_kept_left_flip_up, c_phi_left_flip_up, close_left_flip_up
-    cphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, -s_mid_left_flip_up, t320)
-    del s_mid_left_flip_up, t320
-    ey_left_flip_up = t26 - d5 * cphi_left_flip_up
-    t321 = t318 * t318 + ey_left_flip_up * ey_left_flip_up
-    r_elbow_left_flip_up = np.sqrt(t321)
-    del t321
-    t322 = full_1_1 - r_elbow_left_flip_up
-    t323 = t29 + r_elbow_left_flip_up
-    t324 = r_elbow_left_flip_up - t29
-    t325 = t121 & (t120 <= t322) & (t120 <= t323) & (t120 <= t324)
-    unreachable_2 = np.logical_not(t325)
-    del t325
-    t326 = _runtime.poison(invalid | unreachable_2)
-    t327 = t288 + t326
+    t288 = (k_mid_left_flip_up - d_mid_left_flip_up) * t287
+    uc_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 1.0, t288)
     del t288
-    folded_elbow_left_flip_up = r_elbow_left_flip_up <= t6
-    A_elbow_left_flip_up = np.maximum(t322, 0.0)
-    del t322
-    C_elbow_left_flip_up = np.maximum(t324, 0.0)
-    del t324
-    t328 = A_elbow_left_flip_up * C_elbow_left_flip_up
+    t289 = np.sqrt(k_mid_left_flip_up * d_mid_left_flip_up)
+    del d_mid_left_flip_up, k_mid_left_flip_up
+    us_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 0.0, t287 * (2.0 * t289))
+    del any_mid_left_flip_up, t287, t289
+    t290 = across_left_flip_up * uc_mid_left_flip_up + t21 * us_mid_left_flip_up
+    t291 = 1.0 / r_hub_left_flip_up
+    del r_hub_left_flip_up
+    c_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t290 * t291)
+    del t290
+    close_left_flip_up = root1 * h_wrist_left_flip_up - t119 <= t4
+    t292 = 1.0 / h_wrist_left_flip_up
+    t293 = _runtime.select(aligned_wrist_left_flip_up, 0.0, T33 * t292)
+    t294 = across_left_flip_up + d5 * t293
+    c_phi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, 1.0, -(M_13_left_flip_up * t292))
+    del t292
+    t295 = t21 - d5 * c_phi_left_flip_up
+    here_left_flip_up = np.sqrt(t294 * t294 + t295 * t295)
+    del t294, t295
+    in_reach_left_flip_up = np.minimum(full_1_1, np.maximum(here_left_flip_up, fold_1_1))
+    t296 = (t283 - in_reach_left_flip_up) * (t283 + in_reach_left_flip_up)
+    del t283
+    k_near_left_flip_up = np.maximum(0.0, t296)
+    del t296
+    t297 = (t284 - in_reach_left_flip_up) * (t284 + in_reach_left_flip_up)
+    del t284
+    d_near_left_flip_up = np.maximum(0.0, -t297)
+    del t297
+    n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
+    any_near_left_flip_up = n_near_left_flip_up <= t116
+    t298 = 1.0 / n_near_left_flip_up
+    del n_near_left_flip_up
+    t299 = (k_near_left_flip_up - d_near_left_flip_up) * t298
+    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t299)
+    del t299
+    t300 = across_left_flip_up * c_phi_left_flip_up + t21 * t293
+    t301 = np.abs(t300)
+    side_left_flip_up = _runtime.select(t301 <= t4, 1.0, -(t300 / t301))
+    del t300, t301
+    t302 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
+    del d_near_left_flip_up, k_near_left_flip_up
+    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t298 * (2.0 * side_left_flip_up * t302))
+    del any_near_left_flip_up, side_left_flip_up, t298, t302
+    t303 = across_left_flip_up * uc_near_left_flip_up + t21 * us_near_left_flip_up
+    c_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t291 * t303)
+    del t303
+    t304 = t293 + c_near_left_flip_up
+    t305 = across_left_flip_up * us_near_left_flip_up - t21 * uc_near_left_flip_up
+    del uc_near_left_flip_up, us_near_left_flip_up
+    s_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t291 * t305)
+    del t305
+    t306 = c_phi_left_flip_up + s_near_left_flip_up
+    t307 = h_wrist_left_flip_up * np.sqrt(t304 * t304 + t306 * t306)
+    del h_wrist_left_flip_up, t304, t306
+    t308 = np.abs(here_left_flip_up - in_reach_left_flip_up)
+    del here_left_flip_up, in_reach_left_flip_up
+    t309 = (t307 - 2.2737367544323206e-13 <= t130) & np.logical_not(t308 <= t4)
+    del t307, t308
+    s_kept_left_flip_up = _runtime.select(t309, c_near_left_flip_up, -t293)
+    del c_near_left_flip_up
+    t310 = _runtime.select(close_left_flip_up, s_kept_left_flip_up, -t293)
+    del s_kept_left_flip_up, t293
+    sphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, c_mid_left_flip_up, t310)
+    del c_mid_left_flip_up, t310
+    t311 = across_left_flip_up - d5 * sphi_left_flip_up
+    t312 = across_left_flip_up * us_mid_left_flip_up - t21 * uc_mid_left_flip_up
+    del across_left_flip_up, uc_mid_left_flip_up, us_mid_left_flip_up
+    s_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t291 * t312)
+    del hub_mid_left_flip_up, t291, t312
+    c_kept_left_flip_up = _runtime.select(t309, -s_near_left_flip_up, c_phi_left_flip_up)
+    del s_near_left_flip_up, t309
+    t313 = _runtime.select(close_left_flip_up, c_kept_left_flip_up, c_phi_left_flip_up)
+    del c_kept_left_flip_up, c_phi_left_flip_up, close_left_flip_up
+    cphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, -s_mid_left_flip_up, t313)
+    del s_mid_left_flip_up, t313
+    ey_left_flip_up = t21 - d5 * cphi_left_flip_up
+    t314 = t311 * t311 + ey_left_flip_up * ey_left_flip_up
+    r_elbow_left_flip_up = np.sqrt(t314)
+    del t314
+    t315 = full_1_1 - r_elbow_left_flip_up
+    t316 = t24 + r_elbow_left_flip_up
+    t317 = r_elbow_left_flip_up - t24
+    t318 = t112 & (t111 <= t315) & (t111 <= t316) & (t111 <= t317)
+    unreachable_2 = np.logical_not(t318)
+    del t318
+    t319 = _runtime.poison(invalid | unreachable_2)
+    t320 = t281 + t319
+    del t281
+    folded_elbow_left_flip_up = r_elbow_left_flip_up <= t4
+    t321 = folded_elbow_left_flip_up | no_link_elbow
+    A_elbow_left_flip_up = np.maximum(t315, 0.0)
+    del t315
+    C_elbow_left_flip_up = np.maximum(t317, 0.0)
+    del t317
+    t322 = A_elbow_left_flip_up * C_elbow_left_flip_up
     S_elbow_left_flip_up = full_1_1 + r_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t323, 0.0)
-    del t323
-    t329 = S_elbow_left_flip_up * B_elbow_left_flip_up
-    t330 = 1.0 / (t328 + t329)
-    c_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t328 - t329) * t330))
-    t331 = 1.0 / r_elbow_left_flip_up
+    B_elbow_left_flip_up = np.maximum(t316, 0.0)
+    del t316
+    t323 = S_elbow_left_flip_up * B_elbow_left_flip_up
+    t324 = 1.0 / (t322 + t323)
+    c_base_elbow_left_flip_up = _runtime.select(t321, 1.0, -((t322 - t323) * t324))
+    t325 = 1.0 / r_elbow_left_flip_up
     del r_elbow_left_flip_up
-    t332 = ey_left_flip_up * c_base_elbow_left_flip_up * t331
-    area_elbow_left_flip_up = 2.0 * np.sqrt(t328 * t329)
-    del t328, t329
-    s_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 0.0, t330 * area_elbow_left_flip_up)
-    del t330
-    t333 = t331 * (t318 * s_base_elbow_left_flip_up)
-    s2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 0.0, t332 + t333)
-    t334 = t331 * (ey_left_flip_up * s_base_elbow_left_flip_up)
-    del ey_left_flip_up, s_base_elbow_left_flip_up
-    t335 = t331 * (t318 * c_base_elbow_left_flip_up)
-    del c_base_elbow_left_flip_up, t318, t331
-    c2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 1.0, t334 - t335)
-    t336 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
-    t337 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    t326 = _runtime.select(folded_elbow_left_flip_up, 0.0, ey_left_flip_up * t325)
+    del ey_left_flip_up
+    t327 = c_base_elbow_left_flip_up * t326
+    area_elbow_left_flip_up = 2.0 * np.sqrt(t322 * t323)
+    del t322, t323
+    s_base_elbow_left_flip_up = _runtime.select(t321, 0.0, t324 * area_elbow_left_flip_up)
+    del t321, t324
+    t328 = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t311 * t325))
+    del t311, t325
+    t329 = s_base_elbow_left_flip_up * t328
+    s2_left_flip_up = t327 - t329
+    t330 = c_base_elbow_left_flip_up * t328
+    del c_base_elbow_left_flip_up, t328
+    t331 = t326 * s_base_elbow_left_flip_up
+    del s_base_elbow_left_flip_up, t326
+    c2_left_flip_up = t330 + t331
+    t332 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
+    t333 = A_elbow_left_flip_up * S_elbow_left_flip_up
     del A_elbow_left_flip_up, S_elbow_left_flip_up
-    t338 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    t334 = C_elbow_left_flip_up * B_elbow_left_flip_up
     del B_elbow_left_flip_up, C_elbow_left_flip_up
-    t339 = 1.0 / (t337 + t338)
-    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t339)
+    t335 = 1.0 / (t333 + t334)
+    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t335)
     del area_elbow_left_flip_up
-    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t339 * (t337 - t338)))
-    del t337, t338, t339
-    t340 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
-    t341 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
-    t342 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
+    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t335 * (t333 - t334)))
+    del t333, t334, t335
+    t336 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
+    t337 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
+    t338 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
     del c2_left_flip_up, s2_left_flip_up
-    t343 = c3_left_flip_up * t341 - s3_left_flip_up * t342
-    t344 = c3_left_flip_up * t342 + s3_left_flip_up * t341
-    del t341, t342
-    t345 = _runtime.wrap_cut(np.arctan2(t343, t344)) + t326
-    del t343, t344
-    t346 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up
+    t339 = c3_left_flip_up * t337 - s3_left_flip_up * t338
+    t340 = c3_left_flip_up * t338 + s3_left_flip_up * t337
+    del t337, t338
+    t341 = _runtime.wrap_cut(np.arctan2(t339, t340)) + t319
+    del t339, t340
+    t342 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up
     del M_13_left_flip_up
     M_33_left_flip_up = T13 * s1_left_flip_up - T23 * c1_left_flip_up
-    t347 = _runtime.wrap_cut(-np.arctan2(t346, M_33_left_flip_up))
-    del M_33_left_flip_up, t346
-    t348 = t347 + t326
-    del t347
+    t343 = _runtime.wrap_cut(-np.arctan2(t342, M_33_left_flip_up))
+    del M_33_left_flip_up, t342
+    t344 = t343 + t319
+    del t343
     M_11_left_flip_up = T11 * c1_left_flip_up + T21 * s1_left_flip_up
-    t349 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up
+    t345 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up
     del M_11_left_flip_up
     M_12_left_flip_up = T12 * c1_left_flip_up + T22 * s1_left_flip_up
     del c1_left_flip_up, s1_left_flip_up
-    t350 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up
+    t346 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up
     del M_12_left_flip_up
-    t351 = _runtime.wrap_cut(-np.arctan2(t349, t350)) + t326
-    del t349, t350
-    s2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 0.0, t332 - t333)
-    del t332, t333
-    c2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t335 + t334))
-    del t334, t335
-    t352 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
-    t353 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
-    t354 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
+    t347 = _runtime.wrap_cut(-np.arctan2(t345, t346)) + t319
+    del t345, t346
+    s2_left_flip_down = t327 + t329
+    del t327, t329
+    c2_left_flip_down = t330 - t331
+    del t330, t331
+    t348 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
+    t349 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
+    t350 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
     del c2_left_flip_down, cphi_left_flip_up, s2_left_flip_down, sphi_left_flip_up
-    t355 = c3_left_flip_up * t353 + s3_left_flip_up * t354
-    t356 = c3_left_flip_up * t354 - s3_left_flip_up * t353
-    del c3_left_flip_up, s3_left_flip_up, t353, t354
-    t357 = _runtime.wrap_cut(np.arctan2(t355, t356)) + t326
-    del t355, t356
-    c_1_1_right_noflip_up = _runtime.select(free1, 1.0, t9 + t11)
-    del t11, t9
-    t358 = _runtime.select(free1, 0.0, t17 - t18)
-    del t17, t18
-    axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t358
-    t359 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up
-    h_1_1_right_noflip_up = np.sqrt(t16 + t359)
-    del t359
-    t360 = t15 * h_1_1_right_noflip_up <= t20
-    del t15
-    qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t358
-    t361 = 1.0 / h_1_1_right_noflip_up
-    uc_1_1_right_noflip_up = T33 * t361
-    t362 = d5 * uc_1_1_right_noflip_up
-    x_1_1_right_noflip_up = _runtime.select(t360, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up - t362)
-    dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t358
-    us_1_1_right_flip_up = axisx_1_1_right_noflip_up * t361
-    del axisx_1_1_right_noflip_up, t361
-    t363 = T33 * (T13 * t358 + T23 * c_1_1_right_noflip_up)
-    t364 = h_1_1_right_noflip_up * h_1_1_right_noflip_up
+    t351 = c3_left_flip_up * t349 + s3_left_flip_up * t350
+    t352 = c3_left_flip_up * t350 - s3_left_flip_up * t349
+    del c3_left_flip_up, s3_left_flip_up, t349, t350
+    t353 = _runtime.wrap_cut(np.arctan2(t351, t352)) + t319
+    del t351, t352
+    c_1_1_right_noflip_up = _runtime.select(free1, 1.0, t7 + t9)
+    del t7, t9
+    t354 = _runtime.select(free1, 0.0, t12 - t13)
+    del t12, t13
+    axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t354
+    t355 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up
+    h_1_1_right_noflip_up = np.sqrt(t11 + t355)
+    del t355
+    t356 = t10 * h_1_1_right_noflip_up <= t15
+    del t10
+    qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t354
+    t357 = 1.0 / h_1_1_right_noflip_up
+    uc_1_1_right_noflip_up = T33 * t357
+    t358 = d5 * uc_1_1_right_noflip_up
+    x_1_1_right_noflip_up = _runtime.select(t356, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up - t358)
+    dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t354
+    us_1_1_right_flip_up = axisx_1_1_right_noflip_up * t357
+    del axisx_1_1_right_noflip_up, t357
+    t359 = T33 * (T13 * t354 + T23 * c_1_1_right_noflip_up)
+    t360 = h_1_1_right_noflip_up * h_1_1_right_noflip_up
     del h_1_1_right_noflip_up
-    t365 = d5 * t363 / t364
-    del t363, t364
-    t366 = us_1_1_right_flip_up * t365
-    dx_1_1_right_noflip_up = _runtime.select(t360, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t366)
-    t367 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up
-    t368 = d5 * us_1_1_right_flip_up
+    t361 = d5 * t359 / t360
+    del t359, t360
+    t362 = us_1_1_right_flip_up * t361
+    dx_1_1_right_noflip_up = _runtime.select(t356, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t362)
+    t363 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up
+    t364 = d5 * us_1_1_right_flip_up
     del us_1_1_right_flip_up
-    t369 = _runtime.select(t360, t26, t26 - t368)
-    t370 = _runtime.select(t360, 0.0, uc_1_1_right_noflip_up * t365)
-    del t365, uc_1_1_right_noflip_up
-    slope_1_1_right_noflip_up = t367 - t369 * t370
-    del t367
-    t371 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up
-    t372 = x_1_1_right_noflip_up * x_1_1_right_noflip_up
+    t365 = _runtime.select(t356, t21, t21 - t364)
+    t366 = _runtime.select(t356, 0.0, uc_1_1_right_noflip_up * t361)
+    del t361, uc_1_1_right_noflip_up
+    slope_1_1_right_noflip_up = t363 - t365 * t366
+    del t363
+    t367 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up
+    t368 = x_1_1_right_noflip_up * x_1_1_right_noflip_up
     del x_1_1_right_noflip_up
-    square_1_1_right_noflip_up = t372 + t369 * t369
-    del t369, t372
-    nearest_1_1_right_noflip_up = _runtime.select(t360, t30, fold_1_1)
+    square_1_1_right_noflip_up = t368 + t365 * t365
+    del t365, t368
+    nearest_1_1_right_noflip_up = _runtime.select(t356, t25, fold_1_1)
     low_1_1_right_noflip_up = nearest_1_1_right_noflip_up * nearest_1_1_right_noflip_up
     del nearest_1_1_right_noflip_up
-    farthest_1_1_right_noflip_up = _runtime.select(t360, t5, full_1_1)
+    farthest_1_1_right_noflip_up = _runtime.select(t356, t3, full_1_1)
     high_1_1_right_noflip_up = farthest_1_1_right_noflip_up * farthest_1_1_right_noflip_up
     del farthest_1_1_right_noflip_up
-    t373 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_noflip_up)
-    miss_1_1_right_noflip_up = square_1_1_right_noflip_up - np.maximum(low_1_1_right_noflip_up, t373)
-    del square_1_1_right_noflip_up, t373
-    t374 = dx_1_1_right_noflip_up * dx_1_1_right_noflip_up
+    t369 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_noflip_up)
+    miss_1_1_right_noflip_up = square_1_1_right_noflip_up - np.maximum(low_1_1_right_noflip_up, t369)
+    del square_1_1_right_noflip_up, t369
+    t370 = dx_1_1_right_noflip_up * dx_1_1_right_noflip_up
     del dx_1_1_right_noflip_up
-    t375 = t370 * t370
-    bend_1_1_right_noflip_up = t374 + t375
-    del t374
-    t376 = miss_1_1_right_noflip_up * bend_1_1_right_noflip_up
-    inner_1_1_right_noflip_up = t371 - t376
-    del t371, t376
-    t377 = slope_1_1_right_noflip_up / (2.0 * bend_1_1_right_noflip_up)
+    t371 = t366 * t366
+    bend_1_1_right_noflip_up = t370 + t371
+    del t370
+    t372 = miss_1_1_right_noflip_up * bend_1_1_right_noflip_up
+    inner_1_1_right_noflip_up = t367 - t372
+    del t367, t372
+    t373 = slope_1_1_right_noflip_up / (2.0 * bend_1_1_right_noflip_up)
     del bend_1_1_right_noflip_up
-    t378 = np.sqrt(np.maximum(0.0, inner_1_1_right_noflip_up))
-    t379 = _runtime.sign(slope_1_1_right_noflip_up) * t378
-    del t378
-    t380 = miss_1_1_right_noflip_up / (2.0 * (slope_1_1_right_noflip_up + t379))
-    del miss_1_1_right_noflip_up, slope_1_1_right_noflip_up, t379
-    t381 = _runtime.select(inner_1_1_right_noflip_up < 0.0, t377, t380)
-    del inner_1_1_right_noflip_up, t377, t380
-    t382 = t381 * t381
-    t383 = 1.0 / (1.0 + t382)
-    t384 = 2.0 * t381 * t383
+    t374 = np.sqrt(np.maximum(0.0, inner_1_1_right_noflip_up))
+    t375 = _runtime.sign(slope_1_1_right_noflip_up) * t374
+    del t374
+    t376 = miss_1_1_right_noflip_up / (2.0 * (slope_1_1_right_noflip_up + t375))
+    del miss_1_1_right_noflip_up, slope_1_1_right_noflip_up, t375
+    t377 = _runtime.select(inner_1_1_right_noflip_up < 0.0, t373, t376)
+    del inner_1_1_right_noflip_up, t373, t376
+    t378 = t377 * t377
+    t379 = 1.0 / (1.0 + t378)
+    t380 = 2.0 * t377 * t379
+    del t377
+    by_c_1_1_right_noflip_up = t379 * (1.0 - t378)
+    del t378, t379
+    t381 = d4 * (t380 * t380) / (1.0 + np.abs(by_c_1_1_right_noflip_up))
+    t382 = (t381 + root1 * np.abs(t380) <= whole_1_1) & (0.0 < by_c_1_1_right_noflip_up)
     del t381
-    by_c_1_1_right_noflip_up = t383 * (1.0 - t382)
-    del t382, t383
-    t385 = d4 * (t384 * t384) / (1.0 + np.abs(by_c_1_1_right_noflip_up))
-    t386 = (t385 + root1 * np.abs(t384) <= whole_1_1) & (0.0 < by_c_1_1_right_noflip_up)
-    del t385
-    cosine_1_1_right_noflip_up = _runtime.select(t386, by_c_1_1_right_noflip_up, 1.0)
+    cosine_1_1_right_noflip_up = _runtime.select(t382, by_c_1_1_right_noflip_up, 1.0)
     del by_c_1_1_right_noflip_up
-    t387 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up
-    sine_1_1_right_noflip_up = _runtime.select(t386, -t384, 0.0)
-    del t384, t386
-    c_1_1_2_right_noflip_up = t387 + t358 * sine_1_1_right_noflip_up
-    del t387
-    t388 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up
+    t383 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up
+    sine_1_1_right_noflip_up = _runtime.select(t382, -t380, 0.0)
+    del t380, t382
+    c_1_1_2_right_noflip_up = t383 + t354 * sine_1_1_right_noflip_up
+    del t383
+    t384 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up
     del sine_1_1_right_noflip_up
-    s_1_1_2_right_noflip_up = t388 - t358 * cosine_1_1_right_noflip_up
-    del cosine_1_1_right_noflip_up, t388
+    s_1_1_2_right_noflip_up = t384 - t354 * cosine_1_1_right_noflip_up
+    del cosine_1_1_right_noflip_up, t384
     axisx_1_1_2_right_noflip_up = T13 * c_1_1_2_right_noflip_up + T23 * s_1_1_2_right_noflip_up
-    t389 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up
-    t390 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up
-    most_1_1_2_right_noflip_up = np.sqrt(t389 + t390 * t390)
+    t385 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up
+    t386 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up
+    most_1_1_2_right_noflip_up = np.sqrt(t385 + t386 * t386)
     qx_1_1_2_right_noflip_up = w_x * c_1_1_2_right_noflip_up + w_y * s_1_1_2_right_noflip_up
-    t391 = qx_1_1_2_right_noflip_up * qx_1_1_2_right_noflip_up
-    r_1_1_2_right_noflip_up = np.sqrt(t44 + t391)
-    del t391
-    t392 = r_1_1_2_right_noflip_up <= t47
-    t393 = d5 + r_1_1_2_right_noflip_up
-    t394 = 1.0 / np.sqrt(t16 + t389)
-    del t389
-    uc_1_1_2_right_noflip_up = T33 * t394
-    t395 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up
-    t396 = axisx_1_1_2_right_noflip_up * t394
+    t387 = qx_1_1_2_right_noflip_up * qx_1_1_2_right_noflip_up
+    r_1_1_2_right_noflip_up = np.sqrt(t37 + t387)
+    del t387
+    t388 = r_1_1_2_right_noflip_up <= t38
+    t389 = d5 + r_1_1_2_right_noflip_up
+    t390 = 1.0 / np.sqrt(t11 + t385)
+    del t385
+    uc_1_1_2_right_noflip_up = T33 * t390
+    t391 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up
+    t392 = axisx_1_1_2_right_noflip_up * t390
+    del t390
+    t393 = t21 - d5 * t392
+    there_1_1_2_right_noflip_up = np.sqrt(t391 * t391 + t393 * t393)
+    del t391, t393
+    t394 = np.maximum(there_1_1_2_right_noflip_up, fold_1_1)
+    goal_1_1_2_right_noflip_up = np.minimum(full_1_1, t394)
     del t394
-    t397 = t26 - d5 * t396
-    there_1_1_2_right_noflip_up = np.sqrt(t395 * t395 + t397 * t397)
-    del t395, t397
-    t398 = np.maximum(there_1_1_2_right_noflip_up, fold_1_1)
-    goal_1_1_2_right_noflip_up = np.minimum(full_1_1, t398)
-    del t398
-    t399 = (t393 - goal_1_1_2_right_noflip_up) * (t393 + goal_1_1_2_right_noflip_up)
-    del t393
-    k_v_1_1_2_right_noflip_up = np.maximum(0.0, t399)
-    del t399
-    t400 = d5 - r_1_1_2_right_noflip_up
-    t401 = (goal_1_1_2_right_noflip_up - t400) * (goal_1_1_2_right_noflip_up + t400)
-    del t400
-    d_v_1_1_2_right_noflip_up = np.maximum(0.0, t401)
-    del t401
+    t395 = (t389 - goal_1_1_2_right_noflip_up) * (t389 + goal_1_1_2_right_noflip_up)
+    del t389
+    k_v_1_1_2_right_noflip_up = np.maximum(0.0, t395)
+    del t395
+    t396 = d5 - r_1_1_2_right_noflip_up
+    t397 = (goal_1_1_2_right_noflip_up - t396) * (goal_1_1_2_right_noflip_up + t396)
+    del t396
+    d_v_1_1_2_right_noflip_up = np.maximum(0.0, t397)
+    del t397
     n_v_1_1_2_right_noflip_up = k_v_1_1_2_right_noflip_up + d_v_1_1_2_right_noflip_up
-    t402 = n_v_1_1_2_right_noflip_up <= t56
-    t403 = k_v_1_1_2_right_noflip_up - d_v_1_1_2_right_noflip_up
-    t404 = 1.0 / n_v_1_1_2_right_noflip_up
+    t398 = n_v_1_1_2_right_noflip_up <= t47
+    t399 = k_v_1_1_2_right_noflip_up - d_v_1_1_2_right_noflip_up
+    t400 = 1.0 / n_v_1_1_2_right_noflip_up
     del n_v_1_1_2_right_noflip_up
-    uc_v_1_1_2_right_noflip_up = _runtime.select(t402, 1.0, t403 * t404)
-    del t403
-    t405 = qx_1_1_2_right_noflip_up * uc_v_1_1_2_right_noflip_up
-    t406 = t26 * uc_1_1_2_right_noflip_up - qx_1_1_2_right_noflip_up * t396
-    del t396, uc_1_1_2_right_noflip_up
-    t407 = k_v_1_1_2_right_noflip_up * d_v_1_1_2_right_noflip_up
+    uc_v_1_1_2_right_noflip_up = _runtime.select(t398, 1.0, t399 * t400)
+    del t399
+    t401 = qx_1_1_2_right_noflip_up * uc_v_1_1_2_right_noflip_up
+    t402 = t21 * uc_1_1_2_right_noflip_up - qx_1_1_2_right_noflip_up * t392
+    del t392, uc_1_1_2_right_noflip_up
+    t403 = k_v_1_1_2_right_noflip_up * d_v_1_1_2_right_noflip_up
     del d_v_1_1_2_right_noflip_up, k_v_1_1_2_right_noflip_up
-    t408 = t404 * (2.0 * _runtime.sign(t406) * np.sqrt(t407))
-    del t404, t406, t407
-    us_v_1_1_2_right_noflip_up = _runtime.select(t402, 0.0, t408)
-    del t402, t408
-    t409 = t26 * us_v_1_1_2_right_noflip_up
-    t410 = 1.0 / r_1_1_2_right_noflip_up
+    t404 = t400 * (2.0 * _runtime.sign(t402) * np.sqrt(t403))
+    del t400, t402, t403
+    us_v_1_1_2_right_noflip_up = _runtime.select(t398, 0.0, t404)
+    del t398, t404
+    t405 = t21 * us_v_1_1_2_right_noflip_up
+    t406 = 1.0 / r_1_1_2_right_noflip_up
     del r_1_1_2_right_noflip_up
-    c_v_1_1_2_right_noflip_up = _runtime.select(t392, 1.0, (t405 + t409) * t410)
-    t411 = T33 * c_v_1_1_2_right_noflip_up < 0.0
-    t412 = qx_1_1_2_right_noflip_up * us_v_1_1_2_right_noflip_up
+    c_v_1_1_2_right_noflip_up = _runtime.select(t388, 1.0, (t401 + t405) * t406)
+    t407 = T33 * c_v_1_1_2_right_noflip_up < 0.0
+    t408 = qx_1_1_2_right_noflip_up * us_v_1_1_2_right_noflip_up
     del qx_1_1_2_right_noflip_up, us_v_1_1_2_right_noflip_up
-    t413 = t26 * uc_v_1_1_2_right_noflip_up
+    t409 = t21 * uc_v_1_1_2_right_noflip_up
     del uc_v_1_1_2_right_noflip_up
-    wc_1_1_2_right_noflip_up = _runtime.select(t392, 0.0, t410 * (t412 + t413))
-    s_v_1_1_2_right_noflip_up = _runtime.select(t392, 0.0, t410 * (t412 - t413))
-    del t412, t413
-    to_c_1_1_2_right_noflip_up = _runtime.select(t411, wc_1_1_2_right_noflip_up, -s_v_1_1_2_right_noflip_up)
+    wc_1_1_2_right_noflip_up = _runtime.select(t388, 0.0, t406 * (t408 + t409))
+    s_v_1_1_2_right_noflip_up = _runtime.select(t388, 0.0, t406 * (t408 - t409))
+    del t408, t409
+    to_c_1_1_2_right_noflip_up = _runtime.select(t407, wc_1_1_2_right_noflip_up, -s_v_1_1_2_right_noflip_up)
     del s_v_1_1_2_right_noflip_up, wc_1_1_2_right_noflip_up
-    c_w_1_1_2_right_noflip_up = _runtime.select(t392, 1.0, t410 * (t405 - t409))
-    del t392, t405, t409, t410
-    to_s_1_1_2_right_noflip_up = _runtime.select(t411, c_w_1_1_2_right_noflip_up, c_v_1_1_2_right_noflip_up)
-    del c_v_1_1_2_right_noflip_up, c_w_1_1_2_right_noflip_up, t411
-    t414 = T33 * to_c_1_1_2_right_noflip_up / to_s_1_1_2_right_noflip_up
+    c_w_1_1_2_right_noflip_up = _runtime.select(t388, 1.0, t406 * (t401 - t405))
+    del t388, t401, t405, t406
+    to_s_1_1_2_right_noflip_up = _runtime.select(t407, c_w_1_1_2_right_noflip_up, c_v_1_1_2_right_noflip_up)
+    del c_v_1_1_2_right_noflip_up, c_w_1_1_2_right_noflip_up, t407
+    t410 = T33 * to_c_1_1_2_right_noflip_up / to_s_1_1_2_right_noflip_up
     del to_c_1_1_2_right_noflip_up, to_s_1_1_2_right_noflip_up
-    t415 = np.minimum(most_1_1_2_right_noflip_up, _runtime.select(t43, 0.0, t414))
-    del t414
-    kept_1_1_2_right_noflip_up = np.maximum(-most_1_1_2_right_noflip_up, t415)
-    del t415
-    t416 = most_1_1_2_right_noflip_up - kept_1_1_2_right_noflip_up
-    t417 = most_1_1_2_right_noflip_up + kept_1_1_2_right_noflip_up
-    rest_1_1_2_right_noflip_up = np.sqrt(t416 * t417) * _runtime.sign(-t390)
-    del t416, t417
-    t418 = axisx_1_1_2_right_noflip_up * rest_1_1_2_right_noflip_up
-    t419 = most_1_1_2_right_noflip_up * most_1_1_2_right_noflip_up
+    t411 = np.minimum(most_1_1_2_right_noflip_up, _runtime.select(t36, 0.0, t410))
+    del t410
+    kept_1_1_2_right_noflip_up = np.maximum(-most_1_1_2_right_noflip_up, t411)
+    del t411
+    t412 = most_1_1_2_right_noflip_up - kept_1_1_2_right_noflip_up
+    t413 = most_1_1_2_right_noflip_up + kept_1_1_2_right_noflip_up
+    rest_1_1_2_right_noflip_up = np.sqrt(t412 * t413) * _runtime.sign(-t386)
+    del t412, t413
+    t414 = axisx_1_1_2_right_noflip_up * rest_1_1_2_right_noflip_up
+    t415 = most_1_1_2_right_noflip_up * most_1_1_2_right_noflip_up
     del most_1_1_2_right_noflip_up
-    t420 = 1.0 / t419
-    del t419
-    t421 = (t418 + t390 * kept_1_1_2_right_noflip_up) * t420
-    del t418
-    t422 = axisx_1_1_2_right_noflip_up * kept_1_1_2_right_noflip_up
+    t416 = 1.0 / t415
+    del t415
+    t417 = (t414 + t386 * kept_1_1_2_right_noflip_up) * t416
+    del t414
+    t418 = axisx_1_1_2_right_noflip_up * kept_1_1_2_right_noflip_up
     del axisx_1_1_2_right_noflip_up, kept_1_1_2_right_noflip_up
-    by_c_1_1_2_right_noflip_up = t420 * (t422 - t390 * rest_1_1_2_right_noflip_up)
-    del rest_1_1_2_right_noflip_up, t390, t420, t422
-    t423 = d4 * (t421 * t421) / (1.0 + np.abs(by_c_1_1_2_right_noflip_up))
-    t424 = (t423 + root1 * np.abs(t421) <= whole_1_1) & (0.0 < by_c_1_1_2_right_noflip_up)
-    del t423
-    t425 = there_1_1_2_right_noflip_up - goal_1_1_2_right_noflip_up
+    by_c_1_1_2_right_noflip_up = t416 * (t418 - t386 * rest_1_1_2_right_noflip_up)
+    del rest_1_1_2_right_noflip_up, t386, t416, t418
+    t419 = d4 * (t417 * t417) / (1.0 + np.abs(by_c_1_1_2_right_noflip_up))
+    t420 = (t419 + root1 * np.abs(t417) <= whole_1_1) & (0.0 < by_c_1_1_2_right_noflip_up)
+    del t419
+    t421 = there_1_1_2_right_noflip_up - goal_1_1_2_right_noflip_up
     del goal_1_1_2_right_noflip_up, there_1_1_2_right_noflip_up
-    t426 = t424 & (t47 < np.abs(t425))
-    del t424, t425
-    cosine_1_1_2_right_noflip_up = _runtime.select(t426, by_c_1_1_2_right_noflip_up, 1.0)
+    t422 = t420 & (size < 1125899906842624.0 * np.abs(t421))
+    del t420, t421
+    cosine_1_1_2_right_noflip_up = _runtime.select(t422, by_c_1_1_2_right_noflip_up, 1.0)
     del by_c_1_1_2_right_noflip_up
-    t427 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
-    sine_1_1_2_right_noflip_up = _runtime.select(t426, -t421, 0.0)
-    del t421, t426
-    t428 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
-    c_1_1_2_3_right_noflip_up = t427 - t428
-    del t427, t428
-    t429 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
+    t423 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
+    sine_1_1_2_right_noflip_up = _runtime.select(t422, -t417, 0.0)
+    del t417, t422
+    t424 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
+    c_1_1_2_3_right_noflip_up = t423 - t424
+    del t423, t424
+    t425 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
     del c_1_1_2_right_noflip_up, sine_1_1_2_right_noflip_up
-    t430 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
+    t426 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
     del cosine_1_1_2_right_noflip_up, s_1_1_2_right_noflip_up
-    s_1_1_2_3_right_noflip_up = t429 + t430
-    del t429, t430
+    s_1_1_2_3_right_noflip_up = t425 + t426
+    del t425, t426
     axisx_1_1_2_3_right_noflip_up = T13 * c_1_1_2_3_right_noflip_up + T23 * s_1_1_2_3_right_noflip_up
-    t431 = axisx_1_1_2_3_right_noflip_up * axisx_1_1_2_3_right_noflip_up
-    h_1_1_2_3_right_noflip_up = np.sqrt(t16 + t431)
-    del t431
-    t432 = size_1_1 * h_1_1_2_3_right_noflip_up <= t20
+    t427 = axisx_1_1_2_3_right_noflip_up * axisx_1_1_2_3_right_noflip_up
+    h_1_1_2_3_right_noflip_up = np.sqrt(t11 + t427)
+    del t427
+    t428 = size * h_1_1_2_3_right_noflip_up <= t15
     qx_1_1_2_3_right_noflip_up = w_x * c_1_1_2_3_right_noflip_up + w_y * s_1_1_2_3_right_noflip_up
-    t433 = 1.0 / h_1_1_2_3_right_noflip_up
-    uc_1_1_2_3_right_noflip_up = T33 * t433
-    t434 = qx_1_1_2_3_right_noflip_up - d5 * uc_1_1_2_3_right_noflip_up
-    x_1_1_2_3_right_noflip_up = _runtime.select(t432, qx_1_1_2_3_right_noflip_up, t434)
-    del qx_1_1_2_3_right_noflip_up, t434
+    t429 = 1.0 / h_1_1_2_3_right_noflip_up
+    uc_1_1_2_3_right_noflip_up = T33 * t429
+    t430 = qx_1_1_2_3_right_noflip_up - d5 * uc_1_1_2_3_right_noflip_up
+    x_1_1_2_3_right_noflip_up = _runtime.select(t428, qx_1_1_2_3_right_noflip_up, t430)
+    del qx_1_1_2_3_right_noflip_up, t430
     dqx_1_1_2_3_right_noflip_up = w_y * c_1_1_2_3_right_noflip_up - w_x * s_1_1_2_3_right_noflip_up
-    t435 = axisx_1_1_2_3_right_noflip_up * t433
-    del axisx_1_1_2_3_right_noflip_up, t433
-    t436 = T13 * s_1_1_2_3_right_noflip_up - T23 * c_1_1_2_3_right_noflip_up
-    t437 = h_1_1_2_3_right_noflip_up * h_1_1_2_3_right_noflip_up
+    t431 = axisx_1_1_2_3_right_noflip_up * t429
+    del axisx_1_1_2_3_right_noflip_up, t429
+    t432 = T13 * s_1_1_2_3_right_noflip_up - T23 * c_1_1_2_3_right_noflip_up
+    t433 = h_1_1_2_3_right_noflip_up * h_1_1_2_3_right_noflip_up
     del h_1_1_2_3_right_noflip_up
-    rate_1_1_2_3_right_noflip_up = d5 * (T33 * t436) / t437
-    del t436, t437
-    t438 = dqx_1_1_2_3_right_noflip_up - t435 * rate_1_1_2_3_right_noflip_up
-    dx_1_1_2_3_right_noflip_up = _runtime.select(t432, dqx_1_1_2_3_right_noflip_up, t438)
-    del dqx_1_1_2_3_right_noflip_up, t438
-    t439 = x_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
-    t440 = _runtime.select(t432, t26, t26 - d5 * t435)
-    del t435
-    t441 = uc_1_1_2_3_right_noflip_up * rate_1_1_2_3_right_noflip_up
+    rate_1_1_2_3_right_noflip_up = d5 * (T33 * t432) / t433
+    del t432, t433
+    t434 = dqx_1_1_2_3_right_noflip_up - t431 * rate_1_1_2_3_right_noflip_up
+    dx_1_1_2_3_right_noflip_up = _runtime.select(t428, dqx_1_1_2_3_right_noflip_up, t434)
+    del dqx_1_1_2_3_right_noflip_up, t434
+    t435 = x_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
+    t436 = _runtime.select(t428, t21, t21 - d5 * t431)
+    del t431
+    t437 = uc_1_1_2_3_right_noflip_up * rate_1_1_2_3_right_noflip_up
     del rate_1_1_2_3_right_noflip_up, uc_1_1_2_3_right_noflip_up
-    t442 = _runtime.select(t432, 0.0, t441)
-    del t441
-    slope_1_1_2_3_right_noflip_up = t439 + t440 * t442
-    del t439
-    t443 = slope_1_1_2_3_right_noflip_up * slope_1_1_2_3_right_noflip_up
-    t444 = x_1_1_2_3_right_noflip_up * x_1_1_2_3_right_noflip_up
+    t438 = _runtime.select(t428, 0.0, t437)
+    del t437
+    slope_1_1_2_3_right_noflip_up = t435 + t436 * t438
+    del t435
+    t439 = slope_1_1_2_3_right_noflip_up * slope_1_1_2_3_right_noflip_up
+    t440 = x_1_1_2_3_right_noflip_up * x_1_1_2_3_right_noflip_up
     del x_1_1_2_3_right_noflip_up
-    square_1_1_2_3_right_noflip_up = t444 + t440 * t440
-    del t440, t444
-    nearest_1_1_2_3_right_noflip_up = _runtime.select(t432, t30, fold_1_1)
+    square_1_1_2_3_right_noflip_up = t440 + t436 * t436
+    del t436, t440
+    nearest_1_1_2_3_right_noflip_up = _runtime.select(t428, t25, fold_1_1)
     low_1_1_2_3_right_noflip_up = nearest_1_1_2_3_right_noflip_up * nearest_1_1_2_3_right_noflip_up
     del nearest_1_1_2_3_right_noflip_up
-    farthest_1_1_2_3_right_noflip_up = _runtime.select(t432, t5, full_1_1)
-    del t432
+    farthest_1_1_2_3_right_noflip_up = _runtime.select(t428, t3, full_1_1)
+    del t428
     high_1_1_2_3_right_noflip_up = farthest_1_1_2_3_right_noflip_up * farthest_1_1_2_3_right_noflip_up
     del farthest_1_1_2_3_right_noflip_up
-    t445 = np.minimum(high_1_1_2_3_right_noflip_up, square_1_1_2_3_right_noflip_up)
+    t441 = np.minimum(high_1_1_2_3_right_noflip_up, square_1_1_2_3_right_noflip_up)
     del high_1_1_2_3_right_noflip_up
-    t446 = np.maximum(low_1_1_2_3_right_noflip_up, t445)
-    del low_1_1_2_3_right_noflip_up, t445
-    miss_1_1_2_3_right_noflip_up = square_1_1_2_3_right_noflip_up - t446
-    del square_1_1_2_3_right_noflip_up, t446
-    t447 = dx_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
+    t442 = np.maximum(low_1_1_2_3_right_noflip_up, t441)
+    del low_1_1_2_3_right_noflip_up, t441
+    miss_1_1_2_3_right_noflip_up = square_1_1_2_3_right_noflip_up - t442
+    del square_1_1_2_3_right_noflip_up, t442
+    t443 = dx_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
     del dx_1_1_2_3_right_noflip_up
-    bend_1_1_2_3_right_noflip_up = t447 + t442 * t442
-    del t442, t447
-    t448 = miss_1_1_2_3_right_noflip_up * bend_1_1_2_3_right_noflip_up
-    inner_1_1_2_3_right_noflip_up = t443 - t448
-    del t443, t448
-    t449 = slope_1_1_2_3_right_noflip_up / (2.0 * bend_1_1_2_3_right_noflip_up)
+    bend_1_1_2_3_right_noflip_up = t443 + t438 * t438
+    del t438, t443
+    t444 = miss_1_1_2_3_right_noflip_up * bend_1_1_2_3_right_noflip_up
+    inner_1_1_2_3_right_noflip_up = t439 - t444
+    del t439, t444
+    t445 = slope_1_1_2_3_right_noflip_up / (2.0 * bend_1_1_2_3_right_noflip_up)
     del bend_1_1_2_3_right_noflip_up
-    t450 = np.maximum(0.0, inner_1_1_2_3_right_noflip_up)
-    t451 = _runtime.sign(slope_1_1_2_3_right_noflip_up) * np.sqrt(t450)
-    del t450
-    t452 = miss_1_1_2_3_right_noflip_up / (2.0 * (slope_1_1_2_3_right_noflip_up + t451))
-    del miss_1_1_2_3_right_noflip_up, slope_1_1_2_3_right_noflip_up, t451
-    t453 = _runtime.select(inner_1_1_2_3_right_noflip_up < 0.0, t449, t452)
-    del inner_1_1_2_3_right_noflip_up, t449, t452
-    t454 = t453 * t453
-    t455 = 1.0 / (1.0 + t454)
-    t456 = 2.0 * t453 * t455
+    t446 = np.maximum(0.0, inner_1_1_2_3_right_noflip_up)
+    t447 = _runtime.sign(slope_1_1_2_3_right_noflip_up) * np.sqrt(t446)
+    del t446
+    t448 = miss_1_1_2_3_right_noflip_up / (2.0 * (slope_1_1_2_3_right_noflip_up + t447))
+    del miss_1_1_2_3_right_noflip_up, slope_1_1_2_3_right_noflip_up, t447
+    t449 = _runtime.select(inner_1_1_2_3_right_noflip_up < 0.0, t445, t448)
+    del inner_1_1_2_3_right_noflip_up, t445, t448
+    t450 = t449 * t449
+    t451 = 1.0 / (1.0 + t450)
+    t452 = 2.0 * t449 * t451
+    del t449
+    by_c_1_1_2_3_right_noflip_up = t451 * (1.0 - t450)
+    del t450, t451
+    t453 = d4 * (t452 * t452) / (1.0 + np.abs(by_c_1_1_2_3_right_noflip_up))
+    t454 = (t453 + root1 * np.abs(t452) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_noflip_up)
     del t453
-    by_c_1_1_2_3_right_noflip_up = t455 * (1.0 - t454)
-    del t454, t455
-    t457 = d4 * (t456 * t456) / (1.0 + np.abs(by_c_1_1_2_3_right_noflip_up))
-    t458 = (t457 + root1 * np.abs(t456) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_noflip_up)
-    del t457
-    cosine_1_1_2_3_right_noflip_up = _runtime.select(t458, by_c_1_1_2_3_right_noflip_up, 1.0)
+    cosine_1_1_2_3_right_noflip_up = _runtime.select(t454, by_c_1_1_2_3_right_noflip_up, 1.0)
     del by_c_1_1_2_3_right_noflip_up
-    t459 = c_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
-    sine_1_1_2_3_right_noflip_up = _runtime.select(t458, -t456, 0.0)
-    del t456, t458
-    t460 = s_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
-    c_1_1_2_3_4_right_noflip_up = t459 - t460
-    del t459, t460
-    t461 = c_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
+    t455 = c_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
+    sine_1_1_2_3_right_noflip_up = _runtime.select(t454, -t452, 0.0)
+    del t452, t454
+    t456 = s_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
+    c_1_1_2_3_4_right_noflip_up = t455 - t456
+    del t455, t456
+    t457 = c_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
     del c_1_1_2_3_right_noflip_up, sine_1_1_2_3_right_noflip_up
-    t462 = s_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
+    t458 = s_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
     del cosine_1_1_2_3_right_noflip_up, s_1_1_2_3_right_noflip_up
-    s_1_1_2_3_4_right_noflip_up = t461 + t462
-    del t461, t462
+    s_1_1_2_3_4_right_noflip_up = t457 + t458
+    del t457, t458
     axisx_1_1_2_3_4_right_noflip_up = T13 * c_1_1_2_3_4_right_noflip_up + T23 * s_1_1_2_3_4_right_noflip_up
-    t463 = axisx_1_1_2_3_4_right_noflip_up * axisx_1_1_2_3_4_right_noflip_up
-    h_1_1_2_3_4_right_noflip_up = np.sqrt(t16 + t463)
-    del t463
-    t464 = size_1_1 * h_1_1_2_3_4_right_noflip_up <= t20
+    t459 = axisx_1_1_2_3_4_right_noflip_up * axisx_1_1_2_3_4_right_noflip_up
+    h_1_1_2_3_4_right_noflip_up = np.sqrt(t11 + t459)
+    del t459
+    t460 = size * h_1_1_2_3_4_right_noflip_up <= t15
     qx_1_1_2_3_4_right_noflip_up = w_x * c_1_1_2_3_4_right_noflip_up + w_y * s_1_1_2_3_4_right_noflip_up
-    t465 = 1.0 / h_1_1_2_3_4_right_noflip_up
-    uc_1_1_2_3_4_right_noflip_up = T33 * t465
-    t466 = qx_1_1_2_3_4_right_noflip_up - d5 * uc_1_1_2_3_4_right_noflip_up
-    x_1_1_2_3_4_right_noflip_up = _runtime.select(t464, qx_1_1_2_3_4_right_noflip_up, t466)
-    del qx_1_1_2_3_4_right_noflip_up, t466
+    t461 = 1.0 / h_1_1_2_3_4_right_noflip_up
+    uc_1_1_2_3_4_right_noflip_up = T33 * t461
+    t462 = qx_1_1_2_3_4_right_noflip_up - d5 * uc_1_1_2_3_4_right_noflip_up
+    x_1_1_2_3_4_right_noflip_up = _runtime.select(t460, qx_1_1_2_3_4_right_noflip_up, t462)
+    del qx_1_1_2_3_4_right_noflip_up, t462
     dqx_1_1_2_3_4_right_noflip_up = w_y * c_1_1_2_3_4_right_noflip_up - w_x * s_1_1_2_3_4_right_noflip_up
-    t467 = axisx_1_1_2_3_4_right_noflip_up * t465
-    del axisx_1_1_2_3_4_right_noflip_up, t465
-    t468 = T13 * s_1_1_2_3_4_right_noflip_up - T23 * c_1_1_2_3_4_right_noflip_up
-    t469 = h_1_1_2_3_4_right_noflip_up * h_1_1_2_3_4_right_noflip_up
+    t463 = axisx_1_1_2_3_4_right_noflip_up * t461
+    del axisx_1_1_2_3_4_right_noflip_up, t461
+    t464 = T13 * s_1_1_2_3_4_right_noflip_up - T23 * c_1_1_2_3_4_right_noflip_up
+    t465 = h_1_1_2_3_4_right_noflip_up * h_1_1_2_3_4_right_noflip_up
     del h_1_1_2_3_4_right_noflip_up
-    rate_1_1_2_3_4_right_noflip_up = d5 * (T33 * t468) / t469
-    del t468, t469
-    t470 = dqx_1_1_2_3_4_right_noflip_up - t467 * rate_1_1_2_3_4_right_noflip_up
-    dx_1_1_2_3_4_right_noflip_up = _runtime.select(t464, dqx_1_1_2_3_4_right_noflip_up, t470)
-    del dqx_1_1_2_3_4_right_noflip_up, t470
-    t471 = x_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
-    t472 = _runtime.select(t464, t26, t26 - d5 * t467)
-    del t467
-    t473 = uc_1_1_2_3_4_right_noflip_up * rate_1_1_2_3_4_right_noflip_up
+    rate_1_1_2_3_4_right_noflip_up = d5 * (T33 * t464) / t465
+    del t464, t465
+    t466 = dqx_1_1_2_3_4_right_noflip_up - t463 * rate_1_1_2_3_4_right_noflip_up
+    dx_1_1_2_3_4_right_noflip_up = _runtime.select(t460, dqx_1_1_2_3_4_right_noflip_up, t466)
+    del dqx_1_1_2_3_4_right_noflip_up, t466
+    t467 = x_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
+    t468 = _runtime.select(t460, t21, t21 - d5 * t463)
+    del t463
+    t469 = uc_1_1_2_3_4_right_noflip_up * rate_1_1_2_3_4_right_noflip_up
     del rate_1_1_2_3_4_right_noflip_up, uc_1_1_2_3_4_right_noflip_up
-    t474 = _runtime.select(t464, 0.0, t473)
-    del t473
-    slope_1_1_2_3_4_right_noflip_up = t471 + t472 * t474
-    del t471
-    t475 = slope_1_1_2_3_4_right_noflip_up * slope_1_1_2_3_4_right_noflip_up
-    t476 = x_1_1_2_3_4_right_noflip_up * x_1_1_2_3_4_right_noflip_up
+    t470 = _runtime.select(t460, 0.0, t469)
+    del t469
+    slope_1_1_2_3_4_right_noflip_up = t467 + t468 * t470
+    del t467
+    t471 = slope_1_1_2_3_4_right_noflip_up * slope_1_1_2_3_4_right_noflip_up
+    t472 = x_1_1_2_3_4_right_noflip_up * x_1_1_2_3_4_right_noflip_up
     del x_1_1_2_3_4_right_noflip_up
-    square_1_1_2_3_4_right_noflip_up = t476 + t472 * t472
-    del t472, t476
-    nearest_1_1_2_3_4_right_noflip_up = _runtime.select(t464, t30, fold_1_1)
+    square_1_1_2_3_4_right_noflip_up = t472 + t468 * t468
+    del t468, t472
+    nearest_1_1_2_3_4_right_noflip_up = _runtime.select(t460, t25, fold_1_1)
     low_1_1_2_3_4_right_noflip_up = nearest_1_1_2_3_4_right_noflip_up * nearest_1_1_2_3_4_right_noflip_up
     del nearest_1_1_2_3_4_right_noflip_up
-    farthest_1_1_2_3_4_right_noflip_up = _runtime.select(t464, t5, full_1_1)
-    del t464
+    farthest_1_1_2_3_4_right_noflip_up = _runtime.select(t460, t3, full_1_1)
+    del t460
     high_1_1_2_3_4_right_noflip_up = farthest_1_1_2_3_4_right_noflip_up * farthest_1_1_2_3_4_right_noflip_up
     del farthest_1_1_2_3_4_right_noflip_up
-    t477 = np.minimum(high_1_1_2_3_4_right_noflip_up, square_1_1_2_3_4_right_noflip_up)
+    t473 = np.minimum(high_1_1_2_3_4_right_noflip_up, square_1_1_2_3_4_right_noflip_up)
     del high_1_1_2_3_4_right_noflip_up
-    t478 = np.maximum(low_1_1_2_3_4_right_noflip_up, t477)
-    del low_1_1_2_3_4_right_noflip_up, t477
-    miss_1_1_2_3_4_right_noflip_up = square_1_1_2_3_4_right_noflip_up - t478
-    del square_1_1_2_3_4_right_noflip_up, t478
-    t479 = dx_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
+    t474 = np.maximum(low_1_1_2_3_4_right_noflip_up, t473)
+    del low_1_1_2_3_4_right_noflip_up, t473
+    miss_1_1_2_3_4_right_noflip_up = square_1_1_2_3_4_right_noflip_up - t474
+    del square_1_1_2_3_4_right_noflip_up, t474
+    t475 = dx_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
     del dx_1_1_2_3_4_right_noflip_up
-    bend_1_1_2_3_4_right_noflip_up = t479 + t474 * t474
-    del t474, t479
-    t480 = miss_1_1_2_3_4_right_noflip_up * bend_1_1_2_3_4_right_noflip_up
-    inner_1_1_2_3_4_right_noflip_up = t475 - t480
-    del t475, t480
-    t481 = slope_1_1_2_3_4_right_noflip_up / (2.0 * bend_1_1_2_3_4_right_noflip_up)
+    bend_1_1_2_3_4_right_noflip_up = t475 + t470 * t470
+    del t470, t475
+    t476 = miss_1_1_2_3_4_right_noflip_up * bend_1_1_2_3_4_right_noflip_up
+    inner_1_1_2_3_4_right_noflip_up = t471 - t476
+    del t471, t476
+    t477 = slope_1_1_2_3_4_right_noflip_up / (2.0 * bend_1_1_2_3_4_right_noflip_up)
     del bend_1_1_2_3_4_right_noflip_up
-    t482 = _runtime.sign(slope_1_1_2_3_4_right_noflip_up)
-    t483 = np.maximum(0.0, inner_1_1_2_3_4_right_noflip_up)
-    outer_1_1_2_3_4_right_noflip_up = slope_1_1_2_3_4_right_noflip_up + t482 * np.sqrt(t483)
-    del slope_1_1_2_3_4_right_noflip_up, t482, t483
-    t484 = miss_1_1_2_3_4_right_noflip_up / (2.0 * outer_1_1_2_3_4_right_noflip_up)
+    t478 = _runtime.sign(slope_1_1_2_3_4_right_noflip_up)
+    t479 = np.maximum(0.0, inner_1_1_2_3_4_right_noflip_up)
+    outer_1_1_2_3_4_right_noflip_up = slope_1_1_2_3_4_right_noflip_up + t478 * np.sqrt(t479)
+    del slope_1_1_2_3_4_right_noflip_up, t478, t479
+    t480 = miss_1_1_2_3_4_right_noflip_up / (2.0 * outer_1_1_2_3_4_right_noflip_up)
     del miss_1_1_2_3_4_right_noflip_up, outer_1_1_2_3_4_right_noflip_up
-    t485 = _runtime.select(inner_1_1_2_3_4_right_noflip_up < 0.0, t481, t484)
-    del inner_1_1_2_3_4_right_noflip_up, t481, t484
-    t486 = t485 * t485
-    t487 = 1.0 / (1.0 + t486)
-    t488 = 2.0 * t485 * t487
+    t481 = _runtime.select(inner_1_1_2_3_4_right_noflip_up < 0.0, t477, t480)
+    del inner_1_1_2_3_4_right_noflip_up, t477, t480
+    t482 = t481 * t481
+    t483 = 1.0 / (1.0 + t482)
+    t484 = 2.0 * t481 * t483
+    del t481
+    by_c_1_1_2_3_4_right_noflip_up = t483 * (1.0 - t482)
+    del t482, t483
+    t485 = d4 * (t484 * t484) / (1.0 + np.abs(by_c_1_1_2_3_4_right_noflip_up))
+    t486 = (t485 + root1 * np.abs(t484) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_noflip_up)
     del t485
-    by_c_1_1_2_3_4_right_noflip_up = t487 * (1.0 - t486)
-    del t486, t487
-    t489 = d4 * (t488 * t488) / (1.0 + np.abs(by_c_1_1_2_3_4_right_noflip_up))
-    t490 = (t489 + root1 * np.abs(t488) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_noflip_up)
-    del t489
-    sine_1_1_2_3_4_right_noflip_up = _runtime.select(t490, -t488, 0.0)
-    del t488
-    t491 = c_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
-    cosine_1_1_2_3_4_right_noflip_up = _runtime.select(t490, by_c_1_1_2_3_4_right_noflip_up, 1.0)
-    del by_c_1_1_2_3_4_right_noflip_up, t490
-    t492 = s_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
-    s1_right_noflip_up = _runtime.select(tangent1, t491 + t492, -t358)
-    del t491, t492
-    t493 = c_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
+    sine_1_1_2_3_4_right_noflip_up = _runtime.select(t486, -t484, 0.0)
+    del t484
+    t487 = c_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
+    cosine_1_1_2_3_4_right_noflip_up = _runtime.select(t486, by_c_1_1_2_3_4_right_noflip_up, 1.0)
+    del by_c_1_1_2_3_4_right_noflip_up, t486
+    t488 = s_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
+    s1_right_noflip_up = _runtime.select(tangent1, t487 + t488, -t354)
+    del t487, t488
+    t489 = c_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
     del c_1_1_2_3_4_right_noflip_up, cosine_1_1_2_3_4_right_noflip_up
-    t494 = s_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
+    t490 = s_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
     del s_1_1_2_3_4_right_noflip_up, sine_1_1_2_3_4_right_noflip_up
-    c1_right_noflip_up = _runtime.select(tangent1, t493 - t494, c_1_1_right_noflip_up)
-    del t493, t494
-    t495 = np.arctan2(s1_right_noflip_up, c1_right_noflip_up)
+    c1_right_noflip_up = _runtime.select(tangent1, t489 - t490, c_1_1_right_noflip_up)
+    del t489, t490
+    t491 = np.arctan2(s1_right_noflip_up, c1_right_noflip_up)
     across_right_noflip_up = w_x * c1_right_noflip_up + w_y * s1_right_noflip_up
     M_13_right_noflip_up = T13 * c1_right_noflip_up + T23 * s1_right_noflip_up
-    t496 = t16 + M_13_right_noflip_up * M_13_right_noflip_up
-    h_wrist_right_noflip_up = np.sqrt(t496)
+    t492 = t11 + M_13_right_noflip_up * M_13_right_noflip_up
+    h_wrist_right_noflip_up = np.sqrt(t492)
+    del t492
+    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t113
+    t493 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t37 + t493)
+    del t493
+    hub_mid_right_noflip_up = r_hub_right_noflip_up <= t4
+    t494 = d5 + r_hub_right_noflip_up
+    t495 = d5 - r_hub_right_noflip_up
+    mid_reach_right_noflip_up = np.minimum(full_1_1, t494) * 0.5 + np.maximum(fold_1_1, np.abs(t495)) * 0.5
+    t496 = (t494 - mid_reach_right_noflip_up) * (t494 + mid_reach_right_noflip_up)
+    k_mid_right_noflip_up = np.maximum(0.0, t496)
     del t496
-    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t122
-    t497 = across_right_noflip_up * across_right_noflip_up
-    r_hub_right_noflip_up = np.sqrt(t44 + t497)
-    del t497
-    hub_mid_right_noflip_up = r_hub_right_noflip_up <= t6
-    t498 = d5 + r_hub_right_noflip_up
-    t499 = d5 - r_hub_right_noflip_up
-    mid_reach_right_noflip_up = np.minimum(full_1_1, t498) * 0.5 + np.maximum(fold_1_1, np.abs(t499)) * 0.5
-    t500 = (t498 - mid_reach_right_noflip_up) * (t498 + mid_reach_right_noflip_up)
-    k_mid_right_noflip_up = np.maximum(0.0, t500)
-    del t500
-    t501 = (t499 - mid_reach_right_noflip_up) * (t499 + mid_reach_right_noflip_up)
+    t497 = (t495 - mid_reach_right_noflip_up) * (t495 + mid_reach_right_noflip_up)
     del mid_reach_right_noflip_up
-    d_mid_right_noflip_up = np.maximum(0.0, -t501)
-    del t501
+    d_mid_right_noflip_up = np.maximum(0.0, -t497)
+    del t497
     n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
-    any_mid_right_noflip_up = n_mid_right_noflip_up <= t125
-    t502 = k_mid_right_noflip_up - d_mid_right_noflip_up
-    t503 = 1.0 / n_mid_right_noflip_up
+    any_mid_right_noflip_up = n_mid_right_noflip_up <= t116
+    t498 = k_mid_right_noflip_up - d_mid_right_noflip_up
+    t499 = 1.0 / n_mid_right_noflip_up
     del n_mid_right_noflip_up
-    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t502 * t503)
-    del t502
-    t504 = across_right_noflip_up * uc_mid_right_noflip_up
-    t505 = k_mid_right_noflip_up * d_mid_right_noflip_up
-    del d_mid_right_noflip_up, k_mid_right_noflip_up
-    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t503 * (2.0 * np.sqrt(t505)))
-    del any_mid_right_noflip_up, t503, t505
-    t506 = 1.0 / r_hub_right_noflip_up
-    del r_hub_right_noflip_up
-    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t504 + t26 * us_mid_right_noflip_up) * t506)
-    del t504
-    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t129 <= t6
-    t507 = 1.0 / h_wrist_right_noflip_up
-    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t507)
-    t508 = across_right_noflip_up - d5 * s_phi_right_noflip_up
-    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, M_13_right_noflip_up * t507)
-    del t507
-    t509 = t26 - d5 * c_phi_right_noflip_up
-    here_right_noflip_up = np.sqrt(t508 * t508 + t509 * t509)
-    del t508, t509
-    in_reach_right_noflip_up = np.minimum(full_1_1, np.maximum(here_right_noflip_up, fold_1_1))
-    t510 = (t498 - in_reach_right_noflip_up) * (t498 + in_reach_right_noflip_up)
+    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t498 * t499)
     del t498
-    k_near_right_noflip_up = np.maximum(0.0, t510)
-    del t510
-    t511 = (t499 - in_reach_right_noflip_up) * (t499 + in_reach_right_noflip_up)
-    del t499
-    d_near_right_noflip_up = np.maximum(0.0, -t511)
-    del t511
-    n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
-    any_near_right_noflip_up = n_near_right_noflip_up <= t125
-    t512 = k_near_right_noflip_up - d_near_right_noflip_up
-    t513 = 1.0 / n_near_right_noflip_up
-    del n_near_right_noflip_up
-    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t512 * t513)
-    del t512
-    t514 = across_right_noflip_up * uc_near_right_noflip_up
-    t515 = across_right_noflip_up * c_phi_right_noflip_up
-    t516 = t515 - t26 * s_phi_right_noflip_up
-    del t515
-    t517 = np.abs(t516)
-    side_right_noflip_up = _runtime.select(t517 <= t6, 1.0, -(t516 / t517))
-    del t516, t517
-    t518 = k_near_right_noflip_up * d_near_right_noflip_up
-    del d_near_right_noflip_up, k_near_right_noflip_up
-    t519 = t513 * (2.0 * side_right_noflip_up * np.sqrt(t518))
-    del side_right_noflip_up, t513, t518
-    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t519)
-    del any_near_right_noflip_up, t519
-    t520 = t506 * (t514 + t26 * us_near_right_noflip_up)
-    del t514
-    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t520)
-    del t520
-    t521 = s_phi_right_noflip_up - c_near_right_noflip_up
-    t522 = across_right_noflip_up * us_near_right_noflip_up
-    del us_near_right_noflip_up
-    t523 = t506 * (t522 - t26 * uc_near_right_noflip_up)
-    del t522, uc_near_right_noflip_up
-    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t523)
-    del t523
-    t524 = c_phi_right_noflip_up + s_near_right_noflip_up
-    t525 = h_wrist_right_noflip_up * np.sqrt(t521 * t521 + t524 * t524)
-    del h_wrist_right_noflip_up, t521, t524
-    t526 = here_right_noflip_up - in_reach_right_noflip_up
-    del here_right_noflip_up, in_reach_right_noflip_up
-    t527 = (t525 - 2.2737367544323206e-13 <= t140) & np.logical_not(np.abs(t526) <= t6)
-    del t525, t526
-    s_kept_right_noflip_up = _runtime.select(t527, c_near_right_noflip_up, s_phi_right_noflip_up)
-    del c_near_right_noflip_up
-    t528 = _runtime.select(close_right_noflip_up, s_kept_right_noflip_up, s_phi_right_noflip_up)
-    del s_kept_right_noflip_up, s_phi_right_noflip_up
-    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t528)
-    del c_mid_right_noflip_up, t528
-    t529 = across_right_noflip_up - d5 * sphi_right_noflip_up
-    t530 = across_right_noflip_up * us_mid_right_noflip_up
-    del across_right_noflip_up, us_mid_right_noflip_up
-    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t506 * (t530 - t26 * uc_mid_right_noflip_up))
-    del hub_mid_right_noflip_up, t506, t530, uc_mid_right_noflip_up
-    c_kept_right_noflip_up = _runtime.select(t527, -s_near_right_noflip_up, c_phi_right_noflip_up)
-    del s_near_right_noflip_up, t527
-    t531 = _runtime.select(close_right_noflip_up, c_kept_right_noflip_up, c_phi_right_noflip_up)
-    del c_kept_right_noflip_up, c_phi_right_noflip_up, close_right_noflip_up
-    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t531)
-    del s_mid_right_noflip_up, t531
-    ey_right_noflip_up = t26 - d5 * cphi_right_noflip_up
-    t532 = t529 * t529 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t532)
-    del t532
-    t533 = full_1_1 - r_elbow_right_noflip_up
-    t534 = t29 + r_elbow_right_noflip_up
-    t535 = r_elbow_right_noflip_up - t29
-    t536 = t121 & (t120 <= t533) & (t120 <= t534) & (t120 <= t535)
-    unreachable_3 = np.logical_not(t536)
-    del t536
-    t537 = _runtime.poison(invalid | unreachable_3)
-    t538 = _runtime.wrap_cut(t495) + t537
+    t500 = across_right_noflip_up * uc_mid_right_noflip_up
+    t501 = k_mid_right_noflip_up * d_mid_right_noflip_up
+    del d_mid_right_noflip_up, k_mid_right_noflip_up
+    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t499 * (2.0 * np.sqrt(t501)))
+    del any_mid_right_noflip_up, t499, t501
+    t502 = 1.0 / r_hub_right_noflip_up
+    del r_hub_right_noflip_up
+    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t500 + t21 * us_mid_right_noflip_up) * t502)
+    del t500
+    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t119 <= t4
+    t503 = 1.0 / h_wrist_right_noflip_up
+    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t503)
+    t504 = across_right_noflip_up - d5 * s_phi_right_noflip_up
+    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, M_13_right_noflip_up * t503)
+    del t503
+    t505 = t21 - d5 * c_phi_right_noflip_up
+    here_right_noflip_up = np.sqrt(t504 * t504 + t505 * t505)
+    del t504, t505
+    in_reach_right_noflip_up = np.minimum(full_1_1, np.maximum(here_right_noflip_up, fold_1_1))
+    t506 = (t494 - in_reach_right_noflip_up) * (t494 + in_reach_right_noflip_up)
+    del t494
+    k_near_right_noflip_up = np.maximum(0.0, t506)
+    del t506
+    t507 = (t495 - in_reach_right_noflip_up) * (t495 + in_reach_right_noflip_up)
     del t495
-    folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t6
-    A_elbow_right_noflip_up = np.maximum(t533, 0.0)
-    del t533
-    C_elbow_right_noflip_up = np.maximum(t535, 0.0)
-    del t535
-    t539 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
+    d_near_right_noflip_up = np.maximum(0.0, -t507)
+    del t507
+    n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
+    any_near_right_noflip_up = n_near_right_noflip_up <= t116
+    t508 = k_near_right_noflip_up - d_near_right_noflip_up
+    t509 = 1.0 / n_near_right_noflip_up
+    del n_near_right_noflip_up
+    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t508 * t509)
+    del t508
+    t510 = across_right_noflip_up * uc_near_right_noflip_up
+    t511 = across_right_noflip_up * c_phi_right_noflip_up
+    t512 = t511 - t21 * s_phi_right_noflip_up
+    del t511
+    t513 = np.abs(t512)
+    side_right_noflip_up = _runtime.select(t513 <= t4, 1.0, -(t512 / t513))
+    del t512, t513
+    t514 = k_near_right_noflip_up * d_near_right_noflip_up
+    del d_near_right_noflip_up, k_near_right_noflip_up
+    t515 = t509 * (2.0 * side_right_noflip_up * np.sqrt(t514))
+    del side_right_noflip_up, t509, t514
+    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t515)
+    del any_near_right_noflip_up, t515
+    t516 = t502 * (t510 + t21 * us_near_right_noflip_up)
+    del t510
+    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t516)
+    del t516
+    t517 = s_phi_right_noflip_up - c_near_right_noflip_up
+    t518 = across_right_noflip_up * us_near_right_noflip_up
+    del us_near_right_noflip_up
+    t519 = t502 * (t518 - t21 * uc_near_right_noflip_up)
+    del t518, uc_near_right_noflip_up
+    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t519)
+    del t519
+    t520 = c_phi_right_noflip_up + s_near_right_noflip_up
+    t521 = h_wrist_right_noflip_up * np.sqrt(t517 * t517 + t520 * t520)
+    del h_wrist_right_noflip_up, t517, t520
+    t522 = here_right_noflip_up - in_reach_right_noflip_up
+    del here_right_noflip_up, in_reach_right_noflip_up
+    t523 = (t521 - 2.2737367544323206e-13 <= t130) & np.logical_not(np.abs(t522) <= t4)
+    del t521, t522
+    s_kept_right_noflip_up = _runtime.select(t523, c_near_right_noflip_up, s_phi_right_noflip_up)
+    del c_near_right_noflip_up
+    t524 = _runtime.select(close_right_noflip_up, s_kept_right_noflip_up, s_phi_right_noflip_up)
+    del s_kept_right_noflip_up, s_phi_right_noflip_up
+    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t524)
+    del c_mid_right_noflip_up, t524
+    t525 = across_right_noflip_up - d5 * sphi_right_noflip_up
+    t526 = across_right_noflip_up * us_mid_right_noflip_up
+    del across_right_noflip_up, us_mid_right_noflip_up
+    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t502 * (t526 - t21 * uc_mid_right_noflip_up))
+    del hub_mid_right_noflip_up, t502, t526, uc_mid_right_noflip_up
+    c_kept_right_noflip_up = _runtime.select(t523, -s_near_right_noflip_up, c_phi_right_noflip_up)
+    del s_near_right_noflip_up, t523
+    t527 = _runtime.select(close_right_noflip_up, c_kept_right_noflip_up, c_phi_right_noflip_up)
+    del c_kept_right_noflip_up, c_phi_right_noflip_up, close_right_noflip_up
+    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t527)
+    del s_mid_right_noflip_up, t527
+    ey_right_noflip_up = t21 - d5 * cphi_right_noflip_up
+    t528 = t525 * t525 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t528)
+    del t528
+    t529 = full_1_1 - r_elbow_right_noflip_up
+    t530 = t24 + r_elbow_right_noflip_up
+    t531 = r_elbow_right_noflip_up - t24
+    t532 = t112 & (t111 <= t529) & (t111 <= t530) & (t111 <= t531)
+    unreachable_3 = np.logical_not(t532)
+    del t532
+    t533 = _runtime.poison(invalid | unreachable_3)
+    t534 = _runtime.wrap_cut(t491) + t533
+    del t491
+    folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t4
+    t535 = folded_elbow_right_noflip_up | no_link_elbow
+    A_elbow_right_noflip_up = np.maximum(t529, 0.0)
+    del t529
+    C_elbow_right_noflip_up = np.maximum(t531, 0.0)
+    del t531
+    t536 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
     S_elbow_right_noflip_up = full_1_1 + r_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t534, 0.0)
-    del t534
-    t540 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
-    t541 = 1.0 / (t539 + t540)
-    c_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -((t539 - t540) * t541))
-    t542 = ey_right_noflip_up * c_base_elbow_right_noflip_up
-    t543 = 1.0 / r_elbow_right_noflip_up
+    B_elbow_right_noflip_up = np.maximum(t530, 0.0)
+    del t530
+    t537 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t538 = 1.0 / (t536 + t537)
+    c_base_elbow_right_noflip_up = _runtime.select(t535, 1.0, -((t536 - t537) * t538))
+    t539 = 1.0 / r_elbow_right_noflip_up
     del r_elbow_right_noflip_up
-    t544 = t542 * t543
-    del t542
-    area_elbow_right_noflip_up = 2.0 * np.sqrt(t539 * t540)
-    del t539, t540
-    s_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t541 * area_elbow_right_noflip_up)
-    del t541
-    t545 = t543 * (t529 * s_base_elbow_right_noflip_up)
-    s2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 0.0, t544 + t545)
-    t546 = ey_right_noflip_up * s_base_elbow_right_noflip_up
-    del ey_right_noflip_up, s_base_elbow_right_noflip_up
-    t547 = t543 * t546
-    del t546
-    t548 = t543 * (t529 * c_base_elbow_right_noflip_up)
-    del c_base_elbow_right_noflip_up, t529, t543
-    c2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 1.0, t547 - t548)
-    t549 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t550 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    t540 = _runtime.select(folded_elbow_right_noflip_up, 0.0, ey_right_noflip_up * t539)
+    del ey_right_noflip_up
+    t541 = c_base_elbow_right_noflip_up * t540
+    area_elbow_right_noflip_up = 2.0 * np.sqrt(t536 * t537)
+    del t536, t537
+    s_base_elbow_right_noflip_up = _runtime.select(t535, 0.0, t538 * area_elbow_right_noflip_up)
+    del t535, t538
+    t542 = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t525 * t539))
+    del t525, t539
+    t543 = s_base_elbow_right_noflip_up * t542
+    s2_right_noflip_up = t541 - t543
+    t544 = c_base_elbow_right_noflip_up * t542
+    del c_base_elbow_right_noflip_up, t542
+    t545 = t540 * s_base_elbow_right_noflip_up
+    del s_base_elbow_right_noflip_up, t540
+    c2_right_noflip_up = t544 + t545
+    t546 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
+    t547 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
     del A_elbow_right_noflip_up, S_elbow_right_noflip_up
-    t551 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t548 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
     del B_elbow_right_noflip_up, C_elbow_right_noflip_up
-    t552 = 1.0 / (t550 + t551)
-    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t552)
+    t549 = 1.0 / (t547 + t548)
+    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t549)
     del area_elbow_right_noflip_up
-    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t552 * (t550 - t551)))
-    del t550, t551, t552
-    t553 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
-    t554 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
-    t555 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
+    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t549 * (t547 - t548)))
+    del t547, t548, t549
+    t550 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
+    t551 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
+    t552 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
     del c2_right_noflip_up, s2_right_noflip_up
-    t556 = c3_right_noflip_up * t554 - s3_right_noflip_up * t555
-    t557 = c3_right_noflip_up * t555 + s3_right_noflip_up * t554
-    del t554, t555
-    t558 = _runtime.wrap_cut(np.arctan2(t556, t557)) + t537
-    del t556, t557
-    t559 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
+    t553 = c3_right_noflip_up * t551 - s3_right_noflip_up * t552
+    t554 = c3_right_noflip_up * t552 + s3_right_noflip_up * t551
+    del t551, t552
+    t555 = _runtime.wrap_cut(np.arctan2(t553, t554)) + t533
+    del t553, t554
+    t556 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
     del M_13_right_noflip_up
     M_33_right_noflip_up = T13 * s1_right_noflip_up - T23 * c1_right_noflip_up
-    t560 = _runtime.wrap_cut(-np.arctan2(t559, M_33_right_noflip_up))
-    del M_33_right_noflip_up, t559
-    t561 = t560 + t537
-    del t560
+    t557 = _runtime.wrap_cut(-np.arctan2(t556, M_33_right_noflip_up))
+    del M_33_right_noflip_up, t556
+    t558 = t557 + t533
+    del t557
     M_11_right_noflip_up = T11 * c1_right_noflip_up + T21 * s1_right_noflip_up
-    t562 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
+    t559 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
     del M_11_right_noflip_up
     M_12_right_noflip_up = T12 * c1_right_noflip_up + T22 * s1_right_noflip_up
     del c1_right_noflip_up, s1_right_noflip_up
-    t563 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
+    t560 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
     del M_12_right_noflip_up
-    t564 = _runtime.wrap_cut(-np.arctan2(t562, t563)) + t537
-    del t562, t563
-    s2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 0.0, t544 - t545)
+    t561 = _runtime.wrap_cut(-np.arctan2(t559, t560)) + t533
+    del t559, t560
+    s2_right_noflip_down = t541 + t543
+    del t541, t543
+    c2_right_noflip_down = t544 - t545
     del t544, t545
-    c2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t548 + t547))
-    del t547, t548
-    t565 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
-    t566 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
-    t567 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
+    t562 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
+    t563 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
+    t564 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
     del c2_right_noflip_down, cphi_right_noflip_up, s2_right_noflip_down, sphi_right_noflip_up
-    t568 = c3_right_noflip_up * t566 + s3_right_noflip_up * t567
-    t569 = c3_right_noflip_up * t567 - s3_right_noflip_up * t566
-    del c3_right_noflip_up, s3_right_noflip_up, t566, t567
-    t570 = _runtime.wrap_cut(np.arctan2(t568, t569)) + t537
-    del t568, t569
-    x_1_1_right_flip_up = _runtime.select(t360, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up + t362)
-    del qx_1_1_right_noflip_up, t362
-    dx_1_1_right_flip_up = _runtime.select(t360, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up - t366)
-    del dqx_1_1_right_noflip_up, t366
-    t571 = _runtime.select(t360, t26, t26 + t368)
-    del t360, t368
-    slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t370 * t571
-    del t370
-    t572 = slope_1_1_right_flip_up * slope_1_1_right_flip_up
-    square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t571 * t571
-    del t571, x_1_1_right_flip_up
-    t573 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_flip_up)
+    t565 = c3_right_noflip_up * t563 + s3_right_noflip_up * t564
+    t566 = c3_right_noflip_up * t564 - s3_right_noflip_up * t563
+    del c3_right_noflip_up, s3_right_noflip_up, t563, t564
+    t567 = _runtime.wrap_cut(np.arctan2(t565, t566)) + t533
+    del t565, t566
+    x_1_1_right_flip_up = _runtime.select(t356, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up + t358)
+    del qx_1_1_right_noflip_up, t358
+    dx_1_1_right_flip_up = _runtime.select(t356, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up - t362)
+    del dqx_1_1_right_noflip_up, t362
+    t568 = _runtime.select(t356, t21, t21 + t364)
+    del t356, t364
+    slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t366 * t568
+    del t366
+    t569 = slope_1_1_right_flip_up * slope_1_1_right_flip_up
+    square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t568 * t568
+    del t568, x_1_1_right_flip_up
+    t570 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_flip_up)
     del high_1_1_right_noflip_up
-    miss_1_1_right_flip_up = square_1_1_right_flip_up - np.maximum(low_1_1_right_noflip_up, t573)
-    del low_1_1_right_noflip_up, square_1_1_right_flip_up, t573
-    bend_1_1_right_flip_up = t375 + dx_1_1_right_flip_up * dx_1_1_right_flip_up
-    del dx_1_1_right_flip_up, t375
-    t574 = miss_1_1_right_flip_up * bend_1_1_right_flip_up
-    inner_1_1_right_flip_up = t572 - t574
-    del t572, t574
-    t575 = slope_1_1_right_flip_up / (2.0 * bend_1_1_right_flip_up)
+    miss_1_1_right_flip_up = square_1_1_right_flip_up - np.maximum(low_1_1_right_noflip_up, t570)
+    del low_1_1_right_noflip_up, square_1_1_right_flip_up, t570
+    bend_1_1_right_flip_up = t371 + dx_1_1_right_flip_up * dx_1_1_right_flip_up
+    del dx_1_1_right_flip_up, t371
+    t571 = miss_1_1_right_flip_up * bend_1_1_right_flip_up
+    inner_1_1_right_flip_up = t569 - t571
+    del t569, t571
+    t572 = slope_1_1_right_flip_up / (2.0 * bend_1_1_right_flip_up)
     del bend_1_1_right_flip_up
-    t576 = np.sqrt(np.maximum(0.0, inner_1_1_right_flip_up))
-    t577 = _runtime.sign(slope_1_1_right_flip_up) * t576
+    t573 = np.sqrt(np.maximum(0.0, inner_1_1_right_flip_up))
+    t574 = _runtime.sign(slope_1_1_right_flip_up) * t573
+    del t573
+    t575 = miss_1_1_right_flip_up / (2.0 * (slope_1_1_right_flip_up + t574))
+    del miss_1_1_right_flip_up, slope_1_1_right_flip_up, t574
+    t576 = _runtime.select(inner_1_1_right_flip_up < 0.0, t572, t575)
+    del inner_1_1_right_flip_up, t572, t575
+    t577 = t576 * t576
+    t578 = 1.0 / (1.0 + t577)
+    t579 = 2.0 * t576 * t578
     del t576
-    t578 = miss_1_1_right_flip_up / (2.0 * (slope_1_1_right_flip_up + t577))
-    del miss_1_1_right_flip_up, slope_1_1_right_flip_up, t577
-    t579 = _runtime.select(inner_1_1_right_flip_up < 0.0, t575, t578)
-    del inner_1_1_right_flip_up, t575, t578
-    t580 = t579 * t579
-    t581 = 1.0 / (1.0 + t580)
-    t582 = 2.0 * t579 * t581
-    del t579
-    by_c_1_1_right_flip_up = t581 * (1.0 - t580)
-    del t580, t581
-    t583 = d4 * (t582 * t582) / (1.0 + np.abs(by_c_1_1_right_flip_up))
-    t584 = (t583 + root1 * np.abs(t582) <= whole_1_1) & (0.0 < by_c_1_1_right_flip_up)
-    del t583
-    cosine_1_1_right_flip_up = _runtime.select(t584, by_c_1_1_right_flip_up, 1.0)
+    by_c_1_1_right_flip_up = t578 * (1.0 - t577)
+    del t577, t578
+    t580 = d4 * (t579 * t579) / (1.0 + np.abs(by_c_1_1_right_flip_up))
+    t581 = (t580 + root1 * np.abs(t579) <= whole_1_1) & (0.0 < by_c_1_1_right_flip_up)
+    del t580
+    cosine_1_1_right_flip_up = _runtime.select(t581, by_c_1_1_right_flip_up, 1.0)
     del by_c_1_1_right_flip_up
-    t585 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up
-    sine_1_1_right_flip_up = _runtime.select(t584, -t582, 0.0)
-    del t582, t584
-    c_1_1_2_right_flip_up = t585 + t358 * sine_1_1_right_flip_up
-    del t585
-    t586 = c_1_1_right_noflip_up * sine_1_1_right_flip_up
+    t582 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up
+    sine_1_1_right_flip_up = _runtime.select(t581, -t579, 0.0)
+    del t579, t581
+    c_1_1_2_right_flip_up = t582 + t354 * sine_1_1_right_flip_up
+    del t582
+    t583 = c_1_1_right_noflip_up * sine_1_1_right_flip_up
     del sine_1_1_right_flip_up
-    s_1_1_2_right_flip_up = t586 - t358 * cosine_1_1_right_flip_up
-    del cosine_1_1_right_flip_up, t586
+    s_1_1_2_right_flip_up = t583 - t354 * cosine_1_1_right_flip_up
+    del cosine_1_1_right_flip_up, t583
     axisx_1_1_2_right_flip_up = T13 * c_1_1_2_right_flip_up + T23 * s_1_1_2_right_flip_up
-    t587 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up
-    t588 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up
-    most_1_1_2_right_flip_up = np.sqrt(t587 + t588 * t588)
+    t584 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up
+    t585 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up
+    most_1_1_2_right_flip_up = np.sqrt(t584 + t585 * t585)
     qx_1_1_2_right_flip_up = w_x * c_1_1_2_right_flip_up + w_y * s_1_1_2_right_flip_up
-    t589 = qx_1_1_2_right_flip_up * qx_1_1_2_right_flip_up
-    r_1_1_2_right_flip_up = np.sqrt(t44 + t589)
+    t586 = qx_1_1_2_right_flip_up * qx_1_1_2_right_flip_up
+    r_1_1_2_right_flip_up = np.sqrt(t37 + t586)
+    del t586
+    t587 = r_1_1_2_right_flip_up <= t38
+    del t38
+    t588 = d5 + r_1_1_2_right_flip_up
+    t589 = 1.0 / np.sqrt(t11 + t584)
+    del t584
+    t590 = T33 * t589
+    t591 = qx_1_1_2_right_flip_up + d5 * t590
+    us_1_1_2_right_flip_up = axisx_1_1_2_right_flip_up * t589
     del t589
-    t590 = r_1_1_2_right_flip_up <= t47
-    t591 = d5 + r_1_1_2_right_flip_up
-    t592 = 1.0 / np.sqrt(t16 + t587)
-    del t587
-    t593 = T33 * t592
-    t594 = qx_1_1_2_right_flip_up + d5 * t593
-    us_1_1_2_right_flip_up = axisx_1_1_2_right_flip_up * t592
-    del t592
-    t595 = t26 + d5 * us_1_1_2_right_flip_up
-    there_1_1_2_right_flip_up = np.sqrt(t594 * t594 + t595 * t595)
-    del t594, t595
-    t596 = np.maximum(there_1_1_2_right_flip_up, fold_1_1)
-    goal_1_1_2_right_flip_up = np.minimum(full_1_1, t596)
+    t592 = t21 + d5 * us_1_1_2_right_flip_up
+    there_1_1_2_right_flip_up = np.sqrt(t591 * t591 + t592 * t592)
+    del t591, t592
+    t593 = np.maximum(there_1_1_2_right_flip_up, fold_1_1)
+    goal_1_1_2_right_flip_up = np.minimum(full_1_1, t593)
+    del t593
+    t594 = (t588 - goal_1_1_2_right_flip_up) * (t588 + goal_1_1_2_right_flip_up)
+    del t588
+    k_v_1_1_2_right_flip_up = np.maximum(0.0, t594)
+    del t594
+    t595 = d5 - r_1_1_2_right_flip_up
+    t596 = (goal_1_1_2_right_flip_up - t595) * (goal_1_1_2_right_flip_up + t595)
+    del t595
+    d_v_1_1_2_right_flip_up = np.maximum(0.0, t596)
     del t596
-    t597 = (t591 - goal_1_1_2_right_flip_up) * (t591 + goal_1_1_2_right_flip_up)
-    del t591
-    k_v_1_1_2_right_flip_up = np.maximum(0.0, t597)
-    del t597
-    t598 = d5 - r_1_1_2_right_flip_up
-    t599 = (goal_1_1_2_right_flip_up - t598) * (goal_1_1_2_right_flip_up + t598)
-    del t598
-    d_v_1_1_2_right_flip_up = np.maximum(0.0, t599)
-    del t599
     n_v_1_1_2_right_flip_up = k_v_1_1_2_right_flip_up + d_v_1_1_2_right_flip_up
-    t600 = n_v_1_1_2_right_flip_up <= t56
-    del t56
-    t601 = k_v_1_1_2_right_flip_up - d_v_1_1_2_right_flip_up
-    t602 = 1.0 / n_v_1_1_2_right_flip_up
+    t597 = n_v_1_1_2_right_flip_up <= t47
+    del t47
+    t598 = k_v_1_1_2_right_flip_up - d_v_1_1_2_right_flip_up
+    t599 = 1.0 / n_v_1_1_2_right_flip_up
     del n_v_1_1_2_right_flip_up
-    uc_v_1_1_2_right_flip_up = _runtime.select(t600, 1.0, t601 * t602)
-    del t601
-    t603 = qx_1_1_2_right_flip_up * uc_v_1_1_2_right_flip_up
-    t604 = qx_1_1_2_right_flip_up * us_1_1_2_right_flip_up
+    uc_v_1_1_2_right_flip_up = _runtime.select(t597, 1.0, t598 * t599)
+    del t598
+    t600 = qx_1_1_2_right_flip_up * uc_v_1_1_2_right_flip_up
+    t601 = qx_1_1_2_right_flip_up * us_1_1_2_right_flip_up
     del us_1_1_2_right_flip_up
-    t605 = k_v_1_1_2_right_flip_up * d_v_1_1_2_right_flip_up
+    t602 = k_v_1_1_2_right_flip_up * d_v_1_1_2_right_flip_up
     del d_v_1_1_2_right_flip_up, k_v_1_1_2_right_flip_up
-    t606 = 2.0 * _runtime.sign(t604 - t26 * t593) * np.sqrt(t605)
-    del t593, t604, t605
-    us_v_1_1_2_right_flip_up = _runtime.select(t600, 0.0, t602 * t606)
-    del t600, t602, t606
-    t607 = t26 * us_v_1_1_2_right_flip_up
-    t608 = 1.0 / r_1_1_2_right_flip_up
+    t603 = 2.0 * _runtime.sign(t601 - t21 * t590) * np.sqrt(t602)
+    del t590, t601, t602
+    us_v_1_1_2_right_flip_up = _runtime.select(t597, 0.0, t599 * t603)
+    del t597, t599, t603
+    t604 = t21 * us_v_1_1_2_right_flip_up
+    t605 = 1.0 / r_1_1_2_right_flip_up
     del r_1_1_2_right_flip_up
-    c_v_1_1_2_right_flip_up = _runtime.select(t590, 1.0, (t603 + t607) * t608)
-    t609 = -(T33 * c_v_1_1_2_right_flip_up) < 0.0
-    t610 = qx_1_1_2_right_flip_up * us_v_1_1_2_right_flip_up
+    c_v_1_1_2_right_flip_up = _runtime.select(t587, 1.0, (t600 + t604) * t605)
+    t606 = -(T33 * c_v_1_1_2_right_flip_up) < 0.0
+    t607 = qx_1_1_2_right_flip_up * us_v_1_1_2_right_flip_up
     del qx_1_1_2_right_flip_up, us_v_1_1_2_right_flip_up
-    t611 = t26 * uc_v_1_1_2_right_flip_up
+    t608 = t21 * uc_v_1_1_2_right_flip_up
     del uc_v_1_1_2_right_flip_up
-    wc_1_1_2_right_flip_up = _runtime.select(t590, 0.0, t608 * (t610 + t611))
-    s_v_1_1_2_right_flip_up = _runtime.select(t590, 0.0, t608 * (t610 - t611))
-    del t610, t611
-    to_c_1_1_2_right_flip_up = _runtime.select(t609, wc_1_1_2_right_flip_up, -s_v_1_1_2_right_flip_up)
+    wc_1_1_2_right_flip_up = _runtime.select(t587, 0.0, t605 * (t607 + t608))
+    s_v_1_1_2_right_flip_up = _runtime.select(t587, 0.0, t605 * (t607 - t608))
+    del t607, t608
+    to_c_1_1_2_right_flip_up = _runtime.select(t606, wc_1_1_2_right_flip_up, -s_v_1_1_2_right_flip_up)
     del s_v_1_1_2_right_flip_up, wc_1_1_2_right_flip_up
-    c_w_1_1_2_right_flip_up = _runtime.select(t590, 1.0, t608 * (t603 - t607))
-    del t590, t603, t607, t608
-    to_s_1_1_2_right_flip_up = _runtime.select(t609, c_w_1_1_2_right_flip_up, c_v_1_1_2_right_flip_up)
-    del c_v_1_1_2_right_flip_up, c_w_1_1_2_right_flip_up, t609
-    t612 = T33 * to_c_1_1_2_right_flip_up / to_s_1_1_2_right_flip_up
+    c_w_1_1_2_right_flip_up = _runtime.select(t587, 1.0, t605 * (t600 - t604))
+    del t587, t600, t604, t605
+    to_s_1_1_2_right_flip_up = _runtime.select(t606, c_w_1_1_2_right_flip_up, c_v_1_1_2_right_flip_up)
+    del c_v_1_1_2_right_flip_up, c_w_1_1_2_right_flip_up, t606
+    t609 = T33 * to_c_1_1_2_right_flip_up / to_s_1_1_2_right_flip_up
     del to_c_1_1_2_right_flip_up, to_s_1_1_2_right_flip_up
-    t613 = np.minimum(most_1_1_2_right_flip_up, _runtime.select(t43, 0.0, t612))
-    del t43, t612
-    kept_1_1_2_right_flip_up = np.maximum(-most_1_1_2_right_flip_up, t613)
-    del t613
-    t614 = most_1_1_2_right_flip_up - kept_1_1_2_right_flip_up
-    t615 = most_1_1_2_right_flip_up + kept_1_1_2_right_flip_up
-    rest_1_1_2_right_flip_up = np.sqrt(t614 * t615) * _runtime.sign(-t588)
-    del t614, t615
-    t616 = axisx_1_1_2_right_flip_up * rest_1_1_2_right_flip_up
-    t617 = most_1_1_2_right_flip_up * most_1_1_2_right_flip_up
+    t610 = np.minimum(most_1_1_2_right_flip_up, _runtime.select(t36, 0.0, t609))
+    del t36, t609
+    kept_1_1_2_right_flip_up = np.maximum(-most_1_1_2_right_flip_up, t610)
+    del t610
+    t611 = most_1_1_2_right_flip_up - kept_1_1_2_right_flip_up
+    t612 = most_1_1_2_right_flip_up + kept_1_1_2_right_flip_up
+    rest_1_1_2_right_flip_up = np.sqrt(t611 * t612) * _runtime.sign(-t585)
+    del t611, t612
+    t613 = axisx_1_1_2_right_flip_up * rest_1_1_2_right_flip_up
+    t614 = most_1_1_2_right_flip_up * most_1_1_2_right_flip_up
     del most_1_1_2_right_flip_up
-    t618 = 1.0 / t617
-    del t617
-    t619 = (t616 + t588 * kept_1_1_2_right_flip_up) * t618
-    del t616
-    t620 = axisx_1_1_2_right_flip_up * kept_1_1_2_right_flip_up
+    t615 = 1.0 / t614
+    del t614
+    t616 = (t613 + t585 * kept_1_1_2_right_flip_up) * t615
+    del t613
+    t617 = axisx_1_1_2_right_flip_up * kept_1_1_2_right_flip_up
     del axisx_1_1_2_right_flip_up, kept_1_1_2_right_flip_up
-    by_c_1_1_2_right_flip_up = t618 * (t620 - t588 * rest_1_1_2_right_flip_up)
-    del rest_1_1_2_right_flip_up, t588, t618, t620
-    t621 = d4 * (t619 * t619) / (1.0 + np.abs(by_c_1_1_2_right_flip_up))
-    t622 = (t621 + root1 * np.abs(t619) <= whole_1_1) & (0.0 < by_c_1_1_2_right_flip_up)
-    del t621
-    t623 = there_1_1_2_right_flip_up - goal_1_1_2_right_flip_up
+    by_c_1_1_2_right_flip_up = t615 * (t617 - t585 * rest_1_1_2_right_flip_up)
+    del rest_1_1_2_right_flip_up, t585, t615, t617
+    t618 = d4 * (t616 * t616) / (1.0 + np.abs(by_c_1_1_2_right_flip_up))
+    t619 = (t618 + root1 * np.abs(t616) <= whole_1_1) & (0.0 < by_c_1_1_2_right_flip_up)
+    del t618
+    t620 = there_1_1_2_right_flip_up - goal_1_1_2_right_flip_up
     del goal_1_1_2_right_flip_up, there_1_1_2_right_flip_up
-    t624 = t622 & (t47 < np.abs(t623))
-    del t47, t622, t623
-    cosine_1_1_2_right_flip_up = _runtime.select(t624, by_c_1_1_2_right_flip_up, 1.0)
+    t621 = t619 & (size < 1125899906842624.0 * np.abs(t620))
+    del t619, t620
+    cosine_1_1_2_right_flip_up = _runtime.select(t621, by_c_1_1_2_right_flip_up, 1.0)
     del by_c_1_1_2_right_flip_up
-    t625 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
-    sine_1_1_2_right_flip_up = _runtime.select(t624, -t619, 0.0)
-    del t619, t624
-    t626 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
-    c_1_1_2_3_right_flip_up = t625 - t626
-    del t625, t626
-    t627 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
+    t622 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
+    sine_1_1_2_right_flip_up = _runtime.select(t621, -t616, 0.0)
+    del t616, t621
+    t623 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
+    c_1_1_2_3_right_flip_up = t622 - t623
+    del t622, t623
+    t624 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
     del c_1_1_2_right_flip_up, sine_1_1_2_right_flip_up
-    t628 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
+    t625 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
     del cosine_1_1_2_right_flip_up, s_1_1_2_right_flip_up
-    s_1_1_2_3_right_flip_up = t627 + t628
-    del t627, t628
+    s_1_1_2_3_right_flip_up = t624 + t625
+    del t624, t625
     axisx_1_1_2_3_right_flip_up = T13 * c_1_1_2_3_right_flip_up + T23 * s_1_1_2_3_right_flip_up
-    t629 = axisx_1_1_2_3_right_flip_up * axisx_1_1_2_3_right_flip_up
-    h_1_1_2_3_right_flip_up = np.sqrt(t16 + t629)
-    del t629
-    t630 = size_1_1 * h_1_1_2_3_right_flip_up <= t20
+    t626 = axisx_1_1_2_3_right_flip_up * axisx_1_1_2_3_right_flip_up
+    h_1_1_2_3_right_flip_up = np.sqrt(t11 + t626)
+    del t626
+    t627 = size * h_1_1_2_3_right_flip_up <= t15
     qx_1_1_2_3_right_flip_up = w_x * c_1_1_2_3_right_flip_up + w_y * s_1_1_2_3_right_flip_up
-    t631 = 1.0 / h_1_1_2_3_right_flip_up
-    t632 = T33 * t631
-    x_1_1_2_3_right_flip_up = _runtime.select(t630, qx_1_1_2_3_right_flip_up, qx_1_1_2_3_right_flip_up + d5 * t632)
+    t628 = 1.0 / h_1_1_2_3_right_flip_up
+    t629 = T33 * t628
+    x_1_1_2_3_right_flip_up = _runtime.select(t627, qx_1_1_2_3_right_flip_up, qx_1_1_2_3_right_flip_up + d5 * t629)
     del qx_1_1_2_3_right_flip_up
     dqx_1_1_2_3_right_flip_up = w_y * c_1_1_2_3_right_flip_up - w_x * s_1_1_2_3_right_flip_up
-    us_1_1_2_3_right_flip_up = axisx_1_1_2_3_right_flip_up * t631
-    del axisx_1_1_2_3_right_flip_up, t631
-    t633 = T13 * s_1_1_2_3_right_flip_up - T23 * c_1_1_2_3_right_flip_up
-    t634 = h_1_1_2_3_right_flip_up * h_1_1_2_3_right_flip_up
+    us_1_1_2_3_right_flip_up = axisx_1_1_2_3_right_flip_up * t628
+    del axisx_1_1_2_3_right_flip_up, t628
+    t630 = T13 * s_1_1_2_3_right_flip_up - T23 * c_1_1_2_3_right_flip_up
+    t631 = h_1_1_2_3_right_flip_up * h_1_1_2_3_right_flip_up
     del h_1_1_2_3_right_flip_up
-    rate_1_1_2_3_right_flip_up = d5 * (T33 * t633) / t634
-    del t633, t634
-    t635 = us_1_1_2_3_right_flip_up * rate_1_1_2_3_right_flip_up
-    dx_1_1_2_3_right_flip_up = _runtime.select(t630, dqx_1_1_2_3_right_flip_up, dqx_1_1_2_3_right_flip_up + t635)
-    del dqx_1_1_2_3_right_flip_up, t635
-    t636 = x_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
-    t637 = _runtime.select(t630, t26, t26 + d5 * us_1_1_2_3_right_flip_up)
+    rate_1_1_2_3_right_flip_up = d5 * (T33 * t630) / t631
+    del t630, t631
+    t632 = us_1_1_2_3_right_flip_up * rate_1_1_2_3_right_flip_up
+    dx_1_1_2_3_right_flip_up = _runtime.select(t627, dqx_1_1_2_3_right_flip_up, dqx_1_1_2_3_right_flip_up + t632)
+    del dqx_1_1_2_3_right_flip_up, t632
+    t633 = x_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
+    t634 = _runtime.select(t627, t21, t21 + d5 * us_1_1_2_3_right_flip_up)
     del us_1_1_2_3_right_flip_up
-    dy_1_1_2_3_right_flip_up = _runtime.select(t630, 0.0, t632 * rate_1_1_2_3_right_flip_up)
-    del rate_1_1_2_3_right_flip_up, t632
-    slope_1_1_2_3_right_flip_up = t636 - t637 * dy_1_1_2_3_right_flip_up
-    del t636
-    t638 = slope_1_1_2_3_right_flip_up * slope_1_1_2_3_right_flip_up
-    t639 = x_1_1_2_3_right_flip_up * x_1_1_2_3_right_flip_up
+    dy_1_1_2_3_right_flip_up = _runtime.select(t627, 0.0, t629 * rate_1_1_2_3_right_flip_up)
+    del rate_1_1_2_3_right_flip_up, t629
+    slope_1_1_2_3_right_flip_up = t633 - t634 * dy_1_1_2_3_right_flip_up
+    del t633
+    t635 = slope_1_1_2_3_right_flip_up * slope_1_1_2_3_right_flip_up
+    t636 = x_1_1_2_3_right_flip_up * x_1_1_2_3_right_flip_up
     del x_1_1_2_3_right_flip_up
-    square_1_1_2_3_right_flip_up = t639 + t637 * t637
-    del t637, t639
-    nearest_1_1_2_3_right_flip_up = _runtime.select(t630, t30, fold_1_1)
+    square_1_1_2_3_right_flip_up = t636 + t634 * t634
+    del t634, t636
+    nearest_1_1_2_3_right_flip_up = _runtime.select(t627, t25, fold_1_1)
     low_1_1_2_3_right_flip_up = nearest_1_1_2_3_right_flip_up * nearest_1_1_2_3_right_flip_up
     del nearest_1_1_2_3_right_flip_up
-    farthest_1_1_2_3_right_flip_up = _runtime.select(t630, t5, full_1_1)
-    del t630
+    farthest_1_1_2_3_right_flip_up = _runtime.select(t627, t3, full_1_1)
+    del t627
     high_1_1_2_3_right_flip_up = farthest_1_1_2_3_right_flip_up * farthest_1_1_2_3_right_flip_up
     del farthest_1_1_2_3_right_flip_up
-    t640 = np.minimum(high_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up)
+    t637 = np.minimum(high_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up)
     del high_1_1_2_3_right_flip_up
-    miss_1_1_2_3_right_flip_up = square_1_1_2_3_right_flip_up - np.maximum(low_1_1_2_3_right_flip_up, t640)
-    del low_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up, t640
-    t641 = dx_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
+    miss_1_1_2_3_right_flip_up = square_1_1_2_3_right_flip_up - np.maximum(low_1_1_2_3_right_flip_up, t637)
+    del low_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up, t637
+    t638 = dx_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
     del dx_1_1_2_3_right_flip_up
-    t642 = dy_1_1_2_3_right_flip_up * dy_1_1_2_3_right_flip_up
+    t639 = dy_1_1_2_3_right_flip_up * dy_1_1_2_3_right_flip_up
     del dy_1_1_2_3_right_flip_up
-    bend_1_1_2_3_right_flip_up = t641 + t642
-    del t641, t642
-    t643 = miss_1_1_2_3_right_flip_up * bend_1_1_2_3_right_flip_up
-    inner_1_1_2_3_right_flip_up = t638 - t643
-    del t638, t643
-    t644 = slope_1_1_2_3_right_flip_up / (2.0 * bend_1_1_2_3_right_flip_up)
+    bend_1_1_2_3_right_flip_up = t638 + t639
+    del t638, t639
+    t640 = miss_1_1_2_3_right_flip_up * bend_1_1_2_3_right_flip_up
+    inner_1_1_2_3_right_flip_up = t635 - t640
+    del t635, t640
+    t641 = slope_1_1_2_3_right_flip_up / (2.0 * bend_1_1_2_3_right_flip_up)
     del bend_1_1_2_3_right_flip_up
-    t645 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_right_flip_up))
-    t646 = _runtime.sign(slope_1_1_2_3_right_flip_up) * t645
+    t642 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_right_flip_up))
+    t643 = _runtime.sign(slope_1_1_2_3_right_flip_up) * t642
+    del t642
+    t644 = miss_1_1_2_3_right_flip_up / (2.0 * (slope_1_1_2_3_right_flip_up + t643))
+    del miss_1_1_2_3_right_flip_up, slope_1_1_2_3_right_flip_up, t643
+    t645 = _runtime.select(inner_1_1_2_3_right_flip_up < 0.0, t641, t644)
+    del inner_1_1_2_3_right_flip_up, t641, t644
+    t646 = t645 * t645
+    t647 = 1.0 / (1.0 + t646)
+    t648 = 2.0 * t645 * t647
     del t645
-    t647 = miss_1_1_2_3_right_flip_up / (2.0 * (slope_1_1_2_3_right_flip_up + t646))
-    del miss_1_1_2_3_right_flip_up, slope_1_1_2_3_right_flip_up, t646
-    t648 = _runtime.select(inner_1_1_2_3_right_flip_up < 0.0, t644, t647)
-    del inner_1_1_2_3_right_flip_up, t644, t647
-    t649 = t648 * t648
-    t650 = 1.0 / (1.0 + t649)
-    t651 = 2.0 * t648 * t650
-    del t648
-    by_c_1_1_2_3_right_flip_up = t650 * (1.0 - t649)
-    del t649, t650
-    t652 = d4 * (t651 * t651) / (1.0 + np.abs(by_c_1_1_2_3_right_flip_up))
-    t653 = (t652 + root1 * np.abs(t651) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_flip_up)
-    del t652
-    cosine_1_1_2_3_right_flip_up = _runtime.select(t653, by_c_1_1_2_3_right_flip_up, 1.0)
+    by_c_1_1_2_3_right_flip_up = t647 * (1.0 - t646)
+    del t646, t647
+    t649 = d4 * (t648 * t648) / (1.0 + np.abs(by_c_1_1_2_3_right_flip_up))
+    t650 = (t649 + root1 * np.abs(t648) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_flip_up)
+    del t649
+    cosine_1_1_2_3_right_flip_up = _runtime.select(t650, by_c_1_1_2_3_right_flip_up, 1.0)
     del by_c_1_1_2_3_right_flip_up
-    t654 = c_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
-    sine_1_1_2_3_right_flip_up = _runtime.select(t653, -t651, 0.0)
-    del t651, t653
-    t655 = s_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
-    c_1_1_2_3_4_right_flip_up = t654 - t655
-    del t654, t655
-    t656 = c_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
+    t651 = c_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
+    sine_1_1_2_3_right_flip_up = _runtime.select(t650, -t648, 0.0)
+    del t648, t650
+    t652 = s_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
+    c_1_1_2_3_4_right_flip_up = t651 - t652
+    del t651, t652
+    t653 = c_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
     del c_1_1_2_3_right_flip_up, sine_1_1_2_3_right_flip_up
-    t657 = s_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
+    t654 = s_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
     del cosine_1_1_2_3_right_flip_up, s_1_1_2_3_right_flip_up
-    s_1_1_2_3_4_right_flip_up = t656 + t657
-    del t656, t657
+    s_1_1_2_3_4_right_flip_up = t653 + t654
+    del t653, t654
     axisx_1_1_2_3_4_right_flip_up = T13 * c_1_1_2_3_4_right_flip_up + T23 * s_1_1_2_3_4_right_flip_up
-    t658 = axisx_1_1_2_3_4_right_flip_up * axisx_1_1_2_3_4_right_flip_up
-    h_1_1_2_3_4_right_flip_up = np.sqrt(t16 + t658)
-    del t658
-    t659 = size_1_1 * h_1_1_2_3_4_right_flip_up <= t20
-    del size_1_1, t20
+    t655 = axisx_1_1_2_3_4_right_flip_up * axisx_1_1_2_3_4_right_flip_up
+    h_1_1_2_3_4_right_flip_up = np.sqrt(t11 + t655)
+    del t655
+    t656 = size * h_1_1_2_3_4_right_flip_up <= t15
+    del size, t15
     qx_1_1_2_3_4_right_flip_up = w_x * c_1_1_2_3_4_right_flip_up + w_y * s_1_1_2_3_4_right_flip_up
-    t660 = 1.0 / h_1_1_2_3_4_right_flip_up
-    t661 = T33 * t660
-    x_1_1_2_3_4_right_flip_up = _runtime.select(t659, qx_1_1_2_3_4_right_flip_up, qx_1_1_2_3_4_right_flip_up + d5 * t661)
+    t657 = 1.0 / h_1_1_2_3_4_right_flip_up
+    t658 = T33 * t657
+    x_1_1_2_3_4_right_flip_up = _runtime.select(t656, qx_1_1_2_3_4_right_flip_up, qx_1_1_2_3_4_right_flip_up + d5 * t658)
     del qx_1_1_2_3_4_right_flip_up
     dqx_1_1_2_3_4_right_flip_up = w_y * c_1_1_2_3_4_right_flip_up - w_x * s_1_1_2_3_4_right_flip_up
-    us_1_1_2_3_4_right_flip_up = axisx_1_1_2_3_4_right_flip_up * t660
-    del axisx_1_1_2_3_4_right_flip_up, t660
-    t662 = T13 * s_1_1_2_3_4_right_flip_up - T23 * c_1_1_2_3_4_right_flip_up
-    t663 = h_1_1_2_3_4_right_flip_up * h_1_1_2_3_4_right_flip_up
+    us_1_1_2_3_4_right_flip_up = axisx_1_1_2_3_4_right_flip_up * t657
+    del axisx_1_1_2_3_4_right_flip_up, t657
+    t659 = T13 * s_1_1_2_3_4_right_flip_up - T23 * c_1_1_2_3_4_right_flip_up
+    t660 = h_1_1_2_3_4_right_flip_up * h_1_1_2_3_4_right_flip_up
     del h_1_1_2_3_4_right_flip_up
-    rate_1_1_2_3_4_right_flip_up = d5 * (T33 * t662) / t663
-    del t662, t663
-    t664 = us_1_1_2_3_4_right_flip_up * rate_1_1_2_3_4_right_flip_up
-    dx_1_1_2_3_4_right_flip_up = _runtime.select(t659, dqx_1_1_2_3_4_right_flip_up, dqx_1_1_2_3_4_right_flip_up + t664)
-    del dqx_1_1_2_3_4_right_flip_up, t664
-    t665 = x_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
-    t666 = _runtime.select(t659, t26, t26 + d5 * us_1_1_2_3_4_right_flip_up)
+    rate_1_1_2_3_4_right_flip_up = d5 * (T33 * t659) / t660
+    del t659, t660
+    t661 = us_1_1_2_3_4_right_flip_up * rate_1_1_2_3_4_right_flip_up
+    dx_1_1_2_3_4_right_flip_up = _runtime.select(t656, dqx_1_1_2_3_4_right_flip_up, dqx_1_1_2_3_4_right_flip_up + t661)
+    del dqx_1_1_2_3_4_right_flip_up, t661
+    t662 = x_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
+    t663 = _runtime.select(t656, t21, t21 + d5 * us_1_1_2_3_4_right_flip_up)
     del us_1_1_2_3_4_right_flip_up
-    dy_1_1_2_3_4_right_flip_up = _runtime.select(t659, 0.0, t661 * rate_1_1_2_3_4_right_flip_up)
-    del rate_1_1_2_3_4_right_flip_up, t661
-    slope_1_1_2_3_4_right_flip_up = t665 - t666 * dy_1_1_2_3_4_right_flip_up
-    del t665
-    t667 = slope_1_1_2_3_4_right_flip_up * slope_1_1_2_3_4_right_flip_up
-    t668 = x_1_1_2_3_4_right_flip_up * x_1_1_2_3_4_right_flip_up
+    dy_1_1_2_3_4_right_flip_up = _runtime.select(t656, 0.0, t658 * rate_1_1_2_3_4_right_flip_up)
+    del rate_1_1_2_3_4_right_flip_up, t658
+    slope_1_1_2_3_4_right_flip_up = t662 - t663 * dy_1_1_2_3_4_right_flip_up
+    del t662
+    t664 = slope_1_1_2_3_4_right_flip_up * slope_1_1_2_3_4_right_flip_up
+    t665 = x_1_1_2_3_4_right_flip_up * x_1_1_2_3_4_right_flip_up
     del x_1_1_2_3_4_right_flip_up
-    square_1_1_2_3_4_right_flip_up = t668 + t666 * t666
-    del t666, t668
-    nearest_1_1_2_3_4_right_flip_up = _runtime.select(t659, t30, fold_1_1)
-    del t30
+    square_1_1_2_3_4_right_flip_up = t665 + t663 * t663
+    del t663, t665
+    nearest_1_1_2_3_4_right_flip_up = _runtime.select(t656, t25, fold_1_1)
+    del t25
     low_1_1_2_3_4_right_flip_up = nearest_1_1_2_3_4_right_flip_up * nearest_1_1_2_3_4_right_flip_up
     del nearest_1_1_2_3_4_right_flip_up
-    farthest_1_1_2_3_4_right_flip_up = _runtime.select(t659, t5, full_1_1)
-    del t5, t659
+    farthest_1_1_2_3_4_right_flip_up = _runtime.select(t656, t3, full_1_1)
+    del t3, t656
     high_1_1_2_3_4_right_flip_up = farthest_1_1_2_3_4_right_flip_up * farthest_1_1_2_3_4_right_flip_up
     del farthest_1_1_2_3_4_right_flip_up
-    t669 = np.minimum(high_1_1_2_3_4_right_flip_up, square_1_1_2_3_4_right_flip_up)
+    t666 = np.minimum(high_1_1_2_3_4_right_flip_up, square_1_1_2_3_4_right_flip_up)
     del high_1_1_2_3_4_right_flip_up
-    t670 = np.maximum(low_1_1_2_3_4_right_flip_up, t669)
-    del low_1_1_2_3_4_right_flip_up, t669
-    miss_1_1_2_3_4_right_flip_up = square_1_1_2_3_4_right_flip_up - t670
-    del square_1_1_2_3_4_right_flip_up, t670
-    t671 = dx_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
+    t667 = np.maximum(low_1_1_2_3_4_right_flip_up, t666)
+    del low_1_1_2_3_4_right_flip_up, t666
+    miss_1_1_2_3_4_right_flip_up = square_1_1_2_3_4_right_flip_up - t667
+    del square_1_1_2_3_4_right_flip_up, t667
+    t668 = dx_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
     del dx_1_1_2_3_4_right_flip_up
-    t672 = dy_1_1_2_3_4_right_flip_up * dy_1_1_2_3_4_right_flip_up
+    t669 = dy_1_1_2_3_4_right_flip_up * dy_1_1_2_3_4_right_flip_up
     del dy_1_1_2_3_4_right_flip_up
-    bend_1_1_2_3_4_right_flip_up = t671 + t672
-    del t671, t672
-    t673 = miss_1_1_2_3_4_right_flip_up * bend_1_1_2_3_4_right_flip_up
-    inner_1_1_2_3_4_right_flip_up = t667 - t673
-    del t667, t673
-    t674 = slope_1_1_2_3_4_right_flip_up / (2.0 * bend_1_1_2_3_4_right_flip_up)
+    bend_1_1_2_3_4_right_flip_up = t668 + t669
+    del t668, t669
+    t670 = miss_1_1_2_3_4_right_flip_up * bend_1_1_2_3_4_right_flip_up
+    inner_1_1_2_3_4_right_flip_up = t664 - t670
+    del t664, t670
+    t671 = slope_1_1_2_3_4_right_flip_up / (2.0 * bend_1_1_2_3_4_right_flip_up)
     del bend_1_1_2_3_4_right_flip_up
-    t675 = np.maximum(0.0, inner_1_1_2_3_4_right_flip_up)
-    t676 = _runtime.sign(slope_1_1_2_3_4_right_flip_up) * np.sqrt(t675)
+    t672 = np.maximum(0.0, inner_1_1_2_3_4_right_flip_up)
+    t673 = _runtime.sign(slope_1_1_2_3_4_right_flip_up) * np.sqrt(t672)
+    del t672
+    t674 = miss_1_1_2_3_4_right_flip_up / (2.0 * (slope_1_1_2_3_4_right_flip_up + t673))
+    del miss_1_1_2_3_4_right_flip_up, slope_1_1_2_3_4_right_flip_up, t673
+    t675 = _runtime.select(inner_1_1_2_3_4_right_flip_up < 0.0, t671, t674)
+    del inner_1_1_2_3_4_right_flip_up, t671, t674
+    t676 = t675 * t675
+    t677 = 1.0 / (1.0 + t676)
+    t678 = 2.0 * t675 * t677
     del t675
-    t677 = miss_1_1_2_3_4_right_flip_up / (2.0 * (slope_1_1_2_3_4_right_flip_up + t676))
-    del miss_1_1_2_3_4_right_flip_up, slope_1_1_2_3_4_right_flip_up, t676
-    t678 = _runtime.select(inner_1_1_2_3_4_right_flip_up < 0.0, t674, t677)
-    del inner_1_1_2_3_4_right_flip_up, t674, t677
-    t679 = t678 * t678
-    t680 = 1.0 / (1.0 + t679)
-    t681 = 2.0 * t678 * t680
+    by_c_1_1_2_3_4_right_flip_up = t677 * (1.0 - t676)
+    del t676, t677
+    t679 = d4 * (t678 * t678) / (1.0 + np.abs(by_c_1_1_2_3_4_right_flip_up))
+    t680 = (t679 + root1 * np.abs(t678) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_flip_up)
+    del t679, whole_1_1
+    sine_1_1_2_3_4_right_flip_up = _runtime.select(t680, -t678, 0.0)
     del t678
-    by_c_1_1_2_3_4_right_flip_up = t680 * (1.0 - t679)
-    del t679, t680
-    t682 = d4 * (t681 * t681) / (1.0 + np.abs(by_c_1_1_2_3_4_right_flip_up))
-    t683 = (t682 + root1 * np.abs(t681) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_flip_up)
-    del t682, whole_1_1
-    sine_1_1_2_3_4_right_flip_up = _runtime.select(t683, -t681, 0.0)
-    del t681
-    t684 = c_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
-    cosine_1_1_2_3_4_right_flip_up = _runtime.select(t683, by_c_1_1_2_3_4_right_flip_up, 1.0)
-    del by_c_1_1_2_3_4_right_flip_up, t683
-    t685 = s_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
-    s1_right_flip_up = _runtime.select(tangent1, t684 + t685, -t358)
-    del t358, t684, t685
-    t686 = c_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
+    t681 = c_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
+    cosine_1_1_2_3_4_right_flip_up = _runtime.select(t680, by_c_1_1_2_3_4_right_flip_up, 1.0)
+    del by_c_1_1_2_3_4_right_flip_up, t680
+    t682 = s_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
+    s1_right_flip_up = _runtime.select(tangent1, t681 + t682, -t354)
+    del t354, t681, t682
+    t683 = c_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
     del c_1_1_2_3_4_right_flip_up, cosine_1_1_2_3_4_right_flip_up
-    t687 = s_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
+    t684 = s_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
     del s_1_1_2_3_4_right_flip_up, sine_1_1_2_3_4_right_flip_up
-    c1_right_flip_up = _runtime.select(tangent1, t686 - t687, c_1_1_right_noflip_up)
-    del c_1_1_right_noflip_up, t686, t687, tangent1
-    t688 = np.arctan2(s1_right_flip_up, c1_right_flip_up)
+    c1_right_flip_up = _runtime.select(tangent1, t683 - t684, c_1_1_right_noflip_up)
+    del c_1_1_right_noflip_up, t683, t684, tangent1
+    t685 = np.arctan2(s1_right_flip_up, c1_right_flip_up)
     across_right_flip_up = w_x * c1_right_flip_up + w_y * s1_right_flip_up
     del w_x, w_y
     M_13_right_flip_up = T13 * c1_right_flip_up + T23 * s1_right_flip_up
-    t689 = t16 + M_13_right_flip_up * M_13_right_flip_up
-    del t16
-    h_wrist_right_flip_up = np.sqrt(t689)
-    del t689
-    aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t122
-    del t122
-    t690 = t44 + across_right_flip_up * across_right_flip_up
-    del t44
-    r_hub_right_flip_up = np.sqrt(t690)
+    t686 = t11 + M_13_right_flip_up * M_13_right_flip_up
+    del t11
+    h_wrist_right_flip_up = np.sqrt(t686)
+    del t686
+    aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t113
+    del t113
+    t687 = t37 + across_right_flip_up * across_right_flip_up
+    del t37
+    r_hub_right_flip_up = np.sqrt(t687)
+    del t687
+    hub_mid_right_flip_up = r_hub_right_flip_up <= t4
+    t688 = d5 + r_hub_right_flip_up
+    t689 = d5 - r_hub_right_flip_up
+    mid_reach_right_flip_up = np.minimum(full_1_1, t688) * 0.5 + np.maximum(fold_1_1, np.abs(t689)) * 0.5
+    t690 = (t688 - mid_reach_right_flip_up) * (t688 + mid_reach_right_flip_up)
+    k_mid_right_flip_up = np.maximum(0.0, t690)
     del t690
-    hub_mid_right_flip_up = r_hub_right_flip_up <= t6
-    t691 = d5 + r_hub_right_flip_up
-    t692 = d5 - r_hub_right_flip_up
-    mid_reach_right_flip_up = np.minimum(full_1_1, t691) * 0.5 + np.maximum(fold_1_1, np.abs(t692)) * 0.5
-    t693 = (t691 - mid_reach_right_flip_up) * (t691 + mid_reach_right_flip_up)
-    k_mid_right_flip_up = np.maximum(0.0, t693)
-    del t693
-    t694 = (t692 - mid_reach_right_flip_up) * (t692 + mid_reach_right_flip_up)
+    t691 = (t689 - mid_reach_right_flip_up) * (t689 + mid_reach_right_flip_up)
     del mid_reach_right_flip_up
-    d_mid_right_flip_up = np.maximum(0.0, -t694)
-    del t694
+    d_mid_right_flip_up = np.maximum(0.0, -t691)
+    del t691
     n_mid_right_flip_up = k_mid_right_flip_up + d_mid_right_flip_up
-    any_mid_right_flip_up = n_mid_right_flip_up <= t125
-    t695 = 1.0 / n_mid_right_flip_up
+    any_mid_right_flip_up = n_mid_right_flip_up <= t116
+    t692 = 1.0 / n_mid_right_flip_up
     del n_mid_right_flip_up
-    t696 = (k_mid_right_flip_up - d_mid_right_flip_up) * t695
-    uc_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 1.0, t696)
-    del t696
-    t697 = np.sqrt(k_mid_right_flip_up * d_mid_right_flip_up)
+    t693 = (k_mid_right_flip_up - d_mid_right_flip_up) * t692
+    uc_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 1.0, t693)
+    del t693
+    t694 = np.sqrt(k_mid_right_flip_up * d_mid_right_flip_up)
     del d_mid_right_flip_up, k_mid_right_flip_up
-    us_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 0.0, t695 * (2.0 * t697))
-    del any_mid_right_flip_up, t695, t697
-    t698 = across_right_flip_up * uc_mid_right_flip_up + t26 * us_mid_right_flip_up
-    t699 = 1.0 / r_hub_right_flip_up
+    us_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 0.0, t692 * (2.0 * t694))
+    del any_mid_right_flip_up, t692, t694
+    t695 = across_right_flip_up * uc_mid_right_flip_up + t21 * us_mid_right_flip_up
+    t696 = 1.0 / r_hub_right_flip_up
     del r_hub_right_flip_up
-    c_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t698 * t699)
-    del t698
-    close_right_flip_up = root1 * h_wrist_right_flip_up - t129 <= t6
-    del root1, t129
-    t700 = 1.0 / h_wrist_right_flip_up
-    t701 = _runtime.select(aligned_wrist_right_flip_up, 0.0, T33 * t700)
-    t702 = across_right_flip_up + d5 * t701
-    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, 1.0, -(M_13_right_flip_up * t700))
-    del t700
-    t703 = t26 - d5 * c_phi_right_flip_up
-    here_right_flip_up = np.sqrt(t702 * t702 + t703 * t703)
-    del t702, t703
+    c_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t695 * t696)
+    del t695
+    close_right_flip_up = root1 * h_wrist_right_flip_up - t119 <= t4
+    del root1, t119
+    t697 = 1.0 / h_wrist_right_flip_up
+    t698 = _runtime.select(aligned_wrist_right_flip_up, 0.0, T33 * t697)
+    t699 = across_right_flip_up + d5 * t698
+    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, 1.0, -(M_13_right_flip_up * t697))
+    del t697
+    t700 = t21 - d5 * c_phi_right_flip_up
+    here_right_flip_up = np.sqrt(t699 * t699 + t700 * t700)
+    del t699, t700
     in_reach_right_flip_up = np.minimum(full_1_1, np.maximum(here_right_flip_up, fold_1_1))
     del fold_1_1
-    t704 = (t691 - in_reach_right_flip_up) * (t691 + in_reach_right_flip_up)
-    del t691
-    k_near_right_flip_up = np.maximum(0.0, t704)
-    del t704
-    t705 = (t692 - in_reach_right_flip_up) * (t692 + in_reach_right_flip_up)
-    del t692
-    d_near_right_flip_up = np.maximum(0.0, -t705)
-    del t705
-    n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
-    any_near_right_flip_up = n_near_right_flip_up <= t125
-    del t125
-    t706 = 1.0 / n_near_right_flip_up
-    del n_near_right_flip_up
-    t707 = (k_near_right_flip_up - d_near_right_flip_up) * t706
-    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t707)
-    del t707
-    t708 = across_right_flip_up * c_phi_right_flip_up + t26 * t701
-    t709 = np.abs(t708)
-    side_right_flip_up = _runtime.select(t709 <= t6, 1.0, -(t708 / t709))
-    del t708, t709
-    t710 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
-    del d_near_right_flip_up, k_near_right_flip_up
-    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t706 * (2.0 * side_right_flip_up * t710))
-    del any_near_right_flip_up, side_right_flip_up, t706, t710
-    t711 = across_right_flip_up * uc_near_right_flip_up + t26 * us_near_right_flip_up
-    c_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t699 * t711)
-    del t711
-    t712 = t701 + c_near_right_flip_up
-    t713 = across_right_flip_up * us_near_right_flip_up - t26 * uc_near_right_flip_up
-    del uc_near_right_flip_up, us_near_right_flip_up
-    s_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t699 * t713)
-    del t713
-    t714 = c_phi_right_flip_up + s_near_right_flip_up
-    t715 = h_wrist_right_flip_up * np.sqrt(t712 * t712 + t714 * t714)
-    del h_wrist_right_flip_up, t712, t714
-    t716 = np.abs(here_right_flip_up - in_reach_right_flip_up)
-    del here_right_flip_up, in_reach_right_flip_up
-    t717 = (t715 - 2.2737367544323206e-13 <= t140) & np.logical_not(t716 <= t6)
-    del t140, t715, t716
-    s_kept_right_flip_up = _runtime.select(t717, c_near_right_flip_up, -t701)
-    del c_near_right_flip_up
-    t718 = _runtime.select(close_right_flip_up, s_kept_right_flip_up, -t701)
-    del s_kept_right_flip_up, t701
-    sphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, c_mid_right_flip_up, t718)
-    del c_mid_right_flip_up, t718
-    t719 = across_right_flip_up - d5 * sphi_right_flip_up
-    t720 = across_right_flip_up * us_mid_right_flip_up - t26 * uc_mid_right_flip_up
-    del across_right_flip_up, uc_mid_right_flip_up, us_mid_right_flip_up
-    s_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t699 * t720)
-    del hub_mid_right_flip_up, t699, t720
-    c_kept_right_flip_up = _runtime.select(t717, -s_near_right_flip_up, c_phi_right_flip_up)
-    del s_near_right_flip_up, t717
-    t721 = _runtime.select(close_right_flip_up, c_kept_right_flip_up, c_phi_right_flip_up)
-    del c_kept_right_flip_up, c_phi_right_flip_up, close_right_flip_up
-    cphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, -s_mid_right_flip_up, t721)
-    del s_mid_right_flip_up, t721
-    ey_right_flip_up = t26 - d5 * cphi_right_flip_up
-    del t26
-    t722 = t719 * t719 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t722)
-    del t722
-    t723 = full_1_1 - r_elbow_right_flip_up
-    t724 = t29 + r_elbow_right_flip_up
-    t725 = r_elbow_right_flip_up - t29
-    del t29
-    t726 = t121 & (t120 <= t723) & (t120 <= t724) & (t120 <= t725)
-    del t120, t121
-    unreachable_4 = np.logical_not(t726)
-    del t726
-    t727 = _runtime.poison(invalid | unreachable_4)
-    t728 = _runtime.wrap_cut(t688) + t727
+    t701 = (t688 - in_reach_right_flip_up) * (t688 + in_reach_right_flip_up)
     del t688
-    folded_elbow_right_flip_up = r_elbow_right_flip_up <= t6
-    del t6
-    A_elbow_right_flip_up = np.maximum(t723, 0.0)
+    k_near_right_flip_up = np.maximum(0.0, t701)
+    del t701
+    t702 = (t689 - in_reach_right_flip_up) * (t689 + in_reach_right_flip_up)
+    del t689
+    d_near_right_flip_up = np.maximum(0.0, -t702)
+    del t702
+    n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
+    any_near_right_flip_up = n_near_right_flip_up <= t116
+    del t116
+    t703 = 1.0 / n_near_right_flip_up
+    del n_near_right_flip_up
+    t704 = (k_near_right_flip_up - d_near_right_flip_up) * t703
+    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t704)
+    del t704
+    t705 = across_right_flip_up * c_phi_right_flip_up + t21 * t698
+    t706 = np.abs(t705)
+    side_right_flip_up = _runtime.select(t706 <= t4, 1.0, -(t705 / t706))
+    del t705, t706
+    t707 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
+    del d_near_right_flip_up, k_near_right_flip_up
+    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t703 * (2.0 * side_right_flip_up * t707))
+    del any_near_right_flip_up, side_right_flip_up, t703, t707
+    t708 = across_right_flip_up * uc_near_right_flip_up + t21 * us_near_right_flip_up
+    c_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t696 * t708)
+    del t708
+    t709 = t698 + c_near_right_flip_up
+    t710 = across_right_flip_up * us_near_right_flip_up - t21 * uc_near_right_flip_up
+    del uc_near_right_flip_up, us_near_right_flip_up
+    s_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t696 * t710)
+    del t710
+    t711 = c_phi_right_flip_up + s_near_right_flip_up
+    t712 = h_wrist_right_flip_up * np.sqrt(t709 * t709 + t711 * t711)
+    del h_wrist_right_flip_up, t709, t711
+    t713 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    del here_right_flip_up, in_reach_right_flip_up
+    t714 = (t712 - 2.2737367544323206e-13 <= t130) & np.logical_not(t713 <= t4)
+    del t130, t712, t713
+    s_kept_right_flip_up = _runtime.select(t714, c_near_right_flip_up, -t698)
+    del c_near_right_flip_up
+    t715 = _runtime.select(close_right_flip_up, s_kept_right_flip_up, -t698)
+    del s_kept_right_flip_up, t698
+    sphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, c_mid_right_flip_up, t715)
+    del c_mid_right_flip_up, t715
+    t716 = across_right_flip_up - d5 * sphi_right_flip_up
+    t717 = across_right_flip_up * us_mid_right_flip_up - t21 * uc_mid_right_flip_up
+    del across_right_flip_up, uc_mid_right_flip_up, us_mid_right_flip_up
+    s_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t696 * t717)
+    del hub_mid_right_flip_up, t696, t717
+    c_kept_right_flip_up = _runtime.select(t714, -s_near_right_flip_up, c_phi_right_flip_up)
+    del s_near_right_flip_up, t714
+    t718 = _runtime.select(close_right_flip_up, c_kept_right_flip_up, c_phi_right_flip_up)
+    del c_kept_right_flip_up, c_phi_right_flip_up, close_right_flip_up
+    cphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, -s_mid_right_flip_up, t718)
+    del s_mid_right_flip_up, t718
+    ey_right_flip_up = t21 - d5 * cphi_right_flip_up
+    del t21
+    t719 = t716 * t716 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t719)
+    del t719
+    t720 = full_1_1 - r_elbow_right_flip_up
+    t721 = t24 + r_elbow_right_flip_up
+    t722 = r_elbow_right_flip_up - t24
+    del t24
+    t723 = t112 & (t111 <= t720) & (t111 <= t721) & (t111 <= t722)
+    del t111, t112
+    unreachable_4 = np.logical_not(t723)
     del t723
-    C_elbow_right_flip_up = np.maximum(t725, 0.0)
-    del t725
-    t729 = A_elbow_right_flip_up * C_elbow_right_flip_up
+    t724 = _runtime.poison(invalid | unreachable_4)
+    t725 = _runtime.wrap_cut(t685) + t724
+    del t685
+    folded_elbow_right_flip_up = r_elbow_right_flip_up <= t4
+    del t4
+    t726 = folded_elbow_right_flip_up | no_link_elbow
+    A_elbow_right_flip_up = np.maximum(t720, 0.0)
+    del t720
+    C_elbow_right_flip_up = np.maximum(t722, 0.0)
+    del t722
+    t727 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = full_1_1 + r_elbow_right_flip_up
     del full_1_1
-    B_elbow_right_flip_up = np.maximum(t724, 0.0)
-    del t724
-    t730 = S_elbow_right_flip_up * B_elbow_right_flip_up
-    t731 = 1.0 / (t729 + t730)
-    c_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t729 - t730) * t731))
-    t732 = ey_right_flip_up * c_base_elbow_right_flip_up
-    t733 = 1.0 / r_elbow_right_flip_up
+    B_elbow_right_flip_up = np.maximum(t721, 0.0)
+    del t721
+    t728 = S_elbow_right_flip_up * B_elbow_right_flip_up
+    t729 = 1.0 / (t727 + t728)
+    c_base_elbow_right_flip_up = _runtime.select(t726, 1.0, -((t727 - t728) * t729))
+    t730 = 1.0 / r_elbow_right_flip_up
     del r_elbow_right_flip_up
-    t734 = t732 * t733
-    del t732
-    area_elbow_right_flip_up = 2.0 * np.sqrt(t729 * t730)
-    del t729, t730
-    s_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 0.0, t731 * area_elbow_right_flip_up)
-    del t731
-    t735 = t733 * (t719 * s_base_elbow_right_flip_up)
-    s2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 0.0, t734 + t735)
-    t736 = ey_right_flip_up * s_base_elbow_right_flip_up
-    del ey_right_flip_up, s_base_elbow_right_flip_up
-    t737 = t733 * t736
-    del t736
-    t738 = t733 * (t719 * c_base_elbow_right_flip_up)
-    del c_base_elbow_right_flip_up, t719, t733
-    c2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 1.0, t737 - t738)
-    t739 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t740 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    t731 = _runtime.select(folded_elbow_right_flip_up, 0.0, ey_right_flip_up * t730)
+    del ey_right_flip_up
+    t732 = c_base_elbow_right_flip_up * t731
+    area_elbow_right_flip_up = 2.0 * np.sqrt(t727 * t728)
+    del t727, t728
+    s_base_elbow_right_flip_up = _runtime.select(t726, 0.0, t729 * area_elbow_right_flip_up)
+    del t726, t729
+    t733 = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t716 * t730))
+    del t716, t730
+    t734 = s_base_elbow_right_flip_up * t733
+    s2_right_flip_up = t732 - t734
+    t735 = c_base_elbow_right_flip_up * t733
+    del c_base_elbow_right_flip_up, t733
+    t736 = t731 * s_base_elbow_right_flip_up
+    del s_base_elbow_right_flip_up, t731
+    c2_right_flip_up = t735 + t736
+    t737 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
+    t738 = A_elbow_right_flip_up * S_elbow_right_flip_up
     del A_elbow_right_flip_up, S_elbow_right_flip_up
-    t741 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    t739 = C_elbow_right_flip_up * B_elbow_right_flip_up
     del B_elbow_right_flip_up, C_elbow_right_flip_up
-    t742 = 1.0 / (t740 + t741)
-    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t742)
+    t740 = 1.0 / (t738 + t739)
+    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t740)
     del area_elbow_right_flip_up
-    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t742 * (t740 - t741)))
-    del t740, t741, t742
-    t743 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
-    t744 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
-    t745 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
+    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t740 * (t738 - t739)))
+    del t738, t739, t740
+    t741 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
+    t742 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
+    t743 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
     del c2_right_flip_up, s2_right_flip_up
-    t746 = c3_right_flip_up * t744 - s3_right_flip_up * t745
-    t747 = c3_right_flip_up * t745 + s3_right_flip_up * t744
+    t744 = c3_right_flip_up * t742 - s3_right_flip_up * t743
+    t745 = c3_right_flip_up * t743 + s3_right_flip_up * t742
+    del t742, t743
+    t746 = _runtime.wrap_cut(np.arctan2(t744, t745)) + t724
     del t744, t745
-    t748 = _runtime.wrap_cut(np.arctan2(t746, t747)) + t727
-    del t746, t747
-    t749 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    t747 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
     del M_13_right_flip_up
     M_33_right_flip_up = T13 * s1_right_flip_up - T23 * c1_right_flip_up
-    t750 = _runtime.wrap_cut(-np.arctan2(t749, M_33_right_flip_up))
-    del M_33_right_flip_up, t749
-    t751 = t750 + t727
-    del t750
+    t748 = _runtime.wrap_cut(-np.arctan2(t747, M_33_right_flip_up))
+    del M_33_right_flip_up, t747
+    t749 = t748 + t724
+    del t748
     M_11_right_flip_up = T11 * c1_right_flip_up + T21 * s1_right_flip_up
-    t752 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up
+    t750 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up
     del M_11_right_flip_up
     M_12_right_flip_up = T12 * c1_right_flip_up + T22 * s1_right_flip_up
     del c1_right_flip_up, s1_right_flip_up
-    t753 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up
+    t751 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up
     del M_12_right_flip_up
-    t754 = _runtime.wrap_cut(-np.arctan2(t752, t753)) + t727
-    del t752, t753
-    s2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 0.0, t734 - t735)
-    del t734, t735
-    c2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t738 + t737))
-    del t737, t738
-    t755 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
-    t756 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
-    t757 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
+    t752 = _runtime.wrap_cut(-np.arctan2(t750, t751)) + t724
+    del t750, t751
+    s2_right_flip_down = t732 + t734
+    del t732, t734
+    c2_right_flip_down = t735 - t736
+    del t735, t736
+    t753 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
+    t754 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
+    t755 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
     del c2_right_flip_down, cphi_right_flip_up, s2_right_flip_down, sphi_right_flip_up
-    t758 = c3_right_flip_up * t756 + s3_right_flip_up * t757
-    t759 = c3_right_flip_up * t757 - s3_right_flip_up * t756
-    del c3_right_flip_up, s3_right_flip_up, t756, t757
-    t760 = _runtime.wrap_cut(np.arctan2(t758, t759)) + t727
-    del t758, t759
-    t761 = free1 | aligned_wrist | no_link_elbow | folded_elbow
+    t756 = c3_right_flip_up * t754 + s3_right_flip_up * t755
+    t757 = c3_right_flip_up * t755 - s3_right_flip_up * t754
+    del c3_right_flip_up, s3_right_flip_up, t754, t755
+    t758 = _runtime.wrap_cut(np.arctan2(t756, t757)) + t724
+    del t756, t757
+    t759 = free1 | aligned_wrist | no_link_elbow | folded_elbow
     del aligned_wrist, folded_elbow
-    t762 = _runtime.status(invalid, unreachable, t761)
-    del t761, unreachable
-    t763 = free1 | aligned_wrist_left_flip_up | no_link_elbow
+    t760 = _runtime.status(invalid, unreachable, t759)
+    del t759, unreachable
+    t761 = free1 | aligned_wrist_left_flip_up | no_link_elbow
     del aligned_wrist_left_flip_up
-    t764 = _runtime.status(invalid, unreachable_2, t763 | folded_elbow_left_flip_up)
-    del folded_elbow_left_flip_up, t763, unreachable_2
-    t765 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    t762 = _runtime.status(invalid, unreachable_2, t761 | folded_elbow_left_flip_up)
+    del folded_elbow_left_flip_up, t761, unreachable_2
+    t763 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
     del aligned_wrist_right_noflip_up
-    t766 = _runtime.status(invalid, unreachable_3, t765 | folded_elbow_right_noflip_up)
-    del folded_elbow_right_noflip_up, t765, unreachable_3
-    t767 = free1 | aligned_wrist_right_flip_up | no_link_elbow
+    t764 = _runtime.status(invalid, unreachable_3, t763 | folded_elbow_right_noflip_up)
+    del folded_elbow_right_noflip_up, t763, unreachable_3
+    t765 = free1 | aligned_wrist_right_flip_up | no_link_elbow
     del aligned_wrist_right_flip_up, free1, no_link_elbow
-    t768 = _runtime.status(invalid, unreachable_4, t767 | folded_elbow_right_flip_up)
-    del folded_elbow_right_flip_up, invalid, t767, unreachable_4
+    t766 = _runtime.status(invalid, unreachable_4, t765 | folded_elbow_right_flip_up)
+    del folded_elbow_right_flip_up, invalid, t765, unreachable_4
     return (
-        t151,
-        _runtime.wrap_cut(np.arctan2(s2, c2)) + t150,
-        _runtime.wrap_cut(t163) + t150,
-        _runtime.wrap_cut(t166) + t150,
-        t168,
-        t170,
-        t151,
-        _runtime.wrap_cut(t171) + t150,
-        _runtime.wrap_cut(-t163) + t150,
-        _runtime.wrap_cut(t174) + t150,
-        t168,
-        t170,
-        t327,
-        t336 + t326,
-        _runtime.wrap_cut(t340) + t326,
-        t345,
-        t348,
-        t351,
-        t327,
-        _runtime.wrap_cut(t352) + t326,
-        _runtime.wrap_cut(-t340) + t326,
-        t357,
-        t348,
-        t351,
-        t538,
-        _runtime.wrap_cut(t549) + t537,
-        _runtime.wrap_cut(t553) + t537,
+        t141,
+        _runtime.wrap_cut(np.arctan2(s2, c2)) + t140,
+        _runtime.wrap_cut(t156) + t140,
+        _runtime.wrap_cut(t159) + t140,
+        t161,
+        t163,
+        t141,
+        _runtime.wrap_cut(t164) + t140,
+        _runtime.wrap_cut(-t156) + t140,
+        _runtime.wrap_cut(t167) + t140,
+        t161,
+        t163,
+        t320,
+        t332 + t319,
+        _runtime.wrap_cut(t336) + t319,
+        t341,
+        t344,
+        t347,
+        t320,
+        _runtime.wrap_cut(t348) + t319,
+        _runtime.wrap_cut(-t336) + t319,
+        t353,
+        t344,
+        t347,
+        t534,
+        _runtime.wrap_cut(t546) + t533,
+        _runtime.wrap_cut(t550) + t533,
+        t555,
         t558,
         t561,
-        t564,
-        t538,
-        _runtime.wrap_cut(t565) + t537,
-        _runtime.wrap_cut(-t553) + t537,
-        t570,
+        t534,
+        _runtime.wrap_cut(t562) + t533,
+        _runtime.wrap_cut(-t550) + t533,
+        t567,
+        t558,
         t561,
-        t564,
-        t728,
-        _runtime.wrap_cut(t739) + t727,
-        _runtime.wrap_cut(t743) + t727,
-        t748,
-        t751,
-        t754,
-        t728,
-        _runtime.wrap_cut(t755) + t727,
-        _runtime.wrap_cut(-t743) + t727,
+        t725,
+        _runtime.wrap_cut(t737) + t724,
+        _runtime.wrap_cut(t741) + t724,
+        t746,
+        t749,
+        t752,
+        t725,
+        _runtime.wrap_cut(t753) + t724,
+        _runtime.wrap_cut(-t741) + t724,
+        t758,
+        t749,
+        t752,
         t760,
-        t751,
-        t754,
+        t760,
         t762,
         t762,
         t764,
         t764,
         t766,
         t766,
-        t768,
-        t768,
     )
 
 
@@ -2902,432 +2895,439 @@ def _ik_common(
     del t24
     invalid = np.logical_not(t25)
     del t25
-    t26 = L2 * 0.5 + L3 * 0.5 + d1 * 0.5 + d4 * 0.5 + d5 * 0.5
-    t27 = -(_runtime.FEASIBILITY * (t26 + d6 * 0.5))
-    del t26
-    t28 = (t27 <= t1) & (t27 <= t2)
-    del t1, t2
     full_1_1 = L2 + L3
-    t29 = w_x * c_1_1 - w_y * t8
-    t30 = T33 * T33
-    t31 = T13 * c_1_1 - T23 * t8
-    h_wrist = np.sqrt(t30 + t31 * t31)
-    t32 = 1.0 / h_wrist
-    s_phi = T33 * t32
-    t33 = d5 * s_phi
-    t34 = t29 - t33
-    t35 = d1 - (T34 - T33 * d6)
-    t36 = t31 * t32
-    del t32
-    t37 = d5 * t36
-    ey = t35 - t37
-    r_elbow = np.sqrt(t34 * t34 + ey * ey)
-    t38 = full_1_1 - r_elbow
-    t39 = L2 - L3
-    t40 = t39 + r_elbow
-    t41 = r_elbow - t39
-    t42 = t28 & (t27 <= t38) & (t27 <= t40) & (t27 <= t41)
-    unreachable = np.logical_not(t42)
-    del t42
-    t43 = _runtime.poison(invalid | unreachable)
-    t44 = t11 + t43
-    t45 = 1.0 / r_elbow
-    A_elbow = np.maximum(t38, 0.0)
-    del t38
-    C_elbow = np.maximum(t41, 0.0)
+    size = d1 + d4 + d5 + d6 + full_1_1
+    t26 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t27 = (t26 <= t1) & (t26 <= t2)
+    del t1, t2
+    t28 = w_x * c_1_1 - w_y * t8
+    t29 = T33 * T33
+    t30 = T13 * c_1_1 - T23 * t8
+    h_wrist = np.sqrt(t29 + t30 * t30)
+    t31 = 1.0 / h_wrist
+    s_phi = T33 * t31
+    t32 = d5 * s_phi
+    t33 = t28 - t32
+    t34 = d1 - (T34 - T33 * d6)
+    t35 = t30 * t31
+    del t31
+    t36 = d5 * t35
+    ey = t34 - t36
+    r_elbow = np.sqrt(t33 * t33 + ey * ey)
+    t37 = full_1_1 - r_elbow
+    t38 = L2 - L3
+    t39 = t38 + r_elbow
+    t40 = r_elbow - t38
+    t41 = t27 & (t26 <= t37) & (t26 <= t39) & (t26 <= t40)
+    unreachable = np.logical_not(t41)
     del t41
+    t42 = _runtime.poison(invalid | unreachable)
+    t43 = t11 + t42
+    t44 = 1.0 / r_elbow
+    t45 = ey * t44
+    del ey
+    A_elbow = np.maximum(t37, 0.0)
+    del t37
+    C_elbow = np.maximum(t40, 0.0)
+    del t40
     t46 = A_elbow * C_elbow
     S_elbow = full_1_1 + r_elbow
-    B_elbow = np.maximum(t40, 0.0)
-    del t40
+    B_elbow = np.maximum(t39, 0.0)
+    del t39
     t47 = S_elbow * B_elbow
     t48 = 1.0 / (t46 + t47)
     t49 = (t46 - t47) * t48
-    t50 = t45 * (ey * t49)
+    t50 = t45 * t49
+    t51 = t33 * t44
+    del t33, t44
     area_elbow = 2.0 * np.sqrt(t46 * t47)
     del t46, t47
     s_base_elbow = t48 * area_elbow
     del t48
-    t51 = t45 * (t34 * s_base_elbow)
-    t52 = t50 - t51
-    t53 = t45 * (t34 * t49)
-    del t34, t49
-    t54 = t45 * (ey * s_base_elbow)
-    del ey, s_base_elbow, t45
-    c2 = t53 + t54
-    t55 = _runtime.wrap_cut(np.arctan2(-t52, c2)) + t43
-    t56 = A_elbow * S_elbow
+    t52 = t51 * s_base_elbow
+    t53 = t50 - t52
+    t54 = t51 * t49
+    del t49, t51
+    t55 = t45 * s_base_elbow
+    del s_base_elbow, t45
+    c2 = t54 + t55
+    t56 = _runtime.wrap_cut(np.arctan2(-t53, c2)) + t42
+    t57 = A_elbow * S_elbow
     del A_elbow, S_elbow
-    t57 = C_elbow * B_elbow
+    t58 = C_elbow * B_elbow
     del B_elbow, C_elbow
-    t58 = t56 - t57
-    t59 = np.arctan2(area_elbow, -t58)
-    t60 = 1.0 / (t56 + t57)
-    del t56, t57
-    t61 = t58 * t60
-    del t58
-    t62 = s_phi * c2 + t36 * t52
-    s3 = area_elbow * t60
-    del area_elbow, t60
-    t63 = t36 * c2 - s_phi * t52
-    del c2, t52
-    t64 = np.arctan2(-(t61 * t62 + s3 * t63), t62 * s3 - t61 * t63)
-    del t62, t63
-    t65 = t31 * t36 + T33 * s_phi
-    del t31
+    t59 = t57 - t58
+    t60 = np.arctan2(area_elbow, -t59)
+    t61 = 1.0 / (t57 + t58)
+    del t57, t58
+    t62 = t59 * t61
+    del t59
+    t63 = s_phi * c2 + t35 * t53
+    s3 = area_elbow * t61
+    del area_elbow, t61
+    t64 = t35 * c2 - s_phi * t53
+    del c2, t53
+    t65 = np.arctan2(-(t62 * t63 + s3 * t64), t63 * s3 - t62 * t64)
+    del t63, t64
+    t66 = t30 * t35 + T33 * s_phi
+    del t30
     M_33 = -(T13 * t8 + T23 * c_1_1)
-    t66 = _runtime.wrap_cut(-np.arctan2(t65, M_33)) + t43
-    t67 = s_phi * (T11 * c_1_1 - T21 * t8) - T31 * t36
-    t68 = s_phi * (T12 * c_1_1 - T22 * t8) - T32 * t36
+    t67 = _runtime.wrap_cut(-np.arctan2(t66, M_33)) + t42
+    t68 = s_phi * (T11 * c_1_1 - T21 * t8) - T31 * t35
+    t69 = s_phi * (T12 * c_1_1 - T22 * t8) - T32 * t35
     del c_1_1, t8
-    t69 = _runtime.wrap_cut(-np.arctan2(t67, -t68)) + t43
-    t70 = t50 + t51
-    del t50, t51
-    c2_left_noflip_down = t53 - t54
-    del t53, t54
-    t71 = _runtime.wrap_cut(np.arctan2(-t70, c2_left_noflip_down))
-    t72 = t36 * c2_left_noflip_down - s_phi * t70
-    t73 = s_phi * c2_left_noflip_down + t36 * t70
-    del c2_left_noflip_down, t70
-    t74 = np.arctan2(s3 * t72 - t61 * t73, -(t61 * t72 + s3 * t73))
-    del s3, t61, t72, t73
-    t75 = t29 + t33
-    del t29, t33
-    ey_left_flip_up = t35 + t37
-    del t37
-    t76 = t75 * t75 + ey_left_flip_up * ey_left_flip_up
-    r_elbow_left_flip_up = np.sqrt(t76)
-    del t76
-    t77 = full_1_1 - r_elbow_left_flip_up
-    t78 = t39 + r_elbow_left_flip_up
-    t79 = r_elbow_left_flip_up - t39
-    t80 = t28 & (t27 <= t77) & (t27 <= t78) & (t27 <= t79)
-    unreachable_2 = np.logical_not(t80)
-    del t80
-    t81 = _runtime.poison(invalid | unreachable_2)
-    t82 = t11 + t81
-    del t11
-    t83 = 1.0 / r_elbow_left_flip_up
-    A_elbow_left_flip_up = np.maximum(t77, 0.0)
+    t70 = _runtime.wrap_cut(-np.arctan2(t68, -t69)) + t42
+    t71 = t50 + t52
+    del t50, t52
+    c2_left_noflip_down = t54 - t55
+    del t54, t55
+    t72 = _runtime.wrap_cut(np.arctan2(-t71, c2_left_noflip_down))
+    t73 = t35 * c2_left_noflip_down - s_phi * t71
+    t74 = s_phi * c2_left_noflip_down + t35 * t71
+    del c2_left_noflip_down, t71
+    t75 = np.arctan2(s3 * t73 - t62 * t74, -(t62 * t73 + s3 * t74))
+    del s3, t62, t73, t74
+    t76 = t28 + t32
+    del t28, t32
+    ey_left_flip_up = t34 + t36
+    del t36
+    t77 = t76 * t76 + ey_left_flip_up * ey_left_flip_up
+    r_elbow_left_flip_up = np.sqrt(t77)
     del t77
-    C_elbow_left_flip_up = np.maximum(t79, 0.0)
-    del t79
-    t84 = A_elbow_left_flip_up * C_elbow_left_flip_up
-    S_elbow_left_flip_up = full_1_1 + r_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t78, 0.0)
+    t78 = full_1_1 - r_elbow_left_flip_up
+    t79 = t38 + r_elbow_left_flip_up
+    t80 = r_elbow_left_flip_up - t38
+    t81 = t27 & (t26 <= t78) & (t26 <= t79) & (t26 <= t80)
+    unreachable_2 = np.logical_not(t81)
+    del t81
+    t82 = _runtime.poison(invalid | unreachable_2)
+    t83 = t11 + t82
+    del t11
+    t84 = 1.0 / r_elbow_left_flip_up
+    t85 = ey_left_flip_up * t84
+    del ey_left_flip_up
+    A_elbow_left_flip_up = np.maximum(t78, 0.0)
     del t78
-    t85 = S_elbow_left_flip_up * B_elbow_left_flip_up
-    t86 = 1.0 / (t84 + t85)
-    t87 = (t84 - t85) * t86
-    t88 = t83 * (ey_left_flip_up * t87)
-    area_elbow_left_flip_up = 2.0 * np.sqrt(t84 * t85)
-    del t84, t85
-    s_base_elbow_left_flip_up = t86 * area_elbow_left_flip_up
-    del t86
-    t89 = t83 * (t75 * s_base_elbow_left_flip_up)
-    t90 = t88 - t89
-    t91 = t83 * (t75 * t87)
-    del t75, t87
-    t92 = t83 * (ey_left_flip_up * s_base_elbow_left_flip_up)
-    del ey_left_flip_up, s_base_elbow_left_flip_up, t83
-    c2_left_flip_up = t91 + t92
-    t93 = _runtime.wrap_cut(np.arctan2(-t90, c2_left_flip_up))
-    t94 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    C_elbow_left_flip_up = np.maximum(t80, 0.0)
+    del t80
+    t86 = A_elbow_left_flip_up * C_elbow_left_flip_up
+    S_elbow_left_flip_up = full_1_1 + r_elbow_left_flip_up
+    B_elbow_left_flip_up = np.maximum(t79, 0.0)
+    del t79
+    t87 = S_elbow_left_flip_up * B_elbow_left_flip_up
+    t88 = 1.0 / (t86 + t87)
+    t89 = (t86 - t87) * t88
+    t90 = t85 * t89
+    t91 = t76 * t84
+    del t76, t84
+    area_elbow_left_flip_up = 2.0 * np.sqrt(t86 * t87)
+    del t86, t87
+    s_base_elbow_left_flip_up = t88 * area_elbow_left_flip_up
+    del t88
+    t92 = t91 * s_base_elbow_left_flip_up
+    t93 = t90 - t92
+    t94 = t91 * t89
+    del t89, t91
+    t95 = t85 * s_base_elbow_left_flip_up
+    del s_base_elbow_left_flip_up, t85
+    c2_left_flip_up = t94 + t95
+    t96 = _runtime.wrap_cut(np.arctan2(-t93, c2_left_flip_up))
+    t97 = A_elbow_left_flip_up * S_elbow_left_flip_up
     del A_elbow_left_flip_up, S_elbow_left_flip_up
-    t95 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    t98 = C_elbow_left_flip_up * B_elbow_left_flip_up
     del B_elbow_left_flip_up, C_elbow_left_flip_up
-    t96 = t94 - t95
-    t97 = np.arctan2(area_elbow_left_flip_up, -t96)
-    t98 = 1.0 / (t94 + t95)
+    t99 = t97 - t98
+    t100 = np.arctan2(area_elbow_left_flip_up, -t99)
+    t101 = 1.0 / (t97 + t98)
+    del t97, t98
+    t102 = t99 * t101
+    del t99
+    t103 = s_phi * c2_left_flip_up + t35 * t93
+    s3_left_flip_up = area_elbow_left_flip_up * t101
+    del area_elbow_left_flip_up, t101
+    t104 = t35 * c2_left_flip_up - s_phi * t93
+    del c2_left_flip_up, t93
+    t105 = np.arctan2(t102 * t103 + s3_left_flip_up * t104, t102 * t104 - t103 * s3_left_flip_up)
+    del t103, t104
+    t106 = _runtime.wrap_cut(-np.arctan2(-t66, M_33)) + t82
+    del M_33, t66
+    t107 = _runtime.wrap_cut(-np.arctan2(-t68, t69)) + t82
+    del t68, t69
+    t108 = t90 + t92
+    del t90, t92
+    c2_left_flip_down = t94 - t95
     del t94, t95
-    t99 = t96 * t98
-    del t96
-    t100 = s_phi * c2_left_flip_up + t36 * t90
-    s3_left_flip_up = area_elbow_left_flip_up * t98
-    del area_elbow_left_flip_up, t98
-    t101 = t36 * c2_left_flip_up - s_phi * t90
-    del c2_left_flip_up, t90
-    t102 = np.arctan2(t99 * t100 + s3_left_flip_up * t101, t99 * t101 - t100 * s3_left_flip_up)
-    del t100, t101
-    t103 = _runtime.wrap_cut(-np.arctan2(-t65, M_33)) + t81
-    del M_33, t65
-    t104 = _runtime.wrap_cut(-np.arctan2(-t67, t68)) + t81
-    del t67, t68
-    t105 = t88 + t89
-    del t88, t89
-    c2_left_flip_down = t91 - t92
-    del t91, t92
-    t106 = _runtime.wrap_cut(np.arctan2(-t105, c2_left_flip_down))
-    t107 = s_phi * c2_left_flip_down + t36 * t105
-    t108 = t36 * c2_left_flip_down - s_phi * t105
-    del c2_left_flip_down, s_phi, t105, t36
-    t109 = np.arctan2(t99 * t107 - s3_left_flip_up * t108, t99 * t108 + s3_left_flip_up * t107)
-    del s3_left_flip_up, t107, t108, t99
-    t110 = t5 - t7
+    t109 = _runtime.wrap_cut(np.arctan2(-t108, c2_left_flip_down))
+    t110 = s_phi * c2_left_flip_down + t35 * t108
+    t111 = t35 * c2_left_flip_down - s_phi * t108
+    del c2_left_flip_down, s_phi, t108, t35
+    t112 = np.arctan2(t102 * t110 - s3_left_flip_up * t111, t102 * t111 + s3_left_flip_up * t110)
+    del s3_left_flip_up, t102, t110, t111
+    t113 = t5 - t7
     del t5, t7
     c_1_1_right_noflip_up = t9 + t10
     del t10, t9
-    t111 = _runtime.wrap_cut(np.arctan2(-t110, c_1_1_right_noflip_up))
-    across_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t110
+    t114 = _runtime.wrap_cut(np.arctan2(-t113, c_1_1_right_noflip_up))
+    across_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t113
     del w_x, w_y
-    M_13_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t110
-    t112 = t30 + M_13_right_noflip_up * M_13_right_noflip_up
-    del t30
-    h_wrist_right_noflip_up = np.sqrt(t112)
-    del t112
-    t113 = 1.0 / h_wrist_right_noflip_up
-    s_phi_right_noflip_up = T33 * t113
-    t114 = d5 * s_phi_right_noflip_up
-    t115 = across_right_noflip_up - t114
-    c_phi_right_noflip_up = M_13_right_noflip_up * t113
-    del t113
-    t116 = d5 * c_phi_right_noflip_up
-    ey_right_noflip_up = t35 - t116
-    t117 = t115 * t115 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t117)
-    del t117
-    t118 = full_1_1 - r_elbow_right_noflip_up
-    t119 = t39 + r_elbow_right_noflip_up
-    t120 = r_elbow_right_noflip_up - t39
-    t121 = t28 & (t27 <= t118) & (t27 <= t119) & (t27 <= t120)
-    unreachable_3 = np.logical_not(t121)
-    del t121
-    t122 = _runtime.poison(invalid | unreachable_3)
-    t123 = t111 + t122
-    t124 = 1.0 / r_elbow_right_noflip_up
-    A_elbow_right_noflip_up = np.maximum(t118, 0.0)
-    del t118
-    C_elbow_right_noflip_up = np.maximum(t120, 0.0)
+    M_13_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t113
+    t115 = t29 + M_13_right_noflip_up * M_13_right_noflip_up
+    del t29
+    h_wrist_right_noflip_up = np.sqrt(t115)
+    del t115
+    t116 = 1.0 / h_wrist_right_noflip_up
+    s_phi_right_noflip_up = T33 * t116
+    t117 = d5 * s_phi_right_noflip_up
+    t118 = across_right_noflip_up - t117
+    c_phi_right_noflip_up = M_13_right_noflip_up * t116
+    del t116
+    t119 = d5 * c_phi_right_noflip_up
+    ey_right_noflip_up = t34 - t119
+    t120 = t118 * t118 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t120)
     del t120
-    t125 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
+    t121 = full_1_1 - r_elbow_right_noflip_up
+    t122 = t38 + r_elbow_right_noflip_up
+    t123 = r_elbow_right_noflip_up - t38
+    t124 = t27 & (t26 <= t121) & (t26 <= t122) & (t26 <= t123)
+    unreachable_3 = np.logical_not(t124)
+    del t124
+    t125 = _runtime.poison(invalid | unreachable_3)
+    t126 = t114 + t125
+    t127 = 1.0 / r_elbow_right_noflip_up
+    t128 = ey_right_noflip_up * t127
+    del ey_right_noflip_up
+    A_elbow_right_noflip_up = np.maximum(t121, 0.0)
+    del t121
+    C_elbow_right_noflip_up = np.maximum(t123, 0.0)
+    del t123
+    t129 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
     S_elbow_right_noflip_up = full_1_1 + r_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t119, 0.0)
-    del t119
-    t126 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
-    t127 = 1.0 / (t125 + t126)
-    t128 = (t125 - t126) * t127
-    t129 = t124 * (ey_right_noflip_up * t128)
-    area_elbow_right_noflip_up = 2.0 * np.sqrt(t125 * t126)
-    del t125, t126
-    s_base_elbow_right_noflip_up = t127 * area_elbow_right_noflip_up
-    del t127
-    t130 = t124 * (t115 * s_base_elbow_right_noflip_up)
-    t131 = t129 - t130
-    t132 = t124 * (t115 * t128)
-    del t115, t128
-    t133 = ey_right_noflip_up * s_base_elbow_right_noflip_up
-    del ey_right_noflip_up, s_base_elbow_right_noflip_up
-    t134 = t124 * t133
-    del t124, t133
-    c2_right_noflip_up = t132 + t134
-    t135 = _runtime.wrap_cut(np.arctan2(-t131, c2_right_noflip_up))
-    t136 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
-    del A_elbow_right_noflip_up, S_elbow_right_noflip_up
-    t137 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
-    del B_elbow_right_noflip_up, C_elbow_right_noflip_up
-    t138 = t136 - t137
-    t139 = np.arctan2(area_elbow_right_noflip_up, -t138)
-    t140 = 1.0 / (t136 + t137)
-    del t136, t137
-    t141 = t138 * t140
-    del t138
-    t142 = s_phi_right_noflip_up * c2_right_noflip_up + c_phi_right_noflip_up * t131
-    s3_right_noflip_up = area_elbow_right_noflip_up * t140
-    del area_elbow_right_noflip_up, t140
-    t143 = c_phi_right_noflip_up * c2_right_noflip_up - s_phi_right_noflip_up * t131
-    del c2_right_noflip_up, t131
-    t144 = np.arctan2(-(t141 * t142 + s3_right_noflip_up * t143), t142 * s3_right_noflip_up - t141 * t143)
-    del t142, t143
-    t145 = M_13_right_noflip_up * c_phi_right_noflip_up + T33 * s_phi_right_noflip_up
-    del M_13_right_noflip_up
-    M_33_right_noflip_up = -(T13 * t110 + T23 * c_1_1_right_noflip_up)
-    t146 = _runtime.wrap_cut(-np.arctan2(t145, M_33_right_noflip_up))
-    t147 = t146 + t122
-    del t146
-    t148 = s_phi_right_noflip_up * (T11 * c_1_1_right_noflip_up - T21 * t110)
-    t149 = t148 - T31 * c_phi_right_noflip_up
-    del t148
-    t150 = s_phi_right_noflip_up * (T12 * c_1_1_right_noflip_up - T22 * t110)
-    del c_1_1_right_noflip_up, t110
-    t151 = t150 - T32 * c_phi_right_noflip_up
-    del t150
-    t152 = _runtime.wrap_cut(-np.arctan2(t149, -t151)) + t122
-    t153 = t129 + t130
+    B_elbow_right_noflip_up = np.maximum(t122, 0.0)
+    del t122
+    t130 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t131 = 1.0 / (t129 + t130)
+    t132 = (t129 - t130) * t131
+    t133 = t128 * t132
+    t134 = t118 * t127
+    del t118, t127
+    area_elbow_right_noflip_up = 2.0 * np.sqrt(t129 * t130)
     del t129, t130
-    c2_right_noflip_down = t132 - t134
+    s_base_elbow_right_noflip_up = t131 * area_elbow_right_noflip_up
+    del t131
+    t135 = t134 * s_base_elbow_right_noflip_up
+    t136 = t133 - t135
+    t137 = t134 * t132
     del t132, t134
-    t154 = _runtime.wrap_cut(np.arctan2(-t153, c2_right_noflip_down))
-    t155 = c_phi_right_noflip_up * c2_right_noflip_down - s_phi_right_noflip_up * t153
-    t156 = s_phi_right_noflip_up * c2_right_noflip_down + c_phi_right_noflip_up * t153
-    del c2_right_noflip_down, t153
-    t157 = np.arctan2(s3_right_noflip_up * t155 - t141 * t156, -(t141 * t155 + s3_right_noflip_up * t156))
-    del s3_right_noflip_up, t141, t155, t156
-    t158 = across_right_noflip_up + t114
-    del across_right_noflip_up, t114
-    ey_right_flip_up = t35 + t116
-    del t116, t35
-    t159 = t158 * t158 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t159)
-    del t159
-    t160 = full_1_1 - r_elbow_right_flip_up
-    t161 = t39 + r_elbow_right_flip_up
-    t162 = r_elbow_right_flip_up - t39
-    del t39
-    t163 = t28 & (t27 <= t160) & (t27 <= t161) & (t27 <= t162)
-    del t27, t28
-    unreachable_4 = np.logical_not(t163)
+    t138 = t128 * s_base_elbow_right_noflip_up
+    del s_base_elbow_right_noflip_up, t128
+    c2_right_noflip_up = t137 + t138
+    t139 = _runtime.wrap_cut(np.arctan2(-t136, c2_right_noflip_up))
+    t140 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    del A_elbow_right_noflip_up, S_elbow_right_noflip_up
+    t141 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    del B_elbow_right_noflip_up, C_elbow_right_noflip_up
+    t142 = t140 - t141
+    t143 = np.arctan2(area_elbow_right_noflip_up, -t142)
+    t144 = 1.0 / (t140 + t141)
+    del t140, t141
+    t145 = t142 * t144
+    del t142
+    t146 = s_phi_right_noflip_up * c2_right_noflip_up + c_phi_right_noflip_up * t136
+    s3_right_noflip_up = area_elbow_right_noflip_up * t144
+    del area_elbow_right_noflip_up, t144
+    t147 = c_phi_right_noflip_up * c2_right_noflip_up - s_phi_right_noflip_up * t136
+    del c2_right_noflip_up, t136
+    t148 = np.arctan2(-(t145 * t146 + s3_right_noflip_up * t147), t146 * s3_right_noflip_up - t145 * t147)
+    del t146, t147
+    t149 = M_13_right_noflip_up * c_phi_right_noflip_up + T33 * s_phi_right_noflip_up
+    del M_13_right_noflip_up
+    M_33_right_noflip_up = -(T13 * t113 + T23 * c_1_1_right_noflip_up)
+    t150 = _runtime.wrap_cut(-np.arctan2(t149, M_33_right_noflip_up))
+    t151 = t150 + t125
+    del t150
+    t152 = s_phi_right_noflip_up * (T11 * c_1_1_right_noflip_up - T21 * t113)
+    t153 = t152 - T31 * c_phi_right_noflip_up
+    del t152
+    t154 = s_phi_right_noflip_up * (T12 * c_1_1_right_noflip_up - T22 * t113)
+    del c_1_1_right_noflip_up, t113
+    t155 = t154 - T32 * c_phi_right_noflip_up
+    del t154
+    t156 = _runtime.wrap_cut(-np.arctan2(t153, -t155)) + t125
+    t157 = t133 + t135
+    del t133, t135
+    c2_right_noflip_down = t137 - t138
+    del t137, t138
+    t158 = _runtime.wrap_cut(np.arctan2(-t157, c2_right_noflip_down))
+    t159 = c_phi_right_noflip_up * c2_right_noflip_down - s_phi_right_noflip_up * t157
+    t160 = s_phi_right_noflip_up * c2_right_noflip_down + c_phi_right_noflip_up * t157
+    del c2_right_noflip_down, t157
+    t161 = np.arctan2(s3_right_noflip_up * t159 - t145 * t160, -(t145 * t159 + s3_right_noflip_up * t160))
+    del s3_right_noflip_up, t145, t159, t160
+    t162 = across_right_noflip_up + t117
+    del across_right_noflip_up, t117
+    ey_right_flip_up = t34 + t119
+    del t119, t34
+    t163 = t162 * t162 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t163)
     del t163
-    t164 = _runtime.poison(invalid | unreachable_4)
-    t165 = t111 + t164
-    del t111
-    t166 = 1.0 / r_elbow_right_flip_up
-    A_elbow_right_flip_up = np.maximum(t160, 0.0)
-    del t160
-    C_elbow_right_flip_up = np.maximum(t162, 0.0)
-    del t162
-    t167 = A_elbow_right_flip_up * C_elbow_right_flip_up
+    t164 = full_1_1 - r_elbow_right_flip_up
+    t165 = t38 + r_elbow_right_flip_up
+    t166 = r_elbow_right_flip_up - t38
+    del t38
+    t167 = t27 & (t26 <= t164) & (t26 <= t165) & (t26 <= t166)
+    del t26, t27
+    unreachable_4 = np.logical_not(t167)
+    del t167
+    t168 = _runtime.poison(invalid | unreachable_4)
+    t169 = t114 + t168
+    del t114
+    t170 = 1.0 / r_elbow_right_flip_up
+    t171 = ey_right_flip_up * t170
+    del ey_right_flip_up
+    A_elbow_right_flip_up = np.maximum(t164, 0.0)
+    del t164
+    C_elbow_right_flip_up = np.maximum(t166, 0.0)
+    del t166
+    t172 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = full_1_1 + r_elbow_right_flip_up
-    B_elbow_right_flip_up = np.maximum(t161, 0.0)
-    del t161
-    t168 = S_elbow_right_flip_up * B_elbow_right_flip_up
-    t169 = 1.0 / (t167 + t168)
-    t170 = (t167 - t168) * t169
-    t171 = t166 * (ey_right_flip_up * t170)
-    area_elbow_right_flip_up = 2.0 * np.sqrt(t167 * t168)
-    del t167, t168
-    s_base_elbow_right_flip_up = t169 * area_elbow_right_flip_up
-    del t169
-    t172 = t166 * (t158 * s_base_elbow_right_flip_up)
-    t173 = t171 - t172
-    t174 = t166 * (t158 * t170)
-    del t158, t170
-    t175 = ey_right_flip_up * s_base_elbow_right_flip_up
-    del ey_right_flip_up, s_base_elbow_right_flip_up
-    t176 = t166 * t175
-    del t166, t175
-    c2_right_flip_up = t174 + t176
-    t177 = _runtime.wrap_cut(np.arctan2(-t173, c2_right_flip_up))
-    t178 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    B_elbow_right_flip_up = np.maximum(t165, 0.0)
+    del t165
+    t173 = S_elbow_right_flip_up * B_elbow_right_flip_up
+    t174 = 1.0 / (t172 + t173)
+    t175 = (t172 - t173) * t174
+    t176 = t171 * t175
+    t177 = t162 * t170
+    del t162, t170
+    area_elbow_right_flip_up = 2.0 * np.sqrt(t172 * t173)
+    del t172, t173
+    s_base_elbow_right_flip_up = t174 * area_elbow_right_flip_up
+    del t174
+    t178 = t177 * s_base_elbow_right_flip_up
+    t179 = t176 - t178
+    t180 = t177 * t175
+    del t175, t177
+    t181 = t171 * s_base_elbow_right_flip_up
+    del s_base_elbow_right_flip_up, t171
+    c2_right_flip_up = t180 + t181
+    t182 = _runtime.wrap_cut(np.arctan2(-t179, c2_right_flip_up))
+    t183 = A_elbow_right_flip_up * S_elbow_right_flip_up
     del A_elbow_right_flip_up, S_elbow_right_flip_up
-    t179 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    t184 = C_elbow_right_flip_up * B_elbow_right_flip_up
     del B_elbow_right_flip_up, C_elbow_right_flip_up
-    t180 = t178 - t179
-    t181 = np.arctan2(area_elbow_right_flip_up, -t180)
-    t182 = 1.0 / (t178 + t179)
-    del t178, t179
-    t183 = t180 * t182
-    del t180
-    t184 = s_phi_right_noflip_up * c2_right_flip_up + c_phi_right_noflip_up * t173
-    s3_right_flip_up = area_elbow_right_flip_up * t182
-    del area_elbow_right_flip_up, t182
-    t185 = c_phi_right_noflip_up * c2_right_flip_up - s_phi_right_noflip_up * t173
-    del c2_right_flip_up, t173
-    t186 = np.arctan2(t183 * t184 + s3_right_flip_up * t185, t183 * t185 - t184 * s3_right_flip_up)
-    del t184, t185
-    t187 = _runtime.wrap_cut(-np.arctan2(-t145, M_33_right_noflip_up))
-    del M_33_right_noflip_up, t145
-    t188 = t187 + t164
-    del t187
-    t189 = _runtime.wrap_cut(-np.arctan2(-t149, t151)) + t164
-    del t149, t151
-    t190 = t171 + t172
-    del t171, t172
-    c2_right_flip_down = t174 - t176
-    del t174, t176
-    t191 = _runtime.wrap_cut(np.arctan2(-t190, c2_right_flip_down))
-    t192 = s_phi_right_noflip_up * c2_right_flip_down + c_phi_right_noflip_up * t190
-    t193 = c_phi_right_noflip_up * c2_right_flip_down - s_phi_right_noflip_up * t190
-    del c2_right_flip_down, c_phi_right_noflip_up, s_phi_right_noflip_up, t190
-    t194 = np.arctan2(t183 * t192 - s3_right_flip_up * t193, t183 * t193 + s3_right_flip_up * t192)
-    del s3_right_flip_up, t183, t192, t193
-    t195 = _runtime.status(invalid, unreachable, np.False_)
+    t185 = t183 - t184
+    t186 = np.arctan2(area_elbow_right_flip_up, -t185)
+    t187 = 1.0 / (t183 + t184)
+    del t183, t184
+    t188 = t185 * t187
+    del t185
+    t189 = s_phi_right_noflip_up * c2_right_flip_up + c_phi_right_noflip_up * t179
+    s3_right_flip_up = area_elbow_right_flip_up * t187
+    del area_elbow_right_flip_up, t187
+    t190 = c_phi_right_noflip_up * c2_right_flip_up - s_phi_right_noflip_up * t179
+    del c2_right_flip_up, t179
+    t191 = np.arctan2(t188 * t189 + s3_right_flip_up * t190, t188 * t190 - t189 * s3_right_flip_up)
+    del t189, t190
+    t192 = _runtime.wrap_cut(-np.arctan2(-t149, M_33_right_noflip_up))
+    del M_33_right_noflip_up, t149
+    t193 = t192 + t168
+    del t192
+    t194 = _runtime.wrap_cut(-np.arctan2(-t153, t155)) + t168
+    del t153, t155
+    t195 = t176 + t178
+    del t176, t178
+    c2_right_flip_down = t180 - t181
+    del t180, t181
+    t196 = _runtime.wrap_cut(np.arctan2(-t195, c2_right_flip_down))
+    t197 = s_phi_right_noflip_up * c2_right_flip_down + c_phi_right_noflip_up * t195
+    t198 = c_phi_right_noflip_up * c2_right_flip_down - s_phi_right_noflip_up * t195
+    del c2_right_flip_down, c_phi_right_noflip_up, s_phi_right_noflip_up, t195
+    t199 = np.arctan2(t188 * t197 - s3_right_flip_up * t198, t188 * t198 + s3_right_flip_up * t197)
+    del s3_right_flip_up, t188, t197, t198
+    t200 = _runtime.status(invalid, unreachable, np.False_)
     del unreachable
-    t196 = _runtime.status(invalid, unreachable_2, np.False_)
+    t201 = _runtime.status(invalid, unreachable_2, np.False_)
     del unreachable_2
-    t197 = _runtime.status(invalid, unreachable_3, np.False_)
+    t202 = _runtime.status(invalid, unreachable_3, np.False_)
     del unreachable_3
-    t198 = _runtime.status(invalid, unreachable_4, np.False_)
+    t203 = _runtime.status(invalid, unreachable_4, np.False_)
     del invalid, unreachable_4
-    t199 = _runtime.VANISHING * (d1 + d4 + d5 + d6 + full_1_1)
-    t200 = L2 * 0.00390625 + L3 * 0.00390625 + d1 * 0.00390625
-    t201 = t200 + d4 * 0.00390625 + d5 * 0.00390625 + d6 * 0.00390625
-    del t200
-    t202 = _runtime.VANISHING * 16.0
-    t203 = (h1 <= t199) | (root1 - t201 <= t199) | (h_wrist <= t202)
-    del h1, t201
-    t204 = L2 * 0.00048828125 + L3 * 0.00048828125 + (d1 * 0.00048828125 + d4 * 0.00048828125)
-    t205 = d5 * 0.00048828125 + d6 * 0.00048828125 + t204
-    del t204
+    t204 = _runtime.VANISHING * size
+    t205 = (h1 <= t204) | (root1 - size * 0.00390625 <= t204)
+    del h1
+    t206 = _runtime.VANISHING * 16.0
+    t207 = size * 0.00048828125
+    del size
+    t208 = t205 | (h_wrist <= t206) | (root1 * h_wrist - t207 <= t204)
+    del h_wrist, t205
     no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1)
     del full_1_1
-    t206 = t203 | (root1 * h_wrist - t205 <= t199) | no_link_elbow
-    del h_wrist, no_link_elbow, t203
-    t207 = t206 | (r_elbow <= t199) | (r_elbow_left_flip_up <= t199)
-    del r_elbow, r_elbow_left_flip_up, t206
-    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t205 <= t199
-    del root1, t205
-    t208 = t207 | (h_wrist_right_noflip_up <= t202) | close_right_noflip_up
-    del close_right_noflip_up, h_wrist_right_noflip_up, t202, t207
-    t209 = t208 | (r_elbow_right_noflip_up <= t199) | (r_elbow_right_flip_up <= t199)
-    del r_elbow_right_flip_up, r_elbow_right_noflip_up, t199, t208
+    t209 = t208 | (r_elbow <= t204) | no_link_elbow | (r_elbow_left_flip_up <= t204)
+    del no_link_elbow, r_elbow, r_elbow_left_flip_up, t208
+    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t207 <= t204
+    del root1, t207
+    t210 = t209 | (h_wrist_right_noflip_up <= t206) | close_right_noflip_up
+    del close_right_noflip_up, h_wrist_right_noflip_up, t206, t209
+    t211 = t210 | (r_elbow_right_noflip_up <= t204) | (r_elbow_right_flip_up <= t204)
+    del r_elbow_right_flip_up, r_elbow_right_noflip_up, t204, t210
     return (
-        t44,
-        t55,
-        _runtime.wrap_cut(t59) + t43,
-        _runtime.wrap_cut(t64) + t43,
-        t66,
-        t69,
-        t44,
-        t71 + t43,
-        _runtime.wrap_cut(-t59) + t43,
-        _runtime.wrap_cut(t74) + t43,
-        t66,
-        t69,
-        t82,
-        t93 + t81,
-        _runtime.wrap_cut(t97) + t81,
-        _runtime.wrap_cut(t102) + t81,
-        t103,
-        t104,
-        t82,
-        t106 + t81,
-        _runtime.wrap_cut(-t97) + t81,
-        _runtime.wrap_cut(t109) + t81,
-        t103,
-        t104,
-        t123,
-        t135 + t122,
-        _runtime.wrap_cut(t139) + t122,
-        _runtime.wrap_cut(t144) + t122,
-        t147,
-        t152,
-        t123,
-        t154 + t122,
-        _runtime.wrap_cut(-t139) + t122,
-        _runtime.wrap_cut(t157) + t122,
-        t147,
-        t152,
-        t165,
-        t177 + t164,
-        _runtime.wrap_cut(t181) + t164,
-        _runtime.wrap_cut(t186) + t164,
-        t188,
-        t189,
-        t165,
-        t191 + t164,
-        _runtime.wrap_cut(-t181) + t164,
-        _runtime.wrap_cut(t194) + t164,
-        t188,
-        t189,
-        t195,
-        t195,
-        t196,
-        t196,
-        t197,
-        t197,
-        t198,
-        t198,
-        t209,
+        t43,
+        t56,
+        _runtime.wrap_cut(t60) + t42,
+        _runtime.wrap_cut(t65) + t42,
+        t67,
+        t70,
+        t43,
+        t72 + t42,
+        _runtime.wrap_cut(-t60) + t42,
+        _runtime.wrap_cut(t75) + t42,
+        t67,
+        t70,
+        t83,
+        t96 + t82,
+        _runtime.wrap_cut(t100) + t82,
+        _runtime.wrap_cut(t105) + t82,
+        t106,
+        t107,
+        t83,
+        t109 + t82,
+        _runtime.wrap_cut(-t100) + t82,
+        _runtime.wrap_cut(t112) + t82,
+        t106,
+        t107,
+        t126,
+        t139 + t125,
+        _runtime.wrap_cut(t143) + t125,
+        _runtime.wrap_cut(t148) + t125,
+        t151,
+        t156,
+        t126,
+        t158 + t125,
+        _runtime.wrap_cut(-t143) + t125,
+        _runtime.wrap_cut(t161) + t125,
+        t151,
+        t156,
+        t169,
+        t182 + t168,
+        _runtime.wrap_cut(t186) + t168,
+        _runtime.wrap_cut(t191) + t168,
+        t193,
+        t194,
+        t169,
+        t196 + t168,
+        _runtime.wrap_cut(-t186) + t168,
+        _runtime.wrap_cut(t199) + t168,
+        t193,
+        t194,
+        t200,
+        t200,
+        t201,
+        t201,
+        t202,
+        t202,
+        t203,
+        t203,
+        t211,
     )
 
 

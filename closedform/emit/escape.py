@@ -6,6 +6,7 @@ The templates apply these filters where text enters them.  LaTeX has its own mod
 
 from __future__ import annotations
 
+import json
 import re
 
 MARKUP = re.compile(r"([\\`*_<>\[\]|#~$&]|^(?=[-+=]))")
@@ -47,6 +48,16 @@ def python_string(text: str) -> str:
     return repr(text)
 
 
+def javascript_comment(text: str) -> str:
+    """Text inside ``/** */`` or behind ``//``: a space parts what would end it."""
+    return re.sub(r"(?<=\*)(?=/)", " ", text)
+
+
+def javascript_string(text: str) -> str:
+    """A string literal."""
+    return json.dumps(text)
+
+
 def markdown_text(text: str) -> str:
     """Text on one line of Markdown."""
     return MARKUP.sub(r"\\\1", " ".join(text.split()))
@@ -54,7 +65,16 @@ def markdown_text(text: str) -> str:
 
 FILTERS = {
     f.__name__: f
-    for f in (c_comment, c_string, python_comment, python_docstring, python_string, markdown_text)
+    for f in (
+        c_comment,
+        c_string,
+        javascript_comment,
+        javascript_string,
+        python_comment,
+        python_docstring,
+        python_string,
+        markdown_text,
+    )
 }
 """The filters of the templates, by name."""
 
@@ -62,6 +82,8 @@ __all__ = [
     "FILTERS",
     "c_comment",
     "c_string",
+    "javascript_comment",
+    "javascript_string",
     "markdown_text",
     "python_comment",
     "python_docstring",

@@ -1,8 +1,8 @@
 /**
  * What the generated JavaScript modules share: statuses, tolerances and the evaluation of kernels.
  *
- * A kernel is a function of an array of numbers, those of the inputs and then the parameters, and
- * returns an array of numbers, those of all results. There is no state between calls.
+ * A kernel reads an array of numbers, those of the inputs and then the parameters, and writes an
+ * array of numbers, those of all results. No call sees what another has left.
  *
  * @module
  */
@@ -37,13 +37,13 @@ export const ROTATION = 1e-06;
  * @property {number} most
  */
 
-/** @typedef {(v: readonly number[]) => number[]} Compute */
+/** @typedef {(v: readonly number[], o: Float64Array) => void} Compute */
 
 /**
  * A function of a mechanism. `common`, if there is one, computes the same where nothing vanishes,
  * and then whether something does.
  *
- * @typedef {object} Kernel
+ * @typedef {object} Description
  * @property {string} name
  * @property {Compute} compute
  * @property {Compute | null} common
@@ -54,7 +54,31 @@ export const ROTATION = 1e-06;
  * @property {Size | null} size
  */
 
+/**
+ * The same, ready to be called: how many numbers each argument and result has, how many all the
+ * arguments, what is read where the parameters are the defaults, and where results are left.
+ *
+ * @typedef {Description & { inputSizes: number[], outputSizes: number[], given: number, blank: number[],
+ *     room: Float64Array }} Kernel
+ */
+
 /** @typedef {Readonly<Record<string, number | undefined>>} Given parameters of which some are missing */
+
+/**
+ * Make a function of a mechanism ready to be called.
+ *
+ * @param {Description} description
+ * @returns {Kernel}
+ */
+export function kernel(description) {
+    const inputSizes = description.inputs.map(count);
+    const outputSizes = description.outputs.map(count);
+    const given = inputSizes.reduce((a, b) => a + b, 0);
+    const results = outputSizes.reduce((a, b) => a + b, 0);
+    const blank = [...new Array(given).fill(NaN), ...description.used.map((name) => description.defaults[name])];
+    const room = new Float64Array(results + (description.common === null ? 0 : 1));
+    return { ...description, inputSizes, outputSizes, given, blank, room };
+}
 
 /** The sine and the cosine that `sincos` has found last. */
 export const found = new Float64Array(2);
@@ -130,46 +154,6 @@ export function wrap(angle) {
 }
 
 /**
- * An angle of [-pi, pi], the range of `atan2`, in (-pi, pi].
- *
- * @param {number} angle
- */
-export function wrapCut(angle) {
-    return angle <= -Math.PI ? Math.PI : angle;
-}
-
-/**
- * 1 or -1; of either zero 1.
- *
- * @param {number} value
- */
-export function sign(value) {
-    return value < 0 ? -1 : 1;
-}
-
-/**
- * NaN where an answer has failed, else zero: it is added to every number of the answer.
- *
- * @param {boolean} failed
- */
-export function poison(failed) {
-    return failed ? NaN : 0;
-}
-
-/**
- * The status of a branch; an invalid input outweighs all, a free joint nothing.
- *
- * @param {boolean} invalid
- * @param {boolean} unreachable
- * @param {boolean} singular
- */
-export function status(invalid, unreachable, singular) {
-    if (invalid) return Status.INVALID;
-    if (unreachable) return Status.UNREACHABLE;
-    return singular ? Status.SINGULAR : Status.OK;
-}
-
-/**
  * Evaluate a kernel for one posture.
  *
  * @param {Kernel} kernel
@@ -178,18 +162,23 @@ export function status(invalid, unreachable, singular) {
  * @returns {any} a number or an array; an object of these if there are several results
  */
 export function single(kernel, args, parameters) {
-    const v = blank(kernel);
+    const v = kernel.blank.slice();
     let place = 0;
-    for (let i = 0; i < args.length; ++i) place = read(kernel, kernel.inputs[i], args[i], v, place);
-    readParameters(kernel, parameters, v, place);
+    for (let i = 0; i < args.length; ++i) {
+        read(kernel, kernel.inputs[i], kernel.inputSizes[i], args[i], v, place);
+        place += kernel.inputSizes[i];
+    }
+    if (parameters !== undefined) readParameters(kernel, parameters, v);
+    // no code of the user runs from here until the results are copied
     const values = evaluate(kernel, v);
-    if (kernel.outputs.length === 1) return shaped(kernel.outputs[0], values, 0);
+    if (kernel.outputs.length === 1) return shaped(kernel.outputs[0], kernel.outputSizes[0], values, 0);
     /** @type {Record<string, unknown>} */
     const results = {};
     let start = 0;
-    for (const spec of kernel.outputs) {
-        results[spec.name] = shaped(spec, values, start);
-        start += count(spec);
+    for (let i = 0; i < kernel.outputs.length; ++i) {
+        const spec = kernel.outputs[i];
+        results[spec.name] = shaped(spec, kernel.outputSizes[i], values, start);
+        start += kernel.outputSizes[i];
     }
     return results;
 }
@@ -214,8 +203,8 @@ export function batch(kernel, n, args, out, parameters) {
         ? new (arrayOf(spec))(n * count(spec))
         : planes(kernel, spec, n, out[i]));
     checkOverlap(kernel, inputs, outputs);
-    const v = blank(kernel);
-    readParameters(kernel, parameters, v, inputs.reduce((sum, _, i) => sum + count(kernel.inputs[i]), 0));
+    const v = kernel.blank.slice();
+    if (parameters !== undefined) readParameters(kernel, parameters, v);
     for (let i = 0; i < n; ++i) {
         let place = 0;
         for (const array of inputs) {
@@ -241,39 +230,20 @@ function count(spec) {
 }
 
 /**
- * Room for what a kernel reads.
- *
- * @param {Kernel} kernel
- * @returns {number[]}
- */
-function blank(kernel) {
-    let room = ROOM.get(kernel);
-    if (room === undefined) {
-        const size = kernel.inputs.reduce((sum, spec) => sum + count(spec), kernel.used.length);
-        room = Array.from({ length: size }, () => NaN);
-        ROOM.set(kernel, room);
-    }
-    return room.slice();
-}
-
-/** @type {WeakMap<Kernel, number[]>} */
-const ROOM = new WeakMap();
-
-/**
  * Read the numbers of an argument.
  *
  * @param {Kernel} kernel
  * @param {Spec} spec
+ * @param {number} size
  * @param {unknown} given
  * @param {number[]} v
  * @param {number} place
  */
-function read(kernel, spec, given, v, place) {
+function read(kernel, spec, size, given, v, place) {
     if (spec.shape.length === 0) {
         v[place] = number(kernel, spec.name, given);
-        return place + 1;
+        return;
     }
-    const size = count(spec);
     if (!isArray(given)) {
         throw new TypeError(`${kernel.name}: ${spec.name} is ${typeName(given)}, expected an array of ${expected(spec)}`);
     }
@@ -284,23 +254,17 @@ function read(kernel, spec, given, v, place) {
         const value = given[k];
         v[place + k] = typeof value === "number" ? value : number(kernel, `${spec.name}[${k}]`, value);
     }
-    return place + size;
 }
 
 /**
  * Read the parameters that a kernel uses; one that is missing has its default.
  *
  * @param {Kernel} kernel
- * @param {Given | undefined} given
+ * @param {Given} given
  * @param {number[]} v
- * @param {number} place
  */
-function readParameters(kernel, given, v, place) {
+function readParameters(kernel, given, v) {
     const { defaults, used } = kernel;
-    if (given === undefined) {
-        for (let k = 0; k < used.length; ++k) v[place + k] = defaults[used[k]];
-        return;
-    }
     if (given === null || typeof given !== "object" || isArray(given)) {
         const type = isArray(given) ? "an array" : typeName(given);
         throw new TypeError(`${kernel.name}: parameters is ${type}, expected an object`);
@@ -312,7 +276,7 @@ function readParameters(kernel, given, v, place) {
         }
         if (given[name] !== undefined) number(kernel, `parameters.${name}`, given[name]);
     }
-    for (let k = 0; k < used.length; ++k) v[place + k] = given[used[k]] ?? defaults[used[k]];
+    for (let k = 0; k < used.length; ++k) v[kernel.given + k] = given[used[k]] ?? defaults[used[k]];
 }
 
 /**
@@ -398,28 +362,30 @@ function checkOverlap(kernel, inputs, outputs) {
  * A result as a user sees it: one array a branch, if there are branches.
  *
  * @param {Spec} spec
- * @param {number[]} values
+ * @param {number} size
+ * @param {Float64Array} values
  * @param {number} start
  * @returns {unknown}
  */
-function shaped(spec, values, start) {
-    if (spec.branches === 0) return entry(spec, values, start);
-    const size = count(spec) / spec.branches;
+function shaped(spec, size, values, start) {
+    if (spec.branches === 0) return entry(spec, size, values, start);
+    const each = size / spec.branches;
     const branches = [];
-    for (let b = 0; b < spec.branches; ++b) branches.push(entry(spec, values, start + b * size));
+    for (let b = 0; b < spec.branches; ++b) branches.push(entry(spec, each, values, start + b * each));
     return branches;
 }
 
 /**
  * @param {Spec} spec
- * @param {number[]} values
+ * @param {number} size
+ * @param {Float64Array} values
  * @param {number} start
  */
-function entry(spec, values, start) {
+function entry(spec, size, values, start) {
     if (spec.shape.length === 0) return spec.kind === "bool" ? values[start] === 1 : values[start];
-    let size = 1;
-    for (const n of spec.shape) size *= n;
-    return values.slice(start, start + size);
+    const numbers = [];
+    for (let k = 0; k < size; ++k) numbers.push(values[start + k]);
+    return numbers;
 }
 
 /**
@@ -452,9 +418,14 @@ function evaluate(kernel, v) {
  * @param {number[]} v
  */
 function evaluateInRange(kernel, v) {
-    if (kernel.common === null) return kernel.compute(v);
-    const values = kernel.common(v);
-    return values[values.length - 1] === 0 ? values : kernel.compute(v);
+    const { common, compute, room } = kernel;
+    if (common === null) {
+        compute(v, room);
+    } else {
+        common(v, room);
+        if (room[room.length - 1] !== 0) compute(v, room);
+    }
+    return room;
 }
 
 const bits = new DataView(new ArrayBuffer(8));

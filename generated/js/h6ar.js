@@ -73,11 +73,8 @@ export const DEFAULTS = Object.freeze({
     lp: 0.1,
 });
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _fk(v) {
+/** @type {_runtime.Compute} */
+function _fk(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -114,7 +111,7 @@ function _fk(v) {
     const principal = _runtime.principal(theta);
     const t1 = c2L_half * c2R_half;
     const t2 = s2L_half * s2R_half;
-    const side2A = _runtime.sign(t1 + t2);
+    const side2A = t1 + t2 < 0 ? -1 : 1;
     const t3 = t1 - t2;
     const t4 = c3L_half * c3R_half;
     const t5 = s3L_half * s3R_half;
@@ -124,7 +121,7 @@ function _fk(v) {
     const t9 = t7 - t8;
     const t10 = c2R_half * t6 + s2R_half * t9;
     const t11 = s2R_half * t6 - c2R_half * t9;
-    const side23A = _runtime.sign(c2L_half * t10 + s2L_half * t11);
+    const side23A = c2L_half * t10 + s2L_half * t11 < 0 ? -1 : 1;
     const t12 = t4 - t5;
     const t13 = t7 + t8;
     const t14 = c2R_half * t12 - s2R_half * t13;
@@ -166,20 +163,19 @@ function _fk(v) {
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
     const t42 = -(_runtime.FEASIBILITY * t29);
     const failed = !(t40 && t41) || !((t42 <= t30) && (t42 <= t28));
-    const t43 = _runtime.poison(failed);
+    const t43 = failed ? NaN : 0;
     const t44 = d1 + L1 * (side2A * t26) - c23A * t34 + s23A * t33;
-    return [
-        c1 * t35 - s1 * t36 + t43,
-        c1 * t36 + s1 * t35 + t43,
-        t44 + t43,
-        _runtime.wrapCut(Math.atan2(-t27, d)) + t43,
-        _runtime.wrapCut(-Math.atan2(t24, d)) + t43,
-        _runtime.wrap(principal) + t43,
-    ];
+    const t45 = Math.atan2(-t27, d);
+    const t46 = -Math.atan2(t24, d);
+    o[0] = c1 * t35 - s1 * t36 + t43;
+    o[1] = c1 * t36 + s1 * t35 + t43;
+    o[2] = t44 + t43;
+    o[3] = (t45 <= -Math.PI ? Math.PI : t45) + t43;
+    o[4] = (t46 <= -Math.PI ? Math.PI : t46) + t43;
+    o[5] = _runtime.wrap(principal) + t43;
 }
 
-/** @type {_runtime.Kernel} */
-const _FK = {
+const _FK = _runtime.kernel({
     name: "h6ar.fk",
     compute: _fk,
     common: null,
@@ -197,7 +193,7 @@ const _FK = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * Position of the tip, and yaw, roll and pitch.
@@ -231,11 +227,8 @@ export function fk_batch(n, q, x, parameters) {
     return _runtime.batch(_FK, n, [q], [x], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _pose(v) {
+/** @type {_runtime.Compute} */
+function _pose(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -277,7 +270,7 @@ function _pose(v) {
     const t6 = t4 - t5;
     const t7 = c2R_half * t3 + s2R_half * t6;
     const t8 = s2R_half * t3 - c2R_half * t6;
-    const side23A = _runtime.sign(c2L_half * t7 + s2L_half * t8);
+    const side23A = c2L_half * t7 + s2L_half * t8 < 0 ? -1 : 1;
     const t9 = t1 - t2;
     const t10 = t4 + t5;
     const t11 = c2R_half * t9 - s2R_half * t10;
@@ -323,7 +316,7 @@ function _pose(v) {
     const t41 = t39 - base;
     const t42 = base - (gs - al);
     const failed = !(t37 && t38) || !((t40 <= t41) && (t40 <= t42));
-    const t43 = _runtime.poison(failed);
+    const t43 = failed ? NaN : 0;
     const hand_12 = t28 * c_psi;
     const hand_22 = c_phi * c_psi;
     const t44 = t14 * hand_12 + s1 * hand_22 - t32 * t27 + t43;
@@ -331,7 +324,7 @@ function _pose(v) {
     const t45 = c * t30 - s * t28;
     const hand_33 = c * c_psi;
     const t46 = t14 * hand_13 + s1 * t45 + t32 * hand_33 + t43;
-    const side2A = _runtime.sign(t18 + t19);
+    const side2A = t18 + t19 < 0 ? -1 : 1;
     const t47 = lp * s;
     const wrist = Math.sqrt(Math.max(t42, 0.0) * Math.max(t41, 0.0));
     const t48 = loff + lp * c + wrist;
@@ -345,28 +338,25 @@ function _pose(v) {
     const t56 = t53 * hand_13 - c1 * t45 + t54 * hand_33 + t43;
     const t57 = d1 + L1 * (side2A * t25) - c23A * t50 + s23A * t49;
     const t58 = 0.0 + t43;
-    return [
-        t14 * hand_11 - s1 * t31 - t32 * t33 + t43,
-        t44,
-        t46,
-        c1 * t51 - s1 * t52 + t43,
-        t53 * hand_11 + c1 * t31 - t54 * t33 + t43,
-        t55,
-        t56,
-        c1 * t52 + s1 * t51 + t43,
-        c23A * t33 + s23A * hand_11 + t43,
-        c23A * t27 + s23A * hand_12 + t43,
-        s23A * hand_13 - c23A * hand_33 + t43,
-        t57 + t43,
-        t58,
-        t58,
-        t58,
-        1.0 + t43,
-    ];
+    o[0] = t14 * hand_11 - s1 * t31 - t32 * t33 + t43;
+    o[1] = t44;
+    o[2] = t46;
+    o[3] = c1 * t51 - s1 * t52 + t43;
+    o[4] = t53 * hand_11 + c1 * t31 - t54 * t33 + t43;
+    o[5] = t55;
+    o[6] = t56;
+    o[7] = c1 * t52 + s1 * t51 + t43;
+    o[8] = c23A * t33 + s23A * hand_11 + t43;
+    o[9] = c23A * t27 + s23A * hand_12 + t43;
+    o[10] = s23A * hand_13 - c23A * hand_33 + t43;
+    o[11] = t57 + t43;
+    o[12] = t58;
+    o[13] = t58;
+    o[14] = t58;
+    o[15] = 1.0 + t43;
 }
 
-/** @type {_runtime.Kernel} */
-const _POSE = {
+const _POSE = _runtime.kernel({
     name: "h6ar.pose",
     compute: _pose,
     common: null,
@@ -384,7 +374,7 @@ const _POSE = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).
@@ -417,11 +407,8 @@ export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _arm_tips(v) {
+/** @type {_runtime.Compute} */
+function _arm_tips(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -455,18 +442,15 @@ function _arm_tips(v) {
     const s2L3L = s2L * c3L + c2L * s3L;
     const c2L3L = c2L * c3L - s2L * s3L;
     const t4 = L1 * c2L + L2 * s2L3L + a3 * c2L3L;
-    return [
-        t1 + c1 * t2,
-        s1 * t2 - t3,
-        d1 + L1 * s2R - L2 * c2R3R + a3 * s2R3R,
-        c1 * t4 - t1,
-        t3 + s1 * t4,
-        d1 + L1 * s2L - L2 * c2L3L + a3 * s2L3L,
-    ];
+    o[0] = t1 + c1 * t2;
+    o[1] = s1 * t2 - t3;
+    o[2] = d1 + L1 * s2R - L2 * c2R3R + a3 * s2R3R;
+    o[3] = c1 * t4 - t1;
+    o[4] = t3 + s1 * t4;
+    o[5] = d1 + L1 * s2L - L2 * c2L3L + a3 * s2L3L;
 }
 
-/** @type {_runtime.Kernel} */
-const _ARM_TIPS = {
+const _ARM_TIPS = _runtime.kernel({
     name: "h6ar.arm_tips",
     compute: _arm_tips,
     common: null,
@@ -479,7 +463,7 @@ const _ARM_TIPS = {
     used: ["L1", "L2", "a3", "d1", "d"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Tips of the right and of the left fore-arm.
@@ -510,11 +494,8 @@ export function arm_tips_batch(n, q, tips, parameters) {
     return _runtime.batch(_ARM_TIPS, n, [q], [tips], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _invariant_point(v) {
+/** @type {_runtime.Compute} */
+function _invariant_point(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -541,7 +522,7 @@ function _invariant_point(v) {
     const c1 = _runtime.found[1];
     const t1 = c2L_half * c2R_half;
     const t2 = s2L_half * s2R_half;
-    const side2A = _runtime.sign(t1 + t2);
+    const side2A = t1 + t2 < 0 ? -1 : 1;
     const t3 = c3L_half * c3R_half;
     const t4 = s3L_half * s3R_half;
     const t5 = t3 + t4;
@@ -550,7 +531,7 @@ function _invariant_point(v) {
     const t8 = t6 - t7;
     const t9 = c2L_half * (c2R_half * t5 + s2R_half * t8) + s2L_half * (s2R_half * t5 - c2R_half
         * t8);
-    const side23A = _runtime.sign(t9);
+    const side23A = t9 < 0 ? -1 : 1;
     const t10 = t3 - t4;
     const t11 = t6 + t7;
     const t12 = c2R_half * t10 - s2R_half * t11;
@@ -559,15 +540,12 @@ function _invariant_point(v) {
     const c23A = side23A * (c2L_half * t12 - s2L_half * t13);
     const t14 = L1 * (side2A * (t1 - t2)) + L2 * s23A + a3 * c23A;
     const s2A = side2A * (s2L_half * c2R_half + c2L_half * s2R_half);
-    return [
-        t14 * c1,
-        t14 * s1,
-        d1 + L1 * s2A - L2 * c23A + a3 * s23A,
-    ];
+    o[0] = t14 * c1;
+    o[1] = t14 * s1;
+    o[2] = d1 + L1 * s2A - L2 * c23A + a3 * s23A;
 }
 
-/** @type {_runtime.Kernel} */
-const _INVARIANT_POINT = {
+const _INVARIANT_POINT = _runtime.kernel({
     name: "h6ar.invariant_point",
     compute: _invariant_point,
     common: null,
@@ -580,7 +558,7 @@ const _INVARIANT_POINT = {
     used: ["L1", "L2", "a3", "d1"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The invariant point, by the averages of the angles.
@@ -611,11 +589,8 @@ export function invariant_point_batch(n, q, p, parameters) {
     return _runtime.batch(_INVARIANT_POINT, n, [q], [p], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian(v) {
+/** @type {_runtime.Compute} */
+function _jacobian(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -689,9 +664,9 @@ function _jacobian(v) {
     const wrist = Math.sqrt(Math.max(t33, 0.0) * Math.max(t35, 0.0));
     const t36 = loff + t32 + wrist;
     const t37 = t1 * t26 - t31 * t36;
-    const side2A = _runtime.sign(t17 + t18);
+    const side2A = t17 + t18 < 0 ? -1 : 1;
     const outer_32 = L1 * (side2A * t19);
-    const side23A = _runtime.sign(c2L_half * t8 + s2L_half * t9);
+    const side23A = c2L_half * t8 + s2L_half * t9 < 0 ? -1 : 1;
     const c23A = side23A * t16;
     const t38 = t26 * t30;
     const t39 = t1 * c_phi + t38 * t36;
@@ -711,7 +686,7 @@ function _jacobian(v) {
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
     const invalid = !(t46 && (0.0 <= loff) && (0.0 <= lp) && t47);
     const t48 = -(_runtime.FEASIBILITY * t34);
-    const t49 = _runtime.poison(invalid || !((t48 <= t35) && (t48 <= t33)));
+    const t49 = invalid || !((t48 <= t35) && (t48 <= t33)) ? NaN : 0;
     const t50 = c2R_half * c2R_half - s2R_half * s2R_half;
     const t51 = s2R_half * c2R_half;
     const t52 = t51 + t51;
@@ -777,48 +752,45 @@ function _jacobian(v) {
     const t101 = c23A * t68 + s23A * t67 - t70 * (t100 - s23A * t38) / t73;
     const outer_35 = s23A * t37;
     const t102 = t98 - inner_43 * t101 + inner_53 * outer_35 + t49;
-    return [
-        -(c1 * t37 + s1 * t43) + t49,
-        t75,
-        t76,
-        t86,
-        t61 + t87 * t74 - t88 * outer_15 + t49,
-        c1 * t90 - s1 * t91 + t49,
-        c1 * t43 - s1 * t37 + t49,
-        t94,
-        t95 + t49,
-        t96 + t49,
-        t92 - t87 * outer_24 - t88 * outer_25 + t49,
-        s1 * t90 + c1 * t91 + t49,
-        t97,
-        t99 + t65 * t101 + inner_52 * outer_35 + t49,
-        t102,
-        t99 - inner_44 * t101 - t85 * outer_35 + t49,
-        t98 + t87 * t101 - t88 * outer_35 + t49,
-        t1 * t100 + s23A * t89 + t49,
-        t97,
-        -t65 + t49,
-        inner_43 + t49,
-        inner_44 + t49,
-        -t87 + t49,
-        t97,
-        t97,
-        inner_52 + t49,
-        inner_53 + t49,
-        -t85 + t49,
-        -t88 + t49,
-        t97,
-        t97,
-        t97,
-        t97,
-        t97,
-        t97,
-        1.0 + t49,
-    ];
+    o[0] = -(c1 * t37 + s1 * t43) + t49;
+    o[1] = t75;
+    o[2] = t76;
+    o[3] = t86;
+    o[4] = t61 + t87 * t74 - t88 * outer_15 + t49;
+    o[5] = c1 * t90 - s1 * t91 + t49;
+    o[6] = c1 * t43 - s1 * t37 + t49;
+    o[7] = t94;
+    o[8] = t95 + t49;
+    o[9] = t96 + t49;
+    o[10] = t92 - t87 * outer_24 - t88 * outer_25 + t49;
+    o[11] = s1 * t90 + c1 * t91 + t49;
+    o[12] = t97;
+    o[13] = t99 + t65 * t101 + inner_52 * outer_35 + t49;
+    o[14] = t102;
+    o[15] = t99 - inner_44 * t101 - t85 * outer_35 + t49;
+    o[16] = t98 + t87 * t101 - t88 * outer_35 + t49;
+    o[17] = t1 * t100 + s23A * t89 + t49;
+    o[18] = t97;
+    o[19] = -t65 + t49;
+    o[20] = inner_43 + t49;
+    o[21] = inner_44 + t49;
+    o[22] = -t87 + t49;
+    o[23] = t97;
+    o[24] = t97;
+    o[25] = inner_52 + t49;
+    o[26] = inner_53 + t49;
+    o[27] = -t85 + t49;
+    o[28] = -t88 + t49;
+    o[29] = t97;
+    o[30] = t97;
+    o[31] = t97;
+    o[32] = t97;
+    o[33] = t97;
+    o[34] = t97;
+    o[35] = 1.0 + t49;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN = {
+const _JACOBIAN = _runtime.kernel({
     name: "h6ar.jacobian",
     compute: _jacobian,
     common: null,
@@ -836,7 +808,7 @@ const _JACOBIAN = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * Derivative of the task by the joints.
@@ -871,11 +843,8 @@ export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _determinant(v) {
+/** @type {_runtime.Compute} */
+function _determinant(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -908,7 +877,7 @@ function _determinant(v) {
     const t1 = c2L_half * c2R_half;
     const t2 = s2L_half * s2R_half;
     const t3 = t1 + t2;
-    const side2A = _runtime.sign(t3);
+    const side2A = t3 < 0 ? -1 : 1;
     const t4 = t1 - t2;
     const c2A = side2A * t4;
     const t5 = c3L_half * c3R_half;
@@ -920,7 +889,7 @@ function _determinant(v) {
     const t11 = c2R_half * t7 + s2R_half * t10;
     const t12 = s2R_half * t7 - c2R_half * t10;
     const t13 = c2L_half * t11 + s2L_half * t12;
-    const side23A = _runtime.sign(t13);
+    const side23A = t13 < 0 ? -1 : 1;
     const t14 = t5 - t6;
     const t15 = t8 + t9;
     const t16 = c2R_half * t14 - s2R_half * t15;
@@ -963,14 +932,11 @@ function _determinant(v) {
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
     const invalid = !(t41 && (0.0 <= loff) && (0.0 <= lp) && t42);
     const t43 = -(_runtime.FEASIBILITY * t33);
-    const t44 = _runtime.poison(invalid || !((t43 <= t34) && (t43 <= t32)));
-    return [
-        -(t38 / (t26 * 4.0)) + t44,
-    ];
+    const t44 = invalid || !((t43 <= t34) && (t43 <= t32)) ? NaN : 0;
+    o[0] = -(t38 / (t26 * 4.0)) + t44;
 }
 
-/** @type {_runtime.Kernel} */
-const _DETERMINANT = {
+const _DETERMINANT = _runtime.kernel({
     name: "h6ar.determinant",
     compute: _determinant,
     common: null,
@@ -988,7 +954,7 @@ const _DETERMINANT = {
         least: 1.9721522630525295e-31,
         most: 1.6069380442589903e+60,
     },
-};
+});
 
 /**
  * Determinant of the Jacobian.
@@ -1019,11 +985,8 @@ export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _singularities(v) {
+/** @type {_runtime.Compute} */
+function _singularities(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -1056,7 +1019,7 @@ function _singularities(v) {
     const t1 = c2L_half * c2R_half;
     const t2 = s2L_half * s2R_half;
     const t3 = t1 + t2;
-    const side2A = _runtime.sign(t3);
+    const side2A = t3 < 0 ? -1 : 1;
     const t4 = t1 - t2;
     const c2A = side2A * t4;
     const t5 = c3L_half * c3R_half;
@@ -1068,7 +1031,7 @@ function _singularities(v) {
     const t11 = c2R_half * t7 + s2R_half * t10;
     const t12 = s2R_half * t7 - c2R_half * t10;
     const t13 = c2L_half * t11 + s2L_half * t12;
-    const side23A = _runtime.sign(t13);
+    const side23A = t13 < 0 ? -1 : 1;
     const t14 = t5 - t6;
     const t15 = t8 + t9;
     const t16 = c2R_half * t14 - s2R_half * t15;
@@ -1103,22 +1066,19 @@ function _singularities(v) {
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
     const invalid = !(t36 && (0.0 <= loff) && (0.0 <= lp) && t37);
     const t38 = -(_runtime.FEASIBILITY * t29);
-    const t39 = _runtime.poison(invalid || !((t38 <= t30) && (t38 <= t28)));
+    const t39 = invalid || !((t38 <= t30) && (t38 <= t28)) ? NaN : 0;
     const s2A = side2A * t26;
     const t40 = c2A * c23A + s2A * s23A;
     const t41 = s2A * c23A - c2A * s23A;
-    return [
-        L1 * c2A + c23A * t32 + s23A * t33 + t39,
-        t40 * t33 + t41 * t32 + t39,
-        L2 * t40 + a3 * t41 + t39,
-        Math.abs(t3) + t39,
-        Math.abs(t13) + t39,
-        wrist + t39,
-    ];
+    o[0] = L1 * c2A + c23A * t32 + s23A * t33 + t39;
+    o[1] = t40 * t33 + t41 * t32 + t39;
+    o[2] = L2 * t40 + a3 * t41 + t39;
+    o[3] = Math.abs(t3) + t39;
+    o[4] = Math.abs(t13) + t39;
+    o[5] = wrist + t39;
 }
 
-/** @type {_runtime.Kernel} */
-const _SINGULARITIES = {
+const _SINGULARITIES = _runtime.kernel({
     name: "h6ar.singularities",
     compute: _singularities,
     common: null,
@@ -1136,7 +1096,7 @@ const _SINGULARITIES = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * The factors of the determinant, and the length of the wrist.
@@ -1170,11 +1130,8 @@ export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik(v) {
+/** @type {_runtime.Compute} */
+function _ik(v, o) {
     const x = v[0];
     const y = v[1];
     const z = v[2];
@@ -1303,8 +1260,8 @@ function _ik(v) {
     const t62 = Math.abs(L_2W * c_relative - a_3W * s_relative);
     const t63 = 1.0 / (t61 + t62);
     const drawn = L1 + L_2W * s_relative + a_3W * c_relative;
-    const t64 = v_2 * drawn * _runtime.sign(whole_alpha);
-    const t65 = _runtime.sign(-t58) * (v_1 * p_1 - v_2 * t57);
+    const t64 = v_2 * drawn * (whole_alpha < 0 ? -1 : 1);
+    const t65 = (-t58 < 0 ? -1 : 1) * (v_1 * p_1 - v_2 * t57);
     const t66 = t64 - t65;
     const t67 = spent_alpha ? t63 * (size * Math.abs(t66)) : 0.0;
     const t68 = -(_runtime.FEASIBILITY * (t36 + t67)) <= room_alpha;
@@ -1321,10 +1278,10 @@ function _ik(v) {
     const t73 = Math.abs(part_beta) - Math.abs(whole_beta);
     const spent_beta = Math.max(t73 * 9.094947017729282e-13, -t73) <= t60;
     const v_2_alpha = spent_alpha ? v_2 + v_1 * t72 : v_2;
-    const t74 = drawn * v_2_alpha * _runtime.sign(whole_beta);
+    const t74 = drawn * v_2_alpha * (whole_beta < 0 ? -1 : 1);
     const t75 = L1 - drawn;
     const t76 = spent_alpha ? t57 + p_1 * lean_alpha : t57;
-    const t77 = t74 - t75 * t76 * _runtime.sign(part_beta);
+    const t77 = t74 - t75 * t76 * (part_beta < 0 ? -1 : 1);
     const t78 = spent_beta ? t63 * (size * Math.abs(t77)) : 0.0;
     const t79 = -(_runtime.FEASIBILITY * (t36 + t78)) <= -t73;
     const t80 = Math.abs(higher);
@@ -1336,7 +1293,7 @@ function _ik(v) {
     const lean_beta = spent_beta ? turn_beta - t71 * (drawn * turn_beta) : 0.0;
     const t85 = turn_beta - lean_beta;
     const v_1_beta = spent_beta ? v_1_alpha - v_2_alpha * t85 : v_1_alpha;
-    const sigma_uv = _runtime.sign(-(L1 * v_1_beta));
+    const sigma_uv = -(L1 * v_1_beta) < 0 ? -1 : 1;
     const p_1_beta = spent_beta ? p_1_alpha - t76 * lean_beta : p_1_alpha;
     const t86 = sigma_uv * p_1_beta;
     const t87 = v_1_beta * sigma_uv;
@@ -1346,7 +1303,7 @@ function _ik(v) {
     const parallel = -t87 <= _runtime.VANISHING * (64.0 * t89);
     const whole_y = parallel ? L1 + t89 : -t87;
     const t90 = spent_beta ? t76 + p_1_alpha * lean_beta : t76;
-    const t91 = parallel ? t90 * _runtime.sign(v_2_beta) : t86;
+    const t91 = parallel ? t90 * (v_2_beta < 0 ? -1 : 1) : t86;
     const t92 = whole_y + t91;
     const t93 = whole_y - t91;
     const t94 = _runtime.VANISHING * (d * 16.0 + t80 * 16.0 + 16.0 * t81);
@@ -1364,7 +1321,7 @@ function _ik(v) {
     const t102 = -(_runtime.FEASIBILITY * (t82 * t101)) <= left_along;
     const t103 = left_along * 0.5 - Math.abs(left_along) * 0.5;
     const t104 = v_2_beta * t103 / (t87 * t87 + v_2_beta * v_2_beta);
-    const t105 = spent_along ? t91 + whole_y * (t104 * _runtime.sign(-t97)) : t91;
+    const t105 = spent_along ? t91 + whole_y * (t104 * (-t97 < 0 ? -1 : 1)) : t91;
     const t106 = whole_y + t105;
     const t107 = t88 && (t83 <= t92) && (t83 <= t93) && t102 && (t83 <= t106);
     const t108 = whole_y - t105;
@@ -1377,7 +1334,7 @@ function _ik(v) {
     const t113 = L1 - t111;
     const t114 = t107 && (t83 <= t108) && (t83 <= t112) && (t83 <= t113);
     const unreachable = !t114;
-    const t115 = _runtime.poison(invalid || unreachable);
+    const t115 = invalid || unreachable ? NaN : 0;
     const t116 = folded ? 0.0 : Math.atan2(up, -out_rear_elbow_up);
     const t117 = Math.atan2(lean_alpha + lean_beta, 1.0);
     const t118 = t116 + t117;
@@ -1422,9 +1379,9 @@ function _ik(v) {
     const drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W *
         c_relative_front_elbow_down;
     const t140 = v_2_front_elbow_down * drawn_front_elbow_down;
-    const t141 = t140 * _runtime.sign(whole_alpha_front_elbow_down);
+    const t141 = t140 * (whole_alpha_front_elbow_down < 0 ? -1 : 1);
     const t142 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t136;
-    const t143 = t141 - _runtime.sign(-t137) * t142;
+    const t143 = t141 - (-t137 < 0 ? -1 : 1) * t142;
     const t144 = spent_alpha_front_elbow_down ? t139 * (size * Math.abs(t143)) : 0.0;
     const t145 = -(_runtime.FEASIBILITY * (t36 + t144)) <= room_alpha_front_elbow_down;
     const t146 = room_alpha_front_elbow_down - Math.abs(-room_alpha_front_elbow_down);
@@ -1449,11 +1406,11 @@ function _ik(v) {
     const v_2_alpha_front_elbow_down = spent_alpha_front_elbow_down ? t153 :
         v_2_front_elbow_down;
     const t154 = drawn_front_elbow_down * v_2_alpha_front_elbow_down;
-    const t155 = t154 * _runtime.sign(whole_beta_front_elbow_down);
+    const t155 = t154 * (whole_beta_front_elbow_down < 0 ? -1 : 1);
     const t156 = L1 - drawn_front_elbow_down;
     const t157 = p_1_front_elbow_down * lean_alpha_front_elbow_down;
     const t158 = spent_alpha_front_elbow_down ? t136 - t157 : t136;
-    const t159 = t156 * t158 * _runtime.sign(part_beta_front_elbow_down);
+    const t159 = t156 * t158 * (part_beta_front_elbow_down < 0 ? -1 : 1);
     const t160 = t155 + t159;
     const t161 = spent_beta_front_elbow_down ? t139 * (size * Math.abs(t160)) : 0.0;
     const t162 = -(_runtime.FEASIBILITY * (t36 + t161)) <= -t151;
@@ -1466,7 +1423,7 @@ function _ik(v) {
     const t166 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t165;
     const v_1_beta_front_elbow_down = spent_beta_front_elbow_down ? t166 :
         v_1_alpha_front_elbow_down;
-    const sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down));
+    const sigma_uv_front_elbow_down = -(L1 * v_1_beta_front_elbow_down) < 0 ? -1 : 1;
     const t167 = p_1_alpha_front_elbow_down + t158 * lean_beta_front_elbow_down;
     const p_1_beta_front_elbow_down = spent_beta_front_elbow_down ? t167 :
         p_1_alpha_front_elbow_down;
@@ -1481,7 +1438,7 @@ function _ik(v) {
     const whole_y_front_elbow_down = parallel_front_elbow_down ? L1 + t172 : -t169;
     const t173 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down;
     const t174 = spent_beta_front_elbow_down ? t158 - t173 : t158;
-    const t175 = t174 * _runtime.sign(v_2_beta_front_elbow_down);
+    const t175 = t174 * (v_2_beta_front_elbow_down < 0 ? -1 : 1);
     const t176 = parallel_front_elbow_down ? -t175 : t168;
     const t177 = whole_y_front_elbow_down + t176;
     const t178 = whole_y_front_elbow_down - t176;
@@ -1503,7 +1460,7 @@ function _ik(v) {
         0.5;
     const t186 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down;
     const t187 = v_2_beta_front_elbow_down * t185 / (t169 * t169 + t186);
-    const t188 = whole_y_front_elbow_down * (t187 * _runtime.sign(rest_front_elbow_down));
+    const t188 = whole_y_front_elbow_down * (t187 * (rest_front_elbow_down < 0 ? -1 : 1));
     const t189 = spent_along_front_elbow_down ? t176 + t188 : t176;
     const t190 = whole_y_front_elbow_down + t189;
     const t191 = whole_y_front_elbow_down - t189;
@@ -1518,7 +1475,7 @@ function _ik(v) {
     const t195 = t184 && (t83 <= t190) && (t83 <= t191) && (t83 <= t194);
     const t196 = L1 + along_u_front_elbow_down;
     const unreachable_2 = !(t195 && (t83 <= t196));
-    const t197 = _runtime.poison(invalid || unreachable_2);
+    const t197 = invalid || unreachable_2 ? NaN : 0;
     const t198 = folded ? 0.0 : Math.atan2(-t129, out_front_elbow_down);
     const t199 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down;
     const t200 = Math.atan2(t199, 1.0);
@@ -1542,7 +1499,7 @@ function _ik(v) {
     const t213 = room_alpha_rear_elbow_up * 9.094947017729282e-13;
     const spent_alpha_rear_elbow_up = Math.max(-t213, room_alpha_rear_elbow_up) <= t60;
     const t214 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t211;
-    const t215 = t141 - _runtime.sign(-t212) * t214;
+    const t215 = t141 - (-t212 < 0 ? -1 : 1) * t214;
     const t216 = spent_alpha_rear_elbow_up ? t139 * (size * Math.abs(t215)) : 0.0;
     const t217 = -(_runtime.FEASIBILITY * (t36 + t216)) <= room_alpha_rear_elbow_up;
     const t218 = room_alpha_rear_elbow_up - Math.abs(room_alpha_rear_elbow_up);
@@ -1564,10 +1521,10 @@ function _ik(v) {
     const t225 = v_2_front_elbow_down + v_1_front_elbow_down * t221;
     const v_2_alpha_rear_elbow_up = spent_alpha_rear_elbow_up ? t225 : v_2_front_elbow_down;
     const t226 = drawn_front_elbow_down * v_2_alpha_rear_elbow_up;
-    const t227 = t226 * _runtime.sign(whole_beta_rear_elbow_up);
+    const t227 = t226 * (whole_beta_rear_elbow_up < 0 ? -1 : 1);
     const t228 = t211 + p_1_rear_elbow_up * lean_alpha_rear_elbow_up;
     const t229 = spent_alpha_rear_elbow_up ? t228 : t211;
-    const t230 = t156 * t229 * _runtime.sign(part_beta_rear_elbow_up);
+    const t230 = t156 * t229 * (part_beta_rear_elbow_up < 0 ? -1 : 1);
     const t231 = t227 - t230;
     const t232 = spent_beta_rear_elbow_up ? t139 * (size * Math.abs(t231)) : 0.0;
     const t233 = -(_runtime.FEASIBILITY * (t36 + t232)) <= -t223;
@@ -1579,7 +1536,7 @@ function _ik(v) {
     const t236 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up;
     const t237 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t236;
     const v_1_beta_rear_elbow_up = spent_beta_rear_elbow_up ? t237 : v_1_alpha_rear_elbow_up;
-    const sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up));
+    const sigma_uv_rear_elbow_up = -(L1 * v_1_beta_rear_elbow_up) < 0 ? -1 : 1;
     const t238 = p_1_alpha_rear_elbow_up - t229 * lean_beta_rear_elbow_up;
     const p_1_beta_rear_elbow_up = spent_beta_rear_elbow_up ? t238 : p_1_alpha_rear_elbow_up;
     const t239 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up;
@@ -1592,7 +1549,7 @@ function _ik(v) {
     const whole_y_rear_elbow_up = parallel_rear_elbow_up ? L1 + t243 : -t240;
     const t244 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up;
     const t245 = spent_beta_rear_elbow_up ? t229 + t244 : t229;
-    const t246 = parallel_rear_elbow_up ? t245 * _runtime.sign(v_2_beta_rear_elbow_up) : t239;
+    const t246 = parallel_rear_elbow_up ? t245 * (v_2_beta_rear_elbow_up < 0 ? -1 : 1) : t239;
     const t247 = whole_y_rear_elbow_up + t246;
     const t248 = whole_y_rear_elbow_up - t246;
     const below_beta_0_rear_elbow_up = Math.max(t247, t95);
@@ -1610,7 +1567,7 @@ function _ik(v) {
     const t256 = left_along_rear_elbow_up * 0.5 - Math.abs(left_along_rear_elbow_up) * 0.5;
     const t257 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up;
     const t258 = v_2_beta_rear_elbow_up * t256 / (t240 * t240 + t257);
-    const t259 = whole_y_rear_elbow_up * (t258 * _runtime.sign(-t251));
+    const t259 = whole_y_rear_elbow_up * (t258 * (-t251 < 0 ? -1 : 1));
     const t260 = spent_along_rear_elbow_up ? t246 + t259 : t246;
     const t261 = whole_y_rear_elbow_up + t260;
     const t262 = whole_y_rear_elbow_up - t260;
@@ -1624,7 +1581,7 @@ function _ik(v) {
     const t267 = t255 && (t83 <= t261) && (t83 <= t262) && (t83 <= t266);
     const t268 = L1 - t265;
     const unreachable_3 = !(t267 && (t83 <= t268));
-    const t269 = _runtime.poison(invalid || unreachable_3);
+    const t269 = invalid || unreachable_3 ? NaN : 0;
     const t270 = folded ? 0.0 : Math.atan2(up, out_rear_elbow_up);
     const t271 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up;
     const t272 = Math.atan2(t271, 1.0);
@@ -1645,7 +1602,7 @@ function _ik(v) {
     const room_alpha_rear_elbow_down = t46 - Math.abs(-part_alpha_rear_elbow_down);
     const t283 = room_alpha_rear_elbow_down * 9.094947017729282e-13;
     const spent_alpha_rear_elbow_down = Math.max(-t283, room_alpha_rear_elbow_down) <= t60;
-    const t284 = _runtime.sign(part_alpha_rear_elbow_down) * (v_1 * t281 - v_2 * t282);
+    const t284 = (part_alpha_rear_elbow_down < 0 ? -1 : 1) * (v_1 * t281 - v_2 * t282);
     const t285 = t64 + t284;
     const t286 = spent_alpha_rear_elbow_down ? t63 * (size * Math.abs(t285)) : 0.0;
     const t287 = -(_runtime.FEASIBILITY * (t36 + t286)) <= room_alpha_rear_elbow_down;
@@ -1663,9 +1620,9 @@ function _ik(v) {
     const t293 = Math.max(t292 * 9.094947017729282e-13, -t292);
     const spent_beta_rear_elbow_down = t293 <= t60;
     const v_2_alpha_rear_elbow_down = spent_alpha_rear_elbow_down ? v_2 + v_1 * t291 : v_2;
-    const t294 = drawn * v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down);
+    const t294 = drawn * v_2_alpha_rear_elbow_down * (whole_beta_rear_elbow_down < 0 ? -1 : 1);
     const t295 = spent_alpha_rear_elbow_down ? t282 + t281 * lean_alpha_rear_elbow_down : t282;
-    const t296 = t75 * t295 * _runtime.sign(part_beta_rear_elbow_down);
+    const t296 = t75 * t295 * (part_beta_rear_elbow_down < 0 ? -1 : 1);
     const t297 = t294 + t296;
     const t298 = spent_beta_rear_elbow_down ? t63 * (size * Math.abs(t297)) : 0.0;
     const t299 = -(_runtime.FEASIBILITY * (t36 + t298)) <= -t292;
@@ -1677,7 +1634,7 @@ function _ik(v) {
     const t303 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t302;
     const v_1_beta_rear_elbow_down = spent_beta_rear_elbow_down ? t303 :
         v_1_alpha_rear_elbow_down;
-    const sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down));
+    const sigma_uv_rear_elbow_down = -(L1 * v_1_beta_rear_elbow_down) < 0 ? -1 : 1;
     const t304 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down;
     const t305 = spent_beta_rear_elbow_down ? t290 - t295 * lean_beta_rear_elbow_down : t290;
     const p_across_u_rear_elbow_down = sigma_uv_rear_elbow_down * t305;
@@ -1690,7 +1647,7 @@ function _ik(v) {
     const parallel_rear_elbow_down = -t304 <= _runtime.VANISHING * (64.0 * t309);
     const whole_y_rear_elbow_down = parallel_rear_elbow_down ? L1 + t309 : -t304;
     const t310 = spent_beta_rear_elbow_down ? t295 + t290 * lean_beta_rear_elbow_down : t295;
-    const t311 = t310 * _runtime.sign(v_2_beta_rear_elbow_down);
+    const t311 = t310 * (v_2_beta_rear_elbow_down < 0 ? -1 : 1);
     const part_y_rear_elbow_down = parallel_rear_elbow_down ? t311 : p_across_u_rear_elbow_down;
     const t312 = whole_y_rear_elbow_down - part_y_rear_elbow_down;
     const t313 = whole_y_rear_elbow_down + part_y_rear_elbow_down;
@@ -1710,7 +1667,7 @@ function _ik(v) {
     const t320 = left_along_rear_elbow_down * 0.5 - Math.abs(left_along_rear_elbow_down) * 0.5;
     const t321 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down;
     const t322 = v_2_beta_rear_elbow_down * t320 / (t304 * t304 + t321);
-    const t323 = whole_y_rear_elbow_down * (t322 * _runtime.sign(rest_rear_elbow_down));
+    const t323 = whole_y_rear_elbow_down * (t322 * (rest_rear_elbow_down < 0 ? -1 : 1));
     const eased_rear_elbow_down = spent_along_rear_elbow_down ? part_y_rear_elbow_down - t323 :
         part_y_rear_elbow_down;
     const t324 = whole_y_rear_elbow_down - eased_rear_elbow_down;
@@ -1725,7 +1682,7 @@ function _ik(v) {
     const t329 = t319 && (t83 <= t324) && (t83 <= t325) && (t83 <= t328);
     const t330 = L1 + along_u_rear_elbow_down;
     const unreachable_4 = !(t329 && (t83 <= t330));
-    const t331 = _runtime.poison(invalid || unreachable_4);
+    const t331 = invalid || unreachable_4 ? NaN : 0;
     const t332 = folded ? 0.0 : Math.atan2(-t129, -out_front_elbow_down);
     const t333 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down;
     const t334 = Math.atan2(t333, 1.0);
@@ -1741,47 +1698,42 @@ function _ik(v) {
     const t342 = t338 - Math.atan2(t326, 2.0 * Math.sqrt(t341));
     const t343 = (wrist <= al * _runtime.DETERMINED) || nowhere;
     const t344 = t343 || folded || short;
-    const t345 = _runtime.status(invalid, unreachable, t344 || parallel);
-    const t346 = _runtime.status(invalid, unreachable_2, t344 || parallel_front_elbow_down);
-    const t347 = _runtime.status(invalid, unreachable_3, t344 || parallel_rear_elbow_up);
-    const t348 = _runtime.status(invalid, unreachable_4, t344 || parallel_rear_elbow_down);
-    return [
-        t14 + t115,
-        _runtime.wrap(t118 - t119) + t115,
-        _runtime.wrap(t124 + t126) + t115,
-        _runtime.wrap(t118 + t119) + t115,
-        _runtime.wrap(t124 - t126) + t115,
-        t127 + t115,
-        t14 + t197,
-        _runtime.wrap(t201 - t204) + t197,
-        _runtime.wrap(t207 + t209) + t197,
-        _runtime.wrap(t201 + t204) + t197,
-        _runtime.wrap(t207 - t209) + t197,
-        t127 + t197,
-        t210 + t269,
-        _runtime.wrap(t273 - t276) + t269,
-        _runtime.wrap(t278 + t280) + t269,
-        _runtime.wrap(t273 + t276) + t269,
-        _runtime.wrap(t278 - t280) + t269,
-        t127 + t269,
-        t210 + t331,
-        _runtime.wrap(t335 - t338) + t331,
-        _runtime.wrap(t340 + t342) + t331,
-        _runtime.wrap(t335 + t338) + t331,
-        _runtime.wrap(t340 - t342) + t331,
-        t127 + t331,
-        t345,
-        t346,
-        t347,
-        t348,
-    ];
+    const t345 = invalid ? 3 : unreachable ? 1 : t344 || parallel ? 2 : 0;
+    const t346 = invalid ? 3 : unreachable_2 ? 1 : t344 || parallel_front_elbow_down ? 2 : 0;
+    const t347 = invalid ? 3 : unreachable_3 ? 1 : t344 || parallel_rear_elbow_up ? 2 : 0;
+    const t348 = invalid ? 3 : unreachable_4 ? 1 : t344 || parallel_rear_elbow_down ? 2 : 0;
+    o[0] = t14 + t115;
+    o[1] = _runtime.wrap(t118 - t119) + t115;
+    o[2] = _runtime.wrap(t124 + t126) + t115;
+    o[3] = _runtime.wrap(t118 + t119) + t115;
+    o[4] = _runtime.wrap(t124 - t126) + t115;
+    o[5] = t127 + t115;
+    o[6] = t14 + t197;
+    o[7] = _runtime.wrap(t201 - t204) + t197;
+    o[8] = _runtime.wrap(t207 + t209) + t197;
+    o[9] = _runtime.wrap(t201 + t204) + t197;
+    o[10] = _runtime.wrap(t207 - t209) + t197;
+    o[11] = t127 + t197;
+    o[12] = t210 + t269;
+    o[13] = _runtime.wrap(t273 - t276) + t269;
+    o[14] = _runtime.wrap(t278 + t280) + t269;
+    o[15] = _runtime.wrap(t273 + t276) + t269;
+    o[16] = _runtime.wrap(t278 - t280) + t269;
+    o[17] = t127 + t269;
+    o[18] = t210 + t331;
+    o[19] = _runtime.wrap(t335 - t338) + t331;
+    o[20] = _runtime.wrap(t340 + t342) + t331;
+    o[21] = _runtime.wrap(t335 + t338) + t331;
+    o[22] = _runtime.wrap(t340 - t342) + t331;
+    o[23] = t127 + t331;
+    o[24] = t345;
+    o[25] = t346;
+    o[26] = t347;
+    o[27] = t348;
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik_common(v) {
+/** @type {_runtime.Compute} */
+function _ik_common(v, o) {
     const x = v[0];
     const y = v[1];
     const z = v[2];
@@ -1904,7 +1856,7 @@ function _ik_common(v) {
     const t66 = Math.abs(ahead);
     const play_along = d + t65 + t66;
     const t67 = -(_runtime.FEASIBILITY * play_along);
-    const sigma_uv = _runtime.sign(-whole_alpha);
+    const sigma_uv = -whole_alpha < 0 ? -1 : 1;
     const t68 = t48 * sigma_uv;
     const p_across_u = sigma_uv * t63;
     const t69 = -(t68 + p_across_u);
@@ -1923,7 +1875,7 @@ function _ik_common(v) {
     const t79 = L1 - t76;
     const t80 = t77 && t70 && t72 && (t67 <= t78) && (t67 <= t79);
     const unreachable = !t80;
-    const t81 = _runtime.poison(invalid || unreachable);
+    const t81 = invalid || unreachable ? NaN : 0;
     const t82 = Math.atan2(0.0, 1.0);
     const t83 = t82 + Math.atan2(up, -out_rear_elbow_up);
     const below_alpha = Math.max(t78, t74);
@@ -1959,7 +1911,7 @@ function _ik_common(v) {
     const room_beta_front_elbow_down = t94 - Math.abs(L1 * p_1_front_elbow_down);
     const t105 = t35 && (t36 <= room_alpha_front_elbow_down) && (t36 <=
         room_beta_front_elbow_down);
-    const sigma_uv_front_elbow_down = _runtime.sign(-whole_alpha_front_elbow_down);
+    const sigma_uv_front_elbow_down = -whole_alpha_front_elbow_down < 0 ? -1 : 1;
     const t106 = sigma_uv_front_elbow_down * p_1_front_elbow_down;
     const t107 = t93 * sigma_uv_front_elbow_down;
     const t108 = t106 - t107;
@@ -1979,7 +1931,7 @@ function _ik_common(v) {
     const t116 = L1 + along_u_front_elbow_down;
     const t117 = t114 && t109 && t111 && (t67 <= t115) && (t67 <= t116);
     const unreachable_2 = !t117;
-    const t118 = _runtime.poison(invalid || unreachable_2);
+    const t118 = invalid || unreachable_2 ? NaN : 0;
     const t119 = t82 + Math.atan2(-t95, out_front_elbow_down);
     const below_alpha_front_elbow_down = Math.max(t115, t74);
     const above_alpha_front_elbow_down = Math.max(t116, t74);
@@ -2013,7 +1965,7 @@ function _ik_common(v) {
     const t141 = L1 - t138;
     const t142 = t139 && t133 && t135 && (t67 <= t140) && (t67 <= t141);
     const unreachable_3 = !t142;
-    const t143 = _runtime.poison(invalid || unreachable_3);
+    const t143 = invalid || unreachable_3 ? NaN : 0;
     const t144 = t82 + Math.atan2(up, out_rear_elbow_up);
     const below_alpha_rear_elbow_up = Math.max(t140, t74);
     const above_alpha_rear_elbow_up = Math.max(t141, t74);
@@ -2045,7 +1997,7 @@ function _ik_common(v) {
     const t160 = L1 + along_u_rear_elbow_down;
     const t161 = t158 && t154 && t156 && (t67 <= t159) && (t67 <= t160);
     const unreachable_4 = !t161;
-    const t162 = _runtime.poison(invalid || unreachable_4);
+    const t162 = invalid || unreachable_4 ? NaN : 0;
     const t163 = t82 + Math.atan2(-t95, -out_front_elbow_down);
     const below_alpha_rear_elbow_down = Math.max(t159, t74);
     const above_alpha_rear_elbow_down = Math.max(t160, t74);
@@ -2055,9 +2007,9 @@ function _ik_common(v) {
     const t167 = below_beta_0_rear_elbow_down * above_beta_0_rear_elbow_down;
     const t168 = t166 - Math.atan2(t157, 2.0 * Math.sqrt(t167));
     const t169 = wrist <= al * _runtime.DETERMINED;
-    const t170 = _runtime.status(invalid, unreachable_2, t169);
-    const t171 = _runtime.status(invalid, unreachable_3, t169);
-    const t172 = _runtime.status(invalid, unreachable_4, t169);
+    const t170 = invalid ? 3 : unreachable_2 ? 1 : t169 ? 2 : 0;
+    const t171 = invalid ? 3 : unreachable_3 ? 1 : t169 ? 2 : 0;
+    const t172 = invalid ? 3 : unreachable_4 ? 1 : t169 ? 2 : 0;
     const t173 = (h <= t22 * _runtime.VANISHING) || (L1 * fore <= _runtime.VANISHING * t28);
     const t174 = _runtime.VANISHING * t25;
     const t175 = t173 || (Math.abs(t29) + Math.abs(onward) <= t174);
@@ -2092,41 +2044,38 @@ function _ik_common(v) {
     const t195 = t192 || spent_alpha_rear_elbow_down || spent_beta_rear_elbow_down;
     const t196 = left_along_rear_elbow_down * 9.094947017729282e-13;
     const spent_along_rear_elbow_down = Math.max(-t196, left_along_rear_elbow_down) <= t181;
-    return [
-        t13 + t81,
-        _runtime.wrap(t83 - t84) + t81,
-        _runtime.wrap(t86 - t89) + t81,
-        _runtime.wrap(t83 + t84) + t81,
-        _runtime.wrap(-(t89 + t86)) + t81,
-        t90 + t81,
-        t13 + t118,
-        _runtime.wrap(t119 - t122) + t118,
-        _runtime.wrap(t123 + t125) + t118,
-        _runtime.wrap(t119 + t122) + t118,
-        _runtime.wrap(t123 - t125) + t118,
-        t90 + t118,
-        t126 + t143,
-        _runtime.wrap(t144 - t147) + t143,
-        _runtime.wrap(t123 + t149) + t143,
-        _runtime.wrap(t144 + t147) + t143,
-        _runtime.wrap(t123 - t149) + t143,
-        t90 + t143,
-        t126 + t162,
-        _runtime.wrap(t163 - t166) + t162,
-        _runtime.wrap(t168 - t89) + t162,
-        _runtime.wrap(t163 + t166) + t162,
-        _runtime.wrap(-(t89 + t168)) + t162,
-        t90 + t162,
-        _runtime.status(invalid, unreachable, t169),
-        t170,
-        t171,
-        t172,
-        (t195 || spent_along_rear_elbow_down) ? 1 : 0,
-    ];
+    o[0] = t13 + t81;
+    o[1] = _runtime.wrap(t83 - t84) + t81;
+    o[2] = _runtime.wrap(t86 - t89) + t81;
+    o[3] = _runtime.wrap(t83 + t84) + t81;
+    o[4] = _runtime.wrap(-(t89 + t86)) + t81;
+    o[5] = t90 + t81;
+    o[6] = t13 + t118;
+    o[7] = _runtime.wrap(t119 - t122) + t118;
+    o[8] = _runtime.wrap(t123 + t125) + t118;
+    o[9] = _runtime.wrap(t119 + t122) + t118;
+    o[10] = _runtime.wrap(t123 - t125) + t118;
+    o[11] = t90 + t118;
+    o[12] = t126 + t143;
+    o[13] = _runtime.wrap(t144 - t147) + t143;
+    o[14] = _runtime.wrap(t123 + t149) + t143;
+    o[15] = _runtime.wrap(t144 + t147) + t143;
+    o[16] = _runtime.wrap(t123 - t149) + t143;
+    o[17] = t90 + t143;
+    o[18] = t126 + t162;
+    o[19] = _runtime.wrap(t163 - t166) + t162;
+    o[20] = _runtime.wrap(t168 - t89) + t162;
+    o[21] = _runtime.wrap(t163 + t166) + t162;
+    o[22] = _runtime.wrap(-(t89 + t168)) + t162;
+    o[23] = t90 + t162;
+    o[24] = invalid ? 3 : unreachable ? 1 : t169 ? 2 : 0;
+    o[25] = t170;
+    o[26] = t171;
+    o[27] = t172;
+    o[28] = (t195 || spent_along_rear_elbow_down) ? 1 : 0;
 }
 
-/** @type {_runtime.Kernel} */
-const _IK = {
+const _IK = _runtime.kernel({
     name: "h6ar.ik",
     compute: _ik,
     common: _ik_common,
@@ -2145,7 +2094,7 @@ const _IK = {
         least: 2.938735877055719e-39,
         most: 1.8092513943330656e+75,
     },
-};
+});
 
 /**
  * All postures of the published model that reach a tip.
@@ -2195,11 +2144,8 @@ export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _wrist_length(v) {
+/** @type {_runtime.Compute} */
+function _wrist_length(v, o) {
     const psi = v[0];
     const phi = v[1];
     const d = v[2];
@@ -2217,14 +2163,11 @@ function _wrist_length(v) {
     const t6 = t5 && (Number.isFinite(psi) && Number.isFinite(phi));
     const t7 = -(_runtime.FEASIBILITY * (d * 0.5));
     const t8 = (-_runtime.FEASIBILITY <= c_phi) && (t7 <= t1);
-    const t9 = t3 / c_psi + _runtime.poison(!t6 || !(t8 && (t7 <= t2)));
-    return [
-        t9,
-    ];
+    const t9 = t3 / c_psi + (!t6 || !(t8 && (t7 <= t2)) ? NaN : 0);
+    o[0] = t9;
 }
 
-/** @type {_runtime.Kernel} */
-const _WRIST_LENGTH = {
+const _WRIST_LENGTH = _runtime.kernel({
     name: "h6ar.wrist_length",
     compute: _wrist_length,
     common: null,
@@ -2243,7 +2186,7 @@ const _WRIST_LENGTH = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * The variable length l_W of the wrist; NaN where the links are too short.
@@ -2275,11 +2218,8 @@ export function wrist_length_batch(n, psi, phi, l_W, parameters) {
     return _runtime.batch(_WRIST_LENGTH, n, [psi, phi], [l_W], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _minimum_link_length(v) {
+/** @type {_runtime.Compute} */
+function _minimum_link_length(v, o) {
     const psi_max = v[0];
     const beta_min = v[2];
     const d = v[3];
@@ -2288,13 +2228,10 @@ function _minimum_link_length(v) {
     const c_psi_max = _runtime.found[1];
     _runtime.sincos(beta_min);
     const c_beta_min = _runtime.found[1];
-    return [
-        -((gs - d / c_psi_max) / c_beta_min),
-    ];
+    o[0] = -((gs - d / c_psi_max) / c_beta_min);
 }
 
-/** @type {_runtime.Kernel} */
-const _MINIMUM_LINK_LENGTH = {
+const _MINIMUM_LINK_LENGTH = _runtime.kernel({
     name: "h6ar.minimum_link_length",
     compute: _minimum_link_length,
     common: null,
@@ -2309,7 +2246,7 @@ const _MINIMUM_LINK_LENGTH = {
     used: ["d", "gs"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The shortest wrist links that keep the separation angle up to the given yaw and roll.
@@ -2344,11 +2281,8 @@ export function minimum_link_length_batch(n, psi_max, phi_max, beta_min, al, par
     return _runtime.batch(_MINIMUM_LINK_LENGTH, n, [psi_max, phi_max, beta_min], [al], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _largest_yaw(v) {
+/** @type {_runtime.Compute} */
+function _largest_yaw(v, o) {
     const phi = v[0];
     const beta_min = v[1];
     const d = v[2];
@@ -2363,14 +2297,10 @@ function _largest_yaw(v) {
     const t4 = t3 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
     const t5 = Number.isFinite(phi) && Number.isFinite(beta_min);
     const failed = !(t4 && t5) || !(-(_runtime.FEASIBILITY * (gs + al)) <= t1);
-    const t6 = _runtime.wrap(2.0 * t2) + _runtime.poison(failed);
-    return [
-        t6,
-    ];
+    o[0] = _runtime.wrap(2.0 * t2) + (failed ? NaN : 0);
 }
 
-/** @type {_runtime.Kernel} */
-const _LARGEST_YAW = {
+const _LARGEST_YAW = _runtime.kernel({
     name: "h6ar.largest_yaw",
     compute: _largest_yaw,
     common: null,
@@ -2384,7 +2314,7 @@ const _LARGEST_YAW = {
     used: ["d", "gs", "al"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The largest yaw at a roll that keeps the separation angle; NaN where there is none.
@@ -2414,11 +2344,8 @@ export function largest_yaw_batch(n, phi, beta_min, psi, parameters) {
     return _runtime.batch(_LARGEST_YAW, n, [phi, beta_min], [psi], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _largest_angle(v) {
+/** @type {_runtime.Compute} */
+function _largest_angle(v, o) {
     const beta_min = v[0];
     const d = v[1];
     const gs = v[2];
@@ -2432,14 +2359,10 @@ function _largest_angle(v) {
     const t4 = t3 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
     const failed = !(t4 && Number.isFinite(beta_min)) || !(-(_runtime.FEASIBILITY * (gs + al))
         <= t1);
-    const t5 = _runtime.wrap(2.0 * t2) + _runtime.poison(failed);
-    return [
-        t5,
-    ];
+    o[0] = _runtime.wrap(2.0 * t2) + (failed ? NaN : 0);
 }
 
-/** @type {_runtime.Kernel} */
-const _LARGEST_ANGLE = {
+const _LARGEST_ANGLE = _runtime.kernel({
     name: "h6ar.largest_angle",
     compute: _largest_angle,
     common: null,
@@ -2452,7 +2375,7 @@ const _LARGEST_ANGLE = {
     used: ["d", "gs", "al"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The largest angle that yaw and roll may both have; NaN where there is none.

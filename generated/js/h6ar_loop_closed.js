@@ -74,11 +74,8 @@ export const DEFAULTS = Object.freeze({
     lp: 0.1,
 });
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _fk(v) {
+/** @type {_runtime.Compute} */
+function _fk(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -174,7 +171,7 @@ function _fk(v) {
     const whole_virtual = M_virtual + N_virtual;
     const c_bend_virtual = short_virtual ? 1.0 : (M_virtual - N_virtual) / whole_virtual;
     const s_lag_virtual = bare_virtual ? 0.0 : L2 / fore;
-    const t46 = 2.0 * _runtime.sign(-t28) * Math.sqrt(M_virtual * N_virtual);
+    const t46 = 2.0 * (-t28 < 0 ? -1 : 1) * Math.sqrt(M_virtual * N_virtual);
     const s_bend_virtual = short_virtual ? 0.0 : t46 / whole_virtual;
     const c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual;
     const t47 = c2L_half * t8 + s2L_half * t9;
@@ -224,21 +221,19 @@ function _fk(v) {
     const t73 = -(_runtime.FEASIBILITY * (d * t23));
     const t74 = -(_runtime.FEASIBILITY * t59);
     const t75 = (t73 <= t45) && (t73 <= t42) && (t74 <= t60) && (t74 <= t61);
-    const t76 = _runtime.poison(!(t71 && t72) || !t75);
+    const t76 = !(t71 && t72) || !t75 ? NaN : 0;
     const t77 = d1 + L1 * stheta2A - ctheta23A * t66 + stheta23A * t65;
-    const t78 = _runtime.wrapCut(Math.atan2(-t58, tilted)) + t76;
-    return [
-        s1 * t64 + c1 * t67 + t76,
-        s1 * t67 - c1 * t64 + t76,
-        t77 + t76,
-        t78,
-        _runtime.wrapCut(-Math.atan2(-t55, d)) + t76,
-        _runtime.wrap(principal) + t76,
-    ];
+    const t78 = Math.atan2(-t58, tilted);
+    const t79 = -Math.atan2(-t55, d);
+    o[0] = s1 * t64 + c1 * t67 + t76;
+    o[1] = s1 * t67 - c1 * t64 + t76;
+    o[2] = t77 + t76;
+    o[3] = (t78 <= -Math.PI ? Math.PI : t78) + t76;
+    o[4] = (t79 <= -Math.PI ? Math.PI : t79) + t76;
+    o[5] = _runtime.wrap(principal) + t76;
 }
 
-/** @type {_runtime.Kernel} */
-const _FK = {
+const _FK = _runtime.kernel({
     name: "h6ar_loop_closed.fk",
     compute: _fk,
     common: null,
@@ -256,7 +251,7 @@ const _FK = {
         least: 2.938735877055719e-39,
         most: 1.8092513943330656e+75,
     },
-};
+});
 
 /**
  * Position of the tip, and yaw, roll and pitch.
@@ -293,11 +288,8 @@ export function fk_batch(n, q, x, parameters) {
     return _runtime.batch(_FK, n, [q], [x], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _pose(v) {
+/** @type {_runtime.Compute} */
+function _pose(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -395,7 +387,7 @@ function _pose(v) {
     const whole_virtual = M_virtual + N_virtual;
     const t49 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual;
     const ahead_1_virtual = short_virtual ? t27 : t49;
-    const t50 = 2.0 * _runtime.sign(-t32) * Math.sqrt(M_virtual * N_virtual);
+    const t50 = 2.0 * (-t32 < 0 ? -1 : 1) * Math.sqrt(M_virtual * N_virtual);
     const s_bend_virtual = short_virtual ? 0.0 : t50 / whole_virtual;
     const t51 = fore * s_bend_virtual;
     const out_virtual = r_I * ahead_1_virtual - t23 * t51;
@@ -444,7 +436,7 @@ function _pose(v) {
     const t73 = t71 - base;
     const t74 = base - (gs - al);
     const t75 = (t70 <= t48) && (t70 <= t45) && (t72 <= t73) && (t72 <= t74);
-    const t76 = _runtime.poison(!(t68 && t69) || !t75);
+    const t76 = !(t68 && t69) || !t75 ? NaN : 0;
     const t77 = t54 * hand_11 + s1 * hand_21 - t63 * t64 + t76;
     const t78 = t58 * c_psi;
     const hand_22 = c_phi * c_psi;
@@ -468,28 +460,25 @@ function _pose(v) {
     const t93 = stheta23A * hand_13 - ctheta23A * hand_33 + t76;
     const t94 = d1 + L1 * stheta2A - ctheta23A * t86 + stheta23A * t85;
     const t95 = 0.0 + t76;
-    return [
-        t77,
-        t79,
-        t81,
-        s1 * t84 + c1 * t87 + t76,
-        t90,
-        t91,
-        t92,
-        s1 * t87 - c1 * t84 + t76,
-        ctheta23A * t64 + stheta23A * hand_11 + t76,
-        ctheta23A * t60 - stheta23A * t78 + t76,
-        t93,
-        t94 + t76,
-        t95,
-        t95,
-        t95,
-        1.0 + t76,
-    ];
+    o[0] = t77;
+    o[1] = t79;
+    o[2] = t81;
+    o[3] = s1 * t84 + c1 * t87 + t76;
+    o[4] = t90;
+    o[5] = t91;
+    o[6] = t92;
+    o[7] = s1 * t87 - c1 * t84 + t76;
+    o[8] = ctheta23A * t64 + stheta23A * hand_11 + t76;
+    o[9] = ctheta23A * t60 - stheta23A * t78 + t76;
+    o[10] = t93;
+    o[11] = t94 + t76;
+    o[12] = t95;
+    o[13] = t95;
+    o[14] = t95;
+    o[15] = 1.0 + t76;
 }
 
-/** @type {_runtime.Kernel} */
-const _POSE = {
+const _POSE = _runtime.kernel({
     name: "h6ar_loop_closed.pose",
     compute: _pose,
     common: null,
@@ -507,7 +496,7 @@ const _POSE = {
         least: 2.938735877055719e-39,
         most: 1.8092513943330656e+75,
     },
-};
+});
 
 /**
  * Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).
@@ -543,11 +532,8 @@ export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _arm_tips(v) {
+/** @type {_runtime.Compute} */
+function _arm_tips(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -581,18 +567,15 @@ function _arm_tips(v) {
     const s2L3L = s2L * c3L + c2L * s3L;
     const c2L3L = c2L * c3L - s2L * s3L;
     const t4 = L1 * c2L + L2 * s2L3L + a3 * c2L3L;
-    return [
-        t1 + c1 * t2,
-        s1 * t2 - t3,
-        d1 + L1 * s2R - L2 * c2R3R + a3 * s2R3R,
-        c1 * t4 - t1,
-        t3 + s1 * t4,
-        d1 + L1 * s2L - L2 * c2L3L + a3 * s2L3L,
-    ];
+    o[0] = t1 + c1 * t2;
+    o[1] = s1 * t2 - t3;
+    o[2] = d1 + L1 * s2R - L2 * c2R3R + a3 * s2R3R;
+    o[3] = c1 * t4 - t1;
+    o[4] = t3 + s1 * t4;
+    o[5] = d1 + L1 * s2L - L2 * c2L3L + a3 * s2L3L;
 }
 
-/** @type {_runtime.Kernel} */
-const _ARM_TIPS = {
+const _ARM_TIPS = _runtime.kernel({
     name: "h6ar_loop_closed.arm_tips",
     compute: _arm_tips,
     common: null,
@@ -605,7 +588,7 @@ const _ARM_TIPS = {
     used: ["L1", "L2", "a3", "d1", "d"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Tips of the right and of the left fore-arm.
@@ -636,11 +619,8 @@ export function arm_tips_batch(n, q, tips, parameters) {
     return _runtime.batch(_ARM_TIPS, n, [q], [tips], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _invariant_point(v) {
+/** @type {_runtime.Compute} */
+function _invariant_point(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -684,15 +664,12 @@ function _invariant_point(v) {
     const t16 = L1 * (t14 + t15);
     const t17 = (L2 * t9 + a3 * t10) * t13 + (t14 - t15) * t16;
     const t18 = (s2L_half * c2R_half + c2L_half * s2R_half) * t16;
-    return [
-        c1 * t17,
-        s1 * t17,
-        d1 - t13 * (L2 * t10 - a3 * t9) + t18,
-    ];
+    o[0] = c1 * t17;
+    o[1] = s1 * t17;
+    o[2] = d1 - t13 * (L2 * t10 - a3 * t9) + t18;
 }
 
-/** @type {_runtime.Kernel} */
-const _INVARIANT_POINT = {
+const _INVARIANT_POINT = _runtime.kernel({
     name: "h6ar_loop_closed.invariant_point",
     compute: _invariant_point,
     common: null,
@@ -705,7 +682,7 @@ const _INVARIANT_POINT = {
     used: ["L1", "L2", "a3", "d1"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The invariant point, the middle of the tips.
@@ -736,11 +713,8 @@ export function invariant_point_batch(n, q, p, parameters) {
     return _runtime.batch(_INVARIANT_POINT, n, [q], [p], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian(v) {
+/** @type {_runtime.Compute} */
+function _jacobian(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -834,7 +808,7 @@ function _jacobian(v) {
     const whole_virtual = M_virtual + N_virtual;
     const c_bend_virtual = short_virtual ? 1.0 : (M_virtual - N_virtual) / whole_virtual;
     const s_lag_virtual = bare_virtual ? 0.0 : L2 / fore;
-    const t46 = 2.0 * _runtime.sign(-t28) * Math.sqrt(M_virtual * N_virtual);
+    const t46 = 2.0 * (-t28 < 0 ? -1 : 1) * Math.sqrt(M_virtual * N_virtual);
     const s_bend_virtual = short_virtual ? 0.0 : t46 / whole_virtual;
     const c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual;
     const t47 = c2L_half * t8 + s2L_half * t9;
@@ -895,7 +869,7 @@ function _jacobian(v) {
     const t81 = -(_runtime.FEASIBILITY * (d * t23));
     const t82 = -(_runtime.FEASIBILITY * t65);
     const t83 = (t81 <= t45) && (t81 <= t42) && (t82 <= t66) && (t82 <= t67);
-    const t84 = _runtime.poison(invalid || !t83);
+    const t84 = invalid || !t83 ? NaN : 0;
     const t85 = c_phi * t74;
     const t86 = t60 * t74;
     const t87 = t62 * t68;
@@ -989,48 +963,45 @@ function _jacobian(v) {
     const t147 = rate_23 * outer_33 - (outer_32 * t115 + t117 * t144 - t118 * t145);
     const t148 = t124 * t144 - t125 * t145 - outer_32 * rate_14;
     const t149 = outer_32 * t127 - inner_45 * t144 + inner_55 * t145;
-    return [
-        t70 - s1 * t76 + t84,
-        -(t113 + t104 * outer_13) + t84,
-        t119 + t84,
-        t126 + t84,
-        t129 + rate_25 * outer_13 + t84,
-        s1 * t130 - c1 * t132 + t84,
-        t133 + c1 * t76 + t84,
-        t137 - t104 * outer_23 + t84,
-        t138 + t84,
-        -(t139 + t123 * outer_23) + t84,
-        t140 + rate_25 * outer_23 + t84,
-        -(c1 * t130 + s1 * t132) + t84,
-        t141,
-        t146 - outer_33 * t104 + t84,
-        t147 + t84,
-        -(t148 + outer_33 * t123) + t84,
-        rate_25 * outer_33 - t149 + t84,
-        t1 * t142 + stheta23A * t131 + t84,
-        t141,
-        inner_42 + t84,
-        -t117 + t84,
-        -t124 + t84,
-        inner_45 + t84,
-        t141,
-        t141,
-        inner_52 + t84,
-        -t118 + t84,
-        -t125 + t84,
-        inner_55 + t84,
-        t141,
-        t141,
-        t141,
-        t141,
-        t141,
-        t141,
-        1.0 + t84,
-    ];
+    o[0] = t70 - s1 * t76 + t84;
+    o[1] = -(t113 + t104 * outer_13) + t84;
+    o[2] = t119 + t84;
+    o[3] = t126 + t84;
+    o[4] = t129 + rate_25 * outer_13 + t84;
+    o[5] = s1 * t130 - c1 * t132 + t84;
+    o[6] = t133 + c1 * t76 + t84;
+    o[7] = t137 - t104 * outer_23 + t84;
+    o[8] = t138 + t84;
+    o[9] = -(t139 + t123 * outer_23) + t84;
+    o[10] = t140 + rate_25 * outer_23 + t84;
+    o[11] = -(c1 * t130 + s1 * t132) + t84;
+    o[12] = t141;
+    o[13] = t146 - outer_33 * t104 + t84;
+    o[14] = t147 + t84;
+    o[15] = -(t148 + outer_33 * t123) + t84;
+    o[16] = rate_25 * outer_33 - t149 + t84;
+    o[17] = t1 * t142 + stheta23A * t131 + t84;
+    o[18] = t141;
+    o[19] = inner_42 + t84;
+    o[20] = -t117 + t84;
+    o[21] = -t124 + t84;
+    o[22] = inner_45 + t84;
+    o[23] = t141;
+    o[24] = t141;
+    o[25] = inner_52 + t84;
+    o[26] = -t118 + t84;
+    o[27] = -t125 + t84;
+    o[28] = inner_55 + t84;
+    o[29] = t141;
+    o[30] = t141;
+    o[31] = t141;
+    o[32] = t141;
+    o[33] = t141;
+    o[34] = t141;
+    o[35] = 1.0 + t84;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN = {
+const _JACOBIAN = _runtime.kernel({
     name: "h6ar_loop_closed.jacobian",
     compute: _jacobian,
     common: null,
@@ -1048,7 +1019,7 @@ const _JACOBIAN = {
         least: 2.938735877055719e-39,
         most: 1.8092513943330656e+75,
     },
-};
+});
 
 /**
  * Derivative of the task by the joints.
@@ -1086,11 +1057,8 @@ export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _determinant(v) {
+/** @type {_runtime.Compute} */
+function _determinant(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -1196,7 +1164,7 @@ function _determinant(v) {
     const whole_virtual = M_virtual + N_virtual;
     const t57 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual;
     const ahead_1_virtual = short_virtual ? t41 : t57;
-    const t58 = 2.0 * _runtime.sign(-t43) * Math.sqrt(M_virtual * N_virtual);
+    const t58 = 2.0 * (-t43 < 0 ? -1 : 1) * Math.sqrt(M_virtual * N_virtual);
     const s_bend_virtual = short_virtual ? 0.0 : t58 / whole_virtual;
     const t59 = fore * s_bend_virtual;
     const out_virtual = r_I * ahead_1_virtual - t37 * t59;
@@ -1240,14 +1208,11 @@ function _determinant(v) {
     const t79 = -(_runtime.FEASIBILITY * (d * t41));
     const t80 = -(_runtime.FEASIBILITY * t64);
     const t81 = (t79 <= t56) && (t79 <= t53) && (t80 <= t65) && (t80 <= t66);
-    const t82 = t72 * t73 / t74 + _runtime.poison(invalid || !t81);
-    return [
-        t82,
-    ];
+    const t82 = t72 * t73 / t74 + (invalid || !t81 ? NaN : 0);
+    o[0] = t82;
 }
 
-/** @type {_runtime.Kernel} */
-const _DETERMINANT = {
+const _DETERMINANT = _runtime.kernel({
     name: "h6ar_loop_closed.determinant",
     compute: _determinant,
     common: null,
@@ -1265,7 +1230,7 @@ const _DETERMINANT = {
         least: 1.0587911840678754e-22,
         most: 5.575186299632656e+42,
     },
-};
+});
 
 /**
  * Determinant of the Jacobian; it has a pole where the virtual arm is straight.
@@ -1299,11 +1264,8 @@ export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _singularities(v) {
+/** @type {_runtime.Compute} */
+function _singularities(v, o) {
     const theta1 = v[0];
     const theta2R = v[1];
     const theta3R = v[2];
@@ -1398,7 +1360,7 @@ function _singularities(v) {
     const whole_virtual = M_virtual + N_virtual;
     const t50 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual;
     const ahead_1_virtual = short_virtual ? t28 : t50;
-    const t51 = 2.0 * _runtime.sign(-t33) * Math.sqrt(M_virtual * N_virtual);
+    const t51 = 2.0 * (-t33 < 0 ? -1 : 1) * Math.sqrt(M_virtual * N_virtual);
     const s_bend_virtual = short_virtual ? 0.0 : t51 / whole_virtual;
     const t52 = fore * s_bend_virtual;
     const out_virtual = r_I * ahead_1_virtual - t23 * t52;
@@ -1440,7 +1402,7 @@ function _singularities(v) {
     const t70 = -(_runtime.FEASIBILITY * (d * t28));
     const t71 = -(_runtime.FEASIBILITY * t59);
     const t72 = (t70 <= t49) && (t70 <= t46) && (t71 <= t60) && (t71 <= t61);
-    const t73 = _runtime.poison(invalid || !t72);
+    const t73 = invalid || !t72 ? NaN : 0;
     const t74 = ctheta2A * ctheta23A + stheta2A * stheta23A;
     const t75 = stheta2A * ctheta23A - ctheta2A * stheta23A;
     const s2R3R = t31 * t55 + t30 * t27;
@@ -1452,18 +1414,15 @@ function _singularities(v) {
     const s2L3L = t42 * t78 + t41 * t79;
     const c2L3L = t42 * t79 - t41 * t78;
     const t80 = L2 * (t78 * s2L3L + t79 * c2L3L) + a3 * (t78 * c2L3L - t79 * s2L3L);
-    return [
-        t65 + t73,
-        t74 * t64 + t75 * t63 + t73,
-        t76 + t73,
-        t80 + t73,
-        L2 * t74 + a3 * t75 + t73,
-        wrist + t73,
-    ];
+    o[0] = t65 + t73;
+    o[1] = t74 * t64 + t75 * t63 + t73;
+    o[2] = t76 + t73;
+    o[3] = t80 + t73;
+    o[4] = L2 * t74 + a3 * t75 + t73;
+    o[5] = wrist + t73;
 }
 
-/** @type {_runtime.Kernel} */
-const _SINGULARITIES = {
+const _SINGULARITIES = _runtime.kernel({
     name: "h6ar_loop_closed.singularities",
     compute: _singularities,
     common: null,
@@ -1481,7 +1440,7 @@ const _SINGULARITIES = {
         least: 2.938735877055719e-39,
         most: 1.8092513943330656e+75,
     },
-};
+});
 
 /**
  * The factors of the determinant, its pole, and the length of the wrist.
@@ -1518,11 +1477,8 @@ export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik(v) {
+/** @type {_runtime.Compute} */
+function _ik(v, o) {
     const x = v[0];
     const y = v[1];
     const z = v[2];
@@ -1702,7 +1658,7 @@ function _ik(v) {
     const t100 = h_left * h_left + r_left * r_left;
     const t101 = t79 * t100 < t92 ? t100 - t94 : t63 + t95 - t98;
     const unreachable = !(t97 && (t78 <= t99) && (t78 <= t101));
-    const t102 = _runtime.poison(invalid || unreachable);
+    const t102 = invalid || unreachable ? NaN : 0;
     const t103 = t15 + t102;
     const t104 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0);
     const folded_right = Math.abs(-t88) + Math.abs(-t90) <= t104;
@@ -1712,7 +1668,7 @@ function _ik(v) {
     const M_right = Math.max(-t96, t106);
     const N_right = Math.max(t85, t106);
     const t107 = 1.0 / (M_right + N_right);
-    const sigma_right = _runtime.sign(-t47);
+    const sigma_right = -t47 < 0 ? -1 : 1;
     const t108 = 2.0 * sigma_right;
     const t109 = Math.sqrt(M_right * N_right);
     const t110 = fore_arm * (short_right ? 0.0 : t107 * (t108 * t109));
@@ -1720,501 +1676,497 @@ function _ik(v) {
     const ahead_1_right = short_right ? size : t93 + t111 * M_right * t107;
     const t112 = Math.atan2(t90 * t110 - t88 * ahead_1_right, -(t90 * ahead_1_right + t88 *
         t110));
-    const t113 = _runtime.wrapCut(folded_right ? t105 : t112) + t102;
+    const t113 = folded_right ? t105 : t112;
+    const t114 = (t113 <= -Math.PI ? Math.PI : t113) + t102;
     const bare_right = fore_arm <= _runtime.VANISHING * size;
-    const t114 = 1.0 / fore_arm;
-    const t115 = Math.atan2(bare_right ? 0.0 : L2 * t114, bare_right ? 1.0 : a3 * t114);
-    const t116 = sigma_right * Math.atan2(2.0 * t109, M_right - N_right);
-    const t117 = _runtime.wrap(t115 + (short_right ? 0.0 : t116));
-    const t118 = t117 + t102;
+    const t115 = 1.0 / fore_arm;
+    const t116 = Math.atan2(bare_right ? 0.0 : L2 * t115, bare_right ? 1.0 : a3 * t115);
+    const t117 = sigma_right * Math.atan2(2.0 * t109, M_right - N_right);
+    const t118 = _runtime.wrap(t116 + (short_right ? 0.0 : t117));
+    const t119 = t118 + t102;
     const folded_left = Math.abs(h_left) + Math.abs(r_left) <= t104;
     const M_left = Math.max(t101, 0.0);
     const N_left = Math.max(t99, 0.0);
-    const t119 = 1.0 / (M_left + N_left);
-    const ahead_1_left = short_right ? size : t93 + t111 * M_left * t119;
-    const t120 = h_left * ahead_1_left;
-    const t121 = Math.sqrt(M_left * N_left);
-    const t122 = fore_arm * (short_right ? 0.0 : t119 * (t108 * t121));
-    const t123 = r_left * t122;
-    const t124 = r_left * ahead_1_left;
-    const t125 = h_left * t122;
-    const t126 = folded_left ? t105 : Math.atan2(t120 - t123, t124 + t125);
-    const t127 = sigma_right * Math.atan2(2.0 * t121, M_left - N_left);
-    const t128 = short_right ? 0.0 : t127;
-    const t129 = _runtime.wrap(principal_pitch);
-    const t130 = t129 + t102;
-    const t131 = folded_left ? t105 : Math.atan2(t120 + t123, t124 - t125);
+    const t120 = 1.0 / (M_left + N_left);
+    const ahead_1_left = short_right ? size : t93 + t111 * M_left * t120;
+    const t121 = h_left * ahead_1_left;
+    const t122 = Math.sqrt(M_left * N_left);
+    const t123 = fore_arm * (short_right ? 0.0 : t120 * (t108 * t122));
+    const t124 = r_left * t123;
+    const t125 = r_left * ahead_1_left;
+    const t126 = h_left * t123;
+    const t127 = folded_left ? t105 : Math.atan2(t121 - t124, t125 + t126);
+    const t128 = sigma_right * Math.atan2(2.0 * t122, M_left - N_left);
+    const t129 = short_right ? 0.0 : t128;
+    const t130 = _runtime.wrap(principal_pitch);
+    const t131 = t130 + t102;
+    const t132 = folded_left ? t105 : Math.atan2(t121 + t124, t125 - t126);
     const s_relative_front_elbow_down_alike = t42 + t43;
     const c_relative_front_elbow_down_alike = t44 - t45;
     const straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 *
         c_relative_front_elbow_down_alike;
-    const t132 = 0.0 <= straight_mid_front_elbow_down_alike;
-    const t133 = L2 * c_relative_front_elbow_down_alike - a3 *
+    const t133 = 0.0 <= straight_mid_front_elbow_down_alike;
+    const t134 = L2 * c_relative_front_elbow_down_alike - a3 *
         s_relative_front_elbow_down_alike;
-    const t134 = Math.abs(straight_mid_front_elbow_down_alike);
-    const large_mid_front_elbow_down_alike = fore_arm + t134;
-    const small_mid_front_elbow_down_alike = t133 * t133 / large_mid_front_elbow_down_alike;
-    const t135 = t132 ? small_mid_front_elbow_down_alike : large_mid_front_elbow_down_alike;
-    const N_mid_front_elbow_down_alike = t27 * t135;
+    const t135 = Math.abs(straight_mid_front_elbow_down_alike);
+    const large_mid_front_elbow_down_alike = fore_arm + t135;
+    const small_mid_front_elbow_down_alike = t134 * t134 / large_mid_front_elbow_down_alike;
+    const t136 = t133 ? small_mid_front_elbow_down_alike : large_mid_front_elbow_down_alike;
+    const N_mid_front_elbow_down_alike = t27 * t136;
     const out_front_elbow_down_alike = t50 + t51;
-    const t136 = out_front_elbow_down_alike * out_front_elbow_down_alike;
-    const t137 = t53 - t54;
-    const t138 = 1.0 / Math.sqrt(t136 + t137 * t137);
-    const t139 = out_front_elbow_down_alike * t138;
-    const ctheta2A_front_elbow_down_alike = folded ? 1.0 : t139;
-    const t140 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike;
-    const t141 = folded ? 0.0 : t137 * t138;
-    const ctheta23A_front_elbow_down_alike = t140 + s_relative_front_elbow_down_alike * t141;
-    const t142 = t48 * (s_phi * ctheta23A_front_elbow_down_alike);
-    const t143 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike;
-    const t144 = c_relative_front_elbow_down_alike * t141 - t143;
-    const t145 = d * (t142 + t5 * (s_psi * t144));
-    const t146 = t5 * (s_psi * ctheta23A_front_elbow_down_alike);
-    const t147 = d * (t146 - t48 * (s_phi * t144));
-    const gap_front_elbow_down_alike = t145 * t145 + t147 * t147;
-    const t148 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike;
-    const t149 = L1 * ctheta2A_front_elbow_down_alike - L2 * t144;
-    const point_11_front_elbow_down_alike = t149 + a3 * ctheta23A_front_elbow_down_alike;
-    const t150 = L1 * t141;
-    const t151 = t150 + L2 * ctheta23A_front_elbow_down_alike + a3 * t144;
-    const t152 = 2.0 * t145 * point_11_front_elbow_down_alike - 2.0 * t147 * t151;
-    const room_right_front_elbow_down_alike = t148 + t152;
-    const t153 = room_right_front_elbow_down_alike * 9.094947017729282e-13;
-    const t154 = Math.max(-t153, room_right_front_elbow_down_alike);
-    const spent_right_front_elbow_down_alike = t154 <= t65;
+    const t137 = out_front_elbow_down_alike * out_front_elbow_down_alike;
+    const t138 = t53 - t54;
+    const t139 = 1.0 / Math.sqrt(t137 + t138 * t138);
+    const t140 = out_front_elbow_down_alike * t139;
+    const ctheta2A_front_elbow_down_alike = folded ? 1.0 : t140;
+    const t141 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike;
+    const t142 = folded ? 0.0 : t138 * t139;
+    const ctheta23A_front_elbow_down_alike = t141 + s_relative_front_elbow_down_alike * t142;
+    const t143 = t48 * (s_phi * ctheta23A_front_elbow_down_alike);
+    const t144 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike;
+    const t145 = c_relative_front_elbow_down_alike * t142 - t144;
+    const t146 = d * (t143 + t5 * (s_psi * t145));
+    const t147 = t5 * (s_psi * ctheta23A_front_elbow_down_alike);
+    const t148 = d * (t147 - t48 * (s_phi * t145));
+    const gap_front_elbow_down_alike = t146 * t146 + t148 * t148;
+    const t149 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike;
+    const t150 = L1 * ctheta2A_front_elbow_down_alike - L2 * t145;
+    const point_11_front_elbow_down_alike = t150 + a3 * ctheta23A_front_elbow_down_alike;
+    const t151 = L1 * t142;
+    const t152 = t151 + L2 * ctheta23A_front_elbow_down_alike + a3 * t145;
+    const t153 = 2.0 * t146 * point_11_front_elbow_down_alike - 2.0 * t148 * t152;
+    const room_right_front_elbow_down_alike = t149 + t153;
+    const t154 = room_right_front_elbow_down_alike * 9.094947017729282e-13;
+    const t155 = Math.max(-t154, room_right_front_elbow_down_alike);
+    const spent_right_front_elbow_down_alike = t155 <= t65;
     const tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W *
         s_relative_front_elbow_down_alike;
-    const t155 = 1.0 / (t66 + Math.abs(tilt_front_elbow_down_alike));
-    const t156 = L1 + L_2W * s_relative_front_elbow_down_alike;
-    const drawn_front_elbow_down_alike = t156 + a_3W * c_relative_front_elbow_down_alike;
-    const t157 = 2.0 * drawn_front_elbow_down_alike;
-    const t158 = t147 + t151;
-    const t159 = t145 - point_11_front_elbow_down_alike;
-    const t160 = ctheta2A_front_elbow_down_alike * t158 + t141 * t159;
-    const t161 = t157 * t160;
-    const t162 = spent_right_front_elbow_down_alike ? t155 * (size * Math.abs(-t161)) : 0.0;
-    const t163 = -(_runtime.FEASIBILITY * (t38 + t162)) <= room_right_front_elbow_down_alike;
-    const room_left_front_elbow_down_alike = t148 - t152;
-    const t164 = room_left_front_elbow_down_alike * 9.094947017729282e-13;
-    const t165 = Math.max(-t164, room_left_front_elbow_down_alike);
-    const spent_left_front_elbow_down_alike = t165 <= t65;
-    const h_left_0_front_elbow_down_alike = t147 - t151;
-    const t166 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike;
-    const r_left_0_front_elbow_down_alike = t145 + point_11_front_elbow_down_alike;
-    const t167 = t166 + t141 * r_left_0_front_elbow_down_alike;
-    const slope_left_front_elbow_down_alike = t157 * t167;
-    const t168 = size * Math.abs(slope_left_front_elbow_down_alike);
-    const t169 = spent_left_front_elbow_down_alike ? t155 * t168 : 0.0;
-    const t170 = -(_runtime.FEASIBILITY * (t38 + t169)) <= room_left_front_elbow_down_alike;
-    const t171 = room_right_front_elbow_down_alike -
+    const t156 = 1.0 / (t66 + Math.abs(tilt_front_elbow_down_alike));
+    const t157 = L1 + L_2W * s_relative_front_elbow_down_alike;
+    const drawn_front_elbow_down_alike = t157 + a_3W * c_relative_front_elbow_down_alike;
+    const t158 = 2.0 * drawn_front_elbow_down_alike;
+    const t159 = t148 + t152;
+    const t160 = t146 - point_11_front_elbow_down_alike;
+    const t161 = ctheta2A_front_elbow_down_alike * t159 + t142 * t160;
+    const t162 = t158 * t161;
+    const t163 = spent_right_front_elbow_down_alike ? t156 * (size * Math.abs(-t162)) : 0.0;
+    const t164 = -(_runtime.FEASIBILITY * (t38 + t163)) <= room_right_front_elbow_down_alike;
+    const room_left_front_elbow_down_alike = t149 - t153;
+    const t165 = room_left_front_elbow_down_alike * 9.094947017729282e-13;
+    const t166 = Math.max(-t165, room_left_front_elbow_down_alike);
+    const spent_left_front_elbow_down_alike = t166 <= t65;
+    const h_left_0_front_elbow_down_alike = t148 - t152;
+    const t167 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike;
+    const r_left_0_front_elbow_down_alike = t146 + point_11_front_elbow_down_alike;
+    const t168 = t167 + t142 * r_left_0_front_elbow_down_alike;
+    const slope_left_front_elbow_down_alike = t158 * t168;
+    const t169 = size * Math.abs(slope_left_front_elbow_down_alike);
+    const t170 = spent_left_front_elbow_down_alike ? t156 * t169 : 0.0;
+    const t171 = -(_runtime.FEASIBILITY * (t38 + t170)) <= room_left_front_elbow_down_alike;
+    const t172 = room_right_front_elbow_down_alike -
         Math.abs(room_right_front_elbow_down_alike);
-    const turn_right_front_elbow_down_alike = spent_right_front_elbow_down_alike ? t161 * t171 /
-        (2.0 * (t80 + t161 * t161)) : 0.0;
-    const t172 = room_left_front_elbow_down_alike - Math.abs(room_left_front_elbow_down_alike);
-    const t173 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike;
-    const t174 = slope_left_front_elbow_down_alike * t172 / (2.0 * (t80 + t173));
-    const turn_left_front_elbow_down_alike = spent_left_front_elbow_down_alike ? -t174 : 0.0;
+    const turn_right_front_elbow_down_alike = spent_right_front_elbow_down_alike ? t162 * t172 /
+        (2.0 * (t80 + t162 * t162)) : 0.0;
+    const t173 = room_left_front_elbow_down_alike - Math.abs(room_left_front_elbow_down_alike);
+    const t174 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike;
+    const t175 = slope_left_front_elbow_down_alike * t173 / (2.0 * (t80 + t174));
+    const turn_left_front_elbow_down_alike = spent_left_front_elbow_down_alike ? -t175 : 0.0;
     const turn_front_elbow_down_alike = turn_right_front_elbow_down_alike +
         turn_left_front_elbow_down_alike;
-    const t175 = t161 * turn_front_elbow_down_alike;
-    const t176 = room_right_front_elbow_down_alike - t175;
-    const t177 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike;
-    const t178 = ctheta2A_front_elbow_down_alike * t177;
-    const t179 = t158 + t178 + t159 * turn_front_elbow_down_alike;
-    const t180 = t141 * t177;
-    const t181 = t159 - t158 * turn_front_elbow_down_alike + t180;
-    const t182 = t179 * t179 + t181 * t181;
-    const t183 = gap_front_elbow_down_alike * gap_front_elbow_down_alike;
-    const t184 = t132 ? large_mid_front_elbow_down_alike : small_mid_front_elbow_down_alike;
-    const M_mid_front_elbow_down_alike = t27 * t184;
-    const t185 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike;
-    const t186 = t79 * t182 < t183 ? t94 - t182 : t152 - t175 - t185;
-    const t187 = t37 && t163 && t170 && (t78 <= t176) && (t78 <= -t186);
-    const t188 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike;
-    const t189 = room_left_front_elbow_down_alike + t188;
-    const t190 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike;
-    const h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t178 + t190;
-    const t191 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike;
-    const t192 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike;
-    const r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t180 - t192;
-    const t193 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike;
-    const t194 = t191 + t193;
-    const t195 = t79 * t194 < t183 ? t194 - t94 : t152 + t185 - t188;
-    const unreachable_2 = !(t187 && (t78 <= t189) && (t78 <= t195));
-    const t196 = _runtime.poison(invalid || unreachable_2);
-    const t197 = t15 + t196;
-    const folded_right_front_elbow_down_alike = Math.abs(-t179) + Math.abs(-t181) <= t104;
-    const t198 = Math.atan2(-t141, ctheta2A_front_elbow_down_alike);
-    const M_right_front_elbow_down_alike = Math.max(-t186, t106);
-    const N_right_front_elbow_down_alike = Math.max(t176, t106);
+    const t176 = t162 * turn_front_elbow_down_alike;
+    const t177 = room_right_front_elbow_down_alike - t176;
+    const t178 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike;
+    const t179 = ctheta2A_front_elbow_down_alike * t178;
+    const t180 = t159 + t179 + t160 * turn_front_elbow_down_alike;
+    const t181 = t142 * t178;
+    const t182 = t160 - t159 * turn_front_elbow_down_alike + t181;
+    const t183 = t180 * t180 + t182 * t182;
+    const t184 = gap_front_elbow_down_alike * gap_front_elbow_down_alike;
+    const t185 = t133 ? large_mid_front_elbow_down_alike : small_mid_front_elbow_down_alike;
+    const M_mid_front_elbow_down_alike = t27 * t185;
+    const t186 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike;
+    const t187 = t79 * t183 < t184 ? t94 - t183 : t153 - t176 - t186;
+    const t188 = t37 && t164 && t171 && (t78 <= t177) && (t78 <= -t187);
+    const t189 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike;
+    const t190 = room_left_front_elbow_down_alike + t189;
+    const t191 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike;
+    const h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t179 + t191;
+    const t192 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike;
+    const t193 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike;
+    const r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t181 - t193;
+    const t194 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike;
+    const t195 = t192 + t194;
+    const t196 = t79 * t195 < t184 ? t195 - t94 : t153 + t186 - t189;
+    const unreachable_2 = !(t188 && (t78 <= t190) && (t78 <= t196));
+    const t197 = invalid || unreachable_2 ? NaN : 0;
+    const t198 = t15 + t197;
+    const folded_right_front_elbow_down_alike = Math.abs(-t180) + Math.abs(-t182) <= t104;
+    const t199 = Math.atan2(-t142, ctheta2A_front_elbow_down_alike);
+    const M_right_front_elbow_down_alike = Math.max(-t187, t106);
+    const N_right_front_elbow_down_alike = Math.max(t177, t106);
     const whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike +
         N_right_front_elbow_down_alike;
-    const t199 = 1.0 / whole_right_front_elbow_down_alike;
-    const sigma_right_front_elbow_down_alike = _runtime.sign(-t133);
-    const t200 = 2.0 * sigma_right_front_elbow_down_alike;
-    const t201 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike;
-    const t202 = Math.sqrt(t201);
-    const t203 = fore_arm * (short_right ? 0.0 : t199 * (t200 * t202));
-    const t204 = t93 + t111 * M_right_front_elbow_down_alike * t199;
-    const ahead_1_right_front_elbow_down_alike = short_right ? size : t204;
-    const up_right_front_elbow_down_alike = t181 * t203 - t179 *
+    const t200 = 1.0 / whole_right_front_elbow_down_alike;
+    const sigma_right_front_elbow_down_alike = -t134 < 0 ? -1 : 1;
+    const t201 = 2.0 * sigma_right_front_elbow_down_alike;
+    const t202 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike;
+    const t203 = Math.sqrt(t202);
+    const t204 = fore_arm * (short_right ? 0.0 : t200 * (t201 * t203));
+    const t205 = t93 + t111 * M_right_front_elbow_down_alike * t200;
+    const ahead_1_right_front_elbow_down_alike = short_right ? size : t205;
+    const up_right_front_elbow_down_alike = t182 * t204 - t180 *
         ahead_1_right_front_elbow_down_alike;
-    const t205 = t181 * ahead_1_right_front_elbow_down_alike + t179 * t203;
-    const t206 = Math.atan2(up_right_front_elbow_down_alike, -t205);
-    const t207 = folded_right_front_elbow_down_alike ? t198 : t206;
-    const t208 = _runtime.wrapCut(t207) + t196;
-    const t209 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike;
-    const t210 = sigma_right_front_elbow_down_alike * Math.atan2(2.0 * t202, t209);
-    const t211 = _runtime.wrap(t115 + (short_right ? 0.0 : t210));
-    const t212 = t211 + t196;
-    const t213 = Math.abs(h_left_front_elbow_down_alike) +
+    const t206 = t182 * ahead_1_right_front_elbow_down_alike + t180 * t204;
+    const t207 = Math.atan2(up_right_front_elbow_down_alike, -t206);
+    const t208 = folded_right_front_elbow_down_alike ? t199 : t207;
+    const t209 = (t208 <= -Math.PI ? Math.PI : t208) + t197;
+    const t210 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike;
+    const t211 = sigma_right_front_elbow_down_alike * Math.atan2(2.0 * t203, t210);
+    const t212 = _runtime.wrap(t116 + (short_right ? 0.0 : t211));
+    const t213 = t212 + t197;
+    const t214 = Math.abs(h_left_front_elbow_down_alike) +
         Math.abs(r_left_front_elbow_down_alike);
-    const folded_left_front_elbow_down_alike = t213 <= t104;
-    const M_left_front_elbow_down_alike = Math.max(t195, 0.0);
-    const N_left_front_elbow_down_alike = Math.max(t189, 0.0);
+    const folded_left_front_elbow_down_alike = t214 <= t104;
+    const M_left_front_elbow_down_alike = Math.max(t196, 0.0);
+    const N_left_front_elbow_down_alike = Math.max(t190, 0.0);
     const whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike +
         N_left_front_elbow_down_alike;
-    const t214 = 1.0 / whole_left_front_elbow_down_alike;
-    const t215 = t93 + t111 * M_left_front_elbow_down_alike * t214;
-    const ahead_1_left_front_elbow_down_alike = short_right ? size : t215;
-    const t216 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike;
-    const t217 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike;
-    const t218 = Math.sqrt(t217);
-    const t219 = fore_arm * (short_right ? 0.0 : t214 * (t200 * t218));
-    const t220 = r_left_front_elbow_down_alike * t219;
-    const t221 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike;
-    const t222 = h_left_front_elbow_down_alike * t219;
-    const t223 = folded_left_front_elbow_down_alike ? t198 : Math.atan2(t216 - t220, t221 +
-        t222);
-    const t224 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike;
-    const t225 = sigma_right_front_elbow_down_alike * Math.atan2(2.0 * t218, t224);
-    const t226 = short_right ? 0.0 : t225;
-    const t227 = t129 + t196;
-    const t228 = folded_left_front_elbow_down_alike ? t198 : Math.atan2(t216 + t220, t221 -
-        t222);
-    const t229 = _runtime.wrap(-(nowhere ? 0.0 : t2 + t14));
+    const t215 = 1.0 / whole_left_front_elbow_down_alike;
+    const t216 = t93 + t111 * M_left_front_elbow_down_alike * t215;
+    const ahead_1_left_front_elbow_down_alike = short_right ? size : t216;
+    const t217 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike;
+    const t218 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike;
+    const t219 = Math.sqrt(t218);
+    const t220 = fore_arm * (short_right ? 0.0 : t215 * (t201 * t219));
+    const t221 = r_left_front_elbow_down_alike * t220;
+    const t222 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike;
+    const t223 = h_left_front_elbow_down_alike * t220;
+    const t224 = folded_left_front_elbow_down_alike ? t199 : Math.atan2(t217 - t221, t222 +
+        t223);
+    const t225 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike;
+    const t226 = sigma_right_front_elbow_down_alike * Math.atan2(2.0 * t219, t225);
+    const t227 = short_right ? 0.0 : t226;
+    const t228 = t130 + t197;
+    const t229 = folded_left_front_elbow_down_alike ? t199 : Math.atan2(t217 + t221, t222 -
+        t223);
+    const t230 = _runtime.wrap(-(nowhere ? 0.0 : t2 + t14));
     const ctheta2A_rear_elbow_up_alike = folded ? 1.0 : t56;
-    const t230 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike;
-    const ctheta23A_rear_elbow_up_alike = t230 - s_relative_front_elbow_down_alike * stheta2A;
-    const t231 = t48 * (s_phi * ctheta23A_rear_elbow_up_alike);
-    const t232 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike;
-    const stheta23A_rear_elbow_up_alike = c_relative_front_elbow_down_alike * stheta2A + t232;
-    const t233 = t231 - t5 * (s_psi * stheta23A_rear_elbow_up_alike);
-    const t234 = d * t233;
-    const t235 = t48 * (s_phi * stheta23A_rear_elbow_up_alike);
-    const t236 = t5 * (s_psi * ctheta23A_rear_elbow_up_alike) + t235;
-    const t237 = d * t236;
-    const gap_rear_elbow_up_alike = t234 * t234 + t237 * t237;
-    const t238 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike;
-    const t239 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike;
-    const point_11_rear_elbow_up_alike = t239 + a3 * ctheta23A_rear_elbow_up_alike;
+    const t231 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike;
+    const ctheta23A_rear_elbow_up_alike = t231 - s_relative_front_elbow_down_alike * stheta2A;
+    const t232 = t48 * (s_phi * ctheta23A_rear_elbow_up_alike);
+    const t233 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike;
+    const stheta23A_rear_elbow_up_alike = c_relative_front_elbow_down_alike * stheta2A + t233;
+    const t234 = t232 - t5 * (s_psi * stheta23A_rear_elbow_up_alike);
+    const t235 = d * t234;
+    const t236 = t48 * (s_phi * stheta23A_rear_elbow_up_alike);
+    const t237 = t5 * (s_psi * ctheta23A_rear_elbow_up_alike) + t236;
+    const t238 = d * t237;
+    const gap_rear_elbow_up_alike = t235 * t235 + t238 * t238;
+    const t239 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike;
+    const t240 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike;
+    const point_11_rear_elbow_up_alike = t240 + a3 * ctheta23A_rear_elbow_up_alike;
     const point_21_rear_elbow_up_alike = t62 - L2 * ctheta23A_rear_elbow_up_alike + a3 *
         stheta23A_rear_elbow_up_alike;
-    const t240 = 2.0 * t234 * point_11_rear_elbow_up_alike + 2.0 * t237 *
+    const t241 = 2.0 * t235 * point_11_rear_elbow_up_alike + 2.0 * t238 *
         point_21_rear_elbow_up_alike;
-    const room_right_rear_elbow_up_alike = t238 + t240;
-    const t241 = room_right_rear_elbow_up_alike * 9.094947017729282e-13;
-    const t242 = Math.max(-t241, room_right_rear_elbow_up_alike);
-    const spent_right_rear_elbow_up_alike = t242 <= t65;
-    const t243 = t237 - point_21_rear_elbow_up_alike;
-    const t244 = t234 - point_11_rear_elbow_up_alike;
-    const t245 = ctheta2A_rear_elbow_up_alike * t243 - stheta2A * t244;
-    const t246 = t157 * t245;
-    const t247 = spent_right_rear_elbow_up_alike ? t155 * (size * Math.abs(-t246)) : 0.0;
-    const t248 = -(_runtime.FEASIBILITY * (t38 + t247)) <= room_right_rear_elbow_up_alike;
-    const room_left_rear_elbow_up_alike = t238 - t240;
-    const t249 = room_left_rear_elbow_up_alike * 9.094947017729282e-13;
-    const t250 = Math.max(-t249, room_left_rear_elbow_up_alike);
-    const spent_left_rear_elbow_up_alike = t250 <= t65;
-    const h_left_0_rear_elbow_up_alike = t237 + point_21_rear_elbow_up_alike;
-    const t251 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike;
-    const r_left_0_rear_elbow_up_alike = t234 + point_11_rear_elbow_up_alike;
-    const t252 = t251 - stheta2A * r_left_0_rear_elbow_up_alike;
-    const slope_left_rear_elbow_up_alike = t157 * t252;
-    const t253 = size * Math.abs(slope_left_rear_elbow_up_alike);
-    const t254 = spent_left_rear_elbow_up_alike ? t155 * t253 : 0.0;
-    const t255 = -(_runtime.FEASIBILITY * (t38 + t254)) <= room_left_rear_elbow_up_alike;
-    const t256 = room_right_rear_elbow_up_alike - Math.abs(room_right_rear_elbow_up_alike);
-    const turn_right_rear_elbow_up_alike = spent_right_rear_elbow_up_alike ? t246 * t256 / (2.0
-        * (t80 + t246 * t246)) : 0.0;
-    const t257 = room_left_rear_elbow_up_alike - Math.abs(room_left_rear_elbow_up_alike);
-    const t258 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike;
-    const t259 = slope_left_rear_elbow_up_alike * t257 / (2.0 * (t80 + t258));
+    const room_right_rear_elbow_up_alike = t239 + t241;
+    const t242 = room_right_rear_elbow_up_alike * 9.094947017729282e-13;
+    const t243 = Math.max(-t242, room_right_rear_elbow_up_alike);
+    const spent_right_rear_elbow_up_alike = t243 <= t65;
+    const t244 = t238 - point_21_rear_elbow_up_alike;
+    const t245 = t235 - point_11_rear_elbow_up_alike;
+    const t246 = ctheta2A_rear_elbow_up_alike * t244 - stheta2A * t245;
+    const t247 = t158 * t246;
+    const t248 = spent_right_rear_elbow_up_alike ? t156 * (size * Math.abs(-t247)) : 0.0;
+    const t249 = -(_runtime.FEASIBILITY * (t38 + t248)) <= room_right_rear_elbow_up_alike;
+    const room_left_rear_elbow_up_alike = t239 - t241;
+    const t250 = room_left_rear_elbow_up_alike * 9.094947017729282e-13;
+    const t251 = Math.max(-t250, room_left_rear_elbow_up_alike);
+    const spent_left_rear_elbow_up_alike = t251 <= t65;
+    const h_left_0_rear_elbow_up_alike = t238 + point_21_rear_elbow_up_alike;
+    const t252 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike;
+    const r_left_0_rear_elbow_up_alike = t235 + point_11_rear_elbow_up_alike;
+    const t253 = t252 - stheta2A * r_left_0_rear_elbow_up_alike;
+    const slope_left_rear_elbow_up_alike = t158 * t253;
+    const t254 = size * Math.abs(slope_left_rear_elbow_up_alike);
+    const t255 = spent_left_rear_elbow_up_alike ? t156 * t254 : 0.0;
+    const t256 = -(_runtime.FEASIBILITY * (t38 + t255)) <= room_left_rear_elbow_up_alike;
+    const t257 = room_right_rear_elbow_up_alike - Math.abs(room_right_rear_elbow_up_alike);
+    const turn_right_rear_elbow_up_alike = spent_right_rear_elbow_up_alike ? t247 * t257 / (2.0
+        * (t80 + t247 * t247)) : 0.0;
+    const t258 = room_left_rear_elbow_up_alike - Math.abs(room_left_rear_elbow_up_alike);
+    const t259 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike;
+    const t260 = slope_left_rear_elbow_up_alike * t258 / (2.0 * (t80 + t259));
     const turn_rear_elbow_up_alike = turn_right_rear_elbow_up_alike +
-        (spent_left_rear_elbow_up_alike ? -t259 : 0.0);
-    const t260 = t246 * turn_rear_elbow_up_alike;
-    const t261 = room_right_rear_elbow_up_alike - t260;
-    const t262 = drawn_front_elbow_down_alike * turn_rear_elbow_up_alike;
-    const t263 = ctheta2A_rear_elbow_up_alike * t262;
-    const t264 = t243 + t263 + t244 * turn_rear_elbow_up_alike;
-    const t265 = stheta2A * t262;
-    const t266 = t244 - t243 * turn_rear_elbow_up_alike - t265;
-    const t267 = t264 * t264 + t266 * t266;
-    const t268 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike;
-    const t269 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike;
-    const t270 = t79 * t267 < t268 ? t94 - t267 : t240 - t260 - t269;
-    const t271 = t37 && t248 && t255 && (t78 <= t261) && (t78 <= -t270);
-    const t272 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike;
-    const t273 = room_left_rear_elbow_up_alike + t272;
-    const t274 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike;
-    const h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t263 + t274;
-    const t275 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike;
-    const t276 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike;
-    const r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike + t265 - t276;
-    const t277 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike;
-    const t278 = t275 + t277;
-    const t279 = t79 * t278 < t268 ? t278 - t94 : t240 + t269 - t272;
-    const unreachable_3 = !(t271 && (t78 <= t273) && (t78 <= t279));
-    const t280 = _runtime.poison(invalid || unreachable_3);
-    const t281 = t229 + t280;
-    const folded_right_rear_elbow_up_alike = Math.abs(-t264) + Math.abs(-t266) <= t104;
-    const t282 = Math.atan2(stheta2A, ctheta2A_rear_elbow_up_alike);
-    const M_right_rear_elbow_up_alike = Math.max(-t270, t106);
-    const N_right_rear_elbow_up_alike = Math.max(t261, t106);
+        (spent_left_rear_elbow_up_alike ? -t260 : 0.0);
+    const t261 = t247 * turn_rear_elbow_up_alike;
+    const t262 = room_right_rear_elbow_up_alike - t261;
+    const t263 = drawn_front_elbow_down_alike * turn_rear_elbow_up_alike;
+    const t264 = ctheta2A_rear_elbow_up_alike * t263;
+    const t265 = t244 + t264 + t245 * turn_rear_elbow_up_alike;
+    const t266 = stheta2A * t263;
+    const t267 = t245 - t244 * turn_rear_elbow_up_alike - t266;
+    const t268 = t265 * t265 + t267 * t267;
+    const t269 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike;
+    const t270 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike;
+    const t271 = t79 * t268 < t269 ? t94 - t268 : t241 - t261 - t270;
+    const t272 = t37 && t249 && t256 && (t78 <= t262) && (t78 <= -t271);
+    const t273 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike;
+    const t274 = room_left_rear_elbow_up_alike + t273;
+    const t275 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike;
+    const h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t264 + t275;
+    const t276 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike;
+    const t277 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike;
+    const r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike + t266 - t277;
+    const t278 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike;
+    const t279 = t276 + t278;
+    const t280 = t79 * t279 < t269 ? t279 - t94 : t241 + t270 - t273;
+    const unreachable_3 = !(t272 && (t78 <= t274) && (t78 <= t280));
+    const t281 = invalid || unreachable_3 ? NaN : 0;
+    const t282 = t230 + t281;
+    const folded_right_rear_elbow_up_alike = Math.abs(-t265) + Math.abs(-t267) <= t104;
+    const t283 = Math.atan2(stheta2A, ctheta2A_rear_elbow_up_alike);
+    const M_right_rear_elbow_up_alike = Math.max(-t271, t106);
+    const N_right_rear_elbow_up_alike = Math.max(t262, t106);
     const whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike +
         N_right_rear_elbow_up_alike;
-    const t283 = 1.0 / whole_right_rear_elbow_up_alike;
-    const t284 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike;
-    const t285 = Math.sqrt(t284);
-    const t286 = fore_arm * (short_right ? 0.0 : t283 * (t200 * t285));
-    const t287 = t93 + t111 * M_right_rear_elbow_up_alike * t283;
-    const ahead_1_right_rear_elbow_up_alike = short_right ? size : t287;
-    const up_right_rear_elbow_up_alike = t266 * t286 - t264 * ahead_1_right_rear_elbow_up_alike;
-    const t288 = t266 * ahead_1_right_rear_elbow_up_alike + t264 * t286;
-    const t289 = Math.atan2(up_right_rear_elbow_up_alike, -t288);
-    const t290 = folded_right_rear_elbow_up_alike ? t282 : t289;
-    const t291 = _runtime.wrapCut(t290) + t280;
-    const t292 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike;
-    const t293 = sigma_right_front_elbow_down_alike * Math.atan2(2.0 * t285, t292);
-    const t294 = _runtime.wrap(t115 + (short_right ? 0.0 : t293));
-    const t295 = t294 + t280;
-    const t296 = Math.abs(h_left_rear_elbow_up_alike) + Math.abs(r_left_rear_elbow_up_alike);
-    const folded_left_rear_elbow_up_alike = t296 <= t104;
-    const M_left_rear_elbow_up_alike = Math.max(t279, 0.0);
-    const N_left_rear_elbow_up_alike = Math.max(t273, 0.0);
+    const t284 = 1.0 / whole_right_rear_elbow_up_alike;
+    const t285 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike;
+    const t286 = Math.sqrt(t285);
+    const t287 = fore_arm * (short_right ? 0.0 : t284 * (t201 * t286));
+    const t288 = t93 + t111 * M_right_rear_elbow_up_alike * t284;
+    const ahead_1_right_rear_elbow_up_alike = short_right ? size : t288;
+    const up_right_rear_elbow_up_alike = t267 * t287 - t265 * ahead_1_right_rear_elbow_up_alike;
+    const t289 = t267 * ahead_1_right_rear_elbow_up_alike + t265 * t287;
+    const t290 = Math.atan2(up_right_rear_elbow_up_alike, -t289);
+    const t291 = folded_right_rear_elbow_up_alike ? t283 : t290;
+    const t292 = (t291 <= -Math.PI ? Math.PI : t291) + t281;
+    const t293 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike;
+    const t294 = sigma_right_front_elbow_down_alike * Math.atan2(2.0 * t286, t293);
+    const t295 = _runtime.wrap(t116 + (short_right ? 0.0 : t294));
+    const t296 = t295 + t281;
+    const t297 = Math.abs(h_left_rear_elbow_up_alike) + Math.abs(r_left_rear_elbow_up_alike);
+    const folded_left_rear_elbow_up_alike = t297 <= t104;
+    const M_left_rear_elbow_up_alike = Math.max(t280, 0.0);
+    const N_left_rear_elbow_up_alike = Math.max(t274, 0.0);
     const whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike +
         N_left_rear_elbow_up_alike;
-    const t297 = 1.0 / whole_left_rear_elbow_up_alike;
-    const t298 = t93 + t111 * M_left_rear_elbow_up_alike * t297;
-    const ahead_1_left_rear_elbow_up_alike = short_right ? size : t298;
-    const t299 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike;
-    const t300 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike;
-    const t301 = Math.sqrt(t300);
-    const t302 = fore_arm * (short_right ? 0.0 : t297 * (t200 * t301));
-    const t303 = r_left_rear_elbow_up_alike * t302;
-    const t304 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike;
-    const t305 = h_left_rear_elbow_up_alike * t302;
-    const t306 = folded_left_rear_elbow_up_alike ? t282 : Math.atan2(t299 - t303, t304 + t305);
-    const t307 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike;
-    const t308 = sigma_right_front_elbow_down_alike * Math.atan2(2.0 * t301, t307);
-    const t309 = short_right ? 0.0 : t308;
-    const t310 = t129 + t280;
-    const t311 = folded_left_rear_elbow_up_alike ? t282 : Math.atan2(t299 + t303, t304 - t305);
-    const ctheta2A_rear_elbow_down_alike = folded ? 1.0 : -t139;
+    const t298 = 1.0 / whole_left_rear_elbow_up_alike;
+    const t299 = t93 + t111 * M_left_rear_elbow_up_alike * t298;
+    const ahead_1_left_rear_elbow_up_alike = short_right ? size : t299;
+    const t300 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike;
+    const t301 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike;
+    const t302 = Math.sqrt(t301);
+    const t303 = fore_arm * (short_right ? 0.0 : t298 * (t201 * t302));
+    const t304 = r_left_rear_elbow_up_alike * t303;
+    const t305 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike;
+    const t306 = h_left_rear_elbow_up_alike * t303;
+    const t307 = folded_left_rear_elbow_up_alike ? t283 : Math.atan2(t300 - t304, t305 + t306);
+    const t308 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike;
+    const t309 = sigma_right_front_elbow_down_alike * Math.atan2(2.0 * t302, t308);
+    const t310 = short_right ? 0.0 : t309;
+    const t311 = t130 + t281;
+    const t312 = folded_left_rear_elbow_up_alike ? t283 : Math.atan2(t300 + t304, t305 - t306);
+    const ctheta2A_rear_elbow_down_alike = folded ? 1.0 : -t140;
     const ctheta23A_rear_elbow_down_alike = c_relative * ctheta2A_rear_elbow_down_alike +
-        s_relative * t141;
-    const t312 = t48 * (s_phi * ctheta23A_rear_elbow_down_alike);
-    const t313 = c_relative * t141 - s_relative * ctheta2A_rear_elbow_down_alike;
-    const t314 = d * (t312 + t5 * (s_psi * t313));
-    const t315 = t5 * (s_psi * ctheta23A_rear_elbow_down_alike);
-    const t316 = d * (t315 - t48 * (s_phi * t313));
-    const gap_rear_elbow_down_alike = t314 * t314 + t316 * t316;
-    const t317 = N_mid - gap_rear_elbow_down_alike;
-    const t318 = L1 * ctheta2A_rear_elbow_down_alike - L2 * t313;
-    const point_11_rear_elbow_down_alike = t318 + a3 * ctheta23A_rear_elbow_down_alike;
-    const t319 = t150 + L2 * ctheta23A_rear_elbow_down_alike + a3 * t313;
-    const t320 = 2.0 * t314 * point_11_rear_elbow_down_alike - 2.0 * t316 * t319;
-    const room_right_rear_elbow_down_alike = t317 + t320;
-    const t321 = room_right_rear_elbow_down_alike * 9.094947017729282e-13;
-    const t322 = Math.max(-t321, room_right_rear_elbow_down_alike);
-    const spent_right_rear_elbow_down_alike = t322 <= t65;
-    const t323 = t316 + t319;
-    const t324 = t314 - point_11_rear_elbow_down_alike;
-    const t325 = ctheta2A_rear_elbow_down_alike * t323 + t141 * t324;
-    const t326 = t69 * t325;
-    const t327 = spent_right_rear_elbow_down_alike ? t68 * (size * Math.abs(-t326)) : 0.0;
-    const t328 = -(_runtime.FEASIBILITY * (t38 + t327)) <= room_right_rear_elbow_down_alike;
-    const room_left_rear_elbow_down_alike = t317 - t320;
-    const t329 = room_left_rear_elbow_down_alike * 9.094947017729282e-13;
-    const t330 = Math.max(-t329, room_left_rear_elbow_down_alike);
-    const spent_left_rear_elbow_down_alike = t330 <= t65;
-    const h_left_0_rear_elbow_down_alike = t316 - t319;
-    const t331 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike;
-    const r_left_0_rear_elbow_down_alike = t314 + point_11_rear_elbow_down_alike;
-    const slope_left_rear_elbow_down_alike = t69 * (t331 + t141 *
+        s_relative * t142;
+    const t313 = t48 * (s_phi * ctheta23A_rear_elbow_down_alike);
+    const t314 = c_relative * t142 - s_relative * ctheta2A_rear_elbow_down_alike;
+    const t315 = d * (t313 + t5 * (s_psi * t314));
+    const t316 = t5 * (s_psi * ctheta23A_rear_elbow_down_alike);
+    const t317 = d * (t316 - t48 * (s_phi * t314));
+    const gap_rear_elbow_down_alike = t315 * t315 + t317 * t317;
+    const t318 = N_mid - gap_rear_elbow_down_alike;
+    const t319 = L1 * ctheta2A_rear_elbow_down_alike - L2 * t314;
+    const point_11_rear_elbow_down_alike = t319 + a3 * ctheta23A_rear_elbow_down_alike;
+    const t320 = t151 + L2 * ctheta23A_rear_elbow_down_alike + a3 * t314;
+    const t321 = 2.0 * t315 * point_11_rear_elbow_down_alike - 2.0 * t317 * t320;
+    const room_right_rear_elbow_down_alike = t318 + t321;
+    const t322 = room_right_rear_elbow_down_alike * 9.094947017729282e-13;
+    const t323 = Math.max(-t322, room_right_rear_elbow_down_alike);
+    const spent_right_rear_elbow_down_alike = t323 <= t65;
+    const t324 = t317 + t320;
+    const t325 = t315 - point_11_rear_elbow_down_alike;
+    const t326 = ctheta2A_rear_elbow_down_alike * t324 + t142 * t325;
+    const t327 = t69 * t326;
+    const t328 = spent_right_rear_elbow_down_alike ? t68 * (size * Math.abs(-t327)) : 0.0;
+    const t329 = -(_runtime.FEASIBILITY * (t38 + t328)) <= room_right_rear_elbow_down_alike;
+    const room_left_rear_elbow_down_alike = t318 - t321;
+    const t330 = room_left_rear_elbow_down_alike * 9.094947017729282e-13;
+    const t331 = Math.max(-t330, room_left_rear_elbow_down_alike);
+    const spent_left_rear_elbow_down_alike = t331 <= t65;
+    const h_left_0_rear_elbow_down_alike = t317 - t320;
+    const t332 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike;
+    const r_left_0_rear_elbow_down_alike = t315 + point_11_rear_elbow_down_alike;
+    const slope_left_rear_elbow_down_alike = t69 * (t332 + t142 *
         r_left_0_rear_elbow_down_alike);
-    const t332 = size * Math.abs(slope_left_rear_elbow_down_alike);
-    const t333 = spent_left_rear_elbow_down_alike ? t68 * t332 : 0.0;
-    const t334 = -(_runtime.FEASIBILITY * (t38 + t333)) <= room_left_rear_elbow_down_alike;
-    const t335 = room_right_rear_elbow_down_alike - Math.abs(room_right_rear_elbow_down_alike);
-    const turn_right_rear_elbow_down_alike = spent_right_rear_elbow_down_alike ? t326 * t335 /
-        (2.0 * (t80 + t326 * t326)) : 0.0;
-    const t336 = room_left_rear_elbow_down_alike - Math.abs(room_left_rear_elbow_down_alike);
-    const t337 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike;
-    const t338 = slope_left_rear_elbow_down_alike * t336 / (2.0 * (t80 + t337));
-    const turn_left_rear_elbow_down_alike = spent_left_rear_elbow_down_alike ? -t338 : 0.0;
+    const t333 = size * Math.abs(slope_left_rear_elbow_down_alike);
+    const t334 = spent_left_rear_elbow_down_alike ? t68 * t333 : 0.0;
+    const t335 = -(_runtime.FEASIBILITY * (t38 + t334)) <= room_left_rear_elbow_down_alike;
+    const t336 = room_right_rear_elbow_down_alike - Math.abs(room_right_rear_elbow_down_alike);
+    const turn_right_rear_elbow_down_alike = spent_right_rear_elbow_down_alike ? t327 * t336 /
+        (2.0 * (t80 + t327 * t327)) : 0.0;
+    const t337 = room_left_rear_elbow_down_alike - Math.abs(room_left_rear_elbow_down_alike);
+    const t338 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike;
+    const t339 = slope_left_rear_elbow_down_alike * t337 / (2.0 * (t80 + t338));
+    const turn_left_rear_elbow_down_alike = spent_left_rear_elbow_down_alike ? -t339 : 0.0;
     const turn_rear_elbow_down_alike = turn_right_rear_elbow_down_alike +
         turn_left_rear_elbow_down_alike;
-    const t339 = t326 * turn_rear_elbow_down_alike;
-    const t340 = room_right_rear_elbow_down_alike - t339;
-    const t341 = drawn * turn_rear_elbow_down_alike;
-    const t342 = ctheta2A_rear_elbow_down_alike * t341;
-    const t343 = t323 + t342 + t324 * turn_rear_elbow_down_alike;
-    const t344 = t141 * t341;
-    const t345 = t324 - t323 * turn_rear_elbow_down_alike + t344;
-    const t346 = t343 * t343 + t345 * t345;
-    const t347 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike;
-    const t348 = M_mid + gap_rear_elbow_down_alike;
-    const t349 = t79 * t346 < t347 ? t94 - t346 : t320 - t339 - t348;
-    const t350 = t37 && t328 && t334 && (t78 <= t340) && (t78 <= -t349);
-    const t351 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike;
-    const t352 = room_left_rear_elbow_down_alike + t351;
-    const t353 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike;
-    const h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t342 + t353;
-    const t354 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike;
-    const t355 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike;
-    const r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike - t344 - t355;
-    const t356 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike;
-    const t357 = t354 + t356;
-    const t358 = t79 * t357 < t347 ? t357 - t94 : t320 + t348 - t351;
-    const unreachable_4 = !(t350 && (t78 <= t352) && (t78 <= t358));
-    const t359 = _runtime.poison(invalid || unreachable_4);
-    const t360 = t229 + t359;
-    const folded_right_rear_elbow_down_alike = Math.abs(-t343) + Math.abs(-t345) <= t104;
-    const t361 = Math.atan2(-t141, ctheta2A_rear_elbow_down_alike);
-    const M_right_rear_elbow_down_alike = Math.max(-t349, t106);
-    const N_right_rear_elbow_down_alike = Math.max(t340, t106);
+    const t340 = t327 * turn_rear_elbow_down_alike;
+    const t341 = room_right_rear_elbow_down_alike - t340;
+    const t342 = drawn * turn_rear_elbow_down_alike;
+    const t343 = ctheta2A_rear_elbow_down_alike * t342;
+    const t344 = t324 + t343 + t325 * turn_rear_elbow_down_alike;
+    const t345 = t142 * t342;
+    const t346 = t325 - t324 * turn_rear_elbow_down_alike + t345;
+    const t347 = t344 * t344 + t346 * t346;
+    const t348 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike;
+    const t349 = M_mid + gap_rear_elbow_down_alike;
+    const t350 = t79 * t347 < t348 ? t94 - t347 : t321 - t340 - t349;
+    const t351 = t37 && t329 && t335 && (t78 <= t341) && (t78 <= -t350);
+    const t352 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike;
+    const t353 = room_left_rear_elbow_down_alike + t352;
+    const t354 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike;
+    const h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t343 + t354;
+    const t355 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike;
+    const t356 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike;
+    const r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike - t345 - t356;
+    const t357 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike;
+    const t358 = t355 + t357;
+    const t359 = t79 * t358 < t348 ? t358 - t94 : t321 + t349 - t352;
+    const unreachable_4 = !(t351 && (t78 <= t353) && (t78 <= t359));
+    const t360 = invalid || unreachable_4 ? NaN : 0;
+    const t361 = t230 + t360;
+    const folded_right_rear_elbow_down_alike = Math.abs(-t344) + Math.abs(-t346) <= t104;
+    const t362 = Math.atan2(-t142, ctheta2A_rear_elbow_down_alike);
+    const M_right_rear_elbow_down_alike = Math.max(-t350, t106);
+    const N_right_rear_elbow_down_alike = Math.max(t341, t106);
     const whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike +
         N_right_rear_elbow_down_alike;
-    const t362 = 1.0 / whole_right_rear_elbow_down_alike;
-    const t363 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike;
-    const t364 = Math.sqrt(t363);
-    const t365 = fore_arm * (short_right ? 0.0 : t362 * (t108 * t364));
-    const t366 = t93 + t111 * M_right_rear_elbow_down_alike * t362;
-    const ahead_1_right_rear_elbow_down_alike = short_right ? size : t366;
-    const up_right_rear_elbow_down_alike = t345 * t365 - t343 *
+    const t363 = 1.0 / whole_right_rear_elbow_down_alike;
+    const t364 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike;
+    const t365 = Math.sqrt(t364);
+    const t366 = fore_arm * (short_right ? 0.0 : t363 * (t108 * t365));
+    const t367 = t93 + t111 * M_right_rear_elbow_down_alike * t363;
+    const ahead_1_right_rear_elbow_down_alike = short_right ? size : t367;
+    const up_right_rear_elbow_down_alike = t346 * t366 - t344 *
         ahead_1_right_rear_elbow_down_alike;
-    const t367 = t345 * ahead_1_right_rear_elbow_down_alike + t343 * t365;
-    const t368 = Math.atan2(up_right_rear_elbow_down_alike, -t367);
-    const t369 = folded_right_rear_elbow_down_alike ? t361 : t368;
-    const t370 = _runtime.wrapCut(t369) + t359;
-    const t371 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike;
-    const t372 = short_right ? 0.0 : sigma_right * Math.atan2(2.0 * t364, t371);
-    const t373 = _runtime.wrap(t115 + t372) + t359;
-    const t374 = Math.abs(h_left_rear_elbow_down_alike) +
+    const t368 = t346 * ahead_1_right_rear_elbow_down_alike + t344 * t366;
+    const t369 = Math.atan2(up_right_rear_elbow_down_alike, -t368);
+    const t370 = folded_right_rear_elbow_down_alike ? t362 : t369;
+    const t371 = (t370 <= -Math.PI ? Math.PI : t370) + t360;
+    const t372 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike;
+    const t373 = short_right ? 0.0 : sigma_right * Math.atan2(2.0 * t365, t372);
+    const t374 = _runtime.wrap(t116 + t373) + t360;
+    const t375 = Math.abs(h_left_rear_elbow_down_alike) +
         Math.abs(r_left_rear_elbow_down_alike);
-    const folded_left_rear_elbow_down_alike = t374 <= t104;
-    const M_left_rear_elbow_down_alike = Math.max(t358, 0.0);
-    const N_left_rear_elbow_down_alike = Math.max(t352, 0.0);
+    const folded_left_rear_elbow_down_alike = t375 <= t104;
+    const M_left_rear_elbow_down_alike = Math.max(t359, 0.0);
+    const N_left_rear_elbow_down_alike = Math.max(t353, 0.0);
     const whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike +
         N_left_rear_elbow_down_alike;
-    const t375 = 1.0 / whole_left_rear_elbow_down_alike;
-    const t376 = t93 + t111 * M_left_rear_elbow_down_alike * t375;
-    const ahead_1_left_rear_elbow_down_alike = short_right ? size : t376;
-    const t377 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike;
-    const t378 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike;
-    const t379 = Math.sqrt(t378);
-    const t380 = fore_arm * (short_right ? 0.0 : t375 * (t108 * t379));
-    const t381 = r_left_rear_elbow_down_alike * t380;
-    const t382 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike;
-    const t383 = h_left_rear_elbow_down_alike * t380;
-    const t384 = folded_left_rear_elbow_down_alike ? t361 : Math.atan2(t377 - t381, t382 +
-        t383);
-    const t385 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike;
-    const t386 = short_right ? 0.0 : sigma_right * Math.atan2(2.0 * t379, t385);
-    const t387 = t129 + t359;
-    const t388 = folded_left_rear_elbow_down_alike ? t361 : Math.atan2(t377 + t381, t382 -
-        t383);
-    const t389 = nowhere || folded || short;
+    const t376 = 1.0 / whole_left_rear_elbow_down_alike;
+    const t377 = t93 + t111 * M_left_rear_elbow_down_alike * t376;
+    const ahead_1_left_rear_elbow_down_alike = short_right ? size : t377;
+    const t378 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike;
+    const t379 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike;
+    const t380 = Math.sqrt(t379);
+    const t381 = fore_arm * (short_right ? 0.0 : t376 * (t108 * t380));
+    const t382 = r_left_rear_elbow_down_alike * t381;
+    const t383 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike;
+    const t384 = h_left_rear_elbow_down_alike * t381;
+    const t385 = folded_left_rear_elbow_down_alike ? t362 : Math.atan2(t378 - t382, t383 +
+        t384);
+    const t386 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike;
+    const t387 = short_right ? 0.0 : sigma_right * Math.atan2(2.0 * t380, t386);
+    const t388 = t130 + t360;
+    const t389 = folded_left_rear_elbow_down_alike ? t362 : Math.atan2(t378 + t382, t383 -
+        t384);
+    const t390 = nowhere || folded || short;
     const square_mid = t94 + M_mid;
-    const t390 = M_mid * square_mid;
-    const t391 = _runtime.DETERMINED * _runtime.DETERMINED;
-    const t392 = t79 * t391;
-    const t393 = square_mid <= t392;
-    const t394 = wrist <= al * _runtime.DETERMINED;
-    const t395 = t389 || (t390 <= t391 * (t79 * gap)) || t393 || t394;
-    const t396 = t395 || folded_right || short_right || folded_left;
-    const t397 = _runtime.status(invalid, unreachable, t396);
+    const t391 = M_mid * square_mid;
+    const t392 = _runtime.DETERMINED * _runtime.DETERMINED;
+    const t393 = t79 * t392;
+    const t394 = square_mid <= t393;
+    const t395 = wrist <= al * _runtime.DETERMINED;
+    const t396 = t390 || (t391 <= t392 * (t79 * gap)) || t394 || t395;
+    const t397 = t396 || folded_right || short_right || folded_left;
+    const t398 = invalid ? 3 : unreachable ? 1 : t397 ? 2 : 0;
     const square_mid_front_elbow_down_alike = t94 + M_mid_front_elbow_down_alike;
-    const t398 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike;
-    const t399 = t398 <= t391 * (t79 * gap_front_elbow_down_alike);
-    const t400 = square_mid_front_elbow_down_alike <= t392;
-    const t401 = t389 || t399 || t400 || t394 || folded_right_front_elbow_down_alike;
-    const t402 = t401 || short_right || folded_left_front_elbow_down_alike;
-    const t403 = _runtime.status(invalid, unreachable_2, t402);
-    const t404 = t398 <= t391 * (t79 * gap_rear_elbow_up_alike);
-    const t405 = t389 || t404 || t400 || t394 || folded_right_rear_elbow_up_alike;
-    const t406 = t405 || short_right || folded_left_rear_elbow_up_alike;
-    const t407 = _runtime.status(invalid, unreachable_3, t406);
-    const t408 = t390 <= t391 * (t79 * gap_rear_elbow_down_alike);
-    const t409 = t389 || t408 || t393 || t394 || folded_right_rear_elbow_down_alike;
-    const t410 = t409 || short_right || folded_left_rear_elbow_down_alike;
-    const t411 = _runtime.status(invalid, unreachable_4, t410);
-    return [
-        t103,
-        t113,
-        t118,
-        _runtime.wrapCut(t126) + t102,
-        _runtime.wrap(t115 + t128) + t102,
-        t130,
-        t103,
-        t113,
-        t118,
-        _runtime.wrapCut(t131) + t102,
-        _runtime.wrap(t115 - t128) + t102,
-        t130,
-        t197,
-        t208,
-        t212,
-        _runtime.wrapCut(t223) + t196,
-        _runtime.wrap(t115 + t226) + t196,
-        t227,
-        t197,
-        t208,
-        t212,
-        _runtime.wrapCut(t228) + t196,
-        _runtime.wrap(t115 - t226) + t196,
-        t227,
-        t281,
-        t291,
-        t295,
-        _runtime.wrapCut(t306) + t280,
-        _runtime.wrap(t115 + t309) + t280,
-        t310,
-        t281,
-        t291,
-        t295,
-        _runtime.wrapCut(t311) + t280,
-        _runtime.wrap(t115 - t309) + t280,
-        t310,
-        t360,
-        t370,
-        t373,
-        _runtime.wrapCut(t384) + t359,
-        _runtime.wrap(t115 + t386) + t359,
-        t387,
-        t360,
-        t370,
-        t373,
-        _runtime.wrapCut(t388) + t359,
-        _runtime.wrap(t115 - t386) + t359,
-        t387,
-        t397,
-        t397,
-        t403,
-        t403,
-        t407,
-        t407,
-        t411,
-        t411,
-    ];
+    const t399 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike;
+    const t400 = t399 <= t392 * (t79 * gap_front_elbow_down_alike);
+    const t401 = square_mid_front_elbow_down_alike <= t393;
+    const t402 = t390 || t400 || t401 || t395 || folded_right_front_elbow_down_alike;
+    const t403 = t402 || short_right || folded_left_front_elbow_down_alike;
+    const t404 = invalid ? 3 : unreachable_2 ? 1 : t403 ? 2 : 0;
+    const t405 = t399 <= t392 * (t79 * gap_rear_elbow_up_alike);
+    const t406 = t390 || t405 || t401 || t395 || folded_right_rear_elbow_up_alike;
+    const t407 = t406 || short_right || folded_left_rear_elbow_up_alike;
+    const t408 = invalid ? 3 : unreachable_3 ? 1 : t407 ? 2 : 0;
+    const t409 = t391 <= t392 * (t79 * gap_rear_elbow_down_alike);
+    const t410 = t390 || t409 || t394 || t395 || folded_right_rear_elbow_down_alike;
+    const t411 = t410 || short_right || folded_left_rear_elbow_down_alike;
+    const t412 = invalid ? 3 : unreachable_4 ? 1 : t411 ? 2 : 0;
+    o[0] = t103;
+    o[1] = t114;
+    o[2] = t119;
+    o[3] = (t127 <= -Math.PI ? Math.PI : t127) + t102;
+    o[4] = _runtime.wrap(t116 + t129) + t102;
+    o[5] = t131;
+    o[6] = t103;
+    o[7] = t114;
+    o[8] = t119;
+    o[9] = (t132 <= -Math.PI ? Math.PI : t132) + t102;
+    o[10] = _runtime.wrap(t116 - t129) + t102;
+    o[11] = t131;
+    o[12] = t198;
+    o[13] = t209;
+    o[14] = t213;
+    o[15] = (t224 <= -Math.PI ? Math.PI : t224) + t197;
+    o[16] = _runtime.wrap(t116 + t227) + t197;
+    o[17] = t228;
+    o[18] = t198;
+    o[19] = t209;
+    o[20] = t213;
+    o[21] = (t229 <= -Math.PI ? Math.PI : t229) + t197;
+    o[22] = _runtime.wrap(t116 - t227) + t197;
+    o[23] = t228;
+    o[24] = t282;
+    o[25] = t292;
+    o[26] = t296;
+    o[27] = (t307 <= -Math.PI ? Math.PI : t307) + t281;
+    o[28] = _runtime.wrap(t116 + t310) + t281;
+    o[29] = t311;
+    o[30] = t282;
+    o[31] = t292;
+    o[32] = t296;
+    o[33] = (t312 <= -Math.PI ? Math.PI : t312) + t281;
+    o[34] = _runtime.wrap(t116 - t310) + t281;
+    o[35] = t311;
+    o[36] = t361;
+    o[37] = t371;
+    o[38] = t374;
+    o[39] = (t385 <= -Math.PI ? Math.PI : t385) + t360;
+    o[40] = _runtime.wrap(t116 + t387) + t360;
+    o[41] = t388;
+    o[42] = t361;
+    o[43] = t371;
+    o[44] = t374;
+    o[45] = (t389 <= -Math.PI ? Math.PI : t389) + t360;
+    o[46] = _runtime.wrap(t116 - t387) + t360;
+    o[47] = t388;
+    o[48] = t398;
+    o[49] = t398;
+    o[50] = t404;
+    o[51] = t404;
+    o[52] = t408;
+    o[53] = t408;
+    o[54] = t412;
+    o[55] = t412;
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik_common(v) {
+/** @type {_runtime.Compute} */
+function _ik_common(v, o) {
     const x = v[0];
     const y = v[1];
     const z = v[2];
@@ -2357,20 +2309,20 @@ function _ik_common(v) {
     const t78 = h_left_0 * h_left_0 + r_left_0 * r_left_0;
     const t79 = -(t68 * t78 < t72 ? t74 - t78 : twice - t75);
     const unreachable = !(t77 && (t38 <= t79));
-    const t80 = _runtime.poison(invalid || unreachable);
+    const t80 = invalid || unreachable ? NaN : 0;
     const t81 = t14 + t80;
     const t82 = _runtime.VANISHING * (_runtime.VANISHING * (play_right * 16.0));
     const M_right = Math.max(t76, t82);
     const N_right = Math.max(room_right, t82);
     const t83 = 1.0 / (M_right + N_right);
-    const sigma_right = _runtime.sign(bent_mid);
+    const sigma_right = bent_mid < 0 ? -1 : 1;
     const t84 = 2.0 * sigma_right;
     const t85 = Math.sqrt(M_right * N_right);
     const t86 = fore_arm * (t83 * (t84 * t85));
     const t87 = 2.0 * fore_arm;
     const ahead_1_right = t73 + t87 * M_right * t83;
     const t88 = Math.atan2(t70 * t86 - t69 * ahead_1_right, -(t70 * ahead_1_right + t69 * t86));
-    const t89 = _runtime.wrapCut(t88) + t80;
+    const t89 = (t88 <= -Math.PI ? Math.PI : t88) + t80;
     const t90 = Math.atan2(L2, a3);
     const t91 = sigma_right * Math.atan2(2.0 * t85, M_right - N_right);
     const t92 = _runtime.wrap(t90 + t91) + t80;
@@ -2384,11 +2336,11 @@ function _ik_common(v) {
     const t97 = r_left_0 * t96;
     const t98 = r_left_0 * ahead_1_left;
     const t99 = h_left_0 * t96;
-    const t100 = _runtime.wrapCut(Math.atan2(t94 - t97, t98 + t99));
+    const t100 = Math.atan2(t94 - t97, t98 + t99);
     const t101 = sigma_right * Math.atan2(2.0 * t95, M_left - N_left);
     const t102 = _runtime.wrap(principal_pitch);
     const t103 = t102 + t80;
-    const t104 = _runtime.wrapCut(Math.atan2(t94 + t97, t98 - t99));
+    const t104 = Math.atan2(t94 + t97, t98 - t99);
     const t105 = t42 - t43;
     const t106 = t45 + t46;
     const straight_mid_front_elbow_down_alike = -(L2 * t105 + a3 * t106);
@@ -2441,7 +2393,7 @@ function _ik_common(v) {
     const t136 = t134 * t134 + t135 * t135;
     const t137 = t68 * t136 < t129 ? t74 - t136 : twice_front_elbow_down_alike - t131;
     const unreachable_2 = !(t133 && (t38 <= -t137));
-    const t138 = _runtime.poison(invalid || unreachable_2);
+    const t138 = invalid || unreachable_2 ? NaN : 0;
     const t139 = t14 + t138;
     const M_right_front_elbow_down_alike = Math.max(t132, t82);
     const N_right_front_elbow_down_alike = Math.max(room_right_front_elbow_down_alike, t82);
@@ -2451,7 +2403,7 @@ function _ik_common(v) {
     const ahead_1_right_front_elbow_down_alike = t73 + t87 * M_right_front_elbow_down_alike *
         t140;
     const t141 = h_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike;
-    const sigma_right_front_elbow_down_alike = _runtime.sign(bent_mid_front_elbow_down_alike);
+    const sigma_right_front_elbow_down_alike = bent_mid_front_elbow_down_alike < 0 ? -1 : 1;
     const t142 = 2.0 * sigma_right_front_elbow_down_alike;
     const t143 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike;
     const t144 = Math.sqrt(t143);
@@ -2460,7 +2412,7 @@ function _ik_common(v) {
     const t146 = r_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike;
     const out_right_front_elbow_down_alike = t146 + h_right_0_front_elbow_down_alike * t145;
     const t147 = Math.atan2(up_right_front_elbow_down_alike, out_right_front_elbow_down_alike);
-    const t148 = _runtime.wrapCut(t147) + t138;
+    const t148 = (t147 <= -Math.PI ? Math.PI : t147) + t138;
     const t149 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike;
     const t150 = sigma_right_front_elbow_down_alike * Math.atan2(2.0 * t144, t149);
     const t151 = _runtime.wrap(t90 + t150) + t138;
@@ -2478,11 +2430,11 @@ function _ik_common(v) {
     const t157 = t134 * ahead_1_left_front_elbow_down_alike;
     const t158 = t135 * ahead_1_left_front_elbow_down_alike;
     const t159 = t134 * t155;
-    const t160 = _runtime.wrapCut(Math.atan2(t156 - t157, -(t158 + t159)));
+    const t160 = Math.atan2(t156 - t157, -(t158 + t159));
     const t161 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike;
     const t162 = sigma_right_front_elbow_down_alike * Math.atan2(2.0 * t154, t161);
     const t163 = t102 + t138;
-    const t164 = _runtime.wrapCut(Math.atan2(-(t157 + t156), t159 - t158));
+    const t164 = Math.atan2(-(t157 + t156), t159 - t158);
     const t165 = _runtime.wrap(-(t13 + t12));
     const t166 = t106 * t57 - t105 * stheta2A;
     const t167 = t106 * stheta2A + t105 * t57;
@@ -2512,7 +2464,7 @@ function _ik_common(v) {
     const t182 = t180 * t180 + t181 * t181;
     const t183 = t68 * t182 < t176 ? t74 - t182 : twice_rear_elbow_up_alike - t177;
     const unreachable_3 = !(t179 && (t38 <= -t183));
-    const t184 = _runtime.poison(invalid || unreachable_3);
+    const t184 = invalid || unreachable_3 ? NaN : 0;
     const t185 = t165 + t184;
     const M_right_rear_elbow_up_alike = Math.max(t178, t82);
     const N_right_rear_elbow_up_alike = Math.max(room_right_rear_elbow_up_alike, t82);
@@ -2527,7 +2479,7 @@ function _ik_common(v) {
     const t191 = r_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike;
     const t192 = Math.atan2(t187 - r_right_0_rear_elbow_up_alike * t190, t191 +
         h_right_0_rear_elbow_up_alike * t190);
-    const t193 = _runtime.wrapCut(t192) + t184;
+    const t193 = (t192 <= -Math.PI ? Math.PI : t192) + t184;
     const t194 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike;
     const t195 = sigma_right_front_elbow_down_alike * Math.atan2(2.0 * t189, t194);
     const t196 = _runtime.wrap(t90 + t195) + t184;
@@ -2544,11 +2496,11 @@ function _ik_common(v) {
     const t202 = t180 * ahead_1_left_rear_elbow_up_alike;
     const t203 = t181 * ahead_1_left_rear_elbow_up_alike;
     const t204 = t180 * t200;
-    const t205 = _runtime.wrapCut(Math.atan2(t201 - t202, -(t203 + t204)));
+    const t205 = Math.atan2(t201 - t202, -(t203 + t204));
     const t206 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike;
     const t207 = sigma_right_front_elbow_down_alike * Math.atan2(2.0 * t199, t206);
     const t208 = t102 + t184;
-    const t209 = _runtime.wrapCut(Math.atan2(-(t202 + t201), t204 - t203));
+    const t209 = Math.atan2(-(t202 + t201), t204 - t203);
     const ctheta23A_rear_elbow_down_alike = t47 * ctheta2A_front_elbow_down_alike - t44 * t114;
     const t210 = t49 * (s_phi * ctheta23A_rear_elbow_down_alike);
     const t211 = t47 * t114 + t44 * ctheta2A_front_elbow_down_alike;
@@ -2578,7 +2530,7 @@ function _ik_common(v) {
     const t229 = t227 + t228;
     const t230 = t68 * t229 < t223 ? t74 - t229 : twice_rear_elbow_down_alike - t224;
     const unreachable_4 = !(t226 && (t38 <= -t230));
-    const t231 = _runtime.poison(invalid || unreachable_4);
+    const t231 = invalid || unreachable_4 ? NaN : 0;
     const t232 = t165 + t231;
     const M_right_rear_elbow_down_alike = Math.max(t225, t82);
     const N_right_rear_elbow_down_alike = Math.max(room_right_rear_elbow_down_alike, t82);
@@ -2594,7 +2546,7 @@ function _ik_common(v) {
         ahead_1_right_rear_elbow_down_alike;
     const t237 = t221 * ahead_1_right_rear_elbow_down_alike + t220 * t236;
     const t238 = Math.atan2(up_right_rear_elbow_down_alike, -t237);
-    const t239 = _runtime.wrapCut(t238) + t231;
+    const t239 = (t238 <= -Math.PI ? Math.PI : t238) + t231;
     const t240 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike;
     const t241 = t90 + sigma_right * Math.atan2(2.0 * t235, t240);
     const t242 = _runtime.wrap(t241) + t231;
@@ -2611,28 +2563,28 @@ function _ik_common(v) {
     const t248 = r_left_0_rear_elbow_down_alike * t247;
     const t249 = r_left_0_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike;
     const t250 = h_left_0_rear_elbow_down_alike * t247;
-    const t251 = _runtime.wrapCut(Math.atan2(t244 - t248, t249 + t250));
+    const t251 = Math.atan2(t244 - t248, t249 + t250);
     const t252 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike;
     const t253 = sigma_right * Math.atan2(2.0 * t246, t252);
     const t254 = t102 + t231;
-    const t255 = _runtime.wrapCut(Math.atan2(t244 + t248, t249 - t250));
+    const t255 = Math.atan2(t244 + t248, t249 - t250);
     const square_mid = t74 + M_mid;
     const t256 = M_mid * square_mid;
     const t257 = _runtime.DETERMINED * _runtime.DETERMINED;
     const t258 = t68 * t257;
     const t259 = square_mid <= t258;
     const t260 = wrist <= al * _runtime.DETERMINED;
-    const t261 = _runtime.status(invalid, unreachable, (t256 <= t257 * (t68 * gap)) || t259 ||
-        t260);
+    const t261 = invalid ? 3 : unreachable ? 1 : (t256 <= t257 * (t68 * gap)) || t259 || t260 ?
+        2 : 0;
     const square_mid_front_elbow_down_alike = t74 + M_mid_front_elbow_down_alike;
     const t262 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike;
     const t263 = t262 <= t257 * (t68 * gap_front_elbow_down_alike);
     const t264 = square_mid_front_elbow_down_alike <= t258;
-    const t265 = _runtime.status(invalid, unreachable_2, t263 || t264 || t260);
+    const t265 = invalid ? 3 : unreachable_2 ? 1 : t263 || t264 || t260 ? 2 : 0;
     const t266 = t262 <= t257 * (t68 * gap_rear_elbow_up_alike);
-    const t267 = _runtime.status(invalid, unreachable_3, t266 || t264 || t260);
+    const t267 = invalid ? 3 : unreachable_3 ? 1 : t266 || t264 || t260 ? 2 : 0;
     const t268 = t256 <= t257 * (t68 * gap_rear_elbow_down_alike);
-    const t269 = _runtime.status(invalid, unreachable_4, t268 || t259 || t260);
+    const t269 = invalid ? 3 : unreachable_4 ? 1 : t268 || t259 || t260 ? 2 : 0;
     const t270 = (h <= t23 * _runtime.VANISHING) || (L1 * fore <= _runtime.VANISHING * t30);
     const t271 = _runtime.VANISHING * t26;
     const t272 = t270 || (fore <= t271) || (Math.abs(t31) + Math.abs(onward) <= t271);
@@ -2669,69 +2621,66 @@ function _ik_common(v) {
         <= t277);
     const t299 = Math.abs(h_left_0_rear_elbow_down_alike) +
         Math.abs(r_left_0_rear_elbow_down_alike);
-    return [
-        t81,
-        t89,
-        t92,
-        t100 + t80,
-        _runtime.wrap(t90 + t101) + t80,
-        t103,
-        t81,
-        t89,
-        t92,
-        t104 + t80,
-        _runtime.wrap(t90 - t101) + t80,
-        t103,
-        t139,
-        t148,
-        t151,
-        t160 + t138,
-        _runtime.wrap(t90 + t162) + t138,
-        t163,
-        t139,
-        t148,
-        t151,
-        t164 + t138,
-        _runtime.wrap(t90 - t162) + t138,
-        t163,
-        t185,
-        t193,
-        t196,
-        t205 + t184,
-        _runtime.wrap(t90 + t207) + t184,
-        t208,
-        t185,
-        t193,
-        t196,
-        t209 + t184,
-        _runtime.wrap(t90 - t207) + t184,
-        t208,
-        t232,
-        t239,
-        t242,
-        t251 + t231,
-        _runtime.wrap(t90 + t253) + t231,
-        t254,
-        t232,
-        t239,
-        t242,
-        t255 + t231,
-        _runtime.wrap(t90 - t253) + t231,
-        t254,
-        t261,
-        t261,
-        t265,
-        t265,
-        t267,
-        t267,
-        t269,
-        t269,
-        (t298 || (t299 <= t277)) ? 1 : 0,
-    ];
+    o[0] = t81;
+    o[1] = t89;
+    o[2] = t92;
+    o[3] = (t100 <= -Math.PI ? Math.PI : t100) + t80;
+    o[4] = _runtime.wrap(t90 + t101) + t80;
+    o[5] = t103;
+    o[6] = t81;
+    o[7] = t89;
+    o[8] = t92;
+    o[9] = (t104 <= -Math.PI ? Math.PI : t104) + t80;
+    o[10] = _runtime.wrap(t90 - t101) + t80;
+    o[11] = t103;
+    o[12] = t139;
+    o[13] = t148;
+    o[14] = t151;
+    o[15] = (t160 <= -Math.PI ? Math.PI : t160) + t138;
+    o[16] = _runtime.wrap(t90 + t162) + t138;
+    o[17] = t163;
+    o[18] = t139;
+    o[19] = t148;
+    o[20] = t151;
+    o[21] = (t164 <= -Math.PI ? Math.PI : t164) + t138;
+    o[22] = _runtime.wrap(t90 - t162) + t138;
+    o[23] = t163;
+    o[24] = t185;
+    o[25] = t193;
+    o[26] = t196;
+    o[27] = (t205 <= -Math.PI ? Math.PI : t205) + t184;
+    o[28] = _runtime.wrap(t90 + t207) + t184;
+    o[29] = t208;
+    o[30] = t185;
+    o[31] = t193;
+    o[32] = t196;
+    o[33] = (t209 <= -Math.PI ? Math.PI : t209) + t184;
+    o[34] = _runtime.wrap(t90 - t207) + t184;
+    o[35] = t208;
+    o[36] = t232;
+    o[37] = t239;
+    o[38] = t242;
+    o[39] = (t251 <= -Math.PI ? Math.PI : t251) + t231;
+    o[40] = _runtime.wrap(t90 + t253) + t231;
+    o[41] = t254;
+    o[42] = t232;
+    o[43] = t239;
+    o[44] = t242;
+    o[45] = (t255 <= -Math.PI ? Math.PI : t255) + t231;
+    o[46] = _runtime.wrap(t90 - t253) + t231;
+    o[47] = t254;
+    o[48] = t261;
+    o[49] = t261;
+    o[50] = t265;
+    o[51] = t265;
+    o[52] = t267;
+    o[53] = t267;
+    o[54] = t269;
+    o[55] = t269;
+    o[56] = (t298 || (t299 <= t277)) ? 1 : 0;
 }
 
-/** @type {_runtime.Kernel} */
-const _IK = {
+const _IK = _runtime.kernel({
     name: "h6ar_loop_closed.ik",
     compute: _ik,
     common: _ik_common,
@@ -2750,7 +2699,7 @@ const _IK = {
         least: 2.938735877055719e-39,
         most: 1.8092513943330656e+75,
     },
-};
+});
 
 /**
  * All postures of the mechanism that reach a tip; mixed ones have the left elbow on the other
@@ -2803,11 +2752,8 @@ export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _wrist_length(v) {
+/** @type {_runtime.Compute} */
+function _wrist_length(v, o) {
     const psi = v[0];
     const phi = v[1];
     const d = v[2];
@@ -2826,14 +2772,11 @@ function _wrist_length(v) {
     const t7 = t6 && (Number.isFinite(psi) && Number.isFinite(phi));
     const t8 = -(_runtime.FEASIBILITY * (d * 0.5));
     const t9 = (-_runtime.FEASIBILITY <= c_phi) && (t8 <= t2);
-    const t10 = t4 / t1 + _runtime.poison(!t7 || !(t9 && (t8 <= t3)));
-    return [
-        t10,
-    ];
+    const t10 = t4 / t1 + (!t7 || !(t9 && (t8 <= t3)) ? NaN : 0);
+    o[0] = t10;
 }
 
-/** @type {_runtime.Kernel} */
-const _WRIST_LENGTH = {
+const _WRIST_LENGTH = _runtime.kernel({
     name: "h6ar_loop_closed.wrist_length",
     compute: _wrist_length,
     common: null,
@@ -2852,7 +2795,7 @@ const _WRIST_LENGTH = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * The variable length l_W of the wrist; NaN where the links are too short.
@@ -2884,11 +2827,8 @@ export function wrist_length_batch(n, psi, phi, l_W, parameters) {
     return _runtime.batch(_WRIST_LENGTH, n, [psi, phi], [l_W], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _minimum_link_length(v) {
+/** @type {_runtime.Compute} */
+function _minimum_link_length(v, o) {
     const psi_max = v[0];
     const phi_max = v[1];
     const beta_min = v[2];
@@ -2901,13 +2841,10 @@ function _minimum_link_length(v) {
     _runtime.sincos(beta_min);
     const c_beta_min = _runtime.found[1];
     const t1 = (gs - d / (c_phi_max * c_psi_max)) / c_beta_min;
-    return [
-        -t1,
-    ];
+    o[0] = -t1;
 }
 
-/** @type {_runtime.Kernel} */
-const _MINIMUM_LINK_LENGTH = {
+const _MINIMUM_LINK_LENGTH = _runtime.kernel({
     name: "h6ar_loop_closed.minimum_link_length",
     compute: _minimum_link_length,
     common: null,
@@ -2922,7 +2859,7 @@ const _MINIMUM_LINK_LENGTH = {
     used: ["d", "gs"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The shortest wrist links that keep the separation angle up to the given yaw and roll.
@@ -2957,11 +2894,8 @@ export function minimum_link_length_batch(n, psi_max, phi_max, beta_min, al, par
     return _runtime.batch(_MINIMUM_LINK_LENGTH, n, [psi_max, phi_max, beta_min], [al], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _largest_yaw(v) {
+/** @type {_runtime.Compute} */
+function _largest_yaw(v, o) {
     const phi = v[0];
     const beta_min = v[1];
     const d = v[2];
@@ -2978,14 +2912,10 @@ function _largest_yaw(v) {
     const t4 = t3 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
     const t5 = Number.isFinite(phi) && Number.isFinite(beta_min);
     const failed = !(t4 && t5) || !(-(_runtime.FEASIBILITY * (gs + al)) <= t1);
-    const t6 = _runtime.wrap(2.0 * t2) + _runtime.poison(failed);
-    return [
-        t6,
-    ];
+    o[0] = _runtime.wrap(2.0 * t2) + (failed ? NaN : 0);
 }
 
-/** @type {_runtime.Kernel} */
-const _LARGEST_YAW = {
+const _LARGEST_YAW = _runtime.kernel({
     name: "h6ar_loop_closed.largest_yaw",
     compute: _largest_yaw,
     common: null,
@@ -2999,7 +2929,7 @@ const _LARGEST_YAW = {
     used: ["d", "gs", "al"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The largest yaw at a roll that keeps the separation angle; NaN where there is none.
@@ -3029,11 +2959,8 @@ export function largest_yaw_batch(n, phi, beta_min, psi, parameters) {
     return _runtime.batch(_LARGEST_YAW, n, [phi, beta_min], [psi], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _largest_angle(v) {
+/** @type {_runtime.Compute} */
+function _largest_angle(v, o) {
     const beta_min = v[0];
     const d = v[1];
     const gs = v[2];
@@ -3047,14 +2974,10 @@ function _largest_angle(v) {
     const t4 = t3 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
     const failed = !(t4 && Number.isFinite(beta_min)) || !(-(_runtime.FEASIBILITY * (gs + al))
         <= t1);
-    const t5 = _runtime.wrap(2.0 * t2) + _runtime.poison(failed);
-    return [
-        t5,
-    ];
+    o[0] = _runtime.wrap(2.0 * t2) + (failed ? NaN : 0);
 }
 
-/** @type {_runtime.Kernel} */
-const _LARGEST_ANGLE = {
+const _LARGEST_ANGLE = _runtime.kernel({
     name: "h6ar_loop_closed.largest_angle",
     compute: _largest_angle,
     common: null,
@@ -3067,7 +2990,7 @@ const _LARGEST_ANGLE = {
     used: ["d", "gs", "al"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The largest angle that yaw and roll may both have; NaN where there is none.

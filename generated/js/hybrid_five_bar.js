@@ -57,11 +57,8 @@ export const DEFAULTS = Object.freeze({
     L2: 5.0,
 });
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _fk(v) {
+/** @type {_runtime.Compute} */
+function _fk(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -101,25 +98,22 @@ function _fk(v) {
     const t13 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
     const invalid = !(t12 && t13);
     const unreachable = !(-(_runtime.FEASIBILITY * t3) <= t9);
-    const t14 = _runtime.poison(invalid || unreachable);
+    const t14 = invalid || unreachable ? NaN : 0;
     const t15 = distance * n_1 * 0.5;
     const t16 = height * t6;
     const P_r_right_of_CD = C_r - (t7 + t10);
-    const t17 = _runtime.status(invalid, unreachable, coincide);
-    return [
-        -(c1 * P_r) + t14,
-        C_y + (t15 + t16) + t14,
-        s1 * P_r + t14,
-        -(c1 * P_r_right_of_CD) + t14,
-        C_y + (t15 - t16) + t14,
-        s1 * P_r_right_of_CD + t14,
-        t17,
-        t17,
-    ];
+    const t17 = invalid ? 3 : unreachable ? 1 : coincide ? 2 : 0;
+    o[0] = -(c1 * P_r) + t14;
+    o[1] = C_y + (t15 + t16) + t14;
+    o[2] = s1 * P_r + t14;
+    o[3] = -(c1 * P_r_right_of_CD) + t14;
+    o[4] = C_y + (t15 - t16) + t14;
+    o[5] = s1 * P_r_right_of_CD + t14;
+    o[6] = t17;
+    o[7] = t17;
 }
 
-/** @type {_runtime.Kernel} */
-const _FK = {
+const _FK = _runtime.kernel({
     name: "hybrid_five_bar.fk",
     compute: _fk,
     common: null,
@@ -138,7 +132,7 @@ const _FK = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * Position of P in both assembly modes.
@@ -179,11 +173,8 @@ export function fk_batch(n, q, p, status, parameters) {
     return _runtime.batch(_FK, n, [q], [p, status], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _passive_angles(v) {
+/** @type {_runtime.Compute} */
+function _passive_angles(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -215,27 +206,24 @@ function _passive_angles(v) {
     const t10 = distance * n_1 * 0.5;
     const t11 = t5 * height;
     const CP_y = t10 + t11;
-    const t12 = _runtime.wrapCut(-Math.atan2(DP_r_right_of_CD, CP_y));
+    const t12 = -Math.atan2(DP_r_right_of_CD, CP_y);
     const t13 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
     const t14 = t13 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
     const t15 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
     const failed = !(t14 && t15) || !(-(_runtime.FEASIBILITY * t3) <= t8);
-    const t16 = _runtime.poison(failed);
+    const t16 = failed ? NaN : 0;
     const DP_r = t6 + t9;
     const CP_y_right_of_CD = t10 - t11;
-    const t17 = _runtime.wrapCut(Math.atan2(DP_r, -CP_y_right_of_CD));
-    const t18 = _runtime.wrapCut(-Math.atan2(DP_r, CP_y_right_of_CD));
-    const t19 = _runtime.wrapCut(Math.atan2(DP_r_right_of_CD, -CP_y));
-    return [
-        t12 + t16,
-        t17 + t16,
-        t18 + t16,
-        t19 + t16,
-    ];
+    const t17 = Math.atan2(DP_r, -CP_y_right_of_CD);
+    const t18 = -Math.atan2(DP_r, CP_y_right_of_CD);
+    const t19 = Math.atan2(DP_r_right_of_CD, -CP_y);
+    o[0] = (t12 <= -Math.PI ? Math.PI : t12) + t16;
+    o[1] = (t17 <= -Math.PI ? Math.PI : t17) + t16;
+    o[2] = (t18 <= -Math.PI ? Math.PI : t18) + t16;
+    o[3] = (t19 <= -Math.PI ? Math.PI : t19) + t16;
 }
 
-/** @type {_runtime.Kernel} */
-const _PASSIVE_ANGLES = {
+const _PASSIVE_ANGLES = _runtime.kernel({
     name: "hybrid_five_bar.passive_angles",
     compute: _passive_angles,
     common: null,
@@ -253,7 +241,7 @@ const _PASSIVE_ANGLES = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * Angles theta4 and theta5 of CP and DP in both assembly modes.
@@ -285,11 +273,8 @@ export function passive_angles_batch(n, q, theta, parameters) {
     return _runtime.batch(_PASSIVE_ANGLES, n, [q], [theta], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_parallel(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_parallel(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -315,7 +300,7 @@ function _jacobian_parallel(v) {
     const apart = Math.sqrt(t6 * t6 + t7 * t7);
     const t8 = t5 - apart;
     const failed = !(t2 && t3) || !(-(_runtime.FEASIBILITY * t4) <= t8);
-    const t9 = _runtime.poison(failed);
+    const t9 = failed ? NaN : 0;
     const t10 = L2 * s1 + t9;
     const t11 = 0.0 + t9;
     const t12 = L2 * c1 + t9;
@@ -338,30 +323,27 @@ function _jacobian_parallel(v) {
     const t21 = c1 * DP_r;
     const CP_y_right_of_CD = t18 - t19;
     const t22 = s1 * DP_r;
-    return [
-        t10,
-        t11,
-        t12,
-        t17 + t9,
-        CP_y + t9,
-        -t20 + t9,
-        -t21 + t9,
-        -CP_y_right_of_CD + t9,
-        t22 + t9,
-        t10,
-        t11,
-        t12,
-        t21 + t9,
-        CP_y_right_of_CD + t9,
-        -t22 + t9,
-        -t17 + t9,
-        -CP_y + t9,
-        t20 + t9,
-    ];
+    o[0] = t10;
+    o[1] = t11;
+    o[2] = t12;
+    o[3] = t17 + t9;
+    o[4] = CP_y + t9;
+    o[5] = -t20 + t9;
+    o[6] = -t21 + t9;
+    o[7] = -CP_y_right_of_CD + t9;
+    o[8] = t22 + t9;
+    o[9] = t10;
+    o[10] = t11;
+    o[11] = t12;
+    o[12] = t21 + t9;
+    o[13] = CP_y_right_of_CD + t9;
+    o[14] = -t22 + t9;
+    o[15] = -t17 + t9;
+    o[16] = -CP_y + t9;
+    o[17] = t20 + t9;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_PARALLEL = {
+const _JACOBIAN_PARALLEL = _runtime.kernel({
     name: "hybrid_five_bar.jacobian_parallel",
     compute: _jacobian_parallel,
     common: null,
@@ -379,7 +361,7 @@ const _JACOBIAN_PARALLEL = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * A of A*dp = B*dq; its rows are L2*k, p - c and p - d.
@@ -411,11 +393,8 @@ export function jacobian_parallel_batch(n, q, A, parameters) {
     return _runtime.batch(_JACOBIAN_PARALLEL, n, [q], [A], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_serial(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_serial(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -452,24 +431,21 @@ function _jacobian_serial(v) {
     const t12 = t11 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
     const t13 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
     const failed = !(t12 && t13) || !(-(_runtime.FEASIBILITY * t4) <= t9);
-    const t14 = _runtime.poison(failed);
+    const t14 = failed ? NaN : 0;
     const t15 = distance * n_1 * 0.5;
     const t16 = t6 * height;
     const CP_y = t15 + t16;
     const DP_r = t7 + t10;
     const CP_y_right_of_CD = t15 - t16;
-    return [
-        L2 * (C_r - DP_r_right_of_CD) + t14,
-        -(C_y * DP_r_right_of_CD + C_r * CP_y) + t14,
-        t2 * DP_r + D_r * CP_y_right_of_CD + t14,
-        L2 * (C_r - DP_r) + t14,
-        -(C_y * DP_r + C_r * CP_y_right_of_CD) + t14,
-        t2 * DP_r_right_of_CD + D_r * CP_y + t14,
-    ];
+    o[0] = L2 * (C_r - DP_r_right_of_CD) + t14;
+    o[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t14;
+    o[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t14;
+    o[3] = L2 * (C_r - DP_r) + t14;
+    o[4] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t14;
+    o[5] = t2 * DP_r_right_of_CD + D_r * CP_y + t14;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_SERIAL = {
+const _JACOBIAN_SERIAL = _runtime.kernel({
     name: "hybrid_five_bar.jacobian_serial",
     compute: _jacobian_serial,
     common: null,
@@ -487,7 +463,7 @@ const _JACOBIAN_SERIAL = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * The diagonal of B of A*dp = B*dq: L2*rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 -
@@ -520,11 +496,8 @@ export function jacobian_serial_batch(n, q, B, parameters) {
     return _runtime.batch(_JACOBIAN_SERIAL, n, [q], [B], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian(v) {
+/** @type {_runtime.Compute} */
+function _jacobian(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -565,7 +538,7 @@ function _jacobian(v) {
     const t12 = t11 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
     const t13 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
     const failed = !(t12 && t13) || !(-(_runtime.FEASIBILITY * t4) <= t9);
-    const t14 = _runtime.poison(failed);
+    const t14 = failed ? NaN : 0;
     const t15 = distance * n_1 * 0.5;
     const t16 = t6 * height;
     const CP_y_right_of_CD = t15 - t16;
@@ -582,30 +555,27 @@ function _jacobian(v) {
     const P_r_right_of_CD = C_r - DP_r;
     const t23 = C_y * DP_r + C_r * CP_y_right_of_CD;
     const along_d_right_of_CD = t2 * DP_r_right_of_CD + D_r * CP_y;
-    return [
-        s1 * P_r + t14,
-        t17 * t18 / side + t14,
-        -(t19 * along_d / side) + t14,
-        t20,
-        -(DP_r * t18 / side) + t14,
-        DP_r_right_of_CD * along_d / side + t14,
-        c1 * P_r + t14,
-        -(t21 * t18 / side) + t14,
-        t22 * along_d / side + t14,
-        s1 * P_r_right_of_CD + t14,
-        -(t19 * t23 / side) + t14,
-        t17 * along_d_right_of_CD / side + t14,
-        t20,
-        DP_r_right_of_CD * t23 / side + t14,
-        -(DP_r * along_d_right_of_CD / side) + t14,
-        c1 * P_r_right_of_CD + t14,
-        t22 * t23 / side + t14,
-        -(t21 * along_d_right_of_CD / side) + t14,
-    ];
+    o[0] = s1 * P_r + t14;
+    o[1] = t17 * t18 / side + t14;
+    o[2] = -(t19 * along_d / side) + t14;
+    o[3] = t20;
+    o[4] = -(DP_r * t18 / side) + t14;
+    o[5] = DP_r_right_of_CD * along_d / side + t14;
+    o[6] = c1 * P_r + t14;
+    o[7] = -(t21 * t18 / side) + t14;
+    o[8] = t22 * along_d / side + t14;
+    o[9] = s1 * P_r_right_of_CD + t14;
+    o[10] = -(t19 * t23 / side) + t14;
+    o[11] = t17 * along_d_right_of_CD / side + t14;
+    o[12] = t20;
+    o[13] = DP_r_right_of_CD * t23 / side + t14;
+    o[14] = -(DP_r * along_d_right_of_CD / side) + t14;
+    o[15] = c1 * P_r_right_of_CD + t14;
+    o[16] = t22 * t23 / side + t14;
+    o[17] = -(t21 * along_d_right_of_CD / side) + t14;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN = {
+const _JACOBIAN = _runtime.kernel({
     name: "hybrid_five_bar.jacobian",
     compute: _jacobian,
     common: null,
@@ -623,7 +593,7 @@ const _JACOBIAN = {
         least: 6.681911775230489e-52,
         most: 1.7498005798264095e+100,
     },
-};
+});
 
 /**
  * Derivative of p with respect to q: A^-1*B.
@@ -656,11 +626,8 @@ export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _determinant(v) {
+/** @type {_runtime.Compute} */
+function _determinant(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -705,17 +672,14 @@ function _determinant(v) {
     const t16 = t15 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
     const t17 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
     const failed = !(t16 && t17) || !(-(_runtime.FEASIBILITY * t4) <= t9);
-    const t18 = _runtime.poison(failed);
+    const t18 = failed ? NaN : 0;
     const t19 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD);
     const t20 = t19 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side;
-    return [
-        -t14 + t18,
-        t20 + t18,
-    ];
+    o[0] = -t14 + t18;
+    o[1] = t20 + t18;
 }
 
-/** @type {_runtime.Kernel} */
-const _DETERMINANT = {
+const _DETERMINANT = _runtime.kernel({
     name: "hybrid_five_bar.determinant",
     compute: _determinant,
     common: null,
@@ -733,7 +697,7 @@ const _DETERMINANT = {
         least: 1.9721522630525295e-31,
         most: 1.6069380442589903e+60,
     },
-};
+});
 
 /**
  * Determinant of the Jacobian.
@@ -765,11 +729,8 @@ export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _singularities(v) {
+/** @type {_runtime.Compute} */
+function _singularities(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -806,27 +767,24 @@ function _singularities(v) {
     const t12 = t11 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
     const t13 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
     const failed = !(t12 && t13) || !(-(_runtime.FEASIBILITY * t4) <= t9);
-    const t14 = _runtime.poison(failed);
+    const t14 = failed ? NaN : 0;
     const t15 = distance * n_1 * 0.5;
     const t16 = t6 * height;
     const CP_y = t15 + t16;
     const DP_r = t7 + t10;
     const CP_y_right_of_CD = t15 - t16;
     const side = distance * height;
-    return [
-        C_r - DP_r_right_of_CD + t14,
-        -(C_y * DP_r_right_of_CD + C_r * CP_y) + t14,
-        t2 * DP_r + D_r * CP_y_right_of_CD + t14,
-        side + t14,
-        C_r - DP_r + t14,
-        -(C_y * DP_r + C_r * CP_y_right_of_CD) + t14,
-        t2 * DP_r_right_of_CD + D_r * CP_y + t14,
-        -side + t14,
-    ];
+    o[0] = C_r - DP_r_right_of_CD + t14;
+    o[1] = -(C_y * DP_r_right_of_CD + C_r * CP_y) + t14;
+    o[2] = t2 * DP_r + D_r * CP_y_right_of_CD + t14;
+    o[3] = side + t14;
+    o[4] = C_r - DP_r + t14;
+    o[5] = -(C_y * DP_r + C_r * CP_y_right_of_CD) + t14;
+    o[6] = t2 * DP_r_right_of_CD + D_r * CP_y + t14;
+    o[7] = -side + t14;
 }
 
-/** @type {_runtime.Kernel} */
-const _SINGULARITIES = {
+const _SINGULARITIES = _runtime.kernel({
     name: "hybrid_five_bar.singularities",
     compute: _singularities,
     common: null,
@@ -844,7 +802,7 @@ const _SINGULARITIES = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and
@@ -877,11 +835,8 @@ export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _condition_number(v) {
+/** @type {_runtime.Compute} */
+function _condition_number(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -910,15 +865,12 @@ function _condition_number(v) {
     const t10 = t9 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
     const t11 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
     const failed = !(t10 && t11) || !(-(_runtime.FEASIBILITY * t3) <= t7);
-    const t12 = t8 + _runtime.poison(failed);
-    return [
-        t12,
-        t12,
-    ];
+    const t12 = t8 + (failed ? NaN : 0);
+    o[0] = t12;
+    o[1] = t12;
 }
 
-/** @type {_runtime.Kernel} */
-const _CONDITION_NUMBER = {
+const _CONDITION_NUMBER = _runtime.kernel({
     name: "hybrid_five_bar.condition_number",
     compute: _condition_number,
     common: null,
@@ -936,7 +888,7 @@ const _CONDITION_NUMBER = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * Ratio of the largest to the smallest singular value of A.
@@ -969,11 +921,8 @@ export function condition_number_batch(n, q, kappa, parameters) {
     return _runtime.batch(_CONDITION_NUMBER, n, [q], [kappa], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik(v) {
+/** @type {_runtime.Compute} */
+function _ik(v, o) {
     const x = v[0];
     const y = v[1];
     const z = v[2];
@@ -985,7 +934,7 @@ function _ik(v) {
     const t1 = L1 + L2;
     const t2 = _runtime.VANISHING * (L0 + t1);
     const on_axis = r <= t2;
-    const t3 = _runtime.wrapCut(on_axis ? 0.0 : Math.atan2(z, -x));
+    const t3 = on_axis ? 0.0 : Math.atan2(z, -x);
     const t4 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
     const t5 = t4 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
     const t6 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z);
@@ -1006,8 +955,8 @@ function _ik(v) {
     const t18 = (-t8 <= t10) && (-t13 <= t15) && (-t8 <= t17);
     const t19 = square_d - t14;
     const unreachable = !(t18 && (-t13 <= t19));
-    const t20 = _runtime.poison(invalid || unreachable);
-    const t21 = t3 + t20;
+    const t20 = invalid || unreachable ? NaN : 0;
+    const t21 = (t3 <= -Math.PI ? Math.PI : t3) + t20;
     const at_A = r + Math.abs(y) <= t2;
     const no_link_c = L1 * L2 <= t9 * _runtime.VANISHING;
     const M_c = Math.max(t15, 0.0);
@@ -1020,7 +969,7 @@ function _ik(v) {
     const t25 = y * ahead_c;
     const t26 = r * beyond_c;
     const t27 = at_A ? 0.0 : Math.atan2(t22 - t24, t25 + t26);
-    const t28 = _runtime.wrapCut(t27) + t20;
+    const t28 = (t27 <= -Math.PI ? Math.PI : t27) + t20;
     const at_B = r + Math.abs(t16) <= t2;
     const M_d = Math.max(t19, 0.0);
     const N_d = Math.max(t17, 0.0);
@@ -1032,74 +981,75 @@ function _ik(v) {
     const t32 = t16 * ahead_d;
     const t33 = r * beyond_d;
     const t34 = at_B ? 0.0 : Math.atan2(t29 - t31, t32 + t33);
-    const t35 = _runtime.wrapCut(t34) + t20;
+    const t35 = (t34 <= -Math.PI ? Math.PI : t34) + t20;
     const t36 = at_B ? 0.0 : Math.atan2(t29 + t31, t32 - t33);
-    const t37 = _runtime.wrapCut(t36) + t20;
+    const t37 = (t36 <= -Math.PI ? Math.PI : t36) + t20;
     const t38 = at_A ? 0.0 : Math.atan2(t22 + t24, t25 - t26);
-    const t39 = _runtime.wrapCut(t38) + t20;
-    const t40 = _runtime.wrapCut(-(on_axis ? 0.0 : Math.atan2(z, x)));
-    const t41 = t40 + t20;
-    const t42 = _runtime.wrapCut(-t38) + t20;
-    const t43 = _runtime.wrapCut(-t36) + t20;
-    const t44 = _runtime.wrapCut(-t34) + t20;
-    const t45 = _runtime.wrapCut(-t27) + t20;
-    const t46 = on_axis || at_A || at_B || (L1 <= t1 * _runtime.VANISHING);
-    const t47 = t1 * t12;
-    const inner_c = square_c - t47;
-    const inner_d = square_d - t47;
-    const t48 = inner_c * inner_d;
-    const t49 = t23 * t30;
-    const t50 = L0 * r;
-    const t51 = (t48 + t49) * t50;
-    const t52 = r2 + y * t16;
-    const t53 = inner_d * t23;
-    const t54 = inner_c * t30;
-    const t55 = t52 * (t53 - t54);
-    const t56 = _runtime.DETERMINED * (square_c * square_d * 4.0 * (L2 * L2));
-    const t57 = _runtime.status(invalid, unreachable, t46 || (Math.abs(t51 - t55) <= t56));
-    const t58 = t52 * (t53 + t54);
-    const t59 = (t48 - t49) * t50;
-    const t60 = _runtime.status(invalid, unreachable, t46 || (Math.abs(t58 - t59) <= t56));
-    const t61 = _runtime.status(invalid, unreachable, t46 || (Math.abs(-(t58 + t59)) <= t56));
-    const t62 = _runtime.status(invalid, unreachable, t46 || (Math.abs(t55 + t51) <= t56));
-    return [
-        t21,
-        t28,
-        t35,
-        t21,
-        t28,
-        t37,
-        t21,
-        t39,
-        t35,
-        t21,
-        t39,
-        t37,
-        t41,
-        t42,
-        t43,
-        t41,
-        t42,
-        t44,
-        t41,
-        t45,
-        t43,
-        t41,
-        t45,
-        t44,
-        t57,
-        t60,
-        t61,
-        t62,
-        t62,
-        t61,
-        t60,
-        t57,
-    ];
+    const t39 = (t38 <= -Math.PI ? Math.PI : t38) + t20;
+    const t40 = -(on_axis ? 0.0 : Math.atan2(z, x));
+    const t41 = (t40 <= -Math.PI ? Math.PI : t40) + t20;
+    const t42 = -t38;
+    const t43 = (t42 <= -Math.PI ? Math.PI : t42) + t20;
+    const t44 = -t36;
+    const t45 = (t44 <= -Math.PI ? Math.PI : t44) + t20;
+    const t46 = -t34;
+    const t47 = (t46 <= -Math.PI ? Math.PI : t46) + t20;
+    const t48 = -t27;
+    const t49 = (t48 <= -Math.PI ? Math.PI : t48) + t20;
+    const t50 = on_axis || at_A || at_B || (L1 <= t1 * _runtime.VANISHING);
+    const t51 = t1 * t12;
+    const inner_c = square_c - t51;
+    const inner_d = square_d - t51;
+    const t52 = inner_c * inner_d;
+    const t53 = t23 * t30;
+    const t54 = L0 * r;
+    const t55 = (t52 + t53) * t54;
+    const t56 = r2 + y * t16;
+    const t57 = inner_d * t23;
+    const t58 = inner_c * t30;
+    const t59 = t56 * (t57 - t58);
+    const t60 = _runtime.DETERMINED * (square_c * square_d * 4.0 * (L2 * L2));
+    const t61 = invalid ? 3 : unreachable ? 1 : t50 || (Math.abs(t55 - t59) <= t60) ? 2 : 0;
+    const t62 = t56 * (t57 + t58);
+    const t63 = (t52 - t53) * t54;
+    const t64 = invalid ? 3 : unreachable ? 1 : t50 || (Math.abs(t62 - t63) <= t60) ? 2 : 0;
+    const t65 = invalid ? 3 : unreachable ? 1 : t50 || (Math.abs(-(t62 + t63)) <= t60) ? 2 : 0;
+    const t66 = invalid ? 3 : unreachable ? 1 : t50 || (Math.abs(t59 + t55) <= t60) ? 2 : 0;
+    o[0] = t21;
+    o[1] = t28;
+    o[2] = t35;
+    o[3] = t21;
+    o[4] = t28;
+    o[5] = t37;
+    o[6] = t21;
+    o[7] = t39;
+    o[8] = t35;
+    o[9] = t21;
+    o[10] = t39;
+    o[11] = t37;
+    o[12] = t41;
+    o[13] = t43;
+    o[14] = t45;
+    o[15] = t41;
+    o[16] = t43;
+    o[17] = t47;
+    o[18] = t41;
+    o[19] = t49;
+    o[20] = t45;
+    o[21] = t41;
+    o[22] = t49;
+    o[23] = t47;
+    o[24] = t61;
+    o[25] = t64;
+    o[26] = t65;
+    o[27] = t66;
+    o[28] = t66;
+    o[29] = t65;
+    o[30] = t64;
+    o[31] = t61;
 }
 
-/** @type {_runtime.Kernel} */
-const _IK = {
+const _IK = _runtime.kernel({
     name: "hybrid_five_bar.ik",
     compute: _ik,
     common: null,
@@ -1118,7 +1068,7 @@ const _IK = {
         least: 2.5849394142282115e-26,
         most: 9.353610478917779e+49,
     },
-};
+});
 
 /**
  * The driven angles of all eight working modes.
@@ -1166,11 +1116,8 @@ export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _workspace_contains(v) {
+/** @type {_runtime.Compute} */
+function _workspace_contains(v, o) {
     const x = v[0];
     const y = v[1];
     const z = v[2];
@@ -1193,13 +1140,10 @@ function _workspace_contains(v) {
     const t12 = y - L0;
     const square_d = r2 + t12 * t12;
     const t13 = t11 && (-t5 <= t6 - square_d) && (-t9 <= square_d - t10);
-    return [
-        (!(!(t2 && t3) || !t13)) ? 1 : 0,
-    ];
+    o[0] = (!(!(t2 && t3) || !t13)) ? 1 : 0;
 }
 
-/** @type {_runtime.Kernel} */
-const _WORKSPACE_CONTAINS = {
+const _WORKSPACE_CONTAINS = _runtime.kernel({
     name: "hybrid_five_bar.workspace_contains",
     compute: _workspace_contains,
     common: null,
@@ -1217,7 +1161,7 @@ const _WORKSPACE_CONTAINS = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * Whether P can be reached: it lies in both hollow spheres.
@@ -1247,11 +1191,8 @@ export function workspace_contains_batch(n, p, inside, parameters) {
     return _runtime.batch(_WORKSPACE_CONTAINS, n, [p], [inside], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _workspace_volume(v) {
+/** @type {_runtime.Compute} */
+function _workspace_volume(v, o) {
     const L0 = v[0];
     const L1 = v[1];
     const L2 = v[2];
@@ -1279,13 +1220,10 @@ function _workspace_volume(v) {
     const t18 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
     const t19 = t18 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
     const failed = !t19 || !(-(t1 * _runtime.FEASIBILITY) <= t1);
-    return [
-        t17 + _runtime.poison(failed),
-    ];
+    o[0] = t17 + (failed ? NaN : 0);
 }
 
-/** @type {_runtime.Kernel} */
-const _WORKSPACE_VOLUME = {
+const _WORKSPACE_VOLUME = _runtime.kernel({
     name: "hybrid_five_bar.workspace_volume",
     compute: _workspace_volume,
     common: null,
@@ -1302,7 +1240,7 @@ const _WORKSPACE_VOLUME = {
         least: 2.938735877055719e-39,
         most: 1.8092513943330656e+75,
     },
-};
+});
 
 /**
  * Volume of the workspace.

@@ -67,22 +67,16 @@ export const DEFAULTS = Object.freeze({
     l6: 0.12,
 });
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _joint4(v) {
+/** @type {_runtime.Compute} */
+function _joint4(v, o) {
     const theta2 = v[1];
     const theta3 = v[2];
     const principal2 = _runtime.principal(theta2);
     const principal3 = _runtime.principal(theta3);
-    return [
-        _runtime.wrap(-(principal2 + principal3)),
-    ];
+    o[0] = _runtime.wrap(-(principal2 + principal3));
 }
 
-/** @type {_runtime.Kernel} */
-const _JOINT4 = {
+const _JOINT4 = _runtime.kernel({
     name: "irb260.joint4",
     compute: _joint4,
     common: null,
@@ -95,7 +89,7 @@ const _JOINT4 = {
     used: [],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Angle theta4 of the virtual joint, which keeps the wrist bracket level.
@@ -125,25 +119,19 @@ export function joint4_batch(n, q, theta4, parameters) {
     return _runtime.batch(_JOINT4, n, [q], [theta4], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _joints_from_motors(v) {
+/** @type {_runtime.Compute} */
+function _joints_from_motors(v, o) {
     const m1 = v[0];
     const m2 = v[1];
     const m3 = v[2];
     const m5 = v[3];
-    return [
-        m1,
-        m2,
-        m3 - m2,
-        m5,
-    ];
+    o[0] = m1;
+    o[1] = m2;
+    o[2] = m3 - m2;
+    o[3] = m5;
 }
 
-/** @type {_runtime.Kernel} */
-const _JOINTS_FROM_MOTORS = {
+const _JOINTS_FROM_MOTORS = _runtime.kernel({
     name: "irb260.joints_from_motors",
     compute: _joints_from_motors,
     common: null,
@@ -156,7 +144,7 @@ const _JOINTS_FROM_MOTORS = {
     used: [],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Joint angles of motor angles: theta3 = m3 - m2.
@@ -187,25 +175,19 @@ export function joints_from_motors_batch(n, motors, q, parameters) {
     return _runtime.batch(_JOINTS_FROM_MOTORS, n, [motors], [q], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _motors_from_joints(v) {
+/** @type {_runtime.Compute} */
+function _motors_from_joints(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
     const theta5 = v[3];
-    return [
-        theta1,
-        theta2,
-        theta2 + theta3,
-        theta5,
-    ];
+    o[0] = theta1;
+    o[1] = theta2;
+    o[2] = theta2 + theta3;
+    o[3] = theta5;
 }
 
-/** @type {_runtime.Kernel} */
-const _MOTORS_FROM_JOINTS = {
+const _MOTORS_FROM_JOINTS = _runtime.kernel({
     name: "irb260.motors_from_joints",
     compute: _motors_from_joints,
     common: null,
@@ -218,7 +200,7 @@ const _MOTORS_FROM_JOINTS = {
     used: [],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Motor angles of joint angles: m3 = theta2 + theta3.
@@ -248,11 +230,8 @@ export function motors_from_joints_batch(n, q, motors, parameters) {
     return _runtime.batch(_MOTORS_FROM_JOINTS, n, [q], [motors], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _fk(v) {
+/** @type {_runtime.Compute} */
+function _fk(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -275,16 +254,13 @@ function _fk(v) {
     const principal1 = _runtime.principal(theta1);
     const principal5 = _runtime.principal(theta5);
     const t1 = l1 + l6 + l3 * s2 + l4 * (c2 * c3 - s2 * s3);
-    return [
-        -(t1 * s1),
-        t1 * c1,
-        l2 - l5 + l3 * c2 - l4 * (s2 * c3 + c2 * s3),
-        _runtime.wrap(principal1 + principal5),
-    ];
+    o[0] = -(t1 * s1);
+    o[1] = t1 * c1;
+    o[2] = l2 - l5 + l3 * c2 - l4 * (s2 * c3 + c2 * s3);
+    o[3] = _runtime.wrap(principal1 + principal5);
 }
 
-/** @type {_runtime.Kernel} */
-const _FK = {
+const _FK = _runtime.kernel({
     name: "irb260.fk",
     compute: _fk,
     common: null,
@@ -297,7 +273,7 @@ const _FK = {
     used: ["l1", "l2", "l3", "l4", "l5", "l6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Position of the hand and its angle about z.
@@ -330,11 +306,8 @@ export function fk_batch(n, q, x, parameters) {
     return _runtime.batch(_FK, n, [q], [x], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _pose(v) {
+/** @type {_runtime.Compute} */
+function _pose(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -360,28 +333,25 @@ function _pose(v) {
     const c15 = c1 * c5 - s1 * s5;
     const s15 = s1 * c5 + c1 * s5;
     const t1 = l1 + l6 + l3 * s2 + l4 * (c2 * c3 - s2 * s3);
-    return [
-        c15,
-        -s15,
-        0.0,
-        -(s1 * t1),
-        s15,
-        c15,
-        0.0,
-        c1 * t1,
-        0.0,
-        0.0,
-        1.0,
-        l2 - l5 + l3 * c2 - l4 * (s2 * c3 + c2 * s3),
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = c15;
+    o[1] = -s15;
+    o[2] = 0.0;
+    o[3] = -(s1 * t1);
+    o[4] = s15;
+    o[5] = c15;
+    o[6] = 0.0;
+    o[7] = c1 * t1;
+    o[8] = 0.0;
+    o[9] = 0.0;
+    o[10] = 1.0;
+    o[11] = l2 - l5 + l3 * c2 - l4 * (s2 * c3 + c2 * s3);
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _POSE = {
+const _POSE = _runtime.kernel({
     name: "irb260.pose",
     compute: _pose,
     common: null,
@@ -394,7 +364,7 @@ const _POSE = {
     used: ["l1", "l2", "l3", "l4", "l5", "l6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Pose of the hand in the base frame.
@@ -424,11 +394,8 @@ export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian(v) {
+/** @type {_runtime.Compute} */
+function _jacobian(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -450,28 +417,25 @@ function _jacobian(v) {
     const t3 = l1 + l6 + t2;
     const t4 = l4 * (s2 * c3 + c2 * s3);
     const t5 = l3 * c2 - t4;
-    return [
-        -(c1 * t3),
-        -(s1 * t5),
-        s1 * t4,
-        0.0,
-        -(s1 * t3),
-        c1 * t5,
-        -(c1 * t4),
-        0.0,
-        0.0,
-        -t2,
-        -t1,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = -(c1 * t3);
+    o[1] = -(s1 * t5);
+    o[2] = s1 * t4;
+    o[3] = 0.0;
+    o[4] = -(s1 * t3);
+    o[5] = c1 * t5;
+    o[6] = -(c1 * t4);
+    o[7] = 0.0;
+    o[8] = 0.0;
+    o[9] = -t2;
+    o[10] = -t1;
+    o[11] = 0.0;
+    o[12] = 1.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN = {
+const _JACOBIAN = _runtime.kernel({
     name: "irb260.jacobian",
     compute: _jacobian,
     common: null,
@@ -484,7 +448,7 @@ const _JACOBIAN = {
     used: ["l1", "l3", "l4", "l6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Derivative of (x, y, z, yaw) with respect to the joint angles.
@@ -515,11 +479,8 @@ export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_space(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_space(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -541,36 +502,33 @@ function _jacobian_space(v) {
     const t3 = l4 * (c2 * c3 - s2 * s3);
     const t4 = l3 * s2 + t3;
     const t5 = l1 + l6 + t4;
-    return [
-        0.0,
-        -(t2 * s1),
-        t1 * s1,
-        c1 * t5,
-        0.0,
-        t2 * c1,
-        -(t1 * c1),
-        s1 * t5,
-        0.0,
-        -t4,
-        -t3,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = 0.0;
+    o[1] = -(t2 * s1);
+    o[2] = t1 * s1;
+    o[3] = c1 * t5;
+    o[4] = 0.0;
+    o[5] = t2 * c1;
+    o[6] = -(t1 * c1);
+    o[7] = s1 * t5;
+    o[8] = 0.0;
+    o[9] = -t4;
+    o[10] = -t3;
+    o[11] = 0.0;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 0.0;
+    o[16] = 0.0;
+    o[17] = 0.0;
+    o[18] = 0.0;
+    o[19] = 0.0;
+    o[20] = 1.0;
+    o[21] = 0.0;
+    o[22] = 0.0;
+    o[23] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_SPACE = {
+const _JACOBIAN_SPACE = _runtime.kernel({
     name: "irb260.jacobian_space",
     compute: _jacobian_space,
     common: null,
@@ -583,7 +541,7 @@ const _JACOBIAN_SPACE = {
     used: ["l1", "l3", "l4", "l6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Twist (v; omega) of the hand in the base frame per joint rate.
@@ -614,11 +572,8 @@ export function jacobian_space_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_SPACE, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_body(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_body(v, o) {
     const theta2 = v[1];
     const theta3 = v[2];
     const theta5 = v[3];
@@ -640,36 +595,33 @@ function _jacobian_body(v) {
     const t3 = l1 + l6 + t2;
     const t4 = l4 * (s2 * c3 + c2 * s3);
     const t5 = l3 * c2 - t4;
-    return [
-        -(c5 * t3),
-        s5 * t5,
-        -(s5 * t4),
-        0.0,
-        s5 * t3,
-        c5 * t5,
-        -(c5 * t4),
-        0.0,
-        0.0,
-        -t2,
-        -t1,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = -(c5 * t3);
+    o[1] = s5 * t5;
+    o[2] = -(s5 * t4);
+    o[3] = 0.0;
+    o[4] = s5 * t3;
+    o[5] = c5 * t5;
+    o[6] = -(c5 * t4);
+    o[7] = 0.0;
+    o[8] = 0.0;
+    o[9] = -t2;
+    o[10] = -t1;
+    o[11] = 0.0;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 0.0;
+    o[16] = 0.0;
+    o[17] = 0.0;
+    o[18] = 0.0;
+    o[19] = 0.0;
+    o[20] = 1.0;
+    o[21] = 0.0;
+    o[22] = 0.0;
+    o[23] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_BODY = {
+const _JACOBIAN_BODY = _runtime.kernel({
     name: "irb260.jacobian_body",
     compute: _jacobian_body,
     common: null,
@@ -682,7 +634,7 @@ const _JACOBIAN_BODY = {
     used: ["l1", "l3", "l4", "l6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Twist (v; omega) of the hand in its own frame per joint rate.
@@ -711,11 +663,8 @@ export function jacobian_body_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_BODY, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_motors(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_motors(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -737,28 +686,25 @@ function _jacobian_motors(v) {
     const t3 = l1 + l6 + t1 + t2;
     const t4 = l3 * c2;
     const t5 = l4 * (s2 * c3 + c2 * s3);
-    return [
-        -(t3 * c1),
-        -(s1 * t4),
-        s1 * t5,
-        0.0,
-        -(t3 * s1),
-        c1 * t4,
-        -(c1 * t5),
-        0.0,
-        0.0,
-        -t1,
-        -t2,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = -(t3 * c1);
+    o[1] = -(s1 * t4);
+    o[2] = s1 * t5;
+    o[3] = 0.0;
+    o[4] = -(t3 * s1);
+    o[5] = c1 * t4;
+    o[6] = -(c1 * t5);
+    o[7] = 0.0;
+    o[8] = 0.0;
+    o[9] = -t1;
+    o[10] = -t2;
+    o[11] = 0.0;
+    o[12] = 1.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_MOTORS = {
+const _JACOBIAN_MOTORS = _runtime.kernel({
     name: "irb260.jacobian_motors",
     compute: _jacobian_motors,
     common: null,
@@ -771,7 +717,7 @@ const _JACOBIAN_MOTORS = {
     used: ["l1", "l3", "l4", "l6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Derivative of (x, y, z, yaw) with respect to the motor angles, at joint angles.
@@ -800,11 +746,8 @@ export function jacobian_motors_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_MOTORS, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _determinant(v) {
+/** @type {_runtime.Compute} */
+function _determinant(v, o) {
     const theta2 = v[1];
     const theta3 = v[2];
     const l1 = v[4];
@@ -818,13 +761,10 @@ function _determinant(v) {
     const s2 = _runtime.found[0];
     const c2 = _runtime.found[1];
     const t1 = l3 * l4 * c3 * (l1 + l6 + l3 * s2 + l4 * (c2 * c3 - s2 * s3));
-    return [
-        t1,
-    ];
+    o[0] = t1;
 }
 
-/** @type {_runtime.Kernel} */
-const _DETERMINANT = {
+const _DETERMINANT = _runtime.kernel({
     name: "irb260.determinant",
     compute: _determinant,
     common: null,
@@ -842,7 +782,7 @@ const _DETERMINANT = {
         least: 6.681911775230489e-52,
         most: 1.7498005798264095e+100,
     },
-};
+});
 
 /**
  * Determinant of the task Jacobian.
@@ -870,11 +810,8 @@ export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _singularities(v) {
+/** @type {_runtime.Compute} */
+function _singularities(v, o) {
     const theta2 = v[1];
     const theta3 = v[2];
     const l1 = v[4];
@@ -887,14 +824,11 @@ function _singularities(v) {
     _runtime.sincos(theta3);
     const s3 = _runtime.found[0];
     const c3 = _runtime.found[1];
-    return [
-        l1 + l6 + l3 * s2 + l4 * (c2 * c3 - s2 * s3),
-        c3,
-    ];
+    o[0] = l1 + l6 + l3 * s2 + l4 * (c2 * c3 - s2 * s3);
+    o[1] = c3;
 }
 
-/** @type {_runtime.Kernel} */
-const _SINGULARITIES = {
+const _SINGULARITIES = _runtime.kernel({
     name: "irb260.singularities",
     compute: _singularities,
     common: null,
@@ -907,7 +841,7 @@ const _SINGULARITIES = {
     used: ["l1", "l3", "l4", "l6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The factors rho (hand on the base axis) and cos(theta3) (arm straight or folded).
@@ -935,11 +869,8 @@ export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _point_velocity(v) {
+/** @type {_runtime.Compute} */
+function _point_velocity(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -966,15 +897,12 @@ function _point_velocity(v) {
     const c23 = c2 * c3 - s2 * s3;
     const t4 = l3 * s2 + l4 * c23;
     const t5 = theta1_dot * (l1 + l6 + t4);
-    return [
-        s1 * t2 - s1 * t3 - c1 * t5,
-        -(c1 * t2 - c1 * t3 + s1 * t5),
-        -(theta2_dot * t4 + c23 * t1),
-    ];
+    o[0] = s1 * t2 - s1 * t3 - c1 * t5;
+    o[1] = -(c1 * t2 - c1 * t3 + s1 * t5);
+    o[2] = -(theta2_dot * t4 + c23 * t1);
 }
 
-/** @type {_runtime.Kernel} */
-const _POINT_VELOCITY = {
+const _POINT_VELOCITY = _runtime.kernel({
     name: "irb260.point_velocity",
     compute: _point_velocity,
     common: null,
@@ -988,7 +916,7 @@ const _POINT_VELOCITY = {
     used: ["l1", "l3", "l4", "l6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Velocity of the origin of the hand, in the base frame.
@@ -1020,11 +948,8 @@ export function point_velocity_batch(n, q, qdot, v, parameters) {
     return _runtime.batch(_POINT_VELOCITY, n, [q, qdot], [v], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik(v) {
+/** @type {_runtime.Compute} */
+function _ik(v, o) {
     const px = v[0];
     const py = v[1];
     const pz = v[2];
@@ -1046,7 +971,7 @@ function _ik(v) {
     const on_axis = r <= t4;
     const s_turret_back_elbow_up = on_axis ? 0.0 : px;
     const c_turret = on_axis ? 1.0 : py;
-    const t5 = _runtime.wrapCut(-Math.atan2(s_turret_back_elbow_up, c_turret));
+    const t5 = -Math.atan2(s_turret_back_elbow_up, c_turret);
     const t6 = Number.isFinite(l1) && Number.isFinite(l2) && Number.isFinite(l3) &&
         Number.isFinite(l4) && Number.isFinite(l5) && Number.isFinite(l6);
     const t7 = t6 && (0.0 <= l1) && (0.0 <= l2) && (0.0 <= l3);
@@ -1064,8 +989,8 @@ function _ik(v) {
     const t15 = t14 + reach;
     const t16 = reach - t14;
     const unreachable = !((t10 <= t13) && (t10 <= t15) && (t10 <= t16));
-    const t17 = _runtime.poison(invalid || unreachable);
-    const t18 = t5 + t17;
+    const t17 = invalid || unreachable ? NaN : 0;
+    const t18 = (t5 <= -Math.PI ? Math.PI : t5) + t17;
     const folded = reach <= t4;
     const t19 = Math.atan2(-t12, h);
     const no_link = l3 * l4 <= _runtime.VANISHING * (t1 * t1);
@@ -1085,7 +1010,7 @@ function _ik(v) {
     const t29 = c_psi * s_turret_back_elbow_up;
     const t30 = s_psi * s_turret_back_elbow_up;
     const t31 = Math.atan2(s_psi * c_turret + t29, c_psi * c_turret - t30);
-    const t32 = _runtime.wrapCut(t31) + t17;
+    const t32 = (t31 <= -Math.PI ? Math.PI : t31) + t17;
     const t33 = _runtime.wrap(-(folded ? 0.0 : t19 - t23)) + t17;
     const t34 = no_link ? 1.5707963267948966 : 1.5707963267948966 + t27;
     const c_turret_back_elbow_up = on_axis ? 1.0 : -py;
@@ -1096,8 +1021,8 @@ function _ik(v) {
     const t38 = t14 + reach_back_elbow_up;
     const t39 = reach_back_elbow_up - t14;
     const unreachable_2 = !((t10 <= t37) && (t10 <= t38) && (t10 <= t39));
-    const t40 = _runtime.poison(invalid || unreachable_2);
-    const t41 = _runtime.wrapCut(t35) + t40;
+    const t40 = invalid || unreachable_2 ? NaN : 0;
+    const t41 = (t35 <= -Math.PI ? Math.PI : t35) + t40;
     const folded_back_elbow_up = reach_back_elbow_up <= t4;
     const t42 = Math.atan2(t36, h);
     const A_back_elbow_up = Math.max(t37, 0.0);
@@ -1115,38 +1040,36 @@ function _ik(v) {
     const t51 = no_link ? 1.5707963267948966 : 1.5707963267948966 - t50;
     const t52 = Math.atan2(t29 - s_psi * c_turret_back_elbow_up, t30 + c_psi *
         c_turret_back_elbow_up);
-    const t53 = _runtime.wrapCut(-t52) + t40;
-    const t54 = _runtime.wrapCut(-(folded_back_elbow_up ? 0.0 : t42 - t46));
-    const t55 = no_link ? 1.5707963267948966 : 1.5707963267948966 + t50;
-    const t56 = _runtime.status(invalid, unreachable, on_axis || folded || no_link);
-    const t57 = _runtime.status(invalid, unreachable_2, on_axis || folded_back_elbow_up ||
-        no_link);
-    return [
-        t18,
-        t24,
-        -t28 + t17,
-        t32,
-        t18,
-        t33,
-        _runtime.wrap(-t34) + t17,
-        t32,
-        t41,
-        t47 + t40,
-        -t51 + t40,
-        t53,
-        t41,
-        t54 + t40,
-        _runtime.wrap(-t55) + t40,
-        t53,
-        t56,
-        t56,
-        t57,
-        t57,
-    ];
+    const t53 = -t52;
+    const t54 = (t53 <= -Math.PI ? Math.PI : t53) + t40;
+    const t55 = -(folded_back_elbow_up ? 0.0 : t42 - t46);
+    const t56 = no_link ? 1.5707963267948966 : 1.5707963267948966 + t50;
+    const t57 = invalid ? 3 : unreachable ? 1 : on_axis || folded || no_link ? 2 : 0;
+    const t58 = invalid ? 3 : unreachable_2 ? 1 : on_axis || folded_back_elbow_up || no_link ? 2
+        : 0;
+    o[0] = t18;
+    o[1] = t24;
+    o[2] = -t28 + t17;
+    o[3] = t32;
+    o[4] = t18;
+    o[5] = t33;
+    o[6] = _runtime.wrap(-t34) + t17;
+    o[7] = t32;
+    o[8] = t41;
+    o[9] = t47 + t40;
+    o[10] = -t51 + t40;
+    o[11] = t54;
+    o[12] = t41;
+    o[13] = (t55 <= -Math.PI ? Math.PI : t55) + t40;
+    o[14] = _runtime.wrap(-t56) + t40;
+    o[15] = t54;
+    o[16] = t57;
+    o[17] = t57;
+    o[18] = t58;
+    o[19] = t58;
 }
 
-/** @type {_runtime.Kernel} */
-const _IK = {
+const _IK = _runtime.kernel({
     name: "irb260.ik",
     compute: _ik,
     common: null,
@@ -1165,7 +1088,7 @@ const _IK = {
         least: 2.938735877055719e-39,
         most: 1.8092513943330656e+75,
     },
-};
+});
 
 /**
  * All four configurations of a position and a yaw.
@@ -1211,27 +1134,21 @@ export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _workspace_section(v) {
+/** @type {_runtime.Compute} */
+function _workspace_section(v, o) {
     const l1 = v[0];
     const l2 = v[1];
     const l3 = v[2];
     const l4 = v[3];
     const l5 = v[4];
     const l6 = v[5];
-    return [
-        l1 + l6,
-        l2 - l5,
-        Math.abs(l3 - l4),
-        l3 + l4,
-    ];
+    o[0] = l1 + l6;
+    o[1] = l2 - l5;
+    o[2] = Math.abs(l3 - l4);
+    o[3] = l3 + l4;
 }
 
-/** @type {_runtime.Kernel} */
-const _WORKSPACE_SECTION = {
+const _WORKSPACE_SECTION = _runtime.kernel({
     name: "irb260.workspace_section",
     compute: _workspace_section,
     common: null,
@@ -1243,7 +1160,7 @@ const _WORKSPACE_SECTION = {
     used: ["l1", "l2", "l3", "l4", "l5", "l6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The annulus that the hand can reach in the plane of the arm.
@@ -1272,11 +1189,8 @@ export function workspace_section_batch(n, section, parameters) {
     return _runtime.batch(_WORKSPACE_SECTION, n, [], [section], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _workspace_margin(v) {
+/** @type {_runtime.Compute} */
+function _workspace_margin(v, o) {
     const px = v[0];
     const py = v[1];
     const pz = v[2];
@@ -1298,13 +1212,10 @@ function _workspace_margin(v) {
     const reach_front = Math.sqrt(t1 + t6 * t6);
     const t7 = Math.max(Math.min(reach_back - t4, t5 - reach_back), Math.min(reach_front - t4,
         t5 - reach_front));
-    return [
-        t7,
-    ];
+    o[0] = t7;
 }
 
-/** @type {_runtime.Kernel} */
-const _WORKSPACE_MARGIN = {
+const _WORKSPACE_MARGIN = _runtime.kernel({
     name: "irb260.workspace_margin",
     compute: _workspace_margin,
     common: null,
@@ -1322,7 +1233,7 @@ const _WORKSPACE_MARGIN = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * How far a position is inside the workspace, in the plane of the arm; negative outside.
@@ -1350,11 +1261,8 @@ export function workspace_margin_batch(n, p, margin, parameters) {
     return _runtime.batch(_WORKSPACE_MARGIN, n, [p], [margin], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _workspace_contains(v) {
+/** @type {_runtime.Compute} */
+function _workspace_contains(v, o) {
     const px = v[0];
     const py = v[1];
     const pz = v[2];
@@ -1382,13 +1290,10 @@ function _workspace_contains(v) {
     const reach_front = Math.sqrt(t8 + t11 * t11);
     const margin_front = Math.min(reach_front - t10, t6 - reach_front);
     const t12 = Math.max(Math.min(reach_back - t10, t6 - reach_back), margin_front);
-    return [
-        (!(!(t3 && t4) || !(t7 <= t12))) ? 1 : 0,
-    ];
+    o[0] = (!(!(t3 && t4) || !(t7 <= t12))) ? 1 : 0;
 }
 
-/** @type {_runtime.Kernel} */
-const _WORKSPACE_CONTAINS = {
+const _WORKSPACE_CONTAINS = _runtime.kernel({
     name: "irb260.workspace_contains",
     compute: _workspace_contains,
     common: null,
@@ -1406,7 +1311,7 @@ const _WORKSPACE_CONTAINS = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * Whether some configuration reaches a position, whatever the yaw.

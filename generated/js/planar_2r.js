@@ -50,11 +50,8 @@ export const DEFAULTS = Object.freeze({
     l2: 8.0,
 });
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _fk(v) {
+/** @type {_runtime.Compute} */
+function _fk(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const l1 = v[2];
@@ -65,14 +62,11 @@ function _fk(v) {
     _runtime.sincos(theta2);
     const s2 = _runtime.found[0];
     const c2 = _runtime.found[1];
-    return [
-        l1 * c1 + l2 * (c1 * c2 - s1 * s2),
-        l1 * s1 + l2 * (s1 * c2 + c1 * s2),
-    ];
+    o[0] = l1 * c1 + l2 * (c1 * c2 - s1 * s2);
+    o[1] = l1 * s1 + l2 * (s1 * c2 + c1 * s2);
 }
 
-/** @type {_runtime.Kernel} */
-const _FK = {
+const _FK = _runtime.kernel({
     name: "planar_2r.fk",
     compute: _fk,
     common: null,
@@ -85,7 +79,7 @@ const _FK = {
     used: ["l1", "l2"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Position of the hand.
@@ -115,11 +109,8 @@ export function fk_batch(n, q, x, parameters) {
     return _runtime.batch(_FK, n, [q], [x], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _pose(v) {
+/** @type {_runtime.Compute} */
+function _pose(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const l1 = v[2];
@@ -132,28 +123,25 @@ function _pose(v) {
     const c2 = _runtime.found[1];
     const c12 = c1 * c2 - s1 * s2;
     const s12 = s1 * c2 + c1 * s2;
-    return [
-        c12,
-        -s12,
-        0.0,
-        l1 * c1 + l2 * c12,
-        s12,
-        c12,
-        0.0,
-        l1 * s1 + l2 * s12,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = c12;
+    o[1] = -s12;
+    o[2] = 0.0;
+    o[3] = l1 * c1 + l2 * c12;
+    o[4] = s12;
+    o[5] = c12;
+    o[6] = 0.0;
+    o[7] = l1 * s1 + l2 * s12;
+    o[8] = 0.0;
+    o[9] = 0.0;
+    o[10] = 1.0;
+    o[11] = 0.0;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _POSE = {
+const _POSE = _runtime.kernel({
     name: "planar_2r.pose",
     compute: _pose,
     common: null,
@@ -166,7 +154,7 @@ const _POSE = {
     used: ["l1", "l2"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Pose of the hand frame in the base frame.
@@ -197,22 +185,16 @@ export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _orientation(v) {
+/** @type {_runtime.Compute} */
+function _orientation(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const principal1 = _runtime.principal(theta1);
     const principal2 = _runtime.principal(theta2);
-    return [
-        _runtime.wrap(principal1 + principal2),
-    ];
+    o[0] = _runtime.wrap(principal1 + principal2);
 }
 
-/** @type {_runtime.Kernel} */
-const _ORIENTATION = {
+const _ORIENTATION = _runtime.kernel({
     name: "planar_2r.orientation",
     compute: _orientation,
     common: null,
@@ -225,7 +207,7 @@ const _ORIENTATION = {
     used: [],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Angle phi of the last link against the x axis: the sum of the joint angles, in (-pi, pi].
@@ -255,11 +237,8 @@ export function orientation_batch(n, q, phi, parameters) {
     return _runtime.batch(_ORIENTATION, n, [q], [phi], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian(v) {
+/** @type {_runtime.Compute} */
+function _jacobian(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const l1 = v[2];
@@ -272,18 +251,15 @@ function _jacobian(v) {
     const c2 = _runtime.found[1];
     const t1 = l2 * (s1 * c2 + c1 * s2);
     const t2 = l2 * (c1 * c2 - s1 * s2);
-    return [
-        -(l1 * s1 + t1),
-        -t1,
-        l1 * c1 + t2,
-        t2,
-        1.0,
-        1.0,
-    ];
+    o[0] = -(l1 * s1 + t1);
+    o[1] = -t1;
+    o[2] = l1 * c1 + t2;
+    o[3] = t2;
+    o[4] = 1.0;
+    o[5] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN = {
+const _JACOBIAN = _runtime.kernel({
     name: "planar_2r.jacobian",
     compute: _jacobian,
     common: null,
@@ -296,7 +272,7 @@ const _JACOBIAN = {
     used: ["l1", "l2"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Derivative of (x, y, phi) with respect to (theta1, theta2).
@@ -326,23 +302,17 @@ export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _determinant(v) {
+/** @type {_runtime.Compute} */
+function _determinant(v, o) {
     const theta2 = v[1];
     const l1 = v[2];
     const l2 = v[3];
     _runtime.sincos(theta2);
     const s2 = _runtime.found[0];
-    return [
-        l1 * l2 * s2,
-    ];
+    o[0] = l1 * l2 * s2;
 }
 
-/** @type {_runtime.Kernel} */
-const _DETERMINANT = {
+const _DETERMINANT = _runtime.kernel({
     name: "planar_2r.determinant",
     compute: _determinant,
     common: null,
@@ -360,7 +330,7 @@ const _DETERMINANT = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * Determinant of the rows of x and y of the Jacobian.
@@ -388,23 +358,17 @@ export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _manipulability(v) {
+/** @type {_runtime.Compute} */
+function _manipulability(v, o) {
     const theta2 = v[1];
     const l1 = v[2];
     const l2 = v[3];
     _runtime.sincos(theta2);
     const s2 = _runtime.found[0];
-    return [
-        l1 * l2 * Math.abs(s2),
-    ];
+    o[0] = l1 * l2 * Math.abs(s2);
 }
 
-/** @type {_runtime.Kernel} */
-const _MANIPULABILITY = {
+const _MANIPULABILITY = _runtime.kernel({
     name: "planar_2r.manipulability",
     compute: _manipulability,
     common: null,
@@ -422,7 +386,7 @@ const _MANIPULABILITY = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * Yoshikawa's manipulability of the position, the modulus of the determinant.
@@ -450,21 +414,15 @@ export function manipulability_batch(n, q, w, parameters) {
     return _runtime.batch(_MANIPULABILITY, n, [q], [w], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _singularities(v) {
+/** @type {_runtime.Compute} */
+function _singularities(v, o) {
     const theta2 = v[1];
     _runtime.sincos(theta2);
     const s2 = _runtime.found[0];
-    return [
-        s2,
-    ];
+    o[0] = s2;
 }
 
-/** @type {_runtime.Kernel} */
-const _SINGULARITIES = {
+const _SINGULARITIES = _runtime.kernel({
     name: "planar_2r.singularities",
     compute: _singularities,
     common: null,
@@ -477,7 +435,7 @@ const _SINGULARITIES = {
     used: [],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The factor that vanishes exactly where the arm is stretched or folded.
@@ -505,11 +463,8 @@ export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik(v) {
+/** @type {_runtime.Compute} */
+function _ik(v, o) {
     const px = v[0];
     const py = v[1];
     const l1 = v[2];
@@ -540,22 +495,20 @@ function _ik(v) {
     const t16 = l1 * 1.1368683772161603e-13 + l2 * 1.1368683772161603e-13;
     const t17 = _runtime.FEASIBILITY * (t1 * (t16 + 2.0 * Math.abs(t3)));
     const unreachable = !((-t15 <= t5) && (-t17 <= t4));
-    const t18 = _runtime.poison(invalid || unreachable);
+    const t18 = invalid || unreachable ? NaN : 0;
     const t19 = no_link ? 0.0 : Math.atan2(2.0 * t8, M - N);
     const t20 = at_base ? 0.0 : Math.atan2(t6 + t9, t10 - t11);
-    const t21 = _runtime.status(invalid, unreachable, no_link || at_base);
-    return [
-        _runtime.wrapCut(t12) + t18,
-        t19 + t18,
-        _runtime.wrapCut(t20) + t18,
-        _runtime.wrapCut(-t19) + t18,
-        t21,
-        t21,
-    ];
+    const t21 = -t19;
+    const t22 = invalid ? 3 : unreachable ? 1 : no_link || at_base ? 2 : 0;
+    o[0] = (t12 <= -Math.PI ? Math.PI : t12) + t18;
+    o[1] = t19 + t18;
+    o[2] = (t20 <= -Math.PI ? Math.PI : t20) + t18;
+    o[3] = (t21 <= -Math.PI ? Math.PI : t21) + t18;
+    o[4] = t22;
+    o[5] = t22;
 }
 
-/** @type {_runtime.Kernel} */
-const _IK = {
+const _IK = _runtime.kernel({
     name: "planar_2r.ik",
     compute: _ik,
     common: null,
@@ -574,7 +527,7 @@ const _IK = {
         least: 2.938735877055719e-39,
         most: 1.8092513943330656e+75,
     },
-};
+});
 
 /**
  * Both elbow configurations that reach a position.
@@ -615,11 +568,8 @@ export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik_pose(v) {
+/** @type {_runtime.Compute} */
+function _ik_pose(v, o) {
     const T11 = v[0];
     const T12 = v[1];
     const T13 = v[2];
@@ -645,39 +595,39 @@ function _ik_pose(v) {
     const s1 = no_first_link ? 0.0 : elbow_y * t2;
     const elbow_x = T14 - T11 * l2;
     const c1 = no_first_link ? 1.0 : elbow_x * t2;
-    const t3 = (Number.isFinite(l1) && Number.isFinite(l2)) && (0.0 <= l1);
-    const t4 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
-    const t5 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
-    const t6 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
-    const t7 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
-    const t8 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
-    const t9 = t3 && (0.0 <= l2) && t4 && t5 && t6 && t7 && (t8 <= _runtime.ROTATION);
-    const t10 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
-    const t11 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
-    const t12 = t9 && (t10 <= _runtime.ROTATION) && t11 && (Math.abs(T41) <= _runtime.ROTATION);
-    const t13 = t12 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
+    const t3 = Math.atan2(s1, c1);
+    const t4 = (Number.isFinite(l1) && Number.isFinite(l2)) && (0.0 <= l1);
+    const t5 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
+    const t6 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
+    const t7 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
+    const t8 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
+    const t9 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
+    const t10 = t4 && (0.0 <= l2) && t5 && t6 && t7 && t8 && (t9 <= _runtime.ROTATION);
+    const t11 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
+    const t12 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
+    const t13 = t10 && (t11 <= _runtime.ROTATION) && t12 && (Math.abs(T41) <=
         _runtime.ROTATION);
-    const t14 = t13 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
-    const invalid = !t14;
-    const t15 = Math.sqrt(elbow_x * elbow_x + elbow_y * elbow_y);
-    const t16 = _runtime.FEASIBILITY * t1;
-    const t17 = (Math.abs(l1 - t15) <= t16) && (Math.abs(T34) <= t16);
-    const t18 = t17 && (Math.abs(T13) <= _runtime.FEASIBILITY);
-    const t19 = t18 && (Math.abs(T23) <= _runtime.FEASIBILITY);
-    const t20 = t19 && (Math.abs(T33 - 1.0) <= _runtime.FEASIBILITY);
-    const unreachable = !t20;
-    const t21 = _runtime.poison(invalid || unreachable);
-    const t22 = Math.atan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1);
-    const t23 = _runtime.status(invalid, unreachable, no_first_link);
-    return [
-        _runtime.wrapCut(Math.atan2(s1, c1)) + t21,
-        _runtime.wrapCut(-t22) + t21,
-        t23,
-    ];
+    const t14 = t13 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
+        _runtime.ROTATION);
+    const t15 = t14 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
+    const invalid = !t15;
+    const t16 = Math.sqrt(elbow_x * elbow_x + elbow_y * elbow_y);
+    const t17 = _runtime.FEASIBILITY * t1;
+    const t18 = (Math.abs(l1 - t16) <= t17) && (Math.abs(T34) <= t17);
+    const t19 = t18 && (Math.abs(T13) <= _runtime.FEASIBILITY);
+    const t20 = t19 && (Math.abs(T23) <= _runtime.FEASIBILITY);
+    const t21 = t20 && (Math.abs(T33 - 1.0) <= _runtime.FEASIBILITY);
+    const unreachable = !t21;
+    const t22 = invalid || unreachable ? NaN : 0;
+    const t23 = Math.atan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1);
+    const t24 = -t23;
+    const t25 = invalid ? 3 : unreachable ? 1 : no_first_link ? 2 : 0;
+    o[0] = (t3 <= -Math.PI ? Math.PI : t3) + t22;
+    o[1] = (t24 <= -Math.PI ? Math.PI : t24) + t22;
+    o[2] = t25;
 }
 
-/** @type {_runtime.Kernel} */
-const _IK_POSE = {
+const _IK_POSE = _runtime.kernel({
     name: "planar_2r.ik_pose",
     compute: _ik_pose,
     common: null,
@@ -696,7 +646,7 @@ const _IK_POSE = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * The joint angles of a full pose; there is at most one.
@@ -734,21 +684,15 @@ export function ik_pose_batch(n, T, q, status, parameters) {
     return _runtime.batch(_IK_POSE, n, [T], [q, status], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _workspace_radii(v) {
+/** @type {_runtime.Compute} */
+function _workspace_radii(v, o) {
     const l1 = v[0];
     const l2 = v[1];
-    return [
-        Math.abs(l1 - l2),
-        l1 + l2,
-    ];
+    o[0] = Math.abs(l1 - l2);
+    o[1] = l1 + l2;
 }
 
-/** @type {_runtime.Kernel} */
-const _WORKSPACE_RADII = {
+const _WORKSPACE_RADII = _runtime.kernel({
     name: "planar_2r.workspace_radii",
     compute: _workspace_radii,
     common: null,
@@ -760,7 +704,7 @@ const _WORKSPACE_RADII = {
     used: ["l1", "l2"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Inner and outer radius of the annulus that the hand can reach.

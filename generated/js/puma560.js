@@ -54,11 +54,8 @@ export const DEFAULTS = Object.freeze({
     d4: 0.4318,
 });
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _fk(v) {
+/** @type {_runtime.Compute} */
+function _fk(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -103,28 +100,25 @@ function _fk(v) {
     const t7 = s5 * c4;
     const t8 = t7 * c23 + c5 * s23;
     const T1_14 = a2 * c2 + a3 * c23 - d4 * s23;
-    return [
-        T1_11 * c1 - T2_21 * s1,
-        t2 * s1 - t5 * c1,
-        t6 * s1 - t8 * c1,
-        T1_14 * c1 + d3 * s1,
-        T1_11 * s1 + T2_21 * c1,
-        -(t5 * s1 + t2 * c1),
-        -(t8 * s1 + t6 * c1),
-        T1_14 * s1 - d3 * c1,
-        T2_11 * s23 + T3_21 * c23,
-        -(t3 * s23 + t4 * c23),
-        c5 * c23 - t7 * s23,
-        a2 * s2 + a3 * s23 + d4 * c23,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = T1_11 * c1 - T2_21 * s1;
+    o[1] = t2 * s1 - t5 * c1;
+    o[2] = t6 * s1 - t8 * c1;
+    o[3] = T1_14 * c1 + d3 * s1;
+    o[4] = T1_11 * s1 + T2_21 * c1;
+    o[5] = -(t5 * s1 + t2 * c1);
+    o[6] = -(t8 * s1 + t6 * c1);
+    o[7] = T1_14 * s1 - d3 * c1;
+    o[8] = T2_11 * s23 + T3_21 * c23;
+    o[9] = -(t3 * s23 + t4 * c23);
+    o[10] = c5 * c23 - t7 * s23;
+    o[11] = a2 * s2 + a3 * s23 + d4 * c23;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _FK = {
+const _FK = _runtime.kernel({
     name: "puma560.fk",
     compute: _fk,
     common: null,
@@ -137,7 +131,7 @@ const _FK = {
     used: ["a2", "a3", "d3", "d4"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Pose of the hand in the base frame.
@@ -166,11 +160,8 @@ export function fk_batch(n, q, T, parameters) {
     return _runtime.batch(_FK, n, [q], [T], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _pose(v) {
+/** @type {_runtime.Compute} */
+function _pose(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -215,28 +206,25 @@ function _pose(v) {
     const t7 = s5 * c4;
     const t8 = t7 * c23 + c5 * s23;
     const T1_14 = a2 * c2 + a3 * c23 - d4 * s23;
-    return [
-        T1_11 * c1 - T2_21 * s1,
-        t2 * s1 - t5 * c1,
-        t6 * s1 - t8 * c1,
-        T1_14 * c1 + d3 * s1,
-        T1_11 * s1 + T2_21 * c1,
-        -(t5 * s1 + t2 * c1),
-        -(t8 * s1 + t6 * c1),
-        T1_14 * s1 - d3 * c1,
-        T2_11 * s23 + T3_21 * c23,
-        -(t3 * s23 + t4 * c23),
-        c5 * c23 - t7 * s23,
-        a2 * s2 + a3 * s23 + d4 * c23,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = T1_11 * c1 - T2_21 * s1;
+    o[1] = t2 * s1 - t5 * c1;
+    o[2] = t6 * s1 - t8 * c1;
+    o[3] = T1_14 * c1 + d3 * s1;
+    o[4] = T1_11 * s1 + T2_21 * c1;
+    o[5] = -(t5 * s1 + t2 * c1);
+    o[6] = -(t8 * s1 + t6 * c1);
+    o[7] = T1_14 * s1 - d3 * c1;
+    o[8] = T2_11 * s23 + T3_21 * c23;
+    o[9] = -(t3 * s23 + t4 * c23);
+    o[10] = c5 * c23 - t7 * s23;
+    o[11] = a2 * s2 + a3 * s23 + d4 * c23;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _POSE = {
+const _POSE = _runtime.kernel({
     name: "puma560.pose",
     compute: _pose,
     common: null,
@@ -249,7 +237,7 @@ const _POSE = {
     used: ["a2", "a3", "d3", "d4"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The same as fk.
@@ -278,11 +266,8 @@ export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian(v) {
+/** @type {_runtime.Compute} */
+function _jacobian(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -317,48 +302,45 @@ function _jacobian(v) {
     const t2 = s5 * s4;
     const t3 = s5 * c4;
     const t4 = t3 * c23 + c5 * s23;
-    return [
-        d3 * c1 - s1 * p4_11,
-        -(c1 * p4_21),
-        -(t1 * c1),
-        0.0,
-        0.0,
-        0.0,
-        d3 * s1 + c1 * p4_11,
-        -(s1 * p4_21),
-        -(t1 * s1),
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        p4_11,
-        J5_theta3_21,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        s1,
-        s1,
-        -(s23 * c1),
-        c4 * s1 + J5_theta5_41 * c1,
-        t2 * s1 - t4 * c1,
-        0.0,
-        -c1,
-        -c1,
-        -(s23 * s1),
-        J5_theta5_41 * s1 - c4 * c1,
-        -(t2 * c1 + t4 * s1),
-        1.0,
-        0.0,
-        0.0,
-        c23,
-        s4 * s23,
-        c5 * c23 - t3 * s23,
-    ];
+    o[0] = d3 * c1 - s1 * p4_11;
+    o[1] = -(c1 * p4_21);
+    o[2] = -(t1 * c1);
+    o[3] = 0.0;
+    o[4] = 0.0;
+    o[5] = 0.0;
+    o[6] = d3 * s1 + c1 * p4_11;
+    o[7] = -(s1 * p4_21);
+    o[8] = -(t1 * s1);
+    o[9] = 0.0;
+    o[10] = 0.0;
+    o[11] = 0.0;
+    o[12] = 0.0;
+    o[13] = p4_11;
+    o[14] = J5_theta3_21;
+    o[15] = 0.0;
+    o[16] = 0.0;
+    o[17] = 0.0;
+    o[18] = 0.0;
+    o[19] = s1;
+    o[20] = s1;
+    o[21] = -(s23 * c1);
+    o[22] = c4 * s1 + J5_theta5_41 * c1;
+    o[23] = t2 * s1 - t4 * c1;
+    o[24] = 0.0;
+    o[25] = -c1;
+    o[26] = -c1;
+    o[27] = -(s23 * s1);
+    o[28] = J5_theta5_41 * s1 - c4 * c1;
+    o[29] = -(t2 * c1 + t4 * s1);
+    o[30] = 1.0;
+    o[31] = 0.0;
+    o[32] = 0.0;
+    o[33] = c23;
+    o[34] = s4 * s23;
+    o[35] = c5 * c23 - t3 * s23;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN = {
+const _JACOBIAN = _runtime.kernel({
     name: "puma560.jacobian",
     compute: _jacobian,
     common: null,
@@ -371,7 +353,7 @@ const _JACOBIAN = {
     used: ["a2", "a3", "d3", "d4"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
@@ -401,11 +383,8 @@ export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_space(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_space(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -452,48 +431,45 @@ function _jacobian_space(v) {
     const t10 = t7 * c23 + c5 * s23;
     const t11 = t8 * t3 - t1 * t10 - c4 * t9;
     const J5_theta5_21 = J4_theta5_11 * s23 - c4 * t3 + d3 * J5_theta5_41;
-    return [
-        0.0,
-        0.0,
-        J5_theta3_11 * c1,
-        J5_theta4_31 * s1 - t4 * c1,
-        c1 * J5_theta5_11 - s1 * t5,
-        c1 * J5_theta6_11 - s1 * t11,
-        0.0,
-        0.0,
-        J5_theta3_11 * s1,
-        -(t4 * s1 + J5_theta4_31 * c1),
-        s1 * J5_theta5_11 + c1 * t5,
-        s1 * J5_theta6_11 + c1 * t11,
-        0.0,
-        0.0,
-        -t2,
-        -(d3 * s23),
-        J5_theta5_21,
-        s23 * J4_theta6_11 - (t6 * t3 + d3 * t10),
-        0.0,
-        s1,
-        s1,
-        -(s23 * c1),
-        c4 * s1 + J5_theta5_41 * c1,
-        t6 * s1 - t10 * c1,
-        0.0,
-        -c1,
-        -c1,
-        -(s23 * s1),
-        J5_theta5_41 * s1 - c4 * c1,
-        -(t6 * c1 + t10 * s1),
-        1.0,
-        0.0,
-        0.0,
-        c23,
-        J5_theta5_51,
-        -t8,
-    ];
+    o[0] = 0.0;
+    o[1] = 0.0;
+    o[2] = J5_theta3_11 * c1;
+    o[3] = J5_theta4_31 * s1 - t4 * c1;
+    o[4] = c1 * J5_theta5_11 - s1 * t5;
+    o[5] = c1 * J5_theta6_11 - s1 * t11;
+    o[6] = 0.0;
+    o[7] = 0.0;
+    o[8] = J5_theta3_11 * s1;
+    o[9] = -(t4 * s1 + J5_theta4_31 * c1);
+    o[10] = s1 * J5_theta5_11 + c1 * t5;
+    o[11] = s1 * J5_theta6_11 + c1 * t11;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = -t2;
+    o[15] = -(d3 * s23);
+    o[16] = J5_theta5_21;
+    o[17] = s23 * J4_theta6_11 - (t6 * t3 + d3 * t10);
+    o[18] = 0.0;
+    o[19] = s1;
+    o[20] = s1;
+    o[21] = -(s23 * c1);
+    o[22] = c4 * s1 + J5_theta5_41 * c1;
+    o[23] = t6 * s1 - t10 * c1;
+    o[24] = 0.0;
+    o[25] = -c1;
+    o[26] = -c1;
+    o[27] = -(s23 * s1);
+    o[28] = J5_theta5_41 * s1 - c4 * c1;
+    o[29] = -(t6 * c1 + t10 * s1);
+    o[30] = 1.0;
+    o[31] = 0.0;
+    o[32] = 0.0;
+    o[33] = c23;
+    o[34] = J5_theta5_51;
+    o[35] = -t8;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_SPACE = {
+const _JACOBIAN_SPACE = _runtime.kernel({
     name: "puma560.jacobian_space",
     compute: _jacobian_space,
     common: null,
@@ -506,7 +482,7 @@ const _JACOBIAN_SPACE = {
     used: ["a2", "a3", "d3", "d4"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Twist (v; omega) of the hand in the base frame per joint rate.
@@ -534,11 +510,8 @@ export function jacobian_space_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_SPACE, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_body(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_body(v, o) {
     const theta2 = v[1];
     const theta3 = v[2];
     const theta4 = v[3];
@@ -586,48 +559,45 @@ function _jacobian_body(v) {
     const t11 = -(t10 * c6 + c4 * s6);
     const t12 = t10 * s6 - c4 * c6;
     const J5_theta2_61 = s4 * s5;
-    return [
-        -(J4_theta1_31 * s6 + t3 * c6),
-        t5 * s6 + J5_theta2_11 * c6,
-        t7 * s6 - t9 * c6,
-        0.0,
-        0.0,
-        0.0,
-        t3 * s6 - J4_theta1_31 * c6,
-        t5 * c6 - J5_theta2_11 * s6,
-        t7 * c6 + t9 * s6,
-        0.0,
-        0.0,
-        0.0,
-        -(t2 * c5 + J4_theta1_11 * s5),
-        J3_theta2_31 * c5 + t6 * s5,
-        t8 * s5 + a3 * c5,
-        0.0,
-        0.0,
-        0.0,
-        J5_theta1_41 * c6 - J4_theta1_61 * s6,
-        t11,
-        t11,
-        s5 * c6,
-        -s6,
-        0.0,
-        -(J4_theta1_61 * c6 + J5_theta1_41 * s6),
-        t12,
-        t12,
-        -(s5 * s6),
-        -c6,
-        0.0,
-        c23 * c5 - J4_theta1_41 * s5,
-        J5_theta2_61,
-        J5_theta2_61,
-        c5,
-        0.0,
-        1.0,
-    ];
+    o[0] = -(J4_theta1_31 * s6 + t3 * c6);
+    o[1] = t5 * s6 + J5_theta2_11 * c6;
+    o[2] = t7 * s6 - t9 * c6;
+    o[3] = 0.0;
+    o[4] = 0.0;
+    o[5] = 0.0;
+    o[6] = t3 * s6 - J4_theta1_31 * c6;
+    o[7] = t5 * c6 - J5_theta2_11 * s6;
+    o[8] = t7 * c6 + t9 * s6;
+    o[9] = 0.0;
+    o[10] = 0.0;
+    o[11] = 0.0;
+    o[12] = -(t2 * c5 + J4_theta1_11 * s5);
+    o[13] = J3_theta2_31 * c5 + t6 * s5;
+    o[14] = t8 * s5 + a3 * c5;
+    o[15] = 0.0;
+    o[16] = 0.0;
+    o[17] = 0.0;
+    o[18] = J5_theta1_41 * c6 - J4_theta1_61 * s6;
+    o[19] = t11;
+    o[20] = t11;
+    o[21] = s5 * c6;
+    o[22] = -s6;
+    o[23] = 0.0;
+    o[24] = -(J4_theta1_61 * c6 + J5_theta1_41 * s6);
+    o[25] = t12;
+    o[26] = t12;
+    o[27] = -(s5 * s6);
+    o[28] = -c6;
+    o[29] = 0.0;
+    o[30] = c23 * c5 - J4_theta1_41 * s5;
+    o[31] = J5_theta2_61;
+    o[32] = J5_theta2_61;
+    o[33] = c5;
+    o[34] = 0.0;
+    o[35] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_BODY = {
+const _JACOBIAN_BODY = _runtime.kernel({
     name: "puma560.jacobian_body",
     compute: _jacobian_body,
     common: null,
@@ -640,7 +610,7 @@ const _JACOBIAN_BODY = {
     used: ["a2", "a3", "d3", "d4"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Twist (v; omega) of the hand in its own frame per joint rate.
@@ -668,11 +638,8 @@ export function jacobian_body_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_BODY, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _determinant(v) {
+/** @type {_runtime.Compute} */
+function _determinant(v, o) {
     const theta2 = v[1];
     const theta3 = v[2];
     const theta5 = v[4];
@@ -696,13 +663,10 @@ function _determinant(v) {
     const t6 = s2 * t1 - a2 * a3 * t2 - t3 * t4 - c23 * t4 - t1 * t5;
     const t7 = a3 * d4;
     const t8 = t6 + c2 * t7 - c3 * c23 * 2.0 * t7 + d4 * d4 * t5;
-    return [
-        -(a2 * s5 * t8),
-    ];
+    o[0] = -(a2 * s5 * t8);
 }
 
-/** @type {_runtime.Kernel} */
-const _DETERMINANT = {
+const _DETERMINANT = _runtime.kernel({
     name: "puma560.determinant",
     compute: _determinant,
     common: null,
@@ -720,7 +684,7 @@ const _DETERMINANT = {
         least: 6.681911775230489e-52,
         most: 1.7498005798264095e+100,
     },
-};
+});
 
 /**
  * Determinant of the Jacobian.
@@ -748,11 +712,8 @@ export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _singularities(v) {
+/** @type {_runtime.Compute} */
+function _singularities(v, o) {
     const theta2 = v[1];
     const theta3 = v[2];
     const theta5 = v[4];
@@ -768,15 +729,12 @@ function _singularities(v) {
     _runtime.sincos(theta5);
     const s5 = _runtime.found[0];
     const t1 = a2 * c2 + a3 * (c2 * c3 - s2 * s3) - d4 * (s2 * c3 + c2 * s3);
-    return [
-        t1,
-        a3 * s3 + d4 * c3,
-        s5,
-    ];
+    o[0] = t1;
+    o[1] = a3 * s3 + d4 * c3;
+    o[2] = s5;
 }
 
-/** @type {_runtime.Kernel} */
-const _SINGULARITIES = {
+const _SINGULARITIES = _runtime.kernel({
     name: "puma560.singularities",
     compute: _singularities,
     common: null,
@@ -789,7 +747,7 @@ const _SINGULARITIES = {
     used: ["a2", "a3", "d4"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The factors whose zeros are the singular set: shoulder, elbow, wrist.
@@ -817,11 +775,8 @@ export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik(v) {
+/** @type {_runtime.Compute} */
+function _ik(v, o) {
     const T11 = v[0];
     const T12 = v[1];
     const T13 = v[2];
@@ -872,253 +827,261 @@ function _ik(v) {
     const t16 = T24 * t5 * t11;
     const t17 = t11 * (T14 * t13);
     const c1 = free_theta1 ? 1.0 : t16 + t17;
-    const t18 = Number.isFinite(a2) && Number.isFinite(a3) && Number.isFinite(d3) &&
+    const t18 = -Math.atan2(t15, c1);
+    const t19 = Number.isFinite(a2) && Number.isFinite(a3) && Number.isFinite(d3) &&
         Number.isFinite(d4);
-    const t19 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
-    const t20 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
-    const t21 = t18 && (0.0 <= a2) && (0.0 <= d4) && t19 && t20;
-    const t22 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
-    const t23 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
-    const t24 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
-    const t25 = t21 && t22 && t23 && (t24 <= _runtime.ROTATION);
-    const t26 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
-    const t27 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
-    const t28 = t25 && (t26 <= _runtime.ROTATION) && t27 && (Math.abs(T41) <=
+    const t20 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
+    const t21 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
+    const t22 = t19 && (0.0 <= a2) && (0.0 <= d4) && t20 && t21;
+    const t23 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
+    const t24 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
+    const t25 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
+    const t26 = t22 && t23 && t24 && (t25 <= _runtime.ROTATION);
+    const t27 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
+    const t28 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
+    const t29 = t26 && (t27 <= _runtime.ROTATION) && t28 && (Math.abs(T41) <=
         _runtime.ROTATION);
-    const t29 = t28 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
+    const t30 = t29 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
         _runtime.ROTATION);
-    const t30 = t29 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
-    const invalid = !t30;
-    const t31 = -(_runtime.FEASIBILITY * size);
+    const t31 = t30 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
+    const invalid = !t31;
+    const t32 = -(_runtime.FEASIBILITY * size);
     const reach = Math.sqrt(t8 + ahead * ahead);
-    const t32 = t1 - reach;
-    const t33 = t7 + reach;
-    const t34 = (t31 <= t3) && (t31 <= t4) && (t31 <= t32) && (t31 <= t33);
-    const t35 = reach - t7;
-    const unreachable = !(t34 && (t31 <= t35));
-    const t36 = _runtime.poison(invalid || unreachable);
-    const t37 = _runtime.wrapCut(-Math.atan2(t15, c1)) + t36;
+    const t33 = t1 - reach;
+    const t34 = t7 + reach;
+    const t35 = (t32 <= t3) && (t32 <= t4) && (t32 <= t33) && (t32 <= t34);
+    const t36 = reach - t7;
+    const unreachable = !(t35 && (t32 <= t36));
+    const t37 = invalid || unreachable ? NaN : 0;
+    const t38 = (t18 <= -Math.PI ? Math.PI : t18) + t37;
     const folded = reach <= t2;
-    const t38 = 1.0 / reach;
-    const t39 = folded ? 0.0 : T34 * t38;
+    const t39 = 1.0 / reach;
+    const t40 = folded ? 0.0 : T34 * t39;
     const no_link = a2 * f <= _runtime.VANISHING * t9;
-    const t40 = folded || no_link;
+    const t41 = folded || no_link;
     const S = t1 + reach;
-    const B = Math.max(t33, 0.0);
+    const B = Math.max(t34, 0.0);
     const SB = S * B;
-    const A = Math.max(t32, 0.0);
-    const C = Math.max(t35, 0.0);
+    const A = Math.max(t33, 0.0);
+    const C = Math.max(t36, 0.0);
     const AC = A * C;
-    const t41 = 1.0 / (SB + AC);
-    const t42 = t40 ? 1.0 : (SB - AC) * t41;
-    const t43 = t39 * t42;
+    const t42 = 1.0 / (SB + AC);
+    const t43 = t41 ? 1.0 : (SB - AC) * t42;
+    const t44 = t40 * t43;
     const SA = S * A;
     const BC = B * C;
     const area = 2.0 * Math.sqrt(SA * BC);
-    const t44 = t40 ? 0.0 : t41 * area;
-    const t45 = ahead * t38;
-    const t46 = folded ? 1.0 : t45;
-    const t47 = t44 * t46;
-    const s2 = t43 + t47;
-    const t48 = t39 * t44;
-    const t49 = t42 * t46;
-    const t50 = t48 - t49;
-    const t51 = _runtime.wrapCut(Math.atan2(s2, -t50)) + t36;
+    const t45 = t41 ? 0.0 : t42 * area;
+    const t46 = ahead * t39;
+    const t47 = folded ? 1.0 : t46;
+    const t48 = t45 * t47;
+    const s2 = t44 + t48;
+    const t49 = t40 * t45;
+    const t50 = t43 * t47;
+    const t51 = t49 - t50;
+    const t52 = Math.atan2(s2, -t51);
+    const t53 = (t52 <= -Math.PI ? Math.PI : t52) + t37;
     const no_forearm = f <= t2;
-    const t52 = 1.0 / f;
-    const t53 = no_forearm ? 0.0 : d4 * t52;
-    const t54 = 1.0 / (SA + BC);
-    const t55 = no_link ? 1.0 : -((SA - BC) * t54);
-    const t56 = t53 * t55;
-    const t57 = no_forearm ? 1.0 : a3 * t52;
-    const t58 = no_link ? 0.0 : area * t54;
-    const t59 = t57 * t58;
-    const t60 = t56 + t59;
-    const t61 = t53 * t58;
-    const t62 = t55 * t57;
-    const t63 = t61 - t62;
-    const t64 = _runtime.wrapCut(-Math.atan2(t60, -t63)) + t36;
-    const t65 = T13 * t15 + T23 * c1;
-    const t66 = t65 * t65;
-    const s23 = t50 * t60 - s2 * t63;
-    const c23 = t50 * t63 + s2 * t60;
+    const t54 = 1.0 / f;
+    const t55 = no_forearm ? 0.0 : d4 * t54;
+    const t56 = 1.0 / (SA + BC);
+    const t57 = no_link ? 1.0 : -((SA - BC) * t56);
+    const t58 = t55 * t57;
+    const t59 = no_forearm ? 1.0 : a3 * t54;
+    const t60 = no_link ? 0.0 : area * t56;
+    const t61 = t59 * t60;
+    const t62 = t58 + t61;
+    const t63 = t55 * t60;
+    const t64 = t57 * t59;
+    const t65 = t63 - t64;
+    const t66 = -Math.atan2(t62, -t65);
+    const t67 = (t66 <= -Math.PI ? Math.PI : t66) + t37;
+    const t68 = T13 * t15 + T23 * c1;
+    const t69 = t68 * t68;
+    const s23 = t51 * t62 - s2 * t65;
+    const c23 = t51 * t65 + s2 * t62;
     const R1_13 = T13 * c1 - T23 * t15;
     const R2_13 = T33 * s23 + c23 * R1_13;
-    const h = Math.sqrt(t66 + R2_13 * R2_13);
-    const t67 = _runtime.VANISHING * 16.0;
-    const aligned = h <= t67;
-    const t68 = 1.0 / h;
-    const t69 = aligned ? 0.0 : t65 * t68;
-    const c4 = aligned ? 1.0 : -(R2_13 * t68);
-    const t70 = Math.atan2(t69, c4);
-    const t71 = Math.atan2(t65 * t69 - R2_13 * c4, T33 * c23 - s23 * R1_13);
-    const t72 = T11 * t15 + T21 * c1;
+    const h = Math.sqrt(t69 + R2_13 * R2_13);
+    const t70 = _runtime.VANISHING * 16.0;
+    const aligned = h <= t70;
+    const t71 = 1.0 / h;
+    const t72 = aligned ? 0.0 : t68 * t71;
+    const c4 = aligned ? 1.0 : -(R2_13 * t71);
+    const t73 = Math.atan2(t72, c4);
+    const t74 = -t73;
+    const t75 = Math.atan2(t68 * t72 - R2_13 * c4, T33 * c23 - s23 * R1_13);
+    const t76 = T11 * t15 + T21 * c1;
     const R1_11 = T11 * c1 - T21 * t15;
-    const t73 = T12 * t15 + T22 * c1;
+    const t77 = T12 * t15 + T22 * c1;
     const R1_12 = T12 * c1 - T22 * t15;
-    const t74 = Math.atan2(c4 * t72 + t69 * (T31 * s23 + c23 * R1_11), c4 * t73 + t69 * (T32 *
+    const t78 = Math.atan2(c4 * t76 + t72 * (T31 * s23 + c23 * R1_11), c4 * t77 + t72 * (T32 *
         s23 + c23 * R1_12));
     const flip = aligned ? 0.0 : 3.141592653589793;
-    const s2_right_down_noflip = t43 - t47;
-    const c2_right_down_noflip = t48 + t49;
-    const t75 = Math.atan2(s2_right_down_noflip, c2_right_down_noflip);
-    const t76 = _runtime.wrapCut(t75) + t36;
-    const t77 = t56 - t59;
-    const c3_right_down_noflip = t61 + t62;
-    const t78 = _runtime.wrapCut(-Math.atan2(t77, c3_right_down_noflip));
-    const t79 = t78 + t36;
-    const t80 = c2_right_down_noflip * t77 - s2_right_down_noflip * c3_right_down_noflip;
+    const t79 = -t75;
+    const s2_right_down_noflip = t44 - t48;
+    const c2_right_down_noflip = t49 + t50;
+    const t80 = Math.atan2(s2_right_down_noflip, c2_right_down_noflip);
+    const t81 = (t80 <= -Math.PI ? Math.PI : t80) + t37;
+    const t82 = t58 - t61;
+    const c3_right_down_noflip = t63 + t64;
+    const t83 = -Math.atan2(t82, c3_right_down_noflip);
+    const t84 = (t83 <= -Math.PI ? Math.PI : t83) + t37;
+    const t85 = c2_right_down_noflip * t82 - s2_right_down_noflip * c3_right_down_noflip;
     const c23_right_down_noflip = c2_right_down_noflip * c3_right_down_noflip +
-        s2_right_down_noflip * t77;
-    const t81 = T33 * t80 - R1_13 * c23_right_down_noflip;
-    const h_right_down_noflip = Math.sqrt(t66 + t81 * t81);
-    const aligned_right_down_noflip = h_right_down_noflip <= t67;
-    const t82 = 1.0 / h_right_down_noflip;
-    const t83 = aligned_right_down_noflip ? 0.0 : t65 * t82;
-    const c4_right_down_noflip = aligned_right_down_noflip ? 1.0 : t81 * t82;
-    const t84 = Math.atan2(t83, c4_right_down_noflip);
-    const t85 = Math.atan2(t65 * t83 + t81 * c4_right_down_noflip, T33 * c23_right_down_noflip +
-        R1_13 * t80);
-    const t86 = t83 * (T31 * t80 - R1_11 * c23_right_down_noflip);
-    const t87 = t83 * (T32 * t80 - R1_12 * c23_right_down_noflip);
-    const t88 = Math.atan2(t72 * c4_right_down_noflip - t86, t73 * c4_right_down_noflip - t87);
+        s2_right_down_noflip * t82;
+    const t86 = T33 * t85 - R1_13 * c23_right_down_noflip;
+    const h_right_down_noflip = Math.sqrt(t69 + t86 * t86);
+    const aligned_right_down_noflip = h_right_down_noflip <= t70;
+    const t87 = 1.0 / h_right_down_noflip;
+    const t88 = aligned_right_down_noflip ? 0.0 : t68 * t87;
+    const c4_right_down_noflip = aligned_right_down_noflip ? 1.0 : t86 * t87;
+    const t89 = Math.atan2(t88, c4_right_down_noflip);
+    const t90 = -t89;
+    const t91 = Math.atan2(t68 * t88 + t86 * c4_right_down_noflip, T33 * c23_right_down_noflip +
+        R1_13 * t85);
+    const t92 = t88 * (T31 * t85 - R1_11 * c23_right_down_noflip);
+    const t93 = t88 * (T32 * t85 - R1_12 * c23_right_down_noflip);
+    const t94 = Math.atan2(t76 * c4_right_down_noflip - t92, t77 * c4_right_down_noflip - t93);
     const flip_right_down_flip = aligned_right_down_noflip ? 0.0 : 3.141592653589793;
-    const t89 = _runtime.wrap(flip_right_down_flip - t84) + t36;
-    const t90 = _runtime.wrap(t88 + flip_right_down_flip) + t36;
-    const t91 = free_theta1 ? 0.0 : t12 + t14;
+    const t95 = _runtime.wrap(flip_right_down_flip - t89) + t37;
+    const t96 = -t91;
+    const t97 = _runtime.wrap(t94 + flip_right_down_flip) + t37;
+    const t98 = free_theta1 ? 0.0 : t12 + t14;
     const c1_left_up_noflip = free_theta1 ? 1.0 : t16 - t17;
-    const t92 = _runtime.wrapCut(-Math.atan2(t91, c1_left_up_noflip));
-    const t93 = t92 + t36;
-    const t94 = folded ? 1.0 : -t45;
-    const t95 = t44 * t94;
-    const s2_left_up_noflip = t43 - t95;
-    const t96 = t42 * t94;
-    const c2_left_up_noflip = t48 + t96;
-    const t97 = Math.atan2(s2_left_up_noflip, c2_left_up_noflip);
-    const t98 = _runtime.wrapCut(t97) + t36;
-    const t99 = T13 * t91 + T23 * c1_left_up_noflip;
-    const t100 = t99 * t99;
-    const t101 = t77 * c2_left_up_noflip - c3_right_down_noflip * s2_left_up_noflip;
-    const c23_left_up_noflip = c3_right_down_noflip * c2_left_up_noflip + t77 *
+    const t99 = -Math.atan2(t98, c1_left_up_noflip);
+    const t100 = (t99 <= -Math.PI ? Math.PI : t99) + t37;
+    const t101 = folded ? 1.0 : -t46;
+    const t102 = t45 * t101;
+    const s2_left_up_noflip = t44 - t102;
+    const t103 = t43 * t101;
+    const c2_left_up_noflip = t49 + t103;
+    const t104 = Math.atan2(s2_left_up_noflip, c2_left_up_noflip);
+    const t105 = (t104 <= -Math.PI ? Math.PI : t104) + t37;
+    const t106 = T13 * t98 + T23 * c1_left_up_noflip;
+    const t107 = t106 * t106;
+    const t108 = t82 * c2_left_up_noflip - c3_right_down_noflip * s2_left_up_noflip;
+    const c23_left_up_noflip = c3_right_down_noflip * c2_left_up_noflip + t82 *
         s2_left_up_noflip;
-    const R1_13_left_up_noflip = T13 * c1_left_up_noflip - T23 * t91;
-    const t102 = T33 * t101 - c23_left_up_noflip * R1_13_left_up_noflip;
-    const h_left_up_noflip = Math.sqrt(t100 + t102 * t102);
-    const aligned_left_up_noflip = h_left_up_noflip <= t67;
-    const t103 = 1.0 / h_left_up_noflip;
-    const t104 = aligned_left_up_noflip ? 0.0 : t99 * t103;
-    const c4_left_up_noflip = aligned_left_up_noflip ? 1.0 : t102 * t103;
-    const t105 = Math.atan2(t104, c4_left_up_noflip);
-    const R2_33_left_up_noflip = T33 * c23_left_up_noflip + t101 * R1_13_left_up_noflip;
-    const t106 = Math.atan2(t99 * t104 + t102 * c4_left_up_noflip, R2_33_left_up_noflip);
-    const t107 = T11 * t91 + T21 * c1_left_up_noflip;
-    const R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t91;
-    const t108 = T31 * t101 - c23_left_up_noflip * R1_11_left_up_noflip;
-    const t109 = T12 * t91 + T22 * c1_left_up_noflip;
-    const R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t91;
-    const t110 = T32 * t101 - c23_left_up_noflip * R1_12_left_up_noflip;
-    const t111 = Math.atan2(c4_left_up_noflip * t107 - t104 * t108, c4_left_up_noflip * t109 -
-        t104 * t110);
+    const R1_13_left_up_noflip = T13 * c1_left_up_noflip - T23 * t98;
+    const t109 = T33 * t108 - c23_left_up_noflip * R1_13_left_up_noflip;
+    const h_left_up_noflip = Math.sqrt(t107 + t109 * t109);
+    const aligned_left_up_noflip = h_left_up_noflip <= t70;
+    const t110 = 1.0 / h_left_up_noflip;
+    const t111 = aligned_left_up_noflip ? 0.0 : t106 * t110;
+    const c4_left_up_noflip = aligned_left_up_noflip ? 1.0 : t109 * t110;
+    const t112 = Math.atan2(t111, c4_left_up_noflip);
+    const t113 = -t112;
+    const R2_33_left_up_noflip = T33 * c23_left_up_noflip + t108 * R1_13_left_up_noflip;
+    const t114 = Math.atan2(t106 * t111 + t109 * c4_left_up_noflip, R2_33_left_up_noflip);
+    const t115 = T11 * t98 + T21 * c1_left_up_noflip;
+    const R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t98;
+    const t116 = T31 * t108 - c23_left_up_noflip * R1_11_left_up_noflip;
+    const t117 = T12 * t98 + T22 * c1_left_up_noflip;
+    const R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t98;
+    const t118 = T32 * t108 - c23_left_up_noflip * R1_12_left_up_noflip;
+    const t119 = Math.atan2(c4_left_up_noflip * t115 - t111 * t116, c4_left_up_noflip * t117 -
+        t111 * t118);
     const flip_left_up_flip = aligned_left_up_noflip ? 0.0 : 3.141592653589793;
-    const t112 = _runtime.wrap(flip_left_up_flip - t105) + t36;
-    const t113 = _runtime.wrap(t111 + flip_left_up_flip) + t36;
-    const s2_left_down_noflip = t43 + t95;
-    const t114 = t48 - t96;
-    const t115 = _runtime.wrapCut(Math.atan2(s2_left_down_noflip, -t114));
-    const t116 = t115 + t36;
-    const s23_left_down_noflip = t60 * t114 - t63 * s2_left_down_noflip;
-    const c23_left_down_noflip = t63 * t114 + t60 * s2_left_down_noflip;
+    const t120 = _runtime.wrap(flip_left_up_flip - t112) + t37;
+    const t121 = -t114;
+    const t122 = _runtime.wrap(t119 + flip_left_up_flip) + t37;
+    const s2_left_down_noflip = t44 + t102;
+    const t123 = t49 - t103;
+    const t124 = Math.atan2(s2_left_down_noflip, -t123);
+    const t125 = (t124 <= -Math.PI ? Math.PI : t124) + t37;
+    const s23_left_down_noflip = t62 * t123 - t65 * s2_left_down_noflip;
+    const c23_left_down_noflip = t65 * t123 + t62 * s2_left_down_noflip;
     const R2_13_left_down_noflip = T33 * s23_left_down_noflip + R1_13_left_up_noflip *
         c23_left_down_noflip;
-    const t117 = R2_13_left_down_noflip * R2_13_left_down_noflip;
-    const h_left_down_noflip = Math.sqrt(t100 + t117);
-    const aligned_left_down_noflip = h_left_down_noflip <= t67;
-    const t118 = 1.0 / h_left_down_noflip;
-    const t119 = aligned_left_down_noflip ? 0.0 : t99 * t118;
+    const t126 = R2_13_left_down_noflip * R2_13_left_down_noflip;
+    const h_left_down_noflip = Math.sqrt(t107 + t126);
+    const aligned_left_down_noflip = h_left_down_noflip <= t70;
+    const t127 = 1.0 / h_left_down_noflip;
+    const t128 = aligned_left_down_noflip ? 0.0 : t106 * t127;
     const c4_left_down_noflip = aligned_left_down_noflip ? 1.0 : -(R2_13_left_down_noflip *
-        t118);
-    const t120 = Math.atan2(t119, c4_left_down_noflip);
-    const t121 = t99 * t119 - R2_13_left_down_noflip * c4_left_down_noflip;
+        t127);
+    const t129 = Math.atan2(t128, c4_left_down_noflip);
+    const t130 = -t129;
+    const t131 = t106 * t128 - R2_13_left_down_noflip * c4_left_down_noflip;
     const R2_33_left_down_noflip = T33 * c23_left_down_noflip - R1_13_left_up_noflip *
         s23_left_down_noflip;
-    const t122 = Math.atan2(t121, R2_33_left_down_noflip);
+    const t132 = Math.atan2(t131, R2_33_left_down_noflip);
     const R2_11_left_down_noflip = T31 * s23_left_down_noflip + R1_11_left_up_noflip *
         c23_left_down_noflip;
-    const t123 = t107 * c4_left_down_noflip + t119 * R2_11_left_down_noflip;
+    const t133 = t115 * c4_left_down_noflip + t128 * R2_11_left_down_noflip;
     const R2_12_left_down_noflip = T32 * s23_left_down_noflip + R1_12_left_up_noflip *
         c23_left_down_noflip;
-    const t124 = t109 * c4_left_down_noflip + t119 * R2_12_left_down_noflip;
-    const t125 = Math.atan2(t123, t124);
+    const t134 = t117 * c4_left_down_noflip + t128 * R2_12_left_down_noflip;
+    const t135 = Math.atan2(t133, t134);
     const flip_left_down_flip = aligned_left_down_noflip ? 0.0 : 3.141592653589793;
-    const t126 = _runtime.wrap(flip_left_down_flip - t120) + t36;
-    const t127 = _runtime.wrap(t125 + flip_left_down_flip) + t36;
-    const t128 = free_theta1 || no_link || folded || no_forearm;
-    const t129 = _runtime.status(invalid, unreachable, t128 || aligned);
-    const t130 = _runtime.status(invalid, unreachable, t128 || aligned_right_down_noflip);
-    const t131 = _runtime.status(invalid, unreachable, t128 || aligned_left_up_noflip);
-    const t132 = _runtime.status(invalid, unreachable, t128 || aligned_left_down_noflip);
-    return [
-        t37,
-        t51,
-        t64,
-        _runtime.wrapCut(-t70) + t36,
-        _runtime.wrapCut(t71) + t36,
-        _runtime.wrapCut(t74) + t36,
-        t37,
-        t51,
-        t64,
-        _runtime.wrap(flip - t70) + t36,
-        _runtime.wrapCut(-t71) + t36,
-        _runtime.wrap(t74 + flip) + t36,
-        t37,
-        t76,
-        t79,
-        _runtime.wrapCut(-t84) + t36,
-        _runtime.wrapCut(t85) + t36,
-        _runtime.wrapCut(t88) + t36,
-        t37,
-        t76,
-        t79,
-        t89,
-        _runtime.wrapCut(-t85) + t36,
-        t90,
-        t93,
-        t98,
-        t79,
-        _runtime.wrapCut(-t105) + t36,
-        _runtime.wrapCut(t106) + t36,
-        _runtime.wrapCut(t111) + t36,
-        t93,
-        t98,
-        t79,
-        t112,
-        _runtime.wrapCut(-t106) + t36,
-        t113,
-        t93,
-        t116,
-        t64,
-        _runtime.wrapCut(-t120) + t36,
-        _runtime.wrapCut(t122) + t36,
-        _runtime.wrapCut(t125) + t36,
-        t93,
-        t116,
-        t64,
-        t126,
-        _runtime.wrapCut(-t122) + t36,
-        t127,
-        t129,
-        t129,
-        t130,
-        t130,
-        t131,
-        t131,
-        t132,
-        t132,
-    ];
+    const t136 = _runtime.wrap(flip_left_down_flip - t129) + t37;
+    const t137 = -t132;
+    const t138 = _runtime.wrap(t135 + flip_left_down_flip) + t37;
+    const t139 = free_theta1 || no_link || folded || no_forearm;
+    const t140 = invalid ? 3 : unreachable ? 1 : t139 || aligned ? 2 : 0;
+    const t141 = invalid ? 3 : unreachable ? 1 : t139 || aligned_right_down_noflip ? 2 : 0;
+    const t142 = invalid ? 3 : unreachable ? 1 : t139 || aligned_left_up_noflip ? 2 : 0;
+    const t143 = invalid ? 3 : unreachable ? 1 : t139 || aligned_left_down_noflip ? 2 : 0;
+    o[0] = t38;
+    o[1] = t53;
+    o[2] = t67;
+    o[3] = (t74 <= -Math.PI ? Math.PI : t74) + t37;
+    o[4] = (t75 <= -Math.PI ? Math.PI : t75) + t37;
+    o[5] = (t78 <= -Math.PI ? Math.PI : t78) + t37;
+    o[6] = t38;
+    o[7] = t53;
+    o[8] = t67;
+    o[9] = _runtime.wrap(flip - t73) + t37;
+    o[10] = (t79 <= -Math.PI ? Math.PI : t79) + t37;
+    o[11] = _runtime.wrap(t78 + flip) + t37;
+    o[12] = t38;
+    o[13] = t81;
+    o[14] = t84;
+    o[15] = (t90 <= -Math.PI ? Math.PI : t90) + t37;
+    o[16] = (t91 <= -Math.PI ? Math.PI : t91) + t37;
+    o[17] = (t94 <= -Math.PI ? Math.PI : t94) + t37;
+    o[18] = t38;
+    o[19] = t81;
+    o[20] = t84;
+    o[21] = t95;
+    o[22] = (t96 <= -Math.PI ? Math.PI : t96) + t37;
+    o[23] = t97;
+    o[24] = t100;
+    o[25] = t105;
+    o[26] = t84;
+    o[27] = (t113 <= -Math.PI ? Math.PI : t113) + t37;
+    o[28] = (t114 <= -Math.PI ? Math.PI : t114) + t37;
+    o[29] = (t119 <= -Math.PI ? Math.PI : t119) + t37;
+    o[30] = t100;
+    o[31] = t105;
+    o[32] = t84;
+    o[33] = t120;
+    o[34] = (t121 <= -Math.PI ? Math.PI : t121) + t37;
+    o[35] = t122;
+    o[36] = t100;
+    o[37] = t125;
+    o[38] = t67;
+    o[39] = (t130 <= -Math.PI ? Math.PI : t130) + t37;
+    o[40] = (t132 <= -Math.PI ? Math.PI : t132) + t37;
+    o[41] = (t135 <= -Math.PI ? Math.PI : t135) + t37;
+    o[42] = t100;
+    o[43] = t125;
+    o[44] = t67;
+    o[45] = t136;
+    o[46] = (t137 <= -Math.PI ? Math.PI : t137) + t37;
+    o[47] = t138;
+    o[48] = t140;
+    o[49] = t140;
+    o[50] = t141;
+    o[51] = t141;
+    o[52] = t142;
+    o[53] = t142;
+    o[54] = t143;
+    o[55] = t143;
 }
 
-/** @type {_runtime.Kernel} */
-const _IK = {
+const _IK = _runtime.kernel({
     name: "puma560.ik",
     compute: _ik,
     common: null,
@@ -1137,7 +1100,7 @@ const _IK = {
         least: 2.938735877055719e-39,
         most: 1.8092513943330656e+75,
     },
-};
+});
 
 /**
  * All 8 configurations of a pose.

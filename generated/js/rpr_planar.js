@@ -44,11 +44,8 @@ export const DEFAULTS = Object.freeze({
     b: 1.0,
 });
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _fk(v) {
+/** @type {_runtime.Compute} */
+function _fk(v, o) {
     const rho1 = v[0];
     const rho2 = v[1];
     const b = v[2];
@@ -67,25 +64,22 @@ function _fk(v) {
     const t9 = b + t4;
     const t10 = b - t4;
     const unreachable = !((t7 <= t8) && (t7 <= t9) && (t7 <= t10));
-    const t11 = _runtime.poison(invalid || unreachable);
+    const t11 = invalid || unreachable ? NaN : 0;
     const t12 = P_x + t11;
     const slack = Math.max(t8, 0.0);
     const t13 = slack * Math.max(t9, 0.0) * Math.max(t10, 0.0);
     const t14 = coincide ? 0.0 : t5 * (Math.sqrt(t2) * Math.sqrt(t13));
     const P_y = n_1 * (slack <= t3 ? 0.0 : t14);
-    const t15 = _runtime.status(invalid, unreachable, coincide);
-    return [
-        t12,
-        P_y + t11,
-        t12,
-        -P_y + t11,
-        t15,
-        t15,
-    ];
+    const t15 = invalid ? 3 : unreachable ? 1 : coincide ? 2 : 0;
+    o[0] = t12;
+    o[1] = P_y + t11;
+    o[2] = t12;
+    o[3] = -P_y + t11;
+    o[4] = t15;
+    o[5] = t15;
 }
 
-/** @type {_runtime.Kernel} */
-const _FK = {
+const _FK = _runtime.kernel({
     name: "rpr_planar.fk",
     compute: _fk,
     common: null,
@@ -104,7 +98,7 @@ const _FK = {
         least: 6.681911775230489e-52,
         most: 1.7498005798264095e+100,
     },
-};
+});
 
 /**
  * Position of P in both assembly modes.
@@ -142,11 +136,8 @@ export function fk_batch(n, q, p, status, parameters) {
     return _runtime.batch(_FK, n, [q], [p, status], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _passive_angles(v) {
+/** @type {_runtime.Compute} */
+function _passive_angles(v, o) {
     const rho1 = v[0];
     const rho2 = v[1];
     const b = v[2];
@@ -170,18 +161,17 @@ function _passive_angles(v) {
     const t13 = -(_runtime.FEASIBILITY * t2);
     const failed = !(Number.isFinite(b) && (0.0 <= b) && t12) || !((t13 <= t4) && (t13 <= t6) &&
         (t13 <= t7));
-    const t14 = _runtime.poison(failed);
+    const t14 = failed ? NaN : 0;
     const t15 = Math.atan2(P_y, P_x - b);
-    return [
-        _runtime.wrapCut(t11) + t14,
-        _runtime.wrapCut(t15) + t14,
-        _runtime.wrapCut(-t11) + t14,
-        _runtime.wrapCut(-t15) + t14,
-    ];
+    const t16 = -t11;
+    const t17 = -t15;
+    o[0] = (t11 <= -Math.PI ? Math.PI : t11) + t14;
+    o[1] = (t15 <= -Math.PI ? Math.PI : t15) + t14;
+    o[2] = (t16 <= -Math.PI ? Math.PI : t16) + t14;
+    o[3] = (t17 <= -Math.PI ? Math.PI : t17) + t14;
 }
 
-/** @type {_runtime.Kernel} */
-const _PASSIVE_ANGLES = {
+const _PASSIVE_ANGLES = _runtime.kernel({
     name: "rpr_planar.passive_angles",
     compute: _passive_angles,
     common: null,
@@ -199,7 +189,7 @@ const _PASSIVE_ANGLES = {
         least: 6.681911775230489e-52,
         most: 1.7498005798264095e+100,
     },
-};
+});
 
 /**
  * Angles of the legs in both assembly modes.
@@ -229,11 +219,8 @@ export function passive_angles_batch(n, q, theta, parameters) {
     return _runtime.batch(_PASSIVE_ANGLES, n, [q], [theta], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian(v) {
+/** @type {_runtime.Compute} */
+function _jacobian(v, o) {
     const rho1 = v[0];
     const rho2 = v[1];
     const b = v[2];
@@ -247,7 +234,7 @@ function _jacobian(v) {
     const t8 = b - t6;
     const failed = !(Number.isFinite(b) && (0.0 <= b) && t1) || !((t4 <= t5) && (t4 <= t7) &&
         (t4 <= t8));
-    const t9 = _runtime.poison(failed);
+    const t9 = failed ? NaN : 0;
     const t10 = rho1 / b + t9;
     const t11 = -(rho2 / b) + t9;
     const t12 = _runtime.VANISHING * t3;
@@ -261,20 +248,17 @@ function _jacobian(v) {
     const t16 = b * (n_1 * (slack <= t12 ? 0.0 : t15));
     const t17 = (rho1 * b - rho1 * P_x) / t16;
     const t18 = rho2 * P_x / t16;
-    return [
-        t10,
-        t11,
-        t17 + t9,
-        t18 + t9,
-        t10,
-        t11,
-        -t17 + t9,
-        -t18 + t9,
-    ];
+    o[0] = t10;
+    o[1] = t11;
+    o[2] = t17 + t9;
+    o[3] = t18 + t9;
+    o[4] = t10;
+    o[5] = t11;
+    o[6] = -t17 + t9;
+    o[7] = -t18 + t9;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN = {
+const _JACOBIAN = _runtime.kernel({
     name: "rpr_planar.jacobian",
     compute: _jacobian,
     common: null,
@@ -292,7 +276,7 @@ const _JACOBIAN = {
         least: 6.681911775230489e-52,
         most: 1.7498005798264095e+100,
     },
-};
+});
 
 /**
  * Derivative of p with respect to q, A^-1 B.
@@ -323,11 +307,8 @@ export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _determinant(v) {
+/** @type {_runtime.Compute} */
+function _determinant(v, o) {
     const rho1 = v[0];
     const rho2 = v[1];
     const b = v[2];
@@ -348,15 +329,12 @@ function _determinant(v) {
     const t12 = -(_runtime.FEASIBILITY * t2);
     const failed = !(Number.isFinite(b) && (0.0 <= b) && t11) || !((t12 <= t4) && (t12 <= t6) &&
         (t12 <= t7));
-    const t13 = _runtime.poison(failed);
-    return [
-        t10 + t13,
-        -t10 + t13,
-    ];
+    const t13 = failed ? NaN : 0;
+    o[0] = t10 + t13;
+    o[1] = -t10 + t13;
 }
 
-/** @type {_runtime.Kernel} */
-const _DETERMINANT = {
+const _DETERMINANT = _runtime.kernel({
     name: "rpr_planar.determinant",
     compute: _determinant,
     common: null,
@@ -374,7 +352,7 @@ const _DETERMINANT = {
         least: 6.681911775230489e-52,
         most: 1.7498005798264095e+100,
     },
-};
+});
 
 /**
  * Determinant of the Jacobian.
@@ -404,11 +382,8 @@ export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _singularities(v) {
+/** @type {_runtime.Compute} */
+function _singularities(v, o) {
     const rho1 = v[0];
     const rho2 = v[1];
     const b = v[2];
@@ -422,7 +397,7 @@ function _singularities(v) {
     const t8 = b - t6;
     const failed = !(Number.isFinite(b) && (0.0 <= b) && t1) || !((t4 <= t5) && (t4 <= t7) &&
         (t4 <= t8));
-    const t9 = _runtime.poison(failed);
+    const t9 = failed ? NaN : 0;
     const t10 = rho1 + t9;
     const t11 = rho2 + t9;
     const t12 = _runtime.VANISHING * t3;
@@ -431,18 +406,15 @@ function _singularities(v) {
     const t13 = slack * Math.max(t7, 0.0) * Math.max(t8, 0.0);
     const t14 = coincide ? 0.0 : Math.sqrt(t3) * Math.sqrt(t13) / (b * 2.0);
     const P_y = (coincide ? 1.0 : b / b) * (slack <= t12 ? 0.0 : t14);
-    return [
-        t10,
-        t11,
-        P_y + t9,
-        t10,
-        t11,
-        -P_y + t9,
-    ];
+    o[0] = t10;
+    o[1] = t11;
+    o[2] = P_y + t9;
+    o[3] = t10;
+    o[4] = t11;
+    o[5] = -P_y + t9;
 }
 
-/** @type {_runtime.Kernel} */
-const _SINGULARITIES = {
+const _SINGULARITIES = _runtime.kernel({
     name: "rpr_planar.singularities",
     compute: _singularities,
     common: null,
@@ -460,7 +432,7 @@ const _SINGULARITIES = {
         least: 6.681911775230489e-52,
         most: 1.7498005798264095e+100,
     },
-};
+});
 
 /**
  * rho1 and rho2 (serial) and y (parallel).
@@ -491,11 +463,8 @@ export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik(v) {
+/** @type {_runtime.Compute} */
+function _ik(v, o) {
     const x = v[0];
     const y = v[1];
     const b = v[2];
@@ -503,19 +472,16 @@ function _ik(v) {
     const leg1 = Math.sqrt(x * x + t1);
     const t2 = Number.isFinite(b) && (0.0 <= b) && (Number.isFinite(x) && Number.isFinite(y));
     const invalid = !t2;
-    const t3 = _runtime.poison(invalid);
+    const t3 = invalid ? NaN : 0;
     const t4 = x - b;
     const leg2 = Math.sqrt(t1 + t4 * t4);
     const t5 = b * Math.abs(y) <= _runtime.DETERMINED * (leg1 * leg2);
-    return [
-        leg1 + t3,
-        leg2 + t3,
-        _runtime.status(invalid, false, t5),
-    ];
+    o[0] = leg1 + t3;
+    o[1] = leg2 + t3;
+    o[2] = invalid ? 3 : false ? 1 : t5 ? 2 : 0;
 }
 
-/** @type {_runtime.Kernel} */
-const _IK = {
+const _IK = _runtime.kernel({
     name: "rpr_planar.ik",
     compute: _ik,
     common: null,
@@ -534,7 +500,7 @@ const _IK = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * The lengths of the legs.

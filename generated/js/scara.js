@@ -49,11 +49,8 @@ export const DEFAULTS = Object.freeze({
     h: 0.35,
 });
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _pose(v) {
+/** @type {_runtime.Compute} */
+function _pose(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const d3 = v[2];
@@ -74,28 +71,25 @@ function _pose(v) {
     const t2 = s2 * c4 - c2 * s4;
     const t3 = c1 * t1 - s1 * t2;
     const t4 = s1 * t1 + c1 * t2;
-    return [
-        t3,
-        t4,
-        0.0,
-        l1 * c1 + l2 * (c1 * c2 - s1 * s2),
-        t4,
-        -t3,
-        0.0,
-        l1 * s1 + l2 * (s1 * c2 + c1 * s2),
-        0.0,
-        0.0,
-        -1.0,
-        h - d3,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = t3;
+    o[1] = t4;
+    o[2] = 0.0;
+    o[3] = l1 * c1 + l2 * (c1 * c2 - s1 * s2);
+    o[4] = t4;
+    o[5] = -t3;
+    o[6] = 0.0;
+    o[7] = l1 * s1 + l2 * (s1 * c2 + c1 * s2);
+    o[8] = 0.0;
+    o[9] = 0.0;
+    o[10] = -1.0;
+    o[11] = h - d3;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _POSE = {
+const _POSE = _runtime.kernel({
     name: "scara.pose",
     compute: _pose,
     common: null,
@@ -108,7 +102,7 @@ const _POSE = {
     used: ["l1", "l2", "h"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Pose of the tool in the base frame.
@@ -137,11 +131,8 @@ export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _fk(v) {
+/** @type {_runtime.Compute} */
+function _fk(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const d3 = v[2];
@@ -159,16 +150,13 @@ function _fk(v) {
     const principal2 = _runtime.principal(theta2);
     const principal4 = _runtime.principal(theta4);
     const t1 = _runtime.wrap(principal1 + principal2 - principal4);
-    return [
-        l1 * c1 + l2 * (c1 * c2 - s1 * s2),
-        l1 * s1 + l2 * (s1 * c2 + c1 * s2),
-        h - d3,
-        t1,
-    ];
+    o[0] = l1 * c1 + l2 * (c1 * c2 - s1 * s2);
+    o[1] = l1 * s1 + l2 * (s1 * c2 + c1 * s2);
+    o[2] = h - d3;
+    o[3] = t1;
 }
 
-/** @type {_runtime.Kernel} */
-const _FK = {
+const _FK = _runtime.kernel({
     name: "scara.fk",
     compute: _fk,
     common: null,
@@ -181,7 +169,7 @@ const _FK = {
     used: ["l1", "l2", "h"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Task coordinates (x, y, z, yaw).
@@ -213,11 +201,8 @@ export function fk_batch(n, q, x, parameters) {
     return _runtime.batch(_FK, n, [q], [x], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian(v) {
+/** @type {_runtime.Compute} */
+function _jacobian(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const l1 = v[4];
@@ -230,28 +215,25 @@ function _jacobian(v) {
     const c2 = _runtime.found[1];
     const t1 = l2 * (s1 * c2 + c1 * s2);
     const t2 = l2 * (c1 * c2 - s1 * s2);
-    return [
-        -(l1 * s1 + t1),
-        -t1,
-        0.0,
-        0.0,
-        l1 * c1 + t2,
-        t2,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -1.0,
-        0.0,
-        1.0,
-        1.0,
-        0.0,
-        -1.0,
-    ];
+    o[0] = -(l1 * s1 + t1);
+    o[1] = -t1;
+    o[2] = 0.0;
+    o[3] = 0.0;
+    o[4] = l1 * c1 + t2;
+    o[5] = t2;
+    o[6] = 0.0;
+    o[7] = 0.0;
+    o[8] = 0.0;
+    o[9] = 0.0;
+    o[10] = -1.0;
+    o[11] = 0.0;
+    o[12] = 1.0;
+    o[13] = 1.0;
+    o[14] = 0.0;
+    o[15] = -1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN = {
+const _JACOBIAN = _runtime.kernel({
     name: "scara.jacobian",
     compute: _jacobian,
     common: null,
@@ -264,7 +246,7 @@ const _JACOBIAN = {
     used: ["l1", "l2"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Derivative of (x, y, z, yaw) by the joints.
@@ -294,23 +276,17 @@ export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _determinant(v) {
+/** @type {_runtime.Compute} */
+function _determinant(v, o) {
     const theta2 = v[1];
     const l1 = v[4];
     const l2 = v[5];
     _runtime.sincos(theta2);
     const s2 = _runtime.found[0];
-    return [
-        l1 * l2 * s2,
-    ];
+    o[0] = l1 * l2 * s2;
 }
 
-/** @type {_runtime.Kernel} */
-const _DETERMINANT = {
+const _DETERMINANT = _runtime.kernel({
     name: "scara.determinant",
     compute: _determinant,
     common: null,
@@ -328,7 +304,7 @@ const _DETERMINANT = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * Determinant of the Jacobian.
@@ -357,21 +333,15 @@ export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _singularities(v) {
+/** @type {_runtime.Compute} */
+function _singularities(v, o) {
     const theta2 = v[1];
     _runtime.sincos(theta2);
     const s2 = _runtime.found[0];
-    return [
-        s2,
-    ];
+    o[0] = s2;
 }
 
-/** @type {_runtime.Kernel} */
-const _SINGULARITIES = {
+const _SINGULARITIES = _runtime.kernel({
     name: "scara.singularities",
     compute: _singularities,
     common: null,
@@ -384,7 +354,7 @@ const _SINGULARITIES = {
     used: [],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The factors of the determinant that hold a joint.
@@ -413,11 +383,8 @@ export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_space(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_space(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const l1 = v[4];
@@ -430,36 +397,33 @@ function _jacobian_space(v) {
     const c2 = _runtime.found[1];
     const t1 = l1 * s1;
     const t2 = l1 * c1;
-    return [
-        0.0,
-        t1,
-        0.0,
-        -(t1 + l2 * (s1 * c2 + c1 * s2)),
-        0.0,
-        -t2,
-        0.0,
-        t2 + l2 * (c1 * c2 - s1 * s2),
-        0.0,
-        0.0,
-        -1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        1.0,
-        0.0,
-        -1.0,
-    ];
+    o[0] = 0.0;
+    o[1] = t1;
+    o[2] = 0.0;
+    o[3] = -(t1 + l2 * (s1 * c2 + c1 * s2));
+    o[4] = 0.0;
+    o[5] = -t2;
+    o[6] = 0.0;
+    o[7] = t2 + l2 * (c1 * c2 - s1 * s2);
+    o[8] = 0.0;
+    o[9] = 0.0;
+    o[10] = -1.0;
+    o[11] = 0.0;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 0.0;
+    o[16] = 0.0;
+    o[17] = 0.0;
+    o[18] = 0.0;
+    o[19] = 0.0;
+    o[20] = 1.0;
+    o[21] = 1.0;
+    o[22] = 0.0;
+    o[23] = -1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_SPACE = {
+const _JACOBIAN_SPACE = _runtime.kernel({
     name: "scara.jacobian_space",
     compute: _jacobian_space,
     common: null,
@@ -472,7 +436,7 @@ const _JACOBIAN_SPACE = {
     used: ["l1", "l2"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Twist (v; omega) of the tool in the base frame per joint rate.
@@ -502,11 +466,8 @@ export function jacobian_space_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_SPACE, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_body(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_body(v, o) {
     const theta2 = v[1];
     const theta4 = v[3];
     const l1 = v[4];
@@ -519,36 +480,33 @@ function _jacobian_body(v) {
     const c4 = _runtime.found[1];
     const t1 = l2 * s4;
     const t2 = l2 * c4;
-    return [
-        l1 * (s2 * c4 - c2 * s4) - t1,
-        -t1,
-        0.0,
-        0.0,
-        -(l1 * (c2 * c4 + s2 * s4) + t2),
-        -t2,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -1.0,
-        -1.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = l1 * (s2 * c4 - c2 * s4) - t1;
+    o[1] = -t1;
+    o[2] = 0.0;
+    o[3] = 0.0;
+    o[4] = -(l1 * (c2 * c4 + s2 * s4) + t2);
+    o[5] = -t2;
+    o[6] = 0.0;
+    o[7] = 0.0;
+    o[8] = 0.0;
+    o[9] = 0.0;
+    o[10] = 1.0;
+    o[11] = 0.0;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 0.0;
+    o[16] = 0.0;
+    o[17] = 0.0;
+    o[18] = 0.0;
+    o[19] = 0.0;
+    o[20] = -1.0;
+    o[21] = -1.0;
+    o[22] = 0.0;
+    o[23] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_BODY = {
+const _JACOBIAN_BODY = _runtime.kernel({
     name: "scara.jacobian_body",
     compute: _jacobian_body,
     common: null,
@@ -561,7 +519,7 @@ const _JACOBIAN_BODY = {
     used: ["l1", "l2"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Twist (v; omega) of the tool in its own frame per joint rate.
@@ -591,11 +549,8 @@ export function jacobian_body_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_BODY, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik(v) {
+/** @type {_runtime.Compute} */
+function _ik(v, o) {
     const x_x = v[0];
     const x_y = v[1];
     const x_z = v[2];
@@ -633,45 +588,46 @@ function _ik(v) {
     const t14 = t2 * (x_x * c_base_elbow);
     const t15 = t2 * (x_y * s_base_elbow);
     const c1 = folded_elbow ? 1.0 : t14 + t15;
-    const t16 = Number.isFinite(l1) && Number.isFinite(l2) && Number.isFinite(h);
-    const t17 = t16 && (0.0 <= l1) && (0.0 <= l2) && (0.0 <= h);
-    const t18 = Number.isFinite(x_x) && Number.isFinite(x_y) && Number.isFinite(x_z) &&
+    const t16 = Math.atan2(s1, c1);
+    const t17 = Number.isFinite(l1) && Number.isFinite(l2) && Number.isFinite(h);
+    const t18 = t17 && (0.0 <= l1) && (0.0 <= l2) && (0.0 <= h);
+    const t19 = Number.isFinite(x_x) && Number.isFinite(x_y) && Number.isFinite(x_z) &&
         Number.isFinite(x_yaw);
-    const invalid = !(t17 && t18);
-    const t19 = -(_runtime.FEASIBILITY * (l1 * 0.5 + l2 * 0.5));
-    const unreachable = !((t19 <= t3) && (t19 <= t7) && (t19 <= t5));
-    const t20 = _runtime.poison(invalid || unreachable);
-    const t21 = 1.0 / (t11 + t12);
-    const s2 = no_link_elbow ? 0.0 : area_elbow * t21;
-    const c2 = no_link_elbow ? 1.0 : -(t21 * (t11 - t12));
-    const t22 = Math.atan2(s2, c2);
-    const t23 = h - x_z + t20;
-    const t24 = c1 * c2 - s1 * s2;
-    const t25 = c1 * s2 + s1 * c2;
-    const t26 = Math.atan2(s_x_yaw * t24 - c_x_yaw * t25, c_x_yaw * t24 + s_x_yaw * t25);
+    const invalid = !(t18 && t19);
+    const t20 = -(_runtime.FEASIBILITY * (l1 * 0.5 + l2 * 0.5));
+    const unreachable = !((t20 <= t3) && (t20 <= t7) && (t20 <= t5));
+    const t21 = invalid || unreachable ? NaN : 0;
+    const t22 = 1.0 / (t11 + t12);
+    const s2 = no_link_elbow ? 0.0 : area_elbow * t22;
+    const c2 = no_link_elbow ? 1.0 : -(t22 * (t11 - t12));
+    const t23 = Math.atan2(s2, c2);
+    const t24 = h - x_z + t21;
+    const t25 = c1 * c2 - s1 * s2;
+    const t26 = c1 * s2 + s1 * c2;
+    const t27 = Math.atan2(s_x_yaw * t25 - c_x_yaw * t26, c_x_yaw * t25 + s_x_yaw * t26);
+    const t28 = -t27;
     const s1_right = folded_elbow ? 0.0 : t10 + t13;
     const c1_right = folded_elbow ? 1.0 : t14 - t15;
-    const t27 = _runtime.wrapCut(Math.atan2(s1_right, c1_right));
-    const t28 = c2 * c1_right + s2 * s1_right;
-    const t29 = s2 * c1_right - c2 * s1_right;
-    const t30 = Math.atan2(s_x_yaw * t28 + c_x_yaw * t29, c_x_yaw * t28 - s_x_yaw * t29);
-    const t31 = _runtime.status(invalid, unreachable, no_link_elbow || folded_elbow);
-    return [
-        _runtime.wrapCut(Math.atan2(s1, c1)) + t20,
-        _runtime.wrapCut(t22) + t20,
-        t23,
-        _runtime.wrapCut(-t26) + t20,
-        t27 + t20,
-        _runtime.wrapCut(-t22) + t20,
-        t23,
-        _runtime.wrapCut(-t30) + t20,
-        t31,
-        t31,
-    ];
+    const t29 = Math.atan2(s1_right, c1_right);
+    const t30 = -t23;
+    const t31 = c2 * c1_right + s2 * s1_right;
+    const t32 = s2 * c1_right - c2 * s1_right;
+    const t33 = Math.atan2(s_x_yaw * t31 + c_x_yaw * t32, c_x_yaw * t31 - s_x_yaw * t32);
+    const t34 = -t33;
+    const t35 = invalid ? 3 : unreachable ? 1 : no_link_elbow || folded_elbow ? 2 : 0;
+    o[0] = (t16 <= -Math.PI ? Math.PI : t16) + t21;
+    o[1] = (t23 <= -Math.PI ? Math.PI : t23) + t21;
+    o[2] = t24;
+    o[3] = (t28 <= -Math.PI ? Math.PI : t28) + t21;
+    o[4] = (t29 <= -Math.PI ? Math.PI : t29) + t21;
+    o[5] = (t30 <= -Math.PI ? Math.PI : t30) + t21;
+    o[6] = t24;
+    o[7] = (t34 <= -Math.PI ? Math.PI : t34) + t21;
+    o[8] = t35;
+    o[9] = t35;
 }
 
-/** @type {_runtime.Kernel} */
-const _IK = {
+const _IK = _runtime.kernel({
     name: "scara.ik",
     compute: _ik,
     common: null,
@@ -690,7 +646,7 @@ const _IK = {
         least: 2.938735877055719e-39,
         most: 1.8092513943330656e+75,
     },
-};
+});
 
 /**
  * Both elbows of a position and a yaw.

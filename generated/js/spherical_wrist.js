@@ -45,11 +45,8 @@ export const DEFAULTS = Object.freeze({
     d6: 1.0,
 });
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _fk(v) {
+/** @type {_runtime.Compute} */
+function _fk(v, o) {
     const theta4 = v[0];
     const theta5 = v[1];
     const theta6 = v[2];
@@ -66,21 +63,18 @@ function _fk(v) {
     const t2 = s4 * s6;
     const t3 = s4 * c6;
     const t4 = c4 * s6;
-    return [
-        c5 * t1 - t2,
-        -(t3 + c5 * t4),
-        c4 * s5,
-        t4 + c5 * t3,
-        t1 - t2 * c5,
-        s4 * s5,
-        -(c6 * s5),
-        s6 * s5,
-        c5,
-    ];
+    o[0] = c5 * t1 - t2;
+    o[1] = -(t3 + c5 * t4);
+    o[2] = c4 * s5;
+    o[3] = t4 + c5 * t3;
+    o[4] = t1 - t2 * c5;
+    o[5] = s4 * s5;
+    o[6] = -(c6 * s5);
+    o[7] = s6 * s5;
+    o[8] = c5;
 }
 
-/** @type {_runtime.Kernel} */
-const _FK = {
+const _FK = _runtime.kernel({
     name: "spherical_wrist.fk",
     compute: _fk,
     common: null,
@@ -93,7 +87,7 @@ const _FK = {
     used: [],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Rotation of the hand.
@@ -123,11 +117,8 @@ export function fk_batch(n, q, R, parameters) {
     return _runtime.batch(_FK, n, [q], [R], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _pose(v) {
+/** @type {_runtime.Compute} */
+function _pose(v, o) {
     const theta4 = v[0];
     const theta5 = v[1];
     const theta6 = v[2];
@@ -146,28 +137,25 @@ function _pose(v) {
     const t3 = s4 * c6;
     const t4 = c4 * s6;
     const t5 = d6 * s5;
-    return [
-        c5 * t1 - t2,
-        -(t3 + c5 * t4),
-        c4 * s5,
-        c4 * t5,
-        t4 + c5 * t3,
-        t1 - t2 * c5,
-        s4 * s5,
-        s4 * t5,
-        -(c6 * s5),
-        s6 * s5,
-        c5,
-        d6 * c5,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = c5 * t1 - t2;
+    o[1] = -(t3 + c5 * t4);
+    o[2] = c4 * s5;
+    o[3] = c4 * t5;
+    o[4] = t4 + c5 * t3;
+    o[5] = t1 - t2 * c5;
+    o[6] = s4 * s5;
+    o[7] = s4 * t5;
+    o[8] = -(c6 * s5);
+    o[9] = s6 * s5;
+    o[10] = c5;
+    o[11] = d6 * c5;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _POSE = {
+const _POSE = _runtime.kernel({
     name: "spherical_wrist.pose",
     compute: _pose,
     common: null,
@@ -180,7 +168,7 @@ const _POSE = {
     used: ["d6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Pose of the hand, with its offset d6.
@@ -210,11 +198,8 @@ export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_space(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_space(v, o) {
     const theta4 = v[0];
     const theta5 = v[1];
     _runtime.sincos(theta4);
@@ -223,21 +208,18 @@ function _jacobian_space(v) {
     _runtime.sincos(theta5);
     const s5 = _runtime.found[0];
     const c5 = _runtime.found[1];
-    return [
-        0.0,
-        -s4,
-        c4 * s5,
-        0.0,
-        c4,
-        s4 * s5,
-        1.0,
-        0.0,
-        c5,
-    ];
+    o[0] = 0.0;
+    o[1] = -s4;
+    o[2] = c4 * s5;
+    o[3] = 0.0;
+    o[4] = c4;
+    o[5] = s4 * s5;
+    o[6] = 1.0;
+    o[7] = 0.0;
+    o[8] = c5;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_SPACE = {
+const _JACOBIAN_SPACE = _runtime.kernel({
     name: "spherical_wrist.jacobian_space",
     compute: _jacobian_space,
     common: null,
@@ -250,7 +232,7 @@ const _JACOBIAN_SPACE = {
     used: [],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Angular velocity in the base frame per joint rate.
@@ -278,11 +260,8 @@ export function jacobian_space_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_SPACE, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_body(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_body(v, o) {
     const theta5 = v[1];
     const theta6 = v[2];
     _runtime.sincos(theta5);
@@ -291,21 +270,18 @@ function _jacobian_body(v) {
     _runtime.sincos(theta6);
     const s6 = _runtime.found[0];
     const c6 = _runtime.found[1];
-    return [
-        -(s5 * c6),
-        s6,
-        0.0,
-        s5 * s6,
-        c6,
-        0.0,
-        c5,
-        0.0,
-        1.0,
-    ];
+    o[0] = -(s5 * c6);
+    o[1] = s6;
+    o[2] = 0.0;
+    o[3] = s5 * s6;
+    o[4] = c6;
+    o[5] = 0.0;
+    o[6] = c5;
+    o[7] = 0.0;
+    o[8] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_BODY = {
+const _JACOBIAN_BODY = _runtime.kernel({
     name: "spherical_wrist.jacobian_body",
     compute: _jacobian_body,
     common: null,
@@ -318,7 +294,7 @@ const _JACOBIAN_BODY = {
     used: [],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Angular velocity in the hand frame per joint rate.
@@ -346,21 +322,15 @@ export function jacobian_body_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_BODY, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _determinant(v) {
+/** @type {_runtime.Compute} */
+function _determinant(v, o) {
     const theta5 = v[1];
     _runtime.sincos(theta5);
     const s5 = _runtime.found[0];
-    return [
-        -s5,
-    ];
+    o[0] = -s5;
 }
 
-/** @type {_runtime.Kernel} */
-const _DETERMINANT = {
+const _DETERMINANT = _runtime.kernel({
     name: "spherical_wrist.determinant",
     compute: _determinant,
     common: null,
@@ -373,7 +343,7 @@ const _DETERMINANT = {
     used: [],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Determinant of either angular Jacobian.
@@ -401,21 +371,15 @@ export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _singularities(v) {
+/** @type {_runtime.Compute} */
+function _singularities(v, o) {
     const theta5 = v[1];
     _runtime.sincos(theta5);
     const s5 = _runtime.found[0];
-    return [
-        s5,
-    ];
+    o[0] = s5;
 }
 
-/** @type {_runtime.Kernel} */
-const _SINGULARITIES = {
+const _SINGULARITIES = _runtime.kernel({
     name: "spherical_wrist.singularities",
     compute: _singularities,
     common: null,
@@ -428,7 +392,7 @@ const _SINGULARITIES = {
     used: [],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The factor that vanishes exactly where the axes 4 and 6 coincide.
@@ -456,11 +420,8 @@ export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik(v) {
+/** @type {_runtime.Compute} */
+function _ik(v, o) {
     const R11 = v[0];
     const R12 = v[1];
     const R13 = v[2];
@@ -485,25 +446,24 @@ function _ik(v) {
     const t8 = Math.abs(1.0 - R12 * R12 - R22 * R22 - R32 * R32);
     const t9 = Math.abs(R11 * R12 + R21 * R22 + R31 * R32) <= _runtime.ROTATION;
     const invalid = !(t7 && (t8 <= _runtime.ROTATION) && t9);
-    const t10 = _runtime.poison(invalid);
+    const t10 = invalid ? NaN : 0;
     const t11 = Math.atan2(R13 * c4 + R23 * s4, R33);
     const t12 = Math.atan2(R11 * s4 - R21 * c4, R22 * c4 - R12 * s4);
+    const t13 = -t12;
     const flip = aligned ? 0.0 : 3.141592653589793;
-    const t13 = _runtime.status(invalid, false, aligned);
-    return [
-        _runtime.wrapCut(t2) + t10,
-        _runtime.wrapCut(t11) + t10,
-        _runtime.wrapCut(-t12) + t10,
-        _runtime.wrap(flip + t2) + t10,
-        _runtime.wrapCut(-t11) + t10,
-        _runtime.wrap(flip - t12) + t10,
-        t13,
-        t13,
-    ];
+    const t14 = -t11;
+    const t15 = invalid ? 3 : false ? 1 : aligned ? 2 : 0;
+    o[0] = (t2 <= -Math.PI ? Math.PI : t2) + t10;
+    o[1] = (t11 <= -Math.PI ? Math.PI : t11) + t10;
+    o[2] = (t13 <= -Math.PI ? Math.PI : t13) + t10;
+    o[3] = _runtime.wrap(flip + t2) + t10;
+    o[4] = (t14 <= -Math.PI ? Math.PI : t14) + t10;
+    o[5] = _runtime.wrap(flip - t12) + t10;
+    o[6] = t15;
+    o[7] = t15;
 }
 
-/** @type {_runtime.Kernel} */
-const _IK = {
+const _IK = _runtime.kernel({
     name: "spherical_wrist.ik",
     compute: _ik,
     common: null,
@@ -517,7 +477,7 @@ const _IK = {
     used: ["d6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Both wrist configurations of a rotation.

@@ -49,11 +49,8 @@ export const DEFAULTS = Object.freeze({
     d2: 0.154,
 });
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _fk(v) {
+/** @type {_runtime.Compute} */
+function _fk(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const d3 = v[2];
@@ -90,28 +87,25 @@ function _fk(v) {
     const T1_13 = T3_13 * c2 + c5 * s2;
     const T3_23 = s5 * s4;
     const T1_14 = d3 * s2;
-    return [
-        T1_11 * c1 - T3_21 * s1,
-        t2 * s1 - t5 * c1,
-        T1_13 * c1 - T3_23 * s1,
-        T1_14 * c1 - d2 * s1,
-        T1_11 * s1 + T3_21 * c1,
-        -(t5 * s1 + t2 * c1),
-        T1_13 * s1 + T3_23 * c1,
-        T1_14 * s1 + d2 * c1,
-        -(T3_11 * s2 + T4_21 * c2),
-        t3 * s2 + t4 * c2,
-        -(T3_13 * s2 - c5 * c2),
-        d3 * c2,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = T1_11 * c1 - T3_21 * s1;
+    o[1] = t2 * s1 - t5 * c1;
+    o[2] = T1_13 * c1 - T3_23 * s1;
+    o[3] = T1_14 * c1 - d2 * s1;
+    o[4] = T1_11 * s1 + T3_21 * c1;
+    o[5] = -(t5 * s1 + t2 * c1);
+    o[6] = T1_13 * s1 + T3_23 * c1;
+    o[7] = T1_14 * s1 + d2 * c1;
+    o[8] = -(T3_11 * s2 + T4_21 * c2);
+    o[9] = t3 * s2 + t4 * c2;
+    o[10] = -(T3_13 * s2 - c5 * c2);
+    o[11] = d3 * c2;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _FK = {
+const _FK = _runtime.kernel({
     name: "stanford_arm.fk",
     compute: _fk,
     common: null,
@@ -124,7 +118,7 @@ const _FK = {
     used: ["d2"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Pose of the hand in the base frame.
@@ -154,11 +148,8 @@ export function fk_batch(n, q, T, parameters) {
     return _runtime.batch(_FK, n, [q], [T], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _pose(v) {
+/** @type {_runtime.Compute} */
+function _pose(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const d3 = v[2];
@@ -195,28 +186,25 @@ function _pose(v) {
     const T1_13 = T3_13 * c2 + c5 * s2;
     const T3_23 = s5 * s4;
     const T1_14 = d3 * s2;
-    return [
-        T1_11 * c1 - T3_21 * s1,
-        t2 * s1 - t5 * c1,
-        T1_13 * c1 - T3_23 * s1,
-        T1_14 * c1 - d2 * s1,
-        T1_11 * s1 + T3_21 * c1,
-        -(t5 * s1 + t2 * c1),
-        T1_13 * s1 + T3_23 * c1,
-        T1_14 * s1 + d2 * c1,
-        -(T3_11 * s2 + T4_21 * c2),
-        t3 * s2 + t4 * c2,
-        -(T3_13 * s2 - c5 * c2),
-        d3 * c2,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = T1_11 * c1 - T3_21 * s1;
+    o[1] = t2 * s1 - t5 * c1;
+    o[2] = T1_13 * c1 - T3_23 * s1;
+    o[3] = T1_14 * c1 - d2 * s1;
+    o[4] = T1_11 * s1 + T3_21 * c1;
+    o[5] = -(t5 * s1 + t2 * c1);
+    o[6] = T1_13 * s1 + T3_23 * c1;
+    o[7] = T1_14 * s1 + d2 * c1;
+    o[8] = -(T3_11 * s2 + T4_21 * c2);
+    o[9] = t3 * s2 + t4 * c2;
+    o[10] = -(T3_13 * s2 - c5 * c2);
+    o[11] = d3 * c2;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _POSE = {
+const _POSE = _runtime.kernel({
     name: "stanford_arm.pose",
     compute: _pose,
     common: null,
@@ -229,7 +217,7 @@ const _POSE = {
     used: ["d2"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The same as fk.
@@ -259,11 +247,8 @@ export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian(v) {
+/** @type {_runtime.Compute} */
+function _jacobian(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const d3 = v[2];
@@ -290,48 +275,45 @@ function _jacobian(v) {
     const J4_theta6_41 = s5 * c4;
     const J6_theta6_41 = c5 * s2 + J4_theta6_41 * c2;
     const J4_theta6_51 = s5 * s4;
-    return [
-        -(d2 * c1 + p5_11 * s1),
-        J6_theta2_11 * c1,
-        t1,
-        0.0,
-        0.0,
-        0.0,
-        p5_11 * c1 - d2 * s1,
-        J6_theta2_11 * s1,
-        t2,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -p5_11,
-        c2,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        -s1,
-        0.0,
-        t1,
-        -(t3 * c1 + c4 * s1),
-        J6_theta6_41 * c1 - J4_theta6_51 * s1,
-        0.0,
-        c1,
-        0.0,
-        t2,
-        c4 * c1 - t3 * s1,
-        J4_theta6_51 * c1 + J6_theta6_41 * s1,
-        1.0,
-        0.0,
-        0.0,
-        c2,
-        s4 * s2,
-        c5 * c2 - J4_theta6_41 * s2,
-    ];
+    o[0] = -(d2 * c1 + p5_11 * s1);
+    o[1] = J6_theta2_11 * c1;
+    o[2] = t1;
+    o[3] = 0.0;
+    o[4] = 0.0;
+    o[5] = 0.0;
+    o[6] = p5_11 * c1 - d2 * s1;
+    o[7] = J6_theta2_11 * s1;
+    o[8] = t2;
+    o[9] = 0.0;
+    o[10] = 0.0;
+    o[11] = 0.0;
+    o[12] = 0.0;
+    o[13] = -p5_11;
+    o[14] = c2;
+    o[15] = 0.0;
+    o[16] = 0.0;
+    o[17] = 0.0;
+    o[18] = 0.0;
+    o[19] = -s1;
+    o[20] = 0.0;
+    o[21] = t1;
+    o[22] = -(t3 * c1 + c4 * s1);
+    o[23] = J6_theta6_41 * c1 - J4_theta6_51 * s1;
+    o[24] = 0.0;
+    o[25] = c1;
+    o[26] = 0.0;
+    o[27] = t2;
+    o[28] = c4 * c1 - t3 * s1;
+    o[29] = J4_theta6_51 * c1 + J6_theta6_41 * s1;
+    o[30] = 1.0;
+    o[31] = 0.0;
+    o[32] = 0.0;
+    o[33] = c2;
+    o[34] = s4 * s2;
+    o[35] = c5 * c2 - J4_theta6_41 * s2;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN = {
+const _JACOBIAN = _runtime.kernel({
     name: "stanford_arm.jacobian",
     compute: _jacobian,
     common: null,
@@ -344,7 +326,7 @@ const _JACOBIAN = {
     used: ["d2"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
@@ -376,11 +358,8 @@ export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_space(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_space(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const d3 = v[2];
@@ -414,48 +393,45 @@ function _jacobian_space(v) {
     const t9 = s2 * s1;
     const J6_theta6_41 = c5 * s2 + J4_theta6_41 * c2;
     const t10 = s4 * c2;
-    return [
-        0.0,
-        0.0,
-        t1,
-        J6_theta4_11 * c1,
-        t2 * s1 - c1 * t5,
-        -(J5_theta6_21 * s1 + t8 * c1),
-        0.0,
-        0.0,
-        t9,
-        J6_theta4_11 * s1,
-        -(t2 * c1 + s1 * t5),
-        J5_theta6_21 * c1 - t8 * s1,
-        0.0,
-        0.0,
-        c2,
-        -(d2 * s2),
-        t3 * s2 + c2 * t4,
-        t6 * s2 - d2 * J6_theta6_41,
-        0.0,
-        -s1,
-        0.0,
-        t1,
-        -(t10 * c1 + c4 * s1),
-        J6_theta6_41 * c1 - J4_theta6_51 * s1,
-        0.0,
-        c1,
-        0.0,
-        t9,
-        c4 * c1 - t10 * s1,
-        J4_theta6_51 * c1 + J6_theta6_41 * s1,
-        1.0,
-        0.0,
-        0.0,
-        c2,
-        s4 * s2,
-        t7,
-    ];
+    o[0] = 0.0;
+    o[1] = 0.0;
+    o[2] = t1;
+    o[3] = J6_theta4_11 * c1;
+    o[4] = t2 * s1 - c1 * t5;
+    o[5] = -(J5_theta6_21 * s1 + t8 * c1);
+    o[6] = 0.0;
+    o[7] = 0.0;
+    o[8] = t9;
+    o[9] = J6_theta4_11 * s1;
+    o[10] = -(t2 * c1 + s1 * t5);
+    o[11] = J5_theta6_21 * c1 - t8 * s1;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = c2;
+    o[15] = -(d2 * s2);
+    o[16] = t3 * s2 + c2 * t4;
+    o[17] = t6 * s2 - d2 * J6_theta6_41;
+    o[18] = 0.0;
+    o[19] = -s1;
+    o[20] = 0.0;
+    o[21] = t1;
+    o[22] = -(t10 * c1 + c4 * s1);
+    o[23] = J6_theta6_41 * c1 - J4_theta6_51 * s1;
+    o[24] = 0.0;
+    o[25] = c1;
+    o[26] = 0.0;
+    o[27] = t9;
+    o[28] = c4 * c1 - t10 * s1;
+    o[29] = J4_theta6_51 * c1 + J6_theta6_41 * s1;
+    o[30] = 1.0;
+    o[31] = 0.0;
+    o[32] = 0.0;
+    o[33] = c2;
+    o[34] = s4 * s2;
+    o[35] = t7;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_SPACE = {
+const _JACOBIAN_SPACE = _runtime.kernel({
     name: "stanford_arm.jacobian_space",
     compute: _jacobian_space,
     common: null,
@@ -468,7 +444,7 @@ const _JACOBIAN_SPACE = {
     used: ["d2"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Twist (v; omega) of the hand in the base frame per joint rate.
@@ -498,11 +474,8 @@ export function jacobian_space_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_SPACE, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_body(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_body(v, o) {
     const theta2 = v[1];
     const d3 = v[2];
     const theta4 = v[3];
@@ -536,48 +509,45 @@ function _jacobian_body(v) {
     const t7 = s2 * c4;
     const t8 = t7 * c5 + c2 * s5;
     const J6_theta2_41 = s4 * c5;
-    return [
-        J5_theta1_31 * s6 + J6_theta1_11 * c6,
-        J6_theta2_11 * c6 - t4 * s6,
-        t5,
-        0.0,
-        0.0,
-        0.0,
-        J5_theta1_31 * c6 - J6_theta1_11 * s6,
-        -(t4 * c6 + J6_theta2_11 * s6),
-        t6,
-        0.0,
-        0.0,
-        0.0,
-        -(t2 * c5 + t3 * s5),
-        J5_theta2_11 * s5,
-        c5,
-        0.0,
-        0.0,
-        0.0,
-        J5_theta1_61 * s6 - t8 * c6,
-        J6_theta2_41 * c6 + c4 * s6,
-        0.0,
-        t5,
-        s6,
-        0.0,
-        J5_theta1_61 * c6 + t8 * s6,
-        c4 * c6 - J6_theta2_41 * s6,
-        0.0,
-        t6,
-        c6,
-        0.0,
-        c2 * c5 - t7 * s5,
-        s4 * s5,
-        0.0,
-        c5,
-        0.0,
-        1.0,
-    ];
+    o[0] = J5_theta1_31 * s6 + J6_theta1_11 * c6;
+    o[1] = J6_theta2_11 * c6 - t4 * s6;
+    o[2] = t5;
+    o[3] = 0.0;
+    o[4] = 0.0;
+    o[5] = 0.0;
+    o[6] = J5_theta1_31 * c6 - J6_theta1_11 * s6;
+    o[7] = -(t4 * c6 + J6_theta2_11 * s6);
+    o[8] = t6;
+    o[9] = 0.0;
+    o[10] = 0.0;
+    o[11] = 0.0;
+    o[12] = -(t2 * c5 + t3 * s5);
+    o[13] = J5_theta2_11 * s5;
+    o[14] = c5;
+    o[15] = 0.0;
+    o[16] = 0.0;
+    o[17] = 0.0;
+    o[18] = J5_theta1_61 * s6 - t8 * c6;
+    o[19] = J6_theta2_41 * c6 + c4 * s6;
+    o[20] = 0.0;
+    o[21] = t5;
+    o[22] = s6;
+    o[23] = 0.0;
+    o[24] = J5_theta1_61 * c6 + t8 * s6;
+    o[25] = c4 * c6 - J6_theta2_41 * s6;
+    o[26] = 0.0;
+    o[27] = t6;
+    o[28] = c6;
+    o[29] = 0.0;
+    o[30] = c2 * c5 - t7 * s5;
+    o[31] = s4 * s5;
+    o[32] = 0.0;
+    o[33] = c5;
+    o[34] = 0.0;
+    o[35] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_BODY = {
+const _JACOBIAN_BODY = _runtime.kernel({
     name: "stanford_arm.jacobian_body",
     compute: _jacobian_body,
     common: null,
@@ -590,7 +560,7 @@ const _JACOBIAN_BODY = {
     used: ["d2"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Twist (v; omega) of the hand in its own frame per joint rate.
@@ -620,11 +590,8 @@ export function jacobian_body_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_BODY, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _determinant(v) {
+/** @type {_runtime.Compute} */
+function _determinant(v, o) {
     const theta2 = v[1];
     const d3 = v[2];
     const theta5 = v[4];
@@ -632,13 +599,10 @@ function _determinant(v) {
     const s2 = _runtime.found[0];
     _runtime.sincos(theta5);
     const s5 = _runtime.found[0];
-    return [
-        d3 * d3 * s2 * s5,
-    ];
+    o[0] = d3 * d3 * s2 * s5;
 }
 
-/** @type {_runtime.Kernel} */
-const _DETERMINANT = {
+const _DETERMINANT = _runtime.kernel({
     name: "stanford_arm.determinant",
     compute: _determinant,
     common: null,
@@ -656,7 +620,7 @@ const _DETERMINANT = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * Determinant of the Jacobian.
@@ -685,11 +649,8 @@ export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _singularities(v) {
+/** @type {_runtime.Compute} */
+function _singularities(v, o) {
     const theta2 = v[1];
     const d3 = v[2];
     const theta5 = v[4];
@@ -697,15 +658,12 @@ function _singularities(v) {
     const s2 = _runtime.found[0];
     _runtime.sincos(theta5);
     const s5 = _runtime.found[0];
-    return [
-        s2,
-        d3,
-        s5,
-    ];
+    o[0] = s2;
+    o[1] = d3;
+    o[2] = s5;
 }
 
-/** @type {_runtime.Kernel} */
-const _SINGULARITIES = {
+const _SINGULARITIES = _runtime.kernel({
     name: "stanford_arm.singularities",
     compute: _singularities,
     common: null,
@@ -718,7 +676,7 @@ const _SINGULARITIES = {
     used: [],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The factors whose zeros are the singular set: shoulder, boom, wrist.
@@ -747,11 +705,8 @@ export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik(v) {
+/** @type {_runtime.Compute} */
+function _ik(v, o) {
     const T11 = v[0];
     const T12 = v[1];
     const T13 = v[2];
@@ -789,194 +744,204 @@ function _ik(v) {
     const t11 = t7 * (T14 * t9);
     const t12 = T24 * t6 * t7;
     const c1 = free_theta1 ? 1.0 : t11 - t12;
-    const t13 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
-    const t14 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
-    const t15 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
-    const t16 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
-    const t17 = Number.isFinite(d2) && t13 && t14 && t15 && t16;
-    const t18 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
-    const t19 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
-    const t20 = t17 && (t18 <= _runtime.ROTATION) && (t19 <= _runtime.ROTATION);
-    const t21 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
-    const t22 = t20 && t21 && (Math.abs(T41) <= _runtime.ROTATION);
-    const t23 = t22 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
+    const t13 = Math.atan2(s1, c1);
+    const t14 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
+    const t15 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
+    const t16 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
+    const t17 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
+    const t18 = Number.isFinite(d2) && t14 && t15 && t16 && t17;
+    const t19 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
+    const t20 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
+    const t21 = t18 && (t19 <= _runtime.ROTATION) && (t20 <= _runtime.ROTATION);
+    const t22 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
+    const t23 = t21 && t22 && (Math.abs(T41) <= _runtime.ROTATION);
+    const t24 = t23 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
         _runtime.ROTATION);
-    const t24 = t23 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
-    const invalid = !t24;
-    const t25 = -(_runtime.FEASIBILITY * size);
-    const unreachable = !((t25 <= t4) && (t25 <= t5));
-    const t26 = _runtime.poison(invalid || unreachable);
-    const t27 = _runtime.wrapCut(Math.atan2(s1, c1)) + t26;
+    const t25 = t24 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
+    const invalid = !t25;
+    const t26 = -(_runtime.FEASIBILITY * size);
+    const unreachable = !((t26 <= t4) && (t26 <= t5));
+    const t27 = invalid || unreachable ? NaN : 0;
+    const t28 = (t13 <= -Math.PI ? Math.PI : t13) + t27;
     const reach = Math.sqrt(t2 + root * root);
     const drawn_in = reach <= t3;
-    const t28 = 1.0 / reach;
-    const s2 = drawn_in ? 0.0 : root * t28;
-    const t29 = T34 * t28;
-    const c2 = drawn_in ? 1.0 : t29;
-    const t30 = Math.atan2(s2, c2);
-    const t31 = _runtime.wrapCut(t30) + t26;
-    const t32 = reach + t26;
-    const t33 = T13 * s1 - T23 * c1;
-    const t34 = t33 * t33;
-    const t35 = T33 * s2;
+    const t29 = 1.0 / reach;
+    const s2 = drawn_in ? 0.0 : root * t29;
+    const t30 = T34 * t29;
+    const c2 = drawn_in ? 1.0 : t30;
+    const t31 = Math.atan2(s2, c2);
+    const t32 = (t31 <= -Math.PI ? Math.PI : t31) + t27;
+    const t33 = reach + t27;
+    const t34 = T13 * s1 - T23 * c1;
+    const t35 = t34 * t34;
+    const t36 = T33 * s2;
     const R1_13 = T13 * c1 + T23 * s1;
-    const t36 = t35 - c2 * R1_13;
-    const h = Math.sqrt(t34 + t36 * t36);
-    const t37 = _runtime.VANISHING * 16.0;
-    const aligned = h <= t37;
-    const t38 = 1.0 / h;
-    const t39 = aligned ? 0.0 : t33 * t38;
-    const c4 = aligned ? 1.0 : -(t36 * t38);
-    const t40 = Math.atan2(t39, c4);
-    const t41 = T33 * c2;
-    const t42 = s2 * R1_13;
-    const t43 = Math.atan2(t33 * t39 - t36 * c4, t41 + t42);
-    const t44 = T11 * s1 - T21 * c1;
-    const t45 = T31 * s2;
+    const t37 = t36 - c2 * R1_13;
+    const h = Math.sqrt(t35 + t37 * t37);
+    const t38 = _runtime.VANISHING * 16.0;
+    const aligned = h <= t38;
+    const t39 = 1.0 / h;
+    const t40 = aligned ? 0.0 : t34 * t39;
+    const c4 = aligned ? 1.0 : -(t37 * t39);
+    const t41 = Math.atan2(t40, c4);
+    const t42 = -t41;
+    const t43 = T33 * c2;
+    const t44 = s2 * R1_13;
+    const t45 = Math.atan2(t34 * t40 - t37 * c4, t43 + t44);
+    const t46 = T11 * s1 - T21 * c1;
+    const t47 = T31 * s2;
     const R1_11 = T11 * c1 + T21 * s1;
-    const t46 = T12 * s1 - T22 * c1;
-    const t47 = T32 * s2;
+    const t48 = T12 * s1 - T22 * c1;
+    const t49 = T32 * s2;
     const R1_12 = T12 * c1 + T22 * s1;
-    const t48 = Math.atan2(c4 * t44 + t39 * (t45 - c2 * R1_11), -(c4 * t46 + t39 * (t47 - c2 *
+    const t50 = Math.atan2(c4 * t46 + t40 * (t47 - c2 * R1_11), -(c4 * t48 + t40 * (t49 - c2 *
         R1_12)));
+    const t51 = -t50;
     const flip = aligned ? 0.0 : 3.141592653589793;
-    const c2_right_back_noflip = drawn_in ? 1.0 : -t29;
-    const t49 = Math.atan2(s2, c2_right_back_noflip);
-    const t50 = _runtime.wrapCut(-t49) + t26;
-    const t51 = -reach + t26;
-    const R2_13_right_back_noflip = t35 + R1_13 * c2_right_back_noflip;
-    const t52 = R2_13_right_back_noflip * R2_13_right_back_noflip;
-    const h_right_back_noflip = Math.sqrt(t34 + t52);
-    const aligned_right_back_noflip = h_right_back_noflip <= t37;
-    const t53 = 1.0 / h_right_back_noflip;
-    const t54 = aligned_right_back_noflip ? 0.0 : t33 * t53;
+    const t52 = -t45;
+    const c2_right_back_noflip = drawn_in ? 1.0 : -t30;
+    const t53 = Math.atan2(s2, c2_right_back_noflip);
+    const t54 = -t53;
+    const t55 = (t54 <= -Math.PI ? Math.PI : t54) + t27;
+    const t56 = -reach + t27;
+    const R2_13_right_back_noflip = t36 + R1_13 * c2_right_back_noflip;
+    const t57 = R2_13_right_back_noflip * R2_13_right_back_noflip;
+    const h_right_back_noflip = Math.sqrt(t35 + t57);
+    const aligned_right_back_noflip = h_right_back_noflip <= t38;
+    const t58 = 1.0 / h_right_back_noflip;
+    const t59 = aligned_right_back_noflip ? 0.0 : t34 * t58;
     const c4_right_back_noflip = aligned_right_back_noflip ? 1.0 : R2_13_right_back_noflip *
-        t53;
-    const t55 = Math.atan2(t54, c4_right_back_noflip);
-    const t56 = R2_13_right_back_noflip * c4_right_back_noflip;
-    const t57 = T33 * c2_right_back_noflip;
-    const t58 = Math.atan2(t33 * t54 + t56, t57 - t42);
-    const t59 = t44 * c4_right_back_noflip - t54 * (t45 + R1_11 * c2_right_back_noflip);
-    const t60 = t54 * (t47 + R1_12 * c2_right_back_noflip) - t46 * c4_right_back_noflip;
-    const t61 = Math.atan2(t59, t60);
+        t58;
+    const t60 = Math.atan2(t59, c4_right_back_noflip);
+    const t61 = -t60;
+    const t62 = R2_13_right_back_noflip * c4_right_back_noflip;
+    const t63 = T33 * c2_right_back_noflip;
+    const t64 = Math.atan2(t34 * t59 + t62, t63 - t44);
+    const t65 = t46 * c4_right_back_noflip - t59 * (t47 + R1_11 * c2_right_back_noflip);
+    const t66 = t59 * (t49 + R1_12 * c2_right_back_noflip) - t48 * c4_right_back_noflip;
+    const t67 = Math.atan2(t65, t66);
+    const t68 = -t67;
     const flip_right_back_flip = aligned_right_back_noflip ? 0.0 : 3.141592653589793;
-    const t62 = _runtime.wrap(flip_right_back_flip - t55) + t26;
-    const t63 = _runtime.wrap(flip_right_back_flip - t61) + t26;
+    const t69 = _runtime.wrap(flip_right_back_flip - t60) + t27;
+    const t70 = -t64;
+    const t71 = _runtime.wrap(flip_right_back_flip - t67) + t27;
     const s1_left_out_noflip = free_theta1 ? 0.0 : t8 - t10;
     const c1_left_out_noflip = free_theta1 ? 1.0 : -(t12 + t11);
-    const t64 = Math.atan2(s1_left_out_noflip, c1_left_out_noflip);
-    const t65 = _runtime.wrapCut(t64) + t26;
-    const t66 = _runtime.wrapCut(-t30) + t26;
-    const t67 = T13 * s1_left_out_noflip - T23 * c1_left_out_noflip;
-    const t68 = t67 * t67;
+    const t72 = Math.atan2(s1_left_out_noflip, c1_left_out_noflip);
+    const t73 = (t72 <= -Math.PI ? Math.PI : t72) + t27;
+    const t74 = -t31;
+    const t75 = (t74 <= -Math.PI ? Math.PI : t74) + t27;
+    const t76 = T13 * s1_left_out_noflip - T23 * c1_left_out_noflip;
+    const t77 = t76 * t76;
     const R1_13_left_out_noflip = T13 * c1_left_out_noflip + T23 * s1_left_out_noflip;
-    const R2_13_left_out_noflip = t35 + c2 * R1_13_left_out_noflip;
-    const t69 = R2_13_left_out_noflip * R2_13_left_out_noflip;
-    const h_left_out_noflip = Math.sqrt(t68 + t69);
-    const aligned_left_out_noflip = h_left_out_noflip <= t37;
-    const t70 = 1.0 / h_left_out_noflip;
-    const t71 = aligned_left_out_noflip ? 0.0 : t67 * t70;
-    const c4_left_out_noflip = aligned_left_out_noflip ? 1.0 : R2_13_left_out_noflip * t70;
-    const t72 = Math.atan2(t71, c4_left_out_noflip);
-    const t73 = t67 * t71 + R2_13_left_out_noflip * c4_left_out_noflip;
-    const t74 = s2 * R1_13_left_out_noflip;
-    const t75 = Math.atan2(t73, t41 - t74);
-    const t76 = T11 * s1_left_out_noflip - T21 * c1_left_out_noflip;
+    const R2_13_left_out_noflip = t36 + c2 * R1_13_left_out_noflip;
+    const t78 = R2_13_left_out_noflip * R2_13_left_out_noflip;
+    const h_left_out_noflip = Math.sqrt(t77 + t78);
+    const aligned_left_out_noflip = h_left_out_noflip <= t38;
+    const t79 = 1.0 / h_left_out_noflip;
+    const t80 = aligned_left_out_noflip ? 0.0 : t76 * t79;
+    const c4_left_out_noflip = aligned_left_out_noflip ? 1.0 : R2_13_left_out_noflip * t79;
+    const t81 = Math.atan2(t80, c4_left_out_noflip);
+    const t82 = -t81;
+    const t83 = t76 * t80 + R2_13_left_out_noflip * c4_left_out_noflip;
+    const t84 = s2 * R1_13_left_out_noflip;
+    const t85 = Math.atan2(t83, t43 - t84);
+    const t86 = T11 * s1_left_out_noflip - T21 * c1_left_out_noflip;
     const R1_11_left_out_noflip = T11 * c1_left_out_noflip + T21 * s1_left_out_noflip;
-    const t77 = c4_left_out_noflip * t76 - t71 * (t45 + c2 * R1_11_left_out_noflip);
+    const t87 = c4_left_out_noflip * t86 - t80 * (t47 + c2 * R1_11_left_out_noflip);
     const R1_12_left_out_noflip = T12 * c1_left_out_noflip + T22 * s1_left_out_noflip;
-    const t78 = T12 * s1_left_out_noflip - T22 * c1_left_out_noflip;
-    const t79 = t71 * (t47 + c2 * R1_12_left_out_noflip) - c4_left_out_noflip * t78;
-    const t80 = Math.atan2(t77, t79);
+    const t88 = T12 * s1_left_out_noflip - T22 * c1_left_out_noflip;
+    const t89 = t80 * (t49 + c2 * R1_12_left_out_noflip) - c4_left_out_noflip * t88;
+    const t90 = Math.atan2(t87, t89);
+    const t91 = -t90;
     const flip_left_out_flip = aligned_left_out_noflip ? 0.0 : 3.141592653589793;
-    const t81 = _runtime.wrap(flip_left_out_flip - t72) + t26;
-    const t82 = _runtime.wrap(flip_left_out_flip - t80) + t26;
-    const t83 = _runtime.wrapCut(t49) + t26;
-    const t84 = t35 - c2_right_back_noflip * R1_13_left_out_noflip;
-    const h_left_back_noflip = Math.sqrt(t68 + t84 * t84);
-    const aligned_left_back_noflip = h_left_back_noflip <= t37;
-    const t85 = 1.0 / h_left_back_noflip;
-    const t86 = aligned_left_back_noflip ? 0.0 : t67 * t85;
-    const c4_left_back_noflip = aligned_left_back_noflip ? 1.0 : -(t84 * t85);
-    const t87 = Math.atan2(t86, c4_left_back_noflip);
-    const t88 = Math.atan2(t67 * t86 - t84 * c4_left_back_noflip, t57 + t74);
-    const t89 = t45 - c2_right_back_noflip * R1_11_left_out_noflip;
-    const t90 = t47 - c2_right_back_noflip * R1_12_left_out_noflip;
-    const t91 = Math.atan2(t76 * c4_left_back_noflip + t86 * t89, -(t78 * c4_left_back_noflip +
-        t86 * t90));
+    const t92 = _runtime.wrap(flip_left_out_flip - t81) + t27;
+    const t93 = -t85;
+    const t94 = _runtime.wrap(flip_left_out_flip - t90) + t27;
+    const t95 = (t53 <= -Math.PI ? Math.PI : t53) + t27;
+    const t96 = t36 - c2_right_back_noflip * R1_13_left_out_noflip;
+    const h_left_back_noflip = Math.sqrt(t77 + t96 * t96);
+    const aligned_left_back_noflip = h_left_back_noflip <= t38;
+    const t97 = 1.0 / h_left_back_noflip;
+    const t98 = aligned_left_back_noflip ? 0.0 : t76 * t97;
+    const c4_left_back_noflip = aligned_left_back_noflip ? 1.0 : -(t96 * t97);
+    const t99 = Math.atan2(t98, c4_left_back_noflip);
+    const t100 = -t99;
+    const t101 = Math.atan2(t76 * t98 - t96 * c4_left_back_noflip, t63 + t84);
+    const t102 = t47 - c2_right_back_noflip * R1_11_left_out_noflip;
+    const t103 = t49 - c2_right_back_noflip * R1_12_left_out_noflip;
+    const t104 = Math.atan2(t86 * c4_left_back_noflip + t98 * t102, -(t88 * c4_left_back_noflip
+        + t98 * t103));
+    const t105 = -t104;
     const flip_left_back_flip = aligned_left_back_noflip ? 0.0 : 3.141592653589793;
-    const t92 = _runtime.wrap(flip_left_back_flip - t87) + t26;
-    const t93 = _runtime.wrap(flip_left_back_flip - t91) + t26;
-    const t94 = free_theta1 || drawn_in;
-    const t95 = _runtime.status(invalid, unreachable, t94 || aligned);
-    const t96 = _runtime.status(invalid, unreachable, t94 || aligned_right_back_noflip);
-    const t97 = _runtime.status(invalid, unreachable, t94 || aligned_left_out_noflip);
-    const t98 = _runtime.status(invalid, unreachable, t94 || aligned_left_back_noflip);
-    return [
-        t27,
-        t31,
-        t32,
-        _runtime.wrapCut(-t40) + t26,
-        _runtime.wrapCut(t43) + t26,
-        _runtime.wrapCut(-t48) + t26,
-        t27,
-        t31,
-        t32,
-        _runtime.wrap(flip - t40) + t26,
-        _runtime.wrapCut(-t43) + t26,
-        _runtime.wrap(flip - t48) + t26,
-        t27,
-        t50,
-        t51,
-        _runtime.wrapCut(-t55) + t26,
-        _runtime.wrapCut(t58) + t26,
-        _runtime.wrapCut(-t61) + t26,
-        t27,
-        t50,
-        t51,
-        t62,
-        _runtime.wrapCut(-t58) + t26,
-        t63,
-        t65,
-        t66,
-        t32,
-        _runtime.wrapCut(-t72) + t26,
-        _runtime.wrapCut(t75) + t26,
-        _runtime.wrapCut(-t80) + t26,
-        t65,
-        t66,
-        t32,
-        t81,
-        _runtime.wrapCut(-t75) + t26,
-        t82,
-        t65,
-        t83,
-        t51,
-        _runtime.wrapCut(-t87) + t26,
-        _runtime.wrapCut(t88) + t26,
-        _runtime.wrapCut(-t91) + t26,
-        t65,
-        t83,
-        t51,
-        t92,
-        _runtime.wrapCut(-t88) + t26,
-        t93,
-        t95,
-        t95,
-        t96,
-        t96,
-        t97,
-        t97,
-        t98,
-        t98,
-    ];
+    const t106 = _runtime.wrap(flip_left_back_flip - t99) + t27;
+    const t107 = -t101;
+    const t108 = _runtime.wrap(flip_left_back_flip - t104) + t27;
+    const t109 = free_theta1 || drawn_in;
+    const t110 = invalid ? 3 : unreachable ? 1 : t109 || aligned ? 2 : 0;
+    const t111 = invalid ? 3 : unreachable ? 1 : t109 || aligned_right_back_noflip ? 2 : 0;
+    const t112 = invalid ? 3 : unreachable ? 1 : t109 || aligned_left_out_noflip ? 2 : 0;
+    const t113 = invalid ? 3 : unreachable ? 1 : t109 || aligned_left_back_noflip ? 2 : 0;
+    o[0] = t28;
+    o[1] = t32;
+    o[2] = t33;
+    o[3] = (t42 <= -Math.PI ? Math.PI : t42) + t27;
+    o[4] = (t45 <= -Math.PI ? Math.PI : t45) + t27;
+    o[5] = (t51 <= -Math.PI ? Math.PI : t51) + t27;
+    o[6] = t28;
+    o[7] = t32;
+    o[8] = t33;
+    o[9] = _runtime.wrap(flip - t41) + t27;
+    o[10] = (t52 <= -Math.PI ? Math.PI : t52) + t27;
+    o[11] = _runtime.wrap(flip - t50) + t27;
+    o[12] = t28;
+    o[13] = t55;
+    o[14] = t56;
+    o[15] = (t61 <= -Math.PI ? Math.PI : t61) + t27;
+    o[16] = (t64 <= -Math.PI ? Math.PI : t64) + t27;
+    o[17] = (t68 <= -Math.PI ? Math.PI : t68) + t27;
+    o[18] = t28;
+    o[19] = t55;
+    o[20] = t56;
+    o[21] = t69;
+    o[22] = (t70 <= -Math.PI ? Math.PI : t70) + t27;
+    o[23] = t71;
+    o[24] = t73;
+    o[25] = t75;
+    o[26] = t33;
+    o[27] = (t82 <= -Math.PI ? Math.PI : t82) + t27;
+    o[28] = (t85 <= -Math.PI ? Math.PI : t85) + t27;
+    o[29] = (t91 <= -Math.PI ? Math.PI : t91) + t27;
+    o[30] = t73;
+    o[31] = t75;
+    o[32] = t33;
+    o[33] = t92;
+    o[34] = (t93 <= -Math.PI ? Math.PI : t93) + t27;
+    o[35] = t94;
+    o[36] = t73;
+    o[37] = t95;
+    o[38] = t56;
+    o[39] = (t100 <= -Math.PI ? Math.PI : t100) + t27;
+    o[40] = (t101 <= -Math.PI ? Math.PI : t101) + t27;
+    o[41] = (t105 <= -Math.PI ? Math.PI : t105) + t27;
+    o[42] = t73;
+    o[43] = t95;
+    o[44] = t56;
+    o[45] = t106;
+    o[46] = (t107 <= -Math.PI ? Math.PI : t107) + t27;
+    o[47] = t108;
+    o[48] = t110;
+    o[49] = t110;
+    o[50] = t111;
+    o[51] = t111;
+    o[52] = t112;
+    o[53] = t112;
+    o[54] = t113;
+    o[55] = t113;
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik_common(v) {
+/** @type {_runtime.Compute} */
+function _ik_common(v, o) {
     const T11 = v[0];
     const T12 = v[1];
     const T13 = v[2];
@@ -1010,154 +975,166 @@ function _ik_common(v) {
     const t9 = T24 * t4 * t5;
     const t10 = t5 * (T14 * t7);
     const t11 = t9 - t10;
-    const t12 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
-    const t13 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
-    const t14 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
-    const t15 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
-    const t16 = Number.isFinite(d2) && t12 && t13 && t14 && t15;
-    const t17 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
-    const t18 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
-    const t19 = t16 && (t17 <= _runtime.ROTATION) && (t18 <= _runtime.ROTATION);
-    const t20 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
-    const t21 = t19 && t20 && (Math.abs(T41) <= _runtime.ROTATION);
-    const t22 = t21 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
+    const t12 = Math.atan2(s1, -t11);
+    const t13 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
+    const t14 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
+    const t15 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
+    const t16 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
+    const t17 = Number.isFinite(d2) && t13 && t14 && t15 && t16;
+    const t18 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
+    const t19 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
+    const t20 = t17 && (t18 <= _runtime.ROTATION) && (t19 <= _runtime.ROTATION);
+    const t21 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
+    const t22 = t20 && t21 && (Math.abs(T41) <= _runtime.ROTATION);
+    const t23 = t22 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
         _runtime.ROTATION);
-    const t23 = t22 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
-    const invalid = !t23;
-    const t24 = T34 * T34;
-    const size = Math.abs(d2) + Math.sqrt(t24 + t1);
-    const t25 = -(_runtime.FEASIBILITY * size);
-    const unreachable = !((t25 <= t2) && (t25 <= t3));
-    const t26 = _runtime.poison(invalid || unreachable);
-    const t27 = _runtime.wrapCut(Math.atan2(s1, -t11)) + t26;
-    const t28 = Math.atan2(root, T34);
-    const t29 = _runtime.wrapCut(t28) + t26;
-    const reach = Math.sqrt(t24 + root * root);
-    const t30 = reach + t26;
-    const t31 = T13 * s1 + T23 * t11;
-    const t32 = 1.0 / reach;
-    const s2 = root * t32;
-    const t33 = T33 * s2;
-    const c2 = T34 * t32;
-    const t34 = T13 * t11 - T23 * s1;
-    const t35 = t33 + c2 * t34;
-    const t36 = Math.atan2(t31, -t35);
-    const h = Math.sqrt(t31 * t31 + t35 * t35);
-    const t37 = 1.0 / h;
-    const t38 = t31 * t37;
-    const c4_right_back_noflip = t35 * t37;
-    const t39 = t31 * t38 + t35 * c4_right_back_noflip;
-    const t40 = T33 * c2;
-    const R2_33 = t40 - s2 * t34;
-    const t41 = Math.atan2(t39, R2_33);
-    const t42 = c4_right_back_noflip * (T11 * s1 + T21 * t11);
-    const t43 = T31 * s2;
-    const t44 = t42 - t38 * (t43 + c2 * (T11 * t11 - T21 * s1));
-    const t45 = c4_right_back_noflip * (T12 * s1 + T22 * t11);
-    const t46 = T32 * s2;
-    const t47 = t45 - t38 * (t46 + c2 * (T12 * t11 - T22 * s1));
-    const t48 = Math.atan2(-t44, t47);
-    const t49 = Math.atan2(root, -T34);
-    const t50 = _runtime.wrapCut(-t49) + t26;
-    const t51 = -reach + t26;
-    const t52 = Math.atan2(t31, t35);
-    const t53 = Math.atan2(t39, -R2_33);
-    const t54 = Math.atan2(t44, -t47);
+    const t24 = t23 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
+    const invalid = !t24;
+    const t25 = T34 * T34;
+    const size = Math.abs(d2) + Math.sqrt(t25 + t1);
+    const t26 = -(_runtime.FEASIBILITY * size);
+    const unreachable = !((t26 <= t2) && (t26 <= t3));
+    const t27 = invalid || unreachable ? NaN : 0;
+    const t28 = (t12 <= -Math.PI ? Math.PI : t12) + t27;
+    const t29 = Math.atan2(root, T34);
+    const t30 = (t29 <= -Math.PI ? Math.PI : t29) + t27;
+    const reach = Math.sqrt(t25 + root * root);
+    const t31 = reach + t27;
+    const t32 = T13 * s1 + T23 * t11;
+    const t33 = 1.0 / reach;
+    const s2 = root * t33;
+    const t34 = T33 * s2;
+    const c2 = T34 * t33;
+    const t35 = T13 * t11 - T23 * s1;
+    const t36 = t34 + c2 * t35;
+    const t37 = Math.atan2(t32, -t36);
+    const t38 = -t37;
+    const h = Math.sqrt(t32 * t32 + t36 * t36);
+    const t39 = 1.0 / h;
+    const t40 = t32 * t39;
+    const c4_right_back_noflip = t36 * t39;
+    const t41 = t32 * t40 + t36 * c4_right_back_noflip;
+    const t42 = T33 * c2;
+    const R2_33 = t42 - s2 * t35;
+    const t43 = Math.atan2(t41, R2_33);
+    const t44 = c4_right_back_noflip * (T11 * s1 + T21 * t11);
+    const t45 = T31 * s2;
+    const t46 = t44 - t40 * (t45 + c2 * (T11 * t11 - T21 * s1));
+    const t47 = c4_right_back_noflip * (T12 * s1 + T22 * t11);
+    const t48 = T32 * s2;
+    const t49 = t47 - t40 * (t48 + c2 * (T12 * t11 - T22 * s1));
+    const t50 = Math.atan2(-t46, t49);
+    const t51 = -t50;
+    const t52 = -t43;
+    const t53 = Math.atan2(root, -T34);
+    const t54 = -t53;
+    const t55 = (t54 <= -Math.PI ? Math.PI : t54) + t27;
+    const t56 = -reach + t27;
+    const t57 = Math.atan2(t32, t36);
+    const t58 = -t57;
+    const t59 = Math.atan2(t41, -R2_33);
+    const t60 = Math.atan2(t46, -t49);
+    const t61 = -t60;
+    const t62 = -t59;
     const s1_left_out_noflip = t6 - t8;
-    const t55 = t9 + t10;
-    const t56 = _runtime.wrapCut(Math.atan2(s1_left_out_noflip, -t55));
-    const t57 = t56 + t26;
-    const t58 = _runtime.wrapCut(-t28) + t26;
-    const t59 = T13 * s1_left_out_noflip + T23 * t55;
-    const t60 = T13 * t55 - T23 * s1_left_out_noflip;
-    const R2_13_left_out_noflip = t33 - c2 * t60;
-    const t61 = Math.atan2(t59, R2_13_left_out_noflip);
-    const t62 = R2_13_left_out_noflip * R2_13_left_out_noflip;
-    const h_left_out_noflip = Math.sqrt(t59 * t59 + t62);
-    const t63 = 1.0 / h_left_out_noflip;
-    const t64 = t59 * t63;
-    const c4_left_out_noflip = R2_13_left_out_noflip * t63;
-    const t65 = t59 * t64 + R2_13_left_out_noflip * c4_left_out_noflip;
-    const R2_33_left_out_noflip = t40 + s2 * t60;
-    const t66 = Math.atan2(t65, R2_33_left_out_noflip);
-    const t67 = c4_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t55);
-    const R2_11_left_out_noflip = t43 - c2 * (T11 * t55 - T21 * s1_left_out_noflip);
-    const t68 = t67 - t64 * R2_11_left_out_noflip;
-    const t69 = c4_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t55);
-    const R2_12_left_out_noflip = t46 - c2 * (T12 * t55 - T22 * s1_left_out_noflip);
-    const t70 = t69 - t64 * R2_12_left_out_noflip;
-    const t71 = Math.atan2(t68, -t70);
-    const t72 = _runtime.wrapCut(t49) + t26;
-    const t73 = Math.atan2(t59, -R2_13_left_out_noflip);
-    const t74 = Math.atan2(t65, -R2_33_left_out_noflip);
-    const t75 = Math.atan2(-t68, t70);
-    const t76 = _runtime.status(invalid, unreachable, false);
-    const t77 = _runtime.VANISHING * size;
-    const t78 = _runtime.VANISHING * 16.0;
-    const t79 = (amplitude <= t77) || (reach <= t77) || (h <= t78);
-    return [
-        t27,
-        t29,
-        t30,
-        _runtime.wrapCut(-t36) + t26,
-        _runtime.wrapCut(t41) + t26,
-        _runtime.wrapCut(-t48) + t26,
-        t27,
-        t29,
-        t30,
-        _runtime.wrap(3.141592653589793 - t36) + t26,
-        _runtime.wrapCut(-t41) + t26,
-        _runtime.wrap(3.141592653589793 - t48) + t26,
-        t27,
-        t50,
-        t51,
-        _runtime.wrapCut(-t52) + t26,
-        _runtime.wrapCut(t53) + t26,
-        _runtime.wrapCut(-t54) + t26,
-        t27,
-        t50,
-        t51,
-        _runtime.wrap(3.141592653589793 - t52) + t26,
-        _runtime.wrapCut(-t53) + t26,
-        _runtime.wrap(3.141592653589793 - t54) + t26,
-        t57,
-        t58,
-        t30,
-        _runtime.wrapCut(-t61) + t26,
-        _runtime.wrapCut(t66) + t26,
-        _runtime.wrapCut(-t71) + t26,
-        t57,
-        t58,
-        t30,
-        _runtime.wrap(3.141592653589793 - t61) + t26,
-        _runtime.wrapCut(-t66) + t26,
-        _runtime.wrap(3.141592653589793 - t71) + t26,
-        t57,
-        t72,
-        t51,
-        _runtime.wrapCut(-t73) + t26,
-        _runtime.wrapCut(t74) + t26,
-        _runtime.wrapCut(-t75) + t26,
-        t57,
-        t72,
-        t51,
-        _runtime.wrap(3.141592653589793 - t73) + t26,
-        _runtime.wrapCut(-t74) + t26,
-        _runtime.wrap(3.141592653589793 - t75) + t26,
-        t76,
-        t76,
-        t76,
-        t76,
-        t76,
-        t76,
-        t76,
-        t76,
-        (t79 || (h_left_out_noflip <= t78)) ? 1 : 0,
-    ];
+    const t63 = t9 + t10;
+    const t64 = Math.atan2(s1_left_out_noflip, -t63);
+    const t65 = (t64 <= -Math.PI ? Math.PI : t64) + t27;
+    const t66 = -t29;
+    const t67 = (t66 <= -Math.PI ? Math.PI : t66) + t27;
+    const t68 = T13 * s1_left_out_noflip + T23 * t63;
+    const t69 = T13 * t63 - T23 * s1_left_out_noflip;
+    const R2_13_left_out_noflip = t34 - c2 * t69;
+    const t70 = Math.atan2(t68, R2_13_left_out_noflip);
+    const t71 = -t70;
+    const t72 = R2_13_left_out_noflip * R2_13_left_out_noflip;
+    const h_left_out_noflip = Math.sqrt(t68 * t68 + t72);
+    const t73 = 1.0 / h_left_out_noflip;
+    const t74 = t68 * t73;
+    const c4_left_out_noflip = R2_13_left_out_noflip * t73;
+    const t75 = t68 * t74 + R2_13_left_out_noflip * c4_left_out_noflip;
+    const R2_33_left_out_noflip = t42 + s2 * t69;
+    const t76 = Math.atan2(t75, R2_33_left_out_noflip);
+    const t77 = c4_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t63);
+    const R2_11_left_out_noflip = t45 - c2 * (T11 * t63 - T21 * s1_left_out_noflip);
+    const t78 = t77 - t74 * R2_11_left_out_noflip;
+    const t79 = c4_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t63);
+    const R2_12_left_out_noflip = t48 - c2 * (T12 * t63 - T22 * s1_left_out_noflip);
+    const t80 = t79 - t74 * R2_12_left_out_noflip;
+    const t81 = Math.atan2(t78, -t80);
+    const t82 = -t81;
+    const t83 = -t76;
+    const t84 = (t53 <= -Math.PI ? Math.PI : t53) + t27;
+    const t85 = Math.atan2(t68, -R2_13_left_out_noflip);
+    const t86 = -t85;
+    const t87 = Math.atan2(t75, -R2_33_left_out_noflip);
+    const t88 = Math.atan2(-t78, t80);
+    const t89 = -t88;
+    const t90 = -t87;
+    const t91 = invalid ? 3 : unreachable ? 1 : false ? 2 : 0;
+    const t92 = _runtime.VANISHING * size;
+    const t93 = _runtime.VANISHING * 16.0;
+    const t94 = (amplitude <= t92) || (reach <= t92) || (h <= t93);
+    o[0] = t28;
+    o[1] = t30;
+    o[2] = t31;
+    o[3] = (t38 <= -Math.PI ? Math.PI : t38) + t27;
+    o[4] = (t43 <= -Math.PI ? Math.PI : t43) + t27;
+    o[5] = (t51 <= -Math.PI ? Math.PI : t51) + t27;
+    o[6] = t28;
+    o[7] = t30;
+    o[8] = t31;
+    o[9] = _runtime.wrap(3.141592653589793 - t37) + t27;
+    o[10] = (t52 <= -Math.PI ? Math.PI : t52) + t27;
+    o[11] = _runtime.wrap(3.141592653589793 - t50) + t27;
+    o[12] = t28;
+    o[13] = t55;
+    o[14] = t56;
+    o[15] = (t58 <= -Math.PI ? Math.PI : t58) + t27;
+    o[16] = (t59 <= -Math.PI ? Math.PI : t59) + t27;
+    o[17] = (t61 <= -Math.PI ? Math.PI : t61) + t27;
+    o[18] = t28;
+    o[19] = t55;
+    o[20] = t56;
+    o[21] = _runtime.wrap(3.141592653589793 - t57) + t27;
+    o[22] = (t62 <= -Math.PI ? Math.PI : t62) + t27;
+    o[23] = _runtime.wrap(3.141592653589793 - t60) + t27;
+    o[24] = t65;
+    o[25] = t67;
+    o[26] = t31;
+    o[27] = (t71 <= -Math.PI ? Math.PI : t71) + t27;
+    o[28] = (t76 <= -Math.PI ? Math.PI : t76) + t27;
+    o[29] = (t82 <= -Math.PI ? Math.PI : t82) + t27;
+    o[30] = t65;
+    o[31] = t67;
+    o[32] = t31;
+    o[33] = _runtime.wrap(3.141592653589793 - t70) + t27;
+    o[34] = (t83 <= -Math.PI ? Math.PI : t83) + t27;
+    o[35] = _runtime.wrap(3.141592653589793 - t81) + t27;
+    o[36] = t65;
+    o[37] = t84;
+    o[38] = t56;
+    o[39] = (t86 <= -Math.PI ? Math.PI : t86) + t27;
+    o[40] = (t87 <= -Math.PI ? Math.PI : t87) + t27;
+    o[41] = (t89 <= -Math.PI ? Math.PI : t89) + t27;
+    o[42] = t65;
+    o[43] = t84;
+    o[44] = t56;
+    o[45] = _runtime.wrap(3.141592653589793 - t85) + t27;
+    o[46] = (t90 <= -Math.PI ? Math.PI : t90) + t27;
+    o[47] = _runtime.wrap(3.141592653589793 - t88) + t27;
+    o[48] = t91;
+    o[49] = t91;
+    o[50] = t91;
+    o[51] = t91;
+    o[52] = t91;
+    o[53] = t91;
+    o[54] = t91;
+    o[55] = t91;
+    o[56] = (t94 || (h_left_out_noflip <= t93)) ? 1 : 0;
 }
 
-/** @type {_runtime.Kernel} */
-const _IK = {
+const _IK = _runtime.kernel({
     name: "stanford_arm.ik",
     compute: _ik,
     common: _ik_common,
@@ -1176,7 +1153,7 @@ const _IK = {
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
-};
+});
 
 /**
  * All 8 configurations of a pose.

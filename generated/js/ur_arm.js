@@ -58,11 +58,8 @@ export const DEFAULTS = Object.freeze({
     d6: 0.0823,
 });
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _pose(v) {
+/** @type {_runtime.Compute} */
+function _pose(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -113,28 +110,25 @@ function _pose(v) {
     const t14 = c5 * s234;
     const t15 = s5 * s234;
     const t16 = d1 - L2 * s2 - L3 * (s2 * c3 + c2 * s3) - d5 * c234;
-    return [
-        c6 * t1 - s6 * t2 + t3 * t4,
-        -(s6 * t1 + t3 * t5 + c6 * t2),
-        t6 - c234 * t7,
-        t10 - t7 * t11,
-        -(s6 * t12 - t6 * t4 + c6 * t7),
-        s6 * t7 - (t6 * t5 + c6 * t12),
-        -(t3 + c234 * t1),
-        -(t13 + d6 * t3),
-        t5 + c6 * t14,
-        t4 - s6 * t14,
-        -t15,
-        t16 - d6 * t15,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = c6 * t1 - s6 * t2 + t3 * t4;
+    o[1] = -(s6 * t1 + t3 * t5 + c6 * t2);
+    o[2] = t6 - c234 * t7;
+    o[3] = t10 - t7 * t11;
+    o[4] = -(s6 * t12 - t6 * t4 + c6 * t7);
+    o[5] = s6 * t7 - (t6 * t5 + c6 * t12);
+    o[6] = -(t3 + c234 * t1);
+    o[7] = -(t13 + d6 * t3);
+    o[8] = t5 + c6 * t14;
+    o[9] = t4 - s6 * t14;
+    o[10] = -t15;
+    o[11] = t16 - d6 * t15;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _POSE = {
+const _POSE = _runtime.kernel({
     name: "ur_arm.pose",
     compute: _pose,
     common: null,
@@ -147,7 +141,7 @@ const _POSE = {
     used: ["d1", "L2", "L3", "d4", "d5", "d6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Pose of the tool in the base frame.
@@ -176,11 +170,8 @@ export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _fk(v) {
+/** @type {_runtime.Compute} */
+function _fk(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -231,28 +222,25 @@ function _fk(v) {
     const t14 = c5 * s234;
     const t15 = s5 * s234;
     const t16 = d1 - L2 * s2 - L3 * (s2 * c3 + c2 * s3) - d5 * c234;
-    return [
-        c6 * t1 - s6 * t2 + t3 * t4,
-        -(s6 * t1 + t3 * t5 + c6 * t2),
-        t6 - c234 * t7,
-        t10 - t7 * t11,
-        -(s6 * t12 - t6 * t4 + c6 * t7),
-        s6 * t7 - (t6 * t5 + c6 * t12),
-        -(t3 + c234 * t1),
-        -(t13 + d6 * t3),
-        t5 + c6 * t14,
-        t4 - s6 * t14,
-        -t15,
-        t16 - d6 * t15,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    ];
+    o[0] = c6 * t1 - s6 * t2 + t3 * t4;
+    o[1] = -(s6 * t1 + t3 * t5 + c6 * t2);
+    o[2] = t6 - c234 * t7;
+    o[3] = t10 - t7 * t11;
+    o[4] = -(s6 * t12 - t6 * t4 + c6 * t7);
+    o[5] = s6 * t7 - (t6 * t5 + c6 * t12);
+    o[6] = -(t3 + c234 * t1);
+    o[7] = -(t13 + d6 * t3);
+    o[8] = t5 + c6 * t14;
+    o[9] = t4 - s6 * t14;
+    o[10] = -t15;
+    o[11] = t16 - d6 * t15;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _FK = {
+const _FK = _runtime.kernel({
     name: "ur_arm.fk",
     compute: _fk,
     common: null,
@@ -265,7 +253,7 @@ const _FK = {
     used: ["d1", "L2", "L3", "d4", "d5", "d6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Pose of the tool in the base frame.
@@ -294,11 +282,8 @@ export function fk_batch(n, q, T, parameters) {
     return _runtime.batch(_FK, n, [q], [T], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian(v) {
+/** @type {_runtime.Compute} */
+function _jacobian(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -347,48 +332,45 @@ function _jacobian(v) {
     const t17 = s1 * t9 + t16;
     const t18 = t3 - c234 * t4;
     const t19 = t2 - t18;
-    return [
-        t6 + c1 * t7,
-        c1 * t8 + t13,
-        t13,
-        t12,
-        -(s1 * t4 + t7 * t10),
-        0.0,
-        t14 - t4 * t10,
-        s1 * t8 + t17,
-        t17,
-        t16,
-        c1 * t4 - t7 * t5,
-        0.0,
-        0.0,
-        -(t1 + t19),
-        -t19,
-        t18,
-        -(s234 * t7),
-        0.0,
-        0.0,
-        s1,
-        s1,
-        s1,
-        t11,
-        s1 * c5 - s5 * t10,
-        0.0,
-        -c1,
-        -c1,
-        -c1,
-        t15,
-        -(c1 * c5 + s5 * t5),
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        -c234,
-        -(s234 * s5),
-    ];
+    o[0] = t6 + c1 * t7;
+    o[1] = c1 * t8 + t13;
+    o[2] = t13;
+    o[3] = t12;
+    o[4] = -(s1 * t4 + t7 * t10);
+    o[5] = 0.0;
+    o[6] = t14 - t4 * t10;
+    o[7] = s1 * t8 + t17;
+    o[8] = t17;
+    o[9] = t16;
+    o[10] = c1 * t4 - t7 * t5;
+    o[11] = 0.0;
+    o[12] = 0.0;
+    o[13] = -(t1 + t19);
+    o[14] = -t19;
+    o[15] = t18;
+    o[16] = -(s234 * t7);
+    o[17] = 0.0;
+    o[18] = 0.0;
+    o[19] = s1;
+    o[20] = s1;
+    o[21] = s1;
+    o[22] = t11;
+    o[23] = s1 * c5 - s5 * t10;
+    o[24] = 0.0;
+    o[25] = -c1;
+    o[26] = -c1;
+    o[27] = -c1;
+    o[28] = t15;
+    o[29] = -(c1 * c5 + s5 * t5);
+    o[30] = 1.0;
+    o[31] = 0.0;
+    o[32] = 0.0;
+    o[33] = 0.0;
+    o[34] = -c234;
+    o[35] = -(s234 * s5);
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN = {
+const _JACOBIAN = _runtime.kernel({
     name: "ur_arm.jacobian",
     compute: _jacobian,
     common: null,
@@ -401,7 +383,7 @@ const _JACOBIAN = {
     used: ["L2", "L3", "d4", "d5", "d6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Velocity of the tool over its angular velocity, in base axes, per joint rate.
@@ -431,11 +413,8 @@ export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _determinant(v) {
+/** @type {_runtime.Compute} */
+function _determinant(v, o) {
     const theta2 = v[1];
     const theta3 = v[2];
     const theta4 = v[3];
@@ -456,13 +435,10 @@ function _determinant(v) {
     const s5 = _runtime.found[0];
     const s234 = s2 * (c3 * c4 - s3 * s4) + c2 * (s3 * c4 + c3 * s4);
     const t1 = L2 * c2 + L3 * (c2 * c3 - s2 * s3) - d5 * s234;
-    return [
-        -(L2 * L3 * s3 * t1 * s5),
-    ];
+    o[0] = -(L2 * L3 * s3 * t1 * s5);
 }
 
-/** @type {_runtime.Kernel} */
-const _DETERMINANT = {
+const _DETERMINANT = _runtime.kernel({
     name: "ur_arm.determinant",
     compute: _determinant,
     common: null,
@@ -480,7 +456,7 @@ const _DETERMINANT = {
         least: 6.681911775230489e-52,
         most: 1.7498005798264095e+100,
     },
-};
+});
 
 /**
  * Determinant of the Jacobian.
@@ -508,11 +484,8 @@ export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _singularities(v) {
+/** @type {_runtime.Compute} */
+function _singularities(v, o) {
     const theta2 = v[1];
     const theta3 = v[2];
     const theta4 = v[3];
@@ -533,15 +506,12 @@ function _singularities(v) {
     const s5 = _runtime.found[0];
     const s234 = s2 * (c3 * c4 - s3 * s4) + c2 * (s3 * c4 + c3 * s4);
     const t1 = d5 * s234 - (L2 * c2 + L3 * (c2 * c3 - s2 * s3));
-    return [
-        t1,
-        s3,
-        s5,
-    ];
+    o[0] = t1;
+    o[1] = s3;
+    o[2] = s5;
 }
 
-/** @type {_runtime.Kernel} */
-const _SINGULARITIES = {
+const _SINGULARITIES = _runtime.kernel({
     name: "ur_arm.singularities",
     compute: _singularities,
     common: null,
@@ -554,7 +524,7 @@ const _SINGULARITIES = {
     used: ["L2", "L3", "d5"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * The factors of the determinant that hold a joint.
@@ -582,11 +552,8 @@ export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_space(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_space(v, o) {
     const theta1 = v[0];
     const theta2 = v[1];
     const theta3 = v[2];
@@ -644,48 +611,45 @@ function _jacobian_space(v) {
     const t26 = t24 * t2 - t2 * t25 + t6 * t17 + t24 * t4 - t4 * t25;
     const t27 = t26 + t8 * t17 - d1 * t24 + d1 * t25 - d4 * t13;
     const t28 = d5 * s234 * c5 - c5 * t6 - c5 * t8 + d4 * t11;
-    return [
-        0.0,
-        t1,
-        t3,
-        t3 - c1 * t4,
-        t9 + d4 * t10,
-        -(t18 + s1 * t19 + t14 * t20),
-        0.0,
-        t21,
-        t22,
-        t22 - s1 * t4,
-        d4 * t7 - t23,
-        c1 * t19 - (t27 + t24 * t20),
-        0.0,
-        0.0,
-        t6,
-        t6 + t8,
-        d4 * s234,
-        -t28,
-        0.0,
-        s1,
-        s1,
-        s1,
-        t16,
-        t24 - t25,
-        0.0,
-        -c1,
-        -c1,
-        -c1,
-        t5,
-        -(t14 + t12),
-        1.0,
-        0.0,
-        0.0,
-        0.0,
-        -c234,
-        -(s234 * s5),
-    ];
+    o[0] = 0.0;
+    o[1] = t1;
+    o[2] = t3;
+    o[3] = t3 - c1 * t4;
+    o[4] = t9 + d4 * t10;
+    o[5] = -(t18 + s1 * t19 + t14 * t20);
+    o[6] = 0.0;
+    o[7] = t21;
+    o[8] = t22;
+    o[9] = t22 - s1 * t4;
+    o[10] = d4 * t7 - t23;
+    o[11] = c1 * t19 - (t27 + t24 * t20);
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = t6;
+    o[15] = t6 + t8;
+    o[16] = d4 * s234;
+    o[17] = -t28;
+    o[18] = 0.0;
+    o[19] = s1;
+    o[20] = s1;
+    o[21] = s1;
+    o[22] = t16;
+    o[23] = t24 - t25;
+    o[24] = 0.0;
+    o[25] = -c1;
+    o[26] = -c1;
+    o[27] = -c1;
+    o[28] = t5;
+    o[29] = -(t14 + t12);
+    o[30] = 1.0;
+    o[31] = 0.0;
+    o[32] = 0.0;
+    o[33] = 0.0;
+    o[34] = -c234;
+    o[35] = -(s234 * s5);
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_SPACE = {
+const _JACOBIAN_SPACE = _runtime.kernel({
     name: "ur_arm.jacobian_space",
     compute: _jacobian_space,
     common: null,
@@ -698,7 +662,7 @@ const _JACOBIAN_SPACE = {
     used: ["d1", "L2", "L3", "d4", "d5"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Twist (v; omega) of the tool in the base frame per joint rate.
@@ -726,11 +690,8 @@ export function jacobian_space_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_SPACE, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _jacobian_body(v) {
+/** @type {_runtime.Compute} */
+function _jacobian_body(v, o) {
     const theta2 = v[1];
     const theta3 = v[2];
     const theta4 = v[3];
@@ -784,48 +745,45 @@ function _jacobian_body(v) {
     const t22 = t21 - (t9 * t14 - c6 * t15);
     const t23 = d5 * s5;
     const t24 = t23 - s5 * t14;
-    return [
-        t8 - t9 * t10 + c234 * t11,
-        t16 - (s6 * t17 + t5 * t18),
-        t16,
-        t13,
-        -t11,
-        0.0,
-        -(t19 + c234 * t20 + t5 * t10),
-        t9 * t18 - c6 * t17 - t22,
-        -t22,
-        -t21,
-        t20,
-        0.0,
-        c5 * t2 + c5 * t3 - s5 * t6 - c5 * t7,
-        s5 * t18 - t24,
-        -t24,
-        -t23,
-        0.0,
-        0.0,
-        s6 * c234 + s234 * t5,
-        t1,
-        t1,
-        t1,
-        -s6,
-        0.0,
-        c6 * c234 - s234 * t9,
-        -t12,
-        -t12,
-        -t12,
-        -c6,
-        0.0,
-        -(s5 * s234),
-        c5,
-        c5,
-        c5,
-        0.0,
-        1.0,
-    ];
+    o[0] = t8 - t9 * t10 + c234 * t11;
+    o[1] = t16 - (s6 * t17 + t5 * t18);
+    o[2] = t16;
+    o[3] = t13;
+    o[4] = -t11;
+    o[5] = 0.0;
+    o[6] = -(t19 + c234 * t20 + t5 * t10);
+    o[7] = t9 * t18 - c6 * t17 - t22;
+    o[8] = -t22;
+    o[9] = -t21;
+    o[10] = t20;
+    o[11] = 0.0;
+    o[12] = c5 * t2 + c5 * t3 - s5 * t6 - c5 * t7;
+    o[13] = s5 * t18 - t24;
+    o[14] = -t24;
+    o[15] = -t23;
+    o[16] = 0.0;
+    o[17] = 0.0;
+    o[18] = s6 * c234 + s234 * t5;
+    o[19] = t1;
+    o[20] = t1;
+    o[21] = t1;
+    o[22] = -s6;
+    o[23] = 0.0;
+    o[24] = c6 * c234 - s234 * t9;
+    o[25] = -t12;
+    o[26] = -t12;
+    o[27] = -t12;
+    o[28] = -c6;
+    o[29] = 0.0;
+    o[30] = -(s5 * s234);
+    o[31] = c5;
+    o[32] = c5;
+    o[33] = c5;
+    o[34] = 0.0;
+    o[35] = 1.0;
 }
 
-/** @type {_runtime.Kernel} */
-const _JACOBIAN_BODY = {
+const _JACOBIAN_BODY = _runtime.kernel({
     name: "ur_arm.jacobian_body",
     compute: _jacobian_body,
     common: null,
@@ -838,7 +796,7 @@ const _JACOBIAN_BODY = {
     used: ["L2", "L3", "d4", "d5", "d6"],
     defaults: DEFAULTS,
     size: null,
-};
+});
 
 /**
  * Twist (v; omega) of the tool in its own frame per joint rate.
@@ -866,11 +824,8 @@ export function jacobian_body_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_BODY, n, [q], [J], parameters);
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik(v) {
+/** @type {_runtime.Compute} */
+function _ik(v, o) {
     const T11 = v[0];
     const T12 = v[1];
     const T13 = v[2];
@@ -955,7 +910,7 @@ function _ik(v) {
     const t32 = dy_1_1 * dy_1_1;
     const bend_1_1 = dx_1_1 * dx_1_1 + t32;
     const inner_1_1 = slope_1_1 * slope_1_1 - miss_1_1 * bend_1_1;
-    const t33 = _runtime.sign(slope_1_1) * Math.sqrt(Math.max(0.0, inner_1_1));
+    const t33 = (slope_1_1 < 0 ? -1 : 1) * Math.sqrt(Math.max(0.0, inner_1_1));
     const t34 = inner_1_1 < 0.0 ? slope_1_1 / (2.0 * bend_1_1) : miss_1_1 / (2.0 * (slope_1_1 +
         t33));
     const t35 = t34 * t34;
@@ -1001,1372 +956,1377 @@ function _ik(v) {
     const t59 = 1.0 / n_v_1_1_2;
     const uc_v_1_1_2 = t58 ? 1.0 : (k_v_1_1_2 - d_v_1_1_2) * t59;
     const t60 = qx_1_1_2 * uc_v_1_1_2;
-    const side_1_1_2 = _runtime.sign(t26 * uc_1_1_2 - qx_1_1_2 * t53);
-    const t61 = 2.0 * side_1_1_2 * Math.sqrt(k_v_1_1_2 * d_v_1_1_2);
-    const us_v_1_1_2 = t58 ? 0.0 : t59 * t61;
-    const t62 = t26 * us_v_1_1_2;
-    const t63 = 1.0 / r_1_1_2;
-    const c_v_1_1_2 = t49 ? 1.0 : (t60 + t62) * t63;
-    const t64 = T33 * c_v_1_1_2 < 0.0;
-    const t65 = qx_1_1_2 * us_v_1_1_2;
-    const t66 = t26 * uc_v_1_1_2;
-    const to_c_1_1_2 = t64 ? (t49 ? 0.0 : t63 * (t65 + t66)) : -(t49 ? 0.0 : t63 * (t65 - t66));
-    const to_s_1_1_2 = t64 ? (t49 ? 1.0 : t63 * (t60 - t62)) : c_v_1_1_2;
-    const t67 = Math.min(most_1_1_2, t44 ? 0.0 : T33 * to_c_1_1_2 / to_s_1_1_2);
-    const kept_1_1_2 = Math.max(-most_1_1_2, t67);
-    const t68 = (most_1_1_2 - kept_1_1_2) * (most_1_1_2 + kept_1_1_2);
-    const rest_1_1_2 = Math.sqrt(t68) * _runtime.sign(-t43);
-    const t69 = 1.0 / (most_1_1_2 * most_1_1_2);
-    const t70 = (axisx_1_1_2 * rest_1_1_2 + t43 * kept_1_1_2) * t69;
-    const by_c_1_1_2 = t69 * (axisx_1_1_2 * kept_1_1_2 - t43 * rest_1_1_2);
-    const t71 = d4 * (t70 * t70) / (1.0 + Math.abs(by_c_1_1_2));
-    const t72 = (t71 + root1 * Math.abs(t70) <= whole_1_1) && (0.0 < by_c_1_1_2);
-    const t73 = t72 && (t48 < Math.abs(there_1_1_2 - goal_1_1_2));
-    const cosine_1_1_2 = t73 ? by_c_1_1_2 : 1.0;
-    const sine_1_1_2 = t73 ? -t70 : 0.0;
+    const t61 = 2.0 * (t26 * uc_1_1_2 - qx_1_1_2 * t53 < 0 ? -1 : 1);
+    const t62 = t59 * (t61 * Math.sqrt(k_v_1_1_2 * d_v_1_1_2));
+    const us_v_1_1_2 = t58 ? 0.0 : t62;
+    const t63 = t26 * us_v_1_1_2;
+    const t64 = 1.0 / r_1_1_2;
+    const c_v_1_1_2 = t49 ? 1.0 : (t60 + t63) * t64;
+    const t65 = T33 * c_v_1_1_2 < 0.0;
+    const t66 = qx_1_1_2 * us_v_1_1_2;
+    const t67 = t26 * uc_v_1_1_2;
+    const to_c_1_1_2 = t65 ? (t49 ? 0.0 : t64 * (t66 + t67)) : -(t49 ? 0.0 : t64 * (t66 - t67));
+    const to_s_1_1_2 = t65 ? (t49 ? 1.0 : t64 * (t60 - t63)) : c_v_1_1_2;
+    const t68 = Math.min(most_1_1_2, t44 ? 0.0 : T33 * to_c_1_1_2 / to_s_1_1_2);
+    const kept_1_1_2 = Math.max(-most_1_1_2, t68);
+    const t69 = (most_1_1_2 - kept_1_1_2) * (most_1_1_2 + kept_1_1_2);
+    const rest_1_1_2 = Math.sqrt(t69) * (-t43 < 0 ? -1 : 1);
+    const t70 = 1.0 / (most_1_1_2 * most_1_1_2);
+    const t71 = (axisx_1_1_2 * rest_1_1_2 + t43 * kept_1_1_2) * t70;
+    const by_c_1_1_2 = t70 * (axisx_1_1_2 * kept_1_1_2 - t43 * rest_1_1_2);
+    const t72 = d4 * (t71 * t71) / (1.0 + Math.abs(by_c_1_1_2));
+    const t73 = (t72 + root1 * Math.abs(t71) <= whole_1_1) && (0.0 < by_c_1_1_2);
+    const t74 = t73 && (t48 < Math.abs(there_1_1_2 - goal_1_1_2));
+    const cosine_1_1_2 = t74 ? by_c_1_1_2 : 1.0;
+    const sine_1_1_2 = t74 ? -t71 : 0.0;
     const c_1_1_2_3 = c_1_1_2 * cosine_1_1_2 - s_1_1_2 * sine_1_1_2;
     const s_1_1_2_3 = c_1_1_2 * sine_1_1_2 + s_1_1_2 * cosine_1_1_2;
     const axisx_1_1_2_3 = T13 * c_1_1_2_3 + T23 * s_1_1_2_3;
     const h_1_1_2_3 = Math.sqrt(t16 + axisx_1_1_2_3 * axisx_1_1_2_3);
-    const t74 = size_1_1 * h_1_1_2_3 <= t20;
+    const t75 = size_1_1 * h_1_1_2_3 <= t20;
     const qx_1_1_2_3 = w_x * c_1_1_2_3 + w_y * s_1_1_2_3;
-    const t75 = 1.0 / h_1_1_2_3;
-    const uc_1_1_2_3 = T33 * t75;
-    const x_1_1_2_3 = t74 ? qx_1_1_2_3 : qx_1_1_2_3 - d5 * uc_1_1_2_3;
+    const t76 = 1.0 / h_1_1_2_3;
+    const uc_1_1_2_3 = T33 * t76;
+    const x_1_1_2_3 = t75 ? qx_1_1_2_3 : qx_1_1_2_3 - d5 * uc_1_1_2_3;
     const dqx_1_1_2_3 = w_y * c_1_1_2_3 - w_x * s_1_1_2_3;
-    const t76 = axisx_1_1_2_3 * t75;
-    const t77 = d5 * (T33 * (T13 * s_1_1_2_3 - T23 * c_1_1_2_3));
-    const rate_1_1_2_3 = t77 / (h_1_1_2_3 * h_1_1_2_3);
-    const dx_1_1_2_3 = t74 ? dqx_1_1_2_3 : dqx_1_1_2_3 - t76 * rate_1_1_2_3;
-    const t78 = t74 ? t26 : t26 - d5 * t76;
-    const t79 = t74 ? 0.0 : uc_1_1_2_3 * rate_1_1_2_3;
-    const slope_1_1_2_3 = x_1_1_2_3 * dx_1_1_2_3 + t78 * t79;
-    const square_1_1_2_3 = x_1_1_2_3 * x_1_1_2_3 + t78 * t78;
-    const nearest_1_1_2_3 = t74 ? t30 : fold_1_1;
-    const farthest_1_1_2_3 = t74 ? t5 : full_1_1;
-    const t80 = Math.min(farthest_1_1_2_3 * farthest_1_1_2_3, square_1_1_2_3);
-    const t81 = Math.max(nearest_1_1_2_3 * nearest_1_1_2_3, t80);
-    const miss_1_1_2_3 = square_1_1_2_3 - t81;
-    const bend_1_1_2_3 = dx_1_1_2_3 * dx_1_1_2_3 + t79 * t79;
+    const t77 = axisx_1_1_2_3 * t76;
+    const t78 = d5 * (T33 * (T13 * s_1_1_2_3 - T23 * c_1_1_2_3));
+    const rate_1_1_2_3 = t78 / (h_1_1_2_3 * h_1_1_2_3);
+    const dx_1_1_2_3 = t75 ? dqx_1_1_2_3 : dqx_1_1_2_3 - t77 * rate_1_1_2_3;
+    const t79 = t75 ? t26 : t26 - d5 * t77;
+    const t80 = t75 ? 0.0 : uc_1_1_2_3 * rate_1_1_2_3;
+    const slope_1_1_2_3 = x_1_1_2_3 * dx_1_1_2_3 + t79 * t80;
+    const square_1_1_2_3 = x_1_1_2_3 * x_1_1_2_3 + t79 * t79;
+    const nearest_1_1_2_3 = t75 ? t30 : fold_1_1;
+    const farthest_1_1_2_3 = t75 ? t5 : full_1_1;
+    const t81 = Math.min(farthest_1_1_2_3 * farthest_1_1_2_3, square_1_1_2_3);
+    const t82 = Math.max(nearest_1_1_2_3 * nearest_1_1_2_3, t81);
+    const miss_1_1_2_3 = square_1_1_2_3 - t82;
+    const bend_1_1_2_3 = dx_1_1_2_3 * dx_1_1_2_3 + t80 * t80;
     const inner_1_1_2_3 = slope_1_1_2_3 * slope_1_1_2_3 - miss_1_1_2_3 * bend_1_1_2_3;
-    const t82 = _runtime.sign(slope_1_1_2_3) * Math.sqrt(Math.max(0.0, inner_1_1_2_3));
-    const t83 = inner_1_1_2_3 < 0.0 ? slope_1_1_2_3 / (2.0 * bend_1_1_2_3) : miss_1_1_2_3 / (2.0
-        * (slope_1_1_2_3 + t82));
-    const t84 = t83 * t83;
-    const t85 = 1.0 / (1.0 + t84);
-    const t86 = 2.0 * t83 * t85;
-    const by_c_1_1_2_3 = t85 * (1.0 - t84);
-    const t87 = d4 * (t86 * t86) / (1.0 + Math.abs(by_c_1_1_2_3));
-    const t88 = (t87 + root1 * Math.abs(t86) <= whole_1_1) && (0.0 < by_c_1_1_2_3);
-    const cosine_1_1_2_3 = t88 ? by_c_1_1_2_3 : 1.0;
-    const sine_1_1_2_3 = t88 ? -t86 : 0.0;
+    const t83 = (slope_1_1_2_3 < 0 ? -1 : 1) * Math.sqrt(Math.max(0.0, inner_1_1_2_3));
+    const t84 = inner_1_1_2_3 < 0.0 ? slope_1_1_2_3 / (2.0 * bend_1_1_2_3) : miss_1_1_2_3 / (2.0
+        * (slope_1_1_2_3 + t83));
+    const t85 = t84 * t84;
+    const t86 = 1.0 / (1.0 + t85);
+    const t87 = 2.0 * t84 * t86;
+    const by_c_1_1_2_3 = t86 * (1.0 - t85);
+    const t88 = d4 * (t87 * t87) / (1.0 + Math.abs(by_c_1_1_2_3));
+    const t89 = (t88 + root1 * Math.abs(t87) <= whole_1_1) && (0.0 < by_c_1_1_2_3);
+    const cosine_1_1_2_3 = t89 ? by_c_1_1_2_3 : 1.0;
+    const sine_1_1_2_3 = t89 ? -t87 : 0.0;
     const c_1_1_2_3_4 = c_1_1_2_3 * cosine_1_1_2_3 - s_1_1_2_3 * sine_1_1_2_3;
     const s_1_1_2_3_4 = c_1_1_2_3 * sine_1_1_2_3 + s_1_1_2_3 * cosine_1_1_2_3;
     const axisx_1_1_2_3_4 = T13 * c_1_1_2_3_4 + T23 * s_1_1_2_3_4;
     const h_1_1_2_3_4 = Math.sqrt(t16 + axisx_1_1_2_3_4 * axisx_1_1_2_3_4);
-    const t89 = size_1_1 * h_1_1_2_3_4 <= t20;
+    const t90 = size_1_1 * h_1_1_2_3_4 <= t20;
     const qx_1_1_2_3_4 = w_x * c_1_1_2_3_4 + w_y * s_1_1_2_3_4;
-    const t90 = 1.0 / h_1_1_2_3_4;
-    const uc_1_1_2_3_4 = T33 * t90;
-    const x_1_1_2_3_4 = t89 ? qx_1_1_2_3_4 : qx_1_1_2_3_4 - d5 * uc_1_1_2_3_4;
+    const t91 = 1.0 / h_1_1_2_3_4;
+    const uc_1_1_2_3_4 = T33 * t91;
+    const x_1_1_2_3_4 = t90 ? qx_1_1_2_3_4 : qx_1_1_2_3_4 - d5 * uc_1_1_2_3_4;
     const dqx_1_1_2_3_4 = w_y * c_1_1_2_3_4 - w_x * s_1_1_2_3_4;
-    const t91 = axisx_1_1_2_3_4 * t90;
-    const t92 = T33 * (T13 * s_1_1_2_3_4 - T23 * c_1_1_2_3_4);
-    const rate_1_1_2_3_4 = d5 * t92 / (h_1_1_2_3_4 * h_1_1_2_3_4);
-    const dx_1_1_2_3_4 = t89 ? dqx_1_1_2_3_4 : dqx_1_1_2_3_4 - t91 * rate_1_1_2_3_4;
-    const t93 = t89 ? t26 : t26 - d5 * t91;
-    const t94 = t89 ? 0.0 : uc_1_1_2_3_4 * rate_1_1_2_3_4;
-    const slope_1_1_2_3_4 = x_1_1_2_3_4 * dx_1_1_2_3_4 + t93 * t94;
-    const square_1_1_2_3_4 = x_1_1_2_3_4 * x_1_1_2_3_4 + t93 * t93;
-    const nearest_1_1_2_3_4 = t89 ? t30 : fold_1_1;
-    const farthest_1_1_2_3_4 = t89 ? t5 : full_1_1;
-    const t95 = Math.min(farthest_1_1_2_3_4 * farthest_1_1_2_3_4, square_1_1_2_3_4);
-    const t96 = Math.max(nearest_1_1_2_3_4 * nearest_1_1_2_3_4, t95);
-    const miss_1_1_2_3_4 = square_1_1_2_3_4 - t96;
-    const bend_1_1_2_3_4 = dx_1_1_2_3_4 * dx_1_1_2_3_4 + t94 * t94;
+    const t92 = axisx_1_1_2_3_4 * t91;
+    const t93 = T33 * (T13 * s_1_1_2_3_4 - T23 * c_1_1_2_3_4);
+    const rate_1_1_2_3_4 = d5 * t93 / (h_1_1_2_3_4 * h_1_1_2_3_4);
+    const dx_1_1_2_3_4 = t90 ? dqx_1_1_2_3_4 : dqx_1_1_2_3_4 - t92 * rate_1_1_2_3_4;
+    const t94 = t90 ? t26 : t26 - d5 * t92;
+    const t95 = t90 ? 0.0 : uc_1_1_2_3_4 * rate_1_1_2_3_4;
+    const slope_1_1_2_3_4 = x_1_1_2_3_4 * dx_1_1_2_3_4 + t94 * t95;
+    const square_1_1_2_3_4 = x_1_1_2_3_4 * x_1_1_2_3_4 + t94 * t94;
+    const nearest_1_1_2_3_4 = t90 ? t30 : fold_1_1;
+    const farthest_1_1_2_3_4 = t90 ? t5 : full_1_1;
+    const t96 = Math.min(farthest_1_1_2_3_4 * farthest_1_1_2_3_4, square_1_1_2_3_4);
+    const t97 = Math.max(nearest_1_1_2_3_4 * nearest_1_1_2_3_4, t96);
+    const miss_1_1_2_3_4 = square_1_1_2_3_4 - t97;
+    const bend_1_1_2_3_4 = dx_1_1_2_3_4 * dx_1_1_2_3_4 + t95 * t95;
     const inner_1_1_2_3_4 = slope_1_1_2_3_4 * slope_1_1_2_3_4 - miss_1_1_2_3_4 * bend_1_1_2_3_4;
-    const t97 = _runtime.sign(slope_1_1_2_3_4) * Math.sqrt(Math.max(0.0, inner_1_1_2_3_4));
-    const t98 = miss_1_1_2_3_4 / (2.0 * (slope_1_1_2_3_4 + t97));
-    const t99 = inner_1_1_2_3_4 < 0.0 ? slope_1_1_2_3_4 / (2.0 * bend_1_1_2_3_4) : t98;
-    const t100 = t99 * t99;
-    const t101 = 1.0 / (1.0 + t100);
-    const t102 = 2.0 * t99 * t101;
-    const by_c_1_1_2_3_4 = t101 * (1.0 - t100);
-    const t103 = d4 * (t102 * t102) / (1.0 + Math.abs(by_c_1_1_2_3_4));
-    const t104 = (t103 + root1 * Math.abs(t102) <= whole_1_1) && (0.0 < by_c_1_1_2_3_4);
-    const sine_1_1_2_3_4 = t104 ? -t102 : 0.0;
-    const cosine_1_1_2_3_4 = t104 ? by_c_1_1_2_3_4 : 1.0;
-    const t105 = c_1_1_2_3_4 * sine_1_1_2_3_4 + s_1_1_2_3_4 * cosine_1_1_2_3_4;
-    const s1 = tangent1 ? t105 : -t19;
-    const t106 = c_1_1_2_3_4 * cosine_1_1_2_3_4 - s_1_1_2_3_4 * sine_1_1_2_3_4;
-    const c1 = tangent1 ? t106 : c_1_1;
-    const t107 = Number.isFinite(d1) && Number.isFinite(L2) && Number.isFinite(L3) &&
+    const t98 = (slope_1_1_2_3_4 < 0 ? -1 : 1) * Math.sqrt(Math.max(0.0, inner_1_1_2_3_4));
+    const t99 = miss_1_1_2_3_4 / (2.0 * (slope_1_1_2_3_4 + t98));
+    const t100 = inner_1_1_2_3_4 < 0.0 ? slope_1_1_2_3_4 / (2.0 * bend_1_1_2_3_4) : t99;
+    const t101 = t100 * t100;
+    const t102 = 1.0 / (1.0 + t101);
+    const t103 = 2.0 * t100 * t102;
+    const by_c_1_1_2_3_4 = t102 * (1.0 - t101);
+    const t104 = d4 * (t103 * t103) / (1.0 + Math.abs(by_c_1_1_2_3_4));
+    const t105 = (t104 + root1 * Math.abs(t103) <= whole_1_1) && (0.0 < by_c_1_1_2_3_4);
+    const sine_1_1_2_3_4 = t105 ? -t103 : 0.0;
+    const cosine_1_1_2_3_4 = t105 ? by_c_1_1_2_3_4 : 1.0;
+    const t106 = c_1_1_2_3_4 * sine_1_1_2_3_4 + s_1_1_2_3_4 * cosine_1_1_2_3_4;
+    const s1 = tangent1 ? t106 : -t19;
+    const t107 = c_1_1_2_3_4 * cosine_1_1_2_3_4 - s_1_1_2_3_4 * sine_1_1_2_3_4;
+    const c1 = tangent1 ? t107 : c_1_1;
+    const t108 = Math.atan2(s1, c1);
+    const t109 = Number.isFinite(d1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(d4) && Number.isFinite(d5) && Number.isFinite(d6);
-    const t108 = t107 && (0.0 <= d1) && (0.0 <= L2) && (0.0 <= L3);
-    const t109 = t108 && (0.0 <= d4) && (0.0 <= d5) && (0.0 <= d6);
-    const t110 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
-    const t111 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
-    const t112 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
-    const t113 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
-    const t114 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
-    const t115 = t109 && t110 && t111 && t112 && t113 && (t114 <= _runtime.ROTATION);
-    const t116 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
-    const t117 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
-    const t118 = t115 && (t116 <= _runtime.ROTATION) && t117 && (Math.abs(T41) <=
+    const t110 = t109 && (0.0 <= d1) && (0.0 <= L2) && (0.0 <= L3);
+    const t111 = t110 && (0.0 <= d4) && (0.0 <= d5) && (0.0 <= d6);
+    const t112 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
+    const t113 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
+    const t114 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
+    const t115 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
+    const t116 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
+    const t117 = t111 && t112 && t113 && t114 && t115 && (t116 <= _runtime.ROTATION);
+    const t118 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
+    const t119 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
+    const t120 = t117 && (t118 <= _runtime.ROTATION) && t119 && (Math.abs(T41) <=
         _runtime.ROTATION);
-    const t119 = t118 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
+    const t121 = t120 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
         _runtime.ROTATION);
-    const t120 = t119 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
-    const invalid = !t120;
-    const t121 = L2 * 0.5 + L3 * 0.5 + d1 * 0.5 + d4 * 0.5 + d5 * 0.5;
-    const t122 = -(_runtime.FEASIBILITY * (t121 + d6 * 0.5));
-    const t123 = (t122 <= t1) && (t122 <= t2);
+    const t122 = t121 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
+    const invalid = !t122;
+    const t123 = L2 * 0.5 + L3 * 0.5 + d1 * 0.5 + d4 * 0.5 + d5 * 0.5;
+    const t124 = -(_runtime.FEASIBILITY * (t123 + d6 * 0.5));
+    const t125 = (t124 <= t1) && (t124 <= t2);
     const across = w_x * c1 + w_y * s1;
     const M_13 = T13 * c1 + T23 * s1;
     const h_wrist = Math.sqrt(t16 + M_13 * M_13);
-    const t124 = _runtime.VANISHING * 16.0;
-    const aligned_wrist = h_wrist <= t124;
+    const t126 = _runtime.VANISHING * 16.0;
+    const aligned_wrist = h_wrist <= t126;
     const r_hub = Math.sqrt(t45 + across * across);
     const hub_mid = r_hub <= t6;
-    const t125 = d5 + r_hub;
-    const t126 = d5 - r_hub;
-    const mid_reach = Math.min(full_1_1, t125) * 0.5 + Math.max(fold_1_1, Math.abs(t126)) * 0.5;
-    const k_mid = Math.max(0.0, (t125 - mid_reach) * (t125 + mid_reach));
-    const d_mid = Math.max(0.0, -((t126 - mid_reach) * (t126 + mid_reach)));
+    const t127 = d5 + r_hub;
+    const t128 = d5 - r_hub;
+    const mid_reach = Math.min(full_1_1, t127) * 0.5 + Math.max(fold_1_1, Math.abs(t128)) * 0.5;
+    const k_mid = Math.max(0.0, (t127 - mid_reach) * (t127 + mid_reach));
+    const d_mid = Math.max(0.0, -((t128 - mid_reach) * (t128 + mid_reach)));
     const n_mid = k_mid + d_mid;
-    const t127 = _runtime.VANISHING * t56;
-    const any_mid = n_mid <= t127;
-    const t128 = 1.0 / n_mid;
-    const uc_mid = any_mid ? 1.0 : (k_mid - d_mid) * t128;
-    const us_mid = any_mid ? 0.0 : t128 * (2.0 * Math.sqrt(k_mid * d_mid));
-    const t129 = 1.0 / r_hub;
-    const c_mid = hub_mid ? 1.0 : (across * uc_mid + t26 * us_mid) * t129;
-    const t130 = L2 * 0.00048828125 + L3 * 0.00048828125 + (d1 * 0.00048828125 + d4 *
+    const t129 = _runtime.VANISHING * t56;
+    const any_mid = n_mid <= t129;
+    const t130 = 1.0 / n_mid;
+    const uc_mid = any_mid ? 1.0 : (k_mid - d_mid) * t130;
+    const us_mid = any_mid ? 0.0 : t130 * (2.0 * Math.sqrt(k_mid * d_mid));
+    const t131 = 1.0 / r_hub;
+    const c_mid = hub_mid ? 1.0 : (across * uc_mid + t26 * us_mid) * t131;
+    const t132 = L2 * 0.00048828125 + L3 * 0.00048828125 + (d1 * 0.00048828125 + d4 *
         0.00048828125);
-    const t131 = d5 * 0.00048828125 + d6 * 0.00048828125 + t130;
-    const close = root1 * h_wrist - t131 <= t6;
-    const t132 = 1.0 / h_wrist;
-    const s_phi = aligned_wrist ? 0.0 : T33 * t132;
-    const t133 = across - d5 * s_phi;
-    const c_phi = aligned_wrist ? 1.0 : M_13 * t132;
-    const t134 = t26 - d5 * c_phi;
-    const here = Math.sqrt(t133 * t133 + t134 * t134);
+    const t133 = d5 * 0.00048828125 + d6 * 0.00048828125 + t132;
+    const close = root1 * h_wrist - t133 <= t6;
+    const t134 = 1.0 / h_wrist;
+    const s_phi = aligned_wrist ? 0.0 : T33 * t134;
+    const t135 = across - d5 * s_phi;
+    const c_phi = aligned_wrist ? 1.0 : M_13 * t134;
+    const t136 = t26 - d5 * c_phi;
+    const here = Math.sqrt(t135 * t135 + t136 * t136);
     const in_reach = Math.min(full_1_1, Math.max(here, fold_1_1));
-    const k_near = Math.max(0.0, (t125 - in_reach) * (t125 + in_reach));
-    const d_near = Math.max(0.0, -((t126 - in_reach) * (t126 + in_reach)));
+    const k_near = Math.max(0.0, (t127 - in_reach) * (t127 + in_reach));
+    const d_near = Math.max(0.0, -((t128 - in_reach) * (t128 + in_reach)));
     const n_near = k_near + d_near;
-    const any_near = n_near <= t127;
-    const t135 = 1.0 / n_near;
-    const uc_near = any_near ? 1.0 : (k_near - d_near) * t135;
-    const t136 = across * c_phi - t26 * s_phi;
-    const t137 = Math.abs(t136);
-    const t138 = 2.0 * (t137 <= t6 ? 1.0 : -(t136 / t137)) * Math.sqrt(k_near * d_near);
-    const us_near = any_near ? 0.0 : t135 * t138;
-    const c_near = hub_mid ? 1.0 : t129 * (across * uc_near + t26 * us_near);
-    const t139 = s_phi - c_near;
-    const s_near = hub_mid ? 0.0 : t129 * (across * us_near - t26 * uc_near);
-    const t140 = c_phi + s_near;
-    const t141 = h_wrist * Math.sqrt(t139 * t139 + t140 * t140);
-    const t142 = _runtime.VANISHING * 4.0;
-    const t143 = (t141 - 2.2737367544323206e-13 <= t142) && !(Math.abs(here - in_reach) <= t6);
-    const sphi = aligned_wrist ? c_mid : (close ? (t143 ? c_near : s_phi) : s_phi);
-    const t144 = across - d5 * sphi;
-    const s_mid = hub_mid ? 0.0 : t129 * (across * us_mid - t26 * uc_mid);
-    const cphi = aligned_wrist ? -s_mid : (close ? (t143 ? -s_near : c_phi) : c_phi);
+    const any_near = n_near <= t129;
+    const t137 = 1.0 / n_near;
+    const uc_near = any_near ? 1.0 : (k_near - d_near) * t137;
+    const t138 = across * c_phi - t26 * s_phi;
+    const t139 = Math.abs(t138);
+    const t140 = 2.0 * (t139 <= t6 ? 1.0 : -(t138 / t139)) * Math.sqrt(k_near * d_near);
+    const us_near = any_near ? 0.0 : t137 * t140;
+    const c_near = hub_mid ? 1.0 : t131 * (across * uc_near + t26 * us_near);
+    const t141 = s_phi - c_near;
+    const s_near = hub_mid ? 0.0 : t131 * (across * us_near - t26 * uc_near);
+    const t142 = c_phi + s_near;
+    const t143 = h_wrist * Math.sqrt(t141 * t141 + t142 * t142);
+    const t144 = _runtime.VANISHING * 4.0;
+    const t145 = (t143 - 2.2737367544323206e-13 <= t144) && !(Math.abs(here - in_reach) <= t6);
+    const sphi = aligned_wrist ? c_mid : (close ? (t145 ? c_near : s_phi) : s_phi);
+    const t146 = across - d5 * sphi;
+    const s_mid = hub_mid ? 0.0 : t131 * (across * us_mid - t26 * uc_mid);
+    const cphi = aligned_wrist ? -s_mid : (close ? (t145 ? -s_near : c_phi) : c_phi);
     const ey = t26 - d5 * cphi;
-    const r_elbow = Math.sqrt(t144 * t144 + ey * ey);
-    const t145 = full_1_1 - r_elbow;
-    const t146 = t29 + r_elbow;
-    const t147 = r_elbow - t29;
-    const t148 = t123 && (t122 <= t145) && (t122 <= t146) && (t122 <= t147);
-    const unreachable = !t148;
-    const t149 = _runtime.poison(invalid || unreachable);
-    const t150 = _runtime.wrapCut(Math.atan2(s1, c1)) + t149;
+    const r_elbow = Math.sqrt(t146 * t146 + ey * ey);
+    const t147 = full_1_1 - r_elbow;
+    const t148 = t29 + r_elbow;
+    const t149 = r_elbow - t29;
+    const t150 = t125 && (t124 <= t147) && (t124 <= t148) && (t124 <= t149);
+    const unreachable = !t150;
+    const t151 = invalid || unreachable ? NaN : 0;
+    const t152 = (t108 <= -Math.PI ? Math.PI : t108) + t151;
     const folded_elbow = r_elbow <= t6;
     const no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1);
-    const A_elbow = Math.max(t145, 0.0);
-    const C_elbow = Math.max(t147, 0.0);
-    const t151 = A_elbow * C_elbow;
+    const A_elbow = Math.max(t147, 0.0);
+    const C_elbow = Math.max(t149, 0.0);
+    const t153 = A_elbow * C_elbow;
     const S_elbow = full_1_1 + r_elbow;
-    const B_elbow = Math.max(t146, 0.0);
-    const t152 = S_elbow * B_elbow;
-    const t153 = 1.0 / (t151 + t152);
-    const c_base_elbow = no_link_elbow ? 1.0 : -((t151 - t152) * t153);
-    const t154 = 1.0 / r_elbow;
-    const t155 = ey * c_base_elbow * t154;
-    const area_elbow = 2.0 * Math.sqrt(t151 * t152);
-    const s_base_elbow = no_link_elbow ? 0.0 : t153 * area_elbow;
-    const t156 = t154 * (t144 * s_base_elbow);
-    const s2 = folded_elbow ? 0.0 : t155 + t156;
-    const t157 = t154 * (ey * s_base_elbow);
-    const t158 = t154 * (t144 * c_base_elbow);
-    const c2 = folded_elbow ? 1.0 : t157 - t158;
-    const t159 = A_elbow * S_elbow;
-    const t160 = C_elbow * B_elbow;
-    const t161 = 1.0 / (t159 + t160);
-    const s3 = no_link_elbow ? 0.0 : area_elbow * t161;
-    const c3 = no_link_elbow ? 1.0 : -(t161 * (t159 - t160));
-    const t162 = Math.atan2(s3, c3);
-    const t163 = sphi * c2 - cphi * s2;
-    const t164 = cphi * c2 + sphi * s2;
-    const t165 = Math.atan2(c3 * t163 - s3 * t164, c3 * t164 + s3 * t163);
-    const t166 = Math.atan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1);
-    const t167 = _runtime.wrapCut(-t166) + t149;
-    const t168 = Math.atan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12
+    const B_elbow = Math.max(t148, 0.0);
+    const t154 = S_elbow * B_elbow;
+    const t155 = 1.0 / (t153 + t154);
+    const c_base_elbow = no_link_elbow ? 1.0 : -((t153 - t154) * t155);
+    const t156 = 1.0 / r_elbow;
+    const t157 = ey * c_base_elbow * t156;
+    const area_elbow = 2.0 * Math.sqrt(t153 * t154);
+    const s_base_elbow = no_link_elbow ? 0.0 : t155 * area_elbow;
+    const t158 = t156 * (t146 * s_base_elbow);
+    const s2 = folded_elbow ? 0.0 : t157 + t158;
+    const t159 = t156 * (ey * s_base_elbow);
+    const t160 = t156 * (t146 * c_base_elbow);
+    const c2 = folded_elbow ? 1.0 : t159 - t160;
+    const t161 = Math.atan2(s2, c2);
+    const t162 = A_elbow * S_elbow;
+    const t163 = C_elbow * B_elbow;
+    const t164 = 1.0 / (t162 + t163);
+    const s3 = no_link_elbow ? 0.0 : area_elbow * t164;
+    const c3 = no_link_elbow ? 1.0 : -(t164 * (t162 - t163));
+    const t165 = Math.atan2(s3, c3);
+    const t166 = sphi * c2 - cphi * s2;
+    const t167 = cphi * c2 + sphi * s2;
+    const t168 = Math.atan2(c3 * t166 - s3 * t167, c3 * t167 + s3 * t166);
+    const t169 = Math.atan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1);
+    const t170 = -t169;
+    const t171 = (t170 <= -Math.PI ? Math.PI : t170) + t151;
+    const t172 = Math.atan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12
         * c1 + T22 * s1));
-    const t169 = _runtime.wrapCut(-t168) + t149;
-    const s2_left_noflip_down = folded_elbow ? 0.0 : t155 - t156;
-    const c2_left_noflip_down = folded_elbow ? 1.0 : -(t158 + t157);
-    const t170 = Math.atan2(s2_left_noflip_down, c2_left_noflip_down);
-    const t171 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down;
-    const t172 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down;
-    const t173 = Math.atan2(c3 * t171 + s3 * t172, c3 * t172 - s3 * t171);
+    const t173 = -t172;
+    const t174 = (t173 <= -Math.PI ? Math.PI : t173) + t151;
+    const s2_left_noflip_down = folded_elbow ? 0.0 : t157 - t158;
+    const c2_left_noflip_down = folded_elbow ? 1.0 : -(t160 + t159);
+    const t175 = Math.atan2(s2_left_noflip_down, c2_left_noflip_down);
+    const t176 = -t165;
+    const t177 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down;
+    const t178 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down;
+    const t179 = Math.atan2(c3 * t177 + s3 * t178, c3 * t178 - s3 * t177);
     const x_1_1_left_flip_up = t21 ? qx_1_1 : qx_1_1 + t23;
     const dx_1_1_left_flip_up = t21 ? dqx_1_1 : dqx_1_1 - t25;
-    const t174 = t21 ? t26 : t26 + t27;
-    const slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t174;
-    const t175 = slope_1_1_left_flip_up * slope_1_1_left_flip_up;
-    const square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t174 * t174;
-    const t176 = Math.max(low_1_1, Math.min(high_1_1, square_1_1_left_flip_up));
-    const miss_1_1_left_flip_up = square_1_1_left_flip_up - t176;
+    const t180 = t21 ? t26 : t26 + t27;
+    const slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t180;
+    const t181 = slope_1_1_left_flip_up * slope_1_1_left_flip_up;
+    const square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t180 * t180;
+    const t182 = Math.max(low_1_1, Math.min(high_1_1, square_1_1_left_flip_up));
+    const miss_1_1_left_flip_up = square_1_1_left_flip_up - t182;
     const bend_1_1_left_flip_up = t32 + dx_1_1_left_flip_up * dx_1_1_left_flip_up;
-    const t177 = miss_1_1_left_flip_up * bend_1_1_left_flip_up;
-    const inner_1_1_left_flip_up = t175 - t177;
-    const t178 = slope_1_1_left_flip_up / (2.0 * bend_1_1_left_flip_up);
-    const t179 = Math.sqrt(Math.max(0.0, inner_1_1_left_flip_up));
-    const outer_1_1_left_flip_up = slope_1_1_left_flip_up +
-        _runtime.sign(slope_1_1_left_flip_up) * t179;
-    const t180 = miss_1_1_left_flip_up / (2.0 * outer_1_1_left_flip_up);
-    const t181 = inner_1_1_left_flip_up < 0.0 ? t178 : t180;
-    const t182 = t181 * t181;
-    const t183 = 1.0 / (1.0 + t182);
-    const t184 = 2.0 * t181 * t183;
-    const by_c_1_1_left_flip_up = t183 * (1.0 - t182);
-    const t185 = d4 * (t184 * t184) / (1.0 + Math.abs(by_c_1_1_left_flip_up));
-    const t186 = (t185 + root1 * Math.abs(t184) <= whole_1_1) && (0.0 < by_c_1_1_left_flip_up);
-    const cosine_1_1_left_flip_up = t186 ? by_c_1_1_left_flip_up : 1.0;
-    const sine_1_1_left_flip_up = t186 ? -t184 : 0.0;
+    const t183 = miss_1_1_left_flip_up * bend_1_1_left_flip_up;
+    const inner_1_1_left_flip_up = t181 - t183;
+    const t184 = slope_1_1_left_flip_up / (2.0 * bend_1_1_left_flip_up);
+    const t185 = Math.sqrt(Math.max(0.0, inner_1_1_left_flip_up));
+    const outer_1_1_left_flip_up = slope_1_1_left_flip_up + (slope_1_1_left_flip_up < 0 ? -1 :
+        1) * t185;
+    const t186 = miss_1_1_left_flip_up / (2.0 * outer_1_1_left_flip_up);
+    const t187 = inner_1_1_left_flip_up < 0.0 ? t184 : t186;
+    const t188 = t187 * t187;
+    const t189 = 1.0 / (1.0 + t188);
+    const t190 = 2.0 * t187 * t189;
+    const by_c_1_1_left_flip_up = t189 * (1.0 - t188);
+    const t191 = d4 * (t190 * t190) / (1.0 + Math.abs(by_c_1_1_left_flip_up));
+    const t192 = (t191 + root1 * Math.abs(t190) <= whole_1_1) && (0.0 < by_c_1_1_left_flip_up);
+    const cosine_1_1_left_flip_up = t192 ? by_c_1_1_left_flip_up : 1.0;
+    const sine_1_1_left_flip_up = t192 ? -t190 : 0.0;
     const c_1_1_2_left_flip_up = c_1_1 * cosine_1_1_left_flip_up + t19 * sine_1_1_left_flip_up;
     const s_1_1_2_left_flip_up = c_1_1 * sine_1_1_left_flip_up - t19 * cosine_1_1_left_flip_up;
     const axisx_1_1_2_left_flip_up = T13 * c_1_1_2_left_flip_up + T23 * s_1_1_2_left_flip_up;
-    const t187 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up;
-    const t188 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up;
-    const most_1_1_2_left_flip_up = Math.sqrt(t187 + t188 * t188);
+    const t193 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up;
+    const t194 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up;
+    const most_1_1_2_left_flip_up = Math.sqrt(t193 + t194 * t194);
     const qx_1_1_2_left_flip_up = w_x * c_1_1_2_left_flip_up + w_y * s_1_1_2_left_flip_up;
-    const t189 = qx_1_1_2_left_flip_up * qx_1_1_2_left_flip_up;
-    const r_1_1_2_left_flip_up = Math.sqrt(t45 + t189);
-    const t190 = r_1_1_2_left_flip_up <= t48;
-    const t191 = d5 + r_1_1_2_left_flip_up;
-    const t192 = 1.0 / Math.sqrt(t16 + t187);
-    const t193 = T33 * t192;
-    const t194 = qx_1_1_2_left_flip_up + d5 * t193;
-    const us_1_1_2_left_flip_up = axisx_1_1_2_left_flip_up * t192;
-    const t195 = t26 + d5 * us_1_1_2_left_flip_up;
-    const there_1_1_2_left_flip_up = Math.sqrt(t194 * t194 + t195 * t195);
+    const t195 = qx_1_1_2_left_flip_up * qx_1_1_2_left_flip_up;
+    const r_1_1_2_left_flip_up = Math.sqrt(t45 + t195);
+    const t196 = r_1_1_2_left_flip_up <= t48;
+    const t197 = d5 + r_1_1_2_left_flip_up;
+    const t198 = 1.0 / Math.sqrt(t16 + t193);
+    const t199 = T33 * t198;
+    const t200 = qx_1_1_2_left_flip_up + d5 * t199;
+    const us_1_1_2_left_flip_up = axisx_1_1_2_left_flip_up * t198;
+    const t201 = t26 + d5 * us_1_1_2_left_flip_up;
+    const there_1_1_2_left_flip_up = Math.sqrt(t200 * t200 + t201 * t201);
     const goal_1_1_2_left_flip_up = Math.min(full_1_1, Math.max(there_1_1_2_left_flip_up,
         fold_1_1));
-    const t196 = (t191 - goal_1_1_2_left_flip_up) * (t191 + goal_1_1_2_left_flip_up);
-    const k_v_1_1_2_left_flip_up = Math.max(0.0, t196);
-    const t197 = d5 - r_1_1_2_left_flip_up;
-    const t198 = (goal_1_1_2_left_flip_up - t197) * (goal_1_1_2_left_flip_up + t197);
-    const d_v_1_1_2_left_flip_up = Math.max(0.0, t198);
+    const t202 = (t197 - goal_1_1_2_left_flip_up) * (t197 + goal_1_1_2_left_flip_up);
+    const k_v_1_1_2_left_flip_up = Math.max(0.0, t202);
+    const t203 = d5 - r_1_1_2_left_flip_up;
+    const t204 = (goal_1_1_2_left_flip_up - t203) * (goal_1_1_2_left_flip_up + t203);
+    const d_v_1_1_2_left_flip_up = Math.max(0.0, t204);
     const n_v_1_1_2_left_flip_up = k_v_1_1_2_left_flip_up + d_v_1_1_2_left_flip_up;
-    const t199 = n_v_1_1_2_left_flip_up <= t57;
-    const t200 = k_v_1_1_2_left_flip_up - d_v_1_1_2_left_flip_up;
-    const t201 = 1.0 / n_v_1_1_2_left_flip_up;
-    const uc_v_1_1_2_left_flip_up = t199 ? 1.0 : t200 * t201;
-    const t202 = qx_1_1_2_left_flip_up * uc_v_1_1_2_left_flip_up;
-    const t203 = qx_1_1_2_left_flip_up * us_1_1_2_left_flip_up;
-    const t204 = k_v_1_1_2_left_flip_up * d_v_1_1_2_left_flip_up;
-    const t205 = 2.0 * _runtime.sign(t203 - t26 * t193) * Math.sqrt(t204);
-    const us_v_1_1_2_left_flip_up = t199 ? 0.0 : t201 * t205;
-    const t206 = t26 * us_v_1_1_2_left_flip_up;
-    const t207 = 1.0 / r_1_1_2_left_flip_up;
-    const c_v_1_1_2_left_flip_up = t190 ? 1.0 : (t202 + t206) * t207;
-    const t208 = -(T33 * c_v_1_1_2_left_flip_up) < 0.0;
-    const t209 = qx_1_1_2_left_flip_up * us_v_1_1_2_left_flip_up;
-    const t210 = t26 * uc_v_1_1_2_left_flip_up;
-    const to_c_1_1_2_left_flip_up = t208 ? (t190 ? 0.0 : t207 * (t209 + t210)) : -(t190 ? 0.0 :
-        t207 * (t209 - t210));
-    const to_s_1_1_2_left_flip_up = t208 ? (t190 ? 1.0 : t207 * (t202 - t206)) :
+    const t205 = n_v_1_1_2_left_flip_up <= t57;
+    const t206 = k_v_1_1_2_left_flip_up - d_v_1_1_2_left_flip_up;
+    const t207 = 1.0 / n_v_1_1_2_left_flip_up;
+    const uc_v_1_1_2_left_flip_up = t205 ? 1.0 : t206 * t207;
+    const t208 = qx_1_1_2_left_flip_up * uc_v_1_1_2_left_flip_up;
+    const t209 = qx_1_1_2_left_flip_up * us_1_1_2_left_flip_up;
+    const t210 = k_v_1_1_2_left_flip_up * d_v_1_1_2_left_flip_up;
+    const t211 = 2.0 * (t209 - t26 * t199 < 0 ? -1 : 1) * Math.sqrt(t210);
+    const us_v_1_1_2_left_flip_up = t205 ? 0.0 : t207 * t211;
+    const t212 = t26 * us_v_1_1_2_left_flip_up;
+    const t213 = 1.0 / r_1_1_2_left_flip_up;
+    const c_v_1_1_2_left_flip_up = t196 ? 1.0 : (t208 + t212) * t213;
+    const t214 = -(T33 * c_v_1_1_2_left_flip_up) < 0.0;
+    const t215 = qx_1_1_2_left_flip_up * us_v_1_1_2_left_flip_up;
+    const t216 = t26 * uc_v_1_1_2_left_flip_up;
+    const to_c_1_1_2_left_flip_up = t214 ? (t196 ? 0.0 : t213 * (t215 + t216)) : -(t196 ? 0.0 :
+        t213 * (t215 - t216));
+    const to_s_1_1_2_left_flip_up = t214 ? (t196 ? 1.0 : t213 * (t208 - t212)) :
         c_v_1_1_2_left_flip_up;
-    const t211 = T33 * to_c_1_1_2_left_flip_up / to_s_1_1_2_left_flip_up;
-    const t212 = Math.min(most_1_1_2_left_flip_up, t44 ? 0.0 : t211);
-    const kept_1_1_2_left_flip_up = Math.max(-most_1_1_2_left_flip_up, t212);
-    const t213 = most_1_1_2_left_flip_up - kept_1_1_2_left_flip_up;
-    const t214 = most_1_1_2_left_flip_up + kept_1_1_2_left_flip_up;
-    const rest_1_1_2_left_flip_up = Math.sqrt(t213 * t214) * _runtime.sign(-t188);
-    const t215 = axisx_1_1_2_left_flip_up * rest_1_1_2_left_flip_up;
-    const t216 = most_1_1_2_left_flip_up * most_1_1_2_left_flip_up;
-    const t217 = 1.0 / t216;
-    const t218 = (t215 + t188 * kept_1_1_2_left_flip_up) * t217;
-    const t219 = axisx_1_1_2_left_flip_up * kept_1_1_2_left_flip_up;
-    const by_c_1_1_2_left_flip_up = t217 * (t219 - t188 * rest_1_1_2_left_flip_up);
-    const t220 = d4 * (t218 * t218) / (1.0 + Math.abs(by_c_1_1_2_left_flip_up));
-    const t221 = (t220 + root1 * Math.abs(t218) <= whole_1_1) && (0.0 <
+    const t217 = T33 * to_c_1_1_2_left_flip_up / to_s_1_1_2_left_flip_up;
+    const t218 = Math.min(most_1_1_2_left_flip_up, t44 ? 0.0 : t217);
+    const kept_1_1_2_left_flip_up = Math.max(-most_1_1_2_left_flip_up, t218);
+    const t219 = most_1_1_2_left_flip_up - kept_1_1_2_left_flip_up;
+    const t220 = most_1_1_2_left_flip_up + kept_1_1_2_left_flip_up;
+    const rest_1_1_2_left_flip_up = Math.sqrt(t219 * t220) * (-t194 < 0 ? -1 : 1);
+    const t221 = axisx_1_1_2_left_flip_up * rest_1_1_2_left_flip_up;
+    const t222 = most_1_1_2_left_flip_up * most_1_1_2_left_flip_up;
+    const t223 = 1.0 / t222;
+    const t224 = (t221 + t194 * kept_1_1_2_left_flip_up) * t223;
+    const t225 = axisx_1_1_2_left_flip_up * kept_1_1_2_left_flip_up;
+    const by_c_1_1_2_left_flip_up = t223 * (t225 - t194 * rest_1_1_2_left_flip_up);
+    const t226 = d4 * (t224 * t224) / (1.0 + Math.abs(by_c_1_1_2_left_flip_up));
+    const t227 = (t226 + root1 * Math.abs(t224) <= whole_1_1) && (0.0 <
         by_c_1_1_2_left_flip_up);
-    const t222 = there_1_1_2_left_flip_up - goal_1_1_2_left_flip_up;
-    const t223 = t221 && (t48 < Math.abs(t222));
-    const cosine_1_1_2_left_flip_up = t223 ? by_c_1_1_2_left_flip_up : 1.0;
-    const t224 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up;
-    const sine_1_1_2_left_flip_up = t223 ? -t218 : 0.0;
-    const t225 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up;
-    const c_1_1_2_3_left_flip_up = t224 - t225;
-    const t226 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up;
-    const t227 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up;
-    const s_1_1_2_3_left_flip_up = t226 + t227;
+    const t228 = there_1_1_2_left_flip_up - goal_1_1_2_left_flip_up;
+    const t229 = t227 && (t48 < Math.abs(t228));
+    const cosine_1_1_2_left_flip_up = t229 ? by_c_1_1_2_left_flip_up : 1.0;
+    const t230 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up;
+    const sine_1_1_2_left_flip_up = t229 ? -t224 : 0.0;
+    const t231 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up;
+    const c_1_1_2_3_left_flip_up = t230 - t231;
+    const t232 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up;
+    const t233 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up;
+    const s_1_1_2_3_left_flip_up = t232 + t233;
     const axisx_1_1_2_3_left_flip_up = T13 * c_1_1_2_3_left_flip_up + T23 *
         s_1_1_2_3_left_flip_up;
-    const t228 = axisx_1_1_2_3_left_flip_up * axisx_1_1_2_3_left_flip_up;
-    const h_1_1_2_3_left_flip_up = Math.sqrt(t16 + t228);
-    const t229 = size_1_1 * h_1_1_2_3_left_flip_up <= t20;
+    const t234 = axisx_1_1_2_3_left_flip_up * axisx_1_1_2_3_left_flip_up;
+    const h_1_1_2_3_left_flip_up = Math.sqrt(t16 + t234);
+    const t235 = size_1_1 * h_1_1_2_3_left_flip_up <= t20;
     const qx_1_1_2_3_left_flip_up = w_x * c_1_1_2_3_left_flip_up + w_y * s_1_1_2_3_left_flip_up;
-    const t230 = 1.0 / h_1_1_2_3_left_flip_up;
-    const t231 = T33 * t230;
-    const x_1_1_2_3_left_flip_up = t229 ? qx_1_1_2_3_left_flip_up : qx_1_1_2_3_left_flip_up + d5
-        * t231;
+    const t236 = 1.0 / h_1_1_2_3_left_flip_up;
+    const t237 = T33 * t236;
+    const x_1_1_2_3_left_flip_up = t235 ? qx_1_1_2_3_left_flip_up : qx_1_1_2_3_left_flip_up + d5
+        * t237;
     const dqx_1_1_2_3_left_flip_up = w_y * c_1_1_2_3_left_flip_up - w_x *
         s_1_1_2_3_left_flip_up;
-    const us_1_1_2_3_left_flip_up = axisx_1_1_2_3_left_flip_up * t230;
-    const t232 = T13 * s_1_1_2_3_left_flip_up - T23 * c_1_1_2_3_left_flip_up;
-    const t233 = h_1_1_2_3_left_flip_up * h_1_1_2_3_left_flip_up;
-    const rate_1_1_2_3_left_flip_up = d5 * (T33 * t232) / t233;
-    const t234 = us_1_1_2_3_left_flip_up * rate_1_1_2_3_left_flip_up;
-    const dx_1_1_2_3_left_flip_up = t229 ? dqx_1_1_2_3_left_flip_up : dqx_1_1_2_3_left_flip_up +
-        t234;
-    const t235 = x_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up;
-    const t236 = t229 ? t26 : t26 + d5 * us_1_1_2_3_left_flip_up;
-    const dy_1_1_2_3_left_flip_up = t229 ? 0.0 : t231 * rate_1_1_2_3_left_flip_up;
-    const slope_1_1_2_3_left_flip_up = t235 - t236 * dy_1_1_2_3_left_flip_up;
-    const t237 = slope_1_1_2_3_left_flip_up * slope_1_1_2_3_left_flip_up;
-    const t238 = x_1_1_2_3_left_flip_up * x_1_1_2_3_left_flip_up;
-    const square_1_1_2_3_left_flip_up = t238 + t236 * t236;
-    const nearest_1_1_2_3_left_flip_up = t229 ? t30 : fold_1_1;
+    const us_1_1_2_3_left_flip_up = axisx_1_1_2_3_left_flip_up * t236;
+    const t238 = T13 * s_1_1_2_3_left_flip_up - T23 * c_1_1_2_3_left_flip_up;
+    const t239 = h_1_1_2_3_left_flip_up * h_1_1_2_3_left_flip_up;
+    const rate_1_1_2_3_left_flip_up = d5 * (T33 * t238) / t239;
+    const t240 = us_1_1_2_3_left_flip_up * rate_1_1_2_3_left_flip_up;
+    const dx_1_1_2_3_left_flip_up = t235 ? dqx_1_1_2_3_left_flip_up : dqx_1_1_2_3_left_flip_up +
+        t240;
+    const t241 = x_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up;
+    const t242 = t235 ? t26 : t26 + d5 * us_1_1_2_3_left_flip_up;
+    const dy_1_1_2_3_left_flip_up = t235 ? 0.0 : t237 * rate_1_1_2_3_left_flip_up;
+    const slope_1_1_2_3_left_flip_up = t241 - t242 * dy_1_1_2_3_left_flip_up;
+    const t243 = slope_1_1_2_3_left_flip_up * slope_1_1_2_3_left_flip_up;
+    const t244 = x_1_1_2_3_left_flip_up * x_1_1_2_3_left_flip_up;
+    const square_1_1_2_3_left_flip_up = t244 + t242 * t242;
+    const nearest_1_1_2_3_left_flip_up = t235 ? t30 : fold_1_1;
     const low_1_1_2_3_left_flip_up = nearest_1_1_2_3_left_flip_up *
         nearest_1_1_2_3_left_flip_up;
-    const farthest_1_1_2_3_left_flip_up = t229 ? t5 : full_1_1;
+    const farthest_1_1_2_3_left_flip_up = t235 ? t5 : full_1_1;
     const high_1_1_2_3_left_flip_up = farthest_1_1_2_3_left_flip_up *
         farthest_1_1_2_3_left_flip_up;
-    const t239 = Math.min(high_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up);
+    const t245 = Math.min(high_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up);
     const miss_1_1_2_3_left_flip_up = square_1_1_2_3_left_flip_up -
-        Math.max(low_1_1_2_3_left_flip_up, t239);
-    const t240 = dx_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up;
-    const t241 = dy_1_1_2_3_left_flip_up * dy_1_1_2_3_left_flip_up;
-    const bend_1_1_2_3_left_flip_up = t240 + t241;
-    const t242 = miss_1_1_2_3_left_flip_up * bend_1_1_2_3_left_flip_up;
-    const inner_1_1_2_3_left_flip_up = t237 - t242;
-    const t243 = slope_1_1_2_3_left_flip_up / (2.0 * bend_1_1_2_3_left_flip_up);
-    const t244 = Math.sqrt(Math.max(0.0, inner_1_1_2_3_left_flip_up));
-    const t245 = _runtime.sign(slope_1_1_2_3_left_flip_up) * t244;
-    const t246 = miss_1_1_2_3_left_flip_up / (2.0 * (slope_1_1_2_3_left_flip_up + t245));
-    const t247 = inner_1_1_2_3_left_flip_up < 0.0 ? t243 : t246;
-    const t248 = t247 * t247;
-    const t249 = 1.0 / (1.0 + t248);
-    const t250 = 2.0 * t247 * t249;
-    const by_c_1_1_2_3_left_flip_up = t249 * (1.0 - t248);
-    const t251 = d4 * (t250 * t250) / (1.0 + Math.abs(by_c_1_1_2_3_left_flip_up));
-    const t252 = (t251 + root1 * Math.abs(t250) <= whole_1_1) && (0.0 <
+        Math.max(low_1_1_2_3_left_flip_up, t245);
+    const t246 = dx_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up;
+    const t247 = dy_1_1_2_3_left_flip_up * dy_1_1_2_3_left_flip_up;
+    const bend_1_1_2_3_left_flip_up = t246 + t247;
+    const t248 = miss_1_1_2_3_left_flip_up * bend_1_1_2_3_left_flip_up;
+    const inner_1_1_2_3_left_flip_up = t243 - t248;
+    const t249 = slope_1_1_2_3_left_flip_up / (2.0 * bend_1_1_2_3_left_flip_up);
+    const t250 = Math.sqrt(Math.max(0.0, inner_1_1_2_3_left_flip_up));
+    const t251 = (slope_1_1_2_3_left_flip_up < 0 ? -1 : 1) * t250;
+    const t252 = miss_1_1_2_3_left_flip_up / (2.0 * (slope_1_1_2_3_left_flip_up + t251));
+    const t253 = inner_1_1_2_3_left_flip_up < 0.0 ? t249 : t252;
+    const t254 = t253 * t253;
+    const t255 = 1.0 / (1.0 + t254);
+    const t256 = 2.0 * t253 * t255;
+    const by_c_1_1_2_3_left_flip_up = t255 * (1.0 - t254);
+    const t257 = d4 * (t256 * t256) / (1.0 + Math.abs(by_c_1_1_2_3_left_flip_up));
+    const t258 = (t257 + root1 * Math.abs(t256) <= whole_1_1) && (0.0 <
         by_c_1_1_2_3_left_flip_up);
-    const cosine_1_1_2_3_left_flip_up = t252 ? by_c_1_1_2_3_left_flip_up : 1.0;
-    const t253 = c_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up;
-    const sine_1_1_2_3_left_flip_up = t252 ? -t250 : 0.0;
-    const t254 = s_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up;
-    const c_1_1_2_3_4_left_flip_up = t253 - t254;
-    const t255 = c_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up;
-    const t256 = s_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up;
-    const s_1_1_2_3_4_left_flip_up = t255 + t256;
+    const cosine_1_1_2_3_left_flip_up = t258 ? by_c_1_1_2_3_left_flip_up : 1.0;
+    const t259 = c_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up;
+    const sine_1_1_2_3_left_flip_up = t258 ? -t256 : 0.0;
+    const t260 = s_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up;
+    const c_1_1_2_3_4_left_flip_up = t259 - t260;
+    const t261 = c_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up;
+    const t262 = s_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up;
+    const s_1_1_2_3_4_left_flip_up = t261 + t262;
     const axisx_1_1_2_3_4_left_flip_up = T13 * c_1_1_2_3_4_left_flip_up + T23 *
         s_1_1_2_3_4_left_flip_up;
-    const t257 = axisx_1_1_2_3_4_left_flip_up * axisx_1_1_2_3_4_left_flip_up;
-    const h_1_1_2_3_4_left_flip_up = Math.sqrt(t16 + t257);
-    const t258 = size_1_1 * h_1_1_2_3_4_left_flip_up <= t20;
+    const t263 = axisx_1_1_2_3_4_left_flip_up * axisx_1_1_2_3_4_left_flip_up;
+    const h_1_1_2_3_4_left_flip_up = Math.sqrt(t16 + t263);
+    const t264 = size_1_1 * h_1_1_2_3_4_left_flip_up <= t20;
     const qx_1_1_2_3_4_left_flip_up = w_x * c_1_1_2_3_4_left_flip_up + w_y *
         s_1_1_2_3_4_left_flip_up;
-    const t259 = 1.0 / h_1_1_2_3_4_left_flip_up;
-    const t260 = T33 * t259;
-    const x_1_1_2_3_4_left_flip_up = t258 ? qx_1_1_2_3_4_left_flip_up :
-        qx_1_1_2_3_4_left_flip_up + d5 * t260;
+    const t265 = 1.0 / h_1_1_2_3_4_left_flip_up;
+    const t266 = T33 * t265;
+    const x_1_1_2_3_4_left_flip_up = t264 ? qx_1_1_2_3_4_left_flip_up :
+        qx_1_1_2_3_4_left_flip_up + d5 * t266;
     const dqx_1_1_2_3_4_left_flip_up = w_y * c_1_1_2_3_4_left_flip_up - w_x *
         s_1_1_2_3_4_left_flip_up;
-    const us_1_1_2_3_4_left_flip_up = axisx_1_1_2_3_4_left_flip_up * t259;
-    const t261 = T13 * s_1_1_2_3_4_left_flip_up - T23 * c_1_1_2_3_4_left_flip_up;
-    const t262 = h_1_1_2_3_4_left_flip_up * h_1_1_2_3_4_left_flip_up;
-    const rate_1_1_2_3_4_left_flip_up = d5 * (T33 * t261) / t262;
-    const t263 = us_1_1_2_3_4_left_flip_up * rate_1_1_2_3_4_left_flip_up;
-    const dx_1_1_2_3_4_left_flip_up = t258 ? dqx_1_1_2_3_4_left_flip_up :
-        dqx_1_1_2_3_4_left_flip_up + t263;
-    const t264 = x_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up;
-    const t265 = t258 ? t26 : t26 + d5 * us_1_1_2_3_4_left_flip_up;
-    const dy_1_1_2_3_4_left_flip_up = t258 ? 0.0 : t260 * rate_1_1_2_3_4_left_flip_up;
-    const slope_1_1_2_3_4_left_flip_up = t264 - t265 * dy_1_1_2_3_4_left_flip_up;
-    const t266 = slope_1_1_2_3_4_left_flip_up * slope_1_1_2_3_4_left_flip_up;
-    const t267 = x_1_1_2_3_4_left_flip_up * x_1_1_2_3_4_left_flip_up;
-    const square_1_1_2_3_4_left_flip_up = t267 + t265 * t265;
-    const nearest_1_1_2_3_4_left_flip_up = t258 ? t30 : fold_1_1;
+    const us_1_1_2_3_4_left_flip_up = axisx_1_1_2_3_4_left_flip_up * t265;
+    const t267 = T13 * s_1_1_2_3_4_left_flip_up - T23 * c_1_1_2_3_4_left_flip_up;
+    const t268 = h_1_1_2_3_4_left_flip_up * h_1_1_2_3_4_left_flip_up;
+    const rate_1_1_2_3_4_left_flip_up = d5 * (T33 * t267) / t268;
+    const t269 = us_1_1_2_3_4_left_flip_up * rate_1_1_2_3_4_left_flip_up;
+    const dx_1_1_2_3_4_left_flip_up = t264 ? dqx_1_1_2_3_4_left_flip_up :
+        dqx_1_1_2_3_4_left_flip_up + t269;
+    const t270 = x_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up;
+    const t271 = t264 ? t26 : t26 + d5 * us_1_1_2_3_4_left_flip_up;
+    const dy_1_1_2_3_4_left_flip_up = t264 ? 0.0 : t266 * rate_1_1_2_3_4_left_flip_up;
+    const slope_1_1_2_3_4_left_flip_up = t270 - t271 * dy_1_1_2_3_4_left_flip_up;
+    const t272 = slope_1_1_2_3_4_left_flip_up * slope_1_1_2_3_4_left_flip_up;
+    const t273 = x_1_1_2_3_4_left_flip_up * x_1_1_2_3_4_left_flip_up;
+    const square_1_1_2_3_4_left_flip_up = t273 + t271 * t271;
+    const nearest_1_1_2_3_4_left_flip_up = t264 ? t30 : fold_1_1;
     const low_1_1_2_3_4_left_flip_up = nearest_1_1_2_3_4_left_flip_up *
         nearest_1_1_2_3_4_left_flip_up;
-    const farthest_1_1_2_3_4_left_flip_up = t258 ? t5 : full_1_1;
+    const farthest_1_1_2_3_4_left_flip_up = t264 ? t5 : full_1_1;
     const high_1_1_2_3_4_left_flip_up = farthest_1_1_2_3_4_left_flip_up *
         farthest_1_1_2_3_4_left_flip_up;
-    const t268 = Math.min(high_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up);
+    const t274 = Math.min(high_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up);
     const miss_1_1_2_3_4_left_flip_up = square_1_1_2_3_4_left_flip_up -
-        Math.max(low_1_1_2_3_4_left_flip_up, t268);
-    const t269 = dx_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up;
-    const t270 = dy_1_1_2_3_4_left_flip_up * dy_1_1_2_3_4_left_flip_up;
-    const bend_1_1_2_3_4_left_flip_up = t269 + t270;
-    const t271 = miss_1_1_2_3_4_left_flip_up * bend_1_1_2_3_4_left_flip_up;
-    const inner_1_1_2_3_4_left_flip_up = t266 - t271;
-    const t272 = slope_1_1_2_3_4_left_flip_up / (2.0 * bend_1_1_2_3_4_left_flip_up);
-    const t273 = Math.sqrt(Math.max(0.0, inner_1_1_2_3_4_left_flip_up));
-    const t274 = _runtime.sign(slope_1_1_2_3_4_left_flip_up) * t273;
-    const t275 = miss_1_1_2_3_4_left_flip_up / (2.0 * (slope_1_1_2_3_4_left_flip_up + t274));
-    const t276 = inner_1_1_2_3_4_left_flip_up < 0.0 ? t272 : t275;
-    const t277 = t276 * t276;
-    const t278 = 1.0 / (1.0 + t277);
-    const t279 = 2.0 * t276 * t278;
-    const by_c_1_1_2_3_4_left_flip_up = t278 * (1.0 - t277);
-    const t280 = d4 * (t279 * t279) / (1.0 + Math.abs(by_c_1_1_2_3_4_left_flip_up));
-    const t281 = (t280 + root1 * Math.abs(t279) <= whole_1_1) && (0.0 <
+        Math.max(low_1_1_2_3_4_left_flip_up, t274);
+    const t275 = dx_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up;
+    const t276 = dy_1_1_2_3_4_left_flip_up * dy_1_1_2_3_4_left_flip_up;
+    const bend_1_1_2_3_4_left_flip_up = t275 + t276;
+    const t277 = miss_1_1_2_3_4_left_flip_up * bend_1_1_2_3_4_left_flip_up;
+    const inner_1_1_2_3_4_left_flip_up = t272 - t277;
+    const t278 = slope_1_1_2_3_4_left_flip_up / (2.0 * bend_1_1_2_3_4_left_flip_up);
+    const t279 = Math.sqrt(Math.max(0.0, inner_1_1_2_3_4_left_flip_up));
+    const t280 = (slope_1_1_2_3_4_left_flip_up < 0 ? -1 : 1) * t279;
+    const t281 = miss_1_1_2_3_4_left_flip_up / (2.0 * (slope_1_1_2_3_4_left_flip_up + t280));
+    const t282 = inner_1_1_2_3_4_left_flip_up < 0.0 ? t278 : t281;
+    const t283 = t282 * t282;
+    const t284 = 1.0 / (1.0 + t283);
+    const t285 = 2.0 * t282 * t284;
+    const by_c_1_1_2_3_4_left_flip_up = t284 * (1.0 - t283);
+    const t286 = d4 * (t285 * t285) / (1.0 + Math.abs(by_c_1_1_2_3_4_left_flip_up));
+    const t287 = (t286 + root1 * Math.abs(t285) <= whole_1_1) && (0.0 <
         by_c_1_1_2_3_4_left_flip_up);
-    const sine_1_1_2_3_4_left_flip_up = t281 ? -t279 : 0.0;
-    const t282 = c_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up;
-    const cosine_1_1_2_3_4_left_flip_up = t281 ? by_c_1_1_2_3_4_left_flip_up : 1.0;
-    const t283 = s_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up;
-    const s1_left_flip_up = tangent1 ? t282 + t283 : -t19;
-    const t284 = c_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up;
-    const t285 = s_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up;
-    const c1_left_flip_up = tangent1 ? t284 - t285 : c_1_1;
-    const t286 = _runtime.wrapCut(Math.atan2(s1_left_flip_up, c1_left_flip_up));
+    const sine_1_1_2_3_4_left_flip_up = t287 ? -t285 : 0.0;
+    const t288 = c_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up;
+    const cosine_1_1_2_3_4_left_flip_up = t287 ? by_c_1_1_2_3_4_left_flip_up : 1.0;
+    const t289 = s_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up;
+    const s1_left_flip_up = tangent1 ? t288 + t289 : -t19;
+    const t290 = c_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up;
+    const t291 = s_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up;
+    const c1_left_flip_up = tangent1 ? t290 - t291 : c_1_1;
+    const t292 = Math.atan2(s1_left_flip_up, c1_left_flip_up);
     const across_left_flip_up = w_x * c1_left_flip_up + w_y * s1_left_flip_up;
     const M_13_left_flip_up = T13 * c1_left_flip_up + T23 * s1_left_flip_up;
     const h_wrist_left_flip_up = Math.sqrt(t16 + M_13_left_flip_up * M_13_left_flip_up);
-    const aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t124;
-    const t287 = t45 + across_left_flip_up * across_left_flip_up;
-    const r_hub_left_flip_up = Math.sqrt(t287);
+    const aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t126;
+    const t293 = t45 + across_left_flip_up * across_left_flip_up;
+    const r_hub_left_flip_up = Math.sqrt(t293);
     const hub_mid_left_flip_up = r_hub_left_flip_up <= t6;
-    const t288 = d5 + r_hub_left_flip_up;
-    const t289 = d5 - r_hub_left_flip_up;
-    const mid_reach_left_flip_up = Math.min(full_1_1, t288) * 0.5 + Math.max(fold_1_1,
-        Math.abs(t289)) * 0.5;
-    const t290 = (t288 - mid_reach_left_flip_up) * (t288 + mid_reach_left_flip_up);
-    const k_mid_left_flip_up = Math.max(0.0, t290);
-    const t291 = (t289 - mid_reach_left_flip_up) * (t289 + mid_reach_left_flip_up);
-    const d_mid_left_flip_up = Math.max(0.0, -t291);
+    const t294 = d5 + r_hub_left_flip_up;
+    const t295 = d5 - r_hub_left_flip_up;
+    const mid_reach_left_flip_up = Math.min(full_1_1, t294) * 0.5 + Math.max(fold_1_1,
+        Math.abs(t295)) * 0.5;
+    const t296 = (t294 - mid_reach_left_flip_up) * (t294 + mid_reach_left_flip_up);
+    const k_mid_left_flip_up = Math.max(0.0, t296);
+    const t297 = (t295 - mid_reach_left_flip_up) * (t295 + mid_reach_left_flip_up);
+    const d_mid_left_flip_up = Math.max(0.0, -t297);
     const n_mid_left_flip_up = k_mid_left_flip_up + d_mid_left_flip_up;
-    const any_mid_left_flip_up = n_mid_left_flip_up <= t127;
-    const t292 = 1.0 / n_mid_left_flip_up;
-    const t293 = (k_mid_left_flip_up - d_mid_left_flip_up) * t292;
-    const uc_mid_left_flip_up = any_mid_left_flip_up ? 1.0 : t293;
-    const t294 = Math.sqrt(k_mid_left_flip_up * d_mid_left_flip_up);
-    const us_mid_left_flip_up = any_mid_left_flip_up ? 0.0 : t292 * (2.0 * t294);
-    const t295 = across_left_flip_up * uc_mid_left_flip_up + t26 * us_mid_left_flip_up;
-    const t296 = 1.0 / r_hub_left_flip_up;
-    const close_left_flip_up = root1 * h_wrist_left_flip_up - t131 <= t6;
-    const t297 = 1.0 / h_wrist_left_flip_up;
-    const t298 = aligned_wrist_left_flip_up ? 0.0 : T33 * t297;
-    const t299 = across_left_flip_up + d5 * t298;
-    const c_phi_left_flip_up = aligned_wrist_left_flip_up ? 1.0 : -(M_13_left_flip_up * t297);
-    const t300 = t26 - d5 * c_phi_left_flip_up;
-    const here_left_flip_up = Math.sqrt(t299 * t299 + t300 * t300);
+    const any_mid_left_flip_up = n_mid_left_flip_up <= t129;
+    const t298 = 1.0 / n_mid_left_flip_up;
+    const t299 = (k_mid_left_flip_up - d_mid_left_flip_up) * t298;
+    const uc_mid_left_flip_up = any_mid_left_flip_up ? 1.0 : t299;
+    const t300 = Math.sqrt(k_mid_left_flip_up * d_mid_left_flip_up);
+    const us_mid_left_flip_up = any_mid_left_flip_up ? 0.0 : t298 * (2.0 * t300);
+    const t301 = across_left_flip_up * uc_mid_left_flip_up + t26 * us_mid_left_flip_up;
+    const t302 = 1.0 / r_hub_left_flip_up;
+    const close_left_flip_up = root1 * h_wrist_left_flip_up - t133 <= t6;
+    const t303 = 1.0 / h_wrist_left_flip_up;
+    const t304 = aligned_wrist_left_flip_up ? 0.0 : T33 * t303;
+    const t305 = across_left_flip_up + d5 * t304;
+    const c_phi_left_flip_up = aligned_wrist_left_flip_up ? 1.0 : -(M_13_left_flip_up * t303);
+    const t306 = t26 - d5 * c_phi_left_flip_up;
+    const here_left_flip_up = Math.sqrt(t305 * t305 + t306 * t306);
     const in_reach_left_flip_up = Math.min(full_1_1, Math.max(here_left_flip_up, fold_1_1));
-    const t301 = (t288 - in_reach_left_flip_up) * (t288 + in_reach_left_flip_up);
-    const k_near_left_flip_up = Math.max(0.0, t301);
-    const t302 = (t289 - in_reach_left_flip_up) * (t289 + in_reach_left_flip_up);
-    const d_near_left_flip_up = Math.max(0.0, -t302);
+    const t307 = (t294 - in_reach_left_flip_up) * (t294 + in_reach_left_flip_up);
+    const k_near_left_flip_up = Math.max(0.0, t307);
+    const t308 = (t295 - in_reach_left_flip_up) * (t295 + in_reach_left_flip_up);
+    const d_near_left_flip_up = Math.max(0.0, -t308);
     const n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up;
-    const any_near_left_flip_up = n_near_left_flip_up <= t127;
-    const t303 = 1.0 / n_near_left_flip_up;
-    const t304 = (k_near_left_flip_up - d_near_left_flip_up) * t303;
-    const uc_near_left_flip_up = any_near_left_flip_up ? 1.0 : t304;
-    const t305 = across_left_flip_up * c_phi_left_flip_up + t26 * t298;
-    const t306 = Math.abs(t305);
-    const t307 = Math.sqrt(k_near_left_flip_up * d_near_left_flip_up);
-    const t308 = 2.0 * (t306 <= t6 ? 1.0 : -(t305 / t306)) * t307;
-    const us_near_left_flip_up = any_near_left_flip_up ? 0.0 : t303 * t308;
-    const t309 = across_left_flip_up * uc_near_left_flip_up + t26 * us_near_left_flip_up;
-    const c_near_left_flip_up = hub_mid_left_flip_up ? 1.0 : t296 * t309;
-    const t310 = t298 + c_near_left_flip_up;
-    const t311 = across_left_flip_up * us_near_left_flip_up - t26 * uc_near_left_flip_up;
-    const s_near_left_flip_up = hub_mid_left_flip_up ? 0.0 : t296 * t311;
-    const t312 = c_phi_left_flip_up + s_near_left_flip_up;
-    const t313 = h_wrist_left_flip_up * Math.sqrt(t310 * t310 + t312 * t312);
-    const t314 = Math.abs(here_left_flip_up - in_reach_left_flip_up);
-    const t315 = (t313 - 2.2737367544323206e-13 <= t142) && !(t314 <= t6);
-    const t316 = close_left_flip_up ? (t315 ? c_near_left_flip_up : -t298) : -t298;
-    const sphi_left_flip_up = aligned_wrist_left_flip_up ? (hub_mid_left_flip_up ? 1.0 : t295 *
-        t296) : t316;
-    const t317 = across_left_flip_up - d5 * sphi_left_flip_up;
-    const t318 = across_left_flip_up * us_mid_left_flip_up - t26 * uc_mid_left_flip_up;
-    const c_kept_left_flip_up = t315 ? -s_near_left_flip_up : c_phi_left_flip_up;
-    const t319 = close_left_flip_up ? c_kept_left_flip_up : c_phi_left_flip_up;
-    const cphi_left_flip_up = aligned_wrist_left_flip_up ? -(hub_mid_left_flip_up ? 0.0 : t296 *
-        t318) : t319;
+    const any_near_left_flip_up = n_near_left_flip_up <= t129;
+    const t309 = 1.0 / n_near_left_flip_up;
+    const t310 = (k_near_left_flip_up - d_near_left_flip_up) * t309;
+    const uc_near_left_flip_up = any_near_left_flip_up ? 1.0 : t310;
+    const t311 = across_left_flip_up * c_phi_left_flip_up + t26 * t304;
+    const t312 = Math.abs(t311);
+    const t313 = Math.sqrt(k_near_left_flip_up * d_near_left_flip_up);
+    const t314 = 2.0 * (t312 <= t6 ? 1.0 : -(t311 / t312)) * t313;
+    const us_near_left_flip_up = any_near_left_flip_up ? 0.0 : t309 * t314;
+    const t315 = across_left_flip_up * uc_near_left_flip_up + t26 * us_near_left_flip_up;
+    const c_near_left_flip_up = hub_mid_left_flip_up ? 1.0 : t302 * t315;
+    const t316 = t304 + c_near_left_flip_up;
+    const t317 = across_left_flip_up * us_near_left_flip_up - t26 * uc_near_left_flip_up;
+    const s_near_left_flip_up = hub_mid_left_flip_up ? 0.0 : t302 * t317;
+    const t318 = c_phi_left_flip_up + s_near_left_flip_up;
+    const t319 = h_wrist_left_flip_up * Math.sqrt(t316 * t316 + t318 * t318);
+    const t320 = Math.abs(here_left_flip_up - in_reach_left_flip_up);
+    const t321 = (t319 - 2.2737367544323206e-13 <= t144) && !(t320 <= t6);
+    const t322 = close_left_flip_up ? (t321 ? c_near_left_flip_up : -t304) : -t304;
+    const sphi_left_flip_up = aligned_wrist_left_flip_up ? (hub_mid_left_flip_up ? 1.0 : t301 *
+        t302) : t322;
+    const t323 = across_left_flip_up - d5 * sphi_left_flip_up;
+    const t324 = across_left_flip_up * us_mid_left_flip_up - t26 * uc_mid_left_flip_up;
+    const c_kept_left_flip_up = t321 ? -s_near_left_flip_up : c_phi_left_flip_up;
+    const t325 = close_left_flip_up ? c_kept_left_flip_up : c_phi_left_flip_up;
+    const cphi_left_flip_up = aligned_wrist_left_flip_up ? -(hub_mid_left_flip_up ? 0.0 : t302 *
+        t324) : t325;
     const ey_left_flip_up = t26 - d5 * cphi_left_flip_up;
-    const t320 = t317 * t317 + ey_left_flip_up * ey_left_flip_up;
-    const r_elbow_left_flip_up = Math.sqrt(t320);
-    const t321 = full_1_1 - r_elbow_left_flip_up;
-    const t322 = t29 + r_elbow_left_flip_up;
-    const t323 = r_elbow_left_flip_up - t29;
-    const t324 = t123 && (t122 <= t321) && (t122 <= t322) && (t122 <= t323);
-    const unreachable_2 = !t324;
-    const t325 = _runtime.poison(invalid || unreachable_2);
-    const t326 = t286 + t325;
+    const t326 = t323 * t323 + ey_left_flip_up * ey_left_flip_up;
+    const r_elbow_left_flip_up = Math.sqrt(t326);
+    const t327 = full_1_1 - r_elbow_left_flip_up;
+    const t328 = t29 + r_elbow_left_flip_up;
+    const t329 = r_elbow_left_flip_up - t29;
+    const t330 = t125 && (t124 <= t327) && (t124 <= t328) && (t124 <= t329);
+    const unreachable_2 = !t330;
+    const t331 = invalid || unreachable_2 ? NaN : 0;
+    const t332 = (t292 <= -Math.PI ? Math.PI : t292) + t331;
     const folded_elbow_left_flip_up = r_elbow_left_flip_up <= t6;
-    const A_elbow_left_flip_up = Math.max(t321, 0.0);
-    const C_elbow_left_flip_up = Math.max(t323, 0.0);
-    const t327 = A_elbow_left_flip_up * C_elbow_left_flip_up;
+    const A_elbow_left_flip_up = Math.max(t327, 0.0);
+    const C_elbow_left_flip_up = Math.max(t329, 0.0);
+    const t333 = A_elbow_left_flip_up * C_elbow_left_flip_up;
     const S_elbow_left_flip_up = full_1_1 + r_elbow_left_flip_up;
-    const B_elbow_left_flip_up = Math.max(t322, 0.0);
-    const t328 = S_elbow_left_flip_up * B_elbow_left_flip_up;
-    const t329 = 1.0 / (t327 + t328);
-    const c_base_elbow_left_flip_up = no_link_elbow ? 1.0 : -((t327 - t328) * t329);
-    const t330 = 1.0 / r_elbow_left_flip_up;
-    const t331 = ey_left_flip_up * c_base_elbow_left_flip_up * t330;
-    const area_elbow_left_flip_up = 2.0 * Math.sqrt(t327 * t328);
-    const s_base_elbow_left_flip_up = no_link_elbow ? 0.0 : t329 * area_elbow_left_flip_up;
-    const t332 = t330 * (t317 * s_base_elbow_left_flip_up);
-    const s2_left_flip_up = folded_elbow_left_flip_up ? 0.0 : t331 + t332;
-    const t333 = t330 * (ey_left_flip_up * s_base_elbow_left_flip_up);
-    const t334 = t330 * (t317 * c_base_elbow_left_flip_up);
-    const c2_left_flip_up = folded_elbow_left_flip_up ? 1.0 : t333 - t334;
-    const t335 = _runtime.wrapCut(Math.atan2(s2_left_flip_up, c2_left_flip_up));
-    const t336 = A_elbow_left_flip_up * S_elbow_left_flip_up;
-    const t337 = C_elbow_left_flip_up * B_elbow_left_flip_up;
-    const t338 = 1.0 / (t336 + t337);
-    const s3_left_flip_up = no_link_elbow ? 0.0 : area_elbow_left_flip_up * t338;
-    const c3_left_flip_up = no_link_elbow ? 1.0 : -(t338 * (t336 - t337));
-    const t339 = Math.atan2(s3_left_flip_up, c3_left_flip_up);
-    const t340 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up;
-    const t341 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up;
-    const t342 = c3_left_flip_up * t340 - s3_left_flip_up * t341;
-    const t343 = c3_left_flip_up * t341 + s3_left_flip_up * t340;
-    const t344 = _runtime.wrapCut(Math.atan2(t342, t343)) + t325;
-    const t345 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up;
+    const B_elbow_left_flip_up = Math.max(t328, 0.0);
+    const t334 = S_elbow_left_flip_up * B_elbow_left_flip_up;
+    const t335 = 1.0 / (t333 + t334);
+    const c_base_elbow_left_flip_up = no_link_elbow ? 1.0 : -((t333 - t334) * t335);
+    const t336 = 1.0 / r_elbow_left_flip_up;
+    const t337 = ey_left_flip_up * c_base_elbow_left_flip_up * t336;
+    const area_elbow_left_flip_up = 2.0 * Math.sqrt(t333 * t334);
+    const s_base_elbow_left_flip_up = no_link_elbow ? 0.0 : t335 * area_elbow_left_flip_up;
+    const t338 = t336 * (t323 * s_base_elbow_left_flip_up);
+    const s2_left_flip_up = folded_elbow_left_flip_up ? 0.0 : t337 + t338;
+    const t339 = t336 * (ey_left_flip_up * s_base_elbow_left_flip_up);
+    const t340 = t336 * (t323 * c_base_elbow_left_flip_up);
+    const c2_left_flip_up = folded_elbow_left_flip_up ? 1.0 : t339 - t340;
+    const t341 = Math.atan2(s2_left_flip_up, c2_left_flip_up);
+    const t342 = A_elbow_left_flip_up * S_elbow_left_flip_up;
+    const t343 = C_elbow_left_flip_up * B_elbow_left_flip_up;
+    const t344 = 1.0 / (t342 + t343);
+    const s3_left_flip_up = no_link_elbow ? 0.0 : area_elbow_left_flip_up * t344;
+    const c3_left_flip_up = no_link_elbow ? 1.0 : -(t344 * (t342 - t343));
+    const t345 = Math.atan2(s3_left_flip_up, c3_left_flip_up);
+    const t346 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up;
+    const t347 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up;
+    const t348 = c3_left_flip_up * t346 - s3_left_flip_up * t347;
+    const t349 = c3_left_flip_up * t347 + s3_left_flip_up * t346;
+    const t350 = Math.atan2(t348, t349);
+    const t351 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up;
     const M_33_left_flip_up = T13 * s1_left_flip_up - T23 * c1_left_flip_up;
-    const t346 = _runtime.wrapCut(-Math.atan2(t345, M_33_left_flip_up));
-    const t347 = t346 + t325;
+    const t352 = -Math.atan2(t351, M_33_left_flip_up);
+    const t353 = (t352 <= -Math.PI ? Math.PI : t352) + t331;
     const M_11_left_flip_up = T11 * c1_left_flip_up + T21 * s1_left_flip_up;
-    const t348 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up;
+    const t354 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up;
     const M_12_left_flip_up = T12 * c1_left_flip_up + T22 * s1_left_flip_up;
-    const t349 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up;
-    const t350 = _runtime.wrapCut(-Math.atan2(t348, t349)) + t325;
-    const s2_left_flip_down = folded_elbow_left_flip_up ? 0.0 : t331 - t332;
-    const c2_left_flip_down = folded_elbow_left_flip_up ? 1.0 : -(t334 + t333);
-    const t351 = Math.atan2(s2_left_flip_down, c2_left_flip_down);
-    const t352 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down;
-    const t353 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down;
-    const t354 = c3_left_flip_up * t352 + s3_left_flip_up * t353;
-    const t355 = c3_left_flip_up * t353 - s3_left_flip_up * t352;
-    const t356 = _runtime.wrapCut(Math.atan2(t354, t355)) + t325;
+    const t355 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up;
+    const t356 = -Math.atan2(t354, t355);
+    const t357 = (t356 <= -Math.PI ? Math.PI : t356) + t331;
+    const s2_left_flip_down = folded_elbow_left_flip_up ? 0.0 : t337 - t338;
+    const c2_left_flip_down = folded_elbow_left_flip_up ? 1.0 : -(t340 + t339);
+    const t358 = Math.atan2(s2_left_flip_down, c2_left_flip_down);
+    const t359 = -t345;
+    const t360 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down;
+    const t361 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down;
+    const t362 = c3_left_flip_up * t360 + s3_left_flip_up * t361;
+    const t363 = c3_left_flip_up * t361 - s3_left_flip_up * t360;
+    const t364 = Math.atan2(t362, t363);
     const c_1_1_right_noflip_up = free1 ? 1.0 : t9 + t11;
-    const t357 = free1 ? 0.0 : t17 - t18;
-    const axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t357;
-    const t358 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up;
-    const h_1_1_right_noflip_up = Math.sqrt(t16 + t358);
-    const t359 = t15 * h_1_1_right_noflip_up <= t20;
-    const qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t357;
-    const t360 = 1.0 / h_1_1_right_noflip_up;
-    const uc_1_1_right_noflip_up = T33 * t360;
-    const t361 = d5 * uc_1_1_right_noflip_up;
-    const x_1_1_right_noflip_up = t359 ? qx_1_1_right_noflip_up : qx_1_1_right_noflip_up - t361;
-    const dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t357;
-    const us_1_1_right_flip_up = axisx_1_1_right_noflip_up * t360;
-    const t362 = T33 * (T13 * t357 + T23 * c_1_1_right_noflip_up);
-    const t363 = h_1_1_right_noflip_up * h_1_1_right_noflip_up;
-    const t364 = d5 * t362 / t363;
-    const t365 = us_1_1_right_flip_up * t364;
-    const dx_1_1_right_noflip_up = t359 ? dqx_1_1_right_noflip_up : dqx_1_1_right_noflip_up +
-        t365;
-    const t366 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up;
-    const t367 = d5 * us_1_1_right_flip_up;
-    const t368 = t359 ? t26 : t26 - t367;
-    const t369 = t359 ? 0.0 : uc_1_1_right_noflip_up * t364;
-    const slope_1_1_right_noflip_up = t366 - t368 * t369;
-    const t370 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up;
-    const t371 = x_1_1_right_noflip_up * x_1_1_right_noflip_up;
-    const square_1_1_right_noflip_up = t371 + t368 * t368;
-    const nearest_1_1_right_noflip_up = t359 ? t30 : fold_1_1;
+    const t365 = free1 ? 0.0 : t17 - t18;
+    const axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t365;
+    const t366 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up;
+    const h_1_1_right_noflip_up = Math.sqrt(t16 + t366);
+    const t367 = t15 * h_1_1_right_noflip_up <= t20;
+    const qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t365;
+    const t368 = 1.0 / h_1_1_right_noflip_up;
+    const uc_1_1_right_noflip_up = T33 * t368;
+    const t369 = d5 * uc_1_1_right_noflip_up;
+    const x_1_1_right_noflip_up = t367 ? qx_1_1_right_noflip_up : qx_1_1_right_noflip_up - t369;
+    const dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t365;
+    const us_1_1_right_flip_up = axisx_1_1_right_noflip_up * t368;
+    const t370 = T33 * (T13 * t365 + T23 * c_1_1_right_noflip_up);
+    const t371 = h_1_1_right_noflip_up * h_1_1_right_noflip_up;
+    const t372 = d5 * t370 / t371;
+    const t373 = us_1_1_right_flip_up * t372;
+    const dx_1_1_right_noflip_up = t367 ? dqx_1_1_right_noflip_up : dqx_1_1_right_noflip_up +
+        t373;
+    const t374 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up;
+    const t375 = d5 * us_1_1_right_flip_up;
+    const t376 = t367 ? t26 : t26 - t375;
+    const t377 = t367 ? 0.0 : uc_1_1_right_noflip_up * t372;
+    const slope_1_1_right_noflip_up = t374 - t376 * t377;
+    const t378 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up;
+    const t379 = x_1_1_right_noflip_up * x_1_1_right_noflip_up;
+    const square_1_1_right_noflip_up = t379 + t376 * t376;
+    const nearest_1_1_right_noflip_up = t367 ? t30 : fold_1_1;
     const low_1_1_right_noflip_up = nearest_1_1_right_noflip_up * nearest_1_1_right_noflip_up;
-    const farthest_1_1_right_noflip_up = t359 ? t5 : full_1_1;
+    const farthest_1_1_right_noflip_up = t367 ? t5 : full_1_1;
     const high_1_1_right_noflip_up = farthest_1_1_right_noflip_up *
         farthest_1_1_right_noflip_up;
-    const t372 = Math.min(high_1_1_right_noflip_up, square_1_1_right_noflip_up);
+    const t380 = Math.min(high_1_1_right_noflip_up, square_1_1_right_noflip_up);
     const miss_1_1_right_noflip_up = square_1_1_right_noflip_up -
-        Math.max(low_1_1_right_noflip_up, t372);
-    const t373 = dx_1_1_right_noflip_up * dx_1_1_right_noflip_up;
-    const t374 = t369 * t369;
-    const bend_1_1_right_noflip_up = t373 + t374;
-    const t375 = miss_1_1_right_noflip_up * bend_1_1_right_noflip_up;
-    const inner_1_1_right_noflip_up = t370 - t375;
-    const t376 = slope_1_1_right_noflip_up / (2.0 * bend_1_1_right_noflip_up);
-    const t377 = Math.sqrt(Math.max(0.0, inner_1_1_right_noflip_up));
-    const t378 = _runtime.sign(slope_1_1_right_noflip_up) * t377;
-    const t379 = miss_1_1_right_noflip_up / (2.0 * (slope_1_1_right_noflip_up + t378));
-    const t380 = inner_1_1_right_noflip_up < 0.0 ? t376 : t379;
-    const t381 = t380 * t380;
-    const t382 = 1.0 / (1.0 + t381);
-    const t383 = 2.0 * t380 * t382;
-    const by_c_1_1_right_noflip_up = t382 * (1.0 - t381);
-    const t384 = d4 * (t383 * t383) / (1.0 + Math.abs(by_c_1_1_right_noflip_up));
-    const t385 = (t384 + root1 * Math.abs(t383) <= whole_1_1) && (0.0 <
+        Math.max(low_1_1_right_noflip_up, t380);
+    const t381 = dx_1_1_right_noflip_up * dx_1_1_right_noflip_up;
+    const t382 = t377 * t377;
+    const bend_1_1_right_noflip_up = t381 + t382;
+    const t383 = miss_1_1_right_noflip_up * bend_1_1_right_noflip_up;
+    const inner_1_1_right_noflip_up = t378 - t383;
+    const t384 = slope_1_1_right_noflip_up / (2.0 * bend_1_1_right_noflip_up);
+    const t385 = Math.sqrt(Math.max(0.0, inner_1_1_right_noflip_up));
+    const t386 = (slope_1_1_right_noflip_up < 0 ? -1 : 1) * t385;
+    const t387 = miss_1_1_right_noflip_up / (2.0 * (slope_1_1_right_noflip_up + t386));
+    const t388 = inner_1_1_right_noflip_up < 0.0 ? t384 : t387;
+    const t389 = t388 * t388;
+    const t390 = 1.0 / (1.0 + t389);
+    const t391 = 2.0 * t388 * t390;
+    const by_c_1_1_right_noflip_up = t390 * (1.0 - t389);
+    const t392 = d4 * (t391 * t391) / (1.0 + Math.abs(by_c_1_1_right_noflip_up));
+    const t393 = (t392 + root1 * Math.abs(t391) <= whole_1_1) && (0.0 <
         by_c_1_1_right_noflip_up);
-    const cosine_1_1_right_noflip_up = t385 ? by_c_1_1_right_noflip_up : 1.0;
-    const t386 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up;
-    const sine_1_1_right_noflip_up = t385 ? -t383 : 0.0;
-    const c_1_1_2_right_noflip_up = t386 + t357 * sine_1_1_right_noflip_up;
-    const t387 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up;
-    const s_1_1_2_right_noflip_up = t387 - t357 * cosine_1_1_right_noflip_up;
+    const cosine_1_1_right_noflip_up = t393 ? by_c_1_1_right_noflip_up : 1.0;
+    const t394 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up;
+    const sine_1_1_right_noflip_up = t393 ? -t391 : 0.0;
+    const c_1_1_2_right_noflip_up = t394 + t365 * sine_1_1_right_noflip_up;
+    const t395 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up;
+    const s_1_1_2_right_noflip_up = t395 - t365 * cosine_1_1_right_noflip_up;
     const axisx_1_1_2_right_noflip_up = T13 * c_1_1_2_right_noflip_up + T23 *
         s_1_1_2_right_noflip_up;
-    const t388 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up;
-    const t389 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up;
-    const most_1_1_2_right_noflip_up = Math.sqrt(t388 + t389 * t389);
+    const t396 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up;
+    const t397 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up;
+    const most_1_1_2_right_noflip_up = Math.sqrt(t396 + t397 * t397);
     const qx_1_1_2_right_noflip_up = w_x * c_1_1_2_right_noflip_up + w_y *
         s_1_1_2_right_noflip_up;
-    const t390 = qx_1_1_2_right_noflip_up * qx_1_1_2_right_noflip_up;
-    const r_1_1_2_right_noflip_up = Math.sqrt(t45 + t390);
-    const t391 = r_1_1_2_right_noflip_up <= t48;
-    const t392 = d5 + r_1_1_2_right_noflip_up;
-    const t393 = 1.0 / Math.sqrt(t16 + t388);
-    const uc_1_1_2_right_noflip_up = T33 * t393;
-    const t394 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up;
-    const t395 = axisx_1_1_2_right_noflip_up * t393;
-    const t396 = t26 - d5 * t395;
-    const there_1_1_2_right_noflip_up = Math.sqrt(t394 * t394 + t396 * t396);
-    const t397 = Math.max(there_1_1_2_right_noflip_up, fold_1_1);
-    const goal_1_1_2_right_noflip_up = Math.min(full_1_1, t397);
-    const t398 = (t392 - goal_1_1_2_right_noflip_up) * (t392 + goal_1_1_2_right_noflip_up);
-    const k_v_1_1_2_right_noflip_up = Math.max(0.0, t398);
-    const t399 = d5 - r_1_1_2_right_noflip_up;
-    const t400 = (goal_1_1_2_right_noflip_up - t399) * (goal_1_1_2_right_noflip_up + t399);
-    const d_v_1_1_2_right_noflip_up = Math.max(0.0, t400);
+    const t398 = qx_1_1_2_right_noflip_up * qx_1_1_2_right_noflip_up;
+    const r_1_1_2_right_noflip_up = Math.sqrt(t45 + t398);
+    const t399 = r_1_1_2_right_noflip_up <= t48;
+    const t400 = d5 + r_1_1_2_right_noflip_up;
+    const t401 = 1.0 / Math.sqrt(t16 + t396);
+    const uc_1_1_2_right_noflip_up = T33 * t401;
+    const t402 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up;
+    const t403 = axisx_1_1_2_right_noflip_up * t401;
+    const t404 = t26 - d5 * t403;
+    const there_1_1_2_right_noflip_up = Math.sqrt(t402 * t402 + t404 * t404);
+    const t405 = Math.max(there_1_1_2_right_noflip_up, fold_1_1);
+    const goal_1_1_2_right_noflip_up = Math.min(full_1_1, t405);
+    const t406 = (t400 - goal_1_1_2_right_noflip_up) * (t400 + goal_1_1_2_right_noflip_up);
+    const k_v_1_1_2_right_noflip_up = Math.max(0.0, t406);
+    const t407 = d5 - r_1_1_2_right_noflip_up;
+    const t408 = (goal_1_1_2_right_noflip_up - t407) * (goal_1_1_2_right_noflip_up + t407);
+    const d_v_1_1_2_right_noflip_up = Math.max(0.0, t408);
     const n_v_1_1_2_right_noflip_up = k_v_1_1_2_right_noflip_up + d_v_1_1_2_right_noflip_up;
-    const t401 = n_v_1_1_2_right_noflip_up <= t57;
-    const t402 = k_v_1_1_2_right_noflip_up - d_v_1_1_2_right_noflip_up;
-    const t403 = 1.0 / n_v_1_1_2_right_noflip_up;
-    const uc_v_1_1_2_right_noflip_up = t401 ? 1.0 : t402 * t403;
-    const t404 = qx_1_1_2_right_noflip_up * uc_v_1_1_2_right_noflip_up;
-    const t405 = t26 * uc_1_1_2_right_noflip_up - qx_1_1_2_right_noflip_up * t395;
-    const t406 = k_v_1_1_2_right_noflip_up * d_v_1_1_2_right_noflip_up;
-    const t407 = t403 * (2.0 * _runtime.sign(t405) * Math.sqrt(t406));
-    const us_v_1_1_2_right_noflip_up = t401 ? 0.0 : t407;
-    const t408 = t26 * us_v_1_1_2_right_noflip_up;
-    const t409 = 1.0 / r_1_1_2_right_noflip_up;
-    const c_v_1_1_2_right_noflip_up = t391 ? 1.0 : (t404 + t408) * t409;
-    const t410 = T33 * c_v_1_1_2_right_noflip_up < 0.0;
-    const t411 = qx_1_1_2_right_noflip_up * us_v_1_1_2_right_noflip_up;
-    const t412 = t26 * uc_v_1_1_2_right_noflip_up;
-    const to_c_1_1_2_right_noflip_up = t410 ? (t391 ? 0.0 : t409 * (t411 + t412)) : -(t391 ? 0.0
-        : t409 * (t411 - t412));
-    const to_s_1_1_2_right_noflip_up = t410 ? (t391 ? 1.0 : t409 * (t404 - t408)) :
+    const t409 = n_v_1_1_2_right_noflip_up <= t57;
+    const t410 = k_v_1_1_2_right_noflip_up - d_v_1_1_2_right_noflip_up;
+    const t411 = 1.0 / n_v_1_1_2_right_noflip_up;
+    const uc_v_1_1_2_right_noflip_up = t409 ? 1.0 : t410 * t411;
+    const t412 = qx_1_1_2_right_noflip_up * uc_v_1_1_2_right_noflip_up;
+    const t413 = t26 * uc_1_1_2_right_noflip_up - qx_1_1_2_right_noflip_up * t403;
+    const t414 = k_v_1_1_2_right_noflip_up * d_v_1_1_2_right_noflip_up;
+    const t415 = t411 * (2.0 * (t413 < 0 ? -1 : 1) * Math.sqrt(t414));
+    const us_v_1_1_2_right_noflip_up = t409 ? 0.0 : t415;
+    const t416 = t26 * us_v_1_1_2_right_noflip_up;
+    const t417 = 1.0 / r_1_1_2_right_noflip_up;
+    const c_v_1_1_2_right_noflip_up = t399 ? 1.0 : (t412 + t416) * t417;
+    const t418 = T33 * c_v_1_1_2_right_noflip_up < 0.0;
+    const t419 = qx_1_1_2_right_noflip_up * us_v_1_1_2_right_noflip_up;
+    const t420 = t26 * uc_v_1_1_2_right_noflip_up;
+    const to_c_1_1_2_right_noflip_up = t418 ? (t399 ? 0.0 : t417 * (t419 + t420)) : -(t399 ? 0.0
+        : t417 * (t419 - t420));
+    const to_s_1_1_2_right_noflip_up = t418 ? (t399 ? 1.0 : t417 * (t412 - t416)) :
         c_v_1_1_2_right_noflip_up;
-    const t413 = T33 * to_c_1_1_2_right_noflip_up / to_s_1_1_2_right_noflip_up;
-    const t414 = Math.min(most_1_1_2_right_noflip_up, t44 ? 0.0 : t413);
-    const kept_1_1_2_right_noflip_up = Math.max(-most_1_1_2_right_noflip_up, t414);
-    const t415 = most_1_1_2_right_noflip_up - kept_1_1_2_right_noflip_up;
-    const t416 = most_1_1_2_right_noflip_up + kept_1_1_2_right_noflip_up;
-    const rest_1_1_2_right_noflip_up = Math.sqrt(t415 * t416) * _runtime.sign(-t389);
-    const t417 = axisx_1_1_2_right_noflip_up * rest_1_1_2_right_noflip_up;
-    const t418 = most_1_1_2_right_noflip_up * most_1_1_2_right_noflip_up;
-    const t419 = 1.0 / t418;
-    const t420 = (t417 + t389 * kept_1_1_2_right_noflip_up) * t419;
-    const t421 = axisx_1_1_2_right_noflip_up * kept_1_1_2_right_noflip_up;
-    const by_c_1_1_2_right_noflip_up = t419 * (t421 - t389 * rest_1_1_2_right_noflip_up);
-    const t422 = d4 * (t420 * t420) / (1.0 + Math.abs(by_c_1_1_2_right_noflip_up));
-    const t423 = (t422 + root1 * Math.abs(t420) <= whole_1_1) && (0.0 <
+    const t421 = T33 * to_c_1_1_2_right_noflip_up / to_s_1_1_2_right_noflip_up;
+    const t422 = Math.min(most_1_1_2_right_noflip_up, t44 ? 0.0 : t421);
+    const kept_1_1_2_right_noflip_up = Math.max(-most_1_1_2_right_noflip_up, t422);
+    const t423 = most_1_1_2_right_noflip_up - kept_1_1_2_right_noflip_up;
+    const t424 = most_1_1_2_right_noflip_up + kept_1_1_2_right_noflip_up;
+    const rest_1_1_2_right_noflip_up = Math.sqrt(t423 * t424) * (-t397 < 0 ? -1 : 1);
+    const t425 = axisx_1_1_2_right_noflip_up * rest_1_1_2_right_noflip_up;
+    const t426 = most_1_1_2_right_noflip_up * most_1_1_2_right_noflip_up;
+    const t427 = 1.0 / t426;
+    const t428 = (t425 + t397 * kept_1_1_2_right_noflip_up) * t427;
+    const t429 = axisx_1_1_2_right_noflip_up * kept_1_1_2_right_noflip_up;
+    const by_c_1_1_2_right_noflip_up = t427 * (t429 - t397 * rest_1_1_2_right_noflip_up);
+    const t430 = d4 * (t428 * t428) / (1.0 + Math.abs(by_c_1_1_2_right_noflip_up));
+    const t431 = (t430 + root1 * Math.abs(t428) <= whole_1_1) && (0.0 <
         by_c_1_1_2_right_noflip_up);
-    const t424 = there_1_1_2_right_noflip_up - goal_1_1_2_right_noflip_up;
-    const t425 = t423 && (t48 < Math.abs(t424));
-    const cosine_1_1_2_right_noflip_up = t425 ? by_c_1_1_2_right_noflip_up : 1.0;
-    const t426 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up;
-    const sine_1_1_2_right_noflip_up = t425 ? -t420 : 0.0;
-    const t427 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up;
-    const c_1_1_2_3_right_noflip_up = t426 - t427;
-    const t428 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up;
-    const t429 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up;
-    const s_1_1_2_3_right_noflip_up = t428 + t429;
+    const t432 = there_1_1_2_right_noflip_up - goal_1_1_2_right_noflip_up;
+    const t433 = t431 && (t48 < Math.abs(t432));
+    const cosine_1_1_2_right_noflip_up = t433 ? by_c_1_1_2_right_noflip_up : 1.0;
+    const t434 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up;
+    const sine_1_1_2_right_noflip_up = t433 ? -t428 : 0.0;
+    const t435 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up;
+    const c_1_1_2_3_right_noflip_up = t434 - t435;
+    const t436 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up;
+    const t437 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up;
+    const s_1_1_2_3_right_noflip_up = t436 + t437;
     const axisx_1_1_2_3_right_noflip_up = T13 * c_1_1_2_3_right_noflip_up + T23 *
         s_1_1_2_3_right_noflip_up;
-    const t430 = axisx_1_1_2_3_right_noflip_up * axisx_1_1_2_3_right_noflip_up;
-    const h_1_1_2_3_right_noflip_up = Math.sqrt(t16 + t430);
-    const t431 = size_1_1 * h_1_1_2_3_right_noflip_up <= t20;
+    const t438 = axisx_1_1_2_3_right_noflip_up * axisx_1_1_2_3_right_noflip_up;
+    const h_1_1_2_3_right_noflip_up = Math.sqrt(t16 + t438);
+    const t439 = size_1_1 * h_1_1_2_3_right_noflip_up <= t20;
     const qx_1_1_2_3_right_noflip_up = w_x * c_1_1_2_3_right_noflip_up + w_y *
         s_1_1_2_3_right_noflip_up;
-    const t432 = 1.0 / h_1_1_2_3_right_noflip_up;
-    const uc_1_1_2_3_right_noflip_up = T33 * t432;
-    const t433 = qx_1_1_2_3_right_noflip_up - d5 * uc_1_1_2_3_right_noflip_up;
-    const x_1_1_2_3_right_noflip_up = t431 ? qx_1_1_2_3_right_noflip_up : t433;
+    const t440 = 1.0 / h_1_1_2_3_right_noflip_up;
+    const uc_1_1_2_3_right_noflip_up = T33 * t440;
+    const t441 = qx_1_1_2_3_right_noflip_up - d5 * uc_1_1_2_3_right_noflip_up;
+    const x_1_1_2_3_right_noflip_up = t439 ? qx_1_1_2_3_right_noflip_up : t441;
     const dqx_1_1_2_3_right_noflip_up = w_y * c_1_1_2_3_right_noflip_up - w_x *
         s_1_1_2_3_right_noflip_up;
-    const t434 = axisx_1_1_2_3_right_noflip_up * t432;
-    const t435 = T13 * s_1_1_2_3_right_noflip_up - T23 * c_1_1_2_3_right_noflip_up;
-    const t436 = h_1_1_2_3_right_noflip_up * h_1_1_2_3_right_noflip_up;
-    const rate_1_1_2_3_right_noflip_up = d5 * (T33 * t435) / t436;
-    const t437 = dqx_1_1_2_3_right_noflip_up - t434 * rate_1_1_2_3_right_noflip_up;
-    const dx_1_1_2_3_right_noflip_up = t431 ? dqx_1_1_2_3_right_noflip_up : t437;
-    const t438 = x_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up;
-    const t439 = t431 ? t26 : t26 - d5 * t434;
-    const t440 = uc_1_1_2_3_right_noflip_up * rate_1_1_2_3_right_noflip_up;
-    const t441 = t431 ? 0.0 : t440;
-    const slope_1_1_2_3_right_noflip_up = t438 + t439 * t441;
-    const t442 = slope_1_1_2_3_right_noflip_up * slope_1_1_2_3_right_noflip_up;
-    const t443 = x_1_1_2_3_right_noflip_up * x_1_1_2_3_right_noflip_up;
-    const square_1_1_2_3_right_noflip_up = t443 + t439 * t439;
-    const nearest_1_1_2_3_right_noflip_up = t431 ? t30 : fold_1_1;
+    const t442 = axisx_1_1_2_3_right_noflip_up * t440;
+    const t443 = T13 * s_1_1_2_3_right_noflip_up - T23 * c_1_1_2_3_right_noflip_up;
+    const t444 = h_1_1_2_3_right_noflip_up * h_1_1_2_3_right_noflip_up;
+    const rate_1_1_2_3_right_noflip_up = d5 * (T33 * t443) / t444;
+    const t445 = dqx_1_1_2_3_right_noflip_up - t442 * rate_1_1_2_3_right_noflip_up;
+    const dx_1_1_2_3_right_noflip_up = t439 ? dqx_1_1_2_3_right_noflip_up : t445;
+    const t446 = x_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up;
+    const t447 = t439 ? t26 : t26 - d5 * t442;
+    const t448 = uc_1_1_2_3_right_noflip_up * rate_1_1_2_3_right_noflip_up;
+    const t449 = t439 ? 0.0 : t448;
+    const slope_1_1_2_3_right_noflip_up = t446 + t447 * t449;
+    const t450 = slope_1_1_2_3_right_noflip_up * slope_1_1_2_3_right_noflip_up;
+    const t451 = x_1_1_2_3_right_noflip_up * x_1_1_2_3_right_noflip_up;
+    const square_1_1_2_3_right_noflip_up = t451 + t447 * t447;
+    const nearest_1_1_2_3_right_noflip_up = t439 ? t30 : fold_1_1;
     const low_1_1_2_3_right_noflip_up = nearest_1_1_2_3_right_noflip_up *
         nearest_1_1_2_3_right_noflip_up;
-    const farthest_1_1_2_3_right_noflip_up = t431 ? t5 : full_1_1;
+    const farthest_1_1_2_3_right_noflip_up = t439 ? t5 : full_1_1;
     const high_1_1_2_3_right_noflip_up = farthest_1_1_2_3_right_noflip_up *
         farthest_1_1_2_3_right_noflip_up;
-    const t444 = Math.min(high_1_1_2_3_right_noflip_up, square_1_1_2_3_right_noflip_up);
+    const t452 = Math.min(high_1_1_2_3_right_noflip_up, square_1_1_2_3_right_noflip_up);
     const miss_1_1_2_3_right_noflip_up = square_1_1_2_3_right_noflip_up -
-        Math.max(low_1_1_2_3_right_noflip_up, t444);
-    const t445 = dx_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up;
-    const bend_1_1_2_3_right_noflip_up = t445 + t441 * t441;
-    const t446 = miss_1_1_2_3_right_noflip_up * bend_1_1_2_3_right_noflip_up;
-    const inner_1_1_2_3_right_noflip_up = t442 - t446;
-    const t447 = slope_1_1_2_3_right_noflip_up / (2.0 * bend_1_1_2_3_right_noflip_up);
-    const t448 = Math.sqrt(Math.max(0.0, inner_1_1_2_3_right_noflip_up));
-    const t449 = _runtime.sign(slope_1_1_2_3_right_noflip_up) * t448;
-    const t450 = miss_1_1_2_3_right_noflip_up / (2.0 * (slope_1_1_2_3_right_noflip_up + t449));
-    const t451 = inner_1_1_2_3_right_noflip_up < 0.0 ? t447 : t450;
-    const t452 = t451 * t451;
-    const t453 = 1.0 / (1.0 + t452);
-    const t454 = 2.0 * t451 * t453;
-    const by_c_1_1_2_3_right_noflip_up = t453 * (1.0 - t452);
-    const t455 = d4 * (t454 * t454) / (1.0 + Math.abs(by_c_1_1_2_3_right_noflip_up));
-    const t456 = (t455 + root1 * Math.abs(t454) <= whole_1_1) && (0.0 <
+        Math.max(low_1_1_2_3_right_noflip_up, t452);
+    const t453 = dx_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up;
+    const bend_1_1_2_3_right_noflip_up = t453 + t449 * t449;
+    const t454 = miss_1_1_2_3_right_noflip_up * bend_1_1_2_3_right_noflip_up;
+    const inner_1_1_2_3_right_noflip_up = t450 - t454;
+    const t455 = slope_1_1_2_3_right_noflip_up / (2.0 * bend_1_1_2_3_right_noflip_up);
+    const t456 = Math.sqrt(Math.max(0.0, inner_1_1_2_3_right_noflip_up));
+    const t457 = (slope_1_1_2_3_right_noflip_up < 0 ? -1 : 1) * t456;
+    const t458 = miss_1_1_2_3_right_noflip_up / (2.0 * (slope_1_1_2_3_right_noflip_up + t457));
+    const t459 = inner_1_1_2_3_right_noflip_up < 0.0 ? t455 : t458;
+    const t460 = t459 * t459;
+    const t461 = 1.0 / (1.0 + t460);
+    const t462 = 2.0 * t459 * t461;
+    const by_c_1_1_2_3_right_noflip_up = t461 * (1.0 - t460);
+    const t463 = d4 * (t462 * t462) / (1.0 + Math.abs(by_c_1_1_2_3_right_noflip_up));
+    const t464 = (t463 + root1 * Math.abs(t462) <= whole_1_1) && (0.0 <
         by_c_1_1_2_3_right_noflip_up);
-    const cosine_1_1_2_3_right_noflip_up = t456 ? by_c_1_1_2_3_right_noflip_up : 1.0;
-    const t457 = c_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up;
-    const sine_1_1_2_3_right_noflip_up = t456 ? -t454 : 0.0;
-    const t458 = s_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up;
-    const c_1_1_2_3_4_right_noflip_up = t457 - t458;
-    const t459 = c_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up;
-    const t460 = s_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up;
-    const s_1_1_2_3_4_right_noflip_up = t459 + t460;
+    const cosine_1_1_2_3_right_noflip_up = t464 ? by_c_1_1_2_3_right_noflip_up : 1.0;
+    const t465 = c_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up;
+    const sine_1_1_2_3_right_noflip_up = t464 ? -t462 : 0.0;
+    const t466 = s_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up;
+    const c_1_1_2_3_4_right_noflip_up = t465 - t466;
+    const t467 = c_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up;
+    const t468 = s_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up;
+    const s_1_1_2_3_4_right_noflip_up = t467 + t468;
     const axisx_1_1_2_3_4_right_noflip_up = T13 * c_1_1_2_3_4_right_noflip_up + T23 *
         s_1_1_2_3_4_right_noflip_up;
-    const t461 = axisx_1_1_2_3_4_right_noflip_up * axisx_1_1_2_3_4_right_noflip_up;
-    const h_1_1_2_3_4_right_noflip_up = Math.sqrt(t16 + t461);
-    const t462 = size_1_1 * h_1_1_2_3_4_right_noflip_up <= t20;
+    const t469 = axisx_1_1_2_3_4_right_noflip_up * axisx_1_1_2_3_4_right_noflip_up;
+    const h_1_1_2_3_4_right_noflip_up = Math.sqrt(t16 + t469);
+    const t470 = size_1_1 * h_1_1_2_3_4_right_noflip_up <= t20;
     const qx_1_1_2_3_4_right_noflip_up = w_x * c_1_1_2_3_4_right_noflip_up + w_y *
         s_1_1_2_3_4_right_noflip_up;
-    const t463 = 1.0 / h_1_1_2_3_4_right_noflip_up;
-    const uc_1_1_2_3_4_right_noflip_up = T33 * t463;
-    const t464 = qx_1_1_2_3_4_right_noflip_up - d5 * uc_1_1_2_3_4_right_noflip_up;
-    const x_1_1_2_3_4_right_noflip_up = t462 ? qx_1_1_2_3_4_right_noflip_up : t464;
+    const t471 = 1.0 / h_1_1_2_3_4_right_noflip_up;
+    const uc_1_1_2_3_4_right_noflip_up = T33 * t471;
+    const t472 = qx_1_1_2_3_4_right_noflip_up - d5 * uc_1_1_2_3_4_right_noflip_up;
+    const x_1_1_2_3_4_right_noflip_up = t470 ? qx_1_1_2_3_4_right_noflip_up : t472;
     const dqx_1_1_2_3_4_right_noflip_up = w_y * c_1_1_2_3_4_right_noflip_up - w_x *
         s_1_1_2_3_4_right_noflip_up;
-    const t465 = axisx_1_1_2_3_4_right_noflip_up * t463;
-    const t466 = T13 * s_1_1_2_3_4_right_noflip_up - T23 * c_1_1_2_3_4_right_noflip_up;
-    const t467 = h_1_1_2_3_4_right_noflip_up * h_1_1_2_3_4_right_noflip_up;
-    const rate_1_1_2_3_4_right_noflip_up = d5 * (T33 * t466) / t467;
-    const t468 = dqx_1_1_2_3_4_right_noflip_up - t465 * rate_1_1_2_3_4_right_noflip_up;
-    const dx_1_1_2_3_4_right_noflip_up = t462 ? dqx_1_1_2_3_4_right_noflip_up : t468;
-    const t469 = x_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up;
-    const t470 = t462 ? t26 : t26 - d5 * t465;
-    const t471 = uc_1_1_2_3_4_right_noflip_up * rate_1_1_2_3_4_right_noflip_up;
-    const t472 = t462 ? 0.0 : t471;
-    const slope_1_1_2_3_4_right_noflip_up = t469 + t470 * t472;
-    const t473 = slope_1_1_2_3_4_right_noflip_up * slope_1_1_2_3_4_right_noflip_up;
-    const t474 = x_1_1_2_3_4_right_noflip_up * x_1_1_2_3_4_right_noflip_up;
-    const square_1_1_2_3_4_right_noflip_up = t474 + t470 * t470;
-    const nearest_1_1_2_3_4_right_noflip_up = t462 ? t30 : fold_1_1;
+    const t473 = axisx_1_1_2_3_4_right_noflip_up * t471;
+    const t474 = T13 * s_1_1_2_3_4_right_noflip_up - T23 * c_1_1_2_3_4_right_noflip_up;
+    const t475 = h_1_1_2_3_4_right_noflip_up * h_1_1_2_3_4_right_noflip_up;
+    const rate_1_1_2_3_4_right_noflip_up = d5 * (T33 * t474) / t475;
+    const t476 = dqx_1_1_2_3_4_right_noflip_up - t473 * rate_1_1_2_3_4_right_noflip_up;
+    const dx_1_1_2_3_4_right_noflip_up = t470 ? dqx_1_1_2_3_4_right_noflip_up : t476;
+    const t477 = x_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up;
+    const t478 = t470 ? t26 : t26 - d5 * t473;
+    const t479 = uc_1_1_2_3_4_right_noflip_up * rate_1_1_2_3_4_right_noflip_up;
+    const t480 = t470 ? 0.0 : t479;
+    const slope_1_1_2_3_4_right_noflip_up = t477 + t478 * t480;
+    const t481 = slope_1_1_2_3_4_right_noflip_up * slope_1_1_2_3_4_right_noflip_up;
+    const t482 = x_1_1_2_3_4_right_noflip_up * x_1_1_2_3_4_right_noflip_up;
+    const square_1_1_2_3_4_right_noflip_up = t482 + t478 * t478;
+    const nearest_1_1_2_3_4_right_noflip_up = t470 ? t30 : fold_1_1;
     const low_1_1_2_3_4_right_noflip_up = nearest_1_1_2_3_4_right_noflip_up *
         nearest_1_1_2_3_4_right_noflip_up;
-    const farthest_1_1_2_3_4_right_noflip_up = t462 ? t5 : full_1_1;
+    const farthest_1_1_2_3_4_right_noflip_up = t470 ? t5 : full_1_1;
     const high_1_1_2_3_4_right_noflip_up = farthest_1_1_2_3_4_right_noflip_up *
         farthest_1_1_2_3_4_right_noflip_up;
-    const t475 = Math.min(high_1_1_2_3_4_right_noflip_up, square_1_1_2_3_4_right_noflip_up);
-    const t476 = Math.max(low_1_1_2_3_4_right_noflip_up, t475);
-    const miss_1_1_2_3_4_right_noflip_up = square_1_1_2_3_4_right_noflip_up - t476;
-    const t477 = dx_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up;
-    const bend_1_1_2_3_4_right_noflip_up = t477 + t472 * t472;
-    const t478 = miss_1_1_2_3_4_right_noflip_up * bend_1_1_2_3_4_right_noflip_up;
-    const inner_1_1_2_3_4_right_noflip_up = t473 - t478;
-    const t479 = slope_1_1_2_3_4_right_noflip_up / (2.0 * bend_1_1_2_3_4_right_noflip_up);
-    const t480 = _runtime.sign(slope_1_1_2_3_4_right_noflip_up);
-    const t481 = Math.max(0.0, inner_1_1_2_3_4_right_noflip_up);
-    const outer_1_1_2_3_4_right_noflip_up = slope_1_1_2_3_4_right_noflip_up + t480 *
-        Math.sqrt(t481);
-    const t482 = miss_1_1_2_3_4_right_noflip_up / (2.0 * outer_1_1_2_3_4_right_noflip_up);
-    const t483 = inner_1_1_2_3_4_right_noflip_up < 0.0 ? t479 : t482;
-    const t484 = t483 * t483;
-    const t485 = 1.0 / (1.0 + t484);
-    const t486 = 2.0 * t483 * t485;
-    const by_c_1_1_2_3_4_right_noflip_up = t485 * (1.0 - t484);
-    const t487 = 1.0 + Math.abs(by_c_1_1_2_3_4_right_noflip_up);
-    const cost_1_1_2_3_4_right_noflip_up = d4 * (t486 * t486) / t487 + root1 * Math.abs(t486);
-    const t488 = (cost_1_1_2_3_4_right_noflip_up <= whole_1_1) && (0.0 <
+    const t483 = Math.min(high_1_1_2_3_4_right_noflip_up, square_1_1_2_3_4_right_noflip_up);
+    const t484 = Math.max(low_1_1_2_3_4_right_noflip_up, t483);
+    const miss_1_1_2_3_4_right_noflip_up = square_1_1_2_3_4_right_noflip_up - t484;
+    const t485 = dx_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up;
+    const bend_1_1_2_3_4_right_noflip_up = t485 + t480 * t480;
+    const t486 = miss_1_1_2_3_4_right_noflip_up * bend_1_1_2_3_4_right_noflip_up;
+    const inner_1_1_2_3_4_right_noflip_up = t481 - t486;
+    const t487 = slope_1_1_2_3_4_right_noflip_up / (2.0 * bend_1_1_2_3_4_right_noflip_up);
+    const t488 = Math.max(0.0, inner_1_1_2_3_4_right_noflip_up);
+    const t489 = (slope_1_1_2_3_4_right_noflip_up < 0 ? -1 : 1) * Math.sqrt(t488);
+    const t490 = 2.0 * (slope_1_1_2_3_4_right_noflip_up + t489);
+    const t491 = inner_1_1_2_3_4_right_noflip_up < 0.0 ? t487 : miss_1_1_2_3_4_right_noflip_up /
+        t490;
+    const t492 = t491 * t491;
+    const t493 = 1.0 / (1.0 + t492);
+    const t494 = 2.0 * t491 * t493;
+    const by_c_1_1_2_3_4_right_noflip_up = t493 * (1.0 - t492);
+    const t495 = 1.0 + Math.abs(by_c_1_1_2_3_4_right_noflip_up);
+    const cost_1_1_2_3_4_right_noflip_up = d4 * (t494 * t494) / t495 + root1 * Math.abs(t494);
+    const t496 = (cost_1_1_2_3_4_right_noflip_up <= whole_1_1) && (0.0 <
         by_c_1_1_2_3_4_right_noflip_up);
-    const sine_1_1_2_3_4_right_noflip_up = t488 ? -t486 : 0.0;
-    const t489 = c_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up;
-    const cosine_1_1_2_3_4_right_noflip_up = t488 ? by_c_1_1_2_3_4_right_noflip_up : 1.0;
-    const t490 = s_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up;
-    const s1_right_noflip_up = tangent1 ? t489 + t490 : -t357;
-    const t491 = c_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up;
-    const t492 = s_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up;
-    const c1_right_noflip_up = tangent1 ? t491 - t492 : c_1_1_right_noflip_up;
-    const t493 = Math.atan2(s1_right_noflip_up, c1_right_noflip_up);
+    const sine_1_1_2_3_4_right_noflip_up = t496 ? -t494 : 0.0;
+    const t497 = c_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up;
+    const cosine_1_1_2_3_4_right_noflip_up = t496 ? by_c_1_1_2_3_4_right_noflip_up : 1.0;
+    const t498 = s_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up;
+    const s1_right_noflip_up = tangent1 ? t497 + t498 : -t365;
+    const t499 = c_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up;
+    const t500 = s_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up;
+    const c1_right_noflip_up = tangent1 ? t499 - t500 : c_1_1_right_noflip_up;
+    const t501 = Math.atan2(s1_right_noflip_up, c1_right_noflip_up);
     const across_right_noflip_up = w_x * c1_right_noflip_up + w_y * s1_right_noflip_up;
     const M_13_right_noflip_up = T13 * c1_right_noflip_up + T23 * s1_right_noflip_up;
-    const t494 = t16 + M_13_right_noflip_up * M_13_right_noflip_up;
-    const h_wrist_right_noflip_up = Math.sqrt(t494);
-    const aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t124;
-    const t495 = across_right_noflip_up * across_right_noflip_up;
-    const r_hub_right_noflip_up = Math.sqrt(t45 + t495);
+    const t502 = t16 + M_13_right_noflip_up * M_13_right_noflip_up;
+    const h_wrist_right_noflip_up = Math.sqrt(t502);
+    const aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t126;
+    const t503 = across_right_noflip_up * across_right_noflip_up;
+    const r_hub_right_noflip_up = Math.sqrt(t45 + t503);
     const hub_mid_right_noflip_up = r_hub_right_noflip_up <= t6;
-    const t496 = d5 + r_hub_right_noflip_up;
-    const t497 = d5 - r_hub_right_noflip_up;
-    const mid_reach_right_noflip_up = Math.min(full_1_1, t496) * 0.5 + Math.max(fold_1_1,
-        Math.abs(t497)) * 0.5;
-    const t498 = (t496 - mid_reach_right_noflip_up) * (t496 + mid_reach_right_noflip_up);
-    const k_mid_right_noflip_up = Math.max(0.0, t498);
-    const t499 = (t497 - mid_reach_right_noflip_up) * (t497 + mid_reach_right_noflip_up);
-    const d_mid_right_noflip_up = Math.max(0.0, -t499);
+    const t504 = d5 + r_hub_right_noflip_up;
+    const t505 = d5 - r_hub_right_noflip_up;
+    const mid_reach_right_noflip_up = Math.min(full_1_1, t504) * 0.5 + Math.max(fold_1_1,
+        Math.abs(t505)) * 0.5;
+    const t506 = (t504 - mid_reach_right_noflip_up) * (t504 + mid_reach_right_noflip_up);
+    const k_mid_right_noflip_up = Math.max(0.0, t506);
+    const t507 = (t505 - mid_reach_right_noflip_up) * (t505 + mid_reach_right_noflip_up);
+    const d_mid_right_noflip_up = Math.max(0.0, -t507);
     const n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up;
-    const any_mid_right_noflip_up = n_mid_right_noflip_up <= t127;
-    const t500 = k_mid_right_noflip_up - d_mid_right_noflip_up;
-    const t501 = 1.0 / n_mid_right_noflip_up;
-    const uc_mid_right_noflip_up = any_mid_right_noflip_up ? 1.0 : t500 * t501;
-    const t502 = across_right_noflip_up * uc_mid_right_noflip_up;
-    const t503 = k_mid_right_noflip_up * d_mid_right_noflip_up;
-    const us_mid_right_noflip_up = any_mid_right_noflip_up ? 0.0 : t501 * (2.0 *
-        Math.sqrt(t503));
-    const t504 = 1.0 / r_hub_right_noflip_up;
-    const c_mid_right_noflip_up = hub_mid_right_noflip_up ? 1.0 : (t502 + t26 *
-        us_mid_right_noflip_up) * t504;
-    const close_right_noflip_up = root1 * h_wrist_right_noflip_up - t131 <= t6;
-    const t505 = 1.0 / h_wrist_right_noflip_up;
-    const s_phi_right_noflip_up = aligned_wrist_right_noflip_up ? 0.0 : T33 * t505;
-    const t506 = across_right_noflip_up - d5 * s_phi_right_noflip_up;
+    const any_mid_right_noflip_up = n_mid_right_noflip_up <= t129;
+    const t508 = k_mid_right_noflip_up - d_mid_right_noflip_up;
+    const t509 = 1.0 / n_mid_right_noflip_up;
+    const uc_mid_right_noflip_up = any_mid_right_noflip_up ? 1.0 : t508 * t509;
+    const t510 = across_right_noflip_up * uc_mid_right_noflip_up;
+    const t511 = k_mid_right_noflip_up * d_mid_right_noflip_up;
+    const us_mid_right_noflip_up = any_mid_right_noflip_up ? 0.0 : t509 * (2.0 *
+        Math.sqrt(t511));
+    const t512 = 1.0 / r_hub_right_noflip_up;
+    const c_mid_right_noflip_up = hub_mid_right_noflip_up ? 1.0 : (t510 + t26 *
+        us_mid_right_noflip_up) * t512;
+    const close_right_noflip_up = root1 * h_wrist_right_noflip_up - t133 <= t6;
+    const t513 = 1.0 / h_wrist_right_noflip_up;
+    const s_phi_right_noflip_up = aligned_wrist_right_noflip_up ? 0.0 : T33 * t513;
+    const t514 = across_right_noflip_up - d5 * s_phi_right_noflip_up;
     const c_phi_right_noflip_up = aligned_wrist_right_noflip_up ? 1.0 : M_13_right_noflip_up *
-        t505;
-    const t507 = t26 - d5 * c_phi_right_noflip_up;
-    const here_right_noflip_up = Math.sqrt(t506 * t506 + t507 * t507);
+        t513;
+    const t515 = t26 - d5 * c_phi_right_noflip_up;
+    const here_right_noflip_up = Math.sqrt(t514 * t514 + t515 * t515);
     const in_reach_right_noflip_up = Math.min(full_1_1, Math.max(here_right_noflip_up,
         fold_1_1));
-    const t508 = (t496 - in_reach_right_noflip_up) * (t496 + in_reach_right_noflip_up);
-    const k_near_right_noflip_up = Math.max(0.0, t508);
-    const t509 = (t497 - in_reach_right_noflip_up) * (t497 + in_reach_right_noflip_up);
-    const d_near_right_noflip_up = Math.max(0.0, -t509);
+    const t516 = (t504 - in_reach_right_noflip_up) * (t504 + in_reach_right_noflip_up);
+    const k_near_right_noflip_up = Math.max(0.0, t516);
+    const t517 = (t505 - in_reach_right_noflip_up) * (t505 + in_reach_right_noflip_up);
+    const d_near_right_noflip_up = Math.max(0.0, -t517);
     const n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up;
-    const any_near_right_noflip_up = n_near_right_noflip_up <= t127;
-    const t510 = k_near_right_noflip_up - d_near_right_noflip_up;
-    const t511 = 1.0 / n_near_right_noflip_up;
-    const uc_near_right_noflip_up = any_near_right_noflip_up ? 1.0 : t510 * t511;
-    const t512 = across_right_noflip_up * uc_near_right_noflip_up;
-    const t513 = across_right_noflip_up * c_phi_right_noflip_up;
-    const t514 = t513 - t26 * s_phi_right_noflip_up;
-    const t515 = Math.abs(t514);
-    const t516 = k_near_right_noflip_up * d_near_right_noflip_up;
-    const t517 = 2.0 * (t515 <= t6 ? 1.0 : -(t514 / t515)) * Math.sqrt(t516);
-    const us_near_right_noflip_up = any_near_right_noflip_up ? 0.0 : t511 * t517;
-    const t518 = t504 * (t512 + t26 * us_near_right_noflip_up);
-    const c_near_right_noflip_up = hub_mid_right_noflip_up ? 1.0 : t518;
-    const t519 = s_phi_right_noflip_up - c_near_right_noflip_up;
-    const t520 = across_right_noflip_up * us_near_right_noflip_up;
-    const t521 = t504 * (t520 - t26 * uc_near_right_noflip_up);
-    const s_near_right_noflip_up = hub_mid_right_noflip_up ? 0.0 : t521;
-    const t522 = c_phi_right_noflip_up + s_near_right_noflip_up;
-    const t523 = h_wrist_right_noflip_up * Math.sqrt(t519 * t519 + t522 * t522);
-    const t524 = here_right_noflip_up - in_reach_right_noflip_up;
-    const t525 = (t523 - 2.2737367544323206e-13 <= t142) && !(Math.abs(t524) <= t6);
-    const s_kept_right_noflip_up = t525 ? c_near_right_noflip_up : s_phi_right_noflip_up;
-    const t526 = close_right_noflip_up ? s_kept_right_noflip_up : s_phi_right_noflip_up;
-    const sphi_right_noflip_up = aligned_wrist_right_noflip_up ? c_mid_right_noflip_up : t526;
-    const t527 = across_right_noflip_up - d5 * sphi_right_noflip_up;
-    const t528 = across_right_noflip_up * us_mid_right_noflip_up;
-    const s_mid_right_noflip_up = hub_mid_right_noflip_up ? 0.0 : t504 * (t528 - t26 *
+    const any_near_right_noflip_up = n_near_right_noflip_up <= t129;
+    const t518 = k_near_right_noflip_up - d_near_right_noflip_up;
+    const t519 = 1.0 / n_near_right_noflip_up;
+    const uc_near_right_noflip_up = any_near_right_noflip_up ? 1.0 : t518 * t519;
+    const t520 = across_right_noflip_up * uc_near_right_noflip_up;
+    const t521 = across_right_noflip_up * c_phi_right_noflip_up;
+    const t522 = t521 - t26 * s_phi_right_noflip_up;
+    const t523 = Math.abs(t522);
+    const t524 = k_near_right_noflip_up * d_near_right_noflip_up;
+    const t525 = 2.0 * (t523 <= t6 ? 1.0 : -(t522 / t523)) * Math.sqrt(t524);
+    const us_near_right_noflip_up = any_near_right_noflip_up ? 0.0 : t519 * t525;
+    const t526 = t512 * (t520 + t26 * us_near_right_noflip_up);
+    const c_near_right_noflip_up = hub_mid_right_noflip_up ? 1.0 : t526;
+    const t527 = s_phi_right_noflip_up - c_near_right_noflip_up;
+    const t528 = across_right_noflip_up * us_near_right_noflip_up;
+    const t529 = t512 * (t528 - t26 * uc_near_right_noflip_up);
+    const s_near_right_noflip_up = hub_mid_right_noflip_up ? 0.0 : t529;
+    const t530 = c_phi_right_noflip_up + s_near_right_noflip_up;
+    const t531 = h_wrist_right_noflip_up * Math.sqrt(t527 * t527 + t530 * t530);
+    const t532 = here_right_noflip_up - in_reach_right_noflip_up;
+    const t533 = (t531 - 2.2737367544323206e-13 <= t144) && !(Math.abs(t532) <= t6);
+    const s_kept_right_noflip_up = t533 ? c_near_right_noflip_up : s_phi_right_noflip_up;
+    const t534 = close_right_noflip_up ? s_kept_right_noflip_up : s_phi_right_noflip_up;
+    const sphi_right_noflip_up = aligned_wrist_right_noflip_up ? c_mid_right_noflip_up : t534;
+    const t535 = across_right_noflip_up - d5 * sphi_right_noflip_up;
+    const t536 = across_right_noflip_up * us_mid_right_noflip_up;
+    const s_mid_right_noflip_up = hub_mid_right_noflip_up ? 0.0 : t512 * (t536 - t26 *
         uc_mid_right_noflip_up);
-    const c_kept_right_noflip_up = t525 ? -s_near_right_noflip_up : c_phi_right_noflip_up;
-    const t529 = close_right_noflip_up ? c_kept_right_noflip_up : c_phi_right_noflip_up;
-    const cphi_right_noflip_up = aligned_wrist_right_noflip_up ? -s_mid_right_noflip_up : t529;
+    const c_kept_right_noflip_up = t533 ? -s_near_right_noflip_up : c_phi_right_noflip_up;
+    const t537 = close_right_noflip_up ? c_kept_right_noflip_up : c_phi_right_noflip_up;
+    const cphi_right_noflip_up = aligned_wrist_right_noflip_up ? -s_mid_right_noflip_up : t537;
     const ey_right_noflip_up = t26 - d5 * cphi_right_noflip_up;
-    const t530 = t527 * t527 + ey_right_noflip_up * ey_right_noflip_up;
-    const r_elbow_right_noflip_up = Math.sqrt(t530);
-    const t531 = full_1_1 - r_elbow_right_noflip_up;
-    const t532 = t29 + r_elbow_right_noflip_up;
-    const t533 = r_elbow_right_noflip_up - t29;
-    const t534 = t123 && (t122 <= t531) && (t122 <= t532) && (t122 <= t533);
-    const unreachable_3 = !t534;
-    const t535 = _runtime.poison(invalid || unreachable_3);
-    const t536 = _runtime.wrapCut(t493) + t535;
+    const t538 = t535 * t535 + ey_right_noflip_up * ey_right_noflip_up;
+    const r_elbow_right_noflip_up = Math.sqrt(t538);
+    const t539 = full_1_1 - r_elbow_right_noflip_up;
+    const t540 = t29 + r_elbow_right_noflip_up;
+    const t541 = r_elbow_right_noflip_up - t29;
+    const t542 = t125 && (t124 <= t539) && (t124 <= t540) && (t124 <= t541);
+    const unreachable_3 = !t542;
+    const t543 = invalid || unreachable_3 ? NaN : 0;
+    const t544 = (t501 <= -Math.PI ? Math.PI : t501) + t543;
     const folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t6;
-    const A_elbow_right_noflip_up = Math.max(t531, 0.0);
-    const C_elbow_right_noflip_up = Math.max(t533, 0.0);
-    const t537 = A_elbow_right_noflip_up * C_elbow_right_noflip_up;
+    const A_elbow_right_noflip_up = Math.max(t539, 0.0);
+    const C_elbow_right_noflip_up = Math.max(t541, 0.0);
+    const t545 = A_elbow_right_noflip_up * C_elbow_right_noflip_up;
     const S_elbow_right_noflip_up = full_1_1 + r_elbow_right_noflip_up;
-    const B_elbow_right_noflip_up = Math.max(t532, 0.0);
-    const t538 = S_elbow_right_noflip_up * B_elbow_right_noflip_up;
-    const t539 = 1.0 / (t537 + t538);
-    const c_base_elbow_right_noflip_up = no_link_elbow ? 1.0 : -((t537 - t538) * t539);
-    const t540 = ey_right_noflip_up * c_base_elbow_right_noflip_up;
-    const t541 = 1.0 / r_elbow_right_noflip_up;
-    const t542 = t540 * t541;
-    const area_elbow_right_noflip_up = 2.0 * Math.sqrt(t537 * t538);
-    const s_base_elbow_right_noflip_up = no_link_elbow ? 0.0 : t539 *
+    const B_elbow_right_noflip_up = Math.max(t540, 0.0);
+    const t546 = S_elbow_right_noflip_up * B_elbow_right_noflip_up;
+    const t547 = 1.0 / (t545 + t546);
+    const c_base_elbow_right_noflip_up = no_link_elbow ? 1.0 : -((t545 - t546) * t547);
+    const t548 = ey_right_noflip_up * c_base_elbow_right_noflip_up;
+    const t549 = 1.0 / r_elbow_right_noflip_up;
+    const t550 = t548 * t549;
+    const area_elbow_right_noflip_up = 2.0 * Math.sqrt(t545 * t546);
+    const s_base_elbow_right_noflip_up = no_link_elbow ? 0.0 : t547 *
         area_elbow_right_noflip_up;
-    const t543 = t541 * (t527 * s_base_elbow_right_noflip_up);
-    const s2_right_noflip_up = folded_elbow_right_noflip_up ? 0.0 : t542 + t543;
-    const t544 = ey_right_noflip_up * s_base_elbow_right_noflip_up;
-    const t545 = t541 * t544;
-    const t546 = t541 * (t527 * c_base_elbow_right_noflip_up);
-    const c2_right_noflip_up = folded_elbow_right_noflip_up ? 1.0 : t545 - t546;
-    const t547 = Math.atan2(s2_right_noflip_up, c2_right_noflip_up);
-    const t548 = A_elbow_right_noflip_up * S_elbow_right_noflip_up;
-    const t549 = C_elbow_right_noflip_up * B_elbow_right_noflip_up;
-    const t550 = 1.0 / (t548 + t549);
-    const s3_right_noflip_up = no_link_elbow ? 0.0 : area_elbow_right_noflip_up * t550;
-    const c3_right_noflip_up = no_link_elbow ? 1.0 : -(t550 * (t548 - t549));
-    const t551 = Math.atan2(s3_right_noflip_up, c3_right_noflip_up);
-    const t552 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up *
+    const t551 = t549 * (t535 * s_base_elbow_right_noflip_up);
+    const s2_right_noflip_up = folded_elbow_right_noflip_up ? 0.0 : t550 + t551;
+    const t552 = ey_right_noflip_up * s_base_elbow_right_noflip_up;
+    const t553 = t549 * t552;
+    const t554 = t549 * (t535 * c_base_elbow_right_noflip_up);
+    const c2_right_noflip_up = folded_elbow_right_noflip_up ? 1.0 : t553 - t554;
+    const t555 = Math.atan2(s2_right_noflip_up, c2_right_noflip_up);
+    const t556 = A_elbow_right_noflip_up * S_elbow_right_noflip_up;
+    const t557 = C_elbow_right_noflip_up * B_elbow_right_noflip_up;
+    const t558 = 1.0 / (t556 + t557);
+    const s3_right_noflip_up = no_link_elbow ? 0.0 : area_elbow_right_noflip_up * t558;
+    const c3_right_noflip_up = no_link_elbow ? 1.0 : -(t558 * (t556 - t557));
+    const t559 = Math.atan2(s3_right_noflip_up, c3_right_noflip_up);
+    const t560 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up *
         s2_right_noflip_up;
-    const t553 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up *
+    const t561 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up *
         s2_right_noflip_up;
-    const t554 = c3_right_noflip_up * t552 - s3_right_noflip_up * t553;
-    const t555 = c3_right_noflip_up * t553 + s3_right_noflip_up * t552;
-    const t556 = _runtime.wrapCut(Math.atan2(t554, t555)) + t535;
-    const t557 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up;
+    const t562 = c3_right_noflip_up * t560 - s3_right_noflip_up * t561;
+    const t563 = c3_right_noflip_up * t561 + s3_right_noflip_up * t560;
+    const t564 = Math.atan2(t562, t563);
+    const t565 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up;
     const M_33_right_noflip_up = T13 * s1_right_noflip_up - T23 * c1_right_noflip_up;
-    const t558 = _runtime.wrapCut(-Math.atan2(t557, M_33_right_noflip_up));
-    const t559 = t558 + t535;
+    const t566 = -Math.atan2(t565, M_33_right_noflip_up);
+    const t567 = (t566 <= -Math.PI ? Math.PI : t566) + t543;
     const M_11_right_noflip_up = T11 * c1_right_noflip_up + T21 * s1_right_noflip_up;
-    const t560 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up;
+    const t568 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up;
     const M_12_right_noflip_up = T12 * c1_right_noflip_up + T22 * s1_right_noflip_up;
-    const t561 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up;
-    const t562 = _runtime.wrapCut(-Math.atan2(t560, t561)) + t535;
-    const s2_right_noflip_down = folded_elbow_right_noflip_up ? 0.0 : t542 - t543;
-    const c2_right_noflip_down = folded_elbow_right_noflip_up ? 1.0 : -(t546 + t545);
-    const t563 = Math.atan2(s2_right_noflip_down, c2_right_noflip_down);
-    const t564 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up *
+    const t569 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up;
+    const t570 = -Math.atan2(t568, t569);
+    const t571 = (t570 <= -Math.PI ? Math.PI : t570) + t543;
+    const s2_right_noflip_down = folded_elbow_right_noflip_up ? 0.0 : t550 - t551;
+    const c2_right_noflip_down = folded_elbow_right_noflip_up ? 1.0 : -(t554 + t553);
+    const t572 = Math.atan2(s2_right_noflip_down, c2_right_noflip_down);
+    const t573 = -t559;
+    const t574 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up *
         s2_right_noflip_down;
-    const t565 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up *
+    const t575 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up *
         s2_right_noflip_down;
-    const t566 = c3_right_noflip_up * t564 + s3_right_noflip_up * t565;
-    const t567 = c3_right_noflip_up * t565 - s3_right_noflip_up * t564;
-    const t568 = _runtime.wrapCut(Math.atan2(t566, t567)) + t535;
-    const x_1_1_right_flip_up = t359 ? qx_1_1_right_noflip_up : qx_1_1_right_noflip_up + t361;
-    const dx_1_1_right_flip_up = t359 ? dqx_1_1_right_noflip_up : dqx_1_1_right_noflip_up -
-        t365;
-    const t569 = t359 ? t26 : t26 + t367;
-    const slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t369 * t569;
-    const t570 = slope_1_1_right_flip_up * slope_1_1_right_flip_up;
-    const square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t569 * t569;
-    const t571 = Math.min(high_1_1_right_noflip_up, square_1_1_right_flip_up);
+    const t576 = c3_right_noflip_up * t574 + s3_right_noflip_up * t575;
+    const t577 = c3_right_noflip_up * t575 - s3_right_noflip_up * t574;
+    const t578 = Math.atan2(t576, t577);
+    const x_1_1_right_flip_up = t367 ? qx_1_1_right_noflip_up : qx_1_1_right_noflip_up + t369;
+    const dx_1_1_right_flip_up = t367 ? dqx_1_1_right_noflip_up : dqx_1_1_right_noflip_up -
+        t373;
+    const t579 = t367 ? t26 : t26 + t375;
+    const slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t377 * t579;
+    const t580 = slope_1_1_right_flip_up * slope_1_1_right_flip_up;
+    const square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t579 * t579;
+    const t581 = Math.min(high_1_1_right_noflip_up, square_1_1_right_flip_up);
     const miss_1_1_right_flip_up = square_1_1_right_flip_up - Math.max(low_1_1_right_noflip_up,
-        t571);
-    const bend_1_1_right_flip_up = t374 + dx_1_1_right_flip_up * dx_1_1_right_flip_up;
-    const t572 = miss_1_1_right_flip_up * bend_1_1_right_flip_up;
-    const inner_1_1_right_flip_up = t570 - t572;
-    const t573 = slope_1_1_right_flip_up / (2.0 * bend_1_1_right_flip_up);
-    const t574 = Math.sqrt(Math.max(0.0, inner_1_1_right_flip_up));
-    const t575 = _runtime.sign(slope_1_1_right_flip_up) * t574;
-    const t576 = miss_1_1_right_flip_up / (2.0 * (slope_1_1_right_flip_up + t575));
-    const t577 = inner_1_1_right_flip_up < 0.0 ? t573 : t576;
-    const t578 = t577 * t577;
-    const t579 = 1.0 / (1.0 + t578);
-    const t580 = 2.0 * t577 * t579;
-    const by_c_1_1_right_flip_up = t579 * (1.0 - t578);
-    const t581 = d4 * (t580 * t580) / (1.0 + Math.abs(by_c_1_1_right_flip_up));
-    const t582 = (t581 + root1 * Math.abs(t580) <= whole_1_1) && (0.0 < by_c_1_1_right_flip_up);
-    const cosine_1_1_right_flip_up = t582 ? by_c_1_1_right_flip_up : 1.0;
-    const t583 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up;
-    const sine_1_1_right_flip_up = t582 ? -t580 : 0.0;
-    const c_1_1_2_right_flip_up = t583 + t357 * sine_1_1_right_flip_up;
-    const t584 = c_1_1_right_noflip_up * sine_1_1_right_flip_up;
-    const s_1_1_2_right_flip_up = t584 - t357 * cosine_1_1_right_flip_up;
+        t581);
+    const bend_1_1_right_flip_up = t382 + dx_1_1_right_flip_up * dx_1_1_right_flip_up;
+    const t582 = miss_1_1_right_flip_up * bend_1_1_right_flip_up;
+    const inner_1_1_right_flip_up = t580 - t582;
+    const t583 = slope_1_1_right_flip_up / (2.0 * bend_1_1_right_flip_up);
+    const t584 = Math.sqrt(Math.max(0.0, inner_1_1_right_flip_up));
+    const t585 = (slope_1_1_right_flip_up < 0 ? -1 : 1) * t584;
+    const t586 = miss_1_1_right_flip_up / (2.0 * (slope_1_1_right_flip_up + t585));
+    const t587 = inner_1_1_right_flip_up < 0.0 ? t583 : t586;
+    const t588 = t587 * t587;
+    const t589 = 1.0 / (1.0 + t588);
+    const t590 = 2.0 * t587 * t589;
+    const by_c_1_1_right_flip_up = t589 * (1.0 - t588);
+    const t591 = d4 * (t590 * t590) / (1.0 + Math.abs(by_c_1_1_right_flip_up));
+    const t592 = (t591 + root1 * Math.abs(t590) <= whole_1_1) && (0.0 < by_c_1_1_right_flip_up);
+    const cosine_1_1_right_flip_up = t592 ? by_c_1_1_right_flip_up : 1.0;
+    const t593 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up;
+    const sine_1_1_right_flip_up = t592 ? -t590 : 0.0;
+    const c_1_1_2_right_flip_up = t593 + t365 * sine_1_1_right_flip_up;
+    const t594 = c_1_1_right_noflip_up * sine_1_1_right_flip_up;
+    const s_1_1_2_right_flip_up = t594 - t365 * cosine_1_1_right_flip_up;
     const axisx_1_1_2_right_flip_up = T13 * c_1_1_2_right_flip_up + T23 * s_1_1_2_right_flip_up;
-    const t585 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up;
-    const t586 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up;
-    const most_1_1_2_right_flip_up = Math.sqrt(t585 + t586 * t586);
+    const t595 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up;
+    const t596 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up;
+    const most_1_1_2_right_flip_up = Math.sqrt(t595 + t596 * t596);
     const qx_1_1_2_right_flip_up = w_x * c_1_1_2_right_flip_up + w_y * s_1_1_2_right_flip_up;
-    const t587 = qx_1_1_2_right_flip_up * qx_1_1_2_right_flip_up;
-    const r_1_1_2_right_flip_up = Math.sqrt(t45 + t587);
-    const t588 = r_1_1_2_right_flip_up <= t48;
-    const t589 = d5 + r_1_1_2_right_flip_up;
-    const t590 = 1.0 / Math.sqrt(t16 + t585);
-    const t591 = T33 * t590;
-    const t592 = qx_1_1_2_right_flip_up + d5 * t591;
-    const us_1_1_2_right_flip_up = axisx_1_1_2_right_flip_up * t590;
-    const t593 = t26 + d5 * us_1_1_2_right_flip_up;
-    const there_1_1_2_right_flip_up = Math.sqrt(t592 * t592 + t593 * t593);
-    const t594 = Math.max(there_1_1_2_right_flip_up, fold_1_1);
-    const goal_1_1_2_right_flip_up = Math.min(full_1_1, t594);
-    const t595 = (t589 - goal_1_1_2_right_flip_up) * (t589 + goal_1_1_2_right_flip_up);
-    const k_v_1_1_2_right_flip_up = Math.max(0.0, t595);
-    const t596 = d5 - r_1_1_2_right_flip_up;
-    const t597 = (goal_1_1_2_right_flip_up - t596) * (goal_1_1_2_right_flip_up + t596);
-    const d_v_1_1_2_right_flip_up = Math.max(0.0, t597);
+    const t597 = qx_1_1_2_right_flip_up * qx_1_1_2_right_flip_up;
+    const r_1_1_2_right_flip_up = Math.sqrt(t45 + t597);
+    const t598 = r_1_1_2_right_flip_up <= t48;
+    const t599 = d5 + r_1_1_2_right_flip_up;
+    const t600 = 1.0 / Math.sqrt(t16 + t595);
+    const t601 = T33 * t600;
+    const t602 = qx_1_1_2_right_flip_up + d5 * t601;
+    const us_1_1_2_right_flip_up = axisx_1_1_2_right_flip_up * t600;
+    const t603 = t26 + d5 * us_1_1_2_right_flip_up;
+    const there_1_1_2_right_flip_up = Math.sqrt(t602 * t602 + t603 * t603);
+    const t604 = Math.max(there_1_1_2_right_flip_up, fold_1_1);
+    const goal_1_1_2_right_flip_up = Math.min(full_1_1, t604);
+    const t605 = (t599 - goal_1_1_2_right_flip_up) * (t599 + goal_1_1_2_right_flip_up);
+    const k_v_1_1_2_right_flip_up = Math.max(0.0, t605);
+    const t606 = d5 - r_1_1_2_right_flip_up;
+    const t607 = (goal_1_1_2_right_flip_up - t606) * (goal_1_1_2_right_flip_up + t606);
+    const d_v_1_1_2_right_flip_up = Math.max(0.0, t607);
     const n_v_1_1_2_right_flip_up = k_v_1_1_2_right_flip_up + d_v_1_1_2_right_flip_up;
-    const t598 = n_v_1_1_2_right_flip_up <= t57;
-    const t599 = k_v_1_1_2_right_flip_up - d_v_1_1_2_right_flip_up;
-    const t600 = 1.0 / n_v_1_1_2_right_flip_up;
-    const uc_v_1_1_2_right_flip_up = t598 ? 1.0 : t599 * t600;
-    const t601 = qx_1_1_2_right_flip_up * uc_v_1_1_2_right_flip_up;
-    const t602 = qx_1_1_2_right_flip_up * us_1_1_2_right_flip_up;
-    const t603 = k_v_1_1_2_right_flip_up * d_v_1_1_2_right_flip_up;
-    const t604 = 2.0 * _runtime.sign(t602 - t26 * t591) * Math.sqrt(t603);
-    const us_v_1_1_2_right_flip_up = t598 ? 0.0 : t600 * t604;
-    const t605 = t26 * us_v_1_1_2_right_flip_up;
-    const t606 = 1.0 / r_1_1_2_right_flip_up;
-    const c_v_1_1_2_right_flip_up = t588 ? 1.0 : (t601 + t605) * t606;
-    const t607 = -(T33 * c_v_1_1_2_right_flip_up) < 0.0;
-    const t608 = qx_1_1_2_right_flip_up * us_v_1_1_2_right_flip_up;
-    const t609 = t26 * uc_v_1_1_2_right_flip_up;
-    const to_c_1_1_2_right_flip_up = t607 ? (t588 ? 0.0 : t606 * (t608 + t609)) : -(t588 ? 0.0 :
-        t606 * (t608 - t609));
-    const to_s_1_1_2_right_flip_up = t607 ? (t588 ? 1.0 : t606 * (t601 - t605)) :
+    const t608 = n_v_1_1_2_right_flip_up <= t57;
+    const t609 = k_v_1_1_2_right_flip_up - d_v_1_1_2_right_flip_up;
+    const t610 = 1.0 / n_v_1_1_2_right_flip_up;
+    const uc_v_1_1_2_right_flip_up = t608 ? 1.0 : t609 * t610;
+    const t611 = qx_1_1_2_right_flip_up * uc_v_1_1_2_right_flip_up;
+    const t612 = qx_1_1_2_right_flip_up * us_1_1_2_right_flip_up;
+    const t613 = k_v_1_1_2_right_flip_up * d_v_1_1_2_right_flip_up;
+    const t614 = 2.0 * (t612 - t26 * t601 < 0 ? -1 : 1) * Math.sqrt(t613);
+    const us_v_1_1_2_right_flip_up = t608 ? 0.0 : t610 * t614;
+    const t615 = t26 * us_v_1_1_2_right_flip_up;
+    const t616 = 1.0 / r_1_1_2_right_flip_up;
+    const c_v_1_1_2_right_flip_up = t598 ? 1.0 : (t611 + t615) * t616;
+    const t617 = -(T33 * c_v_1_1_2_right_flip_up) < 0.0;
+    const t618 = qx_1_1_2_right_flip_up * us_v_1_1_2_right_flip_up;
+    const t619 = t26 * uc_v_1_1_2_right_flip_up;
+    const to_c_1_1_2_right_flip_up = t617 ? (t598 ? 0.0 : t616 * (t618 + t619)) : -(t598 ? 0.0 :
+        t616 * (t618 - t619));
+    const to_s_1_1_2_right_flip_up = t617 ? (t598 ? 1.0 : t616 * (t611 - t615)) :
         c_v_1_1_2_right_flip_up;
-    const t610 = T33 * to_c_1_1_2_right_flip_up / to_s_1_1_2_right_flip_up;
-    const t611 = Math.min(most_1_1_2_right_flip_up, t44 ? 0.0 : t610);
-    const kept_1_1_2_right_flip_up = Math.max(-most_1_1_2_right_flip_up, t611);
-    const t612 = most_1_1_2_right_flip_up - kept_1_1_2_right_flip_up;
-    const t613 = most_1_1_2_right_flip_up + kept_1_1_2_right_flip_up;
-    const rest_1_1_2_right_flip_up = Math.sqrt(t612 * t613) * _runtime.sign(-t586);
-    const t614 = axisx_1_1_2_right_flip_up * rest_1_1_2_right_flip_up;
-    const t615 = most_1_1_2_right_flip_up * most_1_1_2_right_flip_up;
-    const t616 = 1.0 / t615;
-    const t617 = (t614 + t586 * kept_1_1_2_right_flip_up) * t616;
-    const t618 = axisx_1_1_2_right_flip_up * kept_1_1_2_right_flip_up;
-    const by_c_1_1_2_right_flip_up = t616 * (t618 - t586 * rest_1_1_2_right_flip_up);
-    const t619 = d4 * (t617 * t617) / (1.0 + Math.abs(by_c_1_1_2_right_flip_up));
-    const t620 = (t619 + root1 * Math.abs(t617) <= whole_1_1) && (0.0 <
+    const t620 = T33 * to_c_1_1_2_right_flip_up / to_s_1_1_2_right_flip_up;
+    const t621 = Math.min(most_1_1_2_right_flip_up, t44 ? 0.0 : t620);
+    const kept_1_1_2_right_flip_up = Math.max(-most_1_1_2_right_flip_up, t621);
+    const t622 = most_1_1_2_right_flip_up - kept_1_1_2_right_flip_up;
+    const t623 = most_1_1_2_right_flip_up + kept_1_1_2_right_flip_up;
+    const rest_1_1_2_right_flip_up = Math.sqrt(t622 * t623) * (-t596 < 0 ? -1 : 1);
+    const t624 = axisx_1_1_2_right_flip_up * rest_1_1_2_right_flip_up;
+    const t625 = most_1_1_2_right_flip_up * most_1_1_2_right_flip_up;
+    const t626 = 1.0 / t625;
+    const t627 = (t624 + t596 * kept_1_1_2_right_flip_up) * t626;
+    const t628 = axisx_1_1_2_right_flip_up * kept_1_1_2_right_flip_up;
+    const by_c_1_1_2_right_flip_up = t626 * (t628 - t596 * rest_1_1_2_right_flip_up);
+    const t629 = d4 * (t627 * t627) / (1.0 + Math.abs(by_c_1_1_2_right_flip_up));
+    const t630 = (t629 + root1 * Math.abs(t627) <= whole_1_1) && (0.0 <
         by_c_1_1_2_right_flip_up);
-    const t621 = there_1_1_2_right_flip_up - goal_1_1_2_right_flip_up;
-    const t622 = t620 && (t48 < Math.abs(t621));
-    const cosine_1_1_2_right_flip_up = t622 ? by_c_1_1_2_right_flip_up : 1.0;
-    const t623 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up;
-    const sine_1_1_2_right_flip_up = t622 ? -t617 : 0.0;
-    const t624 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up;
-    const c_1_1_2_3_right_flip_up = t623 - t624;
-    const t625 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up;
-    const t626 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up;
-    const s_1_1_2_3_right_flip_up = t625 + t626;
+    const t631 = there_1_1_2_right_flip_up - goal_1_1_2_right_flip_up;
+    const t632 = t630 && (t48 < Math.abs(t631));
+    const cosine_1_1_2_right_flip_up = t632 ? by_c_1_1_2_right_flip_up : 1.0;
+    const t633 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up;
+    const sine_1_1_2_right_flip_up = t632 ? -t627 : 0.0;
+    const t634 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up;
+    const c_1_1_2_3_right_flip_up = t633 - t634;
+    const t635 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up;
+    const t636 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up;
+    const s_1_1_2_3_right_flip_up = t635 + t636;
     const axisx_1_1_2_3_right_flip_up = T13 * c_1_1_2_3_right_flip_up + T23 *
         s_1_1_2_3_right_flip_up;
-    const t627 = axisx_1_1_2_3_right_flip_up * axisx_1_1_2_3_right_flip_up;
-    const h_1_1_2_3_right_flip_up = Math.sqrt(t16 + t627);
-    const t628 = size_1_1 * h_1_1_2_3_right_flip_up <= t20;
+    const t637 = axisx_1_1_2_3_right_flip_up * axisx_1_1_2_3_right_flip_up;
+    const h_1_1_2_3_right_flip_up = Math.sqrt(t16 + t637);
+    const t638 = size_1_1 * h_1_1_2_3_right_flip_up <= t20;
     const qx_1_1_2_3_right_flip_up = w_x * c_1_1_2_3_right_flip_up + w_y *
         s_1_1_2_3_right_flip_up;
-    const t629 = 1.0 / h_1_1_2_3_right_flip_up;
-    const t630 = T33 * t629;
-    const x_1_1_2_3_right_flip_up = t628 ? qx_1_1_2_3_right_flip_up : qx_1_1_2_3_right_flip_up +
-        d5 * t630;
+    const t639 = 1.0 / h_1_1_2_3_right_flip_up;
+    const t640 = T33 * t639;
+    const x_1_1_2_3_right_flip_up = t638 ? qx_1_1_2_3_right_flip_up : qx_1_1_2_3_right_flip_up +
+        d5 * t640;
     const dqx_1_1_2_3_right_flip_up = w_y * c_1_1_2_3_right_flip_up - w_x *
         s_1_1_2_3_right_flip_up;
-    const us_1_1_2_3_right_flip_up = axisx_1_1_2_3_right_flip_up * t629;
-    const t631 = T13 * s_1_1_2_3_right_flip_up - T23 * c_1_1_2_3_right_flip_up;
-    const t632 = h_1_1_2_3_right_flip_up * h_1_1_2_3_right_flip_up;
-    const rate_1_1_2_3_right_flip_up = d5 * (T33 * t631) / t632;
-    const t633 = us_1_1_2_3_right_flip_up * rate_1_1_2_3_right_flip_up;
-    const dx_1_1_2_3_right_flip_up = t628 ? dqx_1_1_2_3_right_flip_up :
-        dqx_1_1_2_3_right_flip_up + t633;
-    const t634 = x_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up;
-    const t635 = t628 ? t26 : t26 + d5 * us_1_1_2_3_right_flip_up;
-    const dy_1_1_2_3_right_flip_up = t628 ? 0.0 : t630 * rate_1_1_2_3_right_flip_up;
-    const slope_1_1_2_3_right_flip_up = t634 - t635 * dy_1_1_2_3_right_flip_up;
-    const t636 = slope_1_1_2_3_right_flip_up * slope_1_1_2_3_right_flip_up;
-    const t637 = x_1_1_2_3_right_flip_up * x_1_1_2_3_right_flip_up;
-    const square_1_1_2_3_right_flip_up = t637 + t635 * t635;
-    const nearest_1_1_2_3_right_flip_up = t628 ? t30 : fold_1_1;
+    const us_1_1_2_3_right_flip_up = axisx_1_1_2_3_right_flip_up * t639;
+    const t641 = T13 * s_1_1_2_3_right_flip_up - T23 * c_1_1_2_3_right_flip_up;
+    const t642 = h_1_1_2_3_right_flip_up * h_1_1_2_3_right_flip_up;
+    const rate_1_1_2_3_right_flip_up = d5 * (T33 * t641) / t642;
+    const t643 = us_1_1_2_3_right_flip_up * rate_1_1_2_3_right_flip_up;
+    const dx_1_1_2_3_right_flip_up = t638 ? dqx_1_1_2_3_right_flip_up :
+        dqx_1_1_2_3_right_flip_up + t643;
+    const t644 = x_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up;
+    const t645 = t638 ? t26 : t26 + d5 * us_1_1_2_3_right_flip_up;
+    const dy_1_1_2_3_right_flip_up = t638 ? 0.0 : t640 * rate_1_1_2_3_right_flip_up;
+    const slope_1_1_2_3_right_flip_up = t644 - t645 * dy_1_1_2_3_right_flip_up;
+    const t646 = slope_1_1_2_3_right_flip_up * slope_1_1_2_3_right_flip_up;
+    const t647 = x_1_1_2_3_right_flip_up * x_1_1_2_3_right_flip_up;
+    const square_1_1_2_3_right_flip_up = t647 + t645 * t645;
+    const nearest_1_1_2_3_right_flip_up = t638 ? t30 : fold_1_1;
     const low_1_1_2_3_right_flip_up = nearest_1_1_2_3_right_flip_up *
         nearest_1_1_2_3_right_flip_up;
-    const farthest_1_1_2_3_right_flip_up = t628 ? t5 : full_1_1;
+    const farthest_1_1_2_3_right_flip_up = t638 ? t5 : full_1_1;
     const high_1_1_2_3_right_flip_up = farthest_1_1_2_3_right_flip_up *
         farthest_1_1_2_3_right_flip_up;
-    const t638 = Math.min(high_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up);
+    const t648 = Math.min(high_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up);
     const miss_1_1_2_3_right_flip_up = square_1_1_2_3_right_flip_up -
-        Math.max(low_1_1_2_3_right_flip_up, t638);
-    const t639 = dx_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up;
-    const t640 = dy_1_1_2_3_right_flip_up * dy_1_1_2_3_right_flip_up;
-    const bend_1_1_2_3_right_flip_up = t639 + t640;
-    const t641 = miss_1_1_2_3_right_flip_up * bend_1_1_2_3_right_flip_up;
-    const inner_1_1_2_3_right_flip_up = t636 - t641;
-    const t642 = slope_1_1_2_3_right_flip_up / (2.0 * bend_1_1_2_3_right_flip_up);
-    const t643 = Math.sqrt(Math.max(0.0, inner_1_1_2_3_right_flip_up));
-    const t644 = _runtime.sign(slope_1_1_2_3_right_flip_up) * t643;
-    const t645 = miss_1_1_2_3_right_flip_up / (2.0 * (slope_1_1_2_3_right_flip_up + t644));
-    const t646 = inner_1_1_2_3_right_flip_up < 0.0 ? t642 : t645;
-    const t647 = t646 * t646;
-    const t648 = 1.0 / (1.0 + t647);
-    const t649 = 2.0 * t646 * t648;
-    const by_c_1_1_2_3_right_flip_up = t648 * (1.0 - t647);
-    const t650 = d4 * (t649 * t649) / (1.0 + Math.abs(by_c_1_1_2_3_right_flip_up));
-    const t651 = (t650 + root1 * Math.abs(t649) <= whole_1_1) && (0.0 <
+        Math.max(low_1_1_2_3_right_flip_up, t648);
+    const t649 = dx_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up;
+    const t650 = dy_1_1_2_3_right_flip_up * dy_1_1_2_3_right_flip_up;
+    const bend_1_1_2_3_right_flip_up = t649 + t650;
+    const t651 = miss_1_1_2_3_right_flip_up * bend_1_1_2_3_right_flip_up;
+    const inner_1_1_2_3_right_flip_up = t646 - t651;
+    const t652 = slope_1_1_2_3_right_flip_up / (2.0 * bend_1_1_2_3_right_flip_up);
+    const t653 = Math.sqrt(Math.max(0.0, inner_1_1_2_3_right_flip_up));
+    const t654 = (slope_1_1_2_3_right_flip_up < 0 ? -1 : 1) * t653;
+    const t655 = miss_1_1_2_3_right_flip_up / (2.0 * (slope_1_1_2_3_right_flip_up + t654));
+    const t656 = inner_1_1_2_3_right_flip_up < 0.0 ? t652 : t655;
+    const t657 = t656 * t656;
+    const t658 = 1.0 / (1.0 + t657);
+    const t659 = 2.0 * t656 * t658;
+    const by_c_1_1_2_3_right_flip_up = t658 * (1.0 - t657);
+    const t660 = d4 * (t659 * t659) / (1.0 + Math.abs(by_c_1_1_2_3_right_flip_up));
+    const t661 = (t660 + root1 * Math.abs(t659) <= whole_1_1) && (0.0 <
         by_c_1_1_2_3_right_flip_up);
-    const cosine_1_1_2_3_right_flip_up = t651 ? by_c_1_1_2_3_right_flip_up : 1.0;
-    const t652 = c_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up;
-    const sine_1_1_2_3_right_flip_up = t651 ? -t649 : 0.0;
-    const t653 = s_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up;
-    const c_1_1_2_3_4_right_flip_up = t652 - t653;
-    const t654 = c_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up;
-    const t655 = s_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up;
-    const s_1_1_2_3_4_right_flip_up = t654 + t655;
+    const cosine_1_1_2_3_right_flip_up = t661 ? by_c_1_1_2_3_right_flip_up : 1.0;
+    const t662 = c_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up;
+    const sine_1_1_2_3_right_flip_up = t661 ? -t659 : 0.0;
+    const t663 = s_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up;
+    const c_1_1_2_3_4_right_flip_up = t662 - t663;
+    const t664 = c_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up;
+    const t665 = s_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up;
+    const s_1_1_2_3_4_right_flip_up = t664 + t665;
     const axisx_1_1_2_3_4_right_flip_up = T13 * c_1_1_2_3_4_right_flip_up + T23 *
         s_1_1_2_3_4_right_flip_up;
-    const t656 = axisx_1_1_2_3_4_right_flip_up * axisx_1_1_2_3_4_right_flip_up;
-    const h_1_1_2_3_4_right_flip_up = Math.sqrt(t16 + t656);
-    const t657 = size_1_1 * h_1_1_2_3_4_right_flip_up <= t20;
+    const t666 = axisx_1_1_2_3_4_right_flip_up * axisx_1_1_2_3_4_right_flip_up;
+    const h_1_1_2_3_4_right_flip_up = Math.sqrt(t16 + t666);
+    const t667 = size_1_1 * h_1_1_2_3_4_right_flip_up <= t20;
     const qx_1_1_2_3_4_right_flip_up = w_x * c_1_1_2_3_4_right_flip_up + w_y *
         s_1_1_2_3_4_right_flip_up;
-    const t658 = 1.0 / h_1_1_2_3_4_right_flip_up;
-    const t659 = T33 * t658;
-    const x_1_1_2_3_4_right_flip_up = t657 ? qx_1_1_2_3_4_right_flip_up :
-        qx_1_1_2_3_4_right_flip_up + d5 * t659;
+    const t668 = 1.0 / h_1_1_2_3_4_right_flip_up;
+    const t669 = T33 * t668;
+    const x_1_1_2_3_4_right_flip_up = t667 ? qx_1_1_2_3_4_right_flip_up :
+        qx_1_1_2_3_4_right_flip_up + d5 * t669;
     const dqx_1_1_2_3_4_right_flip_up = w_y * c_1_1_2_3_4_right_flip_up - w_x *
         s_1_1_2_3_4_right_flip_up;
-    const us_1_1_2_3_4_right_flip_up = axisx_1_1_2_3_4_right_flip_up * t658;
-    const t660 = T13 * s_1_1_2_3_4_right_flip_up - T23 * c_1_1_2_3_4_right_flip_up;
-    const t661 = h_1_1_2_3_4_right_flip_up * h_1_1_2_3_4_right_flip_up;
-    const rate_1_1_2_3_4_right_flip_up = d5 * (T33 * t660) / t661;
-    const t662 = us_1_1_2_3_4_right_flip_up * rate_1_1_2_3_4_right_flip_up;
-    const dx_1_1_2_3_4_right_flip_up = t657 ? dqx_1_1_2_3_4_right_flip_up :
-        dqx_1_1_2_3_4_right_flip_up + t662;
-    const t663 = x_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up;
-    const t664 = t657 ? t26 : t26 + d5 * us_1_1_2_3_4_right_flip_up;
-    const dy_1_1_2_3_4_right_flip_up = t657 ? 0.0 : t659 * rate_1_1_2_3_4_right_flip_up;
-    const slope_1_1_2_3_4_right_flip_up = t663 - t664 * dy_1_1_2_3_4_right_flip_up;
-    const t665 = slope_1_1_2_3_4_right_flip_up * slope_1_1_2_3_4_right_flip_up;
-    const t666 = x_1_1_2_3_4_right_flip_up * x_1_1_2_3_4_right_flip_up;
-    const square_1_1_2_3_4_right_flip_up = t666 + t664 * t664;
-    const nearest_1_1_2_3_4_right_flip_up = t657 ? t30 : fold_1_1;
+    const us_1_1_2_3_4_right_flip_up = axisx_1_1_2_3_4_right_flip_up * t668;
+    const t670 = T13 * s_1_1_2_3_4_right_flip_up - T23 * c_1_1_2_3_4_right_flip_up;
+    const t671 = h_1_1_2_3_4_right_flip_up * h_1_1_2_3_4_right_flip_up;
+    const rate_1_1_2_3_4_right_flip_up = d5 * (T33 * t670) / t671;
+    const t672 = us_1_1_2_3_4_right_flip_up * rate_1_1_2_3_4_right_flip_up;
+    const dx_1_1_2_3_4_right_flip_up = t667 ? dqx_1_1_2_3_4_right_flip_up :
+        dqx_1_1_2_3_4_right_flip_up + t672;
+    const t673 = x_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up;
+    const t674 = t667 ? t26 : t26 + d5 * us_1_1_2_3_4_right_flip_up;
+    const dy_1_1_2_3_4_right_flip_up = t667 ? 0.0 : t669 * rate_1_1_2_3_4_right_flip_up;
+    const slope_1_1_2_3_4_right_flip_up = t673 - t674 * dy_1_1_2_3_4_right_flip_up;
+    const t675 = slope_1_1_2_3_4_right_flip_up * slope_1_1_2_3_4_right_flip_up;
+    const t676 = x_1_1_2_3_4_right_flip_up * x_1_1_2_3_4_right_flip_up;
+    const square_1_1_2_3_4_right_flip_up = t676 + t674 * t674;
+    const nearest_1_1_2_3_4_right_flip_up = t667 ? t30 : fold_1_1;
     const low_1_1_2_3_4_right_flip_up = nearest_1_1_2_3_4_right_flip_up *
         nearest_1_1_2_3_4_right_flip_up;
-    const farthest_1_1_2_3_4_right_flip_up = t657 ? t5 : full_1_1;
+    const farthest_1_1_2_3_4_right_flip_up = t667 ? t5 : full_1_1;
     const high_1_1_2_3_4_right_flip_up = farthest_1_1_2_3_4_right_flip_up *
         farthest_1_1_2_3_4_right_flip_up;
-    const t667 = Math.min(high_1_1_2_3_4_right_flip_up, square_1_1_2_3_4_right_flip_up);
+    const t677 = Math.min(high_1_1_2_3_4_right_flip_up, square_1_1_2_3_4_right_flip_up);
     const miss_1_1_2_3_4_right_flip_up = square_1_1_2_3_4_right_flip_up -
-        Math.max(low_1_1_2_3_4_right_flip_up, t667);
-    const t668 = dx_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up;
-    const t669 = dy_1_1_2_3_4_right_flip_up * dy_1_1_2_3_4_right_flip_up;
-    const bend_1_1_2_3_4_right_flip_up = t668 + t669;
-    const t670 = miss_1_1_2_3_4_right_flip_up * bend_1_1_2_3_4_right_flip_up;
-    const inner_1_1_2_3_4_right_flip_up = t665 - t670;
-    const t671 = slope_1_1_2_3_4_right_flip_up / (2.0 * bend_1_1_2_3_4_right_flip_up);
-    const t672 = Math.sqrt(Math.max(0.0, inner_1_1_2_3_4_right_flip_up));
-    const t673 = _runtime.sign(slope_1_1_2_3_4_right_flip_up) * t672;
-    const t674 = miss_1_1_2_3_4_right_flip_up / (2.0 * (slope_1_1_2_3_4_right_flip_up + t673));
-    const t675 = inner_1_1_2_3_4_right_flip_up < 0.0 ? t671 : t674;
-    const t676 = t675 * t675;
-    const t677 = 1.0 / (1.0 + t676);
-    const t678 = 2.0 * t675 * t677;
-    const by_c_1_1_2_3_4_right_flip_up = t677 * (1.0 - t676);
-    const t679 = d4 * (t678 * t678) / (1.0 + Math.abs(by_c_1_1_2_3_4_right_flip_up));
-    const t680 = (t679 + root1 * Math.abs(t678) <= whole_1_1) && (0.0 <
+        Math.max(low_1_1_2_3_4_right_flip_up, t677);
+    const t678 = dx_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up;
+    const t679 = dy_1_1_2_3_4_right_flip_up * dy_1_1_2_3_4_right_flip_up;
+    const bend_1_1_2_3_4_right_flip_up = t678 + t679;
+    const t680 = miss_1_1_2_3_4_right_flip_up * bend_1_1_2_3_4_right_flip_up;
+    const inner_1_1_2_3_4_right_flip_up = t675 - t680;
+    const t681 = slope_1_1_2_3_4_right_flip_up / (2.0 * bend_1_1_2_3_4_right_flip_up);
+    const t682 = Math.sqrt(Math.max(0.0, inner_1_1_2_3_4_right_flip_up));
+    const t683 = (slope_1_1_2_3_4_right_flip_up < 0 ? -1 : 1) * t682;
+    const t684 = miss_1_1_2_3_4_right_flip_up / (2.0 * (slope_1_1_2_3_4_right_flip_up + t683));
+    const t685 = inner_1_1_2_3_4_right_flip_up < 0.0 ? t681 : t684;
+    const t686 = t685 * t685;
+    const t687 = 1.0 / (1.0 + t686);
+    const t688 = 2.0 * t685 * t687;
+    const by_c_1_1_2_3_4_right_flip_up = t687 * (1.0 - t686);
+    const t689 = d4 * (t688 * t688) / (1.0 + Math.abs(by_c_1_1_2_3_4_right_flip_up));
+    const t690 = (t689 + root1 * Math.abs(t688) <= whole_1_1) && (0.0 <
         by_c_1_1_2_3_4_right_flip_up);
-    const sine_1_1_2_3_4_right_flip_up = t680 ? -t678 : 0.0;
-    const t681 = c_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up;
-    const cosine_1_1_2_3_4_right_flip_up = t680 ? by_c_1_1_2_3_4_right_flip_up : 1.0;
-    const t682 = s_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up;
-    const s1_right_flip_up = tangent1 ? t681 + t682 : -t357;
-    const t683 = c_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up;
-    const t684 = s_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up;
-    const c1_right_flip_up = tangent1 ? t683 - t684 : c_1_1_right_noflip_up;
-    const t685 = Math.atan2(s1_right_flip_up, c1_right_flip_up);
+    const sine_1_1_2_3_4_right_flip_up = t690 ? -t688 : 0.0;
+    const t691 = c_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up;
+    const cosine_1_1_2_3_4_right_flip_up = t690 ? by_c_1_1_2_3_4_right_flip_up : 1.0;
+    const t692 = s_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up;
+    const s1_right_flip_up = tangent1 ? t691 + t692 : -t365;
+    const t693 = c_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up;
+    const t694 = s_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up;
+    const c1_right_flip_up = tangent1 ? t693 - t694 : c_1_1_right_noflip_up;
+    const t695 = Math.atan2(s1_right_flip_up, c1_right_flip_up);
     const across_right_flip_up = w_x * c1_right_flip_up + w_y * s1_right_flip_up;
     const M_13_right_flip_up = T13 * c1_right_flip_up + T23 * s1_right_flip_up;
-    const t686 = t16 + M_13_right_flip_up * M_13_right_flip_up;
-    const h_wrist_right_flip_up = Math.sqrt(t686);
-    const aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t124;
-    const t687 = t45 + across_right_flip_up * across_right_flip_up;
-    const r_hub_right_flip_up = Math.sqrt(t687);
+    const t696 = t16 + M_13_right_flip_up * M_13_right_flip_up;
+    const h_wrist_right_flip_up = Math.sqrt(t696);
+    const aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t126;
+    const t697 = t45 + across_right_flip_up * across_right_flip_up;
+    const r_hub_right_flip_up = Math.sqrt(t697);
     const hub_mid_right_flip_up = r_hub_right_flip_up <= t6;
-    const t688 = d5 + r_hub_right_flip_up;
-    const t689 = d5 - r_hub_right_flip_up;
-    const mid_reach_right_flip_up = Math.min(full_1_1, t688) * 0.5 + Math.max(fold_1_1,
-        Math.abs(t689)) * 0.5;
-    const t690 = (t688 - mid_reach_right_flip_up) * (t688 + mid_reach_right_flip_up);
-    const k_mid_right_flip_up = Math.max(0.0, t690);
-    const t691 = (t689 - mid_reach_right_flip_up) * (t689 + mid_reach_right_flip_up);
-    const d_mid_right_flip_up = Math.max(0.0, -t691);
+    const t698 = d5 + r_hub_right_flip_up;
+    const t699 = d5 - r_hub_right_flip_up;
+    const mid_reach_right_flip_up = Math.min(full_1_1, t698) * 0.5 + Math.max(fold_1_1,
+        Math.abs(t699)) * 0.5;
+    const t700 = (t698 - mid_reach_right_flip_up) * (t698 + mid_reach_right_flip_up);
+    const k_mid_right_flip_up = Math.max(0.0, t700);
+    const t701 = (t699 - mid_reach_right_flip_up) * (t699 + mid_reach_right_flip_up);
+    const d_mid_right_flip_up = Math.max(0.0, -t701);
     const n_mid_right_flip_up = k_mid_right_flip_up + d_mid_right_flip_up;
-    const any_mid_right_flip_up = n_mid_right_flip_up <= t127;
-    const t692 = 1.0 / n_mid_right_flip_up;
-    const t693 = (k_mid_right_flip_up - d_mid_right_flip_up) * t692;
-    const uc_mid_right_flip_up = any_mid_right_flip_up ? 1.0 : t693;
-    const t694 = Math.sqrt(k_mid_right_flip_up * d_mid_right_flip_up);
-    const us_mid_right_flip_up = any_mid_right_flip_up ? 0.0 : t692 * (2.0 * t694);
-    const t695 = across_right_flip_up * uc_mid_right_flip_up + t26 * us_mid_right_flip_up;
-    const t696 = 1.0 / r_hub_right_flip_up;
-    const close_right_flip_up = root1 * h_wrist_right_flip_up - t131 <= t6;
-    const t697 = 1.0 / h_wrist_right_flip_up;
-    const t698 = aligned_wrist_right_flip_up ? 0.0 : T33 * t697;
-    const t699 = across_right_flip_up + d5 * t698;
+    const any_mid_right_flip_up = n_mid_right_flip_up <= t129;
+    const t702 = 1.0 / n_mid_right_flip_up;
+    const t703 = (k_mid_right_flip_up - d_mid_right_flip_up) * t702;
+    const uc_mid_right_flip_up = any_mid_right_flip_up ? 1.0 : t703;
+    const t704 = Math.sqrt(k_mid_right_flip_up * d_mid_right_flip_up);
+    const us_mid_right_flip_up = any_mid_right_flip_up ? 0.0 : t702 * (2.0 * t704);
+    const t705 = across_right_flip_up * uc_mid_right_flip_up + t26 * us_mid_right_flip_up;
+    const t706 = 1.0 / r_hub_right_flip_up;
+    const close_right_flip_up = root1 * h_wrist_right_flip_up - t133 <= t6;
+    const t707 = 1.0 / h_wrist_right_flip_up;
+    const t708 = aligned_wrist_right_flip_up ? 0.0 : T33 * t707;
+    const t709 = across_right_flip_up + d5 * t708;
     const c_phi_right_flip_up = aligned_wrist_right_flip_up ? 1.0 : -(M_13_right_flip_up *
-        t697);
-    const t700 = t26 - d5 * c_phi_right_flip_up;
-    const here_right_flip_up = Math.sqrt(t699 * t699 + t700 * t700);
+        t707);
+    const t710 = t26 - d5 * c_phi_right_flip_up;
+    const here_right_flip_up = Math.sqrt(t709 * t709 + t710 * t710);
     const in_reach_right_flip_up = Math.min(full_1_1, Math.max(here_right_flip_up, fold_1_1));
-    const t701 = (t688 - in_reach_right_flip_up) * (t688 + in_reach_right_flip_up);
-    const k_near_right_flip_up = Math.max(0.0, t701);
-    const t702 = (t689 - in_reach_right_flip_up) * (t689 + in_reach_right_flip_up);
-    const d_near_right_flip_up = Math.max(0.0, -t702);
+    const t711 = (t698 - in_reach_right_flip_up) * (t698 + in_reach_right_flip_up);
+    const k_near_right_flip_up = Math.max(0.0, t711);
+    const t712 = (t699 - in_reach_right_flip_up) * (t699 + in_reach_right_flip_up);
+    const d_near_right_flip_up = Math.max(0.0, -t712);
     const n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up;
-    const any_near_right_flip_up = n_near_right_flip_up <= t127;
-    const t703 = 1.0 / n_near_right_flip_up;
-    const t704 = (k_near_right_flip_up - d_near_right_flip_up) * t703;
-    const uc_near_right_flip_up = any_near_right_flip_up ? 1.0 : t704;
-    const t705 = across_right_flip_up * c_phi_right_flip_up + t26 * t698;
-    const t706 = Math.abs(t705);
-    const t707 = Math.sqrt(k_near_right_flip_up * d_near_right_flip_up);
-    const t708 = 2.0 * (t706 <= t6 ? 1.0 : -(t705 / t706)) * t707;
-    const us_near_right_flip_up = any_near_right_flip_up ? 0.0 : t703 * t708;
-    const t709 = across_right_flip_up * uc_near_right_flip_up + t26 * us_near_right_flip_up;
-    const c_near_right_flip_up = hub_mid_right_flip_up ? 1.0 : t696 * t709;
-    const t710 = t698 + c_near_right_flip_up;
-    const t711 = across_right_flip_up * us_near_right_flip_up - t26 * uc_near_right_flip_up;
-    const s_near_right_flip_up = hub_mid_right_flip_up ? 0.0 : t696 * t711;
-    const t712 = c_phi_right_flip_up + s_near_right_flip_up;
-    const t713 = h_wrist_right_flip_up * Math.sqrt(t710 * t710 + t712 * t712);
-    const t714 = Math.abs(here_right_flip_up - in_reach_right_flip_up);
-    const t715 = (t713 - 2.2737367544323206e-13 <= t142) && !(t714 <= t6);
-    const t716 = close_right_flip_up ? (t715 ? c_near_right_flip_up : -t698) : -t698;
-    const sphi_right_flip_up = aligned_wrist_right_flip_up ? (hub_mid_right_flip_up ? 1.0 : t695
-        * t696) : t716;
-    const t717 = across_right_flip_up - d5 * sphi_right_flip_up;
-    const t718 = across_right_flip_up * us_mid_right_flip_up - t26 * uc_mid_right_flip_up;
-    const c_kept_right_flip_up = t715 ? -s_near_right_flip_up : c_phi_right_flip_up;
-    const t719 = close_right_flip_up ? c_kept_right_flip_up : c_phi_right_flip_up;
+    const any_near_right_flip_up = n_near_right_flip_up <= t129;
+    const t713 = 1.0 / n_near_right_flip_up;
+    const t714 = (k_near_right_flip_up - d_near_right_flip_up) * t713;
+    const uc_near_right_flip_up = any_near_right_flip_up ? 1.0 : t714;
+    const t715 = across_right_flip_up * c_phi_right_flip_up + t26 * t708;
+    const t716 = Math.abs(t715);
+    const t717 = Math.sqrt(k_near_right_flip_up * d_near_right_flip_up);
+    const t718 = 2.0 * (t716 <= t6 ? 1.0 : -(t715 / t716)) * t717;
+    const us_near_right_flip_up = any_near_right_flip_up ? 0.0 : t713 * t718;
+    const t719 = across_right_flip_up * uc_near_right_flip_up + t26 * us_near_right_flip_up;
+    const c_near_right_flip_up = hub_mid_right_flip_up ? 1.0 : t706 * t719;
+    const t720 = t708 + c_near_right_flip_up;
+    const t721 = across_right_flip_up * us_near_right_flip_up - t26 * uc_near_right_flip_up;
+    const s_near_right_flip_up = hub_mid_right_flip_up ? 0.0 : t706 * t721;
+    const t722 = c_phi_right_flip_up + s_near_right_flip_up;
+    const t723 = h_wrist_right_flip_up * Math.sqrt(t720 * t720 + t722 * t722);
+    const t724 = Math.abs(here_right_flip_up - in_reach_right_flip_up);
+    const t725 = (t723 - 2.2737367544323206e-13 <= t144) && !(t724 <= t6);
+    const t726 = close_right_flip_up ? (t725 ? c_near_right_flip_up : -t708) : -t708;
+    const sphi_right_flip_up = aligned_wrist_right_flip_up ? (hub_mid_right_flip_up ? 1.0 : t705
+        * t706) : t726;
+    const t727 = across_right_flip_up - d5 * sphi_right_flip_up;
+    const t728 = across_right_flip_up * us_mid_right_flip_up - t26 * uc_mid_right_flip_up;
+    const c_kept_right_flip_up = t725 ? -s_near_right_flip_up : c_phi_right_flip_up;
+    const t729 = close_right_flip_up ? c_kept_right_flip_up : c_phi_right_flip_up;
     const cphi_right_flip_up = aligned_wrist_right_flip_up ? -(hub_mid_right_flip_up ? 0.0 :
-        t696 * t718) : t719;
+        t706 * t728) : t729;
     const ey_right_flip_up = t26 - d5 * cphi_right_flip_up;
-    const t720 = t717 * t717 + ey_right_flip_up * ey_right_flip_up;
-    const r_elbow_right_flip_up = Math.sqrt(t720);
-    const t721 = full_1_1 - r_elbow_right_flip_up;
-    const t722 = t29 + r_elbow_right_flip_up;
-    const t723 = r_elbow_right_flip_up - t29;
-    const t724 = t123 && (t122 <= t721) && (t122 <= t722) && (t122 <= t723);
-    const unreachable_4 = !t724;
-    const t725 = _runtime.poison(invalid || unreachable_4);
-    const t726 = _runtime.wrapCut(t685) + t725;
+    const t730 = t727 * t727 + ey_right_flip_up * ey_right_flip_up;
+    const r_elbow_right_flip_up = Math.sqrt(t730);
+    const t731 = full_1_1 - r_elbow_right_flip_up;
+    const t732 = t29 + r_elbow_right_flip_up;
+    const t733 = r_elbow_right_flip_up - t29;
+    const t734 = t125 && (t124 <= t731) && (t124 <= t732) && (t124 <= t733);
+    const unreachable_4 = !t734;
+    const t735 = invalid || unreachable_4 ? NaN : 0;
+    const t736 = (t695 <= -Math.PI ? Math.PI : t695) + t735;
     const folded_elbow_right_flip_up = r_elbow_right_flip_up <= t6;
-    const A_elbow_right_flip_up = Math.max(t721, 0.0);
-    const C_elbow_right_flip_up = Math.max(t723, 0.0);
-    const t727 = A_elbow_right_flip_up * C_elbow_right_flip_up;
+    const A_elbow_right_flip_up = Math.max(t731, 0.0);
+    const C_elbow_right_flip_up = Math.max(t733, 0.0);
+    const t737 = A_elbow_right_flip_up * C_elbow_right_flip_up;
     const S_elbow_right_flip_up = full_1_1 + r_elbow_right_flip_up;
-    const B_elbow_right_flip_up = Math.max(t722, 0.0);
-    const t728 = S_elbow_right_flip_up * B_elbow_right_flip_up;
-    const t729 = 1.0 / (t727 + t728);
-    const c_base_elbow_right_flip_up = no_link_elbow ? 1.0 : -((t727 - t728) * t729);
-    const t730 = ey_right_flip_up * c_base_elbow_right_flip_up;
-    const t731 = 1.0 / r_elbow_right_flip_up;
-    const t732 = t730 * t731;
-    const area_elbow_right_flip_up = 2.0 * Math.sqrt(t727 * t728);
-    const s_base_elbow_right_flip_up = no_link_elbow ? 0.0 : t729 * area_elbow_right_flip_up;
-    const t733 = t731 * (t717 * s_base_elbow_right_flip_up);
-    const s2_right_flip_up = folded_elbow_right_flip_up ? 0.0 : t732 + t733;
-    const t734 = ey_right_flip_up * s_base_elbow_right_flip_up;
-    const t735 = t731 * t734;
-    const t736 = t731 * (t717 * c_base_elbow_right_flip_up);
-    const c2_right_flip_up = folded_elbow_right_flip_up ? 1.0 : t735 - t736;
-    const t737 = Math.atan2(s2_right_flip_up, c2_right_flip_up);
-    const t738 = A_elbow_right_flip_up * S_elbow_right_flip_up;
-    const t739 = C_elbow_right_flip_up * B_elbow_right_flip_up;
-    const t740 = 1.0 / (t738 + t739);
-    const s3_right_flip_up = no_link_elbow ? 0.0 : area_elbow_right_flip_up * t740;
-    const c3_right_flip_up = no_link_elbow ? 1.0 : -(t740 * (t738 - t739));
-    const t741 = Math.atan2(s3_right_flip_up, c3_right_flip_up);
-    const t742 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up;
-    const t743 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up;
-    const t744 = c3_right_flip_up * t742 - s3_right_flip_up * t743;
-    const t745 = c3_right_flip_up * t743 + s3_right_flip_up * t742;
-    const t746 = _runtime.wrapCut(Math.atan2(t744, t745)) + t725;
-    const t747 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up;
+    const B_elbow_right_flip_up = Math.max(t732, 0.0);
+    const t738 = S_elbow_right_flip_up * B_elbow_right_flip_up;
+    const t739 = 1.0 / (t737 + t738);
+    const c_base_elbow_right_flip_up = no_link_elbow ? 1.0 : -((t737 - t738) * t739);
+    const t740 = ey_right_flip_up * c_base_elbow_right_flip_up;
+    const t741 = 1.0 / r_elbow_right_flip_up;
+    const t742 = t740 * t741;
+    const area_elbow_right_flip_up = 2.0 * Math.sqrt(t737 * t738);
+    const s_base_elbow_right_flip_up = no_link_elbow ? 0.0 : t739 * area_elbow_right_flip_up;
+    const t743 = t741 * (t727 * s_base_elbow_right_flip_up);
+    const s2_right_flip_up = folded_elbow_right_flip_up ? 0.0 : t742 + t743;
+    const t744 = ey_right_flip_up * s_base_elbow_right_flip_up;
+    const t745 = t741 * t744;
+    const t746 = t741 * (t727 * c_base_elbow_right_flip_up);
+    const c2_right_flip_up = folded_elbow_right_flip_up ? 1.0 : t745 - t746;
+    const t747 = Math.atan2(s2_right_flip_up, c2_right_flip_up);
+    const t748 = A_elbow_right_flip_up * S_elbow_right_flip_up;
+    const t749 = C_elbow_right_flip_up * B_elbow_right_flip_up;
+    const t750 = 1.0 / (t748 + t749);
+    const s3_right_flip_up = no_link_elbow ? 0.0 : area_elbow_right_flip_up * t750;
+    const c3_right_flip_up = no_link_elbow ? 1.0 : -(t750 * (t748 - t749));
+    const t751 = Math.atan2(s3_right_flip_up, c3_right_flip_up);
+    const t752 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up;
+    const t753 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up;
+    const t754 = c3_right_flip_up * t752 - s3_right_flip_up * t753;
+    const t755 = c3_right_flip_up * t753 + s3_right_flip_up * t752;
+    const t756 = Math.atan2(t754, t755);
+    const t757 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up;
     const M_33_right_flip_up = T13 * s1_right_flip_up - T23 * c1_right_flip_up;
-    const t748 = _runtime.wrapCut(-Math.atan2(t747, M_33_right_flip_up));
-    const t749 = t748 + t725;
+    const t758 = -Math.atan2(t757, M_33_right_flip_up);
+    const t759 = (t758 <= -Math.PI ? Math.PI : t758) + t735;
     const M_11_right_flip_up = T11 * c1_right_flip_up + T21 * s1_right_flip_up;
-    const t750 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up;
+    const t760 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up;
     const M_12_right_flip_up = T12 * c1_right_flip_up + T22 * s1_right_flip_up;
-    const t751 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up;
-    const t752 = _runtime.wrapCut(-Math.atan2(t750, t751)) + t725;
-    const s2_right_flip_down = folded_elbow_right_flip_up ? 0.0 : t732 - t733;
-    const c2_right_flip_down = folded_elbow_right_flip_up ? 1.0 : -(t736 + t735);
-    const t753 = Math.atan2(s2_right_flip_down, c2_right_flip_down);
-    const t754 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up *
+    const t761 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up;
+    const t762 = -Math.atan2(t760, t761);
+    const t763 = (t762 <= -Math.PI ? Math.PI : t762) + t735;
+    const s2_right_flip_down = folded_elbow_right_flip_up ? 0.0 : t742 - t743;
+    const c2_right_flip_down = folded_elbow_right_flip_up ? 1.0 : -(t746 + t745);
+    const t764 = Math.atan2(s2_right_flip_down, c2_right_flip_down);
+    const t765 = -t751;
+    const t766 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up *
         s2_right_flip_down;
-    const t755 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up *
+    const t767 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up *
         s2_right_flip_down;
-    const t756 = c3_right_flip_up * t754 + s3_right_flip_up * t755;
-    const t757 = c3_right_flip_up * t755 - s3_right_flip_up * t754;
-    const t758 = _runtime.wrapCut(Math.atan2(t756, t757)) + t725;
-    const t759 = free1 || aligned_wrist || no_link_elbow || folded_elbow;
-    const t760 = _runtime.status(invalid, unreachable, t759);
-    const t761 = free1 || aligned_wrist_left_flip_up || no_link_elbow;
-    const t762 = _runtime.status(invalid, unreachable_2, t761 || folded_elbow_left_flip_up);
-    const t763 = free1 || aligned_wrist_right_noflip_up || no_link_elbow;
-    const t764 = _runtime.status(invalid, unreachable_3, t763 || folded_elbow_right_noflip_up);
-    const t765 = free1 || aligned_wrist_right_flip_up || no_link_elbow;
-    const t766 = _runtime.status(invalid, unreachable_4, t765 || folded_elbow_right_flip_up);
-    return [
-        t150,
-        _runtime.wrapCut(Math.atan2(s2, c2)) + t149,
-        _runtime.wrapCut(t162) + t149,
-        _runtime.wrapCut(t165) + t149,
-        t167,
-        t169,
-        t150,
-        _runtime.wrapCut(t170) + t149,
-        _runtime.wrapCut(-t162) + t149,
-        _runtime.wrapCut(t173) + t149,
-        t167,
-        t169,
-        t326,
-        t335 + t325,
-        _runtime.wrapCut(t339) + t325,
-        t344,
-        t347,
-        t350,
-        t326,
-        _runtime.wrapCut(t351) + t325,
-        _runtime.wrapCut(-t339) + t325,
-        t356,
-        t347,
-        t350,
-        t536,
-        _runtime.wrapCut(t547) + t535,
-        _runtime.wrapCut(t551) + t535,
-        t556,
-        t559,
-        t562,
-        t536,
-        _runtime.wrapCut(t563) + t535,
-        _runtime.wrapCut(-t551) + t535,
-        t568,
-        t559,
-        t562,
-        t726,
-        _runtime.wrapCut(t737) + t725,
-        _runtime.wrapCut(t741) + t725,
-        t746,
-        t749,
-        t752,
-        t726,
-        _runtime.wrapCut(t753) + t725,
-        _runtime.wrapCut(-t741) + t725,
-        t758,
-        t749,
-        t752,
-        t760,
-        t760,
-        t762,
-        t762,
-        t764,
-        t764,
-        t766,
-        t766,
-    ];
+    const t768 = c3_right_flip_up * t766 + s3_right_flip_up * t767;
+    const t769 = c3_right_flip_up * t767 - s3_right_flip_up * t766;
+    const t770 = Math.atan2(t768, t769);
+    const t771 = free1 || aligned_wrist || no_link_elbow || folded_elbow;
+    const t772 = invalid ? 3 : unreachable ? 1 : t771 ? 2 : 0;
+    const t773 = free1 || aligned_wrist_left_flip_up || no_link_elbow;
+    const t774 = invalid ? 3 : unreachable_2 ? 1 : t773 || folded_elbow_left_flip_up ? 2 : 0;
+    const t775 = free1 || aligned_wrist_right_noflip_up || no_link_elbow;
+    const t776 = invalid ? 3 : unreachable_3 ? 1 : t775 || folded_elbow_right_noflip_up ? 2 : 0;
+    const t777 = free1 || aligned_wrist_right_flip_up || no_link_elbow;
+    const t778 = invalid ? 3 : unreachable_4 ? 1 : t777 || folded_elbow_right_flip_up ? 2 : 0;
+    o[0] = t152;
+    o[1] = (t161 <= -Math.PI ? Math.PI : t161) + t151;
+    o[2] = (t165 <= -Math.PI ? Math.PI : t165) + t151;
+    o[3] = (t168 <= -Math.PI ? Math.PI : t168) + t151;
+    o[4] = t171;
+    o[5] = t174;
+    o[6] = t152;
+    o[7] = (t175 <= -Math.PI ? Math.PI : t175) + t151;
+    o[8] = (t176 <= -Math.PI ? Math.PI : t176) + t151;
+    o[9] = (t179 <= -Math.PI ? Math.PI : t179) + t151;
+    o[10] = t171;
+    o[11] = t174;
+    o[12] = t332;
+    o[13] = (t341 <= -Math.PI ? Math.PI : t341) + t331;
+    o[14] = (t345 <= -Math.PI ? Math.PI : t345) + t331;
+    o[15] = (t350 <= -Math.PI ? Math.PI : t350) + t331;
+    o[16] = t353;
+    o[17] = t357;
+    o[18] = t332;
+    o[19] = (t358 <= -Math.PI ? Math.PI : t358) + t331;
+    o[20] = (t359 <= -Math.PI ? Math.PI : t359) + t331;
+    o[21] = (t364 <= -Math.PI ? Math.PI : t364) + t331;
+    o[22] = t353;
+    o[23] = t357;
+    o[24] = t544;
+    o[25] = (t555 <= -Math.PI ? Math.PI : t555) + t543;
+    o[26] = (t559 <= -Math.PI ? Math.PI : t559) + t543;
+    o[27] = (t564 <= -Math.PI ? Math.PI : t564) + t543;
+    o[28] = t567;
+    o[29] = t571;
+    o[30] = t544;
+    o[31] = (t572 <= -Math.PI ? Math.PI : t572) + t543;
+    o[32] = (t573 <= -Math.PI ? Math.PI : t573) + t543;
+    o[33] = (t578 <= -Math.PI ? Math.PI : t578) + t543;
+    o[34] = t567;
+    o[35] = t571;
+    o[36] = t736;
+    o[37] = (t747 <= -Math.PI ? Math.PI : t747) + t735;
+    o[38] = (t751 <= -Math.PI ? Math.PI : t751) + t735;
+    o[39] = (t756 <= -Math.PI ? Math.PI : t756) + t735;
+    o[40] = t759;
+    o[41] = t763;
+    o[42] = t736;
+    o[43] = (t764 <= -Math.PI ? Math.PI : t764) + t735;
+    o[44] = (t765 <= -Math.PI ? Math.PI : t765) + t735;
+    o[45] = (t770 <= -Math.PI ? Math.PI : t770) + t735;
+    o[46] = t759;
+    o[47] = t763;
+    o[48] = t772;
+    o[49] = t772;
+    o[50] = t774;
+    o[51] = t774;
+    o[52] = t776;
+    o[53] = t776;
+    o[54] = t778;
+    o[55] = t778;
 }
 
-/**
- * @param {readonly number[]} v
- * @returns {number[]}
- */
-function _ik_common(v) {
+/** @type {_runtime.Compute} */
+function _ik_common(v, o) {
     const T11 = v[0];
     const T12 = v[1];
     const T13 = v[2];
@@ -2406,339 +2366,349 @@ function _ik_common(v) {
     const t9 = w_y * t3 * t4;
     const t10 = t4 * (w_x * t6);
     const c_1_1 = t9 - t10;
-    const t11 = _runtime.wrapCut(Math.atan2(-t8, c_1_1));
-    const t12 = Number.isFinite(d1) && Number.isFinite(L2) && Number.isFinite(L3) &&
+    const t11 = Math.atan2(-t8, c_1_1);
+    const t12 = t11 <= -Math.PI ? Math.PI : t11;
+    const t13 = Number.isFinite(d1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(d4) && Number.isFinite(d5) && Number.isFinite(d6);
-    const t13 = t12 && (0.0 <= d1) && (0.0 <= L2) && (0.0 <= L3);
-    const t14 = t13 && (0.0 <= d4) && (0.0 <= d5) && (0.0 <= d6);
-    const t15 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
-    const t16 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
-    const t17 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
-    const t18 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
-    const t19 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
-    const t20 = t14 && t15 && t16 && t17 && t18 && (t19 <= _runtime.ROTATION);
-    const t21 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
-    const t22 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
-    const t23 = t20 && (t21 <= _runtime.ROTATION) && t22 && (Math.abs(T41) <=
+    const t14 = t13 && (0.0 <= d1) && (0.0 <= L2) && (0.0 <= L3);
+    const t15 = t14 && (0.0 <= d4) && (0.0 <= d5) && (0.0 <= d6);
+    const t16 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
+    const t17 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
+    const t18 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
+    const t19 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
+    const t20 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
+    const t21 = t15 && t16 && t17 && t18 && t19 && (t20 <= _runtime.ROTATION);
+    const t22 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
+    const t23 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
+    const t24 = t21 && (t22 <= _runtime.ROTATION) && t23 && (Math.abs(T41) <=
         _runtime.ROTATION);
-    const t24 = t23 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
+    const t25 = t24 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
         _runtime.ROTATION);
-    const t25 = t24 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
-    const invalid = !t25;
-    const t26 = L2 * 0.5 + L3 * 0.5 + d1 * 0.5 + d4 * 0.5 + d5 * 0.5;
-    const t27 = -(_runtime.FEASIBILITY * (t26 + d6 * 0.5));
-    const t28 = (t27 <= t1) && (t27 <= t2);
+    const t26 = t25 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
+    const invalid = !t26;
+    const t27 = L2 * 0.5 + L3 * 0.5 + d1 * 0.5 + d4 * 0.5 + d5 * 0.5;
+    const t28 = -(_runtime.FEASIBILITY * (t27 + d6 * 0.5));
+    const t29 = (t28 <= t1) && (t28 <= t2);
     const full_1_1 = L2 + L3;
-    const t29 = w_x * c_1_1 - w_y * t8;
-    const t30 = T33 * T33;
-    const t31 = T13 * c_1_1 - T23 * t8;
-    const h_wrist = Math.sqrt(t30 + t31 * t31);
-    const t32 = 1.0 / h_wrist;
-    const s_phi = T33 * t32;
-    const t33 = d5 * s_phi;
-    const t34 = t29 - t33;
-    const t35 = d1 - (T34 - T33 * d6);
-    const t36 = t31 * t32;
-    const t37 = d5 * t36;
-    const ey = t35 - t37;
-    const r_elbow = Math.sqrt(t34 * t34 + ey * ey);
-    const t38 = full_1_1 - r_elbow;
-    const t39 = L2 - L3;
-    const t40 = t39 + r_elbow;
-    const t41 = r_elbow - t39;
-    const t42 = t28 && (t27 <= t38) && (t27 <= t40) && (t27 <= t41);
-    const unreachable = !t42;
-    const t43 = _runtime.poison(invalid || unreachable);
-    const t44 = t11 + t43;
-    const t45 = 1.0 / r_elbow;
-    const A_elbow = Math.max(t38, 0.0);
-    const C_elbow = Math.max(t41, 0.0);
-    const t46 = A_elbow * C_elbow;
+    const t30 = w_x * c_1_1 - w_y * t8;
+    const t31 = T33 * T33;
+    const t32 = T13 * c_1_1 - T23 * t8;
+    const h_wrist = Math.sqrt(t31 + t32 * t32);
+    const t33 = 1.0 / h_wrist;
+    const s_phi = T33 * t33;
+    const t34 = d5 * s_phi;
+    const t35 = t30 - t34;
+    const t36 = d1 - (T34 - T33 * d6);
+    const t37 = t32 * t33;
+    const t38 = d5 * t37;
+    const ey = t36 - t38;
+    const r_elbow = Math.sqrt(t35 * t35 + ey * ey);
+    const t39 = full_1_1 - r_elbow;
+    const t40 = L2 - L3;
+    const t41 = t40 + r_elbow;
+    const t42 = r_elbow - t40;
+    const t43 = t29 && (t28 <= t39) && (t28 <= t41) && (t28 <= t42);
+    const unreachable = !t43;
+    const t44 = invalid || unreachable ? NaN : 0;
+    const t45 = t12 + t44;
+    const t46 = 1.0 / r_elbow;
+    const A_elbow = Math.max(t39, 0.0);
+    const C_elbow = Math.max(t42, 0.0);
+    const t47 = A_elbow * C_elbow;
     const S_elbow = full_1_1 + r_elbow;
-    const B_elbow = Math.max(t40, 0.0);
-    const t47 = S_elbow * B_elbow;
-    const t48 = 1.0 / (t46 + t47);
-    const t49 = (t46 - t47) * t48;
-    const t50 = t45 * (ey * t49);
-    const area_elbow = 2.0 * Math.sqrt(t46 * t47);
-    const s_base_elbow = t48 * area_elbow;
-    const t51 = t45 * (t34 * s_base_elbow);
-    const t52 = t50 - t51;
-    const t53 = t45 * (t34 * t49);
-    const t54 = t45 * (ey * s_base_elbow);
-    const c2 = t53 + t54;
-    const t55 = A_elbow * S_elbow;
-    const t56 = C_elbow * B_elbow;
-    const t57 = t55 - t56;
-    const t58 = Math.atan2(area_elbow, -t57);
-    const t59 = 1.0 / (t55 + t56);
-    const t60 = t57 * t59;
-    const t61 = s_phi * c2 + t36 * t52;
-    const s3 = area_elbow * t59;
-    const t62 = t36 * c2 - s_phi * t52;
-    const t63 = Math.atan2(-(t60 * t61 + s3 * t62), t61 * s3 - t60 * t62);
-    const t64 = t31 * t36 + T33 * s_phi;
+    const B_elbow = Math.max(t41, 0.0);
+    const t48 = S_elbow * B_elbow;
+    const t49 = 1.0 / (t47 + t48);
+    const t50 = (t47 - t48) * t49;
+    const t51 = t46 * (ey * t50);
+    const area_elbow = 2.0 * Math.sqrt(t47 * t48);
+    const s_base_elbow = t49 * area_elbow;
+    const t52 = t46 * (t35 * s_base_elbow);
+    const t53 = t51 - t52;
+    const t54 = t46 * (t35 * t50);
+    const t55 = t46 * (ey * s_base_elbow);
+    const c2 = t54 + t55;
+    const t56 = Math.atan2(-t53, c2);
+    const t57 = A_elbow * S_elbow;
+    const t58 = C_elbow * B_elbow;
+    const t59 = t57 - t58;
+    const t60 = Math.atan2(area_elbow, -t59);
+    const t61 = 1.0 / (t57 + t58);
+    const t62 = t59 * t61;
+    const t63 = s_phi * c2 + t37 * t53;
+    const s3 = area_elbow * t61;
+    const t64 = t37 * c2 - s_phi * t53;
+    const t65 = Math.atan2(-(t62 * t63 + s3 * t64), t63 * s3 - t62 * t64);
+    const t66 = t32 * t37 + T33 * s_phi;
     const M_33 = -(T13 * t8 + T23 * c_1_1);
-    const t65 = _runtime.wrapCut(-Math.atan2(t64, M_33)) + t43;
-    const t66 = s_phi * (T11 * c_1_1 - T21 * t8) - T31 * t36;
-    const t67 = s_phi * (T12 * c_1_1 - T22 * t8) - T32 * t36;
-    const t68 = _runtime.wrapCut(-Math.atan2(t66, -t67)) + t43;
-    const t69 = t50 + t51;
-    const c2_left_noflip_down = t53 - t54;
-    const t70 = _runtime.wrapCut(Math.atan2(-t69, c2_left_noflip_down));
-    const t71 = t36 * c2_left_noflip_down - s_phi * t69;
-    const t72 = s_phi * c2_left_noflip_down + t36 * t69;
-    const t73 = Math.atan2(s3 * t71 - t60 * t72, -(t60 * t71 + s3 * t72));
-    const t74 = t29 + t33;
-    const ey_left_flip_up = t35 + t37;
-    const t75 = t74 * t74 + ey_left_flip_up * ey_left_flip_up;
-    const r_elbow_left_flip_up = Math.sqrt(t75);
-    const t76 = full_1_1 - r_elbow_left_flip_up;
-    const t77 = t39 + r_elbow_left_flip_up;
-    const t78 = r_elbow_left_flip_up - t39;
-    const t79 = t28 && (t27 <= t76) && (t27 <= t77) && (t27 <= t78);
-    const unreachable_2 = !t79;
-    const t80 = _runtime.poison(invalid || unreachable_2);
-    const t81 = t11 + t80;
-    const t82 = 1.0 / r_elbow_left_flip_up;
-    const A_elbow_left_flip_up = Math.max(t76, 0.0);
-    const C_elbow_left_flip_up = Math.max(t78, 0.0);
-    const t83 = A_elbow_left_flip_up * C_elbow_left_flip_up;
+    const t67 = -Math.atan2(t66, M_33);
+    const t68 = (t67 <= -Math.PI ? Math.PI : t67) + t44;
+    const t69 = s_phi * (T11 * c_1_1 - T21 * t8) - T31 * t37;
+    const t70 = s_phi * (T12 * c_1_1 - T22 * t8) - T32 * t37;
+    const t71 = -Math.atan2(t69, -t70);
+    const t72 = (t71 <= -Math.PI ? Math.PI : t71) + t44;
+    const t73 = t51 + t52;
+    const c2_left_noflip_down = t54 - t55;
+    const t74 = Math.atan2(-t73, c2_left_noflip_down);
+    const t75 = -t60;
+    const t76 = t37 * c2_left_noflip_down - s_phi * t73;
+    const t77 = s_phi * c2_left_noflip_down + t37 * t73;
+    const t78 = Math.atan2(s3 * t76 - t62 * t77, -(t62 * t76 + s3 * t77));
+    const t79 = t30 + t34;
+    const ey_left_flip_up = t36 + t38;
+    const t80 = t79 * t79 + ey_left_flip_up * ey_left_flip_up;
+    const r_elbow_left_flip_up = Math.sqrt(t80);
+    const t81 = full_1_1 - r_elbow_left_flip_up;
+    const t82 = t40 + r_elbow_left_flip_up;
+    const t83 = r_elbow_left_flip_up - t40;
+    const t84 = t29 && (t28 <= t81) && (t28 <= t82) && (t28 <= t83);
+    const unreachable_2 = !t84;
+    const t85 = invalid || unreachable_2 ? NaN : 0;
+    const t86 = t12 + t85;
+    const t87 = 1.0 / r_elbow_left_flip_up;
+    const A_elbow_left_flip_up = Math.max(t81, 0.0);
+    const C_elbow_left_flip_up = Math.max(t83, 0.0);
+    const t88 = A_elbow_left_flip_up * C_elbow_left_flip_up;
     const S_elbow_left_flip_up = full_1_1 + r_elbow_left_flip_up;
-    const B_elbow_left_flip_up = Math.max(t77, 0.0);
-    const t84 = S_elbow_left_flip_up * B_elbow_left_flip_up;
-    const t85 = 1.0 / (t83 + t84);
-    const t86 = (t83 - t84) * t85;
-    const t87 = t82 * (ey_left_flip_up * t86);
-    const area_elbow_left_flip_up = 2.0 * Math.sqrt(t83 * t84);
-    const s_base_elbow_left_flip_up = t85 * area_elbow_left_flip_up;
-    const t88 = t82 * (t74 * s_base_elbow_left_flip_up);
-    const t89 = t87 - t88;
-    const t90 = t82 * (t74 * t86);
-    const t91 = t82 * (ey_left_flip_up * s_base_elbow_left_flip_up);
-    const c2_left_flip_up = t90 + t91;
-    const t92 = _runtime.wrapCut(Math.atan2(-t89, c2_left_flip_up));
-    const t93 = A_elbow_left_flip_up * S_elbow_left_flip_up;
-    const t94 = C_elbow_left_flip_up * B_elbow_left_flip_up;
-    const t95 = t93 - t94;
-    const t96 = Math.atan2(area_elbow_left_flip_up, -t95);
-    const t97 = 1.0 / (t93 + t94);
-    const t98 = t95 * t97;
-    const t99 = s_phi * c2_left_flip_up + t36 * t89;
-    const s3_left_flip_up = area_elbow_left_flip_up * t97;
-    const t100 = t36 * c2_left_flip_up - s_phi * t89;
-    const t101 = Math.atan2(t98 * t99 + s3_left_flip_up * t100, t98 * t100 - t99 *
+    const B_elbow_left_flip_up = Math.max(t82, 0.0);
+    const t89 = S_elbow_left_flip_up * B_elbow_left_flip_up;
+    const t90 = 1.0 / (t88 + t89);
+    const t91 = (t88 - t89) * t90;
+    const t92 = t87 * (ey_left_flip_up * t91);
+    const area_elbow_left_flip_up = 2.0 * Math.sqrt(t88 * t89);
+    const s_base_elbow_left_flip_up = t90 * area_elbow_left_flip_up;
+    const t93 = t87 * (t79 * s_base_elbow_left_flip_up);
+    const t94 = t92 - t93;
+    const t95 = t87 * (t79 * t91);
+    const t96 = t87 * (ey_left_flip_up * s_base_elbow_left_flip_up);
+    const c2_left_flip_up = t95 + t96;
+    const t97 = Math.atan2(-t94, c2_left_flip_up);
+    const t98 = A_elbow_left_flip_up * S_elbow_left_flip_up;
+    const t99 = C_elbow_left_flip_up * B_elbow_left_flip_up;
+    const t100 = t98 - t99;
+    const t101 = Math.atan2(area_elbow_left_flip_up, -t100);
+    const t102 = 1.0 / (t98 + t99);
+    const t103 = t100 * t102;
+    const t104 = s_phi * c2_left_flip_up + t37 * t94;
+    const s3_left_flip_up = area_elbow_left_flip_up * t102;
+    const t105 = t37 * c2_left_flip_up - s_phi * t94;
+    const t106 = Math.atan2(t103 * t104 + s3_left_flip_up * t105, t103 * t105 - t104 *
         s3_left_flip_up);
-    const t102 = _runtime.wrapCut(-Math.atan2(-t64, M_33)) + t80;
-    const t103 = _runtime.wrapCut(-Math.atan2(-t66, t67)) + t80;
-    const t104 = t87 + t88;
-    const c2_left_flip_down = t90 - t91;
-    const t105 = _runtime.wrapCut(Math.atan2(-t104, c2_left_flip_down));
-    const t106 = s_phi * c2_left_flip_down + t36 * t104;
-    const t107 = t36 * c2_left_flip_down - s_phi * t104;
-    const t108 = Math.atan2(t98 * t106 - s3_left_flip_up * t107, t98 * t107 + s3_left_flip_up *
-        t106);
-    const t109 = t5 - t7;
+    const t107 = -Math.atan2(-t66, M_33);
+    const t108 = (t107 <= -Math.PI ? Math.PI : t107) + t85;
+    const t109 = -Math.atan2(-t69, t70);
+    const t110 = (t109 <= -Math.PI ? Math.PI : t109) + t85;
+    const t111 = t92 + t93;
+    const c2_left_flip_down = t95 - t96;
+    const t112 = Math.atan2(-t111, c2_left_flip_down);
+    const t113 = -t101;
+    const t114 = s_phi * c2_left_flip_down + t37 * t111;
+    const t115 = t37 * c2_left_flip_down - s_phi * t111;
+    const t116 = Math.atan2(t103 * t114 - s3_left_flip_up * t115, t103 * t115 + s3_left_flip_up
+        * t114);
+    const t117 = t5 - t7;
     const c_1_1_right_noflip_up = t9 + t10;
-    const t110 = _runtime.wrapCut(Math.atan2(-t109, c_1_1_right_noflip_up));
-    const across_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t109;
-    const M_13_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t109;
-    const t111 = t30 + M_13_right_noflip_up * M_13_right_noflip_up;
-    const h_wrist_right_noflip_up = Math.sqrt(t111);
-    const t112 = 1.0 / h_wrist_right_noflip_up;
-    const s_phi_right_noflip_up = T33 * t112;
-    const t113 = d5 * s_phi_right_noflip_up;
-    const t114 = across_right_noflip_up - t113;
-    const c_phi_right_noflip_up = M_13_right_noflip_up * t112;
-    const t115 = d5 * c_phi_right_noflip_up;
-    const ey_right_noflip_up = t35 - t115;
-    const t116 = t114 * t114 + ey_right_noflip_up * ey_right_noflip_up;
-    const r_elbow_right_noflip_up = Math.sqrt(t116);
-    const t117 = full_1_1 - r_elbow_right_noflip_up;
-    const t118 = t39 + r_elbow_right_noflip_up;
-    const t119 = r_elbow_right_noflip_up - t39;
-    const t120 = t28 && (t27 <= t117) && (t27 <= t118) && (t27 <= t119);
-    const unreachable_3 = !t120;
-    const t121 = _runtime.poison(invalid || unreachable_3);
-    const t122 = t110 + t121;
-    const t123 = 1.0 / r_elbow_right_noflip_up;
-    const A_elbow_right_noflip_up = Math.max(t117, 0.0);
-    const C_elbow_right_noflip_up = Math.max(t119, 0.0);
-    const t124 = A_elbow_right_noflip_up * C_elbow_right_noflip_up;
+    const t118 = Math.atan2(-t117, c_1_1_right_noflip_up);
+    const t119 = t118 <= -Math.PI ? Math.PI : t118;
+    const across_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t117;
+    const M_13_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t117;
+    const t120 = t31 + M_13_right_noflip_up * M_13_right_noflip_up;
+    const h_wrist_right_noflip_up = Math.sqrt(t120);
+    const t121 = 1.0 / h_wrist_right_noflip_up;
+    const s_phi_right_noflip_up = T33 * t121;
+    const t122 = d5 * s_phi_right_noflip_up;
+    const t123 = across_right_noflip_up - t122;
+    const c_phi_right_noflip_up = M_13_right_noflip_up * t121;
+    const t124 = d5 * c_phi_right_noflip_up;
+    const ey_right_noflip_up = t36 - t124;
+    const t125 = t123 * t123 + ey_right_noflip_up * ey_right_noflip_up;
+    const r_elbow_right_noflip_up = Math.sqrt(t125);
+    const t126 = full_1_1 - r_elbow_right_noflip_up;
+    const t127 = t40 + r_elbow_right_noflip_up;
+    const t128 = r_elbow_right_noflip_up - t40;
+    const t129 = t29 && (t28 <= t126) && (t28 <= t127) && (t28 <= t128);
+    const unreachable_3 = !t129;
+    const t130 = invalid || unreachable_3 ? NaN : 0;
+    const t131 = t119 + t130;
+    const t132 = 1.0 / r_elbow_right_noflip_up;
+    const A_elbow_right_noflip_up = Math.max(t126, 0.0);
+    const C_elbow_right_noflip_up = Math.max(t128, 0.0);
+    const t133 = A_elbow_right_noflip_up * C_elbow_right_noflip_up;
     const S_elbow_right_noflip_up = full_1_1 + r_elbow_right_noflip_up;
-    const B_elbow_right_noflip_up = Math.max(t118, 0.0);
-    const t125 = S_elbow_right_noflip_up * B_elbow_right_noflip_up;
-    const t126 = 1.0 / (t124 + t125);
-    const t127 = (t124 - t125) * t126;
-    const t128 = t123 * (ey_right_noflip_up * t127);
-    const area_elbow_right_noflip_up = 2.0 * Math.sqrt(t124 * t125);
-    const s_base_elbow_right_noflip_up = t126 * area_elbow_right_noflip_up;
-    const t129 = t123 * (t114 * s_base_elbow_right_noflip_up);
-    const t130 = t128 - t129;
-    const t131 = t123 * (t114 * t127);
-    const t132 = ey_right_noflip_up * s_base_elbow_right_noflip_up;
-    const t133 = t123 * t132;
-    const c2_right_noflip_up = t131 + t133;
-    const t134 = _runtime.wrapCut(Math.atan2(-t130, c2_right_noflip_up));
-    const t135 = A_elbow_right_noflip_up * S_elbow_right_noflip_up;
-    const t136 = C_elbow_right_noflip_up * B_elbow_right_noflip_up;
-    const t137 = t135 - t136;
-    const t138 = Math.atan2(area_elbow_right_noflip_up, -t137);
-    const t139 = 1.0 / (t135 + t136);
-    const t140 = t137 * t139;
-    const t141 = s_phi_right_noflip_up * c2_right_noflip_up + c_phi_right_noflip_up * t130;
-    const s3_right_noflip_up = area_elbow_right_noflip_up * t139;
-    const t142 = c_phi_right_noflip_up * c2_right_noflip_up - s_phi_right_noflip_up * t130;
-    const t143 = Math.atan2(-(t140 * t141 + s3_right_noflip_up * t142), t141 *
-        s3_right_noflip_up - t140 * t142);
-    const t144 = M_13_right_noflip_up * c_phi_right_noflip_up + T33 * s_phi_right_noflip_up;
-    const M_33_right_noflip_up = -(T13 * t109 + T23 * c_1_1_right_noflip_up);
-    const t145 = _runtime.wrapCut(-Math.atan2(t144, M_33_right_noflip_up));
-    const t146 = t145 + t121;
-    const t147 = s_phi_right_noflip_up * (T11 * c_1_1_right_noflip_up - T21 * t109);
-    const t148 = t147 - T31 * c_phi_right_noflip_up;
-    const t149 = s_phi_right_noflip_up * (T12 * c_1_1_right_noflip_up - T22 * t109);
-    const t150 = t149 - T32 * c_phi_right_noflip_up;
-    const t151 = _runtime.wrapCut(-Math.atan2(t148, -t150)) + t121;
-    const t152 = t128 + t129;
-    const c2_right_noflip_down = t131 - t133;
-    const t153 = _runtime.wrapCut(Math.atan2(-t152, c2_right_noflip_down));
-    const t154 = c_phi_right_noflip_up * c2_right_noflip_down - s_phi_right_noflip_up * t152;
-    const t155 = s_phi_right_noflip_up * c2_right_noflip_down + c_phi_right_noflip_up * t152;
-    const t156 = Math.atan2(s3_right_noflip_up * t154 - t140 * t155, -(t140 * t154 +
-        s3_right_noflip_up * t155));
-    const t157 = across_right_noflip_up + t113;
-    const ey_right_flip_up = t35 + t115;
-    const t158 = t157 * t157 + ey_right_flip_up * ey_right_flip_up;
-    const r_elbow_right_flip_up = Math.sqrt(t158);
-    const t159 = full_1_1 - r_elbow_right_flip_up;
-    const t160 = t39 + r_elbow_right_flip_up;
-    const t161 = r_elbow_right_flip_up - t39;
-    const t162 = t28 && (t27 <= t159) && (t27 <= t160) && (t27 <= t161);
-    const unreachable_4 = !t162;
-    const t163 = _runtime.poison(invalid || unreachable_4);
-    const t164 = t110 + t163;
-    const t165 = 1.0 / r_elbow_right_flip_up;
-    const A_elbow_right_flip_up = Math.max(t159, 0.0);
-    const C_elbow_right_flip_up = Math.max(t161, 0.0);
-    const t166 = A_elbow_right_flip_up * C_elbow_right_flip_up;
+    const B_elbow_right_noflip_up = Math.max(t127, 0.0);
+    const t134 = S_elbow_right_noflip_up * B_elbow_right_noflip_up;
+    const t135 = 1.0 / (t133 + t134);
+    const t136 = (t133 - t134) * t135;
+    const t137 = t132 * (ey_right_noflip_up * t136);
+    const area_elbow_right_noflip_up = 2.0 * Math.sqrt(t133 * t134);
+    const s_base_elbow_right_noflip_up = t135 * area_elbow_right_noflip_up;
+    const t138 = t132 * (t123 * s_base_elbow_right_noflip_up);
+    const t139 = t137 - t138;
+    const t140 = t132 * (t123 * t136);
+    const t141 = ey_right_noflip_up * s_base_elbow_right_noflip_up;
+    const t142 = t132 * t141;
+    const c2_right_noflip_up = t140 + t142;
+    const t143 = Math.atan2(-t139, c2_right_noflip_up);
+    const t144 = A_elbow_right_noflip_up * S_elbow_right_noflip_up;
+    const t145 = C_elbow_right_noflip_up * B_elbow_right_noflip_up;
+    const t146 = t144 - t145;
+    const t147 = Math.atan2(area_elbow_right_noflip_up, -t146);
+    const t148 = 1.0 / (t144 + t145);
+    const t149 = t146 * t148;
+    const t150 = s_phi_right_noflip_up * c2_right_noflip_up + c_phi_right_noflip_up * t139;
+    const s3_right_noflip_up = area_elbow_right_noflip_up * t148;
+    const t151 = c_phi_right_noflip_up * c2_right_noflip_up - s_phi_right_noflip_up * t139;
+    const t152 = Math.atan2(-(t149 * t150 + s3_right_noflip_up * t151), t150 *
+        s3_right_noflip_up - t149 * t151);
+    const t153 = M_13_right_noflip_up * c_phi_right_noflip_up + T33 * s_phi_right_noflip_up;
+    const M_33_right_noflip_up = -(T13 * t117 + T23 * c_1_1_right_noflip_up);
+    const t154 = -Math.atan2(t153, M_33_right_noflip_up);
+    const t155 = (t154 <= -Math.PI ? Math.PI : t154) + t130;
+    const t156 = s_phi_right_noflip_up * (T11 * c_1_1_right_noflip_up - T21 * t117);
+    const t157 = t156 - T31 * c_phi_right_noflip_up;
+    const t158 = s_phi_right_noflip_up * (T12 * c_1_1_right_noflip_up - T22 * t117);
+    const t159 = t158 - T32 * c_phi_right_noflip_up;
+    const t160 = -Math.atan2(t157, -t159);
+    const t161 = (t160 <= -Math.PI ? Math.PI : t160) + t130;
+    const t162 = t137 + t138;
+    const c2_right_noflip_down = t140 - t142;
+    const t163 = Math.atan2(-t162, c2_right_noflip_down);
+    const t164 = -t147;
+    const t165 = c_phi_right_noflip_up * c2_right_noflip_down - s_phi_right_noflip_up * t162;
+    const t166 = s_phi_right_noflip_up * c2_right_noflip_down + c_phi_right_noflip_up * t162;
+    const t167 = Math.atan2(s3_right_noflip_up * t165 - t149 * t166, -(t149 * t165 +
+        s3_right_noflip_up * t166));
+    const t168 = across_right_noflip_up + t122;
+    const ey_right_flip_up = t36 + t124;
+    const t169 = t168 * t168 + ey_right_flip_up * ey_right_flip_up;
+    const r_elbow_right_flip_up = Math.sqrt(t169);
+    const t170 = full_1_1 - r_elbow_right_flip_up;
+    const t171 = t40 + r_elbow_right_flip_up;
+    const t172 = r_elbow_right_flip_up - t40;
+    const t173 = t29 && (t28 <= t170) && (t28 <= t171) && (t28 <= t172);
+    const unreachable_4 = !t173;
+    const t174 = invalid || unreachable_4 ? NaN : 0;
+    const t175 = t119 + t174;
+    const t176 = 1.0 / r_elbow_right_flip_up;
+    const A_elbow_right_flip_up = Math.max(t170, 0.0);
+    const C_elbow_right_flip_up = Math.max(t172, 0.0);
+    const t177 = A_elbow_right_flip_up * C_elbow_right_flip_up;
     const S_elbow_right_flip_up = full_1_1 + r_elbow_right_flip_up;
-    const B_elbow_right_flip_up = Math.max(t160, 0.0);
-    const t167 = S_elbow_right_flip_up * B_elbow_right_flip_up;
-    const t168 = 1.0 / (t166 + t167);
-    const t169 = (t166 - t167) * t168;
-    const t170 = t165 * (ey_right_flip_up * t169);
-    const area_elbow_right_flip_up = 2.0 * Math.sqrt(t166 * t167);
-    const s_base_elbow_right_flip_up = t168 * area_elbow_right_flip_up;
-    const t171 = t165 * (t157 * s_base_elbow_right_flip_up);
-    const t172 = t170 - t171;
-    const t173 = t165 * (t157 * t169);
-    const t174 = ey_right_flip_up * s_base_elbow_right_flip_up;
-    const t175 = t165 * t174;
-    const c2_right_flip_up = t173 + t175;
-    const t176 = _runtime.wrapCut(Math.atan2(-t172, c2_right_flip_up));
-    const t177 = A_elbow_right_flip_up * S_elbow_right_flip_up;
-    const t178 = C_elbow_right_flip_up * B_elbow_right_flip_up;
-    const t179 = t177 - t178;
-    const t180 = Math.atan2(area_elbow_right_flip_up, -t179);
-    const t181 = 1.0 / (t177 + t178);
-    const t182 = t179 * t181;
-    const t183 = s_phi_right_noflip_up * c2_right_flip_up + c_phi_right_noflip_up * t172;
-    const s3_right_flip_up = area_elbow_right_flip_up * t181;
-    const t184 = c_phi_right_noflip_up * c2_right_flip_up - s_phi_right_noflip_up * t172;
-    const t185 = Math.atan2(t182 * t183 + s3_right_flip_up * t184, t182 * t184 - t183 *
+    const B_elbow_right_flip_up = Math.max(t171, 0.0);
+    const t178 = S_elbow_right_flip_up * B_elbow_right_flip_up;
+    const t179 = 1.0 / (t177 + t178);
+    const t180 = (t177 - t178) * t179;
+    const t181 = t176 * (ey_right_flip_up * t180);
+    const area_elbow_right_flip_up = 2.0 * Math.sqrt(t177 * t178);
+    const s_base_elbow_right_flip_up = t179 * area_elbow_right_flip_up;
+    const t182 = t176 * (t168 * s_base_elbow_right_flip_up);
+    const t183 = t181 - t182;
+    const t184 = t176 * (t168 * t180);
+    const t185 = ey_right_flip_up * s_base_elbow_right_flip_up;
+    const t186 = t176 * t185;
+    const c2_right_flip_up = t184 + t186;
+    const t187 = Math.atan2(-t183, c2_right_flip_up);
+    const t188 = A_elbow_right_flip_up * S_elbow_right_flip_up;
+    const t189 = C_elbow_right_flip_up * B_elbow_right_flip_up;
+    const t190 = t188 - t189;
+    const t191 = Math.atan2(area_elbow_right_flip_up, -t190);
+    const t192 = 1.0 / (t188 + t189);
+    const t193 = t190 * t192;
+    const t194 = s_phi_right_noflip_up * c2_right_flip_up + c_phi_right_noflip_up * t183;
+    const s3_right_flip_up = area_elbow_right_flip_up * t192;
+    const t195 = c_phi_right_noflip_up * c2_right_flip_up - s_phi_right_noflip_up * t183;
+    const t196 = Math.atan2(t193 * t194 + s3_right_flip_up * t195, t193 * t195 - t194 *
         s3_right_flip_up);
-    const t186 = _runtime.wrapCut(-Math.atan2(-t144, M_33_right_noflip_up));
-    const t187 = t186 + t163;
-    const t188 = _runtime.wrapCut(-Math.atan2(-t148, t150)) + t163;
-    const t189 = t170 + t171;
-    const c2_right_flip_down = t173 - t175;
-    const t190 = _runtime.wrapCut(Math.atan2(-t189, c2_right_flip_down));
-    const t191 = s_phi_right_noflip_up * c2_right_flip_down + c_phi_right_noflip_up * t189;
-    const t192 = c_phi_right_noflip_up * c2_right_flip_down - s_phi_right_noflip_up * t189;
-    const t193 = Math.atan2(t182 * t191 - s3_right_flip_up * t192, t182 * t192 +
-        s3_right_flip_up * t191);
-    const t194 = _runtime.status(invalid, unreachable, false);
-    const t195 = _runtime.status(invalid, unreachable_2, false);
-    const t196 = _runtime.status(invalid, unreachable_3, false);
-    const t197 = _runtime.status(invalid, unreachable_4, false);
-    const t198 = _runtime.VANISHING * (d1 + d4 + d5 + d6 + full_1_1);
-    const t199 = L2 * 0.00390625 + L3 * 0.00390625 + d1 * 0.00390625;
-    const t200 = t199 + d4 * 0.00390625 + d5 * 0.00390625 + d6 * 0.00390625;
-    const t201 = _runtime.VANISHING * 16.0;
-    const t202 = (h1 <= t198) || (root1 - t200 <= t198) || (h_wrist <= t201);
-    const t203 = L2 * 0.00048828125 + L3 * 0.00048828125 + (d1 * 0.00048828125 + d4 *
+    const t197 = -Math.atan2(-t153, M_33_right_noflip_up);
+    const t198 = (t197 <= -Math.PI ? Math.PI : t197) + t174;
+    const t199 = -Math.atan2(-t157, t159);
+    const t200 = (t199 <= -Math.PI ? Math.PI : t199) + t174;
+    const t201 = t181 + t182;
+    const c2_right_flip_down = t184 - t186;
+    const t202 = Math.atan2(-t201, c2_right_flip_down);
+    const t203 = -t191;
+    const t204 = s_phi_right_noflip_up * c2_right_flip_down + c_phi_right_noflip_up * t201;
+    const t205 = c_phi_right_noflip_up * c2_right_flip_down - s_phi_right_noflip_up * t201;
+    const t206 = Math.atan2(t193 * t204 - s3_right_flip_up * t205, t193 * t205 +
+        s3_right_flip_up * t204);
+    const t207 = invalid ? 3 : unreachable ? 1 : false ? 2 : 0;
+    const t208 = invalid ? 3 : unreachable_2 ? 1 : false ? 2 : 0;
+    const t209 = invalid ? 3 : unreachable_3 ? 1 : false ? 2 : 0;
+    const t210 = invalid ? 3 : unreachable_4 ? 1 : false ? 2 : 0;
+    const t211 = _runtime.VANISHING * (d1 + d4 + d5 + d6 + full_1_1);
+    const t212 = L2 * 0.00390625 + L3 * 0.00390625 + d1 * 0.00390625;
+    const t213 = t212 + d4 * 0.00390625 + d5 * 0.00390625 + d6 * 0.00390625;
+    const t214 = _runtime.VANISHING * 16.0;
+    const t215 = (h1 <= t211) || (root1 - t213 <= t211) || (h_wrist <= t214);
+    const t216 = L2 * 0.00048828125 + L3 * 0.00048828125 + (d1 * 0.00048828125 + d4 *
         0.00048828125);
-    const t204 = d5 * 0.00048828125 + d6 * 0.00048828125 + t203;
+    const t217 = d5 * 0.00048828125 + d6 * 0.00048828125 + t216;
     const no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1);
-    const t205 = t202 || (root1 * h_wrist - t204 <= t198) || no_link_elbow;
-    const t206 = t205 || (r_elbow <= t198) || (r_elbow_left_flip_up <= t198);
-    const close_right_noflip_up = root1 * h_wrist_right_noflip_up - t204 <= t198;
-    const t207 = t206 || (h_wrist_right_noflip_up <= t201) || close_right_noflip_up;
-    const t208 = t207 || (r_elbow_right_noflip_up <= t198) || (r_elbow_right_flip_up <= t198);
-    return [
-        t44,
-        _runtime.wrapCut(Math.atan2(-t52, c2)) + t43,
-        _runtime.wrapCut(t58) + t43,
-        _runtime.wrapCut(t63) + t43,
-        t65,
-        t68,
-        t44,
-        t70 + t43,
-        _runtime.wrapCut(-t58) + t43,
-        _runtime.wrapCut(t73) + t43,
-        t65,
-        t68,
-        t81,
-        t92 + t80,
-        _runtime.wrapCut(t96) + t80,
-        _runtime.wrapCut(t101) + t80,
-        t102,
-        t103,
-        t81,
-        t105 + t80,
-        _runtime.wrapCut(-t96) + t80,
-        _runtime.wrapCut(t108) + t80,
-        t102,
-        t103,
-        t122,
-        t134 + t121,
-        _runtime.wrapCut(t138) + t121,
-        _runtime.wrapCut(t143) + t121,
-        t146,
-        t151,
-        t122,
-        t153 + t121,
-        _runtime.wrapCut(-t138) + t121,
-        _runtime.wrapCut(t156) + t121,
-        t146,
-        t151,
-        t164,
-        t176 + t163,
-        _runtime.wrapCut(t180) + t163,
-        _runtime.wrapCut(t185) + t163,
-        t187,
-        t188,
-        t164,
-        t190 + t163,
-        _runtime.wrapCut(-t180) + t163,
-        _runtime.wrapCut(t193) + t163,
-        t187,
-        t188,
-        t194,
-        t194,
-        t195,
-        t195,
-        t196,
-        t196,
-        t197,
-        t197,
-        (t208) ? 1 : 0,
-    ];
+    const t218 = t215 || (root1 * h_wrist - t217 <= t211) || no_link_elbow;
+    const t219 = t218 || (r_elbow <= t211) || (r_elbow_left_flip_up <= t211);
+    const close_right_noflip_up = root1 * h_wrist_right_noflip_up - t217 <= t211;
+    const t220 = t219 || (h_wrist_right_noflip_up <= t214) || close_right_noflip_up;
+    const t221 = t220 || (r_elbow_right_noflip_up <= t211) || (r_elbow_right_flip_up <= t211);
+    o[0] = t45;
+    o[1] = (t56 <= -Math.PI ? Math.PI : t56) + t44;
+    o[2] = (t60 <= -Math.PI ? Math.PI : t60) + t44;
+    o[3] = (t65 <= -Math.PI ? Math.PI : t65) + t44;
+    o[4] = t68;
+    o[5] = t72;
+    o[6] = t45;
+    o[7] = (t74 <= -Math.PI ? Math.PI : t74) + t44;
+    o[8] = (t75 <= -Math.PI ? Math.PI : t75) + t44;
+    o[9] = (t78 <= -Math.PI ? Math.PI : t78) + t44;
+    o[10] = t68;
+    o[11] = t72;
+    o[12] = t86;
+    o[13] = (t97 <= -Math.PI ? Math.PI : t97) + t85;
+    o[14] = (t101 <= -Math.PI ? Math.PI : t101) + t85;
+    o[15] = (t106 <= -Math.PI ? Math.PI : t106) + t85;
+    o[16] = t108;
+    o[17] = t110;
+    o[18] = t86;
+    o[19] = (t112 <= -Math.PI ? Math.PI : t112) + t85;
+    o[20] = (t113 <= -Math.PI ? Math.PI : t113) + t85;
+    o[21] = (t116 <= -Math.PI ? Math.PI : t116) + t85;
+    o[22] = t108;
+    o[23] = t110;
+    o[24] = t131;
+    o[25] = (t143 <= -Math.PI ? Math.PI : t143) + t130;
+    o[26] = (t147 <= -Math.PI ? Math.PI : t147) + t130;
+    o[27] = (t152 <= -Math.PI ? Math.PI : t152) + t130;
+    o[28] = t155;
+    o[29] = t161;
+    o[30] = t131;
+    o[31] = (t163 <= -Math.PI ? Math.PI : t163) + t130;
+    o[32] = (t164 <= -Math.PI ? Math.PI : t164) + t130;
+    o[33] = (t167 <= -Math.PI ? Math.PI : t167) + t130;
+    o[34] = t155;
+    o[35] = t161;
+    o[36] = t175;
+    o[37] = (t187 <= -Math.PI ? Math.PI : t187) + t174;
+    o[38] = (t191 <= -Math.PI ? Math.PI : t191) + t174;
+    o[39] = (t196 <= -Math.PI ? Math.PI : t196) + t174;
+    o[40] = t198;
+    o[41] = t200;
+    o[42] = t175;
+    o[43] = (t202 <= -Math.PI ? Math.PI : t202) + t174;
+    o[44] = (t203 <= -Math.PI ? Math.PI : t203) + t174;
+    o[45] = (t206 <= -Math.PI ? Math.PI : t206) + t174;
+    o[46] = t198;
+    o[47] = t200;
+    o[48] = t207;
+    o[49] = t207;
+    o[50] = t208;
+    o[51] = t208;
+    o[52] = t209;
+    o[53] = t209;
+    o[54] = t210;
+    o[55] = t210;
+    o[56] = (t221) ? 1 : 0;
 }
 
-/** @type {_runtime.Kernel} */
-const _IK = {
+const _IK = _runtime.kernel({
     name: "ur_arm.ik",
     compute: _ik,
     common: _ik_common,
@@ -2757,7 +2727,7 @@ const _IK = {
         least: 2.938735877055719e-39,
         most: 1.8092513943330656e+75,
     },
-};
+});
 
 /**
  * The joint angles of a pose, all eight postures.

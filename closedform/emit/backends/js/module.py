@@ -23,7 +23,6 @@ class Kernel:
 
     name: str
     lines: tuple[str, ...]
-    values: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -91,7 +90,7 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> M
 
 
 def _kernel(name: str, program: Lowered) -> Kernel:
-    printer = JavaScriptPrinter(program, reserved=["v"])
+    printer = JavaScriptPrinter(program, reserved=["v", "o"])
     results = printer.run()
     used = program.used_inputs()
     lines = [
@@ -115,7 +114,8 @@ def _kernel(name: str, program: Lowered) -> Kernel:
         for result, entries in zip(program.results, results, strict=True)
         for value in entries
     ]
-    return Kernel(name, tuple(_wrapped(lines)), tuple(values))
+    lines += [f"o[{k}] = {value};" for k, value in enumerate(values)]
+    return Kernel(name, tuple(_wrapped(lines)))
 
 
 def _wrapped(lines: Iterable[str]) -> Iterator[str]:

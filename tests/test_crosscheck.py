@@ -1,11 +1,14 @@
 """Generated code against the symbolic source in Arb, in every back end; and the check can fail."""
 
 import importlib
+import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from closedform.check import runners
 from closedform.check.clibrary import CLibrary
 from closedform.check.crosscheck import (
     Backend,
@@ -40,22 +43,29 @@ def derivation(robot: str) -> Derivation:
     return importlib.import_module(f"closedform.derivations.{robot}").d
 
 
-def backend(name: str, robot: str, scratch: Path) -> Backend:
+def backends(name: str, robot: str, scratch: Path) -> Iterator[Backend]:
     if name == "c float":
         library = CLibrary(derivation(robot), GENERATED / "c", scratch, single=True)
-        return float_backend(library.function)
-    return module_backend(name, importlib.import_module(f"closedform.generated.{name}.{robot}"))
+        yield float_backend(library.function)
+    elif name == "js":
+        if shutil.which("node") is None:
+            pytest.skip("Node is not installed: the JavaScript is not checked")
+        yield from runners.load("node")(name, derivation(robot), GENERATED / name, scratch)
+    else:
+        module = importlib.import_module(f"closedform.generated.{name}.{robot}")
+        yield module_backend(name, module)
 
 
 @pytest.mark.parametrize("robot", ROBOTS)
-@pytest.mark.parametrize("name", ["numpy", "c", "c float"])
+@pytest.mark.parametrize("name", ["numpy", "c", "c float", "js"])
 def test_against_the_symbolic_source(
     robot: str, name: str, tmp_path: Path, findings: list[Finding]
 ) -> None:
-    found = crosscheck(derivation(robot), backend(name, robot, tmp_path))
-    findings += found
-    assert not [failure for f in found for failure in f.failures]
-    assert all(f.compared for f in found)
+    for backend in backends(name, robot, tmp_path):
+        found = crosscheck(derivation(robot), backend)
+        findings += found
+        assert not [failure for f in found for failure in f.failures]
+        assert all(f.compared for f in found)
 
 
 def broken(robot: str, function: str, change) -> list[str]:

@@ -156,23 +156,22 @@ function _fk(v, o) {
     const t37 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d1) && Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al)
         && Number.isFinite(loff) && Number.isFinite(lp);
-    const t38 = t37 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t39 = t38 && (0.0 <= d1) && (0.0 <= d) && (0.0 <= gs);
-    const t40 = t39 && (0.0 <= al) && (0.0 <= loff) && (0.0 <= lp);
-    const t41 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
+    const t38 = t37 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
+    const t39 = t38 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
+    const t40 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const t42 = -(_runtime.FEASIBILITY * t29);
-    const failed = !(t40 && t41) || !((t42 <= t30) && (t42 <= t28));
-    const t43 = failed ? NaN : 0;
-    const t44 = d1 + L1 * (side2A * t26) - c23A * t34 + s23A * t33;
-    const t45 = Math.atan2(-t27, d);
-    const t46 = -Math.atan2(t24, d);
-    o[0] = c1 * t35 - s1 * t36 + t43;
-    o[1] = c1 * t36 + s1 * t35 + t43;
-    o[2] = t44 + t43;
-    o[3] = (t45 <= -Math.PI ? Math.PI : t45) + t43;
-    o[4] = (t46 <= -Math.PI ? Math.PI : t46) + t43;
-    o[5] = _runtime.wrap(principal) + t43;
+    const t41 = -(_runtime.FEASIBILITY * t29);
+    const failed = !(t39 && 0.0 <= lp && t40) || !(t41 <= t30 && t41 <= t28);
+    const t42 = failed ? NaN : 0;
+    const t43 = d1 + L1 * (side2A * t26) - c23A * t34 + s23A * t33;
+    const t44 = Math.atan2(-t27, d);
+    const t45 = -Math.atan2(t24, d);
+    o[0] = c1 * t35 - s1 * t36 + t42;
+    o[1] = c1 * t36 + s1 * t35 + t42;
+    o[2] = t43 + t42;
+    o[3] = (t44 <= -Math.PI ? Math.PI : t44) + t42;
+    o[4] = (t45 <= -Math.PI ? Math.PI : t45) + t42;
+    o[5] = _runtime.wrap(principal) + t42;
 }
 
 const _FK = _runtime.kernel({
@@ -306,54 +305,53 @@ function _pose(v, o) {
     const t34 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d1) && Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al)
         && Number.isFinite(loff) && Number.isFinite(lp);
-    const t35 = t34 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t36 = t35 && (0.0 <= d1) && (0.0 <= d) && (0.0 <= gs);
-    const t37 = t36 && (0.0 <= al) && (0.0 <= loff) && (0.0 <= lp);
-    const t38 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
+    const t35 = t34 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
+    const t36 = t35 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
+    const t37 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const t39 = gs + al;
-    const t40 = -(_runtime.FEASIBILITY * t39);
-    const t41 = t39 - base;
-    const t42 = base - (gs - al);
-    const failed = !(t37 && t38) || !((t40 <= t41) && (t40 <= t42));
-    const t43 = failed ? NaN : 0;
+    const t38 = gs + al;
+    const t39 = -(_runtime.FEASIBILITY * t38);
+    const t40 = t38 - base;
+    const t41 = base - (gs - al);
+    const failed = !(t36 && 0.0 <= lp && t37) || !(t39 <= t40 && t39 <= t41);
+    const t42 = failed ? NaN : 0;
     const hand_12 = t28 * c_psi;
     const hand_22 = c_phi * c_psi;
-    const t44 = t14 * hand_12 + s1 * hand_22 - t32 * t27 + t43;
+    const t43 = t14 * hand_12 + s1 * hand_22 - t32 * t27 + t42;
     const hand_13 = s * c_phi + c * t29;
-    const t45 = c * t30 - s * t28;
+    const t44 = c * t30 - s * t28;
     const hand_33 = c * c_psi;
-    const t46 = t14 * hand_13 + s1 * t45 + t32 * hand_33 + t43;
+    const t45 = t14 * hand_13 + s1 * t44 + t32 * hand_33 + t42;
     const side2A = t18 + t19 < 0 ? -1 : 1;
-    const t47 = lp * s;
-    const wrist = Math.sqrt(Math.max(t42, 0.0) * Math.max(t41, 0.0));
-    const t48 = loff + lp * c + wrist;
-    const t49 = a3 + t47 * c_phi + t29 * t48;
-    const t50 = L2 + c_psi * t48;
-    const t51 = L1 * (side2A * t20) + c23A * t49 + s23A * t50;
-    const t52 = t47 * t28 - t30 * t48;
-    const t53 = c23A * s1;
-    const t54 = s23A * s1;
-    const t55 = t53 * hand_12 - c1 * hand_22 - t54 * t27 + t43;
-    const t56 = t53 * hand_13 - c1 * t45 + t54 * hand_33 + t43;
-    const t57 = d1 + L1 * (side2A * t25) - c23A * t50 + s23A * t49;
-    const t58 = 0.0 + t43;
-    o[0] = t14 * hand_11 - s1 * t31 - t32 * t33 + t43;
-    o[1] = t44;
-    o[2] = t46;
-    o[3] = c1 * t51 - s1 * t52 + t43;
-    o[4] = t53 * hand_11 + c1 * t31 - t54 * t33 + t43;
-    o[5] = t55;
-    o[6] = t56;
-    o[7] = c1 * t52 + s1 * t51 + t43;
-    o[8] = c23A * t33 + s23A * hand_11 + t43;
-    o[9] = c23A * t27 + s23A * hand_12 + t43;
-    o[10] = s23A * hand_13 - c23A * hand_33 + t43;
-    o[11] = t57 + t43;
-    o[12] = t58;
-    o[13] = t58;
-    o[14] = t58;
-    o[15] = 1.0 + t43;
+    const t46 = lp * s;
+    const wrist = Math.sqrt(Math.max(t41, 0.0) * Math.max(t40, 0.0));
+    const t47 = loff + lp * c + wrist;
+    const t48 = a3 + t46 * c_phi + t29 * t47;
+    const t49 = L2 + c_psi * t47;
+    const t50 = L1 * (side2A * t20) + c23A * t48 + s23A * t49;
+    const t51 = t46 * t28 - t30 * t47;
+    const t52 = c23A * s1;
+    const t53 = s23A * s1;
+    const t54 = t52 * hand_12 - c1 * hand_22 - t53 * t27 + t42;
+    const t55 = t52 * hand_13 - c1 * t44 + t53 * hand_33 + t42;
+    const t56 = d1 + L1 * (side2A * t25) - c23A * t49 + s23A * t48;
+    const t57 = 0.0 + t42;
+    o[0] = t14 * hand_11 - s1 * t31 - t32 * t33 + t42;
+    o[1] = t43;
+    o[2] = t45;
+    o[3] = c1 * t50 - s1 * t51 + t42;
+    o[4] = t52 * hand_11 + c1 * t31 - t53 * t33 + t42;
+    o[5] = t54;
+    o[6] = t55;
+    o[7] = c1 * t51 + s1 * t50 + t42;
+    o[8] = c23A * t33 + s23A * hand_11 + t42;
+    o[9] = c23A * t27 + s23A * hand_12 + t42;
+    o[10] = s23A * hand_13 - c23A * hand_33 + t42;
+    o[11] = t56 + t42;
+    o[12] = t57;
+    o[13] = t57;
+    o[14] = t57;
+    o[15] = 1.0 + t42;
 }
 
 const _POSE = _runtime.kernel({
@@ -680,13 +678,12 @@ function _jacobian(v, o) {
     const t44 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al) &&
         Number.isFinite(loff) && Number.isFinite(lp);
-    const t45 = t44 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t46 = t45 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
+    const t45 = t44 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d;
+    const t46 = t45 && 0.0 <= gs && 0.0 <= al && 0.0 <= loff && 0.0 <= lp;
     const t47 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const invalid = !(t46 && (0.0 <= loff) && (0.0 <= lp) && t47);
     const t48 = -(_runtime.FEASIBILITY * t34);
-    const t49 = invalid || !((t48 <= t35) && (t48 <= t33)) ? NaN : 0;
+    const t49 = !(t46 && t47) || !(t48 <= t35 && t48 <= t33) ? NaN : 0;
     const t50 = c2R_half * c2R_half - s2R_half * s2R_half;
     const t51 = s2R_half * c2R_half;
     const t52 = t51 + t51;
@@ -926,13 +923,12 @@ function _determinant(v, o) {
     const t39 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al) &&
         Number.isFinite(loff) && Number.isFinite(lp);
-    const t40 = t39 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t41 = t40 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
+    const t40 = t39 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d;
+    const t41 = t40 && 0.0 <= gs && 0.0 <= al && 0.0 <= loff && 0.0 <= lp;
     const t42 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const invalid = !(t41 && (0.0 <= loff) && (0.0 <= lp) && t42);
     const t43 = -(_runtime.FEASIBILITY * t33);
-    const t44 = invalid || !((t43 <= t34) && (t43 <= t32)) ? NaN : 0;
+    const t44 = !(t41 && t42) || !(t43 <= t34 && t43 <= t32) ? NaN : 0;
     o[0] = -(t38 / (t26 * 4.0)) + t44;
 }
 
@@ -1060,13 +1056,12 @@ function _singularities(v, o) {
     const t34 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al) &&
         Number.isFinite(loff) && Number.isFinite(lp);
-    const t35 = t34 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t36 = t35 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
+    const t35 = t34 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d;
+    const t36 = t35 && 0.0 <= gs && 0.0 <= al && 0.0 <= loff && 0.0 <= lp;
     const t37 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const invalid = !(t36 && (0.0 <= loff) && (0.0 <= lp) && t37);
     const t38 = -(_runtime.FEASIBILITY * t29);
-    const t39 = invalid || !((t38 <= t30) && (t38 <= t28)) ? NaN : 0;
+    const t39 = !(t36 && t37) || !(t38 <= t30 && t38 <= t28) ? NaN : 0;
     const s2A = side2A * t26;
     const t40 = c2A * c23A + s2A * s23A;
     const t41 = s2A * c23A - c2A * s23A;
@@ -1180,41 +1175,41 @@ function _ik(v, o) {
     const t15 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d1) && Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al)
         && Number.isFinite(loff) && Number.isFinite(lp);
-    const t16 = t15 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t17 = t16 && (0.0 <= d1) && (0.0 <= d) && (0.0 <= gs);
-    const t18 = t17 && (0.0 <= al) && (0.0 <= loff) && (0.0 <= lp);
-    const t19 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z) &&
+    const t16 = t15 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
+    const t17 = t16 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
+    const t18 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z) &&
         Number.isFinite(psi) && Number.isFinite(phi) && Number.isFinite(pitch);
-    const t20 = Math.abs(0.0 < L1 * d * (L2 + a3) ? 0.0 : 1.0);
-    const invalid = !(t18 && t19 && (t20 <= _runtime.ROTATION));
+    const t19 = Math.abs(0.0 < L1 * d * (L2 + a3) ? 0.0 : 1.0);
+    const t20 = t17 && 0.0 <= lp && t18 && t19 <= _runtime.ROTATION;
+    const invalid = !t20;
     const t21 = -(_runtime.FEASIBILITY * (d * 0.5));
-    const t22 = (-_runtime.FEASIBILITY <= c_phi) && (t21 <= t4);
+    const t22 = -_runtime.FEASIBILITY <= c_phi && t21 <= t4 && t21 <= t5;
     const t23 = -(_runtime.FEASIBILITY * t1);
-    const t24 = t22 && (t21 <= t5) && (t23 <= t11) && (t23 <= t12);
     const L_2W = L2 + c_psi * t8;
     const a_3W = a3 + c_phi * t3 + s_phi * t9;
     const fore = Math.sqrt(L_2W * L_2W + a_3W * a_3W);
-    const t25 = L1 + fore;
-    const t26 = 2.0 * fore;
-    const t27 = _runtime.FEASIBILITY * (t25 * (L1 * 2.0 + t26));
-    const t28 = t25 * t25;
-    const t29 = z - d1;
-    const square = t29 * t29 + onward * onward;
-    const t30 = t28 - square;
+    const t24 = L1 + fore;
+    const t25 = 2.0 * fore;
+    const t26 = _runtime.FEASIBILITY * (t24 * (L1 * 2.0 + t25));
+    const t27 = t24 * t24;
+    const t28 = z - d1;
+    const square = t28 * t28 + onward * onward;
+    const t29 = t27 - square;
+    const t30 = t22 && t23 <= t11 && t23 <= t12 && -t26 <= t29;
     const t31 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13;
     const t32 = L1 - fore;
-    const t33 = _runtime.FEASIBILITY * (t25 * (t31 + 2.0 * Math.abs(t32)));
+    const t33 = _runtime.FEASIBILITY * (t24 * (t31 + 2.0 * Math.abs(t32)));
     const t34 = square - t32 * t32;
-    const t35 = t24 && (-t27 <= t30) && (-t33 <= t34);
+    const t35 = t30 && -t33 <= t34;
     const size = L1 + Math.sqrt(L2 * L2 + a3 * a3);
     const t36 = d * size;
-    const short = L1 * fore <= _runtime.VANISHING * t28;
+    const short = L1 * fore <= _runtime.VANISHING * t27;
     const M = Math.max(t34, 0.0);
-    const N = Math.max(t30, 0.0);
+    const N = Math.max(t29, 0.0);
     const t37 = 1.0 / (M + N);
     const t38 = M - N;
     const c_bend = short ? 1.0 : t37 * t38;
-    const t39 = _runtime.VANISHING * t25;
+    const t39 = _runtime.VANISHING * t24;
     const bare = fore <= t39;
     const t40 = 1.0 / fore;
     const c_lag = bare ? 1.0 : a_3W * t40;
@@ -1232,14 +1227,14 @@ function _ik(v, o) {
     const t46 = Math.abs(whole_alpha);
     const v_2 = L2 * s_relative + a3 * c_relative;
     const ahead = d * s_psi * t7;
-    const folded = Math.abs(t29) + Math.abs(onward) <= t39;
+    const folded = Math.abs(t28) + Math.abs(onward) <= t39;
     const t47 = fore * s_bend_front_elbow_down;
-    const t48 = t29 * t47;
-    const ahead_1 = short ? t25 : t32 + t26 * M * t37;
+    const t48 = t28 * t47;
+    const ahead_1 = short ? t24 : t32 + t25 * M * t37;
     const t49 = onward * ahead_1;
     const out_rear_elbow_up = t48 - t49;
     const t50 = onward * t47;
-    const t51 = t29 * ahead_1;
+    const t51 = t28 * ahead_1;
     const up = t50 + t51;
     const t52 = out_rear_elbow_up * out_rear_elbow_up + up * up;
     const t53 = 1.0 / Math.sqrt(t52);
@@ -1297,7 +1292,7 @@ function _ik(v, o) {
     const p_1_beta = spent_beta ? p_1_alpha - t76 * lean_beta : p_1_alpha;
     const t86 = sigma_uv * p_1_beta;
     const t87 = v_1_beta * sigma_uv;
-    const t88 = t35 && t68 && t79 && (t83 <= t86 - t87) && (t83 <= -(t87 + t86));
+    const t88 = t35 && t68 && t79 && t83 <= t86 - t87 && t83 <= -(t87 + t86);
     const v_2_beta = spent_beta ? v_2_alpha + v_1_alpha * t85 : v_2_alpha;
     const t89 = Math.abs(v_2_beta);
     const parallel = -t87 <= _runtime.VANISHING * (64.0 * t89);
@@ -1323,7 +1318,7 @@ function _ik(v, o) {
     const t104 = v_2_beta * t103 / (t87 * t87 + v_2_beta * v_2_beta);
     const t105 = spent_along ? t91 + whole_y * (t104 * (-t97 < 0 ? -1 : 1)) : t91;
     const t106 = whole_y + t105;
-    const t107 = t88 && (t83 <= t92) && (t83 <= t93) && t102 && (t83 <= t106);
+    const t107 = t88 && t83 <= t92 && t83 <= t93 && t102 && t83 <= t106;
     const t108 = whole_y - t105;
     const below_beta = Math.max(t106, t95);
     const above_beta = Math.max(t108, t95);
@@ -1332,7 +1327,7 @@ function _ik(v, o) {
     const t111 = t90 - t110;
     const t112 = L1 + t111;
     const t113 = L1 - t111;
-    const t114 = t107 && (t83 <= t108) && (t83 <= t112) && (t83 <= t113);
+    const t114 = t107 && t83 <= t108 && t83 <= t112 && t83 <= t113;
     const unreachable = !t114;
     const t115 = invalid || unreachable ? NaN : 0;
     const t116 = folded ? 0.0 : Math.atan2(up, -out_rear_elbow_up);
@@ -1429,7 +1424,7 @@ function _ik(v, o) {
         p_1_alpha_front_elbow_down;
     const t168 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down;
     const t169 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down;
-    const t170 = t35 && t145 && t162 && (t83 <= t168 - t169) && (t83 <= -(t169 + t168));
+    const t170 = t35 && t145 && t162 && t83 <= t168 - t169 && t83 <= -(t169 + t168);
     const t171 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t165;
     const v_2_beta_front_elbow_down = spent_beta_front_elbow_down ? t171 :
         v_2_alpha_front_elbow_down;
@@ -1454,8 +1449,7 @@ function _ik(v, o) {
     const spent_along_front_elbow_down = Math.max(-t181, left_along_front_elbow_down) <= t99;
     const t182 = spent_along_front_elbow_down ? t172 / (t100 - t169) : 0.0;
     const t183 = -(_runtime.FEASIBILITY * (t82 * (1.0 + t182)));
-    const t184 = t170 && (t83 <= t177) && (t83 <= t178) && (t183 <=
-        left_along_front_elbow_down);
+    const t184 = t170 && t83 <= t177 && t83 <= t178 && t183 <= left_along_front_elbow_down;
     const t185 = left_along_front_elbow_down * 0.5 - Math.abs(left_along_front_elbow_down) *
         0.5;
     const t186 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down;
@@ -1472,9 +1466,9 @@ function _ik(v, o) {
     const t193 = v_2_beta_front_elbow_down * (t192 / total_beta_front_elbow_down);
     const along_u_front_elbow_down = t174 + t193;
     const t194 = L1 - along_u_front_elbow_down;
-    const t195 = t184 && (t83 <= t190) && (t83 <= t191) && (t83 <= t194);
+    const t195 = t184 && t83 <= t190 && t83 <= t191 && t83 <= t194;
     const t196 = L1 + along_u_front_elbow_down;
-    const unreachable_2 = !(t195 && (t83 <= t196));
+    const unreachable_2 = !(t195 && t83 <= t196);
     const t197 = invalid || unreachable_2 ? NaN : 0;
     const t198 = folded ? 0.0 : Math.atan2(-t129, out_front_elbow_down);
     const t199 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down;
@@ -1541,7 +1535,7 @@ function _ik(v, o) {
     const p_1_beta_rear_elbow_up = spent_beta_rear_elbow_up ? t238 : p_1_alpha_rear_elbow_up;
     const t239 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up;
     const t240 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up;
-    const t241 = t35 && t217 && t233 && (t83 <= t239 - t240) && (t83 <= -(t240 + t239));
+    const t241 = t35 && t217 && t233 && t83 <= t239 - t240 && t83 <= -(t240 + t239);
     const t242 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t236;
     const v_2_beta_rear_elbow_up = spent_beta_rear_elbow_up ? t242 : v_2_alpha_rear_elbow_up;
     const t243 = Math.abs(v_2_beta_rear_elbow_up);
@@ -1563,7 +1557,7 @@ function _ik(v, o) {
     const spent_along_rear_elbow_up = Math.max(-t252, left_along_rear_elbow_up) <= t99;
     const t253 = spent_along_rear_elbow_up ? t243 / (t100 - t240) : 0.0;
     const t254 = -(_runtime.FEASIBILITY * (t82 * (1.0 + t253)));
-    const t255 = t241 && (t83 <= t247) && (t83 <= t248) && (t254 <= left_along_rear_elbow_up);
+    const t255 = t241 && t83 <= t247 && t83 <= t248 && t254 <= left_along_rear_elbow_up;
     const t256 = left_along_rear_elbow_up * 0.5 - Math.abs(left_along_rear_elbow_up) * 0.5;
     const t257 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up;
     const t258 = v_2_beta_rear_elbow_up * t256 / (t240 * t240 + t257);
@@ -1578,9 +1572,9 @@ function _ik(v, o) {
     const t264 = v_2_beta_rear_elbow_up * (t263 / total_beta_rear_elbow_up);
     const t265 = t245 - t264;
     const t266 = L1 + t265;
-    const t267 = t255 && (t83 <= t261) && (t83 <= t262) && (t83 <= t266);
+    const t267 = t255 && t83 <= t261 && t83 <= t262 && t83 <= t266;
     const t268 = L1 - t265;
-    const unreachable_3 = !(t267 && (t83 <= t268));
+    const unreachable_3 = !(t267 && t83 <= t268);
     const t269 = invalid || unreachable_3 ? NaN : 0;
     const t270 = folded ? 0.0 : Math.atan2(up, out_rear_elbow_up);
     const t271 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up;
@@ -1638,8 +1632,8 @@ function _ik(v, o) {
     const t304 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down;
     const t305 = spent_beta_rear_elbow_down ? t290 - t295 * lean_beta_rear_elbow_down : t290;
     const p_across_u_rear_elbow_down = sigma_uv_rear_elbow_down * t305;
-    const t306 = t35 && t287 && t299 && (t83 <= -(t304 + p_across_u_rear_elbow_down));
-    const t307 = t306 && (t83 <= p_across_u_rear_elbow_down - t304);
+    const t306 = t35 && t287 && t299 && t83 <= -(t304 + p_across_u_rear_elbow_down);
+    const t307 = t306 && t83 <= p_across_u_rear_elbow_down - t304;
     const t308 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t302;
     const v_2_beta_rear_elbow_down = spent_beta_rear_elbow_down ? t308 :
         v_2_alpha_rear_elbow_down;
@@ -1663,7 +1657,7 @@ function _ik(v, o) {
     const spent_along_rear_elbow_down = Math.max(-t316, left_along_rear_elbow_down) <= t99;
     const t317 = spent_along_rear_elbow_down ? t309 / (t100 - t304) : 0.0;
     const t318 = -(_runtime.FEASIBILITY * (t82 * (1.0 + t317)));
-    const t319 = t307 && (t83 <= t312) && (t83 <= t313) && (t318 <= left_along_rear_elbow_down);
+    const t319 = t307 && t83 <= t312 && t83 <= t313 && t318 <= left_along_rear_elbow_down;
     const t320 = left_along_rear_elbow_down * 0.5 - Math.abs(left_along_rear_elbow_down) * 0.5;
     const t321 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down;
     const t322 = v_2_beta_rear_elbow_down * t320 / (t304 * t304 + t321);
@@ -1679,9 +1673,9 @@ function _ik(v, o) {
     const t327 = v_2_beta_rear_elbow_down * (t326 / total_beta_rear_elbow_down);
     const along_u_rear_elbow_down = t310 + t327;
     const t328 = L1 - along_u_rear_elbow_down;
-    const t329 = t319 && (t83 <= t324) && (t83 <= t325) && (t83 <= t328);
+    const t329 = t319 && t83 <= t324 && t83 <= t325 && t83 <= t328;
     const t330 = L1 + along_u_rear_elbow_down;
-    const unreachable_4 = !(t329 && (t83 <= t330));
+    const unreachable_4 = !(t329 && t83 <= t330);
     const t331 = invalid || unreachable_4 ? NaN : 0;
     const t332 = folded ? 0.0 : Math.atan2(-t129, -out_front_elbow_down);
     const t333 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down;
@@ -1696,8 +1690,8 @@ function _ik(v, o) {
     const t340 = t122 - (t334 - Math.atan2(t339, 1.0));
     const t341 = below_beta_rear_elbow_down * above_beta_rear_elbow_down;
     const t342 = t338 - Math.atan2(t326, 2.0 * Math.sqrt(t341));
-    const t343 = (wrist <= al * _runtime.DETERMINED) || nowhere;
-    const t344 = t343 || folded || short;
+    const t343 = wrist <= al * _runtime.DETERMINED || nowhere || folded;
+    const t344 = t343 || short;
     const t345 = invalid ? 3 : unreachable ? 1 : t344 || parallel ? 2 : 0;
     const t346 = invalid ? 3 : unreachable_2 ? 1 : t344 || parallel_front_elbow_down ? 2 : 0;
     const t347 = invalid ? 3 : unreachable_3 ? 1 : t344 || parallel_rear_elbow_up ? 2 : 0;
@@ -1780,37 +1774,37 @@ function _ik_common(v, o) {
     const t14 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d1) && Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al)
         && Number.isFinite(loff) && Number.isFinite(lp);
-    const t15 = t14 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t16 = t15 && (0.0 <= d1) && (0.0 <= d) && (0.0 <= gs);
-    const t17 = t16 && (0.0 <= al) && (0.0 <= loff) && (0.0 <= lp);
-    const t18 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z) &&
+    const t15 = t14 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
+    const t16 = t15 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
+    const t17 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z) &&
         Number.isFinite(psi) && Number.isFinite(phi) && Number.isFinite(pitch);
-    const t19 = Math.abs(0.0 < L1 * d * (L2 + a3) ? 0.0 : 1.0);
-    const invalid = !(t17 && t18 && (t19 <= _runtime.ROTATION));
+    const t18 = Math.abs(0.0 < L1 * d * (L2 + a3) ? 0.0 : 1.0);
+    const t19 = t16 && 0.0 <= lp && t17 && t18 <= _runtime.ROTATION;
+    const invalid = !t19;
     const t20 = -(_runtime.FEASIBILITY * (d * 0.5));
-    const t21 = (-_runtime.FEASIBILITY <= c_phi) && (t20 <= t2);
+    const t21 = -_runtime.FEASIBILITY <= c_phi && t20 <= t2 && t20 <= t3;
     const t22 = L1 + L2;
     const t23 = -(_runtime.FEASIBILITY * t22);
-    const t24 = t21 && (t20 <= t3) && (t23 <= t9) && (t23 <= t10);
     const L_2W = L2 + c_psi * t6;
     const a_3W = a3 + c_phi * t1 + s_phi * t7;
     const fore = Math.sqrt(L_2W * L_2W + a_3W * a_3W);
-    const t25 = L1 + fore;
-    const t26 = 2.0 * fore;
-    const t27 = _runtime.FEASIBILITY * (t25 * (L1 * 2.0 + t26));
-    const t28 = t25 * t25;
-    const t29 = z - d1;
-    const square = t29 * t29 + onward * onward;
-    const t30 = t28 - square;
+    const t24 = L1 + fore;
+    const t25 = 2.0 * fore;
+    const t26 = _runtime.FEASIBILITY * (t24 * (L1 * 2.0 + t25));
+    const t27 = t24 * t24;
+    const t28 = z - d1;
+    const square = t28 * t28 + onward * onward;
+    const t29 = t27 - square;
+    const t30 = t21 && t23 <= t9 && t23 <= t10 && -t26 <= t29;
     const t31 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13;
     const t32 = L1 - fore;
-    const t33 = _runtime.FEASIBILITY * (t25 * (t31 + 2.0 * Math.abs(t32)));
+    const t33 = _runtime.FEASIBILITY * (t24 * (t31 + 2.0 * Math.abs(t32)));
     const t34 = square - t32 * t32;
-    const t35 = t24 && (-t27 <= t30) && (-t33 <= t34);
+    const t35 = t30 && -t33 <= t34;
     const play_alpha = d * (L1 + Math.sqrt(L2 * L2 + a3 * a3));
     const t36 = -(_runtime.FEASIBILITY * play_alpha);
     const M = Math.max(t34, 0.0);
-    const N = Math.max(t30, 0.0);
+    const N = Math.max(t29, 0.0);
     const t37 = 1.0 / (M + N);
     const t38 = M - N;
     const t39 = t37 * t38;
@@ -1831,10 +1825,10 @@ function _ik_common(v, o) {
     const ahead = d * s_psi * t5;
     const t50 = fore * s_bend_front_elbow_down;
     const t51 = onward * t50;
-    const ahead_1 = t32 + t26 * M * t37;
-    const t52 = t29 * ahead_1;
+    const ahead_1 = t32 + t25 * M * t37;
+    const t52 = t28 * ahead_1;
     const up = t51 + t52;
-    const t53 = t29 * t50;
+    const t53 = t28 * t50;
     const t54 = onward * ahead_1;
     const out_rear_elbow_up = t53 - t54;
     const t55 = out_rear_elbow_up * out_rear_elbow_up + up * up;
@@ -1851,29 +1845,29 @@ function _ik_common(v, o) {
     const t63 = t61 - t62;
     const room_alpha = t49 - Math.abs(t48 * t60 - v_2 * t63);
     const room_beta = t49 - Math.abs(-(L1 * t63));
-    const t64 = t35 && (t36 <= room_alpha) && (t36 <= room_beta);
-    const t65 = Math.abs(higher);
-    const t66 = Math.abs(ahead);
-    const play_along = d + t65 + t66;
-    const t67 = -(_runtime.FEASIBILITY * play_along);
+    const t64 = Math.abs(higher);
+    const t65 = Math.abs(ahead);
+    const play_along = d + t64 + t65;
+    const t66 = -(_runtime.FEASIBILITY * play_along);
     const sigma_uv = -whole_alpha < 0 ? -1 : 1;
-    const t68 = t48 * sigma_uv;
+    const t67 = t48 * sigma_uv;
     const p_across_u = sigma_uv * t63;
-    const t69 = -(t68 + p_across_u);
-    const t70 = t67 <= t69;
-    const t71 = p_across_u - t68;
-    const t72 = t67 <= t71;
-    const t73 = _runtime.VANISHING * (d * 16.0 + t65 * 16.0 + 16.0 * t66);
+    const t68 = -(t67 + p_across_u);
+    const t69 = t66 <= t68;
+    const t70 = t35 && t36 <= room_alpha && t36 <= room_beta && t69;
+    const t71 = p_across_u - t67;
+    const t72 = t66 <= t71;
+    const t73 = _runtime.VANISHING * (d * 16.0 + t64 * 16.0 + 16.0 * t65);
     const t74 = _runtime.VANISHING * t73;
-    const below_beta_0 = Math.max(t69, t74);
+    const below_beta_0 = Math.max(t68, t74);
     const above_beta_0 = Math.max(t71, t74);
     const t75 = below_beta_0 - above_beta_0;
     const t76 = t60 - v_2 * (t75 / (below_beta_0 + above_beta_0));
     const left_along = L1 - Math.abs(t76);
-    const t77 = t64 && t70 && t72 && t70 && t72 && (t67 <= left_along);
+    const t77 = t70 && t72 && t69 && t72 && t66 <= left_along;
     const t78 = L1 + t76;
     const t79 = L1 - t76;
-    const t80 = t77 && t70 && t72 && (t67 <= t78) && (t67 <= t79);
+    const t80 = t77 && t69 && t72 && t66 <= t78 && t66 <= t79;
     const unreachable = !t80;
     const t81 = invalid || unreachable ? NaN : 0;
     const t82 = Math.atan2(0.0, 1.0);
@@ -1909,15 +1903,14 @@ function _ik_common(v, o) {
     const t104 = v_2_front_elbow_down * p_1_front_elbow_down - t93 * t103;
     const room_alpha_front_elbow_down = t94 - Math.abs(t104);
     const room_beta_front_elbow_down = t94 - Math.abs(L1 * p_1_front_elbow_down);
-    const t105 = t35 && (t36 <= room_alpha_front_elbow_down) && (t36 <=
-        room_beta_front_elbow_down);
+    const t105 = t35 && t36 <= room_alpha_front_elbow_down && t36 <= room_beta_front_elbow_down;
     const sigma_uv_front_elbow_down = -whole_alpha_front_elbow_down < 0 ? -1 : 1;
     const t106 = sigma_uv_front_elbow_down * p_1_front_elbow_down;
     const t107 = t93 * sigma_uv_front_elbow_down;
     const t108 = t106 - t107;
-    const t109 = t67 <= t108;
+    const t109 = t66 <= t108;
     const t110 = -(t107 + t106);
-    const t111 = t67 <= t110;
+    const t111 = t66 <= t110;
     const below_beta_0_front_elbow_down = Math.max(t108, t74);
     const above_beta_0_front_elbow_down = Math.max(t110, t74);
     const t112 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down;
@@ -1926,10 +1919,10 @@ function _ik_common(v, o) {
     const t113 = v_2_front_elbow_down * (t112 / total_beta_0_front_elbow_down);
     const along_u_front_elbow_down = t103 + t113;
     const left_along_front_elbow_down = L1 - Math.abs(-along_u_front_elbow_down);
-    const t114 = t105 && t109 && t111 && t109 && t111 && (t67 <= left_along_front_elbow_down);
+    const t114 = t105 && t109 && t111 && t109 && t111 && t66 <= left_along_front_elbow_down;
     const t115 = L1 - along_u_front_elbow_down;
     const t116 = L1 + along_u_front_elbow_down;
-    const t117 = t114 && t109 && t111 && (t67 <= t115) && (t67 <= t116);
+    const t117 = t114 && t109 && t111 && t66 <= t115 && t66 <= t116;
     const unreachable_2 = !t117;
     const t118 = invalid || unreachable_2 ? NaN : 0;
     const t119 = t82 + Math.atan2(-t95, out_front_elbow_down);
@@ -1947,12 +1940,12 @@ function _ik_common(v, o) {
     const t129 = Math.abs(v_2_front_elbow_down * t127 + t93 * t128);
     const room_alpha_rear_elbow_up = t94 - t129;
     const room_beta_rear_elbow_up = t94 - Math.abs(L1 * t127);
-    const t130 = t35 && (t36 <= room_alpha_rear_elbow_up) && (t36 <= room_beta_rear_elbow_up);
+    const t130 = t35 && t36 <= room_alpha_rear_elbow_up && t36 <= room_beta_rear_elbow_up;
     const t131 = sigma_uv_front_elbow_down * t127;
     const t132 = t131 - t107;
-    const t133 = t67 <= t132;
+    const t133 = t66 <= t132;
     const t134 = -(t107 + t131);
-    const t135 = t67 <= t134;
+    const t135 = t66 <= t134;
     const below_beta_0_rear_elbow_up = Math.max(t132, t74);
     const above_beta_0_rear_elbow_up = Math.max(t134, t74);
     const t136 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up;
@@ -1960,10 +1953,10 @@ function _ik_common(v, o) {
     const t137 = v_2_front_elbow_down * (t136 / total_beta_0_rear_elbow_up);
     const t138 = t128 - t137;
     const left_along_rear_elbow_up = L1 - Math.abs(t138);
-    const t139 = t130 && t133 && t135 && t133 && t135 && (t67 <= left_along_rear_elbow_up);
+    const t139 = t130 && t133 && t135 && t133 && t135 && t66 <= left_along_rear_elbow_up;
     const t140 = L1 + t138;
     const t141 = L1 - t138;
-    const t142 = t139 && t133 && t135 && (t67 <= t140) && (t67 <= t141);
+    const t142 = t139 && t133 && t135 && t66 <= t140 && t66 <= t141;
     const unreachable_3 = !t142;
     const t143 = invalid || unreachable_3 ? NaN : 0;
     const t144 = t82 + Math.atan2(up, out_rear_elbow_up);
@@ -1978,13 +1971,12 @@ function _ik_common(v, o) {
     const t151 = t101 - t102;
     const room_alpha_rear_elbow_down = t49 - Math.abs(-(v_2 * t150 + t48 * t151));
     const room_beta_rear_elbow_down = t49 - Math.abs(-(L1 * t150));
-    const t152 = t35 && (t36 <= room_alpha_rear_elbow_down) && (t36 <=
-        room_beta_rear_elbow_down);
+    const t152 = t35 && t36 <= room_alpha_rear_elbow_down && t36 <= room_beta_rear_elbow_down;
     const p_across_u_rear_elbow_down = sigma_uv * t150;
-    const t153 = -(t68 + p_across_u_rear_elbow_down);
-    const t154 = t67 <= t153;
-    const t155 = p_across_u_rear_elbow_down - t68;
-    const t156 = t67 <= t155;
+    const t153 = -(t67 + p_across_u_rear_elbow_down);
+    const t154 = t66 <= t153;
+    const t155 = p_across_u_rear_elbow_down - t67;
+    const t156 = t66 <= t155;
     const below_beta_0_rear_elbow_down = Math.max(t153, t74);
     const above_beta_0_rear_elbow_down = Math.max(t155, t74);
     const t157 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down;
@@ -1992,10 +1984,10 @@ function _ik_common(v, o) {
         above_beta_0_rear_elbow_down;
     const along_u_rear_elbow_down = t151 + v_2 * (t157 / total_beta_0_rear_elbow_down);
     const left_along_rear_elbow_down = L1 - Math.abs(-along_u_rear_elbow_down);
-    const t158 = t152 && t154 && t156 && t154 && t156 && (t67 <= left_along_rear_elbow_down);
+    const t158 = t152 && t154 && t156 && t154 && t156 && t66 <= left_along_rear_elbow_down;
     const t159 = L1 - along_u_rear_elbow_down;
     const t160 = L1 + along_u_rear_elbow_down;
-    const t161 = t158 && t154 && t156 && (t67 <= t159) && (t67 <= t160);
+    const t161 = t158 && t154 && t156 && t66 <= t159 && t66 <= t160;
     const unreachable_4 = !t161;
     const t162 = invalid || unreachable_4 ? NaN : 0;
     const t163 = t82 + Math.atan2(-t95, -out_front_elbow_down);
@@ -2010,23 +2002,23 @@ function _ik_common(v, o) {
     const t170 = invalid ? 3 : unreachable_2 ? 1 : t169 ? 2 : 0;
     const t171 = invalid ? 3 : unreachable_3 ? 1 : t169 ? 2 : 0;
     const t172 = invalid ? 3 : unreachable_4 ? 1 : t169 ? 2 : 0;
-    const t173 = (h <= t22 * _runtime.VANISHING) || (L1 * fore <= _runtime.VANISHING * t28);
-    const t174 = _runtime.VANISHING * t25;
-    const t175 = t173 || (Math.abs(t29) + Math.abs(onward) <= t174);
+    const t173 = h <= t22 * _runtime.VANISHING || L1 * fore <= _runtime.VANISHING * t27;
+    const t174 = _runtime.VANISHING * t24;
+    const t175 = t173 || Math.abs(t28) + Math.abs(onward) <= t174;
     const t176 = Math.max(-(room_alpha * 9.094947017729282e-13), room_alpha);
     const t177 = _runtime.VANISHING * play_alpha;
     const t178 = Math.max(-(room_beta * 9.094947017729282e-13), room_beta);
-    const t179 = t175 || (fore <= t174) || (t176 <= t177) || (t178 <= t177);
-    const parallel = -t68 <= _runtime.VANISHING * (64.0 * Math.abs(v_2));
+    const t179 = t175 || fore <= t174 || t176 <= t177 || t178 <= t177;
+    const parallel = -t67 <= _runtime.VANISHING * (64.0 * Math.abs(v_2));
     const t180 = Math.max(-(left_along * 9.094947017729282e-13), left_along);
     const t181 = _runtime.VANISHING * play_along;
     const t182 = room_alpha_front_elbow_down * 9.094947017729282e-13;
     const spent_alpha_front_elbow_down = Math.max(-t182, room_alpha_front_elbow_down) <= t177;
-    const t183 = t179 || parallel || (t180 <= t181) || spent_alpha_front_elbow_down;
+    const t183 = t179 || parallel || t180 <= t181 || spent_alpha_front_elbow_down;
     const t184 = room_beta_front_elbow_down * 9.094947017729282e-13;
     const spent_beta_front_elbow_down = Math.max(-t184, room_beta_front_elbow_down) <= t177;
     const t185 = _runtime.VANISHING * (64.0 * Math.abs(v_2_front_elbow_down));
-    const t186 = t183 || spent_beta_front_elbow_down || (-t107 <= t185);
+    const t186 = t183 || spent_beta_front_elbow_down || -t107 <= t185;
     const t187 = left_along_front_elbow_down * 9.094947017729282e-13;
     const spent_along_front_elbow_down = Math.max(-t187, left_along_front_elbow_down) <= t181;
     const t188 = room_alpha_rear_elbow_up * 9.094947017729282e-13;
@@ -2159,12 +2151,11 @@ function _wrist_length(v, o) {
     const t2 = d - c_psi * (gs - al);
     const t3 = Math.sqrt(Math.max(t1, 0.0) * Math.max(t2, 0.0));
     const t4 = Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al);
-    const t5 = t4 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
-    const t6 = t5 && (Number.isFinite(psi) && Number.isFinite(phi));
-    const t7 = -(_runtime.FEASIBILITY * (d * 0.5));
-    const t8 = (-_runtime.FEASIBILITY <= c_phi) && (t7 <= t1);
-    const t9 = t3 / c_psi + (!t6 || !(t8 && (t7 <= t2)) ? NaN : 0);
-    o[0] = t9;
+    const t5 = t4 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && (Number.isFinite(psi) &&
+        Number.isFinite(phi));
+    const t6 = -(_runtime.FEASIBILITY * (d * 0.5));
+    const t7 = -_runtime.FEASIBILITY <= c_phi && t6 <= t1 && t6 <= t2;
+    o[0] = t3 / c_psi + (!t5 || !t7 ? NaN : 0);
 }
 
 const _WRIST_LENGTH = _runtime.kernel({
@@ -2294,9 +2285,9 @@ function _largest_yaw(v, o) {
     const t1 = span - d;
     const t2 = Math.atan2(Math.sqrt(Math.max(t1, 0.0)), Math.sqrt(d + span));
     const t3 = Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al);
-    const t4 = t3 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
-    const t5 = Number.isFinite(phi) && Number.isFinite(beta_min);
-    const failed = !(t4 && t5) || !(-(_runtime.FEASIBILITY * (gs + al)) <= t1);
+    const t4 = Number.isFinite(phi) && Number.isFinite(beta_min);
+    const t5 = t3 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && t4;
+    const failed = !t5 || !(-(_runtime.FEASIBILITY * (gs + al)) <= t1);
     o[0] = _runtime.wrap(2.0 * t2) + (failed ? NaN : 0);
 }
 
@@ -2356,9 +2347,8 @@ function _largest_angle(v, o) {
     const t1 = span - d;
     const t2 = Math.atan2(Math.sqrt(Math.max(t1, 0.0)), Math.sqrt(d + span));
     const t3 = Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al);
-    const t4 = t3 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
-    const failed = !(t4 && Number.isFinite(beta_min)) || !(-(_runtime.FEASIBILITY * (gs + al))
-        <= t1);
+    const t4 = t3 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && Number.isFinite(beta_min);
+    const failed = !t4 || !(-(_runtime.FEASIBILITY * (gs + al)) <= t1);
     o[0] = _runtime.wrap(2.0 * t2) + (failed ? NaN : 0);
 }
 

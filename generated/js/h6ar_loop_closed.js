@@ -213,24 +213,23 @@ function _fk(v, o) {
     const t68 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d1) && Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al)
         && Number.isFinite(loff) && Number.isFinite(lp);
-    const t69 = t68 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t70 = t69 && (0.0 <= d1) && (0.0 <= d) && (0.0 <= gs);
-    const t71 = t70 && (0.0 <= al) && (0.0 <= loff) && (0.0 <= lp);
-    const t72 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
+    const t69 = t68 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
+    const t70 = t69 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
+    const t71 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const t73 = -(_runtime.FEASIBILITY * (d * t23));
-    const t74 = -(_runtime.FEASIBILITY * t59);
-    const t75 = (t73 <= t45) && (t73 <= t42) && (t74 <= t60) && (t74 <= t61);
-    const t76 = !(t71 && t72) || !t75 ? NaN : 0;
-    const t77 = d1 + L1 * stheta2A - ctheta23A * t66 + stheta23A * t65;
-    const t78 = Math.atan2(-t58, tilted);
-    const t79 = -Math.atan2(-t55, d);
-    o[0] = s1 * t64 + c1 * t67 + t76;
-    o[1] = s1 * t67 - c1 * t64 + t76;
-    o[2] = t77 + t76;
-    o[3] = (t78 <= -Math.PI ? Math.PI : t78) + t76;
-    o[4] = (t79 <= -Math.PI ? Math.PI : t79) + t76;
-    o[5] = _runtime.wrap(principal) + t76;
+    const t72 = -(_runtime.FEASIBILITY * (d * t23));
+    const t73 = -(_runtime.FEASIBILITY * t59);
+    const t74 = t72 <= t45 && t72 <= t42 && t73 <= t60 && t73 <= t61;
+    const t75 = !(t70 && 0.0 <= lp && t71) || !t74 ? NaN : 0;
+    const t76 = d1 + L1 * stheta2A - ctheta23A * t66 + stheta23A * t65;
+    const t77 = Math.atan2(-t58, tilted);
+    const t78 = -Math.atan2(-t55, d);
+    o[0] = s1 * t64 + c1 * t67 + t75;
+    o[1] = s1 * t67 - c1 * t64 + t75;
+    o[2] = t76 + t75;
+    o[3] = (t77 <= -Math.PI ? Math.PI : t77) + t75;
+    o[4] = (t78 <= -Math.PI ? Math.PI : t78) + t75;
+    o[5] = _runtime.wrap(principal) + t75;
 }
 
 const _FK = _runtime.kernel({
@@ -425,57 +424,56 @@ function _pose(v, o) {
     const t65 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d1) && Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al)
         && Number.isFinite(loff) && Number.isFinite(lp);
-    const t66 = t65 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t67 = t66 && (0.0 <= d1) && (0.0 <= d) && (0.0 <= gs);
-    const t68 = t67 && (0.0 <= al) && (0.0 <= loff) && (0.0 <= lp);
-    const t69 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
+    const t66 = t65 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
+    const t67 = t66 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
+    const t68 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const t70 = -(_runtime.FEASIBILITY * (d * t27));
-    const t71 = gs + al;
-    const t72 = -(_runtime.FEASIBILITY * t71);
-    const t73 = t71 - base;
-    const t74 = base - (gs - al);
-    const t75 = (t70 <= t48) && (t70 <= t45) && (t72 <= t73) && (t72 <= t74);
-    const t76 = !(t68 && t69) || !t75 ? NaN : 0;
-    const t77 = t54 * hand_11 + s1 * hand_21 - t63 * t64 + t76;
-    const t78 = t58 * c_psi;
+    const t69 = -(_runtime.FEASIBILITY * (d * t27));
+    const t70 = gs + al;
+    const t71 = -(_runtime.FEASIBILITY * t70);
+    const t72 = t70 - base;
+    const t73 = base - (gs - al);
+    const t74 = t69 <= t48 && t69 <= t45 && t71 <= t72 && t71 <= t73;
+    const t75 = !(t67 && 0.0 <= lp && t68) || !t74 ? NaN : 0;
+    const t76 = t54 * hand_11 + s1 * hand_21 - t63 * t64 + t75;
+    const t77 = t58 * c_psi;
     const hand_22 = c_phi * c_psi;
-    const t79 = -(t54 * t78 - s1 * hand_22 + t63 * t60) + t76;
+    const t78 = -(t54 * t77 - s1 * hand_22 + t63 * t60) + t75;
     const hand_13 = t62 - t61 * t60;
-    const t80 = t59 + t57 * t60;
+    const t79 = t59 + t57 * t60;
     const hand_33 = c * c_psi;
-    const t81 = t54 * hand_13 + s1 * t80 + t63 * hand_33 + t76;
-    const wrist = Math.sqrt(Math.max(t73, 0.0) * Math.max(t74, 0.0));
-    const t82 = loff + lp * c + wrist;
-    const t83 = t60 * t82;
-    const t84 = lp * t59 + c_phi * t83;
-    const t85 = a3 + lp * t62 - t58 * t83;
-    const t86 = L2 + c_psi * t82;
-    const t87 = L1 * ctheta2A + ctheta23A * t85 + stheta23A * t86;
-    const t88 = s1 * ctheta23A;
-    const t89 = s1 * stheta23A;
-    const t90 = t88 * hand_11 - c1 * hand_21 - t89 * t64 + t76;
-    const t91 = -(t88 * t78 + c1 * hand_22 + t89 * t60) + t76;
-    const t92 = t88 * hand_13 - c1 * t80 + t89 * hand_33 + t76;
-    const t93 = stheta23A * hand_13 - ctheta23A * hand_33 + t76;
-    const t94 = d1 + L1 * stheta2A - ctheta23A * t86 + stheta23A * t85;
-    const t95 = 0.0 + t76;
-    o[0] = t77;
-    o[1] = t79;
-    o[2] = t81;
-    o[3] = s1 * t84 + c1 * t87 + t76;
-    o[4] = t90;
-    o[5] = t91;
-    o[6] = t92;
-    o[7] = s1 * t87 - c1 * t84 + t76;
-    o[8] = ctheta23A * t64 + stheta23A * hand_11 + t76;
-    o[9] = ctheta23A * t60 - stheta23A * t78 + t76;
-    o[10] = t93;
-    o[11] = t94 + t76;
-    o[12] = t95;
-    o[13] = t95;
-    o[14] = t95;
-    o[15] = 1.0 + t76;
+    const t80 = t54 * hand_13 + s1 * t79 + t63 * hand_33 + t75;
+    const wrist = Math.sqrt(Math.max(t72, 0.0) * Math.max(t73, 0.0));
+    const t81 = loff + lp * c + wrist;
+    const t82 = t60 * t81;
+    const t83 = lp * t59 + c_phi * t82;
+    const t84 = a3 + lp * t62 - t58 * t82;
+    const t85 = L2 + c_psi * t81;
+    const t86 = L1 * ctheta2A + ctheta23A * t84 + stheta23A * t85;
+    const t87 = s1 * ctheta23A;
+    const t88 = s1 * stheta23A;
+    const t89 = t87 * hand_11 - c1 * hand_21 - t88 * t64 + t75;
+    const t90 = -(t87 * t77 + c1 * hand_22 + t88 * t60) + t75;
+    const t91 = t87 * hand_13 - c1 * t79 + t88 * hand_33 + t75;
+    const t92 = stheta23A * hand_13 - ctheta23A * hand_33 + t75;
+    const t93 = d1 + L1 * stheta2A - ctheta23A * t85 + stheta23A * t84;
+    const t94 = 0.0 + t75;
+    o[0] = t76;
+    o[1] = t78;
+    o[2] = t80;
+    o[3] = s1 * t83 + c1 * t86 + t75;
+    o[4] = t89;
+    o[5] = t90;
+    o[6] = t91;
+    o[7] = s1 * t86 - c1 * t83 + t75;
+    o[8] = ctheta23A * t64 + stheta23A * hand_11 + t75;
+    o[9] = ctheta23A * t60 - stheta23A * t77 + t75;
+    o[10] = t92;
+    o[11] = t93 + t75;
+    o[12] = t94;
+    o[13] = t94;
+    o[14] = t94;
+    o[15] = 1.0 + t75;
 }
 
 const _POSE = _runtime.kernel({
@@ -861,15 +859,14 @@ function _jacobian(v, o) {
     const t77 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al) &&
         Number.isFinite(loff) && Number.isFinite(lp);
-    const t78 = t77 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t79 = t78 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
+    const t78 = t77 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d;
+    const t79 = t78 && 0.0 <= gs && 0.0 <= al && 0.0 <= loff && 0.0 <= lp;
     const t80 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const invalid = !(t79 && (0.0 <= loff) && (0.0 <= lp) && t80);
     const t81 = -(_runtime.FEASIBILITY * (d * t23));
     const t82 = -(_runtime.FEASIBILITY * t65);
-    const t83 = (t81 <= t45) && (t81 <= t42) && (t82 <= t66) && (t82 <= t67);
-    const t84 = invalid || !t83 ? NaN : 0;
+    const t83 = t81 <= t45 && t81 <= t42 && t82 <= t66 && t82 <= t67;
+    const t84 = !(t79 && t80) || !t83 ? NaN : 0;
     const t85 = c_phi * t74;
     const t86 = t60 * t74;
     const t87 = t62 * t68;
@@ -1200,15 +1197,14 @@ function _determinant(v, o) {
     const t75 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al) &&
         Number.isFinite(loff) && Number.isFinite(lp);
-    const t76 = t75 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t77 = t76 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
+    const t76 = t75 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d;
+    const t77 = t76 && 0.0 <= gs && 0.0 <= al && 0.0 <= loff && 0.0 <= lp;
     const t78 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const invalid = !(t77 && (0.0 <= loff) && (0.0 <= lp) && t78);
     const t79 = -(_runtime.FEASIBILITY * (d * t41));
     const t80 = -(_runtime.FEASIBILITY * t64);
-    const t81 = (t79 <= t56) && (t79 <= t53) && (t80 <= t65) && (t80 <= t66);
-    const t82 = t72 * t73 / t74 + (invalid || !t81 ? NaN : 0);
+    const t81 = t79 <= t56 && t79 <= t53 && t80 <= t65 && t80 <= t66;
+    const t82 = t72 * t73 / t74 + (!(t77 && t78) || !t81 ? NaN : 0);
     o[0] = t82;
 }
 
@@ -1394,15 +1390,14 @@ function _singularities(v, o) {
     const t66 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al) &&
         Number.isFinite(loff) && Number.isFinite(lp);
-    const t67 = t66 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t68 = t67 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
+    const t67 = t66 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d;
+    const t68 = t67 && 0.0 <= gs && 0.0 <= al && 0.0 <= loff && 0.0 <= lp;
     const t69 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
         && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
-    const invalid = !(t68 && (0.0 <= loff) && (0.0 <= lp) && t69);
     const t70 = -(_runtime.FEASIBILITY * (d * t28));
     const t71 = -(_runtime.FEASIBILITY * t59);
-    const t72 = (t70 <= t49) && (t70 <= t46) && (t71 <= t60) && (t71 <= t61);
-    const t73 = invalid || !t72 ? NaN : 0;
+    const t72 = t70 <= t49 && t70 <= t46 && t71 <= t60 && t71 <= t61;
+    const t73 = !(t68 && t69) || !t72 ? NaN : 0;
     const t74 = ctheta2A * ctheta23A + stheta2A * stheta23A;
     const t75 = stheta2A * ctheta23A - ctheta2A * stheta23A;
     const s2R3R = t31 * t55 + t30 * t27;
@@ -1528,42 +1523,42 @@ function _ik(v, o) {
     const t16 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d1) && Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al)
         && Number.isFinite(loff) && Number.isFinite(lp);
-    const t17 = t16 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t18 = t17 && (0.0 <= d1) && (0.0 <= d) && (0.0 <= gs);
-    const t19 = t18 && (0.0 <= al) && (0.0 <= loff) && (0.0 <= lp);
-    const t20 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z) &&
+    const t17 = t16 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
+    const t18 = t17 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
+    const t19 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z) &&
         Number.isFinite(psi) && Number.isFinite(phi) && Number.isFinite(pitch);
-    const t21 = Math.abs(0.0 < L1 * d * (L2 + a3) ? 0.0 : 1.0);
-    const invalid = !(t19 && t20 && (t21 <= _runtime.ROTATION));
+    const t20 = Math.abs(0.0 < L1 * d * (L2 + a3) ? 0.0 : 1.0);
+    const t21 = t18 && 0.0 <= lp && t19 && t20 <= _runtime.ROTATION;
+    const invalid = !t21;
     const t22 = -(_runtime.FEASIBILITY * (d * 0.5));
-    const t23 = (-_runtime.FEASIBILITY <= c_phi) && (t22 <= t6);
+    const t23 = -_runtime.FEASIBILITY <= c_phi && t22 <= t6 && t22 <= t7;
     const t24 = -(_runtime.FEASIBILITY * t1);
-    const t25 = t23 && (t22 <= t7) && (t24 <= t12) && (t24 <= t13);
     const L_2W = L2 + c_psi * t9;
     const a_3W = a3 + c_phi * t3 + s_phi * t10;
     const fore = Math.sqrt(L_2W * L_2W + a_3W * a_3W);
-    const t26 = L1 + fore;
-    const t27 = L1 * 2.0;
-    const t28 = 2.0 * fore;
-    const t29 = -(_runtime.FEASIBILITY * (t26 * (t27 + t28)));
-    const t30 = t26 * t26;
-    const t31 = z - d1;
-    const square = t31 * t31 + onward * onward;
-    const t32 = t30 - square;
+    const t25 = L1 + fore;
+    const t26 = L1 * 2.0;
+    const t27 = 2.0 * fore;
+    const t28 = -(_runtime.FEASIBILITY * (t25 * (t26 + t27)));
+    const t29 = t25 * t25;
+    const t30 = z - d1;
+    const square = t30 * t30 + onward * onward;
+    const t31 = t29 - square;
+    const t32 = t23 && t24 <= t12 && t24 <= t13 && t28 <= t31;
     const t33 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13;
     const t34 = L1 - fore;
-    const t35 = _runtime.FEASIBILITY * (t26 * (t33 + 2.0 * Math.abs(t34)));
+    const t35 = _runtime.FEASIBILITY * (t25 * (t33 + 2.0 * Math.abs(t34)));
     const t36 = square - t34 * t34;
-    const t37 = t25 && (t29 <= t32) && (-t35 <= t36);
+    const t37 = t32 && -t35 <= t36;
     const fore_arm = Math.sqrt(L2 * L2 + a3 * a3);
     const size = L1 + fore_arm;
     const t38 = d * size;
-    const short = L1 * fore <= _runtime.VANISHING * t30;
-    const N = Math.max(t32, 0.0);
+    const short = L1 * fore <= _runtime.VANISHING * t29;
+    const N = Math.max(t31, 0.0);
     const M = Math.max(t36, 0.0);
     const t39 = 1.0 / (N + M);
     const c_bend = short ? 1.0 : -((N - M) * t39);
-    const t40 = _runtime.VANISHING * t26;
+    const t40 = _runtime.VANISHING * t25;
     const bare = fore <= t40;
     const t41 = 1.0 / fore;
     const s_lag = bare ? 0.0 : L_2W * t41;
@@ -1580,16 +1575,16 @@ function _ik(v, o) {
     const t47 = L2 * c_relative - a3 * s_relative;
     const large_mid = fore_arm + Math.abs(straight_mid);
     const small_mid = t47 * t47 / large_mid;
-    const N_mid = t27 * (t46 ? small_mid : large_mid);
+    const N_mid = t26 * (t46 ? small_mid : large_mid);
     const t48 = 1.0 / c_phi;
-    const folded = Math.abs(t31) + Math.abs(onward) <= t40;
+    const folded = Math.abs(t30) + Math.abs(onward) <= t40;
     const t49 = fore * s_bend_front_elbow_down_alike;
-    const t50 = t31 * t49;
-    const ahead_1 = short ? t26 : t34 + t39 * (t28 * M);
+    const t50 = t30 * t49;
+    const ahead_1 = short ? t25 : t34 + t39 * (t27 * M);
     const t51 = onward * ahead_1;
     const t52 = t50 - t51;
     const t53 = onward * t49;
-    const t54 = t31 * ahead_1;
+    const t54 = t30 * ahead_1;
     const up = t53 + t54;
     const t55 = 1.0 / Math.sqrt(t52 * t52 + up * up);
     const t56 = t52 * t55;
@@ -1647,17 +1642,17 @@ function _ik(v, o) {
     const t92 = gap * gap;
     const t93 = L1 - fore_arm;
     const t94 = t93 * t93;
-    const M_mid = t27 * (t46 ? large_mid : small_mid);
+    const M_mid = t26 * (t46 ? large_mid : small_mid);
     const t95 = M_mid + gap;
     const t96 = t79 * t91 < t92 ? t94 - t91 : t63 - t84 - t95;
-    const t97 = t37 && t74 && t77 && (t78 <= t85) && (t78 <= -t96);
+    const t97 = t37 && t74 && t77 && t78 <= t85 && t78 <= -t96;
     const t98 = slope_left * turn;
     const t99 = room_left + t98;
     const h_left = h_left_0 - t87 + r_left_0 * turn;
     const r_left = r_left_0 + t89 - h_left_0 * turn;
     const t100 = h_left * h_left + r_left * r_left;
     const t101 = t79 * t100 < t92 ? t100 - t94 : t63 + t95 - t98;
-    const unreachable = !(t97 && (t78 <= t99) && (t78 <= t101));
+    const unreachable = !(t97 && t78 <= t99 && t78 <= t101);
     const t102 = invalid || unreachable ? NaN : 0;
     const t103 = t15 + t102;
     const t104 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0);
@@ -1712,7 +1707,7 @@ function _ik(v, o) {
     const large_mid_front_elbow_down_alike = fore_arm + t135;
     const small_mid_front_elbow_down_alike = t134 * t134 / large_mid_front_elbow_down_alike;
     const t136 = t133 ? small_mid_front_elbow_down_alike : large_mid_front_elbow_down_alike;
-    const N_mid_front_elbow_down_alike = t27 * t136;
+    const N_mid_front_elbow_down_alike = t26 * t136;
     const out_front_elbow_down_alike = t50 + t51;
     const t137 = out_front_elbow_down_alike * out_front_elbow_down_alike;
     const t138 = t53 - t54;
@@ -1783,10 +1778,10 @@ function _ik(v, o) {
     const t183 = t180 * t180 + t182 * t182;
     const t184 = gap_front_elbow_down_alike * gap_front_elbow_down_alike;
     const t185 = t133 ? large_mid_front_elbow_down_alike : small_mid_front_elbow_down_alike;
-    const M_mid_front_elbow_down_alike = t27 * t185;
+    const M_mid_front_elbow_down_alike = t26 * t185;
     const t186 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike;
     const t187 = t79 * t183 < t184 ? t94 - t183 : t153 - t176 - t186;
-    const t188 = t37 && t164 && t171 && (t78 <= t177) && (t78 <= -t187);
+    const t188 = t37 && t164 && t171 && t78 <= t177 && t78 <= -t187;
     const t189 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike;
     const t190 = room_left_front_elbow_down_alike + t189;
     const t191 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike;
@@ -1797,7 +1792,7 @@ function _ik(v, o) {
     const t194 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike;
     const t195 = t192 + t194;
     const t196 = t79 * t195 < t184 ? t195 - t94 : t153 + t186 - t189;
-    const unreachable_2 = !(t188 && (t78 <= t190) && (t78 <= t196));
+    const unreachable_2 = !(t188 && t78 <= t190 && t78 <= t196);
     const t197 = invalid || unreachable_2 ? NaN : 0;
     const t198 = t15 + t197;
     const folded_right_front_elbow_down_alike = Math.abs(-t180) + Math.abs(-t182) <= t104;
@@ -1910,7 +1905,7 @@ function _ik(v, o) {
     const t269 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike;
     const t270 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike;
     const t271 = t79 * t268 < t269 ? t94 - t268 : t241 - t261 - t270;
-    const t272 = t37 && t249 && t256 && (t78 <= t262) && (t78 <= -t271);
+    const t272 = t37 && t249 && t256 && t78 <= t262 && t78 <= -t271;
     const t273 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike;
     const t274 = room_left_rear_elbow_up_alike + t273;
     const t275 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike;
@@ -1921,7 +1916,7 @@ function _ik(v, o) {
     const t278 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike;
     const t279 = t276 + t278;
     const t280 = t79 * t279 < t269 ? t279 - t94 : t241 + t270 - t273;
-    const unreachable_3 = !(t272 && (t78 <= t274) && (t78 <= t280));
+    const unreachable_3 = !(t272 && t78 <= t274 && t78 <= t280);
     const t281 = invalid || unreachable_3 ? NaN : 0;
     const t282 = t230 + t281;
     const folded_right_rear_elbow_up_alike = Math.abs(-t265) + Math.abs(-t267) <= t104;
@@ -2023,7 +2018,7 @@ function _ik(v, o) {
     const t348 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike;
     const t349 = M_mid + gap_rear_elbow_down_alike;
     const t350 = t79 * t347 < t348 ? t94 - t347 : t321 - t340 - t349;
-    const t351 = t37 && t329 && t335 && (t78 <= t341) && (t78 <= -t350);
+    const t351 = t37 && t329 && t335 && t78 <= t341 && t78 <= -t350;
     const t352 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike;
     const t353 = room_left_rear_elbow_down_alike + t352;
     const t354 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike;
@@ -2034,7 +2029,7 @@ function _ik(v, o) {
     const t357 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike;
     const t358 = t355 + t357;
     const t359 = t79 * t358 < t348 ? t358 - t94 : t321 + t349 - t352;
-    const unreachable_4 = !(t351 && (t78 <= t353) && (t78 <= t359));
+    const unreachable_4 = !(t351 && t78 <= t353 && t78 <= t359);
     const t360 = invalid || unreachable_4 ? NaN : 0;
     const t361 = t230 + t360;
     const folded_right_rear_elbow_down_alike = Math.abs(-t344) + Math.abs(-t346) <= t104;
@@ -2089,7 +2084,7 @@ function _ik(v, o) {
     const t393 = t79 * t392;
     const t394 = square_mid <= t393;
     const t395 = wrist <= al * _runtime.DETERMINED;
-    const t396 = t390 || (t391 <= t392 * (t79 * gap)) || t394 || t395;
+    const t396 = t390 || t391 <= t392 * (t79 * gap) || t394 || t395;
     const t397 = t396 || folded_right || short_right || folded_left;
     const t398 = invalid ? 3 : unreachable ? 1 : t397 ? 2 : 0;
     const square_mid_front_elbow_down_alike = t94 + M_mid_front_elbow_down_alike;
@@ -2214,39 +2209,39 @@ function _ik_common(v, o) {
     const t15 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d1) && Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al)
         && Number.isFinite(loff) && Number.isFinite(lp);
-    const t16 = t15 && (0.0 <= L1) && (0.0 <= L2) && (0.0 <= a3);
-    const t17 = t16 && (0.0 <= d1) && (0.0 <= d) && (0.0 <= gs);
-    const t18 = t17 && (0.0 <= al) && (0.0 <= loff) && (0.0 <= lp);
-    const t19 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z) &&
+    const t16 = t15 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
+    const t17 = t16 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
+    const t18 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z) &&
         Number.isFinite(psi) && Number.isFinite(phi) && Number.isFinite(pitch);
-    const t20 = Math.abs(0.0 < L1 * d * (L2 + a3) ? 0.0 : 1.0);
-    const invalid = !(t18 && t19 && (t20 <= _runtime.ROTATION));
+    const t19 = Math.abs(0.0 < L1 * d * (L2 + a3) ? 0.0 : 1.0);
+    const t20 = t17 && 0.0 <= lp && t18 && t19 <= _runtime.ROTATION;
+    const invalid = !t20;
     const t21 = -(_runtime.FEASIBILITY * (d * 0.5));
-    const t22 = (-_runtime.FEASIBILITY <= c_phi) && (t21 <= t4);
+    const t22 = -_runtime.FEASIBILITY <= c_phi && t21 <= t4 && t21 <= t5;
     const t23 = L1 + L2;
     const t24 = -(_runtime.FEASIBILITY * t23);
-    const t25 = t22 && (t21 <= t5) && (t24 <= t10) && (t24 <= t11);
     const L_2W = L2 + c_psi * t7;
     const a_3W = a3 + c_phi * t1 + s_phi * t8;
     const fore = Math.sqrt(L_2W * L_2W + a_3W * a_3W);
-    const t26 = L1 + fore;
-    const t27 = L1 * 2.0;
-    const t28 = 2.0 * fore;
-    const t29 = -(_runtime.FEASIBILITY * (t26 * (t27 + t28)));
-    const t30 = t26 * t26;
-    const t31 = z - d1;
-    const square = t31 * t31 + onward * onward;
-    const t32 = t30 - square;
+    const t25 = L1 + fore;
+    const t26 = L1 * 2.0;
+    const t27 = 2.0 * fore;
+    const t28 = -(_runtime.FEASIBILITY * (t25 * (t26 + t27)));
+    const t29 = t25 * t25;
+    const t30 = z - d1;
+    const square = t30 * t30 + onward * onward;
+    const t31 = t29 - square;
+    const t32 = t22 && t24 <= t10 && t24 <= t11 && t28 <= t31;
     const t33 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13;
     const t34 = L1 - fore;
-    const t35 = _runtime.FEASIBILITY * (t26 * (t33 + 2.0 * Math.abs(t34)));
+    const t35 = _runtime.FEASIBILITY * (t25 * (t33 + 2.0 * Math.abs(t34)));
     const t36 = square - t34 * t34;
-    const t37 = t25 && (t29 <= t32) && (-t35 <= t36);
+    const t37 = t32 && -t35 <= t36;
     const fore_arm = Math.sqrt(L2 * L2 + a3 * a3);
     const size = L1 + fore_arm;
     const play_right = d * size;
     const t38 = -(_runtime.FEASIBILITY * play_right);
-    const N = Math.max(t32, 0.0);
+    const N = Math.max(t31, 0.0);
     const M = Math.max(t36, 0.0);
     const t39 = 1.0 / (N + M);
     const t40 = (N - M) * t39;
@@ -2265,15 +2260,15 @@ function _ik_common(v, o) {
     const bent_mid = L2 * t47 - a3 * t44;
     const large_mid = fore_arm + Math.abs(straight_mid);
     const small_mid = bent_mid * bent_mid / large_mid;
-    const N_mid = t27 * (t48 ? small_mid : large_mid);
+    const N_mid = t26 * (t48 ? small_mid : large_mid);
     const t49 = 1.0 / c_phi;
     const t50 = fore * s_bend_front_elbow_down_alike;
-    const t51 = t31 * t50;
-    const ahead_1 = t34 + t39 * (t28 * M);
+    const t51 = t30 * t50;
+    const ahead_1 = t34 + t39 * (t27 * M);
     const t52 = onward * ahead_1;
     const t53 = t51 - t52;
     const t54 = onward * t50;
-    const t55 = t31 * ahead_1;
+    const t55 = t30 * ahead_1;
     const up = t54 + t55;
     const t56 = 1.0 / Math.sqrt(t53 * t53 + up * up);
     const t57 = t53 * t56;
@@ -2300,15 +2295,15 @@ function _ik_common(v, o) {
     const t72 = gap * gap;
     const t73 = L1 - fore_arm;
     const t74 = t73 * t73;
-    const M_mid = t27 * (t48 ? large_mid : small_mid);
+    const M_mid = t26 * (t48 ? large_mid : small_mid);
     const t75 = M_mid + gap;
     const t76 = t68 * t71 < t72 ? t71 - t74 : twice + t75;
-    const t77 = t37 && t66 && t67 && t66 && (t38 <= t76) && t67;
+    const t77 = t37 && t66 && t67 && t66 && t38 <= t76 && t67;
     const h_left_0 = t61 + point_21;
     const r_left_0 = t60 - t64;
     const t78 = h_left_0 * h_left_0 + r_left_0 * r_left_0;
     const t79 = -(t68 * t78 < t72 ? t74 - t78 : twice - t75);
-    const unreachable = !(t77 && (t38 <= t79));
+    const unreachable = !(t77 && t38 <= t79);
     const t80 = invalid || unreachable ? NaN : 0;
     const t81 = t14 + t80;
     const t82 = _runtime.VANISHING * (_runtime.VANISHING * (play_right * 16.0));
@@ -2351,7 +2346,7 @@ function _ik_common(v, o) {
     const large_mid_front_elbow_down_alike = fore_arm + t109;
     const small_mid_front_elbow_down_alike = t108 / large_mid_front_elbow_down_alike;
     const t110 = t107 ? small_mid_front_elbow_down_alike : large_mid_front_elbow_down_alike;
-    const N_mid_front_elbow_down_alike = t27 * t110;
+    const N_mid_front_elbow_down_alike = t26 * t110;
     const out_front_elbow_down_alike = t51 + t52;
     const t111 = out_front_elbow_down_alike * out_front_elbow_down_alike;
     const t112 = t54 - t55;
@@ -2384,15 +2379,15 @@ function _ik_common(v, o) {
     const t128 = t126 + t127;
     const t129 = gap_front_elbow_down_alike * gap_front_elbow_down_alike;
     const t130 = t107 ? large_mid_front_elbow_down_alike : small_mid_front_elbow_down_alike;
-    const M_mid_front_elbow_down_alike = t27 * t130;
+    const M_mid_front_elbow_down_alike = t26 * t130;
     const t131 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike;
     const t132 = t68 * t128 < t129 ? t128 - t74 : twice_front_elbow_down_alike + t131;
-    const t133 = t37 && t124 && t125 && t124 && (t38 <= t132) && t125;
+    const t133 = t37 && t124 && t125 && t124 && t38 <= t132 && t125;
     const t134 = shift_21_front_elbow_down_alike + t123;
     const t135 = shift_11_front_elbow_down_alike - point_11_front_elbow_down_alike;
     const t136 = t134 * t134 + t135 * t135;
     const t137 = t68 * t136 < t129 ? t74 - t136 : twice_front_elbow_down_alike - t131;
-    const unreachable_2 = !(t133 && (t38 <= -t137));
+    const unreachable_2 = !(t133 && t38 <= -t137);
     const t138 = invalid || unreachable_2 ? NaN : 0;
     const t139 = t14 + t138;
     const M_right_front_elbow_down_alike = Math.max(t132, t82);
@@ -2458,12 +2453,12 @@ function _ik_common(v, o) {
     const t176 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike;
     const t177 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike;
     const t178 = t68 * t175 < t176 ? t175 - t74 : twice_rear_elbow_up_alike + t177;
-    const t179 = t37 && t171 && t172 && t171 && (t38 <= t178) && t172;
+    const t179 = t37 && t171 && t172 && t171 && t38 <= t178 && t172;
     const t180 = t169 - point_21_rear_elbow_up_alike;
     const t181 = t168 - point_11_rear_elbow_up_alike;
     const t182 = t180 * t180 + t181 * t181;
     const t183 = t68 * t182 < t176 ? t74 - t182 : twice_rear_elbow_up_alike - t177;
-    const unreachable_3 = !(t179 && (t38 <= -t183));
+    const unreachable_3 = !(t179 && t38 <= -t183);
     const t184 = invalid || unreachable_3 ? NaN : 0;
     const t185 = t165 + t184;
     const M_right_rear_elbow_up_alike = Math.max(t178, t82);
@@ -2522,14 +2517,14 @@ function _ik_common(v, o) {
     const t223 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike;
     const t224 = M_mid + gap_rear_elbow_down_alike;
     const t225 = t68 * t222 < t223 ? t222 - t74 : twice_rear_elbow_down_alike + t224;
-    const t226 = t37 && t218 && t219 && t218 && (t38 <= t225) && t219;
+    const t226 = t37 && t218 && t219 && t218 && t38 <= t225 && t219;
     const h_left_0_rear_elbow_down_alike = t214 - t217;
     const t227 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike;
     const r_left_0_rear_elbow_down_alike = t212 - t216;
     const t228 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike;
     const t229 = t227 + t228;
     const t230 = t68 * t229 < t223 ? t74 - t229 : twice_rear_elbow_down_alike - t224;
-    const unreachable_4 = !(t226 && (t38 <= -t230));
+    const unreachable_4 = !(t226 && t38 <= -t230);
     const t231 = invalid || unreachable_4 ? NaN : 0;
     const t232 = t165 + t231;
     const M_right_rear_elbow_down_alike = Math.max(t225, t82);
@@ -2574,8 +2569,8 @@ function _ik_common(v, o) {
     const t258 = t68 * t257;
     const t259 = square_mid <= t258;
     const t260 = wrist <= al * _runtime.DETERMINED;
-    const t261 = invalid ? 3 : unreachable ? 1 : (t256 <= t257 * (t68 * gap)) || t259 || t260 ?
-        2 : 0;
+    const t261 = invalid ? 3 : unreachable ? 1 : t256 <= t257 * (t68 * gap) || t259 || t260 ? 2
+        : 0;
     const square_mid_front_elbow_down_alike = t74 + M_mid_front_elbow_down_alike;
     const t262 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike;
     const t263 = t262 <= t257 * (t68 * gap_front_elbow_down_alike);
@@ -2585,40 +2580,40 @@ function _ik_common(v, o) {
     const t267 = invalid ? 3 : unreachable_3 ? 1 : t266 || t264 || t260 ? 2 : 0;
     const t268 = t256 <= t257 * (t68 * gap_rear_elbow_down_alike);
     const t269 = invalid ? 3 : unreachable_4 ? 1 : t268 || t259 || t260 ? 2 : 0;
-    const t270 = (h <= t23 * _runtime.VANISHING) || (L1 * fore <= _runtime.VANISHING * t30);
-    const t271 = _runtime.VANISHING * t26;
-    const t272 = t270 || (fore <= t271) || (Math.abs(t31) + Math.abs(onward) <= t271);
+    const t270 = h <= t23 * _runtime.VANISHING || L1 * fore <= _runtime.VANISHING * t29;
+    const t271 = _runtime.VANISHING * t25;
+    const t272 = t270 || fore <= t271 || Math.abs(t30) + Math.abs(onward) <= t271;
     const t273 = Math.max(-(room_right * 9.094947017729282e-13), room_right);
     const t274 = _runtime.VANISHING * play_right;
     const t275 = Math.max(-(room_left * 9.094947017729282e-13), room_left);
-    const t276 = t272 || (t273 <= t274) || (t275 <= t274) || (L1 * fore_arm <=
-        _runtime.VANISHING * t68);
+    const t276 = t272 || t273 <= t274 || t275 <= t274 || L1 * fore_arm <= _runtime.VANISHING *
+        t68;
     const t277 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0);
-    const t278 = t276 || (Math.abs(-t69) + Math.abs(-t70) <= t277);
-    const t279 = t278 || (fore_arm <= _runtime.VANISHING * size);
+    const t278 = t276 || Math.abs(-t69) + Math.abs(-t70) <= t277;
+    const t279 = t278 || fore_arm <= _runtime.VANISHING * size;
     const folded_left = Math.abs(h_left_0) + Math.abs(r_left_0) <= t277;
     const t280 = room_right_front_elbow_down_alike * 9.094947017729282e-13;
     const t281 = Math.max(-t280, room_right_front_elbow_down_alike);
     const t282 = room_left_front_elbow_down_alike * 9.094947017729282e-13;
     const t283 = Math.max(-t282, room_left_front_elbow_down_alike);
-    const t284 = t279 || folded_left || (t281 <= t274) || (t283 <= t274);
+    const t284 = t279 || folded_left || t281 <= t274 || t283 <= t274;
     const t285 = Math.abs(h_right_0_front_elbow_down_alike) +
         Math.abs(r_right_0_front_elbow_down_alike);
-    const t286 = t284 || (t285 <= t277) || (Math.abs(-t134) + Math.abs(-t135) <= t277);
+    const t286 = t284 || t285 <= t277 || Math.abs(-t134) + Math.abs(-t135) <= t277;
     const t287 = room_right_rear_elbow_up_alike * 9.094947017729282e-13;
     const t288 = Math.max(-t287, room_right_rear_elbow_up_alike);
     const t289 = room_left_rear_elbow_up_alike * 9.094947017729282e-13;
     const t290 = Math.max(-t289, room_left_rear_elbow_up_alike);
     const t291 = Math.abs(h_right_0_rear_elbow_up_alike) +
         Math.abs(r_right_0_rear_elbow_up_alike);
-    const t292 = t286 || (t288 <= t274) || (t290 <= t274) || (t291 <= t277);
-    const t293 = t292 || (Math.abs(-t180) + Math.abs(-t181) <= t277);
+    const t292 = t286 || t288 <= t274 || t290 <= t274 || t291 <= t277;
+    const t293 = t292 || Math.abs(-t180) + Math.abs(-t181) <= t277;
     const t294 = room_right_rear_elbow_down_alike * 9.094947017729282e-13;
     const t295 = Math.max(-t294, room_right_rear_elbow_down_alike);
     const t296 = room_left_rear_elbow_down_alike * 9.094947017729282e-13;
     const t297 = Math.max(-t296, room_left_rear_elbow_down_alike);
-    const t298 = t293 || (t295 <= t274) || (t297 <= t274) || (Math.abs(-t220) + Math.abs(-t221)
-        <= t277);
+    const t298 = t293 || t295 <= t274 || t297 <= t274 || Math.abs(-t220) + Math.abs(-t221) <=
+        t277;
     const t299 = Math.abs(h_left_0_rear_elbow_down_alike) +
         Math.abs(r_left_0_rear_elbow_down_alike);
     o[0] = t81;
@@ -2677,7 +2672,7 @@ function _ik_common(v, o) {
     o[53] = t267;
     o[54] = t269;
     o[55] = t269;
-    o[56] = (t298 || (t299 <= t277)) ? 1 : 0;
+    o[56] = (t298 || t299 <= t277) ? 1 : 0;
 }
 
 const _IK = _runtime.kernel({
@@ -2768,12 +2763,11 @@ function _wrist_length(v, o) {
     const t3 = d - (gs - al) * t1;
     const t4 = Math.sqrt(Math.max(t2, 0.0) * Math.max(t3, 0.0));
     const t5 = Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al);
-    const t6 = t5 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
-    const t7 = t6 && (Number.isFinite(psi) && Number.isFinite(phi));
-    const t8 = -(_runtime.FEASIBILITY * (d * 0.5));
-    const t9 = (-_runtime.FEASIBILITY <= c_phi) && (t8 <= t2);
-    const t10 = t4 / t1 + (!t7 || !(t9 && (t8 <= t3)) ? NaN : 0);
-    o[0] = t10;
+    const t6 = t5 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && (Number.isFinite(psi) &&
+        Number.isFinite(phi));
+    const t7 = -(_runtime.FEASIBILITY * (d * 0.5));
+    const t8 = -_runtime.FEASIBILITY <= c_phi && t7 <= t2 && t7 <= t3;
+    o[0] = t4 / t1 + (!t6 || !t8 ? NaN : 0);
 }
 
 const _WRIST_LENGTH = _runtime.kernel({
@@ -2909,9 +2903,9 @@ function _largest_yaw(v, o) {
     const t1 = span - d;
     const t2 = Math.atan2(Math.sqrt(Math.max(t1, 0.0)), Math.sqrt(d + span));
     const t3 = Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al);
-    const t4 = t3 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
-    const t5 = Number.isFinite(phi) && Number.isFinite(beta_min);
-    const failed = !(t4 && t5) || !(-(_runtime.FEASIBILITY * (gs + al)) <= t1);
+    const t4 = Number.isFinite(phi) && Number.isFinite(beta_min);
+    const t5 = t3 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && t4;
+    const failed = !t5 || !(-(_runtime.FEASIBILITY * (gs + al)) <= t1);
     o[0] = _runtime.wrap(2.0 * t2) + (failed ? NaN : 0);
 }
 
@@ -2971,9 +2965,8 @@ function _largest_angle(v, o) {
     const t1 = span - d;
     const t2 = Math.atan2(Math.sqrt(Math.max(t1, 0.0)), Math.sqrt(d) + Math.sqrt(span));
     const t3 = Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al);
-    const t4 = t3 && (0.0 <= d) && (0.0 <= gs) && (0.0 <= al);
-    const failed = !(t4 && Number.isFinite(beta_min)) || !(-(_runtime.FEASIBILITY * (gs + al))
-        <= t1);
+    const t4 = t3 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && Number.isFinite(beta_min);
+    const failed = !t4 || !(-(_runtime.FEASIBILITY * (gs + al)) <= t1);
     o[0] = _runtime.wrap(2.0 * t2) + (failed ? NaN : 0);
 }
 

@@ -94,9 +94,9 @@ function _fk(v, o) {
     const t10 = height * n_1;
     const P_r = C_r - (t7 - t10);
     const t11 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
-    const t12 = t11 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
-    const t13 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const invalid = !(t12 && t13);
+    const t12 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t13 = t11 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t12;
+    const invalid = !t13;
     const unreachable = !(-(_runtime.FEASIBILITY * t3) <= t9);
     const t14 = invalid || unreachable ? NaN : 0;
     const t15 = distance * n_1 * 0.5;
@@ -208,9 +208,9 @@ function _passive_angles(v, o) {
     const CP_y = t10 + t11;
     const t12 = -Math.atan2(DP_r_right_of_CD, CP_y);
     const t13 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
-    const t14 = t13 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
-    const t15 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const failed = !(t14 && t15) || !(-(_runtime.FEASIBILITY * t3) <= t8);
+    const t14 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t15 = t13 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t14;
+    const failed = !t15 || !(-(_runtime.FEASIBILITY * t3) <= t8);
     const t16 = failed ? NaN : 0;
     const DP_r = t6 + t9;
     const CP_y_right_of_CD = t10 - t11;
@@ -291,16 +291,15 @@ function _jacobian_parallel(v, o) {
     const s3 = _runtime.found[0];
     const c3 = _runtime.found[1];
     const t1 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
-    const t2 = t1 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
-    const t3 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t2 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t3 = t1 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t2;
     const t4 = L0 + L1 + L2;
     const t5 = L2 * 2.0;
     const t6 = L1 * s2 - L1 * s3;
     const t7 = L1 * c2 - (L0 + L1 * c3);
     const apart = Math.sqrt(t6 * t6 + t7 * t7);
     const t8 = t5 - apart;
-    const failed = !(t2 && t3) || !(-(_runtime.FEASIBILITY * t4) <= t8);
-    const t9 = failed ? NaN : 0;
+    const t9 = !t3 || !(-(_runtime.FEASIBILITY * t4) <= t8) ? NaN : 0;
     const t10 = L2 * s1 + t9;
     const t11 = 0.0 + t9;
     const t12 = L2 * c1 + t9;
@@ -428,9 +427,9 @@ function _jacobian_serial(v, o) {
     const t10 = n_1 * height;
     const DP_r_right_of_CD = t7 - t10;
     const t11 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
-    const t12 = t11 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
-    const t13 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const failed = !(t12 && t13) || !(-(_runtime.FEASIBILITY * t4) <= t9);
+    const t12 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t13 = t11 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t12;
+    const failed = !t13 || !(-(_runtime.FEASIBILITY * t4) <= t9);
     const t14 = failed ? NaN : 0;
     const t15 = distance * n_1 * 0.5;
     const t16 = t6 * height;
@@ -535,9 +534,9 @@ function _jacobian(v, o) {
     const DP_r_right_of_CD = t7 - t10;
     const P_r = C_r - DP_r_right_of_CD;
     const t11 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
-    const t12 = t11 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
-    const t13 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const failed = !(t12 && t13) || !(-(_runtime.FEASIBILITY * t4) <= t9);
+    const t12 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t13 = t11 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t12;
+    const failed = !t13 || !(-(_runtime.FEASIBILITY * t4) <= t9);
     const t14 = failed ? NaN : 0;
     const t15 = distance * n_1 * 0.5;
     const t16 = t6 * height;
@@ -669,9 +668,9 @@ function _determinant(v, o) {
     const side = distance * height;
     const t14 = t13 * (t2 * DP_r + D_r * CP_y_right_of_CD) / side;
     const t15 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
-    const t16 = t15 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
-    const t17 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const failed = !(t16 && t17) || !(-(_runtime.FEASIBILITY * t4) <= t9);
+    const t16 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t17 = t15 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t16;
+    const failed = !t17 || !(-(_runtime.FEASIBILITY * t4) <= t9);
     const t18 = failed ? NaN : 0;
     const t19 = (C_r - DP_r) * (C_y * DP_r + C_r * CP_y_right_of_CD);
     const t20 = t19 * (t2 * DP_r_right_of_CD + D_r * CP_y) / side;
@@ -764,9 +763,9 @@ function _singularities(v, o) {
     const t10 = n_1 * height;
     const DP_r_right_of_CD = t7 - t10;
     const t11 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
-    const t12 = t11 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
-    const t13 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const failed = !(t12 && t13) || !(-(_runtime.FEASIBILITY * t4) <= t9);
+    const t12 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t13 = t11 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t12;
+    const failed = !t13 || !(-(_runtime.FEASIBILITY * t4) <= t9);
     const t14 = failed ? NaN : 0;
     const t15 = distance * n_1 * 0.5;
     const t16 = t6 * height;
@@ -862,9 +861,9 @@ function _condition_number(v, o) {
     const height = slack <= t4 ? 0.0 : Math.sqrt(slack * (apart + t6)) * 0.5;
     const t8 = (coincide ? 1.0 : Math.max(t5, height)) / Math.min(t5, height);
     const t9 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
-    const t10 = t9 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
-    const t11 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
-    const failed = !(t10 && t11) || !(-(_runtime.FEASIBILITY * t3) <= t7);
+    const t10 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t11 = t9 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t10;
+    const failed = !t11 || !(-(_runtime.FEASIBILITY * t3) <= t7);
     const t12 = t8 + (failed ? NaN : 0);
     o[0] = t12;
     o[1] = t12;
@@ -936,9 +935,9 @@ function _ik(v, o) {
     const on_axis = r <= t2;
     const t3 = on_axis ? 0.0 : Math.atan2(z, -x);
     const t4 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
-    const t5 = t4 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
-    const t6 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z);
-    const invalid = !(t5 && t6);
+    const t5 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z);
+    const t6 = t4 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t5;
+    const invalid = !t6;
     const t7 = L2 * 2.0;
     const t8 = _runtime.FEASIBILITY * (t1 * (L1 * 2.0 + t7));
     const t9 = t1 * t1;
@@ -952,9 +951,9 @@ function _ik(v, o) {
     const t16 = y - L0;
     const square_d = r2 + t16 * t16;
     const t17 = t9 - square_d;
-    const t18 = (-t8 <= t10) && (-t13 <= t15) && (-t8 <= t17);
-    const t19 = square_d - t14;
-    const unreachable = !(t18 && (-t13 <= t19));
+    const t18 = square_d - t14;
+    const t19 = -t8 <= t10 && -t13 <= t15 && -t8 <= t17 && -t13 <= t18;
+    const unreachable = !t19;
     const t20 = invalid || unreachable ? NaN : 0;
     const t21 = (t3 <= -Math.PI ? Math.PI : t3) + t20;
     const at_A = r + Math.abs(y) <= t2;
@@ -971,7 +970,7 @@ function _ik(v, o) {
     const t27 = at_A ? 0.0 : Math.atan2(t22 - t24, t25 + t26);
     const t28 = (t27 <= -Math.PI ? Math.PI : t27) + t20;
     const at_B = r + Math.abs(t16) <= t2;
-    const M_d = Math.max(t19, 0.0);
+    const M_d = Math.max(t18, 0.0);
     const N_d = Math.max(t17, 0.0);
     const ahead_d = no_link_c ? 1.0 : t1 * M_d + t12 * N_d;
     const t29 = ahead_d * r;
@@ -996,7 +995,7 @@ function _ik(v, o) {
     const t47 = (t46 <= -Math.PI ? Math.PI : t46) + t20;
     const t48 = -t27;
     const t49 = (t48 <= -Math.PI ? Math.PI : t48) + t20;
-    const t50 = on_axis || at_A || at_B || (L1 <= t1 * _runtime.VANISHING);
+    const t50 = on_axis || at_A || at_B || L1 <= t1 * _runtime.VANISHING;
     const t51 = t1 * t12;
     const inner_c = square_c - t51;
     const inner_d = square_d - t51;
@@ -1009,12 +1008,12 @@ function _ik(v, o) {
     const t58 = inner_c * t30;
     const t59 = t56 * (t57 - t58);
     const t60 = _runtime.DETERMINED * (square_c * square_d * 4.0 * (L2 * L2));
-    const t61 = invalid ? 3 : unreachable ? 1 : t50 || (Math.abs(t55 - t59) <= t60) ? 2 : 0;
+    const t61 = invalid ? 3 : unreachable ? 1 : t50 || Math.abs(t55 - t59) <= t60 ? 2 : 0;
     const t62 = t56 * (t57 + t58);
     const t63 = (t52 - t53) * t54;
-    const t64 = invalid ? 3 : unreachable ? 1 : t50 || (Math.abs(t62 - t63) <= t60) ? 2 : 0;
-    const t65 = invalid ? 3 : unreachable ? 1 : t50 || (Math.abs(-(t62 + t63)) <= t60) ? 2 : 0;
-    const t66 = invalid ? 3 : unreachable ? 1 : t50 || (Math.abs(t59 + t55) <= t60) ? 2 : 0;
+    const t64 = invalid ? 3 : unreachable ? 1 : t50 || Math.abs(t62 - t63) <= t60 ? 2 : 0;
+    const t65 = invalid ? 3 : unreachable ? 1 : t50 || Math.abs(-(t62 + t63)) <= t60 ? 2 : 0;
+    const t66 = invalid ? 3 : unreachable ? 1 : t50 || Math.abs(t59 + t55) <= t60 ? 2 : 0;
     o[0] = t21;
     o[1] = t28;
     o[2] = t35;
@@ -1125,8 +1124,8 @@ function _workspace_contains(v, o) {
     const L1 = v[4];
     const L2 = v[5];
     const t1 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
-    const t2 = t1 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
-    const t3 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z);
+    const t2 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z);
+    const t3 = t1 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t2;
     const t4 = L1 + L2;
     const t5 = _runtime.FEASIBILITY * (t4 * (L1 * 2.0 + L2 * 2.0));
     const t6 = t4 * t4;
@@ -1136,11 +1135,11 @@ function _workspace_contains(v, o) {
     const t8 = L1 - L2;
     const t9 = _runtime.FEASIBILITY * (t4 * (t7 + 2.0 * Math.abs(t8)));
     const t10 = t8 * t8;
-    const t11 = (-t5 <= t6 - square_c) && (-t9 <= square_c - t10);
+    const t11 = -t5 <= t6 - square_c && -t9 <= square_c - t10;
     const t12 = y - L0;
     const square_d = r2 + t12 * t12;
-    const t13 = t11 && (-t5 <= t6 - square_d) && (-t9 <= square_d - t10);
-    o[0] = (!(!(t2 && t3) || !t13)) ? 1 : 0;
+    const t13 = t11 && -t5 <= t6 - square_d && -t9 <= square_d - t10;
+    o[0] = (!(!t3 || !t13)) ? 1 : 0;
 }
 
 const _WORKSPACE_CONTAINS = _runtime.kernel({
@@ -1218,8 +1217,8 @@ function _workspace_volume(v, o) {
         r) <= L0 ? t12 + t14 : t15);
     const t17 = Math.max(t1, 0.0) * 2.0 <= L0 ? 0.0 : (t2 <= L0 ? t8 : t16);
     const t18 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
-    const t19 = t18 && (0.0 <= L0) && (0.0 <= L1) && (0.0 <= L2);
-    const failed = !t19 || !(-(t1 * _runtime.FEASIBILITY) <= t1);
+    const invalid = !(t18 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2);
+    const failed = invalid || !(-(t1 * _runtime.FEASIBILITY) <= t1);
     o[0] = t17 + (failed ? NaN : 0);
 }
 

@@ -488,13 +488,13 @@ function _ik(v, o) {
     const t10 = px * ahead;
     const t11 = py * beyond;
     const t12 = at_base ? 0.0 : Math.atan2(t6 - t9, t10 + t11);
-    const t13 = (Number.isFinite(l1) && Number.isFinite(l2)) && (0.0 <= l1);
-    const t14 = t13 && (0.0 <= l2) && (Number.isFinite(px) && Number.isFinite(py));
+    const t13 = (Number.isFinite(l1) && Number.isFinite(l2)) && 0.0 <= l1;
+    const t14 = t13 && 0.0 <= l2 && (Number.isFinite(px) && Number.isFinite(py));
     const invalid = !t14;
     const t15 = _runtime.FEASIBILITY * (t1 * (l1 * 2.0 + t7));
     const t16 = l1 * 1.1368683772161603e-13 + l2 * 1.1368683772161603e-13;
     const t17 = _runtime.FEASIBILITY * (t1 * (t16 + 2.0 * Math.abs(t3)));
-    const unreachable = !((-t15 <= t5) && (-t17 <= t4));
+    const unreachable = !(-t15 <= t5 && -t17 <= t4);
     const t18 = invalid || unreachable ? NaN : 0;
     const t19 = no_link ? 0.0 : Math.atan2(2.0 * t8, M - N);
     const t20 = at_base ? 0.0 : Math.atan2(t6 + t9, t10 - t11);
@@ -596,35 +596,33 @@ function _ik_pose(v, o) {
     const elbow_x = T14 - T11 * l2;
     const c1 = no_first_link ? 1.0 : elbow_x * t2;
     const t3 = Math.atan2(s1, c1);
-    const t4 = (Number.isFinite(l1) && Number.isFinite(l2)) && (0.0 <= l1);
+    const t4 = (Number.isFinite(l1) && Number.isFinite(l2)) && 0.0 <= l1;
     const t5 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
     const t6 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
     const t7 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
     const t8 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
     const t9 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
-    const t10 = t4 && (0.0 <= l2) && t5 && t6 && t7 && t8 && (t9 <= _runtime.ROTATION);
+    const t10 = t4 && 0.0 <= l2 && t5 && t6 && t7 && t8 && t9 <= _runtime.ROTATION;
     const t11 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
     const t12 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
-    const t13 = t10 && (t11 <= _runtime.ROTATION) && t12 && (Math.abs(T41) <=
-        _runtime.ROTATION);
-    const t14 = t13 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
-        _runtime.ROTATION);
-    const t15 = t14 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
+    const t13 = t10 && t11 <= _runtime.ROTATION && t12 && Math.abs(T41) <= _runtime.ROTATION;
+    const t14 = t13 && Math.abs(T42) <= _runtime.ROTATION && Math.abs(T43) <= _runtime.ROTATION;
+    const t15 = t14 && Math.abs(T44 - 1.0) <= _runtime.ROTATION;
     const invalid = !t15;
     const t16 = Math.sqrt(elbow_x * elbow_x + elbow_y * elbow_y);
     const t17 = _runtime.FEASIBILITY * t1;
-    const t18 = (Math.abs(l1 - t16) <= t17) && (Math.abs(T34) <= t17);
-    const t19 = t18 && (Math.abs(T13) <= _runtime.FEASIBILITY);
-    const t20 = t19 && (Math.abs(T23) <= _runtime.FEASIBILITY);
-    const t21 = t20 && (Math.abs(T33 - 1.0) <= _runtime.FEASIBILITY);
-    const unreachable = !t21;
-    const t22 = invalid || unreachable ? NaN : 0;
-    const t23 = Math.atan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1);
-    const t24 = -t23;
-    const t25 = invalid ? 3 : unreachable ? 1 : no_first_link ? 2 : 0;
-    o[0] = (t3 <= -Math.PI ? Math.PI : t3) + t22;
-    o[1] = (t24 <= -Math.PI ? Math.PI : t24) + t22;
-    o[2] = t25;
+    const t18 = Math.abs(l1 - t16) <= t17 && Math.abs(T34) <= t17;
+    const t19 = t18 && Math.abs(T13) <= _runtime.FEASIBILITY && Math.abs(T23) <=
+        _runtime.FEASIBILITY;
+    const t20 = t19 && Math.abs(T33 - 1.0) <= _runtime.FEASIBILITY;
+    const unreachable = !t20;
+    const t21 = invalid || unreachable ? NaN : 0;
+    const t22 = Math.atan2(T11 * s1 - T21 * c1, T11 * c1 + T21 * s1);
+    const t23 = -t22;
+    const t24 = invalid ? 3 : unreachable ? 1 : no_first_link ? 2 : 0;
+    o[0] = (t3 <= -Math.PI ? Math.PI : t3) + t21;
+    o[1] = (t23 <= -Math.PI ? Math.PI : t23) + t21;
+    o[2] = t24;
 }
 
 const _IK_POSE = _runtime.kernel({

@@ -832,26 +832,24 @@ function _ik(v, o) {
         Number.isFinite(d4);
     const t20 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
     const t21 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
-    const t22 = t19 && (0.0 <= a2) && (0.0 <= d4) && t20 && t21;
-    const t23 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
+    const t22 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
+    const t23 = t19 && 0.0 <= a2 && 0.0 <= d4 && t20 && t21 && t22;
     const t24 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
     const t25 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
-    const t26 = t22 && t23 && t24 && (t25 <= _runtime.ROTATION);
-    const t27 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
+    const t26 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
+    const t27 = t23 && t24 && t25 <= _runtime.ROTATION && t26 <= _runtime.ROTATION;
     const t28 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
-    const t29 = t26 && (t27 <= _runtime.ROTATION) && t28 && (Math.abs(T41) <=
-        _runtime.ROTATION);
-    const t30 = t29 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
-        _runtime.ROTATION);
-    const t31 = t30 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
+    const t29 = t27 && t28 && Math.abs(T41) <= _runtime.ROTATION;
+    const t30 = t29 && Math.abs(T42) <= _runtime.ROTATION && Math.abs(T43) <= _runtime.ROTATION;
+    const t31 = t30 && Math.abs(T44 - 1.0) <= _runtime.ROTATION;
     const invalid = !t31;
     const t32 = -(_runtime.FEASIBILITY * size);
     const reach = Math.sqrt(t8 + ahead * ahead);
     const t33 = t1 - reach;
     const t34 = t7 + reach;
-    const t35 = (t32 <= t3) && (t32 <= t4) && (t32 <= t33) && (t32 <= t34);
+    const t35 = t32 <= t3 && t32 <= t4 && t32 <= t33 && t32 <= t34;
     const t36 = reach - t7;
-    const unreachable = !(t35 && (t32 <= t36));
+    const unreachable = !(t35 && t32 <= t36);
     const t37 = invalid || unreachable ? NaN : 0;
     const t38 = (t18 <= -Math.PI ? Math.PI : t18) + t37;
     const folded = reach <= t2;

@@ -58,12 +58,12 @@ function _fk(v, o) {
     const t5 = 1.0 / (b * 2.0);
     const P_x = n_1 * (coincide ? rho1 : b * 0.5 + t4 * t1 * t5);
     const t6 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const invalid = !(Number.isFinite(b) && (0.0 <= b) && t6);
+    const invalid = !(Number.isFinite(b) && 0.0 <= b && t6);
     const t7 = -(_runtime.FEASIBILITY * t2);
     const t8 = t1 - b;
     const t9 = b + t4;
     const t10 = b - t4;
-    const unreachable = !((t7 <= t8) && (t7 <= t9) && (t7 <= t10));
+    const unreachable = !(t7 <= t8 && t7 <= t9 && t7 <= t10);
     const t11 = invalid || unreachable ? NaN : 0;
     const t12 = P_x + t11;
     const slack = Math.max(t8, 0.0);
@@ -159,8 +159,8 @@ function _passive_angles(v, o) {
     const t11 = Math.atan2(P_y, P_x);
     const t12 = Number.isFinite(rho1) && Number.isFinite(rho2);
     const t13 = -(_runtime.FEASIBILITY * t2);
-    const failed = !(Number.isFinite(b) && (0.0 <= b) && t12) || !((t13 <= t4) && (t13 <= t6) &&
-        (t13 <= t7));
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t12) || !(t13 <= t4 && t13 <= t6 && t13
+        <= t7);
     const t14 = failed ? NaN : 0;
     const t15 = Math.atan2(P_y, P_x - b);
     const t16 = -t11;
@@ -232,8 +232,8 @@ function _jacobian(v, o) {
     const t6 = rho1 - rho2;
     const t7 = b + t6;
     const t8 = b - t6;
-    const failed = !(Number.isFinite(b) && (0.0 <= b) && t1) || !((t4 <= t5) && (t4 <= t7) &&
-        (t4 <= t8));
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t1) || !(t4 <= t5 && t4 <= t7 && t4 <=
+        t8);
     const t9 = failed ? NaN : 0;
     const t10 = rho1 / b + t9;
     const t11 = -(rho2 / b) + t9;
@@ -327,8 +327,8 @@ function _determinant(v, o) {
     const t10 = rho1 * rho2 / (b * P_y);
     const t11 = Number.isFinite(rho1) && Number.isFinite(rho2);
     const t12 = -(_runtime.FEASIBILITY * t2);
-    const failed = !(Number.isFinite(b) && (0.0 <= b) && t11) || !((t12 <= t4) && (t12 <= t6) &&
-        (t12 <= t7));
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t11) || !(t12 <= t4 && t12 <= t6 && t12
+        <= t7);
     const t13 = failed ? NaN : 0;
     o[0] = t10 + t13;
     o[1] = -t10 + t13;
@@ -395,8 +395,8 @@ function _singularities(v, o) {
     const t6 = rho1 - rho2;
     const t7 = b + t6;
     const t8 = b - t6;
-    const failed = !(Number.isFinite(b) && (0.0 <= b) && t1) || !((t4 <= t5) && (t4 <= t7) &&
-        (t4 <= t8));
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t1) || !(t4 <= t5 && t4 <= t7 && t4 <=
+        t8);
     const t9 = failed ? NaN : 0;
     const t10 = rho1 + t9;
     const t11 = rho2 + t9;
@@ -470,7 +470,7 @@ function _ik(v, o) {
     const b = v[2];
     const t1 = y * y;
     const leg1 = Math.sqrt(x * x + t1);
-    const t2 = Number.isFinite(b) && (0.0 <= b) && (Number.isFinite(x) && Number.isFinite(y));
+    const t2 = Number.isFinite(b) && 0.0 <= b && (Number.isFinite(x) && Number.isFinite(y));
     const invalid = !t2;
     const t3 = invalid ? NaN : 0;
     const t4 = x - b;

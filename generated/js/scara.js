@@ -590,12 +590,12 @@ function _ik(v, o) {
     const c1 = folded_elbow ? 1.0 : t14 + t15;
     const t16 = Math.atan2(s1, c1);
     const t17 = Number.isFinite(l1) && Number.isFinite(l2) && Number.isFinite(h);
-    const t18 = t17 && (0.0 <= l1) && (0.0 <= l2) && (0.0 <= h);
-    const t19 = Number.isFinite(x_x) && Number.isFinite(x_y) && Number.isFinite(x_z) &&
+    const t18 = Number.isFinite(x_x) && Number.isFinite(x_y) && Number.isFinite(x_z) &&
         Number.isFinite(x_yaw);
-    const invalid = !(t18 && t19);
+    const t19 = t17 && 0.0 <= l1 && 0.0 <= l2 && 0.0 <= h && t18;
+    const invalid = !t19;
     const t20 = -(_runtime.FEASIBILITY * (l1 * 0.5 + l2 * 0.5));
-    const unreachable = !((t20 <= t3) && (t20 <= t7) && (t20 <= t5));
+    const unreachable = !(t20 <= t3 && t20 <= t7 && t20 <= t5);
     const t21 = invalid || unreachable ? NaN : 0;
     const t22 = 1.0 / (t11 + t12);
     const s2 = no_link_elbow ? 0.0 : area_elbow * t22;

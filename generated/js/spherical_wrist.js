@@ -442,10 +442,10 @@ function _ik(v, o) {
     const t4 = Math.abs(R23 + R11 * R32 - R12 * R31) <= _runtime.ROTATION;
     const t5 = Math.abs(R33 - R11 * R22 + R12 * R21) <= _runtime.ROTATION;
     const t6 = Math.abs(1.0 - R11 * R11 - R21 * R21 - R31 * R31);
-    const t7 = Number.isFinite(d6) && t3 && t4 && t5 && (t6 <= _runtime.ROTATION);
+    const t7 = Number.isFinite(d6) && t3 && t4 && t5 && t6 <= _runtime.ROTATION;
     const t8 = Math.abs(1.0 - R12 * R12 - R22 * R22 - R32 * R32);
     const t9 = Math.abs(R11 * R12 + R21 * R22 + R31 * R32) <= _runtime.ROTATION;
-    const invalid = !(t7 && (t8 <= _runtime.ROTATION) && t9);
+    const invalid = !(t7 && t8 <= _runtime.ROTATION && t9);
     const t10 = invalid ? NaN : 0;
     const t11 = Math.atan2(R13 * c4 + R23 * s4, R33);
     const t12 = Math.atan2(R11 * s4 - R21 * c4, R22 * c4 - R12 * s4);

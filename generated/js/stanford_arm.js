@@ -752,15 +752,14 @@ function _ik(v, o) {
     const t18 = Number.isFinite(d2) && t14 && t15 && t16 && t17;
     const t19 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
     const t20 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
-    const t21 = t18 && (t19 <= _runtime.ROTATION) && (t20 <= _runtime.ROTATION);
+    const t21 = t18 && t19 <= _runtime.ROTATION && t20 <= _runtime.ROTATION;
     const t22 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
-    const t23 = t21 && t22 && (Math.abs(T41) <= _runtime.ROTATION);
-    const t24 = t23 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
-        _runtime.ROTATION);
-    const t25 = t24 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
+    const t23 = t21 && t22 && Math.abs(T41) <= _runtime.ROTATION;
+    const t24 = t23 && Math.abs(T42) <= _runtime.ROTATION && Math.abs(T43) <= _runtime.ROTATION;
+    const t25 = t24 && Math.abs(T44 - 1.0) <= _runtime.ROTATION;
     const invalid = !t25;
     const t26 = -(_runtime.FEASIBILITY * size);
-    const unreachable = !((t26 <= t4) && (t26 <= t5));
+    const unreachable = !(t26 <= t4 && t26 <= t5);
     const t27 = invalid || unreachable ? NaN : 0;
     const t28 = (t13 <= -Math.PI ? Math.PI : t13) + t27;
     const reach = Math.sqrt(t2 + root * root);
@@ -983,17 +982,16 @@ function _ik_common(v, o) {
     const t17 = Number.isFinite(d2) && t13 && t14 && t15 && t16;
     const t18 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
     const t19 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
-    const t20 = t17 && (t18 <= _runtime.ROTATION) && (t19 <= _runtime.ROTATION);
+    const t20 = t17 && t18 <= _runtime.ROTATION && t19 <= _runtime.ROTATION;
     const t21 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
-    const t22 = t20 && t21 && (Math.abs(T41) <= _runtime.ROTATION);
-    const t23 = t22 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
-        _runtime.ROTATION);
-    const t24 = t23 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
+    const t22 = t20 && t21 && Math.abs(T41) <= _runtime.ROTATION;
+    const t23 = t22 && Math.abs(T42) <= _runtime.ROTATION && Math.abs(T43) <= _runtime.ROTATION;
+    const t24 = t23 && Math.abs(T44 - 1.0) <= _runtime.ROTATION;
     const invalid = !t24;
     const t25 = T34 * T34;
     const size = Math.abs(d2) + Math.sqrt(t25 + t1);
     const t26 = -(_runtime.FEASIBILITY * size);
-    const unreachable = !((t26 <= t2) && (t26 <= t3));
+    const unreachable = !(t26 <= t2 && t26 <= t3);
     const t27 = invalid || unreachable ? NaN : 0;
     const t28 = (t12 <= -Math.PI ? Math.PI : t12) + t27;
     const t29 = Math.atan2(root, T34);
@@ -1074,7 +1072,7 @@ function _ik_common(v, o) {
     const t91 = invalid ? 3 : unreachable ? 1 : false ? 2 : 0;
     const t92 = _runtime.VANISHING * size;
     const t93 = _runtime.VANISHING * 16.0;
-    const t94 = (amplitude <= t92) || (reach <= t92) || (h <= t93);
+    const t94 = amplitude <= t92 || reach <= t92 || h <= t93 || h_left_out_noflip <= t93;
     o[0] = t28;
     o[1] = t30;
     o[2] = t31;
@@ -1131,7 +1129,7 @@ function _ik_common(v, o) {
     o[53] = t91;
     o[54] = t91;
     o[55] = t91;
-    o[56] = (t94 || (h_left_out_noflip <= t93)) ? 1 : 0;
+    o[56] = (t94) ? 1 : 0;
 }
 
 const _IK = _runtime.kernel({

@@ -921,7 +921,7 @@ function _ik(v, o) {
     const t39 = L2 * 5.684341886080802e-14 + L3 * 5.684341886080802e-14;
     const t40 = t39 + d1 * 5.684341886080802e-14 + d4 * 5.684341886080802e-14;
     const whole_1_1 = t40 + d5 * 5.684341886080802e-14 + d6 * 5.684341886080802e-14;
-    const t41 = (t38 + root1 * Math.abs(t37) <= whole_1_1) && (0.0 < by_c_1_1);
+    const t41 = t38 + root1 * Math.abs(t37) <= whole_1_1 && 0.0 < by_c_1_1;
     const cosine_1_1 = t41 ? by_c_1_1 : 1.0;
     const sine_1_1 = t41 ? -t37 : 0.0;
     const c_1_1_2 = c_1_1 * cosine_1_1 + t19 * sine_1_1;
@@ -975,8 +975,8 @@ function _ik(v, o) {
     const t71 = (axisx_1_1_2 * rest_1_1_2 + t43 * kept_1_1_2) * t70;
     const by_c_1_1_2 = t70 * (axisx_1_1_2 * kept_1_1_2 - t43 * rest_1_1_2);
     const t72 = d4 * (t71 * t71) / (1.0 + Math.abs(by_c_1_1_2));
-    const t73 = (t72 + root1 * Math.abs(t71) <= whole_1_1) && (0.0 < by_c_1_1_2);
-    const t74 = t73 && (t48 < Math.abs(there_1_1_2 - goal_1_1_2));
+    const t73 = t72 + root1 * Math.abs(t71) <= whole_1_1 && 0.0 < by_c_1_1_2;
+    const t74 = t73 && t48 < Math.abs(there_1_1_2 - goal_1_1_2);
     const cosine_1_1_2 = t74 ? by_c_1_1_2 : 1.0;
     const sine_1_1_2 = t74 ? -t71 : 0.0;
     const c_1_1_2_3 = c_1_1_2 * cosine_1_1_2 - s_1_1_2 * sine_1_1_2;
@@ -1012,7 +1012,7 @@ function _ik(v, o) {
     const t87 = 2.0 * t84 * t86;
     const by_c_1_1_2_3 = t86 * (1.0 - t85);
     const t88 = d4 * (t87 * t87) / (1.0 + Math.abs(by_c_1_1_2_3));
-    const t89 = (t88 + root1 * Math.abs(t87) <= whole_1_1) && (0.0 < by_c_1_1_2_3);
+    const t89 = t88 + root1 * Math.abs(t87) <= whole_1_1 && 0.0 < by_c_1_1_2_3;
     const cosine_1_1_2_3 = t89 ? by_c_1_1_2_3 : 1.0;
     const sine_1_1_2_3 = t89 ? -t87 : 0.0;
     const c_1_1_2_3_4 = c_1_1_2_3 * cosine_1_1_2_3 - s_1_1_2_3 * sine_1_1_2_3;
@@ -1048,7 +1048,7 @@ function _ik(v, o) {
     const t103 = 2.0 * t100 * t102;
     const by_c_1_1_2_3_4 = t102 * (1.0 - t101);
     const t104 = d4 * (t103 * t103) / (1.0 + Math.abs(by_c_1_1_2_3_4));
-    const t105 = (t104 + root1 * Math.abs(t103) <= whole_1_1) && (0.0 < by_c_1_1_2_3_4);
+    const t105 = t104 + root1 * Math.abs(t103) <= whole_1_1 && 0.0 < by_c_1_1_2_3_4;
     const sine_1_1_2_3_4 = t105 ? -t103 : 0.0;
     const cosine_1_1_2_3_4 = t105 ? by_c_1_1_2_3_4 : 1.0;
     const t106 = c_1_1_2_3_4 * sine_1_1_2_3_4 + s_1_1_2_3_4 * cosine_1_1_2_3_4;
@@ -1058,25 +1058,25 @@ function _ik(v, o) {
     const t108 = Math.atan2(s1, c1);
     const t109 = Number.isFinite(d1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(d4) && Number.isFinite(d5) && Number.isFinite(d6);
-    const t110 = t109 && (0.0 <= d1) && (0.0 <= L2) && (0.0 <= L3);
-    const t111 = t110 && (0.0 <= d4) && (0.0 <= d5) && (0.0 <= d6);
-    const t112 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
-    const t113 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
+    const t110 = t109 && 0.0 <= d1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= d4;
+    const t111 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
+    const t112 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
+    const t113 = t110 && 0.0 <= d5 && 0.0 <= d6 && t111 && t112;
     const t114 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
     const t115 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
     const t116 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
-    const t117 = t111 && t112 && t113 && t114 && t115 && (t116 <= _runtime.ROTATION);
+    const t117 = t113 && t114 && t115 && t116 <= _runtime.ROTATION;
     const t118 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
     const t119 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
-    const t120 = t117 && (t118 <= _runtime.ROTATION) && t119 && (Math.abs(T41) <=
-        _runtime.ROTATION);
-    const t121 = t120 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
-        _runtime.ROTATION);
-    const t122 = t121 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
+    const t120 = t117 && t118 <= _runtime.ROTATION && t119 && Math.abs(T41) <=
+        _runtime.ROTATION;
+    const t121 = t120 && Math.abs(T42) <= _runtime.ROTATION && Math.abs(T43) <=
+        _runtime.ROTATION;
+    const t122 = t121 && Math.abs(T44 - 1.0) <= _runtime.ROTATION;
     const invalid = !t122;
     const t123 = L2 * 0.5 + L3 * 0.5 + d1 * 0.5 + d4 * 0.5 + d5 * 0.5;
     const t124 = -(_runtime.FEASIBILITY * (t123 + d6 * 0.5));
-    const t125 = (t124 <= t1) && (t124 <= t2);
+    const t125 = t124 <= t1 && t124 <= t2;
     const across = w_x * c1 + w_y * s1;
     const M_13 = T13 * c1 + T23 * s1;
     const h_wrist = Math.sqrt(t16 + M_13 * M_13);
@@ -1124,7 +1124,7 @@ function _ik(v, o) {
     const t142 = c_phi + s_near;
     const t143 = h_wrist * Math.sqrt(t141 * t141 + t142 * t142);
     const t144 = _runtime.VANISHING * 4.0;
-    const t145 = (t143 - 2.2737367544323206e-13 <= t144) && !(Math.abs(here - in_reach) <= t6);
+    const t145 = t143 - 2.2737367544323206e-13 <= t144 && !(Math.abs(here - in_reach) <= t6);
     const sphi = aligned_wrist ? c_mid : (close ? (t145 ? c_near : s_phi) : s_phi);
     const t146 = across - d5 * sphi;
     const s_mid = hub_mid ? 0.0 : t131 * (across * us_mid - t26 * uc_mid);
@@ -1134,7 +1134,7 @@ function _ik(v, o) {
     const t147 = full_1_1 - r_elbow;
     const t148 = t29 + r_elbow;
     const t149 = r_elbow - t29;
-    const t150 = t125 && (t124 <= t147) && (t124 <= t148) && (t124 <= t149);
+    const t150 = t125 && t124 <= t147 && t124 <= t148 && t124 <= t149;
     const unreachable = !t150;
     const t151 = invalid || unreachable ? NaN : 0;
     const t152 = (t108 <= -Math.PI ? Math.PI : t108) + t151;
@@ -1203,7 +1203,7 @@ function _ik(v, o) {
     const t190 = 2.0 * t187 * t189;
     const by_c_1_1_left_flip_up = t189 * (1.0 - t188);
     const t191 = d4 * (t190 * t190) / (1.0 + Math.abs(by_c_1_1_left_flip_up));
-    const t192 = (t191 + root1 * Math.abs(t190) <= whole_1_1) && (0.0 < by_c_1_1_left_flip_up);
+    const t192 = t191 + root1 * Math.abs(t190) <= whole_1_1 && 0.0 < by_c_1_1_left_flip_up;
     const cosine_1_1_left_flip_up = t192 ? by_c_1_1_left_flip_up : 1.0;
     const sine_1_1_left_flip_up = t192 ? -t190 : 0.0;
     const c_1_1_2_left_flip_up = c_1_1 * cosine_1_1_left_flip_up + t19 * sine_1_1_left_flip_up;
@@ -1263,10 +1263,9 @@ function _ik(v, o) {
     const t225 = axisx_1_1_2_left_flip_up * kept_1_1_2_left_flip_up;
     const by_c_1_1_2_left_flip_up = t223 * (t225 - t194 * rest_1_1_2_left_flip_up);
     const t226 = d4 * (t224 * t224) / (1.0 + Math.abs(by_c_1_1_2_left_flip_up));
-    const t227 = (t226 + root1 * Math.abs(t224) <= whole_1_1) && (0.0 <
-        by_c_1_1_2_left_flip_up);
+    const t227 = t226 + root1 * Math.abs(t224) <= whole_1_1 && 0.0 < by_c_1_1_2_left_flip_up;
     const t228 = there_1_1_2_left_flip_up - goal_1_1_2_left_flip_up;
-    const t229 = t227 && (t48 < Math.abs(t228));
+    const t229 = t227 && t48 < Math.abs(t228);
     const cosine_1_1_2_left_flip_up = t229 ? by_c_1_1_2_left_flip_up : 1.0;
     const t230 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up;
     const sine_1_1_2_left_flip_up = t229 ? -t224 : 0.0;
@@ -1325,8 +1324,7 @@ function _ik(v, o) {
     const t256 = 2.0 * t253 * t255;
     const by_c_1_1_2_3_left_flip_up = t255 * (1.0 - t254);
     const t257 = d4 * (t256 * t256) / (1.0 + Math.abs(by_c_1_1_2_3_left_flip_up));
-    const t258 = (t257 + root1 * Math.abs(t256) <= whole_1_1) && (0.0 <
-        by_c_1_1_2_3_left_flip_up);
+    const t258 = t257 + root1 * Math.abs(t256) <= whole_1_1 && 0.0 < by_c_1_1_2_3_left_flip_up;
     const cosine_1_1_2_3_left_flip_up = t258 ? by_c_1_1_2_3_left_flip_up : 1.0;
     const t259 = c_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up;
     const sine_1_1_2_3_left_flip_up = t258 ? -t256 : 0.0;
@@ -1386,8 +1384,8 @@ function _ik(v, o) {
     const t285 = 2.0 * t282 * t284;
     const by_c_1_1_2_3_4_left_flip_up = t284 * (1.0 - t283);
     const t286 = d4 * (t285 * t285) / (1.0 + Math.abs(by_c_1_1_2_3_4_left_flip_up));
-    const t287 = (t286 + root1 * Math.abs(t285) <= whole_1_1) && (0.0 <
-        by_c_1_1_2_3_4_left_flip_up);
+    const t287 = t286 + root1 * Math.abs(t285) <= whole_1_1 && 0.0 <
+        by_c_1_1_2_3_4_left_flip_up;
     const sine_1_1_2_3_4_left_flip_up = t287 ? -t285 : 0.0;
     const t288 = c_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up;
     const cosine_1_1_2_3_4_left_flip_up = t287 ? by_c_1_1_2_3_4_left_flip_up : 1.0;
@@ -1451,7 +1449,7 @@ function _ik(v, o) {
     const t318 = c_phi_left_flip_up + s_near_left_flip_up;
     const t319 = h_wrist_left_flip_up * Math.sqrt(t316 * t316 + t318 * t318);
     const t320 = Math.abs(here_left_flip_up - in_reach_left_flip_up);
-    const t321 = (t319 - 2.2737367544323206e-13 <= t144) && !(t320 <= t6);
+    const t321 = t319 - 2.2737367544323206e-13 <= t144 && !(t320 <= t6);
     const t322 = close_left_flip_up ? (t321 ? c_near_left_flip_up : -t304) : -t304;
     const sphi_left_flip_up = aligned_wrist_left_flip_up ? (hub_mid_left_flip_up ? 1.0 : t301 *
         t302) : t322;
@@ -1467,7 +1465,7 @@ function _ik(v, o) {
     const t327 = full_1_1 - r_elbow_left_flip_up;
     const t328 = t29 + r_elbow_left_flip_up;
     const t329 = r_elbow_left_flip_up - t29;
-    const t330 = t125 && (t124 <= t327) && (t124 <= t328) && (t124 <= t329);
+    const t330 = t125 && t124 <= t327 && t124 <= t328 && t124 <= t329;
     const unreachable_2 = !t330;
     const t331 = invalid || unreachable_2 ? NaN : 0;
     const t332 = (t292 <= -Math.PI ? Math.PI : t292) + t331;
@@ -1570,8 +1568,7 @@ function _ik(v, o) {
     const t391 = 2.0 * t388 * t390;
     const by_c_1_1_right_noflip_up = t390 * (1.0 - t389);
     const t392 = d4 * (t391 * t391) / (1.0 + Math.abs(by_c_1_1_right_noflip_up));
-    const t393 = (t392 + root1 * Math.abs(t391) <= whole_1_1) && (0.0 <
-        by_c_1_1_right_noflip_up);
+    const t393 = t392 + root1 * Math.abs(t391) <= whole_1_1 && 0.0 < by_c_1_1_right_noflip_up;
     const cosine_1_1_right_noflip_up = t393 ? by_c_1_1_right_noflip_up : 1.0;
     const t394 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up;
     const sine_1_1_right_noflip_up = t393 ? -t391 : 0.0;
@@ -1635,10 +1632,9 @@ function _ik(v, o) {
     const t429 = axisx_1_1_2_right_noflip_up * kept_1_1_2_right_noflip_up;
     const by_c_1_1_2_right_noflip_up = t427 * (t429 - t397 * rest_1_1_2_right_noflip_up);
     const t430 = d4 * (t428 * t428) / (1.0 + Math.abs(by_c_1_1_2_right_noflip_up));
-    const t431 = (t430 + root1 * Math.abs(t428) <= whole_1_1) && (0.0 <
-        by_c_1_1_2_right_noflip_up);
+    const t431 = t430 + root1 * Math.abs(t428) <= whole_1_1 && 0.0 < by_c_1_1_2_right_noflip_up;
     const t432 = there_1_1_2_right_noflip_up - goal_1_1_2_right_noflip_up;
-    const t433 = t431 && (t48 < Math.abs(t432));
+    const t433 = t431 && t48 < Math.abs(t432);
     const cosine_1_1_2_right_noflip_up = t433 ? by_c_1_1_2_right_noflip_up : 1.0;
     const t434 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up;
     const sine_1_1_2_right_noflip_up = t433 ? -t428 : 0.0;
@@ -1697,8 +1693,8 @@ function _ik(v, o) {
     const t462 = 2.0 * t459 * t461;
     const by_c_1_1_2_3_right_noflip_up = t461 * (1.0 - t460);
     const t463 = d4 * (t462 * t462) / (1.0 + Math.abs(by_c_1_1_2_3_right_noflip_up));
-    const t464 = (t463 + root1 * Math.abs(t462) <= whole_1_1) && (0.0 <
-        by_c_1_1_2_3_right_noflip_up);
+    const t464 = t463 + root1 * Math.abs(t462) <= whole_1_1 && 0.0 <
+        by_c_1_1_2_3_right_noflip_up;
     const cosine_1_1_2_3_right_noflip_up = t464 ? by_c_1_1_2_3_right_noflip_up : 1.0;
     const t465 = c_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up;
     const sine_1_1_2_3_right_noflip_up = t464 ? -t462 : 0.0;
@@ -1759,8 +1755,8 @@ function _ik(v, o) {
     const by_c_1_1_2_3_4_right_noflip_up = t493 * (1.0 - t492);
     const t495 = 1.0 + Math.abs(by_c_1_1_2_3_4_right_noflip_up);
     const cost_1_1_2_3_4_right_noflip_up = d4 * (t494 * t494) / t495 + root1 * Math.abs(t494);
-    const t496 = (cost_1_1_2_3_4_right_noflip_up <= whole_1_1) && (0.0 <
-        by_c_1_1_2_3_4_right_noflip_up);
+    const t496 = cost_1_1_2_3_4_right_noflip_up <= whole_1_1 && 0.0 <
+        by_c_1_1_2_3_4_right_noflip_up;
     const sine_1_1_2_3_4_right_noflip_up = t496 ? -t494 : 0.0;
     const t497 = c_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up;
     const cosine_1_1_2_3_4_right_noflip_up = t496 ? by_c_1_1_2_3_4_right_noflip_up : 1.0;
@@ -1833,7 +1829,7 @@ function _ik(v, o) {
     const t530 = c_phi_right_noflip_up + s_near_right_noflip_up;
     const t531 = h_wrist_right_noflip_up * Math.sqrt(t527 * t527 + t530 * t530);
     const t532 = here_right_noflip_up - in_reach_right_noflip_up;
-    const t533 = (t531 - 2.2737367544323206e-13 <= t144) && !(Math.abs(t532) <= t6);
+    const t533 = t531 - 2.2737367544323206e-13 <= t144 && !(Math.abs(t532) <= t6);
     const s_kept_right_noflip_up = t533 ? c_near_right_noflip_up : s_phi_right_noflip_up;
     const t534 = close_right_noflip_up ? s_kept_right_noflip_up : s_phi_right_noflip_up;
     const sphi_right_noflip_up = aligned_wrist_right_noflip_up ? c_mid_right_noflip_up : t534;
@@ -1850,7 +1846,7 @@ function _ik(v, o) {
     const t539 = full_1_1 - r_elbow_right_noflip_up;
     const t540 = t29 + r_elbow_right_noflip_up;
     const t541 = r_elbow_right_noflip_up - t29;
-    const t542 = t125 && (t124 <= t539) && (t124 <= t540) && (t124 <= t541);
+    const t542 = t125 && t124 <= t539 && t124 <= t540 && t124 <= t541;
     const unreachable_3 = !t542;
     const t543 = invalid || unreachable_3 ? NaN : 0;
     const t544 = (t501 <= -Math.PI ? Math.PI : t501) + t543;
@@ -1933,7 +1929,7 @@ function _ik(v, o) {
     const t590 = 2.0 * t587 * t589;
     const by_c_1_1_right_flip_up = t589 * (1.0 - t588);
     const t591 = d4 * (t590 * t590) / (1.0 + Math.abs(by_c_1_1_right_flip_up));
-    const t592 = (t591 + root1 * Math.abs(t590) <= whole_1_1) && (0.0 < by_c_1_1_right_flip_up);
+    const t592 = t591 + root1 * Math.abs(t590) <= whole_1_1 && 0.0 < by_c_1_1_right_flip_up;
     const cosine_1_1_right_flip_up = t592 ? by_c_1_1_right_flip_up : 1.0;
     const t593 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up;
     const sine_1_1_right_flip_up = t592 ? -t590 : 0.0;
@@ -1995,10 +1991,9 @@ function _ik(v, o) {
     const t628 = axisx_1_1_2_right_flip_up * kept_1_1_2_right_flip_up;
     const by_c_1_1_2_right_flip_up = t626 * (t628 - t596 * rest_1_1_2_right_flip_up);
     const t629 = d4 * (t627 * t627) / (1.0 + Math.abs(by_c_1_1_2_right_flip_up));
-    const t630 = (t629 + root1 * Math.abs(t627) <= whole_1_1) && (0.0 <
-        by_c_1_1_2_right_flip_up);
+    const t630 = t629 + root1 * Math.abs(t627) <= whole_1_1 && 0.0 < by_c_1_1_2_right_flip_up;
     const t631 = there_1_1_2_right_flip_up - goal_1_1_2_right_flip_up;
-    const t632 = t630 && (t48 < Math.abs(t631));
+    const t632 = t630 && t48 < Math.abs(t631);
     const cosine_1_1_2_right_flip_up = t632 ? by_c_1_1_2_right_flip_up : 1.0;
     const t633 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up;
     const sine_1_1_2_right_flip_up = t632 ? -t627 : 0.0;
@@ -2058,8 +2053,7 @@ function _ik(v, o) {
     const t659 = 2.0 * t656 * t658;
     const by_c_1_1_2_3_right_flip_up = t658 * (1.0 - t657);
     const t660 = d4 * (t659 * t659) / (1.0 + Math.abs(by_c_1_1_2_3_right_flip_up));
-    const t661 = (t660 + root1 * Math.abs(t659) <= whole_1_1) && (0.0 <
-        by_c_1_1_2_3_right_flip_up);
+    const t661 = t660 + root1 * Math.abs(t659) <= whole_1_1 && 0.0 < by_c_1_1_2_3_right_flip_up;
     const cosine_1_1_2_3_right_flip_up = t661 ? by_c_1_1_2_3_right_flip_up : 1.0;
     const t662 = c_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up;
     const sine_1_1_2_3_right_flip_up = t661 ? -t659 : 0.0;
@@ -2119,8 +2113,8 @@ function _ik(v, o) {
     const t688 = 2.0 * t685 * t687;
     const by_c_1_1_2_3_4_right_flip_up = t687 * (1.0 - t686);
     const t689 = d4 * (t688 * t688) / (1.0 + Math.abs(by_c_1_1_2_3_4_right_flip_up));
-    const t690 = (t689 + root1 * Math.abs(t688) <= whole_1_1) && (0.0 <
-        by_c_1_1_2_3_4_right_flip_up);
+    const t690 = t689 + root1 * Math.abs(t688) <= whole_1_1 && 0.0 <
+        by_c_1_1_2_3_4_right_flip_up;
     const sine_1_1_2_3_4_right_flip_up = t690 ? -t688 : 0.0;
     const t691 = c_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up;
     const cosine_1_1_2_3_4_right_flip_up = t690 ? by_c_1_1_2_3_4_right_flip_up : 1.0;
@@ -2186,7 +2180,7 @@ function _ik(v, o) {
     const t722 = c_phi_right_flip_up + s_near_right_flip_up;
     const t723 = h_wrist_right_flip_up * Math.sqrt(t720 * t720 + t722 * t722);
     const t724 = Math.abs(here_right_flip_up - in_reach_right_flip_up);
-    const t725 = (t723 - 2.2737367544323206e-13 <= t144) && !(t724 <= t6);
+    const t725 = t723 - 2.2737367544323206e-13 <= t144 && !(t724 <= t6);
     const t726 = close_right_flip_up ? (t725 ? c_near_right_flip_up : -t708) : -t708;
     const sphi_right_flip_up = aligned_wrist_right_flip_up ? (hub_mid_right_flip_up ? 1.0 : t705
         * t706) : t726;
@@ -2202,7 +2196,7 @@ function _ik(v, o) {
     const t731 = full_1_1 - r_elbow_right_flip_up;
     const t732 = t29 + r_elbow_right_flip_up;
     const t733 = r_elbow_right_flip_up - t29;
-    const t734 = t125 && (t124 <= t731) && (t124 <= t732) && (t124 <= t733);
+    const t734 = t125 && t124 <= t731 && t124 <= t732 && t124 <= t733;
     const unreachable_4 = !t734;
     const t735 = invalid || unreachable_4 ? NaN : 0;
     const t736 = (t695 <= -Math.PI ? Math.PI : t695) + t735;
@@ -2370,25 +2364,23 @@ function _ik_common(v, o) {
     const t12 = t11 <= -Math.PI ? Math.PI : t11;
     const t13 = Number.isFinite(d1) && Number.isFinite(L2) && Number.isFinite(L3) &&
         Number.isFinite(d4) && Number.isFinite(d5) && Number.isFinite(d6);
-    const t14 = t13 && (0.0 <= d1) && (0.0 <= L2) && (0.0 <= L3);
-    const t15 = t14 && (0.0 <= d4) && (0.0 <= d5) && (0.0 <= d6);
-    const t16 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
-    const t17 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
-    const t18 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
+    const t14 = t13 && 0.0 <= d1 && 0.0 <= L2 && 0.0 <= L3 && 0.0 <= d4;
+    const t15 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
+    const t16 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
+    const t17 = Math.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION;
+    const t18 = t14 && 0.0 <= d5 && 0.0 <= d6 && t15 && t16 && t17;
     const t19 = Math.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION;
     const t20 = Math.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31);
-    const t21 = t15 && t16 && t17 && t18 && t19 && (t20 <= _runtime.ROTATION);
-    const t22 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
+    const t21 = Math.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32);
+    const t22 = t18 && t19 && t20 <= _runtime.ROTATION && t21 <= _runtime.ROTATION;
     const t23 = Math.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION;
-    const t24 = t21 && (t22 <= _runtime.ROTATION) && t23 && (Math.abs(T41) <=
-        _runtime.ROTATION);
-    const t25 = t24 && (Math.abs(T42) <= _runtime.ROTATION) && (Math.abs(T43) <=
-        _runtime.ROTATION);
-    const t26 = t25 && (Math.abs(T44 - 1.0) <= _runtime.ROTATION);
+    const t24 = t22 && t23 && Math.abs(T41) <= _runtime.ROTATION;
+    const t25 = t24 && Math.abs(T42) <= _runtime.ROTATION && Math.abs(T43) <= _runtime.ROTATION;
+    const t26 = t25 && Math.abs(T44 - 1.0) <= _runtime.ROTATION;
     const invalid = !t26;
     const t27 = L2 * 0.5 + L3 * 0.5 + d1 * 0.5 + d4 * 0.5 + d5 * 0.5;
     const t28 = -(_runtime.FEASIBILITY * (t27 + d6 * 0.5));
-    const t29 = (t28 <= t1) && (t28 <= t2);
+    const t29 = t28 <= t1 && t28 <= t2;
     const full_1_1 = L2 + L3;
     const t30 = w_x * c_1_1 - w_y * t8;
     const t31 = T33 * T33;
@@ -2407,7 +2399,7 @@ function _ik_common(v, o) {
     const t40 = L2 - L3;
     const t41 = t40 + r_elbow;
     const t42 = r_elbow - t40;
-    const t43 = t29 && (t28 <= t39) && (t28 <= t41) && (t28 <= t42);
+    const t43 = t29 && t28 <= t39 && t28 <= t41 && t28 <= t42;
     const unreachable = !t43;
     const t44 = invalid || unreachable ? NaN : 0;
     const t45 = t12 + t44;
@@ -2461,7 +2453,7 @@ function _ik_common(v, o) {
     const t81 = full_1_1 - r_elbow_left_flip_up;
     const t82 = t40 + r_elbow_left_flip_up;
     const t83 = r_elbow_left_flip_up - t40;
-    const t84 = t29 && (t28 <= t81) && (t28 <= t82) && (t28 <= t83);
+    const t84 = t29 && t28 <= t81 && t28 <= t82 && t28 <= t83;
     const unreachable_2 = !t84;
     const t85 = invalid || unreachable_2 ? NaN : 0;
     const t86 = t12 + t85;
@@ -2526,7 +2518,7 @@ function _ik_common(v, o) {
     const t126 = full_1_1 - r_elbow_right_noflip_up;
     const t127 = t40 + r_elbow_right_noflip_up;
     const t128 = r_elbow_right_noflip_up - t40;
-    const t129 = t29 && (t28 <= t126) && (t28 <= t127) && (t28 <= t128);
+    const t129 = t29 && t28 <= t126 && t28 <= t127 && t28 <= t128;
     const unreachable_3 = !t129;
     const t130 = invalid || unreachable_3 ? NaN : 0;
     const t131 = t119 + t130;
@@ -2585,7 +2577,7 @@ function _ik_common(v, o) {
     const t170 = full_1_1 - r_elbow_right_flip_up;
     const t171 = t40 + r_elbow_right_flip_up;
     const t172 = r_elbow_right_flip_up - t40;
-    const t173 = t29 && (t28 <= t170) && (t28 <= t171) && (t28 <= t172);
+    const t173 = t29 && t28 <= t170 && t28 <= t171 && t28 <= t172;
     const unreachable_4 = !t173;
     const t174 = invalid || unreachable_4 ? NaN : 0;
     const t175 = t119 + t174;
@@ -2639,16 +2631,16 @@ function _ik_common(v, o) {
     const t212 = L2 * 0.00390625 + L3 * 0.00390625 + d1 * 0.00390625;
     const t213 = t212 + d4 * 0.00390625 + d5 * 0.00390625 + d6 * 0.00390625;
     const t214 = _runtime.VANISHING * 16.0;
-    const t215 = (h1 <= t211) || (root1 - t213 <= t211) || (h_wrist <= t214);
+    const t215 = h1 <= t211 || root1 - t213 <= t211 || h_wrist <= t214;
     const t216 = L2 * 0.00048828125 + L3 * 0.00048828125 + (d1 * 0.00048828125 + d4 *
         0.00048828125);
     const t217 = d5 * 0.00048828125 + d6 * 0.00048828125 + t216;
     const no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1);
-    const t218 = t215 || (root1 * h_wrist - t217 <= t211) || no_link_elbow;
-    const t219 = t218 || (r_elbow <= t211) || (r_elbow_left_flip_up <= t211);
+    const t218 = t215 || root1 * h_wrist - t217 <= t211 || no_link_elbow;
+    const t219 = t218 || r_elbow <= t211 || r_elbow_left_flip_up <= t211;
     const close_right_noflip_up = root1 * h_wrist_right_noflip_up - t217 <= t211;
-    const t220 = t219 || (h_wrist_right_noflip_up <= t214) || close_right_noflip_up;
-    const t221 = t220 || (r_elbow_right_noflip_up <= t211) || (r_elbow_right_flip_up <= t211);
+    const t220 = t219 || h_wrist_right_noflip_up <= t214 || close_right_noflip_up;
+    const t221 = t220 || r_elbow_right_noflip_up <= t211 || r_elbow_right_flip_up <= t211;
     o[0] = t45;
     o[1] = (t56 <= -Math.PI ? Math.PI : t56) + t44;
     o[2] = (t60 <= -Math.PI ? Math.PI : t60) + t44;

@@ -6,13 +6,13 @@ import json
 import shutil
 import struct
 import subprocess
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib.resources import files
-from math import prod
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from closedform.check.crosscheck import Backend
 from closedform.check.runners import FailedError, UnavailableError
@@ -20,10 +20,34 @@ from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
 from closedform.model.tolerances import DOUBLE
 
+TYPES = {"Float64Array": np.float64, "Uint8Array": np.uint8}
+
 
 def run(name: str, derivation: Derivation, folder: Path, scratch: Path) -> Iterator[Backend]:
-    with Node(derivation, folder) as node:
-        yield Backend(name, node.function, np.float64, DOUBLE)
+    fields = [p.name for p in derivation.parameters]
+    with Node(folder / f"{derivation.name}.js") as node:
+
+        def function(name: str) -> Callable[..., Any]:
+            return lambda *arguments: _shaped(node, derivation[name], fields, *arguments)
+
+        yield Backend(name, function, np.float64, DOUBLE)
+
+
+def _shaped(node: Node, function: Function, fields: Sequence[str], *arguments: Any) -> Any:
+    """A function over arrays with at most one leading axis, and at last the parameters."""
+    *inputs, params = arguments
+    planes = [
+        np.asarray(x, float).reshape(-1, a.size).T
+        for x, a in zip(inputs, function.inputs, strict=True)
+    ]
+    found = node.batch(function.name, planes, dict(zip(fields, map(float, params), strict=True)))
+    lead = found[0].shape[1:] if inputs else ()
+    if function.branches:
+        lead = (*lead, len(function.branches))
+    shapes = [(*lead, *map(int, a.shape)) for a in function.outputs]
+    shapes += [lead] * function.has_status
+    shaped = [f.T.reshape(shape) for f, shape in zip(found, shapes, strict=True)]
+    return shaped[0] if len(shaped) == 1 else tuple(shaped)
 
 
 def executable() -> str:
@@ -35,13 +59,10 @@ def executable() -> str:
 
 
 class Node:
-    """The module of one robot, called through its ``_batch`` functions."""
+    """A module, called through its ``_batch`` functions."""
 
-    def __init__(self, derivation: Derivation, folder: Path):
-        self._functions = {f.name: f for f in derivation.functions}
-        self._fields = [p.name for p in derivation.parameters]
+    def __init__(self, module: Path):
         script = files("closedform.check.runners") / "serve.mjs"
-        module = folder / f"{derivation.name}.js"
         self._process = subprocess.Popen(
             [executable(), str(script), str(module)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
         )
@@ -52,67 +73,40 @@ class Node:
     def __exit__(self, *_: object) -> None:
         self._process.communicate()
 
-    def function(self, name: str) -> Callable[..., Any]:
-        """``name(*inputs, params)`` over arrays with at most one leading axis."""
-        function = self._functions[name]
-
-        def call(*arguments: Any) -> Any:
-            *inputs, params = arguments
-            return self._call(function, inputs, params)
-
-        return call
-
-    def _call(self, function: Function, inputs: Sequence[Any], params: Any) -> Any:
-        planes = [
-            np.ascontiguousarray(np.asarray(x, float).reshape(-1, a.size).T)
-            for x, a in zip(inputs, function.inputs, strict=True)
-        ]
-        n = planes[0].shape[1] if planes else 1
-        results = _results(function)
+    def batch(
+        self, function: str, inputs: Sequence[NDArray[Any]], parameters: Mapping[str, float]
+    ) -> list[NDArray[Any]]:
+        """The results, each with a row a number and a column a posture, as the inputs have."""
+        n = inputs[0].shape[1] if inputs else 1
         header = {
-            "function": function.name,
+            "function": function,
             "n": n,
-            "sizes": [len(p) for p in planes],
-            "fields": self._fields,
-            "outputs": len(results),
+            "sizes": [len(x) for x in inputs],
+            "fields": [*parameters],
         }
-        answers = self._exchange(header, [*planes, np.array([float(p) for p in params])])
-        lead = (n,) if inputs else ()
-        shaped = [
-            np.frombuffer(answer, dtype).reshape(prod(shape), n).T.reshape((*lead, *shape))
-            for answer, (shape, dtype) in zip(answers, results, strict=True)
-        ]
-        return shaped[0] if len(shaped) == 1 else tuple(shaped)
-
-    def _exchange(self, header: dict[str, Any], arrays: Sequence[Any]) -> list[bytes]:
-        given, taken = self._process.stdin, self._process.stdout
-        assert given is not None and taken is not None
         text = json.dumps(header).encode()
-        message = [struct.pack("<I", len(text)), text, *(a.tobytes() for a in arrays)]
+        numbers = [*inputs, np.array([*parameters.values()], float)]
+        self._give(b"".join([struct.pack("<I", len(text)), text, *(x.tobytes() for x in numbers)]))
+        (size,) = struct.unpack("<I", self._take(4))
+        answer = json.loads(self._take(size))
+        if "error" in answer:
+            raise FailedError(f"{function}: {answer['error']}")
+        return [
+            np.frombuffer(self._take(size), TYPES[name]).reshape(-1, n)
+            for name, size in answer["arrays"]
+        ]
+
+    def _give(self, message: bytes) -> None:
+        assert self._process.stdin is not None
         try:
-            given.write(b"".join(message))
-            given.flush()
+            self._process.stdin.write(message)
+            self._process.stdin.flush()
         except BrokenPipeError:
             raise FailedError("Node cannot load the module") from None
-        (size,) = struct.unpack("<I", _read(taken, 4))
-        answer = json.loads(_read(taken, size))
-        if "error" in answer:
-            raise FailedError(f"{header['function']}: {answer['error']}")
-        return [_read(taken, size) for size in answer["sizes"]]
 
-
-def _read(stream: Any, size: int) -> bytes:
-    found: bytes = stream.read(size)
-    if len(found) < size:
-        raise FailedError("Node cannot load the module, or has ended")
-    return found
-
-
-def _results(function: Function) -> list[tuple[tuple[int, ...], type]]:
-    """The shape and the type of each result of one posture."""
-    lead = (len(function.branches),) if function.branches else ()
-    dtype = np.uint8 if function.boolean else np.float64
-    results: list[tuple[tuple[int, ...], type]] = [
-        ((*lead, *map(int, a.shape)), dtype) for a in function.outputs
-    ]
-    return [*results, (lead, np.uint8)] if function.has_status else results
+    def _take(self, size: int) -> bytes:
+        assert self._process.stdout is not None
+        found: bytes = self._process.stdout.read(size)
+        if len(found) < size:
+            raise FailedError("Node cannot load the module, or has ended")
+        return found

@@ -40,11 +40,12 @@ for (let length = take(4); length !== null; length = take(4)) {
     const values = doubles(header.fields.length);
     const parameters = Object.fromEntries(header.fields.map((name, k) => [name, values[k]]));
     try {
-        const out = new Array(header.outputs).fill(undefined);
-        const result = module[`${header.function}_batch`](header.n, ...inputs, ...out, parameters);
+        const batch = module[`${header.function}_batch`];
+        const out = new Array(batch.length - inputs.length - 2).fill(undefined);
+        const result = batch(header.n, ...inputs, ...out, parameters);
         const arrays = ArrayBuffer.isView(result) ? [result] : Object.values(result);
-        reply({ sizes: arrays.map((a) => a.byteLength) }, arrays);
+        reply({ arrays: arrays.map((a) => [a.constructor.name, a.byteLength]) }, arrays);
     } catch (error) {
-        reply({ error: String(error), sizes: [] }, []);
+        reply({ error: String(error) }, []);
     }
 }

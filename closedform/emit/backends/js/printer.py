@@ -27,10 +27,10 @@ class JavaScriptPrinter(Printer):
         return Text(f"{a.at(SUM)} === {b.at(SUM)}", COMPARE)
 
     def and_(self, node: Node, a: Text, b: Text) -> Text:
-        return self.logic(node, "&&", a, b)
+        return self.logic(node, "&&", a, b, COMPARE)
 
     def or_(self, node: Node, a: Text, b: Text) -> Text:
-        return self.logic(node, "||", a, b)
+        return self.logic(node, "||", a, b, COMPARE)
 
     def not_(self, node: Node, a: Text) -> Text:
         return Text(f"!{a.at(ATOM)}", UNARY)

@@ -1,12 +1,15 @@
 """Generated code against the symbolic source in Arb, in every back end; the check can fail."""
 
 import importlib
+import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import libraries
 import numpy as np
 import pytest
 
+from closedform.check import runners
 from closedform.check.clibrary import CLibrary
 from closedform.check.crosscheck import (
     Backend,
@@ -43,25 +46,33 @@ def derivation(robot: str) -> Derivation:
     return importlib.import_module(f"closedform.derivations.{robot}").d
 
 
-def backend(name: str, robot: str, factory: pytest.TempPathFactory) -> Backend:
+def backends(name: str, robot: str, factory: pytest.TempPathFactory) -> Iterator[Backend]:
     if name == "c float":
         folder, built = factory.mktemp(robot), None
         if libraries.compiles() and libraries.runs():
             built, _ = libraries.library(factory, robot, single=True)
         library = CLibrary(derivation(robot), GENERATED / "c", folder, single=True, built=built)
-        return float_backend(library.function)
-    return module_backend(name, importlib.import_module(f"closedform.generated.{name}.{robot}"))
+        yield float_backend(library.function)
+    elif name == "js":
+        if shutil.which("node") is None:
+            pytest.skip("Node is not installed: the JavaScript is not checked")
+        run = runners.load("node")
+        yield from run(name, derivation(robot), GENERATED / name, factory.mktemp(robot))
+    else:
+        module = importlib.import_module(f"closedform.generated.{name}.{robot}")
+        yield module_backend(name, module)
 
 
-@pytest.mark.parametrize("name", ["numpy", "c", "c float"])
+@pytest.mark.parametrize("name", ["numpy", "c", "c float", "js"])
 @all_robots
 def test_against_the_symbolic_source(
     robot: str, name: str, tmp_path_factory: pytest.TempPathFactory, findings: list[Finding]
 ) -> None:
-    found = crosscheck(derivation(robot), backend(name, robot, tmp_path_factory))
-    findings += found
-    assert not [failure for f in found for failure in f.failures]
-    assert all(f.compared for f in found)
+    for backend in backends(name, robot, tmp_path_factory):
+        found = crosscheck(derivation(robot), backend)
+        findings += found
+        assert not [failure for f in found for failure in f.failures]
+        assert all(f.compared for f in found)
 
 
 def broken(robot: str, function: str, change) -> list[str]:

@@ -205,11 +205,14 @@ class Printer:
     def or_(self, node: Node, a: Text, b: Text) -> Text:
         return self.logic(node, "|", a, b)
 
-    def logic(self, node: Node, sign: str, a: Text, b: Text) -> Text:
-        """Conditions joined by an operator; a chain of the same one needs no parentheses."""
+    def logic(self, node: Node, sign: str, a: Text, b: Text, least: int = UNARY) -> Text:
+        """Conditions joined by an operator; a chain of the same one needs no parentheses.
+
+        Operands that bind less tightly than ``least`` are put in parentheses.
+        """
         chained = node.args[0].op == node.op and a.precedence == LOGIC
-        left = a.code if chained else a.at(UNARY)
-        return Text(f"{left} {sign} {b.at(UNARY)}", LOGIC)
+        left = a.code if chained else a.at(least)
+        return Text(f"{left} {sign} {b.at(least)}", LOGIC)
 
     def number(self, text: str) -> Text:
         """A decimal number."""

@@ -1,17 +1,16 @@
-"""The documentation of a function for Python and C, by the conventions of numpydoc.
+"""The documentation of a function: by the conventions of numpydoc for Python, in parts for others.
 
-Names, shapes and statuses follow from the function; its summary and notes say what is special.
+Names, shapes and statuses follow from the function; its summary and notes say what is special.  A
+language is a :class:`Wording`.
 """
 
 from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise
-from math import prod
-from typing import Literal
 
 import sympy as sp
 
@@ -19,16 +18,9 @@ from closedform.lower.turns import Turns
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Array, Function, Require
 
-Language = Literal["python", "c"]
-
 LENGTH = "in the unit of the parameters"
 ANGLE = "in rad"
 BOUNDED = "in rad, in (-pi, pi]"
-TYPES = {
-    "python": ("ndarray of float64", "ndarray of bool", "ndarray of uint8"),
-    "c": ("real_t", "uint8_t", "uint8_t"),
-}
-STATUS = {"python": "A `Status`", "c": "A CLOSEDFORM_ status"}
 STATUSES = (
     ": OK (0) if {values} is a solution, UNREACHABLE (1) if there is no solution, SINGULAR (2) "
     "if {values} is one of infinitely many solutions or poorly determined (see the notes), and "
@@ -50,6 +42,43 @@ class Item:
     text: str
 
 
+@dataclass(frozen=True)
+class Wording:
+    """How a language speaks of what a function takes and gives.
+
+    given, real, boolean, small
+        The types of inputs, of results, of truth values and of statuses.
+    kind
+        The type with the shape, from a type, the number of branches (0 if there is no such axis)
+        and the shape of one.
+    status
+        What a status is called.
+    quote
+        What stands around code.
+    constants
+        Whether branches are listed in a constant of the module.
+    """
+
+    given: str
+    real: str
+    boolean: str
+    small: str
+    kind: Callable[[str, int, Sequence[int]], str]
+    status: str = "A `Status`"
+    quote: str = "`"
+    constants: bool = True
+
+
+def _python_kind(dtype: str, branches: int, shape: Sequence[int]) -> str:
+    axes = ["...", *([branches] if branches else []), *shape]
+    return f"{dtype}, shape ({', '.join(map(str, axes))})"
+
+
+PYTHON = Wording(
+    "array_like", "ndarray of float64", "ndarray of bool", "ndarray of uint8", _python_kind
+)
+
+
 def docstring(derivation: Derivation, function: Function, width: int) -> list[str]:
     """The lines of a docstring."""
     dimensions = Item(
@@ -57,7 +86,7 @@ def docstring(derivation: Derivation, function: Function, width: int) -> list[st
         "Parameters, optional",
         "The dimensions. Each may be an array that broadcasts with the leading axes.",
     )
-    results = _results(derivation, function, "python")
+    results = results_of(derivation, function, PYTHON)
     several = len(results) > 1
     out = Item(
         "out",
@@ -66,35 +95,27 @@ def docstring(derivation: Derivation, function: Function, width: int) -> list[st
         if several
         else "An array to write the result to; it is returned.",
     )
-    arguments = _inputs(derivation, function, "python")
+    arguments = inputs_of(derivation, function, PYTHON)
     raises = [Item("", name, text) for name, text in RAISES]
     return [
-        *_opening(function, width),
-        *_section("Parameters", [*arguments, dimensions, out], width),
-        *_section("Returns", results, width),
-        *_section("Raises", raises, width),
-        *_notes(derivation, function, width, "python"),
+        *opening(function, width),
+        *section("Parameters", [*arguments, dimensions, out], width),
+        *section("Returns", results, width),
+        *section("Raises", raises, width),
+        *notes(derivation, function, width, PYTHON),
     ]
 
 
-def comment(derivation: Derivation, function: Function, width: int) -> list[str]:
-    """The lines of a comment in the C header."""
-    return [
-        *_opening(function, width),
-        *_section("Inputs", _inputs(derivation, function, "c"), width),
-        *_section("Outputs", _results(derivation, function, "c"), width),
-        *_notes(derivation, function, width, "c"),
-    ]
-
-
-def _opening(function: Function, width: int) -> list[str]:
+def opening(function: Function, width: int) -> list[str]:
+    """The lines of the summary, and the source."""
     lines = textwrap.wrap(function.summary, width)
     if function.source:
         lines += ["", *textwrap.wrap(f"Source: {function.source}.", width)]
     return lines
 
 
-def _section(title: str, items: Sequence[Item], width: int) -> list[str]:
+def section(title: str, items: Sequence[Item], width: int) -> list[str]:
+    """The lines of items below a heading, as numpydoc lays them out."""
     if not items:
         return []
     lines = ["", title, "-" * len(title)]
@@ -104,18 +125,19 @@ def _section(title: str, items: Sequence[Item], width: int) -> list[str]:
     return lines
 
 
-def _notes(
-    derivation: Derivation, function: Function, width: int, language: Language
+def notes(
+    derivation: Derivation, function: Function, width: int, wording: Wording
 ) -> Iterator[str]:
+    """The lines of the notes, with a heading if there are any."""
     labels = function.branches.labels if function.branches else ()
-    notes = [" ".join(n.split()) for n in function.notes]
+    listed = [" ".join(n.split()) for n in function.notes]
     if len(labels) > 1:
         constant = _labels_name(derivation, function)
-        known = f", `{constant}`" if constant and language == "python" else ""
-        notes.insert(0, f"Branches in this order{known}: {', '.join(labels)}.")
-    if notes:
+        known = f", `{constant}`" if constant and wording.constants else ""
+        listed.insert(0, f"Branches in this order{known}: {', '.join(labels)}.")
+    if listed:
         yield from ("", "Notes", "-----")
-    for note in notes:
+    for note in listed:
         yield from textwrap.wrap(note, width, initial_indent="- ", subsequent_indent="  ")
 
 
@@ -129,19 +151,10 @@ def _labels_name(derivation: Derivation, function: Function) -> str:
 # Arguments and results
 
 
-def _kind(array: Array, lead: tuple[int, ...], dtype: str, language: Language) -> str:
-    """The type and the shape of an array."""
-    shape = [*lead, *array.shape]
-    if language == "python":
-        return f"{dtype}, shape ({', '.join(['...', *map(str, shape)])})"
-    named = f"{dtype}[{prod(shape)}]"
-    return f"{named}, shape ({', '.join(map(str, shape))})" if len(shape) > 1 else named
-
-
-def _inputs(derivation: Derivation, function: Function, language: Language) -> list[Item]:
-    dtype = "array_like" if language == "python" else "const real_t"
+def inputs_of(derivation: Derivation, function: Function, wording: Wording) -> list[Item]:
+    """The arguments but for the parameters."""
     return [
-        Item(a.name, _kind(a, (), dtype, language), _input_text(derivation, function, a))
+        Item(a.name, wording.kind(wording.given, 0, a.shape), _input_text(derivation, function, a))
         for a in function.inputs
     ]
 
@@ -155,21 +168,23 @@ def _input_text(derivation: Derivation, function: Function, array: Array) -> str
     return _listed(names, _units(derivation), array.shape, ANGLE)
 
 
-def _results(derivation: Derivation, function: Function, language: Language) -> list[Item]:
-    labels = function.branches.labels if function.branches else ()
-    lead = (len(labels),) if labels else ()
-    real, boolean, small = TYPES[language]
-    dtype = boolean if function.boolean else real
+def results_of(derivation: Derivation, function: Function, wording: Wording) -> list[Item]:
+    """The results, the status last."""
+    branches = len(function.branches) if function.branches else 0
+    dtype = wording.boolean if function.boolean else wording.real
     items = [
-        Item(a.name, _kind(a, lead, dtype, language), _output_text(derivation, function, a))
+        Item(
+            a.name,
+            wording.kind(dtype, branches, a.shape),
+            _output_text(derivation, function, a),
+        )
         for a in function.outputs
     ]
     if function.result:
-        each = " of each branch" if len(labels) > 1 else ""
-        values = items[0].name if language == "c" else f"`{items[0].name}`"
-        text = f"{STATUS[language]}{each}{STATUSES.format(values=values)}"
-        kind = _kind(Array("status", (), ()), lead, small, language)
-        items.append(Item("status", kind, text))
+        each = " of each branch" if branches > 1 else ""
+        values = f"{wording.quote}{items[0].name}{wording.quote}"
+        text = f"{wording.status}{each}{STATUSES.format(values=values)}"
+        items.append(Item("status", wording.kind(wording.small, branches, ()), text))
     return items
 
 

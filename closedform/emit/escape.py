@@ -7,6 +7,7 @@ formulas.
 
 from __future__ import annotations
 
+import json
 import re
 
 MARKUP = re.compile(r"([\\`*_<>\[\]|#~$&]|^(?=[-+=]))")
@@ -48,6 +49,16 @@ def python_string(text: str) -> str:
     return repr(text)
 
 
+def javascript_comment(text: str) -> str:
+    """Text inside ``/** */`` or behind ``//``: a space parts what would end it."""
+    return re.sub(r"(?<=\*)(?=/)", " ", text)
+
+
+def javascript_string(text: str) -> str:
+    """A string literal."""
+    return json.dumps(text)
+
+
 def markdown_text(text: str) -> str:
     """Text on one line of Markdown."""
     return MARKUP.sub(r"\\\1", " ".join(text.split()))
@@ -55,7 +66,16 @@ def markdown_text(text: str) -> str:
 
 FILTERS = {
     f.__name__: f
-    for f in (c_comment, c_string, python_comment, python_docstring, python_string, markdown_text)
+    for f in (
+        c_comment,
+        c_string,
+        javascript_comment,
+        javascript_string,
+        python_comment,
+        python_docstring,
+        python_string,
+        markdown_text,
+    )
 }
 """The filters of the templates, by name."""
 
@@ -63,6 +83,8 @@ __all__ = [
     "FILTERS",
     "c_comment",
     "c_string",
+    "javascript_comment",
+    "javascript_string",
     "markdown_text",
     "python_comment",
     "python_docstring",

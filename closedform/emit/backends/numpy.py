@@ -14,6 +14,7 @@ from closedform.emit.backend import Backend, Files, Mechanism, Pages, runtime
 from closedform.emit.code import ATOM, LOGIC, Printer, Text, call, word
 from closedform.emit.docstring import docstring
 from closedform.emit.render import render
+from closedform.emit.sizes import Size, arguments
 from closedform.emit.text import WIDTH, banner, call_signature, interface
 from closedform.lower import Lowered
 from closedform.lower.graph import Node
@@ -134,14 +135,10 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> N
 
 def _size(program: Lowered) -> str:
     """The code for the size: the planes that are lengths, the degrees and the range of sizes."""
-    if program.degrees is None or not program.is_scaled:
+    size = Size.of(program)
+    if size is None:
         return ""
-    entries = [str(e) for a in program.inputs for e in a.entries] + list(program.parameters)
-    lengths = tuple(k for k, name in enumerate(entries) if name in program.degrees.lengths)
-    flat = [d for row in program.degrees.results for d in row]
-    degrees = tuple((k, d) for k, d in enumerate(flat) if d)
-    least, most = DOUBLE.sizes(program.degrees.highest)
-    return f"_runtime.Size({lengths!r}, {degrees!r}, {least!r}, {most!r})"
+    return f"_runtime.Size({size.lengths!r}, {size.degrees!r}, {size.least!r}, {size.most!r})"
 
 
 def _kernel(name: str, comment: str, program: Lowered) -> NumpyKernel:
@@ -165,12 +162,11 @@ def _kernel(name: str, comment: str, program: Lowered) -> NumpyKernel:
     lines += [f"{line.name} = {line.code}" for line in printer.lines]
     values = [v for result in results for v in result]
     used = program.used_inputs()
-    entries = [str(e) for a in program.inputs for e in a.entries] + list(program.parameters)
-    arguments = ", ".join(printer.inputs[e] if e in used else f"_{e}" for e in entries)
+    listed = ", ".join(printer.inputs[e] if e in used else f"_{e}" for e in arguments(program))
     return NumpyKernel(
         name,
         comment,
-        _wrapped(arguments, f"def {name}():"),
+        _wrapped(listed, f"def {name}():"),
         tuple(_until_last_use(lines, values)),
         tuple(values),
     )

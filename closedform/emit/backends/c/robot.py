@@ -11,9 +11,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from closedform.emit.backends.c.comment import comment
 from closedform.emit.backends.c.kernel import CArray, CProgram, Emission
 from closedform.emit.backends.c.size import CSize, size_of
-from closedform.emit.docstring import comment, docstring
+from closedform.emit.docstring import docstring
 from closedform.emit.text import WIDTH, banner, interface
 from closedform.lower import Lowered
 from closedform.model.derivation import Derivation

@@ -69,7 +69,7 @@ typedef struct {
  *
  * Notes
  * -----
- * - NaN where the tips are farther apart than the wrist links can span.
+ * - NaN if the tips are farther apart than the wrist links can span.
  */
 void h6ar_fk(const h6ar_params *params, const real_t q[6],
     real_t x[6]);
@@ -94,7 +94,7 @@ void h6ar_fk_batch(size_t n, const h6ar_params *params,
  *
  * Notes
  * -----
- * - NaN where the tips are farther apart than the wrist links can span.
+ * - NaN if the tips are farther apart than the wrist links can span.
  */
 void h6ar_pose(const h6ar_params *params, const real_t q[6],
     real_t T[16]);
@@ -123,7 +123,7 @@ void h6ar_arm_tips_batch(size_t n, const h6ar_params *params,
     real_t *tips, size_t tips_stride);
 
 /*
- * The invariant point, by the averages of the angles.
+ * The invariant point, computed from the averages of the angles.
  *
  * Source: eq. (7).
  *
@@ -159,8 +159,8 @@ void h6ar_invariant_point_batch(size_t n, const h6ar_params *params,
  *
  * Notes
  * -----
- * - NaN where the tips are farther apart than the wrist links can span.
- * - Unbounded where the wrist links are stretched: there l_W turns over.
+ * - NaN if the tips are farther apart than the wrist links can span.
+ * - Unbounded near stretched wrist links: the slope of l_W is infinite there.
  */
 void h6ar_jacobian(const h6ar_params *params, const real_t q[6],
     real_t J[36]);
@@ -182,7 +182,7 @@ void h6ar_jacobian_batch(size_t n, const h6ar_params *params,
  *
  * Notes
  * -----
- * - NaN where the tips are farther apart than the wrist links can span.
+ * - NaN if the tips are farther apart than the wrist links can span.
  */
 void h6ar_determinant(const h6ar_params *params, const real_t q[6],
     real_t det[1]);
@@ -201,13 +201,14 @@ void h6ar_determinant_batch(size_t n, const h6ar_params *params,
  * Outputs
  * -------
  * factors : real_t[6]
- *     One factor for each singular set: the tip is above or below the waist axis; virtual arm
- *     with the wrist straight or folded; virtual arm straight or folded; upper arms half a turn
- *     apart; fore-arms half a turn apart; wrist links stretched along the base line.
+ *     One factor for each singular set: tip in the plane of the waist axis and the shoulders;
+ *     virtual arm with the wrist straight or folded; virtual arm straight or folded; upper arms
+ *     half a turn apart; fore-arms half a turn apart; wrist links stretched along the base
+ *     line.
  *
  * Notes
  * -----
- * - NaN where the tips are farther apart than the wrist links can span.
+ * - NaN if the tips are farther apart than the wrist links can span.
  */
 void h6ar_singularities(const h6ar_params *params, const real_t q[6],
     real_t factors[6]);
@@ -239,14 +240,15 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
  * -----
  * - Branches in this order: front_elbow_up, front_elbow_down, rear_elbow_up, rear_elbow_down.
  * - UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist axis
- *   than L_theta, the virtual arm is out of reach, or its tips cannot be so far apart.
- * - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the virtual arm
- *   with the wrist on its shoulder (its upper arm is returned horizontal), or the virtual arm
- *   straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta),
- *   or their difference where it is folded, is determined by yaw and roll, alpha and beta being
- *   half the differences of the arms' angles; sines of equal size are returned.
- * - SINGULAR as well where the wrist links are nearly stretched (l_W is less than 2^-10 al):
- *   rounded joints do not hold the tip to 1e-12 there.
+ *   than L_theta, the virtual arm cannot reach the tip, or the tips of the arms cannot be so
+ *   far apart.
+ * - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned); the tip of the virtual arm
+ *   with the wrist is on its shoulder (a horizontal upper arm is returned); or the virtual arm
+ *   without the wrist is straight or folded. In the last case yaw and roll determine only the
+ *   sum of L1 sin(alpha) and f sin(beta) (straight) or their difference (folded); alpha and
+ *   beta are half the differences of the arms' angles, and sines of equal size are returned.
+ * - SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): rounded
+ *   joints do not determine the tip to 1e-12 there.
  * - INVALID: d, L1, or both L2 and a3 are zero.
  */
 void h6ar_ik(const h6ar_params *params, const real_t x[6],
@@ -257,7 +259,7 @@ void h6ar_ik_batch(size_t n, const h6ar_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * The variable length l_W of the wrist; NaN where the links are too short.
+ * The variable length l_W of the wrist; NaN if the links are too short.
  *
  * Source: eq. (8).
  *
@@ -306,7 +308,7 @@ void h6ar_minimum_link_length_batch(size_t n, const h6ar_params *params,
     real_t *al, size_t al_stride);
 
 /*
- * The largest yaw at a roll that keeps the separation angle; NaN where there is none.
+ * The largest yaw at a roll that keeps the separation angle; NaN if there is none.
  *
  * Inputs
  * ------
@@ -328,7 +330,7 @@ void h6ar_largest_yaw_batch(size_t n, const h6ar_params *params,
     real_t *psi, size_t psi_stride);
 
 /*
- * The largest angle that yaw and roll may both have; NaN where there is none.
+ * The largest angle that yaw and roll may both have; NaN if there is none.
  *
  * Inputs
  * ------

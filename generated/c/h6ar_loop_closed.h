@@ -69,10 +69,10 @@ typedef struct {
  *
  * Notes
  * -----
- * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
- *   arm cannot reach their middle.
- * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *   yaw and roll.
+ * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+ *   cannot reach the middle of the tips.
+ * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+ *   its fore-arm.
  */
 void h6ar_loop_closed_fk(const h6ar_loop_closed_params *params,
     const real_t q[6], real_t x[6]);
@@ -97,10 +97,10 @@ void h6ar_loop_closed_fk_batch(size_t n, const h6ar_loop_closed_params *params,
  *
  * Notes
  * -----
- * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
- *   arm cannot reach their middle.
- * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *   yaw and roll.
+ * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+ *   cannot reach the middle of the tips.
+ * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+ *   its fore-arm.
  */
 void h6ar_loop_closed_pose(const h6ar_loop_closed_params *params,
     const real_t q[6], real_t T[16]);
@@ -165,11 +165,11 @@ void h6ar_loop_closed_invariant_point_batch(size_t n, const h6ar_loop_closed_par
  *
  * Notes
  * -----
- * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
- *   arm cannot reach their middle.
- * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *   yaw and roll.
- * - Unbounded where the wrist links are stretched: there l_W turns over.
+ * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+ *   cannot reach the middle of the tips.
+ * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+ *   its fore-arm.
+ * - Unbounded near stretched wrist links: the slope of l_W is infinite there.
  */
 void h6ar_loop_closed_jacobian(const h6ar_loop_closed_params *params,
     const real_t q[6], real_t J[36]);
@@ -178,7 +178,7 @@ void h6ar_loop_closed_jacobian_batch(size_t n, const h6ar_loop_closed_params *pa
     real_t *J, size_t J_stride);
 
 /*
- * Determinant of the Jacobian; it has a pole where the virtual arm is straight.
+ * Determinant of the Jacobian; it has a pole if the virtual arm is straight or folded.
  *
  * Inputs
  * ------
@@ -191,10 +191,10 @@ void h6ar_loop_closed_jacobian_batch(size_t n, const h6ar_loop_closed_params *pa
  *
  * Notes
  * -----
- * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
- *   arm cannot reach their middle.
- * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *   yaw and roll.
+ * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+ *   cannot reach the middle of the tips.
+ * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+ *   its fore-arm.
  */
 void h6ar_loop_closed_determinant(const h6ar_loop_closed_params *params,
     const real_t q[6], real_t det[1]);
@@ -213,17 +213,17 @@ void h6ar_loop_closed_determinant_batch(size_t n, const h6ar_loop_closed_params 
  * Outputs
  * -------
  * factors : real_t[6]
- *     One factor for each singular set: the tip is above or below the waist axis; virtual arm
- *     with the wrist straight or folded; right arm straight or folded; left arm straight or
- *     folded; virtual arm straight or folded (a pole of the determinant); wrist links stretched
- *     along the base line.
+ *     One factor for each singular set: tip in the plane of the waist axis and the shoulders;
+ *     virtual arm with the wrist straight or folded; right arm straight or folded; left arm
+ *     straight or folded; virtual arm straight or folded (a pole of the determinant); wrist
+ *     links stretched along the base line.
  *
  * Notes
  * -----
- * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
- *   arm cannot reach their middle.
- * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *   yaw and roll.
+ * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+ *   cannot reach the middle of the tips.
+ * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+ *   its fore-arm.
  */
 void h6ar_loop_closed_singularities(const h6ar_loop_closed_params *params,
     const real_t q[6], real_t factors[6]);
@@ -232,10 +232,10 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
     real_t *factors, size_t factors_stride);
 
 /*
- * All postures of the mechanism that reach a tip; mixed ones have the left elbow on the other
- * side.
+ * All postures of the mechanism that reach a tip; in a mixed one the elbows are on opposite
+ * sides.
  *
- * Source: eqs. (11), (13) and (14), then each arm by itself.
+ * Source: eqs. (11), (13) and (14), then each arm separately.
  *
  * Inputs
  * ------
@@ -258,15 +258,15 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
  *   front_elbow_down_mixed, rear_elbow_up_alike, rear_elbow_up_mixed, rear_elbow_down_alike,
  *   rear_elbow_down_mixed.
  * - UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist
- *   axis than L_theta, or an arm is out of reach.
- * - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
- *   upper arm is returned beside that of the virtual arm).
- * - SINGULAR as well where rounded joints do not hold the tip, yaw and roll to 1e-12: near a
+ *   axis than L_theta, or an arm cannot reach its tip.
+ * - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), or the tip of an arm on its
+ *   own shoulder (its upper arm is returned parallel to that of the virtual arm).
+ * - SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a
  *   folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
- *   distance of the tips), a virtual arm shorter than 2^-10 of a stretched one, and stretched
- *   wrist links (l_W is less than 2^-10 al).
+ *   distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and near
+ *   stretched wrist links (l_W is less than 2^-10 al).
  * - INVALID: d, L1, or both L2 and a3 are zero.
- * - A straight right arm is returned bent by a few units in the last place, so that fk can read
+ * - A straight right arm is returned bent by a few units in the last place, so that fk can tell
  *   the side.
  */
 void h6ar_loop_closed_ik(const h6ar_loop_closed_params *params,
@@ -277,7 +277,7 @@ void h6ar_loop_closed_ik_batch(size_t n, const h6ar_loop_closed_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * The variable length l_W of the wrist; NaN where the links are too short.
+ * The variable length l_W of the wrist; NaN if the links are too short.
  *
  * Source: eq. (8).
  *
@@ -328,7 +328,7 @@ void h6ar_loop_closed_minimum_link_length_batch(size_t n, const h6ar_loop_closed
     real_t *al, size_t al_stride);
 
 /*
- * The largest yaw at a roll that keeps the separation angle; NaN where there is none.
+ * The largest yaw at a roll that keeps the separation angle; NaN if there is none.
  *
  * Inputs
  * ------
@@ -351,7 +351,7 @@ void h6ar_loop_closed_largest_yaw_batch(size_t n, const h6ar_loop_closed_params 
     real_t *psi, size_t psi_stride);
 
 /*
- * The largest angle that yaw and roll may both have; NaN where there is none.
+ * The largest angle that yaw and roll may both have; NaN if there is none.
  *
  * Inputs
  * ------

@@ -65,7 +65,7 @@ typedef struct {
  * Notes
  * -----
  * - Branches in this order: left_of_CD, right_of_CD.
- * - UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.
+ * - UNREACHABLE: C and D are more than 2*L2 apart, so the loop cannot close.
  * - SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point
  *   at theta4 = theta5 = +90 or -90 degrees is returned.
  * - Ill-conditioned near the parallel singularities, where both modes meet or P is free.
@@ -94,7 +94,7 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
  * -----
  * - Branches in this order: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
- * - Free, but equal, where C and D coincide: +90 and -90 degrees are returned.
+ * - If C and D coincide, both angles are free but equal: +90 or -90 degrees is returned.
  */
 void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params,
     const real_t q[3], real_t theta[4]);
@@ -143,7 +143,7 @@ void hybrid_five_bar_jacobian_parallel_batch(size_t n, const hybrid_five_bar_par
  * -----
  * - Branches in this order: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
- * - Its signs tell the working modes apart, in the order of BRANCHES.
+ * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  */
 void hybrid_five_bar_jacobian_serial(const hybrid_five_bar_params *params,
     const real_t q[3], real_t B[6]);
@@ -202,7 +202,7 @@ void hybrid_five_bar_determinant_batch(size_t n, const hybrid_five_bar_params *p
 
 /*
  * Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and
- * L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 - theta4), the parallel one.
+ * L1*L2*sin(theta5 - theta3) (serial), and L2^2*sin(theta5 - theta4) (parallel).
  *
  * Inputs
  * ------
@@ -242,8 +242,8 @@ void hybrid_five_bar_singularities_batch(size_t n, const hybrid_five_bar_params 
  * -----
  * - Branches in this order: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
- * - Infinite at a parallel singularity; it does not depend on theta1, and both modes have the
- *   same.
+ * - Infinite at a parallel singularity. It does not depend on theta1 and is the same for both
+ *   modes.
  */
 void hybrid_five_bar_condition_number(const hybrid_five_bar_params *params,
     const real_t q[3], real_t kappa[2]);
@@ -277,13 +277,15 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
  *   minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly
  *   modes.
- * - UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.
- * - SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is
- *   free; L1 = 0, both are. 0 is returned for theta1, and for the others unless L1 = 0.
- * - SINGULAR as well near a parallel singularity, where the sine of the angle between CP and DP
- *   is less than 2^-10: the loop closes, but P moves more for an ulp of the joints than 1e-12
- *   of the lengths. If L0 = 0, equal signs of the last two entries put C on D.
- * - Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,
+ * - UNREACHABLE: the distance of P from A or from B is more than L1 + L2 or less than |L1 -
+ *   L2|.
+ * - SINGULAR: theta1 is free if P is on the axis; theta2 or theta3 is free if L1 = L2 and P is
+ *   at A or at B; both are free if L1 = 0. 0 is returned for theta1, and for the others unless
+ *   L1 = 0.
+ * - SINGULAR also near a parallel singularity, if the sine of the angle between CP and DP is
+ *   less than 2^-10: the loop closes, but one ulp of the joints moves P by more than 1e-12 of
+ *   the lengths. If L0 = 0, C coincides with D for equal signs of the last two entries.
+ * - Ill-conditioned near the boundary of the workspace: the angles lose half their digits, but
  *   the loop still closes.
  */
 void hybrid_five_bar_ik(const hybrid_five_bar_params *params,
@@ -324,7 +326,7 @@ void hybrid_five_bar_workspace_contains_batch(size_t n, const hybrid_five_bar_pa
  *
  * Notes
  * -----
- * - NaN for a length that is negative or not finite.
+ * - NaN if a length is negative or not finite.
  */
 void hybrid_five_bar_workspace_volume(const hybrid_five_bar_params *params,
     real_t volume[1]);

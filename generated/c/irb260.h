@@ -71,7 +71,7 @@ void irb260_joint4_batch(size_t n, const irb260_params *params,
     real_t *theta4, size_t theta4_stride);
 
 /*
- * Joint angles of motor angles: theta3 = m3 - m2.
+ * Joint angles from motor angles: theta3 = m3 - m2.
  *
  * Inputs
  * ------
@@ -85,7 +85,7 @@ void irb260_joint4_batch(size_t n, const irb260_params *params,
  *
  * Notes
  * -----
- * - The map is linear and counts turns: its angles are not reduced to (-pi, pi].
+ * - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
  */
 void irb260_joints_from_motors(const irb260_params *params, const real_t motors[4],
     real_t q[4]);
@@ -94,7 +94,7 @@ void irb260_joints_from_motors_batch(size_t n, const irb260_params *params,
     real_t *q, size_t q_stride);
 
 /*
- * Motor angles of joint angles: m3 = theta2 + theta3.
+ * Motor angles from joint angles: m3 = theta2 + theta3.
  *
  * Inputs
  * ------
@@ -107,7 +107,7 @@ void irb260_joints_from_motors_batch(size_t n, const irb260_params *params,
  *
  * Notes
  * -----
- * - The map is linear and counts turns: its angles are not reduced to (-pi, pi].
+ * - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
  */
 void irb260_motors_from_joints(const irb260_params *params, const real_t q[4],
     real_t motors[4]);
@@ -183,7 +183,7 @@ void irb260_jacobian_batch(size_t n, const irb260_params *params,
     real_t *J, size_t J_stride);
 
 /*
- * Twist (v; omega) of the hand in the base frame per joint rate.
+ * Twist (v; omega) of the hand in the base frame, per joint rate.
  *
  * Source: eq. (18).
  *
@@ -204,7 +204,7 @@ void irb260_jacobian_space_batch(size_t n, const irb260_params *params,
     real_t *J, size_t J_stride);
 
 /*
- * Twist (v; omega) of the hand in its own frame per joint rate.
+ * Twist (v; omega) of the hand in its own frame, per joint rate.
  *
  * Inputs
  * ------
@@ -302,9 +302,9 @@ void irb260_point_velocity_batch(size_t n, const irb260_params *params,
     real_t *v, size_t v_stride);
 
 /*
- * All four configurations of a position and a yaw.
+ * All four configurations for a position and a yaw.
  *
- * Source: solved from eq. (13); the paper leaves the inverse out.
+ * Source: solved from eq. (13); the paper does not give the inverse.
  *
  * Inputs
  * ------
@@ -325,13 +325,14 @@ void irb260_point_velocity_batch(size_t n, const irb260_params *params,
  * -----
  * - Branches in this order: front_elbow_up, front_elbow_down, back_elbow_up, back_elbow_down.
  * - front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0,
- *   where rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;
+ *   with rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;
  *   elbow_down: cos(theta3) <= 0.
- * - SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) and 0
- *   is returned; equal arms folded with the wrist on the shoulder, theta2 is free and 0 is
- *   returned; an arm without length, its angle is free and theta3 = -pi/2 is returned.
- * - Ill-conditioned where the arm is straight or folded: the angles lose half the digits there,
- *   the position does not.
+ * - SINGULAR: if the hand is on the base axis, theta1 is free (theta1 + theta5 is determined)
+ *   and 0 is returned; if equal arms are folded with the wrist on the shoulder, theta2 is free
+ *   and 0 is returned; if an arm has no length, its angle is free and theta3 = -pi/2 is
+ *   returned.
+ * - Ill-conditioned if the arm is straight or folded: the angles lose half their digits, the
+ *   position does not.
  */
 void irb260_ik(const irb260_params *params, const real_t x[4],
     real_t q[16], uint8_t status[4]);
@@ -374,7 +375,7 @@ void irb260_workspace_margin_batch(size_t n, const irb260_params *params,
     real_t *margin, size_t margin_stride);
 
 /*
- * Whether some configuration reaches a position, whatever the yaw.
+ * Whether any configuration reaches a position; the yaw does not matter.
  *
  * Inputs
  * ------
@@ -387,7 +388,7 @@ void irb260_workspace_margin_batch(size_t n, const irb260_params *params,
  *
  * Notes
  * -----
- * - True exactly where ik has a branch that is OK or SINGULAR.
+ * - True if and only if ik has a branch that is OK or SINGULAR.
  */
 void irb260_workspace_contains(const irb260_params *params, const real_t p[3],
     uint8_t inside[1]);

@@ -10,7 +10,7 @@
  *   singularities: 1 sincos
  *   jacobian_space: 4 add, 8 multiply, 2 sincos
  *   jacobian_body: 4 add, 8 multiply, 2 sincos
- *   ik: 32 add, 39 compare and select, 5 atan2, 5 divide, 41 multiply, 1 sincos, 2 sqrt
+ *   ik: 32 add, 38 compare and select, 5 atan2, 5 divide, 39 multiply, 1 sincos, 2 sqrt
  */
 #include "scara.h"
 
@@ -553,50 +553,53 @@ CF_INLINE void scara_ik_kernel(const int single, const real_t one,
     const real_t t2 = l1 + l2;
     const int folded_elbow = r_elbow <= CLOSEDFORM_VANISHING * t2;
     const real_t t3 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded_elbow, r_elbow);
+    const real_t t4 = cf_select(folded_elbow, CLOSEDFORM_C(0.0), x_y * t3);
     const int no_link_elbow = l1 * l2 <= CLOSEDFORM_VANISHING * (t2 * t2);
-    const real_t t4 = t2 - r_elbow;
-    const real_t A_elbow = cf_max(t4, CLOSEDFORM_C(0.0));
-    const real_t t5 = l1 - l2;
-    const real_t t6 = r_elbow - t5;
-    const real_t C_elbow = cf_max(t6, CLOSEDFORM_C(0.0));
-    const real_t t7 = A_elbow * C_elbow;
+    const int t5 = folded_elbow | no_link_elbow;
+    const real_t t6 = t2 - r_elbow;
+    const real_t A_elbow = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t7 = l1 - l2;
+    const real_t t8 = r_elbow - t7;
+    const real_t C_elbow = cf_max(t8, CLOSEDFORM_C(0.0));
+    const real_t t9 = A_elbow * C_elbow;
     const real_t S_elbow = r_elbow + t2;
-    const real_t t8 = r_elbow + t5;
-    const real_t B_elbow = cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t9 = S_elbow * B_elbow;
-    const real_t t10 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded_elbow | no_link_elbow, t7 + t9);
-    const real_t c_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t7 - t9) * t10));
-    const real_t t11 = t3 * (x_y * c_base_elbow);
-    const real_t t12 = A_elbow * S_elbow;
-    const real_t t13 = C_elbow * B_elbow;
-    const real_t area_elbow = CLOSEDFORM_C(2.0) * cf_root(single, t12 * t13);
-    const real_t s_base_elbow = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), t10 * area_elbow);
-    const real_t t14 = t3 * (x_x * s_base_elbow);
-    const real_t s1 = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t11 - t14);
-    const real_t t15 = t3 * (x_x * c_base_elbow);
-    const real_t t16 = t3 * (x_y * s_base_elbow);
-    const real_t c1 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t15 + t16);
-    const int t17 = cf_nought(l1) + cf_nought(l2) + cf_nought(h) == 0;
-    const int t18 = t17 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
-    const int t19 = cf_nought(x_x) + cf_nought(x_y) + cf_nought(x_z) + cf_nought(x_yaw) == 0;
-    const int invalid = !(t18 & (CLOSEDFORM_C(0.0) <= h) & t19);
-    const real_t t20 = l1 * CLOSEDFORM_C(0.5) + l2 * CLOSEDFORM_C(0.5);
-    const real_t t21 = -(CLOSEDFORM_FEASIBILITY * t20);
-    const int unreachable = !((t21 <= t4) & (t21 <= t8) & (t21 <= t6));
-    const real_t t22 = cf_poison(single, invalid | unreachable);
-    const real_t t23 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link_elbow, t12 + t13);
-    const real_t s2 = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow * t23);
-    const real_t c2 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -(t23 * (t12 - t13)));
-    const real_t t24 = h - x_z + t22;
-    const real_t t25 = c1 * c2 - s1 * s2;
-    const real_t t26 = c1 * s2 + s1 * c2;
-    const real_t s1_right = cf_select(folded_elbow, CLOSEDFORM_C(0.0), t11 + t14);
-    const real_t c1_right = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t15 - t16);
-    const real_t t27 = c2 * c1_right + s2 * s1_right;
-    const real_t t28 = s2 * c1_right - c2 * s1_right;
-    const real_t t29 = cf_status(single, invalid, unreachable, no_link_elbow | folded_elbow);
-    const real_t opposite[8] = { s1, s2, s_x_yaw * t25 - c_x_yaw * t26, s1_right, s_x_yaw * t27 + c_x_yaw * t28 };
-    const real_t adjacent[8] = { c1, c2, c_x_yaw * t25 + s_x_yaw * t26, c1_right, c_x_yaw * t27 - s_x_yaw * t28 };
+    const real_t t10 = r_elbow + t7;
+    const real_t B_elbow = cf_max(t10, CLOSEDFORM_C(0.0));
+    const real_t t11 = S_elbow * B_elbow;
+    const real_t t12 = CLOSEDFORM_C(1.0) / cf_divisor(single, t5, t9 + t11);
+    const real_t c_base_elbow = cf_select(t5, CLOSEDFORM_C(1.0), -((t9 - t11) * t12));
+    const real_t t13 = t4 * c_base_elbow;
+    const real_t t14 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), x_x * t3);
+    const real_t t15 = A_elbow * S_elbow;
+    const real_t t16 = C_elbow * B_elbow;
+    const real_t area_elbow = CLOSEDFORM_C(2.0) * cf_root(single, t15 * t16);
+    const real_t s_base_elbow = cf_select(t5, CLOSEDFORM_C(0.0), t12 * area_elbow);
+    const real_t t17 = t14 * s_base_elbow;
+    const real_t s1 = t13 - t17;
+    const real_t t18 = t14 * c_base_elbow;
+    const real_t t19 = t4 * s_base_elbow;
+    const real_t c1 = t18 + t19;
+    const int t20 = cf_nought(l1) + cf_nought(l2) + cf_nought(h) == 0;
+    const int t21 = t20 & (CLOSEDFORM_C(0.0) <= l1) & (CLOSEDFORM_C(0.0) <= l2);
+    const int t22 = cf_nought(x_x) + cf_nought(x_y) + cf_nought(x_z) + cf_nought(x_yaw) == 0;
+    const int invalid = !(t21 & (CLOSEDFORM_C(0.0) <= h) & t22);
+    const real_t t23 = l1 * CLOSEDFORM_C(0.5) + l2 * CLOSEDFORM_C(0.5);
+    const real_t t24 = -(CLOSEDFORM_FEASIBILITY * t23);
+    const int unreachable = !((t24 <= t6) & (t24 <= t10) & (t24 <= t8));
+    const real_t t25 = cf_poison(single, invalid | unreachable);
+    const real_t t26 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link_elbow, t15 + t16);
+    const real_t s2 = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow * t26);
+    const real_t c2 = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -(t26 * (t15 - t16)));
+    const real_t t27 = h - x_z + t25;
+    const real_t t28 = c1 * c2 - s1 * s2;
+    const real_t t29 = c1 * s2 + s1 * c2;
+    const real_t s1_right = t13 + t17;
+    const real_t c1_right = t18 - t19;
+    const real_t t30 = c2 * c1_right + s2 * s1_right;
+    const real_t t31 = s2 * c1_right - c2 * s1_right;
+    const real_t t32 = cf_status(single, invalid, unreachable, no_link_elbow | folded_elbow);
+    const real_t opposite[8] = { s1, s2, s_x_yaw * t28 - c_x_yaw * t29, s1_right, s_x_yaw * t30 + c_x_yaw * t31 };
+    const real_t adjacent[8] = { c1, c2, c_x_yaw * t28 + s_x_yaw * t29, c1_right, c_x_yaw * t30 - s_x_yaw * t31 };
     real_t angles[8];
     if (single) {
         cf_atan2_lanes(8, opposite, adjacent, angles);
@@ -607,16 +610,16 @@ CF_INLINE void scara_ik_kernel(const int single, const real_t one,
         angles[3] = cf_atan2(opposite[3], adjacent[3]);
         angles[4] = cf_atan2(opposite[4], adjacent[4]);
     }
-    q[0] = cf_wrap_cut(angles[0]) + t22;
-    q[1] = cf_wrap_cut(angles[1]) + t22;
-    q[2] = t24;
-    q[3] = cf_wrap_cut(-angles[2]) + t22;
-    q[4] = cf_wrap_cut(angles[3]) + t22;
-    q[5] = cf_wrap_cut(-angles[1]) + t22;
-    q[6] = t24;
-    q[7] = cf_wrap_cut(-angles[4]) + t22;
-    status[0] = t29;
-    status[1] = t29;
+    q[0] = cf_wrap_cut(angles[0]) + t25;
+    q[1] = cf_wrap_cut(angles[1]) + t25;
+    q[2] = t27;
+    q[3] = cf_wrap_cut(-angles[2]) + t25;
+    q[4] = cf_wrap_cut(angles[3]) + t25;
+    q[5] = cf_wrap_cut(-angles[1]) + t25;
+    q[6] = t27;
+    q[7] = cf_wrap_cut(-angles[4]) + t25;
+    status[0] = t32;
+    status[1] = t32;
 }
 
 CLOSEDFORM_DISPATCHED

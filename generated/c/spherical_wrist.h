@@ -134,7 +134,7 @@ void spherical_wrist_determinant_batch(size_t n, const spherical_wrist_params *p
     real_t *det, size_t det_stride);
 
 /*
- * The factor that vanishes exactly where the axes 4 and 6 coincide.
+ * The factor that vanishes exactly if the axes 4 and 6 coincide.
  *
  * Inputs
  * ------
@@ -153,7 +153,7 @@ void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params 
     real_t *factors, size_t factors_stride);
 
 /*
- * Both wrist configurations of a rotation.
+ * Both wrist configurations for a rotation.
  *
  * Source: eqs. (13) and (16), with theta6 from the remaining rotation.
  *
@@ -175,11 +175,11 @@ void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params 
  * Notes
  * -----
  * - Branches in this order: theta5_positive, theta5_negative.
- * - SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, theta4 =
- *   0 is returned.
- * - INVALID: a matrix that is no proper rotation, a mirrored one included.
- * - Ill-conditioned near theta5 = 0 and pi in theta4 and theta6 each, not in their sum or
- *   difference.
+ * - SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, and
+ *   theta4 = 0 is returned.
+ * - INVALID: the matrix is not a proper rotation, for example a reflection.
+ * - Near theta5 = 0 and pi, theta4 and theta6 are ill-conditioned; their sum or difference is
+ *   not.
  */
 void spherical_wrist_ik(const spherical_wrist_params *params,
     const real_t R[9], real_t q[6], uint8_t status[2]);

@@ -23,11 +23,11 @@
 /**
  * H6AR, published model.
  *
- * A waist carries twin arms of two links, each d beside the mid-plane; their tips carry a wrist of
- * two links and a gear set, which yaws (psi) and rolls (phi) as the arms move apart, and an
- * actuator that pitches (theta).  In this model, eqs. (1) to (9) as printed, the wrist hangs on a
- * virtual arm whose angles are the averages of the real ones, and yaw and roll are measured
- * against the base.  The average is that of the directions of the links, on the shorter arc.
+ * A waist carries two equal arms of two links, each at the distance d from the mid-plane.  Their
+ * tips carry a wrist of two links and a gear set, which yaws (psi) and rolls (phi) as the arms
+ * move apart, and an actuator for the pitch (theta).  In this model, eqs. (1) to (9) as printed,
+ * the wrist hangs on a virtual arm whose angles are the averages of the real ones.  Yaw and roll
+ * are measured against the base.  Directions of links are averaged on the shorter arc.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel manipulator.
@@ -43,7 +43,7 @@ export const ASSEMBLY_MODES = Object.freeze(/** @type {const} */ ([]));
 export const JOINTS = Object.freeze(/** @type {const} */ (["theta1", "theta2R", "theta3R", "theta2L", "theta3L", "theta"]));
 export const TASK = Object.freeze(/** @type {const} */ (["x", "y", "z", "psi", "phi", "theta"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["front_elbow_up", "front_elbow_down", "rear_elbow_up", "rear_elbow_down"]));
-export const SINGULARITIES = Object.freeze(/** @type {const} */ (["the tip is above or below the waist axis", "virtual arm with the wrist straight or folded", "virtual arm straight or folded", "upper arms half a turn apart", "fore-arms half a turn apart", "wrist links stretched along the base line"]));
+export const SINGULARITIES = Object.freeze(/** @type {const} */ (["tip in the plane of the waist axis and the shoulders", "virtual arm with the wrist straight or folded", "virtual arm straight or folded", "upper arms half a turn apart", "fore-arms half a turn apart", "wrist links stretched along the base line"]));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -199,7 +199,7 @@ const _FK = _runtime.kernel({
  *
  * Source: eqs. (1) to (9).
  *
- * - NaN where the tips are farther apart than the wrist links can span.
+ * - NaN if the tips are farther apart than the wrist links can span.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
@@ -379,7 +379,7 @@ const _POSE = _runtime.kernel({
  *
  * Source: eq. (9) and its frames.
  *
- * - NaN where the tips are farther apart than the wrist links can span.
+ * - NaN if the tips are farther apart than the wrist links can span.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
@@ -559,7 +559,7 @@ const _INVARIANT_POINT = _runtime.kernel({
 });
 
 /**
- * The invariant point, by the averages of the angles.
+ * The invariant point, computed from the averages of the angles.
  *
  * Source: eq. (7).
  *
@@ -812,8 +812,8 @@ const _JACOBIAN = _runtime.kernel({
  *
  * Source: derivative of eqs. (1) to (9).
  *
- * - NaN where the tips are farther apart than the wrist links can span.
- * - Unbounded where the wrist links are stretched: there l_W turns over.
+ * - NaN if the tips are farther apart than the wrist links can span.
+ * - Unbounded near stretched wrist links: the slope of l_W is infinite there.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
@@ -955,7 +955,7 @@ const _DETERMINANT = _runtime.kernel({
 /**
  * Determinant of the Jacobian.
  *
- * - NaN where the tips are farther apart than the wrist links can span.
+ * - NaN if the tips are farther apart than the wrist links can span.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
@@ -1096,15 +1096,15 @@ const _SINGULARITIES = _runtime.kernel({
 /**
  * The factors of the determinant, and the length of the wrist.
  *
- * - NaN where the tips are farther apart than the wrist links can span.
+ * - NaN if the tips are farther apart than the wrist links can span.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 6 numbers. One factor for each singular set: the tip is above or below
- *     the waist axis; virtual arm with the wrist straight or folded; virtual arm straight or
- *     folded; upper arms half a turn apart; fore-arms half a turn apart; wrist links stretched
- *     along the base line.
+ * @returns {number[]} 6 numbers. One factor for each singular set: tip in the plane of the
+ *     waist axis and the shoulders; virtual arm with the wrist straight or folded; virtual arm
+ *     straight or folded; upper arms half a turn apart; fore-arms half a turn apart; wrist
+ *     links stretched along the base line.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has another length.
  */
@@ -2096,14 +2096,15 @@ const _IK = _runtime.kernel({
  * - Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, rear_elbow_up,
  *   rear_elbow_down.
  * - UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist axis
- *   than L_theta, the virtual arm is out of reach, or its tips cannot be so far apart.
- * - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the virtual arm
- *   with the wrist on its shoulder (its upper arm is returned horizontal), or the virtual arm
- *   straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta),
- *   or their difference where it is folded, is determined by yaw and roll, alpha and beta being
- *   half the differences of the arms' angles; sines of equal size are returned.
- * - SINGULAR as well where the wrist links are nearly stretched (l_W is less than 2^-10 al):
- *   rounded joints do not hold the tip to 1e-12 there.
+ *   than L_theta, the virtual arm cannot reach the tip, or the tips of the arms cannot be so
+ *   far apart.
+ * - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned); the tip of the virtual arm
+ *   with the wrist is on its shoulder (a horizontal upper arm is returned); or the virtual arm
+ *   without the wrist is straight or folded. In the last case yaw and roll determine only the
+ *   sum of L1 sin(alpha) and f sin(beta) (straight) or their difference (folded); alpha and
+ *   beta are half the differences of the arms' angles, and sines of equal size are returned.
+ * - SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): rounded
+ *   joints do not determine the tip to 1e-12 there.
  * - INVALID: d, L1, or both L2 and a3 are zero.
  *
  * @param {ArrayLike<number>} x 6 numbers. x, y, z in the unit of the parameters; psi, phi,
@@ -2111,10 +2112,10 @@ const _IK = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ q: number[][], status: number[] }} `q`: 4 branches of 6 numbers. theta1, theta2R,
  *     theta3R, theta2L, theta3L, theta in rad, in (-pi, pi]. `status`: A `Status` of each
- *     branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there is none, SINGULAR (2)
- *     where `q` is one of infinitely many or hardly determined (see the notes), and INVALID (3)
- *     where an input is not finite or impossible. `q` is NaN where the status is UNREACHABLE or
- *     INVALID.
+ *     branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no solution, SINGULAR
+ *     (2) if `q` is one of infinitely many solutions or poorly determined (see the notes), and
+ *     INVALID (3) if an input is not finite or not possible. `q` is NaN if the status is
+ *     UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has another length.
  */
@@ -2180,7 +2181,7 @@ const _WRIST_LENGTH = _runtime.kernel({
 });
 
 /**
- * The variable length l_W of the wrist; NaN where the links are too short.
+ * The variable length l_W of the wrist; NaN if the links are too short.
  *
  * Source: eq. (8).
  *
@@ -2308,7 +2309,7 @@ const _LARGEST_YAW = _runtime.kernel({
 });
 
 /**
- * The largest yaw at a roll that keeps the separation angle; NaN where there is none.
+ * The largest yaw at a roll that keeps the separation angle; NaN if there is none.
  *
  * @param {number} phi Angle in rad.
  * @param {number} beta_min Angle in rad.
@@ -2368,7 +2369,7 @@ const _LARGEST_ANGLE = _runtime.kernel({
 });
 
 /**
- * The largest angle that yaw and roll may both have; NaN where there is none.
+ * The largest angle that yaw and roll may both have; NaN if there is none.
  *
  * @param {number} beta_min Angle in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

@@ -23,12 +23,12 @@
 /**
  * H6AR, loop-closed model.
  *
- * A waist carries twin arms of two links, each d beside the mid-plane; their tips carry a wrist of
- * two links and a gear set, which yaws (psi) and rolls (phi) as the arms move apart, and an
- * actuator that pitches (theta).  In this model the loop closes: the base line of the wrist joins
- * the tips, and the invariant point is its middle.  A virtual arm in the mid-plane, bent to the
- * side of the right arm, reaches that point; yaw and roll are measured against its fore-arm, roll
- * with the sign of (9): the right tip goes down.
+ * A waist carries two equal arms of two links, each at the distance d from the mid-plane.  Their
+ * tips carry a wrist of two links and a gear set, which yaws (psi) and rolls (phi) as the arms
+ * move apart, and an actuator for the pitch (theta).  In this model the loop closes: the base line
+ * of the wrist joins the tips, and the invariant point is its middle.  A virtual arm in the mid-
+ * plane, bent to the same side as the right arm, reaches that point.  Yaw and roll are measured
+ * against the virtual fore-arm; as in (9), the right tip goes down if the roll is positive.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel manipulator.
@@ -44,7 +44,7 @@ export const ASSEMBLY_MODES = Object.freeze(/** @type {const} */ ([]));
 export const JOINTS = Object.freeze(/** @type {const} */ (["theta1", "theta2R", "theta3R", "theta2L", "theta3L", "theta"]));
 export const TASK = Object.freeze(/** @type {const} */ (["x", "y", "z", "psi", "phi", "theta"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["front_elbow_up_alike", "front_elbow_up_mixed", "front_elbow_down_alike", "front_elbow_down_mixed", "rear_elbow_up_alike", "rear_elbow_up_mixed", "rear_elbow_down_alike", "rear_elbow_down_mixed"]));
-export const SINGULARITIES = Object.freeze(/** @type {const} */ (["the tip is above or below the waist axis", "virtual arm with the wrist straight or folded", "right arm straight or folded", "left arm straight or folded", "virtual arm straight or folded (a pole of the determinant)", "wrist links stretched along the base line"]));
+export const SINGULARITIES = Object.freeze(/** @type {const} */ (["tip in the plane of the waist axis and the shoulders", "virtual arm with the wrist straight or folded", "right arm straight or folded", "left arm straight or folded", "virtual arm straight or folded (a pole of the determinant)", "wrist links stretched along the base line"]));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -257,10 +257,10 @@ const _FK = _runtime.kernel({
  *
  * Source: eqs. (1), (2), (6) and (9), with the closed loop.
  *
- * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
- *   arm cannot reach their middle.
- * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *   yaw and roll.
+ * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+ *   cannot reach the middle of the tips.
+ * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+ *   its fore-arm.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
@@ -501,10 +501,10 @@ const _POSE = _runtime.kernel({
  *
  * Source: eq. (9) and its frames.
  *
- * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
- *   arm cannot reach their middle.
- * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *   yaw and roll.
+ * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+ *   cannot reach the middle of the tips.
+ * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+ *   its fore-arm.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
@@ -1023,11 +1023,11 @@ const _JACOBIAN = _runtime.kernel({
  *
  * Source: derivative of the forward map.
  *
- * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
- *   arm cannot reach their middle.
- * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *   yaw and roll.
- * - Unbounded where the wrist links are stretched: there l_W turns over.
+ * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+ *   cannot reach the middle of the tips.
+ * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+ *   its fore-arm.
+ * - Unbounded near stretched wrist links: the slope of l_W is infinite there.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
@@ -1229,12 +1229,12 @@ const _DETERMINANT = _runtime.kernel({
 });
 
 /**
- * Determinant of the Jacobian; it has a pole where the virtual arm is straight.
+ * Determinant of the Jacobian; it has a pole if the virtual arm is straight or folded.
  *
- * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
- *   arm cannot reach their middle.
- * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *   yaw and roll.
+ * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+ *   cannot reach the middle of the tips.
+ * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+ *   its fore-arm.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
@@ -1440,18 +1440,18 @@ const _SINGULARITIES = _runtime.kernel({
 /**
  * The factors of the determinant, its pole, and the length of the wrist.
  *
- * - NaN where the tips are farther apart than the wrist links can span, or where the virtual
- *   arm cannot reach their middle.
- * - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
- *   yaw and roll.
+ * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+ *   cannot reach the middle of the tips.
+ * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+ *   its fore-arm.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 6 numbers. One factor for each singular set: the tip is above or below
- *     the waist axis; virtual arm with the wrist straight or folded; right arm straight or
- *     folded; left arm straight or folded; virtual arm straight or folded (a pole of the
- *     determinant); wrist links stretched along the base line.
+ * @returns {number[]} 6 numbers. One factor for each singular set: tip in the plane of the
+ *     waist axis and the shoulders; virtual arm with the wrist straight or folded; right arm
+ *     straight or folded; left arm straight or folded; virtual arm straight or folded (a pole
+ *     of the determinant); wrist links stretched along the base line.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has another length.
  */
@@ -2697,24 +2697,24 @@ const _IK = _runtime.kernel({
 });
 
 /**
- * All postures of the mechanism that reach a tip; mixed ones have the left elbow on the other
- * side.
+ * All postures of the mechanism that reach a tip; in a mixed one the elbows are on opposite
+ * sides.
  *
- * Source: eqs. (11), (13) and (14), then each arm by itself.
+ * Source: eqs. (11), (13) and (14), then each arm separately.
  *
  * - Branches in this order, `BRANCHES`: front_elbow_up_alike, front_elbow_up_mixed,
  *   front_elbow_down_alike, front_elbow_down_mixed, rear_elbow_up_alike, rear_elbow_up_mixed,
  *   rear_elbow_down_alike, rear_elbow_down_mixed.
  * - UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist
- *   axis than L_theta, or an arm is out of reach.
- * - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
- *   upper arm is returned beside that of the virtual arm).
- * - SINGULAR as well where rounded joints do not hold the tip, yaw and roll to 1e-12: near a
+ *   axis than L_theta, or an arm cannot reach its tip.
+ * - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), or the tip of an arm on its
+ *   own shoulder (its upper arm is returned parallel to that of the virtual arm).
+ * - SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a
  *   folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
- *   distance of the tips), a virtual arm shorter than 2^-10 of a stretched one, and stretched
- *   wrist links (l_W is less than 2^-10 al).
+ *   distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and near
+ *   stretched wrist links (l_W is less than 2^-10 al).
  * - INVALID: d, L1, or both L2 and a3 are zero.
- * - A straight right arm is returned bent by a few units in the last place, so that fk can read
+ * - A straight right arm is returned bent by a few units in the last place, so that fk can tell
  *   the side.
  *
  * @param {ArrayLike<number>} x 6 numbers. x, y, z in the unit of the parameters; psi, phi,
@@ -2722,10 +2722,10 @@ const _IK = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ q: number[][], status: number[] }} `q`: 8 branches of 6 numbers. theta1, theta2R,
  *     theta3R, theta2L, theta3L, theta in rad, in (-pi, pi]. `status`: A `Status` of each
- *     branch: OK (0) where `q` is a solution, UNREACHABLE (1) where there is none, SINGULAR (2)
- *     where `q` is one of infinitely many or hardly determined (see the notes), and INVALID (3)
- *     where an input is not finite or impossible. `q` is NaN where the status is UNREACHABLE or
- *     INVALID.
+ *     branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no solution, SINGULAR
+ *     (2) if `q` is one of infinitely many solutions or poorly determined (see the notes), and
+ *     INVALID (3) if an input is not finite or not possible. `q` is NaN if the status is
+ *     UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has another length.
  */
@@ -2792,7 +2792,7 @@ const _WRIST_LENGTH = _runtime.kernel({
 });
 
 /**
- * The variable length l_W of the wrist; NaN where the links are too short.
+ * The variable length l_W of the wrist; NaN if the links are too short.
  *
  * Source: eq. (8).
  *
@@ -2926,7 +2926,7 @@ const _LARGEST_YAW = _runtime.kernel({
 });
 
 /**
- * The largest yaw at a roll that keeps the separation angle; NaN where there is none.
+ * The largest yaw at a roll that keeps the separation angle; NaN if there is none.
  *
  * @param {number} phi Angle in rad.
  * @param {number} beta_min Angle in rad.
@@ -2986,7 +2986,7 @@ const _LARGEST_ANGLE = _runtime.kernel({
 });
 
 /**
- * The largest angle that yaw and roll may both have; NaN where there is none.
+ * The largest angle that yaw and roll may both have; NaN if there is none.
  *
  * @param {number} beta_min Angle in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

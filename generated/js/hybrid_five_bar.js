@@ -19,11 +19,11 @@
 /**
  * Five-bar linkage on a revolute.
  *
- * The pivots A, the origin, and B lie L0 apart on the y axis.  The bars AC and BD of length L1 are
- * driven at the angles theta2 and theta3, the bars CP and DP of length L2 follow at theta4 and
- * theta5; all four angles are measured from the y axis.  theta1 turns the linkage about AB; at
- * theta1 = 0 it lies in the plane of x and y, and a bar at the angle t points along (-sin(t),
- * cos(t), 0).
+ * The pivots A (the origin) and B lie on the y axis at the distance L0.  The bars AC and BD of
+ * length L1 are driven at the angles theta2 and theta3.  The bars CP and DP of length L2 follow at
+ * theta4 and theta5.  All four angles are measured from the y axis.  theta1 turns the linkage
+ * about AB.  At theta1 = 0 it lies in the plane of x and y, and a bar at the angle t points along
+ * (-sin(t), cos(t), 0).
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid Manipulator.
@@ -140,7 +140,7 @@ const _FK = _runtime.kernel({
  * Source: the loop closure of section 2.3.
  *
  * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
- * - UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.
+ * - UNREACHABLE: C and D are more than 2*L2 apart, so the loop cannot close.
  * - SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point
  *   at theta4 = theta5 = +90 or -90 degrees is returned.
  * - Ill-conditioned near the parallel singularities, where both modes meet or P is free.
@@ -148,10 +148,10 @@ const _FK = _runtime.kernel({
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ p: number[][], status: number[] }} `p`: 2 branches of 3 numbers. x, y, z in the
- *     unit of the parameters. `status`: A `Status` of each branch: OK (0) where `p` is a
- *     solution, UNREACHABLE (1) where there is none, SINGULAR (2) where `p` is one of
- *     infinitely many or hardly determined (see the notes), and INVALID (3) where an input is
- *     not finite or impossible. `p` is NaN where the status is UNREACHABLE or INVALID.
+ *     unit of the parameters. `status`: A `Status` of each branch: OK (0) if `p` is a solution,
+ *     UNREACHABLE (1) if there is no solution, SINGULAR (2) if `p` is one of infinitely many
+ *     solutions or poorly determined (see the notes), and INVALID (3) if an input is not finite
+ *     or not possible. `p` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has another length.
  */
@@ -248,7 +248,7 @@ const _PASSIVE_ANGLES = _runtime.kernel({
  *
  * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
- * - Free, but equal, where C and D coincide: +90 and -90 degrees are returned.
+ * - If C and D coincide, both angles are free but equal: +90 or -90 degrees is returned.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -470,7 +470,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
  *
  * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
- * - Its signs tell the working modes apart, in the order of BRANCHES.
+ * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -805,7 +805,7 @@ const _SINGULARITIES = _runtime.kernel({
 
 /**
  * Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and
- * L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 - theta4), the parallel one.
+ * L1*L2*sin(theta5 - theta3) (serial), and L2^2*sin(theta5 - theta4) (parallel).
  *
  * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
@@ -894,8 +894,8 @@ const _CONDITION_NUMBER = _runtime.kernel({
  *
  * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
- * - Infinite at a parallel singularity; it does not depend on theta1, and both modes have the
- *   same.
+ * - Infinite at a parallel singularity. It does not depend on theta1 and is the same for both
+ *   modes.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -1078,22 +1078,24 @@ const _IK = _runtime.kernel({
  *   plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly
  *   modes.
- * - UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.
- * - SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is
- *   free; L1 = 0, both are. 0 is returned for theta1, and for the others unless L1 = 0.
- * - SINGULAR as well near a parallel singularity, where the sine of the angle between CP and DP
- *   is less than 2^-10: the loop closes, but P moves more for an ulp of the joints than 1e-12
- *   of the lengths. If L0 = 0, equal signs of the last two entries put C on D.
- * - Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,
+ * - UNREACHABLE: the distance of P from A or from B is more than L1 + L2 or less than |L1 -
+ *   L2|.
+ * - SINGULAR: theta1 is free if P is on the axis; theta2 or theta3 is free if L1 = L2 and P is
+ *   at A or at B; both are free if L1 = 0. 0 is returned for theta1, and for the others unless
+ *   L1 = 0.
+ * - SINGULAR also near a parallel singularity, if the sine of the angle between CP and DP is
+ *   less than 2^-10: the loop closes, but one ulp of the joints moves P by more than 1e-12 of
+ *   the lengths. If L0 = 0, C coincides with D for equal signs of the last two entries.
+ * - Ill-conditioned near the boundary of the workspace: the angles lose half their digits, but
  *   the loop still closes.
  *
  * @param {ArrayLike<number>} x 3 numbers. x, y, z in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ q: number[][], status: number[] }} `q`: 8 branches of 3 numbers. theta1, theta2,
- *     theta3 in rad, in (-pi, pi]. `status`: A `Status` of each branch: OK (0) where `q` is a
- *     solution, UNREACHABLE (1) where there is none, SINGULAR (2) where `q` is one of
- *     infinitely many or hardly determined (see the notes), and INVALID (3) where an input is
- *     not finite or impossible. `q` is NaN where the status is UNREACHABLE or INVALID.
+ *     theta3 in rad, in (-pi, pi]. `status`: A `Status` of each branch: OK (0) if `q` is a
+ *     solution, UNREACHABLE (1) if there is no solution, SINGULAR (2) if `q` is one of
+ *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
+ *     input is not finite or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has another length.
  */
@@ -1246,7 +1248,7 @@ const _WORKSPACE_VOLUME = _runtime.kernel({
  *
  * Source: section 3.1, in closed form.
  *
- * - NaN for a length that is negative or not finite.
+ * - NaN if a length is negative or not finite.
  *
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}

@@ -23,11 +23,12 @@
 /**
  * ABB IRB 260 palletiser.
  *
- * A turret (theta1, about z) carries a lower arm (theta2) and an upper arm (theta3, against the
- * lower one), which turn about -x at home.  Two parallelograms along the arms keep the wrist
- * bracket level; they act as a virtual joint theta4 = -(theta2 + theta3).  The hand turns by
- * theta5 about z.  At home all angles are 0: the lower arm is upright, the upper arm points along
- * y.  The default dimensions are those of public models of the IRB 260; the paper gives none.
+ * A turret (theta1, about z) carries a lower arm (theta2) and an upper arm (theta3, measured
+ * against the lower arm).  At home both turn about -x.  Two parallelograms along the arms keep the
+ * wrist bracket level; they act as a virtual joint theta4 = -(theta2 + theta3).  The hand turns by
+ * theta5 about z.  At home all angles are 0: the lower arm is upright and the upper arm points
+ * along y.  The default dimensions are those of public models of the IRB 260; the paper gives
+ * none.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from Jun Shi, Xiaorui Zhu, Zexiang Li: New Method for Kinematic Analysis of a Hybrid Manipulator.
@@ -147,9 +148,9 @@ const _JOINTS_FROM_MOTORS = _runtime.kernel({
 });
 
 /**
- * Joint angles of motor angles: theta3 = m3 - m2.
+ * Joint angles from motor angles: theta3 = m3 - m2.
  *
- * - The map is linear and counts turns: its angles are not reduced to (-pi, pi].
+ * - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
  *
  * @param {ArrayLike<number>} motors 4 numbers. m1, m2, m3, m5.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -203,9 +204,9 @@ const _MOTORS_FROM_JOINTS = _runtime.kernel({
 });
 
 /**
- * Motor angles of joint angles: m3 = theta2 + theta3.
+ * Motor angles from joint angles: m3 = theta2 + theta3.
  *
- * - The map is linear and counts turns: its angles are not reduced to (-pi, pi].
+ * - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
  *
  * @param {ArrayLike<number>} q 4 numbers. theta1, theta2, theta3, theta5 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -544,7 +545,7 @@ const _JACOBIAN_SPACE = _runtime.kernel({
 });
 
 /**
- * Twist (v; omega) of the hand in the base frame per joint rate.
+ * Twist (v; omega) of the hand in the base frame, per joint rate.
  *
  * Source: eq. (18).
  *
@@ -637,7 +638,7 @@ const _JACOBIAN_BODY = _runtime.kernel({
 });
 
 /**
- * Twist (v; omega) of the hand in its own frame per joint rate.
+ * Twist (v; omega) of the hand in its own frame, per joint rate.
  *
  * @param {ArrayLike<number>} q 4 numbers. theta1, theta2, theta3, theta5 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -1090,28 +1091,29 @@ const _IK = _runtime.kernel({
 });
 
 /**
- * All four configurations of a position and a yaw.
+ * All four configurations for a position and a yaw.
  *
- * Source: solved from eq. (13); the paper leaves the inverse out.
+ * Source: solved from eq. (13); the paper does not give the inverse.
  *
  * - Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, back_elbow_up,
  *   back_elbow_down.
  * - front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0,
- *   where rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;
+ *   with rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;
  *   elbow_down: cos(theta3) <= 0.
- * - SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) and 0
- *   is returned; equal arms folded with the wrist on the shoulder, theta2 is free and 0 is
- *   returned; an arm without length, its angle is free and theta3 = -pi/2 is returned.
- * - Ill-conditioned where the arm is straight or folded: the angles lose half the digits there,
- *   the position does not.
+ * - SINGULAR: if the hand is on the base axis, theta1 is free (theta1 + theta5 is determined)
+ *   and 0 is returned; if equal arms are folded with the wrist on the shoulder, theta2 is free
+ *   and 0 is returned; if an arm has no length, its angle is free and theta3 = -pi/2 is
+ *   returned.
+ * - Ill-conditioned if the arm is straight or folded: the angles lose half their digits, the
+ *   position does not.
  *
  * @param {ArrayLike<number>} x 4 numbers. x, y, z in the unit of the parameters; yaw in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ q: number[][], status: number[] }} `q`: 4 branches of 4 numbers. theta1, theta2,
- *     theta3, theta5 in rad, in (-pi, pi]. `status`: A `Status` of each branch: OK (0) where
- *     `q` is a solution, UNREACHABLE (1) where there is none, SINGULAR (2) where `q` is one of
- *     infinitely many or hardly determined (see the notes), and INVALID (3) where an input is
- *     not finite or impossible. `q` is NaN where the status is UNREACHABLE or INVALID.
+ *     theta3, theta5 in rad, in (-pi, pi]. `status`: A `Status` of each branch: OK (0) if `q`
+ *     is a solution, UNREACHABLE (1) if there is no solution, SINGULAR (2) if `q` is one of
+ *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
+ *     input is not finite or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has another length.
  */
@@ -1313,9 +1315,9 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
 });
 
 /**
- * Whether some configuration reaches a position, whatever the yaw.
+ * Whether any configuration reaches a position; the yaw does not matter.
  *
- * - True exactly where ik has a branch that is OK or SINGULAR.
+ * - True if and only if ik has a branch that is OK or SINGULAR.
  *
  * @param {ArrayLike<number>} p 3 numbers. px, py, pz.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

@@ -17,8 +17,9 @@
 /**
  * Planar 2R arm.
  *
- * Two links of lengths l1 and l2 move in the plane of x and y.  theta1 turns the first link
- * against the x axis, theta2 the second against the first, both counter-clockwise.
+ * Two links of lengths l1 and l2 move in the plane of x and y.  theta1 is the angle of the first
+ * link against the x axis, theta2 that of the second link against the first; both are counter-
+ * clockwise.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from S. Baswanth Kumar Reddy, K. Rajesh Babu: Kinematic Attitudes of a Planar Robot and a Spherical Wrist.
@@ -389,7 +390,7 @@ const _MANIPULABILITY = _runtime.kernel({
 });
 
 /**
- * Yoshikawa's manipulability of the position, the modulus of the determinant.
+ * Yoshikawa's manipulability of the position: the absolute value of the determinant.
  *
  * @param {ArrayLike<number>} q 2 numbers. theta1, theta2 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -438,7 +439,7 @@ const _SINGULARITIES = _runtime.kernel({
 });
 
 /**
- * The factor that vanishes exactly where the arm is stretched or folded.
+ * The factor that vanishes exactly if the arm is stretched or folded.
  *
  * @param {ArrayLike<number>} q 2 numbers. theta1, theta2 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -530,23 +531,23 @@ const _IK = _runtime.kernel({
 });
 
 /**
- * Both elbow configurations that reach a position.
+ * Both elbow configurations for a position.
  *
  * Source: eqs. (3) and (4), by arctangents.
  *
  * - Branches in this order, `BRANCHES`: elbow_down, elbow_up.
- * - SINGULAR: l1 = l2 and the hand on the base axis, theta1 is free and 0 is returned; or a
- *   link without length, whose angle is free.
- * - Ill-conditioned near full stretch and full fold: the angles lose half the digits there, the
- *   position does not.
+ * - SINGULAR: if l1 = l2 and the hand is on the base axis, theta1 is free and 0 is returned; if
+ *   a link has no length, its angle is free.
+ * - Ill-conditioned near the stretched and the folded arm: the angles lose half their digits,
+ *   the position does not.
  *
  * @param {ArrayLike<number>} x 2 numbers. x, y in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ q: number[][], status: number[] }} `q`: 2 branches of 2 numbers. theta1, theta2
- *     in rad, in (-pi, pi]. `status`: A `Status` of each branch: OK (0) where `q` is a
- *     solution, UNREACHABLE (1) where there is none, SINGULAR (2) where `q` is one of
- *     infinitely many or hardly determined (see the notes), and INVALID (3) where an input is
- *     not finite or impossible. `q` is NaN where the status is UNREACHABLE or INVALID.
+ *     in rad, in (-pi, pi]. `status`: A `Status` of each branch: OK (0) if `q` is a solution,
+ *     UNREACHABLE (1) if there is no solution, SINGULAR (2) if `q` is one of infinitely many
+ *     solutions or poorly determined (see the notes), and INVALID (3) if an input is not finite
+ *     or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has another length.
  */
@@ -647,20 +648,20 @@ const _IK_POSE = _runtime.kernel({
 });
 
 /**
- * The joint angles of a full pose; there is at most one.
+ * The joint angles for a full pose; there is at most one solution.
  *
  * Source: eq. (10).
  *
- * - UNREACHABLE where the pose is not one of the arm, be it ever so little.
+ * - UNREACHABLE if the arm cannot take the pose exactly.
  *
  * @param {ArrayLike<number>} T 16 numbers (4 x 4 in row order). A homogeneous transform with a
  *     proper rotation.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ q: number[][], status: number[] }} `q`: 1 branch of 2 numbers. theta1, theta2 in
- *     rad, in (-pi, pi]. `status`: A `Status`: OK (0) where `q` is a solution, UNREACHABLE (1)
- *     where there is none, SINGULAR (2) where `q` is one of infinitely many or hardly
- *     determined (see the notes), and INVALID (3) where an input is not finite or impossible.
- *     `q` is NaN where the status is UNREACHABLE or INVALID.
+ *     rad, in (-pi, pi]. `status`: A `Status`: OK (0) if `q` is a solution, UNREACHABLE (1) if
+ *     there is no solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly
+ *     determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+ *     `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has another length.
  */

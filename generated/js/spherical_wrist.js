@@ -14,8 +14,9 @@
 /**
  * Spherical wrist.
  *
- * Three revolute joints with axes through one point.  theta4 turns about z, theta5 about the y
- * axis that theta4 left, theta6 about the z axis that both left; the hand is d6 along it.
+ * The axes of three revolute joints meet in one point.  theta4 turns about z, theta5 about the y
+ * axis after that turn, and theta6 about the z axis after both.  The hand is at the distance d6
+ * along the last axis.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from S. Baswanth Kumar Reddy, K. Rajesh Babu: Kinematic Attitudes of a Planar Robot and a Spherical Wrist.
@@ -395,7 +396,7 @@ const _SINGULARITIES = _runtime.kernel({
 });
 
 /**
- * The factor that vanishes exactly where the axes 4 and 6 coincide.
+ * The factor that vanishes exactly if the axes 4 and 6 coincide.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta4, theta5, theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -480,24 +481,24 @@ const _IK = _runtime.kernel({
 });
 
 /**
- * Both wrist configurations of a rotation.
+ * Both wrist configurations for a rotation.
  *
  * Source: eqs. (13) and (16), with theta6 from the remaining rotation.
  *
  * - Branches in this order, `BRANCHES`: theta5_positive, theta5_negative.
- * - SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, theta4 =
- *   0 is returned.
- * - INVALID: a matrix that is no proper rotation, a mirrored one included.
- * - Ill-conditioned near theta5 = 0 and pi in theta4 and theta6 each, not in their sum or
- *   difference.
+ * - SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, and
+ *   theta4 = 0 is returned.
+ * - INVALID: the matrix is not a proper rotation, for example a reflection.
+ * - Near theta5 = 0 and pi, theta4 and theta6 are ill-conditioned; their sum or difference is
+ *   not.
  *
  * @param {ArrayLike<number>} R 9 numbers (3 x 3 in row order). A proper rotation.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ q: number[][], status: number[] }} `q`: 2 branches of 3 numbers. theta4, theta5,
- *     theta6 in rad, in (-pi, pi]. `status`: A `Status` of each branch: OK (0) where `q` is a
- *     solution, UNREACHABLE (1) where there is none, SINGULAR (2) where `q` is one of
- *     infinitely many or hardly determined (see the notes), and INVALID (3) where an input is
- *     not finite or impossible. `q` is NaN where the status is UNREACHABLE or INVALID.
+ *     theta6 in rad, in (-pi, pi]. `status`: A `Status` of each branch: OK (0) if `q` is a
+ *     solution, UNREACHABLE (1) if there is no solution, SINGULAR (2) if `q` is one of
+ *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
+ *     input is not finite or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has another length.
  */

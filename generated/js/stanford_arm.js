@@ -1170,10 +1170,10 @@ const _IK = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ q: number[][], status: number[] }} `q`: 8 branches of 6 numbers. theta1, theta2
  *     in rad, in (-pi, pi]; d3 in the unit of the parameters; theta4, theta5, theta6 in rad, in
- *     (-pi, pi]. `status`: A `Status` of each branch: OK (0) where `q` is a solution,
- *     UNREACHABLE (1) where there is none, SINGULAR (2) where `q` is one of infinitely many or
- *     hardly determined (see the notes), and INVALID (3) where an input is not finite or
- *     impossible. `q` is NaN where the status is UNREACHABLE or INVALID.
+ *     (-pi, pi]. `status`: A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE
+ *     (1) if there is no solution, SINGULAR (2) if `q` is one of infinitely many solutions or
+ *     poorly determined (see the notes), and INVALID (3) if an input is not finite or not
+ *     possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has another length.
  */

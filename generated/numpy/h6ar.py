@@ -21,11 +21,11 @@
 #   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
 """H6AR, published model.
 
-A waist carries twin arms of two links, each d beside the mid-plane; their tips carry a wrist of
-two links and a gear set, which yaws (psi) and rolls (phi) as the arms move apart, and an
-actuator that pitches (theta).  In this model, eqs. (1) to (9) as printed, the wrist hangs on a
-virtual arm whose angles are the averages of the real ones, and yaw and roll are measured
-against the base.  The average is that of the directions of the links, on the shorter arc.
+A waist carries two equal arms of two links, each at the distance d from the mid-plane.  Their
+tips carry a wrist of two links and a gear set, which yaws (psi) and rolls (phi) as the arms
+move apart, and an actuator for the pitch (theta).  In this model, eqs. (1) to (9) as printed,
+the wrist hangs on a virtual arm whose angles are the averages of the real ones.  Yaw and roll
+are measured against the base.  Directions of links are averaged on the shorter arc.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel manipulator.
@@ -43,7 +43,7 @@ ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2R', 'theta3R', 'theta2L', 'theta3L', 'theta')
 TASK = ('x', 'y', 'z', 'psi', 'phi', 'theta')
 BRANCHES = ('front_elbow_up', 'front_elbow_down', 'rear_elbow_up', 'rear_elbow_down')
-SINGULARITIES = ('the tip is above or below the waist axis', 'virtual arm with the wrist straight or folded', 'virtual arm straight or folded', 'upper arms half a turn apart', 'fore-arms half a turn apart', 'wrist links stretched along the base line')
+SINGULARITIES = ('tip in the plane of the waist axis and the shoulders', 'virtual arm with the wrist straight or folded', 'virtual arm straight or folded', 'upper arms half a turn apart', 'fore-arms half a turn apart', 'wrist links stretched along the base line')
 
 __all__ = [
     "ASSEMBLY_MODES",
@@ -239,7 +239,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> A
 
     Notes
     -----
-    - NaN where the tips are farther apart than the wrist links can span.
+    - NaN if the tips are farther apart than the wrist links can span.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return result
@@ -420,7 +420,7 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
 
     Notes
     -----
-    - NaN where the tips are farther apart than the wrist links can span.
+    - NaN if the tips are farther apart than the wrist links can span.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
     return result
@@ -546,7 +546,7 @@ _INVARIANT_POINT = _runtime.Kernel(
 
 
 def invariant_point(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The invariant point, by the averages of the angles.
+    """The invariant point, computed from the averages of the angles.
 
     Source: eq. (7).
 
@@ -852,8 +852,8 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - NaN where the tips are farther apart than the wrist links can span.
-    - Unbounded where the wrist links are stretched: there l_W turns over.
+    - NaN if the tips are farther apart than the wrist links can span.
+    - Unbounded near stretched wrist links: the slope of l_W is infinite there.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -992,7 +992,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
     Notes
     -----
-    - NaN where the tips are farther apart than the wrist links can span.
+    - NaN if the tips are farther apart than the wrist links can span.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -1119,9 +1119,10 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     Returns
     -------
     factors : ndarray of float64, shape (..., 6)
-        One factor for each singular set: the tip is above or below the waist axis; virtual arm
-        with the wrist straight or folded; virtual arm straight or folded; upper arms half a
-        turn apart; fore-arms half a turn apart; wrist links stretched along the base line.
+        One factor for each singular set: tip in the plane of the waist axis and the shoulders;
+        virtual arm with the wrist straight or folded; virtual arm straight or folded; upper
+        arms half a turn apart; fore-arms half a turn apart; wrist links stretched along the
+        base line.
 
     Raises
     ------
@@ -1132,7 +1133,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
     Notes
     -----
-    - NaN where the tips are farther apart than the wrist links can span.
+    - NaN if the tips are farther apart than the wrist links can span.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -2507,14 +2508,15 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, rear_elbow_up,
       rear_elbow_down.
     - UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist
-      axis than L_theta, the virtual arm is out of reach, or its tips cannot be so far apart.
-    - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), the tip of the virtual arm
-      with the wrist on its shoulder (its upper arm is returned horizontal), or the virtual arm
-      straight or folded without the wrist: then only the sum of L1 sin(alpha) and f sin(beta),
-      or their difference where it is folded, is determined by yaw and roll, alpha and beta
-      being half the differences of the arms' angles; sines of equal size are returned.
-    - SINGULAR as well where the wrist links are nearly stretched (l_W is less than 2^-10 al):
-      rounded joints do not hold the tip to 1e-12 there.
+      axis than L_theta, the virtual arm cannot reach the tip, or the tips of the arms cannot be
+      so far apart.
+    - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned); the tip of the virtual arm
+      with the wrist is on its shoulder (a horizontal upper arm is returned); or the virtual arm
+      without the wrist is straight or folded. In the last case yaw and roll determine only the
+      sum of L1 sin(alpha) and f sin(beta) (straight) or their difference (folded); alpha and
+      beta are half the differences of the arms' angles, and sines of equal size are returned.
+    - SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): rounded
+      joints do not determine the tip to 1e-12 there.
     - INVALID: d, L1, or both L2 and a3 are zero.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
@@ -2552,7 +2554,7 @@ _WRIST_LENGTH = _runtime.Kernel(
 
 
 def wrist_length(psi: "ArrayLike", phi: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The variable length l_W of the wrist; NaN where the links are too short.
+    """The variable length l_W of the wrist; NaN if the links are too short.
 
     Source: eq. (8).
 
@@ -2662,7 +2664,7 @@ _LARGEST_YAW = _runtime.Kernel(
 
 
 def largest_yaw(phi: "ArrayLike", beta_min: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The largest yaw at a roll that keeps the separation angle; NaN where there is none.
+    """The largest yaw at a roll that keeps the separation angle; NaN if there is none.
 
     Parameters
     ----------
@@ -2721,7 +2723,7 @@ _LARGEST_ANGLE = _runtime.Kernel(
 
 
 def largest_angle(beta_min: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The largest angle that yaw and roll may both have; NaN where there is none.
+    """The largest angle that yaw and roll may both have; NaN if there is none.
 
     Parameters
     ----------

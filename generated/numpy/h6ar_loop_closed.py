@@ -21,12 +21,12 @@
 #   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt
 """H6AR, loop-closed model.
 
-A waist carries twin arms of two links, each d beside the mid-plane; their tips carry a wrist of
-two links and a gear set, which yaws (psi) and rolls (phi) as the arms move apart, and an
-actuator that pitches (theta).  In this model the loop closes: the base line of the wrist joins
-the tips, and the invariant point is its middle.  A virtual arm in the mid-plane, bent to the
-side of the right arm, reaches that point; yaw and roll are measured against its fore-arm, roll
-with the sign of (9): the right tip goes down.
+A waist carries two equal arms of two links, each at the distance d from the mid-plane.  Their
+tips carry a wrist of two links and a gear set, which yaws (psi) and rolls (phi) as the arms
+move apart, and an actuator for the pitch (theta).  In this model the loop closes: the base line
+of the wrist joins the tips, and the invariant point is its middle.  A virtual arm in the mid-
+plane, bent to the same side as the right arm, reaches that point.  Yaw and roll are measured
+against the virtual fore-arm; as in (9), the right tip goes down if the roll is positive.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from Sachit Rao, Jagannath Raju: Forward and inverse kinematics of a hybrid series-parallel manipulator.
@@ -44,7 +44,7 @@ ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2R', 'theta3R', 'theta2L', 'theta3L', 'theta')
 TASK = ('x', 'y', 'z', 'psi', 'phi', 'theta')
 BRANCHES = ('front_elbow_up_alike', 'front_elbow_up_mixed', 'front_elbow_down_alike', 'front_elbow_down_mixed', 'rear_elbow_up_alike', 'rear_elbow_up_mixed', 'rear_elbow_down_alike', 'rear_elbow_down_mixed')
-SINGULARITIES = ('the tip is above or below the waist axis', 'virtual arm with the wrist straight or folded', 'right arm straight or folded', 'left arm straight or folded', 'virtual arm straight or folded (a pole of the determinant)', 'wrist links stretched along the base line')
+SINGULARITIES = ('tip in the plane of the waist axis and the shoulders', 'virtual arm with the wrist straight or folded', 'right arm straight or folded', 'left arm straight or folded', 'virtual arm straight or folded (a pole of the determinant)', 'wrist links stretched along the base line')
 
 __all__ = [
     "ASSEMBLY_MODES",
@@ -325,10 +325,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> A
 
     Notes
     -----
-    - NaN where the tips are farther apart than the wrist links can span, or where the virtual
-      arm cannot reach their middle.
-    - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
-      yaw and roll.
+    - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+      cannot reach the middle of the tips.
+    - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+      its fore-arm.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return result
@@ -599,10 +599,10 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
 
     Notes
     -----
-    - NaN where the tips are farther apart than the wrist links can span, or where the virtual
-      arm cannot reach their middle.
-    - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
-      yaw and roll.
+    - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+      cannot reach the middle of the tips.
+    - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+      its fore-arm.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
     return result
@@ -1159,11 +1159,11 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - NaN where the tips are farther apart than the wrist links can span, or where the virtual
-      arm cannot reach their middle.
-    - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
-      yaw and roll.
-    - Unbounded where the wrist links are stretched: there l_W turns over.
+    - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+      cannot reach the middle of the tips.
+    - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+      its fore-arm.
+    - Unbounded near stretched wrist links: the slope of l_W is infinite there.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -1367,7 +1367,7 @@ _DETERMINANT = _runtime.Kernel(
 
 
 def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Determinant of the Jacobian; it has a pole where the virtual arm is straight.
+    """Determinant of the Jacobian; it has a pole if the virtual arm is straight or folded.
 
     Parameters
     ----------
@@ -1391,10 +1391,10 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
     Notes
     -----
-    - NaN where the tips are farther apart than the wrist links can span, or where the virtual
-      arm cannot reach their middle.
-    - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
-      yaw and roll.
+    - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+      cannot reach the middle of the tips.
+    - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+      its fore-arm.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -1615,10 +1615,10 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     Returns
     -------
     factors : ndarray of float64, shape (..., 6)
-        One factor for each singular set: the tip is above or below the waist axis; virtual arm
-        with the wrist straight or folded; right arm straight or folded; left arm straight or
-        folded; virtual arm straight or folded (a pole of the determinant); wrist links
-        stretched along the base line.
+        One factor for each singular set: tip in the plane of the waist axis and the shoulders;
+        virtual arm with the wrist straight or folded; right arm straight or folded; left arm
+        straight or folded; virtual arm straight or folded (a pole of the determinant); wrist
+        links stretched along the base line.
 
     Raises
     ------
@@ -1629,10 +1629,10 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
     Notes
     -----
-    - NaN where the tips are farther apart than the wrist links can span, or where the virtual
-      arm cannot reach their middle.
-    - Ill-conditioned where the virtual arm is nearly straight: its fore-arm is the reference of
-      yaw and roll.
+    - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+      cannot reach the middle of the tips.
+    - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+      its fore-arm.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -3305,10 +3305,10 @@ _IK = _runtime.Kernel(
 
 
 def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
-    """All postures of the mechanism that reach a tip; mixed ones have the left elbow on the other
-    side.
+    """All postures of the mechanism that reach a tip; in a mixed one the elbows are on opposite
+    sides.
 
-    Source: eqs. (11), (13) and (14), then each arm by itself.
+    Source: eqs. (11), (13) and (14), then each arm separately.
 
     Parameters
     ----------
@@ -3342,16 +3342,16 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       front_elbow_down_alike, front_elbow_down_mixed, rear_elbow_up_alike, rear_elbow_up_mixed,
       rear_elbow_down_alike, rear_elbow_down_mixed.
     - UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the
-      waist axis than L_theta, or an arm is out of reach.
-    - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), a tip on its shoulder (its
-      upper arm is returned beside that of the virtual arm).
-    - SINGULAR as well where rounded joints do not hold the tip, yaw and roll to 1e-12: near a
+      waist axis than L_theta, or an arm cannot reach its tip.
+    - SINGULAR: x = y = 0 with L_theta = 0 (theta1 = 0 is returned), or the tip of an arm on its
+      own shoulder (its upper arm is returned parallel to that of the virtual arm).
+    - SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a
       folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
-      distance of the tips), a virtual arm shorter than 2^-10 of a stretched one, and stretched
-      wrist links (l_W is less than 2^-10 al).
+      distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and near
+      stretched wrist links (l_W is less than 2^-10 al).
     - INVALID: d, L1, or both L2 and a3 are zero.
     - A straight right arm is returned bent by a few units in the last place, so that fk can
-      read the side.
+      tell the side.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return Solutions(*result)
@@ -3390,7 +3390,7 @@ _WRIST_LENGTH = _runtime.Kernel(
 
 
 def wrist_length(psi: "ArrayLike", phi: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The variable length l_W of the wrist; NaN where the links are too short.
+    """The variable length l_W of the wrist; NaN if the links are too short.
 
     Source: eq. (8).
 
@@ -3505,7 +3505,7 @@ _LARGEST_YAW = _runtime.Kernel(
 
 
 def largest_yaw(phi: "ArrayLike", beta_min: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The largest yaw at a roll that keeps the separation angle; NaN where there is none.
+    """The largest yaw at a roll that keeps the separation angle; NaN if there is none.
 
     Parameters
     ----------
@@ -3564,7 +3564,7 @@ _LARGEST_ANGLE = _runtime.Kernel(
 
 
 def largest_angle(beta_min: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The largest angle that yaw and roll may both have; NaN where there is none.
+    """The largest angle that yaw and roll may both have; NaN if there is none.
 
     Parameters
     ----------

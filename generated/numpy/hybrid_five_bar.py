@@ -17,11 +17,11 @@
 #   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
 """Five-bar linkage on a revolute.
 
-The pivots A, the origin, and B lie L0 apart on the y axis.  The bars AC and BD of length L1 are
-driven at the angles theta2 and theta3, the bars CP and DP of length L2 follow at theta4 and
-theta5; all four angles are measured from the y axis.  theta1 turns the linkage about AB; at
-theta1 = 0 it lies in the plane of x and y, and a bar at the angle t points along (-sin(t),
-cos(t), 0).
+The pivots A (the origin) and B lie on the y axis at the distance L0.  The bars AC and BD of
+length L1 are driven at the angles theta2 and theta3.  The bars CP and DP of length L2 follow at
+theta4 and theta5.  All four angles are measured from the y axis.  theta1 turns the linkage
+about AB.  At theta1 = 0 it lies in the plane of x and y, and a bar at the angle t points along
+(-sin(t), cos(t), 0).
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from Damien Chablat, Philippe Wenger, Jorge Angeles: The Kinematic Design of a 3-DOF Hybrid Manipulator.
@@ -188,7 +188,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     Notes
     -----
     - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
-    - UNREACHABLE: C and D are more than 2*L2 apart, the loop is open.
+    - UNREACHABLE: C and D are more than 2*L2 apart, so the loop cannot close.
     - SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point
       at theta4 = theta5 = +90 or -90 degrees is returned.
     - Ill-conditioned near the parallel singularities, where both modes meet or P is free.
@@ -291,7 +291,7 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
     -----
     - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
     - NaN for an assembly mode that does not exist.
-    - Free, but equal, where C and D coincide: +90 and -90 degrees are returned.
+    - If C and D coincide, both angles are free but equal: +90 or -90 degrees is returned.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params, out)
     return result
@@ -512,7 +512,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
     -----
     - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
     - NaN for an assembly mode that does not exist.
-    - Its signs tell the working modes apart, in the order of BRANCHES.
+    - Its signs distinguish the working modes; BRANCHES lists them in the same order.
     """
     result = _runtime.evaluate(_JACOBIAN_SERIAL, (q,), params, out)
     return result
@@ -828,7 +828,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
     """Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and
-    L1*L2*sin(theta5 - theta3), the serial ones; L2^2*sin(theta5 - theta4), the parallel one.
+    L1*L2*sin(theta5 - theta3) (serial), and L2^2*sin(theta5 - theta4) (parallel).
 
     Parameters
     ----------
@@ -935,8 +935,8 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
     -----
     - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
     - NaN for an assembly mode that does not exist.
-    - Infinite at a parallel singularity; it does not depend on theta1, and both modes have the
-      same.
+    - Infinite at a parallel singularity. It does not depend on theta1 and is the same for both
+      modes.
     """
     result = _runtime.evaluate(_CONDITION_NUMBER, (q,), params, out)
     return result
@@ -1148,13 +1148,15 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
     - BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly
       modes.
-    - UNREACHABLE: P is farther than L1 + L2 or nearer than |L1 - L2| to A or to B.
-    - SINGULAR: P on the axis, theta1 is free; P at A or at B with L1 = L2, theta2 or theta3 is
-      free; L1 = 0, both are. 0 is returned for theta1, and for the others unless L1 = 0.
-    - SINGULAR as well near a parallel singularity, where the sine of the angle between CP and
-      DP is less than 2^-10: the loop closes, but P moves more for an ulp of the joints than
-      1e-12 of the lengths. If L0 = 0, equal signs of the last two entries put C on D.
-    - Ill-conditioned near the boundary of the workspace: the angles lose half the digits there,
+    - UNREACHABLE: the distance of P from A or from B is more than L1 + L2 or less than |L1 -
+      L2|.
+    - SINGULAR: theta1 is free if P is on the axis; theta2 or theta3 is free if L1 = L2 and P is
+      at A or at B; both are free if L1 = 0. 0 is returned for theta1, and for the others unless
+      L1 = 0.
+    - SINGULAR also near a parallel singularity, if the sine of the angle between CP and DP is
+      less than 2^-10: the loop closes, but one ulp of the joints moves P by more than 1e-12 of
+      the lengths. If L0 = 0, C coincides with D for equal signs of the last two entries.
+    - Ill-conditioned near the boundary of the workspace: the angles lose half their digits, but
       the loop still closes.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
@@ -1310,7 +1312,7 @@ def workspace_volume(params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any
 
     Notes
     -----
-    - NaN for a length that is negative or not finite.
+    - NaN if a length is negative or not finite.
     """
     result = _runtime.evaluate(_WORKSPACE_VOLUME, (), params, out)
     return result

@@ -21,11 +21,12 @@
 #   workspace_contains: 24 compare and select, 17 add, 6 multiply, 3 sqrt
 """ABB IRB 260 palletiser.
 
-A turret (theta1, about z) carries a lower arm (theta2) and an upper arm (theta3, against the
-lower one), which turn about -x at home.  Two parallelograms along the arms keep the wrist
-bracket level; they act as a virtual joint theta4 = -(theta2 + theta3).  The hand turns by
-theta5 about z.  At home all angles are 0: the lower arm is upright, the upper arm points along
-y.  The default dimensions are those of public models of the IRB 260; the paper gives none.
+A turret (theta1, about z) carries a lower arm (theta2) and an upper arm (theta3, measured
+against the lower arm).  At home both turn about -x.  Two parallelograms along the arms keep the
+wrist bracket level; they act as a virtual joint theta4 = -(theta2 + theta3).  The hand turns by
+theta5 about z.  At home all angles are 0: the lower arm is upright and the upper arm points
+along y.  The default dimensions are those of public models of the IRB 260; the paper gives
+none.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from Jun Shi, Xiaorui Zhu, Zexiang Li: New Method for Kinematic Analysis of a Hybrid Manipulator.
@@ -167,7 +168,7 @@ _JOINTS_FROM_MOTORS = _runtime.Kernel(
 
 
 def joints_from_motors(motors: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Joint angles of motor angles: theta3 = m3 - m2.
+    """Joint angles from motor angles: theta3 = m3 - m2.
 
     Parameters
     ----------
@@ -192,7 +193,7 @@ def joints_from_motors(motors: "ArrayLike", params: "Parameters" = _DEFAULT, *, 
 
     Notes
     -----
-    - The map is linear and counts turns: its angles are not reduced to (-pi, pi].
+    - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
     """
     result = _runtime.evaluate(_JOINTS_FROM_MOTORS, (motors,), params, out)
     return result
@@ -218,7 +219,7 @@ _MOTORS_FROM_JOINTS = _runtime.Kernel(
 
 
 def motors_from_joints(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Motor angles of joint angles: m3 = theta2 + theta3.
+    """Motor angles from joint angles: m3 = theta2 + theta3.
 
     Parameters
     ----------
@@ -242,7 +243,7 @@ def motors_from_joints(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: 
 
     Notes
     -----
-    - The map is linear and counts turns: its angles are not reduced to (-pi, pi].
+    - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
     """
     result = _runtime.evaluate(_MOTORS_FROM_JOINTS, (q,), params, out)
     return result
@@ -497,7 +498,7 @@ _JACOBIAN_SPACE = _runtime.Kernel(
 
 
 def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Twist (v; omega) of the hand in the base frame per joint rate.
+    """Twist (v; omega) of the hand in the base frame, per joint rate.
 
     Source: eq. (18).
 
@@ -576,7 +577,7 @@ _JACOBIAN_BODY = _runtime.Kernel(
 
 
 def jacobian_body(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Twist (v; omega) of the hand in its own frame per joint rate.
+    """Twist (v; omega) of the hand in its own frame, per joint rate.
 
     Parameters
     ----------
@@ -988,9 +989,9 @@ _IK = _runtime.Kernel(
 
 
 def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
-    """All four configurations of a position and a yaw.
+    """All four configurations for a position and a yaw.
 
-    Source: solved from eq. (13); the paper leaves the inverse out.
+    Source: solved from eq. (13); the paper does not give the inverse.
 
     Parameters
     ----------
@@ -1023,13 +1024,14 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, back_elbow_up,
       back_elbow_down.
     - front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0,
-      where rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;
+      with rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;
       elbow_down: cos(theta3) <= 0.
-    - SINGULAR: the hand on the base axis, theta1 is free (theta1 + theta5 is determined) and 0
-      is returned; equal arms folded with the wrist on the shoulder, theta2 is free and 0 is
-      returned; an arm without length, its angle is free and theta3 = -pi/2 is returned.
-    - Ill-conditioned where the arm is straight or folded: the angles lose half the digits
-      there, the position does not.
+    - SINGULAR: if the hand is on the base axis, theta1 is free (theta1 + theta5 is determined)
+      and 0 is returned; if equal arms are folded with the wrist on the shoulder, theta2 is free
+      and 0 is returned; if an arm has no length, its angle is free and theta3 = -pi/2 is
+      returned.
+    - Ill-conditioned if the arm is straight or folded: the angles lose half their digits, the
+      position does not.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return Solutions(*result)
@@ -1190,7 +1192,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
 
 
 def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Whether some configuration reaches a position, whatever the yaw.
+    """Whether any configuration reaches a position; the yaw does not matter.
 
     Parameters
     ----------
@@ -1214,7 +1216,7 @@ def workspace_contains(p: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: 
 
     Notes
     -----
-    - True exactly where ik has a branch that is OK or SINGULAR.
+    - True if and only if ik has a branch that is OK or SINGULAR.
     """
     result = _runtime.evaluate(_WORKSPACE_CONTAINS, (p,), params, out)
     return result

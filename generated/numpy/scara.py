@@ -9,7 +9,7 @@
 #   singularities: 1 sincos
 #   jacobian_space: 4 add, 8 multiply, 2 sincos
 #   jacobian_body: 4 add, 8 multiply, 2 sincos
-#   ik: 32 add, 39 compare and select, 5 atan2, 5 divide, 41 multiply, 1 sincos, 2 sqrt
+#   ik: 32 add, 38 compare and select, 5 atan2, 5 divide, 39 multiply, 1 sincos, 2 sqrt
 """SCARA arm (RRPR).
 
 Two links of lengths l1 and l2 turn in a horizontal plane at the height h.  At their end a
@@ -501,81 +501,85 @@ def _ik(x_x, x_y, x_z, x_yaw, l1, l2, h):
     t1 = l1 + l2
     folded_elbow = r_elbow <= _runtime.VANISHING * t1
     t2 = 1.0 / r_elbow
+    t3 = _runtime.select(folded_elbow, 0.0, x_y * t2)
     no_link_elbow = l1 * l2 <= _runtime.VANISHING * (t1 * t1)
-    t3 = t1 - r_elbow
-    A_elbow = np.maximum(t3, 0.0)
-    t4 = l1 - l2
-    t5 = r_elbow - t4
-    C_elbow = np.maximum(t5, 0.0)
-    t6 = A_elbow * C_elbow
+    t4 = folded_elbow | no_link_elbow
+    t5 = t1 - r_elbow
+    A_elbow = np.maximum(t5, 0.0)
+    t6 = l1 - l2
+    t7 = r_elbow - t6
+    C_elbow = np.maximum(t7, 0.0)
+    t8 = A_elbow * C_elbow
     S_elbow = r_elbow + t1
     del t1
-    t7 = r_elbow + t4
-    del r_elbow, t4
-    B_elbow = np.maximum(t7, 0.0)
-    t8 = S_elbow * B_elbow
-    t9 = 1.0 / (t6 + t8)
-    c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t6 - t8) * t9))
-    del t6, t8
-    t10 = t2 * (x_y * c_base_elbow)
-    t11 = A_elbow * S_elbow
+    t9 = r_elbow + t6
+    del r_elbow, t6
+    B_elbow = np.maximum(t9, 0.0)
+    t10 = S_elbow * B_elbow
+    t11 = 1.0 / (t8 + t10)
+    c_base_elbow = _runtime.select(t4, 1.0, -((t8 - t10) * t11))
+    del t10, t8
+    t12 = t3 * c_base_elbow
+    t13 = _runtime.select(folded_elbow, 1.0, x_x * t2)
+    del t2
+    t14 = A_elbow * S_elbow
     del A_elbow, S_elbow
-    t12 = C_elbow * B_elbow
+    t15 = C_elbow * B_elbow
     del B_elbow, C_elbow
-    area_elbow = 2.0 * np.sqrt(t11 * t12)
-    s_base_elbow = _runtime.select(no_link_elbow, 0.0, t9 * area_elbow)
-    del t9
-    t13 = t2 * (x_x * s_base_elbow)
-    s1 = _runtime.select(folded_elbow, 0.0, t10 - t13)
-    t14 = t2 * (x_x * c_base_elbow)
-    del c_base_elbow
-    t15 = t2 * (x_y * s_base_elbow)
-    del s_base_elbow, t2
-    c1 = _runtime.select(folded_elbow, 1.0, t14 + t15)
-    t16 = np.isfinite(l1) & np.isfinite(l2) & np.isfinite(h)
-    t17 = np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z) & np.isfinite(x_yaw)
-    t18 = t16 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= h) & t17
-    del t16, t17
-    invalid = np.logical_not(t18)
-    del t18
-    t19 = -(_runtime.FEASIBILITY * (l1 * 0.5 + l2 * 0.5))
-    unreachable = np.logical_not((t19 <= t3) & (t19 <= t7) & (t19 <= t5))
-    del t19, t3, t5, t7
-    t20 = _runtime.poison(invalid | unreachable)
-    t21 = 1.0 / (t11 + t12)
-    s2 = _runtime.select(no_link_elbow, 0.0, area_elbow * t21)
+    area_elbow = 2.0 * np.sqrt(t14 * t15)
+    s_base_elbow = _runtime.select(t4, 0.0, t11 * area_elbow)
+    del t11, t4
+    t16 = t13 * s_base_elbow
+    s1 = t12 - t16
+    t17 = t13 * c_base_elbow
+    del c_base_elbow, t13
+    t18 = t3 * s_base_elbow
+    del s_base_elbow, t3
+    c1 = t17 + t18
+    t19 = np.isfinite(l1) & np.isfinite(l2) & np.isfinite(h)
+    t20 = np.isfinite(x_x) & np.isfinite(x_y) & np.isfinite(x_z) & np.isfinite(x_yaw)
+    t21 = t19 & (0.0 <= l1) & (0.0 <= l2) & (0.0 <= h) & t20
+    del t19, t20
+    invalid = np.logical_not(t21)
+    del t21
+    t22 = -(_runtime.FEASIBILITY * (l1 * 0.5 + l2 * 0.5))
+    unreachable = np.logical_not((t22 <= t5) & (t22 <= t9) & (t22 <= t7))
+    del t22, t5, t7, t9
+    t23 = _runtime.poison(invalid | unreachable)
+    t24 = 1.0 / (t14 + t15)
+    s2 = _runtime.select(no_link_elbow, 0.0, area_elbow * t24)
     del area_elbow
-    c2 = _runtime.select(no_link_elbow, 1.0, -(t21 * (t11 - t12)))
-    del t11, t12, t21
-    t22 = np.arctan2(s2, c2)
-    t23 = h - x_z + t20
-    t24 = c1 * c2 - s1 * s2
-    t25 = c1 * s2 + s1 * c2
-    t26 = np.arctan2(s_x_yaw * t24 - c_x_yaw * t25, c_x_yaw * t24 + s_x_yaw * t25)
-    del t24, t25
-    s1_right = _runtime.select(folded_elbow, 0.0, t10 + t13)
-    del t10, t13
-    c1_right = _runtime.select(folded_elbow, 1.0, t14 - t15)
-    del t14, t15
-    t27 = _runtime.wrap_cut(np.arctan2(s1_right, c1_right))
-    t28 = c2 * c1_right + s2 * s1_right
-    t29 = s2 * c1_right - c2 * s1_right
+    c2 = _runtime.select(no_link_elbow, 1.0, -(t24 * (t14 - t15)))
+    del t14, t15, t24
+    t25 = np.arctan2(s2, c2)
+    t26 = h - x_z + t23
+    t27 = c1 * c2 - s1 * s2
+    t28 = c1 * s2 + s1 * c2
+    t29 = np.arctan2(s_x_yaw * t27 - c_x_yaw * t28, c_x_yaw * t27 + s_x_yaw * t28)
+    del t27, t28
+    s1_right = t12 + t16
+    del t12, t16
+    c1_right = t17 - t18
+    del t17, t18
+    t30 = _runtime.wrap_cut(np.arctan2(s1_right, c1_right))
+    t31 = c2 * c1_right + s2 * s1_right
+    t32 = s2 * c1_right - c2 * s1_right
     del c1_right, c2, s1_right, s2
-    t30 = np.arctan2(s_x_yaw * t28 + c_x_yaw * t29, c_x_yaw * t28 - s_x_yaw * t29)
-    del c_x_yaw, s_x_yaw, t28, t29
-    t31 = _runtime.status(invalid, unreachable, no_link_elbow | folded_elbow)
+    t33 = np.arctan2(s_x_yaw * t31 + c_x_yaw * t32, c_x_yaw * t31 - s_x_yaw * t32)
+    del c_x_yaw, s_x_yaw, t31, t32
+    t34 = _runtime.status(invalid, unreachable, no_link_elbow | folded_elbow)
     del folded_elbow, invalid, no_link_elbow, unreachable
     return (
-        _runtime.wrap_cut(np.arctan2(s1, c1)) + t20,
-        _runtime.wrap_cut(t22) + t20,
-        t23,
-        _runtime.wrap_cut(-t26) + t20,
-        t27 + t20,
-        _runtime.wrap_cut(-t22) + t20,
-        t23,
-        _runtime.wrap_cut(-t30) + t20,
-        t31,
-        t31,
+        _runtime.wrap_cut(np.arctan2(s1, c1)) + t23,
+        _runtime.wrap_cut(t25) + t23,
+        t26,
+        _runtime.wrap_cut(-t29) + t23,
+        t30 + t23,
+        _runtime.wrap_cut(-t25) + t23,
+        t26,
+        _runtime.wrap_cut(-t33) + t23,
+        t34,
+        t34,
     )
 
 

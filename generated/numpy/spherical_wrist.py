@@ -12,8 +12,9 @@
 #   ik: 32 compare and select, 26 add, 3 atan2, 1 divide, 25 multiply, 1 sqrt
 """Spherical wrist.
 
-Three revolute joints with axes through one point.  theta4 turns about z, theta5 about the y
-axis that theta4 left, theta6 about the z axis that both left; the hand is d6 along it.
+The axes of three revolute joints meet in one point.  theta4 turns about z, theta5 about the y
+axis after that turn, and theta6 about the z axis after both.  The hand is at the distance d6
+along the last axis.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from S. Baswanth Kumar Reddy, K. Rajesh Babu: Kinematic Attitudes of a Planar Robot and a Spherical Wrist.
@@ -368,7 +369,7 @@ _SINGULARITIES = _runtime.Kernel(
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The factor that vanishes exactly where the axes 4 and 6 coincide.
+    """The factor that vanishes exactly if the axes 4 and 6 coincide.
 
     Parameters
     ----------
@@ -444,7 +445,7 @@ _IK = _runtime.Kernel(
 
 
 def ik(R: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
-    """Both wrist configurations of a rotation.
+    """Both wrist configurations for a rotation.
 
     Source: eqs. (13) and (16), with theta6 from the remaining rotation.
 
@@ -477,11 +478,11 @@ def ik(R: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     Notes
     -----
     - Branches in this order, `BRANCHES`: theta5_positive, theta5_negative.
-    - SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, theta4
-      = 0 is returned.
-    - INVALID: a matrix that is no proper rotation, a mirrored one included.
-    - Ill-conditioned near theta5 = 0 and pi in theta4 and theta6 each, not in their sum or
-      difference.
+    - SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, and
+      theta4 = 0 is returned.
+    - INVALID: the matrix is not a proper rotation, for example a reflection.
+    - Near theta5 = 0 and pi, theta4 and theta6 are ill-conditioned; their sum or difference is
+      not.
     """
     result = _runtime.evaluate(_IK, (R,), params, out)
     return Solutions(*result)

@@ -75,7 +75,7 @@ d = Derivation(
     "arc.",
     task=["x", "y", "z", "psi", "phi", "theta"],
     singularities=(
-        "tip in the plane of the waist axis and the shoulders",
+        "the tip is above or below the waist axis",
         "virtual arm with the wrist straight or folded",
         "virtual arm straight or folded",
         "upper arms half a turn apart",

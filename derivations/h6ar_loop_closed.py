@@ -66,7 +66,7 @@ d = Derivation(
     "positive.",
     task=["x", "y", "z", "psi", "phi", "theta"],
     singularities=(
-        "tip in the plane of the waist axis and the shoulders",
+        "the tip is above or below the waist axis",
         "virtual arm with the wrist straight or folded",
         "right arm straight or folded",
         "left arm straight or folded",
@@ -80,7 +80,7 @@ theta23R, theta23L = real("theta23R"), real("theta23L")
 lengths = (m.L1, m.L2, m.a3)
 forearm_length = sqrt(m.L2**2 + m.a3**2)
 
-# Where the tips are, seen from the fore-arm of the virtual arm
+# The tips, in the axes of the virtual fore-arm
 
 right, left = arm(m, theta2R, theta2R + theta3R), arm(m, theta2L, theta2L + theta3L)
 middle, apart = (right + left) / 2, (right - left) / 2

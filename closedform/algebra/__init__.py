@@ -1,1 +1,1 @@
-"""Exact mathematics that knows nothing of robots."""
+"""Exact mathematics, independent of robots."""

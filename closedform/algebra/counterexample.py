@@ -29,7 +29,7 @@ _ANGLES = tuple(
 _SIMPLE_POINTS = 400
 _RANDOM_POINTS = 200
 _COMPLETIONS = 20
-_BITS = 300  # tells a difference of 1e-80 from zero
+_BITS = 300  # distinguishes a difference of 1e-80 from zero
 
 
 @dataclass(frozen=True)

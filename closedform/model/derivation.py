@@ -148,9 +148,9 @@ class Stage:
     """One of several stages in which the solutions of a system are counted.
 
     ``equations`` are indices of equations of the system, which contain only the unknowns of this
-    and earlier stages.  ``given`` writes the inputs in terms of earlier unknowns; every equation of
-    an earlier stage whose unknowns occur in it then holds identically.  ``mixed``, an orthogonal
-    matrix in the earlier unknowns, multiplies the equations if that makes them simpler.
+    and earlier stages.  ``given`` writes the inputs in terms of earlier unknowns, so that every
+    equation of an earlier stage whose unknowns occur there holds identically.  ``mixed``, an
+    orthogonal matrix in the earlier unknowns, multiplies the equations if that makes them simpler.
 
     If the inverse is solved in the same stages, its soundness can be proved stage by stage.  Then
     ``carried`` lists names of the program that a stage takes from earlier ones, with their values

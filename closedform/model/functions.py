@@ -56,7 +56,7 @@ def reject_floats(expr: sp.Basic, where: str) -> None:
     floats = sorted(expr.atoms(sp.Float), key=str)
     if floats:
         raise TypeError(
-            f"{where}: the float {floats[0]} stands in an exact expression; "
+            f"{where}: the float {floats[0]} occurs in an exact expression; "
             f"write an integer or sympy.Rational instead"
         )
 

@@ -70,7 +70,7 @@ FORMS = frozenset({
 })  # fmt: skip
 """What the printed code appends to the name of a function."""
 NOT_FINITE = frozenset({"nan", "inf", "infinity", "oo", "zoo"})
-FILES = frozenset({"closedform", "extension"})
+FILES = frozenset({"closedform", "extension", "index"})
 """Files beside those of the robots, in a folder of generated code."""
 HEADERS = frozenset({
     "aio", "alloca", "assert", "complex", "conio", "cpio", "ctype", "dirent", "dlfcn", "endian",

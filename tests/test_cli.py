@@ -372,6 +372,17 @@ def test_the_c_example_of_the_readme_runs(tmp_path: Path) -> None:
     assert len(done.stdout.splitlines()) == 2
 
 
+def test_the_javascript_example_of_the_readme_runs(tmp_path: Path) -> None:
+    node = shutil.which("node") or pytest.skip("Node is not installed")
+    (code,) = blocks("js")
+    (tmp_path / "main.mjs").write_text(code, "utf-8")
+    package = tmp_path / "node_modules" / "closedform"
+    shutil.copytree(pipeline.generated() / "js", package)
+    run = [node, str(tmp_path / "main.mjs")]
+    done = subprocess.run(run, capture_output=True, text=True, check=True)
+    assert "elbow_up [ 0." in done.stdout and "Uint8Array(6) [ 0, 0" in done.stdout
+
+
 def test_the_commands_of_the_readme_run(
     only_planar: Path,
     tmp_path: Path,

@@ -3,6 +3,7 @@
 import ast
 import builtins
 import io
+import json
 import re
 import shutil
 import subprocess
@@ -31,6 +32,11 @@ pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
 Strings = Callable[[str], str]
 HEADER = Path(__file__).parents[1] / "closedform" / "runtime" / "c" / "closedform.h"
+
+
+needs_node = pytest.mark.skipif(
+    shutil.which("node") is None, reason="Node is not installed: the JavaScript is not run"
+)
 
 
 def slider(text: Strings = lambda field: field, name: Strings = lambda field: field) -> Derivation:
@@ -161,7 +167,13 @@ def tex_commands(code: str) -> list[str]:
 
 
 def tokens(files: dict[Path, str]) -> dict[Path, Any]:
-    readers = {".c": c_tokens, ".h": c_tokens, ".py": python_tokens, ".tex": tex_commands}
+    readers = {
+        ".c": c_tokens,
+        ".h": c_tokens,
+        ".js": c_tokens,  # comments and strings are written alike
+        ".py": python_tokens,
+        ".tex": tex_commands,
+    }
     return {p: readers[p.suffix](t) for p, t in files.items() if p.suffix in readers}
 
 
@@ -224,6 +236,53 @@ def test_hostile_texts_compile(tmp_path: Path) -> None:
     compile_c(sources)
 
 
+@needs_node
+def test_hostile_texts_are_modules_of_javascript(tmp_path: Path) -> None:
+    """Which run, and say the texts as they are."""
+    for k, text in enumerate(HOSTILE):
+        write_javascript(tmp_path / str(k), printed(slider(text=lambda _, text=text: text)))
+    run_javascript(
+        tmp_path,
+        len(HOSTILE),
+        f"""
+        const expected = {json.dumps(HOSTILE)}[k];
+        if (m.SINGULARITIES[0] !== expected) throw new Error(`${{m.SINGULARITIES}}`);
+        """,
+    )
+
+
+def write_javascript(folder: Path, files: dict[Path, str]) -> None:
+    folder.mkdir()
+    (folder / "package.json").write_text('{ "type": "module" }')
+    for path, code in files.items():
+        if path.suffix == ".js":
+            (folder / path.name).write_text(code, "utf-8")
+
+
+def run_javascript(root: Path, n: int, code: str) -> None:
+    """Import the one robot of each folder, and run code with it."""
+    script = root / "all.mjs"
+    script.write_text(
+        f"""
+import {{ readdirSync }} from "node:fs";
+for (let k = 0; k < {n}; ++k) {{
+    const folder = new URL(`${{k}}/`, import.meta.url);
+    for (const name of readdirSync(folder).filter((f) => /^[^_].*\\.js$/.test(f))) {{
+        const m = await import(new URL(name, folder));
+        if (name === "index.js") continue;
+        try {{
+            {code}
+        }} catch (cause) {{
+            throw new Error(`${{k}} ${{name}}`, {{ cause }});
+        }}
+    }}
+}}
+"""
+    )
+    run = subprocess.run(["node", script], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr[:3000]
+
+
 def compile_c(sources: list[Path], *flags: str) -> None:
     headers = Path(__file__).parents[1] / "closedform" / "runtime" / "extension"
     command = [compiler(), "-std=c99", "-fsyntax-only", "-Wall", "-Wextra", "-Wcomment"]
@@ -267,7 +326,8 @@ TAKEN = """import lambda None np out params Any Parameters Status JOINTS _runtim
 uint8_t linux unix M_PI I errno NAN INT_MAX CF_PI cf_sqrt CLOSEDFORM_C closedform extension _native
 math stdint Stdio string CON n k start rare sines angle_0 single default runtime fields values
 status ik ik_batch ik_whole_kernel forward_batch robot_params ROBOT_DEFAULTS robot_ik_batch q
-q_stride q_i target_i nan result np_2 sin gamma y1 self list count theta s h x_entry r Forward"""
+q_stride q_i target_i nan result np_2 sin gamma y1 self list count theta s h x_entry r Forward
+delete function typeof let yield eval parameters v o found index package fk_batch Math NaN"""
 NAMES = TAKEN.split()
 BAD = ["", "a b", "../x", "a;b", "é", "1x", "-x", "a-b", "x" * 300, "a\nb", "{{ x }}", 'a"b', "a%b"]
 FIELDS: list[str] = []
@@ -277,11 +337,11 @@ LABELS = {"plus", "task", "key"}
 CODE = {*FIELDS} - LABELS - {"table"}
 NOTHING_PROVED = Proof("robot", "key", (), 0, ())
 TOLD = {
-    "robot": "math stdint Stdio string closedform extension _native CON import",
+    "robot": "math stdint Stdio string closedform extension _native CON import index",
     "h": "linux unix M_PI CF_PI cf_sqrt errno I np import lambda Parameters ROBOT_DEFAULTS",
-    "theta": "linux M_PI np out lambda h nan",
+    "theta": "linux M_PI np out lambda h nan delete typeof let Math",
     "forward": "import np Parameters default runtime fields ik ik_batch ik_whole_kernel Forward",
-    "q": "out params lambda n sines Status robot_params np",
+    "q": "out params lambda n sines Status robot_params np parameters yield eval",
     "target": "q q_i status linux",
     "table": "_native",
 }
@@ -307,6 +367,7 @@ def test_a_bad_name_is_refused(field: str) -> None:
 def test_a_name_is_refused_or_works(field: str, tmp_path: Path) -> None:
     """A name that is not refused where it is declared compiles, and changes no result."""
     sources, refused = [], set()
+    (tmp_path / "js").mkdir()
     target = np.array([3.0, 4.0])
     for k, value in enumerate(NAMES):
         try:
@@ -315,7 +376,8 @@ def test_a_name_is_refused_or_works(field: str, tmp_path: Path) -> None:
             assert value in str(error)
             refused.add(value)
             continue
-        files = pages(d, NOTHING_PROVED, ("numpy", "c", "data")).files
+        own = pages(d, NOTHING_PROVED, ("numpy", "c", "data", "js"))
+        files = own.files
         assert all(len(p.parts) == 2 and ".." not in p.parts for p in files)
         folder = tmp_path / str(k)
         folder.mkdir()
@@ -323,6 +385,8 @@ def test_a_name_is_refused_or_works(field: str, tmp_path: Path) -> None:
             if path.suffix in (".c", ".h"):
                 (folder / path.name).write_text(code)
         sources.append(folder / f"{d.name}.c")
+        forms = {**files, **shared_files([own.share], ["js"])}
+        write_javascript(tmp_path / "js" / str(len(sources) - 1), forms)
         module = imported(files[Path("numpy", f"{d.name}.py")])
         assert set(module["__all__"]) <= module.keys()
         solutions = module["ik"](target)
@@ -334,6 +398,11 @@ def test_a_name_is_refused_or_works(field: str, tmp_path: Path) -> None:
         shutil.copy(HEADER, tmp_path)
         headers = ["-include", "errno.h", "-include", "complex.h", "-include", "stdio.h"]
         compile_c(sources, "-std=gnu17", "-D_GNU_SOURCE", f"-I{tmp_path}", *headers)
+    if shutil.which("node"):
+        answers = "String(m.ik([3, 4]).q[0].map((x) => x.toFixed(12)))"
+        expected = f"{np.arctan2(4, 3):.12f},{3:.12f}"
+        code = f'if ({answers} !== "{expected}") throw new Error({answers});'
+        run_javascript(tmp_path / "js", len(sources), code)
 
 
 def test_two_labels_and_two_arguments_differ() -> None:

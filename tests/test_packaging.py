@@ -90,10 +90,11 @@ def test_the_wheel_holds_everything(installed: Path) -> None:
     assert ROOT is not None
     package = installed / "closedform"
     for folder in ("derivations", "generated", "templates"):
-        suffixes = (".py", ".c", ".h", ".in", ".txt", ".tex", ".csv", ".md", ".jinja")
+        suffixes = (".py", ".c", ".h", ".in", ".txt", ".tex", ".csv", ".md", ".jinja", ".js")
         assert below(package / folder, *suffixes) == below(ROOT / folder, *suffixes)
-    toolkit = below(ROOT / "closedform", ".py", ".typed")
-    assert toolkit <= below(package, ".py", ".typed")
+    assert (package / "generated" / "js" / "package.json").is_file()
+    kinds = (".py", ".typed", ".h", ".js", ".mjs")
+    assert below(ROOT / "closedform", *kinds) <= below(package, *kinds)
 
 
 def test_the_sdist_holds_everything(built: Path) -> None:

@@ -71,7 +71,7 @@ FUNCTION_SUFFIXES = frozenset({
 })  # fmt: skip
 """Suffixes that the printed code appends to the name of a function."""
 NOT_FINITE = frozenset({"nan", "inf", "infinity", "oo", "zoo"})
-RESERVED_FILES = frozenset({"closedform", "extension"})
+RESERVED_FILES = frozenset({"closedform", "extension", "index"})
 """Other files in the folders of generated code."""
 HEADERS = frozenset({
     "aio", "alloca", "assert", "complex", "conio", "cpio", "ctype", "dirent", "dlfcn", "endian",

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from closedform.check.crosscheck import Backend
 from closedform.check.failures import FailedError, UnavailableError
+from closedform.check.runners import shaped
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
 from closedform.model.tolerances import DOUBLE
@@ -28,26 +29,20 @@ def run(name: str, derivation: Derivation, folder: Path, scratch: Path) -> Itera
     with Node(folder / f"{derivation.name}.js") as node:
 
         def function(name: str) -> Callable[..., Any]:
-            return lambda *arguments: _shaped(node, derivation[name], fields, *arguments)
+            return lambda *arguments: _called(node, derivation[name], fields, *arguments)
 
         yield Backend(name, function, np.float64, DOUBLE)
 
 
-def _shaped(node: Node, function: Function, fields: Sequence[str], *arguments: Any) -> Any:
-    """A function over arrays with at most one leading axis, and at last the parameters."""
+def _called(node: Node, function: Function, fields: Sequence[str], *arguments: Any) -> Any:
+    """A function of arrays, and at last the parameters."""
     *inputs, params = arguments
     planes = [
         np.asarray(x, float).reshape(-1, a.size).T
         for x, a in zip(inputs, function.inputs, strict=True)
     ]
     found = node.batch(function.name, planes, dict(zip(fields, map(float, params), strict=True)))
-    lead = found[0].shape[1:] if inputs else ()
-    if function.branches:
-        lead = (*lead, len(function.branches))
-    shapes = [(*lead, *map(int, a.shape)) for a in function.outputs]
-    shapes += [lead] * function.has_status
-    shaped = [f.T.reshape(shape) for f, shape in zip(found, shapes, strict=True)]
-    return shaped[0] if len(shaped) == 1 else tuple(shaped)
+    return shaped(function, np.concatenate(found).T)
 
 
 def executable() -> str:

@@ -201,10 +201,9 @@ void h6ar_determinant_batch(size_t n, const h6ar_params *params,
  * Outputs
  * -------
  * factors : real_t[6]
- *     One factor for each singular set: tip in the plane of the waist axis and the shoulders;
- *     virtual arm with the wrist straight or folded; virtual arm straight or folded; upper arms
- *     half a turn apart; fore-arms half a turn apart; wrist links stretched along the base
- *     line.
+ *     One factor for each singular set: the tip is above or below the waist axis; virtual arm
+ *     with the wrist straight or folded; virtual arm straight or folded; upper arms half a turn
+ *     apart; fore-arms half a turn apart; wrist links stretched along the base line.
  *
  * Notes
  * -----

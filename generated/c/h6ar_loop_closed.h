@@ -213,10 +213,10 @@ void h6ar_loop_closed_determinant_batch(size_t n, const h6ar_loop_closed_params 
  * Outputs
  * -------
  * factors : real_t[6]
- *     One factor for each singular set: tip in the plane of the waist axis and the shoulders;
- *     virtual arm with the wrist straight or folded; right arm straight or folded; left arm
- *     straight or folded; virtual arm straight or folded (a pole of the determinant); wrist
- *     links stretched along the base line.
+ *     One factor for each singular set: the tip is above or below the waist axis; virtual arm
+ *     with the wrist straight or folded; right arm straight or folded; left arm straight or
+ *     folded; virtual arm straight or folded (a pole of the determinant); wrist links stretched
+ *     along the base line.
  *
  * Notes
  * -----

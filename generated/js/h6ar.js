@@ -43,7 +43,7 @@ export const ASSEMBLY_MODES = Object.freeze(/** @type {const} */ ([]));
 export const JOINTS = Object.freeze(/** @type {const} */ (["theta1", "theta2R", "theta3R", "theta2L", "theta3L", "theta"]));
 export const TASK = Object.freeze(/** @type {const} */ (["x", "y", "z", "psi", "phi", "theta"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["front_elbow_up", "front_elbow_down", "rear_elbow_up", "rear_elbow_down"]));
-export const SINGULARITIES = Object.freeze(/** @type {const} */ (["tip in the plane of the waist axis and the shoulders", "virtual arm with the wrist straight or folded", "virtual arm straight or folded", "upper arms half a turn apart", "fore-arms half a turn apart", "wrist links stretched along the base line"]));
+export const SINGULARITIES = Object.freeze(/** @type {const} */ (["the tip is above or below the waist axis", "virtual arm with the wrist straight or folded", "virtual arm straight or folded", "upper arms half a turn apart", "fore-arms half a turn apart", "wrist links stretched along the base line"]));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -1101,10 +1101,10 @@ const _SINGULARITIES = _runtime.kernel({
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 6 numbers. One factor for each singular set: tip in the plane of the
- *     waist axis and the shoulders; virtual arm with the wrist straight or folded; virtual arm
- *     straight or folded; upper arms half a turn apart; fore-arms half a turn apart; wrist
- *     links stretched along the base line.
+ * @returns {number[]} 6 numbers. One factor for each singular set: the tip is above or below
+ *     the waist axis; virtual arm with the wrist straight or folded; virtual arm straight or
+ *     folded; upper arms half a turn apart; fore-arms half a turn apart; wrist links stretched
+ *     along the base line.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has another length.
  */

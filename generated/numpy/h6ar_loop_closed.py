@@ -44,7 +44,7 @@ ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2R', 'theta3R', 'theta2L', 'theta3L', 'theta')
 TASK = ('x', 'y', 'z', 'psi', 'phi', 'theta')
 BRANCHES = ('front_elbow_up_alike', 'front_elbow_up_mixed', 'front_elbow_down_alike', 'front_elbow_down_mixed', 'rear_elbow_up_alike', 'rear_elbow_up_mixed', 'rear_elbow_down_alike', 'rear_elbow_down_mixed')
-SINGULARITIES = ('tip in the plane of the waist axis and the shoulders', 'virtual arm with the wrist straight or folded', 'right arm straight or folded', 'left arm straight or folded', 'virtual arm straight or folded (a pole of the determinant)', 'wrist links stretched along the base line')
+SINGULARITIES = ('the tip is above or below the waist axis', 'virtual arm with the wrist straight or folded', 'right arm straight or folded', 'left arm straight or folded', 'virtual arm straight or folded (a pole of the determinant)', 'wrist links stretched along the base line')
 
 __all__ = [
     "ASSEMBLY_MODES",
@@ -1615,10 +1615,10 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     Returns
     -------
     factors : ndarray of float64, shape (..., 6)
-        One factor for each singular set: tip in the plane of the waist axis and the shoulders;
-        virtual arm with the wrist straight or folded; right arm straight or folded; left arm
-        straight or folded; virtual arm straight or folded (a pole of the determinant); wrist
-        links stretched along the base line.
+        One factor for each singular set: the tip is above or below the waist axis; virtual arm
+        with the wrist straight or folded; right arm straight or folded; left arm straight or
+        folded; virtual arm straight or folded (a pole of the determinant); wrist links
+        stretched along the base line.
 
     Raises
     ------

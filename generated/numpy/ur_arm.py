@@ -9,7 +9,7 @@
 #   singularities: 6 add, 11 multiply, 4 sincos
 #   jacobian_space: 46 add, 76 multiply, 5 sincos
 #   jacobian_body: 34 add, 64 multiply, 5 sincos
-#   ik: 712 compare and select, 705 add, 32 atan2, 171 divide, 1086 multiply, 80 sqrt
+#   ik: 736 compare and select, 705 add, 32 atan2, 171 divide, 1086 multiply, 80 sqrt
 #   ik where nothing vanishes: 158 compare and select, 198 add, 30 atan2, 33 divide, 226 multiply,
 #     12 sqrt
 """UR-type arm (three parallel axes).
@@ -815,2085 +815,2127 @@ def _ik(
     del dx_1_1
     inner_1_1 = slope_1_1 * slope_1_1 - miss_1_1 * bend_1_1
     t33 = _runtime.sign(slope_1_1) * np.sqrt(np.maximum(0.0, inner_1_1))
-    t34 = _runtime.select(inner_1_1 < 0.0, slope_1_1 / (2.0 * bend_1_1), miss_1_1 / (2.0 * (slope_1_1 + t33)))
-    del bend_1_1, inner_1_1, miss_1_1, slope_1_1, t33
-    t35 = t34 * t34
-    t36 = 1.0 / (1.0 + t35)
-    t37 = 2.0 * t34 * t36
-    del t34
-    by_c_1_1 = t36 * (1.0 - t35)
-    del t35, t36
-    cost_1_1 = d4 * (t37 * t37) / (1.0 + np.abs(by_c_1_1)) + root1 * np.abs(t37)
-    t38 = L2 * 5.684341886080802e-14 + L3 * 5.684341886080802e-14
-    t39 = t38 + d1 * 5.684341886080802e-14 + d4 * 5.684341886080802e-14
-    del t38
-    whole_1_1 = t39 + d5 * 5.684341886080802e-14 + d6 * 5.684341886080802e-14
+    outer_1_1 = slope_1_1 + t33
+    del t33
+    t34 = _runtime.select(outer_1_1 == 0.0, 0.0, miss_1_1 / (2.0 * outer_1_1))
+    del miss_1_1, outer_1_1
+    t35 = _runtime.select(inner_1_1 < 0.0, slope_1_1 / (2.0 * bend_1_1), t34)
+    del bend_1_1, inner_1_1, slope_1_1, t34
+    t36 = t35 * t35
+    t37 = 1.0 / (1.0 + t36)
+    t38 = 2.0 * t35 * t37
+    del t35
+    by_c_1_1 = t37 * (1.0 - t36)
+    del t36, t37
+    cost_1_1 = d4 * (t38 * t38) / (1.0 + np.abs(by_c_1_1)) + root1 * np.abs(t38)
+    t39 = L2 * 5.684341886080802e-14 + L3 * 5.684341886080802e-14
+    t40 = t39 + d1 * 5.684341886080802e-14 + d4 * 5.684341886080802e-14
     del t39
-    t40 = (cost_1_1 <= whole_1_1) & (0.0 < by_c_1_1)
+    whole_1_1 = t40 + d5 * 5.684341886080802e-14 + d6 * 5.684341886080802e-14
+    del t40
+    t41 = (cost_1_1 <= whole_1_1) & (0.0 < by_c_1_1)
     del cost_1_1
-    cosine_1_1 = _runtime.select(t40, by_c_1_1, 1.0)
+    cosine_1_1 = _runtime.select(t41, by_c_1_1, 1.0)
     del by_c_1_1
-    sine_1_1 = _runtime.select(t40, -t37, 0.0)
-    del t37, t40
+    sine_1_1 = _runtime.select(t41, -t38, 0.0)
+    del t38, t41
     c_1_1_2 = c_1_1 * cosine_1_1 + t19 * sine_1_1
     s_1_1_2 = c_1_1 * sine_1_1 - t19 * cosine_1_1
     del cosine_1_1, sine_1_1
     axisx_1_1_2 = T13 * c_1_1_2 + T23 * s_1_1_2
-    t41 = axisx_1_1_2 * axisx_1_1_2
-    t42 = T13 * s_1_1_2 - T23 * c_1_1_2
-    most_1_1_2 = np.sqrt(t41 + t42 * t42)
-    t43 = np.abs(T33) <= 1.4210854715202004e-14
-    t44 = t26 * t26
+    t42 = axisx_1_1_2 * axisx_1_1_2
+    t43 = T13 * s_1_1_2 - T23 * c_1_1_2
+    most_1_1_2 = np.sqrt(t42 + t43 * t43)
+    t44 = np.abs(T33) <= 1.4210854715202004e-14
+    t45 = t26 * t26
     qx_1_1_2 = w_x * c_1_1_2 + w_y * s_1_1_2
-    r_1_1_2 = np.sqrt(t44 + qx_1_1_2 * qx_1_1_2)
-    t45 = L2 * 8.881784197001252e-16 + L3 * 8.881784197001252e-16
-    t46 = t45 + d1 * 8.881784197001252e-16 + d4 * 8.881784197001252e-16
-    del t45
-    t47 = t46 + d5 * 8.881784197001252e-16 + d6 * 8.881784197001252e-16
+    r_1_1_2 = np.sqrt(t45 + qx_1_1_2 * qx_1_1_2)
+    t46 = L2 * 8.881784197001252e-16 + L3 * 8.881784197001252e-16
+    t47 = t46 + d1 * 8.881784197001252e-16 + d4 * 8.881784197001252e-16
     del t46
-    t48 = r_1_1_2 <= t47
-    t49 = d5 + r_1_1_2
-    t50 = 1.0 / np.sqrt(t16 + t41)
-    del t41
-    uc_1_1_2 = T33 * t50
-    t51 = qx_1_1_2 - d5 * uc_1_1_2
-    t52 = axisx_1_1_2 * t50
-    del t50
-    t53 = t26 - d5 * t52
-    there_1_1_2 = np.sqrt(t51 * t51 + t53 * t53)
-    del t51, t53
+    t48 = t47 + d5 * 8.881784197001252e-16 + d6 * 8.881784197001252e-16
+    del t47
+    t49 = r_1_1_2 <= t48
+    t50 = d5 + r_1_1_2
+    t51 = 1.0 / np.sqrt(t16 + t42)
+    del t42
+    uc_1_1_2 = T33 * t51
+    t52 = qx_1_1_2 - d5 * uc_1_1_2
+    t53 = axisx_1_1_2 * t51
+    del t51
+    t54 = t26 - d5 * t53
+    there_1_1_2 = np.sqrt(t52 * t52 + t54 * t54)
+    del t52, t54
     goal_1_1_2 = np.minimum(full_1_1, np.maximum(there_1_1_2, fold_1_1))
-    k_v_1_1_2 = np.maximum(0.0, (t49 - goal_1_1_2) * (t49 + goal_1_1_2))
-    del t49
-    t54 = d5 - r_1_1_2
-    d_v_1_1_2 = np.maximum(0.0, (goal_1_1_2 - t54) * (goal_1_1_2 + t54))
-    del t54
+    k_v_1_1_2 = np.maximum(0.0, (t50 - goal_1_1_2) * (t50 + goal_1_1_2))
+    del t50
+    t55 = d5 - r_1_1_2
+    d_v_1_1_2 = np.maximum(0.0, (goal_1_1_2 - t55) * (goal_1_1_2 + t55))
+    del t55
     n_v_1_1_2 = k_v_1_1_2 + d_v_1_1_2
-    t55 = size_1_1 * size_1_1
-    t56 = t55 * 8.881784197001252e-16
-    t57 = n_v_1_1_2 <= t56
-    t58 = 1.0 / n_v_1_1_2
+    t56 = size_1_1 * size_1_1
+    t57 = t56 * 8.881784197001252e-16
+    t58 = n_v_1_1_2 <= t57
+    t59 = 1.0 / n_v_1_1_2
     del n_v_1_1_2
-    uc_v_1_1_2 = _runtime.select(t57, 1.0, (k_v_1_1_2 - d_v_1_1_2) * t58)
-    t59 = qx_1_1_2 * uc_v_1_1_2
-    side_1_1_2 = _runtime.sign(t26 * uc_1_1_2 - qx_1_1_2 * t52)
-    del t52, uc_1_1_2
-    t60 = 2.0 * side_1_1_2 * np.sqrt(k_v_1_1_2 * d_v_1_1_2)
+    uc_v_1_1_2 = _runtime.select(t58, 1.0, (k_v_1_1_2 - d_v_1_1_2) * t59)
+    t60 = qx_1_1_2 * uc_v_1_1_2
+    side_1_1_2 = _runtime.sign(t26 * uc_1_1_2 - qx_1_1_2 * t53)
+    del t53, uc_1_1_2
+    t61 = 2.0 * side_1_1_2 * np.sqrt(k_v_1_1_2 * d_v_1_1_2)
     del d_v_1_1_2, k_v_1_1_2, side_1_1_2
-    us_v_1_1_2 = _runtime.select(t57, 0.0, t58 * t60)
-    del t57, t58, t60
-    t61 = t26 * us_v_1_1_2
-    t62 = 1.0 / r_1_1_2
+    us_v_1_1_2 = _runtime.select(t58, 0.0, t59 * t61)
+    del t58, t59, t61
+    t62 = t26 * us_v_1_1_2
+    t63 = 1.0 / r_1_1_2
     del r_1_1_2
-    c_v_1_1_2 = _runtime.select(t48, 1.0, (t59 + t61) * t62)
-    t63 = T33 * c_v_1_1_2 < 0.0
-    t64 = qx_1_1_2 * us_v_1_1_2
+    c_v_1_1_2 = _runtime.select(t49, 1.0, (t60 + t62) * t63)
+    t64 = T33 * c_v_1_1_2 < 0.0
+    t65 = qx_1_1_2 * us_v_1_1_2
     del qx_1_1_2, us_v_1_1_2
-    t65 = t26 * uc_v_1_1_2
+    t66 = t26 * uc_v_1_1_2
     del uc_v_1_1_2
-    to_c_1_1_2 = _runtime.select(t63, _runtime.select(t48, 0.0, t62 * (t64 + t65)), -_runtime.select(t48, 0.0, t62 * (t64 - t65)))
-    del t64, t65
-    to_s_1_1_2 = _runtime.select(t63, _runtime.select(t48, 1.0, t62 * (t59 - t61)), c_v_1_1_2)
-    del c_v_1_1_2, t48, t59, t61, t62, t63
-    wanted_1_1_2 = _runtime.select(t43, 0.0, T33 * to_c_1_1_2 / to_s_1_1_2)
+    to_c_1_1_2 = _runtime.select(t64, _runtime.select(t49, 0.0, t63 * (t65 + t66)), -_runtime.select(t49, 0.0, t63 * (t65 - t66)))
+    del t65, t66
+    to_s_1_1_2 = _runtime.select(t64, _runtime.select(t49, 1.0, t63 * (t60 - t62)), c_v_1_1_2)
+    del c_v_1_1_2, t49, t60, t62, t63, t64
+    wanted_1_1_2 = _runtime.select(t44, 0.0, T33 * to_c_1_1_2 / to_s_1_1_2)
     del to_c_1_1_2, to_s_1_1_2
     kept_1_1_2 = np.maximum(-most_1_1_2, np.minimum(most_1_1_2, wanted_1_1_2))
     del wanted_1_1_2
-    t66 = (most_1_1_2 - kept_1_1_2) * (most_1_1_2 + kept_1_1_2)
-    rest_1_1_2 = np.sqrt(t66) * _runtime.sign(-t42)
-    del t66
-    t67 = 1.0 / (most_1_1_2 * most_1_1_2)
+    t67 = (most_1_1_2 - kept_1_1_2) * (most_1_1_2 + kept_1_1_2)
+    rest_1_1_2 = np.sqrt(t67) * _runtime.sign(-t43)
+    del t67
+    t68 = 1.0 / (most_1_1_2 * most_1_1_2)
     del most_1_1_2
-    t68 = (axisx_1_1_2 * rest_1_1_2 + t42 * kept_1_1_2) * t67
-    by_c_1_1_2 = t67 * (axisx_1_1_2 * kept_1_1_2 - t42 * rest_1_1_2)
-    del axisx_1_1_2, kept_1_1_2, rest_1_1_2, t42, t67
-    t69 = d4 * (t68 * t68) / (1.0 + np.abs(by_c_1_1_2))
-    t70 = (t69 + root1 * np.abs(t68) <= whole_1_1) & (0.0 < by_c_1_1_2)
-    del t69
-    t71 = t70 & (t47 < np.abs(there_1_1_2 - goal_1_1_2))
-    del goal_1_1_2, t70, there_1_1_2
-    cosine_1_1_2 = _runtime.select(t71, by_c_1_1_2, 1.0)
+    t69 = (axisx_1_1_2 * rest_1_1_2 + t43 * kept_1_1_2) * t68
+    by_c_1_1_2 = t68 * (axisx_1_1_2 * kept_1_1_2 - t43 * rest_1_1_2)
+    del axisx_1_1_2, kept_1_1_2, rest_1_1_2, t43, t68
+    t70 = d4 * (t69 * t69) / (1.0 + np.abs(by_c_1_1_2))
+    t71 = (t70 + root1 * np.abs(t69) <= whole_1_1) & (0.0 < by_c_1_1_2)
+    del t70
+    t72 = t71 & (t48 < np.abs(there_1_1_2 - goal_1_1_2))
+    del goal_1_1_2, t71, there_1_1_2
+    cosine_1_1_2 = _runtime.select(t72, by_c_1_1_2, 1.0)
     del by_c_1_1_2
-    sine_1_1_2 = _runtime.select(t71, -t68, 0.0)
-    del t68, t71
+    sine_1_1_2 = _runtime.select(t72, -t69, 0.0)
+    del t69, t72
     c_1_1_2_3 = c_1_1_2 * cosine_1_1_2 - s_1_1_2 * sine_1_1_2
     s_1_1_2_3 = c_1_1_2 * sine_1_1_2 + s_1_1_2 * cosine_1_1_2
     del c_1_1_2, cosine_1_1_2, s_1_1_2, sine_1_1_2
     axisx_1_1_2_3 = T13 * c_1_1_2_3 + T23 * s_1_1_2_3
     h_1_1_2_3 = np.sqrt(t16 + axisx_1_1_2_3 * axisx_1_1_2_3)
-    t72 = size_1_1 * h_1_1_2_3 <= t20
+    t73 = size_1_1 * h_1_1_2_3 <= t20
     qx_1_1_2_3 = w_x * c_1_1_2_3 + w_y * s_1_1_2_3
-    t73 = 1.0 / h_1_1_2_3
-    uc_1_1_2_3 = T33 * t73
-    x_1_1_2_3 = _runtime.select(t72, qx_1_1_2_3, qx_1_1_2_3 - d5 * uc_1_1_2_3)
+    t74 = 1.0 / h_1_1_2_3
+    uc_1_1_2_3 = T33 * t74
+    x_1_1_2_3 = _runtime.select(t73, qx_1_1_2_3, qx_1_1_2_3 - d5 * uc_1_1_2_3)
     del qx_1_1_2_3
     dqx_1_1_2_3 = w_y * c_1_1_2_3 - w_x * s_1_1_2_3
-    t74 = axisx_1_1_2_3 * t73
-    del axisx_1_1_2_3, t73
-    t75 = d5 * (T33 * (T13 * s_1_1_2_3 - T23 * c_1_1_2_3))
-    rate_1_1_2_3 = t75 / (h_1_1_2_3 * h_1_1_2_3)
-    del h_1_1_2_3, t75
-    dx_1_1_2_3 = _runtime.select(t72, dqx_1_1_2_3, dqx_1_1_2_3 - t74 * rate_1_1_2_3)
+    t75 = axisx_1_1_2_3 * t74
+    del axisx_1_1_2_3, t74
+    t76 = d5 * (T33 * (T13 * s_1_1_2_3 - T23 * c_1_1_2_3))
+    rate_1_1_2_3 = t76 / (h_1_1_2_3 * h_1_1_2_3)
+    del h_1_1_2_3, t76
+    dx_1_1_2_3 = _runtime.select(t73, dqx_1_1_2_3, dqx_1_1_2_3 - t75 * rate_1_1_2_3)
     del dqx_1_1_2_3
-    t76 = _runtime.select(t72, t26, t26 - d5 * t74)
-    del t74
-    t77 = _runtime.select(t72, 0.0, uc_1_1_2_3 * rate_1_1_2_3)
+    t77 = _runtime.select(t73, t26, t26 - d5 * t75)
+    del t75
+    t78 = _runtime.select(t73, 0.0, uc_1_1_2_3 * rate_1_1_2_3)
     del rate_1_1_2_3, uc_1_1_2_3
-    slope_1_1_2_3 = x_1_1_2_3 * dx_1_1_2_3 + t76 * t77
-    square_1_1_2_3 = x_1_1_2_3 * x_1_1_2_3 + t76 * t76
-    del t76, x_1_1_2_3
-    nearest_1_1_2_3 = _runtime.select(t72, t30, fold_1_1)
-    farthest_1_1_2_3 = _runtime.select(t72, t5, full_1_1)
-    del t72
-    t78 = np.minimum(farthest_1_1_2_3 * farthest_1_1_2_3, square_1_1_2_3)
+    slope_1_1_2_3 = x_1_1_2_3 * dx_1_1_2_3 + t77 * t78
+    square_1_1_2_3 = x_1_1_2_3 * x_1_1_2_3 + t77 * t77
+    del t77, x_1_1_2_3
+    nearest_1_1_2_3 = _runtime.select(t73, t30, fold_1_1)
+    farthest_1_1_2_3 = _runtime.select(t73, t5, full_1_1)
+    del t73
+    t79 = np.minimum(farthest_1_1_2_3 * farthest_1_1_2_3, square_1_1_2_3)
     del farthest_1_1_2_3
-    t79 = np.maximum(nearest_1_1_2_3 * nearest_1_1_2_3, t78)
-    del nearest_1_1_2_3, t78
-    miss_1_1_2_3 = square_1_1_2_3 - t79
-    del square_1_1_2_3, t79
-    bend_1_1_2_3 = dx_1_1_2_3 * dx_1_1_2_3 + t77 * t77
-    del dx_1_1_2_3, t77
+    t80 = np.maximum(nearest_1_1_2_3 * nearest_1_1_2_3, t79)
+    del nearest_1_1_2_3, t79
+    miss_1_1_2_3 = square_1_1_2_3 - t80
+    del square_1_1_2_3, t80
+    bend_1_1_2_3 = dx_1_1_2_3 * dx_1_1_2_3 + t78 * t78
+    del dx_1_1_2_3, t78
     inner_1_1_2_3 = slope_1_1_2_3 * slope_1_1_2_3 - miss_1_1_2_3 * bend_1_1_2_3
-    t80 = _runtime.sign(slope_1_1_2_3) * np.sqrt(np.maximum(0.0, inner_1_1_2_3))
-    t81 = _runtime.select(inner_1_1_2_3 < 0.0, slope_1_1_2_3 / (2.0 * bend_1_1_2_3), miss_1_1_2_3 / (2.0 * (slope_1_1_2_3 + t80)))
-    del bend_1_1_2_3, inner_1_1_2_3, miss_1_1_2_3, slope_1_1_2_3, t80
-    t82 = t81 * t81
-    t83 = 1.0 / (1.0 + t82)
-    t84 = 2.0 * t81 * t83
+    t81 = _runtime.sign(slope_1_1_2_3) * np.sqrt(np.maximum(0.0, inner_1_1_2_3))
+    outer_1_1_2_3 = slope_1_1_2_3 + t81
     del t81
-    by_c_1_1_2_3 = t83 * (1.0 - t82)
-    del t82, t83
-    t85 = d4 * (t84 * t84) / (1.0 + np.abs(by_c_1_1_2_3))
-    t86 = (t85 + root1 * np.abs(t84) <= whole_1_1) & (0.0 < by_c_1_1_2_3)
-    del t85
-    cosine_1_1_2_3 = _runtime.select(t86, by_c_1_1_2_3, 1.0)
+    t82 = _runtime.select(outer_1_1_2_3 == 0.0, 0.0, miss_1_1_2_3 / (2.0 * outer_1_1_2_3))
+    del miss_1_1_2_3, outer_1_1_2_3
+    t83 = _runtime.select(inner_1_1_2_3 < 0.0, slope_1_1_2_3 / (2.0 * bend_1_1_2_3), t82)
+    del bend_1_1_2_3, inner_1_1_2_3, slope_1_1_2_3, t82
+    t84 = t83 * t83
+    t85 = 1.0 / (1.0 + t84)
+    t86 = 2.0 * t83 * t85
+    del t83
+    by_c_1_1_2_3 = t85 * (1.0 - t84)
+    del t84, t85
+    t87 = d4 * (t86 * t86) / (1.0 + np.abs(by_c_1_1_2_3))
+    t88 = (t87 + root1 * np.abs(t86) <= whole_1_1) & (0.0 < by_c_1_1_2_3)
+    del t87
+    cosine_1_1_2_3 = _runtime.select(t88, by_c_1_1_2_3, 1.0)
     del by_c_1_1_2_3
-    sine_1_1_2_3 = _runtime.select(t86, -t84, 0.0)
-    del t84, t86
+    sine_1_1_2_3 = _runtime.select(t88, -t86, 0.0)
+    del t86, t88
     c_1_1_2_3_4 = c_1_1_2_3 * cosine_1_1_2_3 - s_1_1_2_3 * sine_1_1_2_3
     s_1_1_2_3_4 = c_1_1_2_3 * sine_1_1_2_3 + s_1_1_2_3 * cosine_1_1_2_3
     del c_1_1_2_3, cosine_1_1_2_3, s_1_1_2_3, sine_1_1_2_3
     axisx_1_1_2_3_4 = T13 * c_1_1_2_3_4 + T23 * s_1_1_2_3_4
     h_1_1_2_3_4 = np.sqrt(t16 + axisx_1_1_2_3_4 * axisx_1_1_2_3_4)
-    t87 = size_1_1 * h_1_1_2_3_4 <= t20
+    t89 = size_1_1 * h_1_1_2_3_4 <= t20
     qx_1_1_2_3_4 = w_x * c_1_1_2_3_4 + w_y * s_1_1_2_3_4
-    t88 = 1.0 / h_1_1_2_3_4
-    uc_1_1_2_3_4 = T33 * t88
-    x_1_1_2_3_4 = _runtime.select(t87, qx_1_1_2_3_4, qx_1_1_2_3_4 - d5 * uc_1_1_2_3_4)
+    t90 = 1.0 / h_1_1_2_3_4
+    uc_1_1_2_3_4 = T33 * t90
+    x_1_1_2_3_4 = _runtime.select(t89, qx_1_1_2_3_4, qx_1_1_2_3_4 - d5 * uc_1_1_2_3_4)
     del qx_1_1_2_3_4
     dqx_1_1_2_3_4 = w_y * c_1_1_2_3_4 - w_x * s_1_1_2_3_4
-    t89 = axisx_1_1_2_3_4 * t88
-    del axisx_1_1_2_3_4, t88
-    t90 = T33 * (T13 * s_1_1_2_3_4 - T23 * c_1_1_2_3_4)
-    rate_1_1_2_3_4 = d5 * t90 / (h_1_1_2_3_4 * h_1_1_2_3_4)
-    del h_1_1_2_3_4, t90
-    dx_1_1_2_3_4 = _runtime.select(t87, dqx_1_1_2_3_4, dqx_1_1_2_3_4 - t89 * rate_1_1_2_3_4)
+    t91 = axisx_1_1_2_3_4 * t90
+    del axisx_1_1_2_3_4, t90
+    t92 = T33 * (T13 * s_1_1_2_3_4 - T23 * c_1_1_2_3_4)
+    rate_1_1_2_3_4 = d5 * t92 / (h_1_1_2_3_4 * h_1_1_2_3_4)
+    del h_1_1_2_3_4, t92
+    dx_1_1_2_3_4 = _runtime.select(t89, dqx_1_1_2_3_4, dqx_1_1_2_3_4 - t91 * rate_1_1_2_3_4)
     del dqx_1_1_2_3_4
-    t91 = _runtime.select(t87, t26, t26 - d5 * t89)
-    del t89
-    t92 = _runtime.select(t87, 0.0, uc_1_1_2_3_4 * rate_1_1_2_3_4)
+    t93 = _runtime.select(t89, t26, t26 - d5 * t91)
+    del t91
+    t94 = _runtime.select(t89, 0.0, uc_1_1_2_3_4 * rate_1_1_2_3_4)
     del rate_1_1_2_3_4, uc_1_1_2_3_4
-    slope_1_1_2_3_4 = x_1_1_2_3_4 * dx_1_1_2_3_4 + t91 * t92
-    square_1_1_2_3_4 = x_1_1_2_3_4 * x_1_1_2_3_4 + t91 * t91
-    del t91, x_1_1_2_3_4
-    nearest_1_1_2_3_4 = _runtime.select(t87, t30, fold_1_1)
-    farthest_1_1_2_3_4 = _runtime.select(t87, t5, full_1_1)
-    del t87
-    t93 = np.minimum(farthest_1_1_2_3_4 * farthest_1_1_2_3_4, square_1_1_2_3_4)
+    slope_1_1_2_3_4 = x_1_1_2_3_4 * dx_1_1_2_3_4 + t93 * t94
+    square_1_1_2_3_4 = x_1_1_2_3_4 * x_1_1_2_3_4 + t93 * t93
+    del t93, x_1_1_2_3_4
+    nearest_1_1_2_3_4 = _runtime.select(t89, t30, fold_1_1)
+    farthest_1_1_2_3_4 = _runtime.select(t89, t5, full_1_1)
+    del t89
+    t95 = np.minimum(farthest_1_1_2_3_4 * farthest_1_1_2_3_4, square_1_1_2_3_4)
     del farthest_1_1_2_3_4
-    t94 = np.maximum(nearest_1_1_2_3_4 * nearest_1_1_2_3_4, t93)
-    del nearest_1_1_2_3_4, t93
-    miss_1_1_2_3_4 = square_1_1_2_3_4 - t94
-    del square_1_1_2_3_4, t94
-    bend_1_1_2_3_4 = dx_1_1_2_3_4 * dx_1_1_2_3_4 + t92 * t92
-    del dx_1_1_2_3_4, t92
+    t96 = np.maximum(nearest_1_1_2_3_4 * nearest_1_1_2_3_4, t95)
+    del nearest_1_1_2_3_4, t95
+    miss_1_1_2_3_4 = square_1_1_2_3_4 - t96
+    del square_1_1_2_3_4, t96
+    bend_1_1_2_3_4 = dx_1_1_2_3_4 * dx_1_1_2_3_4 + t94 * t94
+    del dx_1_1_2_3_4, t94
     inner_1_1_2_3_4 = slope_1_1_2_3_4 * slope_1_1_2_3_4 - miss_1_1_2_3_4 * bend_1_1_2_3_4
-    t95 = _runtime.sign(slope_1_1_2_3_4) * np.sqrt(np.maximum(0.0, inner_1_1_2_3_4))
-    t96 = miss_1_1_2_3_4 / (2.0 * (slope_1_1_2_3_4 + t95))
-    del miss_1_1_2_3_4, t95
-    t97 = _runtime.select(inner_1_1_2_3_4 < 0.0, slope_1_1_2_3_4 / (2.0 * bend_1_1_2_3_4), t96)
-    del bend_1_1_2_3_4, inner_1_1_2_3_4, slope_1_1_2_3_4, t96
-    t98 = t97 * t97
-    t99 = 1.0 / (1.0 + t98)
-    t100 = 2.0 * t97 * t99
+    t97 = _runtime.sign(slope_1_1_2_3_4) * np.sqrt(np.maximum(0.0, inner_1_1_2_3_4))
+    outer_1_1_2_3_4 = slope_1_1_2_3_4 + t97
     del t97
-    by_c_1_1_2_3_4 = t99 * (1.0 - t98)
-    del t98, t99
-    t101 = d4 * (t100 * t100) / (1.0 + np.abs(by_c_1_1_2_3_4))
-    t102 = (t101 + root1 * np.abs(t100) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4)
-    del t101
-    sine_1_1_2_3_4 = _runtime.select(t102, -t100, 0.0)
-    del t100
-    cosine_1_1_2_3_4 = _runtime.select(t102, by_c_1_1_2_3_4, 1.0)
-    del by_c_1_1_2_3_4, t102
-    t103 = c_1_1_2_3_4 * sine_1_1_2_3_4 + s_1_1_2_3_4 * cosine_1_1_2_3_4
-    s1 = _runtime.select(tangent1, t103, -t19)
+    t98 = _runtime.select(outer_1_1_2_3_4 == 0.0, 0.0, miss_1_1_2_3_4 / (2.0 * outer_1_1_2_3_4))
+    del miss_1_1_2_3_4, outer_1_1_2_3_4
+    t99 = _runtime.select(inner_1_1_2_3_4 < 0.0, slope_1_1_2_3_4 / (2.0 * bend_1_1_2_3_4), t98)
+    del bend_1_1_2_3_4, inner_1_1_2_3_4, slope_1_1_2_3_4, t98
+    t100 = t99 * t99
+    t101 = 1.0 / (1.0 + t100)
+    t102 = 2.0 * t99 * t101
+    del t99
+    by_c_1_1_2_3_4 = t101 * (1.0 - t100)
+    del t100, t101
+    t103 = d4 * (t102 * t102) / (1.0 + np.abs(by_c_1_1_2_3_4))
+    t104 = (t103 + root1 * np.abs(t102) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4)
     del t103
-    t104 = c_1_1_2_3_4 * cosine_1_1_2_3_4 - s_1_1_2_3_4 * sine_1_1_2_3_4
-    del c_1_1_2_3_4, cosine_1_1_2_3_4, s_1_1_2_3_4, sine_1_1_2_3_4
-    c1 = _runtime.select(tangent1, t104, c_1_1)
-    del t104
-    t105 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
-    t106 = t105 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
+    sine_1_1_2_3_4 = _runtime.select(t104, -t102, 0.0)
+    del t102
+    cosine_1_1_2_3_4 = _runtime.select(t104, by_c_1_1_2_3_4, 1.0)
+    del by_c_1_1_2_3_4, t104
+    t105 = c_1_1_2_3_4 * sine_1_1_2_3_4 + s_1_1_2_3_4 * cosine_1_1_2_3_4
+    s1 = _runtime.select(tangent1, t105, -t19)
     del t105
-    t107 = t106 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    t106 = c_1_1_2_3_4 * cosine_1_1_2_3_4 - s_1_1_2_3_4 * sine_1_1_2_3_4
+    del c_1_1_2_3_4, cosine_1_1_2_3_4, s_1_1_2_3_4, sine_1_1_2_3_4
+    c1 = _runtime.select(tangent1, t106, c_1_1)
     del t106
-    t108 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t109 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t110 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t111 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t112 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t113 = t107 & t108 & t109 & t110 & t111 & (t112 <= _runtime.ROTATION)
-    del t107, t108, t109, t110, t111, t112
-    t114 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t115 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t116 = t113 & (t114 <= _runtime.ROTATION) & t115 & (np.abs(T41) <= _runtime.ROTATION)
-    del t113, t114, t115
-    t117 = t116 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    del t116
-    t118 = t117 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
-    del t117
-    invalid = np.logical_not(t118)
+    t107 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
+    t108 = t107 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
+    del t107
+    t109 = t108 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    del t108
+    t110 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t111 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t112 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t113 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t114 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t115 = t109 & t110 & t111 & t112 & t113 & (t114 <= _runtime.ROTATION)
+    del t109, t110, t111, t112, t113, t114
+    t116 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t117 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t118 = t115 & (t116 <= _runtime.ROTATION) & t117 & (np.abs(T41) <= _runtime.ROTATION)
+    del t115, t116, t117
+    t119 = t118 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
     del t118
-    t119 = L2 * 0.5 + L3 * 0.5 + d1 * 0.5 + d4 * 0.5 + d5 * 0.5
-    t120 = -(_runtime.FEASIBILITY * (t119 + d6 * 0.5))
+    t120 = t119 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
     del t119
-    t121 = (t120 <= t1) & (t120 <= t2)
+    invalid = np.logical_not(t120)
+    del t120
+    t121 = L2 * 0.5 + L3 * 0.5 + d1 * 0.5 + d4 * 0.5 + d5 * 0.5
+    t122 = -(_runtime.FEASIBILITY * (t121 + d6 * 0.5))
+    del t121
+    t123 = (t122 <= t1) & (t122 <= t2)
     del t1, t2
     across = w_x * c1 + w_y * s1
     M_13 = T13 * c1 + T23 * s1
     h_wrist = np.sqrt(t16 + M_13 * M_13)
-    t122 = _runtime.VANISHING * 16.0
-    aligned_wrist = h_wrist <= t122
-    r_hub = np.sqrt(t44 + across * across)
+    t124 = _runtime.VANISHING * 16.0
+    aligned_wrist = h_wrist <= t124
+    r_hub = np.sqrt(t45 + across * across)
     hub_mid = r_hub <= t6
-    t123 = d5 + r_hub
-    t124 = d5 - r_hub
-    mid_reach = np.minimum(full_1_1, t123) * 0.5 + np.maximum(fold_1_1, np.abs(t124)) * 0.5
-    k_mid = np.maximum(0.0, (t123 - mid_reach) * (t123 + mid_reach))
-    d_mid = np.maximum(0.0, -((t124 - mid_reach) * (t124 + mid_reach)))
+    t125 = d5 + r_hub
+    t126 = d5 - r_hub
+    mid_reach = np.minimum(full_1_1, t125) * 0.5 + np.maximum(fold_1_1, np.abs(t126)) * 0.5
+    k_mid = np.maximum(0.0, (t125 - mid_reach) * (t125 + mid_reach))
+    d_mid = np.maximum(0.0, -((t126 - mid_reach) * (t126 + mid_reach)))
     del mid_reach
     n_mid = k_mid + d_mid
-    t125 = _runtime.VANISHING * t55
-    del t55
-    any_mid = n_mid <= t125
-    t126 = 1.0 / n_mid
+    t127 = _runtime.VANISHING * t56
+    del t56
+    any_mid = n_mid <= t127
+    t128 = 1.0 / n_mid
     del n_mid
-    uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) * t126)
-    us_mid = _runtime.select(any_mid, 0.0, t126 * (2.0 * np.sqrt(k_mid * d_mid)))
-    del any_mid, d_mid, k_mid, t126
-    t127 = 1.0 / r_hub
+    uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) * t128)
+    us_mid = _runtime.select(any_mid, 0.0, t128 * (2.0 * np.sqrt(k_mid * d_mid)))
+    del any_mid, d_mid, k_mid, t128
+    t129 = 1.0 / r_hub
     del r_hub
-    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t26 * us_mid) * t127)
-    t128 = L2 * 0.00048828125 + L3 * 0.00048828125 + (d1 * 0.00048828125 + d4 * 0.00048828125)
-    t129 = d5 * 0.00048828125 + d6 * 0.00048828125 + t128
-    del t128
-    close = root1 * h_wrist - t129 <= t6
-    t130 = 1.0 / h_wrist
-    s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t130)
-    t131 = across - d5 * s_phi
-    c_phi = _runtime.select(aligned_wrist, 1.0, M_13 * t130)
+    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t26 * us_mid) * t129)
+    t130 = L2 * 0.00048828125 + L3 * 0.00048828125 + (d1 * 0.00048828125 + d4 * 0.00048828125)
+    t131 = d5 * 0.00048828125 + d6 * 0.00048828125 + t130
     del t130
-    t132 = t26 - d5 * c_phi
-    here = np.sqrt(t131 * t131 + t132 * t132)
-    del t131, t132
+    close = root1 * h_wrist - t131 <= t6
+    t132 = 1.0 / h_wrist
+    s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t132)
+    t133 = across - d5 * s_phi
+    c_phi = _runtime.select(aligned_wrist, 1.0, M_13 * t132)
+    del t132
+    t134 = t26 - d5 * c_phi
+    here = np.sqrt(t133 * t133 + t134 * t134)
+    del t133, t134
     in_reach = np.minimum(full_1_1, np.maximum(here, fold_1_1))
-    k_near = np.maximum(0.0, (t123 - in_reach) * (t123 + in_reach))
-    del t123
-    d_near = np.maximum(0.0, -((t124 - in_reach) * (t124 + in_reach)))
-    del t124
+    k_near = np.maximum(0.0, (t125 - in_reach) * (t125 + in_reach))
+    del t125
+    d_near = np.maximum(0.0, -((t126 - in_reach) * (t126 + in_reach)))
+    del t126
     n_near = k_near + d_near
-    any_near = n_near <= t125
-    t133 = 1.0 / n_near
+    any_near = n_near <= t127
+    t135 = 1.0 / n_near
     del n_near
-    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t133)
-    t134 = across * c_phi - t26 * s_phi
-    t135 = np.abs(t134)
-    side = _runtime.select(t135 <= t6, 1.0, -(t134 / t135))
-    del t134, t135
-    t136 = t133 * (2.0 * side * np.sqrt(k_near * d_near))
-    del d_near, k_near, side, t133
-    us_near = _runtime.select(any_near, 0.0, t136)
-    del any_near, t136
-    c_near = _runtime.select(hub_mid, 1.0, t127 * (across * uc_near + t26 * us_near))
-    t137 = s_phi - c_near
-    s_near = _runtime.select(hub_mid, 0.0, t127 * (across * us_near - t26 * uc_near))
+    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t135)
+    t136 = across * c_phi - t26 * s_phi
+    t137 = np.abs(t136)
+    side = _runtime.select(t137 <= t6, 1.0, -(t136 / t137))
+    del t136, t137
+    t138 = t135 * (2.0 * side * np.sqrt(k_near * d_near))
+    del d_near, k_near, side, t135
+    us_near = _runtime.select(any_near, 0.0, t138)
+    del any_near, t138
+    c_near = _runtime.select(hub_mid, 1.0, t129 * (across * uc_near + t26 * us_near))
+    t139 = s_phi - c_near
+    s_near = _runtime.select(hub_mid, 0.0, t129 * (across * us_near - t26 * uc_near))
     del uc_near, us_near
-    t138 = c_phi + s_near
-    t139 = h_wrist * np.sqrt(t137 * t137 + t138 * t138) - 2.2737367544323206e-13
-    del h_wrist, t137, t138
-    t140 = _runtime.VANISHING * 4.0
-    t141 = np.logical_not(np.abs(here - in_reach) <= t6)
+    t140 = c_phi + s_near
+    t141 = h_wrist * np.sqrt(t139 * t139 + t140 * t140) - 2.2737367544323206e-13
+    del h_wrist, t139, t140
+    t142 = _runtime.VANISHING * 4.0
+    t143 = np.logical_not(np.abs(here - in_reach) <= t6)
     del here, in_reach
-    t142 = (t139 <= t140) & t141
-    del t139, t141
-    t143 = _runtime.select(close, _runtime.select(t142, c_near, s_phi), s_phi)
+    t144 = (t141 <= t142) & t143
+    del t141, t143
+    t145 = _runtime.select(close, _runtime.select(t144, c_near, s_phi), s_phi)
     del c_near, s_phi
-    sphi = _runtime.select(aligned_wrist, c_mid, t143)
-    del c_mid, t143
-    t144 = across - d5 * sphi
-    s_mid = _runtime.select(hub_mid, 0.0, t127 * (across * us_mid - t26 * uc_mid))
-    del across, hub_mid, t127, uc_mid, us_mid
-    t145 = _runtime.select(close, _runtime.select(t142, -s_near, c_phi), c_phi)
-    del c_phi, close, s_near, t142
-    cphi = _runtime.select(aligned_wrist, -s_mid, t145)
-    del s_mid, t145
+    sphi = _runtime.select(aligned_wrist, c_mid, t145)
+    del c_mid, t145
+    t146 = across - d5 * sphi
+    s_mid = _runtime.select(hub_mid, 0.0, t129 * (across * us_mid - t26 * uc_mid))
+    del across, hub_mid, t129, uc_mid, us_mid
+    t147 = _runtime.select(close, _runtime.select(t144, -s_near, c_phi), c_phi)
+    del c_phi, close, s_near, t144
+    cphi = _runtime.select(aligned_wrist, -s_mid, t147)
+    del s_mid, t147
     ey = t26 - d5 * cphi
-    r_elbow = np.sqrt(t144 * t144 + ey * ey)
-    t146 = full_1_1 - r_elbow
-    t147 = t29 + r_elbow
-    t148 = r_elbow - t29
-    t149 = t121 & (t120 <= t146) & (t120 <= t147) & (t120 <= t148)
-    unreachable = np.logical_not(t149)
-    del t149
-    t150 = _runtime.poison(invalid | unreachable)
-    t151 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t150
+    r_elbow = np.sqrt(t146 * t146 + ey * ey)
+    t148 = full_1_1 - r_elbow
+    t149 = t29 + r_elbow
+    t150 = r_elbow - t29
+    t151 = t123 & (t122 <= t148) & (t122 <= t149) & (t122 <= t150)
+    unreachable = np.logical_not(t151)
+    del t151
+    t152 = _runtime.poison(invalid | unreachable)
+    t153 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t152
     folded_elbow = r_elbow <= t6
     no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1)
-    A_elbow = np.maximum(t146, 0.0)
-    del t146
-    C_elbow = np.maximum(t148, 0.0)
+    A_elbow = np.maximum(t148, 0.0)
     del t148
-    t152 = A_elbow * C_elbow
+    C_elbow = np.maximum(t150, 0.0)
+    del t150
+    t154 = A_elbow * C_elbow
     S_elbow = full_1_1 + r_elbow
-    B_elbow = np.maximum(t147, 0.0)
-    del t147
-    t153 = S_elbow * B_elbow
-    t154 = 1.0 / (t152 + t153)
-    c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t152 - t153) * t154))
-    t155 = 1.0 / r_elbow
+    B_elbow = np.maximum(t149, 0.0)
+    del t149
+    t155 = S_elbow * B_elbow
+    t156 = 1.0 / (t154 + t155)
+    c_base_elbow = _runtime.select(no_link_elbow, 1.0, -((t154 - t155) * t156))
+    t157 = 1.0 / r_elbow
     del r_elbow
-    t156 = ey * c_base_elbow * t155
-    area_elbow = 2.0 * np.sqrt(t152 * t153)
-    del t152, t153
-    s_base_elbow = _runtime.select(no_link_elbow, 0.0, t154 * area_elbow)
-    del t154
-    t157 = t155 * (t144 * s_base_elbow)
-    s2 = _runtime.select(folded_elbow, 0.0, t156 + t157)
-    t158 = t155 * (ey * s_base_elbow)
+    t158 = ey * c_base_elbow * t157
+    area_elbow = 2.0 * np.sqrt(t154 * t155)
+    del t154, t155
+    s_base_elbow = _runtime.select(no_link_elbow, 0.0, t156 * area_elbow)
+    del t156
+    t159 = t157 * (t146 * s_base_elbow)
+    s2 = _runtime.select(folded_elbow, 0.0, t158 + t159)
+    t160 = t157 * (ey * s_base_elbow)
     del ey, s_base_elbow
-    t159 = t155 * (t144 * c_base_elbow)
-    del c_base_elbow, t144, t155
-    c2 = _runtime.select(folded_elbow, 1.0, t158 - t159)
-    t160 = A_elbow * S_elbow
+    t161 = t157 * (t146 * c_base_elbow)
+    del c_base_elbow, t146, t157
+    c2 = _runtime.select(folded_elbow, 1.0, t160 - t161)
+    t162 = A_elbow * S_elbow
     del A_elbow, S_elbow
-    t161 = C_elbow * B_elbow
+    t163 = C_elbow * B_elbow
     del B_elbow, C_elbow
-    t162 = 1.0 / (t160 + t161)
-    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t162)
+    t164 = 1.0 / (t162 + t163)
+    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t164)
     del area_elbow
-    c3 = _runtime.select(no_link_elbow, 1.0, -(t162 * (t160 - t161)))
-    del t160, t161, t162
-    t163 = np.arctan2(s3, c3)
-    t164 = sphi * c2 - cphi * s2
-    t165 = cphi * c2 + sphi * s2
-    t166 = np.arctan2(c3 * t164 - s3 * t165, c3 * t165 + s3 * t164)
-    del t164, t165
-    t167 = np.arctan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1)
+    c3 = _runtime.select(no_link_elbow, 1.0, -(t164 * (t162 - t163)))
+    del t162, t163, t164
+    t165 = np.arctan2(s3, c3)
+    t166 = sphi * c2 - cphi * s2
+    t167 = cphi * c2 + sphi * s2
+    t168 = np.arctan2(c3 * t166 - s3 * t167, c3 * t167 + s3 * t166)
+    del t166, t167
+    t169 = np.arctan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1)
     del M_13
-    t168 = _runtime.wrap_cut(-t167) + t150
-    del t167
-    t169 = np.arctan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12 * c1 + T22 * s1))
-    del c1, s1
-    t170 = _runtime.wrap_cut(-t169) + t150
+    t170 = _runtime.wrap_cut(-t169) + t152
     del t169
-    s2_left_noflip_down = _runtime.select(folded_elbow, 0.0, t156 - t157)
-    del t156, t157
-    c2_left_noflip_down = _runtime.select(folded_elbow, 1.0, -(t159 + t158))
+    t171 = np.arctan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12 * c1 + T22 * s1))
+    del c1, s1
+    t172 = _runtime.wrap_cut(-t171) + t152
+    del t171
+    s2_left_noflip_down = _runtime.select(folded_elbow, 0.0, t158 - t159)
     del t158, t159
-    t171 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
-    t172 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
-    t173 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
+    c2_left_noflip_down = _runtime.select(folded_elbow, 1.0, -(t161 + t160))
+    del t160, t161
+    t173 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
+    t174 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
+    t175 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
     del c2_left_noflip_down, cphi, s2_left_noflip_down, sphi
-    t174 = np.arctan2(c3 * t172 + s3 * t173, c3 * t173 - s3 * t172)
-    del c3, s3, t172, t173
+    t176 = np.arctan2(c3 * t174 + s3 * t175, c3 * t175 - s3 * t174)
+    del c3, s3, t174, t175
     x_1_1_left_flip_up = _runtime.select(t21, qx_1_1, qx_1_1 + t23)
     del qx_1_1, t23
     dx_1_1_left_flip_up = _runtime.select(t21, dqx_1_1, dqx_1_1 - t25)
     del dqx_1_1, t25
-    t175 = _runtime.select(t21, t26, t26 + t27)
+    t177 = _runtime.select(t21, t26, t26 + t27)
     del t21, t27
-    slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t175
+    slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t177
     del dy_1_1
-    t176 = slope_1_1_left_flip_up * slope_1_1_left_flip_up
-    square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t175 * t175
-    del t175, x_1_1_left_flip_up
-    t177 = np.minimum(high_1_1, square_1_1_left_flip_up)
+    t178 = slope_1_1_left_flip_up * slope_1_1_left_flip_up
+    square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t177 * t177
+    del t177, x_1_1_left_flip_up
+    t179 = np.minimum(high_1_1, square_1_1_left_flip_up)
     del high_1_1
-    miss_1_1_left_flip_up = square_1_1_left_flip_up - np.maximum(low_1_1, t177)
-    del low_1_1, square_1_1_left_flip_up, t177
+    miss_1_1_left_flip_up = square_1_1_left_flip_up - np.maximum(low_1_1, t179)
+    del low_1_1, square_1_1_left_flip_up, t179
     bend_1_1_left_flip_up = t32 + dx_1_1_left_flip_up * dx_1_1_left_flip_up
     del dx_1_1_left_flip_up, t32
-    t178 = miss_1_1_left_flip_up * bend_1_1_left_flip_up
-    inner_1_1_left_flip_up = t176 - t178
-    del t176, t178
-    t179 = slope_1_1_left_flip_up / (2.0 * bend_1_1_left_flip_up)
+    t180 = miss_1_1_left_flip_up * bend_1_1_left_flip_up
+    inner_1_1_left_flip_up = t178 - t180
+    del t178, t180
+    t181 = slope_1_1_left_flip_up / (2.0 * bend_1_1_left_flip_up)
     del bend_1_1_left_flip_up
-    t180 = np.sqrt(np.maximum(0.0, inner_1_1_left_flip_up))
-    outer_1_1_left_flip_up = slope_1_1_left_flip_up + _runtime.sign(slope_1_1_left_flip_up) * t180
-    del slope_1_1_left_flip_up, t180
-    t181 = miss_1_1_left_flip_up / (2.0 * outer_1_1_left_flip_up)
-    del miss_1_1_left_flip_up, outer_1_1_left_flip_up
-    t182 = _runtime.select(inner_1_1_left_flip_up < 0.0, t179, t181)
-    del inner_1_1_left_flip_up, t179, t181
-    t183 = t182 * t182
-    t184 = 1.0 / (1.0 + t183)
-    t185 = 2.0 * t182 * t184
-    del t182
-    by_c_1_1_left_flip_up = t184 * (1.0 - t183)
-    del t183, t184
-    t186 = d4 * (t185 * t185) / (1.0 + np.abs(by_c_1_1_left_flip_up))
-    t187 = (t186 + root1 * np.abs(t185) <= whole_1_1) & (0.0 < by_c_1_1_left_flip_up)
-    del t186
-    cosine_1_1_left_flip_up = _runtime.select(t187, by_c_1_1_left_flip_up, 1.0)
+    t182 = np.sqrt(np.maximum(0.0, inner_1_1_left_flip_up))
+    outer_1_1_left_flip_up = slope_1_1_left_flip_up + _runtime.sign(slope_1_1_left_flip_up) * t182
+    del slope_1_1_left_flip_up, t182
+    t183 = miss_1_1_left_flip_up / (2.0 * outer_1_1_left_flip_up)
+    del miss_1_1_left_flip_up
+    t184 = _runtime.select(outer_1_1_left_flip_up == 0.0, 0.0, t183)
+    del outer_1_1_left_flip_up, t183
+    t185 = _runtime.select(inner_1_1_left_flip_up < 0.0, t181, t184)
+    del inner_1_1_left_flip_up, t181, t184
+    t186 = t185 * t185
+    t187 = 1.0 / (1.0 + t186)
+    t188 = 2.0 * t185 * t187
+    del t185
+    by_c_1_1_left_flip_up = t187 * (1.0 - t186)
+    del t186, t187
+    t189 = d4 * (t188 * t188) / (1.0 + np.abs(by_c_1_1_left_flip_up))
+    t190 = (t189 + root1 * np.abs(t188) <= whole_1_1) & (0.0 < by_c_1_1_left_flip_up)
+    del t189
+    cosine_1_1_left_flip_up = _runtime.select(t190, by_c_1_1_left_flip_up, 1.0)
     del by_c_1_1_left_flip_up
-    sine_1_1_left_flip_up = _runtime.select(t187, -t185, 0.0)
-    del t185, t187
+    sine_1_1_left_flip_up = _runtime.select(t190, -t188, 0.0)
+    del t188, t190
     c_1_1_2_left_flip_up = c_1_1 * cosine_1_1_left_flip_up + t19 * sine_1_1_left_flip_up
     s_1_1_2_left_flip_up = c_1_1 * sine_1_1_left_flip_up - t19 * cosine_1_1_left_flip_up
     del cosine_1_1_left_flip_up, sine_1_1_left_flip_up
     axisx_1_1_2_left_flip_up = T13 * c_1_1_2_left_flip_up + T23 * s_1_1_2_left_flip_up
-    t188 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up
-    t189 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up
-    most_1_1_2_left_flip_up = np.sqrt(t188 + t189 * t189)
+    t191 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up
+    t192 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up
+    most_1_1_2_left_flip_up = np.sqrt(t191 + t192 * t192)
     qx_1_1_2_left_flip_up = w_x * c_1_1_2_left_flip_up + w_y * s_1_1_2_left_flip_up
-    t190 = qx_1_1_2_left_flip_up * qx_1_1_2_left_flip_up
-    r_1_1_2_left_flip_up = np.sqrt(t44 + t190)
-    del t190
-    t191 = r_1_1_2_left_flip_up <= t47
-    t192 = d5 + r_1_1_2_left_flip_up
-    t193 = 1.0 / np.sqrt(t16 + t188)
-    del t188
-    t194 = T33 * t193
-    t195 = qx_1_1_2_left_flip_up + d5 * t194
-    us_1_1_2_left_flip_up = axisx_1_1_2_left_flip_up * t193
+    t193 = qx_1_1_2_left_flip_up * qx_1_1_2_left_flip_up
+    r_1_1_2_left_flip_up = np.sqrt(t45 + t193)
     del t193
-    t196 = t26 + d5 * us_1_1_2_left_flip_up
-    there_1_1_2_left_flip_up = np.sqrt(t195 * t195 + t196 * t196)
-    del t195, t196
-    t197 = np.maximum(there_1_1_2_left_flip_up, fold_1_1)
-    goal_1_1_2_left_flip_up = np.minimum(full_1_1, t197)
-    del t197
-    t198 = (t192 - goal_1_1_2_left_flip_up) * (t192 + goal_1_1_2_left_flip_up)
-    del t192
-    k_v_1_1_2_left_flip_up = np.maximum(0.0, t198)
-    del t198
-    t199 = d5 - r_1_1_2_left_flip_up
-    t200 = (goal_1_1_2_left_flip_up - t199) * (goal_1_1_2_left_flip_up + t199)
-    del t199
-    d_v_1_1_2_left_flip_up = np.maximum(0.0, t200)
+    t194 = r_1_1_2_left_flip_up <= t48
+    t195 = d5 + r_1_1_2_left_flip_up
+    t196 = 1.0 / np.sqrt(t16 + t191)
+    del t191
+    t197 = T33 * t196
+    t198 = qx_1_1_2_left_flip_up + d5 * t197
+    us_1_1_2_left_flip_up = axisx_1_1_2_left_flip_up * t196
+    del t196
+    t199 = t26 + d5 * us_1_1_2_left_flip_up
+    there_1_1_2_left_flip_up = np.sqrt(t198 * t198 + t199 * t199)
+    del t198, t199
+    t200 = np.maximum(there_1_1_2_left_flip_up, fold_1_1)
+    goal_1_1_2_left_flip_up = np.minimum(full_1_1, t200)
     del t200
-    n_v_1_1_2_left_flip_up = k_v_1_1_2_left_flip_up + d_v_1_1_2_left_flip_up
-    t201 = n_v_1_1_2_left_flip_up <= t56
-    t202 = k_v_1_1_2_left_flip_up - d_v_1_1_2_left_flip_up
-    t203 = 1.0 / n_v_1_1_2_left_flip_up
-    del n_v_1_1_2_left_flip_up
-    uc_v_1_1_2_left_flip_up = _runtime.select(t201, 1.0, t202 * t203)
+    t201 = (t195 - goal_1_1_2_left_flip_up) * (t195 + goal_1_1_2_left_flip_up)
+    del t195
+    k_v_1_1_2_left_flip_up = np.maximum(0.0, t201)
+    del t201
+    t202 = d5 - r_1_1_2_left_flip_up
+    t203 = (goal_1_1_2_left_flip_up - t202) * (goal_1_1_2_left_flip_up + t202)
     del t202
-    t204 = qx_1_1_2_left_flip_up * uc_v_1_1_2_left_flip_up
-    t205 = qx_1_1_2_left_flip_up * us_1_1_2_left_flip_up
+    d_v_1_1_2_left_flip_up = np.maximum(0.0, t203)
+    del t203
+    n_v_1_1_2_left_flip_up = k_v_1_1_2_left_flip_up + d_v_1_1_2_left_flip_up
+    t204 = n_v_1_1_2_left_flip_up <= t57
+    t205 = k_v_1_1_2_left_flip_up - d_v_1_1_2_left_flip_up
+    t206 = 1.0 / n_v_1_1_2_left_flip_up
+    del n_v_1_1_2_left_flip_up
+    uc_v_1_1_2_left_flip_up = _runtime.select(t204, 1.0, t205 * t206)
+    del t205
+    t207 = qx_1_1_2_left_flip_up * uc_v_1_1_2_left_flip_up
+    t208 = qx_1_1_2_left_flip_up * us_1_1_2_left_flip_up
     del us_1_1_2_left_flip_up
-    t206 = k_v_1_1_2_left_flip_up * d_v_1_1_2_left_flip_up
+    t209 = k_v_1_1_2_left_flip_up * d_v_1_1_2_left_flip_up
     del d_v_1_1_2_left_flip_up, k_v_1_1_2_left_flip_up
-    t207 = 2.0 * _runtime.sign(t205 - t26 * t194) * np.sqrt(t206)
-    del t194, t205, t206
-    us_v_1_1_2_left_flip_up = _runtime.select(t201, 0.0, t203 * t207)
-    del t201, t203, t207
-    t208 = t26 * us_v_1_1_2_left_flip_up
-    t209 = 1.0 / r_1_1_2_left_flip_up
+    t210 = 2.0 * _runtime.sign(t208 - t26 * t197) * np.sqrt(t209)
+    del t197, t208, t209
+    us_v_1_1_2_left_flip_up = _runtime.select(t204, 0.0, t206 * t210)
+    del t204, t206, t210
+    t211 = t26 * us_v_1_1_2_left_flip_up
+    t212 = 1.0 / r_1_1_2_left_flip_up
     del r_1_1_2_left_flip_up
-    c_v_1_1_2_left_flip_up = _runtime.select(t191, 1.0, (t204 + t208) * t209)
-    t210 = -(T33 * c_v_1_1_2_left_flip_up) < 0.0
-    t211 = qx_1_1_2_left_flip_up * us_v_1_1_2_left_flip_up
+    c_v_1_1_2_left_flip_up = _runtime.select(t194, 1.0, (t207 + t211) * t212)
+    t213 = -(T33 * c_v_1_1_2_left_flip_up) < 0.0
+    t214 = qx_1_1_2_left_flip_up * us_v_1_1_2_left_flip_up
     del qx_1_1_2_left_flip_up, us_v_1_1_2_left_flip_up
-    t212 = t26 * uc_v_1_1_2_left_flip_up
+    t215 = t26 * uc_v_1_1_2_left_flip_up
     del uc_v_1_1_2_left_flip_up
-    wc_1_1_2_left_flip_up = _runtime.select(t191, 0.0, t209 * (t211 + t212))
-    s_v_1_1_2_left_flip_up = _runtime.select(t191, 0.0, t209 * (t211 - t212))
-    del t211, t212
-    to_c_1_1_2_left_flip_up = _runtime.select(t210, wc_1_1_2_left_flip_up, -s_v_1_1_2_left_flip_up)
+    wc_1_1_2_left_flip_up = _runtime.select(t194, 0.0, t212 * (t214 + t215))
+    s_v_1_1_2_left_flip_up = _runtime.select(t194, 0.0, t212 * (t214 - t215))
+    del t214, t215
+    to_c_1_1_2_left_flip_up = _runtime.select(t213, wc_1_1_2_left_flip_up, -s_v_1_1_2_left_flip_up)
     del s_v_1_1_2_left_flip_up, wc_1_1_2_left_flip_up
-    c_w_1_1_2_left_flip_up = _runtime.select(t191, 1.0, t209 * (t204 - t208))
-    del t191, t204, t208, t209
-    to_s_1_1_2_left_flip_up = _runtime.select(t210, c_w_1_1_2_left_flip_up, c_v_1_1_2_left_flip_up)
-    del c_v_1_1_2_left_flip_up, c_w_1_1_2_left_flip_up, t210
-    t213 = T33 * to_c_1_1_2_left_flip_up / to_s_1_1_2_left_flip_up
+    c_w_1_1_2_left_flip_up = _runtime.select(t194, 1.0, t212 * (t207 - t211))
+    del t194, t207, t211, t212
+    to_s_1_1_2_left_flip_up = _runtime.select(t213, c_w_1_1_2_left_flip_up, c_v_1_1_2_left_flip_up)
+    del c_v_1_1_2_left_flip_up, c_w_1_1_2_left_flip_up, t213
+    t216 = T33 * to_c_1_1_2_left_flip_up / to_s_1_1_2_left_flip_up
     del to_c_1_1_2_left_flip_up, to_s_1_1_2_left_flip_up
-    t214 = np.minimum(most_1_1_2_left_flip_up, _runtime.select(t43, 0.0, t213))
-    del t213
-    kept_1_1_2_left_flip_up = np.maximum(-most_1_1_2_left_flip_up, t214)
-    del t214
-    t215 = most_1_1_2_left_flip_up - kept_1_1_2_left_flip_up
-    t216 = most_1_1_2_left_flip_up + kept_1_1_2_left_flip_up
-    rest_1_1_2_left_flip_up = np.sqrt(t215 * t216) * _runtime.sign(-t189)
-    del t215, t216
-    t217 = axisx_1_1_2_left_flip_up * rest_1_1_2_left_flip_up
-    t218 = most_1_1_2_left_flip_up * most_1_1_2_left_flip_up
-    del most_1_1_2_left_flip_up
-    t219 = 1.0 / t218
-    del t218
-    t220 = (t217 + t189 * kept_1_1_2_left_flip_up) * t219
+    t217 = np.minimum(most_1_1_2_left_flip_up, _runtime.select(t44, 0.0, t216))
+    del t216
+    kept_1_1_2_left_flip_up = np.maximum(-most_1_1_2_left_flip_up, t217)
     del t217
-    t221 = axisx_1_1_2_left_flip_up * kept_1_1_2_left_flip_up
+    t218 = most_1_1_2_left_flip_up - kept_1_1_2_left_flip_up
+    t219 = most_1_1_2_left_flip_up + kept_1_1_2_left_flip_up
+    rest_1_1_2_left_flip_up = np.sqrt(t218 * t219) * _runtime.sign(-t192)
+    del t218, t219
+    t220 = axisx_1_1_2_left_flip_up * rest_1_1_2_left_flip_up
+    t221 = most_1_1_2_left_flip_up * most_1_1_2_left_flip_up
+    del most_1_1_2_left_flip_up
+    t222 = 1.0 / t221
+    del t221
+    t223 = (t220 + t192 * kept_1_1_2_left_flip_up) * t222
+    del t220
+    t224 = axisx_1_1_2_left_flip_up * kept_1_1_2_left_flip_up
     del axisx_1_1_2_left_flip_up, kept_1_1_2_left_flip_up
-    by_c_1_1_2_left_flip_up = t219 * (t221 - t189 * rest_1_1_2_left_flip_up)
-    del rest_1_1_2_left_flip_up, t189, t219, t221
-    t222 = d4 * (t220 * t220) / (1.0 + np.abs(by_c_1_1_2_left_flip_up))
-    t223 = (t222 + root1 * np.abs(t220) <= whole_1_1) & (0.0 < by_c_1_1_2_left_flip_up)
-    del t222
-    t224 = there_1_1_2_left_flip_up - goal_1_1_2_left_flip_up
+    by_c_1_1_2_left_flip_up = t222 * (t224 - t192 * rest_1_1_2_left_flip_up)
+    del rest_1_1_2_left_flip_up, t192, t222, t224
+    t225 = d4 * (t223 * t223) / (1.0 + np.abs(by_c_1_1_2_left_flip_up))
+    t226 = (t225 + root1 * np.abs(t223) <= whole_1_1) & (0.0 < by_c_1_1_2_left_flip_up)
+    del t225
+    t227 = there_1_1_2_left_flip_up - goal_1_1_2_left_flip_up
     del goal_1_1_2_left_flip_up, there_1_1_2_left_flip_up
-    t225 = t223 & (t47 < np.abs(t224))
-    del t223, t224
-    cosine_1_1_2_left_flip_up = _runtime.select(t225, by_c_1_1_2_left_flip_up, 1.0)
-    del by_c_1_1_2_left_flip_up
-    t226 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
-    sine_1_1_2_left_flip_up = _runtime.select(t225, -t220, 0.0)
-    del t220, t225
-    t227 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
-    c_1_1_2_3_left_flip_up = t226 - t227
+    t228 = t226 & (t48 < np.abs(t227))
     del t226, t227
-    t228 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
+    cosine_1_1_2_left_flip_up = _runtime.select(t228, by_c_1_1_2_left_flip_up, 1.0)
+    del by_c_1_1_2_left_flip_up
+    t229 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
+    sine_1_1_2_left_flip_up = _runtime.select(t228, -t223, 0.0)
+    del t223, t228
+    t230 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
+    c_1_1_2_3_left_flip_up = t229 - t230
+    del t229, t230
+    t231 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
     del c_1_1_2_left_flip_up, sine_1_1_2_left_flip_up
-    t229 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
+    t232 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
     del cosine_1_1_2_left_flip_up, s_1_1_2_left_flip_up
-    s_1_1_2_3_left_flip_up = t228 + t229
-    del t228, t229
+    s_1_1_2_3_left_flip_up = t231 + t232
+    del t231, t232
     axisx_1_1_2_3_left_flip_up = T13 * c_1_1_2_3_left_flip_up + T23 * s_1_1_2_3_left_flip_up
-    t230 = axisx_1_1_2_3_left_flip_up * axisx_1_1_2_3_left_flip_up
-    h_1_1_2_3_left_flip_up = np.sqrt(t16 + t230)
-    del t230
-    t231 = size_1_1 * h_1_1_2_3_left_flip_up <= t20
+    t233 = axisx_1_1_2_3_left_flip_up * axisx_1_1_2_3_left_flip_up
+    h_1_1_2_3_left_flip_up = np.sqrt(t16 + t233)
+    del t233
+    t234 = size_1_1 * h_1_1_2_3_left_flip_up <= t20
     qx_1_1_2_3_left_flip_up = w_x * c_1_1_2_3_left_flip_up + w_y * s_1_1_2_3_left_flip_up
-    t232 = 1.0 / h_1_1_2_3_left_flip_up
-    t233 = T33 * t232
-    x_1_1_2_3_left_flip_up = _runtime.select(t231, qx_1_1_2_3_left_flip_up, qx_1_1_2_3_left_flip_up + d5 * t233)
+    t235 = 1.0 / h_1_1_2_3_left_flip_up
+    t236 = T33 * t235
+    x_1_1_2_3_left_flip_up = _runtime.select(t234, qx_1_1_2_3_left_flip_up, qx_1_1_2_3_left_flip_up + d5 * t236)
     del qx_1_1_2_3_left_flip_up
     dqx_1_1_2_3_left_flip_up = w_y * c_1_1_2_3_left_flip_up - w_x * s_1_1_2_3_left_flip_up
-    us_1_1_2_3_left_flip_up = axisx_1_1_2_3_left_flip_up * t232
-    del axisx_1_1_2_3_left_flip_up, t232
-    t234 = T13 * s_1_1_2_3_left_flip_up - T23 * c_1_1_2_3_left_flip_up
-    t235 = h_1_1_2_3_left_flip_up * h_1_1_2_3_left_flip_up
+    us_1_1_2_3_left_flip_up = axisx_1_1_2_3_left_flip_up * t235
+    del axisx_1_1_2_3_left_flip_up, t235
+    t237 = T13 * s_1_1_2_3_left_flip_up - T23 * c_1_1_2_3_left_flip_up
+    t238 = h_1_1_2_3_left_flip_up * h_1_1_2_3_left_flip_up
     del h_1_1_2_3_left_flip_up
-    rate_1_1_2_3_left_flip_up = d5 * (T33 * t234) / t235
-    del t234, t235
-    t236 = us_1_1_2_3_left_flip_up * rate_1_1_2_3_left_flip_up
-    dx_1_1_2_3_left_flip_up = _runtime.select(t231, dqx_1_1_2_3_left_flip_up, dqx_1_1_2_3_left_flip_up + t236)
-    del dqx_1_1_2_3_left_flip_up, t236
-    t237 = x_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
-    t238 = _runtime.select(t231, t26, t26 + d5 * us_1_1_2_3_left_flip_up)
+    rate_1_1_2_3_left_flip_up = d5 * (T33 * t237) / t238
+    del t237, t238
+    t239 = us_1_1_2_3_left_flip_up * rate_1_1_2_3_left_flip_up
+    dx_1_1_2_3_left_flip_up = _runtime.select(t234, dqx_1_1_2_3_left_flip_up, dqx_1_1_2_3_left_flip_up + t239)
+    del dqx_1_1_2_3_left_flip_up, t239
+    t240 = x_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
+    t241 = _runtime.select(t234, t26, t26 + d5 * us_1_1_2_3_left_flip_up)
     del us_1_1_2_3_left_flip_up
-    dy_1_1_2_3_left_flip_up = _runtime.select(t231, 0.0, t233 * rate_1_1_2_3_left_flip_up)
-    del rate_1_1_2_3_left_flip_up, t233
-    slope_1_1_2_3_left_flip_up = t237 - t238 * dy_1_1_2_3_left_flip_up
-    del t237
-    t239 = slope_1_1_2_3_left_flip_up * slope_1_1_2_3_left_flip_up
-    t240 = x_1_1_2_3_left_flip_up * x_1_1_2_3_left_flip_up
+    dy_1_1_2_3_left_flip_up = _runtime.select(t234, 0.0, t236 * rate_1_1_2_3_left_flip_up)
+    del rate_1_1_2_3_left_flip_up, t236
+    slope_1_1_2_3_left_flip_up = t240 - t241 * dy_1_1_2_3_left_flip_up
+    del t240
+    t242 = slope_1_1_2_3_left_flip_up * slope_1_1_2_3_left_flip_up
+    t243 = x_1_1_2_3_left_flip_up * x_1_1_2_3_left_flip_up
     del x_1_1_2_3_left_flip_up
-    square_1_1_2_3_left_flip_up = t240 + t238 * t238
-    del t238, t240
-    nearest_1_1_2_3_left_flip_up = _runtime.select(t231, t30, fold_1_1)
+    square_1_1_2_3_left_flip_up = t243 + t241 * t241
+    del t241, t243
+    nearest_1_1_2_3_left_flip_up = _runtime.select(t234, t30, fold_1_1)
     low_1_1_2_3_left_flip_up = nearest_1_1_2_3_left_flip_up * nearest_1_1_2_3_left_flip_up
     del nearest_1_1_2_3_left_flip_up
-    farthest_1_1_2_3_left_flip_up = _runtime.select(t231, t5, full_1_1)
-    del t231
+    farthest_1_1_2_3_left_flip_up = _runtime.select(t234, t5, full_1_1)
+    del t234
     high_1_1_2_3_left_flip_up = farthest_1_1_2_3_left_flip_up * farthest_1_1_2_3_left_flip_up
     del farthest_1_1_2_3_left_flip_up
-    t241 = np.minimum(high_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up)
+    t244 = np.minimum(high_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up)
     del high_1_1_2_3_left_flip_up
-    miss_1_1_2_3_left_flip_up = square_1_1_2_3_left_flip_up - np.maximum(low_1_1_2_3_left_flip_up, t241)
-    del low_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up, t241
-    t242 = dx_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
+    miss_1_1_2_3_left_flip_up = square_1_1_2_3_left_flip_up - np.maximum(low_1_1_2_3_left_flip_up, t244)
+    del low_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up, t244
+    t245 = dx_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
     del dx_1_1_2_3_left_flip_up
-    t243 = dy_1_1_2_3_left_flip_up * dy_1_1_2_3_left_flip_up
+    t246 = dy_1_1_2_3_left_flip_up * dy_1_1_2_3_left_flip_up
     del dy_1_1_2_3_left_flip_up
-    bend_1_1_2_3_left_flip_up = t242 + t243
-    del t242, t243
-    t244 = miss_1_1_2_3_left_flip_up * bend_1_1_2_3_left_flip_up
-    inner_1_1_2_3_left_flip_up = t239 - t244
-    del t239, t244
-    t245 = slope_1_1_2_3_left_flip_up / (2.0 * bend_1_1_2_3_left_flip_up)
+    bend_1_1_2_3_left_flip_up = t245 + t246
+    del t245, t246
+    t247 = miss_1_1_2_3_left_flip_up * bend_1_1_2_3_left_flip_up
+    inner_1_1_2_3_left_flip_up = t242 - t247
+    del t242, t247
+    t248 = slope_1_1_2_3_left_flip_up / (2.0 * bend_1_1_2_3_left_flip_up)
     del bend_1_1_2_3_left_flip_up
-    t246 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_left_flip_up))
-    t247 = _runtime.sign(slope_1_1_2_3_left_flip_up) * t246
-    del t246
-    t248 = miss_1_1_2_3_left_flip_up / (2.0 * (slope_1_1_2_3_left_flip_up + t247))
-    del miss_1_1_2_3_left_flip_up, slope_1_1_2_3_left_flip_up, t247
-    t249 = _runtime.select(inner_1_1_2_3_left_flip_up < 0.0, t245, t248)
-    del inner_1_1_2_3_left_flip_up, t245, t248
-    t250 = t249 * t249
-    t251 = 1.0 / (1.0 + t250)
-    t252 = 2.0 * t249 * t251
+    t249 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_left_flip_up))
+    t250 = _runtime.sign(slope_1_1_2_3_left_flip_up) * t249
     del t249
-    by_c_1_1_2_3_left_flip_up = t251 * (1.0 - t250)
-    del t250, t251
-    t253 = d4 * (t252 * t252) / (1.0 + np.abs(by_c_1_1_2_3_left_flip_up))
-    t254 = (t253 + root1 * np.abs(t252) <= whole_1_1) & (0.0 < by_c_1_1_2_3_left_flip_up)
+    outer_1_1_2_3_left_flip_up = slope_1_1_2_3_left_flip_up + t250
+    del slope_1_1_2_3_left_flip_up, t250
+    t251 = miss_1_1_2_3_left_flip_up / (2.0 * outer_1_1_2_3_left_flip_up)
+    del miss_1_1_2_3_left_flip_up
+    t252 = _runtime.select(outer_1_1_2_3_left_flip_up == 0.0, 0.0, t251)
+    del outer_1_1_2_3_left_flip_up, t251
+    t253 = _runtime.select(inner_1_1_2_3_left_flip_up < 0.0, t248, t252)
+    del inner_1_1_2_3_left_flip_up, t248, t252
+    t254 = t253 * t253
+    t255 = 1.0 / (1.0 + t254)
+    t256 = 2.0 * t253 * t255
     del t253
-    cosine_1_1_2_3_left_flip_up = _runtime.select(t254, by_c_1_1_2_3_left_flip_up, 1.0)
+    by_c_1_1_2_3_left_flip_up = t255 * (1.0 - t254)
+    del t254, t255
+    t257 = d4 * (t256 * t256) / (1.0 + np.abs(by_c_1_1_2_3_left_flip_up))
+    t258 = (t257 + root1 * np.abs(t256) <= whole_1_1) & (0.0 < by_c_1_1_2_3_left_flip_up)
+    del t257
+    cosine_1_1_2_3_left_flip_up = _runtime.select(t258, by_c_1_1_2_3_left_flip_up, 1.0)
     del by_c_1_1_2_3_left_flip_up
-    t255 = c_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
-    sine_1_1_2_3_left_flip_up = _runtime.select(t254, -t252, 0.0)
-    del t252, t254
-    t256 = s_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
-    c_1_1_2_3_4_left_flip_up = t255 - t256
-    del t255, t256
-    t257 = c_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
+    t259 = c_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
+    sine_1_1_2_3_left_flip_up = _runtime.select(t258, -t256, 0.0)
+    del t256, t258
+    t260 = s_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
+    c_1_1_2_3_4_left_flip_up = t259 - t260
+    del t259, t260
+    t261 = c_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
     del c_1_1_2_3_left_flip_up, sine_1_1_2_3_left_flip_up
-    t258 = s_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
+    t262 = s_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
     del cosine_1_1_2_3_left_flip_up, s_1_1_2_3_left_flip_up
-    s_1_1_2_3_4_left_flip_up = t257 + t258
-    del t257, t258
+    s_1_1_2_3_4_left_flip_up = t261 + t262
+    del t261, t262
     axisx_1_1_2_3_4_left_flip_up = T13 * c_1_1_2_3_4_left_flip_up + T23 * s_1_1_2_3_4_left_flip_up
-    t259 = axisx_1_1_2_3_4_left_flip_up * axisx_1_1_2_3_4_left_flip_up
-    h_1_1_2_3_4_left_flip_up = np.sqrt(t16 + t259)
-    del t259
-    t260 = size_1_1 * h_1_1_2_3_4_left_flip_up <= t20
+    t263 = axisx_1_1_2_3_4_left_flip_up * axisx_1_1_2_3_4_left_flip_up
+    h_1_1_2_3_4_left_flip_up = np.sqrt(t16 + t263)
+    del t263
+    t264 = size_1_1 * h_1_1_2_3_4_left_flip_up <= t20
     qx_1_1_2_3_4_left_flip_up = w_x * c_1_1_2_3_4_left_flip_up + w_y * s_1_1_2_3_4_left_flip_up
-    t261 = 1.0 / h_1_1_2_3_4_left_flip_up
-    t262 = T33 * t261
-    x_1_1_2_3_4_left_flip_up = _runtime.select(t260, qx_1_1_2_3_4_left_flip_up, qx_1_1_2_3_4_left_flip_up + d5 * t262)
+    t265 = 1.0 / h_1_1_2_3_4_left_flip_up
+    t266 = T33 * t265
+    x_1_1_2_3_4_left_flip_up = _runtime.select(t264, qx_1_1_2_3_4_left_flip_up, qx_1_1_2_3_4_left_flip_up + d5 * t266)
     del qx_1_1_2_3_4_left_flip_up
     dqx_1_1_2_3_4_left_flip_up = w_y * c_1_1_2_3_4_left_flip_up - w_x * s_1_1_2_3_4_left_flip_up
-    us_1_1_2_3_4_left_flip_up = axisx_1_1_2_3_4_left_flip_up * t261
-    del axisx_1_1_2_3_4_left_flip_up, t261
-    t263 = T13 * s_1_1_2_3_4_left_flip_up - T23 * c_1_1_2_3_4_left_flip_up
-    t264 = h_1_1_2_3_4_left_flip_up * h_1_1_2_3_4_left_flip_up
+    us_1_1_2_3_4_left_flip_up = axisx_1_1_2_3_4_left_flip_up * t265
+    del axisx_1_1_2_3_4_left_flip_up, t265
+    t267 = T13 * s_1_1_2_3_4_left_flip_up - T23 * c_1_1_2_3_4_left_flip_up
+    t268 = h_1_1_2_3_4_left_flip_up * h_1_1_2_3_4_left_flip_up
     del h_1_1_2_3_4_left_flip_up
-    rate_1_1_2_3_4_left_flip_up = d5 * (T33 * t263) / t264
-    del t263, t264
-    t265 = us_1_1_2_3_4_left_flip_up * rate_1_1_2_3_4_left_flip_up
-    dx_1_1_2_3_4_left_flip_up = _runtime.select(t260, dqx_1_1_2_3_4_left_flip_up, dqx_1_1_2_3_4_left_flip_up + t265)
-    del dqx_1_1_2_3_4_left_flip_up, t265
-    t266 = x_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
-    t267 = _runtime.select(t260, t26, t26 + d5 * us_1_1_2_3_4_left_flip_up)
+    rate_1_1_2_3_4_left_flip_up = d5 * (T33 * t267) / t268
+    del t267, t268
+    t269 = us_1_1_2_3_4_left_flip_up * rate_1_1_2_3_4_left_flip_up
+    dx_1_1_2_3_4_left_flip_up = _runtime.select(t264, dqx_1_1_2_3_4_left_flip_up, dqx_1_1_2_3_4_left_flip_up + t269)
+    del dqx_1_1_2_3_4_left_flip_up, t269
+    t270 = x_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
+    t271 = _runtime.select(t264, t26, t26 + d5 * us_1_1_2_3_4_left_flip_up)
     del us_1_1_2_3_4_left_flip_up
-    dy_1_1_2_3_4_left_flip_up = _runtime.select(t260, 0.0, t262 * rate_1_1_2_3_4_left_flip_up)
-    del rate_1_1_2_3_4_left_flip_up, t262
-    slope_1_1_2_3_4_left_flip_up = t266 - t267 * dy_1_1_2_3_4_left_flip_up
-    del t266
-    t268 = slope_1_1_2_3_4_left_flip_up * slope_1_1_2_3_4_left_flip_up
-    t269 = x_1_1_2_3_4_left_flip_up * x_1_1_2_3_4_left_flip_up
+    dy_1_1_2_3_4_left_flip_up = _runtime.select(t264, 0.0, t266 * rate_1_1_2_3_4_left_flip_up)
+    del rate_1_1_2_3_4_left_flip_up, t266
+    slope_1_1_2_3_4_left_flip_up = t270 - t271 * dy_1_1_2_3_4_left_flip_up
+    del t270
+    t272 = slope_1_1_2_3_4_left_flip_up * slope_1_1_2_3_4_left_flip_up
+    t273 = x_1_1_2_3_4_left_flip_up * x_1_1_2_3_4_left_flip_up
     del x_1_1_2_3_4_left_flip_up
-    square_1_1_2_3_4_left_flip_up = t269 + t267 * t267
-    del t267, t269
-    nearest_1_1_2_3_4_left_flip_up = _runtime.select(t260, t30, fold_1_1)
+    square_1_1_2_3_4_left_flip_up = t273 + t271 * t271
+    del t271, t273
+    nearest_1_1_2_3_4_left_flip_up = _runtime.select(t264, t30, fold_1_1)
     low_1_1_2_3_4_left_flip_up = nearest_1_1_2_3_4_left_flip_up * nearest_1_1_2_3_4_left_flip_up
     del nearest_1_1_2_3_4_left_flip_up
-    farthest_1_1_2_3_4_left_flip_up = _runtime.select(t260, t5, full_1_1)
-    del t260
+    farthest_1_1_2_3_4_left_flip_up = _runtime.select(t264, t5, full_1_1)
+    del t264
     high_1_1_2_3_4_left_flip_up = farthest_1_1_2_3_4_left_flip_up * farthest_1_1_2_3_4_left_flip_up
     del farthest_1_1_2_3_4_left_flip_up
-    t270 = np.minimum(high_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up)
+    t274 = np.minimum(high_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up)
     del high_1_1_2_3_4_left_flip_up
-    miss_1_1_2_3_4_left_flip_up = square_1_1_2_3_4_left_flip_up - np.maximum(low_1_1_2_3_4_left_flip_up, t270)
-    del low_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up, t270
-    t271 = dx_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
+    miss_1_1_2_3_4_left_flip_up = square_1_1_2_3_4_left_flip_up - np.maximum(low_1_1_2_3_4_left_flip_up, t274)
+    del low_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up, t274
+    t275 = dx_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
     del dx_1_1_2_3_4_left_flip_up
-    t272 = dy_1_1_2_3_4_left_flip_up * dy_1_1_2_3_4_left_flip_up
+    t276 = dy_1_1_2_3_4_left_flip_up * dy_1_1_2_3_4_left_flip_up
     del dy_1_1_2_3_4_left_flip_up
-    bend_1_1_2_3_4_left_flip_up = t271 + t272
-    del t271, t272
-    t273 = miss_1_1_2_3_4_left_flip_up * bend_1_1_2_3_4_left_flip_up
-    inner_1_1_2_3_4_left_flip_up = t268 - t273
-    del t268, t273
-    t274 = slope_1_1_2_3_4_left_flip_up / (2.0 * bend_1_1_2_3_4_left_flip_up)
+    bend_1_1_2_3_4_left_flip_up = t275 + t276
+    del t275, t276
+    t277 = miss_1_1_2_3_4_left_flip_up * bend_1_1_2_3_4_left_flip_up
+    inner_1_1_2_3_4_left_flip_up = t272 - t277
+    del t272, t277
+    t278 = slope_1_1_2_3_4_left_flip_up / (2.0 * bend_1_1_2_3_4_left_flip_up)
     del bend_1_1_2_3_4_left_flip_up
-    t275 = np.maximum(0.0, inner_1_1_2_3_4_left_flip_up)
-    t276 = _runtime.sign(slope_1_1_2_3_4_left_flip_up) * np.sqrt(t275)
-    del t275
-    t277 = miss_1_1_2_3_4_left_flip_up / (2.0 * (slope_1_1_2_3_4_left_flip_up + t276))
-    del miss_1_1_2_3_4_left_flip_up, slope_1_1_2_3_4_left_flip_up, t276
-    t278 = _runtime.select(inner_1_1_2_3_4_left_flip_up < 0.0, t274, t277)
-    del inner_1_1_2_3_4_left_flip_up, t274, t277
-    t279 = t278 * t278
-    t280 = 1.0 / (1.0 + t279)
-    t281 = 2.0 * t278 * t280
-    del t278
-    by_c_1_1_2_3_4_left_flip_up = t280 * (1.0 - t279)
-    del t279, t280
-    t282 = d4 * (t281 * t281) / (1.0 + np.abs(by_c_1_1_2_3_4_left_flip_up))
-    t283 = (t282 + root1 * np.abs(t281) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_left_flip_up)
-    del t282
-    sine_1_1_2_3_4_left_flip_up = _runtime.select(t283, -t281, 0.0)
-    del t281
-    t284 = c_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
-    cosine_1_1_2_3_4_left_flip_up = _runtime.select(t283, by_c_1_1_2_3_4_left_flip_up, 1.0)
-    del by_c_1_1_2_3_4_left_flip_up, t283
-    t285 = s_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
-    s1_left_flip_up = _runtime.select(tangent1, t284 + t285, -t19)
-    del t19, t284, t285
-    t286 = c_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
+    t279 = np.maximum(0.0, inner_1_1_2_3_4_left_flip_up)
+    t280 = _runtime.sign(slope_1_1_2_3_4_left_flip_up) * np.sqrt(t279)
+    del t279
+    outer_1_1_2_3_4_left_flip_up = slope_1_1_2_3_4_left_flip_up + t280
+    del slope_1_1_2_3_4_left_flip_up, t280
+    t281 = miss_1_1_2_3_4_left_flip_up / (2.0 * outer_1_1_2_3_4_left_flip_up)
+    del miss_1_1_2_3_4_left_flip_up
+    t282 = _runtime.select(outer_1_1_2_3_4_left_flip_up == 0.0, 0.0, t281)
+    del outer_1_1_2_3_4_left_flip_up, t281
+    t283 = _runtime.select(inner_1_1_2_3_4_left_flip_up < 0.0, t278, t282)
+    del inner_1_1_2_3_4_left_flip_up, t278, t282
+    t284 = t283 * t283
+    t285 = 1.0 / (1.0 + t284)
+    t286 = 2.0 * t283 * t285
+    del t283
+    by_c_1_1_2_3_4_left_flip_up = t285 * (1.0 - t284)
+    del t284, t285
+    t287 = d4 * (t286 * t286) / (1.0 + np.abs(by_c_1_1_2_3_4_left_flip_up))
+    t288 = (t287 + root1 * np.abs(t286) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_left_flip_up)
+    del t287
+    sine_1_1_2_3_4_left_flip_up = _runtime.select(t288, -t286, 0.0)
+    del t286
+    t289 = c_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
+    cosine_1_1_2_3_4_left_flip_up = _runtime.select(t288, by_c_1_1_2_3_4_left_flip_up, 1.0)
+    del by_c_1_1_2_3_4_left_flip_up, t288
+    t290 = s_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
+    s1_left_flip_up = _runtime.select(tangent1, t289 + t290, -t19)
+    del t19, t289, t290
+    t291 = c_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
     del c_1_1_2_3_4_left_flip_up, cosine_1_1_2_3_4_left_flip_up
-    t287 = s_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
+    t292 = s_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
     del s_1_1_2_3_4_left_flip_up, sine_1_1_2_3_4_left_flip_up
-    c1_left_flip_up = _runtime.select(tangent1, t286 - t287, c_1_1)
-    del c_1_1, t286, t287
-    t288 = _runtime.wrap_cut(np.arctan2(s1_left_flip_up, c1_left_flip_up))
+    c1_left_flip_up = _runtime.select(tangent1, t291 - t292, c_1_1)
+    del c_1_1, t291, t292
+    t293 = _runtime.wrap_cut(np.arctan2(s1_left_flip_up, c1_left_flip_up))
     across_left_flip_up = w_x * c1_left_flip_up + w_y * s1_left_flip_up
     M_13_left_flip_up = T13 * c1_left_flip_up + T23 * s1_left_flip_up
     h_wrist_left_flip_up = np.sqrt(t16 + M_13_left_flip_up * M_13_left_flip_up)
-    aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t122
-    t289 = t44 + across_left_flip_up * across_left_flip_up
-    r_hub_left_flip_up = np.sqrt(t289)
-    del t289
+    aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t124
+    t294 = t45 + across_left_flip_up * across_left_flip_up
+    r_hub_left_flip_up = np.sqrt(t294)
+    del t294
     hub_mid_left_flip_up = r_hub_left_flip_up <= t6
-    t290 = d5 + r_hub_left_flip_up
-    t291 = d5 - r_hub_left_flip_up
-    mid_reach_left_flip_up = np.minimum(full_1_1, t290) * 0.5 + np.maximum(fold_1_1, np.abs(t291)) * 0.5
-    t292 = (t290 - mid_reach_left_flip_up) * (t290 + mid_reach_left_flip_up)
-    k_mid_left_flip_up = np.maximum(0.0, t292)
-    del t292
-    t293 = (t291 - mid_reach_left_flip_up) * (t291 + mid_reach_left_flip_up)
-    del mid_reach_left_flip_up
-    d_mid_left_flip_up = np.maximum(0.0, -t293)
-    del t293
-    n_mid_left_flip_up = k_mid_left_flip_up + d_mid_left_flip_up
-    any_mid_left_flip_up = n_mid_left_flip_up <= t125
-    t294 = 1.0 / n_mid_left_flip_up
-    del n_mid_left_flip_up
-    t295 = (k_mid_left_flip_up - d_mid_left_flip_up) * t294
-    uc_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 1.0, t295)
-    del t295
-    t296 = np.sqrt(k_mid_left_flip_up * d_mid_left_flip_up)
-    del d_mid_left_flip_up, k_mid_left_flip_up
-    us_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 0.0, t294 * (2.0 * t296))
-    del any_mid_left_flip_up, t294, t296
-    t297 = across_left_flip_up * uc_mid_left_flip_up + t26 * us_mid_left_flip_up
-    t298 = 1.0 / r_hub_left_flip_up
-    del r_hub_left_flip_up
-    c_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t297 * t298)
+    t295 = d5 + r_hub_left_flip_up
+    t296 = d5 - r_hub_left_flip_up
+    mid_reach_left_flip_up = np.minimum(full_1_1, t295) * 0.5 + np.maximum(fold_1_1, np.abs(t296)) * 0.5
+    t297 = (t295 - mid_reach_left_flip_up) * (t295 + mid_reach_left_flip_up)
+    k_mid_left_flip_up = np.maximum(0.0, t297)
     del t297
-    close_left_flip_up = root1 * h_wrist_left_flip_up - t129 <= t6
-    t299 = 1.0 / h_wrist_left_flip_up
-    t300 = _runtime.select(aligned_wrist_left_flip_up, 0.0, T33 * t299)
-    t301 = across_left_flip_up + d5 * t300
-    c_phi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, 1.0, -(M_13_left_flip_up * t299))
-    del t299
-    t302 = t26 - d5 * c_phi_left_flip_up
-    here_left_flip_up = np.sqrt(t301 * t301 + t302 * t302)
-    del t301, t302
-    in_reach_left_flip_up = np.minimum(full_1_1, np.maximum(here_left_flip_up, fold_1_1))
-    t303 = (t290 - in_reach_left_flip_up) * (t290 + in_reach_left_flip_up)
-    del t290
-    k_near_left_flip_up = np.maximum(0.0, t303)
-    del t303
-    t304 = (t291 - in_reach_left_flip_up) * (t291 + in_reach_left_flip_up)
-    del t291
-    d_near_left_flip_up = np.maximum(0.0, -t304)
+    t298 = (t296 - mid_reach_left_flip_up) * (t296 + mid_reach_left_flip_up)
+    del mid_reach_left_flip_up
+    d_mid_left_flip_up = np.maximum(0.0, -t298)
+    del t298
+    n_mid_left_flip_up = k_mid_left_flip_up + d_mid_left_flip_up
+    any_mid_left_flip_up = n_mid_left_flip_up <= t127
+    t299 = 1.0 / n_mid_left_flip_up
+    del n_mid_left_flip_up
+    t300 = (k_mid_left_flip_up - d_mid_left_flip_up) * t299
+    uc_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 1.0, t300)
+    del t300
+    t301 = np.sqrt(k_mid_left_flip_up * d_mid_left_flip_up)
+    del d_mid_left_flip_up, k_mid_left_flip_up
+    us_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 0.0, t299 * (2.0 * t301))
+    del any_mid_left_flip_up, t299, t301
+    t302 = across_left_flip_up * uc_mid_left_flip_up + t26 * us_mid_left_flip_up
+    t303 = 1.0 / r_hub_left_flip_up
+    del r_hub_left_flip_up
+    c_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t302 * t303)
+    del t302
+    close_left_flip_up = root1 * h_wrist_left_flip_up - t131 <= t6
+    t304 = 1.0 / h_wrist_left_flip_up
+    t305 = _runtime.select(aligned_wrist_left_flip_up, 0.0, T33 * t304)
+    t306 = across_left_flip_up + d5 * t305
+    c_phi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, 1.0, -(M_13_left_flip_up * t304))
     del t304
+    t307 = t26 - d5 * c_phi_left_flip_up
+    here_left_flip_up = np.sqrt(t306 * t306 + t307 * t307)
+    del t306, t307
+    in_reach_left_flip_up = np.minimum(full_1_1, np.maximum(here_left_flip_up, fold_1_1))
+    t308 = (t295 - in_reach_left_flip_up) * (t295 + in_reach_left_flip_up)
+    del t295
+    k_near_left_flip_up = np.maximum(0.0, t308)
+    del t308
+    t309 = (t296 - in_reach_left_flip_up) * (t296 + in_reach_left_flip_up)
+    del t296
+    d_near_left_flip_up = np.maximum(0.0, -t309)
+    del t309
     n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
-    any_near_left_flip_up = n_near_left_flip_up <= t125
-    t305 = 1.0 / n_near_left_flip_up
+    any_near_left_flip_up = n_near_left_flip_up <= t127
+    t310 = 1.0 / n_near_left_flip_up
     del n_near_left_flip_up
-    t306 = (k_near_left_flip_up - d_near_left_flip_up) * t305
-    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t306)
-    del t306
-    t307 = across_left_flip_up * c_phi_left_flip_up + t26 * t300
-    t308 = np.abs(t307)
-    side_left_flip_up = _runtime.select(t308 <= t6, 1.0, -(t307 / t308))
-    del t307, t308
-    t309 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
+    t311 = (k_near_left_flip_up - d_near_left_flip_up) * t310
+    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t311)
+    del t311
+    t312 = across_left_flip_up * c_phi_left_flip_up + t26 * t305
+    t313 = np.abs(t312)
+    side_left_flip_up = _runtime.select(t313 <= t6, 1.0, -(t312 / t313))
+    del t312, t313
+    t314 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
     del d_near_left_flip_up, k_near_left_flip_up
-    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t305 * (2.0 * side_left_flip_up * t309))
-    del any_near_left_flip_up, side_left_flip_up, t305, t309
-    t310 = across_left_flip_up * uc_near_left_flip_up + t26 * us_near_left_flip_up
-    c_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t298 * t310)
-    del t310
-    t311 = t300 + c_near_left_flip_up
-    t312 = across_left_flip_up * us_near_left_flip_up - t26 * uc_near_left_flip_up
+    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t310 * (2.0 * side_left_flip_up * t314))
+    del any_near_left_flip_up, side_left_flip_up, t310, t314
+    t315 = across_left_flip_up * uc_near_left_flip_up + t26 * us_near_left_flip_up
+    c_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t303 * t315)
+    del t315
+    t316 = t305 + c_near_left_flip_up
+    t317 = across_left_flip_up * us_near_left_flip_up - t26 * uc_near_left_flip_up
     del uc_near_left_flip_up, us_near_left_flip_up
-    s_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t298 * t312)
-    del t312
-    t313 = c_phi_left_flip_up + s_near_left_flip_up
-    t314 = h_wrist_left_flip_up * np.sqrt(t311 * t311 + t313 * t313)
-    del h_wrist_left_flip_up, t311, t313
-    t315 = np.abs(here_left_flip_up - in_reach_left_flip_up)
+    s_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t303 * t317)
+    del t317
+    t318 = c_phi_left_flip_up + s_near_left_flip_up
+    t319 = h_wrist_left_flip_up * np.sqrt(t316 * t316 + t318 * t318)
+    del h_wrist_left_flip_up, t316, t318
+    t320 = np.abs(here_left_flip_up - in_reach_left_flip_up)
     del here_left_flip_up, in_reach_left_flip_up
-    t316 = (t314 - 2.2737367544323206e-13 <= t140) & np.logical_not(t315 <= t6)
-    del t314, t315
-    s_kept_left_flip_up = _runtime.select(t316, c_near_left_flip_up, -t300)
+    t321 = (t319 - 2.2737367544323206e-13 <= t142) & np.logical_not(t320 <= t6)
+    del t319, t320
+    s_kept_left_flip_up = _runtime.select(t321, c_near_left_flip_up, -t305)
     del c_near_left_flip_up
-    t317 = _runtime.select(close_left_flip_up, s_kept_left_flip_up, -t300)
-    del s_kept_left_flip_up, t300
-    sphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, c_mid_left_flip_up, t317)
-    del c_mid_left_flip_up, t317
-    t318 = across_left_flip_up - d5 * sphi_left_flip_up
-    t319 = across_left_flip_up * us_mid_left_flip_up - t26 * uc_mid_left_flip_up
+    t322 = _runtime.select(close_left_flip_up, s_kept_left_flip_up, -t305)
+    del s_kept_left_flip_up, t305
+    sphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, c_mid_left_flip_up, t322)
+    del c_mid_left_flip_up, t322
+    t323 = across_left_flip_up - d5 * sphi_left_flip_up
+    t324 = across_left_flip_up * us_mid_left_flip_up - t26 * uc_mid_left_flip_up
     del across_left_flip_up, uc_mid_left_flip_up, us_mid_left_flip_up
-    s_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t298 * t319)
-    del hub_mid_left_flip_up, t298, t319
-    c_kept_left_flip_up = _runtime.select(t316, -s_near_left_flip_up, c_phi_left_flip_up)
-    del s_near_left_flip_up, t316
-    t320 = _runtime.select(close_left_flip_up, c_kept_left_flip_up, c_phi_left_flip_up)
+    s_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t303 * t324)
+    del hub_mid_left_flip_up, t303, t324
+    c_kept_left_flip_up = _runtime.select(t321, -s_near_left_flip_up, c_phi_left_flip_up)
+    del s_near_left_flip_up, t321
+    t325 = _runtime.select(close_left_flip_up, c_kept_left_flip_up, c_phi_left_flip_up)
     del c_kept_left_flip_up, c_phi_left_flip_up, close_left_flip_up
-    cphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, -s_mid_left_flip_up, t320)
-    del s_mid_left_flip_up, t320
+    cphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, -s_mid_left_flip_up, t325)
+    del s_mid_left_flip_up, t325
     ey_left_flip_up = t26 - d5 * cphi_left_flip_up
-    t321 = t318 * t318 + ey_left_flip_up * ey_left_flip_up
-    r_elbow_left_flip_up = np.sqrt(t321)
-    del t321
-    t322 = full_1_1 - r_elbow_left_flip_up
-    t323 = t29 + r_elbow_left_flip_up
-    t324 = r_elbow_left_flip_up - t29
-    t325 = t121 & (t120 <= t322) & (t120 <= t323) & (t120 <= t324)
-    unreachable_2 = np.logical_not(t325)
-    del t325
-    t326 = _runtime.poison(invalid | unreachable_2)
-    t327 = t288 + t326
-    del t288
-    folded_elbow_left_flip_up = r_elbow_left_flip_up <= t6
-    A_elbow_left_flip_up = np.maximum(t322, 0.0)
-    del t322
-    C_elbow_left_flip_up = np.maximum(t324, 0.0)
-    del t324
-    t328 = A_elbow_left_flip_up * C_elbow_left_flip_up
-    S_elbow_left_flip_up = full_1_1 + r_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t323, 0.0)
-    del t323
-    t329 = S_elbow_left_flip_up * B_elbow_left_flip_up
-    t330 = 1.0 / (t328 + t329)
-    c_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t328 - t329) * t330))
-    t331 = 1.0 / r_elbow_left_flip_up
-    del r_elbow_left_flip_up
-    t332 = ey_left_flip_up * c_base_elbow_left_flip_up * t331
-    area_elbow_left_flip_up = 2.0 * np.sqrt(t328 * t329)
-    del t328, t329
-    s_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 0.0, t330 * area_elbow_left_flip_up)
+    t326 = t323 * t323 + ey_left_flip_up * ey_left_flip_up
+    r_elbow_left_flip_up = np.sqrt(t326)
+    del t326
+    t327 = full_1_1 - r_elbow_left_flip_up
+    t328 = t29 + r_elbow_left_flip_up
+    t329 = r_elbow_left_flip_up - t29
+    t330 = t123 & (t122 <= t327) & (t122 <= t328) & (t122 <= t329)
+    unreachable_2 = np.logical_not(t330)
     del t330
-    t333 = t331 * (t318 * s_base_elbow_left_flip_up)
-    s2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 0.0, t332 + t333)
-    t334 = t331 * (ey_left_flip_up * s_base_elbow_left_flip_up)
+    t331 = _runtime.poison(invalid | unreachable_2)
+    t332 = t293 + t331
+    del t293
+    folded_elbow_left_flip_up = r_elbow_left_flip_up <= t6
+    A_elbow_left_flip_up = np.maximum(t327, 0.0)
+    del t327
+    C_elbow_left_flip_up = np.maximum(t329, 0.0)
+    del t329
+    t333 = A_elbow_left_flip_up * C_elbow_left_flip_up
+    S_elbow_left_flip_up = full_1_1 + r_elbow_left_flip_up
+    B_elbow_left_flip_up = np.maximum(t328, 0.0)
+    del t328
+    t334 = S_elbow_left_flip_up * B_elbow_left_flip_up
+    t335 = 1.0 / (t333 + t334)
+    c_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 1.0, -((t333 - t334) * t335))
+    t336 = 1.0 / r_elbow_left_flip_up
+    del r_elbow_left_flip_up
+    t337 = ey_left_flip_up * c_base_elbow_left_flip_up * t336
+    area_elbow_left_flip_up = 2.0 * np.sqrt(t333 * t334)
+    del t333, t334
+    s_base_elbow_left_flip_up = _runtime.select(no_link_elbow, 0.0, t335 * area_elbow_left_flip_up)
+    del t335
+    t338 = t336 * (t323 * s_base_elbow_left_flip_up)
+    s2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 0.0, t337 + t338)
+    t339 = t336 * (ey_left_flip_up * s_base_elbow_left_flip_up)
     del ey_left_flip_up, s_base_elbow_left_flip_up
-    t335 = t331 * (t318 * c_base_elbow_left_flip_up)
-    del c_base_elbow_left_flip_up, t318, t331
-    c2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 1.0, t334 - t335)
-    t336 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
-    t337 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    t340 = t336 * (t323 * c_base_elbow_left_flip_up)
+    del c_base_elbow_left_flip_up, t323, t336
+    c2_left_flip_up = _runtime.select(folded_elbow_left_flip_up, 1.0, t339 - t340)
+    t341 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
+    t342 = A_elbow_left_flip_up * S_elbow_left_flip_up
     del A_elbow_left_flip_up, S_elbow_left_flip_up
-    t338 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    t343 = C_elbow_left_flip_up * B_elbow_left_flip_up
     del B_elbow_left_flip_up, C_elbow_left_flip_up
-    t339 = 1.0 / (t337 + t338)
-    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t339)
+    t344 = 1.0 / (t342 + t343)
+    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t344)
     del area_elbow_left_flip_up
-    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t339 * (t337 - t338)))
-    del t337, t338, t339
-    t340 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
-    t341 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
-    t342 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
+    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t344 * (t342 - t343)))
+    del t342, t343, t344
+    t345 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
+    t346 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
+    t347 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
     del c2_left_flip_up, s2_left_flip_up
-    t343 = c3_left_flip_up * t341 - s3_left_flip_up * t342
-    t344 = c3_left_flip_up * t342 + s3_left_flip_up * t341
-    del t341, t342
-    t345 = _runtime.wrap_cut(np.arctan2(t343, t344)) + t326
-    del t343, t344
-    t346 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up
+    t348 = c3_left_flip_up * t346 - s3_left_flip_up * t347
+    t349 = c3_left_flip_up * t347 + s3_left_flip_up * t346
+    del t346, t347
+    t350 = _runtime.wrap_cut(np.arctan2(t348, t349)) + t331
+    del t348, t349
+    t351 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up
     del M_13_left_flip_up
     M_33_left_flip_up = T13 * s1_left_flip_up - T23 * c1_left_flip_up
-    t347 = _runtime.wrap_cut(-np.arctan2(t346, M_33_left_flip_up))
-    del M_33_left_flip_up, t346
-    t348 = t347 + t326
-    del t347
+    t352 = _runtime.wrap_cut(-np.arctan2(t351, M_33_left_flip_up))
+    del M_33_left_flip_up, t351
+    t353 = t352 + t331
+    del t352
     M_11_left_flip_up = T11 * c1_left_flip_up + T21 * s1_left_flip_up
-    t349 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up
+    t354 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up
     del M_11_left_flip_up
     M_12_left_flip_up = T12 * c1_left_flip_up + T22 * s1_left_flip_up
     del c1_left_flip_up, s1_left_flip_up
-    t350 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up
+    t355 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up
     del M_12_left_flip_up
-    t351 = _runtime.wrap_cut(-np.arctan2(t349, t350)) + t326
-    del t349, t350
-    s2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 0.0, t332 - t333)
-    del t332, t333
-    c2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t335 + t334))
-    del t334, t335
-    t352 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
-    t353 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
-    t354 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
+    t356 = _runtime.wrap_cut(-np.arctan2(t354, t355)) + t331
+    del t354, t355
+    s2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 0.0, t337 - t338)
+    del t337, t338
+    c2_left_flip_down = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t340 + t339))
+    del t339, t340
+    t357 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
+    t358 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
+    t359 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
     del c2_left_flip_down, cphi_left_flip_up, s2_left_flip_down, sphi_left_flip_up
-    t355 = c3_left_flip_up * t353 + s3_left_flip_up * t354
-    t356 = c3_left_flip_up * t354 - s3_left_flip_up * t353
-    del c3_left_flip_up, s3_left_flip_up, t353, t354
-    t357 = _runtime.wrap_cut(np.arctan2(t355, t356)) + t326
-    del t355, t356
+    t360 = c3_left_flip_up * t358 + s3_left_flip_up * t359
+    t361 = c3_left_flip_up * t359 - s3_left_flip_up * t358
+    del c3_left_flip_up, s3_left_flip_up, t358, t359
+    t362 = _runtime.wrap_cut(np.arctan2(t360, t361)) + t331
+    del t360, t361
     c_1_1_right_noflip_up = _runtime.select(free1, 1.0, t9 + t11)
     del t11, t9
-    t358 = _runtime.select(free1, 0.0, t17 - t18)
+    t363 = _runtime.select(free1, 0.0, t17 - t18)
     del t17, t18
-    axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t358
-    t359 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up
-    h_1_1_right_noflip_up = np.sqrt(t16 + t359)
-    del t359
-    t360 = t15 * h_1_1_right_noflip_up <= t20
+    axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t363
+    t364 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up
+    h_1_1_right_noflip_up = np.sqrt(t16 + t364)
+    del t364
+    t365 = t15 * h_1_1_right_noflip_up <= t20
     del t15
-    qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t358
-    t361 = 1.0 / h_1_1_right_noflip_up
-    uc_1_1_right_noflip_up = T33 * t361
-    t362 = d5 * uc_1_1_right_noflip_up
-    x_1_1_right_noflip_up = _runtime.select(t360, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up - t362)
-    dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t358
-    us_1_1_right_flip_up = axisx_1_1_right_noflip_up * t361
-    del axisx_1_1_right_noflip_up, t361
-    t363 = T33 * (T13 * t358 + T23 * c_1_1_right_noflip_up)
-    t364 = h_1_1_right_noflip_up * h_1_1_right_noflip_up
+    qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t363
+    t366 = 1.0 / h_1_1_right_noflip_up
+    uc_1_1_right_noflip_up = T33 * t366
+    t367 = d5 * uc_1_1_right_noflip_up
+    x_1_1_right_noflip_up = _runtime.select(t365, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up - t367)
+    dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t363
+    us_1_1_right_flip_up = axisx_1_1_right_noflip_up * t366
+    del axisx_1_1_right_noflip_up, t366
+    t368 = T33 * (T13 * t363 + T23 * c_1_1_right_noflip_up)
+    t369 = h_1_1_right_noflip_up * h_1_1_right_noflip_up
     del h_1_1_right_noflip_up
-    t365 = d5 * t363 / t364
-    del t363, t364
-    t366 = us_1_1_right_flip_up * t365
-    dx_1_1_right_noflip_up = _runtime.select(t360, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t366)
-    t367 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up
-    t368 = d5 * us_1_1_right_flip_up
+    t370 = d5 * t368 / t369
+    del t368, t369
+    t371 = us_1_1_right_flip_up * t370
+    dx_1_1_right_noflip_up = _runtime.select(t365, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t371)
+    t372 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up
+    t373 = d5 * us_1_1_right_flip_up
     del us_1_1_right_flip_up
-    t369 = _runtime.select(t360, t26, t26 - t368)
-    t370 = _runtime.select(t360, 0.0, uc_1_1_right_noflip_up * t365)
-    del t365, uc_1_1_right_noflip_up
-    slope_1_1_right_noflip_up = t367 - t369 * t370
-    del t367
-    t371 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up
-    t372 = x_1_1_right_noflip_up * x_1_1_right_noflip_up
+    t374 = _runtime.select(t365, t26, t26 - t373)
+    t375 = _runtime.select(t365, 0.0, uc_1_1_right_noflip_up * t370)
+    del t370, uc_1_1_right_noflip_up
+    slope_1_1_right_noflip_up = t372 - t374 * t375
+    del t372
+    t376 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up
+    t377 = x_1_1_right_noflip_up * x_1_1_right_noflip_up
     del x_1_1_right_noflip_up
-    square_1_1_right_noflip_up = t372 + t369 * t369
-    del t369, t372
-    nearest_1_1_right_noflip_up = _runtime.select(t360, t30, fold_1_1)
+    square_1_1_right_noflip_up = t377 + t374 * t374
+    del t374, t377
+    nearest_1_1_right_noflip_up = _runtime.select(t365, t30, fold_1_1)
     low_1_1_right_noflip_up = nearest_1_1_right_noflip_up * nearest_1_1_right_noflip_up
     del nearest_1_1_right_noflip_up
-    farthest_1_1_right_noflip_up = _runtime.select(t360, t5, full_1_1)
+    farthest_1_1_right_noflip_up = _runtime.select(t365, t5, full_1_1)
     high_1_1_right_noflip_up = farthest_1_1_right_noflip_up * farthest_1_1_right_noflip_up
     del farthest_1_1_right_noflip_up
-    t373 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_noflip_up)
-    miss_1_1_right_noflip_up = square_1_1_right_noflip_up - np.maximum(low_1_1_right_noflip_up, t373)
-    del square_1_1_right_noflip_up, t373
-    t374 = dx_1_1_right_noflip_up * dx_1_1_right_noflip_up
+    t378 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_noflip_up)
+    miss_1_1_right_noflip_up = square_1_1_right_noflip_up - np.maximum(low_1_1_right_noflip_up, t378)
+    del square_1_1_right_noflip_up, t378
+    t379 = dx_1_1_right_noflip_up * dx_1_1_right_noflip_up
     del dx_1_1_right_noflip_up
-    t375 = t370 * t370
-    bend_1_1_right_noflip_up = t374 + t375
-    del t374
-    t376 = miss_1_1_right_noflip_up * bend_1_1_right_noflip_up
-    inner_1_1_right_noflip_up = t371 - t376
-    del t371, t376
-    t377 = slope_1_1_right_noflip_up / (2.0 * bend_1_1_right_noflip_up)
+    t380 = t375 * t375
+    bend_1_1_right_noflip_up = t379 + t380
+    del t379
+    t381 = miss_1_1_right_noflip_up * bend_1_1_right_noflip_up
+    inner_1_1_right_noflip_up = t376 - t381
+    del t376, t381
+    t382 = slope_1_1_right_noflip_up / (2.0 * bend_1_1_right_noflip_up)
     del bend_1_1_right_noflip_up
-    t378 = np.sqrt(np.maximum(0.0, inner_1_1_right_noflip_up))
-    t379 = _runtime.sign(slope_1_1_right_noflip_up) * t378
-    del t378
-    t380 = miss_1_1_right_noflip_up / (2.0 * (slope_1_1_right_noflip_up + t379))
-    del miss_1_1_right_noflip_up, slope_1_1_right_noflip_up, t379
-    t381 = _runtime.select(inner_1_1_right_noflip_up < 0.0, t377, t380)
-    del inner_1_1_right_noflip_up, t377, t380
-    t382 = t381 * t381
-    t383 = 1.0 / (1.0 + t382)
-    t384 = 2.0 * t381 * t383
-    del t381
-    by_c_1_1_right_noflip_up = t383 * (1.0 - t382)
-    del t382, t383
-    t385 = d4 * (t384 * t384) / (1.0 + np.abs(by_c_1_1_right_noflip_up))
-    t386 = (t385 + root1 * np.abs(t384) <= whole_1_1) & (0.0 < by_c_1_1_right_noflip_up)
-    del t385
-    cosine_1_1_right_noflip_up = _runtime.select(t386, by_c_1_1_right_noflip_up, 1.0)
-    del by_c_1_1_right_noflip_up
-    t387 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up
-    sine_1_1_right_noflip_up = _runtime.select(t386, -t384, 0.0)
-    del t384, t386
-    c_1_1_2_right_noflip_up = t387 + t358 * sine_1_1_right_noflip_up
+    t383 = np.sqrt(np.maximum(0.0, inner_1_1_right_noflip_up))
+    t384 = _runtime.sign(slope_1_1_right_noflip_up) * t383
+    del t383
+    outer_1_1_right_noflip_up = slope_1_1_right_noflip_up + t384
+    del slope_1_1_right_noflip_up, t384
+    t385 = miss_1_1_right_noflip_up / (2.0 * outer_1_1_right_noflip_up)
+    del miss_1_1_right_noflip_up
+    t386 = _runtime.select(outer_1_1_right_noflip_up == 0.0, 0.0, t385)
+    del outer_1_1_right_noflip_up, t385
+    t387 = _runtime.select(inner_1_1_right_noflip_up < 0.0, t382, t386)
+    del inner_1_1_right_noflip_up, t382, t386
+    t388 = t387 * t387
+    t389 = 1.0 / (1.0 + t388)
+    t390 = 2.0 * t387 * t389
     del t387
-    t388 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up
-    del sine_1_1_right_noflip_up
-    s_1_1_2_right_noflip_up = t388 - t358 * cosine_1_1_right_noflip_up
-    del cosine_1_1_right_noflip_up, t388
-    axisx_1_1_2_right_noflip_up = T13 * c_1_1_2_right_noflip_up + T23 * s_1_1_2_right_noflip_up
-    t389 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up
-    t390 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up
-    most_1_1_2_right_noflip_up = np.sqrt(t389 + t390 * t390)
-    qx_1_1_2_right_noflip_up = w_x * c_1_1_2_right_noflip_up + w_y * s_1_1_2_right_noflip_up
-    t391 = qx_1_1_2_right_noflip_up * qx_1_1_2_right_noflip_up
-    r_1_1_2_right_noflip_up = np.sqrt(t44 + t391)
+    by_c_1_1_right_noflip_up = t389 * (1.0 - t388)
+    del t388, t389
+    t391 = d4 * (t390 * t390) / (1.0 + np.abs(by_c_1_1_right_noflip_up))
+    t392 = (t391 + root1 * np.abs(t390) <= whole_1_1) & (0.0 < by_c_1_1_right_noflip_up)
     del t391
-    t392 = r_1_1_2_right_noflip_up <= t47
-    t393 = d5 + r_1_1_2_right_noflip_up
-    t394 = 1.0 / np.sqrt(t16 + t389)
-    del t389
-    uc_1_1_2_right_noflip_up = T33 * t394
-    t395 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up
-    t396 = axisx_1_1_2_right_noflip_up * t394
-    del t394
-    t397 = t26 - d5 * t396
-    there_1_1_2_right_noflip_up = np.sqrt(t395 * t395 + t397 * t397)
-    del t395, t397
-    t398 = np.maximum(there_1_1_2_right_noflip_up, fold_1_1)
-    goal_1_1_2_right_noflip_up = np.minimum(full_1_1, t398)
-    del t398
-    t399 = (t393 - goal_1_1_2_right_noflip_up) * (t393 + goal_1_1_2_right_noflip_up)
+    cosine_1_1_right_noflip_up = _runtime.select(t392, by_c_1_1_right_noflip_up, 1.0)
+    del by_c_1_1_right_noflip_up
+    t393 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up
+    sine_1_1_right_noflip_up = _runtime.select(t392, -t390, 0.0)
+    del t390, t392
+    c_1_1_2_right_noflip_up = t393 + t363 * sine_1_1_right_noflip_up
     del t393
-    k_v_1_1_2_right_noflip_up = np.maximum(0.0, t399)
-    del t399
-    t400 = d5 - r_1_1_2_right_noflip_up
-    t401 = (goal_1_1_2_right_noflip_up - t400) * (goal_1_1_2_right_noflip_up + t400)
+    t394 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up
+    del sine_1_1_right_noflip_up
+    s_1_1_2_right_noflip_up = t394 - t363 * cosine_1_1_right_noflip_up
+    del cosine_1_1_right_noflip_up, t394
+    axisx_1_1_2_right_noflip_up = T13 * c_1_1_2_right_noflip_up + T23 * s_1_1_2_right_noflip_up
+    t395 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up
+    t396 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up
+    most_1_1_2_right_noflip_up = np.sqrt(t395 + t396 * t396)
+    qx_1_1_2_right_noflip_up = w_x * c_1_1_2_right_noflip_up + w_y * s_1_1_2_right_noflip_up
+    t397 = qx_1_1_2_right_noflip_up * qx_1_1_2_right_noflip_up
+    r_1_1_2_right_noflip_up = np.sqrt(t45 + t397)
+    del t397
+    t398 = r_1_1_2_right_noflip_up <= t48
+    t399 = d5 + r_1_1_2_right_noflip_up
+    t400 = 1.0 / np.sqrt(t16 + t395)
+    del t395
+    uc_1_1_2_right_noflip_up = T33 * t400
+    t401 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up
+    t402 = axisx_1_1_2_right_noflip_up * t400
     del t400
-    d_v_1_1_2_right_noflip_up = np.maximum(0.0, t401)
-    del t401
+    t403 = t26 - d5 * t402
+    there_1_1_2_right_noflip_up = np.sqrt(t401 * t401 + t403 * t403)
+    del t401, t403
+    t404 = np.maximum(there_1_1_2_right_noflip_up, fold_1_1)
+    goal_1_1_2_right_noflip_up = np.minimum(full_1_1, t404)
+    del t404
+    t405 = (t399 - goal_1_1_2_right_noflip_up) * (t399 + goal_1_1_2_right_noflip_up)
+    del t399
+    k_v_1_1_2_right_noflip_up = np.maximum(0.0, t405)
+    del t405
+    t406 = d5 - r_1_1_2_right_noflip_up
+    t407 = (goal_1_1_2_right_noflip_up - t406) * (goal_1_1_2_right_noflip_up + t406)
+    del t406
+    d_v_1_1_2_right_noflip_up = np.maximum(0.0, t407)
+    del t407
     n_v_1_1_2_right_noflip_up = k_v_1_1_2_right_noflip_up + d_v_1_1_2_right_noflip_up
-    t402 = n_v_1_1_2_right_noflip_up <= t56
-    t403 = k_v_1_1_2_right_noflip_up - d_v_1_1_2_right_noflip_up
-    t404 = 1.0 / n_v_1_1_2_right_noflip_up
+    t408 = n_v_1_1_2_right_noflip_up <= t57
+    t409 = k_v_1_1_2_right_noflip_up - d_v_1_1_2_right_noflip_up
+    t410 = 1.0 / n_v_1_1_2_right_noflip_up
     del n_v_1_1_2_right_noflip_up
-    uc_v_1_1_2_right_noflip_up = _runtime.select(t402, 1.0, t403 * t404)
-    del t403
-    t405 = qx_1_1_2_right_noflip_up * uc_v_1_1_2_right_noflip_up
-    t406 = t26 * uc_1_1_2_right_noflip_up - qx_1_1_2_right_noflip_up * t396
-    del t396, uc_1_1_2_right_noflip_up
-    t407 = k_v_1_1_2_right_noflip_up * d_v_1_1_2_right_noflip_up
+    uc_v_1_1_2_right_noflip_up = _runtime.select(t408, 1.0, t409 * t410)
+    del t409
+    t411 = qx_1_1_2_right_noflip_up * uc_v_1_1_2_right_noflip_up
+    t412 = t26 * uc_1_1_2_right_noflip_up - qx_1_1_2_right_noflip_up * t402
+    del t402, uc_1_1_2_right_noflip_up
+    t413 = k_v_1_1_2_right_noflip_up * d_v_1_1_2_right_noflip_up
     del d_v_1_1_2_right_noflip_up, k_v_1_1_2_right_noflip_up
-    t408 = t404 * (2.0 * _runtime.sign(t406) * np.sqrt(t407))
-    del t404, t406, t407
-    us_v_1_1_2_right_noflip_up = _runtime.select(t402, 0.0, t408)
-    del t402, t408
-    t409 = t26 * us_v_1_1_2_right_noflip_up
-    t410 = 1.0 / r_1_1_2_right_noflip_up
+    t414 = t410 * (2.0 * _runtime.sign(t412) * np.sqrt(t413))
+    del t410, t412, t413
+    us_v_1_1_2_right_noflip_up = _runtime.select(t408, 0.0, t414)
+    del t408, t414
+    t415 = t26 * us_v_1_1_2_right_noflip_up
+    t416 = 1.0 / r_1_1_2_right_noflip_up
     del r_1_1_2_right_noflip_up
-    c_v_1_1_2_right_noflip_up = _runtime.select(t392, 1.0, (t405 + t409) * t410)
-    t411 = T33 * c_v_1_1_2_right_noflip_up < 0.0
-    t412 = qx_1_1_2_right_noflip_up * us_v_1_1_2_right_noflip_up
+    c_v_1_1_2_right_noflip_up = _runtime.select(t398, 1.0, (t411 + t415) * t416)
+    t417 = T33 * c_v_1_1_2_right_noflip_up < 0.0
+    t418 = qx_1_1_2_right_noflip_up * us_v_1_1_2_right_noflip_up
     del qx_1_1_2_right_noflip_up, us_v_1_1_2_right_noflip_up
-    t413 = t26 * uc_v_1_1_2_right_noflip_up
+    t419 = t26 * uc_v_1_1_2_right_noflip_up
     del uc_v_1_1_2_right_noflip_up
-    wc_1_1_2_right_noflip_up = _runtime.select(t392, 0.0, t410 * (t412 + t413))
-    s_v_1_1_2_right_noflip_up = _runtime.select(t392, 0.0, t410 * (t412 - t413))
-    del t412, t413
-    to_c_1_1_2_right_noflip_up = _runtime.select(t411, wc_1_1_2_right_noflip_up, -s_v_1_1_2_right_noflip_up)
+    wc_1_1_2_right_noflip_up = _runtime.select(t398, 0.0, t416 * (t418 + t419))
+    s_v_1_1_2_right_noflip_up = _runtime.select(t398, 0.0, t416 * (t418 - t419))
+    del t418, t419
+    to_c_1_1_2_right_noflip_up = _runtime.select(t417, wc_1_1_2_right_noflip_up, -s_v_1_1_2_right_noflip_up)
     del s_v_1_1_2_right_noflip_up, wc_1_1_2_right_noflip_up
-    c_w_1_1_2_right_noflip_up = _runtime.select(t392, 1.0, t410 * (t405 - t409))
-    del t392, t405, t409, t410
-    to_s_1_1_2_right_noflip_up = _runtime.select(t411, c_w_1_1_2_right_noflip_up, c_v_1_1_2_right_noflip_up)
-    del c_v_1_1_2_right_noflip_up, c_w_1_1_2_right_noflip_up, t411
-    t414 = T33 * to_c_1_1_2_right_noflip_up / to_s_1_1_2_right_noflip_up
+    c_w_1_1_2_right_noflip_up = _runtime.select(t398, 1.0, t416 * (t411 - t415))
+    del t398, t411, t415, t416
+    to_s_1_1_2_right_noflip_up = _runtime.select(t417, c_w_1_1_2_right_noflip_up, c_v_1_1_2_right_noflip_up)
+    del c_v_1_1_2_right_noflip_up, c_w_1_1_2_right_noflip_up, t417
+    t420 = T33 * to_c_1_1_2_right_noflip_up / to_s_1_1_2_right_noflip_up
     del to_c_1_1_2_right_noflip_up, to_s_1_1_2_right_noflip_up
-    t415 = np.minimum(most_1_1_2_right_noflip_up, _runtime.select(t43, 0.0, t414))
-    del t414
-    kept_1_1_2_right_noflip_up = np.maximum(-most_1_1_2_right_noflip_up, t415)
-    del t415
-    t416 = most_1_1_2_right_noflip_up - kept_1_1_2_right_noflip_up
-    t417 = most_1_1_2_right_noflip_up + kept_1_1_2_right_noflip_up
-    rest_1_1_2_right_noflip_up = np.sqrt(t416 * t417) * _runtime.sign(-t390)
-    del t416, t417
-    t418 = axisx_1_1_2_right_noflip_up * rest_1_1_2_right_noflip_up
-    t419 = most_1_1_2_right_noflip_up * most_1_1_2_right_noflip_up
+    t421 = np.minimum(most_1_1_2_right_noflip_up, _runtime.select(t44, 0.0, t420))
+    del t420
+    kept_1_1_2_right_noflip_up = np.maximum(-most_1_1_2_right_noflip_up, t421)
+    del t421
+    t422 = most_1_1_2_right_noflip_up - kept_1_1_2_right_noflip_up
+    t423 = most_1_1_2_right_noflip_up + kept_1_1_2_right_noflip_up
+    rest_1_1_2_right_noflip_up = np.sqrt(t422 * t423) * _runtime.sign(-t396)
+    del t422, t423
+    t424 = axisx_1_1_2_right_noflip_up * rest_1_1_2_right_noflip_up
+    t425 = most_1_1_2_right_noflip_up * most_1_1_2_right_noflip_up
     del most_1_1_2_right_noflip_up
-    t420 = 1.0 / t419
-    del t419
-    t421 = (t418 + t390 * kept_1_1_2_right_noflip_up) * t420
-    del t418
-    t422 = axisx_1_1_2_right_noflip_up * kept_1_1_2_right_noflip_up
+    t426 = 1.0 / t425
+    del t425
+    t427 = (t424 + t396 * kept_1_1_2_right_noflip_up) * t426
+    del t424
+    t428 = axisx_1_1_2_right_noflip_up * kept_1_1_2_right_noflip_up
     del axisx_1_1_2_right_noflip_up, kept_1_1_2_right_noflip_up
-    by_c_1_1_2_right_noflip_up = t420 * (t422 - t390 * rest_1_1_2_right_noflip_up)
-    del rest_1_1_2_right_noflip_up, t390, t420, t422
-    t423 = d4 * (t421 * t421) / (1.0 + np.abs(by_c_1_1_2_right_noflip_up))
-    t424 = (t423 + root1 * np.abs(t421) <= whole_1_1) & (0.0 < by_c_1_1_2_right_noflip_up)
-    del t423
-    t425 = there_1_1_2_right_noflip_up - goal_1_1_2_right_noflip_up
+    by_c_1_1_2_right_noflip_up = t426 * (t428 - t396 * rest_1_1_2_right_noflip_up)
+    del rest_1_1_2_right_noflip_up, t396, t426, t428
+    t429 = d4 * (t427 * t427) / (1.0 + np.abs(by_c_1_1_2_right_noflip_up))
+    t430 = (t429 + root1 * np.abs(t427) <= whole_1_1) & (0.0 < by_c_1_1_2_right_noflip_up)
+    del t429
+    t431 = there_1_1_2_right_noflip_up - goal_1_1_2_right_noflip_up
     del goal_1_1_2_right_noflip_up, there_1_1_2_right_noflip_up
-    t426 = t424 & (t47 < np.abs(t425))
-    del t424, t425
-    cosine_1_1_2_right_noflip_up = _runtime.select(t426, by_c_1_1_2_right_noflip_up, 1.0)
+    t432 = t430 & (t48 < np.abs(t431))
+    del t430, t431
+    cosine_1_1_2_right_noflip_up = _runtime.select(t432, by_c_1_1_2_right_noflip_up, 1.0)
     del by_c_1_1_2_right_noflip_up
-    t427 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
-    sine_1_1_2_right_noflip_up = _runtime.select(t426, -t421, 0.0)
-    del t421, t426
-    t428 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
-    c_1_1_2_3_right_noflip_up = t427 - t428
-    del t427, t428
-    t429 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
+    t433 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
+    sine_1_1_2_right_noflip_up = _runtime.select(t432, -t427, 0.0)
+    del t427, t432
+    t434 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
+    c_1_1_2_3_right_noflip_up = t433 - t434
+    del t433, t434
+    t435 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
     del c_1_1_2_right_noflip_up, sine_1_1_2_right_noflip_up
-    t430 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
+    t436 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
     del cosine_1_1_2_right_noflip_up, s_1_1_2_right_noflip_up
-    s_1_1_2_3_right_noflip_up = t429 + t430
-    del t429, t430
+    s_1_1_2_3_right_noflip_up = t435 + t436
+    del t435, t436
     axisx_1_1_2_3_right_noflip_up = T13 * c_1_1_2_3_right_noflip_up + T23 * s_1_1_2_3_right_noflip_up
-    t431 = axisx_1_1_2_3_right_noflip_up * axisx_1_1_2_3_right_noflip_up
-    h_1_1_2_3_right_noflip_up = np.sqrt(t16 + t431)
-    del t431
-    t432 = size_1_1 * h_1_1_2_3_right_noflip_up <= t20
+    t437 = axisx_1_1_2_3_right_noflip_up * axisx_1_1_2_3_right_noflip_up
+    h_1_1_2_3_right_noflip_up = np.sqrt(t16 + t437)
+    del t437
+    t438 = size_1_1 * h_1_1_2_3_right_noflip_up <= t20
     qx_1_1_2_3_right_noflip_up = w_x * c_1_1_2_3_right_noflip_up + w_y * s_1_1_2_3_right_noflip_up
-    t433 = 1.0 / h_1_1_2_3_right_noflip_up
-    uc_1_1_2_3_right_noflip_up = T33 * t433
-    t434 = qx_1_1_2_3_right_noflip_up - d5 * uc_1_1_2_3_right_noflip_up
-    x_1_1_2_3_right_noflip_up = _runtime.select(t432, qx_1_1_2_3_right_noflip_up, t434)
-    del qx_1_1_2_3_right_noflip_up, t434
+    t439 = 1.0 / h_1_1_2_3_right_noflip_up
+    uc_1_1_2_3_right_noflip_up = T33 * t439
+    t440 = qx_1_1_2_3_right_noflip_up - d5 * uc_1_1_2_3_right_noflip_up
+    x_1_1_2_3_right_noflip_up = _runtime.select(t438, qx_1_1_2_3_right_noflip_up, t440)
+    del qx_1_1_2_3_right_noflip_up, t440
     dqx_1_1_2_3_right_noflip_up = w_y * c_1_1_2_3_right_noflip_up - w_x * s_1_1_2_3_right_noflip_up
-    t435 = axisx_1_1_2_3_right_noflip_up * t433
-    del axisx_1_1_2_3_right_noflip_up, t433
-    t436 = T13 * s_1_1_2_3_right_noflip_up - T23 * c_1_1_2_3_right_noflip_up
-    t437 = h_1_1_2_3_right_noflip_up * h_1_1_2_3_right_noflip_up
+    t441 = axisx_1_1_2_3_right_noflip_up * t439
+    del axisx_1_1_2_3_right_noflip_up, t439
+    t442 = T13 * s_1_1_2_3_right_noflip_up - T23 * c_1_1_2_3_right_noflip_up
+    t443 = h_1_1_2_3_right_noflip_up * h_1_1_2_3_right_noflip_up
     del h_1_1_2_3_right_noflip_up
-    rate_1_1_2_3_right_noflip_up = d5 * (T33 * t436) / t437
-    del t436, t437
-    t438 = dqx_1_1_2_3_right_noflip_up - t435 * rate_1_1_2_3_right_noflip_up
-    dx_1_1_2_3_right_noflip_up = _runtime.select(t432, dqx_1_1_2_3_right_noflip_up, t438)
-    del dqx_1_1_2_3_right_noflip_up, t438
-    t439 = x_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
-    t440 = _runtime.select(t432, t26, t26 - d5 * t435)
-    del t435
-    t441 = uc_1_1_2_3_right_noflip_up * rate_1_1_2_3_right_noflip_up
-    del rate_1_1_2_3_right_noflip_up, uc_1_1_2_3_right_noflip_up
-    t442 = _runtime.select(t432, 0.0, t441)
+    rate_1_1_2_3_right_noflip_up = d5 * (T33 * t442) / t443
+    del t442, t443
+    t444 = dqx_1_1_2_3_right_noflip_up - t441 * rate_1_1_2_3_right_noflip_up
+    dx_1_1_2_3_right_noflip_up = _runtime.select(t438, dqx_1_1_2_3_right_noflip_up, t444)
+    del dqx_1_1_2_3_right_noflip_up, t444
+    t445 = x_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
+    t446 = _runtime.select(t438, t26, t26 - d5 * t441)
     del t441
-    slope_1_1_2_3_right_noflip_up = t439 + t440 * t442
-    del t439
-    t443 = slope_1_1_2_3_right_noflip_up * slope_1_1_2_3_right_noflip_up
-    t444 = x_1_1_2_3_right_noflip_up * x_1_1_2_3_right_noflip_up
+    t447 = uc_1_1_2_3_right_noflip_up * rate_1_1_2_3_right_noflip_up
+    del rate_1_1_2_3_right_noflip_up, uc_1_1_2_3_right_noflip_up
+    t448 = _runtime.select(t438, 0.0, t447)
+    del t447
+    slope_1_1_2_3_right_noflip_up = t445 + t446 * t448
+    del t445
+    t449 = slope_1_1_2_3_right_noflip_up * slope_1_1_2_3_right_noflip_up
+    t450 = x_1_1_2_3_right_noflip_up * x_1_1_2_3_right_noflip_up
     del x_1_1_2_3_right_noflip_up
-    square_1_1_2_3_right_noflip_up = t444 + t440 * t440
-    del t440, t444
-    nearest_1_1_2_3_right_noflip_up = _runtime.select(t432, t30, fold_1_1)
+    square_1_1_2_3_right_noflip_up = t450 + t446 * t446
+    del t446, t450
+    nearest_1_1_2_3_right_noflip_up = _runtime.select(t438, t30, fold_1_1)
     low_1_1_2_3_right_noflip_up = nearest_1_1_2_3_right_noflip_up * nearest_1_1_2_3_right_noflip_up
     del nearest_1_1_2_3_right_noflip_up
-    farthest_1_1_2_3_right_noflip_up = _runtime.select(t432, t5, full_1_1)
-    del t432
+    farthest_1_1_2_3_right_noflip_up = _runtime.select(t438, t5, full_1_1)
+    del t438
     high_1_1_2_3_right_noflip_up = farthest_1_1_2_3_right_noflip_up * farthest_1_1_2_3_right_noflip_up
     del farthest_1_1_2_3_right_noflip_up
-    t445 = np.minimum(high_1_1_2_3_right_noflip_up, square_1_1_2_3_right_noflip_up)
+    t451 = np.minimum(high_1_1_2_3_right_noflip_up, square_1_1_2_3_right_noflip_up)
     del high_1_1_2_3_right_noflip_up
-    t446 = np.maximum(low_1_1_2_3_right_noflip_up, t445)
-    del low_1_1_2_3_right_noflip_up, t445
-    miss_1_1_2_3_right_noflip_up = square_1_1_2_3_right_noflip_up - t446
-    del square_1_1_2_3_right_noflip_up, t446
-    t447 = dx_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
+    t452 = np.maximum(low_1_1_2_3_right_noflip_up, t451)
+    del low_1_1_2_3_right_noflip_up, t451
+    miss_1_1_2_3_right_noflip_up = square_1_1_2_3_right_noflip_up - t452
+    del square_1_1_2_3_right_noflip_up, t452
+    t453 = dx_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
     del dx_1_1_2_3_right_noflip_up
-    bend_1_1_2_3_right_noflip_up = t447 + t442 * t442
-    del t442, t447
-    t448 = miss_1_1_2_3_right_noflip_up * bend_1_1_2_3_right_noflip_up
-    inner_1_1_2_3_right_noflip_up = t443 - t448
-    del t443, t448
-    t449 = slope_1_1_2_3_right_noflip_up / (2.0 * bend_1_1_2_3_right_noflip_up)
+    bend_1_1_2_3_right_noflip_up = t453 + t448 * t448
+    del t448, t453
+    t454 = miss_1_1_2_3_right_noflip_up * bend_1_1_2_3_right_noflip_up
+    inner_1_1_2_3_right_noflip_up = t449 - t454
+    del t449, t454
+    t455 = slope_1_1_2_3_right_noflip_up / (2.0 * bend_1_1_2_3_right_noflip_up)
     del bend_1_1_2_3_right_noflip_up
-    t450 = np.maximum(0.0, inner_1_1_2_3_right_noflip_up)
-    t451 = _runtime.sign(slope_1_1_2_3_right_noflip_up) * np.sqrt(t450)
-    del t450
-    t452 = miss_1_1_2_3_right_noflip_up / (2.0 * (slope_1_1_2_3_right_noflip_up + t451))
-    del miss_1_1_2_3_right_noflip_up, slope_1_1_2_3_right_noflip_up, t451
-    t453 = _runtime.select(inner_1_1_2_3_right_noflip_up < 0.0, t449, t452)
-    del inner_1_1_2_3_right_noflip_up, t449, t452
-    t454 = t453 * t453
-    t455 = 1.0 / (1.0 + t454)
-    t456 = 2.0 * t453 * t455
-    del t453
-    by_c_1_1_2_3_right_noflip_up = t455 * (1.0 - t454)
-    del t454, t455
-    t457 = d4 * (t456 * t456) / (1.0 + np.abs(by_c_1_1_2_3_right_noflip_up))
-    t458 = (t457 + root1 * np.abs(t456) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_noflip_up)
-    del t457
-    cosine_1_1_2_3_right_noflip_up = _runtime.select(t458, by_c_1_1_2_3_right_noflip_up, 1.0)
-    del by_c_1_1_2_3_right_noflip_up
-    t459 = c_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
-    sine_1_1_2_3_right_noflip_up = _runtime.select(t458, -t456, 0.0)
-    del t456, t458
-    t460 = s_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
-    c_1_1_2_3_4_right_noflip_up = t459 - t460
-    del t459, t460
-    t461 = c_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
-    del c_1_1_2_3_right_noflip_up, sine_1_1_2_3_right_noflip_up
-    t462 = s_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
-    del cosine_1_1_2_3_right_noflip_up, s_1_1_2_3_right_noflip_up
-    s_1_1_2_3_4_right_noflip_up = t461 + t462
+    t456 = np.maximum(0.0, inner_1_1_2_3_right_noflip_up)
+    t457 = _runtime.sign(slope_1_1_2_3_right_noflip_up) * np.sqrt(t456)
+    del t456
+    outer_1_1_2_3_right_noflip_up = slope_1_1_2_3_right_noflip_up + t457
+    del slope_1_1_2_3_right_noflip_up, t457
+    t458 = miss_1_1_2_3_right_noflip_up / (2.0 * outer_1_1_2_3_right_noflip_up)
+    del miss_1_1_2_3_right_noflip_up
+    t459 = _runtime.select(outer_1_1_2_3_right_noflip_up == 0.0, 0.0, t458)
+    del outer_1_1_2_3_right_noflip_up, t458
+    t460 = _runtime.select(inner_1_1_2_3_right_noflip_up < 0.0, t455, t459)
+    del inner_1_1_2_3_right_noflip_up, t455, t459
+    t461 = t460 * t460
+    t462 = 1.0 / (1.0 + t461)
+    t463 = 2.0 * t460 * t462
+    del t460
+    by_c_1_1_2_3_right_noflip_up = t462 * (1.0 - t461)
     del t461, t462
-    axisx_1_1_2_3_4_right_noflip_up = T13 * c_1_1_2_3_4_right_noflip_up + T23 * s_1_1_2_3_4_right_noflip_up
-    t463 = axisx_1_1_2_3_4_right_noflip_up * axisx_1_1_2_3_4_right_noflip_up
-    h_1_1_2_3_4_right_noflip_up = np.sqrt(t16 + t463)
-    del t463
-    t464 = size_1_1 * h_1_1_2_3_4_right_noflip_up <= t20
-    qx_1_1_2_3_4_right_noflip_up = w_x * c_1_1_2_3_4_right_noflip_up + w_y * s_1_1_2_3_4_right_noflip_up
-    t465 = 1.0 / h_1_1_2_3_4_right_noflip_up
-    uc_1_1_2_3_4_right_noflip_up = T33 * t465
-    t466 = qx_1_1_2_3_4_right_noflip_up - d5 * uc_1_1_2_3_4_right_noflip_up
-    x_1_1_2_3_4_right_noflip_up = _runtime.select(t464, qx_1_1_2_3_4_right_noflip_up, t466)
-    del qx_1_1_2_3_4_right_noflip_up, t466
-    dqx_1_1_2_3_4_right_noflip_up = w_y * c_1_1_2_3_4_right_noflip_up - w_x * s_1_1_2_3_4_right_noflip_up
-    t467 = axisx_1_1_2_3_4_right_noflip_up * t465
-    del axisx_1_1_2_3_4_right_noflip_up, t465
-    t468 = T13 * s_1_1_2_3_4_right_noflip_up - T23 * c_1_1_2_3_4_right_noflip_up
-    t469 = h_1_1_2_3_4_right_noflip_up * h_1_1_2_3_4_right_noflip_up
-    del h_1_1_2_3_4_right_noflip_up
-    rate_1_1_2_3_4_right_noflip_up = d5 * (T33 * t468) / t469
+    t464 = d4 * (t463 * t463) / (1.0 + np.abs(by_c_1_1_2_3_right_noflip_up))
+    t465 = (t464 + root1 * np.abs(t463) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_noflip_up)
+    del t464
+    cosine_1_1_2_3_right_noflip_up = _runtime.select(t465, by_c_1_1_2_3_right_noflip_up, 1.0)
+    del by_c_1_1_2_3_right_noflip_up
+    t466 = c_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
+    sine_1_1_2_3_right_noflip_up = _runtime.select(t465, -t463, 0.0)
+    del t463, t465
+    t467 = s_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
+    c_1_1_2_3_4_right_noflip_up = t466 - t467
+    del t466, t467
+    t468 = c_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
+    del c_1_1_2_3_right_noflip_up, sine_1_1_2_3_right_noflip_up
+    t469 = s_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
+    del cosine_1_1_2_3_right_noflip_up, s_1_1_2_3_right_noflip_up
+    s_1_1_2_3_4_right_noflip_up = t468 + t469
     del t468, t469
-    t470 = dqx_1_1_2_3_4_right_noflip_up - t467 * rate_1_1_2_3_4_right_noflip_up
-    dx_1_1_2_3_4_right_noflip_up = _runtime.select(t464, dqx_1_1_2_3_4_right_noflip_up, t470)
-    del dqx_1_1_2_3_4_right_noflip_up, t470
-    t471 = x_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
-    t472 = _runtime.select(t464, t26, t26 - d5 * t467)
-    del t467
-    t473 = uc_1_1_2_3_4_right_noflip_up * rate_1_1_2_3_4_right_noflip_up
+    axisx_1_1_2_3_4_right_noflip_up = T13 * c_1_1_2_3_4_right_noflip_up + T23 * s_1_1_2_3_4_right_noflip_up
+    t470 = axisx_1_1_2_3_4_right_noflip_up * axisx_1_1_2_3_4_right_noflip_up
+    h_1_1_2_3_4_right_noflip_up = np.sqrt(t16 + t470)
+    del t470
+    t471 = size_1_1 * h_1_1_2_3_4_right_noflip_up <= t20
+    qx_1_1_2_3_4_right_noflip_up = w_x * c_1_1_2_3_4_right_noflip_up + w_y * s_1_1_2_3_4_right_noflip_up
+    t472 = 1.0 / h_1_1_2_3_4_right_noflip_up
+    uc_1_1_2_3_4_right_noflip_up = T33 * t472
+    t473 = qx_1_1_2_3_4_right_noflip_up - d5 * uc_1_1_2_3_4_right_noflip_up
+    x_1_1_2_3_4_right_noflip_up = _runtime.select(t471, qx_1_1_2_3_4_right_noflip_up, t473)
+    del qx_1_1_2_3_4_right_noflip_up, t473
+    dqx_1_1_2_3_4_right_noflip_up = w_y * c_1_1_2_3_4_right_noflip_up - w_x * s_1_1_2_3_4_right_noflip_up
+    t474 = axisx_1_1_2_3_4_right_noflip_up * t472
+    del axisx_1_1_2_3_4_right_noflip_up, t472
+    t475 = T13 * s_1_1_2_3_4_right_noflip_up - T23 * c_1_1_2_3_4_right_noflip_up
+    t476 = h_1_1_2_3_4_right_noflip_up * h_1_1_2_3_4_right_noflip_up
+    del h_1_1_2_3_4_right_noflip_up
+    rate_1_1_2_3_4_right_noflip_up = d5 * (T33 * t475) / t476
+    del t475, t476
+    t477 = dqx_1_1_2_3_4_right_noflip_up - t474 * rate_1_1_2_3_4_right_noflip_up
+    dx_1_1_2_3_4_right_noflip_up = _runtime.select(t471, dqx_1_1_2_3_4_right_noflip_up, t477)
+    del dqx_1_1_2_3_4_right_noflip_up, t477
+    t478 = x_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
+    t479 = _runtime.select(t471, t26, t26 - d5 * t474)
+    del t474
+    t480 = uc_1_1_2_3_4_right_noflip_up * rate_1_1_2_3_4_right_noflip_up
     del rate_1_1_2_3_4_right_noflip_up, uc_1_1_2_3_4_right_noflip_up
-    t474 = _runtime.select(t464, 0.0, t473)
-    del t473
-    slope_1_1_2_3_4_right_noflip_up = t471 + t472 * t474
-    del t471
-    t475 = slope_1_1_2_3_4_right_noflip_up * slope_1_1_2_3_4_right_noflip_up
-    t476 = x_1_1_2_3_4_right_noflip_up * x_1_1_2_3_4_right_noflip_up
+    t481 = _runtime.select(t471, 0.0, t480)
+    del t480
+    slope_1_1_2_3_4_right_noflip_up = t478 + t479 * t481
+    del t478
+    t482 = slope_1_1_2_3_4_right_noflip_up * slope_1_1_2_3_4_right_noflip_up
+    t483 = x_1_1_2_3_4_right_noflip_up * x_1_1_2_3_4_right_noflip_up
     del x_1_1_2_3_4_right_noflip_up
-    square_1_1_2_3_4_right_noflip_up = t476 + t472 * t472
-    del t472, t476
-    nearest_1_1_2_3_4_right_noflip_up = _runtime.select(t464, t30, fold_1_1)
+    square_1_1_2_3_4_right_noflip_up = t483 + t479 * t479
+    del t479, t483
+    nearest_1_1_2_3_4_right_noflip_up = _runtime.select(t471, t30, fold_1_1)
     low_1_1_2_3_4_right_noflip_up = nearest_1_1_2_3_4_right_noflip_up * nearest_1_1_2_3_4_right_noflip_up
     del nearest_1_1_2_3_4_right_noflip_up
-    farthest_1_1_2_3_4_right_noflip_up = _runtime.select(t464, t5, full_1_1)
-    del t464
+    farthest_1_1_2_3_4_right_noflip_up = _runtime.select(t471, t5, full_1_1)
+    del t471
     high_1_1_2_3_4_right_noflip_up = farthest_1_1_2_3_4_right_noflip_up * farthest_1_1_2_3_4_right_noflip_up
     del farthest_1_1_2_3_4_right_noflip_up
-    t477 = np.minimum(high_1_1_2_3_4_right_noflip_up, square_1_1_2_3_4_right_noflip_up)
+    t484 = np.minimum(high_1_1_2_3_4_right_noflip_up, square_1_1_2_3_4_right_noflip_up)
     del high_1_1_2_3_4_right_noflip_up
-    t478 = np.maximum(low_1_1_2_3_4_right_noflip_up, t477)
-    del low_1_1_2_3_4_right_noflip_up, t477
-    miss_1_1_2_3_4_right_noflip_up = square_1_1_2_3_4_right_noflip_up - t478
-    del square_1_1_2_3_4_right_noflip_up, t478
-    t479 = dx_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
+    t485 = np.maximum(low_1_1_2_3_4_right_noflip_up, t484)
+    del low_1_1_2_3_4_right_noflip_up, t484
+    miss_1_1_2_3_4_right_noflip_up = square_1_1_2_3_4_right_noflip_up - t485
+    del square_1_1_2_3_4_right_noflip_up, t485
+    t486 = dx_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
     del dx_1_1_2_3_4_right_noflip_up
-    bend_1_1_2_3_4_right_noflip_up = t479 + t474 * t474
-    del t474, t479
-    t480 = miss_1_1_2_3_4_right_noflip_up * bend_1_1_2_3_4_right_noflip_up
-    inner_1_1_2_3_4_right_noflip_up = t475 - t480
-    del t475, t480
-    t481 = slope_1_1_2_3_4_right_noflip_up / (2.0 * bend_1_1_2_3_4_right_noflip_up)
+    bend_1_1_2_3_4_right_noflip_up = t486 + t481 * t481
+    del t481, t486
+    t487 = miss_1_1_2_3_4_right_noflip_up * bend_1_1_2_3_4_right_noflip_up
+    inner_1_1_2_3_4_right_noflip_up = t482 - t487
+    del t482, t487
+    t488 = slope_1_1_2_3_4_right_noflip_up / (2.0 * bend_1_1_2_3_4_right_noflip_up)
     del bend_1_1_2_3_4_right_noflip_up
-    t482 = _runtime.sign(slope_1_1_2_3_4_right_noflip_up)
-    t483 = np.maximum(0.0, inner_1_1_2_3_4_right_noflip_up)
-    outer_1_1_2_3_4_right_noflip_up = slope_1_1_2_3_4_right_noflip_up + t482 * np.sqrt(t483)
-    del slope_1_1_2_3_4_right_noflip_up, t482, t483
-    t484 = miss_1_1_2_3_4_right_noflip_up / (2.0 * outer_1_1_2_3_4_right_noflip_up)
-    del miss_1_1_2_3_4_right_noflip_up, outer_1_1_2_3_4_right_noflip_up
-    t485 = _runtime.select(inner_1_1_2_3_4_right_noflip_up < 0.0, t481, t484)
-    del inner_1_1_2_3_4_right_noflip_up, t481, t484
-    t486 = t485 * t485
-    t487 = 1.0 / (1.0 + t486)
-    t488 = 2.0 * t485 * t487
-    del t485
-    by_c_1_1_2_3_4_right_noflip_up = t487 * (1.0 - t486)
-    del t486, t487
-    t489 = d4 * (t488 * t488) / (1.0 + np.abs(by_c_1_1_2_3_4_right_noflip_up))
-    t490 = (t489 + root1 * np.abs(t488) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_noflip_up)
-    del t489
-    sine_1_1_2_3_4_right_noflip_up = _runtime.select(t490, -t488, 0.0)
-    del t488
-    t491 = c_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
-    cosine_1_1_2_3_4_right_noflip_up = _runtime.select(t490, by_c_1_1_2_3_4_right_noflip_up, 1.0)
-    del by_c_1_1_2_3_4_right_noflip_up, t490
-    t492 = s_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
-    s1_right_noflip_up = _runtime.select(tangent1, t491 + t492, -t358)
-    del t491, t492
-    t493 = c_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
+    t489 = _runtime.sign(slope_1_1_2_3_4_right_noflip_up)
+    t490 = np.maximum(0.0, inner_1_1_2_3_4_right_noflip_up)
+    outer_1_1_2_3_4_right_noflip_up = slope_1_1_2_3_4_right_noflip_up + t489 * np.sqrt(t490)
+    del slope_1_1_2_3_4_right_noflip_up, t489, t490
+    t491 = miss_1_1_2_3_4_right_noflip_up / (2.0 * outer_1_1_2_3_4_right_noflip_up)
+    del miss_1_1_2_3_4_right_noflip_up
+    t492 = _runtime.select(outer_1_1_2_3_4_right_noflip_up == 0.0, 0.0, t491)
+    del outer_1_1_2_3_4_right_noflip_up, t491
+    t493 = _runtime.select(inner_1_1_2_3_4_right_noflip_up < 0.0, t488, t492)
+    del inner_1_1_2_3_4_right_noflip_up, t488, t492
+    t494 = t493 * t493
+    t495 = 1.0 / (1.0 + t494)
+    t496 = 2.0 * t493 * t495
+    del t493
+    by_c_1_1_2_3_4_right_noflip_up = t495 * (1.0 - t494)
+    del t494, t495
+    t497 = d4 * (t496 * t496) / (1.0 + np.abs(by_c_1_1_2_3_4_right_noflip_up))
+    t498 = (t497 + root1 * np.abs(t496) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_noflip_up)
+    del t497
+    sine_1_1_2_3_4_right_noflip_up = _runtime.select(t498, -t496, 0.0)
+    del t496
+    t499 = c_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
+    cosine_1_1_2_3_4_right_noflip_up = _runtime.select(t498, by_c_1_1_2_3_4_right_noflip_up, 1.0)
+    del by_c_1_1_2_3_4_right_noflip_up, t498
+    t500 = s_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
+    s1_right_noflip_up = _runtime.select(tangent1, t499 + t500, -t363)
+    del t499, t500
+    t501 = c_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
     del c_1_1_2_3_4_right_noflip_up, cosine_1_1_2_3_4_right_noflip_up
-    t494 = s_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
+    t502 = s_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
     del s_1_1_2_3_4_right_noflip_up, sine_1_1_2_3_4_right_noflip_up
-    c1_right_noflip_up = _runtime.select(tangent1, t493 - t494, c_1_1_right_noflip_up)
-    del t493, t494
-    t495 = np.arctan2(s1_right_noflip_up, c1_right_noflip_up)
+    c1_right_noflip_up = _runtime.select(tangent1, t501 - t502, c_1_1_right_noflip_up)
+    del t501, t502
+    t503 = np.arctan2(s1_right_noflip_up, c1_right_noflip_up)
     across_right_noflip_up = w_x * c1_right_noflip_up + w_y * s1_right_noflip_up
     M_13_right_noflip_up = T13 * c1_right_noflip_up + T23 * s1_right_noflip_up
-    t496 = t16 + M_13_right_noflip_up * M_13_right_noflip_up
-    h_wrist_right_noflip_up = np.sqrt(t496)
-    del t496
-    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t122
-    t497 = across_right_noflip_up * across_right_noflip_up
-    r_hub_right_noflip_up = np.sqrt(t44 + t497)
-    del t497
-    hub_mid_right_noflip_up = r_hub_right_noflip_up <= t6
-    t498 = d5 + r_hub_right_noflip_up
-    t499 = d5 - r_hub_right_noflip_up
-    mid_reach_right_noflip_up = np.minimum(full_1_1, t498) * 0.5 + np.maximum(fold_1_1, np.abs(t499)) * 0.5
-    t500 = (t498 - mid_reach_right_noflip_up) * (t498 + mid_reach_right_noflip_up)
-    k_mid_right_noflip_up = np.maximum(0.0, t500)
-    del t500
-    t501 = (t499 - mid_reach_right_noflip_up) * (t499 + mid_reach_right_noflip_up)
-    del mid_reach_right_noflip_up
-    d_mid_right_noflip_up = np.maximum(0.0, -t501)
-    del t501
-    n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
-    any_mid_right_noflip_up = n_mid_right_noflip_up <= t125
-    t502 = k_mid_right_noflip_up - d_mid_right_noflip_up
-    t503 = 1.0 / n_mid_right_noflip_up
-    del n_mid_right_noflip_up
-    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t502 * t503)
-    del t502
-    t504 = across_right_noflip_up * uc_mid_right_noflip_up
-    t505 = k_mid_right_noflip_up * d_mid_right_noflip_up
-    del d_mid_right_noflip_up, k_mid_right_noflip_up
-    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t503 * (2.0 * np.sqrt(t505)))
-    del any_mid_right_noflip_up, t503, t505
-    t506 = 1.0 / r_hub_right_noflip_up
-    del r_hub_right_noflip_up
-    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t504 + t26 * us_mid_right_noflip_up) * t506)
+    t504 = t16 + M_13_right_noflip_up * M_13_right_noflip_up
+    h_wrist_right_noflip_up = np.sqrt(t504)
     del t504
-    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t129 <= t6
-    t507 = 1.0 / h_wrist_right_noflip_up
-    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t507)
-    t508 = across_right_noflip_up - d5 * s_phi_right_noflip_up
-    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, M_13_right_noflip_up * t507)
-    del t507
-    t509 = t26 - d5 * c_phi_right_noflip_up
-    here_right_noflip_up = np.sqrt(t508 * t508 + t509 * t509)
-    del t508, t509
-    in_reach_right_noflip_up = np.minimum(full_1_1, np.maximum(here_right_noflip_up, fold_1_1))
-    t510 = (t498 - in_reach_right_noflip_up) * (t498 + in_reach_right_noflip_up)
-    del t498
-    k_near_right_noflip_up = np.maximum(0.0, t510)
+    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t124
+    t505 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t45 + t505)
+    del t505
+    hub_mid_right_noflip_up = r_hub_right_noflip_up <= t6
+    t506 = d5 + r_hub_right_noflip_up
+    t507 = d5 - r_hub_right_noflip_up
+    mid_reach_right_noflip_up = np.minimum(full_1_1, t506) * 0.5 + np.maximum(fold_1_1, np.abs(t507)) * 0.5
+    t508 = (t506 - mid_reach_right_noflip_up) * (t506 + mid_reach_right_noflip_up)
+    k_mid_right_noflip_up = np.maximum(0.0, t508)
+    del t508
+    t509 = (t507 - mid_reach_right_noflip_up) * (t507 + mid_reach_right_noflip_up)
+    del mid_reach_right_noflip_up
+    d_mid_right_noflip_up = np.maximum(0.0, -t509)
+    del t509
+    n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
+    any_mid_right_noflip_up = n_mid_right_noflip_up <= t127
+    t510 = k_mid_right_noflip_up - d_mid_right_noflip_up
+    t511 = 1.0 / n_mid_right_noflip_up
+    del n_mid_right_noflip_up
+    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t510 * t511)
     del t510
-    t511 = (t499 - in_reach_right_noflip_up) * (t499 + in_reach_right_noflip_up)
-    del t499
-    d_near_right_noflip_up = np.maximum(0.0, -t511)
-    del t511
-    n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
-    any_near_right_noflip_up = n_near_right_noflip_up <= t125
-    t512 = k_near_right_noflip_up - d_near_right_noflip_up
-    t513 = 1.0 / n_near_right_noflip_up
-    del n_near_right_noflip_up
-    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t512 * t513)
+    t512 = across_right_noflip_up * uc_mid_right_noflip_up
+    t513 = k_mid_right_noflip_up * d_mid_right_noflip_up
+    del d_mid_right_noflip_up, k_mid_right_noflip_up
+    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t511 * (2.0 * np.sqrt(t513)))
+    del any_mid_right_noflip_up, t511, t513
+    t514 = 1.0 / r_hub_right_noflip_up
+    del r_hub_right_noflip_up
+    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t512 + t26 * us_mid_right_noflip_up) * t514)
     del t512
-    t514 = across_right_noflip_up * uc_near_right_noflip_up
-    t515 = across_right_noflip_up * c_phi_right_noflip_up
-    t516 = t515 - t26 * s_phi_right_noflip_up
+    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t131 <= t6
+    t515 = 1.0 / h_wrist_right_noflip_up
+    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t515)
+    t516 = across_right_noflip_up - d5 * s_phi_right_noflip_up
+    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, M_13_right_noflip_up * t515)
     del t515
-    t517 = np.abs(t516)
-    side_right_noflip_up = _runtime.select(t517 <= t6, 1.0, -(t516 / t517))
+    t517 = t26 - d5 * c_phi_right_noflip_up
+    here_right_noflip_up = np.sqrt(t516 * t516 + t517 * t517)
     del t516, t517
-    t518 = k_near_right_noflip_up * d_near_right_noflip_up
-    del d_near_right_noflip_up, k_near_right_noflip_up
-    t519 = t513 * (2.0 * side_right_noflip_up * np.sqrt(t518))
-    del side_right_noflip_up, t513, t518
-    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t519)
-    del any_near_right_noflip_up, t519
-    t520 = t506 * (t514 + t26 * us_near_right_noflip_up)
-    del t514
-    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t520)
+    in_reach_right_noflip_up = np.minimum(full_1_1, np.maximum(here_right_noflip_up, fold_1_1))
+    t518 = (t506 - in_reach_right_noflip_up) * (t506 + in_reach_right_noflip_up)
+    del t506
+    k_near_right_noflip_up = np.maximum(0.0, t518)
+    del t518
+    t519 = (t507 - in_reach_right_noflip_up) * (t507 + in_reach_right_noflip_up)
+    del t507
+    d_near_right_noflip_up = np.maximum(0.0, -t519)
+    del t519
+    n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
+    any_near_right_noflip_up = n_near_right_noflip_up <= t127
+    t520 = k_near_right_noflip_up - d_near_right_noflip_up
+    t521 = 1.0 / n_near_right_noflip_up
+    del n_near_right_noflip_up
+    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t520 * t521)
     del t520
-    t521 = s_phi_right_noflip_up - c_near_right_noflip_up
-    t522 = across_right_noflip_up * us_near_right_noflip_up
-    del us_near_right_noflip_up
-    t523 = t506 * (t522 - t26 * uc_near_right_noflip_up)
-    del t522, uc_near_right_noflip_up
-    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t523)
+    t522 = across_right_noflip_up * uc_near_right_noflip_up
+    t523 = across_right_noflip_up * c_phi_right_noflip_up
+    t524 = t523 - t26 * s_phi_right_noflip_up
     del t523
-    t524 = c_phi_right_noflip_up + s_near_right_noflip_up
-    t525 = h_wrist_right_noflip_up * np.sqrt(t521 * t521 + t524 * t524)
-    del h_wrist_right_noflip_up, t521, t524
-    t526 = here_right_noflip_up - in_reach_right_noflip_up
+    t525 = np.abs(t524)
+    side_right_noflip_up = _runtime.select(t525 <= t6, 1.0, -(t524 / t525))
+    del t524, t525
+    t526 = k_near_right_noflip_up * d_near_right_noflip_up
+    del d_near_right_noflip_up, k_near_right_noflip_up
+    t527 = t521 * (2.0 * side_right_noflip_up * np.sqrt(t526))
+    del side_right_noflip_up, t521, t526
+    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t527)
+    del any_near_right_noflip_up, t527
+    t528 = t514 * (t522 + t26 * us_near_right_noflip_up)
+    del t522
+    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t528)
+    del t528
+    t529 = s_phi_right_noflip_up - c_near_right_noflip_up
+    t530 = across_right_noflip_up * us_near_right_noflip_up
+    del us_near_right_noflip_up
+    t531 = t514 * (t530 - t26 * uc_near_right_noflip_up)
+    del t530, uc_near_right_noflip_up
+    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t531)
+    del t531
+    t532 = c_phi_right_noflip_up + s_near_right_noflip_up
+    t533 = h_wrist_right_noflip_up * np.sqrt(t529 * t529 + t532 * t532)
+    del h_wrist_right_noflip_up, t529, t532
+    t534 = here_right_noflip_up - in_reach_right_noflip_up
     del here_right_noflip_up, in_reach_right_noflip_up
-    t527 = (t525 - 2.2737367544323206e-13 <= t140) & np.logical_not(np.abs(t526) <= t6)
-    del t525, t526
-    s_kept_right_noflip_up = _runtime.select(t527, c_near_right_noflip_up, s_phi_right_noflip_up)
+    t535 = (t533 - 2.2737367544323206e-13 <= t142) & np.logical_not(np.abs(t534) <= t6)
+    del t533, t534
+    s_kept_right_noflip_up = _runtime.select(t535, c_near_right_noflip_up, s_phi_right_noflip_up)
     del c_near_right_noflip_up
-    t528 = _runtime.select(close_right_noflip_up, s_kept_right_noflip_up, s_phi_right_noflip_up)
+    t536 = _runtime.select(close_right_noflip_up, s_kept_right_noflip_up, s_phi_right_noflip_up)
     del s_kept_right_noflip_up, s_phi_right_noflip_up
-    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t528)
-    del c_mid_right_noflip_up, t528
-    t529 = across_right_noflip_up - d5 * sphi_right_noflip_up
-    t530 = across_right_noflip_up * us_mid_right_noflip_up
+    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t536)
+    del c_mid_right_noflip_up, t536
+    t537 = across_right_noflip_up - d5 * sphi_right_noflip_up
+    t538 = across_right_noflip_up * us_mid_right_noflip_up
     del across_right_noflip_up, us_mid_right_noflip_up
-    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t506 * (t530 - t26 * uc_mid_right_noflip_up))
-    del hub_mid_right_noflip_up, t506, t530, uc_mid_right_noflip_up
-    c_kept_right_noflip_up = _runtime.select(t527, -s_near_right_noflip_up, c_phi_right_noflip_up)
-    del s_near_right_noflip_up, t527
-    t531 = _runtime.select(close_right_noflip_up, c_kept_right_noflip_up, c_phi_right_noflip_up)
+    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t514 * (t538 - t26 * uc_mid_right_noflip_up))
+    del hub_mid_right_noflip_up, t514, t538, uc_mid_right_noflip_up
+    c_kept_right_noflip_up = _runtime.select(t535, -s_near_right_noflip_up, c_phi_right_noflip_up)
+    del s_near_right_noflip_up, t535
+    t539 = _runtime.select(close_right_noflip_up, c_kept_right_noflip_up, c_phi_right_noflip_up)
     del c_kept_right_noflip_up, c_phi_right_noflip_up, close_right_noflip_up
-    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t531)
-    del s_mid_right_noflip_up, t531
+    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t539)
+    del s_mid_right_noflip_up, t539
     ey_right_noflip_up = t26 - d5 * cphi_right_noflip_up
-    t532 = t529 * t529 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t532)
-    del t532
-    t533 = full_1_1 - r_elbow_right_noflip_up
-    t534 = t29 + r_elbow_right_noflip_up
-    t535 = r_elbow_right_noflip_up - t29
-    t536 = t121 & (t120 <= t533) & (t120 <= t534) & (t120 <= t535)
-    unreachable_3 = np.logical_not(t536)
-    del t536
-    t537 = _runtime.poison(invalid | unreachable_3)
-    t538 = _runtime.wrap_cut(t495) + t537
-    del t495
+    t540 = t537 * t537 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t540)
+    del t540
+    t541 = full_1_1 - r_elbow_right_noflip_up
+    t542 = t29 + r_elbow_right_noflip_up
+    t543 = r_elbow_right_noflip_up - t29
+    t544 = t123 & (t122 <= t541) & (t122 <= t542) & (t122 <= t543)
+    unreachable_3 = np.logical_not(t544)
+    del t544
+    t545 = _runtime.poison(invalid | unreachable_3)
+    t546 = _runtime.wrap_cut(t503) + t545
+    del t503
     folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t6
-    A_elbow_right_noflip_up = np.maximum(t533, 0.0)
-    del t533
-    C_elbow_right_noflip_up = np.maximum(t535, 0.0)
-    del t535
-    t539 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
-    S_elbow_right_noflip_up = full_1_1 + r_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t534, 0.0)
-    del t534
-    t540 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
-    t541 = 1.0 / (t539 + t540)
-    c_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -((t539 - t540) * t541))
-    t542 = ey_right_noflip_up * c_base_elbow_right_noflip_up
-    t543 = 1.0 / r_elbow_right_noflip_up
-    del r_elbow_right_noflip_up
-    t544 = t542 * t543
-    del t542
-    area_elbow_right_noflip_up = 2.0 * np.sqrt(t539 * t540)
-    del t539, t540
-    s_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t541 * area_elbow_right_noflip_up)
+    A_elbow_right_noflip_up = np.maximum(t541, 0.0)
     del t541
-    t545 = t543 * (t529 * s_base_elbow_right_noflip_up)
-    s2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 0.0, t544 + t545)
-    t546 = ey_right_noflip_up * s_base_elbow_right_noflip_up
+    C_elbow_right_noflip_up = np.maximum(t543, 0.0)
+    del t543
+    t547 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
+    S_elbow_right_noflip_up = full_1_1 + r_elbow_right_noflip_up
+    B_elbow_right_noflip_up = np.maximum(t542, 0.0)
+    del t542
+    t548 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t549 = 1.0 / (t547 + t548)
+    c_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -((t547 - t548) * t549))
+    t550 = ey_right_noflip_up * c_base_elbow_right_noflip_up
+    t551 = 1.0 / r_elbow_right_noflip_up
+    del r_elbow_right_noflip_up
+    t552 = t550 * t551
+    del t550
+    area_elbow_right_noflip_up = 2.0 * np.sqrt(t547 * t548)
+    del t547, t548
+    s_base_elbow_right_noflip_up = _runtime.select(no_link_elbow, 0.0, t549 * area_elbow_right_noflip_up)
+    del t549
+    t553 = t551 * (t537 * s_base_elbow_right_noflip_up)
+    s2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 0.0, t552 + t553)
+    t554 = ey_right_noflip_up * s_base_elbow_right_noflip_up
     del ey_right_noflip_up, s_base_elbow_right_noflip_up
-    t547 = t543 * t546
-    del t546
-    t548 = t543 * (t529 * c_base_elbow_right_noflip_up)
-    del c_base_elbow_right_noflip_up, t529, t543
-    c2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 1.0, t547 - t548)
-    t549 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t550 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    t555 = t551 * t554
+    del t554
+    t556 = t551 * (t537 * c_base_elbow_right_noflip_up)
+    del c_base_elbow_right_noflip_up, t537, t551
+    c2_right_noflip_up = _runtime.select(folded_elbow_right_noflip_up, 1.0, t555 - t556)
+    t557 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
+    t558 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
     del A_elbow_right_noflip_up, S_elbow_right_noflip_up
-    t551 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t559 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
     del B_elbow_right_noflip_up, C_elbow_right_noflip_up
-    t552 = 1.0 / (t550 + t551)
-    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t552)
+    t560 = 1.0 / (t558 + t559)
+    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t560)
     del area_elbow_right_noflip_up
-    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t552 * (t550 - t551)))
-    del t550, t551, t552
-    t553 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
-    t554 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
-    t555 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
+    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t560 * (t558 - t559)))
+    del t558, t559, t560
+    t561 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
+    t562 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
+    t563 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
     del c2_right_noflip_up, s2_right_noflip_up
-    t556 = c3_right_noflip_up * t554 - s3_right_noflip_up * t555
-    t557 = c3_right_noflip_up * t555 + s3_right_noflip_up * t554
-    del t554, t555
-    t558 = _runtime.wrap_cut(np.arctan2(t556, t557)) + t537
-    del t556, t557
-    t559 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
+    t564 = c3_right_noflip_up * t562 - s3_right_noflip_up * t563
+    t565 = c3_right_noflip_up * t563 + s3_right_noflip_up * t562
+    del t562, t563
+    t566 = _runtime.wrap_cut(np.arctan2(t564, t565)) + t545
+    del t564, t565
+    t567 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
     del M_13_right_noflip_up
     M_33_right_noflip_up = T13 * s1_right_noflip_up - T23 * c1_right_noflip_up
-    t560 = _runtime.wrap_cut(-np.arctan2(t559, M_33_right_noflip_up))
-    del M_33_right_noflip_up, t559
-    t561 = t560 + t537
-    del t560
+    t568 = _runtime.wrap_cut(-np.arctan2(t567, M_33_right_noflip_up))
+    del M_33_right_noflip_up, t567
+    t569 = t568 + t545
+    del t568
     M_11_right_noflip_up = T11 * c1_right_noflip_up + T21 * s1_right_noflip_up
-    t562 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
+    t570 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
     del M_11_right_noflip_up
     M_12_right_noflip_up = T12 * c1_right_noflip_up + T22 * s1_right_noflip_up
     del c1_right_noflip_up, s1_right_noflip_up
-    t563 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
+    t571 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
     del M_12_right_noflip_up
-    t564 = _runtime.wrap_cut(-np.arctan2(t562, t563)) + t537
-    del t562, t563
-    s2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 0.0, t544 - t545)
-    del t544, t545
-    c2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t548 + t547))
-    del t547, t548
-    t565 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
-    t566 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
-    t567 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
+    t572 = _runtime.wrap_cut(-np.arctan2(t570, t571)) + t545
+    del t570, t571
+    s2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 0.0, t552 - t553)
+    del t552, t553
+    c2_right_noflip_down = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t556 + t555))
+    del t555, t556
+    t573 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
+    t574 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
+    t575 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
     del c2_right_noflip_down, cphi_right_noflip_up, s2_right_noflip_down, sphi_right_noflip_up
-    t568 = c3_right_noflip_up * t566 + s3_right_noflip_up * t567
-    t569 = c3_right_noflip_up * t567 - s3_right_noflip_up * t566
-    del c3_right_noflip_up, s3_right_noflip_up, t566, t567
-    t570 = _runtime.wrap_cut(np.arctan2(t568, t569)) + t537
-    del t568, t569
-    x_1_1_right_flip_up = _runtime.select(t360, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up + t362)
-    del qx_1_1_right_noflip_up, t362
-    dx_1_1_right_flip_up = _runtime.select(t360, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up - t366)
-    del dqx_1_1_right_noflip_up, t366
-    t571 = _runtime.select(t360, t26, t26 + t368)
-    del t360, t368
-    slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t370 * t571
-    del t370
-    t572 = slope_1_1_right_flip_up * slope_1_1_right_flip_up
-    square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t571 * t571
-    del t571, x_1_1_right_flip_up
-    t573 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_flip_up)
+    t576 = c3_right_noflip_up * t574 + s3_right_noflip_up * t575
+    t577 = c3_right_noflip_up * t575 - s3_right_noflip_up * t574
+    del c3_right_noflip_up, s3_right_noflip_up, t574, t575
+    t578 = _runtime.wrap_cut(np.arctan2(t576, t577)) + t545
+    del t576, t577
+    x_1_1_right_flip_up = _runtime.select(t365, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up + t367)
+    del qx_1_1_right_noflip_up, t367
+    dx_1_1_right_flip_up = _runtime.select(t365, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up - t371)
+    del dqx_1_1_right_noflip_up, t371
+    t579 = _runtime.select(t365, t26, t26 + t373)
+    del t365, t373
+    slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t375 * t579
+    del t375
+    t580 = slope_1_1_right_flip_up * slope_1_1_right_flip_up
+    square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t579 * t579
+    del t579, x_1_1_right_flip_up
+    t581 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_flip_up)
     del high_1_1_right_noflip_up
-    miss_1_1_right_flip_up = square_1_1_right_flip_up - np.maximum(low_1_1_right_noflip_up, t573)
-    del low_1_1_right_noflip_up, square_1_1_right_flip_up, t573
-    bend_1_1_right_flip_up = t375 + dx_1_1_right_flip_up * dx_1_1_right_flip_up
-    del dx_1_1_right_flip_up, t375
-    t574 = miss_1_1_right_flip_up * bend_1_1_right_flip_up
-    inner_1_1_right_flip_up = t572 - t574
-    del t572, t574
-    t575 = slope_1_1_right_flip_up / (2.0 * bend_1_1_right_flip_up)
+    miss_1_1_right_flip_up = square_1_1_right_flip_up - np.maximum(low_1_1_right_noflip_up, t581)
+    del low_1_1_right_noflip_up, square_1_1_right_flip_up, t581
+    bend_1_1_right_flip_up = t380 + dx_1_1_right_flip_up * dx_1_1_right_flip_up
+    del dx_1_1_right_flip_up, t380
+    t582 = miss_1_1_right_flip_up * bend_1_1_right_flip_up
+    inner_1_1_right_flip_up = t580 - t582
+    del t580, t582
+    t583 = slope_1_1_right_flip_up / (2.0 * bend_1_1_right_flip_up)
     del bend_1_1_right_flip_up
-    t576 = np.sqrt(np.maximum(0.0, inner_1_1_right_flip_up))
-    t577 = _runtime.sign(slope_1_1_right_flip_up) * t576
-    del t576
-    t578 = miss_1_1_right_flip_up / (2.0 * (slope_1_1_right_flip_up + t577))
-    del miss_1_1_right_flip_up, slope_1_1_right_flip_up, t577
-    t579 = _runtime.select(inner_1_1_right_flip_up < 0.0, t575, t578)
-    del inner_1_1_right_flip_up, t575, t578
-    t580 = t579 * t579
-    t581 = 1.0 / (1.0 + t580)
-    t582 = 2.0 * t579 * t581
-    del t579
-    by_c_1_1_right_flip_up = t581 * (1.0 - t580)
-    del t580, t581
-    t583 = d4 * (t582 * t582) / (1.0 + np.abs(by_c_1_1_right_flip_up))
-    t584 = (t583 + root1 * np.abs(t582) <= whole_1_1) & (0.0 < by_c_1_1_right_flip_up)
-    del t583
-    cosine_1_1_right_flip_up = _runtime.select(t584, by_c_1_1_right_flip_up, 1.0)
-    del by_c_1_1_right_flip_up
-    t585 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up
-    sine_1_1_right_flip_up = _runtime.select(t584, -t582, 0.0)
-    del t582, t584
-    c_1_1_2_right_flip_up = t585 + t358 * sine_1_1_right_flip_up
-    del t585
-    t586 = c_1_1_right_noflip_up * sine_1_1_right_flip_up
-    del sine_1_1_right_flip_up
-    s_1_1_2_right_flip_up = t586 - t358 * cosine_1_1_right_flip_up
-    del cosine_1_1_right_flip_up, t586
-    axisx_1_1_2_right_flip_up = T13 * c_1_1_2_right_flip_up + T23 * s_1_1_2_right_flip_up
-    t587 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up
-    t588 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up
-    most_1_1_2_right_flip_up = np.sqrt(t587 + t588 * t588)
-    qx_1_1_2_right_flip_up = w_x * c_1_1_2_right_flip_up + w_y * s_1_1_2_right_flip_up
-    t589 = qx_1_1_2_right_flip_up * qx_1_1_2_right_flip_up
-    r_1_1_2_right_flip_up = np.sqrt(t44 + t589)
-    del t589
-    t590 = r_1_1_2_right_flip_up <= t47
-    t591 = d5 + r_1_1_2_right_flip_up
-    t592 = 1.0 / np.sqrt(t16 + t587)
-    del t587
-    t593 = T33 * t592
-    t594 = qx_1_1_2_right_flip_up + d5 * t593
-    us_1_1_2_right_flip_up = axisx_1_1_2_right_flip_up * t592
+    t584 = np.sqrt(np.maximum(0.0, inner_1_1_right_flip_up))
+    t585 = _runtime.sign(slope_1_1_right_flip_up) * t584
+    del t584
+    outer_1_1_right_flip_up = slope_1_1_right_flip_up + t585
+    del slope_1_1_right_flip_up, t585
+    t586 = miss_1_1_right_flip_up / (2.0 * outer_1_1_right_flip_up)
+    del miss_1_1_right_flip_up
+    t587 = _runtime.select(outer_1_1_right_flip_up == 0.0, 0.0, t586)
+    del outer_1_1_right_flip_up, t586
+    t588 = _runtime.select(inner_1_1_right_flip_up < 0.0, t583, t587)
+    del inner_1_1_right_flip_up, t583, t587
+    t589 = t588 * t588
+    t590 = 1.0 / (1.0 + t589)
+    t591 = 2.0 * t588 * t590
+    del t588
+    by_c_1_1_right_flip_up = t590 * (1.0 - t589)
+    del t589, t590
+    t592 = d4 * (t591 * t591) / (1.0 + np.abs(by_c_1_1_right_flip_up))
+    t593 = (t592 + root1 * np.abs(t591) <= whole_1_1) & (0.0 < by_c_1_1_right_flip_up)
     del t592
-    t595 = t26 + d5 * us_1_1_2_right_flip_up
-    there_1_1_2_right_flip_up = np.sqrt(t594 * t594 + t595 * t595)
-    del t594, t595
-    t596 = np.maximum(there_1_1_2_right_flip_up, fold_1_1)
-    goal_1_1_2_right_flip_up = np.minimum(full_1_1, t596)
-    del t596
-    t597 = (t591 - goal_1_1_2_right_flip_up) * (t591 + goal_1_1_2_right_flip_up)
-    del t591
-    k_v_1_1_2_right_flip_up = np.maximum(0.0, t597)
-    del t597
-    t598 = d5 - r_1_1_2_right_flip_up
-    t599 = (goal_1_1_2_right_flip_up - t598) * (goal_1_1_2_right_flip_up + t598)
+    cosine_1_1_right_flip_up = _runtime.select(t593, by_c_1_1_right_flip_up, 1.0)
+    del by_c_1_1_right_flip_up
+    t594 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up
+    sine_1_1_right_flip_up = _runtime.select(t593, -t591, 0.0)
+    del t591, t593
+    c_1_1_2_right_flip_up = t594 + t363 * sine_1_1_right_flip_up
+    del t594
+    t595 = c_1_1_right_noflip_up * sine_1_1_right_flip_up
+    del sine_1_1_right_flip_up
+    s_1_1_2_right_flip_up = t595 - t363 * cosine_1_1_right_flip_up
+    del cosine_1_1_right_flip_up, t595
+    axisx_1_1_2_right_flip_up = T13 * c_1_1_2_right_flip_up + T23 * s_1_1_2_right_flip_up
+    t596 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up
+    t597 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up
+    most_1_1_2_right_flip_up = np.sqrt(t596 + t597 * t597)
+    qx_1_1_2_right_flip_up = w_x * c_1_1_2_right_flip_up + w_y * s_1_1_2_right_flip_up
+    t598 = qx_1_1_2_right_flip_up * qx_1_1_2_right_flip_up
+    r_1_1_2_right_flip_up = np.sqrt(t45 + t598)
     del t598
-    d_v_1_1_2_right_flip_up = np.maximum(0.0, t599)
-    del t599
-    n_v_1_1_2_right_flip_up = k_v_1_1_2_right_flip_up + d_v_1_1_2_right_flip_up
-    t600 = n_v_1_1_2_right_flip_up <= t56
-    del t56
-    t601 = k_v_1_1_2_right_flip_up - d_v_1_1_2_right_flip_up
-    t602 = 1.0 / n_v_1_1_2_right_flip_up
-    del n_v_1_1_2_right_flip_up
-    uc_v_1_1_2_right_flip_up = _runtime.select(t600, 1.0, t601 * t602)
+    t599 = r_1_1_2_right_flip_up <= t48
+    t600 = d5 + r_1_1_2_right_flip_up
+    t601 = 1.0 / np.sqrt(t16 + t596)
+    del t596
+    t602 = T33 * t601
+    t603 = qx_1_1_2_right_flip_up + d5 * t602
+    us_1_1_2_right_flip_up = axisx_1_1_2_right_flip_up * t601
     del t601
-    t603 = qx_1_1_2_right_flip_up * uc_v_1_1_2_right_flip_up
-    t604 = qx_1_1_2_right_flip_up * us_1_1_2_right_flip_up
+    t604 = t26 + d5 * us_1_1_2_right_flip_up
+    there_1_1_2_right_flip_up = np.sqrt(t603 * t603 + t604 * t604)
+    del t603, t604
+    t605 = np.maximum(there_1_1_2_right_flip_up, fold_1_1)
+    goal_1_1_2_right_flip_up = np.minimum(full_1_1, t605)
+    del t605
+    t606 = (t600 - goal_1_1_2_right_flip_up) * (t600 + goal_1_1_2_right_flip_up)
+    del t600
+    k_v_1_1_2_right_flip_up = np.maximum(0.0, t606)
+    del t606
+    t607 = d5 - r_1_1_2_right_flip_up
+    t608 = (goal_1_1_2_right_flip_up - t607) * (goal_1_1_2_right_flip_up + t607)
+    del t607
+    d_v_1_1_2_right_flip_up = np.maximum(0.0, t608)
+    del t608
+    n_v_1_1_2_right_flip_up = k_v_1_1_2_right_flip_up + d_v_1_1_2_right_flip_up
+    t609 = n_v_1_1_2_right_flip_up <= t57
+    del t57
+    t610 = k_v_1_1_2_right_flip_up - d_v_1_1_2_right_flip_up
+    t611 = 1.0 / n_v_1_1_2_right_flip_up
+    del n_v_1_1_2_right_flip_up
+    uc_v_1_1_2_right_flip_up = _runtime.select(t609, 1.0, t610 * t611)
+    del t610
+    t612 = qx_1_1_2_right_flip_up * uc_v_1_1_2_right_flip_up
+    t613 = qx_1_1_2_right_flip_up * us_1_1_2_right_flip_up
     del us_1_1_2_right_flip_up
-    t605 = k_v_1_1_2_right_flip_up * d_v_1_1_2_right_flip_up
+    t614 = k_v_1_1_2_right_flip_up * d_v_1_1_2_right_flip_up
     del d_v_1_1_2_right_flip_up, k_v_1_1_2_right_flip_up
-    t606 = 2.0 * _runtime.sign(t604 - t26 * t593) * np.sqrt(t605)
-    del t593, t604, t605
-    us_v_1_1_2_right_flip_up = _runtime.select(t600, 0.0, t602 * t606)
-    del t600, t602, t606
-    t607 = t26 * us_v_1_1_2_right_flip_up
-    t608 = 1.0 / r_1_1_2_right_flip_up
+    t615 = 2.0 * _runtime.sign(t613 - t26 * t602) * np.sqrt(t614)
+    del t602, t613, t614
+    us_v_1_1_2_right_flip_up = _runtime.select(t609, 0.0, t611 * t615)
+    del t609, t611, t615
+    t616 = t26 * us_v_1_1_2_right_flip_up
+    t617 = 1.0 / r_1_1_2_right_flip_up
     del r_1_1_2_right_flip_up
-    c_v_1_1_2_right_flip_up = _runtime.select(t590, 1.0, (t603 + t607) * t608)
-    t609 = -(T33 * c_v_1_1_2_right_flip_up) < 0.0
-    t610 = qx_1_1_2_right_flip_up * us_v_1_1_2_right_flip_up
+    c_v_1_1_2_right_flip_up = _runtime.select(t599, 1.0, (t612 + t616) * t617)
+    t618 = -(T33 * c_v_1_1_2_right_flip_up) < 0.0
+    t619 = qx_1_1_2_right_flip_up * us_v_1_1_2_right_flip_up
     del qx_1_1_2_right_flip_up, us_v_1_1_2_right_flip_up
-    t611 = t26 * uc_v_1_1_2_right_flip_up
+    t620 = t26 * uc_v_1_1_2_right_flip_up
     del uc_v_1_1_2_right_flip_up
-    wc_1_1_2_right_flip_up = _runtime.select(t590, 0.0, t608 * (t610 + t611))
-    s_v_1_1_2_right_flip_up = _runtime.select(t590, 0.0, t608 * (t610 - t611))
-    del t610, t611
-    to_c_1_1_2_right_flip_up = _runtime.select(t609, wc_1_1_2_right_flip_up, -s_v_1_1_2_right_flip_up)
+    wc_1_1_2_right_flip_up = _runtime.select(t599, 0.0, t617 * (t619 + t620))
+    s_v_1_1_2_right_flip_up = _runtime.select(t599, 0.0, t617 * (t619 - t620))
+    del t619, t620
+    to_c_1_1_2_right_flip_up = _runtime.select(t618, wc_1_1_2_right_flip_up, -s_v_1_1_2_right_flip_up)
     del s_v_1_1_2_right_flip_up, wc_1_1_2_right_flip_up
-    c_w_1_1_2_right_flip_up = _runtime.select(t590, 1.0, t608 * (t603 - t607))
-    del t590, t603, t607, t608
-    to_s_1_1_2_right_flip_up = _runtime.select(t609, c_w_1_1_2_right_flip_up, c_v_1_1_2_right_flip_up)
-    del c_v_1_1_2_right_flip_up, c_w_1_1_2_right_flip_up, t609
-    t612 = T33 * to_c_1_1_2_right_flip_up / to_s_1_1_2_right_flip_up
+    c_w_1_1_2_right_flip_up = _runtime.select(t599, 1.0, t617 * (t612 - t616))
+    del t599, t612, t616, t617
+    to_s_1_1_2_right_flip_up = _runtime.select(t618, c_w_1_1_2_right_flip_up, c_v_1_1_2_right_flip_up)
+    del c_v_1_1_2_right_flip_up, c_w_1_1_2_right_flip_up, t618
+    t621 = T33 * to_c_1_1_2_right_flip_up / to_s_1_1_2_right_flip_up
     del to_c_1_1_2_right_flip_up, to_s_1_1_2_right_flip_up
-    t613 = np.minimum(most_1_1_2_right_flip_up, _runtime.select(t43, 0.0, t612))
-    del t43, t612
-    kept_1_1_2_right_flip_up = np.maximum(-most_1_1_2_right_flip_up, t613)
-    del t613
-    t614 = most_1_1_2_right_flip_up - kept_1_1_2_right_flip_up
-    t615 = most_1_1_2_right_flip_up + kept_1_1_2_right_flip_up
-    rest_1_1_2_right_flip_up = np.sqrt(t614 * t615) * _runtime.sign(-t588)
-    del t614, t615
-    t616 = axisx_1_1_2_right_flip_up * rest_1_1_2_right_flip_up
-    t617 = most_1_1_2_right_flip_up * most_1_1_2_right_flip_up
+    t622 = np.minimum(most_1_1_2_right_flip_up, _runtime.select(t44, 0.0, t621))
+    del t44, t621
+    kept_1_1_2_right_flip_up = np.maximum(-most_1_1_2_right_flip_up, t622)
+    del t622
+    t623 = most_1_1_2_right_flip_up - kept_1_1_2_right_flip_up
+    t624 = most_1_1_2_right_flip_up + kept_1_1_2_right_flip_up
+    rest_1_1_2_right_flip_up = np.sqrt(t623 * t624) * _runtime.sign(-t597)
+    del t623, t624
+    t625 = axisx_1_1_2_right_flip_up * rest_1_1_2_right_flip_up
+    t626 = most_1_1_2_right_flip_up * most_1_1_2_right_flip_up
     del most_1_1_2_right_flip_up
-    t618 = 1.0 / t617
-    del t617
-    t619 = (t616 + t588 * kept_1_1_2_right_flip_up) * t618
-    del t616
-    t620 = axisx_1_1_2_right_flip_up * kept_1_1_2_right_flip_up
+    t627 = 1.0 / t626
+    del t626
+    t628 = (t625 + t597 * kept_1_1_2_right_flip_up) * t627
+    del t625
+    t629 = axisx_1_1_2_right_flip_up * kept_1_1_2_right_flip_up
     del axisx_1_1_2_right_flip_up, kept_1_1_2_right_flip_up
-    by_c_1_1_2_right_flip_up = t618 * (t620 - t588 * rest_1_1_2_right_flip_up)
-    del rest_1_1_2_right_flip_up, t588, t618, t620
-    t621 = d4 * (t619 * t619) / (1.0 + np.abs(by_c_1_1_2_right_flip_up))
-    t622 = (t621 + root1 * np.abs(t619) <= whole_1_1) & (0.0 < by_c_1_1_2_right_flip_up)
-    del t621
-    t623 = there_1_1_2_right_flip_up - goal_1_1_2_right_flip_up
+    by_c_1_1_2_right_flip_up = t627 * (t629 - t597 * rest_1_1_2_right_flip_up)
+    del rest_1_1_2_right_flip_up, t597, t627, t629
+    t630 = d4 * (t628 * t628) / (1.0 + np.abs(by_c_1_1_2_right_flip_up))
+    t631 = (t630 + root1 * np.abs(t628) <= whole_1_1) & (0.0 < by_c_1_1_2_right_flip_up)
+    del t630
+    t632 = there_1_1_2_right_flip_up - goal_1_1_2_right_flip_up
     del goal_1_1_2_right_flip_up, there_1_1_2_right_flip_up
-    t624 = t622 & (t47 < np.abs(t623))
-    del t47, t622, t623
-    cosine_1_1_2_right_flip_up = _runtime.select(t624, by_c_1_1_2_right_flip_up, 1.0)
+    t633 = t631 & (t48 < np.abs(t632))
+    del t48, t631, t632
+    cosine_1_1_2_right_flip_up = _runtime.select(t633, by_c_1_1_2_right_flip_up, 1.0)
     del by_c_1_1_2_right_flip_up
-    t625 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
-    sine_1_1_2_right_flip_up = _runtime.select(t624, -t619, 0.0)
-    del t619, t624
-    t626 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
-    c_1_1_2_3_right_flip_up = t625 - t626
-    del t625, t626
-    t627 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
+    t634 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
+    sine_1_1_2_right_flip_up = _runtime.select(t633, -t628, 0.0)
+    del t628, t633
+    t635 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
+    c_1_1_2_3_right_flip_up = t634 - t635
+    del t634, t635
+    t636 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
     del c_1_1_2_right_flip_up, sine_1_1_2_right_flip_up
-    t628 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
+    t637 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
     del cosine_1_1_2_right_flip_up, s_1_1_2_right_flip_up
-    s_1_1_2_3_right_flip_up = t627 + t628
-    del t627, t628
+    s_1_1_2_3_right_flip_up = t636 + t637
+    del t636, t637
     axisx_1_1_2_3_right_flip_up = T13 * c_1_1_2_3_right_flip_up + T23 * s_1_1_2_3_right_flip_up
-    t629 = axisx_1_1_2_3_right_flip_up * axisx_1_1_2_3_right_flip_up
-    h_1_1_2_3_right_flip_up = np.sqrt(t16 + t629)
-    del t629
-    t630 = size_1_1 * h_1_1_2_3_right_flip_up <= t20
+    t638 = axisx_1_1_2_3_right_flip_up * axisx_1_1_2_3_right_flip_up
+    h_1_1_2_3_right_flip_up = np.sqrt(t16 + t638)
+    del t638
+    t639 = size_1_1 * h_1_1_2_3_right_flip_up <= t20
     qx_1_1_2_3_right_flip_up = w_x * c_1_1_2_3_right_flip_up + w_y * s_1_1_2_3_right_flip_up
-    t631 = 1.0 / h_1_1_2_3_right_flip_up
-    t632 = T33 * t631
-    x_1_1_2_3_right_flip_up = _runtime.select(t630, qx_1_1_2_3_right_flip_up, qx_1_1_2_3_right_flip_up + d5 * t632)
+    t640 = 1.0 / h_1_1_2_3_right_flip_up
+    t641 = T33 * t640
+    x_1_1_2_3_right_flip_up = _runtime.select(t639, qx_1_1_2_3_right_flip_up, qx_1_1_2_3_right_flip_up + d5 * t641)
     del qx_1_1_2_3_right_flip_up
     dqx_1_1_2_3_right_flip_up = w_y * c_1_1_2_3_right_flip_up - w_x * s_1_1_2_3_right_flip_up
-    us_1_1_2_3_right_flip_up = axisx_1_1_2_3_right_flip_up * t631
-    del axisx_1_1_2_3_right_flip_up, t631
-    t633 = T13 * s_1_1_2_3_right_flip_up - T23 * c_1_1_2_3_right_flip_up
-    t634 = h_1_1_2_3_right_flip_up * h_1_1_2_3_right_flip_up
+    us_1_1_2_3_right_flip_up = axisx_1_1_2_3_right_flip_up * t640
+    del axisx_1_1_2_3_right_flip_up, t640
+    t642 = T13 * s_1_1_2_3_right_flip_up - T23 * c_1_1_2_3_right_flip_up
+    t643 = h_1_1_2_3_right_flip_up * h_1_1_2_3_right_flip_up
     del h_1_1_2_3_right_flip_up
-    rate_1_1_2_3_right_flip_up = d5 * (T33 * t633) / t634
-    del t633, t634
-    t635 = us_1_1_2_3_right_flip_up * rate_1_1_2_3_right_flip_up
-    dx_1_1_2_3_right_flip_up = _runtime.select(t630, dqx_1_1_2_3_right_flip_up, dqx_1_1_2_3_right_flip_up + t635)
-    del dqx_1_1_2_3_right_flip_up, t635
-    t636 = x_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
-    t637 = _runtime.select(t630, t26, t26 + d5 * us_1_1_2_3_right_flip_up)
+    rate_1_1_2_3_right_flip_up = d5 * (T33 * t642) / t643
+    del t642, t643
+    t644 = us_1_1_2_3_right_flip_up * rate_1_1_2_3_right_flip_up
+    dx_1_1_2_3_right_flip_up = _runtime.select(t639, dqx_1_1_2_3_right_flip_up, dqx_1_1_2_3_right_flip_up + t644)
+    del dqx_1_1_2_3_right_flip_up, t644
+    t645 = x_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
+    t646 = _runtime.select(t639, t26, t26 + d5 * us_1_1_2_3_right_flip_up)
     del us_1_1_2_3_right_flip_up
-    dy_1_1_2_3_right_flip_up = _runtime.select(t630, 0.0, t632 * rate_1_1_2_3_right_flip_up)
-    del rate_1_1_2_3_right_flip_up, t632
-    slope_1_1_2_3_right_flip_up = t636 - t637 * dy_1_1_2_3_right_flip_up
-    del t636
-    t638 = slope_1_1_2_3_right_flip_up * slope_1_1_2_3_right_flip_up
-    t639 = x_1_1_2_3_right_flip_up * x_1_1_2_3_right_flip_up
+    dy_1_1_2_3_right_flip_up = _runtime.select(t639, 0.0, t641 * rate_1_1_2_3_right_flip_up)
+    del rate_1_1_2_3_right_flip_up, t641
+    slope_1_1_2_3_right_flip_up = t645 - t646 * dy_1_1_2_3_right_flip_up
+    del t645
+    t647 = slope_1_1_2_3_right_flip_up * slope_1_1_2_3_right_flip_up
+    t648 = x_1_1_2_3_right_flip_up * x_1_1_2_3_right_flip_up
     del x_1_1_2_3_right_flip_up
-    square_1_1_2_3_right_flip_up = t639 + t637 * t637
-    del t637, t639
-    nearest_1_1_2_3_right_flip_up = _runtime.select(t630, t30, fold_1_1)
+    square_1_1_2_3_right_flip_up = t648 + t646 * t646
+    del t646, t648
+    nearest_1_1_2_3_right_flip_up = _runtime.select(t639, t30, fold_1_1)
     low_1_1_2_3_right_flip_up = nearest_1_1_2_3_right_flip_up * nearest_1_1_2_3_right_flip_up
     del nearest_1_1_2_3_right_flip_up
-    farthest_1_1_2_3_right_flip_up = _runtime.select(t630, t5, full_1_1)
-    del t630
+    farthest_1_1_2_3_right_flip_up = _runtime.select(t639, t5, full_1_1)
+    del t639
     high_1_1_2_3_right_flip_up = farthest_1_1_2_3_right_flip_up * farthest_1_1_2_3_right_flip_up
     del farthest_1_1_2_3_right_flip_up
-    t640 = np.minimum(high_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up)
+    t649 = np.minimum(high_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up)
     del high_1_1_2_3_right_flip_up
-    miss_1_1_2_3_right_flip_up = square_1_1_2_3_right_flip_up - np.maximum(low_1_1_2_3_right_flip_up, t640)
-    del low_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up, t640
-    t641 = dx_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
+    miss_1_1_2_3_right_flip_up = square_1_1_2_3_right_flip_up - np.maximum(low_1_1_2_3_right_flip_up, t649)
+    del low_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up, t649
+    t650 = dx_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
     del dx_1_1_2_3_right_flip_up
-    t642 = dy_1_1_2_3_right_flip_up * dy_1_1_2_3_right_flip_up
+    t651 = dy_1_1_2_3_right_flip_up * dy_1_1_2_3_right_flip_up
     del dy_1_1_2_3_right_flip_up
-    bend_1_1_2_3_right_flip_up = t641 + t642
-    del t641, t642
-    t643 = miss_1_1_2_3_right_flip_up * bend_1_1_2_3_right_flip_up
-    inner_1_1_2_3_right_flip_up = t638 - t643
-    del t638, t643
-    t644 = slope_1_1_2_3_right_flip_up / (2.0 * bend_1_1_2_3_right_flip_up)
+    bend_1_1_2_3_right_flip_up = t650 + t651
+    del t650, t651
+    t652 = miss_1_1_2_3_right_flip_up * bend_1_1_2_3_right_flip_up
+    inner_1_1_2_3_right_flip_up = t647 - t652
+    del t647, t652
+    t653 = slope_1_1_2_3_right_flip_up / (2.0 * bend_1_1_2_3_right_flip_up)
     del bend_1_1_2_3_right_flip_up
-    t645 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_right_flip_up))
-    t646 = _runtime.sign(slope_1_1_2_3_right_flip_up) * t645
-    del t645
-    t647 = miss_1_1_2_3_right_flip_up / (2.0 * (slope_1_1_2_3_right_flip_up + t646))
-    del miss_1_1_2_3_right_flip_up, slope_1_1_2_3_right_flip_up, t646
-    t648 = _runtime.select(inner_1_1_2_3_right_flip_up < 0.0, t644, t647)
-    del inner_1_1_2_3_right_flip_up, t644, t647
-    t649 = t648 * t648
-    t650 = 1.0 / (1.0 + t649)
-    t651 = 2.0 * t648 * t650
-    del t648
-    by_c_1_1_2_3_right_flip_up = t650 * (1.0 - t649)
-    del t649, t650
-    t652 = d4 * (t651 * t651) / (1.0 + np.abs(by_c_1_1_2_3_right_flip_up))
-    t653 = (t652 + root1 * np.abs(t651) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_flip_up)
-    del t652
-    cosine_1_1_2_3_right_flip_up = _runtime.select(t653, by_c_1_1_2_3_right_flip_up, 1.0)
-    del by_c_1_1_2_3_right_flip_up
-    t654 = c_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
-    sine_1_1_2_3_right_flip_up = _runtime.select(t653, -t651, 0.0)
-    del t651, t653
-    t655 = s_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
-    c_1_1_2_3_4_right_flip_up = t654 - t655
-    del t654, t655
-    t656 = c_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
-    del c_1_1_2_3_right_flip_up, sine_1_1_2_3_right_flip_up
-    t657 = s_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
-    del cosine_1_1_2_3_right_flip_up, s_1_1_2_3_right_flip_up
-    s_1_1_2_3_4_right_flip_up = t656 + t657
-    del t656, t657
-    axisx_1_1_2_3_4_right_flip_up = T13 * c_1_1_2_3_4_right_flip_up + T23 * s_1_1_2_3_4_right_flip_up
-    t658 = axisx_1_1_2_3_4_right_flip_up * axisx_1_1_2_3_4_right_flip_up
-    h_1_1_2_3_4_right_flip_up = np.sqrt(t16 + t658)
+    t654 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_right_flip_up))
+    t655 = _runtime.sign(slope_1_1_2_3_right_flip_up) * t654
+    del t654
+    outer_1_1_2_3_right_flip_up = slope_1_1_2_3_right_flip_up + t655
+    del slope_1_1_2_3_right_flip_up, t655
+    t656 = miss_1_1_2_3_right_flip_up / (2.0 * outer_1_1_2_3_right_flip_up)
+    del miss_1_1_2_3_right_flip_up
+    t657 = _runtime.select(outer_1_1_2_3_right_flip_up == 0.0, 0.0, t656)
+    del outer_1_1_2_3_right_flip_up, t656
+    t658 = _runtime.select(inner_1_1_2_3_right_flip_up < 0.0, t653, t657)
+    del inner_1_1_2_3_right_flip_up, t653, t657
+    t659 = t658 * t658
+    t660 = 1.0 / (1.0 + t659)
+    t661 = 2.0 * t658 * t660
     del t658
-    t659 = size_1_1 * h_1_1_2_3_4_right_flip_up <= t20
+    by_c_1_1_2_3_right_flip_up = t660 * (1.0 - t659)
+    del t659, t660
+    t662 = d4 * (t661 * t661) / (1.0 + np.abs(by_c_1_1_2_3_right_flip_up))
+    t663 = (t662 + root1 * np.abs(t661) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_flip_up)
+    del t662
+    cosine_1_1_2_3_right_flip_up = _runtime.select(t663, by_c_1_1_2_3_right_flip_up, 1.0)
+    del by_c_1_1_2_3_right_flip_up
+    t664 = c_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
+    sine_1_1_2_3_right_flip_up = _runtime.select(t663, -t661, 0.0)
+    del t661, t663
+    t665 = s_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
+    c_1_1_2_3_4_right_flip_up = t664 - t665
+    del t664, t665
+    t666 = c_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
+    del c_1_1_2_3_right_flip_up, sine_1_1_2_3_right_flip_up
+    t667 = s_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
+    del cosine_1_1_2_3_right_flip_up, s_1_1_2_3_right_flip_up
+    s_1_1_2_3_4_right_flip_up = t666 + t667
+    del t666, t667
+    axisx_1_1_2_3_4_right_flip_up = T13 * c_1_1_2_3_4_right_flip_up + T23 * s_1_1_2_3_4_right_flip_up
+    t668 = axisx_1_1_2_3_4_right_flip_up * axisx_1_1_2_3_4_right_flip_up
+    h_1_1_2_3_4_right_flip_up = np.sqrt(t16 + t668)
+    del t668
+    t669 = size_1_1 * h_1_1_2_3_4_right_flip_up <= t20
     del size_1_1, t20
     qx_1_1_2_3_4_right_flip_up = w_x * c_1_1_2_3_4_right_flip_up + w_y * s_1_1_2_3_4_right_flip_up
-    t660 = 1.0 / h_1_1_2_3_4_right_flip_up
-    t661 = T33 * t660
-    x_1_1_2_3_4_right_flip_up = _runtime.select(t659, qx_1_1_2_3_4_right_flip_up, qx_1_1_2_3_4_right_flip_up + d5 * t661)
+    t670 = 1.0 / h_1_1_2_3_4_right_flip_up
+    t671 = T33 * t670
+    x_1_1_2_3_4_right_flip_up = _runtime.select(t669, qx_1_1_2_3_4_right_flip_up, qx_1_1_2_3_4_right_flip_up + d5 * t671)
     del qx_1_1_2_3_4_right_flip_up
     dqx_1_1_2_3_4_right_flip_up = w_y * c_1_1_2_3_4_right_flip_up - w_x * s_1_1_2_3_4_right_flip_up
-    us_1_1_2_3_4_right_flip_up = axisx_1_1_2_3_4_right_flip_up * t660
-    del axisx_1_1_2_3_4_right_flip_up, t660
-    t662 = T13 * s_1_1_2_3_4_right_flip_up - T23 * c_1_1_2_3_4_right_flip_up
-    t663 = h_1_1_2_3_4_right_flip_up * h_1_1_2_3_4_right_flip_up
+    us_1_1_2_3_4_right_flip_up = axisx_1_1_2_3_4_right_flip_up * t670
+    del axisx_1_1_2_3_4_right_flip_up, t670
+    t672 = T13 * s_1_1_2_3_4_right_flip_up - T23 * c_1_1_2_3_4_right_flip_up
+    t673 = h_1_1_2_3_4_right_flip_up * h_1_1_2_3_4_right_flip_up
     del h_1_1_2_3_4_right_flip_up
-    rate_1_1_2_3_4_right_flip_up = d5 * (T33 * t662) / t663
-    del t662, t663
-    t664 = us_1_1_2_3_4_right_flip_up * rate_1_1_2_3_4_right_flip_up
-    dx_1_1_2_3_4_right_flip_up = _runtime.select(t659, dqx_1_1_2_3_4_right_flip_up, dqx_1_1_2_3_4_right_flip_up + t664)
-    del dqx_1_1_2_3_4_right_flip_up, t664
-    t665 = x_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
-    t666 = _runtime.select(t659, t26, t26 + d5 * us_1_1_2_3_4_right_flip_up)
+    rate_1_1_2_3_4_right_flip_up = d5 * (T33 * t672) / t673
+    del t672, t673
+    t674 = us_1_1_2_3_4_right_flip_up * rate_1_1_2_3_4_right_flip_up
+    dx_1_1_2_3_4_right_flip_up = _runtime.select(t669, dqx_1_1_2_3_4_right_flip_up, dqx_1_1_2_3_4_right_flip_up + t674)
+    del dqx_1_1_2_3_4_right_flip_up, t674
+    t675 = x_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
+    t676 = _runtime.select(t669, t26, t26 + d5 * us_1_1_2_3_4_right_flip_up)
     del us_1_1_2_3_4_right_flip_up
-    dy_1_1_2_3_4_right_flip_up = _runtime.select(t659, 0.0, t661 * rate_1_1_2_3_4_right_flip_up)
-    del rate_1_1_2_3_4_right_flip_up, t661
-    slope_1_1_2_3_4_right_flip_up = t665 - t666 * dy_1_1_2_3_4_right_flip_up
-    del t665
-    t667 = slope_1_1_2_3_4_right_flip_up * slope_1_1_2_3_4_right_flip_up
-    t668 = x_1_1_2_3_4_right_flip_up * x_1_1_2_3_4_right_flip_up
+    dy_1_1_2_3_4_right_flip_up = _runtime.select(t669, 0.0, t671 * rate_1_1_2_3_4_right_flip_up)
+    del rate_1_1_2_3_4_right_flip_up, t671
+    slope_1_1_2_3_4_right_flip_up = t675 - t676 * dy_1_1_2_3_4_right_flip_up
+    del t675
+    t677 = slope_1_1_2_3_4_right_flip_up * slope_1_1_2_3_4_right_flip_up
+    t678 = x_1_1_2_3_4_right_flip_up * x_1_1_2_3_4_right_flip_up
     del x_1_1_2_3_4_right_flip_up
-    square_1_1_2_3_4_right_flip_up = t668 + t666 * t666
-    del t666, t668
-    nearest_1_1_2_3_4_right_flip_up = _runtime.select(t659, t30, fold_1_1)
+    square_1_1_2_3_4_right_flip_up = t678 + t676 * t676
+    del t676, t678
+    nearest_1_1_2_3_4_right_flip_up = _runtime.select(t669, t30, fold_1_1)
     del t30
     low_1_1_2_3_4_right_flip_up = nearest_1_1_2_3_4_right_flip_up * nearest_1_1_2_3_4_right_flip_up
     del nearest_1_1_2_3_4_right_flip_up
-    farthest_1_1_2_3_4_right_flip_up = _runtime.select(t659, t5, full_1_1)
-    del t5, t659
+    farthest_1_1_2_3_4_right_flip_up = _runtime.select(t669, t5, full_1_1)
+    del t5, t669
     high_1_1_2_3_4_right_flip_up = farthest_1_1_2_3_4_right_flip_up * farthest_1_1_2_3_4_right_flip_up
     del farthest_1_1_2_3_4_right_flip_up
-    t669 = np.minimum(high_1_1_2_3_4_right_flip_up, square_1_1_2_3_4_right_flip_up)
+    t679 = np.minimum(high_1_1_2_3_4_right_flip_up, square_1_1_2_3_4_right_flip_up)
     del high_1_1_2_3_4_right_flip_up
-    t670 = np.maximum(low_1_1_2_3_4_right_flip_up, t669)
-    del low_1_1_2_3_4_right_flip_up, t669
-    miss_1_1_2_3_4_right_flip_up = square_1_1_2_3_4_right_flip_up - t670
-    del square_1_1_2_3_4_right_flip_up, t670
-    t671 = dx_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
+    t680 = np.maximum(low_1_1_2_3_4_right_flip_up, t679)
+    del low_1_1_2_3_4_right_flip_up, t679
+    miss_1_1_2_3_4_right_flip_up = square_1_1_2_3_4_right_flip_up - t680
+    del square_1_1_2_3_4_right_flip_up, t680
+    t681 = dx_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
     del dx_1_1_2_3_4_right_flip_up
-    t672 = dy_1_1_2_3_4_right_flip_up * dy_1_1_2_3_4_right_flip_up
+    t682 = dy_1_1_2_3_4_right_flip_up * dy_1_1_2_3_4_right_flip_up
     del dy_1_1_2_3_4_right_flip_up
-    bend_1_1_2_3_4_right_flip_up = t671 + t672
-    del t671, t672
-    t673 = miss_1_1_2_3_4_right_flip_up * bend_1_1_2_3_4_right_flip_up
-    inner_1_1_2_3_4_right_flip_up = t667 - t673
-    del t667, t673
-    t674 = slope_1_1_2_3_4_right_flip_up / (2.0 * bend_1_1_2_3_4_right_flip_up)
+    bend_1_1_2_3_4_right_flip_up = t681 + t682
+    del t681, t682
+    t683 = miss_1_1_2_3_4_right_flip_up * bend_1_1_2_3_4_right_flip_up
+    inner_1_1_2_3_4_right_flip_up = t677 - t683
+    del t677, t683
+    t684 = slope_1_1_2_3_4_right_flip_up / (2.0 * bend_1_1_2_3_4_right_flip_up)
     del bend_1_1_2_3_4_right_flip_up
-    t675 = np.maximum(0.0, inner_1_1_2_3_4_right_flip_up)
-    t676 = _runtime.sign(slope_1_1_2_3_4_right_flip_up) * np.sqrt(t675)
-    del t675
-    t677 = miss_1_1_2_3_4_right_flip_up / (2.0 * (slope_1_1_2_3_4_right_flip_up + t676))
-    del miss_1_1_2_3_4_right_flip_up, slope_1_1_2_3_4_right_flip_up, t676
-    t678 = _runtime.select(inner_1_1_2_3_4_right_flip_up < 0.0, t674, t677)
-    del inner_1_1_2_3_4_right_flip_up, t674, t677
-    t679 = t678 * t678
-    t680 = 1.0 / (1.0 + t679)
-    t681 = 2.0 * t678 * t680
-    del t678
-    by_c_1_1_2_3_4_right_flip_up = t680 * (1.0 - t679)
-    del t679, t680
-    t682 = d4 * (t681 * t681) / (1.0 + np.abs(by_c_1_1_2_3_4_right_flip_up))
-    t683 = (t682 + root1 * np.abs(t681) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_flip_up)
-    del t682, whole_1_1
-    sine_1_1_2_3_4_right_flip_up = _runtime.select(t683, -t681, 0.0)
-    del t681
-    t684 = c_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
-    cosine_1_1_2_3_4_right_flip_up = _runtime.select(t683, by_c_1_1_2_3_4_right_flip_up, 1.0)
-    del by_c_1_1_2_3_4_right_flip_up, t683
-    t685 = s_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
-    s1_right_flip_up = _runtime.select(tangent1, t684 + t685, -t358)
-    del t358, t684, t685
-    t686 = c_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
+    t685 = np.maximum(0.0, inner_1_1_2_3_4_right_flip_up)
+    t686 = _runtime.sign(slope_1_1_2_3_4_right_flip_up) * np.sqrt(t685)
+    del t685
+    outer_1_1_2_3_4_right_flip_up = slope_1_1_2_3_4_right_flip_up + t686
+    del slope_1_1_2_3_4_right_flip_up, t686
+    t687 = miss_1_1_2_3_4_right_flip_up / (2.0 * outer_1_1_2_3_4_right_flip_up)
+    del miss_1_1_2_3_4_right_flip_up
+    t688 = _runtime.select(outer_1_1_2_3_4_right_flip_up == 0.0, 0.0, t687)
+    del outer_1_1_2_3_4_right_flip_up, t687
+    t689 = _runtime.select(inner_1_1_2_3_4_right_flip_up < 0.0, t684, t688)
+    del inner_1_1_2_3_4_right_flip_up, t684, t688
+    t690 = t689 * t689
+    t691 = 1.0 / (1.0 + t690)
+    t692 = 2.0 * t689 * t691
+    del t689
+    by_c_1_1_2_3_4_right_flip_up = t691 * (1.0 - t690)
+    del t690, t691
+    t693 = d4 * (t692 * t692) / (1.0 + np.abs(by_c_1_1_2_3_4_right_flip_up))
+    t694 = (t693 + root1 * np.abs(t692) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_flip_up)
+    del t693, whole_1_1
+    sine_1_1_2_3_4_right_flip_up = _runtime.select(t694, -t692, 0.0)
+    del t692
+    t695 = c_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
+    cosine_1_1_2_3_4_right_flip_up = _runtime.select(t694, by_c_1_1_2_3_4_right_flip_up, 1.0)
+    del by_c_1_1_2_3_4_right_flip_up, t694
+    t696 = s_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
+    s1_right_flip_up = _runtime.select(tangent1, t695 + t696, -t363)
+    del t363, t695, t696
+    t697 = c_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
     del c_1_1_2_3_4_right_flip_up, cosine_1_1_2_3_4_right_flip_up
-    t687 = s_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
+    t698 = s_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
     del s_1_1_2_3_4_right_flip_up, sine_1_1_2_3_4_right_flip_up
-    c1_right_flip_up = _runtime.select(tangent1, t686 - t687, c_1_1_right_noflip_up)
-    del c_1_1_right_noflip_up, t686, t687, tangent1
-    t688 = np.arctan2(s1_right_flip_up, c1_right_flip_up)
+    c1_right_flip_up = _runtime.select(tangent1, t697 - t698, c_1_1_right_noflip_up)
+    del c_1_1_right_noflip_up, t697, t698, tangent1
+    t699 = np.arctan2(s1_right_flip_up, c1_right_flip_up)
     across_right_flip_up = w_x * c1_right_flip_up + w_y * s1_right_flip_up
     del w_x, w_y
     M_13_right_flip_up = T13 * c1_right_flip_up + T23 * s1_right_flip_up
-    t689 = t16 + M_13_right_flip_up * M_13_right_flip_up
+    t700 = t16 + M_13_right_flip_up * M_13_right_flip_up
     del t16
-    h_wrist_right_flip_up = np.sqrt(t689)
-    del t689
-    aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t122
-    del t122
-    t690 = t44 + across_right_flip_up * across_right_flip_up
-    del t44
-    r_hub_right_flip_up = np.sqrt(t690)
-    del t690
-    hub_mid_right_flip_up = r_hub_right_flip_up <= t6
-    t691 = d5 + r_hub_right_flip_up
-    t692 = d5 - r_hub_right_flip_up
-    mid_reach_right_flip_up = np.minimum(full_1_1, t691) * 0.5 + np.maximum(fold_1_1, np.abs(t692)) * 0.5
-    t693 = (t691 - mid_reach_right_flip_up) * (t691 + mid_reach_right_flip_up)
-    k_mid_right_flip_up = np.maximum(0.0, t693)
-    del t693
-    t694 = (t692 - mid_reach_right_flip_up) * (t692 + mid_reach_right_flip_up)
-    del mid_reach_right_flip_up
-    d_mid_right_flip_up = np.maximum(0.0, -t694)
-    del t694
-    n_mid_right_flip_up = k_mid_right_flip_up + d_mid_right_flip_up
-    any_mid_right_flip_up = n_mid_right_flip_up <= t125
-    t695 = 1.0 / n_mid_right_flip_up
-    del n_mid_right_flip_up
-    t696 = (k_mid_right_flip_up - d_mid_right_flip_up) * t695
-    uc_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 1.0, t696)
-    del t696
-    t697 = np.sqrt(k_mid_right_flip_up * d_mid_right_flip_up)
-    del d_mid_right_flip_up, k_mid_right_flip_up
-    us_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 0.0, t695 * (2.0 * t697))
-    del any_mid_right_flip_up, t695, t697
-    t698 = across_right_flip_up * uc_mid_right_flip_up + t26 * us_mid_right_flip_up
-    t699 = 1.0 / r_hub_right_flip_up
-    del r_hub_right_flip_up
-    c_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t698 * t699)
-    del t698
-    close_right_flip_up = root1 * h_wrist_right_flip_up - t129 <= t6
-    del root1, t129
-    t700 = 1.0 / h_wrist_right_flip_up
-    t701 = _runtime.select(aligned_wrist_right_flip_up, 0.0, T33 * t700)
-    t702 = across_right_flip_up + d5 * t701
-    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, 1.0, -(M_13_right_flip_up * t700))
+    h_wrist_right_flip_up = np.sqrt(t700)
     del t700
-    t703 = t26 - d5 * c_phi_right_flip_up
-    here_right_flip_up = np.sqrt(t702 * t702 + t703 * t703)
-    del t702, t703
+    aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t124
+    del t124
+    t701 = t45 + across_right_flip_up * across_right_flip_up
+    del t45
+    r_hub_right_flip_up = np.sqrt(t701)
+    del t701
+    hub_mid_right_flip_up = r_hub_right_flip_up <= t6
+    t702 = d5 + r_hub_right_flip_up
+    t703 = d5 - r_hub_right_flip_up
+    mid_reach_right_flip_up = np.minimum(full_1_1, t702) * 0.5 + np.maximum(fold_1_1, np.abs(t703)) * 0.5
+    t704 = (t702 - mid_reach_right_flip_up) * (t702 + mid_reach_right_flip_up)
+    k_mid_right_flip_up = np.maximum(0.0, t704)
+    del t704
+    t705 = (t703 - mid_reach_right_flip_up) * (t703 + mid_reach_right_flip_up)
+    del mid_reach_right_flip_up
+    d_mid_right_flip_up = np.maximum(0.0, -t705)
+    del t705
+    n_mid_right_flip_up = k_mid_right_flip_up + d_mid_right_flip_up
+    any_mid_right_flip_up = n_mid_right_flip_up <= t127
+    t706 = 1.0 / n_mid_right_flip_up
+    del n_mid_right_flip_up
+    t707 = (k_mid_right_flip_up - d_mid_right_flip_up) * t706
+    uc_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 1.0, t707)
+    del t707
+    t708 = np.sqrt(k_mid_right_flip_up * d_mid_right_flip_up)
+    del d_mid_right_flip_up, k_mid_right_flip_up
+    us_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 0.0, t706 * (2.0 * t708))
+    del any_mid_right_flip_up, t706, t708
+    t709 = across_right_flip_up * uc_mid_right_flip_up + t26 * us_mid_right_flip_up
+    t710 = 1.0 / r_hub_right_flip_up
+    del r_hub_right_flip_up
+    c_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t709 * t710)
+    del t709
+    close_right_flip_up = root1 * h_wrist_right_flip_up - t131 <= t6
+    del root1, t131
+    t711 = 1.0 / h_wrist_right_flip_up
+    t712 = _runtime.select(aligned_wrist_right_flip_up, 0.0, T33 * t711)
+    t713 = across_right_flip_up + d5 * t712
+    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, 1.0, -(M_13_right_flip_up * t711))
+    del t711
+    t714 = t26 - d5 * c_phi_right_flip_up
+    here_right_flip_up = np.sqrt(t713 * t713 + t714 * t714)
+    del t713, t714
     in_reach_right_flip_up = np.minimum(full_1_1, np.maximum(here_right_flip_up, fold_1_1))
     del fold_1_1
-    t704 = (t691 - in_reach_right_flip_up) * (t691 + in_reach_right_flip_up)
-    del t691
-    k_near_right_flip_up = np.maximum(0.0, t704)
-    del t704
-    t705 = (t692 - in_reach_right_flip_up) * (t692 + in_reach_right_flip_up)
-    del t692
-    d_near_right_flip_up = np.maximum(0.0, -t705)
-    del t705
+    t715 = (t702 - in_reach_right_flip_up) * (t702 + in_reach_right_flip_up)
+    del t702
+    k_near_right_flip_up = np.maximum(0.0, t715)
+    del t715
+    t716 = (t703 - in_reach_right_flip_up) * (t703 + in_reach_right_flip_up)
+    del t703
+    d_near_right_flip_up = np.maximum(0.0, -t716)
+    del t716
     n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
-    any_near_right_flip_up = n_near_right_flip_up <= t125
-    del t125
-    t706 = 1.0 / n_near_right_flip_up
+    any_near_right_flip_up = n_near_right_flip_up <= t127
+    del t127
+    t717 = 1.0 / n_near_right_flip_up
     del n_near_right_flip_up
-    t707 = (k_near_right_flip_up - d_near_right_flip_up) * t706
-    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t707)
-    del t707
-    t708 = across_right_flip_up * c_phi_right_flip_up + t26 * t701
-    t709 = np.abs(t708)
-    side_right_flip_up = _runtime.select(t709 <= t6, 1.0, -(t708 / t709))
-    del t708, t709
-    t710 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
+    t718 = (k_near_right_flip_up - d_near_right_flip_up) * t717
+    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t718)
+    del t718
+    t719 = across_right_flip_up * c_phi_right_flip_up + t26 * t712
+    t720 = np.abs(t719)
+    side_right_flip_up = _runtime.select(t720 <= t6, 1.0, -(t719 / t720))
+    del t719, t720
+    t721 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
     del d_near_right_flip_up, k_near_right_flip_up
-    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t706 * (2.0 * side_right_flip_up * t710))
-    del any_near_right_flip_up, side_right_flip_up, t706, t710
-    t711 = across_right_flip_up * uc_near_right_flip_up + t26 * us_near_right_flip_up
-    c_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t699 * t711)
-    del t711
-    t712 = t701 + c_near_right_flip_up
-    t713 = across_right_flip_up * us_near_right_flip_up - t26 * uc_near_right_flip_up
+    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t717 * (2.0 * side_right_flip_up * t721))
+    del any_near_right_flip_up, side_right_flip_up, t717, t721
+    t722 = across_right_flip_up * uc_near_right_flip_up + t26 * us_near_right_flip_up
+    c_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t710 * t722)
+    del t722
+    t723 = t712 + c_near_right_flip_up
+    t724 = across_right_flip_up * us_near_right_flip_up - t26 * uc_near_right_flip_up
     del uc_near_right_flip_up, us_near_right_flip_up
-    s_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t699 * t713)
-    del t713
-    t714 = c_phi_right_flip_up + s_near_right_flip_up
-    t715 = h_wrist_right_flip_up * np.sqrt(t712 * t712 + t714 * t714)
-    del h_wrist_right_flip_up, t712, t714
-    t716 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    s_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t710 * t724)
+    del t724
+    t725 = c_phi_right_flip_up + s_near_right_flip_up
+    t726 = h_wrist_right_flip_up * np.sqrt(t723 * t723 + t725 * t725)
+    del h_wrist_right_flip_up, t723, t725
+    t727 = np.abs(here_right_flip_up - in_reach_right_flip_up)
     del here_right_flip_up, in_reach_right_flip_up
-    t717 = (t715 - 2.2737367544323206e-13 <= t140) & np.logical_not(t716 <= t6)
-    del t140, t715, t716
-    s_kept_right_flip_up = _runtime.select(t717, c_near_right_flip_up, -t701)
+    t728 = (t726 - 2.2737367544323206e-13 <= t142) & np.logical_not(t727 <= t6)
+    del t142, t726, t727
+    s_kept_right_flip_up = _runtime.select(t728, c_near_right_flip_up, -t712)
     del c_near_right_flip_up
-    t718 = _runtime.select(close_right_flip_up, s_kept_right_flip_up, -t701)
-    del s_kept_right_flip_up, t701
-    sphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, c_mid_right_flip_up, t718)
-    del c_mid_right_flip_up, t718
-    t719 = across_right_flip_up - d5 * sphi_right_flip_up
-    t720 = across_right_flip_up * us_mid_right_flip_up - t26 * uc_mid_right_flip_up
+    t729 = _runtime.select(close_right_flip_up, s_kept_right_flip_up, -t712)
+    del s_kept_right_flip_up, t712
+    sphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, c_mid_right_flip_up, t729)
+    del c_mid_right_flip_up, t729
+    t730 = across_right_flip_up - d5 * sphi_right_flip_up
+    t731 = across_right_flip_up * us_mid_right_flip_up - t26 * uc_mid_right_flip_up
     del across_right_flip_up, uc_mid_right_flip_up, us_mid_right_flip_up
-    s_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t699 * t720)
-    del hub_mid_right_flip_up, t699, t720
-    c_kept_right_flip_up = _runtime.select(t717, -s_near_right_flip_up, c_phi_right_flip_up)
-    del s_near_right_flip_up, t717
-    t721 = _runtime.select(close_right_flip_up, c_kept_right_flip_up, c_phi_right_flip_up)
+    s_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t710 * t731)
+    del hub_mid_right_flip_up, t710, t731
+    c_kept_right_flip_up = _runtime.select(t728, -s_near_right_flip_up, c_phi_right_flip_up)
+    del s_near_right_flip_up, t728
+    t732 = _runtime.select(close_right_flip_up, c_kept_right_flip_up, c_phi_right_flip_up)
     del c_kept_right_flip_up, c_phi_right_flip_up, close_right_flip_up
-    cphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, -s_mid_right_flip_up, t721)
-    del s_mid_right_flip_up, t721
+    cphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, -s_mid_right_flip_up, t732)
+    del s_mid_right_flip_up, t732
     ey_right_flip_up = t26 - d5 * cphi_right_flip_up
     del t26
-    t722 = t719 * t719 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t722)
-    del t722
-    t723 = full_1_1 - r_elbow_right_flip_up
-    t724 = t29 + r_elbow_right_flip_up
-    t725 = r_elbow_right_flip_up - t29
+    t733 = t730 * t730 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t733)
+    del t733
+    t734 = full_1_1 - r_elbow_right_flip_up
+    t735 = t29 + r_elbow_right_flip_up
+    t736 = r_elbow_right_flip_up - t29
     del t29
-    t726 = t121 & (t120 <= t723) & (t120 <= t724) & (t120 <= t725)
-    del t120, t121
-    unreachable_4 = np.logical_not(t726)
-    del t726
-    t727 = _runtime.poison(invalid | unreachable_4)
-    t728 = _runtime.wrap_cut(t688) + t727
-    del t688
+    t737 = t123 & (t122 <= t734) & (t122 <= t735) & (t122 <= t736)
+    del t122, t123
+    unreachable_4 = np.logical_not(t737)
+    del t737
+    t738 = _runtime.poison(invalid | unreachable_4)
+    t739 = _runtime.wrap_cut(t699) + t738
+    del t699
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t6
     del t6
-    A_elbow_right_flip_up = np.maximum(t723, 0.0)
-    del t723
-    C_elbow_right_flip_up = np.maximum(t725, 0.0)
-    del t725
-    t729 = A_elbow_right_flip_up * C_elbow_right_flip_up
+    A_elbow_right_flip_up = np.maximum(t734, 0.0)
+    del t734
+    C_elbow_right_flip_up = np.maximum(t736, 0.0)
+    del t736
+    t740 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = full_1_1 + r_elbow_right_flip_up
     del full_1_1
-    B_elbow_right_flip_up = np.maximum(t724, 0.0)
-    del t724
-    t730 = S_elbow_right_flip_up * B_elbow_right_flip_up
-    t731 = 1.0 / (t729 + t730)
-    c_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t729 - t730) * t731))
-    t732 = ey_right_flip_up * c_base_elbow_right_flip_up
-    t733 = 1.0 / r_elbow_right_flip_up
-    del r_elbow_right_flip_up
-    t734 = t732 * t733
-    del t732
-    area_elbow_right_flip_up = 2.0 * np.sqrt(t729 * t730)
-    del t729, t730
-    s_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 0.0, t731 * area_elbow_right_flip_up)
-    del t731
-    t735 = t733 * (t719 * s_base_elbow_right_flip_up)
-    s2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 0.0, t734 + t735)
-    t736 = ey_right_flip_up * s_base_elbow_right_flip_up
-    del ey_right_flip_up, s_base_elbow_right_flip_up
-    t737 = t733 * t736
-    del t736
-    t738 = t733 * (t719 * c_base_elbow_right_flip_up)
-    del c_base_elbow_right_flip_up, t719, t733
-    c2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 1.0, t737 - t738)
-    t739 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t740 = A_elbow_right_flip_up * S_elbow_right_flip_up
-    del A_elbow_right_flip_up, S_elbow_right_flip_up
-    t741 = C_elbow_right_flip_up * B_elbow_right_flip_up
-    del B_elbow_right_flip_up, C_elbow_right_flip_up
+    B_elbow_right_flip_up = np.maximum(t735, 0.0)
+    del t735
+    t741 = S_elbow_right_flip_up * B_elbow_right_flip_up
     t742 = 1.0 / (t740 + t741)
-    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t742)
+    c_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 1.0, -((t740 - t741) * t742))
+    t743 = ey_right_flip_up * c_base_elbow_right_flip_up
+    t744 = 1.0 / r_elbow_right_flip_up
+    del r_elbow_right_flip_up
+    t745 = t743 * t744
+    del t743
+    area_elbow_right_flip_up = 2.0 * np.sqrt(t740 * t741)
+    del t740, t741
+    s_base_elbow_right_flip_up = _runtime.select(no_link_elbow, 0.0, t742 * area_elbow_right_flip_up)
+    del t742
+    t746 = t744 * (t730 * s_base_elbow_right_flip_up)
+    s2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 0.0, t745 + t746)
+    t747 = ey_right_flip_up * s_base_elbow_right_flip_up
+    del ey_right_flip_up, s_base_elbow_right_flip_up
+    t748 = t744 * t747
+    del t747
+    t749 = t744 * (t730 * c_base_elbow_right_flip_up)
+    del c_base_elbow_right_flip_up, t730, t744
+    c2_right_flip_up = _runtime.select(folded_elbow_right_flip_up, 1.0, t748 - t749)
+    t750 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
+    t751 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    del A_elbow_right_flip_up, S_elbow_right_flip_up
+    t752 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    del B_elbow_right_flip_up, C_elbow_right_flip_up
+    t753 = 1.0 / (t751 + t752)
+    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t753)
     del area_elbow_right_flip_up
-    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t742 * (t740 - t741)))
-    del t740, t741, t742
-    t743 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
-    t744 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
-    t745 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
+    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t753 * (t751 - t752)))
+    del t751, t752, t753
+    t754 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
+    t755 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
+    t756 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
     del c2_right_flip_up, s2_right_flip_up
-    t746 = c3_right_flip_up * t744 - s3_right_flip_up * t745
-    t747 = c3_right_flip_up * t745 + s3_right_flip_up * t744
-    del t744, t745
-    t748 = _runtime.wrap_cut(np.arctan2(t746, t747)) + t727
-    del t746, t747
-    t749 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    t757 = c3_right_flip_up * t755 - s3_right_flip_up * t756
+    t758 = c3_right_flip_up * t756 + s3_right_flip_up * t755
+    del t755, t756
+    t759 = _runtime.wrap_cut(np.arctan2(t757, t758)) + t738
+    del t757, t758
+    t760 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
     del M_13_right_flip_up
     M_33_right_flip_up = T13 * s1_right_flip_up - T23 * c1_right_flip_up
-    t750 = _runtime.wrap_cut(-np.arctan2(t749, M_33_right_flip_up))
-    del M_33_right_flip_up, t749
-    t751 = t750 + t727
-    del t750
+    t761 = _runtime.wrap_cut(-np.arctan2(t760, M_33_right_flip_up))
+    del M_33_right_flip_up, t760
+    t762 = t761 + t738
+    del t761
     M_11_right_flip_up = T11 * c1_right_flip_up + T21 * s1_right_flip_up
-    t752 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up
+    t763 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up
     del M_11_right_flip_up
     M_12_right_flip_up = T12 * c1_right_flip_up + T22 * s1_right_flip_up
     del c1_right_flip_up, s1_right_flip_up
-    t753 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up
+    t764 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up
     del M_12_right_flip_up
-    t754 = _runtime.wrap_cut(-np.arctan2(t752, t753)) + t727
-    del t752, t753
-    s2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 0.0, t734 - t735)
-    del t734, t735
-    c2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t738 + t737))
-    del t737, t738
-    t755 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
-    t756 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
-    t757 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
+    t765 = _runtime.wrap_cut(-np.arctan2(t763, t764)) + t738
+    del t763, t764
+    s2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 0.0, t745 - t746)
+    del t745, t746
+    c2_right_flip_down = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t749 + t748))
+    del t748, t749
+    t766 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
+    t767 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
+    t768 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
     del c2_right_flip_down, cphi_right_flip_up, s2_right_flip_down, sphi_right_flip_up
-    t758 = c3_right_flip_up * t756 + s3_right_flip_up * t757
-    t759 = c3_right_flip_up * t757 - s3_right_flip_up * t756
-    del c3_right_flip_up, s3_right_flip_up, t756, t757
-    t760 = _runtime.wrap_cut(np.arctan2(t758, t759)) + t727
-    del t758, t759
-    t761 = free1 | aligned_wrist | no_link_elbow | folded_elbow
+    t769 = c3_right_flip_up * t767 + s3_right_flip_up * t768
+    t770 = c3_right_flip_up * t768 - s3_right_flip_up * t767
+    del c3_right_flip_up, s3_right_flip_up, t767, t768
+    t771 = _runtime.wrap_cut(np.arctan2(t769, t770)) + t738
+    del t769, t770
+    t772 = free1 | aligned_wrist | no_link_elbow | folded_elbow
     del aligned_wrist, folded_elbow
-    t762 = _runtime.status(invalid, unreachable, t761)
-    del t761, unreachable
-    t763 = free1 | aligned_wrist_left_flip_up | no_link_elbow
+    t773 = _runtime.status(invalid, unreachable, t772)
+    del t772, unreachable
+    t774 = free1 | aligned_wrist_left_flip_up | no_link_elbow
     del aligned_wrist_left_flip_up
-    t764 = _runtime.status(invalid, unreachable_2, t763 | folded_elbow_left_flip_up)
-    del folded_elbow_left_flip_up, t763, unreachable_2
-    t765 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    t775 = _runtime.status(invalid, unreachable_2, t774 | folded_elbow_left_flip_up)
+    del folded_elbow_left_flip_up, t774, unreachable_2
+    t776 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
     del aligned_wrist_right_noflip_up
-    t766 = _runtime.status(invalid, unreachable_3, t765 | folded_elbow_right_noflip_up)
-    del folded_elbow_right_noflip_up, t765, unreachable_3
-    t767 = free1 | aligned_wrist_right_flip_up | no_link_elbow
+    t777 = _runtime.status(invalid, unreachable_3, t776 | folded_elbow_right_noflip_up)
+    del folded_elbow_right_noflip_up, t776, unreachable_3
+    t778 = free1 | aligned_wrist_right_flip_up | no_link_elbow
     del aligned_wrist_right_flip_up, free1, no_link_elbow
-    t768 = _runtime.status(invalid, unreachable_4, t767 | folded_elbow_right_flip_up)
-    del folded_elbow_right_flip_up, invalid, t767, unreachable_4
+    t779 = _runtime.status(invalid, unreachable_4, t778 | folded_elbow_right_flip_up)
+    del folded_elbow_right_flip_up, invalid, t778, unreachable_4
     return (
-        t151,
-        _runtime.wrap_cut(np.arctan2(s2, c2)) + t150,
-        _runtime.wrap_cut(t163) + t150,
-        _runtime.wrap_cut(t166) + t150,
-        t168,
+        t153,
+        _runtime.wrap_cut(np.arctan2(s2, c2)) + t152,
+        _runtime.wrap_cut(t165) + t152,
+        _runtime.wrap_cut(t168) + t152,
         t170,
-        t151,
-        _runtime.wrap_cut(t171) + t150,
-        _runtime.wrap_cut(-t163) + t150,
-        _runtime.wrap_cut(t174) + t150,
-        t168,
+        t172,
+        t153,
+        _runtime.wrap_cut(t173) + t152,
+        _runtime.wrap_cut(-t165) + t152,
+        _runtime.wrap_cut(t176) + t152,
         t170,
-        t327,
-        t336 + t326,
-        _runtime.wrap_cut(t340) + t326,
-        t345,
-        t348,
-        t351,
-        t327,
-        _runtime.wrap_cut(t352) + t326,
-        _runtime.wrap_cut(-t340) + t326,
-        t357,
-        t348,
-        t351,
-        t538,
-        _runtime.wrap_cut(t549) + t537,
-        _runtime.wrap_cut(t553) + t537,
-        t558,
-        t561,
-        t564,
-        t538,
-        _runtime.wrap_cut(t565) + t537,
-        _runtime.wrap_cut(-t553) + t537,
-        t570,
-        t561,
-        t564,
-        t728,
-        _runtime.wrap_cut(t739) + t727,
-        _runtime.wrap_cut(t743) + t727,
-        t748,
-        t751,
-        t754,
-        t728,
-        _runtime.wrap_cut(t755) + t727,
-        _runtime.wrap_cut(-t743) + t727,
-        t760,
-        t751,
-        t754,
+        t172,
+        t332,
+        t341 + t331,
+        _runtime.wrap_cut(t345) + t331,
+        t350,
+        t353,
+        t356,
+        t332,
+        _runtime.wrap_cut(t357) + t331,
+        _runtime.wrap_cut(-t345) + t331,
+        t362,
+        t353,
+        t356,
+        t546,
+        _runtime.wrap_cut(t557) + t545,
+        _runtime.wrap_cut(t561) + t545,
+        t566,
+        t569,
+        t572,
+        t546,
+        _runtime.wrap_cut(t573) + t545,
+        _runtime.wrap_cut(-t561) + t545,
+        t578,
+        t569,
+        t572,
+        t739,
+        _runtime.wrap_cut(t750) + t738,
+        _runtime.wrap_cut(t754) + t738,
+        t759,
         t762,
+        t765,
+        t739,
+        _runtime.wrap_cut(t766) + t738,
+        _runtime.wrap_cut(-t754) + t738,
+        t771,
         t762,
-        t764,
-        t764,
-        t766,
-        t766,
-        t768,
-        t768,
+        t765,
+        t773,
+        t773,
+        t775,
+        t775,
+        t777,
+        t777,
+        t779,
+        t779,
     )
 
 

@@ -40,7 +40,8 @@ IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "at
 CHAIN = ("Reaching", "polar", "remainder", "slide", "turn", "turned", "two_links", "zyz")
 SCRIPT = {"Chain", "Derivation", "Paper", "Pair", "arm", "d", "forward", "from_dh", "from_screws"}
 LINES = {"M", "ahead", "ik", "p", "q", "reaching", "turn1", "wx", "wy", "x", "y", "yaw", "z", "rho"}
-TAKEN = SCRIPT | LINES | {*IMPORTED, *CHAIN}
+TOWARD = {"Links", "LinksAndWrist", "links", "pair"}
+TAKEN = SCRIPT | LINES | TOWARD | {*IMPORTED, *CHAIN}
 """What the written script calls its own."""
 
 

@@ -268,6 +268,7 @@ class _Truth:
     def __init__(self, derivation: Derivation, function: Function, inverse: Inverse):
         self.function = function
         parameters = tuple(p.symbol for p in derivation.parameters)
+        self.amplified = sp.lambdify(parameters, inverse.condition)
         revolute = {j.symbol for j in derivation.joints if j.kind == "revolute"}
         self.angular = np.array([u in revolute for u in inverse.unknowns])
         place = (*inverse.unknowns, *function.symbols, *parameters)
@@ -472,7 +473,8 @@ def _check_round_trips(finding: Finding, truth: _Truth, backend: Backend, postur
 
     What seems to be off by more than half of what is allowed is evaluated in Arb, the worst first.
     """
-    allowed, parameters = backend.tolerances.forward, postures.parameters
+    parameters = postures.parameters
+    allowed = backend.tolerances.promised(float(truth.amplified(*parameters)))
     images = truth.wide_images(postures.values, parameters)
     targets = np.concatenate(list(images)).astype(float)
     posed = _round(

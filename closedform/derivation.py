@@ -248,6 +248,8 @@ class Inverse:
     units: tuple[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]], ...] = ()
     """Sines and cosines of free choices, and the names that may have any value in them."""
     reduction: Reduction | None = None
+    condition: sp.Expr = sp.S.Zero
+    """By how much the mechanism amplifies roundings, in its parameters; see ``promised``."""
 
     def posed(self, inputs: tuple[sp.Symbol, ...], image: tuple[sp.Expr, ...]) -> Inverse:
         """The same inverse with the forward map, ``image``, for its equations."""

@@ -18,8 +18,8 @@ import sympy as sp
 
 from closedform.derivation import Degenerate
 from closedform.functions import Let, choose, real
-from closedform.lemmas import Lemma, heron_factors, label
-from closedform.pairs import Pair, amplitude_lemma, nearly_tangent
+from closedform.lemmas import Lemma, heron_factors, label, nearly_tangent
+from closedform.pairs import Pair, amplitude_lemma
 from closedform.shapes import ShapeError
 from closedform.solutions import rotation_parametrisation
 from closedform.tangent import Links, Turn, Turned, leaving

@@ -13,7 +13,14 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.functions import Program, choose
-from closedform.lemmas import Lemma, heron_factors, label, triangle_equations
+from closedform.lemmas import (
+    Lemma,
+    heron_factors,
+    label,
+    nearly_tangent,
+    root_in_reach,
+    triangle_equations,
+)
 
 
 @dataclass(frozen=True)
@@ -93,7 +100,7 @@ def sine_cosine_pair(
     width = program.let(f"width{suffix}", below + above, nonnegative=True)
     if reach is not None:
         tangent = nearly_tangent(program, root, h, suffix)
-        held = _root_in_reach(program, below * above, h, scale, *reach, suffix=suffix)
+        held = root_in_reach(program, below * above, h, scale, *reach, suffix=suffix)
         whole = 2 * sp.sqrt(held + (above - below) ** 2 / 4)
         root = program.let(f"ahead{suffix}", choose(tangent, sp.sqrt(held), root), nonnegative=True)
         width = program.let(f"span{suffix}", choose(tangent, whole, width), nonnegative=True)
@@ -101,36 +108,6 @@ def sine_cosine_pair(
     both = Pair(a / h, b / h) + turn
     pair = Pair(choose(flag, 0, both.s), choose(flag, 1, both.c)).known_as(program, label(x))
     return amplitude_lemma(x, a, b, c, pair), pair, -sigma * root, flag
-
-
-def nearly_tangent(program: Program, lever: sp.Expr, scale: sp.Expr, suffix: str = "") -> sp.Symbol:
-    """A flag that the ``lever`` of a turn is so short that rounding may decide what is in reach.
-
-    It is 2^-8 of the ``scale``; for a longer one the tolerance of a reach covers the rounding.
-    """
-    return program.vanishes(f"tangent{suffix}", lever - scale / 2**8, scale, "the turn is tangent")
-
-
-def _root_in_reach(
-    program: Program,
-    square: sp.Expr,
-    h: sp.Expr,
-    scale: sp.Expr,
-    first: sp.Expr,
-    second: sp.Expr,
-    height: sp.Expr,
-    *,
-    suffix: str,
-) -> sp.Symbol:
-    """The ``square`` of a coordinate, brought within reach where that is a matter of rounding."""
-    farthest, nearest = (first + second) ** 2 - height**2, (first - second) ** 2 - height**2
-    wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
-    rounding = 2 * h * scale / 2**44
-    return program.let(
-        f"held{suffix}",
-        sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True)),
-        nonnegative=True,
-    )
 
 
 def triangle_pairs(

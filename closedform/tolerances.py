@@ -60,6 +60,14 @@ class Tolerances:
     most_exponent: int
     ulps_per_operation: float = 0.01
 
+    def promised(self, condition: float) -> float:
+        """What OK answers of an inverse hold to that amplifies roundings by a ``condition``.
+
+        That is ``forward``, unless four roundings of the joints and of the target, each of
+        ``vanishing``, become more, together with those on the way.
+        """
+        return max(self.forward, 16 * self.vanishing * condition)
+
     def sizes(self, degree: int) -> tuple[float, float]:
         """Between which sizes no power up to ``degree`` leaves the range."""
         return 2.0 ** -(-self.least_exponent // degree), 2.0 ** (self.most_exponent // degree)

@@ -5,6 +5,7 @@ from functools import partial
 import sympy as sp
 from closedform.derivations.claims.h6ar import Robot, state
 from closedform.derivations.h6ar_mechanism import (
+    ACCURACY,
     ELBOW,
     MID_PLANE_ROWS,
     WAIST,
@@ -15,6 +16,7 @@ from closedform.derivations.h6ar_mechanism import (
     arm_frames,
     beta,
     by_half_sums,
+    condition,
     declare,
     design,
     extended,
@@ -28,6 +30,7 @@ from closedform.derivations.h6ar_mechanism import (
     pair,
     phi,
     pitch,
+    play,
     pose_matrix,
     product,
     psi,
@@ -41,6 +44,7 @@ from closedform.derivations.h6ar_mechanism import (
     tip_system,
     turn_step,
     turned,
+    turned_by,
     wrist_frames,
     wrist_given,
     wrist_let,
@@ -369,49 +373,61 @@ turn_step(d, m)
 p = Program()
 length, base = wrist_given(p, m, cos(psi))
 p.determined(length, m.al, "the wrist links are stretched")
-middle = solve_mid_plane(p, m, q, length, base)
+slants = p.let("t_psi", sin(psi) / cos(psi)), p.let("t_phi", sin(phi) / cos(phi))
+gap = p.let("ahead", m.d * slants[0]), p.let("higher", m.d * slants[1])
+apart_by = sum(sp.Abs(g * t) for g, t in zip(gap, slants, strict=True))
+slack, beside = play(p, m, apart_by, gap)
+middle = solve_mid_plane(p, m, q, length, base, slack)
 upper, elbow = middle.upper, middle.elbow
-gap = p.let("ahead", m.d * sin(psi) / cos(psi)), p.let("higher", m.d * sin(phi) / cos(phi))
-size = p.let("size", m.L1 + sqrt(m.L2**2 + m.a3**2))
 # in the axes of the upper arm: there sin(alpha) multiplies (0, L1)
 seen = (
     p.let("p_1", upper.c * gap[0] + upper.s * gap[1]),
     p.let("p_2", upper.c * gap[1] - upper.s * gap[0]),
 )
 v = p.let("v_1", m.L2 * elbow.c - m.a3 * elbow.s), p.let("v_2", m.L2 * elbow.s + m.a3 * elbow.c)
-free = free_turn(p, m, elbow, size)
+free = free_turn(p, m, elbow, slack)
+fore_size = p.let("fore_size", sqrt(m.L2**2 + m.a3**2), nonnegative=True)
 # in exact arithmetic every turn and lean is zero
 turns, leans = [], []
 for sine in ("alpha", "beta"):
     # by Cramer's rule sin(alpha) = (p x v) / (u x v) and sin(beta) = (u x p) / (u x v)
     aligned = v[0] * seen[0] + v[1] * seen[1]
-    part, rate = {
-        "alpha": (v[0] * seen[1] - v[1] * seen[0], -aligned),
-        "beta": (m.L1 * seen[0], (m.L1 - free.drawn) * seen[1]),
+    part, rate, seen_rate = {
+        "alpha": (v[0] * seen[1] - v[1] * seen[0], -aligned, sp.S.Zero),
+        "beta": (m.L1 * seen[0], (m.L1 - free.drawn) * seen[1], seen[1]),
     }[sine]
     whole = p.let(f"whole_{sine}", m.L1 * v[0])
     part = p.let(f"part_{sine}", part)
     to_whole, to_part = map(sign_of, (whole, part))
     room = p.let(f"room_{sine}", to_whole * whole - to_part * part)
-    slope = p.let(f"slope_{sine}", -to_whole * free.drawn * v[1] - to_part * rate)
-    spent, turn = free.easing(sine, room, slope, "a sine is at most 1")
-    leant = p.let(f"lean_{sine}", choose(spent, turn + free.swing(turn) / m.L1, 0))
+    slopes = (
+        p.let(f"slope_{sine}", -to_whole * free.drawn * v[1] - to_part * rate),
+        p.let(f"slope_aside_{sine}", m.L1 * (to_whole * v[1] - to_part * seen_rate)),
+    )
+    size = (fore_size if sine == "alpha" else m.L1) * beside
+    eased = free.easing(sine, room, slopes, size, "a sine is at most 1")
+    spent = eased.spent
+    turn = p.let(f"turn_{sine}", choose(spent, eased.straight_on(), 0))
+    leant = p.let(f"lean_{sine}", choose(spent, free.lean(turn, eased.aside), 0))
+    back, on = turned_by(leant), turned_by(turn)
+    ahead = Pair(back.c * on.c + back.s * on.s, back.c * on.s - back.s * on.c)
     v, seen = (
         tuple(
-            p.let(f"{name}_{k + 1}_{sine}", choose(spent, e[k] + by * e[1 - k], e[k]))
-            for k, by in ((0, -more), (1, more))
+            p.let(
+                f"{name}_{k + 1}_{sine}", choose(spent, by.c * e[k] + side * by.s * e[1 - k], e[k])
+            )
+            for k, side in ((0, -1), (1, 1))
         )
-        for name, e, more in (("v", v, turn - leant), ("p", seen, -leant))
+        for name, e, by in (("v", v, ahead), ("p", seen, Pair(back.c, -back.s)))
     )
     turns.append(turn)
     leans.append(leant)
-scale = m.d + sp.Abs(gap[0]) + sp.Abs(gap[1])
-half = two_sines(p, (alpha, beta), (sp.S.Zero, m.L1), v, seen, scale, free=(theta3R, theta3L))
+half = two_sines(p, (alpha, beta), (sp.S.Zero, m.L1), v, seen, beside, free=(theta3R, theta3L))
 lemmas = (*middle.lemmas, half)
 solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
 turned_halves = {
-    theta2A: theta2A + atan2(sum(leans), sp.S.One),
-    theta23A: theta23A + atan2(sum(turns), sp.S.One),
+    theta2A: theta2A + sum(atan2(e, sp.S.One) for e in leans),
+    theta23A: theta23A + sum(atan2(e, sp.S.One) for e in turns),
 }
 joints = {s: s for s in (theta1, theta)} | {
     s: halves[s].xreplace(turned_halves) for s in (theta2R, theta3R, theta2L, theta3L)
@@ -440,6 +456,7 @@ d.function(
         "returned.",
         "SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): "
         "rounded joints do not determine the tip to 1e-12 there.",
+        ACCURACY,
         "INVALID: d, L1, or both L2 and a3 are zero.",
     ),
 )
@@ -452,6 +469,7 @@ d.inverses.append(
         (*forward, *(apart / m.d)),
         angles=(psi, phi, pitch),
         images="fk",
+        condition=condition(m),
         reduction=Reduction(lemmas, joints, sp.diag(MID_PLANE_ROWS, from_upper / m.d)),
     )
 )

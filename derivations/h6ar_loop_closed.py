@@ -2,6 +2,7 @@
 
 import sympy as sp
 from closedform.derivations.h6ar_mechanism import (
+    ACCURACY,
     ELBOW,
     MID_PLANE_ROWS,
     WAIST,
@@ -9,6 +10,7 @@ from closedform.derivations.h6ar_mechanism import (
     Posture,
     arm,
     by_half_sums,
+    condition,
     declare,
     design,
     extended,
@@ -17,11 +19,13 @@ from closedform.derivations.h6ar_mechanism import (
     half_sums,
     in_space,
     midpoint,
+    moved_by,
     named,
     outer_jacobian,
     pair,
     phi,
     pitch,
+    play,
     pose_matrix,
     psi,
     reach,
@@ -46,6 +50,7 @@ from closedform import (
     Program,
     Reduction,
     branches,
+    choose,
     elbow_squares,
     real,
     rotation,
@@ -386,14 +391,15 @@ sigma_left = real("sigma_left")
 LEFT = (sigma_left, {+1: "alike", -1: "mixed"})
 p = Program()
 wrist, half_base = wrist_given(p, m, cos(psi) * cos(phi))
-mid = solve_mid_plane(p, m, q, wrist, half_base)
+slants = [p.let(f"t_{e.name}", sin(e) / cos(e)) for e in (psi, phi)]
+slack, beside = play(p, m, sum(sp.Abs(half_base * t) for t in slants))
+mid = solve_mid_plane(p, m, q, wrist, half_base, slack)
 upper, fore = mid.upper, mid.fore
 second = p.let("fore_arm", forearm_length, nonnegative=True)
 (N, M), bent = elbow_squares(p, lengths, second, mid.elbow, suffix="_mid")
-side = p.let("sigma_right", sign_of(bent))
-opposite = p.let("sigma_other", side * sigma_left)
+straight_mid = m.L2 * mid.elbow.s + m.a3 * mid.elbow.c
 by_pairs = {cos(theta23A): fore.c, sin(theta23A): fore.s}
-by_pairs |= {tan(e): sin(e) / cos(e) for e in (psi, phi)}
+by_pairs |= {tan(e): t for e, t in zip((psi, phi), slants, strict=True)}
 point = p.matrix("point", reach(m, upper, fore, m.L2, m.a3))
 shift = p.matrix("shift", sp.Matrix([given_ahead, given_higher]).xreplace(by_pairs))
 gap = p.let("gap", shift.dot(shift))
@@ -406,27 +412,55 @@ square = p.let("square_mid", M + (m.L1 - second) ** 2)
 p.determined(M * square, gap * size**2, "the virtual arm is folded", squares=True)
 p.determined(square, size**2, "the virtual arm has no length", squares=True)
 p.determined(wrist, m.al, "the wrist links are stretched")
-free = free_turn(p, m, mid.elbow, size)
-ends, rooms, slopes, turns = {}, {}, {}, []
+free = free_turn(p, m, mid.elbow, slack)
+ends, squares, easings = {}, {}, []
 for name, sign in (("right", 1), ("left", -1)):
     r, h = (p.let(f"{c}_{name}_0", point[k] + sign * shift[k]) for k, c in enumerate("rh"))
     ends[name] = r, h
-    room = rooms[name] = p.let(f"room_{name}", N - sign * cross - gap)
-    slope = slopes[name] = p.let(f"slope_{name}", 2 * free.drawn * (h * upper.c - r * upper.s))
-    turns.append(free.easing(name, room, slope, "nearer than full stretch")[1])
-turn = p.let("turn", sum(turns))
-swing = p.let("swing", free.swing(turn))
-arms = []
-for name, sigma, sign, unknowns in (
-    ("right", side, 1, (theta2R, theta23R)),
-    ("left", opposite, -1, (theta2L, theta23L)),
-):
-    r, h = ends[name]
-    end = (
-        p.let(f"r_{name}", r - turn * h - swing * upper.s),
-        p.let(f"h_{name}", h + turn * r + swing * upper.c),
+    square = r**2 + h**2
+    beside_shoulder = size**2 * square < gap**2
+    folding = sp.Piecewise(
+        (square - (m.L1 - second) ** 2, beside_shoulder), (M + sign * cross + gap, True)
     )
-    eased = slopes[name] * turn
+    nearer = p.let(f"nearer_{name}", N - sign * cross - gap)
+    farther = p.let(f"farther_{name}", folding)
+    squares[name] = nearer, farther
+    room = p.let(f"room_{name}", sp.Min(nearer, farther))
+    # the square of the reach changes; near full stretch that is to the other side
+    sense = sp.Piecewise((1, nearer <= farther), (-1, True))
+    across = h * upper.c - r * upper.s
+    slopes = (
+        p.let(f"slope_{name}", sense * 2 * free.drawn * across),
+        p.let(f"slope_aside_{name}", -sense * 2 * m.L1 * across),
+    )
+    onward = r * upper.c + h * upper.s - m.L1
+    curve = p.let(f"curve_{name}", sense * onward * free.drawn**2 / m.L1)
+    eased = free.easing(name, room, slopes, size * beside, "the arm is long enough")
+    easings.append((eased, curve))
+spent = sp.Or(*(e.spent for e, _ in easings))
+turn = free.turn("both", easings)
+more, less = (e.aside for e, _ in easings)
+aside = sp.Piecewise((more, sp.Abs(more) >= sp.Abs(less)), (less, True))
+lean = p.let("lean", choose(spent, free.lean(turn, aside), 0))
+bent = p.let(
+    "bent_then", choose(spent, bent * (1 + turn * lean) + straight_mid * (turn - lean), bent)
+)
+side = p.let("sigma_right", sign_of(bent))
+opposite = p.let("sigma_other", side * sigma_left)
+elbow = p.matrix("elbow", m.L1 * sp.Matrix(upper))
+swing = p.matrix("swing", moved_by(lean, elbow))
+arms = []
+for name, sigma, unknowns in (
+    ("right", side, (theta2R, theta23R)),
+    ("left", opposite, (theta2L, theta23L)),
+):
+    end = sp.Matrix(ends[name])
+    more = p.matrix(f"more_{name}", swing + moved_by(turn, end - elbow))
+    change = p.let(f"change_{name}", choose(spent, more.dot(2 * end + more), 0))
+    end = tuple(
+        p.let(f"{c}_{name}", choose(spent, e + by, e))
+        for c, e, by in zip("rh", end, more, strict=True)
+    )
     arms.append(
         two_link_arm_beside(
             p,
@@ -435,9 +469,8 @@ for name, sigma, sign, unknowns in (
             end,
             unknowns,
             sigma,
-            (rooms[name] + eased, M + sign * cross + gap - eased),
-            m.d,
-            apart=gap,
+            (squares[name][0] - change, squares[name][1] + change),
+            beside,
             suffix=f"_{name}",
             sided=name == "right",
             free=unknowns[:1],
@@ -468,6 +501,7 @@ d.function(
         "folded virtual arm (its reach times its bend is less than 2^-10 of its size times half "
         "the distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and "
         "near stretched wrist links (l_W is less than 2^-10 al).",
+        ACCURACY,
         "INVALID: d, L1, or both L2 and a3 are zero.",
         "A straight right arm is returned bent by a few units in the last place, so that fk can "
         "tell the side.",
@@ -493,6 +527,7 @@ d.inverses.append(
         ),
         angles=(psi, phi, pitch),
         images="fk",
+        condition=condition(m),
         reduction=Reduction(
             lemmas,
             joints,

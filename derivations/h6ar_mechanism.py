@@ -5,7 +5,7 @@ the virtual fore-arm, both against the horizontal.  ``alpha`` and ``beta`` are h
 of the real arms' angles, right minus left.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from typing import NamedTuple
@@ -23,6 +23,7 @@ from closedform import (
     linear_pair,
     real,
     rotation,
+    sign_of,
     sine_cosine,
     two_link_arm,
     used_up,
@@ -32,6 +33,7 @@ theta2A, theta23A = real("theta2A"), real("theta23A")
 alpha, beta = real("alpha"), real("beta")
 x, y, z, psi, phi, pitch = (real(n) for n in ("x", "y", "z", "psi", "phi", "pitch"))
 target = (x, y, z, psi, phi, pitch)
+L_2W, a_3W = real("L_2W"), real("a_3W")
 sigma_waist, sigma_elbow = real("sigma_waist"), real("sigma_elbow")
 WAIST = (sigma_waist, {+1: "front", -1: "rear"})
 ELBOW = (sigma_elbow, {+1: "elbow_up", -1: "elbow_down"})
@@ -254,7 +256,7 @@ def wrist_given(program: Program, m: Dimensions, level: sp.Expr) -> tuple[sp.Sym
     The scale of the bounds is at most ``level / 2`` times that in ``wrist_let``.  So a posture that
     is within reach here is also within reach there.
     """
-    size = m.d / 2
+    size = (m.al + m.gs) * level * Rational(65, 64)
     program.bound("upright", cos(phi), sp.S.One, "the roll is less than a right angle")
     near = (m.al + m.gs) * level - m.d
     near = program.bound("near", near, size, "the wrist links are long enough")
@@ -262,6 +264,31 @@ def wrist_given(program: Program, m: Dimensions, level: sp.Expr) -> tuple[sp.Sym
     far = program.bound("far", far, size, "the wrist links meet the gears")
     wrist = program.let("wrist", sqrt(near) * sqrt(far) / level)
     return wrist, program.let("base", m.d / level)
+
+
+ACCURACY = (
+    "OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12: "
+    "yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it."
+)
+
+
+def condition(m: Dimensions) -> sp.Expr:
+    """By how much roundings are amplified: yaw and roll compare the tips over the distance d."""
+    return sum(m) / m.d
+
+
+def play(
+    program: Program, m: Dimensions, apart: sp.Expr, gap: Iterable[sp.Expr] = ()
+) -> tuple[sp.Symbol, sp.Symbol]:
+    """Scales of what a target may be missed by: at the tip, and at the tips of the real arms.
+
+    Yaw and roll are given to some units in the last place, and so is what is ``apart`` by as many.
+    """
+    far = program.let("far_apart", apart / 512, nonnegative=True)
+    lengths = program.let("lengths", sum(m))
+    reached = program.let("slack", lengths + far, nonnegative=True)
+    beside = program.let("play", sum(map(sp.Abs, gap), m.d) + lengths / 512 + far)
+    return reached, beside
 
 
 class MidPlane(NamedTuple):
@@ -275,7 +302,12 @@ class MidPlane(NamedTuple):
 
 
 def solve_mid_plane(
-    program: Program, m: Dimensions, q: Joints, wrist: sp.Symbol, base: sp.Symbol
+    program: Program,
+    m: Dimensions,
+    q: Joints,
+    wrist: sp.Symbol,
+    base: sp.Symbol,
+    slack: sp.Symbol,
 ) -> MidPlane:
     """Solve for pitch, waist and virtual arm; the length of the wrist is known."""
     given = (pair(psi), pair(phi), pair(pitch))
@@ -292,7 +324,16 @@ def solve_mid_plane(
         program.let(n, e) for n, e in zip(names, extended(m, known), strict=True)
     )
     turn = sine_cosine(
-        program, q.theta1, -x, y, aside, sigma_waist, free=(q.theta1,), scale=m.L1 + m.L2
+        program,
+        q.theta1,
+        -x,
+        y,
+        aside,
+        sigma_waist,
+        free=(q.theta1,),
+        scale=sum(m),
+        slack=slack,
+        reach=(m.L1, sqrt(along**2 + across**2), z - m.d1),
     )
     outward = turn.known(x * cos(q.theta1) + y * sin(q.theta1))
     sigma_bend = program.let("sigma_bend", -sigma_waist * sigma_elbow)
@@ -302,6 +343,7 @@ def solve_mid_plane(
         (outward, z - m.d1),
         (theta2A, theta23A),
         sigma_bend,
+        scale=slack,
         free=(q.theta2R, q.theta2L),
     )
     pitched = linear_pair(q.theta, sin(pitch), cos(pitch))
@@ -316,6 +358,31 @@ def tip_system(m: Dimensions, q: Joints, level: sp.Expr) -> tuple[tuple, tuple]:
     return (sp.S.Zero, x, y, z), (sin(q.theta - pitch), *tip(m, there))
 
 
+class Easing(NamedTuple):
+    """A flag that an area lacks something, and what makes up for it.
+
+    ``aside`` is the turn of the upper arm; what is left is a ``lack``, and the area grows by
+    ``slope`` times the free turn.  That moves the tip by ``heavy``, in units of the size;
+    ``floor`` is below any slope that counts.
+    """
+
+    spent: sp.Symbol
+    aside: sp.Symbol
+    lack: sp.Symbol
+    slope: sp.Symbol
+    heavy: sp.Symbol
+    floor: sp.Expr
+
+    def straight_on(self) -> sp.Expr:
+        """The turn, where an area grows with it and not with its square."""
+        return sign_of(self.slope) * self.allowed(self.lack / (sp.Abs(self.slope) + self.floor))
+
+    def allowed(self, turn: sp.Expr) -> sp.Expr:
+        """A turn if it is positive and does not move the tip by more than the tolerance, or 0."""
+        little = sp.And(turn > 0, turn * self.heavy <= Rational(1, 2**40))
+        return sp.Piecewise((turn, little), (0, True))
+
+
 @dataclass(frozen=True)
 class FreeTurn:
     """The turn of the virtual fore-arm that leaves the tip where it is.
@@ -327,54 +394,113 @@ class FreeTurn:
     """
 
     program: Program
-    size: sp.Expr
-    """Length of a stretched arm."""
-    scale: sp.Expr
-    """Natural scale of the areas that must not be negative."""
+    m: Dimensions
+    slack: sp.Symbol
     tilt: sp.Symbol
     drawn: sp.Symbol
 
-    def swing(self, turn: sp.Expr) -> sp.Expr:
-        """How far the elbow moves aside, in addition to the turn of the whole arm."""
-        return -self.drawn * turn
+    def lean(self, turn: sp.Expr, aside: sp.Expr) -> sp.Expr:
+        """The tangent of the turn of the upper arm that goes with that of the fore-arm."""
+        return turn - self.drawn * turn / self.m.L1 + aside
 
     def easing(
-        self, name: str, room: sp.Symbol, slope: sp.Symbol, meaning: str
-    ) -> tuple[sp.Symbol, sp.Expr]:
-        """Return a flag and the turn that brings a negative area ``room`` back to zero.
+        self,
+        name: str,
+        room: sp.Symbol,
+        slopes: tuple[sp.Symbol, sp.Symbol],
+        scale: sp.Expr,
+        meaning: str,
+    ) -> Easing:
+        """What makes up for what an area ``room`` of a natural ``scale`` lacks.
 
-        ``slope`` is the derivative of ``room`` by the turn.  Without the flag the turn is zero.
+        The area grows by ``slopes`` times the free turn, and times a turn of the upper arm aside.
+        Each takes its share, by what the tolerance of the tip lets it bring.
         """
-        # so small a turn does not move the tip if tilt is zero: its square is below rounding
-        nothing = Rational(1, 10**5) * self.size
-        no_room = f"no room: {meaning}"
-        spent = self.program.vanishes(f"spent_{name}", used_up(room), self.scale, no_room)
-        loose = sp.Abs(slope) * self.size / (sp.Abs(self.tilt) + nothing)
-        scale = self.program.let(f"play_{name}", self.scale + choose(spent, loose, 0))
-        self.program.bound(f"kept_{name}", room, scale, meaning)
-        lack = sp.Abs(room) - room
-        turn = lack * slope / (slope**2 + (nothing * self.size) ** 2) / 2
-        return spent, self.program.let(f"turn_{name}", choose(spent, turn, 0))
+        let, upper = self.program.let, 1 - self.drawn / self.m.L1
+        # what moves the tip: each by itself, and by its square, in units of the tolerance
+        squares = (self.m.L1 * upper**2 + sqrt(L_2W**2 + a_3W**2), self.m.L1)
+        heavy = [
+            (by + sqrt(self.slack * square / 2) / 10**6) / self.slack
+            for by, square in zip((sp.Abs(self.tilt), self.m.L1), squares, strict=True)
+        ]
+        spent = self.program.vanishes(f"spent_{name}", used_up(room), scale, f"no room: {meaning}")
+        heavy = [let(f"heavy_{k}_{name}", choose(spent, e, 1)) for k, e in enumerate(heavy)]
+        gains = [
+            let(f"gain_{k}_{name}", choose(spent, sp.Abs(s) / e, 0))
+            for k, (s, e) in enumerate(zip(slopes, heavy, strict=True))
+        ]
+        play = let(f"play_{name}", scale + choose(spent, sum(gains), 0))
+        self.program.bound(f"kept_{name}", room, play, meaning)
+        share = gains[1] ** 2 / (gains[0] ** 2 + gains[1] ** 2 + scale**2)
+        share = let(f"share_{name}", choose(spent, sp.Piecewise((share, room < 0), (0, True)), 0))
+        floors = [scale * e / 2**24 for e in heavy]
+        aside = -sign_of(slopes[1]) * share * room / (sp.Abs(slopes[1]) + floors[1])
+        aside = let(f"aside_{name}", choose(spent, aside, 0))
+        return Easing(
+            spent, aside, let(f"lack_{name}", room * (share - 1)), slopes[0], heavy[0], floors[0]
+        )
+
+    def turn(self, name: str, easings: Sequence[tuple[Easing, sp.Expr]]) -> sp.Symbol:
+        """A free turn that leaves every area what it needs, as far as that can be had.
+
+        Beside an easing stands what its area grows by with the square of the turn.
+        """
+        let = self.program.let
+        spent = sp.Or(*(easing.spent for easing, _ in easings))
+        sides = []
+        for side, sign in (("on", 1), ("back", -1)):
+            turn, ends = sp.S.Zero, []
+            for k, (e, curve) in enumerate(easings):
+                slope = sign * e.slope
+                root = sqrt(sp.Max(0, e.slope**2 + 4 * e.lack * curve))
+                root = let(f"root_{side}_{k}_{name}", choose(spent, root, 0))
+                near = e.allowed(2 * e.lack / (slope + root + e.floor))
+                far = e.allowed((root - slope) / (2 * sp.Max(curve, 0) + e.floor / 2**24))
+                ends.append(let(f"far_{side}_{k}_{name}", choose(spent, far, 0)))
+                first = sp.Piecewise((near, slope >= 0), (ends[-1], e.lack > 0), (0, True))
+                turn = sp.Max(turn, first)
+            turn = let(f"near_{side}_{name}", choose(spent, turn, 0))
+
+            def grown(t: sp.Expr, k: int) -> sp.Expr:
+                e, curve = easings[k]
+                return t * (sign * e.slope + curve * t) - e.lack  # noqa: B023
+
+            needs = [sp.Piecewise((t, grown(turn, k) < 0), (0, True)) for k, t in enumerate(ends)]
+            turn = let(f"turn_{side}_{name}", choose(spent, sp.Max(turn, *needs), 0))
+            least = sp.Min(*(grown(turn, k) for k in range(len(easings))))
+            sides.append((turn, let(f"left_{side}_{name}", choose(spent, least, 0))))
+        (on, on_left), (back, back_left) = sides
+        turn = sp.Piecewise((on, on_left >= back_left), (-back, True))
+        return let(f"turn_{name}", choose(spent, turn, 0))
+
+
+def turned_by(tangent: sp.Expr) -> Pair:
+    """Cosine and sine of an angle between -pi/2 and pi/2 from its tangent."""
+    length = sqrt(1 + tangent**2)
+    return Pair(1 / length, tangent / length)
+
+
+def moved_by(tangent: sp.Expr, e: sp.Matrix) -> sp.Matrix:
+    """By how much such a turn moves a point, also if that is little."""
+    c, s = turned_by(tangent)
+    return sp.Matrix([-s * e[1], s * e[0]]) - s**2 / (1 + c) * e
 
 
 def bent_whole(m: Dimensions, bend: Pair) -> tuple[sp.Expr, sp.Expr]:
-    """The virtual arm with the wrist: its extent across and along the upper arm."""
-    along, across = real("L_2W"), real("a_3W")
-    return along * bend.c - across * bend.s, m.L1 + along * bend.s + across * bend.c
+    """Of the virtual arm with the wrist: its fore-arm across its upper arm, and all along it."""
+    return L_2W * bend.c - a_3W * bend.s, m.L1 + L_2W * bend.s + a_3W * bend.c
 
 
-def free_turn(program: Program, m: Dimensions, bend: Pair, size: sp.Symbol) -> FreeTurn:
-    """The free turn of a virtual arm, from the angle of its elbow and its stretched length."""
+def free_turn(program: Program, m: Dimensions, bend: Pair, slack: sp.Symbol) -> FreeTurn:
+    """The free turn of a virtual arm from the angle of its elbow."""
     tilt, drawn = bent_whole(m, bend)
-    return FreeTurn(
-        program, size, size * m.d, program.let("tilt", tilt), program.let("drawn", drawn)
-    )
+    return FreeTurn(program, m, slack, program.let("tilt", tilt), program.let("drawn", drawn))
 
 
 def turn_step(d: Derivation, m: Dimensions) -> None:
     """Add the step of the derivation that explains the free turn."""
     tilt, drawn = bent_whole(m, pair(theta23A - theta2A))
-    p = reach(m, pair(theta2A), pair(theta23A), real("L_2W"), real("a_3W"))
+    p = reach(m, pair(theta2A), pair(theta23A), L_2W, a_3W)
     rate = p.diff(theta23A) + (1 - drawn / m.L1) * p.diff(theta2A)
     d.step(
         "Arms at their limit while the virtual arm is straight",

@@ -4,6 +4,8 @@ import importlib
 
 import numpy as np
 import pytest
+from fuzz import postures, robots
+from fuzz.lengths import draw_lengths, draw_postures
 
 OK, SINGULAR = 0, 2
 OFF = (0.0, *(10.0**-k for k in range(16)))
@@ -135,3 +137,12 @@ def test_ur_arm_with_dissimilar_lengths(backend: str) -> None:
     rng, n = np.random.default_rng(6), 60_000
     lengths, q = dimensions(rng, n, 6), rng.uniform(-np.pi, np.pi, (n, 6))
     assert reached("ur_arm", backend, lengths, q).all()
+
+
+@pytest.mark.parametrize("robot", ["h6ar", "h6ar_loop_closed"])
+def test_twin_arms_with_dissimilar_lengths(robot: str) -> None:
+    """OK answers hold to what the docstring says: 2^-46 of the lengths over d, or 1e-12."""
+    rng, subject = np.random.default_rng(8), robots.robot(robot)
+    lengths = draw_lengths(rng, subject, 20_000)
+    q, _ = draw_postures(rng, subject, lengths)
+    assert postures.check(subject, lengths, q) == []

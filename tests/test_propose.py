@@ -1,5 +1,6 @@
 """Proposed inverses: the structure is recognised from the axes, and the proof accepts each."""
 
+import ast
 from collections.abc import Callable
 
 import pytest
@@ -14,6 +15,7 @@ from closedform.model.derivation import Derivation, Paper
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
 from closedform.scaffold.propose import NoChainError, Proposal, propose
+from closedform.scaffold.tables import TAKEN
 
 
 def run(proposal: Proposal, ik: Chain) -> None:
@@ -108,6 +110,19 @@ def test_the_proof_accepts_the_proposal(structure: str) -> None:
     ik.finish("Inverse.")
     (inverse,) = prove(d).inverses
     assert inverse.branches == branches == inverse.solutions == found.branches
+
+
+@pytest.mark.parametrize("structure", KNOWN)
+def test_a_table_may_not_use_a_name_of_the_proposal(structure: str) -> None:
+    """Every name in the lines is that of a joint, of a parameter, or reserved."""
+    joints, _, rows = KNOWN[structure]
+    d, serial = arm(joints, rows)
+    nodes = list(ast.walk(ast.parse(propose(serial).source)))
+    used = {n.id for n in nodes if isinstance(n, ast.Name)}
+    used |= {n.arg for n in nodes if isinstance(n, ast.arg)}
+    own = {p.symbol.name for p in d.parameters} | {j.symbol.name for j in d.joints}
+    own |= {f"{name}_" for name in own}
+    assert used - own <= TAKEN
 
 
 @pytest.mark.parametrize("robot", ["scara", "ur_arm"])

@@ -131,6 +131,36 @@ def test_links_of_very_different_sizes(language: str) -> None:
     np.testing.assert_array_equal(out[0], arm.ik(mixed).q)
 
 
+@pytest.mark.parametrize("language", ["numpy", "c"])
+@pytest.mark.parametrize("single", [True, False])
+@pytest.mark.parametrize("height", [1e155, -1e200, 1e308])
+def test_a_height_far_beyond_the_links(language: str, single: bool, height: float) -> None:
+    """It meets no other length, so that the elbow and the yaw do not depend on it."""
+    scara = importlib.import_module(f"closedform.generated.{language}.scara")
+    x = np.array([[0.3, 0.2, 0.1, 0.7], [0.1, -0.4, 0.0, 0.0]])
+    far = x.copy()
+    far[:, 2] = height
+    near_q, near_status = scara.ik(x[0] if single else x)
+    far_q, far_status = scara.ik(far[0] if single else far)
+    assert (far_status == near_status).all()
+    np.testing.assert_array_equal(far_q[..., [0, 1, 3]], near_q[..., [0, 1, 3]])
+    np.testing.assert_array_equal(far_q[..., 2], -height)
+
+
+def test_a_length_apart_from_those_with_powers() -> None:
+    """It has no say in the size, and neither has what is computed of it alone."""
+    graph = Graph()
+    x, length, height = map(graph.input, ("x", "length", "height"))
+    area = graph.node("mul", x, length)
+    above = graph.node("add", height, graph.node("mul", height, graph.node("sin", graph.const(1))))
+    found = degrees([[area, above]], {}, ["x", "length", "height"])
+    assert found is not None
+    assert (found.lengths, found.results, found.highest) == ({"x", "length"}, ((2, 0),), 2)
+    together = degrees([[area, graph.node("add", above, x)]], {}, ["x", "length", "height"])
+    assert together is not None
+    assert together.lengths == {"x", "length", "height"}
+
+
 def test_degrees_of_a_program() -> None:
     graph = Graph()
     x, length, angle = map(graph.input, ("x", "length", "angle"))

@@ -375,7 +375,8 @@ def _check_round_trips(
 
     Answers that seem to miss by more than half of the tolerance are evaluated in Arb, worst first.
     """
-    allowed, parameters = backend.tolerances.forward, postures.parameters
+    parameters = postures.parameters
+    allowed = backend.tolerances.promised(float(truth.amplified(*parameters)))
     images = truth.wide_images(postures.values, parameters)
     targets = np.concatenate(list(images)).astype(float)
     posed = _round(

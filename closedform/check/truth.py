@@ -95,6 +95,7 @@ class Solutions:
     def __init__(self, derivation: Derivation, function: Function, inverse: Inverse):
         self.function = function
         parameters = tuple(p.symbol for p in derivation.parameters)
+        self.amplified = sp.lambdify(parameters, inverse.condition)
         revolute = {j.symbol for j in derivation.joints if j.kind == "revolute"}
         self.angular = np.array([u in revolute for u in inverse.unknowns])
         place = (*inverse.unknowns, *function.symbols, *parameters)

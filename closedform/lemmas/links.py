@@ -20,8 +20,9 @@ from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
-from closedform.lemmas.pairs import LinksAtHeight, Pair, amplitude_lemma, direction, nearly_tangent
+from closedform.lemmas.pairs import LinksAtHeight, Pair, amplitude_lemma, direction
 from closedform.lemmas.registry import chain_lemma
+from closedform.lemmas.sine_cosine import nearly_tangent
 from closedform.lemmas.tangent import Links, Turn, Turned, leaving
 from closedform.lemmas.triangle import heron_factors
 from closedform.model.derivation import Degenerate

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from closedform.lemmas.sine_cosine import nearly_tangent, root_in_reach
 from closedform.lemmas.triangle import heron_factors, triangle_equations
 from closedform.model.functions import Program, choose
 from closedform.model.lemma import Lemma, label
@@ -94,7 +95,7 @@ def sine_cosine_pair(
     width = program.let(f"width{suffix}", below + above, nonnegative=True)
     if reach is not None:
         tangent = nearly_tangent(program, root, h, suffix)
-        held = _root_in_reach(program, below * above, h, scale, *reach, suffix=suffix)
+        held = root_in_reach(program, below * above, h, scale, *reach, suffix=suffix)
         whole = 2 * sp.sqrt(held + (above - below) ** 2 / 4)
         root = program.let(f"ahead{suffix}", choose(tangent, sp.sqrt(held), root), nonnegative=True)
         width = program.let(f"span{suffix}", choose(tangent, whole, width), nonnegative=True)
@@ -102,14 +103,6 @@ def sine_cosine_pair(
     both = Pair(a / h, b / h) + turn
     pair = Pair(choose(flag, 0, both.s), choose(flag, 1, both.c)).known_as(program, label(x))
     return amplitude_lemma(x, a, b, c, pair), pair, -sigma * root, flag
-
-
-def nearly_tangent(program: Program, lever: sp.Expr, scale: sp.Expr, suffix: str = "") -> sp.Symbol:
-    """A flag that the ``lever`` of a turn is so short that rounding may decide what is in reach.
-
-    It is 2^-8 of the ``scale``; for a longer one the tolerance of a reach covers the rounding.
-    """
-    return program.vanishes(f"tangent{suffix}", lever - scale / 2**8, scale, "the turn is tangent")
 
 
 @dataclass(frozen=True)
@@ -136,43 +129,13 @@ class LinksAtHeight:
         """The root and the width of a turn; of the roots that rounding allows one within reach."""
         (below, above), (root, width) = bounds, of_turn
         tangent = nearly_tangent(program, root, amplitude, suffix)
-        square = below * above
-        farthest = (self.l1 + self.l2) ** 2 - self.height**2
-        nearest = (self.l1 - self.l2) ** 2 - self.height**2
-        wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
-        rounding = 2 * amplitude * scale / 2**44
-        held = program.let(
-            f"held{suffix}",
-            sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True)),
-            nonnegative=True,
-        )
+        links = self.l1, self.l2, self.height
+        held = root_in_reach(program, below * above, amplitude, scale, *links, suffix=suffix)
         whole = sp.sqrt(4 * held + (above - below) ** 2)
         return (
             program.let(f"kept{suffix}", choose(tangent, sp.sqrt(held), root), nonnegative=True),
             program.let(f"span{suffix}", choose(tangent, whole, width), nonnegative=True),
         )
-
-
-def _root_in_reach(
-    program: Program,
-    square: sp.Expr,
-    h: sp.Expr,
-    scale: sp.Expr,
-    first: sp.Expr,
-    second: sp.Expr,
-    height: sp.Expr,
-    *,
-    suffix: str,
-) -> sp.Symbol:
-    """The ``square`` of a coordinate, brought within reach where that is a matter of rounding."""
-    farthest, nearest = (first + second) ** 2 - height**2, (first - second) ** 2 - height**2
-    wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
-    rounding = 2 * h * scale / 2**44
-    return program.let(
-        f"held{suffix}",
-        sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True)),
-        nonnegative=True,
-    )
 
 
 def triangle_pairs(

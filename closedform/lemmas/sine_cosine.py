@@ -37,6 +37,8 @@ def sine_cosine(
     suffix: str = "",
     free: Sequence[sp.Symbol] = (),
     scale: sp.Expr = sp.S.One,
+    slack: sp.Expr | None = None,
+    reach: tuple[sp.Expr, sp.Expr, sp.Expr] | None = None,
 ) -> Lemma:
     """``a sin x + b cos x = c``: two solutions where ``a^2 + b^2 >= c^2``.
 
@@ -44,15 +46,27 @@ def sine_cosine(
     ``x - atan2(a, b)`` has the tangent ``sqrt(h - c) / sqrt(h + c)``.  x is free where
     ``a = b = c = 0``; with ``free`` joints that is flagged, on the ``scale`` of the coefficients,
     and the answer there is x = 0.  ``b sin x - a cos x`` gets a name too.
+
+    ``slack`` is the scale of the amount by which c may be missed, by default the same scale.
+    ``reach`` holds two links and a height: in the plane that x turns, the links have to reach the
+    point at this coordinate and height.
     """
     start = len(program.body)
     h = program.let(f"h{suffix}", sp.sqrt(a**2 + b**2), nonnegative=True)
-    size = scale if free else h
+    size = slack if slack is not None else scale if free else h
     below = program.bound(f"below{suffix}", h - c, size, "the amplitude is not smaller than c")
     above = program.bound(f"above{suffix}", h + c, size, "the amplitude is not smaller than -c")
-    half = sp.atan2(sp.sqrt(below), sp.sqrt(above))
-    onward = program.let(f"onward{suffix}", sigma * sp.sqrt(below) * sp.sqrt(above))
-    direction = sp.atan2(a, b) + 2 * sigma * half
+    turn = 2 * sp.atan2(sp.sqrt(below), sp.sqrt(above))
+    root = sp.sqrt(below) * sp.sqrt(above)
+    if reach is not None:
+        root = program.let(f"root{suffix}", root, nonnegative=True)
+        lever = 4 * root * (reach[0] + reach[1])
+        tangent = nearly_tangent(program, lever, h * size, suffix)
+        held = sp.sqrt(root_in_reach(program, below * above, h, size, *reach, suffix=suffix))
+        turn = choose(tangent, sp.atan2(held, (above - below) / 2), turn)
+        root = program.let(f"in_reach{suffix}", choose(tangent, held, root), nonnegative=True)
+    onward = program.let(f"onward{suffix}", sigma * root)
+    direction = sp.atan2(a, b) + sigma * turn
     if free:
         nowhere = program.vanishes(f"nowhere{suffix}", h, scale, "the amplitude is zero", free)
         direction = choose(nowhere, 0, direction)
@@ -65,4 +79,34 @@ def sine_cosine(
         2,
         means={onward: b * sp.sin(x) - a * sp.cos(x)},
         body=tuple(program.body[start:]),
+    )
+
+
+def nearly_tangent(program: Program, lever: sp.Expr, scale: sp.Expr, suffix: str = "") -> sp.Symbol:
+    """A flag that the ``lever`` of a turn is so short that rounding may decide what is in reach.
+
+    It is 2^-8 of the ``scale``; for a longer one the tolerance of a reach covers the rounding.
+    """
+    return program.vanishes(f"tangent{suffix}", lever - scale / 2**8, scale, "the turn is tangent")
+
+
+def root_in_reach(
+    program: Program,
+    square: sp.Expr,
+    h: sp.Expr,
+    scale: sp.Expr,
+    first: sp.Expr,
+    second: sp.Expr,
+    height: sp.Expr,
+    *,
+    suffix: str,
+) -> sp.Symbol:
+    """The ``square`` of a coordinate, brought within reach if rounding puts it out of reach."""
+    farthest, nearest = (first + second) ** 2 - height**2, (first - second) ** 2 - height**2
+    wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
+    rounding = 2 * h * scale / 2**44
+    return program.let(
+        f"held{suffix}",
+        sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True)),
+        nonnegative=True,
     )

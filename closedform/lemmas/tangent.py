@@ -112,7 +112,11 @@ class Turn:
         outer = self.let("outer", slope + sign_of(slope) * sp.sqrt(sp.Max(inner, 0)))
         half = self.let(
             "half",
-            sp.Piecewise((-slope / (2 * bend), inner < 0), (-miss / (2 * outer), True)),
+            sp.Piecewise(
+                (-slope / (2 * bend), inner < 0),
+                (0, sp.Eq(outer, 0)),  # no turn changes the distance
+                (-miss / (2 * outer), True),
+            ),
         )
         total = self.let("total", 1 + half**2)
         return self.by(

@@ -19,6 +19,7 @@ def two_link_arm(
     unknowns: tuple[sp.Symbol, sp.Symbol],
     sigma: sp.Symbol,
     *,
+    scale: sp.Expr | None = None,
     suffix: str = "",
     free: Sequence[sp.Symbol] = (),
 ) -> Lemma:
@@ -30,14 +31,16 @@ def two_link_arm(
         l cos(x) + a sin(y) + b cos(y) = r,   l sin(x) - a cos(y) + b sin(y) = h.
 
     The fore-arm is a link of length sqrt(a^2 + b^2) that lags behind y by atan2(a, b).  Both angles
-    turn together where r = h = 0, and one of them is free where a link has no length.
+    turn together where r = h = 0, and one of them is free where a link has no length.  ``scale`` is
+    that of what the target may be missed by, if it is not the length of the arm.
     """
     upper, along, across = lengths
     r, h = target
     start = len(program.body)
     second = program.let(f"fore{suffix}", sp.sqrt(along**2 + across**2), nonnegative=True)
     square = program.let(f"square{suffix}", r**2 + h**2, nonnegative=True)
-    squares = square_factors(program, upper, second, square, upper + second, suffix=suffix)
+    size = upper + second if scale is None else scale
+    squares = square_factors(program, upper, second, square, size, suffix=suffix)
     flags = _degenerate(program, upper, second, sp.Abs(r) + sp.Abs(h), suffix, free)
     return _arm(
         program, lengths, second, target, unknowns, sigma, squares, flags, suffix, start, (1, 0)

@@ -33,7 +33,9 @@ class MixedError(ValueError):
 class Degrees:
     """The inputs that are lengths, the degree of every entry of the results, and the highest.
 
-    The highest is the largest absolute value of a degree, intermediate values included.
+    The highest is the largest absolute value of a degree, intermediate values included.  A length
+    that is only added to lengths of its own kind, as a height, and never meets one that is
+    multiplied by others, has degree 0: it may be of any size.
     """
 
     lengths: frozenset[str]
@@ -66,6 +68,12 @@ def degrees(
         system.prefer(name, 0)
     taken = {name: system.value({name: ONE}) for name in inputs}
     listed = [[system.value(found[n.id]) for n in row] for row in results]
+    apart = _apart(nodes, {i: system.value(d) for i, d in found.items()})
+    taken |= {str(n.payload): Fraction(0) for n in nodes if n.op == "input" and n.id in apart}
+    listed = [
+        [Fraction(0) if n.id in apart else d for n, d in zip(nodes_of, row, strict=True)]
+        for nodes_of, row in zip(results, listed, strict=True)
+    ]
     if any(d not in (0, 1) for d in taken.values()) or any(
         d.denominator != 1 for row in listed for d in row
     ):
@@ -75,6 +83,23 @@ def degrees(
         tuple(tuple(int(d) for d in row) for row in listed),
         ceil(max((abs(system.value(d)) for d in found.values()), default=0)),
     )
+
+
+def _apart(nodes: Sequence[Node], degree: Mapping[int, Fraction]) -> set[int]:
+    """Nodes of a degree that is not 0, in groups that meet each other and have no powers."""
+    group = {n.id: n.id for n in nodes if degree[n.id]}
+
+    def find(i: int) -> int:
+        while group[i] != i:
+            group[i] = i = group[group[i]]
+        return i
+
+    for node in nodes:
+        met = [n.id for n in (node, *node.args) if n.id in group and node.op != "finite"]
+        for other in met[1:]:
+            group[find(other)] = find(met[0])
+    powers = {find(i) for i in group if abs(degree[i]) > 1}
+    return {i for i in group if find(i) not in powers} if powers else set()
 
 
 @dataclass

@@ -247,6 +247,8 @@ class Inverse:
     units: tuple[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]], ...] = ()
     """Sine and cosine of angles that may be chosen freely, and the names that are free in them."""
     reduction: Reduction | None = None
+    condition: sp.Expr = sp.S.Zero
+    """By how much the mechanism amplifies roundings, in its parameters; see ``promised``."""
 
     def posed(self, inputs: tuple[sp.Symbol, ...], image: tuple[sp.Expr, ...]) -> Inverse:
         """The same inverse with the forward map ``image`` as its equations."""

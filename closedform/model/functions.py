@@ -292,19 +292,26 @@ class Function:
         """
         given = {**(locus or {}), **(carried or {})}
         known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()} | given
+        # what only another case needs is not even written out
+        states = {
+            s.symbol: sp.sympify((flags or {}).get(s.symbol, False), strict=True)
+            for s in self.body
+            if isinstance(s, Vanishes)
+        }
+        exprs = [substitute(e, states) for e in exprs]
+        values = {
+            s.symbol: substitute(s.value, states) for s in self.body if isinstance(s, (Let, Bound))
+        }
         needed = {s for e in exprs for s in e.free_symbols} - known.keys()
-        for statement in reversed(self.body):
-            if isinstance(statement, (Let, Bound)) and statement.symbol in needed:
-                needed |= statement.value.free_symbols - known.keys()
+        for symbol, value in reversed(values.items()):
+            if symbol in needed:
+                needed |= value.free_symbols - known.keys()
         bounds = []
         for statement in self.body:
-            if isinstance(statement, Vanishes):
-                known[statement.symbol] = sp.sympify(
-                    (flags or {}).get(statement.symbol, False), strict=True
-                )
-            elif isinstance(statement, (Let, Bound)) and statement.symbol in needed:
-                value = known[statement.symbol] = substitute(statement.value, known)
-                sum_of_squares = value.is_Add and statement.symbol.is_nonnegative
+            if isinstance(statement, (Let, Bound)) and statement.symbol in needed:
+                symbol = statement.symbol
+                value = known[symbol] = substitute(values[symbol], known)
+                sum_of_squares = value.is_Add and symbol.is_nonnegative
                 if isinstance(statement, Bound) or (sum_of_squares and value.is_nonnegative):
                     bounds.append(value)
         return tuple(substitute(e, known) for e in exprs), tuple(bounds)

@@ -61,6 +61,14 @@ class Tolerances:
     most_exponent: int
     ulps_per_operation: float = 0.01
 
+    def promised(self, condition: float) -> float:
+        """The bound for OK answers of an inverse that amplifies roundings by ``condition``.
+
+        That is ``forward``, unless four roundings of the joints and of the target, each of
+        ``vanishing``, and those on the way become more.
+        """
+        return max(self.forward, 16 * self.vanishing * condition)
+
     def sizes(self, degree: int) -> tuple[float, float]:
         """The smallest and largest size whose powers up to ``degree`` stay in the range."""
         return 2.0 ** -(-self.least_exponent // degree), 2.0 ** (self.most_exponent // degree)

@@ -63,18 +63,29 @@ def prove_reduction(
 def _meanings(function: Function, reduction: Reduction) -> dict[sp.Basic, sp.Basic]:
     """The values of the names of a program in inputs, parameters and unknowns of the lemmas.
 
-    Flags are false, as in every proof of the generic case.
+    Flags are false, as in every proof of the generic case.  Only the values that the equations of
+    the lemmas depend on are written out, because those of other cases may be large.
     """
     known: dict[sp.Basic, sp.Basic] = {}
     inside: set[int] = set()
+    roots: list[sp.Basic] = list(reduction.joints.values())
     for lemma in reduction.lemmas:
         known |= lemma.means
         inside |= {id(s) for s in lemma.body}
-    for statement in function.body:
-        if isinstance(statement, Vanishes):
-            known[statement.symbol] = sp.false
-        elif isinstance(statement, (Let, Bound)) and id(statement) not in inside:
-            known[statement.symbol] = substitute(statement.value, known)
+        roots += [*lemma.equations, *lemma.premises, *lemma.premises.values()]
+    flags = {s.symbol: sp.false for s in function.body if isinstance(s, Vanishes)}
+    values = {
+        s.symbol: substitute(s.value, flags)
+        for s in function.body
+        if isinstance(s, (Let, Bound)) and id(s) not in inside
+    }
+    needed = {s for e in roots for s in e.free_symbols}
+    for symbol, value in reversed(values.items()):
+        if symbol in needed:
+            needed |= value.free_symbols - known.keys()
+    known |= flags
+    for symbol in [s for s in values if s in needed]:
+        known[symbol] = substitute(values[symbol], known)
     return known
 
 

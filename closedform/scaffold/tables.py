@@ -43,7 +43,7 @@ CHAIN = ("Reaching", "turned", *chain_lemmas())
 AUTHOR = (
     "Chain", "Derivation", "Links", "LinksAndWrist", "Pair", "Paper", "from_dh", "from_screws",
 )  # fmt: skip
-SCRIPT = {"arm", "d", "forward", "links"}
+SCRIPT = {"arm", "d", "forward", "links", "pair"}
 LINES = {"M", "ahead", "ik", "p", "q", "reaching", "turn1", "wx", "wy", "x", "y", "yaw", "z", "rho"}
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

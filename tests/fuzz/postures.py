@@ -146,7 +146,8 @@ def _judged(
     problems = []
     for i in np.flatnonzero(~(ok | singular).any(axis=1)):
         problems.append(("lost", int(i), f"lost, status {status[i]}"))
-    wrong = ok & ~(misses <= DOUBLE.round_trip)
+    allowed = [max(DOUBLE.round_trip, DOUBLE.promised(subject.condition(*p))) for p in lengths]
+    wrong = ok & ~(misses <= np.reshape(allowed, (-1, 1)))
     for i in np.flatnonzero(wrong.any(axis=1)):
         worst = misses[i][ok[i]].max()
         problems.append(("miss", int(i), f"OK misses by {worst:.2g} of the lengths"))

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import importlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from types import ModuleType
+from typing import Any
 
 import numpy as np
+import sympy as sp
 
 from closedform.pipeline import run as pipeline
 
@@ -31,6 +34,8 @@ class Robot:
     angles: tuple[bool, ...]
     modes: bool
     needed: tuple[bool, ...]
+    condition: Callable[..., Any]
+    """By how much roundings are amplified, from the lengths."""
 
     def module(self, backend: str) -> ModuleType:
         return importlib.import_module(f"closedform.generated.{backend}.{self.name}")
@@ -69,4 +74,5 @@ def _robot(source: pipeline.Source) -> Robot:
         tuple(s in inverse.angles for s in d["ik"].symbols),
         bool(d.assembly_modes),
         tuple(p.name in NEEDED.get(source.name, ()) for p in d.parameters),
+        sp.lambdify([p.symbol for p in d.parameters], inverse.condition),
     )

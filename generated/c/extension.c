@@ -2343,6 +2343,8 @@ const cf_function cf_functions[] = {
       "  beta are half the differences of the arms' angles, and sines of equal size are returned.\n"
       "- SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): rounded\n"
       "  joints do not determine the tip to 1e-12 there.\n"
+      "- OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:\n"
+      "  yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.\n"
       "- INVALID: d, L1, or both L2 and a3 are zero.\n"
       ,
       9, h6ar_values, h6ar_fields,
@@ -2745,6 +2747,8 @@ const cf_function cf_functions[] = {
       "  folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the\n"
       "  distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and near\n"
       "  stretched wrist links (l_W is less than 2^-10 al).\n"
+      "- OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:\n"
+      "  yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.\n"
       "- INVALID: d, L1, or both L2 and a3 are zero.\n"
       "- A straight right arm is returned bent by a few units in the last place, so that fk can\n"
       "  tell the side.\n"

@@ -12,11 +12,11 @@
  *   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
  *   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
  *   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
- *   ik: 398 compare and select, 320 add, 24 atan2, 59 divide, 330 multiply, 1 reduce to a turn, 3
- *     sincos, 16 sqrt
- *   ik where nothing vanishes: 240 compare and select, 158 add, 17 atan2, 25 divide, 138 multiply,
+ *   ik: 517 compare and select, 404 add, 33 atan2, 128 divide, 511 multiply, 1 reduce to a turn, 3
+ *     sincos, 38 sqrt
+ *   ik where nothing vanishes: 244 compare and select, 166 add, 17 atan2, 28 divide, 146 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
- *   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 1 sqrt
+ *   wrist_length: 5 add, 20 compare and select, 1 divide, 5 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
  *   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -248,6 +248,8 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
  *   beta are half the differences of the arms' angles, and sines of equal size are returned.
  * - SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): rounded
  *   joints do not determine the tip to 1e-12 there.
+ * - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
+ *   yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.
  * - INVALID: d, L1, or both L2 and a3 are zero.
  */
 void h6ar_ik(const h6ar_params *params, const real_t x[6],

@@ -12,11 +12,11 @@
  *   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
  *   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
  *   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
- *   ik: 346 compare and select, 342 add, 27 atan2, 40 divide, 456 multiply, 1 reduce to a turn, 3
- *     sincos, 16 sqrt
- *   ik where nothing vanishes: 256 compare and select, 250 add, 23 atan2, 27 divide, 333 multiply,
+ *   ik: 831 compare and select, 609 add, 28 atan2, 135 divide, 884 multiply, 1 reduce to a turn, 3
+ *     sincos, 37 sqrt
+ *   ik where nothing vanishes: 276 compare and select, 260 add, 23 atan2, 31 divide, 334 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
- *   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 1 sqrt
+ *   wrist_length: 5 add, 20 compare and select, 1 divide, 6 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
  *   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt
@@ -265,6 +265,8 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
  *   folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
  *   distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and near
  *   stretched wrist links (l_W is less than 2^-10 al).
+ * - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
+ *   yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.
  * - INVALID: d, L1, or both L2 and a3 are zero.
  * - A straight right arm is returned bent by a few units in the last place, so that fk can tell
  *   the side.

@@ -626,18 +626,16 @@ CLOSEDFORM_DISPATCHED
 void scara_ik(const scara_params *params, const real_t x[4],
     real_t q[8], uint8_t status[2])
 {
-    static const signed char x_degrees[4] = { 1, 1, 1, 0 };
-    static const signed char q_degrees[8] = { 0, 0, 1, 0, 0, 0, 1, 0 };
+    static const signed char x_degrees[4] = { 1, 1, 0, 0 };
     real_t x_scaled[4];
     scara_params params_scaled;
     int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(params->h), cf_abs(x[0]))), cf_max(cf_abs(x[1]), cf_abs(x[2])));
+    const real_t size = cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_max(cf_abs(x[0]), cf_abs(x[1])));
     if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
         exponent = cf_exponent(size);
         params_scaled = *params;
         params_scaled.l1 = CF_LIBM(ldexp)(params->l1, -exponent);
         params_scaled.l2 = CF_LIBM(ldexp)(params->l2, -exponent);
-        params_scaled.h = CF_LIBM(ldexp)(params->h, -exponent);
         params = &params_scaled;
         cf_rescale(4, x_degrees, -exponent, x, x_scaled);
         x = x_scaled;
@@ -650,16 +648,13 @@ void scara_ik(const scara_params *params, const real_t x[4],
     scara_ik_kernel(1, one, params, x, sines, cosines, q, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(8, q_degrees, exponent, q, q);
-    }
 }
 
 /* Has its sign bit set where powers of the size of a posture may leave the range. */
 CF_INLINE cf_word scara_ik_excess(const real_t dimensions,
     const real_t *x, size_t x_stride, size_t i)
 {
-    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_max(cf_abs(x[x_stride + i]), cf_abs(x[2 * x_stride + i]))), CF_SIZES_4);
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(x[i])), cf_abs(x[x_stride + i])), CF_SIZES_4);
 }
 
 CF_RARE void scara_ik_other_sizes(size_t n, const real_t dimensions,
@@ -689,7 +684,7 @@ void scara_ik_batch(size_t n, const scara_params *params,
 {
     const scara_params local = *params;
     const real_t one = cf_one();
-    const real_t dimensions = cf_max(cf_max(cf_abs(params->l1), cf_abs(params->l2)), cf_abs(params->h));
+    const real_t dimensions = cf_max(cf_abs(params->l1), cf_abs(params->l2));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
         real_t sines[1][CLOSEDFORM_BLOCK], cosines[1][CLOSEDFORM_BLOCK];

@@ -644,8 +644,8 @@ const _IK = _runtime.kernel({
     used: ["l1", "l2", "h"],
     defaults: DEFAULTS,
     size: {
-        lengths: [0, 1, 2, 4, 5, 6],
-        degrees: [[2, 1], [6, 1]],
+        lengths: [0, 1, 4, 5],
+        degrees: [],
         least: 2.938735877055719e-39,
         most: 1.8092513943330656e+75,
     },

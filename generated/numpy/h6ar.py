@@ -11,11 +11,11 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
-#   ik: 398 compare and select, 320 add, 24 atan2, 59 divide, 330 multiply, 1 reduce to a turn, 3
-#     sincos, 16 sqrt
-#   ik where nothing vanishes: 240 compare and select, 158 add, 17 atan2, 25 divide, 138 multiply,
+#   ik: 517 compare and select, 404 add, 33 atan2, 128 divide, 511 multiply, 1 reduce to a turn, 3
+#     sincos, 38 sqrt
+#   ik where nothing vanishes: 244 compare and select, 166 add, 17 atan2, 28 divide, 146 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
-#   wrist_length: 5 add, 20 compare and select, 2 divide, 4 multiply, 2 sincos, 1 sqrt
+#   wrist_length: 5 add, 20 compare and select, 1 divide, 5 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
 #   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -1144,848 +1144,1251 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     s_psi, c_psi = _runtime.sincos_as_in_c(psi)
     principal_pitch = _runtime.principal(pitch)
     h = np.sqrt(x * x + y * y)
-    t1 = L1 + L2
-    nowhere = h <= t1 * _runtime.VANISHING
-    t2 = np.arctan2(x, y)
-    t3 = lp * s_pitch
+    t1 = gs + al
+    t2 = L2 + a3
+    lengths = L1 + d1 + d + loff + lp + t1 + t2
+    nowhere = h <= _runtime.VANISHING * lengths
+    t3 = np.arctan2(x, y)
+    t4 = lp * s_pitch
     del s_pitch
-    t4 = (gs + al) * c_psi - d
-    t5 = d - c_psi * (gs - al)
-    t6 = np.sqrt(np.maximum(t4, 0.0) * np.maximum(t5, 0.0))
-    t7 = 1.0 / c_psi
-    wrist = t6 * t7
-    del t6
-    t8 = loff + lp * c_pitch + wrist
-    del c_pitch
-    t9 = s_psi * t8
-    t10 = s_phi * t3 - c_phi * t9
-    t11 = h + t10
-    below = np.maximum(t11, 0.0)
-    t12 = h - t10
-    del h, t10
-    above = np.maximum(t12, 0.0)
-    onward = np.sqrt(below * above)
-    t13 = np.arctan2(2.0 * onward, above - below)
-    del above, below
-    t14 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t13))
-    t15 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t16 = t15 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t15
-    t17 = t16 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t16
-    t18 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t19 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
-    t20 = t17 & (0.0 <= loff) & (0.0 <= lp) & t18 & (np.abs(t19) <= _runtime.ROTATION)
-    del t17, t18, t19
-    invalid = np.logical_not(t20)
-    del t20
-    t21 = -(_runtime.FEASIBILITY * (d * 0.5))
-    t22 = (-_runtime.FEASIBILITY <= c_phi) & (t21 <= t4)
-    del t4
-    t23 = -(_runtime.FEASIBILITY * t1)
+    t5 = t1 * c_psi
     del t1
-    t24 = t22 & (t21 <= t5) & (t23 <= t11) & (t23 <= t12)
-    del t11, t12, t21, t22, t23, t5
-    L_2W = L2 + c_psi * t8
-    del c_psi, t8
-    a_3W = a3 + c_phi * t3 + s_phi * t9
-    del t3, t9
+    t6 = t5 - d
+    t7 = d - c_psi * (gs - al)
+    t8 = np.sqrt(np.maximum(t6, 0.0) * np.maximum(t7, 0.0))
+    t9 = 1.0 / c_psi
+    wrist = t8 * t9
+    del t8
+    t10 = loff + lp * c_pitch + wrist
+    del c_pitch
+    t11 = s_psi * t10
+    t12 = s_phi * t4 - c_phi * t11
+    t13 = h - t12
+    above = np.maximum(t13, 0.0)
+    t14 = h + t12
+    del t12
+    below = np.maximum(t14, 0.0)
+    t15 = above * below
+    root = np.sqrt(t15)
+    L_2W = L2 + c_psi * t10
+    del c_psi, t10
+    a_3W = a3 + c_phi * t4 + s_phi * t11
+    del t11, t4
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t25 = L1 + fore
-    t26 = 2.0 * fore
-    t27 = _runtime.FEASIBILITY * (t25 * (L1 * 2.0 + t26))
-    t28 = t25 * t25
-    t29 = z - d1
-    square = t29 * t29 + onward * onward
-    t30 = t28 - square
-    t31 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t32 = L1 - fore
-    t33 = _runtime.FEASIBILITY * (t25 * (t31 + 2.0 * np.abs(t32)))
-    del t31
-    t34 = square - t32 * t32
-    del square
-    t35 = t24 & (-t27 <= t30) & (-t33 <= t34)
-    del t24, t27, t33
-    size = L1 + np.sqrt(L2 * L2 + a3 * a3)
-    t36 = d * size
-    short = L1 * fore <= _runtime.VANISHING * t28
+    t16 = L1 + fore
+    t_phi = s_phi / c_phi
+    del s_phi
+    higher = d * t_phi
+    t_psi = s_psi * t9
+    del s_psi, t9
+    ahead = d * t_psi
+    far_apart = np.abs(t_phi * higher) * 0.001953125 + np.abs(t_psi * ahead) * 0.001953125
+    del t_phi, t_psi
+    slack = far_apart + lengths
+    t17 = h * slack
+    del h
+    tangent = 4.0 * root * t16 - t17 * 0.00390625 <= _runtime.VANISHING * t17
+    t18 = L1 - fore
+    t19 = t18 * t18
+    t20 = z - d1
+    t21 = t20 * t20
+    t22 = t16 * t16
+    wanted = np.maximum(np.maximum(0.0, t19 - t21), np.minimum(t15, t22 - t21))
+    t23 = 8796093022208.0 * np.abs(t15 - wanted) <= t17
+    del t17
+    t24 = np.sqrt(_runtime.select(t23, wanted, t15))
+    del t15, t23, wanted
+    t25 = _runtime.select(tangent, np.arctan2(t24, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    del above, below
+    t26 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t25))
+    t27 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t28 = t27 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t27
+    t29 = t28 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
     del t28
-    M = np.maximum(t34, 0.0)
-    del t34
-    N = np.maximum(t30, 0.0)
-    del t30
-    t37 = 1.0 / (M + N)
-    t38 = M - N
-    c_bend = _runtime.select(short, 1.0, t37 * t38)
-    t39 = _runtime.VANISHING * t25
-    bare = fore <= t39
-    t40 = 1.0 / fore
-    c_lag = _runtime.select(bare, 1.0, a_3W * t40)
-    t41 = c_bend * c_lag
-    t42 = 2.0 * np.sqrt(M * N)
-    del N
-    s_bend_front_elbow_down = _runtime.select(short, 0.0, t37 * t42)
-    s_lag = _runtime.select(bare, 0.0, L_2W * t40)
-    del bare, t40
-    t43 = s_bend_front_elbow_down * s_lag
-    c_relative = t41 + t43
-    t44 = c_bend * s_lag
-    del c_bend
-    t45 = s_bend_front_elbow_down * c_lag
-    s_relative = t44 - t45
-    v_1 = L2 * c_relative - a3 * s_relative
-    whole_alpha = L1 * v_1
-    t46 = np.abs(whole_alpha)
-    v_2 = L2 * s_relative + a3 * c_relative
-    ahead = d * s_psi * t7
-    del s_psi, t7
-    folded = np.abs(t29) + np.abs(onward) <= t39
+    t30 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t31 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
+    del t2
+    t32 = t29 & (0.0 <= loff) & (0.0 <= lp) & t30 & (t31 <= _runtime.ROTATION)
+    del t29, t30, t31
+    invalid = np.logical_not(t32)
+    del t32
+    t33 = -(_runtime.FEASIBILITY * (t5 * 1.015625))
+    del t5
+    t34 = (-_runtime.FEASIBILITY <= c_phi) & (t33 <= t6)
+    del c_phi, t6
+    t35 = -(_runtime.FEASIBILITY * slack)
+    t36 = t34 & (t33 <= t7) & (t35 <= t14) & (t35 <= t13)
+    del t13, t14, t33, t34, t35, t7
+    t37 = 2.0 * fore
+    t38 = _runtime.FEASIBILITY * ((L1 * 2.0 + t37) * slack)
+    in_reach = _runtime.select(tangent, t24, root)
+    del root, t24, tangent
+    square = t21 + in_reach * in_reach
+    del t21
+    t39 = t22 - square
+    t40 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t41 = _runtime.FEASIBILITY * ((t40 + 2.0 * np.abs(t18)) * slack)
+    del t40
+    t42 = square - t19
+    del square, t19
+    t43 = t36 & (-t38 <= t39) & (-t41 <= t42)
+    del t36, t38, t41
+    t44 = L2 * L2 + a3 * a3
+    t45 = d + np.abs(higher) + far_apart + np.abs(ahead)
+    del far_apart
+    play = t45 + lengths * 0.001953125
+    del lengths, t45
+    t46 = np.sqrt(t44) * play
+    t47 = _runtime.VANISHING * t16
+    folded = np.abs(t20) + np.abs(in_reach) <= t47
+    short = L1 * fore <= _runtime.VANISHING * t22
+    del t22
+    M = np.maximum(t42, 0.0)
+    del t42
+    N = np.maximum(t39, 0.0)
     del t39
-    t47 = fore * s_bend_front_elbow_down
-    del fore, s_bend_front_elbow_down
-    t48 = t29 * t47
-    ahead_1 = _runtime.select(short, t25, t32 + t26 * M * t37)
-    del M, t25, t26, t32, t37
-    t49 = onward * ahead_1
-    out_rear_elbow_up = t48 - t49
-    t50 = onward * t47
-    del onward, t47
-    t51 = t29 * ahead_1
-    del ahead_1, t29
-    up = t50 + t51
-    t52 = out_rear_elbow_up * out_rear_elbow_up + up * up
-    t53 = 1.0 / np.sqrt(t52)
-    del t52
-    t54 = out_rear_elbow_up * t53
-    ctheta2A = _runtime.select(folded, 1.0, -t54)
-    higher = d * s_phi / c_phi
-    del c_phi, s_phi
-    stheta2A = _runtime.select(folded, 0.0, up * t53)
-    del t53
-    t55 = higher * stheta2A
-    p_1 = ahead * ctheta2A + t55
-    t56 = ahead * stheta2A
+    t48 = 1.0 / (M + N)
+    ahead_1 = _runtime.select(short, t16, t18 + t37 * M * t48)
+    del t16, t18, t37
+    t49 = in_reach * ahead_1
+    t50 = 2.0 * np.sqrt(M * N)
+    s_bend_front_elbow_down = _runtime.select(short, 0.0, t48 * t50)
+    t51 = fore * s_bend_front_elbow_down
+    t52 = t20 * t51
+    out_2 = t49 - t52
+    t53 = t20 * ahead_1
+    del ahead_1, t20
+    t54 = in_reach * t51
+    del in_reach, t51
+    up = t53 + t54
+    t55 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
+    t56 = out_2 * t55
+    ctheta2A = _runtime.select(folded, 1.0, t56)
+    stheta2A = _runtime.select(folded, 0.0, up * t55)
+    del t55
+    t57 = higher * stheta2A
+    p_1 = ahead * ctheta2A + t57
+    bare = fore <= t47
+    del t47
+    t58 = 1.0 / fore
+    s_lag = _runtime.select(bare, 0.0, L_2W * t58)
+    t59 = M - N
+    del M, N
+    c_bend = _runtime.select(short, 1.0, t48 * t59)
+    del t48
+    t60 = s_lag * c_bend
+    c_lag = _runtime.select(bare, 1.0, a_3W * t58)
+    del bare, t58
+    t61 = c_lag * s_bend_front_elbow_down
+    s_relative = t60 - t61
+    t62 = c_lag * c_bend
+    del c_bend
+    t63 = s_lag * s_bend_front_elbow_down
+    del s_bend_front_elbow_down
+    c_relative = t62 + t63
+    v_2 = L2 * s_relative + a3 * c_relative
+    t64 = ahead * stheta2A
     del stheta2A
-    t57 = t56 - higher * ctheta2A
+    t65 = t64 - higher * ctheta2A
     del ctheta2A
-    t58 = v_2 * p_1 + v_1 * t57
-    room_alpha = t46 - np.abs(t58)
-    t59 = np.maximum(-(room_alpha * 9.094947017729282e-13), room_alpha)
-    t60 = _runtime.VANISHING * t36
-    spent_alpha = t59 <= t60
-    del t59
-    t61 = size / 100000.0
-    t62 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    t63 = 1.0 / (t61 + t62)
-    del t62
-    drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    del c_relative, s_relative
-    t64 = v_2 * drawn * _runtime.sign(whole_alpha)
+    v_1 = L2 * c_relative - a3 * s_relative
+    t66 = p_1 * v_2 + t65 * v_1
+    whole_alpha = L1 * v_1
+    t67 = np.abs(whole_alpha)
+    t68 = np.abs(t66) - t67
+    t69 = np.maximum(t68 * 9.094947017729282e-13, -t68)
+    t70 = _runtime.VANISHING * t46
+    spent_alpha = t69 <= t70
+    del t69
+    t71 = v_2 * _runtime.sign(whole_alpha)
     del whole_alpha
-    t65 = _runtime.sign(-t58) * (v_1 * p_1 - v_2 * t57)
-    del t58
-    t66 = t64 - t65
-    del t65
-    t67 = _runtime.select(spent_alpha, t63 * (size * np.abs(t66)), 0.0)
-    t68 = -(_runtime.FEASIBILITY * (t36 + t67)) <= room_alpha
-    del t67
-    t69 = size * size * size * size / 10000000000.0
-    t70 = t66 * (room_alpha - np.abs(-room_alpha)) / (2.0 * (t69 + t66 * t66))
-    del room_alpha, t66
-    turn_alpha = _runtime.select(spent_alpha, t70, 0.0)
-    del t70
-    t71 = 1.0 / L1
-    lean_alpha = _runtime.select(spent_alpha, turn_alpha - t71 * (drawn * turn_alpha), 0.0)
-    p_1_alpha = _runtime.select(spent_alpha, p_1 - t57 * lean_alpha, p_1)
-    part_beta = L1 * p_1_alpha
-    t72 = turn_alpha - lean_alpha
-    v_1_alpha = _runtime.select(spent_alpha, v_1 - v_2 * t72, v_1)
-    whole_beta = L1 * v_1_alpha
-    t73 = np.abs(part_beta) - np.abs(whole_beta)
-    t74 = np.maximum(t73 * 9.094947017729282e-13, -t73)
-    spent_beta = t74 <= t60
-    del t74
-    v_2_alpha = _runtime.select(spent_alpha, v_2 + v_1 * t72, v_2)
-    del t72
-    t75 = drawn * v_2_alpha * _runtime.sign(whole_beta)
-    del whole_beta
-    t76 = L1 - drawn
-    t77 = _runtime.select(spent_alpha, t57 + p_1 * lean_alpha, t57)
-    del p_1, spent_alpha, t57
-    t78 = t75 - t76 * t77 * _runtime.sign(part_beta)
-    del part_beta, t75
-    t79 = _runtime.select(spent_beta, t63 * (size * np.abs(t78)), 0.0)
-    t80 = -(_runtime.FEASIBILITY * (t36 + t79)) <= -t73
+    drawn = L1 + L_2W * s_relative + a_3W * c_relative
+    t72 = t71 * drawn
+    t73 = _runtime.sign(-t66) * (p_1 * v_1 - v_2 * t65)
+    del t66
+    t74 = t72 - t73
+    del t73
+    t75 = np.abs(t74)
+    t76 = 1.0 / slack
+    t77 = 1.4142135623730951 * np.sqrt(slack)
+    del slack
+    t78 = 1.0 / L1
+    t79 = 1.0 - t78 * drawn
+    t80 = t77 * np.sqrt(fore + L1 * (t79 * t79)) / 2000000.0
     del t79
-    t81 = np.abs(higher)
-    t82 = np.abs(ahead)
-    t83 = d + t81 + t82
-    t84 = -(_runtime.FEASIBILITY * t83)
-    t85 = t78 * (t73 + np.abs(t73)) / (2.0 * (t69 + t78 * t78))
-    del t73, t78
-    turn_beta = _runtime.select(spent_beta, -t85, 0.0)
+    t81 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    del c_relative, s_relative
+    t82 = t76 * (t80 + t81)
+    del t80, t81
+    heavy_0_alpha = _runtime.select(spent_alpha, t82, 1.0)
+    gain_0_alpha = _runtime.select(spent_alpha, t75 / heavy_0_alpha, 0.0)
+    slope_aside_alpha = L1 * t71
+    del t71
+    t83 = np.abs(slope_aside_alpha)
+    t84 = t76 * (L1 + np.sqrt(L1) * t77 / 2000000.0)
+    heavy_1_alpha = _runtime.select(spent_alpha, t84, 1.0)
+    gain_1_alpha = _runtime.select(spent_alpha, t83 / heavy_1_alpha, 0.0)
+    t85 = _runtime.select(spent_alpha, gain_0_alpha + gain_1_alpha, 0.0)
+    t86 = -(_runtime.FEASIBILITY * (t46 + t85)) <= -t68
     del t85
-    lean_beta = _runtime.select(spent_beta, turn_beta - t71 * (drawn * turn_beta), 0.0)
-    t86 = turn_beta - lean_beta
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha - v_2_alpha * t86, v_1_alpha)
-    sigma_uv = _runtime.sign(-(L1 * v_1_beta))
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha - t77 * lean_beta, p_1_alpha)
-    t87 = sigma_uv * p_1_beta
-    del p_1_beta
-    t88 = v_1_beta * sigma_uv
-    del sigma_uv, v_1_beta
-    t89 = t35 & t68 & t80 & (t84 <= t87 - t88) & (t84 <= -(t88 + t87))
-    del t68, t80
-    v_2_beta = _runtime.select(spent_beta, v_2_alpha + v_1_alpha * t86, v_2_alpha)
-    del t86, v_1_alpha, v_2_alpha
-    t90 = np.abs(v_2_beta)
-    parallel = -t88 <= _runtime.VANISHING * (64.0 * t90)
-    whole_y = _runtime.select(parallel, L1 + t90, -t88)
-    t91 = _runtime.select(spent_beta, t77 + p_1_alpha * lean_beta, t77)
-    del p_1_alpha, spent_beta, t77
-    t92 = _runtime.select(parallel, t91 * _runtime.sign(v_2_beta), t87)
-    del t87
-    t93 = whole_y + t92
-    t94 = whole_y - t92
-    t95 = _runtime.VANISHING * (d * 16.0 + t81 * 16.0 + 16.0 * t82)
-    del t81, t82
-    t96 = _runtime.VANISHING * t95
-    del t95
-    below_beta_0 = np.maximum(t93, t96)
-    above_beta_0 = np.maximum(t94, t96)
-    t97 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
-    del above_beta_0, below_beta_0
-    t98 = t91 - v_2_beta * t97
-    del t97
-    left_along = L1 - np.abs(t98)
-    t99 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
-    t100 = _runtime.VANISHING * t83
-    spent_along = t99 <= t100
+    t87 = L1 * play
+    t88 = gain_1_alpha * gain_1_alpha
+    del gain_1_alpha
+    t89 = play * play
+    t90 = np.sqrt(t44 * t44) * t89
+    del t44
+    t91 = t88 / (t88 + t90 + gain_0_alpha * gain_0_alpha)
+    del gain_0_alpha, t88
+    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t68 < 0.0, t91, 0.0), 0.0)
+    del t91
+    t92 = _runtime.sign(slope_aside_alpha)
+    del slope_aside_alpha
+    t93 = t83 + t46 * heavy_1_alpha * 5.960464477539063e-08
+    del heavy_1_alpha
+    aside_alpha = _runtime.select(spent_alpha, t68 * share_alpha * t92 / t93, 0.0)
+    del t93
+    lack_alpha = t68 * (1.0 - share_alpha)
+    del share_alpha, t68
+    t94 = t75 + t46 * heavy_0_alpha * 5.960464477539063e-08
+    del t75
+    t95 = 1.0 / t94
+    del t94
+    t96 = heavy_0_alpha * lack_alpha * t95 <= 9.094947017729282e-13
+    del heavy_0_alpha
+    t97 = lack_alpha * t95
+    del lack_alpha, t95
+    t98 = _runtime.sign(-t74) * _runtime.select(t96 & (0.0 < t97), t97, 0.0)
+    del t74, t96, t97
+    turn_alpha = _runtime.select(spent_alpha, t98, 0.0)
+    del t98
+    t99 = aside_alpha + turn_alpha - t78 * (drawn * turn_alpha)
+    del aside_alpha
+    lean_alpha = _runtime.select(spent_alpha, t99, 0.0)
     del t99
-    t101 = L1 / 1000000000.0
-    t102 = _runtime.select(spent_along, t90 / (t101 - t88), 0.0)
-    del t90
-    t103 = -(_runtime.FEASIBILITY * (t83 * (1.0 + t102)))
+    t100 = np.sqrt(1.0 + lean_alpha * lean_alpha)
+    t101 = 1.0 / t100
+    p_1_alpha = _runtime.select(spent_alpha, p_1 * t101 - t65 * lean_alpha * t101, p_1)
+    part_beta = L1 * p_1_alpha
+    t102 = t100 * np.sqrt(1.0 + turn_alpha * turn_alpha)
+    del t100
+    t103 = 1.0 / t102
     del t102
-    t104 = t89 & (t84 <= t93) & (t84 <= t94) & (t103 <= left_along)
-    del t103, t89, t93, t94
-    t105 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
-    del left_along
-    t106 = t105 / (t88 * t88 + v_2_beta * v_2_beta) * _runtime.sign(-t98)
-    del t105, t88, t98
-    t107 = _runtime.select(spent_along, t92 + whole_y * t106, t92)
-    del spent_along, t106, t92
-    t108 = whole_y + t107
-    t109 = whole_y - t107
-    del t107, whole_y
-    below_beta = np.maximum(t108, t96)
-    above_beta = np.maximum(t109, t96)
-    t110 = below_beta - above_beta
-    t111 = v_2_beta * (t110 / (below_beta + above_beta))
-    del v_2_beta
-    t112 = t91 - t111
-    del t111, t91
-    t113 = L1 + t112
-    t114 = t104 & (t84 <= t108) & (t84 <= t109) & (t84 <= t113)
-    del t104, t108, t109
-    t115 = L1 - t112
-    del t112
-    unreachable = np.logical_not(t114 & (t84 <= t115))
+    t104 = t103 + t103 * (turn_alpha * lean_alpha)
+    t105 = lean_alpha * t103 - turn_alpha * t103
+    del t103
+    v_1_alpha = _runtime.select(spent_alpha, v_1 * t104 + v_2 * t105, v_1)
+    whole_beta = L1 * v_1_alpha
+    t106 = np.abs(part_beta) - np.abs(whole_beta)
+    t107 = np.maximum(t106 * 9.094947017729282e-13, -t106)
+    t108 = _runtime.VANISHING * t87
+    spent_beta = t107 <= t108
+    del t107
+    v_2_alpha = _runtime.select(spent_alpha, v_2 * t104 - v_1 * t105, v_2)
+    del t104, t105
+    t109 = v_2_alpha * _runtime.sign(whole_beta)
+    del whole_beta
+    t110 = _runtime.select(spent_alpha, t101 * (p_1 * lean_alpha) + t65 * t101, t65)
+    del p_1, spent_alpha, t101, t65
+    t111 = t110 * _runtime.sign(part_beta)
+    del part_beta
+    t112 = L1 - drawn
+    t113 = drawn * t109 - t111 * t112
+    t114 = np.abs(t113)
+    heavy_0_beta = _runtime.select(spent_beta, t82, 1.0)
+    gain_0_beta = _runtime.select(spent_beta, t114 / heavy_0_beta, 0.0)
+    slope_aside_beta = L1 * (t109 + t111)
+    del t109, t111
+    t115 = np.abs(slope_aside_beta)
+    heavy_1_beta = _runtime.select(spent_beta, t84, 1.0)
+    gain_1_beta = _runtime.select(spent_beta, t115 / heavy_1_beta, 0.0)
+    t116 = _runtime.select(spent_beta, gain_0_beta + gain_1_beta, 0.0)
+    t117 = -(_runtime.FEASIBILITY * (t87 + t116)) <= -t106
+    del t116
+    t118 = -(_runtime.FEASIBILITY * play)
+    t119 = gain_1_beta * gain_1_beta
+    del gain_1_beta
+    t120 = L1 * L1 * t89
+    del t89
+    t121 = t119 / (t119 + t120 + gain_0_beta * gain_0_beta)
+    del gain_0_beta, t119
+    share_beta = _runtime.select(spent_beta, _runtime.select(-t106 < 0.0, t121, 0.0), 0.0)
+    del t121
+    lack_beta = t106 * (1.0 - share_beta)
+    t122 = t114 + t87 * heavy_0_beta * 5.960464477539063e-08
     del t114
-    t116 = _runtime.poison(invalid | unreachable)
-    t117 = _runtime.select(folded, 0.0, np.arctan2(up, -out_rear_elbow_up))
-    t118 = np.arctan2(lean_alpha + lean_beta, 1.0)
-    del lean_alpha, lean_beta
-    t119 = t117 + t118
-    del t117
-    below_alpha = np.maximum(t113, t96)
-    del t113
-    above_alpha = np.maximum(t115, t96)
-    del t115
-    t120 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
-    del above_alpha, below_alpha
-    t121 = np.arctan2(s_lag, c_lag)
-    del c_lag, s_lag
-    t122 = _runtime.select(short, 0.0, np.arctan2(t42, t38))
-    del t38, t42
-    t123 = t121 - t122
-    t124 = t118 - np.arctan2(turn_alpha + turn_beta, 1.0)
-    del t118, turn_alpha, turn_beta
-    t125 = t123 - t124
-    del t124
-    t126 = np.arctan2(t110, 2.0 * np.sqrt(below_beta * above_beta))
-    del above_beta, below_beta, t110
-    t127 = t120 - t126
-    del t126
-    t128 = _runtime.wrap(principal_pitch)
-    del principal_pitch
-    c_relative_front_elbow_down = t41 - t43
-    del t41, t43
-    s_relative_front_elbow_down = t44 + t45
-    del t44, t45
-    v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t129 = np.abs(whole_alpha_front_elbow_down)
-    v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    out_front_elbow_down = t48 + t49
-    del t48, t49
-    t130 = t50 - t51
-    del t50, t51
-    t131 = out_front_elbow_down * out_front_elbow_down + t130 * t130
-    t132 = 1.0 / np.sqrt(t131)
+    t123 = 1.0 / t122
+    del t122
+    t124 = heavy_0_beta * lack_beta * t123 <= 9.094947017729282e-13
+    del heavy_0_beta
+    t125 = lack_beta * t123
+    del lack_beta, t123
+    t126 = _runtime.select(t124 & (0.0 < t125), t125, 0.0)
+    del t124, t125
+    turn_beta = _runtime.select(spent_beta, _runtime.sign(-t113) * t126, 0.0)
+    del t113, t126
+    t127 = t106 * share_beta * _runtime.sign(slope_aside_beta)
+    del share_beta, slope_aside_beta, t106
+    t128 = t115 + t87 * heavy_1_beta * 5.960464477539063e-08
+    del heavy_1_beta, t115
+    aside_beta = _runtime.select(spent_beta, t127 / t128, 0.0)
+    del t127, t128
+    t129 = turn_beta + aside_beta - t78 * (drawn * turn_beta)
+    del aside_beta
+    lean_beta = _runtime.select(spent_beta, t129, 0.0)
+    del t129
+    t130 = np.sqrt(1.0 + lean_beta * lean_beta)
+    t131 = 1.0 / (t130 * np.sqrt(1.0 + turn_beta * turn_beta))
+    t132 = t131 + t131 * (turn_beta * lean_beta)
+    t133 = lean_beta * t131 - turn_beta * t131
     del t131
-    t133 = out_front_elbow_down * t132
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t133)
-    t134 = _runtime.select(folded, 0.0, t130 * t132)
-    del t132
-    t135 = higher * t134
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down - t135
-    t136 = ahead * t134
-    del t134
-    t137 = t136 + higher * ctheta2A_front_elbow_down
-    del ctheta2A_front_elbow_down
-    t138 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t137
-    room_alpha_front_elbow_down = t129 - np.abs(t138)
-    t139 = room_alpha_front_elbow_down * 9.094947017729282e-13
-    t140 = np.maximum(-t139, room_alpha_front_elbow_down)
-    del t139
-    spent_alpha_front_elbow_down = t140 <= t60
-    del t140
-    tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
-    t141 = 1.0 / (t61 + np.abs(tilt_front_elbow_down))
-    del t61, tilt_front_elbow_down
-    drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
-    del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
-    t142 = v_2_front_elbow_down * drawn_front_elbow_down
-    t143 = t142 * _runtime.sign(whole_alpha_front_elbow_down)
-    del t142, whole_alpha_front_elbow_down
-    t144 = v_1_front_elbow_down * p_1_front_elbow_down + v_2_front_elbow_down * t137
-    t145 = t143 - _runtime.sign(-t138) * t144
-    del t138, t144
-    t146 = _runtime.select(spent_alpha_front_elbow_down, t141 * (size * np.abs(t145)), 0.0)
-    t147 = -(_runtime.FEASIBILITY * (t36 + t146)) <= room_alpha_front_elbow_down
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t132 + v_2_alpha * t133, v_1_alpha)
+    sigma_uv = _runtime.sign(-(L1 * v_1_beta))
+    t134 = 1.0 / t130
+    del t130
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t134 - t110 * lean_beta * t134, p_1_alpha)
+    t135 = sigma_uv * p_1_beta
+    del p_1_beta
+    t136 = v_1_beta * sigma_uv
+    del sigma_uv, v_1_beta
+    t137 = t43 & t86 & t117 & (t118 <= t135 - t136) & (t118 <= -(t136 + t135))
+    del t117, t86
+    v_2_beta = _runtime.select(spent_beta, v_2_alpha * t132 - v_1_alpha * t133, v_2_alpha)
+    del t132, t133, v_1_alpha, v_2_alpha
+    t138 = np.abs(v_2_beta)
+    parallel = -t136 <= _runtime.VANISHING * (64.0 * t138)
+    whole_y = _runtime.select(parallel, L1 + t138, -t136)
+    t139 = _runtime.select(spent_beta, t134 * (p_1_alpha * lean_beta) + t110 * t134, t110)
+    del p_1_alpha, spent_beta, t110, t134
+    t140 = _runtime.select(parallel, t139 * _runtime.sign(v_2_beta), t135)
+    del t135
+    t141 = whole_y + t140
+    t142 = whole_y - t140
+    t143 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t141, t143)
+    above_beta_0 = np.maximum(t142, t143)
+    t144 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
+    del above_beta_0, below_beta_0
+    t145 = t139 - v_2_beta * t144
+    del t144
+    left_along = L1 - np.abs(t145)
+    t146 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t147 = _runtime.VANISHING * play
+    spent_along = t146 <= t147
     del t146
-    t148 = room_alpha_front_elbow_down - np.abs(-room_alpha_front_elbow_down)
-    del room_alpha_front_elbow_down
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t145 * t148 / (2.0 * (t69 + t145 * t145)), 0.0)
-    del t145, t148
-    t149 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, turn_alpha_front_elbow_down - t71 * t149, 0.0)
+    t148 = L1 / 1000000000.0
+    t149 = _runtime.select(spent_along, t138 / (t148 - t136), 0.0)
+    del t138
+    t150 = -(_runtime.FEASIBILITY * (play * (1.0 + t149)))
     del t149
-    t150 = p_1_front_elbow_down + t137 * lean_alpha_front_elbow_down
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t150, p_1_front_elbow_down)
-    del t150
+    t151 = t137 & (t118 <= t141) & (t118 <= t142) & (t150 <= left_along)
+    del t137, t141, t142, t150
+    t152 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
+    del left_along
+    t153 = t152 / (t136 * t136 + v_2_beta * v_2_beta) * _runtime.sign(-t145)
+    del t136, t145, t152
+    t154 = _runtime.select(spent_along, t140 + whole_y * t153, t140)
+    del spent_along, t140, t153
+    t155 = whole_y + t154
+    t156 = whole_y - t154
+    del t154, whole_y
+    below_beta = np.maximum(t155, t143)
+    above_beta = np.maximum(t156, t143)
+    t157 = below_beta - above_beta
+    t158 = v_2_beta * (t157 / (below_beta + above_beta))
+    del v_2_beta
+    t159 = t139 - t158
+    del t139, t158
+    t160 = L1 + t159
+    t161 = t151 & (t118 <= t155) & (t118 <= t156) & (t118 <= t160)
+    del t151, t155, t156
+    t162 = L1 - t159
+    del t159
+    unreachable = np.logical_not(t161 & (t118 <= t162))
+    del t161
+    t163 = _runtime.poison(invalid | unreachable)
+    t164 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
+    t165 = np.arctan2(lean_alpha, 1.0) + np.arctan2(lean_beta, 1.0)
+    del lean_alpha, lean_beta
+    t166 = t164 + t165
+    del t164
+    below_alpha = np.maximum(t160, t143)
+    del t160
+    above_alpha = np.maximum(t162, t143)
+    del t162
+    t167 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
+    del above_alpha, below_alpha
+    t168 = np.arctan2(turn_alpha, 1.0) + np.arctan2(turn_beta, 1.0)
+    del turn_alpha, turn_beta
+    t169 = np.arctan2(s_lag, c_lag)
+    del c_lag, s_lag
+    t170 = _runtime.select(short, 0.0, np.arctan2(t50, t59))
+    del t50, t59
+    t171 = t169 - t170
+    t172 = t168 - (t165 - t171)
+    del t165, t168
+    t173 = np.arctan2(t157, 2.0 * np.sqrt(below_beta * above_beta))
+    del above_beta, below_beta, t157
+    t174 = t167 - t173
+    del t173
+    t175 = _runtime.wrap(principal_pitch)
+    del principal_pitch
+    out_front_elbow_down = t49 + t52
+    del t49, t52
+    up_front_elbow_down = t53 - t54
+    del t53, t54
+    t176 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t177 = 1.0 / np.sqrt(t176)
+    del t176
+    t178 = out_front_elbow_down * t177
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t178)
+    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t177)
+    del t177
+    t179 = higher * stheta2A_front_elbow_down
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t179
+    s_relative_front_elbow_down = t60 + t61
+    del t60, t61
+    c_relative_front_elbow_down = t62 - t63
+    del t62, t63
+    v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
+    t180 = ahead * stheta2A_front_elbow_down
+    del stheta2A_front_elbow_down
+    t181 = t180 - higher * ctheta2A_front_elbow_down
+    del ctheta2A_front_elbow_down
+    v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
+    t182 = p_1_front_elbow_down * v_2_front_elbow_down + t181 * v_1_front_elbow_down
+    whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
+    t183 = np.abs(whole_alpha_front_elbow_down)
+    t184 = np.abs(t182) - t183
+    t185 = np.maximum(t184 * 9.094947017729282e-13, -t184)
+    spent_alpha_front_elbow_down = t185 <= t70
+    del t185
+    t186 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
+    del whole_alpha_front_elbow_down
+    drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
+    t187 = t186 * drawn_front_elbow_down
+    t188 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t181
+    t189 = t187 - _runtime.sign(-t182) * t188
+    del t182, t188
+    t190 = np.abs(t189)
+    t191 = 1.0 - t78 * drawn_front_elbow_down
+    t192 = t77 * np.sqrt(fore + L1 * (t191 * t191)) / 2000000.0
+    del fore, t191, t77
+    tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
+    del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
+    t193 = t76 * (t192 + np.abs(tilt_front_elbow_down))
+    del t192, t76, tilt_front_elbow_down
+    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t193, 1.0)
+    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t190 / heavy_0_alpha_front_elbow_down, 0.0)
+    slope_aside_alpha_front_elbow_down = L1 * t186
+    del t186
+    t194 = np.abs(slope_aside_alpha_front_elbow_down)
+    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t84, 1.0)
+    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t194 / heavy_1_alpha_front_elbow_down, 0.0)
+    t195 = gain_0_alpha_front_elbow_down + gain_1_alpha_front_elbow_down
+    t196 = _runtime.select(spent_alpha_front_elbow_down, t195, 0.0)
+    del t195
+    t197 = -(_runtime.FEASIBILITY * (t46 + t196)) <= -t184
+    del t196
+    t198 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
+    del gain_1_alpha_front_elbow_down
+    t199 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
+    del gain_0_alpha_front_elbow_down
+    t200 = _runtime.select(-t184 < 0.0, t198 / (t90 + t198 + t199), 0.0)
+    del t198, t199
+    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t200, 0.0)
+    del t200
+    t201 = _runtime.sign(slope_aside_alpha_front_elbow_down)
+    del slope_aside_alpha_front_elbow_down
+    t202 = t46 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_front_elbow_down
+    t203 = t184 * share_alpha_front_elbow_down * t201 / (t194 + t202)
+    del t202
+    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t203, 0.0)
+    del t203
+    lack_alpha_front_elbow_down = t184 * (1.0 - share_alpha_front_elbow_down)
+    del share_alpha_front_elbow_down, t184
+    t204 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
+    t205 = t46 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_0_alpha_front_elbow_down
+    t206 = 1.0 / (t190 + t205)
+    del t190, t205
+    t207 = lack_alpha_front_elbow_down * t206
+    del lack_alpha_front_elbow_down
+    t208 = (t204 * t206 <= 9.094947017729282e-13) & (0.0 < t207)
+    del t204, t206
+    t209 = _runtime.sign(-t189) * _runtime.select(t208, t207, 0.0)
+    del t189, t207, t208
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t209, 0.0)
+    del t209
+    t210 = aside_alpha_front_elbow_down + turn_alpha_front_elbow_down
+    del aside_alpha_front_elbow_down
+    t211 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t210 - t78 * t211, 0.0)
+    del t210, t211
+    t212 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t213 = np.sqrt(1.0 + t212)
+    del t212
+    t214 = 1.0 / t213
+    t215 = p_1_front_elbow_down * t214 - t181 * lean_alpha_front_elbow_down * t214
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t215, p_1_front_elbow_down)
+    del t215
     part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t151 = turn_alpha_front_elbow_down - lean_alpha_front_elbow_down
-    t152 = v_1_front_elbow_down - v_2_front_elbow_down * t151
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t152, v_1_front_elbow_down)
-    del t152
+    t216 = turn_alpha_front_elbow_down * turn_alpha_front_elbow_down
+    t217 = 1.0 / (t213 * np.sqrt(1.0 + t216))
+    del t213, t216
+    t218 = turn_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t219 = t217 + t217 * t218
+    del t218
+    t220 = lean_alpha_front_elbow_down * t217 - turn_alpha_front_elbow_down * t217
+    del t217
+    t221 = v_1_front_elbow_down * t219 + v_2_front_elbow_down * t220
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t221, v_1_front_elbow_down)
+    del t221
     whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t153 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    t154 = np.maximum(t153 * 9.094947017729282e-13, -t153)
-    spent_beta_front_elbow_down = t154 <= t60
-    del t154
-    t155 = v_2_front_elbow_down + v_1_front_elbow_down * t151
-    del t151
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t155, v_2_front_elbow_down)
-    del t155
-    t156 = drawn_front_elbow_down * v_2_alpha_front_elbow_down
-    t157 = t156 * _runtime.sign(whole_beta_front_elbow_down)
-    del t156, whole_beta_front_elbow_down
-    t158 = L1 - drawn_front_elbow_down
-    t159 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    t222 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    t223 = np.maximum(t222 * 9.094947017729282e-13, -t222)
+    spent_beta_front_elbow_down = t223 <= t108
+    del t223
+    t224 = v_2_front_elbow_down * t219 - v_1_front_elbow_down * t220
+    del t219, t220
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t224, v_2_front_elbow_down)
+    del t224
+    t225 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
+    del whole_beta_front_elbow_down
+    t226 = p_1_front_elbow_down * lean_alpha_front_elbow_down
     del p_1_front_elbow_down
-    t160 = _runtime.select(spent_alpha_front_elbow_down, t137 - t159, t137)
-    del spent_alpha_front_elbow_down, t137, t159
-    t161 = t158 * t160 * _runtime.sign(part_beta_front_elbow_down)
+    t227 = _runtime.select(spent_alpha_front_elbow_down, t214 * t226 + t181 * t214, t181)
+    del spent_alpha_front_elbow_down, t181, t214, t226
+    t228 = t227 * _runtime.sign(part_beta_front_elbow_down)
     del part_beta_front_elbow_down
-    t162 = t157 + t161
-    del t157, t161
-    t163 = _runtime.select(spent_beta_front_elbow_down, t141 * (size * np.abs(t162)), 0.0)
-    t164 = -(_runtime.FEASIBILITY * (t36 + t163)) <= -t153
-    del t163
-    t165 = t162 * (t153 + np.abs(t153)) / (2.0 * (t69 + t162 * t162))
-    del t153, t162
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, -t165, 0.0)
-    del t165
-    t166 = drawn_front_elbow_down * turn_beta_front_elbow_down
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, turn_beta_front_elbow_down - t71 * t166, 0.0)
-    del t166
-    t167 = turn_beta_front_elbow_down - lean_beta_front_elbow_down
-    t168 = v_1_alpha_front_elbow_down - v_2_alpha_front_elbow_down * t167
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t168, v_1_alpha_front_elbow_down)
-    del t168
+    t229 = L1 - drawn_front_elbow_down
+    t230 = drawn_front_elbow_down * t225 - t228 * t229
+    t231 = np.abs(t230)
+    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t193, 1.0)
+    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t231 / heavy_0_beta_front_elbow_down, 0.0)
+    slope_aside_beta_front_elbow_down = L1 * (t225 + t228)
+    del t225, t228
+    t232 = np.abs(slope_aside_beta_front_elbow_down)
+    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t84, 1.0)
+    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t232 / heavy_1_beta_front_elbow_down, 0.0)
+    t233 = gain_0_beta_front_elbow_down + gain_1_beta_front_elbow_down
+    t234 = _runtime.select(spent_beta_front_elbow_down, t233, 0.0)
+    del t233
+    t235 = -(_runtime.FEASIBILITY * (t87 + t234)) <= -t222
+    del t234
+    t236 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
+    del gain_1_beta_front_elbow_down
+    t237 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
+    del gain_0_beta_front_elbow_down
+    t238 = _runtime.select(-t222 < 0.0, t236 / (t120 + t236 + t237), 0.0)
+    del t236, t237
+    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t238, 0.0)
+    del t238
+    lack_beta_front_elbow_down = t222 * (1.0 - share_beta_front_elbow_down)
+    t239 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
+    t240 = t87 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
+    del heavy_0_beta_front_elbow_down
+    t241 = 1.0 / (t231 + t240)
+    del t231, t240
+    t242 = lack_beta_front_elbow_down * t241
+    del lack_beta_front_elbow_down
+    t243 = (t239 * t241 <= 9.094947017729282e-13) & (0.0 < t242)
+    del t239, t241
+    t244 = _runtime.sign(-t230) * _runtime.select(t243, t242, 0.0)
+    del t230, t242, t243
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t244, 0.0)
+    del t244
+    t245 = _runtime.sign(slope_aside_beta_front_elbow_down)
+    del slope_aside_beta_front_elbow_down
+    t246 = t87 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_front_elbow_down
+    t247 = t222 * share_beta_front_elbow_down * t245 / (t232 + t246)
+    del share_beta_front_elbow_down, t222, t232, t245, t246
+    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t247, 0.0)
+    del t247
+    t248 = turn_beta_front_elbow_down + aside_beta_front_elbow_down
+    del aside_beta_front_elbow_down
+    t249 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t248 - t78 * t249, 0.0)
+    del t248, t249
+    t250 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
+    t251 = np.sqrt(1.0 + t250)
+    del t250
+    t252 = turn_beta_front_elbow_down * turn_beta_front_elbow_down
+    t253 = 1.0 / (t251 * np.sqrt(1.0 + t252))
+    del t252
+    t254 = turn_beta_front_elbow_down * lean_beta_front_elbow_down
+    t255 = t253 + t253 * t254
+    del t254
+    t256 = lean_beta_front_elbow_down * t253 - turn_beta_front_elbow_down * t253
+    del t253
+    t257 = v_1_alpha_front_elbow_down * t255 + v_2_alpha_front_elbow_down * t256
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t257, v_1_alpha_front_elbow_down)
+    del t257
     sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t169 = p_1_alpha_front_elbow_down + t160 * lean_beta_front_elbow_down
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t169, p_1_alpha_front_elbow_down)
-    del t169
-    t170 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t258 = 1.0 / t251
+    del t251
+    t259 = p_1_alpha_front_elbow_down * t258 - t227 * lean_beta_front_elbow_down * t258
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t259, p_1_alpha_front_elbow_down)
+    del t259
+    t260 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
     del p_1_beta_front_elbow_down
-    t171 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    t261 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
     del sigma_uv_front_elbow_down, v_1_beta_front_elbow_down
-    t172 = t35 & t147 & t164 & (t84 <= t170 - t171) & (t84 <= -(t171 + t170))
-    del t147, t164
-    t173 = v_2_alpha_front_elbow_down + v_1_alpha_front_elbow_down * t167
-    del t167, v_1_alpha_front_elbow_down
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t173, v_2_alpha_front_elbow_down)
-    del t173, v_2_alpha_front_elbow_down
-    t174 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t171 <= _runtime.VANISHING * (64.0 * t174)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t174, -t171)
-    t175 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t262 = t43 & t197 & t235 & (t118 <= t260 - t261) & (t118 <= -(t261 + t260))
+    del t197, t235
+    t263 = v_2_alpha_front_elbow_down * t255 - v_1_alpha_front_elbow_down * t256
+    del t255, t256, v_1_alpha_front_elbow_down
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t263, v_2_alpha_front_elbow_down)
+    del t263, v_2_alpha_front_elbow_down
+    t264 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t261 <= _runtime.VANISHING * (64.0 * t264)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t264, -t261)
+    t265 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
     del p_1_alpha_front_elbow_down
-    t176 = _runtime.select(spent_beta_front_elbow_down, t160 - t175, t160)
-    del spent_beta_front_elbow_down, t160, t175
-    t177 = t176 * _runtime.sign(v_2_beta_front_elbow_down)
-    t178 = _runtime.select(parallel_front_elbow_down, -t177, t170)
-    del t170, t177
-    t179 = whole_y_front_elbow_down + t178
-    t180 = whole_y_front_elbow_down - t178
-    below_beta_0_front_elbow_down = np.maximum(t179, t96)
-    above_beta_0_front_elbow_down = np.maximum(t180, t96)
-    t181 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t266 = _runtime.select(spent_beta_front_elbow_down, t258 * t265 + t227 * t258, t227)
+    del spent_beta_front_elbow_down, t227, t258, t265
+    t267 = t266 * _runtime.sign(v_2_beta_front_elbow_down)
+    t268 = _runtime.select(parallel_front_elbow_down, t267, t260)
+    del t260, t267
+    t269 = whole_y_front_elbow_down + t268
+    t270 = whole_y_front_elbow_down - t268
+    below_beta_0_front_elbow_down = np.maximum(t269, t143)
+    above_beta_0_front_elbow_down = np.maximum(t270, t143)
+    t271 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t182 = v_2_beta_front_elbow_down * (t181 / total_beta_0_front_elbow_down)
-    del t181, total_beta_0_front_elbow_down
-    rest_front_elbow_down = t176 + t182
-    del t182
-    left_along_front_elbow_down = L1 - np.abs(-rest_front_elbow_down)
-    t183 = left_along_front_elbow_down * 9.094947017729282e-13
-    t184 = np.maximum(-t183, left_along_front_elbow_down)
-    del t183
-    spent_along_front_elbow_down = t184 <= t100
-    del t184
-    t185 = _runtime.select(spent_along_front_elbow_down, t174 / (t101 - t171), 0.0)
-    del t174
-    t186 = -(_runtime.FEASIBILITY * (t83 * (1.0 + t185)))
-    del t185
-    t187 = t172 & (t84 <= t179) & (t84 <= t180) & (t186 <= left_along_front_elbow_down)
-    del t172, t179, t180, t186
-    t188 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
+    t272 = v_2_beta_front_elbow_down * (t271 / total_beta_0_front_elbow_down)
+    del t271, total_beta_0_front_elbow_down
+    t273 = t266 - t272
+    del t272
+    left_along_front_elbow_down = L1 - np.abs(t273)
+    t274 = left_along_front_elbow_down * 9.094947017729282e-13
+    t275 = np.maximum(-t274, left_along_front_elbow_down)
+    del t274
+    spent_along_front_elbow_down = t275 <= t147
+    del t275
+    t276 = _runtime.select(spent_along_front_elbow_down, t264 / (t148 - t261), 0.0)
+    del t264
+    t277 = -(_runtime.FEASIBILITY * (play * (1.0 + t276)))
+    del t276
+    t278 = t262 & (t118 <= t269) & (t118 <= t270) & (t277 <= left_along_front_elbow_down)
+    del t262, t269, t270, t277
+    t279 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
     del left_along_front_elbow_down
-    t189 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t190 = v_2_beta_front_elbow_down * t188 / (t171 * t171 + t189)
-    del t171, t188, t189
-    t191 = whole_y_front_elbow_down * (t190 * _runtime.sign(rest_front_elbow_down))
-    del rest_front_elbow_down, t190
-    t192 = _runtime.select(spent_along_front_elbow_down, t178 + t191, t178)
-    del spent_along_front_elbow_down, t178, t191
-    t193 = whole_y_front_elbow_down + t192
-    t194 = whole_y_front_elbow_down - t192
-    del t192, whole_y_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t193, t96)
-    above_beta_front_elbow_down = np.maximum(t194, t96)
-    t195 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    t280 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t281 = v_2_beta_front_elbow_down * t279 / (t261 * t261 + t280)
+    del t261, t279, t280
+    t282 = whole_y_front_elbow_down * (t281 * _runtime.sign(-t273))
+    del t273, t281
+    t283 = _runtime.select(spent_along_front_elbow_down, t268 + t282, t268)
+    del spent_along_front_elbow_down, t268, t282
+    t284 = whole_y_front_elbow_down + t283
+    t285 = whole_y_front_elbow_down - t283
+    del t283, whole_y_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t284, t143)
+    above_beta_front_elbow_down = np.maximum(t285, t143)
+    t286 = below_beta_front_elbow_down - above_beta_front_elbow_down
     total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t196 = v_2_beta_front_elbow_down * (t195 / total_beta_front_elbow_down)
+    t287 = v_2_beta_front_elbow_down * (t286 / total_beta_front_elbow_down)
     del total_beta_front_elbow_down, v_2_beta_front_elbow_down
-    along_u_front_elbow_down = t176 + t196
-    del t176, t196
-    t197 = L1 - along_u_front_elbow_down
-    t198 = t187 & (t84 <= t193) & (t84 <= t194) & (t84 <= t197)
-    del t187, t193, t194
-    t199 = L1 + along_u_front_elbow_down
-    del along_u_front_elbow_down
-    unreachable_2 = np.logical_not(t198 & (t84 <= t199))
-    del t198
-    t200 = _runtime.poison(invalid | unreachable_2)
-    t201 = _runtime.select(folded, 0.0, np.arctan2(-t130, out_front_elbow_down))
-    t202 = lean_alpha_front_elbow_down + lean_beta_front_elbow_down
+    t288 = t266 - t287
+    del t266, t287
+    t289 = L1 + t288
+    t290 = t278 & (t118 <= t284) & (t118 <= t285) & (t118 <= t289)
+    del t278, t284, t285
+    t291 = L1 - t288
+    del t288
+    unreachable_2 = np.logical_not(t290 & (t118 <= t291))
+    del t290
+    t292 = _runtime.poison(invalid | unreachable_2)
+    t293 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
+    t294 = np.arctan2(lean_alpha_front_elbow_down, 1.0) + np.arctan2(lean_beta_front_elbow_down, 1.0)
     del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t203 = np.arctan2(t202, 1.0)
-    del t202
-    t204 = t201 + t203
-    del t201
-    below_alpha_front_elbow_down = np.maximum(t197, t96)
-    del t197
-    above_alpha_front_elbow_down = np.maximum(t199, t96)
-    del t199
-    t205 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    t206 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
+    t295 = _runtime.select(folded, 0.0, t293) + t294
+    del t293
+    below_alpha_front_elbow_down = np.maximum(t289, t143)
+    del t289
+    above_alpha_front_elbow_down = np.maximum(t291, t143)
+    del t291
+    t296 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t297 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t207 = np.arctan2(t205, 2.0 * np.sqrt(t206))
-    del t205, t206
-    t208 = t121 + t122
-    del t121, t122
-    t209 = turn_alpha_front_elbow_down + turn_beta_front_elbow_down
+    t298 = np.arctan2(t296, 2.0 * np.sqrt(t297))
+    del t296, t297
+    t299 = np.arctan2(turn_alpha_front_elbow_down, 1.0) + np.arctan2(turn_beta_front_elbow_down, 1.0)
     del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t210 = t208 - (t203 - np.arctan2(t209, 1.0))
-    del t203, t209
-    t211 = below_beta_front_elbow_down * above_beta_front_elbow_down
+    t300 = t169 + t170
+    del t169, t170
+    t301 = t299 - (t294 - t300)
+    del t294, t299
+    t302 = below_beta_front_elbow_down * above_beta_front_elbow_down
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t212 = t207 - np.arctan2(t195, 2.0 * np.sqrt(t211))
-    del t195, t211
-    t213 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t13))
-    del t13, t2
-    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, t54)
-    del t54
-    p_1_rear_elbow_up = t55 + ahead * ctheta2A_rear_elbow_up
-    del t55
-    t214 = t56 - higher * ctheta2A_rear_elbow_up
-    del ctheta2A_rear_elbow_up, t56
-    t215 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t214
-    room_alpha_rear_elbow_up = t129 - np.abs(t215)
-    del t129
-    t216 = room_alpha_rear_elbow_up * 9.094947017729282e-13
-    spent_alpha_rear_elbow_up = np.maximum(-t216, room_alpha_rear_elbow_up) <= t60
-    del t216
-    t217 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t214
-    t218 = t143 - _runtime.sign(-t215) * t217
-    del t143, t215, t217
-    t219 = _runtime.select(spent_alpha_rear_elbow_up, t141 * (size * np.abs(t218)), 0.0)
-    t220 = -(_runtime.FEASIBILITY * (t36 + t219)) <= room_alpha_rear_elbow_up
-    del t219
-    t221 = room_alpha_rear_elbow_up - np.abs(room_alpha_rear_elbow_up)
-    del room_alpha_rear_elbow_up
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t218 * t221 / (2.0 * (t69 + t218 * t218)), 0.0)
-    del t218, t221
-    t222 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, turn_alpha_rear_elbow_up - t71 * t222, 0.0)
-    del t222
-    t223 = p_1_rear_elbow_up - t214 * lean_alpha_rear_elbow_up
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t223, p_1_rear_elbow_up)
-    del t223
+    t303 = t298 - np.arctan2(t286, 2.0 * np.sqrt(t302))
+    del t286, t302
+    t304 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t25))
+    del t25, t3
+    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t56)
+    del t56
+    p_1_rear_elbow_up = t57 + ahead * ctheta2A_rear_elbow_up
+    del t57
+    t305 = t64 - higher * ctheta2A_rear_elbow_up
+    del ctheta2A_rear_elbow_up, t64
+    t306 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t305
+    room_alpha_rear_elbow_up = t183 - np.abs(t306)
+    del t183
+    t307 = room_alpha_rear_elbow_up * 9.094947017729282e-13
+    spent_alpha_rear_elbow_up = np.maximum(-t307, room_alpha_rear_elbow_up) <= t70
+    del t307
+    t308 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t305
+    t309 = t187 - _runtime.sign(-t306) * t308
+    del t187, t306, t308
+    t310 = np.abs(t309)
+    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t193, 1.0)
+    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t310 / heavy_0_alpha_rear_elbow_up, 0.0)
+    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t84, 1.0)
+    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t194 / heavy_1_alpha_rear_elbow_up, 0.0)
+    t311 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
+    t312 = _runtime.select(spent_alpha_rear_elbow_up, t311, 0.0)
+    del t311
+    t313 = -(_runtime.FEASIBILITY * (t46 + t312)) <= room_alpha_rear_elbow_up
+    del t312
+    t314 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
+    del gain_1_alpha_rear_elbow_up
+    t315 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
+    del gain_0_alpha_rear_elbow_up
+    t316 = _runtime.select(room_alpha_rear_elbow_up < 0.0, t314 / (t90 + t314 + t315), 0.0)
+    del t314, t315
+    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t316, 0.0)
+    del t316
+    t317 = t201 * room_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    del t201
+    t318 = t46 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
+    del heavy_1_alpha_rear_elbow_up
+    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t317 / (t194 + t318)), 0.0)
+    del t194, t317, t318
+    t319 = room_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    del room_alpha_rear_elbow_up, share_alpha_rear_elbow_up
+    t320 = t46 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
+    t321 = 1.0 / (t310 + t320)
+    del t310, t320
+    t322 = -(heavy_0_alpha_rear_elbow_up * t319 * t321) <= 9.094947017729282e-13
+    del heavy_0_alpha_rear_elbow_up
+    t323 = -(t319 * t321)
+    del t319, t321
+    t324 = _runtime.select(t322 & (0.0 < t323), t323, 0.0)
+    del t322, t323
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t309) * t324, 0.0)
+    del t309, t324
+    t325 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
+    del aside_alpha_rear_elbow_up
+    t326 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t325 - t78 * t326, 0.0)
+    del t325, t326
+    t327 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t328 = np.sqrt(1.0 + t327)
+    del t327
+    t329 = 1.0 / t328
+    t330 = p_1_rear_elbow_up * t329 - t305 * lean_alpha_rear_elbow_up * t329
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t330, p_1_rear_elbow_up)
+    del t330
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t224 = turn_alpha_rear_elbow_up - lean_alpha_rear_elbow_up
-    t225 = v_1_front_elbow_down - v_2_front_elbow_down * t224
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t225, v_1_front_elbow_down)
-    del t225
+    t331 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
+    t332 = 1.0 / (t328 * np.sqrt(1.0 + t331))
+    del t328, t331
+    t333 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t334 = t332 + t332 * t333
+    del t333
+    t335 = lean_alpha_rear_elbow_up * t332 - turn_alpha_rear_elbow_up * t332
+    del t332
+    t336 = v_1_front_elbow_down * t334 + v_2_front_elbow_down * t335
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t336, v_1_front_elbow_down)
+    del t336
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t226 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    t227 = np.maximum(t226 * 9.094947017729282e-13, -t226)
-    spent_beta_rear_elbow_up = t227 <= t60
-    del t227
-    t228 = v_2_front_elbow_down + v_1_front_elbow_down * t224
-    del t224, v_1_front_elbow_down
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t228, v_2_front_elbow_down)
-    del t228, v_2_front_elbow_down
-    t229 = drawn_front_elbow_down * v_2_alpha_rear_elbow_up
-    t230 = t229 * _runtime.sign(whole_beta_rear_elbow_up)
-    del t229, whole_beta_rear_elbow_up
-    t231 = t214 + p_1_rear_elbow_up * lean_alpha_rear_elbow_up
+    t337 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t338 = np.maximum(t337 * 9.094947017729282e-13, -t337)
+    spent_beta_rear_elbow_up = t338 <= t108
+    del t338
+    t339 = v_2_front_elbow_down * t334 - v_1_front_elbow_down * t335
+    del t334, t335, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t339, v_2_front_elbow_down)
+    del t339, v_2_front_elbow_down
+    t340 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
+    del whole_beta_rear_elbow_up
+    t341 = t329 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
     del p_1_rear_elbow_up
-    t232 = _runtime.select(spent_alpha_rear_elbow_up, t231, t214)
-    del spent_alpha_rear_elbow_up, t214, t231
-    t233 = t158 * t232 * _runtime.sign(part_beta_rear_elbow_up)
-    del part_beta_rear_elbow_up, t158
-    t234 = t230 - t233
-    del t230, t233
-    t235 = _runtime.select(spent_beta_rear_elbow_up, t141 * (size * np.abs(t234)), 0.0)
-    del t141
-    t236 = -(_runtime.FEASIBILITY * (t36 + t235)) <= -t226
-    del t235
-    t237 = t234 * (t226 + np.abs(t226)) / (2.0 * (t69 + t234 * t234))
-    del t226, t234
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, -t237, 0.0)
-    del t237
-    t238 = drawn_front_elbow_down * turn_beta_rear_elbow_up
+    t342 = _runtime.select(spent_alpha_rear_elbow_up, t341 + t305 * t329, t305)
+    del spent_alpha_rear_elbow_up, t305, t329, t341
+    t343 = t342 * _runtime.sign(part_beta_rear_elbow_up)
+    del part_beta_rear_elbow_up
+    t344 = drawn_front_elbow_down * t340 - t229 * t343
+    del t229
+    t345 = np.abs(t344)
+    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t193, 1.0)
+    del t193
+    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t345 / heavy_0_beta_rear_elbow_up, 0.0)
+    slope_aside_beta_rear_elbow_up = L1 * (t340 + t343)
+    del t340, t343
+    t346 = np.abs(slope_aside_beta_rear_elbow_up)
+    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t84, 1.0)
+    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t346 / heavy_1_beta_rear_elbow_up, 0.0)
+    t347 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
+    t348 = _runtime.select(spent_beta_rear_elbow_up, t347, 0.0)
+    del t347
+    t349 = -(_runtime.FEASIBILITY * (t87 + t348)) <= -t337
+    del t348
+    t350 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
+    del gain_1_beta_rear_elbow_up
+    t351 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
+    del gain_0_beta_rear_elbow_up
+    t352 = _runtime.select(-t337 < 0.0, t350 / (t120 + t350 + t351), 0.0)
+    del t350, t351
+    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t352, 0.0)
+    del t352
+    lack_beta_rear_elbow_up = t337 * (1.0 - share_beta_rear_elbow_up)
+    t353 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
+    t354 = t87 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_up
+    t355 = 1.0 / (t345 + t354)
+    del t345, t354
+    t356 = lack_beta_rear_elbow_up * t355
+    del lack_beta_rear_elbow_up
+    t357 = (t353 * t355 <= 9.094947017729282e-13) & (0.0 < t356)
+    del t353, t355
+    t358 = _runtime.sign(-t344) * _runtime.select(t357, t356, 0.0)
+    del t344, t356, t357
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t358, 0.0)
+    del t358
+    t359 = _runtime.sign(slope_aside_beta_rear_elbow_up)
+    del slope_aside_beta_rear_elbow_up
+    t360 = t87 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_up
+    t361 = t337 * share_beta_rear_elbow_up * t359 / (t346 + t360)
+    del share_beta_rear_elbow_up, t337, t346, t359, t360
+    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t361, 0.0)
+    del t361
+    t362 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
+    del aside_beta_rear_elbow_up
+    t363 = drawn_front_elbow_down * turn_beta_rear_elbow_up
     del drawn_front_elbow_down
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, turn_beta_rear_elbow_up - t71 * t238, 0.0)
-    del t238
-    t239 = turn_beta_rear_elbow_up - lean_beta_rear_elbow_up
-    t240 = v_1_alpha_rear_elbow_up - v_2_alpha_rear_elbow_up * t239
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t240, v_1_alpha_rear_elbow_up)
-    del t240
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t362 - t78 * t363, 0.0)
+    del t362, t363
+    t364 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t365 = np.sqrt(1.0 + t364)
+    del t364
+    t366 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
+    t367 = 1.0 / (t365 * np.sqrt(1.0 + t366))
+    del t366
+    t368 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t369 = t367 + t367 * t368
+    del t368
+    t370 = lean_beta_rear_elbow_up * t367 - turn_beta_rear_elbow_up * t367
+    del t367
+    t371 = v_1_alpha_rear_elbow_up * t369 + v_2_alpha_rear_elbow_up * t370
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t371, v_1_alpha_rear_elbow_up)
+    del t371
     sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t241 = p_1_alpha_rear_elbow_up - t232 * lean_beta_rear_elbow_up
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t241, p_1_alpha_rear_elbow_up)
-    del t241
-    t242 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t372 = 1.0 / t365
+    del t365
+    t373 = p_1_alpha_rear_elbow_up * t372 - t342 * lean_beta_rear_elbow_up * t372
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t373, p_1_alpha_rear_elbow_up)
+    del t373
+    t374 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
     del p_1_beta_rear_elbow_up
-    t243 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    t375 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
     del sigma_uv_rear_elbow_up, v_1_beta_rear_elbow_up
-    t244 = t35 & t220 & t236 & (t84 <= t242 - t243) & (t84 <= -(t243 + t242))
-    del t220, t236
-    t245 = v_2_alpha_rear_elbow_up + v_1_alpha_rear_elbow_up * t239
-    del t239, v_1_alpha_rear_elbow_up
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t245, v_2_alpha_rear_elbow_up)
-    del t245, v_2_alpha_rear_elbow_up
-    t246 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t243 <= _runtime.VANISHING * (64.0 * t246)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t246, -t243)
-    t247 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    t376 = t43 & t313 & t349 & (t118 <= t374 - t375) & (t118 <= -(t375 + t374))
+    del t313, t349
+    t377 = v_2_alpha_rear_elbow_up * t369 - v_1_alpha_rear_elbow_up * t370
+    del t369, t370, v_1_alpha_rear_elbow_up
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t377, v_2_alpha_rear_elbow_up)
+    del t377, v_2_alpha_rear_elbow_up
+    t378 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t375 <= _runtime.VANISHING * (64.0 * t378)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t378, -t375)
+    t379 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
     del p_1_alpha_rear_elbow_up
-    t248 = _runtime.select(spent_beta_rear_elbow_up, t232 + t247, t232)
-    del spent_beta_rear_elbow_up, t232, t247
-    t249 = _runtime.select(parallel_rear_elbow_up, t248 * _runtime.sign(v_2_beta_rear_elbow_up), t242)
-    del t242
-    t250 = whole_y_rear_elbow_up + t249
-    t251 = whole_y_rear_elbow_up - t249
-    below_beta_0_rear_elbow_up = np.maximum(t250, t96)
-    above_beta_0_rear_elbow_up = np.maximum(t251, t96)
-    t252 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t380 = _runtime.select(spent_beta_rear_elbow_up, t372 * t379 + t342 * t372, t342)
+    del spent_beta_rear_elbow_up, t342, t372, t379
+    t381 = _runtime.select(parallel_rear_elbow_up, t380 * _runtime.sign(v_2_beta_rear_elbow_up), t374)
+    del t374
+    t382 = whole_y_rear_elbow_up + t381
+    t383 = whole_y_rear_elbow_up - t381
+    below_beta_0_rear_elbow_up = np.maximum(t382, t143)
+    above_beta_0_rear_elbow_up = np.maximum(t383, t143)
+    t384 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t253 = v_2_beta_rear_elbow_up * (t252 / total_beta_0_rear_elbow_up)
-    del t252, total_beta_0_rear_elbow_up
-    t254 = t248 - t253
-    del t253
-    left_along_rear_elbow_up = L1 - np.abs(t254)
-    t255 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t255, left_along_rear_elbow_up) <= t100
-    del t255
-    t256 = _runtime.select(spent_along_rear_elbow_up, t246 / (t101 - t243), 0.0)
-    del t246
-    t257 = -(_runtime.FEASIBILITY * (t83 * (1.0 + t256)))
-    del t256
-    t258 = t244 & (t84 <= t250) & (t84 <= t251) & (t257 <= left_along_rear_elbow_up)
-    del t244, t250, t251, t257
-    t259 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
+    t385 = v_2_beta_rear_elbow_up * (t384 / total_beta_0_rear_elbow_up)
+    del t384, total_beta_0_rear_elbow_up
+    t386 = t380 - t385
+    del t385
+    left_along_rear_elbow_up = L1 - np.abs(t386)
+    t387 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t387, left_along_rear_elbow_up) <= t147
+    del t387
+    t388 = _runtime.select(spent_along_rear_elbow_up, t378 / (t148 - t375), 0.0)
+    del t378
+    t389 = -(_runtime.FEASIBILITY * (play * (1.0 + t388)))
+    del t388
+    t390 = t376 & (t118 <= t382) & (t118 <= t383) & (t389 <= left_along_rear_elbow_up)
+    del t376, t382, t383, t389
+    t391 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
     del left_along_rear_elbow_up
-    t260 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t261 = v_2_beta_rear_elbow_up * t259 / (t243 * t243 + t260)
-    del t243, t259, t260
-    t262 = whole_y_rear_elbow_up * (t261 * _runtime.sign(-t254))
-    del t254, t261
-    t263 = _runtime.select(spent_along_rear_elbow_up, t249 + t262, t249)
-    del spent_along_rear_elbow_up, t249, t262
-    t264 = whole_y_rear_elbow_up + t263
-    t265 = whole_y_rear_elbow_up - t263
-    del t263, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t264, t96)
-    above_beta_rear_elbow_up = np.maximum(t265, t96)
-    t266 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    t392 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t393 = v_2_beta_rear_elbow_up * t391 / (t375 * t375 + t392)
+    del t375, t391, t392
+    t394 = whole_y_rear_elbow_up * (t393 * _runtime.sign(-t386))
+    del t386, t393
+    t395 = _runtime.select(spent_along_rear_elbow_up, t381 + t394, t381)
+    del spent_along_rear_elbow_up, t381, t394
+    t396 = whole_y_rear_elbow_up + t395
+    t397 = whole_y_rear_elbow_up - t395
+    del t395, whole_y_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t396, t143)
+    above_beta_rear_elbow_up = np.maximum(t397, t143)
+    t398 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
     total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t267 = v_2_beta_rear_elbow_up * (t266 / total_beta_rear_elbow_up)
+    t399 = v_2_beta_rear_elbow_up * (t398 / total_beta_rear_elbow_up)
     del total_beta_rear_elbow_up, v_2_beta_rear_elbow_up
-    t268 = t248 - t267
-    del t248, t267
-    t269 = L1 + t268
-    t270 = t258 & (t84 <= t264) & (t84 <= t265) & (t84 <= t269)
-    del t258, t264, t265
-    t271 = L1 - t268
-    del t268
-    unreachable_3 = np.logical_not(t270 & (t84 <= t271))
-    del t270
-    t272 = _runtime.poison(invalid | unreachable_3)
-    t273 = _runtime.select(folded, 0.0, np.arctan2(up, out_rear_elbow_up))
-    del out_rear_elbow_up, up
-    t274 = lean_alpha_rear_elbow_up + lean_beta_rear_elbow_up
+    t400 = t380 - t399
+    del t380, t399
+    t401 = L1 + t400
+    t402 = t390 & (t118 <= t396) & (t118 <= t397) & (t118 <= t401)
+    del t390, t396, t397
+    t403 = L1 - t400
+    del t400
+    unreachable_3 = np.logical_not(t402 & (t118 <= t403))
+    del t402
+    t404 = _runtime.poison(invalid | unreachable_3)
+    t405 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
+    del out_2, up
+    t406 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
     del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t275 = np.arctan2(t274, 1.0)
-    del t274
-    t276 = t273 + t275
-    del t273
-    below_alpha_rear_elbow_up = np.maximum(t269, t96)
-    del t269
-    above_alpha_rear_elbow_up = np.maximum(t271, t96)
-    del t271
-    t277 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    t278 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
+    t407 = t405 + t406
+    del t405
+    below_alpha_rear_elbow_up = np.maximum(t401, t143)
+    del t401
+    above_alpha_rear_elbow_up = np.maximum(t403, t143)
+    del t403
+    t408 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t409 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t279 = np.arctan2(t277, 2.0 * np.sqrt(t278))
-    del t277, t278
-    t280 = turn_alpha_rear_elbow_up + turn_beta_rear_elbow_up
+    t410 = np.arctan2(t408, 2.0 * np.sqrt(t409))
+    del t408, t409
+    t411 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
     del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t281 = t208 - (t275 - np.arctan2(t280, 1.0))
-    del t208, t275, t280
-    t282 = below_beta_rear_elbow_up * above_beta_rear_elbow_up
+    t412 = t411 + (t300 - t406)
+    del t300, t406, t411
+    t413 = below_beta_rear_elbow_up * above_beta_rear_elbow_up
     del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t283 = t279 - np.arctan2(t266, 2.0 * np.sqrt(t282))
-    del t266, t282
-    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t133)
-    del t133
-    t284 = t135 - ahead * ctheta2A_rear_elbow_down
-    del ahead, t135
-    t285 = t136 + higher * ctheta2A_rear_elbow_down
-    del ctheta2A_rear_elbow_down, higher, t136
-    part_alpha_rear_elbow_down = v_2 * t284 + v_1 * t285
-    room_alpha_rear_elbow_down = t46 - np.abs(-part_alpha_rear_elbow_down)
+    t414 = t410 - np.arctan2(t398, 2.0 * np.sqrt(t413))
+    del t398, t413
+    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t178)
+    del t178
+    p_1_rear_elbow_down = t179 + ahead * ctheta2A_rear_elbow_down
+    del ahead, t179
+    t415 = t180 - higher * ctheta2A_rear_elbow_down
+    del ctheta2A_rear_elbow_down, higher, t180
+    t416 = v_2 * p_1_rear_elbow_down + v_1 * t415
+    room_alpha_rear_elbow_down = t67 - np.abs(t416)
+    del t67
+    t417 = room_alpha_rear_elbow_down * 9.094947017729282e-13
+    t418 = np.maximum(-t417, room_alpha_rear_elbow_down)
+    del t417
+    spent_alpha_rear_elbow_down = t418 <= t70
+    del t418, t70
+    t419 = _runtime.sign(-t416) * (v_1 * p_1_rear_elbow_down - v_2 * t415)
+    del t416
+    t420 = t72 - t419
+    del t419, t72
+    t421 = np.abs(t420)
+    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t82, 1.0)
+    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t421 / heavy_0_alpha_rear_elbow_down, 0.0)
+    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t84, 1.0)
+    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t83 / heavy_1_alpha_rear_elbow_down, 0.0)
+    t422 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
+    t423 = _runtime.select(spent_alpha_rear_elbow_down, t422, 0.0)
+    del t422
+    t424 = -(_runtime.FEASIBILITY * (t46 + t423)) <= room_alpha_rear_elbow_down
+    del t423
+    t425 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
+    del gain_1_alpha_rear_elbow_down
+    t426 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
+    del gain_0_alpha_rear_elbow_down
+    t427 = _runtime.select(room_alpha_rear_elbow_down < 0.0, t425 / (t90 + t425 + t426), 0.0)
+    del t425, t426, t90
+    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t427, 0.0)
+    del t427
+    t428 = t92 * room_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    del t92
+    t429 = t46 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_rear_elbow_down
+    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t428 / (t83 + t429)), 0.0)
+    del t428, t429, t83
+    t430 = room_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    del room_alpha_rear_elbow_down, share_alpha_rear_elbow_down
+    t431 = t46 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
     del t46
-    t286 = room_alpha_rear_elbow_down * 9.094947017729282e-13
-    t287 = np.maximum(-t286, room_alpha_rear_elbow_down)
-    del t286
-    spent_alpha_rear_elbow_down = t287 <= t60
-    del t287
-    t288 = _runtime.sign(part_alpha_rear_elbow_down) * (v_1 * t284 - v_2 * t285)
-    del part_alpha_rear_elbow_down
-    t289 = t64 + t288
-    del t288, t64
-    t290 = _runtime.select(spent_alpha_rear_elbow_down, t63 * (size * np.abs(t289)), 0.0)
-    t291 = -(_runtime.FEASIBILITY * (t36 + t290)) <= room_alpha_rear_elbow_down
-    del t290
-    t292 = room_alpha_rear_elbow_down - np.abs(room_alpha_rear_elbow_down)
-    del room_alpha_rear_elbow_down
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t289 * t292 / (2.0 * (t69 + t289 * t289)), 0.0)
-    del t289, t292
-    t293 = turn_alpha_rear_elbow_down - t71 * (drawn * turn_alpha_rear_elbow_down)
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t293, 0.0)
-    del t293
-    t294 = _runtime.select(spent_alpha_rear_elbow_down, t284 - t285 * lean_alpha_rear_elbow_down, t284)
-    part_beta_rear_elbow_down = -(L1 * t294)
-    t295 = turn_alpha_rear_elbow_down - lean_alpha_rear_elbow_down
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 - v_2 * t295, v_1)
+    t432 = 1.0 / (t421 + t431)
+    del t421, t431
+    t433 = -(heavy_0_alpha_rear_elbow_down * t430 * t432)
+    del heavy_0_alpha_rear_elbow_down
+    t434 = -(t430 * t432)
+    del t430, t432
+    t435 = (t433 <= 9.094947017729282e-13) & (0.0 < t434)
+    del t433
+    t436 = _runtime.sign(-t420) * _runtime.select(t435, t434, 0.0)
+    del t420, t434, t435
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t436, 0.0)
+    del t436
+    t437 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
+    del aside_alpha_rear_elbow_down
+    t438 = t437 - t78 * (drawn * turn_alpha_rear_elbow_down)
+    del t437
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t438, 0.0)
+    del t438
+    t439 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t440 = np.sqrt(1.0 + t439)
+    del t439
+    t441 = 1.0 / t440
+    t442 = p_1_rear_elbow_down * t441 - t415 * lean_alpha_rear_elbow_down * t441
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t442, p_1_rear_elbow_down)
+    del t442
+    part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
+    t443 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
+    t444 = 1.0 / (t440 * np.sqrt(1.0 + t443))
+    del t440, t443
+    t445 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t446 = t444 + t444 * t445
+    del t445
+    t447 = lean_alpha_rear_elbow_down * t444 - turn_alpha_rear_elbow_down * t444
+    del t444
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t446 + v_2 * t447, v_1)
     whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t296 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    t297 = np.maximum(t296 * 9.094947017729282e-13, -t296)
-    spent_beta_rear_elbow_down = t297 <= t60
-    del t297, t60
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 + v_1 * t295, v_2)
-    del t295, v_1, v_2
-    t298 = drawn * v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    t448 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t449 = np.maximum(t448 * 9.094947017729282e-13, -t448)
+    spent_beta_rear_elbow_down = t449 <= t108
+    del t108, t449
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t446 - v_1 * t447, v_2)
+    del t446, t447, v_1, v_2
+    t450 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
     del whole_beta_rear_elbow_down
-    t299 = _runtime.select(spent_alpha_rear_elbow_down, t285 + t284 * lean_alpha_rear_elbow_down, t285)
-    del spent_alpha_rear_elbow_down, t284, t285
-    t300 = t76 * t299 * _runtime.sign(part_beta_rear_elbow_down)
-    del part_beta_rear_elbow_down, t76
-    t301 = t298 + t300
-    del t298, t300
-    t302 = _runtime.select(spent_beta_rear_elbow_down, t63 * (size * np.abs(t301)), 0.0)
-    del size, t63
-    t303 = -(_runtime.FEASIBILITY * (t36 + t302)) <= -t296
-    del t302, t36
-    t304 = t301 * (t296 + np.abs(t296)) / (2.0 * (t69 + t301 * t301))
-    del t296, t301, t69
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, -t304, 0.0)
-    del t304
-    t305 = turn_beta_rear_elbow_down - t71 * (drawn * turn_beta_rear_elbow_down)
-    del drawn, t71
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t305, 0.0)
-    del t305
-    t306 = turn_beta_rear_elbow_down - lean_beta_rear_elbow_down
-    t307 = v_1_alpha_rear_elbow_down - v_2_alpha_rear_elbow_down * t306
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t307, v_1_alpha_rear_elbow_down)
-    del t307
+    t451 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    del p_1_rear_elbow_down
+    t452 = _runtime.select(spent_alpha_rear_elbow_down, t441 * t451 + t415 * t441, t415)
+    del spent_alpha_rear_elbow_down, t415, t441, t451
+    t453 = t452 * _runtime.sign(part_beta_rear_elbow_down)
+    del part_beta_rear_elbow_down
+    t454 = drawn * t450 - t112 * t453
+    del t112
+    t455 = np.abs(t454)
+    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t82, 1.0)
+    del t82
+    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t455 / heavy_0_beta_rear_elbow_down, 0.0)
+    slope_aside_beta_rear_elbow_down = L1 * (t450 + t453)
+    del t450, t453
+    t456 = np.abs(slope_aside_beta_rear_elbow_down)
+    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t84, 1.0)
+    del t84
+    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t456 / heavy_1_beta_rear_elbow_down, 0.0)
+    t457 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
+    t458 = _runtime.select(spent_beta_rear_elbow_down, t457, 0.0)
+    del t457
+    t459 = -(_runtime.FEASIBILITY * (t87 + t458)) <= -t448
+    del t458
+    t460 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
+    del gain_1_beta_rear_elbow_down
+    t461 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
+    del gain_0_beta_rear_elbow_down
+    t462 = _runtime.select(-t448 < 0.0, t460 / (t120 + t460 + t461), 0.0)
+    del t120, t460, t461
+    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t462, 0.0)
+    del t462
+    lack_beta_rear_elbow_down = t448 * (1.0 - share_beta_rear_elbow_down)
+    t463 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
+    t464 = t87 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_down
+    t465 = 1.0 / (t455 + t464)
+    del t455, t464
+    t466 = lack_beta_rear_elbow_down * t465
+    del lack_beta_rear_elbow_down
+    t467 = (t463 * t465 <= 9.094947017729282e-13) & (0.0 < t466)
+    del t463, t465
+    t468 = _runtime.sign(-t454) * _runtime.select(t467, t466, 0.0)
+    del t454, t466, t467
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t468, 0.0)
+    del t468
+    t469 = _runtime.sign(slope_aside_beta_rear_elbow_down)
+    del slope_aside_beta_rear_elbow_down
+    t470 = t87 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_down, t87
+    t471 = t448 * share_beta_rear_elbow_down * t469 / (t456 + t470)
+    del share_beta_rear_elbow_down, t448, t456, t469, t470
+    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t471, 0.0)
+    del t471
+    t472 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
+    del aside_beta_rear_elbow_down
+    t473 = t472 - t78 * (drawn * turn_beta_rear_elbow_down)
+    del drawn, t472, t78
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t473, 0.0)
+    del t473
+    t474 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t475 = np.sqrt(1.0 + t474)
+    del t474
+    t476 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
+    t477 = 1.0 / (t475 * np.sqrt(1.0 + t476))
+    del t476
+    t478 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t479 = t477 + t477 * t478
+    del t478
+    t480 = lean_beta_rear_elbow_down * t477 - turn_beta_rear_elbow_down * t477
+    del t477
+    t481 = v_1_alpha_rear_elbow_down * t479 + v_2_alpha_rear_elbow_down * t480
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t481, v_1_alpha_rear_elbow_down)
+    del t481
     sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t308 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
-    del v_1_beta_rear_elbow_down
-    t309 = _runtime.select(spent_beta_rear_elbow_down, t294 - t299 * lean_beta_rear_elbow_down, t294)
-    p_across_u_rear_elbow_down = sigma_uv_rear_elbow_down * t309
-    del sigma_uv_rear_elbow_down, t309
-    t310 = t35 & t291 & t303 & (t84 <= -(t308 + p_across_u_rear_elbow_down))
-    del t291, t303, t35
-    t311 = t310 & (t84 <= p_across_u_rear_elbow_down - t308)
-    del t310
-    t312 = v_2_alpha_rear_elbow_down + v_1_alpha_rear_elbow_down * t306
-    del t306, v_1_alpha_rear_elbow_down
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t312, v_2_alpha_rear_elbow_down)
-    del t312, v_2_alpha_rear_elbow_down
-    t313 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t308 <= _runtime.VANISHING * (64.0 * t313)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t313, -t308)
-    t314 = _runtime.select(spent_beta_rear_elbow_down, t299 + t294 * lean_beta_rear_elbow_down, t299)
-    del spent_beta_rear_elbow_down, t294, t299
-    t315 = t314 * _runtime.sign(v_2_beta_rear_elbow_down)
-    part_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, t315, p_across_u_rear_elbow_down)
-    del p_across_u_rear_elbow_down, t315
-    t316 = whole_y_rear_elbow_down - part_y_rear_elbow_down
-    t317 = whole_y_rear_elbow_down + part_y_rear_elbow_down
-    below_beta_0_rear_elbow_down = np.maximum(t316, t96)
-    above_beta_0_rear_elbow_down = np.maximum(t317, t96)
-    t318 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t482 = 1.0 / t475
+    del t475
+    t483 = p_1_alpha_rear_elbow_down * t482 - t452 * lean_beta_rear_elbow_down * t482
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t483, p_1_alpha_rear_elbow_down)
+    del t483
+    t484 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    del p_1_beta_rear_elbow_down
+    t485 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    del sigma_uv_rear_elbow_down, v_1_beta_rear_elbow_down
+    t486 = t43 & t424 & t459 & (t118 <= t484 - t485) & (t118 <= -(t485 + t484))
+    del t424, t43, t459
+    t487 = v_2_alpha_rear_elbow_down * t479 - v_1_alpha_rear_elbow_down * t480
+    del t479, t480, v_1_alpha_rear_elbow_down
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t487, v_2_alpha_rear_elbow_down)
+    del t487, v_2_alpha_rear_elbow_down
+    t488 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t485 <= _runtime.VANISHING * (64.0 * t488)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t488, -t485)
+    t489 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    del p_1_alpha_rear_elbow_down
+    t490 = _runtime.select(spent_beta_rear_elbow_down, t482 * t489 + t452 * t482, t452)
+    del spent_beta_rear_elbow_down, t452, t482, t489
+    t491 = t490 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t492 = _runtime.select(parallel_rear_elbow_down, t491, t484)
+    del t484, t491
+    t493 = whole_y_rear_elbow_down + t492
+    t494 = whole_y_rear_elbow_down - t492
+    below_beta_0_rear_elbow_down = np.maximum(t493, t143)
+    above_beta_0_rear_elbow_down = np.maximum(t494, t143)
+    t495 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t319 = v_2_beta_rear_elbow_down * (t318 / total_beta_0_rear_elbow_down)
-    del t318, total_beta_0_rear_elbow_down
-    rest_rear_elbow_down = t314 + t319
-    del t319
-    left_along_rear_elbow_down = L1 - np.abs(-rest_rear_elbow_down)
-    t320 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t321 = np.maximum(-t320, left_along_rear_elbow_down)
-    del t320
-    spent_along_rear_elbow_down = t321 <= t100
-    del t100, t321
-    t322 = _runtime.select(spent_along_rear_elbow_down, t313 / (t101 - t308), 0.0)
-    del t101, t313
-    t323 = -(_runtime.FEASIBILITY * (t83 * (1.0 + t322)))
-    del t322, t83
-    t324 = t311 & (t84 <= t316) & (t84 <= t317) & (t323 <= left_along_rear_elbow_down)
-    del t311, t316, t317, t323
-    t325 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
+    t496 = v_2_beta_rear_elbow_down * (t495 / total_beta_0_rear_elbow_down)
+    del t495, total_beta_0_rear_elbow_down
+    t497 = t490 - t496
+    del t496
+    left_along_rear_elbow_down = L1 - np.abs(t497)
+    t498 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t499 = np.maximum(-t498, left_along_rear_elbow_down)
+    del t498
+    spent_along_rear_elbow_down = t499 <= t147
+    del t147, t499
+    t500 = _runtime.select(spent_along_rear_elbow_down, t488 / (t148 - t485), 0.0)
+    del t148, t488
+    t501 = -(_runtime.FEASIBILITY * (play * (1.0 + t500)))
+    del play, t500
+    t502 = t486 & (t118 <= t493) & (t118 <= t494) & (t501 <= left_along_rear_elbow_down)
+    del t486, t493, t494, t501
+    t503 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
     del left_along_rear_elbow_down
-    t326 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t327 = v_2_beta_rear_elbow_down * t325 / (t308 * t308 + t326)
-    del t308, t325, t326
-    t328 = whole_y_rear_elbow_down * (t327 * _runtime.sign(rest_rear_elbow_down))
-    del rest_rear_elbow_down, t327
-    eased_rear_elbow_down = _runtime.select(spent_along_rear_elbow_down, part_y_rear_elbow_down - t328, part_y_rear_elbow_down)
-    del part_y_rear_elbow_down, spent_along_rear_elbow_down, t328
-    t329 = whole_y_rear_elbow_down - eased_rear_elbow_down
-    t330 = whole_y_rear_elbow_down + eased_rear_elbow_down
-    del eased_rear_elbow_down, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t329, t96)
-    above_beta_rear_elbow_down = np.maximum(t330, t96)
-    t331 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t504 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t505 = v_2_beta_rear_elbow_down * t503 / (t485 * t485 + t504)
+    del t485, t503, t504
+    t506 = whole_y_rear_elbow_down * (t505 * _runtime.sign(-t497))
+    del t497, t505
+    t507 = _runtime.select(spent_along_rear_elbow_down, t492 + t506, t492)
+    del spent_along_rear_elbow_down, t492, t506
+    t508 = whole_y_rear_elbow_down + t507
+    t509 = whole_y_rear_elbow_down - t507
+    del t507, whole_y_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t508, t143)
+    above_beta_rear_elbow_down = np.maximum(t509, t143)
+    t510 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t332 = v_2_beta_rear_elbow_down * (t331 / total_beta_rear_elbow_down)
+    t511 = v_2_beta_rear_elbow_down * (t510 / total_beta_rear_elbow_down)
     del total_beta_rear_elbow_down, v_2_beta_rear_elbow_down
-    along_u_rear_elbow_down = t314 + t332
-    del t314, t332
-    t333 = L1 - along_u_rear_elbow_down
-    t334 = t324 & (t84 <= t329) & (t84 <= t330) & (t84 <= t333)
-    del t324, t329, t330
-    t335 = L1 + along_u_rear_elbow_down
-    del along_u_rear_elbow_down
-    unreachable_4 = np.logical_not(t334 & (t84 <= t335))
-    del t334, t84
-    t336 = _runtime.poison(invalid | unreachable_4)
-    t337 = _runtime.select(folded, 0.0, np.arctan2(-t130, -out_front_elbow_down))
-    del out_front_elbow_down, t130
-    t338 = lean_alpha_rear_elbow_down + lean_beta_rear_elbow_down
+    t512 = t490 - t511
+    del t490, t511
+    t513 = L1 + t512
+    t514 = t502 & (t118 <= t508) & (t118 <= t509) & (t118 <= t513)
+    del t502, t508, t509
+    t515 = L1 - t512
+    del t512
+    unreachable_4 = np.logical_not(t514 & (t118 <= t515))
+    del t118, t514
+    t516 = _runtime.poison(invalid | unreachable_4)
+    t517 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
+    del out_front_elbow_down, up_front_elbow_down
+    t518 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
     del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t339 = np.arctan2(t338, 1.0)
-    del t338
-    t340 = t337 + t339
-    del t337
-    below_alpha_rear_elbow_down = np.maximum(t333, t96)
-    del t333
-    above_alpha_rear_elbow_down = np.maximum(t335, t96)
-    del t335, t96
-    t341 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    t342 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
+    t519 = _runtime.select(folded, 0.0, t517) + t518
+    del t517
+    below_alpha_rear_elbow_down = np.maximum(t513, t143)
+    del t513
+    above_alpha_rear_elbow_down = np.maximum(t515, t143)
+    del t143, t515
+    t520 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t521 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t343 = np.arctan2(t341, 2.0 * np.sqrt(t342))
-    del t341, t342
-    t344 = turn_alpha_rear_elbow_down + turn_beta_rear_elbow_down
+    t522 = np.arctan2(t520, 2.0 * np.sqrt(t521))
+    del t520, t521
+    t523 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
     del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t345 = t123 - (t339 - np.arctan2(t344, 1.0))
-    del t123, t339, t344
-    t346 = below_beta_rear_elbow_down * above_beta_rear_elbow_down
+    t524 = t523 + (t171 - t518)
+    del t171, t518, t523
+    t525 = below_beta_rear_elbow_down * above_beta_rear_elbow_down
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t347 = t343 - np.arctan2(t331, 2.0 * np.sqrt(t346))
-    del t331, t346
-    t348 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    t526 = t522 - np.arctan2(t510, 2.0 * np.sqrt(t525))
+    del t510, t525
+    t527 = (wrist <= al * _runtime.DETERMINED) | nowhere
     del nowhere, wrist
-    t349 = t348 | folded | short
-    del folded, short, t348
-    t350 = _runtime.status(invalid, unreachable, t349 | parallel)
+    t528 = t527 | folded | short
+    del folded, short, t527
+    t529 = _runtime.status(invalid, unreachable, t528 | parallel)
     del parallel, unreachable
-    t351 = _runtime.status(invalid, unreachable_2, t349 | parallel_front_elbow_down)
+    t530 = _runtime.status(invalid, unreachable_2, t528 | parallel_front_elbow_down)
     del parallel_front_elbow_down, unreachable_2
-    t352 = _runtime.status(invalid, unreachable_3, t349 | parallel_rear_elbow_up)
+    t531 = _runtime.status(invalid, unreachable_3, t528 | parallel_rear_elbow_up)
     del parallel_rear_elbow_up, unreachable_3
-    t353 = _runtime.status(invalid, unreachable_4, t349 | parallel_rear_elbow_down)
-    del invalid, parallel_rear_elbow_down, t349, unreachable_4
+    t532 = _runtime.status(invalid, unreachable_4, t528 | parallel_rear_elbow_down)
+    del invalid, parallel_rear_elbow_down, t528, unreachable_4
     return (
-        t14 + t116,
-        _runtime.wrap(t119 - t120) + t116,
-        _runtime.wrap(t125 + t127) + t116,
-        _runtime.wrap(t119 + t120) + t116,
-        _runtime.wrap(t125 - t127) + t116,
-        t128 + t116,
-        t14 + t200,
-        _runtime.wrap(t204 - t207) + t200,
-        _runtime.wrap(t210 + t212) + t200,
-        _runtime.wrap(t204 + t207) + t200,
-        _runtime.wrap(t210 - t212) + t200,
-        t128 + t200,
-        t213 + t272,
-        _runtime.wrap(t276 - t279) + t272,
-        _runtime.wrap(t281 + t283) + t272,
-        _runtime.wrap(t276 + t279) + t272,
-        _runtime.wrap(t281 - t283) + t272,
-        t128 + t272,
-        t213 + t336,
-        _runtime.wrap(t340 - t343) + t336,
-        _runtime.wrap(t345 + t347) + t336,
-        _runtime.wrap(t340 + t343) + t336,
-        _runtime.wrap(t345 - t347) + t336,
-        t128 + t336,
-        t350,
-        t351,
-        t352,
-        t353,
+        t26 + t163,
+        _runtime.wrap(t166 - t167) + t163,
+        _runtime.wrap(t172 + t174) + t163,
+        _runtime.wrap(t166 + t167) + t163,
+        _runtime.wrap(t172 - t174) + t163,
+        t175 + t163,
+        t26 + t292,
+        _runtime.wrap(t295 - t298) + t292,
+        _runtime.wrap(t301 + t303) + t292,
+        _runtime.wrap(t295 + t298) + t292,
+        _runtime.wrap(t301 - t303) + t292,
+        t175 + t292,
+        t304 + t404,
+        _runtime.wrap(t407 - t410) + t404,
+        _runtime.wrap(t412 + t414) + t404,
+        _runtime.wrap(t407 + t410) + t404,
+        _runtime.wrap(t412 - t414) + t404,
+        t175 + t404,
+        t304 + t516,
+        _runtime.wrap(t519 - t522) + t516,
+        _runtime.wrap(t524 + t526) + t516,
+        _runtime.wrap(t519 + t522) + t516,
+        _runtime.wrap(t524 - t526) + t516,
+        t175 + t516,
+        t529,
+        t530,
+        t531,
+        t532,
     )
 
 
@@ -1998,464 +2401,481 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     h = np.sqrt(x * x + y * y)
     t1 = lp * s_pitch
     del s_pitch
-    t2 = (gs + al) * c_psi - d
-    t3 = d - c_psi * (gs - al)
-    t4 = np.sqrt(np.maximum(t2, 0.0) * np.maximum(t3, 0.0))
-    t5 = 1.0 / c_psi
-    wrist = t4 * t5
-    del t4
-    t6 = loff + lp * c_pitch + wrist
+    t2 = gs + al
+    t3 = t2 * c_psi
+    t4 = t3 - d
+    t5 = d - c_psi * (gs - al)
+    t6 = np.sqrt(np.maximum(t4, 0.0) * np.maximum(t5, 0.0))
+    t7 = 1.0 / c_psi
+    wrist = t6 * t7
+    del t6
+    t8 = loff + lp * c_pitch + wrist
     del c_pitch
-    t7 = s_psi * t6
-    t8 = s_phi * t1 - c_phi * t7
-    t9 = h + t8
-    below = np.maximum(t9, 0.0)
-    t10 = h - t8
-    del t8
-    above = np.maximum(t10, 0.0)
-    onward = np.sqrt(below * above)
-    t11 = np.arctan2(2.0 * onward, above - below)
+    t9 = s_psi * t8
+    t10 = s_phi * t1 - c_phi * t9
+    t11 = h - t10
+    above = np.maximum(t11, 0.0)
+    t12 = h + t10
+    del t10
+    below = np.maximum(t12, 0.0)
+    root = np.sqrt(above * below)
+    t13 = np.arctan2(2.0 * root, above - below)
     del above, below
-    t12 = np.arctan2(x, y)
-    t13 = _runtime.wrap(t11 - t12)
-    t14 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t15 = t14 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t14
-    t16 = t15 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t15
-    t17 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t18 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
-    t19 = t16 & (0.0 <= loff) & (0.0 <= lp) & t17 & (np.abs(t18) <= _runtime.ROTATION)
-    del t16, t17, t18
-    invalid = np.logical_not(t19)
-    del t19
-    t20 = -(_runtime.FEASIBILITY * (d * 0.5))
-    t21 = (-_runtime.FEASIBILITY <= c_phi) & (t20 <= t2)
-    del t2
-    t22 = L1 + L2
-    t23 = -(_runtime.FEASIBILITY * t22)
-    t24 = t21 & (t20 <= t3) & (t23 <= t9) & (t23 <= t10)
-    del t10, t20, t21, t23, t3, t9
-    L_2W = L2 + c_psi * t6
-    del c_psi, t6
-    a_3W = a3 + c_phi * t1 + s_phi * t7
-    del t1, t7
+    t14 = np.arctan2(x, y)
+    t15 = _runtime.wrap(t13 - t14)
+    t16 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t17 = t16 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t16
+    t18 = t17 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t17
+    t19 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t20 = L2 + a3
+    t21 = _runtime.select(0.0 < L1 * d * t20, 0.0, 1.0)
+    t22 = t18 & (0.0 <= loff) & (0.0 <= lp) & t19 & (np.abs(t21) <= _runtime.ROTATION)
+    del t18, t19, t21
+    invalid = np.logical_not(t22)
+    del t22
+    t23 = -(_runtime.FEASIBILITY * (t3 * 1.015625))
+    del t3
+    t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t4)
+    del t4
+    t_phi = s_phi / c_phi
+    higher = d * t_phi
+    t_psi = s_psi * t7
+    del s_psi, t7
+    ahead = d * t_psi
+    far_apart = np.abs(t_phi * higher) * 0.001953125 + np.abs(t_psi * ahead) * 0.001953125
+    del t_phi, t_psi
+    lengths = L1 + d1 + d + loff + lp + t2 + t20
+    del t2, t20
+    slack = far_apart + lengths
+    t25 = -(_runtime.FEASIBILITY * slack)
+    t26 = t24 & (t23 <= t5) & (t25 <= t12) & (t25 <= t11)
+    del t11, t12, t23, t24, t25, t5
+    L_2W = L2 + c_psi * t8
+    del c_psi, t8
+    a_3W = a3 + c_phi * t1 + s_phi * t9
+    del c_phi, s_phi, t1, t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t25 = L1 + fore
-    t26 = 2.0 * fore
-    t27 = _runtime.FEASIBILITY * (t25 * (L1 * 2.0 + t26))
-    t28 = t25 * t25
-    t29 = z - d1
-    square = t29 * t29 + onward * onward
-    t30 = t28 - square
-    t31 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t32 = L1 - fore
-    t33 = _runtime.FEASIBILITY * (t25 * (t31 + 2.0 * np.abs(t32)))
-    del t31
-    t34 = square - t32 * t32
+    t27 = 2.0 * fore
+    t28 = _runtime.FEASIBILITY * ((L1 * 2.0 + t27) * slack)
+    t29 = L1 + fore
+    t30 = t29 * t29
+    t31 = z - d1
+    square = t31 * t31 + root * root
+    t32 = t30 - square
+    t33 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t34 = L1 - fore
+    t35 = _runtime.FEASIBILITY * ((t33 + 2.0 * np.abs(t34)) * slack)
+    del t33
+    t36 = square - t34 * t34
     del square
-    t35 = t24 & (-t27 <= t30) & (-t33 <= t34)
-    del t24, t27, t33
-    play_alpha = d * (L1 + np.sqrt(L2 * L2 + a3 * a3))
-    t36 = -(_runtime.FEASIBILITY * play_alpha)
-    M = np.maximum(t34, 0.0)
-    del t34
-    N = np.maximum(t30, 0.0)
-    del t30
-    t37 = 1.0 / (M + N)
-    t38 = M - N
-    t39 = t37 * t38
+    t37 = t26 & (-t28 <= t32) & (-t35 <= t36)
+    del t26, t28, t35
+    t38 = d + np.abs(higher) + far_apart + np.abs(ahead)
+    del far_apart
+    play = t38 + lengths * 0.001953125
+    del t38
+    play_alpha = np.sqrt(L2 * L2 + a3 * a3) * play
+    t39 = -(_runtime.FEASIBILITY * play_alpha)
     t40 = 1.0 / fore
     c_lag = a_3W * t40
-    t41 = t39 * c_lag
-    t42 = 2.0 * np.sqrt(M * N)
-    del N
-    s_bend_front_elbow_down = t37 * t42
+    M = np.maximum(t36, 0.0)
+    del t36
+    N = np.maximum(t32, 0.0)
+    del t32
+    t41 = 1.0 / (M + N)
+    t42 = M - N
+    c_bend = t41 * t42
+    t43 = c_lag * c_bend
     s_lag = L_2W * t40
     del t40
-    t43 = s_bend_front_elbow_down * s_lag
-    t44 = t41 + t43
-    t45 = t39 * s_lag
-    del s_lag, t39
-    t46 = s_bend_front_elbow_down * c_lag
+    t44 = 2.0 * np.sqrt(M * N)
+    del N
+    s_bend_front_elbow_down = t41 * t44
+    t45 = s_lag * s_bend_front_elbow_down
+    c_relative = t43 + t45
+    t46 = s_lag * c_bend
+    del c_bend, s_lag
+    t47 = c_lag * s_bend_front_elbow_down
     del c_lag
-    t47 = t45 - t46
-    t48 = L2 * t44 - a3 * t47
-    whole_alpha = L1 * t48
-    t49 = np.abs(whole_alpha)
-    ahead = d * s_psi * t5
-    del s_psi, t5
-    t50 = fore * s_bend_front_elbow_down
+    s_relative = t46 - t47
+    v_1 = L2 * c_relative - a3 * s_relative
+    whole_alpha = L1 * v_1
+    t48 = np.abs(whole_alpha)
+    t49 = fore * s_bend_front_elbow_down
     del s_bend_front_elbow_down
-    t51 = onward * t50
-    ahead_1 = t32 + t26 * M * t37
-    del M, t26, t32, t37
-    t52 = t29 * ahead_1
-    up = t51 + t52
-    t53 = t29 * t50
-    del t50
-    t54 = onward * ahead_1
+    t50 = root * t49
+    ahead_1 = t34 + t27 * M * t41
+    del M, t27, t34, t41
+    t51 = t31 * ahead_1
+    up = t50 + t51
+    t52 = t31 * t49
+    del t49
+    t53 = root * ahead_1
     del ahead_1
-    out_rear_elbow_up = t53 - t54
-    t55 = out_rear_elbow_up * out_rear_elbow_up + up * up
-    t56 = 1.0 / np.sqrt(t55)
+    out_rear_elbow_up = t52 - t53
+    t54 = out_rear_elbow_up * out_rear_elbow_up + up * up
+    t55 = 1.0 / np.sqrt(t54)
+    del t54
+    stheta2A = up * t55
+    t56 = ahead * stheta2A
+    t57 = out_rear_elbow_up * t55
     del t55
-    stheta2A = up * t56
-    t57 = ahead * stheta2A
-    higher = d * s_phi / c_phi
-    del c_phi, s_phi
-    t58 = out_rear_elbow_up * t56
-    del t56
-    t59 = higher * t58
-    t60 = t57 + t59
-    v_2 = L2 * t47 + a3 * t44
-    del t44, t47
-    t61 = ahead * t58
-    del t58
-    t62 = higher * stheta2A
+    t58 = higher * t57
+    t59 = t56 + t58
+    v_2 = L2 * s_relative + a3 * c_relative
+    del c_relative, s_relative
+    t60 = ahead * t57
+    del t57
+    t61 = higher * stheta2A
     del stheta2A
-    t63 = t61 - t62
-    room_alpha = t49 - np.abs(t48 * t60 - v_2 * t63)
-    room_beta = t49 - np.abs(-(L1 * t63))
-    t64 = t35 & (t36 <= room_alpha) & (t36 <= room_beta)
-    t65 = np.abs(higher)
-    t66 = np.abs(ahead)
-    play_along = d + t65 + t66
-    t67 = -(_runtime.FEASIBILITY * play_along)
+    t62 = t60 - t61
+    room_alpha = t48 - np.abs(v_1 * t59 - v_2 * t62)
+    play_beta = L1 * play
+    t63 = -(_runtime.FEASIBILITY * play_beta)
+    room_beta = t48 - np.abs(-(L1 * t62))
+    t64 = t37 & (t39 <= room_alpha) & (t63 <= room_beta)
+    t65 = -(_runtime.FEASIBILITY * play)
     sigma_uv = _runtime.sign(-whole_alpha)
     del whole_alpha
-    t68 = t48 * sigma_uv
-    p_across_u = sigma_uv * t63
-    del t63
-    t69 = -(t68 + p_across_u)
-    t70 = t67 <= t69
-    t71 = p_across_u - t68
+    t66 = v_1 * sigma_uv
+    p_across_u = sigma_uv * t62
+    del t62
+    t67 = -(t66 + p_across_u)
+    t68 = t65 <= t67
+    t69 = p_across_u - t66
     del p_across_u
-    t72 = t67 <= t71
-    t73 = _runtime.VANISHING * (d * 16.0 + t65 * 16.0 + 16.0 * t66)
-    del t65, t66
-    t74 = _runtime.VANISHING * t73
-    del t73
-    below_beta_0 = np.maximum(t69, t74)
+    t70 = t65 <= t69
+    t71 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t67, t71)
+    del t67
+    above_beta_0 = np.maximum(t69, t71)
     del t69
-    above_beta_0 = np.maximum(t71, t74)
-    del t71
-    t75 = below_beta_0 - above_beta_0
-    t76 = t60 - v_2 * (t75 / (below_beta_0 + above_beta_0))
-    del t60
-    left_along = L1 - np.abs(t76)
-    t77 = t64 & t70 & t72 & t70 & t72 & (t67 <= left_along)
+    t72 = below_beta_0 - above_beta_0
+    t73 = t59 - v_2 * (t72 / (below_beta_0 + above_beta_0))
+    del t59
+    left_along = L1 - np.abs(t73)
+    t74 = t64 & t68 & t70 & t68 & t70 & (t65 <= left_along)
     del t64
-    t78 = L1 + t76
-    t79 = L1 - t76
-    del t76
-    t80 = t77 & t70 & t72 & (t67 <= t78) & (t67 <= t79)
-    del t70, t72, t77
-    unreachable = np.logical_not(t80)
-    del t80
-    t81 = _runtime.poison(invalid | unreachable)
-    t82 = np.arctan2(0.0, 1.0)
-    t83 = t82 + np.arctan2(up, -out_rear_elbow_up)
-    below_alpha = np.maximum(t78, t74)
-    del t78
-    above_alpha = np.maximum(t79, t74)
+    t75 = L1 + t73
+    t76 = L1 - t73
+    del t73
+    t77 = t74 & t68 & t70 & (t65 <= t75) & (t65 <= t76)
+    del t68, t70, t74
+    unreachable = np.logical_not(t77)
+    del t77
+    t78 = _runtime.poison(invalid | unreachable)
+    t79 = np.arctan2(0.0, 1.0)
+    t80 = t79 + t79
     del t79
-    t84 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
+    t81 = t80 + np.arctan2(up, -out_rear_elbow_up)
+    below_alpha = np.maximum(t75, t71)
+    del t75
+    above_alpha = np.maximum(t76, t71)
+    del t76
+    t82 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
     del above_alpha, below_alpha
-    t85 = np.arctan2(t75, 2.0 * np.sqrt(below_beta_0 * above_beta_0))
-    del above_beta_0, below_beta_0, t75
-    t86 = t84 - t85
-    del t85
-    t87 = np.arctan2(t42, t38)
-    del t38, t42
-    t88 = np.arctan2(L_2W, a_3W)
+    t83 = np.arctan2(t72, 2.0 * np.sqrt(below_beta_0 * above_beta_0))
+    del above_beta_0, below_beta_0, t72
+    t84 = t82 - t83
+    del t83
+    t85 = np.arctan2(t44, t42)
+    del t42, t44
+    t86 = np.arctan2(L_2W, a_3W)
     del L_2W, a_3W
-    t89 = t87 - t88
-    t90 = _runtime.wrap(principal_pitch)
+    t87 = t85 - t86
+    t88 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    t91 = t41 - t43
-    del t41, t43
-    t92 = t45 + t46
-    del t45, t46
-    t93 = L2 * t91 - a3 * t92
-    whole_alpha_front_elbow_down = L1 * t93
-    t94 = np.abs(whole_alpha_front_elbow_down)
-    v_2_front_elbow_down = L2 * t92 + a3 * t91
-    del t91, t92
-    out_front_elbow_down = t53 + t54
-    del t53, t54
-    t95 = t51 - t52
-    del t51, t52
-    t96 = out_front_elbow_down * out_front_elbow_down + t95 * t95
-    t97 = 1.0 / np.sqrt(t96)
-    del t96
-    ctheta2A_front_elbow_down = out_front_elbow_down * t97
-    t98 = ahead * ctheta2A_front_elbow_down
-    t99 = t95 * t97
-    del t97
-    t100 = higher * t99
-    p_1_front_elbow_down = t98 - t100
-    t101 = ahead * t99
-    del ahead, t99
-    t102 = higher * ctheta2A_front_elbow_down
+    c_relative_front_elbow_down = t43 - t45
+    del t43, t45
+    s_relative_front_elbow_down = t46 + t47
+    del t46, t47
+    v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
+    whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
+    t89 = np.abs(whole_alpha_front_elbow_down)
+    v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
+    del c_relative_front_elbow_down, s_relative_front_elbow_down
+    out_front_elbow_down = t52 + t53
+    del t52, t53
+    t90 = t50 - t51
+    del t50, t51
+    t91 = out_front_elbow_down * out_front_elbow_down + t90 * t90
+    t92 = 1.0 / np.sqrt(t91)
+    del t91
+    ctheta2A_front_elbow_down = out_front_elbow_down * t92
+    t93 = ahead * ctheta2A_front_elbow_down
+    t94 = t90 * t92
+    del t92
+    t95 = higher * t94
+    p_1_front_elbow_down = t93 - t95
+    t96 = ahead * t94
+    del ahead, t94
+    t97 = higher * ctheta2A_front_elbow_down
     del ctheta2A_front_elbow_down, higher
-    t103 = t101 + t102
-    t104 = v_2_front_elbow_down * p_1_front_elbow_down - t93 * t103
-    room_alpha_front_elbow_down = t94 - np.abs(t104)
-    del t104
-    room_beta_front_elbow_down = t94 - np.abs(L1 * p_1_front_elbow_down)
-    t105 = t35 & (t36 <= room_alpha_front_elbow_down) & (t36 <= room_beta_front_elbow_down)
+    t98 = t96 + t97
+    t99 = v_2_front_elbow_down * p_1_front_elbow_down - v_1_front_elbow_down * t98
+    room_alpha_front_elbow_down = t89 - np.abs(t99)
+    del t99
+    room_beta_front_elbow_down = t89 - np.abs(L1 * p_1_front_elbow_down)
+    t100 = t37 & (t39 <= room_alpha_front_elbow_down) & (t63 <= room_beta_front_elbow_down)
     sigma_uv_front_elbow_down = _runtime.sign(-whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
-    t106 = sigma_uv_front_elbow_down * p_1_front_elbow_down
+    t101 = sigma_uv_front_elbow_down * p_1_front_elbow_down
     del p_1_front_elbow_down
-    t107 = t93 * sigma_uv_front_elbow_down
-    t108 = t106 - t107
-    t109 = t67 <= t108
-    t110 = -(t107 + t106)
-    del t106
-    t111 = t67 <= t110
-    below_beta_0_front_elbow_down = np.maximum(t108, t74)
-    del t108
-    above_beta_0_front_elbow_down = np.maximum(t110, t74)
-    del t110
-    t112 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
-    total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
-    t113 = v_2_front_elbow_down * (t112 / total_beta_0_front_elbow_down)
-    del total_beta_0_front_elbow_down
-    along_u_front_elbow_down = t103 + t113
-    del t103, t113
-    left_along_front_elbow_down = L1 - np.abs(-along_u_front_elbow_down)
-    t114 = t105 & t109 & t111 & t109 & t111 & (t67 <= left_along_front_elbow_down)
+    t102 = v_1_front_elbow_down * sigma_uv_front_elbow_down
+    t103 = t101 - t102
+    t104 = t65 <= t103
+    t105 = -(t102 + t101)
+    del t101
+    t106 = t65 <= t105
+    below_beta_0_front_elbow_down = np.maximum(t103, t71)
+    del t103
+    above_beta_0_front_elbow_down = np.maximum(t105, t71)
     del t105
-    t115 = L1 - along_u_front_elbow_down
-    t116 = L1 + along_u_front_elbow_down
+    t107 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
+    t108 = v_2_front_elbow_down * (t107 / total_beta_0_front_elbow_down)
+    del total_beta_0_front_elbow_down
+    along_u_front_elbow_down = t98 + t108
+    del t108, t98
+    left_along_front_elbow_down = L1 - np.abs(-along_u_front_elbow_down)
+    t109 = t100 & t104 & t106 & t104 & t106 & (t65 <= left_along_front_elbow_down)
+    del t100
+    t110 = L1 - along_u_front_elbow_down
+    t111 = L1 + along_u_front_elbow_down
     del along_u_front_elbow_down
-    t117 = t114 & t109 & t111 & (t67 <= t115) & (t67 <= t116)
-    del t109, t111, t114
-    unreachable_2 = np.logical_not(t117)
-    del t117
-    t118 = _runtime.poison(invalid | unreachable_2)
-    t119 = t82 + np.arctan2(-t95, out_front_elbow_down)
-    below_alpha_front_elbow_down = np.maximum(t115, t74)
-    del t115
-    above_alpha_front_elbow_down = np.maximum(t116, t74)
-    del t116
-    t120 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    t121 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
+    t112 = t109 & t104 & t106 & (t65 <= t110) & (t65 <= t111)
+    del t104, t106, t109
+    unreachable_2 = np.logical_not(t112)
+    del t112
+    t113 = _runtime.poison(invalid | unreachable_2)
+    t114 = t80 + np.arctan2(-t90, out_front_elbow_down)
+    below_alpha_front_elbow_down = np.maximum(t110, t71)
+    del t110
+    above_alpha_front_elbow_down = np.maximum(t111, t71)
+    del t111
+    t115 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t116 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t122 = np.arctan2(t120, 2.0 * np.sqrt(t121))
-    del t120, t121
-    t123 = t87 + t88
-    del t87, t88
-    t124 = below_beta_0_front_elbow_down * above_beta_0_front_elbow_down
+    t117 = np.arctan2(t115, 2.0 * np.sqrt(t116))
+    del t115, t116
+    t118 = t85 + t86
+    del t85, t86
+    t119 = below_beta_0_front_elbow_down * above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t125 = t122 - np.arctan2(t112, 2.0 * np.sqrt(t124))
-    del t112, t124
-    t126 = _runtime.wrap(-(t12 + t11))
-    del t11, t12
-    t127 = t61 + t62
-    del t61, t62
-    t128 = t57 - t59
-    del t57, t59
-    t129 = np.abs(v_2_front_elbow_down * t127 + t93 * t128)
-    del t93
-    room_alpha_rear_elbow_up = t94 - t129
+    t120 = t117 - np.arctan2(t107, 2.0 * np.sqrt(t119))
+    del t107, t119
+    t121 = _runtime.wrap(-(t14 + t13))
+    del t13, t14
+    t122 = t60 + t61
+    del t60, t61
+    t123 = t56 - t58
+    del t56, t58
+    t124 = v_2_front_elbow_down * t122 + v_1_front_elbow_down * t123
+    del v_1_front_elbow_down
+    room_alpha_rear_elbow_up = t89 - np.abs(t124)
+    del t124
+    room_beta_rear_elbow_up = t89 - np.abs(L1 * t122)
+    del t89
+    t125 = t37 & (t39 <= room_alpha_rear_elbow_up) & (t63 <= room_beta_rear_elbow_up)
+    t126 = sigma_uv_front_elbow_down * t122
+    del sigma_uv_front_elbow_down, t122
+    t127 = t126 - t102
+    t128 = t65 <= t127
+    t129 = -(t102 + t126)
+    del t126
+    t130 = t65 <= t129
+    below_beta_0_rear_elbow_up = np.maximum(t127, t71)
+    del t127
+    above_beta_0_rear_elbow_up = np.maximum(t129, t71)
     del t129
-    room_beta_rear_elbow_up = t94 - np.abs(L1 * t127)
-    del t94
-    t130 = t35 & (t36 <= room_alpha_rear_elbow_up) & (t36 <= room_beta_rear_elbow_up)
-    t131 = sigma_uv_front_elbow_down * t127
-    del sigma_uv_front_elbow_down, t127
-    t132 = t131 - t107
-    t133 = t67 <= t132
-    t134 = -(t107 + t131)
-    del t131
-    t135 = t67 <= t134
-    below_beta_0_rear_elbow_up = np.maximum(t132, t74)
-    del t132
-    above_beta_0_rear_elbow_up = np.maximum(t134, t74)
-    del t134
-    t136 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t131 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
-    t137 = v_2_front_elbow_down * (t136 / total_beta_0_rear_elbow_up)
+    t132 = v_2_front_elbow_down * (t131 / total_beta_0_rear_elbow_up)
     del total_beta_0_rear_elbow_up
-    t138 = t128 - t137
-    del t128, t137
-    left_along_rear_elbow_up = L1 - np.abs(t138)
-    t139 = t130 & t133 & t135 & t133 & t135 & (t67 <= left_along_rear_elbow_up)
-    del t130
-    t140 = L1 + t138
-    t141 = L1 - t138
-    del t138
-    t142 = t139 & t133 & t135 & (t67 <= t140) & (t67 <= t141)
-    del t133, t135, t139
-    unreachable_3 = np.logical_not(t142)
-    del t142
-    t143 = _runtime.poison(invalid | unreachable_3)
-    t144 = t82 + np.arctan2(up, out_rear_elbow_up)
+    t133 = t123 - t132
+    del t123, t132
+    left_along_rear_elbow_up = L1 - np.abs(t133)
+    t134 = t125 & t128 & t130 & t128 & t130 & (t65 <= left_along_rear_elbow_up)
+    del t125
+    t135 = L1 + t133
+    t136 = L1 - t133
+    del t133
+    t137 = t134 & t128 & t130 & (t65 <= t135) & (t65 <= t136)
+    del t128, t130, t134
+    unreachable_3 = np.logical_not(t137)
+    del t137
+    t138 = _runtime.poison(invalid | unreachable_3)
+    t139 = t80 + np.arctan2(up, out_rear_elbow_up)
     del out_rear_elbow_up, up
-    below_alpha_rear_elbow_up = np.maximum(t140, t74)
-    del t140
-    above_alpha_rear_elbow_up = np.maximum(t141, t74)
-    del t141
-    t145 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    t146 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
+    below_alpha_rear_elbow_up = np.maximum(t135, t71)
+    del t135
+    above_alpha_rear_elbow_up = np.maximum(t136, t71)
+    del t136
+    t140 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t141 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t147 = np.arctan2(t145, 2.0 * np.sqrt(t146))
-    del t145, t146
-    t148 = below_beta_0_rear_elbow_up * above_beta_0_rear_elbow_up
+    t142 = np.arctan2(t140, 2.0 * np.sqrt(t141))
+    del t140, t141
+    t143 = below_beta_0_rear_elbow_up * above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t149 = t147 - np.arctan2(t136, 2.0 * np.sqrt(t148))
-    del t136, t148
-    t150 = t98 + t100
-    del t100, t98
-    t151 = t101 - t102
-    del t101, t102
-    room_alpha_rear_elbow_down = t49 - np.abs(-(v_2 * t150 + t48 * t151))
+    t144 = t142 - np.arctan2(t131, 2.0 * np.sqrt(t143))
+    del t131, t143
+    t145 = t93 + t95
+    del t93, t95
+    t146 = t96 - t97
+    del t96, t97
+    room_alpha_rear_elbow_down = t48 - np.abs(-(v_2 * t145 + v_1 * t146))
+    del v_1
+    room_beta_rear_elbow_down = t48 - np.abs(-(L1 * t145))
     del t48
-    room_beta_rear_elbow_down = t49 - np.abs(-(L1 * t150))
-    del t49
-    t152 = t35 & (t36 <= room_alpha_rear_elbow_down) & (t36 <= room_beta_rear_elbow_down)
-    del t35, t36
-    p_across_u_rear_elbow_down = sigma_uv * t150
-    del sigma_uv, t150
-    t153 = -(t68 + p_across_u_rear_elbow_down)
-    t154 = t67 <= t153
-    t155 = p_across_u_rear_elbow_down - t68
+    t147 = t37 & (t39 <= room_alpha_rear_elbow_down) & (t63 <= room_beta_rear_elbow_down)
+    del t37, t39, t63
+    p_across_u_rear_elbow_down = sigma_uv * t145
+    del sigma_uv, t145
+    t148 = -(t66 + p_across_u_rear_elbow_down)
+    t149 = t65 <= t148
+    t150 = p_across_u_rear_elbow_down - t66
     del p_across_u_rear_elbow_down
-    t156 = t67 <= t155
-    below_beta_0_rear_elbow_down = np.maximum(t153, t74)
-    del t153
-    above_beta_0_rear_elbow_down = np.maximum(t155, t74)
-    del t155
-    t157 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t151 = t65 <= t150
+    below_beta_0_rear_elbow_down = np.maximum(t148, t71)
+    del t148
+    above_beta_0_rear_elbow_down = np.maximum(t150, t71)
+    del t150
+    t152 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
-    along_u_rear_elbow_down = t151 + v_2 * (t157 / total_beta_0_rear_elbow_down)
-    del t151, total_beta_0_rear_elbow_down
+    along_u_rear_elbow_down = t146 + v_2 * (t152 / total_beta_0_rear_elbow_down)
+    del t146, total_beta_0_rear_elbow_down
     left_along_rear_elbow_down = L1 - np.abs(-along_u_rear_elbow_down)
-    t158 = t152 & t154 & t156 & t154 & t156 & (t67 <= left_along_rear_elbow_down)
-    del t152
-    t159 = L1 - along_u_rear_elbow_down
-    t160 = L1 + along_u_rear_elbow_down
+    t153 = t147 & t149 & t151 & t149 & t151 & (t65 <= left_along_rear_elbow_down)
+    del t147
+    t154 = L1 - along_u_rear_elbow_down
+    t155 = L1 + along_u_rear_elbow_down
     del along_u_rear_elbow_down
-    t161 = t158 & t154 & t156 & (t67 <= t159) & (t67 <= t160)
-    del t154, t156, t158, t67
-    unreachable_4 = np.logical_not(t161)
-    del t161
-    t162 = _runtime.poison(invalid | unreachable_4)
-    t163 = t82 + np.arctan2(-t95, -out_front_elbow_down)
-    del out_front_elbow_down, t82, t95
-    below_alpha_rear_elbow_down = np.maximum(t159, t74)
-    del t159
-    above_alpha_rear_elbow_down = np.maximum(t160, t74)
-    del t160, t74
-    t164 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    t165 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
+    t156 = t153 & t149 & t151 & (t65 <= t154) & (t65 <= t155)
+    del t149, t151, t153, t65
+    unreachable_4 = np.logical_not(t156)
+    del t156
+    t157 = _runtime.poison(invalid | unreachable_4)
+    t158 = t80 + np.arctan2(-t90, -out_front_elbow_down)
+    del out_front_elbow_down, t80, t90
+    below_alpha_rear_elbow_down = np.maximum(t154, t71)
+    del t154
+    above_alpha_rear_elbow_down = np.maximum(t155, t71)
+    del t155, t71
+    t159 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t160 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t166 = np.arctan2(t164, 2.0 * np.sqrt(t165))
-    del t164, t165
-    t167 = below_beta_0_rear_elbow_down * above_beta_0_rear_elbow_down
+    t161 = np.arctan2(t159, 2.0 * np.sqrt(t160))
+    del t159, t160
+    t162 = below_beta_0_rear_elbow_down * above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t168 = t166 - np.arctan2(t157, 2.0 * np.sqrt(t167))
-    del t157, t167
-    t169 = wrist <= al * _runtime.DETERMINED
+    t163 = t161 - np.arctan2(t152, 2.0 * np.sqrt(t162))
+    del t152, t162
+    t164 = wrist <= al * _runtime.DETERMINED
     del wrist
-    t170 = _runtime.status(invalid, unreachable_2, t169)
+    t165 = _runtime.status(invalid, unreachable_2, t164)
     del unreachable_2
-    t171 = _runtime.status(invalid, unreachable_3, t169)
+    t166 = _runtime.status(invalid, unreachable_3, t164)
     del unreachable_3
-    t172 = _runtime.status(invalid, unreachable_4, t169)
+    t167 = _runtime.status(invalid, unreachable_4, t164)
     del unreachable_4
-    t173 = (h <= t22 * _runtime.VANISHING) | (L1 * fore <= _runtime.VANISHING * t28)
-    del h, t22, t28
-    t174 = _runtime.VANISHING * t25
-    del t25
-    t175 = t173 | (np.abs(t29) + np.abs(onward) <= t174)
-    del onward, t173, t29
-    t176 = np.maximum(-(room_alpha * 9.094947017729282e-13), room_alpha)
+    t168 = h * slack
+    del slack
+    tangent = 4.0 * root * t29 - t168 * 0.00390625 <= _runtime.VANISHING * t168
+    del t168
+    t169 = tangent | (h <= _runtime.VANISHING * lengths)
+    del h, lengths, tangent
+    t170 = t169 | (L1 * fore <= _runtime.VANISHING * t30)
+    del t169, t30
+    t171 = _runtime.VANISHING * t29
+    del t29
+    t172 = t170 | (np.abs(t31) + np.abs(root) <= t171) | (fore <= t171)
+    del fore, root, t170, t171, t31
+    t173 = np.maximum(-(room_alpha * 9.094947017729282e-13), room_alpha)
     del room_alpha
-    t177 = _runtime.VANISHING * play_alpha
+    t174 = _runtime.VANISHING * play_alpha
     del play_alpha
-    t178 = np.maximum(-(room_beta * 9.094947017729282e-13), room_beta)
+    t175 = np.maximum(-(room_beta * 9.094947017729282e-13), room_beta)
     del room_beta
-    t179 = t175 | (fore <= t174) | (t176 <= t177) | (t178 <= t177)
-    del fore, t174, t175, t176, t178
-    parallel = -t68 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
-    del t68, v_2
-    t180 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t176 = _runtime.VANISHING * play_beta
+    del play_beta
+    parallel = -t66 <= _runtime.VANISHING * (64.0 * np.abs(v_2))
+    del t66, v_2
+    t177 = t172 | (t173 <= t174) | (t175 <= t176) | parallel
+    del parallel, t172, t173, t175
+    t178 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
     del left_along
-    t181 = _runtime.VANISHING * play_along
-    del play_along
-    t182 = room_alpha_front_elbow_down * 9.094947017729282e-13
-    t183 = np.maximum(-t182, room_alpha_front_elbow_down)
-    del room_alpha_front_elbow_down, t182
-    t184 = t179 | parallel | (t180 <= t181) | (t183 <= t177)
-    del parallel, t179, t180, t183
-    t185 = room_beta_front_elbow_down * 9.094947017729282e-13
-    t186 = np.maximum(-t185, room_beta_front_elbow_down)
-    del room_beta_front_elbow_down, t185
-    t187 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
+    t179 = _runtime.VANISHING * play
+    del play
+    t180 = room_alpha_front_elbow_down * 9.094947017729282e-13
+    t181 = np.maximum(-t180, room_alpha_front_elbow_down)
+    del room_alpha_front_elbow_down, t180
+    t182 = room_beta_front_elbow_down * 9.094947017729282e-13
+    t183 = np.maximum(-t182, room_beta_front_elbow_down)
+    del room_beta_front_elbow_down, t182
+    t184 = t177 | (t178 <= t179) | (t181 <= t174) | (t183 <= t176)
+    del t177, t178, t181, t183
+    t185 = _runtime.VANISHING * (64.0 * np.abs(v_2_front_elbow_down))
     del v_2_front_elbow_down
-    t188 = left_along_front_elbow_down * 9.094947017729282e-13
-    t189 = np.maximum(-t188, left_along_front_elbow_down)
-    del left_along_front_elbow_down, t188
-    t190 = t184 | (t186 <= t177) | (-t107 <= t187) | (t189 <= t181)
-    del t107, t184, t186, t187, t189
-    t191 = room_alpha_rear_elbow_up * 9.094947017729282e-13
-    spent_alpha_rear_elbow_up = np.maximum(-t191, room_alpha_rear_elbow_up) <= t177
-    del room_alpha_rear_elbow_up, t191
-    t192 = room_beta_rear_elbow_up * 9.094947017729282e-13
-    spent_beta_rear_elbow_up = np.maximum(-t192, room_beta_rear_elbow_up) <= t177
-    del room_beta_rear_elbow_up, t192
-    t193 = t190 | spent_alpha_rear_elbow_up | spent_beta_rear_elbow_up
-    del spent_alpha_rear_elbow_up, spent_beta_rear_elbow_up, t190
-    t194 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t194, left_along_rear_elbow_up) <= t181
-    del left_along_rear_elbow_up, t194
-    t195 = room_alpha_rear_elbow_down * 9.094947017729282e-13
-    t196 = np.maximum(-t195, room_alpha_rear_elbow_down)
-    del room_alpha_rear_elbow_down, t195
-    t197 = t193 | spent_along_rear_elbow_up | (t196 <= t177)
-    del spent_along_rear_elbow_up, t193, t196
-    t198 = room_beta_rear_elbow_down * 9.094947017729282e-13
-    spent_beta_rear_elbow_down = np.maximum(-t198, room_beta_rear_elbow_down) <= t177
-    del room_beta_rear_elbow_down, t177, t198
-    t199 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t200 = np.maximum(-t199, left_along_rear_elbow_down)
-    del left_along_rear_elbow_down, t199
-    t201 = t197 | spent_beta_rear_elbow_down | (t200 <= t181)
-    del spent_beta_rear_elbow_down, t181, t197, t200
+    t186 = left_along_front_elbow_down * 9.094947017729282e-13
+    t187 = np.maximum(-t186, left_along_front_elbow_down)
+    del left_along_front_elbow_down, t186
+    t188 = room_alpha_rear_elbow_up * 9.094947017729282e-13
+    spent_alpha_rear_elbow_up = np.maximum(-t188, room_alpha_rear_elbow_up) <= t174
+    del room_alpha_rear_elbow_up, t188
+    t189 = t184 | (-t102 <= t185) | (t187 <= t179) | spent_alpha_rear_elbow_up
+    del spent_alpha_rear_elbow_up, t102, t184, t185, t187
+    t190 = room_beta_rear_elbow_up * 9.094947017729282e-13
+    spent_beta_rear_elbow_up = np.maximum(-t190, room_beta_rear_elbow_up) <= t176
+    del room_beta_rear_elbow_up, t190
+    t191 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t191, left_along_rear_elbow_up) <= t179
+    del left_along_rear_elbow_up, t191
+    t192 = t189 | spent_beta_rear_elbow_up | spent_along_rear_elbow_up
+    del spent_along_rear_elbow_up, spent_beta_rear_elbow_up, t189
+    t193 = room_alpha_rear_elbow_down * 9.094947017729282e-13
+    t194 = np.maximum(-t193, room_alpha_rear_elbow_down)
+    del room_alpha_rear_elbow_down, t193
+    t195 = room_beta_rear_elbow_down * 9.094947017729282e-13
+    spent_beta_rear_elbow_down = np.maximum(-t195, room_beta_rear_elbow_down) <= t176
+    del room_beta_rear_elbow_down, t176, t195
+    t196 = t192 | (t194 <= t174) | spent_beta_rear_elbow_down
+    del spent_beta_rear_elbow_down, t174, t192, t194
+    t197 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t198 = np.maximum(-t197, left_along_rear_elbow_down)
+    del left_along_rear_elbow_down, t197
     return (
-        t13 + t81,
-        _runtime.wrap(t83 - t84) + t81,
-        _runtime.wrap(t86 - t89) + t81,
-        _runtime.wrap(t83 + t84) + t81,
-        _runtime.wrap(-(t89 + t86)) + t81,
-        t90 + t81,
-        t13 + t118,
-        _runtime.wrap(t119 - t122) + t118,
-        _runtime.wrap(t123 + t125) + t118,
-        _runtime.wrap(t119 + t122) + t118,
-        _runtime.wrap(t123 - t125) + t118,
-        t90 + t118,
-        t126 + t143,
-        _runtime.wrap(t144 - t147) + t143,
-        _runtime.wrap(t123 + t149) + t143,
-        _runtime.wrap(t144 + t147) + t143,
-        _runtime.wrap(t123 - t149) + t143,
-        t90 + t143,
-        t126 + t162,
-        _runtime.wrap(t163 - t166) + t162,
-        _runtime.wrap(t168 - t89) + t162,
-        _runtime.wrap(t163 + t166) + t162,
-        _runtime.wrap(-(t89 + t168)) + t162,
-        t90 + t162,
-        _runtime.status(invalid, unreachable, t169),
-        t170,
-        t171,
-        t172,
-        t201,
+        t15 + t78,
+        _runtime.wrap(t81 - t82) + t78,
+        _runtime.wrap(t84 - t87) + t78,
+        _runtime.wrap(t81 + t82) + t78,
+        _runtime.wrap(-(t87 + t84)) + t78,
+        t88 + t78,
+        t15 + t113,
+        _runtime.wrap(t114 - t117) + t113,
+        _runtime.wrap(t118 + t120) + t113,
+        _runtime.wrap(t114 + t117) + t113,
+        _runtime.wrap(t118 - t120) + t113,
+        t88 + t113,
+        t121 + t138,
+        _runtime.wrap(t139 - t142) + t138,
+        _runtime.wrap(t118 + t144) + t138,
+        _runtime.wrap(t139 + t142) + t138,
+        _runtime.wrap(t118 - t144) + t138,
+        t88 + t138,
+        t121 + t157,
+        _runtime.wrap(t158 - t161) + t157,
+        _runtime.wrap(t163 - t87) + t157,
+        _runtime.wrap(t158 + t161) + t157,
+        _runtime.wrap(-(t87 + t163)) + t157,
+        t88 + t157,
+        _runtime.status(invalid, unreachable, t164),
+        t165,
+        t166,
+        t167,
+        t196 | (t198 <= t179),
     )
 
 
@@ -2516,6 +2936,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       beta are half the differences of the arms' angles, and sines of equal size are returned.
     - SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): rounded
       joints do not determine the tip to 1e-12 there.
+    - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
+      yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.
     - INVALID: d, L1, or both L2 and a3 are zero.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
@@ -2525,19 +2947,21 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 def _wrist_length(psi, phi, d, gs, al):
     c_psi = np.cos(psi)
     c_phi = np.cos(phi)
-    t1 = (gs + al) * c_psi - d
-    t2 = d - c_psi * (gs - al)
-    t3 = np.sqrt(np.maximum(t1, 0.0) * np.maximum(t2, 0.0))
-    t4 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
-    t5 = t4 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(psi) & np.isfinite(phi))
-    del t4
-    t6 = -(_runtime.FEASIBILITY * (d * 0.5))
-    t7 = (-_runtime.FEASIBILITY <= c_phi) & (t6 <= t1)
-    del c_phi, t1
-    failed = np.logical_not(t5) | np.logical_not(t7 & (t6 <= t2))
-    del t2, t5, t6, t7
+    t1 = (gs + al) * c_psi
+    t2 = t1 - d
+    t3 = d - c_psi * (gs - al)
+    t4 = np.sqrt(np.maximum(t2, 0.0) * np.maximum(t3, 0.0))
+    t5 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
+    t6 = t5 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(psi) & np.isfinite(phi))
+    del t5
+    t7 = -(_runtime.FEASIBILITY * (t1 * 1.015625))
+    del t1
+    t8 = (-_runtime.FEASIBILITY <= c_phi) & (t7 <= t2)
+    del c_phi, t2
+    failed = np.logical_not(t6) | np.logical_not(t8 & (t7 <= t3))
+    del t3, t6, t7, t8
     return (
-        t3 / c_psi + _runtime.poison(failed),
+        t4 / c_psi + _runtime.poison(failed),
     )
 
 

@@ -11,11 +11,11 @@
 #   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
 #   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
 #   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
-#   ik: 346 compare and select, 342 add, 27 atan2, 40 divide, 456 multiply, 1 reduce to a turn, 3
-#     sincos, 16 sqrt
-#   ik where nothing vanishes: 256 compare and select, 250 add, 23 atan2, 27 divide, 333 multiply,
+#   ik: 831 compare and select, 609 add, 28 atan2, 135 divide, 884 multiply, 1 reduce to a turn, 3
+#     sincos, 37 sqrt
+#   ik where nothing vanishes: 276 compare and select, 260 add, 23 atan2, 31 divide, 334 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
-#   wrist_length: 5 add, 20 compare and select, 2 divide, 5 multiply, 2 sincos, 1 sqrt
+#   wrist_length: 5 add, 20 compare and select, 1 divide, 6 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
 #   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt
@@ -1644,971 +1644,2064 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     s_psi, c_psi = _runtime.sincos_as_in_c(psi)
     principal_pitch = _runtime.principal(pitch)
     h = np.sqrt(x * x + y * y)
-    t1 = L1 + L2
-    nowhere = h <= t1 * _runtime.VANISHING
-    t2 = np.arctan2(x, y)
-    t3 = lp * s_pitch
+    t1 = gs + al
+    t2 = L2 + a3
+    lengths = L1 + d1 + d + loff + lp + t1 + t2
+    nowhere = h <= _runtime.VANISHING * lengths
+    t3 = np.arctan2(x, y)
+    t4 = lp * s_pitch
     del s_pitch
-    t4 = c_phi * c_psi
-    t5 = 1.0 / t4
-    t6 = (gs + al) * t4 - d
-    t7 = d - (gs - al) * t4
-    del t4
-    t8 = np.sqrt(np.maximum(t6, 0.0) * np.maximum(t7, 0.0))
-    wrist = t5 * t8
-    del t8
-    t9 = loff + lp * c_pitch + wrist
-    del c_pitch
-    t10 = s_psi * t9
-    t11 = s_phi * t3 - c_phi * t10
-    t12 = h + t11
-    below = np.maximum(t12, 0.0)
-    t13 = h - t11
-    del h, t11
-    above = np.maximum(t13, 0.0)
-    onward = np.sqrt(below * above)
-    t14 = np.arctan2(2.0 * onward, above - below)
-    del above, below
-    t15 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 - t14))
-    t16 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t17 = t16 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t16
-    t18 = t17 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t17
-    t19 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t20 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
-    t21 = t18 & (0.0 <= loff) & (0.0 <= lp) & t19 & (np.abs(t20) <= _runtime.ROTATION)
-    del t18, t19, t20
-    invalid = np.logical_not(t21)
-    del t21
-    t22 = -(_runtime.FEASIBILITY * (d * 0.5))
-    t23 = (-_runtime.FEASIBILITY <= c_phi) & (t22 <= t6)
-    del t6
-    t24 = -(_runtime.FEASIBILITY * t1)
+    t5 = c_phi * c_psi
+    t6 = 1.0 / t5
+    t7 = t1 * t5
     del t1
-    t25 = t23 & (t22 <= t7) & (t24 <= t12) & (t24 <= t13)
-    del t12, t13, t22, t23, t24, t7
-    L_2W = L2 + c_psi * t9
-    del c_psi, t9
-    a_3W = a3 + c_phi * t3 + s_phi * t10
-    del t10, t3
+    t8 = t7 - d
+    t9 = d - (gs - al) * t5
+    del t5
+    t10 = np.sqrt(np.maximum(t8, 0.0) * np.maximum(t9, 0.0))
+    wrist = t6 * t10
+    del t10
+    t11 = loff + lp * c_pitch + wrist
+    del c_pitch
+    t12 = s_psi * t11
+    t13 = s_phi * t4 - c_phi * t12
+    t14 = h - t13
+    above = np.maximum(t14, 0.0)
+    t15 = h + t13
+    del t13
+    below = np.maximum(t15, 0.0)
+    t16 = above * below
+    root = np.sqrt(t16)
+    L_2W = L2 + c_psi * t11
+    del t11
+    a_3W = a3 + c_phi * t4 + s_phi * t12
+    del t12, t4
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t26 = L1 + fore
-    t27 = L1 * 2.0
-    t28 = 2.0 * fore
-    t29 = -(_runtime.FEASIBILITY * (t26 * (t27 + t28)))
-    t30 = t26 * t26
-    t31 = z - d1
-    square = t31 * t31 + onward * onward
-    t32 = t30 - square
-    t33 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t34 = L1 - fore
-    t35 = _runtime.FEASIBILITY * (t26 * (t33 + 2.0 * np.abs(t34)))
-    del t33
-    t36 = square - t34 * t34
-    del square
-    t37 = t25 & (t29 <= t32) & (-t35 <= t36)
-    del t25, t29, t35
+    t17 = L1 + fore
+    base = d * t6
+    del t6
+    t18 = 1.0 / c_phi
+    t_phi = s_phi * t18
+    del s_phi
+    t_psi = s_psi / c_psi
+    del c_psi, s_psi
+    far_apart = np.abs(base * t_phi) * 0.001953125 + np.abs(t_psi * base) * 0.001953125
+    del base
+    slack = far_apart + lengths
+    t19 = h * slack
+    del h
+    tangent = 4.0 * root * t17 - t19 * 0.00390625 <= _runtime.VANISHING * t19
+    t20 = L1 - fore
+    t21 = t20 * t20
+    t22 = z - d1
+    t23 = t22 * t22
+    t24 = t17 * t17
+    wanted = np.maximum(np.maximum(0.0, t21 - t23), np.minimum(t16, t24 - t23))
+    t25 = 8796093022208.0 * np.abs(t16 - wanted) <= t19
+    del t19
+    t26 = np.sqrt(_runtime.select(t25, wanted, t16))
+    del t16, t25, wanted
+    t27 = _runtime.select(tangent, np.arctan2(t26, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    del above, below
+    t28 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t27))
+    t29 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t30 = t29 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t29
+    t31 = t30 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t30
+    t32 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t33 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
+    del t2
+    t34 = t31 & (0.0 <= loff) & (0.0 <= lp) & t32 & (t33 <= _runtime.ROTATION)
+    del t31, t32, t33
+    invalid = np.logical_not(t34)
+    del t34
+    t35 = -(_runtime.FEASIBILITY * (1.015625 * t7))
+    del t7
+    t36 = (-_runtime.FEASIBILITY <= c_phi) & (t35 <= t8)
+    del c_phi, t8
+    t37 = -(_runtime.FEASIBILITY * slack)
+    t38 = t36 & (t35 <= t9) & (t37 <= t15) & (t37 <= t14)
+    del t14, t15, t35, t36, t37, t9
+    t39 = L1 * 2.0
+    t40 = 2.0 * fore
+    t41 = -(_runtime.FEASIBILITY * ((t39 + t40) * slack))
+    in_reach = _runtime.select(tangent, t26, root)
+    del root, t26, tangent
+    square = t23 + in_reach * in_reach
+    del t23
+    t42 = t24 - square
+    t43 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t44 = _runtime.FEASIBILITY * ((t43 + 2.0 * np.abs(t20)) * slack)
+    del t43
+    t45 = square - t21
+    del square, t21
+    t46 = t38 & (t41 <= t42) & (-t44 <= t45)
+    del t38, t41, t44
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
-    t38 = d * size
-    short = L1 * fore <= _runtime.VANISHING * t30
-    del t30
-    N = np.maximum(t32, 0.0)
-    del t32
-    M = np.maximum(t36, 0.0)
-    del t36
-    t39 = 1.0 / (N + M)
-    c_bend = _runtime.select(short, 1.0, -((N - M) * t39))
-    t40 = _runtime.VANISHING * t26
-    bare = fore <= t40
-    t41 = 1.0 / fore
-    s_lag = _runtime.select(bare, 0.0, L_2W * t41)
-    t42 = c_bend * s_lag
-    s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, t39 * (2.0 * np.sqrt(N * M)))
-    del N
-    c_lag = _runtime.select(bare, 1.0, a_3W * t41)
-    del bare, t41
-    t43 = s_bend_front_elbow_down_alike * c_lag
-    s_relative = t42 - t43
-    t44 = c_bend * c_lag
-    del c_bend, c_lag
-    t45 = s_lag * s_bend_front_elbow_down_alike
-    del s_lag
-    c_relative = t44 + t45
-    straight_mid = L2 * s_relative + a3 * c_relative
-    t46 = 0.0 <= straight_mid
-    t47 = L2 * c_relative - a3 * s_relative
-    large_mid = fore_arm + np.abs(straight_mid)
-    del straight_mid
-    small_mid = t47 * t47 / large_mid
-    N_mid = t27 * _runtime.select(t46, small_mid, large_mid)
-    t48 = 1.0 / c_phi
-    del c_phi
-    folded = np.abs(t31) + np.abs(onward) <= t40
-    del t40
-    t49 = fore * s_bend_front_elbow_down_alike
-    del fore, s_bend_front_elbow_down_alike
-    t50 = t31 * t49
-    ahead_1 = _runtime.select(short, t26, t34 + t39 * (t28 * M))
-    del M, t26, t28, t34, t39
-    t51 = onward * ahead_1
-    t52 = t50 - t51
-    t53 = onward * t49
-    del onward, t49
-    t54 = t31 * ahead_1
-    del ahead_1, t31
-    up = t53 + t54
-    t55 = 1.0 / np.sqrt(t52 * t52 + up * up)
-    t56 = t52 * t55
-    del t52
-    ctheta2A = _runtime.select(folded, 1.0, -t56)
-    stheta2A = _runtime.select(folded, 0.0, up * t55)
-    del t55, up
-    ctheta23A = c_relative * ctheta2A - s_relative * stheta2A
-    stheta23A = c_relative * stheta2A + s_relative * ctheta2A
-    t57 = t48 * (s_phi * ctheta23A) - t5 * (s_psi * stheta23A)
-    t58 = d * t57
-    del t57
-    t59 = t5 * (s_psi * ctheta23A) + t48 * (s_phi * stheta23A)
-    t60 = d * t59
-    del t59
-    gap = t58 * t58 + t60 * t60
-    t61 = N_mid - gap
-    point_11 = L1 * ctheta2A + L2 * stheta23A + a3 * ctheta23A
-    t62 = L1 * stheta2A
-    point_21 = t62 - L2 * ctheta23A + a3 * stheta23A
+    play = d + far_apart + lengths * 0.001953125
+    del far_apart, lengths
+    t47 = size * play
+    t48 = size * size
+    t49 = _runtime.VANISHING * t17
+    folded = np.abs(t22) + np.abs(in_reach) <= t49
+    short = L1 * fore <= _runtime.VANISHING * t24
+    del t24
+    M = np.maximum(t45, 0.0)
+    del t45
+    N = np.maximum(t42, 0.0)
+    del t42
+    t50 = 1.0 / (M + N)
+    ahead_1 = _runtime.select(short, t17, t20 + t40 * M * t50)
+    del t17, t20, t40
+    t51 = t22 * ahead_1
+    s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, t50 * (2.0 * np.sqrt(M * N)))
+    t52 = fore * s_bend_front_elbow_down_alike
+    t53 = in_reach * t52
+    up = t51 + t53
+    t54 = in_reach * ahead_1
+    del ahead_1, in_reach
+    t55 = t22 * t52
+    del t22, t52
+    out_2 = t54 - t55
+    t56 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
+    stheta2A = _runtime.select(folded, 0.0, up * t56)
+    del up
+    elbow_21 = L1 * stheta2A
+    t57 = out_2 * t56
+    del out_2, t56
+    ctheta2A = _runtime.select(folded, 1.0, t57)
+    bare = fore <= t49
+    del t49
+    t58 = 1.0 / fore
+    c_lag = _runtime.select(bare, 1.0, a_3W * t58)
+    c_bend = _runtime.select(short, 1.0, t50 * (M - N))
+    del M, N, t50
+    t59 = c_lag * c_bend
+    s_lag = _runtime.select(bare, 0.0, L_2W * t58)
+    del bare, t58
+    t60 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t59 + t60
+    t61 = s_lag * c_bend
+    del c_bend, s_lag
+    t62 = c_lag * s_bend_front_elbow_down_alike
+    del c_lag, s_bend_front_elbow_down_alike
+    s_relative = t61 - t62
+    ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
+    stheta23A = stheta2A * c_relative + ctheta2A * s_relative
+    point_21 = elbow_21 - L2 * ctheta23A + a3 * stheta23A
+    t63 = t18 * (t_psi * ctheta23A) + t_phi * stheta23A
+    t64 = d * t63
+    del t63
+    h_right_0 = point_21 - t64
+    elbow_11 = L1 * ctheta2A
+    point_11 = elbow_11 + L2 * stheta23A + a3 * ctheta23A
+    t65 = t_phi * ctheta23A - t18 * (t_psi * stheta23A)
     del ctheta23A, stheta23A
-    t63 = 2.0 * t58 * point_11 + 2.0 * t60 * point_21
-    room_right = t61 + t63
-    t64 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
-    t65 = _runtime.VANISHING * t38
-    spent_right = t64 <= t65
-    del t64
-    t66 = size / 100000.0
-    t67 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    t68 = 1.0 / (t66 + t67)
+    t66 = d * t65
+    del t65
+    r_right_0 = point_11 - t66
+    t67 = h_right_0 * h_right_0 + r_right_0 * r_right_0
+    gap = t66 * t66 + t64 * t64
+    t68 = gap * gap
+    t69 = L1 - fore_arm
+    t70 = t69 * t69
+    straight_mid = L2 * s_relative + a3 * c_relative
+    t71 = 0.0 <= straight_mid
+    large_mid = fore_arm + np.abs(straight_mid)
+    t72 = L2 * c_relative - a3 * s_relative
+    small_mid = t72 * t72 / large_mid
+    M_mid = t39 * _runtime.select(t71, large_mid, small_mid)
+    t73 = gap + M_mid
+    t74 = 2.0 * point_11 * t66 + 2.0 * point_21 * t64
+    farther_right = _runtime.select(t48 * t67 < t68, t67 - t70, t73 - t74)
     del t67
-    drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    t69 = 2.0 * drawn
-    t70 = t60 - point_21
-    t71 = t58 - point_11
-    t72 = t69 * (ctheta2A * t70 - stheta2A * t71)
-    t73 = _runtime.select(spent_right, t68 * (size * np.abs(-t72)), 0.0)
-    t74 = -(_runtime.FEASIBILITY * (t38 + t73)) <= room_right
-    del t73
-    room_left = t61 - t63
-    del t61
-    t75 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
-    spent_left = t75 <= t65
-    del t75
-    h_left_0 = t60 + point_21
-    del point_21, t60
-    r_left_0 = t58 + point_11
-    del point_11, t58
-    slope_left = t69 * (ctheta2A * h_left_0 - stheta2A * r_left_0)
-    t76 = _runtime.select(spent_left, t68 * (size * np.abs(slope_left)), 0.0)
-    t77 = -(_runtime.FEASIBILITY * (t38 + t76)) <= room_left
+    N_mid = t39 * _runtime.select(t71, small_mid, large_mid)
+    del large_mid, small_mid, t71
+    t75 = gap - N_mid
+    nearer_right = t74 - t75
+    room_right = np.minimum(farther_right, nearer_right)
+    t76 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
+    t77 = _runtime.VANISHING * t47
+    spent_right = t76 <= t77
     del t76
-    t78 = -(_runtime.FEASIBILITY * t38)
-    t79 = size * size
-    t80 = t79 * t79 / 10000000000.0
-    t81 = t72 * (room_right - np.abs(room_right)) / (2.0 * (t80 + t72 * t72))
-    t82 = slope_left * (room_left - np.abs(room_left)) / (2.0 * (t80 + slope_left * slope_left))
-    turn = _runtime.select(spent_right, t81, 0.0) + _runtime.select(spent_left, -t82, 0.0)
-    del spent_left, spent_right, t81, t82
-    t83 = t72 * turn
-    del t72
-    t84 = room_right - t83
-    del room_right
-    t85 = drawn * turn
-    t86 = ctheta2A * t85
-    t87 = t70 + t86 + t71 * turn
-    t88 = stheta2A * t85
-    del t85
-    t89 = t71 - t70 * turn - t88
-    del t70, t71
-    t90 = t87 * t87 + t89 * t89
-    t91 = gap * gap
-    t92 = L1 - fore_arm
-    t93 = t92 * t92
-    M_mid = t27 * _runtime.select(t46, large_mid, small_mid)
-    del large_mid, small_mid, t46
-    t94 = M_mid + gap
-    t95 = _runtime.select(t79 * t90 < t91, t93 - t90, t63 - t83 - t94)
-    del t83, t90
-    t96 = t37 & t74 & t77 & (t78 <= t84) & (t78 <= -t95)
-    del t74, t77
-    t97 = slope_left * turn
-    del slope_left
-    t98 = room_left + t97
-    del room_left
-    h_left = h_left_0 - t86 + r_left_0 * turn
-    del t86
-    r_left = r_left_0 + t88 - h_left_0 * turn
-    del h_left_0, r_left_0, t88, turn
-    t99 = h_left * h_left + r_left * r_left
-    t100 = _runtime.select(t79 * t99 < t91, t99 - t93, t63 + t94 - t97)
-    del t63, t91, t94, t97, t99
-    unreachable = np.logical_not(t96 & (t78 <= t98) & (t78 <= t100))
-    del t96
-    t101 = _runtime.poison(invalid | unreachable)
-    t102 = t15 + t101
-    t103 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    folded_right = np.abs(-t87) + np.abs(-t89) <= t103
-    t104 = np.arctan2(stheta2A, ctheta2A)
-    del ctheta2A
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t79
-    t105 = _runtime.VANISHING * (_runtime.VANISHING * (t38 * 16.0))
-    M_right = np.maximum(-t95, t105)
-    del t95
-    N_right = np.maximum(t84, t105)
+    t78 = _runtime.select(nearer_right <= farther_right, 1.0, -1.0)
+    t79 = (ctheta2A * h_right_0 - stheta2A * r_right_0) * t78
+    drawn = L1 + L_2W * s_relative + a_3W * c_relative
+    t80 = 2.0 * drawn
+    slope_right = t79 * t80
+    t81 = 1.0 / slack
+    t82 = 1.4142135623730951 * np.sqrt(slack)
+    del slack
+    t83 = 1.0 / L1
+    t84 = 1.0 - t83 * drawn
+    t85 = t82 * np.sqrt(fore + L1 * (t84 * t84)) / 2000000.0
     del t84
-    t106 = 1.0 / (M_right + N_right)
-    sigma_right = _runtime.sign(-t47)
-    del t47
-    t107 = 2.0 * sigma_right
-    t108 = np.sqrt(M_right * N_right)
-    s_bend_right = _runtime.select(short_right, 0.0, t106 * (t107 * t108))
-    t109 = fore_arm * s_bend_right
-    del s_bend_right
-    t110 = 2.0 * fore_arm
-    ahead_1_right = _runtime.select(short_right, size, t92 + t110 * M_right * t106)
-    del t106
-    t111 = np.arctan2(t89 * t109 - t87 * ahead_1_right, -(t89 * ahead_1_right + t87 * t109))
-    del ahead_1_right, t109, t87, t89
-    t112 = _runtime.wrap_cut(_runtime.select(folded_right, t104, t111))
-    del t111
-    t113 = t112 + t101
-    del t112
-    bare_right = fore_arm <= _runtime.VANISHING * size
-    t114 = 1.0 / fore_arm
-    t115 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t114), _runtime.select(bare_right, 1.0, a3 * t114))
-    del bare_right, t114
-    t116 = sigma_right * np.arctan2(2.0 * t108, M_right - N_right)
-    del M_right, N_right, t108
-    t117 = t115 + _runtime.select(short_right, 0.0, t116)
-    del t116
-    t118 = _runtime.wrap(t117) + t101
-    del t117
-    folded_left = np.abs(h_left) + np.abs(r_left) <= t103
-    M_left = np.maximum(t100, 0.0)
+    t86 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t87 = t81 * (t85 + t86)
+    del t85, t86
+    heavy_0_right = _runtime.select(spent_right, t87, 1.0)
+    gain_0_right = _runtime.select(spent_right, np.abs(slope_right) / heavy_0_right, 0.0)
+    t88 = t39 * t79
+    del t79
+    t89 = np.abs(t88)
+    t90 = t81 * (L1 + np.sqrt(L1) * t82 / 2000000.0)
+    heavy_1_right = _runtime.select(spent_right, t90, 1.0)
+    gain_1_right = _runtime.select(spent_right, t89 / heavy_1_right, 0.0)
+    t91 = _runtime.select(spent_right, gain_0_right + gain_1_right, 0.0)
+    t92 = -(_runtime.FEASIBILITY * (t47 + t91)) <= room_right
+    del t91
+    h_left_0 = point_21 + t64
+    del point_21, t64
+    r_left_0 = point_11 + t66
+    del point_11, t66
+    t93 = h_left_0 * h_left_0 + r_left_0 * r_left_0
+    farther_left = _runtime.select(t48 * t93 < t68, t93 - t70, t73 + t74)
+    del t68, t73, t93
+    t94 = t74 + t75
+    del t74, t75
+    room_left = np.minimum(farther_left, -t94)
+    t95 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
+    spent_left = t95 <= t77
+    del t95
+    t96 = _runtime.select(-t94 <= farther_left, 1.0, -1.0)
+    t97 = (ctheta2A * h_left_0 - stheta2A * r_left_0) * t96
+    slope_left = t80 * t97
+    heavy_0_left = _runtime.select(spent_left, t87, 1.0)
+    gain_0_left = _runtime.select(spent_left, np.abs(slope_left) / heavy_0_left, 0.0)
+    t98 = t39 * t97
+    del t97
+    t99 = np.abs(t98)
+    heavy_1_left = _runtime.select(spent_left, t90, 1.0)
+    gain_1_left = _runtime.select(spent_left, t99 / heavy_1_left, 0.0)
+    t100 = _runtime.select(spent_left, gain_0_left + gain_1_left, 0.0)
+    t101 = -(_runtime.FEASIBILITY * (t47 + t100)) <= room_left
     del t100
-    N_left = np.maximum(t98, 0.0)
-    del t98
-    t119 = 1.0 / (M_left + N_left)
-    ahead_1_left = _runtime.select(short_right, size, t92 + t110 * M_left * t119)
-    t120 = h_left * ahead_1_left
-    t121 = np.sqrt(M_left * N_left)
-    s_bend_left = _runtime.select(short_right, 0.0, t119 * (t107 * t121))
-    del t119
-    t122 = fore_arm * s_bend_left
-    del s_bend_left
-    t123 = r_left * t122
-    t124 = r_left * ahead_1_left
-    del ahead_1_left, r_left
-    t125 = h_left * t122
-    del h_left, t122
-    t126 = _runtime.select(folded_left, t104, np.arctan2(t120 - t123, t124 + t125))
-    t127 = sigma_right * np.arctan2(2.0 * t121, M_left - N_left)
-    del M_left, N_left, t121
-    t128 = _runtime.select(short_right, 0.0, t127)
-    del t127
-    t129 = _runtime.wrap(principal_pitch)
-    del principal_pitch
-    t130 = t129 + t101
-    t131 = _runtime.select(folded_left, t104, np.arctan2(t120 + t123, t124 - t125))
-    del t104, t120, t123, t124, t125
-    s_relative_front_elbow_down_alike = t42 + t43
-    del t42, t43
-    c_relative_front_elbow_down_alike = t44 - t45
-    del t44, t45
-    straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t132 = 0.0 <= straight_mid_front_elbow_down_alike
-    t133 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
-    large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
-    del straight_mid_front_elbow_down_alike
-    small_mid_front_elbow_down_alike = t133 * t133 / large_mid_front_elbow_down_alike
-    t134 = _runtime.select(t132, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
-    N_mid_front_elbow_down_alike = t27 * t134
-    del t134
-    out_front_elbow_down_alike = t50 + t51
-    del t50, t51
-    t135 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t136 = t53 - t54
-    del t53, t54
-    t137 = 1.0 / np.sqrt(t135 + t136 * t136)
-    del t135
-    t138 = out_front_elbow_down_alike * t137
-    del out_front_elbow_down_alike
-    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, t138)
-    t139 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t140 = _runtime.select(folded, 0.0, t136 * t137)
-    del t136, t137
-    ctheta23A_front_elbow_down_alike = t139 + s_relative_front_elbow_down_alike * t140
-    del t139
-    t141 = t48 * (s_phi * ctheta23A_front_elbow_down_alike)
-    t142 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t143 = c_relative_front_elbow_down_alike * t140 - t142
-    del t142
-    t144 = d * (t141 + t5 * (s_psi * t143))
-    del t141
-    t145 = t5 * (s_psi * ctheta23A_front_elbow_down_alike)
-    t146 = d * (t145 - t48 * (s_phi * t143))
-    del t145
-    gap_front_elbow_down_alike = t144 * t144 + t146 * t146
-    t147 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike
-    t148 = L1 * ctheta2A_front_elbow_down_alike - L2 * t143
-    point_11_front_elbow_down_alike = t148 + a3 * ctheta23A_front_elbow_down_alike
-    del t148
-    t149 = L1 * t140
-    t150 = t149 + L2 * ctheta23A_front_elbow_down_alike + a3 * t143
-    del ctheta23A_front_elbow_down_alike, t143
-    t151 = 2.0 * t144 * point_11_front_elbow_down_alike - 2.0 * t146 * t150
-    room_right_front_elbow_down_alike = t147 + t151
-    t152 = room_right_front_elbow_down_alike * 9.094947017729282e-13
-    t153 = np.maximum(-t152, room_right_front_elbow_down_alike)
-    del t152
-    spent_right_front_elbow_down_alike = t153 <= t65
-    del t153
-    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
-    t154 = 1.0 / (t66 + np.abs(tilt_front_elbow_down_alike))
-    del t66, tilt_front_elbow_down_alike
-    t155 = L1 + L_2W * s_relative_front_elbow_down_alike
-    del L_2W
-    drawn_front_elbow_down_alike = t155 + a_3W * c_relative_front_elbow_down_alike
-    del a_3W, t155
-    t156 = 2.0 * drawn_front_elbow_down_alike
-    t157 = t146 + t150
-    t158 = t144 - point_11_front_elbow_down_alike
-    t159 = ctheta2A_front_elbow_down_alike * t157 + t140 * t158
-    t160 = t156 * t159
-    del t159
-    t161 = _runtime.select(spent_right_front_elbow_down_alike, t154 * (size * np.abs(-t160)), 0.0)
-    t162 = -(_runtime.FEASIBILITY * (t38 + t161)) <= room_right_front_elbow_down_alike
-    del t161
-    room_left_front_elbow_down_alike = t147 - t151
-    del t147
-    t163 = room_left_front_elbow_down_alike * 9.094947017729282e-13
-    t164 = np.maximum(-t163, room_left_front_elbow_down_alike)
-    del t163
-    spent_left_front_elbow_down_alike = t164 <= t65
-    del t164
-    h_left_0_front_elbow_down_alike = t146 - t150
-    del t146, t150
-    t165 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = t144 + point_11_front_elbow_down_alike
-    del point_11_front_elbow_down_alike, t144
-    t166 = t165 + t140 * r_left_0_front_elbow_down_alike
-    del t165
-    slope_left_front_elbow_down_alike = t156 * t166
-    del t166
-    t167 = size * np.abs(slope_left_front_elbow_down_alike)
-    t168 = _runtime.select(spent_left_front_elbow_down_alike, t154 * t167, 0.0)
-    del t167
-    t169 = -(_runtime.FEASIBILITY * (t38 + t168)) <= room_left_front_elbow_down_alike
-    del t168
-    t170 = room_right_front_elbow_down_alike - np.abs(room_right_front_elbow_down_alike)
-    turn_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t160 * t170 / (2.0 * (t80 + t160 * t160)), 0.0)
-    del spent_right_front_elbow_down_alike, t170
-    t171 = room_left_front_elbow_down_alike - np.abs(room_left_front_elbow_down_alike)
-    t172 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t173 = slope_left_front_elbow_down_alike * t171 / (2.0 * (t80 + t172))
-    del t171, t172
-    turn_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, -t173, 0.0)
-    del spent_left_front_elbow_down_alike, t173
-    turn_front_elbow_down_alike = turn_right_front_elbow_down_alike + turn_left_front_elbow_down_alike
-    del turn_left_front_elbow_down_alike, turn_right_front_elbow_down_alike
-    t174 = t160 * turn_front_elbow_down_alike
-    del t160
-    t175 = room_right_front_elbow_down_alike - t174
-    del room_right_front_elbow_down_alike
-    t176 = drawn_front_elbow_down_alike * turn_front_elbow_down_alike
-    t177 = ctheta2A_front_elbow_down_alike * t176
-    t178 = t157 + t177 + t158 * turn_front_elbow_down_alike
-    t179 = t140 * t176
-    del t176
-    t180 = t158 - t157 * turn_front_elbow_down_alike + t179
-    del t157, t158
-    t181 = t178 * t178 + t180 * t180
-    t182 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t183 = _runtime.select(t132, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t132
-    M_mid_front_elbow_down_alike = t27 * t183
-    del t183, t27
-    t184 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
-    t185 = _runtime.select(t79 * t181 < t182, t93 - t181, t151 - t174 - t184)
-    del t174, t181
-    t186 = t37 & t162 & t169 & (t78 <= t175) & (t78 <= -t185)
-    del t162, t169
-    t187 = slope_left_front_elbow_down_alike * turn_front_elbow_down_alike
-    del slope_left_front_elbow_down_alike
-    t188 = room_left_front_elbow_down_alike + t187
-    del room_left_front_elbow_down_alike
-    t189 = r_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    h_left_front_elbow_down_alike = h_left_0_front_elbow_down_alike - t177 + t189
-    del t177, t189
-    t190 = h_left_front_elbow_down_alike * h_left_front_elbow_down_alike
-    t191 = h_left_0_front_elbow_down_alike * turn_front_elbow_down_alike
-    del h_left_0_front_elbow_down_alike, turn_front_elbow_down_alike
-    r_left_front_elbow_down_alike = r_left_0_front_elbow_down_alike - t179 - t191
-    del r_left_0_front_elbow_down_alike, t179, t191
-    t192 = r_left_front_elbow_down_alike * r_left_front_elbow_down_alike
-    t193 = t190 + t192
-    del t190, t192
-    t194 = _runtime.select(t79 * t193 < t182, t193 - t93, t151 + t184 - t187)
-    del t151, t182, t184, t187, t193
-    unreachable_2 = np.logical_not(t186 & (t78 <= t188) & (t78 <= t194))
-    del t186
-    t195 = _runtime.poison(invalid | unreachable_2)
-    t196 = t15 + t195
-    del t15
-    folded_right_front_elbow_down_alike = np.abs(-t178) + np.abs(-t180) <= t103
-    t197 = np.arctan2(-t140, ctheta2A_front_elbow_down_alike)
-    del ctheta2A_front_elbow_down_alike
-    M_right_front_elbow_down_alike = np.maximum(-t185, t105)
-    del t185
-    N_right_front_elbow_down_alike = np.maximum(t175, t105)
-    del t175
-    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t198 = 1.0 / whole_right_front_elbow_down_alike
-    del whole_right_front_elbow_down_alike
-    sigma_right_front_elbow_down_alike = _runtime.sign(-t133)
+    t102 = -(_runtime.FEASIBILITY * t47)
+    t103 = spent_left | spent_right
+    t104 = gain_1_left * gain_1_left
+    del gain_1_left
+    t105 = t48 * (play * play)
+    del play
+    t106 = t104 / (t104 + t105 + gain_0_left * gain_0_left)
+    del gain_0_left, t104
+    share_left = _runtime.select(spent_left, _runtime.select(room_left < 0.0, t106, 0.0), 0.0)
+    del t106
+    t107 = room_left * (1.0 - share_left)
+    t108 = heavy_0_left * t107
+    t109 = drawn * drawn
+    t110 = L1 - ctheta2A * r_left_0 - stheta2A * h_left_0
+    t111 = t83 * (t96 * t109 * t110)
+    del t110, t96
+    t112 = np.maximum(0.0, 4.0 * t107 * t111 + slope_left * slope_left)
+    root_on_1_both = _runtime.select(t103, np.sqrt(t112), 0.0)
+    del t112
+    t113 = slope_left - root_on_1_both
+    t114 = t47 * heavy_0_left
+    t115 = t114 * 5.960464477539063e-08
+    t116 = 1.0 / (t113 - t115)
+    t117 = (t108 * t116 <= 4.547473508864641e-13) & (0.0 < t107 * t116)
+    t118 = 2.0 * t107
+    t119 = 0.0 < -t107
+    t120 = slope_left + root_on_1_both
+    del root_on_1_both
+    t121 = t114 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t111)
+    del t114
+    t122 = 1.0 / t121
+    del t121
+    t123 = heavy_0_left * t120 * t122 <= 9.094947017729282e-13
+    t124 = t120 * t122
+    t125 = _runtime.select(t123 & (0.0 < t124), t124, 0.0)
+    del t123, t124
+    far_back_1_both = _runtime.select(t103, t125, 0.0)
+    del t125
+    t126 = _runtime.select(slope_left <= 0.0, _runtime.select(t117, t116 * t118, 0.0), _runtime.select(t119, far_back_1_both, 0.0))
+    del t116, t117
+    t127 = gain_1_right * gain_1_right
+    del gain_1_right
+    t128 = t127 / (t105 + t127 + gain_0_right * gain_0_right)
+    del gain_0_right, t127
+    share_right = _runtime.select(spent_right, _runtime.select(room_right < 0.0, t128, 0.0), 0.0)
+    del t128
+    t129 = room_right * (1.0 - share_right)
+    t130 = heavy_0_right * t129
+    t131 = L1 - ctheta2A * r_right_0 - stheta2A * h_right_0
+    t132 = t83 * (t78 * t109 * t131)
+    del t131, t78
+    t133 = 4.0 * t129 * t132 + slope_right * slope_right
+    root_on_0_both = _runtime.select(t103, np.sqrt(np.maximum(0.0, t133)), 0.0)
     del t133
-    t199 = 2.0 * sigma_right_front_elbow_down_alike
-    t200 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
-    t201 = np.sqrt(t200)
-    del t200
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t198 * (t199 * t201))
-    t202 = fore_arm * s_bend_right_front_elbow_down_alike
-    del s_bend_right_front_elbow_down_alike
-    t203 = t92 + t110 * M_right_front_elbow_down_alike * t198
-    del t198
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t203)
-    del t203
-    up_right_front_elbow_down_alike = t180 * t202 - t178 * ahead_1_right_front_elbow_down_alike
-    t204 = t180 * ahead_1_right_front_elbow_down_alike + t178 * t202
-    del ahead_1_right_front_elbow_down_alike, t178, t180, t202
-    t205 = np.arctan2(up_right_front_elbow_down_alike, -t204)
-    del t204, up_right_front_elbow_down_alike
-    t206 = _runtime.select(folded_right_front_elbow_down_alike, t197, t205)
-    del t205
-    t207 = _runtime.wrap_cut(t206) + t195
-    del t206
-    t208 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
-    del M_right_front_elbow_down_alike, N_right_front_elbow_down_alike
-    t209 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t201, t208)
-    del t201, t208
-    t210 = t115 + _runtime.select(short_right, 0.0, t209)
-    del t209
-    t211 = _runtime.wrap(t210) + t195
-    del t210
-    t212 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
-    folded_left_front_elbow_down_alike = t212 <= t103
-    del t212
-    M_left_front_elbow_down_alike = np.maximum(t194, 0.0)
+    t134 = slope_right - root_on_0_both
+    t135 = t47 * heavy_0_right
+    t136 = t135 * 5.960464477539063e-08
+    t137 = 1.0 / (t134 - t136)
+    t138 = (t130 * t137 <= 4.547473508864641e-13) & (0.0 < t129 * t137)
+    t139 = 2.0 * t129
+    t140 = 0.0 < -t129
+    t141 = slope_right + root_on_0_both
+    del root_on_0_both
+    t142 = t135 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t132)
+    del t135
+    t143 = 1.0 / t142
+    del t142
+    t144 = heavy_0_right * t141 * t143 <= 9.094947017729282e-13
+    t145 = t141 * t143
+    t146 = _runtime.select(t144 & (0.0 < t145), t145, 0.0)
+    del t144, t145
+    far_back_0_both = _runtime.select(t103, t146, 0.0)
+    del t146
+    t147 = _runtime.select(slope_right <= 0.0, _runtime.select(t138, t137 * t139, 0.0), _runtime.select(t140, far_back_0_both, 0.0))
+    del t137, t138
+    near_back_both = _runtime.select(t103, np.maximum(np.maximum(0.0, t126), t147), 0.0)
+    del t126, t147
+    t148 = near_back_both * (slope_right + t132 * near_back_both)
+    t149 = _runtime.select(0.0 < t148 - t129, far_back_0_both, 0.0)
+    del far_back_0_both, t148
+    t150 = near_back_both * (slope_left + t111 * near_back_both)
+    t151 = _runtime.select(0.0 < t150 - t107, far_back_1_both, 0.0)
+    del far_back_1_both, t150
+    t152 = np.maximum(np.maximum(near_back_both, t149), t151)
+    del near_back_both, t149, t151
+    turn_back_both = _runtime.select(t103, t152, 0.0)
+    del t152
+    t153 = turn_back_both * (slope_left + t111 * turn_back_both)
+    t154 = turn_back_both * (slope_right + t132 * turn_back_both)
+    left_back_both = _runtime.select(t103, np.minimum(t107 - t153, t129 - t154), 0.0)
+    del t153, t154
+    t155 = 1.0 / (t115 + t120)
+    del t115, t120
+    t156 = (-(t108 * t155) <= 4.547473508864641e-13) & (0.0 < -(t107 * t155))
+    del t108
+    t157 = -(t122 * (heavy_0_left * t113)) <= 9.094947017729282e-13
+    del heavy_0_left
+    t158 = -(t113 * t122)
+    del t113, t122
+    t159 = _runtime.select(t157 & (0.0 < t158), t158, 0.0)
+    del t157, t158
+    far_on_1_both = _runtime.select(t103, t159, 0.0)
+    del t159
+    t160 = _runtime.select(0.0 <= slope_left, _runtime.select(t156, -(t118 * t155), 0.0), _runtime.select(t119, far_on_1_both, 0.0))
+    del t118, t119, t155, t156
+    t161 = 1.0 / (t136 + t141)
+    del t136, t141
+    t162 = (-(t130 * t161) <= 4.547473508864641e-13) & (0.0 < -(t129 * t161))
+    del t130
+    t163 = -(t143 * (heavy_0_right * t134)) <= 9.094947017729282e-13
+    del heavy_0_right
+    t164 = -(t134 * t143)
+    del t134, t143
+    t165 = _runtime.select(t163 & (0.0 < t164), t164, 0.0)
+    del t163, t164
+    far_on_0_both = _runtime.select(t103, t165, 0.0)
+    del t165
+    t166 = _runtime.select(0.0 <= slope_right, _runtime.select(t162, -(t139 * t161), 0.0), _runtime.select(t140, far_on_0_both, 0.0))
+    del t139, t140, t161, t162
+    near_on_both = _runtime.select(t103, np.maximum(np.maximum(0.0, t160), t166), 0.0)
+    del t160, t166
+    t167 = near_on_both * (slope_right - t132 * near_on_both)
+    t168 = _runtime.select(0.0 < -(t129 + t167), far_on_0_both, 0.0)
+    del far_on_0_both, t167
+    t169 = near_on_both * (slope_left - t111 * near_on_both)
+    t170 = _runtime.select(0.0 < -(t107 + t169), far_on_1_both, 0.0)
+    del far_on_1_both, t169
+    t171 = np.maximum(np.maximum(near_on_both, t168), t170)
+    del near_on_both, t168, t170
+    turn_on_both = _runtime.select(t103, t171, 0.0)
+    del t171
+    t172 = turn_on_both * (slope_left - t111 * turn_on_both)
+    del slope_left, t111
+    t173 = turn_on_both * (slope_right - t132 * turn_on_both)
+    del slope_right, t132
+    left_on_both = _runtime.select(t103, np.minimum(t107 + t172, t129 + t173), 0.0)
+    del t107, t129, t172, t173
+    t174 = _runtime.select(left_back_both <= left_on_both, turn_on_both, -turn_back_both)
+    del left_back_both, left_on_both, turn_back_both, turn_on_both
+    turn_both = _runtime.select(t103, t174, 0.0)
+    del t174
+    t175 = t99 + t47 * heavy_1_left * 5.960464477539063e-08
+    del heavy_1_left, t99
+    t176 = room_left * share_left * _runtime.sign(-t98) / t175
+    del room_left, share_left, t175, t98
+    aside_left = _runtime.select(spent_left, -t176, 0.0)
+    del spent_left, t176
+    t177 = room_right * share_right * _runtime.sign(-t88)
+    del room_right, share_right, t88
+    t178 = t89 + t47 * heavy_1_right * 5.960464477539063e-08
+    del heavy_1_right, t89
+    aside_right = _runtime.select(spent_right, -(t177 / t178), 0.0)
+    del spent_right, t177, t178
+    t179 = _runtime.select(np.abs(aside_left) <= np.abs(aside_right), aside_right, aside_left)
+    del aside_left, aside_right
+    lean = _runtime.select(t103, turn_both + t179 - t83 * (drawn * turn_both), 0.0)
+    del t179
+    t180 = lean * lean
+    t181 = 1.0 + t180
+    t182 = 1.0 / np.sqrt(t181)
+    t183 = 1.0 / (t181 * (1.0 + t182))
+    del t181
+    t184 = elbow_11 * t180 * t183 + t182 * (elbow_21 * lean)
+    t185 = turn_both * turn_both
+    t186 = elbow_11 - r_right_0
+    t187 = 1.0 + t185
+    t188 = 1.0 / np.sqrt(t187)
+    t189 = 1.0 / (t187 * (1.0 + t188))
+    del t187
+    t190 = elbow_21 - h_right_0
+    t191 = t184 - t185 * t186 * t189 - t188 * (turn_both * t190)
+    swing_21 = t182 * (elbow_11 * lean) - t183 * (elbow_21 * t180)
+    del t180, t182, t183
+    more_right_21 = swing_21 + t189 * (t185 * t190) - t188 * (turn_both * t186)
+    del t186, t190
+    t192 = more_right_21 * (more_right_21 + 2.0 * h_right_0)
+    change_right = _runtime.select(t103, t191 * (t191 - 2.0 * r_right_0) + t192, 0.0)
+    del t192
+    t193 = nearer_right - change_right
+    del nearer_right
+    t194 = farther_right + change_right
+    del change_right, farther_right
+    t195 = t46 & t92 & t101 & (t102 <= t193) & (t102 <= t194)
+    del t101, t92
+    t196 = elbow_11 - r_left_0
+    del elbow_11
+    t197 = elbow_21 - h_left_0
+    t198 = t184 - t189 * (t185 * t196) - t188 * (turn_both * t197)
+    del t184
+    more_left_21 = swing_21 + t189 * (t185 * t197) - t188 * (turn_both * t196)
+    del swing_21, t185, t188, t189, t196, t197
+    t199 = more_left_21 * (more_left_21 + 2.0 * h_left_0)
+    change_left = _runtime.select(t103, t198 * (t198 - 2.0 * r_left_0) + t199, 0.0)
+    del t199
+    t200 = -(t94 + change_left)
+    del t94
+    t201 = farther_left + change_left
+    del change_left, farther_left
+    unreachable = np.logical_not(t195 & (t102 <= t200) & (t102 <= t201))
+    del t195
+    t202 = _runtime.poison(invalid | unreachable)
+    t203 = t28 + t202
+    h_right = _runtime.select(t103, h_right_0 + more_right_21, h_right_0)
+    del h_right_0, more_right_21
+    r_right = _runtime.select(t103, r_right_0 - t191, r_right_0)
+    del r_right_0, t191
+    t204 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    folded_right = np.abs(h_right) + np.abs(r_right) <= t204
+    t205 = np.arctan2(stheta2A, ctheta2A)
+    del ctheta2A
+    short_right = L1 * fore_arm <= _runtime.VANISHING * t48
+    t206 = 2.0 * fore_arm
+    t207 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t47))
+    M_right = np.maximum(t194, t207)
     del t194
-    N_left_front_elbow_down_alike = np.maximum(t188, 0.0)
-    del t188
-    whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t213 = 1.0 / whole_left_front_elbow_down_alike
-    del whole_left_front_elbow_down_alike
-    t214 = t92 + t110 * M_left_front_elbow_down_alike * t213
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t214)
-    del t214
-    t215 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t216 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
-    t217 = np.sqrt(t216)
-    del t216
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t213 * (t199 * t217))
+    N_right = np.maximum(t193, t207)
+    del t193
+    t208 = 1.0 / (M_right + N_right)
+    ahead_1_right = _runtime.select(short_right, size, t69 + t206 * M_right * t208)
+    t209 = t72 * (1.0 + turn_both * lean) - straight_mid * (turn_both - lean)
+    del lean, turn_both
+    sigma_right = _runtime.sign(-_runtime.select(t103, t209, t72))
+    del t209
+    t210 = 2.0 * sigma_right
+    t211 = np.sqrt(M_right * N_right)
+    s_bend_right = _runtime.select(short_right, 0.0, t208 * (t210 * t211))
+    del t208
+    t212 = fore_arm * s_bend_right
+    del s_bend_right
+    t213 = np.arctan2(h_right * ahead_1_right - r_right * t212, r_right * ahead_1_right + h_right * t212)
+    del ahead_1_right, h_right, r_right, t212
+    t214 = _runtime.wrap_cut(_runtime.select(folded_right, t205, t213))
     del t213
-    t218 = fore_arm * s_bend_left_front_elbow_down_alike
-    del s_bend_left_front_elbow_down_alike
-    t219 = r_left_front_elbow_down_alike * t218
-    t220 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    del ahead_1_left_front_elbow_down_alike, r_left_front_elbow_down_alike
-    t221 = h_left_front_elbow_down_alike * t218
-    del h_left_front_elbow_down_alike, t218
-    t222 = _runtime.select(folded_left_front_elbow_down_alike, t197, np.arctan2(t215 - t219, t220 + t221))
-    t223 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
-    del M_left_front_elbow_down_alike, N_left_front_elbow_down_alike
-    t224 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t217, t223)
-    del t217, t223
-    t225 = _runtime.select(short_right, 0.0, t224)
-    del t224
-    t226 = t129 + t195
-    t227 = _runtime.select(folded_left_front_elbow_down_alike, t197, np.arctan2(t215 + t219, t220 - t221))
-    del t197, t215, t219, t220, t221
-    t228 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t2 + t14))
-    del t14, t2
-    ctheta2A_rear_elbow_up_alike = _runtime.select(folded, 1.0, t56)
-    del t56
-    t229 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t229 - s_relative_front_elbow_down_alike * stheta2A
+    t215 = t214 + t202
+    del t214
+    bare_right = fore_arm <= _runtime.VANISHING * size
+    t216 = 1.0 / fore_arm
+    t217 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t216), _runtime.select(bare_right, 1.0, a3 * t216))
+    del bare_right, t216
+    t218 = sigma_right * np.arctan2(2.0 * t211, M_right - N_right)
+    del M_right, N_right, t211
+    t219 = t217 + _runtime.select(short_right, 0.0, t218)
+    del t218
+    t220 = _runtime.wrap(t219) + t202
+    del t219
+    h_left = _runtime.select(t103, h_left_0 + more_left_21, h_left_0)
+    del h_left_0, more_left_21
+    r_left = _runtime.select(t103, r_left_0 - t198, r_left_0)
+    del r_left_0, t103, t198
+    folded_left = np.abs(h_left) + np.abs(r_left) <= t204
+    M_left = np.maximum(t201, 0.0)
+    del t201
+    N_left = np.maximum(t200, 0.0)
+    del t200
+    t221 = 1.0 / (M_left + N_left)
+    ahead_1_left = _runtime.select(short_right, size, t69 + t206 * M_left * t221)
+    t222 = h_left * ahead_1_left
+    t223 = np.sqrt(M_left * N_left)
+    s_bend_left = _runtime.select(short_right, 0.0, t221 * (t210 * t223))
+    del t210, t221
+    t224 = fore_arm * s_bend_left
+    del s_bend_left
+    t225 = r_left * t224
+    t226 = r_left * ahead_1_left
+    del ahead_1_left, r_left
+    t227 = h_left * t224
+    del h_left, t224
+    t228 = _runtime.select(folded_left, t205, np.arctan2(t222 - t225, t226 + t227))
+    t229 = sigma_right * np.arctan2(2.0 * t223, M_left - N_left)
+    del M_left, N_left, sigma_right, t223
+    t230 = _runtime.select(short_right, 0.0, t229)
     del t229
-    t230 = t48 * (s_phi * ctheta23A_rear_elbow_up_alike)
-    t231 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
-    del s_relative_front_elbow_down_alike
-    stheta23A_rear_elbow_up_alike = c_relative_front_elbow_down_alike * stheta2A + t231
-    del c_relative_front_elbow_down_alike, t231
-    t232 = t230 - t5 * (s_psi * stheta23A_rear_elbow_up_alike)
-    del t230
-    t233 = d * t232
-    del t232
-    t234 = t48 * (s_phi * stheta23A_rear_elbow_up_alike)
-    t235 = t5 * (s_psi * ctheta23A_rear_elbow_up_alike) + t234
-    del t234
-    t236 = d * t235
-    del t235
-    gap_rear_elbow_up_alike = t233 * t233 + t236 * t236
-    t237 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
-    del N_mid_front_elbow_down_alike
-    t238 = L1 * ctheta2A_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t238 + a3 * ctheta23A_rear_elbow_up_alike
-    del t238
-    point_21_rear_elbow_up_alike = t62 - L2 * ctheta23A_rear_elbow_up_alike + a3 * stheta23A_rear_elbow_up_alike
-    del ctheta23A_rear_elbow_up_alike, stheta23A_rear_elbow_up_alike, t62
-    t239 = 2.0 * t233 * point_11_rear_elbow_up_alike + 2.0 * t236 * point_21_rear_elbow_up_alike
-    room_right_rear_elbow_up_alike = t237 + t239
-    t240 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t241 = np.maximum(-t240, room_right_rear_elbow_up_alike)
+    t231 = _runtime.wrap(principal_pitch)
+    del principal_pitch
+    t232 = t231 + t202
+    t233 = _runtime.select(folded_left, t205, np.arctan2(t222 + t225, t226 - t227))
+    del t205, t222, t225, t226, t227
+    up_front_elbow_down_alike = t51 - t53
+    del t51, t53
+    out_front_elbow_down_alike = t54 + t55
+    del t54, t55
+    t234 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t235 = up_front_elbow_down_alike * up_front_elbow_down_alike
+    t236 = 1.0 / np.sqrt(t234 + t235)
+    del t234, t235
+    stheta2A_front_elbow_down_alike = _runtime.select(folded, 0.0, up_front_elbow_down_alike * t236)
+    del up_front_elbow_down_alike
+    elbow_21_front_elbow_down_alike = L1 * stheta2A_front_elbow_down_alike
+    t237 = out_front_elbow_down_alike * t236
+    del out_front_elbow_down_alike, t236
+    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, t237)
+    c_relative_front_elbow_down_alike = t59 - t60
+    del t59, t60
+    t238 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t61 + t62
+    del t61, t62
+    t239 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t238 - t239
+    del t238, t239
+    t240 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    t241 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t242 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t241 + t242
+    del t241, t242
+    point_21_front_elbow_down_alike = t240 + a3 * stheta23A_front_elbow_down_alike
     del t240
-    spent_right_rear_elbow_up_alike = t241 <= t65
-    del t241
-    t242 = t236 - point_21_rear_elbow_up_alike
-    t243 = t233 - point_11_rear_elbow_up_alike
-    t244 = ctheta2A_rear_elbow_up_alike * t242 - stheta2A * t243
-    t245 = t156 * t244
+    t243 = t18 * (t_psi * ctheta23A_front_elbow_down_alike)
+    t244 = t243 + t_phi * stheta23A_front_elbow_down_alike
+    del t243
+    t245 = d * t244
     del t244
-    t246 = _runtime.select(spent_right_rear_elbow_up_alike, t154 * (size * np.abs(-t245)), 0.0)
-    t247 = -(_runtime.FEASIBILITY * (t38 + t246)) <= room_right_rear_elbow_up_alike
-    del t246
-    room_left_rear_elbow_up_alike = t237 - t239
-    del t237
-    t248 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t249 = np.maximum(-t248, room_left_rear_elbow_up_alike)
-    del t248
-    spent_left_rear_elbow_up_alike = t249 <= t65
+    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t245
+    t246 = h_right_0_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    elbow_11_front_elbow_down_alike = L1 * ctheta2A_front_elbow_down_alike
+    t247 = elbow_11_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t247 + a3 * ctheta23A_front_elbow_down_alike
+    del t247
+    t248 = t18 * (t_psi * stheta23A_front_elbow_down_alike)
+    del stheta23A_front_elbow_down_alike
+    t249 = t_phi * ctheta23A_front_elbow_down_alike - t248
+    del ctheta23A_front_elbow_down_alike, t248
+    t250 = d * t249
     del t249
-    h_left_0_rear_elbow_up_alike = t236 + point_21_rear_elbow_up_alike
-    del point_21_rear_elbow_up_alike, t236
-    t250 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = t233 + point_11_rear_elbow_up_alike
-    del point_11_rear_elbow_up_alike, t233
-    t251 = t250 - stheta2A * r_left_0_rear_elbow_up_alike
-    del t250
-    slope_left_rear_elbow_up_alike = t156 * t251
-    del t156, t251
-    t252 = size * np.abs(slope_left_rear_elbow_up_alike)
-    t253 = _runtime.select(spent_left_rear_elbow_up_alike, t154 * t252, 0.0)
-    del t154, t252
-    t254 = -(_runtime.FEASIBILITY * (t38 + t253)) <= room_left_rear_elbow_up_alike
-    del t253
-    t255 = room_right_rear_elbow_up_alike - np.abs(room_right_rear_elbow_up_alike)
-    turn_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t245 * t255 / (2.0 * (t80 + t245 * t245)), 0.0)
-    del spent_right_rear_elbow_up_alike, t255
-    t256 = room_left_rear_elbow_up_alike - np.abs(room_left_rear_elbow_up_alike)
-    t257 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t258 = slope_left_rear_elbow_up_alike * t256 / (2.0 * (t80 + t257))
-    del t256, t257
-    turn_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, -t258, 0.0)
-    del spent_left_rear_elbow_up_alike, t258
-    turn_rear_elbow_up_alike = turn_right_rear_elbow_up_alike + turn_left_rear_elbow_up_alike
-    del turn_left_rear_elbow_up_alike, turn_right_rear_elbow_up_alike
-    t259 = t245 * turn_rear_elbow_up_alike
-    del t245
-    t260 = room_right_rear_elbow_up_alike - t259
-    del room_right_rear_elbow_up_alike
-    t261 = drawn_front_elbow_down_alike * turn_rear_elbow_up_alike
-    del drawn_front_elbow_down_alike
-    t262 = ctheta2A_rear_elbow_up_alike * t261
-    t263 = t242 + t262 + t243 * turn_rear_elbow_up_alike
-    t264 = stheta2A * t261
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t250
+    t251 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t252 = t246 + t251
+    del t246, t251
+    gap_front_elbow_down_alike = t250 * t250 + t245 * t245
+    t253 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
+    t254 = 0.0 <= straight_mid_front_elbow_down_alike
+    large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
+    t255 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    small_mid_front_elbow_down_alike = t255 * t255 / large_mid_front_elbow_down_alike
+    t256 = _runtime.select(t254, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    M_mid_front_elbow_down_alike = t39 * t256
+    del t256
+    t257 = gap_front_elbow_down_alike + M_mid_front_elbow_down_alike
+    t258 = 2.0 * point_11_front_elbow_down_alike * t250 + 2.0 * point_21_front_elbow_down_alike * t245
+    farther_right_front_elbow_down_alike = _runtime.select(t48 * t252 < t253, t252 - t70, t257 - t258)
+    del t252
+    t259 = _runtime.select(t254, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t254
+    N_mid_front_elbow_down_alike = t39 * t259
+    del t259
+    t260 = gap_front_elbow_down_alike - N_mid_front_elbow_down_alike
+    nearer_right_front_elbow_down_alike = t258 - t260
+    room_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
+    t261 = room_right_front_elbow_down_alike * 9.094947017729282e-13
+    t262 = np.maximum(-t261, room_right_front_elbow_down_alike)
     del t261
-    t265 = t243 - t242 * turn_rear_elbow_up_alike - t264
-    del t242, t243
-    t266 = t263 * t263 + t265 * t265
-    t267 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t268 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
-    t269 = _runtime.select(t79 * t266 < t267, t93 - t266, t239 - t259 - t268)
-    del t259, t266
-    t270 = t37 & t247 & t254 & (t78 <= t260) & (t78 <= -t269)
-    del t247, t254
-    t271 = slope_left_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    del slope_left_rear_elbow_up_alike
-    t272 = room_left_rear_elbow_up_alike + t271
-    del room_left_rear_elbow_up_alike
-    t273 = r_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    h_left_rear_elbow_up_alike = h_left_0_rear_elbow_up_alike - t262 + t273
-    del t262, t273
-    t274 = h_left_rear_elbow_up_alike * h_left_rear_elbow_up_alike
-    t275 = h_left_0_rear_elbow_up_alike * turn_rear_elbow_up_alike
-    del h_left_0_rear_elbow_up_alike, turn_rear_elbow_up_alike
-    r_left_rear_elbow_up_alike = r_left_0_rear_elbow_up_alike + t264 - t275
-    del r_left_0_rear_elbow_up_alike, t264, t275
-    t276 = r_left_rear_elbow_up_alike * r_left_rear_elbow_up_alike
-    t277 = t274 + t276
-    del t274, t276
-    t278 = _runtime.select(t79 * t277 < t267, t277 - t93, t239 + t268 - t271)
-    del t239, t267, t268, t271, t277
-    unreachable_3 = np.logical_not(t270 & (t78 <= t272) & (t78 <= t278))
-    del t270
-    t279 = _runtime.poison(invalid | unreachable_3)
-    t280 = t228 + t279
-    folded_right_rear_elbow_up_alike = np.abs(-t263) + np.abs(-t265) <= t103
-    t281 = np.arctan2(stheta2A, ctheta2A_rear_elbow_up_alike)
-    del ctheta2A_rear_elbow_up_alike, stheta2A
-    M_right_rear_elbow_up_alike = np.maximum(-t269, t105)
-    del t269
-    N_right_rear_elbow_up_alike = np.maximum(t260, t105)
-    del t260
-    whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t282 = 1.0 / whole_right_rear_elbow_up_alike
-    del whole_right_rear_elbow_up_alike
-    t283 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
-    t284 = np.sqrt(t283)
+    spent_right_front_elbow_down_alike = t262 <= t77
+    del t262
+    t263 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t264 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t265 = nearer_right_front_elbow_down_alike <= farther_right_front_elbow_down_alike
+    t266 = _runtime.select(t265, 1.0, -1.0)
+    del t265
+    t267 = (t263 - t264) * t266
+    del t263, t264
+    t268 = L1 + L_2W * s_relative_front_elbow_down_alike
+    drawn_front_elbow_down_alike = t268 + a_3W * c_relative_front_elbow_down_alike
+    del t268
+    t269 = 2.0 * drawn_front_elbow_down_alike
+    slope_right_front_elbow_down_alike = t267 * t269
+    t270 = 1.0 - t83 * drawn_front_elbow_down_alike
+    t271 = t82 * np.sqrt(fore + L1 * (t270 * t270)) / 2000000.0
+    del fore, t270, t82
+    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
+    del L_2W, a_3W
+    t272 = t81 * (t271 + np.abs(tilt_front_elbow_down_alike))
+    del t271, t81, tilt_front_elbow_down_alike
+    heavy_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t272, 1.0)
+    t273 = np.abs(slope_right_front_elbow_down_alike) / heavy_0_right_front_elbow_down_alike
+    gain_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t273, 0.0)
+    del t273
+    t274 = t39 * t267
+    del t267
+    t275 = np.abs(t274)
+    heavy_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t90, 1.0)
+    gain_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t275 / heavy_1_right_front_elbow_down_alike, 0.0)
+    t276 = gain_0_right_front_elbow_down_alike + gain_1_right_front_elbow_down_alike
+    t277 = _runtime.select(spent_right_front_elbow_down_alike, t276, 0.0)
+    del t276
+    t278 = -(_runtime.FEASIBILITY * (t47 + t277)) <= room_right_front_elbow_down_alike
+    del t277
+    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t245
+    del point_21_front_elbow_down_alike, t245
+    t279 = h_left_0_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t250
+    del point_11_front_elbow_down_alike, t250
+    t280 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t281 = t279 + t280
+    del t279, t280
+    farther_left_front_elbow_down_alike = _runtime.select(t48 * t281 < t253, t281 - t70, t257 + t258)
+    del t253, t257, t281
+    t282 = t258 + t260
+    del t258, t260
+    room_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, -t282)
+    t283 = room_left_front_elbow_down_alike * 9.094947017729282e-13
+    t284 = np.maximum(-t283, room_left_front_elbow_down_alike)
     del t283
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t282 * (t199 * t284))
-    t285 = fore_arm * s_bend_right_rear_elbow_up_alike
-    del s_bend_right_rear_elbow_up_alike
-    t286 = t92 + t110 * M_right_rear_elbow_up_alike * t282
-    del t282
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t286)
-    del t286
-    up_right_rear_elbow_up_alike = t265 * t285 - t263 * ahead_1_right_rear_elbow_up_alike
-    t287 = t265 * ahead_1_right_rear_elbow_up_alike + t263 * t285
-    del ahead_1_right_rear_elbow_up_alike, t263, t265, t285
-    t288 = np.arctan2(up_right_rear_elbow_up_alike, -t287)
-    del t287, up_right_rear_elbow_up_alike
-    t289 = _runtime.select(folded_right_rear_elbow_up_alike, t281, t288)
-    del t288
-    t290 = _runtime.wrap_cut(t289) + t279
+    spent_left_front_elbow_down_alike = t284 <= t77
+    del t284
+    t285 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    t286 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t287 = _runtime.select(-t282 <= farther_left_front_elbow_down_alike, 1.0, -1.0)
+    t288 = (t285 - t286) * t287
+    del t285, t286
+    slope_left_front_elbow_down_alike = t269 * t288
+    heavy_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t272, 1.0)
+    t289 = np.abs(slope_left_front_elbow_down_alike) / heavy_0_left_front_elbow_down_alike
+    gain_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t289, 0.0)
     del t289
-    t291 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
-    del M_right_rear_elbow_up_alike, N_right_rear_elbow_up_alike
-    t292 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t284, t291)
-    del t284, t291
-    t293 = t115 + _runtime.select(short_right, 0.0, t292)
+    t290 = t39 * t288
+    del t288
+    t291 = np.abs(t290)
+    heavy_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t90, 1.0)
+    gain_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t291 / heavy_1_left_front_elbow_down_alike, 0.0)
+    t292 = gain_0_left_front_elbow_down_alike + gain_1_left_front_elbow_down_alike
+    t293 = _runtime.select(spent_left_front_elbow_down_alike, t292, 0.0)
     del t292
-    t294 = _runtime.wrap(t293) + t279
+    t294 = -(_runtime.FEASIBILITY * (t47 + t293)) <= room_left_front_elbow_down_alike
     del t293
-    t295 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
-    folded_left_rear_elbow_up_alike = t295 <= t103
-    del t295
-    M_left_rear_elbow_up_alike = np.maximum(t278, 0.0)
-    del t278
-    N_left_rear_elbow_up_alike = np.maximum(t272, 0.0)
-    del t272
-    whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t296 = 1.0 / whole_left_rear_elbow_up_alike
-    del whole_left_rear_elbow_up_alike
-    t297 = t92 + t110 * M_left_rear_elbow_up_alike * t296
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t297)
-    del t297
-    t298 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t299 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
-    t300 = np.sqrt(t299)
-    del t299
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t296 * (t199 * t300))
-    del t199, t296
-    t301 = fore_arm * s_bend_left_rear_elbow_up_alike
-    del s_bend_left_rear_elbow_up_alike
-    t302 = r_left_rear_elbow_up_alike * t301
-    t303 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    del ahead_1_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike
-    t304 = h_left_rear_elbow_up_alike * t301
-    del h_left_rear_elbow_up_alike, t301
-    t305 = _runtime.select(folded_left_rear_elbow_up_alike, t281, np.arctan2(t298 - t302, t303 + t304))
-    t306 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
-    del M_left_rear_elbow_up_alike, N_left_rear_elbow_up_alike
-    t307 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t300, t306)
-    del sigma_right_front_elbow_down_alike, t300, t306
-    t308 = _runtime.select(short_right, 0.0, t307)
-    del t307
-    t309 = t129 + t279
-    t310 = _runtime.select(folded_left_rear_elbow_up_alike, t281, np.arctan2(t298 + t302, t303 - t304))
-    del t281, t298, t302, t303, t304
-    ctheta2A_rear_elbow_down_alike = _runtime.select(folded, 1.0, -t138)
-    del t138
-    ctheta23A_rear_elbow_down_alike = c_relative * ctheta2A_rear_elbow_down_alike + s_relative * t140
-    t311 = t48 * (s_phi * ctheta23A_rear_elbow_down_alike)
-    t312 = c_relative * t140 - s_relative * ctheta2A_rear_elbow_down_alike
-    del c_relative, s_relative
-    t313 = d * (t311 + t5 * (s_psi * t312))
-    del t311
-    t314 = t5 * (s_psi * ctheta23A_rear_elbow_down_alike)
-    del s_psi, t5
-    t315 = d * (t314 - t48 * (s_phi * t312))
-    del s_phi, t314, t48
-    gap_rear_elbow_down_alike = t313 * t313 + t315 * t315
-    t316 = N_mid - gap_rear_elbow_down_alike
-    del N_mid
-    t317 = L1 * ctheta2A_rear_elbow_down_alike - L2 * t312
-    point_11_rear_elbow_down_alike = t317 + a3 * ctheta23A_rear_elbow_down_alike
+    t295 = spent_left_front_elbow_down_alike | spent_right_front_elbow_down_alike
+    t296 = gain_1_left_front_elbow_down_alike * gain_1_left_front_elbow_down_alike
+    del gain_1_left_front_elbow_down_alike
+    t297 = gain_0_left_front_elbow_down_alike * gain_0_left_front_elbow_down_alike
+    del gain_0_left_front_elbow_down_alike
+    t298 = _runtime.select(room_left_front_elbow_down_alike < 0.0, t296 / (t105 + t296 + t297), 0.0)
+    del t296, t297
+    share_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t298, 0.0)
+    del t298
+    t299 = room_left_front_elbow_down_alike * (1.0 - share_left_front_elbow_down_alike)
+    t300 = heavy_0_left_front_elbow_down_alike * t299
+    t301 = drawn_front_elbow_down_alike * drawn_front_elbow_down_alike
+    t302 = ctheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t303 = stheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    t304 = t83 * (t287 * t301 * (L1 - t302 - t303))
+    del t287, t302, t303
+    t305 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t306 = np.sqrt(np.maximum(0.0, 4.0 * t299 * t304 + t305))
+    del t305
+    root_on_1_both_front_elbow_down_alike = _runtime.select(t295, t306, 0.0)
+    del t306
+    t307 = slope_left_front_elbow_down_alike - root_on_1_both_front_elbow_down_alike
+    t308 = t47 * heavy_0_left_front_elbow_down_alike
+    t309 = t308 * 5.960464477539063e-08
+    t310 = 1.0 / (t307 - t309)
+    t311 = (t300 * t310 <= 4.547473508864641e-13) & (0.0 < t299 * t310)
+    t312 = 2.0 * t299
+    t313 = 0.0 < -t299
+    t314 = slope_left_front_elbow_down_alike + root_on_1_both_front_elbow_down_alike
+    del root_on_1_both_front_elbow_down_alike
+    t315 = t308 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t304)
+    del t308
+    t316 = 1.0 / t315
+    del t315
+    t317 = heavy_0_left_front_elbow_down_alike * t314 * t316
+    t318 = t314 * t316
+    t319 = (t317 <= 9.094947017729282e-13) & (0.0 < t318)
     del t317
-    t318 = t149 + L2 * ctheta23A_rear_elbow_down_alike + a3 * t312
-    del ctheta23A_rear_elbow_down_alike, t149, t312
-    t319 = 2.0 * t313 * point_11_rear_elbow_down_alike - 2.0 * t315 * t318
-    room_right_rear_elbow_down_alike = t316 + t319
-    t320 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t321 = np.maximum(-t320, room_right_rear_elbow_down_alike)
-    del t320
-    spent_right_rear_elbow_down_alike = t321 <= t65
-    del t321
-    t322 = t315 + t318
-    t323 = t313 - point_11_rear_elbow_down_alike
-    t324 = ctheta2A_rear_elbow_down_alike * t322 + t140 * t323
-    t325 = t69 * t324
-    del t324
-    t326 = _runtime.select(spent_right_rear_elbow_down_alike, t68 * (size * np.abs(-t325)), 0.0)
-    t327 = -(_runtime.FEASIBILITY * (t38 + t326)) <= room_right_rear_elbow_down_alike
-    del t326
-    room_left_rear_elbow_down_alike = t316 - t319
-    del t316
-    t328 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t329 = np.maximum(-t328, room_left_rear_elbow_down_alike)
-    del t328
-    spent_left_rear_elbow_down_alike = t329 <= t65
-    del t329, t65
-    h_left_0_rear_elbow_down_alike = t315 - t318
-    del t315, t318
-    t330 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = t313 + point_11_rear_elbow_down_alike
-    del point_11_rear_elbow_down_alike, t313
-    slope_left_rear_elbow_down_alike = t69 * (t330 + t140 * r_left_0_rear_elbow_down_alike)
-    del t330, t69
-    t331 = size * np.abs(slope_left_rear_elbow_down_alike)
-    t332 = _runtime.select(spent_left_rear_elbow_down_alike, t68 * t331, 0.0)
-    del t331, t68
-    t333 = -(_runtime.FEASIBILITY * (t38 + t332)) <= room_left_rear_elbow_down_alike
-    del t332, t38
-    t334 = room_right_rear_elbow_down_alike - np.abs(room_right_rear_elbow_down_alike)
-    turn_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t325 * t334 / (2.0 * (t80 + t325 * t325)), 0.0)
-    del spent_right_rear_elbow_down_alike, t334
-    t335 = room_left_rear_elbow_down_alike - np.abs(room_left_rear_elbow_down_alike)
-    t336 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t337 = slope_left_rear_elbow_down_alike * t335 / (2.0 * (t80 + t336))
-    del t335, t336, t80
-    turn_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, -t337, 0.0)
-    del spent_left_rear_elbow_down_alike, t337
-    turn_rear_elbow_down_alike = turn_right_rear_elbow_down_alike + turn_left_rear_elbow_down_alike
-    del turn_left_rear_elbow_down_alike, turn_right_rear_elbow_down_alike
-    t338 = t325 * turn_rear_elbow_down_alike
-    del t325
-    t339 = room_right_rear_elbow_down_alike - t338
-    del room_right_rear_elbow_down_alike
-    t340 = drawn * turn_rear_elbow_down_alike
-    del drawn
-    t341 = ctheta2A_rear_elbow_down_alike * t340
-    t342 = t322 + t341 + t323 * turn_rear_elbow_down_alike
-    t343 = t140 * t340
-    del t340
-    t344 = t323 - t322 * turn_rear_elbow_down_alike + t343
+    far_back_1_both_front_elbow_down_alike = _runtime.select(t295, _runtime.select(t319, t318, 0.0), 0.0)
+    del t318, t319
+    t320 = _runtime.select(t313, far_back_1_both_front_elbow_down_alike, 0.0)
+    t321 = _runtime.select(slope_left_front_elbow_down_alike <= 0.0, _runtime.select(t311, t310 * t312, 0.0), t320)
+    del t310, t311, t320
+    t322 = gain_1_right_front_elbow_down_alike * gain_1_right_front_elbow_down_alike
+    del gain_1_right_front_elbow_down_alike
+    t323 = gain_0_right_front_elbow_down_alike * gain_0_right_front_elbow_down_alike
+    del gain_0_right_front_elbow_down_alike
+    t324 = _runtime.select(room_right_front_elbow_down_alike < 0.0, t322 / (t105 + t322 + t323), 0.0)
     del t322, t323
-    t345 = t342 * t342 + t344 * t344
-    t346 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t347 = M_mid + gap_rear_elbow_down_alike
-    t348 = _runtime.select(t79 * t345 < t346, t93 - t345, t319 - t338 - t347)
-    del t338, t345
-    t349 = t37 & t327 & t333 & (t78 <= t339) & (t78 <= -t348)
-    del t327, t333, t37
-    t350 = slope_left_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    del slope_left_rear_elbow_down_alike
-    t351 = room_left_rear_elbow_down_alike + t350
-    del room_left_rear_elbow_down_alike
-    t352 = r_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    h_left_rear_elbow_down_alike = h_left_0_rear_elbow_down_alike - t341 + t352
-    del t341, t352
-    t353 = h_left_rear_elbow_down_alike * h_left_rear_elbow_down_alike
-    t354 = h_left_0_rear_elbow_down_alike * turn_rear_elbow_down_alike
-    del h_left_0_rear_elbow_down_alike, turn_rear_elbow_down_alike
-    r_left_rear_elbow_down_alike = r_left_0_rear_elbow_down_alike - t343 - t354
-    del r_left_0_rear_elbow_down_alike, t343, t354
-    t355 = r_left_rear_elbow_down_alike * r_left_rear_elbow_down_alike
-    t356 = t353 + t355
-    del t353, t355
-    t357 = _runtime.select(t79 * t356 < t346, t356 - t93, t319 + t347 - t350)
-    del t319, t346, t347, t350, t356
-    unreachable_4 = np.logical_not(t349 & (t78 <= t351) & (t78 <= t357))
-    del t349, t78
-    t358 = _runtime.poison(invalid | unreachable_4)
-    t359 = t228 + t358
-    del t228
-    folded_right_rear_elbow_down_alike = np.abs(-t342) + np.abs(-t344) <= t103
-    t360 = np.arctan2(-t140, ctheta2A_rear_elbow_down_alike)
-    del ctheta2A_rear_elbow_down_alike, t140
-    M_right_rear_elbow_down_alike = np.maximum(-t348, t105)
-    del t348
-    N_right_rear_elbow_down_alike = np.maximum(t339, t105)
-    del t105, t339
-    whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t361 = 1.0 / whole_right_rear_elbow_down_alike
-    del whole_right_rear_elbow_down_alike
-    t362 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
-    t363 = np.sqrt(t362)
-    del t362
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t361 * (t107 * t363))
-    t364 = fore_arm * s_bend_right_rear_elbow_down_alike
-    del s_bend_right_rear_elbow_down_alike
-    t365 = t92 + t110 * M_right_rear_elbow_down_alike * t361
-    del t361
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t365)
-    del t365
-    up_right_rear_elbow_down_alike = t344 * t364 - t342 * ahead_1_right_rear_elbow_down_alike
-    t366 = t344 * ahead_1_right_rear_elbow_down_alike + t342 * t364
-    del ahead_1_right_rear_elbow_down_alike, t342, t344, t364
-    t367 = np.arctan2(up_right_rear_elbow_down_alike, -t366)
-    del t366, up_right_rear_elbow_down_alike
-    t368 = _runtime.select(folded_right_rear_elbow_down_alike, t360, t367)
+    share_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t324, 0.0)
+    del t324
+    t325 = room_right_front_elbow_down_alike * (1.0 - share_right_front_elbow_down_alike)
+    t326 = heavy_0_right_front_elbow_down_alike * t325
+    t327 = ctheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t328 = stheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t329 = t83 * (t266 * t301 * (L1 - t327 - t328))
+    del t266, t327, t328
+    t330 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
+    t331 = np.sqrt(np.maximum(0.0, 4.0 * t325 * t329 + t330))
+    del t330
+    root_on_0_both_front_elbow_down_alike = _runtime.select(t295, t331, 0.0)
+    del t331
+    t332 = slope_right_front_elbow_down_alike - root_on_0_both_front_elbow_down_alike
+    t333 = t47 * heavy_0_right_front_elbow_down_alike
+    t334 = t333 * 5.960464477539063e-08
+    t335 = 1.0 / (t332 - t334)
+    t336 = (t326 * t335 <= 4.547473508864641e-13) & (0.0 < t325 * t335)
+    t337 = 2.0 * t325
+    t338 = 0.0 < -t325
+    t339 = slope_right_front_elbow_down_alike + root_on_0_both_front_elbow_down_alike
+    del root_on_0_both_front_elbow_down_alike
+    t340 = t333 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t329)
+    del t333
+    t341 = 1.0 / t340
+    del t340
+    t342 = heavy_0_right_front_elbow_down_alike * t339 * t341
+    t343 = t339 * t341
+    t344 = (t342 <= 9.094947017729282e-13) & (0.0 < t343)
+    del t342
+    far_back_0_both_front_elbow_down_alike = _runtime.select(t295, _runtime.select(t344, t343, 0.0), 0.0)
+    del t343, t344
+    t345 = _runtime.select(t338, far_back_0_both_front_elbow_down_alike, 0.0)
+    t346 = _runtime.select(slope_right_front_elbow_down_alike <= 0.0, _runtime.select(t336, t335 * t337, 0.0), t345)
+    del t335, t336, t345
+    near_back_both_front_elbow_down_alike = _runtime.select(t295, np.maximum(np.maximum(0.0, t321), t346), 0.0)
+    del t321, t346
+    t347 = slope_right_front_elbow_down_alike + t329 * near_back_both_front_elbow_down_alike
+    t348 = near_back_both_front_elbow_down_alike * t347 - t325
+    del t347
+    t349 = _runtime.select(0.0 < t348, far_back_0_both_front_elbow_down_alike, 0.0)
+    del far_back_0_both_front_elbow_down_alike, t348
+    t350 = np.maximum(near_back_both_front_elbow_down_alike, t349)
+    del t349
+    t351 = slope_left_front_elbow_down_alike + t304 * near_back_both_front_elbow_down_alike
+    t352 = near_back_both_front_elbow_down_alike * t351 - t299
+    del near_back_both_front_elbow_down_alike, t351
+    t353 = _runtime.select(0.0 < t352, far_back_1_both_front_elbow_down_alike, 0.0)
+    del far_back_1_both_front_elbow_down_alike, t352
+    turn_back_both_front_elbow_down_alike = _runtime.select(t295, np.maximum(t350, t353), 0.0)
+    del t350, t353
+    t354 = slope_left_front_elbow_down_alike + t304 * turn_back_both_front_elbow_down_alike
+    t355 = t299 - turn_back_both_front_elbow_down_alike * t354
+    del t354
+    t356 = slope_right_front_elbow_down_alike + t329 * turn_back_both_front_elbow_down_alike
+    t357 = t325 - turn_back_both_front_elbow_down_alike * t356
+    del t356
+    left_back_both_front_elbow_down_alike = _runtime.select(t295, np.minimum(t355, t357), 0.0)
+    del t355, t357
+    t358 = 1.0 / (t309 + t314)
+    del t309, t314
+    t359 = (-(t300 * t358) <= 4.547473508864641e-13) & (0.0 < -(t299 * t358))
+    del t300
+    t360 = t316 * (heavy_0_left_front_elbow_down_alike * t307)
+    del heavy_0_left_front_elbow_down_alike
+    t361 = -(t307 * t316)
+    del t307, t316
+    t362 = (-t360 <= 9.094947017729282e-13) & (0.0 < t361)
+    del t360
+    far_on_1_both_front_elbow_down_alike = _runtime.select(t295, _runtime.select(t362, t361, 0.0), 0.0)
+    del t361, t362
+    t363 = _runtime.select(t313, far_on_1_both_front_elbow_down_alike, 0.0)
+    del t313
+    t364 = _runtime.select(0.0 <= slope_left_front_elbow_down_alike, _runtime.select(t359, -(t312 * t358), 0.0), t363)
+    del t312, t358, t359, t363
+    t365 = 1.0 / (t334 + t339)
+    del t334, t339
+    t366 = (-(t326 * t365) <= 4.547473508864641e-13) & (0.0 < -(t325 * t365))
+    del t326
+    t367 = t341 * (heavy_0_right_front_elbow_down_alike * t332)
+    del heavy_0_right_front_elbow_down_alike
+    t368 = -(t332 * t341)
+    del t332, t341
+    t369 = (-t367 <= 9.094947017729282e-13) & (0.0 < t368)
     del t367
-    t369 = _runtime.wrap_cut(t368) + t358
-    del t368
-    t370 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
+    far_on_0_both_front_elbow_down_alike = _runtime.select(t295, _runtime.select(t369, t368, 0.0), 0.0)
+    del t368, t369
+    t370 = _runtime.select(t338, far_on_0_both_front_elbow_down_alike, 0.0)
+    del t338
+    t371 = _runtime.select(0.0 <= slope_right_front_elbow_down_alike, _runtime.select(t366, -(t337 * t365), 0.0), t370)
+    del t337, t365, t366, t370
+    near_on_both_front_elbow_down_alike = _runtime.select(t295, np.maximum(np.maximum(0.0, t364), t371), 0.0)
+    del t364, t371
+    t372 = slope_right_front_elbow_down_alike - t329 * near_on_both_front_elbow_down_alike
+    t373 = t325 + near_on_both_front_elbow_down_alike * t372
+    del t372
+    t374 = _runtime.select(0.0 < -t373, far_on_0_both_front_elbow_down_alike, 0.0)
+    del far_on_0_both_front_elbow_down_alike, t373
+    t375 = np.maximum(near_on_both_front_elbow_down_alike, t374)
+    del t374
+    t376 = slope_left_front_elbow_down_alike - t304 * near_on_both_front_elbow_down_alike
+    t377 = t299 + near_on_both_front_elbow_down_alike * t376
+    del near_on_both_front_elbow_down_alike, t376
+    t378 = _runtime.select(0.0 < -t377, far_on_1_both_front_elbow_down_alike, 0.0)
+    del far_on_1_both_front_elbow_down_alike, t377
+    turn_on_both_front_elbow_down_alike = _runtime.select(t295, np.maximum(t375, t378), 0.0)
+    del t375, t378
+    t379 = slope_left_front_elbow_down_alike - t304 * turn_on_both_front_elbow_down_alike
+    del slope_left_front_elbow_down_alike, t304
+    t380 = t299 + turn_on_both_front_elbow_down_alike * t379
+    del t299, t379
+    t381 = slope_right_front_elbow_down_alike - t329 * turn_on_both_front_elbow_down_alike
+    del slope_right_front_elbow_down_alike, t329
+    t382 = t325 + turn_on_both_front_elbow_down_alike * t381
+    del t325, t381
+    left_on_both_front_elbow_down_alike = _runtime.select(t295, np.minimum(t380, t382), 0.0)
+    del t380, t382
+    t383 = left_back_both_front_elbow_down_alike <= left_on_both_front_elbow_down_alike
+    del left_back_both_front_elbow_down_alike, left_on_both_front_elbow_down_alike
+    t384 = _runtime.select(t383, turn_on_both_front_elbow_down_alike, -turn_back_both_front_elbow_down_alike)
+    del t383, turn_back_both_front_elbow_down_alike, turn_on_both_front_elbow_down_alike
+    turn_both_front_elbow_down_alike = _runtime.select(t295, t384, 0.0)
+    del t384
+    t385 = room_left_front_elbow_down_alike * share_left_front_elbow_down_alike
+    del room_left_front_elbow_down_alike, share_left_front_elbow_down_alike
+    t386 = t47 * heavy_1_left_front_elbow_down_alike * 5.960464477539063e-08
+    del heavy_1_left_front_elbow_down_alike
+    t387 = -(t385 * _runtime.sign(-t290) / (t291 + t386))
+    del t290, t291, t385, t386
+    aside_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t387, 0.0)
+    del spent_left_front_elbow_down_alike, t387
+    t388 = room_right_front_elbow_down_alike * share_right_front_elbow_down_alike
+    del room_right_front_elbow_down_alike, share_right_front_elbow_down_alike
+    t389 = t47 * heavy_1_right_front_elbow_down_alike * 5.960464477539063e-08
+    del heavy_1_right_front_elbow_down_alike
+    t390 = -(t388 * _runtime.sign(-t274) / (t275 + t389))
+    del t274, t275, t388, t389
+    aside_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t390, 0.0)
+    del spent_right_front_elbow_down_alike, t390
+    t391 = np.abs(aside_left_front_elbow_down_alike) <= np.abs(aside_right_front_elbow_down_alike)
+    t392 = _runtime.select(t391, aside_right_front_elbow_down_alike, aside_left_front_elbow_down_alike)
+    del aside_left_front_elbow_down_alike, aside_right_front_elbow_down_alike, t391
+    t393 = drawn_front_elbow_down_alike * turn_both_front_elbow_down_alike
+    t394 = turn_both_front_elbow_down_alike + t392 - t83 * t393
+    del t392, t393
+    lean_front_elbow_down_alike = _runtime.select(t295, t394, 0.0)
+    del t394
+    t395 = lean_front_elbow_down_alike * lean_front_elbow_down_alike
+    t396 = 1.0 + t395
+    t397 = 1.0 / np.sqrt(t396)
+    t398 = 1.0 / (t396 * (1.0 + t397))
+    del t396
+    t399 = elbow_11_front_elbow_down_alike * t395 * t398
+    t400 = elbow_21_front_elbow_down_alike * lean_front_elbow_down_alike
+    t401 = t399 + t397 * t400
+    del t399, t400
+    t402 = turn_both_front_elbow_down_alike * turn_both_front_elbow_down_alike
+    t403 = elbow_11_front_elbow_down_alike - r_right_0_front_elbow_down_alike
+    t404 = 1.0 + t402
+    t405 = 1.0 / np.sqrt(t404)
+    t406 = 1.0 / (t404 * (1.0 + t405))
+    del t404
+    t407 = elbow_21_front_elbow_down_alike - h_right_0_front_elbow_down_alike
+    t408 = t405 * (turn_both_front_elbow_down_alike * t407)
+    t409 = t401 - t402 * t403 * t406 - t408
+    del t408
+    t410 = t409 - 2.0 * r_right_0_front_elbow_down_alike
+    t411 = elbow_11_front_elbow_down_alike * lean_front_elbow_down_alike
+    t412 = t398 * (elbow_21_front_elbow_down_alike * t395)
+    del t395, t398
+    swing_21_front_elbow_down_alike = t397 * t411 - t412
+    del t397, t411, t412
+    t413 = swing_21_front_elbow_down_alike + t406 * (t402 * t407)
+    del t407
+    t414 = t405 * (turn_both_front_elbow_down_alike * t403)
+    del t403
+    more_right_21_front_elbow_down_alike = t413 - t414
+    del t413, t414
+    t415 = more_right_21_front_elbow_down_alike + 2.0 * h_right_0_front_elbow_down_alike
+    t416 = t409 * t410 + more_right_21_front_elbow_down_alike * t415
+    del t410, t415
+    change_right_front_elbow_down_alike = _runtime.select(t295, t416, 0.0)
+    del t416
+    t417 = nearer_right_front_elbow_down_alike - change_right_front_elbow_down_alike
+    del nearer_right_front_elbow_down_alike
+    t418 = farther_right_front_elbow_down_alike + change_right_front_elbow_down_alike
+    del change_right_front_elbow_down_alike, farther_right_front_elbow_down_alike
+    t419 = t46 & t278 & t294 & (t102 <= t417) & (t102 <= t418)
+    del t278, t294
+    t420 = elbow_11_front_elbow_down_alike - r_left_0_front_elbow_down_alike
+    del elbow_11_front_elbow_down_alike
+    t421 = elbow_21_front_elbow_down_alike - h_left_0_front_elbow_down_alike
+    t422 = t405 * (turn_both_front_elbow_down_alike * t421)
+    t423 = t401 - t406 * (t402 * t420) - t422
+    del t401, t422
+    t424 = t423 * (t423 - 2.0 * r_left_0_front_elbow_down_alike)
+    t425 = swing_21_front_elbow_down_alike + t406 * (t402 * t421)
+    del swing_21_front_elbow_down_alike, t402, t406, t421
+    t426 = t405 * (turn_both_front_elbow_down_alike * t420)
+    del t405, t420
+    more_left_21_front_elbow_down_alike = t425 - t426
+    del t425, t426
+    t427 = more_left_21_front_elbow_down_alike + 2.0 * h_left_0_front_elbow_down_alike
+    t428 = t424 + more_left_21_front_elbow_down_alike * t427
+    del t424, t427
+    change_left_front_elbow_down_alike = _runtime.select(t295, t428, 0.0)
+    del t428
+    t429 = -(t282 + change_left_front_elbow_down_alike)
+    del t282
+    t430 = farther_left_front_elbow_down_alike + change_left_front_elbow_down_alike
+    del change_left_front_elbow_down_alike, farther_left_front_elbow_down_alike
+    unreachable_2 = np.logical_not(t419 & (t102 <= t429) & (t102 <= t430))
+    del t419
+    t431 = _runtime.poison(invalid | unreachable_2)
+    t432 = t28 + t431
+    del t28
+    t433 = h_right_0_front_elbow_down_alike + more_right_21_front_elbow_down_alike
+    del more_right_21_front_elbow_down_alike
+    h_right_front_elbow_down_alike = _runtime.select(t295, t433, h_right_0_front_elbow_down_alike)
+    del h_right_0_front_elbow_down_alike, t433
+    r_right_front_elbow_down_alike = _runtime.select(t295, r_right_0_front_elbow_down_alike - t409, r_right_0_front_elbow_down_alike)
+    del r_right_0_front_elbow_down_alike, t409
+    t434 = np.abs(h_right_front_elbow_down_alike) + np.abs(r_right_front_elbow_down_alike)
+    folded_right_front_elbow_down_alike = t434 <= t204
+    del t434
+    t435 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    del ctheta2A_front_elbow_down_alike
+    M_right_front_elbow_down_alike = np.maximum(t418, t207)
+    del t418
+    N_right_front_elbow_down_alike = np.maximum(t417, t207)
+    del t417
+    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
+    t436 = 1.0 / whole_right_front_elbow_down_alike
+    del whole_right_front_elbow_down_alike
+    t437 = t69 + t206 * M_right_front_elbow_down_alike * t436
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t437)
+    del t437
+    t438 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t439 = turn_both_front_elbow_down_alike * lean_front_elbow_down_alike
+    t440 = turn_both_front_elbow_down_alike - lean_front_elbow_down_alike
+    del lean_front_elbow_down_alike, turn_both_front_elbow_down_alike
+    t441 = t255 * (1.0 + t439) - straight_mid_front_elbow_down_alike * t440
+    del t439, t440
+    sigma_right_front_elbow_down_alike = _runtime.sign(-_runtime.select(t295, t441, t255))
+    del t441
+    t442 = 2.0 * sigma_right_front_elbow_down_alike
+    t443 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
+    t444 = np.sqrt(t443)
+    del t443
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t436 * (t442 * t444))
+    del t436
+    t445 = fore_arm * s_bend_right_front_elbow_down_alike
+    del s_bend_right_front_elbow_down_alike
+    t446 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    del ahead_1_right_front_elbow_down_alike
+    t447 = np.arctan2(t438 - r_right_front_elbow_down_alike * t445, t446 + h_right_front_elbow_down_alike * t445)
+    del h_right_front_elbow_down_alike, r_right_front_elbow_down_alike, t438, t445, t446
+    t448 = _runtime.select(folded_right_front_elbow_down_alike, t435, t447)
+    del t447
+    t449 = _runtime.wrap_cut(t448) + t431
+    del t448
+    t450 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
+    del M_right_front_elbow_down_alike, N_right_front_elbow_down_alike
+    t451 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t444, t450)
+    del t444, t450
+    t452 = t217 + _runtime.select(short_right, 0.0, t451)
+    del t451
+    t453 = _runtime.wrap(t452) + t431
+    del t452
+    t454 = h_left_0_front_elbow_down_alike + more_left_21_front_elbow_down_alike
+    del more_left_21_front_elbow_down_alike
+    h_left_front_elbow_down_alike = _runtime.select(t295, t454, h_left_0_front_elbow_down_alike)
+    del h_left_0_front_elbow_down_alike, t454
+    r_left_front_elbow_down_alike = _runtime.select(t295, r_left_0_front_elbow_down_alike - t423, r_left_0_front_elbow_down_alike)
+    del r_left_0_front_elbow_down_alike, t295, t423
+    t455 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
+    folded_left_front_elbow_down_alike = t455 <= t204
+    del t455
+    M_left_front_elbow_down_alike = np.maximum(t430, 0.0)
+    del t430
+    N_left_front_elbow_down_alike = np.maximum(t429, 0.0)
+    del t429
+    whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
+    t456 = 1.0 / whole_left_front_elbow_down_alike
+    del whole_left_front_elbow_down_alike
+    t457 = t69 + t206 * M_left_front_elbow_down_alike * t456
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t457)
+    del t457
+    t458 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t459 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
+    t460 = np.sqrt(t459)
+    del t459
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t456 * (t442 * t460))
+    del t442, t456
+    t461 = fore_arm * s_bend_left_front_elbow_down_alike
+    del s_bend_left_front_elbow_down_alike
+    t462 = r_left_front_elbow_down_alike * t461
+    t463 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    del ahead_1_left_front_elbow_down_alike, r_left_front_elbow_down_alike
+    t464 = h_left_front_elbow_down_alike * t461
+    del h_left_front_elbow_down_alike, t461
+    t465 = _runtime.select(folded_left_front_elbow_down_alike, t435, np.arctan2(t458 - t462, t463 + t464))
+    t466 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
+    del M_left_front_elbow_down_alike, N_left_front_elbow_down_alike
+    t467 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t460, t466)
+    del sigma_right_front_elbow_down_alike, t460, t466
+    t468 = _runtime.select(short_right, 0.0, t467)
+    del t467
+    t469 = t231 + t431
+    t470 = _runtime.select(folded_left_front_elbow_down_alike, t435, np.arctan2(t458 + t462, t463 - t464))
+    del t435, t458, t462, t463, t464
+    t471 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t27))
+    del t27, t3
+    ctheta2A_rear_elbow_up_alike = _runtime.select(folded, 1.0, -t57)
+    del t57
+    t472 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t472 - stheta2A * s_relative_front_elbow_down_alike
+    del t472
+    t473 = elbow_21 - L2 * ctheta23A_rear_elbow_up_alike
+    t474 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
+    del s_relative_front_elbow_down_alike
+    stheta23A_rear_elbow_up_alike = stheta2A * c_relative_front_elbow_down_alike + t474
+    del c_relative_front_elbow_down_alike, t474
+    point_21_rear_elbow_up_alike = t473 + a3 * stheta23A_rear_elbow_up_alike
+    del t473
+    t475 = t18 * (t_psi * ctheta23A_rear_elbow_up_alike)
+    t476 = d * (t475 + t_phi * stheta23A_rear_elbow_up_alike)
+    del t475
+    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t476
+    t477 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    elbow_11_rear_elbow_up_alike = L1 * ctheta2A_rear_elbow_up_alike
+    t478 = elbow_11_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t478 + a3 * ctheta23A_rear_elbow_up_alike
+    del t478
+    t479 = t18 * (t_psi * stheta23A_rear_elbow_up_alike)
+    del stheta23A_rear_elbow_up_alike
+    t480 = d * (t_phi * ctheta23A_rear_elbow_up_alike - t479)
+    del ctheta23A_rear_elbow_up_alike, t479
+    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t480
+    t481 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t482 = t477 + t481
+    del t477, t481
+    gap_rear_elbow_up_alike = t480 * t480 + t476 * t476
+    t483 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t484 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
+    t485 = 2.0 * point_11_rear_elbow_up_alike * t480 + 2.0 * point_21_rear_elbow_up_alike * t476
+    farther_right_rear_elbow_up_alike = _runtime.select(t48 * t482 < t483, t482 - t70, t484 - t485)
+    del t482
+    t486 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
+    del N_mid_front_elbow_down_alike
+    nearer_right_rear_elbow_up_alike = t485 + t486
+    room_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
+    t487 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t488 = np.maximum(-t487, room_right_rear_elbow_up_alike)
+    del t487
+    spent_right_rear_elbow_up_alike = t488 <= t77
+    del t488
+    t489 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t490 = t489 - stheta2A * r_right_0_rear_elbow_up_alike
+    del t489
+    t491 = nearer_right_rear_elbow_up_alike <= farther_right_rear_elbow_up_alike
+    t492 = _runtime.select(t491, 1.0, -1.0)
+    del t491
+    t493 = t490 * t492
+    del t490
+    slope_right_rear_elbow_up_alike = t269 * t493
+    heavy_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t272, 1.0)
+    t494 = np.abs(slope_right_rear_elbow_up_alike) / heavy_0_right_rear_elbow_up_alike
+    gain_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t494, 0.0)
+    del t494
+    t495 = t39 * t493
+    del t493
+    t496 = np.abs(t495)
+    heavy_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t90, 1.0)
+    gain_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t496 / heavy_1_right_rear_elbow_up_alike, 0.0)
+    t497 = gain_0_right_rear_elbow_up_alike + gain_1_right_rear_elbow_up_alike
+    t498 = _runtime.select(spent_right_rear_elbow_up_alike, t497, 0.0)
+    del t497
+    t499 = -(_runtime.FEASIBILITY * (t47 + t498)) <= room_right_rear_elbow_up_alike
+    del t498
+    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t476
+    del point_21_rear_elbow_up_alike, t476
+    t500 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t480
+    del point_11_rear_elbow_up_alike, t480
+    t501 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t502 = t500 + t501
+    del t500, t501
+    farther_left_rear_elbow_up_alike = _runtime.select(t48 * t502 < t483, t502 - t70, t484 + t485)
+    del t483, t484, t502
+    t503 = t485 - t486
+    del t485, t486
+    room_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, -t503)
+    t504 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t505 = np.maximum(-t504, room_left_rear_elbow_up_alike)
+    del t504
+    spent_left_rear_elbow_up_alike = t505 <= t77
+    del t505
+    t506 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    t507 = t506 - stheta2A * r_left_0_rear_elbow_up_alike
+    del t506
+    t508 = _runtime.select(-t503 <= farther_left_rear_elbow_up_alike, 1.0, -1.0)
+    t509 = t507 * t508
+    del t507
+    slope_left_rear_elbow_up_alike = t269 * t509
+    del t269
+    heavy_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t272, 1.0)
+    del t272
+    t510 = np.abs(slope_left_rear_elbow_up_alike) / heavy_0_left_rear_elbow_up_alike
+    gain_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t510, 0.0)
+    del t510
+    t511 = t39 * t509
+    del t509
+    t512 = np.abs(t511)
+    heavy_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t90, 1.0)
+    gain_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t512 / heavy_1_left_rear_elbow_up_alike, 0.0)
+    t513 = gain_0_left_rear_elbow_up_alike + gain_1_left_rear_elbow_up_alike
+    t514 = _runtime.select(spent_left_rear_elbow_up_alike, t513, 0.0)
+    del t513
+    t515 = -(_runtime.FEASIBILITY * (t47 + t514)) <= room_left_rear_elbow_up_alike
+    del t514
+    t516 = spent_left_rear_elbow_up_alike | spent_right_rear_elbow_up_alike
+    t517 = gain_1_left_rear_elbow_up_alike * gain_1_left_rear_elbow_up_alike
+    del gain_1_left_rear_elbow_up_alike
+    t518 = gain_0_left_rear_elbow_up_alike * gain_0_left_rear_elbow_up_alike
+    del gain_0_left_rear_elbow_up_alike
+    t519 = _runtime.select(room_left_rear_elbow_up_alike < 0.0, t517 / (t105 + t517 + t518), 0.0)
+    del t517, t518
+    share_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t519, 0.0)
+    del t519
+    t520 = room_left_rear_elbow_up_alike * (1.0 - share_left_rear_elbow_up_alike)
+    t521 = heavy_0_left_rear_elbow_up_alike * t520
+    t522 = ctheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t523 = L1 - t522 - stheta2A * h_left_0_rear_elbow_up_alike
+    del t522
+    t524 = t83 * (t301 * t508 * t523)
+    del t508, t523
+    t525 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t526 = np.sqrt(np.maximum(0.0, 4.0 * t520 * t524 + t525))
+    del t525
+    root_on_1_both_rear_elbow_up_alike = _runtime.select(t516, t526, 0.0)
+    del t526
+    t527 = slope_left_rear_elbow_up_alike - root_on_1_both_rear_elbow_up_alike
+    t528 = t47 * heavy_0_left_rear_elbow_up_alike
+    t529 = t528 * 5.960464477539063e-08
+    t530 = 1.0 / (t527 - t529)
+    t531 = (t521 * t530 <= 4.547473508864641e-13) & (0.0 < t520 * t530)
+    t532 = 2.0 * t520
+    t533 = 0.0 < -t520
+    t534 = slope_left_rear_elbow_up_alike + root_on_1_both_rear_elbow_up_alike
+    del root_on_1_both_rear_elbow_up_alike
+    t535 = t528 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t524)
+    del t528
+    t536 = 1.0 / t535
+    del t535
+    t537 = heavy_0_left_rear_elbow_up_alike * t534 * t536
+    t538 = t534 * t536
+    t539 = (t537 <= 9.094947017729282e-13) & (0.0 < t538)
+    del t537
+    far_back_1_both_rear_elbow_up_alike = _runtime.select(t516, _runtime.select(t539, t538, 0.0), 0.0)
+    del t538, t539
+    t540 = _runtime.select(t533, far_back_1_both_rear_elbow_up_alike, 0.0)
+    t541 = _runtime.select(slope_left_rear_elbow_up_alike <= 0.0, _runtime.select(t531, t530 * t532, 0.0), t540)
+    del t530, t531, t540
+    t542 = gain_1_right_rear_elbow_up_alike * gain_1_right_rear_elbow_up_alike
+    del gain_1_right_rear_elbow_up_alike
+    t543 = gain_0_right_rear_elbow_up_alike * gain_0_right_rear_elbow_up_alike
+    del gain_0_right_rear_elbow_up_alike
+    t544 = _runtime.select(room_right_rear_elbow_up_alike < 0.0, t542 / (t105 + t542 + t543), 0.0)
+    del t542, t543
+    share_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t544, 0.0)
+    del t544
+    t545 = room_right_rear_elbow_up_alike * (1.0 - share_right_rear_elbow_up_alike)
+    t546 = heavy_0_right_rear_elbow_up_alike * t545
+    t547 = ctheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t548 = L1 - t547 - stheta2A * h_right_0_rear_elbow_up_alike
+    del t547
+    t549 = t83 * (t301 * t492 * t548)
+    del t301, t492, t548
+    t550 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
+    t551 = np.sqrt(np.maximum(0.0, 4.0 * t545 * t549 + t550))
+    del t550
+    root_on_0_both_rear_elbow_up_alike = _runtime.select(t516, t551, 0.0)
+    del t551
+    t552 = slope_right_rear_elbow_up_alike - root_on_0_both_rear_elbow_up_alike
+    t553 = t47 * heavy_0_right_rear_elbow_up_alike
+    t554 = t553 * 5.960464477539063e-08
+    t555 = 1.0 / (t552 - t554)
+    t556 = (t546 * t555 <= 4.547473508864641e-13) & (0.0 < t545 * t555)
+    t557 = 2.0 * t545
+    t558 = 0.0 < -t545
+    t559 = slope_right_rear_elbow_up_alike + root_on_0_both_rear_elbow_up_alike
+    del root_on_0_both_rear_elbow_up_alike
+    t560 = t553 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t549)
+    del t553
+    t561 = 1.0 / t560
+    del t560
+    t562 = heavy_0_right_rear_elbow_up_alike * t559 * t561
+    t563 = t559 * t561
+    t564 = (t562 <= 9.094947017729282e-13) & (0.0 < t563)
+    del t562
+    far_back_0_both_rear_elbow_up_alike = _runtime.select(t516, _runtime.select(t564, t563, 0.0), 0.0)
+    del t563, t564
+    t565 = _runtime.select(t558, far_back_0_both_rear_elbow_up_alike, 0.0)
+    t566 = _runtime.select(slope_right_rear_elbow_up_alike <= 0.0, _runtime.select(t556, t555 * t557, 0.0), t565)
+    del t555, t556, t565
+    near_back_both_rear_elbow_up_alike = _runtime.select(t516, np.maximum(np.maximum(0.0, t541), t566), 0.0)
+    del t541, t566
+    t567 = slope_right_rear_elbow_up_alike + t549 * near_back_both_rear_elbow_up_alike
+    t568 = near_back_both_rear_elbow_up_alike * t567 - t545
+    del t567
+    t569 = _runtime.select(0.0 < t568, far_back_0_both_rear_elbow_up_alike, 0.0)
+    del far_back_0_both_rear_elbow_up_alike, t568
+    t570 = np.maximum(near_back_both_rear_elbow_up_alike, t569)
+    del t569
+    t571 = slope_left_rear_elbow_up_alike + t524 * near_back_both_rear_elbow_up_alike
+    t572 = near_back_both_rear_elbow_up_alike * t571 - t520
+    del near_back_both_rear_elbow_up_alike, t571
+    t573 = _runtime.select(0.0 < t572, far_back_1_both_rear_elbow_up_alike, 0.0)
+    del far_back_1_both_rear_elbow_up_alike, t572
+    turn_back_both_rear_elbow_up_alike = _runtime.select(t516, np.maximum(t570, t573), 0.0)
+    del t570, t573
+    t574 = slope_left_rear_elbow_up_alike + t524 * turn_back_both_rear_elbow_up_alike
+    t575 = t520 - turn_back_both_rear_elbow_up_alike * t574
+    del t574
+    t576 = slope_right_rear_elbow_up_alike + t549 * turn_back_both_rear_elbow_up_alike
+    t577 = t545 - turn_back_both_rear_elbow_up_alike * t576
+    del t576
+    left_back_both_rear_elbow_up_alike = _runtime.select(t516, np.minimum(t575, t577), 0.0)
+    del t575, t577
+    t578 = 1.0 / (t529 + t534)
+    del t529, t534
+    t579 = (-(t521 * t578) <= 4.547473508864641e-13) & (0.0 < -(t520 * t578))
+    del t521
+    t580 = t536 * (heavy_0_left_rear_elbow_up_alike * t527)
+    del heavy_0_left_rear_elbow_up_alike
+    t581 = -(t527 * t536)
+    del t527, t536
+    t582 = (-t580 <= 9.094947017729282e-13) & (0.0 < t581)
+    del t580
+    far_on_1_both_rear_elbow_up_alike = _runtime.select(t516, _runtime.select(t582, t581, 0.0), 0.0)
+    del t581, t582
+    t583 = _runtime.select(t533, far_on_1_both_rear_elbow_up_alike, 0.0)
+    del t533
+    t584 = _runtime.select(0.0 <= slope_left_rear_elbow_up_alike, _runtime.select(t579, -(t532 * t578), 0.0), t583)
+    del t532, t578, t579, t583
+    t585 = 1.0 / (t554 + t559)
+    del t554, t559
+    t586 = (-(t546 * t585) <= 4.547473508864641e-13) & (0.0 < -(t545 * t585))
+    del t546
+    t587 = t561 * (heavy_0_right_rear_elbow_up_alike * t552)
+    del heavy_0_right_rear_elbow_up_alike
+    t588 = -(t552 * t561)
+    del t552, t561
+    t589 = (-t587 <= 9.094947017729282e-13) & (0.0 < t588)
+    del t587
+    far_on_0_both_rear_elbow_up_alike = _runtime.select(t516, _runtime.select(t589, t588, 0.0), 0.0)
+    del t588, t589
+    t590 = _runtime.select(t558, far_on_0_both_rear_elbow_up_alike, 0.0)
+    del t558
+    t591 = _runtime.select(0.0 <= slope_right_rear_elbow_up_alike, _runtime.select(t586, -(t557 * t585), 0.0), t590)
+    del t557, t585, t586, t590
+    near_on_both_rear_elbow_up_alike = _runtime.select(t516, np.maximum(np.maximum(0.0, t584), t591), 0.0)
+    del t584, t591
+    t592 = slope_right_rear_elbow_up_alike - t549 * near_on_both_rear_elbow_up_alike
+    t593 = t545 + near_on_both_rear_elbow_up_alike * t592
+    del t592
+    t594 = _runtime.select(0.0 < -t593, far_on_0_both_rear_elbow_up_alike, 0.0)
+    del far_on_0_both_rear_elbow_up_alike, t593
+    t595 = np.maximum(near_on_both_rear_elbow_up_alike, t594)
+    del t594
+    t596 = slope_left_rear_elbow_up_alike - t524 * near_on_both_rear_elbow_up_alike
+    t597 = t520 + near_on_both_rear_elbow_up_alike * t596
+    del near_on_both_rear_elbow_up_alike, t596
+    t598 = _runtime.select(0.0 < -t597, far_on_1_both_rear_elbow_up_alike, 0.0)
+    del far_on_1_both_rear_elbow_up_alike, t597
+    turn_on_both_rear_elbow_up_alike = _runtime.select(t516, np.maximum(t595, t598), 0.0)
+    del t595, t598
+    t599 = slope_left_rear_elbow_up_alike - t524 * turn_on_both_rear_elbow_up_alike
+    del slope_left_rear_elbow_up_alike, t524
+    t600 = t520 + turn_on_both_rear_elbow_up_alike * t599
+    del t520, t599
+    t601 = slope_right_rear_elbow_up_alike - t549 * turn_on_both_rear_elbow_up_alike
+    del slope_right_rear_elbow_up_alike, t549
+    t602 = t545 + turn_on_both_rear_elbow_up_alike * t601
+    del t545, t601
+    left_on_both_rear_elbow_up_alike = _runtime.select(t516, np.minimum(t600, t602), 0.0)
+    del t600, t602
+    t603 = left_back_both_rear_elbow_up_alike <= left_on_both_rear_elbow_up_alike
+    del left_back_both_rear_elbow_up_alike, left_on_both_rear_elbow_up_alike
+    t604 = _runtime.select(t603, turn_on_both_rear_elbow_up_alike, -turn_back_both_rear_elbow_up_alike)
+    del t603, turn_back_both_rear_elbow_up_alike, turn_on_both_rear_elbow_up_alike
+    turn_both_rear_elbow_up_alike = _runtime.select(t516, t604, 0.0)
+    del t604
+    t605 = room_left_rear_elbow_up_alike * share_left_rear_elbow_up_alike
+    del room_left_rear_elbow_up_alike, share_left_rear_elbow_up_alike
+    t606 = t47 * heavy_1_left_rear_elbow_up_alike * 5.960464477539063e-08
+    del heavy_1_left_rear_elbow_up_alike
+    t607 = -(t605 * _runtime.sign(-t511) / (t512 + t606))
+    del t511, t512, t605, t606
+    aside_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t607, 0.0)
+    del spent_left_rear_elbow_up_alike, t607
+    t608 = room_right_rear_elbow_up_alike * share_right_rear_elbow_up_alike
+    del room_right_rear_elbow_up_alike, share_right_rear_elbow_up_alike
+    t609 = t47 * heavy_1_right_rear_elbow_up_alike * 5.960464477539063e-08
+    del heavy_1_right_rear_elbow_up_alike
+    t610 = -(t608 * _runtime.sign(-t495) / (t496 + t609))
+    del t495, t496, t608, t609
+    aside_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t610, 0.0)
+    del spent_right_rear_elbow_up_alike, t610
+    t611 = np.abs(aside_left_rear_elbow_up_alike) <= np.abs(aside_right_rear_elbow_up_alike)
+    t612 = _runtime.select(t611, aside_right_rear_elbow_up_alike, aside_left_rear_elbow_up_alike)
+    del aside_left_rear_elbow_up_alike, aside_right_rear_elbow_up_alike, t611
+    t613 = drawn_front_elbow_down_alike * turn_both_rear_elbow_up_alike
+    del drawn_front_elbow_down_alike
+    t614 = turn_both_rear_elbow_up_alike + t612 - t83 * t613
+    del t612, t613
+    lean_rear_elbow_up_alike = _runtime.select(t516, t614, 0.0)
+    del t614
+    t615 = lean_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    t616 = 1.0 + t615
+    t617 = 1.0 / np.sqrt(t616)
+    t618 = 1.0 / (t616 * (1.0 + t617))
+    del t616
+    t619 = elbow_11_rear_elbow_up_alike * t615 * t618 + t617 * (elbow_21 * lean_rear_elbow_up_alike)
+    t620 = turn_both_rear_elbow_up_alike * turn_both_rear_elbow_up_alike
+    t621 = elbow_11_rear_elbow_up_alike - r_right_0_rear_elbow_up_alike
+    t622 = 1.0 + t620
+    t623 = 1.0 / np.sqrt(t622)
+    t624 = 1.0 / (t622 * (1.0 + t623))
+    del t622
+    t625 = elbow_21 - h_right_0_rear_elbow_up_alike
+    t626 = t623 * (turn_both_rear_elbow_up_alike * t625)
+    t627 = t619 - t620 * t621 * t624 - t626
+    del t626
+    t628 = t627 * (t627 - 2.0 * r_right_0_rear_elbow_up_alike)
+    t629 = elbow_11_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    swing_21_rear_elbow_up_alike = t617 * t629 - t618 * (elbow_21 * t615)
+    del t615, t617, t618, t629
+    t630 = swing_21_rear_elbow_up_alike + t624 * (t620 * t625)
+    del t625
+    t631 = t623 * (turn_both_rear_elbow_up_alike * t621)
+    del t621
+    more_right_21_rear_elbow_up_alike = t630 - t631
+    del t630, t631
+    t632 = more_right_21_rear_elbow_up_alike + 2.0 * h_right_0_rear_elbow_up_alike
+    t633 = t628 + more_right_21_rear_elbow_up_alike * t632
+    del t628, t632
+    change_right_rear_elbow_up_alike = _runtime.select(t516, t633, 0.0)
+    del t633
+    t634 = nearer_right_rear_elbow_up_alike - change_right_rear_elbow_up_alike
+    del nearer_right_rear_elbow_up_alike
+    t635 = farther_right_rear_elbow_up_alike + change_right_rear_elbow_up_alike
+    del change_right_rear_elbow_up_alike, farther_right_rear_elbow_up_alike
+    t636 = t46 & t499 & t515 & (t102 <= t634) & (t102 <= t635)
+    del t499, t515
+    t637 = elbow_11_rear_elbow_up_alike - r_left_0_rear_elbow_up_alike
+    del elbow_11_rear_elbow_up_alike
+    t638 = elbow_21 - h_left_0_rear_elbow_up_alike
+    del elbow_21
+    t639 = t623 * (turn_both_rear_elbow_up_alike * t638)
+    t640 = t619 - t624 * (t620 * t637) - t639
+    del t619, t639
+    t641 = t640 * (t640 - 2.0 * r_left_0_rear_elbow_up_alike)
+    t642 = swing_21_rear_elbow_up_alike + t624 * (t620 * t638)
+    del swing_21_rear_elbow_up_alike, t620, t624, t638
+    t643 = t623 * (turn_both_rear_elbow_up_alike * t637)
+    del t623, t637
+    more_left_21_rear_elbow_up_alike = t642 - t643
+    del t642, t643
+    t644 = more_left_21_rear_elbow_up_alike + 2.0 * h_left_0_rear_elbow_up_alike
+    t645 = t641 + more_left_21_rear_elbow_up_alike * t644
+    del t641, t644
+    change_left_rear_elbow_up_alike = _runtime.select(t516, t645, 0.0)
+    del t645
+    t646 = -(t503 + change_left_rear_elbow_up_alike)
+    del t503
+    t647 = farther_left_rear_elbow_up_alike + change_left_rear_elbow_up_alike
+    del change_left_rear_elbow_up_alike, farther_left_rear_elbow_up_alike
+    unreachable_3 = np.logical_not(t636 & (t102 <= t646) & (t102 <= t647))
+    del t636
+    t648 = _runtime.poison(invalid | unreachable_3)
+    t649 = t471 + t648
+    t650 = h_right_0_rear_elbow_up_alike + more_right_21_rear_elbow_up_alike
+    del more_right_21_rear_elbow_up_alike
+    h_right_rear_elbow_up_alike = _runtime.select(t516, t650, h_right_0_rear_elbow_up_alike)
+    del h_right_0_rear_elbow_up_alike, t650
+    r_right_rear_elbow_up_alike = _runtime.select(t516, r_right_0_rear_elbow_up_alike - t627, r_right_0_rear_elbow_up_alike)
+    del r_right_0_rear_elbow_up_alike, t627
+    t651 = np.abs(h_right_rear_elbow_up_alike) + np.abs(r_right_rear_elbow_up_alike)
+    folded_right_rear_elbow_up_alike = t651 <= t204
+    del t651
+    t652 = np.arctan2(stheta2A, ctheta2A_rear_elbow_up_alike)
+    del ctheta2A_rear_elbow_up_alike, stheta2A
+    M_right_rear_elbow_up_alike = np.maximum(t635, t207)
+    del t635
+    N_right_rear_elbow_up_alike = np.maximum(t634, t207)
+    del t634
+    whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
+    t653 = 1.0 / whole_right_rear_elbow_up_alike
+    del whole_right_rear_elbow_up_alike
+    t654 = t69 + t206 * M_right_rear_elbow_up_alike * t653
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t654)
+    del t654
+    t655 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t656 = turn_both_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    t657 = turn_both_rear_elbow_up_alike - lean_rear_elbow_up_alike
+    del lean_rear_elbow_up_alike, turn_both_rear_elbow_up_alike
+    t658 = t255 * (1.0 + t656) - straight_mid_front_elbow_down_alike * t657
+    del straight_mid_front_elbow_down_alike, t656, t657
+    sigma_right_rear_elbow_up_alike = _runtime.sign(-_runtime.select(t516, t658, t255))
+    del t255, t658
+    t659 = 2.0 * sigma_right_rear_elbow_up_alike
+    t660 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
+    t661 = np.sqrt(t660)
+    del t660
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t653 * (t659 * t661))
+    del t653
+    t662 = fore_arm * s_bend_right_rear_elbow_up_alike
+    del s_bend_right_rear_elbow_up_alike
+    t663 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    del ahead_1_right_rear_elbow_up_alike
+    t664 = np.arctan2(t655 - r_right_rear_elbow_up_alike * t662, t663 + h_right_rear_elbow_up_alike * t662)
+    del h_right_rear_elbow_up_alike, r_right_rear_elbow_up_alike, t655, t662, t663
+    t665 = _runtime.select(folded_right_rear_elbow_up_alike, t652, t664)
+    del t664
+    t666 = _runtime.wrap_cut(t665) + t648
+    del t665
+    t667 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
+    del M_right_rear_elbow_up_alike, N_right_rear_elbow_up_alike
+    t668 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t661, t667)
+    del t661, t667
+    t669 = t217 + _runtime.select(short_right, 0.0, t668)
+    del t668
+    t670 = _runtime.wrap(t669) + t648
+    del t669
+    t671 = h_left_0_rear_elbow_up_alike + more_left_21_rear_elbow_up_alike
+    del more_left_21_rear_elbow_up_alike
+    h_left_rear_elbow_up_alike = _runtime.select(t516, t671, h_left_0_rear_elbow_up_alike)
+    del h_left_0_rear_elbow_up_alike, t671
+    r_left_rear_elbow_up_alike = _runtime.select(t516, r_left_0_rear_elbow_up_alike - t640, r_left_0_rear_elbow_up_alike)
+    del r_left_0_rear_elbow_up_alike, t516, t640
+    t672 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
+    folded_left_rear_elbow_up_alike = t672 <= t204
+    del t672
+    M_left_rear_elbow_up_alike = np.maximum(t647, 0.0)
+    del t647
+    N_left_rear_elbow_up_alike = np.maximum(t646, 0.0)
+    del t646
+    whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
+    t673 = 1.0 / whole_left_rear_elbow_up_alike
+    del whole_left_rear_elbow_up_alike
+    t674 = t69 + t206 * M_left_rear_elbow_up_alike * t673
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t674)
+    del t674
+    t675 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t676 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
+    t677 = np.sqrt(t676)
+    del t676
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t673 * (t659 * t677))
+    del t659, t673
+    t678 = fore_arm * s_bend_left_rear_elbow_up_alike
+    del s_bend_left_rear_elbow_up_alike
+    t679 = r_left_rear_elbow_up_alike * t678
+    t680 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    del ahead_1_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike
+    t681 = h_left_rear_elbow_up_alike * t678
+    del h_left_rear_elbow_up_alike, t678
+    t682 = _runtime.select(folded_left_rear_elbow_up_alike, t652, np.arctan2(t675 - t679, t680 + t681))
+    t683 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
+    del M_left_rear_elbow_up_alike, N_left_rear_elbow_up_alike
+    t684 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t677, t683)
+    del sigma_right_rear_elbow_up_alike, t677, t683
+    t685 = _runtime.select(short_right, 0.0, t684)
+    del t684
+    t686 = t231 + t648
+    t687 = _runtime.select(folded_left_rear_elbow_up_alike, t652, np.arctan2(t675 + t679, t680 - t681))
+    del t652, t675, t679, t680, t681
+    ctheta2A_rear_elbow_down_alike = _runtime.select(folded, 1.0, -t237)
+    del t237
+    ctheta23A_rear_elbow_down_alike = c_relative * ctheta2A_rear_elbow_down_alike - s_relative * stheta2A_front_elbow_down_alike
+    t688 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    stheta23A_rear_elbow_down_alike = c_relative * stheta2A_front_elbow_down_alike + s_relative * ctheta2A_rear_elbow_down_alike
+    del c_relative, s_relative
+    point_21_rear_elbow_down_alike = t688 + a3 * stheta23A_rear_elbow_down_alike
+    del t688
+    t689 = t18 * (t_psi * ctheta23A_rear_elbow_down_alike)
+    t690 = t689 + t_phi * stheta23A_rear_elbow_down_alike
+    del t689
+    t691 = d * t690
+    del t690
+    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t691
+    t692 = h_right_0_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    elbow_11_rear_elbow_down_alike = L1 * ctheta2A_rear_elbow_down_alike
+    t693 = elbow_11_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t693 + a3 * ctheta23A_rear_elbow_down_alike
+    del t693
+    t694 = t18 * (t_psi * stheta23A_rear_elbow_down_alike)
+    del stheta23A_rear_elbow_down_alike, t18, t_psi
+    t695 = t_phi * ctheta23A_rear_elbow_down_alike - t694
+    del ctheta23A_rear_elbow_down_alike, t694, t_phi
+    t696 = d * t695
+    del t695
+    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t696
+    t697 = r_right_0_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t698 = t692 + t697
+    del t692, t697
+    gap_rear_elbow_down_alike = t696 * t696 + t691 * t691
+    t699 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t700 = M_mid + gap_rear_elbow_down_alike
+    t701 = 2.0 * point_11_rear_elbow_down_alike * t696 + 2.0 * point_21_rear_elbow_down_alike * t691
+    farther_right_rear_elbow_down_alike = _runtime.select(t48 * t698 < t699, t698 - t70, t700 - t701)
+    del t698
+    t702 = N_mid - gap_rear_elbow_down_alike
+    del N_mid
+    nearer_right_rear_elbow_down_alike = t701 + t702
+    room_right_rear_elbow_down_alike = np.minimum(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
+    t703 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t704 = np.maximum(-t703, room_right_rear_elbow_down_alike)
+    del t703
+    spent_right_rear_elbow_down_alike = t704 <= t77
+    del t704
+    t705 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t706 = stheta2A_front_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t707 = nearer_right_rear_elbow_down_alike <= farther_right_rear_elbow_down_alike
+    t708 = _runtime.select(t707, 1.0, -1.0)
+    del t707
+    t709 = (t705 - t706) * t708
+    del t705, t706
+    slope_right_rear_elbow_down_alike = t80 * t709
+    heavy_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t87, 1.0)
+    t710 = np.abs(slope_right_rear_elbow_down_alike) / heavy_0_right_rear_elbow_down_alike
+    gain_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t710, 0.0)
+    del t710
+    t711 = t39 * t709
+    del t709
+    t712 = np.abs(t711)
+    heavy_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t90, 1.0)
+    gain_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t712 / heavy_1_right_rear_elbow_down_alike, 0.0)
+    t713 = gain_0_right_rear_elbow_down_alike + gain_1_right_rear_elbow_down_alike
+    t714 = _runtime.select(spent_right_rear_elbow_down_alike, t713, 0.0)
+    del t713
+    t715 = -(_runtime.FEASIBILITY * (t47 + t714)) <= room_right_rear_elbow_down_alike
+    del t714
+    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t691
+    del point_21_rear_elbow_down_alike, t691
+    t716 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t696
+    del point_11_rear_elbow_down_alike, t696
+    t717 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t718 = t716 + t717
+    del t716, t717
+    farther_left_rear_elbow_down_alike = _runtime.select(t48 * t718 < t699, t718 - t70, t700 + t701)
+    del t699, t700, t718
+    t719 = t701 - t702
+    del t701, t702
+    room_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, -t719)
+    t720 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t721 = np.maximum(-t720, room_left_rear_elbow_down_alike)
+    del t720
+    spent_left_rear_elbow_down_alike = t721 <= t77
+    del t721, t77
+    t722 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    t723 = stheta2A_front_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t724 = _runtime.select(-t719 <= farther_left_rear_elbow_down_alike, 1.0, -1.0)
+    t725 = (t722 - t723) * t724
+    del t722, t723
+    slope_left_rear_elbow_down_alike = t80 * t725
+    del t80
+    heavy_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t87, 1.0)
+    del t87
+    t726 = np.abs(slope_left_rear_elbow_down_alike) / heavy_0_left_rear_elbow_down_alike
+    gain_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t726, 0.0)
+    del t726
+    t727 = t39 * t725
+    del t39, t725
+    t728 = np.abs(t727)
+    heavy_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t90, 1.0)
+    del t90
+    gain_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t728 / heavy_1_left_rear_elbow_down_alike, 0.0)
+    t729 = gain_0_left_rear_elbow_down_alike + gain_1_left_rear_elbow_down_alike
+    t730 = _runtime.select(spent_left_rear_elbow_down_alike, t729, 0.0)
+    del t729
+    t731 = -(_runtime.FEASIBILITY * (t47 + t730)) <= room_left_rear_elbow_down_alike
+    del t730
+    t732 = spent_left_rear_elbow_down_alike | spent_right_rear_elbow_down_alike
+    t733 = gain_1_left_rear_elbow_down_alike * gain_1_left_rear_elbow_down_alike
+    del gain_1_left_rear_elbow_down_alike
+    t734 = gain_0_left_rear_elbow_down_alike * gain_0_left_rear_elbow_down_alike
+    del gain_0_left_rear_elbow_down_alike
+    t735 = _runtime.select(room_left_rear_elbow_down_alike < 0.0, t733 / (t105 + t733 + t734), 0.0)
+    del t733, t734
+    share_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t735, 0.0)
+    del t735
+    t736 = room_left_rear_elbow_down_alike * (1.0 - share_left_rear_elbow_down_alike)
+    t737 = heavy_0_left_rear_elbow_down_alike * t736
+    t738 = ctheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t739 = stheta2A_front_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    t740 = t83 * (t109 * t724 * (L1 - t738 - t739))
+    del t724, t738, t739
+    t741 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t742 = np.sqrt(np.maximum(0.0, 4.0 * t736 * t740 + t741))
+    del t741
+    root_on_1_both_rear_elbow_down_alike = _runtime.select(t732, t742, 0.0)
+    del t742
+    t743 = slope_left_rear_elbow_down_alike - root_on_1_both_rear_elbow_down_alike
+    t744 = t47 * heavy_0_left_rear_elbow_down_alike
+    t745 = t744 * 5.960464477539063e-08
+    t746 = 1.0 / (t743 - t745)
+    t747 = (t737 * t746 <= 4.547473508864641e-13) & (0.0 < t736 * t746)
+    t748 = 2.0 * t736
+    t749 = 0.0 < -t736
+    t750 = slope_left_rear_elbow_down_alike + root_on_1_both_rear_elbow_down_alike
+    del root_on_1_both_rear_elbow_down_alike
+    t751 = t744 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t740)
+    del t744
+    t752 = 1.0 / t751
+    del t751
+    t753 = heavy_0_left_rear_elbow_down_alike * t750 * t752
+    t754 = t750 * t752
+    t755 = (t753 <= 9.094947017729282e-13) & (0.0 < t754)
+    del t753
+    far_back_1_both_rear_elbow_down_alike = _runtime.select(t732, _runtime.select(t755, t754, 0.0), 0.0)
+    del t754, t755
+    t756 = _runtime.select(t749, far_back_1_both_rear_elbow_down_alike, 0.0)
+    t757 = _runtime.select(slope_left_rear_elbow_down_alike <= 0.0, _runtime.select(t747, t746 * t748, 0.0), t756)
+    del t746, t747, t756
+    t758 = gain_1_right_rear_elbow_down_alike * gain_1_right_rear_elbow_down_alike
+    del gain_1_right_rear_elbow_down_alike
+    t759 = gain_0_right_rear_elbow_down_alike * gain_0_right_rear_elbow_down_alike
+    del gain_0_right_rear_elbow_down_alike
+    t760 = _runtime.select(room_right_rear_elbow_down_alike < 0.0, t758 / (t105 + t758 + t759), 0.0)
+    del t105, t758, t759
+    share_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t760, 0.0)
+    del t760
+    t761 = room_right_rear_elbow_down_alike * (1.0 - share_right_rear_elbow_down_alike)
+    t762 = heavy_0_right_rear_elbow_down_alike * t761
+    t763 = ctheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t764 = stheta2A_front_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t765 = t83 * (t109 * t708 * (L1 - t763 - t764))
+    del t109, t708, t763, t764
+    t766 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
+    t767 = np.sqrt(np.maximum(0.0, 4.0 * t761 * t765 + t766))
+    del t766
+    root_on_0_both_rear_elbow_down_alike = _runtime.select(t732, t767, 0.0)
+    del t767
+    t768 = slope_right_rear_elbow_down_alike - root_on_0_both_rear_elbow_down_alike
+    t769 = t47 * heavy_0_right_rear_elbow_down_alike
+    t770 = t769 * 5.960464477539063e-08
+    t771 = 1.0 / (t768 - t770)
+    t772 = (t762 * t771 <= 4.547473508864641e-13) & (0.0 < t761 * t771)
+    t773 = 2.0 * t761
+    t774 = 0.0 < -t761
+    t775 = slope_right_rear_elbow_down_alike + root_on_0_both_rear_elbow_down_alike
+    del root_on_0_both_rear_elbow_down_alike
+    t776 = t769 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t765)
+    del t769
+    t777 = 1.0 / t776
+    del t776
+    t778 = heavy_0_right_rear_elbow_down_alike * t775 * t777
+    t779 = t775 * t777
+    t780 = (t778 <= 9.094947017729282e-13) & (0.0 < t779)
+    del t778
+    far_back_0_both_rear_elbow_down_alike = _runtime.select(t732, _runtime.select(t780, t779, 0.0), 0.0)
+    del t779, t780
+    t781 = _runtime.select(t774, far_back_0_both_rear_elbow_down_alike, 0.0)
+    t782 = _runtime.select(slope_right_rear_elbow_down_alike <= 0.0, _runtime.select(t772, t771 * t773, 0.0), t781)
+    del t771, t772, t781
+    near_back_both_rear_elbow_down_alike = _runtime.select(t732, np.maximum(np.maximum(0.0, t757), t782), 0.0)
+    del t757, t782
+    t783 = slope_right_rear_elbow_down_alike + t765 * near_back_both_rear_elbow_down_alike
+    t784 = near_back_both_rear_elbow_down_alike * t783 - t761
+    del t783
+    t785 = _runtime.select(0.0 < t784, far_back_0_both_rear_elbow_down_alike, 0.0)
+    del far_back_0_both_rear_elbow_down_alike, t784
+    t786 = np.maximum(near_back_both_rear_elbow_down_alike, t785)
+    del t785
+    t787 = slope_left_rear_elbow_down_alike + t740 * near_back_both_rear_elbow_down_alike
+    t788 = near_back_both_rear_elbow_down_alike * t787 - t736
+    del near_back_both_rear_elbow_down_alike, t787
+    t789 = _runtime.select(0.0 < t788, far_back_1_both_rear_elbow_down_alike, 0.0)
+    del far_back_1_both_rear_elbow_down_alike, t788
+    turn_back_both_rear_elbow_down_alike = _runtime.select(t732, np.maximum(t786, t789), 0.0)
+    del t786, t789
+    t790 = slope_left_rear_elbow_down_alike + t740 * turn_back_both_rear_elbow_down_alike
+    t791 = t736 - turn_back_both_rear_elbow_down_alike * t790
+    del t790
+    t792 = slope_right_rear_elbow_down_alike + t765 * turn_back_both_rear_elbow_down_alike
+    t793 = t761 - turn_back_both_rear_elbow_down_alike * t792
+    del t792
+    left_back_both_rear_elbow_down_alike = _runtime.select(t732, np.minimum(t791, t793), 0.0)
+    del t791, t793
+    t794 = 1.0 / (t745 + t750)
+    del t745, t750
+    t795 = (-(t737 * t794) <= 4.547473508864641e-13) & (0.0 < -(t736 * t794))
+    del t737
+    t796 = t752 * (heavy_0_left_rear_elbow_down_alike * t743)
+    del heavy_0_left_rear_elbow_down_alike
+    t797 = -(t743 * t752)
+    del t743, t752
+    t798 = (-t796 <= 9.094947017729282e-13) & (0.0 < t797)
+    del t796
+    far_on_1_both_rear_elbow_down_alike = _runtime.select(t732, _runtime.select(t798, t797, 0.0), 0.0)
+    del t797, t798
+    t799 = _runtime.select(t749, far_on_1_both_rear_elbow_down_alike, 0.0)
+    del t749
+    t800 = _runtime.select(0.0 <= slope_left_rear_elbow_down_alike, _runtime.select(t795, -(t748 * t794), 0.0), t799)
+    del t748, t794, t795, t799
+    t801 = 1.0 / (t770 + t775)
+    del t770, t775
+    t802 = (-(t762 * t801) <= 4.547473508864641e-13) & (0.0 < -(t761 * t801))
+    del t762
+    t803 = t777 * (heavy_0_right_rear_elbow_down_alike * t768)
+    del heavy_0_right_rear_elbow_down_alike
+    t804 = -(t768 * t777)
+    del t768, t777
+    t805 = (-t803 <= 9.094947017729282e-13) & (0.0 < t804)
+    del t803
+    far_on_0_both_rear_elbow_down_alike = _runtime.select(t732, _runtime.select(t805, t804, 0.0), 0.0)
+    del t804, t805
+    t806 = _runtime.select(t774, far_on_0_both_rear_elbow_down_alike, 0.0)
+    del t774
+    t807 = _runtime.select(0.0 <= slope_right_rear_elbow_down_alike, _runtime.select(t802, -(t773 * t801), 0.0), t806)
+    del t773, t801, t802, t806
+    near_on_both_rear_elbow_down_alike = _runtime.select(t732, np.maximum(np.maximum(0.0, t800), t807), 0.0)
+    del t800, t807
+    t808 = slope_right_rear_elbow_down_alike - t765 * near_on_both_rear_elbow_down_alike
+    t809 = t761 + near_on_both_rear_elbow_down_alike * t808
+    del t808
+    t810 = _runtime.select(0.0 < -t809, far_on_0_both_rear_elbow_down_alike, 0.0)
+    del far_on_0_both_rear_elbow_down_alike, t809
+    t811 = np.maximum(near_on_both_rear_elbow_down_alike, t810)
+    del t810
+    t812 = slope_left_rear_elbow_down_alike - t740 * near_on_both_rear_elbow_down_alike
+    t813 = t736 + near_on_both_rear_elbow_down_alike * t812
+    del near_on_both_rear_elbow_down_alike, t812
+    t814 = _runtime.select(0.0 < -t813, far_on_1_both_rear_elbow_down_alike, 0.0)
+    del far_on_1_both_rear_elbow_down_alike, t813
+    turn_on_both_rear_elbow_down_alike = _runtime.select(t732, np.maximum(t811, t814), 0.0)
+    del t811, t814
+    t815 = slope_left_rear_elbow_down_alike - t740 * turn_on_both_rear_elbow_down_alike
+    del slope_left_rear_elbow_down_alike, t740
+    t816 = t736 + turn_on_both_rear_elbow_down_alike * t815
+    del t736, t815
+    t817 = slope_right_rear_elbow_down_alike - t765 * turn_on_both_rear_elbow_down_alike
+    del slope_right_rear_elbow_down_alike, t765
+    t818 = t761 + turn_on_both_rear_elbow_down_alike * t817
+    del t761, t817
+    left_on_both_rear_elbow_down_alike = _runtime.select(t732, np.minimum(t816, t818), 0.0)
+    del t816, t818
+    t819 = left_back_both_rear_elbow_down_alike <= left_on_both_rear_elbow_down_alike
+    del left_back_both_rear_elbow_down_alike, left_on_both_rear_elbow_down_alike
+    t820 = _runtime.select(t819, turn_on_both_rear_elbow_down_alike, -turn_back_both_rear_elbow_down_alike)
+    del t819, turn_back_both_rear_elbow_down_alike, turn_on_both_rear_elbow_down_alike
+    turn_both_rear_elbow_down_alike = _runtime.select(t732, t820, 0.0)
+    del t820
+    t821 = room_left_rear_elbow_down_alike * share_left_rear_elbow_down_alike
+    del room_left_rear_elbow_down_alike, share_left_rear_elbow_down_alike
+    t822 = t47 * heavy_1_left_rear_elbow_down_alike * 5.960464477539063e-08
+    del heavy_1_left_rear_elbow_down_alike
+    t823 = -(t821 * _runtime.sign(-t727) / (t728 + t822))
+    del t727, t728, t821, t822
+    aside_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t823, 0.0)
+    del spent_left_rear_elbow_down_alike, t823
+    t824 = room_right_rear_elbow_down_alike * share_right_rear_elbow_down_alike
+    del room_right_rear_elbow_down_alike, share_right_rear_elbow_down_alike
+    t825 = t47 * heavy_1_right_rear_elbow_down_alike * 5.960464477539063e-08
+    del heavy_1_right_rear_elbow_down_alike, t47
+    t826 = -(t824 * _runtime.sign(-t711) / (t712 + t825))
+    del t711, t712, t824, t825
+    aside_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t826, 0.0)
+    del spent_right_rear_elbow_down_alike, t826
+    t827 = np.abs(aside_left_rear_elbow_down_alike) <= np.abs(aside_right_rear_elbow_down_alike)
+    t828 = _runtime.select(t827, aside_right_rear_elbow_down_alike, aside_left_rear_elbow_down_alike)
+    del aside_left_rear_elbow_down_alike, aside_right_rear_elbow_down_alike, t827
+    t829 = t83 * (drawn * turn_both_rear_elbow_down_alike)
+    del drawn, t83
+    t830 = turn_both_rear_elbow_down_alike + t828 - t829
+    del t828, t829
+    lean_rear_elbow_down_alike = _runtime.select(t732, t830, 0.0)
+    del t830
+    t831 = lean_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t832 = 1.0 + t831
+    t833 = 1.0 / np.sqrt(t832)
+    t834 = 1.0 / (t832 * (1.0 + t833))
+    del t832
+    t835 = elbow_21_front_elbow_down_alike * lean_rear_elbow_down_alike
+    t836 = elbow_11_rear_elbow_down_alike * t831 * t834 + t833 * t835
+    del t835
+    t837 = turn_both_rear_elbow_down_alike * turn_both_rear_elbow_down_alike
+    t838 = elbow_11_rear_elbow_down_alike - r_right_0_rear_elbow_down_alike
+    t839 = 1.0 + t837
+    t840 = 1.0 / np.sqrt(t839)
+    t841 = 1.0 / (t839 * (1.0 + t840))
+    del t839
+    t842 = elbow_21_front_elbow_down_alike - h_right_0_rear_elbow_down_alike
+    t843 = t840 * (turn_both_rear_elbow_down_alike * t842)
+    t844 = t836 - t837 * t838 * t841 - t843
+    del t843
+    t845 = t844 * (t844 - 2.0 * r_right_0_rear_elbow_down_alike)
+    t846 = elbow_11_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t847 = t834 * (elbow_21_front_elbow_down_alike * t831)
+    del t831, t834
+    swing_21_rear_elbow_down_alike = t833 * t846 - t847
+    del t833, t846, t847
+    t848 = swing_21_rear_elbow_down_alike + t841 * (t837 * t842)
+    del t842
+    t849 = t840 * (turn_both_rear_elbow_down_alike * t838)
+    del t838
+    more_right_21_rear_elbow_down_alike = t848 - t849
+    del t848, t849
+    t850 = more_right_21_rear_elbow_down_alike + 2.0 * h_right_0_rear_elbow_down_alike
+    t851 = t845 + more_right_21_rear_elbow_down_alike * t850
+    del t845, t850
+    change_right_rear_elbow_down_alike = _runtime.select(t732, t851, 0.0)
+    del t851
+    t852 = nearer_right_rear_elbow_down_alike - change_right_rear_elbow_down_alike
+    del nearer_right_rear_elbow_down_alike
+    t853 = farther_right_rear_elbow_down_alike + change_right_rear_elbow_down_alike
+    del change_right_rear_elbow_down_alike, farther_right_rear_elbow_down_alike
+    t854 = t46 & t715 & t731 & (t102 <= t852) & (t102 <= t853)
+    del t46, t715, t731
+    t855 = elbow_11_rear_elbow_down_alike - r_left_0_rear_elbow_down_alike
+    del elbow_11_rear_elbow_down_alike
+    t856 = elbow_21_front_elbow_down_alike - h_left_0_rear_elbow_down_alike
+    del elbow_21_front_elbow_down_alike
+    t857 = t840 * (turn_both_rear_elbow_down_alike * t856)
+    t858 = t836 - t841 * (t837 * t855) - t857
+    del t836, t857
+    t859 = t858 * (t858 - 2.0 * r_left_0_rear_elbow_down_alike)
+    t860 = swing_21_rear_elbow_down_alike + t841 * (t837 * t856)
+    del swing_21_rear_elbow_down_alike, t837, t841, t856
+    t861 = t840 * (turn_both_rear_elbow_down_alike * t855)
+    del t840, t855
+    more_left_21_rear_elbow_down_alike = t860 - t861
+    del t860, t861
+    t862 = more_left_21_rear_elbow_down_alike + 2.0 * h_left_0_rear_elbow_down_alike
+    t863 = t859 + more_left_21_rear_elbow_down_alike * t862
+    del t859, t862
+    change_left_rear_elbow_down_alike = _runtime.select(t732, t863, 0.0)
+    del t863
+    t864 = -(t719 + change_left_rear_elbow_down_alike)
+    del t719
+    t865 = farther_left_rear_elbow_down_alike + change_left_rear_elbow_down_alike
+    del change_left_rear_elbow_down_alike, farther_left_rear_elbow_down_alike
+    unreachable_4 = np.logical_not(t854 & (t102 <= t864) & (t102 <= t865))
+    del t102, t854
+    t866 = _runtime.poison(invalid | unreachable_4)
+    t867 = t471 + t866
+    del t471
+    t868 = h_right_0_rear_elbow_down_alike + more_right_21_rear_elbow_down_alike
+    del more_right_21_rear_elbow_down_alike
+    h_right_rear_elbow_down_alike = _runtime.select(t732, t868, h_right_0_rear_elbow_down_alike)
+    del h_right_0_rear_elbow_down_alike, t868
+    r_right_rear_elbow_down_alike = _runtime.select(t732, r_right_0_rear_elbow_down_alike - t844, r_right_0_rear_elbow_down_alike)
+    del r_right_0_rear_elbow_down_alike, t844
+    t869 = np.abs(h_right_rear_elbow_down_alike) + np.abs(r_right_rear_elbow_down_alike)
+    folded_right_rear_elbow_down_alike = t869 <= t204
+    del t869
+    t870 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    del ctheta2A_rear_elbow_down_alike, stheta2A_front_elbow_down_alike
+    M_right_rear_elbow_down_alike = np.maximum(t853, t207)
+    del t853
+    N_right_rear_elbow_down_alike = np.maximum(t852, t207)
+    del t207, t852
+    whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
+    t871 = 1.0 / whole_right_rear_elbow_down_alike
+    del whole_right_rear_elbow_down_alike
+    t872 = t69 + t206 * M_right_rear_elbow_down_alike * t871
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t872)
+    del t872
+    t873 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t874 = turn_both_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t875 = turn_both_rear_elbow_down_alike - lean_rear_elbow_down_alike
+    del lean_rear_elbow_down_alike, turn_both_rear_elbow_down_alike
+    t876 = _runtime.select(t732, t72 * (1.0 + t874) - straight_mid * t875, t72)
+    del straight_mid, t72, t874, t875
+    sigma_right_rear_elbow_down_alike = _runtime.sign(-t876)
+    del t876
+    t877 = 2.0 * sigma_right_rear_elbow_down_alike
+    t878 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
+    t879 = np.sqrt(t878)
+    del t878
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t871 * (t877 * t879))
+    del t871
+    t880 = fore_arm * s_bend_right_rear_elbow_down_alike
+    del s_bend_right_rear_elbow_down_alike
+    t881 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    del ahead_1_right_rear_elbow_down_alike
+    t882 = np.arctan2(t873 - r_right_rear_elbow_down_alike * t880, t881 + h_right_rear_elbow_down_alike * t880)
+    del h_right_rear_elbow_down_alike, r_right_rear_elbow_down_alike, t873, t880, t881
+    t883 = _runtime.select(folded_right_rear_elbow_down_alike, t870, t882)
+    del t882
+    t884 = _runtime.wrap_cut(t883) + t866
+    del t883
+    t885 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
     del M_right_rear_elbow_down_alike, N_right_rear_elbow_down_alike
-    t371 = _runtime.select(short_right, 0.0, sigma_right * np.arctan2(2.0 * t363, t370))
-    del t363, t370
-    t372 = _runtime.wrap(t115 + t371) + t358
-    del t371
-    t373 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
-    folded_left_rear_elbow_down_alike = t373 <= t103
-    del t103, t373
-    M_left_rear_elbow_down_alike = np.maximum(t357, 0.0)
-    del t357
-    N_left_rear_elbow_down_alike = np.maximum(t351, 0.0)
-    del t351
+    t886 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t879, t885)
+    del t879, t885
+    t887 = t217 + _runtime.select(short_right, 0.0, t886)
+    del t886
+    t888 = _runtime.wrap(t887) + t866
+    del t887
+    t889 = h_left_0_rear_elbow_down_alike + more_left_21_rear_elbow_down_alike
+    del more_left_21_rear_elbow_down_alike
+    h_left_rear_elbow_down_alike = _runtime.select(t732, t889, h_left_0_rear_elbow_down_alike)
+    del h_left_0_rear_elbow_down_alike, t889
+    r_left_rear_elbow_down_alike = _runtime.select(t732, r_left_0_rear_elbow_down_alike - t858, r_left_0_rear_elbow_down_alike)
+    del r_left_0_rear_elbow_down_alike, t732, t858
+    t890 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
+    folded_left_rear_elbow_down_alike = t890 <= t204
+    del t204, t890
+    M_left_rear_elbow_down_alike = np.maximum(t865, 0.0)
+    del t865
+    N_left_rear_elbow_down_alike = np.maximum(t864, 0.0)
+    del t864
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t374 = 1.0 / whole_left_rear_elbow_down_alike
+    t891 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    t375 = t92 + t110 * M_left_rear_elbow_down_alike * t374
-    del t110, t92
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t375)
-    del size, t375
-    t376 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t377 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
-    t378 = np.sqrt(t377)
-    del t377
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t374 * (t107 * t378))
-    del t107, t374
-    t379 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t892 = t69 + t206 * M_left_rear_elbow_down_alike * t891
+    del t206, t69
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t892)
+    del size, t892
+    t893 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t894 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
+    t895 = np.sqrt(t894)
+    del t894
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t891 * (t877 * t895))
+    del t877, t891
+    t896 = fore_arm * s_bend_left_rear_elbow_down_alike
     del fore_arm, s_bend_left_rear_elbow_down_alike
-    t380 = r_left_rear_elbow_down_alike * t379
-    t381 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t897 = r_left_rear_elbow_down_alike * t896
+    t898 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     del ahead_1_left_rear_elbow_down_alike, r_left_rear_elbow_down_alike
-    t382 = h_left_rear_elbow_down_alike * t379
-    del h_left_rear_elbow_down_alike, t379
-    t383 = _runtime.select(folded_left_rear_elbow_down_alike, t360, np.arctan2(t376 - t380, t381 + t382))
-    t384 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
+    t899 = h_left_rear_elbow_down_alike * t896
+    del h_left_rear_elbow_down_alike, t896
+    t900 = _runtime.select(folded_left_rear_elbow_down_alike, t870, np.arctan2(t893 - t897, t898 + t899))
+    t901 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
     del M_left_rear_elbow_down_alike, N_left_rear_elbow_down_alike
-    t385 = _runtime.select(short_right, 0.0, sigma_right * np.arctan2(2.0 * t378, t384))
-    del sigma_right, t378, t384
-    t386 = t129 + t358
-    del t129
-    t387 = _runtime.select(folded_left_rear_elbow_down_alike, t360, np.arctan2(t376 + t380, t381 - t382))
-    del t360, t376, t380, t381, t382
-    t388 = nowhere | folded | short
+    t902 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t895, t901)
+    del sigma_right_rear_elbow_down_alike, t895, t901
+    t903 = _runtime.select(short_right, 0.0, t902)
+    del t902
+    t904 = t231 + t866
+    del t231
+    t905 = _runtime.select(folded_left_rear_elbow_down_alike, t870, np.arctan2(t893 + t897, t898 - t899))
+    del t870, t893, t897, t898, t899
+    t906 = nowhere | folded | short
     del folded, nowhere, short
-    square_mid = t93 + M_mid
-    t389 = M_mid * square_mid
+    square_mid = t70 + M_mid
+    t907 = M_mid * square_mid
     del M_mid
-    t390 = _runtime.DETERMINED * _runtime.DETERMINED
-    t391 = t79 * t390
-    t392 = square_mid <= t391
+    t908 = _runtime.DETERMINED * _runtime.DETERMINED
+    t909 = t48 * t908
+    t910 = square_mid <= t909
     del square_mid
-    t393 = wrist <= al * _runtime.DETERMINED
+    t911 = wrist <= al * _runtime.DETERMINED
     del wrist
-    t394 = t388 | (t389 <= t390 * (t79 * gap)) | t392 | t393
+    t912 = t906 | (t907 <= t908 * (t48 * gap)) | t910 | t911
     del gap
-    t395 = t394 | folded_right | short_right | folded_left
-    del folded_left, folded_right, t394
-    t396 = _runtime.status(invalid, unreachable, t395)
-    del t395, unreachable
-    square_mid_front_elbow_down_alike = t93 + M_mid_front_elbow_down_alike
-    del t93
-    t397 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t913 = t912 | folded_right | short_right | folded_left
+    del folded_left, folded_right, t912
+    t914 = _runtime.status(invalid, unreachable, t913)
+    del t913, unreachable
+    square_mid_front_elbow_down_alike = t70 + M_mid_front_elbow_down_alike
+    del t70
+    t915 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t398 = t397 <= t390 * (t79 * gap_front_elbow_down_alike)
+    t916 = t915 <= t908 * (t48 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t399 = square_mid_front_elbow_down_alike <= t391
-    del square_mid_front_elbow_down_alike, t391
-    t400 = t388 | t398 | t399 | t393 | folded_right_front_elbow_down_alike
-    del folded_right_front_elbow_down_alike, t398
-    t401 = t400 | short_right | folded_left_front_elbow_down_alike
-    del folded_left_front_elbow_down_alike, t400
-    t402 = _runtime.status(invalid, unreachable_2, t401)
-    del t401, unreachable_2
-    t403 = t397 <= t390 * (t79 * gap_rear_elbow_up_alike)
-    del gap_rear_elbow_up_alike, t397
-    t404 = t388 | t403 | t399 | t393 | folded_right_rear_elbow_up_alike
-    del folded_right_rear_elbow_up_alike, t399, t403
-    t405 = t404 | short_right | folded_left_rear_elbow_up_alike
-    del folded_left_rear_elbow_up_alike, t404
-    t406 = _runtime.status(invalid, unreachable_3, t405)
-    del t405, unreachable_3
-    t407 = t389 <= t390 * (t79 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t389, t390, t79
-    t408 = t388 | t407 | t392 | t393 | folded_right_rear_elbow_down_alike
-    del folded_right_rear_elbow_down_alike, t388, t392, t393, t407
-    t409 = t408 | short_right | folded_left_rear_elbow_down_alike
-    del folded_left_rear_elbow_down_alike, short_right, t408
-    t410 = _runtime.status(invalid, unreachable_4, t409)
-    del invalid, t409, unreachable_4
+    t917 = square_mid_front_elbow_down_alike <= t909
+    del square_mid_front_elbow_down_alike, t909
+    t918 = t906 | t916 | t917 | t911 | folded_right_front_elbow_down_alike
+    del folded_right_front_elbow_down_alike, t916
+    t919 = t918 | short_right | folded_left_front_elbow_down_alike
+    del folded_left_front_elbow_down_alike, t918
+    t920 = _runtime.status(invalid, unreachable_2, t919)
+    del t919, unreachable_2
+    t921 = t915 <= t908 * (t48 * gap_rear_elbow_up_alike)
+    del gap_rear_elbow_up_alike, t915
+    t922 = t906 | t921 | t917 | t911 | folded_right_rear_elbow_up_alike
+    del folded_right_rear_elbow_up_alike, t917, t921
+    t923 = t922 | short_right | folded_left_rear_elbow_up_alike
+    del folded_left_rear_elbow_up_alike, t922
+    t924 = _runtime.status(invalid, unreachable_3, t923)
+    del t923, unreachable_3
+    t925 = t907 <= t908 * (t48 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t48, t907, t908
+    t926 = t906 | t925 | t910 | t911 | folded_right_rear_elbow_down_alike
+    del folded_right_rear_elbow_down_alike, t906, t910, t911, t925
+    t927 = t926 | short_right | folded_left_rear_elbow_down_alike
+    del folded_left_rear_elbow_down_alike, short_right, t926
+    t928 = _runtime.status(invalid, unreachable_4, t927)
+    del invalid, t927, unreachable_4
     return (
-        t102,
-        t113,
-        t118,
-        _runtime.wrap_cut(t126) + t101,
-        _runtime.wrap(t115 + t128) + t101,
-        t130,
-        t102,
-        t113,
-        t118,
-        _runtime.wrap_cut(t131) + t101,
-        _runtime.wrap(t115 - t128) + t101,
-        t130,
-        t196,
-        t207,
-        t211,
-        _runtime.wrap_cut(t222) + t195,
-        _runtime.wrap(t115 + t225) + t195,
-        t226,
-        t196,
-        t207,
-        t211,
-        _runtime.wrap_cut(t227) + t195,
-        _runtime.wrap(t115 - t225) + t195,
-        t226,
-        t280,
-        t290,
-        t294,
-        _runtime.wrap_cut(t305) + t279,
-        _runtime.wrap(t115 + t308) + t279,
-        t309,
-        t280,
-        t290,
-        t294,
-        _runtime.wrap_cut(t310) + t279,
-        _runtime.wrap(t115 - t308) + t279,
-        t309,
-        t359,
-        t369,
-        t372,
-        _runtime.wrap_cut(t383) + t358,
-        _runtime.wrap(t115 + t385) + t358,
-        t386,
-        t359,
-        t369,
-        t372,
-        _runtime.wrap_cut(t387) + t358,
-        _runtime.wrap(t115 - t385) + t358,
-        t386,
-        t396,
-        t396,
-        t402,
-        t402,
-        t406,
-        t406,
-        t410,
-        t410,
+        t203,
+        t215,
+        t220,
+        _runtime.wrap_cut(t228) + t202,
+        _runtime.wrap(t217 + t230) + t202,
+        t232,
+        t203,
+        t215,
+        t220,
+        _runtime.wrap_cut(t233) + t202,
+        _runtime.wrap(t217 - t230) + t202,
+        t232,
+        t432,
+        t449,
+        t453,
+        _runtime.wrap_cut(t465) + t431,
+        _runtime.wrap(t217 + t468) + t431,
+        t469,
+        t432,
+        t449,
+        t453,
+        _runtime.wrap_cut(t470) + t431,
+        _runtime.wrap(t217 - t468) + t431,
+        t469,
+        t649,
+        t666,
+        t670,
+        _runtime.wrap_cut(t682) + t648,
+        _runtime.wrap(t217 + t685) + t648,
+        t686,
+        t649,
+        t666,
+        t670,
+        _runtime.wrap_cut(t687) + t648,
+        _runtime.wrap(t217 - t685) + t648,
+        t686,
+        t867,
+        t884,
+        t888,
+        _runtime.wrap_cut(t900) + t866,
+        _runtime.wrap(t217 + t903) + t866,
+        t904,
+        t867,
+        t884,
+        t888,
+        _runtime.wrap_cut(t905) + t866,
+        _runtime.wrap(t217 - t903) + t866,
+        t904,
+        t914,
+        t914,
+        t920,
+        t920,
+        t924,
+        t924,
+        t928,
+        t928,
     )
 
 
@@ -2623,391 +3716,435 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del s_pitch
     t2 = c_phi * c_psi
     t3 = 1.0 / t2
-    t4 = (gs + al) * t2 - d
-    t5 = d - (gs - al) * t2
+    t4 = gs + al
+    t5 = t4 * t2
+    t6 = t5 - d
+    t7 = d - (gs - al) * t2
     del t2
-    t6 = np.sqrt(np.maximum(t4, 0.0) * np.maximum(t5, 0.0))
-    wrist = t3 * t6
-    del t6
-    t7 = loff + lp * c_pitch + wrist
+    t8 = np.sqrt(np.maximum(t6, 0.0) * np.maximum(t7, 0.0))
+    wrist = t3 * t8
+    del t8
+    t9 = loff + lp * c_pitch + wrist
     del c_pitch
-    t8 = s_psi * t7
-    t9 = s_phi * t1 - c_phi * t8
-    t10 = h + t9
-    below = np.maximum(t10, 0.0)
-    t11 = h - t9
-    del t9
-    above = np.maximum(t11, 0.0)
-    onward = np.sqrt(below * above)
-    t12 = np.arctan2(2.0 * onward, above - below)
+    t10 = s_psi * t9
+    t11 = s_phi * t1 - c_phi * t10
+    t12 = h - t11
+    above = np.maximum(t12, 0.0)
+    t13 = h + t11
+    del t11
+    below = np.maximum(t13, 0.0)
+    root = np.sqrt(above * below)
+    t14 = np.arctan2(2.0 * root, above - below)
     del above, below
-    t13 = np.arctan2(x, y)
-    t14 = _runtime.wrap(t12 - t13)
-    t15 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t16 = t15 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t15
-    t17 = t16 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t16
-    t18 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t19 = _runtime.select(0.0 < L1 * d * (L2 + a3), 0.0, 1.0)
-    t20 = t17 & (0.0 <= loff) & (0.0 <= lp) & t18 & (np.abs(t19) <= _runtime.ROTATION)
-    del t17, t18, t19
-    invalid = np.logical_not(t20)
-    del t20
-    t21 = -(_runtime.FEASIBILITY * (d * 0.5))
-    t22 = (-_runtime.FEASIBILITY <= c_phi) & (t21 <= t4)
-    del t4
-    t23 = L1 + L2
-    t24 = -(_runtime.FEASIBILITY * t23)
-    t25 = t22 & (t21 <= t5) & (t24 <= t10) & (t24 <= t11)
-    del t10, t11, t21, t22, t24, t5
-    L_2W = L2 + c_psi * t7
-    del c_psi, t7
-    a_3W = a3 + c_phi * t1 + s_phi * t8
-    del t1, t8
+    t15 = np.arctan2(x, y)
+    t16 = _runtime.wrap(t14 - t15)
+    t17 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t18 = t17 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t17
+    t19 = t18 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t18
+    t20 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t21 = L2 + a3
+    t22 = _runtime.select(0.0 < L1 * d * t21, 0.0, 1.0)
+    t23 = t19 & (0.0 <= loff) & (0.0 <= lp) & t20 & (np.abs(t22) <= _runtime.ROTATION)
+    del t19, t20, t22
+    invalid = np.logical_not(t23)
+    del t23
+    t24 = -(_runtime.FEASIBILITY * (1.015625 * t5))
+    del t5
+    t25 = (-_runtime.FEASIBILITY <= c_phi) & (t24 <= t6)
+    del t6
+    base = d * t3
+    del t3
+    t26 = 1.0 / c_phi
+    t_phi = s_phi * t26
+    t_psi = s_psi / c_psi
+    del s_psi
+    far_apart = np.abs(base * t_phi) * 0.001953125 + np.abs(t_psi * base) * 0.001953125
+    del base
+    lengths = L1 + d1 + d + loff + lp + t4 + t21
+    del t21, t4
+    slack = far_apart + lengths
+    t27 = -(_runtime.FEASIBILITY * slack)
+    t28 = t25 & (t24 <= t7) & (t27 <= t13) & (t27 <= t12)
+    del t12, t13, t24, t25, t27, t7
+    t29 = L1 * 2.0
+    L_2W = L2 + c_psi * t9
+    del c_psi, t9
+    a_3W = a3 + c_phi * t1 + s_phi * t10
+    del c_phi, s_phi, t1, t10
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t26 = L1 + fore
-    t27 = L1 * 2.0
-    t28 = 2.0 * fore
-    t29 = -(_runtime.FEASIBILITY * (t26 * (t27 + t28)))
-    t30 = t26 * t26
-    t31 = z - d1
-    square = t31 * t31 + onward * onward
-    t32 = t30 - square
-    t33 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t34 = L1 - fore
-    t35 = _runtime.FEASIBILITY * (t26 * (t33 + 2.0 * np.abs(t34)))
-    del t33
-    t36 = square - t34 * t34
+    t30 = 2.0 * fore
+    t31 = -(_runtime.FEASIBILITY * ((t29 + t30) * slack))
+    t32 = L1 + fore
+    t33 = t32 * t32
+    t34 = z - d1
+    square = t34 * t34 + root * root
+    t35 = t33 - square
+    t36 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t37 = L1 - fore
+    t38 = _runtime.FEASIBILITY * ((t36 + 2.0 * np.abs(t37)) * slack)
+    del t36
+    t39 = square - t37 * t37
     del square
-    t37 = t25 & (t29 <= t32) & (-t35 <= t36)
-    del t25, t29, t35
+    t40 = t28 & (t31 <= t35) & (-t38 <= t39)
+    del t28, t31, t38
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
-    play_right = d * size
-    t38 = -(_runtime.FEASIBILITY * play_right)
-    N = np.maximum(t32, 0.0)
-    del t32
-    M = np.maximum(t36, 0.0)
-    del t36
-    t39 = 1.0 / (N + M)
-    t40 = (N - M) * t39
-    t41 = 1.0 / fore
-    s_lag = L_2W * t41
-    del L_2W
-    t42 = t40 * s_lag
-    s_bend_front_elbow_down_alike = t39 * (2.0 * np.sqrt(N * M))
-    del N
-    c_lag = a_3W * t41
-    del a_3W, t41
-    t43 = s_bend_front_elbow_down_alike * c_lag
-    t44 = t42 + t43
-    t45 = t40 * c_lag
-    del c_lag, t40
-    t46 = s_lag * s_bend_front_elbow_down_alike
-    del s_lag
-    t47 = t45 - t46
-    straight_mid = -(L2 * t44 + a3 * t47)
-    t48 = 0.0 <= straight_mid
-    bent_mid = L2 * t47 - a3 * t44
+    play_right = size * (d + far_apart + lengths * 0.001953125)
+    del far_apart
+    t41 = -(_runtime.FEASIBILITY * play_right)
+    t42 = size * size
+    M = np.maximum(t39, 0.0)
+    del t39
+    N = np.maximum(t35, 0.0)
+    del t35
+    t43 = 1.0 / (M + N)
+    s_bend_front_elbow_down_alike = t43 * (2.0 * np.sqrt(M * N))
+    t44 = fore * s_bend_front_elbow_down_alike
+    t45 = root * t44
+    ahead_1 = t37 + t30 * M * t43
+    del t30, t37
+    t46 = t34 * ahead_1
+    up = t45 + t46
+    t47 = t34 * t44
+    del t44
+    t48 = root * ahead_1
+    del ahead_1
+    t49 = t47 - t48
+    t50 = 1.0 / np.sqrt(t49 * t49 + up * up)
+    stheta2A = up * t50
+    del up
+    elbow_21 = L1 * stheta2A
+    t51 = 1.0 / fore
+    c_lag = a_3W * t51
+    del a_3W
+    c_bend = t43 * (M - N)
+    del M, N, t43
+    t52 = c_lag * c_bend
+    s_lag = L_2W * t51
+    del L_2W, t51
+    t53 = s_lag * s_bend_front_elbow_down_alike
+    c_relative = t52 + t53
+    t54 = t49 * t50
+    del t49, t50
+    t55 = s_lag * c_bend
+    del c_bend, s_lag
+    t56 = c_lag * s_bend_front_elbow_down_alike
+    del c_lag, s_bend_front_elbow_down_alike
+    s_relative = t55 - t56
+    t57 = c_relative * t54 + s_relative * stheta2A
+    stheta23A = c_relative * stheta2A - s_relative * t54
+    point_21 = elbow_21 + L2 * t57 + a3 * stheta23A
+    shift_21 = d * (t26 * (t_psi * t57) - t_phi * stheta23A)
+    h_right_0 = point_21 + shift_21
+    t58 = L1 * t54
+    t59 = t58 - L2 * stheta23A + a3 * t57
+    shift_11 = d * (t_phi * t57 + t26 * (t_psi * stheta23A))
+    del stheta23A, t57
+    t60 = t59 - shift_11
+    t61 = h_right_0 * h_right_0 + t60 * t60
+    gap = shift_11 * shift_11 + shift_21 * shift_21
+    t62 = gap * gap
+    t63 = L1 - fore_arm
+    t64 = t63 * t63
+    straight_mid = L2 * s_relative + a3 * c_relative
+    t65 = 0.0 <= straight_mid
     large_mid = fore_arm + np.abs(straight_mid)
     del straight_mid
-    small_mid = bent_mid * bent_mid / large_mid
-    N_mid = t27 * _runtime.select(t48, small_mid, large_mid)
-    t49 = 1.0 / c_phi
-    del c_phi
-    t50 = fore * s_bend_front_elbow_down_alike
-    del s_bend_front_elbow_down_alike
-    t51 = t31 * t50
-    ahead_1 = t34 + t39 * (t28 * M)
-    del M, t28, t34, t39
-    t52 = onward * ahead_1
-    t53 = t51 - t52
-    t54 = onward * t50
-    del t50
-    t55 = t31 * ahead_1
-    del ahead_1
-    up = t54 + t55
-    t56 = 1.0 / np.sqrt(t53 * t53 + up * up)
-    t57 = t53 * t56
-    del t53
-    stheta2A = up * t56
-    del t56, up
-    t58 = t47 * t57 + t44 * stheta2A
-    t59 = t47 * stheta2A - t44 * t57
-    t60 = d * (t49 * (s_phi * t58) + t3 * (s_psi * t59))
-    t61 = d * (t3 * (s_psi * t58) - t49 * (s_phi * t59))
-    gap = t60 * t60 + t61 * t61
-    t62 = N_mid - gap
-    t63 = L1 * t57
-    t64 = t63 + L2 * t59 - a3 * t58
-    t65 = L1 * stheta2A
-    point_21 = t65 - L2 * t58 - a3 * t59
-    del t58, t59
-    twice = 2.0 * t60 * t64 - 2.0 * t61 * point_21
-    room_right = t62 - twice
-    t66 = t38 <= room_right
-    room_left = t62 + twice
-    del t62
-    t67 = t38 <= room_left
-    t68 = size * size
-    t69 = t61 - point_21
-    t70 = t60 + t64
-    t71 = t69 * t69 + t70 * t70
-    t72 = gap * gap
-    t73 = L1 - fore_arm
-    t74 = t73 * t73
-    M_mid = t27 * _runtime.select(t48, large_mid, small_mid)
-    del large_mid, small_mid, t48
-    t75 = M_mid + gap
-    t76 = _runtime.select(t68 * t71 < t72, t71 - t74, twice + t75)
-    del t71
-    h_left_0 = t61 + point_21
-    del point_21, t61
-    r_left_0 = t60 - t64
-    del t60, t64
-    t77 = h_left_0 * h_left_0 + r_left_0 * r_left_0
-    t78 = _runtime.select(t68 * t77 < t72, t74 - t77, twice - t75)
-    del t72, t75, t77, twice
-    t79 = t37 & t66 & t67 & t66 & (t38 <= t76) & t67 & (t38 <= -t78)
-    del t66, t67
-    unreachable = np.logical_not(t79)
+    t66 = L2 * c_relative - a3 * s_relative
+    small_mid = t66 * t66 / large_mid
+    M_mid = t29 * _runtime.select(t65, large_mid, small_mid)
+    t67 = M_mid + gap
+    t68 = 2.0 * t59 * shift_11 - 2.0 * point_21 * shift_21
+    farther_right = _runtime.select(t42 * t61 < t62, t61 - t64, t67 - t68)
+    del t61
+    N_mid = t29 * _runtime.select(t65, small_mid, large_mid)
+    del large_mid, small_mid, t65
+    t69 = N_mid - gap
+    nearer_right = t68 + t69
+    room_right = np.minimum(farther_right, nearer_right)
+    h_left_0 = point_21 - shift_21
+    del point_21, shift_21
+    t70 = t59 + shift_11
+    del shift_11, t59
+    t71 = h_left_0 * h_left_0 + t70 * t70
+    farther_left = _runtime.select(t42 * t71 < t62, t71 - t64, t67 + t68)
+    del t62, t67, t71
+    nearer_left = t69 - t68
+    del t68, t69
+    room_left = np.minimum(farther_left, nearer_left)
+    t72 = t40 & (t41 <= room_right) & (t41 <= room_left)
+    t73 = t72 & (t41 <= nearer_right) & (t41 <= farther_right)
+    del t72
+    t74 = t73 & (t41 <= nearer_left) & (t41 <= farther_left)
+    del t73
+    unreachable = np.logical_not(t74)
+    del t74
+    t75 = _runtime.poison(invalid | unreachable)
+    t76 = t16 + t75
+    t77 = 2.0 * fore_arm
+    t78 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play_right))
+    M_right = np.maximum(farther_right, t78)
+    del farther_right
+    N_right = np.maximum(nearer_right, t78)
+    del nearer_right
+    t79 = 1.0 / (M_right + N_right)
+    ahead_1_right = t63 + t77 * M_right * t79
+    sigma_right = _runtime.sign(-t66)
+    del t66
+    t80 = 2.0 * sigma_right
+    t81 = np.sqrt(M_right * N_right)
+    t82 = fore_arm * (t79 * (t80 * t81))
     del t79
-    t80 = _runtime.poison(invalid | unreachable)
-    t81 = t14 + t80
-    t82 = _runtime.VANISHING * (_runtime.VANISHING * (play_right * 16.0))
-    M_right = np.maximum(t76, t82)
-    del t76
-    N_right = np.maximum(room_right, t82)
-    t83 = 1.0 / (M_right + N_right)
-    sigma_right = _runtime.sign(bent_mid)
-    del bent_mid
-    t84 = 2.0 * sigma_right
-    t85 = np.sqrt(M_right * N_right)
-    t86 = fore_arm * (t83 * (t84 * t85))
-    t87 = 2.0 * fore_arm
-    ahead_1_right = t73 + t87 * M_right * t83
+    t83 = np.arctan2(h_right_0 * ahead_1_right + t60 * t82, h_right_0 * t82 - t60 * ahead_1_right)
+    del ahead_1_right, t82
+    t84 = _runtime.wrap_cut(t83) + t75
     del t83
-    t88 = np.arctan2(t70 * t86 - t69 * ahead_1_right, -(t70 * ahead_1_right + t69 * t86))
-    del ahead_1_right, t86
-    t89 = _runtime.wrap_cut(t88) + t80
+    t85 = np.arctan2(L2, a3)
+    t86 = sigma_right * np.arctan2(2.0 * t81, M_right - N_right)
+    del M_right, N_right, t81
+    t87 = _runtime.wrap(t85 + t86) + t75
+    del t86
+    M_left = np.maximum(farther_left, 0.0)
+    del farther_left
+    N_left = np.maximum(nearer_left, 0.0)
+    del nearer_left
+    t88 = 1.0 / (M_left + N_left)
+    ahead_1_left = t63 + t77 * M_left * t88
+    t89 = h_left_0 * ahead_1_left
+    t90 = np.sqrt(M_left * N_left)
+    t91 = fore_arm * (t88 * (t80 * t90))
     del t88
-    t90 = np.arctan2(L2, a3)
-    t91 = sigma_right * np.arctan2(2.0 * t85, M_right - N_right)
-    del M_right, N_right, t85
-    t92 = _runtime.wrap(t90 + t91) + t80
+    t92 = t70 * t91
+    t93 = h_left_0 * t91
     del t91
-    M_left = np.maximum(-t78, 0.0)
-    del t78
-    N_left = np.maximum(room_left, 0.0)
-    t93 = 1.0 / (M_left + N_left)
-    ahead_1_left = t73 + t87 * M_left * t93
-    t94 = h_left_0 * ahead_1_left
-    t95 = np.sqrt(M_left * N_left)
-    t96 = fore_arm * (t93 * (t84 * t95))
-    del t93
-    t97 = r_left_0 * t96
-    t98 = r_left_0 * ahead_1_left
+    t94 = t70 * ahead_1_left
     del ahead_1_left
-    t99 = h_left_0 * t96
-    del t96
-    t100 = _runtime.wrap_cut(np.arctan2(t94 - t97, t98 + t99))
-    t101 = sigma_right * np.arctan2(2.0 * t95, M_left - N_left)
-    del M_left, N_left, t95
-    t102 = _runtime.wrap(principal_pitch)
+    t95 = _runtime.wrap_cut(np.arctan2(t89 + t92, t93 - t94))
+    t96 = sigma_right * np.arctan2(2.0 * t90, M_left - N_left)
+    del M_left, N_left, t90
+    t97 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    t103 = t102 + t80
-    t104 = _runtime.wrap_cut(np.arctan2(t94 + t97, t98 - t99))
-    del t94, t97, t98, t99
-    t105 = t42 - t43
-    del t42, t43
-    t106 = t45 + t46
+    t98 = t97 + t75
+    t99 = _runtime.wrap_cut(np.arctan2(t89 - t92, -(t94 + t93)))
+    del t89, t92, t93, t94
+    t100 = t45 - t46
     del t45, t46
-    straight_mid_front_elbow_down_alike = -(L2 * t105 + a3 * t106)
-    t107 = 0.0 <= straight_mid_front_elbow_down_alike
-    bent_mid_front_elbow_down_alike = L2 * t106 - a3 * t105
-    t108 = bent_mid_front_elbow_down_alike * bent_mid_front_elbow_down_alike
+    out_front_elbow_down_alike = t47 + t48
+    del t47, t48
+    t101 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t102 = 1.0 / np.sqrt(t101 + t100 * t100)
+    del t101
+    t103 = t100 * t102
+    del t100
+    t104 = L1 * t103
+    c_relative_front_elbow_down_alike = t52 - t53
+    del t52, t53
+    ctheta2A_front_elbow_down_alike = out_front_elbow_down_alike * t102
+    del out_front_elbow_down_alike, t102
+    t105 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    s_relative_front_elbow_down_alike = t55 + t56
+    del t55, t56
+    ctheta23A_front_elbow_down_alike = t105 + s_relative_front_elbow_down_alike * t103
+    del t105
+    t106 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t107 = c_relative_front_elbow_down_alike * t103 - t106
+    del t106
+    t108 = t104 + L2 * ctheta23A_front_elbow_down_alike + a3 * t107
+    t109 = t26 * (t_psi * ctheta23A_front_elbow_down_alike)
+    t110 = d * (t109 - t_phi * t107)
+    del t109
+    t111 = t108 + t110
+    elbow_11_front_elbow_down_alike = L1 * ctheta2A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = elbow_11_front_elbow_down_alike - L2 * t107 + a3 * ctheta23A_front_elbow_down_alike
+    t112 = t_phi * ctheta23A_front_elbow_down_alike + t26 * (t_psi * t107)
+    del ctheta23A_front_elbow_down_alike, t107
+    t113 = d * t112
+    del t112
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t113
+    t114 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t115 = t111 * t111 + t114
+    del t114
+    gap_front_elbow_down_alike = t113 * t113 + t110 * t110
+    t116 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
+    t117 = 0.0 <= straight_mid_front_elbow_down_alike
     large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
     del straight_mid_front_elbow_down_alike
-    small_mid_front_elbow_down_alike = t108 / large_mid_front_elbow_down_alike
-    del t108
-    t109 = _runtime.select(t107, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
-    N_mid_front_elbow_down_alike = t27 * t109
-    del t109
-    out_front_elbow_down_alike = t51 + t52
-    del t51, t52
-    t110 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t111 = t54 - t55
-    del t54, t55
-    t112 = 1.0 / np.sqrt(t110 + t111 * t111)
-    del t110
-    ctheta2A_front_elbow_down_alike = out_front_elbow_down_alike * t112
-    del out_front_elbow_down_alike
-    t113 = t111 * t112
-    del t111, t112
-    t114 = t106 * ctheta2A_front_elbow_down_alike + t105 * t113
-    t115 = t106 * t113 - t105 * ctheta2A_front_elbow_down_alike
-    shift_11_front_elbow_down_alike = d * (t49 * (s_phi * t114) + t3 * (s_psi * t115))
-    t116 = shift_11_front_elbow_down_alike * shift_11_front_elbow_down_alike
-    shift_21_front_elbow_down_alike = d * (t3 * (s_psi * t114) - t49 * (s_phi * t115))
-    t117 = shift_21_front_elbow_down_alike * shift_21_front_elbow_down_alike
-    gap_front_elbow_down_alike = t116 + t117
-    del t116, t117
-    t118 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike
-    t119 = L1 * ctheta2A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t119 + L2 * t115 - a3 * t114
-    t120 = 2.0 * shift_11_front_elbow_down_alike * point_11_front_elbow_down_alike
-    t121 = L1 * t113
-    t122 = t121 - L2 * t114 - a3 * t115
-    del t114, t115
-    twice_front_elbow_down_alike = t120 - 2.0 * shift_21_front_elbow_down_alike * t122
-    del t120
-    room_right_front_elbow_down_alike = t118 - twice_front_elbow_down_alike
-    t123 = t38 <= room_right_front_elbow_down_alike
-    room_left_front_elbow_down_alike = t118 + twice_front_elbow_down_alike
-    del t118
-    t124 = t38 <= room_left_front_elbow_down_alike
-    h_right_0_front_elbow_down_alike = shift_21_front_elbow_down_alike - t122
-    t125 = h_right_0_front_elbow_down_alike * h_right_0_front_elbow_down_alike
-    r_right_0_front_elbow_down_alike = shift_11_front_elbow_down_alike + point_11_front_elbow_down_alike
-    t126 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t127 = t125 + t126
-    del t125, t126
-    t128 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
-    t129 = _runtime.select(t107, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t107
-    M_mid_front_elbow_down_alike = t27 * t129
-    del t129, t27
-    t130 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
-    t131 = _runtime.select(t68 * t127 < t128, t127 - t74, twice_front_elbow_down_alike + t130)
-    del t127
-    t132 = t37 & t123 & t124 & t123 & (t38 <= t131) & t124
-    del t123, t124
-    t133 = shift_21_front_elbow_down_alike + t122
-    del shift_21_front_elbow_down_alike, t122
-    t134 = shift_11_front_elbow_down_alike - point_11_front_elbow_down_alike
-    del point_11_front_elbow_down_alike, shift_11_front_elbow_down_alike
-    t135 = t133 * t133 + t134 * t134
-    t136 = _runtime.select(t68 * t135 < t128, t74 - t135, twice_front_elbow_down_alike - t130)
-    del t128, t130, t135, twice_front_elbow_down_alike
-    unreachable_2 = np.logical_not(t132 & (t38 <= -t136))
-    del t132
-    t137 = _runtime.poison(invalid | unreachable_2)
-    t138 = t14 + t137
-    del t14
-    M_right_front_elbow_down_alike = np.maximum(t131, t82)
+    t118 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    small_mid_front_elbow_down_alike = t118 * t118 / large_mid_front_elbow_down_alike
+    t119 = _runtime.select(t117, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    M_mid_front_elbow_down_alike = t29 * t119
+    del t119
+    t120 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
+    t121 = 2.0 * point_11_front_elbow_down_alike * t113 - 2.0 * t108 * t110
+    farther_right_front_elbow_down_alike = _runtime.select(t42 * t115 < t116, t115 - t64, t120 - t121)
+    del t115
+    t122 = _runtime.select(t117, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t117
+    N_mid_front_elbow_down_alike = t29 * t122
+    del t122, t29
+    t123 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike
+    nearer_right_front_elbow_down_alike = t121 + t123
+    room_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
+    t124 = t40 & (t41 <= room_right_front_elbow_down_alike)
+    t125 = t108 - t110
+    del t108, t110
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t113
+    del point_11_front_elbow_down_alike, t113
+    t126 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t127 = t125 * t125 + t126
+    del t126
+    farther_left_front_elbow_down_alike = _runtime.select(t42 * t127 < t116, t127 - t64, t120 + t121)
+    del t116, t120, t127
+    nearer_left_front_elbow_down_alike = t123 - t121
+    del t121, t123
+    room_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, nearer_left_front_elbow_down_alike)
+    t128 = t124 & (t41 <= room_left_front_elbow_down_alike)
+    del t124
+    t129 = t128 & (t41 <= nearer_right_front_elbow_down_alike)
+    del t128
+    t130 = t129 & (t41 <= farther_right_front_elbow_down_alike)
+    del t129
+    t131 = t130 & (t41 <= nearer_left_front_elbow_down_alike)
+    del t130
+    t132 = t131 & (t41 <= farther_left_front_elbow_down_alike)
     del t131
-    N_right_front_elbow_down_alike = np.maximum(room_right_front_elbow_down_alike, t82)
+    unreachable_2 = np.logical_not(t132)
+    del t132
+    t133 = _runtime.poison(invalid | unreachable_2)
+    t134 = t16 + t133
+    del t16
+    M_right_front_elbow_down_alike = np.maximum(farther_right_front_elbow_down_alike, t78)
+    del farther_right_front_elbow_down_alike
+    N_right_front_elbow_down_alike = np.maximum(nearer_right_front_elbow_down_alike, t78)
+    del nearer_right_front_elbow_down_alike
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t139 = 1.0 / whole_right_front_elbow_down_alike
+    t135 = 1.0 / whole_right_front_elbow_down_alike
     del whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = t73 + t87 * M_right_front_elbow_down_alike * t139
-    t140 = h_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    sigma_right_front_elbow_down_alike = _runtime.sign(bent_mid_front_elbow_down_alike)
-    del bent_mid_front_elbow_down_alike
-    t141 = 2.0 * sigma_right_front_elbow_down_alike
-    t142 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
-    t143 = np.sqrt(t142)
-    del t142
-    t144 = fore_arm * (t139 * (t141 * t143))
-    del t139
-    up_right_front_elbow_down_alike = t140 - r_right_0_front_elbow_down_alike * t144
-    del t140
-    t145 = r_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = t63 + t77 * M_right_front_elbow_down_alike * t135
+    sigma_right_front_elbow_down_alike = _runtime.sign(-t118)
+    del t118
+    t136 = 2.0 * sigma_right_front_elbow_down_alike
+    t137 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
+    t138 = np.sqrt(t137)
+    del t137
+    t139 = fore_arm * (t135 * (t136 * t138))
+    del t135
+    t140 = t111 * ahead_1_right_front_elbow_down_alike + r_right_0_front_elbow_down_alike * t139
+    t141 = r_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
     del ahead_1_right_front_elbow_down_alike
-    out_right_front_elbow_down_alike = t145 + h_right_0_front_elbow_down_alike * t144
-    del t144, t145
-    t146 = np.arctan2(up_right_front_elbow_down_alike, out_right_front_elbow_down_alike)
-    del out_right_front_elbow_down_alike, up_right_front_elbow_down_alike
-    t147 = _runtime.wrap_cut(t146) + t137
-    del t146
-    t148 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
+    t142 = _runtime.wrap_cut(np.arctan2(-t140, t141 - t111 * t139))
+    del t139, t140, t141
+    t143 = t142 + t133
+    del t142
+    t144 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
     del M_right_front_elbow_down_alike, N_right_front_elbow_down_alike
-    t149 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t143, t148)
-    del t143, t148
-    t150 = _runtime.wrap(t90 + t149) + t137
-    del t149
-    M_left_front_elbow_down_alike = np.maximum(-t136, 0.0)
-    del t136
-    N_left_front_elbow_down_alike = np.maximum(room_left_front_elbow_down_alike, 0.0)
+    t145 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t138, t144)
+    del t138, t144
+    t146 = _runtime.wrap(t85 + t145) + t133
+    del t145
+    M_left_front_elbow_down_alike = np.maximum(farther_left_front_elbow_down_alike, 0.0)
+    del farther_left_front_elbow_down_alike
+    N_left_front_elbow_down_alike = np.maximum(nearer_left_front_elbow_down_alike, 0.0)
+    del nearer_left_front_elbow_down_alike
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t151 = 1.0 / whole_left_front_elbow_down_alike
+    t147 = 1.0 / whole_left_front_elbow_down_alike
     del whole_left_front_elbow_down_alike
-    t152 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
-    t153 = np.sqrt(t152)
-    del t152
-    t154 = fore_arm * (t151 * (t141 * t153))
-    t155 = t134 * t154
-    ahead_1_left_front_elbow_down_alike = t73 + t87 * M_left_front_elbow_down_alike * t151
-    del t151
-    t156 = t133 * ahead_1_left_front_elbow_down_alike
-    t157 = t134 * ahead_1_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = t63 + t77 * M_left_front_elbow_down_alike * t147
+    t148 = t125 * ahead_1_left_front_elbow_down_alike
+    t149 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
+    t150 = np.sqrt(t149)
+    del t149
+    t151 = fore_arm * (t147 * (t136 * t150))
+    del t147
+    t152 = r_left_0_front_elbow_down_alike * t151
+    t153 = r_left_0_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     del ahead_1_left_front_elbow_down_alike
-    t158 = t133 * t154
-    del t154
-    t159 = _runtime.wrap_cut(np.arctan2(t155 - t156, -(t157 + t158)))
-    t160 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
+    t154 = t125 * t151
+    del t151
+    t155 = _runtime.wrap_cut(np.arctan2(-(t148 + t152), t153 - t154))
+    t156 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
     del M_left_front_elbow_down_alike, N_left_front_elbow_down_alike
-    t161 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t153, t160)
-    del t153, t160
-    t162 = t102 + t137
-    t163 = _runtime.wrap_cut(np.arctan2(-(t156 + t155), t158 - t157))
-    del t155, t156, t157, t158
-    t164 = _runtime.wrap(-(t13 + t12))
-    del t12, t13
-    t165 = t106 * t57 - t105 * stheta2A
-    t166 = t106 * stheta2A + t105 * t57
-    del stheta2A, t105, t106, t57
-    t167 = d * (t49 * (s_phi * t165) - t3 * (s_psi * t166))
-    t168 = d * (t3 * (s_psi * t165) + t49 * (s_phi * t166))
-    gap_rear_elbow_up_alike = t167 * t167 + t168 * t168
-    t169 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
-    del N_mid_front_elbow_down_alike
-    point_11_rear_elbow_up_alike = t63 - L2 * t166 - a3 * t165
-    del t63
-    point_21_rear_elbow_up_alike = t65 + L2 * t165 - a3 * t166
-    del t165, t166, t65
-    twice_rear_elbow_up_alike = 2.0 * t167 * point_11_rear_elbow_up_alike + 2.0 * t168 * point_21_rear_elbow_up_alike
-    room_right_rear_elbow_up_alike = t169 - twice_rear_elbow_up_alike
-    t170 = t38 <= room_right_rear_elbow_up_alike
-    room_left_rear_elbow_up_alike = t169 + twice_rear_elbow_up_alike
+    t157 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t150, t156)
+    del t150, t156
+    t158 = t97 + t133
+    t159 = _runtime.wrap_cut(np.arctan2(t152 - t148, t153 + t154))
+    del t148, t152, t153, t154
+    t160 = _runtime.wrap(-(t15 + t14))
+    del t14, t15
+    t161 = c_relative_front_elbow_down_alike * t54 - s_relative_front_elbow_down_alike * stheta2A
+    stheta23A_rear_elbow_up_alike = c_relative_front_elbow_down_alike * stheta2A + s_relative_front_elbow_down_alike * t54
+    del c_relative_front_elbow_down_alike, s_relative_front_elbow_down_alike, stheta2A, t54
+    point_21_rear_elbow_up_alike = elbow_21 - L2 * t161 + a3 * stheta23A_rear_elbow_up_alike
+    del elbow_21
+    t162 = t26 * (t_psi * t161) + t_phi * stheta23A_rear_elbow_up_alike
+    t163 = d * t162
+    del t162
+    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t163
+    t164 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t165 = t58 + L2 * stheta23A_rear_elbow_up_alike + a3 * t161
+    del t58
+    t166 = t26 * (t_psi * stheta23A_rear_elbow_up_alike)
+    del stheta23A_rear_elbow_up_alike
+    t167 = d * (t_phi * t161 - t166)
+    del t161, t166
+    r_right_0_rear_elbow_up_alike = t165 - t167
+    t168 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t169 = t164 + t168
+    del t164, t168
+    gap_rear_elbow_up_alike = t167 * t167 + t163 * t163
+    t170 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t171 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
+    t172 = 2.0 * t165 * t167 + 2.0 * point_21_rear_elbow_up_alike * t163
+    farther_right_rear_elbow_up_alike = _runtime.select(t42 * t169 < t170, t169 - t64, t171 - t172)
     del t169
-    t171 = t38 <= room_left_rear_elbow_up_alike
-    h_right_0_rear_elbow_up_alike = t168 + point_21_rear_elbow_up_alike
-    t172 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    r_right_0_rear_elbow_up_alike = t167 + point_11_rear_elbow_up_alike
-    t173 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t174 = t172 + t173
+    t173 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
+    del N_mid_front_elbow_down_alike
+    nearer_right_rear_elbow_up_alike = t172 + t173
+    room_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
+    t174 = t40 & (t41 <= room_right_rear_elbow_up_alike)
+    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t163
+    del point_21_rear_elbow_up_alike, t163
+    t175 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = t165 + t167
+    del t165, t167
+    t176 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t177 = t175 + t176
+    del t175, t176
+    farther_left_rear_elbow_up_alike = _runtime.select(t42 * t177 < t170, t177 - t64, t171 + t172)
+    del t170, t171, t177
+    nearer_left_rear_elbow_up_alike = t173 - t172
     del t172, t173
-    t175 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t176 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
-    t177 = _runtime.select(t68 * t174 < t175, t174 - t74, twice_rear_elbow_up_alike + t176)
+    room_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, nearer_left_rear_elbow_up_alike)
+    t178 = t174 & (t41 <= room_left_rear_elbow_up_alike)
     del t174
-    t178 = t37 & t170 & t171 & t170 & (t38 <= t177) & t171
-    del t170, t171
-    t179 = t168 - point_21_rear_elbow_up_alike
-    del point_21_rear_elbow_up_alike, t168
-    t180 = t167 - point_11_rear_elbow_up_alike
-    del point_11_rear_elbow_up_alike, t167
-    t181 = t179 * t179 + t180 * t180
-    t182 = _runtime.select(t68 * t181 < t175, t74 - t181, twice_rear_elbow_up_alike - t176)
-    del t175, t176, t181, twice_rear_elbow_up_alike
-    unreachable_3 = np.logical_not(t178 & (t38 <= -t182))
+    t179 = t178 & (t41 <= nearer_right_rear_elbow_up_alike)
     del t178
+    t180 = t179 & (t41 <= farther_right_rear_elbow_up_alike)
+    del t179
+    t181 = t180 & (t41 <= nearer_left_rear_elbow_up_alike)
+    del t180
+    t182 = t181 & (t41 <= farther_left_rear_elbow_up_alike)
+    del t181
+    unreachable_3 = np.logical_not(t182)
+    del t182
     t183 = _runtime.poison(invalid | unreachable_3)
-    t184 = t164 + t183
-    M_right_rear_elbow_up_alike = np.maximum(t177, t82)
-    del t177
-    N_right_rear_elbow_up_alike = np.maximum(room_right_rear_elbow_up_alike, t82)
+    t184 = t160 + t183
+    M_right_rear_elbow_up_alike = np.maximum(farther_right_rear_elbow_up_alike, t78)
+    del farther_right_rear_elbow_up_alike
+    N_right_rear_elbow_up_alike = np.maximum(nearer_right_rear_elbow_up_alike, t78)
+    del nearer_right_rear_elbow_up_alike
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
     t185 = 1.0 / whole_right_rear_elbow_up_alike
     del whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = t73 + t87 * M_right_rear_elbow_up_alike * t185
+    ahead_1_right_rear_elbow_up_alike = t63 + t77 * M_right_rear_elbow_up_alike * t185
     t186 = h_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
     t187 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
     t188 = np.sqrt(t187)
     del t187
-    t189 = fore_arm * (t185 * (t141 * t188))
+    t189 = fore_arm * (t185 * (t136 * t188))
     del t185
     t190 = r_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
     del ahead_1_right_rear_elbow_up_alike
@@ -3019,276 +4156,293 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del M_right_rear_elbow_up_alike, N_right_rear_elbow_up_alike
     t194 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t188, t193)
     del t188, t193
-    t195 = _runtime.wrap(t90 + t194) + t183
+    t195 = _runtime.wrap(t85 + t194) + t183
     del t194
-    M_left_rear_elbow_up_alike = np.maximum(-t182, 0.0)
-    del t182
-    N_left_rear_elbow_up_alike = np.maximum(room_left_rear_elbow_up_alike, 0.0)
+    M_left_rear_elbow_up_alike = np.maximum(farther_left_rear_elbow_up_alike, 0.0)
+    del farther_left_rear_elbow_up_alike
+    N_left_rear_elbow_up_alike = np.maximum(nearer_left_rear_elbow_up_alike, 0.0)
+    del nearer_left_rear_elbow_up_alike
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
     t196 = 1.0 / whole_left_rear_elbow_up_alike
     del whole_left_rear_elbow_up_alike
-    t197 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
-    t198 = np.sqrt(t197)
-    del t197
-    t199 = fore_arm * (t196 * (t141 * t198))
-    del t141
-    t200 = t180 * t199
-    ahead_1_left_rear_elbow_up_alike = t73 + t87 * M_left_rear_elbow_up_alike * t196
-    del t196
-    t201 = t179 * ahead_1_left_rear_elbow_up_alike
-    t202 = t180 * ahead_1_left_rear_elbow_up_alike
+    ahead_1_left_rear_elbow_up_alike = t63 + t77 * M_left_rear_elbow_up_alike * t196
+    t197 = h_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t198 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
+    t199 = np.sqrt(t198)
+    del t198
+    t200 = fore_arm * (t196 * (t136 * t199))
+    del t136, t196
+    t201 = r_left_0_rear_elbow_up_alike * t200
+    t202 = r_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     del ahead_1_left_rear_elbow_up_alike
-    t203 = t179 * t199
-    del t199
-    t204 = _runtime.wrap_cut(np.arctan2(t200 - t201, -(t202 + t203)))
+    t203 = h_left_0_rear_elbow_up_alike * t200
+    del t200
+    t204 = _runtime.wrap_cut(np.arctan2(t197 - t201, t202 + t203))
     t205 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
     del M_left_rear_elbow_up_alike, N_left_rear_elbow_up_alike
-    t206 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t198, t205)
-    del sigma_right_front_elbow_down_alike, t198, t205
-    t207 = t102 + t183
-    t208 = _runtime.wrap_cut(np.arctan2(-(t201 + t200), t203 - t202))
-    del t200, t201, t202, t203
-    ctheta23A_rear_elbow_down_alike = t47 * ctheta2A_front_elbow_down_alike - t44 * t113
-    t209 = t49 * (s_phi * ctheta23A_rear_elbow_down_alike)
-    t210 = t47 * t113 + t44 * ctheta2A_front_elbow_down_alike
-    del ctheta2A_front_elbow_down_alike, t113, t44, t47
-    t211 = d * (t209 - t3 * (s_psi * t210))
-    del t209
-    t212 = t3 * (s_psi * ctheta23A_rear_elbow_down_alike)
-    del s_psi, t3
-    t213 = d * (t212 + t49 * (s_phi * t210))
-    del s_phi, t212, t49
-    gap_rear_elbow_down_alike = t211 * t211 + t213 * t213
-    t214 = N_mid - gap_rear_elbow_down_alike
+    t206 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t199, t205)
+    del sigma_right_front_elbow_down_alike, t199, t205
+    t207 = t97 + t183
+    t208 = _runtime.wrap_cut(np.arctan2(t197 + t201, t202 - t203))
+    del t197, t201, t202, t203
+    t209 = c_relative * ctheta2A_front_elbow_down_alike - s_relative * t103
+    t210 = c_relative * t103 + s_relative * ctheta2A_front_elbow_down_alike
+    del c_relative, ctheta2A_front_elbow_down_alike, s_relative, t103
+    t211 = t104 - L2 * t209 + a3 * t210
+    del t104
+    shift_21_rear_elbow_down_alike = d * (t26 * (t_psi * t209) + t_phi * t210)
+    t212 = t211 - shift_21_rear_elbow_down_alike
+    t213 = elbow_11_front_elbow_down_alike + L2 * t210 + a3 * t209
+    del elbow_11_front_elbow_down_alike
+    shift_11_rear_elbow_down_alike = d * (t_phi * t209 - t26 * (t_psi * t210))
+    del t209, t210, t26, t_phi, t_psi
+    t214 = t213 - shift_11_rear_elbow_down_alike
+    t215 = t212 * t212 + t214 * t214
+    t216 = shift_11_rear_elbow_down_alike * shift_11_rear_elbow_down_alike
+    t217 = shift_21_rear_elbow_down_alike * shift_21_rear_elbow_down_alike
+    gap_rear_elbow_down_alike = t216 + t217
+    del t216, t217
+    t218 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t219 = M_mid + gap_rear_elbow_down_alike
+    t220 = 2.0 * t213 * shift_11_rear_elbow_down_alike + 2.0 * t211 * shift_21_rear_elbow_down_alike
+    farther_right_rear_elbow_down_alike = _runtime.select(t42 * t215 < t218, t215 - t64, t219 - t220)
+    del t215
+    t221 = N_mid - gap_rear_elbow_down_alike
     del N_mid
-    t215 = t119 - L2 * t210 - a3 * ctheta23A_rear_elbow_down_alike
-    del t119
-    t216 = t121 + L2 * ctheta23A_rear_elbow_down_alike - a3 * t210
-    del ctheta23A_rear_elbow_down_alike, t121, t210
-    twice_rear_elbow_down_alike = 2.0 * t211 * t215 + 2.0 * t213 * t216
-    room_right_rear_elbow_down_alike = t214 - twice_rear_elbow_down_alike
-    t217 = t38 <= room_right_rear_elbow_down_alike
-    room_left_rear_elbow_down_alike = t214 + twice_rear_elbow_down_alike
-    del t214
-    t218 = t38 <= room_left_rear_elbow_down_alike
-    t219 = t213 + t216
-    t220 = t211 + t215
-    t221 = t219 * t219 + t220 * t220
-    t222 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t223 = M_mid + gap_rear_elbow_down_alike
-    t224 = _runtime.select(t68 * t221 < t222, t221 - t74, twice_rear_elbow_down_alike + t223)
-    del t221
-    t225 = t37 & t217 & t218 & t217 & (t38 <= t224) & t218
-    del t217, t218, t37
-    h_left_0_rear_elbow_down_alike = t213 - t216
-    del t213, t216
-    t226 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = t211 - t215
-    del t211, t215
-    t227 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t228 = t226 + t227
-    del t226, t227
-    t229 = _runtime.select(t68 * t228 < t222, t74 - t228, twice_rear_elbow_down_alike - t223)
-    del t222, t223, t228, twice_rear_elbow_down_alike
-    unreachable_4 = np.logical_not(t225 & (t38 <= -t229))
-    del t225, t38
-    t230 = _runtime.poison(invalid | unreachable_4)
-    t231 = t164 + t230
-    del t164
-    M_right_rear_elbow_down_alike = np.maximum(t224, t82)
-    del t224
-    N_right_rear_elbow_down_alike = np.maximum(room_right_rear_elbow_down_alike, t82)
-    del t82
+    nearer_right_rear_elbow_down_alike = t220 + t221
+    room_right_rear_elbow_down_alike = np.minimum(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
+    t222 = t40 & (t41 <= room_right_rear_elbow_down_alike)
+    del t40
+    t223 = t211 + shift_21_rear_elbow_down_alike
+    del shift_21_rear_elbow_down_alike, t211
+    t224 = t213 + shift_11_rear_elbow_down_alike
+    del shift_11_rear_elbow_down_alike, t213
+    t225 = t223 * t223 + t224 * t224
+    farther_left_rear_elbow_down_alike = _runtime.select(t42 * t225 < t218, t225 - t64, t219 + t220)
+    del t218, t219, t225
+    nearer_left_rear_elbow_down_alike = t221 - t220
+    del t220, t221
+    room_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, nearer_left_rear_elbow_down_alike)
+    t226 = t222 & (t41 <= room_left_rear_elbow_down_alike)
+    del t222
+    t227 = t226 & (t41 <= nearer_right_rear_elbow_down_alike)
+    del t226
+    t228 = t227 & (t41 <= farther_right_rear_elbow_down_alike)
+    del t227
+    t229 = t228 & (t41 <= nearer_left_rear_elbow_down_alike)
+    del t228
+    t230 = t229 & (t41 <= farther_left_rear_elbow_down_alike)
+    del t229, t41
+    unreachable_4 = np.logical_not(t230)
+    del t230
+    t231 = _runtime.poison(invalid | unreachable_4)
+    t232 = t160 + t231
+    del t160
+    M_right_rear_elbow_down_alike = np.maximum(farther_right_rear_elbow_down_alike, t78)
+    del farther_right_rear_elbow_down_alike
+    N_right_rear_elbow_down_alike = np.maximum(nearer_right_rear_elbow_down_alike, t78)
+    del nearer_right_rear_elbow_down_alike, t78
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t232 = 1.0 / whole_right_rear_elbow_down_alike
+    t233 = 1.0 / whole_right_rear_elbow_down_alike
     del whole_right_rear_elbow_down_alike
-    t233 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
-    t234 = np.sqrt(t233)
+    t234 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
+    t235 = np.sqrt(t234)
+    del t234
+    t236 = fore_arm * (t233 * (t80 * t235))
+    ahead_1_right_rear_elbow_down_alike = t63 + t77 * M_right_rear_elbow_down_alike * t233
     del t233
-    t235 = fore_arm * (t232 * (t84 * t234))
-    ahead_1_right_rear_elbow_down_alike = t73 + t87 * M_right_rear_elbow_down_alike * t232
-    del t232
-    up_right_rear_elbow_down_alike = t220 * t235 - t219 * ahead_1_right_rear_elbow_down_alike
-    t236 = t220 * ahead_1_right_rear_elbow_down_alike + t219 * t235
-    del ahead_1_right_rear_elbow_down_alike, t235
-    t237 = np.arctan2(up_right_rear_elbow_down_alike, -t236)
-    del t236, up_right_rear_elbow_down_alike
-    t238 = _runtime.wrap_cut(t237) + t230
-    del t237
-    t239 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
+    up_right_rear_elbow_down_alike = t214 * t236 - t212 * ahead_1_right_rear_elbow_down_alike
+    t237 = t214 * ahead_1_right_rear_elbow_down_alike + t212 * t236
+    del ahead_1_right_rear_elbow_down_alike, t236
+    t238 = np.arctan2(up_right_rear_elbow_down_alike, -t237)
+    del t237, up_right_rear_elbow_down_alike
+    t239 = _runtime.wrap_cut(t238) + t231
+    del t238
+    t240 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
     del M_right_rear_elbow_down_alike, N_right_rear_elbow_down_alike
-    t240 = t90 + sigma_right * np.arctan2(2.0 * t234, t239)
-    del t234, t239
-    t241 = _runtime.wrap(t240) + t230
-    del t240
-    M_left_rear_elbow_down_alike = np.maximum(-t229, 0.0)
-    del t229
-    N_left_rear_elbow_down_alike = np.maximum(room_left_rear_elbow_down_alike, 0.0)
+    t241 = t85 + sigma_right * np.arctan2(2.0 * t235, t240)
+    del t235, t240
+    t242 = _runtime.wrap(t241) + t231
+    del t241
+    M_left_rear_elbow_down_alike = np.maximum(farther_left_rear_elbow_down_alike, 0.0)
+    del farther_left_rear_elbow_down_alike
+    N_left_rear_elbow_down_alike = np.maximum(nearer_left_rear_elbow_down_alike, 0.0)
+    del nearer_left_rear_elbow_down_alike
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t242 = 1.0 / whole_left_rear_elbow_down_alike
+    t243 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    ahead_1_left_rear_elbow_down_alike = t73 + t87 * M_left_rear_elbow_down_alike * t242
-    del t73, t87
-    t243 = h_left_0_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     t244 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
     t245 = np.sqrt(t244)
     del t244
-    t246 = fore_arm * (t242 * (t84 * t245))
-    del t242, t84
-    t247 = r_left_0_rear_elbow_down_alike * t246
-    t248 = r_left_0_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t246 = fore_arm * (t243 * (t80 * t245))
+    del t80
+    t247 = t224 * t246
+    ahead_1_left_rear_elbow_down_alike = t63 + t77 * M_left_rear_elbow_down_alike * t243
+    del t243, t63, t77
+    t248 = t223 * ahead_1_left_rear_elbow_down_alike
+    t249 = t224 * ahead_1_left_rear_elbow_down_alike
     del ahead_1_left_rear_elbow_down_alike
-    t249 = h_left_0_rear_elbow_down_alike * t246
+    t250 = t223 * t246
     del t246
-    t250 = _runtime.wrap_cut(np.arctan2(t243 - t247, t248 + t249))
-    t251 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
+    t251 = _runtime.wrap_cut(np.arctan2(t247 - t248, -(t249 + t250)))
+    t252 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
     del M_left_rear_elbow_down_alike, N_left_rear_elbow_down_alike
-    t252 = sigma_right * np.arctan2(2.0 * t245, t251)
-    del sigma_right, t245, t251
-    t253 = t102 + t230
-    del t102
-    t254 = _runtime.wrap_cut(np.arctan2(t243 + t247, t248 - t249))
-    del t243, t247, t248, t249
-    square_mid = t74 + M_mid
-    t255 = M_mid * square_mid
+    t253 = sigma_right * np.arctan2(2.0 * t245, t252)
+    del sigma_right, t245, t252
+    t254 = t97 + t231
+    del t97
+    t255 = _runtime.wrap_cut(np.arctan2(-(t248 + t247), t250 - t249))
+    del t247, t248, t249, t250
+    square_mid = t64 + M_mid
+    t256 = M_mid * square_mid
     del M_mid
-    t256 = _runtime.DETERMINED * _runtime.DETERMINED
-    t257 = t68 * t256
-    t258 = square_mid <= t257
+    t257 = _runtime.DETERMINED * _runtime.DETERMINED
+    t258 = t42 * t257
+    t259 = square_mid <= t258
     del square_mid
-    t259 = wrist <= al * _runtime.DETERMINED
+    t260 = wrist <= al * _runtime.DETERMINED
     del wrist
-    t260 = _runtime.status(invalid, unreachable, (t255 <= t256 * (t68 * gap)) | t258 | t259)
+    t261 = _runtime.status(invalid, unreachable, (t256 <= t257 * (t42 * gap)) | t259 | t260)
     del gap, unreachable
-    square_mid_front_elbow_down_alike = t74 + M_mid_front_elbow_down_alike
-    del t74
-    t261 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    square_mid_front_elbow_down_alike = t64 + M_mid_front_elbow_down_alike
+    del t64
+    t262 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t262 = t261 <= t256 * (t68 * gap_front_elbow_down_alike)
+    t263 = t262 <= t257 * (t42 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t263 = square_mid_front_elbow_down_alike <= t257
-    del square_mid_front_elbow_down_alike, t257
-    t264 = _runtime.status(invalid, unreachable_2, t262 | t263 | t259)
-    del t262, unreachable_2
-    t265 = t261 <= t256 * (t68 * gap_rear_elbow_up_alike)
-    del gap_rear_elbow_up_alike, t261
-    t266 = _runtime.status(invalid, unreachable_3, t265 | t263 | t259)
-    del t263, t265, unreachable_3
-    t267 = t255 <= t256 * (t68 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t255, t256
-    t268 = _runtime.status(invalid, unreachable_4, t267 | t258 | t259)
-    del invalid, t258, t259, t267, unreachable_4
-    t269 = (h <= t23 * _runtime.VANISHING) | (L1 * fore <= _runtime.VANISHING * t30)
-    del h, t23, t30
-    t270 = _runtime.VANISHING * t26
-    del t26
-    t271 = t269 | (fore <= t270) | (np.abs(t31) + np.abs(onward) <= t270)
-    del fore, onward, t269, t270, t31
-    t272 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
+    t264 = square_mid_front_elbow_down_alike <= t258
+    del square_mid_front_elbow_down_alike, t258
+    t265 = _runtime.status(invalid, unreachable_2, t263 | t264 | t260)
+    del t263, unreachable_2
+    t266 = t262 <= t257 * (t42 * gap_rear_elbow_up_alike)
+    del gap_rear_elbow_up_alike, t262
+    t267 = _runtime.status(invalid, unreachable_3, t266 | t264 | t260)
+    del t264, t266, unreachable_3
+    t268 = t256 <= t257 * (t42 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t256, t257
+    t269 = _runtime.status(invalid, unreachable_4, t268 | t259 | t260)
+    del invalid, t259, t260, t268, unreachable_4
+    t270 = h * slack
+    del slack
+    tangent = 4.0 * root * t32 - t270 * 0.00390625 <= _runtime.VANISHING * t270
+    del t270
+    t271 = tangent | (h <= _runtime.VANISHING * lengths)
+    del h, lengths, tangent
+    t272 = t271 | (L1 * fore <= _runtime.VANISHING * t33)
+    del t271, t33
+    t273 = _runtime.VANISHING * t32
+    del t32
+    t274 = t272 | (np.abs(t34) + np.abs(root) <= t273) | (fore <= t273)
+    del fore, root, t272, t273, t34
+    t275 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
     del room_right
-    t273 = _runtime.VANISHING * play_right
+    t276 = _runtime.VANISHING * play_right
     del play_right
-    t274 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
+    t277 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
     del room_left
-    t275 = t271 | (t272 <= t273) | (t274 <= t273) | (L1 * fore_arm <= _runtime.VANISHING * t68)
-    del t271, t272, t274, t68
-    t276 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    t277 = t275 | (np.abs(-t69) + np.abs(-t70) <= t276) | (fore_arm <= _runtime.VANISHING * size)
-    del fore_arm, size, t275, t69, t70
-    t278 = t277 | (np.abs(h_left_0) + np.abs(r_left_0) <= t276)
-    del h_left_0, r_left_0, t277
-    t279 = room_right_front_elbow_down_alike * 9.094947017729282e-13
-    t280 = np.maximum(-t279, room_right_front_elbow_down_alike)
-    del room_right_front_elbow_down_alike, t279
-    t281 = room_left_front_elbow_down_alike * 9.094947017729282e-13
-    t282 = np.maximum(-t281, room_left_front_elbow_down_alike)
-    del room_left_front_elbow_down_alike, t281
-    t283 = np.abs(h_right_0_front_elbow_down_alike) + np.abs(r_right_0_front_elbow_down_alike)
-    del h_right_0_front_elbow_down_alike, r_right_0_front_elbow_down_alike
-    t284 = t278 | (t280 <= t273) | (t282 <= t273) | (t283 <= t276)
-    del t278, t280, t282, t283
-    t285 = t284 | (np.abs(-t133) + np.abs(-t134) <= t276)
-    del t133, t134, t284
-    t286 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t287 = np.maximum(-t286, room_right_rear_elbow_up_alike)
-    del room_right_rear_elbow_up_alike, t286
-    t288 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t289 = np.maximum(-t288, room_left_rear_elbow_up_alike)
-    del room_left_rear_elbow_up_alike, t288
-    t290 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
+    t278 = t274 | (t275 <= t276) | (t277 <= t276) | (L1 * fore_arm <= _runtime.VANISHING * t42)
+    del t274, t275, t277, t42
+    t279 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    t280 = t278 | (np.abs(h_right_0) + np.abs(-t60) <= t279)
+    del h_right_0, t278, t60
+    t281 = t280 | (fore_arm <= _runtime.VANISHING * size)
+    del fore_arm, size, t280
+    t282 = t281 | (np.abs(h_left_0) + np.abs(-t70) <= t279)
+    del h_left_0, t281, t70
+    t283 = room_right_front_elbow_down_alike * 9.094947017729282e-13
+    t284 = np.maximum(-t283, room_right_front_elbow_down_alike)
+    del room_right_front_elbow_down_alike, t283
+    t285 = room_left_front_elbow_down_alike * 9.094947017729282e-13
+    t286 = np.maximum(-t285, room_left_front_elbow_down_alike)
+    del room_left_front_elbow_down_alike, t285
+    t287 = np.abs(-t111) + np.abs(r_right_0_front_elbow_down_alike)
+    del r_right_0_front_elbow_down_alike, t111
+    t288 = t282 | (t284 <= t276) | (t286 <= t276) | (t287 <= t279)
+    del t282, t284, t286, t287
+    t289 = np.abs(-t125) + np.abs(r_left_0_front_elbow_down_alike)
+    del r_left_0_front_elbow_down_alike, t125
+    t290 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t291 = np.maximum(-t290, room_right_rear_elbow_up_alike)
+    del room_right_rear_elbow_up_alike, t290
+    t292 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t293 = np.maximum(-t292, room_left_rear_elbow_up_alike)
+    del room_left_rear_elbow_up_alike, t292
+    t294 = t288 | (t289 <= t279) | (t291 <= t276) | (t293 <= t276)
+    del t288, t289, t291, t293
+    t295 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
     del h_right_0_rear_elbow_up_alike, r_right_0_rear_elbow_up_alike
-    t291 = t285 | (t287 <= t273) | (t289 <= t273) | (t290 <= t276)
-    del t285, t287, t289, t290
-    t292 = t291 | (np.abs(-t179) + np.abs(-t180) <= t276)
-    del t179, t180, t291
-    t293 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t294 = np.maximum(-t293, room_right_rear_elbow_down_alike)
-    del room_right_rear_elbow_down_alike, t293
-    t295 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t296 = np.maximum(-t295, room_left_rear_elbow_down_alike)
-    del room_left_rear_elbow_down_alike, t295
-    t297 = t292 | (t294 <= t273) | (t296 <= t273) | (np.abs(-t219) + np.abs(-t220) <= t276)
-    del t219, t220, t273, t292, t294, t296
-    t298 = np.abs(h_left_0_rear_elbow_down_alike) + np.abs(r_left_0_rear_elbow_down_alike)
-    del h_left_0_rear_elbow_down_alike, r_left_0_rear_elbow_down_alike
+    t296 = np.abs(h_left_0_rear_elbow_up_alike) + np.abs(r_left_0_rear_elbow_up_alike)
+    del h_left_0_rear_elbow_up_alike, r_left_0_rear_elbow_up_alike
+    t297 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t298 = np.maximum(-t297, room_right_rear_elbow_down_alike)
+    del room_right_rear_elbow_down_alike, t297
+    t299 = t294 | (t295 <= t279) | (t296 <= t279) | (t298 <= t276)
+    del t294, t295, t296, t298
+    t300 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t301 = np.maximum(-t300, room_left_rear_elbow_down_alike)
+    del room_left_rear_elbow_down_alike, t300
+    t302 = t299 | (t301 <= t276) | (np.abs(-t212) + np.abs(-t214) <= t279)
+    del t212, t214, t276, t299, t301
+    t303 = t302 | (np.abs(-t223) + np.abs(-t224) <= t279)
+    del t223, t224, t279, t302
     return (
-        t81,
-        t89,
-        t92,
-        t100 + t80,
-        _runtime.wrap(t90 + t101) + t80,
-        t103,
-        t81,
-        t89,
-        t92,
-        t104 + t80,
-        _runtime.wrap(t90 - t101) + t80,
-        t103,
-        t138,
-        t147,
-        t150,
-        t159 + t137,
-        _runtime.wrap(t90 + t161) + t137,
-        t162,
-        t138,
-        t147,
-        t150,
-        t163 + t137,
-        _runtime.wrap(t90 - t161) + t137,
-        t162,
+        t76,
+        t84,
+        t87,
+        t95 + t75,
+        _runtime.wrap(t85 + t96) + t75,
+        t98,
+        t76,
+        t84,
+        t87,
+        t99 + t75,
+        _runtime.wrap(t85 - t96) + t75,
+        t98,
+        t134,
+        t143,
+        t146,
+        t155 + t133,
+        _runtime.wrap(t85 + t157) + t133,
+        t158,
+        t134,
+        t143,
+        t146,
+        t159 + t133,
+        _runtime.wrap(t85 - t157) + t133,
+        t158,
         t184,
         t192,
         t195,
         t204 + t183,
-        _runtime.wrap(t90 + t206) + t183,
+        _runtime.wrap(t85 + t206) + t183,
         t207,
         t184,
         t192,
         t195,
         t208 + t183,
-        _runtime.wrap(t90 - t206) + t183,
+        _runtime.wrap(t85 - t206) + t183,
         t207,
-        t231,
-        t238,
-        t241,
-        t250 + t230,
-        _runtime.wrap(t90 + t252) + t230,
-        t253,
-        t231,
-        t238,
-        t241,
-        t254 + t230,
-        _runtime.wrap(t90 - t252) + t230,
-        t253,
-        t260,
-        t260,
-        t264,
-        t264,
-        t266,
-        t266,
-        t268,
-        t268,
-        t297 | (t298 <= t276),
+        t232,
+        t239,
+        t242,
+        t251 + t231,
+        _runtime.wrap(t85 + t253) + t231,
+        t254,
+        t232,
+        t239,
+        t242,
+        t255 + t231,
+        _runtime.wrap(t85 - t253) + t231,
+        t254,
+        t261,
+        t261,
+        t265,
+        t265,
+        t267,
+        t267,
+        t269,
+        t269,
+        t303,
     )
 
 
@@ -3349,6 +4503,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
       distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and near
       stretched wrist links (l_W is less than 2^-10 al).
+    - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
+      yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.
     - INVALID: d, L1, or both L2 and a3 are zero.
     - A straight right arm is returned bent by a few units in the last place, so that fk can
       tell the side.
@@ -3362,19 +4518,21 @@ def _wrist_length(psi, phi, d, gs, al):
     c_psi = np.cos(psi)
     t1 = c_phi * c_psi
     del c_psi
-    t2 = (gs + al) * t1 - d
-    t3 = d - (gs - al) * t1
-    t4 = np.sqrt(np.maximum(t2, 0.0) * np.maximum(t3, 0.0))
-    t5 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
-    t6 = t5 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(psi) & np.isfinite(phi))
-    del t5
-    t7 = -(_runtime.FEASIBILITY * (d * 0.5))
-    t8 = (-_runtime.FEASIBILITY <= c_phi) & (t7 <= t2)
-    del c_phi, t2
-    failed = np.logical_not(t6) | np.logical_not(t8 & (t7 <= t3))
-    del t3, t6, t7, t8
+    t2 = (gs + al) * t1
+    t3 = t2 - d
+    t4 = d - (gs - al) * t1
+    t5 = np.sqrt(np.maximum(t3, 0.0) * np.maximum(t4, 0.0))
+    t6 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
+    t7 = t6 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(psi) & np.isfinite(phi))
+    del t6
+    t8 = -(_runtime.FEASIBILITY * (1.015625 * t2))
+    del t2
+    t9 = (-_runtime.FEASIBILITY <= c_phi) & (t8 <= t3)
+    del c_phi, t3
+    failed = np.logical_not(t7) | np.logical_not(t9 & (t8 <= t4))
+    del t4, t7, t8, t9
     return (
-        t4 / t1 + _runtime.poison(failed),
+        t5 / t1 + _runtime.poison(failed),
     )
 
 

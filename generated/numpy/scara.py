@@ -590,7 +590,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("q", (2, 4)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('l1', 'l2', 'h'),
-    size=_runtime.Size((0, 1, 2, 4, 5, 6), ((2, 1), (6, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+    size=_runtime.Size((0, 1, 4, 5), (), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 

@@ -9,7 +9,7 @@
 #   singularities: 6 add, 11 multiply, 4 sincos
 #   jacobian_space: 29 add, 57 multiply, 5 sincos
 #   jacobian_body: 27 add, 58 multiply, 5 sincos
-#   ik: 708 compare and select, 675 add, 32 atan2, 141 divide, 1082 multiply, 80 sqrt
+#   ik: 732 compare and select, 675 add, 32 atan2, 141 divide, 1082 multiply, 80 sqrt
 #   ik where nothing vanishes: 158 compare and select, 183 add, 30 atan2, 18 divide, 218 multiply,
 #     12 sqrt
 """UR-type arm (three parallel axes).
@@ -762,2088 +762,2130 @@ def _ik(
     del dx_1_1
     inner_1_1 = slope_1_1 * slope_1_1 - miss_1_1 * bend_1_1
     t28 = _runtime.sign(slope_1_1) * np.sqrt(np.maximum(0.0, inner_1_1))
-    t29 = _runtime.select(inner_1_1 < 0.0, slope_1_1 / (2.0 * bend_1_1), miss_1_1 / (2.0 * (slope_1_1 + t28)))
-    del bend_1_1, inner_1_1, miss_1_1, slope_1_1, t28
-    t30 = t29 * t29
-    t31 = 1.0 / (1.0 + t30)
-    t32 = 2.0 * t29 * t31
-    del t29
-    by_c_1_1 = t31 * (1.0 - t30)
-    del t30, t31
-    cost_1_1 = d4 * (t32 * t32) / (1.0 + np.abs(by_c_1_1)) + root1 * np.abs(t32)
+    outer_1_1 = slope_1_1 + t28
+    del t28
+    t29 = _runtime.select(outer_1_1 == 0.0, 0.0, miss_1_1 / (2.0 * outer_1_1))
+    del miss_1_1, outer_1_1
+    t30 = _runtime.select(inner_1_1 < 0.0, slope_1_1 / (2.0 * bend_1_1), t29)
+    del bend_1_1, inner_1_1, slope_1_1, t29
+    t31 = t30 * t30
+    t32 = 1.0 / (1.0 + t31)
+    t33 = 2.0 * t30 * t32
+    del t30
+    by_c_1_1 = t32 * (1.0 - t31)
+    del t31, t32
+    cost_1_1 = d4 * (t33 * t33) / (1.0 + np.abs(by_c_1_1)) + root1 * np.abs(t33)
     whole_1_1 = size * 5.684341886080802e-14
-    t33 = (cost_1_1 <= whole_1_1) & (0.0 < by_c_1_1)
+    t34 = (cost_1_1 <= whole_1_1) & (0.0 < by_c_1_1)
     del cost_1_1
-    cosine_1_1 = _runtime.select(t33, by_c_1_1, 1.0)
+    cosine_1_1 = _runtime.select(t34, by_c_1_1, 1.0)
     del by_c_1_1
-    sine_1_1 = _runtime.select(t33, -t32, 0.0)
-    del t32, t33
+    sine_1_1 = _runtime.select(t34, -t33, 0.0)
+    del t33, t34
     c_1_1_2 = c_1_1 * cosine_1_1 + t14 * sine_1_1
     s_1_1_2 = c_1_1 * sine_1_1 - t14 * cosine_1_1
     del cosine_1_1, sine_1_1
     axisx_1_1_2 = T13 * c_1_1_2 + T23 * s_1_1_2
-    t34 = axisx_1_1_2 * axisx_1_1_2
-    t35 = T13 * s_1_1_2 - T23 * c_1_1_2
-    most_1_1_2 = np.sqrt(t34 + t35 * t35)
-    t36 = np.abs(T33) <= 1.4210854715202004e-14
-    t37 = t21 * t21
+    t35 = axisx_1_1_2 * axisx_1_1_2
+    t36 = T13 * s_1_1_2 - T23 * c_1_1_2
+    most_1_1_2 = np.sqrt(t35 + t36 * t36)
+    t37 = np.abs(T33) <= 1.4210854715202004e-14
+    t38 = t21 * t21
     qx_1_1_2 = w_x * c_1_1_2 + w_y * s_1_1_2
-    r_1_1_2 = np.sqrt(t37 + qx_1_1_2 * qx_1_1_2)
-    t38 = size * 8.881784197001252e-16
-    t39 = r_1_1_2 <= t38
-    t40 = d5 + r_1_1_2
-    t41 = 1.0 / np.sqrt(t11 + t34)
-    del t34
-    uc_1_1_2 = T33 * t41
-    t42 = qx_1_1_2 - d5 * uc_1_1_2
-    t43 = axisx_1_1_2 * t41
-    del t41
-    t44 = t21 - d5 * t43
-    there_1_1_2 = np.sqrt(t42 * t42 + t44 * t44)
-    del t42, t44
+    r_1_1_2 = np.sqrt(t38 + qx_1_1_2 * qx_1_1_2)
+    t39 = size * 8.881784197001252e-16
+    t40 = r_1_1_2 <= t39
+    t41 = d5 + r_1_1_2
+    t42 = 1.0 / np.sqrt(t11 + t35)
+    del t35
+    uc_1_1_2 = T33 * t42
+    t43 = qx_1_1_2 - d5 * uc_1_1_2
+    t44 = axisx_1_1_2 * t42
+    del t42
+    t45 = t21 - d5 * t44
+    there_1_1_2 = np.sqrt(t43 * t43 + t45 * t45)
+    del t43, t45
     goal_1_1_2 = np.minimum(full_1_1, np.maximum(there_1_1_2, fold_1_1))
-    k_v_1_1_2 = np.maximum(0.0, (t40 - goal_1_1_2) * (t40 + goal_1_1_2))
-    del t40
-    t45 = d5 - r_1_1_2
-    d_v_1_1_2 = np.maximum(0.0, (goal_1_1_2 - t45) * (goal_1_1_2 + t45))
-    del t45
+    k_v_1_1_2 = np.maximum(0.0, (t41 - goal_1_1_2) * (t41 + goal_1_1_2))
+    del t41
+    t46 = d5 - r_1_1_2
+    d_v_1_1_2 = np.maximum(0.0, (goal_1_1_2 - t46) * (goal_1_1_2 + t46))
+    del t46
     n_v_1_1_2 = k_v_1_1_2 + d_v_1_1_2
-    t46 = size * size
-    t47 = t46 * 8.881784197001252e-16
-    t48 = n_v_1_1_2 <= t47
-    t49 = 1.0 / n_v_1_1_2
+    t47 = size * size
+    t48 = t47 * 8.881784197001252e-16
+    t49 = n_v_1_1_2 <= t48
+    t50 = 1.0 / n_v_1_1_2
     del n_v_1_1_2
-    uc_v_1_1_2 = _runtime.select(t48, 1.0, (k_v_1_1_2 - d_v_1_1_2) * t49)
-    t50 = qx_1_1_2 * uc_v_1_1_2
-    side_1_1_2 = _runtime.sign(t21 * uc_1_1_2 - qx_1_1_2 * t43)
-    del t43, uc_1_1_2
-    t51 = 2.0 * side_1_1_2 * np.sqrt(k_v_1_1_2 * d_v_1_1_2)
+    uc_v_1_1_2 = _runtime.select(t49, 1.0, (k_v_1_1_2 - d_v_1_1_2) * t50)
+    t51 = qx_1_1_2 * uc_v_1_1_2
+    side_1_1_2 = _runtime.sign(t21 * uc_1_1_2 - qx_1_1_2 * t44)
+    del t44, uc_1_1_2
+    t52 = 2.0 * side_1_1_2 * np.sqrt(k_v_1_1_2 * d_v_1_1_2)
     del d_v_1_1_2, k_v_1_1_2, side_1_1_2
-    us_v_1_1_2 = _runtime.select(t48, 0.0, t49 * t51)
-    del t48, t49, t51
-    t52 = t21 * us_v_1_1_2
-    t53 = 1.0 / r_1_1_2
+    us_v_1_1_2 = _runtime.select(t49, 0.0, t50 * t52)
+    del t49, t50, t52
+    t53 = t21 * us_v_1_1_2
+    t54 = 1.0 / r_1_1_2
     del r_1_1_2
-    c_v_1_1_2 = _runtime.select(t39, 1.0, (t50 + t52) * t53)
-    t54 = T33 * c_v_1_1_2 < 0.0
-    t55 = qx_1_1_2 * us_v_1_1_2
+    c_v_1_1_2 = _runtime.select(t40, 1.0, (t51 + t53) * t54)
+    t55 = T33 * c_v_1_1_2 < 0.0
+    t56 = qx_1_1_2 * us_v_1_1_2
     del qx_1_1_2, us_v_1_1_2
-    t56 = t21 * uc_v_1_1_2
+    t57 = t21 * uc_v_1_1_2
     del uc_v_1_1_2
-    to_c_1_1_2 = _runtime.select(t54, _runtime.select(t39, 0.0, t53 * (t55 + t56)), -_runtime.select(t39, 0.0, t53 * (t55 - t56)))
-    del t55, t56
-    to_s_1_1_2 = _runtime.select(t54, _runtime.select(t39, 1.0, t53 * (t50 - t52)), c_v_1_1_2)
-    del c_v_1_1_2, t39, t50, t52, t53, t54
-    wanted_1_1_2 = _runtime.select(t36, 0.0, T33 * to_c_1_1_2 / to_s_1_1_2)
+    to_c_1_1_2 = _runtime.select(t55, _runtime.select(t40, 0.0, t54 * (t56 + t57)), -_runtime.select(t40, 0.0, t54 * (t56 - t57)))
+    del t56, t57
+    to_s_1_1_2 = _runtime.select(t55, _runtime.select(t40, 1.0, t54 * (t51 - t53)), c_v_1_1_2)
+    del c_v_1_1_2, t40, t51, t53, t54, t55
+    wanted_1_1_2 = _runtime.select(t37, 0.0, T33 * to_c_1_1_2 / to_s_1_1_2)
     del to_c_1_1_2, to_s_1_1_2
     kept_1_1_2 = np.maximum(-most_1_1_2, np.minimum(most_1_1_2, wanted_1_1_2))
     del wanted_1_1_2
-    t57 = (most_1_1_2 - kept_1_1_2) * (most_1_1_2 + kept_1_1_2)
-    rest_1_1_2 = np.sqrt(t57) * _runtime.sign(-t35)
-    del t57
-    t58 = 1.0 / (most_1_1_2 * most_1_1_2)
+    t58 = (most_1_1_2 - kept_1_1_2) * (most_1_1_2 + kept_1_1_2)
+    rest_1_1_2 = np.sqrt(t58) * _runtime.sign(-t36)
+    del t58
+    t59 = 1.0 / (most_1_1_2 * most_1_1_2)
     del most_1_1_2
-    t59 = (axisx_1_1_2 * rest_1_1_2 + t35 * kept_1_1_2) * t58
-    by_c_1_1_2 = t58 * (axisx_1_1_2 * kept_1_1_2 - t35 * rest_1_1_2)
-    del axisx_1_1_2, kept_1_1_2, rest_1_1_2, t35, t58
-    t60 = d4 * (t59 * t59) / (1.0 + np.abs(by_c_1_1_2))
-    t61 = (t60 + root1 * np.abs(t59) <= whole_1_1) & (0.0 < by_c_1_1_2)
-    del t60
-    t62 = 1125899906842624.0 * np.abs(there_1_1_2 - goal_1_1_2)
+    t60 = (axisx_1_1_2 * rest_1_1_2 + t36 * kept_1_1_2) * t59
+    by_c_1_1_2 = t59 * (axisx_1_1_2 * kept_1_1_2 - t36 * rest_1_1_2)
+    del axisx_1_1_2, kept_1_1_2, rest_1_1_2, t36, t59
+    t61 = d4 * (t60 * t60) / (1.0 + np.abs(by_c_1_1_2))
+    t62 = (t61 + root1 * np.abs(t60) <= whole_1_1) & (0.0 < by_c_1_1_2)
+    del t61
+    t63 = 1125899906842624.0 * np.abs(there_1_1_2 - goal_1_1_2)
     del goal_1_1_2, there_1_1_2
-    t63 = t61 & (size < t62)
-    del t61, t62
-    cosine_1_1_2 = _runtime.select(t63, by_c_1_1_2, 1.0)
+    t64 = t62 & (size < t63)
+    del t62, t63
+    cosine_1_1_2 = _runtime.select(t64, by_c_1_1_2, 1.0)
     del by_c_1_1_2
-    sine_1_1_2 = _runtime.select(t63, -t59, 0.0)
-    del t59, t63
+    sine_1_1_2 = _runtime.select(t64, -t60, 0.0)
+    del t60, t64
     c_1_1_2_3 = c_1_1_2 * cosine_1_1_2 - s_1_1_2 * sine_1_1_2
     s_1_1_2_3 = c_1_1_2 * sine_1_1_2 + s_1_1_2 * cosine_1_1_2
     del c_1_1_2, cosine_1_1_2, s_1_1_2, sine_1_1_2
     axisx_1_1_2_3 = T13 * c_1_1_2_3 + T23 * s_1_1_2_3
     h_1_1_2_3 = np.sqrt(t11 + axisx_1_1_2_3 * axisx_1_1_2_3)
-    t64 = size * h_1_1_2_3 <= t15
+    t65 = size * h_1_1_2_3 <= t15
     qx_1_1_2_3 = w_x * c_1_1_2_3 + w_y * s_1_1_2_3
-    t65 = 1.0 / h_1_1_2_3
-    uc_1_1_2_3 = T33 * t65
-    x_1_1_2_3 = _runtime.select(t64, qx_1_1_2_3, qx_1_1_2_3 - d5 * uc_1_1_2_3)
+    t66 = 1.0 / h_1_1_2_3
+    uc_1_1_2_3 = T33 * t66
+    x_1_1_2_3 = _runtime.select(t65, qx_1_1_2_3, qx_1_1_2_3 - d5 * uc_1_1_2_3)
     del qx_1_1_2_3
     dqx_1_1_2_3 = w_y * c_1_1_2_3 - w_x * s_1_1_2_3
-    t66 = axisx_1_1_2_3 * t65
-    del axisx_1_1_2_3, t65
-    t67 = d5 * (T33 * (T13 * s_1_1_2_3 - T23 * c_1_1_2_3))
-    rate_1_1_2_3 = t67 / (h_1_1_2_3 * h_1_1_2_3)
-    del h_1_1_2_3, t67
-    dx_1_1_2_3 = _runtime.select(t64, dqx_1_1_2_3, dqx_1_1_2_3 - t66 * rate_1_1_2_3)
+    t67 = axisx_1_1_2_3 * t66
+    del axisx_1_1_2_3, t66
+    t68 = d5 * (T33 * (T13 * s_1_1_2_3 - T23 * c_1_1_2_3))
+    rate_1_1_2_3 = t68 / (h_1_1_2_3 * h_1_1_2_3)
+    del h_1_1_2_3, t68
+    dx_1_1_2_3 = _runtime.select(t65, dqx_1_1_2_3, dqx_1_1_2_3 - t67 * rate_1_1_2_3)
     del dqx_1_1_2_3
-    t68 = _runtime.select(t64, t21, t21 - d5 * t66)
-    del t66
-    t69 = _runtime.select(t64, 0.0, uc_1_1_2_3 * rate_1_1_2_3)
+    t69 = _runtime.select(t65, t21, t21 - d5 * t67)
+    del t67
+    t70 = _runtime.select(t65, 0.0, uc_1_1_2_3 * rate_1_1_2_3)
     del rate_1_1_2_3, uc_1_1_2_3
-    slope_1_1_2_3 = x_1_1_2_3 * dx_1_1_2_3 + t68 * t69
-    square_1_1_2_3 = x_1_1_2_3 * x_1_1_2_3 + t68 * t68
-    del t68, x_1_1_2_3
-    nearest_1_1_2_3 = _runtime.select(t64, t25, fold_1_1)
-    farthest_1_1_2_3 = _runtime.select(t64, t3, full_1_1)
-    del t64
-    t70 = np.minimum(farthest_1_1_2_3 * farthest_1_1_2_3, square_1_1_2_3)
+    slope_1_1_2_3 = x_1_1_2_3 * dx_1_1_2_3 + t69 * t70
+    square_1_1_2_3 = x_1_1_2_3 * x_1_1_2_3 + t69 * t69
+    del t69, x_1_1_2_3
+    nearest_1_1_2_3 = _runtime.select(t65, t25, fold_1_1)
+    farthest_1_1_2_3 = _runtime.select(t65, t3, full_1_1)
+    del t65
+    t71 = np.minimum(farthest_1_1_2_3 * farthest_1_1_2_3, square_1_1_2_3)
     del farthest_1_1_2_3
-    t71 = np.maximum(nearest_1_1_2_3 * nearest_1_1_2_3, t70)
-    del nearest_1_1_2_3, t70
-    miss_1_1_2_3 = square_1_1_2_3 - t71
-    del square_1_1_2_3, t71
-    bend_1_1_2_3 = dx_1_1_2_3 * dx_1_1_2_3 + t69 * t69
-    del dx_1_1_2_3, t69
+    t72 = np.maximum(nearest_1_1_2_3 * nearest_1_1_2_3, t71)
+    del nearest_1_1_2_3, t71
+    miss_1_1_2_3 = square_1_1_2_3 - t72
+    del square_1_1_2_3, t72
+    bend_1_1_2_3 = dx_1_1_2_3 * dx_1_1_2_3 + t70 * t70
+    del dx_1_1_2_3, t70
     inner_1_1_2_3 = slope_1_1_2_3 * slope_1_1_2_3 - miss_1_1_2_3 * bend_1_1_2_3
-    t72 = _runtime.sign(slope_1_1_2_3) * np.sqrt(np.maximum(0.0, inner_1_1_2_3))
-    t73 = _runtime.select(inner_1_1_2_3 < 0.0, slope_1_1_2_3 / (2.0 * bend_1_1_2_3), miss_1_1_2_3 / (2.0 * (slope_1_1_2_3 + t72)))
-    del bend_1_1_2_3, inner_1_1_2_3, miss_1_1_2_3, slope_1_1_2_3, t72
-    t74 = t73 * t73
-    t75 = 1.0 / (1.0 + t74)
-    t76 = 2.0 * t73 * t75
+    t73 = _runtime.sign(slope_1_1_2_3) * np.sqrt(np.maximum(0.0, inner_1_1_2_3))
+    outer_1_1_2_3 = slope_1_1_2_3 + t73
     del t73
-    by_c_1_1_2_3 = t75 * (1.0 - t74)
-    del t74, t75
-    t77 = d4 * (t76 * t76) / (1.0 + np.abs(by_c_1_1_2_3))
-    t78 = (t77 + root1 * np.abs(t76) <= whole_1_1) & (0.0 < by_c_1_1_2_3)
-    del t77
-    cosine_1_1_2_3 = _runtime.select(t78, by_c_1_1_2_3, 1.0)
+    t74 = _runtime.select(outer_1_1_2_3 == 0.0, 0.0, miss_1_1_2_3 / (2.0 * outer_1_1_2_3))
+    del miss_1_1_2_3, outer_1_1_2_3
+    t75 = _runtime.select(inner_1_1_2_3 < 0.0, slope_1_1_2_3 / (2.0 * bend_1_1_2_3), t74)
+    del bend_1_1_2_3, inner_1_1_2_3, slope_1_1_2_3, t74
+    t76 = t75 * t75
+    t77 = 1.0 / (1.0 + t76)
+    t78 = 2.0 * t75 * t77
+    del t75
+    by_c_1_1_2_3 = t77 * (1.0 - t76)
+    del t76, t77
+    t79 = d4 * (t78 * t78) / (1.0 + np.abs(by_c_1_1_2_3))
+    t80 = (t79 + root1 * np.abs(t78) <= whole_1_1) & (0.0 < by_c_1_1_2_3)
+    del t79
+    cosine_1_1_2_3 = _runtime.select(t80, by_c_1_1_2_3, 1.0)
     del by_c_1_1_2_3
-    sine_1_1_2_3 = _runtime.select(t78, -t76, 0.0)
-    del t76, t78
+    sine_1_1_2_3 = _runtime.select(t80, -t78, 0.0)
+    del t78, t80
     c_1_1_2_3_4 = c_1_1_2_3 * cosine_1_1_2_3 - s_1_1_2_3 * sine_1_1_2_3
     s_1_1_2_3_4 = c_1_1_2_3 * sine_1_1_2_3 + s_1_1_2_3 * cosine_1_1_2_3
     del c_1_1_2_3, cosine_1_1_2_3, s_1_1_2_3, sine_1_1_2_3
     axisx_1_1_2_3_4 = T13 * c_1_1_2_3_4 + T23 * s_1_1_2_3_4
     h_1_1_2_3_4 = np.sqrt(t11 + axisx_1_1_2_3_4 * axisx_1_1_2_3_4)
-    t79 = size * h_1_1_2_3_4 <= t15
+    t81 = size * h_1_1_2_3_4 <= t15
     qx_1_1_2_3_4 = w_x * c_1_1_2_3_4 + w_y * s_1_1_2_3_4
-    t80 = 1.0 / h_1_1_2_3_4
-    uc_1_1_2_3_4 = T33 * t80
-    x_1_1_2_3_4 = _runtime.select(t79, qx_1_1_2_3_4, qx_1_1_2_3_4 - d5 * uc_1_1_2_3_4)
+    t82 = 1.0 / h_1_1_2_3_4
+    uc_1_1_2_3_4 = T33 * t82
+    x_1_1_2_3_4 = _runtime.select(t81, qx_1_1_2_3_4, qx_1_1_2_3_4 - d5 * uc_1_1_2_3_4)
     del qx_1_1_2_3_4
     dqx_1_1_2_3_4 = w_y * c_1_1_2_3_4 - w_x * s_1_1_2_3_4
-    t81 = axisx_1_1_2_3_4 * t80
-    del axisx_1_1_2_3_4, t80
-    t82 = T33 * (T13 * s_1_1_2_3_4 - T23 * c_1_1_2_3_4)
-    rate_1_1_2_3_4 = d5 * t82 / (h_1_1_2_3_4 * h_1_1_2_3_4)
-    del h_1_1_2_3_4, t82
-    dx_1_1_2_3_4 = _runtime.select(t79, dqx_1_1_2_3_4, dqx_1_1_2_3_4 - t81 * rate_1_1_2_3_4)
+    t83 = axisx_1_1_2_3_4 * t82
+    del axisx_1_1_2_3_4, t82
+    t84 = T33 * (T13 * s_1_1_2_3_4 - T23 * c_1_1_2_3_4)
+    rate_1_1_2_3_4 = d5 * t84 / (h_1_1_2_3_4 * h_1_1_2_3_4)
+    del h_1_1_2_3_4, t84
+    dx_1_1_2_3_4 = _runtime.select(t81, dqx_1_1_2_3_4, dqx_1_1_2_3_4 - t83 * rate_1_1_2_3_4)
     del dqx_1_1_2_3_4
-    t83 = _runtime.select(t79, t21, t21 - d5 * t81)
-    del t81
-    t84 = _runtime.select(t79, 0.0, uc_1_1_2_3_4 * rate_1_1_2_3_4)
+    t85 = _runtime.select(t81, t21, t21 - d5 * t83)
+    del t83
+    t86 = _runtime.select(t81, 0.0, uc_1_1_2_3_4 * rate_1_1_2_3_4)
     del rate_1_1_2_3_4, uc_1_1_2_3_4
-    slope_1_1_2_3_4 = x_1_1_2_3_4 * dx_1_1_2_3_4 + t83 * t84
-    square_1_1_2_3_4 = x_1_1_2_3_4 * x_1_1_2_3_4 + t83 * t83
-    del t83, x_1_1_2_3_4
-    nearest_1_1_2_3_4 = _runtime.select(t79, t25, fold_1_1)
-    farthest_1_1_2_3_4 = _runtime.select(t79, t3, full_1_1)
-    del t79
-    t85 = np.minimum(farthest_1_1_2_3_4 * farthest_1_1_2_3_4, square_1_1_2_3_4)
+    slope_1_1_2_3_4 = x_1_1_2_3_4 * dx_1_1_2_3_4 + t85 * t86
+    square_1_1_2_3_4 = x_1_1_2_3_4 * x_1_1_2_3_4 + t85 * t85
+    del t85, x_1_1_2_3_4
+    nearest_1_1_2_3_4 = _runtime.select(t81, t25, fold_1_1)
+    farthest_1_1_2_3_4 = _runtime.select(t81, t3, full_1_1)
+    del t81
+    t87 = np.minimum(farthest_1_1_2_3_4 * farthest_1_1_2_3_4, square_1_1_2_3_4)
     del farthest_1_1_2_3_4
-    t86 = np.maximum(nearest_1_1_2_3_4 * nearest_1_1_2_3_4, t85)
-    del nearest_1_1_2_3_4, t85
-    miss_1_1_2_3_4 = square_1_1_2_3_4 - t86
-    del square_1_1_2_3_4, t86
-    bend_1_1_2_3_4 = dx_1_1_2_3_4 * dx_1_1_2_3_4 + t84 * t84
-    del dx_1_1_2_3_4, t84
+    t88 = np.maximum(nearest_1_1_2_3_4 * nearest_1_1_2_3_4, t87)
+    del nearest_1_1_2_3_4, t87
+    miss_1_1_2_3_4 = square_1_1_2_3_4 - t88
+    del square_1_1_2_3_4, t88
+    bend_1_1_2_3_4 = dx_1_1_2_3_4 * dx_1_1_2_3_4 + t86 * t86
+    del dx_1_1_2_3_4, t86
     inner_1_1_2_3_4 = slope_1_1_2_3_4 * slope_1_1_2_3_4 - miss_1_1_2_3_4 * bend_1_1_2_3_4
-    t87 = _runtime.sign(slope_1_1_2_3_4) * np.sqrt(np.maximum(0.0, inner_1_1_2_3_4))
-    t88 = miss_1_1_2_3_4 / (2.0 * (slope_1_1_2_3_4 + t87))
-    del miss_1_1_2_3_4, t87
-    t89 = _runtime.select(inner_1_1_2_3_4 < 0.0, slope_1_1_2_3_4 / (2.0 * bend_1_1_2_3_4), t88)
-    del bend_1_1_2_3_4, inner_1_1_2_3_4, slope_1_1_2_3_4, t88
-    t90 = t89 * t89
-    t91 = 1.0 / (1.0 + t90)
-    t92 = 2.0 * t89 * t91
+    t89 = _runtime.sign(slope_1_1_2_3_4) * np.sqrt(np.maximum(0.0, inner_1_1_2_3_4))
+    outer_1_1_2_3_4 = slope_1_1_2_3_4 + t89
     del t89
-    by_c_1_1_2_3_4 = t91 * (1.0 - t90)
-    del t90, t91
-    t93 = d4 * (t92 * t92) / (1.0 + np.abs(by_c_1_1_2_3_4))
-    t94 = (t93 + root1 * np.abs(t92) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4)
-    del t93
-    sine_1_1_2_3_4 = _runtime.select(t94, -t92, 0.0)
-    del t92
-    cosine_1_1_2_3_4 = _runtime.select(t94, by_c_1_1_2_3_4, 1.0)
-    del by_c_1_1_2_3_4, t94
-    t95 = c_1_1_2_3_4 * sine_1_1_2_3_4 + s_1_1_2_3_4 * cosine_1_1_2_3_4
-    s1 = _runtime.select(tangent1, t95, -t14)
+    t90 = _runtime.select(outer_1_1_2_3_4 == 0.0, 0.0, miss_1_1_2_3_4 / (2.0 * outer_1_1_2_3_4))
+    del miss_1_1_2_3_4, outer_1_1_2_3_4
+    t91 = _runtime.select(inner_1_1_2_3_4 < 0.0, slope_1_1_2_3_4 / (2.0 * bend_1_1_2_3_4), t90)
+    del bend_1_1_2_3_4, inner_1_1_2_3_4, slope_1_1_2_3_4, t90
+    t92 = t91 * t91
+    t93 = 1.0 / (1.0 + t92)
+    t94 = 2.0 * t91 * t93
+    del t91
+    by_c_1_1_2_3_4 = t93 * (1.0 - t92)
+    del t92, t93
+    t95 = d4 * (t94 * t94) / (1.0 + np.abs(by_c_1_1_2_3_4))
+    t96 = (t95 + root1 * np.abs(t94) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4)
     del t95
-    t96 = c_1_1_2_3_4 * cosine_1_1_2_3_4 - s_1_1_2_3_4 * sine_1_1_2_3_4
-    del c_1_1_2_3_4, cosine_1_1_2_3_4, s_1_1_2_3_4, sine_1_1_2_3_4
-    c1 = _runtime.select(tangent1, t96, c_1_1)
-    del t96
-    t97 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
-    t98 = t97 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
+    sine_1_1_2_3_4 = _runtime.select(t96, -t94, 0.0)
+    del t94
+    cosine_1_1_2_3_4 = _runtime.select(t96, by_c_1_1_2_3_4, 1.0)
+    del by_c_1_1_2_3_4, t96
+    t97 = c_1_1_2_3_4 * sine_1_1_2_3_4 + s_1_1_2_3_4 * cosine_1_1_2_3_4
+    s1 = _runtime.select(tangent1, t97, -t14)
     del t97
-    t99 = t98 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    t98 = c_1_1_2_3_4 * cosine_1_1_2_3_4 - s_1_1_2_3_4 * sine_1_1_2_3_4
+    del c_1_1_2_3_4, cosine_1_1_2_3_4, s_1_1_2_3_4, sine_1_1_2_3_4
+    c1 = _runtime.select(tangent1, t98, c_1_1)
     del t98
-    t100 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t101 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t102 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t103 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t104 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t105 = t99 & t100 & t101 & t102 & t103 & (t104 <= _runtime.ROTATION)
-    del t100, t101, t102, t103, t104, t99
-    t106 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t107 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t108 = t105 & (t106 <= _runtime.ROTATION) & t107 & (np.abs(T41) <= _runtime.ROTATION)
-    del t105, t106, t107
-    t109 = t108 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    del t108
-    t110 = t109 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
-    del t109
-    invalid = np.logical_not(t110)
+    t99 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
+    t100 = t99 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
+    del t99
+    t101 = t100 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    del t100
+    t102 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t103 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t104 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t105 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t106 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t107 = t101 & t102 & t103 & t104 & t105 & (t106 <= _runtime.ROTATION)
+    del t101, t102, t103, t104, t105, t106
+    t108 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t109 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t110 = t107 & (t108 <= _runtime.ROTATION) & t109 & (np.abs(T41) <= _runtime.ROTATION)
+    del t107, t108, t109
+    t111 = t110 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
     del t110
-    t111 = -(_runtime.FEASIBILITY * (size * 0.5))
-    t112 = (t111 <= t1) & (t111 <= t2)
+    t112 = t111 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t111
+    invalid = np.logical_not(t112)
+    del t112
+    t113 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t114 = (t113 <= t1) & (t113 <= t2)
     del t1, t2
     across = w_x * c1 + w_y * s1
     M_13 = T13 * c1 + T23 * s1
     h_wrist = np.sqrt(t11 + M_13 * M_13)
-    t113 = _runtime.VANISHING * 16.0
-    aligned_wrist = h_wrist <= t113
-    r_hub = np.sqrt(t37 + across * across)
+    t115 = _runtime.VANISHING * 16.0
+    aligned_wrist = h_wrist <= t115
+    r_hub = np.sqrt(t38 + across * across)
     hub_mid = r_hub <= t4
-    t114 = d5 + r_hub
-    t115 = d5 - r_hub
-    mid_reach = np.minimum(full_1_1, t114) * 0.5 + np.maximum(fold_1_1, np.abs(t115)) * 0.5
-    k_mid = np.maximum(0.0, (t114 - mid_reach) * (t114 + mid_reach))
-    d_mid = np.maximum(0.0, -((t115 - mid_reach) * (t115 + mid_reach)))
+    t116 = d5 + r_hub
+    t117 = d5 - r_hub
+    mid_reach = np.minimum(full_1_1, t116) * 0.5 + np.maximum(fold_1_1, np.abs(t117)) * 0.5
+    k_mid = np.maximum(0.0, (t116 - mid_reach) * (t116 + mid_reach))
+    d_mid = np.maximum(0.0, -((t117 - mid_reach) * (t117 + mid_reach)))
     del mid_reach
     n_mid = k_mid + d_mid
-    t116 = _runtime.VANISHING * t46
-    del t46
-    any_mid = n_mid <= t116
-    t117 = 1.0 / n_mid
+    t118 = _runtime.VANISHING * t47
+    del t47
+    any_mid = n_mid <= t118
+    t119 = 1.0 / n_mid
     del n_mid
-    uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) * t117)
-    us_mid = _runtime.select(any_mid, 0.0, t117 * (2.0 * np.sqrt(k_mid * d_mid)))
-    del any_mid, d_mid, k_mid, t117
-    t118 = 1.0 / r_hub
+    uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) * t119)
+    us_mid = _runtime.select(any_mid, 0.0, t119 * (2.0 * np.sqrt(k_mid * d_mid)))
+    del any_mid, d_mid, k_mid, t119
+    t120 = 1.0 / r_hub
     del r_hub
-    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t21 * us_mid) * t118)
-    t119 = size * 0.00048828125
-    close = root1 * h_wrist - t119 <= t4
-    t120 = 1.0 / h_wrist
-    s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t120)
-    t121 = across - d5 * s_phi
-    c_phi = _runtime.select(aligned_wrist, 1.0, M_13 * t120)
-    del t120
-    t122 = t21 - d5 * c_phi
-    here = np.sqrt(t121 * t121 + t122 * t122)
-    del t121, t122
+    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t21 * us_mid) * t120)
+    t121 = size * 0.00048828125
+    close = root1 * h_wrist - t121 <= t4
+    t122 = 1.0 / h_wrist
+    s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t122)
+    t123 = across - d5 * s_phi
+    c_phi = _runtime.select(aligned_wrist, 1.0, M_13 * t122)
+    del t122
+    t124 = t21 - d5 * c_phi
+    here = np.sqrt(t123 * t123 + t124 * t124)
+    del t123, t124
     in_reach = np.minimum(full_1_1, np.maximum(here, fold_1_1))
-    k_near = np.maximum(0.0, (t114 - in_reach) * (t114 + in_reach))
-    del t114
-    d_near = np.maximum(0.0, -((t115 - in_reach) * (t115 + in_reach)))
-    del t115
+    k_near = np.maximum(0.0, (t116 - in_reach) * (t116 + in_reach))
+    del t116
+    d_near = np.maximum(0.0, -((t117 - in_reach) * (t117 + in_reach)))
+    del t117
     n_near = k_near + d_near
-    any_near = n_near <= t116
-    t123 = 1.0 / n_near
+    any_near = n_near <= t118
+    t125 = 1.0 / n_near
     del n_near
-    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t123)
-    t124 = across * c_phi - t21 * s_phi
-    t125 = np.abs(t124)
-    side = _runtime.select(t125 <= t4, 1.0, -(t124 / t125))
-    del t124, t125
-    t126 = t123 * (2.0 * side * np.sqrt(k_near * d_near))
-    del d_near, k_near, side, t123
-    us_near = _runtime.select(any_near, 0.0, t126)
-    del any_near, t126
-    c_near = _runtime.select(hub_mid, 1.0, t118 * (across * uc_near + t21 * us_near))
-    t127 = s_phi - c_near
-    s_near = _runtime.select(hub_mid, 0.0, t118 * (across * us_near - t21 * uc_near))
+    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t125)
+    t126 = across * c_phi - t21 * s_phi
+    t127 = np.abs(t126)
+    side = _runtime.select(t127 <= t4, 1.0, -(t126 / t127))
+    del t126, t127
+    t128 = t125 * (2.0 * side * np.sqrt(k_near * d_near))
+    del d_near, k_near, side, t125
+    us_near = _runtime.select(any_near, 0.0, t128)
+    del any_near, t128
+    c_near = _runtime.select(hub_mid, 1.0, t120 * (across * uc_near + t21 * us_near))
+    t129 = s_phi - c_near
+    s_near = _runtime.select(hub_mid, 0.0, t120 * (across * us_near - t21 * uc_near))
     del uc_near, us_near
-    t128 = c_phi + s_near
-    t129 = h_wrist * np.sqrt(t127 * t127 + t128 * t128) - 2.2737367544323206e-13
-    del h_wrist, t127, t128
-    t130 = _runtime.VANISHING * 4.0
-    t131 = np.logical_not(np.abs(here - in_reach) <= t4)
+    t130 = c_phi + s_near
+    t131 = h_wrist * np.sqrt(t129 * t129 + t130 * t130) - 2.2737367544323206e-13
+    del h_wrist, t129, t130
+    t132 = _runtime.VANISHING * 4.0
+    t133 = np.logical_not(np.abs(here - in_reach) <= t4)
     del here, in_reach
-    t132 = (t129 <= t130) & t131
-    del t129, t131
-    t133 = _runtime.select(close, _runtime.select(t132, c_near, s_phi), s_phi)
+    t134 = (t131 <= t132) & t133
+    del t131, t133
+    t135 = _runtime.select(close, _runtime.select(t134, c_near, s_phi), s_phi)
     del c_near, s_phi
-    sphi = _runtime.select(aligned_wrist, c_mid, t133)
-    del c_mid, t133
-    t134 = across - d5 * sphi
-    s_mid = _runtime.select(hub_mid, 0.0, t118 * (across * us_mid - t21 * uc_mid))
-    del across, hub_mid, t118, uc_mid, us_mid
-    t135 = _runtime.select(close, _runtime.select(t132, -s_near, c_phi), c_phi)
-    del c_phi, close, s_near, t132
-    cphi = _runtime.select(aligned_wrist, -s_mid, t135)
-    del s_mid, t135
+    sphi = _runtime.select(aligned_wrist, c_mid, t135)
+    del c_mid, t135
+    t136 = across - d5 * sphi
+    s_mid = _runtime.select(hub_mid, 0.0, t120 * (across * us_mid - t21 * uc_mid))
+    del across, hub_mid, t120, uc_mid, us_mid
+    t137 = _runtime.select(close, _runtime.select(t134, -s_near, c_phi), c_phi)
+    del c_phi, close, s_near, t134
+    cphi = _runtime.select(aligned_wrist, -s_mid, t137)
+    del s_mid, t137
     ey = t21 - d5 * cphi
-    r_elbow = np.sqrt(t134 * t134 + ey * ey)
-    t136 = full_1_1 - r_elbow
-    t137 = t24 + r_elbow
-    t138 = r_elbow - t24
-    t139 = t112 & (t111 <= t136) & (t111 <= t137) & (t111 <= t138)
-    unreachable = np.logical_not(t139)
-    del t139
-    t140 = _runtime.poison(invalid | unreachable)
-    t141 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t140
+    r_elbow = np.sqrt(t136 * t136 + ey * ey)
+    t138 = full_1_1 - r_elbow
+    t139 = t24 + r_elbow
+    t140 = r_elbow - t24
+    t141 = t114 & (t113 <= t138) & (t113 <= t139) & (t113 <= t140)
+    unreachable = np.logical_not(t141)
+    del t141
+    t142 = _runtime.poison(invalid | unreachable)
+    t143 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t142
     folded_elbow = r_elbow <= t4
     no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1)
-    t142 = folded_elbow | no_link_elbow
-    A_elbow = np.maximum(t136, 0.0)
-    del t136
-    C_elbow = np.maximum(t138, 0.0)
+    t144 = folded_elbow | no_link_elbow
+    A_elbow = np.maximum(t138, 0.0)
     del t138
-    t143 = A_elbow * C_elbow
+    C_elbow = np.maximum(t140, 0.0)
+    del t140
+    t145 = A_elbow * C_elbow
     S_elbow = full_1_1 + r_elbow
-    B_elbow = np.maximum(t137, 0.0)
-    del t137
-    t144 = S_elbow * B_elbow
-    t145 = 1.0 / (t143 + t144)
-    c_base_elbow = _runtime.select(t142, 1.0, -((t143 - t144) * t145))
-    t146 = 1.0 / r_elbow
+    B_elbow = np.maximum(t139, 0.0)
+    del t139
+    t146 = S_elbow * B_elbow
+    t147 = 1.0 / (t145 + t146)
+    c_base_elbow = _runtime.select(t144, 1.0, -((t145 - t146) * t147))
+    t148 = 1.0 / r_elbow
     del r_elbow
-    t147 = _runtime.select(folded_elbow, 0.0, ey * t146)
+    t149 = _runtime.select(folded_elbow, 0.0, ey * t148)
     del ey
-    t148 = c_base_elbow * t147
-    area_elbow = 2.0 * np.sqrt(t143 * t144)
-    del t143, t144
-    s_base_elbow = _runtime.select(t142, 0.0, t145 * area_elbow)
-    del t142, t145
-    t149 = _runtime.select(folded_elbow, 1.0, -(t134 * t146))
-    del t134, t146
-    t150 = s_base_elbow * t149
-    s2 = t148 - t150
-    t151 = c_base_elbow * t149
-    del c_base_elbow, t149
-    t152 = t147 * s_base_elbow
-    del s_base_elbow, t147
-    c2 = t151 + t152
-    t153 = A_elbow * S_elbow
+    t150 = c_base_elbow * t149
+    area_elbow = 2.0 * np.sqrt(t145 * t146)
+    del t145, t146
+    s_base_elbow = _runtime.select(t144, 0.0, t147 * area_elbow)
+    del t144, t147
+    t151 = _runtime.select(folded_elbow, 1.0, -(t136 * t148))
+    del t136, t148
+    t152 = s_base_elbow * t151
+    s2 = t150 - t152
+    t153 = c_base_elbow * t151
+    del c_base_elbow, t151
+    t154 = t149 * s_base_elbow
+    del s_base_elbow, t149
+    c2 = t153 + t154
+    t155 = A_elbow * S_elbow
     del A_elbow, S_elbow
-    t154 = C_elbow * B_elbow
+    t156 = C_elbow * B_elbow
     del B_elbow, C_elbow
-    t155 = 1.0 / (t153 + t154)
-    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t155)
+    t157 = 1.0 / (t155 + t156)
+    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t157)
     del area_elbow
-    c3 = _runtime.select(no_link_elbow, 1.0, -(t155 * (t153 - t154)))
-    del t153, t154, t155
-    t156 = np.arctan2(s3, c3)
-    t157 = sphi * c2 - cphi * s2
-    t158 = cphi * c2 + sphi * s2
-    t159 = np.arctan2(c3 * t157 - s3 * t158, c3 * t158 + s3 * t157)
-    del t157, t158
-    t160 = np.arctan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1)
+    c3 = _runtime.select(no_link_elbow, 1.0, -(t157 * (t155 - t156)))
+    del t155, t156, t157
+    t158 = np.arctan2(s3, c3)
+    t159 = sphi * c2 - cphi * s2
+    t160 = cphi * c2 + sphi * s2
+    t161 = np.arctan2(c3 * t159 - s3 * t160, c3 * t160 + s3 * t159)
+    del t159, t160
+    t162 = np.arctan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1)
     del M_13
-    t161 = _runtime.wrap_cut(-t160) + t140
-    del t160
-    t162 = np.arctan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12 * c1 + T22 * s1))
-    del c1, s1
-    t163 = _runtime.wrap_cut(-t162) + t140
+    t163 = _runtime.wrap_cut(-t162) + t142
     del t162
-    s2_left_noflip_down = t148 + t150
-    del t148, t150
-    c2_left_noflip_down = t151 - t152
-    del t151, t152
-    t164 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
-    t165 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
-    t166 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
+    t164 = np.arctan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12 * c1 + T22 * s1))
+    del c1, s1
+    t165 = _runtime.wrap_cut(-t164) + t142
+    del t164
+    s2_left_noflip_down = t150 + t152
+    del t150, t152
+    c2_left_noflip_down = t153 - t154
+    del t153, t154
+    t166 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
+    t167 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
+    t168 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
     del c2_left_noflip_down, cphi, s2_left_noflip_down, sphi
-    t167 = np.arctan2(c3 * t165 + s3 * t166, c3 * t166 - s3 * t165)
-    del c3, s3, t165, t166
+    t169 = np.arctan2(c3 * t167 + s3 * t168, c3 * t168 - s3 * t167)
+    del c3, s3, t167, t168
     x_1_1_left_flip_up = _runtime.select(t16, qx_1_1, qx_1_1 + t18)
     del qx_1_1, t18
     dx_1_1_left_flip_up = _runtime.select(t16, dqx_1_1, dqx_1_1 - t20)
     del dqx_1_1, t20
-    t168 = _runtime.select(t16, t21, t21 + t22)
+    t170 = _runtime.select(t16, t21, t21 + t22)
     del t16, t22
-    slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t168
+    slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t170
     del dy_1_1
-    t169 = slope_1_1_left_flip_up * slope_1_1_left_flip_up
-    square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t168 * t168
-    del t168, x_1_1_left_flip_up
-    t170 = np.minimum(high_1_1, square_1_1_left_flip_up)
+    t171 = slope_1_1_left_flip_up * slope_1_1_left_flip_up
+    square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t170 * t170
+    del t170, x_1_1_left_flip_up
+    t172 = np.minimum(high_1_1, square_1_1_left_flip_up)
     del high_1_1
-    miss_1_1_left_flip_up = square_1_1_left_flip_up - np.maximum(low_1_1, t170)
-    del low_1_1, square_1_1_left_flip_up, t170
+    miss_1_1_left_flip_up = square_1_1_left_flip_up - np.maximum(low_1_1, t172)
+    del low_1_1, square_1_1_left_flip_up, t172
     bend_1_1_left_flip_up = t27 + dx_1_1_left_flip_up * dx_1_1_left_flip_up
     del dx_1_1_left_flip_up, t27
-    t171 = miss_1_1_left_flip_up * bend_1_1_left_flip_up
-    inner_1_1_left_flip_up = t169 - t171
-    del t169, t171
-    t172 = slope_1_1_left_flip_up / (2.0 * bend_1_1_left_flip_up)
+    t173 = miss_1_1_left_flip_up * bend_1_1_left_flip_up
+    inner_1_1_left_flip_up = t171 - t173
+    del t171, t173
+    t174 = slope_1_1_left_flip_up / (2.0 * bend_1_1_left_flip_up)
     del bend_1_1_left_flip_up
-    t173 = np.sqrt(np.maximum(0.0, inner_1_1_left_flip_up))
-    outer_1_1_left_flip_up = slope_1_1_left_flip_up + _runtime.sign(slope_1_1_left_flip_up) * t173
-    del slope_1_1_left_flip_up, t173
-    t174 = miss_1_1_left_flip_up / (2.0 * outer_1_1_left_flip_up)
-    del miss_1_1_left_flip_up, outer_1_1_left_flip_up
-    t175 = _runtime.select(inner_1_1_left_flip_up < 0.0, t172, t174)
-    del inner_1_1_left_flip_up, t172, t174
-    t176 = t175 * t175
-    t177 = 1.0 / (1.0 + t176)
-    t178 = 2.0 * t175 * t177
-    del t175
-    by_c_1_1_left_flip_up = t177 * (1.0 - t176)
-    del t176, t177
-    t179 = d4 * (t178 * t178) / (1.0 + np.abs(by_c_1_1_left_flip_up))
-    t180 = (t179 + root1 * np.abs(t178) <= whole_1_1) & (0.0 < by_c_1_1_left_flip_up)
-    del t179
-    cosine_1_1_left_flip_up = _runtime.select(t180, by_c_1_1_left_flip_up, 1.0)
+    t175 = np.sqrt(np.maximum(0.0, inner_1_1_left_flip_up))
+    outer_1_1_left_flip_up = slope_1_1_left_flip_up + _runtime.sign(slope_1_1_left_flip_up) * t175
+    del slope_1_1_left_flip_up, t175
+    t176 = miss_1_1_left_flip_up / (2.0 * outer_1_1_left_flip_up)
+    del miss_1_1_left_flip_up
+    t177 = _runtime.select(outer_1_1_left_flip_up == 0.0, 0.0, t176)
+    del outer_1_1_left_flip_up, t176
+    t178 = _runtime.select(inner_1_1_left_flip_up < 0.0, t174, t177)
+    del inner_1_1_left_flip_up, t174, t177
+    t179 = t178 * t178
+    t180 = 1.0 / (1.0 + t179)
+    t181 = 2.0 * t178 * t180
+    del t178
+    by_c_1_1_left_flip_up = t180 * (1.0 - t179)
+    del t179, t180
+    t182 = d4 * (t181 * t181) / (1.0 + np.abs(by_c_1_1_left_flip_up))
+    t183 = (t182 + root1 * np.abs(t181) <= whole_1_1) & (0.0 < by_c_1_1_left_flip_up)
+    del t182
+    cosine_1_1_left_flip_up = _runtime.select(t183, by_c_1_1_left_flip_up, 1.0)
     del by_c_1_1_left_flip_up
-    sine_1_1_left_flip_up = _runtime.select(t180, -t178, 0.0)
-    del t178, t180
+    sine_1_1_left_flip_up = _runtime.select(t183, -t181, 0.0)
+    del t181, t183
     c_1_1_2_left_flip_up = c_1_1 * cosine_1_1_left_flip_up + t14 * sine_1_1_left_flip_up
     s_1_1_2_left_flip_up = c_1_1 * sine_1_1_left_flip_up - t14 * cosine_1_1_left_flip_up
     del cosine_1_1_left_flip_up, sine_1_1_left_flip_up
     axisx_1_1_2_left_flip_up = T13 * c_1_1_2_left_flip_up + T23 * s_1_1_2_left_flip_up
-    t181 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up
-    t182 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up
-    most_1_1_2_left_flip_up = np.sqrt(t181 + t182 * t182)
+    t184 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up
+    t185 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up
+    most_1_1_2_left_flip_up = np.sqrt(t184 + t185 * t185)
     qx_1_1_2_left_flip_up = w_x * c_1_1_2_left_flip_up + w_y * s_1_1_2_left_flip_up
-    t183 = qx_1_1_2_left_flip_up * qx_1_1_2_left_flip_up
-    r_1_1_2_left_flip_up = np.sqrt(t37 + t183)
-    del t183
-    t184 = r_1_1_2_left_flip_up <= t38
-    t185 = d5 + r_1_1_2_left_flip_up
-    t186 = 1.0 / np.sqrt(t11 + t181)
-    del t181
-    t187 = T33 * t186
-    t188 = qx_1_1_2_left_flip_up + d5 * t187
-    us_1_1_2_left_flip_up = axisx_1_1_2_left_flip_up * t186
+    t186 = qx_1_1_2_left_flip_up * qx_1_1_2_left_flip_up
+    r_1_1_2_left_flip_up = np.sqrt(t38 + t186)
     del t186
-    t189 = t21 + d5 * us_1_1_2_left_flip_up
-    there_1_1_2_left_flip_up = np.sqrt(t188 * t188 + t189 * t189)
-    del t188, t189
-    t190 = np.maximum(there_1_1_2_left_flip_up, fold_1_1)
-    goal_1_1_2_left_flip_up = np.minimum(full_1_1, t190)
-    del t190
-    t191 = (t185 - goal_1_1_2_left_flip_up) * (t185 + goal_1_1_2_left_flip_up)
-    del t185
-    k_v_1_1_2_left_flip_up = np.maximum(0.0, t191)
-    del t191
-    t192 = d5 - r_1_1_2_left_flip_up
-    t193 = (goal_1_1_2_left_flip_up - t192) * (goal_1_1_2_left_flip_up + t192)
-    del t192
-    d_v_1_1_2_left_flip_up = np.maximum(0.0, t193)
+    t187 = r_1_1_2_left_flip_up <= t39
+    t188 = d5 + r_1_1_2_left_flip_up
+    t189 = 1.0 / np.sqrt(t11 + t184)
+    del t184
+    t190 = T33 * t189
+    t191 = qx_1_1_2_left_flip_up + d5 * t190
+    us_1_1_2_left_flip_up = axisx_1_1_2_left_flip_up * t189
+    del t189
+    t192 = t21 + d5 * us_1_1_2_left_flip_up
+    there_1_1_2_left_flip_up = np.sqrt(t191 * t191 + t192 * t192)
+    del t191, t192
+    t193 = np.maximum(there_1_1_2_left_flip_up, fold_1_1)
+    goal_1_1_2_left_flip_up = np.minimum(full_1_1, t193)
     del t193
-    n_v_1_1_2_left_flip_up = k_v_1_1_2_left_flip_up + d_v_1_1_2_left_flip_up
-    t194 = n_v_1_1_2_left_flip_up <= t47
-    t195 = k_v_1_1_2_left_flip_up - d_v_1_1_2_left_flip_up
-    t196 = 1.0 / n_v_1_1_2_left_flip_up
-    del n_v_1_1_2_left_flip_up
-    uc_v_1_1_2_left_flip_up = _runtime.select(t194, 1.0, t195 * t196)
+    t194 = (t188 - goal_1_1_2_left_flip_up) * (t188 + goal_1_1_2_left_flip_up)
+    del t188
+    k_v_1_1_2_left_flip_up = np.maximum(0.0, t194)
+    del t194
+    t195 = d5 - r_1_1_2_left_flip_up
+    t196 = (goal_1_1_2_left_flip_up - t195) * (goal_1_1_2_left_flip_up + t195)
     del t195
-    t197 = qx_1_1_2_left_flip_up * uc_v_1_1_2_left_flip_up
-    t198 = qx_1_1_2_left_flip_up * us_1_1_2_left_flip_up
+    d_v_1_1_2_left_flip_up = np.maximum(0.0, t196)
+    del t196
+    n_v_1_1_2_left_flip_up = k_v_1_1_2_left_flip_up + d_v_1_1_2_left_flip_up
+    t197 = n_v_1_1_2_left_flip_up <= t48
+    t198 = k_v_1_1_2_left_flip_up - d_v_1_1_2_left_flip_up
+    t199 = 1.0 / n_v_1_1_2_left_flip_up
+    del n_v_1_1_2_left_flip_up
+    uc_v_1_1_2_left_flip_up = _runtime.select(t197, 1.0, t198 * t199)
+    del t198
+    t200 = qx_1_1_2_left_flip_up * uc_v_1_1_2_left_flip_up
+    t201 = qx_1_1_2_left_flip_up * us_1_1_2_left_flip_up
     del us_1_1_2_left_flip_up
-    t199 = k_v_1_1_2_left_flip_up * d_v_1_1_2_left_flip_up
+    t202 = k_v_1_1_2_left_flip_up * d_v_1_1_2_left_flip_up
     del d_v_1_1_2_left_flip_up, k_v_1_1_2_left_flip_up
-    t200 = 2.0 * _runtime.sign(t198 - t21 * t187) * np.sqrt(t199)
-    del t187, t198, t199
-    us_v_1_1_2_left_flip_up = _runtime.select(t194, 0.0, t196 * t200)
-    del t194, t196, t200
-    t201 = t21 * us_v_1_1_2_left_flip_up
-    t202 = 1.0 / r_1_1_2_left_flip_up
+    t203 = 2.0 * _runtime.sign(t201 - t21 * t190) * np.sqrt(t202)
+    del t190, t201, t202
+    us_v_1_1_2_left_flip_up = _runtime.select(t197, 0.0, t199 * t203)
+    del t197, t199, t203
+    t204 = t21 * us_v_1_1_2_left_flip_up
+    t205 = 1.0 / r_1_1_2_left_flip_up
     del r_1_1_2_left_flip_up
-    c_v_1_1_2_left_flip_up = _runtime.select(t184, 1.0, (t197 + t201) * t202)
-    t203 = -(T33 * c_v_1_1_2_left_flip_up) < 0.0
-    t204 = qx_1_1_2_left_flip_up * us_v_1_1_2_left_flip_up
+    c_v_1_1_2_left_flip_up = _runtime.select(t187, 1.0, (t200 + t204) * t205)
+    t206 = -(T33 * c_v_1_1_2_left_flip_up) < 0.0
+    t207 = qx_1_1_2_left_flip_up * us_v_1_1_2_left_flip_up
     del qx_1_1_2_left_flip_up, us_v_1_1_2_left_flip_up
-    t205 = t21 * uc_v_1_1_2_left_flip_up
+    t208 = t21 * uc_v_1_1_2_left_flip_up
     del uc_v_1_1_2_left_flip_up
-    wc_1_1_2_left_flip_up = _runtime.select(t184, 0.0, t202 * (t204 + t205))
-    s_v_1_1_2_left_flip_up = _runtime.select(t184, 0.0, t202 * (t204 - t205))
-    del t204, t205
-    to_c_1_1_2_left_flip_up = _runtime.select(t203, wc_1_1_2_left_flip_up, -s_v_1_1_2_left_flip_up)
+    wc_1_1_2_left_flip_up = _runtime.select(t187, 0.0, t205 * (t207 + t208))
+    s_v_1_1_2_left_flip_up = _runtime.select(t187, 0.0, t205 * (t207 - t208))
+    del t207, t208
+    to_c_1_1_2_left_flip_up = _runtime.select(t206, wc_1_1_2_left_flip_up, -s_v_1_1_2_left_flip_up)
     del s_v_1_1_2_left_flip_up, wc_1_1_2_left_flip_up
-    c_w_1_1_2_left_flip_up = _runtime.select(t184, 1.0, t202 * (t197 - t201))
-    del t184, t197, t201, t202
-    to_s_1_1_2_left_flip_up = _runtime.select(t203, c_w_1_1_2_left_flip_up, c_v_1_1_2_left_flip_up)
-    del c_v_1_1_2_left_flip_up, c_w_1_1_2_left_flip_up, t203
-    t206 = T33 * to_c_1_1_2_left_flip_up / to_s_1_1_2_left_flip_up
+    c_w_1_1_2_left_flip_up = _runtime.select(t187, 1.0, t205 * (t200 - t204))
+    del t187, t200, t204, t205
+    to_s_1_1_2_left_flip_up = _runtime.select(t206, c_w_1_1_2_left_flip_up, c_v_1_1_2_left_flip_up)
+    del c_v_1_1_2_left_flip_up, c_w_1_1_2_left_flip_up, t206
+    t209 = T33 * to_c_1_1_2_left_flip_up / to_s_1_1_2_left_flip_up
     del to_c_1_1_2_left_flip_up, to_s_1_1_2_left_flip_up
-    t207 = np.minimum(most_1_1_2_left_flip_up, _runtime.select(t36, 0.0, t206))
-    del t206
-    kept_1_1_2_left_flip_up = np.maximum(-most_1_1_2_left_flip_up, t207)
-    del t207
-    t208 = most_1_1_2_left_flip_up - kept_1_1_2_left_flip_up
-    t209 = most_1_1_2_left_flip_up + kept_1_1_2_left_flip_up
-    rest_1_1_2_left_flip_up = np.sqrt(t208 * t209) * _runtime.sign(-t182)
-    del t208, t209
-    t210 = axisx_1_1_2_left_flip_up * rest_1_1_2_left_flip_up
-    t211 = most_1_1_2_left_flip_up * most_1_1_2_left_flip_up
-    del most_1_1_2_left_flip_up
-    t212 = 1.0 / t211
-    del t211
-    t213 = (t210 + t182 * kept_1_1_2_left_flip_up) * t212
+    t210 = np.minimum(most_1_1_2_left_flip_up, _runtime.select(t37, 0.0, t209))
+    del t209
+    kept_1_1_2_left_flip_up = np.maximum(-most_1_1_2_left_flip_up, t210)
     del t210
-    t214 = axisx_1_1_2_left_flip_up * kept_1_1_2_left_flip_up
+    t211 = most_1_1_2_left_flip_up - kept_1_1_2_left_flip_up
+    t212 = most_1_1_2_left_flip_up + kept_1_1_2_left_flip_up
+    rest_1_1_2_left_flip_up = np.sqrt(t211 * t212) * _runtime.sign(-t185)
+    del t211, t212
+    t213 = axisx_1_1_2_left_flip_up * rest_1_1_2_left_flip_up
+    t214 = most_1_1_2_left_flip_up * most_1_1_2_left_flip_up
+    del most_1_1_2_left_flip_up
+    t215 = 1.0 / t214
+    del t214
+    t216 = (t213 + t185 * kept_1_1_2_left_flip_up) * t215
+    del t213
+    t217 = axisx_1_1_2_left_flip_up * kept_1_1_2_left_flip_up
     del axisx_1_1_2_left_flip_up, kept_1_1_2_left_flip_up
-    by_c_1_1_2_left_flip_up = t212 * (t214 - t182 * rest_1_1_2_left_flip_up)
-    del rest_1_1_2_left_flip_up, t182, t212, t214
-    t215 = d4 * (t213 * t213) / (1.0 + np.abs(by_c_1_1_2_left_flip_up))
-    t216 = (t215 + root1 * np.abs(t213) <= whole_1_1) & (0.0 < by_c_1_1_2_left_flip_up)
-    del t215
-    t217 = there_1_1_2_left_flip_up - goal_1_1_2_left_flip_up
+    by_c_1_1_2_left_flip_up = t215 * (t217 - t185 * rest_1_1_2_left_flip_up)
+    del rest_1_1_2_left_flip_up, t185, t215, t217
+    t218 = d4 * (t216 * t216) / (1.0 + np.abs(by_c_1_1_2_left_flip_up))
+    t219 = (t218 + root1 * np.abs(t216) <= whole_1_1) & (0.0 < by_c_1_1_2_left_flip_up)
+    del t218
+    t220 = there_1_1_2_left_flip_up - goal_1_1_2_left_flip_up
     del goal_1_1_2_left_flip_up, there_1_1_2_left_flip_up
-    t218 = t216 & (size < 1125899906842624.0 * np.abs(t217))
-    del t216, t217
-    cosine_1_1_2_left_flip_up = _runtime.select(t218, by_c_1_1_2_left_flip_up, 1.0)
-    del by_c_1_1_2_left_flip_up
-    t219 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
-    sine_1_1_2_left_flip_up = _runtime.select(t218, -t213, 0.0)
-    del t213, t218
-    t220 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
-    c_1_1_2_3_left_flip_up = t219 - t220
+    t221 = t219 & (size < 1125899906842624.0 * np.abs(t220))
     del t219, t220
-    t221 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
+    cosine_1_1_2_left_flip_up = _runtime.select(t221, by_c_1_1_2_left_flip_up, 1.0)
+    del by_c_1_1_2_left_flip_up
+    t222 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
+    sine_1_1_2_left_flip_up = _runtime.select(t221, -t216, 0.0)
+    del t216, t221
+    t223 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
+    c_1_1_2_3_left_flip_up = t222 - t223
+    del t222, t223
+    t224 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
     del c_1_1_2_left_flip_up, sine_1_1_2_left_flip_up
-    t222 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
+    t225 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
     del cosine_1_1_2_left_flip_up, s_1_1_2_left_flip_up
-    s_1_1_2_3_left_flip_up = t221 + t222
-    del t221, t222
+    s_1_1_2_3_left_flip_up = t224 + t225
+    del t224, t225
     axisx_1_1_2_3_left_flip_up = T13 * c_1_1_2_3_left_flip_up + T23 * s_1_1_2_3_left_flip_up
-    t223 = axisx_1_1_2_3_left_flip_up * axisx_1_1_2_3_left_flip_up
-    h_1_1_2_3_left_flip_up = np.sqrt(t11 + t223)
-    del t223
-    t224 = size * h_1_1_2_3_left_flip_up <= t15
+    t226 = axisx_1_1_2_3_left_flip_up * axisx_1_1_2_3_left_flip_up
+    h_1_1_2_3_left_flip_up = np.sqrt(t11 + t226)
+    del t226
+    t227 = size * h_1_1_2_3_left_flip_up <= t15
     qx_1_1_2_3_left_flip_up = w_x * c_1_1_2_3_left_flip_up + w_y * s_1_1_2_3_left_flip_up
-    t225 = 1.0 / h_1_1_2_3_left_flip_up
-    t226 = T33 * t225
-    x_1_1_2_3_left_flip_up = _runtime.select(t224, qx_1_1_2_3_left_flip_up, qx_1_1_2_3_left_flip_up + d5 * t226)
+    t228 = 1.0 / h_1_1_2_3_left_flip_up
+    t229 = T33 * t228
+    x_1_1_2_3_left_flip_up = _runtime.select(t227, qx_1_1_2_3_left_flip_up, qx_1_1_2_3_left_flip_up + d5 * t229)
     del qx_1_1_2_3_left_flip_up
     dqx_1_1_2_3_left_flip_up = w_y * c_1_1_2_3_left_flip_up - w_x * s_1_1_2_3_left_flip_up
-    us_1_1_2_3_left_flip_up = axisx_1_1_2_3_left_flip_up * t225
-    del axisx_1_1_2_3_left_flip_up, t225
-    t227 = T13 * s_1_1_2_3_left_flip_up - T23 * c_1_1_2_3_left_flip_up
-    t228 = h_1_1_2_3_left_flip_up * h_1_1_2_3_left_flip_up
+    us_1_1_2_3_left_flip_up = axisx_1_1_2_3_left_flip_up * t228
+    del axisx_1_1_2_3_left_flip_up, t228
+    t230 = T13 * s_1_1_2_3_left_flip_up - T23 * c_1_1_2_3_left_flip_up
+    t231 = h_1_1_2_3_left_flip_up * h_1_1_2_3_left_flip_up
     del h_1_1_2_3_left_flip_up
-    rate_1_1_2_3_left_flip_up = d5 * (T33 * t227) / t228
-    del t227, t228
-    t229 = us_1_1_2_3_left_flip_up * rate_1_1_2_3_left_flip_up
-    dx_1_1_2_3_left_flip_up = _runtime.select(t224, dqx_1_1_2_3_left_flip_up, dqx_1_1_2_3_left_flip_up + t229)
-    del dqx_1_1_2_3_left_flip_up, t229
-    t230 = x_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
-    t231 = _runtime.select(t224, t21, t21 + d5 * us_1_1_2_3_left_flip_up)
+    rate_1_1_2_3_left_flip_up = d5 * (T33 * t230) / t231
+    del t230, t231
+    t232 = us_1_1_2_3_left_flip_up * rate_1_1_2_3_left_flip_up
+    dx_1_1_2_3_left_flip_up = _runtime.select(t227, dqx_1_1_2_3_left_flip_up, dqx_1_1_2_3_left_flip_up + t232)
+    del dqx_1_1_2_3_left_flip_up, t232
+    t233 = x_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
+    t234 = _runtime.select(t227, t21, t21 + d5 * us_1_1_2_3_left_flip_up)
     del us_1_1_2_3_left_flip_up
-    dy_1_1_2_3_left_flip_up = _runtime.select(t224, 0.0, t226 * rate_1_1_2_3_left_flip_up)
-    del rate_1_1_2_3_left_flip_up, t226
-    slope_1_1_2_3_left_flip_up = t230 - t231 * dy_1_1_2_3_left_flip_up
-    del t230
-    t232 = slope_1_1_2_3_left_flip_up * slope_1_1_2_3_left_flip_up
-    t233 = x_1_1_2_3_left_flip_up * x_1_1_2_3_left_flip_up
+    dy_1_1_2_3_left_flip_up = _runtime.select(t227, 0.0, t229 * rate_1_1_2_3_left_flip_up)
+    del rate_1_1_2_3_left_flip_up, t229
+    slope_1_1_2_3_left_flip_up = t233 - t234 * dy_1_1_2_3_left_flip_up
+    del t233
+    t235 = slope_1_1_2_3_left_flip_up * slope_1_1_2_3_left_flip_up
+    t236 = x_1_1_2_3_left_flip_up * x_1_1_2_3_left_flip_up
     del x_1_1_2_3_left_flip_up
-    square_1_1_2_3_left_flip_up = t233 + t231 * t231
-    del t231, t233
-    nearest_1_1_2_3_left_flip_up = _runtime.select(t224, t25, fold_1_1)
+    square_1_1_2_3_left_flip_up = t236 + t234 * t234
+    del t234, t236
+    nearest_1_1_2_3_left_flip_up = _runtime.select(t227, t25, fold_1_1)
     low_1_1_2_3_left_flip_up = nearest_1_1_2_3_left_flip_up * nearest_1_1_2_3_left_flip_up
     del nearest_1_1_2_3_left_flip_up
-    farthest_1_1_2_3_left_flip_up = _runtime.select(t224, t3, full_1_1)
-    del t224
+    farthest_1_1_2_3_left_flip_up = _runtime.select(t227, t3, full_1_1)
+    del t227
     high_1_1_2_3_left_flip_up = farthest_1_1_2_3_left_flip_up * farthest_1_1_2_3_left_flip_up
     del farthest_1_1_2_3_left_flip_up
-    t234 = np.minimum(high_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up)
+    t237 = np.minimum(high_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up)
     del high_1_1_2_3_left_flip_up
-    miss_1_1_2_3_left_flip_up = square_1_1_2_3_left_flip_up - np.maximum(low_1_1_2_3_left_flip_up, t234)
-    del low_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up, t234
-    t235 = dx_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
+    miss_1_1_2_3_left_flip_up = square_1_1_2_3_left_flip_up - np.maximum(low_1_1_2_3_left_flip_up, t237)
+    del low_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up, t237
+    t238 = dx_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
     del dx_1_1_2_3_left_flip_up
-    t236 = dy_1_1_2_3_left_flip_up * dy_1_1_2_3_left_flip_up
+    t239 = dy_1_1_2_3_left_flip_up * dy_1_1_2_3_left_flip_up
     del dy_1_1_2_3_left_flip_up
-    bend_1_1_2_3_left_flip_up = t235 + t236
-    del t235, t236
-    t237 = miss_1_1_2_3_left_flip_up * bend_1_1_2_3_left_flip_up
-    inner_1_1_2_3_left_flip_up = t232 - t237
-    del t232, t237
-    t238 = slope_1_1_2_3_left_flip_up / (2.0 * bend_1_1_2_3_left_flip_up)
+    bend_1_1_2_3_left_flip_up = t238 + t239
+    del t238, t239
+    t240 = miss_1_1_2_3_left_flip_up * bend_1_1_2_3_left_flip_up
+    inner_1_1_2_3_left_flip_up = t235 - t240
+    del t235, t240
+    t241 = slope_1_1_2_3_left_flip_up / (2.0 * bend_1_1_2_3_left_flip_up)
     del bend_1_1_2_3_left_flip_up
-    t239 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_left_flip_up))
-    t240 = _runtime.sign(slope_1_1_2_3_left_flip_up) * t239
-    del t239
-    t241 = miss_1_1_2_3_left_flip_up / (2.0 * (slope_1_1_2_3_left_flip_up + t240))
-    del miss_1_1_2_3_left_flip_up, slope_1_1_2_3_left_flip_up, t240
-    t242 = _runtime.select(inner_1_1_2_3_left_flip_up < 0.0, t238, t241)
-    del inner_1_1_2_3_left_flip_up, t238, t241
-    t243 = t242 * t242
-    t244 = 1.0 / (1.0 + t243)
-    t245 = 2.0 * t242 * t244
+    t242 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_left_flip_up))
+    t243 = _runtime.sign(slope_1_1_2_3_left_flip_up) * t242
     del t242
-    by_c_1_1_2_3_left_flip_up = t244 * (1.0 - t243)
-    del t243, t244
-    t246 = d4 * (t245 * t245) / (1.0 + np.abs(by_c_1_1_2_3_left_flip_up))
-    t247 = (t246 + root1 * np.abs(t245) <= whole_1_1) & (0.0 < by_c_1_1_2_3_left_flip_up)
+    outer_1_1_2_3_left_flip_up = slope_1_1_2_3_left_flip_up + t243
+    del slope_1_1_2_3_left_flip_up, t243
+    t244 = miss_1_1_2_3_left_flip_up / (2.0 * outer_1_1_2_3_left_flip_up)
+    del miss_1_1_2_3_left_flip_up
+    t245 = _runtime.select(outer_1_1_2_3_left_flip_up == 0.0, 0.0, t244)
+    del outer_1_1_2_3_left_flip_up, t244
+    t246 = _runtime.select(inner_1_1_2_3_left_flip_up < 0.0, t241, t245)
+    del inner_1_1_2_3_left_flip_up, t241, t245
+    t247 = t246 * t246
+    t248 = 1.0 / (1.0 + t247)
+    t249 = 2.0 * t246 * t248
     del t246
-    cosine_1_1_2_3_left_flip_up = _runtime.select(t247, by_c_1_1_2_3_left_flip_up, 1.0)
+    by_c_1_1_2_3_left_flip_up = t248 * (1.0 - t247)
+    del t247, t248
+    t250 = d4 * (t249 * t249) / (1.0 + np.abs(by_c_1_1_2_3_left_flip_up))
+    t251 = (t250 + root1 * np.abs(t249) <= whole_1_1) & (0.0 < by_c_1_1_2_3_left_flip_up)
+    del t250
+    cosine_1_1_2_3_left_flip_up = _runtime.select(t251, by_c_1_1_2_3_left_flip_up, 1.0)
     del by_c_1_1_2_3_left_flip_up
-    t248 = c_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
-    sine_1_1_2_3_left_flip_up = _runtime.select(t247, -t245, 0.0)
-    del t245, t247
-    t249 = s_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
-    c_1_1_2_3_4_left_flip_up = t248 - t249
-    del t248, t249
-    t250 = c_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
+    t252 = c_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
+    sine_1_1_2_3_left_flip_up = _runtime.select(t251, -t249, 0.0)
+    del t249, t251
+    t253 = s_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
+    c_1_1_2_3_4_left_flip_up = t252 - t253
+    del t252, t253
+    t254 = c_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
     del c_1_1_2_3_left_flip_up, sine_1_1_2_3_left_flip_up
-    t251 = s_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
+    t255 = s_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
     del cosine_1_1_2_3_left_flip_up, s_1_1_2_3_left_flip_up
-    s_1_1_2_3_4_left_flip_up = t250 + t251
-    del t250, t251
+    s_1_1_2_3_4_left_flip_up = t254 + t255
+    del t254, t255
     axisx_1_1_2_3_4_left_flip_up = T13 * c_1_1_2_3_4_left_flip_up + T23 * s_1_1_2_3_4_left_flip_up
-    t252 = axisx_1_1_2_3_4_left_flip_up * axisx_1_1_2_3_4_left_flip_up
-    h_1_1_2_3_4_left_flip_up = np.sqrt(t11 + t252)
-    del t252
-    t253 = size * h_1_1_2_3_4_left_flip_up <= t15
+    t256 = axisx_1_1_2_3_4_left_flip_up * axisx_1_1_2_3_4_left_flip_up
+    h_1_1_2_3_4_left_flip_up = np.sqrt(t11 + t256)
+    del t256
+    t257 = size * h_1_1_2_3_4_left_flip_up <= t15
     qx_1_1_2_3_4_left_flip_up = w_x * c_1_1_2_3_4_left_flip_up + w_y * s_1_1_2_3_4_left_flip_up
-    t254 = 1.0 / h_1_1_2_3_4_left_flip_up
-    t255 = T33 * t254
-    x_1_1_2_3_4_left_flip_up = _runtime.select(t253, qx_1_1_2_3_4_left_flip_up, qx_1_1_2_3_4_left_flip_up + d5 * t255)
+    t258 = 1.0 / h_1_1_2_3_4_left_flip_up
+    t259 = T33 * t258
+    x_1_1_2_3_4_left_flip_up = _runtime.select(t257, qx_1_1_2_3_4_left_flip_up, qx_1_1_2_3_4_left_flip_up + d5 * t259)
     del qx_1_1_2_3_4_left_flip_up
     dqx_1_1_2_3_4_left_flip_up = w_y * c_1_1_2_3_4_left_flip_up - w_x * s_1_1_2_3_4_left_flip_up
-    us_1_1_2_3_4_left_flip_up = axisx_1_1_2_3_4_left_flip_up * t254
-    del axisx_1_1_2_3_4_left_flip_up, t254
-    t256 = T13 * s_1_1_2_3_4_left_flip_up - T23 * c_1_1_2_3_4_left_flip_up
-    t257 = h_1_1_2_3_4_left_flip_up * h_1_1_2_3_4_left_flip_up
+    us_1_1_2_3_4_left_flip_up = axisx_1_1_2_3_4_left_flip_up * t258
+    del axisx_1_1_2_3_4_left_flip_up, t258
+    t260 = T13 * s_1_1_2_3_4_left_flip_up - T23 * c_1_1_2_3_4_left_flip_up
+    t261 = h_1_1_2_3_4_left_flip_up * h_1_1_2_3_4_left_flip_up
     del h_1_1_2_3_4_left_flip_up
-    rate_1_1_2_3_4_left_flip_up = d5 * (T33 * t256) / t257
-    del t256, t257
-    t258 = us_1_1_2_3_4_left_flip_up * rate_1_1_2_3_4_left_flip_up
-    dx_1_1_2_3_4_left_flip_up = _runtime.select(t253, dqx_1_1_2_3_4_left_flip_up, dqx_1_1_2_3_4_left_flip_up + t258)
-    del dqx_1_1_2_3_4_left_flip_up, t258
-    t259 = x_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
-    t260 = _runtime.select(t253, t21, t21 + d5 * us_1_1_2_3_4_left_flip_up)
+    rate_1_1_2_3_4_left_flip_up = d5 * (T33 * t260) / t261
+    del t260, t261
+    t262 = us_1_1_2_3_4_left_flip_up * rate_1_1_2_3_4_left_flip_up
+    dx_1_1_2_3_4_left_flip_up = _runtime.select(t257, dqx_1_1_2_3_4_left_flip_up, dqx_1_1_2_3_4_left_flip_up + t262)
+    del dqx_1_1_2_3_4_left_flip_up, t262
+    t263 = x_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
+    t264 = _runtime.select(t257, t21, t21 + d5 * us_1_1_2_3_4_left_flip_up)
     del us_1_1_2_3_4_left_flip_up
-    dy_1_1_2_3_4_left_flip_up = _runtime.select(t253, 0.0, t255 * rate_1_1_2_3_4_left_flip_up)
-    del rate_1_1_2_3_4_left_flip_up, t255
-    slope_1_1_2_3_4_left_flip_up = t259 - t260 * dy_1_1_2_3_4_left_flip_up
-    del t259
-    t261 = slope_1_1_2_3_4_left_flip_up * slope_1_1_2_3_4_left_flip_up
-    t262 = x_1_1_2_3_4_left_flip_up * x_1_1_2_3_4_left_flip_up
+    dy_1_1_2_3_4_left_flip_up = _runtime.select(t257, 0.0, t259 * rate_1_1_2_3_4_left_flip_up)
+    del rate_1_1_2_3_4_left_flip_up, t259
+    slope_1_1_2_3_4_left_flip_up = t263 - t264 * dy_1_1_2_3_4_left_flip_up
+    del t263
+    t265 = slope_1_1_2_3_4_left_flip_up * slope_1_1_2_3_4_left_flip_up
+    t266 = x_1_1_2_3_4_left_flip_up * x_1_1_2_3_4_left_flip_up
     del x_1_1_2_3_4_left_flip_up
-    square_1_1_2_3_4_left_flip_up = t262 + t260 * t260
-    del t260, t262
-    nearest_1_1_2_3_4_left_flip_up = _runtime.select(t253, t25, fold_1_1)
+    square_1_1_2_3_4_left_flip_up = t266 + t264 * t264
+    del t264, t266
+    nearest_1_1_2_3_4_left_flip_up = _runtime.select(t257, t25, fold_1_1)
     low_1_1_2_3_4_left_flip_up = nearest_1_1_2_3_4_left_flip_up * nearest_1_1_2_3_4_left_flip_up
     del nearest_1_1_2_3_4_left_flip_up
-    farthest_1_1_2_3_4_left_flip_up = _runtime.select(t253, t3, full_1_1)
-    del t253
+    farthest_1_1_2_3_4_left_flip_up = _runtime.select(t257, t3, full_1_1)
+    del t257
     high_1_1_2_3_4_left_flip_up = farthest_1_1_2_3_4_left_flip_up * farthest_1_1_2_3_4_left_flip_up
     del farthest_1_1_2_3_4_left_flip_up
-    t263 = np.minimum(high_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up)
+    t267 = np.minimum(high_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up)
     del high_1_1_2_3_4_left_flip_up
-    miss_1_1_2_3_4_left_flip_up = square_1_1_2_3_4_left_flip_up - np.maximum(low_1_1_2_3_4_left_flip_up, t263)
-    del low_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up, t263
-    t264 = dx_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
+    miss_1_1_2_3_4_left_flip_up = square_1_1_2_3_4_left_flip_up - np.maximum(low_1_1_2_3_4_left_flip_up, t267)
+    del low_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up, t267
+    t268 = dx_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
     del dx_1_1_2_3_4_left_flip_up
-    t265 = dy_1_1_2_3_4_left_flip_up * dy_1_1_2_3_4_left_flip_up
+    t269 = dy_1_1_2_3_4_left_flip_up * dy_1_1_2_3_4_left_flip_up
     del dy_1_1_2_3_4_left_flip_up
-    bend_1_1_2_3_4_left_flip_up = t264 + t265
-    del t264, t265
-    t266 = miss_1_1_2_3_4_left_flip_up * bend_1_1_2_3_4_left_flip_up
-    inner_1_1_2_3_4_left_flip_up = t261 - t266
-    del t261, t266
-    t267 = slope_1_1_2_3_4_left_flip_up / (2.0 * bend_1_1_2_3_4_left_flip_up)
+    bend_1_1_2_3_4_left_flip_up = t268 + t269
+    del t268, t269
+    t270 = miss_1_1_2_3_4_left_flip_up * bend_1_1_2_3_4_left_flip_up
+    inner_1_1_2_3_4_left_flip_up = t265 - t270
+    del t265, t270
+    t271 = slope_1_1_2_3_4_left_flip_up / (2.0 * bend_1_1_2_3_4_left_flip_up)
     del bend_1_1_2_3_4_left_flip_up
-    t268 = np.maximum(0.0, inner_1_1_2_3_4_left_flip_up)
-    t269 = _runtime.sign(slope_1_1_2_3_4_left_flip_up) * np.sqrt(t268)
-    del t268
-    t270 = miss_1_1_2_3_4_left_flip_up / (2.0 * (slope_1_1_2_3_4_left_flip_up + t269))
-    del miss_1_1_2_3_4_left_flip_up, slope_1_1_2_3_4_left_flip_up, t269
-    t271 = _runtime.select(inner_1_1_2_3_4_left_flip_up < 0.0, t267, t270)
-    del inner_1_1_2_3_4_left_flip_up, t267, t270
-    t272 = t271 * t271
-    t273 = 1.0 / (1.0 + t272)
-    t274 = 2.0 * t271 * t273
-    del t271
-    by_c_1_1_2_3_4_left_flip_up = t273 * (1.0 - t272)
-    del t272, t273
-    t275 = d4 * (t274 * t274) / (1.0 + np.abs(by_c_1_1_2_3_4_left_flip_up))
-    t276 = (t275 + root1 * np.abs(t274) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_left_flip_up)
-    del t275
-    sine_1_1_2_3_4_left_flip_up = _runtime.select(t276, -t274, 0.0)
-    del t274
-    t277 = c_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
-    cosine_1_1_2_3_4_left_flip_up = _runtime.select(t276, by_c_1_1_2_3_4_left_flip_up, 1.0)
-    del by_c_1_1_2_3_4_left_flip_up, t276
-    t278 = s_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
-    s1_left_flip_up = _runtime.select(tangent1, t277 + t278, -t14)
-    del t14, t277, t278
-    t279 = c_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
+    t272 = np.maximum(0.0, inner_1_1_2_3_4_left_flip_up)
+    t273 = _runtime.sign(slope_1_1_2_3_4_left_flip_up) * np.sqrt(t272)
+    del t272
+    outer_1_1_2_3_4_left_flip_up = slope_1_1_2_3_4_left_flip_up + t273
+    del slope_1_1_2_3_4_left_flip_up, t273
+    t274 = miss_1_1_2_3_4_left_flip_up / (2.0 * outer_1_1_2_3_4_left_flip_up)
+    del miss_1_1_2_3_4_left_flip_up
+    t275 = _runtime.select(outer_1_1_2_3_4_left_flip_up == 0.0, 0.0, t274)
+    del outer_1_1_2_3_4_left_flip_up, t274
+    t276 = _runtime.select(inner_1_1_2_3_4_left_flip_up < 0.0, t271, t275)
+    del inner_1_1_2_3_4_left_flip_up, t271, t275
+    t277 = t276 * t276
+    t278 = 1.0 / (1.0 + t277)
+    t279 = 2.0 * t276 * t278
+    del t276
+    by_c_1_1_2_3_4_left_flip_up = t278 * (1.0 - t277)
+    del t277, t278
+    t280 = d4 * (t279 * t279) / (1.0 + np.abs(by_c_1_1_2_3_4_left_flip_up))
+    t281 = (t280 + root1 * np.abs(t279) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_left_flip_up)
+    del t280
+    sine_1_1_2_3_4_left_flip_up = _runtime.select(t281, -t279, 0.0)
+    del t279
+    t282 = c_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
+    cosine_1_1_2_3_4_left_flip_up = _runtime.select(t281, by_c_1_1_2_3_4_left_flip_up, 1.0)
+    del by_c_1_1_2_3_4_left_flip_up, t281
+    t283 = s_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
+    s1_left_flip_up = _runtime.select(tangent1, t282 + t283, -t14)
+    del t14, t282, t283
+    t284 = c_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
     del c_1_1_2_3_4_left_flip_up, cosine_1_1_2_3_4_left_flip_up
-    t280 = s_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
+    t285 = s_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
     del s_1_1_2_3_4_left_flip_up, sine_1_1_2_3_4_left_flip_up
-    c1_left_flip_up = _runtime.select(tangent1, t279 - t280, c_1_1)
-    del c_1_1, t279, t280
-    t281 = _runtime.wrap_cut(np.arctan2(s1_left_flip_up, c1_left_flip_up))
+    c1_left_flip_up = _runtime.select(tangent1, t284 - t285, c_1_1)
+    del c_1_1, t284, t285
+    t286 = _runtime.wrap_cut(np.arctan2(s1_left_flip_up, c1_left_flip_up))
     across_left_flip_up = w_x * c1_left_flip_up + w_y * s1_left_flip_up
     M_13_left_flip_up = T13 * c1_left_flip_up + T23 * s1_left_flip_up
     h_wrist_left_flip_up = np.sqrt(t11 + M_13_left_flip_up * M_13_left_flip_up)
-    aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t113
-    t282 = t37 + across_left_flip_up * across_left_flip_up
-    r_hub_left_flip_up = np.sqrt(t282)
-    del t282
+    aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t115
+    t287 = t38 + across_left_flip_up * across_left_flip_up
+    r_hub_left_flip_up = np.sqrt(t287)
+    del t287
     hub_mid_left_flip_up = r_hub_left_flip_up <= t4
-    t283 = d5 + r_hub_left_flip_up
-    t284 = d5 - r_hub_left_flip_up
-    mid_reach_left_flip_up = np.minimum(full_1_1, t283) * 0.5 + np.maximum(fold_1_1, np.abs(t284)) * 0.5
-    t285 = (t283 - mid_reach_left_flip_up) * (t283 + mid_reach_left_flip_up)
-    k_mid_left_flip_up = np.maximum(0.0, t285)
-    del t285
-    t286 = (t284 - mid_reach_left_flip_up) * (t284 + mid_reach_left_flip_up)
-    del mid_reach_left_flip_up
-    d_mid_left_flip_up = np.maximum(0.0, -t286)
-    del t286
-    n_mid_left_flip_up = k_mid_left_flip_up + d_mid_left_flip_up
-    any_mid_left_flip_up = n_mid_left_flip_up <= t116
-    t287 = 1.0 / n_mid_left_flip_up
-    del n_mid_left_flip_up
-    t288 = (k_mid_left_flip_up - d_mid_left_flip_up) * t287
-    uc_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 1.0, t288)
-    del t288
-    t289 = np.sqrt(k_mid_left_flip_up * d_mid_left_flip_up)
-    del d_mid_left_flip_up, k_mid_left_flip_up
-    us_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 0.0, t287 * (2.0 * t289))
-    del any_mid_left_flip_up, t287, t289
-    t290 = across_left_flip_up * uc_mid_left_flip_up + t21 * us_mid_left_flip_up
-    t291 = 1.0 / r_hub_left_flip_up
-    del r_hub_left_flip_up
-    c_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t290 * t291)
+    t288 = d5 + r_hub_left_flip_up
+    t289 = d5 - r_hub_left_flip_up
+    mid_reach_left_flip_up = np.minimum(full_1_1, t288) * 0.5 + np.maximum(fold_1_1, np.abs(t289)) * 0.5
+    t290 = (t288 - mid_reach_left_flip_up) * (t288 + mid_reach_left_flip_up)
+    k_mid_left_flip_up = np.maximum(0.0, t290)
     del t290
-    close_left_flip_up = root1 * h_wrist_left_flip_up - t119 <= t4
-    t292 = 1.0 / h_wrist_left_flip_up
-    t293 = _runtime.select(aligned_wrist_left_flip_up, 0.0, T33 * t292)
-    t294 = across_left_flip_up + d5 * t293
-    c_phi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, 1.0, -(M_13_left_flip_up * t292))
-    del t292
-    t295 = t21 - d5 * c_phi_left_flip_up
-    here_left_flip_up = np.sqrt(t294 * t294 + t295 * t295)
-    del t294, t295
-    in_reach_left_flip_up = np.minimum(full_1_1, np.maximum(here_left_flip_up, fold_1_1))
-    t296 = (t283 - in_reach_left_flip_up) * (t283 + in_reach_left_flip_up)
-    del t283
-    k_near_left_flip_up = np.maximum(0.0, t296)
-    del t296
-    t297 = (t284 - in_reach_left_flip_up) * (t284 + in_reach_left_flip_up)
-    del t284
-    d_near_left_flip_up = np.maximum(0.0, -t297)
+    t291 = (t289 - mid_reach_left_flip_up) * (t289 + mid_reach_left_flip_up)
+    del mid_reach_left_flip_up
+    d_mid_left_flip_up = np.maximum(0.0, -t291)
+    del t291
+    n_mid_left_flip_up = k_mid_left_flip_up + d_mid_left_flip_up
+    any_mid_left_flip_up = n_mid_left_flip_up <= t118
+    t292 = 1.0 / n_mid_left_flip_up
+    del n_mid_left_flip_up
+    t293 = (k_mid_left_flip_up - d_mid_left_flip_up) * t292
+    uc_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 1.0, t293)
+    del t293
+    t294 = np.sqrt(k_mid_left_flip_up * d_mid_left_flip_up)
+    del d_mid_left_flip_up, k_mid_left_flip_up
+    us_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 0.0, t292 * (2.0 * t294))
+    del any_mid_left_flip_up, t292, t294
+    t295 = across_left_flip_up * uc_mid_left_flip_up + t21 * us_mid_left_flip_up
+    t296 = 1.0 / r_hub_left_flip_up
+    del r_hub_left_flip_up
+    c_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t295 * t296)
+    del t295
+    close_left_flip_up = root1 * h_wrist_left_flip_up - t121 <= t4
+    t297 = 1.0 / h_wrist_left_flip_up
+    t298 = _runtime.select(aligned_wrist_left_flip_up, 0.0, T33 * t297)
+    t299 = across_left_flip_up + d5 * t298
+    c_phi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, 1.0, -(M_13_left_flip_up * t297))
     del t297
+    t300 = t21 - d5 * c_phi_left_flip_up
+    here_left_flip_up = np.sqrt(t299 * t299 + t300 * t300)
+    del t299, t300
+    in_reach_left_flip_up = np.minimum(full_1_1, np.maximum(here_left_flip_up, fold_1_1))
+    t301 = (t288 - in_reach_left_flip_up) * (t288 + in_reach_left_flip_up)
+    del t288
+    k_near_left_flip_up = np.maximum(0.0, t301)
+    del t301
+    t302 = (t289 - in_reach_left_flip_up) * (t289 + in_reach_left_flip_up)
+    del t289
+    d_near_left_flip_up = np.maximum(0.0, -t302)
+    del t302
     n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
-    any_near_left_flip_up = n_near_left_flip_up <= t116
-    t298 = 1.0 / n_near_left_flip_up
+    any_near_left_flip_up = n_near_left_flip_up <= t118
+    t303 = 1.0 / n_near_left_flip_up
     del n_near_left_flip_up
-    t299 = (k_near_left_flip_up - d_near_left_flip_up) * t298
-    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t299)
-    del t299
-    t300 = across_left_flip_up * c_phi_left_flip_up + t21 * t293
-    t301 = np.abs(t300)
-    side_left_flip_up = _runtime.select(t301 <= t4, 1.0, -(t300 / t301))
-    del t300, t301
-    t302 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
+    t304 = (k_near_left_flip_up - d_near_left_flip_up) * t303
+    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t304)
+    del t304
+    t305 = across_left_flip_up * c_phi_left_flip_up + t21 * t298
+    t306 = np.abs(t305)
+    side_left_flip_up = _runtime.select(t306 <= t4, 1.0, -(t305 / t306))
+    del t305, t306
+    t307 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
     del d_near_left_flip_up, k_near_left_flip_up
-    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t298 * (2.0 * side_left_flip_up * t302))
-    del any_near_left_flip_up, side_left_flip_up, t298, t302
-    t303 = across_left_flip_up * uc_near_left_flip_up + t21 * us_near_left_flip_up
-    c_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t291 * t303)
-    del t303
-    t304 = t293 + c_near_left_flip_up
-    t305 = across_left_flip_up * us_near_left_flip_up - t21 * uc_near_left_flip_up
+    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t303 * (2.0 * side_left_flip_up * t307))
+    del any_near_left_flip_up, side_left_flip_up, t303, t307
+    t308 = across_left_flip_up * uc_near_left_flip_up + t21 * us_near_left_flip_up
+    c_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t296 * t308)
+    del t308
+    t309 = t298 + c_near_left_flip_up
+    t310 = across_left_flip_up * us_near_left_flip_up - t21 * uc_near_left_flip_up
     del uc_near_left_flip_up, us_near_left_flip_up
-    s_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t291 * t305)
-    del t305
-    t306 = c_phi_left_flip_up + s_near_left_flip_up
-    t307 = h_wrist_left_flip_up * np.sqrt(t304 * t304 + t306 * t306)
-    del h_wrist_left_flip_up, t304, t306
-    t308 = np.abs(here_left_flip_up - in_reach_left_flip_up)
+    s_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t296 * t310)
+    del t310
+    t311 = c_phi_left_flip_up + s_near_left_flip_up
+    t312 = h_wrist_left_flip_up * np.sqrt(t309 * t309 + t311 * t311)
+    del h_wrist_left_flip_up, t309, t311
+    t313 = np.abs(here_left_flip_up - in_reach_left_flip_up)
     del here_left_flip_up, in_reach_left_flip_up
-    t309 = (t307 - 2.2737367544323206e-13 <= t130) & np.logical_not(t308 <= t4)
-    del t307, t308
-    s_kept_left_flip_up = _runtime.select(t309, c_near_left_flip_up, -t293)
+    t314 = (t312 - 2.2737367544323206e-13 <= t132) & np.logical_not(t313 <= t4)
+    del t312, t313
+    s_kept_left_flip_up = _runtime.select(t314, c_near_left_flip_up, -t298)
     del c_near_left_flip_up
-    t310 = _runtime.select(close_left_flip_up, s_kept_left_flip_up, -t293)
-    del s_kept_left_flip_up, t293
-    sphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, c_mid_left_flip_up, t310)
-    del c_mid_left_flip_up, t310
-    t311 = across_left_flip_up - d5 * sphi_left_flip_up
-    t312 = across_left_flip_up * us_mid_left_flip_up - t21 * uc_mid_left_flip_up
+    t315 = _runtime.select(close_left_flip_up, s_kept_left_flip_up, -t298)
+    del s_kept_left_flip_up, t298
+    sphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, c_mid_left_flip_up, t315)
+    del c_mid_left_flip_up, t315
+    t316 = across_left_flip_up - d5 * sphi_left_flip_up
+    t317 = across_left_flip_up * us_mid_left_flip_up - t21 * uc_mid_left_flip_up
     del across_left_flip_up, uc_mid_left_flip_up, us_mid_left_flip_up
-    s_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t291 * t312)
-    del hub_mid_left_flip_up, t291, t312
-    c_kept_left_flip_up = _runtime.select(t309, -s_near_left_flip_up, c_phi_left_flip_up)
-    del s_near_left_flip_up, t309
-    t313 = _runtime.select(close_left_flip_up, c_kept_left_flip_up, c_phi_left_flip_up)
+    s_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t296 * t317)
+    del hub_mid_left_flip_up, t296, t317
+    c_kept_left_flip_up = _runtime.select(t314, -s_near_left_flip_up, c_phi_left_flip_up)
+    del s_near_left_flip_up, t314
+    t318 = _runtime.select(close_left_flip_up, c_kept_left_flip_up, c_phi_left_flip_up)
     del c_kept_left_flip_up, c_phi_left_flip_up, close_left_flip_up
-    cphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, -s_mid_left_flip_up, t313)
-    del s_mid_left_flip_up, t313
+    cphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, -s_mid_left_flip_up, t318)
+    del s_mid_left_flip_up, t318
     ey_left_flip_up = t21 - d5 * cphi_left_flip_up
-    t314 = t311 * t311 + ey_left_flip_up * ey_left_flip_up
-    r_elbow_left_flip_up = np.sqrt(t314)
-    del t314
-    t315 = full_1_1 - r_elbow_left_flip_up
-    t316 = t24 + r_elbow_left_flip_up
-    t317 = r_elbow_left_flip_up - t24
-    t318 = t112 & (t111 <= t315) & (t111 <= t316) & (t111 <= t317)
-    unreachable_2 = np.logical_not(t318)
-    del t318
-    t319 = _runtime.poison(invalid | unreachable_2)
-    t320 = t281 + t319
-    del t281
+    t319 = t316 * t316 + ey_left_flip_up * ey_left_flip_up
+    r_elbow_left_flip_up = np.sqrt(t319)
+    del t319
+    t320 = full_1_1 - r_elbow_left_flip_up
+    t321 = t24 + r_elbow_left_flip_up
+    t322 = r_elbow_left_flip_up - t24
+    t323 = t114 & (t113 <= t320) & (t113 <= t321) & (t113 <= t322)
+    unreachable_2 = np.logical_not(t323)
+    del t323
+    t324 = _runtime.poison(invalid | unreachable_2)
+    t325 = t286 + t324
+    del t286
     folded_elbow_left_flip_up = r_elbow_left_flip_up <= t4
-    t321 = folded_elbow_left_flip_up | no_link_elbow
-    A_elbow_left_flip_up = np.maximum(t315, 0.0)
-    del t315
-    C_elbow_left_flip_up = np.maximum(t317, 0.0)
-    del t317
-    t322 = A_elbow_left_flip_up * C_elbow_left_flip_up
+    t326 = folded_elbow_left_flip_up | no_link_elbow
+    A_elbow_left_flip_up = np.maximum(t320, 0.0)
+    del t320
+    C_elbow_left_flip_up = np.maximum(t322, 0.0)
+    del t322
+    t327 = A_elbow_left_flip_up * C_elbow_left_flip_up
     S_elbow_left_flip_up = full_1_1 + r_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t316, 0.0)
-    del t316
-    t323 = S_elbow_left_flip_up * B_elbow_left_flip_up
-    t324 = 1.0 / (t322 + t323)
-    c_base_elbow_left_flip_up = _runtime.select(t321, 1.0, -((t322 - t323) * t324))
-    t325 = 1.0 / r_elbow_left_flip_up
+    B_elbow_left_flip_up = np.maximum(t321, 0.0)
+    del t321
+    t328 = S_elbow_left_flip_up * B_elbow_left_flip_up
+    t329 = 1.0 / (t327 + t328)
+    c_base_elbow_left_flip_up = _runtime.select(t326, 1.0, -((t327 - t328) * t329))
+    t330 = 1.0 / r_elbow_left_flip_up
     del r_elbow_left_flip_up
-    t326 = _runtime.select(folded_elbow_left_flip_up, 0.0, ey_left_flip_up * t325)
+    t331 = _runtime.select(folded_elbow_left_flip_up, 0.0, ey_left_flip_up * t330)
     del ey_left_flip_up
-    t327 = c_base_elbow_left_flip_up * t326
-    area_elbow_left_flip_up = 2.0 * np.sqrt(t322 * t323)
-    del t322, t323
-    s_base_elbow_left_flip_up = _runtime.select(t321, 0.0, t324 * area_elbow_left_flip_up)
-    del t321, t324
-    t328 = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t311 * t325))
-    del t311, t325
-    t329 = s_base_elbow_left_flip_up * t328
-    s2_left_flip_up = t327 - t329
-    t330 = c_base_elbow_left_flip_up * t328
-    del c_base_elbow_left_flip_up, t328
-    t331 = t326 * s_base_elbow_left_flip_up
-    del s_base_elbow_left_flip_up, t326
-    c2_left_flip_up = t330 + t331
-    t332 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
-    t333 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    t332 = c_base_elbow_left_flip_up * t331
+    area_elbow_left_flip_up = 2.0 * np.sqrt(t327 * t328)
+    del t327, t328
+    s_base_elbow_left_flip_up = _runtime.select(t326, 0.0, t329 * area_elbow_left_flip_up)
+    del t326, t329
+    t333 = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t316 * t330))
+    del t316, t330
+    t334 = s_base_elbow_left_flip_up * t333
+    s2_left_flip_up = t332 - t334
+    t335 = c_base_elbow_left_flip_up * t333
+    del c_base_elbow_left_flip_up, t333
+    t336 = t331 * s_base_elbow_left_flip_up
+    del s_base_elbow_left_flip_up, t331
+    c2_left_flip_up = t335 + t336
+    t337 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
+    t338 = A_elbow_left_flip_up * S_elbow_left_flip_up
     del A_elbow_left_flip_up, S_elbow_left_flip_up
-    t334 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    t339 = C_elbow_left_flip_up * B_elbow_left_flip_up
     del B_elbow_left_flip_up, C_elbow_left_flip_up
-    t335 = 1.0 / (t333 + t334)
-    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t335)
+    t340 = 1.0 / (t338 + t339)
+    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t340)
     del area_elbow_left_flip_up
-    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t335 * (t333 - t334)))
-    del t333, t334, t335
-    t336 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
-    t337 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
-    t338 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
+    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t340 * (t338 - t339)))
+    del t338, t339, t340
+    t341 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
+    t342 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
+    t343 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
     del c2_left_flip_up, s2_left_flip_up
-    t339 = c3_left_flip_up * t337 - s3_left_flip_up * t338
-    t340 = c3_left_flip_up * t338 + s3_left_flip_up * t337
-    del t337, t338
-    t341 = _runtime.wrap_cut(np.arctan2(t339, t340)) + t319
-    del t339, t340
-    t342 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up
+    t344 = c3_left_flip_up * t342 - s3_left_flip_up * t343
+    t345 = c3_left_flip_up * t343 + s3_left_flip_up * t342
+    del t342, t343
+    t346 = _runtime.wrap_cut(np.arctan2(t344, t345)) + t324
+    del t344, t345
+    t347 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up
     del M_13_left_flip_up
     M_33_left_flip_up = T13 * s1_left_flip_up - T23 * c1_left_flip_up
-    t343 = _runtime.wrap_cut(-np.arctan2(t342, M_33_left_flip_up))
-    del M_33_left_flip_up, t342
-    t344 = t343 + t319
-    del t343
+    t348 = _runtime.wrap_cut(-np.arctan2(t347, M_33_left_flip_up))
+    del M_33_left_flip_up, t347
+    t349 = t348 + t324
+    del t348
     M_11_left_flip_up = T11 * c1_left_flip_up + T21 * s1_left_flip_up
-    t345 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up
+    t350 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up
     del M_11_left_flip_up
     M_12_left_flip_up = T12 * c1_left_flip_up + T22 * s1_left_flip_up
     del c1_left_flip_up, s1_left_flip_up
-    t346 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up
+    t351 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up
     del M_12_left_flip_up
-    t347 = _runtime.wrap_cut(-np.arctan2(t345, t346)) + t319
-    del t345, t346
-    s2_left_flip_down = t327 + t329
-    del t327, t329
-    c2_left_flip_down = t330 - t331
-    del t330, t331
-    t348 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
-    t349 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
-    t350 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
+    t352 = _runtime.wrap_cut(-np.arctan2(t350, t351)) + t324
+    del t350, t351
+    s2_left_flip_down = t332 + t334
+    del t332, t334
+    c2_left_flip_down = t335 - t336
+    del t335, t336
+    t353 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
+    t354 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
+    t355 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
     del c2_left_flip_down, cphi_left_flip_up, s2_left_flip_down, sphi_left_flip_up
-    t351 = c3_left_flip_up * t349 + s3_left_flip_up * t350
-    t352 = c3_left_flip_up * t350 - s3_left_flip_up * t349
-    del c3_left_flip_up, s3_left_flip_up, t349, t350
-    t353 = _runtime.wrap_cut(np.arctan2(t351, t352)) + t319
-    del t351, t352
+    t356 = c3_left_flip_up * t354 + s3_left_flip_up * t355
+    t357 = c3_left_flip_up * t355 - s3_left_flip_up * t354
+    del c3_left_flip_up, s3_left_flip_up, t354, t355
+    t358 = _runtime.wrap_cut(np.arctan2(t356, t357)) + t324
+    del t356, t357
     c_1_1_right_noflip_up = _runtime.select(free1, 1.0, t7 + t9)
     del t7, t9
-    t354 = _runtime.select(free1, 0.0, t12 - t13)
+    t359 = _runtime.select(free1, 0.0, t12 - t13)
     del t12, t13
-    axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t354
-    t355 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up
-    h_1_1_right_noflip_up = np.sqrt(t11 + t355)
-    del t355
-    t356 = t10 * h_1_1_right_noflip_up <= t15
+    axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t359
+    t360 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up
+    h_1_1_right_noflip_up = np.sqrt(t11 + t360)
+    del t360
+    t361 = t10 * h_1_1_right_noflip_up <= t15
     del t10
-    qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t354
-    t357 = 1.0 / h_1_1_right_noflip_up
-    uc_1_1_right_noflip_up = T33 * t357
-    t358 = d5 * uc_1_1_right_noflip_up
-    x_1_1_right_noflip_up = _runtime.select(t356, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up - t358)
-    dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t354
-    us_1_1_right_flip_up = axisx_1_1_right_noflip_up * t357
-    del axisx_1_1_right_noflip_up, t357
-    t359 = T33 * (T13 * t354 + T23 * c_1_1_right_noflip_up)
-    t360 = h_1_1_right_noflip_up * h_1_1_right_noflip_up
+    qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t359
+    t362 = 1.0 / h_1_1_right_noflip_up
+    uc_1_1_right_noflip_up = T33 * t362
+    t363 = d5 * uc_1_1_right_noflip_up
+    x_1_1_right_noflip_up = _runtime.select(t361, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up - t363)
+    dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t359
+    us_1_1_right_flip_up = axisx_1_1_right_noflip_up * t362
+    del axisx_1_1_right_noflip_up, t362
+    t364 = T33 * (T13 * t359 + T23 * c_1_1_right_noflip_up)
+    t365 = h_1_1_right_noflip_up * h_1_1_right_noflip_up
     del h_1_1_right_noflip_up
-    t361 = d5 * t359 / t360
-    del t359, t360
-    t362 = us_1_1_right_flip_up * t361
-    dx_1_1_right_noflip_up = _runtime.select(t356, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t362)
-    t363 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up
-    t364 = d5 * us_1_1_right_flip_up
+    t366 = d5 * t364 / t365
+    del t364, t365
+    t367 = us_1_1_right_flip_up * t366
+    dx_1_1_right_noflip_up = _runtime.select(t361, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t367)
+    t368 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up
+    t369 = d5 * us_1_1_right_flip_up
     del us_1_1_right_flip_up
-    t365 = _runtime.select(t356, t21, t21 - t364)
-    t366 = _runtime.select(t356, 0.0, uc_1_1_right_noflip_up * t361)
-    del t361, uc_1_1_right_noflip_up
-    slope_1_1_right_noflip_up = t363 - t365 * t366
-    del t363
-    t367 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up
-    t368 = x_1_1_right_noflip_up * x_1_1_right_noflip_up
+    t370 = _runtime.select(t361, t21, t21 - t369)
+    t371 = _runtime.select(t361, 0.0, uc_1_1_right_noflip_up * t366)
+    del t366, uc_1_1_right_noflip_up
+    slope_1_1_right_noflip_up = t368 - t370 * t371
+    del t368
+    t372 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up
+    t373 = x_1_1_right_noflip_up * x_1_1_right_noflip_up
     del x_1_1_right_noflip_up
-    square_1_1_right_noflip_up = t368 + t365 * t365
-    del t365, t368
-    nearest_1_1_right_noflip_up = _runtime.select(t356, t25, fold_1_1)
+    square_1_1_right_noflip_up = t373 + t370 * t370
+    del t370, t373
+    nearest_1_1_right_noflip_up = _runtime.select(t361, t25, fold_1_1)
     low_1_1_right_noflip_up = nearest_1_1_right_noflip_up * nearest_1_1_right_noflip_up
     del nearest_1_1_right_noflip_up
-    farthest_1_1_right_noflip_up = _runtime.select(t356, t3, full_1_1)
+    farthest_1_1_right_noflip_up = _runtime.select(t361, t3, full_1_1)
     high_1_1_right_noflip_up = farthest_1_1_right_noflip_up * farthest_1_1_right_noflip_up
     del farthest_1_1_right_noflip_up
-    t369 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_noflip_up)
-    miss_1_1_right_noflip_up = square_1_1_right_noflip_up - np.maximum(low_1_1_right_noflip_up, t369)
-    del square_1_1_right_noflip_up, t369
-    t370 = dx_1_1_right_noflip_up * dx_1_1_right_noflip_up
+    t374 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_noflip_up)
+    miss_1_1_right_noflip_up = square_1_1_right_noflip_up - np.maximum(low_1_1_right_noflip_up, t374)
+    del square_1_1_right_noflip_up, t374
+    t375 = dx_1_1_right_noflip_up * dx_1_1_right_noflip_up
     del dx_1_1_right_noflip_up
-    t371 = t366 * t366
-    bend_1_1_right_noflip_up = t370 + t371
-    del t370
-    t372 = miss_1_1_right_noflip_up * bend_1_1_right_noflip_up
-    inner_1_1_right_noflip_up = t367 - t372
-    del t367, t372
-    t373 = slope_1_1_right_noflip_up / (2.0 * bend_1_1_right_noflip_up)
+    t376 = t371 * t371
+    bend_1_1_right_noflip_up = t375 + t376
+    del t375
+    t377 = miss_1_1_right_noflip_up * bend_1_1_right_noflip_up
+    inner_1_1_right_noflip_up = t372 - t377
+    del t372, t377
+    t378 = slope_1_1_right_noflip_up / (2.0 * bend_1_1_right_noflip_up)
     del bend_1_1_right_noflip_up
-    t374 = np.sqrt(np.maximum(0.0, inner_1_1_right_noflip_up))
-    t375 = _runtime.sign(slope_1_1_right_noflip_up) * t374
-    del t374
-    t376 = miss_1_1_right_noflip_up / (2.0 * (slope_1_1_right_noflip_up + t375))
-    del miss_1_1_right_noflip_up, slope_1_1_right_noflip_up, t375
-    t377 = _runtime.select(inner_1_1_right_noflip_up < 0.0, t373, t376)
-    del inner_1_1_right_noflip_up, t373, t376
-    t378 = t377 * t377
-    t379 = 1.0 / (1.0 + t378)
-    t380 = 2.0 * t377 * t379
-    del t377
-    by_c_1_1_right_noflip_up = t379 * (1.0 - t378)
-    del t378, t379
-    t381 = d4 * (t380 * t380) / (1.0 + np.abs(by_c_1_1_right_noflip_up))
-    t382 = (t381 + root1 * np.abs(t380) <= whole_1_1) & (0.0 < by_c_1_1_right_noflip_up)
-    del t381
-    cosine_1_1_right_noflip_up = _runtime.select(t382, by_c_1_1_right_noflip_up, 1.0)
-    del by_c_1_1_right_noflip_up
-    t383 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up
-    sine_1_1_right_noflip_up = _runtime.select(t382, -t380, 0.0)
-    del t380, t382
-    c_1_1_2_right_noflip_up = t383 + t354 * sine_1_1_right_noflip_up
+    t379 = np.sqrt(np.maximum(0.0, inner_1_1_right_noflip_up))
+    t380 = _runtime.sign(slope_1_1_right_noflip_up) * t379
+    del t379
+    outer_1_1_right_noflip_up = slope_1_1_right_noflip_up + t380
+    del slope_1_1_right_noflip_up, t380
+    t381 = miss_1_1_right_noflip_up / (2.0 * outer_1_1_right_noflip_up)
+    del miss_1_1_right_noflip_up
+    t382 = _runtime.select(outer_1_1_right_noflip_up == 0.0, 0.0, t381)
+    del outer_1_1_right_noflip_up, t381
+    t383 = _runtime.select(inner_1_1_right_noflip_up < 0.0, t378, t382)
+    del inner_1_1_right_noflip_up, t378, t382
+    t384 = t383 * t383
+    t385 = 1.0 / (1.0 + t384)
+    t386 = 2.0 * t383 * t385
     del t383
-    t384 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up
-    del sine_1_1_right_noflip_up
-    s_1_1_2_right_noflip_up = t384 - t354 * cosine_1_1_right_noflip_up
-    del cosine_1_1_right_noflip_up, t384
-    axisx_1_1_2_right_noflip_up = T13 * c_1_1_2_right_noflip_up + T23 * s_1_1_2_right_noflip_up
-    t385 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up
-    t386 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up
-    most_1_1_2_right_noflip_up = np.sqrt(t385 + t386 * t386)
-    qx_1_1_2_right_noflip_up = w_x * c_1_1_2_right_noflip_up + w_y * s_1_1_2_right_noflip_up
-    t387 = qx_1_1_2_right_noflip_up * qx_1_1_2_right_noflip_up
-    r_1_1_2_right_noflip_up = np.sqrt(t37 + t387)
+    by_c_1_1_right_noflip_up = t385 * (1.0 - t384)
+    del t384, t385
+    t387 = d4 * (t386 * t386) / (1.0 + np.abs(by_c_1_1_right_noflip_up))
+    t388 = (t387 + root1 * np.abs(t386) <= whole_1_1) & (0.0 < by_c_1_1_right_noflip_up)
     del t387
-    t388 = r_1_1_2_right_noflip_up <= t38
-    t389 = d5 + r_1_1_2_right_noflip_up
-    t390 = 1.0 / np.sqrt(t11 + t385)
-    del t385
-    uc_1_1_2_right_noflip_up = T33 * t390
-    t391 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up
-    t392 = axisx_1_1_2_right_noflip_up * t390
-    del t390
-    t393 = t21 - d5 * t392
-    there_1_1_2_right_noflip_up = np.sqrt(t391 * t391 + t393 * t393)
-    del t391, t393
-    t394 = np.maximum(there_1_1_2_right_noflip_up, fold_1_1)
-    goal_1_1_2_right_noflip_up = np.minimum(full_1_1, t394)
-    del t394
-    t395 = (t389 - goal_1_1_2_right_noflip_up) * (t389 + goal_1_1_2_right_noflip_up)
+    cosine_1_1_right_noflip_up = _runtime.select(t388, by_c_1_1_right_noflip_up, 1.0)
+    del by_c_1_1_right_noflip_up
+    t389 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up
+    sine_1_1_right_noflip_up = _runtime.select(t388, -t386, 0.0)
+    del t386, t388
+    c_1_1_2_right_noflip_up = t389 + t359 * sine_1_1_right_noflip_up
     del t389
-    k_v_1_1_2_right_noflip_up = np.maximum(0.0, t395)
-    del t395
-    t396 = d5 - r_1_1_2_right_noflip_up
-    t397 = (goal_1_1_2_right_noflip_up - t396) * (goal_1_1_2_right_noflip_up + t396)
+    t390 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up
+    del sine_1_1_right_noflip_up
+    s_1_1_2_right_noflip_up = t390 - t359 * cosine_1_1_right_noflip_up
+    del cosine_1_1_right_noflip_up, t390
+    axisx_1_1_2_right_noflip_up = T13 * c_1_1_2_right_noflip_up + T23 * s_1_1_2_right_noflip_up
+    t391 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up
+    t392 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up
+    most_1_1_2_right_noflip_up = np.sqrt(t391 + t392 * t392)
+    qx_1_1_2_right_noflip_up = w_x * c_1_1_2_right_noflip_up + w_y * s_1_1_2_right_noflip_up
+    t393 = qx_1_1_2_right_noflip_up * qx_1_1_2_right_noflip_up
+    r_1_1_2_right_noflip_up = np.sqrt(t38 + t393)
+    del t393
+    t394 = r_1_1_2_right_noflip_up <= t39
+    t395 = d5 + r_1_1_2_right_noflip_up
+    t396 = 1.0 / np.sqrt(t11 + t391)
+    del t391
+    uc_1_1_2_right_noflip_up = T33 * t396
+    t397 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up
+    t398 = axisx_1_1_2_right_noflip_up * t396
     del t396
-    d_v_1_1_2_right_noflip_up = np.maximum(0.0, t397)
-    del t397
+    t399 = t21 - d5 * t398
+    there_1_1_2_right_noflip_up = np.sqrt(t397 * t397 + t399 * t399)
+    del t397, t399
+    t400 = np.maximum(there_1_1_2_right_noflip_up, fold_1_1)
+    goal_1_1_2_right_noflip_up = np.minimum(full_1_1, t400)
+    del t400
+    t401 = (t395 - goal_1_1_2_right_noflip_up) * (t395 + goal_1_1_2_right_noflip_up)
+    del t395
+    k_v_1_1_2_right_noflip_up = np.maximum(0.0, t401)
+    del t401
+    t402 = d5 - r_1_1_2_right_noflip_up
+    t403 = (goal_1_1_2_right_noflip_up - t402) * (goal_1_1_2_right_noflip_up + t402)
+    del t402
+    d_v_1_1_2_right_noflip_up = np.maximum(0.0, t403)
+    del t403
     n_v_1_1_2_right_noflip_up = k_v_1_1_2_right_noflip_up + d_v_1_1_2_right_noflip_up
-    t398 = n_v_1_1_2_right_noflip_up <= t47
-    t399 = k_v_1_1_2_right_noflip_up - d_v_1_1_2_right_noflip_up
-    t400 = 1.0 / n_v_1_1_2_right_noflip_up
+    t404 = n_v_1_1_2_right_noflip_up <= t48
+    t405 = k_v_1_1_2_right_noflip_up - d_v_1_1_2_right_noflip_up
+    t406 = 1.0 / n_v_1_1_2_right_noflip_up
     del n_v_1_1_2_right_noflip_up
-    uc_v_1_1_2_right_noflip_up = _runtime.select(t398, 1.0, t399 * t400)
-    del t399
-    t401 = qx_1_1_2_right_noflip_up * uc_v_1_1_2_right_noflip_up
-    t402 = t21 * uc_1_1_2_right_noflip_up - qx_1_1_2_right_noflip_up * t392
-    del t392, uc_1_1_2_right_noflip_up
-    t403 = k_v_1_1_2_right_noflip_up * d_v_1_1_2_right_noflip_up
+    uc_v_1_1_2_right_noflip_up = _runtime.select(t404, 1.0, t405 * t406)
+    del t405
+    t407 = qx_1_1_2_right_noflip_up * uc_v_1_1_2_right_noflip_up
+    t408 = t21 * uc_1_1_2_right_noflip_up - qx_1_1_2_right_noflip_up * t398
+    del t398, uc_1_1_2_right_noflip_up
+    t409 = k_v_1_1_2_right_noflip_up * d_v_1_1_2_right_noflip_up
     del d_v_1_1_2_right_noflip_up, k_v_1_1_2_right_noflip_up
-    t404 = t400 * (2.0 * _runtime.sign(t402) * np.sqrt(t403))
-    del t400, t402, t403
-    us_v_1_1_2_right_noflip_up = _runtime.select(t398, 0.0, t404)
-    del t398, t404
-    t405 = t21 * us_v_1_1_2_right_noflip_up
-    t406 = 1.0 / r_1_1_2_right_noflip_up
+    t410 = t406 * (2.0 * _runtime.sign(t408) * np.sqrt(t409))
+    del t406, t408, t409
+    us_v_1_1_2_right_noflip_up = _runtime.select(t404, 0.0, t410)
+    del t404, t410
+    t411 = t21 * us_v_1_1_2_right_noflip_up
+    t412 = 1.0 / r_1_1_2_right_noflip_up
     del r_1_1_2_right_noflip_up
-    c_v_1_1_2_right_noflip_up = _runtime.select(t388, 1.0, (t401 + t405) * t406)
-    t407 = T33 * c_v_1_1_2_right_noflip_up < 0.0
-    t408 = qx_1_1_2_right_noflip_up * us_v_1_1_2_right_noflip_up
+    c_v_1_1_2_right_noflip_up = _runtime.select(t394, 1.0, (t407 + t411) * t412)
+    t413 = T33 * c_v_1_1_2_right_noflip_up < 0.0
+    t414 = qx_1_1_2_right_noflip_up * us_v_1_1_2_right_noflip_up
     del qx_1_1_2_right_noflip_up, us_v_1_1_2_right_noflip_up
-    t409 = t21 * uc_v_1_1_2_right_noflip_up
+    t415 = t21 * uc_v_1_1_2_right_noflip_up
     del uc_v_1_1_2_right_noflip_up
-    wc_1_1_2_right_noflip_up = _runtime.select(t388, 0.0, t406 * (t408 + t409))
-    s_v_1_1_2_right_noflip_up = _runtime.select(t388, 0.0, t406 * (t408 - t409))
-    del t408, t409
-    to_c_1_1_2_right_noflip_up = _runtime.select(t407, wc_1_1_2_right_noflip_up, -s_v_1_1_2_right_noflip_up)
+    wc_1_1_2_right_noflip_up = _runtime.select(t394, 0.0, t412 * (t414 + t415))
+    s_v_1_1_2_right_noflip_up = _runtime.select(t394, 0.0, t412 * (t414 - t415))
+    del t414, t415
+    to_c_1_1_2_right_noflip_up = _runtime.select(t413, wc_1_1_2_right_noflip_up, -s_v_1_1_2_right_noflip_up)
     del s_v_1_1_2_right_noflip_up, wc_1_1_2_right_noflip_up
-    c_w_1_1_2_right_noflip_up = _runtime.select(t388, 1.0, t406 * (t401 - t405))
-    del t388, t401, t405, t406
-    to_s_1_1_2_right_noflip_up = _runtime.select(t407, c_w_1_1_2_right_noflip_up, c_v_1_1_2_right_noflip_up)
-    del c_v_1_1_2_right_noflip_up, c_w_1_1_2_right_noflip_up, t407
-    t410 = T33 * to_c_1_1_2_right_noflip_up / to_s_1_1_2_right_noflip_up
+    c_w_1_1_2_right_noflip_up = _runtime.select(t394, 1.0, t412 * (t407 - t411))
+    del t394, t407, t411, t412
+    to_s_1_1_2_right_noflip_up = _runtime.select(t413, c_w_1_1_2_right_noflip_up, c_v_1_1_2_right_noflip_up)
+    del c_v_1_1_2_right_noflip_up, c_w_1_1_2_right_noflip_up, t413
+    t416 = T33 * to_c_1_1_2_right_noflip_up / to_s_1_1_2_right_noflip_up
     del to_c_1_1_2_right_noflip_up, to_s_1_1_2_right_noflip_up
-    t411 = np.minimum(most_1_1_2_right_noflip_up, _runtime.select(t36, 0.0, t410))
-    del t410
-    kept_1_1_2_right_noflip_up = np.maximum(-most_1_1_2_right_noflip_up, t411)
-    del t411
-    t412 = most_1_1_2_right_noflip_up - kept_1_1_2_right_noflip_up
-    t413 = most_1_1_2_right_noflip_up + kept_1_1_2_right_noflip_up
-    rest_1_1_2_right_noflip_up = np.sqrt(t412 * t413) * _runtime.sign(-t386)
-    del t412, t413
-    t414 = axisx_1_1_2_right_noflip_up * rest_1_1_2_right_noflip_up
-    t415 = most_1_1_2_right_noflip_up * most_1_1_2_right_noflip_up
+    t417 = np.minimum(most_1_1_2_right_noflip_up, _runtime.select(t37, 0.0, t416))
+    del t416
+    kept_1_1_2_right_noflip_up = np.maximum(-most_1_1_2_right_noflip_up, t417)
+    del t417
+    t418 = most_1_1_2_right_noflip_up - kept_1_1_2_right_noflip_up
+    t419 = most_1_1_2_right_noflip_up + kept_1_1_2_right_noflip_up
+    rest_1_1_2_right_noflip_up = np.sqrt(t418 * t419) * _runtime.sign(-t392)
+    del t418, t419
+    t420 = axisx_1_1_2_right_noflip_up * rest_1_1_2_right_noflip_up
+    t421 = most_1_1_2_right_noflip_up * most_1_1_2_right_noflip_up
     del most_1_1_2_right_noflip_up
-    t416 = 1.0 / t415
-    del t415
-    t417 = (t414 + t386 * kept_1_1_2_right_noflip_up) * t416
-    del t414
-    t418 = axisx_1_1_2_right_noflip_up * kept_1_1_2_right_noflip_up
+    t422 = 1.0 / t421
+    del t421
+    t423 = (t420 + t392 * kept_1_1_2_right_noflip_up) * t422
+    del t420
+    t424 = axisx_1_1_2_right_noflip_up * kept_1_1_2_right_noflip_up
     del axisx_1_1_2_right_noflip_up, kept_1_1_2_right_noflip_up
-    by_c_1_1_2_right_noflip_up = t416 * (t418 - t386 * rest_1_1_2_right_noflip_up)
-    del rest_1_1_2_right_noflip_up, t386, t416, t418
-    t419 = d4 * (t417 * t417) / (1.0 + np.abs(by_c_1_1_2_right_noflip_up))
-    t420 = (t419 + root1 * np.abs(t417) <= whole_1_1) & (0.0 < by_c_1_1_2_right_noflip_up)
-    del t419
-    t421 = there_1_1_2_right_noflip_up - goal_1_1_2_right_noflip_up
+    by_c_1_1_2_right_noflip_up = t422 * (t424 - t392 * rest_1_1_2_right_noflip_up)
+    del rest_1_1_2_right_noflip_up, t392, t422, t424
+    t425 = d4 * (t423 * t423) / (1.0 + np.abs(by_c_1_1_2_right_noflip_up))
+    t426 = (t425 + root1 * np.abs(t423) <= whole_1_1) & (0.0 < by_c_1_1_2_right_noflip_up)
+    del t425
+    t427 = there_1_1_2_right_noflip_up - goal_1_1_2_right_noflip_up
     del goal_1_1_2_right_noflip_up, there_1_1_2_right_noflip_up
-    t422 = t420 & (size < 1125899906842624.0 * np.abs(t421))
-    del t420, t421
-    cosine_1_1_2_right_noflip_up = _runtime.select(t422, by_c_1_1_2_right_noflip_up, 1.0)
+    t428 = t426 & (size < 1125899906842624.0 * np.abs(t427))
+    del t426, t427
+    cosine_1_1_2_right_noflip_up = _runtime.select(t428, by_c_1_1_2_right_noflip_up, 1.0)
     del by_c_1_1_2_right_noflip_up
-    t423 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
-    sine_1_1_2_right_noflip_up = _runtime.select(t422, -t417, 0.0)
-    del t417, t422
-    t424 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
-    c_1_1_2_3_right_noflip_up = t423 - t424
-    del t423, t424
-    t425 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
+    t429 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
+    sine_1_1_2_right_noflip_up = _runtime.select(t428, -t423, 0.0)
+    del t423, t428
+    t430 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
+    c_1_1_2_3_right_noflip_up = t429 - t430
+    del t429, t430
+    t431 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
     del c_1_1_2_right_noflip_up, sine_1_1_2_right_noflip_up
-    t426 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
+    t432 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
     del cosine_1_1_2_right_noflip_up, s_1_1_2_right_noflip_up
-    s_1_1_2_3_right_noflip_up = t425 + t426
-    del t425, t426
+    s_1_1_2_3_right_noflip_up = t431 + t432
+    del t431, t432
     axisx_1_1_2_3_right_noflip_up = T13 * c_1_1_2_3_right_noflip_up + T23 * s_1_1_2_3_right_noflip_up
-    t427 = axisx_1_1_2_3_right_noflip_up * axisx_1_1_2_3_right_noflip_up
-    h_1_1_2_3_right_noflip_up = np.sqrt(t11 + t427)
-    del t427
-    t428 = size * h_1_1_2_3_right_noflip_up <= t15
+    t433 = axisx_1_1_2_3_right_noflip_up * axisx_1_1_2_3_right_noflip_up
+    h_1_1_2_3_right_noflip_up = np.sqrt(t11 + t433)
+    del t433
+    t434 = size * h_1_1_2_3_right_noflip_up <= t15
     qx_1_1_2_3_right_noflip_up = w_x * c_1_1_2_3_right_noflip_up + w_y * s_1_1_2_3_right_noflip_up
-    t429 = 1.0 / h_1_1_2_3_right_noflip_up
-    uc_1_1_2_3_right_noflip_up = T33 * t429
-    t430 = qx_1_1_2_3_right_noflip_up - d5 * uc_1_1_2_3_right_noflip_up
-    x_1_1_2_3_right_noflip_up = _runtime.select(t428, qx_1_1_2_3_right_noflip_up, t430)
-    del qx_1_1_2_3_right_noflip_up, t430
+    t435 = 1.0 / h_1_1_2_3_right_noflip_up
+    uc_1_1_2_3_right_noflip_up = T33 * t435
+    t436 = qx_1_1_2_3_right_noflip_up - d5 * uc_1_1_2_3_right_noflip_up
+    x_1_1_2_3_right_noflip_up = _runtime.select(t434, qx_1_1_2_3_right_noflip_up, t436)
+    del qx_1_1_2_3_right_noflip_up, t436
     dqx_1_1_2_3_right_noflip_up = w_y * c_1_1_2_3_right_noflip_up - w_x * s_1_1_2_3_right_noflip_up
-    t431 = axisx_1_1_2_3_right_noflip_up * t429
-    del axisx_1_1_2_3_right_noflip_up, t429
-    t432 = T13 * s_1_1_2_3_right_noflip_up - T23 * c_1_1_2_3_right_noflip_up
-    t433 = h_1_1_2_3_right_noflip_up * h_1_1_2_3_right_noflip_up
+    t437 = axisx_1_1_2_3_right_noflip_up * t435
+    del axisx_1_1_2_3_right_noflip_up, t435
+    t438 = T13 * s_1_1_2_3_right_noflip_up - T23 * c_1_1_2_3_right_noflip_up
+    t439 = h_1_1_2_3_right_noflip_up * h_1_1_2_3_right_noflip_up
     del h_1_1_2_3_right_noflip_up
-    rate_1_1_2_3_right_noflip_up = d5 * (T33 * t432) / t433
-    del t432, t433
-    t434 = dqx_1_1_2_3_right_noflip_up - t431 * rate_1_1_2_3_right_noflip_up
-    dx_1_1_2_3_right_noflip_up = _runtime.select(t428, dqx_1_1_2_3_right_noflip_up, t434)
-    del dqx_1_1_2_3_right_noflip_up, t434
-    t435 = x_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
-    t436 = _runtime.select(t428, t21, t21 - d5 * t431)
-    del t431
-    t437 = uc_1_1_2_3_right_noflip_up * rate_1_1_2_3_right_noflip_up
-    del rate_1_1_2_3_right_noflip_up, uc_1_1_2_3_right_noflip_up
-    t438 = _runtime.select(t428, 0.0, t437)
+    rate_1_1_2_3_right_noflip_up = d5 * (T33 * t438) / t439
+    del t438, t439
+    t440 = dqx_1_1_2_3_right_noflip_up - t437 * rate_1_1_2_3_right_noflip_up
+    dx_1_1_2_3_right_noflip_up = _runtime.select(t434, dqx_1_1_2_3_right_noflip_up, t440)
+    del dqx_1_1_2_3_right_noflip_up, t440
+    t441 = x_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
+    t442 = _runtime.select(t434, t21, t21 - d5 * t437)
     del t437
-    slope_1_1_2_3_right_noflip_up = t435 + t436 * t438
-    del t435
-    t439 = slope_1_1_2_3_right_noflip_up * slope_1_1_2_3_right_noflip_up
-    t440 = x_1_1_2_3_right_noflip_up * x_1_1_2_3_right_noflip_up
+    t443 = uc_1_1_2_3_right_noflip_up * rate_1_1_2_3_right_noflip_up
+    del rate_1_1_2_3_right_noflip_up, uc_1_1_2_3_right_noflip_up
+    t444 = _runtime.select(t434, 0.0, t443)
+    del t443
+    slope_1_1_2_3_right_noflip_up = t441 + t442 * t444
+    del t441
+    t445 = slope_1_1_2_3_right_noflip_up * slope_1_1_2_3_right_noflip_up
+    t446 = x_1_1_2_3_right_noflip_up * x_1_1_2_3_right_noflip_up
     del x_1_1_2_3_right_noflip_up
-    square_1_1_2_3_right_noflip_up = t440 + t436 * t436
-    del t436, t440
-    nearest_1_1_2_3_right_noflip_up = _runtime.select(t428, t25, fold_1_1)
+    square_1_1_2_3_right_noflip_up = t446 + t442 * t442
+    del t442, t446
+    nearest_1_1_2_3_right_noflip_up = _runtime.select(t434, t25, fold_1_1)
     low_1_1_2_3_right_noflip_up = nearest_1_1_2_3_right_noflip_up * nearest_1_1_2_3_right_noflip_up
     del nearest_1_1_2_3_right_noflip_up
-    farthest_1_1_2_3_right_noflip_up = _runtime.select(t428, t3, full_1_1)
-    del t428
+    farthest_1_1_2_3_right_noflip_up = _runtime.select(t434, t3, full_1_1)
+    del t434
     high_1_1_2_3_right_noflip_up = farthest_1_1_2_3_right_noflip_up * farthest_1_1_2_3_right_noflip_up
     del farthest_1_1_2_3_right_noflip_up
-    t441 = np.minimum(high_1_1_2_3_right_noflip_up, square_1_1_2_3_right_noflip_up)
+    t447 = np.minimum(high_1_1_2_3_right_noflip_up, square_1_1_2_3_right_noflip_up)
     del high_1_1_2_3_right_noflip_up
-    t442 = np.maximum(low_1_1_2_3_right_noflip_up, t441)
-    del low_1_1_2_3_right_noflip_up, t441
-    miss_1_1_2_3_right_noflip_up = square_1_1_2_3_right_noflip_up - t442
-    del square_1_1_2_3_right_noflip_up, t442
-    t443 = dx_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
+    t448 = np.maximum(low_1_1_2_3_right_noflip_up, t447)
+    del low_1_1_2_3_right_noflip_up, t447
+    miss_1_1_2_3_right_noflip_up = square_1_1_2_3_right_noflip_up - t448
+    del square_1_1_2_3_right_noflip_up, t448
+    t449 = dx_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
     del dx_1_1_2_3_right_noflip_up
-    bend_1_1_2_3_right_noflip_up = t443 + t438 * t438
-    del t438, t443
-    t444 = miss_1_1_2_3_right_noflip_up * bend_1_1_2_3_right_noflip_up
-    inner_1_1_2_3_right_noflip_up = t439 - t444
-    del t439, t444
-    t445 = slope_1_1_2_3_right_noflip_up / (2.0 * bend_1_1_2_3_right_noflip_up)
+    bend_1_1_2_3_right_noflip_up = t449 + t444 * t444
+    del t444, t449
+    t450 = miss_1_1_2_3_right_noflip_up * bend_1_1_2_3_right_noflip_up
+    inner_1_1_2_3_right_noflip_up = t445 - t450
+    del t445, t450
+    t451 = slope_1_1_2_3_right_noflip_up / (2.0 * bend_1_1_2_3_right_noflip_up)
     del bend_1_1_2_3_right_noflip_up
-    t446 = np.maximum(0.0, inner_1_1_2_3_right_noflip_up)
-    t447 = _runtime.sign(slope_1_1_2_3_right_noflip_up) * np.sqrt(t446)
-    del t446
-    t448 = miss_1_1_2_3_right_noflip_up / (2.0 * (slope_1_1_2_3_right_noflip_up + t447))
-    del miss_1_1_2_3_right_noflip_up, slope_1_1_2_3_right_noflip_up, t447
-    t449 = _runtime.select(inner_1_1_2_3_right_noflip_up < 0.0, t445, t448)
-    del inner_1_1_2_3_right_noflip_up, t445, t448
-    t450 = t449 * t449
-    t451 = 1.0 / (1.0 + t450)
-    t452 = 2.0 * t449 * t451
-    del t449
-    by_c_1_1_2_3_right_noflip_up = t451 * (1.0 - t450)
-    del t450, t451
-    t453 = d4 * (t452 * t452) / (1.0 + np.abs(by_c_1_1_2_3_right_noflip_up))
-    t454 = (t453 + root1 * np.abs(t452) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_noflip_up)
-    del t453
-    cosine_1_1_2_3_right_noflip_up = _runtime.select(t454, by_c_1_1_2_3_right_noflip_up, 1.0)
-    del by_c_1_1_2_3_right_noflip_up
-    t455 = c_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
-    sine_1_1_2_3_right_noflip_up = _runtime.select(t454, -t452, 0.0)
-    del t452, t454
-    t456 = s_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
-    c_1_1_2_3_4_right_noflip_up = t455 - t456
-    del t455, t456
-    t457 = c_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
-    del c_1_1_2_3_right_noflip_up, sine_1_1_2_3_right_noflip_up
-    t458 = s_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
-    del cosine_1_1_2_3_right_noflip_up, s_1_1_2_3_right_noflip_up
-    s_1_1_2_3_4_right_noflip_up = t457 + t458
+    t452 = np.maximum(0.0, inner_1_1_2_3_right_noflip_up)
+    t453 = _runtime.sign(slope_1_1_2_3_right_noflip_up) * np.sqrt(t452)
+    del t452
+    outer_1_1_2_3_right_noflip_up = slope_1_1_2_3_right_noflip_up + t453
+    del slope_1_1_2_3_right_noflip_up, t453
+    t454 = miss_1_1_2_3_right_noflip_up / (2.0 * outer_1_1_2_3_right_noflip_up)
+    del miss_1_1_2_3_right_noflip_up
+    t455 = _runtime.select(outer_1_1_2_3_right_noflip_up == 0.0, 0.0, t454)
+    del outer_1_1_2_3_right_noflip_up, t454
+    t456 = _runtime.select(inner_1_1_2_3_right_noflip_up < 0.0, t451, t455)
+    del inner_1_1_2_3_right_noflip_up, t451, t455
+    t457 = t456 * t456
+    t458 = 1.0 / (1.0 + t457)
+    t459 = 2.0 * t456 * t458
+    del t456
+    by_c_1_1_2_3_right_noflip_up = t458 * (1.0 - t457)
     del t457, t458
-    axisx_1_1_2_3_4_right_noflip_up = T13 * c_1_1_2_3_4_right_noflip_up + T23 * s_1_1_2_3_4_right_noflip_up
-    t459 = axisx_1_1_2_3_4_right_noflip_up * axisx_1_1_2_3_4_right_noflip_up
-    h_1_1_2_3_4_right_noflip_up = np.sqrt(t11 + t459)
-    del t459
-    t460 = size * h_1_1_2_3_4_right_noflip_up <= t15
-    qx_1_1_2_3_4_right_noflip_up = w_x * c_1_1_2_3_4_right_noflip_up + w_y * s_1_1_2_3_4_right_noflip_up
-    t461 = 1.0 / h_1_1_2_3_4_right_noflip_up
-    uc_1_1_2_3_4_right_noflip_up = T33 * t461
-    t462 = qx_1_1_2_3_4_right_noflip_up - d5 * uc_1_1_2_3_4_right_noflip_up
-    x_1_1_2_3_4_right_noflip_up = _runtime.select(t460, qx_1_1_2_3_4_right_noflip_up, t462)
-    del qx_1_1_2_3_4_right_noflip_up, t462
-    dqx_1_1_2_3_4_right_noflip_up = w_y * c_1_1_2_3_4_right_noflip_up - w_x * s_1_1_2_3_4_right_noflip_up
-    t463 = axisx_1_1_2_3_4_right_noflip_up * t461
-    del axisx_1_1_2_3_4_right_noflip_up, t461
-    t464 = T13 * s_1_1_2_3_4_right_noflip_up - T23 * c_1_1_2_3_4_right_noflip_up
-    t465 = h_1_1_2_3_4_right_noflip_up * h_1_1_2_3_4_right_noflip_up
-    del h_1_1_2_3_4_right_noflip_up
-    rate_1_1_2_3_4_right_noflip_up = d5 * (T33 * t464) / t465
+    t460 = d4 * (t459 * t459) / (1.0 + np.abs(by_c_1_1_2_3_right_noflip_up))
+    t461 = (t460 + root1 * np.abs(t459) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_noflip_up)
+    del t460
+    cosine_1_1_2_3_right_noflip_up = _runtime.select(t461, by_c_1_1_2_3_right_noflip_up, 1.0)
+    del by_c_1_1_2_3_right_noflip_up
+    t462 = c_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
+    sine_1_1_2_3_right_noflip_up = _runtime.select(t461, -t459, 0.0)
+    del t459, t461
+    t463 = s_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
+    c_1_1_2_3_4_right_noflip_up = t462 - t463
+    del t462, t463
+    t464 = c_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
+    del c_1_1_2_3_right_noflip_up, sine_1_1_2_3_right_noflip_up
+    t465 = s_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
+    del cosine_1_1_2_3_right_noflip_up, s_1_1_2_3_right_noflip_up
+    s_1_1_2_3_4_right_noflip_up = t464 + t465
     del t464, t465
-    t466 = dqx_1_1_2_3_4_right_noflip_up - t463 * rate_1_1_2_3_4_right_noflip_up
-    dx_1_1_2_3_4_right_noflip_up = _runtime.select(t460, dqx_1_1_2_3_4_right_noflip_up, t466)
-    del dqx_1_1_2_3_4_right_noflip_up, t466
-    t467 = x_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
-    t468 = _runtime.select(t460, t21, t21 - d5 * t463)
-    del t463
-    t469 = uc_1_1_2_3_4_right_noflip_up * rate_1_1_2_3_4_right_noflip_up
+    axisx_1_1_2_3_4_right_noflip_up = T13 * c_1_1_2_3_4_right_noflip_up + T23 * s_1_1_2_3_4_right_noflip_up
+    t466 = axisx_1_1_2_3_4_right_noflip_up * axisx_1_1_2_3_4_right_noflip_up
+    h_1_1_2_3_4_right_noflip_up = np.sqrt(t11 + t466)
+    del t466
+    t467 = size * h_1_1_2_3_4_right_noflip_up <= t15
+    qx_1_1_2_3_4_right_noflip_up = w_x * c_1_1_2_3_4_right_noflip_up + w_y * s_1_1_2_3_4_right_noflip_up
+    t468 = 1.0 / h_1_1_2_3_4_right_noflip_up
+    uc_1_1_2_3_4_right_noflip_up = T33 * t468
+    t469 = qx_1_1_2_3_4_right_noflip_up - d5 * uc_1_1_2_3_4_right_noflip_up
+    x_1_1_2_3_4_right_noflip_up = _runtime.select(t467, qx_1_1_2_3_4_right_noflip_up, t469)
+    del qx_1_1_2_3_4_right_noflip_up, t469
+    dqx_1_1_2_3_4_right_noflip_up = w_y * c_1_1_2_3_4_right_noflip_up - w_x * s_1_1_2_3_4_right_noflip_up
+    t470 = axisx_1_1_2_3_4_right_noflip_up * t468
+    del axisx_1_1_2_3_4_right_noflip_up, t468
+    t471 = T13 * s_1_1_2_3_4_right_noflip_up - T23 * c_1_1_2_3_4_right_noflip_up
+    t472 = h_1_1_2_3_4_right_noflip_up * h_1_1_2_3_4_right_noflip_up
+    del h_1_1_2_3_4_right_noflip_up
+    rate_1_1_2_3_4_right_noflip_up = d5 * (T33 * t471) / t472
+    del t471, t472
+    t473 = dqx_1_1_2_3_4_right_noflip_up - t470 * rate_1_1_2_3_4_right_noflip_up
+    dx_1_1_2_3_4_right_noflip_up = _runtime.select(t467, dqx_1_1_2_3_4_right_noflip_up, t473)
+    del dqx_1_1_2_3_4_right_noflip_up, t473
+    t474 = x_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
+    t475 = _runtime.select(t467, t21, t21 - d5 * t470)
+    del t470
+    t476 = uc_1_1_2_3_4_right_noflip_up * rate_1_1_2_3_4_right_noflip_up
     del rate_1_1_2_3_4_right_noflip_up, uc_1_1_2_3_4_right_noflip_up
-    t470 = _runtime.select(t460, 0.0, t469)
-    del t469
-    slope_1_1_2_3_4_right_noflip_up = t467 + t468 * t470
-    del t467
-    t471 = slope_1_1_2_3_4_right_noflip_up * slope_1_1_2_3_4_right_noflip_up
-    t472 = x_1_1_2_3_4_right_noflip_up * x_1_1_2_3_4_right_noflip_up
+    t477 = _runtime.select(t467, 0.0, t476)
+    del t476
+    slope_1_1_2_3_4_right_noflip_up = t474 + t475 * t477
+    del t474
+    t478 = slope_1_1_2_3_4_right_noflip_up * slope_1_1_2_3_4_right_noflip_up
+    t479 = x_1_1_2_3_4_right_noflip_up * x_1_1_2_3_4_right_noflip_up
     del x_1_1_2_3_4_right_noflip_up
-    square_1_1_2_3_4_right_noflip_up = t472 + t468 * t468
-    del t468, t472
-    nearest_1_1_2_3_4_right_noflip_up = _runtime.select(t460, t25, fold_1_1)
+    square_1_1_2_3_4_right_noflip_up = t479 + t475 * t475
+    del t475, t479
+    nearest_1_1_2_3_4_right_noflip_up = _runtime.select(t467, t25, fold_1_1)
     low_1_1_2_3_4_right_noflip_up = nearest_1_1_2_3_4_right_noflip_up * nearest_1_1_2_3_4_right_noflip_up
     del nearest_1_1_2_3_4_right_noflip_up
-    farthest_1_1_2_3_4_right_noflip_up = _runtime.select(t460, t3, full_1_1)
-    del t460
+    farthest_1_1_2_3_4_right_noflip_up = _runtime.select(t467, t3, full_1_1)
+    del t467
     high_1_1_2_3_4_right_noflip_up = farthest_1_1_2_3_4_right_noflip_up * farthest_1_1_2_3_4_right_noflip_up
     del farthest_1_1_2_3_4_right_noflip_up
-    t473 = np.minimum(high_1_1_2_3_4_right_noflip_up, square_1_1_2_3_4_right_noflip_up)
+    t480 = np.minimum(high_1_1_2_3_4_right_noflip_up, square_1_1_2_3_4_right_noflip_up)
     del high_1_1_2_3_4_right_noflip_up
-    t474 = np.maximum(low_1_1_2_3_4_right_noflip_up, t473)
-    del low_1_1_2_3_4_right_noflip_up, t473
-    miss_1_1_2_3_4_right_noflip_up = square_1_1_2_3_4_right_noflip_up - t474
-    del square_1_1_2_3_4_right_noflip_up, t474
-    t475 = dx_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
+    t481 = np.maximum(low_1_1_2_3_4_right_noflip_up, t480)
+    del low_1_1_2_3_4_right_noflip_up, t480
+    miss_1_1_2_3_4_right_noflip_up = square_1_1_2_3_4_right_noflip_up - t481
+    del square_1_1_2_3_4_right_noflip_up, t481
+    t482 = dx_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
     del dx_1_1_2_3_4_right_noflip_up
-    bend_1_1_2_3_4_right_noflip_up = t475 + t470 * t470
-    del t470, t475
-    t476 = miss_1_1_2_3_4_right_noflip_up * bend_1_1_2_3_4_right_noflip_up
-    inner_1_1_2_3_4_right_noflip_up = t471 - t476
-    del t471, t476
-    t477 = slope_1_1_2_3_4_right_noflip_up / (2.0 * bend_1_1_2_3_4_right_noflip_up)
+    bend_1_1_2_3_4_right_noflip_up = t482 + t477 * t477
+    del t477, t482
+    t483 = miss_1_1_2_3_4_right_noflip_up * bend_1_1_2_3_4_right_noflip_up
+    inner_1_1_2_3_4_right_noflip_up = t478 - t483
+    del t478, t483
+    t484 = slope_1_1_2_3_4_right_noflip_up / (2.0 * bend_1_1_2_3_4_right_noflip_up)
     del bend_1_1_2_3_4_right_noflip_up
-    t478 = _runtime.sign(slope_1_1_2_3_4_right_noflip_up)
-    t479 = np.maximum(0.0, inner_1_1_2_3_4_right_noflip_up)
-    outer_1_1_2_3_4_right_noflip_up = slope_1_1_2_3_4_right_noflip_up + t478 * np.sqrt(t479)
-    del slope_1_1_2_3_4_right_noflip_up, t478, t479
-    t480 = miss_1_1_2_3_4_right_noflip_up / (2.0 * outer_1_1_2_3_4_right_noflip_up)
-    del miss_1_1_2_3_4_right_noflip_up, outer_1_1_2_3_4_right_noflip_up
-    t481 = _runtime.select(inner_1_1_2_3_4_right_noflip_up < 0.0, t477, t480)
-    del inner_1_1_2_3_4_right_noflip_up, t477, t480
-    t482 = t481 * t481
-    t483 = 1.0 / (1.0 + t482)
-    t484 = 2.0 * t481 * t483
-    del t481
-    by_c_1_1_2_3_4_right_noflip_up = t483 * (1.0 - t482)
-    del t482, t483
-    t485 = d4 * (t484 * t484) / (1.0 + np.abs(by_c_1_1_2_3_4_right_noflip_up))
-    t486 = (t485 + root1 * np.abs(t484) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_noflip_up)
-    del t485
-    sine_1_1_2_3_4_right_noflip_up = _runtime.select(t486, -t484, 0.0)
-    del t484
-    t487 = c_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
-    cosine_1_1_2_3_4_right_noflip_up = _runtime.select(t486, by_c_1_1_2_3_4_right_noflip_up, 1.0)
-    del by_c_1_1_2_3_4_right_noflip_up, t486
-    t488 = s_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
-    s1_right_noflip_up = _runtime.select(tangent1, t487 + t488, -t354)
-    del t487, t488
-    t489 = c_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
+    t485 = _runtime.sign(slope_1_1_2_3_4_right_noflip_up)
+    t486 = np.maximum(0.0, inner_1_1_2_3_4_right_noflip_up)
+    outer_1_1_2_3_4_right_noflip_up = slope_1_1_2_3_4_right_noflip_up + t485 * np.sqrt(t486)
+    del slope_1_1_2_3_4_right_noflip_up, t485, t486
+    t487 = miss_1_1_2_3_4_right_noflip_up / (2.0 * outer_1_1_2_3_4_right_noflip_up)
+    del miss_1_1_2_3_4_right_noflip_up
+    t488 = _runtime.select(outer_1_1_2_3_4_right_noflip_up == 0.0, 0.0, t487)
+    del outer_1_1_2_3_4_right_noflip_up, t487
+    t489 = _runtime.select(inner_1_1_2_3_4_right_noflip_up < 0.0, t484, t488)
+    del inner_1_1_2_3_4_right_noflip_up, t484, t488
+    t490 = t489 * t489
+    t491 = 1.0 / (1.0 + t490)
+    t492 = 2.0 * t489 * t491
+    del t489
+    by_c_1_1_2_3_4_right_noflip_up = t491 * (1.0 - t490)
+    del t490, t491
+    t493 = d4 * (t492 * t492) / (1.0 + np.abs(by_c_1_1_2_3_4_right_noflip_up))
+    t494 = (t493 + root1 * np.abs(t492) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_noflip_up)
+    del t493
+    sine_1_1_2_3_4_right_noflip_up = _runtime.select(t494, -t492, 0.0)
+    del t492
+    t495 = c_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
+    cosine_1_1_2_3_4_right_noflip_up = _runtime.select(t494, by_c_1_1_2_3_4_right_noflip_up, 1.0)
+    del by_c_1_1_2_3_4_right_noflip_up, t494
+    t496 = s_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
+    s1_right_noflip_up = _runtime.select(tangent1, t495 + t496, -t359)
+    del t495, t496
+    t497 = c_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
     del c_1_1_2_3_4_right_noflip_up, cosine_1_1_2_3_4_right_noflip_up
-    t490 = s_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
+    t498 = s_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
     del s_1_1_2_3_4_right_noflip_up, sine_1_1_2_3_4_right_noflip_up
-    c1_right_noflip_up = _runtime.select(tangent1, t489 - t490, c_1_1_right_noflip_up)
-    del t489, t490
-    t491 = np.arctan2(s1_right_noflip_up, c1_right_noflip_up)
+    c1_right_noflip_up = _runtime.select(tangent1, t497 - t498, c_1_1_right_noflip_up)
+    del t497, t498
+    t499 = np.arctan2(s1_right_noflip_up, c1_right_noflip_up)
     across_right_noflip_up = w_x * c1_right_noflip_up + w_y * s1_right_noflip_up
     M_13_right_noflip_up = T13 * c1_right_noflip_up + T23 * s1_right_noflip_up
-    t492 = t11 + M_13_right_noflip_up * M_13_right_noflip_up
-    h_wrist_right_noflip_up = np.sqrt(t492)
-    del t492
-    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t113
-    t493 = across_right_noflip_up * across_right_noflip_up
-    r_hub_right_noflip_up = np.sqrt(t37 + t493)
-    del t493
-    hub_mid_right_noflip_up = r_hub_right_noflip_up <= t4
-    t494 = d5 + r_hub_right_noflip_up
-    t495 = d5 - r_hub_right_noflip_up
-    mid_reach_right_noflip_up = np.minimum(full_1_1, t494) * 0.5 + np.maximum(fold_1_1, np.abs(t495)) * 0.5
-    t496 = (t494 - mid_reach_right_noflip_up) * (t494 + mid_reach_right_noflip_up)
-    k_mid_right_noflip_up = np.maximum(0.0, t496)
-    del t496
-    t497 = (t495 - mid_reach_right_noflip_up) * (t495 + mid_reach_right_noflip_up)
-    del mid_reach_right_noflip_up
-    d_mid_right_noflip_up = np.maximum(0.0, -t497)
-    del t497
-    n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
-    any_mid_right_noflip_up = n_mid_right_noflip_up <= t116
-    t498 = k_mid_right_noflip_up - d_mid_right_noflip_up
-    t499 = 1.0 / n_mid_right_noflip_up
-    del n_mid_right_noflip_up
-    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t498 * t499)
-    del t498
-    t500 = across_right_noflip_up * uc_mid_right_noflip_up
-    t501 = k_mid_right_noflip_up * d_mid_right_noflip_up
-    del d_mid_right_noflip_up, k_mid_right_noflip_up
-    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t499 * (2.0 * np.sqrt(t501)))
-    del any_mid_right_noflip_up, t499, t501
-    t502 = 1.0 / r_hub_right_noflip_up
-    del r_hub_right_noflip_up
-    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t500 + t21 * us_mid_right_noflip_up) * t502)
+    t500 = t11 + M_13_right_noflip_up * M_13_right_noflip_up
+    h_wrist_right_noflip_up = np.sqrt(t500)
     del t500
-    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t119 <= t4
-    t503 = 1.0 / h_wrist_right_noflip_up
-    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t503)
-    t504 = across_right_noflip_up - d5 * s_phi_right_noflip_up
-    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, M_13_right_noflip_up * t503)
-    del t503
-    t505 = t21 - d5 * c_phi_right_noflip_up
-    here_right_noflip_up = np.sqrt(t504 * t504 + t505 * t505)
-    del t504, t505
-    in_reach_right_noflip_up = np.minimum(full_1_1, np.maximum(here_right_noflip_up, fold_1_1))
-    t506 = (t494 - in_reach_right_noflip_up) * (t494 + in_reach_right_noflip_up)
-    del t494
-    k_near_right_noflip_up = np.maximum(0.0, t506)
+    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t115
+    t501 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t38 + t501)
+    del t501
+    hub_mid_right_noflip_up = r_hub_right_noflip_up <= t4
+    t502 = d5 + r_hub_right_noflip_up
+    t503 = d5 - r_hub_right_noflip_up
+    mid_reach_right_noflip_up = np.minimum(full_1_1, t502) * 0.5 + np.maximum(fold_1_1, np.abs(t503)) * 0.5
+    t504 = (t502 - mid_reach_right_noflip_up) * (t502 + mid_reach_right_noflip_up)
+    k_mid_right_noflip_up = np.maximum(0.0, t504)
+    del t504
+    t505 = (t503 - mid_reach_right_noflip_up) * (t503 + mid_reach_right_noflip_up)
+    del mid_reach_right_noflip_up
+    d_mid_right_noflip_up = np.maximum(0.0, -t505)
+    del t505
+    n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
+    any_mid_right_noflip_up = n_mid_right_noflip_up <= t118
+    t506 = k_mid_right_noflip_up - d_mid_right_noflip_up
+    t507 = 1.0 / n_mid_right_noflip_up
+    del n_mid_right_noflip_up
+    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t506 * t507)
     del t506
-    t507 = (t495 - in_reach_right_noflip_up) * (t495 + in_reach_right_noflip_up)
-    del t495
-    d_near_right_noflip_up = np.maximum(0.0, -t507)
-    del t507
-    n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
-    any_near_right_noflip_up = n_near_right_noflip_up <= t116
-    t508 = k_near_right_noflip_up - d_near_right_noflip_up
-    t509 = 1.0 / n_near_right_noflip_up
-    del n_near_right_noflip_up
-    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t508 * t509)
+    t508 = across_right_noflip_up * uc_mid_right_noflip_up
+    t509 = k_mid_right_noflip_up * d_mid_right_noflip_up
+    del d_mid_right_noflip_up, k_mid_right_noflip_up
+    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t507 * (2.0 * np.sqrt(t509)))
+    del any_mid_right_noflip_up, t507, t509
+    t510 = 1.0 / r_hub_right_noflip_up
+    del r_hub_right_noflip_up
+    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t508 + t21 * us_mid_right_noflip_up) * t510)
     del t508
-    t510 = across_right_noflip_up * uc_near_right_noflip_up
-    t511 = across_right_noflip_up * c_phi_right_noflip_up
-    t512 = t511 - t21 * s_phi_right_noflip_up
+    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t121 <= t4
+    t511 = 1.0 / h_wrist_right_noflip_up
+    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t511)
+    t512 = across_right_noflip_up - d5 * s_phi_right_noflip_up
+    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, M_13_right_noflip_up * t511)
     del t511
-    t513 = np.abs(t512)
-    side_right_noflip_up = _runtime.select(t513 <= t4, 1.0, -(t512 / t513))
+    t513 = t21 - d5 * c_phi_right_noflip_up
+    here_right_noflip_up = np.sqrt(t512 * t512 + t513 * t513)
     del t512, t513
-    t514 = k_near_right_noflip_up * d_near_right_noflip_up
-    del d_near_right_noflip_up, k_near_right_noflip_up
-    t515 = t509 * (2.0 * side_right_noflip_up * np.sqrt(t514))
-    del side_right_noflip_up, t509, t514
-    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t515)
-    del any_near_right_noflip_up, t515
-    t516 = t502 * (t510 + t21 * us_near_right_noflip_up)
-    del t510
-    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t516)
+    in_reach_right_noflip_up = np.minimum(full_1_1, np.maximum(here_right_noflip_up, fold_1_1))
+    t514 = (t502 - in_reach_right_noflip_up) * (t502 + in_reach_right_noflip_up)
+    del t502
+    k_near_right_noflip_up = np.maximum(0.0, t514)
+    del t514
+    t515 = (t503 - in_reach_right_noflip_up) * (t503 + in_reach_right_noflip_up)
+    del t503
+    d_near_right_noflip_up = np.maximum(0.0, -t515)
+    del t515
+    n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
+    any_near_right_noflip_up = n_near_right_noflip_up <= t118
+    t516 = k_near_right_noflip_up - d_near_right_noflip_up
+    t517 = 1.0 / n_near_right_noflip_up
+    del n_near_right_noflip_up
+    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t516 * t517)
     del t516
-    t517 = s_phi_right_noflip_up - c_near_right_noflip_up
-    t518 = across_right_noflip_up * us_near_right_noflip_up
-    del us_near_right_noflip_up
-    t519 = t502 * (t518 - t21 * uc_near_right_noflip_up)
-    del t518, uc_near_right_noflip_up
-    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t519)
+    t518 = across_right_noflip_up * uc_near_right_noflip_up
+    t519 = across_right_noflip_up * c_phi_right_noflip_up
+    t520 = t519 - t21 * s_phi_right_noflip_up
     del t519
-    t520 = c_phi_right_noflip_up + s_near_right_noflip_up
-    t521 = h_wrist_right_noflip_up * np.sqrt(t517 * t517 + t520 * t520)
-    del h_wrist_right_noflip_up, t517, t520
-    t522 = here_right_noflip_up - in_reach_right_noflip_up
+    t521 = np.abs(t520)
+    side_right_noflip_up = _runtime.select(t521 <= t4, 1.0, -(t520 / t521))
+    del t520, t521
+    t522 = k_near_right_noflip_up * d_near_right_noflip_up
+    del d_near_right_noflip_up, k_near_right_noflip_up
+    t523 = t517 * (2.0 * side_right_noflip_up * np.sqrt(t522))
+    del side_right_noflip_up, t517, t522
+    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t523)
+    del any_near_right_noflip_up, t523
+    t524 = t510 * (t518 + t21 * us_near_right_noflip_up)
+    del t518
+    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t524)
+    del t524
+    t525 = s_phi_right_noflip_up - c_near_right_noflip_up
+    t526 = across_right_noflip_up * us_near_right_noflip_up
+    del us_near_right_noflip_up
+    t527 = t510 * (t526 - t21 * uc_near_right_noflip_up)
+    del t526, uc_near_right_noflip_up
+    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t527)
+    del t527
+    t528 = c_phi_right_noflip_up + s_near_right_noflip_up
+    t529 = h_wrist_right_noflip_up * np.sqrt(t525 * t525 + t528 * t528)
+    del h_wrist_right_noflip_up, t525, t528
+    t530 = here_right_noflip_up - in_reach_right_noflip_up
     del here_right_noflip_up, in_reach_right_noflip_up
-    t523 = (t521 - 2.2737367544323206e-13 <= t130) & np.logical_not(np.abs(t522) <= t4)
-    del t521, t522
-    s_kept_right_noflip_up = _runtime.select(t523, c_near_right_noflip_up, s_phi_right_noflip_up)
+    t531 = (t529 - 2.2737367544323206e-13 <= t132) & np.logical_not(np.abs(t530) <= t4)
+    del t529, t530
+    s_kept_right_noflip_up = _runtime.select(t531, c_near_right_noflip_up, s_phi_right_noflip_up)
     del c_near_right_noflip_up
-    t524 = _runtime.select(close_right_noflip_up, s_kept_right_noflip_up, s_phi_right_noflip_up)
+    t532 = _runtime.select(close_right_noflip_up, s_kept_right_noflip_up, s_phi_right_noflip_up)
     del s_kept_right_noflip_up, s_phi_right_noflip_up
-    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t524)
-    del c_mid_right_noflip_up, t524
-    t525 = across_right_noflip_up - d5 * sphi_right_noflip_up
-    t526 = across_right_noflip_up * us_mid_right_noflip_up
+    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t532)
+    del c_mid_right_noflip_up, t532
+    t533 = across_right_noflip_up - d5 * sphi_right_noflip_up
+    t534 = across_right_noflip_up * us_mid_right_noflip_up
     del across_right_noflip_up, us_mid_right_noflip_up
-    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t502 * (t526 - t21 * uc_mid_right_noflip_up))
-    del hub_mid_right_noflip_up, t502, t526, uc_mid_right_noflip_up
-    c_kept_right_noflip_up = _runtime.select(t523, -s_near_right_noflip_up, c_phi_right_noflip_up)
-    del s_near_right_noflip_up, t523
-    t527 = _runtime.select(close_right_noflip_up, c_kept_right_noflip_up, c_phi_right_noflip_up)
+    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t510 * (t534 - t21 * uc_mid_right_noflip_up))
+    del hub_mid_right_noflip_up, t510, t534, uc_mid_right_noflip_up
+    c_kept_right_noflip_up = _runtime.select(t531, -s_near_right_noflip_up, c_phi_right_noflip_up)
+    del s_near_right_noflip_up, t531
+    t535 = _runtime.select(close_right_noflip_up, c_kept_right_noflip_up, c_phi_right_noflip_up)
     del c_kept_right_noflip_up, c_phi_right_noflip_up, close_right_noflip_up
-    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t527)
-    del s_mid_right_noflip_up, t527
+    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t535)
+    del s_mid_right_noflip_up, t535
     ey_right_noflip_up = t21 - d5 * cphi_right_noflip_up
-    t528 = t525 * t525 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t528)
-    del t528
-    t529 = full_1_1 - r_elbow_right_noflip_up
-    t530 = t24 + r_elbow_right_noflip_up
-    t531 = r_elbow_right_noflip_up - t24
-    t532 = t112 & (t111 <= t529) & (t111 <= t530) & (t111 <= t531)
-    unreachable_3 = np.logical_not(t532)
-    del t532
-    t533 = _runtime.poison(invalid | unreachable_3)
-    t534 = _runtime.wrap_cut(t491) + t533
-    del t491
+    t536 = t533 * t533 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t536)
+    del t536
+    t537 = full_1_1 - r_elbow_right_noflip_up
+    t538 = t24 + r_elbow_right_noflip_up
+    t539 = r_elbow_right_noflip_up - t24
+    t540 = t114 & (t113 <= t537) & (t113 <= t538) & (t113 <= t539)
+    unreachable_3 = np.logical_not(t540)
+    del t540
+    t541 = _runtime.poison(invalid | unreachable_3)
+    t542 = _runtime.wrap_cut(t499) + t541
+    del t499
     folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t4
-    t535 = folded_elbow_right_noflip_up | no_link_elbow
-    A_elbow_right_noflip_up = np.maximum(t529, 0.0)
-    del t529
-    C_elbow_right_noflip_up = np.maximum(t531, 0.0)
-    del t531
-    t536 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
+    t543 = folded_elbow_right_noflip_up | no_link_elbow
+    A_elbow_right_noflip_up = np.maximum(t537, 0.0)
+    del t537
+    C_elbow_right_noflip_up = np.maximum(t539, 0.0)
+    del t539
+    t544 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
     S_elbow_right_noflip_up = full_1_1 + r_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t530, 0.0)
-    del t530
-    t537 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
-    t538 = 1.0 / (t536 + t537)
-    c_base_elbow_right_noflip_up = _runtime.select(t535, 1.0, -((t536 - t537) * t538))
-    t539 = 1.0 / r_elbow_right_noflip_up
+    B_elbow_right_noflip_up = np.maximum(t538, 0.0)
+    del t538
+    t545 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t546 = 1.0 / (t544 + t545)
+    c_base_elbow_right_noflip_up = _runtime.select(t543, 1.0, -((t544 - t545) * t546))
+    t547 = 1.0 / r_elbow_right_noflip_up
     del r_elbow_right_noflip_up
-    t540 = _runtime.select(folded_elbow_right_noflip_up, 0.0, ey_right_noflip_up * t539)
+    t548 = _runtime.select(folded_elbow_right_noflip_up, 0.0, ey_right_noflip_up * t547)
     del ey_right_noflip_up
-    t541 = c_base_elbow_right_noflip_up * t540
-    area_elbow_right_noflip_up = 2.0 * np.sqrt(t536 * t537)
-    del t536, t537
-    s_base_elbow_right_noflip_up = _runtime.select(t535, 0.0, t538 * area_elbow_right_noflip_up)
-    del t535, t538
-    t542 = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t525 * t539))
-    del t525, t539
-    t543 = s_base_elbow_right_noflip_up * t542
-    s2_right_noflip_up = t541 - t543
-    t544 = c_base_elbow_right_noflip_up * t542
-    del c_base_elbow_right_noflip_up, t542
-    t545 = t540 * s_base_elbow_right_noflip_up
-    del s_base_elbow_right_noflip_up, t540
-    c2_right_noflip_up = t544 + t545
-    t546 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t547 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    t549 = c_base_elbow_right_noflip_up * t548
+    area_elbow_right_noflip_up = 2.0 * np.sqrt(t544 * t545)
+    del t544, t545
+    s_base_elbow_right_noflip_up = _runtime.select(t543, 0.0, t546 * area_elbow_right_noflip_up)
+    del t543, t546
+    t550 = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t533 * t547))
+    del t533, t547
+    t551 = s_base_elbow_right_noflip_up * t550
+    s2_right_noflip_up = t549 - t551
+    t552 = c_base_elbow_right_noflip_up * t550
+    del c_base_elbow_right_noflip_up, t550
+    t553 = t548 * s_base_elbow_right_noflip_up
+    del s_base_elbow_right_noflip_up, t548
+    c2_right_noflip_up = t552 + t553
+    t554 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
+    t555 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
     del A_elbow_right_noflip_up, S_elbow_right_noflip_up
-    t548 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t556 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
     del B_elbow_right_noflip_up, C_elbow_right_noflip_up
-    t549 = 1.0 / (t547 + t548)
-    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t549)
+    t557 = 1.0 / (t555 + t556)
+    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t557)
     del area_elbow_right_noflip_up
-    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t549 * (t547 - t548)))
-    del t547, t548, t549
-    t550 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
-    t551 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
-    t552 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
+    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t557 * (t555 - t556)))
+    del t555, t556, t557
+    t558 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
+    t559 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
+    t560 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
     del c2_right_noflip_up, s2_right_noflip_up
-    t553 = c3_right_noflip_up * t551 - s3_right_noflip_up * t552
-    t554 = c3_right_noflip_up * t552 + s3_right_noflip_up * t551
-    del t551, t552
-    t555 = _runtime.wrap_cut(np.arctan2(t553, t554)) + t533
-    del t553, t554
-    t556 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
+    t561 = c3_right_noflip_up * t559 - s3_right_noflip_up * t560
+    t562 = c3_right_noflip_up * t560 + s3_right_noflip_up * t559
+    del t559, t560
+    t563 = _runtime.wrap_cut(np.arctan2(t561, t562)) + t541
+    del t561, t562
+    t564 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
     del M_13_right_noflip_up
     M_33_right_noflip_up = T13 * s1_right_noflip_up - T23 * c1_right_noflip_up
-    t557 = _runtime.wrap_cut(-np.arctan2(t556, M_33_right_noflip_up))
-    del M_33_right_noflip_up, t556
-    t558 = t557 + t533
-    del t557
+    t565 = _runtime.wrap_cut(-np.arctan2(t564, M_33_right_noflip_up))
+    del M_33_right_noflip_up, t564
+    t566 = t565 + t541
+    del t565
     M_11_right_noflip_up = T11 * c1_right_noflip_up + T21 * s1_right_noflip_up
-    t559 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
+    t567 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
     del M_11_right_noflip_up
     M_12_right_noflip_up = T12 * c1_right_noflip_up + T22 * s1_right_noflip_up
     del c1_right_noflip_up, s1_right_noflip_up
-    t560 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
+    t568 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
     del M_12_right_noflip_up
-    t561 = _runtime.wrap_cut(-np.arctan2(t559, t560)) + t533
-    del t559, t560
-    s2_right_noflip_down = t541 + t543
-    del t541, t543
-    c2_right_noflip_down = t544 - t545
-    del t544, t545
-    t562 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
-    t563 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
-    t564 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
+    t569 = _runtime.wrap_cut(-np.arctan2(t567, t568)) + t541
+    del t567, t568
+    s2_right_noflip_down = t549 + t551
+    del t549, t551
+    c2_right_noflip_down = t552 - t553
+    del t552, t553
+    t570 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
+    t571 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
+    t572 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
     del c2_right_noflip_down, cphi_right_noflip_up, s2_right_noflip_down, sphi_right_noflip_up
-    t565 = c3_right_noflip_up * t563 + s3_right_noflip_up * t564
-    t566 = c3_right_noflip_up * t564 - s3_right_noflip_up * t563
-    del c3_right_noflip_up, s3_right_noflip_up, t563, t564
-    t567 = _runtime.wrap_cut(np.arctan2(t565, t566)) + t533
-    del t565, t566
-    x_1_1_right_flip_up = _runtime.select(t356, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up + t358)
-    del qx_1_1_right_noflip_up, t358
-    dx_1_1_right_flip_up = _runtime.select(t356, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up - t362)
-    del dqx_1_1_right_noflip_up, t362
-    t568 = _runtime.select(t356, t21, t21 + t364)
-    del t356, t364
-    slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t366 * t568
-    del t366
-    t569 = slope_1_1_right_flip_up * slope_1_1_right_flip_up
-    square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t568 * t568
-    del t568, x_1_1_right_flip_up
-    t570 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_flip_up)
+    t573 = c3_right_noflip_up * t571 + s3_right_noflip_up * t572
+    t574 = c3_right_noflip_up * t572 - s3_right_noflip_up * t571
+    del c3_right_noflip_up, s3_right_noflip_up, t571, t572
+    t575 = _runtime.wrap_cut(np.arctan2(t573, t574)) + t541
+    del t573, t574
+    x_1_1_right_flip_up = _runtime.select(t361, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up + t363)
+    del qx_1_1_right_noflip_up, t363
+    dx_1_1_right_flip_up = _runtime.select(t361, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up - t367)
+    del dqx_1_1_right_noflip_up, t367
+    t576 = _runtime.select(t361, t21, t21 + t369)
+    del t361, t369
+    slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t371 * t576
+    del t371
+    t577 = slope_1_1_right_flip_up * slope_1_1_right_flip_up
+    square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t576 * t576
+    del t576, x_1_1_right_flip_up
+    t578 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_flip_up)
     del high_1_1_right_noflip_up
-    miss_1_1_right_flip_up = square_1_1_right_flip_up - np.maximum(low_1_1_right_noflip_up, t570)
-    del low_1_1_right_noflip_up, square_1_1_right_flip_up, t570
-    bend_1_1_right_flip_up = t371 + dx_1_1_right_flip_up * dx_1_1_right_flip_up
-    del dx_1_1_right_flip_up, t371
-    t571 = miss_1_1_right_flip_up * bend_1_1_right_flip_up
-    inner_1_1_right_flip_up = t569 - t571
-    del t569, t571
-    t572 = slope_1_1_right_flip_up / (2.0 * bend_1_1_right_flip_up)
+    miss_1_1_right_flip_up = square_1_1_right_flip_up - np.maximum(low_1_1_right_noflip_up, t578)
+    del low_1_1_right_noflip_up, square_1_1_right_flip_up, t578
+    bend_1_1_right_flip_up = t376 + dx_1_1_right_flip_up * dx_1_1_right_flip_up
+    del dx_1_1_right_flip_up, t376
+    t579 = miss_1_1_right_flip_up * bend_1_1_right_flip_up
+    inner_1_1_right_flip_up = t577 - t579
+    del t577, t579
+    t580 = slope_1_1_right_flip_up / (2.0 * bend_1_1_right_flip_up)
     del bend_1_1_right_flip_up
-    t573 = np.sqrt(np.maximum(0.0, inner_1_1_right_flip_up))
-    t574 = _runtime.sign(slope_1_1_right_flip_up) * t573
-    del t573
-    t575 = miss_1_1_right_flip_up / (2.0 * (slope_1_1_right_flip_up + t574))
-    del miss_1_1_right_flip_up, slope_1_1_right_flip_up, t574
-    t576 = _runtime.select(inner_1_1_right_flip_up < 0.0, t572, t575)
-    del inner_1_1_right_flip_up, t572, t575
-    t577 = t576 * t576
-    t578 = 1.0 / (1.0 + t577)
-    t579 = 2.0 * t576 * t578
-    del t576
-    by_c_1_1_right_flip_up = t578 * (1.0 - t577)
-    del t577, t578
-    t580 = d4 * (t579 * t579) / (1.0 + np.abs(by_c_1_1_right_flip_up))
-    t581 = (t580 + root1 * np.abs(t579) <= whole_1_1) & (0.0 < by_c_1_1_right_flip_up)
-    del t580
-    cosine_1_1_right_flip_up = _runtime.select(t581, by_c_1_1_right_flip_up, 1.0)
-    del by_c_1_1_right_flip_up
-    t582 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up
-    sine_1_1_right_flip_up = _runtime.select(t581, -t579, 0.0)
-    del t579, t581
-    c_1_1_2_right_flip_up = t582 + t354 * sine_1_1_right_flip_up
-    del t582
-    t583 = c_1_1_right_noflip_up * sine_1_1_right_flip_up
-    del sine_1_1_right_flip_up
-    s_1_1_2_right_flip_up = t583 - t354 * cosine_1_1_right_flip_up
-    del cosine_1_1_right_flip_up, t583
-    axisx_1_1_2_right_flip_up = T13 * c_1_1_2_right_flip_up + T23 * s_1_1_2_right_flip_up
-    t584 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up
-    t585 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up
-    most_1_1_2_right_flip_up = np.sqrt(t584 + t585 * t585)
-    qx_1_1_2_right_flip_up = w_x * c_1_1_2_right_flip_up + w_y * s_1_1_2_right_flip_up
-    t586 = qx_1_1_2_right_flip_up * qx_1_1_2_right_flip_up
-    r_1_1_2_right_flip_up = np.sqrt(t37 + t586)
-    del t586
-    t587 = r_1_1_2_right_flip_up <= t38
-    del t38
-    t588 = d5 + r_1_1_2_right_flip_up
-    t589 = 1.0 / np.sqrt(t11 + t584)
-    del t584
-    t590 = T33 * t589
-    t591 = qx_1_1_2_right_flip_up + d5 * t590
-    us_1_1_2_right_flip_up = axisx_1_1_2_right_flip_up * t589
+    t581 = np.sqrt(np.maximum(0.0, inner_1_1_right_flip_up))
+    t582 = _runtime.sign(slope_1_1_right_flip_up) * t581
+    del t581
+    outer_1_1_right_flip_up = slope_1_1_right_flip_up + t582
+    del slope_1_1_right_flip_up, t582
+    t583 = miss_1_1_right_flip_up / (2.0 * outer_1_1_right_flip_up)
+    del miss_1_1_right_flip_up
+    t584 = _runtime.select(outer_1_1_right_flip_up == 0.0, 0.0, t583)
+    del outer_1_1_right_flip_up, t583
+    t585 = _runtime.select(inner_1_1_right_flip_up < 0.0, t580, t584)
+    del inner_1_1_right_flip_up, t580, t584
+    t586 = t585 * t585
+    t587 = 1.0 / (1.0 + t586)
+    t588 = 2.0 * t585 * t587
+    del t585
+    by_c_1_1_right_flip_up = t587 * (1.0 - t586)
+    del t586, t587
+    t589 = d4 * (t588 * t588) / (1.0 + np.abs(by_c_1_1_right_flip_up))
+    t590 = (t589 + root1 * np.abs(t588) <= whole_1_1) & (0.0 < by_c_1_1_right_flip_up)
     del t589
-    t592 = t21 + d5 * us_1_1_2_right_flip_up
-    there_1_1_2_right_flip_up = np.sqrt(t591 * t591 + t592 * t592)
-    del t591, t592
-    t593 = np.maximum(there_1_1_2_right_flip_up, fold_1_1)
-    goal_1_1_2_right_flip_up = np.minimum(full_1_1, t593)
-    del t593
-    t594 = (t588 - goal_1_1_2_right_flip_up) * (t588 + goal_1_1_2_right_flip_up)
-    del t588
-    k_v_1_1_2_right_flip_up = np.maximum(0.0, t594)
-    del t594
-    t595 = d5 - r_1_1_2_right_flip_up
-    t596 = (goal_1_1_2_right_flip_up - t595) * (goal_1_1_2_right_flip_up + t595)
+    cosine_1_1_right_flip_up = _runtime.select(t590, by_c_1_1_right_flip_up, 1.0)
+    del by_c_1_1_right_flip_up
+    t591 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up
+    sine_1_1_right_flip_up = _runtime.select(t590, -t588, 0.0)
+    del t588, t590
+    c_1_1_2_right_flip_up = t591 + t359 * sine_1_1_right_flip_up
+    del t591
+    t592 = c_1_1_right_noflip_up * sine_1_1_right_flip_up
+    del sine_1_1_right_flip_up
+    s_1_1_2_right_flip_up = t592 - t359 * cosine_1_1_right_flip_up
+    del cosine_1_1_right_flip_up, t592
+    axisx_1_1_2_right_flip_up = T13 * c_1_1_2_right_flip_up + T23 * s_1_1_2_right_flip_up
+    t593 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up
+    t594 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up
+    most_1_1_2_right_flip_up = np.sqrt(t593 + t594 * t594)
+    qx_1_1_2_right_flip_up = w_x * c_1_1_2_right_flip_up + w_y * s_1_1_2_right_flip_up
+    t595 = qx_1_1_2_right_flip_up * qx_1_1_2_right_flip_up
+    r_1_1_2_right_flip_up = np.sqrt(t38 + t595)
     del t595
-    d_v_1_1_2_right_flip_up = np.maximum(0.0, t596)
-    del t596
-    n_v_1_1_2_right_flip_up = k_v_1_1_2_right_flip_up + d_v_1_1_2_right_flip_up
-    t597 = n_v_1_1_2_right_flip_up <= t47
-    del t47
-    t598 = k_v_1_1_2_right_flip_up - d_v_1_1_2_right_flip_up
-    t599 = 1.0 / n_v_1_1_2_right_flip_up
-    del n_v_1_1_2_right_flip_up
-    uc_v_1_1_2_right_flip_up = _runtime.select(t597, 1.0, t598 * t599)
+    t596 = r_1_1_2_right_flip_up <= t39
+    del t39
+    t597 = d5 + r_1_1_2_right_flip_up
+    t598 = 1.0 / np.sqrt(t11 + t593)
+    del t593
+    t599 = T33 * t598
+    t600 = qx_1_1_2_right_flip_up + d5 * t599
+    us_1_1_2_right_flip_up = axisx_1_1_2_right_flip_up * t598
     del t598
-    t600 = qx_1_1_2_right_flip_up * uc_v_1_1_2_right_flip_up
-    t601 = qx_1_1_2_right_flip_up * us_1_1_2_right_flip_up
+    t601 = t21 + d5 * us_1_1_2_right_flip_up
+    there_1_1_2_right_flip_up = np.sqrt(t600 * t600 + t601 * t601)
+    del t600, t601
+    t602 = np.maximum(there_1_1_2_right_flip_up, fold_1_1)
+    goal_1_1_2_right_flip_up = np.minimum(full_1_1, t602)
+    del t602
+    t603 = (t597 - goal_1_1_2_right_flip_up) * (t597 + goal_1_1_2_right_flip_up)
+    del t597
+    k_v_1_1_2_right_flip_up = np.maximum(0.0, t603)
+    del t603
+    t604 = d5 - r_1_1_2_right_flip_up
+    t605 = (goal_1_1_2_right_flip_up - t604) * (goal_1_1_2_right_flip_up + t604)
+    del t604
+    d_v_1_1_2_right_flip_up = np.maximum(0.0, t605)
+    del t605
+    n_v_1_1_2_right_flip_up = k_v_1_1_2_right_flip_up + d_v_1_1_2_right_flip_up
+    t606 = n_v_1_1_2_right_flip_up <= t48
+    del t48
+    t607 = k_v_1_1_2_right_flip_up - d_v_1_1_2_right_flip_up
+    t608 = 1.0 / n_v_1_1_2_right_flip_up
+    del n_v_1_1_2_right_flip_up
+    uc_v_1_1_2_right_flip_up = _runtime.select(t606, 1.0, t607 * t608)
+    del t607
+    t609 = qx_1_1_2_right_flip_up * uc_v_1_1_2_right_flip_up
+    t610 = qx_1_1_2_right_flip_up * us_1_1_2_right_flip_up
     del us_1_1_2_right_flip_up
-    t602 = k_v_1_1_2_right_flip_up * d_v_1_1_2_right_flip_up
+    t611 = k_v_1_1_2_right_flip_up * d_v_1_1_2_right_flip_up
     del d_v_1_1_2_right_flip_up, k_v_1_1_2_right_flip_up
-    t603 = 2.0 * _runtime.sign(t601 - t21 * t590) * np.sqrt(t602)
-    del t590, t601, t602
-    us_v_1_1_2_right_flip_up = _runtime.select(t597, 0.0, t599 * t603)
-    del t597, t599, t603
-    t604 = t21 * us_v_1_1_2_right_flip_up
-    t605 = 1.0 / r_1_1_2_right_flip_up
+    t612 = 2.0 * _runtime.sign(t610 - t21 * t599) * np.sqrt(t611)
+    del t599, t610, t611
+    us_v_1_1_2_right_flip_up = _runtime.select(t606, 0.0, t608 * t612)
+    del t606, t608, t612
+    t613 = t21 * us_v_1_1_2_right_flip_up
+    t614 = 1.0 / r_1_1_2_right_flip_up
     del r_1_1_2_right_flip_up
-    c_v_1_1_2_right_flip_up = _runtime.select(t587, 1.0, (t600 + t604) * t605)
-    t606 = -(T33 * c_v_1_1_2_right_flip_up) < 0.0
-    t607 = qx_1_1_2_right_flip_up * us_v_1_1_2_right_flip_up
+    c_v_1_1_2_right_flip_up = _runtime.select(t596, 1.0, (t609 + t613) * t614)
+    t615 = -(T33 * c_v_1_1_2_right_flip_up) < 0.0
+    t616 = qx_1_1_2_right_flip_up * us_v_1_1_2_right_flip_up
     del qx_1_1_2_right_flip_up, us_v_1_1_2_right_flip_up
-    t608 = t21 * uc_v_1_1_2_right_flip_up
+    t617 = t21 * uc_v_1_1_2_right_flip_up
     del uc_v_1_1_2_right_flip_up
-    wc_1_1_2_right_flip_up = _runtime.select(t587, 0.0, t605 * (t607 + t608))
-    s_v_1_1_2_right_flip_up = _runtime.select(t587, 0.0, t605 * (t607 - t608))
-    del t607, t608
-    to_c_1_1_2_right_flip_up = _runtime.select(t606, wc_1_1_2_right_flip_up, -s_v_1_1_2_right_flip_up)
+    wc_1_1_2_right_flip_up = _runtime.select(t596, 0.0, t614 * (t616 + t617))
+    s_v_1_1_2_right_flip_up = _runtime.select(t596, 0.0, t614 * (t616 - t617))
+    del t616, t617
+    to_c_1_1_2_right_flip_up = _runtime.select(t615, wc_1_1_2_right_flip_up, -s_v_1_1_2_right_flip_up)
     del s_v_1_1_2_right_flip_up, wc_1_1_2_right_flip_up
-    c_w_1_1_2_right_flip_up = _runtime.select(t587, 1.0, t605 * (t600 - t604))
-    del t587, t600, t604, t605
-    to_s_1_1_2_right_flip_up = _runtime.select(t606, c_w_1_1_2_right_flip_up, c_v_1_1_2_right_flip_up)
-    del c_v_1_1_2_right_flip_up, c_w_1_1_2_right_flip_up, t606
-    t609 = T33 * to_c_1_1_2_right_flip_up / to_s_1_1_2_right_flip_up
+    c_w_1_1_2_right_flip_up = _runtime.select(t596, 1.0, t614 * (t609 - t613))
+    del t596, t609, t613, t614
+    to_s_1_1_2_right_flip_up = _runtime.select(t615, c_w_1_1_2_right_flip_up, c_v_1_1_2_right_flip_up)
+    del c_v_1_1_2_right_flip_up, c_w_1_1_2_right_flip_up, t615
+    t618 = T33 * to_c_1_1_2_right_flip_up / to_s_1_1_2_right_flip_up
     del to_c_1_1_2_right_flip_up, to_s_1_1_2_right_flip_up
-    t610 = np.minimum(most_1_1_2_right_flip_up, _runtime.select(t36, 0.0, t609))
-    del t36, t609
-    kept_1_1_2_right_flip_up = np.maximum(-most_1_1_2_right_flip_up, t610)
-    del t610
-    t611 = most_1_1_2_right_flip_up - kept_1_1_2_right_flip_up
-    t612 = most_1_1_2_right_flip_up + kept_1_1_2_right_flip_up
-    rest_1_1_2_right_flip_up = np.sqrt(t611 * t612) * _runtime.sign(-t585)
-    del t611, t612
-    t613 = axisx_1_1_2_right_flip_up * rest_1_1_2_right_flip_up
-    t614 = most_1_1_2_right_flip_up * most_1_1_2_right_flip_up
+    t619 = np.minimum(most_1_1_2_right_flip_up, _runtime.select(t37, 0.0, t618))
+    del t37, t618
+    kept_1_1_2_right_flip_up = np.maximum(-most_1_1_2_right_flip_up, t619)
+    del t619
+    t620 = most_1_1_2_right_flip_up - kept_1_1_2_right_flip_up
+    t621 = most_1_1_2_right_flip_up + kept_1_1_2_right_flip_up
+    rest_1_1_2_right_flip_up = np.sqrt(t620 * t621) * _runtime.sign(-t594)
+    del t620, t621
+    t622 = axisx_1_1_2_right_flip_up * rest_1_1_2_right_flip_up
+    t623 = most_1_1_2_right_flip_up * most_1_1_2_right_flip_up
     del most_1_1_2_right_flip_up
-    t615 = 1.0 / t614
-    del t614
-    t616 = (t613 + t585 * kept_1_1_2_right_flip_up) * t615
-    del t613
-    t617 = axisx_1_1_2_right_flip_up * kept_1_1_2_right_flip_up
+    t624 = 1.0 / t623
+    del t623
+    t625 = (t622 + t594 * kept_1_1_2_right_flip_up) * t624
+    del t622
+    t626 = axisx_1_1_2_right_flip_up * kept_1_1_2_right_flip_up
     del axisx_1_1_2_right_flip_up, kept_1_1_2_right_flip_up
-    by_c_1_1_2_right_flip_up = t615 * (t617 - t585 * rest_1_1_2_right_flip_up)
-    del rest_1_1_2_right_flip_up, t585, t615, t617
-    t618 = d4 * (t616 * t616) / (1.0 + np.abs(by_c_1_1_2_right_flip_up))
-    t619 = (t618 + root1 * np.abs(t616) <= whole_1_1) & (0.0 < by_c_1_1_2_right_flip_up)
-    del t618
-    t620 = there_1_1_2_right_flip_up - goal_1_1_2_right_flip_up
+    by_c_1_1_2_right_flip_up = t624 * (t626 - t594 * rest_1_1_2_right_flip_up)
+    del rest_1_1_2_right_flip_up, t594, t624, t626
+    t627 = d4 * (t625 * t625) / (1.0 + np.abs(by_c_1_1_2_right_flip_up))
+    t628 = (t627 + root1 * np.abs(t625) <= whole_1_1) & (0.0 < by_c_1_1_2_right_flip_up)
+    del t627
+    t629 = there_1_1_2_right_flip_up - goal_1_1_2_right_flip_up
     del goal_1_1_2_right_flip_up, there_1_1_2_right_flip_up
-    t621 = t619 & (size < 1125899906842624.0 * np.abs(t620))
-    del t619, t620
-    cosine_1_1_2_right_flip_up = _runtime.select(t621, by_c_1_1_2_right_flip_up, 1.0)
+    t630 = t628 & (size < 1125899906842624.0 * np.abs(t629))
+    del t628, t629
+    cosine_1_1_2_right_flip_up = _runtime.select(t630, by_c_1_1_2_right_flip_up, 1.0)
     del by_c_1_1_2_right_flip_up
-    t622 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
-    sine_1_1_2_right_flip_up = _runtime.select(t621, -t616, 0.0)
-    del t616, t621
-    t623 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
-    c_1_1_2_3_right_flip_up = t622 - t623
-    del t622, t623
-    t624 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
+    t631 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
+    sine_1_1_2_right_flip_up = _runtime.select(t630, -t625, 0.0)
+    del t625, t630
+    t632 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
+    c_1_1_2_3_right_flip_up = t631 - t632
+    del t631, t632
+    t633 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
     del c_1_1_2_right_flip_up, sine_1_1_2_right_flip_up
-    t625 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
+    t634 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
     del cosine_1_1_2_right_flip_up, s_1_1_2_right_flip_up
-    s_1_1_2_3_right_flip_up = t624 + t625
-    del t624, t625
+    s_1_1_2_3_right_flip_up = t633 + t634
+    del t633, t634
     axisx_1_1_2_3_right_flip_up = T13 * c_1_1_2_3_right_flip_up + T23 * s_1_1_2_3_right_flip_up
-    t626 = axisx_1_1_2_3_right_flip_up * axisx_1_1_2_3_right_flip_up
-    h_1_1_2_3_right_flip_up = np.sqrt(t11 + t626)
-    del t626
-    t627 = size * h_1_1_2_3_right_flip_up <= t15
+    t635 = axisx_1_1_2_3_right_flip_up * axisx_1_1_2_3_right_flip_up
+    h_1_1_2_3_right_flip_up = np.sqrt(t11 + t635)
+    del t635
+    t636 = size * h_1_1_2_3_right_flip_up <= t15
     qx_1_1_2_3_right_flip_up = w_x * c_1_1_2_3_right_flip_up + w_y * s_1_1_2_3_right_flip_up
-    t628 = 1.0 / h_1_1_2_3_right_flip_up
-    t629 = T33 * t628
-    x_1_1_2_3_right_flip_up = _runtime.select(t627, qx_1_1_2_3_right_flip_up, qx_1_1_2_3_right_flip_up + d5 * t629)
+    t637 = 1.0 / h_1_1_2_3_right_flip_up
+    t638 = T33 * t637
+    x_1_1_2_3_right_flip_up = _runtime.select(t636, qx_1_1_2_3_right_flip_up, qx_1_1_2_3_right_flip_up + d5 * t638)
     del qx_1_1_2_3_right_flip_up
     dqx_1_1_2_3_right_flip_up = w_y * c_1_1_2_3_right_flip_up - w_x * s_1_1_2_3_right_flip_up
-    us_1_1_2_3_right_flip_up = axisx_1_1_2_3_right_flip_up * t628
-    del axisx_1_1_2_3_right_flip_up, t628
-    t630 = T13 * s_1_1_2_3_right_flip_up - T23 * c_1_1_2_3_right_flip_up
-    t631 = h_1_1_2_3_right_flip_up * h_1_1_2_3_right_flip_up
+    us_1_1_2_3_right_flip_up = axisx_1_1_2_3_right_flip_up * t637
+    del axisx_1_1_2_3_right_flip_up, t637
+    t639 = T13 * s_1_1_2_3_right_flip_up - T23 * c_1_1_2_3_right_flip_up
+    t640 = h_1_1_2_3_right_flip_up * h_1_1_2_3_right_flip_up
     del h_1_1_2_3_right_flip_up
-    rate_1_1_2_3_right_flip_up = d5 * (T33 * t630) / t631
-    del t630, t631
-    t632 = us_1_1_2_3_right_flip_up * rate_1_1_2_3_right_flip_up
-    dx_1_1_2_3_right_flip_up = _runtime.select(t627, dqx_1_1_2_3_right_flip_up, dqx_1_1_2_3_right_flip_up + t632)
-    del dqx_1_1_2_3_right_flip_up, t632
-    t633 = x_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
-    t634 = _runtime.select(t627, t21, t21 + d5 * us_1_1_2_3_right_flip_up)
+    rate_1_1_2_3_right_flip_up = d5 * (T33 * t639) / t640
+    del t639, t640
+    t641 = us_1_1_2_3_right_flip_up * rate_1_1_2_3_right_flip_up
+    dx_1_1_2_3_right_flip_up = _runtime.select(t636, dqx_1_1_2_3_right_flip_up, dqx_1_1_2_3_right_flip_up + t641)
+    del dqx_1_1_2_3_right_flip_up, t641
+    t642 = x_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
+    t643 = _runtime.select(t636, t21, t21 + d5 * us_1_1_2_3_right_flip_up)
     del us_1_1_2_3_right_flip_up
-    dy_1_1_2_3_right_flip_up = _runtime.select(t627, 0.0, t629 * rate_1_1_2_3_right_flip_up)
-    del rate_1_1_2_3_right_flip_up, t629
-    slope_1_1_2_3_right_flip_up = t633 - t634 * dy_1_1_2_3_right_flip_up
-    del t633
-    t635 = slope_1_1_2_3_right_flip_up * slope_1_1_2_3_right_flip_up
-    t636 = x_1_1_2_3_right_flip_up * x_1_1_2_3_right_flip_up
+    dy_1_1_2_3_right_flip_up = _runtime.select(t636, 0.0, t638 * rate_1_1_2_3_right_flip_up)
+    del rate_1_1_2_3_right_flip_up, t638
+    slope_1_1_2_3_right_flip_up = t642 - t643 * dy_1_1_2_3_right_flip_up
+    del t642
+    t644 = slope_1_1_2_3_right_flip_up * slope_1_1_2_3_right_flip_up
+    t645 = x_1_1_2_3_right_flip_up * x_1_1_2_3_right_flip_up
     del x_1_1_2_3_right_flip_up
-    square_1_1_2_3_right_flip_up = t636 + t634 * t634
-    del t634, t636
-    nearest_1_1_2_3_right_flip_up = _runtime.select(t627, t25, fold_1_1)
+    square_1_1_2_3_right_flip_up = t645 + t643 * t643
+    del t643, t645
+    nearest_1_1_2_3_right_flip_up = _runtime.select(t636, t25, fold_1_1)
     low_1_1_2_3_right_flip_up = nearest_1_1_2_3_right_flip_up * nearest_1_1_2_3_right_flip_up
     del nearest_1_1_2_3_right_flip_up
-    farthest_1_1_2_3_right_flip_up = _runtime.select(t627, t3, full_1_1)
-    del t627
+    farthest_1_1_2_3_right_flip_up = _runtime.select(t636, t3, full_1_1)
+    del t636
     high_1_1_2_3_right_flip_up = farthest_1_1_2_3_right_flip_up * farthest_1_1_2_3_right_flip_up
     del farthest_1_1_2_3_right_flip_up
-    t637 = np.minimum(high_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up)
+    t646 = np.minimum(high_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up)
     del high_1_1_2_3_right_flip_up
-    miss_1_1_2_3_right_flip_up = square_1_1_2_3_right_flip_up - np.maximum(low_1_1_2_3_right_flip_up, t637)
-    del low_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up, t637
-    t638 = dx_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
+    miss_1_1_2_3_right_flip_up = square_1_1_2_3_right_flip_up - np.maximum(low_1_1_2_3_right_flip_up, t646)
+    del low_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up, t646
+    t647 = dx_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
     del dx_1_1_2_3_right_flip_up
-    t639 = dy_1_1_2_3_right_flip_up * dy_1_1_2_3_right_flip_up
+    t648 = dy_1_1_2_3_right_flip_up * dy_1_1_2_3_right_flip_up
     del dy_1_1_2_3_right_flip_up
-    bend_1_1_2_3_right_flip_up = t638 + t639
-    del t638, t639
-    t640 = miss_1_1_2_3_right_flip_up * bend_1_1_2_3_right_flip_up
-    inner_1_1_2_3_right_flip_up = t635 - t640
-    del t635, t640
-    t641 = slope_1_1_2_3_right_flip_up / (2.0 * bend_1_1_2_3_right_flip_up)
+    bend_1_1_2_3_right_flip_up = t647 + t648
+    del t647, t648
+    t649 = miss_1_1_2_3_right_flip_up * bend_1_1_2_3_right_flip_up
+    inner_1_1_2_3_right_flip_up = t644 - t649
+    del t644, t649
+    t650 = slope_1_1_2_3_right_flip_up / (2.0 * bend_1_1_2_3_right_flip_up)
     del bend_1_1_2_3_right_flip_up
-    t642 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_right_flip_up))
-    t643 = _runtime.sign(slope_1_1_2_3_right_flip_up) * t642
-    del t642
-    t644 = miss_1_1_2_3_right_flip_up / (2.0 * (slope_1_1_2_3_right_flip_up + t643))
-    del miss_1_1_2_3_right_flip_up, slope_1_1_2_3_right_flip_up, t643
-    t645 = _runtime.select(inner_1_1_2_3_right_flip_up < 0.0, t641, t644)
-    del inner_1_1_2_3_right_flip_up, t641, t644
-    t646 = t645 * t645
-    t647 = 1.0 / (1.0 + t646)
-    t648 = 2.0 * t645 * t647
-    del t645
-    by_c_1_1_2_3_right_flip_up = t647 * (1.0 - t646)
-    del t646, t647
-    t649 = d4 * (t648 * t648) / (1.0 + np.abs(by_c_1_1_2_3_right_flip_up))
-    t650 = (t649 + root1 * np.abs(t648) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_flip_up)
-    del t649
-    cosine_1_1_2_3_right_flip_up = _runtime.select(t650, by_c_1_1_2_3_right_flip_up, 1.0)
-    del by_c_1_1_2_3_right_flip_up
-    t651 = c_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
-    sine_1_1_2_3_right_flip_up = _runtime.select(t650, -t648, 0.0)
-    del t648, t650
-    t652 = s_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
-    c_1_1_2_3_4_right_flip_up = t651 - t652
-    del t651, t652
-    t653 = c_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
-    del c_1_1_2_3_right_flip_up, sine_1_1_2_3_right_flip_up
-    t654 = s_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
-    del cosine_1_1_2_3_right_flip_up, s_1_1_2_3_right_flip_up
-    s_1_1_2_3_4_right_flip_up = t653 + t654
-    del t653, t654
-    axisx_1_1_2_3_4_right_flip_up = T13 * c_1_1_2_3_4_right_flip_up + T23 * s_1_1_2_3_4_right_flip_up
-    t655 = axisx_1_1_2_3_4_right_flip_up * axisx_1_1_2_3_4_right_flip_up
-    h_1_1_2_3_4_right_flip_up = np.sqrt(t11 + t655)
+    t651 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_right_flip_up))
+    t652 = _runtime.sign(slope_1_1_2_3_right_flip_up) * t651
+    del t651
+    outer_1_1_2_3_right_flip_up = slope_1_1_2_3_right_flip_up + t652
+    del slope_1_1_2_3_right_flip_up, t652
+    t653 = miss_1_1_2_3_right_flip_up / (2.0 * outer_1_1_2_3_right_flip_up)
+    del miss_1_1_2_3_right_flip_up
+    t654 = _runtime.select(outer_1_1_2_3_right_flip_up == 0.0, 0.0, t653)
+    del outer_1_1_2_3_right_flip_up, t653
+    t655 = _runtime.select(inner_1_1_2_3_right_flip_up < 0.0, t650, t654)
+    del inner_1_1_2_3_right_flip_up, t650, t654
+    t656 = t655 * t655
+    t657 = 1.0 / (1.0 + t656)
+    t658 = 2.0 * t655 * t657
     del t655
-    t656 = size * h_1_1_2_3_4_right_flip_up <= t15
+    by_c_1_1_2_3_right_flip_up = t657 * (1.0 - t656)
+    del t656, t657
+    t659 = d4 * (t658 * t658) / (1.0 + np.abs(by_c_1_1_2_3_right_flip_up))
+    t660 = (t659 + root1 * np.abs(t658) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_flip_up)
+    del t659
+    cosine_1_1_2_3_right_flip_up = _runtime.select(t660, by_c_1_1_2_3_right_flip_up, 1.0)
+    del by_c_1_1_2_3_right_flip_up
+    t661 = c_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
+    sine_1_1_2_3_right_flip_up = _runtime.select(t660, -t658, 0.0)
+    del t658, t660
+    t662 = s_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
+    c_1_1_2_3_4_right_flip_up = t661 - t662
+    del t661, t662
+    t663 = c_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
+    del c_1_1_2_3_right_flip_up, sine_1_1_2_3_right_flip_up
+    t664 = s_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
+    del cosine_1_1_2_3_right_flip_up, s_1_1_2_3_right_flip_up
+    s_1_1_2_3_4_right_flip_up = t663 + t664
+    del t663, t664
+    axisx_1_1_2_3_4_right_flip_up = T13 * c_1_1_2_3_4_right_flip_up + T23 * s_1_1_2_3_4_right_flip_up
+    t665 = axisx_1_1_2_3_4_right_flip_up * axisx_1_1_2_3_4_right_flip_up
+    h_1_1_2_3_4_right_flip_up = np.sqrt(t11 + t665)
+    del t665
+    t666 = size * h_1_1_2_3_4_right_flip_up <= t15
     del size, t15
     qx_1_1_2_3_4_right_flip_up = w_x * c_1_1_2_3_4_right_flip_up + w_y * s_1_1_2_3_4_right_flip_up
-    t657 = 1.0 / h_1_1_2_3_4_right_flip_up
-    t658 = T33 * t657
-    x_1_1_2_3_4_right_flip_up = _runtime.select(t656, qx_1_1_2_3_4_right_flip_up, qx_1_1_2_3_4_right_flip_up + d5 * t658)
+    t667 = 1.0 / h_1_1_2_3_4_right_flip_up
+    t668 = T33 * t667
+    x_1_1_2_3_4_right_flip_up = _runtime.select(t666, qx_1_1_2_3_4_right_flip_up, qx_1_1_2_3_4_right_flip_up + d5 * t668)
     del qx_1_1_2_3_4_right_flip_up
     dqx_1_1_2_3_4_right_flip_up = w_y * c_1_1_2_3_4_right_flip_up - w_x * s_1_1_2_3_4_right_flip_up
-    us_1_1_2_3_4_right_flip_up = axisx_1_1_2_3_4_right_flip_up * t657
-    del axisx_1_1_2_3_4_right_flip_up, t657
-    t659 = T13 * s_1_1_2_3_4_right_flip_up - T23 * c_1_1_2_3_4_right_flip_up
-    t660 = h_1_1_2_3_4_right_flip_up * h_1_1_2_3_4_right_flip_up
+    us_1_1_2_3_4_right_flip_up = axisx_1_1_2_3_4_right_flip_up * t667
+    del axisx_1_1_2_3_4_right_flip_up, t667
+    t669 = T13 * s_1_1_2_3_4_right_flip_up - T23 * c_1_1_2_3_4_right_flip_up
+    t670 = h_1_1_2_3_4_right_flip_up * h_1_1_2_3_4_right_flip_up
     del h_1_1_2_3_4_right_flip_up
-    rate_1_1_2_3_4_right_flip_up = d5 * (T33 * t659) / t660
-    del t659, t660
-    t661 = us_1_1_2_3_4_right_flip_up * rate_1_1_2_3_4_right_flip_up
-    dx_1_1_2_3_4_right_flip_up = _runtime.select(t656, dqx_1_1_2_3_4_right_flip_up, dqx_1_1_2_3_4_right_flip_up + t661)
-    del dqx_1_1_2_3_4_right_flip_up, t661
-    t662 = x_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
-    t663 = _runtime.select(t656, t21, t21 + d5 * us_1_1_2_3_4_right_flip_up)
+    rate_1_1_2_3_4_right_flip_up = d5 * (T33 * t669) / t670
+    del t669, t670
+    t671 = us_1_1_2_3_4_right_flip_up * rate_1_1_2_3_4_right_flip_up
+    dx_1_1_2_3_4_right_flip_up = _runtime.select(t666, dqx_1_1_2_3_4_right_flip_up, dqx_1_1_2_3_4_right_flip_up + t671)
+    del dqx_1_1_2_3_4_right_flip_up, t671
+    t672 = x_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
+    t673 = _runtime.select(t666, t21, t21 + d5 * us_1_1_2_3_4_right_flip_up)
     del us_1_1_2_3_4_right_flip_up
-    dy_1_1_2_3_4_right_flip_up = _runtime.select(t656, 0.0, t658 * rate_1_1_2_3_4_right_flip_up)
-    del rate_1_1_2_3_4_right_flip_up, t658
-    slope_1_1_2_3_4_right_flip_up = t662 - t663 * dy_1_1_2_3_4_right_flip_up
-    del t662
-    t664 = slope_1_1_2_3_4_right_flip_up * slope_1_1_2_3_4_right_flip_up
-    t665 = x_1_1_2_3_4_right_flip_up * x_1_1_2_3_4_right_flip_up
+    dy_1_1_2_3_4_right_flip_up = _runtime.select(t666, 0.0, t668 * rate_1_1_2_3_4_right_flip_up)
+    del rate_1_1_2_3_4_right_flip_up, t668
+    slope_1_1_2_3_4_right_flip_up = t672 - t673 * dy_1_1_2_3_4_right_flip_up
+    del t672
+    t674 = slope_1_1_2_3_4_right_flip_up * slope_1_1_2_3_4_right_flip_up
+    t675 = x_1_1_2_3_4_right_flip_up * x_1_1_2_3_4_right_flip_up
     del x_1_1_2_3_4_right_flip_up
-    square_1_1_2_3_4_right_flip_up = t665 + t663 * t663
-    del t663, t665
-    nearest_1_1_2_3_4_right_flip_up = _runtime.select(t656, t25, fold_1_1)
+    square_1_1_2_3_4_right_flip_up = t675 + t673 * t673
+    del t673, t675
+    nearest_1_1_2_3_4_right_flip_up = _runtime.select(t666, t25, fold_1_1)
     del t25
     low_1_1_2_3_4_right_flip_up = nearest_1_1_2_3_4_right_flip_up * nearest_1_1_2_3_4_right_flip_up
     del nearest_1_1_2_3_4_right_flip_up
-    farthest_1_1_2_3_4_right_flip_up = _runtime.select(t656, t3, full_1_1)
-    del t3, t656
+    farthest_1_1_2_3_4_right_flip_up = _runtime.select(t666, t3, full_1_1)
+    del t3, t666
     high_1_1_2_3_4_right_flip_up = farthest_1_1_2_3_4_right_flip_up * farthest_1_1_2_3_4_right_flip_up
     del farthest_1_1_2_3_4_right_flip_up
-    t666 = np.minimum(high_1_1_2_3_4_right_flip_up, square_1_1_2_3_4_right_flip_up)
+    t676 = np.minimum(high_1_1_2_3_4_right_flip_up, square_1_1_2_3_4_right_flip_up)
     del high_1_1_2_3_4_right_flip_up
-    t667 = np.maximum(low_1_1_2_3_4_right_flip_up, t666)
-    del low_1_1_2_3_4_right_flip_up, t666
-    miss_1_1_2_3_4_right_flip_up = square_1_1_2_3_4_right_flip_up - t667
-    del square_1_1_2_3_4_right_flip_up, t667
-    t668 = dx_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
+    t677 = np.maximum(low_1_1_2_3_4_right_flip_up, t676)
+    del low_1_1_2_3_4_right_flip_up, t676
+    miss_1_1_2_3_4_right_flip_up = square_1_1_2_3_4_right_flip_up - t677
+    del square_1_1_2_3_4_right_flip_up, t677
+    t678 = dx_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
     del dx_1_1_2_3_4_right_flip_up
-    t669 = dy_1_1_2_3_4_right_flip_up * dy_1_1_2_3_4_right_flip_up
+    t679 = dy_1_1_2_3_4_right_flip_up * dy_1_1_2_3_4_right_flip_up
     del dy_1_1_2_3_4_right_flip_up
-    bend_1_1_2_3_4_right_flip_up = t668 + t669
-    del t668, t669
-    t670 = miss_1_1_2_3_4_right_flip_up * bend_1_1_2_3_4_right_flip_up
-    inner_1_1_2_3_4_right_flip_up = t664 - t670
-    del t664, t670
-    t671 = slope_1_1_2_3_4_right_flip_up / (2.0 * bend_1_1_2_3_4_right_flip_up)
+    bend_1_1_2_3_4_right_flip_up = t678 + t679
+    del t678, t679
+    t680 = miss_1_1_2_3_4_right_flip_up * bend_1_1_2_3_4_right_flip_up
+    inner_1_1_2_3_4_right_flip_up = t674 - t680
+    del t674, t680
+    t681 = slope_1_1_2_3_4_right_flip_up / (2.0 * bend_1_1_2_3_4_right_flip_up)
     del bend_1_1_2_3_4_right_flip_up
-    t672 = np.maximum(0.0, inner_1_1_2_3_4_right_flip_up)
-    t673 = _runtime.sign(slope_1_1_2_3_4_right_flip_up) * np.sqrt(t672)
-    del t672
-    t674 = miss_1_1_2_3_4_right_flip_up / (2.0 * (slope_1_1_2_3_4_right_flip_up + t673))
-    del miss_1_1_2_3_4_right_flip_up, slope_1_1_2_3_4_right_flip_up, t673
-    t675 = _runtime.select(inner_1_1_2_3_4_right_flip_up < 0.0, t671, t674)
-    del inner_1_1_2_3_4_right_flip_up, t671, t674
-    t676 = t675 * t675
-    t677 = 1.0 / (1.0 + t676)
-    t678 = 2.0 * t675 * t677
-    del t675
-    by_c_1_1_2_3_4_right_flip_up = t677 * (1.0 - t676)
-    del t676, t677
-    t679 = d4 * (t678 * t678) / (1.0 + np.abs(by_c_1_1_2_3_4_right_flip_up))
-    t680 = (t679 + root1 * np.abs(t678) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_flip_up)
-    del t679, whole_1_1
-    sine_1_1_2_3_4_right_flip_up = _runtime.select(t680, -t678, 0.0)
-    del t678
-    t681 = c_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
-    cosine_1_1_2_3_4_right_flip_up = _runtime.select(t680, by_c_1_1_2_3_4_right_flip_up, 1.0)
-    del by_c_1_1_2_3_4_right_flip_up, t680
-    t682 = s_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
-    s1_right_flip_up = _runtime.select(tangent1, t681 + t682, -t354)
-    del t354, t681, t682
-    t683 = c_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
+    t682 = np.maximum(0.0, inner_1_1_2_3_4_right_flip_up)
+    t683 = _runtime.sign(slope_1_1_2_3_4_right_flip_up) * np.sqrt(t682)
+    del t682
+    outer_1_1_2_3_4_right_flip_up = slope_1_1_2_3_4_right_flip_up + t683
+    del slope_1_1_2_3_4_right_flip_up, t683
+    t684 = miss_1_1_2_3_4_right_flip_up / (2.0 * outer_1_1_2_3_4_right_flip_up)
+    del miss_1_1_2_3_4_right_flip_up
+    t685 = _runtime.select(outer_1_1_2_3_4_right_flip_up == 0.0, 0.0, t684)
+    del outer_1_1_2_3_4_right_flip_up, t684
+    t686 = _runtime.select(inner_1_1_2_3_4_right_flip_up < 0.0, t681, t685)
+    del inner_1_1_2_3_4_right_flip_up, t681, t685
+    t687 = t686 * t686
+    t688 = 1.0 / (1.0 + t687)
+    t689 = 2.0 * t686 * t688
+    del t686
+    by_c_1_1_2_3_4_right_flip_up = t688 * (1.0 - t687)
+    del t687, t688
+    t690 = d4 * (t689 * t689) / (1.0 + np.abs(by_c_1_1_2_3_4_right_flip_up))
+    t691 = (t690 + root1 * np.abs(t689) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_flip_up)
+    del t690, whole_1_1
+    sine_1_1_2_3_4_right_flip_up = _runtime.select(t691, -t689, 0.0)
+    del t689
+    t692 = c_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
+    cosine_1_1_2_3_4_right_flip_up = _runtime.select(t691, by_c_1_1_2_3_4_right_flip_up, 1.0)
+    del by_c_1_1_2_3_4_right_flip_up, t691
+    t693 = s_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
+    s1_right_flip_up = _runtime.select(tangent1, t692 + t693, -t359)
+    del t359, t692, t693
+    t694 = c_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
     del c_1_1_2_3_4_right_flip_up, cosine_1_1_2_3_4_right_flip_up
-    t684 = s_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
+    t695 = s_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
     del s_1_1_2_3_4_right_flip_up, sine_1_1_2_3_4_right_flip_up
-    c1_right_flip_up = _runtime.select(tangent1, t683 - t684, c_1_1_right_noflip_up)
-    del c_1_1_right_noflip_up, t683, t684, tangent1
-    t685 = np.arctan2(s1_right_flip_up, c1_right_flip_up)
+    c1_right_flip_up = _runtime.select(tangent1, t694 - t695, c_1_1_right_noflip_up)
+    del c_1_1_right_noflip_up, t694, t695, tangent1
+    t696 = np.arctan2(s1_right_flip_up, c1_right_flip_up)
     across_right_flip_up = w_x * c1_right_flip_up + w_y * s1_right_flip_up
     del w_x, w_y
     M_13_right_flip_up = T13 * c1_right_flip_up + T23 * s1_right_flip_up
-    t686 = t11 + M_13_right_flip_up * M_13_right_flip_up
+    t697 = t11 + M_13_right_flip_up * M_13_right_flip_up
     del t11
-    h_wrist_right_flip_up = np.sqrt(t686)
-    del t686
-    aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t113
-    del t113
-    t687 = t37 + across_right_flip_up * across_right_flip_up
-    del t37
-    r_hub_right_flip_up = np.sqrt(t687)
-    del t687
-    hub_mid_right_flip_up = r_hub_right_flip_up <= t4
-    t688 = d5 + r_hub_right_flip_up
-    t689 = d5 - r_hub_right_flip_up
-    mid_reach_right_flip_up = np.minimum(full_1_1, t688) * 0.5 + np.maximum(fold_1_1, np.abs(t689)) * 0.5
-    t690 = (t688 - mid_reach_right_flip_up) * (t688 + mid_reach_right_flip_up)
-    k_mid_right_flip_up = np.maximum(0.0, t690)
-    del t690
-    t691 = (t689 - mid_reach_right_flip_up) * (t689 + mid_reach_right_flip_up)
-    del mid_reach_right_flip_up
-    d_mid_right_flip_up = np.maximum(0.0, -t691)
-    del t691
-    n_mid_right_flip_up = k_mid_right_flip_up + d_mid_right_flip_up
-    any_mid_right_flip_up = n_mid_right_flip_up <= t116
-    t692 = 1.0 / n_mid_right_flip_up
-    del n_mid_right_flip_up
-    t693 = (k_mid_right_flip_up - d_mid_right_flip_up) * t692
-    uc_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 1.0, t693)
-    del t693
-    t694 = np.sqrt(k_mid_right_flip_up * d_mid_right_flip_up)
-    del d_mid_right_flip_up, k_mid_right_flip_up
-    us_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 0.0, t692 * (2.0 * t694))
-    del any_mid_right_flip_up, t692, t694
-    t695 = across_right_flip_up * uc_mid_right_flip_up + t21 * us_mid_right_flip_up
-    t696 = 1.0 / r_hub_right_flip_up
-    del r_hub_right_flip_up
-    c_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t695 * t696)
-    del t695
-    close_right_flip_up = root1 * h_wrist_right_flip_up - t119 <= t4
-    del root1, t119
-    t697 = 1.0 / h_wrist_right_flip_up
-    t698 = _runtime.select(aligned_wrist_right_flip_up, 0.0, T33 * t697)
-    t699 = across_right_flip_up + d5 * t698
-    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, 1.0, -(M_13_right_flip_up * t697))
+    h_wrist_right_flip_up = np.sqrt(t697)
     del t697
-    t700 = t21 - d5 * c_phi_right_flip_up
-    here_right_flip_up = np.sqrt(t699 * t699 + t700 * t700)
-    del t699, t700
+    aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t115
+    del t115
+    t698 = t38 + across_right_flip_up * across_right_flip_up
+    del t38
+    r_hub_right_flip_up = np.sqrt(t698)
+    del t698
+    hub_mid_right_flip_up = r_hub_right_flip_up <= t4
+    t699 = d5 + r_hub_right_flip_up
+    t700 = d5 - r_hub_right_flip_up
+    mid_reach_right_flip_up = np.minimum(full_1_1, t699) * 0.5 + np.maximum(fold_1_1, np.abs(t700)) * 0.5
+    t701 = (t699 - mid_reach_right_flip_up) * (t699 + mid_reach_right_flip_up)
+    k_mid_right_flip_up = np.maximum(0.0, t701)
+    del t701
+    t702 = (t700 - mid_reach_right_flip_up) * (t700 + mid_reach_right_flip_up)
+    del mid_reach_right_flip_up
+    d_mid_right_flip_up = np.maximum(0.0, -t702)
+    del t702
+    n_mid_right_flip_up = k_mid_right_flip_up + d_mid_right_flip_up
+    any_mid_right_flip_up = n_mid_right_flip_up <= t118
+    t703 = 1.0 / n_mid_right_flip_up
+    del n_mid_right_flip_up
+    t704 = (k_mid_right_flip_up - d_mid_right_flip_up) * t703
+    uc_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 1.0, t704)
+    del t704
+    t705 = np.sqrt(k_mid_right_flip_up * d_mid_right_flip_up)
+    del d_mid_right_flip_up, k_mid_right_flip_up
+    us_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 0.0, t703 * (2.0 * t705))
+    del any_mid_right_flip_up, t703, t705
+    t706 = across_right_flip_up * uc_mid_right_flip_up + t21 * us_mid_right_flip_up
+    t707 = 1.0 / r_hub_right_flip_up
+    del r_hub_right_flip_up
+    c_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t706 * t707)
+    del t706
+    close_right_flip_up = root1 * h_wrist_right_flip_up - t121 <= t4
+    del root1, t121
+    t708 = 1.0 / h_wrist_right_flip_up
+    t709 = _runtime.select(aligned_wrist_right_flip_up, 0.0, T33 * t708)
+    t710 = across_right_flip_up + d5 * t709
+    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, 1.0, -(M_13_right_flip_up * t708))
+    del t708
+    t711 = t21 - d5 * c_phi_right_flip_up
+    here_right_flip_up = np.sqrt(t710 * t710 + t711 * t711)
+    del t710, t711
     in_reach_right_flip_up = np.minimum(full_1_1, np.maximum(here_right_flip_up, fold_1_1))
     del fold_1_1
-    t701 = (t688 - in_reach_right_flip_up) * (t688 + in_reach_right_flip_up)
-    del t688
-    k_near_right_flip_up = np.maximum(0.0, t701)
-    del t701
-    t702 = (t689 - in_reach_right_flip_up) * (t689 + in_reach_right_flip_up)
-    del t689
-    d_near_right_flip_up = np.maximum(0.0, -t702)
-    del t702
+    t712 = (t699 - in_reach_right_flip_up) * (t699 + in_reach_right_flip_up)
+    del t699
+    k_near_right_flip_up = np.maximum(0.0, t712)
+    del t712
+    t713 = (t700 - in_reach_right_flip_up) * (t700 + in_reach_right_flip_up)
+    del t700
+    d_near_right_flip_up = np.maximum(0.0, -t713)
+    del t713
     n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
-    any_near_right_flip_up = n_near_right_flip_up <= t116
-    del t116
-    t703 = 1.0 / n_near_right_flip_up
+    any_near_right_flip_up = n_near_right_flip_up <= t118
+    del t118
+    t714 = 1.0 / n_near_right_flip_up
     del n_near_right_flip_up
-    t704 = (k_near_right_flip_up - d_near_right_flip_up) * t703
-    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t704)
-    del t704
-    t705 = across_right_flip_up * c_phi_right_flip_up + t21 * t698
-    t706 = np.abs(t705)
-    side_right_flip_up = _runtime.select(t706 <= t4, 1.0, -(t705 / t706))
-    del t705, t706
-    t707 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
+    t715 = (k_near_right_flip_up - d_near_right_flip_up) * t714
+    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t715)
+    del t715
+    t716 = across_right_flip_up * c_phi_right_flip_up + t21 * t709
+    t717 = np.abs(t716)
+    side_right_flip_up = _runtime.select(t717 <= t4, 1.0, -(t716 / t717))
+    del t716, t717
+    t718 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
     del d_near_right_flip_up, k_near_right_flip_up
-    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t703 * (2.0 * side_right_flip_up * t707))
-    del any_near_right_flip_up, side_right_flip_up, t703, t707
-    t708 = across_right_flip_up * uc_near_right_flip_up + t21 * us_near_right_flip_up
-    c_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t696 * t708)
-    del t708
-    t709 = t698 + c_near_right_flip_up
-    t710 = across_right_flip_up * us_near_right_flip_up - t21 * uc_near_right_flip_up
+    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t714 * (2.0 * side_right_flip_up * t718))
+    del any_near_right_flip_up, side_right_flip_up, t714, t718
+    t719 = across_right_flip_up * uc_near_right_flip_up + t21 * us_near_right_flip_up
+    c_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t707 * t719)
+    del t719
+    t720 = t709 + c_near_right_flip_up
+    t721 = across_right_flip_up * us_near_right_flip_up - t21 * uc_near_right_flip_up
     del uc_near_right_flip_up, us_near_right_flip_up
-    s_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t696 * t710)
-    del t710
-    t711 = c_phi_right_flip_up + s_near_right_flip_up
-    t712 = h_wrist_right_flip_up * np.sqrt(t709 * t709 + t711 * t711)
-    del h_wrist_right_flip_up, t709, t711
-    t713 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    s_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t707 * t721)
+    del t721
+    t722 = c_phi_right_flip_up + s_near_right_flip_up
+    t723 = h_wrist_right_flip_up * np.sqrt(t720 * t720 + t722 * t722)
+    del h_wrist_right_flip_up, t720, t722
+    t724 = np.abs(here_right_flip_up - in_reach_right_flip_up)
     del here_right_flip_up, in_reach_right_flip_up
-    t714 = (t712 - 2.2737367544323206e-13 <= t130) & np.logical_not(t713 <= t4)
-    del t130, t712, t713
-    s_kept_right_flip_up = _runtime.select(t714, c_near_right_flip_up, -t698)
+    t725 = (t723 - 2.2737367544323206e-13 <= t132) & np.logical_not(t724 <= t4)
+    del t132, t723, t724
+    s_kept_right_flip_up = _runtime.select(t725, c_near_right_flip_up, -t709)
     del c_near_right_flip_up
-    t715 = _runtime.select(close_right_flip_up, s_kept_right_flip_up, -t698)
-    del s_kept_right_flip_up, t698
-    sphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, c_mid_right_flip_up, t715)
-    del c_mid_right_flip_up, t715
-    t716 = across_right_flip_up - d5 * sphi_right_flip_up
-    t717 = across_right_flip_up * us_mid_right_flip_up - t21 * uc_mid_right_flip_up
+    t726 = _runtime.select(close_right_flip_up, s_kept_right_flip_up, -t709)
+    del s_kept_right_flip_up, t709
+    sphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, c_mid_right_flip_up, t726)
+    del c_mid_right_flip_up, t726
+    t727 = across_right_flip_up - d5 * sphi_right_flip_up
+    t728 = across_right_flip_up * us_mid_right_flip_up - t21 * uc_mid_right_flip_up
     del across_right_flip_up, uc_mid_right_flip_up, us_mid_right_flip_up
-    s_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t696 * t717)
-    del hub_mid_right_flip_up, t696, t717
-    c_kept_right_flip_up = _runtime.select(t714, -s_near_right_flip_up, c_phi_right_flip_up)
-    del s_near_right_flip_up, t714
-    t718 = _runtime.select(close_right_flip_up, c_kept_right_flip_up, c_phi_right_flip_up)
+    s_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t707 * t728)
+    del hub_mid_right_flip_up, t707, t728
+    c_kept_right_flip_up = _runtime.select(t725, -s_near_right_flip_up, c_phi_right_flip_up)
+    del s_near_right_flip_up, t725
+    t729 = _runtime.select(close_right_flip_up, c_kept_right_flip_up, c_phi_right_flip_up)
     del c_kept_right_flip_up, c_phi_right_flip_up, close_right_flip_up
-    cphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, -s_mid_right_flip_up, t718)
-    del s_mid_right_flip_up, t718
+    cphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, -s_mid_right_flip_up, t729)
+    del s_mid_right_flip_up, t729
     ey_right_flip_up = t21 - d5 * cphi_right_flip_up
     del t21
-    t719 = t716 * t716 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t719)
-    del t719
-    t720 = full_1_1 - r_elbow_right_flip_up
-    t721 = t24 + r_elbow_right_flip_up
-    t722 = r_elbow_right_flip_up - t24
+    t730 = t727 * t727 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t730)
+    del t730
+    t731 = full_1_1 - r_elbow_right_flip_up
+    t732 = t24 + r_elbow_right_flip_up
+    t733 = r_elbow_right_flip_up - t24
     del t24
-    t723 = t112 & (t111 <= t720) & (t111 <= t721) & (t111 <= t722)
-    del t111, t112
-    unreachable_4 = np.logical_not(t723)
-    del t723
-    t724 = _runtime.poison(invalid | unreachable_4)
-    t725 = _runtime.wrap_cut(t685) + t724
-    del t685
+    t734 = t114 & (t113 <= t731) & (t113 <= t732) & (t113 <= t733)
+    del t113, t114
+    unreachable_4 = np.logical_not(t734)
+    del t734
+    t735 = _runtime.poison(invalid | unreachable_4)
+    t736 = _runtime.wrap_cut(t696) + t735
+    del t696
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t4
     del t4
-    t726 = folded_elbow_right_flip_up | no_link_elbow
-    A_elbow_right_flip_up = np.maximum(t720, 0.0)
-    del t720
-    C_elbow_right_flip_up = np.maximum(t722, 0.0)
-    del t722
-    t727 = A_elbow_right_flip_up * C_elbow_right_flip_up
+    t737 = folded_elbow_right_flip_up | no_link_elbow
+    A_elbow_right_flip_up = np.maximum(t731, 0.0)
+    del t731
+    C_elbow_right_flip_up = np.maximum(t733, 0.0)
+    del t733
+    t738 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = full_1_1 + r_elbow_right_flip_up
     del full_1_1
-    B_elbow_right_flip_up = np.maximum(t721, 0.0)
-    del t721
-    t728 = S_elbow_right_flip_up * B_elbow_right_flip_up
-    t729 = 1.0 / (t727 + t728)
-    c_base_elbow_right_flip_up = _runtime.select(t726, 1.0, -((t727 - t728) * t729))
-    t730 = 1.0 / r_elbow_right_flip_up
-    del r_elbow_right_flip_up
-    t731 = _runtime.select(folded_elbow_right_flip_up, 0.0, ey_right_flip_up * t730)
-    del ey_right_flip_up
-    t732 = c_base_elbow_right_flip_up * t731
-    area_elbow_right_flip_up = 2.0 * np.sqrt(t727 * t728)
-    del t727, t728
-    s_base_elbow_right_flip_up = _runtime.select(t726, 0.0, t729 * area_elbow_right_flip_up)
-    del t726, t729
-    t733 = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t716 * t730))
-    del t716, t730
-    t734 = s_base_elbow_right_flip_up * t733
-    s2_right_flip_up = t732 - t734
-    t735 = c_base_elbow_right_flip_up * t733
-    del c_base_elbow_right_flip_up, t733
-    t736 = t731 * s_base_elbow_right_flip_up
-    del s_base_elbow_right_flip_up, t731
-    c2_right_flip_up = t735 + t736
-    t737 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t738 = A_elbow_right_flip_up * S_elbow_right_flip_up
-    del A_elbow_right_flip_up, S_elbow_right_flip_up
-    t739 = C_elbow_right_flip_up * B_elbow_right_flip_up
-    del B_elbow_right_flip_up, C_elbow_right_flip_up
+    B_elbow_right_flip_up = np.maximum(t732, 0.0)
+    del t732
+    t739 = S_elbow_right_flip_up * B_elbow_right_flip_up
     t740 = 1.0 / (t738 + t739)
-    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t740)
+    c_base_elbow_right_flip_up = _runtime.select(t737, 1.0, -((t738 - t739) * t740))
+    t741 = 1.0 / r_elbow_right_flip_up
+    del r_elbow_right_flip_up
+    t742 = _runtime.select(folded_elbow_right_flip_up, 0.0, ey_right_flip_up * t741)
+    del ey_right_flip_up
+    t743 = c_base_elbow_right_flip_up * t742
+    area_elbow_right_flip_up = 2.0 * np.sqrt(t738 * t739)
+    del t738, t739
+    s_base_elbow_right_flip_up = _runtime.select(t737, 0.0, t740 * area_elbow_right_flip_up)
+    del t737, t740
+    t744 = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t727 * t741))
+    del t727, t741
+    t745 = s_base_elbow_right_flip_up * t744
+    s2_right_flip_up = t743 - t745
+    t746 = c_base_elbow_right_flip_up * t744
+    del c_base_elbow_right_flip_up, t744
+    t747 = t742 * s_base_elbow_right_flip_up
+    del s_base_elbow_right_flip_up, t742
+    c2_right_flip_up = t746 + t747
+    t748 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
+    t749 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    del A_elbow_right_flip_up, S_elbow_right_flip_up
+    t750 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    del B_elbow_right_flip_up, C_elbow_right_flip_up
+    t751 = 1.0 / (t749 + t750)
+    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t751)
     del area_elbow_right_flip_up
-    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t740 * (t738 - t739)))
-    del t738, t739, t740
-    t741 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
-    t742 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
-    t743 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
+    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t751 * (t749 - t750)))
+    del t749, t750, t751
+    t752 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
+    t753 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
+    t754 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
     del c2_right_flip_up, s2_right_flip_up
-    t744 = c3_right_flip_up * t742 - s3_right_flip_up * t743
-    t745 = c3_right_flip_up * t743 + s3_right_flip_up * t742
-    del t742, t743
-    t746 = _runtime.wrap_cut(np.arctan2(t744, t745)) + t724
-    del t744, t745
-    t747 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    t755 = c3_right_flip_up * t753 - s3_right_flip_up * t754
+    t756 = c3_right_flip_up * t754 + s3_right_flip_up * t753
+    del t753, t754
+    t757 = _runtime.wrap_cut(np.arctan2(t755, t756)) + t735
+    del t755, t756
+    t758 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
     del M_13_right_flip_up
     M_33_right_flip_up = T13 * s1_right_flip_up - T23 * c1_right_flip_up
-    t748 = _runtime.wrap_cut(-np.arctan2(t747, M_33_right_flip_up))
-    del M_33_right_flip_up, t747
-    t749 = t748 + t724
-    del t748
+    t759 = _runtime.wrap_cut(-np.arctan2(t758, M_33_right_flip_up))
+    del M_33_right_flip_up, t758
+    t760 = t759 + t735
+    del t759
     M_11_right_flip_up = T11 * c1_right_flip_up + T21 * s1_right_flip_up
-    t750 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up
+    t761 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up
     del M_11_right_flip_up
     M_12_right_flip_up = T12 * c1_right_flip_up + T22 * s1_right_flip_up
     del c1_right_flip_up, s1_right_flip_up
-    t751 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up
+    t762 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up
     del M_12_right_flip_up
-    t752 = _runtime.wrap_cut(-np.arctan2(t750, t751)) + t724
-    del t750, t751
-    s2_right_flip_down = t732 + t734
-    del t732, t734
-    c2_right_flip_down = t735 - t736
-    del t735, t736
-    t753 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
-    t754 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
-    t755 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
+    t763 = _runtime.wrap_cut(-np.arctan2(t761, t762)) + t735
+    del t761, t762
+    s2_right_flip_down = t743 + t745
+    del t743, t745
+    c2_right_flip_down = t746 - t747
+    del t746, t747
+    t764 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
+    t765 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
+    t766 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
     del c2_right_flip_down, cphi_right_flip_up, s2_right_flip_down, sphi_right_flip_up
-    t756 = c3_right_flip_up * t754 + s3_right_flip_up * t755
-    t757 = c3_right_flip_up * t755 - s3_right_flip_up * t754
-    del c3_right_flip_up, s3_right_flip_up, t754, t755
-    t758 = _runtime.wrap_cut(np.arctan2(t756, t757)) + t724
-    del t756, t757
-    t759 = free1 | aligned_wrist | no_link_elbow | folded_elbow
+    t767 = c3_right_flip_up * t765 + s3_right_flip_up * t766
+    t768 = c3_right_flip_up * t766 - s3_right_flip_up * t765
+    del c3_right_flip_up, s3_right_flip_up, t765, t766
+    t769 = _runtime.wrap_cut(np.arctan2(t767, t768)) + t735
+    del t767, t768
+    t770 = free1 | aligned_wrist | no_link_elbow | folded_elbow
     del aligned_wrist, folded_elbow
-    t760 = _runtime.status(invalid, unreachable, t759)
-    del t759, unreachable
-    t761 = free1 | aligned_wrist_left_flip_up | no_link_elbow
+    t771 = _runtime.status(invalid, unreachable, t770)
+    del t770, unreachable
+    t772 = free1 | aligned_wrist_left_flip_up | no_link_elbow
     del aligned_wrist_left_flip_up
-    t762 = _runtime.status(invalid, unreachable_2, t761 | folded_elbow_left_flip_up)
-    del folded_elbow_left_flip_up, t761, unreachable_2
-    t763 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    t773 = _runtime.status(invalid, unreachable_2, t772 | folded_elbow_left_flip_up)
+    del folded_elbow_left_flip_up, t772, unreachable_2
+    t774 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
     del aligned_wrist_right_noflip_up
-    t764 = _runtime.status(invalid, unreachable_3, t763 | folded_elbow_right_noflip_up)
-    del folded_elbow_right_noflip_up, t763, unreachable_3
-    t765 = free1 | aligned_wrist_right_flip_up | no_link_elbow
+    t775 = _runtime.status(invalid, unreachable_3, t774 | folded_elbow_right_noflip_up)
+    del folded_elbow_right_noflip_up, t774, unreachable_3
+    t776 = free1 | aligned_wrist_right_flip_up | no_link_elbow
     del aligned_wrist_right_flip_up, free1, no_link_elbow
-    t766 = _runtime.status(invalid, unreachable_4, t765 | folded_elbow_right_flip_up)
-    del folded_elbow_right_flip_up, invalid, t765, unreachable_4
+    t777 = _runtime.status(invalid, unreachable_4, t776 | folded_elbow_right_flip_up)
+    del folded_elbow_right_flip_up, invalid, t776, unreachable_4
     return (
-        t141,
-        _runtime.wrap_cut(np.arctan2(s2, c2)) + t140,
-        _runtime.wrap_cut(t156) + t140,
-        _runtime.wrap_cut(t159) + t140,
-        t161,
+        t143,
+        _runtime.wrap_cut(np.arctan2(s2, c2)) + t142,
+        _runtime.wrap_cut(t158) + t142,
+        _runtime.wrap_cut(t161) + t142,
         t163,
-        t141,
-        _runtime.wrap_cut(t164) + t140,
-        _runtime.wrap_cut(-t156) + t140,
-        _runtime.wrap_cut(t167) + t140,
-        t161,
+        t165,
+        t143,
+        _runtime.wrap_cut(t166) + t142,
+        _runtime.wrap_cut(-t158) + t142,
+        _runtime.wrap_cut(t169) + t142,
         t163,
-        t320,
-        t332 + t319,
-        _runtime.wrap_cut(t336) + t319,
-        t341,
-        t344,
-        t347,
-        t320,
-        _runtime.wrap_cut(t348) + t319,
-        _runtime.wrap_cut(-t336) + t319,
-        t353,
-        t344,
-        t347,
-        t534,
-        _runtime.wrap_cut(t546) + t533,
-        _runtime.wrap_cut(t550) + t533,
-        t555,
-        t558,
-        t561,
-        t534,
-        _runtime.wrap_cut(t562) + t533,
-        _runtime.wrap_cut(-t550) + t533,
-        t567,
-        t558,
-        t561,
-        t725,
-        _runtime.wrap_cut(t737) + t724,
-        _runtime.wrap_cut(t741) + t724,
-        t746,
-        t749,
-        t752,
-        t725,
-        _runtime.wrap_cut(t753) + t724,
-        _runtime.wrap_cut(-t741) + t724,
-        t758,
-        t749,
-        t752,
+        t165,
+        t325,
+        t337 + t324,
+        _runtime.wrap_cut(t341) + t324,
+        t346,
+        t349,
+        t352,
+        t325,
+        _runtime.wrap_cut(t353) + t324,
+        _runtime.wrap_cut(-t341) + t324,
+        t358,
+        t349,
+        t352,
+        t542,
+        _runtime.wrap_cut(t554) + t541,
+        _runtime.wrap_cut(t558) + t541,
+        t563,
+        t566,
+        t569,
+        t542,
+        _runtime.wrap_cut(t570) + t541,
+        _runtime.wrap_cut(-t558) + t541,
+        t575,
+        t566,
+        t569,
+        t736,
+        _runtime.wrap_cut(t748) + t735,
+        _runtime.wrap_cut(t752) + t735,
+        t757,
         t760,
+        t763,
+        t736,
+        _runtime.wrap_cut(t764) + t735,
+        _runtime.wrap_cut(-t752) + t735,
+        t769,
         t760,
-        t762,
-        t762,
-        t764,
-        t764,
-        t766,
-        t766,
+        t763,
+        t771,
+        t771,
+        t773,
+        t773,
+        t775,
+        t775,
+        t777,
+        t777,
     )
 
 

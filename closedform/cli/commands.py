@@ -228,7 +228,8 @@ def _next(
     from closedform.emit.backends import load
 
     first = [load(backend).first_file(robot.name) for backend in backends]
-    return f"use {' and '.join(str(root / path) for path in first if path) or root}"
+    *others, last = [str(root / path) for path in first if path] or [str(root)]
+    return f"use {', '.join(others)} and {last}" if others else f"use {last}"
 
 
 def _crosscheck(root: Path, chosen: Sequence[pipeline.Source], backends: Sequence[str]) -> None:

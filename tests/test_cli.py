@@ -9,11 +9,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from closedform.pipeline.run.imports import package, sources_of
 from derivations_for_tests import SLIDER
 
 from closedform.cli.commands import main
 from closedform.pipeline import run as pipeline
+from closedform.pipeline.imports import package, sources_of
 
 README = Path(__file__).parents[1] / "README.md"
 pytestmark = pytest.mark.usefixtures("compiled_quickly")

@@ -6,7 +6,7 @@ Twists are ordered ``(v; omega)``.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from functools import reduce
+from functools import cache, reduce
 from itertools import combinations
 
 import sympy as sp
@@ -28,7 +28,7 @@ def rotation(axis: str, angle: sp.Expr) -> sp.Matrix:
 
 def homogeneous(R: sp.Matrix, p: Sequence[sp.Expr] = (0, 0, 0)) -> sp.Matrix:
     """The 4x4 transform of a rotation and a translation."""
-    return sp.Matrix(sp.BlockMatrix([[R, sp.Matrix(p)], [sp.zeros(1, 3), sp.eye(1)]]))
+    return sp.Matrix([[*R[i, :], p[i]] for i in range(3)] + [[0, 0, 0, 1]])
 
 
 def denavit_hartenberg(
@@ -155,6 +155,11 @@ def merge_angles(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:
     """
     if isinstance(value, sp.MatrixBase):
         return value.applyfunc(merge_angles)
+    return _merged(value)
+
+
+@cache
+def _merged(value: sp.Expr) -> sp.Expr:
     best = sp.expand(value)
     improved = True
     while improved:
@@ -192,9 +197,18 @@ def _merge_pair(expr: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
 
 def _replaced(expr: sp.Expr, product: sp.Expr, sum_: sp.Expr) -> sp.Expr:
     """An expanded expression with a product replaced, and expanded again where it occurred."""
-    replaced = expr.subs(product, sum_)
-    return expr if replaced == expr else sp.expand(replaced)
+    # Only terms with both factors change, and the others are expanded already: few are touched.
+    factors = product.atoms(sp.sin, sp.cos)
+    rest, changed = [], []
+    for term in sp.Add.make_args(expr):
+        replaced = term.subs(product, sum_) if factors <= term.atoms(sp.sin, sp.cos) else term
+        if replaced == term:
+            rest.append(term)
+        else:
+            changed.append(sp.expand(replaced))
+    return sp.Add(*rest, *changed) if changed else expr
 
 
+@cache
 def _terms(expr: sp.Expr) -> int:
     return int(sp.count_ops(expr, visual=False)) + 3 * len(sp.Add.make_args(expr))

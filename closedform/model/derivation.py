@@ -150,20 +150,12 @@ class Stage:
 
     ``equations`` are places in the system; they hold no unknowns but those of this stage and of
     earlier ones.  ``given`` writes the inputs in the unknowns that were solved before, so that the
-    equations of those earlier stages hold identically whose unknowns occur.  ``mixed``, an
-    orthogonal matrix in the earlier unknowns, multiplies the equations where that makes them
-    simpler.
-
-    An inverse that is solved in the same stages is proved sound in them, if its stages say which
-    names of the program are ``carried`` into them, and what these are in the earlier unknowns: the
-    earlier stages are proved to hand them on so.
+    equations of earlier stages hold identically if they are in these unknowns.
     """
 
     unknowns: tuple[sp.Symbol, ...]
     equations: tuple[int, ...]
     given: Mapping[sp.Symbol, sp.Expr]
-    mixed: sp.Matrix | None = None
-    carried: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -282,15 +282,13 @@ class Function:
         signs: Mapping[sp.Symbol, int],
         flags: Mapping[sp.Symbol, bool] | None = None,
         locus: Mapping[sp.Symbol, sp.Expr] | None = None,
-        carried: Mapping[sp.Symbol, sp.Expr] | None = None,
     ) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]:
         """Expressions in the names of the body, written out, and the bounds they rest on.
 
-        The flags that ``flags`` does not name are false, ``locus`` replaces inputs and parameters,
-        and a name that is ``carried`` has the given value in the place of its own.
+        The flags that ``flags`` does not name are false; ``locus`` replaces inputs and parameters.
         """
-        given = {**(locus or {}), **(carried or {})}
-        known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()} | given
+        known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
+        known |= locus or {}
         needed = {s for e in exprs for s in e.free_symbols} - known.keys()
         for statement in reversed(self.body):
             if isinstance(statement, (Let, Bound)) and statement.symbol in needed:

@@ -8,8 +8,8 @@ from typing import Any
 import sympy as sp
 from sympy.printing.str import StrPrinter
 
-NAME = re.compile(r"[A-Za-z_]\w*(\[\d\]|\.[cs])?", re.ASCII)
-"""Of a symbol, of an entry of a vector, or of the sine or the cosine of a pair."""
+NAME = re.compile(r"[A-Za-z_]\w*(\[\d\]|\.[cs]|\.ahead)?", re.ASCII)
+"""Of a symbol, of an entry of a vector, or of a part of what a lemma hands on."""
 
 
 class _Source(StrPrinter):  # type: ignore[misc]

@@ -39,10 +39,27 @@ DIGITS = re.compile(r"[-+0-9./eE]+")
 IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "atan2")
 CHAIN = ("Reaching", "polar", "remainder", "slide", "turn", "turned", "two_links", "zyz")
 AUTHOR = (
-    "Chain", "Derivation", "Links", "LinksAndWrist", "Pair", "Paper", "from_dh", "from_screws",
+    "Chain", "Derivation", "Links", "LinksAndWrist", "LinksAtHeight", "Pair", "Paper", "from_dh",
+    "from_screws",
 )  # fmt: skip
 SCRIPT = {"arm", "d", "forward", "links"}
-LINES = {"M", "ahead", "ik", "p", "q", "reaching", "turn1", "wx", "wy", "x", "y", "yaw", "z", "rho"}
+LINES = {
+    "M",
+    "ahead",
+    "ik",
+    "p",
+    "q",
+    "reaching",
+    "turn1",
+    "turn2",
+    "wx",
+    "wy",
+    "x",
+    "y",
+    "yaw",
+    "z",
+    "rho",
+}
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """What the written script calls its own."""
 

@@ -339,15 +339,17 @@ def zyz(
 
     The second solution is the first with a half turn of both outer angles.  The last angle is read
     from the rotation that the first leaves, which keeps the product exact near ``middle = 0``.
-    There only ``first + last`` or ``first - last`` is determined; first is 0,
-    or what keeps the rest of the arm within reach.
+    There only ``first + last`` or ``first - last`` is determined; first is 0, or what keeps the
+    rest of the arm within reach.
     """
     p = chain.program
     sigma = chain.sign(name, choice)
     free = next((a for a in (first, last) if a in chain.joints), None)
     if free is None:
         free = next(j for j in chain.joints if chain.defined[last].has(j))
-    halves, unit, near = dict[sp.Symbol, tuple[Pair, sp.Expr]](), dict[sp.Expr, sp.Expr](), []
+    halves: dict[sp.Symbol, tuple[Pair, sp.Expr]] = {}
+    unit: dict[sp.Expr, sp.Expr] = {}
+    near: tuple[sp.Symbol, ...] = ()
     if reaching is None:
         angles = zyz_angles(
             p, R, first, middle, last, sigma, free=(free,), scale=_ROUNDINGS, suffix=f"_{name}"
@@ -361,23 +363,7 @@ def zyz(
         aligned = p.vanishes(
             f"aligned_{name}", h, _ROUNDINGS, "the first and the last axis are parallel", (free,)
         )
-        raw = Pair(
-            p.let(f"s_{first}", choose(aligned, 0, sigma * R[1, 2] / h)),
-            p.let(f"c_{first}", choose(aligned, 1, sigma * R[0, 2] / h)),
-        )
-        start = reaching.middle() + Pair(-reaching.ahead.s, reaching.ahead.c)
-        close, moves, inside, moved = reaching.moved(raw + reaching.ahead, h)
-        off = moved + Pair(-reaching.ahead.s, reaching.ahead.c)
-        start = Pair(p.let("s_start", start.s), p.let("c_start", start.c))
-        off = Pair(p.let("s_off", off.s), p.let("c_off", off.c))
-        near.append((close, moves))
-        brought = sp.And(moves, sp.Not(inside))
-        s_near = p.let("s_kept", choose(brought, off.s, raw.s))
-        c_near = p.let("c_kept", choose(brought, off.c, raw.c))
-        raw = Pair(choose(close, s_near, raw.s), choose(close, c_near, raw.c))
-        t = real("t")
-        unit = {start.s: sp.sin(t), start.c: sp.cos(t), off.s: sp.sin(t), off.c: sp.cos(t)}
-        found = Pair(choose(aligned, start.s, raw.s), choose(aligned, start.c, raw.c))
+        found, near, unit = _within_reach(reaching, R, h, first, sigma, aligned)
         pair, means = named(chain, first, found)
         lemma, _ = zyz_lemma(R, first, middle, last, pair, sp.S.One, sp.S.Zero)
     given = dict(zip(R, rotation_parametrisation(), strict=True))
@@ -388,10 +374,43 @@ def zyz(
             free if flags == (aligned,) else None,
             f"the first and the last axis of the wrist are parallel; {free} is free.",
         )
-        for flags in ((aligned,), *near)
+        for flags in filter(None, ((aligned,), near))
         for turned in _aligned(real("psi"))
     ]
     return Applied(lemma, pair, means, given, tuple(cases), halves)
+
+
+def _within_reach(
+    reaching: Reaching,
+    R: sp.Matrix,
+    h: sp.Symbol,
+    first: sp.Symbol,
+    sigma: sp.Symbol,
+    aligned: sp.Symbol,
+) -> tuple[Pair, tuple[sp.Symbol, ...], dict[sp.Expr, sp.Expr]]:
+    """The first angle, in reach where the target does not determine it, or only up to rounding.
+
+    Also returns the flags of the latter case, and free choices as the sine and cosine of an angle.
+    """
+    p = reaching.chain.program
+    raw = Pair(
+        p.let(f"s_{first}", choose(aligned, 0, sigma * R[1, 2] / h)),
+        p.let(f"c_{first}", choose(aligned, 1, sigma * R[0, 2] / h)),
+    )
+    back = Pair(-reaching.ahead.s, reaching.ahead.c)
+    start = reaching.middle() + back
+    close, moves, inside, moved = reaching.moved(raw + reaching.ahead, h)
+    off = moved + back
+    start = Pair(p.let("s_start", start.s), p.let("c_start", start.c))
+    off = Pair(p.let("s_off", off.s), p.let("c_off", off.c))
+    brought = sp.And(moves, sp.Not(inside))
+    s_near = p.let("s_kept", choose(brought, off.s, raw.s))
+    c_near = p.let("c_kept", choose(brought, off.c, raw.c))
+    raw = Pair(choose(close, s_near, raw.s), choose(close, c_near, raw.c))
+    t = real("t")
+    unit = {start.s: sp.sin(t), start.c: sp.cos(t), off.s: sp.sin(t), off.c: sp.cos(t)}
+    found = Pair(choose(aligned, start.s, raw.s), choose(aligned, start.c, raw.c))
+    return found, (close, moves), unit
 
 
 def _aligned(psi: sp.Symbol) -> tuple[sp.Matrix, sp.Matrix]:

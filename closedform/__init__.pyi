@@ -24,10 +24,8 @@ from closedform.lemmas.links import turn as turn
 from closedform.lemmas.links import turned as turned
 from closedform.lemmas.links import two_links as two_links
 from closedform.lemmas.links import zyz as zyz
+from closedform.lemmas.pairs import LinksAtHeight as LinksAtHeight
 from closedform.lemmas.pairs import Pair as Pair
-from closedform.lemmas.pairs import direction as direction
-from closedform.lemmas.pairs import sine_cosine_pair as sine_cosine_pair
-from closedform.lemmas.pairs import triangle_pairs as triangle_pairs
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
 from closedform.lemmas.registry import chain_lemma as chain_lemma
 from closedform.lemmas.sine_cosine import linear_pair as linear_pair
@@ -41,8 +39,6 @@ from closedform.lemmas.two_link import elbow_squares as elbow_squares
 from closedform.lemmas.two_link import two_link_arm as two_link_arm
 from closedform.lemmas.two_link import two_link_arm_beside as two_link_arm_beside
 from closedform.lemmas.two_sines import two_sines as two_sines
-from closedform.lemmas.wrists import export_determinant as export_determinant
-from closedform.lemmas.wrists import export_inverse as export_inverse
 from closedform.lemmas.zyz import zyz_angles as zyz_angles
 from closedform.mechanics.arm import from_dh as from_dh
 from closedform.mechanics.arm import from_screws as from_screws
@@ -66,10 +62,6 @@ from closedform.mechanics.frames import twist_of as twist_of
 from closedform.mechanics.loops import degree as degree
 from closedform.mechanics.loops import eliminate as eliminate
 from closedform.mechanics.loops import velocity_matrices as velocity_matrices
-from closedform.mechanics.serial import export_jacobians as export_jacobians
-from closedform.mechanics.serial import export_pose as export_pose
-from closedform.mechanics.serial import given_transform as given_transform
-from closedform.mechanics.serial import product as product
 from closedform.mechanics.volumes import lens as lens
 from closedform.model.claims import Check as Check
 from closedform.model.derivation import Continuum as Continuum

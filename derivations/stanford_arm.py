@@ -5,21 +5,16 @@ from closedform.derivations.papers import STANFORD_TEXTBOOKS
 from sympy import cos, pi, sin, sqrt
 
 from closedform import (
+    Chain,
     Derivation,
     Identity,
-    Program,
-    Solved,
-    branches,
-    denavit_hartenberg,
-    direction,
-    export_determinant,
-    export_inverse,
-    export_jacobians,
-    export_pose,
-    given_transform,
-    linear_pair,
+    from_dh,
+    polar,
     real,
-    sine_cosine_pair,
+    rotation,
+    turn,
+    turned,
+    zyz,
 )
 
 d = Derivation(
@@ -29,8 +24,6 @@ d = Derivation(
     "A vertical base axis (theta1), a horizontal shoulder (theta2), a boom that slides through it "
     "(d3) and a spherical wrist (theta4, theta5, theta6).  The base frame is at the height of the "
     "shoulder, the hand frame at the centre of the wrist.  At zero the boom points up.",
-    task=[f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)],
-    singularities=("shoulder", "boom", "wrist"),
 )
 d2 = d.parameter(
     "d2",
@@ -43,78 +36,87 @@ d2 = d.parameter(
 theta1, theta2, d3 = d.joint("theta1"), d.joint("theta2"), d.joint("d3", "prismatic")
 theta4, theta5, theta6 = (d.joint(f"theta{i}") for i in (4, 5, 6))
 
-rows = [
-    (0, -pi / 2, 0, theta1),
-    (0, pi / 2, d2, theta2),
-    (0, 0, d3, 0),
-    (0, -pi / 2, 0, theta4),
-    (0, pi / 2, 0, theta5),
-    (0, 0, 0, theta6),
-]
-A = [denavit_hartenberg(*row) for row in rows]
-pose = export_pose(d, A, "Standard (distal) frames; the third joint is the only one that slides.")
-X, Z = d3 * sin(theta2), d3 * cos(theta2)
-export_determinant(
+arm = from_dh(
     d,
-    export_jacobians(d, A),
-    {"shoulder": sin(theta2), "boom": d3, "wrist": sin(theta5)},
-    "It vanishes where the boom is vertical (shoulder), where it is drawn in so that the wrist is "
-    "on the axis of the shoulder (boom), and where the axes 4 and 6 coincide (wrist).",
+    [
+        (0, -pi / 2, 0, theta1),
+        (0, pi / 2, d2, theta2),
+        (0, 0, d3, 0),
+        (0, -pi / 2, 0, theta4),
+        (0, pi / 2, 0, theta5),
+        (0, 0, 0, theta6),
+    ],
 )
+forward = arm.export(d, {"shoulder": sin(theta2), "boom": d3, "wrist": sin(theta5)})
+d.step(
+    "Factors",
+    "The wrist does not move its centre, so the determinant is that of the arm times that of the "
+    "wrist.  It vanishes where the boom is vertical (shoulder), where it is drawn in so that the "
+    "wrist is on the axis of the shoulder (boom), and where the axes 4 and 6 coincide (wrist).",
+    {
+        r"\det J_{11}": arm.geometric[:3, :3].det(),
+        r"\det J_{22}": arm.geometric[3:, 3:].det(),
+    },
+    equal=[(arm.geometric[:3, 3:], sp.zeros(3))],
+)
+X, Z = d3 * sin(theta2), d3 * cos(theta2)
 
-side, slide, flip = real("sigma_shoulder"), real("sigma_boom"), real("sigma_wrist")
-p = Program()
-T = given_transform(p)
-px, py, pz = T[:3, 3]
-size = p.let("size", sqrt(px**2 + py**2 + pz**2) + sp.Abs(d2), nonnegative=True)
-shoulder, turn1, ahead, on_axis = sine_cosine_pair(p, theta1, -px, py, d2, side, size)
-reach = p.let("reach", sqrt(ahead**2 + pz**2), nonnegative=True)
-drawn_in = p.vanishes("drawn_in", reach, size, "the boom has no length", free=(theta2,))
-turn2 = direction(-slide * ahead, slide * pz, reach, drawn_in).known_as(p, "2")
-beta, delta = real("beta"), real("delta", positive=True)
-d.solved += [
-    Solved("ik", theta1, shoulder, py * cos(theta1) - px * sin(theta1) - d2),
-    Solved(
-        "ik",
-        theta2,
-        linear_pair(theta2, X, Z),
-        (px * cos(theta1) + py * sin(theta1)) * cos(theta2) - pz * sin(theta2),
-    ),
-]
+ik = Chain(d, forward)
+px, py, pz = ik.p
+ik.size = sqrt(px**2 + py**2 + pz**2) + sp.Abs(d2)
+shoulder = ik.solve(turn, theta1, -px, py, d2, {+1: "right", -1: "left"}, scale=ik.size)
+lift, _ = ik.solve(polar, theta2, d3, pz, -shoulder.ahead, {+1: "out", -1: "back"}, name="boom")
 d.step(
     "Inverse: the shoulder and the boom",
     "The wrist is d2 beside the plane of the boom: X forward and p_z up.  The arm faces the wrist "
     "(right, X >= 0) or turns its back to it (left); the boom is drawn out to the wrist (out, d3 "
     ">= 0) or, turned by pi, through the shoulder (back, d3 <= 0; no real boom can).",
     {
-        "X": side * sqrt(px**2 + py**2 - d2**2),
-        "d_3": slide * sqrt(real("X") ** 2 + pz**2),
-        r"\theta_2": sp.atan2(slide * real("X"), slide * pz),
+        "X": shoulder.side * sqrt(px**2 + py**2 - d2**2),
+        "d_3": real("sigma_boom") * sqrt(real("X") ** 2 + pz**2),
+        r"\theta_2": sp.atan2(real("sigma_boom") * real("X"), real("sigma_boom") * pz),
     },
 )
-export_inverse(
-    d,
-    p,
-    T,
-    {theta1: turn1.angle, theta2: turn2.angle, d3: slide * reach},
-    [(A[0], {theta1: turn1}), (A[1], {theta2: turn2})],
-    A[2:],
-    branches(
-        (side, {+1: "right", -1: "left"}),
-        (slide, {+1: "out", -1: "back"}),
-        (flip, {+1: "noflip", -1: "flip"}),
-    ),
-    flip,
-    turn=1,
-    free=[
-        (theta1, on_axis, {px: 0, py: 0, d2: 0}),
-        (theta2, drawn_in, {px: -delta * sin(beta), py: delta * cos(beta), pz: 0, d2: delta}),
-        (theta2, drawn_in, {px: delta * sin(beta), py: -delta * cos(beta), pz: 0, d2: -delta}),
+R03 = rotation("z", theta1) * rotation("y", theta2)
+R36 = rotation("z", theta4) * rotation("y", theta5) * rotation("z", theta6)
+in_plane = ik.matrix("R1", turned(shoulder).T * ik.R)
+upright = sp.Matrix([[lift.c, 0, -lift.s], [0, 1, 0], [lift.s, 0, lift.c]])
+ik.solve(
+    zyz, ik.matrix("R2", upright * in_plane), theta4, theta5, theta6, {+1: "noflip", -1: "flip"}
+)
+turned_back = {theta4: theta4 + pi, theta5: -theta5, theta6: theta6 + pi}
+d.step(
+    "Inverse: the wrist",
+    "The arm leaves the rotation R_03^T R to the wrist, whose third column gives theta4 and "
+    "theta5.  noflip has sin(theta5) >= 0, flip has theta4 and theta6 turned by pi and theta5 "
+    "negated.  Where sin(theta5) = 0 only theta4 + theta6 or theta4 - theta6 is determined and we "
+    "return theta4 = 0.",
+    {"R_{03}": R03, "R_{36}": R36},
+    equal=[
+        (arm.pose[:3, :3], R03 * R36),
+        (R36.subs(turned_back, simultaneous=True), R36),
     ],
+)
+R06 = r"R_{36} = R_{03}^T R"
+ik.continuum(theta1, {px: 0, py: 0, d2: 0}, R06)
+ik.continuum(theta2, {px: -d2 * sin(theta1), py: d2 * cos(theta1), pz: 0}, R06)
+for middle, relation in (
+    (sp.eye(3), r"\theta_4 + \theta_6"),
+    (rotation("y", pi), r"\theta_4 - \theta_6"),
+):
+    aligned = R03 * middle * rotation("z", real("psi"))
+    ik.continuum(theta4, dict(zip(ik.R, aligned, strict=True)), relation)
+ik.finish(
+    "All 8 configurations of a pose.",
     notes=(
         "right: X >= 0, the arm faces the wrist; left: X <= 0.  out: d3 >= 0; back: d3 <= 0.",
-        "SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the "
-        "boom drawn in, d3 = 0, theta2 = 0 is returned.",
+        "noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.",
+        "INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.",
+    ),
+    singular=(
+        "the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the boom drawn "
+        "in, d3 = 0, theta2 = 0 is returned.",
+        "the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.",
     ),
 )
 
@@ -123,6 +125,6 @@ d.claim(
     r"$d_x = c_1s_2d_3 - s_1d_2$, $d_y = s_1s_2d_3 + c_1d_2$, $d_z = c_2d_3$ (with $d_6 = 0$)",
     Identity(
         sp.Matrix([cos(theta1) * X - sin(theta1) * d2, sin(theta1) * X + cos(theta1) * d2, Z]),
-        pose[:3, 3],
+        arm.position,
     ),
 )

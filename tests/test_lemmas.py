@@ -8,7 +8,6 @@ import sympy as sp
 from closedform.algebra.normal_form import positive_form
 from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.circles import circle_intersection
-from closedform.lemmas.pairs import sine_cosine_pair, triangle_pairs
 from closedform.lemmas.parallelogram import parallelogram
 from closedform.lemmas.sine_cosine import linear_pair, sine_cosine
 from closedform.lemmas.triangle import two_link_triangle, two_link_triangle_by_square
@@ -43,15 +42,6 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
         square = real("r", positive=True) ** 2
         lemma, _ = two_link_triangle_by_square(program, first, second, square, x, y, sigma)
         return lemma, program, {}
-    if name == "sine and cosine by pairs":
-        return sine_cosine_pair(program, x, a, b, c, sigma, a + b)[0], program, {}
-    if name == "triangle by pairs":
-        first, second = (real(n, positive=True) for n in ("l1", "l2"))
-        reach = real("r", positive=True)
-        lemma, *_ = triangle_pairs(
-            program, first, second, reach, x, y, sigma, first + second, free=(x, y)
-        )
-        return lemma, program, {}
     lengths = tuple(real(n, positive=True) for n in ("l", "a", "b"))
     if name == "arm":
         lemma = two_link_arm(program, lengths, (a, b), (x, y), sigma)
@@ -74,8 +64,7 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
         return lemma, program, {}
     R = sp.Matrix(3, 3, lambda i, j: real(f"R{i + 1}{j + 1}"))
     given = dict(zip(R, rotation_parametrisation(), strict=True))
-    turn = -1 if name == "zyz, middle axis reversed" else 1
-    return zyz_angles(program, R, x, y, z, sigma, turn=turn), program, given
+    return zyz_angles(program, R, x, y, z, sigma).lemma, program, given
 
 
 NAMES = [
@@ -87,10 +76,7 @@ NAMES = [
     "arm beside another",
     "two sines",
     "parallelogram",
-    "sine and cosine by pairs",
-    "triangle by pairs",
     "zyz",
-    "zyz, middle axis reversed",
     "circles",
     "circles of one size",
 ]

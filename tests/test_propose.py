@@ -10,6 +10,7 @@ from sympy import pi
 import closedform
 from closedform.lazy import homes
 from closedform.lemmas.chain import Chain
+from closedform.lower.program import lower
 from closedform.mechanics.arm import Serial, from_dh, from_screws
 from closedform.model.derivation import Derivation, Paper
 from closedform.proof.prove import prove
@@ -125,7 +126,19 @@ def test_a_table_may_not_use_a_name_of_the_proposal(structure: str) -> None:
     assert used - own <= TAKEN
 
 
-@pytest.mark.parametrize("robot", ["scara", "ur_arm"])
+def test_the_proposal_for_a_puma_costs_what_the_example_does() -> None:
+    """The textbook's inverse takes 507 operations."""
+    joints, _, rows = KNOWN["turret and two parallel joints, with a spherical wrist"]
+    d, serial = arm(joints, rows)
+    ik = Chain(d, serial.pose)
+    run(propose(serial), ik)
+    ik.finish("Inverse.")
+    operations = lower(d["ik"], d).operations()
+    assert operations["atan2"] == 20
+    assert sum(operations.values()) <= 524  # 14 of them for the tool, which is g past the wrist
+
+
+@pytest.mark.parametrize("robot", ["scara", "ur_arm", "puma560", "stanford_arm"])
 def test_the_inverses_of_the_examples_are_proposed(robot: str) -> None:
     """The axes alone lead to the lemmas of the example, for the same joints."""
     import importlib
@@ -139,6 +152,7 @@ def test_the_inverses_of_the_examples_are_proposed(robot: str) -> None:
         "slide": "slide",
         "remaining angle": "remainder",
         "ZYZ angles": "zyz",
+        "polar coordinates": "polar",
     }
     assert found.lemmas == tuple(names[link.lemma.name] for link in inverse.chain)
 

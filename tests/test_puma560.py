@@ -301,7 +301,7 @@ def test_empty_and_strided_batches(robot, q) -> None:
 
 
 def test_operation_counts() -> None:
-    """The best of the peers take 117 and 143."""
+    """The best of the peers take 117 and 143 for the pose and the Jacobian."""
     d = importlib.import_module("closedform.derivations.puma560").d
 
     def counted(name: str) -> int:
@@ -311,3 +311,9 @@ def test_operation_counts() -> None:
 
     assert counted("fk") <= 76
     assert counted("jacobian") <= 50
+    assert counted("jacobian_space") <= 94
+    assert counted("jacobian_body") <= 87
+    assert counted("determinant") <= 17
+    inverse = lower(d["ik"], d).operations()
+    assert sum(inverse.values()) <= 507
+    assert inverse["atan2"] <= 20 and inverse["sqrt"] <= 11 and inverse["div"] <= 11

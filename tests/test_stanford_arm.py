@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from arms import INVALID, OK, SINGULAR, UNREACHABLE, link, wrapped
 
+from closedform.lower.program import lower
+
 D2 = 0.154
 EPSILONS = (0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3)
 
@@ -132,3 +134,12 @@ def test_statuses(robot, q) -> None:
     assert (robot.ik(np.array(bad)).status == INVALID).all()
     assert (robot.ik(pose, (np.nan,)).status == INVALID).all()
     assert robot.ik(np.empty((0, 4, 4))).q.shape == (0, 8, 6)
+
+
+def test_operation_counts() -> None:
+    d = importlib.import_module("closedform.derivations.stanford_arm").d
+    most = {"fk": 62, "jacobian": 34, "jacobian_space": 57, "jacobian_body": 55, "determinant": 3}
+    for name, limit in most.items():
+        operations = lower(d[name], d).operations()
+        assert sum(n for kind, n in operations.items() if kind != "sincos") <= limit, name
+    assert sum(lower(d["ik"], d).operations().values()) <= 364

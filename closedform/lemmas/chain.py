@@ -22,12 +22,13 @@ import sympy as sp
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.pairs import Pair
-from closedform.model.derivation import Derivation, Inverse, Link, Solved
+from closedform.model.derivation import Continuum, Derivation, Inverse, Link, Solved
 from closedform.model.functions import (
     SINGLE,
     Let,
     Program,
     Statement,
+    Vanishes,
     branches,
     choose,
     real,
@@ -44,14 +45,13 @@ class Chain:
 
     ``forward`` is the 4x4 pose of the tool, or the task coordinates in joint variables; those
     named in ``angles`` count modulo a turn.  Tolerances are relative to the ``size`` of the arm,
-    the sum of its lengths unless another is given.
+    the sum of its lengths unless another is set before the first lemma.
     """
 
     d: Derivation
     forward: Any
     angles: Sequence[str] = ()
     name: str = "ik"
-    size: Any = None
     program: Program = field(default_factory=Program)
     links: list[Link] = field(default_factory=list)
     choices: list[tuple[sp.Symbol, Choice]] = field(default_factory=list)
@@ -60,6 +60,7 @@ class Chain:
     defined: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     lengths: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    continua: list[Continuum] = field(default_factory=list)
     units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = field(default_factory=list)
     halves: dict[sp.Symbol, tuple[Pair, sp.Expr]] = field(default_factory=dict)
     directions: dict[sp.Expr, Pair] = field(default_factory=dict)
@@ -70,7 +71,7 @@ class Chain:
         self.joints = self.d.actuated
         self.program.taken = self.d.program().taken
         self.is_pose = isinstance(self.forward, sp.MatrixBase) and self.forward.shape == (4, 4)
-        self.size = self.let("size", self._sum_of_lengths() if self.size is None else self.size)
+        self._size: sp.Expr | None = None
         if self.is_pose:
             self.T = sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
             self.R, self.p = self.T[:3, :3], self.T[:3, 3]
@@ -86,6 +87,17 @@ class Chain:
         else:
             self.x = tuple(real(f"x_{name}") for name in self.d.task)
             self.targets, self.images = self.x, tuple(self.forward)
+
+    @property
+    def size(self) -> sp.Expr:
+        """Of the arm, named in the program."""
+        if self._size is None:
+            self.size = self._sum_of_lengths()
+        return self._size
+
+    @size.setter
+    def size(self, value: sp.Expr) -> None:
+        self._size = self.let("size", value)
 
     def _sum_of_lengths(self) -> sp.Expr:
         lengths = [p for p in self.d.parameters if p.nonnegative or p.unit != "rad"]
@@ -301,8 +313,29 @@ class Chain:
             for link in self.links
         ]
 
-    def finish(self, summary: str, *, source: str = "", notes: Sequence[str] = ()) -> Inverse:
-        """Export the inverse."""
+    def continuum(self, free: sp.Symbol, locus: Mapping[sp.Symbol, Any], relation: str) -> None:
+        """Where a joint is free: values of the target and the parameters, and what others keep.
+
+        The locus may be written in joints that were solved before.  The relation is LaTeX.
+        """
+        flags = [s.symbol for s in self.program.body if isinstance(s, Vanishes) and free in s.free]
+        if not flags:
+            raise ShapeError(f"{self.d.name}: no lemma of the chain leaves {free} free anywhere")
+        exact = {s: sp.sympify(e, strict=True) for s, e in locus.items()}
+        self.continua.append(Continuum(flags[0], exact, free, relation))
+
+    def finish(
+        self,
+        summary: str,
+        *,
+        source: str = "",
+        notes: Sequence[str] = (),
+        singular: Sequence[str] | None = None,
+    ) -> Inverse:
+        """Export the inverse.
+
+        ``singular`` says where which joint is free, instead of what the lemmas say of it.
+        """
         d = self.d
         self._solve_sums()
         missing = [j for j in self.joints if j not in self.values]
@@ -316,6 +349,7 @@ class Chain:
         if self.name == "ik":
             d.branches = choices.labels
         inputs = {"T": self.T} if self.is_pose else {"x": self.x}
+        said = self.notes if singular is None else [f"SINGULAR: {text}" for text in singular]
         d.function(
             self.name,
             summary,
@@ -325,7 +359,7 @@ class Chain:
             branches=choices,
             result="Solutions",
             source=source,
-            notes=(*dict.fromkeys([*notes, *self.notes]),),
+            notes=(*dict.fromkeys([*notes, *said]),),
         )
         for link in self.links:
             unknown = next(iter(link.lemma.solution))
@@ -336,6 +370,7 @@ class Chain:
             self.joints,
             self.targets,
             self.images,
+            tuple(self.continua),
             angles=tuple(real(f"x_{n}") for n in self.angles),
             chain=tuple(self.links),
             meaning={**self.meaning},

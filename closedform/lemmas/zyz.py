@@ -2,10 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import sympy as sp
 
+from closedform.lemmas.pairs import Pair
 from closedform.model.functions import Program, choose
-from closedform.model.lemma import Lemma, label
+from closedform.model.lemma import Lemma
+
+
+@dataclass(frozen=True)
+class Zyz:
+    """The lemma, and the outer angles: those of pairs, and no or half a turn more by the branch."""
+
+    lemma: Lemma
+    first: Pair
+    last: Pair
+    flip: sp.Expr
+    aligned: sp.Symbol
 
 
 def zyz_angles(
@@ -16,49 +31,67 @@ def zyz_angles(
     last: sp.Symbol,
     sigma: sp.Symbol,
     *,
-    turn: int = 1,
+    free: Sequence[sp.Symbol] = (),
     scale: int = 1,
     suffix: str = "",
-) -> Lemma:
-    """``Rz(first) Ry(turn * middle) Rz(last) = R``: two solutions, by the sign of sin(middle).
+) -> Zyz:
+    """``Rz(first) Ry(middle) Rz(last) = R``: two solutions, by the sign of sin(middle).
+
+    The second solution is the first with a half turn of both outer angles.  Where ``sin(middle) =
+    0`` only ``first + last`` (or ``first - last``) is determined; the convention is ``first = 0``,
+    and ``free`` says which joint that is, if not the first angle itself.  ``scale`` counts the
+    roundings that R has seen.
+    """
+    h = program.let(f"h{suffix}", sp.sqrt(R[0, 2] ** 2 + R[1, 2] ** 2), nonnegative=True)
+    aligned = program.vanishes(
+        f"aligned{suffix}",
+        h,
+        scale,
+        "the first and the last axis coincide",
+        free=free or (first,),
+    )
+    pair = Pair(choose(aligned, 0, R[1, 2] / h), choose(aligned, 1, R[0, 2] / h))
+    pair = pair.known_as(program, suffix or str(first).removeprefix("theta"))
+    flip = program.let(f"flip{suffix}", choose(aligned, 0, (1 - sigma) * sp.pi / 2))
+    lemma, rest = zyz_lemma(R, first, middle, last, pair, sigma, flip)
+    return Zyz(lemma, pair, rest, flip, aligned)
+
+
+def zyz_lemma(
+    R: sp.Matrix,
+    first: sp.Symbol,
+    middle: sp.Symbol,
+    last: sp.Symbol,
+    pair: Pair,
+    side: sp.Expr,
+    flip: sp.Expr,
+) -> tuple[Lemma, Pair]:
+    """The lemma, once the ``pair`` of the first angle is known, and the pair of the last.
 
     The third column of R gives the first two angles.  The last is *not* read from the third row, as
     the textbooks do: near ``middle = 0`` that row knows nothing of it.  It follows from the
     rotation that the first angle leaves, ``Rz(first)^T R = Ry(middle) Rz(last)``, whose second row
     is ``(sin(last), cos(last), 0)``, and so keeps the product exact whatever error ``first`` has.
-    The second solution is the first with a half turn of both outer angles.
-
-    Where ``sin(middle) = 0`` only ``first + last`` (or ``first - last``) is determined; the
-    convention is ``first = 0``.  ``scale`` counts the roundings that R has seen.
     """
-    h = program.let(f"h{suffix}", sp.sqrt(R[0, 2] ** 2 + R[1, 2] ** 2), nonnegative=True)
-    aligned = program.vanishes(
-        f"aligned{suffix}", h, scale, "the first and the last axis coincide", free=(first,)
-    )
-    tag = label(first)
-    c_first = program.let(f"c{tag}", choose(aligned, 1, turn * R[0, 2] / h))
-    s_first = program.let(f"s{tag}", choose(aligned, 0, turn * R[1, 2] / h))
-    flip = program.let(f"flip{suffix}", choose(aligned, 0, (1 - sigma) * sp.pi / 2))
-    s_middle = turn * (c_first * R[0, 2] + s_first * R[1, 2])
-    s_last = c_first * R[1, 0] - s_first * R[0, 0]
-    c_last = c_first * R[1, 1] - s_first * R[0, 1]
-    axis = [turn * R[i, 2] for i in (0, 1)]
-    return Lemma(
+    s, c = pair.s, pair.c
+    rest = Pair(c * R[1, 0] - s * R[0, 0], c * R[1, 1] - s * R[0, 1])
+    cf, sf, cm, sm, cl, sl = (f(x) for x in (first, middle, last) for f in (sp.cos, sp.sin))
+    left = sp.Matrix([[cf, sf, 0], [-sf, cf, 0], [0, 0, 1]]) * R
+    right = sp.Matrix([[cm * cl, -cm * sl, sm], [sl, cl, 0], [-sm * cl, sm * sl, cm]])
+    lemma = Lemma(
         "ZYZ angles",
-        r"c_1 = \sigma R_{13}/h,\ s_1 = \sigma R_{23}/h,\ h = \sqrt{R_{13}^2 + R_{23}^2};\quad "
+        r"(c_1, s_1) = \sigma (R_{13}, R_{23})/h,\ h = \sqrt{R_{13}^2 + R_{23}^2};\quad "
         r"\theta_2 = \operatorname{atan2}(c_1 R_{13} + s_1 R_{23}, R_{33});\quad "
         r"\theta_3 = \operatorname{atan2}(c_1 R_{21} - s_1 R_{11}, c_1 R_{22} - s_1 R_{12})",
-        (
-            sp.cos(first) * sp.sin(middle) - axis[0],
-            sp.sin(first) * sp.sin(middle) - axis[1],
-            sp.cos(middle) - R[2, 2],
-            sp.sin(last) - (sp.cos(first) * R[1, 0] - sp.sin(first) * R[0, 0]),
-            sp.cos(last) - (sp.cos(first) * R[1, 1] - sp.sin(first) * R[0, 1]),
-        ),
+        tuple(left - right),
         {
-            first: sp.atan2(s_first, c_first) + flip,
-            middle: sigma * sp.atan2(s_middle, R[2, 2]),
-            last: sp.atan2(s_last, c_last) + flip,
+            first: pair.angle + flip,
+            middle: side * sp.atan2(c * R[0, 2] + s * R[1, 2], R[2, 2]),
+            last: rest.angle + flip,
         },
         2,
     )
+    return lemma, rest
+
+
+__all__ = ["Zyz", "zyz_angles", "zyz_lemma"]

@@ -6,7 +6,7 @@ at home.  What every serial arm has, one call derives, proves and exports.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -104,11 +104,13 @@ class Serial:
             sp.atan2(home[1, 0], home[0, 0]),
         )
 
-    def export(self, d: Derivation) -> Any:
+    def export(self, d: Derivation, singular: Mapping[str, sp.Expr] | None = None) -> Any:
         """Record pose, Jacobians and determinant as proved steps, and export them as functions.
 
-        Returns the forward map that an inverse must solve: the task coordinates in the joints
-        where the arm has as many (see :meth:`coordinates`), else the pose.
+        ``singular`` names the factors of the determinant that hold a joint, in the form in which
+        they shall be printed; by default it is factored.  Returns the forward map that an inverse
+        must solve: the task coordinates in the joints where the arm has as many (see
+        :meth:`coordinates`), else the pose.
         """
         q, task, links = self.joints, self.coordinates(), self.links
         self.require_regular(d.name)
@@ -146,9 +148,9 @@ class Serial:
             ],
         )
         if task is None:
-            self._export_pose_task(d, pose, geometric)
+            self._export_pose_task(d, pose, geometric, singular)
         else:
-            self._export_coordinates(d, task, pose, geometric)
+            self._export_coordinates(d, task, pose, geometric, singular)
         for frame, name, found in (
             ("the base frame", "jacobian_space", space),
             ("its own frame", "jacobian_body", body),
@@ -158,7 +160,9 @@ class Serial:
             )
         return self.pose if task is None else task.values
 
-    def _export_pose_task(self, d: Derivation, pose: Named, geometric: Named) -> None:
+    def _export_pose_task(
+        self, d: Derivation, pose: Named, geometric: Named, singular: Mapping[str, sp.Expr] | None
+    ) -> None:
         q = self.joints
         if not d.task:
             d.task = [f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)]
@@ -173,10 +177,15 @@ class Serial:
             "The geometric Jacobian: rows (v; omega), v of the origin of the tool.",
         )
         if len(q) == 6:
-            self._export_determinant(d, self.determinant(), ())
+            self._export_determinant(d, self.determinant(), (), singular)
 
     def _export_coordinates(
-        self, d: Derivation, task: Coordinates, pose: Named, geometric: Named
+        self,
+        d: Derivation,
+        task: Coordinates,
+        pose: Named,
+        geometric: Named,
+        singular: Mapping[str, sp.Expr] | None,
     ) -> None:
         q = self.joints
         if not d.task:
@@ -209,13 +218,23 @@ class Serial:
             (task.values.jacobian(q), task.J),
             (task.J.det(method="berkowitz"), det),
         ]
-        self._export_determinant(d, det, check)
+        self._export_determinant(d, det, check, singular)
 
     def _export_determinant(
-        self, d: Derivation, det: sp.Expr, equal: Sequence[tuple[Any, Any]]
+        self,
+        d: Derivation,
+        det: sp.Expr,
+        equal: Sequence[tuple[Any, Any]],
+        singular: Mapping[str, sp.Expr] | None,
     ) -> None:
         q = self.joints
         factors = joint_factors(det, q)
+        if singular is not None:
+            factors, d.singularities = list(singular.values()), tuple(singular)
+            rest = _quotient(det, sp.prod(factors), q)
+            if missing := [f for f in joint_factors(rest, q) if f.has(*q) and f not in factors]:
+                raise ValueError(f"{d.name}: the determinant has the factor {missing[0]} too")
+            equal, det = [*equal, (det, rest * sp.prod(factors))], rest * sp.prod(factors)
         d.step(
             "Determinant and singular set",
             "The arm is singular exactly where a factor that holds a joint vanishes (for links "
@@ -259,6 +278,16 @@ class Coordinates:
 def joint_factors(det: sp.Expr, joints: Sequence[sp.Symbol]) -> list[sp.Expr]:
     """The factors of a determinant that hold a joint, each once."""
     return [f.as_base_exp()[0] for f in sp.Mul.make_args(det) if f.has(*joints)] or [det]
+
+
+def _quotient(product: sp.Expr, divisor: sp.Expr, joints: Sequence[sp.Symbol]) -> sp.Expr:
+    """The quotient of expressions if it holds no angle, from their values at one posture."""
+    at: dict[sp.Expr, sp.Expr] = {}
+    for k, q in enumerate(joints):
+        t = sp.Rational(1, k + 2)
+        at |= {sp.sin(q): 2 * t / (1 + t**2), sp.cos(q): (1 - t**2) / (1 + t**2)}
+    values = (sp.expand_trig(e).xreplace(at) for e in (product, divisor))
+    return sp.factor(sp.cancel(next(values) / next(values)))
 
 
 def from_dh(

@@ -149,19 +149,12 @@ class Stage:
 
     ``equations`` are indices of equations of the system, which contain only the unknowns of this
     and earlier stages.  ``given`` writes the inputs in terms of earlier unknowns, so that every
-    equation of an earlier stage whose unknowns occur there holds identically.  ``mixed``, an
-    orthogonal matrix in the earlier unknowns, multiplies the equations if that makes them simpler.
-
-    If the inverse is solved in the same stages, its soundness can be proved stage by stage.  Then
-    ``carried`` lists names of the program that a stage takes from earlier ones, with their values
-    in the earlier unknowns.  The proof of an earlier stage includes these values.
+    equation of an earlier stage whose unknowns occur there holds identically.
     """
 
     unknowns: tuple[sp.Symbol, ...]
     equations: tuple[int, ...]
     given: Mapping[sp.Symbol, sp.Expr]
-    mixed: sp.Matrix | None = None
-    carried: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

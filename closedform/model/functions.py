@@ -283,15 +283,13 @@ class Function:
         signs: Mapping[sp.Symbol, int],
         flags: Mapping[sp.Symbol, bool] | None = None,
         locus: Mapping[sp.Symbol, sp.Expr] | None = None,
-        carried: Mapping[sp.Symbol, sp.Expr] | None = None,
     ) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]:
         """Expressions without the names of the body, and the bounds that they depend on.
 
-        Flags that are not in ``flags`` are false.  ``locus`` replaces inputs and parameters.  A
-        name in ``carried`` has the value given there instead of its own.
+        Flags that are not in ``flags`` are false.  ``locus`` replaces inputs and parameters.
         """
-        given = {**(locus or {}), **(carried or {})}
-        known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()} | given
+        known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
+        known |= locus or {}
         # what only another case needs is not even written out
         states = {
             s.symbol: sp.sympify((flags or {}).get(s.symbol, False), strict=True)

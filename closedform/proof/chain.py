@@ -26,7 +26,7 @@ import sympy as sp
 
 from closedform.algebra.balls import Evaluator
 from closedform.algebra.solutions import InfinitelyManyError, count_solutions
-from closedform.model.derivation import Derivation, Inverse, Link
+from closedform.model.derivation import Continuum, Derivation, Inverse, Link
 from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
 from closedform.proof.require import ProofError, require
 
@@ -48,6 +48,8 @@ def prove_chain(derivation: Derivation, inverse: Inverse) -> tuple[int, tuple[Ex
     for link in inverse.chain:
         _follows(link, graph, where)
         _not_degenerate(link, graph, where)
+    for continuum in inverse.continua:
+        _flag_holds(continuum, function, graph, where)
     _free_choices_are_units(inverse, where)
     _determines_target(inverse, graph, where)
     return count, tuple(assumptions), cases
@@ -234,6 +236,16 @@ def _not_degenerate(link: Link, graph: Graph, where: str) -> None:
                 f"applied to an equation that is degenerate at every posture: "
                 f"{statement.meaning}; take an equation whose coefficients do not all vanish"
             )
+
+
+def _flag_holds(continuum: Continuum, function: Function, graph: Graph, where: str) -> None:
+    """On the locus of a continuum; what then is returned is proved of the lemma's own case."""
+    (value,) = (
+        s.value for s in function.body if isinstance(s, Vanishes) and s.symbol == continuum.flag
+    )
+    place = f"{where}: on the continuum of {continuum.free} the flag {continuum.flag} is not true"
+    locus = {s: graph.in_sums(e) for s, e in continuum.locus.items()}
+    require(substitute(graph.named(value) ** 2, locus), (), place)
 
 
 def _without_signs(e: Expr) -> Expr:

@@ -14,11 +14,11 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.algebra.normal_form import Undecided, normal
+from closedform.algebra.normal_form import Undecided
 from closedform.algebra.shapes import ShapeError, require_shape
 from closedform.algebra.solutions import InfinitelyManyError, count_solutions
 from closedform.model.claims import VERDICTS
-from closedform.model.derivation import Continuum, Derivation, Inverse, Stage
+from closedform.model.derivation import Continuum, Derivation, Inverse
 from closedform.model.functions import Function, real, substitute
 from closedform.proof.chain import prove_chain
 from closedform.proof.reduction import prove_reduction
@@ -272,8 +272,6 @@ def _prove_case(function: Function, inverse: Inverse, case: _Case) -> tuple[sp.E
     """Prove that the outputs satisfy the equations; return the assumptions."""
     outputs = [e for a in function.outputs for e in a.entries]
     solved = dict(zip(inverse.unknowns, outputs, strict=True))
-    if any(stage.carried for stage in inverse.stages):
-        return _prove_case_in_stages(function, inverse, case, solved)
     values = function.at(case.signs, case.flags, case.locus)
     solution = dict(zip(solved, values, strict=True))
     difference = sp.Matrix(
@@ -283,42 +281,6 @@ def _prove_case(function: Function, inverse: Inverse, case: _Case) -> tuple[sp.E
     return require(difference, bounds, f"{case.where}: {MISSED}", _names_of(inverse)).assumptions
 
 
-def _prove_case_in_stages(
-    function: Function, inverse: Inverse, case: _Case, outputs: Mapping[sp.Symbol, sp.Expr]
-) -> tuple[sp.Expr, ...]:
-    """The same stage by stage; earlier unknowns are symbols, and carried values are proved."""
-    assumptions: tuple[sp.Expr, ...] = ()
-    carried: dict[sp.Symbol, sp.Expr] = {}
-    due = {name: e for stage in inverse.stages for name, e in stage.carried.items()}
-    for k, stage in enumerate(inverse.stages):
-        where = f"{case.where}, stage {k + 1}"
-        carried |= stage.carried
-        if late := [name for name in stage.carried if name in due]:
-            raise ProofError(
-                f"{where}: {late[0]} is carried into it, but holds unknowns that no earlier stage "
-                f"has solved; carry it into a later one"
-            )
-        given = {x: substitute(e, case.locus) for x, e in stage.given.items()} | dict(case.locus)
-        unsolved = {u for later in inverse.stages[k + 1 :] for u in later.unknowns}
-        ready = {n: e for n, e in due.items() if not e.free_symbols & unsolved}
-        due = {n: e for n, e in due.items() if n not in ready}
-        values, bounds = function.explicit(
-            [*(outputs[u] for u in stage.unknowns), *ready],
-            case.signs,
-            case.flags,
-            case.locus,
-            carried,
-        )
-        solution = dict(zip(stage.unknowns, values, strict=False))
-        handed = zip(values[len(stage.unknowns) :], ready.values(), strict=True)
-        vanishing = [substitute(e, solution) for e in _equations_of(inverse, stage)]
-        vanishing += [value - substitute(e, solution) for value, e in handed]
-        difference = sp.Matrix([substitute(e, given) for e in vanishing])
-        guards = tuple(dict.fromkeys(substitute(b, given) for b in bounds))
-        assumptions += require(difference, guards, f"{where}: {MISSED}").assumptions
-    return assumptions
-
-
 def _names_of(inverse: Inverse) -> list[str]:
     """The name of each equation of an inverse, to tell a user which one fails."""
     names = []
@@ -326,12 +288,6 @@ def _names_of(inverse: Inverse) -> list[str]:
         name = str(x) if isinstance(x, sp.Symbol) else f"equation {k}"
         names += [f"cos({name})", f"sin({name})"] if x in inverse.angles else [name]
     return names
-
-
-def _equations_of(inverse: Inverse, stage: Stage) -> list[sp.Expr]:
-    """The equations of a stage, multiplied by its matrix."""
-    equations = sp.Matrix([inverse.equations[i] for i in stage.equations])
-    return list(equations if stage.mixed is None else stage.mixed * equations)
 
 
 def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, ...]:
@@ -391,15 +347,7 @@ def _count_in_stages(inverse: Inverse) -> int:
         raise ProofError(f"{where} do not take every equation and every unknown exactly once")
     count, before = 1, 0
     for k, stage in enumerate(inverse.stages):
-        if stage.mixed is not None:
-            if stage.mixed.has(*(u for s in inverse.stages[k:] for u in s.unknowns)):
-                raise ProofError(f"{where}: a matrix holds an unknown of its own or a later stage")
-            square = stage.mixed * stage.mixed.T
-            fault = f"{where}: the rows of the matrix of stage {k + 1} are not orthonormal"
-            require(square - sp.eye(len(stage.equations)), (), fault)
-        equations = [substitute(e, stage.given) for e in _equations_of(inverse, stage)]
-        if stage.mixed is not None:
-            equations = [normal(e) for e in equations]
+        equations = [substitute(inverse.equations[i], stage.given) for i in stage.equations]
         depends = [s for s in inverse.stages[:k] if any(e.has(*s.unknowns) for e in equations)]
         for i in (i for s in depends for i in s.equations):
             earlier = substitute(inverse.equations[i], stage.given)

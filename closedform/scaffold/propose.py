@@ -22,35 +22,10 @@ import sympy as sp
 from closedform.mechanics.arm import Group, Serial
 from closedform.mechanics.axes import met
 from closedform.mechanics.frames import rotation
+from closedform.scaffold.proposal import NoChainError, Proposal
 from closedform.scaffold.source import source
 
 Z = sp.Matrix([0, 0, 1])
-
-
-class NoChainError(ValueError):
-    """No chain of lemmas is known for an arm.
-
-    ``found`` is a clause that names the property of this arm that prevents it.  ``needed`` is a
-    sentence on what the known chains need and what you can do.
-    """
-
-    def __init__(self, found: str, needed: str):
-        super().__init__(f"no chain of lemmas is known for this arm, because {found}.  {needed}")
-        self.found, self.needed = found, needed
-
-
-@dataclass(frozen=True)
-class Proposal:
-    """The structure that was recognised, and the lines that solve the arm; ``ik`` is a Chain."""
-
-    structure: str
-    lines: tuple[str, ...]
-    lemmas: tuple[str, ...]
-    branches: int
-
-    @property
-    def source(self) -> str:
-        return "\n".join(self.lines) + "\n"
 
 
 def propose(arm: Serial) -> Proposal:
@@ -348,10 +323,11 @@ class _Maker:
         if links:
             turns = [row.turn for row in second.rows]
             self._two_links(turns, links, "q[0]", "q[1]")
-            v = links[1]
-            both = f"({self.pairs[0]} + {self.pairs[1]})"
-            pair2 = self._less(both, v)
-            return "turret and two parallel joints", [pair1, pair2]
+            bend = self._less(self.pairs[1], links[1])
+            if bend != self.pairs[1]:
+                self.add(f"turn2 = {bend}.known_as(ik.program, '_turn2')")
+                bend = "turn2"
+            return "turret and two parallel joints", [pair1, f"({self.pairs[0]} + {bend})"]
         first = sp.Matrix(second.rows[0].shift[:2])
         out = first + along[:2, 0]
         direction = second.end * Z
@@ -391,12 +367,22 @@ class _Maker:
         a, b = source(h[0] * p[1] - h[1] * p[0]), source(h[0] * p[0] + h[1] * p[1])
         c = sp.simplify(beside + h[0] * row.shift[0] + h[1] * row.shift[1])
         joint = self.angle(row.turn)
-        inside = f"(turned(turn1).T * p - {source(sp.Matrix(row.shift))})"
-        point, toward = _times(base.end.T, inside), ""
+        # the point in the turned frame: c along the normal, ahead across it, and its height
+        across = Z.cross(h)
+        level = base.end.T * (c * h + p[2] * Z - sp.Matrix(row.shift))
+        along = base.end.T * across
+        seen = level + sp.Symbol("turn1.ahead") * along
+        toward = ""
         if links and (c != 0 or wrist):
-            reached = ", ".join([point.replace("turn1", "pair"), *map(source, map(_length, links))])
-            kind = "LinksAndWrist" if wrist else "Links"
-            self.add(f"links = {kind}(lambda pair: {reached}{wrist})")
+            lengths = ", ".join(source(_length(link)) for link in links)
+            if wrist or sp.simplify(level[:2, 0].dot(along[:2, 0])) != 0:
+                inside = f"(turned(pair).T * p - {source(sp.Matrix(row.shift))})"
+                point = _times(base.end.T, inside)
+                kind = "LinksAndWrist" if wrist else "Links"
+                self.add(f"links = {kind}(lambda pair: {point}, {lengths}{wrist})")
+            else:
+                height = sp.simplify(along[0] * level[1] - along[1] * level[0])
+                self.add(f"links = LinksAtHeight({lengths}, {source(height)})")
             toward = ", toward=links"
         self.solve(
             "turn",
@@ -404,7 +390,7 @@ class _Maker:
             "turn1",
             2,
         )
-        self.add(f"q = ik.vector('q', {point})")
+        self.add(f"q = ik.vector('q', {source(seen.applyfunc(sp.expand))})")
         return "turn1"
 
     # Arms of six joints
@@ -583,3 +569,6 @@ def _only(found: set[Any]) -> Any:
 def _symbol(arm: Serial, rows: Sequence[Any], i: int) -> Any:
     """The joint that slides in a row."""
     return _only(rows[i].shift[2].free_symbols & set(arm.joints))
+
+
+__all__ = ["NoChainError", "Proposal", "propose"]

@@ -41,10 +41,14 @@ DIGITS = re.compile(r"[-+0-9./eE]+")
 IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "atan2")
 CHAIN = ("Reaching", "turned", *chain_lemmas())
 AUTHOR = (
-    "Chain", "Derivation", "Links", "LinksAndWrist", "Pair", "Paper", "from_dh", "from_screws",
+    "Chain", "Derivation", "Links", "LinksAndWrist", "LinksAtHeight", "Pair", "Paper", "from_dh",
+    "from_screws",
 )  # fmt: skip
 SCRIPT = {"arm", "d", "forward", "links", "pair"}
-LINES = {"M", "ahead", "ik", "p", "q", "reaching", "turn1", "wx", "wy", "x", "y", "yaw", "z", "rho"}
+LINES = {
+    "M", "ahead", "ik", "p", "q", "reaching", "turn1", "turn2", "wx", "wy", "x", "y", "yaw", "z",
+    "rho",
+}  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""
 

@@ -13,7 +13,6 @@ from sympy import atan2, cos, pi, sin, sqrt
 from closedform import (
     Derivation,
     denavit_hartenberg,
-    product,
     real,
     rotation,
     rotation_parametrisation,
@@ -38,7 +37,7 @@ class Puma(NamedTuple):
     det: sp.Expr
 
     def pose(self) -> sp.Matrix:
-        return product(self.links)
+        return sp.prod(self.links)
 
     def at(self, d: Derivation, *angles: sp.Expr) -> dict[sp.Symbol, sp.Expr]:
         """A posture of the arm with the example dimensions."""
@@ -60,7 +59,7 @@ def craig_chain(puma: Puma) -> sp.Matrix:
     a2, a3, d3, d4 = puma.lengths
     rows = [(0, 0, 0), (0, -pi / 2, 0), (a2, 0, d3), (a3, -pi / 2, d4), (0, pi / 2, 0)]
     rows.append((0, -pi / 2, 0))
-    return product(
+    return sp.prod(
         [
             denavit_hartenberg(a, alpha, offset, theta, modified=True)
             for (a, alpha, offset), theta in zip(rows, puma.q, strict=True)

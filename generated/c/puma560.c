@@ -4,120 +4,16 @@
  * Source: J. J. Craig, P. I. Corke, M. W. Spong, R. P. Paul, C. S. G. Lee, M. Ziegler: The Puma
  *     560 in the textbooks.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 24 add, 52 multiply, 6 sincos
  *   pose: 24 add, 52 multiply, 6 sincos
+ *   fk: 24 add, 52 multiply, 6 sincos
  *   jacobian: 14 add, 36 multiply, 5 sincos
+ *   determinant: 5 add, 12 multiply, 3 sincos
+ *   singularities: 5 add, 9 multiply, 3 sincos
  *   jacobian_space: 29 add, 65 multiply, 5 sincos
  *   jacobian_body: 26 add, 61 multiply, 5 sincos
- *   determinant: 9 add, 22 multiply, 3 sincos
- *   singularities: 5 add, 9 multiply, 3 sincos
- *   ik: 142 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
+ *   ik: 141 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
  */
 #include "puma560.h"
-
-CF_INLINE void puma560_fk_kernel(const puma560_params *params, const real_t *sines,
-    const real_t *cosines, real_t T[16])
-{
-    const real_t a2 = params->a2;
-    const real_t a3 = params->a3;
-    const real_t d3 = params->d3;
-    const real_t d4 = params->d4;
-    const real_t s6 = sines[0];
-    const real_t c6 = cosines[0];
-    const real_t s5 = sines[1];
-    const real_t c5 = cosines[1];
-    const real_t s4 = sines[2];
-    const real_t c4 = cosines[2];
-    const real_t s2 = sines[3];
-    const real_t c2 = cosines[3];
-    const real_t s3 = sines[4];
-    const real_t c3 = cosines[4];
-    const real_t s1 = sines[5];
-    const real_t c1 = cosines[5];
-    const real_t T3_11 = c6 * c5;
-    const real_t T2_11 = T3_11 * c4 - s6 * s4;
-    const real_t c23 = c2 * c3 - s2 * s3;
-    const real_t T3_21 = c6 * s5;
-    const real_t s23 = s2 * c3 + c2 * s3;
-    const real_t T1_11 = T2_11 * c23 - T3_21 * s23;
-    const real_t T2_21 = T3_11 * s4 + s6 * c4;
-    const real_t t1 = s6 * c5;
-    const real_t t2 = t1 * s4 - c6 * c4;
-    const real_t t3 = t1 * c4 + c6 * s4;
-    const real_t t4 = s6 * s5;
-    const real_t t5 = t3 * c23 - t4 * s23;
-    const real_t t6 = s5 * s4;
-    const real_t t7 = s5 * c4;
-    const real_t t8 = t7 * c23 + c5 * s23;
-    const real_t T1_14 = a2 * c2 + a3 * c23 - d4 * s23;
-    T[0] = T1_11 * c1 - T2_21 * s1;
-    T[1] = t2 * s1 - t5 * c1;
-    T[2] = t6 * s1 - t8 * c1;
-    T[3] = T1_14 * c1 + d3 * s1;
-    T[4] = T1_11 * s1 + T2_21 * c1;
-    T[5] = -(t5 * s1 + t2 * c1);
-    T[6] = -(t8 * s1 + t6 * c1);
-    T[7] = T1_14 * s1 - d3 * c1;
-    T[8] = T2_11 * s23 + T3_21 * c23;
-    T[9] = -(t3 * s23 + t4 * c23);
-    T[10] = c5 * c23 - t7 * s23;
-    T[11] = a2 * s2 + a3 * s23 + d4 * c23;
-    T[12] = CLOSEDFORM_C(0.0);
-    T[13] = CLOSEDFORM_C(0.0);
-    T[14] = CLOSEDFORM_C(0.0);
-    T[15] = CLOSEDFORM_C(1.0);
-}
-
-CLOSEDFORM_DISPATCHED
-void puma560_fk(const puma560_params *params, const real_t q[6],
-    real_t T[16])
-{
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0] };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    puma560_fk_kernel(params, sines, cosines, T);
-}
-
-CLOSEDFORM_DISPATCHED
-void puma560_fk_batch(size_t n, const puma560_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *T, size_t T_stride)
-{
-    const puma560_params local = *params;
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + 5 * q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + 4 * q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + 3 * q_stride + start, sines[2], cosines[2]);
-        cf_sincos_block(length, q + q_stride + start, sines[3], cosines[3]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
-        cf_sincos_block(length, q + start, sines[5], cosines[5]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
-            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
-            real_t T_i[16];
-            puma560_fk_kernel(&local, sines_i, cosines_i, T_i);
-            T[start + i] = T_i[0];
-            T[T_stride + start + i] = T_i[1];
-            T[2 * T_stride + start + i] = T_i[2];
-            T[3 * T_stride + start + i] = T_i[3];
-            T[4 * T_stride + start + i] = T_i[4];
-            T[5 * T_stride + start + i] = T_i[5];
-            T[6 * T_stride + start + i] = T_i[6];
-            T[7 * T_stride + start + i] = T_i[7];
-            T[8 * T_stride + start + i] = T_i[8];
-            T[9 * T_stride + start + i] = T_i[9];
-            T[10 * T_stride + start + i] = T_i[10];
-            T[11 * T_stride + start + i] = T_i[11];
-            T[12 * T_stride + start + i] = T_i[12];
-            T[13 * T_stride + start + i] = T_i[13];
-            T[14 * T_stride + start + i] = T_i[14];
-            T[15 * T_stride + start + i] = T_i[15];
-        }
-    }
-}
 
 CF_INLINE void puma560_pose_kernel(const puma560_params *params, const real_t *sines,
     const real_t *cosines, real_t T[16])
@@ -203,6 +99,110 @@ void puma560_pose_batch(size_t n, const puma560_params *params,
             const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
             real_t T_i[16];
             puma560_pose_kernel(&local, sines_i, cosines_i, T_i);
+            T[start + i] = T_i[0];
+            T[T_stride + start + i] = T_i[1];
+            T[2 * T_stride + start + i] = T_i[2];
+            T[3 * T_stride + start + i] = T_i[3];
+            T[4 * T_stride + start + i] = T_i[4];
+            T[5 * T_stride + start + i] = T_i[5];
+            T[6 * T_stride + start + i] = T_i[6];
+            T[7 * T_stride + start + i] = T_i[7];
+            T[8 * T_stride + start + i] = T_i[8];
+            T[9 * T_stride + start + i] = T_i[9];
+            T[10 * T_stride + start + i] = T_i[10];
+            T[11 * T_stride + start + i] = T_i[11];
+            T[12 * T_stride + start + i] = T_i[12];
+            T[13 * T_stride + start + i] = T_i[13];
+            T[14 * T_stride + start + i] = T_i[14];
+            T[15 * T_stride + start + i] = T_i[15];
+        }
+    }
+}
+
+CF_INLINE void puma560_fk_kernel(const puma560_params *params, const real_t *sines,
+    const real_t *cosines, real_t T[16])
+{
+    const real_t a2 = params->a2;
+    const real_t a3 = params->a3;
+    const real_t d3 = params->d3;
+    const real_t d4 = params->d4;
+    const real_t s6 = sines[0];
+    const real_t c6 = cosines[0];
+    const real_t s5 = sines[1];
+    const real_t c5 = cosines[1];
+    const real_t s4 = sines[2];
+    const real_t c4 = cosines[2];
+    const real_t s2 = sines[3];
+    const real_t c2 = cosines[3];
+    const real_t s3 = sines[4];
+    const real_t c3 = cosines[4];
+    const real_t s1 = sines[5];
+    const real_t c1 = cosines[5];
+    const real_t T3_11 = c6 * c5;
+    const real_t T2_11 = T3_11 * c4 - s6 * s4;
+    const real_t c23 = c2 * c3 - s2 * s3;
+    const real_t T3_21 = c6 * s5;
+    const real_t s23 = s2 * c3 + c2 * s3;
+    const real_t T1_11 = T2_11 * c23 - T3_21 * s23;
+    const real_t T2_21 = T3_11 * s4 + s6 * c4;
+    const real_t t1 = s6 * c5;
+    const real_t t2 = t1 * s4 - c6 * c4;
+    const real_t t3 = t1 * c4 + c6 * s4;
+    const real_t t4 = s6 * s5;
+    const real_t t5 = t3 * c23 - t4 * s23;
+    const real_t t6 = s5 * s4;
+    const real_t t7 = s5 * c4;
+    const real_t t8 = t7 * c23 + c5 * s23;
+    const real_t T1_14 = a2 * c2 + a3 * c23 - d4 * s23;
+    T[0] = T1_11 * c1 - T2_21 * s1;
+    T[1] = t2 * s1 - t5 * c1;
+    T[2] = t6 * s1 - t8 * c1;
+    T[3] = T1_14 * c1 + d3 * s1;
+    T[4] = T1_11 * s1 + T2_21 * c1;
+    T[5] = -(t5 * s1 + t2 * c1);
+    T[6] = -(t8 * s1 + t6 * c1);
+    T[7] = T1_14 * s1 - d3 * c1;
+    T[8] = T2_11 * s23 + T3_21 * c23;
+    T[9] = -(t3 * s23 + t4 * c23);
+    T[10] = c5 * c23 - t7 * s23;
+    T[11] = a2 * s2 + a3 * s23 + d4 * c23;
+    T[12] = CLOSEDFORM_C(0.0);
+    T[13] = CLOSEDFORM_C(0.0);
+    T[14] = CLOSEDFORM_C(0.0);
+    T[15] = CLOSEDFORM_C(1.0);
+}
+
+CLOSEDFORM_DISPATCHED
+void puma560_fk(const puma560_params *params, const real_t q[6],
+    real_t T[16])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[2], q[0] };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    puma560_fk_kernel(params, sines, cosines, T);
+}
+
+CLOSEDFORM_DISPATCHED
+void puma560_fk_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
+{
+    const puma560_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + 5 * q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 4 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 3 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + q_stride + start, sines[3], cosines[3]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[4], cosines[4]);
+        cf_sincos_block(length, q + start, sines[5], cosines[5]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            real_t T_i[16];
+            puma560_fk_kernel(&local, sines_i, cosines_i, T_i);
             T[start + i] = T_i[0];
             T[T_stride + start + i] = T_i[1];
             T[2 * T_stride + start + i] = T_i[2];
@@ -354,6 +354,141 @@ void puma560_jacobian_batch(size_t n, const puma560_params *params,
             J[33 * J_stride + start + i] = J_i[33];
             J[34 * J_stride + start + i] = J_i[34];
             J[35 * J_stride + start + i] = J_i[35];
+        }
+    }
+}
+
+CF_INLINE void puma560_determinant_kernel(const puma560_params *params, const real_t *sines,
+    const real_t *cosines, real_t det[1])
+{
+    const real_t a2 = params->a2;
+    const real_t a3 = params->a3;
+    const real_t d4 = params->d4;
+    const real_t s3 = sines[0];
+    const real_t c3 = cosines[0];
+    const real_t s2 = sines[1];
+    const real_t c2 = cosines[1];
+    const real_t s5 = sines[2];
+    const real_t t1 = a2 * c2 + a3 * (c3 * c2 - s3 * s2) - d4 * (c3 * s2 + s3 * c2);
+    det[0] = a2 * (a3 * s3 + d4 * c3) * t1 * s5;
+}
+
+CLOSEDFORM_DISPATCHED
+void puma560_determinant(const puma560_params *params, const real_t q[6],
+    real_t det[1])
+{
+    static const signed char det_degrees[1] = { 3 };
+    puma560_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->a2), cf_abs(params->a3)), cf_abs(params->d4));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.a2 = CF_LIBM(ldexp)(params->a2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d4 = CF_LIBM(ldexp)(params->d4, -exponent);
+        params = &params_scaled;
+    }
+    real_t sines[4], cosines[4];
+    const real_t lanes[4] = { q[2], q[1], q[4] };
+    cf_sincos_lanes(4, lanes, sines, cosines);
+    puma560_determinant_kernel(params, sines, cosines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+CF_RARE void puma560_determinant_other_sizes(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        puma560_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void puma560_determinant_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    (void)det_stride;
+    const puma560_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->a2), cf_abs(params->a3)), cf_abs(params->d4));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_3) & CF_SIGN) != 0)) {
+        puma560_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
+        return;
+    }
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 4 * q_stride + start, sines[2], cosines[2]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
+            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
+            real_t det_i[1];
+            puma560_determinant_kernel(&local, sines_i, cosines_i, det_i);
+            det[start + i] = det_i[0];
+        }
+    }
+}
+
+CF_INLINE void puma560_singularities_kernel(const puma560_params *params, const real_t *sines,
+    const real_t *cosines, real_t factors[3])
+{
+    const real_t a2 = params->a2;
+    const real_t a3 = params->a3;
+    const real_t d4 = params->d4;
+    const real_t s2 = sines[0];
+    const real_t c2 = cosines[0];
+    const real_t s3 = sines[1];
+    const real_t c3 = cosines[1];
+    const real_t s5 = sines[2];
+    const real_t t1 = a2 * c2 + a3 * (c2 * c3 - s2 * s3) - d4 * (s2 * c3 + c2 * s3);
+    factors[0] = t1;
+    factors[1] = a3 * s3 + d4 * c3;
+    factors[2] = s5;
+}
+
+CLOSEDFORM_DISPATCHED
+void puma560_singularities(const puma560_params *params, const real_t q[6],
+    real_t factors[3])
+{
+    real_t sines[4], cosines[4];
+    const real_t lanes[4] = { q[1], q[2], q[4] };
+    cf_sincos_lanes(4, lanes, sines, cosines);
+    puma560_singularities_kernel(params, sines, cosines, factors);
+}
+
+CLOSEDFORM_DISPATCHED
+void puma560_singularities_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    const puma560_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 4 * q_stride + start, sines[2], cosines[2]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
+            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
+            real_t factors_i[3];
+            puma560_singularities_kernel(&local, sines_i, cosines_i, factors_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
+            factors[2 * factors_stride + start + i] = factors_i[2];
         }
     }
 }
@@ -653,149 +788,6 @@ void puma560_jacobian_body_batch(size_t n, const puma560_params *params,
     }
 }
 
-CF_INLINE void puma560_determinant_kernel(const puma560_params *params, const real_t *sines,
-    const real_t *cosines, real_t det[1])
-{
-    const real_t a2 = params->a2;
-    const real_t a3 = params->a3;
-    const real_t d4 = params->d4;
-    const real_t s5 = sines[0];
-    const real_t s2 = sines[1];
-    const real_t c2 = cosines[1];
-    const real_t s3 = sines[2];
-    const real_t c3 = cosines[2];
-    const real_t t1 = a3 * a3;
-    const real_t t2 = s3 * c2;
-    const real_t t3 = s3 * s2;
-    const real_t t4 = a2 * d4;
-    const real_t c23 = c3 * c2 - t3;
-    const real_t t5 = c3 * (c3 * s2 + t2);
-    const real_t t6 = s2 * t1 - a2 * a3 * t2 - t3 * t4 - c23 * t4 - t1 * t5;
-    const real_t t7 = a3 * d4;
-    const real_t t8 = t6 + c2 * t7 - c3 * c23 * CLOSEDFORM_C(2.0) * t7;
-    det[0] = -(a2 * s5 * (t8 + d4 * d4 * t5));
-}
-
-CLOSEDFORM_DISPATCHED
-void puma560_determinant(const puma560_params *params, const real_t q[6],
-    real_t det[1])
-{
-    static const signed char det_degrees[1] = { 3 };
-    puma560_params params_scaled;
-    int exponent = 0;
-    const real_t size = cf_max(cf_max(cf_abs(params->a2), cf_abs(params->a3)), cf_abs(params->d4));
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        params_scaled = *params;
-        params_scaled.a2 = CF_LIBM(ldexp)(params->a2, -exponent);
-        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
-        params_scaled.d4 = CF_LIBM(ldexp)(params->d4, -exponent);
-        params = &params_scaled;
-    }
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[4], q[1], q[2] };
-    cf_sincos_lanes(4, lanes, sines, cosines);
-    puma560_determinant_kernel(params, sines, cosines, det);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(1, det_degrees, exponent, det, det);
-    }
-}
-
-CF_RARE void puma560_determinant_other_sizes(size_t n, const puma560_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *det, size_t det_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real_t q_i[6];
-        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
-        real_t det_i[1];
-        puma560_determinant(params, q_i, det_i);
-        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
-
-    }
-}
-
-CLOSEDFORM_DISPATCHED
-void puma560_determinant_batch(size_t n, const puma560_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *det, size_t det_stride)
-{
-    (void)det_stride;
-    const puma560_params local = *params;
-    const real_t dimensions = cf_max(cf_max(cf_abs(params->a2), cf_abs(params->a3)), cf_abs(params->d4));
-    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_3) & CF_SIGN) != 0)) {
-        puma560_determinant_other_sizes(n, params, q, q_stride, det, det_stride);
-        return;
-    }
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + 4 * q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
-            real_t det_i[1];
-            puma560_determinant_kernel(&local, sines_i, cosines_i, det_i);
-            det[start + i] = det_i[0];
-        }
-    }
-}
-
-CF_INLINE void puma560_singularities_kernel(const puma560_params *params, const real_t *sines,
-    const real_t *cosines, real_t factors[3])
-{
-    const real_t a2 = params->a2;
-    const real_t a3 = params->a3;
-    const real_t d4 = params->d4;
-    const real_t s2 = sines[0];
-    const real_t c2 = cosines[0];
-    const real_t s3 = sines[1];
-    const real_t c3 = cosines[1];
-    const real_t s5 = sines[2];
-    const real_t t1 = a2 * c2 + a3 * (c2 * c3 - s2 * s3) - d4 * (s2 * c3 + c2 * s3);
-    factors[0] = t1;
-    factors[1] = a3 * s3 + d4 * c3;
-    factors[2] = s5;
-}
-
-CLOSEDFORM_DISPATCHED
-void puma560_singularities(const puma560_params *params, const real_t q[6],
-    real_t factors[3])
-{
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { q[1], q[2], q[4] };
-    cf_sincos_lanes(4, lanes, sines, cosines);
-    puma560_singularities_kernel(params, sines, cosines, factors);
-}
-
-CLOSEDFORM_DISPATCHED
-void puma560_singularities_batch(size_t n, const puma560_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *factors, size_t factors_stride)
-{
-    const puma560_params local = *params;
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + 4 * q_stride + start, sines[2], cosines[2]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
-            real_t factors_i[3];
-            puma560_singularities_kernel(&local, sines_i, cosines_i, factors_i);
-            factors[start + i] = factors_i[0];
-            factors[factors_stride + start + i] = factors_i[1];
-            factors[2 * factors_stride + start + i] = factors_i[2];
-        }
-    }
-}
-
 CF_INLINE void puma560_ik_kernel(const int single, const real_t one,
     const puma560_params *params, const real_t T[16],
     real_t q[48], real_t status[8])
@@ -821,39 +813,39 @@ CF_INLINE void puma560_ik_kernel(const int single, const real_t one,
     const real_t T43 = T[14];
     const real_t T44 = T[15];
     const real_t t1 = cf_rounded(single, one, T14 * T14) + cf_rounded(single, one, T24 * T24);
-    const real_t amplitude = cf_sqrt(t1);
+    const real_t h1 = cf_sqrt(t1);
     const real_t t2 = cf_rounded(single, one, a3 * a3) + cf_rounded(single, one, d4 * d4);
     const real_t f = cf_sqrt(t2);
     const real_t t3 = a2 + f;
     const real_t size = cf_abs(d3) + t3;
     const real_t t4 = CLOSEDFORM_VANISHING * size;
-    const int free_theta1 = amplitude <= t4;
-    const real_t t5 = amplitude - d3;
-    const real_t below = cf_max(t5, CLOSEDFORM_C(0.0));
-    const real_t t6 = d3 + amplitude;
-    const real_t above = cf_max(t6, CLOSEDFORM_C(0.0));
-    const real_t t7 = below - above;
-    const real_t t8 = cf_rounded(single, one, below * above);
-    const real_t root = cf_sqrt(t8);
-    const int tangent = root - amplitude * CLOSEDFORM_C(0.00390625) <= amplitude * CLOSEDFORM_VANISHING;
+    const int free1 = h1 <= t4;
+    const real_t t5 = h1 - d3;
+    const real_t below1 = cf_max(t5, CLOSEDFORM_C(0.0));
+    const real_t t6 = d3 + h1;
+    const real_t above1 = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t7 = below1 - above1;
+    const real_t t8 = cf_rounded(single, one, below1 * above1);
+    const real_t root1 = cf_sqrt(t8);
+    const int tangent1 = root1 - h1 * CLOSEDFORM_C(0.00390625) <= h1 * CLOSEDFORM_VANISHING;
     const real_t t9 = a2 - f;
     const real_t t10 = cf_rounded(single, one, T34 * T34);
     const real_t t11 = cf_max(CLOSEDFORM_C(0.0), cf_rounded(single, one, t9 * t9) - t10);
     const real_t t12 = cf_rounded(single, one, t3 * t3);
-    const real_t wanted = cf_max(t11, cf_min(t8, t12 - t10));
-    const real_t t13 = CLOSEDFORM_C(8796093022208.0) * cf_abs(t8 - wanted);
-    const real_t held = cf_select(t13 <= amplitude * size, wanted, t8);
-    const real_t t14 = CLOSEDFORM_C(2.0) * cf_sqrt(t7 * t7 * CLOSEDFORM_C(0.25) + held);
-    const real_t span = cf_rarely(single, tangent, t14, below + above);
-    const real_t t15 = CLOSEDFORM_C(1.0) / cf_divisor(single, free_theta1, amplitude * span);
+    const real_t wanted1 = cf_max(t11, cf_min(t8, t12 - t10));
+    const real_t t13 = CLOSEDFORM_C(8796093022208.0) * cf_abs(t8 - wanted1);
+    const real_t held1 = cf_select(t13 <= h1 * size, wanted1, t8);
+    const real_t t14 = cf_rounded(single, one, t7 * t7) + CLOSEDFORM_C(4.0) * held1;
+    const real_t span1 = cf_rarely(single, tangent1, cf_sqrt(t14), below1 + above1);
+    const real_t t15 = CLOSEDFORM_C(1.0) / cf_divisor(single, free1, h1 * span1);
     const real_t t16 = cf_rounded(single, one, T14 * t7 * t15);
-    const real_t ahead = cf_rarely(single, tangent, cf_sqrt(held), root);
-    const real_t t17 = CLOSEDFORM_C(2.0) * ahead;
+    const real_t kept1 = cf_rarely(single, tangent1, cf_sqrt(held1), root1);
+    const real_t t17 = CLOSEDFORM_C(2.0) * kept1;
     const real_t t18 = cf_rounded(single, one, t15 * (T24 * t17));
-    const real_t t19 = cf_select(free_theta1, CLOSEDFORM_C(0.0), t16 - t18);
+    const real_t t19 = cf_select(free1, CLOSEDFORM_C(0.0), t16 - t18);
     const real_t t20 = cf_rounded(single, one, T24 * t7 * t15);
     const real_t t21 = cf_rounded(single, one, t15 * (T14 * t17));
-    const real_t c1 = cf_select(free_theta1, CLOSEDFORM_C(1.0), t20 + t21);
+    const real_t c1 = cf_select(free1, CLOSEDFORM_C(1.0), t20 + t21);
     const int t22 = cf_nought(a2) + cf_nought(a3) + cf_nought(d3) + cf_nought(d4) == 0;
     const int t23 = t22 & (CLOSEDFORM_C(0.0) <= a2) & (CLOSEDFORM_C(0.0) <= d4);
     const int t24 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
@@ -877,151 +869,155 @@ CF_INLINE void puma560_ik_kernel(const int single, const real_t one,
     const int t42 = cf_abs(T43) <= CLOSEDFORM_ROTATION;
     const int t43 = cf_abs(T44 - CLOSEDFORM_C(1.0)) <= CLOSEDFORM_ROTATION;
     const int invalid = !(t39 & t40 & t41 & t42 & t43);
-    const real_t t44 = -(CLOSEDFORM_FEASIBILITY * size);
-    const real_t reach = cf_sqrt(t10 + cf_rounded(single, one, ahead * ahead));
-    const real_t t45 = t3 - reach;
-    const real_t t46 = t9 + reach;
-    const int t47 = (t44 <= t5) & (t44 <= t6) & (t44 <= t45) & (t44 <= t46);
-    const real_t t48 = reach - t9;
-    const int unreachable = !(t47 & (t44 <= t48));
+    const real_t t44 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t r_elbow = cf_sqrt(t10 + cf_rounded(single, one, kept1 * kept1));
+    const real_t t45 = t3 - r_elbow;
+    const real_t t46 = t9 + r_elbow;
+    const int t47 = (-t44 <= t5) & (-t44 <= t6) & (-t44 <= t45) & (-t44 <= t46);
+    const real_t t48 = r_elbow - t9;
+    const int unreachable = !(t47 & (-t44 <= t48));
     const real_t t49 = cf_poison(single, invalid | unreachable);
-    const int folded = reach <= t4;
-    const real_t t50 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded, reach);
-    const real_t t51 = cf_select(folded, CLOSEDFORM_C(0.0), T34 * t50);
-    const int no_link = a2 * f <= CLOSEDFORM_VANISHING * t12;
-    const int t52 = folded | no_link;
-    const real_t S = t3 + reach;
-    const real_t B = cf_max(t46, CLOSEDFORM_C(0.0));
-    const real_t SB = cf_rounded(single, one, S * B);
-    const real_t A = cf_max(t45, CLOSEDFORM_C(0.0));
-    const real_t C = cf_max(t48, CLOSEDFORM_C(0.0));
-    const real_t AC = cf_rounded(single, one, A * C);
-    const real_t t53 = CLOSEDFORM_C(1.0) / cf_divisor(single, t52, SB + AC);
-    const real_t t54 = cf_select(t52, CLOSEDFORM_C(1.0), (SB - AC) * t53);
-    const real_t t55 = cf_rounded(single, one, t51 * t54);
-    const real_t SA = cf_rounded(single, one, S * A);
-    const real_t BC = cf_rounded(single, one, B * C);
-    const real_t area = CLOSEDFORM_C(2.0) * cf_root(single, SA * BC);
-    const real_t t56 = cf_select(t52, CLOSEDFORM_C(0.0), t53 * area);
-    const real_t t57 = ahead * t50;
-    const real_t t58 = cf_select(folded, CLOSEDFORM_C(1.0), t57);
-    const real_t t59 = cf_rounded(single, one, t56 * t58);
-    const real_t s2 = t55 + t59;
-    const real_t t60 = cf_rounded(single, one, t51 * t56);
-    const real_t t61 = cf_rounded(single, one, t54 * t58);
-    const real_t t62 = t60 - t61;
-    const int no_forearm = f <= t4;
-    const real_t t63 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_forearm, f);
-    const real_t t64 = cf_select(no_forearm, CLOSEDFORM_C(0.0), d4 * t63);
-    const real_t t65 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link, SA + BC);
-    const real_t t66 = cf_select(no_link, CLOSEDFORM_C(1.0), -((SA - BC) * t65));
-    const real_t t67 = cf_rounded(single, one, t64 * t66);
-    const real_t t68 = cf_select(no_forearm, CLOSEDFORM_C(1.0), a3 * t63);
-    const real_t t69 = cf_select(no_link, CLOSEDFORM_C(0.0), area * t65);
-    const real_t t70 = cf_rounded(single, one, t68 * t69);
-    const real_t t71 = t67 + t70;
-    const real_t t72 = cf_rounded(single, one, t64 * t69);
-    const real_t t73 = cf_rounded(single, one, t66 * t68);
-    const real_t t74 = t72 - t73;
-    const real_t t75 = cf_rounded(single, one, T13 * t19) + cf_rounded(single, one, T23 * c1);
-    const real_t t76 = cf_rounded(single, one, t75 * t75);
-    const real_t s23 = cf_rounded(single, one, t62 * t71) - cf_rounded(single, one, s2 * t74);
-    const real_t c23 = cf_rounded(single, one, t62 * t74) + cf_rounded(single, one, s2 * t71);
+    const int folded_elbow = r_elbow <= t4;
+    const int no_link_elbow = a2 * f <= CLOSEDFORM_VANISHING * t12;
+    const int t50 = folded_elbow | no_link_elbow;
+    const real_t A_elbow = cf_max(t45, CLOSEDFORM_C(0.0));
+    const real_t C_elbow = cf_max(t48, CLOSEDFORM_C(0.0));
+    const real_t t51 = cf_rounded(single, one, A_elbow * C_elbow);
+    const real_t S_elbow = t3 + r_elbow;
+    const real_t B_elbow = cf_max(t46, CLOSEDFORM_C(0.0));
+    const real_t t52 = cf_rounded(single, one, S_elbow * B_elbow);
+    const real_t t53 = CLOSEDFORM_C(1.0) / cf_divisor(single, t50, t51 + t52);
+    const real_t c_base_elbow = cf_select(t50, CLOSEDFORM_C(1.0), -((t51 - t52) * t53));
+    const real_t t54 = CLOSEDFORM_C(1.0) / cf_divisor(single, folded_elbow, r_elbow);
+    const real_t t55 = cf_select(folded_elbow, CLOSEDFORM_C(0.0), T34 * t54);
+    const real_t t56 = cf_rounded(single, one, c_base_elbow * t55);
+    const real_t t57 = kept1 * t54;
+    const real_t t58 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), t57);
+    const real_t area_elbow = CLOSEDFORM_C(2.0) * cf_root(single, t51 * t52);
+    const real_t s_base_elbow_right_down_noflip = cf_select(t50, CLOSEDFORM_C(0.0), t53 * area_elbow);
+    const real_t t59 = cf_rounded(single, one, t58 * s_base_elbow_right_down_noflip);
+    const real_t s2 = t56 + t59;
+    const real_t t60 = cf_rounded(single, one, c_base_elbow * t58);
+    const real_t t61 = cf_rounded(single, one, t55 * s_base_elbow_right_down_noflip);
+    const real_t c2 = t60 - t61;
+    const int no_forearm = f <= CLOSEDFORM_C(0.0);
+    const real_t t62 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_forearm, f);
+    const real_t s_forearm = cf_select(no_forearm, CLOSEDFORM_C(0.0), d4 * t62);
+    const real_t t63 = cf_rounded(single, one, A_elbow * S_elbow);
+    const real_t t64 = cf_rounded(single, one, C_elbow * B_elbow);
+    const real_t t65 = CLOSEDFORM_C(1.0) / cf_divisor(single, no_link_elbow, t63 + t64);
+    const real_t celbow = cf_select(no_link_elbow, CLOSEDFORM_C(1.0), -((t63 - t64) * t65));
+    const real_t t66 = cf_rounded(single, one, s_forearm * celbow);
+    const real_t c_forearm = cf_select(no_forearm, CLOSEDFORM_C(1.0), a3 * t62);
+    const real_t selbow_right_down_noflip = cf_select(no_link_elbow, CLOSEDFORM_C(0.0), area_elbow * t65);
+    const real_t t67 = cf_rounded(single, one, c_forearm * selbow_right_down_noflip);
+    const real_t t68 = t66 + t67;
+    const real_t t69 = cf_rounded(single, one, c_forearm * celbow);
+    const real_t t70 = cf_rounded(single, one, s_forearm * selbow_right_down_noflip);
+    const real_t c3 = t69 - t70;
     const real_t R1_13 = cf_rounded(single, one, T13 * c1) - cf_rounded(single, one, T23 * t19);
-    const real_t R2_13 = cf_rounded(single, one, T33 * s23) + cf_rounded(single, one, c23 * R1_13);
-    const real_t h = cf_sqrt(t76 + cf_rounded(single, one, R2_13 * R2_13));
-    const real_t t77 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
-    const int aligned = h <= t77;
-    const real_t t78 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned, h);
-    const real_t t79 = cf_select(aligned, CLOSEDFORM_C(0.0), t75 * t78);
-    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), -(R2_13 * t78));
-    const real_t t80 = T11 * t19 + T21 * c1;
+    const real_t t71 = cf_rounded(single, one, c2 * c3) + cf_rounded(single, one, s2 * t68);
+    const real_t t72 = cf_rounded(single, one, c2 * t68) - cf_rounded(single, one, s2 * c3);
+    const real_t R2_13 = cf_rounded(single, one, R1_13 * t71) - cf_rounded(single, one, T33 * t72);
+    const real_t R2_23 = cf_rounded(single, one, T13 * t19) + cf_rounded(single, one, T23 * c1);
+    const real_t t73 = cf_rounded(single, one, R2_23 * R2_23);
+    const real_t h_wrist = cf_sqrt(cf_rounded(single, one, R2_13 * R2_13) + t73);
+    const real_t t74 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
+    const int aligned_wrist = h_wrist <= t74;
+    const real_t flip_wrist = cf_select(aligned_wrist, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t t75 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_wrist, h_wrist);
+    const real_t s_wrist = cf_select(aligned_wrist, CLOSEDFORM_C(0.0), R2_23 * t75);
+    const real_t c_wrist = cf_select(aligned_wrist, CLOSEDFORM_C(1.0), R2_13 * t75);
     const real_t R1_11 = T11 * c1 - T21 * t19;
-    const real_t t81 = T12 * t19 + T22 * c1;
+    const real_t R2_21 = T11 * t19 + T21 * c1;
+    const real_t t76 = s_wrist * (t71 * R1_11 - T31 * t72) - c_wrist * R2_21;
+    const real_t R2_22 = T12 * t19 + T22 * c1;
     const real_t R1_12 = T12 * c1 - T22 * t19;
-    const real_t flip = cf_select(aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t s2_right_down_noflip = t55 - t59;
+    const real_t t77 = c_wrist * R2_22 - s_wrist * (t71 * R1_12 - T32 * t72);
+    const real_t s2_right_down_noflip = t56 - t59;
     const real_t c2_right_down_noflip = t60 + t61;
-    const real_t t82 = t67 - t70;
-    const real_t c3_right_down_noflip = t72 + t73;
-    const real_t t83 = cf_rounded(single, one, c2_right_down_noflip * t82);
-    const real_t t84 = cf_rounded(single, one, s2_right_down_noflip * c3_right_down_noflip);
-    const real_t t85 = t83 - t84;
-    const real_t t86 = cf_rounded(single, one, c2_right_down_noflip * c3_right_down_noflip);
-    const real_t t87 = cf_rounded(single, one, s2_right_down_noflip * t82);
-    const real_t c23_right_down_noflip = t86 + t87;
-    const real_t t88 = cf_rounded(single, one, R1_13 * c23_right_down_noflip);
-    const real_t t89 = cf_rounded(single, one, T33 * t85) - t88;
-    const real_t h_right_down_noflip = cf_sqrt(t76 + cf_rounded(single, one, t89 * t89));
-    const int aligned_right_down_noflip = h_right_down_noflip <= t77;
-    const real_t t90 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_right_down_noflip, h_right_down_noflip);
-    const real_t t91 = cf_select(aligned_right_down_noflip, CLOSEDFORM_C(0.0), t75 * t90);
-    const real_t c4_right_down_noflip = cf_select(aligned_right_down_noflip, CLOSEDFORM_C(1.0), t89 * t90);
-    const real_t t92 = t91 * (T31 * t85 - R1_11 * c23_right_down_noflip);
-    const real_t t93 = t91 * (T32 * t85 - R1_12 * c23_right_down_noflip);
-    const real_t flip_right_down_flip = cf_select(aligned_right_down_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t t94 = cf_select(free_theta1, CLOSEDFORM_C(0.0), t16 + t18);
-    const real_t c1_left_up_noflip = cf_select(free_theta1, CLOSEDFORM_C(1.0), t20 - t21);
-    const real_t t95 = cf_select(folded, CLOSEDFORM_C(1.0), -t57);
-    const real_t t96 = cf_rounded(single, one, t56 * t95);
-    const real_t s2_left_up_noflip = t55 - t96;
-    const real_t t97 = cf_rounded(single, one, t54 * t95);
-    const real_t c2_left_up_noflip = t60 + t97;
-    const real_t t98 = cf_rounded(single, one, T23 * c1_left_up_noflip);
-    const real_t t99 = cf_rounded(single, one, T13 * t94) + t98;
-    const real_t t100 = cf_rounded(single, one, t99 * t99);
-    const real_t t101 = cf_rounded(single, one, t82 * c2_left_up_noflip);
-    const real_t t102 = cf_rounded(single, one, c3_right_down_noflip * s2_left_up_noflip);
-    const real_t t103 = t101 - t102;
-    const real_t t104 = cf_rounded(single, one, c3_right_down_noflip * c2_left_up_noflip);
-    const real_t t105 = cf_rounded(single, one, t82 * s2_left_up_noflip);
-    const real_t c23_left_up_noflip = t104 + t105;
-    const real_t t106 = cf_rounded(single, one, T13 * c1_left_up_noflip);
-    const real_t R1_13_left_up_noflip = t106 - cf_rounded(single, one, T23 * t94);
-    const real_t t107 = cf_rounded(single, one, c23_left_up_noflip * R1_13_left_up_noflip);
-    const real_t t108 = cf_rounded(single, one, T33 * t103) - t107;
-    const real_t h_left_up_noflip = cf_sqrt(t100 + cf_rounded(single, one, t108 * t108));
-    const int aligned_left_up_noflip = h_left_up_noflip <= t77;
-    const real_t t109 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_up_noflip, h_left_up_noflip);
-    const real_t t110 = cf_select(aligned_left_up_noflip, CLOSEDFORM_C(0.0), t99 * t109);
-    const real_t c4_left_up_noflip = cf_select(aligned_left_up_noflip, CLOSEDFORM_C(1.0), t108 * t109);
-    const real_t R2_33_left_up_noflip = T33 * c23_left_up_noflip + t103 * R1_13_left_up_noflip;
-    const real_t t111 = T11 * t94 + T21 * c1_left_up_noflip;
-    const real_t R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t94;
-    const real_t t112 = T31 * t103 - c23_left_up_noflip * R1_11_left_up_noflip;
-    const real_t t113 = T12 * t94 + T22 * c1_left_up_noflip;
-    const real_t R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t94;
-    const real_t t114 = T32 * t103 - c23_left_up_noflip * R1_12_left_up_noflip;
-    const real_t flip_left_up_flip = cf_select(aligned_left_up_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t s2_left_down_noflip = t55 + t96;
-    const real_t t115 = t60 - t97;
-    const real_t t116 = cf_rounded(single, one, t74 * s2_left_down_noflip);
-    const real_t s23_left_down_noflip = cf_rounded(single, one, t71 * t115) - t116;
-    const real_t t117 = cf_rounded(single, one, T33 * s23_left_down_noflip);
-    const real_t t118 = cf_rounded(single, one, t71 * s2_left_down_noflip);
-    const real_t c23_left_down_noflip = cf_rounded(single, one, t74 * t115) + t118;
-    const real_t t119 = cf_rounded(single, one, R1_13_left_up_noflip * c23_left_down_noflip);
-    const real_t R2_13_left_down_noflip = t117 + t119;
-    const real_t t120 = cf_rounded(single, one, R2_13_left_down_noflip * R2_13_left_down_noflip);
-    const real_t h_left_down_noflip = cf_sqrt(t100 + t120);
-    const int aligned_left_down_noflip = h_left_down_noflip <= t77;
-    const real_t t121 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_down_noflip, h_left_down_noflip);
-    const real_t t122 = cf_select(aligned_left_down_noflip, CLOSEDFORM_C(0.0), t99 * t121);
-    const real_t c4_left_down_noflip = cf_select(aligned_left_down_noflip, CLOSEDFORM_C(1.0), -(R2_13_left_down_noflip * t121));
-    const real_t t123 = t99 * t122 - R2_13_left_down_noflip * c4_left_down_noflip;
-    const real_t R2_33_left_down_noflip = T33 * c23_left_down_noflip - R1_13_left_up_noflip * s23_left_down_noflip;
-    const real_t R2_11_left_down_noflip = T31 * s23_left_down_noflip + R1_11_left_up_noflip * c23_left_down_noflip;
-    const real_t t124 = t111 * c4_left_down_noflip + t122 * R2_11_left_down_noflip;
-    const real_t R2_12_left_down_noflip = T32 * s23_left_down_noflip + R1_12_left_up_noflip * c23_left_down_noflip;
-    const real_t t125 = t113 * c4_left_down_noflip + t122 * R2_12_left_down_noflip;
-    const real_t flip_left_down_flip = cf_select(aligned_left_down_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const int t126 = free_theta1 | no_link | folded | no_forearm;
-    const real_t t127 = cf_status(single, invalid, unreachable, t126 | aligned);
-    const real_t t128 = cf_status(single, invalid, unreachable, t126 | aligned_right_down_noflip);
-    const real_t t129 = cf_status(single, invalid, unreachable, t126 | aligned_left_up_noflip);
-    const real_t t130 = cf_status(single, invalid, unreachable, t126 | aligned_left_down_noflip);
-    const real_t opposite[24] = { t19, s2, t71, t79, t75 * t79 - R2_13 * c4, c4 * t80 + t79 * (T31 * s23 + c23 * R1_11), s2_right_down_noflip, t82, t91, t75 * t91 + t89 * c4_right_down_noflip, t80 * c4_right_down_noflip - t92, t94, s2_left_up_noflip, t110, t99 * t110 + t108 * c4_left_up_noflip, c4_left_up_noflip * t111 - t110 * t112, s2_left_down_noflip, t122, t123, t124 };
-    const real_t adjacent[24] = { c1, -t62, -t74, c4, T33 * c23 - s23 * R1_13, c4 * t81 + t79 * (T32 * s23 + c23 * R1_12), c2_right_down_noflip, c3_right_down_noflip, c4_right_down_noflip, T33 * c23_right_down_noflip + R1_13 * t85, t81 * c4_right_down_noflip - t93, c1_left_up_noflip, c2_left_up_noflip, c4_left_up_noflip, R2_33_left_up_noflip, c4_left_up_noflip * t113 - t110 * t114, -t115, c4_left_down_noflip, R2_33_left_down_noflip, t125 };
+    const real_t t78 = t66 - t67;
+    const real_t c3_right_down_noflip = t69 + t70;
+    const real_t t79 = cf_rounded(single, one, c2_right_down_noflip * c3_right_down_noflip);
+    const real_t t80 = cf_rounded(single, one, s2_right_down_noflip * t78);
+    const real_t t81 = t79 + t80;
+    const real_t t82 = cf_rounded(single, one, c2_right_down_noflip * t78);
+    const real_t t83 = cf_rounded(single, one, s2_right_down_noflip * c3_right_down_noflip);
+    const real_t t84 = t82 - t83;
+    const real_t R2_13_right_down_noflip = cf_rounded(single, one, R1_13 * t81) - cf_rounded(single, one, T33 * t84);
+    const real_t t85 = cf_rounded(single, one, R2_13_right_down_noflip * R2_13_right_down_noflip);
+    const real_t h_wrist_right_down_noflip = cf_sqrt(t73 + t85);
+    const int aligned_wrist_right_down_noflip = h_wrist_right_down_noflip <= t74;
+    const real_t flip_wrist_right_down_noflip = cf_select(aligned_wrist_right_down_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t t86 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_wrist_right_down_noflip, h_wrist_right_down_noflip);
+    const real_t s_wrist_right_down_noflip = cf_select(aligned_wrist_right_down_noflip, CLOSEDFORM_C(0.0), R2_23 * t86);
+    const real_t c_wrist_right_down_noflip = cf_select(aligned_wrist_right_down_noflip, CLOSEDFORM_C(1.0), R2_13_right_down_noflip * t86);
+    const real_t t87 = R2_13_right_down_noflip * c_wrist_right_down_noflip;
+    const real_t t88 = s_wrist_right_down_noflip * (R1_11 * t81 - T31 * t84);
+    const real_t t89 = s_wrist_right_down_noflip * (R1_12 * t81 - T32 * t84);
+    const real_t t90 = cf_select(free1, CLOSEDFORM_C(0.0), t16 + t18);
+    const real_t c1_left_up_noflip = cf_select(free1, CLOSEDFORM_C(1.0), t20 - t21);
+    const real_t t91 = cf_select(folded_elbow, CLOSEDFORM_C(1.0), -t57);
+    const real_t t92 = cf_rounded(single, one, s_base_elbow_right_down_noflip * t91);
+    const real_t s2_left_up_noflip = t56 - t92;
+    const real_t t93 = cf_rounded(single, one, c_base_elbow * t91);
+    const real_t c2_left_up_noflip = t61 + t93;
+    const real_t t94 = cf_rounded(single, one, T13 * c1_left_up_noflip);
+    const real_t R1_13_left_up_noflip = t94 - cf_rounded(single, one, T23 * t90);
+    const real_t t95 = cf_rounded(single, one, c3_right_down_noflip * c2_left_up_noflip);
+    const real_t t96 = cf_rounded(single, one, t78 * s2_left_up_noflip);
+    const real_t t97 = t95 + t96;
+    const real_t t98 = cf_rounded(single, one, R1_13_left_up_noflip * t97);
+    const real_t t99 = cf_rounded(single, one, t78 * c2_left_up_noflip);
+    const real_t t100 = cf_rounded(single, one, c3_right_down_noflip * s2_left_up_noflip);
+    const real_t t101 = t99 - t100;
+    const real_t R2_13_left_up_noflip = t98 - cf_rounded(single, one, T33 * t101);
+    const real_t t102 = cf_rounded(single, one, R2_13_left_up_noflip * R2_13_left_up_noflip);
+    const real_t t103 = cf_rounded(single, one, T23 * c1_left_up_noflip);
+    const real_t R2_23_left_up_noflip = cf_rounded(single, one, T13 * t90) + t103;
+    const real_t t104 = cf_rounded(single, one, R2_23_left_up_noflip * R2_23_left_up_noflip);
+    const real_t h_wrist_left_up_noflip = cf_sqrt(t102 + t104);
+    const int aligned_wrist_left_up_noflip = h_wrist_left_up_noflip <= t74;
+    const real_t flip_wrist_left_up_noflip = cf_select(aligned_wrist_left_up_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t t105 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_wrist_left_up_noflip, h_wrist_left_up_noflip);
+    const real_t s_wrist_left_up_noflip = cf_select(aligned_wrist_left_up_noflip, CLOSEDFORM_C(0.0), R2_23_left_up_noflip * t105);
+    const real_t c_wrist_left_up_noflip = cf_select(aligned_wrist_left_up_noflip, CLOSEDFORM_C(1.0), R2_13_left_up_noflip * t105);
+    const real_t t106 = R2_13_left_up_noflip * c_wrist_left_up_noflip;
+    const real_t t107 = R2_23_left_up_noflip * s_wrist_left_up_noflip;
+    const real_t R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t90;
+    const real_t t108 = s_wrist_left_up_noflip * (t97 * R1_11_left_up_noflip - T31 * t101);
+    const real_t R2_21_left_up_noflip = T11 * t90 + T21 * c1_left_up_noflip;
+    const real_t t109 = c_wrist_left_up_noflip * R2_21_left_up_noflip;
+    const real_t R2_22_left_up_noflip = T12 * t90 + T22 * c1_left_up_noflip;
+    const real_t t110 = c_wrist_left_up_noflip * R2_22_left_up_noflip;
+    const real_t R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t90;
+    const real_t t111 = s_wrist_left_up_noflip * (t97 * R1_12_left_up_noflip - T32 * t101);
+    const real_t s2_left_down_noflip = t56 + t92;
+    const real_t t112 = t61 - t93;
+    const real_t t113 = cf_rounded(single, one, t68 * s2_left_down_noflip);
+    const real_t t114 = cf_rounded(single, one, c3 * t112) - t113;
+    const real_t t115 = cf_rounded(single, one, R1_13_left_up_noflip * t114);
+    const real_t t116 = cf_rounded(single, one, c3 * s2_left_down_noflip);
+    const real_t t117 = cf_rounded(single, one, t68 * t112) + t116;
+    const real_t t118 = t115 - cf_rounded(single, one, T33 * t117);
+    const real_t h_wrist_left_down_noflip = cf_sqrt(t104 + cf_rounded(single, one, t118 * t118));
+    const int aligned_wrist_left_down_noflip = h_wrist_left_down_noflip <= t74;
+    const real_t flip_wrist_left_down_noflip = cf_select(aligned_wrist_left_down_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t t119 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_wrist_left_down_noflip, h_wrist_left_down_noflip);
+    const real_t s_wrist_left_down_noflip = cf_select(aligned_wrist_left_down_noflip, CLOSEDFORM_C(0.0), R2_23_left_up_noflip * t119);
+    const real_t c_wrist_left_down_noflip = cf_select(aligned_wrist_left_down_noflip, CLOSEDFORM_C(1.0), -(t118 * t119));
+    const real_t t120 = R2_23_left_up_noflip * s_wrist_left_down_noflip;
+    const real_t t121 = s_wrist_left_down_noflip * (R1_11_left_up_noflip * t114 - T31 * t117);
+    const real_t t122 = R2_21_left_up_noflip * c_wrist_left_down_noflip;
+    const real_t t123 = s_wrist_left_down_noflip * (R1_12_left_up_noflip * t114 - T32 * t117);
+    const real_t t124 = R2_22_left_up_noflip * c_wrist_left_down_noflip;
+    const int t125 = free1 | no_link_elbow | folded_elbow;
+    const real_t t126 = cf_status(single, invalid, unreachable, t125 | aligned_wrist);
+    const real_t t127 = cf_status(single, invalid, unreachable, t125 | aligned_wrist_right_down_noflip);
+    const real_t t128 = cf_status(single, invalid, unreachable, t125 | aligned_wrist_left_up_noflip);
+    const real_t t129 = cf_status(single, invalid, unreachable, t125 | aligned_wrist_left_down_noflip);
+    const real_t opposite[24] = { t19, s2, t68, s_wrist, R2_13 * c_wrist + R2_23 * s_wrist, t76, s2_right_down_noflip, -t78, s_wrist_right_down_noflip, t87 + R2_23 * s_wrist_right_down_noflip, t88 - R2_21 * c_wrist_right_down_noflip, t90, s2_left_up_noflip, s_wrist_left_up_noflip, t106 + t107, t108 - t109, s2_left_down_noflip, s_wrist_left_down_noflip, t118 * c_wrist_left_down_noflip - t120, t121 + t122 };
+    const real_t adjacent[24] = { c1, c2, c3, c_wrist, R1_13 * t72 + T33 * t71, t77, c2_right_down_noflip, c3_right_down_noflip, c_wrist_right_down_noflip, R1_13 * t84 + T33 * t81, R2_22 * c_wrist_right_down_noflip - t89, c1_left_up_noflip, c2_left_up_noflip, c_wrist_left_up_noflip, R1_13_left_up_noflip * t101 + T33 * t97, t110 - t111, -t112, c_wrist_left_down_noflip, -(R1_13_left_up_noflip * t117 + T33 * t114), t123 + t124 };
     real_t angles[24];
     if (single) {
         cf_atan2_lanes(24, opposite, adjacent, angles);
@@ -1047,76 +1043,76 @@ CF_INLINE void puma560_ik_kernel(const int single, const real_t one,
         angles[18] = cf_atan2(opposite[18], adjacent[18]);
         angles[19] = cf_atan2(opposite[19], adjacent[19]);
     }
-    const real_t t131 = cf_wrap_cut(-angles[0]) + t49;
-    const real_t t132 = cf_wrap_cut(angles[1]) + t49;
-    const real_t t133 = cf_wrap_cut(-angles[2]) + t49;
-    const real_t t134 = cf_wrap_cut(angles[6]) + t49;
-    const real_t t135 = cf_wrap_cut(-angles[7]) + t49;
-    const real_t t136 = cf_wrap(flip_right_down_flip - angles[8]) + t49;
-    const real_t t137 = cf_wrap(angles[10] + flip_right_down_flip) + t49;
-    const real_t t138 = cf_wrap_cut(-angles[11]) + t49;
-    const real_t t139 = cf_wrap_cut(angles[12]) + t49;
-    const real_t t140 = cf_wrap(flip_left_up_flip - angles[13]) + t49;
-    const real_t t141 = cf_wrap(angles[15] + flip_left_up_flip) + t49;
-    const real_t t142 = cf_wrap_cut(angles[16]) + t49;
-    const real_t t143 = cf_wrap(flip_left_down_flip - angles[17]) + t49;
-    const real_t t144 = cf_wrap(angles[19] + flip_left_down_flip) + t49;
-    q[0] = t131;
-    q[1] = t132;
-    q[2] = t133;
-    q[3] = cf_wrap_cut(-angles[3]) + t49;
+    const real_t t130 = cf_wrap_cut(-angles[0]) + t49;
+    const real_t t131 = cf_wrap_cut(angles[1]) + t49;
+    const real_t t132 = cf_wrap_cut(-angles[2]) + t49;
+    const real_t t133 = cf_wrap_cut(angles[6]) + t49;
+    const real_t t134 = cf_wrap_cut(angles[7]) + t49;
+    const real_t t135 = cf_wrap(flip_wrist_right_down_noflip + angles[8]);
+    const real_t t136 = cf_wrap(flip_wrist_right_down_noflip - angles[10]);
+    const real_t t137 = cf_wrap_cut(-angles[11]) + t49;
+    const real_t t138 = cf_wrap_cut(angles[12]) + t49;
+    const real_t t139 = cf_wrap(flip_wrist_left_up_noflip + angles[13]);
+    const real_t t140 = cf_wrap(flip_wrist_left_up_noflip - angles[15]);
+    const real_t t141 = cf_wrap_cut(angles[16]) + t49;
+    const real_t t142 = cf_wrap(flip_wrist_left_down_noflip + angles[17]);
+    const real_t t143 = cf_wrap(flip_wrist_left_down_noflip + angles[19]);
+    q[0] = t130;
+    q[1] = t131;
+    q[2] = t132;
+    q[3] = cf_wrap(flip_wrist + angles[3]) + t49;
     q[4] = cf_wrap_cut(angles[4]) + t49;
-    q[5] = cf_wrap_cut(angles[5]) + t49;
-    q[6] = t131;
-    q[7] = t132;
-    q[8] = t133;
-    q[9] = cf_wrap(flip - angles[3]) + t49;
+    q[5] = cf_wrap(flip_wrist - angles[5]) + t49;
+    q[6] = t130;
+    q[7] = t131;
+    q[8] = t132;
+    q[9] = cf_wrap_cut(angles[3]) + t49;
     q[10] = cf_wrap_cut(-angles[4]) + t49;
-    q[11] = cf_wrap(angles[5] + flip) + t49;
-    q[12] = t131;
-    q[13] = t134;
-    q[14] = t135;
-    q[15] = cf_wrap_cut(-angles[8]) + t49;
+    q[11] = cf_wrap_cut(-angles[5]) + t49;
+    q[12] = t130;
+    q[13] = t133;
+    q[14] = t134;
+    q[15] = t135 + t49;
     q[16] = cf_wrap_cut(angles[9]) + t49;
-    q[17] = cf_wrap_cut(angles[10]) + t49;
-    q[18] = t131;
-    q[19] = t134;
-    q[20] = t135;
-    q[21] = t136;
+    q[17] = t136 + t49;
+    q[18] = t130;
+    q[19] = t133;
+    q[20] = t134;
+    q[21] = cf_wrap_cut(angles[8]) + t49;
     q[22] = cf_wrap_cut(-angles[9]) + t49;
-    q[23] = t137;
-    q[24] = t138;
-    q[25] = t139;
-    q[26] = t135;
-    q[27] = cf_wrap_cut(-angles[13]) + t49;
+    q[23] = cf_wrap_cut(-angles[10]) + t49;
+    q[24] = t137;
+    q[25] = t138;
+    q[26] = t134;
+    q[27] = t139 + t49;
     q[28] = cf_wrap_cut(angles[14]) + t49;
-    q[29] = cf_wrap_cut(angles[15]) + t49;
-    q[30] = t138;
-    q[31] = t139;
-    q[32] = t135;
-    q[33] = t140;
+    q[29] = t140 + t49;
+    q[30] = t137;
+    q[31] = t138;
+    q[32] = t134;
+    q[33] = cf_wrap_cut(angles[13]) + t49;
     q[34] = cf_wrap_cut(-angles[14]) + t49;
-    q[35] = t141;
-    q[36] = t138;
-    q[37] = t142;
-    q[38] = t133;
-    q[39] = cf_wrap_cut(-angles[17]) + t49;
-    q[40] = cf_wrap_cut(angles[18]) + t49;
-    q[41] = cf_wrap_cut(angles[19]) + t49;
-    q[42] = t138;
-    q[43] = t142;
-    q[44] = t133;
-    q[45] = t143;
-    q[46] = cf_wrap_cut(-angles[18]) + t49;
-    q[47] = t144;
-    status[0] = t127;
-    status[1] = t127;
-    status[2] = t128;
-    status[3] = t128;
-    status[4] = t129;
-    status[5] = t129;
-    status[6] = t130;
-    status[7] = t130;
+    q[35] = cf_wrap_cut(-angles[15]) + t49;
+    q[36] = t137;
+    q[37] = t141;
+    q[38] = t132;
+    q[39] = t142 + t49;
+    q[40] = cf_wrap_cut(-angles[18]) + t49;
+    q[41] = t143 + t49;
+    q[42] = t137;
+    q[43] = t141;
+    q[44] = t132;
+    q[45] = cf_wrap_cut(angles[17]) + t49;
+    q[46] = cf_wrap_cut(angles[18]) + t49;
+    q[47] = cf_wrap_cut(angles[19]) + t49;
+    status[0] = t126;
+    status[1] = t126;
+    status[2] = t127;
+    status[3] = t127;
+    status[4] = t128;
+    status[5] = t128;
+    status[6] = t129;
+    status[7] = t129;
 }
 
 CLOSEDFORM_DISPATCHED

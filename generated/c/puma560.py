@@ -24,21 +24,21 @@ __all__ = [
     "Positions",
     "Solutions",
     "Status",
-    "fk",
     "pose",
+    "fk",
     "jacobian",
-    "jacobian_space",
-    "jacobian_body",
     "determinant",
     "singularities",
+    "jacobian_space",
+    "jacobian_body",
     "ik",
 ]
 
-fk = _native.function("puma560.fk")
 pose = _native.function("puma560.pose")
+fk = _native.function("puma560.fk")
 jacobian = _native.function("puma560.jacobian")
-jacobian_space = _native.function("puma560.jacobian_space")
-jacobian_body = _native.function("puma560.jacobian_body")
 determinant = _native.function("puma560.determinant")
 singularities = _native.function("puma560.singularities")
+jacobian_space = _native.function("puma560.jacobian_space")
+jacobian_body = _native.function("puma560.jacobian_body")
 ik = _native.function("puma560.ik", Solutions)

@@ -4,117 +4,18 @@
  * Source: R. P. Paul, M. W. Spong, S. Hutchinson, M. Vidyasagar: The Stanford arm in the
  *     textbooks.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 18 add, 44 multiply, 5 sincos
  *   pose: 18 add, 44 multiply, 5 sincos
+ *   fk: 18 add, 44 multiply, 5 sincos
  *   jacobian: 8 add, 26 multiply, 4 sincos
- *   jacobian_space: 14 add, 43 multiply, 4 sincos
- *   jacobian_body: 14 add, 41 multiply, 4 sincos
  *   determinant: 3 multiply, 2 sincos
  *   singularities: 2 sincos
+ *   jacobian_space: 14 add, 43 multiply, 4 sincos
+ *   jacobian_body: 14 add, 41 multiply, 4 sincos
  *   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 116 multiply, 8 sqrt
  *   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 91 multiply, 6
  *     sqrt
  */
 #include "stanford_arm.h"
-
-CF_INLINE void stanford_arm_fk_kernel(const stanford_arm_params *params,
-    const real_t q[6], const real_t *sines,
-    const real_t *cosines, real_t T[16])
-{
-    const real_t d2 = params->d2;
-    const real_t d3 = q[2];
-    const real_t s6 = sines[0];
-    const real_t c6 = cosines[0];
-    const real_t s5 = sines[1];
-    const real_t c5 = cosines[1];
-    const real_t s4 = sines[2];
-    const real_t c4 = cosines[2];
-    const real_t s2 = sines[3];
-    const real_t c2 = cosines[3];
-    const real_t s1 = sines[4];
-    const real_t c1 = cosines[4];
-    const real_t T4_11 = c6 * c5;
-    const real_t T3_11 = T4_11 * c4 - s6 * s4;
-    const real_t T4_21 = c6 * s5;
-    const real_t T1_11 = T3_11 * c2 - T4_21 * s2;
-    const real_t T3_21 = T4_11 * s4 + s6 * c4;
-    const real_t t1 = s6 * c5;
-    const real_t t2 = t1 * s4 - c6 * c4;
-    const real_t t3 = t1 * c4 + c6 * s4;
-    const real_t t4 = s6 * s5;
-    const real_t t5 = t3 * c2 - t4 * s2;
-    const real_t T3_13 = s5 * c4;
-    const real_t T1_13 = T3_13 * c2 + c5 * s2;
-    const real_t T3_23 = s5 * s4;
-    const real_t T1_14 = d3 * s2;
-    T[0] = T1_11 * c1 - T3_21 * s1;
-    T[1] = t2 * s1 - t5 * c1;
-    T[2] = T1_13 * c1 - T3_23 * s1;
-    T[3] = T1_14 * c1 - d2 * s1;
-    T[4] = T1_11 * s1 + T3_21 * c1;
-    T[5] = -(t5 * s1 + t2 * c1);
-    T[6] = T1_13 * s1 + T3_23 * c1;
-    T[7] = T1_14 * s1 + d2 * c1;
-    T[8] = -(T3_11 * s2 + T4_21 * c2);
-    T[9] = t3 * s2 + t4 * c2;
-    T[10] = -(T3_13 * s2 - c5 * c2);
-    T[11] = d3 * c2;
-    T[12] = CLOSEDFORM_C(0.0);
-    T[13] = CLOSEDFORM_C(0.0);
-    T[14] = CLOSEDFORM_C(0.0);
-    T[15] = CLOSEDFORM_C(1.0);
-}
-
-CLOSEDFORM_DISPATCHED
-void stanford_arm_fk(const stanford_arm_params *params,
-    const real_t q[6], real_t T[16])
-{
-    real_t sines[8], cosines[8];
-    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[0] };
-    cf_sincos_lanes(8, lanes, sines, cosines);
-    stanford_arm_fk_kernel(params, q, sines, cosines, T);
-}
-
-CLOSEDFORM_DISPATCHED
-void stanford_arm_fk_batch(size_t n, const stanford_arm_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *T, size_t T_stride)
-{
-    const stanford_arm_params local = *params;
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[5][CLOSEDFORM_BLOCK], cosines[5][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + 5 * q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + 4 * q_stride + start, sines[1], cosines[1]);
-        cf_sincos_block(length, q + 3 * q_stride + start, sines[2], cosines[2]);
-        cf_sincos_block(length, q + q_stride + start, sines[3], cosines[3]);
-        cf_sincos_block(length, q + start, sines[4], cosines[4]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
-            const real_t sines_i[5] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i] };
-            const real_t cosines_i[5] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i] };
-            real_t T_i[16];
-            stanford_arm_fk_kernel(&local, q_i, sines_i, cosines_i, T_i);
-            T[start + i] = T_i[0];
-            T[T_stride + start + i] = T_i[1];
-            T[2 * T_stride + start + i] = T_i[2];
-            T[3 * T_stride + start + i] = T_i[3];
-            T[4 * T_stride + start + i] = T_i[4];
-            T[5 * T_stride + start + i] = T_i[5];
-            T[6 * T_stride + start + i] = T_i[6];
-            T[7 * T_stride + start + i] = T_i[7];
-            T[8 * T_stride + start + i] = T_i[8];
-            T[9 * T_stride + start + i] = T_i[9];
-            T[10 * T_stride + start + i] = T_i[10];
-            T[11 * T_stride + start + i] = T_i[11];
-            T[12 * T_stride + start + i] = T_i[12];
-            T[13 * T_stride + start + i] = T_i[13];
-            T[14 * T_stride + start + i] = T_i[14];
-            T[15 * T_stride + start + i] = T_i[15];
-        }
-    }
-}
 
 CF_INLINE void stanford_arm_pose_kernel(const stanford_arm_params *params,
     const real_t q[6], const real_t *sines,
@@ -195,6 +96,105 @@ void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params,
             const real_t cosines_i[5] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i] };
             real_t T_i[16];
             stanford_arm_pose_kernel(&local, q_i, sines_i, cosines_i, T_i);
+            T[start + i] = T_i[0];
+            T[T_stride + start + i] = T_i[1];
+            T[2 * T_stride + start + i] = T_i[2];
+            T[3 * T_stride + start + i] = T_i[3];
+            T[4 * T_stride + start + i] = T_i[4];
+            T[5 * T_stride + start + i] = T_i[5];
+            T[6 * T_stride + start + i] = T_i[6];
+            T[7 * T_stride + start + i] = T_i[7];
+            T[8 * T_stride + start + i] = T_i[8];
+            T[9 * T_stride + start + i] = T_i[9];
+            T[10 * T_stride + start + i] = T_i[10];
+            T[11 * T_stride + start + i] = T_i[11];
+            T[12 * T_stride + start + i] = T_i[12];
+            T[13 * T_stride + start + i] = T_i[13];
+            T[14 * T_stride + start + i] = T_i[14];
+            T[15 * T_stride + start + i] = T_i[15];
+        }
+    }
+}
+
+CF_INLINE void stanford_arm_fk_kernel(const stanford_arm_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t T[16])
+{
+    const real_t d2 = params->d2;
+    const real_t d3 = q[2];
+    const real_t s6 = sines[0];
+    const real_t c6 = cosines[0];
+    const real_t s5 = sines[1];
+    const real_t c5 = cosines[1];
+    const real_t s4 = sines[2];
+    const real_t c4 = cosines[2];
+    const real_t s2 = sines[3];
+    const real_t c2 = cosines[3];
+    const real_t s1 = sines[4];
+    const real_t c1 = cosines[4];
+    const real_t T4_11 = c6 * c5;
+    const real_t T3_11 = T4_11 * c4 - s6 * s4;
+    const real_t T4_21 = c6 * s5;
+    const real_t T1_11 = T3_11 * c2 - T4_21 * s2;
+    const real_t T3_21 = T4_11 * s4 + s6 * c4;
+    const real_t t1 = s6 * c5;
+    const real_t t2 = t1 * s4 - c6 * c4;
+    const real_t t3 = t1 * c4 + c6 * s4;
+    const real_t t4 = s6 * s5;
+    const real_t t5 = t3 * c2 - t4 * s2;
+    const real_t T3_13 = s5 * c4;
+    const real_t T1_13 = T3_13 * c2 + c5 * s2;
+    const real_t T3_23 = s5 * s4;
+    const real_t T1_14 = d3 * s2;
+    T[0] = T1_11 * c1 - T3_21 * s1;
+    T[1] = t2 * s1 - t5 * c1;
+    T[2] = T1_13 * c1 - T3_23 * s1;
+    T[3] = T1_14 * c1 - d2 * s1;
+    T[4] = T1_11 * s1 + T3_21 * c1;
+    T[5] = -(t5 * s1 + t2 * c1);
+    T[6] = T1_13 * s1 + T3_23 * c1;
+    T[7] = T1_14 * s1 + d2 * c1;
+    T[8] = -(T3_11 * s2 + T4_21 * c2);
+    T[9] = t3 * s2 + t4 * c2;
+    T[10] = -(T3_13 * s2 - c5 * c2);
+    T[11] = d3 * c2;
+    T[12] = CLOSEDFORM_C(0.0);
+    T[13] = CLOSEDFORM_C(0.0);
+    T[14] = CLOSEDFORM_C(0.0);
+    T[15] = CLOSEDFORM_C(1.0);
+}
+
+CLOSEDFORM_DISPATCHED
+void stanford_arm_fk(const stanford_arm_params *params,
+    const real_t q[6], real_t T[16])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[5], q[4], q[3], q[1], q[0] };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    stanford_arm_fk_kernel(params, q, sines, cosines, T);
+}
+
+CLOSEDFORM_DISPATCHED
+void stanford_arm_fk_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride)
+{
+    const stanford_arm_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[5][CLOSEDFORM_BLOCK], cosines[5][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + 5 * q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 4 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 3 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + q_stride + start, sines[3], cosines[3]);
+        cf_sincos_block(length, q + start, sines[4], cosines[4]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
+            const real_t sines_i[5] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i] };
+            const real_t cosines_i[5] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i] };
+            real_t T_i[16];
+            stanford_arm_fk_kernel(&local, q_i, sines_i, cosines_i, T_i);
             T[start + i] = T_i[0];
             T[T_stride + start + i] = T_i[1];
             T[2 * T_stride + start + i] = T_i[2];
@@ -341,6 +341,137 @@ void stanford_arm_jacobian_batch(size_t n, const stanford_arm_params *params,
             J[33 * J_stride + start + i] = J_i[33];
             J[34 * J_stride + start + i] = J_i[34];
             J[35 * J_stride + start + i] = J_i[35];
+        }
+    }
+}
+
+CF_INLINE void stanford_arm_determinant_kernel(const real_t q[6], const real_t *sines,
+    real_t det[1])
+{
+    const real_t d3 = q[2];
+    const real_t s2 = sines[0];
+    const real_t s5 = sines[1];
+    det[0] = d3 * d3 * s2 * s5;
+}
+
+CLOSEDFORM_DISPATCHED
+void stanford_arm_determinant(const stanford_arm_params *params,
+    const real_t q[6], real_t det[1])
+{
+    (void)params;
+    static const signed char q_degrees[6] = { 0, 0, 1, 0, 0, 0 };
+    static const signed char det_degrees[1] = { 2 };
+    real_t q_scaled[6];
+    int exponent = 0;
+    const real_t size = cf_abs(q[2]);
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        cf_rescale(6, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[1], q[4] };
+    cf_sincos_lanes(2, lanes, sines, cosines);
+    stanford_arm_determinant_kernel(q, sines, det);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(1, det_degrees, exponent, det, det);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word stanford_arm_determinant_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(dimensions, cf_abs(q[2 * q_stride + i])), CF_SIZES_2);
+}
+
+CF_RARE void stanford_arm_determinant_other_sizes(size_t n, const real_t dimensions,
+    const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(stanford_arm_determinant_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t det_i[1];
+        stanford_arm_determinant(params, q_i, det_i);
+        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *det, size_t det_stride)
+{
+    (void)params;
+    (void)det_stride;
+    const real_t dimensions = CLOSEDFORM_C(0.0);
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 4 * q_stride + start, sines[1], cosines[1]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
+            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
+            real_t det_i[1];
+            stanford_arm_determinant_kernel(q_i, sines_i, det_i);
+            det[start + i] = det_i[0];
+        }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= stanford_arm_determinant_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            stanford_arm_determinant_other_sizes(length, dimensions, params, q + start, q_stride, det + start, det_stride);
+    }
+}
+
+CF_INLINE void stanford_arm_singularities_kernel(const real_t q[6], const real_t *sines,
+    real_t factors[3])
+{
+    const real_t d3 = q[2];
+    const real_t s2 = sines[0];
+    const real_t s5 = sines[1];
+    factors[0] = s2;
+    factors[1] = d3;
+    factors[2] = s5;
+}
+
+CLOSEDFORM_DISPATCHED
+void stanford_arm_singularities(const stanford_arm_params *params,
+    const real_t q[6], real_t factors[3])
+{
+    (void)params;
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[1], q[4] };
+    cf_sincos_lanes(2, lanes, sines, cosines);
+    stanford_arm_singularities_kernel(q, sines, factors);
+}
+
+CLOSEDFORM_DISPATCHED
+void stanford_arm_singularities_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    (void)params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 4 * q_stride + start, sines[1], cosines[1]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
+            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
+            real_t factors_i[3];
+            stanford_arm_singularities_kernel(q_i, sines_i, factors_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
+            factors[2 * factors_stride + start + i] = factors_i[2];
         }
     }
 }
@@ -619,137 +750,6 @@ void stanford_arm_jacobian_body_batch(size_t n, const stanford_arm_params *param
     }
 }
 
-CF_INLINE void stanford_arm_determinant_kernel(const real_t q[6], const real_t *sines,
-    real_t det[1])
-{
-    const real_t d3 = q[2];
-    const real_t s2 = sines[0];
-    const real_t s5 = sines[1];
-    det[0] = d3 * d3 * s2 * s5;
-}
-
-CLOSEDFORM_DISPATCHED
-void stanford_arm_determinant(const stanford_arm_params *params,
-    const real_t q[6], real_t det[1])
-{
-    (void)params;
-    static const signed char q_degrees[6] = { 0, 0, 1, 0, 0, 0 };
-    static const signed char det_degrees[1] = { 2 };
-    real_t q_scaled[6];
-    int exponent = 0;
-    const real_t size = cf_abs(q[2]);
-    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
-        exponent = cf_exponent(size);
-        cf_rescale(6, q_degrees, -exponent, q, q_scaled);
-        q = q_scaled;
-    }
-    real_t sines[2], cosines[2];
-    const real_t lanes[2] = { q[1], q[4] };
-    cf_sincos_lanes(2, lanes, sines, cosines);
-    stanford_arm_determinant_kernel(q, sines, det);
-    if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(1, det_degrees, exponent, det, det);
-    }
-}
-
-/* Has its sign bit set where powers of the size of a posture may leave the range. */
-CF_INLINE cf_word stanford_arm_determinant_excess(const real_t dimensions,
-    const real_t *q, size_t q_stride, size_t i)
-{
-    return cf_size_excess(cf_max(dimensions, cf_abs(q[2 * q_stride + i])), CF_SIZES_2);
-}
-
-CF_RARE void stanford_arm_determinant_other_sizes(size_t n, const real_t dimensions,
-    const stanford_arm_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *det, size_t det_stride)
-{
-    for (size_t i = 0; i < n; ++i) {
-        if (!(stanford_arm_determinant_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
-        real_t q_i[6];
-        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
-        real_t det_i[1];
-        stanford_arm_determinant(params, q_i, det_i);
-        for (size_t k = 0; k < 1; ++k) det[k * det_stride + i] = det_i[k];
-
-    }
-}
-
-CLOSEDFORM_DISPATCHED
-void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *det, size_t det_stride)
-{
-    (void)params;
-    (void)det_stride;
-    const real_t dimensions = CLOSEDFORM_C(0.0);
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + 4 * q_stride + start, sines[1], cosines[1]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
-            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
-            real_t det_i[1];
-            stanford_arm_determinant_kernel(q_i, sines_i, det_i);
-            det[start + i] = det_i[0];
-        }
-        cf_word excess = 0;
-        for (size_t i = 0; i < length; ++i)
-            excess |= stanford_arm_determinant_excess(dimensions, q + start, q_stride, i);
-        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
-            stanford_arm_determinant_other_sizes(length, dimensions, params, q + start, q_stride, det + start, det_stride);
-    }
-}
-
-CF_INLINE void stanford_arm_singularities_kernel(const real_t q[6], const real_t *sines,
-    real_t factors[3])
-{
-    const real_t d3 = q[2];
-    const real_t s2 = sines[0];
-    const real_t s5 = sines[1];
-    factors[0] = s2;
-    factors[1] = d3;
-    factors[2] = s5;
-}
-
-CLOSEDFORM_DISPATCHED
-void stanford_arm_singularities(const stanford_arm_params *params,
-    const real_t q[6], real_t factors[3])
-{
-    (void)params;
-    real_t sines[2], cosines[2];
-    const real_t lanes[2] = { q[1], q[4] };
-    cf_sincos_lanes(2, lanes, sines, cosines);
-    stanford_arm_singularities_kernel(q, sines, factors);
-}
-
-CLOSEDFORM_DISPATCHED
-void stanford_arm_singularities_batch(size_t n, const stanford_arm_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *factors, size_t factors_stride)
-{
-    (void)params;
-    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
-        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
-        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
-        cf_sincos_block(length, q + 4 * q_stride + start, sines[1], cosines[1]);
-        CF_INDEPENDENT
-        for (size_t i = 0; i < length; ++i) {
-            const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
-            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
-            real_t factors_i[3];
-            stanford_arm_singularities_kernel(q_i, sines_i, factors_i);
-            factors[start + i] = factors_i[0];
-            factors[factors_stride + start + i] = factors_i[1];
-            factors[2 * factors_stride + start + i] = factors_i[2];
-        }
-    }
-}
-
 /* Every case. */
 CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const real_t one,
     const stanford_arm_params *params,
@@ -773,25 +773,25 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const real_t one,
     const real_t T43 = T[14];
     const real_t T44 = T[15];
     const real_t t1 = cf_rounded(single, one, T14 * T14) + cf_rounded(single, one, T24 * T24);
-    const real_t amplitude = cf_sqrt(t1);
+    const real_t h1 = cf_sqrt(t1);
     const real_t t2 = cf_rounded(single, one, T34 * T34);
     const real_t size = cf_abs(d2) + cf_sqrt(t2 + t1);
     const real_t t3 = CLOSEDFORM_VANISHING * size;
-    const int free_theta1 = amplitude <= t3;
-    const real_t t4 = amplitude - d2;
-    const real_t below = cf_max(t4, CLOSEDFORM_C(0.0));
-    const real_t t5 = d2 + amplitude;
-    const real_t above = cf_max(t5, CLOSEDFORM_C(0.0));
-    const real_t t6 = below - above;
-    const real_t t7 = CLOSEDFORM_C(1.0) / cf_divisor(single, free_theta1, amplitude * (below + above));
+    const int free1 = h1 <= t3;
+    const real_t t4 = h1 - d2;
+    const real_t below1 = cf_max(t4, CLOSEDFORM_C(0.0));
+    const real_t t5 = d2 + h1;
+    const real_t above1 = cf_max(t5, CLOSEDFORM_C(0.0));
+    const real_t t6 = below1 - above1;
+    const real_t t7 = CLOSEDFORM_C(1.0) / cf_divisor(single, free1, h1 * (below1 + above1));
     const real_t t8 = cf_rounded(single, one, T14 * t6 * t7);
-    const real_t root = cf_sqrt(below * above);
-    const real_t t9 = CLOSEDFORM_C(2.0) * root;
+    const real_t root1 = cf_sqrt(below1 * above1);
+    const real_t t9 = CLOSEDFORM_C(2.0) * root1;
     const real_t t10 = cf_rounded(single, one, t7 * (T24 * t9));
-    const real_t s1 = cf_select(free_theta1, CLOSEDFORM_C(0.0), t8 + t10);
+    const real_t s1 = cf_select(free1, CLOSEDFORM_C(0.0), t8 + t10);
     const real_t t11 = cf_rounded(single, one, t7 * (T14 * t9));
     const real_t t12 = cf_rounded(single, one, T24 * t6 * t7);
-    const real_t c1 = cf_select(free_theta1, CLOSEDFORM_C(1.0), t11 - t12);
+    const real_t c1 = cf_select(free1, CLOSEDFORM_C(1.0), t11 - t12);
     const int t13 = cf_nought(d2) == 0;
     const int t14 = cf_nought(T14) + cf_nought(T24) + cf_nought(T34) == 0;
     const real_t t15 = T13 - cf_rounded(single, one, T21 * T32) + cf_rounded(single, one, T22 * T31);
@@ -817,24 +817,24 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const real_t one,
     const real_t t34 = -(CLOSEDFORM_FEASIBILITY * size);
     const int unreachable = !((t34 <= t4) & (t34 <= t5));
     const real_t t35 = cf_poison(single, invalid | unreachable);
-    const real_t reach = cf_sqrt(t2 + cf_rounded(single, one, root * root));
-    const int drawn_in = reach <= t3;
-    const real_t t36 = CLOSEDFORM_C(1.0) / cf_divisor(single, drawn_in, reach);
-    const real_t s2 = cf_select(drawn_in, CLOSEDFORM_C(0.0), root * t36);
+    const real_t r_boom = cf_sqrt(t2 + cf_rounded(single, one, root1 * root1));
+    const int on_axis_boom = r_boom <= t3;
+    const real_t t36 = CLOSEDFORM_C(1.0) / cf_divisor(single, on_axis_boom, r_boom);
+    const real_t s2 = cf_select(on_axis_boom, CLOSEDFORM_C(0.0), root1 * t36);
     const real_t t37 = T34 * t36;
-    const real_t c2 = cf_select(drawn_in, CLOSEDFORM_C(1.0), t37);
-    const real_t t38 = reach + t35;
+    const real_t c2 = cf_select(on_axis_boom, CLOSEDFORM_C(1.0), t37);
+    const real_t t38 = r_boom + t35;
     const real_t t39 = cf_rounded(single, one, T13 * s1) - cf_rounded(single, one, T23 * c1);
     const real_t t40 = cf_rounded(single, one, t39 * t39);
     const real_t t41 = cf_rounded(single, one, T33 * s2);
     const real_t R1_13 = cf_rounded(single, one, T13 * c1) + cf_rounded(single, one, T23 * s1);
     const real_t t42 = t41 - cf_rounded(single, one, c2 * R1_13);
-    const real_t h = cf_sqrt(t40 + cf_rounded(single, one, t42 * t42));
+    const real_t h_wrist = cf_sqrt(t40 + cf_rounded(single, one, t42 * t42));
     const real_t t43 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
-    const int aligned = h <= t43;
-    const real_t t44 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned, h);
-    const real_t t45 = cf_select(aligned, CLOSEDFORM_C(0.0), t39 * t44);
-    const real_t c4 = cf_select(aligned, CLOSEDFORM_C(1.0), -(t42 * t44));
+    const int aligned_wrist = h_wrist <= t43;
+    const real_t t44 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_wrist, h_wrist);
+    const real_t t45 = cf_select(aligned_wrist, CLOSEDFORM_C(0.0), t39 * t44);
+    const real_t c_wrist = cf_select(aligned_wrist, CLOSEDFORM_C(1.0), -(t42 * t44));
     const real_t t46 = T33 * c2;
     const real_t t47 = s2 * R1_13;
     const real_t t48 = T11 * s1 - T21 * c1;
@@ -843,24 +843,24 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const real_t one,
     const real_t t50 = T12 * s1 - T22 * c1;
     const real_t t51 = T32 * s2;
     const real_t R1_12 = T12 * c1 + T22 * s1;
-    const real_t flip = cf_select(aligned, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t c2_right_back_noflip = cf_select(drawn_in, CLOSEDFORM_C(1.0), -t37);
-    const real_t t52 = -reach + t35;
+    const real_t flip_wrist = cf_select(aligned_wrist, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t c2_right_back_noflip = cf_select(on_axis_boom, CLOSEDFORM_C(1.0), -t37);
+    const real_t t52 = -r_boom + t35;
     const real_t t53 = cf_rounded(single, one, R1_13 * c2_right_back_noflip);
     const real_t R2_13_right_back_noflip = t41 + t53;
     const real_t t54 = cf_rounded(single, one, R2_13_right_back_noflip * R2_13_right_back_noflip);
-    const real_t h_right_back_noflip = cf_sqrt(t40 + t54);
-    const int aligned_right_back_noflip = h_right_back_noflip <= t43;
-    const real_t t55 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_right_back_noflip, h_right_back_noflip);
-    const real_t t56 = cf_select(aligned_right_back_noflip, CLOSEDFORM_C(0.0), t39 * t55);
-    const real_t c4_right_back_noflip = cf_select(aligned_right_back_noflip, CLOSEDFORM_C(1.0), R2_13_right_back_noflip * t55);
-    const real_t t57 = R2_13_right_back_noflip * c4_right_back_noflip;
+    const real_t h_wrist_right_back_noflip = cf_sqrt(t40 + t54);
+    const int aligned_wrist_right_back_noflip = h_wrist_right_back_noflip <= t43;
+    const real_t t55 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_wrist_right_back_noflip, h_wrist_right_back_noflip);
+    const real_t t56 = cf_select(aligned_wrist_right_back_noflip, CLOSEDFORM_C(0.0), t39 * t55);
+    const real_t c_wrist_right_back_noflip = cf_select(aligned_wrist_right_back_noflip, CLOSEDFORM_C(1.0), R2_13_right_back_noflip * t55);
+    const real_t t57 = R2_13_right_back_noflip * c_wrist_right_back_noflip;
     const real_t t58 = T33 * c2_right_back_noflip;
-    const real_t t59 = t48 * c4_right_back_noflip - t56 * (t49 + R1_11 * c2_right_back_noflip);
-    const real_t t60 = t56 * (t51 + R1_12 * c2_right_back_noflip) - t50 * c4_right_back_noflip;
-    const real_t flip_right_back_flip = cf_select(aligned_right_back_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const real_t s1_left_out_noflip = cf_select(free_theta1, CLOSEDFORM_C(0.0), t8 - t10);
-    const real_t c1_left_out_noflip = cf_select(free_theta1, CLOSEDFORM_C(1.0), -(t12 + t11));
+    const real_t t59 = t48 * c_wrist_right_back_noflip - t56 * (t49 + R1_11 * c2_right_back_noflip);
+    const real_t t60 = t56 * (t51 + R1_12 * c2_right_back_noflip) - t50 * c_wrist_right_back_noflip;
+    const real_t flip_wrist_right_back_flip = cf_select(aligned_wrist_right_back_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t s1_left_out_noflip = cf_select(free1, CLOSEDFORM_C(0.0), t8 - t10);
+    const real_t c1_left_out_noflip = cf_select(free1, CLOSEDFORM_C(1.0), -(t12 + t11));
     const real_t t61 = cf_rounded(single, one, T13 * s1_left_out_noflip);
     const real_t t62 = cf_rounded(single, one, T23 * c1_left_out_noflip);
     const real_t t63 = t61 - t62;
@@ -871,37 +871,38 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const real_t one,
     const real_t t67 = cf_rounded(single, one, c2 * R1_13_left_out_noflip);
     const real_t R2_13_left_out_noflip = t41 + t67;
     const real_t t68 = cf_rounded(single, one, R2_13_left_out_noflip * R2_13_left_out_noflip);
-    const real_t h_left_out_noflip = cf_sqrt(t64 + t68);
-    const int aligned_left_out_noflip = h_left_out_noflip <= t43;
-    const real_t t69 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_out_noflip, h_left_out_noflip);
-    const real_t t70 = cf_select(aligned_left_out_noflip, CLOSEDFORM_C(0.0), t63 * t69);
-    const real_t c4_left_out_noflip = cf_select(aligned_left_out_noflip, CLOSEDFORM_C(1.0), R2_13_left_out_noflip * t69);
-    const real_t t71 = t63 * t70 + R2_13_left_out_noflip * c4_left_out_noflip;
+    const real_t h_wrist_left_out_noflip = cf_sqrt(t64 + t68);
+    const int aligned_wrist_left_out_noflip = h_wrist_left_out_noflip <= t43;
+    const real_t t69 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_wrist_left_out_noflip, h_wrist_left_out_noflip);
+    const real_t t70 = cf_select(aligned_wrist_left_out_noflip, CLOSEDFORM_C(0.0), t63 * t69);
+    const real_t c_wrist_left_out_noflip = cf_select(aligned_wrist_left_out_noflip, CLOSEDFORM_C(1.0), R2_13_left_out_noflip * t69);
+    const real_t t71 = R2_13_left_out_noflip * c_wrist_left_out_noflip;
     const real_t t72 = s2 * R1_13_left_out_noflip;
     const real_t t73 = T11 * s1_left_out_noflip - T21 * c1_left_out_noflip;
     const real_t R1_11_left_out_noflip = T11 * c1_left_out_noflip + T21 * s1_left_out_noflip;
-    const real_t t74 = c4_left_out_noflip * t73 - t70 * (t49 + c2 * R1_11_left_out_noflip);
+    const real_t t74 = c_wrist_left_out_noflip * t73 - t70 * (t49 + c2 * R1_11_left_out_noflip);
     const real_t R1_12_left_out_noflip = T12 * c1_left_out_noflip + T22 * s1_left_out_noflip;
     const real_t t75 = T12 * s1_left_out_noflip - T22 * c1_left_out_noflip;
-    const real_t t76 = t70 * (t51 + c2 * R1_12_left_out_noflip) - c4_left_out_noflip * t75;
-    const real_t flip_left_out_flip = cf_select(aligned_left_out_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const real_t t76 = t70 * (t51 + c2 * R1_12_left_out_noflip) - c_wrist_left_out_noflip * t75;
+    const real_t flip_wrist_left_out_flip = cf_select(aligned_wrist_left_out_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
     const real_t t77 = cf_rounded(single, one, c2_right_back_noflip * R1_13_left_out_noflip);
     const real_t t78 = t41 - t77;
-    const real_t h_left_back_noflip = cf_sqrt(t64 + cf_rounded(single, one, t78 * t78));
-    const int aligned_left_back_noflip = h_left_back_noflip <= t43;
-    const real_t t79 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_left_back_noflip, h_left_back_noflip);
-    const real_t t80 = cf_select(aligned_left_back_noflip, CLOSEDFORM_C(0.0), t63 * t79);
-    const real_t c4_left_back_noflip = cf_select(aligned_left_back_noflip, CLOSEDFORM_C(1.0), -(t78 * t79));
+    const real_t h_wrist_left_back_noflip = cf_sqrt(t64 + cf_rounded(single, one, t78 * t78));
+    const int aligned_wrist_left_back_noflip = h_wrist_left_back_noflip <= t43;
+    const real_t t79 = CLOSEDFORM_C(1.0) / cf_divisor(single, aligned_wrist_left_back_noflip, h_wrist_left_back_noflip);
+    const real_t t80 = cf_select(aligned_wrist_left_back_noflip, CLOSEDFORM_C(0.0), t63 * t79);
+    const real_t c_wrist_left_back_noflip = cf_select(aligned_wrist_left_back_noflip, CLOSEDFORM_C(1.0), -(t78 * t79));
     const real_t t81 = t49 - c2_right_back_noflip * R1_11_left_out_noflip;
     const real_t t82 = t51 - c2_right_back_noflip * R1_12_left_out_noflip;
-    const real_t flip_left_back_flip = cf_select(aligned_left_back_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
-    const int t83 = free_theta1 | drawn_in;
-    const real_t t84 = cf_status(single, invalid, unreachable, t83 | aligned);
-    const real_t t85 = cf_status(single, invalid, unreachable, t83 | aligned_right_back_noflip);
-    const real_t t86 = cf_status(single, invalid, unreachable, t83 | aligned_left_out_noflip);
-    const real_t t87 = cf_status(single, invalid, unreachable, t83 | aligned_left_back_noflip);
-    const real_t opposite[16] = { s1, s2, t45, t39 * t45 - t42 * c4, c4 * t48 + t45 * (t49 - c2 * R1_11), s2, t56, t39 * t56 + t57, t59, s1_left_out_noflip, t70, t71, t74, t80, t63 * t80 - t78 * c4_left_back_noflip, t73 * c4_left_back_noflip + t80 * t81 };
-    const real_t adjacent[16] = { c1, c2, c4, t46 + t47, -(c4 * t50 + t45 * (t51 - c2 * R1_12)), c2_right_back_noflip, c4_right_back_noflip, t58 - t47, t60, c1_left_out_noflip, c4_left_out_noflip, t46 - t72, t76, c4_left_back_noflip, t58 + t72, -(t75 * c4_left_back_noflip + t80 * t82) };
+    const real_t t83 = -(t75 * c_wrist_left_back_noflip + t80 * t82);
+    const real_t flip_wrist_left_back_flip = cf_select(aligned_wrist_left_back_noflip, CLOSEDFORM_C(0.0), CLOSEDFORM_C(3.141592653589793));
+    const int t84 = free1 | on_axis_boom;
+    const real_t t85 = cf_status(single, invalid, unreachable, t84 | aligned_wrist);
+    const real_t t86 = cf_status(single, invalid, unreachable, t84 | aligned_wrist_right_back_noflip);
+    const real_t t87 = cf_status(single, invalid, unreachable, t84 | aligned_wrist_left_out_noflip);
+    const real_t t88 = cf_status(single, invalid, unreachable, t84 | aligned_wrist_left_back_noflip);
+    const real_t opposite[16] = { s1, s2, t45, t39 * t45 - t42 * c_wrist, c_wrist * t48 + t45 * (t49 - c2 * R1_11), s2, t56, t39 * t56 + t57, t59, s1_left_out_noflip, t70, t63 * t70 + t71, t74, t80, t63 * t80 - t78 * c_wrist_left_back_noflip, t73 * c_wrist_left_back_noflip + t80 * t81 };
+    const real_t adjacent[16] = { c1, c2, c_wrist, t46 + t47, -(c_wrist * t50 + t45 * (t51 - c2 * R1_12)), c2_right_back_noflip, c_wrist_right_back_noflip, t58 - t47, t60, c1_left_out_noflip, c_wrist_left_out_noflip, t46 - t72, t76, c_wrist_left_back_noflip, t58 + t72, t83 };
     real_t angles[16];
     if (single) {
         cf_atan2_lanes(16, opposite, adjacent, angles);
@@ -923,74 +924,74 @@ CF_INLINE void stanford_arm_ik_whole_kernel(const int single, const real_t one,
         angles[14] = cf_atan2(opposite[14], adjacent[14]);
         angles[15] = cf_atan2(opposite[15], adjacent[15]);
     }
-    const real_t t88 = cf_wrap_cut(angles[0]) + t35;
-    const real_t t89 = cf_wrap_cut(angles[1]) + t35;
-    const real_t t90 = cf_wrap_cut(-angles[5]) + t35;
-    const real_t t91 = cf_wrap(flip_right_back_flip - angles[6]) + t35;
-    const real_t t92 = cf_wrap(flip_right_back_flip - angles[8]) + t35;
-    const real_t t93 = cf_wrap_cut(angles[9]) + t35;
-    const real_t t94 = cf_wrap_cut(-angles[1]) + t35;
-    const real_t t95 = cf_wrap(flip_left_out_flip - angles[10]) + t35;
-    const real_t t96 = cf_wrap(flip_left_out_flip - angles[12]) + t35;
-    const real_t t97 = cf_wrap_cut(angles[5]) + t35;
-    const real_t t98 = cf_wrap(flip_left_back_flip - angles[13]) + t35;
-    const real_t t99 = cf_wrap(flip_left_back_flip - angles[15]) + t35;
-    q[0] = t88;
-    q[1] = t89;
+    const real_t t89 = cf_wrap_cut(angles[0]) + t35;
+    const real_t t90 = cf_wrap_cut(angles[1]) + t35;
+    const real_t t91 = cf_wrap_cut(-angles[5]) + t35;
+    const real_t t92 = cf_wrap(flip_wrist_right_back_flip - angles[6]);
+    const real_t t93 = cf_wrap(flip_wrist_right_back_flip - angles[8]);
+    const real_t t94 = cf_wrap_cut(angles[9]) + t35;
+    const real_t t95 = cf_wrap_cut(-angles[1]) + t35;
+    const real_t t96 = cf_wrap(flip_wrist_left_out_flip - angles[10]);
+    const real_t t97 = cf_wrap(flip_wrist_left_out_flip - angles[12]);
+    const real_t t98 = cf_wrap_cut(angles[5]) + t35;
+    const real_t t99 = cf_wrap(flip_wrist_left_back_flip - angles[13]);
+    const real_t t100 = cf_wrap(flip_wrist_left_back_flip - angles[15]);
+    q[0] = t89;
+    q[1] = t90;
     q[2] = t38;
     q[3] = cf_wrap_cut(-angles[2]) + t35;
     q[4] = cf_wrap_cut(angles[3]) + t35;
     q[5] = cf_wrap_cut(-angles[4]) + t35;
-    q[6] = t88;
-    q[7] = t89;
+    q[6] = t89;
+    q[7] = t90;
     q[8] = t38;
-    q[9] = cf_wrap(flip - angles[2]) + t35;
+    q[9] = cf_wrap(flip_wrist - angles[2]) + t35;
     q[10] = cf_wrap_cut(-angles[3]) + t35;
-    q[11] = cf_wrap(flip - angles[4]) + t35;
-    q[12] = t88;
-    q[13] = t90;
+    q[11] = cf_wrap(flip_wrist - angles[4]) + t35;
+    q[12] = t89;
+    q[13] = t91;
     q[14] = t52;
     q[15] = cf_wrap_cut(-angles[6]) + t35;
     q[16] = cf_wrap_cut(angles[7]) + t35;
     q[17] = cf_wrap_cut(-angles[8]) + t35;
-    q[18] = t88;
-    q[19] = t90;
+    q[18] = t89;
+    q[19] = t91;
     q[20] = t52;
-    q[21] = t91;
+    q[21] = t92 + t35;
     q[22] = cf_wrap_cut(-angles[7]) + t35;
-    q[23] = t92;
-    q[24] = t93;
-    q[25] = t94;
+    q[23] = t93 + t35;
+    q[24] = t94;
+    q[25] = t95;
     q[26] = t38;
     q[27] = cf_wrap_cut(-angles[10]) + t35;
     q[28] = cf_wrap_cut(angles[11]) + t35;
     q[29] = cf_wrap_cut(-angles[12]) + t35;
-    q[30] = t93;
-    q[31] = t94;
+    q[30] = t94;
+    q[31] = t95;
     q[32] = t38;
-    q[33] = t95;
+    q[33] = t96 + t35;
     q[34] = cf_wrap_cut(-angles[11]) + t35;
-    q[35] = t96;
-    q[36] = t93;
-    q[37] = t97;
+    q[35] = t97 + t35;
+    q[36] = t94;
+    q[37] = t98;
     q[38] = t52;
     q[39] = cf_wrap_cut(-angles[13]) + t35;
     q[40] = cf_wrap_cut(angles[14]) + t35;
     q[41] = cf_wrap_cut(-angles[15]) + t35;
-    q[42] = t93;
-    q[43] = t97;
+    q[42] = t94;
+    q[43] = t98;
     q[44] = t52;
-    q[45] = t98;
+    q[45] = t99 + t35;
     q[46] = cf_wrap_cut(-angles[14]) + t35;
-    q[47] = t99;
-    status[0] = t84;
-    status[1] = t84;
-    status[2] = t85;
-    status[3] = t85;
-    status[4] = t86;
-    status[5] = t86;
-    status[6] = t87;
-    status[7] = t87;
+    q[47] = t100 + t35;
+    status[0] = t85;
+    status[1] = t85;
+    status[2] = t86;
+    status[3] = t86;
+    status[4] = t87;
+    status[5] = t87;
+    status[6] = t88;
+    status[7] = t88;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1028,19 +1029,19 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const real_t one,
     const real_t T43 = T[14];
     const real_t T44 = T[15];
     const real_t t1 = cf_rounded(single, one, T14 * T14) + cf_rounded(single, one, T24 * T24);
-    const real_t amplitude = cf_sqrt(t1);
-    const real_t t2 = amplitude - d2;
-    const real_t below = cf_max(t2, CLOSEDFORM_C(0.0));
-    const real_t t3 = d2 + amplitude;
-    const real_t above = cf_max(t3, CLOSEDFORM_C(0.0));
-    const real_t t4 = below - above;
+    const real_t h1 = cf_sqrt(t1);
+    const real_t t2 = h1 - d2;
+    const real_t below1 = cf_max(t2, CLOSEDFORM_C(0.0));
+    const real_t t3 = d2 + h1;
+    const real_t above1 = cf_max(t3, CLOSEDFORM_C(0.0));
+    const real_t t4 = below1 - above1;
     const real_t t5 = cf_rounded(single, one, T34 * T34);
     const real_t size = cf_abs(d2) + cf_sqrt(t5 + t1);
     const real_t t6 = CLOSEDFORM_VANISHING * size;
-    const real_t t7 = CLOSEDFORM_C(1.0) / cf_divisor(single, amplitude <= t6, amplitude * (below + above));
+    const real_t t7 = CLOSEDFORM_C(1.0) / cf_divisor(single, h1 <= t6, h1 * (below1 + above1));
     const real_t t8 = cf_rounded(single, one, T14 * t4 * t7);
-    const real_t root = cf_sqrt(below * above);
-    const real_t t9 = CLOSEDFORM_C(2.0) * root;
+    const real_t root1 = cf_sqrt(below1 * above1);
+    const real_t t9 = CLOSEDFORM_C(2.0) * root1;
     const real_t t10 = cf_rounded(single, one, t7 * (T24 * t9));
     const real_t s1 = t8 + t10;
     const real_t t11 = cf_rounded(single, one, T24 * t4 * t7);
@@ -1071,31 +1072,31 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const real_t one,
     const real_t t35 = -(CLOSEDFORM_FEASIBILITY * size);
     const int unreachable = !((t35 <= t2) & (t35 <= t3));
     const real_t t36 = cf_poison(single, invalid | unreachable);
-    const real_t reach = cf_sqrt(t5 + cf_rounded(single, one, root * root));
-    const real_t t37 = reach + t36;
+    const real_t r_boom = cf_sqrt(t5 + cf_rounded(single, one, root1 * root1));
+    const real_t t37 = r_boom + t36;
     const real_t t38 = cf_rounded(single, one, T13 * s1) + cf_rounded(single, one, T23 * t13);
-    const real_t t39 = CLOSEDFORM_C(1.0) / cf_divisor(single, reach <= t6, reach);
-    const real_t s2 = root * t39;
+    const real_t t39 = CLOSEDFORM_C(1.0) / cf_divisor(single, r_boom <= t6, r_boom);
+    const real_t s2 = root1 * t39;
     const real_t t40 = cf_rounded(single, one, T33 * s2);
     const real_t c2 = T34 * t39;
     const real_t t41 = cf_rounded(single, one, T13 * t13) - cf_rounded(single, one, T23 * s1);
     const real_t t42 = t40 + cf_rounded(single, one, c2 * t41);
     const real_t t43 = cf_rounded(single, one, t38 * t38) + cf_rounded(single, one, t42 * t42);
-    const real_t h = cf_sqrt(t43);
+    const real_t h_wrist = cf_sqrt(t43);
     const real_t t44 = CLOSEDFORM_VANISHING * CLOSEDFORM_C(16.0);
-    const real_t t45 = CLOSEDFORM_C(1.0) / cf_divisor(single, h <= t44, h);
+    const real_t t45 = CLOSEDFORM_C(1.0) / cf_divisor(single, h_wrist <= t44, h_wrist);
     const real_t t46 = t38 * t45;
-    const real_t c4_right_back_noflip = t42 * t45;
-    const real_t t47 = t38 * t46 + t42 * c4_right_back_noflip;
+    const real_t c_wrist_right_back_noflip = t42 * t45;
+    const real_t t47 = t38 * t46 + t42 * c_wrist_right_back_noflip;
     const real_t t48 = T33 * c2;
     const real_t R2_33 = t48 - s2 * t41;
-    const real_t t49 = c4_right_back_noflip * (T11 * s1 + T21 * t13);
+    const real_t t49 = c_wrist_right_back_noflip * (T11 * s1 + T21 * t13);
     const real_t t50 = T31 * s2;
     const real_t t51 = t49 - t46 * (t50 + c2 * (T11 * t13 - T21 * s1));
-    const real_t t52 = c4_right_back_noflip * (T12 * s1 + T22 * t13);
+    const real_t t52 = c_wrist_right_back_noflip * (T12 * s1 + T22 * t13);
     const real_t t53 = T32 * s2;
     const real_t t54 = t52 - t46 * (t53 + c2 * (T12 * t13 - T22 * s1));
-    const real_t t55 = -reach + t36;
+    const real_t t55 = -r_boom + t36;
     const real_t s1_left_out_noflip = t8 - t10;
     const real_t t56 = t11 + t12;
     const real_t t57 = cf_rounded(single, one, T13 * s1_left_out_noflip);
@@ -1104,22 +1105,23 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const real_t one,
     const real_t t60 = cf_rounded(single, one, T13 * t56) - t59;
     const real_t R2_13_left_out_noflip = t40 - cf_rounded(single, one, c2 * t60);
     const real_t t61 = cf_rounded(single, one, R2_13_left_out_noflip * R2_13_left_out_noflip);
-    const real_t h_left_out_noflip = cf_sqrt(cf_rounded(single, one, t58 * t58) + t61);
-    const real_t t62 = CLOSEDFORM_C(1.0) / cf_divisor(single, h_left_out_noflip <= t44, h_left_out_noflip);
+    const real_t h_wrist_left_out_noflip = cf_sqrt(cf_rounded(single, one, t58 * t58) + t61);
+    const real_t t62 = CLOSEDFORM_C(1.0) / cf_divisor(single, h_wrist_left_out_noflip <= t44, h_wrist_left_out_noflip);
     const real_t t63 = t58 * t62;
-    const real_t c4_left_out_noflip = R2_13_left_out_noflip * t62;
-    const real_t t64 = t58 * t63 + R2_13_left_out_noflip * c4_left_out_noflip;
+    const real_t c_wrist_left_out_noflip = R2_13_left_out_noflip * t62;
+    const real_t t64 = R2_13_left_out_noflip * c_wrist_left_out_noflip;
+    const real_t t65 = t58 * t63 + t64;
     const real_t R2_33_left_out_noflip = t48 + s2 * t60;
-    const real_t t65 = c4_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t56);
+    const real_t t66 = c_wrist_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t56);
     const real_t R2_11_left_out_noflip = t50 - c2 * (T11 * t56 - T21 * s1_left_out_noflip);
-    const real_t t66 = t65 - t63 * R2_11_left_out_noflip;
-    const real_t t67 = c4_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t56);
+    const real_t t67 = t66 - t63 * R2_11_left_out_noflip;
+    const real_t t68 = c_wrist_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t56);
     const real_t R2_12_left_out_noflip = t53 - c2 * (T12 * t56 - T22 * s1_left_out_noflip);
-    const real_t t68 = t67 - t63 * R2_12_left_out_noflip;
-    const real_t t69 = cf_status(single, invalid, unreachable, 0);
-    const int t70 = (amplitude <= t6) | (reach <= t6) | (h <= t44);
-    const real_t opposite[16] = { s1, root, t38, t47, -t51, root, t38, t47, t51, s1_left_out_noflip, t58, t64, t66, t58, t64, -t66 };
-    const real_t adjacent[16] = { -t13, T34, -t42, R2_33, t54, -T34, t42, -R2_33, -t54, -t56, R2_13_left_out_noflip, R2_33_left_out_noflip, -t68, -R2_13_left_out_noflip, -R2_33_left_out_noflip, t68 };
+    const real_t t69 = t68 - t63 * R2_12_left_out_noflip;
+    const real_t t70 = cf_status(single, invalid, unreachable, 0);
+    const int t71 = (h1 <= t6) | (r_boom <= t6) | (h_wrist <= t44);
+    const real_t opposite[16] = { s1, root1, t38, t47, -t51, root1, t38, t47, t51, s1_left_out_noflip, t58, t65, t67, t58, t65, -t67 };
+    const real_t adjacent[16] = { -t13, T34, -t42, R2_33, t54, -T34, t42, -R2_33, -t54, -t56, R2_13_left_out_noflip, R2_33_left_out_noflip, -t69, -R2_13_left_out_noflip, -R2_33_left_out_noflip, t69 };
     real_t angles[16];
     if (single) {
         cf_atan2_lanes(16, opposite, adjacent, angles);
@@ -1141,77 +1143,77 @@ CF_INLINE void stanford_arm_ik_common_kernel(const int single, const real_t one,
         angles[14] = cf_atan2(opposite[14], adjacent[14]);
         angles[15] = cf_atan2(opposite[15], adjacent[15]);
     }
-    const real_t t71 = cf_wrap_cut(angles[0]) + t36;
-    const real_t t72 = cf_wrap_cut(angles[1]) + t36;
-    const real_t t73 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[2]);
-    const real_t t74 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[4]);
-    const real_t t75 = cf_wrap_cut(-angles[5]) + t36;
-    const real_t t76 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[6]);
-    const real_t t77 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[8]);
-    const real_t t78 = cf_wrap_cut(angles[9]) + t36;
-    const real_t t79 = cf_wrap_cut(-angles[1]) + t36;
-    const real_t t80 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[10]);
-    const real_t t81 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[12]);
-    const real_t t82 = cf_wrap_cut(angles[5]) + t36;
-    const real_t t83 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[13]);
-    const real_t t84 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[15]);
-    q[0] = t71;
-    q[1] = t72;
+    const real_t t72 = cf_wrap_cut(angles[0]) + t36;
+    const real_t t73 = cf_wrap_cut(angles[1]) + t36;
+    const real_t t74 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[2]);
+    const real_t t75 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[4]);
+    const real_t t76 = cf_wrap_cut(-angles[5]) + t36;
+    const real_t t77 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[6]);
+    const real_t t78 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[8]);
+    const real_t t79 = cf_wrap_cut(angles[9]) + t36;
+    const real_t t80 = cf_wrap_cut(-angles[1]) + t36;
+    const real_t t81 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[10]);
+    const real_t t82 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[12]);
+    const real_t t83 = cf_wrap_cut(angles[5]) + t36;
+    const real_t t84 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[13]);
+    const real_t t85 = cf_wrap(CLOSEDFORM_C(3.141592653589793) - angles[15]);
+    q[0] = t72;
+    q[1] = t73;
     q[2] = t37;
     q[3] = cf_wrap_cut(-angles[2]) + t36;
     q[4] = cf_wrap_cut(angles[3]) + t36;
     q[5] = cf_wrap_cut(-angles[4]) + t36;
-    q[6] = t71;
-    q[7] = t72;
+    q[6] = t72;
+    q[7] = t73;
     q[8] = t37;
-    q[9] = t73 + t36;
+    q[9] = t74 + t36;
     q[10] = cf_wrap_cut(-angles[3]) + t36;
-    q[11] = t74 + t36;
-    q[12] = t71;
-    q[13] = t75;
+    q[11] = t75 + t36;
+    q[12] = t72;
+    q[13] = t76;
     q[14] = t55;
     q[15] = cf_wrap_cut(-angles[6]) + t36;
     q[16] = cf_wrap_cut(angles[7]) + t36;
     q[17] = cf_wrap_cut(-angles[8]) + t36;
-    q[18] = t71;
-    q[19] = t75;
+    q[18] = t72;
+    q[19] = t76;
     q[20] = t55;
-    q[21] = t76 + t36;
+    q[21] = t77 + t36;
     q[22] = cf_wrap_cut(-angles[7]) + t36;
-    q[23] = t77 + t36;
-    q[24] = t78;
-    q[25] = t79;
+    q[23] = t78 + t36;
+    q[24] = t79;
+    q[25] = t80;
     q[26] = t37;
     q[27] = cf_wrap_cut(-angles[10]) + t36;
     q[28] = cf_wrap_cut(angles[11]) + t36;
     q[29] = cf_wrap_cut(-angles[12]) + t36;
-    q[30] = t78;
-    q[31] = t79;
+    q[30] = t79;
+    q[31] = t80;
     q[32] = t37;
-    q[33] = t80 + t36;
+    q[33] = t81 + t36;
     q[34] = cf_wrap_cut(-angles[11]) + t36;
-    q[35] = t81 + t36;
-    q[36] = t78;
-    q[37] = t82;
+    q[35] = t82 + t36;
+    q[36] = t79;
+    q[37] = t83;
     q[38] = t55;
     q[39] = cf_wrap_cut(-angles[13]) + t36;
     q[40] = cf_wrap_cut(angles[14]) + t36;
     q[41] = cf_wrap_cut(-angles[15]) + t36;
-    q[42] = t78;
-    q[43] = t82;
+    q[42] = t79;
+    q[43] = t83;
     q[44] = t55;
-    q[45] = t83 + t36;
+    q[45] = t84 + t36;
     q[46] = cf_wrap_cut(-angles[14]) + t36;
-    q[47] = t84 + t36;
-    status[0] = t69;
-    status[1] = t69;
-    status[2] = t69;
-    status[3] = t69;
-    status[4] = t69;
-    status[5] = t69;
-    status[6] = t69;
-    status[7] = t69;
-    rare[0] = (t70 | (h_left_out_noflip <= t44)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    q[47] = t85 + t36;
+    status[0] = t70;
+    status[1] = t70;
+    status[2] = t70;
+    status[3] = t70;
+    status[4] = t70;
+    status[5] = t70;
+    status[6] = t70;
+    status[7] = t70;
+    rare[0] = (t71 | (h_wrist_left_out_noflip <= t44)) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void stanford_arm_ik_common_batch(size_t n, const stanford_arm_params *params,

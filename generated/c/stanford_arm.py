@@ -24,21 +24,21 @@ __all__ = [
     "Positions",
     "Solutions",
     "Status",
-    "fk",
     "pose",
+    "fk",
     "jacobian",
-    "jacobian_space",
-    "jacobian_body",
     "determinant",
     "singularities",
+    "jacobian_space",
+    "jacobian_body",
     "ik",
 ]
 
-fk = _native.function("stanford_arm.fk")
 pose = _native.function("stanford_arm.pose")
+fk = _native.function("stanford_arm.fk")
 jacobian = _native.function("stanford_arm.jacobian")
-jacobian_space = _native.function("stanford_arm.jacobian_space")
-jacobian_body = _native.function("stanford_arm.jacobian_body")
 determinant = _native.function("stanford_arm.determinant")
 singularities = _native.function("stanford_arm.singularities")
+jacobian_space = _native.function("stanford_arm.jacobian_space")
+jacobian_body = _native.function("stanford_arm.jacobian_body")
 ik = _native.function("stanford_arm.ik", Solutions)

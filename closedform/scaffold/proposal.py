@@ -1,0 +1,34 @@
+"""A proposed chain of lemmas, as lines; or why there is none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+class NoChainError(ValueError):
+    """No chain of lemmas is known for an arm.
+
+    ``found`` is a clause that names the property of this arm that prevents it.  ``needed`` is a
+    sentence on what the known chains need and what you can do.
+    """
+
+    def __init__(self, found: str, needed: str):
+        super().__init__(f"no chain of lemmas is known for this arm, because {found}.  {needed}")
+        self.found, self.needed = found, needed
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """The structure that was recognised, and the lines that solve the arm; ``ik`` is a Chain."""
+
+    structure: str
+    lines: tuple[str, ...]
+    lemmas: tuple[str, ...]
+    branches: int
+
+    @property
+    def source(self) -> str:
+        return "\n".join(self.lines) + "\n"
+
+
+__all__ = ["NoChainError", "Proposal"]

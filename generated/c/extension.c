@@ -1201,25 +1201,6 @@ static const cf_array planar_2r_workspace_radii_out[] = {
 static const char *const puma560_fields[] = { "a2", "a3", "d3", "d4" };
 static const double puma560_values[] = PUMA560_DEFAULTS;
 
-static void puma560_fk_one(const double *params, const double *const *in, void *const *out)
-{
-    puma560_fk((const puma560_params *)params, in[0], out[0]);
-}
-
-static void puma560_fk_many(size_t n, const double *params, const double *const *in,
-    const size_t *in_stride, void *const *out, const size_t *out_stride)
-{
-    puma560_fk_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
-}
-
-static const cf_array puma560_fk_in[] = {
-    { "q", 1, { 6 }, 6, CF_REAL },
-};
-
-static const cf_array puma560_fk_out[] = {
-    { "T", 2, { 4, 4 }, 16, CF_REAL },
-};
-
 static void puma560_pose_one(const double *params, const double *const *in, void *const *out)
 {
     puma560_pose((const puma560_params *)params, in[0], out[0]);
@@ -1239,6 +1220,25 @@ static const cf_array puma560_pose_out[] = {
     { "T", 2, { 4, 4 }, 16, CF_REAL },
 };
 
+static void puma560_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_fk((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_fk_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_fk_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_fk_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
 static void puma560_jacobian_one(const double *params, const double *const *in, void *const *out)
 {
     puma560_jacobian((const puma560_params *)params, in[0], out[0]);
@@ -1255,44 +1255,6 @@ static const cf_array puma560_jacobian_in[] = {
 };
 
 static const cf_array puma560_jacobian_out[] = {
-    { "J", 2, { 6, 6 }, 36, CF_REAL },
-};
-
-static void puma560_jacobian_space_one(const double *params, const double *const *in, void *const *out)
-{
-    puma560_jacobian_space((const puma560_params *)params, in[0], out[0]);
-}
-
-static void puma560_jacobian_space_many(size_t n, const double *params, const double *const *in,
-    const size_t *in_stride, void *const *out, const size_t *out_stride)
-{
-    puma560_jacobian_space_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
-}
-
-static const cf_array puma560_jacobian_space_in[] = {
-    { "q", 1, { 6 }, 6, CF_REAL },
-};
-
-static const cf_array puma560_jacobian_space_out[] = {
-    { "J", 2, { 6, 6 }, 36, CF_REAL },
-};
-
-static void puma560_jacobian_body_one(const double *params, const double *const *in, void *const *out)
-{
-    puma560_jacobian_body((const puma560_params *)params, in[0], out[0]);
-}
-
-static void puma560_jacobian_body_many(size_t n, const double *params, const double *const *in,
-    const size_t *in_stride, void *const *out, const size_t *out_stride)
-{
-    puma560_jacobian_body_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
-}
-
-static const cf_array puma560_jacobian_body_in[] = {
-    { "q", 1, { 6 }, 6, CF_REAL },
-};
-
-static const cf_array puma560_jacobian_body_out[] = {
     { "J", 2, { 6, 6 }, 36, CF_REAL },
 };
 
@@ -1332,6 +1294,44 @@ static const cf_array puma560_singularities_in[] = {
 
 static const cf_array puma560_singularities_out[] = {
     { "factors", 1, { 3 }, 3, CF_REAL },
+};
+
+static void puma560_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_jacobian_space((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_jacobian_space_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_jacobian_space_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_jacobian_space_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void puma560_jacobian_body_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_jacobian_body((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_jacobian_body_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_jacobian_body_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_jacobian_body_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_jacobian_body_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
 };
 
 static void puma560_ik_one(const double *params, const double *const *in, void *const *out)
@@ -1769,25 +1769,6 @@ static const cf_array spherical_wrist_ik_out[] = {
 static const char *const stanford_arm_fields[] = { "d2" };
 static const double stanford_arm_values[] = STANFORD_ARM_DEFAULTS;
 
-static void stanford_arm_fk_one(const double *params, const double *const *in, void *const *out)
-{
-    stanford_arm_fk((const stanford_arm_params *)params, in[0], out[0]);
-}
-
-static void stanford_arm_fk_many(size_t n, const double *params, const double *const *in,
-    const size_t *in_stride, void *const *out, const size_t *out_stride)
-{
-    stanford_arm_fk_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
-}
-
-static const cf_array stanford_arm_fk_in[] = {
-    { "q", 1, { 6 }, 6, CF_REAL },
-};
-
-static const cf_array stanford_arm_fk_out[] = {
-    { "T", 2, { 4, 4 }, 16, CF_REAL },
-};
-
 static void stanford_arm_pose_one(const double *params, const double *const *in, void *const *out)
 {
     stanford_arm_pose((const stanford_arm_params *)params, in[0], out[0]);
@@ -1807,6 +1788,25 @@ static const cf_array stanford_arm_pose_out[] = {
     { "T", 2, { 4, 4 }, 16, CF_REAL },
 };
 
+static void stanford_arm_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    stanford_arm_fk((const stanford_arm_params *)params, in[0], out[0]);
+}
+
+static void stanford_arm_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    stanford_arm_fk_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array stanford_arm_fk_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array stanford_arm_fk_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
 static void stanford_arm_jacobian_one(const double *params, const double *const *in, void *const *out)
 {
     stanford_arm_jacobian((const stanford_arm_params *)params, in[0], out[0]);
@@ -1823,44 +1823,6 @@ static const cf_array stanford_arm_jacobian_in[] = {
 };
 
 static const cf_array stanford_arm_jacobian_out[] = {
-    { "J", 2, { 6, 6 }, 36, CF_REAL },
-};
-
-static void stanford_arm_jacobian_space_one(const double *params, const double *const *in, void *const *out)
-{
-    stanford_arm_jacobian_space((const stanford_arm_params *)params, in[0], out[0]);
-}
-
-static void stanford_arm_jacobian_space_many(size_t n, const double *params, const double *const *in,
-    const size_t *in_stride, void *const *out, const size_t *out_stride)
-{
-    stanford_arm_jacobian_space_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
-}
-
-static const cf_array stanford_arm_jacobian_space_in[] = {
-    { "q", 1, { 6 }, 6, CF_REAL },
-};
-
-static const cf_array stanford_arm_jacobian_space_out[] = {
-    { "J", 2, { 6, 6 }, 36, CF_REAL },
-};
-
-static void stanford_arm_jacobian_body_one(const double *params, const double *const *in, void *const *out)
-{
-    stanford_arm_jacobian_body((const stanford_arm_params *)params, in[0], out[0]);
-}
-
-static void stanford_arm_jacobian_body_many(size_t n, const double *params, const double *const *in,
-    const size_t *in_stride, void *const *out, const size_t *out_stride)
-{
-    stanford_arm_jacobian_body_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
-}
-
-static const cf_array stanford_arm_jacobian_body_in[] = {
-    { "q", 1, { 6 }, 6, CF_REAL },
-};
-
-static const cf_array stanford_arm_jacobian_body_out[] = {
     { "J", 2, { 6, 6 }, 36, CF_REAL },
 };
 
@@ -1900,6 +1862,44 @@ static const cf_array stanford_arm_singularities_in[] = {
 
 static const cf_array stanford_arm_singularities_out[] = {
     { "factors", 1, { 3 }, 3, CF_REAL },
+};
+
+static void stanford_arm_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    stanford_arm_jacobian_space((const stanford_arm_params *)params, in[0], out[0]);
+}
+
+static void stanford_arm_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    stanford_arm_jacobian_space_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array stanford_arm_jacobian_space_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array stanford_arm_jacobian_space_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void stanford_arm_jacobian_body_one(const double *params, const double *const *in, void *const *out)
+{
+    stanford_arm_jacobian_body((const stanford_arm_params *)params, in[0], out[0]);
+}
+
+static void stanford_arm_jacobian_body_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    stanford_arm_jacobian_body_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array stanford_arm_jacobian_body_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array stanford_arm_jacobian_body_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
 };
 
 static void stanford_arm_ik_one(const double *params, const double *const *in, void *const *out)
@@ -4033,35 +4033,8 @@ const cf_function cf_functions[] = {
       2, planar_2r_values, planar_2r_fields,
       0, NULL, 1, planar_2r_workspace_radii_out,
       planar_2r_workspace_radii_one, planar_2r_workspace_radii_many },
-    { "puma560.fk",
-      "Pose of the hand in the base frame.\n"
-      "\n"
-      "Parameters\n"
-      "----------\n"
-      "q : array_like, shape (..., 6)\n"
-      "    theta1 to theta6 in rad.\n"
-      "params : Parameters, optional\n"
-      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
-      "out : ndarray, optional\n"
-      "    An array to write the result to; it is returned.\n"
-      "\n"
-      "Returns\n"
-      "-------\n"
-      "T : ndarray of float64, shape (..., 4, 4)\n"
-      "    A homogeneous transform with a proper rotation.\n"
-      "\n"
-      "Raises\n"
-      "------\n"
-      "TypeError\n"
-      "    If an argument does not hold real numbers.\n"
-      "ValueError\n"
-      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
-      ,
-      4, puma560_values, puma560_fields,
-      1, puma560_fk_in, 1, puma560_fk_out,
-      puma560_fk_one, puma560_fk_many },
     { "puma560.pose",
-      "The same as fk.\n"
+      "Pose of the tool in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -4087,8 +4060,35 @@ const cf_function cf_functions[] = {
       4, puma560_values, puma560_fields,
       1, puma560_pose_in, 1, puma560_pose_out,
       puma560_pose_one, puma560_pose_many },
+    { "puma560.fk",
+      "Pose of the tool in the base frame.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "T : ndarray of float64, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_fk_in, 1, puma560_fk_out,
+      puma560_fk_one, puma560_fk_many },
     { "puma560.jacobian",
-      "Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.\n"
+      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -4113,65 +4113,11 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- The geometric Jacobian, in the order (v; omega).\n"
+      "- The geometric Jacobian: rows (v; omega), v of the origin of the tool.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_jacobian_in, 1, puma560_jacobian_out,
       puma560_jacobian_one, puma560_jacobian_many },
-    { "puma560.jacobian_space",
-      "Twist (v; omega) of the hand in the base frame per joint rate.\n"
-      "\n"
-      "Parameters\n"
-      "----------\n"
-      "q : array_like, shape (..., 6)\n"
-      "    theta1 to theta6 in rad.\n"
-      "params : Parameters, optional\n"
-      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
-      "out : ndarray, optional\n"
-      "    An array to write the result to; it is returned.\n"
-      "\n"
-      "Returns\n"
-      "-------\n"
-      "J : ndarray of float64, shape (..., 6, 6)\n"
-      "    One column for each of theta1 to theta6.\n"
-      "\n"
-      "Raises\n"
-      "------\n"
-      "TypeError\n"
-      "    If an argument does not hold real numbers.\n"
-      "ValueError\n"
-      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
-      ,
-      4, puma560_values, puma560_fields,
-      1, puma560_jacobian_space_in, 1, puma560_jacobian_space_out,
-      puma560_jacobian_space_one, puma560_jacobian_space_many },
-    { "puma560.jacobian_body",
-      "Twist (v; omega) of the hand in its own frame per joint rate.\n"
-      "\n"
-      "Parameters\n"
-      "----------\n"
-      "q : array_like, shape (..., 6)\n"
-      "    theta1 to theta6 in rad.\n"
-      "params : Parameters, optional\n"
-      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
-      "out : ndarray, optional\n"
-      "    An array to write the result to; it is returned.\n"
-      "\n"
-      "Returns\n"
-      "-------\n"
-      "J : ndarray of float64, shape (..., 6, 6)\n"
-      "    One column for each of theta1 to theta6.\n"
-      "\n"
-      "Raises\n"
-      "------\n"
-      "TypeError\n"
-      "    If an argument does not hold real numbers.\n"
-      "ValueError\n"
-      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
-      ,
-      4, puma560_values, puma560_fields,
-      1, puma560_jacobian_body_in, 1, puma560_jacobian_body_out,
-      puma560_jacobian_body_one, puma560_jacobian_body_many },
     { "puma560.determinant",
       "Determinant of the Jacobian.\n"
       "\n"
@@ -4199,7 +4145,7 @@ const cf_function cf_functions[] = {
       1, puma560_determinant_in, 1, puma560_determinant_out,
       puma560_determinant_one, puma560_determinant_many },
     { "puma560.singularities",
-      "The factors whose zeros are the singular set: shoulder, elbow, wrist.\n"
+      "The factors of the determinant that hold a joint.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -4225,6 +4171,60 @@ const cf_function cf_functions[] = {
       4, puma560_values, puma560_fields,
       1, puma560_singularities_in, 1, puma560_singularities_out,
       puma560_singularities_one, puma560_singularities_many },
+    { "puma560.jacobian_space",
+      "Twist (v; omega) of the tool in the base frame per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 6)\n"
+      "    One column for each of theta1 to theta6.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_jacobian_space_in, 1, puma560_jacobian_space_out,
+      puma560_jacobian_space_one, puma560_jacobian_space_many },
+    { "puma560.jacobian_body",
+      "Twist (v; omega) of the tool in its own frame per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 6)\n"
+      "    One column for each of theta1 to theta6.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_jacobian_body_in, 1, puma560_jacobian_body_out,
+      puma560_jacobian_body_one, puma560_jacobian_body_many },
     { "puma560.ik",
       "All 8 configurations of a pose.\n"
       "\n"
@@ -4260,14 +4260,14 @@ const cf_function cf_functions[] = {
       "  right_down_flip, left_up_noflip, left_up_flip, left_down_noflip, left_down_flip.\n"
       "- right: X >= 0, the arm faces the wrist; left: X <= 0. up: the elbow is above the line from\n"
       "  the shoulder to the wrist; down: below.\n"
+      "- noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
+      "- Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the\n"
+      "  digits, the pose does not.\n"
+      "- INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.\n"
       "- SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal\n"
       "  links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without\n"
       "  length, theta3 is free.\n"
-      "- Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the\n"
-      "  digits, the pose does not.\n"
-      "- noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
       "- SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.\n"
-      "- INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.\n"
       ,
       4, puma560_values, puma560_fields,
       1, puma560_ik_in, 2, puma560_ik_out,
@@ -4912,35 +4912,8 @@ const cf_function cf_functions[] = {
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_ik_in, 2, spherical_wrist_ik_out,
       spherical_wrist_ik_one, spherical_wrist_ik_many },
-    { "stanford_arm.fk",
-      "Pose of the hand in the base frame.\n"
-      "\n"
-      "Parameters\n"
-      "----------\n"
-      "q : array_like, shape (..., 6)\n"
-      "    theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.\n"
-      "params : Parameters, optional\n"
-      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
-      "out : ndarray, optional\n"
-      "    An array to write the result to; it is returned.\n"
-      "\n"
-      "Returns\n"
-      "-------\n"
-      "T : ndarray of float64, shape (..., 4, 4)\n"
-      "    A homogeneous transform with a proper rotation.\n"
-      "\n"
-      "Raises\n"
-      "------\n"
-      "TypeError\n"
-      "    If an argument does not hold real numbers.\n"
-      "ValueError\n"
-      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
-      ,
-      1, stanford_arm_values, stanford_arm_fields,
-      1, stanford_arm_fk_in, 1, stanford_arm_fk_out,
-      stanford_arm_fk_one, stanford_arm_fk_many },
     { "stanford_arm.pose",
-      "The same as fk.\n"
+      "Pose of the tool in the base frame.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -4966,8 +4939,35 @@ const cf_function cf_functions[] = {
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_pose_in, 1, stanford_arm_pose_out,
       stanford_arm_pose_one, stanford_arm_pose_many },
+    { "stanford_arm.fk",
+      "Pose of the tool in the base frame.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "T : ndarray of float64, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      1, stanford_arm_values, stanford_arm_fields,
+      1, stanford_arm_fk_in, 1, stanford_arm_fk_out,
+      stanford_arm_fk_one, stanford_arm_fk_many },
     { "stanford_arm.jacobian",
-      "Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.\n"
+      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -4992,65 +4992,11 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- The geometric Jacobian, in the order (v; omega).\n"
+      "- The geometric Jacobian: rows (v; omega), v of the origin of the tool.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_jacobian_in, 1, stanford_arm_jacobian_out,
       stanford_arm_jacobian_one, stanford_arm_jacobian_many },
-    { "stanford_arm.jacobian_space",
-      "Twist (v; omega) of the hand in the base frame per joint rate.\n"
-      "\n"
-      "Parameters\n"
-      "----------\n"
-      "q : array_like, shape (..., 6)\n"
-      "    theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.\n"
-      "params : Parameters, optional\n"
-      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
-      "out : ndarray, optional\n"
-      "    An array to write the result to; it is returned.\n"
-      "\n"
-      "Returns\n"
-      "-------\n"
-      "J : ndarray of float64, shape (..., 6, 6)\n"
-      "    One column for each of theta1, theta2, d3, theta4, theta5, theta6.\n"
-      "\n"
-      "Raises\n"
-      "------\n"
-      "TypeError\n"
-      "    If an argument does not hold real numbers.\n"
-      "ValueError\n"
-      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
-      ,
-      1, stanford_arm_values, stanford_arm_fields,
-      1, stanford_arm_jacobian_space_in, 1, stanford_arm_jacobian_space_out,
-      stanford_arm_jacobian_space_one, stanford_arm_jacobian_space_many },
-    { "stanford_arm.jacobian_body",
-      "Twist (v; omega) of the hand in its own frame per joint rate.\n"
-      "\n"
-      "Parameters\n"
-      "----------\n"
-      "q : array_like, shape (..., 6)\n"
-      "    theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.\n"
-      "params : Parameters, optional\n"
-      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
-      "out : ndarray, optional\n"
-      "    An array to write the result to; it is returned.\n"
-      "\n"
-      "Returns\n"
-      "-------\n"
-      "J : ndarray of float64, shape (..., 6, 6)\n"
-      "    One column for each of theta1, theta2, d3, theta4, theta5, theta6.\n"
-      "\n"
-      "Raises\n"
-      "------\n"
-      "TypeError\n"
-      "    If an argument does not hold real numbers.\n"
-      "ValueError\n"
-      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
-      ,
-      1, stanford_arm_values, stanford_arm_fields,
-      1, stanford_arm_jacobian_body_in, 1, stanford_arm_jacobian_body_out,
-      stanford_arm_jacobian_body_one, stanford_arm_jacobian_body_many },
     { "stanford_arm.determinant",
       "Determinant of the Jacobian.\n"
       "\n"
@@ -5078,7 +5024,7 @@ const cf_function cf_functions[] = {
       1, stanford_arm_determinant_in, 1, stanford_arm_determinant_out,
       stanford_arm_determinant_one, stanford_arm_determinant_many },
     { "stanford_arm.singularities",
-      "The factors whose zeros are the singular set: shoulder, boom, wrist.\n"
+      "The factors of the determinant that hold a joint.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -5104,6 +5050,60 @@ const cf_function cf_functions[] = {
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_singularities_in, 1, stanford_arm_singularities_out,
       stanford_arm_singularities_one, stanford_arm_singularities_many },
+    { "stanford_arm.jacobian_space",
+      "Twist (v; omega) of the tool in the base frame per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 6)\n"
+      "    One column for each of theta1, theta2, d3, theta4, theta5, theta6.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      1, stanford_arm_values, stanford_arm_fields,
+      1, stanford_arm_jacobian_space_in, 1, stanford_arm_jacobian_space_out,
+      stanford_arm_jacobian_space_one, stanford_arm_jacobian_space_many },
+    { "stanford_arm.jacobian_body",
+      "Twist (v; omega) of the tool in its own frame per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 6)\n"
+      "    One column for each of theta1, theta2, d3, theta4, theta5, theta6.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      1, stanford_arm_values, stanford_arm_fields,
+      1, stanford_arm_jacobian_body_in, 1, stanford_arm_jacobian_body_out,
+      stanford_arm_jacobian_body_one, stanford_arm_jacobian_body_many },
     { "stanford_arm.ik",
       "All 8 configurations of a pose.\n"
       "\n"
@@ -5139,11 +5139,11 @@ const cf_function cf_functions[] = {
       "- Branches in this order, `BRANCHES`: right_out_noflip, right_out_flip, right_back_noflip,\n"
       "  right_back_flip, left_out_noflip, left_out_flip, left_back_noflip, left_back_flip.\n"
       "- right: X >= 0, the arm faces the wrist; left: X <= 0. out: d3 >= 0; back: d3 <= 0.\n"
+      "- noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
+      "- INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.\n"
       "- SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the\n"
       "  boom drawn in, d3 = 0, theta2 = 0 is returned.\n"
-      "- noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
       "- SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.\n"
-      "- INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.\n"
       ,
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_ik_in, 2, stanford_arm_ik_out,

@@ -4,14 +4,14 @@
  * Source: J. J. Craig, P. I. Corke, M. W. Spong, R. P. Paul, C. S. G. Lee, M. Ziegler: The Puma
  *     560 in the textbooks.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 24 add, 52 multiply, 6 sincos
  *   pose: 24 add, 52 multiply, 6 sincos
+ *   fk: 24 add, 52 multiply, 6 sincos
  *   jacobian: 14 add, 36 multiply, 5 sincos
+ *   determinant: 5 add, 12 multiply, 3 sincos
+ *   singularities: 5 add, 9 multiply, 3 sincos
  *   jacobian_space: 29 add, 65 multiply, 5 sincos
  *   jacobian_body: 26 add, 61 multiply, 5 sincos
- *   determinant: 9 add, 22 multiply, 3 sincos
- *   singularities: 5 add, 9 multiply, 3 sincos
- *   ik: 142 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
+ *   ik: 141 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
@@ -40,26 +40,7 @@ typedef struct {
     { CLOSEDFORM_C(0.4318), CLOSEDFORM_C(0.0203), CLOSEDFORM_C(0.15005), CLOSEDFORM_C(0.4318) }
 
 /*
- * Pose of the hand in the base frame.
- *
- * Inputs
- * ------
- * q : const real_t[6]
- *     theta1 to theta6 in rad.
- *
- * Outputs
- * -------
- * T : real_t[16], shape (4, 4)
- *     A homogeneous transform with a proper rotation.
- */
-void puma560_fk(const puma560_params *params, const real_t q[6],
-    real_t T[16]);
-void puma560_fk_batch(size_t n, const puma560_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *T, size_t T_stride);
-
-/*
- * The same as fk.
+ * Pose of the tool in the base frame.
  *
  * Inputs
  * ------
@@ -78,7 +59,26 @@ void puma560_pose_batch(size_t n, const puma560_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
+ * Pose of the tool in the base frame.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform with a proper rotation.
+ */
+void puma560_fk(const puma560_params *params, const real_t q[6],
+    real_t T[16]);
+void puma560_fk_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
+
+/*
+ * Velocity of the tool over its angular velocity, in base axes, per joint rate.
  *
  * Inputs
  * ------
@@ -92,49 +92,11 @@ void puma560_pose_batch(size_t n, const puma560_params *params,
  *
  * Notes
  * -----
- * - The geometric Jacobian, in the order (v; omega).
+ * - The geometric Jacobian: rows (v; omega), v of the origin of the tool.
  */
 void puma560_jacobian(const puma560_params *params, const real_t q[6],
     real_t J[36]);
 void puma560_jacobian_batch(size_t n, const puma560_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *J, size_t J_stride);
-
-/*
- * Twist (v; omega) of the hand in the base frame per joint rate.
- *
- * Inputs
- * ------
- * q : const real_t[6]
- *     theta1 to theta6 in rad.
- *
- * Outputs
- * -------
- * J : real_t[36], shape (6, 6)
- *     One column for each of theta1 to theta6.
- */
-void puma560_jacobian_space(const puma560_params *params, const real_t q[6],
-    real_t J[36]);
-void puma560_jacobian_space_batch(size_t n, const puma560_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *J, size_t J_stride);
-
-/*
- * Twist (v; omega) of the hand in its own frame per joint rate.
- *
- * Inputs
- * ------
- * q : const real_t[6]
- *     theta1 to theta6 in rad.
- *
- * Outputs
- * -------
- * J : real_t[36], shape (6, 6)
- *     One column for each of theta1 to theta6.
- */
-void puma560_jacobian_body(const puma560_params *params, const real_t q[6],
-    real_t J[36]);
-void puma560_jacobian_body_batch(size_t n, const puma560_params *params,
     const real_t *q, size_t q_stride,
     real_t *J, size_t J_stride);
 
@@ -157,7 +119,7 @@ void puma560_determinant_batch(size_t n, const puma560_params *params,
     real_t *det, size_t det_stride);
 
 /*
- * The factors whose zeros are the singular set: shoulder, elbow, wrist.
+ * The factors of the determinant that hold a joint.
  *
  * Inputs
  * ------
@@ -174,6 +136,44 @@ void puma560_singularities(const puma560_params *params, const real_t q[6],
 void puma560_singularities_batch(size_t n, const puma560_params *params,
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride);
+
+/*
+ * Twist (v; omega) of the tool in the base frame per joint rate.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1 to theta6.
+ */
+void puma560_jacobian_space(const puma560_params *params, const real_t q[6],
+    real_t J[36]);
+void puma560_jacobian_space_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
+
+/*
+ * Twist (v; omega) of the tool in its own frame per joint rate.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1 to theta6.
+ */
+void puma560_jacobian_body(const puma560_params *params, const real_t q[6],
+    real_t J[36]);
+void puma560_jacobian_body_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * All 8 configurations of a pose.
@@ -199,14 +199,14 @@ void puma560_singularities_batch(size_t n, const puma560_params *params,
  *   left_up_noflip, left_up_flip, left_down_noflip, left_down_flip.
  * - right: X >= 0, the arm faces the wrist; left: X <= 0. up: the elbow is above the line from
  *   the shoulder to the wrist; down: below.
+ * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
+ * - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
+ *   digits, the pose does not.
+ * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
  * - SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal
  *   links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without
  *   length, theta3 is free.
- * - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
- *   digits, the pose does not.
- * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
- * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
  */
 void puma560_ik(const puma560_params *params, const real_t T[16],
     real_t q[48], uint8_t status[8]);

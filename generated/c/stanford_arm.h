@@ -4,13 +4,13 @@
  * Source: R. P. Paul, M. W. Spong, S. Hutchinson, M. Vidyasagar: The Stanford arm in the
  *     textbooks.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 18 add, 44 multiply, 5 sincos
  *   pose: 18 add, 44 multiply, 5 sincos
+ *   fk: 18 add, 44 multiply, 5 sincos
  *   jacobian: 8 add, 26 multiply, 4 sincos
- *   jacobian_space: 14 add, 43 multiply, 4 sincos
- *   jacobian_body: 14 add, 41 multiply, 4 sincos
  *   determinant: 3 multiply, 2 sincos
  *   singularities: 2 sincos
+ *   jacobian_space: 14 add, 43 multiply, 4 sincos
+ *   jacobian_body: 14 add, 41 multiply, 4 sincos
  *   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 116 multiply, 8 sqrt
  *   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 91 multiply, 6
  *     sqrt
@@ -39,26 +39,7 @@ typedef struct {
     { CLOSEDFORM_C(0.154) }
 
 /*
- * Pose of the hand in the base frame.
- *
- * Inputs
- * ------
- * q : const real_t[6]
- *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
- *
- * Outputs
- * -------
- * T : real_t[16], shape (4, 4)
- *     A homogeneous transform with a proper rotation.
- */
-void stanford_arm_fk(const stanford_arm_params *params,
-    const real_t q[6], real_t T[16]);
-void stanford_arm_fk_batch(size_t n, const stanford_arm_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *T, size_t T_stride);
-
-/*
- * The same as fk.
+ * Pose of the tool in the base frame.
  *
  * Inputs
  * ------
@@ -77,7 +58,26 @@ void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params,
     real_t *T, size_t T_stride);
 
 /*
- * Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
+ * Pose of the tool in the base frame.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * T : real_t[16], shape (4, 4)
+ *     A homogeneous transform with a proper rotation.
+ */
+void stanford_arm_fk(const stanford_arm_params *params,
+    const real_t q[6], real_t T[16]);
+void stanford_arm_fk_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *T, size_t T_stride);
+
+/*
+ * Velocity of the tool over its angular velocity, in base axes, per joint rate.
  *
  * Inputs
  * ------
@@ -91,49 +91,11 @@ void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params,
  *
  * Notes
  * -----
- * - The geometric Jacobian, in the order (v; omega).
+ * - The geometric Jacobian: rows (v; omega), v of the origin of the tool.
  */
 void stanford_arm_jacobian(const stanford_arm_params *params,
     const real_t q[6], real_t J[36]);
 void stanford_arm_jacobian_batch(size_t n, const stanford_arm_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *J, size_t J_stride);
-
-/*
- * Twist (v; omega) of the hand in the base frame per joint rate.
- *
- * Inputs
- * ------
- * q : const real_t[6]
- *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
- *
- * Outputs
- * -------
- * J : real_t[36], shape (6, 6)
- *     One column for each of theta1, theta2, d3, theta4, theta5, theta6.
- */
-void stanford_arm_jacobian_space(const stanford_arm_params *params,
-    const real_t q[6], real_t J[36]);
-void stanford_arm_jacobian_space_batch(size_t n, const stanford_arm_params *params,
-    const real_t *q, size_t q_stride,
-    real_t *J, size_t J_stride);
-
-/*
- * Twist (v; omega) of the hand in its own frame per joint rate.
- *
- * Inputs
- * ------
- * q : const real_t[6]
- *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
- *
- * Outputs
- * -------
- * J : real_t[36], shape (6, 6)
- *     One column for each of theta1, theta2, d3, theta4, theta5, theta6.
- */
-void stanford_arm_jacobian_body(const stanford_arm_params *params,
-    const real_t q[6], real_t J[36]);
-void stanford_arm_jacobian_body_batch(size_t n, const stanford_arm_params *params,
     const real_t *q, size_t q_stride,
     real_t *J, size_t J_stride);
 
@@ -156,7 +118,7 @@ void stanford_arm_determinant_batch(size_t n, const stanford_arm_params *params,
     real_t *det, size_t det_stride);
 
 /*
- * The factors whose zeros are the singular set: shoulder, boom, wrist.
+ * The factors of the determinant that hold a joint.
  *
  * Inputs
  * ------
@@ -173,6 +135,44 @@ void stanford_arm_singularities(const stanford_arm_params *params,
 void stanford_arm_singularities_batch(size_t n, const stanford_arm_params *params,
     const real_t *q, size_t q_stride,
     real_t *factors, size_t factors_stride);
+
+/*
+ * Twist (v; omega) of the tool in the base frame per joint rate.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1, theta2, d3, theta4, theta5, theta6.
+ */
+void stanford_arm_jacobian_space(const stanford_arm_params *params,
+    const real_t q[6], real_t J[36]);
+void stanford_arm_jacobian_space_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
+
+/*
+ * Twist (v; omega) of the tool in its own frame per joint rate.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * J : real_t[36], shape (6, 6)
+ *     One column for each of theta1, theta2, d3, theta4, theta5, theta6.
+ */
+void stanford_arm_jacobian_body(const stanford_arm_params *params,
+    const real_t q[6], real_t J[36]);
+void stanford_arm_jacobian_body_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *J, size_t J_stride);
 
 /*
  * All 8 configurations of a pose.
@@ -198,11 +198,11 @@ void stanford_arm_singularities_batch(size_t n, const stanford_arm_params *param
  * - Branches in this order: right_out_noflip, right_out_flip, right_back_noflip,
  *   right_back_flip, left_out_noflip, left_out_flip, left_back_noflip, left_back_flip.
  * - right: X >= 0, the arm faces the wrist; left: X <= 0. out: d3 >= 0; back: d3 <= 0.
+ * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
+ * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
  * - SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the
  *   boom drawn in, d3 = 0, theta2 = 0 is returned.
- * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
- * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
  */
 void stanford_arm_ik(const stanford_arm_params *params,
     const real_t T[16], real_t q[48], uint8_t status[8]);

@@ -3,14 +3,14 @@
 // Source: J. J. Craig, P. I. Corke, M. W. Spong, R. P. Paul, C. S. G. Lee, M. Ziegler: The Puma
 //     560 in the textbooks.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 24 add, 52 multiply, 6 sincos
 //   pose: 24 add, 52 multiply, 6 sincos
+//   fk: 24 add, 52 multiply, 6 sincos
 //   jacobian: 14 add, 36 multiply, 5 sincos
+//   determinant: 5 add, 12 multiply, 3 sincos
+//   singularities: 5 add, 9 multiply, 3 sincos
 //   jacobian_space: 29 add, 65 multiply, 5 sincos
 //   jacobian_body: 26 add, 61 multiply, 5 sincos
-//   determinant: 9 add, 22 multiply, 3 sincos
-//   singularities: 5 add, 9 multiply, 3 sincos
-//   ik: 142 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
+//   ik: 141 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
 
 /**
  * Puma 560.
@@ -53,112 +53,6 @@ export const DEFAULTS = Object.freeze({
     d3: 0.15005,
     d4: 0.4318,
 });
-
-/** @type {_runtime.Compute} */
-function _fk(v, o) {
-    const theta1 = v[0];
-    const theta2 = v[1];
-    const theta3 = v[2];
-    const theta4 = v[3];
-    const theta5 = v[4];
-    const theta6 = v[5];
-    const a2 = v[6];
-    const a3 = v[7];
-    const d3 = v[8];
-    const d4 = v[9];
-    _runtime.sincos(theta6);
-    const s6 = _runtime.found[0];
-    const c6 = _runtime.found[1];
-    _runtime.sincos(theta5);
-    const s5 = _runtime.found[0];
-    const c5 = _runtime.found[1];
-    _runtime.sincos(theta4);
-    const s4 = _runtime.found[0];
-    const c4 = _runtime.found[1];
-    _runtime.sincos(theta2);
-    const s2 = _runtime.found[0];
-    const c2 = _runtime.found[1];
-    _runtime.sincos(theta3);
-    const s3 = _runtime.found[0];
-    const c3 = _runtime.found[1];
-    _runtime.sincos(theta1);
-    const s1 = _runtime.found[0];
-    const c1 = _runtime.found[1];
-    const T3_11 = c6 * c5;
-    const T2_11 = T3_11 * c4 - s6 * s4;
-    const c23 = c2 * c3 - s2 * s3;
-    const T3_21 = c6 * s5;
-    const s23 = s2 * c3 + c2 * s3;
-    const T1_11 = T2_11 * c23 - T3_21 * s23;
-    const T2_21 = T3_11 * s4 + s6 * c4;
-    const t1 = s6 * c5;
-    const t2 = t1 * s4 - c6 * c4;
-    const t3 = t1 * c4 + c6 * s4;
-    const t4 = s6 * s5;
-    const t5 = t3 * c23 - t4 * s23;
-    const t6 = s5 * s4;
-    const t7 = s5 * c4;
-    const t8 = t7 * c23 + c5 * s23;
-    const T1_14 = a2 * c2 + a3 * c23 - d4 * s23;
-    o[0] = T1_11 * c1 - T2_21 * s1;
-    o[1] = t2 * s1 - t5 * c1;
-    o[2] = t6 * s1 - t8 * c1;
-    o[3] = T1_14 * c1 + d3 * s1;
-    o[4] = T1_11 * s1 + T2_21 * c1;
-    o[5] = -(t5 * s1 + t2 * c1);
-    o[6] = -(t8 * s1 + t6 * c1);
-    o[7] = T1_14 * s1 - d3 * c1;
-    o[8] = T2_11 * s23 + T3_21 * c23;
-    o[9] = -(t3 * s23 + t4 * c23);
-    o[10] = c5 * c23 - t7 * s23;
-    o[11] = a2 * s2 + a3 * s23 + d4 * c23;
-    o[12] = 0.0;
-    o[13] = 0.0;
-    o[14] = 0.0;
-    o[15] = 1.0;
-}
-
-const _FK = _runtime.kernel({
-    name: "puma560.fk",
-    compute: _fk,
-    common: null,
-    inputs: [
-        { name: "q", shape: [6], branches: 0, kind: "real" },
-    ],
-    outputs: [
-        { name: "T", shape: [4, 4], branches: 0, kind: "real" },
-    ],
-    used: ["a2", "a3", "d3", "d4"],
-    defaults: DEFAULTS,
-    size: null,
-});
-
-/**
- * Pose of the hand in the base frame.
- *
- * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
- * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform with a proper
- *     rotation.
- * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
- */
-export function fk(q, parameters) {
-    return _runtime.single(_FK, [q], parameters);
-}
-
-/**
- * `fk` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
- *
- * @param {number} n
- * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
- * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
- */
-export function fk_batch(n, q, T, parameters) {
-    return _runtime.batch(_FK, n, [q], [T], parameters);
-}
 
 /** @type {_runtime.Compute} */
 function _pose(v, o) {
@@ -240,7 +134,7 @@ const _POSE = _runtime.kernel({
 });
 
 /**
- * The same as fk.
+ * Pose of the tool in the base frame.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -264,6 +158,112 @@ export function pose(q, parameters) {
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _fk(v, o) {
+    const theta1 = v[0];
+    const theta2 = v[1];
+    const theta3 = v[2];
+    const theta4 = v[3];
+    const theta5 = v[4];
+    const theta6 = v[5];
+    const a2 = v[6];
+    const a3 = v[7];
+    const d3 = v[8];
+    const d4 = v[9];
+    _runtime.sincos(theta6);
+    const s6 = _runtime.found[0];
+    const c6 = _runtime.found[1];
+    _runtime.sincos(theta5);
+    const s5 = _runtime.found[0];
+    const c5 = _runtime.found[1];
+    _runtime.sincos(theta4);
+    const s4 = _runtime.found[0];
+    const c4 = _runtime.found[1];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    _runtime.sincos(theta3);
+    const s3 = _runtime.found[0];
+    const c3 = _runtime.found[1];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    const T3_11 = c6 * c5;
+    const T2_11 = T3_11 * c4 - s6 * s4;
+    const c23 = c2 * c3 - s2 * s3;
+    const T3_21 = c6 * s5;
+    const s23 = s2 * c3 + c2 * s3;
+    const T1_11 = T2_11 * c23 - T3_21 * s23;
+    const T2_21 = T3_11 * s4 + s6 * c4;
+    const t1 = s6 * c5;
+    const t2 = t1 * s4 - c6 * c4;
+    const t3 = t1 * c4 + c6 * s4;
+    const t4 = s6 * s5;
+    const t5 = t3 * c23 - t4 * s23;
+    const t6 = s5 * s4;
+    const t7 = s5 * c4;
+    const t8 = t7 * c23 + c5 * s23;
+    const T1_14 = a2 * c2 + a3 * c23 - d4 * s23;
+    o[0] = T1_11 * c1 - T2_21 * s1;
+    o[1] = t2 * s1 - t5 * c1;
+    o[2] = t6 * s1 - t8 * c1;
+    o[3] = T1_14 * c1 + d3 * s1;
+    o[4] = T1_11 * s1 + T2_21 * c1;
+    o[5] = -(t5 * s1 + t2 * c1);
+    o[6] = -(t8 * s1 + t6 * c1);
+    o[7] = T1_14 * s1 - d3 * c1;
+    o[8] = T2_11 * s23 + T3_21 * c23;
+    o[9] = -(t3 * s23 + t4 * c23);
+    o[10] = c5 * c23 - t7 * s23;
+    o[11] = a2 * s2 + a3 * s23 + d4 * c23;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
+}
+
+const _FK = _runtime.kernel({
+    name: "puma560.fk",
+    compute: _fk,
+    common: null,
+    inputs: [
+        { name: "q", shape: [6], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "T", shape: [4, 4], branches: 0, kind: "real" },
+    ],
+    used: ["a2", "a3", "d3", "d4"],
+    defaults: DEFAULTS,
+    size: null,
+});
+
+/**
+ * Pose of the tool in the base frame.
+ *
+ * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform with a proper
+ *     rotation.
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function fk(q, parameters) {
+    return _runtime.single(_FK, [q], parameters);
+}
+
+/**
+ * `fk` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 6 n numbers
+ * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function fk_batch(n, q, T, parameters) {
+    return _runtime.batch(_FK, n, [q], [T], parameters);
 }
 
 /** @type {_runtime.Compute} */
@@ -356,9 +356,9 @@ const _JACOBIAN = _runtime.kernel({
 });
 
 /**
- * Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
+ * Velocity of the tool over its angular velocity, in base axes, per joint rate.
  *
- * - The geometric Jacobian, in the order (v; omega).
+ * - The geometric Jacobian: rows (v; omega), v of the origin of the tool.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -381,6 +381,135 @@ export function jacobian(q, parameters) {
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _determinant(v, o) {
+    const theta2 = v[1];
+    const theta3 = v[2];
+    const theta5 = v[4];
+    const a2 = v[6];
+    const a3 = v[7];
+    const d4 = v[8];
+    _runtime.sincos(theta3);
+    const s3 = _runtime.found[0];
+    const c3 = _runtime.found[1];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    _runtime.sincos(theta5);
+    const s5 = _runtime.found[0];
+    const t1 = a2 * c2 + a3 * (c3 * c2 - s3 * s2) - d4 * (c3 * s2 + s3 * c2);
+    o[0] = a2 * (a3 * s3 + d4 * c3) * t1 * s5;
+}
+
+const _DETERMINANT = _runtime.kernel({
+    name: "puma560.determinant",
+    compute: _determinant,
+    common: null,
+    inputs: [
+        { name: "q", shape: [6], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "det", shape: [], branches: 0, kind: "real" },
+    ],
+    used: ["a2", "a3", "d4"],
+    defaults: DEFAULTS,
+    size: {
+        lengths: [6, 7, 8],
+        degrees: [[0, 3]],
+        least: 6.681911775230489e-52,
+        most: 1.7498005798264095e+100,
+    },
+});
+
+/**
+ * Determinant of the Jacobian.
+ *
+ * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number}
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function determinant(q, parameters) {
+    return _runtime.single(_DETERMINANT, [q], parameters);
+}
+
+/**
+ * `determinant` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 6 n numbers
+ * @param {Float64Array} [det] n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function determinant_batch(n, q, det, parameters) {
+    return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _singularities(v, o) {
+    const theta2 = v[1];
+    const theta3 = v[2];
+    const theta5 = v[4];
+    const a2 = v[6];
+    const a3 = v[7];
+    const d4 = v[8];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    _runtime.sincos(theta3);
+    const s3 = _runtime.found[0];
+    const c3 = _runtime.found[1];
+    _runtime.sincos(theta5);
+    const s5 = _runtime.found[0];
+    const t1 = a2 * c2 + a3 * (c2 * c3 - s2 * s3) - d4 * (s2 * c3 + c2 * s3);
+    o[0] = t1;
+    o[1] = a3 * s3 + d4 * c3;
+    o[2] = s5;
+}
+
+const _SINGULARITIES = _runtime.kernel({
+    name: "puma560.singularities",
+    compute: _singularities,
+    common: null,
+    inputs: [
+        { name: "q", shape: [6], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "factors", shape: [3], branches: 0, kind: "real" },
+    ],
+    used: ["a2", "a3", "d4"],
+    defaults: DEFAULTS,
+    size: null,
+});
+
+/**
+ * The factors of the determinant that hold a joint.
+ *
+ * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} 3 numbers. One factor for each singular set: shoulder; elbow; wrist.
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function singularities(q, parameters) {
+    return _runtime.single(_SINGULARITIES, [q], parameters);
+}
+
+/**
+ * `singularities` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 6 n numbers
+ * @param {Float64Array} [factors] 3 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function singularities_batch(n, q, factors, parameters) {
+    return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
 }
 
 /** @type {_runtime.Compute} */
@@ -485,7 +614,7 @@ const _JACOBIAN_SPACE = _runtime.kernel({
 });
 
 /**
- * Twist (v; omega) of the hand in the base frame per joint rate.
+ * Twist (v; omega) of the tool in the base frame per joint rate.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -613,7 +742,7 @@ const _JACOBIAN_BODY = _runtime.kernel({
 });
 
 /**
- * Twist (v; omega) of the hand in its own frame per joint rate.
+ * Twist (v; omega) of the tool in its own frame per joint rate.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -639,143 +768,6 @@ export function jacobian_body_batch(n, q, J, parameters) {
 }
 
 /** @type {_runtime.Compute} */
-function _determinant(v, o) {
-    const theta2 = v[1];
-    const theta3 = v[2];
-    const theta5 = v[4];
-    const a2 = v[6];
-    const a3 = v[7];
-    const d4 = v[8];
-    _runtime.sincos(theta5);
-    const s5 = _runtime.found[0];
-    _runtime.sincos(theta2);
-    const s2 = _runtime.found[0];
-    const c2 = _runtime.found[1];
-    _runtime.sincos(theta3);
-    const s3 = _runtime.found[0];
-    const c3 = _runtime.found[1];
-    const t1 = a3 * a3;
-    const t2 = s3 * c2;
-    const t3 = s3 * s2;
-    const t4 = a2 * d4;
-    const c23 = c3 * c2 - t3;
-    const t5 = c3 * (c3 * s2 + t2);
-    const t6 = s2 * t1 - a2 * a3 * t2 - t3 * t4 - c23 * t4 - t1 * t5;
-    const t7 = a3 * d4;
-    const t8 = t6 + c2 * t7 - c3 * c23 * 2.0 * t7 + d4 * d4 * t5;
-    o[0] = -(a2 * s5 * t8);
-}
-
-const _DETERMINANT = _runtime.kernel({
-    name: "puma560.determinant",
-    compute: _determinant,
-    common: null,
-    inputs: [
-        { name: "q", shape: [6], branches: 0, kind: "real" },
-    ],
-    outputs: [
-        { name: "det", shape: [], branches: 0, kind: "real" },
-    ],
-    used: ["a2", "a3", "d4"],
-    defaults: DEFAULTS,
-    size: {
-        lengths: [6, 7, 8],
-        degrees: [[0, 3]],
-        least: 6.681911775230489e-52,
-        most: 1.7498005798264095e+100,
-    },
-});
-
-/**
- * Determinant of the Jacobian.
- *
- * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
- * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number}
- * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
- */
-export function determinant(q, parameters) {
-    return _runtime.single(_DETERMINANT, [q], parameters);
-}
-
-/**
- * `determinant` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
- *
- * @param {number} n
- * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [det] n numbers, written to; made if there is none
- * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
- */
-export function determinant_batch(n, q, det, parameters) {
-    return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
-}
-
-/** @type {_runtime.Compute} */
-function _singularities(v, o) {
-    const theta2 = v[1];
-    const theta3 = v[2];
-    const theta5 = v[4];
-    const a2 = v[6];
-    const a3 = v[7];
-    const d4 = v[8];
-    _runtime.sincos(theta2);
-    const s2 = _runtime.found[0];
-    const c2 = _runtime.found[1];
-    _runtime.sincos(theta3);
-    const s3 = _runtime.found[0];
-    const c3 = _runtime.found[1];
-    _runtime.sincos(theta5);
-    const s5 = _runtime.found[0];
-    const t1 = a2 * c2 + a3 * (c2 * c3 - s2 * s3) - d4 * (s2 * c3 + c2 * s3);
-    o[0] = t1;
-    o[1] = a3 * s3 + d4 * c3;
-    o[2] = s5;
-}
-
-const _SINGULARITIES = _runtime.kernel({
-    name: "puma560.singularities",
-    compute: _singularities,
-    common: null,
-    inputs: [
-        { name: "q", shape: [6], branches: 0, kind: "real" },
-    ],
-    outputs: [
-        { name: "factors", shape: [3], branches: 0, kind: "real" },
-    ],
-    used: ["a2", "a3", "d4"],
-    defaults: DEFAULTS,
-    size: null,
-});
-
-/**
- * The factors whose zeros are the singular set: shoulder, elbow, wrist.
- *
- * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
- * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 3 numbers. One factor for each singular set: shoulder; elbow; wrist.
- * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
- */
-export function singularities(q, parameters) {
-    return _runtime.single(_SINGULARITIES, [q], parameters);
-}
-
-/**
- * `singularities` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
- *
- * @param {number} n
- * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [factors] 3 n numbers, written to; made if there is none
- * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
- */
-export function singularities_batch(n, q, factors, parameters) {
-    return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
-}
-
-/** @type {_runtime.Compute} */
 function _ik(v, o) {
     const T11 = v[0];
     const T12 = v[1];
@@ -797,36 +789,36 @@ function _ik(v, o) {
     const a3 = v[17];
     const d3 = v[18];
     const d4 = v[19];
-    const amplitude = Math.sqrt(T14 * T14 + T24 * T24);
+    const h1 = Math.sqrt(T14 * T14 + T24 * T24);
     const f = Math.sqrt(a3 * a3 + d4 * d4);
     const t1 = a2 + f;
     const size = Math.abs(d3) + t1;
     const t2 = _runtime.VANISHING * size;
-    const free_theta1 = amplitude <= t2;
-    const t3 = amplitude - d3;
-    const below = Math.max(t3, 0.0);
-    const t4 = d3 + amplitude;
-    const above = Math.max(t4, 0.0);
-    const t5 = below - above;
-    const t6 = below * above;
-    const root = Math.sqrt(t6);
-    const tangent = root - amplitude * 0.00390625 <= amplitude * _runtime.VANISHING;
+    const free1 = h1 <= t2;
+    const t3 = h1 - d3;
+    const below1 = Math.max(t3, 0.0);
+    const t4 = d3 + h1;
+    const above1 = Math.max(t4, 0.0);
+    const t5 = below1 - above1;
+    const t6 = below1 * above1;
+    const root1 = Math.sqrt(t6);
+    const tangent1 = root1 - h1 * 0.00390625 <= h1 * _runtime.VANISHING;
     const t7 = a2 - f;
     const t8 = T34 * T34;
     const t9 = t1 * t1;
-    const wanted = Math.max(Math.max(0.0, t7 * t7 - t8), Math.min(t6, t9 - t8));
-    const t10 = 8796093022208.0 * Math.abs(t6 - wanted) <= amplitude * size;
-    const held = t10 ? wanted : t6;
-    const span = tangent ? 2.0 * Math.sqrt(t5 * t5 * 0.25 + held) : below + above;
-    const t11 = 1.0 / (amplitude * span);
+    const wanted1 = Math.max(Math.max(0.0, t7 * t7 - t8), Math.min(t6, t9 - t8));
+    const t10 = 8796093022208.0 * Math.abs(t6 - wanted1) <= h1 * size;
+    const held1 = t10 ? wanted1 : t6;
+    const span1 = tangent1 ? Math.sqrt(t5 * t5 + 4.0 * held1) : below1 + above1;
+    const t11 = 1.0 / (h1 * span1);
     const t12 = T14 * t5 * t11;
-    const ahead = tangent ? Math.sqrt(held) : root;
-    const t13 = 2.0 * ahead;
+    const kept1 = tangent1 ? Math.sqrt(held1) : root1;
+    const t13 = 2.0 * kept1;
     const t14 = t11 * (T24 * t13);
-    const t15 = free_theta1 ? 0.0 : t12 - t14;
+    const t15 = free1 ? 0.0 : t12 - t14;
     const t16 = T24 * t5 * t11;
     const t17 = t11 * (T14 * t13);
-    const c1 = free_theta1 ? 1.0 : t16 + t17;
+    const c1 = free1 ? 1.0 : t16 + t17;
     const t18 = -Math.atan2(t15, c1);
     const t19 = Number.isFinite(a2) && Number.isFinite(a3) && Number.isFinite(d3) &&
         Number.isFinite(d4);
@@ -843,232 +835,236 @@ function _ik(v, o) {
     const t30 = t29 && Math.abs(T42) <= _runtime.ROTATION && Math.abs(T43) <= _runtime.ROTATION;
     const t31 = t30 && Math.abs(T44 - 1.0) <= _runtime.ROTATION;
     const invalid = !t31;
-    const t32 = -(_runtime.FEASIBILITY * size);
-    const reach = Math.sqrt(t8 + ahead * ahead);
-    const t33 = t1 - reach;
-    const t34 = t7 + reach;
+    const t32 = -(_runtime.FEASIBILITY * (size * 0.5));
+    const r_elbow = Math.sqrt(t8 + kept1 * kept1);
+    const t33 = t1 - r_elbow;
+    const t34 = t7 + r_elbow;
     const t35 = t32 <= t3 && t32 <= t4 && t32 <= t33 && t32 <= t34;
-    const t36 = reach - t7;
+    const t36 = r_elbow - t7;
     const unreachable = !(t35 && t32 <= t36);
     const t37 = invalid || unreachable ? NaN : 0;
     const t38 = (t18 <= -Math.PI ? Math.PI : t18) + t37;
-    const folded = reach <= t2;
-    const t39 = 1.0 / reach;
-    const t40 = folded ? 0.0 : T34 * t39;
-    const no_link = a2 * f <= _runtime.VANISHING * t9;
-    const t41 = folded || no_link;
-    const S = t1 + reach;
-    const B = Math.max(t34, 0.0);
-    const SB = S * B;
-    const A = Math.max(t33, 0.0);
-    const C = Math.max(t36, 0.0);
-    const AC = A * C;
-    const t42 = 1.0 / (SB + AC);
-    const t43 = t41 ? 1.0 : (SB - AC) * t42;
-    const t44 = t40 * t43;
-    const SA = S * A;
-    const BC = B * C;
-    const area = 2.0 * Math.sqrt(SA * BC);
-    const t45 = t41 ? 0.0 : t42 * area;
-    const t46 = ahead * t39;
-    const t47 = folded ? 1.0 : t46;
-    const t48 = t45 * t47;
-    const s2 = t44 + t48;
-    const t49 = t40 * t45;
-    const t50 = t43 * t47;
-    const t51 = t49 - t50;
-    const t52 = Math.atan2(s2, -t51);
-    const t53 = (t52 <= -Math.PI ? Math.PI : t52) + t37;
-    const no_forearm = f <= t2;
-    const t54 = 1.0 / f;
-    const t55 = no_forearm ? 0.0 : d4 * t54;
-    const t56 = 1.0 / (SA + BC);
-    const t57 = no_link ? 1.0 : -((SA - BC) * t56);
-    const t58 = t55 * t57;
-    const t59 = no_forearm ? 1.0 : a3 * t54;
-    const t60 = no_link ? 0.0 : area * t56;
-    const t61 = t59 * t60;
-    const t62 = t58 + t61;
-    const t63 = t55 * t60;
-    const t64 = t57 * t59;
-    const t65 = t63 - t64;
-    const t66 = -Math.atan2(t62, -t65);
-    const t67 = (t66 <= -Math.PI ? Math.PI : t66) + t37;
-    const t68 = T13 * t15 + T23 * c1;
-    const t69 = t68 * t68;
-    const s23 = t51 * t62 - s2 * t65;
-    const c23 = t51 * t65 + s2 * t62;
+    const folded_elbow = r_elbow <= t2;
+    const no_link_elbow = a2 * f <= _runtime.VANISHING * t9;
+    const t39 = folded_elbow || no_link_elbow;
+    const A_elbow = Math.max(t33, 0.0);
+    const C_elbow = Math.max(t36, 0.0);
+    const t40 = A_elbow * C_elbow;
+    const S_elbow = t1 + r_elbow;
+    const B_elbow = Math.max(t34, 0.0);
+    const t41 = S_elbow * B_elbow;
+    const t42 = 1.0 / (t40 + t41);
+    const c_base_elbow = t39 ? 1.0 : -((t40 - t41) * t42);
+    const t43 = 1.0 / r_elbow;
+    const t44 = folded_elbow ? 0.0 : T34 * t43;
+    const t45 = c_base_elbow * t44;
+    const t46 = kept1 * t43;
+    const t47 = folded_elbow ? 1.0 : t46;
+    const area_elbow = 2.0 * Math.sqrt(t40 * t41);
+    const s_base_elbow_right_down_noflip = t39 ? 0.0 : t42 * area_elbow;
+    const t48 = t47 * s_base_elbow_right_down_noflip;
+    const s2 = t45 + t48;
+    const t49 = c_base_elbow * t47;
+    const t50 = t44 * s_base_elbow_right_down_noflip;
+    const c2 = t49 - t50;
+    const t51 = Math.atan2(s2, c2);
+    const t52 = (t51 <= -Math.PI ? Math.PI : t51) + t37;
+    const no_forearm = f <= 0.0;
+    const t53 = 1.0 / f;
+    const s_forearm = no_forearm ? 0.0 : d4 * t53;
+    const t54 = A_elbow * S_elbow;
+    const t55 = C_elbow * B_elbow;
+    const t56 = 1.0 / (t54 + t55);
+    const celbow = no_link_elbow ? 1.0 : -((t54 - t55) * t56);
+    const t57 = s_forearm * celbow;
+    const c_forearm = no_forearm ? 1.0 : a3 * t53;
+    const selbow_right_down_noflip = no_link_elbow ? 0.0 : area_elbow * t56;
+    const t58 = c_forearm * selbow_right_down_noflip;
+    const t59 = t57 + t58;
+    const t60 = c_forearm * celbow;
+    const t61 = s_forearm * selbow_right_down_noflip;
+    const c3 = t60 - t61;
+    const t62 = -Math.atan2(t59, c3);
+    const t63 = (t62 <= -Math.PI ? Math.PI : t62) + t37;
     const R1_13 = T13 * c1 - T23 * t15;
-    const R2_13 = T33 * s23 + c23 * R1_13;
-    const h = Math.sqrt(t69 + R2_13 * R2_13);
-    const t70 = _runtime.VANISHING * 16.0;
-    const aligned = h <= t70;
-    const t71 = 1.0 / h;
-    const t72 = aligned ? 0.0 : t68 * t71;
-    const c4 = aligned ? 1.0 : -(R2_13 * t71);
-    const t73 = Math.atan2(t72, c4);
-    const t74 = -t73;
-    const t75 = Math.atan2(t68 * t72 - R2_13 * c4, T33 * c23 - s23 * R1_13);
-    const t76 = T11 * t15 + T21 * c1;
+    const t64 = c2 * c3 + s2 * t59;
+    const t65 = c2 * t59 - s2 * c3;
+    const R2_13 = R1_13 * t64 - T33 * t65;
+    const R2_23 = T13 * t15 + T23 * c1;
+    const t66 = R2_23 * R2_23;
+    const h_wrist = Math.sqrt(R2_13 * R2_13 + t66);
+    const t67 = _runtime.VANISHING * 16.0;
+    const aligned_wrist = h_wrist <= t67;
+    const flip_wrist = aligned_wrist ? 0.0 : 3.141592653589793;
+    const t68 = 1.0 / h_wrist;
+    const s_wrist = aligned_wrist ? 0.0 : R2_23 * t68;
+    const c_wrist = aligned_wrist ? 1.0 : R2_13 * t68;
+    const t69 = Math.atan2(s_wrist, c_wrist);
+    const t70 = Math.atan2(R2_13 * c_wrist + R2_23 * s_wrist, R1_13 * t65 + T33 * t64);
     const R1_11 = T11 * c1 - T21 * t15;
-    const t77 = T12 * t15 + T22 * c1;
+    const R2_21 = T11 * t15 + T21 * c1;
+    const t71 = s_wrist * (t64 * R1_11 - T31 * t65) - c_wrist * R2_21;
+    const R2_22 = T12 * t15 + T22 * c1;
     const R1_12 = T12 * c1 - T22 * t15;
-    const t78 = Math.atan2(c4 * t76 + t72 * (T31 * s23 + c23 * R1_11), c4 * t77 + t72 * (T32 *
-        s23 + c23 * R1_12));
-    const flip = aligned ? 0.0 : 3.141592653589793;
-    const t79 = -t75;
-    const s2_right_down_noflip = t44 - t48;
+    const t72 = c_wrist * R2_22 - s_wrist * (t64 * R1_12 - T32 * t65);
+    const t73 = Math.atan2(t71, t72);
+    const t74 = -t70;
+    const t75 = -t73;
+    const s2_right_down_noflip = t45 - t48;
     const c2_right_down_noflip = t49 + t50;
-    const t80 = Math.atan2(s2_right_down_noflip, c2_right_down_noflip);
-    const t81 = (t80 <= -Math.PI ? Math.PI : t80) + t37;
-    const t82 = t58 - t61;
-    const c3_right_down_noflip = t63 + t64;
-    const t83 = -Math.atan2(t82, c3_right_down_noflip);
-    const t84 = (t83 <= -Math.PI ? Math.PI : t83) + t37;
-    const t85 = c2_right_down_noflip * t82 - s2_right_down_noflip * c3_right_down_noflip;
-    const c23_right_down_noflip = c2_right_down_noflip * c3_right_down_noflip +
-        s2_right_down_noflip * t82;
-    const t86 = T33 * t85 - R1_13 * c23_right_down_noflip;
-    const h_right_down_noflip = Math.sqrt(t69 + t86 * t86);
-    const aligned_right_down_noflip = h_right_down_noflip <= t70;
-    const t87 = 1.0 / h_right_down_noflip;
-    const t88 = aligned_right_down_noflip ? 0.0 : t68 * t87;
-    const c4_right_down_noflip = aligned_right_down_noflip ? 1.0 : t86 * t87;
-    const t89 = Math.atan2(t88, c4_right_down_noflip);
-    const t90 = -t89;
-    const t91 = Math.atan2(t68 * t88 + t86 * c4_right_down_noflip, T33 * c23_right_down_noflip +
-        R1_13 * t85);
-    const t92 = t88 * (T31 * t85 - R1_11 * c23_right_down_noflip);
-    const t93 = t88 * (T32 * t85 - R1_12 * c23_right_down_noflip);
-    const t94 = Math.atan2(t76 * c4_right_down_noflip - t92, t77 * c4_right_down_noflip - t93);
-    const flip_right_down_flip = aligned_right_down_noflip ? 0.0 : 3.141592653589793;
-    const t95 = _runtime.wrap(flip_right_down_flip - t89) + t37;
-    const t96 = -t91;
-    const t97 = _runtime.wrap(t94 + flip_right_down_flip) + t37;
-    const t98 = free_theta1 ? 0.0 : t12 + t14;
-    const c1_left_up_noflip = free_theta1 ? 1.0 : t16 - t17;
-    const t99 = -Math.atan2(t98, c1_left_up_noflip);
-    const t100 = (t99 <= -Math.PI ? Math.PI : t99) + t37;
-    const t101 = folded ? 1.0 : -t46;
-    const t102 = t45 * t101;
-    const s2_left_up_noflip = t44 - t102;
-    const t103 = t43 * t101;
-    const c2_left_up_noflip = t49 + t103;
-    const t104 = Math.atan2(s2_left_up_noflip, c2_left_up_noflip);
-    const t105 = (t104 <= -Math.PI ? Math.PI : t104) + t37;
-    const t106 = T13 * t98 + T23 * c1_left_up_noflip;
-    const t107 = t106 * t106;
-    const t108 = t82 * c2_left_up_noflip - c3_right_down_noflip * s2_left_up_noflip;
-    const c23_left_up_noflip = c3_right_down_noflip * c2_left_up_noflip + t82 *
-        s2_left_up_noflip;
-    const R1_13_left_up_noflip = T13 * c1_left_up_noflip - T23 * t98;
-    const t109 = T33 * t108 - c23_left_up_noflip * R1_13_left_up_noflip;
-    const h_left_up_noflip = Math.sqrt(t107 + t109 * t109);
-    const aligned_left_up_noflip = h_left_up_noflip <= t70;
-    const t110 = 1.0 / h_left_up_noflip;
-    const t111 = aligned_left_up_noflip ? 0.0 : t106 * t110;
-    const c4_left_up_noflip = aligned_left_up_noflip ? 1.0 : t109 * t110;
-    const t112 = Math.atan2(t111, c4_left_up_noflip);
-    const t113 = -t112;
-    const R2_33_left_up_noflip = T33 * c23_left_up_noflip + t108 * R1_13_left_up_noflip;
-    const t114 = Math.atan2(t106 * t111 + t109 * c4_left_up_noflip, R2_33_left_up_noflip);
-    const t115 = T11 * t98 + T21 * c1_left_up_noflip;
-    const R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t98;
-    const t116 = T31 * t108 - c23_left_up_noflip * R1_11_left_up_noflip;
-    const t117 = T12 * t98 + T22 * c1_left_up_noflip;
-    const R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t98;
-    const t118 = T32 * t108 - c23_left_up_noflip * R1_12_left_up_noflip;
-    const t119 = Math.atan2(c4_left_up_noflip * t115 - t111 * t116, c4_left_up_noflip * t117 -
-        t111 * t118);
-    const flip_left_up_flip = aligned_left_up_noflip ? 0.0 : 3.141592653589793;
-    const t120 = _runtime.wrap(flip_left_up_flip - t112) + t37;
-    const t121 = -t114;
-    const t122 = _runtime.wrap(t119 + flip_left_up_flip) + t37;
-    const s2_left_down_noflip = t44 + t102;
-    const t123 = t49 - t103;
-    const t124 = Math.atan2(s2_left_down_noflip, -t123);
-    const t125 = (t124 <= -Math.PI ? Math.PI : t124) + t37;
-    const s23_left_down_noflip = t62 * t123 - t65 * s2_left_down_noflip;
-    const c23_left_down_noflip = t65 * t123 + t62 * s2_left_down_noflip;
-    const R2_13_left_down_noflip = T33 * s23_left_down_noflip + R1_13_left_up_noflip *
-        c23_left_down_noflip;
-    const t126 = R2_13_left_down_noflip * R2_13_left_down_noflip;
-    const h_left_down_noflip = Math.sqrt(t107 + t126);
-    const aligned_left_down_noflip = h_left_down_noflip <= t70;
-    const t127 = 1.0 / h_left_down_noflip;
-    const t128 = aligned_left_down_noflip ? 0.0 : t106 * t127;
-    const c4_left_down_noflip = aligned_left_down_noflip ? 1.0 : -(R2_13_left_down_noflip *
-        t127);
-    const t129 = Math.atan2(t128, c4_left_down_noflip);
-    const t130 = -t129;
-    const t131 = t106 * t128 - R2_13_left_down_noflip * c4_left_down_noflip;
-    const R2_33_left_down_noflip = T33 * c23_left_down_noflip - R1_13_left_up_noflip *
-        s23_left_down_noflip;
-    const t132 = Math.atan2(t131, R2_33_left_down_noflip);
-    const R2_11_left_down_noflip = T31 * s23_left_down_noflip + R1_11_left_up_noflip *
-        c23_left_down_noflip;
-    const t133 = t115 * c4_left_down_noflip + t128 * R2_11_left_down_noflip;
-    const R2_12_left_down_noflip = T32 * s23_left_down_noflip + R1_12_left_up_noflip *
-        c23_left_down_noflip;
-    const t134 = t117 * c4_left_down_noflip + t128 * R2_12_left_down_noflip;
-    const t135 = Math.atan2(t133, t134);
-    const flip_left_down_flip = aligned_left_down_noflip ? 0.0 : 3.141592653589793;
-    const t136 = _runtime.wrap(flip_left_down_flip - t129) + t37;
-    const t137 = -t132;
-    const t138 = _runtime.wrap(t135 + flip_left_down_flip) + t37;
-    const t139 = free_theta1 || no_link || folded || no_forearm;
-    const t140 = invalid ? 3 : unreachable ? 1 : t139 || aligned ? 2 : 0;
-    const t141 = invalid ? 3 : unreachable ? 1 : t139 || aligned_right_down_noflip ? 2 : 0;
-    const t142 = invalid ? 3 : unreachable ? 1 : t139 || aligned_left_up_noflip ? 2 : 0;
-    const t143 = invalid ? 3 : unreachable ? 1 : t139 || aligned_left_down_noflip ? 2 : 0;
+    const t76 = Math.atan2(s2_right_down_noflip, c2_right_down_noflip);
+    const t77 = (t76 <= -Math.PI ? Math.PI : t76) + t37;
+    const t78 = t57 - t58;
+    const c3_right_down_noflip = t60 + t61;
+    const t79 = Math.atan2(-t78, c3_right_down_noflip);
+    const t80 = (t79 <= -Math.PI ? Math.PI : t79) + t37;
+    const t81 = c2_right_down_noflip * c3_right_down_noflip + s2_right_down_noflip * t78;
+    const t82 = c2_right_down_noflip * t78 - s2_right_down_noflip * c3_right_down_noflip;
+    const R2_13_right_down_noflip = R1_13 * t81 - T33 * t82;
+    const t83 = R2_13_right_down_noflip * R2_13_right_down_noflip;
+    const h_wrist_right_down_noflip = Math.sqrt(t66 + t83);
+    const aligned_wrist_right_down_noflip = h_wrist_right_down_noflip <= t67;
+    const flip_wrist_right_down_noflip = aligned_wrist_right_down_noflip ? 0.0 :
+        3.141592653589793;
+    const t84 = 1.0 / h_wrist_right_down_noflip;
+    const s_wrist_right_down_noflip = aligned_wrist_right_down_noflip ? 0.0 : R2_23 * t84;
+    const c_wrist_right_down_noflip = aligned_wrist_right_down_noflip ? 1.0 :
+        R2_13_right_down_noflip * t84;
+    const t85 = Math.atan2(s_wrist_right_down_noflip, c_wrist_right_down_noflip);
+    const t86 = _runtime.wrap(flip_wrist_right_down_noflip + t85);
+    const t87 = R2_13_right_down_noflip * c_wrist_right_down_noflip;
+    const t88 = Math.atan2(t87 + R2_23 * s_wrist_right_down_noflip, R1_13 * t82 + T33 * t81);
+    const t89 = s_wrist_right_down_noflip * (R1_11 * t81 - T31 * t82);
+    const t90 = s_wrist_right_down_noflip * (R1_12 * t81 - T32 * t82);
+    const t91 = Math.atan2(t89 - R2_21 * c_wrist_right_down_noflip, R2_22 *
+        c_wrist_right_down_noflip - t90);
+    const t92 = _runtime.wrap(flip_wrist_right_down_noflip - t91);
+    const t93 = -t88;
+    const t94 = -t91;
+    const t95 = free1 ? 0.0 : t12 + t14;
+    const c1_left_up_noflip = free1 ? 1.0 : t16 - t17;
+    const t96 = -Math.atan2(t95, c1_left_up_noflip);
+    const t97 = (t96 <= -Math.PI ? Math.PI : t96) + t37;
+    const t98 = folded_elbow ? 1.0 : -t46;
+    const t99 = s_base_elbow_right_down_noflip * t98;
+    const s2_left_up_noflip = t45 - t99;
+    const t100 = c_base_elbow * t98;
+    const c2_left_up_noflip = t50 + t100;
+    const t101 = Math.atan2(s2_left_up_noflip, c2_left_up_noflip);
+    const t102 = (t101 <= -Math.PI ? Math.PI : t101) + t37;
+    const R1_13_left_up_noflip = T13 * c1_left_up_noflip - T23 * t95;
+    const t103 = c3_right_down_noflip * c2_left_up_noflip + t78 * s2_left_up_noflip;
+    const t104 = t78 * c2_left_up_noflip - c3_right_down_noflip * s2_left_up_noflip;
+    const R2_13_left_up_noflip = R1_13_left_up_noflip * t103 - T33 * t104;
+    const R2_23_left_up_noflip = T13 * t95 + T23 * c1_left_up_noflip;
+    const t105 = R2_23_left_up_noflip * R2_23_left_up_noflip;
+    const t106 = R2_13_left_up_noflip * R2_13_left_up_noflip + t105;
+    const h_wrist_left_up_noflip = Math.sqrt(t106);
+    const aligned_wrist_left_up_noflip = h_wrist_left_up_noflip <= t67;
+    const flip_wrist_left_up_noflip = aligned_wrist_left_up_noflip ? 0.0 : 3.141592653589793;
+    const t107 = 1.0 / h_wrist_left_up_noflip;
+    const s_wrist_left_up_noflip = aligned_wrist_left_up_noflip ? 0.0 : R2_23_left_up_noflip *
+        t107;
+    const c_wrist_left_up_noflip = aligned_wrist_left_up_noflip ? 1.0 : R2_13_left_up_noflip *
+        t107;
+    const t108 = Math.atan2(s_wrist_left_up_noflip, c_wrist_left_up_noflip);
+    const t109 = _runtime.wrap(flip_wrist_left_up_noflip + t108);
+    const t110 = R2_13_left_up_noflip * c_wrist_left_up_noflip;
+    const t111 = R2_23_left_up_noflip * s_wrist_left_up_noflip;
+    const t112 = Math.atan2(t110 + t111, R1_13_left_up_noflip * t104 + T33 * t103);
+    const R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t95;
+    const t113 = s_wrist_left_up_noflip * (t103 * R1_11_left_up_noflip - T31 * t104);
+    const R2_21_left_up_noflip = T11 * t95 + T21 * c1_left_up_noflip;
+    const t114 = c_wrist_left_up_noflip * R2_21_left_up_noflip;
+    const R2_22_left_up_noflip = T12 * t95 + T22 * c1_left_up_noflip;
+    const t115 = c_wrist_left_up_noflip * R2_22_left_up_noflip;
+    const R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t95;
+    const t116 = s_wrist_left_up_noflip * (t103 * R1_12_left_up_noflip - T32 * t104);
+    const t117 = Math.atan2(t113 - t114, t115 - t116);
+    const t118 = _runtime.wrap(flip_wrist_left_up_noflip - t117);
+    const t119 = -t112;
+    const t120 = -t117;
+    const s2_left_down_noflip = t45 + t99;
+    const t121 = t50 - t100;
+    const t122 = Math.atan2(s2_left_down_noflip, -t121);
+    const t123 = (t122 <= -Math.PI ? Math.PI : t122) + t37;
+    const t124 = c3 * t121 - t59 * s2_left_down_noflip;
+    const t125 = t59 * t121 + c3 * s2_left_down_noflip;
+    const t126 = R1_13_left_up_noflip * t124 - T33 * t125;
+    const h_wrist_left_down_noflip = Math.sqrt(t105 + t126 * t126);
+    const aligned_wrist_left_down_noflip = h_wrist_left_down_noflip <= t67;
+    const flip_wrist_left_down_noflip = aligned_wrist_left_down_noflip ? 0.0 :
+        3.141592653589793;
+    const t127 = 1.0 / h_wrist_left_down_noflip;
+    const s_wrist_left_down_noflip = aligned_wrist_left_down_noflip ? 0.0 : R2_23_left_up_noflip
+        * t127;
+    const c_wrist_left_down_noflip = aligned_wrist_left_down_noflip ? 1.0 : -(t126 * t127);
+    const t128 = Math.atan2(s_wrist_left_down_noflip, c_wrist_left_down_noflip);
+    const t129 = _runtime.wrap(flip_wrist_left_down_noflip + t128);
+    const t130 = R2_23_left_up_noflip * s_wrist_left_down_noflip;
+    const t131 = Math.atan2(t126 * c_wrist_left_down_noflip - t130, -(R1_13_left_up_noflip *
+        t125 + T33 * t124));
+    const t132 = -t131;
+    const t133 = s_wrist_left_down_noflip * (R1_11_left_up_noflip * t124 - T31 * t125);
+    const t134 = R2_21_left_up_noflip * c_wrist_left_down_noflip;
+    const t135 = s_wrist_left_down_noflip * (R1_12_left_up_noflip * t124 - T32 * t125);
+    const t136 = R2_22_left_up_noflip * c_wrist_left_down_noflip;
+    const t137 = Math.atan2(t133 + t134, t135 + t136);
+    const t138 = _runtime.wrap(flip_wrist_left_down_noflip + t137);
+    const t139 = free1 || no_link_elbow || folded_elbow;
+    const t140 = invalid ? 3 : unreachable ? 1 : t139 || aligned_wrist ? 2 : 0;
+    const t141 = invalid ? 3 : unreachable ? 1 : t139 || aligned_wrist_right_down_noflip ? 2 :
+        0;
+    const t142 = invalid ? 3 : unreachable ? 1 : t139 || aligned_wrist_left_up_noflip ? 2 : 0;
+    const t143 = invalid ? 3 : unreachable ? 1 : t139 || aligned_wrist_left_down_noflip ? 2 : 0;
     o[0] = t38;
-    o[1] = t53;
-    o[2] = t67;
-    o[3] = (t74 <= -Math.PI ? Math.PI : t74) + t37;
-    o[4] = (t75 <= -Math.PI ? Math.PI : t75) + t37;
-    o[5] = (t78 <= -Math.PI ? Math.PI : t78) + t37;
+    o[1] = t52;
+    o[2] = t63;
+    o[3] = _runtime.wrap(flip_wrist + t69) + t37;
+    o[4] = (t70 <= -Math.PI ? Math.PI : t70) + t37;
+    o[5] = _runtime.wrap(flip_wrist - t73) + t37;
     o[6] = t38;
-    o[7] = t53;
-    o[8] = t67;
-    o[9] = _runtime.wrap(flip - t73) + t37;
-    o[10] = (t79 <= -Math.PI ? Math.PI : t79) + t37;
-    o[11] = _runtime.wrap(t78 + flip) + t37;
+    o[7] = t52;
+    o[8] = t63;
+    o[9] = (t69 <= -Math.PI ? Math.PI : t69) + t37;
+    o[10] = (t74 <= -Math.PI ? Math.PI : t74) + t37;
+    o[11] = (t75 <= -Math.PI ? Math.PI : t75) + t37;
     o[12] = t38;
-    o[13] = t81;
-    o[14] = t84;
-    o[15] = (t90 <= -Math.PI ? Math.PI : t90) + t37;
-    o[16] = (t91 <= -Math.PI ? Math.PI : t91) + t37;
-    o[17] = (t94 <= -Math.PI ? Math.PI : t94) + t37;
+    o[13] = t77;
+    o[14] = t80;
+    o[15] = t86 + t37;
+    o[16] = (t88 <= -Math.PI ? Math.PI : t88) + t37;
+    o[17] = t92 + t37;
     o[18] = t38;
-    o[19] = t81;
-    o[20] = t84;
-    o[21] = t95;
-    o[22] = (t96 <= -Math.PI ? Math.PI : t96) + t37;
-    o[23] = t97;
-    o[24] = t100;
-    o[25] = t105;
-    o[26] = t84;
-    o[27] = (t113 <= -Math.PI ? Math.PI : t113) + t37;
-    o[28] = (t114 <= -Math.PI ? Math.PI : t114) + t37;
-    o[29] = (t119 <= -Math.PI ? Math.PI : t119) + t37;
-    o[30] = t100;
-    o[31] = t105;
-    o[32] = t84;
-    o[33] = t120;
-    o[34] = (t121 <= -Math.PI ? Math.PI : t121) + t37;
-    o[35] = t122;
-    o[36] = t100;
-    o[37] = t125;
-    o[38] = t67;
-    o[39] = (t130 <= -Math.PI ? Math.PI : t130) + t37;
+    o[19] = t77;
+    o[20] = t80;
+    o[21] = (t85 <= -Math.PI ? Math.PI : t85) + t37;
+    o[22] = (t93 <= -Math.PI ? Math.PI : t93) + t37;
+    o[23] = (t94 <= -Math.PI ? Math.PI : t94) + t37;
+    o[24] = t97;
+    o[25] = t102;
+    o[26] = t80;
+    o[27] = t109 + t37;
+    o[28] = (t112 <= -Math.PI ? Math.PI : t112) + t37;
+    o[29] = t118 + t37;
+    o[30] = t97;
+    o[31] = t102;
+    o[32] = t80;
+    o[33] = (t108 <= -Math.PI ? Math.PI : t108) + t37;
+    o[34] = (t119 <= -Math.PI ? Math.PI : t119) + t37;
+    o[35] = (t120 <= -Math.PI ? Math.PI : t120) + t37;
+    o[36] = t97;
+    o[37] = t123;
+    o[38] = t63;
+    o[39] = t129 + t37;
     o[40] = (t132 <= -Math.PI ? Math.PI : t132) + t37;
-    o[41] = (t135 <= -Math.PI ? Math.PI : t135) + t37;
-    o[42] = t100;
-    o[43] = t125;
-    o[44] = t67;
-    o[45] = t136;
-    o[46] = (t137 <= -Math.PI ? Math.PI : t137) + t37;
-    o[47] = t138;
+    o[41] = t138 + t37;
+    o[42] = t97;
+    o[43] = t123;
+    o[44] = t63;
+    o[45] = (t128 <= -Math.PI ? Math.PI : t128) + t37;
+    o[46] = (t131 <= -Math.PI ? Math.PI : t131) + t37;
+    o[47] = (t137 <= -Math.PI ? Math.PI : t137) + t37;
     o[48] = t140;
     o[49] = t140;
     o[50] = t141;
@@ -1107,14 +1103,14 @@ const _IK = _runtime.kernel({
  *   right_down_flip, left_up_noflip, left_up_flip, left_down_noflip, left_down_flip.
  * - right: X >= 0, the arm faces the wrist; left: X <= 0. up: the elbow is above the line from
  *   the shoulder to the wrist; down: below.
+ * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
+ * - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
+ *   digits, the pose does not.
+ * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
  * - SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal
  *   links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without
  *   length, theta3 is free.
- * - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
- *   digits, the pose does not.
- * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
- * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
  *
  * @param {ArrayLike<number>} T 16 numbers (4 x 4 in row order). A homogeneous transform with a
  *     proper rotation.

@@ -3,13 +3,13 @@
 // Source: R. P. Paul, M. W. Spong, S. Hutchinson, M. Vidyasagar: The Stanford arm in the
 //     textbooks.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 18 add, 44 multiply, 5 sincos
 //   pose: 18 add, 44 multiply, 5 sincos
+//   fk: 18 add, 44 multiply, 5 sincos
 //   jacobian: 8 add, 26 multiply, 4 sincos
-//   jacobian_space: 14 add, 43 multiply, 4 sincos
-//   jacobian_body: 14 add, 41 multiply, 4 sincos
 //   determinant: 3 multiply, 2 sincos
 //   singularities: 2 sincos
+//   jacobian_space: 14 add, 43 multiply, 4 sincos
+//   jacobian_body: 14 add, 41 multiply, 4 sincos
 //   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 116 multiply, 8 sqrt
 //   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 91 multiply, 6
 //     sqrt
@@ -48,105 +48,6 @@ export const SINGULARITIES = Object.freeze(/** @type {const} */ (["shoulder", "b
 export const DEFAULTS = Object.freeze({
     d2: 0.154,
 });
-
-/** @type {_runtime.Compute} */
-function _fk(v, o) {
-    const theta1 = v[0];
-    const theta2 = v[1];
-    const d3 = v[2];
-    const theta4 = v[3];
-    const theta5 = v[4];
-    const theta6 = v[5];
-    const d2 = v[6];
-    _runtime.sincos(theta6);
-    const s6 = _runtime.found[0];
-    const c6 = _runtime.found[1];
-    _runtime.sincos(theta5);
-    const s5 = _runtime.found[0];
-    const c5 = _runtime.found[1];
-    _runtime.sincos(theta4);
-    const s4 = _runtime.found[0];
-    const c4 = _runtime.found[1];
-    _runtime.sincos(theta2);
-    const s2 = _runtime.found[0];
-    const c2 = _runtime.found[1];
-    _runtime.sincos(theta1);
-    const s1 = _runtime.found[0];
-    const c1 = _runtime.found[1];
-    const T4_11 = c6 * c5;
-    const T3_11 = T4_11 * c4 - s6 * s4;
-    const T4_21 = c6 * s5;
-    const T1_11 = T3_11 * c2 - T4_21 * s2;
-    const T3_21 = T4_11 * s4 + s6 * c4;
-    const t1 = s6 * c5;
-    const t2 = t1 * s4 - c6 * c4;
-    const t3 = t1 * c4 + c6 * s4;
-    const t4 = s6 * s5;
-    const t5 = t3 * c2 - t4 * s2;
-    const T3_13 = s5 * c4;
-    const T1_13 = T3_13 * c2 + c5 * s2;
-    const T3_23 = s5 * s4;
-    const T1_14 = d3 * s2;
-    o[0] = T1_11 * c1 - T3_21 * s1;
-    o[1] = t2 * s1 - t5 * c1;
-    o[2] = T1_13 * c1 - T3_23 * s1;
-    o[3] = T1_14 * c1 - d2 * s1;
-    o[4] = T1_11 * s1 + T3_21 * c1;
-    o[5] = -(t5 * s1 + t2 * c1);
-    o[6] = T1_13 * s1 + T3_23 * c1;
-    o[7] = T1_14 * s1 + d2 * c1;
-    o[8] = -(T3_11 * s2 + T4_21 * c2);
-    o[9] = t3 * s2 + t4 * c2;
-    o[10] = -(T3_13 * s2 - c5 * c2);
-    o[11] = d3 * c2;
-    o[12] = 0.0;
-    o[13] = 0.0;
-    o[14] = 0.0;
-    o[15] = 1.0;
-}
-
-const _FK = _runtime.kernel({
-    name: "stanford_arm.fk",
-    compute: _fk,
-    common: null,
-    inputs: [
-        { name: "q", shape: [6], branches: 0, kind: "real" },
-    ],
-    outputs: [
-        { name: "T", shape: [4, 4], branches: 0, kind: "real" },
-    ],
-    used: ["d2"],
-    defaults: DEFAULTS,
-    size: null,
-});
-
-/**
- * Pose of the hand in the base frame.
- *
- * @param {ArrayLike<number>} q 6 numbers. theta1, theta2 in rad; d3 in the unit of the
- *     parameters; theta4, theta5, theta6 in rad.
- * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform with a proper
- *     rotation.
- * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
- */
-export function fk(q, parameters) {
-    return _runtime.single(_FK, [q], parameters);
-}
-
-/**
- * `fk` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
- *
- * @param {number} n
- * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
- * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
- */
-export function fk_batch(n, q, T, parameters) {
-    return _runtime.batch(_FK, n, [q], [T], parameters);
-}
 
 /** @type {_runtime.Compute} */
 function _pose(v, o) {
@@ -220,7 +121,7 @@ const _POSE = _runtime.kernel({
 });
 
 /**
- * The same as fk.
+ * Pose of the tool in the base frame.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2 in rad; d3 in the unit of the
  *     parameters; theta4, theta5, theta6 in rad.
@@ -245,6 +146,105 @@ export function pose(q, parameters) {
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _fk(v, o) {
+    const theta1 = v[0];
+    const theta2 = v[1];
+    const d3 = v[2];
+    const theta4 = v[3];
+    const theta5 = v[4];
+    const theta6 = v[5];
+    const d2 = v[6];
+    _runtime.sincos(theta6);
+    const s6 = _runtime.found[0];
+    const c6 = _runtime.found[1];
+    _runtime.sincos(theta5);
+    const s5 = _runtime.found[0];
+    const c5 = _runtime.found[1];
+    _runtime.sincos(theta4);
+    const s4 = _runtime.found[0];
+    const c4 = _runtime.found[1];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    const T4_11 = c6 * c5;
+    const T3_11 = T4_11 * c4 - s6 * s4;
+    const T4_21 = c6 * s5;
+    const T1_11 = T3_11 * c2 - T4_21 * s2;
+    const T3_21 = T4_11 * s4 + s6 * c4;
+    const t1 = s6 * c5;
+    const t2 = t1 * s4 - c6 * c4;
+    const t3 = t1 * c4 + c6 * s4;
+    const t4 = s6 * s5;
+    const t5 = t3 * c2 - t4 * s2;
+    const T3_13 = s5 * c4;
+    const T1_13 = T3_13 * c2 + c5 * s2;
+    const T3_23 = s5 * s4;
+    const T1_14 = d3 * s2;
+    o[0] = T1_11 * c1 - T3_21 * s1;
+    o[1] = t2 * s1 - t5 * c1;
+    o[2] = T1_13 * c1 - T3_23 * s1;
+    o[3] = T1_14 * c1 - d2 * s1;
+    o[4] = T1_11 * s1 + T3_21 * c1;
+    o[5] = -(t5 * s1 + t2 * c1);
+    o[6] = T1_13 * s1 + T3_23 * c1;
+    o[7] = T1_14 * s1 + d2 * c1;
+    o[8] = -(T3_11 * s2 + T4_21 * c2);
+    o[9] = t3 * s2 + t4 * c2;
+    o[10] = -(T3_13 * s2 - c5 * c2);
+    o[11] = d3 * c2;
+    o[12] = 0.0;
+    o[13] = 0.0;
+    o[14] = 0.0;
+    o[15] = 1.0;
+}
+
+const _FK = _runtime.kernel({
+    name: "stanford_arm.fk",
+    compute: _fk,
+    common: null,
+    inputs: [
+        { name: "q", shape: [6], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "T", shape: [4, 4], branches: 0, kind: "real" },
+    ],
+    used: ["d2"],
+    defaults: DEFAULTS,
+    size: null,
+});
+
+/**
+ * Pose of the tool in the base frame.
+ *
+ * @param {ArrayLike<number>} q 6 numbers. theta1, theta2 in rad; d3 in the unit of the
+ *     parameters; theta4, theta5, theta6 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform with a proper
+ *     rotation.
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function fk(q, parameters) {
+    return _runtime.single(_FK, [q], parameters);
+}
+
+/**
+ * `fk` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 6 n numbers
+ * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function fk_batch(n, q, T, parameters) {
+    return _runtime.batch(_FK, n, [q], [T], parameters);
 }
 
 /** @type {_runtime.Compute} */
@@ -329,9 +329,9 @@ const _JACOBIAN = _runtime.kernel({
 });
 
 /**
- * Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
+ * Velocity of the tool over its angular velocity, in base axes, per joint rate.
  *
- * - The geometric Jacobian, in the order (v; omega).
+ * - The geometric Jacobian: rows (v; omega), v of the origin of the tool.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2 in rad; d3 in the unit of the
  *     parameters; theta4, theta5, theta6 in rad.
@@ -356,6 +356,121 @@ export function jacobian(q, parameters) {
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _determinant(v, o) {
+    const theta2 = v[1];
+    const d3 = v[2];
+    const theta5 = v[4];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    _runtime.sincos(theta5);
+    const s5 = _runtime.found[0];
+    o[0] = d3 * d3 * s2 * s5;
+}
+
+const _DETERMINANT = _runtime.kernel({
+    name: "stanford_arm.determinant",
+    compute: _determinant,
+    common: null,
+    inputs: [
+        { name: "q", shape: [6], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "det", shape: [], branches: 0, kind: "real" },
+    ],
+    used: [],
+    defaults: DEFAULTS,
+    size: {
+        lengths: [2],
+        degrees: [[0, 2]],
+        least: 8.636168555094445e-78,
+        most: 3.273390607896142e+150,
+    },
+});
+
+/**
+ * Determinant of the Jacobian.
+ *
+ * @param {ArrayLike<number>} q 6 numbers. theta1, theta2 in rad; d3 in the unit of the
+ *     parameters; theta4, theta5, theta6 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number}
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function determinant(q, parameters) {
+    return _runtime.single(_DETERMINANT, [q], parameters);
+}
+
+/**
+ * `determinant` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 6 n numbers
+ * @param {Float64Array} [det] n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function determinant_batch(n, q, det, parameters) {
+    return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _singularities(v, o) {
+    const theta2 = v[1];
+    const d3 = v[2];
+    const theta5 = v[4];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    _runtime.sincos(theta5);
+    const s5 = _runtime.found[0];
+    o[0] = s2;
+    o[1] = d3;
+    o[2] = s5;
+}
+
+const _SINGULARITIES = _runtime.kernel({
+    name: "stanford_arm.singularities",
+    compute: _singularities,
+    common: null,
+    inputs: [
+        { name: "q", shape: [6], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "factors", shape: [3], branches: 0, kind: "real" },
+    ],
+    used: [],
+    defaults: DEFAULTS,
+    size: null,
+});
+
+/**
+ * The factors of the determinant that hold a joint.
+ *
+ * @param {ArrayLike<number>} q 6 numbers. theta1, theta2 in rad; d3 in the unit of the
+ *     parameters; theta4, theta5, theta6 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} 3 numbers. One factor for each singular set: shoulder; boom; wrist.
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function singularities(q, parameters) {
+    return _runtime.single(_SINGULARITIES, [q], parameters);
+}
+
+/**
+ * `singularities` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 6 n numbers
+ * @param {Float64Array} [factors] 3 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function singularities_batch(n, q, factors, parameters) {
+    return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
 }
 
 /** @type {_runtime.Compute} */
@@ -447,7 +562,7 @@ const _JACOBIAN_SPACE = _runtime.kernel({
 });
 
 /**
- * Twist (v; omega) of the hand in the base frame per joint rate.
+ * Twist (v; omega) of the tool in the base frame per joint rate.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2 in rad; d3 in the unit of the
  *     parameters; theta4, theta5, theta6 in rad.
@@ -563,7 +678,7 @@ const _JACOBIAN_BODY = _runtime.kernel({
 });
 
 /**
- * Twist (v; omega) of the hand in its own frame per joint rate.
+ * Twist (v; omega) of the tool in its own frame per joint rate.
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2 in rad; d3 in the unit of the
  *     parameters; theta4, theta5, theta6 in rad.
@@ -591,121 +706,6 @@ export function jacobian_body_batch(n, q, J, parameters) {
 }
 
 /** @type {_runtime.Compute} */
-function _determinant(v, o) {
-    const theta2 = v[1];
-    const d3 = v[2];
-    const theta5 = v[4];
-    _runtime.sincos(theta2);
-    const s2 = _runtime.found[0];
-    _runtime.sincos(theta5);
-    const s5 = _runtime.found[0];
-    o[0] = d3 * d3 * s2 * s5;
-}
-
-const _DETERMINANT = _runtime.kernel({
-    name: "stanford_arm.determinant",
-    compute: _determinant,
-    common: null,
-    inputs: [
-        { name: "q", shape: [6], branches: 0, kind: "real" },
-    ],
-    outputs: [
-        { name: "det", shape: [], branches: 0, kind: "real" },
-    ],
-    used: [],
-    defaults: DEFAULTS,
-    size: {
-        lengths: [2],
-        degrees: [[0, 2]],
-        least: 8.636168555094445e-78,
-        most: 3.273390607896142e+150,
-    },
-});
-
-/**
- * Determinant of the Jacobian.
- *
- * @param {ArrayLike<number>} q 6 numbers. theta1, theta2 in rad; d3 in the unit of the
- *     parameters; theta4, theta5, theta6 in rad.
- * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number}
- * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
- */
-export function determinant(q, parameters) {
-    return _runtime.single(_DETERMINANT, [q], parameters);
-}
-
-/**
- * `determinant` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
- *
- * @param {number} n
- * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [det] n numbers, written to; made if there is none
- * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
- */
-export function determinant_batch(n, q, det, parameters) {
-    return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
-}
-
-/** @type {_runtime.Compute} */
-function _singularities(v, o) {
-    const theta2 = v[1];
-    const d3 = v[2];
-    const theta5 = v[4];
-    _runtime.sincos(theta2);
-    const s2 = _runtime.found[0];
-    _runtime.sincos(theta5);
-    const s5 = _runtime.found[0];
-    o[0] = s2;
-    o[1] = d3;
-    o[2] = s5;
-}
-
-const _SINGULARITIES = _runtime.kernel({
-    name: "stanford_arm.singularities",
-    compute: _singularities,
-    common: null,
-    inputs: [
-        { name: "q", shape: [6], branches: 0, kind: "real" },
-    ],
-    outputs: [
-        { name: "factors", shape: [3], branches: 0, kind: "real" },
-    ],
-    used: [],
-    defaults: DEFAULTS,
-    size: null,
-});
-
-/**
- * The factors whose zeros are the singular set: shoulder, boom, wrist.
- *
- * @param {ArrayLike<number>} q 6 numbers. theta1, theta2 in rad; d3 in the unit of the
- *     parameters; theta4, theta5, theta6 in rad.
- * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 3 numbers. One factor for each singular set: shoulder; boom; wrist.
- * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
- */
-export function singularities(q, parameters) {
-    return _runtime.single(_SINGULARITIES, [q], parameters);
-}
-
-/**
- * `singularities` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
- *
- * @param {number} n
- * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [factors] 3 n numbers, written to; made if there is none
- * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
- */
-export function singularities_batch(n, q, factors, parameters) {
-    return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
-}
-
-/** @type {_runtime.Compute} */
 function _ik(v, o) {
     const T11 = v[0];
     const T12 = v[1];
@@ -725,25 +725,25 @@ function _ik(v, o) {
     const T44 = v[15];
     const d2 = v[16];
     const t1 = T14 * T14 + T24 * T24;
-    const amplitude = Math.sqrt(t1);
+    const h1 = Math.sqrt(t1);
     const t2 = T34 * T34;
     const size = Math.abs(d2) + Math.sqrt(t2 + t1);
     const t3 = _runtime.VANISHING * size;
-    const free_theta1 = amplitude <= t3;
-    const t4 = amplitude - d2;
-    const below = Math.max(t4, 0.0);
-    const t5 = d2 + amplitude;
-    const above = Math.max(t5, 0.0);
-    const t6 = below - above;
-    const t7 = 1.0 / (amplitude * (below + above));
+    const free1 = h1 <= t3;
+    const t4 = h1 - d2;
+    const below1 = Math.max(t4, 0.0);
+    const t5 = d2 + h1;
+    const above1 = Math.max(t5, 0.0);
+    const t6 = below1 - above1;
+    const t7 = 1.0 / (h1 * (below1 + above1));
     const t8 = T14 * t6 * t7;
-    const root = Math.sqrt(below * above);
-    const t9 = 2.0 * root;
+    const root1 = Math.sqrt(below1 * above1);
+    const t9 = 2.0 * root1;
     const t10 = t7 * (T24 * t9);
-    const s1 = free_theta1 ? 0.0 : t8 + t10;
+    const s1 = free1 ? 0.0 : t8 + t10;
     const t11 = t7 * (T14 * t9);
     const t12 = T24 * t6 * t7;
-    const c1 = free_theta1 ? 1.0 : t11 - t12;
+    const c1 = free1 ? 1.0 : t11 - t12;
     const t13 = Math.atan2(s1, c1);
     const t14 = Number.isFinite(T14) && Number.isFinite(T24) && Number.isFinite(T34);
     const t15 = Math.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION;
@@ -762,70 +762,71 @@ function _ik(v, o) {
     const unreachable = !(t26 <= t4 && t26 <= t5);
     const t27 = invalid || unreachable ? NaN : 0;
     const t28 = (t13 <= -Math.PI ? Math.PI : t13) + t27;
-    const reach = Math.sqrt(t2 + root * root);
-    const drawn_in = reach <= t3;
-    const t29 = 1.0 / reach;
-    const s2 = drawn_in ? 0.0 : root * t29;
+    const r_boom = Math.sqrt(t2 + root1 * root1);
+    const on_axis_boom = r_boom <= t3;
+    const t29 = 1.0 / r_boom;
+    const s2 = on_axis_boom ? 0.0 : root1 * t29;
     const t30 = T34 * t29;
-    const c2 = drawn_in ? 1.0 : t30;
+    const c2 = on_axis_boom ? 1.0 : t30;
     const t31 = Math.atan2(s2, c2);
     const t32 = (t31 <= -Math.PI ? Math.PI : t31) + t27;
-    const t33 = reach + t27;
+    const t33 = r_boom + t27;
     const t34 = T13 * s1 - T23 * c1;
     const t35 = t34 * t34;
     const t36 = T33 * s2;
     const R1_13 = T13 * c1 + T23 * s1;
     const t37 = t36 - c2 * R1_13;
-    const h = Math.sqrt(t35 + t37 * t37);
+    const h_wrist = Math.sqrt(t35 + t37 * t37);
     const t38 = _runtime.VANISHING * 16.0;
-    const aligned = h <= t38;
-    const t39 = 1.0 / h;
-    const t40 = aligned ? 0.0 : t34 * t39;
-    const c4 = aligned ? 1.0 : -(t37 * t39);
-    const t41 = Math.atan2(t40, c4);
+    const aligned_wrist = h_wrist <= t38;
+    const t39 = 1.0 / h_wrist;
+    const t40 = aligned_wrist ? 0.0 : t34 * t39;
+    const c_wrist = aligned_wrist ? 1.0 : -(t37 * t39);
+    const t41 = Math.atan2(t40, c_wrist);
     const t42 = -t41;
     const t43 = T33 * c2;
     const t44 = s2 * R1_13;
-    const t45 = Math.atan2(t34 * t40 - t37 * c4, t43 + t44);
+    const t45 = Math.atan2(t34 * t40 - t37 * c_wrist, t43 + t44);
     const t46 = T11 * s1 - T21 * c1;
     const t47 = T31 * s2;
     const R1_11 = T11 * c1 + T21 * s1;
     const t48 = T12 * s1 - T22 * c1;
     const t49 = T32 * s2;
     const R1_12 = T12 * c1 + T22 * s1;
-    const t50 = Math.atan2(c4 * t46 + t40 * (t47 - c2 * R1_11), -(c4 * t48 + t40 * (t49 - c2 *
-        R1_12)));
+    const t50 = Math.atan2(c_wrist * t46 + t40 * (t47 - c2 * R1_11), -(c_wrist * t48 + t40 *
+        (t49 - c2 * R1_12)));
     const t51 = -t50;
-    const flip = aligned ? 0.0 : 3.141592653589793;
+    const flip_wrist = aligned_wrist ? 0.0 : 3.141592653589793;
     const t52 = -t45;
-    const c2_right_back_noflip = drawn_in ? 1.0 : -t30;
+    const c2_right_back_noflip = on_axis_boom ? 1.0 : -t30;
     const t53 = Math.atan2(s2, c2_right_back_noflip);
     const t54 = -t53;
     const t55 = (t54 <= -Math.PI ? Math.PI : t54) + t27;
-    const t56 = -reach + t27;
+    const t56 = -r_boom + t27;
     const R2_13_right_back_noflip = t36 + R1_13 * c2_right_back_noflip;
     const t57 = R2_13_right_back_noflip * R2_13_right_back_noflip;
-    const h_right_back_noflip = Math.sqrt(t35 + t57);
-    const aligned_right_back_noflip = h_right_back_noflip <= t38;
-    const t58 = 1.0 / h_right_back_noflip;
-    const t59 = aligned_right_back_noflip ? 0.0 : t34 * t58;
-    const c4_right_back_noflip = aligned_right_back_noflip ? 1.0 : R2_13_right_back_noflip *
-        t58;
-    const t60 = Math.atan2(t59, c4_right_back_noflip);
+    const h_wrist_right_back_noflip = Math.sqrt(t35 + t57);
+    const aligned_wrist_right_back_noflip = h_wrist_right_back_noflip <= t38;
+    const t58 = 1.0 / h_wrist_right_back_noflip;
+    const t59 = aligned_wrist_right_back_noflip ? 0.0 : t34 * t58;
+    const c_wrist_right_back_noflip = aligned_wrist_right_back_noflip ? 1.0 :
+        R2_13_right_back_noflip * t58;
+    const t60 = Math.atan2(t59, c_wrist_right_back_noflip);
     const t61 = -t60;
-    const t62 = R2_13_right_back_noflip * c4_right_back_noflip;
+    const t62 = R2_13_right_back_noflip * c_wrist_right_back_noflip;
     const t63 = T33 * c2_right_back_noflip;
     const t64 = Math.atan2(t34 * t59 + t62, t63 - t44);
-    const t65 = t46 * c4_right_back_noflip - t59 * (t47 + R1_11 * c2_right_back_noflip);
-    const t66 = t59 * (t49 + R1_12 * c2_right_back_noflip) - t48 * c4_right_back_noflip;
+    const t65 = t46 * c_wrist_right_back_noflip - t59 * (t47 + R1_11 * c2_right_back_noflip);
+    const t66 = t59 * (t49 + R1_12 * c2_right_back_noflip) - t48 * c_wrist_right_back_noflip;
     const t67 = Math.atan2(t65, t66);
     const t68 = -t67;
-    const flip_right_back_flip = aligned_right_back_noflip ? 0.0 : 3.141592653589793;
-    const t69 = _runtime.wrap(flip_right_back_flip - t60) + t27;
+    const flip_wrist_right_back_flip = aligned_wrist_right_back_noflip ? 0.0 :
+        3.141592653589793;
+    const t69 = _runtime.wrap(flip_wrist_right_back_flip - t60);
     const t70 = -t64;
-    const t71 = _runtime.wrap(flip_right_back_flip - t67) + t27;
-    const s1_left_out_noflip = free_theta1 ? 0.0 : t8 - t10;
-    const c1_left_out_noflip = free_theta1 ? 1.0 : -(t12 + t11);
+    const t71 = _runtime.wrap(flip_wrist_right_back_flip - t67);
+    const s1_left_out_noflip = free1 ? 0.0 : t8 - t10;
+    const c1_left_out_noflip = free1 ? 1.0 : -(t12 + t11);
     const t72 = Math.atan2(s1_left_out_noflip, c1_left_out_noflip);
     const t73 = (t72 <= -Math.PI ? Math.PI : t72) + t27;
     const t74 = -t31;
@@ -835,52 +836,54 @@ function _ik(v, o) {
     const R1_13_left_out_noflip = T13 * c1_left_out_noflip + T23 * s1_left_out_noflip;
     const R2_13_left_out_noflip = t36 + c2 * R1_13_left_out_noflip;
     const t78 = R2_13_left_out_noflip * R2_13_left_out_noflip;
-    const h_left_out_noflip = Math.sqrt(t77 + t78);
-    const aligned_left_out_noflip = h_left_out_noflip <= t38;
-    const t79 = 1.0 / h_left_out_noflip;
-    const t80 = aligned_left_out_noflip ? 0.0 : t76 * t79;
-    const c4_left_out_noflip = aligned_left_out_noflip ? 1.0 : R2_13_left_out_noflip * t79;
-    const t81 = Math.atan2(t80, c4_left_out_noflip);
+    const h_wrist_left_out_noflip = Math.sqrt(t77 + t78);
+    const aligned_wrist_left_out_noflip = h_wrist_left_out_noflip <= t38;
+    const t79 = 1.0 / h_wrist_left_out_noflip;
+    const t80 = aligned_wrist_left_out_noflip ? 0.0 : t76 * t79;
+    const c_wrist_left_out_noflip = aligned_wrist_left_out_noflip ? 1.0 : R2_13_left_out_noflip
+        * t79;
+    const t81 = Math.atan2(t80, c_wrist_left_out_noflip);
     const t82 = -t81;
-    const t83 = t76 * t80 + R2_13_left_out_noflip * c4_left_out_noflip;
+    const t83 = R2_13_left_out_noflip * c_wrist_left_out_noflip;
     const t84 = s2 * R1_13_left_out_noflip;
-    const t85 = Math.atan2(t83, t43 - t84);
+    const t85 = Math.atan2(t76 * t80 + t83, t43 - t84);
     const t86 = T11 * s1_left_out_noflip - T21 * c1_left_out_noflip;
     const R1_11_left_out_noflip = T11 * c1_left_out_noflip + T21 * s1_left_out_noflip;
-    const t87 = c4_left_out_noflip * t86 - t80 * (t47 + c2 * R1_11_left_out_noflip);
+    const t87 = c_wrist_left_out_noflip * t86 - t80 * (t47 + c2 * R1_11_left_out_noflip);
     const R1_12_left_out_noflip = T12 * c1_left_out_noflip + T22 * s1_left_out_noflip;
     const t88 = T12 * s1_left_out_noflip - T22 * c1_left_out_noflip;
-    const t89 = t80 * (t49 + c2 * R1_12_left_out_noflip) - c4_left_out_noflip * t88;
+    const t89 = t80 * (t49 + c2 * R1_12_left_out_noflip) - c_wrist_left_out_noflip * t88;
     const t90 = Math.atan2(t87, t89);
     const t91 = -t90;
-    const flip_left_out_flip = aligned_left_out_noflip ? 0.0 : 3.141592653589793;
-    const t92 = _runtime.wrap(flip_left_out_flip - t81) + t27;
+    const flip_wrist_left_out_flip = aligned_wrist_left_out_noflip ? 0.0 : 3.141592653589793;
+    const t92 = _runtime.wrap(flip_wrist_left_out_flip - t81);
     const t93 = -t85;
-    const t94 = _runtime.wrap(flip_left_out_flip - t90) + t27;
+    const t94 = _runtime.wrap(flip_wrist_left_out_flip - t90);
     const t95 = (t53 <= -Math.PI ? Math.PI : t53) + t27;
     const t96 = t36 - c2_right_back_noflip * R1_13_left_out_noflip;
-    const h_left_back_noflip = Math.sqrt(t77 + t96 * t96);
-    const aligned_left_back_noflip = h_left_back_noflip <= t38;
-    const t97 = 1.0 / h_left_back_noflip;
-    const t98 = aligned_left_back_noflip ? 0.0 : t76 * t97;
-    const c4_left_back_noflip = aligned_left_back_noflip ? 1.0 : -(t96 * t97);
-    const t99 = Math.atan2(t98, c4_left_back_noflip);
+    const h_wrist_left_back_noflip = Math.sqrt(t77 + t96 * t96);
+    const aligned_wrist_left_back_noflip = h_wrist_left_back_noflip <= t38;
+    const t97 = 1.0 / h_wrist_left_back_noflip;
+    const t98 = aligned_wrist_left_back_noflip ? 0.0 : t76 * t97;
+    const c_wrist_left_back_noflip = aligned_wrist_left_back_noflip ? 1.0 : -(t96 * t97);
+    const t99 = Math.atan2(t98, c_wrist_left_back_noflip);
     const t100 = -t99;
-    const t101 = Math.atan2(t76 * t98 - t96 * c4_left_back_noflip, t63 + t84);
+    const t101 = Math.atan2(t76 * t98 - t96 * c_wrist_left_back_noflip, t63 + t84);
     const t102 = t47 - c2_right_back_noflip * R1_11_left_out_noflip;
     const t103 = t49 - c2_right_back_noflip * R1_12_left_out_noflip;
-    const t104 = Math.atan2(t86 * c4_left_back_noflip + t98 * t102, -(t88 * c4_left_back_noflip
-        + t98 * t103));
-    const t105 = -t104;
-    const flip_left_back_flip = aligned_left_back_noflip ? 0.0 : 3.141592653589793;
-    const t106 = _runtime.wrap(flip_left_back_flip - t99) + t27;
-    const t107 = -t101;
-    const t108 = _runtime.wrap(flip_left_back_flip - t104) + t27;
-    const t109 = free_theta1 || drawn_in;
-    const t110 = invalid ? 3 : unreachable ? 1 : t109 || aligned ? 2 : 0;
-    const t111 = invalid ? 3 : unreachable ? 1 : t109 || aligned_right_back_noflip ? 2 : 0;
-    const t112 = invalid ? 3 : unreachable ? 1 : t109 || aligned_left_out_noflip ? 2 : 0;
-    const t113 = invalid ? 3 : unreachable ? 1 : t109 || aligned_left_back_noflip ? 2 : 0;
+    const t104 = -(t88 * c_wrist_left_back_noflip + t98 * t103);
+    const t105 = Math.atan2(t86 * c_wrist_left_back_noflip + t98 * t102, t104);
+    const t106 = -t105;
+    const flip_wrist_left_back_flip = aligned_wrist_left_back_noflip ? 0.0 : 3.141592653589793;
+    const t107 = _runtime.wrap(flip_wrist_left_back_flip - t99);
+    const t108 = -t101;
+    const t109 = _runtime.wrap(flip_wrist_left_back_flip - t105);
+    const t110 = free1 || on_axis_boom;
+    const t111 = invalid ? 3 : unreachable ? 1 : t110 || aligned_wrist ? 2 : 0;
+    const t112 = invalid ? 3 : unreachable ? 1 : t110 || aligned_wrist_right_back_noflip ? 2 :
+        0;
+    const t113 = invalid ? 3 : unreachable ? 1 : t110 || aligned_wrist_left_out_noflip ? 2 : 0;
+    const t114 = invalid ? 3 : unreachable ? 1 : t110 || aligned_wrist_left_back_noflip ? 2 : 0;
     o[0] = t28;
     o[1] = t32;
     o[2] = t33;
@@ -890,9 +893,9 @@ function _ik(v, o) {
     o[6] = t28;
     o[7] = t32;
     o[8] = t33;
-    o[9] = _runtime.wrap(flip - t41) + t27;
+    o[9] = _runtime.wrap(flip_wrist - t41) + t27;
     o[10] = (t52 <= -Math.PI ? Math.PI : t52) + t27;
-    o[11] = _runtime.wrap(flip - t50) + t27;
+    o[11] = _runtime.wrap(flip_wrist - t50) + t27;
     o[12] = t28;
     o[13] = t55;
     o[14] = t56;
@@ -902,9 +905,9 @@ function _ik(v, o) {
     o[18] = t28;
     o[19] = t55;
     o[20] = t56;
-    o[21] = t69;
+    o[21] = t69 + t27;
     o[22] = (t70 <= -Math.PI ? Math.PI : t70) + t27;
-    o[23] = t71;
+    o[23] = t71 + t27;
     o[24] = t73;
     o[25] = t75;
     o[26] = t33;
@@ -914,29 +917,29 @@ function _ik(v, o) {
     o[30] = t73;
     o[31] = t75;
     o[32] = t33;
-    o[33] = t92;
+    o[33] = t92 + t27;
     o[34] = (t93 <= -Math.PI ? Math.PI : t93) + t27;
-    o[35] = t94;
+    o[35] = t94 + t27;
     o[36] = t73;
     o[37] = t95;
     o[38] = t56;
     o[39] = (t100 <= -Math.PI ? Math.PI : t100) + t27;
     o[40] = (t101 <= -Math.PI ? Math.PI : t101) + t27;
-    o[41] = (t105 <= -Math.PI ? Math.PI : t105) + t27;
+    o[41] = (t106 <= -Math.PI ? Math.PI : t106) + t27;
     o[42] = t73;
     o[43] = t95;
     o[44] = t56;
-    o[45] = t106;
-    o[46] = (t107 <= -Math.PI ? Math.PI : t107) + t27;
-    o[47] = t108;
-    o[48] = t110;
-    o[49] = t110;
-    o[50] = t111;
-    o[51] = t111;
-    o[52] = t112;
-    o[53] = t112;
-    o[54] = t113;
-    o[55] = t113;
+    o[45] = t107 + t27;
+    o[46] = (t108 <= -Math.PI ? Math.PI : t108) + t27;
+    o[47] = t109 + t27;
+    o[48] = t111;
+    o[49] = t111;
+    o[50] = t112;
+    o[51] = t112;
+    o[52] = t113;
+    o[53] = t113;
+    o[54] = t114;
+    o[55] = t114;
 }
 
 /** @type {_runtime.Compute} */
@@ -959,16 +962,16 @@ function _ik_common(v, o) {
     const T44 = v[15];
     const d2 = v[16];
     const t1 = T14 * T14 + T24 * T24;
-    const amplitude = Math.sqrt(t1);
-    const t2 = amplitude - d2;
-    const below = Math.max(t2, 0.0);
-    const t3 = d2 + amplitude;
-    const above = Math.max(t3, 0.0);
-    const t4 = below - above;
-    const t5 = 1.0 / (amplitude * (below + above));
+    const h1 = Math.sqrt(t1);
+    const t2 = h1 - d2;
+    const below1 = Math.max(t2, 0.0);
+    const t3 = d2 + h1;
+    const above1 = Math.max(t3, 0.0);
+    const t4 = below1 - above1;
+    const t5 = 1.0 / (h1 * (below1 + above1));
     const t6 = T14 * t4 * t5;
-    const root = Math.sqrt(below * above);
-    const t7 = 2.0 * root;
+    const root1 = Math.sqrt(below1 * above1);
+    const t7 = 2.0 * root1;
     const t8 = t5 * (T24 * t7);
     const s1 = t6 + t8;
     const t9 = T24 * t4 * t5;
@@ -994,40 +997,40 @@ function _ik_common(v, o) {
     const unreachable = !(t26 <= t2 && t26 <= t3);
     const t27 = invalid || unreachable ? NaN : 0;
     const t28 = (t12 <= -Math.PI ? Math.PI : t12) + t27;
-    const t29 = Math.atan2(root, T34);
+    const t29 = Math.atan2(root1, T34);
     const t30 = (t29 <= -Math.PI ? Math.PI : t29) + t27;
-    const reach = Math.sqrt(t25 + root * root);
-    const t31 = reach + t27;
+    const r_boom = Math.sqrt(t25 + root1 * root1);
+    const t31 = r_boom + t27;
     const t32 = T13 * s1 + T23 * t11;
-    const t33 = 1.0 / reach;
-    const s2 = root * t33;
+    const t33 = 1.0 / r_boom;
+    const s2 = root1 * t33;
     const t34 = T33 * s2;
     const c2 = T34 * t33;
     const t35 = T13 * t11 - T23 * s1;
     const t36 = t34 + c2 * t35;
     const t37 = Math.atan2(t32, -t36);
     const t38 = -t37;
-    const h = Math.sqrt(t32 * t32 + t36 * t36);
-    const t39 = 1.0 / h;
+    const h_wrist = Math.sqrt(t32 * t32 + t36 * t36);
+    const t39 = 1.0 / h_wrist;
     const t40 = t32 * t39;
-    const c4_right_back_noflip = t36 * t39;
-    const t41 = t32 * t40 + t36 * c4_right_back_noflip;
+    const c_wrist_right_back_noflip = t36 * t39;
+    const t41 = t32 * t40 + t36 * c_wrist_right_back_noflip;
     const t42 = T33 * c2;
     const R2_33 = t42 - s2 * t35;
     const t43 = Math.atan2(t41, R2_33);
-    const t44 = c4_right_back_noflip * (T11 * s1 + T21 * t11);
+    const t44 = c_wrist_right_back_noflip * (T11 * s1 + T21 * t11);
     const t45 = T31 * s2;
     const t46 = t44 - t40 * (t45 + c2 * (T11 * t11 - T21 * s1));
-    const t47 = c4_right_back_noflip * (T12 * s1 + T22 * t11);
+    const t47 = c_wrist_right_back_noflip * (T12 * s1 + T22 * t11);
     const t48 = T32 * s2;
     const t49 = t47 - t40 * (t48 + c2 * (T12 * t11 - T22 * s1));
     const t50 = Math.atan2(-t46, t49);
     const t51 = -t50;
     const t52 = -t43;
-    const t53 = Math.atan2(root, -T34);
+    const t53 = Math.atan2(root1, -T34);
     const t54 = -t53;
     const t55 = (t54 <= -Math.PI ? Math.PI : t54) + t27;
-    const t56 = -reach + t27;
+    const t56 = -r_boom + t27;
     const t57 = Math.atan2(t32, t36);
     const t58 = -t57;
     const t59 = Math.atan2(t41, -R2_33);
@@ -1046,33 +1049,34 @@ function _ik_common(v, o) {
     const t70 = Math.atan2(t68, R2_13_left_out_noflip);
     const t71 = -t70;
     const t72 = R2_13_left_out_noflip * R2_13_left_out_noflip;
-    const h_left_out_noflip = Math.sqrt(t68 * t68 + t72);
-    const t73 = 1.0 / h_left_out_noflip;
+    const h_wrist_left_out_noflip = Math.sqrt(t68 * t68 + t72);
+    const t73 = 1.0 / h_wrist_left_out_noflip;
     const t74 = t68 * t73;
-    const c4_left_out_noflip = R2_13_left_out_noflip * t73;
-    const t75 = t68 * t74 + R2_13_left_out_noflip * c4_left_out_noflip;
+    const c_wrist_left_out_noflip = R2_13_left_out_noflip * t73;
+    const t75 = R2_13_left_out_noflip * c_wrist_left_out_noflip;
+    const t76 = t68 * t74 + t75;
     const R2_33_left_out_noflip = t42 + s2 * t69;
-    const t76 = Math.atan2(t75, R2_33_left_out_noflip);
-    const t77 = c4_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t63);
+    const t77 = Math.atan2(t76, R2_33_left_out_noflip);
+    const t78 = c_wrist_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t63);
     const R2_11_left_out_noflip = t45 - c2 * (T11 * t63 - T21 * s1_left_out_noflip);
-    const t78 = t77 - t74 * R2_11_left_out_noflip;
-    const t79 = c4_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t63);
+    const t79 = t78 - t74 * R2_11_left_out_noflip;
+    const t80 = c_wrist_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t63);
     const R2_12_left_out_noflip = t48 - c2 * (T12 * t63 - T22 * s1_left_out_noflip);
-    const t80 = t79 - t74 * R2_12_left_out_noflip;
-    const t81 = Math.atan2(t78, -t80);
-    const t82 = -t81;
-    const t83 = -t76;
-    const t84 = (t53 <= -Math.PI ? Math.PI : t53) + t27;
-    const t85 = Math.atan2(t68, -R2_13_left_out_noflip);
-    const t86 = -t85;
-    const t87 = Math.atan2(t75, -R2_33_left_out_noflip);
-    const t88 = Math.atan2(-t78, t80);
-    const t89 = -t88;
-    const t90 = -t87;
-    const t91 = invalid ? 3 : unreachable ? 1 : false ? 2 : 0;
-    const t92 = _runtime.VANISHING * size;
-    const t93 = _runtime.VANISHING * 16.0;
-    const t94 = amplitude <= t92 || reach <= t92 || h <= t93 || h_left_out_noflip <= t93;
+    const t81 = t80 - t74 * R2_12_left_out_noflip;
+    const t82 = Math.atan2(t79, -t81);
+    const t83 = -t82;
+    const t84 = -t77;
+    const t85 = (t53 <= -Math.PI ? Math.PI : t53) + t27;
+    const t86 = Math.atan2(t68, -R2_13_left_out_noflip);
+    const t87 = -t86;
+    const t88 = Math.atan2(t76, -R2_33_left_out_noflip);
+    const t89 = Math.atan2(-t79, t81);
+    const t90 = -t89;
+    const t91 = -t88;
+    const t92 = invalid ? 3 : unreachable ? 1 : false ? 2 : 0;
+    const t93 = _runtime.VANISHING * size;
+    const t94 = _runtime.VANISHING * 16.0;
+    const t95 = h1 <= t93 || r_boom <= t93 || h_wrist <= t94 || h_wrist_left_out_noflip <= t94;
     o[0] = t28;
     o[1] = t30;
     o[2] = t31;
@@ -1101,35 +1105,35 @@ function _ik_common(v, o) {
     o[25] = t67;
     o[26] = t31;
     o[27] = (t71 <= -Math.PI ? Math.PI : t71) + t27;
-    o[28] = (t76 <= -Math.PI ? Math.PI : t76) + t27;
-    o[29] = (t82 <= -Math.PI ? Math.PI : t82) + t27;
+    o[28] = (t77 <= -Math.PI ? Math.PI : t77) + t27;
+    o[29] = (t83 <= -Math.PI ? Math.PI : t83) + t27;
     o[30] = t65;
     o[31] = t67;
     o[32] = t31;
     o[33] = _runtime.wrap(3.141592653589793 - t70) + t27;
-    o[34] = (t83 <= -Math.PI ? Math.PI : t83) + t27;
-    o[35] = _runtime.wrap(3.141592653589793 - t81) + t27;
+    o[34] = (t84 <= -Math.PI ? Math.PI : t84) + t27;
+    o[35] = _runtime.wrap(3.141592653589793 - t82) + t27;
     o[36] = t65;
-    o[37] = t84;
+    o[37] = t85;
     o[38] = t56;
-    o[39] = (t86 <= -Math.PI ? Math.PI : t86) + t27;
-    o[40] = (t87 <= -Math.PI ? Math.PI : t87) + t27;
-    o[41] = (t89 <= -Math.PI ? Math.PI : t89) + t27;
+    o[39] = (t87 <= -Math.PI ? Math.PI : t87) + t27;
+    o[40] = (t88 <= -Math.PI ? Math.PI : t88) + t27;
+    o[41] = (t90 <= -Math.PI ? Math.PI : t90) + t27;
     o[42] = t65;
-    o[43] = t84;
+    o[43] = t85;
     o[44] = t56;
-    o[45] = _runtime.wrap(3.141592653589793 - t85) + t27;
-    o[46] = (t90 <= -Math.PI ? Math.PI : t90) + t27;
-    o[47] = _runtime.wrap(3.141592653589793 - t88) + t27;
-    o[48] = t91;
-    o[49] = t91;
-    o[50] = t91;
-    o[51] = t91;
-    o[52] = t91;
-    o[53] = t91;
-    o[54] = t91;
-    o[55] = t91;
-    o[56] = (t94) ? 1 : 0;
+    o[45] = _runtime.wrap(3.141592653589793 - t86) + t27;
+    o[46] = (t91 <= -Math.PI ? Math.PI : t91) + t27;
+    o[47] = _runtime.wrap(3.141592653589793 - t89) + t27;
+    o[48] = t92;
+    o[49] = t92;
+    o[50] = t92;
+    o[51] = t92;
+    o[52] = t92;
+    o[53] = t92;
+    o[54] = t92;
+    o[55] = t92;
+    o[56] = (t95) ? 1 : 0;
 }
 
 const _IK = _runtime.kernel({
@@ -1159,11 +1163,11 @@ const _IK = _runtime.kernel({
  * - Branches in this order, `BRANCHES`: right_out_noflip, right_out_flip, right_back_noflip,
  *   right_back_flip, left_out_noflip, left_out_flip, left_back_noflip, left_back_flip.
  * - right: X >= 0, the arm faces the wrist; left: X <= 0. out: d3 >= 0; back: d3 <= 0.
+ * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
+ * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
  * - SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the
  *   boom drawn in, d3 = 0, theta2 = 0 is returned.
- * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
- * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
  *
  * @param {ArrayLike<number>} T 16 numbers (4 x 4 in row order). A homogeneous transform with a
  *     proper rotation.

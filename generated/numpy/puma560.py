@@ -3,14 +3,14 @@
 # Source: J. J. Craig, P. I. Corke, M. W. Spong, R. P. Paul, C. S. G. Lee, M. Ziegler: The Puma
 #     560 in the textbooks.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 24 add, 52 multiply, 6 sincos
 #   pose: 24 add, 52 multiply, 6 sincos
+#   fk: 24 add, 52 multiply, 6 sincos
 #   jacobian: 14 add, 36 multiply, 5 sincos
+#   determinant: 5 add, 12 multiply, 3 sincos
+#   singularities: 5 add, 9 multiply, 3 sincos
 #   jacobian_space: 29 add, 65 multiply, 5 sincos
 #   jacobian_body: 26 add, 61 multiply, 5 sincos
-#   determinant: 9 add, 22 multiply, 3 sincos
-#   singularities: 5 add, 9 multiply, 3 sincos
-#   ik: 142 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
+#   ik: 141 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
 """Puma 560.
 
 A vertical base axis (theta1), two parallel horizontal axes (theta2, theta3) and a spherical
@@ -46,13 +46,13 @@ __all__ = [
     "Positions",
     "Solutions",
     "Status",
-    "fk",
     "pose",
+    "fk",
     "jacobian",
-    "jacobian_space",
-    "jacobian_body",
     "determinant",
     "singularities",
+    "jacobian_space",
+    "jacobian_body",
     "ik",
 ]
 
@@ -76,94 +76,6 @@ Parameters.d3.__doc__ = 'offset of the arm from the base axis, in m; default 0.1
 Parameters.d4.__doc__ = 'length of the forearm, from the elbow to the wrist, in m; default 0.4318 (Puma 560 of the Robotics Toolbox (Corke))'
 
 _DEFAULT = Parameters()
-
-
-def _fk(theta1, theta2, theta3, theta4, theta5, theta6, a2, a3, d3, d4):
-    s6, c6 = _runtime.sincos(theta6)
-    s5, c5 = _runtime.sincos(theta5)
-    s4, c4 = _runtime.sincos(theta4)
-    s2, c2 = _runtime.sincos(theta2)
-    s3, c3 = _runtime.sincos(theta3)
-    s1, c1 = _runtime.sincos(theta1)
-    T3_11 = c6 * c5
-    T2_11 = T3_11 * c4 - s6 * s4
-    c23 = c2 * c3 - s2 * s3
-    T3_21 = c6 * s5
-    s23 = s2 * c3 + c2 * s3
-    del c3, s3
-    T1_11 = T2_11 * c23 - T3_21 * s23
-    T2_21 = T3_11 * s4 + s6 * c4
-    del T3_11
-    t1 = s6 * c5
-    t2 = t1 * s4 - c6 * c4
-    t3 = t1 * c4 + c6 * s4
-    del c6, t1
-    t4 = s6 * s5
-    del s6
-    t5 = t3 * c23 - t4 * s23
-    t6 = s5 * s4
-    del s4
-    t7 = s5 * c4
-    del c4, s5
-    t8 = t7 * c23 + c5 * s23
-    T1_14 = a2 * c2 + a3 * c23 - d4 * s23
-    del c2
-    return (
-        T1_11 * c1 - T2_21 * s1,
-        t2 * s1 - t5 * c1,
-        t6 * s1 - t8 * c1,
-        T1_14 * c1 + d3 * s1,
-        T1_11 * s1 + T2_21 * c1,
-        -(t5 * s1 + t2 * c1),
-        -(t8 * s1 + t6 * c1),
-        T1_14 * s1 - d3 * c1,
-        T2_11 * s23 + T3_21 * c23,
-        -(t3 * s23 + t4 * c23),
-        c5 * c23 - t7 * s23,
-        a2 * s2 + a3 * s23 + d4 * c23,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    )
-
-
-_FK = _runtime.Kernel(
-    "puma560.fk",
-    _fk,
-    (_runtime.Array("q", (6,)),),
-    (_runtime.Array("T", (4, 4)),),
-    Parameters._fields,
-    ('a2', 'a3', 'd3', 'd4'),
-)
-
-
-def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Pose of the hand in the base frame.
-
-    Parameters
-    ----------
-    q : array_like, shape (..., 6)
-        theta1 to theta6 in rad.
-    params : Parameters, optional
-        The dimensions. Each may be an array that broadcasts with the leading axes.
-    out : ndarray, optional
-        An array to write the result to; it is returned.
-
-    Returns
-    -------
-    T : ndarray of float64, shape (..., 4, 4)
-        A homogeneous transform with a proper rotation.
-
-    Raises
-    ------
-    TypeError
-        If an argument does not hold real numbers.
-    ValueError
-        If an argument has the wrong shape, or leading axes do not broadcast.
-    """
-    result = _runtime.evaluate(_FK, (q,), params, out)
-    return result
 
 
 def _pose(theta1, theta2, theta3, theta4, theta5, theta6, a2, a3, d3, d4):
@@ -227,7 +139,7 @@ _POSE = _runtime.Kernel(
 
 
 def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The same as fk.
+    """Pose of the tool in the base frame.
 
     Parameters
     ----------
@@ -251,6 +163,94 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
         If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
+    return result
+
+
+def _fk(theta1, theta2, theta3, theta4, theta5, theta6, a2, a3, d3, d4):
+    s6, c6 = _runtime.sincos(theta6)
+    s5, c5 = _runtime.sincos(theta5)
+    s4, c4 = _runtime.sincos(theta4)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
+    s1, c1 = _runtime.sincos(theta1)
+    T3_11 = c6 * c5
+    T2_11 = T3_11 * c4 - s6 * s4
+    c23 = c2 * c3 - s2 * s3
+    T3_21 = c6 * s5
+    s23 = s2 * c3 + c2 * s3
+    del c3, s3
+    T1_11 = T2_11 * c23 - T3_21 * s23
+    T2_21 = T3_11 * s4 + s6 * c4
+    del T3_11
+    t1 = s6 * c5
+    t2 = t1 * s4 - c6 * c4
+    t3 = t1 * c4 + c6 * s4
+    del c6, t1
+    t4 = s6 * s5
+    del s6
+    t5 = t3 * c23 - t4 * s23
+    t6 = s5 * s4
+    del s4
+    t7 = s5 * c4
+    del c4, s5
+    t8 = t7 * c23 + c5 * s23
+    T1_14 = a2 * c2 + a3 * c23 - d4 * s23
+    del c2
+    return (
+        T1_11 * c1 - T2_21 * s1,
+        t2 * s1 - t5 * c1,
+        t6 * s1 - t8 * c1,
+        T1_14 * c1 + d3 * s1,
+        T1_11 * s1 + T2_21 * c1,
+        -(t5 * s1 + t2 * c1),
+        -(t8 * s1 + t6 * c1),
+        T1_14 * s1 - d3 * c1,
+        T2_11 * s23 + T3_21 * c23,
+        -(t3 * s23 + t4 * c23),
+        c5 * c23 - t7 * s23,
+        a2 * s2 + a3 * s23 + d4 * c23,
+        0.0,
+        0.0,
+        0.0,
+        1.0,
+    )
+
+
+_FK = _runtime.Kernel(
+    "puma560.fk",
+    _fk,
+    (_runtime.Array("q", (6,)),),
+    (_runtime.Array("T", (4, 4)),),
+    Parameters._fields,
+    ('a2', 'a3', 'd3', 'd4'),
+)
+
+
+def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Pose of the tool in the base frame.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    T : ndarray of float64, shape (..., 4, 4)
+        A homogeneous transform with a proper rotation.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+    """
+    result = _runtime.evaluate(_FK, (q,), params, out)
     return result
 
 
@@ -325,7 +325,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
+    """Velocity of the tool over its angular velocity, in base axes, per joint rate.
 
     Parameters
     ----------
@@ -350,9 +350,109 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - The geometric Jacobian, in the order (v; omega).
+    - The geometric Jacobian: rows (v; omega), v of the origin of the tool.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
+    return result
+
+
+def _determinant(_theta1, theta2, theta3, _theta4, theta5, _theta6, a2, a3, d4):
+    s3, c3 = _runtime.sincos(theta3)
+    s2, c2 = _runtime.sincos(theta2)
+    s5 = np.sin(theta5)
+    t1 = a2 * c2 + a3 * (c3 * c2 - s3 * s2) - d4 * (c3 * s2 + s3 * c2)
+    del c2, s2
+    return (
+        a2 * (a3 * s3 + d4 * c3) * t1 * s5,
+    )
+
+
+_DETERMINANT = _runtime.Kernel(
+    "puma560.determinant",
+    _determinant,
+    (_runtime.Array("q", (6,)),),
+    (_runtime.Array("det", ()),),
+    Parameters._fields,
+    ('a2', 'a3', 'd4'),
+    size=_runtime.Size((6, 7, 8), ((0, 3),), 6.681911775230489e-52, 1.7498005798264095e+100),
+)
+
+
+def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Determinant of the Jacobian.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    det : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+    """
+    result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
+    return result
+
+
+def _singularities(_theta1, theta2, theta3, _theta4, theta5, _theta6, a2, a3, d4):
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
+    s5 = np.sin(theta5)
+    t1 = a2 * c2 + a3 * (c2 * c3 - s2 * s3) - d4 * (s2 * c3 + c2 * s3)
+    del c2, s2
+    return (
+        t1,
+        a3 * s3 + d4 * c3,
+        s5,
+    )
+
+
+_SINGULARITIES = _runtime.Kernel(
+    "puma560.singularities",
+    _singularities,
+    (_runtime.Array("q", (6,)),),
+    (_runtime.Array("factors", (3,)),),
+    Parameters._fields,
+    ('a2', 'a3', 'd4'),
+)
+
+
+def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """The factors of the determinant that hold a joint.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 3)
+        One factor for each singular set: shoulder; elbow; wrist.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+    """
+    result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
 
 
@@ -442,7 +542,7 @@ _JACOBIAN_SPACE = _runtime.Kernel(
 
 
 def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Twist (v; omega) of the hand in the base frame per joint rate.
+    """Twist (v; omega) of the tool in the base frame per joint rate.
 
     Parameters
     ----------
@@ -558,7 +658,7 @@ _JACOBIAN_BODY = _runtime.Kernel(
 
 
 def jacobian_body(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Twist (v; omega) of the hand in its own frame per joint rate.
+    """Twist (v; omega) of the tool in its own frame per joint rate.
 
     Parameters
     ----------
@@ -585,156 +685,46 @@ def jacobian_body(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     return result
 
 
-def _determinant(_theta1, theta2, theta3, _theta4, theta5, _theta6, a2, a3, d4):
-    s5 = np.sin(theta5)
-    s2, c2 = _runtime.sincos(theta2)
-    s3, c3 = _runtime.sincos(theta3)
-    t1 = a3 * a3
-    t2 = s3 * c2
-    t3 = s3 * s2
-    del s3
-    t4 = a2 * d4
-    c23 = c3 * c2 - t3
-    t5 = c3 * (c3 * s2 + t2)
-    t6 = s2 * t1 - a2 * a3 * t2 - t3 * t4 - c23 * t4 - t1 * t5
-    del s2, t1, t2, t3, t4
-    t7 = a3 * d4
-    t8 = t6 + c2 * t7 - c3 * c23 * 2.0 * t7 + d4 * d4 * t5
-    del c2, c23, c3, t5, t6, t7
-    return (
-        -(a2 * s5 * t8),
-    )
-
-
-_DETERMINANT = _runtime.Kernel(
-    "puma560.determinant",
-    _determinant,
-    (_runtime.Array("q", (6,)),),
-    (_runtime.Array("det", ()),),
-    Parameters._fields,
-    ('a2', 'a3', 'd4'),
-    size=_runtime.Size((6, 7, 8), ((0, 3),), 6.681911775230489e-52, 1.7498005798264095e+100),
-)
-
-
-def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Determinant of the Jacobian.
-
-    Parameters
-    ----------
-    q : array_like, shape (..., 6)
-        theta1 to theta6 in rad.
-    params : Parameters, optional
-        The dimensions. Each may be an array that broadcasts with the leading axes.
-    out : ndarray, optional
-        An array to write the result to; it is returned.
-
-    Returns
-    -------
-    det : ndarray of float64, shape (...)
-
-    Raises
-    ------
-    TypeError
-        If an argument does not hold real numbers.
-    ValueError
-        If an argument has the wrong shape, or leading axes do not broadcast.
-    """
-    result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
-    return result
-
-
-def _singularities(_theta1, theta2, theta3, _theta4, theta5, _theta6, a2, a3, d4):
-    s2, c2 = _runtime.sincos(theta2)
-    s3, c3 = _runtime.sincos(theta3)
-    s5 = np.sin(theta5)
-    t1 = a2 * c2 + a3 * (c2 * c3 - s2 * s3) - d4 * (s2 * c3 + c2 * s3)
-    del c2, s2
-    return (
-        t1,
-        a3 * s3 + d4 * c3,
-        s5,
-    )
-
-
-_SINGULARITIES = _runtime.Kernel(
-    "puma560.singularities",
-    _singularities,
-    (_runtime.Array("q", (6,)),),
-    (_runtime.Array("factors", (3,)),),
-    Parameters._fields,
-    ('a2', 'a3', 'd4'),
-)
-
-
-def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The factors whose zeros are the singular set: shoulder, elbow, wrist.
-
-    Parameters
-    ----------
-    q : array_like, shape (..., 6)
-        theta1 to theta6 in rad.
-    params : Parameters, optional
-        The dimensions. Each may be an array that broadcasts with the leading axes.
-    out : ndarray, optional
-        An array to write the result to; it is returned.
-
-    Returns
-    -------
-    factors : ndarray of float64, shape (..., 3)
-        One factor for each singular set: shoulder; elbow; wrist.
-
-    Raises
-    ------
-    TypeError
-        If an argument does not hold real numbers.
-    ValueError
-        If an argument has the wrong shape, or leading axes do not broadcast.
-    """
-    result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
-    return result
-
-
 def _ik(
     T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T43, T44, a2, a3, d3,
     d4
 ):
-    amplitude = np.sqrt(T14 * T14 + T24 * T24)
+    h1 = np.sqrt(T14 * T14 + T24 * T24)
     f = np.sqrt(a3 * a3 + d4 * d4)
     t1 = a2 + f
     size = np.abs(d3) + t1
     t2 = _runtime.VANISHING * size
-    free_theta1 = amplitude <= t2
-    t3 = amplitude - d3
-    below = np.maximum(t3, 0.0)
-    t4 = d3 + amplitude
-    above = np.maximum(t4, 0.0)
-    t5 = below - above
-    t6 = below * above
-    root = np.sqrt(t6)
-    tangent = root - amplitude * 0.00390625 <= amplitude * _runtime.VANISHING
+    free1 = h1 <= t2
+    t3 = h1 - d3
+    below1 = np.maximum(t3, 0.0)
+    t4 = d3 + h1
+    above1 = np.maximum(t4, 0.0)
+    t5 = below1 - above1
+    t6 = below1 * above1
+    root1 = np.sqrt(t6)
+    tangent1 = root1 - h1 * 0.00390625 <= h1 * _runtime.VANISHING
     t7 = a2 - f
     t8 = T34 * T34
     t9 = t1 * t1
-    wanted = np.maximum(np.maximum(0.0, t7 * t7 - t8), np.minimum(t6, t9 - t8))
-    t10 = 8796093022208.0 * np.abs(t6 - wanted) <= amplitude * size
-    held = _runtime.select(t10, wanted, t6)
-    del t10, t6, wanted
-    span = _runtime.select(tangent, 2.0 * np.sqrt(t5 * t5 * 0.25 + held), below + above)
-    del above, below
-    t11 = 1.0 / (amplitude * span)
-    del amplitude, span
+    wanted1 = np.maximum(np.maximum(0.0, t7 * t7 - t8), np.minimum(t6, t9 - t8))
+    t10 = 8796093022208.0 * np.abs(t6 - wanted1) <= h1 * size
+    held1 = _runtime.select(t10, wanted1, t6)
+    del t10, t6, wanted1
+    span1 = _runtime.select(tangent1, np.sqrt(t5 * t5 + 4.0 * held1), below1 + above1)
+    del above1, below1
+    t11 = 1.0 / (h1 * span1)
+    del h1, span1
     t12 = T14 * t5 * t11
-    ahead = _runtime.select(tangent, np.sqrt(held), root)
-    del held, root, tangent
-    t13 = 2.0 * ahead
+    kept1 = _runtime.select(tangent1, np.sqrt(held1), root1)
+    del held1, root1, tangent1
+    t13 = 2.0 * kept1
     t14 = t11 * (T24 * t13)
-    t15 = _runtime.select(free_theta1, 0.0, t12 - t14)
+    t15 = _runtime.select(free1, 0.0, t12 - t14)
     t16 = T24 * t5 * t11
     del t5
     t17 = t11 * (T14 * t13)
     del t11, t13
-    c1 = _runtime.select(free_theta1, 1.0, t16 + t17)
+    c1 = _runtime.select(free1, 1.0, t16 + t17)
     t18 = np.isfinite(a2) & np.isfinite(a3) & np.isfinite(d3) & np.isfinite(d4)
     t19 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
     t20 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
@@ -755,303 +745,314 @@ def _ik(
     del t29
     invalid = np.logical_not(t30)
     del t30
-    t31 = -(_runtime.FEASIBILITY * size)
+    t31 = -(_runtime.FEASIBILITY * (size * 0.5))
     del size
-    reach = np.sqrt(t8 + ahead * ahead)
+    r_elbow = np.sqrt(t8 + kept1 * kept1)
     del t8
-    t32 = t1 - reach
-    t33 = t7 + reach
+    t32 = t1 - r_elbow
+    t33 = t7 + r_elbow
     t34 = (t31 <= t3) & (t31 <= t4) & (t31 <= t32) & (t31 <= t33)
     del t3, t4
-    t35 = reach - t7
+    t35 = r_elbow - t7
     del t7
     unreachable = np.logical_not(t34 & (t31 <= t35))
     del t31, t34
     t36 = _runtime.poison(invalid | unreachable)
     t37 = _runtime.wrap_cut(-np.arctan2(t15, c1)) + t36
-    folded = reach <= t2
-    t38 = 1.0 / reach
-    t39 = _runtime.select(folded, 0.0, T34 * t38)
-    no_link = a2 * f <= _runtime.VANISHING * t9
-    del t9
-    t40 = folded | no_link
-    S = t1 + reach
-    del reach, t1
-    B = np.maximum(t33, 0.0)
-    del t33
-    SB = S * B
-    A = np.maximum(t32, 0.0)
-    del t32
-    C = np.maximum(t35, 0.0)
-    del t35
-    AC = A * C
-    t41 = 1.0 / (SB + AC)
-    t42 = _runtime.select(t40, 1.0, (SB - AC) * t41)
-    del AC, SB
-    t43 = t39 * t42
-    SA = S * A
-    del A, S
-    BC = B * C
-    del B, C
-    area = 2.0 * np.sqrt(SA * BC)
-    t44 = _runtime.select(t40, 0.0, t41 * area)
-    del t40, t41
-    t45 = ahead * t38
-    del ahead, t38
-    t46 = _runtime.select(folded, 1.0, t45)
-    t47 = t44 * t46
-    s2 = t43 + t47
-    t48 = t39 * t44
-    del t39
-    t49 = t42 * t46
-    del t46
-    t50 = t48 - t49
-    t51 = _runtime.wrap_cut(np.arctan2(s2, -t50)) + t36
-    no_forearm = f <= t2
+    folded_elbow = r_elbow <= t2
     del t2
-    t52 = 1.0 / f
+    no_link_elbow = a2 * f <= _runtime.VANISHING * t9
+    del t9
+    t38 = folded_elbow | no_link_elbow
+    A_elbow = np.maximum(t32, 0.0)
+    del t32
+    C_elbow = np.maximum(t35, 0.0)
+    del t35
+    t39 = A_elbow * C_elbow
+    S_elbow = t1 + r_elbow
+    del t1
+    B_elbow = np.maximum(t33, 0.0)
+    del t33
+    t40 = S_elbow * B_elbow
+    t41 = 1.0 / (t39 + t40)
+    c_base_elbow = _runtime.select(t38, 1.0, -((t39 - t40) * t41))
+    t42 = 1.0 / r_elbow
+    del r_elbow
+    t43 = _runtime.select(folded_elbow, 0.0, T34 * t42)
+    t44 = c_base_elbow * t43
+    t45 = kept1 * t42
+    del kept1, t42
+    t46 = _runtime.select(folded_elbow, 1.0, t45)
+    area_elbow = 2.0 * np.sqrt(t39 * t40)
+    del t39, t40
+    s_base_elbow_right_down_noflip = _runtime.select(t38, 0.0, t41 * area_elbow)
+    del t38, t41
+    t47 = t46 * s_base_elbow_right_down_noflip
+    s2 = t44 + t47
+    t48 = c_base_elbow * t46
+    del t46
+    t49 = t43 * s_base_elbow_right_down_noflip
+    del t43
+    c2 = t48 - t49
+    t50 = _runtime.wrap_cut(np.arctan2(s2, c2)) + t36
+    no_forearm = f <= 0.0
+    t51 = 1.0 / f
     del f
-    t53 = _runtime.select(no_forearm, 0.0, d4 * t52)
-    t54 = 1.0 / (SA + BC)
-    t55 = _runtime.select(no_link, 1.0, -((SA - BC) * t54))
-    del BC, SA
-    t56 = t53 * t55
-    t57 = _runtime.select(no_forearm, 1.0, a3 * t52)
-    del t52
-    t58 = _runtime.select(no_link, 0.0, area * t54)
-    del area, t54
-    t59 = t57 * t58
-    t60 = t56 + t59
-    t61 = t53 * t58
-    del t53, t58
-    t62 = t55 * t57
-    del t55, t57
-    t63 = t61 - t62
-    t64 = _runtime.wrap_cut(-np.arctan2(t60, -t63)) + t36
-    t65 = T13 * t15 + T23 * c1
-    t66 = t65 * t65
-    s23 = t50 * t60 - s2 * t63
-    c23 = t50 * t63 + s2 * t60
-    del s2, t50
+    s_forearm = _runtime.select(no_forearm, 0.0, d4 * t51)
+    t52 = A_elbow * S_elbow
+    del A_elbow, S_elbow
+    t53 = C_elbow * B_elbow
+    del B_elbow, C_elbow
+    t54 = 1.0 / (t52 + t53)
+    celbow = _runtime.select(no_link_elbow, 1.0, -((t52 - t53) * t54))
+    del t52, t53
+    t55 = s_forearm * celbow
+    c_forearm = _runtime.select(no_forearm, 1.0, a3 * t51)
+    del no_forearm, t51
+    selbow_right_down_noflip = _runtime.select(no_link_elbow, 0.0, area_elbow * t54)
+    del area_elbow, t54
+    t56 = c_forearm * selbow_right_down_noflip
+    t57 = t55 + t56
+    t58 = c_forearm * celbow
+    del c_forearm, celbow
+    t59 = s_forearm * selbow_right_down_noflip
+    del s_forearm, selbow_right_down_noflip
+    c3 = t58 - t59
+    t60 = _runtime.wrap_cut(-np.arctan2(t57, c3)) + t36
     R1_13 = T13 * c1 - T23 * t15
-    R2_13 = T33 * s23 + c23 * R1_13
-    h = np.sqrt(t66 + R2_13 * R2_13)
-    t67 = _runtime.VANISHING * 16.0
-    aligned = h <= t67
-    t68 = 1.0 / h
-    del h
-    t69 = _runtime.select(aligned, 0.0, t65 * t68)
-    c4 = _runtime.select(aligned, 1.0, -(R2_13 * t68))
-    del t68
-    t70 = np.arctan2(t69, c4)
-    t71 = np.arctan2(t65 * t69 - R2_13 * c4, T33 * c23 - s23 * R1_13)
+    t61 = c2 * c3 + s2 * t57
+    t62 = c2 * t57 - s2 * c3
+    del c2, s2
+    R2_13 = R1_13 * t61 - T33 * t62
+    R2_23 = T13 * t15 + T23 * c1
+    t63 = R2_23 * R2_23
+    h_wrist = np.sqrt(R2_13 * R2_13 + t63)
+    t64 = _runtime.VANISHING * 16.0
+    aligned_wrist = h_wrist <= t64
+    flip_wrist = _runtime.select(aligned_wrist, 0.0, 3.141592653589793)
+    t65 = 1.0 / h_wrist
+    del h_wrist
+    s_wrist = _runtime.select(aligned_wrist, 0.0, R2_23 * t65)
+    c_wrist = _runtime.select(aligned_wrist, 1.0, R2_13 * t65)
+    del t65
+    t66 = np.arctan2(s_wrist, c_wrist)
+    t67 = np.arctan2(R2_13 * c_wrist + R2_23 * s_wrist, R1_13 * t62 + T33 * t61)
     del R2_13
-    t72 = T11 * t15 + T21 * c1
     R1_11 = T11 * c1 - T21 * t15
-    t73 = T12 * t15 + T22 * c1
+    R2_21 = T11 * t15 + T21 * c1
+    t68 = s_wrist * (t61 * R1_11 - T31 * t62) - c_wrist * R2_21
+    R2_22 = T12 * t15 + T22 * c1
     R1_12 = T12 * c1 - T22 * t15
     del c1, t15
-    t74 = np.arctan2(c4 * t72 + t69 * (T31 * s23 + c23 * R1_11), c4 * t73 + t69 * (T32 * s23 + c23 * R1_12))
-    del c23, c4, s23, t69
-    flip = _runtime.select(aligned, 0.0, 3.141592653589793)
-    s2_right_down_noflip = t43 - t47
+    t69 = c_wrist * R2_22 - s_wrist * (t61 * R1_12 - T32 * t62)
+    del c_wrist, s_wrist, t61, t62
+    t70 = np.arctan2(t68, t69)
+    del t68, t69
+    s2_right_down_noflip = t44 - t47
     del t47
     c2_right_down_noflip = t48 + t49
-    del t49
-    t75 = np.arctan2(s2_right_down_noflip, c2_right_down_noflip)
-    t76 = _runtime.wrap_cut(t75) + t36
-    del t75
-    t77 = t56 - t59
-    del t56, t59
-    c3_right_down_noflip = t61 + t62
-    del t61, t62
-    t78 = _runtime.wrap_cut(-np.arctan2(t77, c3_right_down_noflip))
-    t79 = t78 + t36
-    del t78
-    t80 = c2_right_down_noflip * t77 - s2_right_down_noflip * c3_right_down_noflip
-    c23_right_down_noflip = c2_right_down_noflip * c3_right_down_noflip + s2_right_down_noflip * t77
+    del t48
+    t71 = np.arctan2(s2_right_down_noflip, c2_right_down_noflip)
+    t72 = _runtime.wrap_cut(t71) + t36
+    del t71
+    t73 = t55 - t56
+    del t55, t56
+    c3_right_down_noflip = t58 + t59
+    del t58, t59
+    t74 = _runtime.wrap_cut(np.arctan2(-t73, c3_right_down_noflip))
+    t75 = t74 + t36
+    del t74
+    t76 = c2_right_down_noflip * c3_right_down_noflip + s2_right_down_noflip * t73
+    t77 = c2_right_down_noflip * t73 - s2_right_down_noflip * c3_right_down_noflip
     del c2_right_down_noflip, s2_right_down_noflip
-    t81 = T33 * t80 - R1_13 * c23_right_down_noflip
-    h_right_down_noflip = np.sqrt(t66 + t81 * t81)
-    del t66
-    aligned_right_down_noflip = h_right_down_noflip <= t67
-    t82 = 1.0 / h_right_down_noflip
-    del h_right_down_noflip
-    t83 = _runtime.select(aligned_right_down_noflip, 0.0, t65 * t82)
-    c4_right_down_noflip = _runtime.select(aligned_right_down_noflip, 1.0, t81 * t82)
-    del t82
-    t84 = np.arctan2(t83, c4_right_down_noflip)
-    t85 = np.arctan2(t65 * t83 + t81 * c4_right_down_noflip, T33 * c23_right_down_noflip + R1_13 * t80)
-    del R1_13, t65, t81
-    t86 = t83 * (T31 * t80 - R1_11 * c23_right_down_noflip)
+    R2_13_right_down_noflip = R1_13 * t76 - T33 * t77
+    t78 = R2_13_right_down_noflip * R2_13_right_down_noflip
+    h_wrist_right_down_noflip = np.sqrt(t63 + t78)
+    del t63, t78
+    aligned_wrist_right_down_noflip = h_wrist_right_down_noflip <= t64
+    flip_wrist_right_down_noflip = _runtime.select(aligned_wrist_right_down_noflip, 0.0, 3.141592653589793)
+    t79 = 1.0 / h_wrist_right_down_noflip
+    del h_wrist_right_down_noflip
+    s_wrist_right_down_noflip = _runtime.select(aligned_wrist_right_down_noflip, 0.0, R2_23 * t79)
+    c_wrist_right_down_noflip = _runtime.select(aligned_wrist_right_down_noflip, 1.0, R2_13_right_down_noflip * t79)
+    del t79
+    t80 = np.arctan2(s_wrist_right_down_noflip, c_wrist_right_down_noflip)
+    t81 = _runtime.wrap(flip_wrist_right_down_noflip + t80)
+    t82 = R2_13_right_down_noflip * c_wrist_right_down_noflip
+    del R2_13_right_down_noflip
+    t83 = np.arctan2(t82 + R2_23 * s_wrist_right_down_noflip, R1_13 * t77 + T33 * t76)
+    del R1_13, R2_23, t82
+    t84 = s_wrist_right_down_noflip * (R1_11 * t76 - T31 * t77)
     del R1_11
-    t87 = t83 * (T32 * t80 - R1_12 * c23_right_down_noflip)
-    del R1_12, c23_right_down_noflip, t80, t83
-    t88 = np.arctan2(t72 * c4_right_down_noflip - t86, t73 * c4_right_down_noflip - t87)
-    del c4_right_down_noflip, t72, t73, t86, t87
-    flip_right_down_flip = _runtime.select(aligned_right_down_noflip, 0.0, 3.141592653589793)
-    t89 = _runtime.wrap(flip_right_down_flip - t84) + t36
-    t90 = _runtime.wrap(t88 + flip_right_down_flip) + t36
-    del flip_right_down_flip
-    t91 = _runtime.select(free_theta1, 0.0, t12 + t14)
+    t85 = s_wrist_right_down_noflip * (R1_12 * t76 - T32 * t77)
+    del R1_12, s_wrist_right_down_noflip, t76, t77
+    t86 = np.arctan2(t84 - R2_21 * c_wrist_right_down_noflip, R2_22 * c_wrist_right_down_noflip - t85)
+    del R2_21, R2_22, c_wrist_right_down_noflip, t84, t85
+    t87 = _runtime.wrap(flip_wrist_right_down_noflip - t86)
+    del flip_wrist_right_down_noflip
+    t88 = _runtime.select(free1, 0.0, t12 + t14)
     del t12, t14
-    c1_left_up_noflip = _runtime.select(free_theta1, 1.0, t16 - t17)
+    c1_left_up_noflip = _runtime.select(free1, 1.0, t16 - t17)
     del t16, t17
-    t92 = _runtime.wrap_cut(-np.arctan2(t91, c1_left_up_noflip))
-    t93 = t92 + t36
-    del t92
-    t94 = _runtime.select(folded, 1.0, -t45)
+    t89 = _runtime.wrap_cut(-np.arctan2(t88, c1_left_up_noflip))
+    t90 = t89 + t36
+    del t89
+    t91 = _runtime.select(folded_elbow, 1.0, -t45)
     del t45
-    t95 = t44 * t94
-    del t44
-    s2_left_up_noflip = t43 - t95
-    t96 = t42 * t94
-    del t42, t94
-    c2_left_up_noflip = t48 + t96
-    t97 = np.arctan2(s2_left_up_noflip, c2_left_up_noflip)
-    t98 = _runtime.wrap_cut(t97) + t36
-    del t97
-    t99 = T13 * t91 + T23 * c1_left_up_noflip
-    t100 = t99 * t99
-    t101 = t77 * c2_left_up_noflip - c3_right_down_noflip * s2_left_up_noflip
-    c23_left_up_noflip = c3_right_down_noflip * c2_left_up_noflip + t77 * s2_left_up_noflip
-    del c2_left_up_noflip, c3_right_down_noflip, s2_left_up_noflip, t77
-    R1_13_left_up_noflip = T13 * c1_left_up_noflip - T23 * t91
-    t102 = T33 * t101 - c23_left_up_noflip * R1_13_left_up_noflip
-    h_left_up_noflip = np.sqrt(t100 + t102 * t102)
-    aligned_left_up_noflip = h_left_up_noflip <= t67
-    t103 = 1.0 / h_left_up_noflip
-    del h_left_up_noflip
-    t104 = _runtime.select(aligned_left_up_noflip, 0.0, t99 * t103)
-    c4_left_up_noflip = _runtime.select(aligned_left_up_noflip, 1.0, t102 * t103)
-    del t103
-    t105 = np.arctan2(t104, c4_left_up_noflip)
-    R2_33_left_up_noflip = T33 * c23_left_up_noflip + t101 * R1_13_left_up_noflip
-    t106 = np.arctan2(t99 * t104 + t102 * c4_left_up_noflip, R2_33_left_up_noflip)
-    del R2_33_left_up_noflip, t102
-    t107 = T11 * t91 + T21 * c1_left_up_noflip
-    R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t91
-    t108 = T31 * t101 - c23_left_up_noflip * R1_11_left_up_noflip
-    t109 = T12 * t91 + T22 * c1_left_up_noflip
-    R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t91
-    del c1_left_up_noflip, t91
-    t110 = T32 * t101 - c23_left_up_noflip * R1_12_left_up_noflip
-    del c23_left_up_noflip, t101
-    t111 = np.arctan2(c4_left_up_noflip * t107 - t104 * t108, c4_left_up_noflip * t109 - t104 * t110)
-    del c4_left_up_noflip, t104, t108, t110
-    flip_left_up_flip = _runtime.select(aligned_left_up_noflip, 0.0, 3.141592653589793)
-    t112 = _runtime.wrap(flip_left_up_flip - t105) + t36
-    t113 = _runtime.wrap(t111 + flip_left_up_flip) + t36
-    del flip_left_up_flip
-    s2_left_down_noflip = t43 + t95
-    del t43, t95
-    t114 = t48 - t96
-    del t48, t96
-    t115 = _runtime.wrap_cut(np.arctan2(s2_left_down_noflip, -t114))
-    t116 = t115 + t36
-    del t115
-    s23_left_down_noflip = t60 * t114 - t63 * s2_left_down_noflip
-    c23_left_down_noflip = t63 * t114 + t60 * s2_left_down_noflip
-    del s2_left_down_noflip, t114, t60, t63
-    R2_13_left_down_noflip = T33 * s23_left_down_noflip + R1_13_left_up_noflip * c23_left_down_noflip
-    t117 = R2_13_left_down_noflip * R2_13_left_down_noflip
-    h_left_down_noflip = np.sqrt(t100 + t117)
-    del t100, t117
-    aligned_left_down_noflip = h_left_down_noflip <= t67
-    del t67
-    t118 = 1.0 / h_left_down_noflip
-    del h_left_down_noflip
-    t119 = _runtime.select(aligned_left_down_noflip, 0.0, t99 * t118)
-    c4_left_down_noflip = _runtime.select(aligned_left_down_noflip, 1.0, -(R2_13_left_down_noflip * t118))
+    t92 = s_base_elbow_right_down_noflip * t91
+    del s_base_elbow_right_down_noflip
+    s2_left_up_noflip = t44 - t92
+    t93 = c_base_elbow * t91
+    del c_base_elbow, t91
+    c2_left_up_noflip = t49 + t93
+    t94 = np.arctan2(s2_left_up_noflip, c2_left_up_noflip)
+    t95 = _runtime.wrap_cut(t94) + t36
+    del t94
+    R1_13_left_up_noflip = T13 * c1_left_up_noflip - T23 * t88
+    t96 = c3_right_down_noflip * c2_left_up_noflip + t73 * s2_left_up_noflip
+    t97 = t73 * c2_left_up_noflip - c3_right_down_noflip * s2_left_up_noflip
+    del c2_left_up_noflip, c3_right_down_noflip, s2_left_up_noflip, t73
+    R2_13_left_up_noflip = R1_13_left_up_noflip * t96 - T33 * t97
+    R2_23_left_up_noflip = T13 * t88 + T23 * c1_left_up_noflip
+    t98 = R2_23_left_up_noflip * R2_23_left_up_noflip
+    t99 = R2_13_left_up_noflip * R2_13_left_up_noflip + t98
+    h_wrist_left_up_noflip = np.sqrt(t99)
+    del t99
+    aligned_wrist_left_up_noflip = h_wrist_left_up_noflip <= t64
+    flip_wrist_left_up_noflip = _runtime.select(aligned_wrist_left_up_noflip, 0.0, 3.141592653589793)
+    t100 = 1.0 / h_wrist_left_up_noflip
+    del h_wrist_left_up_noflip
+    s_wrist_left_up_noflip = _runtime.select(aligned_wrist_left_up_noflip, 0.0, R2_23_left_up_noflip * t100)
+    c_wrist_left_up_noflip = _runtime.select(aligned_wrist_left_up_noflip, 1.0, R2_13_left_up_noflip * t100)
+    del t100
+    t101 = np.arctan2(s_wrist_left_up_noflip, c_wrist_left_up_noflip)
+    t102 = _runtime.wrap(flip_wrist_left_up_noflip + t101)
+    t103 = R2_13_left_up_noflip * c_wrist_left_up_noflip
+    del R2_13_left_up_noflip
+    t104 = R2_23_left_up_noflip * s_wrist_left_up_noflip
+    t105 = np.arctan2(t103 + t104, R1_13_left_up_noflip * t97 + T33 * t96)
+    del t103, t104
+    R1_11_left_up_noflip = T11 * c1_left_up_noflip - T21 * t88
+    t106 = s_wrist_left_up_noflip * (t96 * R1_11_left_up_noflip - T31 * t97)
+    R2_21_left_up_noflip = T11 * t88 + T21 * c1_left_up_noflip
+    t107 = c_wrist_left_up_noflip * R2_21_left_up_noflip
+    R2_22_left_up_noflip = T12 * t88 + T22 * c1_left_up_noflip
+    t108 = c_wrist_left_up_noflip * R2_22_left_up_noflip
+    del c_wrist_left_up_noflip
+    R1_12_left_up_noflip = T12 * c1_left_up_noflip - T22 * t88
+    del c1_left_up_noflip, t88
+    t109 = s_wrist_left_up_noflip * (t96 * R1_12_left_up_noflip - T32 * t97)
+    del s_wrist_left_up_noflip, t96, t97
+    t110 = np.arctan2(t106 - t107, t108 - t109)
+    del t106, t107, t108, t109
+    t111 = _runtime.wrap(flip_wrist_left_up_noflip - t110)
+    del flip_wrist_left_up_noflip
+    s2_left_down_noflip = t44 + t92
+    del t44, t92
+    t112 = t49 - t93
+    del t49, t93
+    t113 = _runtime.wrap_cut(np.arctan2(s2_left_down_noflip, -t112))
+    t114 = t113 + t36
+    del t113
+    t115 = c3 * t112 - t57 * s2_left_down_noflip
+    t116 = t57 * t112 + c3 * s2_left_down_noflip
+    del c3, s2_left_down_noflip, t112, t57
+    t117 = R1_13_left_up_noflip * t115 - T33 * t116
+    h_wrist_left_down_noflip = np.sqrt(t98 + t117 * t117)
+    del t98
+    aligned_wrist_left_down_noflip = h_wrist_left_down_noflip <= t64
+    del t64
+    flip_wrist_left_down_noflip = _runtime.select(aligned_wrist_left_down_noflip, 0.0, 3.141592653589793)
+    t118 = 1.0 / h_wrist_left_down_noflip
+    del h_wrist_left_down_noflip
+    s_wrist_left_down_noflip = _runtime.select(aligned_wrist_left_down_noflip, 0.0, R2_23_left_up_noflip * t118)
+    c_wrist_left_down_noflip = _runtime.select(aligned_wrist_left_down_noflip, 1.0, -(t117 * t118))
     del t118
-    t120 = np.arctan2(t119, c4_left_down_noflip)
-    t121 = t99 * t119 - R2_13_left_down_noflip * c4_left_down_noflip
-    del R2_13_left_down_noflip, t99
-    R2_33_left_down_noflip = T33 * c23_left_down_noflip - R1_13_left_up_noflip * s23_left_down_noflip
-    del R1_13_left_up_noflip
-    t122 = np.arctan2(t121, R2_33_left_down_noflip)
-    del R2_33_left_down_noflip, t121
-    R2_11_left_down_noflip = T31 * s23_left_down_noflip + R1_11_left_up_noflip * c23_left_down_noflip
+    t119 = np.arctan2(s_wrist_left_down_noflip, c_wrist_left_down_noflip)
+    t120 = _runtime.wrap(flip_wrist_left_down_noflip + t119)
+    t121 = R2_23_left_up_noflip * s_wrist_left_down_noflip
+    del R2_23_left_up_noflip
+    t122 = np.arctan2(t117 * c_wrist_left_down_noflip - t121, -(R1_13_left_up_noflip * t116 + T33 * t115))
+    del R1_13_left_up_noflip, t117, t121
+    t123 = s_wrist_left_down_noflip * (R1_11_left_up_noflip * t115 - T31 * t116)
     del R1_11_left_up_noflip
-    t123 = t107 * c4_left_down_noflip + t119 * R2_11_left_down_noflip
-    del R2_11_left_down_noflip, t107
-    R2_12_left_down_noflip = T32 * s23_left_down_noflip + R1_12_left_up_noflip * c23_left_down_noflip
-    del R1_12_left_up_noflip, c23_left_down_noflip, s23_left_down_noflip
-    t124 = t109 * c4_left_down_noflip + t119 * R2_12_left_down_noflip
-    del R2_12_left_down_noflip, c4_left_down_noflip, t109, t119
-    t125 = np.arctan2(t123, t124)
-    del t123, t124
-    flip_left_down_flip = _runtime.select(aligned_left_down_noflip, 0.0, 3.141592653589793)
-    t126 = _runtime.wrap(flip_left_down_flip - t120) + t36
-    t127 = _runtime.wrap(t125 + flip_left_down_flip) + t36
-    del flip_left_down_flip
-    t128 = free_theta1 | no_link | folded | no_forearm
-    del folded, free_theta1, no_forearm, no_link
-    t129 = _runtime.status(invalid, unreachable, t128 | aligned)
-    del aligned
-    t130 = _runtime.status(invalid, unreachable, t128 | aligned_right_down_noflip)
-    del aligned_right_down_noflip
-    t131 = _runtime.status(invalid, unreachable, t128 | aligned_left_up_noflip)
-    del aligned_left_up_noflip
-    t132 = _runtime.status(invalid, unreachable, t128 | aligned_left_down_noflip)
-    del aligned_left_down_noflip, invalid, t128, unreachable
+    t124 = R2_21_left_up_noflip * c_wrist_left_down_noflip
+    del R2_21_left_up_noflip
+    t125 = s_wrist_left_down_noflip * (R1_12_left_up_noflip * t115 - T32 * t116)
+    del R1_12_left_up_noflip, s_wrist_left_down_noflip, t115, t116
+    t126 = R2_22_left_up_noflip * c_wrist_left_down_noflip
+    del R2_22_left_up_noflip, c_wrist_left_down_noflip
+    t127 = np.arctan2(t123 + t124, t125 + t126)
+    del t123, t124, t125, t126
+    t128 = _runtime.wrap(flip_wrist_left_down_noflip + t127)
+    del flip_wrist_left_down_noflip
+    t129 = free1 | no_link_elbow | folded_elbow
+    del folded_elbow, free1, no_link_elbow
+    t130 = _runtime.status(invalid, unreachable, t129 | aligned_wrist)
+    del aligned_wrist
+    t131 = _runtime.status(invalid, unreachable, t129 | aligned_wrist_right_down_noflip)
+    del aligned_wrist_right_down_noflip
+    t132 = _runtime.status(invalid, unreachable, t129 | aligned_wrist_left_up_noflip)
+    del aligned_wrist_left_up_noflip
+    t133 = _runtime.status(invalid, unreachable, t129 | aligned_wrist_left_down_noflip)
+    del aligned_wrist_left_down_noflip, invalid, t129, unreachable
     return (
         t37,
-        t51,
-        t64,
+        t50,
+        t60,
+        _runtime.wrap(flip_wrist + t66) + t36,
+        _runtime.wrap_cut(t67) + t36,
+        _runtime.wrap(flip_wrist - t70) + t36,
+        t37,
+        t50,
+        t60,
+        _runtime.wrap_cut(t66) + t36,
+        _runtime.wrap_cut(-t67) + t36,
         _runtime.wrap_cut(-t70) + t36,
-        _runtime.wrap_cut(t71) + t36,
-        _runtime.wrap_cut(t74) + t36,
         t37,
-        t51,
-        t64,
-        _runtime.wrap(flip - t70) + t36,
-        _runtime.wrap_cut(-t71) + t36,
-        _runtime.wrap(t74 + flip) + t36,
+        t72,
+        t75,
+        t81 + t36,
+        _runtime.wrap_cut(t83) + t36,
+        t87 + t36,
         t37,
-        t76,
-        t79,
-        _runtime.wrap_cut(-t84) + t36,
-        _runtime.wrap_cut(t85) + t36,
-        _runtime.wrap_cut(t88) + t36,
-        t37,
-        t76,
-        t79,
-        t89,
-        _runtime.wrap_cut(-t85) + t36,
+        t72,
+        t75,
+        _runtime.wrap_cut(t80) + t36,
+        _runtime.wrap_cut(-t83) + t36,
+        _runtime.wrap_cut(-t86) + t36,
         t90,
-        t93,
-        t98,
-        t79,
+        t95,
+        t75,
+        t102 + t36,
+        _runtime.wrap_cut(t105) + t36,
+        t111 + t36,
+        t90,
+        t95,
+        t75,
+        _runtime.wrap_cut(t101) + t36,
         _runtime.wrap_cut(-t105) + t36,
-        _runtime.wrap_cut(t106) + t36,
-        _runtime.wrap_cut(t111) + t36,
-        t93,
-        t98,
-        t79,
-        t112,
-        _runtime.wrap_cut(-t106) + t36,
-        t113,
-        t93,
-        t116,
-        t64,
-        _runtime.wrap_cut(-t120) + t36,
-        _runtime.wrap_cut(t122) + t36,
-        _runtime.wrap_cut(t125) + t36,
-        t93,
-        t116,
-        t64,
-        t126,
+        _runtime.wrap_cut(-t110) + t36,
+        t90,
+        t114,
+        t60,
+        t120 + t36,
         _runtime.wrap_cut(-t122) + t36,
-        t127,
-        t129,
-        t129,
+        t128 + t36,
+        t90,
+        t114,
+        t60,
+        _runtime.wrap_cut(t119) + t36,
+        _runtime.wrap_cut(t122) + t36,
+        _runtime.wrap_cut(t127) + t36,
         t130,
         t130,
         t131,
         t131,
         t132,
         t132,
+        t133,
+        t133,
     )
 
 
@@ -1101,14 +1102,14 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       right_down_flip, left_up_noflip, left_up_flip, left_down_noflip, left_down_flip.
     - right: X >= 0, the arm faces the wrist; left: X <= 0. up: the elbow is above the line from
       the shoulder to the wrist; down: below.
+    - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
+    - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
+      digits, the pose does not.
+    - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
     - SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal
       links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without
       length, theta3 is free.
-    - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
-      digits, the pose does not.
-    - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
     - SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
-    - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
     """
     result = _runtime.evaluate(_IK, (T,), params, out)
     return Solutions(*result)

@@ -3,13 +3,13 @@
 # Source: R. P. Paul, M. W. Spong, S. Hutchinson, M. Vidyasagar: The Stanford arm in the
 #     textbooks.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 18 add, 44 multiply, 5 sincos
 #   pose: 18 add, 44 multiply, 5 sincos
+#   fk: 18 add, 44 multiply, 5 sincos
 #   jacobian: 8 add, 26 multiply, 4 sincos
-#   jacobian_space: 14 add, 43 multiply, 4 sincos
-#   jacobian_body: 14 add, 41 multiply, 4 sincos
 #   determinant: 3 multiply, 2 sincos
 #   singularities: 2 sincos
+#   jacobian_space: 14 add, 43 multiply, 4 sincos
+#   jacobian_body: 14 add, 41 multiply, 4 sincos
 #   ik: 107 compare and select, 111 add, 16 atan2, 6 divide, 116 multiply, 8 sqrt
 #   ik where nothing vanishes: 81 compare and select, 95 add, 16 atan2, 4 divide, 91 multiply, 6
 #     sqrt
@@ -47,13 +47,13 @@ __all__ = [
     "Positions",
     "Solutions",
     "Status",
-    "fk",
     "pose",
+    "fk",
     "jacobian",
-    "jacobian_space",
-    "jacobian_body",
     "determinant",
     "singularities",
+    "jacobian_space",
+    "jacobian_body",
     "ik",
 ]
 
@@ -71,89 +71,6 @@ class Parameters(NamedTuple):
 Parameters.d2.__doc__ = 'offset of the boom from the base axis, in m; default 0.154 (Stanford arm of the Robotics Toolbox (Corke))'
 
 _DEFAULT = Parameters()
-
-
-def _fk(theta1, theta2, d3, theta4, theta5, theta6, d2):
-    s6, c6 = _runtime.sincos(theta6)
-    s5, c5 = _runtime.sincos(theta5)
-    s4, c4 = _runtime.sincos(theta4)
-    s2, c2 = _runtime.sincos(theta2)
-    s1, c1 = _runtime.sincos(theta1)
-    T4_11 = c6 * c5
-    T3_11 = T4_11 * c4 - s6 * s4
-    T4_21 = c6 * s5
-    T1_11 = T3_11 * c2 - T4_21 * s2
-    T3_21 = T4_11 * s4 + s6 * c4
-    del T4_11
-    t1 = s6 * c5
-    t2 = t1 * s4 - c6 * c4
-    t3 = t1 * c4 + c6 * s4
-    del c6, t1
-    t4 = s6 * s5
-    del s6
-    t5 = t3 * c2 - t4 * s2
-    T3_13 = s5 * c4
-    del c4
-    T1_13 = T3_13 * c2 + c5 * s2
-    T3_23 = s5 * s4
-    del s4, s5
-    T1_14 = d3 * s2
-    return (
-        T1_11 * c1 - T3_21 * s1,
-        t2 * s1 - t5 * c1,
-        T1_13 * c1 - T3_23 * s1,
-        T1_14 * c1 - d2 * s1,
-        T1_11 * s1 + T3_21 * c1,
-        -(t5 * s1 + t2 * c1),
-        T1_13 * s1 + T3_23 * c1,
-        T1_14 * s1 + d2 * c1,
-        -(T3_11 * s2 + T4_21 * c2),
-        t3 * s2 + t4 * c2,
-        -(T3_13 * s2 - c5 * c2),
-        d3 * c2,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-    )
-
-
-_FK = _runtime.Kernel(
-    "stanford_arm.fk",
-    _fk,
-    (_runtime.Array("q", (6,)),),
-    (_runtime.Array("T", (4, 4)),),
-    Parameters._fields,
-    ('d2',),
-)
-
-
-def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Pose of the hand in the base frame.
-
-    Parameters
-    ----------
-    q : array_like, shape (..., 6)
-        theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
-    params : Parameters, optional
-        The dimensions. Each may be an array that broadcasts with the leading axes.
-    out : ndarray, optional
-        An array to write the result to; it is returned.
-
-    Returns
-    -------
-    T : ndarray of float64, shape (..., 4, 4)
-        A homogeneous transform with a proper rotation.
-
-    Raises
-    ------
-    TypeError
-        If an argument does not hold real numbers.
-    ValueError
-        If an argument has the wrong shape, or leading axes do not broadcast.
-    """
-    result = _runtime.evaluate(_FK, (q,), params, out)
-    return result
 
 
 def _pose(theta1, theta2, d3, theta4, theta5, theta6, d2):
@@ -212,7 +129,7 @@ _POSE = _runtime.Kernel(
 
 
 def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The same as fk.
+    """Pose of the tool in the base frame.
 
     Parameters
     ----------
@@ -236,6 +153,89 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
         If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
+    return result
+
+
+def _fk(theta1, theta2, d3, theta4, theta5, theta6, d2):
+    s6, c6 = _runtime.sincos(theta6)
+    s5, c5 = _runtime.sincos(theta5)
+    s4, c4 = _runtime.sincos(theta4)
+    s2, c2 = _runtime.sincos(theta2)
+    s1, c1 = _runtime.sincos(theta1)
+    T4_11 = c6 * c5
+    T3_11 = T4_11 * c4 - s6 * s4
+    T4_21 = c6 * s5
+    T1_11 = T3_11 * c2 - T4_21 * s2
+    T3_21 = T4_11 * s4 + s6 * c4
+    del T4_11
+    t1 = s6 * c5
+    t2 = t1 * s4 - c6 * c4
+    t3 = t1 * c4 + c6 * s4
+    del c6, t1
+    t4 = s6 * s5
+    del s6
+    t5 = t3 * c2 - t4 * s2
+    T3_13 = s5 * c4
+    del c4
+    T1_13 = T3_13 * c2 + c5 * s2
+    T3_23 = s5 * s4
+    del s4, s5
+    T1_14 = d3 * s2
+    return (
+        T1_11 * c1 - T3_21 * s1,
+        t2 * s1 - t5 * c1,
+        T1_13 * c1 - T3_23 * s1,
+        T1_14 * c1 - d2 * s1,
+        T1_11 * s1 + T3_21 * c1,
+        -(t5 * s1 + t2 * c1),
+        T1_13 * s1 + T3_23 * c1,
+        T1_14 * s1 + d2 * c1,
+        -(T3_11 * s2 + T4_21 * c2),
+        t3 * s2 + t4 * c2,
+        -(T3_13 * s2 - c5 * c2),
+        d3 * c2,
+        0.0,
+        0.0,
+        0.0,
+        1.0,
+    )
+
+
+_FK = _runtime.Kernel(
+    "stanford_arm.fk",
+    _fk,
+    (_runtime.Array("q", (6,)),),
+    (_runtime.Array("T", (4, 4)),),
+    Parameters._fields,
+    ('d2',),
+)
+
+
+def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Pose of the tool in the base frame.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    T : ndarray of float64, shape (..., 4, 4)
+        A homogeneous transform with a proper rotation.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+    """
+    result = _runtime.evaluate(_FK, (q,), params, out)
     return result
 
 
@@ -304,7 +304,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Velocity of the hand's origin over its angular velocity, in base axes, per joint rate.
+    """Velocity of the tool over its angular velocity, in base axes, per joint rate.
 
     Parameters
     ----------
@@ -329,9 +329,103 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - The geometric Jacobian, in the order (v; omega).
+    - The geometric Jacobian: rows (v; omega), v of the origin of the tool.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
+    return result
+
+
+def _determinant(_theta1, theta2, d3, _theta4, theta5, _theta6):
+    s2 = np.sin(theta2)
+    s5 = np.sin(theta5)
+    return (
+        d3 * d3 * s2 * s5,
+    )
+
+
+_DETERMINANT = _runtime.Kernel(
+    "stanford_arm.determinant",
+    _determinant,
+    (_runtime.Array("q", (6,)),),
+    (_runtime.Array("det", ()),),
+    Parameters._fields,
+    (),
+    size=_runtime.Size((2,), ((0, 2),), 8.636168555094445e-78, 3.273390607896142e+150),
+)
+
+
+def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Determinant of the Jacobian.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    det : ndarray of float64, shape (...)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+    """
+    result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
+    return result
+
+
+def _singularities(_theta1, theta2, d3, _theta4, theta5, _theta6):
+    s2 = np.sin(theta2)
+    s5 = np.sin(theta5)
+    return (
+        s2,
+        d3,
+        s5,
+    )
+
+
+_SINGULARITIES = _runtime.Kernel(
+    "stanford_arm.singularities",
+    _singularities,
+    (_runtime.Array("q", (6,)),),
+    (_runtime.Array("factors", (3,)),),
+    Parameters._fields,
+    (),
+)
+
+
+def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """The factors of the determinant that hold a joint.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 3)
+        One factor for each singular set: shoulder; boom; wrist.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+    """
+    result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
 
 
@@ -408,7 +502,7 @@ _JACOBIAN_SPACE = _runtime.Kernel(
 
 
 def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Twist (v; omega) of the hand in the base frame per joint rate.
+    """Twist (v; omega) of the tool in the base frame per joint rate.
 
     Parameters
     ----------
@@ -508,7 +602,7 @@ _JACOBIAN_BODY = _runtime.Kernel(
 
 
 def jacobian_body(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Twist (v; omega) of the hand in its own frame per joint rate.
+    """Twist (v; omega) of the tool in its own frame per joint rate.
 
     Parameters
     ----------
@@ -535,126 +629,32 @@ def jacobian_body(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     return result
 
 
-def _determinant(_theta1, theta2, d3, _theta4, theta5, _theta6):
-    s2 = np.sin(theta2)
-    s5 = np.sin(theta5)
-    return (
-        d3 * d3 * s2 * s5,
-    )
-
-
-_DETERMINANT = _runtime.Kernel(
-    "stanford_arm.determinant",
-    _determinant,
-    (_runtime.Array("q", (6,)),),
-    (_runtime.Array("det", ()),),
-    Parameters._fields,
-    (),
-    size=_runtime.Size((2,), ((0, 2),), 8.636168555094445e-78, 3.273390607896142e+150),
-)
-
-
-def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Determinant of the Jacobian.
-
-    Parameters
-    ----------
-    q : array_like, shape (..., 6)
-        theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
-    params : Parameters, optional
-        The dimensions. Each may be an array that broadcasts with the leading axes.
-    out : ndarray, optional
-        An array to write the result to; it is returned.
-
-    Returns
-    -------
-    det : ndarray of float64, shape (...)
-
-    Raises
-    ------
-    TypeError
-        If an argument does not hold real numbers.
-    ValueError
-        If an argument has the wrong shape, or leading axes do not broadcast.
-    """
-    result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
-    return result
-
-
-def _singularities(_theta1, theta2, d3, _theta4, theta5, _theta6):
-    s2 = np.sin(theta2)
-    s5 = np.sin(theta5)
-    return (
-        s2,
-        d3,
-        s5,
-    )
-
-
-_SINGULARITIES = _runtime.Kernel(
-    "stanford_arm.singularities",
-    _singularities,
-    (_runtime.Array("q", (6,)),),
-    (_runtime.Array("factors", (3,)),),
-    Parameters._fields,
-    (),
-)
-
-
-def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """The factors whose zeros are the singular set: shoulder, boom, wrist.
-
-    Parameters
-    ----------
-    q : array_like, shape (..., 6)
-        theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
-    params : Parameters, optional
-        The dimensions. Each may be an array that broadcasts with the leading axes.
-    out : ndarray, optional
-        An array to write the result to; it is returned.
-
-    Returns
-    -------
-    factors : ndarray of float64, shape (..., 3)
-        One factor for each singular set: shoulder; boom; wrist.
-
-    Raises
-    ------
-    TypeError
-        If an argument does not hold real numbers.
-    ValueError
-        If an argument has the wrong shape, or leading axes do not broadcast.
-    """
-    result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
-    return result
-
-
 def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T43, T44, d2):
     t1 = T14 * T14 + T24 * T24
-    amplitude = np.sqrt(t1)
+    h1 = np.sqrt(t1)
     t2 = T34 * T34
     size = np.abs(d2) + np.sqrt(t2 + t1)
     del t1
     t3 = _runtime.VANISHING * size
-    free_theta1 = amplitude <= t3
-    t4 = amplitude - d2
-    below = np.maximum(t4, 0.0)
-    t5 = d2 + amplitude
-    above = np.maximum(t5, 0.0)
-    t6 = below - above
-    t7 = 1.0 / (amplitude * (below + above))
-    del amplitude
+    free1 = h1 <= t3
+    t4 = h1 - d2
+    below1 = np.maximum(t4, 0.0)
+    t5 = d2 + h1
+    above1 = np.maximum(t5, 0.0)
+    t6 = below1 - above1
+    t7 = 1.0 / (h1 * (below1 + above1))
+    del h1
     t8 = T14 * t6 * t7
-    root = np.sqrt(below * above)
-    del above, below
-    t9 = 2.0 * root
+    root1 = np.sqrt(below1 * above1)
+    del above1, below1
+    t9 = 2.0 * root1
     t10 = t7 * (T24 * t9)
-    s1 = _runtime.select(free_theta1, 0.0, t8 + t10)
+    s1 = _runtime.select(free1, 0.0, t8 + t10)
     t11 = t7 * (T14 * t9)
     del t9
     t12 = T24 * t6 * t7
     del t6, t7
-    c1 = _runtime.select(free_theta1, 1.0, t11 - t12)
+    c1 = _runtime.select(free1, 1.0, t11 - t12)
     t13 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
     t14 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
     t15 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
@@ -678,36 +678,36 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     del t24, t4, t5
     t25 = _runtime.poison(invalid | unreachable)
     t26 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t25
-    reach = np.sqrt(t2 + root * root)
+    r_boom = np.sqrt(t2 + root1 * root1)
     del t2
-    drawn_in = reach <= t3
+    on_axis_boom = r_boom <= t3
     del t3
-    t27 = 1.0 / reach
-    s2 = _runtime.select(drawn_in, 0.0, root * t27)
-    del root
+    t27 = 1.0 / r_boom
+    s2 = _runtime.select(on_axis_boom, 0.0, root1 * t27)
+    del root1
     t28 = T34 * t27
     del t27
-    c2 = _runtime.select(drawn_in, 1.0, t28)
+    c2 = _runtime.select(on_axis_boom, 1.0, t28)
     t29 = np.arctan2(s2, c2)
     t30 = _runtime.wrap_cut(t29) + t25
-    t31 = reach + t25
+    t31 = r_boom + t25
     t32 = T13 * s1 - T23 * c1
     t33 = t32 * t32
     t34 = T33 * s2
     R1_13 = T13 * c1 + T23 * s1
     t35 = t34 - c2 * R1_13
-    h = np.sqrt(t33 + t35 * t35)
+    h_wrist = np.sqrt(t33 + t35 * t35)
     t36 = _runtime.VANISHING * 16.0
-    aligned = h <= t36
-    t37 = 1.0 / h
-    del h
-    t38 = _runtime.select(aligned, 0.0, t32 * t37)
-    c4 = _runtime.select(aligned, 1.0, -(t35 * t37))
+    aligned_wrist = h_wrist <= t36
+    t37 = 1.0 / h_wrist
+    del h_wrist
+    t38 = _runtime.select(aligned_wrist, 0.0, t32 * t37)
+    c_wrist = _runtime.select(aligned_wrist, 1.0, -(t35 * t37))
     del t37
-    t39 = np.arctan2(t38, c4)
+    t39 = np.arctan2(t38, c_wrist)
     t40 = T33 * c2
     t41 = s2 * R1_13
-    t42 = np.arctan2(t32 * t38 - t35 * c4, t40 + t41)
+    t42 = np.arctan2(t32 * t38 - t35 * c_wrist, t40 + t41)
     del t35
     t43 = T11 * s1 - T21 * c1
     t44 = T31 * s2
@@ -716,45 +716,45 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     t46 = T32 * s2
     R1_12 = T12 * c1 + T22 * s1
     del c1, s1
-    t47 = np.arctan2(c4 * t43 + t38 * (t44 - c2 * R1_11), -(c4 * t45 + t38 * (t46 - c2 * R1_12)))
-    del c4, t38
-    flip = _runtime.select(aligned, 0.0, 3.141592653589793)
-    c2_right_back_noflip = _runtime.select(drawn_in, 1.0, -t28)
+    t47 = np.arctan2(c_wrist * t43 + t38 * (t44 - c2 * R1_11), -(c_wrist * t45 + t38 * (t46 - c2 * R1_12)))
+    del c_wrist, t38
+    flip_wrist = _runtime.select(aligned_wrist, 0.0, 3.141592653589793)
+    c2_right_back_noflip = _runtime.select(on_axis_boom, 1.0, -t28)
     del t28
     t48 = np.arctan2(s2, c2_right_back_noflip)
     t49 = _runtime.wrap_cut(-t48) + t25
-    t50 = -reach + t25
-    del reach
+    t50 = -r_boom + t25
+    del r_boom
     R2_13_right_back_noflip = t34 + R1_13 * c2_right_back_noflip
     del R1_13
     t51 = R2_13_right_back_noflip * R2_13_right_back_noflip
-    h_right_back_noflip = np.sqrt(t33 + t51)
+    h_wrist_right_back_noflip = np.sqrt(t33 + t51)
     del t33, t51
-    aligned_right_back_noflip = h_right_back_noflip <= t36
-    t52 = 1.0 / h_right_back_noflip
-    del h_right_back_noflip
-    t53 = _runtime.select(aligned_right_back_noflip, 0.0, t32 * t52)
-    c4_right_back_noflip = _runtime.select(aligned_right_back_noflip, 1.0, R2_13_right_back_noflip * t52)
+    aligned_wrist_right_back_noflip = h_wrist_right_back_noflip <= t36
+    t52 = 1.0 / h_wrist_right_back_noflip
+    del h_wrist_right_back_noflip
+    t53 = _runtime.select(aligned_wrist_right_back_noflip, 0.0, t32 * t52)
+    c_wrist_right_back_noflip = _runtime.select(aligned_wrist_right_back_noflip, 1.0, R2_13_right_back_noflip * t52)
     del t52
-    t54 = np.arctan2(t53, c4_right_back_noflip)
-    t55 = R2_13_right_back_noflip * c4_right_back_noflip
+    t54 = np.arctan2(t53, c_wrist_right_back_noflip)
+    t55 = R2_13_right_back_noflip * c_wrist_right_back_noflip
     del R2_13_right_back_noflip
     t56 = T33 * c2_right_back_noflip
     t57 = np.arctan2(t32 * t53 + t55, t56 - t41)
     del t32, t41, t55
-    t58 = t43 * c4_right_back_noflip - t53 * (t44 + R1_11 * c2_right_back_noflip)
+    t58 = t43 * c_wrist_right_back_noflip - t53 * (t44 + R1_11 * c2_right_back_noflip)
     del R1_11, t43
-    t59 = t53 * (t46 + R1_12 * c2_right_back_noflip) - t45 * c4_right_back_noflip
-    del R1_12, c4_right_back_noflip, t45, t53
+    t59 = t53 * (t46 + R1_12 * c2_right_back_noflip) - t45 * c_wrist_right_back_noflip
+    del R1_12, c_wrist_right_back_noflip, t45, t53
     t60 = np.arctan2(t58, t59)
     del t58, t59
-    flip_right_back_flip = _runtime.select(aligned_right_back_noflip, 0.0, 3.141592653589793)
-    t61 = _runtime.wrap(flip_right_back_flip - t54) + t25
-    t62 = _runtime.wrap(flip_right_back_flip - t60) + t25
-    del flip_right_back_flip
-    s1_left_out_noflip = _runtime.select(free_theta1, 0.0, t8 - t10)
+    flip_wrist_right_back_flip = _runtime.select(aligned_wrist_right_back_noflip, 0.0, 3.141592653589793)
+    t61 = _runtime.wrap(flip_wrist_right_back_flip - t54)
+    t62 = _runtime.wrap(flip_wrist_right_back_flip - t60)
+    del flip_wrist_right_back_flip
+    s1_left_out_noflip = _runtime.select(free1, 0.0, t8 - t10)
     del t10, t8
-    c1_left_out_noflip = _runtime.select(free_theta1, 1.0, -(t12 + t11))
+    c1_left_out_noflip = _runtime.select(free1, 1.0, -(t12 + t11))
     del t11, t12
     t63 = np.arctan2(s1_left_out_noflip, c1_left_out_noflip)
     t64 = _runtime.wrap_cut(t63) + t25
@@ -766,71 +766,73 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
     R1_13_left_out_noflip = T13 * c1_left_out_noflip + T23 * s1_left_out_noflip
     R2_13_left_out_noflip = t34 + c2 * R1_13_left_out_noflip
     t68 = R2_13_left_out_noflip * R2_13_left_out_noflip
-    h_left_out_noflip = np.sqrt(t67 + t68)
+    h_wrist_left_out_noflip = np.sqrt(t67 + t68)
     del t68
-    aligned_left_out_noflip = h_left_out_noflip <= t36
-    t69 = 1.0 / h_left_out_noflip
-    del h_left_out_noflip
-    t70 = _runtime.select(aligned_left_out_noflip, 0.0, t66 * t69)
-    c4_left_out_noflip = _runtime.select(aligned_left_out_noflip, 1.0, R2_13_left_out_noflip * t69)
+    aligned_wrist_left_out_noflip = h_wrist_left_out_noflip <= t36
+    t69 = 1.0 / h_wrist_left_out_noflip
+    del h_wrist_left_out_noflip
+    t70 = _runtime.select(aligned_wrist_left_out_noflip, 0.0, t66 * t69)
+    c_wrist_left_out_noflip = _runtime.select(aligned_wrist_left_out_noflip, 1.0, R2_13_left_out_noflip * t69)
     del t69
-    t71 = np.arctan2(t70, c4_left_out_noflip)
-    t72 = t66 * t70 + R2_13_left_out_noflip * c4_left_out_noflip
+    t71 = np.arctan2(t70, c_wrist_left_out_noflip)
+    t72 = R2_13_left_out_noflip * c_wrist_left_out_noflip
     del R2_13_left_out_noflip
     t73 = s2 * R1_13_left_out_noflip
     del s2
-    t74 = np.arctan2(t72, t40 - t73)
+    t74 = np.arctan2(t66 * t70 + t72, t40 - t73)
     del t40, t72
     t75 = T11 * s1_left_out_noflip - T21 * c1_left_out_noflip
     R1_11_left_out_noflip = T11 * c1_left_out_noflip + T21 * s1_left_out_noflip
-    t76 = c4_left_out_noflip * t75 - t70 * (t44 + c2 * R1_11_left_out_noflip)
+    t76 = c_wrist_left_out_noflip * t75 - t70 * (t44 + c2 * R1_11_left_out_noflip)
     R1_12_left_out_noflip = T12 * c1_left_out_noflip + T22 * s1_left_out_noflip
     t77 = T12 * s1_left_out_noflip - T22 * c1_left_out_noflip
     del c1_left_out_noflip, s1_left_out_noflip
-    t78 = t70 * (t46 + c2 * R1_12_left_out_noflip) - c4_left_out_noflip * t77
-    del c2, c4_left_out_noflip, t70
+    t78 = t70 * (t46 + c2 * R1_12_left_out_noflip) - c_wrist_left_out_noflip * t77
+    del c2, c_wrist_left_out_noflip, t70
     t79 = np.arctan2(t76, t78)
     del t76, t78
-    flip_left_out_flip = _runtime.select(aligned_left_out_noflip, 0.0, 3.141592653589793)
-    t80 = _runtime.wrap(flip_left_out_flip - t71) + t25
-    t81 = _runtime.wrap(flip_left_out_flip - t79) + t25
-    del flip_left_out_flip
+    flip_wrist_left_out_flip = _runtime.select(aligned_wrist_left_out_noflip, 0.0, 3.141592653589793)
+    t80 = _runtime.wrap(flip_wrist_left_out_flip - t71)
+    t81 = _runtime.wrap(flip_wrist_left_out_flip - t79)
+    del flip_wrist_left_out_flip
     t82 = _runtime.wrap_cut(t48) + t25
     del t48
     t83 = t34 - c2_right_back_noflip * R1_13_left_out_noflip
     del R1_13_left_out_noflip, t34
-    h_left_back_noflip = np.sqrt(t67 + t83 * t83)
+    h_wrist_left_back_noflip = np.sqrt(t67 + t83 * t83)
     del t67
-    aligned_left_back_noflip = h_left_back_noflip <= t36
+    aligned_wrist_left_back_noflip = h_wrist_left_back_noflip <= t36
     del t36
-    t84 = 1.0 / h_left_back_noflip
-    del h_left_back_noflip
-    t85 = _runtime.select(aligned_left_back_noflip, 0.0, t66 * t84)
-    c4_left_back_noflip = _runtime.select(aligned_left_back_noflip, 1.0, -(t83 * t84))
+    t84 = 1.0 / h_wrist_left_back_noflip
+    del h_wrist_left_back_noflip
+    t85 = _runtime.select(aligned_wrist_left_back_noflip, 0.0, t66 * t84)
+    c_wrist_left_back_noflip = _runtime.select(aligned_wrist_left_back_noflip, 1.0, -(t83 * t84))
     del t84
-    t86 = np.arctan2(t85, c4_left_back_noflip)
-    t87 = np.arctan2(t66 * t85 - t83 * c4_left_back_noflip, t56 + t73)
+    t86 = np.arctan2(t85, c_wrist_left_back_noflip)
+    t87 = np.arctan2(t66 * t85 - t83 * c_wrist_left_back_noflip, t56 + t73)
     del t56, t66, t73, t83
     t88 = t44 - c2_right_back_noflip * R1_11_left_out_noflip
     del R1_11_left_out_noflip, t44
     t89 = t46 - c2_right_back_noflip * R1_12_left_out_noflip
     del R1_12_left_out_noflip, c2_right_back_noflip, t46
-    t90 = np.arctan2(t75 * c4_left_back_noflip + t85 * t88, -(t77 * c4_left_back_noflip + t85 * t89))
-    del c4_left_back_noflip, t75, t77, t85, t88, t89
-    flip_left_back_flip = _runtime.select(aligned_left_back_noflip, 0.0, 3.141592653589793)
-    t91 = _runtime.wrap(flip_left_back_flip - t86) + t25
-    t92 = _runtime.wrap(flip_left_back_flip - t90) + t25
-    del flip_left_back_flip
-    t93 = free_theta1 | drawn_in
-    del drawn_in, free_theta1
-    t94 = _runtime.status(invalid, unreachable, t93 | aligned)
-    del aligned
-    t95 = _runtime.status(invalid, unreachable, t93 | aligned_right_back_noflip)
-    del aligned_right_back_noflip
-    t96 = _runtime.status(invalid, unreachable, t93 | aligned_left_out_noflip)
-    del aligned_left_out_noflip
-    t97 = _runtime.status(invalid, unreachable, t93 | aligned_left_back_noflip)
-    del aligned_left_back_noflip, invalid, t93, unreachable
+    t90 = -(t77 * c_wrist_left_back_noflip + t85 * t89)
+    del t77, t89
+    t91 = np.arctan2(t75 * c_wrist_left_back_noflip + t85 * t88, t90)
+    del c_wrist_left_back_noflip, t75, t85, t88, t90
+    flip_wrist_left_back_flip = _runtime.select(aligned_wrist_left_back_noflip, 0.0, 3.141592653589793)
+    t92 = _runtime.wrap(flip_wrist_left_back_flip - t86)
+    t93 = _runtime.wrap(flip_wrist_left_back_flip - t91)
+    del flip_wrist_left_back_flip
+    t94 = free1 | on_axis_boom
+    del free1, on_axis_boom
+    t95 = _runtime.status(invalid, unreachable, t94 | aligned_wrist)
+    del aligned_wrist
+    t96 = _runtime.status(invalid, unreachable, t94 | aligned_wrist_right_back_noflip)
+    del aligned_wrist_right_back_noflip
+    t97 = _runtime.status(invalid, unreachable, t94 | aligned_wrist_left_out_noflip)
+    del aligned_wrist_left_out_noflip
+    t98 = _runtime.status(invalid, unreachable, t94 | aligned_wrist_left_back_noflip)
+    del aligned_wrist_left_back_noflip, invalid, t94, unreachable
     return (
         t26,
         t30,
@@ -841,9 +843,9 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
         t26,
         t30,
         t31,
-        _runtime.wrap(flip - t39) + t25,
+        _runtime.wrap(flip_wrist - t39) + t25,
         _runtime.wrap_cut(-t42) + t25,
-        _runtime.wrap(flip - t47) + t25,
+        _runtime.wrap(flip_wrist - t47) + t25,
         t26,
         t49,
         t50,
@@ -853,9 +855,9 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
         t26,
         t49,
         t50,
-        t61,
+        t61 + t25,
         _runtime.wrap_cut(-t57) + t25,
-        t62,
+        t62 + t25,
         t64,
         t65,
         t31,
@@ -865,29 +867,29 @@ def _ik(T11, T12, T13, T14, T21, T22, T23, T24, T31, T32, T33, T34, T41, T42, T4
         t64,
         t65,
         t31,
-        t80,
+        t80 + t25,
         _runtime.wrap_cut(-t74) + t25,
-        t81,
+        t81 + t25,
         t64,
         t82,
         t50,
         _runtime.wrap_cut(-t86) + t25,
         _runtime.wrap_cut(t87) + t25,
-        _runtime.wrap_cut(-t90) + t25,
+        _runtime.wrap_cut(-t91) + t25,
         t64,
         t82,
         t50,
-        t91,
+        t92 + t25,
         _runtime.wrap_cut(-t87) + t25,
-        t92,
-        t94,
-        t94,
+        t93 + t25,
         t95,
         t95,
         t96,
         t96,
         t97,
         t97,
+        t98,
+        t98,
     )
 
 
@@ -896,17 +898,17 @@ def _ik_common(
 ):
     # Where nothing vanishes; last, whether something does.
     t1 = T14 * T14 + T24 * T24
-    amplitude = np.sqrt(t1)
-    t2 = amplitude - d2
-    below = np.maximum(t2, 0.0)
-    t3 = d2 + amplitude
-    above = np.maximum(t3, 0.0)
-    t4 = below - above
-    t5 = 1.0 / (amplitude * (below + above))
+    h1 = np.sqrt(t1)
+    t2 = h1 - d2
+    below1 = np.maximum(t2, 0.0)
+    t3 = d2 + h1
+    above1 = np.maximum(t3, 0.0)
+    t4 = below1 - above1
+    t5 = 1.0 / (h1 * (below1 + above1))
     t6 = T14 * t4 * t5
-    root = np.sqrt(below * above)
-    del above, below
-    t7 = 2.0 * root
+    root1 = np.sqrt(below1 * above1)
+    del above1, below1
+    t7 = 2.0 * root1
     t8 = t5 * (T24 * t7)
     s1 = t6 + t8
     t9 = T24 * t4 * t5
@@ -939,44 +941,44 @@ def _ik_common(
     del t2, t24, t3
     t25 = _runtime.poison(invalid | unreachable)
     t26 = _runtime.wrap_cut(np.arctan2(s1, -t11)) + t25
-    t27 = np.arctan2(root, T34)
+    t27 = np.arctan2(root1, T34)
     t28 = _runtime.wrap_cut(t27) + t25
-    reach = np.sqrt(t23 + root * root)
+    r_boom = np.sqrt(t23 + root1 * root1)
     del t23
-    t29 = reach + t25
+    t29 = r_boom + t25
     t30 = T13 * s1 + T23 * t11
-    t31 = 1.0 / reach
-    s2 = root * t31
+    t31 = 1.0 / r_boom
+    s2 = root1 * t31
     t32 = T33 * s2
     c2 = T34 * t31
     del t31
     t33 = T13 * t11 - T23 * s1
     t34 = t32 + c2 * t33
     t35 = np.arctan2(t30, -t34)
-    h = np.sqrt(t30 * t30 + t34 * t34)
-    t36 = 1.0 / h
+    h_wrist = np.sqrt(t30 * t30 + t34 * t34)
+    t36 = 1.0 / h_wrist
     t37 = t30 * t36
-    c4_right_back_noflip = t34 * t36
+    c_wrist_right_back_noflip = t34 * t36
     del t36
-    t38 = t30 * t37 + t34 * c4_right_back_noflip
+    t38 = t30 * t37 + t34 * c_wrist_right_back_noflip
     t39 = T33 * c2
     R2_33 = t39 - s2 * t33
     del t33
     t40 = np.arctan2(t38, R2_33)
-    t41 = c4_right_back_noflip * (T11 * s1 + T21 * t11)
+    t41 = c_wrist_right_back_noflip * (T11 * s1 + T21 * t11)
     t42 = T31 * s2
     t43 = t41 - t37 * (t42 + c2 * (T11 * t11 - T21 * s1))
     del t41
-    t44 = c4_right_back_noflip * (T12 * s1 + T22 * t11)
-    del c4_right_back_noflip
+    t44 = c_wrist_right_back_noflip * (T12 * s1 + T22 * t11)
+    del c_wrist_right_back_noflip
     t45 = T32 * s2
     t46 = t44 - t37 * (t45 + c2 * (T12 * t11 - T22 * s1))
     del s1, t11, t37, t44
     t47 = np.arctan2(-t43, t46)
-    t48 = np.arctan2(root, -T34)
-    del root
+    t48 = np.arctan2(root1, -T34)
+    del root1
     t49 = _runtime.wrap_cut(-t48) + t25
-    t50 = -reach + t25
+    t50 = -r_boom + t25
     t51 = np.arctan2(t30, t34)
     del t30, t34
     t52 = np.arctan2(t38, -R2_33)
@@ -998,43 +1000,45 @@ def _ik_common(
     del t32
     t60 = np.arctan2(t58, R2_13_left_out_noflip)
     t61 = R2_13_left_out_noflip * R2_13_left_out_noflip
-    h_left_out_noflip = np.sqrt(t58 * t58 + t61)
+    h_wrist_left_out_noflip = np.sqrt(t58 * t58 + t61)
     del t61
-    t62 = 1.0 / h_left_out_noflip
+    t62 = 1.0 / h_wrist_left_out_noflip
     t63 = t58 * t62
-    c4_left_out_noflip = R2_13_left_out_noflip * t62
+    c_wrist_left_out_noflip = R2_13_left_out_noflip * t62
     del t62
-    t64 = t58 * t63 + R2_13_left_out_noflip * c4_left_out_noflip
+    t64 = R2_13_left_out_noflip * c_wrist_left_out_noflip
+    t65 = t58 * t63 + t64
+    del t64
     R2_33_left_out_noflip = t39 + s2 * t59
     del s2, t39, t59
-    t65 = np.arctan2(t64, R2_33_left_out_noflip)
-    t66 = c4_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t54)
+    t66 = np.arctan2(t65, R2_33_left_out_noflip)
+    t67 = c_wrist_left_out_noflip * (T11 * s1_left_out_noflip + T21 * t54)
     R2_11_left_out_noflip = t42 - c2 * (T11 * t54 - T21 * s1_left_out_noflip)
     del t42
-    t67 = t66 - t63 * R2_11_left_out_noflip
-    del R2_11_left_out_noflip, t66
-    t68 = c4_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t54)
-    del c4_left_out_noflip
+    t68 = t67 - t63 * R2_11_left_out_noflip
+    del R2_11_left_out_noflip, t67
+    t69 = c_wrist_left_out_noflip * (T12 * s1_left_out_noflip + T22 * t54)
+    del c_wrist_left_out_noflip
     R2_12_left_out_noflip = t45 - c2 * (T12 * t54 - T22 * s1_left_out_noflip)
     del c2, s1_left_out_noflip, t45, t54
-    t69 = t68 - t63 * R2_12_left_out_noflip
-    del R2_12_left_out_noflip, t63, t68
-    t70 = np.arctan2(t67, -t69)
-    t71 = _runtime.wrap_cut(t48) + t25
+    t70 = t69 - t63 * R2_12_left_out_noflip
+    del R2_12_left_out_noflip, t63, t69
+    t71 = np.arctan2(t68, -t70)
+    t72 = _runtime.wrap_cut(t48) + t25
     del t48
-    t72 = np.arctan2(t58, -R2_13_left_out_noflip)
+    t73 = np.arctan2(t58, -R2_13_left_out_noflip)
     del R2_13_left_out_noflip, t58
-    t73 = np.arctan2(t64, -R2_33_left_out_noflip)
-    del R2_33_left_out_noflip, t64
-    t74 = np.arctan2(-t67, t69)
-    del t67, t69
-    t75 = _runtime.status(invalid, unreachable, np.False_)
+    t74 = np.arctan2(t65, -R2_33_left_out_noflip)
+    del R2_33_left_out_noflip, t65
+    t75 = np.arctan2(-t68, t70)
+    del t68, t70
+    t76 = _runtime.status(invalid, unreachable, np.False_)
     del invalid, unreachable
-    t76 = _runtime.VANISHING * size
+    t77 = _runtime.VANISHING * size
     del size
-    t77 = _runtime.VANISHING * 16.0
-    t78 = (amplitude <= t76) | (reach <= t76) | (h <= t77)
-    del amplitude, h, reach, t76
+    t78 = _runtime.VANISHING * 16.0
+    t79 = (h1 <= t77) | (r_boom <= t77) | (h_wrist <= t78)
+    del h1, h_wrist, r_boom, t77
     return (
         t26,
         t28,
@@ -1064,35 +1068,35 @@ def _ik_common(
         t57,
         t29,
         _runtime.wrap_cut(-t60) + t25,
-        _runtime.wrap_cut(t65) + t25,
-        _runtime.wrap_cut(-t70) + t25,
+        _runtime.wrap_cut(t66) + t25,
+        _runtime.wrap_cut(-t71) + t25,
         t56,
         t57,
         t29,
         _runtime.wrap(3.141592653589793 - t60) + t25,
-        _runtime.wrap_cut(-t65) + t25,
-        _runtime.wrap(3.141592653589793 - t70) + t25,
+        _runtime.wrap_cut(-t66) + t25,
+        _runtime.wrap(3.141592653589793 - t71) + t25,
         t56,
-        t71,
+        t72,
         t50,
-        _runtime.wrap_cut(-t72) + t25,
-        _runtime.wrap_cut(t73) + t25,
-        _runtime.wrap_cut(-t74) + t25,
-        t56,
-        t71,
-        t50,
-        _runtime.wrap(3.141592653589793 - t72) + t25,
         _runtime.wrap_cut(-t73) + t25,
-        _runtime.wrap(3.141592653589793 - t74) + t25,
-        t75,
-        t75,
-        t75,
-        t75,
-        t75,
-        t75,
-        t75,
-        t75,
-        t78 | (h_left_out_noflip <= t77),
+        _runtime.wrap_cut(t74) + t25,
+        _runtime.wrap_cut(-t75) + t25,
+        t56,
+        t72,
+        t50,
+        _runtime.wrap(3.141592653589793 - t73) + t25,
+        _runtime.wrap_cut(-t74) + t25,
+        _runtime.wrap(3.141592653589793 - t75) + t25,
+        t76,
+        t76,
+        t76,
+        t76,
+        t76,
+        t76,
+        t76,
+        t76,
+        t79 | (h_wrist_left_out_noflip <= t78),
     )
 
 
@@ -1143,11 +1147,11 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - Branches in this order, `BRANCHES`: right_out_noflip, right_out_flip, right_back_noflip,
       right_back_flip, left_out_noflip, left_out_flip, left_back_noflip, left_back_flip.
     - right: X >= 0, the arm faces the wrist; left: X <= 0. out: d3 >= 0; back: d3 <= 0.
+    - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
+    - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
     - SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the
       boom drawn in, d3 = 0, theta2 = 0 is returned.
-    - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
     - SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
-    - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
     """
     result = _runtime.evaluate(_IK, (T,), params, out)
     return Solutions(*result)

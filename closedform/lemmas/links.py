@@ -93,7 +93,7 @@ class Facing(Turned):
     side: sp.Symbol
 
 
-@chain_lemma("a sin x + b cos x = c", "the pair of x")
+@chain_lemma("a sin x + b cos x = c", "the pair of x, with `.ahead` and `.side`")
 def turn(
     chain: Chain,
     x: sp.Symbol,

@@ -4,7 +4,6 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
-import libraries
 import numpy as np
 import pytest
 from portability.driver import ROBOTS, Answer, Program, Request, compile_driver
@@ -20,15 +19,6 @@ pytestmark = pytest.mark.skipif(COMPILER is None, reason="there is neither gcc n
 def build(folder: Path, robots: tuple[str, ...], level: str, *flags: str, single: bool) -> Program:
     command = [str(COMPILER), "-std=c99", *RELEASE[1:], level, *flags]
     return compile_driver(folder, command, robots, single=single)
-
-
-def build_all(folder: Path, factory: pytest.TempPathFactory, *, single: bool) -> Program:
-    """With the libraries of the other tests, if this processor runs them."""
-    made = []
-    if libraries.compiles() and libraries.runs():
-        made = [libraries.library(factory, robot, single=single)[0] for robot in ROBOTS]
-    command = [str(COMPILER), "-std=c99", *RELEASE[1:], "-O1"]
-    return compile_driver(folder, command, ROBOTS, single=single, built_already=made)
 
 
 def answers(program: Program, *, single: bool) -> Iterator[tuple[Request, Answer]]:
@@ -47,11 +37,9 @@ def raised(request: Request, answer: Answer) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("single", [False, True])
-def test_single_calls_raise_none(
-    tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, single: bool
-) -> None:
+def test_single_calls_raise_none(tmp_path: Path, single: bool) -> None:
     """Answers are not made up either: they are finite if those of a batch are."""
-    program = build_all(tmp_path, tmp_path_factory, single=single)
+    program = build(tmp_path, ROBOTS, "-O1", single=single)
     for request, answer in answers(program, single=single):
         assert not list(raised(request, answer))
         assert np.array_equal(np.isfinite(answer.single), np.isfinite(answer.batch)), request

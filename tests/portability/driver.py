@@ -198,19 +198,13 @@ def compile_driver(
     single: bool = False,
     runner: Sequence[str] = (),
     link: Sequence[str] = (),
-    built_already: Sequence[Path] = (),
 ) -> Program:
-    """Builds the driver by ``command``, a compiler and its flags.
-
-    The robots are compiled as well, unless their libraries are given, by absolute paths.
-    """
+    """Builds the driver by ``command``, a compiler and its flags."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "calls.h").write_text(calls_header(robots), "utf-8")
     define = ["-DCLOSEDFORM_FLOAT"] if single else []
     start = [*command, *define, f"-I{SOURCES}", f"-I{folder}"]
-    sources = [DRIVER]
-    if not built_already:
-        sources += [SOURCES / f"{robot}.c" for robot in robots]
+    sources = [DRIVER, *(SOURCES / f"{robot}.c" for robot in robots)]
     objects = [folder / f"{source.stem}.o" for source in sources]
 
     def one(pair: tuple[Path, Path]) -> None:
@@ -220,8 +214,7 @@ def compile_driver(
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(one, zip(sources, objects, strict=True)))
     program = folder / "driver"
-    parts = map(str, [*objects, *built_already])
-    built([*command, *parts, "-o", str(program), *link, "-lm"])
+    built([*command, *map(str, objects), "-o", str(program), *link, "-lm"])
     return Program(program, tuple(robots), tuple(runner))
 
 

@@ -12,7 +12,7 @@ from closedform.check.crosscheck import crosscheck
 from closedform.check.report import report
 from closedform.check.runners import node
 from closedform.check.runners.python import module
-from closedform.emit import backends, render, sines
+from closedform.emit import backends, pages, render, sines
 from closedform.emit.backend import runtime
 from closedform.emit.backends.js.printer import JavaScriptPrinter
 from closedform.emit.code import COMPARE, SUM, Printer, Text
@@ -27,8 +27,8 @@ GUIDE = ROOT / "docs" / "adding-a-backend.md"
 
 
 def written(d: Derivation, folder: Path, name: str) -> None:
-    own = render.pages(d, Proof(d.name, d.paper.key, (), 0, ()), [name])
-    pipeline.write(folder, {**own.files, **render.shared_files([own.share], [name])})
+    own = pages.pages(d, Proof(d.name, d.paper.key, (), 0, ()), [name])
+    pipeline.write(folder, {**own.files, **pages.shared_files([own.share], [name])})
 
 
 def test_a_printer_without_an_operator_is_refused() -> None:

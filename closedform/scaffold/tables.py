@@ -51,6 +51,8 @@ LINES = {
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""
+NUMBERED = re.compile(r"(alpha|link)\d+_?")
+"""Names with a number that the written script uses itself."""
 
 
 class TableError(ValueError):
@@ -80,7 +82,7 @@ def check_names(table: Table, where: str) -> None:
 
 
 def _check_name(name: str, where: str) -> None:
-    if name in TAKEN or re.fullmatch(r"(alpha|link)\d+_?", name):
+    if name in TAKEN or NUMBERED.fullmatch(name):
         raise TableError(
             f"{where}: the written script uses the name {name} itself; "
             f"choose another, such as {name}_0"

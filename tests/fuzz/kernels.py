@@ -19,7 +19,7 @@ NAME = "kernels"
 CALLS = 20_000
 ROOT = Path(__file__).parents[2]
 GENERATED, RUNTIME = ROOT / "generated" / "c", ROOT / "closedform" / "runtime" / "extension"
-SANITIZE = ("-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+SANITIZE = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 
 def available() -> bool:

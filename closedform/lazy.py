@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Callable, Iterable
 from functools import cache
 from importlib import import_module
@@ -36,6 +35,8 @@ def homes(path: Iterable[str]) -> dict[str, str]:
 
 @cache
 def _homes(stub: Path) -> dict[str, str]:
+    import ast  # not needed to import a mechanism from closedform.generated
+
     return {
         alias.name: statement.module
         for statement in ast.parse(stub.read_bytes()).body

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
@@ -34,13 +35,18 @@ def sources_of(scripts: Iterable[Path]) -> list[Path]:
         if path in found:
             continue
         found[path] = None
-        try:
-            tree = ast.parse(path.read_bytes())
-        except SyntaxError:
-            continue
-        candidates = _files_of(_imported(tree), path.parent)
-        pending += [p for p in candidates if p.is_file()]
+        pending += [p for p in _candidates(path.read_bytes(), path.parent) if p.is_file()]
     return sorted(found)
+
+
+@cache
+def _candidates(text: bytes, folder: Path) -> tuple[Path, ...]:
+    """Where our modules that a script imports would be; kept, because scripts share most."""
+    try:
+        names = dict.fromkeys(_imported(ast.parse(text)))
+    except SyntaxError:
+        return ()
+    return tuple(dict.fromkeys(_files_of(names, folder)))
 
 
 def _imported(tree: ast.Module) -> Iterator[tuple[str, int]]:

@@ -151,6 +151,5 @@ distclean: clean  ## clean, and remove .venv
 	rm -rf .venv
 
 help:  ## show this list
-
 	@sed -n 's/^\([a-z]*\):.*  ## \(.*\)/\1|\2/p' Makefile | while IFS='|' read -r name what; do \
 		printf '%-10s %s\n' "$$name" "$$what"; done

@@ -187,11 +187,12 @@ def derive_command(options: argparse.Namespace) -> None:
     elif root.exists() and not root.is_dir():
         raise CommandError(f"cannot write to {root}: it is not a folder")
     result = _run(options, chosen, backends, pipeline.sources() if own else chosen)
-    printed = result.files if own else pipeline.standalone(result.files)
     if own:
-        _update(root, printed, backends if not options.names else ())
+        _update(root, result.files, backends if not options.names else ())
     else:
-        _write(root, printed)
+        from closedform.emit.pages import standalone
+
+        _write(root, standalone(result.files))
     for failure in result.neighbours:
         console.say(f"closedform: warning: {failure}")
     if result.neighbours:

@@ -41,10 +41,6 @@ class Pair:
         """The same pair, named ``s<label>`` and ``c<label>`` in the program."""
         return Pair(program.let(f"s{label}", self.s), program.let(f"c{label}", self.c))
 
-    def instead_of(self, angle: sp.Expr) -> dict[sp.Expr, sp.Expr]:
-        """The substitution that puts the pair in the place of the sine and cosine of ``angle``."""
-        return {sp.sin(angle): self.s, sp.cos(angle): self.c}
-
 
 def direction(y: sp.Expr, x: sp.Expr, length: sp.Expr, undefined: sp.Basic = sp.false) -> Pair:
     """The pair of ``atan2(y, x)`` for a vector of the given length; zero where it is undefined."""

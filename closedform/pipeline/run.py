@@ -398,13 +398,6 @@ def default_jobs() -> int:
 # Writing and comparing
 
 
-def standalone(printed: Files) -> Files:
-    """Without the files that only work inside the package, as the binding of the C to Python."""
-    from closedform.emit import pages
-
-    return pages.standalone(printed)
-
-
 def write(root: Path, printed: Files) -> list[Path]:
     """Write only the files that differ, because make goes by timestamps.  Return their paths."""
     written = []

@@ -18,7 +18,7 @@ RAISES = (
 
 
 def _kind(dtype: str, branches: int, shape: Sequence[int]) -> str:
-    """The type; ``given`` is that of an input, of which one that is no array is a number."""
+    """The type of an array; that of an input is ``given``, and a scalar input is a number."""
     if dtype == "given":
         return "ArrayLike<number>" if shape else "number"
     return dtype + "[]" * (bool(shape) + bool(branches))

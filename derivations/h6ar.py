@@ -4,6 +4,7 @@ from functools import partial
 
 import sympy as sp
 from closedform.derivations.claims.h6ar import Robot, state
+from closedform.derivations.h6ar_free_turn import free_turn, turn_step, turned_by
 from closedform.derivations.h6ar_mechanism import (
     ACCURACY,
     ELBOW,
@@ -20,7 +21,6 @@ from closedform.derivations.h6ar_mechanism import (
     declare,
     design,
     extended,
-    free_turn,
     half_gap,
     half_sums,
     in_space,
@@ -42,9 +42,7 @@ from closedform.derivations.h6ar_mechanism import (
     theta23A,
     tip,
     tip_system,
-    turn_step,
     turned,
-    turned_by,
     wrist_frames,
     wrist_given,
     wrist_let,

@@ -1,6 +1,7 @@
 """The H6AR with a loop that closes: the wrist spans the tips of the arms."""
 
 import sympy as sp
+from closedform.derivations.h6ar_free_turn import free_turn, moved_by, turn_step
 from closedform.derivations.h6ar_mechanism import (
     ACCURACY,
     ELBOW,
@@ -14,12 +15,10 @@ from closedform.derivations.h6ar_mechanism import (
     declare,
     design,
     extended,
-    free_turn,
     half_gap,
     half_sums,
     in_space,
     midpoint,
-    moved_by,
     named,
     outer_jacobian,
     pair,
@@ -36,7 +35,6 @@ from closedform.derivations.h6ar_mechanism import (
     theta23A,
     tip,
     tip_system,
-    turn_step,
     turned,
     wrist_given,
     wrist_let,

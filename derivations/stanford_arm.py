@@ -2,6 +2,7 @@
 
 import sympy as sp
 from closedform.derivations.papers import STANFORD_TEXTBOOKS
+from closedform.derivations.wrist_of_an_arm import aligned_wrist, wrist_step
 from sympy import cos, pi, sin, sqrt
 
 from closedform import (
@@ -84,28 +85,11 @@ upright = sp.Matrix([[lift.c, 0, -lift.s], [0, 1, 0], [lift.s, 0, lift.c]])
 ik.solve(
     zyz, ik.matrix("R2", upright * in_plane), theta4, theta5, theta6, {+1: "noflip", -1: "flip"}
 )
-turned_back = {theta4: theta4 + pi, theta5: -theta5, theta6: theta6 + pi}
-d.step(
-    "Inverse: the wrist",
-    "The arm leaves the rotation R_03^T R to the wrist, whose third column gives theta4 and "
-    "theta5.  noflip has sin(theta5) >= 0, flip has theta4 and theta6 turned by pi and theta5 "
-    "negated.  Where sin(theta5) = 0 only theta4 + theta6 or theta4 - theta6 is determined and we "
-    "return theta4 = 0.",
-    {"R_{03}": R03, "R_{36}": R36},
-    equal=[
-        (arm.pose[:3, :3], R03 * R36),
-        (R36.subs(turned_back, simultaneous=True), R36),
-    ],
-)
+wrist_step(d, arm.pose, R03, R36, (theta4, theta5, theta6))
 R06 = r"R_{36} = R_{03}^T R"
 ik.continuum(theta1, {px: 0, py: 0, d2: 0}, R06)
 ik.continuum(theta2, {px: -d2 * sin(theta1), py: d2 * cos(theta1), pz: 0}, R06)
-for middle, relation in (
-    (sp.eye(3), r"\theta_4 + \theta_6"),
-    (rotation("y", pi), r"\theta_4 - \theta_6"),
-):
-    aligned = R03 * middle * rotation("z", real("psi"))
-    ik.continuum(theta4, dict(zip(ik.R, aligned, strict=True)), relation)
+aligned_wrist(ik, R03, theta4)
 ik.finish(
     "All 8 configurations of a pose.",
     notes=(

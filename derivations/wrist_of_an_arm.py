@@ -1,0 +1,36 @@
+"""The spherical wrist at the end of an arm: how the Puma and the Stanford arm explain theirs."""
+
+import sympy as sp
+from sympy import pi
+
+from closedform import Chain, Derivation, real, rotation
+
+
+def wrist_step(
+    d: Derivation, pose: sp.Matrix, R03: sp.Matrix, R36: sp.Matrix, wrist: tuple[sp.Symbol, ...]
+) -> None:
+    """Add the step that splits the rotation of the ``pose`` into those of arm and wrist."""
+    theta4, theta5, theta6 = wrist
+    turned_back = {theta4: theta4 + pi, theta5: -theta5, theta6: theta6 + pi}
+    d.step(
+        "Inverse: the wrist",
+        "The arm leaves the rotation R_03^T R to the wrist, whose third column gives theta4 and "
+        "theta5.  noflip has sin(theta5) >= 0, flip has theta4 and theta6 turned by pi and theta5 "
+        "negated.  Where sin(theta5) = 0 only theta4 + theta6 or theta4 - theta6 is determined and "
+        "we return theta4 = 0.",
+        {"R_{03}": R03, "R_{36}": R36},
+        equal=[
+            (pose[:3, :3], R03 * R36),
+            (R36.subs(turned_back, simultaneous=True), R36),
+        ],
+    )
+
+
+def aligned_wrist(ik: Chain, R03: sp.Matrix, theta4: sp.Symbol) -> None:
+    """State where the outer axes of the wrist coincide, and what their angles then keep."""
+    for middle, relation in (
+        (sp.eye(3), r"\theta_4 + \theta_6"),
+        (rotation("y", pi), r"\theta_4 - \theta_6"),
+    ):
+        aligned = R03 * middle * rotation("z", real("psi"))
+        ik.continuum(theta4, dict(zip(ik.R, aligned, strict=True)), relation)

@@ -9,6 +9,7 @@ from test_vocabulary import TOYS
 
 from closedform.check import runners
 from closedform.check.crosscheck import crosscheck
+from closedform.check.failures import UnavailableError
 from closedform.check.report import report
 from closedform.check.runners import node
 from closedform.check.runners.python import module
@@ -96,7 +97,7 @@ def test_an_operator_that_is_printed_wrongly_is_found(
 ) -> None:
     try:
         node.executable()
-    except runners.UnavailableError as error:
+    except UnavailableError as error:
         pytest.skip(f"{error}: the JavaScript is not run")
     toy, wrong = WRONG[operator]
     d = TOYS[toy]()

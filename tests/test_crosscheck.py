@@ -1,7 +1,6 @@
 """Generated code against the symbolic source in Arb, in every back end; the check can fail."""
 
 import importlib
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -21,6 +20,8 @@ from closedform.check.crosscheck import (
     float_backend,
     module_backend,
 )
+from closedform.check.failures import UnavailableError
+from closedform.emit.backends import load, names
 from closedform.model.derivation import Derivation
 from closedform.model.tolerances import DOUBLE
 
@@ -40,6 +41,9 @@ ROBOTS = (
 all_robots = pytest.mark.parametrize("robot", ROBOTS, scope="module")
 """Robot by robot: what is compared with is evaluated once."""
 GENERATED = Path(__file__).parent.parent / "generated"
+MODULES = ("numpy", "c")
+OTHERS = tuple(name for name in names() if load(name).runner and name not in MODULES)
+"""Languages whose code is run as after ``closedform derive``, and not imported."""
 
 
 def derivation(robot: str) -> Derivation:
@@ -53,17 +57,18 @@ def backends(name: str, robot: str, factory: pytest.TempPathFactory) -> Iterator
             built, _ = libraries.library(factory, robot, single=True)
         library = CLibrary(derivation(robot), GENERATED / "c", folder, single=True, built=built)
         yield float_backend(library.function)
-    elif name == "js":
-        if shutil.which("node") is None:
-            pytest.skip("Node is not installed: the JavaScript is not checked")
-        run = runners.load("node")
-        yield from run(name, derivation(robot), GENERATED / name, factory.mktemp(robot))
-    else:
+    elif name in MODULES:
         module = importlib.import_module(f"closedform.generated.{name}.{robot}")
         yield module_backend(name, module)
+    else:
+        run = runners.load(load(name).runner)
+        try:
+            yield from run(name, derivation(robot), GENERATED / name, factory.mktemp(robot))
+        except UnavailableError as error:
+            pytest.skip(f"{error}: {name} is not checked")
 
 
-@pytest.mark.parametrize("name", ["numpy", "c", "c float", "js"])
+@pytest.mark.parametrize("name", [*MODULES, "c float", *OTHERS])
 @all_robots
 def test_against_the_symbolic_source(
     robot: str, name: str, tmp_path_factory: pytest.TempPathFactory, findings: list[Finding]

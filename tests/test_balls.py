@@ -7,8 +7,7 @@ import sympy as sp
 from flint import arb
 
 from closedform.algebra.balls import Undetermined, to_float
-from closedform.check.arrays import WIDE
-from closedform.check.rows import RowEvaluator, beside, inaccurate
+from closedform.check.rows import WIDE, RowEvaluator, beside, inaccurate
 
 x, y, z = sp.symbols("x y z", real=True)
 EXPRESSIONS = {

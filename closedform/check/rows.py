@@ -15,9 +15,9 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from closedform.algebra.balls import Evaluator, to_float
-from closedform.check.arrays import WIDE
 
 Array = NDArray[Any]
+WIDE = np.longdouble
 Ball: TypeAlias = "tuple[Any, Any]"  # midpoints and radii
 Truth: TypeAlias = "tuple[Any, Any]"  # whether a condition holds, and whether that is certain
 
@@ -65,6 +65,10 @@ class RowEvaluator:
                 middle[:, k], radius[:, k] = x, r
         radius[~(np.isfinite(middle) & np.isfinite(radius))] = OPEN
         return middle, radius
+
+    def values(self, rows: Array) -> Array:
+        """The midpoints alone, for what only chooses points: nothing may be decided by them."""
+        return self.balls(rows)[0]
 
     def settled(self, rows: Array, doubtful: Callable[[Array, Array], Array]) -> Array:
         """The values; those of the rows that are ``doubtful(middle, radius)`` are those of Arb."""

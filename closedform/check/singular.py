@@ -11,10 +11,11 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from closedform.check.arrays import WIDE, columns
+from closedform.check.rows import WIDE, RowEvaluator
 from closedform.check.samples import Sample, drawn_beside, parameter_sets
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Bound, Function
+from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
+from closedform.model.tolerances import DOUBLE
 
 Array = NDArray[Any]
 
@@ -67,17 +68,32 @@ def _values(
 
     Its value is NaN if the mode does not exist.
     """
-    bounds = [s.symbol for s in factors.body if isinstance(s, Bound)]
+    given = (*unknowns, *(p.symbol for p in derivation.parameters))
     entries = [e for a in factors.outputs for e in a.entries]
-    named = (*unknowns, *(p.symbol for p in derivation.parameters))
 
-    def value(entry: sp.Expr, signs: dict[sp.Symbol, int], rows: Array) -> Array:
-        chosen = np.broadcast_to(list(signs.values()), (len(rows), len(signs)))
-        given = np.concatenate([rows, chosen], axis=1)
-        found = columns([entry, *bounds], (*named, *signs), given, factors)
-        return np.where(np.isnan(found).any(axis=1), np.nan, found[:, 0])
+    def value(evaluator: RowEvaluator, rows: Array) -> Array:
+        factor, *margins = evaluator.values(rows).T
+        exists = np.all([m >= -DOUBLE.feasibility for m in margins], axis=0)
+        return np.where(exists, factor, np.nan)
 
-    return [partial(value, e, dict(signs)) for _, signs in factors.cases() for e in entries]
+    values: list[Callable[[Array], Array]] = []
+    for _, signs in factors.cases():
+        named: dict[sp.Symbol, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
+        lowered: dict[sp.Basic, sp.Basic] = {}
+        margins = []
+        for statement in factors.body:
+            if isinstance(statement, Vanishes):
+                lowered[statement.symbol] = sp.false
+            elif isinstance(statement, Let):
+                named[statement.symbol] = substitute(statement.value, lowered)
+            elif isinstance(statement, Bound):
+                bound = substitute(statement.value, lowered)
+                margins.append(bound / substitute(statement.scale, lowered))
+                named[statement.symbol] = sp.Max(bound, 0, evaluate=False)
+        for entry in entries:
+            exprs = [substitute(entry, lowered), *margins]
+            values.append(partial(value, RowEvaluator(given, exprs, named=named)))
+    return values
 
 
 def _on_and_near(

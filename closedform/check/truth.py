@@ -15,7 +15,6 @@ from flint import arb
 from numpy.typing import NDArray
 
 from closedform.algebra.balls import free_symbols, to_float
-from closedform.check.arrays import columns
 from closedform.check.rows import RowEvaluator, beside
 from closedform.check.samples import Magnitudes, Sample, with_parameters
 from closedform.lemmas.chain import numbers_of_tool
@@ -112,9 +111,8 @@ class Solutions:
         if inverse.images:
             forward = derivation[inverse.images]
             maps = [forward.values(mode) for _, mode in forward.cases()]
-        self._posture = (*inverse.unknowns, *parameters)
-        self._map_exprs = maps
-        self._maps = [RowEvaluator(self._posture, m) for m in maps]
+        posture = (*inverse.unknowns, *parameters)
+        self._maps = [RowEvaluator(posture, m) for m in maps]
         slides = {j.symbol for j in derivation.joints if j.kind == "prismatic"}
         self._sliding = np.array([u in slides for u in inverse.unknowns])
         self._turns = np.array([x in inverse.angles for x in function.symbols])
@@ -133,7 +131,7 @@ class Solutions:
         entries: list[sp.Expr] = []
         if factors and self.has_images:
             entries = [e for _, signs in factors.cases() for e in factors.values(signs)]
-        self._factors = RowEvaluator((*inverse.unknowns, *parameters), entries)
+        self._factors = RowEvaluator(posture, entries)
 
     def images(self, sample: Sample) -> tuple[Array, Array]:
         """What the postures are taken to, in each assembly mode they have, and the postures."""
@@ -150,7 +148,7 @@ class Solutions:
     def wide_images(self, postures: NDArray[Any], parameters: Sequence[float]) -> NDArray[Any]:
         """What postures are taken to in each assembly mode, NaN where it does not exist."""
         rows = with_parameters(postures, parameters)
-        return np.stack([columns(m, self._posture, rows) for m in self._map_exprs])
+        return np.stack([forward.values(rows) for forward in self._maps])
 
     def missed(
         self,

@@ -21,7 +21,7 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.applied import Applied
-from closedform.lemmas.pairs import Pair
+from closedform.lemmas.pairs import Pair, direction
 from closedform.model.derivation import Continuum, Derivation, Inverse, Link, Solved
 from closedform.model.functions import (
     SINGLE,
@@ -30,7 +30,6 @@ from closedform.model.functions import (
     Statement,
     Vanishes,
     branches,
-    choose,
     real,
     substitute,
 )
@@ -148,8 +147,7 @@ class Chain:
         p = self.program
         length = p.let(f"size_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
         nothing = p.vanishes(f"no_{name}", length, 0, "it has no direction")
-        pair = Pair(choose(nothing, 0, y / length), choose(nothing, 1, x / length))
-        named = pair.known_as(p, f"_{name}")
+        named = direction(y, x, length, nothing).known_as(p, f"_{name}")
         self.meaning |= {named.s: y / sp.sqrt(x**2 + y**2), named.c: x / sp.sqrt(x**2 + y**2)}
         self.directions[sp.atan2(y, x)] = named
         return named

@@ -283,9 +283,7 @@ def polar(
     flag: Any = sp.false
     if not any(differs_from_zero(chain, e, chain.size) for e in (x, y)):
         flag = p.vanishes(f"on_axis_{name}", r, chain.size, f"the axis of {angle} is met", (angle,))
-    pair, means = named(
-        chain, angle, Pair(choose(flag, 0, sigma * y / r), choose(flag, 1, sigma * x / r))
-    )
+    pair, means = named(chain, angle, direction(sigma * y, sigma * x, r, flag))
     value = p.let(f"{length.name}_{name}", sigma * r)
     lemma = Lemma(
         "polar coordinates",

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from closedform.lemmas.pairs import Pair
+from closedform.lemmas.pairs import Pair, direction
 from closedform.model.functions import Program, choose
-from closedform.model.lemma import Lemma
+from closedform.model.lemma import Lemma, label
 
 
 @dataclass(frozen=True)
@@ -50,8 +50,8 @@ def zyz_angles(
         "the first and the last axis coincide",
         free=free or (first,),
     )
-    pair = Pair(choose(aligned, 0, R[1, 2] / h), choose(aligned, 1, R[0, 2] / h))
-    pair = pair.known_as(program, suffix or str(first).removeprefix("theta"))
+    pair = direction(R[1, 2], R[0, 2], h, aligned)
+    pair = pair.known_as(program, suffix or label(first))
     flip = program.let(f"flip{suffix}", choose(aligned, 0, (1 - sigma) * sp.pi / 2))
     lemma, rest = zyz_lemma(R, first, middle, last, pair, sigma, flip)
     return Zyz(lemma, pair, rest, flip, aligned)

@@ -48,7 +48,7 @@ from closedform.derivations.h6ar_mechanism import (
     wrist_let,
     wrist_squared,
 )
-from closedform.derivations.papers import RAO_RAJU
+from closedform.derivations.papers.rao_raju import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform import (

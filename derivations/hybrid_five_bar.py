@@ -4,7 +4,7 @@ import sympy as sp
 from closedform.derivations import hybrid_five_bar_design as design
 from closedform.derivations.claims.five_bar_postures import FiveBar
 from closedform.derivations.claims.hybrid_five_bar import state
-from closedform.derivations.papers import CHABLAT_WENGER_ANGELES
+from closedform.derivations.papers.chablat_wenger_angeles import CHABLAT_WENGER_ANGELES
 from sympy import atan2, cos, sin, sqrt
 
 from closedform import (

@@ -7,7 +7,7 @@ from closedform.derivations.claims.irb260 import Palletiser, state
 from closedform.derivations.irb260_experiment import experiment
 from closedform.derivations.irb260_inverse import inverse_kinematics, workspace
 from closedform.derivations.irb260_linkage import double_parallelogram
-from closedform.derivations.papers import SHI_ZHU_LI
+from closedform.derivations.papers.shi_zhu_li import SHI_ZHU_LI
 from sympy import atan2, cos, pi, sin
 
 from closedform import (

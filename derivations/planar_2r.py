@@ -2,7 +2,7 @@
 
 import sympy as sp
 from closedform.derivations.claims.planar_2r import Arm, state
-from closedform.derivations.papers import REDDY_BABU
+from closedform.derivations.papers.reddy_babu import REDDY_BABU
 from sympy import atan2, cos, sin, sqrt
 
 from closedform import (

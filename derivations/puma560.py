@@ -2,7 +2,7 @@
 
 import sympy as sp
 from closedform.derivations.claims.puma560 import Puma, state
-from closedform.derivations.papers import PUMA_TEXTBOOKS
+from closedform.derivations.papers.puma_textbooks import PUMA_TEXTBOOKS
 from closedform.derivations.wrist_of_an_arm import aligned_wrist, wrist_step
 from sympy import atan2, cos, pi, sin, sqrt
 

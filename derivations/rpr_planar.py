@@ -1,7 +1,7 @@
 """A planar parallel mechanism of two RPR legs: two sliding legs carry a point."""
 
 import sympy as sp
-from closedform.derivations.papers import TEXTBOOK
+from closedform.derivations.papers.textbook import TEXTBOOK
 from sympy import atan2, cos, sin, sqrt
 
 from closedform import (

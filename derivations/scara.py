@@ -1,7 +1,7 @@
 """A SCARA arm: two parallel revolute joints and a spindle that slides and turns."""
 
 import sympy as sp
-from closedform.derivations.papers import TEXTBOOK
+from closedform.derivations.papers.textbook import TEXTBOOK
 from sympy import pi
 
 from closedform import Chain, Derivation, from_dh, remainder, slide, two_links

@@ -2,7 +2,7 @@
 
 import sympy as sp
 from closedform.derivations.claims.spherical_wrist import Wrist, state
-from closedform.derivations.papers import REDDY_BABU
+from closedform.derivations.papers.reddy_babu import REDDY_BABU
 from sympy import cos, sin
 
 from closedform import (

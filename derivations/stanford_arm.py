@@ -1,7 +1,7 @@
 """The Stanford arm, RRP and a spherical wrist, in standard Denavit-Hartenberg parameters."""
 
 import sympy as sp
-from closedform.derivations.papers import STANFORD_TEXTBOOKS
+from closedform.derivations.papers.stanford_textbooks import STANFORD_TEXTBOOKS
 from closedform.derivations.wrist_of_an_arm import aligned_wrist, wrist_step
 from sympy import cos, pi, sin, sqrt
 

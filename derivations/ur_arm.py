@@ -1,7 +1,7 @@
 """A UR-type arm: shoulder, three parallel axes, two more; all eight postures."""
 
 import sympy as sp
-from closedform.derivations.papers import TEXTBOOK
+from closedform.derivations.papers.textbook import TEXTBOOK
 from sympy import pi
 
 from closedform import (

@@ -1,4 +1,4 @@
-"""The command line: list, show, derive, check, new, errata.
+"""The command line: list, show, derive, check, new, claims, errata.
 
 Results go to stdout, progress and errors to stderr.  The exit code is 0 on success, 1 if a proof or
 a comparison failed, and 2 if the command was called wrongly.
@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from closedform._version import __version__
-from closedform.cli import console
+from closedform.cli import claims, console
 from closedform.cli.console import Progress
 from closedform.pipeline import run as pipeline
 from closedform.pipeline import versions
@@ -140,6 +140,7 @@ def parser() -> argparse.ArgumentParser:
     new.add_argument(
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="default: current folder"
     )
+    claims.add_options(command("claims", claims_command))
     errata = command("errata", errata_command)
     errata.add_argument(
         "paper", metavar="PAPER", nargs="?", help="the key of a paper; default: all papers"
@@ -290,6 +291,17 @@ def new_command(options: argparse.Namespace) -> None:
         console.say(f"closedform: note: {note}")
     _write(options.output, {Path(target.name): script.text})
     console.write(f"{target}: {script.inverse}; next: closedform derive {target} -o out\n")
+
+
+def claims_command(options: argparse.Namespace) -> None:
+    """Judge the claims of one derivation, change their texts, or compare them with the paper."""
+    (source,) = _find([options.name])
+    _require_extra()
+    with Progress() as progress:
+        progress(source.name, "deriving")
+        derivation = pipeline.load(source)
+    for line in claims.report(options, derivation):
+        console.write(f"{line}\n")
 
 
 def errata_command(options: argparse.Namespace) -> None:

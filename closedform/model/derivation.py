@@ -7,14 +7,14 @@ the paper.  All later stages (proof, lowering, emission, LaTeX, reference) read 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from typing import Any, Literal
 
 import sympy as sp
 
-from closedform.model.claims import Check
+from closedform.model.claims import Check, Claim, Erratum, Gravity, Reading
 from closedform.model.display import Shown
 from closedform.model.functions import (
     Branches,
@@ -38,6 +38,7 @@ from closedform.model.names import (
     check_symbol,
     check_text,
 )
+from closedform.model.notation import Notation
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,10 @@ class Paper:
     title: str
     authors: tuple[str, ...]
     reference: str = ""
+    source: str = ""
+    """How the text was read, and which claims a mistake of the reading may touch."""
+    out_of_scope: tuple[tuple[str, str, str], ...] = ()
+    """What the claims leave out: the first and the last words of a passage, and the reason."""
 
     def __post_init__(self) -> None:
         check_key(self.key, "key of the paper")
@@ -56,6 +61,8 @@ class Paper:
             raise TypeError(f"authors of the paper: write a tuple, as in ({self.authors!r},)")
         check_text("authors of the paper", *self.authors)
         check_text("reference of the paper", self.reference)
+        check_text("source of the paper", self.source)
+        check_text("passage of the paper", *(part for p in self.out_of_scope for part in p))
 
 
 @dataclass(frozen=True)
@@ -277,23 +284,6 @@ class Table:
         check_text(f"header of the table {self.name}", self.header, *self.columns)
 
 
-@dataclass(frozen=True)
-class Claim:
-    """A statement of the paper, transcribed as printed, and the computation that judges it.
-
-    In ``printed``, formulas are LaTeX between dollar signs; the rest is plain text.
-    """
-
-    label: str
-    printed: str
-    check: Check
-    where: str = ""
-
-    def __post_init__(self) -> None:
-        check_text("label of a claim", self.label)
-        check_text(f"claim {self.label}", self.printed, self.where)
-
-
 RESULTS = {"Solutions": "q", "Positions": "p"}
 """The results with a status, and the name of the values of each."""
 
@@ -318,6 +308,7 @@ class Derivation(Shown):
     functions: list[Function] = field(default_factory=list)
     tables: list[Table] = field(default_factory=list)
     claims: list[Claim] = field(default_factory=list)
+    errata: list[Erratum] = field(default_factory=list)
     without_inverse: str = ""
     """Why there is no inverse, as a clause; empty if there is one, or if no reason is given."""
 
@@ -449,9 +440,48 @@ class Derivation(Shown):
         self.functions.append(function)
         return function
 
-    def claim(self, label: str, printed: str, check: Check, where: str = "") -> None:
-        """Transcribe a statement of the paper, with the check that judges it."""
-        self.claims.append(Claim(label, printed, check, where))
+    def claim(
+        self,
+        label: str,
+        printed: str,
+        check: Callable[..., Check] | None = None,
+        *,
+        where: str = "",
+        notation: Notation | None = None,
+        means: Mapping[str, Any] | None = None,
+        phrases: Sequence[Mapping[str, Any]] = (),
+        corrected: str = "",
+        readings: Sequence[Reading] = (),
+        erratum: str = "",
+        paraphrase: bool = False,
+        fixed: str = "",
+    ) -> None:
+        """Transcribe a statement of the paper, as printed; see :class:`Claim`.
+
+        Without a ``check``, the formulas are equations that hold for all values of their symbols.
+        ``means`` extends the notation for this claim.
+        """
+        self.claims.append(
+            Claim(
+                label,
+                printed,
+                check,
+                where,
+                (notation or Notation({})).extended(means or {}),
+                tuple(phrases),
+                corrected,
+                tuple(readings),
+                erratum,
+                paraphrase,
+                fixed,
+            )
+        )
+
+    def erratum(self, key: str, title: str, gravity: Gravity, *, why: str, use: str) -> None:
+        """Describe an error of the paper; claims that show it name its key."""
+        if key in [e.key for e in self.errata]:
+            raise ValueError(f"{self.name}: the erratum {key} is described twice")
+        self.errata.append(Erratum(key, title, gravity, why, use))
 
     def no_inverse(self, because: str) -> None:
         """Give the reason why there is no inverse, such as ``"axes 5 and 6 do not intersect"``."""

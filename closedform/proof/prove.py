@@ -21,6 +21,14 @@ from closedform.model.claims import VERDICTS
 from closedform.model.derivation import Continuum, Derivation, Inverse
 from closedform.model.functions import Function, real, substitute
 from closedform.proof.chain import prove_chain
+from closedform.proof.claims import (
+    ClaimResult,
+    ErratumResult,
+    ReadingResult,
+    erratum_result,
+    judge,
+    require_shown,
+)
 from closedform.proof.reduction import prove_reduction
 from closedform.proof.require import ProofError, require
 from closedform.proof.witness import uncovered
@@ -28,18 +36,6 @@ from closedform.proof.witness import uncovered
 Progress = Callable[[str], None]
 
 MISSED = "the answer, put into the forward map, does not give the target"
-
-
-@dataclass(frozen=True)
-class ClaimResult:
-    """A claim with its verdict, as plain text."""
-
-    label: str
-    where: str
-    printed: str
-    kind: str
-    evidence: str
-    corrected: str
 
 
 @dataclass(frozen=True)
@@ -65,6 +61,7 @@ class Proof:
     identities: int
     inverses: tuple[InverseResult, ...]
     claims: tuple[ClaimResult, ...] = field(default=())
+    errata: tuple[ErratumResult, ...] = field(default=())
     without_inverse: str = ""
 
     def verdicts(self) -> dict[str, int]:
@@ -111,7 +108,11 @@ class Proof:
                 )
                 for i in data["inverses"]
             ),
-            tuple(ClaimResult(**c) for c in data["claims"]),
+            tuple(
+                ClaimResult(**{**c, "readings": tuple(ReadingResult(**r) for r in c["readings"])})
+                for c in data["claims"]
+            ),
+            tuple(ErratumResult(**e) for e in data["errata"]),
             data["without_inverse"],
         )
 
@@ -138,22 +139,13 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
     for claim in derivation.claims:
         progress(f"claim: {claim.label}")
         try:
-            verdict = claim.check.judge()
+            claims.append(judge(claim, derivation.errata))
         except (Undecided, ValueError) as error:
             raise ProofError(f"{derivation.name}, claim {claim.label}: {error}") from error
         except Exception as error:  # a check may call anything that its author wrote
             what = f"{type(error).__name__}: {error}"
             raise ProofError(f"{derivation.name}, claim {claim.label}: {what}") from error
-        claims.append(
-            ClaimResult(
-                claim.label,
-                claim.where,
-                claim.printed,
-                verdict.kind,
-                verdict.evidence,
-                verdict.corrected,
-            )
-        )
+    require_shown(derivation.errata, claims)
     return Proof(
         derivation.name,
         derivation.paper.key,
@@ -161,6 +153,7 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
         identities,
         tuple(inverses),
         tuple(claims),
+        tuple(map(erratum_result, derivation.errata)),
         derivation.without_inverse,
     )
 

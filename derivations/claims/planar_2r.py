@@ -8,11 +8,13 @@ from sympy import atan2, cos, pi, sin, sqrt, tan
 
 from closedform import (
     Count,
-    Decimal,
     Derivation,
+    Equal,
     Every,
+    Gravity,
     Identity,
-    Posture,
+    Notation,
+    Solves,
     Undecidable,
     denavit_hartenberg,
     exponential,
@@ -53,126 +55,128 @@ class Arm(NamedTuple):
 def state(d: Derivation, arm: Arm) -> None:
     """Transcribe all claims, in the order of the paper."""
     geometry(d, arm)
-    convention(d)
-    forward(d, arm)
-    inverse(d, arm)
-    results(d, arm)
-    values(d)
+
+
+def notation(arm: Arm) -> Notation:
+    """What the paper's names mean; its ``a_1`` and ``a_2`` are other names of the lengths."""
+    theta1, theta2 = arm.theta1, arm.theta2
+    return Notation(
+        {
+            r"\theta_1": theta1,
+            r"\theta_2": theta2,
+            "l_1": arm.l1,
+            "l_2": arm.l2,
+            "a_1": arm.l1,
+            "a_2": arm.l2,
+            "c_1": cos(theta1),
+            "s_1": sin(theta1),
+            "c_2": cos(theta2),
+            "s_2": sin(theta2),
+            "c_{12}": cos(theta1 + theta2),
+            "s_{12}": sin(theta1 + theta2),
+            r"a \tan 2": atan2,
+            r"\phi": atan2(arm.pose[1, 0], arm.pose[0, 0]),
+        }
+    )
 
 
 def geometry(d: Derivation, arm: Arm) -> None:
     """Eqs. (1) to (5)."""
     l1, l2, theta1, theta2, position, _, A2, pose = arm
     x, y = position
-    c1, s1, c2, s2 = cos(theta1), sin(theta1), cos(theta2), sin(theta2)
-    px, py = real("px"), real("py")
+    px, py = real("x"), real("y")
     seen = A2[:2, 3] + sp.Matrix([l1, 0])  # the hand from the base, along the first link
-    alpha, beta = atan2(seen[1], seen[0]), atan2(y, x)
-    claim = partial(d.claim, where="Kinematic Analysis By Geometric Approach")
+    at_posture = {"x": pose[0, 3], "y": pose[1, 3]}
+    where = "Kinematic Analysis By Geometric Approach"
+    claim = partial(d.claim, where=where, notation=notation(arm).extended(at_posture))
 
-    claim(
-        "eq. (1)",
-        r"$x = l_1 \cos\theta_1 + l_2 \cos(\theta_1 + \theta_2)$",
-        Identity(l1 * cos(theta1) + l2 * cos(theta1 + theta2), pose[0, 3]),
-    )
-    claim(
-        "eq. (2)",
-        r"$y = l_1 \sin\theta_1 + l_2 \sin(\theta_1 + \theta_2)$",
-        Identity(l1 * sin(theta1) + l2 * sin(theta1 + theta2), pose[1, 3]),
-    )
+    claim("eq. (1)", r"$x = l_1 \cos\theta_1 + l_2 \cos(\theta_1 + \theta_2)$")
+    claim("eq. (2)", r"$y = l_1 \sin\theta_1 + l_2 \sin(\theta_1 + \theta_2)$")
+    bend = real("b")
+    above = (x * l1 * sin(theta1) - y * l1 * cos(theta1)).subs(theta2, -bend)
     claim(
         "two solutions",
-        "“If the given (x, y) coordinates are within the robot’s reach there may be two solutions "
-        "as shown in Fig. 2, the so-called elbow up and elbow down configurations”",
-        Every(
+        "“If the given (x, y) coordinates are within the robot’s reach there may be {two} "
+        "solutions as shown in Fig. 2, the so-called {elbow up} and elbow down configurations”",
+        lambda n, elbow: Every(
             {
-                "there are two": Count((x - px, y - py), (theta1, theta2), 2),
-                "the elbow is above the line to the hand if sin(theta2) < 0": Identity(
-                    x * l1 * s1 - y * l1 * c1, -l1 * l2 * s2
+                "their number": Count((x - px, y - py), (theta1, theta2), n),
+                "the elbow is above the line to the hand if theta2 < 0": Identity(
+                    above, elbow * l1 * l2 * sin(bend)
                 ),
             }
         ),
+        phrases=[{"elbow up": 1, "elbow down": -1}],
     )
-
-    def at_distance(r: int) -> list[sp.Expr]:
-        lengths = {l1: sp.Integer(10), l2: sp.Integer(8)}
-        return [x.subs(lengths) - r, y.subs(lengths)]
-
+    at_distance = {l1: sp.Integer(10), l2: sp.Integer(8)}
     claim(
         "one solution",
-        "“there may be exactly one solution if the manipulator must be fully extended to reach the "
-        "point”",
-        Every(
-            {
-                "extended": Count(at_distance(10 + 8), (theta1, theta2), 1),
-                "folded, which the paper omits": Count(at_distance(10 - 8), (theta1, theta2), 1),
-            }
-        ),
+        "“or there may be {exactly one} solution if the manipulator must be {fully extended} to "
+        "reach the point”",
+        lambda n, r: Count([e.subs(at_distance) for e in (x - r, y)], (theta1, theta2), n),
+        phrases=[{"exactly one": 1, "two": 2}, {"fully extended": 18, "half extended": 9}],
     )
     claim(
         "infinitely many solutions",
-        "“There may even be an infinite number of solutions in some cases.”",
-        Identity(position.subs({l2: l1, theta2: pi}), sp.zeros(2, 1)),  # for every theta1
+        "“There may even be an {infinite} number of solutions in some cases.”",
+        lambda n: Count([e.subs({l1: 1, l2: 1}) for e in (x, y)], (theta1, theta2), n),
     )
+    D = (px**2 + py**2 - l1**2 - l2**2) / (2 * l1 * l2)
     claim(
         "cos θ2, before eq. (3)",
         r"$\cos\theta_2 = \frac{x^2 + y^2 - l_1^2 - l_2^2}{2l_1l_2} = D$",
-        Identity((x**2 + y**2 - l1**2 - l2**2) / (2 * l1 * l2), c2),
+        lambda formula: Equal(formula, defines=D),
+        means={"D": D},
     )
-    D = c2  # the claim above proves it
     claim(
         "sin θ2, before eq. (3)",
         r"$\sin\theta_2 = \pm\sqrt{1 - D^2}$",
-        Identity(1 - D**2, s2**2),  # the claim includes both roots of the square
+        means={"D": cos(theta2)},
     )
-    cosine_law = l1**2 + l2**2 + 2 * l1 * l2 * c2 - px**2 - py**2
     claim(
         "eq. (3)",
         r"$\theta_2 = a \tan 2(\pm\sqrt{1 - D^2}, D)$",
-        Every(
-            {
-                "upper sign": Identity(cosine_law.subs(theta2, arm.eq3(px, py, +1)), 0),
-                "lower sign": Identity(cosine_law.subs(theta2, arm.eq3(px, py, -1)), 0),
-                "there are no others": Count([cosine_law], [theta2], 2),
-            }
+        lambda formula: Solves(
+            {formula.left: formula.right},
+            [l1**2 + l2**2 + 2 * l1 * l2 * cos(theta2) - px**2 - py**2],
         ),
+        means={"x": px, "y": py, "D": D},
     )
+    alpha, beta = atan2(seen[1], seen[0]), atan2(y, x)
+    angles = {r"\alpha": alpha, r"\beta": beta}
     claim(
         "θ1, before eq. (4)",
         r"$(\beta - \alpha) = \theta_1$",
-        Identity([cos(beta - alpha), sin(beta - alpha)], [c1, s1]),
+        lambda f: Identity([cos(f.left), sin(f.left)], [cos(f.right), sin(f.right)]),
+        means=angles,
+    )
+    d.erratum(
+        "tan-alpha",
+        "The tangent of the angle at the base has a cosine instead of a sine",
+        Gravity.MISPRINT,
+        why="The numerator is the height of the hand above the line of the first link, and that is "
+        "the second link times the sine of its angle.",
+        use="Eq. (4), which follows, is right.  An arm that takes the angle from this line alone "
+        "turns its first link to a wrong angle.",
     )
     claim(
         "tan α, before eq. (4)",
         r"$\tan \alpha = \frac{l_2 \cos \theta_2}{l_2 \cos \theta_2 + l_1}$",
-        Identity(l2 * c2 / (l2 * c2 + l1), tan(alpha), corrected=l2 * s2 / (l2 * c2 + l1)),
+        means=angles,
+        corrected=r"$\tan \alpha = \frac{l_2 \sin \theta_2}{l_2 \cos \theta_2 + l_1}$",
+        erratum="tan-alpha",
     )
-    claim(
-        "tan β, before eq. (4)",
-        r"$\tan \beta = \frac{y}{x}$",
-        Identity(y / x, tan(theta1 + alpha)),
-    )
-    numerator, denominator = arm.eq4(px, py, theta2)
-    on_arm = {px: x, py: y}
+    claim("tan β, before eq. (4)", r"$\tan \beta = \frac{y}{x}$", means=angles)
     claim(
         "eq. (4)",
         r"$\tan(\beta - \alpha) = \frac{y(l_2 \cos \theta_2 + l_1) - x(l_2 \sin \theta_2)}"
         r"{x(l_2 \cos \theta_2 + l_1) + y(l_2 \sin \theta_2)}$",
-        Every(
-            {
-                "it is tan(theta1)": Identity(
-                    numerator.subs(on_arm) / denominator.subs(on_arm), tan(theta1)
-                ),
-                "it follows from tan(beta) and the right tan(alpha)": Identity(
-                    numerator / denominator, tan(atan2(py, px) - alpha)
-                ),
-            }
-        ),
+        means=angles,
     )
     claim(
         "eq. (5)",
         r"$\phi = \theta_1 + \theta_2$",
-        Identity(rotation("z", theta1 + theta2), pose[:3, :3]),
+        lambda f: Identity([cos(f.left), sin(f.left)], [cos(f.right), sin(f.right)]),
     )
 
 

@@ -1,0 +1,88 @@
+"""The command ``closedform claims``: judge the claims of one derivation, or examine them."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from pathlib import Path
+
+from closedform.algebra.normal_form import Undecided
+from closedform.check.coverage import cover
+from closedform.model.claims import HOLDS
+from closedform.model.derivation import Derivation
+from closedform.model.notation import NotationError
+from closedform.pipeline import run as pipeline
+from closedform.proof.claims import judge, judged
+from closedform.proof.mutations import mutations
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """The options of the command."""
+    parser.add_argument("name", metavar="NAME", help="a derivation or the path of a script")
+    parser.add_argument("--only", metavar="TEXT", default="", help="claims with TEXT in the label")
+    parser.add_argument(
+        "--mutate", action="store_true", help="change each printed text and judge it again"
+    )
+    parser.add_argument(
+        "--paper", type=Path, metavar="FILE", help="print what of the paper's text is not covered"
+    )
+
+
+def report(options: argparse.Namespace, derivation: Derivation) -> Iterator[str]:
+    """The lines of the report."""
+    claims = [c for c in derivation.claims if options.only in c.label]
+    if options.paper:
+        yield from _coverage(derivation, options.paper)
+        return
+    for claim in claims:
+        try:
+            result = judge(claim, derivation.errata)
+        except Exception as error:  # a check may call anything that its author wrote
+            yield f"{claim.label}: {type(error).__name__}: {error}"
+            continue
+        yield f"{claim.label}: {result.kind}" + (f": {result.evidence}" if result.evidence else "")
+        for reading in result.readings:
+            yield f"    reading: {reading.text}: {reading.kind}: {reading.evidence}"
+        if result.corrected:
+            yield f"    holds instead: {result.corrected}"
+        if not options.mutate:
+            continue
+        tried = 0
+        for mutation in mutations(claim):
+            try:
+                kind = judged(claim, mutation.text).kind
+            except NotationError:
+                continue
+            except (Undecided, ValueError, TypeError, AttributeError) as error:
+                yield f"    {mutation}: {type(error).__name__}: {error}"
+                continue
+            tried += 1
+            if (kind in HOLDS) != bool(claim.corrected):
+                yield f"    survives: {mutation}: {kind}"
+        if not tried:
+            yield f"    cannot be changed: {claim.fixed or 'NO REASON IS GIVEN'}"
+
+
+def _coverage(derivation: Derivation, path: Path) -> Iterator[str]:
+    """What of the paper is covered by all derivations of it."""
+    paper, claims = derivation.paper, []
+    for source in pipeline.sources():
+        try:
+            found = derivation if source.name == derivation.name else pipeline.load(source)
+        except pipeline.DerivationError as error:
+            yield f"left out: {error}"
+            continue
+        if found.paper.key == paper.key:
+            claims += found.claims
+    covered = cover(paper, claims, path.read_text("utf-8"))
+    for gap in covered.gaps:
+        yield f"line {gap.line}: {gap.text}"
+    for text in covered.unfound:
+        yield f"not in the paper: {text}"
+    total = covered.quoted + covered.out_of_scope + covered.left
+    yield (
+        f"{paper.key}: {100 * covered.quoted / total:.1f} % of the characters are quoted by claims, "
+        f"{100 * covered.out_of_scope / total:.1f} % are out of scope, "
+        f"{100 * covered.left / total:.1f} % are left; {len(covered.gaps)} passages are not "
+        f"covered, {len(covered.unfound)} quotations were not found"
+    )

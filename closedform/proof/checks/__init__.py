@@ -1,0 +1,1 @@
+"""The checks that judge claims; a verdict is always computed."""

@@ -1,0 +1,248 @@
+"""Checks of equations: identities, approximations, and statements that must agree."""
+
+# mypy: allow-untyped-calls
+# SymPy is only partly annotated.
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from closedform.algebra.counterexample import Counterexample
+from closedform.algebra.normal_form import decide
+from closedform.model.claims import (
+    APPROXIMATION,
+    INCONSISTENT,
+    PROVED,
+    PROVED_UNDER,
+    REFUTED,
+    Check,
+    Verdict,
+)
+from closedform.model.notation import SIGN, Relation
+from closedform.proof.checks.evidence import (
+    Exact,
+    Expr,
+    Point,
+    at,
+    denested,
+    difference,
+    entries,
+    shown,
+)
+
+_SHORT = 40
+"""The longest printed side, in characters, that is repeated in the evidence."""
+
+
+@dataclass(frozen=True)
+class Identity(Check):
+    """``printed`` equals ``derived`` for all values of the symbols.
+
+    ``nonnegative`` lists expressions that may be assumed to be nonnegative; ``given`` replaces
+    symbols that depend on each other.  ``small`` is a symbol that tends to zero: a refuted equation
+    whose error vanishes with it is an approximation, and its order is derived.  ``names`` are the
+    texts of the two sides, for the evidence.
+    """
+
+    printed: Exact
+    derived: Exact
+    nonnegative: tuple[Expr, ...] = ()
+    small: sp.Symbol | None = None
+    names: tuple[str, str] = ("the printed form", "the derived one")
+
+    def judge(self) -> Verdict:
+        sides = list(zip(entries(self.printed), entries(self.derived), strict=True))
+        gap = difference(self.printed, self.derived)
+        decision = decide(gap, self.nonnegative, sides=sides)
+        if decision.holds:
+            assumed = [piece for a in decision.assumptions for piece in (", ", a, r" $\ge 0$")]
+            kind = PROVED_UNDER if decision.assumptions else PROVED
+            return Verdict(kind, ("where ", *assumed[1:]) if assumed else ())
+        assert decision.counterexample is not None
+        where = self._point(decision.counterexample)
+        if self.small is not None and (order := _order(gap, self.small)):
+            return Verdict(APPROXIMATION, (*order, "; e.g. ", *where))
+        return Verdict(REFUTED, where)
+
+    def _point(self, found: Counterexample) -> tuple[Any, ...]:
+        """The counterexample with the values of both sides, so that a reader can check it."""
+        shape = getattr(self.printed, "shape", None)
+        entry = ""
+        if shape:
+            row, column = divmod(found.entry, shape[1])
+            entry = f"entry ({row + 1},{column + 1}) of "
+        elif isinstance(self.printed, Sequence):
+            entry = f"part {found.entry + 1} of "
+        printed, derived = (
+            shown(entries(side)[found.entry], found.point) for side in (self.printed, self.derived)
+        )
+        left, right = self.names
+        return (
+            *at(found.point), entry, left, " is ", printed, ", but ", entry and "that of ", right,
+            " is ", derived,
+        )  # fmt: skip
+
+
+def _order(gap: Exact, small: sp.Symbol) -> tuple[Any, ...]:
+    """The leading term of the largest error, if all errors vanish with ``small``."""
+    terms = []
+    for entry in entries(gap):
+        series = sp.series(sp.simplify(entry), small, 0, 6).removeO()
+        if series != 0:
+            term = sp.factor(series.as_leading_term(small))
+            terms.append((sp.degree(sp.numer(term), small), term))
+    if not terms:
+        return ()
+    degree, term = min(terms, key=lambda t: t[0])
+    if degree <= 0:
+        return ()
+    return ("the error is ", term, " and terms of order ", small ** (degree + 1))
+
+
+@dataclass(frozen=True)
+class Equal(Check):
+    r"""All sides of a printed equation are equal, for all values of the symbols.
+
+    A formula with ``\pm`` states that each posture satisfies it with one of the signs.  ``on``
+    replaces symbols, for example by their values at a posture; ``defines`` is a side that only
+    names the others.
+    """
+
+    relation: Relation | tuple[Relation, ...]
+    nonnegative: tuple[Expr, ...] = ()
+    small: sp.Symbol | None = None
+    on: Mapping[sp.Symbol, Expr] | None = None
+    defines: Any = None
+
+    def judge(self) -> Verdict:
+        several = self.relation if isinstance(self.relation, tuple) else (self.relation,)
+        if len(several) > 1:
+            parts = (Equal(r, self.nonnegative, self.small, self.on, self.defines) for r in several)
+            return worst([part.judge() for part in parts])
+        (relation,) = several
+        if not relation.signs or set(relation.signs) != {"="}:
+            raise ValueError(f"{' '.join(relation.texts)} is not an equation")
+        sides = [
+            (self._on(side), text)
+            for side, text in zip(relation.sides, relation.texts, strict=True)
+            if self.defines is None or side != self.defines
+        ]
+        if len(sides) < 2:
+            raise ValueError(f"{' = '.join(relation.texts)} only defines a name")
+        (first, name), *others = sides
+        return worst([self._compare(first, name, side, text) for side, text in others])
+
+    def _on(self, side: Exact) -> Exact:
+        return side.subs(self.on, simultaneous=True) if self.on else side
+
+    def _compare(self, first: Exact, name: str, side: Exact, text: str) -> Verdict:
+        if not isinstance(first, sp.MatrixBase) and isinstance(side, sp.MatrixBase):
+            first, name, side, text = side, text, first, name
+        if isinstance(first, sp.MatrixBase) and side == 0:
+            side = sp.zeros(*first.shape)
+        names = (
+            (f"${name}$", f"${text}$")
+            if max(len(name), len(text)) <= _SHORT and r"\begin" not in name + text
+            else ("the left side", "the right side")
+        )
+        gap = difference(first, side)
+        if any(e.has(SIGN) for e in entries(gap)):
+            product = [
+                sp.prod(e.subs(SIGN, s) for s in (1, -1)) if e.has(SIGN) else e
+                for e in entries(gap)
+            ]
+            return Identity(product, [sp.S.Zero] * len(product), self.nonnegative).judge()
+        return Identity(first, side, self.nonnegative, self.small, names).judge()
+
+
+@dataclass(frozen=True)
+class Agree(Check):
+    """Two statements of the paper about the same quantity can both hold: the two are equal.
+
+    ``names`` says where each stands.
+    """
+
+    first: Exact
+    second: Exact
+    names: tuple[str, str]
+    nonnegative: tuple[Expr, ...] = ()
+
+    def judge(self) -> Verdict:
+        verdict = Identity(self.first, self.second, self.nonnegative, None, self.names).judge()
+        return Verdict(INCONSISTENT, verdict.evidence) if verdict.kind == REFUTED else verdict
+
+
+@dataclass(frozen=True)
+class Reaches(Check):
+    """Joint angles of an example: ``forward`` takes the ``printed`` angles to ``target``."""
+
+    forward: Exact
+    printed: Mapping[sp.Symbol, Expr]
+    target: Exact
+
+    def judge(self) -> Verdict:
+        reached = [denested(sp.expand_trig(e.subs(self.printed))) for e in entries(self.forward)]
+        target = entries(self.target)
+        both = [(*reached, *target)] * len(reached)
+        decision = decide(difference(reached, target), sides=both)
+        if decision.holds:
+            return Verdict(PROVED, ("the forward map takes them to the target",))
+        assert decision.counterexample is not None
+        where = decision.counterexample.point
+        return Verdict(
+            REFUTED,
+            (*at(where), "they reach ", *_listed(reached, where), ", not ",
+             *_listed(target, where)),
+        )  # fmt: skip
+
+
+def _listed(values: Sequence[Expr], point: Point) -> list[Any]:
+    pieces: list[Any] = []
+    for value in values:
+        pieces += [", ", shown(value, point)]
+    return ["(", *pieces[1:], ")"]
+
+
+_SEVERITY = (
+    PROVED, PROVED_UNDER, APPROXIMATION, "not decidable here", "incomplete", INCONSISTENT, REFUTED,
+)  # fmt: skip
+
+
+def worst(verdicts: Sequence[Verdict]) -> Verdict:
+    """The worst of several verdicts; the first of several equally bad ones."""
+    return max(verdicts, key=lambda v: _SEVERITY.index(v.kind))
+
+
+@dataclass(frozen=True)
+class Every(Check):
+    """A statement with several parts; its verdict is the worst verdict of its parts."""
+
+    parts: Mapping[str, Check]
+
+    def judge(self) -> Verdict:
+        if not self.parts:
+            raise ValueError("Every needs at least one part")
+        verdicts = {name: check.judge() for name, check in self.parts.items()}
+        pieces: list[Any] = []
+        for name, v in verdicts.items():
+            pieces += ["; ", f"{name}: {v.kind}"]
+            pieces += [" (", *v.evidence, ")"] if v.evidence else []
+        return Verdict(worst(list(verdicts.values())).kind, tuple(pieces[1:]))
+
+
+@dataclass(frozen=True)
+class Under(Check):
+    """A check that holds under an ``assumption`` that the paper does not state."""
+
+    check: Check
+    assumption: str
+
+    def judge(self) -> Verdict:
+        verdict = self.check.judge()
+        if verdict.kind != PROVED:
+            return verdict
+        return Verdict(PROVED_UNDER, (self.assumption,))

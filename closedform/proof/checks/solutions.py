@@ -1,0 +1,287 @@
+"""Checks of solutions: how many there are, and which of them a printed formula gives.
+
+A printed formula is judged as a map: ``theta = tan^-1(u/v)`` has one value, between minus and plus
+a quarter turn.
+"""
+
+# mypy: allow-untyped-calls
+# SymPy is only partly annotated.
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import product
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from closedform.algebra.balls import Undetermined, evaluate
+from closedform.algebra.normal_form import Undecided, decide
+from closedform.algebra.solutions import InfinitelyManyError, count_solutions
+from closedform.model.claims import INCOMPLETE, PROVED, REFUTED, Check, Verdict
+from closedform.model.notation import SIGN
+from closedform.proof.checks.evidence import Expr, at, shown
+
+SAMPLES = 100_000
+"""The number of postures of which a share is given."""
+_CLOSE = 1e-6
+_ANGLES = (
+    0,
+    sp.pi / 6,
+    -sp.pi / 6,
+    sp.pi / 3,
+    sp.pi / 2,
+    -sp.pi / 2,
+    2 * sp.pi / 3,
+    -2 * sp.pi / 3,
+)
+
+
+@dataclass(frozen=True)
+class Count(Check):
+    """A system of equations has the printed number of solutions (``None``: infinitely many).
+
+    The solutions are counted over the complex numbers; coincident ones count once.  ``given``
+    replaces dependent targets by free parameters.
+    """
+
+    equations: Sequence[Expr]
+    unknowns: Sequence[sp.Symbol]
+    printed: int | None
+    given: Mapping[sp.Symbol, Expr] | None = None
+
+    def judge(self) -> Verdict:
+        found = self._found()
+        words = "a continuum of" if found is None else str(found)
+        text = f"a Groebner basis counts {words} solution{'' if found == 1 else 's'}"
+        return Verdict(PROVED if found == self.printed else REFUTED, (text,))
+
+    def _found(self) -> int | None:
+        equations = [sp.sympify(e, strict=True) for e in self.equations]
+        equations = [e for e in equations if e != 0]
+        try:
+            counted = count_solutions(
+                equations, self.unknowns, target_substitution=dict(self.given or {})
+            )
+        except InfinitelyManyError:
+            return None
+        if counted.distinct:
+            return counted.count
+        parameters = {s for e in equations for s in e.free_symbols} - set(self.unknowns)
+        if counted.count == 2 and not parameters:
+            return 1
+        raise Undecided(f"there are {counted.count} solutions, but some may coincide")
+
+
+@dataclass(frozen=True)
+class Postures:
+    """Sampled postures: joints, in ranges, and the dimensions at which they are sampled.
+
+    ``inputs`` gives what a formula takes as functions of the joints.  ``groups`` names parts of the
+    postures, of which the share is given too.
+    """
+
+    inputs: Mapping[sp.Symbol, Expr]
+    joints: Sequence[sp.Symbol]
+    dimensions: Mapping[sp.Symbol, Expr] = field(default_factory=dict)
+    ranges: Mapping[sp.Symbol, tuple[float, float]] = field(default_factory=dict)
+    groups: Mapping[str, Expr] = field(default_factory=dict)
+
+    def arrays(self) -> dict[sp.Symbol, np.ndarray]:
+        """The joints and the inputs at the sampled postures, the same on every run."""
+        rng = np.random.default_rng(0)
+        drawn = {
+            q: rng.uniform(*self.ranges.get(q, (-np.pi, np.pi)), size=SAMPLES) for q in self.joints
+        }
+        drawn |= {s: np.full(SAMPLES, float(v)) for s, v in self.dimensions.items()}
+        return drawn | {s: values(e, drawn) for s, e in self.inputs.items()}
+
+    def simple(self) -> Iterator[dict[sp.Symbol, Expr]]:
+        """Exact postures that a person can check by hand, with unit dimensions."""
+        used = {s for e in self.inputs.values() for s in e.free_symbols}
+        lengths = dict.fromkeys(sorted(used - set(self.joints), key=str), sp.S.One)
+        menu = [list(_ANGLES) for _ in self.joints]
+        ordered = sorted(
+            product(*(range(len(m)) for m in menu)), key=lambda ranks: (sum(ranks), ranks)
+        )[:2000]
+        for ranks in ordered:
+            yield lengths | {
+                q: sp.sympify(m[r]) for q, m, r in zip(self.joints, menu, ranks, strict=True)
+            }
+
+
+def values(e: Expr, at_symbols: Mapping[sp.Symbol, np.ndarray]) -> np.ndarray:
+    """The values of an expression over arrays; not a number where it has no real value."""
+    symbols = [s for s in at_symbols if s in e.free_symbols]
+    with np.errstate(all="ignore"):
+        found = sp.lambdify(symbols, e, "numpy")(*(at_symbols[s] for s in symbols))
+    return np.broadcast_to(np.asarray(found), (SAMPLES,))
+
+
+def signed(formula: Expr) -> list[Expr]:
+    r"""The values of a formula for each sign of its ``\pm``."""
+    return [formula.subs(SIGN, s) for s in (1, -1)] if formula.has(SIGN) else [formula]
+
+
+@dataclass(frozen=True)
+class Solves(Check):
+    """Printed formulas for unknowns give every solution of the ``equations``.
+
+    Every value of the formulas has to satisfy the equations; otherwise the claim is refuted.  If
+    they do, but there are more solutions than values, the formulas are incomplete.  ``postures``
+    gives the share of sampled postures whose own unknowns the formulas miss.  ``nonnegative`` lists
+    what must not be negative for the formulas to be real; ``given`` replaces dependent targets by
+    free parameters.
+    """
+
+    formulas: Mapping[sp.Symbol, Expr]
+    equations: Sequence[Expr]
+    postures: Postures | None = None
+    nonnegative: tuple[Expr, ...] = ()
+    given: Mapping[sp.Symbol, Expr] | None = None
+
+    def judge(self) -> Verdict:
+        given = dict(self.given or {})
+        branches = self._branches()
+        for branch, conditions in branches:
+            left = [
+                sp.sympify(e).subs(branch, simultaneous=True).subs(given) for e in self.equations
+            ]
+            decision = decide(sp.Matrix(left), [*self.nonnegative, *conditions])
+            if not decision.holds:
+                assert decision.counterexample is not None
+                where = at(decision.counterexample.point)
+                return Verdict(
+                    REFUTED, (*where, "the formula does not solve the equation", *self._share())
+                )
+        counted = Count(self.equations, tuple(self.formulas), None, self.given)._found()
+        given_values = len({tuple(b.values()) for b, _ in branches}) // self._cases()
+        if counted is not None and given_values >= counted:
+            text = f"all {counted} solutions" if counted > 1 else "the only solution"
+            return Verdict(PROVED, (text,))
+        many = "infinitely many" if counted is None else str(counted)
+        text = f"right, but it gives {given_values} of {many} solutions"
+        return Verdict(INCOMPLETE, (text, *self._share()))
+
+    def _cases(self) -> int:
+        """The number of cases of the formulas, of which each posture is in one."""
+        return max([len(p.args) for f in self.formulas.values() for p in _piecewise(f)] or [1])
+
+    def _branches(self) -> list[tuple[dict[sp.Symbol, Expr], list[Expr]]]:
+        """The values for each sign and each case, with the conditions of the case."""
+        cases: list[tuple[dict[sp.Symbol, Expr], list[Expr]]] = [(dict(self.formulas), [])]
+        while any(_piecewise(f) for branch, _ in cases for f in branch.values()):
+            cases = [c for branch, conditions in cases for c in _split(branch, conditions)]
+        return [
+            ({u: f.subs(SIGN, s) for u, f in branch.items()}, conditions)
+            for branch, conditions in cases
+            for s in ((1, -1) if any(f.has(SIGN) for f in branch.values()) else (1,))
+        ]
+
+    def _share(self) -> tuple[Any, ...]:
+        if self.postures is None:
+            return ()
+        sampled = self.postures.arrays()
+        found = np.zeros(SAMPLES, dtype=bool)
+        for s in (1, -1):
+            close = np.ones(SAMPLES, dtype=bool)
+            for unknown, formula in self.formulas.items():
+                gap = values(formula.subs(SIGN, s), sampled) - sampled[unknown]
+                close &= np.abs(np.angle(np.exp(1j * gap))) < _CLOSE
+            found |= close
+        return share("it misses the posture itself", ~found, self.postures, sampled)
+
+
+@dataclass(frozen=True)
+class Procedure(Check):
+    """Printed formulas, evaluated one after the other, lead to postures that reach the target.
+
+    ``formulas`` give names, in order, in the inputs and in names given before.  ``reached`` is the
+    forward map in the names; it has to equal the ``targets``, which ``postures`` takes as inputs.
+    A sample can refute a procedure, not prove it.
+    """
+
+    formulas: Mapping[sp.Symbol, Expr]
+    reached: Mapping[sp.Symbol, Expr]
+    postures: Postures
+
+    def judge(self) -> Verdict:
+        sampled = self.postures.arrays()
+        size = 1 + sum(np.abs(sampled[t]) for t in self.reached)
+        missed = np.ones(SAMPLES, dtype=bool)
+        for signs in product(
+            (1, -1), repeat=len([f for f in self.formulas.values() if f.has(SIGN)])
+        ):
+            names, chosen = dict(sampled), iter(signs)
+            for name, formula in self.formulas.items():
+                used = formula.subs(SIGN, next(chosen)) if formula.has(SIGN) else formula
+                names[name] = values(used, names)
+            gaps = [np.abs(values(e, names) - sampled[t]) for t, e in self.reached.items()]
+            missed &= ~(np.max(gaps, axis=0) < _CLOSE * size)
+        if not missed.any():
+            raise Undecided(f"none of {SAMPLES} postures is missed, which proves nothing")
+        where = self._simple()
+        how = share("it does not reach its target", missed, self.postures, sampled)
+        return Verdict(REFUTED, (*where, *how[1:]) if where else how[1:])
+
+    def _simple(self) -> tuple[Any, ...]:
+        """A posture that a person can check by hand, with what is reached there."""
+        if any(f.has(SIGN) for f in self.formulas.values()):
+            return ()
+        for posture in self.postures.simple():
+            point = dict(posture)
+            try:
+                point |= {s: sp.simplify(e.subs(posture)) for s, e in self.postures.inputs.items()}
+                for name, formula in self.formulas.items():
+                    point[name] = formula.subs(point)
+                reached = {t: e.subs(point) for t, e in self.reached.items()}
+                balls = evaluate([reached[t] - point[t] for t in self.reached], {})
+            except (Undetermined, TypeError, ValueError, ZeroDivisionError):
+                continue
+            if all(b.is_finite() for b in balls) and any(not b.contains(0) for b in balls):
+                pieces: list[Any] = []
+                for t in self.reached:
+                    pieces += [", ", t, " = ", shown(reached[t], {}), " instead of ",
+                               shown(point[t], {})]  # fmt: skip
+                return ("at ", posture, ": it reaches ", *pieces[1:], "; ")
+        return ()
+
+
+def share(
+    what: str, missed: np.ndarray, postures: Postures, sampled: Mapping[sp.Symbol, np.ndarray]
+) -> tuple[Any, ...]:
+    """How many of the sampled postures are missed, in all and in each group."""
+    pieces = ["; ", f"{what} in {_percent(missed)} of {SAMPLES} sampled postures"]
+    groups = [
+        f"{name}: {_percent(missed[part])}"
+        for name, condition in postures.groups.items()
+        if (part := values(sp.sympify(condition), sampled).astype(bool)).any()
+    ]
+    return (*pieces, f" ({', '.join(groups)})") if groups else tuple(pieces)
+
+
+def _percent(part: np.ndarray) -> str:
+    return f"{100 * float(np.mean(part)):.1f} %"
+
+
+def _piecewise(e: Expr) -> list[Expr]:
+    return sorted(e.atoms(sp.Piecewise), key=str)
+
+
+def _split(
+    branch: dict[sp.Symbol, Expr], conditions: list[Expr]
+) -> Iterator[tuple[dict[sp.Symbol, Expr], list[Expr]]]:
+    """The cases of the first piecewise function of a branch."""
+    first = next((p for f in branch.values() for p in _piecewise(f)), None)
+    if first is None:
+        yield branch, conditions
+        return
+    before: list[Expr] = []
+    for value, condition in first.args:
+        holds = [*before] if condition == sp.true else [*before, condition]
+        gaps = [c.gts - c.lts for c in holds]
+        yield ({u: f.subs(first, value) for u, f in branch.items()}, [*conditions, *gaps])
+        if condition != sp.true:
+            before.append(sp.Not(condition))

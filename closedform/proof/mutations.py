@@ -1,0 +1,84 @@
+"""Changes the printed text of a claim, to see that its verdict depends on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from closedform.model.claims import NUMBERS, PIECE, Claim
+
+_SIGNS = {"+": "-", "-": "+", r"\pm": "+", r"\mp": r"\pm"}
+_FUNCTIONS = {r"\sin": r"\cos", r"\cos": r"\sin", r"\tan": r"\sin"}
+_RELATIONS = {
+    "=": r"\ne", r"\equiv": r"\ne", r"\ne": "=", r"\neq": "=", "<": ">", ">": "<",
+    r"\le": r"\ge", r"\leq": r"\ge", r"\ge": r"\le", r"\geq": r"\le",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Mutation:
+    """One changed place of a claim: what was there, what stands there now, and the whole text."""
+
+    kind: str
+    old: str
+    new: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.kind} {self.old} -> {self.new}"
+
+
+def mutations(claim: Claim) -> Iterator[Mutation]:
+    """All changed texts: a sign, a number, a function, a name, a relation or a phrase differs.
+
+    A claim that does not hold yields its correction alone, which has to hold.
+    """
+    if claim.corrected:
+        yield Mutation("correction", claim.text, claim.corrected, claim.corrected)
+        return
+    for match in PIECE.finditer(claim.printed):
+        if match["phrase"] is not None:
+            found = _phrases(claim, match["phrase"])
+            start = match.start("phrase")
+        else:
+            found = _formula(claim, match["formula"])
+            start = match.start("formula")
+        for kind, a, b, new in found:
+            old = claim.printed[start + a : start + b]
+            text = claim.printed[: start + a] + new + claim.printed[start + b :]
+            yield Mutation(kind, old, new, text)
+
+
+def _phrases(claim: Claim, phrase: str) -> Iterator[tuple[str, int, int, str]]:
+    meaning, others = claim.meaning(phrase), claim.vocabulary(phrase)
+    if others is NUMBERS:
+        near = [word for word, n in NUMBERS.items() if n is not None and n == (meaning or 0) + 1]
+        others = {word: NUMBERS[word] for word in [*near[:1], "infinite"]}
+    for other, value in others.items():
+        if value != meaning:
+            yield "phrase", 0, len(phrase), other
+
+
+def _formula(claim: Claim, formula: str) -> Iterator[tuple[str, int, int, str]]:
+    notation = claim.notation
+    for piece in notation.pieces(formula):
+        old = formula[piece.start : piece.end].strip()
+        end = piece.start + len(old)
+        if piece.kind == "sign":
+            yield "sign", piece.start, end, _SIGNS[old] + " " * (old == r"\pm")
+        elif piece.kind == "number":
+            yield "number", piece.start, end, _next_number(old)
+        elif piece.kind == "function":
+            yield "function", piece.start, end, _FUNCTIONS[old]
+        elif piece.kind == "relation" and old not in ("=", r"\equiv"):
+            yield "relation", piece.start, end, _RELATIONS[old] + " "
+        elif piece.kind == "name" and old in notation.meanings:
+            for other in notation.alternatives(old)[:1]:
+                yield "name", piece.start, end, other
+
+
+def _next_number(text: str) -> str:
+    """The number with one more in its last digit."""
+    whole, point, part = text.partition(".")
+    digits = str(int(whole + part) + 1).rjust(len(whole + part), "0")
+    return digits[: len(digits) - len(part)] + point + digits[len(digits) - len(part) :]

@@ -1,0 +1,1 @@
+"""The papers behind the derivations, one file each."""

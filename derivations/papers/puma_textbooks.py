@@ -1,0 +1,12 @@
+"""The textbooks on the Puma 560."""
+
+from closedform import Paper
+
+PUMA_TEXTBOOKS = Paper(
+    "puma-textbooks",
+    "The Puma 560 in the textbooks",
+    ("J. J. Craig", "P. I. Corke", "M. W. Spong", "R. P. Paul", "C. S. G. Lee", "M. Ziegler"),
+    "Craig: Introduction to Robotics; Corke: Robotics, Vision and Control, and the Robotics "
+    "Toolbox; Spong, Hutchinson, Vidyasagar: Robot Modeling and Control; Paul: Robot Manipulators; "
+    "Lee, Ziegler: Geometric Approach in Solving Inverse Kinematics of PUMA Robots (1984)",
+)

@@ -16,6 +16,7 @@ from closedform.model.derivation import Paper
 _SHORTEST_FRAGMENT = 4
 _SHORTEST_GAP = 12
 _IGNORED = re.compile(r"[\s$*#|\u200b]")
+_NUMBER = re.compile(r"\\tag\{[^}]*\}")
 _ALIKE = str.maketrans({"’": "'", "‘": "'", "“": '"', "”": '"', "–": "-", "—": "-", "−": "-"})
 
 
@@ -43,7 +44,7 @@ class _Text:
     """A text without what the comparison ignores, with the place of each character."""
 
     def __init__(self, text: str):
-        self.text = text
+        self.text = text = _NUMBER.sub(lambda m: " " * len(m[0]), text)
         self.places = [k for k, c in enumerate(text) if not _IGNORED.match(c)]
         self.plain = "".join(text[k] for k in self.places).translate(_ALIKE)
         self.marks = [""] * len(self.plain)

@@ -39,6 +39,7 @@ from closedform.derivations.h6ar_mechanism import (
     wrist_given,
     wrist_let,
 )
+from closedform.derivations.h6ar_skeleton import draw
 from closedform.derivations.papers import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
@@ -260,6 +261,21 @@ d.function(
     {"T": pose_matrix(m, p, stand(p))},
     program=p,
     source="eq. (9) and its frames",
+    notes=notes,
+)
+p = Program()
+closed = sqrt(m.al**2 - (base - m.gs) ** 2)
+angles = Posture(*map(pair, (theta1, theta2A, theta23A, psi, phi, theta)), closed, base)
+draw(
+    d,
+    m,
+    q,
+    p,
+    stand(p),
+    angles,
+    tip(m, angles),
+    {"right": (theta2R, theta2R + theta3R), "left": (theta2L, theta2L + theta3L)},
+    closed=True,
     notes=notes,
 )
 tips = [in_space(m, pair(theta1), planar, side) for planar, side in ((right, m.d), (left, -m.d))]

@@ -38,6 +38,7 @@ from closedform.model.names import (
     check_symbol,
     check_text,
 )
+from closedform.model.skeleton import Skeleton
 
 
 @dataclass(frozen=True)
@@ -318,6 +319,8 @@ class Derivation(Shown):
     functions: list[Function] = field(default_factory=list)
     tables: list[Table] = field(default_factory=list)
     claims: list[Claim] = field(default_factory=list)
+    skeleton: Skeleton | None = None
+    """The points, links and joints that the function ``skeleton`` draws."""
     without_inverse: str = ""
     """Why there is no inverse, as a clause; empty if there is one, or if no reason is given."""
 

@@ -1,4 +1,4 @@
-"""The command line: list, show, derive, check, new, errata.
+"""The command line: list, show, derive, check, new, plot, figures, errata.
 
 Results go to stdout, progress and errors to stderr.  The exit code is 0 on success, 1 if a proof or
 a comparison failed, and 2 if the command was called wrongly.
@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from closedform._version import __version__
-from closedform.cli import console
+from closedform.cli import console, plot
 from closedform.cli.console import Progress
 from closedform.pipeline import run as pipeline
 from closedform.pipeline import versions
@@ -140,6 +140,12 @@ def parser() -> argparse.ArgumentParser:
     new.add_argument(
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="default: current folder"
     )
+    plot.add_options(command("plot", plot_command))
+    figures = command("figures", figures_command)
+    figures.add_argument(
+        "-o", "--output", metavar="DIR", type=Path, default=Path("build/figures"),
+        help="default: build/figures",
+    )  # fmt: skip
     errata = command("errata", errata_command)
     errata.add_argument(
         "paper", metavar="PAPER", nargs="?", help="the key of a paper; default: all papers"
@@ -290,6 +296,23 @@ def new_command(options: argparse.Namespace) -> None:
         console.say(f"closedform: note: {note}")
     _write(options.output, {Path(target.name): script.text})
     console.write(f"{target}: {script.inverse}; next: closedform derive {target} -o out\n")
+
+
+def plot_command(options: argparse.Namespace) -> None:
+    """Draw a figure of a generated mechanism."""
+    try:
+        console.write(plot.draw(options))
+    except (ModuleNotFoundError, ValueError) as error:
+        raise CommandError(str(error)) from error
+
+
+def figures_command(options: argparse.Namespace) -> None:
+    """Draw every figure of every generated mechanism."""
+    try:
+        for line in plot.draw_all(options.output):
+            console.write(line)
+    except ModuleNotFoundError as error:
+        raise CommandError(str(error)) from error
 
 
 def errata_command(options: argparse.Namespace) -> None:

@@ -49,7 +49,7 @@ export LOCK INSTALL
 LOCKED = mkdir -p build && $(PYTHON) -c "$$LOCK" build/make.lock
 
 .PHONY: all native test check lint types regenerated warnings analysed \
-	portability $(COMPILERS) format pdf bench fuzz accuracy clean distclean help
+	portability $(COMPILERS) format figures pdf bench fuzz accuracy clean distclean help
 .DELETE_ON_ERROR:
 
 all: native  ## derive, prove, generate and build; prints a line for each robot (the default)
@@ -120,6 +120,9 @@ portability: all  ## try installed compilers, processor emulators and Pythons; A
 format: .venv/installed.stamp  ## format the Python that is written by hand
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+
+figures: native  ## draw every figure of every mechanism, in build/figures
+	$(BIN)/closedform figures -o build/figures
 
 pdf: $(PDFS)  ## compile the derivations to PDF, in build/pdf
 

@@ -62,6 +62,7 @@ from closedform.mechanics.frames import twist_of as twist_of
 from closedform.mechanics.loops import degree as degree
 from closedform.mechanics.loops import eliminate as eliminate
 from closedform.mechanics.loops import velocity_matrices as velocity_matrices
+from closedform.mechanics.skeleton import skeleton as skeleton
 from closedform.mechanics.volumes import lens as lens
 from closedform.model.claims import Check as Check
 from closedform.model.claims import Gravity as Gravity

@@ -48,7 +48,12 @@ from closedform.derivations.h6ar_mechanism import (
     wrist_let,
     wrist_squared,
 )
+<<<<<<< HEAD
 from closedform.derivations.papers.rao_raju import RAO_RAJU
+=======
+from closedform.derivations.h6ar_skeleton import draw
+from closedform.derivations.papers import RAO_RAJU
+>>>>>>> 7e849b28e84f18ab78184818ee924085312aeda1
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform import (
@@ -267,6 +272,25 @@ d.function(
     {"q": q},
     {"tips": sp.Matrix.hstack(*tips).T},
     source="eqs. (1) and (2)",
+)
+p = Program()
+here, _ = stand(p)
+length = sqrt(wrist_squared(m, m.d / cos(psi)))
+draw(
+    d,
+    m,
+    q,
+    p,
+    here,
+    posture._replace(wrist=length),
+    T.subs(wrist, length),
+    {"right": (theta2A + alpha, theta23A + beta), "left": (theta2A - alpha, theta23A - beta)},
+    closed=False,
+    notes=(
+        too_wide,
+        "The links of the wrist start on its base line, which joins the tips of the arms only "
+        "where the arms are parallel: the published model does not close the loop.",
+    ),
 )
 p = Program()
 mid_arm = reach(m, *averages(p), m.L2, m.a3)

@@ -39,7 +39,12 @@ from closedform.derivations.h6ar_mechanism import (
     wrist_given,
     wrist_let,
 )
+<<<<<<< HEAD
 from closedform.derivations.papers.rao_raju import RAO_RAJU
+=======
+from closedform.derivations.h6ar_skeleton import draw
+from closedform.derivations.papers import RAO_RAJU
+>>>>>>> 7e849b28e84f18ab78184818ee924085312aeda1
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform import (
@@ -260,6 +265,21 @@ d.function(
     {"T": pose_matrix(m, p, stand(p))},
     program=p,
     source="eq. (9) and its frames",
+    notes=notes,
+)
+p = Program()
+closed = sqrt(m.al**2 - (base - m.gs) ** 2)
+angles = Posture(*map(pair, (theta1, theta2A, theta23A, psi, phi, theta)), closed, base)
+draw(
+    d,
+    m,
+    q,
+    p,
+    stand(p),
+    angles,
+    tip(m, angles),
+    {"right": (theta2R, theta2R + theta3R), "left": (theta2L, theta2L + theta3L)},
+    closed=True,
     notes=notes,
 )
 tips = [in_space(m, pair(theta1), planar, side) for planar, side in ((right, m.d), (left, -m.d))]

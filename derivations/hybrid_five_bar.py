@@ -23,6 +23,7 @@ from closedform import (
     normal,
     real,
     rotation,
+    skeleton,
     triangle_angles,
     two_link_triangle_by_square,
     velocity_matrices,
@@ -166,6 +167,25 @@ d.function(
         "NaN for an assembly mode that does not exist.",
         "If C and D coincide, both angles are free but equal: +90 or -90 degrees is returned.",
     ),
+)
+
+skeleton(
+    d,
+    {
+        "A": A,
+        "B": B,
+        "C": in_space(*C),
+        "D": in_space(*D),
+        "P": in_space(P_y, P_r),
+    },
+    links={"ground": "AB", "AC": "AC", "BD": "BD", "CP": "CP", "DP": "DP"},
+    joints={theta1: "AB", theta2: "A", theta3: "B", theta4: "C", theta5: "D"},
+    hand="P",
+    ground=("A", "B"),
+    lengths={("A", "C"): L1, ("B", "D"): L1, ("C", "P"): L2, ("D", "P"): L2},
+    program=f,
+    branches=modes,
+    notes=("NaN for an assembly mode that does not exist.",),
 )
 
 # Velocity

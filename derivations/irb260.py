@@ -21,6 +21,7 @@ from closedform import (
     real,
     revolute_twist,
     simplest,
+    skeleton,
     twist_matrix,
     twist_of,
 )
@@ -186,9 +187,58 @@ d.function(
 )
 d.function("pose", "Pose of the hand in the base frame.", {"q": q}, {"T": pose}, source="eq. (13)")
 
+# What to draw
+
+rod = l3 / 4  # the paper gives no distance of the rods; it drops out of all equations
+before = [d.couple(T) for T in accumulate([sp.eye(4), *moves[:4]], lambda A, B: A * B)]
+
+
+def moved_by(joints: int, home: sp.Matrix) -> sp.Matrix:
+    """A point that the first joints move, from its place at home."""
+    return simplest((before[joints] * sp.Matrix([*home, 1]))[:3, 0])
+
+
+shoulder, elbow, wrist = (moved_by(n, points[n]) for n in (1, 2, 3))
+behind, above = (simplest(moves[0][:3, :3] * rod * v) for v in (-sp.eye(3)[:, 1], up))
+skeleton(
+    d,
+    {
+        "base": (0, 0, 0),
+        "column": (0, 0, l2),
+        "shoulder": shoulder,
+        "elbow": elbow,
+        "wrist": wrist,
+        "flange": moved_by(4, points[4] + l5 * up),
+        "hand": moved_by(4, points[4]),
+        "lower_rod_turret": shoulder + behind,
+        "lower_rod_plate": elbow + behind,
+        "upper_rod_plate": elbow + above,
+        "upper_rod_bracket": wrist + above,
+    },
+    links={
+        "turret": ("base", "column", "shoulder", "lower_rod_turret"),
+        "lower_arm": ("shoulder", "elbow"),
+        "upper_arm": ("elbow", "wrist"),
+        "lower_rod": ("lower_rod_turret", "lower_rod_plate"),
+        "plate": ("lower_rod_plate", "elbow", "upper_rod_plate", "lower_rod_plate"),
+        "upper_rod": ("upper_rod_plate", "upper_rod_bracket"),
+        "bracket": ("upper_rod_bracket", "wrist", "flange"),
+        "hand": ("flange", "hand"),
+    },
+    joints={
+        theta1: ("base", "column"),
+        theta2: ("shoulder",),
+        theta3: ("elbow",),
+        theta4: ("wrist",),
+        theta5: ("flange",),
+    },
+    hand="hand",
+    hand_at=position,
+    notes=("The rods are drawn at a quarter of l3; the paper gives no distance.",),
+)
+
 # Velocity
 
-before = [d.couple(T) for T in accumulate([sp.eye(4), *moves[:4]], lambda A, B: A * B)]
 moved = [simplest(adjoint(T) * twist) for T, twist in zip(before, twists, strict=True)]
 J_space = sp.Matrix.hstack(moved[0], moved[1] - moved[3], moved[2] - moved[3], moved[4])
 J_space = simplest(J_space)

@@ -21,6 +21,7 @@ from closedform import (
     linear_pair,
     real,
     rotation,
+    skeleton,
     triangle_angles,
     two_link_triangle_by_square,
 )
@@ -93,6 +94,15 @@ d.function(
     {"q": q},
     {"phi": atan2(sin(phi), cos(phi))},
     source="eq. (5)",
+)
+
+skeleton(
+    d,
+    {"base": (0, 0, 0), "elbow": link1, "hand": (*position, 0)},
+    links={"first": ("base", "elbow"), "second": ("elbow", "hand")},
+    joints={theta1: ("base",), theta2: ("elbow",)},
+    hand="hand",
+    hand_at=pose[:3, 3],
 )
 
 # Velocity

@@ -13,6 +13,7 @@ from closedform import (
     branches,
     circle_intersection,
     real,
+    skeleton,
     velocity_matrices,
 )
 
@@ -88,6 +89,18 @@ d.function(
     "Angles of the legs in both assembly modes.",
     {"q": q},
     {"theta": [atan2(py, px), atan2(py, px - b)]},
+    program=f,
+    branches=modes,
+)
+
+skeleton(
+    d,
+    {"A": (0, 0, 0), "B": (b, 0, 0), "P": (px, py, 0)},
+    links={"ground": ("A", "B")},
+    joints={rho1: ("A", "P"), rho2: ("B", "P"), theta1: ("A",), theta2: ("B",)},
+    hand="P",
+    ground=("A", "B"),
+    lengths={("A", "P"): rho1, ("B", "P"): rho2},
     program=f,
     branches=modes,
 )

@@ -20,6 +20,7 @@ from closedform import (
     real,
     rotation,
     rotation_parametrisation,
+    skeleton,
     zyz_angles,
 )
 
@@ -72,6 +73,16 @@ d.step(
 d.function("fk", "Rotation of the hand.", {"q": q}, {"R": R}, source="eqs. (12) and (15)")
 d.function(
     "pose", "Pose of the hand, with its offset d6.", {"q": q}, {"T": pose}, source="eq. (14)"
+)
+
+skeleton(
+    d,
+    {"centre": (0, 0, 0), "hand": pose[:3, 3]},
+    links={"hand": ("centre", "hand")},
+    joints=dict.fromkeys(q, ("centre",)),
+    hand="hand",
+    hand_at=pose[:3, 3],
+    ground=("centre",),
 )
 
 # Velocity

@@ -353,9 +353,16 @@ def blocks(language: str) -> list[str]:
 
 
 def test_the_python_example_of_the_readme_runs() -> None:
-    (code,) = blocks("python")
+    code, _ = blocks("python")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "'elbow_up': [0.3, -1.1]" in done.stdout
+
+
+def test_the_plots_of_the_readme_are_drawn(tmp_path: Path) -> None:
+    _, code = blocks("python")
+    env = os.environ | {"MPLBACKEND": "Agg"}
+    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=env, check=True)
+    assert (tmp_path / "singularities.svg").read_text("utf-8").startswith("<?xml")
 
 
 def test_the_c_example_of_the_readme_runs(tmp_path: Path) -> None:

@@ -59,10 +59,15 @@ def test_the_contract_and_both_forms(robot: str) -> None:
     script = TESTS / "javascript" / "forms.mjs"
     found = json.loads(node(script, MODULES / f"{robot}.js", json.dumps(sizes)))
     batches = {f"{name}_batch" for name in kernels}
-    assert set(found["names"]) == {*kernels, *batches, *CONSTANTS, "DEFAULTS", "Status"}
+    own = {*CONSTANTS, "DEFAULTS", "SKELETON", "Status"}
+    assert set(found["names"]) == {*kernels, *batches, *own}
     for name in CONSTANTS:
         assert tuple(found["constants"][name]) == getattr(module, name)
     assert found["constants"]["DEFAULTS"] == module.Parameters()._asdict()
+    skeleton = module.SKELETON._replace(
+        joints={name: joint._asdict() for name, joint in module.SKELETON.joints.items()}
+    )
+    assert found["constants"]["SKELETON"] == json.loads(json.dumps(skeleton._asdict()))
     assert found["constants"]["Status"] == {s.name: s.value for s in module.Status}
     assert not found["differences"]
 

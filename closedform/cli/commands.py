@@ -1,4 +1,4 @@
-"""The command line: list, show, derive, check, new, claims, errata.
+"""The command line: list, show, derive, check, new, plot, figures, claims, errata.
 
 Results go to stdout, progress and errors to stderr.  The exit code is 0 on success, 1 if a proof or
 a comparison failed, and 2 if the command was called wrongly.
@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from closedform._version import __version__
-from closedform.cli import claims, console
+from closedform.cli import claims, console, plot
 from closedform.cli.console import Progress
 from closedform.pipeline import run as pipeline
 from closedform.pipeline import versions
@@ -141,6 +141,12 @@ def parser() -> argparse.ArgumentParser:
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="default: current folder"
     )
     claims.add_options(command("claims", claims_command))
+    plot.add_options(command("plot", plot_command))
+    figures = command("figures", figures_command)
+    figures.add_argument(
+        "-o", "--output", metavar="DIR", type=Path, default=Path("build/figures"),
+        help="default: build/figures",
+    )  # fmt: skip
     errata = command("errata", errata_command)
     errata.add_argument(
         "paper", metavar="PAPER", nargs="?", help="the key of a paper; default: all papers"
@@ -302,6 +308,23 @@ def claims_command(options: argparse.Namespace) -> None:
         derivation = pipeline.load(source)
     for line in claims.report(options, derivation):
         console.write(f"{line}\n")
+
+
+def plot_command(options: argparse.Namespace) -> None:
+    """Draw a figure of a generated mechanism."""
+    try:
+        console.write(plot.draw(options))
+    except (ModuleNotFoundError, ValueError) as error:
+        raise CommandError(str(error)) from error
+
+
+def figures_command(options: argparse.Namespace) -> None:
+    """Draw every figure of every generated mechanism."""
+    try:
+        for line in plot.draw_all(options.output):
+            console.write(line)
+    except ModuleNotFoundError as error:
+        raise CommandError(str(error)) from error
 
 
 def errata_command(options: argparse.Namespace) -> None:

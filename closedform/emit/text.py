@@ -14,6 +14,7 @@ from closedform.lower import Lowered
 from closedform.lower.operators import GROUPS
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
+from closedform.model.skeleton import Skeleton
 
 WIDTH = 96
 
@@ -43,6 +44,7 @@ class Interface:
     assembly_modes: str
     singularities: str
     functions: tuple[str, ...]
+    skeleton: Skeleton | None
 
 
 def interface(derivation: Derivation) -> Interface:
@@ -67,6 +69,7 @@ def interface(derivation: Derivation) -> Interface:
         repr(tuple(derivation.assembly_modes)),
         repr(tuple(derivation.singularities)),
         tuple(f.name for f in derivation.functions),
+        derivation.skeleton,
     )
 
 

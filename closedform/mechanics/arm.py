@@ -28,6 +28,7 @@ from closedform.mechanics.frames import (
 from closedform.mechanics.links import Group, Link, Motion, Row, groups_of
 from closedform.mechanics.linkwise import Named
 from closedform.mechanics.mobility import dependent_joints, singular_everywhere
+from closedform.mechanics.skeleton import serial_skeleton, skeleton
 from closedform.model.derivation import Derivation
 
 
@@ -122,6 +123,8 @@ class Serial:
             equal=[(sp.prod(self.moves), self.pose), (pose.explicit, self.pose)],
         )
         _export(d, "pose", "Pose of the tool in the base frame.", q, "T", pose)
+        drawn = serial_skeleton(d, self.groups, q, self.lead, self.last)
+        skeleton(d, **drawn, hand_at=self.position)
         geometric = linkwise.geometric_jacobian(d.program(), links, q)
         space = linkwise.space_jacobian(d.program(), links, q)
         body = linkwise.body_jacobian(d.program(), links, q)

@@ -39,6 +39,7 @@ from closedform.model.names import (
     check_text,
 )
 from closedform.model.notation import Notation
+from closedform.model.skeleton import Skeleton
 
 
 @dataclass(frozen=True)
@@ -309,6 +310,8 @@ class Derivation(Shown):
     tables: list[Table] = field(default_factory=list)
     claims: list[Claim] = field(default_factory=list)
     errata: list[Erratum] = field(default_factory=list)
+    skeleton: Skeleton | None = None
+    """The points, links and joints that the function ``skeleton`` draws."""
     without_inverse: str = ""
     """Why there is no inverse, as a clause; empty if there is one, or if no reason is given."""
 

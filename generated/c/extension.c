@@ -74,6 +74,25 @@ static const cf_array h6ar_arm_tips_out[] = {
     { "tips", 2, { 2, 3 }, 6, CF_REAL },
 };
 
+static void h6ar_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_skeleton((const h6ar_params *)params, in[0], out[0]);
+}
+
+static void h6ar_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_skeleton_batch(n, (const h6ar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_skeleton_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array h6ar_skeleton_out[] = {
+    { "points", 2, { 20, 3 }, 60, CF_REAL },
+};
+
 static void h6ar_invariant_point_one(const double *params, const double *const *in, void *const *out)
 {
     h6ar_invariant_point((const h6ar_params *)params, in[0], out[0]);
@@ -289,6 +308,25 @@ static const cf_array h6ar_loop_closed_pose_in[] = {
 
 static const cf_array h6ar_loop_closed_pose_out[] = {
     { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void h6ar_loop_closed_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    h6ar_loop_closed_skeleton((const h6ar_loop_closed_params *)params, in[0], out[0]);
+}
+
+static void h6ar_loop_closed_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    h6ar_loop_closed_skeleton_batch(n, (const h6ar_loop_closed_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array h6ar_loop_closed_skeleton_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array h6ar_loop_closed_skeleton_out[] = {
+    { "points", 2, { 18, 3 }, 54, CF_REAL },
 };
 
 static void h6ar_loop_closed_arm_tips_one(const double *params, const double *const *in, void *const *out)
@@ -526,6 +564,25 @@ static const cf_array hybrid_five_bar_passive_angles_in[] = {
 
 static const cf_array hybrid_five_bar_passive_angles_out[] = {
     { "theta", 2, { 2, 2 }, 4, CF_REAL },
+};
+
+static void hybrid_five_bar_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    hybrid_five_bar_skeleton((const hybrid_five_bar_params *)params, in[0], out[0]);
+}
+
+static void hybrid_five_bar_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    hybrid_five_bar_skeleton_batch(n, (const hybrid_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array hybrid_five_bar_skeleton_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array hybrid_five_bar_skeleton_out[] = {
+    { "points", 3, { 2, 5, 3 }, 30, CF_REAL },
 };
 
 static void hybrid_five_bar_jacobian_parallel_one(const double *params, const double *const *in, void *const *out)
@@ -794,6 +851,25 @@ static const cf_array irb260_pose_in[] = {
 
 static const cf_array irb260_pose_out[] = {
     { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void irb260_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    irb260_skeleton((const irb260_params *)params, in[0], out[0]);
+}
+
+static void irb260_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb260_skeleton_batch(n, (const irb260_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb260_skeleton_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array irb260_skeleton_out[] = {
+    { "points", 2, { 11, 3 }, 33, CF_REAL },
 };
 
 static void irb260_jacobian_one(const double *params, const double *const *in, void *const *out)
@@ -1065,6 +1141,25 @@ static const cf_array planar_2r_orientation_out[] = {
     { "phi", 0, { 0 }, 1, CF_REAL },
 };
 
+static void planar_2r_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    planar_2r_skeleton((const planar_2r_params *)params, in[0], out[0]);
+}
+
+static void planar_2r_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    planar_2r_skeleton_batch(n, (const planar_2r_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array planar_2r_skeleton_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array planar_2r_skeleton_out[] = {
+    { "points", 2, { 3, 3 }, 9, CF_REAL },
+};
+
 static void planar_2r_jacobian_one(const double *params, const double *const *in, void *const *out)
 {
     planar_2r_jacobian((const planar_2r_params *)params, in[0], out[0]);
@@ -1218,6 +1313,25 @@ static const cf_array puma560_pose_in[] = {
 
 static const cf_array puma560_pose_out[] = {
     { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void puma560_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    puma560_skeleton((const puma560_params *)params, in[0], out[0]);
+}
+
+static void puma560_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    puma560_skeleton_batch(n, (const puma560_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array puma560_skeleton_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array puma560_skeleton_out[] = {
+    { "points", 2, { 5, 3 }, 15, CF_REAL },
 };
 
 static void puma560_fk_one(const double *params, const double *const *in, void *const *out)
@@ -1396,6 +1510,25 @@ static const cf_array rpr_planar_passive_angles_out[] = {
     { "theta", 2, { 2, 2 }, 4, CF_REAL },
 };
 
+static void rpr_planar_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    rpr_planar_skeleton((const rpr_planar_params *)params, in[0], out[0]);
+}
+
+static void rpr_planar_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    rpr_planar_skeleton_batch(n, (const rpr_planar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array rpr_planar_skeleton_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array rpr_planar_skeleton_out[] = {
+    { "points", 3, { 2, 3, 3 }, 18, CF_REAL },
+};
+
 static void rpr_planar_jacobian_one(const double *params, const double *const *in, void *const *out)
 {
     rpr_planar_jacobian((const rpr_planar_params *)params, in[0], out[0]);
@@ -1493,6 +1626,25 @@ static const cf_array scara_pose_in[] = {
 
 static const cf_array scara_pose_out[] = {
     { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void scara_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    scara_skeleton((const scara_params *)params, in[0], out[0]);
+}
+
+static void scara_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    scara_skeleton_batch(n, (const scara_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array scara_skeleton_in[] = {
+    { "q", 1, { 4 }, 4, CF_REAL },
+};
+
+static const cf_array scara_skeleton_out[] = {
+    { "points", 2, { 5, 3 }, 15, CF_REAL },
 };
 
 static void scara_fk_one(const double *params, const double *const *in, void *const *out)
@@ -1670,6 +1822,25 @@ static const cf_array spherical_wrist_pose_out[] = {
     { "T", 2, { 4, 4 }, 16, CF_REAL },
 };
 
+static void spherical_wrist_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_wrist_skeleton((const spherical_wrist_params *)params, in[0], out[0]);
+}
+
+static void spherical_wrist_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_wrist_skeleton_batch(n, (const spherical_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_wrist_skeleton_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array spherical_wrist_skeleton_out[] = {
+    { "points", 2, { 2, 3 }, 6, CF_REAL },
+};
+
 static void spherical_wrist_jacobian_space_one(const double *params, const double *const *in, void *const *out)
 {
     spherical_wrist_jacobian_space((const spherical_wrist_params *)params, in[0], out[0]);
@@ -1786,6 +1957,25 @@ static const cf_array stanford_arm_pose_in[] = {
 
 static const cf_array stanford_arm_pose_out[] = {
     { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void stanford_arm_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    stanford_arm_skeleton((const stanford_arm_params *)params, in[0], out[0]);
+}
+
+static void stanford_arm_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    stanford_arm_skeleton_batch(n, (const stanford_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array stanford_arm_skeleton_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array stanford_arm_skeleton_out[] = {
+    { "points", 2, { 3, 3 }, 9, CF_REAL },
 };
 
 static void stanford_arm_fk_one(const double *params, const double *const *in, void *const *out)
@@ -1942,6 +2132,25 @@ static const cf_array ur_arm_pose_in[] = {
 
 static const cf_array ur_arm_pose_out[] = {
     { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void ur_arm_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    ur_arm_skeleton((const ur_arm_params *)params, in[0], out[0]);
+}
+
+static void ur_arm_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    ur_arm_skeleton_batch(n, (const ur_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array ur_arm_skeleton_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array ur_arm_skeleton_out[] = {
+    { "points", 2, { 7, 3 }, 21, CF_REAL },
 };
 
 static void ur_arm_fk_one(const double *params, const double *const *in, void *const *out)
@@ -2173,6 +2382,38 @@ const cf_function cf_functions[] = {
       9, h6ar_values, h6ar_fields,
       1, h6ar_arm_tips_in, 1, h6ar_arm_tips_out,
       h6ar_arm_tips_one, h6ar_arm_tips_many },
+    { "h6ar.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 20, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- NaN if the tips are farther apart than the wrist links can span.\n"
+      "- The links of the wrist start on its base line, which joins the tips of the arms only where\n"
+      "  the arms are parallel: the published model does not close the loop.\n"
+      ,
+      9, h6ar_values, h6ar_fields,
+      1, h6ar_skeleton_in, 1, h6ar_skeleton_out,
+      h6ar_skeleton_one, h6ar_skeleton_many },
     { "h6ar.invariant_point",
       "The invariant point, computed from the averages of the angles.\n"
       "\n"
@@ -2539,6 +2780,39 @@ const cf_function cf_functions[] = {
       9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
       1, h6ar_loop_closed_pose_in, 1, h6ar_loop_closed_pose_out,
       h6ar_loop_closed_pose_one, h6ar_loop_closed_pose_many },
+    { "h6ar_loop_closed.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 18, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- NaN if the tips are farther apart than the wrist links can span, or if the virtual arm\n"
+      "  cannot reach the middle of the tips.\n"
+      "- Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against\n"
+      "  its fore-arm.\n"
+      ,
+      9, h6ar_loop_closed_values, h6ar_loop_closed_fields,
+      1, h6ar_loop_closed_skeleton_in, 1, h6ar_loop_closed_skeleton_out,
+      h6ar_loop_closed_skeleton_one, h6ar_loop_closed_skeleton_many },
     { "h6ar_loop_closed.arm_tips",
       "Tips of the right and of the left fore-arm.\n"
       "\n"
@@ -2949,6 +3223,38 @@ const cf_function cf_functions[] = {
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       1, hybrid_five_bar_passive_angles_in, 1, hybrid_five_bar_passive_angles_out,
       hybrid_five_bar_passive_angles_one, hybrid_five_bar_passive_angles_many },
+    { "hybrid_five_bar.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    theta1, theta2, theta3 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 2, 5, 3)\n"
+      "    One column for each of theta1, theta2, theta3.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.\n"
+      "- NaN for an assembly mode that does not exist.\n"
+      ,
+      3, hybrid_five_bar_values, hybrid_five_bar_fields,
+      1, hybrid_five_bar_skeleton_in, 1, hybrid_five_bar_skeleton_out,
+      hybrid_five_bar_skeleton_one, hybrid_five_bar_skeleton_many },
     { "hybrid_five_bar.jacobian_parallel",
       "A of A*dp = B*dq; its rows are L2*k, p - c and p - d.\n"
       "\n"
@@ -3407,6 +3713,36 @@ const cf_function cf_functions[] = {
       6, irb260_values, irb260_fields,
       1, irb260_pose_in, 1, irb260_pose_out,
       irb260_pose_one, irb260_pose_many },
+    { "irb260.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 4)\n"
+      "    theta1, theta2, theta3, theta5 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 11, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The rods are drawn at a quarter of l3; the paper gives no distance.\n"
+      ,
+      6, irb260_values, irb260_fields,
+      1, irb260_skeleton_in, 1, irb260_skeleton_out,
+      irb260_skeleton_one, irb260_skeleton_many },
     { "irb260.jacobian",
       "Derivative of (x, y, z, yaw) with respect to the joint angles.\n"
       "\n"
@@ -3821,6 +4157,32 @@ const cf_function cf_functions[] = {
       2, planar_2r_values, planar_2r_fields,
       1, planar_2r_orientation_in, 1, planar_2r_orientation_out,
       planar_2r_orientation_one, planar_2r_orientation_many },
+    { "planar_2r.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 2)\n"
+      "    theta1, theta2 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 3, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      2, planar_2r_values, planar_2r_fields,
+      1, planar_2r_skeleton_in, 1, planar_2r_skeleton_out,
+      planar_2r_skeleton_one, planar_2r_skeleton_many },
     { "planar_2r.jacobian",
       "Derivative of (x, y, phi) with respect to (theta1, theta2).\n"
       "\n"
@@ -4060,6 +4422,32 @@ const cf_function cf_functions[] = {
       4, puma560_values, puma560_fields,
       1, puma560_pose_in, 1, puma560_pose_out,
       puma560_pose_one, puma560_pose_many },
+    { "puma560.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 5, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      4, puma560_values, puma560_fields,
+      1, puma560_skeleton_in, 1, puma560_skeleton_out,
+      puma560_skeleton_one, puma560_skeleton_many },
     { "puma560.fk",
       "Pose of the tool in the base frame.\n"
       "\n"
@@ -4342,6 +4730,36 @@ const cf_function cf_functions[] = {
       1, rpr_planar_values, rpr_planar_fields,
       1, rpr_planar_passive_angles_in, 1, rpr_planar_passive_angles_out,
       rpr_planar_passive_angles_one, rpr_planar_passive_angles_many },
+    { "rpr_planar.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 2)\n"
+      "    rho1, rho2 in the unit of the parameters.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 2, 3, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: above, below.\n"
+      ,
+      1, rpr_planar_values, rpr_planar_fields,
+      1, rpr_planar_skeleton_in, 1, rpr_planar_skeleton_out,
+      rpr_planar_skeleton_one, rpr_planar_skeleton_many },
     { "rpr_planar.jacobian",
       "Derivative of p with respect to q, A^-1 B.\n"
       "\n"
@@ -4500,6 +4918,32 @@ const cf_function cf_functions[] = {
       3, scara_values, scara_fields,
       1, scara_pose_in, 1, scara_pose_out,
       scara_pose_one, scara_pose_many },
+    { "scara.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 4)\n"
+      "    theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 5, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      3, scara_values, scara_fields,
+      1, scara_skeleton_in, 1, scara_skeleton_out,
+      scara_skeleton_one, scara_skeleton_many },
     { "scara.fk",
       "Task coordinates (x, y, z, yaw).\n"
       "\n"
@@ -4762,6 +5206,33 @@ const cf_function cf_functions[] = {
       1, spherical_wrist_values, spherical_wrist_fields,
       1, spherical_wrist_pose_in, 1, spherical_wrist_pose_out,
       spherical_wrist_pose_one, spherical_wrist_pose_many },
+    { "spherical_wrist.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    theta4, theta5, theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 2, 3)\n"
+      "    One column for each of theta4, theta5, theta6.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      1, spherical_wrist_values, spherical_wrist_fields,
+      1, spherical_wrist_skeleton_in, 1, spherical_wrist_skeleton_out,
+      spherical_wrist_skeleton_one, spherical_wrist_skeleton_many },
     { "spherical_wrist.jacobian_space",
       "Angular velocity in the base frame per joint rate.\n"
       "\n"
@@ -4939,6 +5410,32 @@ const cf_function cf_functions[] = {
       1, stanford_arm_values, stanford_arm_fields,
       1, stanford_arm_pose_in, 1, stanford_arm_pose_out,
       stanford_arm_pose_one, stanford_arm_pose_many },
+    { "stanford_arm.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 3, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      1, stanford_arm_values, stanford_arm_fields,
+      1, stanford_arm_skeleton_in, 1, stanford_arm_skeleton_out,
+      stanford_arm_skeleton_one, stanford_arm_skeleton_many },
     { "stanford_arm.fk",
       "Pose of the tool in the base frame.\n"
       "\n"
@@ -5175,6 +5672,32 @@ const cf_function cf_functions[] = {
       6, ur_arm_values, ur_arm_fields,
       1, ur_arm_pose_in, 1, ur_arm_pose_out,
       ur_arm_pose_one, ur_arm_pose_many },
+    { "ur_arm.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 7, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      6, ur_arm_values, ur_arm_fields,
+      1, ur_arm_skeleton_in, 1, ur_arm_skeleton_out,
+      ur_arm_skeleton_one, ur_arm_skeleton_many },
     { "ur_arm.fk",
       "Pose of the tool in the base frame.\n"
       "\n"

@@ -8,6 +8,7 @@
  *     sincos, 3 sqrt
  *   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 3 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
+ *   skeleton: 157 add, 32 compare and select, 8 divide, 150 multiply, 6 sincos, 3 sqrt
  *   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
  *   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
  *   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
@@ -526,6 +527,371 @@ void h6ar_arm_tips_batch(size_t n, const h6ar_params *params,
             tips[3 * tips_stride + start + i] = tips_i[3];
             tips[4 * tips_stride + start + i] = tips_i[4];
             tips[5 * tips_stride + start + i] = tips_i[5];
+        }
+    }
+}
+
+CF_INLINE void h6ar_skeleton_kernel(const int single, const h6ar_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t points[60])
+{
+    const real_t L1 = params->L1;
+    const real_t L2 = params->L2;
+    const real_t a3 = params->a3;
+    const real_t d1 = params->d1;
+    const real_t d = params->d;
+    const real_t gs = params->gs;
+    const real_t al = params->al;
+    const real_t loff = params->loff;
+    const real_t lp = params->lp;
+    const real_t theta1 = q[0];
+    const real_t theta2R = q[1];
+    const real_t theta3R = q[2];
+    const real_t theta2L = q[3];
+    const real_t theta3L = q[4];
+    const real_t theta = q[5];
+    const real_t s2L_half = sines[0];
+    const real_t c2L_half = cosines[0];
+    const real_t s2R_half = sines[1];
+    const real_t c2R_half = cosines[1];
+    const real_t s3L_half = sines[2];
+    const real_t c3L_half = cosines[2];
+    const real_t s3R_half = sines[3];
+    const real_t c3R_half = cosines[3];
+    const real_t s1 = sines[4];
+    const real_t c1 = cosines[4];
+    const real_t s = sines[5];
+    const real_t c = cosines[5];
+    const int t1 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d1) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
+    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
+    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d1);
+    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
+    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
+    const int t6 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
+    const real_t t7 = gs + al;
+    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * t7);
+    const real_t t9 = d * d;
+    const real_t t10 = c3L_half * c3R_half;
+    const real_t t11 = s3L_half * s3R_half;
+    const real_t t12 = t10 + t11;
+    const real_t t13 = s3L_half * c3R_half;
+    const real_t t14 = c3L_half * s3R_half;
+    const real_t t15 = t13 - t14;
+    const real_t t16 = c2R_half * t12 + s2R_half * t15;
+    const real_t t17 = s2R_half * t12 - c2R_half * t15;
+    const real_t t18 = s2L_half * t16 - c2L_half * t17;
+    const real_t t19 = t10 - t11;
+    const real_t t20 = t13 + t14;
+    const real_t t21 = c2R_half * t19 - s2R_half * t20;
+    const real_t t22 = s2R_half * t19 + c2R_half * t20;
+    const real_t t23 = c2L_half * t21 - s2L_half * t22;
+    const real_t t24 = s2L_half * t21 + c2L_half * t22;
+    const real_t t25 = s2L_half * c2R_half;
+    const real_t t26 = c2L_half * s2R_half;
+    const real_t t27 = t25 + t26;
+    const real_t t28 = L1 * (t25 - t26);
+    const real_t t29 = t18 * (L2 * t23 - a3 * t24) - t27 * t28;
+    const real_t base = cf_sqrt(t9 + t29 * t29);
+    const real_t t30 = t7 - base;
+    const real_t t31 = base - (gs - al);
+    const int failed = (!(t5 & (CLOSEDFORM_C(0.0) <= lp) & t6)) | (!((t8 <= t30) & (t8 <= t31)));
+    const real_t t32 = cf_poison(single, failed);
+    const real_t t33 = CLOSEDFORM_C(0.0) + t32;
+    const real_t t34 = d1 + t32;
+    const real_t t35 = d * s1;
+    const real_t t36 = d * c1;
+    const real_t t37 = c2R_half * c2R_half - s2R_half * s2R_half;
+    const real_t t38 = L1 * t37;
+    const real_t t39 = s2R_half * c2R_half;
+    const real_t t40 = t39 + t39;
+    const real_t t41 = d1 + L1 * t40;
+    const real_t t42 = c3R_half * c3R_half - s3R_half * s3R_half;
+    const real_t t43 = s3R_half * c3R_half;
+    const real_t t44 = t43 + t43;
+    const real_t c2R3R = t37 * t42 - t40 * t44;
+    const real_t t45 = t38 + a3 * c2R3R;
+    const real_t s2R3R = t40 * t42 + t37 * t44;
+    const real_t t46 = t41 + a3 * s2R3R;
+    const real_t t47 = t45 + L2 * s2R3R;
+    const real_t t48 = c2L_half * c2L_half - s2L_half * s2L_half;
+    const real_t t49 = L1 * t48;
+    const real_t t50 = s2L_half * c2L_half;
+    const real_t t51 = t50 + t50;
+    const real_t t52 = d1 + L1 * t51;
+    const real_t t53 = c3L_half * c3L_half - s3L_half * s3L_half;
+    const real_t t54 = s3L_half * c3L_half;
+    const real_t t55 = t54 + t54;
+    const real_t c2L3L = t48 * t53 - t51 * t55;
+    const real_t t56 = t49 + a3 * c2L3L;
+    const real_t s2L3L = t51 * t53 + t48 * t55;
+    const real_t t57 = t52 + a3 * s2L3L;
+    const real_t t58 = t56 + L2 * s2L3L;
+    const real_t t59 = c2L_half * c2R_half;
+    const real_t t60 = s2L_half * s2R_half;
+    const real_t side2A = cf_sign(t59 + t60);
+    const real_t t61 = t59 - t60;
+    const real_t t62 = L1 * (side2A * t61);
+    const real_t t63 = d1 + L1 * (side2A * t27);
+    const real_t side23A = cf_sign(c2L_half * t16 + s2L_half * t17);
+    const real_t c23A = side23A * t23;
+    const real_t t64 = t62 + a3 * c23A;
+    const real_t s23A = side23A * t24;
+    const real_t t65 = t63 + a3 * s23A;
+    const real_t t66 = t64 + L2 * s23A;
+    const real_t t67 = c1 * t66;
+    const real_t t68 = s1 * t66;
+    const real_t t69 = L2 * c23A - t65;
+    const real_t t70 = t18 * (L2 * t24 + a3 * t23) + t61 * t28;
+    const real_t rise = cf_sqrt(t9 + t70 * t70);
+    const real_t t71 = cf_nonzero(single, rise);
+    const real_t t72 = t70 / t71;
+    const real_t t73 = cf_nonzero(single, base);
+    const real_t c_psi = d / t73;
+    const real_t t74 = c23A * c_psi;
+    const real_t t75 = t72 * t74;
+    const real_t c_phi = d / t71;
+    const real_t t76 = c_psi * c_phi;
+    const real_t t77 = t29 / t73;
+    const real_t t78 = s23A * t77;
+    const real_t t79 = c1 * t75 + s1 * t76 - c1 * t78;
+    const real_t t80 = base * t79;
+    const real_t t81 = s1 * t75 - c1 * t76 - s1 * t78;
+    const real_t t82 = base * t81;
+    const real_t t83 = s23A * c_psi;
+    const real_t t84 = c23A * t77 + t72 * t83;
+    const real_t t85 = base * t84;
+    const real_t t86 = gs * t79;
+    const real_t t87 = c23A * c1;
+    const real_t t88 = t72 * t77;
+    const real_t t89 = c_phi * t77;
+    const real_t t90 = c1 * t83;
+    const real_t t91 = t87 * t88 + s1 * t89 + t90;
+    const real_t t92 = cf_max(t31, CLOSEDFORM_C(0.0)) * cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t wrist = cf_sqrt(t92);
+    const real_t t93 = t67 + t91 * wrist;
+    const real_t t94 = gs * t81;
+    const real_t t95 = c23A * s1;
+    const real_t t96 = s1 * t83;
+    const real_t t97 = t95 * t88 - c1 * t89 + t96;
+    const real_t t98 = t68 + t97 * wrist;
+    const real_t t99 = gs * t84;
+    const real_t t100 = t74 - s23A * t88;
+    const real_t t101 = t69 + t100 * wrist;
+    const real_t t102 = loff * t91 + t93;
+    const real_t t103 = loff * t97 + t98;
+    const real_t t104 = loff * t100 + t101;
+    const real_t t105 = lp * s;
+    const real_t t106 = lp * c;
+    const real_t t107 = t105 * c_phi + t106 * t88;
+    const real_t t108 = t106 * t89 - t105 * t72;
+    const real_t t109 = t87 * t107 + t106 * t90 + s1 * t108 + t102 + t32;
+    const real_t t110 = t95 * t107 + t106 * t96 - c1 * t108 + t103 + t32;
+    points[0] = t33;
+    points[1] = t33;
+    points[2] = t33;
+    points[3] = t33;
+    points[4] = t33;
+    points[5] = t34;
+    points[6] = t35 + t32;
+    points[7] = -t36 + t32;
+    points[8] = t34;
+    points[9] = t35 + c1 * t38 + t32;
+    points[10] = s1 * t38 - t36 + t32;
+    points[11] = t41 + t32;
+    points[12] = t35 + c1 * t45 + t32;
+    points[13] = s1 * t45 - t36 + t32;
+    points[14] = t46 + t32;
+    points[15] = t35 + c1 * t47 + t32;
+    points[16] = s1 * t47 - t36 + t32;
+    points[17] = t46 - L2 * c2R3R + t32;
+    points[18] = -t35 + t32;
+    points[19] = t36 + t32;
+    points[20] = t34;
+    points[21] = c1 * t49 - t35 + t32;
+    points[22] = t36 + s1 * t49 + t32;
+    points[23] = t52 + t32;
+    points[24] = c1 * t56 - t35 + t32;
+    points[25] = t36 + s1 * t56 + t32;
+    points[26] = t57 + t32;
+    points[27] = c1 * t58 - t35 + t32;
+    points[28] = t36 + s1 * t58 + t32;
+    points[29] = t57 - L2 * c2L3L + t32;
+    points[30] = c1 * t62 + t32;
+    points[31] = s1 * t62 + t32;
+    points[32] = t63 + t32;
+    points[33] = c1 * t64 + t32;
+    points[34] = s1 * t64 + t32;
+    points[35] = t65 + t32;
+    points[36] = t67 + t32;
+    points[37] = t68 + t32;
+    points[38] = -t69 + t32;
+    points[39] = t80 + t67 + t32;
+    points[40] = t82 + t68 + t32;
+    points[41] = t85 - t69 + t32;
+    points[42] = t67 - t80 + t32;
+    points[43] = t68 - t82 + t32;
+    points[44] = -(t85 + t69) + t32;
+    points[45] = t86 + t93 + t32;
+    points[46] = t94 + t98 + t32;
+    points[47] = t99 - t101 + t32;
+    points[48] = t93 - t86 + t32;
+    points[49] = t98 - t94 + t32;
+    points[50] = -(t99 + t101) + t32;
+    points[51] = t93 + t32;
+    points[52] = t98 + t32;
+    points[53] = -t101 + t32;
+    points[54] = t102 + t32;
+    points[55] = t103 + t32;
+    points[56] = -t104 + t32;
+    points[57] = t109;
+    points[58] = t110;
+    points[59] = -(t106 * t74 - s23A * t107 + t104) + t32;
+}
+
+CLOSEDFORM_DISPATCHED
+void h6ar_skeleton(const h6ar_params *params, const real_t q[6],
+    real_t points[60])
+{
+    static const signed char points_degrees[60] = { 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    h6ar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d1 = CF_LIBM(ldexp)(params->d1, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+    }
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[0], q[5] };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    h6ar_skeleton_kernel(1, params, q, sines, cosines, points);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(60, points_degrees, exponent, points, points);
+    }
+}
+
+CF_RARE void h6ar_skeleton_other_sizes(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t points_i[60];
+        h6ar_skeleton(params, q_i, points_i);
+        for (size_t k = 0; k < 60; ++k) points[k * points_stride + i] = points_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void h6ar_skeleton_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    const h6ar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        h6ar_skeleton_other_sizes(n, params, q, q_stride, points, points_stride);
+        return;
+    }
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = q[3 * q_stride + start + i] / CLOSEDFORM_C(2.0);
+        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
+        real_t angle_1[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_1[i] = q[q_stride + start + i] / CLOSEDFORM_C(2.0);
+        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = q[4 * q_stride + start + i] / CLOSEDFORM_C(2.0);
+        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = q[2 * q_stride + start + i] / CLOSEDFORM_C(2.0);
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
+        cf_sincos_block(length, q + start, sines[4], cosines[4]);
+        cf_sincos_block(length, q + 5 * q_stride + start, sines[5], cosines[5]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            real_t points_i[60];
+            h6ar_skeleton_kernel(0, &local, q_i, sines_i, cosines_i, points_i);
+            points[start + i] = points_i[0];
+            points[points_stride + start + i] = points_i[1];
+            points[2 * points_stride + start + i] = points_i[2];
+            points[3 * points_stride + start + i] = points_i[3];
+            points[4 * points_stride + start + i] = points_i[4];
+            points[5 * points_stride + start + i] = points_i[5];
+            points[6 * points_stride + start + i] = points_i[6];
+            points[7 * points_stride + start + i] = points_i[7];
+            points[8 * points_stride + start + i] = points_i[8];
+            points[9 * points_stride + start + i] = points_i[9];
+            points[10 * points_stride + start + i] = points_i[10];
+            points[11 * points_stride + start + i] = points_i[11];
+            points[12 * points_stride + start + i] = points_i[12];
+            points[13 * points_stride + start + i] = points_i[13];
+            points[14 * points_stride + start + i] = points_i[14];
+            points[15 * points_stride + start + i] = points_i[15];
+            points[16 * points_stride + start + i] = points_i[16];
+            points[17 * points_stride + start + i] = points_i[17];
+            points[18 * points_stride + start + i] = points_i[18];
+            points[19 * points_stride + start + i] = points_i[19];
+            points[20 * points_stride + start + i] = points_i[20];
+            points[21 * points_stride + start + i] = points_i[21];
+            points[22 * points_stride + start + i] = points_i[22];
+            points[23 * points_stride + start + i] = points_i[23];
+            points[24 * points_stride + start + i] = points_i[24];
+            points[25 * points_stride + start + i] = points_i[25];
+            points[26 * points_stride + start + i] = points_i[26];
+            points[27 * points_stride + start + i] = points_i[27];
+            points[28 * points_stride + start + i] = points_i[28];
+            points[29 * points_stride + start + i] = points_i[29];
+            points[30 * points_stride + start + i] = points_i[30];
+            points[31 * points_stride + start + i] = points_i[31];
+            points[32 * points_stride + start + i] = points_i[32];
+            points[33 * points_stride + start + i] = points_i[33];
+            points[34 * points_stride + start + i] = points_i[34];
+            points[35 * points_stride + start + i] = points_i[35];
+            points[36 * points_stride + start + i] = points_i[36];
+            points[37 * points_stride + start + i] = points_i[37];
+            points[38 * points_stride + start + i] = points_i[38];
+            points[39 * points_stride + start + i] = points_i[39];
+            points[40 * points_stride + start + i] = points_i[40];
+            points[41 * points_stride + start + i] = points_i[41];
+            points[42 * points_stride + start + i] = points_i[42];
+            points[43 * points_stride + start + i] = points_i[43];
+            points[44 * points_stride + start + i] = points_i[44];
+            points[45 * points_stride + start + i] = points_i[45];
+            points[46 * points_stride + start + i] = points_i[46];
+            points[47 * points_stride + start + i] = points_i[47];
+            points[48 * points_stride + start + i] = points_i[48];
+            points[49 * points_stride + start + i] = points_i[49];
+            points[50 * points_stride + start + i] = points_i[50];
+            points[51 * points_stride + start + i] = points_i[51];
+            points[52 * points_stride + start + i] = points_i[52];
+            points[53 * points_stride + start + i] = points_i[53];
+            points[54 * points_stride + start + i] = points_i[54];
+            points[55 * points_stride + start + i] = points_i[55];
+            points[56 * points_stride + start + i] = points_i[56];
+            points[57 * points_stride + start + i] = points_i[57];
+            points[58 * points_stride + start + i] = points_i[58];
+            points[59 * points_stride + start + i] = points_i[59];
         }
     }
 }

@@ -8,6 +8,7 @@
  *     sincos, 3 sqrt
  *   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 3 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
+ *   skeleton: 157 add, 32 compare and select, 8 divide, 150 multiply, 6 sincos, 3 sqrt
  *   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
  *   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
  *   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
@@ -121,6 +122,30 @@ void h6ar_arm_tips(const h6ar_params *params, const real_t q[6],
 void h6ar_arm_tips_batch(size_t n, const h6ar_params *params,
     const real_t *q, size_t q_stride,
     real_t *tips, size_t tips_stride);
+
+/*
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * points : real_t[60], shape (20, 3)
+ *
+ * Notes
+ * -----
+ * - NaN if the tips are farther apart than the wrist links can span.
+ * - The links of the wrist start on its base line, which joins the tips of the arms only where
+ *   the arms are parallel: the published model does not close the loop.
+ */
+void h6ar_skeleton(const h6ar_params *params, const real_t q[6],
+    real_t points[60]);
+void h6ar_skeleton_batch(size_t n, const h6ar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride);
 
 /*
  * The invariant point, computed from the averages of the angles.

@@ -5,9 +5,12 @@ from closedform.generated.numpy.h6ar import (
     BRANCHES,
     JOINTS,
     SINGULARITIES,
+    SKELETON,
     TASK,
     Parameters,
     Positions,
+    Skeleton,
+    SkeletonJoint,
     Solutions,
     Status,
 )
@@ -19,14 +22,18 @@ __all__ = [
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "fk",
     "pose",
     "arm_tips",
+    "skeleton",
     "invariant_point",
     "jacobian",
     "determinant",
@@ -41,6 +48,7 @@ __all__ = [
 fk = _native.function("h6ar.fk")
 pose = _native.function("h6ar.pose")
 arm_tips = _native.function("h6ar.arm_tips")
+skeleton = _native.function("h6ar.skeleton")
 invariant_point = _native.function("h6ar.invariant_point")
 jacobian = _native.function("h6ar.jacobian")
 determinant = _native.function("h6ar.determinant")

@@ -7,6 +7,7 @@
  *   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
  *     sincos, 6 sqrt
  *   pose: 57 compare and select, 108 add, 21 divide, 160 multiply, 6 sincos, 6 sqrt
+ *   skeleton: 57 compare and select, 175 add, 21 divide, 199 multiply, 6 sincos, 6 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
  *   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
@@ -580,6 +581,408 @@ void h6ar_loop_closed_pose_batch(size_t n, const h6ar_loop_closed_params *params
             T[13 * T_stride + start + i] = T_i[13];
             T[14 * T_stride + start + i] = T_i[14];
             T[15 * T_stride + start + i] = T_i[15];
+        }
+    }
+}
+
+CF_INLINE void h6ar_loop_closed_skeleton_kernel(const int single,
+    const h6ar_loop_closed_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t points[54])
+{
+    const real_t L1 = params->L1;
+    const real_t L2 = params->L2;
+    const real_t a3 = params->a3;
+    const real_t d1 = params->d1;
+    const real_t d = params->d;
+    const real_t gs = params->gs;
+    const real_t al = params->al;
+    const real_t loff = params->loff;
+    const real_t lp = params->lp;
+    const real_t theta1 = q[0];
+    const real_t theta2R = q[1];
+    const real_t theta3R = q[2];
+    const real_t theta2L = q[3];
+    const real_t theta3L = q[4];
+    const real_t theta = q[5];
+    const real_t s2L_half = sines[0];
+    const real_t c2L_half = cosines[0];
+    const real_t s2R_half = sines[1];
+    const real_t c2R_half = cosines[1];
+    const real_t s3R_half = sines[2];
+    const real_t c3R_half = cosines[2];
+    const real_t s3L_half = sines[3];
+    const real_t c3L_half = cosines[3];
+    const real_t s1 = sines[4];
+    const real_t c1 = cosines[4];
+    const real_t s = sines[5];
+    const real_t c = cosines[5];
+    const int t1 = cf_nought(L1) + cf_nought(L2) + cf_nought(a3) + cf_nought(d1) + cf_nought(d) + cf_nought(gs) + cf_nought(al) + cf_nought(loff) + cf_nought(lp) == 0;
+    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= L1) & (CLOSEDFORM_C(0.0) <= L2);
+    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= a3) & (CLOSEDFORM_C(0.0) <= d1);
+    const int t4 = t3 & (CLOSEDFORM_C(0.0) <= d) & (CLOSEDFORM_C(0.0) <= gs);
+    const int t5 = t4 & (CLOSEDFORM_C(0.0) <= al) & (CLOSEDFORM_C(0.0) <= loff);
+    const int t6 = cf_nought(theta1) + cf_nought(theta2R) + cf_nought(theta3R) + cf_nought(theta2L) + cf_nought(theta3L) + cf_nought(theta) == 0;
+    const real_t fore = cf_sqrt(L2 * L2 + a3 * a3);
+    const real_t t7 = L1 + fore;
+    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * (d * t7));
+    const real_t t9 = c3R_half * c3L_half;
+    const real_t t10 = s3R_half * s3L_half;
+    const real_t t11 = t9 + t10;
+    const real_t t12 = c3R_half * s3L_half;
+    const real_t t13 = s3R_half * c3L_half;
+    const real_t t14 = t12 - t13;
+    const real_t t15 = c2R_half * t11 + s2R_half * t14;
+    const real_t t16 = s2R_half * t11 - c2R_half * t14;
+    const real_t t17 = s2L_half * t15 - c2L_half * t16;
+    const real_t t18 = t9 - t10;
+    const real_t t19 = t12 + t13;
+    const real_t t20 = c2R_half * t18 - s2R_half * t19;
+    const real_t t21 = s2R_half * t18 + c2R_half * t19;
+    const real_t t22 = c2L_half * t20 - s2L_half * t21;
+    const real_t t23 = s2L_half * t20 + c2L_half * t21;
+    const real_t t24 = L2 * t22 - a3 * t23;
+    const real_t t25 = s2L_half * c2R_half;
+    const real_t t26 = c2L_half * s2R_half;
+    const real_t t27 = t25 + t26;
+    const real_t t28 = L1 * (t25 - t26);
+    const real_t t29 = t17 * t24 - t27 * t28;
+    const real_t t30 = L2 * t23 + a3 * t22;
+    const real_t t31 = c2L_half * c2R_half;
+    const real_t t32 = s2L_half * s2R_half;
+    const real_t t33 = t31 - t32;
+    const real_t t34 = t30 * t17 + t33 * t28;
+    const real_t gap = t29 * t29 + t34 * t34;
+    const real_t t35 = s3L_half * c3L_half;
+    const real_t t36 = t35 + t35;
+    const real_t t37 = c3L_half * c3L_half - s3L_half * s3L_half;
+    const real_t straight_left = L2 * t36 + a3 * t37;
+    const int t38 = CLOSEDFORM_C(0.0) <= straight_left;
+    const real_t t39 = L2 * t37 - a3 * t36;
+    const real_t large_left = fore + cf_abs(straight_left);
+    const real_t small_left = t39 * t39 / cf_nonzero(single, large_left);
+    const real_t t40 = L1 * CLOSEDFORM_C(2.0);
+    const real_t t41 = cf_select(t38, small_left, large_left) * t40 * CLOSEDFORM_C(0.5);
+    const real_t t42 = s3R_half * c3R_half;
+    const real_t t43 = t42 + t42;
+    const real_t t44 = c3R_half * c3R_half - s3R_half * s3R_half;
+    const real_t straight_right = L2 * t43 + a3 * t44;
+    const int t45 = CLOSEDFORM_C(0.0) <= straight_right;
+    const real_t t46 = L2 * t44 - a3 * t43;
+    const real_t large_right = fore + cf_abs(straight_right);
+    const real_t small_right = t46 * t46 / cf_nonzero(single, large_right);
+    const real_t N_right = cf_select(t45, small_right, large_right) * t40;
+    const real_t t47 = gap + t41 + N_right * CLOSEDFORM_C(0.5);
+    const real_t M_right = cf_select(t45, large_right, small_right) * t40;
+    const real_t t48 = cf_select(t38, large_left, small_left) * t40 * CLOSEDFORM_C(0.5);
+    const real_t t49 = M_right * CLOSEDFORM_C(0.5) - (gap - t48);
+    const real_t t50 = gs + al;
+    const real_t t51 = -(CLOSEDFORM_FEASIBILITY * t50);
+    const real_t t52 = d * d;
+    const real_t base = cf_sqrt(t52 + gap);
+    const real_t t53 = t50 - base;
+    const real_t t54 = base - (gs - al);
+    const int t55 = (t8 <= t47) & (t8 <= t49) & (t51 <= t53) & (t51 <= t54);
+    const int failed = (!(t5 & (CLOSEDFORM_C(0.0) <= lp) & t6)) | (!t55);
+    const real_t t56 = cf_poison(single, failed);
+    const real_t t57 = CLOSEDFORM_C(0.0) + t56;
+    const real_t t58 = d1 + t56;
+    const real_t t59 = d * s1;
+    const real_t t60 = d * c1;
+    const real_t t61 = c2R_half * c2R_half - s2R_half * s2R_half;
+    const real_t t62 = L1 * t61;
+    const real_t t63 = s2R_half * c2R_half;
+    const real_t t64 = t63 + t63;
+    const real_t t65 = d1 + L1 * t64;
+    const real_t c2R3R = t44 * t61 - t43 * t64;
+    const real_t t66 = t62 + a3 * c2R3R;
+    const real_t s2R3R = t44 * t64 + t43 * t61;
+    const real_t t67 = t65 + a3 * s2R3R;
+    const real_t t68 = t66 + L2 * s2R3R;
+    const real_t t69 = c2L_half * c2L_half - s2L_half * s2L_half;
+    const real_t t70 = L1 * t69;
+    const real_t t71 = s2L_half * c2L_half;
+    const real_t t72 = t71 + t71;
+    const real_t t73 = d1 + L1 * t72;
+    const real_t c2L3L = t37 * t69 - t36 * t72;
+    const real_t t74 = t70 + a3 * c2L3L;
+    const real_t s2L3L = t37 * t72 + t36 * t69;
+    const real_t t75 = t73 + a3 * s2L3L;
+    const real_t t76 = t74 + L2 * s2L3L;
+    const real_t t77 = c2L_half * t15 + s2L_half * t16;
+    const real_t t78 = L1 * (t31 + t32);
+    const real_t t79 = t77 * t24 - t27 * t78;
+    const real_t r_I = t30 * t77 + t33 * t78;
+    const real_t t80 = L1 * CLOSEDFORM_C(64.0) + fore * CLOSEDFORM_C(64.0);
+    const int folded_virtual = cf_abs(-t79) + cf_abs(r_I) <= CLOSEDFORM_VANISHING * t80;
+    const int short_virtual = L1 * fore <= CLOSEDFORM_VANISHING * (t7 * t7);
+    const real_t M_virtual = cf_max(t49, CLOSEDFORM_C(0.0));
+    const real_t N_virtual = cf_max(t47, CLOSEDFORM_C(0.0));
+    const real_t whole_virtual = M_virtual + N_virtual;
+    const real_t t81 = fore * CLOSEDFORM_C(2.0) * M_virtual / cf_divisor(single, folded_virtual | short_virtual, whole_virtual);
+    const real_t ahead_1_virtual = cf_rarely(single, short_virtual, t7, L1 - fore + t81);
+    const real_t t82 = CLOSEDFORM_C(2.0) * cf_sign(-t46) * cf_sqrt(M_virtual * N_virtual);
+    const real_t t83 = t82 / cf_divisor(single, short_virtual, whole_virtual);
+    const real_t s_bend_virtual = cf_select(short_virtual, CLOSEDFORM_C(0.0), t83);
+    const real_t t84 = fore * s_bend_virtual;
+    const real_t out_virtual = r_I * ahead_1_virtual - t79 * t84;
+    const real_t t85 = t79 * ahead_1_virtual + r_I * t84;
+    const real_t norm_virtual = cf_sqrt(out_virtual * out_virtual + t85 * t85);
+    const real_t t86 = out_virtual / cf_divisor(single, folded_virtual, norm_virtual);
+    const real_t ctheta2A = cf_rarely(single, folded_virtual, t61, t86);
+    const real_t t87 = L1 * ctheta2A;
+    const real_t t88 = t85 / cf_divisor(single, folded_virtual, norm_virtual);
+    const real_t stheta2A = cf_rarely(single, folded_virtual, t64, -t88);
+    const real_t t89 = d1 + L1 * stheta2A;
+    const int bare_virtual = fore <= t7 * CLOSEDFORM_VANISHING;
+    const real_t c_lag_virtual = cf_select(bare_virtual, CLOSEDFORM_C(1.0), a3 / cf_divisor(single, bare_virtual, fore));
+    const real_t t90 = (M_virtual - N_virtual) / cf_divisor(single, short_virtual, whole_virtual);
+    const real_t c_bend_virtual = cf_select(short_virtual, CLOSEDFORM_C(1.0), t90);
+    const real_t s_lag_virtual = cf_select(bare_virtual, CLOSEDFORM_C(0.0), L2 / cf_divisor(single, bare_virtual, fore));
+    const real_t c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual;
+    const real_t s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual;
+    const real_t ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual;
+    const real_t t91 = t87 + a3 * ctheta23A;
+    const real_t stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual;
+    const real_t t92 = t89 + a3 * stheta23A;
+    const real_t t93 = t91 + L2 * stheta23A;
+    const real_t t94 = c1 * t93;
+    const real_t t95 = s1 * t93;
+    const real_t t96 = L2 * ctheta23A - t92;
+    const real_t t97 = cf_max(t53, CLOSEDFORM_C(0.0)) * cf_max(t54, CLOSEDFORM_C(0.0));
+    const real_t wrist = cf_sqrt(t97);
+    const real_t t98 = t29 * ctheta23A + t34 * stheta23A;
+    const real_t tilted = cf_sqrt(t52 + t98 * t98);
+    const real_t t99 = cf_nonzero(single, tilted);
+    const real_t c_phi = d / t99;
+    const real_t t100 = cf_nonzero(single, base);
+    const real_t t101 = (t29 * stheta23A - t34 * ctheta23A) / t100;
+    const real_t t102 = c_phi * t101;
+    const real_t c_psi = tilted / t100;
+    const real_t t103 = stheta23A * c_psi;
+    const real_t t104 = c1 * t103;
+    const real_t t105 = c1 * ctheta23A;
+    const real_t t106 = t98 / t99;
+    const real_t t107 = t106 * t101;
+    const real_t t108 = s1 * t102 + t104 - t105 * t107;
+    const real_t t109 = t94 + wrist * t108;
+    const real_t t110 = c_phi * c_psi;
+    const real_t t111 = ctheta23A * c_psi;
+    const real_t t112 = t106 * t111;
+    const real_t t113 = stheta23A * t101;
+    const real_t t114 = gs * (s1 * t110 - c1 * t112 - c1 * t113);
+    const real_t t115 = s1 * t103;
+    const real_t t116 = s1 * ctheta23A;
+    const real_t t117 = c1 * t102 - t115 + t116 * t107;
+    const real_t t118 = t95 - wrist * t117;
+    const real_t t119 = gs * (c1 * t110 + s1 * t112 + s1 * t113);
+    const real_t t120 = t111 + stheta23A * t107;
+    const real_t t121 = t96 + wrist * t120;
+    const real_t t122 = gs * (t106 * t103 - ctheta23A * t101);
+    const real_t t123 = t109 + loff * t108;
+    const real_t t124 = t118 - loff * t117;
+    const real_t t125 = t121 + loff * t120;
+    const real_t t126 = lp * c;
+    const real_t t127 = lp * s;
+    const real_t t128 = t127 * c_phi - t126 * t107;
+    const real_t t129 = t127 * t106 + t126 * t102;
+    const real_t t130 = t123 + t126 * t104 + t105 * t128 + s1 * t129 + t56;
+    const real_t t131 = t124 + t126 * t115 + t116 * t128 - c1 * t129 + t56;
+    const real_t t132 = stheta23A * t128 - (t125 + t126 * t111) + t56;
+    points[0] = t57;
+    points[1] = t57;
+    points[2] = t57;
+    points[3] = t57;
+    points[4] = t57;
+    points[5] = t58;
+    points[6] = t59 + t56;
+    points[7] = -t60 + t56;
+    points[8] = t58;
+    points[9] = t59 + c1 * t62 + t56;
+    points[10] = s1 * t62 - t60 + t56;
+    points[11] = t65 + t56;
+    points[12] = t59 + c1 * t66 + t56;
+    points[13] = s1 * t66 - t60 + t56;
+    points[14] = t67 + t56;
+    points[15] = t59 + c1 * t68 + t56;
+    points[16] = s1 * t68 - t60 + t56;
+    points[17] = t67 - L2 * c2R3R + t56;
+    points[18] = -t59 + t56;
+    points[19] = t60 + t56;
+    points[20] = t58;
+    points[21] = c1 * t70 - t59 + t56;
+    points[22] = t60 + s1 * t70 + t56;
+    points[23] = t73 + t56;
+    points[24] = c1 * t74 - t59 + t56;
+    points[25] = t60 + s1 * t74 + t56;
+    points[26] = t75 + t56;
+    points[27] = c1 * t76 - t59 + t56;
+    points[28] = t60 + s1 * t76 + t56;
+    points[29] = t75 - L2 * c2L3L + t56;
+    points[30] = c1 * t87 + t56;
+    points[31] = s1 * t87 + t56;
+    points[32] = t89 + t56;
+    points[33] = c1 * t91 + t56;
+    points[34] = s1 * t91 + t56;
+    points[35] = t92 + t56;
+    points[36] = t94 + t56;
+    points[37] = t95 + t56;
+    points[38] = -t96 + t56;
+    points[39] = t109 + t114 + t56;
+    points[40] = t118 - t119 + t56;
+    points[41] = -(t121 + t122) + t56;
+    points[42] = t109 - t114 + t56;
+    points[43] = t118 + t119 + t56;
+    points[44] = t122 - t121 + t56;
+    points[45] = t109 + t56;
+    points[46] = t118 + t56;
+    points[47] = -t121 + t56;
+    points[48] = t123 + t56;
+    points[49] = t124 + t56;
+    points[50] = -t125 + t56;
+    points[51] = t130;
+    points[52] = t131;
+    points[53] = t132;
+}
+
+CLOSEDFORM_DISPATCHED
+void h6ar_loop_closed_skeleton(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t points[54])
+{
+    static const signed char points_degrees[54] = { 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    h6ar_loop_closed_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params_scaled.a3 = CF_LIBM(ldexp)(params->a3, -exponent);
+        params_scaled.d1 = CF_LIBM(ldexp)(params->d1, -exponent);
+        params_scaled.d = CF_LIBM(ldexp)(params->d, -exponent);
+        params_scaled.gs = CF_LIBM(ldexp)(params->gs, -exponent);
+        params_scaled.al = CF_LIBM(ldexp)(params->al, -exponent);
+        params_scaled.loff = CF_LIBM(ldexp)(params->loff, -exponent);
+        params_scaled.lp = CF_LIBM(ldexp)(params->lp, -exponent);
+        params = &params_scaled;
+    }
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[3] / CLOSEDFORM_C(2.0), q[1] / CLOSEDFORM_C(2.0), q[2] / CLOSEDFORM_C(2.0), q[4] / CLOSEDFORM_C(2.0), q[0], q[5] };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    h6ar_loop_closed_skeleton_kernel(1, params, q, sines, cosines, points);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(54, points_degrees, exponent, points, points);
+    }
+}
+
+CF_RARE void h6ar_loop_closed_skeleton_other_sizes(size_t n, const h6ar_loop_closed_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[6];
+        for (size_t k = 0; k < 6; ++k) q_i[k] = q[k * q_stride + i];
+        real_t points_i[54];
+        h6ar_loop_closed_skeleton(params, q_i, points_i);
+        for (size_t k = 0; k < 54; ++k) points[k * points_stride + i] = points_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void h6ar_loop_closed_skeleton_batch(size_t n, const h6ar_loop_closed_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    const h6ar_loop_closed_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_max(cf_max(cf_abs(params->L1), cf_abs(params->L2)), cf_max(cf_abs(params->a3), cf_abs(params->d1))), cf_max(cf_max(cf_abs(params->d), cf_abs(params->gs)), cf_max(cf_abs(params->al), cf_abs(params->loff)))), cf_abs(params->lp));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_4) & CF_SIGN) != 0)) {
+        h6ar_loop_closed_skeleton_other_sizes(n, params, q, q_stride, points, points_stride);
+        return;
+    }
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = q[3 * q_stride + start + i] / CLOSEDFORM_C(2.0);
+        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
+        real_t angle_1[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_1[i] = q[q_stride + start + i] / CLOSEDFORM_C(2.0);
+        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = q[2 * q_stride + start + i] / CLOSEDFORM_C(2.0);
+        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
+        real_t angle_3[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_3[i] = q[4 * q_stride + start + i] / CLOSEDFORM_C(2.0);
+        cf_sincos_block(length, angle_3, sines[3], cosines[3]);
+        cf_sincos_block(length, q + start, sines[4], cosines[4]);
+        cf_sincos_block(length, q + 5 * q_stride + start, sines[5], cosines[5]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            real_t points_i[54];
+            h6ar_loop_closed_skeleton_kernel(0, &local, q_i, sines_i, cosines_i, points_i);
+            points[start + i] = points_i[0];
+            points[points_stride + start + i] = points_i[1];
+            points[2 * points_stride + start + i] = points_i[2];
+            points[3 * points_stride + start + i] = points_i[3];
+            points[4 * points_stride + start + i] = points_i[4];
+            points[5 * points_stride + start + i] = points_i[5];
+            points[6 * points_stride + start + i] = points_i[6];
+            points[7 * points_stride + start + i] = points_i[7];
+            points[8 * points_stride + start + i] = points_i[8];
+            points[9 * points_stride + start + i] = points_i[9];
+            points[10 * points_stride + start + i] = points_i[10];
+            points[11 * points_stride + start + i] = points_i[11];
+            points[12 * points_stride + start + i] = points_i[12];
+            points[13 * points_stride + start + i] = points_i[13];
+            points[14 * points_stride + start + i] = points_i[14];
+            points[15 * points_stride + start + i] = points_i[15];
+            points[16 * points_stride + start + i] = points_i[16];
+            points[17 * points_stride + start + i] = points_i[17];
+            points[18 * points_stride + start + i] = points_i[18];
+            points[19 * points_stride + start + i] = points_i[19];
+            points[20 * points_stride + start + i] = points_i[20];
+            points[21 * points_stride + start + i] = points_i[21];
+            points[22 * points_stride + start + i] = points_i[22];
+            points[23 * points_stride + start + i] = points_i[23];
+            points[24 * points_stride + start + i] = points_i[24];
+            points[25 * points_stride + start + i] = points_i[25];
+            points[26 * points_stride + start + i] = points_i[26];
+            points[27 * points_stride + start + i] = points_i[27];
+            points[28 * points_stride + start + i] = points_i[28];
+            points[29 * points_stride + start + i] = points_i[29];
+            points[30 * points_stride + start + i] = points_i[30];
+            points[31 * points_stride + start + i] = points_i[31];
+            points[32 * points_stride + start + i] = points_i[32];
+            points[33 * points_stride + start + i] = points_i[33];
+            points[34 * points_stride + start + i] = points_i[34];
+            points[35 * points_stride + start + i] = points_i[35];
+            points[36 * points_stride + start + i] = points_i[36];
+            points[37 * points_stride + start + i] = points_i[37];
+            points[38 * points_stride + start + i] = points_i[38];
+            points[39 * points_stride + start + i] = points_i[39];
+            points[40 * points_stride + start + i] = points_i[40];
+            points[41 * points_stride + start + i] = points_i[41];
+            points[42 * points_stride + start + i] = points_i[42];
+            points[43 * points_stride + start + i] = points_i[43];
+            points[44 * points_stride + start + i] = points_i[44];
+            points[45 * points_stride + start + i] = points_i[45];
+            points[46 * points_stride + start + i] = points_i[46];
+            points[47 * points_stride + start + i] = points_i[47];
+            points[48 * points_stride + start + i] = points_i[48];
+            points[49 * points_stride + start + i] = points_i[49];
+            points[50 * points_stride + start + i] = points_i[50];
+            points[51 * points_stride + start + i] = points_i[51];
+            points[52 * points_stride + start + i] = points_i[52];
+            points[53 * points_stride + start + i] = points_i[53];
         }
     }
 }

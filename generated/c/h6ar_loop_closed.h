@@ -7,6 +7,7 @@
  *   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
  *     sincos, 6 sqrt
  *   pose: 57 compare and select, 108 add, 21 divide, 160 multiply, 6 sincos, 6 sqrt
+ *   skeleton: 57 compare and select, 175 add, 21 divide, 199 multiply, 6 sincos, 6 sqrt
  *   arm_tips: 18 add, 26 multiply, 5 sincos
  *   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
  *   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
@@ -107,6 +108,31 @@ void h6ar_loop_closed_pose(const h6ar_loop_closed_params *params,
 void h6ar_loop_closed_pose_batch(size_t n, const h6ar_loop_closed_params *params,
     const real_t *q, size_t q_stride,
     real_t *T, size_t T_stride);
+
+/*
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+ *
+ * Outputs
+ * -------
+ * points : real_t[54], shape (18, 3)
+ *
+ * Notes
+ * -----
+ * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+ *   cannot reach the middle of the tips.
+ * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+ *   its fore-arm.
+ */
+void h6ar_loop_closed_skeleton(const h6ar_loop_closed_params *params,
+    const real_t q[6], real_t points[54]);
+void h6ar_loop_closed_skeleton_batch(size_t n, const h6ar_loop_closed_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride);
 
 /*
  * Tips of the right and of the left fore-arm.

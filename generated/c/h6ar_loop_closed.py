@@ -5,9 +5,12 @@ from closedform.generated.numpy.h6ar_loop_closed import (
     BRANCHES,
     JOINTS,
     SINGULARITIES,
+    SKELETON,
     TASK,
     Parameters,
     Positions,
+    Skeleton,
+    SkeletonJoint,
     Solutions,
     Status,
 )
@@ -19,13 +22,17 @@ __all__ = [
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "fk",
     "pose",
+    "skeleton",
     "arm_tips",
     "invariant_point",
     "jacobian",
@@ -40,6 +47,7 @@ __all__ = [
 
 fk = _native.function("h6ar_loop_closed.fk")
 pose = _native.function("h6ar_loop_closed.pose")
+skeleton = _native.function("h6ar_loop_closed.skeleton")
 arm_tips = _native.function("h6ar_loop_closed.arm_tips")
 invariant_point = _native.function("h6ar_loop_closed.invariant_point")
 jacobian = _native.function("h6ar_loop_closed.jacobian")

@@ -7,6 +7,7 @@
  *   fk: 22 add, 22 compare and select, 4 divide, 20 multiply, 3 sincos, 2 sqrt
  *   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 2
  *     sqrt
+ *   skeleton: 30 add, 21 compare and select, 5 divide, 22 multiply, 3 sincos, 2 sqrt
  *   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 20 multiply, 3 sincos, 2 sqrt
  *   jacobian_serial: 24 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 2 sqrt
  *   jacobian: 35 add, 21 compare and select, 17 divide, 43 multiply, 3 sincos, 2 sqrt
@@ -290,6 +291,189 @@ void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params
             theta[theta_stride + start + i] = theta_i[1];
             theta[2 * theta_stride + start + i] = theta_i[2];
             theta[3 * theta_stride + start + i] = theta_i[3];
+        }
+    }
+}
+
+CF_INLINE void hybrid_five_bar_skeleton_kernel(const int single,
+    const hybrid_five_bar_params *params,
+    const real_t q[3], const real_t *sines,
+    const real_t *cosines, real_t points[30])
+{
+    const real_t L0 = params->L0;
+    const real_t L1 = params->L1;
+    const real_t L2 = params->L2;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t theta3 = q[2];
+    const real_t s2 = sines[0];
+    const real_t c2 = cosines[0];
+    const real_t s3 = sines[1];
+    const real_t c3 = cosines[1];
+    const real_t s1 = sines[2];
+    const real_t c1 = cosines[2];
+    const int t1 = cf_nought(L0) + cf_nought(L1) + cf_nought(L2) == 0;
+    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= L0) & (CLOSEDFORM_C(0.0) <= L1);
+    const int t3 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t4 = L0 + L1 + L2;
+    const real_t t5 = L2 * CLOSEDFORM_C(2.0);
+    const real_t C_r = L1 * s2;
+    const real_t D_r = L1 * s3;
+    const real_t t6 = C_r - D_r;
+    const real_t C_y = L1 * c2;
+    const real_t D_y = L0 + L1 * c3;
+    const real_t t7 = C_y - D_y;
+    const real_t apart = cf_sqrt(t6 * t6 + t7 * t7);
+    const real_t t8 = t5 - apart;
+    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= L2) & t3)) | (!(-(CLOSEDFORM_FEASIBILITY * t4) <= t8));
+    const real_t t9 = cf_poison(single, failed);
+    const real_t t10 = CLOSEDFORM_C(0.0) + t9;
+    const real_t t11 = L0 + t9;
+    const real_t t12 = -(C_r * c1) + t9;
+    const real_t t13 = C_y + t9;
+    const real_t t14 = C_r * s1 + t9;
+    const real_t t15 = -(D_r * c1) + t9;
+    const real_t t16 = D_y + t9;
+    const real_t t17 = D_r * s1 + t9;
+    const real_t t18 = t4 * CLOSEDFORM_VANISHING;
+    const int coincide = apart <= t18;
+    const real_t distance = cf_select(coincide, CLOSEDFORM_C(0.0), apart);
+    const real_t t19 = cf_select(coincide, CLOSEDFORM_C(0.0), t6 / cf_divisor(single, coincide, apart));
+    const real_t t20 = distance * t19 * CLOSEDFORM_C(0.5);
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), -(t7 / cf_divisor(single, coincide, apart)));
+    const real_t slack = cf_max(t8, CLOSEDFORM_C(0.0));
+    const real_t t21 = cf_root(single, slack * (apart + t5)) * CLOSEDFORM_C(0.5);
+    const real_t height = cf_select(slack <= t18, CLOSEDFORM_C(0.0), t21);
+    const real_t t22 = n_1 * height;
+    const real_t P_r = C_r - (t20 - t22);
+    const real_t t23 = distance * n_1 * CLOSEDFORM_C(0.5);
+    const real_t t24 = t19 * height;
+    const real_t P_r_right_of_CD = C_r - (t20 + t22);
+    points[0] = t10;
+    points[1] = t10;
+    points[2] = t10;
+    points[3] = t10;
+    points[4] = t11;
+    points[5] = t10;
+    points[6] = t12;
+    points[7] = t13;
+    points[8] = t14;
+    points[9] = t15;
+    points[10] = t16;
+    points[11] = t17;
+    points[12] = -(c1 * P_r) + t9;
+    points[13] = C_y + (t23 + t24) + t9;
+    points[14] = s1 * P_r + t9;
+    points[15] = t10;
+    points[16] = t10;
+    points[17] = t10;
+    points[18] = t10;
+    points[19] = t11;
+    points[20] = t10;
+    points[21] = t12;
+    points[22] = t13;
+    points[23] = t14;
+    points[24] = t15;
+    points[25] = t16;
+    points[26] = t17;
+    points[27] = -(c1 * P_r_right_of_CD) + t9;
+    points[28] = C_y + (t23 - t24) + t9;
+    points[29] = s1 * P_r_right_of_CD + t9;
+}
+
+CLOSEDFORM_DISPATCHED
+void hybrid_five_bar_skeleton(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t points[30])
+{
+    static const signed char points_degrees[30] = { 0, 0, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    hybrid_five_bar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_2) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L0 = CF_LIBM(ldexp)(params->L0, -exponent);
+        params_scaled.L1 = CF_LIBM(ldexp)(params->L1, -exponent);
+        params_scaled.L2 = CF_LIBM(ldexp)(params->L2, -exponent);
+        params = &params_scaled;
+    }
+    real_t sines[4], cosines[4];
+    const real_t lanes[4] = { q[1], q[2], q[0] };
+    cf_sincos_lanes(4, lanes, sines, cosines);
+    hybrid_five_bar_skeleton_kernel(1, params, q, sines, cosines, points);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(30, points_degrees, exponent, points, points);
+    }
+}
+
+CF_RARE void hybrid_five_bar_skeleton_other_sizes(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t points_i[30];
+        hybrid_five_bar_skeleton(params, q_i, points_i);
+        for (size_t k = 0; k < 30; ++k) points[k * points_stride + i] = points_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void hybrid_five_bar_skeleton_batch(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    const hybrid_five_bar_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->L0), cf_abs(params->L1)), cf_abs(params->L2));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_2) & CF_SIGN) != 0)) {
+        hybrid_five_bar_skeleton_other_sizes(n, params, q, q_stride, points, points_stride);
+        return;
+    }
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + q_stride + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + start, sines[2], cosines[2]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
+            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
+            real_t points_i[30];
+            hybrid_five_bar_skeleton_kernel(0, &local, q_i, sines_i, cosines_i, points_i);
+            points[start + i] = points_i[0];
+            points[points_stride + start + i] = points_i[1];
+            points[2 * points_stride + start + i] = points_i[2];
+            points[3 * points_stride + start + i] = points_i[3];
+            points[4 * points_stride + start + i] = points_i[4];
+            points[5 * points_stride + start + i] = points_i[5];
+            points[6 * points_stride + start + i] = points_i[6];
+            points[7 * points_stride + start + i] = points_i[7];
+            points[8 * points_stride + start + i] = points_i[8];
+            points[9 * points_stride + start + i] = points_i[9];
+            points[10 * points_stride + start + i] = points_i[10];
+            points[11 * points_stride + start + i] = points_i[11];
+            points[12 * points_stride + start + i] = points_i[12];
+            points[13 * points_stride + start + i] = points_i[13];
+            points[14 * points_stride + start + i] = points_i[14];
+            points[15 * points_stride + start + i] = points_i[15];
+            points[16 * points_stride + start + i] = points_i[16];
+            points[17 * points_stride + start + i] = points_i[17];
+            points[18 * points_stride + start + i] = points_i[18];
+            points[19 * points_stride + start + i] = points_i[19];
+            points[20 * points_stride + start + i] = points_i[20];
+            points[21 * points_stride + start + i] = points_i[21];
+            points[22 * points_stride + start + i] = points_i[22];
+            points[23 * points_stride + start + i] = points_i[23];
+            points[24 * points_stride + start + i] = points_i[24];
+            points[25 * points_stride + start + i] = points_i[25];
+            points[26 * points_stride + start + i] = points_i[26];
+            points[27 * points_stride + start + i] = points_i[27];
+            points[28 * points_stride + start + i] = points_i[28];
+            points[29 * points_stride + start + i] = points_i[29];
         }
     }
 }

@@ -7,6 +7,7 @@
  *   fk: 22 add, 22 compare and select, 4 divide, 20 multiply, 3 sincos, 2 sqrt
  *   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 2
  *     sqrt
+ *   skeleton: 30 add, 21 compare and select, 5 divide, 22 multiply, 3 sincos, 2 sqrt
  *   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 20 multiply, 3 sincos, 2 sqrt
  *   jacobian_serial: 24 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 2 sqrt
  *   jacobian: 35 add, 21 compare and select, 17 divide, 43 multiply, 3 sincos, 2 sqrt
@@ -101,6 +102,30 @@ void hybrid_five_bar_passive_angles(const hybrid_five_bar_params *params,
 void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params *params,
     const real_t *q, size_t q_stride,
     real_t *theta, size_t theta_stride);
+
+/*
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta1, theta2, theta3 in rad.
+ *
+ * Outputs
+ * -------
+ * points : real_t[30], shape (2, 5, 3)
+ *     One column for each of theta1, theta2, theta3.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: left_of_CD, right_of_CD.
+ * - NaN for an assembly mode that does not exist.
+ */
+void hybrid_five_bar_skeleton(const hybrid_five_bar_params *params,
+    const real_t q[3], real_t points[30]);
+void hybrid_five_bar_skeleton_batch(size_t n, const hybrid_five_bar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride);
 
 /*
  * A of A*dp = B*dq; its rows are L2*k, p - c and p - d.

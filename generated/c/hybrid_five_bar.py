@@ -5,9 +5,12 @@ from closedform.generated.numpy.hybrid_five_bar import (
     BRANCHES,
     JOINTS,
     SINGULARITIES,
+    SKELETON,
     TASK,
     Parameters,
     Positions,
+    Skeleton,
+    SkeletonJoint,
     Solutions,
     Status,
 )
@@ -19,13 +22,17 @@ __all__ = [
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "fk",
     "passive_angles",
+    "skeleton",
     "jacobian_parallel",
     "jacobian_serial",
     "jacobian",
@@ -39,6 +46,7 @@ __all__ = [
 
 fk = _native.function("hybrid_five_bar.fk", Positions)
 passive_angles = _native.function("hybrid_five_bar.passive_angles")
+skeleton = _native.function("hybrid_five_bar.skeleton")
 jacobian_parallel = _native.function("hybrid_five_bar.jacobian_parallel")
 jacobian_serial = _native.function("hybrid_five_bar.jacobian_serial")
 jacobian = _native.function("hybrid_five_bar.jacobian")

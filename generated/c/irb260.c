@@ -9,6 +9,7 @@
  *   motors_from_joints: 1 add
  *   fk: 9 add, 10 multiply, 2 reduce to a turn, 3 sincos, 1 compare and select
  *   pose: 10 add, 14 multiply, 4 sincos
+ *   skeleton: 14 add, 3 divide, 18 multiply, 3 sincos
  *   jacobian: 6 add, 14 multiply, 3 sincos
  *   jacobian_space: 6 add, 14 multiply, 3 sincos
  *   jacobian_body: 6 add, 14 multiply, 3 sincos
@@ -294,6 +295,137 @@ void irb260_pose_batch(size_t n, const irb260_params *params,
             T[13 * T_stride + start + i] = T_i[13];
             T[14 * T_stride + start + i] = T_i[14];
             T[15 * T_stride + start + i] = T_i[15];
+        }
+    }
+}
+
+CF_INLINE void irb260_skeleton_kernel(const irb260_params *params, const real_t *sines,
+    const real_t *cosines, real_t points[33])
+{
+    const real_t l1 = params->l1;
+    const real_t l2 = params->l2;
+    const real_t l3 = params->l3;
+    const real_t l4 = params->l4;
+    const real_t l5 = params->l5;
+    const real_t l6 = params->l6;
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s2 = sines[1];
+    const real_t c2 = cosines[1];
+    const real_t s3 = sines[2];
+    const real_t c3 = cosines[2];
+    const real_t t1 = l1 * s1;
+    const real_t t2 = l1 * c1;
+    const real_t t3 = l1 + l3 * s2;
+    const real_t t4 = s1 * t3;
+    const real_t t5 = c1 * t3;
+    const real_t t6 = l2 + l3 * c2;
+    const real_t t7 = t3 + l4 * (c2 * c3 - s2 * s3);
+    const real_t t8 = -(s1 * t7);
+    const real_t t9 = c1 * t7;
+    const real_t t10 = t6 - l4 * (s2 * c3 + c2 * s3);
+    const real_t t11 = l6 + t7;
+    const real_t t12 = -(s1 * t11);
+    const real_t t13 = c1 * t11;
+    const real_t t14 = l3 * s1 * CLOSEDFORM_C(0.25);
+    const real_t t15 = l3 * c1 * CLOSEDFORM_C(0.25);
+    const real_t t16 = l3 * CLOSEDFORM_C(0.25);
+    points[0] = CLOSEDFORM_C(0.0);
+    points[1] = CLOSEDFORM_C(0.0);
+    points[2] = CLOSEDFORM_C(0.0);
+    points[3] = CLOSEDFORM_C(0.0);
+    points[4] = CLOSEDFORM_C(0.0);
+    points[5] = l2;
+    points[6] = -t1;
+    points[7] = t2;
+    points[8] = l2;
+    points[9] = -t4;
+    points[10] = t5;
+    points[11] = t6;
+    points[12] = t8;
+    points[13] = t9;
+    points[14] = t10;
+    points[15] = t12;
+    points[16] = t13;
+    points[17] = t10;
+    points[18] = t12;
+    points[19] = t13;
+    points[20] = t10 - l5;
+    points[21] = t14 - t1;
+    points[22] = t2 - t15;
+    points[23] = l2;
+    points[24] = t14 - t4;
+    points[25] = t5 - t15;
+    points[26] = t6;
+    points[27] = -t4;
+    points[28] = t5;
+    points[29] = t6 + t16;
+    points[30] = t8;
+    points[31] = t9;
+    points[32] = t16 + t10;
+}
+
+CLOSEDFORM_DISPATCHED
+void irb260_skeleton(const irb260_params *params, const real_t q[4],
+    real_t points[33])
+{
+    real_t sines[4], cosines[4];
+    const real_t lanes[4] = { q[0], q[1], q[2] };
+    cf_sincos_lanes(4, lanes, sines, cosines);
+    irb260_skeleton_kernel(params, sines, cosines, points);
+}
+
+CLOSEDFORM_DISPATCHED
+void irb260_skeleton_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    const irb260_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
+            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
+            real_t points_i[33];
+            irb260_skeleton_kernel(&local, sines_i, cosines_i, points_i);
+            points[start + i] = points_i[0];
+            points[points_stride + start + i] = points_i[1];
+            points[2 * points_stride + start + i] = points_i[2];
+            points[3 * points_stride + start + i] = points_i[3];
+            points[4 * points_stride + start + i] = points_i[4];
+            points[5 * points_stride + start + i] = points_i[5];
+            points[6 * points_stride + start + i] = points_i[6];
+            points[7 * points_stride + start + i] = points_i[7];
+            points[8 * points_stride + start + i] = points_i[8];
+            points[9 * points_stride + start + i] = points_i[9];
+            points[10 * points_stride + start + i] = points_i[10];
+            points[11 * points_stride + start + i] = points_i[11];
+            points[12 * points_stride + start + i] = points_i[12];
+            points[13 * points_stride + start + i] = points_i[13];
+            points[14 * points_stride + start + i] = points_i[14];
+            points[15 * points_stride + start + i] = points_i[15];
+            points[16 * points_stride + start + i] = points_i[16];
+            points[17 * points_stride + start + i] = points_i[17];
+            points[18 * points_stride + start + i] = points_i[18];
+            points[19 * points_stride + start + i] = points_i[19];
+            points[20 * points_stride + start + i] = points_i[20];
+            points[21 * points_stride + start + i] = points_i[21];
+            points[22 * points_stride + start + i] = points_i[22];
+            points[23 * points_stride + start + i] = points_i[23];
+            points[24 * points_stride + start + i] = points_i[24];
+            points[25 * points_stride + start + i] = points_i[25];
+            points[26 * points_stride + start + i] = points_i[26];
+            points[27 * points_stride + start + i] = points_i[27];
+            points[28 * points_stride + start + i] = points_i[28];
+            points[29 * points_stride + start + i] = points_i[29];
+            points[30 * points_stride + start + i] = points_i[30];
+            points[31 * points_stride + start + i] = points_i[31];
+            points[32 * points_stride + start + i] = points_i[32];
         }
     }
 }

@@ -9,6 +9,7 @@
  *   motors_from_joints: 1 add
  *   fk: 9 add, 10 multiply, 2 reduce to a turn, 3 sincos, 1 compare and select
  *   pose: 10 add, 14 multiply, 4 sincos
+ *   skeleton: 14 add, 3 divide, 18 multiply, 3 sincos
  *   jacobian: 6 add, 14 multiply, 3 sincos
  *   jacobian_space: 6 add, 14 multiply, 3 sincos
  *   jacobian_body: 6 add, 14 multiply, 3 sincos
@@ -160,6 +161,28 @@ void irb260_pose(const irb260_params *params, const real_t q[4],
 void irb260_pose_batch(size_t n, const irb260_params *params,
     const real_t *q, size_t q_stride,
     real_t *T, size_t T_stride);
+
+/*
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2, theta3, theta5 in rad.
+ *
+ * Outputs
+ * -------
+ * points : real_t[33], shape (11, 3)
+ *
+ * Notes
+ * -----
+ * - The rods are drawn at a quarter of l3; the paper gives no distance.
+ */
+void irb260_skeleton(const irb260_params *params, const real_t q[4],
+    real_t points[33]);
+void irb260_skeleton_batch(size_t n, const irb260_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride);
 
 /*
  * Derivative of (x, y, z, yaw) with respect to the joint angles.

@@ -5,9 +5,12 @@ from closedform.generated.numpy.irb260 import (
     BRANCHES,
     JOINTS,
     SINGULARITIES,
+    SKELETON,
     TASK,
     Parameters,
     Positions,
+    Skeleton,
+    SkeletonJoint,
     Solutions,
     Status,
 )
@@ -19,9 +22,12 @@ __all__ = [
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "joint4",
@@ -29,6 +35,7 @@ __all__ = [
     "motors_from_joints",
     "fk",
     "pose",
+    "skeleton",
     "jacobian",
     "jacobian_space",
     "jacobian_body",
@@ -47,6 +54,7 @@ joints_from_motors = _native.function("irb260.joints_from_motors")
 motors_from_joints = _native.function("irb260.motors_from_joints")
 fk = _native.function("irb260.fk")
 pose = _native.function("irb260.pose")
+skeleton = _native.function("irb260.skeleton")
 jacobian = _native.function("irb260.jacobian")
 jacobian_space = _native.function("irb260.jacobian_space")
 jacobian_body = _native.function("irb260.jacobian_body")

@@ -7,6 +7,7 @@
  *   fk: 4 add, 8 multiply, 2 sincos
  *   pose: 4 add, 8 multiply, 2 sincos
  *   orientation: 1 add, 2 reduce to a turn, 1 compare and select
+ *   skeleton: 4 add, 8 multiply, 2 sincos
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos
@@ -175,6 +176,68 @@ void planar_2r_orientation_batch(size_t n, const planar_2r_params *params,
             real_t phi_i[1];
             planar_2r_orientation_kernel(principals_i, phi_i);
             phi[start + i] = phi_i[0];
+        }
+    }
+}
+
+CF_INLINE void planar_2r_skeleton_kernel(const planar_2r_params *params, const real_t *sines,
+    const real_t *cosines, real_t points[9])
+{
+    const real_t l1 = params->l1;
+    const real_t l2 = params->l2;
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s2 = sines[1];
+    const real_t c2 = cosines[1];
+    const real_t t1 = l1 * c1;
+    const real_t t2 = l1 * s1;
+    points[0] = CLOSEDFORM_C(0.0);
+    points[1] = CLOSEDFORM_C(0.0);
+    points[2] = CLOSEDFORM_C(0.0);
+    points[3] = t1;
+    points[4] = t2;
+    points[5] = CLOSEDFORM_C(0.0);
+    points[6] = t1 + l2 * (c1 * c2 - s1 * s2);
+    points[7] = t2 + l2 * (s1 * c2 + c1 * s2);
+    points[8] = CLOSEDFORM_C(0.0);
+}
+
+CLOSEDFORM_DISPATCHED
+void planar_2r_skeleton(const planar_2r_params *params, const real_t q[2],
+    real_t points[9])
+{
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[0], q[1] };
+    cf_sincos_lanes(2, lanes, sines, cosines);
+    planar_2r_skeleton_kernel(params, sines, cosines, points);
+}
+
+CLOSEDFORM_DISPATCHED
+void planar_2r_skeleton_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    const planar_2r_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
+            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
+            real_t points_i[9];
+            planar_2r_skeleton_kernel(&local, sines_i, cosines_i, points_i);
+            points[start + i] = points_i[0];
+            points[points_stride + start + i] = points_i[1];
+            points[2 * points_stride + start + i] = points_i[2];
+            points[3 * points_stride + start + i] = points_i[3];
+            points[4 * points_stride + start + i] = points_i[4];
+            points[5 * points_stride + start + i] = points_i[5];
+            points[6 * points_stride + start + i] = points_i[6];
+            points[7 * points_stride + start + i] = points_i[7];
+            points[8 * points_stride + start + i] = points_i[8];
         }
     }
 }

@@ -7,6 +7,7 @@
  *   fk: 4 add, 8 multiply, 2 sincos
  *   pose: 4 add, 8 multiply, 2 sincos
  *   orientation: 1 add, 2 reduce to a turn, 1 compare and select
+ *   skeleton: 4 add, 8 multiply, 2 sincos
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
  *   manipulability: 1 compare and select, 2 multiply, 1 sincos
@@ -101,6 +102,24 @@ void planar_2r_orientation(const planar_2r_params *params, const real_t q[2],
 void planar_2r_orientation_batch(size_t n, const planar_2r_params *params,
     const real_t *q, size_t q_stride,
     real_t *phi, size_t phi_stride);
+
+/*
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     theta1, theta2 in rad.
+ *
+ * Outputs
+ * -------
+ * points : real_t[9], shape (3, 3)
+ */
+void planar_2r_skeleton(const planar_2r_params *params, const real_t q[2],
+    real_t points[9]);
+void planar_2r_skeleton_batch(size_t n, const planar_2r_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride);
 
 /*
  * Derivative of (x, y, phi) with respect to (theta1, theta2).

@@ -5,9 +5,12 @@ from closedform.generated.numpy.planar_2r import (
     BRANCHES,
     JOINTS,
     SINGULARITIES,
+    SKELETON,
     TASK,
     Parameters,
     Positions,
+    Skeleton,
+    SkeletonJoint,
     Solutions,
     Status,
 )
@@ -19,14 +22,18 @@ __all__ = [
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "fk",
     "pose",
     "orientation",
+    "skeleton",
     "jacobian",
     "determinant",
     "manipulability",
@@ -39,6 +46,7 @@ __all__ = [
 fk = _native.function("planar_2r.fk")
 pose = _native.function("planar_2r.pose")
 orientation = _native.function("planar_2r.orientation")
+skeleton = _native.function("planar_2r.skeleton")
 jacobian = _native.function("planar_2r.jacobian")
 determinant = _native.function("planar_2r.determinant")
 manipulability = _native.function("planar_2r.manipulability")

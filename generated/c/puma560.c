@@ -5,6 +5,7 @@
  *     560 in the textbooks.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   pose: 24 add, 52 multiply, 6 sincos
+ *   skeleton: 11 add, 19 multiply, 3 sincos
  *   fk: 24 add, 52 multiply, 6 sincos
  *   jacobian: 14 add, 36 multiply, 5 sincos
  *   determinant: 5 add, 12 multiply, 3 sincos
@@ -115,6 +116,95 @@ void puma560_pose_batch(size_t n, const puma560_params *params,
             T[13 * T_stride + start + i] = T_i[13];
             T[14 * T_stride + start + i] = T_i[14];
             T[15 * T_stride + start + i] = T_i[15];
+        }
+    }
+}
+
+CF_INLINE void puma560_skeleton_kernel(const puma560_params *params, const real_t *sines,
+    const real_t *cosines, real_t points[15])
+{
+    const real_t a2 = params->a2;
+    const real_t a3 = params->a3;
+    const real_t d3 = params->d3;
+    const real_t d4 = params->d4;
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s2 = sines[1];
+    const real_t c2 = cosines[1];
+    const real_t s3 = sines[2];
+    const real_t c3 = cosines[2];
+    const real_t t1 = a2 * c2;
+    const real_t t2 = c1 * t1;
+    const real_t t3 = s1 * t1;
+    const real_t t4 = a2 * s2;
+    const real_t t5 = d3 * s1;
+    const real_t t6 = d3 * c1;
+    const real_t c23 = c2 * c3 - s2 * s3;
+    const real_t t7 = t1 + a3 * c23;
+    const real_t p2_11 = t5 + c1 * t7;
+    const real_t t8 = t6 - s1 * t7;
+    const real_t s23 = s2 * c3 + c2 * s3;
+    const real_t p2_31 = t4 + a3 * s23;
+    points[0] = CLOSEDFORM_C(0.0);
+    points[1] = CLOSEDFORM_C(0.0);
+    points[2] = CLOSEDFORM_C(0.0);
+    points[3] = t2;
+    points[4] = t3;
+    points[5] = t4;
+    points[6] = t5 + t2;
+    points[7] = t3 - t6;
+    points[8] = t4;
+    points[9] = p2_11;
+    points[10] = -t8;
+    points[11] = p2_31;
+    points[12] = p2_11 - d4 * (c1 * s23);
+    points[13] = -(t8 + d4 * (s1 * s23));
+    points[14] = p2_31 + d4 * c23;
+}
+
+CLOSEDFORM_DISPATCHED
+void puma560_skeleton(const puma560_params *params, const real_t q[6],
+    real_t points[15])
+{
+    real_t sines[4], cosines[4];
+    const real_t lanes[4] = { q[0], q[1], q[2] };
+    cf_sincos_lanes(4, lanes, sines, cosines);
+    puma560_skeleton_kernel(params, sines, cosines, points);
+}
+
+CLOSEDFORM_DISPATCHED
+void puma560_skeleton_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    const puma560_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
+            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
+            real_t points_i[15];
+            puma560_skeleton_kernel(&local, sines_i, cosines_i, points_i);
+            points[start + i] = points_i[0];
+            points[points_stride + start + i] = points_i[1];
+            points[2 * points_stride + start + i] = points_i[2];
+            points[3 * points_stride + start + i] = points_i[3];
+            points[4 * points_stride + start + i] = points_i[4];
+            points[5 * points_stride + start + i] = points_i[5];
+            points[6 * points_stride + start + i] = points_i[6];
+            points[7 * points_stride + start + i] = points_i[7];
+            points[8 * points_stride + start + i] = points_i[8];
+            points[9 * points_stride + start + i] = points_i[9];
+            points[10 * points_stride + start + i] = points_i[10];
+            points[11 * points_stride + start + i] = points_i[11];
+            points[12 * points_stride + start + i] = points_i[12];
+            points[13 * points_stride + start + i] = points_i[13];
+            points[14 * points_stride + start + i] = points_i[14];
         }
     }
 }

@@ -5,6 +5,7 @@
  *     560 in the textbooks.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   pose: 24 add, 52 multiply, 6 sincos
+ *   skeleton: 11 add, 19 multiply, 3 sincos
  *   fk: 24 add, 52 multiply, 6 sincos
  *   jacobian: 14 add, 36 multiply, 5 sincos
  *   determinant: 5 add, 12 multiply, 3 sincos
@@ -57,6 +58,24 @@ void puma560_pose(const puma560_params *params, const real_t q[6],
 void puma560_pose_batch(size_t n, const puma560_params *params,
     const real_t *q, size_t q_stride,
     real_t *T, size_t T_stride);
+
+/*
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * points : real_t[15], shape (5, 3)
+ */
+void puma560_skeleton(const puma560_params *params, const real_t q[6],
+    real_t points[15]);
+void puma560_skeleton_batch(size_t n, const puma560_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride);
 
 /*
  * Pose of the tool in the base frame.

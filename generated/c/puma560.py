@@ -5,9 +5,12 @@ from closedform.generated.numpy.puma560 import (
     BRANCHES,
     JOINTS,
     SINGULARITIES,
+    SKELETON,
     TASK,
     Parameters,
     Positions,
+    Skeleton,
+    SkeletonJoint,
     Solutions,
     Status,
 )
@@ -19,12 +22,16 @@ __all__ = [
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "pose",
+    "skeleton",
     "fk",
     "jacobian",
     "determinant",
@@ -35,6 +42,7 @@ __all__ = [
 ]
 
 pose = _native.function("puma560.pose")
+skeleton = _native.function("puma560.skeleton")
 fk = _native.function("puma560.fk")
 jacobian = _native.function("puma560.jacobian")
 determinant = _native.function("puma560.determinant")

@@ -5,6 +5,7 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
  *   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
+ *   skeleton: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
  *   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
  *   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
  *   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
@@ -251,6 +252,144 @@ void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params,
             excess |= rpr_planar_passive_angles_excess(dimensions, q + start, q_stride, i);
         if (CF_UNLIKELY((excess & CF_SIGN) != 0))
             rpr_planar_passive_angles_other_sizes(length, dimensions, params, q + start, q_stride, theta + start, theta_stride);
+    }
+}
+
+CF_INLINE void rpr_planar_skeleton_kernel(const int single, const rpr_planar_params *params,
+    const real_t q[2], real_t points[18])
+{
+    const real_t b = params->b;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const int t1 = cf_nought(b) == 0;
+    const int t2 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t3 = rho1 + rho2;
+    const real_t t4 = b + t3;
+    const real_t t5 = -(CLOSEDFORM_FEASIBILITY * t4);
+    const real_t t6 = t3 - b;
+    const real_t t7 = rho1 - rho2;
+    const real_t t8 = b + t7;
+    const real_t t9 = b - t7;
+    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!((t5 <= t6) & (t5 <= t8) & (t5 <= t9)));
+    const real_t t10 = cf_poison(single, failed);
+    const real_t t11 = CLOSEDFORM_C(0.0) + t10;
+    const real_t t12 = b + t10;
+    const real_t t13 = CLOSEDFORM_VANISHING * t4;
+    const int coincide = b <= t13;
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
+    const real_t t14 = b * CLOSEDFORM_C(2.0);
+    const real_t t15 = b * CLOSEDFORM_C(0.5) + t7 * t3 / cf_divisor(single, coincide, t14);
+    const real_t t16 = n_1 * cf_select(coincide, rho1, t15) + t10;
+    const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t17 = slack * cf_max(t8, CLOSEDFORM_C(0.0)) * cf_max(t9, CLOSEDFORM_C(0.0));
+    const real_t t18 = cf_root(single, t4) * cf_sqrt(t17) / cf_divisor(single, coincide | (slack <= t13), t14);
+    const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t18));
+    const real_t P_y = n_1 * height;
+    points[0] = t11;
+    points[1] = t11;
+    points[2] = t11;
+    points[3] = t12;
+    points[4] = t11;
+    points[5] = t11;
+    points[6] = t16;
+    points[7] = P_y + t10;
+    points[8] = t11;
+    points[9] = t11;
+    points[10] = t11;
+    points[11] = t11;
+    points[12] = t12;
+    points[13] = t11;
+    points[14] = t11;
+    points[15] = t16;
+    points[16] = -P_y + t10;
+    points[17] = t11;
+}
+
+CLOSEDFORM_DISPATCHED
+void rpr_planar_skeleton(const rpr_planar_params *params, const real_t q[2],
+    real_t points[18])
+{
+    static const signed char q_degrees[2] = { 1, 1 };
+    static const signed char points_degrees[18] = { 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0 };
+    real_t q_scaled[2];
+    rpr_planar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->b), cf_abs(q[0])), cf_abs(q[1]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.b = CF_LIBM(ldexp)(params->b, -exponent);
+        params = &params_scaled;
+        cf_rescale(2, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
+    rpr_planar_skeleton_kernel(1, params, q, points);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(18, points_degrees, exponent, points, points);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word rpr_planar_skeleton_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_abs(q[q_stride + i])), CF_SIZES_3);
+}
+
+CF_RARE void rpr_planar_skeleton_other_sizes(size_t n, const real_t dimensions,
+    const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(rpr_planar_skeleton_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t points_i[18];
+        rpr_planar_skeleton(params, q_i, points_i);
+        for (size_t k = 0; k < 18; ++k) points[k * points_stride + i] = points_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void rpr_planar_skeleton_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    const rpr_planar_params local = *params;
+    const real_t dimensions = cf_abs(params->b);
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
+            real_t points_i[18];
+            rpr_planar_skeleton_kernel(0, &local, q_i, points_i);
+            points[start + i] = points_i[0];
+            points[points_stride + start + i] = points_i[1];
+            points[2 * points_stride + start + i] = points_i[2];
+            points[3 * points_stride + start + i] = points_i[3];
+            points[4 * points_stride + start + i] = points_i[4];
+            points[5 * points_stride + start + i] = points_i[5];
+            points[6 * points_stride + start + i] = points_i[6];
+            points[7 * points_stride + start + i] = points_i[7];
+            points[8 * points_stride + start + i] = points_i[8];
+            points[9 * points_stride + start + i] = points_i[9];
+            points[10 * points_stride + start + i] = points_i[10];
+            points[11 * points_stride + start + i] = points_i[11];
+            points[12 * points_stride + start + i] = points_i[12];
+            points[13 * points_stride + start + i] = points_i[13];
+            points[14 * points_stride + start + i] = points_i[14];
+            points[15 * points_stride + start + i] = points_i[15];
+            points[16 * points_stride + start + i] = points_i[16];
+            points[17 * points_stride + start + i] = points_i[17];
+        }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= rpr_planar_skeleton_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            rpr_planar_skeleton_other_sizes(length, dimensions, params, q + start, q_stride, points + start, points_stride);
     }
 }
 

@@ -5,6 +5,7 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
  *   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
+ *   skeleton: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
  *   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
  *   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
  *   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
@@ -87,6 +88,28 @@ void rpr_planar_passive_angles(const rpr_planar_params *params, const real_t q[2
 void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params,
     const real_t *q, size_t q_stride,
     real_t *theta, size_t theta_stride);
+
+/*
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     rho1, rho2 in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * points : real_t[18], shape (2, 3, 3)
+ *
+ * Notes
+ * -----
+ * - Branches in this order: above, below.
+ */
+void rpr_planar_skeleton(const rpr_planar_params *params, const real_t q[2],
+    real_t points[18]);
+void rpr_planar_skeleton_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride);
 
 /*
  * Derivative of p with respect to q, A^-1 B.

@@ -5,9 +5,12 @@ from closedform.generated.numpy.rpr_planar import (
     BRANCHES,
     JOINTS,
     SINGULARITIES,
+    SKELETON,
     TASK,
     Parameters,
     Positions,
+    Skeleton,
+    SkeletonJoint,
     Solutions,
     Status,
 )
@@ -19,13 +22,17 @@ __all__ = [
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "fk",
     "passive_angles",
+    "skeleton",
     "jacobian",
     "determinant",
     "singularities",
@@ -34,6 +41,7 @@ __all__ = [
 
 fk = _native.function("rpr_planar.fk", Positions)
 passive_angles = _native.function("rpr_planar.passive_angles")
+skeleton = _native.function("rpr_planar.skeleton")
 jacobian = _native.function("rpr_planar.jacobian")
 determinant = _native.function("rpr_planar.determinant")
 singularities = _native.function("rpr_planar.singularities")

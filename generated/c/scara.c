@@ -4,6 +4,7 @@
  * Source: The closedform authors: Arms of common structure, solved by lemmas.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   pose: 9 add, 16 multiply, 3 sincos
+ *   skeleton: 5 add, 8 multiply, 2 sincos
  *   fk: 7 add, 8 multiply, 3 reduce to a turn, 2 sincos, 1 compare and select
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
@@ -95,6 +96,86 @@ void scara_pose_batch(size_t n, const scara_params *params,
             T[13 * T_stride + start + i] = T_i[13];
             T[14 * T_stride + start + i] = T_i[14];
             T[15 * T_stride + start + i] = T_i[15];
+        }
+    }
+}
+
+CF_INLINE void scara_skeleton_kernel(const scara_params *params, const real_t q[4],
+    const real_t *sines, const real_t *cosines,
+    real_t points[15])
+{
+    const real_t l1 = params->l1;
+    const real_t l2 = params->l2;
+    const real_t h = params->h;
+    const real_t d3 = q[2];
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s2 = sines[1];
+    const real_t c2 = cosines[1];
+    const real_t t1 = l1 * c1;
+    const real_t t2 = l1 * s1;
+    const real_t t3 = t1 + l2 * (c1 * c2 - s1 * s2);
+    const real_t t4 = t2 + l2 * (s1 * c2 + c1 * s2);
+    points[0] = CLOSEDFORM_C(0.0);
+    points[1] = CLOSEDFORM_C(0.0);
+    points[2] = CLOSEDFORM_C(0.0);
+    points[3] = CLOSEDFORM_C(0.0);
+    points[4] = CLOSEDFORM_C(0.0);
+    points[5] = h;
+    points[6] = t1;
+    points[7] = t2;
+    points[8] = h;
+    points[9] = t3;
+    points[10] = t4;
+    points[11] = h;
+    points[12] = t3;
+    points[13] = t4;
+    points[14] = h - d3;
+}
+
+CLOSEDFORM_DISPATCHED
+void scara_skeleton(const scara_params *params, const real_t q[4],
+    real_t points[15])
+{
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[0], q[1] };
+    cf_sincos_lanes(2, lanes, sines, cosines);
+    scara_skeleton_kernel(params, q, sines, cosines, points);
+}
+
+CLOSEDFORM_DISPATCHED
+void scara_skeleton_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    const scara_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[4] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i] };
+            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
+            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
+            real_t points_i[15];
+            scara_skeleton_kernel(&local, q_i, sines_i, cosines_i, points_i);
+            points[start + i] = points_i[0];
+            points[points_stride + start + i] = points_i[1];
+            points[2 * points_stride + start + i] = points_i[2];
+            points[3 * points_stride + start + i] = points_i[3];
+            points[4 * points_stride + start + i] = points_i[4];
+            points[5 * points_stride + start + i] = points_i[5];
+            points[6 * points_stride + start + i] = points_i[6];
+            points[7 * points_stride + start + i] = points_i[7];
+            points[8 * points_stride + start + i] = points_i[8];
+            points[9 * points_stride + start + i] = points_i[9];
+            points[10 * points_stride + start + i] = points_i[10];
+            points[11 * points_stride + start + i] = points_i[11];
+            points[12 * points_stride + start + i] = points_i[12];
+            points[13 * points_stride + start + i] = points_i[13];
+            points[14 * points_stride + start + i] = points_i[14];
         }
     }
 }

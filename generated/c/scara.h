@@ -4,6 +4,7 @@
  * Source: The closedform authors: Arms of common structure, solved by lemmas.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   pose: 9 add, 16 multiply, 3 sincos
+ *   skeleton: 5 add, 8 multiply, 2 sincos
  *   fk: 7 add, 8 multiply, 3 reduce to a turn, 2 sincos, 1 compare and select
  *   jacobian: 4 add, 8 multiply, 2 sincos
  *   determinant: 2 multiply, 1 sincos
@@ -55,6 +56,24 @@ void scara_pose(const scara_params *params, const real_t q[4],
 void scara_pose_batch(size_t n, const scara_params *params,
     const real_t *q, size_t q_stride,
     real_t *T, size_t T_stride);
+
+/*
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[4]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+ *
+ * Outputs
+ * -------
+ * points : real_t[15], shape (5, 3)
+ */
+void scara_skeleton(const scara_params *params, const real_t q[4],
+    real_t points[15]);
+void scara_skeleton_batch(size_t n, const scara_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride);
 
 /*
  * Task coordinates (x, y, z, yaw).

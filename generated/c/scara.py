@@ -5,9 +5,12 @@ from closedform.generated.numpy.scara import (
     BRANCHES,
     JOINTS,
     SINGULARITIES,
+    SKELETON,
     TASK,
     Parameters,
     Positions,
+    Skeleton,
+    SkeletonJoint,
     Solutions,
     Status,
 )
@@ -19,12 +22,16 @@ __all__ = [
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "pose",
+    "skeleton",
     "fk",
     "jacobian",
     "determinant",
@@ -35,6 +42,7 @@ __all__ = [
 ]
 
 pose = _native.function("scara.pose")
+skeleton = _native.function("scara.skeleton")
 fk = _native.function("scara.fk")
 jacobian = _native.function("scara.jacobian")
 determinant = _native.function("scara.determinant")

@@ -6,6 +6,7 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 4 add, 12 multiply, 3 sincos
  *   pose: 4 add, 16 multiply, 3 sincos
+ *   skeleton: 4 multiply, 2 sincos
  *   jacobian_space: 2 multiply, 2 sincos
  *   jacobian_body: 2 multiply, 2 sincos
  *   determinant: 1 sincos
@@ -158,6 +159,61 @@ void spherical_wrist_pose_batch(size_t n, const spherical_wrist_params *params,
             T[13 * T_stride + start + i] = T_i[13];
             T[14 * T_stride + start + i] = T_i[14];
             T[15 * T_stride + start + i] = T_i[15];
+        }
+    }
+}
+
+CF_INLINE void spherical_wrist_skeleton_kernel(const spherical_wrist_params *params,
+    const real_t *sines, const real_t *cosines,
+    real_t points[6])
+{
+    const real_t d6 = params->d6;
+    const real_t s4 = sines[0];
+    const real_t c4 = cosines[0];
+    const real_t s5 = sines[1];
+    const real_t c5 = cosines[1];
+    const real_t t1 = d6 * s5;
+    points[0] = CLOSEDFORM_C(0.0);
+    points[1] = CLOSEDFORM_C(0.0);
+    points[2] = CLOSEDFORM_C(0.0);
+    points[3] = c4 * t1;
+    points[4] = s4 * t1;
+    points[5] = d6 * c5;
+}
+
+CLOSEDFORM_DISPATCHED
+void spherical_wrist_skeleton(const spherical_wrist_params *params,
+    const real_t q[3], real_t points[6])
+{
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[0], q[1] };
+    cf_sincos_lanes(2, lanes, sines, cosines);
+    spherical_wrist_skeleton_kernel(params, sines, cosines, points);
+}
+
+CLOSEDFORM_DISPATCHED
+void spherical_wrist_skeleton_batch(size_t n, const spherical_wrist_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    const spherical_wrist_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
+            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
+            real_t points_i[6];
+            spherical_wrist_skeleton_kernel(&local, sines_i, cosines_i, points_i);
+            points[start + i] = points_i[0];
+            points[points_stride + start + i] = points_i[1];
+            points[2 * points_stride + start + i] = points_i[2];
+            points[3 * points_stride + start + i] = points_i[3];
+            points[4 * points_stride + start + i] = points_i[4];
+            points[5 * points_stride + start + i] = points_i[5];
         }
     }
 }

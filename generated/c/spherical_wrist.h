@@ -6,6 +6,7 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 4 add, 12 multiply, 3 sincos
  *   pose: 4 add, 16 multiply, 3 sincos
+ *   skeleton: 4 multiply, 2 sincos
  *   jacobian_space: 2 multiply, 2 sincos
  *   jacobian_body: 2 multiply, 2 sincos
  *   determinant: 1 sincos
@@ -76,6 +77,25 @@ void spherical_wrist_pose(const spherical_wrist_params *params,
 void spherical_wrist_pose_batch(size_t n, const spherical_wrist_params *params,
     const real_t *q, size_t q_stride,
     real_t *T, size_t T_stride);
+
+/*
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * points : real_t[6], shape (2, 3)
+ *     One column for each of theta4, theta5, theta6.
+ */
+void spherical_wrist_skeleton(const spherical_wrist_params *params,
+    const real_t q[3], real_t points[6]);
+void spherical_wrist_skeleton_batch(size_t n, const spherical_wrist_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride);
 
 /*
  * Angular velocity in the base frame per joint rate.

@@ -5,9 +5,12 @@ from closedform.generated.numpy.spherical_wrist import (
     BRANCHES,
     JOINTS,
     SINGULARITIES,
+    SKELETON,
     TASK,
     Parameters,
     Positions,
+    Skeleton,
+    SkeletonJoint,
     Solutions,
     Status,
 )
@@ -19,13 +22,17 @@ __all__ = [
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "fk",
     "pose",
+    "skeleton",
     "jacobian_space",
     "jacobian_body",
     "determinant",
@@ -35,6 +42,7 @@ __all__ = [
 
 fk = _native.function("spherical_wrist.fk")
 pose = _native.function("spherical_wrist.pose")
+skeleton = _native.function("spherical_wrist.skeleton")
 jacobian_space = _native.function("spherical_wrist.jacobian_space")
 jacobian_body = _native.function("spherical_wrist.jacobian_body")
 determinant = _native.function("spherical_wrist.determinant")

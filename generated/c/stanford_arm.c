@@ -5,6 +5,7 @@
  *     textbooks.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   pose: 18 add, 44 multiply, 5 sincos
+ *   skeleton: 2 add, 7 multiply, 2 sincos
  *   fk: 18 add, 44 multiply, 5 sincos
  *   jacobian: 8 add, 26 multiply, 4 sincos
  *   determinant: 3 multiply, 2 sincos
@@ -112,6 +113,70 @@ void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params,
             T[13 * T_stride + start + i] = T_i[13];
             T[14 * T_stride + start + i] = T_i[14];
             T[15 * T_stride + start + i] = T_i[15];
+        }
+    }
+}
+
+CF_INLINE void stanford_arm_skeleton_kernel(const stanford_arm_params *params,
+    const real_t q[6], const real_t *sines,
+    const real_t *cosines, real_t points[9])
+{
+    const real_t d2 = params->d2;
+    const real_t d3 = q[2];
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s2 = sines[1];
+    const real_t c2 = cosines[1];
+    const real_t t1 = d2 * s1;
+    const real_t p2_21 = d2 * c1;
+    points[0] = CLOSEDFORM_C(0.0);
+    points[1] = CLOSEDFORM_C(0.0);
+    points[2] = CLOSEDFORM_C(0.0);
+    points[3] = -t1;
+    points[4] = p2_21;
+    points[5] = CLOSEDFORM_C(0.0);
+    points[6] = d3 * (c1 * s2) - t1;
+    points[7] = p2_21 + d3 * (s1 * s2);
+    points[8] = d3 * c2;
+}
+
+CLOSEDFORM_DISPATCHED
+void stanford_arm_skeleton(const stanford_arm_params *params,
+    const real_t q[6], real_t points[9])
+{
+    real_t sines[2], cosines[2];
+    const real_t lanes[2] = { q[0], q[1] };
+    cf_sincos_lanes(2, lanes, sines, cosines);
+    stanford_arm_skeleton_kernel(params, q, sines, cosines, points);
+}
+
+CLOSEDFORM_DISPATCHED
+void stanford_arm_skeleton_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    const stanford_arm_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[2][CLOSEDFORM_BLOCK], cosines[2][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[6] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i], q[3 * q_stride + start + i], q[4 * q_stride + start + i], q[5 * q_stride + start + i] };
+            const real_t sines_i[2] = { sines[0][i], sines[1][i] };
+            const real_t cosines_i[2] = { cosines[0][i], cosines[1][i] };
+            real_t points_i[9];
+            stanford_arm_skeleton_kernel(&local, q_i, sines_i, cosines_i, points_i);
+            points[start + i] = points_i[0];
+            points[points_stride + start + i] = points_i[1];
+            points[2 * points_stride + start + i] = points_i[2];
+            points[3 * points_stride + start + i] = points_i[3];
+            points[4 * points_stride + start + i] = points_i[4];
+            points[5 * points_stride + start + i] = points_i[5];
+            points[6 * points_stride + start + i] = points_i[6];
+            points[7 * points_stride + start + i] = points_i[7];
+            points[8 * points_stride + start + i] = points_i[8];
         }
     }
 }

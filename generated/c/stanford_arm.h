@@ -5,6 +5,7 @@
  *     textbooks.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   pose: 18 add, 44 multiply, 5 sincos
+ *   skeleton: 2 add, 7 multiply, 2 sincos
  *   fk: 18 add, 44 multiply, 5 sincos
  *   jacobian: 8 add, 26 multiply, 4 sincos
  *   determinant: 3 multiply, 2 sincos
@@ -56,6 +57,24 @@ void stanford_arm_pose(const stanford_arm_params *params,
 void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params,
     const real_t *q, size_t q_stride,
     real_t *T, size_t T_stride);
+
+/*
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * points : real_t[9], shape (3, 3)
+ */
+void stanford_arm_skeleton(const stanford_arm_params *params,
+    const real_t q[6], real_t points[9]);
+void stanford_arm_skeleton_batch(size_t n, const stanford_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride);
 
 /*
  * Pose of the tool in the base frame.

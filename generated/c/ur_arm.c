@@ -4,6 +4,7 @@
  * Source: The closedform authors: Arms of common structure, solved by lemmas.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   pose: 26 add, 52 multiply, 6 sincos
+ *   skeleton: 19 add, 37 multiply, 5 sincos
  *   fk: 26 add, 52 multiply, 6 sincos
  *   jacobian: 19 add, 46 multiply, 5 sincos
  *   determinant: 6 add, 15 multiply, 4 sincos
@@ -118,6 +119,118 @@ void ur_arm_pose_batch(size_t n, const ur_arm_params *params,
             T[13 * T_stride + start + i] = T_i[13];
             T[14 * T_stride + start + i] = T_i[14];
             T[15 * T_stride + start + i] = T_i[15];
+        }
+    }
+}
+
+CF_INLINE void ur_arm_skeleton_kernel(const ur_arm_params *params, const real_t *sines,
+    const real_t *cosines, real_t points[21])
+{
+    const real_t d1 = params->d1;
+    const real_t L2 = params->L2;
+    const real_t L3 = params->L3;
+    const real_t d4 = params->d4;
+    const real_t d5 = params->d5;
+    const real_t d6 = params->d6;
+    const real_t s1 = sines[0];
+    const real_t c1 = cosines[0];
+    const real_t s2 = sines[1];
+    const real_t c2 = cosines[1];
+    const real_t s3 = sines[2];
+    const real_t c3 = cosines[2];
+    const real_t s4 = sines[3];
+    const real_t c4 = cosines[3];
+    const real_t s5 = sines[4];
+    const real_t c5 = cosines[4];
+    const real_t t1 = L2 * c2;
+    const real_t t2 = d1 - L2 * s2;
+    const real_t t3 = t1 + L3 * (c2 * c3 - s2 * s3);
+    const real_t t4 = c1 * t3;
+    const real_t t5 = s1 * t3;
+    const real_t t6 = L3 * (s2 * c3 + c2 * s3) - t2;
+    const real_t p2_11 = d4 * s1 - t4;
+    const real_t t7 = d4 * c1 + t5;
+    const real_t c34 = c3 * c4 - s3 * s4;
+    const real_t s34 = s3 * c4 + c3 * s4;
+    const real_t s234 = s2 * c34 + c2 * s34;
+    const real_t p3_11 = p2_11 + d5 * (c1 * s234);
+    const real_t t8 = t7 - d5 * (s1 * s234);
+    const real_t c234 = c2 * c34 - s2 * s34;
+    const real_t t9 = d5 * c234 + t6;
+    points[0] = CLOSEDFORM_C(0.0);
+    points[1] = CLOSEDFORM_C(0.0);
+    points[2] = CLOSEDFORM_C(0.0);
+    points[3] = CLOSEDFORM_C(0.0);
+    points[4] = CLOSEDFORM_C(0.0);
+    points[5] = d1;
+    points[6] = -(c1 * t1);
+    points[7] = -(s1 * t1);
+    points[8] = t2;
+    points[9] = -t4;
+    points[10] = -t5;
+    points[11] = -t6;
+    points[12] = p2_11;
+    points[13] = -t7;
+    points[14] = -t6;
+    points[15] = p3_11;
+    points[16] = -t8;
+    points[17] = -t9;
+    points[18] = p3_11 - d6 * (c1 * c234 * s5 - s1 * c5);
+    points[19] = -(t8 + d6 * (c1 * c5 + s1 * c234 * s5));
+    points[20] = -(d6 * (s234 * s5) + t9);
+}
+
+CLOSEDFORM_DISPATCHED
+void ur_arm_skeleton(const ur_arm_params *params, const real_t q[6],
+    real_t points[21])
+{
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { q[0], q[1], q[2], q[3], q[4] };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    ur_arm_skeleton_kernel(params, sines, cosines, points);
+}
+
+CLOSEDFORM_DISPATCHED
+void ur_arm_skeleton_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride)
+{
+    const ur_arm_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[5][CLOSEDFORM_BLOCK], cosines[5][CLOSEDFORM_BLOCK];
+        cf_sincos_block(length, q + start, sines[0], cosines[0]);
+        cf_sincos_block(length, q + q_stride + start, sines[1], cosines[1]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[2], cosines[2]);
+        cf_sincos_block(length, q + 3 * q_stride + start, sines[3], cosines[3]);
+        cf_sincos_block(length, q + 4 * q_stride + start, sines[4], cosines[4]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t sines_i[5] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i] };
+            const real_t cosines_i[5] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i] };
+            real_t points_i[21];
+            ur_arm_skeleton_kernel(&local, sines_i, cosines_i, points_i);
+            points[start + i] = points_i[0];
+            points[points_stride + start + i] = points_i[1];
+            points[2 * points_stride + start + i] = points_i[2];
+            points[3 * points_stride + start + i] = points_i[3];
+            points[4 * points_stride + start + i] = points_i[4];
+            points[5 * points_stride + start + i] = points_i[5];
+            points[6 * points_stride + start + i] = points_i[6];
+            points[7 * points_stride + start + i] = points_i[7];
+            points[8 * points_stride + start + i] = points_i[8];
+            points[9 * points_stride + start + i] = points_i[9];
+            points[10 * points_stride + start + i] = points_i[10];
+            points[11 * points_stride + start + i] = points_i[11];
+            points[12 * points_stride + start + i] = points_i[12];
+            points[13 * points_stride + start + i] = points_i[13];
+            points[14 * points_stride + start + i] = points_i[14];
+            points[15 * points_stride + start + i] = points_i[15];
+            points[16 * points_stride + start + i] = points_i[16];
+            points[17 * points_stride + start + i] = points_i[17];
+            points[18 * points_stride + start + i] = points_i[18];
+            points[19 * points_stride + start + i] = points_i[19];
+            points[20 * points_stride + start + i] = points_i[20];
         }
     }
 }

@@ -4,6 +4,7 @@
  * Source: The closedform authors: Arms of common structure, solved by lemmas.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   pose: 26 add, 52 multiply, 6 sincos
+ *   skeleton: 19 add, 37 multiply, 5 sincos
  *   fk: 26 add, 52 multiply, 6 sincos
  *   jacobian: 19 add, 46 multiply, 5 sincos
  *   determinant: 6 add, 15 multiply, 4 sincos
@@ -60,6 +61,24 @@ void ur_arm_pose(const ur_arm_params *params, const real_t q[6],
 void ur_arm_pose_batch(size_t n, const ur_arm_params *params,
     const real_t *q, size_t q_stride,
     real_t *T, size_t T_stride);
+
+/*
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[6]
+ *     theta1 to theta6 in rad.
+ *
+ * Outputs
+ * -------
+ * points : real_t[21], shape (7, 3)
+ */
+void ur_arm_skeleton(const ur_arm_params *params, const real_t q[6],
+    real_t points[21]);
+void ur_arm_skeleton_batch(size_t n, const ur_arm_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *points, size_t points_stride);
 
 /*
  * Pose of the tool in the base frame.

@@ -5,9 +5,12 @@ from closedform.generated.numpy.ur_arm import (
     BRANCHES,
     JOINTS,
     SINGULARITIES,
+    SKELETON,
     TASK,
     Parameters,
     Positions,
+    Skeleton,
+    SkeletonJoint,
     Solutions,
     Status,
 )
@@ -19,12 +22,16 @@ __all__ = [
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "pose",
+    "skeleton",
     "fk",
     "jacobian",
     "determinant",
@@ -35,6 +42,7 @@ __all__ = [
 ]
 
 pose = _native.function("ur_arm.pose")
+skeleton = _native.function("ur_arm.skeleton")
 fk = _native.function("ur_arm.fk")
 jacobian = _native.function("ur_arm.jacobian")
 determinant = _native.function("ur_arm.determinant")

@@ -7,6 +7,7 @@
 //     sincos, 3 sqrt
 //   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 3 sqrt
 //   arm_tips: 18 add, 26 multiply, 5 sincos
+//   skeleton: 157 add, 32 compare and select, 8 divide, 150 multiply, 6 sincos, 3 sqrt
 //   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
 //   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
 //   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
@@ -44,6 +45,57 @@ export const JOINTS = Object.freeze(/** @type {const} */ (["theta1", "theta2R", 
 export const TASK = Object.freeze(/** @type {const} */ (["x", "y", "z", "psi", "phi", "theta"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["front_elbow_up", "front_elbow_down", "rear_elbow_up", "rear_elbow_down"]));
 export const SINGULARITIES = Object.freeze(/** @type {const} */ (["the tip is above or below the waist axis", "virtual arm with the wrist straight or folded", "virtual arm straight or folded", "upper arms half a turn apart", "fore-arms half a turn apart", "wrist links stretched along the base line"]));
+
+/** What `skeleton` draws: each link is a polyline through points of one rigid body. */
+export const SKELETON = Object.freeze(/** @type {const} */ ({
+    points: [
+        "base",
+        "column",
+        "shoulder_right",
+        "elbow_right",
+        "corner_right",
+        "tip_right",
+        "shoulder_left",
+        "elbow_left",
+        "corner_left",
+        "tip_left",
+        "elbow_virtual",
+        "corner_virtual",
+        "tip_virtual",
+        "foot_right",
+        "foot_left",
+        "gear_right",
+        "gear_left",
+        "gear_centre",
+        "pitch",
+        "hand",
+    ],
+    links: {
+        column: ["base", "column"],
+        waist: ["shoulder_left", "column", "shoulder_right"],
+        upper_right: ["shoulder_right", "elbow_right"],
+        fore_right: ["elbow_right", "corner_right", "tip_right"],
+        upper_left: ["shoulder_left", "elbow_left"],
+        fore_left: ["elbow_left", "corner_left", "tip_left"],
+        upper_virtual: ["column", "elbow_virtual"],
+        fore_virtual: ["elbow_virtual", "corner_virtual", "tip_virtual"],
+        wrist_right: ["foot_right", "gear_right"],
+        wrist_left: ["foot_left", "gear_left"],
+        gears: ["gear_right", "gear_centre", "gear_left"],
+        wrist: ["gear_centre", "pitch"],
+        hand: ["pitch", "hand"],
+    },
+    joints: {
+        theta1: { kind: "revolute", points: ["base", "column"] },
+        theta2R: { kind: "revolute", points: ["shoulder_right"] },
+        theta3R: { kind: "revolute", points: ["elbow_right"] },
+        theta2L: { kind: "revolute", points: ["shoulder_left"] },
+        theta3L: { kind: "revolute", points: ["elbow_left"] },
+        theta: { kind: "revolute", points: ["pitch"] },
+    },
+    hand: "hand",
+    ground: ["base", "column"],
+}));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -490,6 +542,276 @@ export function arm_tips(q, parameters) {
  */
 export function arm_tips_batch(n, q, tips, parameters) {
     return _runtime.batch(_ARM_TIPS, n, [q], [tips], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _skeleton(v, o) {
+    const theta1 = v[0];
+    const theta2R = v[1];
+    const theta3R = v[2];
+    const theta2L = v[3];
+    const theta3L = v[4];
+    const theta = v[5];
+    const L1 = v[6];
+    const L2 = v[7];
+    const a3 = v[8];
+    const d1 = v[9];
+    const d = v[10];
+    const gs = v[11];
+    const al = v[12];
+    const loff = v[13];
+    const lp = v[14];
+    _runtime.sincos(theta2L * 0.5);
+    const s2L_half = _runtime.found[0];
+    const c2L_half = _runtime.found[1];
+    _runtime.sincos(theta2R * 0.5);
+    const s2R_half = _runtime.found[0];
+    const c2R_half = _runtime.found[1];
+    _runtime.sincos(theta3L * 0.5);
+    const s3L_half = _runtime.found[0];
+    const c3L_half = _runtime.found[1];
+    _runtime.sincos(theta3R * 0.5);
+    const s3R_half = _runtime.found[0];
+    const c3R_half = _runtime.found[1];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    _runtime.sincos(theta);
+    const s = _runtime.found[0];
+    const c = _runtime.found[1];
+    const t1 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
+        Number.isFinite(d1) && Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al)
+        && Number.isFinite(loff) && Number.isFinite(lp);
+    const t2 = t1 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
+    const t3 = t2 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
+    const t4 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
+        && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
+    const t5 = gs + al;
+    const t6 = -(_runtime.FEASIBILITY * t5);
+    const t7 = d * d;
+    const t8 = c3L_half * c3R_half;
+    const t9 = s3L_half * s3R_half;
+    const t10 = t8 + t9;
+    const t11 = s3L_half * c3R_half;
+    const t12 = c3L_half * s3R_half;
+    const t13 = t11 - t12;
+    const t14 = c2R_half * t10 + s2R_half * t13;
+    const t15 = s2R_half * t10 - c2R_half * t13;
+    const t16 = s2L_half * t14 - c2L_half * t15;
+    const t17 = t8 - t9;
+    const t18 = t11 + t12;
+    const t19 = c2R_half * t17 - s2R_half * t18;
+    const t20 = s2R_half * t17 + c2R_half * t18;
+    const t21 = c2L_half * t19 - s2L_half * t20;
+    const t22 = s2L_half * t19 + c2L_half * t20;
+    const t23 = s2L_half * c2R_half;
+    const t24 = c2L_half * s2R_half;
+    const t25 = t23 + t24;
+    const t26 = L1 * (t23 - t24);
+    const t27 = t16 * (L2 * t21 - a3 * t22) - t25 * t26;
+    const base = Math.sqrt(t7 + t27 * t27);
+    const t28 = t5 - base;
+    const t29 = base - (gs - al);
+    const failed = !(t3 && 0.0 <= lp && t4) || !(t6 <= t28 && t6 <= t29);
+    const t30 = failed ? NaN : 0;
+    const t31 = 0.0 + t30;
+    const t32 = d1 + t30;
+    const t33 = d * s1;
+    const t34 = d * c1;
+    const t35 = c2R_half * c2R_half - s2R_half * s2R_half;
+    const t36 = L1 * t35;
+    const t37 = s2R_half * c2R_half;
+    const t38 = t37 + t37;
+    const t39 = d1 + L1 * t38;
+    const t40 = c3R_half * c3R_half - s3R_half * s3R_half;
+    const t41 = s3R_half * c3R_half;
+    const t42 = t41 + t41;
+    const c2R3R = t35 * t40 - t38 * t42;
+    const t43 = t36 + a3 * c2R3R;
+    const s2R3R = t38 * t40 + t35 * t42;
+    const t44 = t39 + a3 * s2R3R;
+    const t45 = t43 + L2 * s2R3R;
+    const t46 = c2L_half * c2L_half - s2L_half * s2L_half;
+    const t47 = L1 * t46;
+    const t48 = s2L_half * c2L_half;
+    const t49 = t48 + t48;
+    const t50 = d1 + L1 * t49;
+    const t51 = c3L_half * c3L_half - s3L_half * s3L_half;
+    const t52 = s3L_half * c3L_half;
+    const t53 = t52 + t52;
+    const c2L3L = t46 * t51 - t49 * t53;
+    const t54 = t47 + a3 * c2L3L;
+    const s2L3L = t49 * t51 + t46 * t53;
+    const t55 = t50 + a3 * s2L3L;
+    const t56 = t54 + L2 * s2L3L;
+    const t57 = c2L_half * c2R_half;
+    const t58 = s2L_half * s2R_half;
+    const side2A = t57 + t58 < 0 ? -1 : 1;
+    const t59 = t57 - t58;
+    const t60 = L1 * (side2A * t59);
+    const t61 = d1 + L1 * (side2A * t25);
+    const side23A = c2L_half * t14 + s2L_half * t15 < 0 ? -1 : 1;
+    const c23A = side23A * t21;
+    const t62 = t60 + a3 * c23A;
+    const s23A = side23A * t22;
+    const t63 = t61 + a3 * s23A;
+    const t64 = t62 + L2 * s23A;
+    const t65 = c1 * t64;
+    const t66 = s1 * t64;
+    const t67 = L2 * c23A - t63;
+    const t68 = t16 * (L2 * t22 + a3 * t21) + t59 * t26;
+    const rise = Math.sqrt(t7 + t68 * t68);
+    const t69 = t68 / rise;
+    const c_psi = d / base;
+    const t70 = c23A * c_psi;
+    const t71 = t69 * t70;
+    const c_phi = d / rise;
+    const t72 = c_psi * c_phi;
+    const t73 = t27 / base;
+    const t74 = s23A * t73;
+    const t75 = c1 * t71 + s1 * t72 - c1 * t74;
+    const t76 = base * t75;
+    const t77 = s1 * t71 - c1 * t72 - s1 * t74;
+    const t78 = base * t77;
+    const t79 = s23A * c_psi;
+    const t80 = c23A * t73 + t69 * t79;
+    const t81 = base * t80;
+    const t82 = gs * t75;
+    const t83 = c23A * c1;
+    const t84 = t69 * t73;
+    const t85 = c_phi * t73;
+    const t86 = c1 * t79;
+    const t87 = t83 * t84 + s1 * t85 + t86;
+    const wrist = Math.sqrt(Math.max(t29, 0.0) * Math.max(t28, 0.0));
+    const t88 = t65 + t87 * wrist;
+    const t89 = gs * t77;
+    const t90 = c23A * s1;
+    const t91 = s1 * t79;
+    const t92 = t90 * t84 - c1 * t85 + t91;
+    const t93 = t66 + t92 * wrist;
+    const t94 = gs * t80;
+    const t95 = t70 - s23A * t84;
+    const t96 = t67 + t95 * wrist;
+    const t97 = loff * t87 + t88;
+    const t98 = loff * t92 + t93;
+    const t99 = loff * t95 + t96;
+    const t100 = lp * s;
+    const t101 = lp * c;
+    const t102 = t100 * c_phi + t101 * t84;
+    const t103 = t101 * t85 - t100 * t69;
+    const t104 = t83 * t102 + t101 * t86 + s1 * t103 + t97 + t30;
+    const t105 = t90 * t102 + t101 * t91 - c1 * t103 + t98 + t30;
+    o[0] = t31;
+    o[1] = t31;
+    o[2] = t31;
+    o[3] = t31;
+    o[4] = t31;
+    o[5] = t32;
+    o[6] = t33 + t30;
+    o[7] = -t34 + t30;
+    o[8] = t32;
+    o[9] = t33 + c1 * t36 + t30;
+    o[10] = s1 * t36 - t34 + t30;
+    o[11] = t39 + t30;
+    o[12] = t33 + c1 * t43 + t30;
+    o[13] = s1 * t43 - t34 + t30;
+    o[14] = t44 + t30;
+    o[15] = t33 + c1 * t45 + t30;
+    o[16] = s1 * t45 - t34 + t30;
+    o[17] = t44 - L2 * c2R3R + t30;
+    o[18] = -t33 + t30;
+    o[19] = t34 + t30;
+    o[20] = t32;
+    o[21] = c1 * t47 - t33 + t30;
+    o[22] = t34 + s1 * t47 + t30;
+    o[23] = t50 + t30;
+    o[24] = c1 * t54 - t33 + t30;
+    o[25] = t34 + s1 * t54 + t30;
+    o[26] = t55 + t30;
+    o[27] = c1 * t56 - t33 + t30;
+    o[28] = t34 + s1 * t56 + t30;
+    o[29] = t55 - L2 * c2L3L + t30;
+    o[30] = c1 * t60 + t30;
+    o[31] = s1 * t60 + t30;
+    o[32] = t61 + t30;
+    o[33] = c1 * t62 + t30;
+    o[34] = s1 * t62 + t30;
+    o[35] = t63 + t30;
+    o[36] = t65 + t30;
+    o[37] = t66 + t30;
+    o[38] = -t67 + t30;
+    o[39] = t76 + t65 + t30;
+    o[40] = t78 + t66 + t30;
+    o[41] = t81 - t67 + t30;
+    o[42] = t65 - t76 + t30;
+    o[43] = t66 - t78 + t30;
+    o[44] = -(t81 + t67) + t30;
+    o[45] = t82 + t88 + t30;
+    o[46] = t89 + t93 + t30;
+    o[47] = t94 - t96 + t30;
+    o[48] = t88 - t82 + t30;
+    o[49] = t93 - t89 + t30;
+    o[50] = -(t94 + t96) + t30;
+    o[51] = t88 + t30;
+    o[52] = t93 + t30;
+    o[53] = -t96 + t30;
+    o[54] = t97 + t30;
+    o[55] = t98 + t30;
+    o[56] = -t99 + t30;
+    o[57] = t104;
+    o[58] = t105;
+    o[59] = -(t101 * t70 - s23A * t102 + t99) + t30;
+}
+
+const _SKELETON = _runtime.kernel({
+    name: "h6ar.skeleton",
+    compute: _skeleton,
+    common: null,
+    inputs: [
+        { name: "q", shape: [6], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "points", shape: [20, 3], branches: 0, kind: "real" },
+    ],
+    used: ["L1", "L2", "a3", "d1", "d", "gs", "al", "loff", "lp"],
+    defaults: DEFAULTS,
+    size: {
+        lengths: [6, 7, 8, 9, 10, 11, 12, 13, 14],
+        degrees: [[5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [20, 1], [21, 1], [22, 1], [23, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [29, 1], [30, 1], [31, 1], [32, 1], [33, 1], [34, 1], [35, 1], [36, 1], [37, 1], [38, 1], [39, 1], [40, 1], [41, 1], [42, 1], [43, 1], [44, 1], [45, 1], [46, 1], [47, 1], [48, 1], [49, 1], [50, 1], [51, 1], [52, 1], [53, 1], [54, 1], [55, 1], [56, 1], [57, 1], [58, 1], [59, 1]],
+        least: 8.636168555094445e-78,
+        most: 3.273390607896142e+150,
+    },
+});
+
+/**
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * - NaN if the tips are farther apart than the wrist links can span.
+ * - The links of the wrist start on its base line, which joins the tips of the arms only where
+ *   the arms are parallel: the published model does not close the loop.
+ *
+ * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
+ *     rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} 60 numbers (20 x 3 in row order).
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function skeleton(q, parameters) {
+    return _runtime.single(_SKELETON, [q], parameters);
+}
+
+/**
+ * `skeleton` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 6 n numbers
+ * @param {Float64Array} [points] 60 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function skeleton_batch(n, q, points, parameters) {
+    return _runtime.batch(_SKELETON, n, [q], [points], parameters);
 }
 
 /** @type {_runtime.Compute} */

@@ -6,6 +6,7 @@
 //   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
 //     sincos, 6 sqrt
 //   pose: 57 compare and select, 108 add, 21 divide, 160 multiply, 6 sincos, 6 sqrt
+//   skeleton: 57 compare and select, 175 add, 21 divide, 199 multiply, 6 sincos, 6 sqrt
 //   arm_tips: 18 add, 26 multiply, 5 sincos
 //   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
 //   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
@@ -45,6 +46,55 @@ export const JOINTS = Object.freeze(/** @type {const} */ (["theta1", "theta2R", 
 export const TASK = Object.freeze(/** @type {const} */ (["x", "y", "z", "psi", "phi", "theta"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["front_elbow_up_alike", "front_elbow_up_mixed", "front_elbow_down_alike", "front_elbow_down_mixed", "rear_elbow_up_alike", "rear_elbow_up_mixed", "rear_elbow_down_alike", "rear_elbow_down_mixed"]));
 export const SINGULARITIES = Object.freeze(/** @type {const} */ (["the tip is above or below the waist axis", "virtual arm with the wrist straight or folded", "right arm straight or folded", "left arm straight or folded", "virtual arm straight or folded (a pole of the determinant)", "wrist links stretched along the base line"]));
+
+/** What `skeleton` draws: each link is a polyline through points of one rigid body. */
+export const SKELETON = Object.freeze(/** @type {const} */ ({
+    points: [
+        "base",
+        "column",
+        "shoulder_right",
+        "elbow_right",
+        "corner_right",
+        "tip_right",
+        "shoulder_left",
+        "elbow_left",
+        "corner_left",
+        "tip_left",
+        "elbow_virtual",
+        "corner_virtual",
+        "tip_virtual",
+        "gear_right",
+        "gear_left",
+        "gear_centre",
+        "pitch",
+        "hand",
+    ],
+    links: {
+        column: ["base", "column"],
+        waist: ["shoulder_left", "column", "shoulder_right"],
+        upper_right: ["shoulder_right", "elbow_right"],
+        fore_right: ["elbow_right", "corner_right", "tip_right"],
+        upper_left: ["shoulder_left", "elbow_left"],
+        fore_left: ["elbow_left", "corner_left", "tip_left"],
+        upper_virtual: ["column", "elbow_virtual"],
+        fore_virtual: ["elbow_virtual", "corner_virtual", "tip_virtual"],
+        wrist_right: ["tip_right", "gear_right"],
+        wrist_left: ["tip_left", "gear_left"],
+        gears: ["gear_right", "gear_centre", "gear_left"],
+        wrist: ["gear_centre", "pitch"],
+        hand: ["pitch", "hand"],
+    },
+    joints: {
+        theta1: { kind: "revolute", points: ["base", "column"] },
+        theta2R: { kind: "revolute", points: ["shoulder_right"] },
+        theta3R: { kind: "revolute", points: ["elbow_right"] },
+        theta2L: { kind: "revolute", points: ["shoulder_left"] },
+        theta3L: { kind: "revolute", points: ["elbow_left"] },
+        theta: { kind: "revolute", points: ["pitch"] },
+    },
+    hand: "hand",
+    ground: ["base", "column"],
+}));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -528,6 +578,314 @@ export function pose(q, parameters) {
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _skeleton(v, o) {
+    const theta1 = v[0];
+    const theta2R = v[1];
+    const theta3R = v[2];
+    const theta2L = v[3];
+    const theta3L = v[4];
+    const theta = v[5];
+    const L1 = v[6];
+    const L2 = v[7];
+    const a3 = v[8];
+    const d1 = v[9];
+    const d = v[10];
+    const gs = v[11];
+    const al = v[12];
+    const loff = v[13];
+    const lp = v[14];
+    _runtime.sincos(theta2L * 0.5);
+    const s2L_half = _runtime.found[0];
+    const c2L_half = _runtime.found[1];
+    _runtime.sincos(theta2R * 0.5);
+    const s2R_half = _runtime.found[0];
+    const c2R_half = _runtime.found[1];
+    _runtime.sincos(theta3R * 0.5);
+    const s3R_half = _runtime.found[0];
+    const c3R_half = _runtime.found[1];
+    _runtime.sincos(theta3L * 0.5);
+    const s3L_half = _runtime.found[0];
+    const c3L_half = _runtime.found[1];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    _runtime.sincos(theta);
+    const s = _runtime.found[0];
+    const c = _runtime.found[1];
+    const t1 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
+        Number.isFinite(d1) && Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al)
+        && Number.isFinite(loff) && Number.isFinite(lp);
+    const t2 = t1 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
+    const t3 = t2 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
+    const t4 = Number.isFinite(theta1) && Number.isFinite(theta2R) && Number.isFinite(theta3R)
+        && Number.isFinite(theta2L) && Number.isFinite(theta3L) && Number.isFinite(theta);
+    const fore = Math.sqrt(L2 * L2 + a3 * a3);
+    const t5 = L1 + fore;
+    const t6 = -(_runtime.FEASIBILITY * (d * t5));
+    const t7 = c3R_half * c3L_half;
+    const t8 = s3R_half * s3L_half;
+    const t9 = t7 + t8;
+    const t10 = c3R_half * s3L_half;
+    const t11 = s3R_half * c3L_half;
+    const t12 = t10 - t11;
+    const t13 = c2R_half * t9 + s2R_half * t12;
+    const t14 = s2R_half * t9 - c2R_half * t12;
+    const t15 = s2L_half * t13 - c2L_half * t14;
+    const t16 = t7 - t8;
+    const t17 = t10 + t11;
+    const t18 = c2R_half * t16 - s2R_half * t17;
+    const t19 = s2R_half * t16 + c2R_half * t17;
+    const t20 = c2L_half * t18 - s2L_half * t19;
+    const t21 = s2L_half * t18 + c2L_half * t19;
+    const t22 = L2 * t20 - a3 * t21;
+    const t23 = s2L_half * c2R_half;
+    const t24 = c2L_half * s2R_half;
+    const t25 = t23 + t24;
+    const t26 = L1 * (t23 - t24);
+    const t27 = t15 * t22 - t25 * t26;
+    const t28 = L2 * t21 + a3 * t20;
+    const t29 = c2L_half * c2R_half;
+    const t30 = s2L_half * s2R_half;
+    const t31 = t29 - t30;
+    const t32 = t28 * t15 + t31 * t26;
+    const gap = t27 * t27 + t32 * t32;
+    const t33 = s3L_half * c3L_half;
+    const t34 = t33 + t33;
+    const t35 = c3L_half * c3L_half - s3L_half * s3L_half;
+    const straight_left = L2 * t34 + a3 * t35;
+    const t36 = 0.0 <= straight_left;
+    const t37 = L2 * t35 - a3 * t34;
+    const large_left = fore + Math.abs(straight_left);
+    const small_left = t37 * t37 / large_left;
+    const t38 = L1 * 2.0;
+    const t39 = gap + (t36 ? small_left : large_left) * t38 * 0.5;
+    const t40 = s3R_half * c3R_half;
+    const t41 = t40 + t40;
+    const t42 = c3R_half * c3R_half - s3R_half * s3R_half;
+    const straight_right = L2 * t41 + a3 * t42;
+    const t43 = 0.0 <= straight_right;
+    const t44 = L2 * t42 - a3 * t41;
+    const large_right = fore + Math.abs(straight_right);
+    const small_right = t44 * t44 / large_right;
+    const t45 = (t43 ? small_right : large_right) * t38 * 0.5;
+    const t46 = t39 + t45;
+    const t47 = (t43 ? large_right : small_right) * t38 * 0.5;
+    const t48 = gap - (t36 ? large_left : small_left) * t38 * 0.5;
+    const t49 = t47 - t48;
+    const t50 = gs + al;
+    const t51 = -(_runtime.FEASIBILITY * t50);
+    const t52 = d * d;
+    const base = Math.sqrt(t52 + gap);
+    const t53 = t50 - base;
+    const t54 = base - (gs - al);
+    const t55 = t6 <= t46 && t6 <= t49 && t51 <= t53 && t51 <= t54;
+    const t56 = !(t3 && 0.0 <= lp && t4) || !t55 ? NaN : 0;
+    const t57 = 0.0 + t56;
+    const t58 = d1 + t56;
+    const t59 = d * s1;
+    const t60 = d * c1;
+    const t61 = c2R_half * c2R_half - s2R_half * s2R_half;
+    const t62 = L1 * t61;
+    const t63 = s2R_half * c2R_half;
+    const t64 = t63 + t63;
+    const t65 = d1 + L1 * t64;
+    const c2R3R = t42 * t61 - t41 * t64;
+    const t66 = t62 + a3 * c2R3R;
+    const s2R3R = t42 * t64 + t41 * t61;
+    const t67 = t65 + a3 * s2R3R;
+    const t68 = t66 + L2 * s2R3R;
+    const t69 = c2L_half * c2L_half - s2L_half * s2L_half;
+    const t70 = L1 * t69;
+    const t71 = s2L_half * c2L_half;
+    const t72 = t71 + t71;
+    const t73 = d1 + L1 * t72;
+    const c2L3L = t35 * t69 - t34 * t72;
+    const t74 = t70 + a3 * c2L3L;
+    const s2L3L = t35 * t72 + t34 * t69;
+    const t75 = t73 + a3 * s2L3L;
+    const t76 = t74 + L2 * s2L3L;
+    const t77 = c2L_half * t13 + s2L_half * t14;
+    const t78 = L1 * (t29 + t30);
+    const t79 = t77 * t22 - t25 * t78;
+    const r_I = t28 * t77 + t31 * t78;
+    const t80 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0);
+    const folded_virtual = Math.abs(-t79) + Math.abs(r_I) <= t80;
+    const short_virtual = L1 * fore <= _runtime.VANISHING * (t5 * t5);
+    const M_virtual = Math.max(t49, 0.0);
+    const N_virtual = Math.max(t46, 0.0);
+    const whole_virtual = M_virtual + N_virtual;
+    const t81 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual;
+    const ahead_1_virtual = short_virtual ? t5 : t81;
+    const t82 = 2.0 * (-t44 < 0 ? -1 : 1) * Math.sqrt(M_virtual * N_virtual);
+    const s_bend_virtual = short_virtual ? 0.0 : t82 / whole_virtual;
+    const t83 = fore * s_bend_virtual;
+    const out_virtual = r_I * ahead_1_virtual - t79 * t83;
+    const t84 = t79 * ahead_1_virtual + r_I * t83;
+    const norm_virtual = Math.sqrt(out_virtual * out_virtual + t84 * t84);
+    const ctheta2A = folded_virtual ? t61 : out_virtual / norm_virtual;
+    const t85 = L1 * ctheta2A;
+    const stheta2A = folded_virtual ? t64 : -(t84 / norm_virtual);
+    const t86 = d1 + L1 * stheta2A;
+    const bare_virtual = fore <= t5 * _runtime.VANISHING;
+    const c_lag_virtual = bare_virtual ? 1.0 : a3 / fore;
+    const c_bend_virtual = short_virtual ? 1.0 : (M_virtual - N_virtual) / whole_virtual;
+    const s_lag_virtual = bare_virtual ? 0.0 : L2 / fore;
+    const c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual;
+    const s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual;
+    const ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual;
+    const t87 = t85 + a3 * ctheta23A;
+    const stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual;
+    const t88 = t86 + a3 * stheta23A;
+    const t89 = t87 + L2 * stheta23A;
+    const t90 = c1 * t89;
+    const t91 = s1 * t89;
+    const t92 = L2 * ctheta23A - t88;
+    const wrist = Math.sqrt(Math.max(t53, 0.0) * Math.max(t54, 0.0));
+    const t93 = t27 * ctheta23A + t32 * stheta23A;
+    const tilted = Math.sqrt(t52 + t93 * t93);
+    const c_phi = d / tilted;
+    const t94 = (t27 * stheta23A - t32 * ctheta23A) / base;
+    const t95 = c_phi * t94;
+    const c_psi = tilted / base;
+    const t96 = stheta23A * c_psi;
+    const t97 = c1 * t96;
+    const t98 = c1 * ctheta23A;
+    const t99 = t93 / tilted;
+    const t100 = t99 * t94;
+    const t101 = s1 * t95 + t97 - t98 * t100;
+    const t102 = t90 + wrist * t101;
+    const t103 = c_phi * c_psi;
+    const t104 = ctheta23A * c_psi;
+    const t105 = t99 * t104;
+    const t106 = stheta23A * t94;
+    const t107 = gs * (s1 * t103 - c1 * t105 - c1 * t106);
+    const t108 = s1 * t96;
+    const t109 = s1 * ctheta23A;
+    const t110 = c1 * t95 - t108 + t109 * t100;
+    const t111 = t91 - wrist * t110;
+    const t112 = gs * (c1 * t103 + s1 * t105 + s1 * t106);
+    const t113 = t104 + stheta23A * t100;
+    const t114 = t92 + wrist * t113;
+    const t115 = gs * (t99 * t96 - ctheta23A * t94);
+    const t116 = t102 + loff * t101;
+    const t117 = t111 - loff * t110;
+    const t118 = t114 + loff * t113;
+    const t119 = lp * c;
+    const t120 = lp * s;
+    const t121 = t120 * c_phi - t119 * t100;
+    const t122 = t120 * t99 + t119 * t95;
+    const t123 = t116 + t119 * t97 + t98 * t121 + s1 * t122 + t56;
+    const t124 = t117 + t119 * t108 + t109 * t121 - c1 * t122 + t56;
+    const t125 = stheta23A * t121 - (t118 + t119 * t104) + t56;
+    o[0] = t57;
+    o[1] = t57;
+    o[2] = t57;
+    o[3] = t57;
+    o[4] = t57;
+    o[5] = t58;
+    o[6] = t59 + t56;
+    o[7] = -t60 + t56;
+    o[8] = t58;
+    o[9] = t59 + c1 * t62 + t56;
+    o[10] = s1 * t62 - t60 + t56;
+    o[11] = t65 + t56;
+    o[12] = t59 + c1 * t66 + t56;
+    o[13] = s1 * t66 - t60 + t56;
+    o[14] = t67 + t56;
+    o[15] = t59 + c1 * t68 + t56;
+    o[16] = s1 * t68 - t60 + t56;
+    o[17] = t67 - L2 * c2R3R + t56;
+    o[18] = -t59 + t56;
+    o[19] = t60 + t56;
+    o[20] = t58;
+    o[21] = c1 * t70 - t59 + t56;
+    o[22] = t60 + s1 * t70 + t56;
+    o[23] = t73 + t56;
+    o[24] = c1 * t74 - t59 + t56;
+    o[25] = t60 + s1 * t74 + t56;
+    o[26] = t75 + t56;
+    o[27] = c1 * t76 - t59 + t56;
+    o[28] = t60 + s1 * t76 + t56;
+    o[29] = t75 - L2 * c2L3L + t56;
+    o[30] = c1 * t85 + t56;
+    o[31] = s1 * t85 + t56;
+    o[32] = t86 + t56;
+    o[33] = c1 * t87 + t56;
+    o[34] = s1 * t87 + t56;
+    o[35] = t88 + t56;
+    o[36] = t90 + t56;
+    o[37] = t91 + t56;
+    o[38] = -t92 + t56;
+    o[39] = t102 + t107 + t56;
+    o[40] = t111 - t112 + t56;
+    o[41] = -(t114 + t115) + t56;
+    o[42] = t102 - t107 + t56;
+    o[43] = t111 + t112 + t56;
+    o[44] = t115 - t114 + t56;
+    o[45] = t102 + t56;
+    o[46] = t111 + t56;
+    o[47] = -t114 + t56;
+    o[48] = t116 + t56;
+    o[49] = t117 + t56;
+    o[50] = -t118 + t56;
+    o[51] = t123;
+    o[52] = t124;
+    o[53] = t125;
+}
+
+const _SKELETON = _runtime.kernel({
+    name: "h6ar_loop_closed.skeleton",
+    compute: _skeleton,
+    common: null,
+    inputs: [
+        { name: "q", shape: [6], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "points", shape: [18, 3], branches: 0, kind: "real" },
+    ],
+    used: ["L1", "L2", "a3", "d1", "d", "gs", "al", "loff", "lp"],
+    defaults: DEFAULTS,
+    size: {
+        lengths: [6, 7, 8, 9, 10, 11, 12, 13, 14],
+        degrees: [[5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [20, 1], [21, 1], [22, 1], [23, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [29, 1], [30, 1], [31, 1], [32, 1], [33, 1], [34, 1], [35, 1], [36, 1], [37, 1], [38, 1], [39, 1], [40, 1], [41, 1], [42, 1], [43, 1], [44, 1], [45, 1], [46, 1], [47, 1], [48, 1], [49, 1], [50, 1], [51, 1], [52, 1], [53, 1]],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
+});
+
+/**
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+ *   cannot reach the middle of the tips.
+ * - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+ *   its fore-arm.
+ *
+ * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
+ *     rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} 54 numbers (18 x 3 in row order).
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function skeleton(q, parameters) {
+    return _runtime.single(_SKELETON, [q], parameters);
+}
+
+/**
+ * `skeleton` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 6 n numbers
+ * @param {Float64Array} [points] 54 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function skeleton_batch(n, q, points, parameters) {
+    return _runtime.batch(_SKELETON, n, [q], [points], parameters);
 }
 
 /** @type {_runtime.Compute} */

@@ -6,6 +6,7 @@
 //   fk: 22 add, 22 compare and select, 4 divide, 20 multiply, 3 sincos, 2 sqrt
 //   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 2
 //     sqrt
+//   skeleton: 30 add, 21 compare and select, 5 divide, 22 multiply, 3 sincos, 2 sqrt
 //   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 20 multiply, 3 sincos, 2 sqrt
 //   jacobian_serial: 24 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 2 sqrt
 //   jacobian: 35 add, 21 compare and select, 17 divide, 43 multiply, 3 sincos, 2 sqrt
@@ -40,6 +41,33 @@ export const JOINTS = Object.freeze(/** @type {const} */ (["theta1", "theta2", "
 export const TASK = Object.freeze(/** @type {const} */ (["x", "y", "z"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["plus_plus_plus", "plus_plus_minus", "plus_minus_plus", "plus_minus_minus", "minus_plus_plus", "minus_plus_minus", "minus_minus_plus", "minus_minus_minus"]));
 export const SINGULARITIES = Object.freeze(/** @type {const} */ (["P on AB", "A, C, P in line", "B, D, P in line", "C, D, P in line"]));
+
+/** What `skeleton` draws: each link is a polyline through points of one rigid body. */
+export const SKELETON = Object.freeze(/** @type {const} */ ({
+    points: [
+        "A",
+        "B",
+        "C",
+        "D",
+        "P",
+    ],
+    links: {
+        ground: ["A", "B"],
+        AC: ["A", "C"],
+        BD: ["B", "D"],
+        CP: ["C", "P"],
+        DP: ["D", "P"],
+    },
+    joints: {
+        theta1: { kind: "revolute", points: ["A", "B"] },
+        theta2: { kind: "revolute", points: ["A"] },
+        theta3: { kind: "revolute", points: ["B"] },
+        theta4: { kind: "revolute", points: ["C"] },
+        theta5: { kind: "revolute", points: ["D"] },
+    },
+    hand: "P",
+    ground: ["A", "B"],
+}));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -271,6 +299,140 @@ export function passive_angles(q, parameters) {
  */
 export function passive_angles_batch(n, q, theta, parameters) {
     return _runtime.batch(_PASSIVE_ANGLES, n, [q], [theta], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _skeleton(v, o) {
+    const theta1 = v[0];
+    const theta2 = v[1];
+    const theta3 = v[2];
+    const L0 = v[3];
+    const L1 = v[4];
+    const L2 = v[5];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    _runtime.sincos(theta3);
+    const s3 = _runtime.found[0];
+    const c3 = _runtime.found[1];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    const t1 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2);
+    const t2 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t3 = t1 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && t2;
+    const t4 = L0 + L1 + L2;
+    const t5 = L2 * 2.0;
+    const C_r = L1 * s2;
+    const D_r = L1 * s3;
+    const t6 = C_r - D_r;
+    const C_y = L1 * c2;
+    const D_y = L0 + L1 * c3;
+    const t7 = C_y - D_y;
+    const apart = Math.sqrt(t6 * t6 + t7 * t7);
+    const t8 = t5 - apart;
+    const t9 = !t3 || !(-(_runtime.FEASIBILITY * t4) <= t8) ? NaN : 0;
+    const t10 = 0.0 + t9;
+    const t11 = L0 + t9;
+    const t12 = -(C_r * c1) + t9;
+    const t13 = C_y + t9;
+    const t14 = C_r * s1 + t9;
+    const t15 = -(D_r * c1) + t9;
+    const t16 = D_y + t9;
+    const t17 = D_r * s1 + t9;
+    const t18 = t4 * _runtime.VANISHING;
+    const coincide = apart <= t18;
+    const distance = coincide ? 0.0 : apart;
+    const t19 = coincide ? 0.0 : t6 / apart;
+    const t20 = distance * t19 * 0.5;
+    const n_1 = coincide ? 1.0 : -(t7 / apart);
+    const slack = Math.max(t8, 0.0);
+    const height = slack <= t18 ? 0.0 : Math.sqrt(slack * (apart + t5)) * 0.5;
+    const t21 = n_1 * height;
+    const P_r = C_r - (t20 - t21);
+    const t22 = distance * n_1 * 0.5;
+    const t23 = t19 * height;
+    const P_r_right_of_CD = C_r - (t20 + t21);
+    o[0] = t10;
+    o[1] = t10;
+    o[2] = t10;
+    o[3] = t10;
+    o[4] = t11;
+    o[5] = t10;
+    o[6] = t12;
+    o[7] = t13;
+    o[8] = t14;
+    o[9] = t15;
+    o[10] = t16;
+    o[11] = t17;
+    o[12] = -(c1 * P_r) + t9;
+    o[13] = C_y + (t22 + t23) + t9;
+    o[14] = s1 * P_r + t9;
+    o[15] = t10;
+    o[16] = t10;
+    o[17] = t10;
+    o[18] = t10;
+    o[19] = t11;
+    o[20] = t10;
+    o[21] = t12;
+    o[22] = t13;
+    o[23] = t14;
+    o[24] = t15;
+    o[25] = t16;
+    o[26] = t17;
+    o[27] = -(c1 * P_r_right_of_CD) + t9;
+    o[28] = C_y + (t22 - t23) + t9;
+    o[29] = s1 * P_r_right_of_CD + t9;
+}
+
+const _SKELETON = _runtime.kernel({
+    name: "hybrid_five_bar.skeleton",
+    compute: _skeleton,
+    common: null,
+    inputs: [
+        { name: "q", shape: [3], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "points", shape: [5, 3], branches: 2, kind: "real" },
+    ],
+    used: ["L0", "L1", "L2"],
+    defaults: DEFAULTS,
+    size: {
+        lengths: [3, 4, 5],
+        degrees: [[4, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [19, 1], [21, 1], [22, 1], [23, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [29, 1]],
+        least: 8.636168555094445e-78,
+        most: 3.273390607896142e+150,
+    },
+});
+
+/**
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+ * - NaN for an assembly mode that does not exist.
+ *
+ * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[][]} 2 branches of 15 numbers (5 x 3 in row order). One column for each of
+ *     theta1, theta2, theta3.
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function skeleton(q, parameters) {
+    return _runtime.single(_SKELETON, [q], parameters);
+}
+
+/**
+ * `skeleton` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 3 n numbers
+ * @param {Float64Array} [points] 30 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function skeleton_batch(n, q, points, parameters) {
+    return _runtime.batch(_SKELETON, n, [q], [points], parameters);
 }
 
 /** @type {_runtime.Compute} */

@@ -8,6 +8,7 @@
 //   motors_from_joints: 1 add
 //   fk: 9 add, 10 multiply, 2 reduce to a turn, 3 sincos, 1 compare and select
 //   pose: 10 add, 14 multiply, 4 sincos
+//   skeleton: 14 add, 3 divide, 18 multiply, 3 sincos
 //   jacobian: 6 add, 14 multiply, 3 sincos
 //   jacobian_space: 6 add, 14 multiply, 3 sincos
 //   jacobian_body: 6 add, 14 multiply, 3 sincos
@@ -45,6 +46,42 @@ export const JOINTS = Object.freeze(/** @type {const} */ (["theta1", "theta2", "
 export const TASK = Object.freeze(/** @type {const} */ (["x", "y", "z", "yaw"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["front_elbow_up", "front_elbow_down", "back_elbow_up", "back_elbow_down"]));
 export const SINGULARITIES = Object.freeze(/** @type {const} */ (["base axis", "elbow"]));
+
+/** What `skeleton` draws: each link is a polyline through points of one rigid body. */
+export const SKELETON = Object.freeze(/** @type {const} */ ({
+    points: [
+        "base",
+        "column",
+        "shoulder",
+        "elbow",
+        "wrist",
+        "flange",
+        "hand",
+        "lower_rod_turret",
+        "lower_rod_plate",
+        "upper_rod_plate",
+        "upper_rod_bracket",
+    ],
+    links: {
+        turret: ["base", "column", "shoulder", "lower_rod_turret"],
+        lower_arm: ["shoulder", "elbow"],
+        upper_arm: ["elbow", "wrist"],
+        lower_rod: ["lower_rod_turret", "lower_rod_plate"],
+        plate: ["lower_rod_plate", "elbow", "upper_rod_plate", "lower_rod_plate"],
+        upper_rod: ["upper_rod_plate", "upper_rod_bracket"],
+        bracket: ["upper_rod_bracket", "wrist", "flange"],
+        hand: ["flange", "hand"],
+    },
+    joints: {
+        theta1: { kind: "revolute", points: ["base", "column"] },
+        theta2: { kind: "revolute", points: ["shoulder"] },
+        theta3: { kind: "revolute", points: ["elbow"] },
+        theta4: { kind: "revolute", points: ["wrist"] },
+        theta5: { kind: "revolute", points: ["flange"] },
+    },
+    hand: "hand",
+    ground: ["base"],
+}));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -393,6 +430,120 @@ export function pose(q, parameters) {
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _skeleton(v, o) {
+    const theta1 = v[0];
+    const theta2 = v[1];
+    const theta3 = v[2];
+    const l1 = v[4];
+    const l2 = v[5];
+    const l3 = v[6];
+    const l4 = v[7];
+    const l5 = v[8];
+    const l6 = v[9];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    _runtime.sincos(theta3);
+    const s3 = _runtime.found[0];
+    const c3 = _runtime.found[1];
+    const t1 = l1 * s1;
+    const t2 = l1 * c1;
+    const t3 = l1 + l3 * s2;
+    const t4 = s1 * t3;
+    const t5 = c1 * t3;
+    const t6 = l2 + l3 * c2;
+    const t7 = t3 + l4 * (c2 * c3 - s2 * s3);
+    const t8 = -(s1 * t7);
+    const t9 = c1 * t7;
+    const t10 = t6 - l4 * (s2 * c3 + c2 * s3);
+    const t11 = l6 + t7;
+    const t12 = -(s1 * t11);
+    const t13 = c1 * t11;
+    const t14 = l3 * s1 * 0.25;
+    const t15 = l3 * c1 * 0.25;
+    const t16 = l3 * 0.25;
+    o[0] = 0.0;
+    o[1] = 0.0;
+    o[2] = 0.0;
+    o[3] = 0.0;
+    o[4] = 0.0;
+    o[5] = l2;
+    o[6] = -t1;
+    o[7] = t2;
+    o[8] = l2;
+    o[9] = -t4;
+    o[10] = t5;
+    o[11] = t6;
+    o[12] = t8;
+    o[13] = t9;
+    o[14] = t10;
+    o[15] = t12;
+    o[16] = t13;
+    o[17] = t10;
+    o[18] = t12;
+    o[19] = t13;
+    o[20] = t10 - l5;
+    o[21] = t14 - t1;
+    o[22] = t2 - t15;
+    o[23] = l2;
+    o[24] = t14 - t4;
+    o[25] = t5 - t15;
+    o[26] = t6;
+    o[27] = -t4;
+    o[28] = t5;
+    o[29] = t6 + t16;
+    o[30] = t8;
+    o[31] = t9;
+    o[32] = t16 + t10;
+}
+
+const _SKELETON = _runtime.kernel({
+    name: "irb260.skeleton",
+    compute: _skeleton,
+    common: null,
+    inputs: [
+        { name: "q", shape: [4], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "points", shape: [11, 3], branches: 0, kind: "real" },
+    ],
+    used: ["l1", "l2", "l3", "l4", "l5", "l6"],
+    defaults: DEFAULTS,
+    size: null,
+});
+
+/**
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * - The rods are drawn at a quarter of l3; the paper gives no distance.
+ *
+ * @param {ArrayLike<number>} q 4 numbers. theta1, theta2, theta3, theta5 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} 33 numbers (11 x 3 in row order).
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function skeleton(q, parameters) {
+    return _runtime.single(_SKELETON, [q], parameters);
+}
+
+/**
+ * `skeleton` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 4 n numbers
+ * @param {Float64Array} [points] 33 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function skeleton_batch(n, q, points, parameters) {
+    return _runtime.batch(_SKELETON, n, [q], [points], parameters);
 }
 
 /** @type {_runtime.Compute} */

@@ -6,6 +6,7 @@
 //   fk: 4 add, 8 multiply, 2 sincos
 //   pose: 4 add, 8 multiply, 2 sincos
 //   orientation: 1 add, 2 reduce to a turn, 1 compare and select
+//   skeleton: 4 add, 8 multiply, 2 sincos
 //   jacobian: 4 add, 8 multiply, 2 sincos
 //   determinant: 2 multiply, 1 sincos
 //   manipulability: 1 compare and select, 2 multiply, 1 sincos
@@ -36,6 +37,25 @@ export const JOINTS = Object.freeze(/** @type {const} */ (["theta1", "theta2"]))
 export const TASK = Object.freeze(/** @type {const} */ (["x", "y"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["elbow_down", "elbow_up"]));
 export const SINGULARITIES = Object.freeze(/** @type {const} */ (["elbow"]));
+
+/** What `skeleton` draws: each link is a polyline through points of one rigid body. */
+export const SKELETON = Object.freeze(/** @type {const} */ ({
+    points: [
+        "base",
+        "elbow",
+        "hand",
+    ],
+    links: {
+        first: ["base", "elbow"],
+        second: ["elbow", "hand"],
+    },
+    joints: {
+        theta1: { kind: "revolute", points: ["base"] },
+        theta2: { kind: "revolute", points: ["elbow"] },
+    },
+    hand: "hand",
+    ground: ["base"],
+}));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -236,6 +256,72 @@ export function orientation(q, parameters) {
  */
 export function orientation_batch(n, q, phi, parameters) {
     return _runtime.batch(_ORIENTATION, n, [q], [phi], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _skeleton(v, o) {
+    const theta1 = v[0];
+    const theta2 = v[1];
+    const l1 = v[2];
+    const l2 = v[3];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    const t1 = l1 * c1;
+    const t2 = l1 * s1;
+    o[0] = 0.0;
+    o[1] = 0.0;
+    o[2] = 0.0;
+    o[3] = t1;
+    o[4] = t2;
+    o[5] = 0.0;
+    o[6] = t1 + l2 * (c1 * c2 - s1 * s2);
+    o[7] = t2 + l2 * (s1 * c2 + c1 * s2);
+    o[8] = 0.0;
+}
+
+const _SKELETON = _runtime.kernel({
+    name: "planar_2r.skeleton",
+    compute: _skeleton,
+    common: null,
+    inputs: [
+        { name: "q", shape: [2], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "points", shape: [3, 3], branches: 0, kind: "real" },
+    ],
+    used: ["l1", "l2"],
+    defaults: DEFAULTS,
+    size: null,
+});
+
+/**
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * @param {ArrayLike<number>} q 2 numbers. theta1, theta2 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} 9 numbers (3 x 3 in row order).
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function skeleton(q, parameters) {
+    return _runtime.single(_SKELETON, [q], parameters);
+}
+
+/**
+ * `skeleton` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 2 n numbers
+ * @param {Float64Array} [points] 9 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function skeleton_batch(n, q, points, parameters) {
+    return _runtime.batch(_SKELETON, n, [q], [points], parameters);
 }
 
 /** @type {_runtime.Compute} */

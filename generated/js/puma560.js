@@ -4,6 +4,7 @@
 //     560 in the textbooks.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   pose: 24 add, 52 multiply, 6 sincos
+//   skeleton: 11 add, 19 multiply, 3 sincos
 //   fk: 24 add, 52 multiply, 6 sincos
 //   jacobian: 14 add, 36 multiply, 5 sincos
 //   determinant: 5 add, 12 multiply, 3 sincos
@@ -35,6 +36,32 @@ export const JOINTS = Object.freeze(/** @type {const} */ (["theta1", "theta2", "
 export const TASK = Object.freeze(/** @type {const} */ (["T11", "T12", "T13", "T14", "T21", "T22", "T23", "T24", "T31", "T32", "T33", "T34", "T41", "T42", "T43", "T44"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["right_up_noflip", "right_up_flip", "right_down_noflip", "right_down_flip", "left_up_noflip", "left_up_flip", "left_down_noflip", "left_down_flip"]));
 export const SINGULARITIES = Object.freeze(/** @type {const} */ (["shoulder", "elbow", "wrist"]));
+
+/** What `skeleton` draws: each link is a polyline through points of one rigid body. */
+export const SKELETON = Object.freeze(/** @type {const} */ ({
+    points: [
+        "base",
+        "joint3",
+        "corner3",
+        "joint4",
+        "joint5",
+    ],
+    links: {
+        link2: ["base", "joint3"],
+        link3: ["joint3", "corner3", "joint4"],
+        link4: ["joint4", "joint5"],
+    },
+    joints: {
+        theta1: { kind: "revolute", points: ["base"] },
+        theta2: { kind: "revolute", points: ["base"] },
+        theta3: { kind: "revolute", points: ["joint3"] },
+        theta4: { kind: "revolute", points: ["joint4"] },
+        theta5: { kind: "revolute", points: ["joint5"] },
+        theta6: { kind: "revolute", points: ["joint5"] },
+    },
+    hand: "joint5",
+    ground: ["base"],
+}));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -158,6 +185,94 @@ export function pose(q, parameters) {
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _skeleton(v, o) {
+    const theta1 = v[0];
+    const theta2 = v[1];
+    const theta3 = v[2];
+    const a2 = v[6];
+    const a3 = v[7];
+    const d3 = v[8];
+    const d4 = v[9];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    _runtime.sincos(theta3);
+    const s3 = _runtime.found[0];
+    const c3 = _runtime.found[1];
+    const t1 = a2 * c2;
+    const t2 = c1 * t1;
+    const t3 = s1 * t1;
+    const t4 = a2 * s2;
+    const t5 = d3 * s1;
+    const t6 = d3 * c1;
+    const c23 = c2 * c3 - s2 * s3;
+    const t7 = t1 + a3 * c23;
+    const p2_11 = t5 + c1 * t7;
+    const t8 = t6 - s1 * t7;
+    const s23 = s2 * c3 + c2 * s3;
+    const p2_31 = t4 + a3 * s23;
+    o[0] = 0.0;
+    o[1] = 0.0;
+    o[2] = 0.0;
+    o[3] = t2;
+    o[4] = t3;
+    o[5] = t4;
+    o[6] = t5 + t2;
+    o[7] = t3 - t6;
+    o[8] = t4;
+    o[9] = p2_11;
+    o[10] = -t8;
+    o[11] = p2_31;
+    o[12] = p2_11 - d4 * (c1 * s23);
+    o[13] = -(t8 + d4 * (s1 * s23));
+    o[14] = p2_31 + d4 * c23;
+}
+
+const _SKELETON = _runtime.kernel({
+    name: "puma560.skeleton",
+    compute: _skeleton,
+    common: null,
+    inputs: [
+        { name: "q", shape: [6], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "points", shape: [5, 3], branches: 0, kind: "real" },
+    ],
+    used: ["a2", "a3", "d3", "d4"],
+    defaults: DEFAULTS,
+    size: null,
+});
+
+/**
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} 15 numbers (5 x 3 in row order).
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function skeleton(q, parameters) {
+    return _runtime.single(_SKELETON, [q], parameters);
+}
+
+/**
+ * `skeleton` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 6 n numbers
+ * @param {Float64Array} [points] 15 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function skeleton_batch(n, q, points, parameters) {
+    return _runtime.batch(_SKELETON, n, [q], [points], parameters);
 }
 
 /** @type {_runtime.Compute} */

@@ -4,6 +4,7 @@
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
 //   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
+//   skeleton: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
 //   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
 //   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
 //   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
@@ -31,6 +32,26 @@ export const JOINTS = Object.freeze(/** @type {const} */ (["rho1", "rho2"]));
 export const TASK = Object.freeze(/** @type {const} */ (["x", "y"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["only"]));
 export const SINGULARITIES = Object.freeze(/** @type {const} */ (["leg 1", "leg 2", "flat"]));
+
+/** What `skeleton` draws: each link is a polyline through points of one rigid body. */
+export const SKELETON = Object.freeze(/** @type {const} */ ({
+    points: [
+        "A",
+        "B",
+        "P",
+    ],
+    links: {
+        ground: ["A", "B"],
+    },
+    joints: {
+        rho1: { kind: "prismatic", points: ["A", "P"] },
+        rho2: { kind: "prismatic", points: ["B", "P"] },
+        theta1: { kind: "revolute", points: ["A"] },
+        theta2: { kind: "revolute", points: ["B"] },
+    },
+    hand: "P",
+    ground: ["A", "B"],
+}));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -217,6 +238,102 @@ export function passive_angles(q, parameters) {
  */
 export function passive_angles_batch(n, q, theta, parameters) {
     return _runtime.batch(_PASSIVE_ANGLES, n, [q], [theta], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _skeleton(v, o) {
+    const rho1 = v[0];
+    const rho2 = v[1];
+    const b = v[2];
+    const t1 = Number.isFinite(rho1) && Number.isFinite(rho2);
+    const t2 = rho1 + rho2;
+    const t3 = b + t2;
+    const t4 = -(_runtime.FEASIBILITY * t3);
+    const t5 = t2 - b;
+    const t6 = rho1 - rho2;
+    const t7 = b + t6;
+    const t8 = b - t6;
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t1) || !(t4 <= t5 && t4 <= t7 && t4 <=
+        t8);
+    const t9 = failed ? NaN : 0;
+    const t10 = 0.0 + t9;
+    const t11 = b + t9;
+    const t12 = _runtime.VANISHING * t3;
+    const coincide = b <= t12;
+    const n_1 = coincide ? 1.0 : b / b;
+    const t13 = b * 2.0;
+    const P_x = n_1 * (coincide ? rho1 : b * 0.5 + t6 * t2 / t13);
+    const t14 = P_x + t9;
+    const slack = Math.max(t5, 0.0);
+    const t15 = slack * Math.max(t7, 0.0) * Math.max(t8, 0.0);
+    const t16 = coincide ? 0.0 : Math.sqrt(t3) * Math.sqrt(t15) / t13;
+    const P_y = n_1 * (slack <= t12 ? 0.0 : t16);
+    o[0] = t10;
+    o[1] = t10;
+    o[2] = t10;
+    o[3] = t11;
+    o[4] = t10;
+    o[5] = t10;
+    o[6] = t14;
+    o[7] = P_y + t9;
+    o[8] = t10;
+    o[9] = t10;
+    o[10] = t10;
+    o[11] = t10;
+    o[12] = t11;
+    o[13] = t10;
+    o[14] = t10;
+    o[15] = t14;
+    o[16] = -P_y + t9;
+    o[17] = t10;
+}
+
+const _SKELETON = _runtime.kernel({
+    name: "rpr_planar.skeleton",
+    compute: _skeleton,
+    common: null,
+    inputs: [
+        { name: "q", shape: [2], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "points", shape: [3, 3], branches: 2, kind: "real" },
+    ],
+    used: ["b"],
+    defaults: DEFAULTS,
+    size: {
+        lengths: [0, 1, 2],
+        degrees: [[3, 1], [6, 1], [7, 1], [12, 1], [15, 1], [16, 1]],
+        least: 6.681911775230489e-52,
+        most: 1.7498005798264095e+100,
+    },
+});
+
+/**
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ *
+ * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order).
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function skeleton(q, parameters) {
+    return _runtime.single(_SKELETON, [q], parameters);
+}
+
+/**
+ * `skeleton` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 2 n numbers
+ * @param {Float64Array} [points] 18 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function skeleton_batch(n, q, points, parameters) {
+    return _runtime.batch(_SKELETON, n, [q], [points], parameters);
 }
 
 /** @type {_runtime.Compute} */

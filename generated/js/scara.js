@@ -3,6 +3,7 @@
 // Source: The closedform authors: Arms of common structure, solved by lemmas.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   pose: 9 add, 16 multiply, 3 sincos
+//   skeleton: 5 add, 8 multiply, 2 sincos
 //   fk: 7 add, 8 multiply, 3 reduce to a turn, 2 sincos, 1 compare and select
 //   jacobian: 4 add, 8 multiply, 2 sincos
 //   determinant: 2 multiply, 1 sincos
@@ -32,6 +33,29 @@ export const JOINTS = Object.freeze(/** @type {const} */ (["theta1", "theta2", "
 export const TASK = Object.freeze(/** @type {const} */ (["x", "y", "z", "yaw"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["left", "right"]));
 export const SINGULARITIES = Object.freeze(/** @type {const} */ (["sin(theta2) = 0"]));
+
+/** What `skeleton` draws: each link is a polyline through points of one rigid body. */
+export const SKELETON = Object.freeze(/** @type {const} */ ({
+    points: [
+        "base",
+        "corner1",
+        "joint2",
+        "joint3",
+        "slide3",
+    ],
+    links: {
+        link1: ["base", "corner1", "joint2"],
+        link2: ["joint2", "joint3"],
+    },
+    joints: {
+        theta1: { kind: "revolute", points: ["base"] },
+        theta2: { kind: "revolute", points: ["joint2"] },
+        d3: { kind: "prismatic", points: ["joint3", "slide3"] },
+        theta4: { kind: "revolute", points: ["slide3"] },
+    },
+    hand: "slide3",
+    ground: ["base"],
+}));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -129,6 +153,83 @@ export function pose(q, parameters) {
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _skeleton(v, o) {
+    const theta1 = v[0];
+    const theta2 = v[1];
+    const d3 = v[2];
+    const l1 = v[4];
+    const l2 = v[5];
+    const h = v[6];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    const t1 = l1 * c1;
+    const t2 = l1 * s1;
+    const t3 = t1 + l2 * (c1 * c2 - s1 * s2);
+    const t4 = t2 + l2 * (s1 * c2 + c1 * s2);
+    o[0] = 0.0;
+    o[1] = 0.0;
+    o[2] = 0.0;
+    o[3] = 0.0;
+    o[4] = 0.0;
+    o[5] = h;
+    o[6] = t1;
+    o[7] = t2;
+    o[8] = h;
+    o[9] = t3;
+    o[10] = t4;
+    o[11] = h;
+    o[12] = t3;
+    o[13] = t4;
+    o[14] = h - d3;
+}
+
+const _SKELETON = _runtime.kernel({
+    name: "scara.skeleton",
+    compute: _skeleton,
+    common: null,
+    inputs: [
+        { name: "q", shape: [4], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "points", shape: [5, 3], branches: 0, kind: "real" },
+    ],
+    used: ["l1", "l2", "h"],
+    defaults: DEFAULTS,
+    size: null,
+});
+
+/**
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * @param {ArrayLike<number>} q 4 numbers. theta1, theta2 in rad; d3 in the unit of the
+ *     parameters; theta4 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} 15 numbers (5 x 3 in row order).
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function skeleton(q, parameters) {
+    return _runtime.single(_SKELETON, [q], parameters);
+}
+
+/**
+ * `skeleton` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 4 n numbers
+ * @param {Float64Array} [points] 15 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function skeleton_batch(n, q, points, parameters) {
+    return _runtime.batch(_SKELETON, n, [q], [points], parameters);
 }
 
 /** @type {_runtime.Compute} */

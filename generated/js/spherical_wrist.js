@@ -5,6 +5,7 @@
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   fk: 4 add, 12 multiply, 3 sincos
 //   pose: 4 add, 16 multiply, 3 sincos
+//   skeleton: 4 multiply, 2 sincos
 //   jacobian_space: 2 multiply, 2 sincos
 //   jacobian_body: 2 multiply, 2 sincos
 //   determinant: 1 sincos
@@ -33,6 +34,24 @@ export const JOINTS = Object.freeze(/** @type {const} */ (["theta4", "theta5", "
 export const TASK = Object.freeze(/** @type {const} */ (["R11", "R12", "R13", "R21", "R22", "R23", "R31", "R32", "R33"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["theta5_positive", "theta5_negative"]));
 export const SINGULARITIES = Object.freeze(/** @type {const} */ (["axes 4 and 6 coincide"]));
+
+/** What `skeleton` draws: each link is a polyline through points of one rigid body. */
+export const SKELETON = Object.freeze(/** @type {const} */ ({
+    points: [
+        "centre",
+        "hand",
+    ],
+    links: {
+        hand: ["centre", "hand"],
+    },
+    joints: {
+        theta4: { kind: "revolute", points: ["centre"] },
+        theta5: { kind: "revolute", points: ["centre"] },
+        theta6: { kind: "revolute", points: ["centre"] },
+    },
+    hand: "hand",
+    ground: ["centre"],
+}));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -197,6 +216,68 @@ export function pose(q, parameters) {
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _skeleton(v, o) {
+    const theta4 = v[0];
+    const theta5 = v[1];
+    const d6 = v[3];
+    _runtime.sincos(theta4);
+    const s4 = _runtime.found[0];
+    const c4 = _runtime.found[1];
+    _runtime.sincos(theta5);
+    const s5 = _runtime.found[0];
+    const c5 = _runtime.found[1];
+    const t1 = d6 * s5;
+    o[0] = 0.0;
+    o[1] = 0.0;
+    o[2] = 0.0;
+    o[3] = c4 * t1;
+    o[4] = s4 * t1;
+    o[5] = d6 * c5;
+}
+
+const _SKELETON = _runtime.kernel({
+    name: "spherical_wrist.skeleton",
+    compute: _skeleton,
+    common: null,
+    inputs: [
+        { name: "q", shape: [3], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "points", shape: [2, 3], branches: 0, kind: "real" },
+    ],
+    used: ["d6"],
+    defaults: DEFAULTS,
+    size: null,
+});
+
+/**
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * @param {ArrayLike<number>} q 3 numbers. theta4, theta5, theta6 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} 6 numbers (2 x 3 in row order). One column for each of theta4, theta5,
+ *     theta6.
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function skeleton(q, parameters) {
+    return _runtime.single(_SKELETON, [q], parameters);
+}
+
+/**
+ * `skeleton` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 3 n numbers
+ * @param {Float64Array} [points] 6 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function skeleton_batch(n, q, points, parameters) {
+    return _runtime.batch(_SKELETON, n, [q], [points], parameters);
 }
 
 /** @type {_runtime.Compute} */

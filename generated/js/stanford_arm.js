@@ -4,6 +4,7 @@
 //     textbooks.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   pose: 18 add, 44 multiply, 5 sincos
+//   skeleton: 2 add, 7 multiply, 2 sincos
 //   fk: 18 add, 44 multiply, 5 sincos
 //   jacobian: 8 add, 26 multiply, 4 sincos
 //   determinant: 3 multiply, 2 sincos
@@ -36,6 +37,28 @@ export const JOINTS = Object.freeze(/** @type {const} */ (["theta1", "theta2", "
 export const TASK = Object.freeze(/** @type {const} */ (["T11", "T12", "T13", "T14", "T21", "T22", "T23", "T24", "T31", "T32", "T33", "T34", "T41", "T42", "T43", "T44"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["right_out_noflip", "right_out_flip", "right_back_noflip", "right_back_flip", "left_out_noflip", "left_out_flip", "left_back_noflip", "left_back_flip"]));
 export const SINGULARITIES = Object.freeze(/** @type {const} */ (["shoulder", "boom", "wrist"]));
+
+/** What `skeleton` draws: each link is a polyline through points of one rigid body. */
+export const SKELETON = Object.freeze(/** @type {const} */ ({
+    points: [
+        "base",
+        "joint3",
+        "slide3",
+    ],
+    links: {
+        link2: ["base", "joint3"],
+    },
+    joints: {
+        theta1: { kind: "revolute", points: ["base"] },
+        theta2: { kind: "revolute", points: ["base"] },
+        d3: { kind: "prismatic", points: ["joint3", "slide3"] },
+        theta4: { kind: "revolute", points: ["slide3"] },
+        theta5: { kind: "revolute", points: ["slide3"] },
+        theta6: { kind: "revolute", points: ["slide3"] },
+    },
+    hand: "slide3",
+    ground: ["base"],
+}));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -146,6 +169,73 @@ export function pose(q, parameters) {
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _skeleton(v, o) {
+    const theta1 = v[0];
+    const theta2 = v[1];
+    const d3 = v[2];
+    const d2 = v[6];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    const t1 = d2 * s1;
+    const p2_21 = d2 * c1;
+    o[0] = 0.0;
+    o[1] = 0.0;
+    o[2] = 0.0;
+    o[3] = -t1;
+    o[4] = p2_21;
+    o[5] = 0.0;
+    o[6] = d3 * (c1 * s2) - t1;
+    o[7] = p2_21 + d3 * (s1 * s2);
+    o[8] = d3 * c2;
+}
+
+const _SKELETON = _runtime.kernel({
+    name: "stanford_arm.skeleton",
+    compute: _skeleton,
+    common: null,
+    inputs: [
+        { name: "q", shape: [6], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "points", shape: [3, 3], branches: 0, kind: "real" },
+    ],
+    used: ["d2"],
+    defaults: DEFAULTS,
+    size: null,
+});
+
+/**
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * @param {ArrayLike<number>} q 6 numbers. theta1, theta2 in rad; d3 in the unit of the
+ *     parameters; theta4, theta5, theta6 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} 9 numbers (3 x 3 in row order).
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function skeleton(q, parameters) {
+    return _runtime.single(_SKELETON, [q], parameters);
+}
+
+/**
+ * `skeleton` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 6 n numbers
+ * @param {Float64Array} [points] 9 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function skeleton_batch(n, q, points, parameters) {
+    return _runtime.batch(_SKELETON, n, [q], [points], parameters);
 }
 
 /** @type {_runtime.Compute} */

@@ -3,6 +3,7 @@
 // Source: The closedform authors: Arms of common structure, solved by lemmas.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   pose: 26 add, 52 multiply, 6 sincos
+//   skeleton: 19 add, 37 multiply, 5 sincos
 //   fk: 26 add, 52 multiply, 6 sincos
 //   jacobian: 19 add, 46 multiply, 5 sincos
 //   determinant: 6 add, 15 multiply, 4 sincos
@@ -35,6 +36,37 @@ export const JOINTS = Object.freeze(/** @type {const} */ (["theta1", "theta2", "
 export const TASK = Object.freeze(/** @type {const} */ (["T11", "T12", "T13", "T14", "T21", "T22", "T23", "T24", "T31", "T32", "T33", "T34", "T41", "T42", "T43", "T44"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["left_noflip_up", "left_noflip_down", "left_flip_up", "left_flip_down", "right_noflip_up", "right_noflip_down", "right_flip_up", "right_flip_down"]));
 export const SINGULARITIES = Object.freeze(/** @type {const} */ (["shoulder", "elbow", "wrist"]));
+
+/** What `skeleton` draws: each link is a polyline through points of one rigid body. */
+export const SKELETON = Object.freeze(/** @type {const} */ ({
+    points: [
+        "base",
+        "joint2",
+        "joint3",
+        "joint4",
+        "joint5",
+        "joint6",
+        "tool",
+    ],
+    links: {
+        link1: ["base", "joint2"],
+        link2: ["joint2", "joint3"],
+        link3: ["joint3", "joint4"],
+        link4: ["joint4", "joint5"],
+        link5: ["joint5", "joint6"],
+        link6: ["joint6", "tool"],
+    },
+    joints: {
+        theta1: { kind: "revolute", points: ["base"] },
+        theta2: { kind: "revolute", points: ["joint2"] },
+        theta3: { kind: "revolute", points: ["joint3"] },
+        theta4: { kind: "revolute", points: ["joint4"] },
+        theta5: { kind: "revolute", points: ["joint5"] },
+        theta6: { kind: "revolute", points: ["joint6"] },
+    },
+    hand: "tool",
+    ground: ["base"],
+}));
 
 /**
  * Dimensions of the mechanism; one that is missing has its default.
@@ -164,6 +196,113 @@ export function pose(q, parameters) {
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _skeleton(v, o) {
+    const theta1 = v[0];
+    const theta2 = v[1];
+    const theta3 = v[2];
+    const theta4 = v[3];
+    const theta5 = v[4];
+    const d1 = v[6];
+    const L2 = v[7];
+    const L3 = v[8];
+    const d4 = v[9];
+    const d5 = v[10];
+    const d6 = v[11];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    _runtime.sincos(theta3);
+    const s3 = _runtime.found[0];
+    const c3 = _runtime.found[1];
+    _runtime.sincos(theta4);
+    const s4 = _runtime.found[0];
+    const c4 = _runtime.found[1];
+    _runtime.sincos(theta5);
+    const s5 = _runtime.found[0];
+    const c5 = _runtime.found[1];
+    const t1 = L2 * c2;
+    const t2 = d1 - L2 * s2;
+    const t3 = t1 + L3 * (c2 * c3 - s2 * s3);
+    const t4 = c1 * t3;
+    const t5 = s1 * t3;
+    const t6 = L3 * (s2 * c3 + c2 * s3) - t2;
+    const p2_11 = d4 * s1 - t4;
+    const t7 = d4 * c1 + t5;
+    const c34 = c3 * c4 - s3 * s4;
+    const s34 = s3 * c4 + c3 * s4;
+    const s234 = s2 * c34 + c2 * s34;
+    const p3_11 = p2_11 + d5 * (c1 * s234);
+    const t8 = t7 - d5 * (s1 * s234);
+    const c234 = c2 * c34 - s2 * s34;
+    const t9 = d5 * c234 + t6;
+    o[0] = 0.0;
+    o[1] = 0.0;
+    o[2] = 0.0;
+    o[3] = 0.0;
+    o[4] = 0.0;
+    o[5] = d1;
+    o[6] = -(c1 * t1);
+    o[7] = -(s1 * t1);
+    o[8] = t2;
+    o[9] = -t4;
+    o[10] = -t5;
+    o[11] = -t6;
+    o[12] = p2_11;
+    o[13] = -t7;
+    o[14] = -t6;
+    o[15] = p3_11;
+    o[16] = -t8;
+    o[17] = -t9;
+    o[18] = p3_11 - d6 * (c1 * c234 * s5 - s1 * c5);
+    o[19] = -(t8 + d6 * (c1 * c5 + s1 * c234 * s5));
+    o[20] = -(d6 * (s234 * s5) + t9);
+}
+
+const _SKELETON = _runtime.kernel({
+    name: "ur_arm.skeleton",
+    compute: _skeleton,
+    common: null,
+    inputs: [
+        { name: "q", shape: [6], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "points", shape: [7, 3], branches: 0, kind: "real" },
+    ],
+    used: ["d1", "L2", "L3", "d4", "d5", "d6"],
+    defaults: DEFAULTS,
+    size: null,
+});
+
+/**
+ * Points of the mechanism in the base frame, in the order of SKELETON.points.
+ *
+ * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} 21 numbers (7 x 3 in row order).
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function skeleton(q, parameters) {
+    return _runtime.single(_SKELETON, [q], parameters);
+}
+
+/**
+ * `skeleton` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 6 n numbers
+ * @param {Float64Array} [points] 21 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function skeleton_batch(n, q, points, parameters) {
+    return _runtime.batch(_SKELETON, n, [q], [points], parameters);
 }
 
 /** @type {_runtime.Compute} */

@@ -7,6 +7,7 @@
 #     sincos, 3 sqrt
 #   pose: 72 add, 32 compare and select, 8 divide, 101 multiply, 6 sincos, 3 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
+#   skeleton: 157 add, 32 compare and select, 8 divide, 150 multiply, 6 sincos, 3 sqrt
 #   invariant_point: 19 add, 4 divide, 34 multiply, 2 compare and select, 5 sincos
 #   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
@@ -37,27 +38,80 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _runtime
-from ._runtime import Positions, Solutions, Status
+from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
 ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2R', 'theta3R', 'theta2L', 'theta3L', 'theta')
 TASK = ('x', 'y', 'z', 'psi', 'phi', 'theta')
 BRANCHES = ('front_elbow_up', 'front_elbow_down', 'rear_elbow_up', 'rear_elbow_down')
 SINGULARITIES = ('the tip is above or below the waist axis', 'virtual arm with the wrist straight or folded', 'virtual arm straight or folded', 'upper arms half a turn apart', 'fore-arms half a turn apart', 'wrist links stretched along the base line')
+SKELETON = Skeleton(
+    points=(
+        "base",
+        "column",
+        "shoulder_right",
+        "elbow_right",
+        "corner_right",
+        "tip_right",
+        "shoulder_left",
+        "elbow_left",
+        "corner_left",
+        "tip_left",
+        "elbow_virtual",
+        "corner_virtual",
+        "tip_virtual",
+        "foot_right",
+        "foot_left",
+        "gear_right",
+        "gear_left",
+        "gear_centre",
+        "pitch",
+        "hand",
+    ),
+    links={
+        "column": ('base', 'column'),
+        "waist": ('shoulder_left', 'column', 'shoulder_right'),
+        "upper_right": ('shoulder_right', 'elbow_right'),
+        "fore_right": ('elbow_right', 'corner_right', 'tip_right'),
+        "upper_left": ('shoulder_left', 'elbow_left'),
+        "fore_left": ('elbow_left', 'corner_left', 'tip_left'),
+        "upper_virtual": ('column', 'elbow_virtual'),
+        "fore_virtual": ('elbow_virtual', 'corner_virtual', 'tip_virtual'),
+        "wrist_right": ('foot_right', 'gear_right'),
+        "wrist_left": ('foot_left', 'gear_left'),
+        "gears": ('gear_right', 'gear_centre', 'gear_left'),
+        "wrist": ('gear_centre', 'pitch'),
+        "hand": ('pitch', 'hand'),
+    },
+    joints={
+        "theta1": SkeletonJoint("revolute", ('base', 'column')),
+        "theta2R": SkeletonJoint("revolute", ('shoulder_right',)),
+        "theta3R": SkeletonJoint("revolute", ('elbow_right',)),
+        "theta2L": SkeletonJoint("revolute", ('shoulder_left',)),
+        "theta3L": SkeletonJoint("revolute", ('elbow_left',)),
+        "theta": SkeletonJoint("revolute", ('pitch',)),
+    },
+    hand="hand",
+    ground=('base', 'column'),
+)
 
 __all__ = [
     "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "fk",
     "pose",
     "arm_tips",
+    "skeleton",
     "invariant_point",
     "jacobian",
     "determinant",
@@ -490,6 +544,295 @@ def arm_tips(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
         If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_ARM_TIPS, (q,), params, out)
+    return result
+
+
+def _skeleton(
+    theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp
+):
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
+    s1, c1 = _runtime.sincos(theta1)
+    s, c = _runtime.sincos(theta)
+    t1 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t2 = t1 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3) & (0.0 <= d1)
+    del t1
+    t3 = t2 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    del t2
+    t4 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    t5 = gs + al
+    t6 = -(_runtime.FEASIBILITY * t5)
+    t7 = d * d
+    t8 = c3L_half * c3R_half
+    t9 = s3L_half * s3R_half
+    t10 = t8 + t9
+    t11 = s3L_half * c3R_half
+    t12 = c3L_half * s3R_half
+    t13 = t11 - t12
+    t14 = c2R_half * t10 + s2R_half * t13
+    t15 = s2R_half * t10 - c2R_half * t13
+    del t10, t13
+    t16 = s2L_half * t14 - c2L_half * t15
+    t17 = t8 - t9
+    del t8, t9
+    t18 = t11 + t12
+    del t11, t12
+    t19 = c2R_half * t17 - s2R_half * t18
+    t20 = s2R_half * t17 + c2R_half * t18
+    del t17, t18
+    t21 = c2L_half * t19 - s2L_half * t20
+    t22 = s2L_half * t19 + c2L_half * t20
+    del t19, t20
+    t23 = s2L_half * c2R_half
+    t24 = c2L_half * s2R_half
+    t25 = t23 + t24
+    t26 = L1 * (t23 - t24)
+    del t23, t24
+    t27 = t16 * (L2 * t21 - a3 * t22) - t25 * t26
+    base = np.sqrt(t7 + t27 * t27)
+    t28 = t5 - base
+    del t5
+    t29 = base - (gs - al)
+    failed = np.logical_not(t3 & (0.0 <= lp) & t4) | np.logical_not((t6 <= t28) & (t6 <= t29))
+    del t3, t4, t6
+    t30 = _runtime.poison(failed)
+    del failed
+    t31 = 0.0 + t30
+    t32 = d1 + t30
+    t33 = d * s1
+    t34 = d * c1
+    t35 = c2R_half * c2R_half - s2R_half * s2R_half
+    t36 = L1 * t35
+    t37 = s2R_half * c2R_half
+    t38 = t37 + t37
+    del t37
+    t39 = d1 + L1 * t38
+    t40 = c3R_half * c3R_half - s3R_half * s3R_half
+    t41 = s3R_half * c3R_half
+    del c3R_half, s3R_half
+    t42 = t41 + t41
+    del t41
+    c2R3R = t35 * t40 - t38 * t42
+    t43 = t36 + a3 * c2R3R
+    s2R3R = t38 * t40 + t35 * t42
+    del t35, t38, t40, t42
+    t44 = t39 + a3 * s2R3R
+    t45 = t43 + L2 * s2R3R
+    del s2R3R
+    t46 = c2L_half * c2L_half - s2L_half * s2L_half
+    t47 = L1 * t46
+    t48 = s2L_half * c2L_half
+    t49 = t48 + t48
+    del t48
+    t50 = d1 + L1 * t49
+    t51 = c3L_half * c3L_half - s3L_half * s3L_half
+    t52 = s3L_half * c3L_half
+    del c3L_half, s3L_half
+    t53 = t52 + t52
+    del t52
+    c2L3L = t46 * t51 - t49 * t53
+    t54 = t47 + a3 * c2L3L
+    s2L3L = t49 * t51 + t46 * t53
+    del t46, t49, t51, t53
+    t55 = t50 + a3 * s2L3L
+    t56 = t54 + L2 * s2L3L
+    del s2L3L
+    t57 = c2L_half * c2R_half
+    del c2R_half
+    t58 = s2L_half * s2R_half
+    del s2R_half
+    side2A = _runtime.sign(t57 + t58)
+    t59 = t57 - t58
+    del t57, t58
+    t60 = L1 * (side2A * t59)
+    t61 = d1 + L1 * (side2A * t25)
+    del side2A, t25
+    side23A = _runtime.sign(c2L_half * t14 + s2L_half * t15)
+    del c2L_half, s2L_half, t14, t15
+    c23A = side23A * t21
+    t62 = t60 + a3 * c23A
+    s23A = side23A * t22
+    del side23A
+    t63 = t61 + a3 * s23A
+    t64 = t62 + L2 * s23A
+    t65 = c1 * t64
+    t66 = s1 * t64
+    del t64
+    t67 = L2 * c23A - t63
+    t68 = t16 * (L2 * t22 + a3 * t21) + t59 * t26
+    del t16, t21, t22, t26, t59
+    rise = np.sqrt(t7 + t68 * t68)
+    del t7
+    t69 = t68 / rise
+    del t68
+    c_psi = d / base
+    t70 = c23A * c_psi
+    t71 = t69 * t70
+    c_phi = d / rise
+    del rise
+    t72 = c_psi * c_phi
+    t73 = t27 / base
+    del t27
+    t74 = s23A * t73
+    t75 = c1 * t71 + s1 * t72 - c1 * t74
+    t76 = base * t75
+    t77 = s1 * t71 - c1 * t72 - s1 * t74
+    del t71, t72, t74
+    t78 = base * t77
+    t79 = s23A * c_psi
+    del c_psi
+    t80 = c23A * t73 + t69 * t79
+    t81 = base * t80
+    del base
+    t82 = gs * t75
+    del t75
+    t83 = c23A * c1
+    t84 = t69 * t73
+    t85 = c_phi * t73
+    del t73
+    t86 = c1 * t79
+    t87 = t83 * t84 + s1 * t85 + t86
+    wrist = np.sqrt(np.maximum(t29, 0.0) * np.maximum(t28, 0.0))
+    del t28, t29
+    t88 = t65 + t87 * wrist
+    t89 = gs * t77
+    del t77
+    t90 = c23A * s1
+    del c23A
+    t91 = s1 * t79
+    del t79
+    t92 = t90 * t84 - c1 * t85 + t91
+    t93 = t66 + t92 * wrist
+    t94 = gs * t80
+    del t80
+    t95 = t70 - s23A * t84
+    t96 = t67 + t95 * wrist
+    del wrist
+    t97 = loff * t87 + t88
+    del t87
+    t98 = loff * t92 + t93
+    del t92
+    t99 = loff * t95 + t96
+    del t95
+    t100 = lp * s
+    del s
+    t101 = lp * c
+    del c
+    t102 = t100 * c_phi + t101 * t84
+    del c_phi, t84
+    t103 = t101 * t85 - t100 * t69
+    del t100, t69, t85
+    t104 = t83 * t102 + t101 * t86 + s1 * t103 + t97 + t30
+    del t83, t86
+    t105 = t90 * t102 + t101 * t91 - c1 * t103 + t98 + t30
+    del t103, t90, t91
+    return (
+        t31,
+        t31,
+        t31,
+        t31,
+        t31,
+        t32,
+        t33 + t30,
+        -t34 + t30,
+        t32,
+        t33 + c1 * t36 + t30,
+        s1 * t36 - t34 + t30,
+        t39 + t30,
+        t33 + c1 * t43 + t30,
+        s1 * t43 - t34 + t30,
+        t44 + t30,
+        t33 + c1 * t45 + t30,
+        s1 * t45 - t34 + t30,
+        t44 - L2 * c2R3R + t30,
+        -t33 + t30,
+        t34 + t30,
+        t32,
+        c1 * t47 - t33 + t30,
+        t34 + s1 * t47 + t30,
+        t50 + t30,
+        c1 * t54 - t33 + t30,
+        t34 + s1 * t54 + t30,
+        t55 + t30,
+        c1 * t56 - t33 + t30,
+        t34 + s1 * t56 + t30,
+        t55 - L2 * c2L3L + t30,
+        c1 * t60 + t30,
+        s1 * t60 + t30,
+        t61 + t30,
+        c1 * t62 + t30,
+        s1 * t62 + t30,
+        t63 + t30,
+        t65 + t30,
+        t66 + t30,
+        -t67 + t30,
+        t76 + t65 + t30,
+        t78 + t66 + t30,
+        t81 - t67 + t30,
+        t65 - t76 + t30,
+        t66 - t78 + t30,
+        -(t81 + t67) + t30,
+        t82 + t88 + t30,
+        t89 + t93 + t30,
+        t94 - t96 + t30,
+        t88 - t82 + t30,
+        t93 - t89 + t30,
+        -(t94 + t96) + t30,
+        t88 + t30,
+        t93 + t30,
+        -t96 + t30,
+        t97 + t30,
+        t98 + t30,
+        -t99 + t30,
+        t104,
+        t105,
+        -(t101 * t70 - s23A * t102 + t99) + t30,
+    )
+
+
+_SKELETON = _runtime.Kernel(
+    "h6ar.skeleton",
+    _skeleton,
+    (_runtime.Array("q", (6,)),),
+    (_runtime.Array("points", (20, 3)),),
+    Parameters._fields,
+    ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
+)
+
+
+def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    points : ndarray of float64, shape (..., 20, 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - NaN if the tips are farther apart than the wrist links can span.
+    - The links of the wrist start on its base line, which joins the tips of the arms only where
+      the arms are parallel: the published model does not close the loop.
+    """
+    result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
 
 

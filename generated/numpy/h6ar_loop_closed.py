@@ -6,6 +6,7 @@
 #   fk: 60 compare and select, 81 add, 2 atan2, 21 divide, 121 multiply, 1 reduce to a turn, 6
 #     sincos, 6 sqrt
 #   pose: 57 compare and select, 108 add, 21 divide, 160 multiply, 6 sincos, 6 sqrt
+#   skeleton: 57 compare and select, 175 add, 21 divide, 199 multiply, 6 sincos, 6 sqrt
 #   arm_tips: 18 add, 26 multiply, 5 sincos
 #   invariant_point: 19 add, 4 divide, 33 multiply, 5 sincos
 #   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
@@ -38,26 +39,77 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _runtime
-from ._runtime import Positions, Solutions, Status
+from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
 ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2R', 'theta3R', 'theta2L', 'theta3L', 'theta')
 TASK = ('x', 'y', 'z', 'psi', 'phi', 'theta')
 BRANCHES = ('front_elbow_up_alike', 'front_elbow_up_mixed', 'front_elbow_down_alike', 'front_elbow_down_mixed', 'rear_elbow_up_alike', 'rear_elbow_up_mixed', 'rear_elbow_down_alike', 'rear_elbow_down_mixed')
 SINGULARITIES = ('the tip is above or below the waist axis', 'virtual arm with the wrist straight or folded', 'right arm straight or folded', 'left arm straight or folded', 'virtual arm straight or folded (a pole of the determinant)', 'wrist links stretched along the base line')
+SKELETON = Skeleton(
+    points=(
+        "base",
+        "column",
+        "shoulder_right",
+        "elbow_right",
+        "corner_right",
+        "tip_right",
+        "shoulder_left",
+        "elbow_left",
+        "corner_left",
+        "tip_left",
+        "elbow_virtual",
+        "corner_virtual",
+        "tip_virtual",
+        "gear_right",
+        "gear_left",
+        "gear_centre",
+        "pitch",
+        "hand",
+    ),
+    links={
+        "column": ('base', 'column'),
+        "waist": ('shoulder_left', 'column', 'shoulder_right'),
+        "upper_right": ('shoulder_right', 'elbow_right'),
+        "fore_right": ('elbow_right', 'corner_right', 'tip_right'),
+        "upper_left": ('shoulder_left', 'elbow_left'),
+        "fore_left": ('elbow_left', 'corner_left', 'tip_left'),
+        "upper_virtual": ('column', 'elbow_virtual'),
+        "fore_virtual": ('elbow_virtual', 'corner_virtual', 'tip_virtual'),
+        "wrist_right": ('tip_right', 'gear_right'),
+        "wrist_left": ('tip_left', 'gear_left'),
+        "gears": ('gear_right', 'gear_centre', 'gear_left'),
+        "wrist": ('gear_centre', 'pitch'),
+        "hand": ('pitch', 'hand'),
+    },
+    joints={
+        "theta1": SkeletonJoint("revolute", ('base', 'column')),
+        "theta2R": SkeletonJoint("revolute", ('shoulder_right',)),
+        "theta3R": SkeletonJoint("revolute", ('elbow_right',)),
+        "theta2L": SkeletonJoint("revolute", ('shoulder_left',)),
+        "theta3L": SkeletonJoint("revolute", ('elbow_left',)),
+        "theta": SkeletonJoint("revolute", ('pitch',)),
+    },
+    hand="hand",
+    ground=('base', 'column'),
+)
 
 __all__ = [
     "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "fk",
     "pose",
+    "skeleton",
     "arm_tips",
     "invariant_point",
     "jacobian",
@@ -605,6 +657,352 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
       its fore-arm.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
+    return result
+
+
+def _skeleton(
+    theta1, theta2R, theta3R, theta2L, theta3L, theta, L1, L2, a3, d1, d, gs, al, loff, lp
+):
+    s2L_half, c2L_half = _runtime.sincos(theta2L * 0.5)
+    s2R_half, c2R_half = _runtime.sincos(theta2R * 0.5)
+    s3R_half, c3R_half = _runtime.sincos(theta3R * 0.5)
+    s3L_half, c3L_half = _runtime.sincos(theta3L * 0.5)
+    s1, c1 = _runtime.sincos(theta1)
+    s, c = _runtime.sincos(theta)
+    t1 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t2 = t1 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3) & (0.0 <= d1)
+    del t1
+    t3 = t2 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (0.0 <= loff)
+    del t2
+    t4 = np.isfinite(theta1) & np.isfinite(theta2R) & np.isfinite(theta3R) & np.isfinite(theta2L) & np.isfinite(theta3L) & np.isfinite(theta)
+    fore = np.sqrt(L2 * L2 + a3 * a3)
+    t5 = L1 + fore
+    t6 = -(_runtime.FEASIBILITY * (d * t5))
+    t7 = c3R_half * c3L_half
+    t8 = s3R_half * s3L_half
+    t9 = t7 + t8
+    t10 = c3R_half * s3L_half
+    t11 = s3R_half * c3L_half
+    t12 = t10 - t11
+    t13 = c2R_half * t9 + s2R_half * t12
+    t14 = s2R_half * t9 - c2R_half * t12
+    del t12, t9
+    t15 = s2L_half * t13 - c2L_half * t14
+    t16 = t7 - t8
+    del t7, t8
+    t17 = t10 + t11
+    del t10, t11
+    t18 = c2R_half * t16 - s2R_half * t17
+    t19 = s2R_half * t16 + c2R_half * t17
+    del t16, t17
+    t20 = c2L_half * t18 - s2L_half * t19
+    t21 = s2L_half * t18 + c2L_half * t19
+    del t18, t19
+    t22 = L2 * t20 - a3 * t21
+    t23 = s2L_half * c2R_half
+    t24 = c2L_half * s2R_half
+    t25 = t23 + t24
+    t26 = L1 * (t23 - t24)
+    del t23, t24
+    t27 = t15 * t22 - t25 * t26
+    t28 = L2 * t21 + a3 * t20
+    del t20, t21
+    t29 = c2L_half * c2R_half
+    t30 = s2L_half * s2R_half
+    t31 = t29 - t30
+    t32 = t28 * t15 + t31 * t26
+    del t15, t26
+    gap = t27 * t27 + t32 * t32
+    t33 = s3L_half * c3L_half
+    t34 = t33 + t33
+    del t33
+    t35 = c3L_half * c3L_half - s3L_half * s3L_half
+    del c3L_half, s3L_half
+    straight_left = L2 * t34 + a3 * t35
+    t36 = 0.0 <= straight_left
+    t37 = L2 * t35 - a3 * t34
+    large_left = fore + np.abs(straight_left)
+    del straight_left
+    small_left = t37 * t37 / large_left
+    del t37
+    t38 = L1 * 2.0
+    N_left = _runtime.select(t36, small_left, large_left) * t38
+    t39 = s3R_half * c3R_half
+    t40 = t39 + t39
+    del t39
+    t41 = c3R_half * c3R_half - s3R_half * s3R_half
+    del c3R_half, s3R_half
+    straight_right = L2 * t40 + a3 * t41
+    t42 = 0.0 <= straight_right
+    t43 = L2 * t41 - a3 * t40
+    large_right = fore + np.abs(straight_right)
+    del straight_right
+    small_right = t43 * t43 / large_right
+    t44 = _runtime.select(t42, small_right, large_right)
+    t45 = gap + N_left * 0.5 + t44 * t38 * 0.5
+    del N_left, t44
+    t46 = _runtime.select(t42, large_right, small_right)
+    del large_right, small_right, t42
+    M_left = _runtime.select(t36, large_left, small_left) * t38
+    del large_left, small_left, t36
+    t47 = t46 * t38 * 0.5 - (gap - M_left * 0.5)
+    del M_left, t38, t46
+    t48 = gs + al
+    t49 = -(_runtime.FEASIBILITY * t48)
+    t50 = d * d
+    base = np.sqrt(t50 + gap)
+    del gap
+    t51 = t48 - base
+    del t48
+    t52 = base - (gs - al)
+    t53 = (t6 <= t45) & (t6 <= t47) & (t49 <= t51) & (t49 <= t52)
+    del t49, t6
+    failed = np.logical_not(t3 & (0.0 <= lp) & t4) | np.logical_not(t53)
+    del t3, t4, t53
+    t54 = _runtime.poison(failed)
+    del failed
+    t55 = 0.0 + t54
+    t56 = d1 + t54
+    t57 = d * s1
+    t58 = d * c1
+    t59 = c2R_half * c2R_half - s2R_half * s2R_half
+    t60 = L1 * t59
+    t61 = s2R_half * c2R_half
+    del c2R_half, s2R_half
+    t62 = t61 + t61
+    del t61
+    t63 = d1 + L1 * t62
+    c2R3R = t41 * t59 - t40 * t62
+    t64 = t60 + a3 * c2R3R
+    s2R3R = t41 * t62 + t40 * t59
+    del t40, t41
+    t65 = t63 + a3 * s2R3R
+    t66 = t64 + L2 * s2R3R
+    del s2R3R
+    t67 = c2L_half * c2L_half - s2L_half * s2L_half
+    t68 = L1 * t67
+    t69 = s2L_half * c2L_half
+    t70 = t69 + t69
+    del t69
+    t71 = d1 + L1 * t70
+    c2L3L = t35 * t67 - t34 * t70
+    t72 = t68 + a3 * c2L3L
+    s2L3L = t35 * t70 + t34 * t67
+    del t34, t35, t67, t70
+    t73 = t71 + a3 * s2L3L
+    t74 = t72 + L2 * s2L3L
+    del s2L3L
+    t75 = c2L_half * t13 + s2L_half * t14
+    del c2L_half, s2L_half, t13, t14
+    t76 = L1 * (t29 + t30)
+    del t29, t30
+    t77 = t75 * t22 - t25 * t76
+    del t22, t25
+    r_I = t28 * t75 + t31 * t76
+    del t28, t31, t75, t76
+    t78 = _runtime.VANISHING * (L1 * 64.0 + fore * 64.0)
+    folded_virtual = np.abs(-t77) + np.abs(r_I) <= t78
+    del t78
+    short_virtual = L1 * fore <= _runtime.VANISHING * (t5 * t5)
+    M_virtual = np.maximum(t47, 0.0)
+    del t47
+    N_virtual = np.maximum(t45, 0.0)
+    del t45
+    whole_virtual = M_virtual + N_virtual
+    t79 = L1 - fore + fore * 2.0 * M_virtual / whole_virtual
+    ahead_1_virtual = _runtime.select(short_virtual, t5, t79)
+    del t79
+    t80 = 2.0 * _runtime.sign(-t43) * np.sqrt(M_virtual * N_virtual)
+    del t43
+    s_bend_virtual = _runtime.select(short_virtual, 0.0, t80 / whole_virtual)
+    del t80
+    t81 = fore * s_bend_virtual
+    out_virtual = r_I * ahead_1_virtual - t77 * t81
+    t82 = t77 * ahead_1_virtual + r_I * t81
+    del ahead_1_virtual, r_I, t77, t81
+    norm_virtual = np.sqrt(out_virtual * out_virtual + t82 * t82)
+    ctheta2A = _runtime.select(folded_virtual, t59, out_virtual / norm_virtual)
+    del out_virtual, t59
+    t83 = L1 * ctheta2A
+    stheta2A = _runtime.select(folded_virtual, t62, -(t82 / norm_virtual))
+    del folded_virtual, norm_virtual, t62, t82
+    t84 = d1 + L1 * stheta2A
+    bare_virtual = fore <= t5 * _runtime.VANISHING
+    del t5
+    c_lag_virtual = _runtime.select(bare_virtual, 1.0, a3 / fore)
+    c_bend_virtual = _runtime.select(short_virtual, 1.0, (M_virtual - N_virtual) / whole_virtual)
+    del M_virtual, N_virtual, short_virtual, whole_virtual
+    s_lag_virtual = _runtime.select(bare_virtual, 0.0, L2 / fore)
+    del bare_virtual, fore
+    c_relative_virtual = c_lag_virtual * c_bend_virtual - s_lag_virtual * s_bend_virtual
+    s_relative_virtual = s_lag_virtual * c_bend_virtual + c_lag_virtual * s_bend_virtual
+    del c_bend_virtual, c_lag_virtual, s_bend_virtual, s_lag_virtual
+    ctheta23A = ctheta2A * c_relative_virtual - stheta2A * s_relative_virtual
+    t85 = t83 + a3 * ctheta23A
+    stheta23A = stheta2A * c_relative_virtual + ctheta2A * s_relative_virtual
+    del c_relative_virtual, ctheta2A, s_relative_virtual, stheta2A
+    t86 = t84 + a3 * stheta23A
+    t87 = t85 + L2 * stheta23A
+    t88 = c1 * t87
+    t89 = s1 * t87
+    del t87
+    t90 = L2 * ctheta23A - t86
+    wrist = np.sqrt(np.maximum(t51, 0.0) * np.maximum(t52, 0.0))
+    del t51, t52
+    t91 = t27 * ctheta23A + t32 * stheta23A
+    tilted = np.sqrt(t50 + t91 * t91)
+    del t50
+    c_phi = d / tilted
+    t92 = (t27 * stheta23A - t32 * ctheta23A) / base
+    del t27, t32
+    t93 = c_phi * t92
+    c_psi = tilted / base
+    del base
+    t94 = stheta23A * c_psi
+    t95 = c1 * t94
+    t96 = c1 * ctheta23A
+    t97 = t91 / tilted
+    del t91, tilted
+    t98 = t97 * t92
+    t99 = s1 * t93 + t95 - t96 * t98
+    t100 = t88 + wrist * t99
+    t101 = c_phi * c_psi
+    t102 = ctheta23A * c_psi
+    del c_psi
+    t103 = t97 * t102
+    t104 = stheta23A * t92
+    t105 = gs * (s1 * t101 - c1 * t103 - c1 * t104)
+    t106 = s1 * t94
+    t107 = s1 * ctheta23A
+    t108 = c1 * t93 - t106 + t107 * t98
+    t109 = t89 - wrist * t108
+    t110 = gs * (c1 * t101 + s1 * t103 + s1 * t104)
+    del t101, t103, t104
+    t111 = t102 + stheta23A * t98
+    t112 = t90 + wrist * t111
+    del wrist
+    t113 = gs * (t97 * t94 - ctheta23A * t92)
+    del ctheta23A, t92, t94
+    t114 = t100 + loff * t99
+    del t99
+    t115 = t109 - loff * t108
+    del t108
+    t116 = t112 + loff * t111
+    del t111
+    t117 = lp * c
+    del c
+    t118 = lp * s
+    del s
+    t119 = t118 * c_phi - t117 * t98
+    del c_phi, t98
+    t120 = t118 * t97 + t117 * t93
+    del t118, t93, t97
+    t121 = t114 + t117 * t95 + t96 * t119 + s1 * t120 + t54
+    del t95, t96
+    t122 = t115 + t117 * t106 + t107 * t119 - c1 * t120 + t54
+    del t106, t107, t120
+    t123 = stheta23A * t119 - (t116 + t117 * t102) + t54
+    del stheta23A, t102, t117, t119
+    return (
+        t55,
+        t55,
+        t55,
+        t55,
+        t55,
+        t56,
+        t57 + t54,
+        -t58 + t54,
+        t56,
+        t57 + c1 * t60 + t54,
+        s1 * t60 - t58 + t54,
+        t63 + t54,
+        t57 + c1 * t64 + t54,
+        s1 * t64 - t58 + t54,
+        t65 + t54,
+        t57 + c1 * t66 + t54,
+        s1 * t66 - t58 + t54,
+        t65 - L2 * c2R3R + t54,
+        -t57 + t54,
+        t58 + t54,
+        t56,
+        c1 * t68 - t57 + t54,
+        t58 + s1 * t68 + t54,
+        t71 + t54,
+        c1 * t72 - t57 + t54,
+        t58 + s1 * t72 + t54,
+        t73 + t54,
+        c1 * t74 - t57 + t54,
+        t58 + s1 * t74 + t54,
+        t73 - L2 * c2L3L + t54,
+        c1 * t83 + t54,
+        s1 * t83 + t54,
+        t84 + t54,
+        c1 * t85 + t54,
+        s1 * t85 + t54,
+        t86 + t54,
+        t88 + t54,
+        t89 + t54,
+        -t90 + t54,
+        t100 + t105 + t54,
+        t109 - t110 + t54,
+        -(t112 + t113) + t54,
+        t100 - t105 + t54,
+        t109 + t110 + t54,
+        t113 - t112 + t54,
+        t100 + t54,
+        t109 + t54,
+        -t112 + t54,
+        t114 + t54,
+        t115 + t54,
+        -t116 + t54,
+        t121,
+        t122,
+        t123,
+    )
+
+
+_SKELETON = _runtime.Kernel(
+    "h6ar_loop_closed.skeleton",
+    _skeleton,
+    (_runtime.Array("q", (6,)),),
+    (_runtime.Array("points", (18, 3)),),
+    Parameters._fields,
+    ('L1', 'L2', 'a3', 'd1', 'd', 'gs', 'al', 'loff', 'lp'),
+    size=_runtime.Size((6, 7, 8, 9, 10, 11, 12, 13, 14), ((5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
+)
+
+
+def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2R, theta3R, theta2L, theta3L, theta in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    points : ndarray of float64, shape (..., 18, 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - NaN if the tips are farther apart than the wrist links can span, or if the virtual arm
+      cannot reach the middle of the tips.
+    - Ill-conditioned if the virtual arm is nearly straight: yaw and roll are measured against
+      its fore-arm.
+    """
+    result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
 
 

@@ -6,6 +6,7 @@
 #   fk: 22 add, 22 compare and select, 4 divide, 20 multiply, 3 sincos, 2 sqrt
 #   passive_angles: 16 add, 25 compare and select, 4 atan2, 5 divide, 14 multiply, 2 sincos, 2
 #     sqrt
+#   skeleton: 30 add, 21 compare and select, 5 divide, 22 multiply, 3 sincos, 2 sqrt
 #   jacobian_parallel: 27 add, 21 compare and select, 5 divide, 20 multiply, 3 sincos, 2 sqrt
 #   jacobian_serial: 24 add, 21 compare and select, 5 divide, 24 multiply, 2 sincos, 2 sqrt
 #   jacobian: 35 add, 21 compare and select, 17 divide, 43 multiply, 3 sincos, 2 sqrt
@@ -33,26 +34,55 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _runtime
-from ._runtime import Positions, Solutions, Status
+from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
 ASSEMBLY_MODES = ('left_of_CD', 'right_of_CD')
 JOINTS = ('theta1', 'theta2', 'theta3')
 TASK = ('x', 'y', 'z')
 BRANCHES = ('plus_plus_plus', 'plus_plus_minus', 'plus_minus_plus', 'plus_minus_minus', 'minus_plus_plus', 'minus_plus_minus', 'minus_minus_plus', 'minus_minus_minus')
 SINGULARITIES = ('P on AB', 'A, C, P in line', 'B, D, P in line', 'C, D, P in line')
+SKELETON = Skeleton(
+    points=(
+        "A",
+        "B",
+        "C",
+        "D",
+        "P",
+    ),
+    links={
+        "ground": ('A', 'B'),
+        "AC": ('A', 'C'),
+        "BD": ('B', 'D'),
+        "CP": ('C', 'P'),
+        "DP": ('D', 'P'),
+    },
+    joints={
+        "theta1": SkeletonJoint("revolute", ('A', 'B')),
+        "theta2": SkeletonJoint("revolute", ('A',)),
+        "theta3": SkeletonJoint("revolute", ('B',)),
+        "theta4": SkeletonJoint("revolute", ('C',)),
+        "theta5": SkeletonJoint("revolute", ('D',)),
+    },
+    hand="P",
+    ground=('A', 'B'),
+)
 
 __all__ = [
     "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "fk",
     "passive_angles",
+    "skeleton",
     "jacobian_parallel",
     "jacobian_serial",
     "jacobian",
@@ -294,6 +324,140 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
     - If C and D coincide, both angles are free but equal: +90 or -90 degrees is returned.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params, out)
+    return result
+
+
+def _skeleton(theta1, theta2, theta3, L0, L1, L2):
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
+    s1, c1 = _runtime.sincos(theta1)
+    t1 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2)
+    t2 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t3 = t1 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2) & t2
+    del t1, t2
+    t4 = L0 + L1 + L2
+    t5 = L2 * 2.0
+    C_r = L1 * s2
+    del s2
+    D_r = L1 * s3
+    del s3
+    t6 = C_r - D_r
+    C_y = L1 * c2
+    del c2
+    D_y = L0 + L1 * c3
+    del c3
+    t7 = C_y - D_y
+    apart = np.sqrt(t6 * t6 + t7 * t7)
+    t8 = t5 - apart
+    unreachable = np.logical_not(-(_runtime.FEASIBILITY * t4) <= t8)
+    t9 = _runtime.poison(np.logical_not(t3) | unreachable)
+    del t3, unreachable
+    t10 = 0.0 + t9
+    t11 = L0 + t9
+    t12 = -(C_r * c1) + t9
+    t13 = C_y + t9
+    t14 = C_r * s1 + t9
+    t15 = -(D_r * c1) + t9
+    t16 = D_y + t9
+    del D_y
+    t17 = D_r * s1 + t9
+    del D_r
+    t18 = t4 * _runtime.VANISHING
+    del t4
+    coincide = apart <= t18
+    distance = _runtime.select(coincide, 0.0, apart)
+    t19 = _runtime.select(coincide, 0.0, t6 / apart)
+    del t6
+    t20 = distance * t19 * 0.5
+    n_1 = _runtime.select(coincide, 1.0, -(t7 / apart))
+    del coincide, t7
+    slack = np.maximum(t8, 0.0)
+    del t8
+    height = _runtime.select(slack <= t18, 0.0, np.sqrt(slack * (apart + t5)) * 0.5)
+    del apart, slack, t18, t5
+    t21 = n_1 * height
+    P_r = C_r - (t20 - t21)
+    t22 = distance * n_1 * 0.5
+    del distance, n_1
+    t23 = t19 * height
+    del height, t19
+    P_r_right_of_CD = C_r - (t20 + t21)
+    del C_r, t20, t21
+    return (
+        t10,
+        t10,
+        t10,
+        t10,
+        t11,
+        t10,
+        t12,
+        t13,
+        t14,
+        t15,
+        t16,
+        t17,
+        -(c1 * P_r) + t9,
+        C_y + (t22 + t23) + t9,
+        s1 * P_r + t9,
+        t10,
+        t10,
+        t10,
+        t10,
+        t11,
+        t10,
+        t12,
+        t13,
+        t14,
+        t15,
+        t16,
+        t17,
+        -(c1 * P_r_right_of_CD) + t9,
+        C_y + (t22 - t23) + t9,
+        s1 * P_r_right_of_CD + t9,
+    )
+
+
+_SKELETON = _runtime.Kernel(
+    "hybrid_five_bar.skeleton",
+    _skeleton,
+    (_runtime.Array("q", (3,)),),
+    (_runtime.Array("points", (2, 5, 3)),),
+    Parameters._fields,
+    ('L0', 'L1', 'L2'),
+    size=_runtime.Size((3, 4, 5), ((4, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (19, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
+)
+
+
+def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta1, theta2, theta3 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    points : ndarray of float64, shape (..., 2, 5, 3)
+        One column for each of theta1, theta2, theta3.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - NaN for an assembly mode that does not exist.
+    """
+    result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
 
 

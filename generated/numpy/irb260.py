@@ -8,6 +8,7 @@
 #   motors_from_joints: 1 add
 #   fk: 9 add, 10 multiply, 2 reduce to a turn, 3 sincos, 1 compare and select
 #   pose: 10 add, 14 multiply, 4 sincos
+#   skeleton: 14 add, 3 divide, 18 multiply, 3 sincos
 #   jacobian: 6 add, 14 multiply, 3 sincos
 #   jacobian_space: 6 add, 14 multiply, 3 sincos
 #   jacobian_body: 6 add, 14 multiply, 3 sincos
@@ -38,22 +39,59 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _runtime
-from ._runtime import Positions, Solutions, Status
+from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
 ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2', 'theta3', 'theta5')
 TASK = ('x', 'y', 'z', 'yaw')
 BRANCHES = ('front_elbow_up', 'front_elbow_down', 'back_elbow_up', 'back_elbow_down')
 SINGULARITIES = ('base axis', 'elbow')
+SKELETON = Skeleton(
+    points=(
+        "base",
+        "column",
+        "shoulder",
+        "elbow",
+        "wrist",
+        "flange",
+        "hand",
+        "lower_rod_turret",
+        "lower_rod_plate",
+        "upper_rod_plate",
+        "upper_rod_bracket",
+    ),
+    links={
+        "turret": ('base', 'column', 'shoulder', 'lower_rod_turret'),
+        "lower_arm": ('shoulder', 'elbow'),
+        "upper_arm": ('elbow', 'wrist'),
+        "lower_rod": ('lower_rod_turret', 'lower_rod_plate'),
+        "plate": ('lower_rod_plate', 'elbow', 'upper_rod_plate', 'lower_rod_plate'),
+        "upper_rod": ('upper_rod_plate', 'upper_rod_bracket'),
+        "bracket": ('upper_rod_bracket', 'wrist', 'flange'),
+        "hand": ('flange', 'hand'),
+    },
+    joints={
+        "theta1": SkeletonJoint("revolute", ('base', 'column')),
+        "theta2": SkeletonJoint("revolute", ('shoulder',)),
+        "theta3": SkeletonJoint("revolute", ('elbow',)),
+        "theta4": SkeletonJoint("revolute", ('wrist',)),
+        "theta5": SkeletonJoint("revolute", ('flange',)),
+    },
+    hand="hand",
+    ground=('base',),
+)
 
 __all__ = [
     "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "joint4",
@@ -61,6 +99,7 @@ __all__ = [
     "motors_from_joints",
     "fk",
     "pose",
+    "skeleton",
     "jacobian",
     "jacobian_space",
     "jacobian_body",
@@ -374,6 +413,110 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
         If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
+    return result
+
+
+def _skeleton(theta1, theta2, theta3, _theta5, l1, l2, l3, l4, l5, l6):
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
+    t1 = l1 * s1
+    t2 = l1 * c1
+    t3 = l1 + l3 * s2
+    t4 = s1 * t3
+    t5 = c1 * t3
+    t6 = l2 + l3 * c2
+    t7 = t3 + l4 * (c2 * c3 - s2 * s3)
+    del t3
+    t8 = -(s1 * t7)
+    t9 = c1 * t7
+    t10 = t6 - l4 * (s2 * c3 + c2 * s3)
+    del c2, c3, s2, s3
+    t11 = l6 + t7
+    del t7
+    t12 = -(s1 * t11)
+    t13 = c1 * t11
+    del t11
+    t14 = l3 * s1 * 0.25
+    del s1
+    t15 = l3 * c1 * 0.25
+    del c1
+    t16 = l3 * 0.25
+    return (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        l2,
+        -t1,
+        t2,
+        l2,
+        -t4,
+        t5,
+        t6,
+        t8,
+        t9,
+        t10,
+        t12,
+        t13,
+        t10,
+        t12,
+        t13,
+        t10 - l5,
+        t14 - t1,
+        t2 - t15,
+        l2,
+        t14 - t4,
+        t5 - t15,
+        t6,
+        -t4,
+        t5,
+        t6 + t16,
+        t8,
+        t9,
+        t16 + t10,
+    )
+
+
+_SKELETON = _runtime.Kernel(
+    "irb260.skeleton",
+    _skeleton,
+    (_runtime.Array("q", (4,)),),
+    (_runtime.Array("points", (11, 3)),),
+    Parameters._fields,
+    ('l1', 'l2', 'l3', 'l4', 'l5', 'l6'),
+)
+
+
+def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2, theta3, theta5 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    points : ndarray of float64, shape (..., 11, 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The rods are drawn at a quarter of l3; the paper gives no distance.
+    """
+    result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
 
 

@@ -6,6 +6,7 @@
 #   fk: 4 add, 8 multiply, 2 sincos
 #   pose: 4 add, 8 multiply, 2 sincos
 #   orientation: 1 add, 2 reduce to a turn, 1 compare and select
+#   skeleton: 4 add, 8 multiply, 2 sincos
 #   jacobian: 4 add, 8 multiply, 2 sincos
 #   determinant: 2 multiply, 1 sincos
 #   manipulability: 1 compare and select, 2 multiply, 1 sincos
@@ -29,27 +30,48 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _runtime
-from ._runtime import Positions, Solutions, Status
+from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
 ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2')
 TASK = ('x', 'y')
 BRANCHES = ('elbow_down', 'elbow_up')
 SINGULARITIES = ('elbow',)
+SKELETON = Skeleton(
+    points=(
+        "base",
+        "elbow",
+        "hand",
+    ),
+    links={
+        "first": ('base', 'elbow'),
+        "second": ('elbow', 'hand'),
+    },
+    joints={
+        "theta1": SkeletonJoint("revolute", ('base',)),
+        "theta2": SkeletonJoint("revolute", ('elbow',)),
+    },
+    hand="hand",
+    ground=('base',),
+)
 
 __all__ = [
     "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "fk",
     "pose",
     "orientation",
+    "skeleton",
     "jacobian",
     "determinant",
     "manipulability",
@@ -237,6 +259,61 @@ def orientation(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
         If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_ORIENTATION, (q,), params, out)
+    return result
+
+
+def _skeleton(theta1, theta2, l1, l2):
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
+    t1 = l1 * c1
+    t2 = l1 * s1
+    return (
+        0.0,
+        0.0,
+        0.0,
+        t1,
+        t2,
+        0.0,
+        t1 + l2 * (c1 * c2 - s1 * s2),
+        t2 + l2 * (s1 * c2 + c1 * s2),
+        0.0,
+    )
+
+
+_SKELETON = _runtime.Kernel(
+    "planar_2r.skeleton",
+    _skeleton,
+    (_runtime.Array("q", (2,)),),
+    (_runtime.Array("points", (3, 3)),),
+    Parameters._fields,
+    ('l1', 'l2'),
+)
+
+
+def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        theta1, theta2 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    points : ndarray of float64, shape (..., 3, 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+    """
+    result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
 
 

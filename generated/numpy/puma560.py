@@ -4,6 +4,7 @@
 #     560 in the textbooks.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   pose: 24 add, 52 multiply, 6 sincos
+#   skeleton: 11 add, 19 multiply, 3 sincos
 #   fk: 24 add, 52 multiply, 6 sincos
 #   jacobian: 14 add, 36 multiply, 5 sincos
 #   determinant: 5 add, 12 multiply, 3 sincos
@@ -28,25 +29,53 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _runtime
-from ._runtime import Positions, Solutions, Status
+from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
 ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2', 'theta3', 'theta4', 'theta5', 'theta6')
 TASK = ('T11', 'T12', 'T13', 'T14', 'T21', 'T22', 'T23', 'T24', 'T31', 'T32', 'T33', 'T34', 'T41', 'T42', 'T43', 'T44')
 BRANCHES = ('right_up_noflip', 'right_up_flip', 'right_down_noflip', 'right_down_flip', 'left_up_noflip', 'left_up_flip', 'left_down_noflip', 'left_down_flip')
 SINGULARITIES = ('shoulder', 'elbow', 'wrist')
+SKELETON = Skeleton(
+    points=(
+        "base",
+        "joint3",
+        "corner3",
+        "joint4",
+        "joint5",
+    ),
+    links={
+        "link2": ('base', 'joint3'),
+        "link3": ('joint3', 'corner3', 'joint4'),
+        "link4": ('joint4', 'joint5'),
+    },
+    joints={
+        "theta1": SkeletonJoint("revolute", ('base',)),
+        "theta2": SkeletonJoint("revolute", ('base',)),
+        "theta3": SkeletonJoint("revolute", ('joint3',)),
+        "theta4": SkeletonJoint("revolute", ('joint4',)),
+        "theta5": SkeletonJoint("revolute", ('joint5',)),
+        "theta6": SkeletonJoint("revolute", ('joint5',)),
+    },
+    hand="joint5",
+    ground=('base',),
+)
 
 __all__ = [
     "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "pose",
+    "skeleton",
     "fk",
     "jacobian",
     "determinant",
@@ -163,6 +192,81 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
         If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
+    return result
+
+
+def _skeleton(theta1, theta2, theta3, _theta4, _theta5, _theta6, a2, a3, d3, d4):
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
+    t1 = a2 * c2
+    t2 = c1 * t1
+    t3 = s1 * t1
+    t4 = a2 * s2
+    t5 = d3 * s1
+    t6 = d3 * c1
+    c23 = c2 * c3 - s2 * s3
+    t7 = t1 + a3 * c23
+    del t1
+    p2_11 = t5 + c1 * t7
+    t8 = t6 - s1 * t7
+    del t7
+    s23 = s2 * c3 + c2 * s3
+    del c2, c3, s2, s3
+    p2_31 = t4 + a3 * s23
+    return (
+        0.0,
+        0.0,
+        0.0,
+        t2,
+        t3,
+        t4,
+        t5 + t2,
+        t3 - t6,
+        t4,
+        p2_11,
+        -t8,
+        p2_31,
+        p2_11 - d4 * (c1 * s23),
+        -(t8 + d4 * (s1 * s23)),
+        p2_31 + d4 * c23,
+    )
+
+
+_SKELETON = _runtime.Kernel(
+    "puma560.skeleton",
+    _skeleton,
+    (_runtime.Array("q", (6,)),),
+    (_runtime.Array("points", (5, 3)),),
+    Parameters._fields,
+    ('a2', 'a3', 'd3', 'd4'),
+)
+
+
+def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    points : ndarray of float64, shape (..., 5, 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+    """
+    result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
 
 

@@ -4,6 +4,7 @@
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
 #   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
+#   skeleton: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
 #   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
 #   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
 #   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
@@ -24,26 +25,48 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _runtime
-from ._runtime import Positions, Solutions, Status
+from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
 ASSEMBLY_MODES = ('above', 'below')
 JOINTS = ('rho1', 'rho2')
 TASK = ('x', 'y')
 BRANCHES = ('only',)
 SINGULARITIES = ('leg 1', 'leg 2', 'flat')
+SKELETON = Skeleton(
+    points=(
+        "A",
+        "B",
+        "P",
+    ),
+    links={
+        "ground": ('A', 'B'),
+    },
+    joints={
+        "rho1": SkeletonJoint("prismatic", ('A', 'P')),
+        "rho2": SkeletonJoint("prismatic", ('B', 'P')),
+        "theta1": SkeletonJoint("revolute", ('A',)),
+        "theta2": SkeletonJoint("revolute", ('B',)),
+    },
+    hand="P",
+    ground=('A', 'B'),
+)
 
 __all__ = [
     "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "fk",
     "passive_angles",
+    "skeleton",
     "jacobian",
     "determinant",
     "singularities",
@@ -239,6 +262,101 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
     - Branches in this order, `ASSEMBLY_MODES`: above, below.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params, out)
+    return result
+
+
+def _skeleton(rho1, rho2, b):
+    t1 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    t2 = rho1 + rho2
+    t3 = b + t2
+    t4 = -(_runtime.FEASIBILITY * t3)
+    t5 = t2 - b
+    t6 = rho1 - rho2
+    t7 = b + t6
+    t8 = b - t6
+    unreachable = np.logical_not((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
+    del t4
+    t9 = _runtime.poison(np.logical_not(t1) | unreachable)
+    del t1, unreachable
+    t10 = 0.0 + t9
+    t11 = b + t9
+    t12 = _runtime.VANISHING * t3
+    coincide = b <= t12
+    n_1 = _runtime.select(coincide, 1.0, b / b)
+    t13 = b * 2.0
+    t14 = _runtime.select(coincide, rho1, b * 0.5 + t6 * t2 / t13)
+    del t2, t6
+    t15 = n_1 * t14 + t9
+    del t14
+    slack = np.maximum(t5, 0.0)
+    del t5
+    t16 = slack * np.maximum(t7, 0.0) * np.maximum(t8, 0.0)
+    del t7, t8
+    t17 = _runtime.select(coincide, 0.0, np.sqrt(t3) * np.sqrt(t16) / t13)
+    del coincide, t13, t16, t3
+    P_y = n_1 * _runtime.select(slack <= t12, 0.0, t17)
+    del n_1, slack, t12, t17
+    return (
+        t10,
+        t10,
+        t10,
+        t11,
+        t10,
+        t10,
+        t15,
+        P_y + t9,
+        t10,
+        t10,
+        t10,
+        t10,
+        t11,
+        t10,
+        t10,
+        t15,
+        -P_y + t9,
+        t10,
+    )
+
+
+_SKELETON = _runtime.Kernel(
+    "rpr_planar.skeleton",
+    _skeleton,
+    (_runtime.Array("q", (2,)),),
+    (_runtime.Array("points", (2, 3, 3)),),
+    Parameters._fields,
+    ('b',),
+    size=_runtime.Size((0, 1, 2), ((3, 1), (6, 1), (7, 1), (12, 1), (15, 1), (16, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
+)
+
+
+def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        rho1, rho2 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    points : ndarray of float64, shape (..., 2, 3, 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    """
+    result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
 
 

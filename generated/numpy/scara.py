@@ -3,6 +3,7 @@
 # Source: The closedform authors: Arms of common structure, solved by lemmas.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   pose: 9 add, 16 multiply, 3 sincos
+#   skeleton: 5 add, 8 multiply, 2 sincos
 #   fk: 7 add, 8 multiply, 3 reduce to a turn, 2 sincos, 1 compare and select
 #   jacobian: 4 add, 8 multiply, 2 sincos
 #   determinant: 2 multiply, 1 sincos
@@ -25,25 +26,50 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _runtime
-from ._runtime import Positions, Solutions, Status
+from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
 ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2', 'd3', 'theta4')
 TASK = ('x', 'y', 'z', 'yaw')
 BRANCHES = ('left', 'right')
 SINGULARITIES = ('sin(theta2) = 0',)
+SKELETON = Skeleton(
+    points=(
+        "base",
+        "corner1",
+        "joint2",
+        "joint3",
+        "slide3",
+    ),
+    links={
+        "link1": ('base', 'corner1', 'joint2'),
+        "link2": ('joint2', 'joint3'),
+    },
+    joints={
+        "theta1": SkeletonJoint("revolute", ('base',)),
+        "theta2": SkeletonJoint("revolute", ('joint2',)),
+        "d3": SkeletonJoint("prismatic", ('joint3', 'slide3')),
+        "theta4": SkeletonJoint("revolute", ('slide3',)),
+    },
+    hand="slide3",
+    ground=('base',),
+)
 
 __all__ = [
     "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "pose",
+    "skeleton",
     "fk",
     "jacobian",
     "determinant",
@@ -138,6 +164,70 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
         If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
+    return result
+
+
+def _skeleton(theta1, theta2, d3, _theta4, l1, l2, h):
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
+    t1 = l1 * c1
+    t2 = l1 * s1
+    t3 = t1 + l2 * (c1 * c2 - s1 * s2)
+    t4 = t2 + l2 * (s1 * c2 + c1 * s2)
+    del c1, c2, s1, s2
+    return (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        h,
+        t1,
+        t2,
+        h,
+        t3,
+        t4,
+        h,
+        t3,
+        t4,
+        h - d3,
+    )
+
+
+_SKELETON = _runtime.Kernel(
+    "scara.skeleton",
+    _skeleton,
+    (_runtime.Array("q", (4,)),),
+    (_runtime.Array("points", (5, 3)),),
+    Parameters._fields,
+    ('l1', 'l2', 'h'),
+)
+
+
+def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 4)
+        theta1, theta2 in rad; d3 in the unit of the parameters; theta4 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    points : ndarray of float64, shape (..., 5, 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+    """
+    result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
 
 

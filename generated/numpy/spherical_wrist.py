@@ -5,6 +5,7 @@
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 4 add, 12 multiply, 3 sincos
 #   pose: 4 add, 16 multiply, 3 sincos
+#   skeleton: 4 multiply, 2 sincos
 #   jacobian_space: 2 multiply, 2 sincos
 #   jacobian_body: 2 multiply, 2 sincos
 #   determinant: 1 sincos
@@ -26,26 +27,46 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _runtime
-from ._runtime import Positions, Solutions, Status
+from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
 ASSEMBLY_MODES = ()
 JOINTS = ('theta4', 'theta5', 'theta6')
 TASK = ('R11', 'R12', 'R13', 'R21', 'R22', 'R23', 'R31', 'R32', 'R33')
 BRANCHES = ('theta5_positive', 'theta5_negative')
 SINGULARITIES = ('axes 4 and 6 coincide',)
+SKELETON = Skeleton(
+    points=(
+        "centre",
+        "hand",
+    ),
+    links={
+        "hand": ('centre', 'hand'),
+    },
+    joints={
+        "theta4": SkeletonJoint("revolute", ('centre',)),
+        "theta5": SkeletonJoint("revolute", ('centre',)),
+        "theta6": SkeletonJoint("revolute", ('centre',)),
+    },
+    hand="hand",
+    ground=('centre',),
+)
 
 __all__ = [
     "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "fk",
     "pose",
+    "skeleton",
     "jacobian_space",
     "jacobian_body",
     "determinant",
@@ -196,6 +217,59 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
         If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
+    return result
+
+
+def _skeleton(theta4, theta5, _theta6, d6):
+    s4, c4 = _runtime.sincos(theta4)
+    s5, c5 = _runtime.sincos(theta5)
+    t1 = d6 * s5
+    del s5
+    return (
+        0.0,
+        0.0,
+        0.0,
+        c4 * t1,
+        s4 * t1,
+        d6 * c5,
+    )
+
+
+_SKELETON = _runtime.Kernel(
+    "spherical_wrist.skeleton",
+    _skeleton,
+    (_runtime.Array("q", (3,)),),
+    (_runtime.Array("points", (2, 3)),),
+    Parameters._fields,
+    ('d6',),
+)
+
+
+def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta4, theta5, theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    points : ndarray of float64, shape (..., 2, 3)
+        One column for each of theta4, theta5, theta6.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+    """
+    result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
 
 

@@ -4,6 +4,7 @@
 #     textbooks.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   pose: 18 add, 44 multiply, 5 sincos
+#   skeleton: 2 add, 7 multiply, 2 sincos
 #   fk: 18 add, 44 multiply, 5 sincos
 #   jacobian: 8 add, 26 multiply, 4 sincos
 #   determinant: 3 multiply, 2 sincos
@@ -29,25 +30,49 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _runtime
-from ._runtime import Positions, Solutions, Status
+from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
 ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2', 'd3', 'theta4', 'theta5', 'theta6')
 TASK = ('T11', 'T12', 'T13', 'T14', 'T21', 'T22', 'T23', 'T24', 'T31', 'T32', 'T33', 'T34', 'T41', 'T42', 'T43', 'T44')
 BRANCHES = ('right_out_noflip', 'right_out_flip', 'right_back_noflip', 'right_back_flip', 'left_out_noflip', 'left_out_flip', 'left_back_noflip', 'left_back_flip')
 SINGULARITIES = ('shoulder', 'boom', 'wrist')
+SKELETON = Skeleton(
+    points=(
+        "base",
+        "joint3",
+        "slide3",
+    ),
+    links={
+        "link2": ('base', 'joint3'),
+    },
+    joints={
+        "theta1": SkeletonJoint("revolute", ('base',)),
+        "theta2": SkeletonJoint("revolute", ('base',)),
+        "d3": SkeletonJoint("prismatic", ('joint3', 'slide3')),
+        "theta4": SkeletonJoint("revolute", ('slide3',)),
+        "theta5": SkeletonJoint("revolute", ('slide3',)),
+        "theta6": SkeletonJoint("revolute", ('slide3',)),
+    },
+    hand="slide3",
+    ground=('base',),
+)
 
 __all__ = [
     "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "pose",
+    "skeleton",
     "fk",
     "jacobian",
     "determinant",
@@ -153,6 +178,61 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
         If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
+    return result
+
+
+def _skeleton(theta1, theta2, d3, _theta4, _theta5, _theta6, d2):
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
+    t1 = d2 * s1
+    p2_21 = d2 * c1
+    return (
+        0.0,
+        0.0,
+        0.0,
+        -t1,
+        p2_21,
+        0.0,
+        d3 * (c1 * s2) - t1,
+        p2_21 + d3 * (s1 * s2),
+        d3 * c2,
+    )
+
+
+_SKELETON = _runtime.Kernel(
+    "stanford_arm.skeleton",
+    _skeleton,
+    (_runtime.Array("q", (6,)),),
+    (_runtime.Array("points", (3, 3)),),
+    Parameters._fields,
+    ('d2',),
+)
+
+
+def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1, theta2 in rad; d3 in the unit of the parameters; theta4, theta5, theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    points : ndarray of float64, shape (..., 3, 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+    """
+    result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
 
 

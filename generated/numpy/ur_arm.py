@@ -3,6 +3,7 @@
 # Source: The closedform authors: Arms of common structure, solved by lemmas.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   pose: 26 add, 52 multiply, 6 sincos
+#   skeleton: 19 add, 37 multiply, 5 sincos
 #   fk: 26 add, 52 multiply, 6 sincos
 #   jacobian: 19 add, 46 multiply, 5 sincos
 #   determinant: 6 add, 15 multiply, 4 sincos
@@ -28,25 +29,58 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _runtime
-from ._runtime import Positions, Solutions, Status
+from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
 ASSEMBLY_MODES = ()
 JOINTS = ('theta1', 'theta2', 'theta3', 'theta4', 'theta5', 'theta6')
 TASK = ('T11', 'T12', 'T13', 'T14', 'T21', 'T22', 'T23', 'T24', 'T31', 'T32', 'T33', 'T34', 'T41', 'T42', 'T43', 'T44')
 BRANCHES = ('left_noflip_up', 'left_noflip_down', 'left_flip_up', 'left_flip_down', 'right_noflip_up', 'right_noflip_down', 'right_flip_up', 'right_flip_down')
 SINGULARITIES = ('shoulder', 'elbow', 'wrist')
+SKELETON = Skeleton(
+    points=(
+        "base",
+        "joint2",
+        "joint3",
+        "joint4",
+        "joint5",
+        "joint6",
+        "tool",
+    ),
+    links={
+        "link1": ('base', 'joint2'),
+        "link2": ('joint2', 'joint3'),
+        "link3": ('joint3', 'joint4'),
+        "link4": ('joint4', 'joint5'),
+        "link5": ('joint5', 'joint6'),
+        "link6": ('joint6', 'tool'),
+    },
+    joints={
+        "theta1": SkeletonJoint("revolute", ('base',)),
+        "theta2": SkeletonJoint("revolute", ('joint2',)),
+        "theta3": SkeletonJoint("revolute", ('joint3',)),
+        "theta4": SkeletonJoint("revolute", ('joint4',)),
+        "theta5": SkeletonJoint("revolute", ('joint5',)),
+        "theta6": SkeletonJoint("revolute", ('joint6',)),
+    },
+    hand="tool",
+    ground=('base',),
+)
 
 __all__ = [
     "ASSEMBLY_MODES",
     "BRANCHES",
     "JOINTS",
     "SINGULARITIES",
+    "SKELETON",
     "TASK",
     "Parameters",
     "Positions",
+    "Skeleton",
+    "SkeletonJoint",
     "Solutions",
     "Status",
     "pose",
+    "skeleton",
     "fk",
     "jacobian",
     "determinant",
@@ -164,6 +198,92 @@ def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) ->
         If an argument has the wrong shape, or leading axes do not broadcast.
     """
     result = _runtime.evaluate(_POSE, (q,), params, out)
+    return result
+
+
+def _skeleton(theta1, theta2, theta3, theta4, theta5, _theta6, d1, L2, L3, d4, d5, d6):
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
+    s4, c4 = _runtime.sincos(theta4)
+    s5, c5 = _runtime.sincos(theta5)
+    t1 = L2 * c2
+    t2 = d1 - L2 * s2
+    t3 = t1 + L3 * (c2 * c3 - s2 * s3)
+    t4 = c1 * t3
+    t5 = s1 * t3
+    del t3
+    t6 = L3 * (s2 * c3 + c2 * s3) - t2
+    p2_11 = d4 * s1 - t4
+    t7 = d4 * c1 + t5
+    c34 = c3 * c4 - s3 * s4
+    s34 = s3 * c4 + c3 * s4
+    del c3, c4, s3, s4
+    s234 = s2 * c34 + c2 * s34
+    p3_11 = p2_11 + d5 * (c1 * s234)
+    t8 = t7 - d5 * (s1 * s234)
+    c234 = c2 * c34 - s2 * s34
+    del c2, c34, s2, s34
+    t9 = d5 * c234 + t6
+    return (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        d1,
+        -(c1 * t1),
+        -(s1 * t1),
+        t2,
+        -t4,
+        -t5,
+        -t6,
+        p2_11,
+        -t7,
+        -t6,
+        p3_11,
+        -t8,
+        -t9,
+        p3_11 - d6 * (c1 * c234 * s5 - s1 * c5),
+        -(t8 + d6 * (c1 * c5 + s1 * c234 * s5)),
+        -(d6 * (s234 * s5) + t9),
+    )
+
+
+_SKELETON = _runtime.Kernel(
+    "ur_arm.skeleton",
+    _skeleton,
+    (_runtime.Array("q", (6,)),),
+    (_runtime.Array("points", (7, 3)),),
+    Parameters._fields,
+    ('d1', 'L2', 'L3', 'd4', 'd5', 'd6'),
+)
+
+
+def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Points of the mechanism in the base frame, in the order of SKELETON.points.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 6)
+        theta1 to theta6 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    points : ndarray of float64, shape (..., 7, 3)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+    """
+    result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
 
 

@@ -45,6 +45,27 @@ class Positions(NamedTuple):
     status: NDArray[np.uint8]
 
 
+class SkeletonJoint(NamedTuple):
+    """A joint of a skeleton: its kind, and the points where it is, two for a slide."""
+
+    kind: str
+    points: tuple[str, ...]
+
+
+class Skeleton(NamedTuple):
+    """What ``skeleton`` draws.
+
+    ``points`` are in the order of its values.  Each link is a polyline through points of one rigid
+    body; the points of ``ground`` do not move.
+    """
+
+    points: tuple[str, ...]
+    links: dict[str, tuple[str, ...]]
+    joints: dict[str, SkeletonJoint]
+    hand: str
+    ground: tuple[str, ...]
+
+
 class Array(NamedTuple):
     """An argument or a result of a kernel: its name, core shape and dtype."""
 

@@ -1,0 +1,249 @@
+"""The skeleton of a mechanism: what to draw, exported as a function and proved.
+
+The proof: no link changes its length when the joints move, and the hand is where the forward map
+says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import Any
+
+import sympy as sp
+
+from closedform.mechanics.frames import rotation
+from closedform.mechanics.links import Group
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Branches, Function, Program
+from closedform.model.skeleton import Skeleton
+
+
+def skeleton(
+    d: Derivation,
+    points: Mapping[str, Sequence[Any]],
+    *,
+    links: Mapping[str, Sequence[str]],
+    joints: Mapping[sp.Symbol, Sequence[str]],
+    hand: str,
+    hand_at: Sequence[Any] | None = None,
+    ground: Sequence[str] = ("base",),
+    lengths: Mapping[tuple[str, str], sp.Expr] | None = None,
+    inputs: Sequence[sp.Symbol] | None = None,
+    program: Program | None = None,
+    branches: Branches | None = None,
+    notes: Sequence[str] = (),
+    at_posture: Sequence[Mapping[str, Sequence[Any]]] = (),
+) -> None:
+    """Export ``skeleton``, the points of the mechanism in the base frame, and prove it.
+
+    Parameters
+    ----------
+    points
+        the three coordinates of each named point, in the names of the ``program`` if there is one
+    links
+        polylines through points of one rigid body
+    joints
+        the points at which each joint is: one for a revolute joint, two for a slide
+    hand, hand_at
+        the point that is the hand, and where the forward map says it is
+    ground
+        points that are fixed to the base
+    lengths
+        the distance of two points: of a link where it is not plain, or of a slide
+    branches
+        the assembly modes, if there are any
+    at_posture
+        for the proof, the points in angles of the mechanism instead of names of the program; a
+        later mapping gives points in another way, for the distances between them
+    """
+    kinds = {j.symbol: j.kind for j in d.joints}
+    drawn = Skeleton(
+        tuple(points),
+        {name: tuple(link) for name, link in links.items()},
+        {str(joint): tuple(at) for joint, at in joints.items()},
+        hand,
+        tuple(ground),
+        {str(joint): kinds[joint] for joint in joints},
+    )
+    places = {name: sp.Matrix(list(map(sp.sympify, at))) for name, at in points.items()}
+    function = d.function(
+        "skeleton",
+        "Points of the mechanism in the base frame, in the order of SKELETON.points.",
+        {"q": d.actuated if inputs is None else tuple(inputs)},
+        {"points": sp.Matrix([list(at) for at in places.values()])},
+        program=program,
+        branches=branches,
+        notes=notes,
+    )
+    d.skeleton = drawn
+    own = dict(lengths or {})
+    pairs = list(dict.fromkeys([*_segments(drawn), *own]))
+    equal: list[tuple[Any, Any]] = []
+    shown: dict[str, sp.Expr] = {}
+    bounds: list[sp.Expr] = []
+    for at, limits, held in _cases(function, tuple(places), pairs, at_posture):
+        bounds += [b for b in limits if b not in bounds]
+        for pair in held:
+            gap = at[pair[1]] - at[pair[0]]
+            square = gap.dot(gap)
+            length = own.get(pair)
+            if length is None:
+                length = sp.sqrt(sp.factor(_still(square, function)))
+            equal.append((square, sp.expand(length**2)))
+            shown.setdefault(rf"|\text{{{pair[0]}}} - \text{{{pair[1]}}}|", length)
+        if hand_at is not None and hand in at:
+            equal.append((at[hand], sp.Matrix(list(hand_at))))
+    d.step(
+        "Skeleton",
+        "The points through which the links are drawn.  No link changes its length when the joints "
+        "move, and the hand is where the forward map says.",
+        shown,
+        equal=equal,
+        nonnegative=bounds,
+    )
+
+
+def _segments(drawn: Skeleton) -> list[tuple[str, str]]:
+    """Points that follow each other in a link; they keep their distance."""
+    return list(dict.fromkeys(pair for link in drawn.links.values() for pair in pairwise(link)))
+
+
+def _cases(
+    function: Function,
+    names: Sequence[str],
+    pairs: Sequence[tuple[str, str]],
+    at_posture: Sequence[Mapping[str, Sequence[Any]]],
+) -> Iterator[tuple[dict[str, sp.Matrix], tuple[sp.Expr, ...], list[tuple[str, str]]]]:
+    """Points in joints and parameters, what is not negative, and the distances to prove there."""
+    for k, given in enumerate(at_posture):
+        at = {name: sp.Matrix(list(place)) for name, place in given.items()}
+        later = at_posture[k + 1 :]
+        held = [p for p in pairs if set(p) <= set(at) and not any(set(p) <= set(x) for x in later)]
+        yield at, (), held
+    if at_posture:
+        return
+    entries = [e for a in function.outputs for e in a.entries]
+    for _, signs in function.cases():
+        found, limits = function.explicit(entries, signs)
+        at = {name: sp.Matrix(found[3 * k : 3 * k + 3]) for k, name in enumerate(names)}
+        yield at, limits, list(pairs)
+
+
+def _still(square: sp.Expr, function: Function) -> sp.Expr:
+    """A squared distance that does not depend on the inputs, from one posture."""
+    return sp.simplify(square.subs(dict.fromkeys(function.symbols, 0)))
+
+
+def serial_skeleton(
+    d: Derivation,
+    groups: Sequence[Group],
+    joints: Sequence[sp.Symbol],
+    lead: sp.Matrix,
+    last: sp.Matrix,
+) -> dict[str, Any]:
+    """The arguments of :func:`skeleton` for a serial chain.
+
+    Each joint is at a point of its axis.  A link leads along the axis first and then across to the
+    next one; axes that meet share their point.
+    """
+    drawing = _Serial(d.program(), lead)
+    remaining = iter(enumerate(joints, 1))
+    for k, group in enumerate(groups):
+        local = sp.zeros(3, 1)
+        for i, row in enumerate(group.rows):
+            number, joint = next(remaining)
+            x, y, z = row.shift
+            corner = local + sp.Matrix([0, 0, z])
+            across = rotation("z", group.angle(0, i + 1)) * sp.Matrix([x, y, 0])
+            local = corner + across
+            span = sp.sqrt(sp.factor(sp.expand(x**2 + y**2)))
+            drawing.add(number, joint, row.slides, (corner, z), (local, span))
+        drawing.go_on(k, group, is_last=k == len(groups) - 1 and last[:3, 3].is_zero_matrix)
+    shift = sp.Matrix(last[:3, 3])
+    if not shift.is_zero_matrix:
+        drawing.extend(shift)
+    return drawing.arguments(d)
+
+
+class _Serial:
+    """Collects points and links along a chain, in the names of a program."""
+
+    def __init__(self, program: Program, lead: sp.Matrix):
+        self.program = program
+        self.turn, self.origin = sp.Matrix(lead[:3, :3]), sp.Matrix(lead[:3, 3])
+        self.points: dict[str, sp.Matrix] = {"base": sp.zeros(3, 1)}
+        self.links: dict[str, list[str]] = {}
+        self.joints: dict[sp.Symbol, tuple[str, ...]] = {}
+        self.lengths: dict[tuple[str, str], sp.Expr] = {}
+        self.here = "base"
+        self.link = "ground"
+        self._to("joint1", self.origin, sp.sqrt(sp.factor(self.origin.dot(self.origin))))
+
+    def add(
+        self,
+        number: int,
+        joint: sp.Symbol,
+        slides: bool,
+        corner: tuple[sp.Matrix, sp.Expr],
+        end: tuple[sp.Matrix, sp.Expr],
+    ) -> None:
+        """A joint and the link after it: along its axis to the corner, then across to the end."""
+        before, self.link = self.here, f"link{number}"
+        (foot, along), (to, across) = corner, end
+        if slides:
+            self.points[f"slide{number}"] = self._place(foot)
+            self.here = f"slide{number}"
+            self.joints[joint] = (before, self.here)
+        else:
+            self.joints[joint] = (before,)
+            name = f"joint{number + 1}" if across == 0 else f"corner{number}"
+            self._to(name, self._place(foot), along)
+        self._to(f"joint{number + 1}", self._place(to), across)
+
+    def go_on(self, k: int, group: Group, *, is_last: bool) -> None:
+        """Move to the frame where a group ends."""
+        if not is_last:
+            self.origin = self.program.matrix(f"p{k + 1}", self._place(group.span(0)))
+            self.turn = self.program.matrix(f"R{k + 1}", self.turn * group.rotation)
+
+    def extend(self, shift: sp.Matrix) -> None:
+        """The tool, at a constant place in the last frame."""
+        self._to("tool", self._place(shift), sp.sqrt(sp.factor(shift.dot(shift))))
+
+    def arguments(self, d: Derivation) -> dict[str, Any]:
+        if self.here == f"joint{len(self.joints) + 1}":
+            self._rename(self.here, "tool")
+        return {
+            "points": self.points,
+            "links": {name: tuple(link) for name, link in self.links.items()},
+            "joints": self.joints,
+            "hand": self.here,
+            "lengths": self.lengths,
+            "inputs": tuple(self.joints),
+            "program": self.program,
+            "ground": tuple(self.links.get("ground", ("base",))),
+        }
+
+    def _to(self, name: str, at: sp.Matrix, length: sp.Expr) -> None:
+        """Draw the link on to a point, unless that is where it is."""
+        if length == 0:
+            return
+        self.points[name] = at
+        self.links.setdefault(self.link, [self.here]).append(name)
+        self.lengths[self.here, name] = length
+        self.here = name
+
+    def _place(self, local: sp.Matrix) -> sp.Matrix:
+        return self.origin + self.turn * local
+
+    def _rename(self, old: str, new: str) -> None:
+        self.points = {new if n == old else n: at for n, at in self.points.items()}
+        self.links = {
+            name: [new if n == old else n for n in link] for name, link in self.links.items()
+        }
+        self.lengths = {
+            (new if a == old else a, new if b == old else b): e
+            for (a, b), e in self.lengths.items()
+        }
+        self.here = new

@@ -1,0 +1,146 @@
+"""What the figures ask of a generated module: postures, targets, and the points to draw."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+TRIALS = 400
+ELEVATION, AZIMUTH = 22.0, -58.0
+"""The direction from which a drawing in space is seen, in degrees."""
+_e, _a = np.radians(ELEVATION), np.radians(AZIMUTH)
+SEEN = np.array(
+    [
+        [-np.sin(_a), np.cos(_a), 0.0],
+        [-np.sin(_e) * np.cos(_a), -np.sin(_e) * np.sin(_a), np.cos(_e)],
+    ]
+)
+"""The directions to the right and upwards in such a drawing."""
+FLAT = 1e-12
+
+POSE = {"x": 3, "y": 7, "z": 11}
+"""The places of the position among the 16 entries of a pose."""
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A generated module with its dimensions."""
+
+    module: ModuleType
+    params: Any
+
+    @classmethod
+    def of(cls, module: ModuleType, params: Any = None) -> Robot:
+        if not hasattr(module, "JOINTS") or not hasattr(module, "Parameters"):
+            raise TypeError(f"{module!r} is not a generated module, such as closedform.planar_2r")
+        return cls(module, module.Parameters() if params is None else params)
+
+    @property
+    def name(self) -> str:
+        return self.module.__name__.rpartition(".")[2]
+
+    def has(self, function: str) -> bool:
+        return function in self.module.__all__
+
+    def require(self, function: str) -> None:
+        if not self.has(function):
+            raise ValueError(f"{self.name} has no function {function}")
+
+    def call(self, function: str, *arguments: Any) -> Any:
+        self.require(function)
+        return getattr(self.module, function)(*arguments, params=self.params)
+
+    def task(self, q: ArrayLike) -> Array:
+        """The forward map; assembly modes come before the coordinates."""
+        found = self.call("fk", q)
+        return np.asarray(found.p if hasattr(found, "p") else found)
+
+    def points(self, q: ArrayLike) -> Array:
+        """The points of the skeleton, an axis for the assembly mode first, even for one mode."""
+        found = np.asarray(self.call("skeleton", q))
+        return found if self.modes else found[..., None, :, :]
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        return tuple(self.module.ASSEMBLY_MODES)
+
+    @property
+    def size(self) -> float:
+        """The sum of the lengths, which is the scale of every figure."""
+        return float(np.sum(np.abs(np.asarray(self.params, dtype=float)))) or 1.0
+
+    @property
+    def slides(self) -> list[int]:
+        kinds = self.module.SKELETON.joints
+        return [k for k, n in enumerate(self.module.JOINTS) if kinds[n].kind == "prismatic"]
+
+    def draw(self, n: int, seed: int = 0) -> Array:
+        """Random joints; slides have lengths like those of the mechanism, twin arms agree."""
+        q = np.random.default_rng(seed).uniform(-np.pi, np.pi, (n, len(self.module.JOINTS)))
+        for k in self.slides:
+            q[:, k] = self.size / 2 * (1 + q[:, k] / (3 * np.pi))
+        names = list(self.module.JOINTS)
+        for k, name in enumerate(names):
+            twin = name[:-1] + "R"
+            if name.endswith("L") and twin in names:
+                q[:, k] = q[:, names.index(twin)] + 0.02 * q[:, k]
+        return q
+
+    def posture(self) -> Array:
+        """A posture that can be assembled and is far from singular, the same on every run."""
+        q = self.draw(TRIALS)
+        drawn = self.points(q)
+        good = np.isfinite(drawn).all((-1, -2)).any(-1)
+        measure = np.where(good, 0.1 + self._conditioning(q), 0.0)
+        hand = drawn[..., self.module.SKELETON.points.index(self.module.SKELETON.hand), :]
+        ahead = np.nanmin(np.where(np.isfinite(hand), hand, np.inf), axis=-2) > 0.1 * self.size
+        lowest = np.where(np.isfinite(drawn), drawn, np.inf)[..., 2].min((-1, -2))
+        above = lowest > -0.02 * self.size
+        seen = np.where(np.isfinite(drawn), drawn, 0.0).max(-3) @ SEEN.T
+        spread = np.linalg.svd(seen - seen.mean(-2, keepdims=True), compute_uv=False)[..., -1]
+        preferred = (1 + above) * (1 + ahead[..., :2].all(-1)) * (0.1 + spread / self.size)
+        return np.asarray(q[np.argmax(measure * preferred)])
+
+    def _conditioning(self, q: Array) -> Array:
+        """The inverse condition number of the Jacobian, the best of the assembly modes."""
+        name = next((n for n in ("jacobian", "jacobian_space") if self.has(n)), None)
+        if name is None:
+            return np.ones(len(q))
+        J = np.asarray(self.call(name, q)).reshape(len(q), -1, *self._jacobian_shape(name, q))
+        finite = np.isfinite(J).all((-1, -2))
+        found = np.zeros(finite.shape)
+        sizes = np.linalg.svd(J[finite], compute_uv=False)
+        found[finite] = sizes[:, -1] / sizes[:, 0]
+        return np.asarray(found.max(-1))
+
+    def _jacobian_shape(self, name: str, q: Array) -> tuple[int, ...]:
+        return tuple(np.asarray(self.call(name, q[:1])).shape[-2:])
+
+    @property
+    def flat(self) -> bool:
+        """Whether the mechanism stays in the plane of x and y."""
+        z = self.points(self.draw(20))[..., 2]
+        return bool(np.nanmax(np.abs(z)) <= FLAT * self.size)
+
+    def branches(self, x: ArrayLike) -> tuple[Array, NDArray[np.uint8]]:
+        """All postures for a target, and their status."""
+        found = self.call("ik", np.asarray(x, dtype=float))
+        return np.asarray(found.q), np.asarray(found.status)
+
+    def mode_that_reaches(self, q: Array, x: ArrayLike) -> int:
+        """The assembly mode of a posture that is nearest to a target."""
+        if not self.modes:
+            return 0
+        gap = np.abs(self.task(q) - np.asarray(x)).reshape(len(self.modes), -1).max(-1)
+        return int(np.nanargmin(gap))
+
+
+def positions(r: Robot, target: Array) -> dict[str, int]:
+    """The places of the position among the entries of a target."""
+    task = list(r.module.TASK)
+    return POSE if target.shape == (4, 4) else {n: task.index(n) for n in "xyz" if n in task}

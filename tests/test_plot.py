@@ -1,0 +1,150 @@
+"""The figures: what is drawn, on which axes, and that files are the same on every run."""
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+
+mpl.use("Agg")
+
+import numpy as np
+import pytest
+from libraries import ROBOTS
+from matplotlib import pyplot as plt
+
+import closedform
+from closedform import plot
+from closedform.cli.commands import main
+
+SMALL = 40
+
+
+@pytest.fixture(autouse=True)
+def closed() -> Any:
+    yield
+    plt.close("all")
+
+
+def module(name: str) -> Any:
+    return import_module(f"closedform.generated.numpy.{name}")
+
+
+def lines(ax: Any) -> list[np.ndarray]:
+    """The drawn lines as points."""
+    data = [l.get_data_3d() if hasattr(l, "get_data_3d") else l.get_data() for l in ax.lines]
+    return [np.array(d).T for d in data]
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_every_link_is_drawn_through_its_points(name: str) -> None:
+    robot = module(name)
+    q = plot.posture(robot)
+    ax = plot.mechanism(robot, q)
+    points = robot.skeleton(q)
+    points = (points[0] if robot.ASSEMBLY_MODES else points)[:, : 3 if ax.name == "3d" else 2]
+    place = dict(zip(robot.SKELETON.points, points, strict=True))
+    drawn = lines(ax)
+    for link in robot.SKELETON.links.values():
+        wanted = np.array([place[p] for p in link])
+        assert any(d.shape == wanted.shape and np.allclose(d, wanted) for d in drawn), link
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_branches_meet_at_the_target_and_are_named(name: str) -> None:
+    robot = module(name)
+    ax = plot.branches(robot)
+    shown = {t.get_text() for legend in ax.figure.legends for t in legend.get_texts()}
+    assert shown and shown <= set(robot.BRANCHES)
+    hands = [l for l in ax.lines if l.get_marker() == "D"]
+    at = np.array([np.ravel(l.get_data_3d() if ax.name == "3d" else l.get_data()) for l in hands])
+    assert len(at) == len(shown)
+    assert np.ptp(at, axis=0).max() < 1e-9 * (1 + np.abs(at).max())
+
+
+def test_planar_mechanisms_are_drawn_in_the_plane() -> None:
+    assert plot.mechanism(module("planar_2r")).name == "rectilinear"
+    assert plot.mechanism(module("puma560")).name == "3d"
+
+
+def test_workspace_of_the_planar_arm_is_its_annulus() -> None:
+    ax = plot.workspace(closedform.planar_2r, resolution=201)
+    mesh = ax.collections[0]
+    x, y = (mesh.get_coordinates()[:-1, :-1] + mesh.get_coordinates()[1:, 1:]).T / 2
+    reached = ~np.ma.getmaskarray(mesh.get_array()).reshape(x.T.shape).T
+    r = np.hypot(x, y)
+    step = np.abs(np.diff(x[:2, 0]))[0]
+    assert reached[(r > 2 + step) & (r < 18 - step)].all()
+    assert not reached[(r < 2 - step) | (r > 18 + step)].any()
+
+
+def test_field_has_the_values_of_the_function() -> None:
+    ax = plot.field(closedform.planar_2r, "determinant", ("theta1", "theta2"), resolution=SMALL)
+    values = np.asarray(ax.collections[0].get_array()).reshape(SMALL, SMALL)
+    theta2 = np.linspace(-np.pi, np.pi, SMALL)
+    np.testing.assert_allclose(values, np.tile(80 * np.sin(theta2)[:, None], SMALL), atol=1e-12)
+
+
+def test_singularities_of_the_elbow_are_lines_over_the_joints() -> None:
+    ax = plot.singularities(closedform.irb260, ("theta2", "theta3"), resolution=SMALL)
+    curves = [p.vertices for c in ax.collections for p in c.get_paths() if len(p.vertices)]
+    flat = [v[np.abs(np.abs(v[:, 1]) - np.pi / 2) < 0.05] for v in curves]
+    elbow = [v for v in flat if len(v) and np.ptp(v[:, 0]) > 6]
+    heights = {round(float(h), 1) for v in elbow for h in v[:, 1]}
+    assert heights == {-1.6, 1.6}
+
+
+def test_path_follows_one_branch_without_jumps() -> None:
+    t = np.linspace(0, 2 * np.pi, 400)
+    xs = np.column_stack([10 * np.cos(t), 10 * np.sin(t)])
+    ax = plot.path(closedform.planar_2r, xs, branch="elbow_up")
+    curves = np.array([line.get_ydata() for line in ax.lines])
+    assert np.abs(np.diff(curves)).max() < 0.05
+    q = closedform.planar_2r.ik(xs).q[:, 1]
+    np.testing.assert_allclose(np.angle(np.exp(1j * (curves.T - q))), 0, atol=1e-12)
+
+
+def test_path_starts_in_the_branch_nearest_to_given_joints() -> None:
+    xs = np.array([[12.0, 8.0], [12.1, 8.0]])
+    for k, name in enumerate(closedform.planar_2r.BRANCHES):
+        q = closedform.planar_2r.ik(xs[0]).q[k]
+        ax = plot.path(closedform.planar_2r, xs, start=q + 0.1)
+        assert ax.get_title() == f"branch {name}"
+
+
+@pytest.mark.parametrize("kind", ["mechanism", "branches", "workspace", "singularities", "field"])
+@pytest.mark.parametrize("suffix", ["svg", "pdf"])
+def test_files_are_the_same_on_every_run(kind: str, suffix: str, tmp_path: Path) -> None:
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        target = tmp_path / folder / f"figure.{suffix}"
+        assert main(["plot", "irb260", kind, "-o", str(target)]) == 0
+    first, second = ((tmp_path / f / f"figure.{suffix}").read_bytes() for f in "ab")
+    assert first == second
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["nothing", "mechanism", "-o", "a.svg"], "no mechanism 'nothing'"),
+        (["planar_2r", "mechanism", "-o", "a.txt"], "the suffix must be one of"),
+        (["planar_2r", "workspace", "-o", "a.svg", "--plane", "x", "w"], "needs two of"),
+        (["planar_2r", "field", "-o", "a.svg", "--branch", "up"], "no branch 'up'"),
+        (["planar_2r", "field", "-o", "a.svg", "--function", "f"], "has no function f"),
+        (["spherical_wrist", "path", "-o", "a.svg"], "has no position"),
+    ],
+)
+def test_wrong_arguments_are_explained(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["plot", *arguments]) == 1
+    assert message in capsys.readouterr().err
+
+
+def test_wrong_postures_are_explained() -> None:
+    with pytest.raises(ValueError, match=r"q must have the shape \(2,\)"):
+        plot.mechanism(closedform.planar_2r, [1.0])
+    with pytest.raises(ValueError, match="reaches the target"):
+        plot.branches(closedform.planar_2r, [100.0, 0.0])
+    with pytest.raises(TypeError, match="is not a generated module"):
+        plot.mechanism(np)

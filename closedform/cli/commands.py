@@ -132,8 +132,10 @@ def parser() -> argparse.ArgumentParser:
         nargs=2,
         required=True,
         metavar=("KIND", "FILE"),
-        help="dh TABLE.csv or screws FILE.toml",
+        help="dh TABLE.csv, screws FILE.toml or urdf FILE.urdf",
     )
+    new.add_argument("--base", metavar="LINK", default="", help="of a URDF file; default: the root")
+    new.add_argument("--tool", metavar="LINK", default="", help="of a URDF file; default: the end")
     new.add_argument(
         "--modified", action="store_true", help="the dh table is in Craig's (proximal) convention"
     )
@@ -275,13 +277,16 @@ def check_command(options: argparse.Namespace) -> None:
 def new_command(options: argparse.Namespace) -> None:
     """Write the skeleton of a derivation, with pose, Jacobians and a proposed inverse."""
     kind, path = options.table[0], Path(options.table[1])
-    if kind not in ("dh", "screws"):
-        raise CommandError(f"--from dh TABLE.csv or --from screws FILE.toml, not {kind}", 2)
+    if kind not in ("dh", "screws", "urdf"):
+        kinds = "dh TABLE.csv, screws FILE.toml or urdf FILE.urdf"
+        raise CommandError(f"--from takes {kinds}, not {kind}", 2)
     if not path.is_file():
         problem = f"{path} is not a file" if path.exists() else f"there is no file {path}"
         raise CommandError(problem, 2)
     if options.modified and kind != "dh":
         raise CommandError("--modified needs --from dh; axes have no convention", 2)
+    if (options.base or options.tool) and kind != "urdf":
+        raise CommandError("--base and --tool name links of a URDF file", 2)
     _require_extra()
     from closedform.scaffold.new import check_name, new
 
@@ -290,7 +295,14 @@ def new_command(options: argparse.Namespace) -> None:
         target = options.output / f"{options.name}.py"
         if os.path.lexists(target):
             raise CommandError(f"{target} already exists")
-        script = new(options.name, kind, path, modified=options.modified)
+        script = new(
+            options.name,
+            kind,
+            path,
+            modified=options.modified,
+            base=options.base,
+            tool=options.tool,
+        )
     except (ValueError, TypeError) as error:
         raise CommandError(str(error)) from error
     for note in script.notes:

@@ -31,6 +31,7 @@ from closedform.scaffold.tables import (
     read_dh,
     read_screws,
 )
+from closedform.scaffold.urdf import read_urdf
 
 LINE = 100
 """The maximum length of a line in a script."""
@@ -57,14 +58,22 @@ def check_name(name: str) -> None:
         raise ValueError(f"{name} is a Python module; choose another name, such as {name}_arm")
 
 
-def new(name: str, kind: str, path: Path, *, modified: bool = False) -> Script:
+def new(
+    name: str, kind: str, path: Path, *, modified: bool = False, base: str = "", tool: str = ""
+) -> Script:
     """A derivation called ``name``, from a table of the given kind.
 
-    ``kind`` is ``"dh"`` (with ``modified``, in Craig's convention) or ``"screws"``.  Raises
-    ``ValueError`` if the name or the table cannot be used; it says where and how to correct it.
+    ``kind`` is ``"dh"`` (with ``modified``, in Craig's convention), ``"screws"`` or ``"urdf"``
+    (with the links between which the chain is read).  Raises ``ValueError`` if the name or the
+    table cannot be used; it says where and how to correct it.
     """
     check_name(name)
-    table = read_dh(path, modified=modified) if kind == "dh" else read_screws(path)
+    if kind == "dh":
+        table = read_dh(path, modified=modified)
+    elif kind == "urdf":
+        table = read_urdf(path, base=base, tool=tool)
+    else:
+        table = read_screws(path)
     check_names(table, path.name)
     for symbol, given in table.parameters.items():
         check_text(f"{path.name}: {symbol}", given.get("meaning", ""), given.get("unit", ""))
@@ -114,7 +123,8 @@ def skeleton(name: str, table: Table, origin: str) -> Script:
         '    "Say here how the mechanism is built, where its zero is and which way it turns.",',
         ")",
     ]
-    lines += [_comment(f"{note}.") for note in table.notes]
+    for note in table.notes:
+        lines += map(_comment, textwrap.wrap(f"{note}.", LINE - 2, break_long_words=False))
     for symbol, given in table.parameters.items():
         value = number(given.get("value") or "1")
         exact = f"{value.numerator}" if value.denominator == 1 else f'Rational("{value}")'

@@ -194,7 +194,7 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
         for column in ("alpha", "theta"):
             _check_angle(entries[column], cell[column], f"{where}, column {column}")
         if found := _joint(cell.get("joint", ""), entries, where, table.parameters):
-            _add_joint(table, *found, where)
+            add_joint(table, *found, where)
         else:
             table.notes.append(f"{where}: the row has no joint, so it is a fixed transform")
         table.rows.append(tuple(entries[c] for c in COLUMNS))
@@ -242,7 +242,7 @@ def _declare(table: Table, angles: exact.Angles) -> None:
         )
 
 
-def _add_joint(table: Table, joint: str, kind: str, where: str) -> None:
+def add_joint(table: Table, joint: str, kind: str, where: str) -> None:
     if joint in table.joints:
         raise TableError(f"{where}: two joints have the name {shown_name(joint)}")
     if len(table.joints) == JOINTS:
@@ -342,7 +342,7 @@ def read_screws(path: Path) -> Table:
             )
         if kind not in ("revolute", "prismatic"):
             raise TableError(f"{where}: kind must be revolute or prismatic, not {_plain(kind)}")
-        _add_joint(table, joint, kind, where)
+        add_joint(table, joint, kind, where)
         direction, point = (
             _vector(axis.get(key, [0, 0, 0]), f"{where}, {key}") for key in ("direction", "point")
         )
@@ -350,17 +350,17 @@ def read_screws(path: Path) -> Table:
     table.home = _home(data.get("home", {}), f"{path.name}, [home]")
     used = [e for _, *vectors in table.axes for v in vectors for e in v]
     _other_symbols(table, [*used, *table.home], path.name)
-    _use_exact(table, path.name)
+    use_exact(table, path.name)
     return table
 
 
-def _use_exact(table: Table, file: str) -> None:
+def use_exact(table: Table, file: str) -> None:
     """Make directions and rotations in decimals exact, and name angles without square roots."""
     axes: list[tuple[Any, Any, Any]] = []
     directions: list[sp.Matrix] = []
     for i, (joint, direction, point) in enumerate(table.axes, 1):
         given = sp.Matrix(direction)
-        if not given.free_symbols and given.dot(given) != 1:
+        if not given.free_symbols and sp.expand(given.dot(given)) != 1:
             unit = exact.unit_vector(given, directions)
             if unit is not None and unit != given:
                 table.notes.append(

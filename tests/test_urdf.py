@@ -1,0 +1,201 @@
+"""URDF files: the axes that are read, the choices of a chain, and what is refused."""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from closedform.cli.commands import main
+from closedform.mechanics.arm import from_screws
+from closedform.model.derivation import Derivation, Paper
+from closedform.scaffold.new import new
+from closedform.scaffold.tables import TableError
+from closedform.scaffold.urdf import read_urdf
+
+UR5 = """
+<robot name="ur5">
+  <link name="base"/>
+  <joint name="pan" type="revolute">
+    <parent link="base"/><child link="shoulder"/>
+    <origin xyz="0 0 0.089159" rpy="0 0 0"/><axis xyz="0 0 1"/>
+    <limit lower="-6.28" upper="6.28" effort="1" velocity="1"/>
+  </joint>
+  <joint name="lift" type="revolute">
+    <parent link="shoulder"/><child link="upper"/>
+    <origin xyz="0 0.13585 0" rpy="0 1.570796325 0"/><axis xyz="0 1 0"/>
+  </joint>
+  <joint name="elbow" type="revolute">
+    <parent link="upper"/><child link="fore"/>
+    <origin xyz="0 -0.1197 0.425" rpy="0 0 0"/><axis xyz="0 1 0"/>
+  </joint>
+  <joint name="wrist-1" type="continuous">
+    <parent link="fore"/><child link="w1"/>
+    <origin xyz="0 0 0.39225" rpy="0 1.5708 0"/><axis xyz="0 1 0"/>
+  </joint>
+  <joint name="wrist-2" type="revolute">
+    <parent link="w1"/><child link="w2"/>
+    <origin xyz="0 0.093 1e-17" rpy="0 0 0"/><axis xyz="0 0 1"/>
+  </joint>
+  <joint name="wrist-3" type="revolute">
+    <parent link="w2"/><child link="w3"/>
+    <origin xyz="0 0 0.09465" rpy="0 0 0"/><axis xyz="0 1 0"/>
+  </joint>
+  <joint name="flange" type="fixed">
+    <parent link="w3"/><child link="tool0"/>
+    <origin xyz="0 0.0823 0" rpy="0 0 1.570796325"/>
+  </joint>
+</robot>
+"""
+
+
+@pytest.fixture
+def ur5(tmp_path: Path) -> Path:
+    path = tmp_path / "ur5.urdf"
+    path.write_text(UR5, "utf-8")
+    return path
+
+
+def numbers(element: ElementTree.Element | None, key: str, default: str) -> np.ndarray:
+    text = default if element is None else element.get(key, default)
+    return np.array([float(x) for x in text.split()])
+
+
+def turned(axis: np.ndarray, angle: float) -> np.ndarray:
+    """The rotation about an axis, by the exponential series."""
+    K = np.cross(np.eye(3), axis / np.linalg.norm(axis)) * angle
+    total = term = np.eye(3)
+    for k in range(1, 40):
+        term = term @ K / k
+        total = total + term
+    return total
+
+
+def forward(text: str, q: np.ndarray) -> np.ndarray:
+    """The pose of the last link by the definition of URDF, joint after joint, in floating point."""
+    T, values = np.eye(4), iter(q)
+    for joint in ElementTree.fromstring(text).findall("joint"):
+        origin = joint.find("origin")
+        r, p, y = numbers(origin, "rpy", "0 0 0")
+        step = np.eye(4)
+        step[:3, 3] = numbers(origin, "xyz", "0 0 0")
+        step[:3, :3] = turned(np.eye(3)[2], y) @ turned(np.eye(3)[1], p) @ turned(np.eye(3)[0], r)
+        T = T @ step
+        if joint.get("type") != "fixed":
+            move, axis = np.eye(4), numbers(joint.find("axis"), "xyz", "1 0 0")
+            if joint.get("type") == "prismatic":
+                move[:3, 3] = axis * next(values)
+            else:
+                move[:3, :3] = turned(axis, next(values))
+            T = T @ move
+    return T
+
+
+def arm_of(path: Path) -> object:
+    table = read_urdf(path)
+    d = Derivation("arm", "Arm", Paper("p", "P", ("A",)), "An arm.")
+    for name, kind in table.joints.items():
+        d.joint(name, kind)  # type: ignore[arg-type]
+    return from_screws(d, table.axes, table.home)
+
+
+def test_the_chain_has_the_pose_of_the_file(ur5: Path) -> None:
+    arm = arm_of(ur5)
+    pose = sp.lambdify(arm.joints, arm.pose, "numpy")
+    for q in np.random.default_rng(0).uniform(-3, 3, (20, 6)):
+        # 1.5708 stands for pi/2, which moves the tool by up to 4e-6
+        np.testing.assert_allclose(pose(*q), forward(UR5, q), atol=2e-5)
+
+
+def test_joints_in_any_direction_and_slides(tmp_path: Path) -> None:
+    text = """<robot name="r"><link name="a"/>
+    <joint name="q1" type="revolute"><parent link="a"/><child link="b"/>
+      <origin xyz="0.1 -0.2 0.3" rpy="0.5235987755982988 0 0"/><axis xyz="0 0.6 0.8"/></joint>
+    <joint name="q2" type="prismatic"><parent link="b"/><child link="c"/>
+      <origin xyz="0 0.25 0" rpy="0 -0.7853981633974483 3.141592653589793"/><axis xyz="0 0 2"/>
+    </joint></robot>"""
+    path = tmp_path / "r.urdf"
+    path.write_text(text, "utf-8")
+    arm = arm_of(path)
+    pose = sp.lambdify(arm.joints, arm.pose, "numpy")
+    unit = text.replace("0 0 2", "0 0 1")  # the axis is a direction; a slide moves by its unit
+    for q in np.random.default_rng(1).uniform(-2, 2, (10, 2)):
+        np.testing.assert_allclose(pose(*q), forward(unit, q), atol=1e-12)
+
+
+def test_what_was_not_taken_literally_is_said(ur5: Path) -> None:
+    script = new("my_ur5", "urdf", ur5)
+    notes = "\n".join(script.notes)
+    for part in (
+        "1.5708000 is taken for pi/2",
+        "1e-17 is taken for 0",
+        "joint 'wrist-1': it is called wrist_1",
+        "from base to tool0",
+        "limits: pan -6.28 to 6.28",
+    ):
+        assert part in notes
+        assert part in " ".join(script.text.split()).replace("# ", "")
+    assert "an inverse with 8 branches is proposed" in script.inverse
+    assert max(len(line) for line in script.text.splitlines() if line.startswith("#")) <= 100
+
+
+def test_base_and_tool_choose_the_chain(ur5: Path) -> None:
+    table = read_urdf(ur5, base="shoulder", tool="w1")
+    assert list(table.joints) == ["lift", "elbow", "wrist_1"]
+    assert sp.Matrix(table.axes[0][2]) == sp.Matrix([0, sp.Rational("0.13585"), 0])
+
+
+def test_the_command(ur5: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "my_ur5", "--from", "urdf", str(ur5), "-o", str(tmp_path)]) == 0
+    assert (tmp_path / "my_ur5.py").is_file()
+    found = capsys.readouterr()
+    assert "8 branches" in found.out and "taken for pi/2" in found.err
+    assert main(["new", "b", "--from", "dh", str(ur5), "--tool", "w1"]) == 2
+    assert "--base and --tool name links of a URDF file" in capsys.readouterr().err
+
+
+def edited(old: str, new: str) -> str:
+    assert old in UR5
+    return UR5.replace(old, new)
+
+
+BRANCHED = UR5.replace(
+    "</robot>",
+    '<joint name="finger" type="prismatic"><parent link="w3"/><child link="finger"/></joint>'
+    '<joint name="thumb" type="prismatic"><parent link="w3"/><child link="thumb"/></joint></robot>',
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("<robot", "is not valid XML"),
+        ("<mujoco/>", "the file is not URDF"),
+        ('<!DOCTYPE r [<!ENTITY a "b">]><robot/>', "are not read"),
+        ('<robot xmlns:xacro="http://w"><xacro:arg/></robot>', "expand it first: xacro ur5.urdf"),
+        ("<robot/>", "there are no joints"),
+        (edited("0.425", "0.4x25"), "joint elbow: xyz"),
+        (edited("0.425", ""), "xyz needs three numbers"),
+        (edited("0.425", "1e999999"), "joint elbow: xyz"),
+        (edited('<axis xyz="0 0 1"/>', '<axis xyz="0 0 0"/>'), "joint pan: its axis is zero"),
+        (edited('<parent link="fore"/>', ""), "it has no parent link"),
+        (edited('"continuous"', '"planar"'), "a planar joint has no closed form"),
+        (edited('"continuous"', '"hinge"'), "which URDF does not know"),
+        (edited('<child link="w1"/>', '<child link="w1"/><mimic joint="pan"/>'), "it mimics pan"),
+        (edited('<child link="w1"/>', '<child link="shoulder"/>'), "has two parents"),
+        (BRANCHED, "choose one with --tool: finger, thumb"),
+    ],
+)
+def test_what_cannot_be_read_is_explained(text: str, message: str, ur5: Path) -> None:
+    ur5.write_text(text, "utf-8")
+    with pytest.raises(TableError) as caught:
+        read_urdf(ur5)
+    assert message in str(caught.value)
+
+
+def test_links_that_are_not_there_are_named(ur5: Path) -> None:
+    with pytest.raises(TableError, match="there is no link wrist for the tool; the links"):
+        read_urdf(ur5, tool="wrist")
+    with pytest.raises(TableError, match="w1 is not carried by tool0; its root is base"):
+        read_urdf(ur5, base="tool0", tool="w1")

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -123,7 +123,7 @@ class Equal(Check):
         several = self.relation if isinstance(self.relation, tuple) else (self.relation,)
         if len(several) > 1:
             parts = (Equal(r, self.nonnegative, self.small, self.on, self.defines) for r in several)
-            return worst([part.judge() for part in parts])
+            return worst(part.judge() for part in parts)
         (relation,) = several
         if not relation.signs or set(relation.signs) != {"="}:
             raise ValueError(f"{' '.join(relation.texts)} is not an equation")
@@ -137,7 +137,7 @@ class Equal(Check):
         if len(sides) < 2:
             raise ValueError(f"{' = '.join(relation.texts)} only defines a name")
         (first, name), *others = sides
-        return worst([self._compare(first, name, side, text) for side, text in others])
+        return worst(self._compare(first, name, side, text) for side, text in others)
 
     def _for_each(self, relation: Relation, indices: Sequence[int]) -> Verdict:
         """The first fault, if there is one: it is the simplest to check by hand."""
@@ -224,9 +224,17 @@ _SEVERITY = (
 )  # fmt: skip
 
 
-def worst(verdicts: Sequence[Verdict]) -> Verdict:
-    """The worst of several verdicts; the first of several equally bad ones."""
-    return max(verdicts, key=lambda v: _SEVERITY.index(v.kind))
+def worst(verdicts: Iterable[Verdict]) -> Verdict:
+    """The worst of several verdicts; the first of several equally bad ones.
+
+    Nothing is worse than a refutation, so what follows one is not computed.
+    """
+    found = []
+    for verdict in verdicts:
+        found.append(verdict)
+        if verdict.kind == REFUTED:
+            break
+    return max(found, key=lambda v: _SEVERITY.index(v.kind))
 
 
 @dataclass(frozen=True)

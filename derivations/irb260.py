@@ -320,6 +320,7 @@ state(
         moves,
         free,
         links,
+        simplest(sp.prod(links)),
         pose,
         twists,
         moved,

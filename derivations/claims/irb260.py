@@ -7,22 +7,26 @@ from closedform.derivations.claims.irb260_arm import (
     ABSTRACT,
     ASSEMBLY,
     BACKGROUND,
-    CONCLUSIONS,
     MODELING,
-    VERIFICATION,
     VERTICAL,
     Palletiser,
     euler_angles,
     stated,
     vector,
 )
+from closedform.derivations.claims.irb260_equivalence import (
+    EQUIVALENT,
+    equivalent_readings,
+    same_pose,
+    valid_readings,
+)
 from closedform.derivations.claims.irb260_forward import forward, names
 from closedform.derivations.claims.irb260_jacobian import jacobian
+from closedform.derivations.claims.irb260_verification import conclusions, verification
 from sympy import cos, pi, sin
 
 from closedform import (
     Agree,
-    Check,
     Count,
     Derivation,
     Enumeration,
@@ -47,7 +51,6 @@ CAPTIONS = {
     5: "A revolute joint",
     6: "Final simplified structure as an open-chain mechanism",
 }
-EQUIVALENT = {"equivalent": True, "not equivalent": False}
 
 
 def state(d: Derivation, arm: Palletiser) -> None:
@@ -82,10 +85,10 @@ def errata(d: Derivation) -> None:
         r"A correct Jacobian does not verify the pose: $g_{st}(0)$ is neither printed nor tested",
         Gravity.OMISSION,
         why=r"The Jacobian determines $g_{st}(\theta)$ up to a constant factor on its right: "
-        r"$g_{st}(\theta) C$ has the same spatial Jacobian for every motion $C$. So $g_{st}(0)$ has "
-        r"to be checked by itself. The paper does not print it; eq. (13) at $\theta = 0$ shows that "
-        r"it has no rotation and the translation $q_5$ of eq. (5). Moreover, the velocity of the "
-        r"test does not contain $l_2$ and $l_5$.",
+        r"$g_{st}(\theta) C$ has the same spatial Jacobian for every motion $C$. So $g_{st}(0)$ "
+        r"has to be checked by itself. The paper does not print it; eq. (13) at $\theta = 0$ shows "
+        r"that it has no rotation and the translation $q_5$ of eq. (5). Moreover, the velocity of "
+        r"the test does not contain $l_2$ and $l_5$.",
         use="Eq. (13) is right. A reader who tests code in the way of section V would not notice a "
         "wrong height or a wrongly mounted tool.",
     )
@@ -97,18 +100,6 @@ def errata(d: Derivation) -> None:
         "6, whose caption is “Final simplified structure as an open-chain mechanism”.",
         use="Look at Fig. 6.",
     )
-
-
-def same_pose(arm: Palletiser, holds: bool = True) -> Under:
-    """The open chain with the virtual constraint has the pose of the closed linkage."""
-    same = Identity(arm.couple(arm.free), arm.linkage(arm.bracket()))
-    return Under(stated(holds, same), ASSEMBLY)
-
-
-def crossed_differs(arm: Palletiser, holds: bool = True) -> Check:
-    """The same if the lower loop is crossed."""
-    turn = arm.bracket(lower=-1)
-    return stated(holds, Identity([cos(turn), sin(turn)], [sp.S.One, sp.S.Zero]))
 
 
 def introduction(d: Derivation, arm: Palletiser) -> None:
@@ -187,36 +178,6 @@ def introduction(d: Derivation, arm: Palletiser) -> None:
     )
 
 
-def equivalent_readings(arm: Palletiser) -> list[Reading]:
-    return [
-        Reading(
-            "the hand of the open chain has the pose of that of the closed linkage, for all angles, "
-            "while both loops are parallelograms",
-            check=lambda holds: same_pose(arm, holds),
-        ),
-        Reading(
-            "also if the lower loop is crossed",
-            check=lambda holds: crossed_differs(arm, holds),
-        ),
-    ]
-
-
-def valid_readings(arm: Palletiser) -> list[Reading]:
-    return [
-        Reading(
-            "what is concluded: the method gives the pose of the hand of the closed linkage",
-            check=lambda holds: same_pose(arm, holds),
-        ),
-        Reading(
-            "that the curves of Figs. 7 and 8 show it",
-            check=lambda _: Undecidable(
-                "the paper prints curves of one path without dimensions, start or numbers, and the "
-                "velocity of the hand does not contain all lengths"
-            ),
-        ),
-    ]
-
-
 def linkages(d: Derivation, arm: Palletiser) -> None:
     """Section II."""
     claim = partial(d.claim, where=BACKGROUND)
@@ -230,8 +191,8 @@ def linkages(d: Derivation, arm: Palletiser) -> None:
         "four-bar linkage",
         "“The four-bar linkage is a mechanism such that the input link and output link satisfy "
         "{a given functional relationship}, therefore creating a type of mechanical computer”",
-        lambda n: Count(four_bar, (output, middle), n),
-        phrases=[{"a given functional relationship": 2, "no relationship": None}],
+        lambda related: stated(related, Not(Count(four_bar, (output, middle), None))),
+        phrases=[{"a given functional relationship": True, "no relationship": False}],
         readings=[
             Reading(
                 "the angles of input and output satisfy an equation: each input leaves finitely "
@@ -246,21 +207,20 @@ def linkages(d: Derivation, arm: Palletiser) -> None:
         lambda: Undecidable("taken from the drawing, Fig. 3; the derivation starts from it"),
         fixed="a drawing",
     )
-    turn, crossed = arm.lower.solution
+    turn, _ = arm.lower.solution
     sigma, angle = real("sigma"), arm.thetas[1]
     claim(
         "planar translation",
-        "“Since the four links constitutes {a parallelogram} and one link is fixed, the coupler can "
-        "{only achieve the planar translation} no matter the angle that the input link rotates.”",
+        "“Since the four links constitutes {a parallelogram} and one link is fixed, the coupler "
+        "can {only achieve the planar translation} no matter the angle that the input link "
+        "rotates.”",
         lambda assembly, moving: Every(
             {
                 "the loop is closed": Identity(
                     sp.Matrix(arm.lower.equations).subs(arm.lower.solution).subs(sigma, assembly),
                     sp.zeros(2, 1),
                 ),
-                "the coupler": Identity(
-                    arm.lower[turn].subs(sigma, assembly).diff(angle), moving
-                ),
+                "the coupler": Identity(arm.lower[turn].subs(sigma, assembly).diff(angle), moving),
             }
         ),
         phrases=[
@@ -296,9 +256,7 @@ def linkages(d: Derivation, arm: Palletiser) -> None:
             ),
             Reading(
                 "by all axes",
-                check=lambda translates: stated(
-                    translates, Identity(bracket[:3, :3], sp.eye(3))
-                ),
+                check=lambda translates: stated(translates, Identity(bracket[:3, :3], sp.eye(3))),
             ),
         ],
     )
@@ -360,9 +318,7 @@ def modeling(d: Derivation, arm: Palletiser) -> None:
         "temporarily.”",
         lambda rotations, axis: Every(
             {
-                name: Identity(
-                    twist_of(arm.pose.diff(angle) * inverse(arm.pose))[3:, :], axis
-                )
+                name: Identity(twist_of(arm.pose.diff(angle) * inverse(arm.pose))[3:, :], axis)
                 for name, angle in rotations.items()
             }
         ),
@@ -393,8 +349,10 @@ def modeling(d: Derivation, arm: Palletiser) -> None:
         "mechanism.”",
         lambda passive, n, normal: Every(
             {
-                "the motors of the other joints determine its rate": Enumeration(
-                    passive, lambda: arm.driving_sets() == [(1, 2, 3, 5)], "they do"
+                "it needs no motor": Enumeration(
+                    passive,
+                    lambda: bool(arm.driving_sets()),
+                    "the rates of others determine its own",
                 ),
                 "its angle": Count(list(arm.free[:3, :3] * normal - VERTICAL), (theta4,), n),
             }
@@ -423,7 +381,7 @@ def loops_at_posture(arm: Palletiser) -> list[sp.Expr]:
 def virtual_joint(d: Derivation, arm: Palletiser) -> None:
     """Section III, the virtual motor."""
     claim = partial(d.claim, where=MODELING)
-    theta1, theta2, theta3, _, _ = arm.thetas
+    _, theta2, theta3, *_ = arm.thetas
     claim(
         "Fig. 5",
         "“Let us image that we delete the double four-bar system but add a virtual motor for "
@@ -440,9 +398,9 @@ def virtual_joint(d: Derivation, arm: Palletiser) -> None:
     )
     claim(
         "virtual constraint",
-        r"“It is assumed that this virtual motor always rotates the same amount of the angle as the "
-        r"summation of rotation angles of the joint 2 and joint 3 but in an opposite direction, "
-        r"i.e., $\theta_4 = -(\theta_2 + \theta_3)$.”",
+        r"“It is assumed that this virtual motor always rotates the same amount of the angle as "
+        r"the summation of rotation angles of the joint 2 and joint 3 but in an opposite "
+        r"direction, i.e., $\theta_4 = -(\theta_2 + \theta_3)$.”",
         notation=names(arm),
         means={r"\theta_4": arm.bracket() - theta2 - theta3},
         readings=[
@@ -453,9 +411,7 @@ def virtual_joint(d: Derivation, arm: Palletiser) -> None:
             Reading(
                 "the lower loop may be crossed",
                 means={r"\theta_4": arm.bracket(lower=-1) - theta2 - theta3},
-                check=lambda f: Identity(
-                    [cos(f.left), sin(f.left)], [cos(f.right), sin(f.right)]
-                ),
+                check=lambda f: Identity([cos(f.left), sin(f.left)], [cos(f.right), sin(f.right)]),
             ),
         ],
         erratum="assembly",
@@ -464,9 +420,9 @@ def virtual_joint(d: Derivation, arm: Palletiser) -> None:
     across = sp.Matrix([1, 0, 0])
     claim(
         "axis X",
-        "“This assumption is reasonable because in this case the virtual motor can {counteract} the "
-        "rotation that the motor 2 and motor 3 give along the axis {X} such that the motion of the "
-        "end-effector can also keep horizontal.”",
+        "“This assumption is reasonable because in this case the virtual motor can {counteract} "
+        "the rotation that [...] the motor 2 and motor 3 give along the axis {X} such that the "
+        "motion of the end-effector can also keep horizontal.”",
         lambda sign, axis: Every(
             {
                 "the axis of motors 2 and 3": Identity(spun[:3, :3] * axis, axis),
@@ -509,119 +465,3 @@ def virtual_joint(d: Derivation, arm: Palletiser) -> None:
         ],
         erratum="assembly",
     )
-
-
-def verification(d: Derivation, arm: Palletiser) -> None:
-    """Section V."""
-    claim = partial(d.claim, where=VERIFICATION)
-    offset, turn = vector("h"), real("turn")
-    mounted = arm.pose * homogeneous(rotation("z", turn), offset)
-    theirs = sp.Matrix.hstack(
-        *(twist_of(mounted.diff(q) * inverse(mounted)) for q in arm.actuated)
-    )
-    at_home = dict.fromkeys(arm.actuated, 0)
-    back = inverse(arm.pose)
-    columns = [twist_matrix(arm.J_space[:, i]) for i in range(4)]
-    claim(
-        "checking the Jacobian",
-        "“If we can check that the Jacobian matrix is {correct}, all the kinematics problems talked "
-        "above can be verified.”",
-        phrases=[{"correct": 1, "correct up to its sign": -1}],
-        readings=[
-            Reading(
-                r"the initial configuration $g_{st}(0)$ is taken to be right: then $g^{-1} h$ is "
-                r"constant for each pose $h$ that has the Jacobian of the pose $g$",
-                check=lambda factor: Under(
-                    Every(
-                        {
-                            f"with respect to joint {i}": Identity(
-                                back.diff(q) + factor * back * column, sp.zeros(4)
-                            )
-                            for i, q, column in zip((1, 2, 3, 5), arm.actuated, columns, strict=True)
-                        }
-                    ),
-                    r"$g_{st}(0)$ is checked too",
-                ),
-            ),
-            Reading(
-                "the Jacobian alone: a hand that is mounted elsewhere has another Jacobian or the "
-                "same pose",
-                check=lambda factor: Every(
-                    {
-                        "another Jacobian": Not(Identity(theirs, factor * arm.J_space)),
-                        "the same pose": Identity(mounted.subs(at_home), arm.pose.subs(at_home)),
-                    }
-                ),
-            ),
-        ],
-        erratum="initial-configuration",
-    )
-    speeds = {rf"\omega_{i}": rate for i, rate in zip((1, 2, 3, 5), arm.rates, strict=True)}
-    claim(
-        "omega5",
-        r"“$\omega_5 = 0$ (because it has {no effect} on the $v_{q_5}^s$)”",
-        lambda f, still, v: stated(still, Identity(v.left.subs(f.left, f.right), v.left)),
-        means={**speeds, "v_{q_5}^s": (arm.V * arm.pose[:, 3])[:3, :]},
-        phrases=[{"no effect": True, "an effect": False}],
-    )
-    for label, printed, reason in (
-        (
-            "Fig. 7",
-            "“From this comparison it is obvious to see that two groups of curves are almost the "
-            "same, Fig. 7.”",
-            "curves in a figure, without dimensions, start or numbers; the calculated curves are "
-            "derived as a table, for the dimensions of public models",
-        ),
-        (
-            "Fig. 8",
-            "“Fig. 8 shows the subtle difference in the corresponding directions.”",
-            "a figure",
-        ),
-        (
-            "source of the errors",
-            "“These little errors are identified from the modeling or calculation approximation in "
-            "ADAMS® and MATLAB®.”",
-            "no number of either program is printed",
-        ),
-    ):
-        claim(label, printed, partial(Undecidable, reason), fixed="figures without numbers")
-    claim(
-        "valid technique",
-        "“Hence it is concluded that the new proposed technique is {valid} for the hybrid "
-        "manipulator.”",
-        phrases=[{"valid": True, "invalid": False}],
-        readings=valid_readings(arm),
-        erratum="assembly",
-    )
-
-
-def conclusions(d: Derivation, arm: Palletiser) -> None:
-    """The last section."""
-    claim = partial(d.claim, where=CONCLUSIONS)
-    claim(
-        "equivalent, conclusions",
-        "“The system can be changed into an {equivalent} open-chain mechanism with these "
-        "assumptions”",
-        phrases=[EQUIVALENT],
-        readings=equivalent_readings(arm),
-        erratum="assembly",
-    )
-    for label, printed, reason in (
-        (
-            "simpler",
-            "“and then everything becomes simpler to calculate.”",
-            "a judgement of value",
-        ),
-        (
-            "verified",
-            "“The method is verified using MATLAB® and ADAMS®.”",
-            "a report on programs that are not printed",
-        ),
-        (
-            "other mechanisms",
-            "“It can also be widely extended to other hybrid mechanisms, especially more-than-one "
-            "four-bar linkage.”",
-            "the paper names no other mechanism",
-        ),
-    ):
-        claim(label, printed, partial(Undecidable, reason), fixed="no statement of mathematics")

@@ -1,12 +1,13 @@
 """The palletiser of Shi, Zhu and Li as their claims see it, and motions by other routes."""
 
+from collections.abc import Iterable
 from itertools import combinations
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy import cos, pi, sin
 
-from closedform import Check, Lemma, Not, homogeneous, real, rotation, twist_matrix
+from closedform import Check, Indexed, Lemma, Not, homogeneous, real, rotation, twist_matrix
 
 ABSTRACT = "Abstract"
 BACKGROUND = "II. BACKGROUND"
@@ -19,6 +20,7 @@ ASSEMBLY = (
     "both loops are assembled as parallelograms and stay so; each has one other assembly, the "
     "antiparallelogram, which it can enter where it is flat"
 )
+FIVE = (1, 2, 3, 4, 5)
 VERTICAL = sp.Matrix([0, 0, 1])
 
 
@@ -93,7 +95,11 @@ class Palletiser(NamedTuple):
         _, theta2, theta3, theta4, _ = self.thetas
         (plate, rod), (second, other) = self.lower.solution, self.upper.solution
         equations = sp.Matrix(
-            [*self.lower.equations, *self.upper.equations, theta4 - plate - second + theta2 + theta3]
+            [
+                *self.lower.equations,
+                *self.upper.equations,
+                theta4 - plate - second + theta2 + theta3,
+            ]
         )
         slopes = equations.jacobian([*self.thetas, plate, rod, second, other])
         posture = {theta2: pi / 6, theta3: pi / 6, plate: 0, second: 0, rod: pi / 6}
@@ -115,6 +121,12 @@ class Palletiser(NamedTuple):
             if slopes[:, [k for k in range(slopes.cols) if k + 1 not in joints]].rank()
             == slopes.rank()
         ]
+
+
+def each(values: Iterable[Any]) -> Indexed:
+    """A name whose index is that of a joint."""
+    found = list(values)
+    return Indexed(FIVE, lambda i: found[i - 1])
 
 
 def stated(holds: bool, check: Check) -> Check:

@@ -7,6 +7,7 @@ import sympy as sp
 from closedform.derivations.claims.irb260_arm import (
     FORWARD,
     Palletiser,
+    each,
     euler_angles,
     screw_motion,
     stated,
@@ -29,6 +30,7 @@ from closedform import (
     Reading,
     Relation,
     Under,
+    equal,
     exponential,
     homogeneous,
     inverse,
@@ -73,7 +75,7 @@ def forward(d: Derivation, arm: Palletiser) -> None:
     """Eqs. (1) to (13)."""
     d.erratum(
         "revolute-only",
-        "Eqs. (7) to (10) are written for all twists, but hold for revolute joints with a unit axis",
+        "Eqs. (7) to (10) are written for all twists, but hold for revolute joints only",
         Gravity.OMISSION,
         why=r"Eq. (7) admits every $v$ and every $\hat{\omega}$. The $v = -\omega \times q$ that "
         r"follows is that of a joint without pitch, and eq. (10) is the exponential only if "
@@ -96,15 +98,14 @@ def screws(d: Derivation, arm: Palletiser) -> None:
     claim = partial(d.claim, where=FORWARD)
     w, p, theta = unit_axis(), vector("q"), real("theta")
     motion = screw_motion(p, theta)
+    velocity = twist_of(motion.diff(theta).subs(theta, 0))
     claim(
         "zero-pitch screw",
         "“the motion of a revolute joint can correspond to a {zero}-pitch screw about an axis in "
         "the unit axis w direction passing through {the point q}”",
         lambda pitch, point: Every(
             {
-                "the pitch is that of its velocity": Identity(
-                    pitch_of(motion.diff(theta).subs(theta, 0)), sp.sympify(sp.oo if pitch is None else pitch)
-                ),
+                "the pitch": Identity(*slides(velocity, pitch)),
                 "the axis does not move": Identity(
                     motion * sp.Matrix([*(point + real("s") * w), 1]),
                     sp.Matrix([*(point + real("s") * w), 1]),
@@ -119,20 +120,22 @@ def screws(d: Derivation, arm: Palletiser) -> None:
         "where w represents the unit rotation axis and q represents the coordinate of "
         "{any point on the axis} w.”",
         lambda shift: Identity(screw_motion(p + shift, theta), motion),
-        phrases=[{"any point on the axis": real("s") * w, "any point beside the axis": vector("s")}],
+        phrases=[
+            {"any point on the axis": real("s") * w, "any point beside the axis": vector("s")}
+        ],
     )
     at_home = dict.fromkeys(arm.thetas, 0)
     back = inverse(arm.chain)
-    rates = [(arm.chain.diff(angle) * back).subs(at_home) for angle in arm.thetas]
+    rates = [twist_of((arm.chain.diff(angle) * back).subs(at_home)) for angle in arm.thetas]
     claim(
         "five revolute joints",
         "“Notice that the newly created open-chain loop has {five} {revolute} joints.”",
         lambda n, pitch: Enumeration(
             n,
-            lambda: sum(pitch_of(rate) == pitch for rate in rates),
+            lambda: sum(equal(*slides(rate, pitch)) for rate in rates),
             "joints whose twist turns without a slide",
         ),
-        phrases=[{"revolute": 0, "prismatic": sp.oo}],
+        phrases=[{"revolute": 0, "prismatic": None}],
     )
 
 
@@ -145,9 +148,7 @@ def axes(d: Derivation, arm: Palletiser) -> None:
     meanings |= {rf"\omega_{i}": frame[:3, 2] for i, frame in enumerate(frames[:5], 1)}
 
     def on_axis(q: Relation, w: Relation) -> Identity:
-        return Identity(
-            [*(q.right - q.left).cross(w.left), *w.right], [*sp.zeros(3, 1), *w.left]
-        )
+        return Identity([*(q.right - q.left).cross(w.left), *w.right], [*sp.zeros(3, 1), *w.left])
 
     def at_hand(q: Relation, w: Relation) -> Identity:
         return Identity([*q.right, *w.right], [*q.left, *w.left])
@@ -177,19 +178,39 @@ def groups(d: Derivation, arm: Palletiser) -> None:
     )
     S, r = euler_angles("beta"), vector("r")
     claim(
+        "the group SE(3)",
+        "“The Euclidean {group} $SE(3)$ is defined as the configuration space of the rigid body "
+        "motion”",
+        lambda joined, f: Every(
+            {
+                "two motions make one": rigid(joined),
+                "so does the inverse": Identity(inverse(f.left) * f.left, sp.eye(4)),
+            }
+        ),
+        means={"SE(3)": motion, "se(3)": velocity_of_a_curve(p, r)},
+        phrases=[
+            {
+                "group": motion * homogeneous(S, r),
+                "vector space": motion + homogeneous(S, r),
+            }
+        ],
+    )
+    claim(
         "eq. (6)",
         r"$SE(3) = \{(p, R) : p \in \mathbb{R}^3, R \in SO(3)\} = \mathbb{R}^3 \times SO(3)$",
         means={
             "SE(3)": sp.Matrix([*(R * point + p)]),
-            r"\{(p, R) : p \in \mathbb{R}^3, R \in SO(3)\}": (motion * sp.Matrix([*point, 1]))[:3, :],
+            r"\{(p, R) : p \in \mathbb{R}^3, R \in SO(3)\}": (motion * sp.Matrix([*point, 1]))[
+                :3, :
+            ],
             r"\mathbb{R}^3 \times SO(3)": (shift * turn * sp.Matrix([*point, 1]))[:3, :],
             "SO(3)": R * point,
             r"\mathbb{R}^3": point + p,
         },
         readings=[
             Reading(
-                "as a set: each pair $(p, R)$ is one motion, which takes a point $x$ to $Rx + p$; the "
-                "sentence speaks of a configuration space"
+                "as a set: each pair $(p, R)$ is one motion, which takes a point $x$ to $Rx + p$; "
+                "the sentence speaks of a configuration space"
             ),
             Reading(
                 "as groups: the product of $(p, R)$ and $(r, S)$ would be $(p + r, RS)$",
@@ -402,25 +423,47 @@ def products(d: Derivation, arm: Palletiser) -> None:
         },
         phrases=[{"product": sp.prod(factors), "sum": sum(factors, sp.zeros(4))}],
     )
+    frames = [sp.prod([sp.eye(4), *arm.links[:i]]).subs(at_home) for i in range(5)]
+    about = [
+        frame * homogeneous(rotation("z", angle)) * inverse(frame)
+        for frame, angle in zip(frames, arm.thetas, strict=True)
+    ]
+    claim(
+        "use of eq. (10)",
+        r"“$e^{\hat{\xi}_i \theta_i}$ can be computed according to {the Equation (10)}”",
+        lambda f, found: Every(
+            {f"joint {i}": Identity(f.left.at(i), found.at(i)) for i in f.left.indices}
+        ),
+        means={
+            r"e^{\hat{\xi}_i \theta_i}": each(about),
+            r"\hat{\xi}_i": each(twist_matrix(xi) for xi in arm.twists),
+        },
+        phrases=[{"the Equation (10)": each(arm.moves), "the Equation (11)": each([home] * 5)}],
+    )
     offset = sp.Matrix([*arm.chain[:3, 3]]).subs(at_home)
     claim(
         "initial configuration",
         "“$g_{st}(0)$ is the {initial} configuration of the manipulator”",
         lambda f, angles: Identity(f.left, arm.pose.subs(angles)),
-        means={"g_{st}(0)": homogeneous(sp.eye(3), offset), r"e^{\hat{\xi}_1 \theta_1}": arm.moves[0]},
+        means={
+            "g_{st}(0)": homogeneous(sp.eye(3), offset),
+            r"e^{\hat{\xi}_1 \theta_1}": arm.moves[0],
+        },
         phrases=[{"initial": at_home, "present": {}}],
     )
     claim(
         "eq. (13)",
-        r"“Then according to the Equation (12), we can get the final expression of the forward "
-        r"kinematics map $g_{st}(\theta)$, as following: $\begin{bmatrix} c(\theta_1 + \theta_5) & "
+        r"“Substitute the Equations (1)-(5), (9) and the virtual constraint $\theta_4 = -(\theta_2 "
+        r"+ \theta_3)$ into the Equation (10). Then according to the Equation (12), we can get the "
+        r"final expression of the forward kinematics map $g_{st}(\theta)$, as following: "
+        r"$\begin{bmatrix} c(\theta_1 + \theta_5) & "
         r"-s(\theta_1 + \theta_5) & 0 & -(l_1 + l_3 s \theta_2 + l_4 c(\theta_2 + \theta_3) + l_6) "
-        r"s \theta_1 \\ s(\theta_1 + \theta_5) & c(\theta_1 + \theta_5) & 0 & (l_1 + l_3 s \theta_2 "
-        r"+ l_4 c(\theta_2 + \theta_3) + l_6) c \theta_1 \\ 0 & 0 & 1 & l_2 + l_3 c \theta_2 - l_4 "
-        r"s(\theta_2 + \theta_3) - l_5 \\ 0 & 0 & 0 & 1 \end{bmatrix}$”",
-        lambda g, f: Identity(f.left, g.left),
+        r"s \theta_1 \\ s(\theta_1 + \theta_5) & c(\theta_1 + \theta_5) & 0 & (l_1 + l_3 s "
+        r"\theta_2 + l_4 c(\theta_2 + \theta_3) + l_6) c \theta_1 \\ 0 & 0 & 1 & l_2 + l_3 c "
+        r"\theta_2 - l_4 s(\theta_2 + \theta_3) - l_5 \\ 0 & 0 & 0 & 1 \end{bmatrix}$”",
+        lambda condition, g, f: Identity(f.left, g.left.subs(condition.left, condition.right)),
         means={
-            r"g_{st}(\theta)": arm.couple(arm.chain),
+            r"g_{st}(\theta)": arm.chain,
             "g_{st}(0)": home,
             "c": cos,
             "s": sin,
@@ -430,19 +473,20 @@ def products(d: Derivation, arm: Palletiser) -> None:
     equations = [*(arm.pose[:3, 3] - target), *(arm.pose[:2, 0] - sp.Matrix([cos(yaw), sin(yaw)]))]
     claim(
         "inverse kinematics",
-        "“Similarly, the inverse kinematics problem {can} be solved. We will not discuss it in this "
-        "paper.”",
+        "“Similarly, the inverse kinematics problem {can} be solved. We will not discuss it in "
+        "this paper.”",
         lambda solvable: stated(solvable, Not(Count(equations, arm.actuated, None))),
         phrases=[{"can": True, "can not": False}],
+        readings=[
+            Reading("each pose has a finite number of solutions; the paper says that it gives none")
+        ],
     )
 
 
-def pitch_of(velocity: sp.Matrix) -> sp.Expr:
-    """The slide per turn of a velocity ``(v; w)``: w.v / w.w, or infinite without a turn."""
-    twist = twist_of(velocity)
+def slides(twist: sp.Matrix, pitch: int | None) -> tuple[sp.Expr, sp.Expr]:
+    """Two sides that are equal if a twist has a pitch; ``None`` means a slide without a turn."""
     v, w = twist[:3, :], twist[3:, :]
-    square = sp.simplify(w.dot(w))
-    return sp.simplify(w.dot(v)) / square if square != 0 else sp.oo
+    return (w.dot(w), sp.S.Zero) if pitch is None else (w.dot(v), pitch * w.dot(w))
 
 
 def velocity_of_a_curve(v: sp.Matrix, w: sp.Matrix) -> sp.Matrix:
@@ -450,6 +494,15 @@ def velocity_of_a_curve(v: sp.Matrix, w: sp.Matrix) -> sp.Matrix:
     t = real("t")
     turn = sp.prod(rotation(axis, t * rate) for axis, rate in zip("xyz", w, strict=True))
     return homogeneous(turn, t * v).diff(t).subs(t, 0)
+
+
+def rigid(result: sp.Matrix) -> Identity:
+    """A matrix is a rigid motion: its 3x3 block is a rotation, and its last row is that of one."""
+    R = result[:3, :3]
+    return Identity(
+        [*(R.T * R), *(R[:, 0].cross(R[:, 1]) - R[:, 2]), *result[3, :]],
+        [*sp.eye(3), 0, 0, 0, 0, 0, 0, 1],
+    )
 
 
 def closed(result: sp.Matrix) -> Identity:

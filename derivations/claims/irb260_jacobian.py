@@ -5,9 +5,12 @@ from typing import Any
 
 import sympy as sp
 from closedform.derivations.claims.irb260_arm import (
+    FIVE,
     JACOBIAN,
     Palletiser,
+    each,
     euler_angles,
+    stated,
     vector,
 )
 from sympy import pi
@@ -44,9 +47,9 @@ PRIMED_FROM_I = r"e^{\hat{\xi}_i' \theta_i} \dots e^{\hat{\xi}_n' \theta_n}"
 FIVE_TERMS = (
     r"\left(\frac{\partial g_{st}}{\partial \theta_1} g_{st}^{-1}(\theta) \right) \dot{\theta}_1 + "
     r"\left(\frac{\partial g_{st}}{\partial \theta_2} g_{st}^{-1}(\theta) \right) \dot{\theta}_2 + "
-    r"\left(\frac{\partial g_{st}}{\partial \theta_3} g_{st}^{-1}(\theta) \right) \dot{\theta}_3 \\ "
+    r"\left(\frac{\partial g_{st}}{\partial \theta_3} g_{st}^{-1}(\theta) \right) \dot{\theta}_3 "
+    r"\\ "
 )
-FIVE = (1, 2, 3, 4, 5)
 
 
 def jacobian(d: Derivation, arm: Palletiser) -> None:
@@ -58,14 +61,29 @@ def jacobian(d: Derivation, arm: Palletiser) -> None:
     columns(d, arm, moved)
     moved_twists(d, arm, moved)
     adjoints(d, arm)
-    point(d, arm)
+    point(d, arm, moved)
 
 
 def actuated(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None:
     """The sentence before eq. (14)."""
     screws = sp.Matrix.hstack(*moved)
     generic = dict(zip(arm.thetas, [pi / 6] * 5, strict=True))
-    d.claim(
+    claim = partial(d.claim, where=JACOBIAN)
+    slope = arm.rate(arm.pose)
+    claim(
+        "spatial Jacobian",
+        "“Spatial Jacobian matrix represents the relationship between the velocity of the joint "
+        "angles and the end-effector. The word spatial here means relative to the {inertial} "
+        "coordinate frame.”",
+        lambda velocity: Identity(arm.J_space * arm.rates, velocity),
+        phrases=[
+            {
+                "inertial": twist_of(slope * inverse(arm.pose)),
+                "body": twist_of(inverse(arm.pose) * slope),
+            }
+        ],
+    )
+    claim(
         "actuated joints",
         "“Although there are {five} joints in this model, only {four} of them, the joints "
         "{1, 2, 3, and 5}, are actuated.”",
@@ -76,9 +94,7 @@ def actuated(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None:
                     lambda: screws.subs(generic).rank(),
                     "independent twists of the open chain",
                 ),
-                "actuated": Enumeration(
-                    four, arm.freedoms, "freedoms of the closed linkage"
-                ),
+                "actuated": Enumeration(four, arm.freedoms, "freedoms of the closed linkage"),
                 "which": Enumeration(
                     [joints],
                     arm.driving_sets,
@@ -86,8 +102,32 @@ def actuated(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None:
                 ),
             }
         ),
-        where=JACOBIAN,
         phrases=[{"1, 2, 3, and 5": (1, 2, 3, 5), "1, 2, 3, and 4": (1, 2, 3, 4)}],
+        readings=[
+            Reading(
+                "joint 4 has no motor, as section III says; the rates of the actuated joints "
+                "determine all others, and there are as many of them as freedoms"
+            )
+        ],
+    )
+    coupled = arm.couple(screws)
+    claim(
+        "transformation",
+        "“Therefore, we {must} make some mathematic transformation on spatial Jacobian calculation "
+        "of open-chain manipulators.”",
+        lambda must: stated(
+            must,
+            Not(
+                Every(
+                    {
+                        "the twists of the joints 1, 2, 3, 5 of the chain are the columns": (
+                            Identity(coupled.extract(range(6), [0, 1, 2, 4]), arm.J_space)
+                        )
+                    }
+                )
+            ),
+        ),
+        phrases=[{"must": True, "need not": False}],
     )
 
 
@@ -114,8 +154,8 @@ def velocities(d: Derivation, arm: Palletiser) -> None:
         r"velocity with the wrong sign; the inverse of $\dot{g}$, the other way to read it, does "
         r"not exist, because the last row of $\dot{g}$ is zero. The dot on the left side is the "
         r"hat of eqs. (15) and (23).",
-        use="Eq. (15) goes on with the right form. Code that follows eq. (14) as printed gets every "
-        "velocity with the wrong sign.",
+        use="Eq. (15) goes on with the right form. Code that follows eq. (14) as printed gets "
+        "every velocity with the wrong sign.",
     )
     claim = partial(d.claim, where=JACOBIAN)
     claim(
@@ -125,8 +165,8 @@ def velocities(d: Derivation, arm: Palletiser) -> None:
         means=meanings,
         readings=[
             Reading(
-                r"$\dot{g}_{st}^{-1}$ is the time derivative of the inverse, and $\dot{V}_{st}^s$ the "
-                "velocity, which eqs. (15) and (23) write with a hat"
+                r"$\dot{g}_{st}^{-1}$ is the time derivative of the inverse, and $\dot{V}_{st}^s$ "
+                "the velocity, which eqs. (15) and (23) write with a hat"
             ),
             Reading(
                 r"$\dot{g}_{st}^{-1}$ is the inverse of the time derivative; the statement judged "
@@ -138,8 +178,7 @@ def velocities(d: Derivation, arm: Palletiser) -> None:
             Reading(
                 r"$\dot{V}_{st}^s$ is the time derivative of the velocity",
                 means={
-                    r"\dot{V}_{st}^s": arm.rate(arm.V)
-                    + twist_matrix(arm.J_space * accelerations)
+                    r"\dot{V}_{st}^s": arm.rate(arm.V) + twist_matrix(arm.J_space * accelerations)
                 },
             ),
         ],
@@ -258,9 +297,10 @@ def moved_twists(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None
         r"motions of the joints before it are already in it. Eqs. (19) and (20) exponentiate and "
         r"move primed twists again, so that $\xi_i'$ even stands on both sides of eq. (20). What "
         r"is moved is the twist $\xi_i$ at home, of eqs. (1) to (5) and (9).",
-        use=r"Eq. (20) is the paper's only formula for the columns of the Jacobian. With its primes "
-        r"each axis is turned twice: at $\theta_1 = 90^\circ$ the axis of joint 2 points along $x$ "
-        r"instead of $-y$, and a velocity or a control law computed from it is wrong in direction.",
+        use=r"Eq. (20) is the paper's only formula for the columns of the Jacobian. With its "
+        r"primes each axis is turned twice: at $\theta_1 = 90^\circ$ the axis of joint 2 points "
+        r"along $x$ instead of $-y$, and a velocity or a control law computed from it is wrong in "
+        "direction.",
     )
     text = (
         r"$\begin{{aligned}} \left(\frac{{\partial g_{{st}}}}{{\partial \theta_i}} g_{{st}}^{{-1}} "
@@ -297,12 +337,14 @@ def moved_twists(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None
         "hat-under-ad",
         "In eq. (20) Ad multiplies a 4x4 matrix",
         Gravity.MISPRINT,
-        why=r"By eq. (21) $Ad_g$ is a 6x6 matrix, so it multiplies the six coordinates $\xi_i$ of a "
-        r"twist. The hat in eq. (20) makes them the 4x4 matrix of eq. (8).",
+        why=r"By eq. (21) $Ad_g$ is a 6x6 matrix, so it multiplies the six coordinates $\xi_i$ of "
+        r"a twist. The hat in eq. (20) makes them the 4x4 matrix of eq. (8).",
         use="The product is not defined, so nobody can compute with it; without the hat it is.",
     )
     size = {
-        rf"Ad_{{({PRIMED_BEFORE})}}": lambda factor: sp.Matrix([adjoint(arm.moves[0]).cols, factor]),
+        rf"Ad_{{({PRIMED_BEFORE})}}": lambda factor: sp.Matrix(
+            [adjoint(arm.moves[0]).cols, factor]
+        ),
         rf"Ad_{{({BEFORE})}}": lambda factor: sp.Matrix([adjoint(arm.moves[0]).cols, factor]),
         r"\hat{\xi}_i'": sp.Integer(twist_matrix(arm.twists[0]).rows),
         r"\xi_i'": sp.Integer(arm.twists[0].rows),
@@ -341,16 +383,29 @@ def adjoints(d: Derivation, arm: Palletiser) -> None:
         lambda f: Every(
             {
                 "the two sides": Equal(f),
-                "it moves points": Identity(f.right * sp.Matrix([*x, 1]), sp.Matrix([*(R * x + p), 1])),
+                "it moves points": Identity(
+                    f.right * sp.Matrix([*x, 1]), sp.Matrix([*(R * x + p), 1])
+                ),
             }
         ),
         means={"g": g, **names},
     )
 
 
-def point(d: Derivation, arm: Palletiser) -> None:
-    """Eq. (23)."""
+def point(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None:
+    """Eq. (23), and the sentence before it."""
     claim = partial(d.claim, where=JACOBIAN)
+    xi = [arm.couple(column) for column in moved]
+    found = sp.Matrix.hstack(xi[0], xi[1] - xi[3], xi[2] - xi[3], xi[4])
+    claim(
+        "Jacobian solved",
+        "“Therefore the spatial manipulator Jacobian for this manipulator {can} be solved.”",
+        lambda solved: stated(
+            solved, Identity(found * arm.rates, twist_of(arm.rate(arm.pose) * inverse(arm.pose)))
+        ),
+        phrases=[{"can": True, "can not": False}],
+        readings=[Reading("by eqs. (18) and (20) to (22), where (20) moves the twists at home")],
+    )
     position = arm.couple(arm.chain)[:, 3]
     at_home = position.subs(dict.fromkeys(arm.actuated, 0))
     meanings = {
@@ -380,9 +435,9 @@ def point(d: Derivation, arm: Palletiser) -> None:
         r"In eq. (23) $q_5$ is this origin itself, which moves with the arm: "
         r"$q_5^s = g_{st}(\theta) (0, 0, 0, 1)^T$, the last column of eq. (13). The two are equal "
         "at home only.",
-        use="With the point of eq. (5), eq. (23) gives the velocity of the point of the moving body "
-        r"that passes the home place of the end-effector. At $\theta_1 = 90^\circ$ with a turning "
-        "turret this is a velocity along the wrong axis.",
+        use="With the point of eq. (5), eq. (23) gives the velocity of the point of the moving "
+        r"body that passes the home place of the end-effector. At $\theta_1 = 90^\circ$ with a "
+        "turning turret this is a velocity along $x$ instead of $y$.",
     )
     claim(
         "q5, before eq. (23)",
@@ -414,20 +469,16 @@ def velocity_along_a_path(arm: Palletiser) -> sp.Matrix:
     """The spatial velocity, by differentiation with respect to time along straight paths."""
     time, g = real("t"), arm.chain
     pairs = zip(arm.thetas, arm.five_rates, strict=True)
-    return g.xreplace({q: q + rate * time for q, rate in pairs}).diff(time).subs(time, 0) * inverse(g)
+    return g.xreplace({q: q + rate * time for q, rate in pairs}).diff(time).subs(time, 0) * inverse(
+        g
+    )
 
 
 def runs(moves: list[sp.Matrix]) -> tuple[Indexed, Indexed, Indexed]:
-    """For each joint the product of the motions before it, of the others, and the first inverted."""
+    """For each joint the product of the motions before it, of the others, and of the way back."""
     before = Indexed(FIVE, lambda i: sp.prod([sp.eye(4), *moves[: i - 1]]))
     after = Indexed(FIVE, lambda i: sp.prod(moves[i - 1 :]))
     return before, after, before.map(inverse)
-
-
-def each(values: Any) -> Indexed:
-    """A name whose index is that of a joint."""
-    found = list(values)
-    return Indexed(FIVE, lambda i: found[i - 1])
 
 
 def coordinates(value: Any) -> Any:

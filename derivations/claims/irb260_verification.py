@@ -66,13 +66,17 @@ def verification(d: Derivation, arm: Palletiser) -> None:
                 ),
             ),
             Reading(
-                "the Jacobian alone: a hand that is mounted elsewhere has another Jacobian or the "
-                "same pose",
-                check=lambda factor: Every(
-                    {
-                        "another Jacobian": Not(Identity(theirs, factor * arm.J_space)),
-                        "the same pose": Identity(mounted.subs(at_home), arm.pose.subs(at_home)),
-                    }
+                "the Jacobian alone: no hand that is mounted elsewhere has the same Jacobian and "
+                "another pose",
+                check=lambda factor: Not(
+                    Every(
+                        {
+                            "the same Jacobian": Identity(theirs, factor * arm.J_space),
+                            "another pose": Not(
+                                Identity(mounted.subs(at_home), arm.pose.subs(at_home))
+                            ),
+                        }
+                    )
                 ),
             ),
         ],

@@ -77,12 +77,12 @@ def errata(d: Derivation) -> None:
         r"the other where it is flat. The virtual constraint $\theta_4 = -(\theta_2 + \theta_3)$ "
         "and all that follows hold in the first only; the paper gives no ranges of the angles that "
         "keep the loops from becoming flat.",
-        use="The machine has stops that prevent it. A simulation or a design with other dimensions "
-        "has to check the ranges itself: after a flat posture the hand may tilt.",
+        use="Nothing changes if stops keep the loops from becoming flat. A simulation, or a design "
+        "with other ranges, has to check this itself: after a flat posture the hand may tilt.",
     )
     d.erratum(
         "initial-configuration",
-        r"A correct Jacobian does not verify the pose: $g_{st}(0)$ is neither printed nor tested",
+        r"A correct Jacobian does not verify the pose: $g_{st}(0)$ has to be checked too",
         Gravity.OMISSION,
         why=r"The Jacobian determines $g_{st}(\theta)$ up to a constant factor on its right: "
         r"$g_{st}(\theta) C$ has the same spatial Jacobian for every motion $C$. So $g_{st}(0)$ "

@@ -90,7 +90,7 @@ def errata(d: Derivation) -> None:
         r"that it has no rotation and the translation $q_5$ of eq. (5). Moreover, the velocity of "
         r"the test does not contain $l_2$ and $l_5$.",
         use="Eq. (13) is right. A reader who tests code in the way of section V would not notice a "
-        "wrong height or a wrongly mounted tool.",
+        "wrong height or a wrong orientation of the tool.",
     )
     d.erratum(
         "figure-5",

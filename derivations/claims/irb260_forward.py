@@ -75,7 +75,7 @@ def forward(d: Derivation, arm: Palletiser) -> None:
     """Eqs. (1) to (13)."""
     d.erratum(
         "revolute-only",
-        "Eqs. (7) to (10) are written for all twists, but hold for revolute joints only",
+        "Eqs. (9) and (10) leave out sliding joints and axes that are not unit vectors",
         Gravity.OMISSION,
         why=r"Eq. (7) admits every $v$ and every $\hat{\omega}$. The $v = -\omega \times q$ that "
         r"follows is that of a joint without pitch, and eq. (10) is the exponential only if "

@@ -84,6 +84,7 @@ from closedform.model.functions import choose as choose
 from closedform.model.functions import real as real
 from closedform.model.functions import sign_of as sign_of
 from closedform.model.functions import used_up as used_up
+from closedform.model.indexed import Indexed as Indexed
 from closedform.model.lemma import Lemma as Lemma
 from closedform.model.notation import SIGN as SIGN
 from closedform.model.notation import Notation as Notation

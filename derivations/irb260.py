@@ -370,6 +370,7 @@ state(
         moves,
         free,
         links,
+        simplest(sp.prod(links)),
         pose,
         twists,
         moved,

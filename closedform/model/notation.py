@@ -155,6 +155,8 @@ class Notation:
 
     def match(self, read: Sequence[Token], at: int) -> tuple[int, str, Any] | None:
         """The longest name that begins at a token: its length, its text and its meaning."""
+        if at >= len(read):
+            return None
         for key, name, meaning in self._names.get(read[at].text, ()):
             if len(key) <= len(read) - at and all(
                 read[at + k].text == part for k, part in enumerate(key)

@@ -1,285 +1,467 @@
-"""Claims of Shi, Zhu and Li about the double parallelogram and the IRB 260."""
+"""Claims of Shi, Zhu and Li about the double parallelogram of the IRB 260 and its virtual joint."""
 
 from functools import partial
 
 import sympy as sp
-from closedform.derivations.claims.irb260_equations import Palletiser, equations, symbols
+from closedform.derivations.claims.irb260_arm import (
+    ABSTRACT,
+    ASSEMBLY,
+    BACKGROUND,
+    MODELING,
+    VERTICAL,
+    Palletiser,
+    euler_angles,
+    stated,
+    vector,
+)
+from closedform.derivations.claims.irb260_equivalence import (
+    EQUIVALENT,
+    equivalent_readings,
+    same_pose,
+    valid_readings,
+)
+from closedform.derivations.claims.irb260_forward import forward, names
+from closedform.derivations.claims.irb260_jacobian import jacobian
+from closedform.derivations.claims.irb260_verification import conclusions, verification
 from sympy import cos, pi, sin
 
 from closedform import (
+    Agree,
     Count,
     Derivation,
     Enumeration,
     Every,
+    Gravity,
     Identity,
-    Refuted,
+    Not,
+    Reading,
     Undecidable,
     Under,
+    hat,
     homogeneous,
     inverse,
     real,
     rotation,
+    twist_matrix,
     twist_of,
 )
+
+CAPTIONS = {
+    4: "Simplified structure of IRB260",
+    5: "A revolute joint",
+    6: "Final simplified structure as an open-chain mechanism",
+}
 
 
 def state(d: Derivation, arm: Palletiser) -> None:
     """Transcribe all claims, in the order of the paper."""
-    mechanism(d, arm)
-    equations(d, arm)
+    errata(d)
+    introduction(d, arm)
+    linkages(d, arm)
+    modeling(d, arm)
+    virtual_joint(d, arm)
+    forward(d, arm)
+    jacobian(d, arm)
     verification(d, arm)
-    values(d)
+    conclusions(d, arm)
 
 
-def mechanism(d: Derivation, arm: Palletiser) -> None:
-    """The double parallelogram and the virtual joint."""
-    _, theta2, theta3, theta4, theta5 = arm.thetas
-    R, sigma = arm.pose[:3, :3], real("sigma")
-    z = sp.Matrix([0, 0, 1])
-    loops = {"lower loop": arm.lower, "upper loop": arm.upper}
-    turns = {name: next(iter(loop.solution)) for name, loop in loops.items()}
-    parallel = {name: loops[name][turn].subs(sigma, 1) for name, turn in turns.items()}
-    bracket = sum(parallel.values())
-    crank = real("crank")  # the angle of the upper arm against the plate
-    plate = turns["lower loop"]
-    upper = [e.subs(theta2, crank - theta3 - pi / 2 + plate) for e in arm.upper.equations]
-    d.claim(
+def errata(d: Derivation) -> None:
+    """What the paper leaves out about the mechanism and its test, and a wrong reference."""
+    d.erratum(
+        "assembly",
+        "Where the parallelograms may become flat is not said",
+        Gravity.OMISSION,
+        why="A loop with equal opposite sides has two assemblies: the parallelogram, whose coupler "
+        "does not turn, and the antiparallelogram, whose coupler does. It can change from one to "
+        r"the other where it is flat. The virtual constraint $\theta_4 = -(\theta_2 + \theta_3)$ "
+        "and all that follows hold in the first only; the paper gives no ranges of the angles that "
+        "keep the loops from becoming flat.",
+        use="Nothing changes if stops keep the loops from becoming flat. A simulation, or a design "
+        "with other ranges, has to check this itself: after a flat posture the hand may tilt.",
+    )
+    d.erratum(
+        "initial-configuration",
+        r"A correct Jacobian does not verify the pose: $g_{st}(0)$ has to be checked too",
+        Gravity.OMISSION,
+        why=r"The Jacobian determines $g_{st}(\theta)$ up to a constant factor on its right: "
+        r"$g_{st}(\theta) C$ has the same spatial Jacobian for every motion $C$. So $g_{st}(0)$ "
+        r"has to be checked by itself. The paper does not print it; eq. (13) at $\theta = 0$ shows "
+        r"that it has no rotation and the translation $q_5$ of eq. (5). Moreover, the velocity of "
+        r"the test does not contain $l_2$ and $l_5$.",
+        use="Eq. (13) is right. A reader who tests code in the way of section V would not notice a "
+        "wrong height or a wrong orientation of the tool.",
+    )
+    d.erratum(
+        "figure-5",
+        "The virtual motor is said to be in Fig. 5, which shows a revolute joint",
+        Gravity.MISPRINT,
+        why="The caption of Fig. 5 is “A revolute joint”. The robot without its linkage is in Fig. "
+        "6, whose caption is “Final simplified structure as an open-chain mechanism”.",
+        use="Look at Fig. 6.",
+    )
+
+
+def introduction(d: Derivation, arm: Palletiser) -> None:
+    """The abstract and section I."""
+    claim = partial(d.claim, where=ABSTRACT)
+    claim(
         "two four-bar mechanisms",
         "“This manipulator includes two parallel four-bar mechanisms that make the kinematics and "
         "dynamic analysis complicated.”",
-        Undecidable(
-            "a statement about the machine, not about its kinematics; if motor 3 is on the turret, "
-            "a third parallelogram drives the upper arm"
-        ),
-        where="Abstract",
+        lambda: Undecidable("what the machine has is taken from the drawings of the paper; whether "
+                            "that is complicated is a judgement of value"),
+        fixed="a drawing and a judgement",
+    )  # fmt: skip
+    claim(
+        "equivalent, abstract",
+        "“This method has created the virtual open-chain manipulator that is {equivalent} to the "
+        "hybrid manipulator.”",
+        readings=equivalent_readings(arm),
+        phrases=[EQUIVALENT],
+        erratum="assembly",
     )
-    claim = partial(d.claim, where="II. Background")
+    claim(
+        "correct kinematics",
+        "“The simulation results show that this new method results in the {correct} kinematics of "
+        "this hybrid manipulator.”",
+        lambda holds: same_pose(arm, holds),
+        readings=valid_readings(arm),
+        phrases=[{"correct": True, "wrong": False}],
+        erratum="assembly",
+    )
+    claim = partial(d.claim, where="I. INTRODUCTION")
+    R, p = euler_angles("alpha"), vector("p")
+    g, twist = homogeneous(R, p), sp.Matrix([*vector("v"), *vector("w")])
+    angles = [real(f"alpha_{i}") for i in range(3)]
+    rates = sp.Matrix.hstack(*(twist_of(g.diff(a) * inverse(g))[3:, :] for a in angles))
+    w, full = vector("w"), {"w_x": 0, "w_y": 0, "w_z": 2 * pi}
+    at_full_turn = {s: full[s.name] for s in w}
+    size = sp.sqrt(w.dot(w))
+    turn = sp.eye(3) + hat(w) * sin(size) / size + hat(w) ** 2 * (1 - cos(size)) / size**2
+    claim(
+        "avoid singularities",
+        "“One is to {avoid} the singularities introduced by analysis.”",
+        phrases=[{"avoid": True, "have": False}],
+        readings=[
+            Reading(
+                "twists describe the velocity at every pose, where Euler angles have singular "
+                "poses: from the velocity of a pose its twist follows",
+                check=lambda avoid: Every(
+                    {
+                        "twists": stated(
+                            avoid,
+                            Identity(twist_of(twist_matrix(twist) * g * inverse(g)), twist),
+                        ),
+                        "Euler angles, the angles of the pose at which their rates do not span "
+                        "the velocities": Identity(rates.det().subs(angles[1], 0), sp.S.Zero),
+                    }
+                ),
+            ),
+            Reading(
+                "the exponential coordinates of a pose have no singularities: a turn of the axis "
+                "moves a body that has made a full turn",
+                check=lambda avoid: stated(
+                    avoid,
+                    Not(
+                        Every(
+                            {
+                                "at a full turn the axis turns without a motion": Identity(
+                                    turn.diff(w[0]).subs(at_full_turn), sp.zeros(3)
+                                )
+                            }
+                        )
+                    ),
+                ),
+            ),
+        ],
+    )
+
+
+def linkages(d: Derivation, arm: Palletiser) -> None:
+    """Section II."""
+    claim = partial(d.claim, where=BACKGROUND)
+    crank, coupler, rocker, ground = (real(name, positive=True) for name in "abcg")
+    given, output, middle = real("theta"), real("phi"), real("psi")
+    four_bar = [
+        crank * f(given) + coupler * f(middle) - rocker * f(output) - ground * f(sp.S.Zero)
+        for f in (cos, sin)
+    ]
+    claim(
+        "four-bar linkage",
+        "“The four-bar linkage is a mechanism such that the input link and output link satisfy "
+        "{a given functional relationship}, therefore creating a type of mechanical computer”",
+        lambda related: stated(related, Not(Count(four_bar, (output, middle), None))),
+        phrases=[{"a given functional relationship": True, "no relationship": False}],
+        readings=[
+            Reading(
+                "the angles of input and output satisfy an equation: each input leaves finitely "
+                "many outputs, one in each assembly"
+            )
+        ],
+    )
+    claim(
+        "two mechanisms of the robot",
+        "“In this robot, there are two parallel four-bar mechanisms forming a double four-bar "
+        'mechanism. The coupler of the lower one is the "ground frame" of the upper one.”',
+        lambda: Undecidable("taken from the drawing, Fig. 3; the derivation starts from it"),
+        fixed="a drawing",
+    )
+    turn, _ = arm.lower.solution
+    sigma, angle = real("sigma"), arm.thetas[1]
     claim(
         "planar translation",
-        "“Since the four links constitutes a parallelogram and one link is fixed, the coupler can "
-        "only achieve the planar translation no matter the angle that the input link rotates.”",
-        Every(
+        "“Since the four links constitutes {a parallelogram} and one link is fixed, the coupler "
+        "can {only achieve the planar translation} no matter the angle that the input link "
+        "rotates.”",
+        lambda assembly, moving: Every(
             {
-                "the loop is closed by a coupler that does not turn": Identity(
-                    [e.subs(arm.lower.solution).subs(sigma, 1) for e in arm.lower.equations]
-                    + [parallel["lower loop"]],
-                    [0, 0, 0],
+                "the loop is closed": Identity(
+                    sp.Matrix(arm.lower.equations).subs(arm.lower.solution).subs(sigma, assembly),
+                    sp.zeros(2, 1),
                 ),
-                "the other assembly is the antiparallelogram": Count(
-                    arm.lower.equations, tuple(arm.lower.solution), 2
-                ),
+                "the coupler": Identity(arm.lower[turn].subs(sigma, assembly).diff(angle), moving),
             }
         ),
+        phrases=[
+            {"a parallelogram": 1, "an antiparallelogram": -1},
+            {"only achieve the planar translation": 0, "only turn with the input link": 1},
+        ],
+        readings=[
+            Reading(
+                "the links form a parallelogram, as the sentence says, in all postures; a planar "
+                "translation is a motion in the plane without rotation"
+            ),
+            Reading(
+                "for all assemblies of links whose opposite sides are equal",
+                check=lambda assembly, moving: Identity(
+                    arm.lower[turn].subs(sigma, -assembly).diff(angle), moving
+                ),
+            ),
+        ],
     )
+    theta1, *_, theta5 = arm.thetas
+    bracket = arm.linkage(arm.bracket())
     claim(
         "parallel translation",
-        "“Therefore the end-effector of the robot can only obtain the parallel translation.”",
-        Refuted(
-            Identity(
-                R.subs(dict.fromkeys(arm.actuated, 0) | {theta5: pi / 2}), rotation("z", pi / 2)
-            ),
-            "at theta5 = pi/2, all others 0, the hand is turned by a right angle about z",
-            r"$R = R_z(\theta_1 + \theta_5)$: the hand stays level and turns about the vertical",
-            Identity(R, rotation("z", arm.thetas[0] + theta5)),
+        "“Therefore the end-effector of the robot can {only obtain the parallel translation}.”",
+        lambda translates: stated(
+            translates, Identity(bracket[:3, :3].subs({theta1: 0, theta5: 0}), sp.eye(3))
         ),
+        phrases=[{"only obtain the parallel translation": True, "also obtain a rotation": False}],
+        readings=[
+            Reading(
+                "by the double four-bar mechanism, of which the paragraph speaks: the axes 1 and 5 "
+                "are at rest, as the paper says later that they can be ignored temporarily"
+            ),
+            Reading(
+                "by all axes",
+                check=lambda translates: stated(translates, Identity(bracket[:3, :3], sp.eye(3))),
+            ),
+        ],
     )
-    claim(
-        "ground frame",
-        "“The coupler of the lower one is the “ground frame” of the upper one.”",
-        Undecidable("taken from a drawing, Fig. 3; the derivation starts from it"),
-    )
-    claim = partial(d.claim, where="III. Modeling")
-    free, reach, lift = symbols("turn", 1), symbols("a", 1), real("lift")
+
+
+def modeling(d: Derivation, arm: Palletiser) -> None:
+    """Section III, up to the virtual motor."""
+    claim = partial(d.claim, where=MODELING)
+    plate, rod = arm.lower.solution
+    second, other = arm.upper.solution
+    free, reach, lift = vector("turn"), vector("a"), real("lift")
     scara = sp.prod(
         homogeneous(rotation("z", angle), rotation("z", angle) * sp.Matrix([length, 0, h]))
         for angle, length, h in zip(free, reach, (0, 0, lift), strict=True)
     )
     claim(
         "not an open chain",
-        "“this robot is not an open-chain system because a rotation of the end-effector is "
-        "confined”",
-        Refuted(
-            Identity(scara[:3, 2], z),
-            "a SCARA arm is an open chain with three vertical axes and a vertical slide, and its "
-            "hand also stays level",
-            "it is not an open chain because its links close two loops: the arm has eight joints "
-            "between seven bodies, and an open chain has six",
-            Enumeration(2, loops_of_the_arm, "independent loops"),
+        "“As the description above, this robot is not an open-chain system because a rotation of "
+        "the end-effector is {confined}.”",
+        lambda confined: stated(
+            confined, Not(Count(loops_at_posture(arm), (plate, rod, second, other), None))
         ),
+        phrases=[{"confined": True, "free": False}],
+        readings=[
+            Reading(
+                "by closed loops, as the section before describes: the equations of the two loops "
+                "leave finitely many turns of the end-effector about the axis X, and an open chain "
+                "has no such equations"
+            ),
+            Reading(
+                "a robot whose end-effector cannot turn about all axes is not an open chain: a "
+                "SCARA arm, which is one, tilts its hand",
+                check=lambda confined: stated(
+                    confined,
+                    Not(Every({"its hand stays level": Identity(scara[:3, 2], VERTICAL)})),
+                ),
+            ),
+        ],
+    )
+    claim(
+        "challenging",
+        "“However, solving these equations under the constraints is challenging for this double "
+        "four-bar mechanism.”",
+        lambda: Undecidable(
+            "a judgement of difficulty; the derivation gives both assemblies of each loop in "
+            "closed form"
+        ),
+        fixed="a judgement",
     )
     claim(
         "four motors",
-        "“Note that there are four motor-driven joints in this robot.”",
-        Enumeration(
-            4,
-            lambda: arm.J_space.subs(dict.fromkeys(arm.actuated, 0)).rank(),
-            "independent twists at home",
-        ),
+        "“Note that there are {four} motor-driven joints in this robot.”",
+        lambda n: Enumeration(n, arm.freedoms, "freedoms of the closed linkage"),
+        readings=[Reading("one motor drives each freedom of the closed linkage")],
     )
     claim(
         "axes 1 and 5",
-        "“Since the axis 1 and 5 are only rotating along the z axis, so they can be ignored "
+        "“Since {the axis 1 and 5} are only rotating along the {z} axis, so they can be ignored "
         "temporarily.”",
-        Identity(
-            sp.Matrix.hstack(arm.moved[0][3:, :], arm.moved[4][3:, :]), sp.Matrix.hstack(z, z)
+        lambda rotations, axis: Every(
+            {
+                name: Identity(twist_of(arm.pose.diff(angle) * inverse(arm.pose))[3:, :], axis)
+                for name, angle in rotations.items()
+            }
         ),
+        phrases=[
+            {
+                "the axis 1 and 5": {"axis 1": arm.thetas[0], "axis 5": arm.thetas[4]},
+                "the axis 2 and 3": {"axis 2": arm.thetas[1], "axis 3": arm.thetas[2]},
+            },
+            {"z": VERTICAL, "x": sp.Matrix([1, 0, 0])},
+        ],
     )
+    turned = arm.linkage(arm.bracket())[:3, :3]
     claim(
         "rotation along X",
-        "“Due to the existing double four-bar mechanism, the axis 2 and 3 can not affect the "
+        "“Due to the existing double four-bar mechanism, the axis 2 and 3 can {not affect} the "
         "rotation of the end-effector along the X axis.”",
-        Identity([*R.diff(theta2), *R.diff(theta3)], [0] * 18),
+        lambda rests: stated(
+            rests,
+            Identity([*turned.diff(arm.thetas[1]), *turned.diff(arm.thetas[2])], [0] * 18),
+        ),
+        phrases=[{"not affect": True, "affect": False}],
     )
+    theta4 = arm.thetas[3]
     claim(
         "joint 4",
-        "“It is noticed that the join 4 is not driven by any motor. However, it can rotate a "
-        "special angle to make the end-effector keep horizontal due to the parallel mechanism.”",
-        Count(list(arm.free[:3, :3] * z - z), (theta4,), 1),
+        "“It is noticed that the join 4 is {not driven by any motor}. However, it can rotate "
+        "{a special angle} to make the end-effector keep {horizontal} due to the parallel "
+        "mechanism.”",
+        lambda passive, n, normal: Every(
+            {
+                "it needs no motor": Enumeration(
+                    passive,
+                    lambda: bool(arm.driving_sets()),
+                    "the rates of others determine its own",
+                ),
+                "its angle": Count(list(arm.free[:3, :3] * normal - VERTICAL), (theta4,), n),
+            }
+        ),
+        phrases=[
+            {"not driven by any motor": True, "driven by a motor": False},
+            {"a special angle": 1, "any angle": None},
+            {"horizontal": VERTICAL, "upright": sp.Matrix([0, 1, 0])},
+        ],
+    )
+
+
+def loops_at_posture(arm: Palletiser) -> list[sp.Expr]:
+    """The equations of both loops at a posture and with unequal dimensions."""
+    plate, rod = arm.lower.solution
+    second, other = arm.upper.solution
+    equations = [*arm.lower.equations, *arm.upper.equations]
+    unknown = {plate, rod, second, other}
+    known = sorted({s for e in equations for s in e.free_symbols} - unknown, key=str)
+    angles = {s: 0 for s in known if not s.is_positive}
+    angles |= {arm.thetas[1]: pi / 2, arm.thetas[2]: -pi / 2}
+    sizes = {s: sp.Integer(2 + k) for k, s in enumerate(s for s in known if s.is_positive)}
+    return [e.subs(angles | sizes) for e in equations]
+
+
+def virtual_joint(d: Derivation, arm: Palletiser) -> None:
+    """Section III, the virtual motor."""
+    claim = partial(d.claim, where=MODELING)
+    _, theta2, theta3, *_ = arm.thetas
+    claim(
+        "Fig. 5",
+        "“Let us image that we delete the double four-bar system but add a virtual motor for "
+        "actuating the join 4, as shown in Fig. {5}.”",
+        lambda printed: Agree(
+            sp.Integer(printed),
+            sp.Integer(next(k for k, caption in CAPTIONS.items() if "open-chain" in caption)),
+            ("the number of the figure", "the figure of the open chain, by its caption,"),
+        ),
+        phrases=[{str(k): k for k in CAPTIONS}],
+        corrected="“Let us image that we delete the double four-bar system but add a virtual motor "
+        "for actuating the join 4, as shown in Fig. {6}.”",
+        erratum="figure-5",
     )
     claim(
         "virtual constraint",
-        r"“this virtual motor always rotates the same amount of the angle as the summation of "
-        r"rotation angles of the joint 2 and joint 3 but in an opposite direction, i.e., "
-        r"$\theta_4 = -(\theta_2 + \theta_3)$”",
-        Under(
-            Every(
-                {
-                    "two parallelograms": Identity(bracket - theta2 - theta3, -(theta2 + theta3)),
-                    "it keeps the hand level": Identity(arm.couple(arm.free)[:3, 2], z),
-                    "assemblies of the lower loop": Count(
-                        arm.lower.equations, tuple(arm.lower.solution), 2
-                    ),
-                    "assemblies of the upper loop": Count(upper, tuple(arm.upper.solution), 2),
-                }
+        r"“It is assumed that this virtual motor always rotates the same amount of the angle as "
+        r"the summation of rotation angles of the joint 2 and joint 3 but in an opposite "
+        r"direction, i.e., $\theta_4 = -(\theta_2 + \theta_3)$.”",
+        notation=names(arm),
+        means={r"\theta_4": arm.bracket() - theta2 - theta3},
+        readings=[
+            Reading(
+                "the two loops are parallelograms",
+                check=lambda f: Under(Identity(f.left, f.right), ASSEMBLY),
             ),
-            "both loops are assembled as parallelograms; each has one other assembly, the "
-            "antiparallelogram, which it can enter when it is flat",
-        ),
+            Reading(
+                "the lower loop may be crossed",
+                means={r"\theta_4": arm.bracket(lower=-1) - theta2 - theta3},
+                check=lambda f: Identity([cos(f.left), sin(f.left)], [cos(f.right), sin(f.right)]),
+            ),
+        ],
+        erratum="assembly",
     )
-    across = sp.Matrix([-cos(arm.thetas[0]), -sin(arm.thetas[0]), 0])
+    spun = arm.moves[1] * arm.moves[2]
+    across = sp.Matrix([1, 0, 0])
     claim(
         "axis X",
-        "“the virtual motor can counteract the rotation that the motor 2 and motor 3 give along "
-        "the axis X”",
-        Refuted(
-            Identity(arm.moved[1][3:, :].subs(arm.thetas[0], pi / 2), sp.Matrix([0, -1, 0])),
-            "the axes turn with the turret; at theta1 = pi/2 the axis of joint 2 is along -y",
-            r"the rotation is about $-(\cos\theta_1, \sin\theta_1, 0)$, the axis X of the turret",
-            Identity(sp.Matrix.hstack(*(arm.moved[i][3:, :] for i in (1, 2, 3))),
-                     sp.Matrix.hstack(*[across] * 3))
-        )
-    )  # fmt: skip
-    claim(
-        "equivalent open chain",
-        "“Instead the robot mechanism is transformed to an equivalent open-chain loop with five "
-        "axes as shown in Fig. 4.”",
-        Every(
+        "“This assumption is reasonable because in this case the virtual motor can {counteract} "
+        "the rotation that [...] the motor 2 and motor 3 give along the axis {X} such that the "
+        "motion of the end-effector can also keep horizontal.”",
+        lambda sign, axis: Every(
             {
-                "axes of the chain": Enumeration(5, lambda: len(arm.moves), "joints"),
-                "its wrist bracket turns like that of the loops": Identity(
-                    arm.couple(arm.moves[1] * arm.moves[2] * arm.moves[3])[:3, :3],
-                    rotation("x", -bracket),
+                "the axis of motors 2 and 3": Identity(spun[:3, :3] * axis, axis),
+                "the rotation that is left": Identity(
+                    spun[:3, :3] * arm.couple(arm.moves[3])[:3, :3] ** sign, sp.eye(3)
                 ),
             }
         ),
-    )
-
-
-def loops_of_the_arm() -> int:
-    """The number of joints of the double parallelogram beyond those of a tree of its bodies."""
-    joints = [
-        ("turret", "lower arm"), ("turret", "lower rod"), ("plate", "lower arm"),
-        ("plate", "lower rod"), ("lower arm", "upper arm"), ("plate", "upper rod"),
-        ("bracket", "upper arm"), ("bracket", "upper rod"),
-    ]  # fmt: skip
-    bodies = {body for joint in joints for body in joint}
-    return len(joints) - (len(bodies) - 1)
-
-
-def verification(d: Derivation, arm: Palletiser) -> None:
-    """Section V."""
-    claim = partial(d.claim, where="V. Verification")
-    offset, turn = symbols("h", 1), real("turn")
-    mounted = arm.pose * homogeneous(rotation("z", turn), offset)
-    at_home = dict.fromkeys(arm.actuated, 0)
-    same = Identity(
-        sp.Matrix.hstack(*(twist_of(mounted.diff(q) * inverse(mounted)) for q in arm.actuated)),
-        arm.J_space,
-    )
-    claim(
-        "checking the Jacobian",
-        "“If we can check that the Jacobian matrix is correct, all the kinematics problems talked "
-        "above can be verified.”",
-        Refuted(
-            Every(
-                {
-                    "a hand mounted elsewhere has the same spatial Jacobian": same,
-                    "and another pose": Identity((mounted - arm.pose)[:3, 3].subs(at_home), offset),
-                    "nor does the velocity of eq. (23) contain l2 and l5": Identity(
-                        [e.diff(s) for e in arm.velocity for s in arm.lengths[1::3]], [0] * 6
-                    ),
-                }
+        phrases=[{"counteract": 1, "double": -1}, {"X": across, "Y": sp.Matrix([0, 1, 0])}],
+        readings=[
+            Reading(
+                "the axis X of the turret; the paper ignores axis 1 at this place and draws the "
+                "robot at home"
             ),
-            "a derivative does not determine constants: another initial pose has the same "
-            "Jacobian, and the height z may be wrong by any constant",
-            r"a correct spatial Jacobian verifies the pose up to $g_{st}(0)$",
-            same,
-        ),
+            Reading(
+                "the axis X of the base, at all angles of the turret",
+                check=lambda _, axis: Identity(
+                    (arm.moves[0] * spun * inverse(arm.moves[0]))[:3, :3] * axis, axis
+                ),
+            ),
+        ],
     )
+    screws = sp.Matrix.hstack(*arm.twists)
     claim(
-        "omega5",
-        r"“$\omega_5 = 0$ (because it has no effect on the $v_{q_5}^s$)”",
-        Identity(arm.velocity.diff(arm.rates[3]), sp.zeros(3, 1)),
-    )
-    for label, printed, reason in (
-        (
-            "Fig. 7",
-            "“From this comparison it is obvious to see that two groups of curves are almost the "
-            "same, Fig. 7.”",
-            "curves in a figure, without dimensions or numbers; the calculated curves are derived "
-            "as a table, for the dimensions of public models",
-        ),
-        (
-            "Fig. 8",
-            "“Fig. 8 shows the subtle difference in the corresponding directions.”",
-            "a figure",
-        ),
-        (
-            "source of the errors",
-            "“These little errors are identified from the modeling or calculation approximation in "
-            "ADAMS® and MATLAB®.”",
-            "no number of either program is printed",
-        ),
-        (
-            "valid technique",
-            "“Hence it is concluded that the new proposed technique is valid for the hybrid "
-            "manipulator.”",
-            "an inference from the curves of a single path in two figures",
-        ),
-    ):
-        claim(label, printed, Undecidable(reason))
-
-
-def values(d: Derivation) -> None:
-    """Judgements of value."""
-    d.claim(
-        "challenging",
-        "“solving these equations under the constraints is challenging for this double four-bar "
-        "mechanism”",
-        Undecidable("a judgement of value; a lemma gives both solutions of each loop"),
-        where="III. Modeling",
-    )
-    d.claim(
-        "simpler",
-        "“The system can be changed into an equivalent open-chain mechanism with these "
-        "assumptions, and then everything becomes simpler to calculate.”",
-        Undecidable("a judgement of value"),
-        where="Conclusions",
-    )
-    d.claim(
-        "other mechanisms",
-        "“It can also be widely extended to other hybrid mechanisms, especially more-than-one "
-        "four-bar linkage.”",
-        Undecidable("the paper names no other mechanism"),
-        where="Conclusions",
+        "equivalent open chain",
+        "“Instead the robot mechanism is transformed to an {equivalent} open-chain loop with "
+        "{five} axes as shown in Fig. 4.”",
+        phrases=[EQUIVALENT],
+        readings=[
+            Reading(
+                reading.text,
+                check=lambda holds, n, check=reading.check: Every(
+                    {
+                        "the pose": check(holds),
+                        "its axes": Enumeration(n, lambda: screws.rank(), "independent twists"),
+                    }
+                ),
+            )
+            for reading in equivalent_readings(arm)
+        ],
+        erratum="assembly",
     )

@@ -5,8 +5,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
@@ -22,6 +22,7 @@ from closedform.model.claims import (
     Check,
     Verdict,
 )
+from closedform.model.indexed import Indexed, at_index
 from closedform.model.notation import SIGN, Relation
 from closedform.proof.checks.evidence import (
     Exact,
@@ -107,9 +108,9 @@ def _order(gap: Exact, small: sp.Symbol) -> tuple[Any, ...]:
 class Equal(Check):
     r"""All sides of a printed equation are equal, for all values of the symbols.
 
-    A formula with ``\pm`` states that each posture satisfies it with one of the signs.  ``on``
-    replaces symbols, for example by their values at a posture; ``defines`` is a side that only
-    names the others.
+    A formula with ``\pm`` states that each posture satisfies it with one of the signs.  A formula
+    with a free index states that it holds for each value of the index.  ``on`` replaces symbols,
+    for example by their values at a posture; ``defines`` is a side that only names the others.
     """
 
     relation: Relation | tuple[Relation, ...]
@@ -122,10 +123,12 @@ class Equal(Check):
         several = self.relation if isinstance(self.relation, tuple) else (self.relation,)
         if len(several) > 1:
             parts = (Equal(r, self.nonnegative, self.small, self.on, self.defines) for r in several)
-            return worst([part.judge() for part in parts])
+            return worst(part.judge() for part in parts)
         (relation,) = several
         if not relation.signs or set(relation.signs) != {"="}:
             raise ValueError(f"{' '.join(relation.texts)} is not an equation")
+        if indices := [s.indices for s in relation.sides if isinstance(s, Indexed)]:
+            return self._for_each(relation, indices[0])
         sides = [
             (self._on(side), text)
             for side, text in zip(relation.sides, relation.texts, strict=True)
@@ -134,7 +137,16 @@ class Equal(Check):
         if len(sides) < 2:
             raise ValueError(f"{' = '.join(relation.texts)} only defines a name")
         (first, name), *others = sides
-        return worst([self._compare(first, name, side, text) for side, text in others])
+        return worst(self._compare(first, name, side, text) for side, text in others)
+
+    def _for_each(self, relation: Relation, indices: Sequence[int]) -> Verdict:
+        """The first fault, if there is one: it is the simplest to check by hand."""
+        for k in indices:
+            here = replace(relation, sides=tuple(at_index(s, k) for s in relation.sides))
+            verdict = replace(self, relation=here).judge()
+            if verdict.kind != PROVED:
+                return Verdict(verdict.kind, (f"index {k}: ", *verdict.evidence))
+        return Verdict(PROVED)
 
     def _on(self, side: Exact) -> Exact:
         return side.subs(self.on, simultaneous=True) if self.on else side
@@ -212,9 +224,17 @@ _SEVERITY = (
 )  # fmt: skip
 
 
-def worst(verdicts: Sequence[Verdict]) -> Verdict:
-    """The worst of several verdicts; the first of several equally bad ones."""
-    return max(verdicts, key=lambda v: _SEVERITY.index(v.kind))
+def worst(verdicts: Iterable[Verdict]) -> Verdict:
+    """The worst of several verdicts; the first of several equally bad ones.
+
+    Nothing is worse than a refutation, so what follows one is not computed.
+    """
+    found = []
+    for verdict in verdicts:
+        found.append(verdict)
+        if verdict.kind == REFUTED:
+            break
+    return max(found, key=lambda v: _SEVERITY.index(v.kind))
 
 
 @dataclass(frozen=True)

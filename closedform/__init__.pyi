@@ -91,6 +91,9 @@ from closedform.model.notation import Notation as Notation
 from closedform.model.notation import Relation as Relation
 from closedform.pipeline.run import find as find
 from closedform.pipeline.run import load as load
+from closedform.proof.checks.completeness import Cases as Cases
+from closedform.proof.checks.completeness import Listing as Listing
+from closedform.proof.checks.completeness import Replaces as Replaces
 from closedform.proof.checks.equations import Agree as Agree
 from closedform.proof.checks.equations import Equal as Equal
 from closedform.proof.checks.equations import Every as Every

@@ -1,7 +1,8 @@
 """The planar 2R arm of Reddy and Babu, by geometry and by Denavit-Hartenberg."""
 
 import sympy as sp
-from closedform.derivations.claims.planar_2r import Arm, state
+from closedform.derivations.claims.planar_2r import state
+from closedform.derivations.claims.planar_2r_notation import Arm
 from closedform.derivations.papers.reddy_babu import REDDY_BABU
 from sympy import atan2, cos, sin, sqrt
 

@@ -1,7 +1,8 @@
 """The spherical wrist of Reddy and Babu, by ZYZ Euler angles and by Denavit-Hartenberg."""
 
 import sympy as sp
-from closedform.derivations.claims.spherical_wrist import Wrist, state
+from closedform.derivations.claims.spherical_wrist import state
+from closedform.derivations.claims.spherical_wrist_notation import Wrist
 from closedform.derivations.papers.reddy_babu import REDDY_BABU
 from sympy import cos, sin
 

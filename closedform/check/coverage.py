@@ -1,7 +1,7 @@
 """Sets the text of a paper beside the claims that quote it: what is covered by neither?
 
 A passage is covered if a claim quotes it, or if the paper lists it as out of scope.  The comparison
-ignores spaces, and the kinds of quotation marks and dashes.
+ignores spaces, braces, and the kinds of quotation marks and dashes.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from closedform.model.derivation import Paper
 
 _SHORTEST_FRAGMENT = 4
 _SHORTEST_GAP = 12
-_IGNORED = re.compile(r"[\s$*#|\u200b]")
+_IGNORED = re.compile(r"[\s$*#|{}\u200b]")
 _NUMBER = re.compile(r"\\tag\{[^}]*\}")
 _ALIKE = str.maketrans({"’": "'", "‘": "'", "“": '"', "”": '"', "–": "-", "—": "-", "−": "-"})
 

@@ -223,7 +223,7 @@ class _Reader:
         while True:
             start = self.at
             sides.append(self.sum())
-            texts.append(self.text[self.tokens[start].start : self.tokens[self.at - 1].end])
+            texts.append(self.text[self.tokens[start].start : self.tokens[self.at - 1].after])
             if self.peek not in RELATIONS:
                 break
             self.note("relation")
@@ -326,7 +326,7 @@ class _Reader:
         first = self.tokens[self.at]
         self.at += length
         if not callable(meaning):
-            self.pieces.append(Piece("name", first.start, self.tokens[self.at - 1].end))
+            self.pieces.append(Piece("name", first.start, self.tokens[self.at - 1].after))
             return meaning
         return meaning(*self.arguments())
 

@@ -12,6 +12,13 @@ class Token(NamedTuple):
     text: str
     start: int
     end: int
+    closed: int = 0
+    """The end with the brace that was dropped after the piece, if there is one."""
+
+    @property
+    def after(self) -> int:
+        """The end of all that belongs to the piece."""
+        return self.closed or self.end
 
 
 SPACES = (
@@ -57,7 +64,7 @@ def _single(found: list[Token]) -> list[Token]:
             and found[k + 1].text == "{"
             and found[k + 3].text == "}"
         ):
-            done.append(found[k + 2])
+            done.append(found[k + 2]._replace(closed=found[k + 3].end))
             k += 3
         k += 1
     return done

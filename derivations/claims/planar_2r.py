@@ -1,97 +1,106 @@
-"""Claims of Reddy and Babu about the planar arm and the Denavit-Hartenberg convention."""
+"""Claims of Reddy and Babu about the planar arm by geometry, and what they conclude."""
 
+from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple
 
 import sympy as sp
-from sympy import atan2, cos, pi, sin, sqrt, tan
+from closedform.derivations.claims import planar_2r_convention
+from closedform.derivations.claims.planar_2r_notation import (
+    ANGLES,
+    IN_A,
+    IN_B,
+    LENGTHS,
+    RESULTS,
+    Arm,
+    example_of,
+    given,
+    lengths_of_example,
+    notation,
+    rounded_coordinate,
+)
+from sympy import atan2, cos, pi, sin
 
 from closedform import (
+    SIGN,
+    Check,
     Count,
     Derivation,
+    Enumeration,
     Equal,
     Every,
     Gravity,
+    Holds,
     Identity,
+    Listing,
     Notation,
+    Postures,
+    Procedure,
+    Reaches,
+    Reading,
+    Relation,
+    Replaces,
+    Rounded,
     Solves,
     Undecidable,
-    denavit_hartenberg,
-    exponential,
-    hat,
-    homogeneous,
-    prismatic_twist,
     real,
-    revolute_twist,
-    rotation,
 )
 
-DENAVIT_HARTENBERG = "Kinematic Analysis By Denavit – Hartenberg Convention"
-
-
-class Arm(NamedTuple):
-    """The results of the derivation; the paper's ``a_1``, ``a_2`` are its ``l_1``, ``l_2``."""
-
-    l1: sp.Symbol
-    l2: sp.Symbol
-    theta1: sp.Symbol
-    theta2: sp.Symbol
-    position: sp.Matrix
-    A1: sp.Matrix
-    A2: sp.Matrix
-    pose: sp.Matrix
-
-    def eq3(self, x: sp.Expr, y: sp.Expr, sign: int) -> sp.Expr:
-        """theta2 as printed, with the upper or the lower sign."""
-        D = (x**2 + y**2 - self.l1**2 - self.l2**2) / (2 * self.l1 * self.l2)
-        return atan2(sign * sqrt(1 - D**2), D)
-
-    def eq4(self, x: sp.Expr, y: sp.Expr, theta2: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-        """Numerator and denominator of tan(theta1) as printed."""
-        along, across = self.l2 * cos(theta2) + self.l1, self.l2 * sin(theta2)
-        return y * along - x * across, x * along + y * across
+GEOMETRY = "Kinematic Analysis By Geometric Approach"
+EQ3 = r"\theta_2 = a \tan 2(\pm\sqrt{1 - D^2}, D)"
+EQ4 = (
+    r"\tan(\beta - \alpha) = \frac{y(l_2 \cos \theta_2 + l_1) - x(l_2 \sin \theta_2)}"
+    r"{x(l_2 \cos \theta_2 + l_1) + y(l_2 \sin \theta_2)}"
+)
+SHOULDER = (
+    r"\theta_1 = a \tan 2(y(l_2 \cos \theta_2 + l_1) - x(l_2 \sin \theta_2), "
+    r"x(l_2 \cos \theta_2 + l_1) + y(l_2 \sin \theta_2))"
+)
 
 
 def state(d: Derivation, arm: Arm) -> None:
     """Transcribe all claims, in the order of the paper."""
-    geometry(d, arm)
+    known = notation(arm)
+    degrees_of_freedom(d, arm)
+    geometry(d, arm, known)
+    planar_2r_convention.state(d, arm, known)
+    results(d, arm, known)
+    planar_2r_convention.example(d, arm, known)
+    values(d, arm)
 
 
-def notation(arm: Arm) -> Notation:
-    """What the paper's names mean; its ``a_1`` and ``a_2`` are other names of the lengths."""
-    theta1, theta2 = arm.theta1, arm.theta2
-    return Notation(
-        {
-            r"\theta_1": theta1,
-            r"\theta_2": theta2,
-            "l_1": arm.l1,
-            "l_2": arm.l2,
-            "a_1": arm.l1,
-            "a_2": arm.l2,
-            "c_1": cos(theta1),
-            "s_1": sin(theta1),
-            "c_2": cos(theta2),
-            "s_2": sin(theta2),
-            "c_{12}": cos(theta1 + theta2),
-            "s_{12}": sin(theta1 + theta2),
-            r"a \tan 2": atan2,
-            r"\phi": atan2(arm.pose[1, 0], arm.pose[0, 0]),
-        }
+def degrees_of_freedom(d: Derivation, arm: Arm) -> None:
+    """What the abstract says about the arm."""
+    rates = arm.position.jacobian([arm.theta1, arm.theta2])
+    d.claim(
+        "degrees of freedom",
+        "“the kinematic analysis of a {2} – degrees of freedom (DOF) planar robot”",
+        lambda n: Enumeration(
+            n, rates.subs(arm.theta2, pi / 2).rank, "directions in which the joints move the hand"
+        ),
+        where="Abstract",
+        phrases=[{"2": 2, "3": 3}],
     )
 
 
-def geometry(d: Derivation, arm: Arm) -> None:
+def geometry(d: Derivation, arm: Arm, known: Notation) -> None:
     """Eqs. (1) to (5)."""
     l1, l2, theta1, theta2, position, _, A2, pose = arm
     x, y = position
     px, py = real("x"), real("y")
     seen = A2[:2, 3] + sp.Matrix([l1, 0])  # the hand from the base, along the first link
     at_posture = {"x": pose[0, 3], "y": pose[1, 3]}
-    where = "Kinematic Analysis By Geometric Approach"
-    claim = partial(d.claim, where=where, notation=notation(arm).extended(at_posture))
+    claim = partial(
+        d.claim, where=f"{GEOMETRY}, B. Inverse Kinematics", notation=known.extended(at_posture)
+    )
 
-    claim("eq. (1)", r"$x = l_1 \cos\theta_1 + l_2 \cos(\theta_1 + \theta_2)$")
-    claim("eq. (2)", r"$y = l_1 \sin\theta_1 + l_2 \sin(\theta_1 + \theta_2)$")
+    forward = partial(claim, where=f"{GEOMETRY}, A. Forward Kinematics")
+    forward(
+        "eq. (1)",
+        "“From the Fig.1, the position of the end effector can be written in terms of the joint "
+        r"coordinates in the following way [...] $x = l_1 \cos\theta_1 + l_2 \cos(\theta_1 + "
+        r"\theta_2)$”",
+    )
+    forward("eq. (2)", r"$y = l_1 \sin\theta_1 + l_2 \sin(\theta_1 + \theta_2)$")
     bend = real("b")
     above = (x * l1 * sin(theta1) - y * l1 * cos(theta1)).subs(theta2, -bend)
     claim(
@@ -101,30 +110,74 @@ def geometry(d: Derivation, arm: Arm) -> None:
         lambda n, elbow: Every(
             {
                 "their number": Count((x - px, y - py), (theta1, theta2), n),
-                "the elbow is above the line to the hand if theta2 < 0": Identity(
+                r"the elbow is above the line to the hand if $\theta_2 < 0$": Identity(
                     above, elbow * l1 * l2 * sin(bend)
                 ),
             }
         ),
         phrases=[{"elbow up": 1, "elbow down": -1}],
     )
-    at_distance = {l1: sp.Integer(10), l2: sp.Integer(8)}
+    d.erratum(
+        "folded",
+        "The folded arm is missing among the positions with one solution",
+        Gravity.OMISSION,
+        why="The two elbow configurations coincide if $\\sin\\theta_2 = 0$: at $\\theta_2 = 0$, on "
+        "the outer boundary of the workspace, and at $\\theta_2 = 180^\\circ$, on the inner one at "
+        "the distance $|l_1 - l_2|$ from the base.  The arm of the example is folded at $(2, 0)$, "
+        "where only $\\theta_1 = 0, \\theta_2 = 180^\\circ$ is a solution.",
+        use="No formula of the paper changes.  A program that expects two solutions everywhere "
+        "inside full reach finds one on the inner boundary; if $l_1 = l_2$, this boundary is the "
+        "base, and there are infinitely many.",
+    )
+    one_solution = (
+        "“or there may be {exactly one} solution if the manipulator must be {%s} to reach the "
+        "point”"
+    )
     claim(
         "one solution",
-        "“or there may be {exactly one} solution if the manipulator must be {fully extended} to "
-        "reach the point”",
-        lambda n, r: Count([e.subs(at_distance) for e in (x - r, y)], (theta1, theta2), n),
-        phrases=[{"exactly one": 1, "two": 2}, {"fully extended": 18, "half extended": 9}],
+        one_solution % "fully extended",
+        where_solutions_coincide(arm),
+        phrases=[
+            {"exactly one": 1, "two": 2},
+            {
+                "fully extended": (sp.Integer(0),),
+                "fully extended or folded": (sp.Integer(0), pi),
+                "half extended": (pi / 2,),
+            },
+        ],
+        corrected=one_solution % "fully extended or folded",
+        erratum="folded",
+        readings=[
+            Reading(
+                "the sentence lists the cases: two solutions, exactly one, infinitely many, each "
+                "with its condition",
+            ),
+            Reading(
+                "full extension is only an example of a position with one solution",
+                check=lambda n, bends: Enumeration(
+                    [n] * len(bends),
+                    lambda: [number_of_solutions(arm, b) for b in bends],
+                    "number of solutions",
+                ),
+            ),
+        ],
     )
     claim(
         "infinitely many solutions",
         "“There may even be an {infinite} number of solutions in some cases.”",
-        lambda n: Count([e.subs({l1: 1, l2: 1}) for e in (x, y)], (theta1, theta2), n),
+        lambda n: Every(
+            {
+                "if the links are equal and the hand is on the base": Count(
+                    [e.subs({l1: 1, l2: 1}) for e in (x, y)], (theta1, theta2), n
+                )
+            }
+        ),
     )
     D = (px**2 + py**2 - l1**2 - l2**2) / (2 * l1 * l2)
     claim(
         "cos θ2, before eq. (3)",
-        r"$\cos\theta_2 = \frac{x^2 + y^2 - l_1^2 - l_2^2}{2l_1l_2} = D$",
+        "“From the Fig. 3, using the law of cosines we see that the angle θ_2 is given by "
+        r"$\cos\theta_2 = \frac{x^2 + y^2 - l_1^2 - l_2^2}{2l_1l_2} = D$”",
         lambda formula: Equal(formula, defines=D),
         means={"D": D},
     )
@@ -135,7 +188,7 @@ def geometry(d: Derivation, arm: Arm) -> None:
     )
     claim(
         "eq. (3)",
-        r"$\theta_2 = a \tan 2(\pm\sqrt{1 - D^2}, D)$",
+        f"“hence, θ_2 can be found by ${EQ3}$”",
         lambda formula: Solves(
             {formula.left: formula.right},
             [l1**2 + l2**2 + 2 * l1 * l2 * cos(theta2) - px**2 - py**2],
@@ -144,12 +197,7 @@ def geometry(d: Derivation, arm: Arm) -> None:
     )
     alpha, beta = atan2(seen[1], seen[0]), atan2(y, x)
     angles = {r"\alpha": alpha, r"\beta": beta}
-    claim(
-        "θ1, before eq. (4)",
-        r"$(\beta - \alpha) = \theta_1$",
-        lambda f: Identity([cos(f.left), sin(f.left)], [cos(f.right), sin(f.right)]),
-        means=angles,
-    )
+    claim("θ1, before eq. (4)", r"$(\beta - \alpha) = \theta_1$", same_direction, means=angles)
     d.erratum(
         "tan-alpha",
         "The tangent of the angle at the base has a cosine instead of a sine",
@@ -167,323 +215,291 @@ def geometry(d: Derivation, arm: Arm) -> None:
         erratum="tan-alpha",
     )
     claim("tan β, before eq. (4)", r"$\tan \beta = \frac{y}{x}$", means=angles)
+    claim("eq. (4)", f"${EQ4}$", means=angles)
     claim(
-        "eq. (4)",
-        r"$\tan(\beta - \alpha) = \frac{y(l_2 \cos \theta_2 + l_1) - x(l_2 \sin \theta_2)}"
-        r"{x(l_2 \cos \theta_2 + l_1) + y(l_2 \sin \theta_2)}$",
-        means=angles,
-    )
-    claim(
-        "eq. (5)",
-        r"$\phi = \theta_1 + \theta_2$",
-        lambda f: Identity([cos(f.left), sin(f.left)], [cos(f.right), sin(f.right)]),
-    )
+        "eq. (5)", r"“The orientation of a 2R robot is, $\phi = \theta_1 + \theta_2$”",
+        same_direction,
+    )  # fmt: skip
 
 
-def convention(d: Derivation) -> None:
-    """Eqs. (6) and (7), for any arm."""
-    claim = partial(d.claim, where=DENAVIT_HARTENBERG)
-    a, alpha, offset, theta = real("a_i"), real("alpha_i"), real("d_i"), real("theta_i")
-    ca, sa, ct, st = cos(alpha), sin(alpha), cos(theta), sin(theta)
-    A = denavit_hartenberg(a, alpha, offset, theta)
-    turn, shift = A[:3, :3], A[:3, 3]
-    x_axis, z_axis, origin = sp.Matrix([1, 0, 0]), sp.Matrix([0, 0, 1]), sp.zeros(3, 1)
-
-    claim(
-        "four movements, before eq. (6)",
-        r"${}^{i-1}A_i = Rot_{z,\theta_i} Trans_{z,d_i} Trans_{x,a_i} Rot_{x,\alpha_i}$",
-        Identity(
-            A,
-            exponential(revolute_twist(z_axis, origin), theta)
-            * exponential(prismatic_twist(z_axis), offset)
-            * exponential(prismatic_twist(x_axis), a)
-            * exponential(revolute_twist(x_axis, origin), alpha),
-        ),
-    )
-    claim(
-        "eq. (6)",
-        r"${}^{i-1}A_i = \begin{bmatrix} c\theta_i & -c\alpha_i s\theta_i & s\alpha_i s\theta_i "
-        r"& a_i c\theta_i \\ s\theta_i & c\theta_i c\alpha_i & -s\alpha_i c\theta_i & "
-        r"a_i s\theta_i \\ 0 & s\alpha_i & c\alpha_i & d_i \\ 0 & 0 & 0 & 1 \end{bmatrix}$",
-        Identity(
-            sp.Matrix(
-                [
-                    [ct, -ca * st, sa * st, a * ct],
-                    [st, ct * ca, -sa * ct, a * st],
-                    [0, sa, ca, offset],
-                    [0, 0, 0, 1],
-                ]
-            ),
-            A,
-        ),
-    )
-    R = sp.Matrix(3, 3, lambda i, j: real(f"R{i + 1}{j + 1}"))
-    p = sp.Matrix(3, 1, lambda i, _: real(f"p{i + 1}"))
-    claim(
-        "eq. (7)",
-        r"${}^0A_n = {}^0A_1 {}^1A_2 \dots {}^{n-1}A_n = \begin{bmatrix} {}^0R_n & {}^0p_n \\ "
-        r"0 & 1 \end{bmatrix}$",
-        Every(
-            {
-                "for one link": Identity(homogeneous(turn, shift), A),
-                "with one more link": Identity(
-                    homogeneous(R * turn, R * shift + p), homogeneous(R, p) * A
-                ),
-                "where R is a rotation": Identity(
-                    [*(turn * turn.T), *turn[:, 0].cross(turn[:, 1])], [*sp.eye(3), *turn[:, 2]]
-                ),
-            }
-        ),
-    )
-    point = sp.Matrix(3, 1, lambda i, _: real(f"v{i + 1}"))
-    claim(
-        "homogeneous transformation",
-        "“The combination of the spatial location and orientation of the end – effector (kinematic "
-        "attitudes) can be described mathematically by means of a homogeneous transformation (HT) "
-        "matrix.”",
-        Identity(homogeneous(R, p) * sp.Matrix([*point, 1]), sp.Matrix([*(R * point + p), 1])),
-        where="Abstract",
-    )
-    back = homogeneous(turn.T, -turn.T * shift)
-    claim(
-        "joint variables",
-        "“It must be observed that for prismatic joints $d_i$ is the joint variable and for "
-        "rotational joints, $\\theta_i$ is the joint variable.”",
-        Every(
-            {
-                "an offset slides along the joint axis": Identity(
-                    (A.diff(offset) * back)[:3, :], sp.Matrix.hstack(sp.zeros(3), z_axis)
-                ),
-                "an angle turns about the joint axis": Identity(
-                    (A.diff(theta) * back)[:3, :], sp.Matrix.hstack(hat(z_axis), origin)
-                ),
-            }
-        ),
-    )
-    L = [real(f"l{i}") for i in (1, 2, 3)]
-    t = [real(f"theta{i}") for i in (1, 2, 3)]
-    directions = [rotation("z", sum(t[: i + 1]))[:, 0] for i in range(3)]
-    claim(
-        "redundant arms",
-        "“D-H Convention method is also applicable to redundant robot arms”",
-        Identity(  # for example three parallel joints for a position in the plane
-            sp.prod(denavit_hartenberg(L[i], 0, 0, t[i]) for i in range(3))[:3, 3],
-            sum((L[i] * directions[i] for i in range(3)), origin),
-        ),
-        where="Conclusions",
-    )
+def same_direction(formula: Relation) -> Check:
+    """Two angles are equal up to full turns."""
+    left, right = formula.left, formula.right
+    return Identity([cos(left), sin(left)], [cos(right), sin(right)])
 
 
-def forward(d: Derivation, arm: Arm) -> None:
-    """Table I and eq. (8)."""
-    l1, l2, theta1, theta2, position, A1, A2, pose = arm
-    c1, s1, c2, s2 = cos(theta1), sin(theta1), cos(theta2), sin(theta2)
-    c12, s12 = cos(theta1 + theta2), sin(theta1 + theta2)
-    by_geometry = homogeneous(rotation("z", theta1 + theta2), (*position, 0))
-    claim = partial(d.claim, where=f"{DENAVIT_HARTENBERG}, A. Forward Kinematics")
-
-    claim(
-        "position and orientation",
-        "“${}^0p_n$ is the end-effector position, while its orientation is given by the rotation "
-        "matrix ${}^0R_n$, which can be used to obtain Euler angles or other representations.”",
-        Identity(pose, by_geometry),
-    )
-    table = ((l1, 0, 0, theta1), (l2, 0, 0, theta2))
-    claim(
-        "Table I",
-        r"$\begin{array}{ccccc} \text{Link} & a_i & \alpha_i & d_i & \theta_i \\ "
-        r"1 & a_1 & 0 & 0 & \theta_1 \\ 2 & a_2 & 0 & 0 & \theta_2 \end{array}$",
-        Identity(sp.prod(denavit_hartenberg(*row) for row in table), by_geometry),
-    )
-    claim(
-        "A1, before eq. (8)",
-        r"$A_1 = \begin{bmatrix} c_1 & -s_1 & 0 & a_1c_1 \\ s_1 & c_1 & 0 & a_1s_1 \\ "
-        r"0 & 0 & 1 & 0 \\ 0 & 0 & 0 & 1 \end{bmatrix}$",
-        Identity(
-            sp.Matrix([[c1, -s1, 0, l1 * c1], [s1, c1, 0, l1 * s1], [0, 0, 1, 0], [0, 0, 0, 1]]), A1
-        ),
-    )
-    claim(
-        "A2, before eq. (8)",
-        r"$A_2 = \begin{bmatrix} c_2 & -s_2 & 0 & a_2c_2 \\ s_2 & c_2 & 0 & a_2s_2 \\ "
-        r"0 & 0 & 1 & 0 \\ 0 & 0 & 0 & 1 \end{bmatrix}$",
-        Identity(
-            sp.Matrix([[c2, -s2, 0, l2 * c2], [s2, c2, 0, l2 * s2], [0, 0, 1, 0], [0, 0, 0, 1]]), A2
-        ),
-    )
-    claim(
-        "product, before eq. (8)",
-        r"$T_2^0 = A_1 * A_2$",
-        Identity(A1 * A2, by_geometry),
-    )
-    claim(
-        "eq. (8), with c12 = cos(θ1 + θ2)",
-        r"$T_2^0 = \begin{bmatrix} c_{12} & -s_{12} & 0 & a_1c_1 + a_2c_{12} \\ s_{12} & c_{12} & "
-        r"0 & a_1s_1 + a_2s_{12} \\ 0 & 0 & 1 & 0 \\ 0 & 0 & 0 & 1 \end{bmatrix}$",
-        Identity(
-            sp.Matrix(
-                [
-                    [c12, -s12, 0, l1 * c1 + l2 * c12],
-                    [s12, c12, 0, l1 * s1 + l2 * s12],
-                    [0, 0, 1, 0],
-                    [0, 0, 0, 1],
-                ]
-            ),
-            A1 * A2,
-        ),
-    )
-    claim(
-        "c12, after eq. (8)",
-        r"$c_{12} = c_1 + c_2$",
-        Identity(c1 + c2, (A1 * A2)[0, 0], corrected=c12),
-    )
+def number_of_solutions(arm: Arm, bend: sp.Expr) -> int | None:
+    """The number of postures that put the hand of the example arm where ``bend`` puts it."""
+    at_example = arm.position.subs(lengths_of_example(arm))
+    target = at_example.subs({arm.theta1: 0, arm.theta2: bend})
+    return Count(list(at_example - target), (arm.theta1, arm.theta2), None).found()
 
 
-def inverse(d: Derivation, arm: Arm) -> None:
-    """Eqs. (9) and (10)."""
-    l1, l2, theta1, theta2, _, A1, A2, pose = arm
-    c1, s1, c2, s2 = cos(theta1), sin(theta1), cos(theta2), sin(theta2)
-    claim = partial(d.claim, where=f"{DENAVIT_HARTENBERG}, B. Inverse Kinematics")
+def where_solutions_coincide(arm: Arm) -> Callable[[int, tuple[sp.Expr, ...]], Check]:
+    """Lists the elbow angles at which theta2 and -theta2, the roots of eq. (3), coincide."""
+    coincide = sp.solveset(sin(arm.theta2), arm.theta2, sp.Interval.Lopen(-pi, pi))
 
-    A1_inverse = sp.Matrix([[c1, s1, 0, -l1], [-s1, c1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
-    T = sp.Matrix.vstack(pose[:3, :], sp.Matrix([[0, 0, 1, 0]]))
+    def check(n: int, bends: tuple[sp.Expr, ...]) -> Check:
+        return Listing(
+            bends,
+            lambda: [b for b in sorted(coincide) if number_of_solutions(arm, b) == n],
+            f"elbow angles with {n} solution{'s' * (n > 1)}",
+            lambda bend: ({arm.theta2: bend},),
+        )
+
+    return check
+
+
+def results(d: Derivation, arm: Arm, known: Notation) -> None:
+    """The numerical example by geometry, and how the paper solves its inverse."""
+    example = example_of(arm)
+    claim = partial(
+        d.claim,
+        where=f"{RESULTS}, A. Result for 2-DOF planar robot by Geometric approach",
+        notation=known.extended({"x": real("x"), "y": real("y")}),
+    )
+
+    d.erratum(
+        "rounding",
+        "The last digits of the positions in the examples are wrong",
+        Gravity.RESULT,
+        why="The exact position is $x = 4 + 5\\sqrt{3} = 12.66025$, $y = 5 + 4\\sqrt{3} = "
+        "11.92820$.  In A, $x$ is cut instead of rounded.  In B, both values are too small by more "
+        "than one unit of the last digit, so they differ from those of A for the same arm at the "
+        "same angles.",
+        use="The hand is off by 0.0002 cm at most.  Both methods give the same position: the "
+        "different digits do not come from the methods.",
+    )
     claim(
-        "eq. (9), inverse of A1",
-        r"$A_1^{-1} = \begin{bmatrix} c_1 & s_1 & 0 & -a_1 \\ -s_1 & c_1 & 0 & 0 \\ 0 & 0 & 1 & 0 "
-        r"\\ 0 & 0 & 0 & 1 \end{bmatrix}$",
-        Identity(A1_inverse * A1, sp.eye(4)),
-    )
-    claim("product, before eq. (9)", r"$A_1^{-1} * T_2^0 = A_2$", Identity(A1_inverse * pose, A2))
-    claim(
-        "eq. (9), last row of T",
-        r"$T_2^0 = \begin{bmatrix} n_x & o_x & a_x & p_x \\ n_y & o_y & a_y & p_y \\ "
-        r"n_z & o_z & a_z & p_z \\ 0 & 0 & 1 & 0 \end{bmatrix}$",
-        Identity(T, pose),
+        "Results A, x",
+        f"${IN_A[0]}$",
+        lambda x: rounded_coordinate(arm, x, example),
+        corrected=r"$x = 12.6603 \text{ cm}$",
+        erratum="rounding",
     )
     claim(
-        "eq. (9)",
-        r"$\begin{bmatrix} c_1 & s_1 & 0 & -a_1 \\ -s_1 & c_1 & 0 & 0 \\ 0 & 0 & 1 & 0 \\ "
-        r"0 & 0 & 0 & 1 \end{bmatrix} \begin{bmatrix} n_x & o_x & a_x & p_x \\ "
-        r"n_y & o_y & a_y & p_y \\ n_z & o_z & a_z & p_z \\ 0 & 0 & 1 & 0 \end{bmatrix} = "
-        r"\begin{bmatrix} c_2 & -s_2 & 0 & a_2c_2 \\ s_2 & c_2 & 0 & a_2s_2 \\ 0 & 0 & 1 & 0 \\ "
-        r"0 & 0 & 0 & 1 \end{bmatrix}$",
-        Identity(A1_inverse * T, A2),
+        "Results A, y",
+        f"“Let us consider the link lengths and joint angles as follows ${LENGTHS}$ ${ANGLES}$ "
+        f"from eq. (1) and (2), we get forward kinematic solution as below [...] ${IN_A[1]}$”",
+        lambda lengths, angles, y: rounded_coordinate(arm, y, given(lengths, angles)),
     )
-    (nx, ox, ax, px), (ny, oy, ay, py) = pose[0, :], pose[1, :]
-    eq10 = (
-        (r"n_x c_1 + n_y s_1 = \cos \theta_2", nx * c1 + ny * s1, c2),
-        (r"o_x c_1 + o_y s_1 = -\sin \theta_2", ox * c1 + oy * s1, -s2),
-        (r"a_x c_1 + a_y s_1 = 0", ax * c1 + ay * s1, 0),
-        (r"p_x c_1 + p_y s_1 - a_1 = a_2 \cos \theta_2", px * c1 + py * s1 - l1, l2 * c2),
-        (r"-n_x s_1 + n_y c_1 = \sin \theta_2", -nx * s1 + ny * c1, s2),
-        (r"-o_x s_1 + o_y c_1 = \cos \theta_2", -ox * s1 + oy * c1, c2),
-        (r"-a_x s_1 + a_y c_1 = 0", -ax * s1 + ay * c1, 0),
-        (r"-p_x s_1 + p_y c_1 = a_2 \sin \theta_2", -px * s1 + py * c1, l2 * s2),
+    d.erratum(
+        "quadrant",
+        "Only the tangent of $\\theta_1$ is given, so its quadrant is open",
+        Gravity.OMISSION,
+        why="Eq. (4) is right, but $\\theta_1$ and $\\theta_1 + 180^\\circ$ have the same tangent. "
+        "So eqs. (3) and (4) together have four solutions, and two of them put the hand at "
+        "$(-x, -y)$.  The signs of the numerator and of the denominator decide, as they do in "
+        "eq. (3).",
+        use="A program that takes $\\theta_1 = \\tan^{-1}$ of the right side of (4) sends the "
+        "hand to the opposite side of the base whenever $\\cos\\theta_1 < 0$, for example for the "
+        "target $(-18, 0)$.",
     )
-    for line, (printed, left, right) in enumerate(eq10, 1):
-        claim(f"eq. (10), line {line}", f"${printed}$", Identity(left, right))
-    unknown1, unknown2 = real("unknown1"), real("unknown2")
-    seen = A1_inverse.subs(theta1, unknown1) * pose - A2.subs(theta2, unknown2)
-    claim(
-        "use of eq. (10)",
-        "“Eq. (10), can be used to get $\\theta_1$ and $\\theta_2$”",
-        Count(list(seen[:2, :]), (unknown1, unknown2), 1),
-    )
-
-
-def results(d: Derivation, arm: Arm) -> None:
-    """The numerical example, and the sentences about it."""
-    l1, l2, theta1, theta2, position, *_, pose = arm
-    px, py = real("px"), real("py")
-    given = {l1: sp.Integer(10), l2: sp.Integer(8)}
-    printed_angles = {theta1: pi / 6, theta2: pi / 6}
-    by_geometry, by_pose = position.subs(given), pose[:2, 3].subs(given)
-    x, y = target = by_geometry.subs(printed_angles)
-
-    def inverse(x: sp.Expr, y: sp.Expr, sign: int) -> dict[sp.Symbol, sp.Expr]:
-        bend = arm.eq3(x, y, sign)
-        return {theta1: atan2(*arm.eq4(x, y, bend)), theta2: bend}
-
-    claim = partial(d.claim, where="Results and Discussion, A")
-    claim("Results A, x", r"$x = 12.6602 \text{ cm}$", Decimal("12.6602", x, "cm"))
-    claim("Results A, y", r"$y = 11.9282 \text{ cm}$", Decimal("11.9282", y, "cm"))
     claim(
         "use of eqs. (3) and (4)",
-        "“The inverse kinematic solution can be obtained from eq. (3), (4)”",
-        Every(
-            {  # numerator and denominator give the quadrant, which the tangent does not
-                name: Identity(position.subs(inverse(px, py, sign)), sp.Matrix([px, py]))
-                for name, sign in (("elbow down", +1), ("elbow up", -1))
-            }
-        ),
+        "“The inverse kinematic solution can be obtained from {eq. (3), (4)}”",
+        partial(from_equations, arm),
+        phrases=[{"eq. (3), (4)": (EQ3, EQ4), "eq. (3)": (EQ3,)}],
+        corrected="“The inverse kinematic solution can be obtained from {eq. (3)} and "
+        f"${SHOULDER}$”",
+        erratum="quadrant",
+        readings=[
+            Reading(
+                "both are equations for the two angles, as printed; their solutions are counted "
+                "for the lengths of the example"
+            ),
+            Reading(
+                "the first angle is the arctangent of the right side of eq. (4)",
+                check=partial(by_arctangent, arm),
+            ),
+        ],
     )
-    bend = -pi / 6
-    elbow_up = {theta1: atan2(*(e.subs(given).expand() for e in arm.eq4(x, y, bend))), theta2: bend}
+    solutions(d, arm, claim)
+
+
+def target_of(arm: Arm) -> dict[sp.Symbol, sp.Expr]:
+    """The names of the position, with their values at a posture."""
+    return {real("x"): arm.position[0], real("y"): arm.position[1]}
+
+
+def elbow_equations(arm: Arm, first: sp.Expr) -> Notation:
+    """The notation of eqs. (3) and (4) for a position ``x, y``; ``first`` is beta - alpha."""
+    x, y = real("x"), real("y")
+    return notation(arm).extended(
+        {
+            "x": x,
+            "y": y,
+            "D": (x**2 + y**2 - arm.l1**2 - arm.l2**2) / (2 * arm.l1 * arm.l2),
+            r"\alpha": real("alpha"),
+            r"\beta": first + real("alpha"),
+        }
+    )
+
+
+def from_equations(arm: Arm, named: tuple[str, ...], *printed: Relation) -> Check:
+    """Whether equations, named or printed, determine both angles for a position."""
+    theta1, theta2 = arm.theta1, arm.theta2
+    known = elbow_equations(arm, theta1)
+    relations = [r for text in named for r in known.read(text)] + list(printed)
+    source = [e - name for name, e in target_of(arm).items()]
+    formulas = {r.left: r.right for r in relations}
+    if set(formulas) == {theta1, theta2}:
+        bend = formulas[theta2]
+        return Solves({theta1: formulas[theta1].subs(theta2, bend), theta2: bend}, source)
+    equations = [_equation(r, theta2) for r in relations]
+    example = lengths_of_example(arm)  # solutions are counted for these lengths alone
+    return Replaces(equations, source, (theta1, theta2), target_of(arm), example)
+
+
+def _equation(relation: Relation, bend: sp.Symbol) -> sp.Expr:
+    """An expression that vanishes where a relation holds, with either sign of the root in (3)."""
+    if relation.left == bend:
+        return cos(bend) - sp.simplify(cos(relation.right).subs(SIGN, 1))
+    return relation.left - relation.right
+
+
+def by_arctangent(arm: Arm, named: tuple[str, ...]) -> Check:
+    """Eq. (3), and the arctangent of the right side of eq. (4)."""
+    theta1, theta2 = arm.theta1, arm.theta2
+    known = elbow_equations(arm, theta1)
+    eq3, eq4 = (known.read(text)[0] for text in named)
+    target = target_of(arm)
+    return Procedure(
+        {theta2: eq3.right, theta1: sp.atan(eq4.right)},
+        target,
+        Postures(target, (theta1, theta2), lengths_of_example(arm)),
+    )
+
+
+def solutions(d: Derivation, arm: Arm, claim: partial[None]) -> None:
+    """The two solutions of the example, and its orientation."""
+    d.erratum(
+        "elbow-up",
+        "The elbow-up solution of the example is wrong",
+        Gravity.RESULT,
+        why="With both angles negative the arm is mirrored: its hand is at $(12.66, -11.93)$ "
+        "instead of $(12.66, 11.93)$.  Eq. (4), with $\\theta_2 = -30^\\circ$, gives "
+        "$\\theta_1 = 56.5894^\\circ$, so $\\phi = 26.5894^\\circ$.",
+        use="An arm that takes the printed angles misses the point by 23.9 cm.  The formulas of "
+        "the paper are not affected.",
+    )
+
+    def rounded(elbow: int, angles: tuple[Relation, ...]) -> Check:
+        exact = elbow_solution(arm, elbow)
+        at_example = arm.position.subs(lengths_of_example(arm))
+        return Every(
+            {
+                "the angles": Listing([r.left for r in angles], lambda: list(exact), "angles"),
+                "the exact ones": Reaches(at_example, exact, target),
+            }
+            | {f"${r.texts[0]}$": in_degrees(r, exact[r.left]) for r in angles}
+        )
+
+    target = arm.position.subs(example_of(arm))
+    phrases = [{"elbow up": -1, "elbow down": 1}]
     claim(
         "Results A, elbow up",
-        r"For elbow up, $\theta_2 = -30^\circ, \theta_1 = -30^\circ$",
-        Posture(by_geometry, {theta2: -pi / 6, theta1: -pi / 6}, target, elbow_up),
+        r"“For {elbow up}, $\theta_2 = -30^\circ, \theta_1 = -30^\circ$”",
+        rounded,
+        phrases=phrases,
+        corrected=r"“For {elbow up}, $\theta_2 = -30^\circ, \theta_1 = 56.5894^\circ$”",
+        erratum="elbow-up",
     )
     claim(
         "Results A, elbow down",
-        r"For elbow down, $\theta_2 = 30^\circ, \theta_1 = 30^\circ$",
-        Posture(by_geometry, {theta2: pi / 6, theta1: pi / 6}, target),
+        r"“For {elbow down}, $\theta_2 = 30^\circ, \theta_1 = 30^\circ$”",
+        rounded,
+        phrases=phrases,
+    )
+    orientation = (
+        r"“The orientation of the 2-DOF planar robot is obtained by using eq. (5) "
+        r"$\phi = \theta_1 + \theta_2$ $\phi = 60^\circ \text{ or } %s^\circ$”"
     )
     claim(
         "Results A, orientation",
-        r"$\phi = 60^\circ \text{ or } -60^\circ$",
-        Every(
+        orientation % "-60",
+        lambda eq5, printed: Every(
             {
-                "elbow down": Decimal("60", 2 * pi / 6 * 180 / pi, "degrees"),
-                "elbow up": Decimal("-60", sum(elbow_up.values()) * 180 / pi, "degrees"),
+                name: in_degrees(r, eq5.right.subs(elbow_solution(arm, elbow)))
+                for r, name, elbow in zip(printed, ("elbow down", "elbow up"), (1, -1), strict=True)
             }
         ),
-    )
-    claim = partial(d.claim, where="Results and Discussion, B")
-    x, y = by_pose.subs(printed_angles)
-    claim("Results B, x", r"$x = 12.6601 \text{ cm}$", Decimal("12.6601", x, "cm"))
-    claim("Results B, y", r"$y = 11.9281 \text{ cm}$", Decimal("11.9281", y, "cm"))
-    claim(
-        "Results B, inverse",
-        r"$\theta_2 = 30^\circ; \theta_1 = 30^\circ$",
-        Posture(by_pose, {theta2: pi / 6, theta1: pi / 6}, target),
+        corrected=orientation % "26.5894",
+        erratum="elbow-up",
     )
 
 
-def values(d: Derivation) -> None:
-    """Sentences that read like findings, and why they cannot be decided."""
-    claim = d.claim
+def in_degrees(relation: Relation, exact: sp.Expr) -> Check:
+    return Rounded(relation, exact, "degrees", pi / 180)
+
+
+def elbow_solution(arm: Arm, elbow: int) -> dict[sp.Symbol, sp.Expr]:
+    """The angles of the example (+1), or mirrored at the line to the hand (-1)."""
+    example = example_of(arm)
+    lead = atan2(arm.l2 * sin(arm.theta2), arm.l1 + arm.l2 * cos(arm.theta2)).subs(example)
+    return {
+        arm.theta2: elbow * example[arm.theta2],
+        arm.theta1: example[arm.theta1] + (1 - elbow) * lead,
+    }
+
+
+def values(d: Derivation, arm: Arm) -> None:
+    """Sentences that read like findings."""
+    claim = partial(d.claim, where=RESULTS)
+    value = "a judgement of value"
+    known = notation(arm).extended({"x": real("x"), "y": real("y")})
+    positions = [[known.read(text)[0] for text in texts] for texts in (IN_A, IN_B)]
     claim(
         "better results",
         "“From the above it is evident that D-H Convention method has yielded better results when "
         "compared to Geometric approach.”",
-        Undecidable("a judgement of value: the paper does not say what makes a result better"),
-        where="Results and Discussion",
+        lambda: Undecidable(f"{value}: the paper does not say what makes a result better"),
+        readings=[
+            Reading("better to work with, as the next sentence suggests"),
+            Reading(
+                "closer to the exact position of the example",
+                check=lambda: Holds(
+                    {
+                        f"{r_a.left} is closer in B": abs(r_b.right - exact)
+                        < abs(r_a.right - exact)
+                        for r_a, r_b, exact in zip(
+                            *positions, arm.position.subs(example_of(arm)), strict=True
+                        )
+                    }
+                ),
+            ),
+        ],
+        fixed="what is judged here has no measure",
     )
     claim(
         "without much difficulty",
-        "“the inverse kinematic solution of spatial robot (higher order DOF) can be obtained "
-        "without much difficulty by D-H convention method”",
-        Undecidable("a judgement of value: the paper names no robot and no measure of difficulty"),
-        where="Results and Discussion",
+        "“This is due to the fact that the inverse kinematic solution of spatial robot (higher "
+        "order DOF) can be obtained without much difficulty by D-H convention method.”",
+        lambda: Undecidable(f"{value}: the paper names no spatial robot and no measure"),
+        fixed="what is judged here has no measure",
     )
     claim(
         "much better",
         "“Among all the methods used, D-H Convention method is much better for analysis of a given "
         "robot manipulator and wrist combination.”",
-        Undecidable("a judgement of value"),
+        lambda: Undecidable(value),
         where="Conclusions",
+        fixed="what is judged here has no measure",
     )
     claim(
         "MATLAB, abstract",
-        "“The codes so developed were tested and verified with suitable numerical examples.”",
-        Undecidable("the paper prints no code and no record of a test"),
+        "“A computer based numerical tool called MATLAB was used in developing the algorithms for "
+        "analyzing kinematic attitudes of a robot and a wrist. The codes so developed were tested "
+        "and verified with suitable numerical examples.”",
+        lambda: Undecidable("the paper prints no code and no record of a test"),
         where="Abstract",
+        fixed="a report of work",
     )
     claim(
         "MATLAB, conclusions",
         "“The algorithms were developed using MATLAB to verify the accuracy of the solutions "
         "obtained.”",
-        Undecidable("the paper prints no algorithm and no accuracy"),
+        lambda: Undecidable("the paper prints no algorithm and no accuracy"),
         where="Conclusions",
+        fixed="a report of work",
     )

@@ -53,12 +53,12 @@ class Count(Check):
     given: Mapping[sp.Symbol, Expr] | None = None
 
     def judge(self) -> Verdict:
-        found = self._found()
+        found = self.found()
         words = "a continuum of" if found is None else str(found)
         text = f"a Groebner basis counts {words} solution{'' if found == 1 else 's'}"
         return Verdict(PROVED if found == self.printed else REFUTED, (text,))
 
-    def _found(self) -> int | None:
+    def found(self) -> int | None:
         equations = [sp.sympify(e, strict=True) for e in self.equations]
         equations = [e for e in equations if e != 0]
         try:
@@ -149,6 +149,8 @@ class Solves(Check):
             left = [
                 sp.sympify(e).subs(branch, simultaneous=True).subs(given) for e in self.equations
             ]
+            if any(e.has(sp.nan, sp.zoo) for e in left):
+                return Verdict(REFUTED, ("the formula has no value", *self._share()))
             decision = decide(sp.Matrix(left), [*self.nonnegative, *conditions])
             if not decision.holds:
                 assert decision.counterexample is not None
@@ -156,7 +158,7 @@ class Solves(Check):
                 return Verdict(
                     REFUTED, (*where, "the formula does not solve the equation", *self._share())
                 )
-        counted = Count(self.equations, tuple(self.formulas), None, self.given)._found()
+        counted = Count(self.equations, tuple(self.formulas), None, self.given).found()
         given_values = len({tuple(b.values()) for b, _ in branches}) // self._cases()
         if counted is not None and given_values >= counted:
             text = f"all {counted} solutions" if counted > 1 else "the only solution"

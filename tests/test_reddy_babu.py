@@ -1,0 +1,94 @@
+"""The errors that the claims of Reddy and Babu show, and how grave they are."""
+
+from functools import cache
+
+import pytest
+from closedform.derivations import planar_2r, spherical_wrist
+
+from closedform.model.claims import Gravity
+from closedform.model.derivation import Derivation
+from closedform.proof.claims import ClaimResult, judge
+
+ROBOTS = {"planar_2r": planar_2r.d, "spherical_wrist": spherical_wrist.d}
+ERRATA = {
+    "planar_2r": {
+        "folded": (Gravity.OMISSION, {"one solution": "incomplete"}),
+        "tan-alpha": (Gravity.MISPRINT, {"tan α, before eq. (4)": "refuted"}),
+        "sum-of-cosines": (Gravity.MISPRINT, {"c12, after eq. (8)": "refuted"}),
+        "last-row": (
+            Gravity.MISPRINT, {"eq. (9), second factor": "refuted", "eq. (9)": "refuted"},
+        ),
+        "rows-lost": (Gravity.OMISSION, {"list of eq. (10)": "incomplete"}),
+        "rounding": (
+            Gravity.RESULT,
+            {"Results A, x": "refuted", "Results B, x": "refuted", "Results B, y": "refuted"},
+        ),
+        "quadrant": (Gravity.OMISSION, {"use of eqs. (3) and (4)": "incomplete"}),
+        "elbow-up": (
+            Gravity.RESULT, {"Results A, elbow up": "refuted", "Results A, orientation": "refuted"},
+        ),
+    },
+    "spherical_wrist": {
+        "aligned-axes": (Gravity.OMISSION, {"eq. (13)": "incomplete", "eq. (16)": "incomplete"}),
+        "entry-12": (
+            Gravity.MOTION,
+            {"eq. (14)": "refuted", "eq. (15)": "refuted", "same matrix": "refuted"},
+        ),
+        "number-of-equation": (Gravity.MISPRINT, {"form of eq. (14)": "refuted"}),
+        "second-solution": (
+            Gravity.OMISSION,
+            {"Results C, Euler angles": "incomplete", "Results C, D-H angles": "incomplete"},
+        ),
+    },
+}  # fmt: skip
+
+
+@cache
+def results(name: str) -> dict[str, ClaimResult]:
+    """The claims that show an erratum; the others are proved when the robot is derived."""
+    d = ROBOTS[name]
+    return {c.label: judge(c, d.errata) for c in d.claims if c.erratum}
+
+
+def described(d: Derivation) -> dict[str, Gravity]:
+    return {e.key: e.gravity for e in d.errata}
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_distinct_errors(name: str) -> None:
+    found: dict[str, dict[str, str]] = {}
+    for label, result in results(name).items():
+        found.setdefault(result.erratum, {})[label] = result.kind
+    assert found == {key: places for key, (_, places) in ERRATA[name].items()}
+    assert described(ROBOTS[name]) == {key: gravity for key, (gravity, _) in ERRATA[name].items()}
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_every_error_has_a_correction_with_digits_as_printed(name: str) -> None:
+    assert all(result.corrected for result in results(name).values())
+
+
+@pytest.mark.parametrize(
+    ("label", "holds"),
+    [
+        ("Results A, elbow up", r"\theta_1 = 56.5894^\circ"),
+        ("Results A, orientation", r"26.5894^\circ"),
+        ("Results A, x", r"$x = 12.6603 \text{ cm}$"),
+        ("Results B, y", r"$y = 11.9282 \text{ cm}$"),
+    ],
+)
+def test_exact_values(label: str, holds: str) -> None:
+    assert holds in results("planar_2r")[label].corrected
+
+
+@pytest.mark.parametrize(
+    ("name", "label", "kinds"),
+    [
+        ("planar_2r", "one solution", ["incomplete", "proved"]),
+        ("planar_2r", "use of eqs. (3) and (4)", ["incomplete", "refuted"]),
+        ("spherical_wrist", "eq. (13)", ["incomplete", "refuted"]),
+        ("spherical_wrist", "same matrix", ["refuted", "proved"]),
+    ],
+)
+def test_readings(name: str, label: str, kinds: list[str]) -> None:
+    assert [reading.kind for reading in results(name)[label].readings] == kinds

@@ -81,8 +81,8 @@ def _coverage(derivation: Derivation, path: Path) -> Iterator[str]:
         yield f"not in the paper: {text}"
     total = covered.quoted + covered.out_of_scope + covered.left
     yield (
-        f"{paper.key}: {100 * covered.quoted / total:.1f} % of the characters are quoted by claims, "
-        f"{100 * covered.out_of_scope / total:.1f} % are out of scope, "
+        f"{paper.key}: {100 * covered.quoted / total:.1f} % of the characters are quoted by "
+        f"claims, {100 * covered.out_of_scope / total:.1f} % are out of scope, "
         f"{100 * covered.left / total:.1f} % are left; {len(covered.gaps)} passages are not "
         f"covered, {len(covered.unfound)} quotations were not found"
     )

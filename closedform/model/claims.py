@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
+from closedform.model.display import Shown
 from closedform.model.names import check_key, check_text
 from closedform.model.notation import Notation, Relation
 
@@ -99,7 +100,7 @@ PIECE = re.compile(r"\$(?P<formula>[^$]*)\$|\{(?P<phrase>[^{}$]*)\}")
 
 
 @dataclass(frozen=True)
-class Claim:
+class Claim(Shown):
     """A statement of a paper as printed, and what judges it.
 
     ``check`` takes the formulas (each a tuple of relations, or the relation itself if there is one)
@@ -182,7 +183,7 @@ class Gravity(Enum):
 
 
 @dataclass(frozen=True)
-class Erratum:
+class Erratum(Shown):
     """One error of a paper, which may stand in several places: the claims that name its key.
 
     ``why`` explains the error to its author, and ``use`` says what follows for someone who used it.

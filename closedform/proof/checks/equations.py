@@ -61,7 +61,7 @@ class Identity(Check):
         if decision.holds:
             assumed = [piece for a in decision.assumptions for piece in (", ", a, r" $\ge 0$")]
             kind = PROVED_UNDER if decision.assumptions else PROVED
-            return Verdict(kind, ("where ", *assumed[1:]) if assumed else ())
+            return Verdict(kind, tuple(assumed[1:]))
         assert decision.counterexample is not None
         where = self._point(decision.counterexample)
         if self.small is not None and (order := _order(gap, self.small)):

@@ -72,8 +72,8 @@ def _formula(claim: Claim, formula: str) -> Iterator[tuple[str, int, int, str]]:
             yield "function", piece.start, end, _FUNCTIONS[old]
         elif piece.kind == "relation" and old not in ("=", r"\equiv"):
             yield "relation", piece.start, end, _RELATIONS[old] + " "
-        elif piece.kind == "name" and old in notation.meanings:
-            for other in notation.alternatives(old)[:1]:
+        elif piece.kind == "name":
+            for other in notation.alternatives(piece.name)[:1]:
                 yield "name", piece.start, end, other
 
 

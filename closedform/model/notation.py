@@ -341,7 +341,8 @@ class _Reader:
             self.expect(closing)
             return found
         value = self.base()
-        if isinstance(value, sp.Number) and self.notation.match(self.tokens, self.at):
+        named = not self.ended and self.notation.match(self.tokens, self.at)
+        if isinstance(value, sp.Number) and named:
             value = value * self.base()
         return [value]
 
@@ -398,8 +399,10 @@ class _Reader:
         kind = self.tokens[self.at].text[1:-1]
         self.at += 1
         if kind == "array":  # the alignment of the columns
-            while self.take() != "}":
-                pass
+            self.expect("{")
+            depth = 1
+            while depth:
+                depth += {"{": 1, "}": -1}.get(self.take(), 0)
         rows: list[list[Value]] = [[]]
         while self.peek != r"\end":
             if self.peek == r"\\":

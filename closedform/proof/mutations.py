@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from closedform.model.claims import NUMBERS, PIECE, Claim
+from closedform.algebra.normal_form import Undecided
+from closedform.model.claims import HOLDS, NUMBERS, PIECE, Claim
+from closedform.model.notation import NotationError
+from closedform.proof.claims import judged
 
 _SIGNS = {"+": "-", "-": "+", r"\pm": "+", r"\mp": r"\pm"}
 _FUNCTIONS = {r"\sin": r"\cos", r"\cos": r"\sin", r"\tan": r"\sin"}
@@ -26,6 +29,31 @@ class Mutation:
 
     def __str__(self) -> str:
         return f"{self.kind} {self.old} -> {self.new}"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a changed text: its verdict, or the error that its check raised."""
+
+    mutation: Mutation
+    kind: str
+    error: str = ""
+    changes: bool = False
+    """Whether the text holds and the printed one does not, or the reverse."""
+
+
+def outcomes(claim: Claim) -> Iterator[Outcome]:
+    """The verdict of each changed text; a text that the notation cannot read is left out."""
+    held = judged(claim, claim.printed).kind in HOLDS
+    for mutation in mutations(claim):
+        try:
+            kind = judged(claim, mutation.text).kind
+        except NotationError:
+            continue
+        except (Undecided, ValueError, TypeError, AttributeError, ArithmeticError) as error:
+            yield Outcome(mutation, "", f"{type(error).__name__}: {error}")
+        else:
+            yield Outcome(mutation, kind, changes=(kind in HOLDS) != held)
 
 
 def mutations(claim: Claim) -> Iterator[Mutation]:

@@ -155,7 +155,13 @@ class Equal(Check):
                 sp.prod(e.subs(SIGN, s) for s in (1, -1)) if e.has(SIGN) else e
                 for e in entries(gap)
             ]
-            return Identity(product, [sp.S.Zero] * len(product), self.nonnegative).judge()
+            verdict = Identity(product, [sp.S.Zero] * len(product), self.nonnegative).judge()
+            if verdict.kind != REFUTED:
+                return verdict
+            point = next((p for p in verdict.evidence if isinstance(p, Mapping)), {})
+            left, right = names
+            text = ("neither sign of $\\pm$ makes ", left, " equal ", right)
+            return Verdict(REFUTED, (*at(point), *text))
         return Identity(first, side, self.nonnegative, self.small, names).judge()
 
 
@@ -243,6 +249,8 @@ class Under(Check):
 
     def judge(self) -> Verdict:
         verdict = self.check.judge()
-        if verdict.kind != PROVED:
-            return verdict
-        return Verdict(PROVED_UNDER, (self.assumption,))
+        if verdict.kind == PROVED:
+            return Verdict(PROVED_UNDER, (self.assumption,))
+        if verdict.kind == PROVED_UNDER:
+            return Verdict(PROVED_UNDER, (self.assumption, ", ", *verdict.evidence))
+        return verdict

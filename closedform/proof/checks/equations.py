@@ -159,9 +159,8 @@ class Equal(Check):
             if verdict.kind != REFUTED:
                 return verdict
             point = next((p for p in verdict.evidence if isinstance(p, Mapping)), {})
-            left, right = names
-            text = ("neither sign of $\\pm$ makes ", left, " equal ", right)
-            return Verdict(REFUTED, (*at(point), *text))
+            sentence = ("neither sign of $\\pm$ makes ", names[0], " equal ", names[1])
+            return Verdict(REFUTED, (*at(point), *sentence))
         return Identity(first, side, self.nonnegative, self.small, names).judge()
 
 

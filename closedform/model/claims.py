@@ -128,6 +128,11 @@ class Claim(Shown):
     def __post_init__(self) -> None:
         check_text("label of a claim", self.label)
         check_text(f"claim {self.label}", self.printed, self.where, self.corrected, self.fixed)
+        for text in (self.printed, self.corrected):
+            if re.search(r"[${}]", PIECE.sub("", text)):
+                raise ValueError(
+                    f"claim {self.label}: a dollar sign or a brace has no counterpart: {text}"
+                )
 
     @property
     def text(self) -> str:

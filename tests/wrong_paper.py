@@ -93,7 +93,12 @@ def derivation(name: str = "one_link", paper: Paper = PAPER) -> Derivation:
         lambda f: Agree(f.left, f.right, ("the length in II", "the length in III")),
         erratum="two-lengths",
     )
-    claim("eq. (5)", r"$x = -l \cos\theta$", corrected=r"$x = l \cos\theta$", erratum="typo")
+    claim(
+        "eq. (5)",
+        r"$x = -\left(l \cos\theta + l \sin\theta\right) + \left(l \sin\theta\right)$",
+        corrected=r"$x = l \cos\theta$",
+        erratum="typo",
+    )
     claim(
         "Table I",
         r"$\sqrt{2} = 1.42$",

@@ -121,7 +121,7 @@ def stacked(text: str) -> str:
     alone = ALONE.fullmatch(text.strip())
     if alone is None or len(alone[1]) <= WIDE:
         return f" {markdown(text)}" if text else ""
-    return "".join(f"\n    {line}" for line in ("", "```math", formula(alone[1]), "```"))
+    return "".join(f"\n    {line}" for line in ("```math", formula(alone[1]), "```"))
 
 
 def markdown(text: str) -> str:
@@ -139,5 +139,5 @@ def markdown(text: str) -> str:
 
 def formula(text: str) -> str:
     """A formula that can stand in Markdown, also in a table: without bars and backquotes."""
-    plain = " ".join(text.split()).replace("`", "'")
-    return plain.replace(r"\|", r"\Vert ").replace("|", r"\vert ")
+    plain = text.replace("`", "'").replace(r"\|", r"\Vert ").replace("|", r"\vert ")
+    return " ".join(plain.split())

@@ -62,10 +62,12 @@ def _changed(claim: Claim, held: bool) -> Iterator[str]:
 
 def _coverage(derivation: Derivation, path: Path) -> Iterator[str]:
     """What of the paper is covered by all derivations of it."""
-    paper, claims = derivation.paper, []
+    paper, claims = derivation.paper, list(derivation.claims)
     for source in pipeline.sources():
+        if source.name == derivation.name:
+            continue
         try:
-            found = derivation if source.name == derivation.name else pipeline.load(source)
+            found = pipeline.load(source)
         except pipeline.DerivationError as error:
             yield f"left out: {error}"
             continue

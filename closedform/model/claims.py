@@ -17,7 +17,7 @@ from enum import Enum
 from typing import Any
 
 from closedform.model.display import Shown
-from closedform.model.names import check_key, check_text
+from closedform.model.names import check_formulas, check_key, check_text
 from closedform.model.notation import Notation, Relation
 
 PROVED = "proved"
@@ -94,6 +94,7 @@ class Reading:
 
     def __post_init__(self) -> None:
         check_text("a reading", self.text)
+        check_formulas("a reading", self.text)
 
 
 PIECE = re.compile(r"\$(?P<formula>[^$]*)\$|\{(?P<phrase>[^{}$]*)\}")
@@ -203,6 +204,7 @@ class Erratum(Shown):
     def __post_init__(self) -> None:
         check_key(self.key, "key of an erratum")
         check_text(f"erratum {self.key}", self.title, self.why, self.use)
+        check_formulas(f"erratum {self.key}", self.title, self.why, self.use)
 
 
 __all__ = [

@@ -44,9 +44,9 @@ def _paper(found: PaperErrata) -> dict[str, Any]:
     ]
     return {
         "key": paper.key,
-        "title": markdown(paper.title),
-        "authors": markdown(", ".join(paper.authors)),
-        "reference": markdown(paper.reference),
+        "title": markdown_text(paper.title),
+        "authors": markdown_text(", ".join(paper.authors)),
+        "reference": markdown_text(paper.reference),
         "source": markdown(paper.source),
         "errors": list(found.errors().values()),
         "verdicts": list(found.verdicts().values()),
@@ -76,7 +76,7 @@ def _row(entry: Entry, paper: str) -> dict[str, Any]:
         "number": entry.number,
         "anchor": _anchor(entry.number, paper),
         "title": markdown(entry.erratum.title),
-        "where": "; ".join(markdown(c.label) for c in entry.claims),
+        "where": "; ".join(markdown_text(c.label) for c in entry.claims),
         "gravity": entry.gravity.value,
         "verdict": ", ".join(entry.verdicts),
     }
@@ -94,8 +94,8 @@ def _entry(entry: Entry, paper: str) -> dict[str, Any]:
 
 def _claim(claim: ClaimResult, see: str = "") -> dict[str, Any]:
     return {
-        "label": markdown(claim.label),
-        "where": markdown(claim.where),
+        "label": markdown_text(claim.label),
+        "where": markdown_text(claim.where),
         "verdict": claim.kind,
         "verb": "paraphrased" if claim.paraphrase else "printed",
         "printed": stacked(claim.printed),

@@ -75,6 +75,10 @@ class TestVerdict:
             r"at $\hat x = 1$, $\hat y = 0$: $\hat x$ is $1$, but $\hat y$ is $0$"
         )
 
+    def test_a_check_is_made_from_the_text(self) -> None:
+        with pytest.raises(TypeError, match=r"claim eq. \(1\): the check must be a function"):
+            claim("{four} edges", edges(4))
+
     def test_faults_and_what_holds_are_verdicts(self) -> None:
         assert {*FAULTS, *HOLDS, NOT_DECIDABLE} == set(VERDICTS)
         assert not set(FAULTS) & set(HOLDS)

@@ -19,8 +19,8 @@ README = Path(__file__).parents[1] / "README.md"
 pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
 CLAIM = """
-from closedform.proof.checks import Enumeration
-d.claim("table", "4 edges", Enumeration(4, lambda: {}[3], "edges"))
+from closedform.proof.checks.statements import Enumeration
+d.claim("table", "{four} edges", lambda n: Enumeration(n, lambda: {}[3], "edges"))
 """
 WRONG_SIGN = """
 from closedform import Gravity, Notation

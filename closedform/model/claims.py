@@ -129,6 +129,11 @@ class Claim(Shown):
     def __post_init__(self) -> None:
         check_text("label of a claim", self.label)
         check_text(f"claim {self.label}", self.printed, self.where, self.corrected, self.fixed)
+        if isinstance(self.check, Check):
+            raise TypeError(
+                f"claim {self.label}: the check must be a function of the formulas and phrases that "
+                f"the text has, such as lambda f: Equal(f)"
+            )
         for text in (self.printed, self.corrected):
             if re.search(r"[${}]", PIECE.sub("", text)):
                 raise ValueError(

@@ -131,8 +131,8 @@ class Claim(Shown):
         check_text(f"claim {self.label}", self.printed, self.where, self.corrected, self.fixed)
         if isinstance(self.check, Check):
             raise TypeError(
-                f"claim {self.label}: the check must be a function of the formulas and phrases that "
-                f"the text has, such as lambda f: Equal(f)"
+                f"claim {self.label}: the check must be a function of the formulas and phrases "
+                f"of the text, such as lambda f: Equal(f)"
             )
         for text in (self.printed, self.corrected):
             if re.search(r"[${}]", PIECE.sub("", text)):

@@ -25,13 +25,18 @@ def context(parts: Iterable[Part | None]) -> dict[str, Any]:
     papers = gathered(parts)
     return {
         "kinds": list(KINDS),
-        "verdicts": list(VERDICTS),
+        "verdicts": [
+            (kind, _with_total([p.verdicts()[kind] for p in papers])) for kind in VERDICTS
+        ],
         "meanings": [(kind, MEANINGS[kind]) for kind in VERDICTS],
         "papers": [_paper(p) for p in papers],
         "errors_in_all": [sum(p.errors()[kind] for p in papers) for kind in KINDS],
-        "verdicts_in_all": [sum(p.verdicts()[kind] for p in papers) for kind in VERDICTS],
         "claims_in_all": sum(len(p.claims) for p in papers),
     }
+
+
+def _with_total(counts: list[int]) -> list[int]:
+    return [*counts, sum(counts)]
 
 
 def _paper(found: PaperErrata) -> dict[str, Any]:
@@ -49,7 +54,6 @@ def _paper(found: PaperErrata) -> dict[str, Any]:
         "reference": markdown_text(paper.reference),
         "source": markdown(paper.source),
         "errors": list(found.errors().values()),
-        "verdicts": list(found.verdicts().values()),
         "total": len(found.claims),
         "summary": [_row(e, paper.key) for e in found.entries],
         "sections": sections,

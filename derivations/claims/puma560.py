@@ -12,7 +12,6 @@ import sympy as sp
 from sympy import atan2, cos, pi, sin
 
 from closedform import (
-    SIGN,
     Check,
     Count,
     Derivation,
@@ -22,6 +21,7 @@ from closedform import (
     Notation,
     Relation,
     Rounded,
+    Solves,
     denavit_hartenberg,
     real,
     rotation,
@@ -135,18 +135,57 @@ def craig_inverse(d: Derivation, puma: Puma) -> None:
     """The inverse, joint by joint, in Craig's convention."""
     names = notation(puma)
     claim = partial(d.claim, where=CRAIG, notation=names, paraphrase=True)
-    p = sp.Matrix([real(n) for n in ("p_x", "p_y", "p_z")])
-    K, both = real("K"), real("theta_23")
+    T = craig_chain(puma)
+    a2, a3, d3, d4 = puma.lengths
+    theta1, theta2, theta3 = puma.q[:3]
+    px, py, K, both = real("p_x"), real("p_y"), real("K"), real("theta_23")
+    hand = dict(zip(("p_x", "p_y", "p_z"), T[:3, 3], strict=True))
+    beside = cos(theta1) * py - sin(theta1) * px - d3
+
     claim(
-        r"theta_1, theta_3, theta_23",
+        "theta_1",
         r"$\theta_1 = \mathrm{Atan2}(p_y, p_x) - \mathrm{Atan2}(d_3, \pm\sqrt{p_x^2 + p_y^2 - "
-        r"d_3^2})$, $\theta_3 = \mathrm{Atan2}(a_3, d_4) - \mathrm{Atan2}(K, \pm\sqrt{a_3^2 + "
-        r"d_4^2 - K^2})$, $K = \frac{p_x^2 + p_y^2 + p_z^2 - a_2^2 - a_3^2 - d_3^2 - d_4^2}"
-        r"{2a_2}$, $\theta_{23} = \mathrm{Atan2}[(-a_3 - a_2c_3)p_z - (c_1p_x + s_1p_y)(d_4 - "
-        r"a_2s_3), (a_2s_3 - d_4)p_z + (a_3 + a_2c_3)(c_1p_x + s_1p_y)]$",
-        lambda *formulas: printed_position(puma, p, both, formulas),
-        means={r"\mathrm{Atan2}": atan2, "K": K, r"\theta_{23}": both}
-        | dict(zip(("p_x", "p_y", "p_z"), p, strict=True)),
+        r"d_3^2})$",
+        lambda f: Every(
+            {
+                "the hand is beside the arm": Identity(beside.subs({px: T[0, 3], py: T[1, 3]}), 0),
+                "the angles": Solves(
+                    {f.left: f.right}, [beside], nonnegative=(px**2 + py**2 - d3**2,)
+                ),
+            }
+        ),
+        means={r"\mathrm{Atan2}": atan2, "p_x": px, "p_y": py},
+    )
+    claim(
+        "K",
+        r"$K = \frac{p_x^2 + p_y^2 + p_z^2 - a_2^2 - a_3^2 - d_3^2 - d_4^2}{2a_2}$",
+        means=hand | {"K": a3 * cos(theta3) - d4 * sin(theta3)},
+    )
+    claim(
+        "theta_3",
+        r"$\theta_3 = \mathrm{Atan2}(a_3, d_4) - \mathrm{Atan2}(K, \pm\sqrt{a_3^2 + d_4^2 - K^2})$",
+        lambda f: Solves(
+            {f.left: f.right},
+            [a3 * cos(theta3) - d4 * sin(theta3) - K],
+            nonnegative=(a3**2 + d4**2 - K**2,),
+        ),
+        means={r"\mathrm{Atan2}": atan2, "K": K},
+    )
+
+    def direction(formula: Relation) -> Check:
+        """The printed pair is a vector along the upper arm, which points the same way."""
+        y, x = formula.right
+        turned = rotation("z", -formula.left)
+        ahead = (a2 * cos(theta3) + a3) ** 2 + (d4 - a2 * sin(theta3)) ** 2
+        along = turned * sp.Matrix([x, y, 0])
+        return Identity([e.subs(both, theta2 + theta3) for e in along[:2]], [ahead, sp.S.Zero])
+
+    claim(
+        "theta_23",
+        r"$\theta_{23} = \mathrm{Atan2}[(-a_3 - a_2c_3)p_z - (c_1p_x + s_1p_y)(d_4 - a_2s_3), "
+        r"(a_2s_3 - d_4)p_z + (a_3 + a_2c_3)(c_1p_x + s_1p_y)]$",
+        direction,
+        means={r"\mathrm{Atan2}": lambda y, x: (y, x), r"\theta_{23}": both} | hand,
     )
 
     def arguments(formula: Relation, y: Relation, x: Relation) -> Check:
@@ -176,7 +215,6 @@ def craig_inverse(d: Derivation, puma: Puma) -> None:
         r"r_{31}(s_{23}s_4)$, $c_6 = r_{11}[(c_1c_{23}c_4 + s_1s_4)c_5 - c_1s_{23}s_5] + "
         r"r_{21}[(s_1c_{23}c_4 - c_1s_4)c_5 - s_1s_{23}s_5] - r_{31}(s_{23}c_4c_5 + c_{23}s_5)$",
     )
-    T = craig_chain(puma)
     primed = {rf"\theta_{i}'": real(f"theta{i}_flipped") for i in (4, 5, 6)}
     meant = dict(zip(primed.values(), puma.q[3:], strict=True))
 
@@ -191,26 +229,6 @@ def craig_inverse(d: Derivation, puma: Puma) -> None:
         flipped,
         means=primed,
     )
-
-
-def printed_position(
-    puma: Puma, p: sp.Matrix, both: sp.Symbol, formulas: tuple[Relation, ...]
-) -> Check:
-    """The printed angles, put into Craig's forward map, for all signs of both roots."""
-    first, third, given, sum_ = formulas
-    forward = craig_chain(puma)[:3, 3]
-    d3 = puma.lengths[2]
-    parts = {}
-    for shoulder, elbow in product((1, -1), repeat=2):
-        angles = {
-            first.left: first.right.subs(SIGN, shoulder),
-            third.left: third.right.subs(SIGN, elbow).xreplace({given.left: given.right}),
-        }
-        angles[puma.q[1]] = (both - third.left).xreplace({sum_.left: sum_.right}).xreplace(angles)
-        parts[f"signs {shoulder:+d}, {elbow:+d}"] = Identity(
-            forward.xreplace(angles), p, (p.dot(p) - d3**2,)
-        )
-    return Every(parts)
 
 
 def corke(d: Derivation, puma: Puma) -> None:

@@ -1,10 +1,12 @@
 """Every claim of every paper is judged by its printed text: a changed text changes the verdict."""
 
 from collections.abc import Iterator
+from decimal import Decimal
 from itertools import zip_longest
 
 import pytest
 import sympy as sp
+from sympy import pi
 
 from closedform.algebra.normal_form import equal
 from closedform.model.claims import HOLDS, NOT_DECIDABLE, PIECE, Check, Claim
@@ -12,7 +14,7 @@ from closedform.model.functions import real
 from closedform.model.notation import Notation, Relation
 from closedform.pipeline.run import Source, load, sources
 from closedform.proof.checks.equations import Equal
-from closedform.proof.checks.statements import Enumeration, ForAll, Undecidable
+from closedform.proof.checks.statements import Enumeration, ForAll, Rounded, Undecidable
 from closedform.proof.claims import judged
 from closedform.proof.mutations import Mutation, mutations, outcomes
 
@@ -44,7 +46,17 @@ def faults(claim: Claim) -> Iterator[str]:
 
 
 def equivalent(claim: Claim, mutation: Mutation) -> bool:
-    """Whether a changed text says the same, or says less: a weaker inequality holds as well."""
+    """Whether a changed text says the same, or says less: a weaker inequality holds as well.
+
+    A decimal halfway between two is rounded to both; one less in its last digit has to be wrong.
+    """
+    if mutation.kind == "number" and "." in mutation.old:
+        text, last = claim.printed, Decimal(mutation.old).as_tuple().exponent
+        less = str(Decimal(mutation.old) - Decimal((0, (1,), int(last))))
+        place = next(k for k, (a, b) in enumerate(zip(text, mutation.text, strict=True)) if a != b)
+        start = text.rfind(mutation.old, 0, place + len(mutation.old))
+        changed = text[:start] + less + text[start + len(mutation.old) :]
+        return judged(claim, changed).kind not in HOLDS
     printed, changed = (
         [m["formula"] for m in PIECE.finditer(text) if m["formula"] is not None]
         for text in (claim.printed, mutation.text)
@@ -70,7 +82,7 @@ def same_value(a: sp.Expr | sp.MatrixBase, b: sp.Expr | sp.MatrixBase) -> bool:
     if getattr(a, "shape", None) != getattr(b, "shape", None):
         return False
     entries = zip(a, b, strict=True) if isinstance(a, sp.MatrixBase) else [(a, b)]
-    return all(p == q or bool(equal(p, q)) for p, q in entries)
+    return all(p == q or ((p - q) / (2 * pi)).is_integer or bool(equal(p, q)) for p, q in entries)
 
 
 def claim(printed: str, check: object = None, **more: object) -> Claim:
@@ -148,6 +160,7 @@ class TestFaults:
             claim("$x$ {two}", lambda *_: Undecidable("a figure")),
             claim("$x^2 > -1$", lambda r: ForAll(r.relational)),
             claim(r"$\sin^2 x + \cos^2 x = 1$", lambda r: Equal(r)),
+            claim("$0.125 = 0.12$", lambda r: Rounded(r, r.left), fixed="a decimal halfway"),
         ],
         ids=lambda c: c.printed,
     )

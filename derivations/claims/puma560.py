@@ -313,12 +313,14 @@ def singularities(d: Derivation, puma: Puma) -> None:
 
     claim(
         "elbow manipulator",
-        r"with the forearm along its frame ($d_3 = d_4 = 0$), up to the sign, $\det J_{11} = "
+        r"with the forearm along its frame ($d_4 = 0$), up to the sign, $\det J_{11} = "
         r"a_2a_3s_3(a_2c_2 + a_3c_{23})$",
         special,
     )
 
     def singular(first: Relation, second: Relation, one: Relation, other: Relation) -> Check:
+        if one.left == other.left:
+            raise ValueError("an axis is collinear with itself")
         postures = [{first.left: first.right}, {first.left: second.left}]
         cross = one.left.cross(other.left)
         return Identity(

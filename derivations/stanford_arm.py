@@ -8,7 +8,7 @@ from sympy import cos, pi, sin, sqrt
 from closedform import (
     Chain,
     Derivation,
-    Identity,
+    Notation,
     from_dh,
     polar,
     real,
@@ -107,8 +107,19 @@ ik.finish(
 d.claim(
     "position",
     r"$d_x = c_1s_2d_3 - s_1d_2$, $d_y = s_1s_2d_3 + c_1d_2$, $d_z = c_2d_3$ (with $d_6 = 0$)",
-    Identity(
-        sp.Matrix([cos(theta1) * X - sin(theta1) * d2, sin(theta1) * X + cos(theta1) * d2, Z]),
-        arm.position,
+    notation=Notation(
+        {
+            "d_x": arm.position[0],
+            "d_y": arm.position[1],
+            "d_z": arm.position[2],
+            "d_2": d2,
+            "d_3": d3,
+            "d_6": sp.Integer(0),  # the hand frame is at the centre of the wrist
+            "c_1": cos(theta1),
+            "s_1": sin(theta1),
+            "c_2": cos(theta2),
+            "s_2": sin(theta2),
+        }
     ),
+    paraphrase=True,
 )

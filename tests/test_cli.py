@@ -19,12 +19,16 @@ README = Path(__file__).parents[1] / "README.md"
 pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
 CLAIM = """
-from closedform.proof.checks import Enumeration
-d.claim("table", "4 edges", Enumeration(4, lambda: {}[3], "edges"))
+from closedform.proof.checks.statements import Enumeration
+d.claim("table", "{four} edges", lambda n: Enumeration(n, lambda: {}[3], "edges"))
 """
 WRONG_SIGN = """
-from closedform.proof.checks import Identity
-d.claim("eq. (1)", "x = a - q_1", Identity(a - q1, a + q1))
+from closedform import Gravity, Notation
+names = Notation({"a": a, "q_1": q1, "x": a + q1})
+d.claim("eq. (1)", "$x = a - q_1$", notation=names{erratum})
+"""
+ERRATUM = """
+d.erratum("sign", "A sign is wrong", Gravity.MOTION, why="A sum.", use="It is off by $2 q_1$.")
 """
 
 
@@ -215,16 +219,67 @@ def test_a_broken_derivation_gets_one_clear_line(
     assert not (slider.parent / "out").exists()
 
 
-def test_a_wrong_sign_in_a_transcription_is_refuted(
+def test_a_wrong_sign_in_a_transcription_is_one_clear_line(
     slider: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    slider.write_text(SLIDER + WRONG_SIGN, "utf-8")
-    assert (
-        main(["derive", str(slider), "-o", str(slider.parent / "out"), "--backend", "latex"]) == 0
-    )
+    slider.write_text(SLIDER + WRONG_SIGN.replace("{erratum}", ""), "utf-8")
+    assert main(["derive", str(slider), "-o", str(slider.parent / "out")]) == 1
+    error = capsys.readouterr().err
+    assert "slider: not proved: claim eq. (1): the verdict is refuted (at $a = 1$" in error
+    assert "name the erratum" in error and "Traceback" not in error
+
+
+def test_an_error_of_the_paper_is_listed_and_counted(
+    slider: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = WRONG_SIGN.replace("{erratum}", ', erratum="sign"')
+    slider.write_text(SLIDER + text + ERRATUM, "utf-8")
+    out = slider.parent / "out"
+    assert main(["derive", str(slider), "-o", str(out), "--backend", "latex"]) == 0
     assert "claims: 1 refuted" in capsys.readouterr().out
-    errata = (slider.parent / "out" / "errata.md").read_text("utf-8")
-    assert "at a = 1, q1 = 1 the printed form is 0, not 2" in errata
+    errata = (out / "errata.md").read_text("utf-8")
+    assert "#### 1. A sign is wrong" in errata and "It is off by $`2 q_1`$." in errata
+    assert "refuted: at $`a = 1`$, $`q_1 = 1`$: $`x`$ is $`2`$, but $`a - q_1`$ is $`0`$" in errata
+    article = (out / "latex" / "slider.tex").read_text("utf-8")
+    assert r"\section{Errata}" in article
+
+
+CHANGED = """
+d.claim("two", "$x = a + q_1$", notation=names, readings=[Reading("one"), Reading("other")])
+d.claim("weak", "{four} edges", lambda n: Enumeration(1, lambda: 1, "one"))
+d.claim("strict", "{four} edges", lambda n: 1 // (5 - n), fixed="it has a reason")
+from closedform import Enumeration, Reading
+"""
+
+
+def test_claims_are_judged_and_changed(slider: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = WRONG_SIGN.replace("{erratum}", ', erratum="sign", corrected="$x = a + q_1$"')
+    head, _, imported = CHANGED.strip().rpartition("\n")
+    slider.write_text(SLIDER + text + ERRATUM + f"{imported}\n{head}\n", "utf-8")
+    assert main(["claims", str(slider)]) == 0
+    told = capsys.readouterr().out
+    assert "eq. (1): refuted: at $a = 1$" in told
+    assert "    holds instead: $x = a + q_1$" in told
+    assert "    reading: other: proved: " in told
+    assert "strict: AttributeError" in told
+    assert main(["claims", str(slider), "--only", "weak", "--mutate"]) == 0
+    told = capsys.readouterr().out
+    assert "eq. (1)" not in told
+    assert "    survives: phrase four -> five: proved" in told
+    assert "    cannot be changed: NO REASON IS GIVEN" in told
+
+
+def test_claims_beside_the_text_of_the_paper(
+    slider: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = WRONG_SIGN.replace("{erratum}", ', erratum="sign"')
+    slider.write_text(SLIDER + text + ERRATUM, "utf-8")
+    paper = slider.parent / "paper.txt"
+    paper.write_text("$x = a - q_1$\n\nThe slider moves along the axis of x.\n", "utf-8")
+    assert main(["claims", str(slider), "--paper", str(paper)]) == 0
+    told = capsys.readouterr().out
+    assert "line 3: The slider moves along the axis of x." in told
+    assert "1 passages are not covered, 0 quotations were not found" in told
 
 
 def test_an_output_folder_that_cannot_be_made(

@@ -22,11 +22,13 @@ import sympy as sp
 from closedform.check.clibrary import compiler
 from closedform.check.report import _page
 from closedform.emit.pages import pages, shared_files
+from closedform.model.claims import Gravity
 from closedform.model.derivation import Derivation, Inverse, Paper, Table
 from closedform.model.functions import Branches, Program, branches, choose, real
 from closedform.model.names import check_symbol
-from closedform.proof.checks import Undecidable
-from closedform.proof.prove import ClaimResult, Proof
+from closedform.proof.checks.statements import Undecidable
+from closedform.proof.claims import ClaimResult, erratum_result
+from closedform.proof.prove import Proof
 
 pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
@@ -84,14 +86,21 @@ def slider(text: Strings = lambda field: field, name: Strings = lambda field: fi
     )
     d.inverses.append(Inverse("ik", (theta, s), (x, y), (h, h)))
     d.tables.append(Table(name("table"), text("header"), s, (sp.S.One,), {text("column"): s**2}))
-    d.claim(text("label"), text("printed"), Undecidable("a figure"), text("where"))
+    printed = re.sub(r"[${}]", "", text("printed"))  # these begin a formula or a phrase
+    d.claim(text("label"), printed, lambda: Undecidable("a figure"), where=text("where"))
+    error, why, use = (text(f).replace("$", "") for f in ("error", "why", "use"))
+    d.erratum("key", error, Gravity.RESULT, why=why, use=use)
     return d
 
 
 def printed(d: Derivation, evidence: str = "evidence") -> dict[Path, str]:
     """All files, printed without a proof."""
-    claims = [ClaimResult(c.label, c.where, c.printed, "refuted", evidence, "") for c in d.claims]
-    proof = Proof(d.name, d.paper.key, (), 0, (), tuple(claims))
+    claims = [
+        ClaimResult(c.label, c.where, c.printed, "refuted", evidence, "", (), "key")
+        for c in d.claims
+    ]
+    errata = tuple(map(erratum_result, d.errata))
+    proof = Proof(d.name, d.paper.key, (), 0, (), tuple(claims), errata)
     own = pages(d, proof)
     return own.files | shared_files([own.share])
 
@@ -315,7 +324,7 @@ def test_markdown_is_escaped() -> None:
     text = "# <b> [a](b) `c` *d* _e_"
     files = printed(slider(text=lambda _: text), evidence=text)
     for line in files[Path("errata.md")].splitlines():
-        assert not re.search(r"(?<!\\)<b>|(?<!\\)\]\(", line), line
+        assert not re.search(r"(?<!\\)<b>|(?<!\\)\]\((?!#key)", line), line
     page = _page(slider(text=lambda _: text), [], [], [])
     assert page.startswith(r"# \# \<b\> \[a\]")
 

@@ -5,23 +5,32 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import pytest
 import sympy as sp
 
-from closedform.emit.backends.latex.article import Page, Printer, decimal, document, measure
-from closedform.emit.backends.latex.errata import markdown, part, together
+from closedform.emit.backends.latex.article import (
+    Page,
+    Printer,
+    decimal,
+    derives,
+    document,
+    measure,
+)
 from closedform.emit.backends.latex.prose import Prose, escape, loosen, mixed, spaced, symbol_name
 from closedform.emit.notebook import notebook
 from closedform.emit.render import render
 from closedform.emit.show import show
 from closedform.lemmas.sine_cosine import linear_pair
+from closedform.model.claims import Claim, Erratum, Gravity
 from closedform.model.derivation import Continuum, Derivation, Inverse, Paper, Solved
 from closedform.model.functions import Program, branches, choose, real
-from closedform.proof.checks import Every, Identity, Undecidable
-from closedform.proof.prove import ClaimResult, InverseResult, Proof, prove
+from closedform.proof.checks.statements import Undecidable
+from closedform.proof.claims import ClaimResult, ErratumResult, ReadingResult
+from closedform.proof.prove import InverseResult, Proof, prove
 
 ROBOTS = ("planar_2r", "spherical_wrist")
 ROOT = Path(__file__).parents[1]
@@ -95,21 +104,22 @@ def awkward() -> tuple[Derivation, Proof]:
     zero = sp.Integer(0)
     continuum = Continuum(flag, {px: zero, py: zero}, theta1, r"\theta_2 = \pi, \theta_1 any")
     d.inverses.append(Inverse("ik", (theta1, theta2), (px, py), (theta1, theta2), (continuum,)))
-    checks = {"part": Undecidable("a figure")}
-    d.claim("eq. (1) & 50 %", r"$\sin θ_1 = \frac{a}{b}$ with 5 % of “θ1”", Every(checks), "p. 3_4")
-    d.claim("eq. (2)", "x_1 = {y}", Identity(theta1, theta2), "p. 3_4")
-    printed = d.claims[0].printed
+    printed = r"$\sin θ_1 = \frac{a}{b}$ with 5 % of “θ1”"
+    both = (ReadingResult("all of $a_1$", "refuted", "$1$"), ReadingResult("100 %", "proved", "&"))
     results = (
         ClaimResult("eq. (1) & 50 %", "p. 3_4", printed, "not decidable here", "a < b", ""),
         ClaimResult(
-            "eq. (2)", "p. 3_4", "x_1 = {y}", "refuted", "at theta1 = 2*pi/3: 1, not 0",
-            rf"[1,2] = {sp.latex(long)},\ [2,2] = {sp.latex(sp.sqrt(px) / 2)}",
+            "eq. (2)", "p. 3_4", "x_1 is one", "refuted",
+            r"at $\theta_1 = \frac{2\pi}{3}$: 1, not 0", rf"$x_1 = {sp.latex(long)}$", both,
+            "long-one", True,
         ),
+        ClaimResult("Table_I, last row", "", "fine", "proved under assumption", "$a > 0$", ""),
         ClaimResult("eq. (3)", "", "fine", "proved", "", ""),
     )  # fmt: skip
+    wrong = ErratumResult("long-one", "100 % of $x_1$ & more_", "RESULT", "Since $a < b$.", "5 %.")
     inverse = InverseResult("ik", 2, 1, 2, "generic", ("px - l1",), (lemma.name,))
     steps = tuple(s.title for s in d.steps)
-    return d, Proof("awkward", "odd", steps, 1, (inverse,), results)
+    return d, Proof("awkward", "odd", steps, 1, (inverse,), results, (wrong,))
 
 
 @pytest.mark.parametrize("name", [*ROBOTS, "awkward"])
@@ -173,7 +183,7 @@ def test_output_does_not_depend_on_the_hash_seed() -> None:
         "from test_latex import *\n"
         "d, p = derived('awkward')\n"
         "print(article('awkward'), notebook(d), show(d, p))\n"
-        "print(render('errata.md.jinja', together([part(d, p)])))\n"
+        "print(render('errata.md.jinja', context([part(d, p)])))\n"
     )
     runs = [
         subprocess.Popen(
@@ -189,20 +199,62 @@ def test_output_does_not_depend_on_the_hash_seed() -> None:
     assert len(printed[0]) > 10_000
 
 
-def test_errata_lists_what_is_not_simply_proved() -> None:
-    text = render(
-        "errata.md.jinja", together(part(*derived(name)) for name in (*ROBOTS, "awkward"))
+def test_claims_link_to_the_step_and_the_error() -> None:
+    text = article("awkward")
+    assert "\\label{step:1}" in text
+    assert r"Table\_I, last row, \hyperref[step:1]{Section~\ref*{step:1}}" in text
+    assert r"eq. (1) \& 50 \%, \hyperref" not in text and r"eq. (3), \hyperref" not in text
+    assert text.count(r"\label{erratum:long-one}") == 1
+    assert r"\hyperref[erratum:long-one]{100 \% of $\displaystyle x_1$ \& more\_}" in text
+    labels = re.findall(r"\\label\{([^}]+)\}", text)
+    assert len(set(labels)) == len(labels)
+    assert set(re.findall(r"\\(?:ref\*?\{|hyperref\[)([^}\]]+)", text)) <= set(labels)
+
+
+@pytest.mark.parametrize(
+    ("label", "derived"),
+    [
+        ("eq. (9)", True),
+        ("eq. (9), line 2", True),
+        ("(9)", True),
+        ("eq. (90)", False),
+        ("9", False),
+    ],
+)
+def test_a_step_derives_the_claims_of_its_equation(label: str, derived: bool) -> None:
+    step = replace(awkward()[0].steps[0], published=("(9)", "Table II"))
+    assert derives(step, label) == derived
+    assert derives(step, "Table II") and not derives(step, "Table I")
+
+
+def test_errors_stand_before_the_claims_with_all_that_was_found() -> None:
+    text = article("awkward")
+    section = text[text.index(r"\section{Errata}") : text.index(r"\section{Claims of the paper}")]
+    for part in (
+        r"\subsection{100 \% of $\displaystyle x_1$ \& more\_}",
+        r"Changes a result or a design",
+        r"Since $\displaystyle a < b$.",
+        r"\textbf{eq. (2)} (p. 3\_4): x\_1 is one",
+        r"\finding{Read as:}{all of $\displaystyle a_1$}",
+        r"\finding{Found:}{at $\displaystyle \theta_1 = \frac{2\pi}{3}$: 1, not 0}",
+        r"\finding{Other reading, proved:}{100 \% (\&)}",
+        r"\finding{Holds instead, proved:}",
+        r"\emph{What follows:} 5 \%.",
+    ):
+        assert part in section, part
+    assert r"\detail{Assumption:}{$\displaystyle a > 0$}" in text
+    assert "x\\_1 is one (paraphrased)" in text
+    page = re.sub(r"\s+", " ", show(*awkward()))
+    assert "1. 100 % of $x_1$ & more_ (changes a result or a design): eq. (2)" in page
+
+
+def test_claims_and_errors_show_themselves_in_a_notebook() -> None:
+    claim = Claim("eq. (1)", "{Two} of $x$", lambda *_: Undecidable("a figure"))
+    erratum = Erratum("key", "It is $x$", Gravity.RESULT, "Since 5 % are lost.", "Use.")
+    assert claim._repr_latex_() == r"$\textbf{eq. (1)}\text{: Two of $\displaystyle x$}$"
+    assert erratum._repr_latex_() == (
+        r"$\textbf{It is $\displaystyle x$}\text{: Since 5 \% are lost.}$"
     )
-    for name in (*ROBOTS, "awkward"):
-        for claim in derived(name)[1].claims:
-            assert (f"**{markdown(claim.label)}** ({claim.kind}" in text) == (
-                claim.kind != "proved"
-            )
-    assert text.count("## Kinematic Attitudes") == 1
-    assert "| refuted | 1 |" in text
-    assert "at theta1 = 2·pi/3: 1, not 0" in text
-    assert "entry (2,2): $`\\frac{\\sqrt{p_x}}{2}`$" in text
-    assert not re.search(r"\n\n\n", text)
 
 
 def test_without_proof_nothing_is_called_proved() -> None:
@@ -210,7 +262,7 @@ def test_without_proof_nothing_is_called_proved() -> None:
     assert "roved" not in show(derivation, None)
     text = show(derivation, None, "latex")
     assert "Sound:" not in text
-    assert "Claims of the paper" not in text
+    assert "Claims of the paper" not in text and "Errata" not in text
 
 
 def test_terminal_page_is_narrow() -> None:

@@ -6,14 +6,12 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
-from closedform.algebra.normal_form import Undecided
 from closedform.check.coverage import cover
-from closedform.model.claims import HOLDS
+from closedform.model.claims import HOLDS, Claim
 from closedform.model.derivation import Derivation
-from closedform.model.notation import NotationError
 from closedform.pipeline import run as pipeline
-from closedform.proof.claims import judge, judged
-from closedform.proof.mutations import mutations
+from closedform.proof.claims import judge
+from closedform.proof.mutations import outcomes
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -47,28 +45,29 @@ def report(options: argparse.Namespace, derivation: Derivation) -> Iterator[str]
             yield f"    holds instead: {result.corrected}"
         if not options.mutate:
             continue
-        tried = 0
-        for mutation in mutations(claim):
-            try:
-                kind = judged(claim, mutation.text).kind
-            except NotationError:
-                continue
-            except (Undecided, ValueError, TypeError, AttributeError) as error:
-                yield f"    {mutation}: {type(error).__name__}: {error}"
-                continue
-            tried += 1
-            if (kind in HOLDS) != bool(claim.corrected):
-                yield f"    survives: {mutation}: {kind}"
-        if not tried:
-            yield f"    cannot be changed: {claim.fixed or 'NO REASON IS GIVEN'}"
+        yield from _changed(claim, result.kind in HOLDS)
+
+
+def _changed(claim: Claim, held: bool) -> Iterator[str]:
+    """The changed texts of a claim that deserve a look."""
+    found = list(outcomes(claim))
+    for outcome in found:
+        if outcome.error:
+            yield f"    {outcome.mutation}: {outcome.error}"
+        elif held and not outcome.changes:
+            yield f"    survives: {outcome.mutation}: {outcome.kind}"
+    if not any(outcome.changes for outcome in found):
+        yield f"    cannot be changed: {claim.fixed or 'NO REASON IS GIVEN'}"
 
 
 def _coverage(derivation: Derivation, path: Path) -> Iterator[str]:
     """What of the paper is covered by all derivations of it."""
-    paper, claims = derivation.paper, []
+    paper, claims = derivation.paper, list(derivation.claims)
     for source in pipeline.sources():
+        if source.name == derivation.name:
+            continue
         try:
-            found = derivation if source.name == derivation.name else pipeline.load(source)
+            found = pipeline.load(source)
         except pipeline.DerivationError as error:
             yield f"left out: {error}"
             continue
@@ -81,8 +80,8 @@ def _coverage(derivation: Derivation, path: Path) -> Iterator[str]:
         yield f"not in the paper: {text}"
     total = covered.quoted + covered.out_of_scope + covered.left
     yield (
-        f"{paper.key}: {100 * covered.quoted / total:.1f} % of the characters are quoted by claims, "
-        f"{100 * covered.out_of_scope / total:.1f} % are out of scope, "
+        f"{paper.key}: {100 * covered.quoted / total:.1f} % of the characters are quoted by "
+        f"claims, {100 * covered.out_of_scope / total:.1f} % are out of scope, "
         f"{100 * covered.left / total:.1f} % are left; {len(covered.gaps)} passages are not "
         f"covered, {len(covered.unfound)} quotations were not found"
     )

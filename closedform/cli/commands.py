@@ -340,8 +340,7 @@ def figures_command(options: argparse.Namespace) -> None:
 
 
 def errata_command(options: argparse.Namespace) -> None:
-    """Print every claim that is not simply proved, of all papers or of one."""
-
+    """Print the errors of all papers or of one, with their numbers and all verdicts."""
     console.write(_errata_of(options) if options.paper else _errata())
 
 

@@ -9,7 +9,8 @@ Importing this module registers its printers with :mod:`closedform.model.display
 from __future__ import annotations
 
 from closedform.emit.backends.latex.article import Page
-from closedform.emit.backends.latex.prose import escape
+from closedform.emit.backends.latex.prose import escape, mixed
+from closedform.model.claims import Claim, Erratum
 from closedform.model.derivation import Derivation
 from closedform.model.display import prints
 from closedform.model.functions import Bound, Let
@@ -30,3 +31,15 @@ def notebook(derivation: Derivation) -> str:
             rows += [f"{a} &= {b}" for a, b in page.outputs(function)]
     rows += [f"{short} &= {full}" for short, full in page.legend()]
     return r"$\displaystyle \begin{aligned}" + " \\\\\n".join(rows) + r"\end{aligned}$"
+
+
+@prints(Claim)
+def claim(claim: Claim) -> str:
+    """A claim as it is printed, below its label."""
+    return rf"$\textbf{{{escape(claim.label)}}}\text{{: {mixed(claim.text)}}}$"
+
+
+@prints(Erratum)
+def erratum(erratum: Erratum) -> str:
+    """What is wrong, and why."""
+    return rf"$\textbf{{{mixed(erratum.title)}}}\text{{: {mixed(erratum.why)}}}$"

@@ -11,6 +11,7 @@ import sympy as sp
 from sympy.printing.pretty.pretty import PrettyPrinter
 from sympy.printing.pretty.pretty_symbology import pretty_use_unicode
 
+from closedform.emit.errata import gathered, part
 from closedform.emit.text import citation
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Determined, Function, Let, Match, Statement, Vanishes
@@ -69,6 +70,13 @@ def _lines(derivation: Derivation, proof: Proof | None, pretty: bool) -> Iterato
     if derivation.singularities:
         yield from _heading("Singular set")
         yield from _wrap(", ".join(derivation.singularities), 2)
+    if proof and proof.errata:
+        yield from _heading("Errata of the paper")
+        for paper in gathered([part(derivation, proof)]):
+            for entry in paper.entries:
+                labels = ", ".join(c.label for c in entry.claims)
+                about = f"{entry.erratum.title} ({entry.gravity.value}): {labels}"
+                yield from _wrap(f"{entry.number}. {about}", 2)
     if proof and proof.claims:
         yield from _heading("Claims of the paper")
         for kind, n in proof.verdicts().items():

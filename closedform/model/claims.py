@@ -16,7 +16,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
-from closedform.model.names import check_key, check_text
+from closedform.model.display import Shown
+from closedform.model.names import check_formulas, check_key, check_text
 from closedform.model.notation import Notation, Relation
 
 PROVED = "proved"
@@ -93,13 +94,14 @@ class Reading:
 
     def __post_init__(self) -> None:
         check_text("a reading", self.text)
+        check_formulas("a reading", self.text)
 
 
 PIECE = re.compile(r"\$(?P<formula>[^$]*)\$|\{(?P<phrase>[^{}$]*)\}")
 
 
 @dataclass(frozen=True)
-class Claim:
+class Claim(Shown):
     """A statement of a paper as printed, and what judges it.
 
     ``check`` takes the formulas (each a tuple of relations, or the relation itself if there is one)
@@ -127,6 +129,16 @@ class Claim:
     def __post_init__(self) -> None:
         check_text("label of a claim", self.label)
         check_text(f"claim {self.label}", self.printed, self.where, self.corrected, self.fixed)
+        if isinstance(self.check, Check):
+            raise TypeError(
+                f"claim {self.label}: the check must be a function of the formulas and phrases "
+                f"of the text, such as lambda f: Equal(f)"
+            )
+        for text in (self.printed, self.corrected):
+            if re.search(r"[${}]", PIECE.sub("", text)):
+                raise ValueError(
+                    f"claim {self.label}: a dollar sign or a brace has no counterpart: {text}"
+                )
 
     @property
     def text(self) -> str:
@@ -182,7 +194,7 @@ class Gravity(Enum):
 
 
 @dataclass(frozen=True)
-class Erratum:
+class Erratum(Shown):
     """One error of a paper, which may stand in several places: the claims that name its key.
 
     ``why`` explains the error to its author, and ``use`` says what follows for someone who used it.
@@ -197,6 +209,7 @@ class Erratum:
     def __post_init__(self) -> None:
         check_key(self.key, "key of an erratum")
         check_text(f"erratum {self.key}", self.title, self.why, self.use)
+        check_formulas(f"erratum {self.key}", self.title, self.why, self.use)
 
 
 __all__ = [

@@ -29,6 +29,7 @@ from closedform.model.functions import (
 from closedform.model.lemma import Lemma
 from closedform.model.names import (
     check_argument,
+    check_formulas,
     check_function,
     check_identifier,
     check_key,
@@ -63,6 +64,7 @@ class Paper:
         check_text("authors of the paper", *self.authors)
         check_text("reference of the paper", self.reference)
         check_text("source of the paper", self.source)
+        check_formulas("source of the paper", self.source)
         check_text("passage of the paper", *(part for p in self.out_of_scope for part in p))
 
 

@@ -214,6 +214,13 @@ def check_text(where: str, *texts: str, lines: bool = False) -> None:
                 )
 
 
+def check_formulas(where: str, *texts: str) -> None:
+    """Raise ``ValueError`` unless each dollar sign that begins a formula has one that ends it."""
+    for text in texts:
+        if text.count("$") % 2:
+            raise ValueError(f"{where}: a dollar sign has no counterpart: {text}")
+
+
 def check_robot(name: str) -> None:
     """Raise ``ValueError`` unless a robot, its module and its C files may have this name."""
     if not re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name) or len(name) > MAX_LENGTH:

@@ -96,6 +96,8 @@ class Piece:
     """``sign``, ``number``, ``function``, ``name`` or ``relation``."""
     start: int
     end: int
+    name: str = ""
+    """The name in the notation, which may be printed with other spaces and braces."""
 
 
 class Notation:
@@ -189,6 +191,8 @@ class _Reader:
         self.at = 0
         self.decimals = 0
         self.pieces: list[Piece] = []
+        self.bars = 0
+        """How many absolute values are open: a bar then closes one."""
 
     def relations(self) -> tuple[Relation, ...]:
         found = []
@@ -263,6 +267,7 @@ class _Reader:
         return (
             text in ("(", "[", "{", r"\frac", r"\sqrt", r"\begin", r"\sum", r"\pi")
             or text in FUNCTIONS
+            or (text == "|" and not self.bars)
             or bool(re.match(r"\d", text))
             or self.notation.match(self.tokens, self.at) is not None
         )
@@ -307,10 +312,7 @@ class _Reader:
         if text in CLOSING:
             return self.listed(text)
         if text == "|":
-            self.take()
-            value = self.sum()
-            self.expect("|")
-            return sp.Abs(value)
+            return self.absolute()
         if text == r"\text":
             self.at += 2
             return sp.Symbol(self.tokens[self.at - 1].text[1:-1].strip())
@@ -326,7 +328,7 @@ class _Reader:
         first = self.tokens[self.at]
         self.at += length
         if not callable(meaning):
-            self.pieces.append(Piece("name", first.start, self.tokens[self.at - 1].after))
+            self.pieces.append(Piece("name", first.start, self.tokens[self.at - 1].after, name))
             return meaning
         return meaning(*self.arguments())
 
@@ -341,7 +343,8 @@ class _Reader:
             self.expect(closing)
             return found
         value = self.base()
-        if isinstance(value, sp.Number) and self.notation.match(self.tokens, self.at):
+        named = not self.ended and self.notation.match(self.tokens, self.at)
+        if isinstance(value, sp.Number) and named:
             value = value * self.base()
         return [value]
 
@@ -369,6 +372,14 @@ class _Reader:
             return rows[0][0]
         return _blocks(rows)
 
+    def absolute(self) -> Value:
+        self.expect("|")
+        self.bars += 1
+        value = self.sum()
+        self.bars -= 1
+        self.expect("|")
+        return sp.Abs(value)
+
     def group(self, opening: str) -> Value:
         self.expect(opening)
         value = self.sum()
@@ -382,14 +393,18 @@ class _Reader:
 
     def root(self) -> Value:
         self.take()
-        return sp.sqrt(self.group("{"))
+        degree = self.group("[") if self.peek == "[" else 2
+        return sp.root(self.group("{"), degree)
 
     def environment(self) -> Value:
         self.take()
         kind = self.tokens[self.at].text[1:-1]
         self.at += 1
-        if kind == "array":
-            self.at += 3  # the alignment of the columns
+        if kind == "array":  # the alignment of the columns
+            self.expect("{")
+            depth = 1
+            while depth:
+                depth += {"{": 1, "}": -1}.get(self.take(), 0)
         rows: list[list[Value]] = [[]]
         while self.peek != r"\end":
             if self.peek == r"\\":
@@ -398,20 +413,25 @@ class _Reader:
                     rows.append([])
             elif self.peek == "&" or (kind == "cases" and self.peek == ","):
                 self.take()
-            elif kind == "cases" and self.peek == r"\text":
+            elif kind == "cases" and rows[-1]:
                 rows[-1].append(self.condition())
             else:
                 rows[-1].append(self.sum())
         self.at += 2
-        if kind == "cases":
-            return sp.Piecewise(*((value, condition) for value, condition in rows))
-        return _blocks(rows)
+        try:
+            if kind == "cases":
+                return sp.Piecewise(*((value, condition) for value, condition in rows))
+            return _blocks(rows)
+        except ValueError as error:
+            raise self.error(str(error)) from error
 
     def condition(self) -> Value:
-        self.at += 2
-        word = self.tokens[self.at - 1].text[1:-1].strip()
-        if word in ("otherwise", "else"):
-            return sp.true
+        """The condition of a case: a relation, after a word such as "if", or "otherwise"."""
+        if self.peek == r"\text":
+            word = self.text_word
+            self.at += 2
+            if word in ("otherwise", "else"):
+                return sp.true
         return self.relation().relational
 
     def series(self) -> Value:
@@ -454,7 +474,7 @@ class _Reader:
 
     def note(self, kind: str) -> None:
         token = self.tokens[self.at]
-        self.pieces.append(Piece(kind, token.start, token.end))
+        self.pieces.append(Piece(kind, token.start, token.start + len(token.text)))
 
     def expect(self, text: str) -> None:
         if self.peek != text:

@@ -22,10 +22,13 @@ class Token(NamedTuple):
 
 
 SPACES = (
-    r"\,", r"\;", r"\:", r"\!", r"\ ", r"\quad", r"\qquad", "~", r"\left", r"\right", r"\bigl",
-    r"\bigr", r"\Bigl", r"\Bigr", r"\big", r"\Big", r"\displaystyle", r"\limits",
+    r"\,", r"\;", r"\:", r"\!", r"\ ", r"\quad", r"\qquad", "~", r"\displaystyle", r"\limits",
 )  # fmt: skip
 """What changes only the look of a formula."""
+SIZES = (
+    r"\left", r"\right", r"\bigl", r"\bigr", r"\Bigl", r"\Bigr", r"\big", r"\Big",
+)  # fmt: skip
+"""The size of the delimiter that follows."""
 TOKEN = re.compile(
     r"(?P<word>\\(?:text|mathrm|begin|end)\s*\{[^{}]*\})|(?P<command>\\[A-Za-z]+|\\.)"
     r"|(?P<number>\d+(?:\.\d+)?)|(?P<space>\s+)|(?P<other>.)",
@@ -39,10 +42,15 @@ def tokens(text: str) -> list[Token]:
     ``\text{...}`` and ``\begin{...}`` are two tokens each: the command and what is in its braces.
     """
     found: list[Token] = []
+    sized: int | None = None
     for match in TOKEN.finditer(text):
         part, start, end = match[0], match.start(), match.end()
         if match["space"] or part in SPACES:
             continue
+        if part in SIZES:
+            sized = start
+            continue
+        start, sized = start if sized is None else sized, None
         if match["word"]:
             brace = part.index("{")
             found.append(Token(part[:brace].strip(), start, start + brace))

@@ -348,7 +348,10 @@ def run(
     if not failures:
         report("", "generating shared files")
         shares = {robot.name: robot.share for robot in robots}
-        shared = shared_files([shares[s.name] for s in together], backends)
+        try:
+            shared = shared_files([shares[s.name] for s in together], backends)
+        except ValueError as error:
+            raise DerivationError("shared files", f"not printed: {error}") from error
     names = {source.name for source in chosen}
     return Result(
         tuple(r for r in robots if r.name in names),

@@ -71,14 +71,17 @@ def judge(claim: Claim, errata: Sequence[Erratum]) -> ClaimResult:
         held = judged(claim, claim.corrected, readings[0]).kind
         if held not in HOLDS:
             raise ProofError(f"the correction is {held}: {claim.corrected}")
+    shown = [_text(v.evidence, claim.notation) for v in verdicts]
     known = {e.key for e in errata}
     if claim.erratum and claim.erratum not in known:
         raise ProofError(f"there is no erratum {claim.erratum!r}; there are {sorted(known)}")
     if kind in FAULTS and not claim.erratum:
-        raise ProofError(f"the verdict is {kind}: name the erratum that explains it")
+        raise ProofError(
+            f"the verdict is {kind} ({shown[0]}): mend the transcription, or name the erratum that "
+            f"explains it"
+        )
     if claim.erratum and kind in (PROVED, NOT_DECIDABLE):
         raise ProofError(f"the verdict is {kind}, but the claim names the erratum {claim.erratum}")
-    shown = [_text(v.evidence, claim.notation) for v in verdicts]
     results = (
         tuple(
             ReadingResult(r.text, v.kind, text)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from closedform.model.claims import NUMBERS, PIECE, Claim
+from closedform.model.claims import HOLDS, NUMBERS, PIECE, Claim
+from closedform.model.notation import NotationError
+from closedform.proof.claims import judged
 
 _SIGNS = {"+": "-", "-": "+", r"\pm": "+", r"\mp": r"\pm"}
 _FUNCTIONS = {r"\sin": r"\cos", r"\cos": r"\sin", r"\tan": r"\sin"}
@@ -26,6 +28,31 @@ class Mutation:
 
     def __str__(self) -> str:
         return f"{self.kind} {self.old} -> {self.new}"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a changed text: its verdict, or the error that its check raised."""
+
+    mutation: Mutation
+    kind: str
+    error: str = ""
+    changes: bool = False
+    """Whether the text holds and the printed one does not, or the reverse."""
+
+
+def outcomes(claim: Claim) -> Iterator[Outcome]:
+    """The verdict of each changed text; a text that the notation cannot read is left out."""
+    held = judged(claim, claim.printed).kind in HOLDS
+    for mutation in mutations(claim):
+        try:
+            kind = judged(claim, mutation.text).kind
+        except NotationError:
+            continue
+        except Exception as error:  # a check may call anything that its author wrote
+            yield Outcome(mutation, "", f"{type(error).__name__}: {error}")
+        else:
+            yield Outcome(mutation, kind, changes=(kind in HOLDS) != held)
 
 
 def mutations(claim: Claim) -> Iterator[Mutation]:
@@ -72,8 +99,8 @@ def _formula(claim: Claim, formula: str) -> Iterator[tuple[str, int, int, str]]:
             yield "function", piece.start, end, _FUNCTIONS[old]
         elif piece.kind == "relation" and old not in ("=", r"\equiv"):
             yield "relation", piece.start, end, _RELATIONS[old] + " "
-        elif piece.kind == "name" and old in notation.meanings:
-            for other in notation.alternatives(old)[:1]:
+        elif piece.kind == "name":
+            for other in notation.alternatives(piece.name)[:1]:
                 yield "name", piece.start, end, other
 
 

@@ -62,7 +62,7 @@ class Identity(Check):
         if decision.holds:
             assumed = [piece for a in decision.assumptions for piece in (", ", a, r" $\ge 0$")]
             kind = PROVED_UNDER if decision.assumptions else PROVED
-            return Verdict(kind, ("where ", *assumed[1:]) if assumed else ())
+            return Verdict(kind, tuple(assumed[1:]))
         assert decision.counterexample is not None
         where = self._point(decision.counterexample)
         if self.small is not None and (order := _order(gap, self.small)):
@@ -167,7 +167,12 @@ class Equal(Check):
                 sp.prod(e.subs(SIGN, s) for s in (1, -1)) if e.has(SIGN) else e
                 for e in entries(gap)
             ]
-            return Identity(product, [sp.S.Zero] * len(product), self.nonnegative).judge()
+            verdict = Identity(product, [sp.S.Zero] * len(product), self.nonnegative).judge()
+            if verdict.kind != REFUTED:
+                return verdict
+            point = next((p for p in verdict.evidence if isinstance(p, Mapping)), {})
+            sentence = ("neither sign of $\\pm$ makes ", names[0], " equal ", names[1])
+            return Verdict(REFUTED, (*at(point), *sentence))
         return Identity(first, side, self.nonnegative, self.small, names).judge()
 
 
@@ -263,6 +268,8 @@ class Under(Check):
 
     def judge(self) -> Verdict:
         verdict = self.check.judge()
-        if verdict.kind != PROVED:
-            return verdict
-        return Verdict(PROVED_UNDER, (self.assumption,))
+        if verdict.kind == PROVED:
+            return Verdict(PROVED_UNDER, (self.assumption,))
+        if verdict.kind == PROVED_UNDER:
+            return Verdict(PROVED_UNDER, (self.assumption, ", ", *verdict.evidence))
+        return verdict

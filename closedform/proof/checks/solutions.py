@@ -202,7 +202,7 @@ class Procedure(Check):
 
     ``formulas`` give names, in order, in the inputs and in names given before.  ``reached`` is the
     forward map in the names; it has to equal the ``targets``, which ``postures`` takes as inputs.
-    A sample can refute a procedure, not prove it.
+    A sample can refute a procedure; if no posture is missed, the exact zero test has to prove it.
     """
 
     formulas: Mapping[sp.Symbol, Expr]
@@ -223,10 +223,25 @@ class Procedure(Check):
             gaps = [np.abs(values(e, names) - sampled[t]) for t, e in self.reached.items()]
             missed &= ~(np.max(gaps, axis=0) < _CLOSE * size)
         if not missed.any():
-            raise Undecided(f"none of {SAMPLES} postures is missed, which proves nothing")
+            return self._proved()
         where = self._simple()
         how = share("it does not reach its target", missed, self.postures, sampled)
         return Verdict(REFUTED, (*where, *how[1:]) if where else how[1:])
+
+    def _proved(self) -> Verdict:
+        """The verdict if no sampled posture is missed: an exact proof for each choice of signs."""
+        signs = (1, -1) if any(f.has(SIGN) for f in self.formulas.values()) else (1,)
+        for s in signs:
+            names = dict(self.postures.inputs)
+            for name, formula in self.formulas.items():
+                names[name] = formula.subs(SIGN, s).subs(names, simultaneous=True)
+            gaps = [
+                e.subs(names, simultaneous=True) - self.postures.inputs[t]
+                for t, e in self.reached.items()
+            ]
+            if not decide(sp.Matrix(gaps)).holds:
+                raise Undecided(f"none of {SAMPLES} postures is missed, which proves nothing")
+        return Verdict(PROVED, ("the posture that it gives reaches its target",))
 
     def _simple(self) -> tuple[Any, ...]:
         """A posture that a person can check by hand, with what is reached there."""

@@ -43,6 +43,8 @@ class Rounded(Check):
     scale: Expr = sp.S.One
 
     def judge(self) -> Verdict:
+        if set(self.relation.signs) != {"="}:
+            raise ValueError(f"{' '.join(self.relation.texts)} is not an equation")
         digits = self.relation.decimals
         value = constant(self.exact) / self.scale
         scaled = value * 10**digits
@@ -108,10 +110,9 @@ class ForAll(Check):
     among: Sequence[Point] = ()
 
     def judge(self) -> Verdict:
-        relation = sp.sympify(self.relation)
+        relation = _placed(sp.sympify(self.relation), self.on)
         if relation in (sp.true, sp.false):
             return Verdict(PROVED if relation == sp.true else REFUTED)
-        relation = _placed(relation, self.on)
         where = [_placed(c, self.on) for c in self.where]
         violated = _first([*where, _negated(relation)], self.among)
         if violated is not None:
@@ -133,7 +134,7 @@ class ForAll(Check):
         gap = relation.gts - relation.lts
         try:
             form = positive_form(gap, list(self.slack))
-        except ValueError:
+        except (ValueError, sp.PolynomialError):
             return False
         strict = isinstance(relation, sp.Gt | sp.Lt)
         return not strict or bool(form.is_positive)

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from closedform.emit.backend import Backend, Files, Mechanism, Pages
 from closedform.emit.backends.latex.article import document
-from closedform.emit.backends.latex.errata import Part, part, together
+from closedform.emit.backends.latex.errata import context
+from closedform.emit.errata import Part, part
 from closedform.emit.render import render
 
 
@@ -18,7 +19,7 @@ class Latex(Backend):
         return Pages({Path("latex", f"{derivation.name}.tex"): text}, part(derivation, proof))
 
     def shared(self, shares: Sequence[Part | None]) -> Files:
-        return {Path("errata.md"): render("errata.md.jinja", together(shares))}
+        return {Path("errata.md"): render("errata.md.jinja", context(shares))}
 
     def first_file(self, robot: str) -> Path:
         return Path("latex", f"{robot}.tex")

@@ -25,8 +25,9 @@ from closedform.emit.backends.latex.prose import (
     symbol_name,
     upright,
 )
+from closedform.emit.errata import Entry, gathered, part
 from closedform.emit.text import citation
-from closedform.model.claims import REFUTED
+from closedform.model.claims import HOLDS, PROVED_UNDER
 from closedform.model.derivation import Continuum, Derivation, Inverse, Joint, Step
 from closedform.model.functions import (
     Array,
@@ -39,6 +40,7 @@ from closedform.model.functions import (
     Vanishes,
     real,
 )
+from closedform.proof.claims import ClaimResult
 from closedform.proof.prove import InverseResult, Proof
 
 __all__ = ["Page", "document"]
@@ -328,22 +330,48 @@ class Page:
             for name in names
         }
 
+    def errata(self) -> list[dict[str, Any]]:
+        """The errors of the paper that this mechanism shows, gravest first."""
+        papers = gathered([part(self.derivation, self.proof)])
+        return [self.erratum(e) for paper in papers for e in paper.entries]
+
+    def erratum(self, entry: Entry) -> dict[str, Any]:
+        return {
+            "key": entry.erratum.key,
+            "title": mixed(entry.erratum.title),
+            "gravity": entry.gravity.value.capitalize(),
+            "verdict": ", ".join(entry.verdicts),
+            "why": mixed(entry.erratum.why),
+            "use": mixed(entry.erratum.use),
+            "claims": [self.claim(c) for c in entry.claims],
+        }
+
     def claims(self) -> list[dict[str, Any]]:
-        """The rows of the table; ``where`` is given once above the claims of one section."""
+        """The rows of the table; ``heading`` is the section of the paper, given once."""
         rows, where = [], ""
         for claim in self.proof.claims:
-            rows.append(
-                {
-                    "where": escape(claim.where) if claim.where != where else "",
-                    "label": escape(claim.label),
-                    "verdict": rf"\textbf{{{claim.kind}}}" if claim.kind == REFUTED else claim.kind,
-                    "printed": mixed(claim.printed),
-                    "evidence": self.prose(claim.evidence),
-                    "corrected": mixed(self.prose.correction(claim.corrected)),
-                }
-            )
+            rows.append({**self.claim(claim), "heading": claim.where != where})
             where = claim.where
         return rows
+
+    def claim(self, claim: ClaimResult) -> dict[str, Any]:
+        titles = {e.key: mixed(e.title) for e in self.proof.errata}
+        steps = self.derivation.steps
+        return {
+            "where": escape(claim.where),
+            "label": escape(claim.label),
+            "step": next((k for k, s in enumerate(steps, 1) if derives(s, claim.label)), 0),
+            "verdict": claim.kind if claim.kind in HOLDS else rf"\textbf{{{claim.kind}}}",
+            "printed": mixed(claim.printed),
+            "paraphrase": claim.paraphrase,
+            "found": "Assumption:" if claim.kind == PROVED_UNDER else "Found:",
+            "evidence": mixed(claim.evidence),
+            "reading": mixed(claim.readings[0].text) if claim.readings else "",
+            "others": [(mixed(r.text), r.kind, mixed(r.evidence)) for r in claim.readings[1:]],
+            "corrected": mixed(claim.corrected),
+            "erratum": claim.erratum,
+            "title": titles.get(claim.erratum, ""),
+        }
 
     def singular_set(self) -> list[tuple[str, str]]:
         """The name of each factor, and the equation that sets it to zero."""
@@ -441,6 +469,12 @@ class Page:
         return [whole, *(equation for _, _, equation in sorted(named))]
 
 
+def derives(step: Step, label: str) -> bool:
+    """Whether a step derives the equation of a claim: ``eq. (9)`` or ``eq. (9), first line``."""
+    names = {name for n in step.published for name in (n, f"eq. {n}")}
+    return label in names or label.partition(",")[0] in names
+
+
 def decimal(value: sp.Rational) -> str:
     """A rational as a decimal if that is exact and short, else as a fraction."""
     digits = next((k for k in range(7) if (value * 10**k).is_Integer), None)
@@ -490,12 +524,14 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
              text(p.meaning), text(p.source)) for p in derivation.parameters
         ],
         "joints": [page.joint(j) for j in derivation.joints],
-        "steps": [page.step(s) for s in derivation.steps],
+        "steps": [{**page.step(s), "number": k} for k, s in enumerate(derivation.steps, 1)],
         "modes": derivation.assembly_modes,
         "inverses": [page.inverse(f) for f in derivation.functions if f.has_status],
         "functions": [page.function(f) for f in derivation.functions],
         "singular": page.singular_set(),
         "verdicts": ", ".join(f"{n} {kind}" for kind, n in proof.verdicts().items()),
+        "errata": page.errata(),
+        "paper_source": mixed(derivation.paper.source),
         "claims": page.claims(),
     }  # fmt: skip
     return context | {"legend": ",\\quad ".join(map(" = ".join, page.legend()))}

@@ -169,29 +169,6 @@ class Prose:
             return related or not text.startswith("(")
         return related and "=" in text if names else related or text[0] == "-"
 
-    def correction(self, text: str) -> str:
-        """A corrected form as text with formulas between dollar signs, one for each statement."""
-        if "$" in text or re.search(r"^[^\\]*\b[a-z]{2,} [a-z]{2,}\b[^\\]*$", text):
-            return text
-        text = loosen(text)
-        for name in sorted(
-            n for n in self.known - GREEK if len(n) > 1 and sp.latex(sp.Symbol(n)) == n
-        ):
-            better = symbol_name(name).replace("\\", r"\\")
-            text = re.sub(rf"(?<![\\A-Za-z_]){name}(?![A-Za-z])", better, text)
-        text = re.sub(r"_\{(\w)\}", r"_\1", text)
-        text = re.sub(
-            r"\\(sin|cos|tan)(\^\{\w+\})?\{\((\\?\w+(?:_\{\w+\})?)\)\}", r"\\\1\2 \3", text
-        )
-        parts = []
-        for part in re.split(r";\\quad |,\\ (?=\[)", text):
-            entry = re.match(r"(?:\\text\{(.*?): \})?(?:\[(\d+,\d+)\] = )?", part)
-            assert entry is not None
-            head = [entry[1]] if entry[1] else []
-            head += [f"entry ({entry[2]})"] if entry[2] else []
-            parts.append(", ".join(head) + ": " * bool(head) + f"${part[entry.end() :]}$")
-        return "; ".join(parts) if text else ""
-
     def formula(self, text: str) -> str:
         done = []
         for function, argument, power, number, name, sign, other in TOKEN.findall(text):

@@ -43,7 +43,7 @@ class Rounded(Check):
     scale: Expr = sp.S.One
 
     def judge(self) -> Verdict:
-        if set(self.relation.signs) != {"="}:
+        if not set(self.relation.signs) <= {"="}:  # "60 or -60" has an alternative without a sign
             raise ValueError(f"{' '.join(self.relation.texts)} is not an equation")
         digits = self.relation.decimals
         value = constant(self.exact) / self.scale

@@ -1,6 +1,6 @@
 """Claims of Chablat, Wenger and Angeles about the kinematics of the hybrid five-bar linkage."""
 
-from functools import partial
+from functools import cache, partial
 from math import prod
 
 import sympy as sp
@@ -401,6 +401,7 @@ def working_modes(d: Derivation, bar: FiveBar) -> None:
         (bar.loop[2], t3, bar.in_plane),
     )
 
+    @cache
     def counts() -> list[int]:
         return [count_solutions([e.subs(at)], (u,)).count for e, u, at in steps]
 

@@ -280,7 +280,8 @@ def loci(d: Derivation, bar: FiveBar) -> None:
         why="Section 2.5 says that these singularities occur inside the workspace, and section 3.1 "
         "that its boundary is where AP or BP is $L_1 + L_2$ or $|L_1 - L_2|$.  For $L_0 = 7$, "
         "$L_1 = 8$, $L_2 = 5$ C and D coincide at the distance 3.5 from A along AB and "
-        "$\\sqrt{207}/2$ from AB.  P is then free on a circle of radius 5, most of it inside.",
+        "$\\sqrt{207}/2$ from AB.  P is then free on a circle of radius 5, "
+        "inside the workspace except where CP is in line with AC or BD.",
         use="A planner that expects parallel singularities at the boundary only leads P through "
         "them.  They bound the parts that one working mode reaches without a singularity, as in "
         "figures 13 and 14, together with the boundary of the workspace.",

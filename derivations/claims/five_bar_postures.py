@@ -1,17 +1,58 @@
-"""Exact postures and inequalities of the five-bar linkage, the evidence for and against claims."""
+"""The five-bar linkage for the claims: its graph, exact postures, and what bounds its lengths."""
 
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from itertools import product
 from typing import NamedTuple
 
 import sympy as sp
 from closedform.derivations import hybrid_five_bar_design as design
-from sympy import Abs, atan2, cos, sin, sqrt
+from sympy import Abs, pi, sqrt
 
-from closedform import real
-from closedform.proof.checks import Check, Every, Holds, Identity
+from closedform import (
+    Check,
+    Enumeration,
+    Every,
+    ForAll,
+    Holds,
+    Identity,
+    Relation,
+    equal,
+    normal,
+    real,
+)
 
 DEFAULT = (7, 8, 5)
+NO_LENGTHS = "a figure for lengths that the paper does not give"
+NO_MODEL = "the paper gives no masses, no stiffness and no tolerances"
 Eq, Ne, Lt, Gt = (partial(relation, evaluate=False) for relation in (sp.Eq, sp.Ne, sp.Lt, sp.Gt))
+J = sp.Matrix([0, 1, 0])
+
+JOINTS = {
+    "theta1": ("base", "AB"),
+    "theta2": ("AB", "AC"),
+    "theta3": ("AB", "BD"),
+    "theta4": ("AC", "CP"),
+    "theta5": ("BD", "DP"),
+    "P": ("CP", "DP"),
+}
+"""The bodies that each revolute joint connects."""
+
+
+def routes(start: str, end: str, seen: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+    """The ways from one body to another, as joints, without passing a body twice."""
+    if start == end:
+        yield ()
+        return
+    for joint, bodies in JOINTS.items():
+        for a, b in (bodies, bodies[::-1]):
+            if a == start and b not in (*seen, start):
+                yield from ((joint, *rest) for rest in routes(b, end, (*seen, start)))
+
+
+def in_loop() -> list[str]:
+    """The joints whose bodies are connected in another way too; the others are in series."""
+    return [joint for joint, (a, b) in JOINTS.items() if len(list(routes(a, b))) > 1]
 
 
 class FiveBar(NamedTuple):
@@ -19,12 +60,14 @@ class FiveBar(NamedTuple):
 
     lengths: tuple[sp.Symbol, ...]
     angles: tuple[sp.Symbol, ...]
+    pivots: tuple[sp.Matrix, sp.Matrix]
     elbows: tuple[sp.Matrix, sp.Matrix]
     by_legs: tuple[sp.Matrix, sp.Matrix]
     k: sp.Matrix
-    p: tuple[sp.Symbol, ...]
+    p: sp.Matrix
     loop: tuple[sp.Expr, ...]
     A: sp.Matrix
+    A_loop: sp.Matrix
     B: sp.Matrix
     in_plane: dict[sp.Symbol, sp.Expr]
     volumes: dict[str, design.Regime]
@@ -34,34 +77,60 @@ class FiveBar(NamedTuple):
         return self.elbows[1] - self.elbows[0]
 
     @property
-    def det_A(self) -> sp.Expr:
-        return self.A.det()
+    def bars(self) -> tuple[sp.Matrix, ...]:
+        """The vectors AC, BD, CP and DP."""
+        driven = (e - o for e, o in zip(self.elbows, self.pivots, strict=True))
+        following = (p - e for p, e in zip(self.by_legs, self.elbows, strict=True))
+        return (*driven, *following)
+
+    @property
+    def gram(self) -> sp.Matrix:
+        return (self.A * self.A.T).applyfunc(normal)
+
+    @property
+    def eigenvalues(self) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+        """The eigenvalues of the matrix ``gram``, in their order: its last block is symmetric."""
+        G = self.gram
+        return G[1, 1] - Abs(G[1, 2]), G[0, 0], G[1, 1] + Abs(G[1, 2])
 
     @property
     def kappa(self) -> sp.Expr:
-        """The condition number of A."""
-        c = Abs(cos(self.angles[3] - self.angles[4]))
-        return sqrt((1 + c) / (1 - c))
+        """The condition number of A, by the singular values."""
+        smallest, _, largest = self.eigenvalues
+        return sqrt(largest / smallest)
 
+    def freedom(self, angles: Sequence[sp.Symbol]) -> int:
+        """The freedom of the loop if only some angles can change, at a posture with L0 = CD."""
+        t = self.angles
+        posture = dict.fromkeys(self.lengths, sp.S.One) | {
+            t[0]: sp.S.Zero, t[1]: pi / 2, t[2]: pi / 2, t[3]: pi / 3, t[4]: 2 * pi / 3
+        }  # fmt: skip
+        gap = self.by_legs[0] - self.by_legs[1]
+        if any(e.subs(posture) != 0 for e in gap):
+            raise ValueError("the loop is not closed")
+        return len(angles) - gap.jacobian(list(angles)).subs(posture).rank()
 
-def signs(bar: FiveBar) -> Check:
-    """The sine of the angle between the bars of a leg, 2 sigma atan2(a, b), has the sign sigma."""
-    a, b = real("a", positive=True), real("b", positive=True)
-    sigma = real("sigma")
-    return Every(
-        {
-            f"branch {s}": Identity(
-                sin(2 * sigma * atan2(a, b)).subs(sigma, s), s * 2 * a * b / (a**2 + b**2)
-            )
-            for s in (1, -1)
+    def turned_by(self, bar: sp.Matrix, other: sp.Matrix) -> sp.Expr:
+        """The cross product of two bars, about the normal of the plane."""
+        return normal(self.k.dot(bar.cross(other)))
+
+    def serial_cases(self) -> list[str]:
+        """What the vanishing of each entry of B means: which points are in line?"""
+        AC, BD, CP, DP = self.bars
+        L2 = self.lengths[2]
+        named = {
+            "P on AB": normal(L2 * self.k.dot(J.cross(self.by_legs[0]))),
+            "AC and CP aligned": self.turned_by(AC, CP),
+            "BD and DP aligned": self.turned_by(BD, DP),
+            "CP and DP aligned": self.turned_by(CP, DP),
         }
-    )
+        return [name for name, e in named.items() if any(equal(e, self.B[i, i]) for i in range(3))]
 
 
 class Plane(NamedTuple):
     """A posture in the plane of the linkage: C, D and P as (y, rho), for given lengths."""
 
-    lengths: tuple[int, int, int]
+    lengths: Sequence[sp.Expr]
     C: sp.Matrix
     D: sp.Matrix
     P: sp.Matrix
@@ -73,10 +142,10 @@ class Plane(NamedTuple):
     def closed(self) -> dict[str, sp.Expr]:
         _, L1, L2 = self.lengths
         return {
-            "AC = BD = L1": Eq(square(self.C) - square(self.D - self.B), 0),
-            "AC = L1": Eq(square(self.C) - L1**2, 0),
-            "CP = L2": Eq(square(self.P - self.C) - L2**2, 0),
-            "DP = L2": Eq(square(self.P - self.D) - L2**2, 0),
+            "AC = L1": Eq(square(self.C), L1**2),
+            "BD = L1": Eq(square(self.D - self.B), L1**2),
+            "CP = L2": Eq(square(self.P - self.C), L2**2),
+            "DP = L2": Eq(square(self.P - self.D), L2**2),
         }
 
     def interior(self) -> dict[str, sp.Expr]:
@@ -90,20 +159,58 @@ class Plane(NamedTuple):
     @property
     def cross(self) -> sp.Expr:
         """CP x DP: L2^2 times the sine of the angle between them."""
-        return sp.Matrix.hstack(self.P - self.C, self.P - self.D).det()
+        return turn(self.P - self.C, self.P - self.D)
 
     @property
     def dot(self) -> sp.Expr:
         return (self.P - self.C).dot(self.P - self.D)
 
+    @property
+    def diagonal(self) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+        """The diagonal entries of B."""
+        legs = turn(self.C, self.P - self.C), turn(self.D - self.B, self.P - self.D)
+        return self.lengths[2] * self.P[1], *legs
+
+    @property
+    def conditions(self) -> tuple[sp.Expr, sp.Expr]:
+        """The squares of the condition numbers of A and of B."""
+        L2 = self.lengths[2]
+        c = Abs(self.dot) / L2**2
+        entries = [sp.expand(e**2) for e in self.diagonal]
+        return sp.simplify((1 + c) / (1 - c)), sp.simplify(sp.Max(*entries) / sp.Min(*entries))
+
     def other_mode(self) -> "Plane":
         """The posture with the leg over C reflected about AP."""
         C = 2 * self.C.dot(self.P) / square(self.P) * self.P - self.C
-        return self._replace(C=C)
+        return self._replace(C=C.applyfunc(sp.simplify))
+
+    def corners(self) -> list[sp.Expr]:
+        """How the outline A, B, D, P, C turns at each corner; convex if no two signs differ."""
+        points = [sp.zeros(2, 1), self.B, self.D, self.P, self.C]
+        return [turn(points[i - 1] - points[i - 2], points[i] - points[i - 1]) for i in range(5)]
+
+
+def turn(a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
+    return sp.expand(sp.Matrix.hstack(a, b).det())
 
 
 def square(v: sp.Matrix) -> sp.Expr:
     return sp.expand(v.dot(v))
+
+
+def modes(lengths: Sequence[sp.Expr], P: sp.Matrix) -> list[Plane]:
+    """The postures of all signs of both legs for a position of P in the plane."""
+    L0, L1, L2 = lengths
+    found = []
+    for signs in product((1, -1), repeat=2):
+        ends = []
+        for pivot, s in zip((sp.zeros(2, 1), sp.Matrix([L0, 0])), signs, strict=True):
+            v = P - pivot
+            along = (square(v) + L1**2 - L2**2) / (2 * square(v))
+            off = sqrt(L1**2 / square(v) - along**2)
+            ends.append(pivot + along * v + s * off * sp.Matrix([-v[1], v[0]]))
+        found.append(Plane(tuple(lengths), *ends, P))
+    return found
 
 
 def coincident(lengths: tuple[int, int, int] = DEFAULT) -> Plane:
@@ -113,53 +220,113 @@ def coincident(lengths: tuple[int, int, int] = DEFAULT) -> Plane:
     return Plane(lengths, C, C, C - sp.Matrix([L2, 0]))
 
 
-def isotropic() -> Plane:
-    """The symmetric isotropic posture: CD is parallel to AB and sqrt(2) L2 long."""
-    L0, L1, L2 = DEFAULT
-    half = L2 / sqrt(2)
+def symmetric(half: sp.Expr, lengths: tuple[int, int, int] = DEFAULT) -> Plane:
+    """CD is parallel to AB and twice ``half`` long, and P is between CD and AB."""
+    L0, L1, L2 = lengths
     C_y = sp.Rational(L0, 2) - half
     height = sqrt(sp.expand(L1**2 - C_y**2))
-    P = sp.Matrix([sp.Rational(L0, 2), height - half])
-    return Plane(DEFAULT, sp.Matrix([C_y, height]), sp.Matrix([L0 - C_y, height]), P)
+    P = sp.Matrix([sp.Rational(L0, 2), height - sqrt(L2**2 - half**2)])
+    return Plane(lengths, sp.Matrix([C_y, height]), sp.Matrix([L0 - C_y, height]), P)
 
 
-def on_the_axis() -> Holds:
+def isotropic() -> Plane:
+    """CP and DP are at right angles."""
+    return symmetric(DEFAULT[2] / sqrt(2))
+
+
+def in_line() -> Plane:
+    """C, P and D are in line, on the far side of a convex outline."""
+    return symmetric(sp.Integer(DEFAULT[2]))
+
+
+def on_the_axis() -> Plane:
     """P on AB inside the workspace: the default lengths, AP = BP = 7/2."""
     L0, L1, L2 = DEFAULT
     half = sp.Rational(L0, 2)
     C_y = (L1**2 - L2**2 + half**2) / (2 * half)
     C = sp.Matrix([C_y, sqrt(L1**2 - C_y**2)])
-    posture = Plane(DEFAULT, C, sp.Matrix([L0 - C[0], C[1]]), sp.Matrix([half, 0]))
-    return Holds({**posture.closed(), **posture.interior(), "rho = 0": Eq(posture.P[1], 0)})
+    return Plane(DEFAULT, C, sp.Matrix([L0 - C[0], C[1]]), sp.Matrix([half, 0]))
 
 
-def serial(bar: FiveBar) -> Check:
-    """The diagonal of B: rho L2, and entries that vanish if AP or BP is L1 + L2 or |L1 - L2|."""
-    L0, L1, L2 = bar.lengths
-    rho = bar.by_legs[0].dot(bar.k.cross(sp.Matrix([0, 1, 0])))
-    parts = {"rho": Identity(bar.B[0, 0], L2 * rho)}
-    for i, name in enumerate(("AP", "BP")):
-        arm = bar.by_legs[i] - sp.Matrix([0, i * L0, 0])
+def serial_by_position(bar: FiveBar) -> Check:
+    """For a given P, only the signs of the entries of B depend on the working mode.
+
+    The first entry is L2 rho, where the square of rho is that of the distance of P from AB.  The
+    others are twice the areas of the triangles ACP and BDP, so they vanish only at the distances
+    L1 + L2 and |L1 - L2| of P from A or from B.
+    """
+    _, L1, L2 = bar.lengths
+    p = bar.by_legs[0]
+    parts: dict[str, Check] = {
+        "the first entry": Identity(bar.B[0, 0] ** 2, L2**2 * (p.dot(p) - p.dot(J) ** 2))
+    }
+    for i, (name, o) in enumerate(zip(("AP", "BP"), bar.pivots, strict=True)):
+        arm = bar.by_legs[i] - o
         reach = arm.dot(arm)
-        parts[name] = Identity(
+        parts[f"the entry that depends on {name}"] = Identity(
             ((L1 + L2) ** 2 - reach) * (reach - (L1 - L2) ** 2), 4 * bar.B[i + 1, i + 1] ** 2
         )
     return Every(parts)
 
 
-def without_parallel(L0: int, L1: int, L2: int) -> dict[str, sp.Expr]:
-    """The conditions for a design without parallel singularities, for given numbers."""
+def sign_patterns(indicator: Callable[[Plane], Sequence[sp.Expr]]) -> Check:
+    """The eight postures for one P differ in the signs of an indicator."""
+    P = sp.Matrix([3, 6])
+    postures = [posture for s in (1, -1) for posture in modes(DEFAULT, sp.diag(1, s) * P)]
+    return Enumeration(
+        len(postures),
+        lambda: len({tuple(bool(e > 0) for e in indicator(at)) for at in postures}),
+        "postures that differ in a sign, for P at 3 along AB and 6 from AB and the lengths 7, 8, 5",
+    )
+
+
+def range_of_CD(bar: FiveBar) -> dict[str, Check]:
+    """CD takes all values between max(0, L0 - 2 L1) and L0 + 2 L1, and no other."""
+    t2, t3 = bar.angles[1:3]
+    L0, L1, _ = bar.lengths
+    corner = sp.acos(L0 / (2 * L1))
+    ends = [({t2: pi, t3: sp.S.Zero}, L0 + 2 * L1), ({t2: sp.S.Zero, t3: pi}, L0 - 2 * L1)]
     return {
-        f"{L0} > 2*{L1}, C and D stay apart": sp.sympify(L0 > 2 * L1),
-        f"2*{L2} > {L0} + 2*{L1}, C, P, D are never in line": sp.sympify(2 * L2 > L0 + 2 * L1),
+        "CD <= L0 + 2 L1": Identity(*design.longest(bar.CD, t2, t3)),
+        "CD >= L0 - 2 L1": Identity(*design.shortest(bar.CD, t2, t3)),
+        "both occur": Identity(
+            [bar.CD.dot(bar.CD).subs(at) for at, _ in ends], [end**2 for _, end in ends]
+        ),
+        "C and D meet if L0 <= 2 L1": Identity(
+            bar.CD.subs({t2: corner, t3: pi - corner}), sp.zeros(3, 1)
+        ),
     }
 
 
-def longest(bar: FiveBar) -> Check:
-    """CD is at most L0 + 2 L1."""
-    return Identity(*design.longest(bar.CD, *bar.angles[1:3]))
+def relations(formula: Relation | tuple[Relation, ...]) -> list[sp.Expr]:
+    """The relations between neighbouring sides of printed formulas."""
+    several = formula if isinstance(formula, tuple) else (formula,)
+    return [
+        Relation(r.sides[i : i + 2], r.signs[i : i + 1], r.texts[i : i + 2]).relational
+        for r in several
+        for i in range(len(r.signs))
+    ]
 
 
-def shortest(bar: FiveBar) -> Check:
-    """CD is at least L0 - 2 L1 if this is not negative."""
-    return Identity(*design.shortest(bar.CD, *bar.angles[1:3]))
+def implies(printed: Sequence[sp.Expr], wanted: sp.Expr, lengths: Sequence[sp.Symbol]) -> Check:
+    """Inequalities between lengths imply another one, which is linear in them too.
+
+    Each printed inequality says that a gap is positive.  If one of them is solved for a length, and
+    then all coefficients of the wanted gap are positive, the implication is proved.
+    """
+    for r in printed:
+        if isinstance(r, sp.Ne):
+            continue
+        strict = isinstance(r, sp.Gt | sp.Lt)
+        gap = real("gap", positive=True) if strict else real("gap", nonnegative=True)
+        for length in lengths:
+            slack = [(length, s) for s in sp.solve(r.gts - r.lts - gap, length)]
+            form = sp.expand((wanted.gts - wanted.lts).subs(slack))
+            if form.is_positive or (form.is_nonnegative and not isinstance(wanted, sp.Gt | sp.Lt)):
+                return ForAll(wanted, where=printed, slack=slack)
+    return ForAll(wanted, where=printed)
+
+
+def closed_and(posture: Plane, **more: sp.Expr) -> Holds:
+    """A posture is closed, and further relations hold at it."""
+    return Holds({**posture.closed(), **{k.replace("_", " "): v for k, v in more.items()}})

@@ -1,414 +1,551 @@
-"""Claims of Chablat, Wenger and Angeles about the design of the hybrid five-bar linkage."""
+"""Claims of Chablat, Wenger and Angeles about the design: sections 3.1 to 3.3."""
 
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from types import MappingProxyType
 
 import sympy as sp
 from closedform.derivations.claims.five_bar_postures import (
+    DEFAULT,
+    NO_LENGTHS,
     Eq,
     FiveBar,
-    Lt,
     Ne,
     Plane,
-    coincident,
+    closed_and,
+    implies,
+    in_line,
     isotropic,
-    longest,
+    modes,
     on_the_axis,
-    serial,
-    shortest,
-    signs,
-    without_parallel,
+    range_of_CD,
+    relations,
+    serial_by_position,
+    sign_patterns,
+)
+from closedform.derivations.claims.hybrid_five_bar_singularities import (
+    AXIS_TOO,
+    by_path_planning,
+    notation,
+)
+from closedform.derivations.claims.hybrid_five_bar_singularities import (
+    by_design as designs,
 )
 from closedform.derivations.hybrid_five_bar_design import decrease
-from sympy import Abs, cos, pi, sin, sqrt, tan
+from sympy import cos, pi, sin
 
-from closedform import Derivation, positive_form, real
-from closedform.proof.checks import (
+from closedform import (
     Check,
+    Derivation,
     Enumeration,
     Every,
-    Holds,
+    ForAll,
+    Gravity,
     Identity,
-    Refuted,
+    Not,
+    Reading,
+    Relation,
     Undecidable,
     Under,
+    normal,
+    real,
 )
 
-NO_DIMENSIONS = "a figure for lengths that the paper does not give"
+NEVER = (
+    "C and D never meet, so L0 > 2 L1",
+    "C, P and D are never in line, so 2 L2 > L0 + 2 L1",
+)
+GIVEN_REACH = (
+    "for a given reach $L_1 + L_2$, as in the paper's reference [7]; without a bound on the "
+    "lengths there is no largest workspace"
+)
+
+
+def larger_workspaces(claim: Callable[..., None]) -> None:
+    """The announcement of section 3.3 in the abstract and in section 1."""
+    claim(
+        "larger workspaces",
+        "“it is shown that the special kinematic structure of our manipulator has the potential of "
+        "avoiding parallel singularities by a {suitable} choice of the « working mode », thus "
+        "leading to larger workspaces”",
+        crossed,
+        phrases=[{"suitable": True, "fixed": False}],
+    )
+
+
+def crossed(change: bool) -> Check:
+    """A point that one working mode reaches only beyond its parallel singularity.
+
+    With a change of mode, det A has the same sign there as at a point that both modes reach.
+    """
+    first = next(m for m in modes(DEFAULT, sp.Matrix([sp.Rational(7, 2), 11])) if convex(m))
+    beyond = next(m for m in modes(DEFAULT, sp.Matrix([sp.Rational(7, 2), 4])) if convex(m))
+    regions = [first.cross, beyond.other_mode().cross if change else beyond.cross]
+    return Every(
+        {
+            "det A changes its sign between two points": closed_and(
+                beyond, sides=sp.Lt(first.cross * beyond.cross, 0)
+            ),
+            "it need not, with the chosen mode": closed_and(
+                first, side=sp.Gt(regions[0] * regions[1], 0)
+            ),
+        }
+    )
+
+
+def common_point() -> Check:
+    """A point that two working modes reach with det A of the same sign."""
+    first = next(m for m in modes(DEFAULT, sp.Matrix([sp.Rational(7, 2), 11])) if convex(m))
+    other = first.other_mode()
+    return Every(
+        {
+            "convex": closed_and(first, det_A=sp.Gt(first.cross, 0)),
+            "not convex": closed_and(other, det_A=sp.Gt(other.cross, 0)),
+        }
+    )
+
+
+def convex(posture: Plane) -> bool:
+    """Whether the bars of both legs turn inwards, with P above AB."""
+    _, over_c, over_d = posture.diagonal
+    return bool(over_c < 0) and bool(over_d > 0)
 
 
 def workspace(d: Derivation, bar: FiveBar) -> None:
     """Section 3.1."""
-    claim = partial(d.claim, where="3.1 Workspace")
-    L0, L1, L2 = bar.lengths
+    claim = partial(d.claim, where="3.1 Workspace", notation=notation(bar))
+    _, L1, L2 = bar.lengths
     t2, t4 = bar.angles[1], bar.angles[3]
-    reach = L1**2 + L2**2 + 2 * L1 * L2 * cos(t4 - t2)
+    A, B = bar.pivots
+    d.erratum(
+        "radius",
+        "The inner radius is $|L_1 - L_2|$",
+        Gravity.OMISSION,
+        why="A radius is not negative.  The designs of section 3.2 have $2L_2 - 2L_1 > L_0$, so "
+        "$L_2 > L_1$, and $L_1 - L_2$ is negative for all of them.",
+        use="A test of the distance from A against $L_1 - L_2$ accepts points in the hole of these "
+        "designs.  The volume formula needs the absolute value too.",
+    )
+
+    def radii(outer: Relation, inner: Relation, apart: Relation) -> Check:
+        at = [bar.by_legs[0].subs(t4, t2 + turned) for turned in (sp.S.Zero, pi)]
+        found = [sp.sqrt(sp.factor(sp.expand(sp.trigsimp(p.dot(p))))) for p in at]
+        return Identity(
+            [outer.left, inner.left, apart.left],
+            [*found, sp.sqrt((B - A).dot(B - A))],
+            (L1 - L2,),
+        )
+
     claim(
         "hollow spheres",
-        "the intersection of two hollow spheres, where radii are $L_1 + L_2$ and $L_1 - L_2$, the "
-        "distance between the centers of these spheres being $L_0$",
-        Identity(
-            ((L1 + L2) ** 2 - reach) * (reach - (L1 - L2) ** 2),
-            (2 * L1 * L2 * sin(t4 - t2)) ** 2,
-        ),
+        "“A possible design of the manipulator at hand is obtained upon maximizing its workspace "
+        "volume, which is given by the intersection of two hollow spheres, where radii are $L_1 + "
+        "L_2$ and $L_1 - L_2$, the distance between the centers of these spheres being $L_0$.”",
+        radii,
+        erratum="radius",
     )
-    falls = Every({f"regime {i}": Identity(*p) for i, p in enumerate(decrease(bar.volumes), 1)})
-    claim("L0 = 0", "the workspace is maximum when $L_0$ is equal to 0", falls)
     M, m = real("M", positive=True), real("m", positive=True)
-    at_zero = bar.volumes["inner balls inside, overlapping"].volume.subs(L0, 0)
+    whole = sp.Rational(4, 3) * pi * ((M + m) ** 3 - (M - m) ** 3)
+    near = bar.volumes["inner balls inside, overlapping"].volume
+    falls = {
+        f"in regime {i} the volume falls": Identity(*pair)
+        for i, pair in enumerate(decrease(bar.volumes), 1)
+    }
     claim(
-        "L1 = L2",
-        "and, by extrapolating the results from [7], when $L_1$ is equal to $L_2$",
-        Under(
-            Identity(at_zero, sp.Rational(4, 3) * pi * ((M + m) ** 3 - (M - m) ** 3)),
-            "for a given reach L1 + L2; without a bound on the lengths there is no maximum",
-        ),
-    )
-    same_legs = bar.loop[2].subs(L0, 0) - bar.loop[1].subs(bar.angles[1], bar.angles[2])
-    mirrored = Plane((0, 1, 1), *(sp.Matrix(v) for v in ([0, 1], [1, 0], [1, 1])))
-    claim(
-        "two operative working modes",
-        "the optimum manipulator has only two operative working modes because the other two lie in "
-        "parallel singular configurations",
-        Every(
+        "largest for L0 = 0",
+        "“Therefore, the workspace is maximum when $L_0$ is equal to {0}”",
+        lambda variable, value: Every(
             {
-                "both legs have the same equation, so equal signs mean C = D": Identity(
-                    same_legs, sp.S.Zero
-                ),
-                "unequal signs are regular": Holds(
-                    {**mirrored.closed(), "CP and DP not in line": Ne(mirrored.cross, 0)}
-                ),
+                **falls,
+                "with its limit": Identity(near.subs(variable.left, value), whole),
             }
         ),
+        phrases=[{"0": sp.S.Zero, "1": sp.S.One}],
     )
-    claim(
-        "border",
-        "all singularities of this mechanism lie at the border of the workspace",
-        Refuted(
-            Holds(
+    reach = real("reach", positive=True)
+    inner = real("inner", nonnegative=True)
+    volume = whole.subs({M: (reach + inner) / 2, m: (reach - inner) / 2}, simultaneous=True)
+
+    def largest(first: Relation, second: Relation) -> Check:
+        gap = sp.Abs(L1 - L2).subs(second.left, first.left)
+        return Under(
+            Every(
                 {
-                    **Plane(
-                        (0, 1, 1),
-                        sp.Matrix([sp.Rational(1, 2), sqrt(3) / 2]),
-                        sp.Matrix([sp.Rational(1, 2), -sqrt(3) / 2]),
-                        sp.Matrix([1, 0]),
-                    ).closed(),
-                    "0 < AP < 2": sp.sympify(0 < 1 < 2),
+                    "the inner radius there": Identity(gap, sp.S.Zero),
+                    "the volume lost by an inner radius": Identity(
+                        volume.subs(inner, 0) - volume, sp.Rational(4, 3) * pi * inner**3
+                    ),
                 }
             ),
-            "for L0 = 0, L1 = L2 = 1 the points of the axis inside the workspace are singular, for "
-            "example P = (0, 1, 0)",
-            "the serial ones lie at the border or on AB",
-            serial(bar),
-        ),
+            GIVEN_REACH,
+        )
+
+    claim(
+        "largest for L1 = L2",
+        "“by extrapolating the results from [7], when $L_1$ is equal to $L_2$”",
+        largest,
+    )
+    y, rho, angle = real("y"), real("rho"), real("angle")
+
+    def operative(n: int, others: int, first: Relation, second: Relation, times: int = 1) -> Check:
+        given = {r.left: r.right for r in (first, second)}
+        four = modes([e.subs(given) for e in bar.lengths], sp.Matrix([y, rho]))
+        return Every(
+            {
+                "modes that are not always singular": Enumeration(
+                    n, lambda: times * sum(normal(m.cross**2) != 0 for m in four), "for all P"
+                ),
+                "modes with C = D": Enumeration(
+                    others, lambda: times * sum(m.C == m.D for m in four), "for all P"
+                ),
+            }
+        )
+
+    claim(
+        "two operative working modes",
+        "“We notice that the optimum manipulator has only {two} operative working mode because the "
+        "other {two} working modes lie in parallel singular configurations (see figures 4 b & c "
+        "when $L_0 = 0$ and $L_1 = L_2$)”",
+        operative,
+        readings=[
+            Reading("of the four working modes of figure 4, for P on one side of AB"),
+            Reading("of all eight working modes", partial(operative, times=2)),
+        ],
+    )
+    AP = y**2 + rho**2
+    border = AP * (4 * L1**2 - AP)
+    mirrored = modes((sp.S.Zero, L1, L1), sp.Matrix([y, rho]))[1]
+    factors = mirrored.cross**2 * sp.prod(e**2 for e in mirrored.diagonal)
+
+    def lie_on(place: sp.Expr) -> Check:
+        on = {
+            "P on AB": {rho: sp.S.Zero},
+            "AP = 2 L1": {y: 2 * L1 * cos(angle), rho: 2 * L1 * sin(angle)},
+            "P = A": {y: sp.S.Zero, rho: sp.S.Zero},
+        }
+        names = ("the product that vanishes there", "its value")
+        return Every(
+            {
+                "det A or det B vanishes with these": Identity(
+                    factors, L1**2 * rho**2 * (border / 4) ** 3
+                ),
+                **{n: Identity(place.subs(at), sp.S.Zero, names=names) for n, at in on.items()},
+            }
+        )
+
+    claim(
+        "all singularities at the border",
+        "“Thus, all singularities of this mechanism lie {at the border of the workspace}.”",
+        lie_on,
+        phrases=[
+            {
+                "at the border of the workspace": border,
+                "at the border of the workspace or on the axis AB": rho * border,
+            }
+        ],
+        readings=[
+            Reading(
+                "this mechanism is the optimum manipulator with its three joints, and A, the limit "
+                "of the inner sphere, counts as border"
+            )
+        ],
+        corrected="“Thus, all singularities of this mechanism lie {at the border of the workspace "
+        "or on the axis AB}.”",
+        erratum=AXIS_TOO,
     )
 
 
 def by_design(d: Derivation, bar: FiveBar) -> None:
     """Section 3.2."""
-    claim = partial(d.claim, where="3.2 Avoiding parallel singularities by proper design")
-    L0, L1, _ = bar.lengths
-    t2, t3 = bar.angles[1:3]
-    CD = bar.elbows[1] - bar.elbows[0]
-    a, b, w = (real(n, nonnegative=True) for n in ("a", "b", "w"))
-    apart = [(cos(t3), a - 1), (cos(t2), 1 - b), (L0, 2 * L1 + w)]
-    stay_apart = Identity(CD[1].subs(apart), positive_form(CD[1], apart))
-    default = coincident()
-    claim(
-        "2 L1 > L0",
-        "if the sum of lengths $L_1 + L_1$ is greater than the distance between the two pivots, "
-        "$L_0$, we eliminate a parallel singularity type, C and D coinciding",
-        Refuted(
-            Holds({**default.closed(), "2 L1 > L0": sp.sympify(16 > 7)}),
-            "for (7, 8, 5), 16 > 7, C and D coincide at 7/2 along AB: the condition makes the "
-            "circles of C and D meet",
-            r"L_0 > 2 L_1",
-            stay_apart,
-        ),
+    claim = partial(
+        d.claim,
+        where="3.2 Avoiding parallel singularities by proper design",
+        notation=notation(bar),
     )
-    small = coincident((1, 1, 2))
+    L0, L1, L2 = bar.lengths
+    apart, never_in_line = sp.Gt(L0, 2 * L1), sp.Gt(2 * L2, L0 + 2 * L1)
+    d.erratum(
+        "C-meets-D",
+        "The condition that keeps C and D apart is the wrong way round",
+        Gravity.RESULT,
+        why="C and D move on circles of the radius $L_1$ about A and B.  The circles meet if $2L_1 "
+        "\\ge L_0$ and have no common point if $2L_1 < L_0$.  For $L_0 = L_1 = 1$ C and D "
+        "coincide at $\\theta_2 = \\pi/3$, $\\theta_3 = 2\\pi/3$.  The second condition, "
+        "$2L_2 - 2L_1 > L_0$, only keeps C, P and D from being in line; C and D can still "
+        "coincide.",
+        use="Linkages designed by these conditions have parallel singularities inside the "
+        "workspace, in every working mode.  A linkage without any has $L_0 > 2L_1$ and $2L_2 "
+        "- 2L_1 > L_0$, for example $L_0 = L_2 = 3$, $L_1 = 1$.",
+    )
+
+    def avoids(wanted: Sequence[sp.Expr], printed: Sequence[sp.Expr]) -> Check:
+        return Every(
+            {
+                **range_of_CD(bar),
+                **{
+                    name: implies(printed, relation, bar.lengths)
+                    for name, relation in zip(NEVER, wanted, strict=False)
+                },
+            }
+        )
+
+    sums = "If the sum of lengths $L_1 + L_1$ is {%s} than the distance between the two pivots"
+    rest = " A and B, i.e. $L_0$, we eliminate a parallel singularity type."
     claim(
-        "2 L2 - 2 L1 > L0",
-        "we can eliminate all parallel singularities if the condition below is imposed: "
-        "$2L_2 - 2L_1 > L_0$",
-        Refuted(
-            Holds({**small.closed(), "2 L2 - 2 L1 > L0": sp.sympify(4 - 2 > 1)}),
-            "for (1, 1, 2), 4 - 2 > 1, C and D coincide at theta2 = 60 and theta3 = 120 degrees; "
-            "the condition only prevents C, P, D from being in line",
-            r"L_0 > 2 L_1 \text{ and } 2 L_2 > L_0 + 2 L_1",
-            Every({"C and D stay apart": stay_apart, "CD < 2 L2": longest(bar)}),
-        ),
+        "C and D apart",
+        "“We choose lengths allowing to avoid this configurations for which points C and D "
+        f"coincide. {sums % 'greater'}{rest}”",
+        lambda total, more, distance: avoids([apart], [more(total.left, distance.left)]),
+        phrases=[{"greater": sp.Gt, "smaller": sp.Lt}],
+        corrected="“We choose lengths allowing to avoid this configurations for which points C and "
+        f"D coincide. {sums % 'smaller'}{rest}”",
+        erratum="C-meets-D",
+    )
+    before, after = (
+        "“In the same way, we can eliminate all parallel singularities if the condition below is "
+        "imposed:",
+        "In using this property, the mechanism has no parallel singularity”",
+    )
+    first = relations(notation(bar).read("L_1 + L_1 > L_0"))
+    claim(
+        "no parallel singularity",
+        f"{before} $2L_2 - 2L_1 > L_0$ {after}",
+        lambda printed: avoids([apart, never_in_line], relations(printed)),
+        readings=[
+            Reading("the condition is sufficient alone"),
+            Reading(
+                "it is imposed in addition to the first one, as printed",
+                lambda printed: avoids([apart, never_in_line], [*relations(printed), *first]),
+            ),
+            Reading(
+                "it is imposed in addition to the first one, the right way round",
+                lambda printed: avoids([apart, never_in_line], [*relations(printed), apart]),
+            ),
+        ],
+        corrected=f"{before} $L_0 > 2L_1, 2L_2 - 2L_1 > L_0$ {after}",
+        erratum="C-meets-D",
+    )
+    claim(
+        "Figures 10 and 11",
+        "“Figure 10. Cross-section of the workspace free of parallel singularities” [...] “Figure "
+        "11. Cross-section of the joint space free of parallel singularities”",
+        lambda: Undecidable(NO_LENGTHS),
+        fixed="figures",
     )
 
 
 def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
     """Section 3.3."""
     claim = partial(
-        d.claim, where="3.3 Avoiding parallel singularities by a change of working mode"
+        d.claim,
+        where="3.3 Avoiding parallel singularities by a change of working mode",
+        notation=notation(bar),
     )
-    L0, L1, L2 = bar.lengths
-    t2, t4 = bar.angles[1], bar.angles[3]
-    default = coincident()
-    other = default.other_mode()
+    L0 = bar.lengths[0]
     claim(
         "the posture changes",
-        "according to the working mode chosen, the parallel-singularity posture changes",
-        Holds(
-            {
-                **other.closed(),
-                "singular in one mode": Eq(default.cross, 0),
-                "regular in another": Ne(other.cross, 0),
-            }
-        ),
+        "“According to the working mode chosen, the parallel-singularity posture {changes} inside "
+        "the workspace, as displayed in figure 12.”",
+        lambda judged: judged(by_path_planning()),
+        phrases=[{"changes": kept, "does not change": Not}],
     )
+    flat = in_line()
     claim(
         "Figure 12",
-        "in the convex working mode the manipulator is in parallel singularity, while it is in a "
-        "regular configuration in the non-convex working mode",
-        Undecidable(NO_DIMENSIONS),
+        "“In the «{convex} working mode» (Figure 12 left), the manipulator is in {parallel "
+        "singularity}, while it is in a {regular configuration} in the {non-convex} working mode "
+        "(Figure 12 right).”",
+        lambda shape, singular, regular, other: Every(
+            {
+                "first mode": closed_and(flat, mode=shape(flat), det_A=singular(flat.cross)),
+                "second mode": closed_and(
+                    flat.other_mode(),
+                    mode=other(flat.other_mode()),
+                    det_A=regular(flat.other_mode().cross),
+                ),
+            }
+        ),
+        phrases=[
+            {"convex": outline, "non-convex": lambda at: sp.Not(outline(at))},
+            {
+                "parallel singularity": lambda det: Eq(det, 0),
+                "regular configuration": lambda det: Ne(det, 0),
+            },
+        ],
+        readings=[
+            Reading(
+                "such a posture exists, for example for the lengths 7, 8, 5; the paper does not "
+                "give those of the figure"
+            )
+        ],
     )
     claim(
         "Figures 13 and 14",
-        "it is possible, by means of a change of working mode, to reach points inside the two "
-        "workspace sections displayed in figures 13 and 14",
-        Undecidable(NO_DIMENSIONS),
+        "“It is possible, by means of a change of working mode, to reach points inside the two "
+        "workspace sections displayed in figures 13 and 14.” [...] “Figure 13. Workspace of the "
+        "convex working mode” [...] “Figure 14. Workspace of the nonconvex working mode”",
+        lambda: Undecidable(NO_LENGTHS),
+        fixed="figures",
     )
+    axis = on_the_axis()
+
+    def change(
+        required: Callable[[Check], Check],
+        located: Callable[[Check], Check],
+        others: Mapping[str, Check] = MappingProxyType({}),
+    ) -> Check:
+        return Every(
+            {
+                "each mode has its own signs of B": required(sign_patterns(lambda at: at.diagonal)),
+                "they change at the boundary": located(
+                    Every({"legs": serial_by_position(bar), **others})
+                ),
+            }
+        )
+
+    inside = closed_and(axis, rho=Eq(axis.P[1], 0), **axis.interior())
     claim(
-        "necessary",
-        "to change working mode, it is necessary to pass through a serial singularity",
-        signs(bar),
+        "a change passes through a serial singularity",
+        "“To change working mode, it is {necessary} to pass through a serial singularity, "
+        "{located} at the boundary of the Cartesian workspace.”",
+        change,
+        phrases=[
+            {"necessary": kept, "unnecessary": Not},
+            {"located": kept, "not located": Not},
+        ],
+        readings=[
+            Reading("the modes of figures 12 to 14, which differ in the posture of a leg"),
+            Reading(
+                "any two of the eight working modes of section 2.4; the mirror images meet on AB",
+                partial(change, others={"P on AB is not inside": Not(inside)}),
+            ),
+        ],
     )
-    claim(
-        "located at the boundary",
-        "a serial singularity, located at the boundary of the Cartesian workspace",
-        Refuted(
-            on_the_axis(),
-            "the sign of rho, and so the working mode, changes on the axis AB inside the workspace",
-            "at the boundary, where a leg is stretched or folded, or on AB",
-            serial(bar),
-        ),
-    )
-    bounds = d["ik"].bounds
-    cases = d["ik"].cases
-    one_workspace = Enumeration(
-        1,
-        lambda: len({bounds(case) for _, case in cases()}),
-        "sets of conditions on P, over the eight working modes",
-    )
+    bounds, cases = d["ik"].bounds, d["ik"].cases
     claim(
         "twice as large",
-        "by doing so, we can reach a workspace that is twice as large as each of those displayed",
-        Refuted(
-            one_workspace,
-            "the conditions on P contain no sign: every working mode reaches the same workspace, "
-            "and a change of mode adds nothing",
-            "all working modes have the same workspace",
-            one_workspace,
+        "“By doing so, we can reach a workspace that is {twice} as large as each of those "
+        "displayed in figures 13 and 14.”",
+        lambda times: Undecidable(
+            "the sections are the parts of the workspace that each mode reaches without a parallel "
+            "singularity, as their captions say; their sizes depend on lengths that are not given"
         ),
+        phrases=[{"twice": 2, "once": 1}],
+        readings=[
+            Reading("the union of the sections of figures 13 and 14, against each of them"),
+            Reading(
+                "the same, with the part in which det A is positive, above AB, for the lengths 7, "
+                "8, 5; twice as large as each would need sections without a common point",
+                lambda times: Not(common_point()) if times == 2 else common_point(),
+            ),
+            Reading(
+                "all points that the modes reach, parallel singularities included",
+                lambda times: Enumeration(
+                    times,
+                    lambda: len({bounds(case) for _, case in cases()}),
+                    "different sets of conditions on P, over all working modes",
+                ),
+            ),
+        ],
+        fixed="figures for lengths that are not given",
+    )
+    d.erratum(
+        "never-smaller",
+        "Parallel singularities can be avoided, and the workspace can be that of the serial arm",
+        Gravity.INCONSISTENCY,
+        why="Section 2.5 says that parallel singularities can be avoided by design or by "
+        "path-planning, and section 3.2 does so.  The workspace for $L_0 = 0$, the optimum of "
+        "section 3.1, is the whole hollow sphere that the serial arm with the bars $L_1$ and $L_2$ "
+        "reaches, and for $L_1 = L_2$ two working modes have no parallel singularity inside.",
+        use="The smaller workspace is not a reason to rule out this architecture: for $L_0 > 0$ "
+        "its workspace is smaller, for $L_0 = 0$ it is as large as that of the serial arm.",
     )
     claim(
         "not avoidable",
-        "parallel singularities not being avoidable",
-        Refuted(
-            Holds(without_parallel(3, 1, 3)),
-            "(3, 1, 3) has none, and section 3.2 itself avoids them",
-            r"L_0 > 2 L_1 \text{ and } 2 L_2 > L_0 + 2 L_1 \text{ avoid them}",
-            Every({"C and D stay apart": shortest(bar), "CD < 2 L2": longest(bar)}),
-        ),
+        "“In fact, parallel singularities {not being avoidable}”",
+        lambda judged: judged(designs(bar)),
+        phrases=[{"not being avoidable": Not, "being avoidable": kept}],
+        corrected="“In fact, parallel singularities {being avoidable}”",
+        erratum="never-smaller",
     )
     M, m = real("M", positive=True), real("m", positive=True)
+    serial_arm = sp.Rational(4, 3) * pi * ((M + m) ** 3 - (M - m) ** 3)
+
     at_zero = bar.volumes["inner balls inside, overlapping"].volume.subs(L0, 0)
+
+    def compared(relation: type[sp.Rel]) -> Check:
+        falls = {f"regime {i}": Identity(*p) for i, p in enumerate(decrease(bar.volumes), 1)}
+        return Every(
+            {
+                "for L0 = 0, where the volumes are equal": ForAll(
+                    relation(sp.expand(at_zero - serial_arm), 0)
+                ),
+                **{f"{n}: the volume falls as L0 grows": c for n, c in falls.items()},
+            }
+        )
+
     claim(
         "always smaller",
-        "the workspace of a parallel manipulator is always smaller than that of its serial "
-        "counterpart of the same size",
-        Refuted(
-            Identity(at_zero, sp.Rational(4, 3) * pi * ((M + m) ** 3 - (M - m) ** 3)),
-            "for L0 = 0 it is the same hollow sphere as that of the serial arm with the same bars",
-            r"V(L_0) \le V(0)",
-            Every({f"regime {i}": Identity(*p) for i, p in enumerate(decrease(bar.volumes), 1)}),
-        ),
+        "“the workspace of a parallel manipulator is {always smaller} than that of its serial "
+        "counterpart of the same size”",
+        compared,
+        phrases=[{"always smaller": sp.Lt, "never larger": sp.Le}],
+        corrected="“the workspace of a parallel manipulator is {never larger} than that of its "
+        "serial counterpart of the same size”",
+        erratum="never-smaller",
     )
-    start = isotropic()
-    reach = L1**2 + L2**2 + 2 * L1 * L2 * cos(t4 - t2)
+    d.erratum(
+        "kappa-of-B",
+        "The condition number of $\\mathbf{B}$ does not depend on the working mode",
+        Gravity.STATEMENT,
+        why="For a given P, the diagonal entries of (4) are, up to their signs, $L_2$ times the "
+        "distance of P from AB and twice the areas of the triangles ACP and BDP.  The working mode "
+        "changes signs only, and singular values have none.",
+        use="A working mode can be chosen by the condition number of $\\mathbf{A}$.  That of "
+        "$\\mathbf{B}$ gives no preference.",
+    )
+    square_kappas = [m.conditions for m in (isotropic(), isotropic().other_mode())]
+
+    def differ(matrices: tuple[int, ...]) -> Check:
+        parts: dict[str, Check] = {
+            "these are two working modes": closed_and(isotropic().other_mode()),
+            "entries of B for a given P": serial_by_position(bar),
+        }
+        for i in matrices:
+            first, second = (kappas[i] for kappas in square_kappas)
+            parts[f"the condition numbers of {'AB'[i]} differ"] = Not(Identity(first, second))
+        return Every(parts)
+
     claim(
-        "condition numbers differ: A",
-        "according to the working mode, the condition numbers of the direct- ... kinematics "
-        "matrices are different",
-        Holds(
+        "condition numbers differ",
+        "“according to the” [...] “working mode, the condition numbers of {the direct- and the "
+        "inverse-kinematics matrices} are different.”",
+        differ,
+        phrases=[
             {
-                **start.closed(),
-                "CP and DP at right angles": Eq(start.dot, 0),
-                "not so with the leg reflected": Ne(start.other_mode().dot, 0),
+                "the direct- and the inverse-kinematics matrices": (0, 1),
+                "the direct-kinematics matrix, but not that of the other one,": (0,),
             }
-        ),
+        ],
+        corrected="“according to the” [...] “working mode, the condition numbers of {the "
+        "direct-kinematics matrix, but not that of the other one,} are different.”",
+        erratum="kappa-of-B",
     )
     claim(
-        "condition numbers differ: B",
-        "and those of the inverse-kinematics matrix",
-        Refuted(
-            Identity(4 * bar.B[1, 1] ** 2, ((L1 + L2) ** 2 - reach) * (reach - (L1 - L2) ** 2)),
-            "up to their signs, the entries of B depend only on P: rho*L2, and for each leg twice "
-            "the area of the triangle over AP or BP",
-            "the condition number of B depends only on P",
-            serial(bar),
-        ),
+        "choice by the task",
+        "“Thus, according to the task to execute, requiring either a precise motion or a fast "
+        "motion, we can choose one suitable working mode.”",
+        lambda: Undecidable("the paper gives neither tasks nor a criterion"),
+        fixed="a judgement of value",
     )
 
 
-def half_angle(bar: FiveBar, sign: int) -> Check:
-    """kappa from u, the cotangent of half the angle between CP and DP, for a sign of its cosine."""
-    u = real("u", positive=True)
-    cosine = Abs(cos(bar.angles[3] - bar.angles[4]))
-    by_u = (bar.kappa**2).subs(cosine, sign * (u**2 - 1) / (u**2 + 1))
-    return Identity(by_u, u ** (2 * sign))
+def kept(check: Check) -> Check:
+    """The meaning of a phrase that states what a check proves; its opposite is ``Not``."""
+    return check
 
 
-def conditioning(d: Derivation, bar: FiveBar) -> None:
-    """Section 3.4."""
-    claim = partial(d.claim, where="3.4 The isoconditioning curves")
-    L2 = bar.lengths[2]
-    t1, _, t3, t4, t5 = bar.angles
-    claim(
-        "eq. (7)",
-        r"$\kappa(\mathbf M) = \sigma_1/\sigma_s$",
-        Undecidable("a definition"),
-    )
-    printed, right = Abs(cos(t4 - t3)), Abs(cos(t4 - t5))
-    claim(
-        "eigenvalues",
-        r"$\alpha_1 = 1 - |\cos(\theta_4-\theta_3)|,\ \alpha_2 = 1,\ "
-        r"\alpha_3 = 1 + |\cos(\theta_4-\theta_3)|$",
-        Identity(
-            [1 - printed, sp.S.One, 1 + printed],
-            [L2**2 * (1 - right), L2**2, L2**2 * (1 + right)],
-        ),
-    )
-    gaps = [(1 - right, sp.S.One), (sp.S.One, 1 + right)]
-    claim(
-        "order of the eigenvalues",
-        r"$\alpha_1 \leq \alpha_2 \leq \alpha_3$",
-        Identity([b - a for a, b in gaps], [right, right]),
-    )
-    wide = {t3: pi / 2, t4: 2 * pi / 3, t5: 0}
-
-    def printed_kappa(angle: sp.Symbol) -> sp.Expr:
-        return 1 / Abs(tan((t4 - angle) / 2))
-
-    claim(
-        "eq. (8)",
-        r"$\kappa(\mathbf A) = 1/|\tan((\theta_4-\theta_3)/2)|$",
-        Refuted(
-            Holds(
-                {
-                    "as printed it is not kappa": Ne((printed_kappa(t3) / bar.kappa).subs(wide), 1),
-                    "with theta5 it is the inverse": Eq(
-                        (printed_kappa(t5) * bar.kappa).subs(wide), 1
-                    ),
-                    "which is not kappa": Ne(bar.kappa.subs(wide), 1),
-                }
-            ),
-            "theta3 is printed instead of theta5, the angle of DP.  With theta5 the formula is "
-            "right only if cos(theta4 - theta5) is not negative.  If CD is longer than sqrt(2)*L2, "
-            "it gives the inverse: at theta4 = 2*pi/3, theta5 = 0 it is sqrt(3)/3, but kappa is "
-            "sqrt(3)",
-            r"\max(|\tan\tfrac{\theta_4-\theta_5}{2}|,\ 1/|\tan\tfrac{\theta_4-\theta_5}{2}|)",
-            Every(
-                {
-                    "the cosine is not negative": half_angle(bar, 1),
-                    "the cosine is not positive": half_angle(bar, -1),
-                }
-            ),
-        ),
-    )
-    claim(
-        "surfaces of revolution",
-        "these loci are surfaces of revolution generated by the isoconditioning curves of the "
-        "2-dof manipulator, when these are rotated about the axis of the first revolute",
-        Identity((bar.A * bar.A.T).diff(t1), sp.zeros(3, 3)),
-    )
-    right_angle, aligned = {t3: pi / 6, t5: 0, t4: 2 * pi / 3}, {t3: 0, t5: pi / 2, t4: pi}
-    claim(
-        "minimum of 1",
-        r"$\kappa(\mathbf A)$ attains its minimum of 1 when $|\theta_3-\theta_4| = \pi/2$",
-        Refuted(
-            Holds({"kappa is not 1": Ne(bar.kappa.subs(right_angle), 1)}),
-            "theta3 is printed instead of theta5, as in eq. (8); kappa is sqrt(3) at "
-            "theta3 = pi/6, theta4 = 2*pi/3, theta5 = 0",
-            r"|\theta_5-\theta_4| = \pi/2",
-            Identity(bar.kappa.subs(t4, t5 + pi / 2), sp.S.One),
-        ),
-    )
-    claim(
-        "infinity",
-        r"$\kappa(\mathbf A)$ tends to infinity when $\theta_3-\theta_4 = k\pi$",
-        Refuted(
-            Holds({"kappa is 1": Eq(bar.kappa.subs(aligned), 1)}),
-            "theta3 is printed instead of theta5; kappa is 1 at theta3 = 0, theta4 = pi, "
-            "theta5 = pi/2",
-            r"\theta_5-\theta_4 = k\pi",
-            Identity(bar.det_A, L2**3 * sin(t5 - t4)),
-        ),
-    )
-    claim(
-        "isotropic",
-        "its inversion being performed without any roundoff-error amplification",
-        Identity((bar.A.T * bar.A).subs(t4, t5 + pi / 2) / L2**2, sp.eye(3)),
-    )
-    claim(
-        "most accurate",
-        "postures with a right angle are the most accurate for the direct kinematics",
-        Undecidable("the paper defines accuracy only by the condition number itself"),
-    )
-    inside = coincident()
-    claim(
-        "define the boundary",
-        "such singularities occur at the boundary of the Cartesian workspace, and the singularity "
-        "locus defines this boundary",
-        Refuted(
-            Holds(
-                {**inside.closed(), **inside.interior(), "CP and DP in line": Eq(inside.cross, 0)}
-            ),
-            "for (7, 8, 5) C and D coincide at (7/2, sqrt(207)/2), with P inside the workspace; "
-            "the boundary is where a leg is stretched or folded, a serial singularity",
-            r"AP, BP \in \{L_1 + L_2, |L_1 - L_2|\}",
-            serial(bar),
-        ),
-    )
-    claim(
-        "isotropy regardless of the dimensions",
-        "isotropy can be obtained regardless of the dimensions of the manipulator, as long as i) "
-        "it is symmetric and ii) L2 is not 0",
-        Refuted(
-            Every(
-                {
-                    "CD is at most L0 + 2 L1": longest(bar),
-                    "for (1, 1, 3) this is too short": Holds({"3 < 3 sqrt 2": Lt(3, 3 * sqrt(2))}),
-                }
-            ),
-            "it needs CD = sqrt(2)*L2, but CD <= L0 + 2*L1; for (1, 1, 3) that is 4.24 against 3",
-            r"\max(0, L_0 - 2 L_1) \le \sqrt{2} L_2 \le L_0 + 2 L_1",
-            Every({"longest": longest(bar), "shortest": shortest(bar)}),
-        ),
-    )
-    start = isotropic()
-    other = start.other_mode()
-    claim(
-        "Figure 15",
-        "for the two working modes, the position of the isotropic configurations are different",
-        Holds(
-            {
-                **start.closed(),
-                **other.closed(),
-                "isotropic in one mode": Eq(start.dot, 0),
-                "not in the other": Ne(other.dot, 0),
-            }
-        ),
-    )
-    claim(
-        "equal distance",
-        "isoconditioning curves are, by definition, the sets of points at equal distance from the "
-        "singularities",
-        Undecidable(
-            "the distance is not defined; 1/kappa is a distance of matrices, not of points"
-        ),
-    )
+def outline(posture: Plane) -> sp.Expr:
+    """Whether the outline A, B, D, P, C is convex."""
+    corners = posture.corners()
+    return sp.And(*(sp.Ge(c, 0) for c in corners))

@@ -15,6 +15,7 @@ from closedform.algebra.counterexample import Counterexample
 from closedform.algebra.normal_form import decide
 from closedform.model.claims import (
     APPROXIMATION,
+    FAULTS,
     INCONSISTENT,
     PROVED,
     PROVED_UNDER,
@@ -244,7 +245,10 @@ def worst(verdicts: Iterable[Verdict]) -> Verdict:
 
 @dataclass(frozen=True)
 class Every(Check):
-    """A statement with several parts; its verdict is the worst verdict of its parts."""
+    """A statement with several parts; its verdict is the worst verdict of its parts.
+
+    The evidence of a fault is that of the parts that show it.
+    """
 
     parts: Mapping[str, Check]
 
@@ -252,11 +256,14 @@ class Every(Check):
         if not self.parts:
             raise ValueError("Every needs at least one part")
         verdicts = {name: check.judge() for name, check in self.parts.items()}
+        kind = worst(list(verdicts.values())).kind
         pieces: list[Any] = []
         for name, v in verdicts.items():
+            if kind in FAULTS and v.kind != kind:
+                continue
             pieces += ["; ", f"{name}: {v.kind}"]
             pieces += [" (", *v.evidence, ")"] if v.evidence else []
-        return Verdict(worst(list(verdicts.values())).kind, tuple(pieces[1:]))
+        return Verdict(kind, tuple(pieces[1:]))
 
 
 @dataclass(frozen=True)

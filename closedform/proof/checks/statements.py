@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +15,14 @@ from sympy.core.relational import Relational
 from closedform.algebra.balls import evaluate
 from closedform.algebra.counterexample import find_counterexample
 from closedform.algebra.normal_form import Undecided, decide, positive_form
-from closedform.model.claims import NOT_DECIDABLE, PROVED, REFUTED, Check, Verdict
+from closedform.model.claims import (
+    INCOMPLETE,
+    NOT_DECIDABLE,
+    PROVED,
+    REFUTED,
+    Check,
+    Verdict,
+)
 from closedform.model.notation import Relation
 from closedform.proof.checks.evidence import (
     SIGNS_OF,
@@ -72,6 +79,26 @@ class Enumeration(Check):
         if found == self.printed:
             return Verdict(PROVED, (f"{self.meaning}: {found}",))
         return Verdict(REFUTED, (f"{self.meaning}: {found}, not {self.printed}",))
+
+
+@dataclass(frozen=True)
+class Cases(Check):
+    """A printed list of cases, against those that occur; ``meaning`` describes them.
+
+    A list that lacks a case is incomplete; one with a case that does not occur is refuted.
+    """
+
+    printed: Collection[str]
+    found: Callable[[], Collection[str]]
+    meaning: str
+
+    def judge(self) -> Verdict:
+        found, printed = set(self.found()), set(self.printed)
+        if wrong := sorted(printed - found):
+            return Verdict(REFUTED, (f"{self.meaning}: not {', '.join(wrong)}",))
+        if missing := sorted(found - printed):
+            return Verdict(INCOMPLETE, (f"{self.meaning}: also {', '.join(missing)}",))
+        return Verdict(PROVED, (f"{self.meaning}: {', '.join(sorted(found))}",))
 
 
 @dataclass(frozen=True)

@@ -104,7 +104,6 @@ from closedform.proof.checks.solutions import Count as Count
 from closedform.proof.checks.solutions import Postures as Postures
 from closedform.proof.checks.solutions import Procedure as Procedure
 from closedform.proof.checks.solutions import Solves as Solves
-from closedform.proof.checks.statements import Cases as Cases
 from closedform.proof.checks.statements import Enumeration as Enumeration
 from closedform.proof.checks.statements import Exists as Exists
 from closedform.proof.checks.statements import ForAll as ForAll

@@ -19,7 +19,7 @@ from closedform.derivations.claims.five_bar_postures import (
 from sympy import cos, pi, sin
 
 from closedform import (
-    Cases,
+    Listing,
     Check,
     Derivation,
     Enumeration,
@@ -273,7 +273,7 @@ def serial(d: Derivation, bar: FiveBar) -> None:
     def listed(named: frozenset[str]) -> Check:
         return Every(
             {
-                "cases": Cases(named, bar.serial_cases, "an entry of B vanishes with"),
+                "cases": Listing(named, bar.serial_cases, "an entry of B vanishes with"),
                 "aligned bars are at the boundary": serial_by_position(bar),
                 "P can be on AB inside": closed_and(
                     posture, rho=Eq(posture.P[1], 0), **posture.interior()

@@ -82,26 +82,6 @@ class Enumeration(Check):
 
 
 @dataclass(frozen=True)
-class Cases(Check):
-    """A printed list of cases, against those that occur; ``meaning`` describes them.
-
-    A list that lacks a case is incomplete; one with a case that does not occur is refuted.
-    """
-
-    printed: Collection[str]
-    found: Callable[[], Collection[str]]
-    meaning: str
-
-    def judge(self) -> Verdict:
-        found, printed = set(self.found()), set(self.printed)
-        if wrong := sorted(printed - found):
-            return Verdict(REFUTED, (f"{self.meaning}: not {', '.join(wrong)}",))
-        if missing := sorted(found - printed):
-            return Verdict(INCOMPLETE, (f"{self.meaning}: also {', '.join(missing)}",))
-        return Verdict(PROVED, (f"{self.meaning}: {', '.join(sorted(found))}",))
-
-
-@dataclass(frozen=True)
 class Holds(Check):
     """Named relations between constants: the statement is proved if all hold, else refuted.
 

@@ -3,7 +3,7 @@
 from functools import partial
 
 import sympy as sp
-from closedform.derivations.claims.h6ar import Robot, state
+from closedform.derivations.claims.h6ar import state
 from closedform.derivations.h6ar_free_turn import free_turn, turn_step, turned_by
 from closedform.derivations.h6ar_mechanism import (
     ACCURACY,
@@ -475,22 +475,4 @@ design(d, m, cos(psi))
 
 # Claims of the paper
 
-as_printed = {theta2A: real("theta_2^A"), theta23A: real("theta_23^A")}
-state(
-    d,
-    Robot(
-        m,
-        theta1,
-        *as_printed.values(),
-        alpha,
-        beta,
-        psi,
-        phi,
-        tips,
-        by_frames,
-        serial.xreplace(as_printed),
-        T.xreplace(as_printed),
-        extended(m, posture),
-        partial(arm, m),
-    ),
-)
+state(d, m, q)

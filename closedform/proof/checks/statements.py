@@ -133,7 +133,7 @@ class ForAll(Check):
         gap = relation.gts - relation.lts
         try:
             form = positive_form(gap, list(self.slack))
-        except ValueError:
+        except (ValueError, sp.PolynomialError):  # not a polynomial, or not with these signs
             return False
         strict = isinstance(relation, sp.Gt | sp.Lt)
         return not strict or bool(form.is_positive)

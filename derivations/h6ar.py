@@ -1,6 +1,5 @@
 """The H6AR of Rao and Raju as published: the wrist follows the averages of the arms' angles."""
 
-from functools import partial
 
 import sympy as sp
 from closedform.derivations.claims.h6ar import state

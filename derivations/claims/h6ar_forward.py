@@ -287,7 +287,7 @@ def averages(d: Derivation, r: Robot, printed: Notation) -> None:
     place = sp.Matrix([real(f"{axis}_I") for axis in "xyz"])
     claim(
         "invariant to the motions",
-        "“the fact that the point (x, y, z)_I is {invariant} to the reflective-symmetric motions”",
+        "“the fact that the point (x, y, z)_I is {invariant} to the reflectivesymmetric motions”",
         phrases=[{"invariant": lambda check: check, "not invariant": Not}],
         readings=[
             Reading(
@@ -301,11 +301,15 @@ def averages(d: Derivation, r: Robot, printed: Notation) -> None:
         ],
     )
 
+    ahead = {r.q.theta1: 0}  # the waist turns all tips alike
+
     def virtual_arm(lengths: str, angles: Any, reached: sp.Matrix, **how: Any) -> Check:
         links = {"L_1 and L_2": (m.L1, m.L2), "L_2 and L_1": (m.L2, m.L1)}[lengths]
         swapped = dict(zip((m.L1, m.L2), links, strict=True))
         arm = virtual.subs(swapped, simultaneous=True).subs(angles, simultaneous=True)
-        return Identity(reached, arm, names=("the point", "the tip of that arm"), **how)
+        return Identity(
+            reached.subs(ahead), arm.subs(ahead), names=("the point", "the tip of that arm"), **how
+        )
 
     seventh = [rf"c_1 {planar[0]}", rf"s_1 {planar[0]}"]
     seventh.append("d_1 + L_1 s_2^A - L_2 c_{23}^A + a_3 s_{23}^A")
@@ -329,6 +333,16 @@ def averages(d: Derivation, r: Robot, printed: Notation) -> None:
             ),
         ],
     )
+    claim(
+        "equivalent mechanism",
+        "“an equivalent serial mechanism lying in the {midplane} of the actual twin arms and whose "
+        "fore-arm tip has the coordinates [...] can be constructed.”",
+        lambda side: Identity(
+            r.lateral.dot(r.arm_tip(r.A2, r.A3, sp.S.Zero)), r.lateral.dot(middle) + side
+        ),
+        where=SERIAL,
+        phrases=[{"midplane": sp.S.Zero, "plane": m.d}],
+    )
     required = 2 * virtual - r.arm_tip(r.A2 + upper, r.A3 + fore - upper, m.d)
     by_average = r.arm_tip(r.A2 - upper, r.A3 - fore + upper, -m.d)
     d.claim(
@@ -346,8 +360,8 @@ def averages(d: Derivation, r: Robot, printed: Notation) -> None:
                 "the known angles are those of (13) and (14), of the arm that reaches the "
                 "invariant point; the left tip then has to be where (3) to (5) put it",
                 lambda left: Identity(
-                    left,
-                    required,
+                    left.subs(ahead),
+                    required.subs(ahead),
                     small=(upper, fore),
                     names=("the left tip", "the tip opposite the right one"),
                 ),

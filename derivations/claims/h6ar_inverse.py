@@ -60,7 +60,7 @@ RIGHT_SINES = (
 )
 RIGHT_ELBOW = rf"\theta_3^R = {RIGHT_SINES[0]} - {RIGHT_SINES[1]}"
 SHOULDER = (
-    r"\left(z_T - d_1\right) \left(L_1 c_3^A + a_{3W} \right) + (c_1 x_T + s_1 y_T) "
+    r"(z_T - d_1) \left(L_1 c_3^A + a_{3W} \right) + (c_1 x_T + s_1 y_T) "
     r"\left(L_1 s_3^A + L_{2W} \right)",
     r"(c_1 x_T + s_1 y_T) \left(L_1 c_3^A + a_{3W} \right) - (z_T - d_1) "
     r"\left(L_1 s_3^A + L_{2W} \right)",
@@ -248,7 +248,7 @@ def waist(d: Derivation, r: Robot, v: Virtual) -> None:
 def elbow(d: Derivation, r: Robot, v: Virtual) -> None:
     """Eq. (13)."""
     claim = partial(d.claim, where=INVERSE, notation=v.names)
-    m, (aside, along, across, square) = r.m, v.lengths.values()
+    m, (_, along, across, square) = r.m, v.lengths.values()
     claim(
         "before eq. (13)",
         "The angle [...] is evaluated using the relation " + f"${ELBOW_SQUARE}$",
@@ -272,26 +272,33 @@ def elbow(d: Derivation, r: Robot, v: Virtual) -> None:
     more = real("t_1", nonnegative=True), real("t_2", nonnegative=True)
     hand = real("L_W", nonnegative=True)
 
+    largest = real("largest")
+
     def long_enough(limit: Relation) -> Check:
         """The first case of (12) applies, as the extended fore-arm has no negative length."""
         least = cos(limit.right) if limit.signs == ("<=",) else cos(sp.pi)
         length = r.beyond_elbow[2].subs(r.LW, hand)
         by_cosines = {cos(r.q.theta): least + more[0], cos(r.psi): least + more[1]}
         example = {m.L2: Rational(1, 1000), m.lp: 1, hand: 1, more[0]: 0, more[1]: 0}
-        return ForAll(sp.Ge(normal(length).subs(by_cosines), 0), among=[example])
+        return Every(
+            {
+                "the angles": Identity(limit.left, largest),
+                "the length": ForAll(sp.Ge(normal(length).subs(by_cosines), 0), among=[example]),
+            }
+        )
 
     claim(
         "domain of eq. (13)",
         r"for $|\theta, \psi| \leq 90^{\circ}$",
         long_enough,
-        means={r"|\theta, \psi|": real("largest")},
+        means={r"|\theta, \psi|": largest},
     )
 
 
 def shoulder(d: Derivation, r: Robot, v: Virtual) -> None:
     """Eq. (14)."""
     claim = partial(d.claim, where=INVERSE, notation=v.names)
-    m, (aside, along, across, _) = r.m, v.lengths.values()
+    m, (_, along, across, _) = r.m, v.lengths.values()
     claim(
         "first equation before (14)",
         f"${BEFORE_14[0]}$",

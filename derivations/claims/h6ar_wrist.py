@@ -21,6 +21,7 @@ from closedform import (
     Notation,
     Reading,
     Relation,
+    Undecidable,
     equal,
     real,
 )
@@ -259,6 +260,25 @@ def design(d: Derivation, r: Robot, printed: Notation) -> None:
                 lambda f: Identity(f.left - f.right, m.al - needed(yaw, roll)),
             ),
         ],
+    )
+
+    claim(
+        "no constraints of the passive joints",
+        "“Note that no angular constraints are imposed on the passive joints J_1 and J_2 .”",
+        lambda: Undecidable("a choice of design: the paper gives no ranges of these joints"),
+        fixed="the sentence states a choice",
+    )
+    claim(
+        "no singular wrist",
+        "“then, the wrist does {not} assume the singular configuration.”",
+        # a link of that length has the smallest separation angle at the largest yaw
+        lambda judged: judged(
+            Identity(
+                (needed(yaw, sp.S.Zero) * narrow) ** 2,
+                (r.half_base.subs({r.psi: yaw, r.phi: 0}) - m.gs) ** 2,
+            )
+        ),
+        phrases=[{"not": lambda check: check, "always": Not}],
     )
 
     def any_roll(domain: Relation) -> Check:

@@ -8,7 +8,7 @@ from sympy import cos, pi, sin, sqrt
 from closedform import (
     Chain,
     Derivation,
-    Identity,
+    Notation,
     from_dh,
     polar,
     real,
@@ -104,11 +104,13 @@ ik.finish(
     ),
 )
 
+angles = (("1", theta1), ("2", theta2))
+names: dict[str, sp.Expr] = {"d_2": d2, "d_3": d3}
+for n, angle in angles:
+    names |= {f"c_{n}": cos(angle), f"s_{n}": sin(angle)}
 d.claim(
     "position",
-    r"$d_x = c_1s_2d_3 - s_1d_2$, $d_y = s_1s_2d_3 + c_1d_2$, $d_z = c_2d_3$ (with $d_6 = 0$)",
-    Identity(
-        sp.Matrix([cos(theta1) * X - sin(theta1) * d2, sin(theta1) * X + cos(theta1) * d2, Z]),
-        arm.position,
-    ),
+    r"$d_x = c_1s_2d_3 - s_1d_2$, $d_y = s_1s_2d_3 + c_1d_2$, $d_z = c_2d_3$",
+    notation=Notation(names | dict(zip(("d_x", "d_y", "d_z"), arm.position, strict=True))),
+    paraphrase=True,
 )

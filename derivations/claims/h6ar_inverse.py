@@ -339,6 +339,8 @@ def directions(fore: sp.Symbol) -> dict[str, sp.Expr]:
 def whole(d: Derivation, r: Robot, v: Virtual) -> None:
     """The angles of the virtual arm, one after the other."""
     square = v.lengths["L_{3A}"]
+    x, y, _ = v.tip.values()
+    outward = cos(r.q.theta1) * x + sin(r.q.theta1) * y
 
     def in_order(
         turn: tuple[Relation, Relation], bend: Relation, third: Relation, sum_: Relation
@@ -346,7 +348,11 @@ def whole(d: Derivation, r: Robot, v: Virtual) -> None:
         names = {turn[1].left: turn[1].right, turn[0].left: turn[0].right}
         names |= {square: bend.sides[1], third.left: third.right, sum_.left: sum_.right}
         upper = {r.A2: r.A23 - r.A3}
-        return Procedure(names, {t: e.subs(upper) for t, e in v.reached.items()}, v.postures)
+        return Procedure(
+            names,
+            {t: e.subs(upper) for t, e in v.reached.items()},
+            replace(v.postures, groups=groups),
+        )
 
     d.claim(
         "inverse of the virtual arm",

@@ -8,16 +8,24 @@ from functools import partial
 from typing import NamedTuple
 
 import sympy as sp
-from sympy import atan2, cos, pi, sin, sqrt
+from sympy import atan2, cos, pi, sin
 
 from closedform import (
+    SIGN,
+    Check,
+    Count,
     Derivation,
+    Enumeration,
+    Every,
+    Identity,
+    Notation,
+    Relation,
+    Rounded,
     denavit_hartenberg,
     real,
     rotation,
     rotation_parametrisation,
 )
-from closedform.proof.checks import Check, Count, Decimal, Deferred, Enumeration, Every, Identity
 
 CRAIG = "Craig, Introduction to Robotics: Unimation PUMA 560"
 CORKE = "Corke, Robotics Toolbox: p560"
@@ -54,6 +62,19 @@ def state(d: Derivation, puma: Puma) -> None:
     configurations(d, puma)
 
 
+def notation(puma: Puma) -> Notation:
+    """The names that the books share; ``r_{ij}`` and ``p_x`` are entries of Craig's product."""
+    theta2, theta3 = puma.q[1:3]
+    names = dict(zip(("a_2", "a_3", "d_3", "d_4"), puma.lengths, strict=True))
+    for index, angle in (*zip("123456", puma.q, strict=True), ("{23}", theta2 + theta3)):
+        names |= {f"c_{index}": cos(angle), f"s_{index}": sin(angle)}
+        names[rf"\theta_{index}"] = angle
+    T = craig_chain(puma)
+    names |= {f"r_{{{i + 1}{j + 1}}}": T[i, j] for i in range(3) for j in range(3)}
+    names |= {f"p_{axis}": T[k, 3] for k, axis in enumerate("xyz")}
+    return Notation(names)
+
+
 def craig_chain(puma: Puma) -> sp.Matrix:
     """The product of Craig's table of modified parameters."""
     a2, a3, d3, d4 = puma.lengths
@@ -69,204 +90,150 @@ def craig_chain(puma: Puma) -> sp.Matrix:
 
 def craig_forward(d: Derivation, puma: Puma) -> None:
     """The twelve entries of the pose, and the relation of the two conventions."""
-    a2, a3, d3, d4 = puma.lengths
-    c1, c2, _, c4, c5, c6 = (cos(x) for x in puma.q)
-    s1, s2, _, s4, s5, s6 = (sin(x) for x in puma.q)
-    c23, s23 = cos(puma.q[1] + puma.q[2]), sin(puma.q[1] + puma.q[2])
-    claim = partial(d.claim, where=CRAIG)
-    T = craig_chain(puma)
+    claim = partial(d.claim, where=CRAIG, notation=notation(puma), paraphrase=True)
     claim(
         "first column",
         r"$r_{11} = c_1[c_{23}(c_4c_5c_6 - s_4s_6) - s_{23}s_5c_6] + s_1(s_4c_5c_6 + c_4s_6)$, "
         r"$r_{21} = s_1[c_{23}(c_4c_5c_6 - s_4s_6) - s_{23}s_5c_6] - c_1(s_4c_5c_6 + c_4s_6)$, "
         r"$r_{31} = -s_{23}(c_4c_5c_6 - s_4s_6) - c_{23}s_5c_6$",
-        Identity(
-            sp.Matrix(
-                [
-                    c1 * (c23 * (c4 * c5 * c6 - s4 * s6) - s23 * s5 * c6)
-                    + s1 * (s4 * c5 * c6 + c4 * s6),
-                    s1 * (c23 * (c4 * c5 * c6 - s4 * s6) - s23 * s5 * c6)
-                    - c1 * (s4 * c5 * c6 + c4 * s6),
-                    -s23 * (c4 * c5 * c6 - s4 * s6) - c23 * s5 * c6,
-                ]
-            ),
-            T[:3, 0],
-        ),
     )
     claim(
         "second column",
         r"$r_{12} = c_1[c_{23}(-c_4c_5s_6 - s_4c_6) + s_{23}s_5s_6] + s_1(c_4c_6 - s_4c_5s_6)$, "
         r"$r_{22} = s_1[c_{23}(-c_4c_5s_6 - s_4c_6) + s_{23}s_5s_6] - c_1(c_4c_6 - s_4c_5s_6)$, "
         r"$r_{32} = -s_{23}(-c_4c_5s_6 - s_4c_6) + c_{23}s_5s_6$",
-        Identity(
-            sp.Matrix(
-                [
-                    c1 * (c23 * (-c4 * c5 * s6 - s4 * c6) + s23 * s5 * s6)
-                    + s1 * (c4 * c6 - s4 * c5 * s6),
-                    s1 * (c23 * (-c4 * c5 * s6 - s4 * c6) + s23 * s5 * s6)
-                    - c1 * (c4 * c6 - s4 * c5 * s6),
-                    -s23 * (-c4 * c5 * s6 - s4 * c6) + c23 * s5 * s6,
-                ]
-            ),
-            T[:3, 1],
-        ),
     )
     claim(
         "third column",
         r"$r_{13} = -c_1(c_{23}c_4s_5 + s_{23}c_5) - s_1s_4s_5$, "
         r"$r_{23} = -s_1(c_{23}c_4s_5 + s_{23}c_5) + c_1s_4s_5$, "
         r"$r_{33} = s_{23}c_4s_5 - c_{23}c_5$",
-        Identity(
-            sp.Matrix(
-                [
-                    -c1 * (c23 * c4 * s5 + s23 * c5) - s1 * s4 * s5,
-                    -s1 * (c23 * c4 * s5 + s23 * c5) + c1 * s4 * s5,
-                    s23 * c4 * s5 - c23 * c5,
-                ]
-            ),
-            T[:3, 2],
-        ),
     )
     claim(
         "position",
         r"$p_x = c_1[a_2c_2 + a_3c_{23} - d_4s_{23}] - d_3s_1$, "
         r"$p_y = s_1[a_2c_2 + a_3c_{23} - d_4s_{23}] + d_3c_1$, "
         r"$p_z = -a_3s_{23} - a_2s_2 - d_4c_{23}$",
-        Identity(
-            sp.Matrix(
-                [
-                    c1 * (a2 * c2 + a3 * c23 - d4 * s23) - d3 * s1,
-                    s1 * (a2 * c2 + a3 * c23 - d4 * s23) + d3 * c1,
-                    -a3 * s23 - a2 * s2 - d4 * c23,
-                ]
-            ),
-            T[:3, 3],
-        ),
     )
-    mirrored = {puma.q[0]: -puma.q[0]}
-    half = sp.diag(rotation("x", pi), 1)
     claim(
         "the two conventions",
-        "with its base turned by $180^\\circ$ about $x$ and with $-\\theta_1$, Craig's arm is that "
+        "with its base turned by $180^\\circ$ about {x} and with $-\\theta_1$, Craig's arm is that "
         "of the standard table",
-        Identity(half * T.subs(mirrored, simultaneous=True), puma.pose()),
+        lambda angle, axis, first: Identity(
+            sp.diag(rotation(axis, angle.left), 1)
+            * craig_chain(puma).subs({puma.q[0]: first.left}, simultaneous=True),
+            puma.pose(),
+        ),
+        phrases=[{"x": "x", "y": "y"}],
     )
 
 
 def craig_inverse(d: Derivation, puma: Puma) -> None:
     """The inverse, joint by joint, in Craig's convention."""
-    claim = partial(d.claim, where=CRAIG)
-    theta1, theta2, theta3, theta4, theta5, theta6 = puma.q
-    p = sp.Matrix([real(n) for n in ("p_x", "p_y", "p_z")])
+    place = {f"p_{axis}": real(f"p_{axis}") for axis in "xyz"}
+    names = {r"\mathrm{Atan2}": atan2, "K": real("K")}
+    claim = partial(d.claim, where=CRAIG, notation=notation(puma), paraphrase=True)
     claim(
-        r"theta_1, theta_3, theta_23",
+        "theta_1, theta_3, theta_23",
         r"$\theta_1 = \mathrm{Atan2}(p_y, p_x) - \mathrm{Atan2}(d_3, \pm\sqrt{p_x^2 + p_y^2 - "
         r"d_3^2})$, $\theta_3 = \mathrm{Atan2}(a_3, d_4) - \mathrm{Atan2}(K, \pm\sqrt{a_3^2 + "
         r"d_4^2 - K^2})$, $K = \frac{p_x^2 + p_y^2 + p_z^2 - a_2^2 - a_3^2 - d_3^2 - d_4^2}"
         r"{2a_2}$, $\theta_{23} = \mathrm{Atan2}[(-a_3 - a_2c_3)p_z - (c_1p_x + s_1p_y)(d_4 - "
         r"a_2s_3), (a_2s_3 - d_4)p_z + (a_3 + a_2c_3)(c_1p_x + s_1p_y)]$",
-        Deferred(lambda: printed_position(puma, p)),
+        partial(every_sign, puma, sp.Matrix(list(place.values()))),
+        means=place | names,
     )
-    T = craig_chain(puma)
-    r = T[:3, :3]
-    c1, s1 = cos(theta1), sin(theta1)
-    c23, s23 = cos(theta2 + theta3), sin(theta2 + theta3)
-    c4, s4, c5, s5 = cos(theta4), sin(theta4), cos(theta5), sin(theta5)
     claim(
         "theta_4",
         r"$\theta_4 = \mathrm{Atan2}(-r_{13}s_1 + r_{23}c_1, -r_{13}c_1c_{23} - r_{23}s_1c_{23} + "
         r"r_{33}s_{23})$, the arguments being $s_4s_5$ and $c_4s_5$",
-        Identity(
-            sp.Matrix(
-                [
-                    -r[0, 2] * s1 + r[1, 2] * c1,
-                    -r[0, 2] * c1 * c23 - r[1, 2] * s1 * c23 + r[2, 2] * s23,
-                ]
-            ),
-            sp.Matrix([s4 * s5, c4 * s5]),
+        lambda angle, sine, cosine: Every(
+            {
+                "the arguments": Identity([*angle.right.args], [sine.left, cosine.left]),
+                "the angle": Identity(
+                    [sin(angle.left) * sin(puma.q[4]), cos(angle.left) * sin(puma.q[4])],
+                    [*angle.right.args],
+                ),
+            }
         ),
+        means=names,
     )
     claim(
         "theta_5",
         r"$r_{13}(c_1c_{23}c_4 + s_1s_4) + r_{23}(s_1c_{23}c_4 - c_1s_4) - r_{33}(s_{23}c_4) = "
         r"-s_5$, $r_{13}(-c_1s_{23}) + r_{23}(-s_1s_{23}) + r_{33}(-c_{23}) = c_5$",
-        Identity(
-            sp.Matrix(
-                [
-                    r[0, 2] * (c1 * c23 * c4 + s1 * s4)
-                    + r[1, 2] * (s1 * c23 * c4 - c1 * s4)
-                    - r[2, 2] * s23 * c4,
-                    -r[0, 2] * c1 * s23 - r[1, 2] * s1 * s23 - r[2, 2] * c23,
-                ]
-            ),
-            sp.Matrix([-s5, c5]),
-        ),
     )
     claim(
         "theta_6",
         r"$s_6 = -r_{11}(c_1c_{23}s_4 - s_1c_4) - r_{21}(s_1c_{23}s_4 + c_1c_4) + "
         r"r_{31}(s_{23}s_4)$, $c_6 = r_{11}[(c_1c_{23}c_4 + s_1s_4)c_5 - c_1s_{23}s_5] + "
         r"r_{21}[(s_1c_{23}c_4 - c_1s_4)c_5 - s_1s_{23}s_5] - r_{31}(s_{23}c_4c_5 + c_{23}s_5)$",
-        Identity(
-            sp.Matrix(
-                [
-                    -r[0, 0] * (c1 * c23 * s4 - s1 * c4)
-                    - r[1, 0] * (s1 * c23 * s4 + c1 * c4)
-                    + r[2, 0] * s23 * s4,
-                    r[0, 0] * ((c1 * c23 * c4 + s1 * s4) * c5 - c1 * s23 * s5)
-                    + r[1, 0] * ((s1 * c23 * c4 - c1 * s4) * c5 - s1 * s23 * s5)
-                    - r[2, 0] * (s23 * c4 * c5 + c23 * s5),
-                ]
-            ),
-            sp.Matrix([sin(theta6), cos(theta6)]),
-        ),
     )
-    flipped = {theta4: theta4 + pi, theta5: -theta5, theta6: theta6 + pi}
+    primed = [real(f"theta_{k}'") for k in (4, 5, 6)]
     claim(
         "flipped wrist",
         r"$\theta_4' = \theta_4 + 180^\circ$, $\theta_5' = -\theta_5$, $\theta_6' = \theta_6 + "
-        r"180^\circ$ reach the same pose",
-        Identity(T.subs(flipped, simultaneous=True), T),
+        r"180^\circ$ reach the {same} pose",
+        lambda *pieces: Identity(
+            pieces[-1]
+            * craig_chain(puma).subs(
+                dict(zip(puma.q[3:], (f.right for f in pieces[:-1]), strict=True)),
+                simultaneous=True,
+            ),
+            craig_chain(puma),
+        ),
+        means={rf"\theta_{k}'": s for k, s in zip((4, 5, 6), primed, strict=True)},
+        phrases=[{"same": sp.eye(4), "opposite": sp.diag(rotation("x", pi), 1)}],
     )
 
 
-def printed_position(puma: Puma, p: sp.Matrix) -> Check:
-    """Craig's first three angles, substituted into his forward map, for all signs of both roots."""
-    a2, a3, d3, d4 = puma.lengths
-    theta1, theta2, theta3 = puma.q[:3]
+def every_sign(puma: Puma, p: sp.Matrix, *formulas: Relation) -> Check:
+    """The first three angles, substituted into the forward map, for all signs of both roots."""
+    theta1, _, theta3 = puma.q[:3]
+    first, third, square, both = formulas
     forward = craig_chain(puma)[:3, 3]
-    K = (p.dot(p) - a2**2 - a3**2 - d3**2 - d4**2) / (2 * a2)
-    parts = {}
+    parts: dict[str, Check] = {}
     for shoulder in (1, -1):
         for elbow in (1, -1):
-            first = atan2(p[1], p[0]) - atan2(d3, shoulder * sqrt(p[0] ** 2 + p[1] ** 2 - d3**2))
-            third = atan2(a3, d4) - atan2(K, elbow * sqrt(a3**2 + d4**2 - K**2))
-            ahead = cos(first) * p[0] + sin(first) * p[1]
-            both = atan2(
-                (-a3 - a2 * cos(third)) * p[2] - ahead * (d4 - a2 * sin(third)),
-                (a2 * sin(third) - d4) * p[2] + (a3 + a2 * cos(third)) * ahead,
+            angles = {
+                theta1: first.right.subs(SIGN, shoulder),
+                theta3: third.right.subs({SIGN: elbow}).subs(square.left, square.right),
+            }
+            sum_ = both.right.subs(angles, simultaneous=True)
+            angles[puma.q[1]] = sum_ - angles[theta3]
+            parts[f"signs {shoulder:+d}, {elbow:+d}"] = Identity(
+                forward.xreplace(angles), p, (p.dot(p) - puma.lengths[2] ** 2,)
             )
-            angles = {theta1: first, theta2: both - third, theta3: third}
-            name = f"signs {shoulder:+d}, {elbow:+d}"
-            parts[name] = Identity(forward.xreplace(angles), p, (p.dot(p) - d3**2,))
+    names = [first.left, third.left, both.left]
+    parts["the names"] = Identity(names, [theta1, theta3, puma.q[1] + theta3])
+    position = [e - x for e, x in zip(forward, p, strict=True)]
+    parts["there are no others"] = Count(position, puma.q[:3], len(parts) - 1)
     return Every(parts)
 
 
 def corke(d: Derivation, puma: Puma) -> None:
     """Numbers that the Toolbox prints for its named postures."""
-    claim = partial(d.claim, where=CORKE)
+    claim = partial(d.claim, where=CORKE, paraphrase=True)
     postures = {
-        "qz": ((0, 0, 0, 0, 0, 0), ("0.4521", "-0.1500", "0.4318")),
-        "qr": ((0, pi / 2, -pi / 2, 0, 0, 0), ("0.0203", "-0.1500", "0.8636")),
-        "qn": ((0, pi / 4, pi, 0, pi / 4, 0), ("0.5963", "-0.1501", "-0.01435")),
+        "qz": (0, 0, 0, 0, 0, 0),
+        "qr": (0, pi / 2, -pi / 2, 0, 0, 0),
+        "qn": (0, pi / 4, pi, 0, pi / 4, 0),
     }
-    for name, (angles, printed) in postures.items():
-        reached = puma.position.subs(puma.at(d, *angles))
+    printed = {
+        "qz": r"$x = 0.4521$, $y = -0.1500$, $z = 0.4318$",
+        "qr": r"$x = 0.0203$, $y = -0.1500$, $z = 0.8636$",
+        "qn": r"$x = 0.5963$, $y = -0.1501$, $z = -0.01435$",
+    }
+    coordinates = [real(n) for n in "xyz"]
+    for name, text in printed.items():
+        reached = puma.position.subs(puma.at(d, *postures[name]))
         claim(
             f"fkine({name})",
-            f"position ({', '.join(printed)})",
-            Every({x: Decimal(n, e) for x, n, e in zip("xyz", printed, reached, strict=True)}),
+            f"position {text}",
+            partial(rounded, coordinates, list(reached)),
+            notation=Notation(dict(zip("xyz", coordinates, strict=True))),
         )
+    entries = [[real(f"J_{{{i}{j}}}") for j in range(1, 7)] for i in range(1, 7)]
     rows = (
         ("0.1501", "0.0144", "0.3197", "0", "0", "0"),
         ("0.5963", "0", "0", "0", "0", "0"),
@@ -275,93 +242,112 @@ def corke(d: Derivation, puma: Puma) -> None:
         ("0", "-1", "-1", "0", "-1", "0"),
         ("1", "0", "0", "-0.7071", "0", "0"),
     )
+    names = [s for row in entries for s in row]
+    numbers = [n for row in rows for n in row]
     claim(
         "jacob0(qn)",
-        "; ".join(" ".join(row) for row in rows),
-        Deferred(lambda: printed_jacobian(d, puma, rows)),
+        ", ".join(f"${s} = {n}$" for s, n in zip(names, numbers, strict=True)),
+        lambda *f: rounded(names, list(puma.J.subs(puma.at(d, *postures["qn"]))), *f),
+        notation=Notation({str(s): s for s in names}),
     )
     claim(
         "rank of jacob0(qr)",
-        "at qr the Jacobian has rank 5: q6 depends on q4",
-        Every(
+        "at qr the Jacobian has rank {five}: q6 depends on {q4}",
+        lambda rank, column: Every(
             {
                 "rank": Enumeration(
-                    5,
-                    lambda: puma.J.subs(puma.at(d, *postures["qr"][0])).rank(),
-                    "rank at qr",
+                    rank, lambda: puma.J.subs(puma.at(d, *postures["qr"])).rank(), "rank at qr"
                 ),
                 "columns": Identity(
-                    puma.J[:, 3].subs(puma.q[4], 0), puma.J[:, 5].subs(puma.q[4], 0)
+                    puma.J[:, column].subs(puma.q[4], 0), puma.J[:, 5].subs(puma.q[4], 0)
                 ),
             }
         ),
+        phrases=[{"q4": 3, "q5": 4}],
     )
 
 
-def printed_jacobian(d: Derivation, puma: Puma, rows: tuple[tuple[str, ...], ...]) -> Check:
-    exact = puma.J.subs(puma.at(d, 0, pi / 4, pi, 0, pi / 4, 0))
+def rounded(names: list[sp.Symbol], exact: list[sp.Expr], *printed: Relation) -> Check:
+    """Printed decimals, each with the name of what it rounds."""
     return Every(
         {
-            f"row {i + 1}, column {j + 1}": Decimal(rows[i][j], exact[i, j])
-            for i in range(6)
-            for j in range(6)
+            str(name): Every({"name": Identity(f.left, name), "number": Rounded(f, value)})
+            for name, value, f in zip(names, exact, printed, strict=True)
         }
     )
 
 
 def singularities(d: Derivation, puma: Puma) -> None:
     """Decoupling, and Spong's elbow manipulator as a special case."""
-    a2, a3, d3, d4 = puma.lengths
-    theta2, theta3 = puma.q[1:3]
-    claim = partial(d.claim, where=SPONG)
+    _, _, d3, d4 = puma.lengths
     arm, wrist = puma.J[:3, :3], puma.J[3:, 3:]
+    names = notation(puma).extended(
+        {"J": puma.J, "J_{11}": arm, "J_{21}": puma.J[3:, :3], "J_{22}": wrist}
+    )
+    names = names.extended(
+        {r"\det J": puma.det, r"\det J_{11}": arm.det(), r"\det J_{22}": wrist.det()}
+    )
+    claim = partial(d.claim, where=SPONG, notation=names, paraphrase=True)
     claim(
         "decoupling",
-        r"$J = \begin{bmatrix} J_{11} & 0 \\ J_{21} & J_{22} \end{bmatrix}$, $\det J = \det J_{11}"
+        r"$J = \begin{bmatrix} J_{11} & 0 \\ J_{21} & J_{22} \end{bmatrix}$, $\det J = \det J_{11} "
         r"\det J_{22}$",
-        Every(
-            {
-                "block": Identity(puma.J[:3, 3:], sp.zeros(3)),
-                "determinant": Identity(arm.det() * wrist.det(), puma.det),
-            }
-        ),
     )
-    ours = {d3: sp.Integer(0), d4: sp.Integer(0)}
-    printed = a2 * a3 * sin(theta3) * (a2 * cos(theta2) + a3 * cos(theta2 + theta3))
+    ours = {d3: sp.S.Zero, d4: sp.S.Zero}
     claim(
         "elbow manipulator",
         r"with the forearm along its frame ($d_3 = d_4 = 0$), up to the sign, $\det J_{11} = "
         r"a_2a_3s_3(a_2c_2 + a_3c_{23})$",
-        Identity(printed**2, arm.subs(ours).det() ** 2),
-    )
-    claim(
-        "wrist singularity",
-        r"the wrist is singular if $\theta_5 = 0$ or $\pi$: $z_3$ and $z_5$ are collinear",
-        Every(
+        lambda lengths, formula: Every(
             {
-                "determinant": Identity(wrist.det() ** 2, sin(puma.q[4]) ** 2),
-                "axes": Identity(
-                    wrist[:, 0].cross(wrist[:, 2]).dot(wrist[:, 0].cross(wrist[:, 2])),
-                    sin(puma.q[4]) ** 2,
+                "the lengths": Identity([*lengths.sides[:2]], [d3, d4]),
+                "the square of the determinant": Identity(
+                    *(e.subs(dict.fromkeys(ours, lengths.right)) ** 2 for e in formula.sides)
                 ),
             }
         ),
+    )
+    axes = {"z_3": wrist[:, 0], "z_5": wrist[:, 2], r"\theta_5": puma.q[4]}
+
+    def aligned(first: Relation, second: Relation, a: Relation, b: Relation, how: str) -> Check:
+        apart = {"collinear": a.left.cross(b.left), "perpendicular": a.left.dot(b.left)}[how]
+        parts: dict[str, Check] = {}
+        for case in (first, second):
+            at = {puma.q[4]: case.right}
+            parts[case.texts[1]] = Every(
+                {
+                    "the angle": Identity(case.left, puma.q[4]),
+                    "determinant": Identity(wrist.det().subs(at), sp.S.Zero),
+                    "axes": Identity(
+                        [*sp.Matrix([apart]).subs(at)], [sp.S.Zero] * len(sp.Matrix([apart]))
+                    ),
+                }
+            )
+        return Every(parts)
+
+    claim(
+        "wrist singularity",
+        r"the wrist is singular if $\theta_5 = 0$ or $\theta_5 = \pi$: $z_3$ and $z_5$ are "
+        "{collinear}",
+        aligned,
+        means=axes,
+        phrases=[{how: how for how in ("collinear", "perpendicular")}],
     )
 
 
 def configurations(d: Derivation, puma: Puma) -> None:
     """The number of solutions."""
-    claim = partial(d.claim, where=LEE)
+    claim = partial(d.claim, where=LEE, paraphrase=True)
     p = [real(n) for n in ("p_x", "p_y", "p_z")]
     R = rotation_parametrisation()
     position = [a - b for a, b in zip(puma.position, p, strict=True)]
     claim(
         "four arm configurations",
-        "“four possible solutions to the first three joints”",
-        Count(position, puma.q[:3], 4),
+        "{four} possible solutions to the first three joints",
+        lambda n: Count(position, puma.q[:3], n),
     )
     claim(
         "two wrists",
-        "“for each of these four solutions two possible solutions to the last three joints”",
-        Count(list(puma.R36 - sp.Matrix(R)), puma.q[3:], 2),
+        "for each of these four solutions {two} possible solutions to the last three joints",
+        lambda n: Count(list(puma.R36 - sp.Matrix(R)), puma.q[3:], n),
     )

@@ -348,11 +348,9 @@ def whole(d: Derivation, r: Robot, v: Virtual) -> None:
         names = {turn[1].left: turn[1].right, turn[0].left: turn[0].right}
         names |= {square: bend.sides[1], third.left: third.right, sum_.left: sum_.right}
         upper = {r.A2: r.A23 - r.A3}
-        return Procedure(
-            names,
-            {t: e.subs(upper) for t, e in v.reached.items()},
-            replace(v.postures, groups=groups),
-        )
+        groups = {"target in front": outward > 0, "target behind": outward < 0}
+        reached = {t: e.subs(upper) for t, e in v.reached.items()}
+        return Procedure(names, reached, replace(v.postures, groups=groups))
 
     d.claim(
         "inverse of the virtual arm",

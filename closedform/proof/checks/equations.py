@@ -113,8 +113,8 @@ class Equal(Check):
     r"""All sides of a printed equation are equal, for all values of the symbols.
 
     A formula with ``\pm`` states that each posture satisfies it with one of the signs.  A formula
-    with cases has to hold in each of them, and they have to leave no gap.  ``on`` replaces symbols, for example by their values at a posture; ``defines`` is a side that only
-    names the others.
+    with cases has to hold in each of them, and they have to leave no gap.  ``on`` replaces symbols,
+    for example by their values at a posture; ``defines`` is a side that only names the others.
     """
 
     relation: Relation | tuple[Relation, ...]
@@ -176,10 +176,11 @@ class Equal(Check):
         for value, condition in first.args:
             holds = [*before] if condition == sp.true else [*before, condition]
             gaps = tuple(c.gts - c.lts for c in holds)
-            chosen = [[e.subs(first, value) for e in side] for side in (left, right)]
-            verdict = Identity(*chosen, (*self.nonnegative, *gaps), self.small, names).judge()
+            printed, derived = ([e.subs(first, value) for e in side] for side in (left, right))
+            given = (*self.nonnegative, *gaps)
+            verdict = Identity(printed, derived, given, self.small, names).judge()
             under = verdict.kind == PROVED_UNDER and not self.nonnegative
-            found.append(Verdict(PROVED, verdict.evidence) if under else verdict)
+            found.append(Verdict(PROVED) if under else verdict)
             if condition != sp.true:
                 before.append(sp.Not(condition))
         if first.args[-1][1] != sp.true:

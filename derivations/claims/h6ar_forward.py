@@ -255,7 +255,7 @@ def averages(d: Derivation, r: Robot, printed: Notation) -> None:
         third = r.A2 + r.A3 + sign * fore - second
         differing[rf"\theta_2^{side}"] = second
         differing[rf"\theta_{{23}}^{side}"] = second + third
-        points[side] = r.arm_tip(second, third, sign * m.d)
+        points[side] = r.planar_tip(second, second + third, sign * m.d)
     middle = (points["R"] + points["L"]) / 2
     differing |= {f"{axis}_I": e for axis, e in zip("xyz", middle, strict=True)}
     names = printed.extended(differing)
@@ -282,7 +282,7 @@ def averages(d: Derivation, r: Robot, printed: Notation) -> None:
             corrected=f"${corrected}$",
             erratum="averages",
         )
-    virtual = r.arm_tip(r.A2, r.A3, sp.S.Zero)
+    virtual = r.planar_tip(r.A2, r.A2 + r.A3, sp.S.Zero)
     shift = sp.Matrix([real(f"u_{axis}") for axis in "xyz"])
     place = sp.Matrix([real(f"{axis}_I") for axis in "xyz"])
     claim(
@@ -343,8 +343,8 @@ def averages(d: Derivation, r: Robot, printed: Notation) -> None:
         where=SERIAL,
         phrases=[{"midplane": sp.S.Zero, "plane": m.d}],
     )
-    required = 2 * virtual - r.arm_tip(r.A2 + upper, r.A3 + fore - upper, m.d)
-    by_average = r.arm_tip(r.A2 - upper, r.A3 - fore + upper, -m.d)
+    required = 2 * virtual - r.planar_tip(r.A2 + upper, r.A2 + r.A3 + fore, m.d)
+    by_average = r.planar_tip(r.A2 - upper, r.A2 + r.A3 - fore, -m.d)
     d.claim(
         "only one set of angles",
         "“Since the average of the twin shoulder and elbow angles, [...], respectively, are known, "

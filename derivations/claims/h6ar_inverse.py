@@ -6,6 +6,14 @@ from typing import NamedTuple
 
 import sympy as sp
 from closedform.derivations.claims.h6ar_robot import Robot
+from closedform.derivations.h6ar_mechanism import (
+    Posture,
+    extended,
+    in_space,
+    pair,
+    reach,
+    tip,
+)
 from sympy import Rational, asin, atan2, cos, pi, sin, sqrt
 
 from closedform import (
@@ -166,9 +174,10 @@ def errors(d: Derivation) -> None:
 
 
 def reached_tip(r: Robot, lengths: dict[str, sp.Symbol]) -> sp.Matrix:
-    """The tip from the three lengths of (9), by the frames of the virtual arm."""
-    beyond = sp.Matrix([lengths["a_{3W}"], -lengths[r"L_\theta"], lengths["L_{2W}"]])
-    return sp.Matrix(r.elbow + r.fore_arm * beyond)
+    """The tip from the three lengths of (9)."""
+    along, across = lengths["L_{2W}"], lengths["a_{3W}"]
+    planar = reach(r.m, pair(r.A2), pair(r.A2 + r.A3), along, across)
+    return in_space(r.m, pair(r.q.theta1), planar, -lengths[r"L_\theta"])
 
 
 def sampled(r: Robot, given: dict[str, sp.Symbol], lengths: dict[str, sp.Symbol]) -> Postures:
@@ -177,18 +186,14 @@ def sampled(r: Robot, given: dict[str, sp.Symbol], lengths: dict[str, sp.Symbol]
     The arm turns through full circles; yaw and roll are at most 30 degrees, pitch 90.
     """
     m, q = r.m, r.q
-    wrist = sqrt(m.al**2 - (m.d / cos(r.psi) - m.gs) ** 2) + m.loff
-    inputs = dict(zip(given.values(), r.tip.subs(r.LW, wrist), strict=True))
-    across, aside, along = r.beyond_elbow.subs(r.LW, wrist)
-    inputs |= {
-        lengths[r"L_\theta"]: -aside,
-        lengths["L_{2W}"]: along,
-        lengths["a_{3W}"]: across,
-        r.A23: r.A2 + r.A3,
-    }
+    base = m.d / cos(r.psi)
+    angles = (q.theta1, r.A2, r.A2 + r.A3, r.psi, r.phi, q.theta)
+    posture = Posture(*map(pair, angles), sqrt(m.al**2 - (base - m.gs) ** 2), base)
+    inputs = dict(zip(given.values(), tip(m, posture), strict=True))
+    inputs |= dict(zip(lengths.values(), extended(m, posture), strict=False))
     third, quarter = float(pi / 6), float(pi / 2)
     return Postures(
-        inputs,
+        inputs | {r.A23: r.A2 + r.A3},
         (q.theta1, r.A2, r.A3, r.psi, r.phi, q.theta),
         r.example,
         {r.psi: (-third, third), r.phi: (-third, third), q.theta: (-quarter, quarter)},
@@ -367,8 +372,8 @@ def whole(d: Derivation, r: Robot, v: Virtual) -> None:
 def right_arm(d: Derivation, r: Robot, printed: Notation) -> None:
     """The angles of the right arm, and the case without yaw and roll."""
     m, q = r.m, r.q
-    place = {f"{axis}_R": real(f"{axis}_R") for axis in "xyz"}
-    claim = partial(d.claim, where=INVERSE, notation=printed.extended(place))
+    symbols = {f"{axis}_R": real(f"{axis}_R") for axis in "xyz"}
+    claim = partial(d.claim, where=INVERSE, notation=printed.extended(symbols))
     fore = r.A2 + r.A3
     upper_by = sp.Matrix([-m.L1 * sin(r.A2), m.L1 * cos(r.A2)])
     fore_by = sp.Matrix([m.L2 * cos(fore) - m.a3 * sin(fore), m.L2 * sin(fore) + m.a3 * cos(fore)])
@@ -406,14 +411,15 @@ def right_arm(d: Derivation, r: Robot, printed: Notation) -> None:
             r"\theta_3^L": r.A3 - forward + upper,
         },
     )
-    x, y, z = place.values()
+    x, y, z = symbols.values()
     outward, height = cos(q.theta1) * x + sin(q.theta1) * y, z - m.d1
     square = outward**2 + height**2 - m.L1**2 - m.L2**2 - m.a3**2
     reach = 2 * m.L1 * sqrt(m.L2**2 + m.a3**2)
-    tip = dict(zip((x, y, z), r.right, strict=True))
+    planar = r.planar_tip(q.theta2R, q.theta2R + q.theta3R, m.d)
+    place = dict(zip((x, y, z), planar, strict=True))
     whole_sum = real("theta_23^R")
     postures = Postures(
-        tip | {whole_sum: q.theta2R + q.theta3R},
+        place | {whole_sum: q.theta2R + q.theta3R},
         (q.theta1, q.theta2R, q.theta3R),
         r.example,
     )
@@ -442,7 +448,7 @@ def right_arm(d: Derivation, r: Robot, printed: Notation) -> None:
             ],
             replace(postures, groups=directions(whole_sum)),
             (sp.expand(across**2 + along**2),),
-            tip,
+            place,
         ),
         means={r"\theta_{23}^R": whole_sum},
         corrected=f"$\\theta_{{23}}^{{R}} = {quadrants(RIGHT_SHOULDER)}$",

@@ -8,7 +8,10 @@ import sympy as sp
 from closedform.derivations.h6ar_mechanism import (
     Dimensions,
     Joints,
+    arm,
     arm_frames,
+    in_space,
+    pair,
     product,
     wrist_frames,
 )
@@ -33,6 +36,10 @@ class Robot:
         end = sp.Matrix([0, 0, self.m.L2, 1])
         frames = product(arm_frames(self.m, self.q.theta1, second, third, side))
         return sp.Matrix((frames * end)[:3])
+
+    def planar_tip(self, upper: sp.Expr, fore: sp.Expr, side: sp.Expr) -> sp.Matrix:
+        """The same from the angles of the links against the horizontal, without frames."""
+        return in_space(self.m, pair(self.q.theta1), arm(self.m, upper, fore), side)
 
     @cached_property
     def right(self) -> sp.Matrix:

@@ -11,7 +11,6 @@ import sympy as sp
 from sympy import atan2, cos, pi, sin
 
 from closedform import (
-    SIGN,
     Check,
     Count,
     Derivation,
@@ -21,6 +20,7 @@ from closedform import (
     Notation,
     Relation,
     Rounded,
+    Solves,
     denavit_hartenberg,
     real,
     rotation,
@@ -188,27 +188,47 @@ def craig_inverse(d: Derivation, puma: Puma) -> None:
 
 
 def every_sign(puma: Puma, p: sp.Matrix, *formulas: Relation) -> Check:
-    """The first three angles, substituted into the forward map, for all signs of both roots."""
-    theta1, _, theta3 = puma.q[:3]
+    """The first three angles, one after the other, for all signs of both roots.
+
+    Each formula gives all solutions of an equation that the forward map satisfies.
+    """
+    a2, a3, d3, d4 = puma.lengths
+    theta1, theta2, theta3 = puma.q[:3]
     first, third, square, both = formulas
-    forward = craig_chain(puma)[:3, 3]
-    parts: dict[str, Check] = {}
-    for shoulder in (1, -1):
-        for elbow in (1, -1):
-            angles = {
-                theta1: first.right.subs(SIGN, shoulder),
-                theta3: third.right.subs({SIGN: elbow}).subs(square.left, square.right),
-            }
-            sum_ = both.right.subs(angles, simultaneous=True)
-            angles[puma.q[1]] = sum_ - angles[theta3]
-            parts[f"signs {shoulder:+d}, {elbow:+d}"] = Identity(
-                forward.xreplace(angles), p, (p.dot(p) - puma.lengths[2] ** 2,)
-            )
-    names = [first.left, third.left, both.left]
-    parts["the names"] = Identity(names, [theta1, theta3, puma.q[1] + theta3])
-    position = [e - x for e, x in zip(forward, p, strict=True)]
-    parts["there are no others"] = Count(position, puma.q[:3], len(parts) - 1)
-    return Every(parts)
+    forward = dict(zip(p, craig_chain(puma)[:3, 3], strict=True))
+    ahead = cos(theta1) * p[0] + sin(theta1) * p[1]
+    sum_, elbow = real("theta_23"), a3 * cos(theta3) - d4 * sin(theta3)
+    along, across = a2 * cos(theta3) + a3, d4 - a2 * sin(theta3)
+    beside = cos(theta1) * p[1] - sin(theta1) * p[0] - d3
+    in_fore_arm = [
+        ahead * cos(sum_) - p[2] * sin(sum_) - along,
+        -ahead * sin(sum_) - p[2] * cos(sum_) - across,
+    ]
+    true_sum = {sum_: theta2 + theta3}
+    names = [first.left, third.left, square.left, both.left]
+    return Every(
+        {
+            "the names": Identity(names, [theta1, theta3, real("K"), theta2 + theta3]),
+            "the equations": Identity(
+                [e.subs(true_sum).subs(forward) for e in (beside, *in_fore_arm)], [sp.S.Zero] * 3
+            ),
+            "theta1": Solves(
+                {theta1: first.right}, [beside], nonnegative=(p[0] ** 2 + p[1] ** 2 - d3**2,)
+            ),
+            "K": Identity(square.right.subs(forward), elbow),
+            "theta3": Solves(
+                {theta3: third.right},
+                [elbow - square.left],
+                nonnegative=(a3**2 + d4**2 - square.left**2,),
+            ),
+            "theta23": Solves(
+                {sum_: both.right},
+                in_fore_arm,
+                nonnegative=(sp.expand(along**2 + across**2),),
+                given=forward,
+            ),
+        }
+    )
 
 
 def corke(d: Derivation, puma: Puma) -> None:

@@ -252,11 +252,12 @@ class Procedure(Check):
                 balls = evaluate([reached[t] - point[t] for t in self.reached], {})
             except (Undetermined, TypeError, ValueError, ZeroDivisionError):
                 continue
-            if all(b.is_finite() for b in balls) and any(not b.contains(0) for b in balls):
+            missed = [t for t, b in zip(self.reached, balls, strict=True) if not b.contains(0)]
+            if all(b.is_finite() for b in balls) and missed:
                 pieces: list[Any] = []
-                for t in self.reached:
-                    pieces += [", ", t, " = ", shown(reached[t], {}), " instead of ",
-                               shown(point[t], {})]  # fmt: skip
+                for t in missed:
+                    decimal = evaluate([reached[t]], {})[0].str(6, radius=False)
+                    pieces += [", ", t, f" = ${decimal}$ instead of ", shown(point[t], {})]
                 return ("at ", posture, ": it reaches ", *pieces[1:], "; ")
         return ()
 

@@ -170,6 +170,7 @@ def craig_inverse(d: Derivation, puma: Puma) -> None:
         r"r_{21}[(s_1c_{23}c_4 - c_1s_4)c_5 - s_1s_{23}s_5] - r_{31}(s_{23}c_4c_5 + c_{23}s_5)$",
     )
     primed = [real(f"theta_{k}'") for k in (4, 5, 6)]
+    turned = dict(zip(primed, puma.q[3:], strict=True))
     claim(
         "flipped wrist",
         r"$\theta_4' = \theta_4 + 180^\circ$, $\theta_5' = -\theta_5$, $\theta_6' = \theta_6 + "
@@ -177,7 +178,7 @@ def craig_inverse(d: Derivation, puma: Puma) -> None:
         lambda *pieces: Identity(
             pieces[-1]
             * craig_chain(puma).subs(
-                dict(zip(puma.q[3:], (f.right for f in pieces[:-1]), strict=True)),
+                {turned[f.left]: f.right for f in pieces[:-1]},
                 simultaneous=True,
             ),
             craig_chain(puma),
@@ -343,8 +344,10 @@ def singularities(d: Derivation, puma: Puma) -> None:
                     ),
                 }
             )
+        parts["the names"] = Identity(sp.Matrix([a.left, b.left]), sp.Matrix([*axes_of_wrist]))
         return Every(parts)
 
+    axes_of_wrist = wrist[:, 0], wrist[:, 2]
     claim(
         "wrist singularity",
         r"the wrist is singular if $\theta_5 = 0$ or $\theta_5 = \pi$: $z_3$ and $z_5$ are "

@@ -1,9 +1,7 @@
 """The H6AR of Rao and Raju as published: the wrist follows the averages of the arms' angles."""
 
-from functools import partial
-
 import sympy as sp
-from closedform.derivations.claims.h6ar import Robot, state
+from closedform.derivations.claims.h6ar import state
 from closedform.derivations.h6ar_free_turn import free_turn, turn_step, turned_by
 from closedform.derivations.h6ar_mechanism import (
     ACCURACY,
@@ -48,12 +46,8 @@ from closedform.derivations.h6ar_mechanism import (
     wrist_let,
     wrist_squared,
 )
-<<<<<<< HEAD
-from closedform.derivations.papers.rao_raju import RAO_RAJU
-=======
 from closedform.derivations.h6ar_skeleton import draw
 from closedform.derivations.papers.rao_raju import RAO_RAJU
->>>>>>> 7e849b28e84f18ab78184818ee924085312aeda1
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform import (
@@ -499,22 +493,4 @@ design(d, m, cos(psi))
 
 # Claims of the paper
 
-as_printed = {theta2A: real("theta_2^A"), theta23A: real("theta_23^A")}
-state(
-    d,
-    Robot(
-        m,
-        theta1,
-        *as_printed.values(),
-        alpha,
-        beta,
-        psi,
-        phi,
-        tips,
-        by_frames,
-        serial.xreplace(as_printed),
-        T.xreplace(as_printed),
-        extended(m, posture),
-        partial(arm, m),
-    ),
-)
+state(d, m, q)

@@ -39,12 +39,8 @@ from closedform.derivations.h6ar_mechanism import (
     wrist_given,
     wrist_let,
 )
-<<<<<<< HEAD
-from closedform.derivations.papers.rao_raju import RAO_RAJU
-=======
 from closedform.derivations.h6ar_skeleton import draw
 from closedform.derivations.papers.rao_raju import RAO_RAJU
->>>>>>> 7e849b28e84f18ab78184818ee924085312aeda1
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform import (

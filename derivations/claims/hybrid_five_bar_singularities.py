@@ -19,7 +19,6 @@ from closedform.derivations.claims.five_bar_postures import (
 from sympy import cos, pi, sin
 
 from closedform import (
-    Listing,
     Check,
     Derivation,
     Enumeration,
@@ -27,6 +26,7 @@ from closedform import (
     Exists,
     Gravity,
     Identity,
+    Listing,
     Not,
     Notation,
     Reading,

@@ -7,4 +7,6 @@ STANFORD_TEXTBOOKS = Paper(
     "The Stanford arm in the textbooks",
     ("R. P. Paul", "M. W. Spong", "S. Hutchinson", "M. Vidyasagar"),
     "Paul: Robot Manipulators; Spong, Hutchinson, Vidyasagar: Robot Modeling and Control",
+    source="The books are quoted from memory for a result that is common knowledge; the claim "
+    "gives its content, with the hand at the centre of the wrist ($d_6 = 0$), not its wording.",
 )

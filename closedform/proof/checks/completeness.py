@@ -34,7 +34,7 @@ class Listing(Check):
 
     def judge(self) -> Verdict:
         found = list(self.found())
-        wrong = [e for e in self.printed if e not in found]
+        wrong = sorted((e for e in self.printed if e not in found), key=str)
         if wrong:
             return Verdict(REFUTED, ("not among the ", self.meaning, ": ", *self._listed(wrong)))
         missing = [e for e in found if e not in self.printed]

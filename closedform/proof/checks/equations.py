@@ -45,15 +45,15 @@ class Identity(Check):
     """``printed`` equals ``derived`` for all values of the symbols.
 
     ``nonnegative`` lists expressions that may be assumed to be nonnegative; ``given`` replaces
-    symbols that depend on each other.  ``small`` is a symbol that tends to zero: a refuted equation
-    whose error vanishes with it is an approximation, and its order is derived.  ``names`` are the
-    texts of the two sides, for the evidence.
+    symbols that depend on each other.  ``small`` is a symbol that tends to zero, or several that do
+    so together: a refuted equation whose error vanishes with them is an approximation, and its
+    order is derived.  ``names`` are the texts of the two sides, for the evidence.
     """
 
     printed: Exact
     derived: Exact
     nonnegative: tuple[Expr, ...] = ()
-    small: sp.Symbol | None = None
+    small: sp.Symbol | tuple[sp.Symbol, ...] | None = None
     names: tuple[str, str] = ("the printed form", "the derived one")
 
     def judge(self) -> Verdict:
@@ -89,20 +89,25 @@ class Identity(Check):
         )  # fmt: skip
 
 
-def _order(gap: Exact, small: sp.Symbol) -> tuple[Any, ...]:
-    """The leading term of the largest error, if all errors vanish with ``small``."""
+def _order(gap: Exact, small: sp.Symbol | tuple[sp.Symbol, ...]) -> tuple[Any, ...]:
+    """The leading term of the largest error, if all errors vanish with the ``small`` symbols."""
+    small = small if isinstance(small, tuple) else (small,)
+    scale = sp.Dummy("scale", real=True)
+    scaled = {s: scale * s for s in small}
     terms = []
     for entry in entries(gap):
-        series = sp.series(sp.simplify(entry), small, 0, 6).removeO()
+        gaining = sp.simplify(entry).subs(scaled, simultaneous=True)
+        series = sp.series(gaining, scale, 0, 6).removeO()
         if series != 0:
-            term = sp.factor(series.as_leading_term(small))
-            terms.append((sp.degree(sp.numer(term), small), term))
+            term = sp.factor(series.as_leading_term(scale))
+            terms.append((sp.degree(sp.numer(term), scale), term))
     if not terms:
         return ()
     degree, term = min(terms, key=lambda t: t[0])
     if degree <= 0:
         return ()
-    return ("the error is ", term, " and terms of order ", small ** (degree + 1))
+    of = [piece for s in small for piece in (", ", s)]
+    return ("the error is ", term.subs(scale, 1), f" and terms of order {degree + 1} in ", *of[1:])
 
 
 @dataclass(frozen=True)
@@ -110,13 +115,14 @@ class Equal(Check):
     r"""All sides of a printed equation are equal, for all values of the symbols.
 
     A formula with ``\pm`` states that each posture satisfies it with one of the signs.  A formula
-    with a free index states that it holds for each value of the index.  ``on`` replaces symbols,
-    for example by their values at a posture; ``defines`` is a side that only names the others.
+    with a free index states that it holds for each value of the index; one with cases has to hold
+    in each of them, and they have to leave no gap.  ``on`` replaces symbols, for example by their
+    values at a posture; ``defines`` is a side that only names the others.
     """
 
     relation: Relation | tuple[Relation, ...]
     nonnegative: tuple[Expr, ...] = ()
-    small: sp.Symbol | None = None
+    small: sp.Symbol | tuple[sp.Symbol, ...] | None = None
     on: Mapping[sp.Symbol, Expr] | None = None
     defines: Any = None
 
@@ -162,6 +168,8 @@ class Equal(Check):
             if max(len(name), len(text)) <= _SHORT and r"\begin" not in name + text
             else ("the left side", "the right side")
         )
+        if any(e.has(sp.Piecewise) for e in (*entries(first), *entries(side))):
+            return self._in_cases([*entries(first)], [*entries(side)], names)
         gap = difference(first, side)
         if any(e.has(SIGN) for e in entries(gap)):
             product = [
@@ -175,6 +183,28 @@ class Equal(Check):
             sentence = ("neither sign of $\\pm$ makes ", names[0], " equal ", names[1])
             return Verdict(REFUTED, (*at(point), *sentence))
         return Identity(first, side, self.nonnegative, self.small, names).judge()
+
+    def _in_cases(self, left: list[Expr], right: list[Expr], names: tuple[str, str]) -> Verdict:
+        """The worst verdict of the cases, each under its conditions."""
+        several = {p for e in (*left, *right) for p in e.atoms(sp.Piecewise)}
+        if len(several) > 1:
+            raise ValueError("an equation with cases may have one list of them only")
+        (first,) = several
+        before: list[Expr] = []
+        found: list[Verdict] = []
+        for value, condition in first.args:
+            holds = [*before] if condition == sp.true else [*before, condition]
+            gaps = tuple(c.gts - c.lts for c in holds)
+            printed, derived = ([e.subs(first, value) for e in side] for side in (left, right))
+            given = (*self.nonnegative, *gaps)
+            verdict = Identity(printed, derived, given, self.small, names).judge()
+            under = verdict.kind == PROVED_UNDER and not self.nonnegative
+            found.append(Verdict(PROVED) if under else verdict)
+            if condition != sp.true:
+                before.append(sp.Not(condition))
+        if first.args[-1][1] != sp.true:
+            found.append(Verdict(REFUTED, ("the cases leave a gap",)))
+        return worst(found)
 
 
 @dataclass(frozen=True)

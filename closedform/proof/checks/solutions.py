@@ -211,6 +211,15 @@ class Procedure(Check):
 
     def judge(self) -> Verdict:
         sampled = self.postures.arrays()
+        missed = self._missed(sampled)
+        if not missed.any():
+            return self._proved()
+        where = self._simple()
+        how = share("it does not reach its target", missed, self.postures, sampled)
+        return Verdict(REFUTED, (*where, *how[1:]) if where else how[1:])
+
+    def _missed(self, sampled: Mapping[sp.Symbol, np.ndarray]) -> np.ndarray:
+        """Whether the target is missed, for each posture and for all signs."""
         size = 1 + sum(np.abs(sampled[t]) for t in self.reached)
         missed = np.ones(SAMPLES, dtype=bool)
         for signs in product(
@@ -222,11 +231,14 @@ class Procedure(Check):
                 names[name] = values(used, names)
             gaps = [np.abs(values(e, names) - sampled[t]) for t, e in self.reached.items()]
             missed &= ~(np.max(gaps, axis=0) < _CLOSE * size)
-        if not missed.any():
-            return self._proved()
-        where = self._simple()
-        how = share("it does not reach its target", missed, self.postures, sampled)
-        return Verdict(REFUTED, (*where, *how[1:]) if where else how[1:])
+        return missed
+
+    def _missed_simple(self) -> list[dict[sp.Symbol, Expr]]:
+        """The simple postures that seem to be missed, by their values in floating point."""
+        simple = list(self.postures.simple())
+        arrays = {s: np.resize([float(p[s]) for p in simple], SAMPLES) for s in simple[0]}
+        arrays |= {s: values(e, arrays) for s, e in self.postures.inputs.items()}
+        return [p for p, out in zip(simple, self._missed(arrays), strict=False) if out]
 
     def _proved(self) -> Verdict:
         """The verdict if no sampled posture is missed: an exact proof for each choice of signs."""
@@ -247,7 +259,7 @@ class Procedure(Check):
         """A posture that a person can check by hand, with what is reached there."""
         if any(f.has(SIGN) for f in self.formulas.values()):
             return ()
-        for posture in self.postures.simple():
+        for posture in self._missed_simple()[:20]:
             point = dict(posture)
             try:
                 point |= {s: sp.simplify(e.subs(posture)) for s, e in self.postures.inputs.items()}
@@ -257,11 +269,12 @@ class Procedure(Check):
                 balls = evaluate([reached[t] - point[t] for t in self.reached], {})
             except (Undetermined, TypeError, ValueError, ZeroDivisionError):
                 continue
-            if all(b.is_finite() for b in balls) and any(not b.contains(0) for b in balls):
+            missed = [t for t, b in zip(self.reached, balls, strict=True) if not b.contains(0)]
+            if all(b.is_finite() for b in balls) and missed:
                 pieces: list[Any] = []
-                for t in self.reached:
-                    pieces += [", ", t, " = ", shown(reached[t], {}), " instead of ",
-                               shown(point[t], {})]  # fmt: skip
+                for t in missed:
+                    decimal = evaluate([reached[t]], {})[0].str(6, radius=False)
+                    pieces += [", ", t, f" = ${decimal}$ instead of ", shown(point[t], {})]
                 return ("at ", posture, ": it reaches ", *pieces[1:], "; ")
         return ()
 

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +16,6 @@ from closedform.algebra.balls import evaluate
 from closedform.algebra.counterexample import find_counterexample
 from closedform.algebra.normal_form import Undecided, decide, positive_form
 from closedform.model.claims import (
-    INCOMPLETE,
     NOT_DECIDABLE,
     PROVED,
     REFUTED,
@@ -141,7 +140,7 @@ class ForAll(Check):
         gap = relation.gts - relation.lts
         try:
             form = positive_form(gap, list(self.slack))
-        except (ValueError, sp.PolynomialError):
+        except (ValueError, sp.PolynomialError):  # not a polynomial, or not with these signs
             return False
         strict = isinstance(relation, sp.Gt | sp.Lt)
         return not strict or bool(form.is_positive)

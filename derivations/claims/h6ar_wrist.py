@@ -1,0 +1,316 @@
+"""Claims of Rao and Raju about the wrist: its length, the tip, and its design."""
+
+from functools import partial
+
+import sympy as sp
+from closedform.derivations.claims.h6ar_forward import SERIAL
+from closedform.derivations.claims.h6ar_robot import Robot
+from closedform.derivations.h6ar_mechanism import arm_frames, product
+from sympy import Rational, cos, pi, sqrt
+
+from closedform import (
+    Check,
+    Derivation,
+    Enumeration,
+    Every,
+    Exists,
+    ForAll,
+    Gravity,
+    Identity,
+    Not,
+    Notation,
+    Reading,
+    Relation,
+    Undecidable,
+    equal,
+    real,
+)
+
+WRIST = "3.4 Wrist"
+ALPHA = real("alpha")
+"""The ratio of (8)."""
+LENGTH = (
+    r"$l_W = \sqrt{(\alpha l)^2 - \frac{(\alpha d)^2}{\cos^2 \psi}}, \ "
+    r"\alpha = 1 - \frac{g_s \cos(\psi)}{d}$"
+)
+
+
+def state(d: Derivation, r: Robot, printed: Notation) -> None:
+    """The end of section 3.3, and section 3.4."""
+    d.erratum(
+        "roll-in-wrist",
+        "The wrist is computed and designed for pure yaw; roll makes its base line longer",
+        Gravity.MOTION,
+        why=r"The tips are $2d/\cos\psi$ apart if the robot yaws, but "
+        r"$2d/(\cos\psi\cos\phi)$ if it also rolls.  The wrist links then lie flatter: $l_W$ in "
+        "(8) is too long, and the links that (10) asks for are too short.",
+        use="The tip is misplaced whenever the robot rolls, by centimetres at 30 degrees of yaw "
+        "and roll.  Wrist links as short as (10) allows reach their singular configuration, or do "
+        "not reach from tip to tip, before both angles are at their limits.",
+    )
+    length(d, r, printed)
+    tip(d, r, printed)
+    design(d, r, printed)
+
+
+def wrist_length(r: Robot) -> sp.Expr:
+    """From the base line to the gears: a wrist link and half the base line less half the gears."""
+    return sqrt(r.m.al**2 - (r.half_base - r.m.gs) ** 2)
+
+
+def length(d: Derivation, r: Robot, printed: Notation) -> None:
+    """Eq. (8)."""
+    m = r.m
+    claim = partial(d.claim, where=SERIAL, notation=printed.extended({r"\alpha": ALPHA}))
+    gears = real("l_W")
+    names = {"l_W": gears, "L_W": sqrt((gears + m.loff) ** 2)}
+    claim(
+        "wrist as one link",
+        "“the wrist assembly that undergoes the roll and yaw can be reduced to an equivalent "
+        "single link of length $L_W = (l_W + l_{off})$”",
+        lambda f: Identity(f.left**2, f.right**2),
+        means=names,
+    )
+
+    def given(angles: tuple[sp.Symbol, ...], formulas: tuple[Relation, ...]) -> Check:
+        first, ratio = formulas
+        value = first.right.subs(ratio.left, ratio.right)
+        return Every(
+            {
+                "the angles": Enumeration(
+                    [a.name for a in angles],
+                    lambda: [a.name for a in (r.psi, r.phi) if not equal((value**2).diff(a), 0)],
+                    "the length depends on",
+                ),
+                "the length": Identity(
+                    value, first.left, names=("the right side", "the length of the closed wrist")
+                ),
+            }
+        )
+
+    angles = {"yaw angle": (r.psi,), "yaw and roll angles": (r.psi, r.phi)}
+    before = "using simple geometric relations, it can be shown that the length "
+    claim(
+        "eq. (8)",
+        before + "[...] is dependent on the {yaw angle} and is given by " + LENGTH,
+        given,
+        means={"l_W": wrist_length(r)},
+        phrases=[angles],
+        corrected=before + "[...] is dependent on the {yaw and roll angles} and is given by "
+        r"$l_W = \sqrt{(\alpha l)^2 - \frac{(\alpha d)^2}{\cos^2 \psi \cos^2 \phi}}, \ "
+        r"\alpha = 1 - \frac{g_s \cos(\psi) \cos(\phi)}{d}$",
+        erratum="roll-in-wrist",
+        readings=[
+            Reading("for the roll and yaw that the wrist undergoes"),
+            Reading(
+                "without roll, as Fig. 3(a) shows it", means={"l_W": wrist_length(r).subs(r.phi, 0)}
+            ),
+        ],
+    )
+
+
+def tip(d: Derivation, r: Robot, printed: Notation) -> None:
+    """Eq. (9)."""
+    m, q = r.m, r.q
+    claim = partial(d.claim, where=WRIST, notation=printed)
+
+    def frames(upper: sp.Expr, elbow: sp.Expr, side: sp.Expr) -> sp.Matrix:
+        return sp.Matrix(product(arm_frames(m, q.theta1, upper, elbow, side))[:3, :3])
+
+    virtual = frames(r.A2, r.A3, sp.S.Zero)
+    other = frames(q.theta2R, q.theta3R, m.d)
+    alike = {q.theta2R: r.A2, q.theta3R: r.A3}
+    claim(
+        "frames of the virtual arm",
+        "“Note that the frames [...] have the {same} orientation as the frames [...] as shown in "
+        "Fig. 2.”",
+        phrases=[{"same": 1, "opposite": -1}],
+        readings=[
+            Reading(
+                "they are assigned in the same way, as the figures show them, without yaw and roll",
+                lambda side: Identity(side * virtual, other.subs(alike, simultaneous=True)),
+            ),
+            Reading(
+                "they stay parallel when the arms differ",
+                lambda side: Identity(side * virtual, other),
+            ),
+        ],
+    )
+    across, aside, along = r.beyond_elbow
+    names = {r"L_\theta": -aside, "L_{2W}": along, "a_{3W}": across}
+    named = printed.extended(names)
+    for label, text in (
+        (
+            "eq. (9a)",
+            r"x_T = c_1 \left(L_1 c_2^A + L_{2W} s_{23}^A + a_{3W} c_{23}^A \right) - s_1 L_\theta",
+        ),
+        (
+            "eq. (9b)",
+            r"y_T = s_1 \left(L_1 c_2^A + L_{2W} s_{23}^A + a_{3W} c_{23}^A \right) + c_1 L_\theta",
+        ),
+        ("eq. (9c)", r"z_T = d_1 + L_1 s_2^A - L_{2W} c_{23}^A + a_{3W} s_{23}^A"),
+        (
+            "eq. (9), distance from the mid-plane",
+            r"L_\theta = (L_W + l_n c_\theta) c_\phi s_\psi - l_n s_\theta s_\phi",
+        ),
+        ("eq. (9), extended fore-arm", r"L_{2W} = L_2 + (L_W + l_p c_\theta) c_\psi"),
+        (
+            "eq. (9), extended offset",
+            r"a_{3W} = a_3 + (L_W + l_p c_\theta) s_\phi s_\psi + l_p s_\theta c_\phi",
+        ),
+    ):
+        claim(label, f"${text}$", notation=named)
+
+
+def design(d: Derivation, r: Robot, printed: Notation) -> None:
+    """Eq. (10), and what the paper says around it."""
+    m = r.m
+    yaw, roll, least = real("psi_max"), real("phi_max"), real("beta_min")
+    narrow = real("k", positive=True)
+    """The cosine of the smallest separation angle."""
+    claim = partial(
+        d.claim,
+        where=WRIST,
+        notation=printed.extended(
+            {
+                r"\psi_{\max}": yaw,
+                r"\phi_{\max}": roll,
+                r"\phi_{\text{max}}": roll,
+                r"\cos(\beta_{\min})": narrow,
+                r"\beta_{\min}": least,
+            }
+        ),
+    )
+
+    def needed(psi: sp.Expr, phi: sp.Expr) -> sp.Expr:
+        """The shortest wrist link with the smallest separation angle at a yaw and a roll."""
+        base = r.half_base.subs({r.psi: psi, r.phi: phi}, simultaneous=True)
+        return (base - m.gs) / narrow
+
+    ranges = {"d": m.d, "αl": m.al, "β": narrow, "g_s": m.gs}
+    limit = m.d / (m.al * narrow + m.gs)  # cos(psi_max), where the links just reach
+    claim(
+        "ranges of yaw and roll",
+        "“The yaw and roll angle ranges, [...] are decided by {the mid-plane offset, the wrist "
+        "link length αl, and the separation angle β}.”",
+        phrases=[
+            {
+                "the mid-plane offset, the wrist link length αl, and the separation angle β": (
+                    "d",
+                    "αl",
+                    "β",
+                ),
+                "the arms": ("L_1", "L_2"),
+            }
+        ],
+        readings=[
+            Reading(
+                "each of the three changes the ranges",
+                lambda three: Enumeration(
+                    three,
+                    lambda: tuple(n for n in three if n in ranges and limit.has(ranges[n])),
+                    "of these, the limit depends on",
+                ),
+            ),
+            Reading(
+                "nothing else changes them",
+                lambda three: Enumeration(
+                    three,
+                    lambda: tuple(n for n, s in ranges.items() if limit.has(s)),
+                    "the limit depends on",
+                ),
+            ),
+        ],
+    )
+    touching = {m.d: sp.S.One, m.gs: Rational(1, 2), m.al: Rational(3, 2), r.psi: pi / 3}
+    claim(
+        "singular wrist",
+        "“the wrist {can} assume a singular configuration for certain values of ψ within the "
+        "chosen range if the wrist parameters are not properly designed.”",
+        lambda judged: judged(Exists([sp.Eq(wrist_length(r).subs(r.phi, 0), 0)], among=[touching])),
+        phrases=[{"can": lambda check: check, "cannot": Not}],
+    )
+    wide, more = real("c", positive=True), real("t", nonnegative=True)
+    by_cosine = {cos(r.psi): wide + more}
+
+    def keeps(bound: Relation) -> Check:
+        """The bound is the one at the largest yaw, and this is the largest for all yaws."""
+        signed = bound.left - bound.right
+        if bound.signs[0] not in (">=", ">"):
+            signed = -signed
+        (line,) = (needed(r.psi, 0).subs(by_cosine),)
+        return Every(
+            {
+                "at the largest yaw": Identity(signed, m.al - needed(yaw, sp.S.Zero)),
+                "at smaller yaws": ForAll(
+                    sp.Ge((line.subs(more, 0) - line) * narrow * wide * (wide + more), 0),
+                    slack=[],
+                ),
+            }
+        )
+
+    claim(
+        "eq. (10)",
+        r"$\alpha l \ge \frac{d - g_s \cos(\psi_{\max})}{\cos(\psi_{\max}) \cos(\beta_{\min})}$",
+        keeps,
+        readings=[
+            Reading("for yaw alone, from (8); the next sentence takes the roll up", keeps),
+            Reading(
+                "for yaw and roll at their limits",
+                lambda f: Identity(f.left - f.right, m.al - needed(yaw, roll)),
+            ),
+        ],
+    )
+
+    claim(
+        "no constraints of the passive joints",
+        "“Note that no angular constraints are imposed on the passive joints J_1 and J_2 .”",
+        lambda: Undecidable("a choice of design: the paper gives no ranges of these joints"),
+        fixed="the sentence states a choice",
+    )
+    claim(
+        "no singular wrist",
+        "“then, the wrist does {not} assume the singular configuration.”",
+        # a link of that length has the smallest separation angle at the largest yaw
+        lambda judged: judged(
+            Identity(
+                (needed(yaw, sp.S.Zero) * narrow) ** 2,
+                (r.half_base.subs({r.psi: yaw, r.phi: 0}) - m.gs) ** 2,
+            )
+        ),
+        phrases=[{"not": lambda check: check, "always": Not}],
+    )
+
+    def any_roll(domain: Relation) -> Check:
+        bound = needed(r.psi, sp.S.Zero)
+        if domain.signs == ("=",):
+            return ForAll(sp.Le(needed(r.psi, r.phi), bound), on={domain.left: domain.right})
+        return ForAll(
+            sp.Le(needed(r.psi, r.phi), bound),
+            where=[domain.relational, sp.Lt(roll, pi / 2), sp.Lt(sp.Abs(r.psi), pi / 2)],
+        )
+
+    claim(
+        "any roll",
+        "“This result also holds for {any} roll angle "
+        r"$|\phi| \leq \phi_{\text{max}}$.”",
+        lambda _, domain: any_roll(domain),
+        phrases=[{"any": None, "the": None}],
+        corrected=r"“This result also holds for {the} roll angle $\phi = 0$ only.”",
+        erratum="roll-in-wrist",
+    )
+    both, yaw_only = "roll and yaw angles", "yaw angles"
+    d.claim(
+        "design of the wrist",
+        "“The parameters αl and β are designed so that the wrist does not assume a singular "
+        "configuration for the allowed {roll and yaw angles}.”",
+        lambda largest: ForAll(
+            sp.Le(needed(r.psi, largest), needed(r.psi, sp.S.Zero)),
+            where=[sp.Lt(sp.Abs(r.psi), pi / 2), sp.Lt(sp.Abs(r.phi), pi / 2)],
+        ),
+        where="2 Description of the H6AR",
+        phrases=[{both: r.phi, yaw_only: sp.S.Zero}],
+        corrected="“The parameters αl and β are designed so that the wrist does not assume a "
+        "singular configuration for the allowed {yaw angles}.”",
+        erratum="roll-in-wrist",
+    )

@@ -176,8 +176,8 @@ class Plane(NamedTuple):
         """The squares of the condition numbers of A and of B."""
         L2 = self.lengths[2]
         c = Abs(self.dot) / L2**2
-        entries = [sp.expand(e**2) for e in self.diagonal]
-        return sp.simplify((1 + c) / (1 - c)), sp.simplify(sp.Max(*entries) / sp.Min(*entries))
+        entries = [normal(e**2) for e in self.diagonal]
+        return normal((1 + c) / (1 - c)), sp.Max(*entries) / sp.Min(*entries)
 
     def other_mode(self) -> "Plane":
         """The posture with the leg over C reflected about AP."""

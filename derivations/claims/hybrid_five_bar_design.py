@@ -504,13 +504,13 @@ def by_change_of_mode(d: Derivation, bar: FiveBar) -> None:
         use="A working mode can be chosen by the condition number of $\\mathbf{A}$.  That of "
         "$\\mathbf{B}$ gives no preference.",
     )
-    square_kappas = [m.conditions for m in (isotropic(), isotropic().other_mode())]
 
     def differ(matrices: tuple[int, ...]) -> Check:
         parts: dict[str, Check] = {
             "these are two working modes": closed_and(isotropic().other_mode()),
             "entries of B for a given P": serial_by_position(bar),
         }
+        square_kappas = [m.conditions for m in (isotropic(), isotropic().other_mode())]
         for i in matrices:
             first, second = (kappas[i] for kappas in square_kappas)
             parts[f"the condition numbers of {'AB'[i]} differ"] = Not(Identity(first, second))

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import product
 from typing import Any
 
@@ -59,20 +60,28 @@ class Count(Check):
         return Verdict(PROVED if found == self.printed else REFUTED, (text,))
 
     def found(self) -> int | None:
+        given = tuple(sorted((self.given or {}).items(), key=str))
         equations = [sp.sympify(e, strict=True) for e in self.equations]
-        equations = [e for e in equations if e != 0]
-        try:
-            counted = count_solutions(
-                equations, self.unknowns, target_substitution=dict(self.given or {})
-            )
-        except InfinitelyManyError:
-            return None
-        if counted.distinct:
-            return counted.count
-        parameters = {s for e in equations for s in e.free_symbols} - set(self.unknowns)
-        if counted.count == 2 and not parameters:
-            return 1
-        raise Undecided(f"there are {counted.count} solutions, but some may coincide")
+        return _counted(tuple(e for e in equations if e != 0), tuple(self.unknowns), given)
+
+
+@lru_cache(maxsize=16)
+def _counted(
+    equations: tuple[Expr, ...],
+    unknowns: tuple[sp.Symbol, ...],
+    given: tuple[tuple[sp.Symbol, Expr], ...],
+) -> int | None:
+    """The number of solutions; the readings of a claim and its correction ask for the same one."""
+    try:
+        counted = count_solutions(equations, unknowns, target_substitution=dict(given))
+    except InfinitelyManyError:
+        return None
+    if counted.distinct:
+        return counted.count
+    parameters = {s for e in equations for s in e.free_symbols} - set(unknowns)
+    if counted.count == 2 and not parameters:
+        return 1
+    raise Undecided(f"there are {counted.count} solutions, but some may coincide")
 
 
 @dataclass(frozen=True)

@@ -91,7 +91,8 @@ def skeleton(
             if length is None:
                 length = sp.sqrt(sp.factor(_still(square, function)))
             equal.append((square, sp.expand(length**2)))
-            shown.setdefault(rf"|\text{{{pair[0]}}} - \text{{{pair[1]}}}|", length)
+            ends = (rf"\text{{{name.replace('_', ' ')}}}" for name in pair)
+            shown.setdefault(f"|{' - '.join(ends)}|", length)
         if hand_at is not None and hand in at:
             equal.append((at[hand], sp.Matrix(list(hand_at))))
     d.step(

@@ -12,6 +12,7 @@ from itertools import combinations
 
 import sympy as sp
 
+from closedform.algebra.certificates import open_record
 from closedform.algebra.counterexample import Counterexample, find_counterexample
 from closedform.algebra.tower import (
     Expr,
@@ -162,6 +163,8 @@ def decide(
     except Undecided as reason:
         result, obstacle = None, str(reason)
     if result:
+        if record := open_record():
+            record.identity(problem, result.assumptions, result._tower)
         verdict = "proved under assumption" if result.assumptions else "proved"
         return Decision(True, verdict, result.assumptions, result, None)
     witness = find_counterexample(

@@ -142,6 +142,11 @@ def _names(solution: Mapping[Expr, Expr]) -> str:
 _counted: dict[Any, int] = {}
 
 
+def forget_counts() -> None:
+    """Count everything anew, so that the certificates of a mechanism are complete."""
+    _counted.clear()
+
+
 def _lemma_complete(link: Link, where: str) -> None:
     lemma = link.lemma
     key = (lemma.equations, tuple(lemma.solution), tuple(link.given.items()))

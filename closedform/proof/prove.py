@@ -14,15 +14,16 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.algebra import certificates
 from closedform.algebra.normal_form import Undecided
 from closedform.algebra.shapes import ShapeError, require_shape
 from closedform.algebra.solutions import InfinitelyManyError, count_solutions
 from closedform.model.claims import VERDICTS
 from closedform.model.derivation import Continuum, Derivation, Inverse
 from closedform.model.functions import Function, real, substitute
-from closedform.proof.chain import prove_chain
+from closedform.proof.chain import forget_counts, prove_chain
 from closedform.proof.reduction import prove_reduction
-from closedform.proof.require import ProofError, require
+from closedform.proof.require import ProofError, forget_decisions, require
 from closedform.proof.witness import uncovered
 
 Progress = Callable[[str], None]
@@ -123,20 +124,27 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
             f"{derivation.name}: the script gives an inverse, but says that there is none, because "
             f"{derivation.without_inverse}: remove the call of d.no_inverse"
         )
+    forget_decisions()
+    forget_counts()
+
+    def begin(what: str) -> None:
+        progress(what)
+        certificates.place(what)
+
     identities = 0
     for step in derivation.steps:
-        progress(f"step: {step.title}")
+        begin(f"step: {step.title}")
         for difference in step.vanishes:
             fault = f"{derivation.name}, step {step.title!r}: the sides of an equation differ"
             require(difference, step.nonnegative, fault)
             identities += 1
     inverses = []
     for inverse in derivation.inverses:
-        progress(f"inverse: {inverse.function}")
+        begin(f"inverse: {inverse.function}")
         inverses.append(prove_inverse(derivation, inverse))
     claims = []
     for claim in derivation.claims:
-        progress(f"claim: {claim.label}")
+        begin(f"claim: {claim.label}")
         try:
             verdict = claim.check.judge()
         except (Undecided, ValueError) as error:

@@ -95,8 +95,11 @@ def check_inverse(certificates: list[Any], certificate: dict[str, Any]) -> None:
 
 def check_count(nodes: list[Any], certificate: dict[str, Any]) -> None:
     """A system has so many solutions, with multiplicity, for generic parameters."""
-    field, system = system_of(nodes, certificate)
+    field, system, nonzero = system_of(nodes, certificate)
     elements = list(system)
+    for g, p in zip(field.inverses, nonzero, strict=True):
+        elements.append(g * p - 1)
+    system = tuple(elements)
     for multiplier, element, combination in certificate["steps"]:
         m, p = field.polynomial(multiplier), field.polynomial(element)
         require(m != 0 and not any(field.leading(m)[0]), "a multiplier is zero or has an unknown")
@@ -106,12 +109,13 @@ def check_count(nodes: list[Any], certificate: dict[str, Any]) -> None:
     basis = [(*field.leading(p), p) for p in (elements[i] for i in certificate["basis"])]
     count = staircase([lead for lead, _, _ in basis])
     require(count == certificate["count"], f"the basis leaves {count} monomials")
-    for p in [*system, *(s_polynomial(field, f, g) for f, g in combinations(basis, 2))]:
+    pairs = [(f, g) for f, g in combinations(basis, 2) if any(map(min, f[0], g[0]))]
+    for p in [*system, *(s_polynomial(field, f, g) for f, g in pairs)]:
         require(remainder(field, p, basis) == 0, "it is not a Groebner basis of the system")
 
 
-def system_of(nodes: list[Any], certificate: dict[str, Any]) -> tuple[Field, list[fmpq_mpoly]]:
-    """The polynomials of a system: numerators, circles, and an inverse of each denominator."""
+def system_of(nodes: list[Any], certificate: dict[str, Any]) -> tuple[Field, list[Any], list[Any]]:
+    """The polynomials of a system, and those that must not vanish."""
     allowed = ("name", "half", "unknown", "circle", "inverse")
     field = Field(nodes, certificate["generators"], allowed)
     rows = [row for _, row in certificate["angles"]]
@@ -125,9 +129,8 @@ def system_of(nodes: list[Any], certificate: dict[str, Any]) -> tuple[Field, lis
     system = [field.value(k).num for k in certificate["equations"]]
     nonzero = [field.value(k).num for k in certificate["nonzero"]]
     nonzero += [p for p in field.inverted if any(field.leading(p)[0])]
-    inverses = [g for g, kind in zip(field.generators, field.kinds, strict=True) if kind == "inverse"]
-    system += [g * p - 1 for g, p in zip(inverses, dict.fromkeys(nonzero), strict=True)]
-    return field, [p for p in system if p != 0] + list(field.relations.values())
+    system += field.relations.values()
+    return field, [p for p in system if p != 0], list(dict.fromkeys(nonzero))
 
 
 def staircase(leads: list[Monomial]) -> int | None:
@@ -225,6 +228,7 @@ class Field:
         self.generators = self.context.gens()[::-1]
         hidden = ("unknown", "circle", "inverse")
         self.unknowns = [i for i, kind in enumerate(self.kinds) if kind in hidden]
+        self.inverses = [g for g, kind in zip(self.generators, self.kinds, strict=True) if kind == "inverse"]
         self.signs = [1 if kind in ROOTS else 0 for kind in self.kinds]
         self.relations: dict[int, fmpq_mpoly] = {}
         self.squares: dict[int, fmpq_mpoly] = {}

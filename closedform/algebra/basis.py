@@ -11,15 +11,16 @@ from typing import Any
 from flint import fmpq_mpoly
 
 from closedform.algebra.trace import terms_of
-from closedform.verify import Field, Lead, divides, shifted
+from closedform.verify import Field, Lead, Monomial, divides, shifted
 
 
-def logged_basis(field: Field, system: Sequence[fmpq_mpoly]) -> tuple[list[Any], list[int]]:
+def logged_basis(field: Field, system: Sequence[fmpq_mpoly]) -> tuple[list[Any], list[int], list[Monomial]]:
     """A Groebner basis of a system, by Buchberger's algorithm.
 
     The elements are numbered: first those of the system, then one for each step.  A step is a
     multiplier without unknowns, the new element, and a combination of earlier elements that is
-    their product.  The second result lists the elements that are the basis.
+    their product.  The second result lists the elements that are the basis, the third their leading
+    monomials.
     """
     elements = list(system)
     steps: list[tuple[fmpq_mpoly, dict[int, fmpq_mpoly]]] = []
@@ -38,7 +39,7 @@ def logged_basis(field: Field, system: Sequence[fmpq_mpoly]) -> tuple[list[Any],
             if sum(common) == sum(f[0]) + sum(g[0]):
                 continue  # the leading monomials are coprime
             gcd = f[1].gcd(g[1])
-            left, right = (shifted(field, h, common) / h[2] for h in (f, g))
+            left, right = (shifted(field, (h[0], h[1], one), common) for h in (f, g))
             combination = {which[0]: left * (g[1] / gcd), which[1]: -right * (f[1] / gcd)}
             p = sum((q * elements[i] for i, q in combination.items()), 0 * one)
         p = _reduce(field, p, found, combination)
@@ -64,7 +65,8 @@ def logged_basis(field: Field, system: Sequence[fmpq_mpoly]) -> tuple[list[Any],
             divides(g[0], f[0]) and (g[0] != f[0] or j < i) for j, g in found.items() if j != i
         )
     ]
-    return _needed(elements, len(system), steps, minimal)
+    written, basis = _needed(elements, len(system), steps, minimal)
+    return written, basis, [found[i][0] for i in sorted(minimal)]
 
 
 def _reduce(
@@ -78,7 +80,7 @@ def _reduce(
             break
         f = found[index]
         common = f[1].gcd(coefficient)
-        scale, quotient = f[1] / common, shifted(field, f, lead) / f[2] * (coefficient / common)
+        scale, quotient = f[1] / common, shifted(field, (f[0], f[1], coefficient / common), lead)
         p = p * scale - quotient * f[2]
         for i in combination:
             combination[i] = combination[i] * scale
@@ -88,11 +90,11 @@ def _reduce(
 
 def _content(field: Field, p: fmpq_mpoly) -> fmpq_mpoly:
     """The greatest common divisor of the coefficients, which are polynomials in parameters."""
-    result = 0 * p
+    result, zero = 0 * p, (0,) * len(field.unknowns)
     while p != 0:
         lead, coefficient = field.leading(p)
         result = result.gcd(coefficient)
-        p = p - coefficient * field.monomial(lead)
+        p = p - shifted(field, (zero, coefficient, coefficient), lead)
     return result
 
 

@@ -12,6 +12,7 @@ import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextvars import ContextVar
+from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import sympy as sp
@@ -40,6 +41,20 @@ _RECIPROCALS = {sp.sec: sp.cos, sp.csc: sp.sin, sp.cot: sp.tan}
 
 class _Unwritable(ValueError):  # noqa: N818
     """The format has no words for an expression."""
+
+
+@dataclass(frozen=True)
+class System:
+    """A system of equations, as :func:`closedform.algebra.solutions.count_solutions` has it."""
+
+    equations: Sequence[Expr]
+    nonzero: Sequence[Expr]
+    given: Mapping[sp.Symbol, Expr]
+    """Symbols that stand for expressions in free parameters."""
+    angles: Mapping[sp.Symbol, Sequence[int]]
+    """Unknown angles, as combinations of the angles whose sines and cosines are unknown."""
+    unknowns: Sequence[sp.Symbol]
+    """Unknowns that are not angles."""
 
 
 class Record:
@@ -93,6 +108,43 @@ class Record:
             nonzero=[terms_of(p) for p in tower.inverted()],
         )
 
+    def count(self, system: System) -> int | None:
+        """The number of solutions of a system; the result is the number of the certificate."""
+        try:
+            content = self._system(system)
+            field, _, nonzero = verify.system_of(self.nodes, content)
+        except (_Unwritable, verify.Refused, LookupError) as reason:
+            self.missing[f"a system of equations: {reason}"] += 1
+            return None
+        content["generators"] = [["inverse"]] * len(nonzero) + content["generators"]
+        field, polynomials, nonzero = verify.system_of(self.nodes, content)
+        polynomials += [g * p - 1 for g, p in zip(field.inverses, nonzero, strict=True)]
+        steps, basis, leads = logged_basis(field, polynomials)
+        return self._add(
+            kind="count", **content, steps=steps, basis=basis, count=verify.staircase(leads)
+        )
+
+    def _system(self, system: System) -> dict[str, Any]:
+        """The equations of a system, their unknowns and their parameters."""
+        given = [[self.node(x), self.node(e)] for x, e in system.given.items()]
+        everything = [*system.equations, *system.nonzero, *system.given.values()]
+        apart = [_apart(sp.sympify(e)) for e in everything]
+        plain = {s for outside, _ in apart for s in outside}
+        turning = {s for _, inside in apart for s in inside}
+        unknown = {*system.unknowns, *system.angles, *system.given}
+        return {
+            "equations": [self.node(e) for e in system.equations],
+            "nonzero": [self.node(e) for e in system.nonzero],
+            "given": given,
+            "angles": [[self.node(a), row[::-1]] for a, row in system.angles.items()],
+            "generators": [
+                *(["name", self.node(s)] for s in sorted(plain - unknown, key=str)),
+                *(["half", self.node(s)] for s in sorted(turning - unknown, key=str)),
+                *(["unknown", self.node(s)] for s in reversed(system.unknowns)),
+                *(["circle"] for _ in system.angles),
+            ],
+        }
+
     def _add(self, **content: Any) -> int:
         """The number of a certificate; what was recorded before is not repeated."""
         text = json.dumps(content, sort_keys=True)
@@ -135,6 +187,13 @@ class Record:
             uses = self._names[str(e)]
             return ["name", f"{e}#{uses}" if uses > 1 else str(e), sign_of(e)]
         raise _Unwritable(f"an expression contains {type(e).__name__}")
+
+
+def _apart(e: Expr) -> tuple[set[Expr], set[Expr]]:
+    """The symbols of an expression outside of sines and cosines, and those inside of them."""
+    turned = {f: sp.Dummy() for f in e.atoms(sp.sin, sp.cos, sp.tan, *_RECIPROCALS)}
+    outside = e.xreplace(turned).free_symbols - set(turned.values())
+    return outside, {s for f in turned for s in f.free_symbols}
 
 
 _open: ContextVar[Record | None] = ContextVar("record", default=None)

@@ -124,6 +124,21 @@ class Record:
             kind="count", **content, steps=steps, basis=basis, count=verify.staircase(leads)
         )
 
+    def inverse(
+        self, function: str, branches: int, counts: Sequence[tuple[int | None, int]], each: int
+    ) -> None:
+        """The counts of the steps of an inverse multiply to its branches."""
+        if any(count is None for count, _ in counts):
+            self.missing["an inverse of which a count is not exported"] += 1
+            return
+        self._add(
+            kind="inverse",
+            function=function,
+            branches=branches,
+            counts=[list(pair) for pair in counts],
+            **{"per branch": each},
+        )
+
     def _system(self, system: System) -> dict[str, Any]:
         """The equations of a system, their unknowns and their parameters."""
         given = [[self.node(x), self.node(e)] for x, e in system.given.items()]
@@ -213,6 +228,18 @@ def recording() -> Iterator[Record]:
 def open_record() -> Record | None:
     """The open recording, if there is one."""
     return _open.get()
+
+
+def add_inverse(
+    function: str, branches: int, counts: Sequence[tuple[int | None, int]], each: int = 1
+) -> None:
+    """Record that an inverse is complete.
+
+    Each of ``counts`` is a certificate and the number of its solutions that are excluded; ``each``
+    is the number of solutions of the lemmas for every branch.
+    """
+    if record := open_record():
+        record.inverse(function, branches, counts, each)
 
 
 def place(text: str) -> None:

@@ -24,8 +24,9 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.algebra import certificates
 from closedform.algebra.balls import Evaluator
-from closedform.algebra.solutions import InfinitelyManyError, count_solutions
+from closedform.algebra.solutions import InfinitelyManyError, SolutionCount, count_solutions
 from closedform.model.derivation import Continuum, Derivation, Inverse, Link
 from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
 from closedform.proof.require import ProofError, require
@@ -39,9 +40,11 @@ def prove_chain(derivation: Derivation, inverse: Inverse) -> tuple[int, tuple[Ex
     where = f"{derivation.name}.{function.name}"
     assumptions: dict[Expr, None] = {}
     count, cases = 1, 0
+    counts = []
     for link in inverse.chain:
         assumptions |= dict.fromkeys(_lemma_sound(link, where))
-        _lemma_complete(link, where)
+        counted = _lemma_complete(link, where)
+        counts.append((counted.certificate, link.lemma.excluded))
         count *= link.lemma.branches
         cases += len(link.degenerate)
     graph = Graph(derivation, inverse, function)
@@ -52,6 +55,7 @@ def prove_chain(derivation: Derivation, inverse: Inverse) -> tuple[int, tuple[Ex
         _flag_holds(continuum, function, graph, where)
     _free_choices_are_units(inverse, where)
     _determines_target(inverse, graph, where)
+    certificates.add_inverse(function.name, len(function.branches) or 1, counts)
     return count, tuple(assumptions), cases
 
 
@@ -139,7 +143,7 @@ def _names(solution: Mapping[Expr, Expr]) -> str:
     return ", ".join(map(str, solution))
 
 
-_counted: dict[Any, int] = {}
+_counted: dict[Any, SolutionCount] = {}
 
 
 def forget_counts() -> None:
@@ -147,7 +151,7 @@ def forget_counts() -> None:
     _counted.clear()
 
 
-def _lemma_complete(link: Link, where: str) -> None:
+def _lemma_complete(link: Link, where: str) -> SolutionCount:
     lemma = link.lemma
     key = (lemma.equations, tuple(lemma.solution), tuple(link.given.items()))
     try:
@@ -155,15 +159,17 @@ def _lemma_complete(link: Link, where: str) -> None:
             given = {s: e for s, e in link.given.items() if any(q.has(s) for q in lemma.equations)}
             _counted[key] = count_solutions(
                 lemma.equations, tuple(lemma.solution), target_substitution=given
-            ).count
+            )
     except InfinitelyManyError as error:
         raise ProofError(f"{where}: the lemma {lemma.name!r}: {error}") from error
-    if _counted[key] != lemma.branches + lemma.excluded:
+    counted = _counted[key]
+    if counted.count != lemma.branches + lemma.excluded:
         raise ProofError(
             f"{where}: the equations of the lemma {lemma.name!r} for {_names(lemma.solution)} have "
-            f"{_counted[key]} solutions, but {lemma.branches} branches are given; it is applied to "
+            f"{counted.count} solutions, but {lemma.branches} branches are given; it is applied to "
             f"equations of another shape"
         )
+    return counted
 
 
 class Graph:

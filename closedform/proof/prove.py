@@ -7,6 +7,7 @@ a claim that does not hold gets its verdict.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
@@ -17,7 +18,7 @@ import sympy as sp
 from closedform.algebra import certificates
 from closedform.algebra.normal_form import Undecided
 from closedform.algebra.shapes import ShapeError, require_shape
-from closedform.algebra.solutions import InfinitelyManyError, count_solutions
+from closedform.algebra.solutions import InfinitelyManyError, SolutionCount, count_solutions
 from closedform.model.claims import VERDICTS
 from closedform.model.derivation import Continuum, Derivation, Inverse
 from closedform.model.functions import Function, real, substitute
@@ -184,12 +185,15 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     for continuum in inverse.continua:
         _prove_continuum(derivation, function, inverse, continuum)
     lemmas = _prove_steps_follow(derivation, inverse)
-    count, method = _count(inverse)
+    counts, method = _count(inverse)
+    count = math.prod(c.count for c in counts)
     how = "step by step" if method == "step by step" else "from a Groebner basis"
     found = f"the system has {count} solutions (counted {how})"
+    branches = _require_all_branches(derivation, function, inverse, count, found)
+    certificates.add_inverse(function.name, branches, [(c.certificate, 0) for c in counts])
     return InverseResult(
         function.name,
-        _require_all_branches(derivation, function, inverse, count, found),
+        branches,
         len(inverse.continua),
         count,
         method,
@@ -319,7 +323,7 @@ def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, 
     return tuple(dict.fromkeys(lemmas))
 
 
-def _count(inverse: Inverse) -> tuple[int, str]:
+def _count(inverse: Inverse) -> tuple[list[SolutionCount], str]:
     if inverse.stages:
         return _count_in_stages(inverse), "step by step"
     given = _targets(inverse)
@@ -343,17 +347,17 @@ def _count(inverse: Inverse) -> tuple[int, str]:
         counted = count_solutions(equations, unknowns)
     except InfinitelyManyError as error:
         raise ProofError(f"{inverse.function}: {error}") from error
-    return counted.count, counted.method
+    return [counted], counted.method
 
 
-def _count_in_stages(inverse: Inverse) -> int:
-    """The product of the counts, each over the field of the inputs and the earlier unknowns."""
+def _count_in_stages(inverse: Inverse) -> list[SolutionCount]:
+    """The counts, which multiply, each over the field of the inputs and the earlier unknowns."""
     where = f"{inverse.function}: the stages of the count"
     used = [i for stage in inverse.stages for i in stage.equations]
     solved = [u for stage in inverse.stages for u in stage.unknowns]
     if sorted(used) != list(range(len(inverse.equations))) or set(solved) != set(inverse.unknowns):
         raise ProofError(f"{where} do not take every equation and every unknown exactly once")
-    count, before = 1, 0
+    counts, before = list[SolutionCount](), 0
     for k, stage in enumerate(inverse.stages):
         equations = [substitute(inverse.equations[i], stage.given) for i in stage.equations]
         depends = [s for s in inverse.stages[:k] if any(e.has(*s.unknowns) for e in equations)]
@@ -368,9 +372,8 @@ def _count_in_stages(inverse: Inverse) -> int:
         if constant:
             require(sp.Matrix(constant), (), f"{where}: an equation without unknowns does not hold")
         try:
-            count *= count_solutions(
-                [e for e in equations if e.has(*stage.unknowns)], stage.unknowns
-            ).count
+            turning = [e for e in equations if e.has(*stage.unknowns)]
+            counts.append(count_solutions(turning, stage.unknowns))
         except InfinitelyManyError as error:
             raise ProofError(f"{where}: {error}") from error
-    return count
+    return counts

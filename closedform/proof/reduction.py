@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import sympy as sp
 
+from closedform.algebra import certificates
 from closedform.algebra.normal_form import normal
 from closedform.model.derivation import Derivation, Inverse, Reduction
 from closedform.model.functions import Bound, Function, Let, Program, Vanishes, substitute
@@ -27,9 +28,10 @@ def prove_reduction(
     reduction = inverse.reduction
     assert reduction is not None
     where = f"{derivation.name}.{function.name}"
-    known, equations = _meanings(function, reduction), []
+    known, equations, counts = _meanings(function, reduction), [], []
     for lemma in reduction.lemmas:
-        prove_lemma(lemma, Program(list(lemma.body)))
+        counted = prove_lemma(lemma, Program(list(lemma.body)))
+        counts.append((counted.certificate, lemma.excluded))
         for name, meaning in lemma.premises.items():
             stated = substitute(meaning, known)
             for missed in _cases(known[name] - stated):
@@ -55,6 +57,7 @@ def prove_reduction(
     branches = len(function.branches) if function.branches else 1
     if count != branches * reduction.solutions_per_branch:
         raise ProofError(f"{where}: the lemmas give {count} solutions, not {branches}")
+    certificates.add_inverse(function.name, branches, counts, reduction.solutions_per_branch)
     names = tuple(dict.fromkeys(lemma.name for lemma in reduction.lemmas))
     method = "lemma by lemma" + (f"; {reduction.because}" if reduction.because else "")
     return branches, method, names

@@ -48,7 +48,7 @@ endef
 export LOCK INSTALL
 LOCKED = mkdir -p build && $(PYTHON) -c "$$LOCK" build/make.lock
 
-.PHONY: all native test check lint types regenerated warnings analysed \
+.PHONY: all native test check verify lint types regenerated warnings analysed \
 	portability $(COMPILERS) format pdf bench fuzz accuracy clean distclean help
 .DELETE_ON_ERROR:
 
@@ -69,6 +69,9 @@ native: build/derived.txt
 
 test: all  ## run the tests on all cores; ARGS="-k NAME" selects some
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
+
+verify: all  ## check the certificates of all proofs, without the prover
+	@$(BIN)/closedform verify
 
 # Nothing here may depend on all: it would overwrite the differences that check has to find.
 check: lint types regenerated warnings  ## lint, types, C warnings; whether generated/ is up to date

@@ -13,16 +13,16 @@ from itertools import combinations, product
 from math import prod
 from typing import Any, TypeAlias
 
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mat
+from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mat
 
 FORMAT = 1
-UNARY = ("sqrt", "abs", "sin", "cos", "tan", "atan", "acos", "asin")
 INVERSES = ("atan2", "atan", "acos", "asin")
 PAIRS = ("angle", "circle")
 ROOTS = ("root", "abs")
 
+Polynomial: TypeAlias = Any  # fmpq_mpoly, whose annotations are partial
 Monomial: TypeAlias = "tuple[int, ...]"
-Lead: TypeAlias = "tuple[Monomial, fmpq_mpoly, fmpq_mpoly]"
+Lead: TypeAlias = "tuple[Monomial, Polynomial, Polynomial]"
 
 
 class Refused(ValueError):  # noqa: N818
@@ -36,39 +36,20 @@ def require(condition: Any, fault: str) -> None:
 
 def check(document: dict[str, Any]) -> None:
     """Check all certificates of a mechanism; raise :class:`Refused` for the first bad one."""
-    nodes, certificates = document["nodes"], document["certificates"]
     require(document["format"] == FORMAT, "the format is unknown")
-    require(all(_well_formed(node, k) for k, node in enumerate(nodes)), "a node is malformed")
-    for k, certificate in enumerate(certificates):
+    names = [node[1] for node in document["nodes"] if node[0] == "name"]
+    require(len(set(names)) == len(names), "a name has two meanings")
+    kinds = {"identity": check_identity, "count": check_count, "inverse": check_inverse}
+    for k, certificate in enumerate(document["certificates"]):
         try:
-            match certificate["kind"]:
-                case "identity":
-                    check_identity(nodes, certificate)
-                case "count":
-                    check_count(nodes, certificate)
-                case "inverse":
-                    check_inverse(certificates, certificate)
-                case kind:
-                    raise Refused(f"the kind {kind} is unknown")
-        except (ArithmeticError, LookupError, TypeError, ValueError, RecursionError) as error:
-            raise Refused(f"certificate {k} ({certificate.get('of')}): {error}") from error
+            kinds[certificate["kind"]](document, certificate)
+        except Exception as error:  # whatever goes wrong, nothing is proved
+            raise Refused(f"certificate {k} ({certificate['of']}): {error!r}") from error
 
 
-def _well_formed(node: Any, k: int) -> bool:
-    """Whether a node is a number, a name, or an operation on nodes before it."""
-    if isinstance(node, str):
-        return bool(fmpq(node) == fmpq(node))
-    op, *args = node
-    if op == "name":
-        return len(args) == 2 and args[1] in (-1, 0, 1)
-    operands = args[:1] if op == "^" and len(args) == 2 and isinstance(args[1], int) else args
-    arity = {**dict.fromkeys(UNARY, 1), "atan2": 2, "pi": 0, "^": 2, "+": len(args), "*": len(args)}
-    return arity.get(op) == len(args) and all(a in range(k) for a in operands)
-
-
-def check_identity(nodes: list[Any], certificate: dict[str, Any]) -> None:
+def check_identity(document: dict[str, Any], certificate: dict[str, Any]) -> None:
     """The listed expressions vanish wherever they are real and no denominator vanishes."""
-    field = Field(nodes, certificate["generators"], ("name", *ROOTS, "angle"))
+    field = Field(document["nodes"], certificate["generators"], ("name", *ROOTS, "angle"))
     itself = [[[[["1", i, 1]], 1]] for i in field.squares]
     field.roots = [field.root_of(factors) for factors in [*certificate["roots"], *itself]]
     for node, constant, factors in certificate["assumed"]:
@@ -84,25 +65,24 @@ def check_identity(nodes: list[Any], certificate: dict[str, Any]) -> None:
         require(p.is_constant(), "a denominator is not listed")
 
 
-def check_inverse(certificates: list[Any], certificate: dict[str, Any]) -> None:
+def check_inverse(document: dict[str, Any], certificate: dict[str, Any]) -> None:
     """The counts of the steps of an inverse multiply to the number of its branches."""
-    counts = [(certificates[k], excluded) for k, excluded in certificate["counts"]]
-    require(counts and all(c["kind"] == "count" for c, _ in counts), "nothing is counted")
-    total = prod(c["count"] - excluded for c, excluded in counts)
+    counts = [(document["certificates"][k], less) for k, less in certificate["counts"]]
+    require(all(c["kind"] == "count" for c, _ in counts), "this is not a count")
+    total = prod(c["count"] - less for c, less in counts)
     branches = certificate["branches"] * certificate["per branch"]
-    require(total == branches > 0, f"{total} solutions are counted")
+    require(counts and total == branches > 0, f"{total} solutions are counted")
 
 
-def check_count(nodes: list[Any], certificate: dict[str, Any]) -> None:
+def check_count(document: dict[str, Any], certificate: dict[str, Any]) -> None:
     """A system has so many solutions, with multiplicity, for generic parameters."""
-    field, system, nonzero = system_of(nodes, certificate)
+    field, system, nonzero = system_of(document["nodes"], certificate)
+    system += [g * p - 1 for g, p in zip(field.inverses, nonzero, strict=True)]
     elements = list(system)
-    for g, p in zip(field.inverses, nonzero, strict=True):
-        elements.append(g * p - 1)
-    system = tuple(elements)
     for multiplier, element, combination in certificate["steps"]:
         m, p = field.polynomial(multiplier), field.polynomial(element)
         require(m != 0 and not any(field.leading(m)[0]), "a multiplier is zero or has an unknown")
+        require(p != 0, "an element of the basis is zero")
         total = sum((field.polynomial(q) * elements[i] for i, q in combination), 0 * m)
         require(m * p == total, "an element of the basis is not in the ideal")
         elements.append(p)
@@ -148,18 +128,18 @@ def divides(a: Monomial, b: Monomial) -> bool:
     return all(i <= j for i, j in zip(a, b, strict=True))
 
 
-def s_polynomial(field: Field, f: Lead, g: Lead) -> fmpq_mpoly:
+def s_polynomial(field: Field, f: Lead, g: Lead) -> Polynomial:
     common = tuple(map(max, f[0], g[0]))
     return shifted(field, f, common) * g[1] - shifted(field, g, common) * f[1]
 
 
-def shifted(field: Field, f: Lead, to: Monomial) -> fmpq_mpoly:
+def shifted(field: Field, f: Lead, to: Monomial) -> Polynomial:
     """A multiple of a polynomial whose leading monomial is this one."""
     powers = zip(field.unknowns, to, f[0], strict=True)
     return prod((field.generators[i] ** (m - n) for i, m, n in powers), start=f[2])
 
 
-def remainder(field: Field, p: fmpq_mpoly, basis: list[Lead]) -> fmpq_mpoly:
+def remainder(field: Field, p: Polynomial, basis: list[Lead]) -> Polynomial:
     """What is left of a polynomial when no leading monomial of the basis divides its own."""
     while p != 0:
         lead, coefficient = field.leading(p)
@@ -174,7 +154,7 @@ def remainder(field: Field, p: fmpq_mpoly, basis: list[Lead]) -> fmpq_mpoly:
 class Fraction:
     """A fraction of polynomials in the generators of a field, reduced by its relations."""
 
-    def __init__(self, field: Field, num: fmpq_mpoly, den: fmpq_mpoly):
+    def __init__(self, field: Field, num: Polynomial, den: Polynomial):
         num, den = field.reduced(num), field.reduced(den)
         require(den != 0, "a denominator is identically zero")
         common = num.gcd(den) * den.leading_coefficient()
@@ -228,16 +208,16 @@ class Field:
         self.generators = self.context.gens()[::-1]
         hidden = ("unknown", "circle", "inverse")
         self.unknowns = [i for i, kind in enumerate(self.kinds) if kind in hidden]
-        self.inverses = [g for g, kind in zip(self.generators, self.kinds, strict=True) if kind == "inverse"]
+        self.inverses = [self.generators[i] for i in self.unknowns if self.kinds[i] == "inverse"]
         self.signs = [1 if kind in ROOTS else 0 for kind in self.kinds]
-        self.relations: dict[int, fmpq_mpoly] = {}
-        self.squares: dict[int, fmpq_mpoly] = {}
+        self.relations: dict[int, Polynomial] = {}
+        self.squares: dict[int, Polynomial] = {}
         self.values: dict[int, Fraction] = {}
         self.angles: dict[int, dict[Any, fmpq]] = {}
         self.turns: dict[Any, tuple[int, Rotation]] = {}
-        self.roots: list[tuple[Fraction, Fraction, list[tuple[fmpq_mpoly, int]]]] = []
-        self.inverted: list[fmpq_mpoly] = []
-        self.nonnegative: list[fmpq_mpoly] = []
+        self.roots: list[tuple[Fraction, Fraction, list[tuple[Polynomial, int]]]] = []
+        self.inverted: list[Polynomial] = []
+        self.nonnegative: list[Polynomial] = []
         self.real: set[int] = set()
         i = 0
         for kind, *about in generators:
@@ -248,9 +228,8 @@ class Field:
         g, one = self.generators[i], self.context.constant(1)
         if kind in PAIRS:
             s = self.generators[i + 1]
-            key = ("circle", len(self.relations))
-            if kind == "angle":
-                (key,) = self.terms(about)
+            (key,) = self.terms(about) if kind == "angle" else [("circle", len(self.relations))]
+            require(divisor > 0, "an angle is divided by zero")
             self.turns[key] = divisor, Rotation(Fraction(self, g, one), Fraction(self, s, one))
             self.relations[i + 1] = s * s + g * g - 1
         elif kind == "half":
@@ -267,19 +246,21 @@ class Field:
             self.values[about] = Fraction(self, g, one)
             self.signs[i] = name[1] if op == "name" else int(op == "pi")
 
-    def polynomial(self, terms: list[Any]) -> fmpq_mpoly:
+    def polynomial(self, terms: list[Any]) -> Polynomial:
         """From a list of terms: each a coefficient, then generators, each with its power."""
-        one = self.context.constant(1)
-        parts = ((c, zip(powers[::2], powers[1::2], strict=True)) for c, *powers in terms)
-        return sum((prod((self.generators[i] ** n for i, n in m), start=fmpq(c) * one) for c, m in parts), 0 * one)
+        total = self.context.constant(0)
+        for coefficient, *powers in terms:
+            factors = zip(powers[::2], powers[1::2], strict=True)
+            total += prod((self.generators[i] ** n for i, n in factors), start=fmpq(coefficient))
+        return total
 
-    def factors(self, pairs: list[Any]) -> list[tuple[fmpq_mpoly, int]]:
+    def factors(self, pairs: list[Any]) -> list[tuple[Polynomial, int]]:
         return [(self.polynomial(p), n) for p, n in pairs]
 
     def number(self, value: int | str) -> Fraction:
         return Fraction(self, self.context.constant(fmpq(value)), self.context.constant(1))
 
-    def reduced(self, p: fmpq_mpoly) -> fmpq_mpoly:
+    def reduced(self, p: Polynomial) -> Polynomial:
         for i in reversed(self.relations):
             if p.degrees()[-1 - i] > 1:
                 p = divmod(p, self.relations[i])[1]
@@ -294,17 +275,15 @@ class Field:
                 num, den = num * g, den * g
         return Fraction(self, num, den)
 
-    def leading(self, p: fmpq_mpoly) -> tuple[Monomial, fmpq_mpoly]:
+    def leading(self, p: Polynomial) -> tuple[Monomial, Polynomial]:
         """The largest monomial of the unknowns (graded reverse lexicographic), its coefficient."""
         grouped: dict[Monomial, dict[Monomial, fmpq]] = {}
+        slots = [len(self.kinds) - 1 - i for i in self.unknowns]
         for m, a in p.terms():
-            powers = tuple(m[-1 - i] for i in self.unknowns)
-            rest = list(m)
-            for i in self.unknowns:
-                rest[-1 - i] = 0
-            grouped.setdefault(powers, {})[tuple(rest)] = a
-        lead = max(grouped, key=lambda m: (sum(m), [-n for n in m]), default=())
-        return lead, self.context.from_dict(grouped.get(lead, {}))
+            rest = tuple(0 if j in slots else n for j, n in enumerate(m))
+            grouped.setdefault(tuple(m[j] for j in slots), {})[rest] = a
+        lead = max(grouped, key=lambda m: (sum(m), [-n for n in m]))
+        return lead, self.context.from_dict(grouped[lead])
 
     def value(self, k: int) -> Fraction:
         """The value of a node."""
@@ -316,24 +295,17 @@ class Field:
         if isinstance(self.nodes[k], str):
             return self.number(self.nodes[k])
         op, *args = self.nodes[k]
-        match op:
-            case "+":
-                return reduce(Fraction.__add__, map(self.value, args))
-            case "*":
-                return reduce(Fraction.__mul__, map(self.value, args))
-            case "^":
-                return self.value(args[0]) ** args[1]
-            case "sqrt":
-                return self.root(self.value(args[0]))
-            case "abs":
-                return self.root(self.value(args[0]) ** 2)
-            case "sin":
-                return self.rotation(args[0]).sin
-            case "cos":
-                return self.rotation(args[0]).cos
-            case "tan":
-                return self.rotation(args[0]).sin * self.rotation(args[0]).cos ** -1
-        raise Refused(f"{self.nodes[k]} is not a generator")
+        if op in ("+", "*"):
+            return reduce(
+                Fraction.__add__ if op == "+" else Fraction.__mul__, map(self.value, args)
+            )
+        if op == "^":
+            return Fraction.__pow__(self.value(args[0]), args[1])
+        if op in ("sqrt", "abs"):
+            return self.root(self.value(args[0]) ** (1 if op == "sqrt" else 2))
+        require(op in ("sin", "cos", "tan"), f"{self.nodes[k]} is not a generator")
+        turn = self.rotation(args[0])
+        return turn.sin if op == "sin" else turn.cos if op == "cos" else turn.sin * turn.cos**-1
 
     def rotation(self, k: int) -> Rotation:
         start = Rotation(self.number(1), self.number(0))
@@ -361,9 +333,6 @@ class Field:
         op = self.nodes[atom][0] if isinstance(atom, int) else ""
         if op in INVERSES:
             return self.direction(atom, q)
-        if op == "pi":
-            third = Rotation(self.number("1/2"), self.root(self.number(3)) * self.number("1/2"))
-            return third.times(int(3 * q))
         divisor, base = self.turns[atom]
         require((q * divisor).q == 1, "an angle is divided too finely")
         return base.times(int(q * divisor))
@@ -371,8 +340,8 @@ class Field:
     def direction(self, atom: int, q: fmpq) -> Rotation:
         """The rotation by a multiple of an inverse function, from a vector in its direction."""
         op, *args = self.nodes[atom]
-        x, one, halvings = self.value(args[0]), self.number(1), int(q.q).bit_length() - 1
-        require(q.q == 1 << halvings, "an inverse function is divided by another number than 2")
+        x, one = self.value(args[0]), self.number(1)
+        require(q.q == 1, "an inverse function is divided")
         if op in ("acos", "asin"):
             other = self.root(one + -(x * x))
             turn = Rotation(x, other) if op == "acos" else Rotation(other, x)
@@ -384,9 +353,6 @@ class Field:
                 return Rotation(turn.cos * scale, turn.sin * scale).times(int(q.p) // 2)
             scale = self.root(norm) ** -1
             turn = Rotation(c * scale, x * scale)
-        for _ in range(halvings):  # of an angle in (-pi, pi], so the cosine is not negative
-            c = self.root((one + turn.cos) * self.number("1/2"))
-            turn = Rotation(c, turn.sin * (c + c) ** -1)
         return turn.times(int(q.p))
 
     def root_of(self, pairs: list[Any]) -> tuple[Fraction, Fraction, list[Any]]:
@@ -395,39 +361,42 @@ class Field:
         value = self.product(factors)
         return value, value * value, factors
 
-    def product(self, factors: list[tuple[fmpq_mpoly, int]]) -> Fraction:
-        one = self.context.constant(1)
-        return reduce(Fraction.__mul__, (Fraction(self, p, one) ** n for p, n in factors), self.number(1))
+    def product(self, factors: list[tuple[Polynomial, int]]) -> Fraction:
+        one = self.number(1)
+        return reduce(Fraction.__mul__, (Fraction(self, p, one.den) ** n for p, n in factors), one)
 
     def root(self, a: Fraction) -> Fraction:
         """The value of a root: its square is right, it is real, and no factor is negative."""
         if a.num == 0:
             return a
-        value, _, factors = next((r for r in self.roots if r[1] == a), (None, None, []))
-        require(value is not None, "a root has no value")
+        known = [(value, factors) for value, square, factors in self.roots if square == a]
+        require(known, "a root has no value")
+        value, factors = known[0]
         self.require_real(factors)
         require(all(n % 2 == 0 or self.sign(p) > 0 for p, n in factors), "a root may be negative")
         return value
 
-    def require_real(self, factors: list[tuple[fmpq_mpoly, int]], of_root: bool = True) -> None:
+    def require_real(self, factors: list[tuple[Polynomial, int]], of_root: bool = True) -> None:
         """The radicands of all generators in these factors of a root are not negative.
 
         One of unknown sign is not, because it is a simple factor of a radicand in the statement.
         """
         doubtful = self.roots_in(p for p, _ in factors) - self.real
-        self.real |= {i for i in doubtful if self.kinds[i] == "abs" or self.sign(self.squares[i]) > 0}
-        doubtful -= self.real
-        for g in [self.generators[i] for i in doubtful] if of_root and len(doubtful) == 1 else []:
-            if (g, 1) in factors and not doubtful & self.roots_in(p for p, _ in factors if p != g):
-                self.real |= doubtful
+        for i in doubtful:
+            if self.kinds[i] == "abs" or self.sign(self.squares[i]) > 0:
+                self.real.add(i)
+        for i in doubtful - self.real if of_root else ():
+            others = [p for p, n in factors if (p, n) != (self.generators[i], 1)]
+            if len(others) == len(factors) - 1 and self.roots_in(others) <= self.real:
+                self.real.add(i)
         require(doubtful <= self.real, "a root may be imaginary")
 
-    def roots_in(self, polynomials: Iterable[fmpq_mpoly]) -> set[int]:
+    def roots_in(self, polynomials: Iterable[Polynomial]) -> set[int]:
         """The roots in polynomials and in the radicands of these roots."""
         found = {i for p in polynomials for i in self.squares if p.degrees()[-1 - i]}
         return found | self.roots_in(self.squares[i] for i in found) if found else found
 
-    def sign(self, p: fmpq_mpoly) -> int:
+    def sign(self, p: Polynomial) -> int:
         """1 or -1 if a polynomial is certainly not negative or not positive, else 0."""
         for q in self.nonnegative:
             ratio, rest = divmod(p, q)
@@ -446,9 +415,10 @@ class Field:
                 return 0
         return signs.pop() if len(signs) == 1 and abs(constant) >= slack else 0
 
-    def assume(self, k: int, constant: Fraction, factors: list[tuple[fmpq_mpoly, int]]) -> None:
+    def assume(self, k: int, constant: Fraction, factors: list[tuple[Polynomial, int]]) -> None:
         """Node k is not negative; without factors of known sign, it is a product that is not."""
-        require(constant * self.product(factors) == self.value(k), "an assumption has other factors")
+        require(self.value(k).num != 0, "it is zero that is not negative")
+        require(constant * self.product(factors) == self.value(k), "a guard has other factors")
         self.require_real(factors, of_root=False)
         odd = [p for p, n in factors if n % 2]
         known = [*filter(None, map(self.sign, [constant.num, *odd]))]

@@ -3,120 +3,133 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Sequence
-from functools import reduce
-from itertools import count
-from typing import Any
-
-from flint import fmpq_mpoly
+from collections.abc import Iterable, Sequence
+from typing import Any, TypeAlias
 
 from closedform.algebra.trace import terms_of
-from closedform.verify import Field, Lead, Monomial, divides, shifted
+from closedform.verify import Field, Lead, Monomial, Polynomial, divides, shifted
+
+Combination: TypeAlias = "dict[int, Polynomial]"
 
 
-def logged_basis(field: Field, system: Sequence[fmpq_mpoly]) -> tuple[list[Any], list[int], list[Monomial]]:
+def logged_basis(
+    field: Field, system: Sequence[Polynomial]
+) -> tuple[list[Any], list[int], list[Monomial]]:
     """A Groebner basis of a system, by Buchberger's algorithm.
 
     The elements are numbered: first those of the system, then one for each step.  A step is a
-    multiplier without unknowns, the new element, and a combination of earlier elements that is
+    multiplier without unknowns, the new element, and the combination of earlier elements that is
     their product.  The second result lists the elements that are the basis, the third their leading
     monomials.
     """
-    elements = list(system)
-    steps: list[tuple[fmpq_mpoly, dict[int, fmpq_mpoly]]] = []
-    found: dict[int, Lead] = {}
-    number = count()
-    one = field.context.constant(1)
-    waiting = [(sum(field.leading(p)[0]), next(number), (i,)) for i, p in enumerate(system)]
-    heapq.heapify(waiting)
-    while waiting:
-        _, _, which = heapq.heappop(waiting)
-        if len(which) == 1:
-            p, combination = elements[which[0]], {which[0]: one}
-        else:
-            f, g = (found[i] for i in which)
-            common = tuple(map(max, f[0], g[0]))
-            if sum(common) == sum(f[0]) + sum(g[0]):
-                continue  # the leading monomials are coprime
-            gcd = f[1].gcd(g[1])
-            left, right = (shifted(field, (h[0], h[1], one), common) for h in (f, g))
-            combination = {which[0]: left * (g[1] / gcd), which[1]: -right * (f[1] / gcd)}
-            p = sum((q * elements[i] for i, q in combination.items()), 0 * one)
-        p = _reduce(field, p, found, combination)
-        if p == 0:
-            continue
-        content = _content(field, p)
-        if list(combination.values()) == [one]:
-            index = which[0]
-        else:
-            common = reduce(fmpq_mpoly.gcd, (_content(field, q) for q in combination.values()), content)
-            steps.append((content / common, {i: q / common for i, q in combination.items() if q != 0}))
-            index = len(elements)
-            elements.append(p / content)
-        lead = (*field.leading(elements[index]), elements[index])
-        for i, f in found.items():
-            degree = sum(map(max, f[0], lead[0]))
-            heapq.heappush(waiting, (degree, next(number), (i, index)))
-        found[index] = lead
+    buchberger = _Buchberger(field, system)
+    buchberger.run()
+    found = buchberger.found
     minimal = [
         i
-        for i, f in found.items()
+        for i, (lead, _, _) in sorted(found.items())
         if not any(
-            divides(g[0], f[0]) and (g[0] != f[0] or j < i) for j, g in found.items() if j != i
+            divides(other, lead) and (other != lead or j < i)
+            for j, (other, _, _) in found.items()
+            if j != i
         )
     ]
-    written, basis = _needed(elements, len(system), steps, minimal)
-    return written, basis, [found[i][0] for i in sorted(minimal)]
+    steps, basis = buchberger.written(minimal)
+    return steps, basis, [found[i][0] for i in minimal]
 
 
-def _reduce(
-    field: Field, p: fmpq_mpoly, found: dict[int, Lead], combination: dict[int, fmpq_mpoly]
-) -> fmpq_mpoly:
-    """The remainder; the combination that gives it is updated."""
-    while p != 0:
-        lead, coefficient = field.leading(p)
-        index = next((i for i, f in found.items() if divides(f[0], lead)), None)
-        if index is None:
-            break
-        f = found[index]
-        common = f[1].gcd(coefficient)
-        scale, quotient = f[1] / common, shifted(field, (f[0], f[1], coefficient / common), lead)
-        p = p * scale - quotient * f[2]
-        for i in combination:
-            combination[i] = combination[i] * scale
-        combination[index] = combination.get(index, 0 * p) - quotient
-    return p
+class _Buchberger:
+    def __init__(self, field: Field, system: Sequence[Polynomial]) -> None:
+        self.field = field
+        self.elements = list(system)
+        self.given = len(system)
+        self.steps: list[tuple[Polynomial, Combination]] = []
+        self.found: dict[int, Lead] = {}
+        """The elements of the basis, each with its leading monomial and its coefficient."""
+        self.one = field.context.constant(1)
 
+    def run(self) -> None:
+        """Reduce the system and all pairs, those of the least degree first."""
+        waiting = [
+            (sum(self.field.leading(p)[0]), i, (i,)) for i, p in enumerate(self.elements)
+        ]  # the number in the middle makes the order definite
+        queue: list[tuple[int, int, tuple[int, ...]]] = sorted(waiting)
+        pairs = len(queue)
+        while queue:
+            _, _, which = heapq.heappop(queue)
+            combination = {which[0]: self.one} if len(which) == 1 else self._pair(*which)
+            total = sum((q * self.elements[i] for i, q in combination.items()), 0 * self.one)
+            rest = self._reduce(total, combination)
+            if rest == 0:
+                continue
+            index = self._added(rest, combination)
+            lead = (*self.field.leading(self.elements[index]), self.elements[index])
+            for i, f in self.found.items():
+                if any(map(min, f[0], lead[0])):  # those of coprime monomials reduce to zero
+                    pairs += 1
+                    heapq.heappush(queue, (sum(map(max, f[0], lead[0])), pairs, (i, index)))
+            self.found[index] = lead
 
-def _content(field: Field, p: fmpq_mpoly) -> fmpq_mpoly:
-    """The greatest common divisor of the coefficients, which are polynomials in parameters."""
-    result, zero = 0 * p, (0,) * len(field.unknowns)
-    while p != 0:
-        lead, coefficient = field.leading(p)
-        result = result.gcd(coefficient)
-        p = p - shifted(field, (zero, coefficient, coefficient), lead)
-    return result
+    def _pair(self, i: int, j: int) -> Combination:
+        """The combination of two elements in which their leading terms cancel."""
+        f, g = self.found[i], self.found[j]
+        common, divisor = tuple(map(max, f[0], g[0])), f[1].gcd(g[1])
+        left, right = (shifted(self.field, (h[0], h[1], self.one), common) for h in (f, g))
+        return {i: left * (g[1] / divisor), j: -right * (f[1] / divisor)}
 
+    def _reduce(self, p: Polynomial, combination: Combination) -> Polynomial:
+        """The remainder of a combination, which is changed accordingly."""
+        while p != 0:
+            lead, coefficient = self.field.leading(p)
+            index = next((i for i, f in self.found.items() if divides(f[0], lead)), None)
+            if index is None:
+                break
+            monomial, leading, f = self.found[index]
+            common = leading.gcd(coefficient)
+            scale = leading / common
+            quotient = shifted(self.field, (monomial, leading, coefficient / common), lead)
+            p = p * scale - quotient * f
+            for i in combination:
+                combination[i] *= scale
+            combination[index] = combination.get(index, 0 * p) - quotient
+        return p
 
-def _needed(
-    elements: Sequence[fmpq_mpoly],
-    given: int,
-    steps: Sequence[tuple[fmpq_mpoly, dict[int, fmpq_mpoly]]],
-    basis: Sequence[int],
-) -> tuple[list[Any], list[int]]:
-    """Only the steps on which the basis depends, as plain data."""
-    used = set(basis)
-    for k in reversed(range(len(steps))):
-        if given + k in used:
-            used |= steps[k][1].keys()
-    kept = [k for k in range(len(steps)) if given + k in used]
-    index = {i: i for i in range(given)} | {given + k: given + n for n, k in enumerate(kept)}
-    written = [
-        [
-            terms_of(steps[k][0]),
-            terms_of(elements[given + k]),
-            [[index[i], terms_of(q)] for i, q in sorted(steps[k][1].items())],
+    def _added(self, rest: Polynomial, combination: Combination) -> int:
+        """The number of the new element, without its content."""
+        if list(combination.values()) == [self.one]:
+            return min(combination)
+        content = self._content([rest])
+        common = self._content([content, *combination.values()])
+        kept = {i: q / common for i, q in combination.items() if q != 0}
+        self.steps.append((content / common, kept))
+        self.elements.append(rest / content)
+        return len(self.elements) - 1
+
+    def _content(self, polynomials: Iterable[Polynomial]) -> Polynomial:
+        """The greatest common divisor of the coefficients, which are polynomials in parameters."""
+        result, constant = 0 * self.one, (0,) * len(self.field.unknowns)
+        for p in polynomials:
+            while p != 0 and not result.is_one():
+                lead, coefficient = self.field.leading(p)
+                result = result.gcd(coefficient)
+                p = p - shifted(self.field, (constant, coefficient, coefficient), lead)
+        return result
+
+    def written(self, basis: Sequence[int]) -> tuple[list[Any], list[int]]:
+        """The steps on which the basis depends, as plain data, and the basis."""
+        used = set(basis)
+        for k in reversed(range(len(self.steps))):
+            if self.given + k in used:
+                used |= self.steps[k][1].keys()
+        kept = [k for k in range(len(self.steps)) if self.given + k in used]
+        index = {i: i for i in range(self.given)}
+        index |= {self.given + k: self.given + n for n, k in enumerate(kept)}
+        steps = [
+            [
+                terms_of(self.steps[k][0]),
+                terms_of(self.elements[self.given + k]),
+                [[index[i], terms_of(q)] for i, q in sorted(self.steps[k][1].items())],
+            ]
+            for k in kept
         ]
-        for k in kept
-    ]
-    return written, sorted(index[i] for i in basis)
+        return steps, [index[i] for i in basis]

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import sympy as sp
-from flint import fmpq_mpoly
 from sympy.core.function import AppliedUndef
 
 from closedform import verify
@@ -67,6 +66,8 @@ class Record:
         self.certificates: list[dict[str, Any]] = []
         self.missing: Counter[str] = Counter()
         """Why a proof has no certificate, and how many have none."""
+        self.uncounted: list[str] = []
+        """The inverses of which a count has no certificate."""
         self._known: dict[Expr, int] = {}
         self._names: Counter[str] = Counter()
         self._written: dict[str, int] = {}
@@ -78,13 +79,28 @@ class Record:
             "name": name,
             "digest": digest,
             "not exported": dict(sorted(self.missing.items())),
+            "inverses not exported": self.uncounted,
             "nodes": self.nodes,
             "certificates": self.certificates,
         }
 
+    def text(self, name: str, digest: str) -> str:
+        """Everything as JSON, with a line for each node and each certificate."""
+
+        def written(value: Any) -> str:
+            if isinstance(value, list) and value:
+                return "[\n" + ",\n".join(map(json.dumps, value)) + "\n]"
+            return json.dumps(value)
+
+        content = self.document(name, digest).items()
+        return "{\n" + ",\n".join(f'"{key}": {written(v)}' for key, v in content) + "\n}\n"
+
     def identity(self, problem: Expr, assumptions: Iterable[Expr], tower: Tower) -> None:
         """The entries of a problem vanish."""
         trace = tower.trace
+        if trace.unwritable:
+            self.missing[trace.unwritable] += 1
+            return
         try:
             zero = sorted({self.node(e) for e in entries_of(problem)})
             generators = [
@@ -129,7 +145,7 @@ class Record:
     ) -> None:
         """The counts of the steps of an inverse multiply to its branches."""
         if any(count is None for count, _ in counts):
-            self.missing["an inverse of which a count is not exported"] += 1
+            self.uncounted.append(function)
             return
         self._add(
             kind="inverse",

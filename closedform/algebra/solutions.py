@@ -91,9 +91,8 @@ def count_solutions(
             monomials = _standard_monomials(basis, ring)
             alone = _are_distinct(_specialised(basis, parameters, draw), monomials)
             total, distinct = total * len(monomials), distinct and alone
-        if record and written is not None:
-            if record.certificates[written]["count"] != total:
-                raise RuntimeError(f"the certificate of a count of {total} solutions has another")
+        if record and written is not None and record.certificates[written]["count"] != total:
+            raise RuntimeError(f"{total} solutions are counted, but their certificate differs")
         return SolutionCount(total, distinct, "generic", certificate=written)
 
     ring = PolyRing(system.variables, QQ, grevlex)
@@ -181,7 +180,7 @@ class _System:
                     break
 
     def merged(self, stated: set[Symbol]) -> dict[Symbol, Expr]:
-        """One of each sum of stated symbols that was merged: the sum, a new parameter, less the rest."""
+        """One symbol of each merged sum, as the sum, which is a new parameter, less the others."""
         return {
             a: e
             for a, e in self._merged.items()

@@ -21,6 +21,8 @@ class Trace:
     """Every root that was taken, as a product of powers."""
     guards: dict[Expr, tuple[fmpq, Factors]] = field(default_factory=dict)
     """The constant and the factors of every assumption."""
+    unwritable: str = ""
+    """Why the format cannot express the conversion, if it cannot."""
 
 
 def terms_of(p: fmpq_mpoly) -> list[list[Any]]:
@@ -29,7 +31,8 @@ def terms_of(p: fmpq_mpoly) -> list[list[Any]]:
     Generators are numbered from the last slot of the ring, which is the oldest.
     """
     return [
-        [str(a), *(x for i, n in enumerate(reversed(m)) if n for x in (i, int(n)))] for m, a in p.terms()
+        [str(a), *(x for i, n in enumerate(reversed(m)) if n for x in (i, int(n)))]
+        for m, a in p.terms()
     ]
 
 

@@ -55,7 +55,8 @@ def prove_chain(derivation: Derivation, inverse: Inverse) -> tuple[int, tuple[Ex
         _flag_holds(continuum, function, graph, where)
     _free_choices_are_units(inverse, where)
     _determines_target(inverse, graph, where)
-    certificates.add_inverse(function.name, len(function.branches) or 1, counts)
+    branches = len(function.branches) if function.branches else 1
+    certificates.add_inverse(function.name, branches, counts)
     return count, tuple(assumptions), cases
 
 

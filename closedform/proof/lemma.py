@@ -42,5 +42,7 @@ def prove_lemma(
     counted = count_solutions(lemma.equations, tuple(lemma.solution), target_substitution=given)
     if counted.count != lemma.branches + lemma.excluded:
         given_count = f"{lemma.branches + lemma.excluded} are accounted for"
-        raise ProofError(f"the lemma {lemma.name!r} has {counted.count} solutions, but {given_count}")
+        raise ProofError(
+            f"the lemma {lemma.name!r} has {counted.count} solutions, but {given_count}"
+        )
     return counted

@@ -13,7 +13,7 @@ from itertools import combinations, product
 from math import prod
 from typing import Any, TypeAlias
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mat
+from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpz_mat
 
 FORMAT = 1
 INVERSES = ("atan2", "atan", "acos", "asin")
@@ -39,7 +39,12 @@ def check(document: dict[str, Any]) -> None:
     require(document["format"] == FORMAT, "the format is unknown")
     names = [node[1] for node in document["nodes"] if node[0] == "name"]
     require(len(set(names)) == len(names), "a name has two meanings")
-    kinds = {"identity": check_identity, "count": check_count, "inverse": check_inverse}
+    kinds = {
+        "identity": check_identity,
+        "count": check_count,
+        "inverse": check_inverse,
+        "regular": check_regular,
+    }
     for k, certificate in enumerate(document["certificates"]):
         try:
             kinds[certificate["kind"]](document, certificate)
@@ -72,6 +77,24 @@ def check_inverse(document: dict[str, Any], certificate: dict[str, Any]) -> None
     total = prod(c["count"] - less for c, less in counts)
     branches = certificate["branches"] * certificate["per branch"]
     require(counts and total == branches > 0, f"{total} solutions are counted")
+
+
+def check_regular(document: dict[str, Any], certificate: dict[str, Any]) -> None:
+    """The determinant of a matrix differs from zero at a point, so at almost all points."""
+    rows = matrix_of(document["nodes"], certificate)
+    require(rows and fmpq_mat(rows).det() != 0, "the determinant is zero")
+
+
+def matrix_of(nodes: list[Any], certificate: dict[str, Any]) -> list[list[fmpq]]:
+    """A matrix at a point, which is given by numbers and by tangents of half angles."""
+    field = Field(nodes, [], ())
+    for node, value in certificate["names"]:
+        require(fmpq(value) * nodes[node][2] >= 0, "the point is not in the domain")
+        field.values[node] = field.number(value)
+    for node, value in certificate["angles"]:
+        field.turns[node] = 1, field.half_turn(field.number(value).num)
+    values = [[field.value(k).num for k in row] for row in certificate["matrix"]]
+    return [[p.leading_coefficient() if p != 0 else fmpq(0) for p in row] for row in values]
 
 
 def check_count(document: dict[str, Any], certificate: dict[str, Any]) -> None:
@@ -233,8 +256,7 @@ class Field:
             self.turns[key] = divisor, Rotation(Fraction(self, g, one), Fraction(self, s, one))
             self.relations[i + 1] = s * s + g * g - 1
         elif kind == "half":
-            cos, sin = Fraction(self, 1 - g * g, 1 + g * g), Fraction(self, 2 * g, 1 + g * g)
-            self.turns[about] = 1, Rotation(cos, sin)
+            self.turns[about] = 1, self.half_turn(g)
         elif kind in ROOTS:
             p = self.polynomial(about)
             require(not any(p.degrees()[: len(self.kinds) - i]), "a relation has later generators")
@@ -245,6 +267,10 @@ class Field:
             require(op in ("name", "pi", *INVERSES), "a generator stands for an operation")
             self.values[about] = Fraction(self, g, one)
             self.signs[i] = name[1] if op == "name" else int(op == "pi")
+
+    def half_turn(self, t: Polynomial) -> Rotation:
+        """The rotation by an angle, from the tangent of half of it."""
+        return Rotation(Fraction(self, 1 - t * t, 1 + t * t), Fraction(self, 2 * t, 1 + t * t))
 
     def polynomial(self, terms: list[Any]) -> Polynomial:
         """From a list of terms: each a coefficient, then generators, each with its power."""

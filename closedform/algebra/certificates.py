@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import sympy as sp
+from flint import fmpq_mat
 from sympy.core.function import AppliedUndef
 
 from closedform import verify
@@ -66,6 +67,8 @@ class Record:
         self.certificates: list[dict[str, Any]] = []
         self.missing: Counter[str] = Counter()
         """Why a proof has no certificate, and how many have none."""
+        self.proofs = 0
+        """The number of identities and counts so far, with those that are repeated."""
         self.uncounted: list[str] = []
         """The inverses of which a count has no certificate."""
         self._known: dict[Expr, int] = {}
@@ -97,6 +100,7 @@ class Record:
 
     def identity(self, problem: Expr, assumptions: Iterable[Expr], tower: Tower) -> None:
         """The entries of a problem vanish."""
+        self.proofs += 1
         trace = tower.trace
         if trace.unwritable:
             self.missing[trace.unwritable] += 1
@@ -126,6 +130,7 @@ class Record:
 
     def count(self, system: System) -> int | None:
         """The number of solutions of a system; the result is the number of the certificate."""
+        self.proofs += 1
         try:
             content = self._system(system)
             field, _, nonzero = verify.system_of(self.nodes, content)
@@ -154,6 +159,32 @@ class Record:
             counts=[list(pair) for pair in counts],
             **{"per branch": each},
         )
+
+    def regular(self, rows: Sequence[Sequence[Expr]], point: Mapping[Expr, Expr]) -> bool:
+        """A matrix has full column rank at a point; the values of angles are tangents of halves.
+
+        The result says whether that is so and can be certified.
+        """
+        self.proofs += 1
+        parts = [_apart(sp.sympify(e)) for row in rows for e in row]
+        plain = {s for outside, _ in parts for s in outside}
+        turning = {s for _, inside in parts for s in inside}
+        try:
+            content: dict[str, Any] = {
+                "names": [[self.node(s), str(v)] for s, v in point.items() if s in plain],
+                "angles": [[self.node(s), str(v)] for s, v in point.items() if s in turning],
+                "matrix": [[self.node(sp.sympify(e)) for e in row] for row in rows],
+            }
+            values = fmpq_mat(verify.matrix_of(self.nodes, content))
+        except (_Unwritable, verify.Refused, LookupError):
+            return False
+        echelon, rank = values.transpose().rref()
+        if plain & turning or rank < values.ncols():
+            return False
+        chosen = [next(j for j in range(values.nrows()) if echelon[i, j]) for i in range(rank)]
+        content["matrix"] = [content["matrix"][j] for j in chosen]
+        self._add(kind="regular", **content)
+        return True
 
     def _system(self, system: System) -> dict[str, Any]:
         """The equations of a system, their unknowns and their parameters."""
@@ -256,6 +287,24 @@ def add_inverse(
     """
     if record := open_record():
         record.inverse(function, branches, counts, each)
+
+
+def regular(rows: Sequence[Sequence[Expr]], point: Mapping[Expr, Expr], what: str) -> None:
+    """Record that a matrix has full column rank at a point; ``what`` it shows, if that fails."""
+    if (record := open_record()) and not record.regular(rows, point):
+        record.missing[what] += 1
+
+
+def lack(what: str) -> None:
+    """Record that a proof leaves no certificate: what it shows, in words for a list."""
+    if record := open_record():
+        record.missing[what] += 1
+
+
+def proofs() -> int:
+    """The number of proofs that the open recording has seen."""
+    record = open_record()
+    return record.proofs if record else 0
 
 
 def place(text: str) -> None:

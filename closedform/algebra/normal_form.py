@@ -12,7 +12,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from closedform.algebra.certificates import open_record
+from closedform.algebra.certificates import lack, open_record
 from closedform.algebra.counterexample import Counterexample, find_counterexample
 from closedform.algebra.tower import (
     Expr,
@@ -171,6 +171,7 @@ def decide(
         sp.Matrix(entries_of(problem)), conditions=[g >= 0 for g in guards], seed=seed, sides=sides
     )
     if witness:
+        lack("refutations by a counterexample")
         return Decision(False, "refuted", tuple(guards), result, witness)
     if result is not None:
         entry = result.nonzero[0]

@@ -241,6 +241,7 @@ def _not_degenerate(link: Link, graph: Graph, where: str) -> None:
             continue
         value = _without_signs(graph(statement.value))
         point = _random_posture(draw, list(value.free_symbols))
+        certificates.regular([[value**2]], point, "quantities that differ from zero at a posture")
         (ball,) = Evaluator(list(point), [value])(list(point.values()))
         if ball.contains(0):
             raise ProofError(
@@ -295,6 +296,7 @@ def _determines_target(inverse: Inverse, graph: Graph, where: str) -> None:
         rows.append(slopes)
     entries = [slope for row in rows for slope in row]
     point = _random_posture(draw, sorted({s for e in entries for s in e.free_symbols}, key=str))
+    certificates.regular(rows, point, "ranks of a matrix at a posture")
     balls = Evaluator(list(point), entries)(list(point.values()))
     n = len(columns)
     rank = _certain_rank([balls[i : i + n] for i in range(0, len(balls), n)])

@@ -19,7 +19,7 @@ from closedform.algebra import certificates
 from closedform.algebra.normal_form import Undecided
 from closedform.algebra.shapes import ShapeError, require_shape
 from closedform.algebra.solutions import InfinitelyManyError, SolutionCount, count_solutions
-from closedform.model.claims import VERDICTS
+from closedform.model.claims import NOT_DECIDABLE, VERDICTS
 from closedform.model.derivation import Continuum, Derivation, Inverse
 from closedform.model.functions import Function, real, substitute
 from closedform.proof.chain import forget_counts, prove_chain
@@ -146,6 +146,7 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
     claims = []
     for claim in derivation.claims:
         begin(f"claim: {claim.label}")
+        before = certificates.proofs()
         try:
             verdict = claim.check.judge()
         except (Undecided, ValueError) as error:
@@ -153,6 +154,8 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
         except Exception as error:  # a check may call anything that its author wrote
             what = f"{type(error).__name__}: {error}"
             raise ProofError(f"{derivation.name}, claim {claim.label}: {what}") from error
+        if certificates.proofs() == before and verdict.kind != NOT_DECIDABLE:
+            certificates.lack("claims decided by enumeration or inequalities")
         claims.append(
             ClaimResult(
                 claim.label,

@@ -43,12 +43,18 @@ def prove_reduction(
     combined = reduction.combination * sp.Matrix(equations)
     for difference in _cases(sp.ImmutableMatrix(system - combined)):
         require(difference, (), f"{where}: the lemmas' equations do not combine to the system")
+    free = sorted(reduction.combination.free_symbols, key=str)
+    point = {s: sp.Rational(k, 7) for k, s in enumerate(free, 8)}
+    certificates.regular(
+        reduction.combination.tolist(), point, "matrices that combine the equations of lemmas"
+    )
     if not normal(reduction.combination.det()).is_nonzero:
         raise ProofError(f"{where}: the matrix that combines the lemmas' equations is singular")
     solution = {u: _generic(e) for lemma in reduction.lemmas for u, e in lemma.solution.items()}
     answers = [_generic(e) for a in function.outputs for e in a.entries]
     for joint, answer in zip(inverse.unknowns, answers, strict=True):
         difference = substitute(reduction.joints[joint], solution) - answer
+        certificates.lack("answers composed of those of lemmas")
         if sp.expand(difference) != 0:
             raise ProofError(
                 f"{where}: {joint} is not what the lemmas give; the difference is {difference}"

@@ -37,8 +37,15 @@ def require(condition: Any, fault: str) -> None:
 def check(document: dict[str, Any]) -> None:
     """Check all certificates of a mechanism; raise :class:`Refused` for the first bad one."""
     require(document["format"] == FORMAT, "the format is unknown")
-    names = [node[1] for node in document["nodes"] if node[0] == "name"]
-    require(len(set(names)) == len(names), "a name has two meanings")
+    names = set()
+    for k, node in enumerate(document["nodes"]):
+        op, *args = node if isinstance(node, list) else ("number",)
+        if op == "name":
+            require(args[0] not in names and args[1] in (-1, 0, 1), "a name has two meanings")
+            names.add(args[0])
+        else:
+            operands = args[:1] if op == "^" else args
+            require(all(a in range(k) for a in operands), "a node holds later ones")
     kinds = {
         "identity": check_identity,
         "count": check_count,
@@ -55,8 +62,7 @@ def check(document: dict[str, Any]) -> None:
 def check_identity(document: dict[str, Any], certificate: dict[str, Any]) -> None:
     """The listed expressions vanish wherever they are real and no denominator vanishes."""
     field = Field(document["nodes"], certificate["generators"], ("name", *ROOTS, "angle"))
-    itself = [[[[["1", i, 1]], 1]] for i in field.squares]
-    field.roots = [field.root_of(factors) for factors in [*certificate["roots"], *itself]]
+    field.roots = [field.root_of(factors) for factors in certificate["roots"]]
     for node, constant, factors in certificate["assumed"]:
         field.assume(node, field.number(constant), field.factors(factors))
     require(certificate["zero"], "nothing is stated")
@@ -133,7 +139,8 @@ def system_of(nodes: list[Any], certificate: dict[str, Any]) -> tuple[Field, lis
     nonzero = [field.value(k).num for k in certificate["nonzero"]]
     nonzero += [p for p in field.inverted if any(field.leading(p)[0])]
     system += field.relations.values()
-    return field, [p for p in system if p != 0], list(dict.fromkeys(nonzero))
+    nonzero = [p for i, p in enumerate(nonzero) if p not in nonzero[:i]]
+    return field, [p for p in system if p != 0], nonzero
 
 
 def staircase(leads: list[Monomial]) -> int | None:

@@ -118,7 +118,11 @@ class Record:
         except _Unwritable as reason:
             self.missing[str(reason)] += 1
             return
-        roots = [factors_of(factors) for factors in trace.roots]
+        slots = [kind for kind, *_ in generators for _ in range(2 if kind == "angle" else 1)]
+        roots = [[[[["1", i, 1]], 1]] for i, kind in enumerate(slots) if kind in verify.ROOTS]
+        roots += [
+            factors_of((p, n) for p, n in factors if not p.is_one()) for factors in trace.roots
+        ]
         self._add(
             kind="identity",
             zero=zero,

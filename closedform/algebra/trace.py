@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
@@ -36,6 +37,6 @@ def terms_of(p: fmpq_mpoly) -> list[list[Any]]:
     ]
 
 
-def factors_of(factors: Factors) -> list[list[Any]]:
+def factors_of(factors: Iterable[tuple[fmpq_mpoly, int]]) -> list[list[Any]]:
     """Polynomials, each with its power."""
     return [[terms_of(p), int(n)] for p, n in factors]

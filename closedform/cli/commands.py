@@ -272,12 +272,12 @@ def verify_command(options: argparse.Namespace) -> None:
     """Check the certificates of the proofs, by polynomial arithmetic and without the prover."""
     from closedform.pipeline.verified import verify_all
 
-    chosen = _find(options.names)
-    if pipeline.default_store().folder is None:
+    chosen, store = _find(options.names), pipeline.default_store()
+    if store.folder is None:
         raise CommandError("an installed package keeps no certificates; use a checkout")
     _require_extra()
     with Progress() as progress:
-        results = verify_all(chosen, options.jobs or pipeline.default_jobs(), progress)
+        results = verify_all(chosen, store, options.jobs or pipeline.default_jobs(), progress)
     width = max(len(result.name) for result in results)
     console.write("".join(f"{result.line(width)}\n" for result in results))
     if failed := [result.name for result in results if result.failure]:

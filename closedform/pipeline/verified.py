@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from closedform.pipeline.run import Report, Source, Store, default_store, digest
+from closedform.pipeline.run import Report, Source, Store, digest
 from closedform.pipeline.workers import each
 
 
@@ -36,20 +36,17 @@ class Verified:
         )
 
 
-def verify(source: Source, store: Store | None = None, report: Report | None = None) -> Verified:
+def verify(source: Source, store: Store, report: Report) -> Verified:
     """Check the certificates of one script."""
     from closedform.verify import Refused, check
 
-    if report:
-        report(source.name, "verifying")
+    report(source.name, "verifying")
     again = f"run closedform derive {source.name}"
-    store = store or default_store()
     try:
         proof = store.read(source)
         content = store.certificates(source).read_bytes()
-    except (OSError, ValueError) as error:
-        what = "proof" if not isinstance(error, OSError) else "certificate"
-        return Verified(source.name, failure=f"there is no {what}; {again}")
+    except (OSError, ValueError):
+        return Verified(source.name, failure=f"its proof or its certificates are missing; {again}")
     if proof.get("digest") != digest(source):
         return Verified(source.name, failure=f"what it depends on has changed; {again}")
     try:
@@ -83,11 +80,11 @@ def _require_all(document: Mapping[str, Any], name: str, proof: Mapping[str, Any
             require(same, f"no certificate says how many branches {function} has")
 
 
-def verify_all(chosen: Sequence[Source], jobs: int, report: Report) -> list[Verified]:
+def verify_all(chosen: Sequence[Source], store: Store, jobs: int, report: Report) -> list[Verified]:
     """Check the certificates of all chosen scripts, in processes."""
     if jobs == 1 or len(chosen) < 2:
-        return [verify(source, report=report) for source in chosen]
-    job = partial(verify, store=default_store())
+        return [verify(source, store, report) for source in chosen]
+    job = partial(verify, store=store)
     outcomes: dict[str, Verified] = {}
     for source, outcome in each(job, chosen, min(jobs, len(chosen)), report):
         if isinstance(outcome, Exception):

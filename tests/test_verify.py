@@ -118,6 +118,14 @@ def test_what_the_format_cannot_express_is_counted() -> None:
     assert not record.certificates and sum(record.missing.values()) == 1
 
 
+def test_a_basis_that_is_too_expensive_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("closedform.algebra.basis.LIMIT", 20)
+    with recording() as record:
+        two_links()
+    assert not record.certificates and record.uncounted == ["ik"]
+    assert sum(record.missing.values()) == 1
+
+
 # Tampering, without a digest that would notice it at once
 
 
@@ -159,6 +167,7 @@ def intersection() -> None:
 def test_no_number_of_a_count_can_be_changed(part: str) -> None:
     """Coefficients, exponents, multipliers, cofactors, and the entries of every list."""
     document = written(intersection)
+    del document["certificates"][1]  # which would notice another count
     verify.check(document)
     for other in changes(document["certificates"][0][part]):
         assert not accepted(with_certificate(document, 0, **{part: other})), other
@@ -255,6 +264,11 @@ FORGERIES: dict[str, Document] = {
         [X, ["sin", 0], "-1", ["*", 2, 0], ["+", 0, 3]], zero=[4], generators=[["name", 1]]
     ),
     "x/x = 0, because of a circle of nodes": certificate([["*", 0, 0]], zero=[0]),
+    "a node that holds a later one": certificate([["*", 1, 1], "0"], zero=[0]),
+    "another format": {**certificate(["0"], zero=[0]), "format": 2},
+    "branches that are counted by the inverse itself": certificate(
+        ["0"], kind="inverse", counts=[[0, 0]], branches=2, count=2, **{"per branch": 1}
+    ),
     "x/0 = 0": certificate(["0", ["^", 0, -1], ["*", 0, 1]], zero=[2]),
     "x = 0, because a relation is one of a count": certificate(
         [X], zero=[0], generators=[["unknown", 0], ["circle"]]
@@ -281,6 +295,29 @@ FORGERIES: dict[str, Document] = {
         steps=[[[["1", 0, 1]], [["1", 0, 1], ["1"]], [[0, [["1"]]]]]],
         basis=[1],
         count=1,
+    ),
+    "too many solutions, because the basis is not that of the system": certificate(
+        [X, ["^", 0, 2], "-1", ["+", 1, 2], ["+", 0, 2]],
+        kind="count",
+        equations=[3, 4],
+        given=[],
+        angles=[],
+        generators=[["unknown", 0]],
+        steps=[],
+        basis=[0],
+        count=2,
+    ),
+    "too many solutions, because the basis has an S-polynomial": certificate(
+        [X, ["name", "y", 0], "-1", "-2", ["*", 0, 1], ["^", 0, 2], ["^", 1, 2], ["+", 4, 2]]
+        + [["+", 5, 2], ["+", 6, 3]],  # x*y = 1, x**2 = 1, y**2 = 2
+        kind="count",
+        equations=[7, 8, 9],
+        given=[],
+        angles=[],
+        generators=[["unknown", 0], ["unknown", 1]],
+        steps=[],
+        basis=[0, 1, 2],
+        count=3,
     ),
     "a singular matrix": certificate(
         [X, "0"], kind="regular", matrix=[[0, 1], [0, 1]], names=[[0, "1"]], angles=[]

@@ -9,7 +9,14 @@ from typing import Any, TypeAlias
 from closedform.algebra.trace import terms_of
 from closedform.verify import Field, Lead, Monomial, Polynomial, divides, shifted
 
+LIMIT = 1_000_000
+"""At most this many terms are reduced for a basis, which takes some seconds."""
+
 Combination: TypeAlias = "dict[int, Polynomial]"
+
+
+class TooLargeError(ValueError):
+    """A basis with its combinations is too expensive."""
 
 
 def logged_basis(
@@ -21,6 +28,8 @@ def logged_basis(
     multiplier without unknowns, the new element, and the combination of earlier elements that is
     their product.  The second result lists the elements that are the basis, the third their leading
     monomials.
+
+    Raises :class:`TooLargeError` if that is too expensive.
     """
     buchberger = _Buchberger(field, system)
     buchberger.run()
@@ -47,6 +56,8 @@ class _Buchberger:
         self.found: dict[int, Lead] = {}
         """The elements of the basis, each with its leading monomial and its coefficient."""
         self.one = field.context.constant(1)
+        self.terms = 0
+        """The number of terms that were reduced so far."""
 
     def run(self) -> None:
         """Reduce the system and all pairs, those of the least degree first."""
@@ -80,6 +91,9 @@ class _Buchberger:
     def _reduce(self, p: Polynomial, combination: Combination) -> Polynomial:
         """The remainder of a combination, which is changed accordingly."""
         while p != 0:
+            self.terms += len(p) + sum(map(len, combination.values()))
+            if self.terms > LIMIT:
+                raise TooLargeError("too many terms")
             lead, coefficient = self.field.leading(p)
             index = next((i for i, f in self.found.items() if divides(f[0], lead)), None)
             if index is None:

@@ -20,7 +20,7 @@ from flint import fmpq_mat
 from sympy.core.function import AppliedUndef
 
 from closedform import verify
-from closedform.algebra.basis import logged_basis
+from closedform.algebra.basis import TooLargeError, logged_basis
 from closedform.algebra.tower import Tower, entries_of, sign_of
 from closedform.algebra.trace import factors_of, terms_of
 
@@ -139,12 +139,16 @@ class Record:
             content = self._system(system)
             field, _, nonzero = verify.system_of(self.nodes, content)
         except (_Unwritable, verify.Refused, LookupError) as reason:
-            self.missing[f"a system of equations: {reason}"] += 1
+            self.missing[f"counts of solutions ({reason})"] += 1
             return None
         content["generators"] = [["inverse"]] * len(nonzero) + content["generators"]
         field, polynomials, nonzero = verify.system_of(self.nodes, content)
         polynomials += [g * p - 1 for g, p in zip(field.inverses, nonzero, strict=True)]
-        steps, basis, leads = logged_basis(field, polynomials)
+        try:
+            steps, basis, leads = logged_basis(field, polynomials)
+        except TooLargeError:
+            self.missing["counts of solutions whose basis is too large"] += 1
+            return None
         return self._add(
             kind="count", **content, steps=steps, basis=basis, count=verify.staircase(leads)
         )
@@ -252,7 +256,7 @@ class Record:
             self._names[str(e)] += 1
             uses = self._names[str(e)]
             return ["name", f"{e}#{uses}" if uses > 1 else str(e), sign_of(e)]
-        raise _Unwritable(f"an expression contains {type(e).__name__}")
+        raise _Unwritable(f"expressions with {type(e).__name__}")
 
 
 def _apart(e: Expr) -> tuple[set[Expr], set[Expr]]:

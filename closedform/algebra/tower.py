@@ -256,7 +256,7 @@ class Tower:
         return self._turned(self._rotations[base], int(q * self._divisor[atom]))
 
     def _constant_rotation(self, q: Rational) -> Rotation:
-        self.trace.unwritable = "a part of pi in an angle"
+        self.trace.unwritable = "identities with a part of pi in an angle"
         c, s = sp.cos(q * sp.pi), sp.sin(q * sp.pi)
         if c.has(*_TRIGONOMETRIC) or s.has(*_TRIGONOMETRIC):
             raise Undecided(f"cos({q}*pi) has no known square-root form")
@@ -285,7 +285,7 @@ class Tower:
 
     def _halved(self, a: Rotation) -> Rotation:
         """Half of an angle in (-pi, pi); its cosine is therefore positive."""
-        self.trace.unwritable = "half the value of an inverse function"
+        self.trace.unwritable = "identities with half the value of an inverse function"
         half = self._constant(fmpq(1, 2))
         c = self._sqrt(self._mul(self._add(self.one, a.cos), half))
         return Rotation(c, self._mul(self._mul(a.sin, half), self._inverse(c)))

@@ -270,7 +270,6 @@ class Field:
             self.relations[i] = g * g - self.squares[i]
         elif kind != "inverse":
             op, *name = self.nodes[about]
-            require(op in ("name", "pi", *INVERSES), "a generator stands for an operation")
             self.values[about] = Fraction(self, g, one)
             self.signs[i] = name[1] if op == "name" else int(op == "pi")
 

@@ -92,6 +92,7 @@ def test_a_count_with_denominators_given_values_and_merged_parameters_is_accepte
     for equations, unknowns, values, count in (
         ([1 / u - x, v * (u - v)], [u, v], {}, 2),
         ([u**2 - given], [u], {given: a**2 / (1 + b**2)}, 2),
+        ([u**2 - 1, u - 2], [u], {}, 0),
         ([u * (a + b) - v, v**2 + (a + b)], [u, v], {}, 2),
         ([cos(t1) - cos(t2), sin(t1) - sin(t2)], [t1], {}, 1),
     ):
@@ -237,6 +238,7 @@ def certificate(nodes: list[Any], **content: Any) -> Document:
 
 X = ["name", "x", 0]
 ROOT_PLUS_X = [X, "2", ["^", 0, 2], ["sqrt", 2], ["+", 3, 0]]
+COSINE = [["name", "theta", 0], X, "-1", ["cos", 0], ["*", 2, 1], ["+", 3, 4]]
 FORGERIES: dict[str, Document] = {
     "sqrt(x**2) = -x, because a root has the wrong sign": certificate(
         ROOT_PLUS_X, zero=[4], generators=[["name", 0]], roots=[[[[["-1", 0, 1]], 1]]]
@@ -254,14 +256,62 @@ FORGERIES: dict[str, Document] = {
         roots=[[[[["-1", 0, 1]], 1]]],
         assumed=[[5, "0", [[[["-1", 0, 1]], 1]]]],
     ),
+    "sqrt(x**2) = -x, because an imaginary root is there twice": certificate(
+        ROOT_PLUS_X,
+        zero=[4],
+        generators=[["name", 0], ["root", [["-1", 0, 1]]]],
+        roots=[[[[["1", 1, 1]], 1], [[["1", 1, 1]], 1]]],
+    ),
+    "sqrt(x**2) = -x, because an imaginary root is in another factor": certificate(
+        ROOT_PLUS_X,
+        zero=[4],
+        generators=[["name", 0], ["root", [["-1", 0, 1]]]],
+        roots=[[[[["1", 1, 1]], 1], [[["2", 1, 1]], 1], [[["1/2"]], 1]]],
+    ),
+    "sqrt((1 + 2*sin(x))**2) = 1 + 2*sin(x)": certificate(
+        [
+            X,
+            ["sin", 0],
+            "2",
+            ["*", 2, 1],
+            "1",
+            ["+", 4, 3],
+            ["abs", 5],
+            "-1",
+            ["*", 7, 5],
+            ["+", 6, 8],
+        ],
+        zero=[9],
+        generators=[["angle", 0, 1]],
+        roots=[[[[["1"], ["2", 1, 1]], 1]]],
+    ),
     "cos(x) = 1, because the angle is divided by zero": certificate(
         [X, "-1", ["cos", 0], ["+", 2, 1]], zero=[3], generators=[["angle", 0, 0]]
     ),
     "x = 0, because of a relation of its own": certificate(
         [X], zero=[0], generators=[["name", 0], ["root", [["1", 0, 1], ["-1", 1, 1]]]]
     ),
-    "x = 0, because a sine is a name": certificate(
-        [X, ["sin", 0], "-1", ["*", 2, 0], ["+", 0, 3]], zero=[4], generators=[["name", 1]]
+    "atan2(x, x) = tan(x), because an inverse function has no generator": certificate(
+        [X, ["atan2", 0, 0], ["tan", 0], "-1", ["*", 3, 2], ["+", 1, 4]],
+        zero=[5],
+        generators=[["angle", 0, 1]],
+        nonzero=[[["1", 0, 1]]],
+    ),
+    "sin(x + 2) = sin(2*x), because a number is an angle": certificate(
+        [X, "2", ["+", 0, 1], ["sin", 2], ["*", 1, 0], ["sin", 4], "-1", ["*", 6, 5], ["+", 3, 7]],
+        zero=[8],
+        generators=[["angle", 0, 1]],
+    ),
+    "cos(x/2) = 1, because the angle is not divided enough": certificate(
+        [X, "1/2", ["*", 1, 0], ["cos", 2], "-1", ["+", 3, 4]],
+        zero=[5],
+        generators=[["angle", 0, 1]],
+    ),
+    "cos(acos(x)/2) = x, because half an arc is a whole one": certificate(
+        [X, "1/2", ["acos", 0], ["*", 1, 2], ["cos", 3], "-1", ["*", 5, 0], ["+", 4, 6]],
+        zero=[7],
+        generators=[["name", 0], ["root", [["1"], ["-1", 0, 2]]]],
+        roots=[[[[["1", 1, 1]], 1]]],
     ),
     "x/x = 0, because of a circle of nodes": certificate([["*", 0, 0]], zero=[0]),
     "a node that holds a later one": certificate([["*", 1, 1], "0"], zero=[0]),
@@ -270,8 +320,16 @@ FORGERIES: dict[str, Document] = {
         ["0"], kind="inverse", counts=[[0, 0]], branches=2, count=2, **{"per branch": 1}
     ),
     "x/0 = 0": certificate(["0", ["^", 0, -1], ["*", 0, 1]], zero=[2]),
-    "x = 0, because a relation is one of a count": certificate(
-        [X], zero=[0], generators=[["unknown", 0], ["circle"]]
+    "no solutions, because a relation is one of an identity": certificate(
+        [X, ["^", 0, 2], "-1", ["+", 1, 2]],
+        kind="count",
+        equations=[3],
+        given=[],
+        angles=[],
+        generators=[["unknown", 0], ["root", [["2"]]]],
+        steps=[],
+        basis=[1],
+        count=0,
     ),
     "two names for one quantity": certificate([["name", "x", 1], ["name", "x", -1], "0"], zero=[2]),
     "no solutions, because an element of the basis is zero": certificate(
@@ -308,16 +366,57 @@ FORGERIES: dict[str, Document] = {
         count=2,
     ),
     "too many solutions, because the basis has an S-polynomial": certificate(
-        [X, ["name", "y", 0], "-1", "-2", ["*", 0, 1], ["^", 0, 2], ["^", 1, 2], ["+", 4, 2]]
-        + [["+", 5, 2], ["+", 6, 3]],  # x*y = 1, x**2 = 1, y**2 = 2
+        [
+            X,
+            ["name", "y", 0],
+            "-1",
+            ["*", 0, 1],
+            ["^", 0, 2],
+            ["^", 1, 2],
+            ["+", 3, 2],
+            ["+", 4, 2],
+        ],
         kind="count",
-        equations=[7, 8, 9],
+        equations=[6, 7, 5],
         given=[],
         angles=[],
         generators=[["unknown", 0], ["unknown", 1]],
         steps=[],
         basis=[0, 1, 2],
         count=3,
+    ),
+    "four angles of one cosine, because the angle is doubled": certificate(
+        COSINE,
+        kind="count",
+        equations=[5],
+        given=[],
+        angles=[[0, [2]]],
+        generators=[["name", 1], ["circle"]],
+        steps=[],
+        basis=[0, 1],
+        count=4,
+    ),
+    "infinitely many angles, because a circle is free": certificate(
+        COSINE,
+        kind="count",
+        equations=[5],
+        given=[],
+        angles=[[0, [1]]],
+        generators=[["name", 1], ["circle"], ["circle"]],
+        steps=[],
+        basis=[0, 1, 2],
+        count=None,
+    ),
+    "one solution, because the equation is given another value": certificate(
+        [X, ["^", 0, 2], "-1", ["+", 1, 2]],
+        kind="count",
+        equations=[3],
+        given=[[3, 0]],
+        angles=[],
+        generators=[["unknown", 0]],
+        steps=[],
+        basis=[0],
+        count=1,
     ),
     "a singular matrix": certificate(
         [X, "0"], kind="regular", matrix=[[0, 1], [0, 1]], names=[[0, "1"]], angles=[]

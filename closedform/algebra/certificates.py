@@ -19,10 +19,10 @@ import sympy as sp
 from flint import fmpq_mat
 from sympy.core.function import AppliedUndef
 
-from closedform import verify
 from closedform.algebra.basis import TooLargeError, logged_basis
 from closedform.algebra.tower import Tower, entries_of, sign_of
 from closedform.algebra.trace import factors_of, terms_of
+from closedform.verify import FORMAT, ROOTS, Refused, matrix_of, staircase, system_of
 
 Expr: TypeAlias = Any  # SymPy's annotations are partial
 
@@ -78,7 +78,7 @@ class Record:
     def document(self, name: str, digest: str) -> dict[str, Any]:
         """Everything as plain data; ``digest`` is that of the proof."""
         return {
-            "format": verify.FORMAT,
+            "format": FORMAT,
             "name": name,
             "digest": digest,
             "not exported": dict(sorted(self.missing.items())),
@@ -108,7 +108,7 @@ class Record:
         try:
             zero = sorted({self.node(e) for e in entries_of(problem)})
             generators = [
-                [kind, terms_of(about)] if kind in verify.ROOTS else [kind, self.node(about), *n]
+                [kind, terms_of(about)] if kind in ROOTS else [kind, self.node(about), *n]
                 for kind, about, *n in trace.generators
             ]
             assumed = [
@@ -119,7 +119,7 @@ class Record:
             self.missing[str(reason)] += 1
             return
         slots = [kind for kind, *_ in generators for _ in range(2 if kind == "angle" else 1)]
-        roots = [[[[["1", i, 1]], 1]] for i, kind in enumerate(slots) if kind in verify.ROOTS]
+        roots = [[[[["1", i, 1]], 1]] for i, kind in enumerate(slots) if kind in ROOTS]
         roots += [
             factors_of((p, n) for p, n in factors if not p.is_one()) for factors in trace.roots
         ]
@@ -137,21 +137,19 @@ class Record:
         self.proofs += 1
         try:
             content = self._system(system)
-            field, _, nonzero = verify.system_of(self.nodes, content)
-        except (_Unwritable, verify.Refused, LookupError) as reason:
+            field, _, nonzero = system_of(self.nodes, content)
+        except (_Unwritable, Refused, LookupError) as reason:
             self.missing[f"counts of solutions ({reason})"] += 1
             return None
         content["generators"] = [["inverse"]] * len(nonzero) + content["generators"]
-        field, polynomials, nonzero = verify.system_of(self.nodes, content)
+        field, polynomials, nonzero = system_of(self.nodes, content)
         polynomials += [g * p - 1 for g, p in zip(field.inverses, nonzero, strict=True)]
         try:
             steps, basis, leads = logged_basis(field, polynomials)
         except TooLargeError:
             self.missing["counts of solutions whose basis is too large"] += 1
             return None
-        return self._add(
-            kind="count", **content, steps=steps, basis=basis, count=verify.staircase(leads)
-        )
+        return self._add(kind="count", **content, steps=steps, basis=basis, count=staircase(leads))
 
     def inverse(
         self, function: str, branches: int, counts: Sequence[tuple[int | None, int]], each: int
@@ -183,8 +181,8 @@ class Record:
                 "angles": [[self.node(s), str(v)] for s, v in point.items() if s in turning],
                 "matrix": [[self.node(sp.sympify(e)) for e in row] for row in rows],
             }
-            values = fmpq_mat(verify.matrix_of(self.nodes, content))
-        except (_Unwritable, verify.Refused, LookupError):
+            values = fmpq_mat(matrix_of(self.nodes, content))
+        except (_Unwritable, Refused, LookupError):
             return False
         echelon, rank = values.transpose().rref()
         if plain & turning or rank < values.ncols():

@@ -115,7 +115,7 @@ def check_count(document: dict[str, Any], certificate: dict[str, Any]) -> None:
         require(m * p == total, "an element of the basis is not in the ideal")
         elements.append(p)
     basis = [(*field.leading(p), p) for p in (elements[i] for i in certificate["basis"])]
-    count = staircase([lead for lead, _, _ in basis])
+    count = staircase([lead for lead, _, _ in basis], len(field.unknowns))
     require(count == certificate["count"], f"the basis leaves {count} monomials")
     pairs = [(f, g) for f, g in combinations(basis, 2) if any(map(min, f[0], g[0]))]
     for p in [*system, *(s_polynomial(field, f, g) for f, g in pairs)]:
@@ -142,11 +142,9 @@ def system_of(nodes: list[Any], certificate: dict[str, Any]) -> tuple[Field, lis
     return field, [p for p in system if p != 0], nonzero
 
 
-def staircase(leads: list[Monomial]) -> int | None:
+def staircase(leads: list[Monomial], size: int) -> int | None:
     """The number of monomials that none of these divides; None if there are infinitely many."""
-    if not all(map(any, leads)):
-        return 0
-    bounds = [[m[i] for m in leads if sum(m) == m[i]] for i in range(len(leads[0]))]
+    bounds = [[m[i] for m in leads if sum(m) == m[i]] for i in range(size)]
     if not all(bounds):
         return None
     candidates = product(*(range(min(powers)) for powers in bounds))
@@ -407,7 +405,7 @@ class Field:
         require(all(n % 2 == 0 or self.sign(p) > 0 for p, n in factors), "a root may be negative")
         return value
 
-    def require_real(self, factors: list[tuple[Polynomial, int]], of_root: bool = True) -> None:
+    def require_real(self, factors: list[tuple[Polynomial, int]]) -> None:
         """The radicands of all generators in these factors of a root are not negative.
 
         One of unknown sign is not, because it is a simple factor of a radicand in the statement.
@@ -416,7 +414,7 @@ class Field:
         for i in doubtful:
             if self.kinds[i] == "abs" or self.sign(self.squares[i]) > 0:
                 self.real.add(i)
-        for i in doubtful - self.real if of_root else ():
+        for i in doubtful - self.real:
             others = [p for p, n in factors if (p, n) != (self.generators[i], 1)]
             if len(others) == len(factors) - 1 and self.roots_in(others) <= self.real:
                 self.real.add(i)
@@ -450,7 +448,7 @@ class Field:
         """Node k is not negative; without factors of known sign, it is a product that is not."""
         require(self.value(k).num != 0, "it is zero that is not negative")
         require(constant * self.product(factors) == self.value(k), "a guard has other factors")
-        self.require_real(factors, of_root=False)
+        self.require_real(factors)
         odd = [p for p, n in factors if n % 2]
         known = [*filter(None, map(self.sign, [constant.num, *odd]))]
         rest = prod((p for p in odd if not self.sign(p)), start=prod(known) * self.number(1).num)

@@ -236,12 +236,32 @@ def certificate(nodes: list[Any], **content: Any) -> Document:
     return {"format": verify.FORMAT, "nodes": nodes, "certificates": [one]}
 
 
-X = ["name", "x", 0]
+X, Y = ["name", "x", 0], ["name", "y", 0]
 ROOT_PLUS_X = [X, "2", ["^", 0, 2], ["sqrt", 2], ["+", 3, 0]]
 COSINE = [["name", "theta", 0], X, "-1", ["cos", 0], ["*", 2, 1], ["+", 3, 4]]
 FORGERIES: dict[str, Document] = {
     "sqrt(x**2) = -x, because a root has the wrong sign": certificate(
         ROOT_PLUS_X, zero=[4], generators=[["name", 0]], roots=[[[[["-1", 0, 1]], 1]]]
+    ),
+    "sqrt(x**2) = x, because x has no sign": certificate(
+        [X, "-1", ["^", 0, 2], ["sqrt", 2], ["*", 1, 0], ["+", 3, 4]],
+        zero=[5],
+        generators=[["name", 0]],
+        roots=[[[[["1", 0, 1]], 1]]],
+    ),
+    "sqrt(x**2) = -x, because x is assumed not to be negative": certificate(
+        ROOT_PLUS_X,
+        zero=[4],
+        generators=[["name", 0]],
+        roots=[[[[["-1", 0, 1]], 1]]],
+        assumed=[[0, "1", [[[["1", 0, 1]], 1]]]],
+    ),
+    "abs(x*y) = x*y, because x**2*y is assumed not to be negative": certificate(
+        [X, Y, ["^", 0, 2], ["*", 2, 1], ["*", 0, 1], ["abs", 4], "-1", ["*", 6, 4], ["+", 5, 7]],
+        zero=[8],
+        generators=[["name", 0], ["name", 1]],
+        roots=[[[[["1", 0, 1, 1, 1]], 1]]],
+        assumed=[[3, "1", [[[["1", 0, 1]], 2], [[["1", 1, 1]], 1]]]],
     ),
     "sqrt(x**2) = -x, because another root is imaginary": certificate(
         ROOT_PLUS_X,

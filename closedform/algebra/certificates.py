@@ -149,7 +149,13 @@ class Record:
         except TooLargeError:
             self.missing["counts of solutions whose basis is too large"] += 1
             return None
-        return self._add(kind="count", **content, steps=steps, basis=basis, count=staircase(leads))
+        return self._add(
+            kind="count",
+            **content,
+            steps=steps,
+            basis=basis,
+            count=staircase(leads, len(field.unknowns)),
+        )
 
     def inverse(
         self, function: str, branches: int, counts: Sequence[tuple[int | None, int]], each: int

@@ -48,8 +48,8 @@ endef
 export LOCK INSTALL
 LOCKED = mkdir -p build && $(PYTHON) -c "$$LOCK" build/make.lock
 
-.PHONY: all native test check lint types regenerated warnings analysed \
-	portability $(COMPILERS) format figures pdf bench fuzz accuracy clean distclean help
+.PHONY: all native test check verify lint types regenerated warnings analysed \
+	portability $(COMPILERS) format figures mutations pdf bench fuzz accuracy clean distclean help
 .DELETE_ON_ERROR:
 
 all: native  ## derive, prove, generate and build; prints a line for each robot (the default)
@@ -69,6 +69,9 @@ native: build/derived.txt
 
 test: all  ## run the tests on all cores; ARGS="-k NAME" selects some
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
+
+verify: all  ## check the certificates of all proofs, without the prover
+	@$(BIN)/closedform verify
 
 # Nothing here may depend on all: it would overwrite the differences that check has to find.
 check: lint types regenerated warnings  ## lint, types, C warnings; whether generated/ is up to date
@@ -120,6 +123,9 @@ portability: all  ## try installed compilers, processor emulators and Pythons; A
 format: .venv/installed.stamp  ## format the Python that is written by hand
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+
+mutations: native  ## change every piece of every claim and judge it again; takes half an hour
+	CLOSEDFORM_MUTATIONS=all $(BIN)/python -m pytest tests/test_mutations.py
 
 figures: native  ## draw every figure of every mechanism, in build/figures
 	$(BIN)/closedform figures -o build/figures

@@ -12,6 +12,7 @@ from itertools import combinations
 
 import sympy as sp
 
+from closedform.algebra.certificates import lack, open_record
 from closedform.algebra.counterexample import Counterexample, find_counterexample
 from closedform.algebra.tower import (
     Expr,
@@ -162,12 +163,15 @@ def decide(
     except Undecided as reason:
         result, obstacle = None, str(reason)
     if result:
+        if record := open_record():
+            record.identity(problem, result.assumptions, result._tower)
         verdict = "proved under assumption" if result.assumptions else "proved"
         return Decision(True, verdict, result.assumptions, result, None)
     witness = find_counterexample(
         sp.Matrix(entries_of(problem)), conditions=[g >= 0 for g in guards], seed=seed, sides=sides
     )
     if witness:
+        lack("refutations by a counterexample")
         return Decision(False, "refuted", tuple(guards), result, witness)
     if result is not None:
         entry = result.nonzero[0]

@@ -22,6 +22,8 @@ from sympy.polys.groebnertools import groebner
 from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
+from closedform.algebra.certificates import System, open_record
+
 Expr: TypeAlias = Any  # SymPy's annotations are partial
 Monomial: TypeAlias = tuple[int, ...]
 Method: TypeAlias = Literal["generic", "specialised"]
@@ -44,6 +46,8 @@ class SolutionCount:
     method: Method
     """`generic`: proved over the function field; `specialised`: equal at all `points`."""
     points: tuple[dict[Symbol, Expr], ...] = ()
+    certificate: int | None = None
+    """The number of its certificate, if one was recorded."""
 
     def __int__(self) -> int:
         return self.count
@@ -68,9 +72,16 @@ def count_solutions(
 
     Raises `InfinitelyManyError` if there are infinitely many solutions.
     """
-    system = _System(list(equations), unknowns, target_substitution or {}, list(saturate))
+    equations, saturate, given = list(equations), list(saturate), target_substitution or {}
+    system = _System(equations, unknowns, given, saturate)
     draw = random.Random(seed)
+    record, written = open_record(), None
     if method == "generic":
+        if record:
+            stated = {s for e in [*equations, *saturate] for s in sp.sympify(e).free_symbols}
+            given = {**given, **system.merged(stated - {*given, *unknowns})}
+            problem = System(equations, saturate, given, system.angles, system.plain)
+            written = record.count(problem)
         total, distinct = 1, True
         for variables, polynomials in system.blocks():
             free = {s for p in polynomials for s in p.free_symbols} - set(variables)
@@ -80,7 +91,9 @@ def count_solutions(
             monomials = _standard_monomials(basis, ring)
             alone = _are_distinct(_specialised(basis, parameters, draw), monomials)
             total, distinct = total * len(monomials), distinct and alone
-        return SolutionCount(total, distinct, "generic")
+        if record and written is not None and record.certificates[written]["count"] != total:
+            raise RuntimeError(f"{total} solutions are counted, but their certificate differs")
+        return SolutionCount(total, distinct, "generic", certificate=written)
 
     ring = PolyRing(system.variables, QQ, grevlex)
     points, counts, distinct = [], set(), True
@@ -123,13 +136,18 @@ class _System:
     ) -> None:
         self._circles: dict[Symbol, tuple[Symbol, Symbol]] = {}
         given = [sp.sympify(e, strict=True).subs(substitution) for e in [*equations, *saturate]]
-        unknowns, given = _absolute_angles(unknowns, given)
+        unknowns, given, changes = _absolute_angles(unknowns, given)
         self._unknowns = set(unknowns)
         algebraic = [self._without_angles(e) for e in given]
         fractions = [sp.fraction(sp.together(e)) for e in algebraic]
         plain = [u for u in unknowns if any(u in e.free_symbols for e in algebraic)]
         circles = sorted(self._circles.values(), key=lambda pair: _rank(pair, algebraic))
         self.variables = [v for pair in circles for v in pair] + plain
+        self.plain = plain
+        order = [next(a for a, c in self._circles.items() if c is pair) for pair in circles]
+        self.angles = {
+            angle: [int(sum_.coeff(a)) for a in order] for angle, sum_ in changes.items()
+        }
         missing = self._unknowns - set(plain) - set(self._circles)
         if missing:
             raise InfinitelyManyError(f"{sorted(missing, key=str)} not in the equations: free")
@@ -150,14 +168,24 @@ class _System:
 
         The system at `(a, b)` is the system at `(a + b, 0)`; fewer parameters are much faster.
         """
+        self._merged: dict[Symbol, Expr] = {}
         free = {s for p in self.polynomials for s in p.free_symbols}
         for a, b in combinations(sorted(free - set(self.variables), key=str), 2):
             slopes = [(p.diff(a), p.diff(b)) for p in self.polynomials]
-            if any(sp.expand(x - y) != 0 for x, y in slopes) and any(
-                sp.expand(x + y) != 0 for x, y in slopes
-            ):
-                continue
-            self.polynomials = [p.subs(b, 0) for p in self.polynomials]
+            for sign in (1, -1):
+                if all(sp.expand(x - sign * y) == 0 for x, y in slopes):
+                    self.polynomials = [p.subs(b, 0) for p in self.polynomials]
+                    if any(x != 0 for x, _ in slopes):
+                        self._merged[a] = self._merged.get(a, sp.Dummy(f"{a}'")) - sign * b
+                    break
+
+    def merged(self, stated: set[Symbol]) -> dict[Symbol, Expr]:
+        """One symbol of each merged sum, as the sum, which is a new parameter, less the others."""
+        return {
+            a: e
+            for a, e in self._merged.items()
+            if all(s in stated or isinstance(s, sp.Dummy) for s in {a} | e.free_symbols)
+        }
 
     def blocks(self) -> list[tuple[list[Symbol], list[Expr]]]:
         """Parts without common variables: their solutions combine freely, so counts multiply."""
@@ -196,7 +224,7 @@ def _rank(pair: tuple[Symbol, Symbol], equations: Sequence[Expr]) -> tuple[int, 
 
 def _absolute_angles(
     unknowns: Sequence[Symbol], equations: Sequence[Expr]
-) -> tuple[list[Symbol], list[Expr]]:
+) -> tuple[list[Symbol], list[Expr], dict[Symbol, Expr]]:
     """New unknown angles, such as `theta1 + theta2` for `theta2`, if that lowers the degree.
 
     The change is invertible over the integers, so it keeps the number of solutions. It is chosen
@@ -220,7 +248,7 @@ def _absolute_angles(
     fresh = [sp.Dummy(f"angle{i}", real=True) for i in range(len(angles))]
     known = dict(zip(angles, best * sp.Matrix(fresh), strict=True)) if angles else {}
     rest = [u for u in unknowns if u not in angles]
-    return fresh + rest, [e.xreplace(known) for e in equations]
+    return fresh + rest, [e.xreplace(known) for e in equations], known
 
 
 def _function_field(parameters: Sequence[Symbol]) -> Any:

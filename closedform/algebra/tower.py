@@ -31,6 +31,8 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from sympy import Rational
 from sympy.core.function import AppliedUndef
 
+from closedform.algebra.trace import Trace
+
 Expr: TypeAlias = Any  # SymPy's annotations are partial
 Problem: TypeAlias = "Expr | sp.MatrixBase | Sequence[Expr]"
 
@@ -87,6 +89,7 @@ class Tower:
         self._licences: dict[frozenset[str], tuple[int, Expr]] = {}
         self._denominators: dict[str, fmpq_mpoly] = {}
         self.assumptions: dict[Expr, None] = {}
+        self.trace = Trace()
         self.peak = 0
         self.zero, self.one = self._constant(0), self._constant(1)
         self._divisor = _angle_divisors([*problem, *nonnegative])
@@ -118,8 +121,8 @@ class Tower:
             x = self.convert(e.args[0])
             return self._sqrt(self._mul(x, x))
         if isinstance(e, _OPAQUE):
-            sign = 1 if e.is_nonnegative else -1 if e.is_nonpositive else 0
-            return self._polynomial(self._generator(e, sign))
+            self.trace.generators.append(("name", e))
+            return self._polynomial(self._generator(e, sign_of(e)))
         raise Undecided(
             f"{shortened(e)} has no algebraic normal form ({type(e).__name__}); "
             "state the case (its sign, its branch) as an assumption and treat each case separately"
@@ -244,6 +247,7 @@ class Tower:
             return self._inverse_rotation(atom, q)
         base = atom / self._divisor[atom]
         if base not in self._rotations:
+            self.trace.generators.append(("angle", atom, self._divisor[atom]))
             c = self._generator(sp.cos(base), 0)
             cosine = self._unused
             s = self._quadratic(sp.sin(base), 1 - c * c, 0)
@@ -252,6 +256,7 @@ class Tower:
         return self._turned(self._rotations[base], int(q * self._divisor[atom]))
 
     def _constant_rotation(self, q: Rational) -> Rotation:
+        self.trace.unwritable = "identities with a part of pi in an angle"
         c, s = sp.cos(q * sp.pi), sp.sin(q * sp.pi)
         if c.has(*_TRIGONOMETRIC) or s.has(*_TRIGONOMETRIC):
             raise Undecided(f"cos({q}*pi) has no known square-root form")
@@ -280,6 +285,7 @@ class Tower:
 
     def _halved(self, a: Rotation) -> Rotation:
         """Half of an angle in (-pi, pi); its cosine is therefore positive."""
+        self.trace.unwritable = "identities with half the value of an inverse function"
         half = self._constant(fmpq(1, 2))
         c = self._sqrt(self._mul(self._add(self.one, a.cos), half))
         return Rotation(c, self._mul(self._mul(a.sin, half), self._inverse(c)))
@@ -301,7 +307,7 @@ class Tower:
         if a.num.is_zero():
             return self.zero
         constant, powers = self._factored(a)
-        result, rest = self.one, dict[str, fmpq_mpoly]()
+        parts, rest = list[tuple[Fraction, int]](), dict[str, fmpq_mpoly]()
         for f, power in powers:
             half, odd = divmod(power, 2)
             sign = self._known_sign(f)
@@ -309,37 +315,42 @@ class Tower:
             constant *= sign if sign and odd else 1
             plain = sign or half % 2 == 0
             modulus = self._polynomial(positive) if plain else self._modulus(f)
-            result = self._mul(result, self._power(modulus, half))
+            parts.append((modulus, half))
             if odd and sign:
-                result = self._mul(result, self._root(positive))
+                parts.append((self._root(positive), 1))
             elif odd:
                 rest[str(f)] = f
         for group, sign in self._licensed_groups(rest):
             constant *= sign
-            result = self._mul(result, self._root(group * sign))
+            parts.append((self._root(group * sign), 1))
         remaining = reduce(lambda p, f: p * f, rest.values(), self.one.num)
         if not rest and constant < 0:
             raise Undecided("a square root of a negative quantity: the expression is not real")
         if rest:
-            result = self._mul(result, self._root(remaining if constant > 0 else -remaining))
-        return self._mul(result, self._rational_root(abs(constant)))
+            parts.append((self._root(remaining if constant > 0 else -remaining), 1))
+        parts += self._rational_root(abs(constant))
+        self.trace.roots.append([(part.num, power) for part, power in parts if power])
+        return reduce(self._mul, (self._power(part, power) for part, power in parts))
 
-    def _rational_root(self, value: fmpq) -> Fraction:
-        result = self._constant(fmpq(1, value.q))
+    def _rational_root(self, value: fmpq) -> Iterator[tuple[Fraction, int]]:
+        yield self._constant(fmpq(1, value.q)), 1
         for prime, power in (value.p * value.q).factor():
-            result = self._mul(result, self._constant(int(prime) ** (power // 2)))
+            yield self._constant(int(prime) ** (power // 2)), 1
             if power % 2:
-                result = self._mul(result, self._root(self._ctx.constant(prime)))
-        return result
+                yield self._root(self._ctx.constant(prime)), 1
 
     def _root(self, radicand: fmpq_mpoly) -> Fraction:
-        return self._nonnegative(sp.sqrt(self.expression(radicand)), radicand)
+        meaning = sp.sqrt(self.expression(radicand))
+        return self._nonnegative(meaning, radicand, ("root", self._reduced(radicand)))
 
     def _modulus(self, f: fmpq_mpoly) -> Fraction:
-        return self._nonnegative(sp.Abs(self.expression(f)), f * f)
+        return self._nonnegative(sp.Abs(self.expression(f)), f * f, ("abs", f))
 
-    def _nonnegative(self, meaning: Expr, square: fmpq_mpoly) -> Fraction:
+    def _nonnegative(
+        self, meaning: Expr, square: fmpq_mpoly, declared: tuple[str, fmpq_mpoly]
+    ) -> Fraction:
         if meaning not in self._memo:
+            self.trace.generators.append(declared)
             root = self._quadratic(meaning, self._reduced(square), 1)
             self._memo[meaning] = self._polynomial(root)
         return self._memo[meaning]
@@ -441,6 +452,7 @@ class Tower:
         if value.num.is_zero():
             return
         constant, powers = self._factored(value)
+        self.trace.guards[guard] = constant, powers
         sign, unknown = 1 if constant > 0 else -1, []
         for f, power in powers:
             if power % 2:
@@ -482,12 +494,16 @@ class Tower:
     def _flipped(self, slot: int) -> list[fmpq_mpoly]:
         return [-g if i == slot else g for i, g in enumerate(self._gens)]
 
-    def denominators(self) -> tuple[Expr, ...]:
-        """The irreducible expressions that are assumed not to vanish."""
+    def inverted(self) -> list[fmpq_mpoly]:
+        """The irreducible factors of all denominators."""
         factors: dict[str, fmpq_mpoly] = {}
         for den in self._denominators.values():
             factors |= {str(f): f for f, _ in den.factor()[1]}
-        factored = (self.expression(f) for f in factors.values())
+        return list(factors.values())
+
+    def denominators(self) -> tuple[Expr, ...]:
+        """The irreducible expressions that are assumed not to vanish."""
+        factored = map(self.expression, self.inverted())
         return tuple(f for f in factored if f.free_symbols and not f.is_positive)
 
 
@@ -502,6 +518,11 @@ def converted(problem: Problem, nonnegative: Iterable[Expr]) -> tuple[Tower, lis
             return tower, [tower.convert(e) for e in entries]
         except _Full:
             size *= 2
+
+
+def sign_of(e: Expr) -> int:
+    """1 or -1 if the assumptions on an expression say that it is not negative or not positive."""
+    return 1 if e.is_nonnegative else -1 if e.is_nonpositive else 0
 
 
 def guard(g: Expr) -> Expr:

@@ -1,4 +1,4 @@
-"""The command line: list, show, derive, check, new, plot, figures, claims, errata.
+"""The command line: one function for each command, and the options of each.
 
 Results go to stdout, progress and errors to stderr.  The exit code is 0 on success, 1 if a proof or
 a comparison failed, and 2 if the command was called wrongly.
@@ -121,8 +121,11 @@ def parser() -> argparse.ArgumentParser:
         help="with -o, do not compare the printed code with the symbolic source",
     )
     check = command("check", check_command)
-    for added in (derive, check):
+    verify = command("verify", verify_command)
+    verify.add_argument("names", metavar="NAME", nargs="*", help="default: all derivations")
+    for added in (derive, check, verify):
         added.add_argument("-j", "--jobs", type=_positive, metavar="N", help="number of processes")
+    for added in (derive, check):
         added.add_argument("--fresh", action="store_true", help="ignore stored proofs")
     new = command("new", new_command)
     new.add_argument("name", metavar="NAME", help="name of the mechanism and of the script")
@@ -272,6 +275,22 @@ def check_command(options: argparse.Namespace) -> None:
         console.write("\n".join(differences) + "\n")
         raise CommandError(f"{root} differs from what the derivations print; run make")
     console.write(f"{len(printed)} generated files are up to date\n")
+
+
+def verify_command(options: argparse.Namespace) -> None:
+    """Check the certificates of the proofs, by polynomial arithmetic and without the prover."""
+    from closedform.pipeline.verified import verify_all
+
+    chosen, store = _find(options.names), pipeline.default_store()
+    if store.folder is None:
+        raise CommandError("an installed package keeps no certificates; use a checkout")
+    _require_extra()
+    with Progress() as progress:
+        results = verify_all(chosen, store, options.jobs or pipeline.default_jobs(), progress)
+    width = max(len(result.name) for result in results)
+    console.write("".join(f"{result.line(width)}\n" for result in results))
+    if failed := [result.name for result in results if result.failure]:
+        raise CommandError(f"not verified: {', '.join(failed)}")
 
 
 def new_command(options: argparse.Namespace) -> None:

@@ -30,6 +30,7 @@ from closedform.pipeline.imports import package, sources_of
 from closedform.pipeline.workers import each
 
 if TYPE_CHECKING:
+    from closedform.algebra.certificates import Record
     from closedform.emit.pages import Share
     from closedform.model.derivation import Derivation
     from closedform.proof.prove import Proof
@@ -225,11 +226,14 @@ def _located(error: Exception, path: Path) -> str:
     return f"{place}{type(error).__name__}: {error}"
 
 
-def _proved(derivation: Derivation, report: Report) -> Proof:
+def _proved(derivation: Derivation, report: Report) -> tuple[Proof, Record]:
+    from closedform.algebra.certificates import recording
     from closedform.proof.prove import prove
 
     try:
-        return prove(derivation, lambda what: report(derivation.name, f"proving {what}"))
+        with recording() as record:
+            proof = prove(derivation, lambda what: report(derivation.name, f"proving {what}"))
+        return proof, record
     except (ValueError, TypeError, ArithmeticError, NotImplementedError) as error:
         message = str(error).removeprefix(derivation.name).lstrip(",.: ")
         raise DerivationError(derivation.name, f"not proved: {message}") from error
@@ -239,7 +243,10 @@ def _proved(derivation: Derivation, report: Report) -> Proof:
 
 
 class Store:
-    """Proofs on disk, each with a digest of everything that it depends on."""
+    """Proofs on disk, each with a digest of everything that it depends on, and certificates.
+
+    The certificates are in a folder next to that of the proofs.
+    """
 
     def __init__(self, folder: Path | None):
         self.folder = folder
@@ -249,21 +256,38 @@ class Store:
         from closedform.proof.prove import Proof
 
         try:
-            data = json.loads(self._path(source).read_text("utf-8"))
-            if data["digest"] == (mark or digest(source)):
+            data = self.read(source)
+            certified = hashlib.sha256(self.certificates(source).read_bytes()).hexdigest()
+            if data["digest"] == (mark or digest(source)) and data["certificates"] == certified:
                 return Proof.from_dict(data["proof"]), float(data["seconds"])
         except (OSError, ValueError, KeyError, TypeError):
             pass
         return None
 
-    def put(self, source: Source, mark: str, proof: Proof, seconds: float) -> None:
+    def put(self, source: Source, mark: str, proof: Proof, record: Record, seconds: float) -> None:
         """Keep a proof.  If the disk is read-only, the script is proved again the next time.
 
         ``mark`` is the digest from before the proof, because a script may be edited meanwhile.
         """
-        data = {"digest": mark, "seconds": seconds, "proof": proof.as_dict()}
+        certificates = record.text(source.name, mark).encode()
+        data = {
+            "digest": mark,
+            "certificates": hashlib.sha256(certificates).hexdigest(),
+            "seconds": seconds,
+            "proof": proof.as_dict(),
+        }
         with contextlib.suppress(OSError):
+            replace(self.certificates(source), certificates)
             replace(self._path(source), (json.dumps(data, indent=1) + "\n").encode())
+
+    def read(self, source: Source) -> dict[str, Any]:
+        """What is stored of a proof, even if something has changed since."""
+        data: dict[str, Any] = json.loads(self._path(source).read_text("utf-8"))
+        return data
+
+    def certificates(self, source: Source) -> Path:
+        """The file with the certificates of a proof."""
+        return self._path(source).parent.with_name("certificates") / f"{source.name}.json"
 
     def _path(self, source: Source) -> Path:
         if self.folder is None:
@@ -272,7 +296,7 @@ class Store:
 
 
 def default_store() -> Store:
-    """The store in ``build/proofs`` of a checkout; an installed package keeps nothing."""
+    """The store in ``build/`` of a checkout; an installed package keeps nothing."""
     root = checkout()
     return Store(root / "build" / "proofs" if root else None)
 
@@ -312,9 +336,9 @@ def print_robot(
         proof, seconds = kept
     else:
         report(source.name, "proving")
-        proof = _proved(derivation, report)
+        proof, record = _proved(derivation, report)
         seconds = time.perf_counter() - start
-        store.put(source, mark, proof, seconds)
+        store.put(source, mark, proof, record, seconds)
     report(source.name, "generating")
     try:
         printed = pages(derivation, proof, backends)

@@ -24,8 +24,9 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.algebra import certificates
 from closedform.algebra.balls import Evaluator
-from closedform.algebra.solutions import InfinitelyManyError, count_solutions
+from closedform.algebra.solutions import InfinitelyManyError, SolutionCount, count_solutions
 from closedform.model.derivation import Continuum, Derivation, Inverse, Link
 from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
 from closedform.proof.require import ProofError, require
@@ -39,9 +40,11 @@ def prove_chain(derivation: Derivation, inverse: Inverse) -> tuple[int, tuple[Ex
     where = f"{derivation.name}.{function.name}"
     assumptions: dict[Expr, None] = {}
     count, cases = 1, 0
+    counts = []
     for link in inverse.chain:
         assumptions |= dict.fromkeys(_lemma_sound(link, where))
-        _lemma_complete(link, where)
+        counted = _lemma_complete(link, where)
+        counts.append((counted.certificate, link.lemma.excluded))
         count *= link.lemma.branches
         cases += len(link.degenerate)
     graph = Graph(derivation, inverse, function)
@@ -52,6 +55,8 @@ def prove_chain(derivation: Derivation, inverse: Inverse) -> tuple[int, tuple[Ex
         _flag_holds(continuum, function, graph, where)
     _free_choices_are_units(inverse, where)
     _determines_target(inverse, graph, where)
+    branches = len(function.branches) if function.branches else 1
+    certificates.add_inverse(function.name, branches, counts)
     return count, tuple(assumptions), cases
 
 
@@ -139,10 +144,15 @@ def _names(solution: Mapping[Expr, Expr]) -> str:
     return ", ".join(map(str, solution))
 
 
-_counted: dict[Any, int] = {}
+_counted: dict[Any, SolutionCount] = {}
 
 
-def _lemma_complete(link: Link, where: str) -> None:
+def forget_counts() -> None:
+    """Count everything anew, so that the certificates of a mechanism are complete."""
+    _counted.clear()
+
+
+def _lemma_complete(link: Link, where: str) -> SolutionCount:
     lemma = link.lemma
     key = (lemma.equations, tuple(lemma.solution), tuple(link.given.items()))
     try:
@@ -150,15 +160,17 @@ def _lemma_complete(link: Link, where: str) -> None:
             given = {s: e for s, e in link.given.items() if any(q.has(s) for q in lemma.equations)}
             _counted[key] = count_solutions(
                 lemma.equations, tuple(lemma.solution), target_substitution=given
-            ).count
+            )
     except InfinitelyManyError as error:
         raise ProofError(f"{where}: the lemma {lemma.name!r}: {error}") from error
-    if _counted[key] != lemma.branches + lemma.excluded:
+    counted = _counted[key]
+    if counted.count != lemma.branches + lemma.excluded:
         raise ProofError(
             f"{where}: the equations of the lemma {lemma.name!r} for {_names(lemma.solution)} have "
-            f"{_counted[key]} solutions, but {lemma.branches} branches are given; it is applied to "
+            f"{counted.count} solutions, but {lemma.branches} branches are given; it is applied to "
             f"equations of another shape"
         )
+    return counted
 
 
 class Graph:
@@ -229,6 +241,7 @@ def _not_degenerate(link: Link, graph: Graph, where: str) -> None:
             continue
         value = _without_signs(graph(statement.value))
         point = _random_posture(draw, list(value.free_symbols))
+        certificates.regular([[value**2]], point, "quantities that differ from zero at a posture")
         (ball,) = Evaluator(list(point), [value])(list(point.values()))
         if ball.contains(0):
             raise ProofError(
@@ -283,6 +296,7 @@ def _determines_target(inverse: Inverse, graph: Graph, where: str) -> None:
         rows.append(slopes)
     entries = [slope for row in rows for slope in row]
     point = _random_posture(draw, sorted({s for e in entries for s in e.free_symbols}, key=str))
+    certificates.regular(rows, point, "ranks of a matrix at a posture")
     balls = Evaluator(list(point), entries)(list(point.values()))
     n = len(columns)
     rank = _certain_rank([balls[i : i + n] for i in range(0, len(balls), n)])

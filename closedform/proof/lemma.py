@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import sympy as sp
 
-from closedform.algebra.solutions import count_solutions
+from closedform.algebra.solutions import SolutionCount, count_solutions
 from closedform.model.functions import Array, Bound, Function, Let, Program, substitute
 from closedform.model.lemma import Lemma
 from closedform.proof.require import ProofError, require
@@ -14,12 +14,12 @@ from closedform.proof.require import ProofError, require
 
 def prove_lemma(
     lemma: Lemma, program: Program, given: Mapping[sp.Symbol, sp.Expr] | None = None
-) -> None:
+) -> SolutionCount:
     """Prove a lemma for the coefficients to which it is applied: symbols, so for all values.
 
     Its solutions satisfy its equations for both signs, its names have the values in ``means``, and
     the equations have no other solutions.  ``given`` writes dependent coefficients in free
-    parameters.
+    parameters.  The result is the count of the solutions.
     """
     given = dict(given or {})
     outputs = (*lemma.solution.values(), *lemma.means)
@@ -39,7 +39,10 @@ def prove_lemma(
         bounds = tuple(substitute(b, given) for b in function.bounds(signs))
         fault = f"what the lemma {lemma.name!r} gives does not satisfy its equations"
         require(substitute(vanishing, given), bounds, fault)
-    count = count_solutions(lemma.equations, tuple(lemma.solution), target_substitution=given).count
-    if count != lemma.branches + lemma.excluded:
+    counted = count_solutions(lemma.equations, tuple(lemma.solution), target_substitution=given)
+    if counted.count != lemma.branches + lemma.excluded:
         given_count = f"{lemma.branches + lemma.excluded} are accounted for"
-        raise ProofError(f"the lemma {lemma.name!r} has {count} solutions, but {given_count}")
+        raise ProofError(
+            f"the lemma {lemma.name!r} has {counted.count} solutions, but {given_count}"
+        )
+    return counted

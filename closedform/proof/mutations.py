@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from zlib import crc32
 
 from closedform.model.claims import HOLDS, NUMBERS, PIECE, Claim
 from closedform.model.notation import NotationError
@@ -41,10 +43,13 @@ class Outcome:
     """Whether the text holds and the printed one does not, or the reverse."""
 
 
-def outcomes(claim: Claim) -> Iterator[Outcome]:
-    """The verdict of each changed text; a text that the notation cannot read is left out."""
+def outcomes(claim: Claim, limit: int | None = None) -> Iterator[Outcome]:
+    """The verdict of each changed text, or of at most ``limit`` of them.
+
+    A text that the notation cannot read is left out.
+    """
     held = judged(claim, claim.printed).kind in HOLDS
-    for mutation in mutations(claim):
+    for mutation in _some(list(mutations(claim)), limit, claim.label):
         try:
             kind = judged(claim, mutation.text).kind
         except NotationError:
@@ -53,6 +58,19 @@ def outcomes(claim: Claim) -> Iterator[Outcome]:
             yield Outcome(mutation, "", f"{type(error).__name__}: {error}")
         else:
             yield Outcome(mutation, kind, changes=(kind in HOLDS) != held)
+
+
+def _some(found: list[Mutation], limit: int | None, label: str) -> list[Mutation]:
+    """At most ``limit`` changes, of as many kinds as possible; the label says where to begin."""
+    if limit is None or len(found) <= limit:
+        return found
+    start = crc32(label.encode()) % len(found)
+    seen: Counter[str] = Counter()
+    ranked = []
+    for place, mutation in enumerate([*found[start:], *found[:start]]):
+        seen[mutation.kind] += 1
+        ranked.append((seen[mutation.kind], place, mutation))
+    return [mutation for _, _, mutation in sorted(ranked, key=lambda r: r[:2])[:limit]]
 
 
 def mutations(claim: Claim) -> Iterator[Mutation]:

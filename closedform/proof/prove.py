@@ -7,6 +7,7 @@ a claim that does not hold gets its verdict.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
@@ -14,13 +15,15 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.algebra import certificates
 from closedform.algebra.normal_form import Undecided
 from closedform.algebra.shapes import ShapeError, require_shape
-from closedform.algebra.solutions import InfinitelyManyError, count_solutions
-from closedform.model.claims import VERDICTS
+from closedform.algebra.solutions import InfinitelyManyError, SolutionCount, count_solutions
+from closedform.model.claims import NOT_DECIDABLE, VERDICTS
 from closedform.model.derivation import Continuum, Derivation, Inverse
 from closedform.model.functions import Function, real, substitute
-from closedform.proof.chain import prove_chain
+from closedform.proof.chain import forget_counts, prove_chain
+from closedform.proof.checks.solutions import forget_solutions
 from closedform.proof.claims import (
     ClaimResult,
     ErratumResult,
@@ -30,7 +33,7 @@ from closedform.proof.claims import (
     require_shown,
 )
 from closedform.proof.reduction import prove_reduction
-from closedform.proof.require import ProofError, require
+from closedform.proof.require import ProofError, forget_decisions, require
 from closedform.proof.witness import uncovered
 
 Progress = Callable[[str], None]
@@ -124,20 +127,29 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
             f"{derivation.name}: the script gives an inverse, but says that there is none, because "
             f"{derivation.without_inverse}: remove the call of d.no_inverse"
         )
+    forget_decisions()
+    forget_counts()
+    forget_solutions()
+
+    def begin(what: str) -> None:
+        progress(what)
+        certificates.place(what)
+
     identities = 0
     for step in derivation.steps:
-        progress(f"step: {step.title}")
+        begin(f"step: {step.title}")
         for difference in step.vanishes:
             fault = f"{derivation.name}, step {step.title!r}: the sides of an equation differ"
             require(difference, step.nonnegative, fault)
             identities += 1
     inverses = []
     for inverse in derivation.inverses:
-        progress(f"inverse: {inverse.function}")
+        begin(f"inverse: {inverse.function}")
         inverses.append(prove_inverse(derivation, inverse))
     claims = []
     for claim in derivation.claims:
-        progress(f"claim: {claim.label}")
+        begin(f"claim: {claim.label}")
+        before = certificates.proofs()
         try:
             claims.append(judge(claim, derivation.errata))
         except (Undecided, ValueError) as error:
@@ -145,6 +157,8 @@ def prove(derivation: Derivation, progress: Progress = lambda _: None) -> Proof:
         except Exception as error:  # a check may call anything that its author wrote
             what = f"{type(error).__name__}: {error}"
             raise ProofError(f"{derivation.name}, claim {claim.label}: {what}") from error
+        if certificates.proofs() == before and claims[-1].kind != NOT_DECIDABLE:
+            certificates.lack("claims decided by enumeration or inequalities")
     require_shown(derivation.errata, claims)
     return Proof(
         derivation.name,
@@ -169,12 +183,15 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     for continuum in inverse.continua:
         _prove_continuum(derivation, function, inverse, continuum)
     lemmas = _prove_steps_follow(derivation, inverse)
-    count, method = _count(inverse)
+    counts, method = _count(inverse)
+    count = math.prod(c.count for c in counts)
     how = "step by step" if method == "step by step" else "from a Groebner basis"
     found = f"the system has {count} solutions (counted {how})"
+    branches = _require_all_branches(derivation, function, inverse, count, found)
+    certificates.add_inverse(function.name, branches, [(c.certificate, 0) for c in counts])
     return InverseResult(
         function.name,
-        _require_all_branches(derivation, function, inverse, count, found),
+        branches,
         len(inverse.continua),
         count,
         method,
@@ -304,7 +321,7 @@ def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, 
     return tuple(dict.fromkeys(lemmas))
 
 
-def _count(inverse: Inverse) -> tuple[int, str]:
+def _count(inverse: Inverse) -> tuple[list[SolutionCount], str]:
     if inverse.stages:
         return _count_in_stages(inverse), "step by step"
     given = _targets(inverse)
@@ -328,17 +345,17 @@ def _count(inverse: Inverse) -> tuple[int, str]:
         counted = count_solutions(equations, unknowns)
     except InfinitelyManyError as error:
         raise ProofError(f"{inverse.function}: {error}") from error
-    return counted.count, counted.method
+    return [counted], counted.method
 
 
-def _count_in_stages(inverse: Inverse) -> int:
-    """The product of the counts, each over the field of the inputs and the earlier unknowns."""
+def _count_in_stages(inverse: Inverse) -> list[SolutionCount]:
+    """The counts, which multiply, each over the field of the inputs and the earlier unknowns."""
     where = f"{inverse.function}: the stages of the count"
     used = [i for stage in inverse.stages for i in stage.equations]
     solved = [u for stage in inverse.stages for u in stage.unknowns]
     if sorted(used) != list(range(len(inverse.equations))) or set(solved) != set(inverse.unknowns):
         raise ProofError(f"{where} do not take every equation and every unknown exactly once")
-    count, before = 1, 0
+    counts, before = list[SolutionCount](), 0
     for k, stage in enumerate(inverse.stages):
         equations = [substitute(inverse.equations[i], stage.given) for i in stage.equations]
         depends = [s for s in inverse.stages[:k] if any(e.has(*s.unknowns) for e in equations)]
@@ -353,9 +370,8 @@ def _count_in_stages(inverse: Inverse) -> int:
         if constant:
             require(sp.Matrix(constant), (), f"{where}: an equation without unknowns does not hold")
         try:
-            count *= count_solutions(
-                [e for e in equations if e.has(*stage.unknowns)], stage.unknowns
-            ).count
+            turning = [e for e in equations if e.has(*stage.unknowns)]
+            counts.append(count_solutions(turning, stage.unknowns))
         except InfinitelyManyError as error:
             raise ProofError(f"{where}: {error}") from error
-    return count
+    return counts

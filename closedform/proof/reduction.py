@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 import sympy as sp
 
+from closedform.algebra import certificates
 from closedform.algebra.normal_form import normal
 from closedform.model.derivation import Derivation, Inverse, Reduction
 from closedform.model.functions import Bound, Function, Let, Program, Vanishes, substitute
@@ -27,9 +28,10 @@ def prove_reduction(
     reduction = inverse.reduction
     assert reduction is not None
     where = f"{derivation.name}.{function.name}"
-    known, equations = _meanings(function, reduction), []
+    known, equations, counts = _meanings(function, reduction), [], []
     for lemma in reduction.lemmas:
-        prove_lemma(lemma, Program(list(lemma.body)))
+        counted = prove_lemma(lemma, Program(list(lemma.body)))
+        counts.append((counted.certificate, lemma.excluded))
         for name, meaning in lemma.premises.items():
             stated = substitute(meaning, known)
             for missed in _cases(known[name] - stated):
@@ -41,12 +43,18 @@ def prove_reduction(
     combined = reduction.combination * sp.Matrix(equations)
     for difference in _cases(sp.ImmutableMatrix(system - combined)):
         require(difference, (), f"{where}: the lemmas' equations do not combine to the system")
+    free = sorted(reduction.combination.free_symbols, key=str)
+    point = {s: sp.Rational(k, 7) for k, s in enumerate(free, 8)}
+    certificates.regular(
+        reduction.combination.tolist(), point, "matrices that combine the equations of lemmas"
+    )
     if not normal(reduction.combination.det()).is_nonzero:
         raise ProofError(f"{where}: the matrix that combines the lemmas' equations is singular")
     solution = {u: _generic(e) for lemma in reduction.lemmas for u, e in lemma.solution.items()}
     answers = [_generic(e) for a in function.outputs for e in a.entries]
     for joint, answer in zip(inverse.unknowns, answers, strict=True):
         difference = substitute(reduction.joints[joint], solution) - answer
+        certificates.lack("answers composed of those of lemmas")
         if sp.expand(difference) != 0:
             raise ProofError(
                 f"{where}: {joint} is not what the lemmas give; the difference is {difference}"
@@ -55,6 +63,7 @@ def prove_reduction(
     branches = len(function.branches) if function.branches else 1
     if count != branches * reduction.solutions_per_branch:
         raise ProofError(f"{where}: the lemmas give {count} solutions, not {branches}")
+    certificates.add_inverse(function.name, branches, counts, reduction.solutions_per_branch)
     names = tuple(dict.fromkeys(lemma.name for lemma in reduction.lemmas))
     method = "lemma by lemma" + (f"; {reduction.because}" if reduction.because else "")
     return branches, method, names

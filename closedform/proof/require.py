@@ -23,6 +23,11 @@ def _decide(difference: sp.ImmutableMatrix, nonnegative: tuple[sp.Expr, ...]) ->
     return decide(difference, nonnegative)
 
 
+def forget_decisions() -> None:
+    """Decide everything anew, so that the certificates of a mechanism are complete."""
+    _decide.cache_clear()
+
+
 def require(
     difference: Any, nonnegative: tuple[sp.Expr, ...], fault: str, names: Sequence[str] = ()
 ) -> Decision:

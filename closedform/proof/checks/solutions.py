@@ -84,6 +84,11 @@ def _counted(
     raise Undecided(f"there are {counted.count} solutions, but some may coincide")
 
 
+def forget_solutions() -> None:
+    """Forget all counts, so that each derivation leaves the certificates of its own."""
+    _counted.cache_clear()
+
+
 @dataclass(frozen=True)
 class Postures:
     """Sampled postures: joints, in ranges, and the dimensions at which they are sampled.

@@ -1,0 +1,325 @@
+"""Writes certificates of proofs, for :mod:`closedform.verify`.
+
+While a :func:`recording` is open, every identity that :func:`closedform.algebra.normal_form.decide`
+proves and every count of :func:`closedform.algebra.solutions.count_solutions` is added to it.
+docs/certificates.md describes the format.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextvars import ContextVar
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import sympy as sp
+from flint import fmpq_mat
+from sympy.core.function import AppliedUndef
+
+from closedform.algebra.basis import TooLargeError, logged_basis
+from closedform.algebra.tower import Tower, entries_of, sign_of
+from closedform.algebra.trace import factors_of, terms_of
+from closedform.verify import FORMAT, ROOTS, Refused, matrix_of, staircase, system_of
+
+Expr: TypeAlias = Any  # SymPy's annotations are partial
+
+_FUNCTIONS = {
+    sp.sin: "sin",
+    sp.cos: "cos",
+    sp.tan: "tan",
+    sp.atan: "atan",
+    sp.acos: "acos",
+    sp.asin: "asin",
+    sp.atan2: "atan2",
+    sp.Abs: "abs",
+}
+_RECIPROCALS = {sp.sec: sp.cos, sp.csc: sp.sin, sp.cot: sp.tan}
+
+
+class _Unwritable(ValueError):  # noqa: N818
+    """The format has no words for an expression."""
+
+
+@dataclass(frozen=True)
+class System:
+    """A system of equations, as :func:`closedform.algebra.solutions.count_solutions` has it."""
+
+    equations: Sequence[Expr]
+    nonzero: Sequence[Expr]
+    given: Mapping[sp.Symbol, Expr]
+    """Symbols that stand for expressions in free parameters."""
+    angles: Mapping[sp.Symbol, Sequence[int]]
+    """Unknown angles, as combinations of the angles whose sines and cosines are unknown."""
+    unknowns: Sequence[sp.Symbol]
+    """Unknowns that are not angles."""
+
+
+class Record:
+    """The certificates of one mechanism."""
+
+    def __init__(self) -> None:
+        self.place = ""
+        """What is being proved; every certificate says it."""
+        self.nodes: list[Any] = []
+        self.certificates: list[dict[str, Any]] = []
+        self.missing: Counter[str] = Counter()
+        """Why a proof has no certificate, and how many have none."""
+        self.proofs = 0
+        """The number of identities and counts so far, with those that are repeated."""
+        self.uncounted: list[str] = []
+        """The inverses of which a count has no certificate."""
+        self._known: dict[Expr, int] = {}
+        self._names: Counter[str] = Counter()
+        self._written: dict[str, int] = {}
+
+    def document(self, name: str, digest: str) -> dict[str, Any]:
+        """Everything as plain data; ``digest`` is that of the proof."""
+        return {
+            "format": FORMAT,
+            "name": name,
+            "digest": digest,
+            "not exported": dict(sorted(self.missing.items())),
+            "inverses not exported": self.uncounted,
+            "nodes": self.nodes,
+            "certificates": self.certificates,
+        }
+
+    def text(self, name: str, digest: str) -> str:
+        """Everything as JSON, with a line for each node and each certificate."""
+
+        def written(value: Any) -> str:
+            if isinstance(value, list) and value:
+                return "[\n" + ",\n".join(map(json.dumps, value)) + "\n]"
+            return json.dumps(value)
+
+        content = self.document(name, digest).items()
+        return "{\n" + ",\n".join(f'"{key}": {written(v)}' for key, v in content) + "\n}\n"
+
+    def identity(self, problem: Expr, assumptions: Iterable[Expr], tower: Tower) -> None:
+        """The entries of a problem vanish."""
+        self.proofs += 1
+        trace = tower.trace
+        if trace.unwritable:
+            self.missing[trace.unwritable] += 1
+            return
+        try:
+            zero = sorted({self.node(e) for e in entries_of(problem)})
+            generators = [
+                [kind, terms_of(about)] if kind in ROOTS else [kind, self.node(about), *n]
+                for kind, about, *n in trace.generators
+            ]
+            assumed = [
+                [self.node(a), str(trace.guards[a][0]), factors_of(trace.guards[a][1])]
+                for a in assumptions
+            ]
+        except _Unwritable as reason:
+            self.missing[str(reason)] += 1
+            return
+        slots = [kind for kind, *_ in generators for _ in range(2 if kind == "angle" else 1)]
+        roots = [[[[["1", i, 1]], 1]] for i, kind in enumerate(slots) if kind in ROOTS]
+        roots += [
+            factors_of((p, n) for p, n in factors if not p.is_one()) for factors in trace.roots
+        ]
+        self._add(
+            kind="identity",
+            zero=zero,
+            assumed=assumed,
+            generators=generators,
+            roots=[r for i, r in enumerate(roots) if r not in roots[:i]],
+            nonzero=[terms_of(p) for p in tower.inverted()],
+        )
+
+    def count(self, system: System) -> int | None:
+        """The number of solutions of a system; the result is the number of the certificate."""
+        self.proofs += 1
+        try:
+            content = self._system(system)
+            field, _, nonzero = system_of(self.nodes, content)
+        except (_Unwritable, Refused, LookupError) as reason:
+            self.missing[f"counts of solutions ({reason})"] += 1
+            return None
+        content["generators"] = [["inverse"]] * len(nonzero) + content["generators"]
+        field, polynomials, nonzero = system_of(self.nodes, content)
+        polynomials += [g * p - 1 for g, p in zip(field.inverses, nonzero, strict=True)]
+        try:
+            steps, basis, leads = logged_basis(field, polynomials)
+        except TooLargeError:
+            self.missing["counts of solutions whose basis is too large"] += 1
+            return None
+        return self._add(
+            kind="count",
+            **content,
+            steps=steps,
+            basis=basis,
+            count=staircase(leads, len(field.unknowns)),
+        )
+
+    def inverse(
+        self, function: str, branches: int, counts: Sequence[tuple[int | None, int]], each: int
+    ) -> None:
+        """The counts of the steps of an inverse multiply to its branches."""
+        if any(count is None for count, _ in counts):
+            self.uncounted.append(function)
+            return
+        self._add(
+            kind="inverse",
+            function=function,
+            branches=branches,
+            counts=[list(pair) for pair in counts],
+            **{"per branch": each},
+        )
+
+    def regular(self, rows: Sequence[Sequence[Expr]], point: Mapping[Expr, Expr]) -> bool:
+        """A matrix has full column rank at a point; the values of angles are tangents of halves.
+
+        The result says whether that is so and can be certified.
+        """
+        self.proofs += 1
+        parts = [_apart(sp.sympify(e)) for row in rows for e in row]
+        plain = {s for outside, _ in parts for s in outside}
+        turning = {s for _, inside in parts for s in inside}
+        try:
+            content: dict[str, Any] = {
+                "names": [[self.node(s), str(v)] for s, v in point.items() if s in plain],
+                "angles": [[self.node(s), str(v)] for s, v in point.items() if s in turning],
+                "matrix": [[self.node(sp.sympify(e)) for e in row] for row in rows],
+            }
+            values = fmpq_mat(matrix_of(self.nodes, content))
+        except (_Unwritable, Refused, LookupError):
+            return False
+        echelon, rank = values.transpose().rref()
+        if plain & turning or rank < values.ncols():
+            return False
+        chosen = [next(j for j in range(values.nrows()) if echelon[i, j]) for i in range(rank)]
+        content["matrix"] = [content["matrix"][j] for j in chosen]
+        self._add(kind="regular", **content)
+        return True
+
+    def _system(self, system: System) -> dict[str, Any]:
+        """The equations of a system, their unknowns and their parameters."""
+        given = [[self.node(x), self.node(e)] for x, e in system.given.items()]
+        everything = [*system.equations, *system.nonzero, *system.given.values()]
+        apart = [_apart(sp.sympify(e)) for e in everything]
+        plain = {s for outside, _ in apart for s in outside}
+        turning = {s for _, inside in apart for s in inside}
+        unknown = {*system.unknowns, *system.angles, *system.given}
+        return {
+            "equations": [self.node(e) for e in system.equations],
+            "nonzero": [self.node(e) for e in system.nonzero],
+            "given": given,
+            "angles": [[self.node(a), row[::-1]] for a, row in system.angles.items()],
+            "generators": [
+                *(["name", self.node(s)] for s in sorted(plain - unknown, key=str)),
+                *(["half", self.node(s)] for s in sorted(turning - unknown, key=str)),
+                *(["unknown", self.node(s)] for s in reversed(system.unknowns)),
+                *(["circle"] for _ in system.angles),
+            ],
+        }
+
+    def _add(self, **content: Any) -> int:
+        """The number of a certificate; what was recorded before is not repeated."""
+        text = json.dumps(content, sort_keys=True)
+        if text not in self._written:
+            self._written[text] = len(self.certificates)
+            self.certificates.append({"of": self.place, **content})
+        return self._written[text]
+
+    # Expressions
+
+    def node(self, e: Expr) -> int:
+        """The index of an expression in the table of nodes."""
+        if e not in self._known:
+            node = self._node(e)
+            self._known[e] = len(self.nodes)
+            self.nodes.append(node)
+        return self._known[e]
+
+    def _node(self, e: Expr) -> Any:
+        if e.is_Rational:
+            return str(e)
+        if e.is_Add or e.is_Mul:
+            return ["+" if e.is_Add else "*", *map(self.node, e.args)]
+        if e.is_Pow:
+            base, exponent = e.args
+            if exponent.is_Integer:
+                return ["^", self.node(base), int(exponent)]
+            if exponent == sp.Rational(1, 2):
+                return ["sqrt", self.node(base)]
+            if exponent.is_Rational and exponent.q == 2:
+                return ["^", self.node(sp.Pow(base, sp.Rational(1, 2))), int(exponent.p)]
+        if e.func in _FUNCTIONS:
+            return [_FUNCTIONS[e.func], *map(self.node, e.args)]
+        if e.func in _RECIPROCALS:
+            return ["^", self.node(_RECIPROCALS[e.func](*e.args)), -1]
+        if e == sp.pi:
+            return ["pi"]
+        if isinstance(e, sp.Symbol | AppliedUndef | sp.Derivative):
+            self._names[str(e)] += 1
+            uses = self._names[str(e)]
+            return ["name", f"{e}#{uses}" if uses > 1 else str(e), sign_of(e)]
+        raise _Unwritable(f"expressions with {type(e).__name__}")
+
+
+def _apart(e: Expr) -> tuple[set[Expr], set[Expr]]:
+    """The symbols of an expression outside of sines and cosines, and those inside of them."""
+    turned = {f: sp.Dummy() for f in e.atoms(sp.sin, sp.cos, sp.tan, *_RECIPROCALS)}
+    outside = e.xreplace(turned).free_symbols - set(turned.values())
+    return outside, {s for f in turned for s in f.free_symbols}
+
+
+_open: ContextVar[Record | None] = ContextVar("record", default=None)
+
+
+@contextlib.contextmanager
+def recording() -> Iterator[Record]:
+    """Collect the certificates of everything that is proved meanwhile."""
+    record = Record()
+    token = _open.set(record)
+    try:
+        yield record
+    finally:
+        _open.reset(token)
+
+
+def open_record() -> Record | None:
+    """The open recording, if there is one."""
+    return _open.get()
+
+
+def add_inverse(
+    function: str, branches: int, counts: Sequence[tuple[int | None, int]], each: int = 1
+) -> None:
+    """Record that an inverse is complete.
+
+    Each of ``counts`` is a certificate and the number of its solutions that are excluded; ``each``
+    is the number of solutions of the lemmas for every branch.
+    """
+    if record := open_record():
+        record.inverse(function, branches, counts, each)
+
+
+def regular(rows: Sequence[Sequence[Expr]], point: Mapping[Expr, Expr], what: str) -> None:
+    """Record that a matrix has full column rank at a point; ``what`` it shows, if that fails."""
+    if (record := open_record()) and not record.regular(rows, point):
+        record.missing[what] += 1
+
+
+def lack(what: str) -> None:
+    """Record that a proof leaves no certificate: what it shows, in words for a list."""
+    if record := open_record():
+        record.missing[what] += 1
+
+
+def proofs() -> int:
+    """The number of proofs that the open recording has seen."""
+    record = open_record()
+    return record.proofs if record else 0
+
+
+def place(text: str) -> None:
+    """Say what is being proved."""
+    if record := open_record():
+        record.place = text

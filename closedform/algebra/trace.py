@@ -1,0 +1,42 @@
+"""What a conversion to the normal form leaves for a certificate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+from flint import fmpq, fmpq_mpoly
+
+Expr: TypeAlias = Any  # SymPy's annotations are partial
+Factors: TypeAlias = "list[tuple[fmpq_mpoly, int]]"
+
+
+@dataclass
+class Trace:
+    """What a checker needs to repeat the conversion; see :mod:`closedform.algebra.certificates`."""
+
+    generators: list[tuple[Any, ...]] = field(default_factory=list)
+    """In order: a name, an angle with its divisor, a radicand, the inside of a modulus."""
+    roots: list[Factors] = field(default_factory=list)
+    """Every root that was taken, as a product of powers."""
+    guards: dict[Expr, tuple[fmpq, Factors]] = field(default_factory=dict)
+    """The constant and the factors of every assumption."""
+    unwritable: str = ""
+    """Why the format cannot express the conversion, if it cannot."""
+
+
+def terms_of(p: fmpq_mpoly) -> list[list[Any]]:
+    """A polynomial as a list of terms: each a coefficient, then generators, each with its power.
+
+    Generators are numbered from the last slot of the ring, which is the oldest.
+    """
+    return [
+        [str(a), *(x for i, n in enumerate(reversed(m)) if n for x in (i, int(n)))]
+        for m, a in p.terms()
+    ]
+
+
+def factors_of(factors: Iterable[tuple[fmpq_mpoly, int]]) -> list[list[Any]]:
+    """Polynomials, each with its power."""
+    return [[terms_of(p), int(n)] for p, n in factors]

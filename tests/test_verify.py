@@ -1,0 +1,595 @@
+"""The checker of certificates: what it accepts, and that it refuses whatever was tampered with."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import sympy as sp
+from derivations_for_tests import SLIDER
+from sympy import Abs, acos, asin, atan, atan2, cos, pi, sin, sqrt, tan
+
+from closedform import verify
+from closedform.algebra.certificates import add_inverse, recording
+from closedform.algebra.normal_form import decide
+from closedform.algebra.solutions import InfinitelyManyError, count_solutions
+from closedform.cli.commands import main
+from closedform.pipeline import run as pipeline
+
+x, y, u, v = sp.symbols("x y u v", real=True)
+l1, l2, l3 = sp.symbols("l1:4", positive=True)
+t1, t2 = sp.symbols("theta1:3", real=True)
+
+Document = dict[str, Any]
+
+r, f = sqrt(x**2 + y**2), sp.Function("f")(x)
+
+IDENTITIES: dict[str, tuple[Any, tuple[Any, ...]]] = {
+    "sum of angles": (sin(t1 + t2) - sin(t1) * cos(t2) - cos(t1) * sin(t2), ()),
+    "half angle": (tan(t1 / 2) * (1 + cos(t1)) - sin(t1), ()),
+    "fractions": (1 / (x - y) - 1 / (x + y) - 2 * y / (x**2 - y**2), ()),
+    "root": (1 / (r - x) - (r + x) / y**2, ()),
+    "nested root": (sqrt(l1**2 * r + l1**2 * x) - l1 * sqrt(r + x), ()),
+    "root of a number": ((sqrt(2) + sqrt(3)) ** 2 - 5 - 2 * sqrt(6), ()),
+    "denominators that are numbers": (
+        16 / (16 / (4 * sqrt(3) + 10) ** 2 + 1) - 16 * (37 + 20 * sqrt(3)) / (41 + 20 * sqrt(3)),
+        (),
+    ),
+    "modulus": (Abs(x * y) - Abs(x) * Abs(y), ()),
+    "direction": (sin(atan2(y, x) + t1) * r - y * cos(t1) - x * sin(t1), ()),
+    "twice a direction": (cos(2 * atan2(y, x)) * (x**2 + y**2) - x**2 + y**2, ()),
+    "arcs": (sin(acos(x) + asin(x)) - 1, ()),
+    "arc of a tangent": (cos(t1 + atan(y)) * sqrt(1 + y**2) - cos(t1) + y * sin(t1), ()),
+    "function": (f * (atan2(y, x) + 1) - f * atan2(y, x) - f, ()),
+    "product in an angle": (sin(2 * x * y) - 2 * sin(x * y) * cos(x * y), ()),
+    "assumption": (sqrt((x - y) ** 2) - x + y, (x - y,)),
+    "assumed product": (sqrt(x**3 * y * l1) - x * sqrt(l1) * sqrt(x * y), (x, y)),
+    "bounded sine": (sqrt((2 + sin(t1)) ** 2) - 2 - sin(t1), ()),
+}  # fmt: skip
+
+TWO_LINKS = [l1 * cos(t1) + l2 * cos(t1 + t2) - x, l1 * sin(t1) + l2 * sin(t1 + t2) - y]
+
+
+def written(prove: Callable[[], Any]) -> Document:
+    """What is recorded while something is proved, as it is read from a file."""
+    with recording() as record:
+        prove()
+    assert not record.missing
+    document: Document = json.loads(record.text("test", "digest"))
+    return document
+
+
+def two_links() -> None:
+    counted = count_solutions(TWO_LINKS, [t1, t2])
+    add_inverse("ik", 2, [(counted.certificate, 0)])
+
+
+@pytest.fixture(scope="module")
+def counted() -> Document:
+    return written(two_links)
+
+
+@pytest.mark.parametrize("name", IDENTITIES)
+def test_an_identity_is_accepted(name: str) -> None:
+    problem, assumed = IDENTITIES[name]
+    document = written(lambda: decide(problem, assumed))
+    assert [c["kind"] for c in document["certificates"]] == ["identity"]
+    verify.check(document)
+
+
+def test_counts_are_accepted(counted: Document) -> None:
+    assert [c["kind"] for c in counted["certificates"]] == ["count", "inverse"]
+    assert counted["certificates"][0]["count"] == 2
+    verify.check(counted)
+
+
+def test_a_count_with_denominators_given_values_and_merged_parameters_is_accepted() -> None:
+    a, b, given = sp.symbols("a b given")
+    for equations, unknowns, values, count in (
+        ([1 / u - x, v * (u - v)], [u, v], {}, 2),
+        ([u**2 - given], [u], {given: a**2 / (1 + b**2)}, 2),
+        ([u**2 - 1, u - 2], [u], {}, 0),
+        ([u * (a + b) - v, v**2 + (a + b)], [u, v], {}, 2),
+        ([cos(t1) - cos(t2), sin(t1) - sin(t2)], [t1], {}, 1),
+    ):
+        document = written(
+            lambda e=equations, n=unknowns, g=values: count_solutions(e, n, target_substitution=g)
+        )
+        assert document["certificates"][0]["count"] == count
+        verify.check(document)
+
+
+def test_infinitely_many_solutions_are_accepted() -> None:
+    def prove() -> None:
+        with pytest.raises(InfinitelyManyError):
+            count_solutions([u * v - x], [u, v])
+
+    document = written(prove)
+    assert document["certificates"][0]["count"] is None
+    verify.check(document)
+
+
+def test_what_the_format_cannot_express_is_counted() -> None:
+    with recording() as record:
+        decide(sin(x + pi / 3) - sin(x) / 2 - sqrt(3) * cos(x) / 2)
+    assert not record.certificates and sum(record.missing.values()) == 1
+
+
+def test_a_basis_that_is_too_expensive_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("closedform.algebra.basis.LIMIT", 20)
+    with recording() as record:
+        two_links()
+    assert not record.certificates and record.uncounted == ["ik"]
+    assert sum(record.missing.values()) == 1
+
+
+# Tampering, without a digest that would notice it at once
+
+
+def changes(value: Any) -> Iterator[Any]:
+    """Copies of a value with one thing changed: a number is another, an entry is dropped."""
+    if isinstance(value, list):
+        for i, item in enumerate(value):
+            yield value[:i] + value[i + 1 :]
+            for other in changes(item):
+                yield [*value[:i], other, *value[i + 1 :]]
+    elif isinstance(value, int):
+        yield value + 1
+        yield value - 1
+    elif isinstance(value, str):
+        number = set(value) <= set("-0123456789/")
+        yield from (str(sp.Rational(value) + n) if number else "forged" for n in (1, -1))
+
+
+def accepted(document: Document) -> bool:
+    try:
+        verify.check(document)
+    except verify.Refused:
+        return False
+    return True
+
+
+def with_certificate(document: Document, k: int, **content: Any) -> Document:
+    certificates = list(document["certificates"])
+    certificates[k] = {**certificates[k], **content}
+    return {**document, "certificates": certificates}
+
+
+def intersection() -> None:
+    counted = count_solutions([u**2 + v**2 - x, u * v - y], [u, v])
+    add_inverse("ik", 4, [(counted.certificate, 0)])
+
+
+@pytest.mark.parametrize("part", ["steps", "basis", "count", "equations"])
+def test_no_number_of_a_count_can_be_changed(part: str) -> None:
+    """Coefficients, exponents, multipliers, cofactors, and the entries of every list."""
+    document = written(intersection)
+    del document["certificates"][1]  # which would notice another count
+    verify.check(document)
+    for other in changes(document["certificates"][0][part]):
+        assert not accepted(with_certificate(document, 0, **{part: other})), other
+
+
+def test_no_number_of_an_inverse_can_be_changed() -> None:
+    document = written(intersection)
+    for part in ("branches", "counts", "per branch"):
+        for other in changes(document["certificates"][1][part]):
+            assert not accepted(with_certificate(document, 1, **{part: other})), other
+
+
+def test_the_unknown_angles_cannot_be_changed() -> None:
+    document = written(two_links)
+    (certificate, _) = document["certificates"]
+    for k, (node, row) in enumerate(certificate["angles"]):
+        for other in changes(row):
+            angles = [*certificate["angles"][:k], [node, other], *certificate["angles"][k + 1 :]]
+            assert not accepted(with_certificate(document, 0, angles=angles)), angles
+    for kind in ("name", "half", "unknown", "inverse"):
+        generators = [[kind, *g[1:]] if g == ["circle"] else g for g in certificate["generators"]]
+        assert not accepted(with_certificate(document, 0, generators=generators)), kind
+
+
+@pytest.mark.parametrize("name", ["root", "nested root", "modulus", "assumption"])
+def test_no_number_of_an_identity_can_be_changed(name: str) -> None:
+    """The relation of a root, the value of a root, an assumption, the list of denominators."""
+    problem, assumed = IDENTITIES[name]
+    document = written(lambda: decide(problem, assumed))
+    (certificate,) = document["certificates"]
+    for part in ("generators", "roots", "assumed"):
+        for k, item in enumerate(certificate[part]):
+            if item[0] in ("name", "abs"):
+                continue  # another name for the same; the modulus of -f is that of f
+            kept = [*certificate[part][:k], *certificate[part][k + 1 :]]
+            assert not accepted(with_certificate(document, 0, **{part: kept})), part
+            for other in changes(item):
+                content = [*certificate[part][:k], other, *certificate[part][k + 1 :]]
+                assert not accepted(with_certificate(document, 0, **{part: content})), content
+    for k in range(len(certificate["nonzero"])):
+        kept = [*certificate["nonzero"][:k], *certificate["nonzero"][k + 1 :]]
+        assert not accepted(with_certificate(document, 0, nonzero=kept))
+
+
+@pytest.mark.parametrize("name", IDENTITIES)
+def test_another_statement_is_refused(name: str) -> None:
+    """Any number and any operation of the expression is another, or an operand is left out."""
+    problem, assumed = IDENTITIES[name]
+    document = written(lambda: decide(problem, assumed))
+    (zero,) = document["certificates"][0]["zero"]
+    op, *operands = document["nodes"][zero]
+    for k in range(len(operands)):
+        shorter = [op, *operands[:k], *operands[k + 1 :]]
+        assert not accepted({**document, "nodes": [*document["nodes"][:zero], shorter]})
+    assert not accepted({**document, "nodes": [*document["nodes"][:zero], ["*", *operands]]})
+    assert not accepted(with_certificate(document, 0, zero=[]))
+
+
+# Certificates of what is false: each was accepted by a checker without the rule that refuses it
+
+
+def certificate(nodes: list[Any], **content: Any) -> Document:
+    empty: Document = {"assumed": [], "generators": [], "roots": [], "nonzero": []}
+    one = {"of": "a forgery", "kind": "identity", **empty, **content}
+    return {"format": verify.FORMAT, "nodes": nodes, "certificates": [one]}
+
+
+X, Y = ["name", "x", 0], ["name", "y", 0]
+ROOT_PLUS_X = [X, "2", ["^", 0, 2], ["sqrt", 2], ["+", 3, 0]]
+COSINE = [["name", "theta", 0], X, "-1", ["cos", 0], ["*", 2, 1], ["+", 3, 4]]
+FORGERIES: dict[str, Document] = {
+    "sqrt(x**2) = -x, because a root has the wrong sign": certificate(
+        ROOT_PLUS_X, zero=[4], generators=[["name", 0]], roots=[[[[["-1", 0, 1]], 1]]]
+    ),
+    "sqrt(x**2) = x, because x has no sign": certificate(
+        [X, "-1", ["^", 0, 2], ["sqrt", 2], ["*", 1, 0], ["+", 3, 4]],
+        zero=[5],
+        generators=[["name", 0]],
+        roots=[[[[["1", 0, 1]], 1]]],
+    ),
+    "sqrt(x**2) = -x, because x is assumed not to be negative": certificate(
+        ROOT_PLUS_X,
+        zero=[4],
+        generators=[["name", 0]],
+        roots=[[[[["-1", 0, 1]], 1]]],
+        assumed=[[0, "1", [[[["1", 0, 1]], 1]]]],
+    ),
+    "abs(x*y) = x*y, because x**2*y is assumed not to be negative": certificate(
+        [X, Y, ["^", 0, 2], ["*", 2, 1], ["*", 0, 1], ["abs", 4], "-1", ["*", 6, 4], ["+", 5, 7]],
+        zero=[8],
+        generators=[["name", 0], ["name", 1]],
+        roots=[[[[["1", 0, 1, 1, 1]], 1]]],
+        assumed=[[3, "1", [[[["1", 0, 1]], 2], [[["1", 1, 1]], 1]]]],
+    ),
+    "sqrt(x**2) = -x, because another root is imaginary": certificate(
+        ROOT_PLUS_X,
+        zero=[4],
+        generators=[["name", 0], ["root", [["-1", 0, 1]]]],
+        roots=[[[[["1", 1, 1]], 2]]],
+    ),
+    "sqrt(x**2) = -x, because x is assumed not to be positive where 0 >= 0": certificate(
+        [*ROOT_PLUS_X, "0"],
+        zero=[4],
+        generators=[["name", 0]],
+        roots=[[[[["-1", 0, 1]], 1]]],
+        assumed=[[5, "0", [[[["-1", 0, 1]], 1]]]],
+    ),
+    "sqrt(x**2) = -x, because an imaginary root is there twice": certificate(
+        ROOT_PLUS_X,
+        zero=[4],
+        generators=[["name", 0], ["root", [["-1", 0, 1]]]],
+        roots=[[[[["1", 1, 1]], 1], [[["1", 1, 1]], 1]]],
+    ),
+    "sqrt(x**2) = -x, because an imaginary root is in another factor": certificate(
+        ROOT_PLUS_X,
+        zero=[4],
+        generators=[["name", 0], ["root", [["-1", 0, 1]]]],
+        roots=[[[[["1", 1, 1]], 1], [[["2", 1, 1]], 1], [[["1/2"]], 1]]],
+    ),
+    "sqrt((1 + 2*sin(x))**2) = 1 + 2*sin(x)": certificate(
+        [
+            X,
+            ["sin", 0],
+            "2",
+            ["*", 2, 1],
+            "1",
+            ["+", 4, 3],
+            ["abs", 5],
+            "-1",
+            ["*", 7, 5],
+            ["+", 6, 8],
+        ],
+        zero=[9],
+        generators=[["angle", 0, 1]],
+        roots=[[[[["1"], ["2", 1, 1]], 1]]],
+    ),
+    "cos(x) = 1, because the angle is divided by zero": certificate(
+        [X, "-1", ["cos", 0], ["+", 2, 1]], zero=[3], generators=[["angle", 0, 0]]
+    ),
+    "x = 0, because of a relation of its own": certificate(
+        [X], zero=[0], generators=[["name", 0], ["root", [["1", 0, 1], ["-1", 1, 1]]]]
+    ),
+    "atan2(x, x) = tan(x), because an inverse function has no generator": certificate(
+        [X, ["atan2", 0, 0], ["tan", 0], "-1", ["*", 3, 2], ["+", 1, 4]],
+        zero=[5],
+        generators=[["angle", 0, 1]],
+        nonzero=[[["1", 0, 1]]],
+    ),
+    "sin(x + 2) = sin(2*x), because a number is an angle": certificate(
+        [X, "2", ["+", 0, 1], ["sin", 2], ["*", 1, 0], ["sin", 4], "-1", ["*", 6, 5], ["+", 3, 7]],
+        zero=[8],
+        generators=[["angle", 0, 1]],
+    ),
+    "cos(x/2) = 1, because the angle is not divided enough": certificate(
+        [X, "1/2", ["*", 1, 0], ["cos", 2], "-1", ["+", 3, 4]],
+        zero=[5],
+        generators=[["angle", 0, 1]],
+    ),
+    "cos(acos(x)/2) = x, because half an arc is a whole one": certificate(
+        [X, "1/2", ["acos", 0], ["*", 1, 2], ["cos", 3], "-1", ["*", 5, 0], ["+", 4, 6]],
+        zero=[7],
+        generators=[["name", 0], ["root", [["1"], ["-1", 0, 2]]]],
+        roots=[[[[["1", 1, 1]], 1]]],
+    ),
+    "x/x = 0, because of a circle of nodes": certificate([["*", 0, 0]], zero=[0]),
+    "a node that holds a later one": certificate([["*", 1, 1], "0"], zero=[0]),
+    "another format": {**certificate(["0"], zero=[0]), "format": 2},
+    "branches that are counted by the inverse itself": certificate(
+        ["0"], kind="inverse", counts=[[0, 0]], branches=2, count=2, **{"per branch": 1}
+    ),
+    "x/0 = 0": certificate(["0", ["^", 0, -1], ["*", 0, 1]], zero=[2]),
+    "no solutions, because a relation is one of an identity": certificate(
+        [X, ["^", 0, 2], "-1", ["+", 1, 2]],
+        kind="count",
+        equations=[3],
+        given=[],
+        angles=[],
+        generators=[["unknown", 0], ["root", [["2"]]]],
+        steps=[],
+        basis=[1],
+        count=0,
+    ),
+    "two names for one quantity": certificate([["name", "x", 1], ["name", "x", -1], "0"], zero=[2]),
+    "no solutions, because an element of the basis is zero": certificate(
+        [X, ["^", 0, 2], "-1", ["+", 1, 2]],
+        kind="count",
+        equations=[3],
+        given=[],
+        angles=[],
+        generators=[["unknown", 0]],
+        steps=[[[["1"]], [], []]],
+        basis=[1],
+        count=0,
+    ),
+    "no solutions, because a multiplier contains the unknown": certificate(
+        [X, ["^", 0, 2], "-1", ["+", 1, 0]],
+        kind="count",
+        equations=[3],
+        given=[],
+        angles=[],
+        generators=[["unknown", 0]],
+        steps=[[[["1", 0, 1]], [["1", 0, 1], ["1"]], [[0, [["1"]]]]]],
+        basis=[1],
+        count=1,
+    ),
+    "too many solutions, because the basis is not that of the system": certificate(
+        [X, ["^", 0, 2], "-1", ["+", 1, 2], ["+", 0, 2]],
+        kind="count",
+        equations=[3, 4],
+        given=[],
+        angles=[],
+        generators=[["unknown", 0]],
+        steps=[],
+        basis=[0],
+        count=2,
+    ),
+    "too many solutions, because the basis has an S-polynomial": certificate(
+        [
+            X,
+            ["name", "y", 0],
+            "-1",
+            ["*", 0, 1],
+            ["^", 0, 2],
+            ["^", 1, 2],
+            ["+", 3, 2],
+            ["+", 4, 2],
+        ],
+        kind="count",
+        equations=[6, 7, 5],
+        given=[],
+        angles=[],
+        generators=[["unknown", 0], ["unknown", 1]],
+        steps=[],
+        basis=[0, 1, 2],
+        count=3,
+    ),
+    "four angles of one cosine, because the angle is doubled": certificate(
+        COSINE,
+        kind="count",
+        equations=[5],
+        given=[],
+        angles=[[0, [2]]],
+        generators=[["name", 1], ["circle"]],
+        steps=[],
+        basis=[0, 1],
+        count=4,
+    ),
+    "infinitely many angles, because a circle is free": certificate(
+        COSINE,
+        kind="count",
+        equations=[5],
+        given=[],
+        angles=[[0, [1]]],
+        generators=[["name", 1], ["circle"], ["circle"]],
+        steps=[],
+        basis=[0, 1, 2],
+        count=None,
+    ),
+    "one solution, because the equation is given another value": certificate(
+        [X, ["^", 0, 2], "-1", ["+", 1, 2]],
+        kind="count",
+        equations=[3],
+        given=[[3, 0]],
+        angles=[],
+        generators=[["unknown", 0]],
+        steps=[],
+        basis=[0],
+        count=1,
+    ),
+    "a singular matrix": certificate(
+        [X, "0"], kind="regular", matrix=[[0, 1], [0, 1]], names=[[0, "1"]], angles=[]
+    ),
+    "a point outside of the domain": certificate(
+        [["name", "l", 1]], kind="regular", matrix=[[0]], names=[[0, "-1"]], angles=[]
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FORGERIES)
+def test_a_forgery_is_refused(name: str) -> None:
+    with pytest.raises(verify.Refused):
+        verify.check(FORGERIES[name])
+
+
+def test_the_point_of_a_matrix_is_checked_exactly() -> None:
+    regular = FORGERIES["a singular matrix"]
+    verify.check(with_certificate(regular, 0, matrix=[[0]]))
+    with pytest.raises(verify.Refused):
+        verify.check(with_certificate(regular, 0, matrix=[[0]], names=[[0, "0"]]))
+
+
+# The checker itself
+
+
+def test_the_checker_imports_nothing_of_the_prover() -> None:
+    text = Path(verify.__file__).read_text("utf-8")
+    modules = set()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import):
+            modules |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert not node.level
+            modules.add(node.module or "")
+    assert modules <= {
+        "__future__",
+        "collections.abc",
+        "functools",
+        "itertools",
+        "math",
+        "typing",
+        "flint",
+    }
+
+
+# The certificates of stored proofs
+
+
+@pytest.fixture
+def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A script that is proved, with its proof and its certificates in a store of its own."""
+    script = tmp_path / "slider.py"
+    script.write_text(SLIDER, "utf-8")
+    store = pipeline.Store(tmp_path / "proofs")
+    monkeypatch.setattr(pipeline, "default_store", lambda: store)
+    assert not pipeline.run(pipeline.find([str(script)]), ("numpy",), store=store).failures
+    return script
+
+
+def edited(kept: Path, old: str, new: str, *, digest: bool) -> None:
+    """Change the certificates of the script; ``digest``: and what the proof says about them."""
+    path = kept.parent / "certificates" / "slider.json"
+    text = path.read_text("utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new), "utf-8")
+    if digest:
+        proof = kept.parent / "proofs" / "slider.json"
+        before, after = (hashlib.sha256(t.encode()).hexdigest() for t in (text, path.read_text()))
+        assert before in proof.read_text()
+        proof.write_text(proof.read_text().replace(before, after), "utf-8")
+
+
+def test_stored_certificates_are_verified(kept: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    assert main(["verify", str(kept)]) == 0
+    line = capsys.readouterr().out.split()
+    assert line[:3] == ["slider", "1", "identities,"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "digest"),
+    [
+        ('"zero": [0]', '"zero": [ 0]', False),
+        ('"zero": [0]', '"zero": []', True),
+        ('"slider"', '"other"', True),
+        ('"identity"', '"proof"', True),
+        ('"certificates": [', '"certificates": 3, "x": [', True),
+        ('"digest": "', '"digest": "0', True),
+        ("{", "", True),
+    ],
+)
+def test_changed_certificates_fail(
+    old: str, new: str, digest: bool, kept: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    edited(kept, old, new, digest=digest)
+    assert main(["verify", str(kept)]) == 1
+    assert "FAILED" in capsys.readouterr().out
+
+
+def test_stale_and_missing_certificates_fail_and_are_written_again(
+    kept: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = kept.parent / "certificates" / "slider.json"
+    written = path.read_bytes()
+    chosen, store = pipeline.find([str(kept)]), pipeline.default_store()
+    for spoil in (path.unlink, lambda: path.write_bytes(written + b"\n")):
+        spoil()
+        assert main(["verify", str(kept)]) == 1
+        (robot,) = pipeline.run(chosen, ("numpy",), store=store).robots
+        assert not robot.stored and path.read_bytes() == written
+        assert main(["verify", str(kept)]) == 0
+    kept.write_text(SLIDER + "\n# edited\n", "utf-8")
+    assert main(["verify", str(kept)]) == 1
+    (kept.parent / "proofs" / "slider.json").unlink()
+    assert main(["verify", str(kept)]) == 1
+
+
+def test_an_inverse_of_a_proof_needs_a_certificate(kept: Path) -> None:
+    path = kept.parent / "proofs" / "slider.json"
+    proof = json.loads(path.read_text("utf-8"))
+    proof["proof"]["inverses"] = [{"function": "ik", "branches": 2}]
+    path.write_text(json.dumps(proof), "utf-8")
+    assert main(["verify", str(kept)]) == 1
+    edited(kept, '"inverses not exported": []', '"inverses not exported": ["ik"]', digest=True)
+    assert main(["verify", str(kept)]) == 0
+
+
+def test_the_same_proof_writes_the_same_bytes_whatever_the_hash_seed() -> None:
+    """Also if it was proved before in the same process."""
+    code = (
+        "import sys\n"
+        "from closedform.algebra.certificates import recording\n"
+        "from closedform.pipeline import run as pipeline\n"
+        "from closedform.proof.prove import prove\n"
+        "(source,) = pipeline.find(['scara'])\n"
+        "for _ in range(int(sys.argv[1])):\n"
+        "    with recording() as record:\n"
+        "        prove(pipeline.load(source))\n"
+        "print(record.text('name', 'digest'))\n"
+    )
+    runs = (("1", 1), ("2", 2))
+    first, second = (
+        subprocess.run(
+            [sys.executable, "-c", code, str(times)],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            check=True,
+        ).stdout
+        for seed, times in runs
+    )
+    assert len(first) > 1000 and first == second

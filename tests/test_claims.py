@@ -133,7 +133,9 @@ class TestErratum:
             judge(claim("$x = y$", erratum="other"), [SIGN])
 
     @pytest.mark.parametrize(
-        "check", [lambda f: as_printed(f), lambda _: Undecidable("a figure")], ids=str
+        "check",
+        [lambda f: as_printed(f), lambda _: Undecidable("a figure")],
+        ids=["proved", "not decidable"],
     )
     def test_one_on_a_claim_without_a_fault_is_refused(self, check: Any) -> None:
         with pytest.raises(ProofError, match="but the claim names the erratum sign"):

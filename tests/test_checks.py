@@ -91,7 +91,7 @@ class TestIdentity:
 
     def test_order_of_the_error(self) -> None:
         assert evidence(NEAR).startswith(
-            r"the error is $- \frac{t^{3}}{6}$ and terms of order $t^{4}$; e.g. at $t = "
+            r"the error is $- \frac{t^{3}}{6}$ and terms of order 4 in $t$; e.g. at $t = "
         )
 
     def test_an_error_that_does_not_vanish_is_not_an_approximation(self) -> None:
@@ -99,7 +99,7 @@ class TestIdentity:
 
     def test_order_of_a_matrix_is_that_of_its_worst_entry(self) -> None:
         check = Identity(sp.Matrix([t, 1]), sp.Matrix([sin(t), cos(t)]), small=t)
-        assert r"the error is $\frac{t^{2}}{2}$ and terms of order $t^{3}$" in evidence(check)
+        assert r"the error is $\frac{t^{2}}{2}$ and terms of order 3 in $t$" in evidence(check)
 
     def test_the_entry_is_named(self) -> None:
         matrix = Identity(sp.Matrix([[1, x], [y, 2 * y]]), sp.Matrix([[1, x], [y, x]]))
@@ -242,7 +242,7 @@ class TestEvery:
 
     def test_says_which_part_is_wrong(self) -> None:
         shown = evidence(Every({"upper": TRUE, "lower": Identity(x, 2 * x)}))
-        assert shown.startswith("upper: proved; lower: refuted (at $x = 1$: ")
+        assert shown.startswith("lower: refuted (at $x = 1$: ")
 
     def test_nothing_is_not_proved(self) -> None:
         with pytest.raises(ValueError, match="at least one"):

@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from closedform.check.coverage import cover
-from closedform.model.claims import HOLDS, Claim
-from closedform.model.derivation import Derivation
 from closedform.pipeline import run as pipeline
-from closedform.proof.claims import judge
-from closedform.proof.mutations import outcomes
+
+if TYPE_CHECKING:
+    from closedform.model.claims import Claim
+    from closedform.model.derivation import Derivation
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -28,6 +28,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def report(options: argparse.Namespace, derivation: Derivation) -> Iterator[str]:
     """The lines of the report."""
+    from closedform.model.claims import HOLDS
+    from closedform.proof.claims import judge
+
     claims = [c for c in derivation.claims if options.only in c.label]
     if options.paper:
         yield from _coverage(derivation, options.paper)
@@ -50,6 +53,8 @@ def report(options: argparse.Namespace, derivation: Derivation) -> Iterator[str]
 
 def _changed(claim: Claim, held: bool) -> Iterator[str]:
     """The changed texts of a claim that deserve a look."""
+    from closedform.proof.mutations import outcomes
+
     found = list(outcomes(claim))
     for outcome in found:
         if outcome.error:
@@ -62,6 +67,8 @@ def _changed(claim: Claim, held: bool) -> Iterator[str]:
 
 def _coverage(derivation: Derivation, path: Path) -> Iterator[str]:
     """What of the paper is covered by all derivations of it."""
+    from closedform.check.coverage import cover
+
     paper, claims = derivation.paper, list(derivation.claims)
     for source in pipeline.sources():
         if source.name == derivation.name:

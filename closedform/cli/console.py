@@ -19,7 +19,10 @@ PATIENCE = 1.0
 """Seconds of silence before progress is shown."""
 INTERVAL = 0.2
 """Seconds between two looks at what is going on."""
-ASCII = {"·": "*", "−": "-", "–": "-", "—": "-", "‘": "'", "’": "'", "“": '"', "”": '"'}
+ASCII = {
+    "·": "*", "−": "-", "–": "-", "—": "-", "‘": "'", "’": "'", "“": '"', "”": '"', "«": '"',
+    "»": '"',
+}  # fmt: skip
 ASCII |= {
     "≤": "<=",
     "≥": ">=",

@@ -111,7 +111,7 @@ class Claim(Shown):
     like ``printed``; the same check has to prove it.  The first of several ``readings`` is the one
     that the context of the paper supports, and gives the verdict.  ``erratum`` is the key of the
     error that the claim shows.  ``paraphrase`` marks a text that is not verbatim.  ``fixed`` is the
-    reason why no change of the text can change the verdict.
+    reason why a change of the text may leave the verdict as it is.
     """
 
     label: str

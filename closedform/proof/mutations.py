@@ -43,12 +43,16 @@ class Outcome:
     """Whether the text holds and the printed one does not, or the reverse."""
 
 
-def outcomes(claim: Claim, limit: int | None = None) -> Iterator[Outcome]:
+def outcomes(
+    claim: Claim, limit: int | None = None, *, held: bool | None = None
+) -> Iterator[Outcome]:
     """The verdict of each changed text, or of at most ``limit`` of them.
 
-    A text that the notation cannot read is left out.
+    ``held`` says whether the printed text holds, if that is known.  A text that the notation cannot
+    read is left out.
     """
-    held = judged(claim, claim.printed).kind in HOLDS
+    if held is None:
+        held = judged(claim, claim.printed).kind in HOLDS
     for mutation in _some(list(mutations(claim)), limit, claim.label):
         try:
             kind = judged(claim, mutation.text).kind

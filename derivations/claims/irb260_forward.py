@@ -161,6 +161,7 @@ def axes(d: Derivation, arm: Palletiser) -> None:
             where=FORWARD,
             notation=names(arm),
             means=meanings,
+            fixed="" if i == 5 else "another point of the axis describes the joint as well",
         )
 
 

@@ -527,7 +527,8 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
         "steps": [{**page.step(s), "number": k} for k, s in enumerate(derivation.steps, 1)],
         "modes": derivation.assembly_modes,
         "inverses": [page.inverse(f) for f in derivation.functions if f.has_status],
-        "functions": [page.function(f) for f in derivation.functions],
+        # the points of the skeleton are too many to print; a step says what is proved of them
+        "functions": [page.function(f) for f in derivation.functions if f.name != "skeleton"],
         "singular": page.singular_set(),
         "verdicts": ", ".join(f"{n} {kind}" for kind, n in proof.verdicts().items()),
         "errata": page.errata(),

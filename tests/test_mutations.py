@@ -20,7 +20,7 @@ from closedform.proof.claims import judged
 from closedform.proof.mutations import Mutation, mutations, outcomes
 
 LIMIT = None if os.environ.get("CLOSEDFORM_MUTATIONS") == "all" else 1
-"""At most this many changes of each claim; ``make mutations`` tries all of them."""
+"""So many changes of each claim, or until one matters; ``make mutations`` tries all of them."""
 x, y = real("x"), real("y")
 NAMES = Notation({"x": x, "y": y, r"\theta_1": real("t1"), r"\theta_2": real("t2")})
 
@@ -38,7 +38,11 @@ def faults(claim: Claim, limit: int | None = None) -> Iterator[str]:
     held = judged(claim, claim.printed).kind
     if held == NOT_DECIDABLE:
         return
-    found = list(outcomes(claim, limit, held=held in HOLDS))
+    found = []
+    for outcome in outcomes(claim, held=held in HOLDS):
+        found.append(outcome)
+        if limit and len(found) >= limit and any(o.changes for o in found):
+            break
     if not any(o.changes for o in found) and not claim.fixed:
         yield f"{claim.label}: no change of the text changes the verdict, and no reason is given"
     if held not in HOLDS:

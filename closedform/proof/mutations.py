@@ -43,17 +43,14 @@ class Outcome:
     """Whether the text holds and the printed one does not, or the reverse."""
 
 
-def outcomes(
-    claim: Claim, limit: int | None = None, *, held: bool | None = None
-) -> Iterator[Outcome]:
-    """The verdict of each changed text, or of at most ``limit`` of them.
+def outcomes(claim: Claim, *, held: bool | None = None) -> Iterator[Outcome]:
+    """The verdict of each changed text; a text that the notation cannot read is left out.
 
-    ``held`` says whether the printed text holds, if that is known.  A text that the notation cannot
-    read is left out.
+    ``held`` says whether the printed text holds, if that is known.
     """
     if held is None:
         held = judged(claim, claim.printed).kind in HOLDS
-    for mutation in _some(list(mutations(claim)), limit, claim.label):
+    for mutation in _mixed(list(mutations(claim)), claim.label):
         try:
             kind = judged(claim, mutation.text).kind
         except NotationError:
@@ -64,17 +61,15 @@ def outcomes(
             yield Outcome(mutation, kind, changes=(kind in HOLDS) != held)
 
 
-def _some(found: list[Mutation], limit: int | None, label: str) -> list[Mutation]:
-    """At most ``limit`` changes, of as many kinds as possible; the label says where to begin."""
-    if limit is None or len(found) <= limit:
-        return found
-    start = crc32(label.encode()) % len(found)
+def _mixed(found: list[Mutation], label: str) -> list[Mutation]:
+    """The changes, one of each kind in turn; the label says where to begin."""
+    start = crc32(label.encode()) % max(len(found), 1)
     seen: Counter[str] = Counter()
     ranked = []
     for place, mutation in enumerate([*found[start:], *found[:start]]):
         seen[mutation.kind] += 1
         ranked.append((seen[mutation.kind], place, mutation))
-    return [mutation for _, _, mutation in sorted(ranked, key=lambda r: r[:2])[:limit]]
+    return [mutation for _, _, mutation in sorted(ranked, key=lambda r: r[:2])]
 
 
 def mutations(claim: Claim) -> Iterator[Mutation]:

@@ -366,6 +366,8 @@ def whole(d: Derivation, r: Robot, v: Virtual) -> None:
         notation=v.names.extended({r"\theta_{23}^A": r.A23}),
         erratum="quadrant",
         readings=[Reading(PRINCIPAL)],
+        fixed="several formulas are at fault, and one change does not mend them; each of them is a "
+        "claim of its own, with its correction",
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -46,7 +46,13 @@ def draw(options: argparse.Namespace) -> str:
     if target.suffix not in SUFFIXES:
         raise PlotError(f"{target}: the suffix must be one of {', '.join(SUFFIXES)}")
     robot = module(options.robot)
-    write(_figure(robot, options.what, options), target)
+    if options.branch is not None and options.branch not in robot.BRANCHES:
+        raise PlotError(
+            f"{options.robot} has no branch {options.branch!r}; there are "
+            f"{', '.join(robot.BRANCHES)}"
+        )
+    drawn = figures(robot, plane=options.plane, branch=options.branch, function=options.function)
+    write(drawn[options.what], target)
     return f"{target}: {options.what} of {options.robot}\n"
 
 
@@ -57,10 +63,7 @@ def draw_all(folder: Path) -> Iterator[str]:
         robot = module(source.name)
         drawn = [kind for kind in KINDS if fits(robot, kind)]
         for kind in drawn:
-            options = argparse.Namespace(
-                robot=source.name, plane=None, branch=None, function="condition"
-            )
-            write(_figure(robot, kind, options), folder / f"{source.name}-{kind}.svg")
+            write(figures(robot, function="condition")[kind], folder / f"{source.name}-{kind}.svg")
         yield f"{source.name}: {', '.join(drawn)}\n"
 
 
@@ -95,21 +98,21 @@ def write(figure: Callable[[], Any], target: Path) -> None:
         plt.close("all")
 
 
-def _figure(robot: ModuleType, what: str, options: argparse.Namespace) -> Callable[[], Any]:
+def figures(
+    robot: ModuleType,
+    *,
+    plane: Sequence[str] | None = None,
+    branch: str | None = None,
+    function: str = "manipulability",
+) -> dict[str, Callable[[], Any]]:
+    """What draws each kind of figure."""
     from closedform import plot
 
-    plane = options.plane
-    branch = options.branch
-    if branch is not None and branch not in robot.BRANCHES:
-        raise PlotError(
-            f"{options.robot} has no branch {branch!r}; there are {', '.join(robot.BRANCHES)}"
-        )
-    figures: dict[str, Callable[[], Any]] = {
+    return {
         "mechanism": lambda: plot.mechanism(robot),
         "branches": lambda: plot.branches(robot),
         "workspace": lambda: plot.workspace(robot, plane),
         "singularities": lambda: plot.singularities(robot, plane),
-        "field": lambda: plot.field(robot, options.function, plane, branch=branch or 0),
+        "field": lambda: plot.field(robot, function, plane, branch=branch or 0),
         "path": lambda: plot.path(robot, plot.line(robot, STEPS), branch=branch),
     }
-    return figures[what]

@@ -114,7 +114,7 @@ class Notation:
             key = tuple(t.text for t in tokens(name))
             if not key:
                 raise NotationError("a name of the notation must not be empty")
-            if isinstance(meaning, int | float) and not isinstance(meaning, bool):
+            if isinstance(meaning, int) and not isinstance(meaning, bool):
                 meaning = sp.Integer(meaning)
             self._names.setdefault(key[0], []).append((key, name, meaning))
         for found in self._names.values():
@@ -274,7 +274,7 @@ class _Reader:
 
     def factor(self) -> Value:
         value = self.base()
-        while not self.ended and self.peek in ("^", "!"):
+        while not self.ended and self.peek == "^":
             named = self.notation.match(self.tokens, self.at)
             if named:
                 self.at += named[0]

@@ -11,14 +11,13 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from closedform.plot.postures import OK
-from closedform.plot.robot import Array, Robot, positions
+from closedform.plot.robot import Array, Robot, positions, singular_values
 from closedform.plot.style import GROUND, colour, new_axes
 
-UNREACHABLE, JUDGED = 1, 2
-"""Of the statuses up to JUDGED, all but UNREACHABLE are answers."""
+SINGULAR = 2
 NEAR = 0.03
 """A factor below this part of its usual size counts as near zero in a drawing."""
 
@@ -50,7 +49,7 @@ def workspace(
     r = Robot.of(robot, params)
     grid = _task_plane(r, plane, at, resolution)
     _, status = r.branches(grid.targets)
-    reached = ((status <= JUDGED) & (status != UNREACHABLE)).sum(-1)
+    reached = answered(status).sum(-1)
     ax = new_axes(False) if ax is None else ax
     top = len(robot.BRANCHES)
     shown = np.where(reached > 0, reached, np.nan)
@@ -136,10 +135,9 @@ def singularities(
                     drawn[name] = Line2D([], [], color=colour(k))
     else:
         q, status = r.branches(grid.targets)
-        answered = status <= JUDGED
-        answered &= status != UNREACHABLE
-        count = answered.sum(-1).astype(float)
-        factors = np.abs(_factors(r, np.where(answered[..., None], q, np.nan)))
+        answers = answered(status)
+        count = answers.sum(-1).astype(float)
+        factors = np.abs(_factors(r, np.where(answers[..., None], q, np.nan)))
         ax.contour(*grid.sides, count, levels=[0.5], colors=[GROUND], linewidths=1.0)
         for k, name in enumerate(robot.SINGULARITIES):
             values = factors[..., k].reshape(*count.shape, -1)
@@ -156,6 +154,11 @@ def singularities(
         ax.figure.legend(drawn.values(), drawn.keys(), loc="outside lower center", ncols=1)
     _name(ax, grid)
     return ax
+
+
+def answered(status: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    """Where there are joints that reach the target, singular or not."""
+    return np.asarray((status == OK) | (status == SINGULAR))
 
 
 def _factors(r: Robot, q: Array) -> Array:
@@ -248,10 +251,7 @@ def _quantity(r: Robot, q: Array, function: str | Callable[[Array], Array]) -> t
     name = next((n for n in ("jacobian", "jacobian_space") if r.has(n)), "jacobian")
     J = np.asarray(r.call(name, q))
     J = J[..., 0, :, :] if r.modes else J
-    J = J[..., : max(J.shape[-1], 1), :] if J.shape[-2] > J.shape[-1] else J
-    finite = np.isfinite(J).all((-1, -2))
-    sizes = np.full((*J.shape[:-2], min(J.shape[-2:])), np.nan)
-    sizes[finite] = np.linalg.svd(J[finite], compute_uv=False)
+    sizes = singular_values(J[..., : J.shape[-1], :])
     if function == "condition":
         with np.errstate(invalid="ignore", divide="ignore"):
             return sizes[..., -1] / sizes[..., 0], "inverse condition number of the Jacobian"

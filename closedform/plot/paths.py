@@ -71,11 +71,9 @@ def line(robot: ModuleType, n: int, *, params: Any = None) -> Array:
     if not places:
         raise ValueError(f"the task of {r.name} has no position")
     targets = np.repeat(target.reshape(1, -1), n, axis=0)
-    turn = np.linspace(-0.25, 0.25, n)
-    x, *rest = (targets[:, k].copy() for k in places.values())
-    targets[:, next(iter(places.values()))] = x + turn * r.size / 4
-    for k, value in zip(list(places.values())[1:], rest, strict=True):
-        targets[:, k] = value - turn * r.size / 6
+    along = np.linspace(-0.25, 0.25, n) * r.size
+    for i, k in enumerate(places.values()):
+        targets[:, k] += -along / 6 if i else along / 4
     return targets.reshape(n, *target.shape)
 
 

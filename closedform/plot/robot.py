@@ -111,15 +111,10 @@ class Robot:
         name = next((n for n in ("jacobian", "jacobian_space") if self.has(n)), None)
         if name is None:
             return np.ones(len(q))
-        J = np.asarray(self.call(name, q)).reshape(len(q), -1, *self._jacobian_shape(name, q))
-        finite = np.isfinite(J).all((-1, -2))
-        found = np.zeros(finite.shape)
-        sizes = np.linalg.svd(J[finite], compute_uv=False)
-        found[finite] = sizes[:, -1] / sizes[:, 0]
-        return np.asarray(found.max(-1))
-
-    def _jacobian_shape(self, name: str, q: Array) -> tuple[int, ...]:
-        return tuple(np.asarray(self.call(name, q[:1])).shape[-2:])
+        sizes = singular_values(np.asarray(self.call(name, q)))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            found = (sizes[..., -1] / sizes[..., 0]).reshape(len(q), -1)
+        return np.asarray(np.where(np.isfinite(found), found, 0.0).max(-1))
 
     @property
     def flat(self) -> bool:
@@ -138,6 +133,14 @@ class Robot:
             return 0
         gap = np.abs(self.task(q) - np.asarray(x)).reshape(len(self.modes), -1).max(-1)
         return int(np.nanargmin(gap))
+
+
+def singular_values(J: Array) -> Array:
+    """The singular values of Jacobians, the largest first; NaN where an entry is not finite."""
+    finite = np.isfinite(J).all((-1, -2))
+    found = np.full((*J.shape[:-2], min(J.shape[-2:])), np.nan)
+    found[finite] = np.linalg.svd(J[finite], compute_uv=False)
+    return found
 
 
 def positions(r: Robot, target: Array) -> dict[str, int]:

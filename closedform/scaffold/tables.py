@@ -112,29 +112,29 @@ def shown_name(name: str) -> str:
     return name if name.isascii() and name.isidentifier() and len(name) < 60 else shown(name)
 
 
-def _text(path: Path) -> str:
+def content_of(path: Path, largest: int, what: str) -> bytes:
+    """The content of a file that is not trusted; raises if it has more than ``largest`` bytes."""
     try:
         with path.open("rb") as file:
-            content = file.read(LARGEST + 1)
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        if len(content) > LARGEST:
-            raise _too_large(path) from error
-        raise TableError(f"{path.name} is not a text in UTF-8; save it as plain text") from error
+            content = file.read(largest + 1)
     except OSError as error:
         raise TableError(f"cannot read {path}: {error.strerror}") from error
-    if len(content) > LARGEST:
-        raise _too_large(path)
+    if len(content) > largest:
+        raise TableError(f"{path.name} is too large; {what} has at most {largest} bytes")
+    return content
+
+
+def _text(path: Path) -> str:
+    try:
+        text = content_of(path, LARGEST, "a table of joints").decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise TableError(f"{path.name} is not a text in UTF-8; save it as plain text") from error
     for i, line in enumerate(text.splitlines(), 1):
         if len(line) > LONGEST:
             raise TableError(
                 f"{path.name}, line {i}: the line has {len(line)} characters, more than {LONGEST}"
             )
     return text
-
-
-def _too_large(path: Path) -> TableError:
-    return TableError(f"{path.name} is too large; a table of joints has at most {LARGEST} bytes")
 
 
 def _remark(line: str) -> tuple[str, str, str, str] | None:

@@ -23,6 +23,7 @@ from closedform.scaffold.tables import (
     Table,
     TableError,
     add_joint,
+    content_of,
     shown_name,
     use_exact,
 )
@@ -98,13 +99,7 @@ def read_urdf(path: Path, *, base: str = "", tool: str = "") -> Table:
 
 
 def _root(path: Path) -> ElementTree.Element:
-    try:
-        with path.open("rb") as file:
-            content = file.read(LARGEST + 1)
-    except OSError as error:
-        raise TableError(f"cannot read {path}: {error.strerror}") from error
-    if len(content) > LARGEST:
-        raise TableError(f"{path.name} is too large; a URDF file has at most {LARGEST} bytes")
+    content = content_of(path, LARGEST, "a URDF file")
     if b"<!DOCTYPE" in content or b"<!ENTITY" in content:
         raise TableError(f"{path.name}: declarations such as <!ENTITY> are not read")
     try:

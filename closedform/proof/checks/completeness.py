@@ -14,9 +14,8 @@ import sympy as sp
 from closedform.algebra.normal_form import Undecided, decide
 from closedform.model.claims import HOLDS, INCOMPLETE, PROVED, REFUTED, Check, Verdict
 from closedform.proof.checks.equations import worst
-from closedform.proof.checks.evidence import Expr, Point, at
+from closedform.proof.checks.evidence import Expr, Point, at, holds
 from closedform.proof.checks.solutions import Count
-from closedform.proof.checks.statements import Holds
 
 
 @dataclass(frozen=True)
@@ -108,14 +107,10 @@ class Cases(Check):
             return found
         conditions = [condition for condition, _ in self.cases]
         for point in self.among:
-            if not any(_holds(c.subs(point)) for c in conditions):
+            if not any(holds(c.subs(point)) for c in conditions):
                 return Verdict(
                     INCOMPLETE, ("right where it answers, but it has no case for ", dict(point))
                 )
         if sp.Or(*conditions) != sp.true:
             raise Undecided("nothing proves that the cases cover every posture")
         return Verdict(found.kind, ("every posture is in one of the cases",))
-
-
-def _holds(relation: Expr) -> bool:
-    return Holds({"the condition": relation}).judge().kind == PROVED

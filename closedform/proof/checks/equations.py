@@ -16,7 +16,9 @@ from closedform.algebra.normal_form import decide
 from closedform.model.claims import (
     APPROXIMATION,
     FAULTS,
+    INCOMPLETE,
     INCONSISTENT,
+    NOT_DECIDABLE,
     PROVED,
     PROVED_UNDER,
     REFUTED,
@@ -30,6 +32,7 @@ from closedform.proof.checks.evidence import (
     Expr,
     Point,
     at,
+    cases,
     denested,
     difference,
     entries,
@@ -190,18 +193,13 @@ class Equal(Check):
         if len(several) > 1:
             raise ValueError("an equation with cases may have one list of them only")
         (first,) = several
-        before: list[Expr] = []
         found: list[Verdict] = []
-        for value, condition in first.args:
-            holds = [*before] if condition == sp.true else [*before, condition]
-            gaps = tuple(c.gts - c.lts for c in holds)
+        for value, gaps in cases(first):
             printed, derived = ([e.subs(first, value) for e in side] for side in (left, right))
             given = (*self.nonnegative, *gaps)
             verdict = Identity(printed, derived, given, self.small, names).judge()
             under = verdict.kind == PROVED_UNDER and not self.nonnegative
             found.append(Verdict(PROVED) if under else verdict)
-            if condition != sp.true:
-                before.append(sp.Not(condition))
         if first.args[-1][1] != sp.true:
             found.append(Verdict(REFUTED, ("the cases leave a gap",)))
         return worst(found)
@@ -256,7 +254,7 @@ def _listed(values: Sequence[Expr], point: Point) -> list[Any]:
 
 
 _SEVERITY = (
-    PROVED, PROVED_UNDER, APPROXIMATION, "not decidable here", "incomplete", INCONSISTENT, REFUTED,
+    PROVED, PROVED_UNDER, APPROXIMATION, NOT_DECIDABLE, INCOMPLETE, INCONSISTENT, REFUTED,
 )  # fmt: skip
 
 

@@ -5,10 +5,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import sympy as sp
+from sympy.core.relational import Relational
 
 from closedform.algebra.balls import evaluate
 from closedform.algebra.normal_form import Undecided, decide
@@ -101,13 +102,24 @@ def fixed(n: int, digits: int) -> str:
     return f"{minus}{whole}.{part:0{digits}d}" if digits else f"{minus}{whole}"
 
 
-def flatten(pieces: Sequence[Any]) -> tuple[Any, ...]:
-    """Pieces of evidence with nested sequences of pieces joined."""
-    found: list[Any] = []
-    for piece in pieces:
-        found += flatten(piece) if isinstance(piece, tuple) else [piece]
-    return tuple(found)
+def cases(piecewise: Expr) -> Iterator[tuple[Expr, list[Expr]]]:
+    """The value of each case of a piecewise function, and what is not negative there."""
+    before: list[Expr] = []
+    for value, condition in piecewise.args:
+        holds = before if condition == sp.true else [*before, condition]
+        yield value, [c.gts - c.lts for c in holds]
+        if condition != sp.true:
+            before.append(sp.Not(condition))
 
 
-SIGNS_OF = {sp.Eq: (0,), sp.Ne: (-1, 1), sp.Gt: (1,), sp.Ge: (0, 1), sp.Lt: (-1,), sp.Le: (-1, 0)}
+def holds(relation: Expr) -> bool:
+    """Whether a relation between constants holds; SymPy may already have decided it."""
+    if relation in (sp.true, sp.false):
+        return bool(relation)
+    if not isinstance(relation, Relational):
+        raise TypeError(f"{relation} is neither an equation nor an inequality")
+    return sign(relation.lhs - relation.rhs) in _SIGNS_OF[type(relation)]
+
+
+_SIGNS_OF = {sp.Eq: (0,), sp.Ne: (-1, 1), sp.Gt: (1,), sp.Ge: (0, 1), sp.Lt: (-1,), sp.Le: (-1, 0)}
 """The signs of the difference of the sides for which a relation holds."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
+from heapq import nsmallest
 from itertools import product
 from typing import Any
 
@@ -23,11 +24,13 @@ from closedform.algebra.normal_form import Undecided, decide
 from closedform.algebra.solutions import InfinitelyManyError, count_solutions
 from closedform.model.claims import INCOMPLETE, PROVED, REFUTED, Check, Verdict
 from closedform.model.notation import SIGN
-from closedform.proof.checks.evidence import Expr, at, shown
+from closedform.proof.checks.evidence import Expr, at, cases, shown
 
 SAMPLES = 100_000
 """The number of postures of which a share is given."""
 _CLOSE = 1e-6
+_SIMPLE = 2000
+"""The number of postures among which a simple one is sought."""
 _ANGLES = (
     0,
     sp.pi / 6,
@@ -116,14 +119,9 @@ class Postures:
         """Exact postures that a person can check by hand, with unit dimensions."""
         used = {s for e in self.inputs.values() for s in e.free_symbols}
         lengths = dict.fromkeys(sorted(used - set(self.joints), key=str), sp.S.One)
-        menu = [list(_ANGLES) for _ in self.joints]
-        ordered = sorted(
-            product(*(range(len(m)) for m in menu)), key=lambda ranks: (sum(ranks), ranks)
-        )[:2000]
-        for ranks in ordered:
-            yield lengths | {
-                q: sp.sympify(m[r]) for q, m, r in zip(self.joints, menu, ranks, strict=True)
-            }
+        ranked = product(range(len(_ANGLES)), repeat=len(self.joints))
+        for ranks in nsmallest(_SIMPLE, ranked, key=lambda ranks: (sum(ranks), ranks)):
+            yield lengths | {q: _ANGLES[r] for q, r in zip(self.joints, ranks, strict=True)}
 
 
 def values(e: Expr, at_symbols: Mapping[sp.Symbol, np.ndarray]) -> np.ndarray:
@@ -132,11 +130,6 @@ def values(e: Expr, at_symbols: Mapping[sp.Symbol, np.ndarray]) -> np.ndarray:
     with np.errstate(all="ignore"):
         found = sp.lambdify(symbols, e, "numpy")(*(at_symbols[s] for s in symbols))
     return np.broadcast_to(np.asarray(found), (SAMPLES,))
-
-
-def signed(formula: Expr) -> list[Expr]:
-    r"""The values of a formula for each sign of its ``\pm``."""
-    return [formula.subs(SIGN, s) for s in (1, -1)] if formula.has(SIGN) else [formula]
 
 
 @dataclass(frozen=True)
@@ -322,10 +315,5 @@ def _split(
     if first is None:
         yield branch, conditions
         return
-    before: list[Expr] = []
-    for value, condition in first.args:
-        holds = [*before] if condition == sp.true else [*before, condition]
-        gaps = [c.gts - c.lts for c in holds]
-        yield ({u: f.subs(first, value) for u, f in branch.items()}, [*conditions, *gaps])
-        if condition != sp.true:
-            before.append(sp.Not(condition))
+    for value, gaps in cases(first):
+        yield {u: f.subs(first, value) for u, f in branch.items()}, [*conditions, *gaps]

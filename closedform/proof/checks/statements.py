@@ -24,11 +24,11 @@ from closedform.model.claims import (
 )
 from closedform.model.notation import Relation
 from closedform.proof.checks.evidence import (
-    SIGNS_OF,
     Expr,
     Point,
     constant,
     fixed,
+    holds,
     nearest,
     sign,
 )
@@ -92,7 +92,7 @@ class Holds(Check):
     def judge(self) -> Verdict:
         if not self.relations:
             raise ValueError("Holds needs at least one relation")
-        failed = [name for name, relation in self.relations.items() if not _holds(relation)]
+        failed = [name for name, relation in self.relations.items() if not holds(relation)]
         if failed:
             return Verdict(REFUTED, (f"not so: {', '.join(failed)}",))
         return Verdict(PROVED, (", ".join(self.relations),))
@@ -205,7 +205,7 @@ def _negated(relation: Expr) -> Expr:
 def _first(relations: Sequence[Expr], among: Iterable[Point]) -> Point | None:
     """The first of some points at which all relations between constants hold."""
     for point in among:
-        if all(_holds(sp.sympify(r).subs(point)) for r in relations):
+        if all(holds(sp.sympify(r).subs(point)) for r in relations):
             return point
     return None
 
@@ -224,12 +224,3 @@ def _simple(relations: Sequence[Expr]) -> Point | None:
 
 def _violation(relation: Expr, point: Point) -> tuple[Any, ...]:
     return ("not at ", dict(point)) if point else ("it does not hold",)
-
-
-def _holds(relation: Expr) -> bool:
-    """Whether a relation between constants holds; SymPy may already have decided it."""
-    if relation in (sp.true, sp.false):
-        return bool(relation)
-    if not isinstance(relation, Relational):
-        raise TypeError(f"{relation} is neither an equation nor an inequality")
-    return sign(relation.lhs - relation.rhs) in SIGNS_OF[type(relation)]

@@ -22,10 +22,12 @@ import sympy as sp
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.pairs import Pair, direction
-from closedform.model.derivation import Continuum, Derivation, Inverse, Link, Solved
+from closedform.model.derivation import Continuum, Derivation, Inverse, Link, Relation, Solved
 from closedform.model.functions import (
     SINGLE,
+    Bound,
     Let,
+    Match,
     Program,
     Statement,
     Vanishes,
@@ -36,6 +38,7 @@ from closedform.model.functions import (
 from closedform.model.lemma import Lemma
 
 Choice = Mapping[int, str]
+_CIRCLE = (("s", sp.sin), ("c", sp.cos))
 
 
 @dataclass
@@ -83,9 +86,11 @@ class Chain:
             )
             self.targets: tuple[sp.Symbol, ...] = tuple(self.T)
             self.images: tuple[sp.Expr, ...] = tuple(self.forward)
+            self.inputs: dict[str, Any] = {"T": self.T}
         else:
             self.x = tuple(real(f"x_{name}") for name in self.d.task)
             self.targets, self.images = self.x, tuple(self.forward)
+            self.inputs = {"x": self.x}
 
     @property
     def size(self) -> sp.Expr:
@@ -103,6 +108,38 @@ class Chain:
         sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
         places = self.forward[:3, 3] if self.is_pose else self.forward
         return sp.Add(*sized) + max(map(lengths_in_numbers, places))
+
+    def given(self, joint: sp.Symbol) -> Pair:
+        """Take a joint as an input of the inverse, beside the pose; returns its pair."""
+        symbol = real(f"x_{joint.name}")
+        if not self.is_pose or any(
+            j.symbol == joint and j.kind != "revolute" for j in self.d.joints
+        ):
+            raise ShapeError(f"{self.d.name}: only a joint that turns can be given, beside a pose")
+        self.inputs[str(joint)] = symbol
+        self.targets, self.images = (*self.targets, symbol), (*self.images, joint)
+        self.angles = (*self.angles, joint.name)
+        pair = Pair(*(self.program.let(f"{n}_{joint.name}", f(symbol)) for n, f in _CIRCLE))
+        lemma = Lemma(
+            "given joint",
+            r"\theta = \theta_{\text{given}}",
+            (sp.cos(joint) - sp.cos(symbol), sp.sin(joint) - sp.sin(symbol)),
+            {joint: pair.angle},
+            1,
+        )
+        means = {pair.s: sp.sin(joint), pair.c: sp.cos(joint)}
+        return self.solve(lambda chain: Applied(lemma, pair, means))
+
+    def reached(self, R: sp.Matrix, p: sp.Matrix, place: sp.Matrix) -> None:
+        """Require what all joints leave of the target to be the tool: the pose is one of the arm's.
+
+        ``R`` and ``p`` are the target in the last frame, where the tool is turned by ``place``.
+        """
+        meaning = "the pose is none of the arm's"
+        for entry in R - place[:3, :3]:
+            self.program.match(entry, sp.S.One, meaning)
+        for entry in p - place[:3, 3]:
+            self.program.match(entry, self.size, meaning)
 
     def target(self, name: str) -> sp.Symbol:
         """The target value of a task coordinate."""
@@ -186,7 +223,14 @@ class Chain:
             self._check_unknown(unknown, applied.lemma)
         self._check_coefficients(applied.lemma)
         self.links.append(
-            Link(applied.lemma, body, dict(applied.means), dict(applied.given), applied.degenerate)
+            Link(
+                applied.lemma,
+                body,
+                dict(applied.means),
+                dict(applied.given),
+                applied.degenerate,
+                tuple(map(self._written_out, applied.relations)),
+            )
         )
         self.meaning |= applied.means
         self.halves |= applied.halves
@@ -194,6 +238,19 @@ class Chain:
         self.values |= solved
         self.notes += [f"SINGULAR: {case.meaning}" for case in applied.degenerate if case.free]
         return applied.result
+
+    def _written_out(self, relation: Relation) -> Relation:
+        """A relation without names, some of which the program does not keep."""
+        known: dict[sp.Basic, sp.Basic] = {}
+        for statement in self.program.body:
+            if isinstance(statement, (Let, Bound)):
+                meant = self.meaning.get(statement.symbol, statement.value)
+                known[statement.symbol] = substitute(meant, known)
+        return replace(
+            relation,
+            value=substitute(relation.value, known),
+            terms=tuple((u, substitute(factor, known)) for u, factor in relation.terms),
+        )
 
     def _check_unknown(self, unknown: sp.Symbol, lemma: Lemma) -> None:
         if unknown not in {*self.joints, *self.defined, *self.lengths}:
@@ -294,6 +351,8 @@ class Chain:
         needed = {s for j in self.joints for s in self.values[j].free_symbols}
         needed |= {s for link in self.links for e in link.lemma.equations for s in e.free_symbols}
         needed |= {s for pair in self.units for e in pair[:2] for s in e.free_symbols}
+        matches = [s.value for s in self.program.body if isinstance(s, Match)]
+        needed |= {s for e in matches for s in e.free_symbols}
         kept: list[Statement] = []
         for statement in reversed(self.program.body):
             if not isinstance(statement, Let) or statement.symbol in needed:
@@ -346,12 +405,11 @@ class Chain:
         choices = branches(*self.choices) if self.choices else SINGLE
         if self.name == "ik":
             d.branches = choices.labels
-        inputs = {"T": self.T} if self.is_pose else {"x": self.x}
         said = self.notes if singular is None else [f"SINGULAR: {text}" for text in singular]
         d.function(
             self.name,
             summary,
-            inputs,
+            self.inputs,
             {"q": [self.values[j] for j in self.joints]},
             program=self.program,
             branches=choices,

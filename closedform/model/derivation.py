@@ -196,10 +196,24 @@ class Degenerate:
 
 
 @dataclass(frozen=True)
+class Relation:
+    """What the coefficients of a lemma have to satisfy: ``value`` is zero.
+
+    It is the sum of the equations of earlier lemmas, each times a factor; each term is the unknown
+    that the lemma solved for first, and the factor of its first equation.
+    """
+
+    value: sp.Expr
+    terms: tuple[tuple[sp.Symbol, sp.Expr], ...]
+    meaning: str
+
+
+@dataclass(frozen=True)
 class Link:
     """A lemma in a chain, with the statements it added; ``means`` are its names at a posture.
 
-    ``given`` writes coefficients that depend on each other in free symbols.
+    ``given`` writes coefficients that depend on each other in free symbols.  ``relations`` say why
+    they do: each is zero wherever the equations of the earlier lemmas hold.
     """
 
     lemma: Lemma
@@ -207,6 +221,7 @@ class Link:
     means: Mapping[sp.Symbol, sp.Expr]
     given: Mapping[sp.Symbol, sp.Expr]
     degenerate: tuple[Degenerate, ...] = ()
+    relations: tuple[Relation, ...] = ()
 
 
 @dataclass(frozen=True)

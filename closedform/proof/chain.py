@@ -7,12 +7,17 @@ Soundness and completeness follow from four computed facts:
 2. the equations of every lemma hold at every posture if the target is its image, so each posture
    is among the branches;
 3. no lemma is applied to an equation whose coefficients vanish at every posture;
-4. the equations of all lemmas are linear in the target (and in auxiliary lengths) and determine it
-   from the joints.  By 2 the image of the joints is a solution, so it is the only one: the forward
-   map takes each answer to the target.
+4. the equations of all lemmas determine the target from the joints.  By 2 the image of the joints
+   is a solution, so it is the only one: the forward map takes each answer to the target.
 
-Fact 4 is computed as the rank of a matrix at a random exact posture.  Full rank at one posture
-means full rank at almost all, and the answers are continuous in the target where they exist.
+Fact 4 is computed as ranks of matrices at random exact postures.  The equations that are linear in
+the target (and in auxiliary lengths) determine some coordinates; those that are linear in the rest
+once these are known determine others.  Full rank at one posture means full rank at almost all, and
+the answers are continuous in the target where they exist.
+
+The coefficients of a lemma may depend on each other, as two vectors of equal length.  That they do
+is a sum of earlier equations, each times a factor; or the program compares the answer with the
+target itself.
 """
 
 from __future__ import annotations
@@ -28,7 +33,8 @@ from closedform.algebra import certificates
 from closedform.algebra.balls import Evaluator
 from closedform.algebra.solutions import InfinitelyManyError, SolutionCount, count_solutions
 from closedform.model.derivation import Continuum, Derivation, Inverse, Link
-from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
+from closedform.model.functions import Bound, Function, Let, Match, Vanishes, substitute
+from closedform.proof.determined import random_posture, undetermined
 from closedform.proof.require import ProofError, require
 
 Expr = Any
@@ -51,10 +57,15 @@ def prove_chain(derivation: Derivation, inverse: Inverse) -> tuple[int, tuple[Ex
     for link in inverse.chain:
         _follows(link, graph, where)
         _not_degenerate(link, graph, where)
+    matches = [s.value for s in function.body if isinstance(s, Match)]
+    _matches_follow(matches, graph, where)
     for continuum in inverse.continua:
         _flag_holds(continuum, function, graph, where)
     _free_choices_are_units(inverse, where)
-    _determines_target(inverse, graph, where)
+    compared = bool(matches) and not undetermined(inverse, graph, matches)
+    if not compared:
+        _relations_hold(inverse, graph, where)
+        _determines_target(inverse, graph, matches, where)
     branches = len(function.branches) if function.branches else 1
     certificates.add_inverse(function.name, branches, counts)
     return count, tuple(assumptions), cases
@@ -227,12 +238,6 @@ def _follows(link: Link, graph: Graph, where: str) -> None:
     require(sp.Matrix([graph(e) for e in lemma.equations]), (), place)
 
 
-def _random_posture(draw: random.Random, symbols: Sequence[Expr]) -> dict[Expr, Expr]:
-    return {
-        s: sp.Rational(draw.randint(1, 40), draw.randint(7, 20)) for s in sorted(symbols, key=str)
-    }
-
-
 def _not_degenerate(link: Link, graph: Graph, where: str) -> None:
     """Prove that the flags of a lemma are false at some posture."""
     draw = random.Random(1)
@@ -240,7 +245,7 @@ def _not_degenerate(link: Link, graph: Graph, where: str) -> None:
         if not (isinstance(statement, Vanishes) and statement.free):
             continue
         value = _without_signs(graph(statement.value))
-        point = _random_posture(draw, list(value.free_symbols))
+        point = random_posture(draw, list(value.free_symbols))
         certificates.regular([[value**2]], point, "quantities that differ from zero at a posture")
         (ball,) = Evaluator(list(point), [value])(list(point.values()))
         if ball.contains(0):
@@ -265,68 +270,39 @@ def _without_signs(e: Expr) -> Expr:
     return e.xreplace({s: sp.S.One for s in e.free_symbols if s.name.startswith("sigma_")})
 
 
-def _determines_target(inverse: Inverse, graph: Graph, where: str) -> None:
-    """Prove that the equations are linear in target and auxiliary lengths and have full rank."""
-    draw = random.Random(2)
-    columns: list[Expr] = []
-    circle: dict[Expr, Expr] = {}
-    for x in inverse.targets:
-        if x in inverse.angles:
-            c, s = sp.Dummy(f"c_{x}"), sp.Dummy(f"s_{x}")
-            circle |= {sp.cos(x): c, sp.sin(x): s}
-            columns += [c, s]
-        else:
-            columns.append(x)
-    columns += list(inverse.lengths)
-    required = _constant_targets(inverse)
-    equations = [
-        sp.expand_trig(graph.named(e)).xreplace(circle)
-        for link in inverse.chain
-        for e in link.lemma.equations
-    ]
-    equations += [x - value for x, value in required.items()]
-    rows = []
-    for e in equations:
-        slopes = [e.diff(x) for x in columns]
-        if any(slope.has(*columns) for slope in slopes):
-            raise ProofError(
-                f"{where}: the equation {e} of a lemma is not linear in the target; give its roots "
-                f"and products names with ik.let"
-            )
-        rows.append(slopes)
-    entries = [slope for row in rows for slope in row]
-    point = _random_posture(draw, sorted({s for e in entries for s in e.free_symbols}, key=str))
-    certificates.regular(rows, point, "ranks of a matrix at a posture")
-    balls = Evaluator(list(point), entries)(list(point.values()))
-    n = len(columns)
-    rank = _certain_rank([balls[i : i + n] for i in range(0, len(balls), n)])
-    if rank < n:
+def _matches_follow(matches: Sequence[Expr], graph: Graph, where: str) -> None:
+    """Prove that no posture is refused because its image does not match."""
+    place = f"{where}: what the target is compared with differs from the forward map"
+    require(sp.Matrix([graph(e) for e in matches]), (), place)
+
+
+def _relations_hold(inverse: Inverse, graph: Graph, where: str) -> None:
+    """Prove that the coefficients of each lemma satisfy what it requires of them."""
+    first: dict[Expr, Expr] = {}
+    for link in inverse.chain:
+        for relation in link.relations:
+            place = f"{where}: {relation.meaning}, which the lemma {link.lemma.name!r} requires"
+            unknown = [u for u, _ in relation.terms if u not in first]
+            if unknown or not relation.terms:
+                missing = f": no earlier lemma solves for {unknown[0]}" if unknown else ""
+                raise ProofError(
+                    f"{place}, does not follow from earlier equations{missing}; say with because= "
+                    f"from which"
+                )
+            total = sum(factor * first[u] for u, factor in relation.terms)
+            require(graph.named(relation.value - total), (), f"{place}, does not follow so")
+        first[next(iter(link.lemma.solution))] = link.lemma.equations[0]
+
+
+def _determines_target(inverse: Inverse, graph: Graph, matches: Sequence[Expr], where: str) -> None:
+    """Prove that the equations have no other solution for the target than the image."""
+    lemmas = [e for link in inverse.chain for e in link.lemma.equations]
+    if missing := undetermined(inverse, graph, [*lemmas, *matches]):
         raise ProofError(
-            f"{where}: the lemmas leave {n - rank} of the {n} coordinates of the target "
-            f"undetermined: an equation of the forward map is not used"
+            f"{where}: the lemmas leave {len(missing)} of the coordinates of the target "
+            f"undetermined ({', '.join(missing)}): an equation of the forward map is not used, or "
+            f"it is not linear in the target"
         )
 
 
-def _certain_rank(rows: list[list[Any]]) -> int:
-    """The rank of a matrix of balls; only pivots that certainly differ from zero count."""
-    rank = 0
-    for column in range(len(rows[0])):
-        certain = [row for row in rows[rank:] if not row[column].contains(0)]
-        if not certain:
-            continue
-        pivot = max(certain, key=lambda row: abs(float(row[column].mid())))
-        rows = [*rows[:rank], pivot, *(row for row in rows[rank:] if row is not pivot)]
-        rows[rank + 1 :] = [
-            [a - b * (row[column] / pivot[column]) for a, b in zip(row, pivot, strict=True)]
-            for row in rows[rank + 1 :]
-        ]
-        rank += 1
-    return rank
-
-
-def _constant_targets(inverse: Inverse) -> dict[Expr, Expr]:
-    """Entries of the target that no joint moves, such as the last row of a pose."""
-    return {x: f for x, f in zip(inverse.targets, inverse.forward, strict=True) if f.is_number}
-
-
-__all__ = ["prove_chain"]
+__all__ = ["Graph", "prove_chain"]

@@ -18,6 +18,14 @@ class NoChainError(ValueError):
 
 
 @dataclass(frozen=True)
+class Tried:
+    """A chain that was tried before, and why it does not fit."""
+
+    name: str
+    error: NoChainError
+
+
+@dataclass(frozen=True)
 class Proposal:
     """The structure that was recognised, and the lines that solve the arm; ``ik`` is a Chain."""
 
@@ -25,10 +33,11 @@ class Proposal:
     lines: tuple[str, ...]
     lemmas: tuple[str, ...]
     branches: int
+    tried: tuple[Tried, ...] = ()
 
     @property
     def source(self) -> str:
         return "\n".join(self.lines) + "\n"
 
 
-__all__ = ["NoChainError", "Proposal"]
+__all__ = ["NoChainError", "Proposal", "Tried"]

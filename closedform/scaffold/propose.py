@@ -13,8 +13,8 @@ You accept or edit them, and the proof decides.  The known structures are
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any
 
 import sympy as sp
@@ -22,29 +22,82 @@ import sympy as sp
 from closedform.mechanics.arm import Group, Serial
 from closedform.mechanics.axes import met
 from closedform.mechanics.frames import rotation
-from closedform.scaffold.proposal import NoChainError, Proposal
-from closedform.scaffold.source import source
-
-Z = sp.Matrix([0, 0, 1])
-
-
-def propose(arm: Serial) -> Proposal:
-    """The chain for an arm; raises :class:`NoChainError` if none is known."""
-    maker = _Maker(arm)
-    structure = maker.whole()
-    lemmas = tuple(dict.fromkeys(maker.used))
-    return Proposal(structure, tuple(maker.lines), lemmas, maker.branches)
+from closedform.scaffold.chainlinks import Single, Singles, singles
+from closedform.scaffold.maker import Maker, Z, norm, point, times
+from closedform.scaffold.proposal import NoChainError, Proposal, Tried
+from closedform.scaffold.source import GIVEN, source
+from closedform.scaffold.subproblems import SubproblemMaker
 
 
-@dataclass
-class _Maker:
-    """Writes lines that refer to a vector by its name and to a rotation by its pairs' names."""
+def propose(arm: Serial, given: str = "") -> Proposal:
+    """The chain for an arm; raises :class:`NoChainError` if none is known.
 
-    arm: Serial
-    lines: list[str] = field(default_factory=list)
-    used: list[str] = field(default_factory=list)
-    count: int = 0
-    branches: int = 1
+    Of an arm of seven joints one is ``given``, by default one that makes the chain short.
+    """
+    tried: list[Tried] = []
+    for name, maker, structure in _candidates(arm, given):
+        try:
+            found = structure()
+        except NoChainError as error:
+            tried.append(Tried(name, error))
+            continue
+        lemmas = tuple(dict.fromkeys(maker.used))
+        return Proposal(found, tuple(maker.lines), lemmas, maker.branches, tuple(tried))
+    raise tried[0].error
+
+
+def _candidates(arm: Serial, given: str) -> Iterator[tuple[str, Maker, Callable[[], str]]]:
+    """The chains to try, the cheapest first: a name, a maker, and what writes the lines."""
+    n = len(arm.joints)
+    if n <= 6:
+        whole = _Maker(arm)
+        yield "a known structure", whole, whole.whole
+    if any(row.slides for group in arm.groups for row in group.rows):
+        return
+    one_by_one = singles(arm)
+    if n == 6:
+        yield from _six(arm, one_by_one, "", None)
+    if n == 7:
+        order = [s for k in (2, 6, 4, 0, 3, 1, 5) if (s := one_by_one.joints[k])]
+        chosen = [s for s in order if not given or s.joint.name == given]
+        for single in chosen:
+            yield from _six(arm, one_by_one, f", with {single.joint} given", single)
+
+
+def _six(
+    arm: Serial, whole: Singles, more: str, given: Single | None
+) -> Iterator[tuple[str, Maker, Callable[[], str]]]:
+    """An arm of six joints that are not given, from its base and from its tool."""
+    for inverted, wrist in ((False, "spherical wrist"), (True, "spherical shoulder")):
+        maker = SubproblemMaker(arm)
+        yield f"{wrist}{more}", maker, partial(_with_wrist, maker, whole, given, inverted, more)
+
+
+def _with_wrist(
+    maker: SubproblemMaker, whole: Singles, given: Single | None, inverted: bool, more: str
+) -> str:
+    if given is not None:
+        maker.give(given)
+        turned = rotation("z", given.turn.xreplace({given.joint: GIVEN})).applyfunc(sp.expand_trig)
+        whole = whole.with_given(given.number, turned)
+    if inverted:
+        whole = whole.reversed()
+    ends = [s.number for s in whole.joints[3:]]
+    found = whole.met(3, 3)
+    if found is None:
+        raise NoChainError(
+            f"axes {ends[0]}, {ends[1]} and {ends[2]} do not meet in a point",
+            "A spherical wrist or shoulder needs three axes that meet.",
+        )
+    for k in (0, 1):
+        found = found.met(k, 2) or found
+    structure = maker.solved(found, 3)
+    name = "shoulder" if inverted else "wrist"
+    return f"spherical {name}, {structure}{more}"
+
+
+class _Maker(Maker):
+    """Writes the lines for arms whose neighbouring axes are parallel or normal."""
 
     def whole(self) -> str:
         groups, task = [_plain(group) for group in self.arm.groups], self.arm.coordinates()
@@ -60,7 +113,7 @@ class _Maker:
         if "yaw" in task.names:
             return self._level(groups, task.names)
         if task.names == ("x", "y"):
-            self._require(
+            self.require(
                 len(groups) == 1,
                 "its axes are not parallel",
                 "An arm with the task x, y needs parallel axes.",
@@ -81,94 +134,33 @@ class _Maker:
         structure, _ = self._position(groups)
         return structure
 
-    def add(self, line: str) -> None:
-        self.lines.append(line)
-
-    def solve(self, lemma: str, arguments: str, result: str = "", branches: int = 1) -> None:
-        self.used.append(lemma)
-        self.branches *= branches
-        self.add(f"{result + ' = ' if result else ''}ik.solve({lemma}, {arguments})")
-
-    def _require(self, condition: Any, found: str, needed: str) -> None:
-        """Raise :class:`NoChainError` unless the condition holds."""
-        if not condition:
-            raise NoChainError(found, needed)
-
     def _lead_away(self, vector: str) -> None:
         R, p = self.arm.lead[:3, :3], self.arm.lead[:3, 3]
         if not (p.is_zero_matrix and (R - sp.eye(3)).is_zero_matrix):
             self.add(
-                f"{vector} = ik.vector('{vector}0', {_times(R.T, f'({vector} - {source(p)})')})"
+                f"{vector} = ik.vector('{vector}0', {times(R.T, f'({vector} - {source(p)})')})"
             )
 
     # Planar arms
 
-    def _links(self, group: Group, turns: Sequence[int]) -> list[sp.Matrix]:
-        """The plane vectors from each turning axis to the next, and from the last to the end."""
-        vectors = []
-        for k, i in enumerate(turns):
-            stop = turns[k + 1] if k + 1 < len(turns) else len(group.rows)
-            shifts = (sp.Matrix(row.shift[:2]) for row in group.rows[i:stop])
-            vectors.append(sum(shifts, sp.zeros(2, 1)))
-        return vectors
-
-    def _two_links(
-        self, joints: Sequence[Any], vectors: Sequence[Any], x: str, y: str, alone: bool = False
-    ) -> None:
-        """Solve two joints, given with their signs and link vectors, to reach the point x, y.
-
-        With ``alone`` x and y are target coordinates, so the links set the scale of rounding.
-        """
-        (first, second), (u, v) = joints, vectors
-        lengths = [_length(w) for w in (u, v)]
-        self._require(
-            0 not in lengths,
-            f"link {lengths.index(0) + 1 if 0 in lengths else 0} of its planar two-link part "
-            "has no length",
-            "Both links need one.  If the last is missing, say where the tool is, in the last row "
-            "of the table or, for a modified table, with tool= of from_dh.",
-        )
-        at = [sp.atan2(w[1], w[0]) for w in (u, v)]
-        a = self.angle(first + at[0])
-        b = self.angle(second + at[1] - at[0])
-        more = f", scale={source(sum(lengths))}" if (x, y) == ("x", "y") and alone else ""
-        names = []
-        for i, value in enumerate(lengths, 1):
-            if not value.is_Symbol:
-                self.add(f"link{i} = ik.program.let('link{i}', {source(value)}, nonnegative=True)")
-            names.append(source(value) if value.is_Symbol else f"link{i}")
-        arguments = f"{a}, {b}, {x}, {y}, {', '.join(names)}"
-        self.solve("two_links", f"{arguments}, {{+1: 'up', -1: 'down'}}{more}", f"{a}_, {b}_", 2)
-        self.pairs = (f"{a}_", f"{b}_")
-
-    def angle(self, value: Any) -> str:
-        """A joint, or a name for a joint with an offset or a sign."""
-        value = sp.expand(value)
-        if value.is_Symbol:
-            return str(value)
-        self.count += 1
-        name = f"alpha{self.count}"
-        self.add(f"{name} = ik.angle('{name}', {source(value)})")
-        return name
-
     def _planar(self, group: Group, names: Sequence[str]) -> str:
         turns = [i for i, row in enumerate(group.rows) if not row.slides]
-        self._require(
+        self.require(
             len(turns) == 2 == len(group.rows),
             f"{len(turns)} of its joints turn and {len(group.rows) - len(turns)} slide",
             "A planar arm with the task x, y needs two joints that turn.",
         )
         self._require_z("its first axis is not the z axis of the base")
-        vectors = self._links(group, turns)
+        vectors = self.links(group, turns)
         self._tool(group, vectors)
         self.add("x, y = ik.x[0], ik.x[1]")
         x, y = self._less_by(self.arm.lead[:2, 3])
-        self._two_links([group.rows[i].turn for i in turns], vectors, x, y, alone=True)
+        self.two_links([group.rows[i].turn for i in turns], vectors, x, y, alone=True)
         return "planar arm of two links"
 
     def _require_z(self, found: str) -> None:
         needed = "Choose the base frame so that its z axis is parallel to the first axis."
-        self._require(sp.eye(3) == self.arm.lead[:3, :3], found, needed)
+        self.require(sp.eye(3) == self.arm.lead[:3, :3], found, needed)
 
     def _less_by(self, offset: sp.Matrix) -> tuple[str, str]:
         """The names of x and y, minus the offset between them and the two links."""
@@ -184,7 +176,7 @@ class _Maker:
 
     def _level(self, groups: Sequence[Group], names: Sequence[str]) -> str:
         """Solve an arm with parallel axes: two links and a yaw, with or without a slide."""
-        self._require(
+        self.require(
             len(groups) == 1,
             "its axes are not parallel",
             "An arm with the task x, y (and z) and yaw needs parallel axes.",
@@ -194,12 +186,12 @@ class _Maker:
         rows = group.rows
         turns = [i for i, row in enumerate(rows) if not row.slides]
         slides = [i for i, row in enumerate(rows) if row.slides]
-        self._require(
+        self.require(
             len(turns) == 3 and len(slides) < 2,
             f"{len(turns)} of its joints turn and {len(slides)} slide",
             "An arm with a yaw in its task needs three joints that turn, and may have a slide.",
         )
-        vectors = self._links(group, turns)
+        vectors = self.links(group, turns)
         self._tool(group, vectors)
         self.add(f"{', '.join(names)} = ik.x")
         yaw = self.arm.coordinates().values[-1]  # type: ignore[union-attr]
@@ -209,7 +201,7 @@ class _Maker:
         ahead = sp.Symbol("yaw") + sp.simplify(total - yaw)
         last_link = rotation("z", ahead) * sp.Matrix([*vectors[2], 0])
         x, y = self._less_by(self.arm.lead[:2, 3] + last_link[:2, 0])
-        self._two_links(joints[:2], vectors[:2], x, y, alone=x == "x")
+        self.two_links(joints[:2], vectors[:2], x, y, alone=x == "x")
         for i in slides:
             symbol = _symbol(self.arm, rows, i)
             (value,) = sp.solve(self.arm.position[2] - sp.Symbol("z", real=True), symbol)
@@ -241,8 +233,8 @@ class _Maker:
         at, R = sp.zeros(3, 1), sp.eye(3)
         for group in groups:
             at, R = at + R * sp.Matrix(group.rows[0].shift), R * group.end
-        solved = sp.solve(list(at - _at("p")), joints, dict=True)
-        self._require(
+        solved = sp.solve(list(at - point("p")), joints, dict=True)
+        self.require(
             len(solved) == 1 and set(solved[0]) == set(joints),
             "the directions of its three slides lie in a plane",
             "A gantry needs three independent directions.",
@@ -258,13 +250,13 @@ class _Maker:
         direction = base.end * Z
         offset = sum((sp.Matrix(row.shift) for row in base.rows), sp.zeros(3, 1))
         offset += base.end * sp.Matrix(arm.rows[0].shift)
-        self._require(
+        self.require(
             direction[2] == 0,
             "its last slide is not at right angles to its first axis",
             "A cylindrical arm needs a right angle.",
         )
         along, across, up = direction.dot(offset), Z.cross(direction).dot(offset), offset[2]
-        self._require(
+        self.require(
             sp.simplify(across) == 0,
             "the line of its last slide through the tool does not meet the first axis",
             "In a cylindrical arm they must intersect.",
@@ -278,9 +270,9 @@ class _Maker:
         sides = "{+1: 'front', -1: 'back'}"
         self.solve("polar", f"{a}, {length}, p[0], p[1], {sides}", f"{a}_, _", 2)
         self._length_back(length, along, reach)
-        (value,) = sp.solve(up - _at("p")[2], lift)
+        (value,) = sp.solve(up - point("p")[2], lift)
         self.solve("slide", f"{lift}, {source(value)}")
-        return "cylindrical arm", [self._less(f"{a}_", direction), ""]
+        return "cylindrical arm", [self.less(f"{a}_", direction), ""]
 
     def length(self, value: Any, joint: Any) -> str:
         value = sp.simplify(value)
@@ -294,36 +286,25 @@ class _Maker:
             (solved,) = sp.solve(value - sp.Symbol("rho", real=True), joint)
             self.solve("slide", f"{joint}, {source(solved)}")
 
-    def _less(self, pair: str, v: Any) -> str:
-        """The pair minus the direction of ``v``, which the auxiliary angle has as an offset."""
-        length = _length(sp.Matrix(v[:2]))
-        c, s = v[0] / length, v[1] / length
-        if s == 0 and c == 1:
-            return pair
-        if c.free_symbols | s.free_symbols:
-            self.add(f"ahead = ik.direction('ahead', {source(v[0])}, {source(v[1])})")
-            return f"({pair} - ahead)"
-        return f"({pair} + Pair({source(-s)}, {source(c)}))"
-
     def _turret(self, groups: Sequence[Group], kinds: Sequence[str]) -> tuple[str, list[str]]:
         base, second = groups[0], groups[1]
         normal = base.end * Z
-        self._require_normal(normal[2], 1, 2)
+        self.require_normal(normal[2], 1, 2)
         beside = sum((row.shift[2] for row in second.rows), sp.S.Zero)
         if kinds[1:] == ["R", "P"]:
             along = second.end * sp.Matrix(groups[2].rows[0].shift)
-            self._require(
+            self.require(
                 (second.end * Z)[2] == 0,
                 "its slide is not at right angles to axis 2",
                 "A polar arm needs a right angle.",
             )
             beside += along[2]
-        links = self._links(second, [0, 1]) if kinds[1:] == ["RR"] else []
+        links = self.links(second, [0, 1]) if kinds[1:] == ["RR"] else []
         pair1 = self._turn_base(base, beside, links)
         if links:
             turns = [row.turn for row in second.rows]
-            self._two_links(turns, links, "q[0]", "q[1]")
-            bend = self._less(self.pairs[1], links[1])
+            self.two_links(turns, links, "q[0]", "q[1]")
+            bend = self.less(self.pairs[1], links[1])
             if bend != self.pairs[1]:
                 self.add(f"turn2 = {bend}.known_as(ik.program, '_turn2')")
                 bend = "turn2"
@@ -333,7 +314,7 @@ class _Maker:
         direction = second.end * Z
         length = sp.Matrix(direction[:2]).dot(out)
         sideways = sp.simplify(direction[0] * out[1] - direction[1] * out[0])
-        self._require(
+        self.require(
             sideways == 0,
             "the line of its slide through the tool or wrist does not meet axis 2",
             "In a polar arm they must intersect.",
@@ -351,7 +332,7 @@ class _Maker:
         self._length_back(name, length, slide)
         return "turret, a joint and a slide (polar arm)", [
             pair1,
-            self._less(f"{a}_", direction),
+            self.less(f"{a}_", direction),
             "",
         ]
 
@@ -363,7 +344,7 @@ class _Maker:
         The ``links`` have to reach the point, minus an offset that the ``wrist`` turns, if any.
         """
         row, h = base.rows[0], base.end * Z
-        p = _at("p")
+        p = point("p")
         a, b = source(h[0] * p[1] - h[1] * p[0]), source(h[0] * p[0] + h[1] * p[1])
         c = sp.simplify(beside + h[0] * row.shift[0] + h[1] * row.shift[1])
         joint = self.angle(row.turn)
@@ -374,10 +355,10 @@ class _Maker:
         seen = level + sp.Symbol("turn1.ahead") * along
         toward = ""
         if links and (c != 0 or wrist):
-            lengths = ", ".join(source(_length(link)) for link in links)
+            lengths = ", ".join(source(norm(link)) for link in links)
             if wrist or sp.simplify(level[:2, 0].dot(along[:2, 0])) != 0:
                 inside = f"(turned(pair).T * p - {source(sp.Matrix(row.shift))})"
-                point = _times(base.end.T, inside)
+                point = times(base.end.T, inside)
                 kind = "LinksAndWrist" if wrist else "Links"
                 self.add(f"links = {kind}(lambda pair: {point}, {lengths}{wrist})")
             else:
@@ -395,21 +376,14 @@ class _Maker:
 
     # Arms of six joints
 
-    def _require_normal(self, along: Any, first: int, second: int) -> None:
-        self._require(
-            along == 0,
-            f"axes {first} and {second} are not at right angles",
-            "The known chains need a right angle there.",
-        )
-
     def _pose(self, groups: list[Group]) -> str:
         for k, group in ((6, groups[-1]), (5, groups[-2])):
-            self._require(
+            self.require(
                 len(group.rows) == 1,
                 f"axes {k - 1} and {k} are parallel",
                 "Among the last three axes, no two neighbours may be parallel.",
             )
-            self._require(
+            self.require(
                 not group.rows[0].slides, f"joint {k} slides", "The last two joints must turn."
             )
         third = groups[-3]
@@ -419,7 +393,7 @@ class _Maker:
         for k in (-2, -1):
             groups[k - 1 : len(groups) + k + 1] = met(groups[k - 1], groups[k])
         wrist = groups[-2:]
-        self._require(
+        self.require(
             wrist[0].rows[0].shift[:2] == (0, 0),
             "axes 5 and 6 do not intersect",
             "The known chains need axes 5 and 6 that intersect.",
@@ -433,13 +407,13 @@ class _Maker:
             and not any(row.slides for row in groups[-3].rows)
         ):
             return self._three_parallel(groups)
-        self._require(
+        self.require(
             len(groups[-3].rows) == 1,
             "axes 3 and 4 are parallel",
             "This is known only if axes 2, 3 and 4 are parallel and turn, as in a UR arm.",
         )
         first = groups[-3]
-        self._require(
+        self.require(
             first.rows[0].shift[:2] == (0, 0) and wrist[0].rows[0].shift == (0, 0, 0),
             "axes 4, 5 and 6 do not meet in a point",
             "The known chains have a spherical wrist, or parallel axes 2, 3 and 4 (UR).",
@@ -453,11 +427,12 @@ class _Maker:
             Group((*before[-1].rows[:-1], last._replace(shift=moved)), before[-1].end),
         ]
         structure, pairs = self._position(arm)
-        self.add(f"M = {_times(self.arm.lead[:3, :3].T, 'ik.R')}")
+        self.add(f"M = {times(self.arm.lead[:3, :3].T, 'ik.R')}")
         for group, pair in zip(arm, pairs, strict=True):
             inside = f"turned({pair}).T * M" if pair else "M"
-            self.add(f"M = ik.matrix('M{len(self.lines)}', {_times(group.end.T, f'({inside})')})")
-        self._wrist(first.rows[0].turn, first, wrist, "M", "")
+            self.add(f"M = ik.matrix('M{len(self.lines)}', {times(group.end.T, f'({inside})')})")
+        after = wrist[1].end * self.arm.last[:3, :3]
+        self.wrist(first.rows[0].turn, [first, *wrist], "M", after)
         return f"{structure}, with a spherical wrist"
 
     def _tool_behind(self, last: Group) -> sp.Matrix:
@@ -465,43 +440,16 @@ class _Maker:
         R = last.end * self.arm.last[:3, :3]
         return R.T * (sp.Matrix(last.rows[0].shift) + last.end * self.arm.last[:3, 3])
 
-    def _wrist(
-        self, lift: Any, first: Group, wrist: Sequence[Group], M: str, more: str
-    ) -> tuple[str, Any]:
-        """Solve ``lift``, the fifth and the sixth joint, with their offsets, as ZYZ angles."""
-        e, sense = first.end * Z, 1
-        self._require_normal(e[2], 4, 5)
-        if e[1].is_negative:  # a turn about -y is a turn about y in the other direction
-            e, sense = -e, -1
-        epsilon = sp.atan2(e[1], e[0]) - sp.pi / 2
-        W = rotation("z", -epsilon) * first.end * wrist[0].end
-        self._require_normal(sp.simplify(W[1, 2]), 5, 6)
-        tau = sp.atan2(W[0, 2], W[2, 2])
-        rest = sp.simplify(rotation("y", -tau) * W)
-        omega = sp.atan2(rest[1, 0], rest[0, 0])
-        after = wrist[1].end * self.arm.last[:3, :3]
-        if after != sp.eye(3):
-            self.add(f"{M} = ik.matrix('{M}_tool', {M} * {source(after.T)})")
-        turns = [g.rows[0].turn for g in wrist]
-        names = (
-            self.angle(lift + epsilon),
-            self.angle(sense * turns[0] + tau),
-            self.angle(turns[1] + omega),
-        )
-        arguments = f"{M}, {', '.join(names)}, {{+1: 'noflip', -1: 'flip'}}{more}"
-        self.solve("zyz", arguments, f"{names[0]}_", 2)
-        return f"{names[0]}_", epsilon
-
     def _three_parallel(self, groups: Sequence[Group]) -> str:
         base, parallel, fifth, last = groups
         end = parallel.end * sp.Matrix(fifth.rows[0].shift)
         normal = base.end * Z
-        self._require_normal(normal[2], 1, 2)
+        self.require_normal(normal[2], 1, 2)
         beside = sum((row.shift[2] for row in parallel.rows), end[2])
-        u, v, w = self._links(parallel, [0, 1, 2])
+        u, v, w = self.links(parallel, [0, 1, 2])
         w = w + end[:2, 0]
-        length = _length(w)
-        lead = _times(self.arm.lead[:3, :3].T, "ik.R")
+        length = norm(w)
+        lead = times(self.arm.lead[:3, :3].T, "ik.R")
         e = parallel.end * Z
         epsilon = sp.atan2(e[1], e[0]) - sp.pi / 2
         if e[1].is_negative:
@@ -510,24 +458,24 @@ class _Maker:
         ahead = f"Pair({source(sp.sin(angle))}, {source(sp.cos(angle))})"
         after = last.end * self.arm.last[:3, :3]
         axis = f"{lead} * {source(after.T[:, 2])}"
-        axis = _times(base.end.T, f"turned(pair).T * {axis}")
+        axis = times(base.end.T, f"turned(pair).T * {axis}")
         offset = f"lambda pair: {axis}, {source(length)}, {ahead}"
         pair1 = self._turn_base(base, beside, [u, v], f", {offset}")
-        self.add(f"M = ik.matrix('M', {_times(base.end.T, f'turned({pair1}).T * {lead}')})")
-        lengths = f"{source(_length(u))}, {source(_length(v))}"
+        self.add(f"M = ik.matrix('M', {times(base.end.T, f'turned({pair1}).T * {lead}')})")
+        lengths = f"{source(norm(u))}, {source(norm(v))}"
         self.add(
             f"reaching = Reaching(ik, q[0], q[1], {source(length)}, {lengths}, {ahead}, "
             f"{pair1}.lever)"
         )
         lift = sum((row.turn for row in parallel.rows), sp.S.Zero)
-        pair, _ = self._wrist(lift, parallel, groups[2:], "M", ", reaching=reaching")
+        pair, _ = self.wrist(lift, groups[1:], "M", after, more=", reaching=reaching")
         c, t = sp.Symbol(f"{pair}.c"), sp.Symbol(f"{pair}.s")
-        q = _at("q")
+        q = point("q")
         past = length * rotation("z", angle) * sp.Matrix([c, t, 0])
         self.add(f"x = ik.let('ex', {source(q[0] - past[0])})")
         self.add(f"y = ik.let('ey', {source(q[1] - past[1])})")
         turns = [row.turn for row in parallel.rows]
-        self._two_links(turns[:2], [u, v], "x", "y")
+        self.two_links(turns[:2], [u, v], "x", "y")
         return "turret, three parallel joints and two more (UR)"
 
 
@@ -544,21 +492,6 @@ def _plain(group: Group) -> Group:
     R = rotation("z", row.turn)
     shift = tuple(R * sp.Matrix(row.shift))
     return Group((row._replace(turn=sp.S.Zero, shift=shift),), R * group.end)
-
-
-def _at(name: str) -> Any:
-    """The entries of the vector with this name in the lines."""
-    return sp.Matrix([sp.Symbol(f"{name}[{i}]") for i in range(3)])
-
-
-def _times(R: sp.Matrix, value: str) -> str:
-    return value if (R - sp.eye(3)).is_zero_matrix else f"{source(R)} * {value}"
-
-
-def _length(v: sp.Matrix) -> Any:
-    """The length of a vector in the plane."""
-
-    return sp.sqrt(sp.simplify(v.dot(v))) if v != sp.zeros(2, 1) else sp.S.Zero
 
 
 def _only(found: set[Any]) -> Any:

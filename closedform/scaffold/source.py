@@ -12,8 +12,18 @@ NAME = re.compile(r"[A-Za-z_]\w*(\[\d\]|\.[cs]|\.ahead)?", re.ASCII)
 """The name of a symbol, an entry of a vector, or a part of what a lemma returns."""
 
 
+GIVEN = sp.Symbol("given", real=True)
+"""The angle of a joint that is an input of the inverse; in the lines its pair is ``given``."""
+
+
 class _Source(StrPrinter):  # type: ignore[misc]
     """Expressions as Python; a fraction of integers stays exact."""
+
+    def _print_sin(self, expr: Any) -> str:
+        return "given.s" if expr.args[0] == GIVEN else f"sin({self._print(expr.args[0])})"
+
+    def _print_cos(self, expr: Any) -> str:
+        return "given.c" if expr.args[0] == GIVEN else f"cos({self._print(expr.args[0])})"
 
     def _print_Symbol(self, expr: Any) -> str:
         if not NAME.fullmatch(expr.name):
@@ -30,5 +40,8 @@ class _Source(StrPrinter):  # type: ignore[misc]
 
 def source(e: Any) -> str:
     """An exact expression or a matrix as Python code, with the names of ``sympy``."""
-    text: str = _Source().doprint(sp.sympify(e, strict=True))
+    exact = sp.sympify(e, strict=True)
+    if exact.has(GIVEN):
+        exact = sp.expand_trig(exact)
+    text: str = _Source().doprint(exact)
     return text

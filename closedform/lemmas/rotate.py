@@ -1,0 +1,74 @@
+"""One rotation that takes a vector to another (the first subproblem of Paden and Kahan)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import sympy as sp
+
+from closedform.lemmas.applied import Applied
+from closedform.lemmas.chain import Chain
+from closedform.lemmas.links import degenerate, differs_from_zero, named, vanishing
+from closedform.lemmas.pairs import direction
+from closedform.lemmas.registry import chain_lemma
+from closedform.model.derivation import Relation
+from closedform.model.functions import real
+from closedform.model.lemma import Lemma, label
+
+
+@chain_lemma("Rz(x) w = v, where |w| = |v|", "the pair of x")
+def rotate(
+    chain: Chain,
+    x: sp.Symbol,
+    w: Sequence[sp.Expr],
+    v: Sequence[sp.Expr],
+    *,
+    because: Mapping[sp.Symbol, sp.Expr] | None = None,
+    scale: sp.Expr | None = None,
+    name: str = "",
+) -> Applied:
+    """``Rz(x) w = v`` for vectors of the plane of equal length: one solution.
+
+    x is free where both vanish.  That their lengths are equal follows from the equations that were
+    solved for the unknowns in ``because``: w.w - v.v is their sum, each times the factor given.
+    ``scale`` is that of the vectors, by default the size of the arm.
+    """
+    p, tag = chain.program, name or label(x)
+    size = chain.size if scale is None else scale
+    relation = w[0] ** 2 + w[1] ** 2 - v[0] ** 2 - v[1] ** 2
+    w1, w2 = (chain.coefficient(f"w{i}_{tag}", e) for i, e in enumerate(w[:2], 1))
+    v1, v2 = (chain.named(f"v{i}_{tag}", e) for i, e in enumerate(v[:2], 1))
+    sine = p.let(f"cross_{tag}", w1 * v2 - w2 * v1)
+    cosine = p.let(f"dot_{tag}", w1 * v1 + w2 * v2)
+    length = p.let(f"square_{tag}", sp.sqrt(sine**2 + cosine**2), nonnegative=True)
+    flag: Any = sp.false
+    shorter = sp.Min(sp.sqrt(w1**2 + w2**2), sp.sqrt(v1**2 + v2**2))
+    if not any(differs_from_zero(chain, e, size) for e in (w1, w2)):
+        flag = p.vanishes(
+            f"on_axis_{tag}", shorter, size, f"the axis of {x.name} is met", free=(x,)
+        )
+    pair, means = named(chain, x, direction(sine, cosine, length, flag))
+    lemma = Lemma(
+        "rotation of a vector",
+        r"R(\theta)\,w = v,\ |w| = |v| \;\Rightarrow\; \theta = "
+        r"\operatorname{atan2}(w \times v, w \cdot v)",
+        (
+            w1 * sp.cos(x) - w2 * sp.sin(x) - v1,
+            w1 * sp.sin(x) + w2 * sp.cos(x) - v2,
+        ),
+        {x: pair.angle},
+        1,
+    )
+    t = real("tau")
+    c, s = (1 - t**2) / (1 + t**2), 2 * t / (1 + t**2)
+    given = {v1: w1 * c - w2 * s, v2: w1 * s + w2 * c}
+    meaning = f"the axis of {x} is met; {x} is free, 0 is returned."
+    cases = degenerate(flag, [vanishing(w1, w2, v1, v2)], x, meaning)
+    terms = tuple((u, sp.sympify(factor)) for u, factor in (because or {}).items())
+    relations = (Relation(relation, terms, f"that {_shown(w)} and {_shown(v)} are equally long"),)
+    return Applied(lemma, pair, means, given, cases, relations=relations)
+
+
+def _shown(vector: Sequence[sp.Expr]) -> str:
+    return f"({vector[0]}, {vector[1]})"

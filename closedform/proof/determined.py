@@ -1,0 +1,131 @@
+"""Whether the equations of a chain determine its target, as ranks of matrices at a posture."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol
+
+import sympy as sp
+
+from closedform.algebra import certificates
+from closedform.algebra.balls import Evaluator
+from closedform.model.derivation import Inverse
+
+Expr = Any
+
+
+class Postures(Protocol):
+    """Expressions in the unknowns and the target, and the target at a posture."""
+
+    targets: Mapping[Expr, Expr]
+    lengths: Mapping[Expr, Expr]
+
+    def named(self, e: Expr) -> Expr: ...
+
+
+def random_posture(draw: random.Random, symbols: Sequence[Expr]) -> dict[Expr, Expr]:
+    return {
+        s: sp.Rational(draw.randint(1, 40), draw.randint(7, 20)) for s in sorted(symbols, key=str)
+    }
+
+
+def undetermined(inverse: Inverse, graph: Postures, equations: Sequence[Expr]) -> list[str]:
+    """The coordinates of the target that the equations leave open, given the joints.
+
+    Equations that are linear in what is not known yet determine more of it, until nothing is added.
+    """
+    draw = random.Random(2)
+    columns, circle = _columns(inverse, graph)
+    constant = [x - f for x, f in zip(inverse.targets, inverse.forward, strict=True) if f.is_number]
+    left = [sp.expand_trig(graph.named(e)).xreplace(circle) for e in (*equations, *constant)]
+    known: dict[Expr, Expr] = {}
+    while True:
+        open_columns = [x for x in columns if x not in known]
+        rows, nonlinear = _linear_rows(left, open_columns, known)
+        found = _determined(rows, open_columns, draw)
+        if len(found) == len(open_columns):
+            return []
+        if not found or not nonlinear:
+            return [str(x) for x in open_columns if x not in found]
+        known |= {x: columns[x] for x in found}
+
+
+def _columns(inverse: Inverse, graph: Postures) -> tuple[dict[Expr, Expr], dict[Expr, Expr]]:
+    """The coordinates of the target and the auxiliary lengths, with their values at a posture.
+
+    An angle has two, its cosine and its sine.
+    """
+    columns: dict[Expr, Expr] = {}
+    circle: dict[Expr, Expr] = {}
+    for x in inverse.targets:
+        value = graph.targets[x]
+        if x in inverse.angles:
+            c, s = sp.Dummy(f"c_{x}"), sp.Dummy(f"s_{x}")
+            circle |= {sp.cos(x): c, sp.sin(x): s}
+            columns |= {c: sp.cos(value), s: sp.sin(value)}
+        else:
+            columns[x] = value
+    return columns | dict(graph.lengths), circle
+
+
+def _linear_rows(
+    equations: Sequence[Expr], columns: Sequence[Expr], known: Mapping[Expr, Expr]
+) -> tuple[list[list[Expr]], bool]:
+    """The coefficients of the equations that are linear in the columns, and whether others are not."""
+    rows, nonlinear = [], False
+    for e in equations:
+        slopes = [e.diff(x) if e.has(x) else sp.S.Zero for x in columns]
+        if any(slope.has(*columns) for slope in slopes):
+            nonlinear = True
+        elif any(slope != 0 for slope in slopes):
+            rows.append([slope.xreplace(known) for slope in slopes])
+    return rows, nonlinear
+
+
+def _determined(
+    rows: Sequence[Sequence[Expr]], columns: Sequence[Expr], draw: random.Random
+) -> list[Expr]:
+    """The columns of the parts of a matrix that have full rank; parts share no row or column."""
+    found = []
+    for part in _parts(rows, len(columns)):
+        own = [[row[j] for j in part] for row in rows if any(row[j] != 0 for j in part)]
+        entries = [slope for row in own for slope in row]
+        point = random_posture(draw, list({s for e in entries for s in e.free_symbols}))
+        balls = Evaluator(list(point), entries)(list(point.values()))
+        n = len(part)
+        if _certain_rank([balls[i : i + n] for i in range(0, len(balls), n)]) == n:
+            certificates.regular(own, point, "ranks of a matrix at a posture")
+            found += [columns[j] for j in part]
+    return found
+
+
+def _parts(rows: Sequence[Sequence[Expr]], width: int) -> list[list[int]]:
+    """The columns, those together that a row connects; without columns of zeros."""
+    parts: list[set[int]] = []
+    for row in rows:
+        touched = {j for j in range(width) if row[j] != 0}
+        joined = [part for part in parts if part & touched]
+        parts = [part for part in parts if not part & touched]
+        parts.append(touched.union(*joined))
+    return [sorted(part) for part in parts]
+
+
+def _certain_rank(rows: list[list[Any]]) -> int:
+    """The rank of a matrix of balls; only pivots that certainly differ from zero count."""
+    rank = 0
+    for column in range(len(rows[0])):
+        certain = [row for row in rows[rank:] if not row[column].contains(0)]
+        if not certain:
+            continue
+        pivot = max(certain, key=lambda row: abs(float(row[column].mid())))
+        rows = [*rows[:rank], pivot, *(row for row in rows[rank:] if row is not pivot)]
+        rows[rank + 1 :] = [
+            [a - b * (row[column] / pivot[column]) for a, b in zip(row, pivot, strict=True)]
+            for row in rows[rank + 1 :]
+        ]
+        rank += 1
+    return rank
+
+
+__all__ = ["random_posture", "undetermined"]

@@ -1,0 +1,144 @@
+"""An arm as single joints: a turn or slide along z each, and the constant motion to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from closedform.mechanics.arm import Serial
+
+Z = sp.Matrix([0, 0, 1])
+
+
+@dataclass(frozen=True)
+class Single:
+    """``Rz(turn)``, then the ``shift`` and the rotation ``end`` to the frame of the next joint.
+
+    ``number`` counts the joints of the arm from 1.
+    """
+
+    number: int
+    joint: sp.Symbol
+    turn: sp.Expr
+    slides: bool
+    shift: sp.Matrix
+    end: sp.Matrix
+
+
+@dataclass(frozen=True)
+class Singles:
+    """``lead``, the joints one by one; the tool is at ``last`` in the frame after the last one.
+
+    With ``inverted`` this is the arm from the tool to the base, and its target the inverse pose.
+    """
+
+    joints: tuple[Single, ...]
+    lead: sp.Matrix
+    inverted: bool = False
+
+    @property
+    def tool(self) -> sp.Matrix:
+        """The constant motion after the last joint."""
+        return _motion(self.joints[-1])
+
+    def reversed(self) -> Singles:
+        """The arm seen from its tool: the inverse of each motion, in the opposite order."""
+        after = [_inverse(self.lead), *(_inverse(_motion(s)) for s in self.joints)]
+        joints = []
+        for k in range(len(self.joints) - 1, -1, -1):
+            single, motion = self.joints[k], after[k]
+            joints.append(
+                replace(single, turn=-single.turn, shift=motion[:3, 3], end=motion[:3, :3])
+            )
+        return Singles(tuple(joints), after[-1], not self.inverted)
+
+    def with_given(self, number: int, turned: sp.Matrix) -> Singles:
+        """The arm with a joint that is ``turned`` by a known rotation about z."""
+        k = next(i for i, s in enumerate(self.joints) if s.number == number)
+        fixed = sp.diag(turned, 1) * _motion(self.joints[k])
+        others = [*self.joints[:k], *self.joints[k + 1 :]]
+        if k == 0:
+            return Singles(tuple(others), _simplified(self.lead * fixed), self.inverted)
+        before = _simplified(_motion(others[k - 1]) * fixed)
+        others[k - 1] = replace(others[k - 1], shift=before[:3, 3], end=before[:3, :3])
+        return Singles(tuple(others), self.lead, self.inverted)
+
+    def met(self, first: int, count: int) -> Singles | None:
+        """The same with the origins of joints that meet in one point moved there; None if not."""
+        joints = list(self.joints)
+        lead = self.lead
+        for k in range(first, first + count - 1):
+            shift, axis = joints[k].shift, joints[k].end * Z
+            across = axis[:2, 0]
+            if across.is_zero_matrix:
+                return None
+            beta = sp.simplify(across.dot(shift[:2, 0]) / across.dot(across))
+            rest = (shift - beta * axis).applyfunc(sp.simplify)
+            if not rest[:2, 0].is_zero_matrix:
+                return None
+            alpha = rest[2]
+            if alpha != 0:
+                if k > first:
+                    return None
+                if k == 0:
+                    move = lead[:3, :3] * (alpha * Z)
+                    lead = lead.copy()
+                    lead[:3, 3] = lead[:3, 3] + move
+                else:
+                    before = joints[k - 1]
+                    moved = (before.shift + before.end * (alpha * Z)).applyfunc(sp.simplify)
+                    joints[k - 1] = replace(before, shift=moved)
+            joints[k] = replace(joints[k], shift=sp.zeros(3, 1))
+            onward = (joints[k + 1].shift + beta * Z).applyfunc(sp.simplify)
+            joints[k + 1] = replace(joints[k + 1], shift=onward)
+        return Singles(tuple(joints), lead, self.inverted)
+
+
+def singles(arm: Serial) -> Singles:
+    """The joints of an arm one by one; the tool is part of the last motion."""
+    joints: list[Single] = []
+    names = iter(arm.joints)
+    for group in arm.groups:
+        for i, row in enumerate(group.rows):
+            end = group.end if i == len(group.rows) - 1 else sp.eye(3)
+            number = len(joints) + 1
+            joints.append(
+                Single(number, next(names), row.turn, row.slides, sp.Matrix(row.shift), end)
+            )
+    last = joints[-1]
+    motion = _motion(last) * arm.last
+    joints[-1] = replace(last, shift=motion[:3, 3], end=motion[:3, :3])
+    return Singles(tuple(joints), arm.lead)
+
+
+def parallel(single: Single) -> bool:
+    """Whether the axis after a joint is parallel to its own."""
+    return bool((single.end * Z)[:2, 0].applyfunc(sp.simplify).is_zero_matrix)
+
+
+def _motion(single: Single) -> sp.Matrix:
+    motion = sp.diag(single.end, 1)
+    motion[:3, 3] = single.shift
+    return motion
+
+
+def _inverse(motion: sp.Matrix) -> sp.Matrix:
+    R = motion[:3, :3].T
+    found = sp.diag(R, 1)
+    found[:3, 3] = (-R * motion[:3, 3]).applyfunc(sp.expand)
+    return found
+
+
+def _simplified(motion: sp.Matrix) -> sp.Matrix:
+    return motion.applyfunc(lambda e: sp.trigsimp(sp.expand(e)) if e.has(sp.sin, sp.cos) else e)
+
+
+def about_z(pair: Sequence[sp.Expr]) -> sp.Matrix:
+    """The rotation about z by the angle with this sine and cosine."""
+    s, c = pair
+    return sp.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+
+__all__ = ["Single", "Singles", "about_z", "parallel", "singles"]

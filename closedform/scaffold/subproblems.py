@@ -1,0 +1,244 @@
+"""Proposes a chain of subproblems for arms whose axes have any direction.
+
+Three axes that meet in a point leave this point to the other joints, and a rotation to themselves.
+The other joints are solved one after another, each by an equation that holds no other unknown:
+
+- two neighbours that meet leave the distance between their point and a later one;
+- two parallel neighbours leave the component along their axis;
+- and what is left of a pair is the rotation of one vector to another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from closedform.mechanics.arm import Group, Row
+from closedform.scaffold.chainlinks import Single, Singles, parallel
+from closedform.scaffold.maker import Maker, Z, norm, point, times
+from closedform.scaffold.proposal import NoChainError
+from closedform.scaffold.source import source
+
+Turned = list[tuple[str, sp.Matrix]]
+"""The rotations that were solved: the name of a pair about z, and the constant rotation after it."""
+
+
+@dataclass
+class SubproblemMaker(Maker):
+    """Writes the lines for an arm of single joints."""
+
+    choices: int = 0
+    unknowns: dict[int, str] = field(default_factory=dict)
+
+    def give(self, joint: Single) -> None:
+        """Take a joint as an input."""
+        self.add(f"given = ik.given({joint.joint})")
+
+    def solved(self, arm: Singles, wrist: int) -> str:
+        """Solve an arm whose last ``wrist`` joints meet in a point; return its structure."""
+        n = len(arm.joints)
+        before, ends = arm.joints[: n - wrist], arm.joints[n - wrist :]
+        R, p = ("ik.R", "ik.p")
+        if arm.inverted:
+            self.add("R = ik.R.T")
+            self.add("p = ik.vector('base', -R * ik.p)")
+            R, p = "R", "p"
+        tool = arm.tool
+        offset = (tool[:3, :3].T * tool[:3, 3]).applyfunc(sp.simplify)
+        if not offset.is_zero_matrix:
+            self.add(f"p = ik.vector('w', {p} - {R} * {source(offset)})")
+        elif p != "p":
+            self.add(f"p = {p}")
+        lead = arm.lead[:3, :3]
+        if arm.lead != sp.eye(4):
+            moved = times(lead.T, f"(p - {source(arm.lead[:3, 3])})")
+            self.add(f"p = ik.vector('p0', {moved})")
+        structure, turned = self.position(before)
+        M = times(lead.T, R)
+        for k, (pair, end) in enumerate(turned, 1):
+            self.add(f"left{k} = ik.matrix('left{k}', {times(end.T, f'(turned({pair}).T * {M})')})")
+            M = f"left{k}"
+        after = tool[:3, :3]
+        if not (after - sp.eye(3)).is_zero_matrix:
+            self.add(f"left = ik.matrix('left', {M} * {source(after.T)})")
+            M = "left"
+        self.orientation(ends, M)
+        return structure
+
+    # The joints that carry a point
+
+    def position(self, joints: Sequence[Single]) -> tuple[str, Turned]:
+        """Solve up to three joints that carry the point ``p``, which is at the end of the last."""
+        self.require(
+            not any(j.slides for j in joints),
+            "a joint slides in an order that is not known",
+            "The known orders are those of polar and cylindrical arms and of gantries.",
+        )
+        if len(joints) == 3:
+            return self._three(*joints)
+        raise NoChainError(f"{len(joints)} joints carry its wrist", "Known are three.")
+
+    def _three(self, one: Single, two: Single, three: Single) -> tuple[str, Turned]:
+        if not parallel(one) and two.end == sp.eye(3):
+            return self._parallel_last(one, two, three)
+        if not parallel(one) and one.shift.is_zero_matrix:
+            return self._meeting_first(one, two, three)
+        if not parallel(two) and two.shift.is_zero_matrix:
+            return self._meeting_last(one, two, three)
+        if one.end == sp.eye(3) and not parallel(two):
+            return self._parallel_first(one, two, three)
+        raise NoChainError(
+            f"of axes {one.number}, {two.number} and {three.number} no two neighbours are parallel "
+            f"or meet: the tangent of half an angle has an equation of degree 4",
+            "Use ssik for a numeric inverse, or solve the quartic yourself.",
+        )
+
+    def _parallel_last(self, one: Single, two: Single, three: Single) -> tuple[str, Turned]:
+        u, v = two.shift, three.shift
+        g, p = one.end * Z, point("p")
+        c = u[2] + v[2] + g.dot(one.shift) - g[2] * p[2]
+        reached = times(one.end.T, f"(turned(pair).T * p - {source(one.shift)})")
+        lengths = ", ".join(source(norm(w[:2, 0])) for w in (u, v))
+        self.add(f"links = Links(lambda pair: {reached}, {lengths})")
+        pair = self._turn(one, (g[0] * p[1] - g[1] * p[0], g[0] * p[0] + g[1] * p[1], c), "links")
+        q = times(one.end.T, f"(turned({pair}).T * p - {source(one.shift)})")
+        self.add(f"q = ik.vector('q', {q})")
+        self.two_links([two.turn, three.turn], [u[:2, 0], v[:2, 0]], "q[0]", "q[1]")
+        bend = self.less(self.pairs[1], v[:2, 0])
+        return (
+            f"axes {two.number} and {three.number} parallel",
+            [(pair, one.end), (f"({self.pairs[0]} + {bend})", three.end)],
+        )
+
+    def _meeting_first(self, one: Single, two: Single, three: Single) -> tuple[str, Turned]:
+        t, u, p = two.shift, three.shift, point("p")
+        e, g = (two.end.T * t).applyfunc(sp.simplify), one.end * Z
+        self.add("far = ik.let('far', sqrt(p.dot(p)))")
+        far = sp.Symbol("far")
+        c = (far**2 - sp.simplify(t.dot(t) + u.dot(u))) / 2 - sp.simplify(e[2] * u[2])
+        third = self._by_distance(three, e, u, c, "(far + ik.size/2**44)/2")
+        self.add(
+            f"v = ik.vector('v', {source(t)} + {times(two.end, f'(turned({third}) * {source(u)})')})"
+        )
+        v = point("v")
+        sides = (g[0] * p[1] - g[1] * p[0], g[0] * p[0] + g[1] * p[1], v[2] - g[2] * p[2])
+        first = self._turn(one, sides)
+        self.add(f"m = ik.vector('m', {times(one.end.T, f'(turned({first}).T * p)')})")
+        because = f"{{{self.unknowns[three.number]}: 2*ik.size, {self.unknowns[one.number]}: m[2] + v[2]}}"
+        second = self._rotate(two, "v", "m", because)
+        return (
+            f"axes {one.number} and {two.number} meet",
+            [(first, one.end), (second, two.end), (third, three.end)],
+        )
+
+    def _meeting_last(self, one: Single, two: Single, three: Single) -> tuple[str, Turned]:
+        t, u, p = one.shift, three.shift, point("p")
+        g = two.end * Z
+        self.add("far = ik.let('far', sqrt(p.dot(p)))")
+        far = sp.Symbol("far")
+        c = (far**2 + sp.simplify(t.dot(t) - u.dot(u))) / 2 - t[2] * p[2]
+        size = sp.sqrt(sp.simplify(u.dot(u)))
+        sides = (t[0] * p[1] - t[1] * p[0], t[0] * p[0] + t[1] * p[1], c)
+        first = self._turn(one, sides, scale=source(size / 2), by_size=True)
+        self.add(
+            f"m = ik.vector('m', {times(one.end.T, f'(turned({first}).T * p - {source(t)})')})"
+        )
+        m = point("m")
+        sides = (g[0] * m[1] - g[1] * m[0], g[0] * m[0] + g[1] * m[1], u[2] - g[2] * m[2])
+        second = self._turn(two, sides)
+        self.add(f"n = ik.vector('n', {times(two.end.T, f'(turned({second}).T * m)')})")
+        because = (
+            f"{{{self.unknowns[one.number]}: 2*ik.size, "
+            f"{self.unknowns[two.number]}: n[2] + {source(u[2])}}}"
+        )
+        third = self._rotate(three, source(u[:2, 0]), "n", because)
+        return (
+            f"axes {two.number} and {three.number} meet",
+            [(first, one.end), (second, two.end), (third, three.end)],
+        )
+
+    def _parallel_first(self, one: Single, two: Single, three: Single) -> tuple[str, Turned]:
+        s, t, u, p = one.shift, two.shift, three.shift, point("p")
+        f = two.end.T * Z
+        sides = (
+            sp.simplify(f[1] * u[0] - f[0] * u[1]),
+            sp.simplify(f[0] * u[0] + f[1] * u[1]),
+            p[2] - s[2] - t[2] - f[2] * u[2],
+        )
+        third = self._turn(three, sides)
+        self.add(
+            f"v = ik.vector('v', {source(t)} + {times(two.end, f'(turned({third}) * {source(u)})')})"
+        )
+        self.add("far = ik.let('far', sqrt(p[0]**2 + p[1]**2))")
+        far, v = sp.Symbol("far"), point("v")
+        c = (far**2 - s[0] ** 2 - s[1] ** 2 - v[0] ** 2 - v[1] ** 2) / 2
+        sides = (s[1] * v[0] - s[0] * v[1], s[0] * v[0] + s[1] * v[1], c)
+        second = self._turn(two, sides, scale="(far + ik.size/2**44)/2", by_size=True)
+        self.add(f"m = ik.vector('m', {source(s)} + turned({second}) * v)")
+        first = self._rotate(one, "m", "p", f"{{{self.unknowns[two.number]}: 2*ik.size}}")
+        return (
+            f"axes {one.number} and {two.number} parallel",
+            [(first, one.end), (second, two.end), (third, three.end)],
+        )
+
+    def _by_distance(self, joint: Single, e: Any, u: Any, c: Any, scale: str) -> str:
+        """Solve ``e . Rz(x) u`` by a distance; the equation is divided by the size of the arm."""
+        a = sp.simplify(e[1] * u[0] - e[0] * u[1])
+        b = sp.simplify(e[0] * u[0] + e[1] * u[1])
+        self.require(
+            (a, b) != (0, 0),
+            f"the distance of its wrist does not depend on joint {joint.number}",
+            "An elbow needs an axis beside the line of its ends.",
+        )
+        return self._turn(joint, (a, b, c), scale=scale, by_size=True)
+
+    def _turn(
+        self,
+        joint: Single,
+        sides: tuple[Any, Any, Any],
+        toward: str = "",
+        *,
+        scale: str = "",
+        by_size: bool = False,
+    ) -> str:
+        name, pair = self.unknown(joint), f"pair{joint.number}"
+        per = "/ik.size" if by_size else ""
+        shown = ", ".join(f"({source(e)}){per}" if per and e != 0 else source(e) for e in sides)
+        more = (f", toward={toward}" if toward else "") + (f", scale={scale}" if scale else "")
+        self.solve("turn", f"{name}, {shown}, {self.choice(joint)}{more}", pair, 2)
+        return pair
+
+    def _rotate(self, joint: Single, w: str, v: str, because: str = "", scale: str = "") -> str:
+        name, pair = self.unknown(joint), f"pair{joint.number}"
+        more = (f", because={because}" if because else "") + (f", scale={scale}" if scale else "")
+        self.solve("rotate", f"{name}, {w}, {v}{more}", pair)
+        return pair
+
+    def choice(self, joint: Single) -> str:
+        """The names of two solutions."""
+        self.choices += 1
+        plus, minus = CHOICES[self.choices - 1]
+        return f"{{+1: '{plus}', -1: '{minus}'}}"
+
+    def unknown(self, joint: Single) -> str:
+        """The angle of a joint as it turns the frame; its name is kept for later equations."""
+        if joint.number not in self.unknowns:
+            self.unknowns[joint.number] = self.angle(joint.turn)
+        return self.unknowns[joint.number]
+
+    # The joints that turn the tool
+
+    def orientation(self, joints: Sequence[Single], M: str) -> None:
+        """Solve three joints for the rotation that the others leave to them."""
+        groups = [Group((Row(1, j.turn, (sp.S.Zero,) * 3, False),), j.end) for j in joints]
+        groups[-1] = Group(groups[-1].rows, sp.eye(3))
+        self.wrist(joints[0].turn, groups, M, sp.eye(3), [j.number for j in joints])
+
+
+CHOICES = (("left", "right"), ("up", "down"), ("front", "back"))
+
+
+__all__ = ["SubproblemMaker"]

@@ -433,6 +433,8 @@ def _check_known(
     condition = max(truth.condition(posture, parameters), math.sqrt(backend.eps))
     spread = _spread(parameters)
     nearest = np.nanmin(truth.gap(solutions, posture), initial=np.inf)
+    if truth.undetermined(posture, parameters) and not np.isnan(solutions).all():
+        return
     if np.isnan(solutions).all() and _leaves_the_workspace(truth, backend, sample):
         return
     allowed = backend.eps * spread / condition

@@ -25,6 +25,8 @@ from closedform.model.functions import Bound, Function, Let, Require, Vanishes, 
 Array = NDArray[Any]
 T = TypeVar("T")
 
+CLOSE = 1e-10
+"""With a smaller singular value of the forward map, an ulp of the target turns a joint by 1e-6."""
 KEPT = 32
 """So many functions are kept ready to be evaluated, for the next back end."""
 
@@ -223,9 +225,32 @@ class Solutions:
         return max((abs(to_float(m)) for m in missed), default=0.0)
 
     def condition(self, posture: NDArray[Any], parameters: Sequence[float]) -> float:
-        """The smallest factor of the singular set, at most 1."""
+        """The smallest factor of the singular set, at most 1.
+
+        An arm without such factors has the least singular value of its forward map instead.
+        """
+        if not self._factors.exprs:
+            return float(min([1.0, *self._rates(posture, parameters)]))
         factors = self._factors.exactly([*map(float, posture), *parameters])
         return min([1.0, *(abs(to_float(f)) for f in factors if f.is_finite())])
+
+    def undetermined(self, posture: NDArray[Any], parameters: Sequence[float]) -> bool:
+        """Whether a posture is so close to a singularity that its target does not determine it.
+
+        Where two singularities meet, the rounding at one turns the joint of the other: the answers
+        are right, but far from the posture.  For arms with factors, their size decides.
+        """
+        if self._factors.exprs:
+            return False
+        return bool(min(self._rates(posture, parameters), default=1.0) < CLOSE)
+
+    def _rates(self, posture: NDArray[Any], parameters: Sequence[float]) -> list[float]:
+        """The singular values of the forward map: how far the target moves with the joints."""
+        steps = 1e-6 * np.eye(len(posture))
+        ends = self.wide_images(np.concatenate([posture + steps, posture - steps]), parameters)
+        rates = (ends[:, : len(steps)] - ends[:, len(steps) :]).astype(float) / 2e-6
+        found = np.linalg.svd(rates[np.isfinite(rates).all(axis=(1, 2))], compute_uv=False)
+        return [float(rate) for rate in found.flat]
 
     def gap(self, solutions: NDArray[Any], posture: NDArray[Any]) -> NDArray[np.float64]:
         """The distance of each solution from a posture, angles modulo a turn."""

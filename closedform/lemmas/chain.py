@@ -38,7 +38,6 @@ from closedform.model.functions import (
 from closedform.model.lemma import Lemma
 
 Choice = Mapping[int, str]
-_CIRCLE = (("s", sp.sin), ("c", sp.cos))
 
 
 @dataclass
@@ -119,16 +118,20 @@ class Chain:
         self.inputs[str(joint)] = symbol
         self.targets, self.images = (*self.targets, symbol), (*self.images, joint)
         self.angles = (*self.angles, joint.name)
-        pair = Pair(*(self.program.let(f"{n}_{joint.name}", f(symbol)) for n, f in _CIRCLE))
-        lemma = Lemma(
-            "given joint",
-            r"\theta = \theta_{\text{given}}",
-            (sp.cos(joint) - sp.cos(symbol), sp.sin(joint) - sp.sin(symbol)),
-            {joint: pair.angle},
-            1,
-        )
-        means = {pair.s: sp.sin(joint), pair.c: sp.cos(joint)}
-        return self.solve(lambda chain: Applied(lemma, pair, means))
+
+        def apply(chain: Chain) -> Applied:
+            pair = Pair(sp.sin(symbol), sp.cos(symbol)).known_as(chain.program, f"_{joint.name}")
+            lemma = Lemma(
+                "given joint",
+                r"\theta = \theta_{\text{given}}",
+                (sp.cos(joint) - sp.cos(symbol), sp.sin(joint) - sp.sin(symbol)),
+                {joint: pair.angle},
+                1,
+            )
+            return Applied(lemma, pair, {pair.s: sp.sin(joint), pair.c: sp.cos(joint)})
+
+        found: Pair = self.solve(apply)
+        return found
 
     def reached(self, R: sp.Matrix, p: sp.Matrix, place: sp.Matrix) -> None:
         """Require what all joints leave of the target to be the tool: the pose is one of the arm's.

@@ -43,9 +43,9 @@ class SubproblemMaker(Maker):
         before, ends = arm.joints[: n - wrist], arm.joints[n - wrist :]
         R, p = ("ik.R", "ik.p")
         if arm.inverted:
-            self.add("R = ik.R.T")
-            self.add("p = ik.vector('base', -R * ik.p)")
-            R, p = "R", "p"
+            self.add("back = ik.R.T")
+            self.add("p = ik.vector('base', -back * ik.p)")
+            R, p = "back", "p"
         tool = arm.tool
         offset = (tool[:3, :3].T * tool[:3, 3]).applyfunc(sp.simplify)
         if not offset.is_zero_matrix:
@@ -121,14 +121,14 @@ class SubproblemMaker(Maker):
         c = (far**2 - sp.simplify(t.dot(t) + u.dot(u))) / 2 - sp.simplify(e[2] * u[2])
         third = self._by_distance(three, e, u, c, "(far + ik.size/2**44)/2")
         self.add(
-            f"v = ik.vector('v', {source(t)} + {times(two.end, f'(turned({third}) * {source(u)})')})"
+            f"carried = ik.vector('carried', {source(t)} + {times(two.end, f'(turned({third}) * {source(u)})')})"
         )
-        v = point("v")
+        v = point("carried")
         sides = (g[0] * p[1] - g[1] * p[0], g[0] * p[0] + g[1] * p[1], v[2] - g[2] * p[2])
         first = self._turn(one, sides)
-        self.add(f"m = ik.vector('m', {times(one.end.T, f'(turned({first}).T * p)')})")
-        because = f"{{{self.unknowns[three.number]}: 2*ik.size, {self.unknowns[one.number]}: m[2] + v[2]}}"
-        second = self._rotate(two, "v", "m", because)
+        self.add(f"seen = ik.vector('seen', {times(one.end.T, f'(turned({first}).T * p)')})")
+        because = f"{{{self.unknowns[three.number]}: 2*ik.size, {self.unknowns[one.number]}: seen[2] + carried[2]}}"
+        second = self._rotate(two, "carried", "seen", because)
         return (
             f"axes {one.number} and {two.number} meet",
             [(first, one.end), (second, two.end), (third, three.end)],
@@ -144,17 +144,17 @@ class SubproblemMaker(Maker):
         sides = (t[0] * p[1] - t[1] * p[0], t[0] * p[0] + t[1] * p[1], c)
         first = self._turn(one, sides, scale=source(size / 2), by_size=True)
         self.add(
-            f"m = ik.vector('m', {times(one.end.T, f'(turned({first}).T * p - {source(t)})')})"
+            f"seen = ik.vector('seen', {times(one.end.T, f'(turned({first}).T * p - {source(t)})')})"
         )
-        m = point("m")
+        m = point("seen")
         sides = (g[0] * m[1] - g[1] * m[0], g[0] * m[0] + g[1] * m[1], u[2] - g[2] * m[2])
         second = self._turn(two, sides)
-        self.add(f"n = ik.vector('n', {times(two.end.T, f'(turned({second}).T * m)')})")
+        self.add(f"beyond = ik.vector('beyond', {times(two.end.T, f'(turned({second}).T * seen)')})")
         because = (
             f"{{{self.unknowns[one.number]}: 2*ik.size, "
-            f"{self.unknowns[two.number]}: n[2] + {source(u[2])}}}"
+            f"{self.unknowns[two.number]}: beyond[2] + {source(u[2])}}}"
         )
-        third = self._rotate(three, source(u[:2, 0]), "n", because)
+        third = self._rotate(three, source(u[:2, 0]), "beyond", because)
         return (
             f"axes {two.number} and {three.number} meet",
             [(first, one.end), (second, two.end), (third, three.end)],
@@ -170,15 +170,15 @@ class SubproblemMaker(Maker):
         )
         third = self._turn(three, sides)
         self.add(
-            f"v = ik.vector('v', {source(t)} + {times(two.end, f'(turned({third}) * {source(u)})')})"
+            f"carried = ik.vector('carried', {source(t)} + {times(two.end, f'(turned({third}) * {source(u)})')})"
         )
         self.add("far = ik.let('far', sqrt(p[0]**2 + p[1]**2))")
-        far, v = sp.Symbol("far"), point("v")
+        far, v = sp.Symbol("far"), point("carried")
         c = (far**2 - s[0] ** 2 - s[1] ** 2 - v[0] ** 2 - v[1] ** 2) / 2
         sides = (s[1] * v[0] - s[0] * v[1], s[0] * v[0] + s[1] * v[1], c)
         second = self._turn(two, sides, scale="(far + ik.size/2**44)/2", by_size=True)
-        self.add(f"m = ik.vector('m', {source(s)} + turned({second}) * v)")
-        first = self._rotate(one, "m", "p", f"{{{self.unknowns[two.number]}: 2*ik.size}}")
+        self.add(f"seen = ik.vector('seen', {source(s)} + turned({second}) * carried)")
+        first = self._rotate(one, "seen", "p", f"{{{self.unknowns[two.number]}: 2*ik.size}}")
         return (
             f"axes {one.number} and {two.number} parallel",
             [(first, one.end), (second, two.end), (third, three.end)],

@@ -47,11 +47,11 @@ AUTHOR = (
 SCRIPT = {"arm", "d", "forward", "links", "pair"}
 LINES = {
     "M", "ahead", "ik", "p", "q", "reaching", "turn1", "turn2", "wx", "wy", "x", "y", "yaw", "z",
-    "rho",
+    "rho", "given", "back", "far", "carried", "seen", "beyond", "left",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""
-NUMBERED = re.compile(r"(alpha|link)\d+_?")
+NUMBERED = re.compile(r"(alpha|link|pair|left)\d+_?")
 """Names with a number that the written script uses itself."""
 
 

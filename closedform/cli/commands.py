@@ -10,8 +10,10 @@ import argparse
 import contextlib
 import difflib
 import importlib.util
+import math
 import os
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 
 from closedform._version import __version__
@@ -143,6 +145,19 @@ def parser() -> argparse.ArgumentParser:
         "--modified", action="store_true", help="the dh table is in Craig's (proximal) convention"
     )
     new.add_argument(
+        "--given", metavar="JOINT", default="", help="of 7 joints, the one that the inverse takes"
+    )
+    new.add_argument(
+        "--explain", action="store_true", help="say what was recognised and which chains were tried"
+    )
+    new.add_argument(
+        "--timeout",
+        metavar="SECONDS",
+        type=_seconds,
+        default=60.0,
+        help="then write what was found; 0: no limit; default: 60",
+    )
+    new.add_argument(
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="default: current folder"
     )
     claims.add_options(command("claims", claims_command))
@@ -162,6 +177,13 @@ def parser() -> argparse.ArgumentParser:
 def _positive(text: str) -> int:
     value = int(text)
     if value < 1:
+        raise ValueError
+    return value
+
+
+def _seconds(text: str) -> float:
+    value = float(text)
+    if not 0 <= value < math.inf:
         raise ValueError
     return value
 
@@ -307,25 +329,31 @@ def new_command(options: argparse.Namespace) -> None:
     if (options.base or options.tool) and kind != "urdf":
         raise CommandError("--base and --tool name links of a URDF file", 2)
     _require_extra()
-    from closedform.scaffold.new import check_name, new
+    from closedform.scaffold.new import Search, check_name, new
 
     try:
         check_name(options.name)
         target = options.output / f"{options.name}.py"
         if os.path.lexists(target):
             raise CommandError(f"{target} already exists")
-        script = new(
-            options.name,
-            kind,
-            path,
-            modified=options.modified,
-            base=options.base,
-            tool=options.tool,
-        )
+        with Progress() as progress:
+            search = Search(options.given, options.timeout, options.explain)
+            search.say = partial(progress, options.name)
+            script = new(
+                options.name,
+                kind,
+                path,
+                modified=options.modified,
+                base=options.base,
+                tool=options.tool,
+                search=search,
+            )
     except (ValueError, TypeError) as error:
         raise CommandError(str(error)) from error
     for note in script.notes:
         console.say(f"closedform: note: {note}")
+    if options.explain:
+        console.write("".join(f"{line}\n" for line in script.explained))
     _write(options.output, {Path(target.name): script.text})
     console.write(f"{target}: {script.inverse}; next: closedform derive {target} -o out\n")
 

@@ -133,16 +133,41 @@ class Chain:
         found: Pair = self.solve(apply)
         return found
 
-    def reached(self, R: sp.Matrix, p: sp.Matrix, place: sp.Matrix) -> None:
-        """Require what all joints leave of the target to be the tool: the pose is one of the arm's.
+    def reached(self, rest: sp.Matrix | None = None) -> None:
+        """Compare the pose of the solved joints with the target, for arms that not every pose fits.
 
-        ``R`` and ``p`` are the target in the last frame, where the tool is turned by ``place``.
+        With fewer than six joints the lemmas use a part of the target; UNREACHABLE says that the
+        rest does not match.  If a lemma has used the whole rotation, ``rest`` is what the joints
+        leave of the position, which must be zero.
         """
-        meaning = "the pose is none of the arm's"
-        for entry in R - place[:3, :3]:
-            self.program.match(entry, sp.S.One, meaning)
-        for entry in p - place[:3, 3]:
-            self.program.match(entry, self.size, meaning)
+        meaning, place = "the pose is one of the arm's", self.forward
+        if rest is not None:
+            for entry in rest:
+                self.program.match(entry, self.size, meaning)
+            return
+        functions = sorted(place.atoms(sp.sin, sp.cos), key=str)
+        pairs = {f.args[0]: self._solved_pair(f.args[0]) for f in functions}
+        known = {
+            f: pairs[f.args[0]].s if isinstance(f, sp.sin) else pairs[f.args[0]].c
+            for f in functions
+        }
+        for i in range(3):
+            for j in range(4):
+                scale = self.size if j == 3 else sp.S.One
+                entry = self.T[i, j] - place[i, j].xreplace(known)
+                self.program.match(entry, scale, meaning)
+
+    def _solved_pair(self, total: sp.Expr) -> Pair:
+        """The pair of a sum of solved joints."""
+        for symbol, value in self.defined.items():
+            if symbol in self.values and not (rest := sp.expand(total - value)).has(*self.joints):
+                total = symbol + rest
+        total = self.by_angles(total)
+        fixed = {a: Pair(sp.sin(a), sp.cos(a)) for a in total.atoms(sp.atan2)}
+        pair = self.pair_of(total, fixed)
+        if pair is None:
+            raise ShapeError(f"{self.d.name}: no lemma has solved for a joint in {total}")
+        return pair
 
     def target(self, name: str) -> sp.Symbol:
         """The target value of a task coordinate."""
@@ -244,16 +269,17 @@ class Chain:
 
     def _written_out(self, relation: Relation) -> Relation:
         """A relation without names, some of which the program does not keep."""
+        made = {s.symbol: s.value for s in self.program.body if isinstance(s, (Let, Bound))}
+        made |= self.meaning
         known: dict[sp.Basic, sp.Basic] = {}
-        for statement in self.program.body:
-            if isinstance(statement, (Let, Bound)):
-                meant = self.meaning.get(statement.symbol, statement.value)
-                known[statement.symbol] = substitute(meant, known)
-        return replace(
-            relation,
-            value=substitute(relation.value, known),
-            terms=tuple((u, substitute(factor, known)) for u, factor in relation.terms),
-        )
+
+        def written(e: sp.Expr) -> sp.Expr:
+            for s in e.free_symbols & made.keys() - known.keys():
+                known[s] = written(made[s])
+            return substitute(e, known)
+
+        terms = tuple((u, written(factor)) for u, factor in relation.terms)
+        return replace(relation, value=written(relation.value), terms=terms) if terms else relation
 
     def _check_unknown(self, unknown: sp.Symbol, lemma: Lemma) -> None:
         if unknown not in {*self.joints, *self.defined, *self.lengths}:

@@ -17,7 +17,7 @@ from closedform.model.functions import real
 from closedform.model.lemma import Lemma, label
 
 
-@chain_lemma("Rz(x) w = v, where |w| = |v|", "the pair of x")
+@chain_lemma("Rz(x) w = v", "the pair of x")
 def rotate(
     chain: Chain,
     x: sp.Symbol,
@@ -36,9 +36,10 @@ def rotate(
     """
     p, tag = chain.program, name or label(x)
     size = chain.size if scale is None else scale
+    w, v = ([sp.sympify(e) for e in vector[:2]] for vector in (w, v))
     relation = w[0] ** 2 + w[1] ** 2 - v[0] ** 2 - v[1] ** 2
-    w1, w2 = (chain.coefficient(f"w{i}_{tag}", e) for i, e in enumerate(w[:2], 1))
-    v1, v2 = (chain.named(f"v{i}_{tag}", e) for i, e in enumerate(v[:2], 1))
+    w1, w2 = (chain.coefficient(f"w{i}_{tag}", e) for i, e in enumerate(w, 1))
+    v1, v2 = (chain.named(f"v{i}_{tag}", e) for i, e in enumerate(v, 1))
     sine = p.let(f"cross_{tag}", w1 * v2 - w2 * v1)
     cosine = p.let(f"dot_{tag}", w1 * v1 + w2 * v2)
     length = p.let(f"square_{tag}", sp.sqrt(sine**2 + cosine**2), nonnegative=True)

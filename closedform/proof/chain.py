@@ -16,8 +16,8 @@ once these are known determine others.  Full rank at one posture means full rank
 the answers are continuous in the target where they exist.
 
 The coefficients of a lemma may depend on each other, as two vectors of equal length.  That they do
-is a sum of earlier equations, each times a factor; or the program compares the answer with the
-target itself.
+is a sum of earlier equations, each times a factor.  They need not if the other equations, with what
+the program compares with the target, determine it alone.
 """
 
 from __future__ import annotations
@@ -62,8 +62,8 @@ def prove_chain(derivation: Derivation, inverse: Inverse) -> tuple[int, tuple[Ex
     for continuum in inverse.continua:
         _flag_holds(continuum, function, graph, where)
     _free_choices_are_units(inverse, where)
-    compared = bool(matches) and not undetermined(inverse, graph, matches)
-    if not compared:
+    certain = [e for link in inverse.chain if not link.relations for e in link.lemma.equations]
+    if not matches or undetermined(inverse, graph, [*certain, *matches]):
         _relations_hold(inverse, graph, where)
         _determines_target(inverse, graph, matches, where)
     branches = len(function.branches) if function.branches else 1

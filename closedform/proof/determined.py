@@ -72,7 +72,7 @@ def _columns(inverse: Inverse, graph: Postures) -> tuple[dict[Expr, Expr], dict[
 def _linear_rows(
     equations: Sequence[Expr], columns: Sequence[Expr], known: Mapping[Expr, Expr]
 ) -> tuple[list[list[Expr]], bool]:
-    """The coefficients of the equations that are linear in the columns, and whether others are not."""
+    """The coefficients of the linear equations, and whether there are others."""
     rows, nonlinear = [], False
     for e in equations:
         slopes = [e.diff(x) if e.has(x) else sp.S.Zero for x in columns]

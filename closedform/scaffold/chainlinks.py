@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -135,10 +134,4 @@ def _simplified(motion: sp.Matrix) -> sp.Matrix:
     return motion.applyfunc(lambda e: sp.trigsimp(sp.expand(e)) if e.has(sp.sin, sp.cos) else e)
 
 
-def about_z(pair: Sequence[sp.Expr]) -> sp.Matrix:
-    """The rotation about z by the angle with this sine and cosine."""
-    s, c = pair
-    return sp.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-
-
-__all__ = ["Single", "Singles", "about_z", "parallel", "singles"]
+__all__ = ["Single", "Singles", "Z", "parallel", "singles"]

@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 import sys
 import textwrap
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,9 @@ from closedform.mechanics.arm import RowError, Serial, from_dh, from_screws
 from closedform.mechanics.mobility import SingularEverywhereError
 from closedform.model.derivation import Derivation, Paper
 from closedform.model.names import check_robot, check_text
+from closedform.scaffold.limit import LimitError, limited
 from closedform.scaffold.propose import NoChainError, propose
+from closedform.scaffold.recognise import recognised
 from closedform.scaffold.source import source
 from closedform.scaffold.tables import (
     AUTHOR,
@@ -28,6 +30,7 @@ from closedform.scaffold.tables import (
     Table,
     TableError,
     check_names,
+    motors_of,
     read_dh,
     read_screws,
 )
@@ -35,6 +38,12 @@ from closedform.scaffold.urdf import read_urdf
 
 LINE = 100
 """The maximum length of a line in a script."""
+TIMEOUT = 60.0
+"""Seconds after which a script is written without what was not found by then."""
+LONGER = (
+    "Allow more time with --timeout, or name lengths and angles in the table, which keeps the "
+    "expressions short.  The forward map is in this script; to derive it may take long too."
+)
 IMPORTS = frozenset({"numpy", "sympy", "flint", "jinja2"})
 """Modules that a script of the same name would shadow."""
 
@@ -49,6 +58,26 @@ class Script:
     text: str
     inverse: str
     notes: tuple[str, ...] = ()
+    explained: tuple[str, ...] = ()
+    """What was recognised of the axes, and which chains were tried."""
+
+
+@dataclass
+class Search:
+    """How an inverse is looked for: the joint that is ``given``, and a limit of time in seconds.
+
+    ``say`` is told what is being done.
+    """
+
+    given: str = ""
+    timeout: float = TIMEOUT
+    explain: bool = False
+    say: Callable[[str], None] = lambda _: None
+    doing: str = "reading the table"
+
+    def progress(self, what: str) -> None:
+        self.doing = what
+        self.say(what)
 
 
 def check_name(name: str) -> None:
@@ -59,7 +88,14 @@ def check_name(name: str) -> None:
 
 
 def new(
-    name: str, kind: str, path: Path, *, modified: bool = False, base: str = "", tool: str = ""
+    name: str,
+    kind: str,
+    path: Path,
+    *,
+    modified: bool = False,
+    base: str = "",
+    tool: str = "",
+    search: Search | None = None,
 ) -> Script:
     """A derivation called ``name``, from a table of the given kind.
 
@@ -67,6 +103,8 @@ def new(
     (with the links between which the chain is read).  Raises ``ValueError`` if the name or the
     table cannot be used; it says where and how to correct it.
     """
+    search = search or Search()
+    search.progress("reading the table")
     check_name(name)
     if kind == "dh":
         table = read_dh(path, modified=modified)
@@ -78,7 +116,7 @@ def new(
     for symbol, given in table.parameters.items():
         check_text(f"{path.name}: {symbol}", given.get("meaning", ""), given.get("unit", ""))
     try:
-        return skeleton(name, table, path.name)
+        return skeleton(name, table, path.name, search)
     except (RowError, SingularEverywhereError) as error:
         raise TableError(f"{path.name}: {str(error).removeprefix(f'{name}: ')}") from error
 
@@ -94,7 +132,7 @@ def _comment(text: str) -> str:
     return "# " + "".join(c if c.isprintable() else "?" for c in line)
 
 
-def skeleton(name: str, table: Table, origin: str) -> Script:
+def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
     """The script, with the proposed inverse or a place for one."""
     origin = re.sub(r"[^\w .()-]", "_", origin)
     d = Derivation(name, name, Paper("own", "own", ()), "")
@@ -108,8 +146,17 @@ def skeleton(name: str, table: Table, origin: str) -> Script:
     for joint, kind in table.joints.items():
         d.joint(joint, kind)  # type: ignore[arg-type]
     known = {s.name: s for s in (*(p.symbol for p in d.parameters), *d.actuated)}
-    arm = _arm(d, table, known)
-    arm.require_regular(name)
+    try:
+        with limited(search.timeout):
+            search.progress("deriving the forward map")
+            arm = _arm(d, table, known)
+            search.progress("looking for a regular posture")
+            arm.require_regular(name)
+            search.progress("looking for an inverse")
+            inverse = _inverse_lines(arm, search)
+    except LimitError:
+        reason = f"the limit of {search.timeout:g} s was reached while {search.doing}"
+        inverse = _without_inverse(reason, LONGER, "ik = Chain(d, forward)")
     title = name.replace("_", " ").capitalize()
     lines = [
         f'"""{title}: a derivation from {origin}."""',
@@ -140,10 +187,14 @@ def skeleton(name: str, table: Table, origin: str) -> Script:
     for joint, kind in table.joints.items():
         argument = ', "prismatic"' if kind == "prismatic" else ""
         lines.append(f'{joint} = d.joint("{joint}"{argument})')
-    lines += ["", *_table_lines(table), "forward = arm.export(d)", ""]
-    inverse, outcome = _inverse_lines(arm)
-    text = "\n".join([*lines, *inverse]) + "\n"
-    return Script(text.replace("IMPORTS", _imports(text)), outcome, tuple(table.notes))
+    lines += ["", *_table_lines(table), "forward = arm.export(d)", *_motor_lines(table, origin), ""]
+    text = "\n".join([*lines, *inverse.lines]) + "\n"
+    return Script(
+        text.replace("IMPORTS", _imports(text)),
+        inverse.outcome,
+        tuple(table.notes),
+        tuple(inverse.explained),
+    )
 
 
 def _arm(d: Derivation, table: Table, known: Mapping[str, Any]) -> Serial:
@@ -178,33 +229,80 @@ def _table_lines(table: Table) -> list[str]:
     ]
 
 
-def _inverse_lines(arm: Serial) -> tuple[list[str], str]:
-    """The lines for the inverse, and a clause on what they contain."""
+def _motor_lines(table: Table, origin: str) -> list[str]:
+    """The functions between motors and joints, if some joints are coupled."""
+    if not table.couplings:
+        return []
+    names, matrix = motors_of(table, origin)
+    joints = ", ".join(table.joints)
+    symbols = ", ".join(f'real("{name}")' for name in names)
+    return [
+        "",
+        "# The motors: a joint with an empty cell in the column motors has one of its own.",
+        f"motors = Matrix([{symbols}])",
+        f"coupling = {source(matrix)}",
+        "d.function(",
+        '    "joints_from_motors",',
+        '    "The angles of the joints from those of their motors.",',
+        '    {"motors": motors},',
+        '    {"q": coupling * motors},',
+        ")",
+        "d.function(",
+        '    "motors_from_joints",',
+        '    "The angles of the motors from those of the joints.",',
+        f'    {{"q": Matrix([{joints}])}},',
+        f'    {{"motors": coupling.inv() * Matrix([{joints}])}},',
+        ")",
+    ]
+
+
+@dataclass(frozen=True)
+class _Inverse:
+    """The lines for the inverse, a clause on what they contain, and how the chain was chosen."""
+
+    lines: list[str]
+    outcome: str
+    explained: list[str] = field(default_factory=list)
+
+
+def _inverse_lines(arm: Serial, search: Search) -> _Inverse:
     task = arm.coordinates()
     angles = ', angles=["yaw"]' if task and "yaw" in task.names else ""
     chain = f"ik = Chain(d, forward{angles})"
+    explained = recognised(arm) if search.explain else []
     try:
-        found = propose(arm)
+        found = propose(arm, search.given, search.progress)
     except NoChainError as error:
-        outcome = f"no inverse, because {error.found}"
-        reason = f"No inverse is proposed, because {error.found}.  {error.needed}"
-        return [
-            *map(_comment, textwrap.wrap(reason, LINE - 2)),
-            "# Write it here, lemma by lemma, instead of the last line of this file;",
-            "# docs/adding-a-mechanism.md says how:",
-            f"# {chain}",
-            "# ik.solve(turn, theta1, a, b, c, {+1: 'left', -1: 'right'})",
-            '# ik.finish("All solutions.")',
-            f"d.no_inverse({_literal(error.found)})",
-        ], outcome
+        explained += [f"tried: {t.name}: no, because {t.error.found}" for t in error.tried]
+        return _without_inverse(error.found, error.needed, chain, explained)
+    explained += [f"tried: {t.name}: no, because {t.error.found}" for t in found.tried]
+    explained.append(f"taken: {found.structure}")
     count = f"{found.branches} branch{'es' if found.branches > 1 else ''}"
-    return [
+    lines = [
         _comment(f"The inverse proposed for this structure: {found.structure}."),
         "# Edit it as you like, and name the branches; the proof decides.",
         chain,
         *found.lines,
         'ik.finish("All solutions of the inverse kinematics.")',
-    ], f"an inverse with {count} is proposed ({found.structure})"
+    ]
+    outcome = f"an inverse with {count} is proposed ({found.structure})"
+    return _Inverse(lines, outcome, explained)
+
+
+def _without_inverse(
+    found: str, needed: str, chain: str, explained: Sequence[str] = ()
+) -> _Inverse:
+    reason = f"No inverse is proposed, because {found}.  {needed}"
+    lines = [
+        *map(_comment, textwrap.wrap(reason, LINE - 2)),
+        "# Write it here, lemma by lemma, instead of the last line of this file;",
+        "# docs/adding-a-mechanism.md says how:",
+        f"# {chain}",
+        "# ik.solve(turn, theta1, a, b, c, {+1: 'left', -1: 'right'})",
+        '# ik.finish("All solutions.")',
+        f"d.no_inverse({_literal(found)})",
+    ]
+    return _Inverse(lines, f"no inverse, because {found}", list(explained))
 
 
 def _imports(text: str) -> str:

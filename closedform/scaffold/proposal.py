@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 
@@ -9,12 +10,18 @@ class NoChainError(ValueError):
     """No chain of lemmas is known for an arm.
 
     ``found`` is a clause that names the property of this arm that prevents it.  ``needed`` is a
-    sentence on what the known chains need and what you can do.
+    sentence on what the known chains need and what you can do.  ``degree`` is that of the equation
+    that no lemma solves, or 0 if it is not known.
     """
 
-    def __init__(self, found: str, needed: str):
+    def __init__(self, found: str, needed: str, degree: int = 0, tried: Sequence[Tried] = ()):
         super().__init__(f"no chain of lemmas is known for this arm, because {found}.  {needed}")
-        self.found, self.needed = found, needed
+        self.found, self.needed, self.degree = found, needed, degree
+        self.tried = tuple(tried)
+
+    def after(self, tried: Sequence[Tried]) -> NoChainError:
+        """The same error, with all chains that were tried."""
+        return NoChainError(self.found, self.needed, self.degree, tried)
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,8 @@ You accept or edit them, and the proof decides.  The known structures are
 - a turret with two parallel joints, or with a joint and a slide (polar arm), and their offsets;
 - these three-joint arms with a spherical wrist;
 - a turret, three parallel joints and two more that are normal to each other (UR).
+
+What they do not cover is left to :mod:`closedform.scaffold.subproblems`.
 """
 
 from __future__ import annotations
@@ -25,17 +27,26 @@ from closedform.mechanics.frames import rotation
 from closedform.scaffold.chainlinks import Single, Singles, singles
 from closedform.scaffold.maker import Maker, Z, norm, point, times
 from closedform.scaffold.proposal import NoChainError, Proposal, Tried
+from closedform.scaffold.recognise import general_degree
 from closedform.scaffold.source import GIVEN, source
 from closedform.scaffold.subproblems import SubproblemMaker
 
 
-def propose(arm: Serial, given: str = "") -> Proposal:
+def propose(
+    arm: Serial, given: str = "", progress: Callable[[str], None] = lambda _: None
+) -> Proposal:
     """The chain for an arm; raises :class:`NoChainError` if none is known.
 
     Of an arm of seven joints one is ``given``, by default one that makes the chain short.
     """
     tried: list[Tried] = []
+    if given and (len(arm.joints) != 7 or given not in {j.name for j in arm.joints}):
+        raise NoChainError(
+            f"{given} cannot be given",
+            "Of an arm of seven joints one can be given, by its name in the table.",
+        )
     for name, maker, structure in _candidates(arm, given):
+        progress(f"trying {name}")
         try:
             found = structure()
         except NoChainError as error:
@@ -43,25 +54,69 @@ def propose(arm: Serial, given: str = "") -> Proposal:
             continue
         lemmas = tuple(dict.fromkeys(maker.used))
         return Proposal(found, tuple(maker.lines), lemmas, maker.branches, tuple(tried))
-    raise tried[0].error
+    raise _refusal(arm, tried)
+
+
+def _refusal(arm: Serial, tried: Sequence[Tried]) -> NoChainError:
+    """Why no chain is known, with the degree of what is left if that is known."""
+    error = next((t.error for t in tried if t.error.degree), tried[0].error)
+    if not error.degree and (degree := general_degree(arm)):
+        error = NoChainError(error.found, f"{error.needed}  {degree}")
+    return error.after(tried)
 
 
 def _candidates(arm: Serial, given: str) -> Iterator[tuple[str, Maker, Callable[[], str]]]:
     """The chains to try, the cheapest first: a name, a maker, and what writes the lines."""
     n = len(arm.joints)
-    if n <= 6:
-        whole = _Maker(arm)
-        yield "a known structure", whole, whole.whole
-    if any(row.slides for group in arm.groups for row in group.rows):
+    known = _Maker(arm)
+    slides = any(row.slides for group in arm.groups for row in group.rows)
+    if n != 7 or slides:
+        yield "a known structure", known, known.whole
+    if slides:
         return
-    one_by_one = singles(arm)
-    if n == 6:
-        yield from _six(arm, one_by_one, "", None)
+    whole = singles(arm)
+    task = arm.coordinates()
     if n == 7:
-        order = [s for k in (2, 6, 4, 0, 3, 1, 5) if (s := one_by_one.joints[k])]
-        chosen = [s for s in order if not given or s.joint.name == given]
-        for single in chosen:
-            yield from _six(arm, one_by_one, f", with {single.joint} given", single)
+        for single in (whole.joints[k] for k in (2, 6, 4, 0, 3, 1, 5)):
+            if given in ("", single.joint.name):
+                yield from _six(arm, whole, f", with {single.joint} given", single)
+    elif n == 6:
+        yield from _six(arm, whole, "", None)
+    elif task is not None and task.names == ("x", "y", "z"):
+        maker = SubproblemMaker(arm)
+        yield (
+            "three joints for a point",
+            maker,
+            partial(maker.solved_point, _met(whole, ((0, 2), (1, 2)))),
+        )
+    elif task is None:
+        for wrist in (w for w in (3, 2, 1) if 0 <= n - w <= 3):
+            maker = SubproblemMaker(arm)
+            yield f"the last {wrist} of {n} joints", maker, partial(_fewer, maker, whole, wrist)
+        if n == 5:
+            maker = SubproblemMaker(arm)
+            met = _met(whole, ((3, 2),))
+            yield "three parallel joints", maker, partial(maker.solved_in_plane, met)
+
+
+def _met(whole: Singles, pairs: Sequence[tuple[int, int]]) -> Singles:
+    """The arm with the origins of those neighbours that meet moved to where they do."""
+    for first, count in pairs:
+        whole = whole.met(first, count) or whole
+    return whole
+
+
+def _fewer(maker: SubproblemMaker, whole: Singles, wrist: int) -> str:
+    start = len(whole.joints) - wrist
+    found = whole.met(start, wrist)
+    if found is None:
+        raise NoChainError(
+            f"its last {wrist} axes do not meet in a point",
+            "Known are arms of up to three joints before others whose axes meet in a point.",
+        )
+    structure = maker.solved(_met(found, [(k, 2) for k in range(start - 1)]), wrist)
+    joints = f"{wrist} joints that turn" if wrist > 1 else "1 joint that turns"
+    return f"{structure}, and {joints} the tool"
 
 
 def _six(
@@ -89,9 +144,7 @@ def _with_wrist(
             f"axes {ends[0]}, {ends[1]} and {ends[2]} do not meet in a point",
             "A spherical wrist or shoulder needs three axes that meet.",
         )
-    for k in (0, 1):
-        found = found.met(k, 2) or found
-    structure = maker.solved(found, 3)
+    structure = maker.solved(_met(found, ((0, 2), (1, 2))), 3)
     name = "shoulder" if inverted else "wrist"
     return f"spherical {name}, {structure}{more}"
 
@@ -358,9 +411,9 @@ class _Maker(Maker):
             lengths = ", ".join(source(norm(link)) for link in links)
             if wrist or sp.simplify(level[:2, 0].dot(along[:2, 0])) != 0:
                 inside = f"(turned(pair).T * p - {source(sp.Matrix(row.shift))})"
-                point = times(base.end.T, inside)
+                place = times(base.end.T, inside)
                 kind = "LinksAndWrist" if wrist else "Links"
-                self.add(f"links = {kind}(lambda pair: {point}, {lengths}{wrist})")
+                self.add(f"links = {kind}(lambda pair: {place}, {lengths}{wrist})")
             else:
                 height = sp.simplify(along[0] * level[1] - along[1] * level[0])
                 self.add(f"links = LinksAtHeight({lengths}, {source(height)})")

@@ -11,7 +11,7 @@ The other joints are solved one after another, each by an equation that holds no
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import sympy as sp
@@ -22,8 +22,18 @@ from closedform.scaffold.maker import Maker, Z, norm, point, times
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.source import source
 
-Turned = list[tuple[str, sp.Matrix]]
-"""The rotations that were solved: the name of a pair about z, and the constant rotation after it."""
+
+@dataclass(frozen=True)
+class Solved:
+    """How the joints that carry a point were solved.
+
+    ``turned`` are their rotations: a pair about z, and the constant rotation after it.  ``rest`` is
+    what fewer than three leave of the point, zero if it can be reached.
+    """
+
+    structure: str
+    turned: Sequence[tuple[str, sp.Matrix]]
+    rest: str = ""
 
 
 @dataclass
@@ -33,44 +43,94 @@ class SubproblemMaker(Maker):
     choices: int = 0
     unknowns: dict[int, str] = field(default_factory=dict)
 
+    def vector(self, name: str, value: str, label: str = "") -> None:
+        """Name a vector, by default by the name of the variable."""
+        self.add(f"{name} = ik.vector('{label or name}', {value})")
+
     def give(self, joint: Single) -> None:
         """Take a joint as an input."""
         self.add(f"given = ik.given({joint.joint})")
 
     def solved(self, arm: Singles, wrist: int) -> str:
-        """Solve an arm whose last ``wrist`` joints meet in a point; return its structure."""
+        """Solve an arm whose last ``wrist`` joints meet in a point; return its structure.
+
+        Fewer than six joints do not reach every pose, so that the target is compared at the end.
+        """
         n = len(arm.joints)
         before, ends = arm.joints[: n - wrist], arm.joints[n - wrist :]
+        R = self._centre(arm)
+        solved = self.position(before)
+        M = times(arm.lead[:3, :3].T, R)
+        for k, (pair, end) in enumerate(solved.turned, 1):
+            self.add(f"left{k} = ik.matrix('left{k}', {times(end.T, f'(turned({pair}).T * {M})')})")
+            M = f"left{k}"
+        M = self._without_tool(arm.tool[:3, :3], M)
+        self.orientation(ends, M)
+        if len(self.arm.joints) < 6:
+            self.add(f"ik.reached({solved.rest if wrist == 3 else ''})")
+        return solved.structure
+
+    def solved_point(self, arm: Singles) -> str:
+        """Solve three joints for the position of the tool."""
+        tool = arm.tool[:3, 3]
+        self.add("p = Matrix(ik.x)")
+        if arm.lead != sp.eye(4):
+            moved = times(arm.lead[:3, :3].T, f"(p - {source(arm.lead[:3, 3])})")
+            self.vector("p", moved, "p0")
+        last = replace(arm.joints[-1], shift=tool)
+        return self.position([*arm.joints[:-1], last]).structure
+
+    def solved_in_plane(self, arm: Singles) -> str:
+        """Solve a turret, three parallel joints and one whose axis does not meet theirs."""
+        one, two, three, four, five = arm.joints
+        self.require(
+            not parallel(one) and not parallel(four) and two.end == three.end == sp.eye(3),
+            "axes 2, 3 and 4 are not parallel, or axis 1 or 5 is parallel to them",
+            "Known are five joints of which the middle three are parallel.",
+        )
+        R = self._centre(arm)
+        w = four.shift
+        q, pair = self._seen_in_plane(one, two.shift[2] + three.shift[2] + w[2])
+        M = f"{times(one.end.T, f'(turned({pair}).T * {times(arm.lead[:3, :3].T, R)})')}"
+        self.add(f"left1 = ik.matrix('left1', {M})")
+        M = self._without_tool(arm.tool[:3, :3], "left1")
+        lift = replace(four, turn=two.turn + three.turn + four.turn)
+        self.orientation([lift, five], M)
+        turn = f"pair{four.number}"
+        self.vector("q", f"{q} - turned({turn}) * {source(w)}", "q2")
+        u, v = two.shift, three.shift
+        self.two_links([two.turn, three.turn], [u[:2, 0], v[:2, 0]], "q[0]", "q[1]")
+        self.add("ik.reached()")
+        return "turret, three parallel joints and one more"
+
+    def _without_tool(self, after: sp.Matrix, M: str) -> str:
+        if (after - sp.eye(3)).is_zero_matrix:
+            return M
+        self.add(f"left = ik.matrix('left', {M} * {source(after.T)})")
+        return "left"
+
+    def _centre(self, arm: Singles) -> str:
+        """Name the point ``p`` where the last axes meet, and return the name of the rotation."""
         R, p = ("ik.R", "ik.p")
         if arm.inverted:
             self.add("back = ik.R.T")
-            self.add("p = ik.vector('base', -back * ik.p)")
+            self.vector("p", "-back * ik.p", "base")
             R, p = "back", "p"
         tool = arm.tool
         offset = (tool[:3, :3].T * tool[:3, 3]).applyfunc(sp.simplify)
         if not offset.is_zero_matrix:
-            self.add(f"p = ik.vector('w', {p} - {R} * {source(offset)})")
+            self.vector("p", f"{p} - {R} * {source(offset)}", "w")
         elif p != "p":
             self.add(f"p = {p}")
         lead = arm.lead[:3, :3]
         if arm.lead != sp.eye(4):
             moved = times(lead.T, f"(p - {source(arm.lead[:3, 3])})")
-            self.add(f"p = ik.vector('p0', {moved})")
-        structure, turned = self.position(before)
-        M = times(lead.T, R)
-        for k, (pair, end) in enumerate(turned, 1):
-            self.add(f"left{k} = ik.matrix('left{k}', {times(end.T, f'(turned({pair}).T * {M})')})")
-            M = f"left{k}"
-        after = tool[:3, :3]
-        if not (after - sp.eye(3)).is_zero_matrix:
-            self.add(f"left = ik.matrix('left', {M} * {source(after.T)})")
-            M = "left"
-        self.orientation(ends, M)
-        return structure
+            self.vector("p", moved, "p0")
+        return R
 
     # The joints that carry a point
 
-    def position(self, joints: Sequence[Single]) -> tuple[str, Turned]:
+    def position(self, joints: Sequence[Single]) -> Solved:
         """Solve up to three joints that carry the point ``p``, which is at the end of the last."""
         self.require(
             not any(j.slides for j in joints),
@@ -79,9 +139,47 @@ class SubproblemMaker(Maker):
         )
         if len(joints) == 3:
             return self._three(*joints)
-        raise NoChainError(f"{len(joints)} joints carry its wrist", "Known are three.")
+        if len(joints) == 2:
+            return self._two(*joints)
+        if len(joints) == 1:
+            (only,) = joints
+            pair = self._rotate(only, source(only.shift[:2, 0]), "p")
+            rest = f"turned({pair}).T * p - {source(only.shift)}"
+            return Solved("a turret", [(pair, only.end)], rest)
+        if not joints:
+            return Solved("a wrist alone", [], "p")
+        raise NoChainError(
+            f"{len(joints)} joints carry its wrist", "The known chains have up to 3."
+        )
 
-    def _three(self, one: Single, two: Single, three: Single) -> tuple[str, Turned]:
+    def _two(self, one: Single, two: Single) -> Solved:
+        u = two.shift
+        if parallel(one):
+            self.require(
+                one.end == sp.eye(3), "its first two axes are opposite", "Turn a frame by pi."
+            )
+            self.two_links([one.turn, two.turn], [one.shift[:2, 0], u[:2, 0]], "p[0]", "p[1]")
+            bend = self.less(self.pairs[1], u[:2, 0])
+            first, second = self.pairs
+            a, b = (source(norm(w[:2, 0])) for w in (one.shift, u))
+            x, y = (f"{a}*{first}.{n} + {b}*({first} + {second}).{n}" for n in "cs")
+            rest = f"p - Matrix([{x}, {y}, {source(one.shift[2] + u[2])}])"
+            return Solved("two links", [(f"({self.pairs[0]} + {bend})", two.end)], rest)
+        q, pair = self._seen_in_plane(one, u[2])
+        second = self._rotate(two, source(u[:2, 0]), q)
+        rest = f"turned({second}).T * q - {source(u)}"
+        return Solved("a turret and a joint", [(pair, one.end), (second, two.end)], rest)
+
+    def _seen_in_plane(self, one: Single, beside: sp.Expr, toward: str = "") -> tuple[str, str]:
+        """Solve a joint by how far ``p`` is along the next axis; name the point in that frame."""
+        g, p = one.end * Z, point("p")
+        c = beside + g.dot(one.shift) - g[2] * p[2]
+        pair = self._turn(one, (g[0] * p[1] - g[1] * p[0], g[0] * p[0] + g[1] * p[1], c), toward)
+        q = times(one.end.T, f"(turned({pair}).T * p - {source(one.shift)})")
+        self.vector("q", q)
+        return "q", pair
+
+    def _three(self, one: Single, two: Single, three: Single) -> Solved:
         if not parallel(one) and two.end == sp.eye(3):
             return self._parallel_last(one, two, three)
         if not parallel(one) and one.shift.is_zero_matrix:
@@ -93,48 +191,47 @@ class SubproblemMaker(Maker):
         raise NoChainError(
             f"of axes {one.number}, {two.number} and {three.number} no two neighbours are parallel "
             f"or meet: the tangent of half an angle has an equation of degree 4",
-            "Use ssik for a numeric inverse, or solve the quartic yourself.",
+            "No lemma solves an equation of degree 4; use ssik for a numeric inverse.",
+            degree=4,
         )
 
-    def _parallel_last(self, one: Single, two: Single, three: Single) -> tuple[str, Turned]:
+    def _parallel_last(self, one: Single, two: Single, three: Single) -> Solved:
         u, v = two.shift, three.shift
-        g, p = one.end * Z, point("p")
-        c = u[2] + v[2] + g.dot(one.shift) - g[2] * p[2]
         reached = times(one.end.T, f"(turned(pair).T * p - {source(one.shift)})")
         lengths = ", ".join(source(norm(w[:2, 0])) for w in (u, v))
         self.add(f"links = Links(lambda pair: {reached}, {lengths})")
-        pair = self._turn(one, (g[0] * p[1] - g[1] * p[0], g[0] * p[0] + g[1] * p[1], c), "links")
-        q = times(one.end.T, f"(turned({pair}).T * p - {source(one.shift)})")
-        self.add(f"q = ik.vector('q', {q})")
+        _, pair = self._seen_in_plane(one, u[2] + v[2], "links")
         self.two_links([two.turn, three.turn], [u[:2, 0], v[:2, 0]], "q[0]", "q[1]")
         bend = self.less(self.pairs[1], v[:2, 0])
-        return (
+        return Solved(
             f"axes {two.number} and {three.number} parallel",
             [(pair, one.end), (f"({self.pairs[0]} + {bend})", three.end)],
         )
 
-    def _meeting_first(self, one: Single, two: Single, three: Single) -> tuple[str, Turned]:
+    def _meeting_first(self, one: Single, two: Single, three: Single) -> Solved:
         t, u, p = two.shift, three.shift, point("p")
         e, g = (two.end.T * t).applyfunc(sp.simplify), one.end * Z
         self.add("far = ik.let('far', sqrt(p.dot(p)))")
         far = sp.Symbol("far")
         c = (far**2 - sp.simplify(t.dot(t) + u.dot(u))) / 2 - sp.simplify(e[2] * u[2])
         third = self._by_distance(three, e, u, c, "(far + ik.size/2**44)/2")
-        self.add(
-            f"carried = ik.vector('carried', {source(t)} + {times(two.end, f'(turned({third}) * {source(u)})')})"
-        )
+        inside = times(two.end, f"(turned({third}) * {source(u)})")
+        self.vector("carried", f"{source(t)} + {inside}")
         v = point("carried")
         sides = (g[0] * p[1] - g[1] * p[0], g[0] * p[0] + g[1] * p[1], v[2] - g[2] * p[2])
         first = self._turn(one, sides)
-        self.add(f"seen = ik.vector('seen', {times(one.end.T, f'(turned({first}).T * p)')})")
-        because = f"{{{self.unknowns[three.number]}: 2*ik.size, {self.unknowns[one.number]}: seen[2] + carried[2]}}"
+        self.vector("seen", times(one.end.T, f"(turned({first}).T * p)"))
+        because = (
+            f"{{{self.unknowns[three.number]}: 2*ik.size, "
+            f"{self.unknowns[one.number]}: seen[2] + carried[2]}}"
+        )
         second = self._rotate(two, "carried", "seen", because)
-        return (
+        return Solved(
             f"axes {one.number} and {two.number} meet",
             [(first, one.end), (second, two.end), (third, three.end)],
         )
 
-    def _meeting_last(self, one: Single, two: Single, three: Single) -> tuple[str, Turned]:
+    def _meeting_last(self, one: Single, two: Single, three: Single) -> Solved:
         t, u, p = one.shift, three.shift, point("p")
         g = two.end * Z
         self.add("far = ik.let('far', sqrt(p.dot(p)))")
@@ -143,24 +240,24 @@ class SubproblemMaker(Maker):
         size = sp.sqrt(sp.simplify(u.dot(u)))
         sides = (t[0] * p[1] - t[1] * p[0], t[0] * p[0] + t[1] * p[1], c)
         first = self._turn(one, sides, scale=source(size / 2), by_size=True)
-        self.add(
-            f"seen = ik.vector('seen', {times(one.end.T, f'(turned({first}).T * p - {source(t)})')})"
-        )
+        self.vector("seen", times(one.end.T, f"(turned({first}).T * p - {source(t)})"))
         m = point("seen")
         sides = (g[0] * m[1] - g[1] * m[0], g[0] * m[0] + g[1] * m[1], u[2] - g[2] * m[2])
         second = self._turn(two, sides)
-        self.add(f"beyond = ik.vector('beyond', {times(two.end.T, f'(turned({second}).T * seen)')})")
+        self.add(
+            f"beyond = ik.vector('beyond', {times(two.end.T, f'(turned({second}).T * seen)')})"
+        )
         because = (
             f"{{{self.unknowns[one.number]}: 2*ik.size, "
             f"{self.unknowns[two.number]}: beyond[2] + {source(u[2])}}}"
         )
         third = self._rotate(three, source(u[:2, 0]), "beyond", because)
-        return (
+        return Solved(
             f"axes {two.number} and {three.number} meet",
             [(first, one.end), (second, two.end), (third, three.end)],
         )
 
-    def _parallel_first(self, one: Single, two: Single, three: Single) -> tuple[str, Turned]:
+    def _parallel_first(self, one: Single, two: Single, three: Single) -> Solved:
         s, t, u, p = one.shift, two.shift, three.shift, point("p")
         f = two.end.T * Z
         sides = (
@@ -169,17 +266,16 @@ class SubproblemMaker(Maker):
             p[2] - s[2] - t[2] - f[2] * u[2],
         )
         third = self._turn(three, sides)
-        self.add(
-            f"carried = ik.vector('carried', {source(t)} + {times(two.end, f'(turned({third}) * {source(u)})')})"
-        )
+        inside = times(two.end, f"(turned({third}) * {source(u)})")
+        self.vector("carried", f"{source(t)} + {inside}")
         self.add("far = ik.let('far', sqrt(p[0]**2 + p[1]**2))")
         far, v = sp.Symbol("far"), point("carried")
         c = (far**2 - s[0] ** 2 - s[1] ** 2 - v[0] ** 2 - v[1] ** 2) / 2
         sides = (s[1] * v[0] - s[0] * v[1], s[0] * v[0] + s[1] * v[1], c)
         second = self._turn(two, sides, scale="(far + ik.size/2**44)/2", by_size=True)
-        self.add(f"seen = ik.vector('seen', {source(s)} + turned({second}) * carried)")
+        self.vector("seen", f"{source(s)} + turned({second}) * carried")
         first = self._rotate(one, "seen", "p", f"{{{self.unknowns[two.number]}: 2*ik.size}}")
-        return (
+        return Solved(
             f"axes {one.number} and {two.number} parallel",
             [(first, one.end), (second, two.end), (third, three.end)],
         )
@@ -232,7 +328,25 @@ class SubproblemMaker(Maker):
     # The joints that turn the tool
 
     def orientation(self, joints: Sequence[Single], M: str) -> None:
-        """Solve three joints for the rotation that the others leave to them."""
+        """Solve the joints for the rotation that the others leave to them."""
+        if len(joints) == 3:
+            self._wrist(joints, M)
+            return
+        if len(joints) == 2:
+            first, last = joints
+            self.require(
+                not parallel(first),
+                f"axes {first.number} and {last.number} are parallel",
+                "The axes of the last two joints must not be parallel.",
+            )
+            w = source((first.end * Z)[:2, 0])
+            pair = self._rotate(first, w, f"{M}[:, 2]", scale="1")
+            inside = times(first.end.T, f"(turned({pair}).T * {M})")
+            self.add(f"onward = ik.matrix('onward', {inside})")
+            M = "onward"
+        self._rotate(joints[-1], "(1, 0)", f"{M}[:, 0]", scale="1")
+
+    def _wrist(self, joints: Sequence[Single], M: str) -> None:
         groups = [Group((Row(1, j.turn, (sp.S.Zero,) * 3, False),), j.end) for j in joints]
         groups[-1] = Group(groups[-1].rows, sp.eye(3))
         self.wrist(joints[0].turn, groups, M, sp.eye(3), [j.number for j in joints])

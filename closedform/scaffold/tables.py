@@ -6,9 +6,11 @@ to correct it.
 
 A Denavit-Hartenberg table is CSV with the columns ``a, alpha, d, theta`` and optionally ``joint``,
 the name of the variable of a row.  By default this is the symbol in ``theta``, or the one in ``d``
-if ``theta`` is a number.  A row without a variable is a fixed transform.  Screws are TOML with
-``[[axes]]`` and ``[home]``.  Every other symbol is a parameter; its value, unit and meaning come
-from comment lines ``# name = value unit: meaning`` or from the table ``[parameters]``.
+if ``theta`` is a number.  A row without a variable is a fixed transform.  A column ``motors`` says
+what turns a joint that is not driven by a motor of its own, as ``m3 - m2`` for a parallelogram.
+Screws are TOML with ``[[axes]]`` and ``[home]``.  Every other symbol is a parameter; its value,
+unit and meaning come from comment lines ``# name = value unit: meaning`` or from the table
+``[parameters]``.
 """
 
 from __future__ import annotations
@@ -42,12 +44,12 @@ IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "at
 CHAIN = ("Reaching", "turned", *chain_lemmas())
 AUTHOR = (
     "Chain", "Derivation", "Links", "LinksAndWrist", "LinksAtHeight", "Pair", "Paper", "from_dh",
-    "from_screws",
+    "from_screws", "real",
 )  # fmt: skip
-SCRIPT = {"arm", "d", "forward", "links", "pair"}
+SCRIPT = {"arm", "coupling", "d", "forward", "links", "motors", "pair"}
 LINES = {
     "M", "ahead", "ik", "p", "q", "reaching", "turn1", "turn2", "wx", "wy", "x", "y", "yaw", "z",
-    "rho", "given", "back", "far", "carried", "seen", "beyond", "left",
+    "rho", "given", "back", "far", "carried", "seen", "beyond", "left", "onward",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""
@@ -69,6 +71,8 @@ class Table:
     axes: list[tuple[Any, Any, Any]] = field(default_factory=list)
     home: Any = None
     modified: bool = False
+    couplings: dict[str, Any] = field(default_factory=dict)
+    """Joints that several motors drive: each as a sum of motors with integer coefficients."""
     notes: list[str] = field(default_factory=list)
     """Entries that were not taken literally, in words for the author of the table."""
 
@@ -193,9 +197,12 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
         entries = {c: _expression(cell[c], f"{where}, column {c}") for c in COLUMNS}
         for column in ("alpha", "theta"):
             _check_angle(entries[column], cell[column], f"{where}, column {column}")
-        if found := _joint(cell.get("joint", ""), entries, where, table.parameters):
+        found = _joint(cell.get("joint", ""), entries, where, table.parameters)
+        if found:
             add_joint(table, *found, where)
-        else:
+        if given := cell.get("motors", ""):
+            _couple(table, found[0] if found else "", given, f"{where}, column motors")
+        if not found:
             table.notes.append(f"{where}: the row has no joint, so it is a fixed transform")
         table.rows.append(tuple(entries[c] for c in COLUMNS))
         places.append(where)
@@ -242,6 +249,39 @@ def _declare(table: Table, angles: exact.Angles) -> None:
         )
 
 
+def _couple(table: Table, joint: str, text: str, where: str) -> None:
+    """Note the motors of a joint."""
+    if not joint:
+        raise TableError(f"{where}: the row has no joint that motors could drive")
+    total = sp.expand(_expression(text, where))
+    terms = total.as_coefficients_dict()
+    if not all(t.is_Symbol and k.is_Integer for t, k in terms.items()):
+        raise TableError(
+            f"{where}: {shown(text)} is not a sum of motors with integer coefficients, such as "
+            f"m3 - m2"
+        )
+    table.couplings[joint] = total
+
+
+def motors_of(table: Table, where: str) -> tuple[list[str], sp.Matrix]:
+    """The names of the motors, and the matrix that takes their angles to those of the joints."""
+    driven = {j: table.couplings.get(j, real(f"m_{j}")) for j in table.joints}
+    names = list(dict.fromkeys(str(s) for e in driven.values() for s in _in_order(e)))
+    if clash := [n for n in names if n in table.joints or n in table.parameters or n in TAKEN]:
+        raise TableError(f"{where}: the motor {clash[0]} has the name of something else; rename it")
+    matrix = sp.Matrix([[e.coeff(real(n)) for n in names] for e in driven.values()])
+    if not matrix.is_square or abs(matrix.det()) != 1:
+        raise TableError(
+            f"{where}: the column motors names {len(names)} motors for {len(driven)} joints, and "
+            f"they do not determine each other; a joint with an empty cell has a motor of its own"
+        )
+    return names, matrix
+
+
+def _in_order(e: sp.Expr) -> list[sp.Symbol]:
+    return sorted(e.free_symbols, key=str)
+
+
 def add_joint(table: Table, joint: str, kind: str, where: str) -> None:
     if joint in table.joints:
         raise TableError(f"{where}: two joints have the name {shown_name(joint)}")
@@ -258,10 +298,10 @@ def _header(cells: Sequence[str], where: str) -> list[str]:
             f"{where}: the column {missing[0]} is missing; the first line must name the columns "
             f"{names}, separated by commas"
         )
-    if unknown := [c for c in header if c not in (*COLUMNS, "joint")]:
+    if unknown := [c for c in header if c not in (*COLUMNS, "joint", "motors")]:
         raise TableError(
             f"{where}: the column {shown_name(unknown[0])} is unknown; the columns are {names} "
-            f"and optionally joint"
+            f"and optionally joint and motors"
         )
     if twice := [c for i, c in enumerate(header) if c in header[:i]]:
         raise TableError(f"{where}: there are two columns {shown_name(twice[0])}")

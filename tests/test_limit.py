@@ -1,0 +1,82 @@
+"""What `closedform new` does when the time is up, and with coupled joints."""
+
+from pathlib import Path
+
+import pytest
+import sympy as sp
+
+from closedform.scaffold import new as scaffold
+from closedform.scaffold.limit import LimitError, limited
+from closedform.scaffold.new import Search, new
+from closedform.scaffold.tables import TableError, motors_of, read_dh
+
+PLANAR = "a, alpha, d, theta\n1, 0, 0, theta1\n1, 0, 0, theta2\n"
+COUPLED = """\
+a, alpha, d, theta, motors
+0, pi/2, 1, theta1,
+2, 0, 0, theta2, m2
+1, 0, 0, theta3, m3 - m2
+"""
+
+
+def written(folder: Path, text: str, **options: object) -> scaffold.Script:
+    (folder / "table.csv").write_text(text, "utf-8")
+    return new("two", "dh", folder / "table.csv", **options)
+
+
+def endless(*_: object) -> None:
+    while True:
+        pass
+
+
+def test_a_computation_without_end_is_stopped() -> None:
+    with pytest.raises(LimitError), limited(0.05):
+        endless()
+
+
+def test_the_forward_map_is_written_when_the_time_is_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(scaffold, "propose", endless)
+    said: list[str] = []
+    search = Search(timeout=2, say=said.append)
+    script = written(tmp_path, PLANAR, search=search)
+    assert "forward = arm.export(d)" in script.text
+    assert 'd.no_inverse("the limit of 2 s was reached while ' in script.text
+    assert said[0] == "reading the table"
+
+
+def test_it_explains(tmp_path: Path) -> None:
+    script = written(tmp_path, PLANAR, search=Search(explain=True))
+    assert script.explained == ("axes 1 and 2 are parallel", "taken: planar arm of two links")
+
+
+def test_coupled_joints_get_functions_between_motors_and_joints(tmp_path: Path) -> None:
+    text = written(tmp_path, COUPLED).text
+    assert 'motors = Matrix([real("m_theta1"), real("m2"), real("m3")])' in text
+    assert "coupling = Matrix([[1, 0, 0], [0, 1, 0], [0, -1, 1]])" in text
+    assert '"joints_from_motors"' in text and '"motors_from_joints"' in text
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ("m3 - m2", "m3/2 - m2", "line 4, column motors: .* is not a sum of motors with integer"),
+        ("theta2, m2", "theta2,", "the column motors names 4 motors for 3 joints"),
+        ("m3 - m2", "theta1 - m2", "the motor theta1 has the name of something else"),
+        ("m3 - m2", "2*m3 - m2", "do not determine each other"),
+    ],
+)
+def test_a_coupling_that_cannot_be_is_refused(tmp_path: Path, old: str, new: str, why: str) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text(COUPLED.replace(old, new), "utf-8")
+    with pytest.raises(TableError, match=why):
+        motors_of(read_dh(path), path.name)
+
+
+def test_the_matrix_takes_motors_to_joints(tmp_path: Path) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text(COUPLED, "utf-8")
+    names, matrix = motors_of(read_dh(path), path.name)
+    turned = matrix * sp.Matrix([1, 10, 100])
+    assert names == ["m_theta1", "m2", "m3"] and list(turned) == [1, 10, 90]

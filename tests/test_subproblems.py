@@ -1,0 +1,168 @@
+"""Chains of subproblems: axes in any direction, seven joints, and fewer than six."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import sympy as sp
+from sympy import cos, pi, sin
+
+import closedform
+from closedform.lazy import homes
+from closedform.lemmas.chain import Chain
+from closedform.lemmas.links import turn
+from closedform.lemmas.rotate import rotate
+from closedform.mechanics.arm import Serial, from_dh
+from closedform.model.derivation import Derivation, Paper
+from closedform.proof.prove import prove
+from closedform.proof.require import ProofError
+from closedform.scaffold.propose import NoChainError, propose
+from closedform.scaffold.recognise import recognised
+
+ROOM = sp.Rational(1, 2)
+WRIST = [(0, -pi / 2, ROOM), (0, pi / 2, 0), (0, 0, 0)]
+"""The last three rows of an arm with a spherical wrist."""
+
+
+def arm(rows: list, joints: str = "t1 t2 t3 t4 t5 t6 t7") -> tuple[Derivation, Serial]:
+    d = Derivation("arm", "Arm", Paper("toy", "Toys", ("A.",)), "An arm.")
+    q = [d.joint(name) for name, _ in zip(joints.split(), rows, strict=False)]
+    return d, from_dh(d, [(*row, x) for row, x in zip(rows, q, strict=True)])
+
+
+def solved(d: Derivation, serial: Serial, lines: str) -> Chain:
+    """The chain that the lines build, as the script that holds them does."""
+    task = serial.coordinates()
+    if task is not None:
+        d.task = list(task.names)
+    ik = Chain(d, serial.pose if task is None else task.values)
+    exec("from sympy import *", known := {})
+    known |= {name: getattr(closedform, name) for name in homes(closedform.__path__)}
+    exec(lines, known | {j.name: j for j in ik.joints} | {"ik": ik})
+    ik.finish("All.")
+    return ik
+
+
+CHAINS = {
+    "spherical wrist, axes 1 and 2 meet": (
+        [(0, pi / 2, 1), (2, pi / 2, ROOM), (1, pi / 2, 0), *WRIST], 8,
+    ),
+    "spherical wrist, axes 2 and 3 meet": (
+        [(ROOM, pi / 2, 1), (0, pi / 2, 2), (1, pi / 2, 0), *WRIST], 8,
+    ),
+    "spherical wrist, axes 1 and 2 parallel": (
+        [(1, 0, 1), (2, pi / 2, 0), (1, pi / 2, 0), *WRIST], 8,
+    ),
+    "spherical shoulder, axes 6 and 5 meet, with t7 given": (
+        [(0, -pi / 2, 0), (0, pi / 2, 0), (1, pi / 2, 2), (-1, -pi / 2, 0),
+         (0, pi / 2, 2), (ROOM, pi / 2, 0), (0, 0, 1)], 8,
+    ),
+    "axes 2 and 3 parallel, and 2 joints that turn the tool": (
+        [(0, pi / 2, 1), (2, 0, 0), (1, 0, 0), (0, pi / 2, 0), (0, 0, ROOM)], 4,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("structure", CHAINS)
+def test_the_proof_accepts_a_chain_of_subproblems(structure: str) -> None:
+    rows, branches = CHAINS[structure]
+    d, serial = arm(rows)
+    found = propose(serial)
+    assert found.structure == structure
+    solved(d, serial, found.source)
+    (inverse,) = prove(d).inverses
+    assert inverse.branches == branches == found.branches
+
+
+def test_a_joint_of_seven_can_be_chosen() -> None:
+    rows = CHAINS["spherical shoulder, axes 6 and 5 meet, with t7 given"][0]
+    serial = arm(rows)[1]
+    assert "t7 given" in propose(serial, "t7").structure
+    with pytest.raises(NoChainError, match="t9 cannot be given"):
+        propose(serial, "t9")
+
+
+def test_a_degree_is_named() -> None:
+    """Three skew axes under a spherical wrist: a quartic, which no lemma solves."""
+    rows = [(1, pi / 2, 0), (1, pi / 3, 1), (1, pi / 2, ROOM), *WRIST]
+    with pytest.raises(NoChainError, match="degree 4; use ssik") as e:
+        propose(arm(rows)[1])
+    assert e.value.degree == 4
+    rows = [(1, pi / 2, ROOM)] * 6
+    with pytest.raises(NoChainError, match=r"polynomial of degree 16\.  Use ssik"):
+        propose(arm(rows)[1])
+
+
+def test_it_says_what_it_recognised() -> None:
+    rows = [(0, pi / 2, 1), (2, 0, 0), (1, 0, 0), (ROOM, pi / 2, 0), (0, pi / 3, 1), (0, 0, 0)]
+    assert recognised(arm(rows)[1]) == [
+        "axes 1 and 2 meet at a right angle",
+        "axes 2 and 3 are parallel",
+        "axes 3 and 4 are parallel",
+        "axes 4 and 5 are normal to each other, apart",
+        "axes 5 and 6 meet at an oblique angle",
+        "axes 2, 3 and 4 are parallel",
+    ]
+
+
+def test_three_axes_that_meet_are_recognised() -> None:
+    rows = CHAINS["spherical wrist, axes 1 and 2 meet"][0]
+    assert recognised(arm(rows)[1])[-1] == "axes 4, 5 and 6 meet in a point"
+
+
+class Two:
+    """Two joints that carry a point: the distance gives the second, a rotation the first."""
+
+    def __init__(self) -> None:
+        d = self.d = Derivation(
+            "two", "Two", Paper("toy", "Toys", ("A.",)), "Two links.", task=["x", "y"]
+        )
+        self.t1, self.t2 = t1, t2 = d.joint("t1"), d.joint("t2")
+        forward = [3 * cos(t1) + 2 * cos(t1 + t2), 3 * sin(t1) + 2 * sin(t1 + t2)]
+        self.ik = Chain(d, forward)
+        x, y = self.ik.x
+        self.far = self.ik.let("far", (x**2 + y**2 - 13) / 2)
+
+    def prove(self, because: Callable) -> None:
+        x, y = self.ik.x
+        second = self.ik.solve(turn, self.t2, 0, 6, self.far, {+1: "up", -1: "down"})
+        w = (3 + 2 * second.c, 2 * second.s)
+        self.ik.solve(rotate, self.t1, w, (x, y), because=because(self))
+        self.ik.finish("Both.")
+        (inverse,) = prove(self.d).inverses
+        assert inverse.branches == 2
+
+
+def test_a_rotation_needs_vectors_of_equal_length() -> None:
+    Two().prove(lambda two: {two.t2: 2})
+
+
+@pytest.mark.parametrize(
+    ("because", "why"),
+    [
+        (lambda two: {two.t2: 3}, "does not follow so"),
+        (lambda two: {}, "does not follow from earlier equations; say with because="),
+        (lambda two: {two.t1: 2}, "no earlier lemma solves for t1"),
+    ],
+)
+def test_that_they_are_must_follow(because: Callable, why: str) -> None:
+    with pytest.raises(ProofError, match=f"equally long.*{why}"):
+        Two().prove(because)
+
+
+def test_a_pose_that_is_none_of_the_arms_must_be_compared() -> None:
+    """Without the comparison, two coordinates of the target have no equation."""
+    rows = CHAINS["axes 2 and 3 parallel, and 2 joints that turn the tool"][0]
+    d, serial = arm(rows)
+    lines = propose(serial).source.replace("ik.reached()", "")
+    solved(d, serial, lines)
+    with pytest.raises(ProofError, match="equally long"):
+        prove(d)
+
+
+def test_a_given_joint_is_an_input() -> None:
+    d, serial = arm(CHAINS["spherical shoulder, axes 6 and 5 meet, with t7 given"][0])
+    solved(d, serial, propose(serial).source)
+    assert [a.name for a in d["ik"].inputs] == ["T", "t7"]
+    values = np.array(d["ik"].values(d["ik"].branches.signs[0])[6:7])
+    assert values.shape == (1,)

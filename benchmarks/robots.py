@@ -1,7 +1,7 @@
 """``python -m benchmarks.robots`` writes ``docs/robots.md``: the inverses of real robots.
 
-Each robot is a table of joints in ``benchmarks/arms``, which names its source.  The inverse is
-proposed and proved as ``closedform new`` and ``closedform derive`` do; the time is that of one core.
+Each robot is a table of joints in ``benchmarks/arms``, with its source.  The inverse is proposed
+and proved as ``closedform new`` and ``closedform derive`` do it; the time is that of one core.
 """
 
 from __future__ import annotations

@@ -155,7 +155,7 @@ def parser() -> argparse.ArgumentParser:
         metavar="SECONDS",
         type=_seconds,
         default=60.0,
-        help="then write what was found; 0: no limit; default: 60",
+        help="of computing, then write what was found; 0: no limit; default: 60",
     )
     new.add_argument(
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="default: current folder"

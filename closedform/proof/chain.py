@@ -298,10 +298,10 @@ def _determines_target(inverse: Inverse, graph: Graph, matches: Sequence[Expr], 
     """Prove that the equations have no other solution for the target than the image."""
     lemmas = [e for link in inverse.chain for e in link.lemma.equations]
     if missing := undetermined(inverse, graph, [*lemmas, *matches]):
+        count = len(inverse.targets) + len(inverse.angles) + len(inverse.lengths)
         raise ProofError(
-            f"{where}: the lemmas leave {len(missing)} of the coordinates of the target "
-            f"undetermined ({', '.join(missing)}): an equation of the forward map is not used, or "
-            f"it is not linear in the target"
+            f"{where}: the lemmas leave {len(missing)} of the {count} coordinates of the target "
+            f"undetermined: no equation that is linear in the target holds {', '.join(missing)}"
         )
 
 

@@ -18,8 +18,8 @@ Expr = Any
 class Postures(Protocol):
     """Expressions in the unknowns and the target, and the target at a posture."""
 
-    targets: Mapping[Expr, Expr]
-    lengths: Mapping[Expr, Expr]
+    targets: dict[Expr, Expr]
+    lengths: dict[Expr, Expr]
 
     def named(self, e: Expr) -> Expr: ...
 
@@ -66,7 +66,7 @@ def _columns(inverse: Inverse, graph: Postures) -> tuple[dict[Expr, Expr], dict[
             columns |= {c: sp.cos(value), s: sp.sin(value)}
         else:
             columns[x] = value
-    return columns | dict(graph.lengths), circle
+    return columns | graph.lengths, circle
 
 
 def _linear_rows(
@@ -78,7 +78,7 @@ def _linear_rows(
         slopes = [e.diff(x) if e.has(x) else sp.S.Zero for x in columns]
         if any(slope.has(*columns) for slope in slopes):
             nonlinear = True
-        elif any(slope != 0 for slope in slopes):
+        else:
             rows.append([slope.xreplace(known) for slope in slopes])
     return rows, nonlinear
 
@@ -86,18 +86,31 @@ def _linear_rows(
 def _determined(
     rows: Sequence[Sequence[Expr]], columns: Sequence[Expr], draw: random.Random
 ) -> list[Expr]:
-    """The columns of the parts of a matrix that have full rank; parts share no row or column."""
+    """The columns of a matrix if it has full rank, or those of its parts that have.
+
+    Parts share no row and no column.
+    """
+    if _has_full_rank(rows, len(columns), draw):
+        return list(columns)
     found = []
     for part in _parts(rows, len(columns)):
         own = [[row[j] for j in part] for row in rows if any(row[j] != 0 for j in part)]
-        entries = [slope for row in own for slope in row]
-        point = random_posture(draw, list({s for e in entries for s in e.free_symbols}))
-        balls = Evaluator(list(point), entries)(list(point.values()))
-        n = len(part)
-        if _certain_rank([balls[i : i + n] for i in range(0, len(balls), n)]) == n:
-            certificates.regular(own, point, "ranks of a matrix at a posture")
+        if _has_full_rank(own, len(part), draw):
             found += [columns[j] for j in part]
     return found
+
+
+def _has_full_rank(rows: Sequence[Sequence[Expr]], width: int, draw: random.Random) -> bool:
+    """Whether a matrix certainly has full column rank at a random posture."""
+    if len(rows) < width:
+        return False
+    entries = [slope for row in rows for slope in row]
+    point = random_posture(draw, list({s for e in entries for s in e.free_symbols}))
+    balls = Evaluator(list(point), entries)(list(point.values()))
+    full = _certain_rank([balls[i : i + width] for i in range(0, len(balls), width)]) == width
+    if full:
+        certificates.regular(rows, point, "ranks of a matrix at a posture")
+    return full
 
 
 def _parts(rows: Sequence[Sequence[Expr]], width: int) -> list[list[int]]:

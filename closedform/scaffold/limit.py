@@ -15,9 +15,10 @@ class LimitError(BaseException):
 
 @contextmanager
 def limited(seconds: float) -> Iterator[None]:
-    """Raise :class:`LimitError` in the body after so many seconds; 0 means no limit.
+    """Raise :class:`LimitError` in the body after so many seconds of computing; 0 means no limit.
 
-    A system without timers for processes, and a thread, have no limit.
+    They are those of this process, so that a busy machine does not decide what is found.  A system
+    without such timers, and a thread, have no limit.
     """
     main = threading.current_thread() is threading.main_thread()
     if not (seconds > 0 and main and hasattr(signal, "setitimer")):
@@ -27,13 +28,13 @@ def limited(seconds: float) -> Iterator[None]:
     def stop(*_: Any) -> None:
         raise LimitError
 
-    before = signal.signal(signal.SIGALRM, stop)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    before = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
 
 
 __all__ = ["LimitError", "limited"]

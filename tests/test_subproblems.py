@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 
-import numpy as np
 import pytest
 import sympy as sp
 from sympy import cos, pi, sin
@@ -74,9 +73,13 @@ def test_the_proof_accepts_a_chain_of_subproblems(structure: str) -> None:
     assert inverse.branches == branches == found.branches
 
 
-def test_a_joint_of_seven_can_be_chosen() -> None:
-    rows = CHAINS["spherical shoulder, axes 6 and 5 meet, with t7 given"][0]
-    serial = arm(rows)[1]
+@pytest.fixture(scope="module")
+def franka() -> tuple[Derivation, Serial]:
+    return arm(CHAINS["spherical shoulder, axes 6 and 5 meet, with t7 given"][0])
+
+
+def test_a_joint_of_seven_can_be_chosen(franka: tuple[Derivation, Serial]) -> None:
+    serial = franka[1]
     assert "t7 given" in propose(serial, "t7").structure
     with pytest.raises(NoChainError, match="t9 cannot be given"):
         propose(serial, "t9")
@@ -88,7 +91,7 @@ def test_a_degree_is_named() -> None:
     with pytest.raises(NoChainError, match="degree 4; use ssik") as e:
         propose(arm(rows)[1])
     assert e.value.degree == 4
-    rows = [(1, pi / 2, ROOM)] * 6
+    rows = [(1, pi / 2, 0)] * 6
     with pytest.raises(NoChainError, match=r"polynomial of degree 16\.  Use ssik"):
         propose(arm(rows)[1])
 
@@ -160,9 +163,8 @@ def test_a_pose_that_is_none_of_the_arms_must_be_compared() -> None:
         prove(d)
 
 
-def test_a_given_joint_is_an_input() -> None:
-    d, serial = arm(CHAINS["spherical shoulder, axes 6 and 5 meet, with t7 given"][0])
+def test_a_given_joint_is_an_input(franka: tuple[Derivation, Serial]) -> None:
+    d, serial = franka
     solved(d, serial, propose(serial).source)
     assert [a.name for a in d["ik"].inputs] == ["T", "t7"]
-    values = np.array(d["ik"].values(d["ik"].branches.signs[0])[6:7])
-    assert values.shape == (1,)
+    assert d.inverses[0].targets[-1].name == "x_t7"

@@ -59,6 +59,13 @@ def propose(
 
 def _refusal(arm: Serial, tried: Sequence[Tried]) -> NoChainError:
     """Why no chain is known, with the degree of what is left if that is known."""
+    if len(arm.joints) == 7 and len(tried) > 2:
+        return NoChainError(
+            "none of its seven joints, if it is given, leaves a spherical wrist or shoulder, and "
+            "two neighbours among the rest that are parallel or meet",
+            "Use ssik for a numeric inverse, or write a chain of your own.",
+            tried=tried,
+        )
     error = next((t.error for t in tried if t.error.degree), tried[0].error)
     if not error.degree and (degree := general_degree(arm)):
         error = NoChainError(error.found, f"{error.needed}  {degree}")
@@ -160,8 +167,8 @@ class _Maker(Maker):
             joints = len(self.arm.joints)
             raise NoChainError(
                 f"its {joints} joints do not fit any task",
-                "An inverse needs as many coordinates as joints: a pose needs 6 joints, and fewer "
-                "joints may move only x, y and z of the tool and turn it about z.",
+                "Fewer joints may move only x, y and z of the tool and turn it about z; or up to "
+                "three come before others whose axes meet in a point.",
             )
         if "yaw" in task.names:
             return self._level(groups, task.names)

@@ -40,7 +40,6 @@ class Solved:
 class SubproblemMaker(Maker):
     """Writes the lines for an arm of single joints."""
 
-    choices: int = 0
     unknowns: dict[int, str] = field(default_factory=dict)
 
     def vector(self, name: str, value: str, label: str = "") -> None:
@@ -304,7 +303,7 @@ class SubproblemMaker(Maker):
         per = "/ik.size" if by_size else ""
         shown = ", ".join(f"({source(e)}){per}" if per and e != 0 else source(e) for e in sides)
         more = (f", toward={toward}" if toward else "") + (f", scale={scale}" if scale else "")
-        self.solve("turn", f"{name}, {shown}, {self.choice(joint)}{more}", pair, 2)
+        self.solve("turn", f"{name}, {shown}, {ELBOW if by_size else SIDE}{more}", pair, 2)
         return pair
 
     def _rotate(self, joint: Single, w: str, v: str, because: str = "", scale: str = "") -> str:
@@ -312,12 +311,6 @@ class SubproblemMaker(Maker):
         more = (f", because={because}" if because else "") + (f", scale={scale}" if scale else "")
         self.solve("rotate", f"{name}, {w}, {v}{more}", pair)
         return pair
-
-    def choice(self, joint: Single) -> str:
-        """The names of two solutions."""
-        self.choices += 1
-        plus, minus = CHOICES[self.choices - 1]
-        return f"{{+1: '{plus}', -1: '{minus}'}}"
 
     def unknown(self, joint: Single) -> str:
         """The angle of a joint as it turns the frame; its name is kept for later equations."""
@@ -352,7 +345,9 @@ class SubproblemMaker(Maker):
         self.wrist(joints[0].turn, groups, M, sp.eye(3), [j.number for j in joints])
 
 
-CHOICES = (("left", "right"), ("up", "down"), ("front", "back"))
+SIDE = "{+1: 'left', -1: 'right'}"
+ELBOW = "{+1: 'up', -1: 'down'}"
+"""Where a distance decides, the joint bends an elbow."""
 
 
 __all__ = ["SubproblemMaker"]

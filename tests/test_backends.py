@@ -1,10 +1,13 @@
 """Back ends and their runners: what the registry finds, what is refused, and the documented one."""
 
 import re
+import shutil
+import subprocess
 from pathlib import Path
 
 import jinja2
 import pytest
+import sympy as sp
 from test_vocabulary import TOYS
 
 from closedform.check import runners
@@ -19,7 +22,7 @@ from closedform.emit.backends.js.printer import JavaScriptPrinter
 from closedform.emit.code import COMPARE, SUM, Printer, Text
 from closedform.lower.graph import Graph
 from closedform.lower.operators import PRINTED
-from closedform.model.derivation import Derivation
+from closedform.model.derivation import Derivation, Paper
 from closedform.pipeline import run as pipeline
 from closedform.proof.prove import Proof
 
@@ -78,6 +81,17 @@ def test_what_cannot_be_run_is_named_on_the_page(
     page, failures = report(TOYS["levelled_arm"](), tmp_path, ["data", "js"])
     assert not failures
     assert "What is in js/ was not checked: Node is not installed." in page
+
+
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
+def test_a_mechanism_without_parameters_is_iso_c(tmp_path: Path) -> None:
+    """A structure without members is not, and an arm may be given in numbers alone."""
+    d = Derivation("bar", "Bar", Paper("toy", "Toys", ("A.",)), "A bar.", task=["x"])
+    q = d.joint("theta1")
+    d.function("fk", "Place of the end.", {"q": [q]}, {"x": [2 * sp.cos(q)]})
+    written(d, tmp_path, "c")
+    strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-fsyntax-only"]
+    subprocess.run(["gcc", *strict, str(tmp_path / "c" / "bar.c")], check=True)
 
 
 NONE = "none"

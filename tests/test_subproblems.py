@@ -2,11 +2,13 @@
 
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 import sympy as sp
 from sympy import cos, pi, sin
 
 import closedform
+from closedform.check.truth import Solutions
 from closedform.lazy import homes
 from closedform.lemmas.chain import Chain
 from closedform.lemmas.links import turn
@@ -126,18 +128,31 @@ class Two:
         x, y = self.ik.x
         self.far = self.ik.let("far", (x**2 + y**2 - 13) / 2)
 
-    def prove(self, because: Callable) -> None:
+    def solve(self, because: Callable) -> None:
         x, y = self.ik.x
         second = self.ik.solve(turn, self.t2, 0, 6, self.far, {+1: "up", -1: "down"})
         w = (3 + 2 * second.c, 2 * second.s)
         self.ik.solve(rotate, self.t1, w, (x, y), because=because(self))
         self.ik.finish("Both.")
+
+    def prove(self, because: Callable) -> None:
+        self.solve(because)
         (inverse,) = prove(self.d).inverses
         assert inverse.branches == 2
 
 
 def test_a_rotation_needs_vectors_of_equal_length() -> None:
     Two().prove(lambda two: {two.t2: 2})
+
+
+def test_a_posture_beside_a_singularity_is_not_determined_by_its_target() -> None:
+    """An arm without factors: the rates of its forward map say how close it is to stretched."""
+    two = Two()
+    two.solve(lambda two: {two.t2: 2})
+    solutions = Solutions(two.d, two.d["ik"], two.d.inverses[0])
+    stretched, bent = (np.array([0.3, elbow]) for elbow in (1e-12, 1.0))
+    assert solutions.undetermined(stretched, ()) and not solutions.undetermined(bent, ())
+    assert solutions.condition(bent, ()) > 0.1
 
 
 @pytest.mark.parametrize(

@@ -51,10 +51,11 @@ from closedform.derivations.papers.rao_raju import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform import (
+    Combination,
     Derivation,
     Inverse,
+    Link,
     Program,
-    Reduction,
     branches,
     choose,
     homogeneous,
@@ -211,7 +212,7 @@ d.step(
 def averages(p: Program) -> tuple[Pair, Pair]:
     """The directions of the virtual arm: averages of the real ones on the shorter arc."""
     upper, fore = (
-        Pair(p.let(f"c{n}", side * cos(mean)), p.let(f"s{n}", side * sin(mean)))
+        Pair(c=p.let(f"c{n}", side * cos(mean)), s=p.let(f"s{n}", side * sin(mean)))
         for n, mean, half in (
             ("2A", means[theta2A], means[alpha]),
             ("23A", means[theta23A], means[beta]),
@@ -228,8 +229,8 @@ def stand(p: Program) -> tuple[Posture, sp.Matrix]:
     ahead, above = (p.let(n, e) for n, e in zip(("ahead", "higher"), gap, strict=True))
     base = p.let("base", sqrt(m.d**2 + ahead**2), nonnegative=True)
     rise = p.let("rise", sqrt(m.d**2 + above**2), nonnegative=True)
-    yaw = Pair(p.let("c_psi", m.d / base), p.let("s_psi", ahead / base))
-    roll = Pair(p.let("c_phi", m.d / rise), p.let("s_phi", above / rise))
+    yaw = Pair(c=p.let("c_psi", m.d / base), s=p.let("s_psi", ahead / base))
+    roll = Pair(c=p.let("c_phi", m.d / rise), s=p.let("s_phi", above / rise))
     length = wrist_let(p, m, base)
     return Posture(pair(theta1), upper, fore, yaw, roll, pair(theta), length, base), sp.Matrix(
         [ahead, above]
@@ -426,7 +427,7 @@ for sine in ("alpha", "beta"):
     turn = p.let(f"turn_{sine}", choose(spent, eased.straight_on(), 0))
     leant = p.let(f"lean_{sine}", choose(spent, free.lean(turn, eased.aside), 0))
     back, on = turned_by(leant), turned_by(turn)
-    ahead = Pair(back.c * on.c + back.s * on.s, back.c * on.s - back.s * on.c)
+    ahead = on - back
     v, seen = (
         tuple(
             p.let(
@@ -434,7 +435,7 @@ for sine in ("alpha", "beta"):
             )
             for k, side in ((0, -1), (1, 1))
         )
-        for name, e, by in (("v", v, ahead), ("p", seen, Pair(back.c, -back.s)))
+        for name, e, by in (("v", v, ahead), ("p", seen, -back))
     )
     turns.append(turn)
     leans.append(leant)
@@ -486,7 +487,8 @@ d.inverses.append(
         angles=(psi, phi, pitch),
         images="fk",
         condition=condition(m),
-        reduction=Reduction(lemmas, joints, sp.diag(MID_PLANE_ROWS, from_upper / m.d)),
+        links=tuple(map(Link.of, lemmas)),
+        glue=Combination(sp.diag(MID_PLANE_ROWS, from_upper / m.d), joints),
     )
 )
 design(d, m, cos(psi))

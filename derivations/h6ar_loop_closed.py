@@ -44,10 +44,11 @@ from closedform.derivations.papers.rao_raju import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform import (
+    Combination,
     Derivation,
     Inverse,
+    Link,
     Program,
-    Reduction,
     branches,
     choose,
     elbow_squares,
@@ -100,7 +101,7 @@ d.step(
     equal=[(middle.xreplace(halves), midpoint(m)), (apart.xreplace(halves), half_gap(m))],
 )
 ahead, higher = real("ahead"), real("higher")
-c23, s23 = pair(theta23A)
+c23, s23 = cos(theta23A), sin(theta23A)
 across_fore, along_fore = c23 * ahead + s23 * higher, s23 * ahead - c23 * higher
 line = sp.Matrix([across_fore, m.d, along_fore])  # half of it, right minus middle, in fore-arm axes
 forearm = sp.Matrix([[c23, 0, s23], [0, -1, 0], [s23, 0, -c23]])  # R03 for theta1 = 0
@@ -215,23 +216,23 @@ def stand(p: Program) -> Posture:
     virtual = two_link_arm_beside(
         p,
         lengths,
-        second,
         point,
         (theta2A, theta23A),
         side,
-        (mean[0] + gap, mean[1] - gap),
-        m.d,
+        second=second,
+        squares=(mean[0] + gap, mean[1] - gap),
+        scale=m.d,
         suffix="_virtual",
         rest=pair(theta2R),
     )
-    upper, fore = (Pair(*virtual.pair(angle)) for angle in (theta2A, theta23A))
+    upper, fore = (virtual.pair(angle) for angle in (theta2A, theta23A))
     seen = {cos(theta23A): fore.c, sin(theta23A): fore.s}
     p.let("width", across_fore.xreplace(seen))
     p.let("beyond", along_fore.xreplace(seen))
     tilted = p.let("tilted", sqrt(m.d**2 + width**2), nonnegative=True)
     half = p.let("base", sqrt(m.d**2 + ahead**2 + higher**2), nonnegative=True)
-    yaw = Pair(p.let("c_psi", tilted / half), p.let("s_psi", beyond / half))
-    roll = Pair(p.let("c_phi", m.d / tilted), p.let("s_phi", -width / tilted))
+    yaw = Pair(c=p.let("c_psi", tilted / half), s=p.let("s_psi", beyond / half))
+    roll = Pair(c=p.let("c_phi", m.d / tilted), s=p.let("s_phi", -width / tilted))
     return Posture(pair(theta1), upper, fore, yaw, roll, pair(theta), wrist_let(p, m, half), half)
 
 
@@ -461,7 +462,7 @@ bent = p.let(
 )
 side = p.let("sigma_right", sign_of(bent))
 opposite = p.let("sigma_other", side * sigma_left)
-elbow = p.matrix("elbow", m.L1 * sp.Matrix(upper))
+elbow = p.matrix("elbow", m.L1 * upper.unit)
 swing = p.matrix("swing", moved_by(lean, elbow))
 arms = []
 for name, sigma, unknowns in (
@@ -479,12 +480,12 @@ for name, sigma, unknowns in (
         two_link_arm_beside(
             p,
             lengths,
-            second,
             end,
             unknowns,
             sigma,
-            (squares[name][0] - change, squares[name][1] + change),
-            beside,
+            second=second,
+            squares=(squares[name][0] - change, squares[name][1] + change),
+            scale=beside,
             suffix=f"_{name}",
             sided=name == "right",
             free=unknowns[:1],
@@ -542,10 +543,10 @@ d.inverses.append(
         angles=(psi, phi, pitch),
         images="fk",
         condition=condition(m),
-        reduction=Reduction(
-            lemmas,
-            joints,
+        links=tuple(map(Link.of, lemmas)),
+        glue=Combination(
             sp.diag(MID_PLANE_ROWS, sp.Matrix.vstack(closure, turned_line * difference)),
+            joints,
             solutions_per_branch=2,
             because="the virtual arm is bent to the same side as the right arm",
         ),

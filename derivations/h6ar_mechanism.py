@@ -15,6 +15,8 @@ from sympy import Rational, atan2, cos, pi, sin, sqrt
 from closedform import (
     Derivation,
     Lemma,
+    LinksAtHeight,
+    Pair,
     Program,
     denavit_hartenberg,
     homogeneous,
@@ -25,6 +27,7 @@ from closedform import (
     two_link_arm,
 )
 
+pair = Pair.of
 theta2A, theta23A = real("theta2A"), real("theta23A")
 alpha, beta = real("alpha"), real("beta")
 x, y, z, psi, phi, pitch = (real(n) for n in ("x", "y", "z", "psi", "phi", "pitch"))
@@ -62,13 +65,6 @@ class Joints(NamedTuple):
     theta: sp.Symbol
 
 
-class Pair(NamedTuple):
-    """Cosine and sine of an angle."""
-
-    c: sp.Expr
-    s: sp.Expr
-
-
 class Posture(NamedTuple):
     """All quantities that the tip depends on, as names of a program or as expressions."""
 
@@ -82,10 +78,6 @@ class Posture(NamedTuple):
     """The variable length l_W of eq. (8)."""
     base: sp.Expr
     """Half the base line of the wrist."""
-
-
-def pair(angle: sp.Expr) -> Pair:
-    return Pair(cos(angle), sin(angle))
 
 
 def declare(d: Derivation) -> tuple[Dimensions, Joints]:
@@ -168,7 +160,7 @@ def half_gap(m: Dimensions) -> sp.Matrix:
 
 def midpoint(m: Dimensions) -> sp.Matrix:
     """The middle of the tips in the mid-plane."""
-    shoulder = m.L1 * sp.Matrix(pair(theta2A))
+    shoulder = m.L1 * pair(theta2A).unit
     return cos(alpha) * shoulder + cos(beta) * (arm(m, theta2A, theta23A) - shoulder)
 
 
@@ -212,7 +204,7 @@ def tip(m: Dimensions, p: Posture) -> sp.Matrix:
 
 def straight(along: sp.Expr, across: sp.Expr, upper: Pair, fore: Pair) -> sp.Expr:
     """The component of the fore-arm across the upper arm: zero if the arm is straight or folded."""
-    bend = Pair(upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
+    bend = fore - upper
     return along * bend.c - across * bend.s
 
 
@@ -223,7 +215,7 @@ def turned(angle: sp.Expr) -> sp.Expr:
 
 def pose_matrix(m: Dimensions, program: Program, p: Posture) -> sp.Matrix:
     """The frame of the tip, R03 Rz(phi) Rx(psi) Ry(theta), from the pairs of a posture."""
-    (c1, s1), (c23, s23) = p.waist, p.fore
+    c1, s1, c23, s23 = p.waist.c, p.waist.s, p.fore.c, p.fore.s
     forearm = sp.Matrix([[c1 * c23, s1, c1 * s23], [s1 * c23, -c1, s1 * s23], [s23, 0, -c23]])
     symbols = [real("u"), real("v"), real("w")]
     rolled, yawed, pitched = (
@@ -294,7 +286,7 @@ class MidPlane(NamedTuple):
     upper: Pair
     fore: Pair
     elbow: Pair
-    """Cosine and sine of the angle from the upper arm to the fore-arm."""
+    """The pair of the angle from the upper arm to the fore-arm."""
 
 
 def solve_mid_plane(
@@ -322,14 +314,12 @@ def solve_mid_plane(
     turn = sine_cosine(
         program,
         q.theta1,
-        -x,
-        y,
-        aside,
+        (-x, y, aside),
         sigma_waist,
         free=(q.theta1,),
         scale=sum(m),
         slack=slack,
-        reach=(m.L1, sqrt(along**2 + across**2), z - m.d1),
+        toward=LinksAtHeight(m.L1, sqrt(along**2 + across**2), z - m.d1),
     )
     outward = turn.known(x * cos(q.theta1) + y * sin(q.theta1))
     sigma_bend = program.let("sigma_bend", -sigma_waist * sigma_elbow)
@@ -343,7 +333,7 @@ def solve_mid_plane(
         free=(q.theta2R, q.theta2L),
     )
     pitched = linear_pair(q.theta, sin(pitch), cos(pitch))
-    pairs = (Pair(*bend.pair(e)) for e in (theta2A, theta23A, theta23A - theta2A))
+    pairs = (bend.pair(e) for e in (theta2A, theta23A, theta23A - theta2A))
     return MidPlane((pitched, turn, bend), *pairs)
 
 
@@ -387,7 +377,9 @@ def named(expr, p: Posture, q: Joints):
     """An expression in the angles of the mid-plane, rewritten in the named pairs of a posture."""
     state = (q.theta1, theta2A, theta23A, psi, phi, q.theta)
     names = {
-        f: n for s, t in zip(state, p[:6], strict=True) for f, n in zip(pair(s), t, strict=True)
+        f: n
+        for angle, known in zip(state, p[:6], strict=True)
+        for f, n in ((sin(angle), known.s), (cos(angle), known.c))
     }
     return expr.xreplace(names)
 

@@ -9,12 +9,13 @@ from sympy import atan2, cos, sin, sqrt
 
 from closedform import (
     Bound,
-    Continuum,
+    Degenerate,
     Derivation,
     Inverse,
+    Link,
     Program,
     Solved,
-    Stage,
+    Triangle,
     branches,
     choose,
     circle_intersection,
@@ -24,8 +25,6 @@ from closedform import (
     real,
     rotation,
     skeleton,
-    triangle_angles,
-    two_link_triangle_by_square,
     velocity_matrices,
 )
 
@@ -358,11 +357,14 @@ r2 = w.let("r2", x**2 + z**2, nonnegative=True)
 square_c = w.let("square_c", r2 + y**2, nonnegative=True)
 square_d = w.let("square_d", r2 + (y - L0) ** 2, nonnegative=True)
 squares = list(w.body)
-triangle_c, arm_c = two_link_triangle_by_square(
-    w, L1, L2, square_c, elbow4, base2, sigma2, suffix="_c"
-)
-triangle_d, arm_d = two_link_triangle_by_square(
-    w, L1, L2, square_d, elbow5, base3, sigma3, suffix="_d"
+(triangle_c, arm_c), (triangle_d, arm_d) = (
+    Triangle.from_square(w, (L1, L2), square, sign, suffix=suffix).stretched_without_link(
+        w, angles, sqrt(square), suffix=suffix
+    )
+    for suffix, square, angles, sign in (
+        ("_c", square_c, (elbow4, base2), sigma2),
+        ("_d", square_d, (elbow5, base3), sigma3),
+    )
 )
 inside = Program([*squares, *(s for s in w.body if isinstance(s, Bound))])
 size = L0 + L1 + L2
@@ -413,7 +415,7 @@ def spelled(name: str, square: sp.Expr, along: sp.Expr, sign: sp.Symbol) -> dict
         f"N_{name}": (L1 + L2) ** 2 - distance,
         f"M_{name}": distance - (L1 - L2) ** 2,
         rf"\theta_{ {'a': 2, 'b': 3}[name] }": atan2(tau * real("r"), along)
-        - triangle_angles(L1, L2, N, M, sign)[1],
+        - Triangle(L1, L2, sign, N, M).base,
     }
 
 
@@ -530,23 +532,29 @@ d.inverses.append(
         (sp.S.Zero,) * 3,
         tuple(loop),
         (
-            Continuum(on_axis, axis, theta1, r"\theta_2, \theta_3 \text{ as for any } \theta_1"),
-            Continuum(
-                at_a,
+            Degenerate(
+                (on_axis,),
+                axis,
+                theta1,
+                relation=r"\theta_2, \theta_3 \text{ as for any } \theta_1",
+            ),
+            Degenerate(
+                (at_a, on_axis),
                 {**axis, y: sp.S.Zero, L2: L1},
                 theta2,
-                r"\theta_4 = \theta_2 + \pi",
-                also=(on_axis,),
+                relation=r"\theta_4 = \theta_2 + \pi",
             ),
-            Continuum(
-                at_b, {**axis, y: L0, L2: L1}, theta3, r"\theta_5 = \theta_3 + \pi", also=(on_axis,)
+            Degenerate(
+                (at_b, on_axis),
+                {**axis, y: L0, L2: L1},
+                theta3,
+                relation=r"\theta_5 = \theta_3 + \pi",
             ),
         ),
         images="fk",
-        stages=(
-            Stage((theta1,), (0,), {}),
-            Stage((theta2,), (1,), in_plane),
-            Stage((theta3,), (2,), in_plane),
+        links=tuple(
+            Link((joint,), (equation,), given)
+            for joint, equation, given in zip(q, loop, ({}, in_plane, in_plane), strict=True)
         ),
     )
 )

@@ -8,11 +8,12 @@ from sympy import atan2, cos, sin, sqrt
 
 from closedform import (
     SINGLE,
-    Continuum,
+    Degenerate,
     Derivation,
     Inverse,
     Program,
     Solved,
+    Triangle,
     branches,
     chain,
     choose,
@@ -23,8 +24,6 @@ from closedform import (
     real,
     rotation,
     skeleton,
-    triangle_angles,
-    two_link_triangle_by_square,
 )
 
 d = Derivation(
@@ -162,8 +161,9 @@ d.branches = elbow.labels
 
 p = Program()
 r2 = p.let("r2", px**2 + py**2, nonnegative=True)
-triangle, (ahead, beyond) = two_link_triangle_by_square(
-    p, l1, l2, r2, theta2, alpha, sigma, free=(theta2,)
+sides = Triangle.from_square(p, (l1, l2), r2, sigma)
+triangle, (ahead, beyond) = sides.stretched_without_link(
+    p, (theta2, alpha), sqrt(r2), free=(theta2,)
 )
 at_base = p.vanishes(
     "at_base", sp.Abs(px) + sp.Abs(py), l1 + l2, "the hand is on the base axis", free=(theta1,)
@@ -184,7 +184,7 @@ d.solved += [
     ),
 ]
 N, M = real("N", nonnegative=True), real("M", nonnegative=True)
-bend, lead = triangle_angles(l1, l2, N, M, sigma)
+with_names = Triangle(l1, l2, sigma, N, M)
 d.step(
     "Inverse: the elbow",
     "The links and the line from the base to the hand form a triangle with the sides l1, l2 and "
@@ -195,8 +195,8 @@ d.step(
         "r^2": px**2 + py**2,
         "N": (l1 + l2) ** 2 - real("r") ** 2,
         "M": real("r") ** 2 - (l1 - l2) ** 2,
-        r"\theta_2": bend,
-        r"\alpha": lead,
+        r"\theta_2": with_names.elbow,
+        r"\alpha": with_names.base,
     },
     published=("(3)",),
 )
@@ -232,11 +232,11 @@ d.inverses.append(
         (px, py),
         tuple(position),
         (
-            Continuum(
-                at_base,
+            Degenerate(
+                (at_base,),
                 {px: sp.Integer(0), py: sp.Integer(0), l2: l1},
                 theta1,
-                r"\theta_2 = \pi",
+                relation=r"\theta_2 = \pi",
             ),
         ),
     )

@@ -6,7 +6,7 @@ from sympy import atan2, cos, sin, sqrt
 
 from closedform import (
     SINGLE,
-    Continuum,
+    Degenerate,
     Derivation,
     Inverse,
     Program,
@@ -81,7 +81,11 @@ d.inverses.append(
         p,
         (sp.S.Zero,) * 2,
         tuple(loop),
-        (Continuum(chord.flag, {b: sp.S.Zero, rho2: rho1}, x, r"x^2 + y^2 = \rho_1^2"),),
+        (
+            Degenerate(
+                (chord.flag,), {b: sp.S.Zero, rho2: rho1}, x, relation=r"x^2 + y^2 = \rho_1^2"
+            ),
+        ),
     )
 )
 d.function(

@@ -7,7 +7,7 @@ from closedform.derivations.papers.reddy_babu import REDDY_BABU
 from sympy import cos, sin
 
 from closedform import (
-    Continuum,
+    Degenerate,
     Derivation,
     Inverse,
     Program,
@@ -185,11 +185,9 @@ d.inverses.append(
         q,
         tuple(given),
         tuple(R),
-        (
-            Continuum(aligned, dict(zip(given, turned, strict=True)), theta4, r"\theta_4+\theta_6"),
-            Continuum(
-                aligned, dict(zip(given, opposed, strict=True)), theta4, r"\theta_6-\theta_4"
-            ),
+        tuple(
+            Degenerate((aligned,), dict(zip(given, R0, strict=True)), theta4, relation=kept)
+            for R0, kept in ((turned, r"\theta_4+\theta_6"), (opposed, r"\theta_6-\theta_4"))
         ),
         parametrisation=tuple(rotation_parametrisation()),
     )

@@ -23,8 +23,9 @@ from closedform.check.clibrary import compiler
 from closedform.check.report import _page
 from closedform.emit.pages import pages, shared_files
 from closedform.model.claims import Gravity
-from closedform.model.derivation import Derivation, Inverse, Paper, Table
+from closedform.model.derivation import Derivation, Paper, Table
 from closedform.model.functions import Branches, Program, branches, choose, real
+from closedform.model.inverse import Inverse
 from closedform.model.names import check_symbol
 from closedform.proof.checks.statements import Undecidable
 from closedform.proof.claims import ClaimResult, erratum_result

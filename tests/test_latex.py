@@ -26,8 +26,9 @@ from closedform.emit.render import render
 from closedform.emit.show import show
 from closedform.lemmas.sine_cosine import linear_pair
 from closedform.model.claims import Claim, Erratum, Gravity
-from closedform.model.derivation import Continuum, Derivation, Inverse, Paper, Solved
+from closedform.model.derivation import Derivation, Paper, Solved
 from closedform.model.functions import Program, branches, choose, real
+from closedform.model.inverse import Degenerate, Inverse
 from closedform.proof.checks.statements import Undecidable
 from closedform.proof.claims import ClaimResult, ErratumResult, ReadingResult
 from closedform.proof.prove import InverseResult, Proof, prove
@@ -102,8 +103,10 @@ def awkward() -> tuple[Derivation, Proof]:
         notes=("A note & more.",),
     )
     zero = sp.Integer(0)
-    continuum = Continuum(flag, {px: zero, py: zero}, theta1, r"\theta_2 = \pi, \theta_1 any")
-    d.inverses.append(Inverse("ik", (theta1, theta2), (px, py), (theta1, theta2), (continuum,)))
+    case = Degenerate(
+        (flag,), {px: zero, py: zero}, theta1, relation=r"\theta_2 = \pi, \theta_1 any"
+    )
+    d.inverses.append(Inverse("ik", (theta1, theta2), (px, py), (theta1, theta2), (case,)))
     printed = r"$\sin θ_1 = \frac{a}{b}$ with 5 % of “θ1”"
     both = (ReadingResult("all of $a_1$", "refuted", "$1$"), ReadingResult("100 %", "proved", "&"))
     results = (

@@ -23,8 +23,9 @@ from closedform.algebra.balls import to_float
 from closedform.check.samples import Sample, inverse_postures, joint_samples, perturbed
 from closedform.check.singular import singular_samples
 from closedform.check.truth import Solutions, Values, condition_of, kept, solutions_of, values_of
-from closedform.model.derivation import Derivation, Inverse
+from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
+from closedform.model.inverse import Inverse
 from closedform.model.tolerances import DOUBLE, FLOAT, Tolerances
 
 WELL_CONDITIONED = 3.0

@@ -8,9 +8,9 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.lemmas.pairs import Pair
-from closedform.model.derivation import Degenerate
+from closedform.model.inverse import Degenerate
 from closedform.model.lemma import Lemma
+from closedform.model.pair import Pair
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 A :class:`Chain` is built like the inverse is explained: *solve the first joint from this equation,
 turn the target into its frame, solve the next*.  Each lemma hands its joint on as a sine-cosine
 pair.  The chain knows what every name stands for at a posture, so that the proof is the same for
-every robot (see :mod:`closedform.proof.chain`):
+every robot (see :mod:`closedform.proof.glue`):
 
 - each lemma, for the coefficients it is applied to as free symbols, is sound and gives all
   solutions of its equations;
@@ -21,8 +21,8 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.applied import Applied
-from closedform.lemmas.pairs import Pair, direction
-from closedform.model.derivation import Continuum, Derivation, Inverse, Link, Solved
+from closedform.lemmas.pairs import direction
+from closedform.model.derivation import Derivation, Solved
 from closedform.model.functions import (
     SINGLE,
     Let,
@@ -33,7 +33,9 @@ from closedform.model.functions import (
     real,
     substitute,
 )
+from closedform.model.inverse import Degenerate, Inverse, Link, Rank
 from closedform.model.lemma import Lemma
+from closedform.model.pair import Pair
 
 Choice = Mapping[int, str]
 
@@ -59,7 +61,7 @@ class Chain:
     defined: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     lengths: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
-    continua: list[Continuum] = field(default_factory=list)
+    degenerate: list[Degenerate] = field(default_factory=list)
     units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = field(default_factory=list)
     halves: dict[sp.Symbol, tuple[Pair, sp.Expr]] = field(default_factory=dict)
     directions: dict[sp.Expr, Pair] = field(default_factory=dict)
@@ -186,7 +188,15 @@ class Chain:
             self._check_unknown(unknown, applied.lemma)
         self._check_coefficients(applied.lemma)
         self.links.append(
-            Link(applied.lemma, body, dict(applied.means), dict(applied.given), applied.degenerate)
+            Link(
+                tuple(applied.lemma.solution),
+                applied.lemma.equations,
+                dict(applied.given),
+                replace(applied.lemma, kind=lemma.__name__),
+                body,
+                dict(applied.means),
+                applied.degenerate,
+            )
         )
         self.meaning |= applied.means
         self.halves |= applied.halves
@@ -292,7 +302,7 @@ class Chain:
     def _leave_out_unused(self) -> None:
         """Names that a lemma hands on, and nobody takes."""
         needed = {s for j in self.joints for s in self.values[j].free_symbols}
-        needed |= {s for link in self.links for e in link.lemma.equations for s in e.free_symbols}
+        needed |= {s for link in self.links for e in link.equations for s in e.free_symbols}
         needed |= {s for pair in self.units for e in pair[:2] for s in e.free_symbols}
         kept: list[Statement] = []
         for statement in reversed(self.program.body):
@@ -320,7 +330,7 @@ class Chain:
         if not flags:
             raise ShapeError(f"{self.d.name}: no lemma of the chain leaves {free} free anywhere")
         exact = {s: sp.sympify(e, strict=True) for s, e in locus.items()}
-        self.continua.append(Continuum(flags[0], exact, free, relation))
+        self.degenerate.append(Degenerate((flags[0],), exact, free, relation=relation))
 
     def finish(
         self,
@@ -360,21 +370,21 @@ class Chain:
             notes=(*dict.fromkeys([*notes, *said]),),
         )
         for link in self.links:
-            unknown = next(iter(link.lemma.solution))
-            shown = next((e for e in link.lemma.equations if e.has(unknown)), sp.S.Zero)
-            d.solved.append(Solved(self.name, unknown, link.lemma, shown))
+            assert link.lemma is not None
+            unknown = link.unknowns[0]
+            shown = [e for e in link.equations if e.has(unknown)]
+            d.solved.append(
+                Solved(self.name, unknown, link.lemma, shown[0] if shown else sp.S.Zero)
+            )
         inverse = Inverse(
             self.name,
             self.joints,
             self.targets,
             self.images,
-            tuple(self.continua),
+            tuple(self.degenerate),
             angles=tuple(real(f"x_{n}") for n in self.angles),
-            chain=tuple(self.links),
-            meaning={**self.meaning},
-            defined={**self.defined},
-            lengths={**self.lengths},
-            units=tuple(self.units),
+            links=tuple(self.links),
+            glue=Rank({**self.meaning}, {**self.defined}, {**self.lengths}, tuple(self.units)),
         )
         d.inverses.append(inverse)
         return inverse

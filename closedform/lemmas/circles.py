@@ -81,4 +81,5 @@ def circle_intersection(
         ),
         {x: along * n[0] - sigma * height * n[1], y: along * n[1] + sigma * height * n[0]},
         2,
+        signs=(sigma,),
     ), Chord(n, d, along, height, flag)

@@ -41,4 +41,5 @@ def parallelogram(
         ),
         {turn: turned, rod: sigma * angle + (1 - sigma) * frame + turned},
         2,
+        signs=(sigma,),
     )

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import sympy as sp
 
+from closedform.lemmas.amplitude import Amplitude, nearly_tangent
 from closedform.lemmas.chain import Chain
-from closedform.lemmas.pairs import Pair
-from closedform.model.functions import choose, real, sign_of
+from closedform.model.functions import Program, choose, real, sign_of
+from closedform.model.pair import Pair
 
 ROUNDING = sp.Rational(1, 2**44)
 """How far a turn may move the target, in units of the size of the arm: 256 units in its last place,
@@ -126,6 +128,86 @@ class Turn:
 
 
 @dataclass(frozen=True)
+class Tangency:
+    """A turn that is solved up to the choice that its goal makes near a tangent."""
+
+    chain: Chain
+    at: Amplitude
+    root: sp.Symbol
+    width: sp.Symbol
+    suffix: str
+    free: Any
+    """The flag that the turn is free, or false; then its angle is 0."""
+
+    def pair(self, root: sp.Expr, width: sp.Expr) -> Pair:
+        """The pair of the turn from its root and width."""
+        both = self.at.pair(root, width)
+        return Pair(choose(self.free, 0, both.s), choose(self.free, 1, both.c))
+
+
+@dataclass(frozen=True)
+class Reached:
+    """The pair that a goal has chosen, and the root that belongs to it.
+
+    There is no root where the pair was turned further than the equation says.
+    """
+
+    pair: Pair
+    root: sp.Expr | None
+
+
+class Goal(Protocol):
+    """What later joints have to reach; it chooses among turns that rounding does not tell apart."""
+
+    def reached(self, turn: Tangency) -> Reached:
+        """The turn within reach that is nearest to the computed one."""
+
+
+class Anywhere:
+    """No goal: the turn is as it was computed."""
+
+    def reached(self, turn: Tangency) -> Reached:
+        return Reached(turn.pair(turn.root, turn.width), turn.root)
+
+
+@dataclass(frozen=True)
+class LinksAtHeight:
+    """Two links that have to reach a point at a ``height``, whose other coordinate a turn gives.
+
+    That is the root of the turn.  Where the root is small, rounding changes it by a multiple, and
+    links much shorter than the amplitude might seem too short.
+    """
+
+    l1: sp.Expr
+    l2: sp.Expr
+    height: sp.Expr
+
+    def held(self, program: Program, at: Amplitude, scale: sp.Expr, suffix: str) -> sp.Symbol:
+        """The square of the root, brought within reach if rounding puts it out of reach."""
+        square = at.below * at.above
+        farthest = (self.l1 + self.l2) ** 2 - self.height**2
+        nearest = (self.l1 - self.l2) ** 2 - self.height**2
+        wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
+        rounding = 2 * at.h * scale / 2**44
+        return program.let(
+            f"held{suffix}",
+            sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True)),
+            nonnegative=True,
+        )
+
+    def reached(self, turn: Tangency) -> Reached:
+        """The pair of the turn, from the root within reach that is nearest to the computed one."""
+        p, at, suffix = turn.chain.program, turn.at, turn.suffix
+        tangent = nearly_tangent(p, turn.root, at.h, suffix)
+        held = self.held(p, at, turn.chain.size, suffix)
+        whole = sp.sqrt(4 * held + (at.above - at.below) ** 2)
+        root = choose(tangent, sp.sqrt(held), turn.root)
+        root = p.let(f"kept{suffix}", root, nonnegative=True)
+        width = p.let(f"span{suffix}", choose(tangent, whole, turn.width), nonnegative=True)
+        return Reached(turn.pair(root, width), root)
+
+
+@dataclass(frozen=True)
 class Links:
     """Two links that have to reach the point q of their plane, linear in the pair of a turn."""
 
@@ -133,7 +215,18 @@ class Links:
     l1: sp.Expr
     l2: sp.Expr
 
-    def reached(self, turn: Turn) -> Pair:
+    def reached(self, turn: Tangency) -> Reached:
+        """The pair of the turn, changed by no more than rounding where it is tangent."""
+        chain, at, suffix = turn.chain, turn.at, turn.suffix
+        found = turn.pair(turn.root, turn.width)
+        tangent = nearly_tangent(chain.program, turn.root, chain.size, suffix)
+        near = self.nearest(
+            Turn(chain, found, turn.root, at.c, suffix).renamed(found, f"{suffix}_1")
+        )
+        s, c = choose(tangent, near.s, found.s), choose(tangent, near.c, found.c)
+        return Reached(Pair(s, c), None)
+
+    def nearest(self, turn: Turn) -> Pair:
         """The pair of the turn, changed by no more than rounding, with q within reach."""
         x, y = turn.linear("q", self.q)
         return turn.least(Within(x, y, sp.Abs(self.l1 - self.l2), self.l1 + self.l2))
@@ -151,7 +244,7 @@ class LinksAndWrist(Links):
     ahead: Pair
     sigma: sp.Symbol = real("sigma_wrist")  # noqa: RUF009
 
-    def reached(self, turn: Turn) -> Pair:
+    def nearest(self, turn: Turn) -> Pair:
         first = turn.least(self.goal(turn, sp.Max(turn.lever, turn.chain.size / 2**22)))
         turn = turn.renamed(first, f"{turn.name}_2")
         second = self.aligned(turn)

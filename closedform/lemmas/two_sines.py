@@ -73,6 +73,7 @@ def two_sines(
         excluded=3,
         means={cx: sp.cos(x), sx: sp.sin(x), cy: sp.cos(y), sy: sp.sin(y)},
         body=tuple(program.body[start:]),
+        signs=(sigma,),
     )
 
 

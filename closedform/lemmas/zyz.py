@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from closedform.lemmas.pairs import Pair, direction
+from closedform.lemmas.pairs import direction
 from closedform.model.functions import Program, choose
 from closedform.model.lemma import Lemma, label
+from closedform.model.pair import Pair
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ def zyz_angles(
     pair = pair.known_as(program, suffix or label(first))
     flip = program.let(f"flip{suffix}", choose(aligned, 0, (1 - sigma) * sp.pi / 2))
     lemma, rest = zyz_lemma(R, first, middle, last, pair, sigma, flip)
-    return Zyz(lemma, pair, rest, flip, aligned)
+    return Zyz(replace(lemma, signs=(sigma,)), pair, rest, flip, aligned)
 
 
 def zyz_lemma(

@@ -8,7 +8,7 @@ the paper.  All later stages (proof, lowering, emission, LaTeX, reference) read 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import Any, Literal
 
@@ -21,11 +21,11 @@ from closedform.model.functions import (
     Function,
     Number,
     Program,
-    Statement,
     array,
     real,
     reject_floats,
 )
+from closedform.model.inverse import Inverse
 from closedform.model.lemma import Lemma
 from closedform.model.names import (
     check_argument,
@@ -131,142 +131,6 @@ class Solved:
     equation: sp.Expr
     posture: Mapping[sp.Symbol, sp.Expr] | None = None
     """The inputs in terms of the joints (including passive ones), unless the inverse gives them."""
-
-
-@dataclass(frozen=True)
-class Continuum:
-    """A flagged case: on ``locus`` a joint is free; ``relation`` (LaTeX) holds for the others.
-
-    It occurs in the named ``branches``, or in all branches if none is named.  If the inverse has
-    stages, the locus may be written in the unknowns of earlier stages.
-    """
-
-    flag: sp.Symbol
-    locus: Mapping[sp.Symbol, sp.Expr]
-    free: sp.Symbol
-    relation: str
-    branches: tuple[str, ...] = ()
-    also: tuple[sp.Symbol, ...] = ()
-    """Other flags that are true on the locus."""
-
-    def __post_init__(self) -> None:
-        check_text(f"relation on the continuum {self.flag}", self.relation)
-
-
-@dataclass(frozen=True)
-class Stage:
-    """One of several stages in which the solutions of a system are counted.
-
-    ``equations`` are indices of equations of the system, which contain only the unknowns of this
-    and earlier stages.  ``given`` writes the inputs in terms of earlier unknowns, so that every
-    equation of an earlier stage whose unknowns occur there holds identically.
-    """
-
-    unknowns: tuple[sp.Symbol, ...]
-    equations: tuple[int, ...]
-    given: Mapping[sp.Symbol, sp.Expr]
-
-
-@dataclass(frozen=True)
-class Reduction:
-    """An inverse that is too large for one Groebner basis and is proved lemma by lemma.
-
-    ``joints`` gives each unknown of the inverse in the unknowns of the ``lemmas`` and names of the
-    program.  The equations of the lemmas, multiplied by the invertible matrix ``combination``, are
-    those of the inverse.  So both have the same solutions, and each lemma is proved to give all of
-    its own.  If a side condition keeps only one of every ``solutions_per_branch`` solutions,
-    ``because`` is the reason.
-    """
-
-    lemmas: tuple[Lemma, ...]
-    joints: Mapping[sp.Symbol, sp.Expr]
-    combination: sp.Matrix
-    solutions_per_branch: int = 1
-    because: str = ""
-
-
-@dataclass(frozen=True)
-class Degenerate:
-    """A flagged case of a lemma: with its coefficients on ``locus``, the joint ``free`` is free."""
-
-    flags: tuple[sp.Symbol, ...]
-    locus: Mapping[sp.Symbol, sp.Expr]
-    free: sp.Symbol | None
-    meaning: str
-
-
-@dataclass(frozen=True)
-class Link:
-    """A lemma in a chain, with the statements it added; ``means`` are its names at a posture.
-
-    ``given`` writes coefficients that depend on each other in free symbols.
-    """
-
-    lemma: Lemma
-    body: tuple[Statement, ...]
-    means: Mapping[sp.Symbol, sp.Expr]
-    given: Mapping[sp.Symbol, sp.Expr]
-    degenerate: tuple[Degenerate, ...] = ()
-
-
-@dataclass(frozen=True)
-class Inverse:
-    """The equations of an inverse: ``forward``, in the ``unknowns``, equals the ``targets``.
-
-    Targets that depend on each other (the entries of a rotation) have a ``parametrisation``: the
-    same number of expressions in free symbols.  For targets in ``angles`` only the sine and the
-    cosine count.
-
-    A closed loop gives equations that contain both unknowns and inputs.  They are ``forward``, and
-    the ``targets`` are zeros.  ``images`` names a function whose values, in each assembly mode, are
-    inputs with a known solution.  ``stages`` count the solutions stage by stage.
-
-    If the solved equations are not the forward map itself, the targets are expressions in the
-    inputs (such as ``tan(psi)``), and ``forward`` may contain inputs.  Then ``reduction`` proves
-    the inverse lemma by lemma; a step shows that the map named by ``images`` satisfies the
-    equations; the cross-check substitutes the answers into that map.
-
-    An inverse with a ``chain`` is proved link by link.
-    """
-
-    function: str
-    unknowns: tuple[sp.Symbol, ...]
-    targets: tuple[Any, ...]
-    forward: tuple[sp.Expr, ...]
-    continua: tuple[Continuum, ...] = ()
-    parametrisation: tuple[sp.Expr, ...] = ()
-    angles: tuple[sp.Symbol, ...] = ()
-    images: str = ""
-    stages: tuple[Stage, ...] = ()
-    nonnegative: tuple[sp.Symbol, ...] = ()
-    """Unknowns that are lengths: two solutions that differ only in their sign count as one."""
-    chain: tuple[Link, ...] = ()
-    meaning: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    """The values of names of the program at a posture, in the unknowns."""
-    defined: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    """Auxiliary angles: sums of the unknowns."""
-    lengths: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    """Auxiliary lengths, at a posture."""
-    units: tuple[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]], ...] = ()
-    """Sine and cosine of angles that may be chosen freely, and the names that are free in them."""
-    reduction: Reduction | None = None
-    condition: sp.Expr = sp.S.Zero
-    """By how much the mechanism amplifies roundings, in its parameters; see ``promised``."""
-
-    def posed(self, inputs: tuple[sp.Symbol, ...], image: tuple[sp.Expr, ...]) -> Inverse:
-        """The same inverse with the forward map ``image`` as its equations."""
-        return replace(self, targets=inputs, forward=image, images="")
-
-    @property
-    def equations(self) -> tuple[sp.Expr, ...]:
-        """The expressions that vanish at a solution."""
-        return tuple(
-            equation
-            for f, x in zip(self.forward, self.targets, strict=True)
-            for equation in (
-                (sp.cos(f) - sp.cos(x), sp.sin(f) - sp.sin(x)) if x in self.angles else (f - x,)
-            )
-        )
 
 
 @dataclass(frozen=True)

@@ -4,15 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import Enum
 
 import sympy as sp
 
 from closedform.model.functions import Statement
+from closedform.model.pair import Pair
+
+
+class Shape(Enum):
+    """What the equation that a lemma solves looks like in its unknown x."""
+
+    ANY = "any"
+    LINEAR = "linear in sin(x) and cos(x)"
+    CONTAINS = "contains x"
 
 
 @dataclass(frozen=True)
 class Lemma:
     """One application of a lemma: ``equations`` vanish at ``solution`` (unknown -> closed form).
+
+    ``signs`` are the symbols that stand for 1 or -1: those of the branches, and others that it is
+    proved for with either value.  ``shape`` says what its equation looks like in the unknown, and
+    ``kind`` is the name of the function that made it, where a chain applied it.
 
     ``excluded`` is the number of solutions of the equations that violate the inequality in
     ``statement``.  ``means`` maps names for later steps to their meaning in the unknowns: cosine
@@ -30,17 +44,21 @@ class Lemma:
     means: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     body: tuple[Statement, ...] = ()
     premises: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    signs: tuple[sp.Symbol, ...] = ()
+    shape: Shape = Shape.ANY
+    kind: str = ""
 
     def __getitem__(self, unknown: sp.Symbol) -> sp.Expr:
         return self.solution[unknown]
 
     def known(self, value: sp.Expr) -> sp.Symbol:
         """The name of a value in the unknowns, such as ``cos(x)``."""
-        return next(name for name, meaning in self.means.items() if meaning == value)
+        (name,) = (name for name, meaning in self.means.items() if meaning == value)
+        return name
 
-    def pair(self, angle: sp.Expr) -> tuple[sp.Symbol, sp.Symbol]:
-        """The names of the cosine and the sine of an angle."""
-        return self.known(sp.cos(angle)), self.known(sp.sin(angle))
+    def pair(self, angle: sp.Expr) -> Pair:
+        """The names of the sine and the cosine of an angle."""
+        return Pair(self.known(sp.sin(angle)), self.known(sp.cos(angle)))
 
 
 def label(joint: sp.Symbol) -> str:

@@ -28,7 +28,7 @@ from closedform.emit.backends.latex.prose import (
 from closedform.emit.errata import Entry, gathered, part
 from closedform.emit.text import citation
 from closedform.model.claims import HOLDS, PROVED_UNDER
-from closedform.model.derivation import Continuum, Derivation, Inverse, Joint, Step
+from closedform.model.derivation import Derivation, Joint, Step
 from closedform.model.functions import (
     Array,
     Bound,
@@ -40,8 +40,10 @@ from closedform.model.functions import (
     Vanishes,
     real,
 )
+from closedform.model.inverse import Degenerate, Inverse
 from closedform.proof.claims import ClaimResult
-from closedform.proof.prove import InverseResult, Proof
+from closedform.proof.inverse import InverseResult
+from closedform.proof.prove import Proof
 
 __all__ = ["Page", "document"]
 
@@ -212,7 +214,9 @@ class Page:
                 for label, signs in function.cases()
                 if signs
             ],
-            "continua": [self.continuum(function, inverse, c) for c in inverse.continua]
+            "continua": [
+                self.degenerate(function, inverse, c) for c in inverse.degenerate if c.free
+            ]
             if inverse
             else [],
             "proved": proved,
@@ -268,17 +272,17 @@ class Page:
         kind = "match" if isinstance(statement, Match) else "require"
         return kind, f"{conditions}: {self.prose(statement.meaning)}"
 
-    def continuum(self, function: Function, inverse: Inverse, case: Continuum) -> dict[str, str]:
+    def degenerate(self, function: Function, inverse: Inverse, case: Degenerate) -> dict[str, str]:
         """The set on which a joint is free, the returned value, and what all solutions share."""
         given = [e for a in function.inputs for e in self.assigned(a, case.locus)]
         others = {p.symbol for p in self.derivation.parameters} & set(case.locus)
         given += [e for s in sorted(others, key=str) for e in self.equations(s, case.locus[s])]
         _, signs = next(function.cases())
-        values = function.at(signs, {case.flag: True}, case.locus)
+        values = function.at(signs, dict.fromkeys(case.flags, True), case.locus)
         convention = dict(zip(inverse.unknowns, values, strict=True))[case.free]
         return {
             "free": self.math(case.free),
-            "flag": flag_name(case.flag),
+            "flag": flag_name(case.flags[0]),
             "locus": formulas([f"{a} = {b}" for a, b in given]),
             "convention": f"{self.math(case.free)} = {self.math(convention)}",
             "relation": upright(case.relation),

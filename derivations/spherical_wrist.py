@@ -148,7 +148,7 @@ p.require(
     1,
     "a proper rotation",
 )
-angles = zyz_angles(p, given, theta4, theta5, theta6, sigma).lemma
+angles = zyz_angles(p, given, q, sigma).lemma
 d.solved.append(Solved("ik", theta4, angles, given[0, 2] * sin(theta4) - given[1, 2] * cos(theta4)))
 d.step(
     "Inverse orientation",

@@ -63,13 +63,14 @@ def prove_sound(
     cases: Sequence[Degenerate],
     given: Mapping[Expr, Expr],
     fault: str,
+    *,
     names: Sequence[str] = (),
 ) -> list[Expr]:
     """Prove that answers satisfy equations in every branch and case.
 
-    Returns the assumptions of the generic case.
-    ``fault`` is the message of an error, with a place for the branch or the case; ``names`` are
-    those of the equations.
+    Returns the assumptions of the generic case.  ``given`` writes what the equations contain in
+    free symbols.  ``fault`` is the message of an error, with braces where the branch or the case
+    goes; ``names`` are those of the equations.
     """
     found: list[Expr] = []
     for case in (None, *cases):
@@ -161,7 +162,7 @@ def prove_system(function: Function, inverse: Inverse, where: str) -> list[Expr]
         inverse.degenerate,
         given,
         f"{where}{{}}: {MISSED}",
-        _names_of(inverse),
+        names=_names_of(inverse),
     )
 
 

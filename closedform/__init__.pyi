@@ -51,6 +51,8 @@ from closedform.mechanics.frames import inverse as inverse
 from closedform.mechanics.frames import jacobian as jacobian
 from closedform.mechanics.frames import merge_angles as merge_angles
 from closedform.mechanics.frames import prismatic_twist as prismatic_twist
+from closedform.mechanics.frames import require_pose as require_pose
+from closedform.mechanics.frames import require_rotation as require_rotation
 from closedform.mechanics.frames import revolute_twist as revolute_twist
 from closedform.mechanics.frames import rotation as rotation
 from closedform.mechanics.frames import simplest as simplest

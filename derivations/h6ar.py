@@ -277,9 +277,9 @@ draw(
     q,
     p,
     here,
-    posture._replace(wrist=length),
-    T.subs(wrist, length),
-    {"right": (theta2A + alpha, theta23A + beta), "left": (theta2A - alpha, theta23A - beta)},
+    posture=posture._replace(wrist=length),
+    tip=T.subs(wrist, length),
+    arms={"right": (theta2A + alpha, theta23A + beta), "left": (theta2A - alpha, theta23A - beta)},
     closed=False,
     notes=(
         too_wide,
@@ -394,7 +394,7 @@ slants = p.let("t_psi", sin(psi) / cos(psi)), p.let("t_phi", sin(phi) / cos(phi)
 gap = p.let("ahead", m.d * slants[0]), p.let("higher", m.d * slants[1])
 apart_by = sum(sp.Abs(g * t) for g, t in zip(gap, slants, strict=True))
 slack, beside = play(p, m, apart_by, gap)
-middle = solve_mid_plane(p, m, q, length, base, slack)
+middle = solve_mid_plane(p, m, q, (length, base), slack)
 upper, elbow = middle.upper, middle.elbow
 # in the axes of the upper arm: there sin(alpha) multiplies (0, L1)
 seen = (
@@ -439,7 +439,9 @@ for sine in ("alpha", "beta"):
     )
     turns.append(turn)
     leans.append(leant)
-half = two_sines(p, (alpha, beta), (sp.S.Zero, m.L1), v, seen, beside, free=(theta3R, theta3L))
+half = two_sines(
+    p, (alpha, beta), ((sp.S.Zero, m.L1), v), seen, scale=beside, free=(theta3R, theta3L)
+)
 lemmas = (*middle.lemmas, half)
 solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
 turned_halves = {

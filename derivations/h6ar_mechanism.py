@@ -293,11 +293,10 @@ def solve_mid_plane(
     program: Program,
     m: Dimensions,
     q: Joints,
-    wrist: sp.Symbol,
-    base: sp.Symbol,
+    wrist: tuple[sp.Symbol, sp.Symbol],
     slack: sp.Symbol,
 ) -> MidPlane:
-    """Solve for pitch, waist and virtual arm; the length of the wrist is known."""
+    """Solve for pitch, waist and virtual arm; ``wrist`` is its length and half its base line."""
     given = (pair(psi), pair(phi), pair(pitch))
     program.let("extent", m.d * m.L1 * (m.L2 + m.a3))
     program.require(
@@ -306,7 +305,7 @@ def solve_mid_plane(
         "the arms are apart, and upper arms and fore-arms have a length",
     )
     nothing = Pair(sp.S.Zero, sp.S.Zero)
-    known = Posture(nothing, nothing, nothing, *given, wrist, base)
+    known = Posture(nothing, nothing, nothing, *given, *wrist)
     names = ("L_theta", "L_2W", "a_3W")
     aside, along, across = (
         program.let(n, e) for n, e in zip(names, extended(m, known), strict=True)

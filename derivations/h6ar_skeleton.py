@@ -22,10 +22,10 @@ def draw(
     q: Joints,
     program: Program,
     here: Posture,
+    *,
     posture: Posture,
     tip: sp.Matrix,
     arms: Mapping[str, tuple[sp.Expr, sp.Expr]],
-    *,
     closed: bool,
     notes: tuple[str, ...],
 ) -> None:

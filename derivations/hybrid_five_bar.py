@@ -106,7 +106,9 @@ C = f.let("C_y", L1 * cos(theta2)), f.let("C_r", L1 * sin(theta2))
 D = f.let("D_y", L0 + L1 * cos(theta3)), f.let("D_r", L1 * sin(theta3))
 CP, DP = (real("CP_y"), real("CP_r")), (real("DP_y"), real("DP_r"))
 CD = f.let("CD_y", D[0] - C[0]), f.let("CD_r", D[1] - C[1])
-meeting, chord = circle_intersection(f, CD, L2, L2, CP, sigma, L0 + L1 + L2, free=(theta4, theta5))
+meeting, chord = circle_intersection(
+    f, CD, (L2, L2), CP, sigma, scale=L0 + L1 + L2, free=(theta4, theta5)
+)
 n, half, height = chord.direction, chord.along, chord.height
 for name, value in zip(CP, (meeting[CP[0]], meeting[CP[1]]), strict=True):
     f.let(str(name), value)

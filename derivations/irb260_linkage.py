@@ -17,9 +17,9 @@ def double_parallelogram(
     phi1, phi2, phi3 = (real(f"phi{i}") for i in (1, 2, 3))
     beta1, beta2, beta3 = (real(f"beta{i}") for i in (1, 2, 3))
     forearm = theta2 + theta3 + pi / 2
-    lower = parallelogram(l3, a1, theta2, gamma1, phi1, beta1, sigma)
-    upper = parallelogram(l4, a2, forearm - phi1, gamma2, phi2, beta2, sigma)
-    drive = parallelogram(l3, a3, theta2, gamma3 + m3, phi3, beta3, sigma)
+    lower = parallelogram((l3, a1), (theta2, gamma1), (phi1, beta1), sigma)
+    upper = parallelogram((l4, a2), (forearm - phi1, gamma2), (phi2, beta2), sigma)
+    drive = parallelogram((l3, a3), (theta2, gamma3 + m3), (phi3, beta3), sigma)
     closed = [
         sp.Matrix(loop.equations).subs(loop.solution).subs(sigma, sign)
         for loop in (lower, upper, drive)

@@ -22,6 +22,7 @@ from closedform import (
     jacobian,
     linear_pair,
     real,
+    require_pose,
     rotation,
     skeleton,
 )
@@ -245,22 +246,9 @@ d.inverses.append(
 # Inverse kinematics from the full pose
 
 T = sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
-n, o, a, origin = (T[:3, j] for j in range(4))
+n, origin = T[:3, 0], T[:3, 3]
 f = Program()
-f.require(
-    [
-        *(n.cross(o) - a),
-        n.dot(n) - 1,
-        o.dot(o) - 1,
-        n.dot(o),
-        T[3, 0],
-        T[3, 1],
-        T[3, 2],
-        T[3, 3] - 1,
-    ],
-    1,
-    "a homogeneous transform with a proper rotation",
-)
+require_pose(f, T)
 elbow_x = f.let("elbow_x", origin[0] - l2 * n[0])
 elbow_y = f.let("elbow_y", origin[1] - l2 * n[1])
 f.match(sqrt(elbow_x**2 + elbow_y**2) - l1, l1 + l2, "the elbow is one link away from the base")

@@ -52,7 +52,7 @@ d.assembly_modes = modes.labels
 f = Program()
 size = b + rho1 + rho2
 point, chord = circle_intersection(
-    f, (b, sp.S.Zero), rho1, rho2, p, sigma, size, free=(theta1, theta2)
+    f, (b, sp.S.Zero), (rho1, rho2), p, sigma, scale=size, free=(theta1, theta2)
 )
 px, py = f.let("P_x", point[x]), f.let("P_y", point[y])
 d.step(

@@ -19,6 +19,7 @@ from closedform import (
     determinant,
     homogeneous,
     real,
+    require_rotation,
     rotation,
     rotation_parametrisation,
     skeleton,
@@ -137,18 +138,8 @@ flip = branches((sigma, {+1: "theta5_positive", -1: "theta5_negative"}))
 d.branches = flip.labels
 
 p = Program()
-x_axis, y_axis, z_axis = (given[:, j] for j in range(3))
-p.require(
-    [
-        *(x_axis.cross(y_axis) - z_axis),
-        x_axis.dot(x_axis) - 1,
-        y_axis.dot(y_axis) - 1,
-        x_axis.dot(y_axis),
-    ],
-    1,
-    "a proper rotation",
-)
-angles = zyz_angles(p, given, theta4, theta5, theta6, sigma).lemma
+require_rotation(p, given)
+angles = zyz_angles(p, given, q, sigma).lemma
 d.solved.append(Solved("ik", theta4, angles, given[0, 2] * sin(theta4) - given[1, 2] * cos(theta4)))
 d.step(
     "Inverse orientation",

@@ -57,19 +57,19 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
         return lemma, Program(list(lemma.body)), {}
     if name == "two sines":
         u, v, p = ((real(f"{n}_1"), real(f"{n}_2")) for n in "uvp")
-        lemma = two_sines(program, (x, y), u, v, p, real("size", positive=True))
+        lemma = two_sines(program, (x, y), (u, v), p, scale=real("size", positive=True))
         return lemma, Program(list(lemma.body)), {}
     if name == "parallelogram":
         crank, coupler = (real(n, positive=True) for n in ("l", "a"))
-        return parallelogram(crank, coupler, z, real("gamma"), x, y, sigma), program, {}
+        return parallelogram((crank, coupler), (z, real("gamma")), (x, y), sigma), program, {}
     if name.startswith("circles"):
         r1, r2 = (real(n, positive=True) for n in ("r1", "r2"))
         second = r1 if name == "circles of one size" else r2
-        lemma, _ = circle_intersection(program, (a, b), r1, second, (x, y), sigma, r1 + r2)
+        lemma, _ = circle_intersection(program, (a, b), (r1, second), (x, y), sigma, scale=r1 + r2)
         return lemma, program, {}
     R = sp.Matrix(3, 3, lambda i, j: real(f"R{i + 1}{j + 1}"))
     given = dict(zip(R, rotation_parametrisation(), strict=True))
-    return zyz_angles(program, R, x, y, z, sigma).lemma, program, given
+    return zyz_angles(program, R, (x, y, z), sigma).lemma, program, given
 
 
 def prove(lemma: Lemma, program: Program, given: dict) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import sympy as sp
@@ -36,13 +37,16 @@ class Amplitude:
         coefficients: tuple[sp.Expr, sp.Expr, sp.Expr],
         sigma: sp.Symbol,
         *,
-        scale: sp.Expr | None = None,
+        scale: Callable[[sp.Symbol], sp.Expr] = lambda h: h,
         suffix: str = "",
     ) -> Amplitude:
-        """The equation with the coefficients a, b and c; ``scale`` is what c may be missed by."""
+        """The equation with the coefficients a, b and c.
+
+        ``scale`` gives the scale of what c may be missed by, from h; by default it is h.
+        """
         a, b, c = coefficients
         h = program.let(f"h{suffix}", sp.sqrt(a**2 + b**2), nonnegative=True)
-        size = h if scale is None else scale
+        size = scale(h)
         below = program.bound(f"below{suffix}", h - c, size, "the amplitude is not smaller than c")
         above = program.bound(f"above{suffix}", h + c, size, "the amplitude is not smaller than -c")
         return cls(x, a, b, c, sigma, h, below, above)

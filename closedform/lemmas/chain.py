@@ -22,6 +22,7 @@ import sympy as sp
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.pairs import direction
+from closedform.mechanics.frames import require_pose
 from closedform.model.derivation import Derivation, Solved
 from closedform.model.functions import (
     SINGLE,
@@ -76,13 +77,7 @@ class Chain:
         if self.is_pose:
             self.T = sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
             self.R, self.p = self.T[:3, :3], self.T[:3, 3]
-            n, o, a = (self.R[:, j] for j in range(3))
-            bottom = [*self.T[3, :3], self.T[3, 3] - 1]
-            self.program.require(
-                [*(n.cross(o) - a), n.dot(n) - 1, o.dot(o) - 1, n.dot(o), *bottom],
-                1,
-                "a homogeneous transform with a proper rotation",
-            )
+            require_pose(self.program, self.T)
             self.targets: tuple[sp.Symbol, ...] = tuple(self.T)
             self.images: tuple[sp.Expr, ...] = tuple(self.forward)
         else:

@@ -28,16 +28,15 @@ class Chord:
 def circle_intersection(
     program: Program,
     centres: tuple[sp.Expr, sp.Expr],
-    first: sp.Expr,
-    second: sp.Expr,
+    radii: tuple[sp.Expr, sp.Expr],
     unknowns: tuple[sp.Symbol, sp.Symbol],
     sigma: sp.Symbol,
-    scale: sp.Expr,
     *,
+    scale: sp.Expr,
     free: tuple[sp.Symbol, ...] = (),
     suffix: str = "",
 ) -> tuple[Lemma, Chord]:
-    """The points at the distances ``first`` and ``second`` from two points.
+    """The points at two distances, the ``radii``, from two points.
 
     ``centres`` is the vector from the first to the second, and ``unknowns`` the vector from the
     first to the point.  With the factors of Heron's formula the height of the triangle is
@@ -46,27 +45,27 @@ def circle_intersection(
     a circle; for one radius the convention is that of centres which are parted along the first
     axis, for two it is the point on this axis.  Circles that touch meet in one point.
     """
-    x, y = unknowns
-    apart = program.let(
+    (x, y), (first, second) = unknowns, radii
+    distance = program.let(
         f"apart{suffix}", sp.sqrt(centres[0] ** 2 + centres[1] ** 2), nonnegative=True
     )
-    S = first + second + apart
-    A = program.bound(f"slack{suffix}", first + second - apart, scale, "the bars meet")
+    S = first + second + distance
+    A = program.bound(f"slack{suffix}", first + second - distance, scale, "the bars meet")
     touching = program.vanishes(f"touching{suffix}", A, scale, "the bars are in line")
-    flag = program.vanishes(f"coincide{suffix}", apart, scale, "the centres coincide", free)
+    flag = program.vanishes(f"coincide{suffix}", distance, scale, "the centres coincide", free)
     n: tuple[sp.Expr, sp.Expr] = (
-        choose(flag, 1, centres[0] / apart),
-        choose(flag, 0, centres[1] / apart),
+        choose(flag, 1, centres[0] / distance),
+        choose(flag, 0, centres[1] / distance),
     )
     if first == second:
-        d = program.let(f"distance{suffix}", choose(flag, 0, apart), nonnegative=True)
+        d = program.let(f"distance{suffix}", choose(flag, 0, distance), nonnegative=True)
         along, height = d / 2, sp.sqrt(S) * sp.sqrt(A) / 2
     else:
-        d = apart
-        B = program.bound(f"outer{suffix}", apart + first - second, scale, "the bars meet")
-        C = program.bound(f"inner{suffix}", apart - first + second, scale, "the bars meet")
-        along = choose(flag, first, (apart + (first - second) * (first + second) / apart) / 2)
-        rise = sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) / (2 * apart)
+        d = distance
+        B = program.bound(f"outer{suffix}", distance + first - second, scale, "the bars meet")
+        C = program.bound(f"inner{suffix}", distance - first + second, scale, "the bars meet")
+        along = choose(flag, first, (distance + (first - second) * (first + second) / distance) / 2)
+        rise = sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) / (2 * distance)
         height = choose(flag, 0, rise)
     n = (program.let(f"n_1{suffix}", n[0]), program.let(f"n_2{suffix}", n[1]))
     height = program.let(f"height{suffix}", choose(touching, 0, height), nonnegative=True)

@@ -23,7 +23,7 @@ from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.pairs import direction
 from closedform.lemmas.registry import chain_lemma
-from closedform.lemmas.tangent import Anywhere, Goal, Tangency, Turned, leaving
+from closedform.lemmas.tangent import Anywhere, Goal, Offset, Tangency, Turned
 from closedform.lemmas.triangle import Triangle
 from closedform.lemmas.zyz import zyz_angles, zyz_lemma
 from closedform.model.functions import Let, choose, real
@@ -121,8 +121,8 @@ def turn(
         chain.coefficient(f"{n}_turn{tag}", e) for n, e in zip("abc", (a, b, c), strict=True)
     )
     # half: what is clamped stays well within the round trip that is promised
-    scale = chain.size / 2 if scale is None else scale
-    at = Amplitude.of(p, x, (a, b, c), sigma, scale=scale, suffix=tag)
+    missed_by = (lambda _: chain.size / 2) if scale is None else (lambda _: scale)
+    at = Amplitude.of(p, x, (a, b, c), sigma, scale=missed_by, suffix=tag)
     flag: Any = sp.false
     if not any(differs_from_zero(chain, e, chain.size) for e in (a, b, c)):
         flag = p.vanishes(f"free{tag}", at.h, chain.size, f"the axis of {x.name} is met", free=(x,))
@@ -345,7 +345,7 @@ def zyz(
     near: tuple[sp.Symbol, ...] = ()
     if reaching is None:
         angles = zyz_angles(
-            p, R, first, middle, last, sigma, free=(free,), scale=_ROUNDINGS, suffix=f"_{name}"
+            p, R, (first, middle, last), sigma, free=(free,), scale=_ROUNDINGS, suffix=f"_{name}"
         )
         lemma, aligned = angles.lemma, angles.aligned
         halves = {first: (angles.first, angles.flip), last: (angles.last, angles.flip)}
@@ -358,7 +358,7 @@ def zyz(
         )
         found, near, unit = _within_reach(reaching, R, h, first, sigma, aligned)
         pair, means = named(chain, first, found)
-        lemma, _ = zyz_lemma(R, first, middle, last, pair, sp.S.One, sp.S.Zero)
+        lemma, _ = zyz_lemma(R, (first, middle, last), pair)
     given = dict(zip(R, rotation_parametrisation(), strict=True))
     cases = [
         Degenerate(
@@ -390,7 +390,7 @@ def _within_reach(
         p.let(f"s_{first}", choose(aligned, 0, sigma * R[1, 2] / h)),
         p.let(f"c_{first}", choose(aligned, 1, sigma * R[0, 2] / h)),
     )
-    back = Pair(-reaching.ahead.s, reaching.ahead.c)
+    back = -reaching.ahead
     start = reaching.middle() + back
     close, moves, inside, moved = reaching.moved(raw + reaching.ahead, h)
     off = moved + back
@@ -438,7 +438,8 @@ class Reaching:
             return self.chain.program.vanishes(name, value, scale, "the turn has no effect")
 
         at = (self.x, self.y)
-        pair, unit = leaving(self.chain, at, self._r, self.offset, reach, side, name, vanishes)
+        past = Offset(at, self._r, self.offset, vanishes)
+        pair, unit = past.leaving(self.chain, reach, side, name)
         self.chain.units.append((pair.s, pair.c, unit))
         return pair
 

@@ -8,24 +8,22 @@ from closedform.model.lemma import Lemma
 
 
 def parallelogram(
-    crank: sp.Expr,
-    coupler: sp.Expr,
-    angle: sp.Expr,
-    frame: sp.Expr,
-    turn: sp.Symbol,
-    rod: sp.Symbol,
+    lengths: tuple[sp.Expr, sp.Expr],
+    angles: tuple[sp.Expr, sp.Expr],
+    unknowns: tuple[sp.Symbol, sp.Symbol],
     sigma: sp.Symbol,
 ) -> Lemma:
     """The four-bar linkage with equal opposite sides: its two assemblies.
 
-    The crank and the rod have the length ``crank``, the coupler and the fixed link the length
-    ``coupler``; the crank is at ``angle`` and the fixed link at ``frame`` in a common plane.
-    Unknown are the ``turn`` of the coupler against the fixed link and the angle of the ``rod``.
+    ``lengths`` are that of the crank and the rod, and that of the coupler and the fixed link;
+    ``angles`` are those of the crank and of the fixed link in a common plane.  The ``unknowns``
+    are the turn of the coupler against the fixed link and the angle of the rod.
 
     With the plus sign the linkage is a parallelogram, and the coupler does not turn; with the minus
     sign it is an antiparallelogram.  They meet where the linkage is flat.  The antiparallelogram
     has a free turn where it is flat with equal sides.
     """
+    (crank, coupler), (angle, frame), (turn, rod) = lengths, angles, unknowns
     bend = angle - frame
     half = sp.atan2(crank * sp.sin(bend), crank * sp.cos(bend) - coupler)
     turned = (1 - sigma) * half

@@ -56,12 +56,15 @@ def sine_cosine(
         what later joints have to reach, which decides where both solutions nearly meet.
     """
     start = len(program.body)
-    size = slack if slack is not None else scale if free else None
-    found = Amplitude.of(program, x, coefficients, sigma, scale=size, suffix=suffix)
+
+    def missed_by(h: sp.Symbol) -> sp.Expr:
+        return slack if slack is not None else scale if free else h
+
+    found = Amplitude.of(program, x, coefficients, sigma, scale=missed_by, suffix=suffix)
     turn, root = found.half_turn, found.root
     if toward is not None:
         root = program.let(f"root{suffix}", root, nonnegative=True)
-        size = found.h if size is None else size
+        size = missed_by(found.h)
         lever = 4 * root * (toward.l1 + toward.l2)
         tangent = nearly_tangent(program, lever, found.h * size, suffix)
         held = sp.sqrt(toward.held(program, found, size, suffix))

@@ -299,16 +299,12 @@ class LinksAndWrist(Links):
         reach = turn.let("goal", sp.Min(sp.Max(there, nearest), farthest))
         side = turn.let("side", sign_of(qx * us - qy * uc))
         r = turn.let("r", sp.sqrt(qx**2 + qy**2))
-        back = Pair(-self.ahead.s, self.ahead.c)
+        past = Offset((qx, qy), r, self.offset)
+        back = -self.ahead
         (vs, vc), (ws, wc) = (
             (turn.let(f"{n}s", v.s), turn.let(f"{n}c", v.c))
             for n, sign in (("v", 1), ("w", -1))
-            for v in [
-                leaving(
-                    chain, (qx, qy), r, self.offset, reach, sign * side, f"{n}_{turn.name}", plain
-                )[0]
-                + back
-            ]
+            for v in [past.leaving(chain, reach, sign * side, f"{n}_{turn.name}")[0] + back]
         )
         other = turn.let("other", self.sigma * ay * vs) < 0  # the turn does not change ay
         vs, vc = (
@@ -333,29 +329,35 @@ def plain(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Basic:
     return value <= scale * LAST
 
 
-def leaving(
-    chain: Chain,
-    point: tuple[sp.Expr, sp.Expr],
-    r: sp.Expr,
-    offset: sp.Expr,
-    reach: sp.Expr,
-    side: sp.Expr,
-    name: str,
-    vanishes: Callable[[str, sp.Expr, sp.Expr], sp.Basic],
-) -> tuple[Pair, tuple[sp.Expr, ...]]:
-    """The direction u for which a point, r away, less ``offset`` times u is ``reach`` away.
+@dataclass(frozen=True)
+class Offset:
+    """A ``point``, ``r`` away, from which an ``offset`` leads in a direction that is free.
 
-    It follows from the cosine rule in half angles, to one ``side`` of the point; what it is made of
-    is returned too.
+    ``vanishes`` makes the flags: of a name, a value and its scale.
     """
-    p, e, (x, y) = chain.program, offset, point
-    cc = p.let(f"k_{name}", sp.Max(0, (r + e - reach) * (r + e + reach)), nonnegative=True)
-    ss = p.let(f"d_{name}", sp.Max(0, (reach - r + e) * (reach + r - e)), nonnegative=True)
-    total = p.let(f"n_{name}", cc + ss, nonnegative=True)
-    any_turn = vanishes(f"any_{name}", total, chain.size**2)
-    cosine = p.let(f"uc_{name}", choose(any_turn, 1, (cc - ss) / total))
-    sine = p.let(f"us_{name}", choose(any_turn, 0, 2 * side * sp.sqrt(cc) * sp.sqrt(ss) / total))
-    at_hub = vanishes(f"hub_{name}", r, chain.size)
-    s = p.let(f"s_{name}", choose(at_hub, 0, (y * cosine + x * sine) / r))
-    c = p.let(f"c_{name}", choose(at_hub, 1, (x * cosine - y * sine) / r))
-    return Pair(s, c), (cc, ss, side)
+
+    point: tuple[sp.Expr, sp.Expr]
+    r: sp.Expr
+    offset: sp.Expr
+    vanishes: Callable[[str, sp.Expr, sp.Expr], sp.Basic] = plain
+
+    def leaving(
+        self, chain: Chain, reach: sp.Expr, side: sp.Expr, name: str
+    ) -> tuple[Pair, tuple[sp.Expr, ...]]:
+        """The direction u for which the point less ``offset`` times u is ``reach`` away.
+
+        It follows from the cosine rule in half angles, to one ``side`` of the point; what it is
+        made of is returned too.
+        """
+        p, r, e, (x, y) = chain.program, self.r, self.offset, self.point
+        cc = p.let(f"k_{name}", sp.Max(0, (r + e - reach) * (r + e + reach)), nonnegative=True)
+        ss = p.let(f"d_{name}", sp.Max(0, (reach - r + e) * (reach + r - e)), nonnegative=True)
+        total = p.let(f"n_{name}", cc + ss, nonnegative=True)
+        any_turn = self.vanishes(f"any_{name}", total, chain.size**2)
+        cosine = p.let(f"uc_{name}", choose(any_turn, 1, (cc - ss) / total))
+        across = 2 * side * sp.sqrt(cc) * sp.sqrt(ss) / total
+        sine = p.let(f"us_{name}", choose(any_turn, 0, across))
+        at_hub = self.vanishes(f"hub_{name}", r, chain.size)
+        s = p.let(f"s_{name}", choose(at_hub, 0, (y * cosine + x * sine) / r))
+        c = p.let(f"c_{name}", choose(at_hub, 1, (x * cosine - y * sine) / r))
+        return Pair(s, c), (cc, ss, side)

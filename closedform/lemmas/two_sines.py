@@ -9,18 +9,21 @@ import sympy as sp
 from closedform.model.functions import Program, choose, sign_of, used_up
 from closedform.model.lemma import Lemma
 
+Vector = tuple[sp.Expr, sp.Expr]
+
 
 def two_sines(
     program: Program,
     unknowns: tuple[sp.Symbol, sp.Symbol],
-    u: tuple[sp.Expr, sp.Expr],
-    v: tuple[sp.Expr, sp.Expr],
-    p: tuple[sp.Expr, sp.Expr],
-    scale: sp.Expr,
+    vectors: tuple[Vector, Vector],
+    p: Vector,
     *,
+    scale: sp.Expr,
     free: Sequence[sp.Symbol] = (),
 ) -> Lemma:
     """``u sin x + v sin y = p`` for vectors of the plane, and cosines that are not negative.
+
+    ``unknowns`` are x and y, ``vectors`` are u and v.
 
     The part of the equation across u gives sin y; what is left along u gives sin x, so that an
     error of y does no harm where u and v are nearly parallel.  There sin y is not known to many
@@ -31,7 +34,7 @@ def two_sines(
     zero, so that their sign can be read from the answer.  ``scale`` is the natural scale of p,
     which decides how far the equation may be missed.
     """
-    x, y = unknowns
+    (x, y), (u, v) = unknowns, vectors
     area = program.let("area_uv", u[0] * v[1] - u[1] * v[0])
     sigma = program.let("sigma_uv", sign_of(area))
     start = len(program.body)

@@ -27,9 +27,7 @@ class Zyz:
 def zyz_angles(
     program: Program,
     R: sp.Matrix,
-    first: sp.Symbol,
-    middle: sp.Symbol,
-    last: sp.Symbol,
+    angles: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
     sigma: sp.Symbol,
     *,
     free: Sequence[sp.Symbol] = (),
@@ -38,7 +36,8 @@ def zyz_angles(
 ) -> Zyz:
     """``Rz(first) Ry(middle) Rz(last) = R``: two solutions, by the sign of sin(middle).
 
-    The second solution is the first with a half turn of both outer angles.  Where ``sin(middle) =
+    ``angles`` are first, middle and last.  The second solution is the first with a half turn of
+    both outer angles.  Where ``sin(middle) =
     0`` only ``first + last`` (or ``first - last``) is determined; the convention is ``first = 0``,
     and ``free`` says which joint that is, if not the first angle itself.  ``scale`` counts the
     roundings that R has seen.
@@ -49,31 +48,32 @@ def zyz_angles(
         h,
         scale,
         "the first and the last axis coincide",
-        free=free or (first,),
+        free=free or angles[:1],
     )
     pair = direction(R[1, 2], R[0, 2], h, aligned)
-    pair = pair.known_as(program, suffix or label(first))
+    pair = pair.known_as(program, suffix or label(angles[0]))
     flip = program.let(f"flip{suffix}", choose(aligned, 0, (1 - sigma) * sp.pi / 2))
-    lemma, rest = zyz_lemma(R, first, middle, last, pair, sigma, flip)
+    lemma, rest = zyz_lemma(R, angles, pair, sigma, flip)
     return Zyz(replace(lemma, signs=(sigma,)), pair, rest, flip, aligned)
 
 
 def zyz_lemma(
     R: sp.Matrix,
-    first: sp.Symbol,
-    middle: sp.Symbol,
-    last: sp.Symbol,
+    angles: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
     pair: Pair,
-    side: sp.Expr,
-    flip: sp.Expr,
+    side: sp.Expr = sp.S.One,
+    flip: sp.Expr = sp.S.Zero,
 ) -> tuple[Lemma, Pair]:
     """The lemma, once the ``pair`` of the first angle is known, and the pair of the last.
+
+    ``side`` is the sign of sin(middle), and ``flip`` a turn that is added to both outer angles.
 
     The third column of R gives the first two angles.  The last is *not* read from the third row, as
     the textbooks do: near ``middle = 0`` that row knows nothing of it.  It follows from the
     rotation that the first angle leaves, ``Rz(first)^T R = Ry(middle) Rz(last)``, whose second row
     is ``(sin(last), cos(last), 0)``, and so keeps the product exact whatever error ``first`` has.
     """
+    first, middle, last = angles
     s, c = pair.s, pair.c
     rest = Pair(c * R[1, 0] - s * R[0, 0], c * R[1, 1] - s * R[0, 1])
     cf, sf, cm, sm, cl, sl = (f(x) for x in (first, middle, last) for f in (sp.cos, sp.sin))

@@ -33,6 +33,7 @@ class InverseResult:
     solutions: int
     method: str
     assumptions: tuple[str, ...]
+    """Bounds in inputs and parameters; none of a combination, whose lemmas have theirs in names."""
     lemmas: tuple[str, ...]
 
 
@@ -50,7 +51,8 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     for link in inverse.chained:
         if link.lemma:
             found, counted = prove_lemma(link, function.signs, f"{where}: ")
-            assumptions += found
+            if isinstance(inverse.glue, Rank):
+                assumptions += found
             counts.append((counted, link.lemma.excluded))
     if not by_lemmas:
         assumptions += prove_system(function, inverse, where)

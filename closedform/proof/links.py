@@ -63,13 +63,14 @@ def prove_sound(
     cases: Sequence[Degenerate],
     given: Mapping[Expr, Expr],
     fault: str,
+    *,
     names: Sequence[str] = (),
 ) -> list[Expr]:
     """Prove that answers satisfy equations in every branch and case.
 
-    Returns the assumptions of the generic case.
-    ``fault`` is the message of an error, with a place for the branch or the case; ``names`` are
-    those of the equations.
+    Returns the assumptions of the generic case.  ``given`` writes what the equations contain in
+    free symbols.  ``fault`` is the message of an error, with braces where the branch or the case
+    goes; ``names`` are those of the equations.
     """
     found: list[Expr] = []
     for case in (None, *cases):
@@ -161,7 +162,7 @@ def prove_system(function: Function, inverse: Inverse, where: str) -> list[Expr]
         inverse.degenerate,
         given,
         f"{where}{{}}: {MISSED}",
-        _names_of(inverse),
+        names=_names_of(inverse),
     )
 
 
@@ -186,31 +187,50 @@ def count_system(inverse: Inverse) -> list[SolutionCount]:
 def _count_alone(inverse: Inverse, links: Sequence[Link], k: int) -> SolutionCount:
     """The solutions of a link, for the unknowns of the links before it."""
     link, where = links[k], inverse.function + (f", link {k + 1}" if len(links) > 1 else "")
-    later = [u for other in links[k + 1 :] for u in other.unknowns]
     equations = [substitute(e, link.given) for e in link.equations]
-    for other in links[:k]:
-        if any(e.has(*other.unknowns) for e in equations):
-            earlier = sp.Matrix([substitute(e, link.given) for e in other.equations])
-            fault = f"{where}: what the link is given does not satisfy an earlier equation"
-            require(earlier, (), fault)
-    if later and any(e.has(*later) for e in equations):
+    _require_earlier(equations, link.given, links[:k], where)
+    if any(_has(equations, other.unknowns) for other in links[k + 1 :]):
         raise ProofError(f"{where}: an equation contains an unknown of a later link")
     constant = [e for e in equations if not e.has(*link.unknowns)]
     if constant:
         require(sp.Matrix(constant), (), f"{where}: an equation without unknowns does not hold")
-    squares = {u: sp.sqrt(real(f"{u}_squared")) for u in inverse.nonnegative if u in link.unknowns}
     turning = [e for e in equations if e.has(*link.unknowns)]
-    turning = [sp.expand(e).xreplace({u**2: s**2 for u, s in squares.items()}) for e in turning]
-    if odd := [u for u in squares if any(e.has(u) for e in turning)]:
+    lengths = [u for u in link.unknowns if u in inverse.nonnegative]
+    turning, squares = _in_squares(turning, lengths, where)
+    try:
+        return count_solutions(turning, [*squares, *(u for u in link.unknowns if u not in lengths)])
+    except InfinitelyManyError as error:
+        raise ProofError(f"{where}: {error}") from error
+
+
+def _has(equations: Sequence[Expr], unknowns: Sequence[Expr]) -> bool:
+    return any(e.has(*unknowns) for e in equations)
+
+
+def _require_earlier(
+    equations: Sequence[Expr], given: Mapping[Expr, Expr], links: Sequence[Link], where: str
+) -> None:
+    """Prove that what a link is given satisfies the earlier links that its equations depend on."""
+    for other in links:
+        if _has(equations, other.unknowns):
+            earlier = sp.Matrix([substitute(e, given) for e in other.equations])
+            fault = f"{where}: what the link is given does not satisfy an earlier equation"
+            require(earlier, (), fault)
+
+
+def _in_squares(
+    equations: Sequence[Expr], lengths: Sequence[Expr], where: str
+) -> tuple[list[Expr], list[Expr]]:
+    """Equations in the squares of lengths, whose signs do not count, and the squares."""
+    roots = {u: sp.sqrt(real(f"{u}_squared")) for u in lengths}
+    squared = {u**2: s**2 for u, s in roots.items()}
+    found = [sp.expand(e).xreplace(squared) for e in equations]
+    if odd := [u for u in lengths if _has(found, [u])]:
         raise ProofError(
             f"{where}: the equations contain {odd[0]} itself, not its square alone, so its sign "
             f"matters; take it out of nonnegative"
         )
-    unknowns = [s**2 for s in squares.values()] + [u for u in link.unknowns if u not in squares]
-    try:
-        return count_solutions(turning, unknowns)
-    except InfinitelyManyError as error:
-        raise ProofError(f"{where}: {error}") from error
+    return found, list(squared.values())
 
 
 __all__ = ["Answers", "count_system", "forget_counts", "prove_lemma", "prove_sound", "prove_system"]

@@ -100,6 +100,21 @@ class TestPhrases:
         with pytest.raises(ValueError, match=r"claim eq. \(1\): the phrase 'many' has no meaning"):
             judge(claim("it has {many} edges", edges), [])
 
+    def test_a_word_turns_a_statement_into_its_opposite(self) -> None:
+        words = {"always": "not always", "every": "not every"}
+        given = claim("$x = y$ {always} holds for {every} x", opposites=words)
+        right = given.printed.replace("= y", "= x")
+        assert judged(given, given.printed).kind == REFUTED
+        assert judged(given, given.printed.replace("{alw", "{not alw")).kind == PROVED
+        assert judged(given, right).kind == PROVED
+        assert judged(given, right.replace("{every", "{not every")).kind == REFUTED
+        both = right.replace("{every", "{not every").replace("{alw", "{not alw")
+        assert judged(given, both).kind == PROVED
+
+    def test_the_opposite_of_what_cannot_be_decided_cannot_either(self) -> None:
+        given = claim("{not} here", lambda: Undecidable("a figure"), opposites={"not": "also"})
+        assert judged(given, "{also} here").kind == NOT_DECIDABLE
+
     def test_the_text_has_no_braces(self) -> None:
         assert plain("{two} of $x_{1}$") == "two of $x_{1}$"
         assert judge(claim("it has {four} edges", edges), []).printed == "it has four edges"

@@ -13,6 +13,7 @@ from closedform.model.claims import (
     HOLDS,
     NOT_DECIDABLE,
     PROVED,
+    REFUTED,
     Check,
     Claim,
     Erratum,
@@ -105,7 +106,11 @@ def judge(claim: Claim, errata: Sequence[Erratum]) -> ClaimResult:
 
 def judged(claim: Claim, text: str, reading: Reading | None = None) -> Verdict:
     """The verdict of a text of a claim."""
-    return claim.checked(text, reading or next(iter(claim.readings), None), as_printed).judge()
+    reading = reading or next(iter(claim.readings), None)
+    verdict = claim.checked(text, reading, as_printed).judge()
+    if not claim.is_opposite(text) or verdict.kind not in (*HOLDS, REFUTED):
+        return verdict
+    return Verdict(PROVED if verdict.kind == REFUTED else REFUTED, verdict.evidence)
 
 
 def as_printed(*formulas: Relation | tuple[Relation, ...]) -> Check:

@@ -302,15 +302,16 @@ def design(d: Derivation, r: Robot, printed: Notation) -> None:
     both, yaw_only = "roll and yaw angles", "yaw angles"
     d.claim(
         "design of the wrist",
-        "“The parameters αl and β are designed so that the wrist does not assume a singular "
-        "configuration for the allowed {roll and yaw angles}.”",
+        "“The parameters αl and β are designed so that the wrist {does not assume} a "
+        "singular configuration for the allowed {roll and yaw angles}.”",
         lambda largest: ForAll(
             sp.Le(needed(r.psi, largest), needed(r.psi, sp.S.Zero)),
             where=[sp.Lt(sp.Abs(r.psi), pi / 2), sp.Lt(sp.Abs(r.phi), pi / 2)],
         ),
         where="2 Description of the H6AR",
         phrases=[{both: r.phi, yaw_only: sp.S.Zero}],
-        corrected="“The parameters αl and β are designed so that the wrist does not assume a "
+        opposites={"does not assume": "assumes"},
+        corrected="“The parameters αl and β are designed so that the wrist {does not assume} a "
         "singular configuration for the allowed {yaw angles}.”",
         erratum="roll-in-wrist",
     )

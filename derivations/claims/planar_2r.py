@@ -130,7 +130,7 @@ def geometry(d: Derivation, arm: Arm, known: Notation) -> None:
         "base, and there are infinitely many.",
     )
     one_solution = (
-        "“or there may be {exactly one} solution if the manipulator must be {%s} to reach the "
+        "“or there may be {exactly one} solution if the manipulator {must be %s} to reach the "
         "point”"
     )
     claim(
@@ -140,9 +140,9 @@ def geometry(d: Derivation, arm: Arm, known: Notation) -> None:
         phrases=[
             {"exactly one": 1, "two": 2},
             {
-                "fully extended": (sp.Integer(0),),
-                "fully extended or folded": (sp.Integer(0), pi),
-                "half extended": (pi / 2,),
+                "must be fully extended": (sp.Integer(0),),
+                "must be fully extended or folded": (sp.Integer(0), pi),
+                "need not be fully extended": (sp.Integer(0), pi / 2),
             },
         ],
         corrected=one_solution % "fully extended or folded",

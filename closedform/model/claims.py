@@ -211,6 +211,8 @@ class Erratum(Shown):
     """One error of a paper, which may stand in several places: the claims that name its key.
 
     ``why`` explains the error to its author, and ``use`` says what follows for someone who used it.
+    ``numbers`` maps names to constants, each with a number of digits after the point: ``[miss]`` in
+    the texts stands for the decimal of the constant ``miss``.
     """
 
     key: str
@@ -218,11 +220,15 @@ class Erratum(Shown):
     gravity: Gravity
     why: str
     use: str
+    numbers: Mapping[str, tuple[Any, int]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_key(self.key, "key of an erratum")
         check_text(f"erratum {self.key}", self.title, self.why, self.use)
         check_formulas(f"erratum {self.key}", self.title, self.why, self.use)
+        for name in self.numbers:
+            if f"[{name}]" not in self.why + self.use:
+                raise ValueError(f"erratum {self.key}: no text contains the number [{name}]")
 
 
 __all__ = [

@@ -23,6 +23,7 @@ from closedform.model.claims import (
 )
 from closedform.model.notation import Notation, Relation
 from closedform.proof.checks.equations import Equal
+from closedform.proof.checks.evidence import constant, fixed, nearest
 from closedform.proof.require import ProofError
 
 
@@ -128,7 +129,11 @@ def require_shown(errata: Sequence[Erratum], results: Sequence[ClaimResult]) -> 
 
 
 def erratum_result(erratum: Erratum) -> ErratumResult:
-    return ErratumResult(erratum.key, erratum.title, erratum.gravity.name, erratum.why, erratum.use)
+    why, use = erratum.why, erratum.use
+    for name, (value, digits) in erratum.numbers.items():
+        decimal = fixed(nearest(constant(value) * 10**digits), digits)
+        why, use = (text.replace(f"[{name}]", decimal) for text in (why, use))
+    return ErratumResult(erratum.key, erratum.title, erratum.gravity.name, why, use)
 
 
 def _text(evidence: Sequence[Any], notation: Notation) -> str:

@@ -362,6 +362,24 @@ class TestProcedure:
         with pytest.raises(Undecided):
             near.judge()
 
+    def test_its_steps_have_to_be_proved(self) -> None:
+        right = {theta: atan2(y, x)}
+        for step in (TRUE, FALSE):
+            steps = {"the only one": step}
+            assert Procedure(right, CIRCLE, POSTURES, steps).judge().kind == step.judge().kind
+        missed = Procedure({theta: atan(y / x)}, CIRCLE, POSTURES, {"the only one": TRUE})
+        assert missed.judge().kind == REFUTED
+
+
+def test_a_share_says_from_where_the_postures_are_drawn() -> None:
+    narrow = {t: (float(-pi / 6), float(pi / 6)), theta: (0.0, float(pi / 2))}
+    words = Postures(CIRCLE, [theta, t, x], ranges=narrow).drawn()
+    assert words == [
+        "", theta, " from $0^\\circ$ to $90^\\circ$",
+        ", ", t, " from $-30^\\circ$ to $30^\\circ$",
+        ", ", x, " from $-180^\\circ$ to $180^\\circ$",
+    ]  # fmt: skip
+
 
 class TestRounded:
     @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from typing import Any
 
 import pytest
+import sympy as sp
 
 from closedform.model.claims import (
     FAULTS,
@@ -165,6 +166,21 @@ class TestErratum:
         require_shown([SIGN], results)
         with pytest.raises(ProofError, match="no claim shows the erratum sign: A sign is wrong"):
             require_shown([SIGN], [])
+
+    def test_a_number_in_its_texts_is_computed(self) -> None:
+        numbers = {"miss": (sp.sqrt(2) / 10, 3), "turn": (-sp.pi, 0)}
+        told = Erratum("a", "A sign", Gravity.MOTION, "By [turn].", "$[miss]$ m.", numbers)
+        found = erratum_result(told)
+        assert (found.why, found.use) == ("By -3.", "$0.141$ m.")
+
+    def test_a_number_without_a_place_is_refused(self) -> None:
+        with pytest.raises(ValueError, match=r"no text contains the number \[miss\]"):
+            Erratum("a", "A sign", Gravity.MOTION, "Why.", "Use.", {"miss": (sp.S.One, 1)})
+
+    def test_a_number_has_to_be_a_constant(self) -> None:
+        told = Erratum("a", "A sign", Gravity.MOTION, "[miss]", "Use.", {"miss": (x, 1)})
+        with pytest.raises(ValueError, match="x is not a constant"):
+            erratum_result(told)
 
     def test_a_key_is_described_once(self) -> None:
         d = Derivation("arm", "Arm", Paper("p", "P", ("A",)), "It moves.")

@@ -436,6 +436,18 @@ class TestRounded:
 def test_enumeration() -> None:
     assert Enumeration(4, lambda: 4, "edges").judge() == Verdict(PROVED, ("edges: 4",))
     assert Enumeration(5, lambda: 4, "edges").judge() == Verdict(REFUTED, ("edges: 4, not 5",))
+    named = Enumeration(["a"], lambda: ["a", ("b", "c")], "names")
+    assert named.judge() == Verdict(REFUTED, ("names: a, (b, c), not a",))
+    assert Enumeration([], list, "names").judge() == Verdict(PROVED, ("names: none",))
+
+
+def test_a_printed_value_is_not_repeated() -> None:
+    verdict = Identity(x, sp.Integer(6), names=("$x$", "$6$")).judge()
+    assert verdict.evidence[-4:] == (" is ", sp.S.Zero, ", not ", 6)
+    lists = Identity([x], [sp.S.One], names=("the list", "that of others")).judge()
+    assert (
+        "".join(map(str, lists.evidence[3:])) == "part 1 of the list is 0, but that of others is 1"
+    )
 
 
 def test_relations_between_constants() -> None:

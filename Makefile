@@ -125,7 +125,7 @@ format: .venv/installed.stamp  ## format the Python that is written by hand
 	$(BIN)/ruff format .
 
 mutations: native  ## change every piece of every claim and judge it again; takes half an hour
-	CLOSEDFORM_MUTATIONS=all $(BIN)/python -m pytest tests/test_mutations.py
+	CLOSEDFORM_MUTATIONS=all $(BIN)/python -m pytest -n auto --dist worksteal tests/test_mutations.py
 
 figures: native  ## draw every figure of every mechanism, in build/figures
 	$(BIN)/closedform figures -o build/figures

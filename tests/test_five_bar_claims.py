@@ -95,7 +95,7 @@ def test_figures_without_lengths_refute_nothing() -> None:
         ("eight working modes", "eight", "four"),
         ("mirror images", "{AB}", "{of symmetry between A and B}"),
         ("hollow spheres", "L_1 - L_2", "L_1 - L_0"),
-        ("two operative working modes", "only {two}", "only {three}"),
+        ("two operative working modes", "{only} {two}", "{only} {three}"),
         ("lengths", "$L_4$", "$L_3$"),
         ("two degrees of freedom", "{two}", "{three}"),
         ("Figure 12", "{convex}", "{non-convex}"),

@@ -76,6 +76,16 @@ def test_a_misprint_is_noticed(label: str, printed: str, misprint: str) -> None:
     assert kind not in HOLDS
 
 
+def test_the_whole_inverse_is_mended_in_all_its_parts() -> None:
+    found = result("h6ar", "inverse of the virtual arm")
+    assert (found.kind, found.erratum) == (REFUTED, "quadrant")
+    assert r"from $-180^\circ$ to $180^\circ$" in found.evidence
+    claim = claims("h6ar")["inverse of the virtual arm"]
+    assert judged(claim, claim.corrected).kind == PROVED
+    sign = claim.corrected.replace(r"\pm", "+", 1)
+    assert judged(claim, sign).kind == REFUTED
+
+
 def test_cases_hold_under_their_conditions_and_leave_no_gap() -> None:
     names = Notation({"k": k})
     size = r"\begin{cases} k & \text{if } k \ge 0, \\ -k & \text{if } k < 0 \end{cases}"

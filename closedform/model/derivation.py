@@ -319,6 +319,7 @@ class Derivation(Shown):
         notation: Notation | None = None,
         means: Mapping[str, Any] | None = None,
         phrases: Sequence[Mapping[str, Any]] = (),
+        opposites: Mapping[str, str] | None = None,
         corrected: str = "",
         readings: Sequence[Reading] = (),
         erratum: str = "",
@@ -338,6 +339,7 @@ class Derivation(Shown):
                 where,
                 (notation or Notation({})).extended(means or {}),
                 tuple(phrases),
+                opposites or {},
                 corrected,
                 tuple(readings),
                 erratum,
@@ -346,11 +348,20 @@ class Derivation(Shown):
             )
         )
 
-    def erratum(self, key: str, title: str, gravity: Gravity, *, why: str, use: str) -> None:
-        """Describe an error of the paper; claims that show it name its key."""
+    def erratum(
+        self,
+        key: str,
+        title: str,
+        gravity: Gravity,
+        *,
+        why: str,
+        use: str,
+        numbers: Mapping[str, tuple[Any, int]] | None = None,
+    ) -> None:
+        """Describe an error of the paper (:class:`Erratum`); claims that show it name its key."""
         if key in [e.key for e in self.errata]:
             raise ValueError(f"{self.name}: the erratum {key} is described twice")
-        self.errata.append(Erratum(key, title, gravity, why, use))
+        self.errata.append(Erratum(key, title, gravity, why, use, numbers or {}))
 
     def no_inverse(self, because: str) -> None:
         """Give the reason why there is no inverse, such as ``"axes 5 and 6 do not intersect"``."""

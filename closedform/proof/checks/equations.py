@@ -88,10 +88,11 @@ class Identity(Check):
             shown(entries(side)[found.entry], found.point) for side in (self.printed, self.derived)
         )
         left, right = self.names
-        return (
-            *at(found.point), entry, left, " is ", printed, ", but ", entry and "that of ", right,
-            " is ", derived,
-        )  # fmt: skip
+        if right == f"${derived}$":
+            return (*at(found.point), entry, left, " is ", printed, ", not ", derived)
+        of = "" if not entry or right.startswith("that of ") else "that of "
+        apart = (entry, left, " is ", printed, ", but ", of, right, " is ", derived)
+        return (*at(found.point), *apart)
 
 
 def _order(gap: Exact, small: sp.Symbol | tuple[sp.Symbol, ...]) -> tuple[Any, ...]:

@@ -23,6 +23,7 @@ from closedform.algebra.normal_form import Undecided, decide
 from closedform.algebra.solutions import InfinitelyManyError, count_solutions
 from closedform.model.claims import INCOMPLETE, PROVED, REFUTED, Check, Verdict
 from closedform.model.notation import SIGN
+from closedform.proof.checks.equations import Every
 from closedform.proof.checks.evidence import Expr, at, cases, shown
 
 SAMPLES = 100_000
@@ -113,6 +114,18 @@ class Postures:
         }
         drawn |= {s: np.full(SAMPLES, float(v)) for s, v in self.dimensions.items()}
         return drawn | {s: values(e, drawn) for s, e in self.inputs.items()}
+
+    def drawn(self) -> list[Any]:
+        """From where the joints are drawn, in words."""
+        several: dict[str, list[sp.Symbol]] = {}
+        for q in self.joints:
+            low, high = (f"{np.degrees(a):.0f}^\\circ" for a in self.ranges.get(q, (-np.pi, np.pi)))
+            several.setdefault(f"${low}$ to ${high}$", []).append(q)
+        pieces: list[Any] = []
+        for words, joints in several.items():
+            pieces += [", " * bool(pieces), *(p for q in joints for p in (q, ", "))][:-1]
+            pieces.append(f" from {words}")
+        return pieces
 
     def simple(self) -> Iterator[dict[sp.Symbol, Expr]]:
         """Exact postures that a person can check by hand, with unit dimensions."""
@@ -231,12 +244,14 @@ class Procedure(Check):
 
     ``formulas`` give names, in order, in the inputs and in names given before.  ``reached`` is the
     forward map in the names; it has to equal the ``targets``, which ``postures`` takes as inputs.
-    A sample can refute a procedure; if no posture is missed, the exact zero test has to prove it.
+    A sample can refute a procedure.  If no posture is missed, the exact zero test has to prove it:
+    that the target is reached, or, with ``steps``, that each formula solves its equation.
     """
 
     formulas: Mapping[sp.Symbol, Expr]
     reached: Mapping[sp.Symbol, Expr]
     postures: Postures
+    steps: Mapping[str, Check] = field(default_factory=dict)
 
     def judge(self) -> Verdict:
         sampled = self.postures.arrays()
@@ -272,6 +287,8 @@ class Procedure(Check):
 
     def _proved(self) -> Verdict:
         """The verdict if no sampled posture is missed: an exact proof for each choice of signs."""
+        if self.steps:
+            return Every(self.steps).judge()
         signs = (1, -1) if any(f.has(SIGN) for f in self.formulas.values()) else (1,)
         for s in signs:
             names = dict(self.postures.inputs)
@@ -314,7 +331,8 @@ def share(
     what: str, missed: np.ndarray, postures: Postures, sampled: Mapping[sp.Symbol, np.ndarray]
 ) -> tuple[Any, ...]:
     """How many of the sampled postures are missed, in all and in each group."""
-    pieces = ["; ", f"{what} in {_percent(missed)} of {SAMPLES} sampled postures"]
+    pieces = ["; ", f"{what} in {_percent(missed)} of {SAMPLES} sampled postures, with "]
+    pieces += postures.drawn()
     groups = [
         f"{name}: {_percent(missed[part])}"
         for name, condition in postures.groups.items()

@@ -104,15 +104,17 @@ TIDY := -*,bugprone-*,clang-analyzer-*,portability-*,-bugprone-easily-swappable-
 -bugprone-implicit-widening-of-multiplication-result,-bugprone-reserved-identifier,$\
 -clang-analyzer-security.insecureAPI.DeprecatedOrUnsafeBufferHandling
 
-analysed:  ## run cppcheck and clang-tidy on the C, if they are installed
+ANALYSED := $(PORTABLE)
+
+analysed:  ## run cppcheck and clang-tidy on the C, if installed; ANALYSED="FILE..." selects some
 	@if command -v cppcheck >/dev/null; then \
-		cppcheck --quiet --std=c99 --enable=warning,performance,portability --error-exitcode=1 \
+		cppcheck --quiet -j "$$(getconf _NPROCESSORS_ONLN)" --std=c99 --enable=warning,performance,portability --error-exitcode=1 \
 			--suppress=missingIncludeSystem --suppressions-list=tests/cppcheck-suppressions.txt \
-			-Igenerated/c -Iclosedform/runtime/extension $(PORTABLE) closedform/runtime/extension/closedform_rows.c \
+			-Igenerated/c -Iclosedform/runtime/extension $(ANALYSED) closedform/runtime/extension/closedform_rows.c \
 			closedform/runtime/extension/closedform_sweep.c && echo "$@: cppcheck clean"; \
 	else echo "$@: skipped, cppcheck is not installed"; fi
 	@if command -v clang-tidy >/dev/null; then \
-		clang-tidy --quiet --checks='$(TIDY)' --warnings-as-errors='*' $(PORTABLE) \
+		clang-tidy --quiet --checks='$(TIDY)' --warnings-as-errors='*' $(ANALYSED) \
 			closedform/runtime/extension/closedform_rows.c closedform/runtime/extension/closedform_sweep.c \
 			-- -std=c99 -Igenerated/c -Iclosedform/runtime/extension && echo "$@: clang-tidy clean"; \
 	else echo "$@: skipped, clang-tidy is not installed"; fi

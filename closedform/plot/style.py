@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from closedform.plot.robot import AZIMUTH, ELEVATION
 
@@ -15,16 +17,27 @@ except ModuleNotFoundError as error:
         "closedform.plot needs Matplotlib; run: pip install 'closedform[plot]'"
     ) from error
 
+from closedform.plot.labels import place
+
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8C564B", "#4D4D4D")
 """Colours that people with any colour vision can tell apart, after Okabe and Ito."""
 GROUND = "#6b6b6b"
+INK = "#222222"
 RC: dict[Any, Any] = {
     "svg.hashsalt": "closedform",
-    "svg.fonttype": "none",
+    "svg.fonttype": "path",
     "pdf.fonttype": 42,
-    "font.size": 9,
+    "font.family": "STIXGeneral",
+    "mathtext.fontset": "stix",
+    "font.size": 10,
     "axes.titlesize": 10,
-    "legend.fontsize": 8,
+    "axes.labelsize": 10,
+    "axes.linewidth": 0.6,
+    "xtick.labelsize": 8.5,
+    "ytick.labelsize": 8.5,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "legend.fontsize": 9,
     "legend.frameon": False,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -36,15 +49,41 @@ UNDATED = {
 }
 
 
+Drawing = TypeVar("Drawing", bound=Callable[..., Any])
+
+
+def styled(function: Drawing) -> Drawing:
+    """Draw in the style of this package, whatever the settings of the caller are."""
+
+    @wraps(function)
+    def drawn(*args: Any, **kwargs: Any) -> Any:
+        with mpl.rc_context(RC):
+            return function(*args, **kwargs)
+
+    return drawn  # type: ignore[return-value]
+
+
 def new_axes(spatial: bool, size: tuple[float, float] = (5.2, 4.4)) -> Any:
     """Axes of a new figure, in the style of this package."""
+    return new_panels(1, 1, spatial=spatial, size=size)[0]
+
+
+def new_panels(
+    rows: int, columns: int, *, spatial: bool = False, size: tuple[float, float]
+) -> list[Any]:
+    """The axes of a new figure of several panels, row by row."""
     with mpl.rc_context(RC):
         figure = plt.figure(figsize=size, layout="constrained")
         if not spatial:
-            return figure.add_subplot()
-        ax = figure.add_subplot(projection="3d", proj_type="ortho")
-        ax.view_init(elev=ELEVATION, azim=AZIMUTH)
-        return ax
+            return [figure.add_subplot(rows, columns, k + 1) for k in range(rows * columns)]
+        panels = [
+            figure.add_subplot(rows, columns, k + 1, projection="3d", proj_type="ortho")
+            for k in range(rows * columns)
+        ]
+        for ax in panels:
+            ax.view_init(elev=ELEVATION, azim=AZIMUTH)
+            ax.computed_zorder = False
+        return panels
 
 
 def save(ax: Any, target: str | Path) -> None:
@@ -53,7 +92,10 @@ def save(ax: Any, target: str | Path) -> None:
     if path.suffix not in UNDATED:
         raise ValueError(f"{path}: the suffix must be one of {', '.join(UNDATED)}")
     with mpl.rc_context(RC):
-        ax.figure.savefig(path, metadata=UNDATED[path.suffix], dpi=160)
+        place(ax.figure)
+        ax.figure.savefig(
+            path, metadata=UNDATED[path.suffix], dpi=160, bbox_inches="tight", pad_inches=0.04
+        )
 
 
 def colour(k: int) -> str:

@@ -29,9 +29,7 @@ def joint_axes(
     found: dict[str, tuple[Array, Array]] = {}
     for name, joint in robot.SKELETON.joints.items():
         at = place[joint.points[-1]] if name in robot.JOINTS else place[joint.points[0]]
-        if joint.kind == "prismatic":
-            along = place[joint.points[1]] - place[joint.points[0]]
-        elif len(joint.points) == 2:
+        if joint.kind == "prismatic" or len(joint.points) == 2:
             along = place[joint.points[1]] - place[joint.points[0]]
         elif name in robot.JOINTS:
             along = _turning(r, joints, mode, name)

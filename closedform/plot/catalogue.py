@@ -23,8 +23,6 @@ class Figure:
     name: str
     caption: str
     draw: Callable[[ModuleType], Any]
-    shown: bool = False
-    """Whether the pages of the documentation show it."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +30,11 @@ class PaperFigures:
     """The figures of a paper: those that are drawn, by their numbers, and why others are not."""
 
     paper: str
+    """Its key, as in the errata."""
+    heading: str
+    """Its authors and title."""
     count: int
+    """How many figures it has."""
     drawn: Mapping[int, tuple[str, Figure]]
     """For each number, the mechanism and its figure."""
     missing: Mapping[int, str]

@@ -61,12 +61,14 @@ class Diagram:
     def point(self, at: ArrayLike, shade: str = INK) -> None:
         self.ax.plot(*self._here(at).T, "o", color=shade, markersize=3, zorder=6)
 
-    def ground(self, at: ArrayLike, across: ArrayLike = (1, 0, 0), down: ArrayLike = (0, -1, 0)) -> None:
+    def ground(
+        self, at: ArrayLike, across: ArrayLike = (1, 0, 0), down: ArrayLike = (0, -1, 0)
+    ) -> None:
         """The sign of a fixed point: a line with short strokes below it."""
         a, d = (np.asarray(v, dtype=float) * self.size for v in (across, down))
         foot = np.asarray(at, dtype=float)
         foot = np.append(foot, 0.0) if foot.size < 3 else foot
-        foot = foot + 0.035 * d
+        foot = foot + 0.022 * d
         self.line([foot - 0.06 * a, foot + 0.06 * a], color=GROUND, linewidth=1.1)
         for s in np.linspace(-0.05, 0.055, 5):
             start = foot + s * a

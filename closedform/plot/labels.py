@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -79,7 +80,7 @@ def _cost(centre: Array, half: Array, lines: Array, placed: list[Array], frame: 
         for b in placed
     )
     outside = max(frame.x0 - low[0], high[0] - frame.x1, frame.y0 - low[1], high[1] - frame.y1, 0)
-    return 0.35 * covered + 0.2 * shared + 0.05 * outside
+    return float(0.35 * covered + 0.2 * shared + 0.05 * outside)
 
 
 def _lines(ax: Any) -> Array:
@@ -91,7 +92,7 @@ def _lines(ax: Any) -> Array:
         if line.get_transform() != ax.transData or not np.isfinite(points).all():
             continue
         ends = pixels(ax, points)
-        for a, b in zip(ends, ends[1:], strict=False):
+        for a, b in pairwise(ends):
             n = 2 + int(np.hypot(*(b - a)) / 3)
             found.append(a + np.linspace(0, 1, n)[:, None] * (b - a))
         if len(ends) == 1:

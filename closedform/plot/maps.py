@@ -113,10 +113,9 @@ def _singular_curves(
             kept = _without_jumps(values[..., b], 0.5 * scale)
             inside = kept[np.isfinite(kept)]
             if inside.size and inside.min() < -1e-9 * scale and inside.max() > 1e-9 * scale:
-                for curve in contour_generator(*grid.sides, np.ma.masked_invalid(kept)).lines(0.0):
-                    if len(curve) >= SHORT:
-                        ax.plot(*curve.T, color=colour(k + 1), linewidth=1.3, zorder=3)
-                        found = True
+                for curve in _lines(grid, np.ma.masked_invalid(kept), 0.0):
+                    ax.plot(*curve.T, color=colour(k + 1), linewidth=1.3, zorder=3)
+                    found = True
         if found:
             signs.append(Line2D([], [], color=colour(k + 1), label=fill(name, WIDE)))
     for curve in _edges(grid, count):
@@ -125,14 +124,20 @@ def _singular_curves(
     return [Line2D([], [], color="#222222", linewidth=0.8, label=fill(border, WIDE)), *signs]
 
 
+def _lines(grid: _Grid, values: Any, level: float) -> Iterator[Array]:
+    """The curves on which values on the grid have a level, without the shortest."""
+    for curve in contour_generator(*grid.sides, values).lines(level):
+        points = np.asarray(curve, dtype=float)
+        if len(points) >= SHORT:
+            yield points
+
+
 def _edges(grid: _Grid, count: NDArray[np.int_]) -> Iterator[Array]:
     """The curves at which the number of branches changes."""
     present = [n for n in np.unique(count) if (count == n).mean() > FEW]
     for low, high in pairwise(present):
         above = (count > (low + high) / 2).astype(float)
-        for curve in contour_generator(*grid.sides, above).lines(0.5):
-            if len(curve) >= SHORT:
-                yield curve
+        yield from _lines(grid, above, 0.5)
 
 
 def _of_branches(r: Robot, targets: Array, q: Array) -> Array:

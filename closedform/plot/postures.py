@@ -126,7 +126,9 @@ def branches(
         raise ValueError(f"{r.name} reaches the target {np.asarray(x).tolist()} in no branch")
     frame = [np.vstack(list(found.values()))]
     names = list(robot.BRANCHES)
-    alike = len(found) > 1 and any(np.allclose(p, frame[0][: len(p)]) for p in [*found.values()][1:])
+    alike = len(found) > 1 and any(
+        np.allclose(p, frame[0][: len(p)]) for p in [*found.values()][1:]
+    )
     if ax is not None or (len(found) <= OVERLAID and not alike):
         ax = new_axes(not r.flat) if ax is None else ax
         diagram = Diagram(ax, extent(frame))
@@ -206,7 +208,7 @@ def draw(
             style |= named
             named = {}
         diagram.link([place[p] for p in link], **style)
-    for name, joint in skeleton.joints.items():
+    for joint in skeleton.joints.values():
         ends = np.array([place[p] for p in joint.points])
         if joint.kind == "prismatic":
             _slide(diagram, ends, shade, width, named)
@@ -253,10 +255,11 @@ def _name(
     skeleton = r.module.SKELETON
     place = dict(zip(skeleton.points, points, strict=True))
     for field, pair in lengths(r, q, mode).items():
-        diagram.dimension(*(place[p] for p in pair), symbol(field))
+        diagram.dimension(place[pair[0]], place[pair[1]], symbol(field))
     for name, joint in skeleton.joints.items():
         if joint.kind == "prismatic":
-            diagram.dimension(*(place[p] for p in joint.points), symbol(name))
+            a, b = joint.points
+            diagram.dimension(place[a], place[b], symbol(name))
             continue
         if name not in along:
             diagram.label(place[joint.points[0]], symbol(name))

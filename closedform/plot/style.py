@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -96,6 +97,20 @@ def save(ax: Any, target: str | Path) -> None:
         ax.figure.savefig(
             path, metadata=UNDATED[path.suffix], dpi=160, bbox_inches="tight", pad_inches=0.04
         )
+    if path.suffix == ".svg":
+        path.write_text(_shortened(path.read_text("utf-8")), "utf-8")
+
+
+def _shortened(svg: str) -> str:
+    """The coordinates of paths to a hundredth of a point."""
+
+    def rounded(number: re.Match[str]) -> str:
+        return f"{float(number[0]):.2f}".rstrip("0").rstrip(".")
+
+    def path(data: re.Match[str]) -> str:
+        return f' d="{re.sub(r"-?[0-9]+[.][0-9]+", rounded, data[1])}"'
+
+    return re.sub(r' d="([^"]*)"', path, svg)
 
 
 def colour(k: int) -> str:

@@ -128,15 +128,15 @@ def closed_chain(robot: ModuleType) -> Any:
 def hybrid(robot: ModuleType) -> Any:
     """Figure 3: the linkage and the revolute about AB."""
     ax = new_axes(True, (4.4, 3.8))
-    return mechanism(robot, np.radians([-35, 75, 85]), ax=ax)
+    return mechanism(robot, np.radians([65, 75, 85]), ax=ax)
 
 
 @styled
 def working_modes(robot: ModuleType) -> Any:
     """Figure 4: the four working modes above AB; the others are their mirror images."""
-    panels = new_panels(1, 4, size=(9.2, 2.8))
+    panels = new_panels(1, 4, size=(9.2, 2.2))
     for k, (ax, branch, letter) in enumerate(zip(panels, ABOVE, "abcd", strict=True)):
-        _, at = linkage(robot, ax, (3.0, 8.6), branch, shade=colour(k))
+        linkage(robot, ax, (3.0, 8.6), branch, shade=colour(k))
         ax.set(xlim=(-4.6, 11.4), ylim=(-1.2, 10.2))
         signs = "".join("+" if s == "plus" else "−" for s in branch.split("_"))
         ax.set_title(f"({letter})  {signs}")
@@ -172,18 +172,18 @@ def stretched(robot: ModuleType) -> tuple[float, float]:
 def in_line(robot: ModuleType) -> Any:
     """Figure 5: C, D and P on one line."""
     ax = new_axes(False, (4.2, 3.4))
-    L0, L1, L2 = robot.Parameters()
+    L0, _, L2 = robot.Parameters()
     y, h = stretched(robot)
     at = np.array([[0, 0], [L0, 0], [y - L2, h], [y + L2, h], [y, h]])
     d = Diagram(ax, 17.0)
     bars(d, at, colour(0))
     for point, name in zip(at, "ABCDP", strict=True):
         d.label(point, f"${name}$")
-    P = at[4]
-    d.arrow(P + [0, 0.4], P + [0, 2.8], shade=colour(1), width=1.6)
-    d.arrow(P - [0, 0.4], P - [0, 2.8], shade=colour(1), width=1.6)
-    d.label(P + [0, 2.8], "no force resisted", shade=colour(1))
-    d.clean([at, P[None] + [0, 3.2]], margin=0.08)
+    P, up = at[4], np.array([0.0, 1.0])
+    d.arrow(P + up * 0.4, P + up * 2.8, shade=colour(1), width=1.6)
+    d.arrow(P - up * 0.4, P - up * 2.8, shade=colour(1), width=1.6)
+    d.label(P + up * 2.8, "no force resisted", shade=colour(1))
+    d.clean([at, P[None] + up * 3.2], margin=0.08)
     return ax
 
 
@@ -259,7 +259,9 @@ def cartesian(
         det = np.ma.masked_invalid(of_mode(robot.singularities(q, params), mode)[..., 3])
         if det.count() and det.min() < 0 < det.max():
             ax.contour(y, away, det, levels=[0.0], colors=[colour(1 + 2 * k)], linewidths=1.4)
-    for pivot, name in (((0, 0), "A"), ((float(params.L0), 0), "B")):
+    L0 = float(params.L0)
+    pivots = [((0, 0), "A"), ((L0, 0), "B")] if L0 else [((0, 0), "A = B")]
+    for pivot, name in pivots:
         ax.plot(*pivot, "o", color="#222222", markersize=3)
         ax.annotate(f"${name}$", pivot, xytext=(4, 3), textcoords="offset points")
     ax.set(xlabel="$y$", ylabel=r"$\rho$")
@@ -273,9 +275,7 @@ def cartesian(
 def joint_space(robot: ModuleType, params: Any, ax: Any) -> list[Any]:
     """The angles of the motors for which the linkage closes, and where it is singular there."""
     t = np.linspace(-np.pi, np.pi, GRID)
-    q = np.stack(
-        [np.zeros((GRID, GRID)), *np.broadcast_arrays(t, t[:, None])], axis=-1
-    )
+    q = np.stack([np.zeros((GRID, GRID)), *np.broadcast_arrays(t, t[:, None])], axis=-1)
     found = robot.fk(q, params)
     there = (found.status[..., 0] != robot.Status.UNREACHABLE).astype(float)
     ax.contourf(t, t, there, levels=[0.5, 1.5], colors=[PALE])
@@ -293,11 +293,12 @@ def joint_space(robot: ModuleType, params: Any, ax: Any) -> list[Any]:
     ax.set_xticklabels([r"$-\pi$", "0", r"$\pi$"])
     ax.set_yticklabels([r"$-\pi$", "0", r"$\pi$"])
     ax.set_aspect("equal")
+    left, right = (name.replace("_", " ") for name in robot.ASSEMBLY_MODES)
     return [
         Patch(color=PALE, label="the linkage closes"),
-        Line2D([], [], color="#222222", linewidth=0.8, label=f"serial, {robot.ASSEMBLY_MODES[0].replace('_', ' ')}"),
+        Line2D([], [], color="#222222", linewidth=0.8, label=f"serial, {left}"),
         Line2D([], [], color="#222222", linewidth=0.8, linestyle="--",
-               label=f"serial, {robot.ASSEMBLY_MODES[1].replace('_', ' ')}"),
+               label=f"serial, {right}"),
         Line2D([], [], color=colour(1), linewidth=1.4, label="parallel: $C$, $D$, $P$ in line"),
     ]  # fmt: skip
 
@@ -332,17 +333,17 @@ def optimal_joints(robot: ModuleType) -> Any:
     ax.set_xticklabels([r"$-\pi$", "0", r"$\pi$"])
     ax.set_yticklabels([r"$-\pi$", "0", r"$\pi$"])
     ax.set_aspect("equal")
-    _check_diagonals(robot, params)
+    _check_that_all_close(robot, params)
     legend(ax, [
         Patch(color=PALE, label="the linkage closes"),
-        Line2D([], [], color=colour(1), linewidth=1.4, label="$C = D$, for $P$ on the border"),
-        Line2D([], [], color="#222222", linewidth=0.8, label="$C$, $D$, $P$ in line, $P = A = B$"),
+        Line2D([], [], color=colour(1), linewidth=1.4, label="parallel singularities: $C = D$"),
+        Line2D([], [], color="#222222", linewidth=0.8, label="$C$, $D$, $P$ in line, $P$ at $A$"),
     ], columns=1)  # fmt: skip
     return ax
 
 
-def _check_diagonals(robot: ModuleType, params: Any) -> None:
-    """The lines that are drawn are those where det A vanishes, and nothing lies outside."""
+def _check_that_all_close(robot: ModuleType, params: Any) -> None:
+    """For these lengths the linkage closes for all angles of the motors."""
     rng = np.random.default_rng(0)
     theta2, theta3 = rng.uniform(-3, 3, (2, 200))
     found = robot.fk(np.column_stack([0 * theta2, theta2, theta3]), params)
@@ -403,7 +404,7 @@ def _mode_section(branch: str) -> Any:
     def drawn(robot: ModuleType) -> Any:
         ax = new_axes(False, (4.2, 3.4))
         handles = cartesian(
-            robot, robot.Parameters(), (branch,), ((-13.5, 20.5), (0, 13.5)), ax=ax, regular=branch
+            robot, robot.Parameters(), (branch,), ((-7.5, 14.5), (0, 13.5)), ax=ax, regular=branch
         )
         handles.append(
             Line2D([], [], color=colour(1), linewidth=1.4, label="parallel singularities")
@@ -495,7 +496,7 @@ FIGURES = (
     Figure("fig2", "The five-bar linkage, with its lengths and angles (Figure 2).", closed_chain),
     Figure("fig3", "The hybrid manipulator: the linkage turns about $AB$ (Figure 3).", hybrid),
     Figure("fig4", "The four working modes with $P$ above $AB$; the remaining four are their "
-           "mirror images (Figure 4).", working_modes, shown=True),
+           "mirror images (Figure 4).", working_modes),
     Figure("fig5", "A parallel singularity: $C$, $D$ and $P$ in line (Figure 5).", in_line),
     Figure("fig6", "A parallel singularity: $C$ and $D$ coincide, and $P$ moves on a circle while "
            "the motors are locked (Figure 6).", coincident),
@@ -508,7 +509,7 @@ FIGURES = (
     Figure("fig11", "The joint space without parallel singularities, for the lengths 5, 2, 5 "
            "(left), and with the two points where $C$ and $D$ meet, for the lengths 4, 5, 8, which "
            "satisfy both conditions of section 3.2 as they are printed (right; Figure 11).",
-           avoiding_joints, shown=True),
+           avoiding_joints),
     Figure("fig12", "One place of $P$ in two working modes: singular in the convex one, regular in "
            "the non-convex one (Figure 12).", mode_and_singularity),
     Figure("fig13", "The convex working mode: the part of the workspace on one side of the "
@@ -516,7 +517,7 @@ FIGURES = (
     Figure("fig14", "The same for a non-convex working mode (Figure 14).",
            _mode_section(NON_CONVEX)),
     Figure("fig15", "Curves of equal condition number of $A$ in two working modes, with the "
-           "isotropic locus (Figure 15).", conditioning, shown=True),
+           "isotropic locus (Figure 15).", conditioning),
     Figure("assembly", "The two assembly modes for the same angles of the motors.",
            assembly_modes),
     Figure("isotropic", "An isotropic posture: $CP$ and $DP$ are at a right angle.", isotropic),
@@ -524,8 +525,10 @@ FIGURES = (
            "largest for $L_0 = 0$ and $L_1 = L_2$, as section 3.1 says.", volume),
 )  # fmt: skip
 
+ALL = tuple((NAME, f) for f in FIGURES)
 PAPER = PaperFigures(
     "chablat-wenger-angeles",
+    "D. Chablat, P. Wenger, J. Angeles: The Kinematic Design of a 3-DOF Hybrid Manipulator",
     15,
     {k: (NAME, FIGURES[k - 1]) for k in range(1, 16)},
     {},

@@ -7,7 +7,8 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from matplotlib.transforms import ScaledTranslation
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.transforms import Affine2D, Bbox, ScaledTranslation
 from mpl_toolkits.mplot3d import proj3d
 from numpy.typing import NDArray
 
@@ -25,45 +26,54 @@ class Label:
     text: Any
     at: Array
     inside: Any
+    box: Array | None = None
+    """Where it was placed, in pixels."""
 
 
 def add(ax: Any, text: Any, at: Array) -> None:
-    """Register a text, so that :func:`place` moves it beside its point."""
+    """Register a text, so that it is moved beside its point when the figure is drawn."""
     text.set(ha="center", va="center")
     ax.__dict__.setdefault("_closedform_labels", []).append(Label(text, at, text.get_transform()))
 
 
+class Layout(ConstrainedLayoutEngine):
+    """The layout of a figure, which also places its labels: whenever the figure is drawn."""
+
+    def execute(self, fig: Any) -> Any:
+        found = super().execute(fig)  # type: ignore[no-untyped-call]
+        place(fig)
+        return found
+
+
 def place(figure: Any) -> None:
     """Move all registered labels to where they cover the least, in the order of registration."""
-    chosen = [ax for ax in figure.axes if getattr(ax, "_closedform_labels", None)]
-    if not chosen:
-        return
-    for ax in chosen:
-        for label in ax._closedform_labels:
+    for ax in figure.axes:
+        mine = getattr(ax, "_closedform_labels", [])
+        if not mine:
+            continue
+        ax.apply_aspect()
+        for label in mine:
             label.text.set_transform(label.inside)
-    figure.draw_without_rendering()
-    for ax in chosen:
         lines = _lines(ax)
-        placed: list[Array] = []
-        for label in ax._closedform_labels:
-            placed.append(_place_one(figure, ax, label, lines, placed))
+        placed = np.zeros((0, 2, 2))
+        for label in mine:
+            box = _place_one(figure, ax, label, lines, placed)
+            placed = np.concatenate([placed, box[None]])
+            label.box = box
 
 
-def _place_one(figure: Any, ax: Any, label: Label, lines: Array, placed: list[Array]) -> Array:
+def _place_one(figure: Any, ax: Any, label: Label, lines: Array, placed: Array) -> Array:
     scale = figure.dpi / POINTS_PER_INCH
     at = pixels(ax, label.at[None])[0]
-    box = label.text.get_window_extent()
+    box = label.text.get_window_extent(figure._get_renderer())
     half = np.array([box.width, box.height]) / 2
-    frame = ax.get_window_extent()
-    best = (np.inf, at)
-    for distance in DISTANCES:
-        for angle in 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS + np.pi / 4:
-            way = np.array([np.cos(angle), np.sin(angle)])
-            centre = at + way * (distance * scale + half * np.abs(way))
-            cost = distance / 40 + _cost(centre, half + 1.5 * scale, lines, placed, frame)
-            if cost < best[0] - 1e-9:
-                best = (cost, centre)
-    centre = best[1]
+    angles = 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS + np.pi / 4
+    ways = np.column_stack([np.cos(angles), np.sin(angles)])
+    far = np.repeat(DISTANCES, DIRECTIONS)[:, None]
+    way = np.tile(ways, (len(DISTANCES), 1))
+    centres = at + way * (far * scale + half * np.abs(way))
+    cost = far[:, 0] / 40 + _cost(centres, half + 1.5 * scale, lines, placed, ax)
+    centre = centres[np.argmin(np.round(cost, 6))]
     moved = (centre - at) / figure.dpi
     label.text.set_transform(
         label.inside + ScaledTranslation(moved[0], moved[1], figure.dpi_scale_trans)
@@ -71,16 +81,17 @@ def _place_one(figure: Any, ax: Any, label: Label, lines: Array, placed: list[Ar
     return np.array([centre - half, centre + half])
 
 
-def _cost(centre: Array, half: Array, lines: Array, placed: list[Array], frame: Any) -> float:
-    """What a label at this place would cover: points of lines, other labels, the border."""
-    covered = (np.abs(lines - centre) < half).all(1).sum() if len(lines) else 0
-    low, high = centre - half, centre + half
-    shared = sum(
-        float(np.prod(np.clip(np.minimum(high, b[1]) - np.maximum(low, b[0]), 0, None)))
-        for b in placed
-    )
-    outside = max(frame.x0 - low[0], high[0] - frame.x1, frame.y0 - low[1], high[1] - frame.y1, 0)
-    return float(0.35 * covered + 0.2 * shared + 0.05 * outside)
+def _cost(centres: Array, half: Array, lines: Array, placed: Array, ax: Any) -> Array:
+    """What a label would cover at each place: points of lines, other labels, the border."""
+    frame = ax.get_window_extent()
+    near = lines[(np.abs(lines - centres.mean(0)) < half + np.ptp(centres, axis=0)).all(1)]
+    covered = (np.abs(near - centres[:, None]) < half).all(-1).sum(-1)
+    low, high = centres - half, centres + half
+    sides = np.minimum(high[:, None], placed[:, 1]) - np.maximum(low[:, None], placed[:, 0])
+    shared = np.prod(np.clip(sides, 0, None), axis=-1).sum(-1)
+    corner, end = np.array([frame.x0, frame.y0]), np.array([frame.x1, frame.y1])
+    outside = np.maximum(corner - low, high - end).max(-1).clip(0)
+    return np.asarray(0.35 * covered + 0.2 * shared + 0.05 * outside)
 
 
 def _lines(ax: Any) -> Array:
@@ -106,3 +117,21 @@ def pixels(ax: Any, points: Array) -> Array:
         x, y, _ = proj3d.proj_transform(*np.asarray(points).T, ax.get_proj())
         points = np.column_stack([np.asarray(x), np.asarray(y)])
     return np.asarray(ax.transData.transform(points))
+
+
+def drawn_box(figure: Any, margin: float) -> Bbox:
+    """The part of a page that is drawn on, in inches: of axes that are off, what is in them."""
+    renderer = figure._get_renderer()
+    boxes = [legend.get_window_extent(renderer) for legend in figure.legends]
+    for ax in figure.axes:
+        if ax.axison:
+            boxes.append(ax.get_tightbbox(renderer))
+            continue
+        boxes += [Bbox(label.box) for label in getattr(ax, "_closedform_labels", [])]
+        boxes += [ax.title.get_window_extent(renderer)] * bool(ax.title.get_text())
+        lines = _lines(ax)
+        if len(lines):
+            boxes.append(Bbox([lines.min(0), lines.max(0)]))
+    scale = Affine2D().scale(1 / figure.dpi)
+    found = Bbox.union([b for b in boxes if b is not None]).transformed(scale)
+    return found.padded(margin)

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from closedform.plot import labels as text
 from closedform.plot.axes import joint_axes
 from closedform.plot.diagram import Diagram
+from closedform.plot.labels import Layout, place
 from closedform.plot.robot import Array, Robot
 from closedform.plot.style import GROUND, colour, new_axes, new_panels, styled
 from closedform.plot.symbols import lengths, symbol
@@ -78,8 +78,15 @@ def mechanism(
         _name(diagram, r, joints, mode, along)
         shown.append(_base_frame(diagram, r, points))
     diagram.clean(shown)
-    text.place(ax.figure)
+    _settle(ax)
     return ax
+
+
+def _settle(ax: Any) -> None:
+    """Place the labels now on a figure that is not of this package; others do it when drawn."""
+    if not isinstance(ax.figure.get_layout_engine(), Layout):
+        ax.figure.draw_without_rendering()
+        place(ax.figure)
 
 
 def posture(robot: ModuleType, *, params: Any = None) -> Array:
@@ -137,7 +144,7 @@ def branches(
             draw(diagram, r, points, shade, label=spoken(name), faint=faint)
         diagram.clean([*frame, _base_frame(diagram, r, frame[0])])
         ax.figure.legend(loc="outside lower center", ncols=min(len(found), 4))
-        text.place(ax.figure)
+        _settle(ax)
         return ax
     columns = 4 if len(found) > 4 else 2
     rows = -(-len(found) // columns)

@@ -18,7 +18,7 @@ except ModuleNotFoundError as error:
         "closedform.plot needs Matplotlib; run: pip install 'closedform[plot]'"
     ) from error
 
-from closedform.plot.labels import place
+from closedform.plot.labels import Layout, drawn_box
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8C564B", "#4D4D4D")
 """Colours that people with any colour vision can tell apart, after Okabe and Ito."""
@@ -43,6 +43,8 @@ RC: dict[Any, Any] = {
     "axes.spines.top": False,
     "axes.spines.right": False,
 }
+MARGIN = 0.04
+"""Around a figure, in inches."""
 UNDATED = {
     ".svg": {"Date": None, "Creator": "closedform"},
     ".pdf": {"CreationDate": None, "ModDate": None, "Creator": "closedform"},
@@ -74,7 +76,7 @@ def new_panels(
 ) -> list[Any]:
     """The axes of a new figure of several panels, row by row."""
     with mpl.rc_context(RC):
-        figure = plt.figure(figsize=size, layout="constrained")
+        figure = plt.figure(figsize=size, layout=Layout())
         if not spatial:
             return [figure.add_subplot(rows, columns, k + 1) for k in range(rows * columns)]
         panels = [
@@ -92,11 +94,15 @@ def save(ax: Any, target: str | Path) -> None:
     path = Path(target)
     if path.suffix not in UNDATED:
         raise ValueError(f"{path}: the suffix must be one of {', '.join(UNDATED)}")
+    figure = ax.figure
     with mpl.rc_context(RC):
-        place(ax.figure)
-        ax.figure.savefig(
-            path, metadata=UNDATED[path.suffix], dpi=160, bbox_inches="tight", pad_inches=0.04
+        figure.draw_without_rendering()
+        engine = figure.get_layout_engine()
+        figure.set_layout_engine("none")  # it has placed everything
+        figure.savefig(
+            path, metadata=UNDATED[path.suffix], dpi=160, bbox_inches=drawn_box(figure, MARGIN)
         )
+        figure.set_layout_engine(engine)
     if path.suffix == ".svg":
         path.write_text(_shortened(path.read_text("utf-8")), "utf-8")
 

@@ -4,11 +4,9 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from closedform.derivations.figures.mechanisms import TWIN, VIRTUAL
 
 from closedform.plot import Diagram, colour, new_axes, new_panels, styled
 from closedform.plot.catalogue import Figure, PaperFigures
-from closedform.plot.postures import mechanism
 
 NAME, CLOSED = "h6ar", "h6ar_loop_closed"
 DRAWN = {"L1": 0.3, "L2": 0.3, "a3": 0.05, "d1": 0.3, "d": 0.13, "gs": 0.03, "al": 0.17,
@@ -51,8 +49,7 @@ def apart(robot: ModuleType, shift: np.ndarray) -> np.ndarray:
 def schematics(robot: ModuleType) -> Any:
     """Figure 1: the manipulator, and its wrist from above."""
     left, right = new_panels(1, 2, spatial=True, size=(8.2, 3.8))
-    q = np.radians(TWIN)
-    at = places(robot, q)
+    at = places(robot, np.radians([-15, 65, 10, 65, 10, 30]))
     d = Diagram(left, 1.0)
     _arms(d, at)
     for name, text in (("upper_right", "upper arm"), ("fore_right", "fore-arm")):
@@ -259,12 +256,6 @@ def virtual_arm(robot: ModuleType) -> Any:
     d.label(at["hand"], "$T$")
     d.clean([np.array([*at.values()])], margin=0.06)
     return ax
-
-
-@styled
-def in_space(robot: ModuleType) -> Any:
-    """The manipulator with its angles, the virtual arm in broken lines."""
-    return mechanism(robot, np.radians(TWIN), ax=new_axes(True, (4.6, 4.2)), faint=VIRTUAL)
 
 
 FIGURES = (

@@ -7,7 +7,6 @@ import numpy as np
 
 from closedform.plot import Diagram, colour, new_axes, new_panels, styled
 from closedform.plot.catalogue import Figure, PaperFigures
-from closedform.plot.postures import mechanism
 
 NAME = "irb260"
 CHAIN = ("base", "column", "shoulder", "elbow", "wrist", "flange", "hand")
@@ -207,12 +206,6 @@ def velocities(robot: ModuleType) -> Any:
         ax.set(xlabel="$t$ in s", title=f"$v_{name}$ in m/s", xlim=(0, 10))
     panels[0].figure.legend(handles=panels[0].lines[:2], loc="outside lower center", ncols=2)
     return panels[0]
-
-
-@styled
-def hybrid(robot: ModuleType) -> Any:
-    """The manipulator in space, in place of the photographs."""
-    return mechanism(robot, np.radians([-50, 25, 15, 40]), ax=new_axes(True, (4.4, 4.0)))
 
 
 FIGURES = (

@@ -51,6 +51,8 @@ class View:
     mode: int = 0
     faint: Collection[str] = ()
     plane: tuple[str, str] | None = None
+    at: Sequence[float] | None = None
+    """A target, for the other coordinates of the section."""
     limits: Limits | None = None
     measured: tuple[str, str] | None = None
     """The plane of the map of conditioning, if it is another one."""
@@ -74,14 +76,14 @@ def standard(view: View) -> list[Figure]:
             "workspace",
             "How many branches reach each point of a section of the workspace, and where branches "
             "are singular.",
-            lambda robot: workspace(robot, view.plane, limits=view.limits),
+            lambda robot: workspace(robot, view.plane, at=view.at, limits=view.limits),
         ),
         Figure(
             "conditioning",
             "The inverse condition number of the Jacobian: 1 where all directions are alike, 0 "
             "where the mechanism is singular.",
             lambda robot: field_map(
-                robot, "condition", view.measured or view.plane,
+                robot, "condition", view.measured or view.plane, at=view.at,
                 limits=None if view.measured else view.limits,
             ),
         ),

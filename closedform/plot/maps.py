@@ -276,6 +276,8 @@ class _Grid:
     targets: Array
     names: tuple[str, str]
     joints: bool
+    section: str = ""
+    """The other coordinates of the position."""
 
 
 def _plane(
@@ -330,7 +332,9 @@ def _task_plane(
     flat[..., places[chosen[0]]] = sides[0]
     flat[..., places[chosen[1]]] = sides[1][:, None]
     targets = flat.reshape(resolution, resolution, *target.shape)
-    return _Grid((sides[0], sides[1]), targets, (chosen[0], chosen[1]), False)
+    others = [n for n in places if n not in chosen]
+    section = ", ".join(f"${n} = {flat[0, 0, places[n]] + 0.0:.3g}$" for n in others)
+    return _Grid((sides[0], sides[1]), targets, (chosen[0], chosen[1]), False, section)
 
 
 def _answers(r: Robot, targets: Array, branch: int | str) -> Array:
@@ -369,3 +373,5 @@ def _name(ax: Any, grid: _Grid) -> None:
     ax.set(xlabel=symbol(grid.names[0]), ylabel=symbol(grid.names[1]))
     if not grid.joints:
         ax.set_aspect("equal")
+        named = [text for text in (ax.get_title(), grid.section) if text]
+        ax.set_title(", ".join(named), fontsize=9)

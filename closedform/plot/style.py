@@ -108,10 +108,10 @@ def save(ax: Any, target: str | Path) -> None:
 
 
 def _shortened(svg: str) -> str:
-    """The coordinates of paths to a hundredth of a point."""
+    """The coordinates of paths to four digits, which is a tenth of a point at worst."""
 
     def rounded(number: re.Match[str]) -> str:
-        return f"{float(number[0]):.2f}".rstrip("0").rstrip(".")
+        return f"{float(number[0]):.4g}"
 
     def path(data: re.Match[str]) -> str:
         return f' d="{re.sub(r"-?[0-9]+[.][0-9]+", rounded, data[1])}"'

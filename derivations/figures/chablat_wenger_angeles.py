@@ -10,6 +10,7 @@ from matplotlib.patches import Patch
 from closedform import puma560
 from closedform.plot import Diagram, colour, new_axes, new_panels, styled
 from closedform.plot.catalogue import Figure, PaperFigures
+from closedform.plot.contours import curves, region
 from closedform.plot.postures import mechanism
 
 NAME = "hybrid_five_bar"
@@ -236,29 +237,26 @@ def outstretched(robot: ModuleType) -> Any:
 
 def cartesian(
     robot: ModuleType, params: Any, branches: Any, span: Any, *, ax: Any, regular: Any = None,
-    curves: bool = True,
 ) -> list[Any]:  # fmt: skip
     """A section of the workspace: what is reached, its border, and where det A vanishes."""
     (y0, y1), (a0, a1) = span
     y, away = np.linspace(y0, y1, GRID), np.linspace(a0, a1, GRID)
     x = section(y, away[:, None])
     reached = robot.workspace_contains(x, params)
-    region = reached.astype(float)
-    if regular is not None:
+    if regular is None:
+        region(ax, y, away, reached, 0.5, 1.5, color=PALE)
+    else:
         q, mode = in_mode(robot, x, regular, params)
         det = of_mode(robot.singularities(q, params), mode)[..., 3]
         with np.errstate(invalid="ignore"):
-            region = np.where(reached, np.where(det > 0, 2.0, 1.0), 0.0)
-    levels, shades = ([0.5, 1.5], ["#ededed"]) if regular is not None else ([0.5, 1.5], [PALE])
-    ax.contourf(y, away, region, levels=levels, colors=shades)
-    if regular is not None:
-        ax.contourf(y, away, region, levels=[1.5, 2.5], colors=[PALE])
-    ax.contour(y, away, reached.astype(float), levels=[0.5], colors=["#222222"], linewidths=1.0)
-    for k, branch in enumerate(branches if curves else ()):
+            positive = reached & (det > 0)
+        region(ax, y, away, reached, 0.5, 1.5, color="#ededed")
+        region(ax, y, away, positive, 0.5, 1.5, color=PALE)
+    curves(ax, y, away, reached, 0.5, color="#222222", linewidth=1.0)
+    for k, branch in enumerate(branches):
         q, mode = in_mode(robot, x, branch, params)
-        det = np.ma.masked_invalid(of_mode(robot.singularities(q, params), mode)[..., 3])
-        if det.count() and det.min() < 0 < det.max():
-            ax.contour(y, away, det, levels=[0.0], colors=[colour(1 + 2 * k)], linewidths=1.4)
+        det = of_mode(robot.singularities(q, params), mode)[..., 3]
+        curves(ax, y, away, det, 0.0, color=colour(1 + 2 * k), linewidth=1.4)
     L0 = float(params.L0)
     pivots = [((0, 0), "A"), ((L0, 0), "B")] if L0 else [((0, 0), "A = B")]
     for pivot, name in pivots:
@@ -277,16 +275,14 @@ def joint_space(robot: ModuleType, params: Any, ax: Any) -> list[Any]:
     t = np.linspace(-np.pi, np.pi, GRID)
     q = np.stack([np.zeros((GRID, GRID)), *np.broadcast_arrays(t, t[:, None])], axis=-1)
     found = robot.fk(q, params)
-    there = (found.status[..., 0] != robot.Status.UNREACHABLE).astype(float)
-    ax.contourf(t, t, there, levels=[0.5, 1.5], colors=[PALE])
-    if there.min() == 0:
-        ax.contour(t, t, there, levels=[0.5], colors=[colour(1)], linewidths=1.4)
+    there = found.status[..., 0] != robot.Status.UNREACHABLE
+    region(ax, t, t, there, 0.5, 1.5, color=PALE)
+    curves(ax, t, t, there, 0.5, color=colour(1), linewidth=1.4)
     factors = robot.singularities(q, params)
     for mode, style in ((0, "-"), (1, "--")):
         for k in (1, 2):
-            values = np.ma.masked_invalid(factors[..., mode, k])
-            ax.contour(t, t, values, levels=[0.0], colors=["#222222"], linewidths=0.8,
-                       linestyles=style)  # fmt: skip
+            curves(ax, t, t, factors[..., mode, k], 0.0, color="#222222", linewidth=0.8,
+                   linestyle=style)  # fmt: skip
     ax.set(xlabel=r"$\theta_2$", ylabel=r"$\theta_3$")
     ticks = np.pi * np.array([-1, 0, 1])
     ax.set(xticks=ticks, yticks=ticks)
@@ -422,7 +418,8 @@ def conditioning(robot: ModuleType) -> Any:
     params = robot.Parameters()
     y, away = np.linspace(-6.5, 13.5, GRID), np.linspace(0.02, 13, GRID)
     x = section(y, away[:, None])
-    levels = [0.1, 0.2, 0.4, 0.6, 0.8, 0.95]
+    levels = [0.2, 0.4, 0.6, 0.8, 0.95]
+    shades = ["#f3f7fb", "#dbe7f3", "#bcd4e9", "#93bbdb", "#679ec9", "#3f7fb3"]
     for ax, branch, title in zip(
         panels, (CONVEX, NON_CONVEX), ("convex", "non-convex"), strict=True
     ):
@@ -431,22 +428,24 @@ def conditioning(robot: ModuleType) -> Any:
         det = of_mode(robot.singularities(q, params), mode)[..., 3]
         with np.errstate(divide="ignore", invalid="ignore"):
             inverse = np.ma.masked_invalid(1 / kappa)
-        filled = ax.contourf(y, away, inverse, levels=[0, *levels, 1], cmap="Blues", vmax=1.4)
-        ax.contour(y, away, inverse, levels=levels, colors=["#4d6f8f"], linewidths=0.5)
-        ax.contour(y, away, np.ma.masked_invalid(det), levels=[0.0], colors=[colour(1)],
-                   linewidths=1.4)  # fmt: skip
+        for low, high, shade in zip([0, *levels], [*levels, 1.001], shades, strict=True):
+            region(ax, y, away, inverse, low, high, color=shade)
+        curves(ax, y, away, det, 0.0, color=colour(1), linewidth=1.4)
         dot = of_mode(_bend(robot, q, params)[..., None], mode)[..., 0]
-        ax.contour(y, away, np.ma.masked_invalid(dot), levels=[0.0], colors=["#222222"],
-                   linewidths=1.4)  # fmt: skip
-        reached = robot.workspace_contains(x, params).astype(float)
-        ax.contour(y, away, reached, levels=[0.5], colors=["#222222"], linewidths=0.6)
+        curves(ax, y, away, dot, 0.0, color="#222222", linewidth=1.4)
+        reached = robot.workspace_contains(x, params)
+        curves(ax, y, away, reached, 0.5, color="#222222", linewidth=0.6)
         ax.set(title=title, xlabel="$y$", ylabel=r"$\rho$")
         ax.set_aspect("equal")
-    panels[0].figure.colorbar(filled, ax=panels, shrink=0.7, label=r"$1/\kappa(A)$")
+    bands = [
+        Patch(color=shade, label=rf"$1/\kappa(A)$ to {high:g}")
+        for shade, high in zip(shades, [*levels, 1], strict=True)
+    ]
     legend(panels[0], [
         Line2D([], [], color="#222222", linewidth=1.4, label=r"isotropic, $\kappa = 1$"),
         Line2D([], [], color=colour(1), linewidth=1.4, label="parallel singularities"),
-    ])  # fmt: skip
+        *bands,
+    ], columns=3)  # fmt: skip
     return panels[0]
 
 

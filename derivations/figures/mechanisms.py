@@ -20,7 +20,7 @@ VIEWS = {
     ),
     "irb260": View(general=degrees(-50, 25, 15, 40)),
     "hybrid_five_bar": View(
-        home=degrees(90, 70, 110), general=degrees(65, 75, 85), plane=("y", "x")
+        home=degrees(90, 70, 110), general=degrees(65, 75, 85), plane=("y", "x"), at=(0, 0, 0)
     ),
     "h6ar": View(home=degrees(0, 60, 30, 60, 30, 0), general=degrees(*TWIN), faint=VIRTUAL),
     "h6ar_loop_closed": View(

@@ -11,7 +11,9 @@ from numpy.typing import ArrayLike
 from closedform.plot.robot import Array, Robot
 
 STEP = 1e-5
-TOLERANCE = 1e-4
+MOVING = 1e-4
+"""A point that is slower than this, in units of the mechanism, does not move."""
+EXACT = 1e-9
 
 
 def joint_axes(
@@ -44,6 +46,10 @@ def joint_axes(
 def _turning(r: Robot, q: Array, mode: int, name: str) -> Array:
     """The angular velocity of the link that a joint turns, at the rate 1."""
     j = list(r.module.JOINTS).index(name)
+    if r.has("jacobian_space"):
+        exported = np.asarray(r.call("jacobian_space", q))[-3:, j]
+        if abs(np.linalg.norm(exported) - 1) < EXACT:  # less where other joints are coupled to it
+            return exported
     skeleton = r.module.SKELETON
     foot = skeleton.joints[name].points[-1]
     step = STEP * np.eye(len(q))[j]
@@ -53,16 +59,12 @@ def _turning(r: Robot, q: Array, mode: int, name: str) -> Array:
     origin = here[skeleton.points.index(foot)]
     rows, rates = [], []
     for k, point in enumerate(skeleton.points):
-        if point in beside and np.linalg.norm(velocity[k]) > TOLERANCE * r.size:
+        if point in beside and np.linalg.norm(velocity[k]) > MOVING * r.size:
             x, y, z = here[k] - origin
             rows.append([[0, z, -y], [-z, 0, x], [y, -x, 0]])
             rates.append(velocity[k])
     if rows:
-        found = np.linalg.lstsq(np.vstack(rows), np.concatenate(rates), rcond=1e-9)[0]
-        if abs(np.linalg.norm(found) - 1) < TOLERANCE:
-            return np.asarray(found)
-    if r.has("jacobian_space"):
-        return np.asarray(r.call("jacobian_space", q))[-3:, j]
+        return np.asarray(np.linalg.lstsq(np.vstack(rows), np.concatenate(rates), rcond=1e-9)[0])
     return np.zeros(3)
 
 

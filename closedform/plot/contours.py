@@ -12,7 +12,7 @@ from matplotlib.path import Path
 
 from closedform.plot.robot import Array
 
-FINE, COARSE = 5e-4, 3e-3
+FINE, COARSE = 5e-4, 4e-3
 """How far a curve may be from its points, in units of the side of the figure; the coarse one takes
 the steps of the grid out of the border of a set."""
 FEWEST = 6

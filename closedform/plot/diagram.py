@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib import patheffects
 from numpy.typing import ArrayLike
 
 from closedform.plot import labels
@@ -16,7 +15,6 @@ from closedform.plot.style import COLOURS, GROUND, INK
 
 AXIS = "#9a9a9a"
 ANGLE = COLOURS[1]
-HALO = [patheffects.withStroke(linewidth=2.2, foreground="white")]
 
 
 @dataclass(frozen=True)
@@ -39,7 +37,13 @@ class Diagram:
         return np.asarray(found[:, :wanted])
 
     def line(self, points: ArrayLike, **style: Any) -> None:
-        style = {"color": INK, "linewidth": 0.8, "solid_capstyle": "round", "zorder": 2} | style
+        style = {
+            "color": INK,
+            "linewidth": 0.8,
+            "solid_capstyle": "round",
+            "zorder": 2,
+            "clip_on": False,
+        } | style
         self.ax.plot(*self._here(points).T, **style)
 
     def link(self, points: ArrayLike, shade: str = COLOURS[0], **style: Any) -> None:
@@ -161,7 +165,7 @@ class Diagram:
     def label(self, at: ArrayLike, text: str, *, shade: str = INK, size: float = 10) -> None:
         """A text beside a point, where it covers the least."""
         here = self._here(at)[0]
-        note = self.ax.text(*here, text, color=shade, fontsize=size, zorder=9, path_effects=HALO)
+        note = self.ax.text(*here, text, color=shade, fontsize=size, zorder=9)
         labels.add(self.ax, note, here)
 
     def clean(self, drawn: Sequence[Array], margin: float = 0.06) -> None:

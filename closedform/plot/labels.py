@@ -100,12 +100,13 @@ def _lines(ax: Any) -> Array:
     for line in ax.lines:
         data = line.get_data_3d() if hasattr(line, "get_data_3d") else line.get_data()
         points = np.array([np.ravel(d) for d in data], dtype=float).T
-        if line.get_transform() != ax.transData or not np.isfinite(points).all():
+        if line.get_transform() != ax.transData:
             continue
         ends = pixels(ax, points)
         for a, b in pairwise(ends):
-            n = 2 + int(np.hypot(*(b - a)) / 3)
-            found.append(a + np.linspace(0, 1, n)[:, None] * (b - a))
+            if np.isfinite([a, b]).all():
+                n = 2 + int(np.hypot(*(b - a)) / 3)
+                found.append(a + np.linspace(0, 1, n)[:, None] * (b - a))
         if len(ends) == 1:
             found.append(ends[0] + np.array([[0, 0], [3, 0], [-3, 0], [0, 3], [0, -3]]))
     return np.vstack(found) if found else np.zeros((0, 2))

@@ -153,17 +153,31 @@ def branches(
         panel.set_axis_off()
     for panel, name in zip(panels, found, strict=False):
         diagram = Diagram(panel, extent(frame))
-        for other, points in found.items():
-            if other != name:
-                draw(diagram, r, points, "#dddddd", width=1.0, faint=faint, plain=True)
+        others = [points for other, points in found.items() if other != name]
+        diagram.link(_outlines(r, others), "#dddddd", linewidth=1.0)
         along = joint_axes(robot, q[names.index(name)], params=r.params) if alike else {}
         draw(
             diagram, r, found[name], colour(names.index(name)), width=2.2, faint=faint, along=along
         )
         ends = _show_axes(diagram, along)
         diagram.clean([*frame, *ends], margin=0.02)
-        panel.set_title(spoken(name), fontsize=9, y=0.98 if diagram.spatial else 1.0)
+        panel.set_title(spoken(name), fontsize=9, y=1.0)
     return panels[0]
+
+
+def _outlines(r: Robot, postures: list[Array]) -> Array:
+    """The links of several postures as one line, with gaps between them."""
+    names = r.module.SKELETON.points
+    gap = np.full((1, 3), np.nan)
+    ways = [*r.module.SKELETON.links.values()]
+    ways += [j.points for j in r.module.SKELETON.joints.values() if j.kind == "prismatic"]
+    parts = [
+        part
+        for points in postures
+        for way in ways
+        for part in (points[[names.index(p) for p in way]], gap)
+    ]
+    return np.vstack(parts)
 
 
 def spoken(name: str) -> str:
@@ -199,16 +213,15 @@ def draw(
     label: str = "",
     width: float = 2.6,
     faint: Collection[str] = (),
-    plain: bool = False,
 ) -> None:
-    """The links, the joints and the hand of one posture; ``plain`` leaves the joints out."""
+    """The links, the joints and the hand of one posture."""
     skeleton = r.module.SKELETON
     place = dict(zip(skeleton.points, points, strict=True))
     named: dict[str, Any] = {"label": label} if label else {}
     for name, link in skeleton.links.items():
         style: dict[str, Any] = {"linewidth": width, "color": shade}
         if name == "ground" or set(link) <= set(skeleton.ground):
-            style = {"linewidth": 1.6, "color": GROUND if not plain else shade}
+            style = {"linewidth": 1.6, "color": GROUND}
         elif name in faint:
             style |= {"linewidth": 0.5 * width, "linestyle": (0, (4, 1.5)), "alpha": 0.75}
         elif named:
@@ -220,12 +233,11 @@ def draw(
         if joint.kind == "prismatic":
             _slide(diagram, ends, shade, width, named)
             named = {}
-    if not plain:
-        for name, joint in skeleton.joints.items():
-            if joint.kind == "revolute":
-                _, way = (along or {}).get(name, (None, None))
-                diagram.revolute(place[joint.points[0]], shade, axis=way)
-        diagram.hand(place[skeleton.hand], shade)
+    for name, joint in skeleton.joints.items():
+        if joint.kind == "revolute":
+            _, way = (along or {}).get(name, (None, None))
+            diagram.revolute(place[joint.points[0]], shade, axis=way)
+    diagram.hand(place[skeleton.hand], shade)
 
 
 def _slide(diagram: Diagram, ends: Array, shade: str, width: float, named: dict[str, Any]) -> None:

@@ -108,15 +108,16 @@ def save(ax: Any, target: str | Path) -> None:
 
 
 def _shortened(svg: str) -> str:
-    """The coordinates of paths to four digits, which is a tenth of a point at worst."""
+    """The same picture: coordinates to four digits, a tenth of a point at worst, and no indents."""
 
     def rounded(number: re.Match[str]) -> str:
         return f"{float(number[0]):.4g}"
 
     def path(data: re.Match[str]) -> str:
-        return f' d="{re.sub(r"-?[0-9]+[.][0-9]+", rounded, data[1])}"'
+        short = re.sub(r"-?[0-9]+[.][0-9]+", rounded, data[1])
+        return f' d="{re.sub(r"[ \n]*([A-Za-z])[ \n]*", r"\1", short).strip()}"'
 
-    return re.sub(r' d="([^"]*)"', path, svg)
+    return re.sub(r"\n +", "\n", re.sub(r' d="([^"]*)"', path, svg))
 
 
 def colour(k: int) -> str:

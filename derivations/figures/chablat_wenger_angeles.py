@@ -418,8 +418,8 @@ def conditioning(robot: ModuleType) -> Any:
     params = robot.Parameters()
     y, away = np.linspace(-6.5, 13.5, GRID), np.linspace(0.02, 13, GRID)
     x = section(y, away[:, None])
-    levels = [0.2, 0.4, 0.6, 0.8, 0.95]
-    shades = ["#f3f7fb", "#dbe7f3", "#bcd4e9", "#93bbdb", "#679ec9", "#3f7fb3"]
+    levels = [0.2, 0.4, 0.6, 0.8]
+    shades = ["#f3f7fb", "#dbe7f3", "#bcd4e9", "#93bbdb", "#5a95c4"]
     for ax, branch, title in zip(
         panels, (CONVEX, NON_CONVEX), ("convex", "non-convex"), strict=True
     ):

@@ -115,7 +115,8 @@ def _shortened(svg: str) -> str:
 
     def path(data: re.Match[str]) -> str:
         short = re.sub(r"-?[0-9]+[.][0-9]+", rounded, data[1])
-        return f' d="{re.sub(r"[ \n]*([A-Za-z])[ \n]*", r"\1", short).strip()}"'
+        short = re.sub(r"[ \n]*([A-Za-z])[ \n]*", r"\1", short).strip()
+        return f' d="{short}"'
 
     return re.sub(r"\n +", "\n", re.sub(r' d="([^"]*)"', path, svg))
 

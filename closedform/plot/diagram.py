@@ -43,6 +43,7 @@ class Diagram:
             "solid_capstyle": "round",
             "zorder": 2,
             "clip_on": False,
+            "in_layout": False,
         } | style
         self.ax.plot(*self._here(points).T, **style)
 

@@ -19,6 +19,8 @@ from closedform.plot.symbols import lengths, symbol
 OK = 0
 SMALL = 0.03
 """An arm of a joint that is shorter than this part of the drawing is too short for an arc."""
+WRIST = 3
+"""If branches look alike, they differ in the axes of these last joints."""
 OVERLAID = 2
 """More branches than this are drawn side by side."""
 
@@ -156,6 +158,7 @@ def branches(
         others = [points for other, points in found.items() if other != name]
         diagram.link(_outlines(r, others), "#dddddd", linewidth=1.0)
         along = joint_axes(robot, q[names.index(name)], params=r.params) if alike else {}
+        along = dict(list(along.items())[-WRIST:])
         draw(
             diagram, r, found[name], colour(names.index(name)), width=2.2, faint=faint, along=along
         )

@@ -29,6 +29,7 @@ from matplotlib import pyplot as plt
 from closedform import hybrid_five_bar, irb260, plot, puma560, ur_arm
 from closedform.cli import figures
 from closedform.cli.commands import main
+from closedform.plot.contours import thinned
 from closedform.plot.robot import Robot
 from closedform.plot.symbols import lengths, symbol
 
@@ -185,6 +186,18 @@ def test_a_figure_of_a_paper_is_the_same_on_every_run(tmp_path: Path) -> None:
 def test_unknown_figures_are_explained(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plot", "planar_2r", "fig9", "-o", str(tmp_path / "a.svg")]) == 1
     assert "planar_2r has no figure 'fig9'; there are mechanism" in capsys.readouterr().err
+
+
+def test_a_curve_keeps_what_its_tolerance_needs() -> None:
+    t = np.linspace(0, 2 * np.pi, 2001)
+    circle = np.column_stack([np.cos(t), np.sin(t)])
+    side = np.array([-1.0, 1.0])
+    found = thinned(circle, side, side, 1e-3)
+    assert len(found) < 100
+    middles = (found[1:] + found[:-1]) / 2
+    assert np.abs(np.linalg.norm(middles, axis=1) - 1).max() < 2.1e-3
+    straight = np.column_stack([t, 2 * t])
+    assert len(thinned(straight, t, 2 * t, 1e-3)) == 3
 
 
 def drawn_joints(ax: Any) -> list[np.ndarray]:

@@ -34,7 +34,8 @@ def region(ax: Any, x: Array, y: Array, values: Any, low: float, high: float, **
     """Fill where values on a grid are between two levels."""
     numbers = np.ma.masked_invalid(np.asarray(values, dtype=float))
     generator = contour_generator(x, y, numbers, fill_type="OuterOffset")
-    points, offsets = generator.filled(low, high)
+    filled: Any = generator.filled(low, high)
+    points, offsets = filled
     for outline, ends in zip(points, offsets, strict=True):
         rings = [np.asarray(outline)[a:b] for a, b in pairwise(ends)]
         rings = [thinned(r, x, y, COARSE) for r in rings if len(r) >= FEWEST]

@@ -40,7 +40,7 @@ class Layout(ConstrainedLayoutEngine):
     """The layout of a figure, which also places its labels: whenever the figure is drawn."""
 
     def execute(self, fig: Any) -> Any:
-        found = super().execute(fig)  # type: ignore[no-untyped-call]
+        found = super().execute(fig)
         place(fig)
         return found
 

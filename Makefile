@@ -129,8 +129,8 @@ format: .venv/installed.stamp  ## format the Python that is written by hand
 mutations: native  ## change every piece of every claim and judge it again; takes half an hour
 	CLOSEDFORM_MUTATIONS=all $(BIN)/python -m pytest -n auto --dist worksteal tests/test_mutations.py
 
-figures: native  ## draw every figure of every mechanism, in build/figures
-	$(BIN)/closedform figures -o build/figures
+figures: native  ## draw every figure: PDF in build/figures, what the pages show in docs
+	$(BIN)/closedform figures -o build/figures --docs docs
 
 pdf: $(PDFS)  ## compile the derivations to PDF, in build/pdf
 

@@ -71,7 +71,6 @@ from closedform.model.derivation import Continuum as Continuum
 from closedform.model.derivation import Degenerate as Degenerate
 from closedform.model.derivation import Derivation as Derivation
 from closedform.model.derivation import Inverse as Inverse
-from closedform.model.derivation import Paper as Paper
 from closedform.model.derivation import Reduction as Reduction
 from closedform.model.derivation import Solved as Solved
 from closedform.model.derivation import Stage as Stage
@@ -89,6 +88,8 @@ from closedform.model.lemma import Lemma as Lemma
 from closedform.model.notation import SIGN as SIGN
 from closedform.model.notation import Notation as Notation
 from closedform.model.notation import Relation as Relation
+from closedform.model.paper import Paper as Paper
+from closedform.model.paper import Work as Work
 from closedform.pipeline.run import find as find
 from closedform.pipeline.run import load as load
 from closedform.proof.checks.completeness import Cases as Cases

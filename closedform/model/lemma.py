@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import sympy as sp
 
 from closedform.model.functions import Statement
+from closedform.model.names import check_formulas, check_text
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,28 @@ class Lemma:
     def pair(self, angle: sp.Expr) -> tuple[sp.Symbol, sp.Symbol]:
         """The names of the cosine and the sine of an angle."""
         return self.known(sp.cos(angle)), self.known(sp.sin(angle))
+
+
+@dataclass(frozen=True)
+class Theorem:
+    """A lemma as a book prints it; texts, with formulas between dollar signs.
+
+    ``exception`` says what happens where the assumptions of the statement fail, and ``rests_on``
+    names the lemmas that the proof uses.
+    """
+
+    name: str
+    statement: str
+    proof: str
+    exception: str = ""
+    rests_on: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        where = f"lemma {self.name!r}"
+        texts = (self.statement, self.proof, self.exception)
+        check_text(where, self.name, *self.rests_on)
+        check_text(where, *texts, lines=True)
+        check_formulas(where, *texts)
 
 
 def label(joint: sp.Symbol) -> str:

@@ -163,6 +163,7 @@ d.function(
     {"theta": [atan2(CP[1], CP[0]), atan2(DP[1], DP[0])]},
     program=f,
     branches=modes,
+    entries=(theta4, theta5),
     notes=(
         "NaN for an assembly mode that does not exist.",
         "If C and D coincide, both angles are free but equal: +90 or -90 degrees is returned.",

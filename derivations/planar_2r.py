@@ -70,6 +70,7 @@ d.step(
     equal=[(pose[:2, 3], position), (A1 * A2, pose)],
 )
 
+d.write("r2", "r^2")
 phi = theta1 + theta2
 d.step(
     "Orientation",

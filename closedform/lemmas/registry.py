@@ -50,10 +50,16 @@ _theorems: dict[str, Theorem] = {}
 
 
 def theorem(
-    name: str, *, statement: str, proof: str, exception: str = "", rests_on: Sequence[str] = ()
+    name: str,
+    *,
+    statement: str,
+    proof: str,
+    exception: str = "",
+    rests_on: Sequence[str] = (),
+    title: str = "",
 ) -> Theorem:
     """Register what the lemma of this name says, and its proof; see :class:`Theorem`."""
-    found = Theorem(name, statement, proof, exception, tuple(rests_on))
+    found = Theorem(name, statement, proof, exception, tuple(rests_on), title)
     _theorems[name] = found
     return found
 

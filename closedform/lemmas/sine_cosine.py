@@ -23,6 +23,7 @@ solutions of the equation, the one that differs by half a turn.""",
 )
 theorem(
     "a sin x + b cos x = c",
+    title=r"$a\sin x + b\cos x = c$",
     statement=r"""Let $h = \sqrt{a^2 + b^2} > 0$.  The equation $a\sin x + b\cos x = c$ has a
 solution if and only if $|c| \le h$.  Its solutions are then $x = \operatorname{atan2}(a, b) +
 \sigma\delta$ with $\sigma = \pm 1$ and $\delta = 2\operatorname{atan2}\bigl(\sqrt{h - c}, \sqrt{h

@@ -57,10 +57,12 @@ class Theorem:
     proof: str
     exception: str = ""
     rests_on: tuple[str, ...] = ()
+    title: str = ""
+    """The name as a formula, if it is one."""
 
     def __post_init__(self) -> None:
         where = f"lemma {self.name!r}"
-        texts = (self.statement, self.proof, self.exception)
+        texts = (self.statement, self.proof, self.exception, self.title)
         check_text(where, self.name, *self.rests_on)
         check_text(where, *texts, lines=True)
         check_formulas(where, *texts)

@@ -8,7 +8,8 @@ does not write ``\\left(``, because TeX never breaks inside it.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from itertools import count, groupby
 from typing import Any
 
@@ -16,6 +17,16 @@ import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
 from closedform.algebra.formulas import PRINTED, formula
+from closedform.emit.backends.latex import bibliography, lemmas, symbols
+from closedform.emit.backends.latex.claims import Claims
+from closedform.emit.backends.latex.equations import (
+    Equation,
+    Numbers,
+    canonical,
+    listed,
+    names_in,
+    reference,
+)
 from closedform.emit.backends.latex.prose import (
     Prose,
     escape,
@@ -23,11 +34,11 @@ from closedform.emit.backends.latex.prose import (
     mixed,
     spaced,
     symbol_name,
+    symbols_declared,
+    symbols_of,
     upright,
+    written_name,
 )
-from closedform.emit.errata import Entry, gathered, part
-from closedform.emit.text import citation
-from closedform.model.claims import HOLDS, PROVED_UNDER
 from closedform.model.derivation import Continuum, Derivation, Inverse, Joint, Step
 from closedform.model.functions import (
     Array,
@@ -40,24 +51,28 @@ from closedform.model.functions import (
     Vanishes,
     real,
 )
-from closedform.proof.claims import ClaimResult
 from closedform.proof.prove import InverseResult, Proof
 
 __all__ = ["Page", "document"]
 
 FITS = 84.0
 """The widest formula that is set on one line, in average letters of 10 pt."""
+LISTED = 3
+"""More equations than this that only name a symbol, such as lengths, are a list without numbers."""
 
 
 class Printer(LatexPrinter):  # type: ignore[misc]
     """LaTeX with upright c, s for cosines and sines of (sums of) numbered joint angles."""
 
-    def __init__(self, joints: set[sp.Symbol]):
+    def __init__(self, joints: set[sp.Symbol], name: Callable[[str], str] = symbol_name):
         super().__init__({"long_frac_ratio": 20})
-        self.joints, self.legend = joints, dict[str, str]()
+        self.joints, self.legend, self.name = joints, dict[str, str](), name
 
     def _print_Symbol(self, expr: sp.Symbol, style: str = "plain") -> str:
-        return symbol_name(expr.name)
+        pair = re.fullmatch(r"([cs])(\d)", expr.name)
+        if pair and any(j.name == f"theta{pair[2]}" for j in self.joints):  # a joint, solved
+            return self._circular({"c": "cos", "s": "sin"}[pair[1]], real(f"theta{pair[2]}"), None)
+        return self.name(expr.name)
 
     def _print_sin(self, expr: sp.Expr, exp: str | None = None) -> str:
         return self._circular("sin", expr.args[0], exp)
@@ -138,7 +153,12 @@ class Page:
 
     def __init__(self, derivation: Derivation, proof: Proof):
         self.derivation, self.proof = derivation, proof
-        self.printer = Printer({j.symbol for j in derivation.joints})
+        joints = {j.symbol for j in derivation.joints}
+        self.printer = Printer(joints, partial(written_name, derivation))
+        self.numbers = Numbers(derivation.name)
+        self.labels: list[list[str]] = []
+        """The labels of the equations of each step."""
+        self.claims = Claims(derivation, proof, self.labels)
         self.math, self.prose = self.printer.math, Prose(derivation)
         self.parts: dict[sp.Basic, sp.Symbol] = {}
         """Names for parts of formulas that are too wide for a line, within one list of them."""
@@ -155,20 +175,48 @@ class Page:
 
     def step(self, step: Step) -> dict[str, Any]:
         self.parts.clear()
-        shown = [e for lhs, value in step.shown for e in self.equations(upright(lhs), value)]
+        shown = [
+            (left, right)
+            for lhs, value in step.shown
+            for left, right in self.equations(upright(lhs), value)
+        ]
+        again = [label for e in shown if (label := self.numbers.is_shown(*e))]
+        uses = self.used(step, [left for left, _ in shown])
+        new = self.numbers.number(e for e in shown if not self.numbers.is_shown(*e))
+        if len(shown) > LISTED and all(isinstance(v, sp.Symbol) for _, v in step.shown):
+            new = [Equation(e.left, e.right) for e in new]
+        self.labels.append([e.label for e in new if e.label] or again)
         n, proved = len(step.vanishes), step.title in self.proof.steps
         mark = f"{n} {'identity' if n == 1 else 'identities'}" if n and proved else ""
         if mark and step.nonnegative:
-            mark += " where " + ", ".join(rf"${self.math(e)} \ge 0$" for e in step.nonnegative)
+            mark += ", where " + ", ".join(rf"${self.math(e)} \ge 0$" for e in step.nonnegative)
         return {
             "title": escape(step.title),
             "reason": self.prose(step.reason),
-            "blocks": blocks(shown),
+            "uses": uses,
+            "again": reference(again),
+            "blocks": blocks(new),
             "columns": "l" * len(step.rows[0]) if step.rows else "",
             "rows": [" & ".join(map(self.cell, row)) for row in step.rows],
-            "published": escape(", ".join(step.published)),
+            "published": [(escape(n), self.claims.judged(n)) for n in step.published],
             "mark": mark,
+            "proves": self.prose(step.proves) if mark else "",
         }
+
+    def used(self, step: Step, left: Sequence[str]) -> str:
+        """Where the names in a step are defined that earlier steps define."""
+        steps = self.derivation.steps
+        labels = [x for s in step.uses for x in self.labels[steps.index(s)]]
+        told = f"This rests on {reference(labels)}." if labels else ""
+        here = {n for text in left for n in names_in(text.partition("=")[0])}
+        names = [n for text in left for n in names_in(text.partition("=")[2])]
+        names += [canonical(text) for text in sorted(map(self.math, symbols_of(step)))]
+        here |= {canonical(self.math(e)) for e in symbols_declared(self.derivation)}
+        known = self.numbers.defined
+        found = {n: known[n] for n in dict.fromkeys(names) if n in known and n not in here}
+        found = {n: label for n, label in found.items() if label not in labels}
+        seen = [f"{reference([label])} for ${name}$" for name, label in found.items()]
+        return f"{told} See {listed(seen)}." if seen else told
 
     def cell(self, value: Any) -> str:
         """A cell of a table: a sentence, an expression or an increasing chain of them."""
@@ -184,10 +232,25 @@ class Page:
             "arguments": ", ".join(escape(a.name) for a in function.inputs),
             "summary": self.prose(function.summary),
             "source": self.prose(function.source),
-            "statements": self.shared_statements(function),
-            "blocks": blocks(self.outputs(function)),
+            **self.formulas_of(function),
             "key": _key(function) if function.has_status else "",
             "notes": [self.prose(n) for n in function.notes],
+        }
+
+    def formulas_of(self, function: Function) -> dict[str, Any]:
+        """The formulas of a function, unless steps show them: then where they stand."""
+        if function.has_status:
+            return {"statements": [], "blocks": [], "evaluates": ""}
+        defined, name = self.numbers.defined, canonical(function.equation)
+        outputs = [] if name in defined else self.outputs(function)
+        where = [self.numbers.right.get(right, "") for _, right in outputs]
+        if name in defined or (outputs and all(where) and not function.body):
+            labels = [defined[name]] if name in defined else list(dict.fromkeys(where))
+            return {"statements": [], "blocks": [], "evaluates": reference(labels)}
+        return {
+            "statements": self.shared_statements(function),
+            "blocks": blocks(self.numbers.number(outputs)),
+            "evaluates": "",
         }
 
     def inverse(self, function: Function) -> dict[str, Any]:
@@ -199,6 +262,7 @@ class Page:
         return {
             **self.function(function),
             "statements": self.statements(function.body),
+            "blocks": blocks(self.outputs(function)),
             "given": formulas(
                 [f"{a} = {b}" for v in function.inputs for a, b in self.assigned(v, {})]
             ),
@@ -226,7 +290,11 @@ class Page:
         if not shared:
             return self.statements(function.body)
         model = max(shared, key=lambda f: len(f.body))
-        place = rf", Section~\ref{{inverse:{_key(model)}}}" if model.has_status else ""
+        place = (
+            rf", Section~\ref{{inverse:{self.derivation.name}:{_key(model)}}}"
+            if model.has_status
+            else ""
+        )
         rest = self.statements(function.body[len(model.body) :])
         return [("as in", rf"\texttt{{{escape(model.name)}}}{place}"), *rest]
 
@@ -330,49 +398,6 @@ class Page:
             for name in names
         }
 
-    def errata(self) -> list[dict[str, Any]]:
-        """The errors of the paper that this mechanism shows, gravest first."""
-        papers = gathered([part(self.derivation, self.proof)])
-        return [self.erratum(e) for paper in papers for e in paper.entries]
-
-    def erratum(self, entry: Entry) -> dict[str, Any]:
-        return {
-            "key": entry.erratum.key,
-            "title": mixed(entry.erratum.title),
-            "gravity": entry.gravity.value.capitalize(),
-            "verdict": ", ".join(entry.verdicts),
-            "why": mixed(entry.erratum.why),
-            "use": mixed(entry.erratum.use),
-            "claims": [self.claim(c) for c in entry.claims],
-        }
-
-    def claims(self) -> list[dict[str, Any]]:
-        """The rows of the table; ``heading`` is the section of the paper, given once."""
-        rows, where = [], ""
-        for claim in self.proof.claims:
-            rows.append({**self.claim(claim), "heading": claim.where != where})
-            where = claim.where
-        return rows
-
-    def claim(self, claim: ClaimResult) -> dict[str, Any]:
-        titles = {e.key: mixed(e.title) for e in self.proof.errata}
-        steps = self.derivation.steps
-        return {
-            "where": escape(claim.where),
-            "label": escape(claim.label),
-            "step": next((k for k, s in enumerate(steps, 1) if derives(s, claim.label)), 0),
-            "verdict": claim.kind if claim.kind in HOLDS else rf"\textbf{{{claim.kind}}}",
-            "printed": mixed(claim.printed),
-            "paraphrase": claim.paraphrase,
-            "found": "Assumption:" if claim.kind == PROVED_UNDER else "Found:",
-            "evidence": mixed(claim.evidence),
-            "reading": mixed(claim.readings[0].text) if claim.readings else "",
-            "others": [(mixed(r.text), r.kind, mixed(r.evidence)) for r in claim.readings[1:]],
-            "corrected": mixed(claim.corrected),
-            "erratum": claim.erratum,
-            "title": titles.get(claim.erratum, ""),
-        }
-
     def singular_set(self) -> list[tuple[str, str]]:
         """The name of each factor, and the equation that sets it to zero."""
         names = list(map(escape, self.derivation.singularities)) or ["factor"]
@@ -382,7 +407,7 @@ class Page:
 
     def outputs(self, function: Function) -> list[tuple[str, str]]:
         self.parts.clear()
-        return [e for a in function.outputs for e in self.array(a)]
+        return [e for a in function.outputs for e in self.array(a, function.entries)]
 
     def assigned(self, array: Array, locus: Mapping[sp.Symbol, sp.Expr]) -> list[tuple[str, str]]:
         """An argument and its entries, or the values of the entries on ``locus``."""
@@ -393,7 +418,7 @@ class Page:
             return self.equations(symbol_name(array.name), value)
         return [x for e in array.entries if e in locus for x in self.equations(e, locus[e])]
 
-    def array(self, array: Array) -> list[tuple[str, str]]:
+    def array(self, array: Array, entries: Sequence[sp.Symbol] = ()) -> list[tuple[str, str]]:
         """The equations of a result: a matrix, or a row for each coordinate under its name."""
         name = symbol_name(array.name)
         if len(array.shape) > 1:
@@ -406,9 +431,13 @@ class Page:
                 for equation in self.equations(name + mark, parts.row(k).reshape(*shape))
             ]
         names = [element(name, str(k + 1)) if array.shape else name for k in range(array.size)]
-        for known, symbols in (("q", self.derivation.actuated), ("x", self.derivation.task)):
-            if array.name == known and len(symbols) == array.size:
-                names = [symbol_name(str(j)) for j in symbols]
+        if entries:
+            return [
+                e for s, v in zip(entries, array.entries, strict=True) for e in self.equations(s, v)
+            ]
+        for known, coordinates in (("q", self.derivation.actuated), ("x", self.derivation.task)):
+            if array.name == known and len(coordinates) == array.size:
+                names = [self.printer.name(str(j)) for j in coordinates]
         return [e for n, v in zip(names, array.entries, strict=True) for e in self.equations(n, v)]
 
     def equations(self, lhs: Any, value: Any) -> list[tuple[str, str]]:
@@ -469,12 +498,6 @@ class Page:
         return [whole, *(equation for _, _, equation in sorted(named))]
 
 
-def derives(step: Step, label: str) -> bool:
-    """Whether a step derives the equation of a claim: ``eq. (9)`` or ``eq. (9), first line``."""
-    names = {name for n in step.published for name in (n, f"eq. {n}")}
-    return label in names or label.partition(",")[0] in names
-
-
 def decimal(value: sp.Rational) -> str:
     """A rational as a decimal if that is exact and short, else as a fraction."""
     digits = next((k for k in range(7) if (value * 10**k).is_Integer), None)
@@ -492,16 +515,26 @@ def element(base: str, index: str) -> str:
     return f"{base}_{{{index}}}" if " " not in base else f"({base})_{{{index}}}"
 
 
-def blocks(equations: Sequence[tuple[str, str]]) -> list[str]:
+def blocks(equations: Sequence[Equation | tuple[str, str]]) -> list[str]:
     """Neighbours that fit on a line as one aligned block, longer equations as paragraphs."""
     done: list[str] = []
-    for fits, group in groupby(equations, lambda e: measure(e[0] + e[1]) + 4 <= FITS):
+    lines = [e if isinstance(e, Equation) else Equation(*e) for e in equations]
+    for (fits, numbered), group in groupby(lines, lambda e: (fitting(e), bool(e.label))):
         if fits:
-            rows = " \\\\\n".join(f"{left} &= {right}" for left, right in group)
-            done.append(f"\\display\n\\begin{{align*}}\n{rows}\n\\end{{align*}}")
+            ends = ((e, rf" \label{{{e.label}}}" if e.label else "") for e in group)
+            rows = " \\\\\n".join(f"{e.left} &= {e.right}{end}" for e, end in ends)
+            kind = "align" if numbered else "align*"
+            done.append(f"\\display\n\\begin{{{kind}}}\n{rows}\n\\end{{{kind}}}")
+        elif numbered:
+            done += [rf"\longequation{{{e.label}}}{{{e.left} = {e.right}}}" for e in group]
         else:
-            done += [rf"\longformula{{{left} = {right}}}" for left, right in group]
+            done += [rf"\longformula{{{e.left} = {e.right}}}" for e in group]
     return done
+
+
+def fitting(equation: Equation) -> bool:
+    """Whether an equation fits on a line, with its number."""
+    return measure(equation.left + equation.right) + 4 <= FITS - 6 * bool(equation.label)
 
 
 def formulas(texts: Sequence[str]) -> str:
@@ -516,8 +549,9 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
     context = {
         "name": derivation.name,
         "title": escape(derivation.title),
-        "source": escape(citation(derivation)),
-        "reference": escape(derivation.paper.reference),
+        "source": bibliography.source(derivation.paper),
+        "cited": bibliography.cited(derivation.paper),
+        "works": bibliography.entries([derivation.paper]),
         "mechanism": text(derivation.mechanism),
         "parameters": [
             (page.math(p.symbol), escape(p.name), escape(p.unit), decimal(p.value),
@@ -531,8 +565,14 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
         "functions": [page.function(f) for f in derivation.functions if f.name != "skeleton"],
         "singular": page.singular_set(),
         "verdicts": ", ".join(f"{n} {kind}" for kind, n in proof.verdicts().items()),
-        "errata": page.errata(),
+        "errata": page.claims.errata(),
         "paper_source": mixed(derivation.paper.source),
-        "claims": page.claims(),
+        "claims": page.claims.rows(),
     }  # fmt: skip
-    return context | {"legend": ",\\quad ".join(map(" = ".join, page.legend()))}
+    legend = page.legend()
+    symbols.require_distinct(derivation, page.math, legend)
+    return context | {
+        "legend": ",\\quad ".join(map(" = ".join, legend)),
+        "symbols": symbols.table(derivation, page.numbers, text),
+        "theorems": lemmas.context(lemmas.lemmas_of(derivation), {}),
+    }

@@ -90,6 +90,12 @@ def symbol_name(name: str) -> str:
     return f"{base}_{{{','.join(parts)}}}" if parts else base
 
 
+def written_name(derivation: Derivation, name: str) -> str:
+    """The LaTeX of a symbol in a derivation, which may have said how to write it."""
+    written = derivation.written.get(name)
+    return written.latex if written and written.latex else symbol_name(name)
+
+
 def _subscript(text: str) -> str:
     if re.fullmatch(r"\d*[a-z]?|\d", text):
         return text
@@ -134,9 +140,11 @@ class Prose:
         symbols = [p.symbol for p in derivation.parameters] + [j.symbol for j in derivation.joints]
         symbols += [s for f in functions for s in f.symbols]
         symbols += [s.symbol for f in functions for s in f.body if isinstance(s, (Let, Bound))]
-        symbols += [s for step in derivation.steps for s in _symbols(step)]
+        symbols += [s for step in derivation.steps for s in symbols_of(step)]
         names = {str(s) for s in symbols} | set(derivation.task)
+        self.derivation = derivation
         self.known = GREEK | set(SYMBOL_NAMES)
+        self.known |= set(derivation.written)
         self.known |= {n for n in names - {"a", "A", "I"} if len(n) < 3 or re.search(r"\d|_", n)}
 
     def __call__(self, text: str) -> str:
@@ -186,13 +194,19 @@ class Prose:
                 done.append(re.sub(r"e\+?(-?)0*(\d+)", r"\\cdot 10^{\1\2}", number))
             elif name:
                 short = self._is_symbol(name) or len(name) == 1 or name[1] == "_"
-                done.append(symbol_name(name) if short else rf"\mathrm{{{name}}}")
+                done.append(written_name(self.derivation, name) if short else rf"\mathrm{{{name}}}")
             else:
                 done.append(SIGNS.get(sign, sign) or IN_FORMULA.get(other, other))
         return "".join(done)
 
 
-def _symbols(step: Step) -> set[sp.Symbol]:
+def symbols_declared(derivation: Derivation) -> list[sp.Symbol]:
+    """The parameters and the joints."""
+    parameters = [p.symbol for p in derivation.parameters]
+    return parameters + [j.symbol for j in derivation.joints]
+
+
+def symbols_of(step: Step) -> set[sp.Symbol]:
     """The symbols in the formulas of a step."""
     shown = [value for _, value in step.shown]
     parts = [p for v in shown for p in (v if isinstance(v, list | tuple) else [v])]

@@ -291,6 +291,8 @@ class Derivation(Shown):
     branches: tuple[str, ...] = ()
     assembly_modes: tuple[str, ...] = ()
     singularities: tuple[str, ...] = ()
+    poles: tuple[str, ...] = ()
+    """The singularities where the Jacobian is unbounded; at the others it loses rank."""
     steps: list[Step] = field(default_factory=list)
     solved: list[Solved] = field(default_factory=list)
     inverses: list[Inverse] = field(default_factory=list)
@@ -528,7 +530,7 @@ class Derivation(Shown):
             check_text(where, value)
         elif attribute == "mechanism":
             check_text(where, value, lines=True)
-        elif attribute == "singularities":
+        elif attribute in ("singularities", "poles"):
             check_text(where, *value)
         elif attribute in ("task", "branches", "assembly_modes"):
             check_labels(value, where)

@@ -239,7 +239,7 @@ class Page:
 
     def formulas_of(self, function: Function) -> dict[str, Any]:
         """The formulas of a function, unless steps show them: then where they stand."""
-        if function.has_status:
+        if function.has_status or function.name == "singularities":
             return {"statements": [], "blocks": [], "evaluates": ""}
         defined, name = self.numbers.defined, canonical(function.equation)
         outputs = [] if name in defined else self.outputs(function)
@@ -398,12 +398,25 @@ class Page:
             for name in names
         }
 
-    def singular_set(self) -> list[tuple[str, str]]:
-        """The name of each factor, and the equation that sets it to zero."""
-        names = list(map(escape, self.derivation.singularities)) or ["factor"]
-        found = [f.outputs[0] for f in self.derivation.functions if f.name == "singularities"]
-        vanish = [formulas([f"{self.math(e)} = 0"]) for a in found for e in a.entries]
-        return [(names[k % len(names)], formula) for k, formula in enumerate(vanish)]
+    def singular_set(self) -> dict[str, Any]:
+        """The factors that vanish, each with its name: where the rank falls, and the poles."""
+        derivation = self.derivation
+        if unknown := set(derivation.poles) - set(derivation.singularities):
+            raise ValueError(f"{sorted(unknown)[0]!r} is a pole, but not one of the singularities")
+        found = next((f for f in derivation.functions if f.name == "singularities"), None)
+        if found is None:
+            return {}
+        names = derivation.singularities or ("factor",)
+        entries = list(enumerate(e for a in found.outputs for e in a.entries))
+        rows = {
+            kind: [
+                (escape(names[k % len(names)]), formulas([f"{self.math(e)} = 0"]))
+                for k, e in entries
+                if (names[k % len(names)] in derivation.poles) == poles
+            ]
+            for kind, poles in (("rank", False), ("poles", True))
+        }
+        return {**rows, "statements": self.shared_statements(found)}
 
     def outputs(self, function: Function) -> list[tuple[str, str]]:
         self.parts.clear()

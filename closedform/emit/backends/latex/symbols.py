@@ -25,6 +25,7 @@ from closedform.emit.backends.latex.prose import (
     Prose,
     symbols_declared,
     symbols_of,
+    upright,
     written_name,
 )
 from closedform.model.derivation import Derivation
@@ -65,7 +66,7 @@ def forms_of(derivation: Derivation, math: Printed, legend: Iterable[tuple[str, 
     for declared in symbols_declared(derivation):
         add(declared)
     for step in derivation.steps:
-        for left, _ in step.shown:
+        for left in (upright(left) for left, _ in step.shown):
             for name in names_in(left):
                 forms.add(name, "")
             for part in map(canonical, left.split("=")):

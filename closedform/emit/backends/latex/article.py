@@ -192,6 +192,7 @@ class Page:
             mark += ", where " + ", ".join(rf"${self.math(e)} \ge 0$" for e in step.nonnegative)
         return {
             "title": escape(step.title),
+            "index": indexed(step.title),
             "reason": self.prose(step.reason),
             "uses": uses,
             "again": reference(again),
@@ -509,6 +510,12 @@ class Page:
         rows = [" & ".join(row) for row in cells]
         whole = (lhs, rf"\begin{{bmatrix}} {stacked(rows)} \end{{bmatrix}}")
         return [whole, *(equation for _, _, equation in sorted(named))]
+
+
+def indexed(title: str) -> str:
+    """The entry of a step in the index: ``inverse!the elbow`` for "Inverse: the elbow"."""
+    escaped = re.sub(r'(["@|!])', r'"\1', escape(title))
+    return "!".join(part.strip()[:1].lower() + part.strip()[1:] for part in escaped.split(":"))
 
 
 def decimal(value: sp.Rational) -> str:

@@ -28,6 +28,7 @@ from closedform.lemmas.pairs import LinksAtHeight as LinksAtHeight
 from closedform.lemmas.pairs import Pair as Pair
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
 from closedform.lemmas.registry import chain_lemma as chain_lemma
+from closedform.lemmas.registry import theorem as theorem
 from closedform.lemmas.sine_cosine import linear_pair as linear_pair
 from closedform.lemmas.sine_cosine import sine_cosine as sine_cosine
 from closedform.lemmas.tangent import Links as Links

@@ -31,12 +31,26 @@ def context(names: Sequence[str] | None, used: Mapping[str, Sequence[str]]) -> l
 
     ``used`` names the mechanisms that apply a lemma, by their LaTeX.
     """
-    known = theorems()
+    known = _simplest_first(theorems())
     wanted = set(known if names is None else names)
     for name in reversed(known):
         if name in wanted:
             wanted |= set(known[name].rests_on)
     return [_theorem(t, used.get(name, ())) for name, t in known.items() if name in wanted]
+
+
+def _simplest_first(known: Mapping[str, Theorem]) -> dict[str, Theorem]:
+    """The lemmas by the length of what is said about them, but after those that they rest on."""
+    ordered: dict[str, Theorem] = {}
+
+    def add(name: str) -> None:
+        for other in known[name].rests_on:
+            add(other)
+        ordered.setdefault(name, known[name])
+
+    for name in sorted(known, key=lambda n: (len(known[n].statement + known[n].proof), n)):
+        add(name)
+    return ordered
 
 
 def _theorem(theorem: Theorem, used: Sequence[str]) -> dict[str, Any]:

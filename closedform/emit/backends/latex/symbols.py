@@ -120,9 +120,11 @@ def table(derivation: Derivation, numbers: Numbers, prose: Prose) -> list[tuple[
         if form not in rows:
             rows[form] = [meaning]
     taken = {_form(derivation, name) for name in declared}
+    said = dict(_summaries(derivation))
     for form, label in numbers.defined.items():
         if form not in taken:
-            rows.setdefault(form, []).append(f"see {reference([label])}")
+            told = rows.setdefault(form, [prose(said[form])] if form in said else [])
+            told.append(f"see {reference([label])}")
     cells = ((form, ", ".join(filter(None, texts))) for form, texts in rows.items())
     return sorted(((f, t) for f, t in cells if t), key=lambda row: (skeleton(row[0]).lower(), row))
 
@@ -147,6 +149,15 @@ def _inputs(derivation: Derivation) -> Iterator[tuple[str, str]]:
             for entry in array.entries:
                 form = _form(derivation, str(entry))
                 yield form, f"coordinate of ${whole}$" if form != whole else "argument"
+
+
+def _summaries(derivation: Derivation) -> Iterator[tuple[str, str]]:
+    """What the functions say that evaluate a named equation."""
+    for function in reversed(derivation.functions):
+        for array in function.outputs:
+            name = canonical(function.equation) or _form(derivation, array.name)
+            first = function.summary.partition(". ")[0].partition(";")[0].rstrip(".")
+            yield name, first[:1].lower() + first[1:] if first[1:2].islower() else first
 
 
 def _signs(derivation: Derivation) -> Iterator[tuple[str, str]]:

@@ -143,9 +143,9 @@ def test_a_symbol_without_a_meaning_is_found() -> None:
     page = Page(d, Proof(d.name, d.paper.key, (), 0, ()))
     for step in d.steps:
         page.step(step)
-    assert symbols.undefined(d, page.numbers) == ["k"]
+    assert symbols.undefined(d, page.numbers, page.math) == ["k"]
     d.write("k", meaning="the slope")
-    assert symbols.undefined(d, page.numbers) == []
+    assert symbols.undefined(d, page.numbers, page.math) == []
     assert ("k", "the slope") in symbols.table(d, page.numbers, page.prose)
 
 

@@ -7,6 +7,7 @@ not have two forms.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
@@ -98,15 +99,21 @@ def require_distinct(
         )
 
 
-def undefined(derivation: Derivation, numbers: Numbers) -> list[str]:
-    """Symbols in the steps that neither an equation defines nor the derivation explains."""
-    known = set(numbers.defined) | {
-        canonical(form) for form, _ in table(derivation, numbers, Prose(derivation))
-    }
+def undefined(derivation: Derivation, numbers: Numbers, math: Printed) -> list[str]:
+    """Symbols in the steps that neither an equation defines nor the derivation explains.
+
+    ``math`` prints the sine and the cosine of a joint that was solved as such.
+    """
+    rows = table(derivation, numbers, Prose(derivation))
+    known = set(numbers.defined) | {canonical(form) for form, _ in rows}
     known |= {_form(derivation, s.name) for s in symbols_declared(derivation)}
     known |= {_form(derivation, str(s)) for f in derivation.functions for s in f.symbols}
-    used = {s.name for step in derivation.steps for s in symbols_of(step)}
-    return sorted(n for n in used if _form(derivation, n) not in known)
+    used = {s for step in derivation.steps for s in symbols_of(step)}
+    return sorted(
+        s.name
+        for s in used
+        if _form(derivation, s.name) not in known and not re.match(r"\\mathrm\{[cs]\}_", math(s))
+    )
 
 
 def table(derivation: Derivation, numbers: Numbers, prose: Prose) -> list[tuple[str, str]]:
@@ -135,8 +142,11 @@ def _form(derivation: Derivation, name: str) -> str:
 
 def _inputs(derivation: Derivation) -> Iterator[tuple[str, str]]:
     """The coordinates of the task, and the entries of the targets."""
+    matrices = [a for f in derivation.functions for a in f.inputs if len(a.shape) > 1]
+    entries = {str(e) for a in matrices for e in a.entries}
     for name in derivation.task:
-        yield _form(derivation, name), "task coordinate"
+        if name not in entries:
+            yield _form(derivation, name), "task coordinate"
     for function in derivation.functions:
         joints = {j.symbol for j in derivation.joints}
         for array in function.inputs:

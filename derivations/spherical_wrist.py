@@ -49,6 +49,7 @@ q = (theta4, theta5, theta6)
 # Orientation by Euler angles
 
 R = chain([rotation("z", theta4), rotation("y", theta5), rotation("z", theta6)])
+d.write("flip", r"\varepsilon", "pi in the second branch, else 0")
 by_angles = d.step(
     "Orientation by ZYZ Euler angles",
     "Rotations about the axes of the moving frame multiply from left to right.",

@@ -185,7 +185,8 @@ for name, meaning in (
     ("DP_y", "component of DP along AB"),
     ("DP_r", "component of DP away from AB"),
     ("P_r", "distance of P from AB, with a sign"),
-    ("r_P", "distance of P from AB"),
+    ("CD_y", "component of CD along AB"),
+    ("CD_r", "component of CD away from AB"),
     ("n_1", "component of n away from AB"),
     ("n_2", "component of n along AB"),
     ("L3", "length of the driven bar over D, where it differs"),
@@ -201,6 +202,7 @@ for name, meaning in (
     ("r", "|L1 - L2|, the inner radius of the hollow spheres"),
 ):
     d.write(name, meaning=meaning)
+d.write("r_P", "r_P", "distance of P from AB")
 
 skeleton(
     d,

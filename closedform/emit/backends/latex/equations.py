@@ -7,7 +7,7 @@ counts them: an article has (7) where the book has (3.7).
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 GREEK_OR_LETTER = r"\\(?!text|mathrm|left|right|[bB]ig|quad|frac|sqrt)[A-Za-z]+|[A-Za-z]"
@@ -38,13 +38,32 @@ COMMANDS = frozenset(
 )
 
 
+Line = tuple[str, str]
+"""What stands left and right of the sign; nothing on the left goes on from the line before."""
+
+
 @dataclass(frozen=True)
-class Equation:
-    """One line of a display: what stands left and right of the sign, and its label, if any."""
+class Numbered:
+    """One line of a display, with the label of its equation if it is the last line of one."""
 
     left: str
     right: str
     label: str = ""
+    numbered: bool = False
+
+    @property
+    def text(self) -> str:
+        return f"{self.left} = {self.right}" if self.left else self.right
+
+
+def runs(lines: Iterable[Line]) -> list[list[Line]]:
+    """The lines of each equation."""
+    found: list[list[Line]] = []
+    for left, right in lines:
+        if left or not found:
+            found.append([])
+        found[-1].append((left, right))
+    return found
 
 
 @dataclass
@@ -59,23 +78,28 @@ class Numbers:
     right: dict[str, str] = field(default_factory=dict)
     """The label of the first equation with a right-hand side."""
 
-    def number(self, equations: Iterable[tuple[str, str]]) -> list[Equation]:
-        """Label equations; one that stands in the document already keeps its label."""
-        return [self._labelled(left, right) for left, right in equations]
+    def number(self, equations: Iterable[Sequence[Line]]) -> list[Numbered]:
+        """Label equations, each at its last line."""
+        return [line for run in equations for line in self._labelled(run)]
 
-    def is_shown(self, left: str, right: str) -> str:
-        """The label of this very equation, or nothing."""
-        return self.values.get((canonical(left), right), "")
+    def is_shown(self, run: Sequence[Line]) -> str:
+        """The label of this very equation if it stands in the document, or nothing."""
+        return self.values.get(self._content(run), "")
 
-    def _labelled(self, left: str, right: str) -> Equation:
+    def _content(self, run: Sequence[Line]) -> tuple[str, str]:
+        return canonical(run[0][0]), " ".join(right for _, right in run)
+
+    def _labelled(self, run: Sequence[Line]) -> Iterator[Numbered]:
         self.count += 1
         label = f"eq:{self.robot}:{self.count}"
-        self.values.setdefault((canonical(left), right), label)
-        self.right.setdefault(right, label)
-        for part in left.split("="):
+        content = self._content(run)
+        self.values.setdefault(content, label)
+        self.right.setdefault(content[1], label)
+        for part in run[0][0].split("="):
             if is_name(part.strip()):
                 self.defined.setdefault(without_power(canonical(part)), label)
-        return Equation(left, right, label)
+        for k, (left, right) in enumerate(run, 1):
+            yield Numbered(left, right, label if k == len(run) else "", True)
 
 
 def canonical(text: str) -> str:

@@ -21,8 +21,13 @@ def lemmas_of(derivation: Derivation) -> list[str]:
     return list(dict.fromkeys(found))
 
 
+def label(name: str) -> str:
+    """The label of a lemma, ``lemma:two-link-arm``; that of the chapter if nobody states it."""
+    return f"lemma:{key(name)}" if name in theorems() else "lemmas"
+
+
 def key(name: str) -> str:
-    """The label of a lemma: ``two-link-arm``."""
+    """The name of a lemma in labels: ``two-link-arm``."""
     return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
 
 

@@ -135,7 +135,7 @@ class Prose:
         symbols += [s for f in functions for s in f.symbols]
         symbols += [s.symbol for f in functions for s in f.body if isinstance(s, (Let, Bound))]
         symbols += [s for step in derivation.steps for s in _symbols(step)]
-        names = {str(s) for s in symbols} | set(derivation.task)
+        names = self.names = {str(s) for s in symbols} | set(derivation.task)
         self.known = GREEK | set(SYMBOL_NAMES)
         self.known |= {n for n in names - {"a", "A", "I"} if len(n) < 3 or re.search(r"\d|_", n)}
 

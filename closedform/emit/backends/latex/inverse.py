@@ -18,6 +18,7 @@ from closedform.algebra.formulas import PRINTED, formula
 from closedform.emit.backends.latex.algorithm import whole
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.lemmas import label
+from closedform.emit.backends.latex.names import MATRIX_ENTRY
 from closedform.emit.backends.latex.prose import escape, loosen, upright
 from closedform.model.derivation import Continuum, Degenerate, Inverse, Link, Solved
 from closedform.model.functions import (
@@ -72,6 +73,8 @@ class Told:
         self.solvings = solvings(self.inverse, solved) if self.inverse else []
         self.algorithm = page.algorithm(function)
         self.inputs = set(function.symbols)
+        self.told: set[sp.Symbol] = set()
+        """Names that a step has defined."""
         self.parameters = {p.symbol for p in derivation.parameters}
 
     def context(self) -> dict[str, Any]:
@@ -135,8 +138,9 @@ class Told:
             "unknowns": enumeration([f"${page.math(u)}$" for u in solving.unknowns]),
             "from": self.origin(shown, solving),
             "blocks": page.blocks(rows),
-            "lemma": escape(solving.lemma.name),
+            "lemma": page.prose(solving.lemma.name),
             "label": label(solving.lemma.name),
+            "matrix": self.matrix(shown),
             "statement": "" if earlier else loosen(solving.lemma.statement),
             "count": self.count(solving),
             "solution": page.blocks(self.solution(solving)),
@@ -198,6 +202,12 @@ class Told:
         angles = sorted(self.inverse.defined.keys() & set(solving.unknowns), key=str)
         return rows + [r for a in angles for r in self.page.equations(a, self.inverse.defined[a])]
 
+    def matrix(self, equations: Sequence[sp.Expr]) -> str:
+        """The matrix of the program whose entries the equations hold."""
+        held = {str(s) for e in equations for s in e.free_symbols}
+        found = sorted({m[1] + m[2] for n in held if (m := MATRIX_ENTRY.fullmatch(n))})
+        return enumeration([f"${n[0]}^{{({n[1]})}}$" for n in found])
+
     def origin(self, equations: Sequence[sp.Expr], solving: Solving) -> str:
         """Which parts of the target the equations hold, and why they decouple."""
         assert self.inverse
@@ -208,9 +218,8 @@ class Told:
         solvable = {*self.inverse.unknowns, *self.inverse.defined, *self.inverse.lengths}
         solvable |= {u for s in self.solvings for u in s.unknowns}
         joints = [s for s in solvable if s in held and s not in solving.unknowns]
-        before = [
-            f"${page.math(j)}$" for j in sorted(joints, key=lambda s: str(s)) if self.is_solved(j)
-        ]
+        order = [u for s in self.solvings for u in s.unknowns] + list(self.inverse.unknowns)
+        before = [f"${page.math(j)}$" for j in sorted(joints, key=order.index)]
         where = self.parts(parts)
         several = len(equations) > 1
         subject = "Equations" if several else "An equation"
@@ -220,9 +229,6 @@ class Told:
         if before:
             return f"{start} {verb}, besides {enumeration(before)}, only {unknowns}:"
         return f"{start} {verb} no other unknown than {unknowns}:"
-
-    def is_solved(self, joint: sp.Symbol) -> bool:
-        return True
 
     def explicit(self, value: sp.Expr) -> sp.Expr:
         """An expression in the target and the joints."""
@@ -257,11 +263,13 @@ class Told:
         """How many solutions there are, and the signs that tell them apart."""
         n, lemma = solving.lemma.branches, solving.lemma
         number = NUMBERS[n] if n < len(NUMBERS) else str(n)
-        signs = [s for s in self.algorithm.signs if s in self.own_symbols(solving)]
-        told = enumeration([f"${self.page.math(s)}$" for s in signs])
-        text = f"It has {number} solution{'s' * (n != 1)}"
+        before = self.solvings[: self.solvings.index(solving)]
+        used = {s for other in before for s in self.own_symbols(other)}
+        signs = [s for s in self.algorithm.signs if s in self.own_symbols(solving) - used]
+        told = enumeration([rf"${self.page.math(s)} = \pm 1$" for s in signs])
+        text = f"There {'are' if n != 1 else 'is'} {number} solution{'s' * (n != 1)}"
         if told and n > 1:
-            text += f", told apart by {told}"
+            text += f", for {told}"
         if lemma.excluded:
             text += " with the sign that is required"
         return text
@@ -282,20 +290,49 @@ class Told:
 
     def solution(self, solving: Solving) -> list[tuple[str, str]]:
         """What the lemma gives: angles, or their sines and cosines."""
-        page, rows = self.page, []
+        page, algorithm = self.page, self.algorithm
+        rows: list[tuple[str, str]] = []
+        values: list[sp.Expr] = []
         means = solving.link.means if solving.link else solving.lemma.means
         for unknown in solving.unknowns:
             pair = [s for s in means if isinstance(means[s], sp.sin | sp.cos)]
             pair = [s for s in pair if means[s].args[0] == unknown and s in self.algorithm.values]
             if pair:
+                self.told |= set(pair)
                 for s in pair:
-                    rows += page.equations(means[s], self.algorithm.value(s))
+                    rows += page.equations(means[s], algorithm.value(s))
+                values += [algorithm.value(s) for s in pair]
                 continue
             value = solving.lemma.solution.get(unknown)
             if value is None:
                 continue
             rows += page.equations(unknown, self.named(value))
-        return rows
+            values.append(self.named(value))
+        return self.made_before(values) + rows
+
+    def made_before(self, values: Sequence[sp.Expr]) -> list[tuple[str, str]]:
+        """The quantities in values that no step has defined yet; entries of matrices are left."""
+        algorithm = self.algorithm
+        shown = {algorithm.known.get(s, s): s for s in algorithm.values if s in algorithm.needed}
+        pending = [s for v in values for s in self.atoms(v) if s in shown]
+        found: set[sp.Symbol] = set()
+        while pending:
+            symbol = shown[pending.pop()]
+            if symbol not in found and symbol not in self.told:
+                found.add(symbol)
+                value = algorithm.value(symbol)
+                pending += [s for s in self.atoms(value) if s in shown]
+        self.told |= found
+        return [
+            row
+            for s in algorithm.values
+            if s in found and not MATRIX_ENTRY.fullmatch(str(s.name))
+            for row in self.page.equations(algorithm.known.get(s, s), algorithm.value(s))
+        ]
+
+    def atoms(self, value: sp.Expr) -> list[sp.Expr]:
+        """The symbols of an expression, and its sines and cosines of auxiliary angles."""
+        return sorted(value.atoms(sp.Symbol, sp.sin, sp.cos), key=str)
 
     def exists(self, solving: Solving) -> str:
         """The conditions under which the lemma has solutions."""
@@ -303,8 +340,7 @@ class Told:
         bounds = [s for s in self.function.body if isinstance(s, Bound) and s.symbol in own]
         if solving.link:
             bounds += [s for s in solving.link.body if isinstance(s, Bound) and s not in bounds]
-        texts = [self.algorithm.nonnegative(self.named(b.symbol)) for b in bounds]
-        return ", ".join(dict.fromkeys(texts))
+        return ", ".join(self.algorithm.conditions([b.symbol for b in bounds]))
 
     def degenerate(self, solving: Solving) -> str:
         """Where an unknown of the lemma is free."""
@@ -319,7 +355,8 @@ class Told:
             if not flag.free:
                 continue
             free = enumeration([f"${self.page.math(s)}$" for s in flag.free])
-            where = self.algorithm.vanishing(self.named(flag.value))
+            value = self.named(flag.value)
+            where = self.algorithm.vanishing(self.algorithm.quantities.get(value, value))
             texts.append(
                 f"{self.page.prose(flag.meaning)} ({where}): "
                 f"{free} {'are' if len(flag.free) > 1 else 'is'} free"
@@ -365,11 +402,11 @@ class Told:
         symbols = {s.name: s for f in page.derivation.functions for s in f.symbols}
         symbols |= {p.name: p.symbol for p in page.derivation.parameters}
         named = self.named_bounds(result.assumptions)
-        assumed = dict.fromkeys(
-            self.algorithm.nonnegative(self.named(named[a]))
-            if a in named
-            else rf"${page.math(self.assumption(a, symbols))} \ge 0$"
-            for a in result.assumptions
+        assumed = self.algorithm.inequalities(
+            [
+                self.algorithm.bound(named[a]) if a in named else self.assumption(a, symbols)
+                for a in result.assumptions
+            ]
         )
         how = {
             "generic": "by a Groebner basis over the field of parameters and targets",

@@ -118,14 +118,20 @@ def escape(text: str) -> str:
     return "".join(parts)
 
 
+UNBROKEN = 140
+"""A fraction in a formula with more characters than this may be wider than its column."""
+
+
 def mixed(text: str) -> str:
     """Text with formulas between dollar signs; a formula that is a matrix shrinks to fit."""
     parts = text.split("$")
     for i, part in enumerate(parts):
         formula = "".join(f"{UNICODE.get(c, c)} " if c in UNICODE else c for c in part)
-        formula = rf"$\displaystyle {formula}$"
-        if part.count(r"\begin") == 1 and re.fullmatch(
-            r"\\begin\{(\w*matrix)\}.*\\end\{\1\}", part
+        formula = rf"$\displaystyle {loosen(formula)}$"
+        wide = len(parts) == 3 and r"\frac" in part and len(part) > UNBROKEN
+        if wide or (
+            part.count(r"\begin") == 1
+            and re.fullmatch(r"\\begin\{(\w*matrix)\}.*\\end\{\1\}", part)
         ):
             formula = rf"\fit{{{formula}}}"
         parts[i] = formula if i % 2 else escape(part)
@@ -141,7 +147,7 @@ class Prose:
         symbols += [s for f in functions for s in f.symbols]
         symbols += [s.symbol for f in functions for s in f.body if isinstance(s, (Let, Bound))]
         symbols += [s for step in derivation.steps for s in symbols_of(step)]
-        names = {str(s) for s in symbols} | set(derivation.task)
+        names = self.names = {str(s) for s in symbols} | set(derivation.task)
         self.derivation = derivation
         self.known = GREEK | set(SYMBOL_NAMES)
         self.known |= set(derivation.written)

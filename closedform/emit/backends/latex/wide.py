@@ -24,6 +24,8 @@ Equation = tuple[str, str]
 
 SIMPLIFIED = 160
 """The largest number of operations of an expression that is tried in other forms."""
+FACTORED, FACTORED_SYMBOLS = 40, 8
+"""The largest numbers of operations and of symbols of a sum that is factored."""
 TERMS = 8
 """A polynomial with fewer terms is printed as it is."""
 SHORT = 16.0
@@ -80,14 +82,20 @@ class Lines:
 
     def _forms(self, value: sp.Expr) -> Iterator[sp.Expr]:
         yield value
-        if value.is_Atom or sp.count_ops(value) > SIMPLIFIED or value.has(sp.Piecewise, sp.Max):
+        size = sp.count_ops(value)
+        if value.is_Atom or size > SIMPLIFIED or value.has(sp.Piecewise, sp.Max, sp.Min):
             return
         yield sp.factor_terms(value)
-        if value.is_Add or value.is_Mul:
-            together = sp.together(value)
-            yield together
-            if not value.atoms(sp.Pow) or all(p.exp.is_Integer for p in value.atoms(sp.Pow)):
-                yield sp.factor(value)
+        powers = value.atoms(sp.Pow)
+        if any(p.exp.is_negative for p in powers):
+            yield sp.together(value)
+        if (
+            value.is_Add
+            and size <= FACTORED
+            and len(value.free_symbols) <= FACTORED_SYMBOLS
+            and all(p.exp.is_Integer for p in powers)
+        ):
+            yield sp.factor(value)
 
     # Parts with names
 

@@ -239,7 +239,8 @@ class Page:
             ]
             for kind, poles in (("rank", False), ("poles", True))
         }
-        return {**rows, **self.listing(found)}
+        arguments = ", ".join(escape(a.name) for a in found.inputs)
+        return {**rows, **self.listing(found), "name": found.name, "arguments": arguments}
 
     def outputs(self, function: Function) -> list[Equation]:
         self.lines.clear()

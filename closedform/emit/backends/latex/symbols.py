@@ -58,9 +58,13 @@ class Forms:
 def forms_of(derivation: Derivation, math: Printed, legend: Iterable[tuple[str, str]]) -> Forms:
     """Every symbol that the formulas of a derivation contain, as ``math`` prints it."""
     forms = Forms()
+    joints = {j.symbol for j in derivation.joints}
+    targets = {s for f in derivation.functions for s in f.symbols} - joints
 
     def add(symbol: sp.Symbol) -> None:
-        forms.add(canonical(math(symbol)), symbol.name)
+        form = canonical(math(symbol))
+        # one coordinate may be part of the targets of two functions, under two names
+        forms.add(form, f"a target {form}" if symbol in targets else symbol.name)
 
     for short, _ in legend:
         forms.add(canonical(short), "")

@@ -45,6 +45,8 @@ from closedform.proof.prove import Proof
 
 __all__ = ["Page", "document"]
 
+BARE: Mapping[str, Any] = {"blocks": [], "lines": [], "cases": [], "roundings": [], "after": ""}
+"""A function without a listing."""
 LISTED = 3
 """More equations than this that only name a symbol, such as lengths, are a list without numbers."""
 
@@ -184,17 +186,16 @@ class Page:
 
     def computed(self, function: Function) -> dict[str, Any]:
         """What a function without a status computes, line by line, or where its formulas are."""
-        bare = {"blocks": [], "lines": [], "cases": [], "roundings": [], "after": ""}
         if function.has_status or function.name == "singularities":
-            return {**bare, "evaluates": ""}
+            return {**BARE, "evaluates": ""}
         defined, name = self.numbers.defined, canonical(function.equation)
         outputs = [] if name in defined else self.outputs(function)
         where = [self.numbers.right.get(right, "") for _, right in outputs]
         if name in defined or (outputs and all(where) and not function.body):
             labels = [defined[name]] if name in defined else list(dict.fromkeys(where))
-            return {**bare, "evaluates": reference(labels)}
+            return {**BARE, "evaluates": reference(labels)}
         if not function.body:
-            return {**bare, "blocks": blocks(self.numbers.number(runs(outputs))), "evaluates": ""}
+            return {**BARE, "blocks": blocks(self.numbers.number(runs(outputs))), "evaluates": ""}
         return {**self.listing(function), "evaluates": ""}
 
     def listing(self, function: Function) -> dict[str, Any]:
@@ -240,7 +241,8 @@ class Page:
             for kind, poles in (("rank", False), ("poles", True))
         }
         arguments = ", ".join(escape(a.name) for a in found.inputs)
-        return {**rows, **self.listing(found), "name": found.name, "arguments": arguments}
+        listing = self.listing(found) if found.body else BARE
+        return {**rows, **listing, "name": found.name, "arguments": arguments}
 
     def outputs(self, function: Function) -> list[Equation]:
         self.lines.clear()

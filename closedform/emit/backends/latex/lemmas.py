@@ -22,8 +22,8 @@ def lemmas_of(derivation: Derivation) -> list[str]:
 
 
 def label(name: str) -> str:
-    """The label of a lemma, ``lemma:two-link-arm``; that of the chapter if nobody states it."""
-    return f"lemma:{key(name)}" if name in theorems() else "lemmas"
+    """The label of a lemma, ``lemma:two-link-arm``, or nothing if nobody states it."""
+    return f"lemma:{key(name)}" if name in theorems() else ""
 
 
 def key(name: str) -> str:

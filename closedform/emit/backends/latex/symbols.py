@@ -170,8 +170,7 @@ def _summaries(derivation: Derivation) -> Iterator[tuple[str, str]]:
     for function in reversed(derivation.functions):
         for array in function.outputs:
             name = canonical(function.equation) or _form(derivation, array.name)
-            first = function.summary.partition(". ")[0].partition(";")[0].rstrip(".")
-            yield name, first[:1].lower() + first[1:] if first[1:2].islower() else first
+            yield name, function.summary.partition(". ")[0].partition(";")[0].rstrip(".")
 
 
 def _signs(derivation: Derivation) -> Iterator[tuple[str, str]]:

@@ -26,6 +26,7 @@ from closedform.lemmas.links import two_links as two_links
 from closedform.lemmas.links import zyz as zyz
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
 from closedform.lemmas.registry import chain_lemma as chain_lemma
+from closedform.lemmas.registry import theorem as theorem
 from closedform.lemmas.sine_cosine import linear_pair as linear_pair
 from closedform.lemmas.sine_cosine import sine_cosine as sine_cosine
 from closedform.lemmas.tangent import Links as Links
@@ -67,7 +68,6 @@ from closedform.model.claims import Check as Check
 from closedform.model.claims import Gravity as Gravity
 from closedform.model.claims import Reading as Reading
 from closedform.model.derivation import Derivation as Derivation
-from closedform.model.derivation import Paper as Paper
 from closedform.model.derivation import Solved as Solved
 from closedform.model.derivation import Table as Table
 from closedform.model.functions import SINGLE as SINGLE
@@ -88,6 +88,8 @@ from closedform.model.notation import SIGN as SIGN
 from closedform.model.notation import Notation as Notation
 from closedform.model.notation import Relation as Relation
 from closedform.model.pair import Pair as Pair
+from closedform.model.paper import Paper as Paper
+from closedform.model.paper import Work as Work
 from closedform.pipeline.run import find as find
 from closedform.pipeline.run import load as load
 from closedform.proof.checks.completeness import Cases as Cases

@@ -84,6 +84,7 @@ d = Derivation(
         "fore-arms half a turn apart",
         "wrist links stretched along the base line",
     ),
+    poles=("wrist links stretched along the base line",),
 )
 m, q = declare(d)
 theta1, theta2R, theta3R, theta2L, theta3L, theta = q
@@ -105,6 +106,7 @@ d.step(
     "the axes of the shoulders, to the right for one arm and to the left for the other.",
     {"(x, y, z)_R": tips[0], "(x, y, z)_L": tips[1]},
     published=("(1)", "(2)"),
+    proves="The published coordinates of both tips are those of the product of the frames.",
     equal=[(tips[0], by_frames[0]), (tips[1], by_frames[1])],
 )
 
@@ -124,6 +126,10 @@ d.step(
     "differences.",
     {r"d \tan\psi": mean[0], r"d \tan\phi": mean[1]},
     published=("(3)", "(4)", "(5)"),
+    proves=(
+        "Half the difference of the tips is as stated, in averages and half differences of the "
+        "angles."
+    ),
     equal=[(apart.xreplace(halves), mean)],
 )
 d.step(
@@ -140,6 +146,11 @@ d.step(
         "e_2": real("f") * (1 - cos(beta)),
     },
     published=("(6)", "(7)"),
+    proves=(
+        "The middle of the tips is (r, h)_6; the squared distance of both points is that of a "
+        "triangle with the sides e1 and e2; and the cosine of the angle between these sides is "
+        "the one used."
+    ),
     equal=[
         (((right + left) / 2).xreplace(halves), midpoint(m)),
         (off.dot(off), short_upper**2 + short_fore**2 + 2 * short_upper * short_fore * bent),
@@ -171,6 +182,7 @@ d.step(
     "tip in (9) is R03 Rz(phi) Rx(psi) Ry(theta).",
     {"(x, y, z)_T": T, r"(L_\theta, L_{2W}, a_{3W})": sp.Matrix(extended(m, posture))},
     published=("(9)",),
+    proves="Position and rotation of the tip are those of the serial chain with the virtual arm.",
     equal=[(serial[:3, 3], T), (serial[:3, :3], orientation)],
 )
 d.step(
@@ -179,6 +191,7 @@ d.step(
     "In (8) half the base line is d / cos(psi).",
     {"l_W^2": wrist_squared(m, m.d / cos(psi))},
     published=("(8)",),
+    proves="The square of the wrist by the right triangle is the published form.",
     equal=[
         (
             wrist_squared(m, m.d / cos(psi)),
@@ -195,6 +208,10 @@ d.step(
     "The forward map computes the cosines and sines of yaw and roll directly from the tips.  It "
     "needs the angles only as outputs: psi = atan2(d tan(psi), d), and likewise for roll.",
     {r"\cos\psi": m.d / half_base, r"\sin\psi": a / half_base},
+    proves=(
+        "The cosine and the sine of the yaw are these quotients, and both factors of the square "
+        "of the wrist are the same with and without the angle."
+    ),
     equal=[
         (cos(atan2(a, m.d)), m.d / half_base),
         (sin(atan2(a, m.d)), a / half_base),
@@ -322,6 +339,10 @@ d.step(
     "factor is the derivative of the task by these quantities, and the inner factor is their "
     "derivative by the joints.",
     {"J": outer[:3, :3]},
+    proves=(
+        "The determinants of the factors: that of the virtual arm with the wrist, that of the "
+        "rates of yaw and roll, and 1/4 for averages and half differences."
+    ),
     equal=[
         (outer[:3, :3].det(), m.L1 * outward * with_wrist),
         (area, -m.L1 * without * cos(alpha) * cos(beta)),

@@ -172,5 +172,6 @@ def turn_step(d: Derivation, m: Dimensions) -> None:
         "root of that error, and a real arm at its own limit may seem to be beyond it.  In that "
         "case the virtual arm is turned back.  In exact arithmetic this turn is zero.",
         {r"\mathrm{drawn}": drawn, r"\mathrm{tilt}": tilt},
+        proves="The rate of the tip, with the wrist turned along, is tilt along the upper arm.",
         equal=[(rate, tilt * pair(theta2A).unit)],
     )

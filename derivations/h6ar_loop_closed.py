@@ -78,6 +78,10 @@ d = Derivation(
         "virtual arm straight or folded (a pole of the determinant)",
         "wrist links stretched along the base line",
     ),
+    poles=(
+        "virtual arm straight or folded (a pole of the determinant)",
+        "wrist links stretched along the base line",
+    ),
 )
 m, q = declare(d)
 theta1, theta2R, theta3R, theta2L, theta3L, theta = q
@@ -98,6 +102,10 @@ d.step(
     "tips if the tips are close together.",
     {"(r, h)_I": midpoint(m), "(r, h)_R - (r, h)_I": half_gap(m)},
     published=("(6)",),
+    proves=(
+        "The middle and half the difference of the tips are as stated, in half sums and half "
+        "differences of the angles."
+    ),
     equal=[(middle.xreplace(halves), midpoint(m)), (apart.xreplace(halves), half_gap(m))],
 )
 ahead, higher = real("ahead"), real("higher")
@@ -114,6 +122,9 @@ d.step(
     "it).",
     {r"R_{03}^T (p_R - p_I)": line},
     published=("(3)", "(4)", "(5)", "(6)"),
+    proves=(
+        "Half the base line, turned into the axes of the virtual fore-arm, has these coordinates."
+    ),
     equal=[(forearm.T * sp.Matrix([ahead, -m.d, higher]), line)],
 )
 d.step(
@@ -124,6 +135,10 @@ d.step(
     "d.",
     {r"b\,R_z R_x e_y": wrist_line},
     published=("(3)", "(4)", "(8)"),
+    proves=(
+        "The turned y axis times half the base line has the components -d tan(phi), d and d "
+        "tan(psi)/cos(phi)."
+    ),
     equal=[(wrist_line, sp.Matrix([-m.d * tan(phi), m.d, m.d * tan(psi) / cos(phi)]))],
 )
 axis = rotation("z", phi) * rotation("x", psi)
@@ -136,6 +151,7 @@ d.step(
     "g_s)^2.",
     {"b": base, "l_W^2": m.al**2 - (base - m.gs) ** 2},
     published=("(8)",),
+    proves="Both wrist links have the square of their length l_W^2 + (b - g_s)^2.",
     equal=[
         (link.dot(link), length**2 + (base - m.gs) ** 2),
         (
@@ -153,6 +169,7 @@ d.step(
     "Conversely, yaw, roll and the direction of the virtual fore-arm give the distance of the "
     "tips.",
     {"(r_R - r_L) / 2": given_ahead, "(h_R - h_L) / 2": given_higher},
+    proves="With these distances the base line is the one that yaw and roll give.",
     equal=[
         (line.subs({ahead: given_ahead, higher: given_higher}), wrist_line),
     ],
@@ -165,6 +182,7 @@ d.step(
     "where f is the length of a fore-arm, is a sum of terms that are not negative.  It keeps its "
     "digits if the arms are straight.",
     {"R_I^2": (reaches[0] + reaches[1]) / 2 - apart.dot(apart)},
+    proves="The square of the reach is the stated mean, and N of each real arm is the stated sum.",
     equal=[
         (reaches[2], (reaches[0] + reaches[1]) / 2 - apart.dot(apart)),
         *(
@@ -188,6 +206,10 @@ d.step(
         r"\cos\psi": sqrt(m.d**2 + width**2) / half_line,
         "b": half_line,
     },
+    proves=(
+        "The cosines of roll and yaw are these quotients, and half the base line is d/(cos(phi) "
+        "cos(psi))."
+    ),
     equal=[
         (cos(atan2(-width, m.d)), cosine_roll),
         (cos(atan2(cosine_roll * beyond, m.d)), sqrt(m.d**2 + width**2) / half_line),
@@ -316,6 +338,10 @@ d.step(
     "the determinants of the factors: those of both real arms are in the numerator, that of the "
     "virtual arm is in the denominator.",
     {"J": outer[:3, :3]},
+    proves=(
+        "The determinant of each factor: the outer one, those of the virtual and of the real "
+        "arms, and those of yaw and roll."
+    ),
     equal=[
         (outer[:3, :3].det(), m.L1 * outward * with_wrist),
         (point_by.det(), -m.L1 * without),

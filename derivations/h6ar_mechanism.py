@@ -101,6 +101,27 @@ def declare(d: Derivation) -> tuple[Dimensions, Joints]:
     )
     theta1, theta2R, theta3R = d.joint("theta1"), d.joint("theta2R"), d.joint("theta3R")
     theta2L, theta3L = d.joint("theta2L", beside=theta2R), d.joint("theta3L", beside=theta3R)
+    for arm, side in (("R", "right"), ("L", "left")):
+        for k, link in ((2, "upper arm"), (3, "fore-arm")):
+            d.write(f"theta{k}{arm}", rf"\theta_{k}^{arm}", f"angle of the {side} {link}")
+        d.write(f"theta23{arm}", rf"\theta_{{23}}^{arm}", f"absolute angle of the {side} fore-arm")
+    d.write("theta2A", r"\theta_2^A", "average of the angles of the upper arms")
+    d.write("theta23A", r"\theta_{23}^A", "average of the absolute angles of the fore-arms")
+    d.write("alpha", r"\delta_2", "half the difference of the angles of the upper arms")
+    d.write("beta", r"\delta_{23}", "half the difference of the absolute angles of the fore-arms")
+    d.write("f", meaning="length of a fore-arm, from the elbow to the tip")
+    d.write("wrist", "l_W", "length of the wrist")
+    d.write("ahead", r"\Delta_a", "how far the right tip is ahead of the middle of the tips")
+    d.write("higher", r"\Delta_h", "how far the right tip is above the middle of the tips")
+    d.write("beyond", r"\Delta_z", "half the base line, along the virtual fore-arm")
+    d.write("width", r"\Delta_x", "half the base line, across the virtual fore-arm")
+    d.write("upright", r"\mathrm{room}_\phi", "cosine of the roll, which must be positive")
+    d.write("L_2W", "L_{2W}", "length of the virtual fore-arm with the wrist")
+    d.write("a_3W", "a_{3W}", "offset of the virtual fore-arm with the wrist")
+    d.write("psi_max", meaning="largest yaw")
+    d.write("phi_max", meaning="largest roll")
+    d.write("beta_min", meaning="smallest separation angle of the wrist links")
+
     return dimensions, Joints(theta1, theta2R, theta3R, theta2L, theta3L, d.joint("theta"))
 
 
@@ -402,12 +423,16 @@ def design(d: Derivation, m: Dimensions, level: sp.Expr) -> None:
     room, w = real("room", positive=True), real("w", positive=True)
     d.step(
         "Wrist design",
-        "The separation angle beta is the angle between a wrist link and the base line, so half "
-        "the base line is al cos(beta) plus half the distance of the gears.  beta is smallest at "
-        "the largest yaw and roll.  This gives the shortest links, or the largest yaw for given "
+        "The separation angle is that between a wrist link and the base line, so half the base "
+        "line is al times its cosine plus half the distance of the gears.  The angle is smallest "
+        "at the largest yaw and roll.  This gives the shortest links, or the largest yaw for given "
         "links.",
         {r"a_{l,\min}": needed, r"\cos\psi_{max}": m.d / (span * (cos(phi) if rolls else 1))},
         published=("(10)",),
+        proves=(
+            "The cosine of twice the returned half angle is the quotient that equation (10) asks "
+            "for."
+        ),
         equal=[(cos(2 * atan2(sqrt(room), sqrt(room + 2 * w))), w / (w + room))],
     )
     d.function(

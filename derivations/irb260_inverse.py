@@ -179,6 +179,10 @@ def workspace(
             "r_{min}": inner,
             "r_{max}": outer,
         },
+        proves=(
+            "The squared distance from the centre is the stated one, and it is the square of the "
+            "inner radius for the folded and of the outer radius for the straight arm."
+        ),
         equal=[
             ((rho - l1 - l6) ** 2 + (position[2] - l2 + l5) ** 2, square),
             (square.subs(theta3, pi / 2), inner**2),

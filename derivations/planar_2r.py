@@ -48,7 +48,7 @@ q = (theta1, theta2)
 link1 = rotation("z", theta1) * sp.Matrix([l1, 0, 0])
 link2 = rotation("z", theta1 + theta2) * sp.Matrix([l2, 0, 0])
 position = (link1 + link2)[:2, 0]
-d.step(
+by_geometry = d.step(
     "Position by geometry",
     "Each link is a vector along the x axis, turned by its absolute angle.  The position is the "
     "sum of both.",
@@ -61,22 +61,30 @@ d.step(
 A1 = denavit_hartenberg(l1, 0, 0, theta1)
 A2 = denavit_hartenberg(l2, 0, 0, theta2)
 pose = chain([A1, A2])
-d.step(
+by_frames = d.step(
     "Pose by Denavit-Hartenberg",
     "Table I has a = l1, l2 and no twist or offset.  The last column of the product of the two "
     "matrices is the position found by geometry.",
     {"A_1": A1, "A_2": A2, "T = A_1 A_2": pose},
     published=("(6)", "(7)", "(8)", "Table I"),
+    proves=(
+        "The last column of T is the position (x, y) found by geometry, and T is the product of "
+        "both matrices."
+    ),
     equal=[(pose[:2, 3], position), (A1 * A2, pose)],
+    uses=[by_geometry],
 )
 
+d.write("r2", "r^2")
 phi = theta1 + theta2
 d.step(
     "Orientation",
     "The first column of the pose is the direction of the last link, which is at the angle phi.",
     {r"\phi": phi},
     published=("(5)",),
+    proves="The first column of T is (cos(phi), sin(phi)).",
     equal=[(pose[:2, 0], sp.Matrix([cos(phi), sin(phi)]))],
+    uses=[by_frames],
 )
 
 d.function(
@@ -116,7 +124,9 @@ d.step(
     "The rows are the rates of x, y and phi.  The determinant of the rows of x and y does not "
     "depend on theta1, because turning the whole arm changes nothing inside it.",
     {"J": J, r"\det J_{xy}": det},
+    proves="The determinant of the first two rows of J is the stated product.",
     equal=[(J[:2, :].det(), det)],
+    uses=[by_geometry],
 )
 d.step(
     "Manipulability and singular set",
@@ -124,6 +134,7 @@ d.step(
     "determinant.  If the links have a length, it vanishes exactly if sin(theta2) does: the arm is "
     "stretched or folded, and the hand cannot move along it.",
     {"w": manipulability, r"w^2": sp.factor(det**2)},
+    proves="The determinant of J J^T, for the rows of x and y, is the square of that of J.",
     equal=[((J[:2, :] * J[:2, :].T).det(), det**2)],
 )
 d.function(
@@ -200,6 +211,7 @@ d.step(
         r"\alpha": with_names.base,
     },
     published=("(3)",),
+    uses=[by_geometry],
 )
 d.step(
     "Inverse: the shoulder",
@@ -268,6 +280,7 @@ d.step(
         r"\theta_2": full[theta2],
     },
     published=("(9)", "(10)"),
+    uses=[by_frames],
 )
 d.function(
     "ik_pose",
@@ -307,6 +320,7 @@ d.step(
     "Workspace",
     "The triangle exists if |l1 - l2| <= r <= l1 + l2, so the workspace is an annulus.",
     {"r_{min}": sp.Abs(l1 - l2), "r_{max}": l1 + l2, "area": sp.pi * 4 * l1 * l2},
+    proves="The area of the annulus is pi times the difference of the squared radii.",
     equal=[(sp.pi * ((l1 + l2) ** 2 - (l1 - l2) ** 2), 4 * sp.pi * l1 * l2)],
 )
 d.function(

@@ -50,11 +50,13 @@ q = (theta4, theta5, theta6)
 # Orientation by Euler angles
 
 R = chain([rotation("z", theta4), rotation("y", theta5), rotation("z", theta6)])
-d.step(
+d.write("flip", r"\varepsilon", "pi in the second branch, else 0")
+by_angles = d.step(
     "Orientation by ZYZ Euler angles",
     "Rotations about the axes of the moving frame multiply from left to right.",
     {"R": R},
     published=("(12)",),
+    proves="R is a rotation: R R^T is the identity and the determinant is 1.",
     equal=[(R * R.T, sp.eye(3)), (R.det(), sp.Integer(1))],
 )
 
@@ -70,7 +72,9 @@ d.step(
     "is that of the Euler angles: phi, theta, varphi are theta4, theta5, theta6.",
     {"A_4": A4, "A_5": A5, "A_6": A6, "T": pose},
     published=("(14)", "(15)", "Table II"),
+    proves="The rotation of T is R, and T is R followed by the offset d6 along z.",
     equal=[(pose[:3, :3], R), (pose, homogeneous(R) * homogeneous(sp.eye(3), (0, 0, d6)))],
+    uses=[by_angles],
 )
 d.function("fk", "Rotation of the hand.", {"q": q}, {"R": R}, source="eqs. (12) and (15)")
 d.function(
@@ -97,10 +101,15 @@ d.step(
     "In the space frame, the columns are the present axes of the joints: z, the turned y and the "
     "last column of R.  In the body frame, they are the same axes in the frame of the hand.",
     {"J_s": space, "J_b": body},
+    proves=(
+        "The columns of the spatial Jacobian are the present axes of the joints, and it is R "
+        "times the body Jacobian."
+    ),
     equal=[
         (space, sp.Matrix.hstack(sp.Matrix([0, 0, 1]), rotation("z", theta4)[:, 1], R[:, 2])),
         (space, R * body),
     ],
+    uses=[by_angles],
 )
 d.step(
     "Determinant and singular set",
@@ -108,6 +117,7 @@ d.step(
     "if theta5 is 0 or pi: the first and the last axis coincide, and the hand cannot turn about "
     "the normal of the axes.",
     {r"\det J": det},
+    proves="Both determinants are the stated one.",
     equal=[(space.det(), det), (body.det(), det)],
 )
 d.function(
@@ -148,6 +158,7 @@ d.step(
     "which hardly depends on theta6 if theta5 is small.",
     {r"\theta_4": angles[theta4], r"\theta_5": angles[theta5], r"\theta_6": angles[theta6]},
     published=("(13)", "(16)"),
+    uses=[by_angles],
 )
 d.function(
     "ik",

@@ -6,8 +6,29 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from closedform.lemmas.registry import theorem
 from closedform.model.functions import Program, choose
 from closedform.model.lemma import Lemma
+
+theorem(
+    "circle intersection",
+    statement=r"""Let $\mathbf n$ be a unit vector of the plane, $\mathbf n^\perp$ the same vector
+turned by a right angle to the left, and $d > 0$.  The points $\mathbf x$ at the distance $r_1 >
+0$ from the origin and $r_2 > 0$ from $d\,\mathbf n$ are
+$$\mathbf x = \frac{d^2 + r_1^2 - r_2^2}{2 d}\,\mathbf n + \sigma h\,\mathbf n^\perp, \qquad
+h = \frac{\sqrt{S A B C}}{2 d}, \qquad \sigma = \pm 1,$$
+with $S = r_1 + r_2 + d$, $A = r_1 + r_2 - d$, $B = d + r_1 - r_2$ and $C = d - r_1 + r_2$.  They
+exist if and only if $A$, $B$ and $C$ are not negative, and coincide if and only if one of these
+is zero.""",
+    proof=r"""Write $\mathbf x = s\,\mathbf n + t\,\mathbf n^\perp$.  The distances say $s^2 + t^2
+= r_1^2$ and $(s - d)^2 + t^2 = r_2^2$.  Their difference is linear in $s$ and gives $2 d s = d^2
++ r_1^2 - r_2^2$.  Then $4 d^2 t^2 = (2 d r_1 - 2 d s)(2 d r_1 + 2 d s) = \bigl(r_2^2 - (d -
+r_1)^2\bigr)\bigl((d + r_1)^2 - r_2^2\bigr) = A C\, B S$. Of $A$, $B$ and $C$ at most one is
+negative, because the sum of any two is twice a length.  So the product is not negative if and
+only if none of them is.""",
+    exception=r"""If $d = 0$ and $r_1 = r_2$, the circles are the same and $\mathbf x$ is free on
+it; if $d = 0$ and $r_1 \ne r_2$, there is no such point.""",
+)
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from closedform.lemmas.amplitude import Amplitude
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.pairs import direction
-from closedform.lemmas.registry import chain_lemma
+from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.lemmas.tangent import Anywhere, Goal, Offset, Tangency, Turned
 from closedform.lemmas.triangle import Triangle
 from closedform.lemmas.zyz import zyz_angles, zyz_lemma
@@ -143,6 +143,31 @@ def turn(
     return Applied(lemma, Facing(pair.s, pair.c, root, ahead, sigma), means, {}, cases)
 
 
+theorem(
+    "two-link arm",
+    statement=r"""Let $u(\theta) = (\cos\theta, \sin\theta)$, $l_1, l_2 > 0$ and $(x, y) \ne 0$.
+With $r = \sqrt{x^2 + y^2}$ and the factors $S$, $A$, $B$ and $C$ of the triangle with the sides
+$l_1$, $l_2$ and $r$, the equation $l_1 u(\theta) + l_2 u(\theta + \varphi) = (x, y)$ has a
+solution if and only if $A$, $B$ and $C$ are not negative.  The solutions are
+$$(\cos\varphi, \sin\varphi) = \frac{(B C - S A,\ 2\sigma\sqrt{S A B C})}{B C + S A}, \qquad
+\theta = \operatorname{atan2}(y, x) - \alpha,$$
+$$(\cos\alpha, \sin\alpha) = \frac{(S B - A C,\ 2\sigma\sqrt{S A B C})}{S B + A C}, \qquad
+\sigma = \pm 1.$$
+A second link that is cranked, $(b - i a)\, e^{i y}$ instead of $l_2 e^{i y}$ in the complex
+plane, is a straight one of length $\sqrt{a^2 + b^2}$ at the angle $y - \operatorname{atan2}(a,
+b)$.""",
+    proof=r"""Turn the plane by $-\theta$: the first link is then at the angle $0$, the second at
+$\varphi$, and $(x, y)$ at $\alpha = \operatorname{atan2}(y, x) - \theta$.  These are the
+equations of the two-link triangle.  Its tangents of half angles are those of the stated sines and
+cosines, by $(\cos\varphi, \sin\varphi) = (1 - t^2,\ 2 t)/(1 + t^2)$ with $t = \tan(\varphi/2)$,
+and likewise for $\alpha$.  For the cranked link, $b - i a = \sqrt{a^2 + b^2}\,
+e^{-i\operatorname{atan2}(a, b)}$.""",
+    exception=r"""If $(x, y) = 0$, which needs $l_1 = l_2$, the arm is folded and $\theta$ is
+free.  If a link has no length, $\varphi$ is free, and a stretched arm is returned.""",
+    rests_on=("two-link triangle",),
+)
+
+
 @chain_lemma("l1 u(x1) + l2 u(x1 + x2) = (x, y)", "both pairs")
 def two_links(
     chain: Chain,
@@ -248,6 +273,19 @@ def _stretched(
     ]
 
 
+theorem(
+    "polar coordinates",
+    statement=r"""Let $u(\theta) = (\cos\theta, \sin\theta)$ and $(x, y) \ne 0$.  The equation
+$\rho\,u(\theta) = (x, y)$ has two solutions with $\theta$ in $(-\pi, \pi]$: for $\sigma = \pm 1$,
+$\rho = \sigma\sqrt{x^2 + y^2}$ and $\theta = \operatorname{atan2}(\sigma y, \sigma x)$.  One of
+them has $\rho > 0$.""",
+    proof=r"""The squares of both sides say $\rho^2 = x^2 + y^2$.  For either sign of $\rho$ the
+unit vector $u(\theta)$ is $(x, y)/\rho$, whose angle is $\operatorname{atan2}(\sigma y, \sigma
+x)$.""",
+    exception=r"""If $x = y = 0$, then $\rho = 0$ and $\theta$ is free.""",
+)
+
+
 @chain_lemma("r u(x) = (x, y)", "the pair of x, and r")
 def polar(
     chain: Chain,
@@ -286,11 +324,31 @@ def polar(
     return Applied(lemma, (pair, value), means | {value: length}, {}, cases)
 
 
+theorem(
+    "slide",
+    statement=r"""The equation $d = z$ has the one solution $d = z$.""",
+    proof=r"""A prismatic joint along the direction of a coordinate moves the hand by as much as
+it is extended; nothing has to be solved.""",
+)
+
+
 @chain_lemma("d = value", "the value")
 def slide(chain: Chain, joint: sp.Symbol, value: sp.Expr) -> Applied:
     """``joint = value``: a prismatic joint along the direction of a coordinate."""
     lemma = Lemma("slide", r"d = z", (joint - value,), {joint: value}, 1)
     return Applied(lemma, value)
+
+
+theorem(
+    "remaining angle",
+    statement=r"""Let $\psi$ and $\varphi$ be given by their sines and cosines.  In $(-\pi, \pi]$
+exactly one $\theta$ has $\theta + \varphi = \psi$ up to whole turns,
+$$\theta = \operatorname{atan2}(\sin\psi\cos\varphi - \cos\psi\sin\varphi,\
+\cos\psi\cos\varphi + \sin\psi\sin\varphi).$$""",
+    proof=r"""By the addition theorems the arguments are $\sin(\psi - \varphi)$ and $\cos(\psi -
+\varphi)$.  Angles with the same sine and cosine differ by whole turns, and one of them is in
+$(-\pi, \pi]$.""",
+)
 
 
 @chain_lemma("x = value", "the angle")

@@ -4,7 +4,32 @@ from __future__ import annotations
 
 import sympy as sp
 
+from closedform.lemmas.registry import theorem
 from closedform.model.lemma import Lemma
+
+theorem(
+    "parallelogram",
+    statement=r"""Let $l, a > 0$, and let the points $l e^{i\theta}$ and $a e^{i\gamma}$ of the
+plane be distinct.  The equation $l e^{i\theta} + a e^{i(\gamma + \varphi)} = a e^{i\gamma} + l
+e^{i\beta}$ has two solutions $(\varphi, \beta)$: the parallelogram, $(0, \theta)$, and the
+crossed one,
+$$\tan\frac{\varphi}{2} = \frac{l\sin(\theta - \gamma)}{l\cos(\theta - \gamma) - a}, \qquad
+\beta = 2\gamma + \varphi - \theta.$$
+They coincide if and only if the linkage is flat: $\sin(\theta - \gamma) = 0$.""",
+    proof=r"""Either side is the point $P$ in which the coupler meets the rod.  It is at the
+distance $a$ from $L = l e^{i\theta}$ and $l$ from $F = a e^{i\gamma}$.  Two circles have two
+points in common, mirror images of each other in the line $LF$.  One is $L + F$: there the sides
+are parallel, $\varphi = 0$ and $\beta = \theta$.  Let $\delta$ be the direction of $L - F$.  The
+mirror image turns the direction $\gamma$ from $L$ to $P$ into $2\delta - \gamma$, and the
+direction $\theta$ from $F$ to $P$ into $2\delta - \theta$.  So $\varphi = 2(\delta - \gamma)$ and
+$\beta = 2\delta - \theta = 2\gamma + \varphi - \theta$.  The vector $(L - F) e^{-i\gamma} = l
+e^{i(\theta - \gamma)} - a$ has the direction $\delta - \gamma = \varphi/2$, which gives the
+tangent.  Both points are the same if $L + F$ is on the line $LF$, that is, if $L$ and $F$ are in
+line with the origin.""",
+    exception=r"""If $l = a$ and $\theta = \gamma$, the points $L$ and $F$ are the same, and
+$\varphi$ is free.""",
+    rests_on=("circle intersection",),
+)
 
 
 def parallelogram(

@@ -8,9 +8,39 @@ from dataclasses import replace
 import sympy as sp
 
 from closedform.lemmas.amplitude import Amplitude, nearly_tangent
+from closedform.lemmas.registry import theorem
 from closedform.lemmas.tangent import LinksAtHeight
 from closedform.model.functions import Program, choose
 from closedform.model.lemma import Lemma, Shape
+
+theorem(
+    "atan2 of a linear pair",
+    statement=r"""Let $A$ and $B$ be real numbers that are not both zero.  In $(-\pi, \pi]$ the
+equation $B\sin x - A\cos x = 0$ with $A\sin x + B\cos x > 0$ has exactly one solution, $x =
+\operatorname{atan2}(A, B)$.""",
+    proof=r"""By the equation the vectors $(\cos x, \sin x)$ and $(B, A)$ are parallel, and by the
+inequality they point the same way.  So $(\cos x, \sin x) = (B, A)/\sqrt{A^2 + B^2}$, and
+$\operatorname{atan2}(A, B)$ is the angle of this vector.  The inequality excludes one of the two
+solutions of the equation, the one that differs by half a turn.""",
+    exception=r"""If $A = B = 0$, every $x$ solves the equation: the joint is free.""",
+)
+theorem(
+    "a sin x + b cos x = c",
+    title=r"$a\sin x + b\cos x = c$",
+    statement=r"""Let $h = \sqrt{a^2 + b^2} > 0$.  The equation $a\sin x + b\cos x = c$ has a
+solution if and only if $|c| \le h$.  Its solutions are then $x = \operatorname{atan2}(a, b) +
+\sigma\delta$ with $\sigma = \pm 1$ and $\delta = 2\operatorname{atan2}\bigl(\sqrt{h - c}, \sqrt{h
++ c}\bigr)$, that is, $(\cos\delta, \sin\delta) = \bigl(c, \sqrt{(h - c)(h + c)}\bigr)/h$.  They
+coincide, up to a turn, if and only if $|c| = h$.""",
+    proof=r"""Let $\alpha = \operatorname{atan2}(a, b)$, so that $a = h\sin\alpha$ and $b =
+h\cos\alpha$.  The equation becomes $h\cos(x - \alpha) = c$.  It needs $|c| \le h$; then $x -
+\alpha = \pm\delta$ for the $\delta$ in $[0, \pi]$ with $\cos\delta = c/h$.  Half of this angle is
+in $[0, \pi/2]$, where sine and cosine are not negative, and $\tan^2(\delta/2) = (1 -
+\cos\delta)/(1 + \cos\delta) = (h - c)/(h + c)$.  Also $\sin^2\delta = 1 - c^2/h^2 = (h - c)(h +
+c)/h^2$.  The angles $\pm\delta$ agree, up to a turn, if $\delta$ is $0$ or $\pi$.""",
+    exception=r"""If $a = b = 0$, there is no solution unless $c = 0$; then every $x$ is one, and
+the joint is free.""",
+)
 
 
 def linear_pair(x: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Lemma:

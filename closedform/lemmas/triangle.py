@@ -7,12 +7,40 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from closedform.lemmas.registry import theorem
 from closedform.model.functions import Program, choose
 from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
 
 NEARER, FARTHER = "nearer than full stretch", "farther than the fold"
 """What the bounds of a triangle mean: it exists where both hold."""
+
+theorem(
+    "two-link triangle",
+    statement=r"""Two links of lengths $l_1, l_2 > 0$ are joined at the angle $\theta$, and their
+ends are at the distance $R > 0$.  Let $\alpha$ be the angle from the first link to the line of
+the ends: $l_1 + l_2\cos\theta = R\cos\alpha$ and $l_2\sin\theta = R\sin\alpha$.  With $N = (l_1 +
+l_2)^2 - R^2$ and $M = R^2 - (l_1 - l_2)^2$ there is a solution if and only if $N \ge 0$ and $M
+\ge 0$.  The solutions are
+$$\tan\frac{\theta}{2} = \sigma\frac{\sqrt N}{\sqrt M}, \qquad
+\tan\alpha = \sigma\frac{2 l_2\sqrt{N M}}{(l_1 - l_2) N + (l_1 + l_2) M}, \qquad \sigma = \pm 1.$$
+With the factors of Heron's formula, $S = l_1 + l_2 + R$, $A = l_1 + l_2 - R$, $B = R + l_1 - l_2$
+and $C = R - l_1 + l_2$, the same solutions are
+$$\tan\frac{\theta}{2} = \sigma\frac{\sqrt{S A}}{\sqrt{B C}}, \qquad
+\tan\frac{\alpha}{2} = \sigma\frac{\sqrt{A C}}{\sqrt{S B}}.$$""",
+    proof=r"""The sum of the squares of both equations is $l_1^2 + l_2^2 + 2 l_1 l_2\cos\theta =
+R^2$.  Since $N + M = 4 l_1 l_2$, this says $\cos\theta = (M - N)/(M + N)$.  Such a $\theta$
+exists if and only if $N$ and $M$ are not negative, because their sum is positive.  Then
+$\tan^2(\theta/2) = (1 - \cos\theta)/(1 + \cos\theta) = N/M$, and $\sigma$ is the sign of
+$\theta$.  Here $\sin\theta = 2\sigma\sqrt{N M}/(N + M)$.  Inserted into both equations, this
+gives $R\cos\alpha$ and $R\sin\alpha$, and $\tan\alpha$ as their quotient.  The first two factors
+of Heron's formula give $N = S A$ and the others $M = B C$.  The law of cosines for the angle at
+the base, $2 R l_1\cos\alpha = R^2 + l_1^2 - l_2^2$, gives $\tan^2(\alpha/2) = (1 - \cos\alpha)/(1
++ \cos\alpha) = A C/(S B)$ in the same way; $\alpha$ has the sign of $\theta$, because
+$R\sin\alpha = l_2\sin\theta$.""",
+    exception=r"""If a link has no length, $N + M = 0$ and $\theta$ is free.  If $R = 0$, which
+needs $l_1 = l_2$, the links lie on each other and $\alpha$ is free.""",
+)
 
 
 @dataclass(frozen=True)

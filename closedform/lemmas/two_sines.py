@@ -6,10 +6,24 @@ from collections.abc import Sequence
 
 import sympy as sp
 
+from closedform.lemmas.registry import theorem
 from closedform.model.functions import Program, choose, sign_of, used_up
 from closedform.model.lemma import Lemma
 
 Vector = tuple[sp.Expr, sp.Expr]
+theorem(
+    "two sines",
+    statement=r"""Let $u$, $v$ and $p$ be vectors of the plane with $u \times v \ne 0$.  The
+equation $u\sin x + v\sin y = p$ with $\cos x \ge 0$ and $\cos y \ge 0$ has exactly one solution,
+$$\sin y = \frac{u \times p}{u \times v}, \qquad \sin x = \frac{u \cdot (p - v\sin y)}{u \cdot u},$$
+if both quotients are in $[-1, 1]$, and none otherwise.""",
+    proof=r"""The cross product of $u$ with the equation is $(u \times v)\sin y = u \times p$.
+With this $\sin y$ the vector $p - v\sin y$ is parallel to $u$, and its scalar product with $u$
+gives $\sin x$.  A sine in $[-1, 1]$ and a cosine that is not negative belong to one angle, in
+$[-\pi/2, \pi/2]$.  Without the inequalities there are three further solutions, with other signs
+of the cosines.""",
+    exception=r"""If $u$ and $v$ are parallel, only one combination of the sines is determined.""",
+)
 
 
 def two_sines(

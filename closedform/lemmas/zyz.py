@@ -8,9 +8,30 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.lemmas.pairs import direction
+from closedform.lemmas.registry import theorem
 from closedform.model.functions import Program, choose
 from closedform.model.lemma import Lemma, label
 from closedform.model.pair import Pair
+
+theorem(
+    "ZYZ angles",
+    statement=r"""Let $R$ be a rotation with $h = \sqrt{R_{13}^2 + R_{23}^2} > 0$.  The equation
+$R_z(\theta_1)\, R_y(\theta_2)\, R_z(\theta_3) = R$ has two solutions with angles in $(-\pi,
+\pi]$. For $\sigma = \pm 1$, the sign of $\sin\theta_2$, they are
+$$(\cos\theta_1, \sin\theta_1) = (c_1, s_1) = \frac{\sigma}{h}(R_{13}, R_{23}), \qquad
+\theta_2 = \operatorname{atan2}(c_1 R_{13} + s_1 R_{23},\ R_{33}),$$
+$$\theta_3 = \operatorname{atan2}(c_1 R_{21} - s_1 R_{11},\ c_1 R_{22} - s_1 R_{12}).$$""",
+    proof=r"""The third column of the product is $(\cos\theta_1\sin\theta_2,\
+\sin\theta_1\sin\theta_2,\ \cos\theta_2)$.  So $|\sin\theta_2| = h \ne 0$; if $\sigma$ is its
+sign, $c_1$ and $s_1$ are as stated, and $\sin\theta_2 = c_1 R_{13} + s_1 R_{23}$.  The equation
+leaves $R_z(\theta_1)^T R = R_y(\theta_2)\, R_z(\theta_3)$, whose second row is $(\sin\theta_3,
+\cos\theta_3, 0)$; this gives $\theta_3$.  Conversely, for these $\theta_1$ and $\theta_2$ the
+third column of $R_z(\theta_1)^T R$ is $(\sigma h, 0, R_{33})$, which is that of $R_y(\theta_2)$.
+So $R_y(\theta_2)^T R_z(\theta_1)^T R$ is a rotation about the $z$ axis.  $R_y$ does not change
+second rows, so its angle is $\theta_3$.""",
+    exception=r"""If $h = 0$, the first and the last axis coincide.  For $R_{33} = 1$ only
+$\theta_1 + \theta_3$ is determined, for $R_{33} = -1$ only $\theta_1 - \theta_3$.""",
+)
 
 
 @dataclass(frozen=True)

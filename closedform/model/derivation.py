@@ -29,10 +29,8 @@ from closedform.model.inverse import Inverse
 from closedform.model.lemma import Lemma
 from closedform.model.names import (
     check_argument,
-    check_formulas,
     check_function,
     check_identifier,
-    check_key,
     check_labels,
     check_own,
     check_robot,
@@ -40,32 +38,8 @@ from closedform.model.names import (
     check_text,
 )
 from closedform.model.notation import Notation
+from closedform.model.paper import Paper as Paper
 from closedform.model.skeleton import Skeleton
-
-
-@dataclass(frozen=True)
-class Paper:
-    """A published source."""
-
-    key: str
-    title: str
-    authors: tuple[str, ...]
-    reference: str = ""
-    source: str = ""
-    """How the text was read, and which claims a mistake of the reading may touch."""
-    out_of_scope: tuple[tuple[str, str, str], ...] = ()
-    """What the claims leave out: the first and the last words of a passage, and the reason."""
-
-    def __post_init__(self) -> None:
-        check_key(self.key, "key of the paper")
-        check_text("title of the paper", self.title)
-        if isinstance(self.authors, str):
-            raise TypeError(f"authors of the paper: write a tuple, as in ({self.authors!r},)")
-        check_text("authors of the paper", *self.authors)
-        check_text("reference of the paper", self.reference)
-        check_text("source of the paper", self.source)
-        check_formulas("source of the paper", self.source)
-        check_text("passage of the paper", *(part for p in self.out_of_scope for part in p))
 
 
 @dataclass(frozen=True)
@@ -119,6 +93,18 @@ class Step:
     rows: tuple[tuple[Any, ...], ...] = ()
     """The rows of a table; the first is its head.  A cell is a sentence, an expression or an
     increasing chain of expressions, such as ``(0, x, 1)`` for 0 <= x <= 1."""
+    proves: str = ""
+    """What the differences say that vanish: sentences."""
+    uses: tuple[Step, ...] = ()
+    """Earlier steps whose equations this one rests on."""
+
+
+@dataclass(frozen=True)
+class Written:
+    """How formulas write a symbol, and what it means: plain text."""
+
+    latex: str
+    meaning: str
 
 
 @dataclass(frozen=True)
@@ -169,6 +155,8 @@ class Derivation(Shown):
     branches: tuple[str, ...] = ()
     assembly_modes: tuple[str, ...] = ()
     singularities: tuple[str, ...] = ()
+    poles: tuple[str, ...] = ()
+    """The singularities where the Jacobian is unbounded; at the others it loses rank."""
     steps: list[Step] = field(default_factory=list)
     solved: list[Solved] = field(default_factory=list)
     inverses: list[Inverse] = field(default_factory=list)
@@ -178,6 +166,8 @@ class Derivation(Shown):
     errata: list[Erratum] = field(default_factory=list)
     skeleton: Skeleton | None = None
     """The points, links and joints that the function ``skeleton`` draws."""
+    written: dict[str, Written] = field(default_factory=dict)
+    """Symbols that are not written as their name says, or whose meaning no equation gives."""
     without_inverse: str = ""
     """Why there is no inverse, as a clause; empty if there is one, or if no reason is given."""
 
@@ -227,6 +217,14 @@ class Derivation(Shown):
         self.joints.append(Joint(symbol, kind, passive, coupling, beside))
         return symbol
 
+    def write(self, symbol: sp.Symbol | str, latex: str = "", meaning: str = "") -> None:
+        """Say how formulas write a symbol, as in ``write("rS", r"\\varrho_S")``, and what it is."""
+        name = str(symbol)
+        check_text(f"{self.name}: {name}", latex, meaning)
+        if name in self.written:
+            raise ValueError(f"{self.name}: the symbol {name} is described twice")
+        self.written[name] = Written(latex, meaning)
+
     def couple(self, expr: Any) -> Any:
         """``expr`` with every coupled joint replaced by its coupling."""
         couplings = {j.symbol: j.coupling for j in self.joints if j.coupling is not None}
@@ -251,29 +249,36 @@ class Derivation(Shown):
         equal: Sequence[tuple[Any, Any]] = (),
         nonnegative: Sequence[sp.Expr] = (),
         rows: Sequence[Sequence[Any]] = (),
-    ) -> None:
+        proves: str = "",
+        uses: Sequence[Step] = (),
+    ) -> Step:
         """Record a step.  ``shown`` maps a LaTeX left-hand side to the derived expression.
 
-        Each pair in ``equal`` is proved to be equal; the build fails if the proof does.  ``rows``
-        is a table, see :class:`Step`.
+        Each pair in ``equal`` is proved to be equal; the build fails if the proof does.  ``proves``
+        says in sentences what these equalities mean.  ``rows`` is a table, see :class:`Step`.  The
+        text refers to the equations of the steps in ``uses``; these are what ``step`` returned.
         """
         for value in (*shown.values(), *(e for pair in equal for e in pair)):
             self._reject_floats(value, f"{self.name}, step {title!r}")
         where = f"{self.name}, step {title!r}"
         check_text(f"{self.name}, title of a step", title)
-        check_text(where, reason, lines=True)
+        check_text(where, reason, proves, lines=True)
+        if any(step not in self.steps for step in uses):
+            raise ValueError(f"{where}: it can only use earlier steps of {self.name}")
         check_text(where, *shown, *published, *(c for r in rows for c in r if isinstance(c, str)))
-        self.steps.append(
-            Step(
-                title,
-                reason,
-                tuple(shown.items()),
-                tuple(published),
-                tuple(a - b for a, b in equal),
-                tuple(nonnegative),
-                tuple(map(tuple, rows)),
-            )
+        step = Step(
+            title,
+            reason,
+            tuple(shown.items()),
+            tuple(published),
+            tuple(a - b for a, b in equal),
+            tuple(nonnegative),
+            tuple(map(tuple, rows)),
+            proves,
+            tuple(uses),
         )
+        self.steps.append(step)
+        return step
 
     def function(
         self,
@@ -288,8 +293,13 @@ class Derivation(Shown):
         source: str = "",
         notes: Sequence[str] = (),
         boolean: bool = False,
+        equation: str = "",
+        entries: Sequence[sp.Symbol] = (),
     ) -> Function:
-        """Export a function.  Inputs and outputs are named scalars, vectors, matrices or arrays."""
+        """Export a function.  Inputs and outputs are named scalars, vectors, matrices or arrays.
+
+        See :class:`Function` for ``equation`` and ``entries``, which are for readers.
+        """
         self._check_function(name, [*inputs, *outputs], result)
         check_text(f"{self.name}.{name}", summary, source)
         check_text(f"{self.name}.{name}", *notes, lines=True)
@@ -304,6 +314,8 @@ class Derivation(Shown):
             source,
             tuple(notes),
             boolean,
+            equation,
+            tuple(entries),
         )
         self._check_symbols(function)
         self.functions.append(function)
@@ -393,7 +405,7 @@ class Derivation(Shown):
             check_text(where, value)
         elif attribute == "mechanism":
             check_text(where, value, lines=True)
-        elif attribute == "singularities":
+        elif attribute in ("singularities", "poles"):
             check_text(where, *value)
         elif attribute in ("task", "branches", "assembly_modes"):
             check_labels(value, where)

@@ -217,6 +217,10 @@ class Function:
     source: str = ""
     notes: tuple[str, ...] = ()
     boolean: bool = False
+    equation: str = ""
+    """The left-hand side, as a step shows it, of the equation that this function evaluates."""
+    entries: tuple[sp.Symbol, ...] = ()
+    """What the entries of the result are called, if that does not follow from its name."""
 
     def __post_init__(self) -> None:
         known: set[sp.Basic] = set()

@@ -164,6 +164,11 @@ class Inverse:
         )
 
     @property
+    def rank(self) -> Rank:
+        """The glue if it is a rank; otherwise one that means nothing."""
+        return self.glue if isinstance(self.glue, Rank) else Rank()
+
+    @property
     def chained(self) -> tuple[Link, ...]:
         """The links, or the whole system as one."""
         if self.links:

@@ -9,6 +9,7 @@ from enum import Enum
 import sympy as sp
 
 from closedform.model.functions import Statement
+from closedform.model.names import check_formulas, check_text
 from closedform.model.pair import Pair
 
 
@@ -59,6 +60,30 @@ class Lemma:
     def pair(self, angle: sp.Expr) -> Pair:
         """The names of the sine and the cosine of an angle."""
         return Pair(self.known(sp.sin(angle)), self.known(sp.cos(angle)))
+
+
+@dataclass(frozen=True)
+class Theorem:
+    """A lemma as a book prints it; texts, with formulas between dollar signs.
+
+    ``exception`` says what happens where the assumptions of the statement fail, and ``rests_on``
+    names the lemmas that the proof uses.
+    """
+
+    name: str
+    statement: str
+    proof: str
+    exception: str = ""
+    rests_on: tuple[str, ...] = ()
+    title: str = ""
+    """The name as a formula, if it is one."""
+
+    def __post_init__(self) -> None:
+        where = f"lemma {self.name!r}"
+        texts = (self.statement, self.proof, self.exception, self.title)
+        check_text(where, self.name, *self.rests_on)
+        check_text(where, *texts, lines=True)
+        check_formulas(where, *texts)
 
 
 def label(joint: sp.Symbol) -> str:

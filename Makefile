@@ -11,7 +11,9 @@ DERIVING := $(shell find closedform derivations templates -name '*.py' -o -name 
 	-o -path 'closedform/runtime/*' -type f ! -name '*.pyc')
 PRINTED := $(shell find generated -type f ! -name '*.so' ! -path '*/__pycache__/*')
 PORTABLE := $(filter-out generated/c/extension.c,$(wildcard generated/c/*.c))
-PDFS := $(patsubst generated/latex/%.tex,build/pdf/%.pdf,$(wildcard generated/latex/*.tex))
+ARTICLES := $(filter-out generated/latex/closedform.tex,$(wildcard generated/latex/*.tex))
+PDFS := $(patsubst generated/latex/%.tex,build/pdf/%.pdf,$(ARTICLES))
+TEX_NEEDED := texlive-latex-recommended texlive-fonts-recommended lmodern
 COMPILERS := $(foreach cc,gcc clang,$(foreach type,double float,warnings-$(cc)-$(type)))
 WARNINGS := -std=c99 -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror
 
@@ -49,7 +51,7 @@ export LOCK INSTALL
 LOCKED = mkdir -p build && $(PYTHON) -c "$$LOCK" build/make.lock
 
 .PHONY: all native test check verify lint types regenerated warnings analysed \
-	portability $(COMPILERS) format figures mutations pdf bench fuzz accuracy clean distclean help
+	portability $(COMPILERS) format figures mutations pdf book bench fuzz accuracy clean distclean help
 .DELETE_ON_ERROR:
 
 all: native  ## derive, prove, generate and build; prints a line for each robot (the default)
@@ -104,15 +106,17 @@ TIDY := -*,bugprone-*,clang-analyzer-*,portability-*,-bugprone-easily-swappable-
 -bugprone-implicit-widening-of-multiplication-result,-bugprone-reserved-identifier,$\
 -clang-analyzer-security.insecureAPI.DeprecatedOrUnsafeBufferHandling
 
-analysed:  ## run cppcheck and clang-tidy on the C, if they are installed
+ANALYSED := $(PORTABLE)
+
+analysed:  ## run cppcheck and clang-tidy on the C, if installed; ANALYSED="FILE..." selects some
 	@if command -v cppcheck >/dev/null; then \
-		cppcheck --quiet --std=c99 --enable=warning,performance,portability --error-exitcode=1 \
+		cppcheck --quiet -j "$$(getconf _NPROCESSORS_ONLN)" --std=c99 --enable=warning,performance,portability --error-exitcode=1 \
 			--suppress=missingIncludeSystem --suppressions-list=tests/cppcheck-suppressions.txt \
-			-Igenerated/c -Iclosedform/runtime/extension $(PORTABLE) closedform/runtime/extension/closedform_rows.c \
+			-Igenerated/c -Iclosedform/runtime/extension $(ANALYSED) closedform/runtime/extension/closedform_rows.c \
 			closedform/runtime/extension/closedform_sweep.c && echo "$@: cppcheck clean"; \
 	else echo "$@: skipped, cppcheck is not installed"; fi
 	@if command -v clang-tidy >/dev/null; then \
-		clang-tidy --quiet --checks='$(TIDY)' --warnings-as-errors='*' $(PORTABLE) \
+		clang-tidy --quiet --checks='$(TIDY)' --warnings-as-errors='*' $(ANALYSED) \
 			closedform/runtime/extension/closedform_rows.c closedform/runtime/extension/closedform_sweep.c \
 			-- -std=c99 -Igenerated/c -Iclosedform/runtime/extension && echo "$@: clang-tidy clean"; \
 	else echo "$@: skipped, clang-tidy is not installed"; fi
@@ -125,22 +129,40 @@ format: .venv/installed.stamp  ## format the Python that is written by hand
 	$(BIN)/ruff format .
 
 mutations: native  ## change every piece of every claim and judge it again; takes half an hour
-	CLOSEDFORM_MUTATIONS=all $(BIN)/python -m pytest tests/test_mutations.py
+	CLOSEDFORM_MUTATIONS=all $(BIN)/python -m pytest -n auto --dist worksteal tests/test_mutations.py
 
-figures: native  ## draw every figure of every mechanism, in build/figures
-	$(BIN)/closedform figures -o build/figures
+figures: native  ## draw every figure: PDF in build/figures, what the pages show in docs
+	$(BIN)/closedform figures -o build/figures --docs docs
 
-pdf: $(PDFS)  ## compile the derivations to PDF, in build/pdf
+pdf: $(PDFS)  ## compile the derivations to PDF, one for each mechanism, in build/pdf
+
+# What TeX reads of the figures that were drawn; without any, there are none in the PDF.
+define TEX
+	@command -v pdflatex >/dev/null || { \
+		echo "make $(or $(MAKECMDGOALS),pdf) needs pdflatex; on Debian: apt install $(TEX_NEEDED)"; exit 1; }
+	@mkdir -p build/figures build/pdf/unfinished
+	@$(BIN)/python -m closedform.emit.backends.latex.figures build/figures
+endef
+define PDFLATEX
+TEXINPUTS=generated/latex:build/figures: pdflatex -interaction=nonstopmode -halt-on-error \
+	-output-directory=build/pdf/unfinished $(1) > build/pdf/$(2).txt \
+	|| { tail -n 30 build/pdf/$(2).txt; exit 1; }
+endef
 
 build/pdf/%.pdf: generated/latex/%.tex build/derived.txt
-	@command -v pdflatex >/dev/null || { \
-		echo "make pdf needs pdflatex; on Debian: apt install texlive-latex-recommended"; exit 1; }
-	@mkdir -p $(@D)/unfinished
-	@for pass in 1 2; do \
-		pdflatex -interaction=nonstopmode -halt-on-error -output-directory=$(@D)/unfinished $< \
-			> $(@D)/$*.txt || { tail -n 30 $(@D)/$*.txt; exit 1; }; done
-	@mv $(@D)/unfinished/$*.pdf $@
+	$(TEX)
+	@for pass in 1 2 3; do $(call PDFLATEX,$<,$*); done
+	@mv build/pdf/unfinished/$*.pdf $@
 	@echo $@
+
+# The index is made between two passes, and its pages need one more for the contents.
+book: figures build/derived.txt  ## compile the book of all mechanisms, build/pdf/closedform.pdf
+	$(TEX)
+	@for pass in 1 2; do $(call PDFLATEX,generated/latex/closedform.tex,closedform); done
+	@cd build/pdf/unfinished && makeindex -q closedform.idx
+	@for pass in 1 2; do $(call PDFLATEX,generated/latex/closedform.tex,closedform); done
+	@mv build/pdf/unfinished/closedform.pdf build/pdf/closedform.pdf
+	@echo build/pdf/closedform.pdf
 
 bench: all  ## time the generated code and the installed peers; writes benchmarks/RESULTS.md
 	$(BIN)/python -m benchmarks $(ARGS)

@@ -51,10 +51,11 @@ from closedform.derivations.papers.rao_raju import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform import (
+    Combination,
     Derivation,
     Inverse,
+    Link,
     Program,
-    Reduction,
     branches,
     choose,
     homogeneous,
@@ -83,6 +84,7 @@ d = Derivation(
         "fore-arms half a turn apart",
         "wrist links stretched along the base line",
     ),
+    poles=("wrist links stretched along the base line",),
 )
 m, q = declare(d)
 theta1, theta2R, theta3R, theta2L, theta3L, theta = q
@@ -104,6 +106,7 @@ d.step(
     "the axes of the shoulders, to the right for one arm and to the left for the other.",
     {"(x, y, z)_R": tips[0], "(x, y, z)_L": tips[1]},
     published=("(1)", "(2)"),
+    proves="The published coordinates of both tips are those of the product of the frames.",
     equal=[(tips[0], by_frames[0]), (tips[1], by_frames[1])],
 )
 
@@ -123,6 +126,10 @@ d.step(
     "differences.",
     {r"d \tan\psi": mean[0], r"d \tan\phi": mean[1]},
     published=("(3)", "(4)", "(5)"),
+    proves=(
+        "Half the difference of the tips is as stated, in averages and half differences of the "
+        "angles."
+    ),
     equal=[(apart.xreplace(halves), mean)],
 )
 d.step(
@@ -139,6 +146,11 @@ d.step(
         "e_2": real("f") * (1 - cos(beta)),
     },
     published=("(6)", "(7)"),
+    proves=(
+        "The middle of the tips is (r, h)_6; the squared distance of both points is that of a "
+        "triangle with the sides e1 and e2; and the cosine of the angle between these sides is "
+        "the one used."
+    ),
     equal=[
         (((right + left) / 2).xreplace(halves), midpoint(m)),
         (off.dot(off), short_upper**2 + short_fore**2 + 2 * short_upper * short_fore * bent),
@@ -170,6 +182,7 @@ d.step(
     "tip in (9) is R03 Rz(phi) Rx(psi) Ry(theta).",
     {"(x, y, z)_T": T, r"(L_\theta, L_{2W}, a_{3W})": sp.Matrix(extended(m, posture))},
     published=("(9)",),
+    proves="Position and rotation of the tip are those of the serial chain with the virtual arm.",
     equal=[(serial[:3, 3], T), (serial[:3, :3], orientation)],
 )
 d.step(
@@ -178,6 +191,7 @@ d.step(
     "In (8) half the base line is d / cos(psi).",
     {"l_W^2": wrist_squared(m, m.d / cos(psi))},
     published=("(8)",),
+    proves="The square of the wrist by the right triangle is the published form.",
     equal=[
         (
             wrist_squared(m, m.d / cos(psi)),
@@ -194,6 +208,10 @@ d.step(
     "The forward map computes the cosines and sines of yaw and roll directly from the tips.  It "
     "needs the angles only as outputs: psi = atan2(d tan(psi), d), and likewise for roll.",
     {r"\cos\psi": m.d / half_base, r"\sin\psi": a / half_base},
+    proves=(
+        "The cosine and the sine of the yaw are these quotients, and both factors of the square "
+        "of the wrist are the same with and without the angle."
+    ),
     equal=[
         (cos(atan2(a, m.d)), m.d / half_base),
         (sin(atan2(a, m.d)), a / half_base),
@@ -211,7 +229,7 @@ d.step(
 def averages(p: Program) -> tuple[Pair, Pair]:
     """The directions of the virtual arm: averages of the real ones on the shorter arc."""
     upper, fore = (
-        Pair(p.let(f"c{n}", side * cos(mean)), p.let(f"s{n}", side * sin(mean)))
+        Pair(c=p.let(f"c{n}", side * cos(mean)), s=p.let(f"s{n}", side * sin(mean)))
         for n, mean, half in (
             ("2A", means[theta2A], means[alpha]),
             ("23A", means[theta23A], means[beta]),
@@ -228,8 +246,8 @@ def stand(p: Program) -> tuple[Posture, sp.Matrix]:
     ahead, above = (p.let(n, e) for n, e in zip(("ahead", "higher"), gap, strict=True))
     base = p.let("base", sqrt(m.d**2 + ahead**2), nonnegative=True)
     rise = p.let("rise", sqrt(m.d**2 + above**2), nonnegative=True)
-    yaw = Pair(p.let("c_psi", m.d / base), p.let("s_psi", ahead / base))
-    roll = Pair(p.let("c_phi", m.d / rise), p.let("s_phi", above / rise))
+    yaw = Pair(c=p.let("c_psi", m.d / base), s=p.let("s_psi", ahead / base))
+    roll = Pair(c=p.let("c_phi", m.d / rise), s=p.let("s_phi", above / rise))
     length = wrist_let(p, m, base)
     return Posture(pair(theta1), upper, fore, yaw, roll, pair(theta), length, base), sp.Matrix(
         [ahead, above]
@@ -276,9 +294,9 @@ draw(
     q,
     p,
     here,
-    posture._replace(wrist=length),
-    T.subs(wrist, length),
-    {"right": (theta2A + alpha, theta23A + beta), "left": (theta2A - alpha, theta23A - beta)},
+    posture=posture._replace(wrist=length),
+    tip=T.subs(wrist, length),
+    arms={"right": (theta2A + alpha, theta23A + beta), "left": (theta2A - alpha, theta23A - beta)},
     closed=False,
     notes=(
         too_wide,
@@ -321,6 +339,10 @@ d.step(
     "factor is the derivative of the task by these quantities, and the inner factor is their "
     "derivative by the joints.",
     {"J": outer[:3, :3]},
+    proves=(
+        "The determinants of the factors: that of the virtual arm with the wrist, that of the "
+        "rates of yaw and roll, and 1/4 for averages and half differences."
+    ),
     equal=[
         (outer[:3, :3].det(), m.L1 * outward * with_wrist),
         (area, -m.L1 * without * cos(alpha) * cos(beta)),
@@ -393,7 +415,7 @@ slants = p.let("t_psi", sin(psi) / cos(psi)), p.let("t_phi", sin(phi) / cos(phi)
 gap = p.let("ahead", m.d * slants[0]), p.let("higher", m.d * slants[1])
 apart_by = sum(sp.Abs(g * t) for g, t in zip(gap, slants, strict=True))
 slack, beside = play(p, m, apart_by, gap)
-middle = solve_mid_plane(p, m, q, length, base, slack)
+middle = solve_mid_plane(p, m, q, (length, base), slack)
 upper, elbow = middle.upper, middle.elbow
 # in the axes of the upper arm: there sin(alpha) multiplies (0, L1)
 seen = (
@@ -426,7 +448,7 @@ for sine in ("alpha", "beta"):
     turn = p.let(f"turn_{sine}", choose(spent, eased.straight_on(), 0))
     leant = p.let(f"lean_{sine}", choose(spent, free.lean(turn, eased.aside), 0))
     back, on = turned_by(leant), turned_by(turn)
-    ahead = Pair(back.c * on.c + back.s * on.s, back.c * on.s - back.s * on.c)
+    ahead = on - back
     v, seen = (
         tuple(
             p.let(
@@ -434,11 +456,13 @@ for sine in ("alpha", "beta"):
             )
             for k, side in ((0, -1), (1, 1))
         )
-        for name, e, by in (("v", v, ahead), ("p", seen, Pair(back.c, -back.s)))
+        for name, e, by in (("v", v, ahead), ("p", seen, -back))
     )
     turns.append(turn)
     leans.append(leant)
-half = two_sines(p, (alpha, beta), (sp.S.Zero, m.L1), v, seen, beside, free=(theta3R, theta3L))
+half = two_sines(
+    p, (alpha, beta), ((sp.S.Zero, m.L1), v), seen, scale=beside, free=(theta3R, theta3L)
+)
 lemmas = (*middle.lemmas, half)
 solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
 turned_halves = {
@@ -486,7 +510,8 @@ d.inverses.append(
         angles=(psi, phi, pitch),
         images="fk",
         condition=condition(m),
-        reduction=Reduction(lemmas, joints, sp.diag(MID_PLANE_ROWS, from_upper / m.d)),
+        links=tuple(map(Link.of, lemmas)),
+        glue=Combination(sp.diag(MID_PLANE_ROWS, from_upper / m.d), joints),
     )
 )
 design(d, m, cos(psi))

@@ -137,15 +137,15 @@ class FreeTurn:
 
 
 def turned_by(tangent: sp.Expr) -> Pair:
-    """Cosine and sine of an angle between -pi/2 and pi/2 from its tangent."""
+    """The pair of an angle between -pi/2 and pi/2 from its tangent."""
     length = sqrt(1 + tangent**2)
-    return Pair(1 / length, tangent / length)
+    return Pair(tangent / length, 1 / length)
 
 
 def moved_by(tangent: sp.Expr, e: sp.Matrix) -> sp.Matrix:
     """By how much such a turn moves a point, also if that is little."""
-    c, s = turned_by(tangent)
-    return sp.Matrix([-s * e[1], s * e[0]]) - s**2 / (1 + c) * e
+    turn = turned_by(tangent)
+    return sp.Matrix([-turn.s * e[1], turn.s * e[0]]) - turn.s**2 / (1 + turn.c) * e
 
 
 def bent_whole(m: Dimensions, bend: Pair) -> tuple[sp.Expr, sp.Expr]:
@@ -172,5 +172,6 @@ def turn_step(d: Derivation, m: Dimensions) -> None:
         "root of that error, and a real arm at its own limit may seem to be beyond it.  In that "
         "case the virtual arm is turned back.  In exact arithmetic this turn is zero.",
         {r"\mathrm{drawn}": drawn, r"\mathrm{tilt}": tilt},
-        equal=[(rate, tilt * sp.Matrix(pair(theta2A)))],
+        proves="The rate of the tip, with the wrist turned along, is tilt along the upper arm.",
+        equal=[(rate, tilt * pair(theta2A).unit)],
     )

@@ -44,10 +44,11 @@ from closedform.derivations.papers.rao_raju import RAO_RAJU
 from sympy import Rational, atan2, cos, sin, sqrt, tan
 
 from closedform import (
+    Combination,
     Derivation,
     Inverse,
+    Link,
     Program,
-    Reduction,
     branches,
     choose,
     elbow_squares,
@@ -77,6 +78,10 @@ d = Derivation(
         "virtual arm straight or folded (a pole of the determinant)",
         "wrist links stretched along the base line",
     ),
+    poles=(
+        "virtual arm straight or folded (a pole of the determinant)",
+        "wrist links stretched along the base line",
+    ),
 )
 m, q = declare(d)
 theta1, theta2R, theta3R, theta2L, theta3L, theta = q
@@ -97,10 +102,14 @@ d.step(
     "tips if the tips are close together.",
     {"(r, h)_I": midpoint(m), "(r, h)_R - (r, h)_I": half_gap(m)},
     published=("(6)",),
+    proves=(
+        "The middle and half the difference of the tips are as stated, in half sums and half "
+        "differences of the angles."
+    ),
     equal=[(middle.xreplace(halves), midpoint(m)), (apart.xreplace(halves), half_gap(m))],
 )
 ahead, higher = real("ahead"), real("higher")
-c23, s23 = pair(theta23A)
+c23, s23 = cos(theta23A), sin(theta23A)
 across_fore, along_fore = c23 * ahead + s23 * higher, s23 * ahead - c23 * higher
 line = sp.Matrix([across_fore, m.d, along_fore])  # half of it, right minus middle, in fore-arm axes
 forearm = sp.Matrix([[c23, 0, s23], [0, -1, 0], [s23, 0, -c23]])  # R03 for theta1 = 0
@@ -113,6 +122,9 @@ d.step(
     "it).",
     {r"R_{03}^T (p_R - p_I)": line},
     published=("(3)", "(4)", "(5)", "(6)"),
+    proves=(
+        "Half the base line, turned into the axes of the virtual fore-arm, has these coordinates."
+    ),
     equal=[(forearm.T * sp.Matrix([ahead, -m.d, higher]), line)],
 )
 d.step(
@@ -123,6 +135,10 @@ d.step(
     "d.",
     {r"b\,R_z R_x e_y": wrist_line},
     published=("(3)", "(4)", "(8)"),
+    proves=(
+        "The turned y axis times half the base line has the components -d tan(phi), d and d "
+        "tan(psi)/cos(phi)."
+    ),
     equal=[(wrist_line, sp.Matrix([-m.d * tan(phi), m.d, m.d * tan(psi) / cos(phi)]))],
 )
 axis = rotation("z", phi) * rotation("x", psi)
@@ -135,6 +151,7 @@ d.step(
     "g_s)^2.",
     {"b": base, "l_W^2": m.al**2 - (base - m.gs) ** 2},
     published=("(8)",),
+    proves="Both wrist links have the square of their length l_W^2 + (b - g_s)^2.",
     equal=[
         (link.dot(link), length**2 + (base - m.gs) ** 2),
         (
@@ -152,6 +169,7 @@ d.step(
     "Conversely, yaw, roll and the direction of the virtual fore-arm give the distance of the "
     "tips.",
     {"(r_R - r_L) / 2": given_ahead, "(h_R - h_L) / 2": given_higher},
+    proves="With these distances the base line is the one that yaw and roll give.",
     equal=[
         (line.subs({ahead: given_ahead, higher: given_higher}), wrist_line),
     ],
@@ -164,6 +182,7 @@ d.step(
     "where f is the length of a fore-arm, is a sum of terms that are not negative.  It keeps its "
     "digits if the arms are straight.",
     {"R_I^2": (reaches[0] + reaches[1]) / 2 - apart.dot(apart)},
+    proves="The square of the reach is the stated mean, and N of each real arm is the stated sum.",
     equal=[
         (reaches[2], (reaches[0] + reaches[1]) / 2 - apart.dot(apart)),
         *(
@@ -187,6 +206,10 @@ d.step(
         r"\cos\psi": sqrt(m.d**2 + width**2) / half_line,
         "b": half_line,
     },
+    proves=(
+        "The cosines of roll and yaw are these quotients, and half the base line is d/(cos(phi) "
+        "cos(psi))."
+    ),
     equal=[
         (cos(atan2(-width, m.d)), cosine_roll),
         (cos(atan2(cosine_roll * beyond, m.d)), sqrt(m.d**2 + width**2) / half_line),
@@ -215,23 +238,23 @@ def stand(p: Program) -> Posture:
     virtual = two_link_arm_beside(
         p,
         lengths,
-        second,
         point,
         (theta2A, theta23A),
         side,
-        (mean[0] + gap, mean[1] - gap),
-        m.d,
+        second=second,
+        squares=(mean[0] + gap, mean[1] - gap),
+        scale=m.d,
         suffix="_virtual",
         rest=pair(theta2R),
     )
-    upper, fore = (Pair(*virtual.pair(angle)) for angle in (theta2A, theta23A))
+    upper, fore = (virtual.pair(angle) for angle in (theta2A, theta23A))
     seen = {cos(theta23A): fore.c, sin(theta23A): fore.s}
     p.let("width", across_fore.xreplace(seen))
     p.let("beyond", along_fore.xreplace(seen))
     tilted = p.let("tilted", sqrt(m.d**2 + width**2), nonnegative=True)
     half = p.let("base", sqrt(m.d**2 + ahead**2 + higher**2), nonnegative=True)
-    yaw = Pair(p.let("c_psi", tilted / half), p.let("s_psi", beyond / half))
-    roll = Pair(p.let("c_phi", m.d / tilted), p.let("s_phi", -width / tilted))
+    yaw = Pair(c=p.let("c_psi", tilted / half), s=p.let("s_psi", beyond / half))
+    roll = Pair(c=p.let("c_phi", m.d / tilted), s=p.let("s_phi", -width / tilted))
     return Posture(pair(theta1), upper, fore, yaw, roll, pair(theta), wrist_let(p, m, half), half)
 
 
@@ -272,9 +295,9 @@ draw(
     q,
     p,
     stand(p),
-    angles,
-    tip(m, angles),
-    {"right": (theta2R, theta2R + theta3R), "left": (theta2L, theta2L + theta3L)},
+    posture=angles,
+    tip=tip(m, angles),
+    arms={"right": (theta2R, theta2R + theta3R), "left": (theta2L, theta2L + theta3L)},
     closed=True,
     notes=notes,
 )
@@ -315,6 +338,10 @@ d.step(
     "the determinants of the factors: those of both real arms are in the numerator, that of the "
     "virtual arm is in the denominator.",
     {"J": outer[:3, :3]},
+    proves=(
+        "The determinant of each factor: the outer one, those of the virtual and of the real "
+        "arms, and those of yaw and roll."
+    ),
     equal=[
         (outer[:3, :3].det(), m.L1 * outward * with_wrist),
         (point_by.det(), -m.L1 * without),
@@ -407,7 +434,7 @@ p = Program()
 wrist, half_base = wrist_given(p, m, cos(psi) * cos(phi))
 slants = [p.let(f"t_{e.name}", sin(e) / cos(e)) for e in (psi, phi)]
 slack, beside = play(p, m, sum(sp.Abs(half_base * t) for t in slants))
-mid = solve_mid_plane(p, m, q, wrist, half_base, slack)
+mid = solve_mid_plane(p, m, q, (wrist, half_base), slack)
 upper, fore = mid.upper, mid.fore
 second = p.let("fore_arm", forearm_length, nonnegative=True)
 (N, M), bent = elbow_squares(p, lengths, second, mid.elbow, suffix="_mid")
@@ -461,7 +488,7 @@ bent = p.let(
 )
 side = p.let("sigma_right", sign_of(bent))
 opposite = p.let("sigma_other", side * sigma_left)
-elbow = p.matrix("elbow", m.L1 * sp.Matrix(upper))
+elbow = p.matrix("elbow", m.L1 * upper.unit)
 swing = p.matrix("swing", moved_by(lean, elbow))
 arms = []
 for name, sigma, unknowns in (
@@ -479,12 +506,12 @@ for name, sigma, unknowns in (
         two_link_arm_beside(
             p,
             lengths,
-            second,
             end,
             unknowns,
             sigma,
-            (squares[name][0] - change, squares[name][1] + change),
-            beside,
+            second=second,
+            squares=(squares[name][0] - change, squares[name][1] + change),
+            scale=beside,
             suffix=f"_{name}",
             sided=name == "right",
             free=unknowns[:1],
@@ -542,10 +569,10 @@ d.inverses.append(
         angles=(psi, phi, pitch),
         images="fk",
         condition=condition(m),
-        reduction=Reduction(
-            lemmas,
-            joints,
+        links=tuple(map(Link.of, lemmas)),
+        glue=Combination(
             sp.diag(MID_PLANE_ROWS, sp.Matrix.vstack(closure, turned_line * difference)),
+            joints,
             solutions_per_branch=2,
             because="the virtual arm is bent to the same side as the right arm",
         ),

@@ -15,6 +15,8 @@ from sympy import Rational, atan2, cos, pi, sin, sqrt
 from closedform import (
     Derivation,
     Lemma,
+    LinksAtHeight,
+    Pair,
     Program,
     denavit_hartenberg,
     homogeneous,
@@ -25,6 +27,7 @@ from closedform import (
     two_link_arm,
 )
 
+pair = Pair.of
 theta2A, theta23A = real("theta2A"), real("theta23A")
 alpha, beta = real("alpha"), real("beta")
 x, y, z, psi, phi, pitch = (real(n) for n in ("x", "y", "z", "psi", "phi", "pitch"))
@@ -62,13 +65,6 @@ class Joints(NamedTuple):
     theta: sp.Symbol
 
 
-class Pair(NamedTuple):
-    """Cosine and sine of an angle."""
-
-    c: sp.Expr
-    s: sp.Expr
-
-
 class Posture(NamedTuple):
     """All quantities that the tip depends on, as names of a program or as expressions."""
 
@@ -82,10 +78,6 @@ class Posture(NamedTuple):
     """The variable length l_W of eq. (8)."""
     base: sp.Expr
     """Half the base line of the wrist."""
-
-
-def pair(angle: sp.Expr) -> Pair:
-    return Pair(cos(angle), sin(angle))
 
 
 def declare(d: Derivation) -> tuple[Dimensions, Joints]:
@@ -109,6 +101,27 @@ def declare(d: Derivation) -> tuple[Dimensions, Joints]:
     )
     theta1, theta2R, theta3R = d.joint("theta1"), d.joint("theta2R"), d.joint("theta3R")
     theta2L, theta3L = d.joint("theta2L", beside=theta2R), d.joint("theta3L", beside=theta3R)
+    for arm, side in (("R", "right"), ("L", "left")):
+        for k, link in ((2, "upper arm"), (3, "fore-arm")):
+            d.write(f"theta{k}{arm}", rf"\theta_{k}^{arm}", f"angle of the {side} {link}")
+        d.write(f"theta23{arm}", rf"\theta_{{23}}^{arm}", f"absolute angle of the {side} fore-arm")
+    d.write("theta2A", r"\theta_2^A", "average of the angles of the upper arms")
+    d.write("theta23A", r"\theta_{23}^A", "average of the absolute angles of the fore-arms")
+    d.write("alpha", r"\delta_2", "half the difference of the angles of the upper arms")
+    d.write("beta", r"\delta_{23}", "half the difference of the absolute angles of the fore-arms")
+    d.write("f", meaning="length of a fore-arm, from the elbow to the tip")
+    d.write("wrist", "l_W", "length of the wrist")
+    d.write("ahead", r"\Delta_a", "how far the right tip is ahead of the middle of the tips")
+    d.write("higher", r"\Delta_h", "how far the right tip is above the middle of the tips")
+    d.write("beyond", r"\Delta_z", "half the base line, along the virtual fore-arm")
+    d.write("width", r"\Delta_x", "half the base line, across the virtual fore-arm")
+    d.write("upright", r"\mathrm{room}_\phi", "cosine of the roll, which must be positive")
+    d.write("L_2W", "L_{2W}", "length of the virtual fore-arm with the wrist")
+    d.write("a_3W", "a_{3W}", "offset of the virtual fore-arm with the wrist")
+    d.write("psi_max", meaning="largest yaw")
+    d.write("phi_max", meaning="largest roll")
+    d.write("beta_min", meaning="smallest separation angle of the wrist links")
+
     return dimensions, Joints(theta1, theta2R, theta3R, theta2L, theta3L, d.joint("theta"))
 
 
@@ -168,7 +181,7 @@ def half_gap(m: Dimensions) -> sp.Matrix:
 
 def midpoint(m: Dimensions) -> sp.Matrix:
     """The middle of the tips in the mid-plane."""
-    shoulder = m.L1 * sp.Matrix(pair(theta2A))
+    shoulder = m.L1 * pair(theta2A).unit
     return cos(alpha) * shoulder + cos(beta) * (arm(m, theta2A, theta23A) - shoulder)
 
 
@@ -212,7 +225,7 @@ def tip(m: Dimensions, p: Posture) -> sp.Matrix:
 
 def straight(along: sp.Expr, across: sp.Expr, upper: Pair, fore: Pair) -> sp.Expr:
     """The component of the fore-arm across the upper arm: zero if the arm is straight or folded."""
-    bend = Pair(upper.c * fore.c + upper.s * fore.s, upper.c * fore.s - upper.s * fore.c)
+    bend = fore - upper
     return along * bend.c - across * bend.s
 
 
@@ -223,7 +236,7 @@ def turned(angle: sp.Expr) -> sp.Expr:
 
 def pose_matrix(m: Dimensions, program: Program, p: Posture) -> sp.Matrix:
     """The frame of the tip, R03 Rz(phi) Rx(psi) Ry(theta), from the pairs of a posture."""
-    (c1, s1), (c23, s23) = p.waist, p.fore
+    c1, s1, c23, s23 = p.waist.c, p.waist.s, p.fore.c, p.fore.s
     forearm = sp.Matrix([[c1 * c23, s1, c1 * s23], [s1 * c23, -c1, s1 * s23], [s23, 0, -c23]])
     symbols = [real("u"), real("v"), real("w")]
     rolled, yawed, pitched = (
@@ -294,18 +307,17 @@ class MidPlane(NamedTuple):
     upper: Pair
     fore: Pair
     elbow: Pair
-    """Cosine and sine of the angle from the upper arm to the fore-arm."""
+    """The pair of the angle from the upper arm to the fore-arm."""
 
 
 def solve_mid_plane(
     program: Program,
     m: Dimensions,
     q: Joints,
-    wrist: sp.Symbol,
-    base: sp.Symbol,
+    wrist: tuple[sp.Symbol, sp.Symbol],
     slack: sp.Symbol,
 ) -> MidPlane:
-    """Solve for pitch, waist and virtual arm; the length of the wrist is known."""
+    """Solve for pitch, waist and virtual arm; ``wrist`` is its length and half its base line."""
     given = (pair(psi), pair(phi), pair(pitch))
     program.let("extent", m.d * m.L1 * (m.L2 + m.a3))
     program.require(
@@ -314,7 +326,7 @@ def solve_mid_plane(
         "the arms are apart, and upper arms and fore-arms have a length",
     )
     nothing = Pair(sp.S.Zero, sp.S.Zero)
-    known = Posture(nothing, nothing, nothing, *given, wrist, base)
+    known = Posture(nothing, nothing, nothing, *given, *wrist)
     names = ("L_theta", "L_2W", "a_3W")
     aside, along, across = (
         program.let(n, e) for n, e in zip(names, extended(m, known), strict=True)
@@ -322,14 +334,12 @@ def solve_mid_plane(
     turn = sine_cosine(
         program,
         q.theta1,
-        -x,
-        y,
-        aside,
+        (-x, y, aside),
         sigma_waist,
         free=(q.theta1,),
         scale=sum(m),
         slack=slack,
-        reach=(m.L1, sqrt(along**2 + across**2), z - m.d1),
+        toward=LinksAtHeight(m.L1, sqrt(along**2 + across**2), z - m.d1),
     )
     outward = turn.known(x * cos(q.theta1) + y * sin(q.theta1))
     sigma_bend = program.let("sigma_bend", -sigma_waist * sigma_elbow)
@@ -343,7 +353,7 @@ def solve_mid_plane(
         free=(q.theta2R, q.theta2L),
     )
     pitched = linear_pair(q.theta, sin(pitch), cos(pitch))
-    pairs = (Pair(*bend.pair(e)) for e in (theta2A, theta23A, theta23A - theta2A))
+    pairs = (bend.pair(e) for e in (theta2A, theta23A, theta23A - theta2A))
     return MidPlane((pitched, turn, bend), *pairs)
 
 
@@ -387,7 +397,9 @@ def named(expr, p: Posture, q: Joints):
     """An expression in the angles of the mid-plane, rewritten in the named pairs of a posture."""
     state = (q.theta1, theta2A, theta23A, psi, phi, q.theta)
     names = {
-        f: n for s, t in zip(state, p[:6], strict=True) for f, n in zip(pair(s), t, strict=True)
+        f: n
+        for angle, known in zip(state, p[:6], strict=True)
+        for f, n in ((sin(angle), known.s), (cos(angle), known.c))
     }
     return expr.xreplace(names)
 
@@ -411,12 +423,16 @@ def design(d: Derivation, m: Dimensions, level: sp.Expr) -> None:
     room, w = real("room", positive=True), real("w", positive=True)
     d.step(
         "Wrist design",
-        "The separation angle beta is the angle between a wrist link and the base line, so half "
-        "the base line is al cos(beta) plus half the distance of the gears.  beta is smallest at "
-        "the largest yaw and roll.  This gives the shortest links, or the largest yaw for given "
+        "The separation angle is that between a wrist link and the base line, so half the base "
+        "line is al times its cosine plus half the distance of the gears.  The angle is smallest "
+        "at the largest yaw and roll.  This gives the shortest links, or the largest yaw for given "
         "links.",
         {r"a_{l,\min}": needed, r"\cos\psi_{max}": m.d / (span * (cos(phi) if rolls else 1))},
         published=("(10)",),
+        proves=(
+            "The cosine of twice the returned half angle is the quotient that equation (10) asks "
+            "for."
+        ),
         equal=[(cos(2 * atan2(sqrt(room), sqrt(room + 2 * w))), w / (w + room))],
     )
     d.function(

@@ -22,10 +22,10 @@ def draw(
     q: Joints,
     program: Program,
     here: Posture,
+    *,
     posture: Posture,
     tip: sp.Matrix,
     arms: Mapping[str, tuple[sp.Expr, sp.Expr]],
-    *,
     closed: bool,
     notes: tuple[str, ...],
 ) -> None:
@@ -85,8 +85,8 @@ def places(
     found = {"base": sp.zeros(3, 1), "column": sp.Matrix([0, 0, m.d1])}
     offsets = {"right": m.d, "left": -m.d, "virtual": sp.S.Zero}
     for side, (upper, fore) in {**arms, "virtual": (p.upper, p.fore)}.items():
-        elbow = m.L1 * sp.Matrix(upper)
-        corner = elbow + m.a3 * sp.Matrix(fore)
+        elbow = m.L1 * upper.unit
+        corner = elbow + m.a3 * fore.unit
         tip = reach(m, upper, fore, m.L2, m.a3)
         for name, planar in (
             ("shoulder", sp.zeros(2, 1)),
@@ -123,7 +123,7 @@ def wrist_links(m: Dimensions, p: Posture) -> dict[str, sp.Matrix]:
 
 def wrist_axes(p: Posture) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
     """The base line of the wrist, to the right, its axis, and the axes of the fore-arm."""
-    (c1, s1), (c23, s23) = p.waist, p.fore
+    c1, s1, c23, s23 = p.waist.c, p.waist.s, p.fore.c, p.fore.s
     forearm = sp.Matrix([[c1 * c23, s1, c1 * s23], [s1 * c23, -c1, s1 * s23], [s23, 0, -c23]])
     rolled, yawed = turns(p)
     return forearm * (rolled * yawed[:, 1]), forearm * (rolled * yawed[:, 2]), forearm

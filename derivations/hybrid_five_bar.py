@@ -9,12 +9,13 @@ from sympy import atan2, cos, sin, sqrt
 
 from closedform import (
     Bound,
-    Continuum,
+    Degenerate,
     Derivation,
     Inverse,
+    Link,
     Program,
     Solved,
-    Stage,
+    Triangle,
     branches,
     choose,
     circle_intersection,
@@ -24,8 +25,6 @@ from closedform import (
     real,
     rotation,
     skeleton,
-    triangle_angles,
-    two_link_triangle_by_square,
     velocity_matrices,
 )
 
@@ -40,6 +39,7 @@ d = Derivation(
     "points along (-sin(t), cos(t), 0).",
     task=["x", "y", "z"],
     singularities=("P on AB", "A, C, P in line", "B, D, P in line", "C, D, P in line"),
+    poles=("C, D, P in line",),
 )
 UNIT, NONE = "any unit", "the paper gives no value"
 L0 = d.parameter("L0", value=7, unit=UNIT, meaning="distance AB of the pivots", source=NONE)
@@ -73,7 +73,7 @@ loop = [
 by_c, by_d = c + bar(L2, theta4), d_point + bar(L2, theta5)
 rho = L1 * sin(theta2) + L2 * sin(theta4)
 leg_c, leg_d = (dict(zip(p, point, strict=True)) for point in (by_c, by_d))
-d.step(
+the_loop = d.step(
     "The loop",
     "P lies in the plane of the linkage, whose normal is k, at the distance L2 from C and from D.  "
     "By the leg over C, the signed distance of P from the axis is rho.  The leg over D must lead "
@@ -86,6 +86,10 @@ d.step(
         r"\mathbf p = \mathbf d + \overrightarrow{DP}": by_d,
         r"\rho": rho,
     },
+    proves=(
+        "Both legs lead to the same point, which is at the signed distance rho from the axis; "
+        "and the loop equations hold for it."
+    ),
     equal=[
         (
             by_c,
@@ -107,7 +111,9 @@ C = f.let("C_y", L1 * cos(theta2)), f.let("C_r", L1 * sin(theta2))
 D = f.let("D_y", L0 + L1 * cos(theta3)), f.let("D_r", L1 * sin(theta3))
 CP, DP = (real("CP_y"), real("CP_r")), (real("DP_y"), real("DP_r"))
 CD = f.let("CD_y", D[0] - C[0]), f.let("CD_r", D[1] - C[1])
-meeting, chord = circle_intersection(f, CD, L2, L2, CP, sigma, L0 + L1 + L2, free=(theta4, theta5))
+meeting, chord = circle_intersection(
+    f, CD, (L2, L2), CP, sigma, scale=L0 + L1 + L2, free=(theta4, theta5)
+)
 n, half, height = chord.direction, chord.along, chord.height
 for name, value in zip(CP, (meeting[CP[0]], meeting[CP[1]]), strict=True):
     f.let(str(name), value)
@@ -130,6 +136,10 @@ d.step(
         r"\overrightarrow{CP}": to_p,
         r"\overrightarrow{DP}": to_p.subs(h, -h),
     },
+    proves=(
+        "CP minus DP is the vector from C to D, CP has the squared length e^2 + h^2, and this is "
+        "L2^2."
+    ),
     equal=[
         (to_p - to_p.subs(h, -h), 2 * h * sp.Matrix(n)),
         (
@@ -163,11 +173,37 @@ d.function(
     {"theta": [atan2(CP[1], CP[0]), atan2(DP[1], DP[0])]},
     program=f,
     branches=modes,
+    entries=(theta4, theta5),
     notes=(
         "NaN for an assembly mode that does not exist.",
         "If C and D coincide, both angles are free but equal: +90 or -90 degrees is returned.",
     ),
 )
+
+for name, meaning in (
+    ("CP_y", "component of CP along AB"),
+    ("CP_r", "component of CP away from AB"),
+    ("DP_y", "component of DP along AB"),
+    ("DP_r", "component of DP away from AB"),
+    ("P_r", "distance of P from AB, with a sign"),
+    ("CD_y", "component of CD along AB"),
+    ("CD_r", "component of CD away from AB"),
+    ("n_1", "component of n away from AB"),
+    ("n_2", "component of n along AB"),
+    ("L3", "length of the driven bar over D, where it differs"),
+    ("L4", "length of the passive bar over D, where it differs"),
+    ("psi", "angle from CP to DP"),
+    ("kappa", "condition number of A"),
+    ("w", "by how much L0 exceeds 2*L1"),
+    ("s", "slack of the lower limit of L0 in a regime"),
+    ("t", "slack of the upper limit of L0 in a regime"),
+    ("M", "the larger of L1 and L2"),
+    ("m", "the smaller of L1 and L2"),
+    ("R", "L1 + L2, the outer radius of the hollow spheres"),
+    ("r", "|L1 - L2|, the inner radius of the hollow spheres"),
+):
+    d.write(name, meaning=meaning)
+d.write("r_P", "r_P", "distance of P from AB")
 
 skeleton(
     d,
@@ -218,6 +254,10 @@ d.step(
     "it; DP likewise.",
     {"A": A_p, "B": B_q, r"B(\theta)": by_angles},
     published=("(2)", "(3)", "(4)"),
+    proves=(
+        "The rows of A are L2*k, p - c and p - d; in the angles, B is diagonal with the entries "
+        "L2*rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 - theta3)."
+    ),
     equal=[
         (A_p, sp.Matrix.vstack(L2 * k.T, in_space(*CP).T, in_space(*DP).T)),
         (
@@ -225,6 +265,7 @@ d.step(
             sp.diag(L2 * rho, L1 * L2 * sin(theta4 - theta2), L1 * L2 * sin(theta5 - theta3)),
         ),
     ],
+    uses=[the_loop],
 )
 
 L3, L4 = (real(name, positive=True) for name in ("L3", "L4"))
@@ -239,6 +280,7 @@ d.step(
     "L2 = L4.  Then the triangle over CD is isosceles, L2^2 is a common factor of A*A^T, which the "
     "condition number uses, and the two hollow spheres of the workspace have the same size.",
     {r"B_{33}": L3 * L4 * sin(theta5 - theta3)},
+    proves="The last rows of A and B are those of the bars L3 and L4.",
     equal=[
         (general[:, :3], bar(L4, theta5).T),
         (general[:, 3:], sp.Matrix([[0, 0, L3 * L4 * sin(theta5 - theta3)]])),
@@ -282,6 +324,10 @@ d.step(
         r"\det B": det_b,
         r"\det J": det_j,
     },
+    proves=(
+        "A*J = B; the determinants of A, B and J are as stated; and the cross product of CP and "
+        "DP is 2*h*e."
+    ),
     equal=[
         (A_p * J.subs(driven), B_q),
         (A_p.det().subs(passive), det_a),
@@ -358,11 +404,14 @@ r2 = w.let("r2", x**2 + z**2, nonnegative=True)
 square_c = w.let("square_c", r2 + y**2, nonnegative=True)
 square_d = w.let("square_d", r2 + (y - L0) ** 2, nonnegative=True)
 squares = list(w.body)
-triangle_c, arm_c = two_link_triangle_by_square(
-    w, L1, L2, square_c, elbow4, base2, sigma2, suffix="_c"
-)
-triangle_d, arm_d = two_link_triangle_by_square(
-    w, L1, L2, square_d, elbow5, base3, sigma3, suffix="_d"
+(triangle_c, arm_c), (triangle_d, arm_d) = (
+    Triangle.from_square(w, (L1, L2), square, sign, suffix=suffix).stretched_without_link(
+        w, angles, sqrt(square), suffix=suffix
+    )
+    for suffix, square, angles, sign in (
+        ("_c", square_c, (elbow4, base2), sigma2),
+        ("_d", square_d, (elbow5, base3), sigma3),
+    )
 )
 inside = Program([*squares, *(s for s in w.body if isinstance(s, Bound))])
 size = L0 + L1 + L2
@@ -412,8 +461,8 @@ def spelled(name: str, square: sp.Expr, along: sp.Expr, sign: sp.Symbol) -> dict
         f"{name}^2": square,
         f"N_{name}": (L1 + L2) ** 2 - distance,
         f"M_{name}": distance - (L1 - L2) ** 2,
-        rf"\theta_{ {'a': 2, 'b': 3}[name] }": atan2(tau * real("r"), along)
-        - triangle_angles(L1, L2, N, M, sign)[1],
+        rf"\theta_{ {'a': 2, 'b': 3}[name] }": atan2(tau * real("r_P"), along)
+        - Triangle(L1, L2, sign, N, M).base,
     }
 
 
@@ -425,11 +474,12 @@ d.step(
     "three signs are those of the diagonal of B.  If P is on the axis, theta1 is free and we "
     "return 0.  P can be at A or at B only if L1 = L2; then theta2 or theta3 is free as well.",
     {
-        "r": sqrt(x**2 + z**2),
+        "r_P": sqrt(x**2 + z**2),
         r"\theta_1": turn[theta1],
-        **spelled("a", y**2 + real("r") ** 2, y, sigma2),
-        **spelled("b", (y - L0) ** 2 + real("r") ** 2, y - L0, sigma3),
+        **spelled("a", y**2 + real("r_P") ** 2, y, sigma2),
+        **spelled("b", (y - L0) ** 2 + real("r_P") ** 2, y - L0, sigma3),
     },
+    uses=[the_loop],
 )
 off_axis = real("rho")
 ap, bp = sp.Matrix([y, off_axis]), sp.Matrix([y - L0, off_axis])
@@ -449,6 +499,10 @@ d.step(
         r"\overrightarrow{BP}": bp,
         r"|\overrightarrow{CP}\times\overrightarrow{DP}|": L2**2 * sp.Abs(sin(theta5 - theta4)),
     },
+    proves=(
+        "The cross product of CP and DP from the products with AP and BP, and each of these "
+        "products as stated."
+    ),
     equal=[
         (
             bars_at_p(products(ap, bp), products(ap, cp), products(bp, dp)),
@@ -530,23 +584,29 @@ d.inverses.append(
         (sp.S.Zero,) * 3,
         tuple(loop),
         (
-            Continuum(on_axis, axis, theta1, r"\theta_2, \theta_3 \text{ as for any } \theta_1"),
-            Continuum(
-                at_a,
+            Degenerate(
+                (on_axis,),
+                axis,
+                theta1,
+                relation=r"\theta_2, \theta_3 \text{ as for any } \theta_1",
+            ),
+            Degenerate(
+                (at_a, on_axis),
                 {**axis, y: sp.S.Zero, L2: L1},
                 theta2,
-                r"\theta_4 = \theta_2 + \pi",
-                also=(on_axis,),
+                relation=r"\theta_4 = \theta_2 + \pi",
             ),
-            Continuum(
-                at_b, {**axis, y: L0, L2: L1}, theta3, r"\theta_5 = \theta_3 + \pi", also=(on_axis,)
+            Degenerate(
+                (at_b, on_axis),
+                {**axis, y: L0, L2: L1},
+                theta3,
+                relation=r"\theta_5 = \theta_3 + \pi",
             ),
         ),
         images="fk",
-        stages=(
-            Stage((theta1,), (0,), {}),
-            Stage((theta2,), (1,), in_plane),
-            Stage((theta3,), (2,), in_plane),
+        links=tuple(
+            Link((joint,), (equation,), given)
+            for joint, equation, given in zip(q, loop, ({}, in_plane, in_plane), strict=True)
         ),
     )
 )

@@ -35,11 +35,15 @@ def conditioning(
         "larger of h/e and e/h, for either sign of the cosine.",
         {
             r"A A^T": gram,
-            r"\sigma^2": sp.Matrix([L2**2 * (1 - c), L2**2, L2**2 * (1 + c)]),
+            r"\varsigma^2": sp.Matrix([L2**2 * (1 - c), L2**2, L2**2 * (1 + c)]),
             r"\kappa^2": (1 + sp.Abs(c)) / (1 - sp.Abs(c)),
             r"\kappa(h, e)": sp.Max(h, e) / sp.Min(h, e),
         },
         published=("(6)", "(7)", "(8)"),
+        proves=(
+            "The product A*A^T, its characteristic polynomial, and the squares 2*h^2 and 2*e^2 "
+            "of the singular values."
+        ),
         equal=[
             (A * A.T, gram),
             (
@@ -57,6 +61,7 @@ def conditioning(
         "kappa = 1 if CP and DP are at right angles: h = e, so CD = sqrt(2)*L2.  By the range of "
         "CD, A can be isotropic if and only if L2 is positive and sqrt(2)*L2 is in that range.",
         {"d_{min}": sp.Max(0, L0 - 2 * L1), "d_{max}": L0 + 2 * L1},
+        proves="A*A^T is L2^2 times the identity if CP and DP are at right angles.",
         equal=[(gram.subs(cos(psi), 0), L2**2 * sp.eye(3))],
     )
     d.step(
@@ -104,6 +109,7 @@ def range_of_CD(d: Derivation, CD: sp.Matrix, theta2: sp.Symbol, theta3: sp.Symb
             r"(L_0 + 2 L_1)^2 - CD^2": bounds[0][1],
             r"CD^2 - (L_0 - 2 L_1)^2": bounds[1][1],
         },
+        proves="Both differences of squares are the stated sums, and each bound is attained.",
         equal=[
             *bounds,
             (square.subs({theta2: pi, theta3: 0}), (L0 + 2 * L1) ** 2),
@@ -202,6 +208,10 @@ def loci(d: Derivation) -> Loci:
                 sp.factor(opposite.curve.subs(L0, 0)), 0, evaluate=False
             ),
         },
+        proves=(
+            "The resultants are the stated curves, Cramer's rule gives them too, they are "
+            "symmetric, and for L0 = 0 the second one factors as shown."
+        ),
         equal=[
             (same.curve, sp.expand(circles)),
             (L0**2 * same.curve, by_cramer(sp.S.One, sp.S.Zero)),
@@ -232,6 +242,11 @@ def loci(d: Derivation) -> Loci:
             r"F_\psi": turned,
             r"F_\psi(L_0 = 0)": concentric,
         },
+        proves=(
+            "The resultants for a right angle and for a general psi are the curves that Cramer's "
+            "rule gives, their mirror images belong to the other sign, and the curve factors for "
+            "L0 = 0."
+        ),
         equal=[
             (square.curve, by_cramer(sp.S.Zero, sp.S.One)),
             (square.curve.subs(mirror), by_cramer(sp.S.Zero, -sp.S.One)),
@@ -351,6 +366,9 @@ def workspace(d: Derivation) -> dict[str, Regime]:
             r"V_{lens}(r, R)": lens(inner, reach, L0),
             r"V_{lens}(r, r)": lens(inner, inner, L0),
         },
+        proves=(
+            "The volume in each regime is the sum and difference of the lenses that it consists of."
+        ),
         equal=[(g.volume, g.pieces) for g in found.values()],
         rows=[
             ("inner balls", "range", "volume"),
@@ -369,6 +387,7 @@ def workspace(d: Derivation) -> dict[str, Regime]:
         "At each seam the volumes of both regimes agree, and so do their derivatives by L0.  So "
         "the formula holds for all lengths, including the limits.",
         {"L_0": [seam for _, _, seam in SEAMS]},
+        proves="The volumes of neighbouring regimes, and their derivatives, agree at each seam.",
         equal=[
             (g(found[a].volume).subs(L0, at), g(found[b].volume).subs(L0, at))
             for a, b, at in SEAMS
@@ -385,6 +404,7 @@ def workspace(d: Derivation) -> dict[str, Regime]:
         "largest at L1 = L2, the whole ball.  Without such a bound on the lengths there is no "
         "largest workspace.",
         {"V(L_0 = 0)": whole, r"-V'(L_0)": sp.Matrix([form for _, form in decrease(found)])},
+        proves="The volume at L0 = 0, and for each regime minus the derivative in the slacks.",
         equal=[
             (found["inner balls inside, overlapping"].volume.subs(L0, 0), whole),
             *decrease(found),

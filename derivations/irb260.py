@@ -76,12 +76,24 @@ d.step(
     "with v = -omega × q.  A point on the axis does not move.",
     {rf"\xi_{i}": twist.T for i, twist in enumerate(twists, 1)},
     published=("(1)", "(2)", "(3)", "(4)", "(5)", "(8)", "(9)"),
+    proves="Each twist leaves the points of its axis where they are.",
     equal=[
         (twist_matrix(twist) * sp.Matrix([*p, 1]), sp.zeros(4, 1))
         for twist, p in zip(twists, points, strict=True)
     ],
 )
 
+for i, loop in ((1, "lower"), (2, "upper"), (3, "driving")):
+    d.write(f"a{i}", meaning=f"distance of the joints on the coupler of the {loop} loop")
+    d.write(f"gamma{i}", meaning=f"direction of the fixed link of the {loop} loop")
+    d.write(f"phi{i}", meaning=f"turn of the coupler of the {loop} loop")
+    d.write(f"beta{i}", meaning=f"angle of the rod of the {loop} loop")
+for i in (1, 2, 3, 5):
+    d.write(f"m{i}", meaning=f"angle of motor {i}")
+    d.write(f"theta{i}_dot", meaning=f"rate of joint {i}")
+d.write("lambda", meaning="polar angle of an axis")
+d.write("mu", meaning="azimuth of an axis")
+d.write("t", meaning="time")
 lam, mu, theta = real("lambda"), real("mu"), real("theta")
 v = sp.Matrix([real(f"v{i}") for i in "xyz"])
 w = sp.Matrix([sin(lam) * cos(mu), sin(lam) * sin(mu), cos(lam)])  # any unit vector
@@ -98,6 +110,10 @@ d.step(
         r"\omega": w.T,
     },
     published=("(10)",),
+    proves=(
+        "The derivative of the formula by the angle is the twist times the formula, and at zero "
+        "it is the identity."
+    ),
     equal=[(e.diff(theta), twist_matrix(sp.Matrix([*v, *w])) * e), (e.subs(theta, 0), sp.eye(4))],
 )
 
@@ -136,7 +152,7 @@ home = homogeneous(sp.eye(3), points[4])
 arm = simplest(d.couple(moves[1] * moves[2] * moves[3]))
 pose = simplest(moves[0] * arm * moves[4] * home)
 free = sp.prod([*moves, home])
-d.step(
+by_screws = d.step(
     "Pose by the product of exponentials",
     "With the virtual constraint, the three parallel axes only translate the wrist.  The other two "
     "axes turn the hand about z.",
@@ -146,6 +162,7 @@ d.step(
         r"g_{st}": pose,
     },
     published=("(12)", "(13)"),
+    proves="The product of the exponentials, with the virtual constraint, is the stated pose.",
     equal=[(d.couple(free), pose)],
 )
 rows = [
@@ -160,8 +177,13 @@ d.step(
     "Pose by Denavit-Hartenberg",
     "A standard (distal) chain along the links gives the same pose, also for five independent "
     "joints.",
-    {r"(a, \alpha, d, \vartheta)": sp.Matrix(rows)},
+    {r"(a_i, \alpha_i, d_i, \vartheta_i)": sp.Matrix(rows)},
+    proves=(
+        "The chain along the links is the product of the exponentials, with and without the "
+        "constraint."
+    ),
     equal=[(sp.prod(links), free), (d.couple(sp.prod(links)), pose)],
+    uses=[by_screws],
 )
 position, turn = pose[:3, 3], theta1 + theta5
 rho = simplest(position[1] * cos(theta1) - position[0] * sin(theta1))
@@ -171,11 +193,16 @@ d.step(
     "The hand is level, so its position and its angle about z describe its pose.  rho is the "
     "distance of the hand from the base axis; it is negative if the arm reaches over this axis.",
     {r"\rho": rho, r"\psi": turn},
+    proves=(
+        "The hand stays level, its x axis has the direction psi, and its place is at the "
+        "distance rho from the base axis in the direction of theta1."
+    ),
     equal=[
         (pose[:3, :3] * up, up),
         (pose[:2, 0], sp.Matrix([cos(turn), sin(turn)])),
         (position[:2, 0], sp.Matrix([-rho * sin(theta1), rho * cos(theta1)])),
     ],
+    uses=[by_screws],
 )
 d.function(
     "fk",
@@ -255,6 +282,7 @@ d.step(
         r"J^s_{st} = [\xi_1', \xi_2' - \xi_4', \xi_3' - \xi_4', \xi_5']": J_space,
     },
     published=("(16)", "(17)", "(18)", "(20)", "(21)"),
+    proves="Each column is the twist of the derivative of the pose by its joint.",
     equal=[
         (J_space[:, i], twist_of(pose.diff(angle) * inverse(pose))) for i, angle in enumerate(q)
     ],
@@ -265,6 +293,11 @@ d.step(
     "derivative of (x, y, z, yaw); its first three rows are the velocity of the origin of the "
     "hand, v + omega × p.",
     {"J_b": J_body, "J": J},
+    proves=(
+        "Each column of the body Jacobian is the twist of the derivative of the pose in the "
+        "frame of the hand; the rows of the task Jacobian are v + omega × p and the rate of the "
+        "yaw."
+    ),
     equal=[(J_body[:, i], twist_of(inverse(pose) * pose.diff(angle))) for i, angle in enumerate(q)]
     + [(J[:3, i], J_space[:3, i] + J_space[3:, i].cross(position)) for i in range(4)]
     + [(J[3, :], J_space[5, :])],
@@ -282,10 +315,15 @@ d.step(
     "derivative of the position in eq. (13) along any path.",
     {r"v = \hat V^s_{st} q_5": velocity},
     published=("(23)",),
+    proves=(
+        "The spatial velocity of the origin is the stated one, and it is the time derivative of "
+        "the position along any path."
+    ),
     equal=[
         (spatial * sp.Matrix([*position, 1]), sp.Matrix([*velocity, 0])),
         (position.subs(along).diff(time), velocity.subs(along).subs(speeds)),
     ],
+    uses=[by_screws],
 )
 lost = sp.Matrix([cos(theta1), sin(theta1), 0, 0])
 stuck = sp.Matrix([-sin(theta1) * sin(theta2), cos(theta1) * sin(theta2), cos(theta2), 0])
@@ -304,6 +342,10 @@ d.step(
         r"n_{\theta_3}": stuck.T,
         r"n_{\theta_3} J": simplest(stuck.T * J),
     },
+    proves=(
+        "The determinant is the stated product, also for the twists; the lost directions times "
+        "the Jacobian are the stated rows."
+    ),
     equal=[
         (J.det(method="berkowitz"), det),
         (det, l3 * l4 * rho * cos(theta3)),

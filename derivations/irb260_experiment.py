@@ -26,6 +26,7 @@ def experiment(
         "The motion starts at theta = 0 with the rates -30, 10, 5 and 0 degrees per second (t in "
         "seconds).  The velocity v is the time derivative of the position along the path.",
         {"v": v_relative},
+        proves="The velocity is the time derivative of the position.",
         equal=[(v_relative, p_relative.diff(time))],
     )
     difference = v_relative - v_grounded
@@ -43,6 +44,10 @@ def experiment(
             r"\frac{d}{dt}(v - w)_{t = 0}": first.T,
             r"\frac{d^2}{dt^2}(v - w)_{t = 0}": second.T,
         },
+        proves=(
+            "The velocity w is the time derivative of its position; at the start the vertical "
+            "component of v is three times that of w, and the others agree."
+        ),
         equal=[
             (v_grounded, p_grounded.diff(time)),
             (v_relative[2].subs(time, 0), 3 * v_grounded[2].subs(time, 0)),

@@ -4,16 +4,16 @@ import sympy as sp
 from sympy import atan2, cos, pi, sin, sqrt
 
 from closedform import (
-    Continuum,
+    Degenerate,
     Derivation,
     Inverse,
     Program,
     Solved,
+    Triangle,
     branches,
     choose,
     linear_pair,
     real,
-    two_link_triangle,
 )
 
 TARGET = (real("px"), real("py"), real("pz"), real("psi"))
@@ -40,7 +40,8 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
     u = p.let("u", side * r - l1 - l6)
     h = p.let("h", pz - l2 + l5)
     reach = p.let("reach", sqrt(u**2 + h**2), nonnegative=True)
-    triangle = two_link_triangle(p, l3, l4, reach, elbow, alpha, bend, scale=size)
+    sides = Triangle.from_reach(p, (l3, l4), reach, bend, scale=size).rooted(p)
+    triangle = sides.lemma((elbow, alpha), reach)
     folded = p.vanishes("folded", reach, size, "the wrist is on the shoulder", free=(theta2,))
     no_link = p.vanishes("no_link", l3 * l4, (l3 + l4) ** 2, "an arm has no length", free=(theta3,))
     turret = linear_pair(theta1, s1, c1)
@@ -133,11 +134,14 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
             TARGET,
             (*position, theta1 + theta5),
             (
-                Continuum(
-                    on_axis, {px: sp.S.Zero, py: sp.S.Zero}, theta1, r"\theta_1 + \theta_5 = \psi"
+                Degenerate(
+                    (on_axis,),
+                    {px: sp.S.Zero, py: sp.S.Zero},
+                    theta1,
+                    relation=r"\theta_1 + \theta_5 = \psi",
                 ),
-                Continuum(
-                    folded,
+                Degenerate(
+                    (folded,),
                     {
                         px: -(l1 + l6) * sin(beta),
                         py: (l1 + l6) * cos(beta),
@@ -145,8 +149,8 @@ def inverse_kinematics(d: Derivation, lengths: tuple[sp.Symbol, ...], position: 
                         l4: l3,
                     },
                     theta2,
-                    r"\theta_3 = \pi/2",
-                    ("front_elbow_up", "front_elbow_down"),
+                    relation=r"\theta_3 = \pi/2",
+                    branches=("front_elbow_up", "front_elbow_down"),
                 ),
             ),
             angles=(psi,),
@@ -175,6 +179,10 @@ def workspace(
             "r_{min}": inner,
             "r_{max}": outer,
         },
+        proves=(
+            "The squared distance from the centre is the stated one, and it is the square of the "
+            "inner radius for the folded and of the outer radius for the straight arm."
+        ),
         equal=[
             ((rho - l1 - l6) ** 2 + (position[2] - l2 + l5) ** 2, square),
             (square.subs(theta3, pi / 2), inner**2),

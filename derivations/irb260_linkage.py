@@ -17,9 +17,9 @@ def double_parallelogram(
     phi1, phi2, phi3 = (real(f"phi{i}") for i in (1, 2, 3))
     beta1, beta2, beta3 = (real(f"beta{i}") for i in (1, 2, 3))
     forearm = theta2 + theta3 + pi / 2
-    lower = parallelogram(l3, a1, theta2, gamma1, phi1, beta1, sigma)
-    upper = parallelogram(l4, a2, forearm - phi1, gamma2, phi2, beta2, sigma)
-    drive = parallelogram(l3, a3, theta2, gamma3 + m3, phi3, beta3, sigma)
+    lower = parallelogram((l3, a1), (theta2, gamma1), (phi1, beta1), sigma)
+    upper = parallelogram((l4, a2), (forearm - phi1, gamma2), (phi2, beta2), sigma)
+    drive = parallelogram((l3, a3), (theta2, gamma3 + m3), (phi3, beta3), sigma)
     closed = [
         sp.Matrix(loop.equations).subs(loop.solution).subs(sigma, sign)
         for loop in (lower, upper, drive)
@@ -45,6 +45,10 @@ def double_parallelogram(
             r"\beta_{1,\text{crossed}}": 2 * gamma1 + phi1 - theta2,
             r"1 - \cos\phi_{1,\text{crossed}}": meet,
         },
+        proves=(
+            "Both assemblies close the loop, the crossed one has the stated turn and rod, and "
+            "where the links lie on each other the turn is free."
+        ),
         equal=[
             *((rest, sp.zeros(2, 1)) for rest in closed),
             (1 - cos(crossed), meet),
@@ -68,6 +72,10 @@ def double_parallelogram(
             r"\theta_4 = \phi_1 + \phi_2 - \theta_2 - \theta_3": bracket - theta2 - theta3,
             r"1 - \cos\phi_{2,\text{crossed}}": meet,
         },
+        proves=(
+            "In two parallelograms joint 4 is -(theta2 + theta3), and the turn of the crossed "
+            "loop is as stated."
+        ),
         equal=[
             (bracket - theta2 - theta3, d.couple(real("theta4"))),
             (1 - cos(crossed), meet),
@@ -88,6 +96,7 @@ def double_parallelogram(
             r"M = \partial(\theta_1, \theta_2, \theta_3, \theta_5) / \partial m": M,
             r"M^{-1}": M.inv(),
         },
+        proves="M takes the motors to the joints.",
         equal=[(M * sp.Matrix(motors), sp.Matrix([m1, m2, m3 - m2, m5]))],
     )
     return lower, upper, M

@@ -8,11 +8,12 @@ from sympy import atan2, cos, sin, sqrt
 
 from closedform import (
     SINGLE,
-    Continuum,
+    Degenerate,
     Derivation,
     Inverse,
     Program,
     Solved,
+    Triangle,
     branches,
     chain,
     choose,
@@ -21,10 +22,9 @@ from closedform import (
     jacobian,
     linear_pair,
     real,
+    require_pose,
     rotation,
     skeleton,
-    triangle_angles,
-    two_link_triangle_by_square,
 )
 
 d = Derivation(
@@ -48,7 +48,7 @@ q = (theta1, theta2)
 link1 = rotation("z", theta1) * sp.Matrix([l1, 0, 0])
 link2 = rotation("z", theta1 + theta2) * sp.Matrix([l2, 0, 0])
 position = (link1 + link2)[:2, 0]
-d.step(
+by_geometry = d.step(
     "Position by geometry",
     "Each link is a vector along the x axis, turned by its absolute angle.  The position is the "
     "sum of both.",
@@ -61,22 +61,30 @@ d.step(
 A1 = denavit_hartenberg(l1, 0, 0, theta1)
 A2 = denavit_hartenberg(l2, 0, 0, theta2)
 pose = chain([A1, A2])
-d.step(
+by_frames = d.step(
     "Pose by Denavit-Hartenberg",
     "Table I has a = l1, l2 and no twist or offset.  The last column of the product of the two "
     "matrices is the position found by geometry.",
     {"A_1": A1, "A_2": A2, "T = A_1 A_2": pose},
     published=("(6)", "(7)", "(8)", "Table I"),
+    proves=(
+        "The last column of T is the position (x, y) found by geometry, and T is the product of "
+        "both matrices."
+    ),
     equal=[(pose[:2, 3], position), (A1 * A2, pose)],
+    uses=[by_geometry],
 )
 
+d.write("r2", "r^2")
 phi = theta1 + theta2
 d.step(
     "Orientation",
     "The first column of the pose is the direction of the last link, which is at the angle phi.",
     {r"\phi": phi},
     published=("(5)",),
+    proves="The first column of T is (cos(phi), sin(phi)).",
     equal=[(pose[:2, 0], sp.Matrix([cos(phi), sin(phi)]))],
+    uses=[by_frames],
 )
 
 d.function(
@@ -116,7 +124,9 @@ d.step(
     "The rows are the rates of x, y and phi.  The determinant of the rows of x and y does not "
     "depend on theta1, because turning the whole arm changes nothing inside it.",
     {"J": J, r"\det J_{xy}": det},
+    proves="The determinant of the first two rows of J is the stated product.",
     equal=[(J[:2, :].det(), det)],
+    uses=[by_geometry],
 )
 d.step(
     "Manipulability and singular set",
@@ -124,6 +134,7 @@ d.step(
     "determinant.  If the links have a length, it vanishes exactly if sin(theta2) does: the arm is "
     "stretched or folded, and the hand cannot move along it.",
     {"w": manipulability, r"w^2": sp.factor(det**2)},
+    proves="The determinant of J J^T, for the rows of x and y, is the square of that of J.",
     equal=[((J[:2, :] * J[:2, :].T).det(), det**2)],
 )
 d.function(
@@ -162,8 +173,9 @@ d.branches = elbow.labels
 
 p = Program()
 r2 = p.let("r2", px**2 + py**2, nonnegative=True)
-triangle, (ahead, beyond) = two_link_triangle_by_square(
-    p, l1, l2, r2, theta2, alpha, sigma, free=(theta2,)
+sides = Triangle.from_square(p, (l1, l2), r2, sigma)
+triangle, (ahead, beyond) = sides.stretched_without_link(
+    p, (theta2, alpha), sqrt(r2), free=(theta2,)
 )
 at_base = p.vanishes(
     "at_base", sp.Abs(px) + sp.Abs(py), l1 + l2, "the hand is on the base axis", free=(theta1,)
@@ -184,7 +196,7 @@ d.solved += [
     ),
 ]
 N, M = real("N", nonnegative=True), real("M", nonnegative=True)
-bend, lead = triangle_angles(l1, l2, N, M, sigma)
+with_names = Triangle(l1, l2, sigma, N, M)
 d.step(
     "Inverse: the elbow",
     "The links and the line from the base to the hand form a triangle with the sides l1, l2 and "
@@ -195,10 +207,11 @@ d.step(
         "r^2": px**2 + py**2,
         "N": (l1 + l2) ** 2 - real("r") ** 2,
         "M": real("r") ** 2 - (l1 - l2) ** 2,
-        r"\theta_2": bend,
-        r"\alpha": lead,
+        r"\theta_2": with_names.elbow,
+        r"\alpha": with_names.base,
     },
     published=("(3)",),
+    uses=[by_geometry],
 )
 d.step(
     "Inverse: the shoulder",
@@ -232,11 +245,11 @@ d.inverses.append(
         (px, py),
         tuple(position),
         (
-            Continuum(
-                at_base,
+            Degenerate(
+                (at_base,),
                 {px: sp.Integer(0), py: sp.Integer(0), l2: l1},
                 theta1,
-                r"\theta_2 = \pi",
+                relation=r"\theta_2 = \pi",
             ),
         ),
     )
@@ -245,22 +258,9 @@ d.inverses.append(
 # Inverse kinematics from the full pose
 
 T = sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
-n, o, a, origin = (T[:3, j] for j in range(4))
+n, origin = T[:3, 0], T[:3, 3]
 f = Program()
-f.require(
-    [
-        *(n.cross(o) - a),
-        n.dot(n) - 1,
-        o.dot(o) - 1,
-        n.dot(o),
-        T[3, 0],
-        T[3, 1],
-        T[3, 2],
-        T[3, 3] - 1,
-    ],
-    1,
-    "a homogeneous transform with a proper rotation",
-)
+require_pose(f, T)
 elbow_x = f.let("elbow_x", origin[0] - l2 * n[0])
 elbow_y = f.let("elbow_y", origin[1] - l2 * n[1])
 f.match(sqrt(elbow_x**2 + elbow_y**2) - l1, l1 + l2, "the elbow is one link away from the base")
@@ -280,6 +280,7 @@ d.step(
         r"\theta_2": full[theta2],
     },
     published=("(9)", "(10)"),
+    uses=[by_frames],
 )
 d.function(
     "ik_pose",
@@ -319,6 +320,7 @@ d.step(
     "Workspace",
     "The triangle exists if |l1 - l2| <= r <= l1 + l2, so the workspace is an annulus.",
     {"r_{min}": sp.Abs(l1 - l2), "r_{max}": l1 + l2, "area": sp.pi * 4 * l1 * l2},
+    proves="The area of the annulus is pi times the difference of the squared radii.",
     equal=[(sp.pi * ((l1 + l2) ** 2 - (l1 - l2) ** 2), 4 * sp.pi * l1 * l2)],
 )
 d.function(

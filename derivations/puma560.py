@@ -59,10 +59,12 @@ rows = [
     (0, -pi / 2, 0, theta5),
     (0, 0, 0, theta6),
 ]
+d.write("alpha", meaning="angle at the shoulder, of the triangle of the arm")
+d.write("elbow", r"\eta", "angle at the elbow, of the triangle of the arm")
 d.step(
     "Denavit-Hartenberg table",
     "Standard (distal) frames.  The axes 2 and 3 are parallel, so their angles add.",
-    {r"(a, \alpha, d, \theta)": sp.Matrix(rows)},
+    {r"(a_i, \alpha_i, d_i, \theta_i)": sp.Matrix(rows)},
 )
 arm = from_dh(d, rows)
 X = a2 * cos(theta2) + a3 * cos(theta2 + theta3) - d4 * sin(theta2 + theta3)
@@ -74,6 +76,7 @@ d.step(
     "Centre of the wrist",
     "In the plane of the arm it is at X forward and Z up; the wrist does not move it.",
     {"X": X, "Z": Z, "p": arm.position},
+    proves="The position of the pose is this vector, turned by theta1.",
     equal=[(arm.position, rotation("z", theta1) * sp.Matrix([X, -d3, Z]))],
 )
 d.step(
@@ -83,6 +86,10 @@ d.step(
     "the wrist is as near to the base axis as d3 allows), where the arm is stretched or folded "
     "(elbow), and where the axes 4 and 6 coincide (wrist).",
     {r"\det J": det},
+    proves=(
+        "The last three joints do not move the centre of the wrist, and the product of both "
+        "determinants is that of J."
+    ),
     equal=[
         (arm.geometric[:3, 3:], sp.zeros(3)),
         (arm.geometric[:3, :3].det() * arm.geometric[3:, 3:].det(), det),

@@ -6,7 +6,7 @@ from sympy import atan2, cos, sin, sqrt
 
 from closedform import (
     SINGLE,
-    Continuum,
+    Degenerate,
     Derivation,
     Inverse,
     Program,
@@ -26,6 +26,7 @@ d = Derivation(
     "the legs follow.",
     task=["x", "y"],
     singularities=("leg 1", "leg 2", "flat"),
+    poles=("flat",),
 )
 b = d.parameter(
     "b", value=1, unit="m", meaning="distance of the pivots", source="the unit of length"
@@ -39,10 +40,11 @@ legs = [
     {x: rho1 * cos(theta1), y: rho1 * sin(theta1)},
     {x: b + rho2 * cos(theta2), y: rho2 * sin(theta2)},
 ]
-d.step(
+the_loop = d.step(
     "The loop",
     "P is at the distance rho1 from A and rho2 from B, for any angles of the legs.",
     {r"\rho_1^2": x**2 + y**2, r"\rho_2^2": (x - b) ** 2 + y**2},
+    proves="The point at the end of each leg is at the distance of that leg from its pivot.",
     equal=[(loop[0].subs(legs[0]), sp.S.Zero), (loop[1].subs(legs[1]), sp.S.Zero)],
 )
 
@@ -52,7 +54,7 @@ d.assembly_modes = modes.labels
 f = Program()
 size = b + rho1 + rho2
 point, chord = circle_intersection(
-    f, (b, sp.S.Zero), rho1, rho2, p, sigma, size, free=(theta1, theta2)
+    f, (b, sp.S.Zero), (rho1, rho2), p, sigma, scale=size, free=(theta1, theta2)
 )
 px, py = f.let("P_x", point[x]), f.let("P_y", point[y])
 d.step(
@@ -60,6 +62,7 @@ d.step(
     "P is an intersection of the circles about A and B, above or below the line of the pivots: "
     "these are the two assembly modes.  They coincide if the mechanism is flat.",
     {"x": (b**2 + rho1**2 - rho2**2) / (2 * b), "y": sigma * sqrt(rho1**2 - x**2)},
+    uses=[the_loop],
 )
 d.function(
     "fk",
@@ -81,7 +84,11 @@ d.inverses.append(
         p,
         (sp.S.Zero,) * 2,
         tuple(loop),
-        (Continuum(chord.flag, {b: sp.S.Zero, rho2: rho1}, x, r"x^2 + y^2 = \rho_1^2"),),
+        (
+            Degenerate(
+                (chord.flag,), {b: sp.S.Zero, rho2: rho1}, x, relation=r"x^2 + y^2 = \rho_1^2"
+            ),
+        ),
     )
 )
 d.function(
@@ -114,7 +121,11 @@ d.step(
     "singular if P is on the line of the pivots (parallel: the legs cannot hold P across the "
     "line).",
     {"A": A / 2, "B": B / 2, "J": J, r"\det A": sp.factor(A.det() / 4), r"\det J": det},
+    proves=(
+        "A*J = B, and the determinants of the derivatives of the squares are 4*b*y and 4*rho1*rho2."
+    ),
     equal=[(A * J, B), (A.det(), 4 * b * y), (B.det(), 4 * rho1 * rho2)],
+    uses=[the_loop],
 )
 at = {x: px, y: py}
 for name, summary, outputs in (
@@ -131,6 +142,10 @@ d.step(
     "line of the pivots, far away from them and with b = 0 the legs do not determine P, however "
     "they are computed.  The status is SINGULAR if the sine is less than 2^-10.",
     {r"\rho_1 \rho_2 |\sin(\theta_2 - \theta_1)|": b * sp.Abs(y)},
+    proves=(
+        "The sine of the angle between the legs, times both lengths, is b times the height of P, "
+        "which is the determinant of A."
+    ),
     equal=[
         (
             rho1 * rho2 * sin(theta2 - theta1),

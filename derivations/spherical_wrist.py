@@ -7,7 +7,7 @@ from closedform.derivations.papers.reddy_babu import REDDY_BABU
 from sympy import cos, sin
 
 from closedform import (
-    Continuum,
+    Degenerate,
     Derivation,
     Inverse,
     Program,
@@ -19,6 +19,7 @@ from closedform import (
     determinant,
     homogeneous,
     real,
+    require_rotation,
     rotation,
     rotation_parametrisation,
     skeleton,
@@ -49,11 +50,13 @@ q = (theta4, theta5, theta6)
 # Orientation by Euler angles
 
 R = chain([rotation("z", theta4), rotation("y", theta5), rotation("z", theta6)])
-d.step(
+d.write("flip", r"\varepsilon", "pi in the second branch, else 0")
+by_angles = d.step(
     "Orientation by ZYZ Euler angles",
     "Rotations about the axes of the moving frame multiply from left to right.",
     {"R": R},
     published=("(12)",),
+    proves="R is a rotation: R R^T is the identity and the determinant is 1.",
     equal=[(R * R.T, sp.eye(3)), (R.det(), sp.Integer(1))],
 )
 
@@ -69,7 +72,9 @@ d.step(
     "is that of the Euler angles: phi, theta, varphi are theta4, theta5, theta6.",
     {"A_4": A4, "A_5": A5, "A_6": A6, "T": pose},
     published=("(14)", "(15)", "Table II"),
+    proves="The rotation of T is R, and T is R followed by the offset d6 along z.",
     equal=[(pose[:3, :3], R), (pose, homogeneous(R) * homogeneous(sp.eye(3), (0, 0, d6)))],
+    uses=[by_angles],
 )
 d.function("fk", "Rotation of the hand.", {"q": q}, {"R": R}, source="eqs. (12) and (15)")
 d.function(
@@ -96,10 +101,15 @@ d.step(
     "In the space frame, the columns are the present axes of the joints: z, the turned y and the "
     "last column of R.  In the body frame, they are the same axes in the frame of the hand.",
     {"J_s": space, "J_b": body},
+    proves=(
+        "The columns of the spatial Jacobian are the present axes of the joints, and it is R "
+        "times the body Jacobian."
+    ),
     equal=[
         (space, sp.Matrix.hstack(sp.Matrix([0, 0, 1]), rotation("z", theta4)[:, 1], R[:, 2])),
         (space, R * body),
     ],
+    uses=[by_angles],
 )
 d.step(
     "Determinant and singular set",
@@ -107,6 +117,7 @@ d.step(
     "if theta5 is 0 or pi: the first and the last axis coincide, and the hand cannot turn about "
     "the normal of the axes.",
     {r"\det J": det},
+    proves="Both determinants are the stated one.",
     equal=[(space.det(), det), (body.det(), det)],
 )
 d.function(
@@ -137,18 +148,8 @@ flip = branches((sigma, {+1: "theta5_positive", -1: "theta5_negative"}))
 d.branches = flip.labels
 
 p = Program()
-x_axis, y_axis, z_axis = (given[:, j] for j in range(3))
-p.require(
-    [
-        *(x_axis.cross(y_axis) - z_axis),
-        x_axis.dot(x_axis) - 1,
-        y_axis.dot(y_axis) - 1,
-        x_axis.dot(y_axis),
-    ],
-    1,
-    "a proper rotation",
-)
-angles = zyz_angles(p, given, theta4, theta5, theta6, sigma).lemma
+require_rotation(p, given)
+angles = zyz_angles(p, given, q, sigma).lemma
 d.solved.append(Solved("ik", theta4, angles, given[0, 2] * sin(theta4) - given[1, 2] * cos(theta4)))
 d.step(
     "Inverse orientation",
@@ -157,6 +158,7 @@ d.step(
     "which hardly depends on theta6 if theta5 is small.",
     {r"\theta_4": angles[theta4], r"\theta_5": angles[theta5], r"\theta_6": angles[theta6]},
     published=("(13)", "(16)"),
+    uses=[by_angles],
 )
 d.function(
     "ik",
@@ -185,11 +187,9 @@ d.inverses.append(
         q,
         tuple(given),
         tuple(R),
-        (
-            Continuum(aligned, dict(zip(given, turned, strict=True)), theta4, r"\theta_4+\theta_6"),
-            Continuum(
-                aligned, dict(zip(given, opposed, strict=True)), theta4, r"\theta_6-\theta_4"
-            ),
+        tuple(
+            Degenerate((aligned,), dict(zip(given, R0, strict=True)), theta4, relation=kept)
+            for R0, kept in ((turned, r"\theta_4+\theta_6"), (opposed, r"\theta_6-\theta_4"))
         ),
         parametrisation=tuple(rotation_parametrisation()),
     )

@@ -58,6 +58,10 @@ d.step(
         r"\det J_{11}": arm.geometric[:3, :3].det(),
         r"\det J_{22}": arm.geometric[3:, 3:].det(),
     },
+    proves=(
+        "The last three joints do not move the centre of the wrist: their columns of the first "
+        "three rows are zero."
+    ),
     equal=[(arm.geometric[:3, 3:], sp.zeros(3))],
 )
 X, Z = d3 * sin(theta2), d3 * cos(theta2)

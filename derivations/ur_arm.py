@@ -70,6 +70,11 @@ toward = LinksAndWrist(
 )
 beside = {+1: "left", -1: "right"}
 shoulder = ik.solve(turn, theta1, wrist[0], -wrist[1], d4, beside, toward=toward)
+for axis in "xyz":
+    d.write(f"w_{axis}", meaning=f"component {axis} of the centre of the wrist")
+d.write("phi", meaning="what the three parallel axes turn together")
+d.write("ex", "e_x", "horizontal component of what the two links have to reach")
+d.write("ey", "e_y", "vertical component of what the two links have to reach")
 d.step(
     "Inverse: the shoulder",
     "The wrist, which is d6 behind the tool, is d4 beside the plane of the arm.  Two shoulders put "

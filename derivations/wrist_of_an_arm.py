@@ -19,6 +19,10 @@ def wrist_step(
         "negated.  Where sin(theta5) = 0 only theta4 + theta6 or theta4 - theta6 is determined and "
         "we return theta4 = 0.",
         {"R_{03}": R03, "R_{36}": R36},
+        proves=(
+            "The rotation of the pose is R_03 R_36, and R_36 is the same if theta4 and theta6 "
+            "turn by pi and theta5 changes its sign."
+        ),
         equal=[
             (pose[:3, :3], R03 * R36),
             (R36.subs(turned_back, simultaneous=True), R36),

@@ -9,7 +9,7 @@ import sympy as sp
 
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Let
-from closedform.proof.prove import prove_inverse
+from closedform.proof.inverse import prove_inverse
 from closedform.proof.require import ProofError
 
 LEMMA = "what the lemma .* does not satisfy its equations"
@@ -37,8 +37,8 @@ def change(arm: Derivation, name: str, rewrite: Callable[[sp.Expr], sp.Expr]) ->
     assert body != arm.functions[k].body
     arm.functions[k] = dataclasses.replace(arm.functions[k], body=body)
     (inverse,) = arm.inverses
-    chain = tuple(dataclasses.replace(link, body=changed(link.body)) for link in inverse.chain)
-    arm.inverses = [dataclasses.replace(inverse, chain=chain)]
+    links = tuple(dataclasses.replace(link, body=changed(link.body)) for link in inverse.links)
+    arm.inverses = [dataclasses.replace(inverse, links=links)]
 
 
 def test_the_arm_is_proved(arm: Derivation) -> None:
@@ -66,11 +66,11 @@ def test_a_wrong_formula_is_found_in_its_link(arm: Derivation, name: str, fault:
 
 def test_what_is_handed_on_must_be_what_was_solved(arm: Derivation) -> None:
     (inverse,) = arm.inverses
-    first, *others = inverse.chain
+    first, *others = inverse.links
     wrong = {name: sp.cos(value.args[0]) for name, value in first.means.items() if value.args}
-    chain = (dataclasses.replace(first, means=wrong), *others)
+    links = (dataclasses.replace(first, means=wrong), *others)
     with pytest.raises(ProofError, match=LEMMA):
-        prove_inverse(arm, dataclasses.replace(inverse, chain=chain))
+        prove_inverse(arm, dataclasses.replace(inverse, links=links))
 
 
 def test_a_missing_branch_is_counted(arm: Derivation) -> None:
@@ -85,15 +85,15 @@ def test_a_missing_branch_is_counted(arm: Derivation) -> None:
 
 def test_a_lemma_that_is_left_out_leaves_the_target_undetermined(arm: Derivation) -> None:
     (inverse,) = arm.inverses
-    shorter = dataclasses.replace(inverse, chain=inverse.chain[:-1])
+    shorter = dataclasses.replace(inverse, links=inverse.links[:-1])
     with pytest.raises(ProofError, match="of the target undetermined"):
         prove_inverse(arm, shorter)
 
 
-def test_on_a_continuum_the_flag_must_hold(arm: Derivation) -> None:
+def test_where_a_joint_is_free_the_flag_must_hold(arm: Derivation) -> None:
     (inverse,) = arm.inverses
-    on_axis, *others = inverse.continua
+    on_axis, *others = inverse.degenerate
     (px, *_) = on_axis.locus
     wrong = dataclasses.replace(on_axis, locus={**on_axis.locus, px: sp.Integer(1)})
-    with pytest.raises(ProofError, match=r"on the continuum of theta1 the flag .* is not true"):
-        prove_inverse(arm, dataclasses.replace(inverse, continua=(wrong, *others)))
+    with pytest.raises(ProofError, match=r"where theta1 is free the flag .* is not true"):
+        prove_inverse(arm, dataclasses.replace(inverse, degenerate=(wrong, *others)))

@@ -362,6 +362,24 @@ class TestProcedure:
         with pytest.raises(Undecided):
             near.judge()
 
+    def test_its_steps_have_to_be_proved(self) -> None:
+        right = {theta: atan2(y, x)}
+        for step in (TRUE, FALSE):
+            steps = {"the only one": step}
+            assert Procedure(right, CIRCLE, POSTURES, steps).judge().kind == step.judge().kind
+        missed = Procedure({theta: atan(y / x)}, CIRCLE, POSTURES, {"the only one": TRUE})
+        assert missed.judge().kind == REFUTED
+
+
+def test_a_share_says_from_where_the_postures_are_drawn() -> None:
+    narrow = {t: (float(-pi / 6), float(pi / 6)), theta: (0.0, float(pi / 2))}
+    words = Postures(CIRCLE, [theta, t, x], ranges=narrow).drawn()
+    assert words == [
+        "", theta, " from $0^\\circ$ to $90^\\circ$",
+        ", ", t, " from $-30^\\circ$ to $30^\\circ$",
+        ", ", x, " from $-180^\\circ$ to $180^\\circ$",
+    ]  # fmt: skip
+
 
 class TestRounded:
     @pytest.mark.parametrize(
@@ -418,6 +436,18 @@ class TestRounded:
 def test_enumeration() -> None:
     assert Enumeration(4, lambda: 4, "edges").judge() == Verdict(PROVED, ("edges: 4",))
     assert Enumeration(5, lambda: 4, "edges").judge() == Verdict(REFUTED, ("edges: 4, not 5",))
+    named = Enumeration(["a"], lambda: ["a", ("b", "c")], "names")
+    assert named.judge() == Verdict(REFUTED, ("names: a, (b, c), not a",))
+    assert Enumeration([], list, "names").judge() == Verdict(PROVED, ("names: none",))
+
+
+def test_a_printed_value_is_not_repeated() -> None:
+    verdict = Identity(x, sp.Integer(6), names=("$x$", "$6$")).judge()
+    assert verdict.evidence[-4:] == (" is ", sp.S.Zero, ", not ", 6)
+    lists = Identity([x], [sp.S.One], names=("the list", "that of others")).judge()
+    assert (
+        "".join(map(str, lists.evidence[3:])) == "part 1 of the list is 0, but that of others is 1"
+    )
 
 
 def test_relations_between_constants() -> None:

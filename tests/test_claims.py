@@ -3,6 +3,7 @@
 from typing import Any
 
 import pytest
+import sympy as sp
 
 from closedform.model.claims import (
     FAULTS,
@@ -100,6 +101,21 @@ class TestPhrases:
         with pytest.raises(ValueError, match=r"claim eq. \(1\): the phrase 'many' has no meaning"):
             judge(claim("it has {many} edges", edges), [])
 
+    def test_a_word_turns_a_statement_into_its_opposite(self) -> None:
+        words = {"always": "not always", "every": "not every"}
+        given = claim("$x = y$ {always} holds for {every} x", opposites=words)
+        right = given.printed.replace("= y", "= x")
+        assert judged(given, given.printed).kind == REFUTED
+        assert judged(given, given.printed.replace("{alw", "{not alw")).kind == PROVED
+        assert judged(given, right).kind == PROVED
+        assert judged(given, right.replace("{every", "{not every")).kind == REFUTED
+        both = right.replace("{every", "{not every").replace("{alw", "{not alw")
+        assert judged(given, both).kind == PROVED
+
+    def test_the_opposite_of_what_cannot_be_decided_cannot_either(self) -> None:
+        given = claim("{not} here", lambda: Undecidable("a figure"), opposites={"not": "also"})
+        assert judged(given, "{also} here").kind == NOT_DECIDABLE
+
     def test_the_text_has_no_braces(self) -> None:
         assert plain("{two} of $x_{1}$") == "two of $x_{1}$"
         assert judge(claim("it has {four} edges", edges), []).printed == "it has four edges"
@@ -150,6 +166,21 @@ class TestErratum:
         require_shown([SIGN], results)
         with pytest.raises(ProofError, match="no claim shows the erratum sign: A sign is wrong"):
             require_shown([SIGN], [])
+
+    def test_a_number_in_its_texts_is_computed(self) -> None:
+        numbers = {"miss": (sp.sqrt(2) / 10, 3), "turn": (-sp.pi, 0)}
+        told = Erratum("a", "A sign", Gravity.MOTION, "By [turn].", "$[miss]$ m.", numbers)
+        found = erratum_result(told)
+        assert (found.why, found.use) == ("By -3.", "$0.141$ m.")
+
+    def test_a_number_without_a_place_is_refused(self) -> None:
+        with pytest.raises(ValueError, match=r"no text contains the number \[miss\]"):
+            Erratum("a", "A sign", Gravity.MOTION, "Why.", "Use.", {"miss": (sp.S.One, 1)})
+
+    def test_a_number_has_to_be_a_constant(self) -> None:
+        told = Erratum("a", "A sign", Gravity.MOTION, "[miss]", "Use.", {"miss": (x, 1)})
+        with pytest.raises(ValueError, match="x is not a constant"):
+            erratum_result(told)
 
     def test_a_key_is_described_once(self) -> None:
         d = Derivation("arm", "Arm", Paper("p", "P", ("A",)), "It moves.")

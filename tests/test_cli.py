@@ -16,6 +16,7 @@ from closedform.pipeline import run as pipeline
 from closedform.pipeline.imports import package, sources_of
 
 README = Path(__file__).parents[1] / "README.md"
+GUIDE = README.parent / "docs" / "using.md"
 pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
 CLAIM = """
@@ -403,18 +404,21 @@ def test_make_decides_how_many_processes(
     assert pipeline.default_jobs() == os.cpu_count()
 
 
-def blocks(language: str) -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```", README.read_text("utf-8"), re.M | re.S)
+def blocks(language: str, page: Path = README) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", page.read_text("utf-8"), re.M | re.S)
 
 
-def test_the_python_example_of_the_readme_runs() -> None:
-    code, _ = blocks("python")
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "'elbow_up': [0.3, -1.1]" in done.stdout
+def test_the_python_examples_run() -> None:
+    (short,), (long, _) = blocks("python"), blocks("python", GUIDE)
+    for code in (short, long):
+        done = subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, check=True
+        )
+        assert "'elbow_up': [0.3, -1.1]" in done.stdout
 
 
-def test_the_plots_of_the_readme_are_drawn(tmp_path: Path) -> None:
-    _, code = blocks("python")
+def test_the_plots_of_the_guide_are_drawn(tmp_path: Path) -> None:
+    _, code = blocks("python", GUIDE)
     env = os.environ | {"MPLBACKEND": "Agg"}
     subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=env, check=True)
     assert (tmp_path / "singularities.svg").read_text("utf-8").startswith("<?xml")
@@ -434,9 +438,9 @@ def test_the_c_example_of_the_readme_runs(tmp_path: Path) -> None:
     assert len(done.stdout.splitlines()) == 2
 
 
-def test_the_javascript_example_of_the_readme_runs(tmp_path: Path) -> None:
+def test_the_javascript_example_of_the_guide_runs(tmp_path: Path) -> None:
     node = shutil.which("node") or pytest.skip("Node is not installed")
-    (code,) = blocks("js")
+    (code,) = blocks("js", GUIDE)
     (tmp_path / "main.mjs").write_text(code, "utf-8")
     package = tmp_path / "node_modules" / "closedform"
     shutil.copytree(pipeline.generated() / "js", package)
@@ -445,13 +449,13 @@ def test_the_javascript_example_of_the_readme_runs(tmp_path: Path) -> None:
     assert "elbow_up [ 0." in done.stdout and "Uint8Array(6) [ 0, 0" in done.stdout
 
 
-def test_the_commands_of_the_readme_run(
+def test_the_commands_of_the_guide_run(
     only_planar: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    (commands,) = blocks("sh")
+    (commands,) = blocks("sh", GUIDE)
     monkeypatch.chdir(tmp_path)
     for line in commands.splitlines():
         program, *arguments = shlex.split(line)
@@ -460,6 +464,16 @@ def test_the_commands_of_the_readme_run(
     assert (tmp_path / "my_robots" / "c" / "planar_2r.c").is_file()
 
 
-def test_the_readme_lists_every_mechanism() -> None:
+def test_the_readme_lists_every_mechanism_with_its_picture() -> None:
     text = README.read_text("utf-8")
-    assert all(f"| `{source.name}` |" in text for source in pipeline.sources())
+    for source in pipeline.sources():
+        assert f"| ![{source.name}](docs/figures/{source.name}.svg) | `{source.name}` |" in text
+
+
+def test_the_commands_for_figures_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (commands,) = blocks("sh", README.parent / "docs" / "figures.md")
+    monkeypatch.chdir(tmp_path)
+    for line in commands.splitlines():
+        program, *arguments = shlex.split(line)
+        assert program == "closedform" and main(arguments) == 0
+        assert (tmp_path / arguments[-1]).stat().st_size

@@ -133,10 +133,19 @@ def test_ur_arm_with_short_links(changed: dict[int, float], event: str, backend:
 
 @pytest.mark.parametrize("backend", ["numpy", "c"])
 def test_ur_arm_with_dissimilar_lengths(backend: str) -> None:
-    """Joints at random; several events at once may still be too many."""
     rng, n = np.random.default_rng(6), 60_000
     lengths, q = dimensions(rng, n, 6), rng.uniform(-np.pi, np.pi, (n, 6))
     assert reached("ur_arm", backend, lengths, q).all()
+
+
+def test_ur_arm_with_several_events() -> None:
+    """A straight arm, a wrist in line and a tangent shoulder at once, with dissimilar lengths."""
+    rng, n = np.random.default_rng(100), 20_000
+    lengths = draw_lengths(rng, robots.robot("ur_arm"), n)
+    corners = rng.choice((-np.pi, -np.pi / 2, 0, np.pi / 2, np.pi), (n, 6)) + near(rng, (n, 6))
+    share = rng.choice([0.5, 0.8, 1.0], (n, 1))
+    q = np.where(rng.random((n, 6)) < share, corners, rng.uniform(-np.pi, np.pi, (n, 6)))
+    assert reached("ur_arm", "numpy", lengths, q).all()
 
 
 @pytest.mark.parametrize("robot", ["h6ar", "h6ar_loop_closed"])

@@ -9,10 +9,11 @@ from closedform.algebra.shapes import ShapeError, coefficients
 from closedform.lemmas.chain import Chain
 from closedform.lemmas.links import remainder, slide, turn, two_links, zyz
 from closedform.lemmas.sine_cosine import linear_pair, sine_cosine
-from closedform.lemmas.triangle import two_link_triangle
+from closedform.lemmas.triangle import Triangle
 from closedform.mechanics.arm import RowError, from_dh, from_screws
-from closedform.model.derivation import Derivation, Inverse, Paper, Solved
+from closedform.model.derivation import Derivation, Paper, Solved
 from closedform.model.functions import Program, branches, real
+from closedform.model.inverse import Inverse
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
 
@@ -39,7 +40,7 @@ def by_hand(d: Derivation, *, wrong: sp.Expr = sp.S.Zero, labels=None) -> None:
     x, y, sigma, alpha = real("x"), real("y"), real("sigma"), real("alpha")
     program = Program()
     r = program.let("r", sp.sqrt(x**2 + y**2), nonnegative=True)
-    triangle = two_link_triangle(program, l1, l2, r, THETA2, alpha, sigma)
+    triangle = Triangle.from_reach(program, (l1, l2), r, sigma).lemma((THETA2, alpha), r)
     d.function(
         "ik",
         "Inverse.",
@@ -195,7 +196,7 @@ def test_a_lemma_on_an_equation_of_another_shape() -> None:
     d = derivation()
     by_hand(d)
     x, y = real("x"), real("y")
-    lemma = sine_cosine(Program(), THETA1, x, y, x, real("sigma"))
+    lemma = sine_cosine(Program(), THETA1, (x, y, x), real("sigma"))
     for equation, message in (
         (sp.sin(THETA1) ** 2 - y, r"linear in sin\(theta1\), cos\(theta1\).* has the term sin\(th"),
         (THETA1 - y, "the unknown occurs elsewhere"),

@@ -5,16 +5,16 @@ The corrections are read from their texts and compared with numbers of the gener
 
 import importlib
 from collections import Counter, defaultdict
-from functools import cache
+from functools import partial
 
+import claimed
 import numpy as np
 import pytest
 import sympy as sp
-from closedform.derivations.hybrid_five_bar import d
 
 from closedform.model.claims import FAULTS, Claim, Reading
 from closedform.model.notation import Relation
-from closedform.proof.claims import ClaimResult, judge, judged
+from closedform.proof.claims import judged
 
 ERRATA = {
     "sign-of-B": {"eq. (4)"},
@@ -46,13 +46,11 @@ DIMENSIONS = (7, 8, 5)
 arm = importlib.import_module("closedform.generated.numpy.hybrid_five_bar")
 
 
-@cache
-def results() -> dict[str, ClaimResult]:
-    return {claim.label: judge(claim, d.errata) for claim in d.claims}
+results = partial(claimed.results, "hybrid_five_bar")
 
 
 def claim(label: str) -> Claim:
-    return next(c for c in d.claims if c.label == label)
+    return claimed.claims("hybrid_five_bar")[label]
 
 
 def test_the_distinct_errors_and_their_places() -> None:
@@ -61,7 +59,7 @@ def test_the_distinct_errors_and_their_places() -> None:
         if result.erratum:
             places[result.erratum].add(label)
     assert places == ERRATA
-    assert {e.key for e in d.errata} == set(ERRATA)
+    assert {e.key for e in claimed.derivation("hybrid_five_bar").errata} == set(ERRATA)
 
 
 def test_how_many_claims_have_which_verdict() -> None:
@@ -97,7 +95,7 @@ def test_figures_without_lengths_refute_nothing() -> None:
         ("eight working modes", "eight", "four"),
         ("mirror images", "{AB}", "{of symmetry between A and B}"),
         ("hollow spheres", "L_1 - L_2", "L_1 - L_0"),
-        ("two operative working modes", "only {two}", "only {three}"),
+        ("two operative working modes", "{only} {two}", "{only} {three}"),
         ("lengths", "$L_4$", "$L_3$"),
         ("two degrees of freedom", "{two}", "{three}"),
         ("Figure 12", "{convex}", "{non-convex}"),

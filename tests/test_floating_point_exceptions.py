@@ -12,8 +12,6 @@ from portability.flags import RELEASE
 
 COMPILER = next((name for name in ("gcc", "clang") if shutil.which(name)), None)
 OVERFLOW, INVALID = 4, 3
-UNMENDED = {("ur_arm", "ik")}
-"""Functions that raise an exception: here if the turn of the shoulder is nearly tangent."""
 
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="there is neither gcc nor clang")
 
@@ -43,7 +41,7 @@ def test_single_calls_raise_none(tmp_path: Path, single: bool) -> None:
     """Answers are not made up either: they are finite if those of a batch are."""
     program = build(tmp_path, ROBOTS, "-O1", single=single)
     for request, answer in answers(program, single=single):
-        assert request.name in UNMENDED or not list(raised(request, answer))
+        assert not list(raised(request, answer))
         assert np.array_equal(np.isfinite(answer.single), np.isfinite(answer.batch)), request
 
 

@@ -1,21 +1,17 @@
 """The claims about the H6AR: their verdicts, and the checks that they needed."""
 
-import functools
-
 import pytest
 import sympy as sp
+from claimed import claims, result
 from sympy import Piecewise, acos, asin, cos, sin
 
 from closedform import (
-    Derivation,
     Equal,
     ForAll,
     Identity,
     Notation,
     Postures,
     Procedure,
-    find,
-    load,
     real,
 )
 from closedform.algebra.normal_form import Undecided
@@ -28,15 +24,9 @@ from closedform.model.claims import (
     PROVED_UNDER,
     REFUTED,
 )
-from closedform.proof.claims import judge, judged
+from closedform.proof.claims import judged
 
 k, t, u = real("k"), real("t"), real("u")
-
-
-@functools.cache
-def h6ar() -> Derivation:
-    (source,) = find(["h6ar"])
-    return load(source)
 
 
 @pytest.mark.parametrize(
@@ -56,14 +46,12 @@ def h6ar() -> Derivation:
     ],
 )
 def test_verdicts(label: str, verdict: str, erratum: str) -> None:
-    (claim,) = (c for c in h6ar().claims if c.label == label)
-    result = judge(claim, h6ar().errata)
-    assert (result.kind, result.erratum) == (verdict, erratum)
+    found = result("h6ar", label)
+    assert (found.kind, found.erratum) == (verdict, erratum)
 
 
 def test_the_waist_formula_gives_no_posture_with_the_target_in_front() -> None:
-    (claim,) = (c for c in h6ar().claims if c.label == "waist angle")
-    evidence = judge(claim, h6ar().errata).evidence
+    evidence = result("h6ar", "waist angle").evidence
     assert "target in front: 100.0 %" in evidence
     assert "target behind: 0.0 %" in evidence
 
@@ -79,13 +67,23 @@ def test_the_waist_formula_gives_no_posture_with_the_target_in_front() -> None:
     ],
 )
 def test_a_misprint_is_noticed(label: str, printed: str, misprint: str) -> None:
-    (claim,) = (c for c in h6ar().claims if c.label == label)
+    claim = claims("h6ar")[label]
     assert printed in claim.printed
     try:
         kind = judged(claim, claim.printed.replace(printed, misprint)).kind
     except Undecided:
         return
     assert kind not in HOLDS
+
+
+def test_the_whole_inverse_is_mended_in_all_its_parts() -> None:
+    found = result("h6ar", "inverse of the virtual arm")
+    assert (found.kind, found.erratum) == (REFUTED, "quadrant")
+    assert r"from $-180^\circ$ to $180^\circ$" in found.evidence
+    claim = claims("h6ar")["inverse of the virtual arm"]
+    assert judged(claim, claim.corrected).kind == PROVED
+    sign = claim.corrected.replace(r"\pm", "+", 1)
+    assert judged(claim, sign).kind == REFUTED
 
 
 def test_cases_hold_under_their_conditions_and_leave_no_gap() -> None:

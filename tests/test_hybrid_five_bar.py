@@ -10,8 +10,8 @@ import sympy as sp
 from closedform.derivations import hybrid_five_bar
 from closedform.derivations import hybrid_five_bar_design as design
 
-from closedform.model.derivation import Stage
-from closedform.proof.prove import prove_inverse
+from closedform.model.inverse import Link
+from closedform.proof.inverse import prove_inverse
 from closedform.proof.require import ProofError
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
@@ -475,12 +475,13 @@ def test_the_inverse_is_counted_step_by_step() -> None:
     d = hybrid_five_bar.d
     inverse = next(i for i in d.inverses if i.function == "ik")
     assert prove_inverse(d, inverse).method == "step by step"
-    first, second, third = inverse.stages
-    for stages, message in (
+    first, second, third = inverse.links
+    both = Link(second.unknowns, (*first.equations, *second.equations))
+    for links, message in (
         ((first, second), "every equation and every unknown exactly once"),
         ((first, replace(second, given={}), third), "an earlier equation"),
-        ((second, first, third), "an unknown of a later stage"),
-        ((Stage(second.unknowns, (0, 1), {}), Stage(first.unknowns, (), {}), third), "later stage"),
+        ((second, first, third), "an unknown of a later link"),
+        ((both, Link(first.unknowns, ()), third), "later link"),
     ):
         with pytest.raises(ProofError, match=message):
-            prove_inverse(d, replace(inverse, stages=stages))
+            prove_inverse(d, replace(inverse, links=links))

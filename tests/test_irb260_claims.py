@@ -1,10 +1,10 @@
 """The claims about the palletiser: what is printed is judged, and the text decides the verdict."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 
+import claimed
 import pytest
-from closedform.derivations import irb260
+from claimed import result
 
 from closedform.model.claims import (
     HOLDS,
@@ -15,7 +15,7 @@ from closedform.model.claims import (
     REFUTED,
     Claim,
 )
-from closedform.proof.claims import judge, judged
+from closedform.proof.claims import judged
 
 FAULTY = {
     "Fig. 5": (INCONSISTENT, "figure-5"),
@@ -36,38 +36,34 @@ ASSUMED = {
 
 @pytest.fixture(scope="module")
 def claims() -> Mapping[str, Claim]:
-    return {claim.label: claim for claim in irb260.d.claims}
+    return claimed.claims("irb260")
 
 
 @pytest.mark.parametrize(("label", "verdict"), FAULTY.items())
-def test_faults_of_the_paper(
-    claims: Mapping[str, Claim], label: str, verdict: tuple[str, str]
-) -> None:
-    result = judge(claims[label], irb260.d.errata)
-    assert (result.kind, result.erratum) == verdict
+def test_faults_of_the_paper(label: str, verdict: tuple[str, str]) -> None:
+    found = result("irb260", label)
+    assert (found.kind, found.erratum) == verdict
 
 
 @pytest.mark.parametrize("label", FAULTY)
 def test_the_right_text_in_place_of_the_printed_one_is_proved(
     claims: Mapping[str, Claim], label: str
 ) -> None:
-    claim = claims[label]
-    right = replace(claim, printed=claim.corrected, corrected="", erratum="")
-    assert judge(right, ()).kind == PROVED
+    assert judged(claims[label], claims[label].corrected).kind == PROVED
 
 
 @pytest.mark.parametrize(("label", "erratum"), ASSUMED.items())
-def test_omissions_are_assumptions(claims: Mapping[str, Claim], label: str, erratum: str) -> None:
-    result = judge(claims[label], irb260.d.errata)
-    assert (result.kind, result.erratum) == (PROVED_UNDER, erratum)
-    assert [r.kind for r in result.readings][1:] == [REFUTED]
+def test_omissions_are_assumptions(label: str, erratum: str) -> None:
+    found = result("irb260", label)
+    assert (found.kind, found.erratum) == (PROVED_UNDER, erratum)
+    assert [r.kind for r in found.readings][1:] == [REFUTED]
 
 
 def test_all_errata_are_shown_and_only_these_claims_show_them(
     claims: Mapping[str, Claim],
 ) -> None:
     shown = {label: claim.erratum for label, claim in claims.items() if claim.erratum}
-    assert {e.key for e in irb260.d.errata} == set(shown.values())
+    assert {e.key for e in claimed.derivation("irb260").errata} == set(shown.values())
     others = set(shown) - set(FAULTY) - set(ASSUMED)
     assert {shown[label] for label in others} == {"assembly"}
 
@@ -102,7 +98,7 @@ def test_a_wrong_text_is_not_proved(
 ) -> None:
     claim = claims[label]
     assert printed in claim.printed
-    assert judged(claim, claim.printed).kind in HOLDS
+    assert result("irb260", label).kind in HOLDS
     assert judged(claim, claim.printed.replace(printed, wrong, 1)).kind not in HOLDS
 
 
@@ -118,9 +114,7 @@ def test_a_wrong_text_is_not_proved(
         ("valid technique", [PROVED_UNDER, NOT_DECIDABLE]),
     ],
 )
-def test_each_reading_is_judged_and_the_first_leads(
-    claims: Mapping[str, Claim], label: str, kinds: list[str]
-) -> None:
-    result = judge(claims[label], irb260.d.errata)
-    assert [r.kind for r in result.readings] == kinds
-    assert result.kind == kinds[0]
+def test_each_reading_is_judged_and_the_first_leads(label: str, kinds: list[str]) -> None:
+    found = result("irb260", label)
+    assert [r.kind for r in found.readings] == kinds
+    assert found.kind == kinds[0]

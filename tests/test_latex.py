@@ -12,22 +12,17 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from closedform.emit.backends.latex.article import (
-    Page,
-    Printer,
-    decimal,
-    derives,
-    document,
-    measure,
-)
+from closedform.emit.backends.latex.article import Page, Printer, decimal, document, measure
+from closedform.emit.backends.latex.claims import derives
 from closedform.emit.backends.latex.prose import Prose, escape, loosen, mixed, spaced, symbol_name
 from closedform.emit.notebook import notebook
 from closedform.emit.render import render
 from closedform.emit.show import show
 from closedform.lemmas.sine_cosine import linear_pair
 from closedform.model.claims import Claim, Erratum, Gravity
-from closedform.model.derivation import Continuum, Derivation, Inverse, Paper, Solved
+from closedform.model.derivation import Derivation, Paper, Solved
 from closedform.model.functions import Program, branches, choose, real
+from closedform.model.inverse import Degenerate, Inverse
 from closedform.proof.checks.statements import Undecidable
 from closedform.proof.claims import ClaimResult, ErratumResult, ReadingResult
 from closedform.proof.prove import InverseResult, Proof, prove
@@ -102,8 +97,10 @@ def awkward() -> tuple[Derivation, Proof]:
         notes=("A note & more.",),
     )
     zero = sp.Integer(0)
-    continuum = Continuum(flag, {px: zero, py: zero}, theta1, r"\theta_2 = \pi, \theta_1 any")
-    d.inverses.append(Inverse("ik", (theta1, theta2), (px, py), (theta1, theta2), (continuum,)))
+    case = Degenerate(
+        (flag,), {px: zero, py: zero}, theta1, relation=r"\theta_2 = \pi, \theta_1 any"
+    )
+    d.inverses.append(Inverse("ik", (theta1, theta2), (px, py), (theta1, theta2), (case,)))
     printed = r"$\sin θ_1 = \frac{a}{b}$ with 5 % of “θ1”"
     both = (ReadingResult("all of $a_1$", "refuted", "$1$"), ReadingResult("100 %", "proved", "&"))
     results = (
@@ -140,7 +137,7 @@ def test_every_claim_step_and_function_is_printed(name: str) -> None:
     for step in derivation.steps:
         assert f"\\subsection{{{escape(step.title)}}}" in text
     for function in derivation.functions:
-        assert f"\\texttt{{{escape(function.name)}(" in text
+        assert f"\\function{{{escape(function.name)}(" in text
         for label in function.branches.labels if function.branches else ():
             assert escape(label) in text or label == "only"
     page = show(derivation, proof)
@@ -162,19 +159,6 @@ def test_article_compiles_and_fits(name: str, tmp_path: Path) -> None:
     too_wide = [float(w) for w in re.findall(r"Overfull \\hbox \(([\d.]+)pt", log)]
     assert max(too_wide, default=0) < 20
     assert "Overfull \\vbox" not in log
-
-
-@pytest.mark.parametrize("tex", sorted(GENERATED.glob("*.tex")), ids=lambda path: path.stem)
-def test_generated_articles_fit(tex: Path, tmp_path: Path) -> None:
-    if shutil.which("pdflatex") is None:
-        pytest.skip("pdflatex is not installed")
-    command = ["pdflatex", "-interaction=nonstopmode", f"-output-directory={tmp_path}", str(tex)]
-    for _ in range(2):
-        run = subprocess.run(command, capture_output=True, check=False)
-    log = run.stdout.decode("utf-8", "replace")
-    assert run.returncode == 0, log[-2000:]
-    too_wide = [float(w) for w in re.findall(r"Overfull \\hbox \(([\d.]+)pt", log)]
-    assert max(too_wide, default=0) < 2
 
 
 def test_output_does_not_depend_on_the_hash_seed() -> None:
@@ -201,14 +185,16 @@ def test_output_does_not_depend_on_the_hash_seed() -> None:
 
 def test_claims_link_to_the_step_and_the_error() -> None:
     text = article("awkward")
-    assert "\\label{step:1}" in text
-    assert r"Table\_I, last row, \hyperref[step:1]{Section~\ref*{step:1}}" in text
-    assert r"eq. (1) \& 50 \%, \hyperref" not in text and r"eq. (3), \hyperref" not in text
-    assert text.count(r"\label{erratum:long-one}") == 1
-    assert r"\hyperref[erratum:long-one]{100 \% of $\displaystyle x_1$ \& more\_}" in text
+    assert "\\label{step:awkward:1}" in text
+    assert r"Table\_I, last row, \mbox{\eqref{eq:awkward:1}--\eqref{eq:awkward:" in text
+    assert r"\hyperref[claim:awkward:1]" not in text
+    assert r"\hyperref[claim:awkward:3]{Table\_I}" in text
+    assert r"eq. (1) \& 50 \%, \mbox" not in text and r"eq. (3), \mbox" not in text
+    assert text.count(r"\label{erratum:awkward:long-one}") == 1
+    assert r"\hyperref[erratum:awkward:long-one]{100 \% of $\displaystyle x_1$ \& more\_}" in text
     labels = re.findall(r"\\label\{([^}]+)\}", text)
     assert len(set(labels)) == len(labels)
-    assert set(re.findall(r"\\(?:ref\*?\{|hyperref\[)([^}\]]+)", text)) <= set(labels)
+    assert set(re.findall(r"\\(?:(?:eq)?ref\*?\{|hyperref\[)([^}\]]+)", text)) <= set(labels)
 
 
 @pytest.mark.parametrize(
@@ -404,7 +390,7 @@ def test_statements_that_functions_share_are_printed_once() -> None:
     d = __import__("closedform.derivations.hybrid_five_bar", fromlist=["d"]).d
     tex = render("latex/robot.tex.jinja", document(d, Proof(d.name, d.paper.key, (), 0, ())))
     assert tex.count(r"\emph{touching}") == 1
-    assert r"\statement{as in}{\texttt{fk}, Section~\ref{inverse:fk}}" in tex
+    assert r"\statement{as in}{\texttt{fk}, Section~\ref{inverse:hybrid_five_bar:fk}}" in tex
     assert r"\statement{as in}{\texttt{jacobian\_parallel}}" in tex
 
 

@@ -10,15 +10,16 @@ from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.circles import circle_intersection
 from closedform.lemmas.parallelogram import parallelogram
 from closedform.lemmas.sine_cosine import linear_pair, sine_cosine
-from closedform.lemmas.triangle import two_link_triangle, two_link_triangle_by_square
+from closedform.lemmas.triangle import Triangle
 from closedform.lemmas.two_link import two_link_arm, two_link_arm_beside
 from closedform.lemmas.two_sines import two_sines
 from closedform.lemmas.zyz import zyz_angles
 from closedform.mechanics.loops import eliminate, velocity_matrices
 from closedform.mechanics.volumes import lens
 from closedform.model.functions import Program, real
+from closedform.model.inverse import Link
 from closedform.model.lemma import Lemma
-from closedform.proof.lemma import prove_lemma
+from closedform.proof.links import prove_lemma
 from closedform.proof.require import ProofError
 
 x, y, z = (real(n) for n in ("x", "y", "z"))
@@ -32,15 +33,17 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
     if name == "linear pair":
         return linear_pair(x, a, b), program, {}
     if name == "sine and cosine":
-        return sine_cosine(program, x, a, b, c, sigma), program, {}
+        return sine_cosine(program, x, (a, b, c), sigma), program, {}
     if name == "triangle":
         first, second = (real(n, positive=True) for n in ("l1", "l2"))
         reach = real("r", positive=True)
-        return two_link_triangle(program, first, second, reach, x, y, sigma), program, {}
+        triangle = Triangle.from_reach(program, (first, second), reach, sigma)
+        return triangle.lemma((x, y), reach), program, {}
     if name == "triangle by square":
         first, second = (real(n, positive=True) for n in ("l1", "l2"))
         square = real("r", positive=True) ** 2
-        lemma, _ = two_link_triangle_by_square(program, first, second, square, x, y, sigma)
+        triangle = Triangle.from_square(program, (first, second), square, sigma)
+        lemma, _ = triangle.stretched_without_link(program, (x, y), sp.sqrt(square))
         return lemma, program, {}
     lengths = tuple(real(n, positive=True) for n in ("l", "a", "b"))
     if name == "arm":
@@ -48,23 +51,31 @@ def applied(name: str) -> tuple[Lemma, Program, dict]:
         return lemma, Program(list(lemma.body)), {}
     if name == "arm beside another":
         f, N, M = (real(n, positive=True) for n in ("f", "N_0", "M_0"))
-        lemma = two_link_arm_beside(program, lengths, f, (a, b), (x, y), sigma, (N, M), f, apart=f)
+        lemma = two_link_arm_beside(
+            program, lengths, (a, b), (x, y), sigma, second=f, squares=(N, M), scale=f
+        )
         return lemma, Program(list(lemma.body)), {}
     if name == "two sines":
         u, v, p = ((real(f"{n}_1"), real(f"{n}_2")) for n in "uvp")
-        lemma = two_sines(program, (x, y), u, v, p, real("size", positive=True))
+        lemma = two_sines(program, (x, y), (u, v), p, scale=real("size", positive=True))
         return lemma, Program(list(lemma.body)), {}
     if name == "parallelogram":
         crank, coupler = (real(n, positive=True) for n in ("l", "a"))
-        return parallelogram(crank, coupler, z, real("gamma"), x, y, sigma), program, {}
+        return parallelogram((crank, coupler), (z, real("gamma")), (x, y), sigma), program, {}
     if name.startswith("circles"):
         r1, r2 = (real(n, positive=True) for n in ("r1", "r2"))
         second = r1 if name == "circles of one size" else r2
-        lemma, _ = circle_intersection(program, (a, b), r1, second, (x, y), sigma, r1 + r2)
+        lemma, _ = circle_intersection(program, (a, b), (r1, second), (x, y), sigma, scale=r1 + r2)
         return lemma, program, {}
     R = sp.Matrix(3, 3, lambda i, j: real(f"R{i + 1}{j + 1}"))
     given = dict(zip(R, rotation_parametrisation(), strict=True))
-    return zyz_angles(program, R, x, y, z, sigma).lemma, program, given
+    return zyz_angles(program, R, (x, y, z), sigma).lemma, program, given
+
+
+def prove(lemma: Lemma, program: Program, given: dict) -> None:
+    link = Link.of(lemma, given)
+    body = [s for s in program.body if s not in link.body]
+    prove_lemma(dataclasses.replace(link, body=(*link.body, *body)), (), "")
 
 
 NAMES = [
@@ -84,7 +95,7 @@ NAMES = [
 
 @pytest.mark.parametrize("name", NAMES)
 def test_sound_and_complete(name: str) -> None:
-    prove_lemma(*applied(name))
+    prove(*applied(name))
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -93,7 +104,7 @@ def test_a_wrong_solution_is_found(name: str) -> None:
     unknown = next(iter(lemma.solution))
     wrong = {**lemma.solution, unknown: lemma.solution[unknown] + sp.pi / 6}
     with pytest.raises(ProofError, match="does not satisfy its equations"):
-        prove_lemma(dataclasses.replace(lemma, solution=wrong), program, given)
+        prove(dataclasses.replace(lemma, solution=wrong), program, given)
 
 
 @pytest.mark.parametrize("name", ["sine and cosine", "arm", "arm beside another", "two sines"])
@@ -102,14 +113,14 @@ def test_a_wrong_meaning_of_a_name_is_found(name: str) -> None:
     handed = next(iter(lemma.means))
     wrong = {**lemma.means, handed: -lemma.means[handed]}
     with pytest.raises(ProofError, match="does not satisfy its equations"):
-        prove_lemma(dataclasses.replace(lemma, means=wrong), program, given)
+        prove(dataclasses.replace(lemma, means=wrong), program, given)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_missing_branch_is_found(name: str) -> None:
     lemma, program, given = applied(name)
     with pytest.raises(ProofError, match="solutions"):
-        prove_lemma(dataclasses.replace(lemma, branches=lemma.branches - 1), program, given)
+        prove(dataclasses.replace(lemma, branches=lemma.branches - 1), program, given)
 
 
 def test_elimination_gives_the_factors() -> None:

@@ -16,6 +16,7 @@ from matplotlib import pyplot as plt
 import closedform
 from closedform import plot
 from closedform.cli.commands import main
+from closedform.plot.postures import spoken
 
 SMALL = 40
 
@@ -50,14 +51,18 @@ def test_every_link_is_drawn_through_its_points(name: str) -> None:
         assert any(d.shape == wanted.shape and np.allclose(d, wanted) for d in drawn), link
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", ["planar_2r", "spherical_wrist", "irb260", "scara", "ur_arm"])
 def test_branches_meet_at_the_target_and_are_named(name: str) -> None:
     robot = module(name)
-    ax = plot.branches(robot)
-    shown = {t.get_text() for legend in ax.figure.legends for t in legend.get_texts()}
-    assert shown and shown <= set(robot.BRANCHES)
-    hands = [l for l in ax.lines if l.get_marker() == "D"]
-    at = np.array([np.ravel(l.get_data_3d() if ax.name == "3d" else l.get_data()) for l in hands])
+    figure = plot.branches(robot).figure
+    shown = [t.get_text() for legend in figure.legends for t in legend.get_texts()]
+    shown += [ax.get_title() for ax in figure.axes if ax.get_title()]
+    known = [spoken(branch) for branch in robot.BRANCHES]
+    assert shown == [n for n in known if n in shown] and shown
+    hands = [l for ax in figure.axes for l in ax.lines if l.get_marker() == "D"]
+    at = np.array(
+        [np.ravel(l.get_data_3d() if hasattr(l, "get_data_3d") else l.get_data()) for l in hands]
+    )
     assert len(at) == len(shown)
     assert np.ptp(at, axis=0).max() < 1e-9 * (1 + np.abs(at).max())
 
@@ -76,6 +81,23 @@ def test_workspace_of_the_planar_arm_is_its_annulus() -> None:
     step = np.abs(np.diff(x[:2, 0]))[0]
     assert reached[(r > 2 + step) & (r < 18 - step)].all()
     assert not reached[(r < 2 - step) | (r > 18 + step)].any()
+
+
+def test_singular_curves_of_the_five_bar_are_those_of_its_plane() -> None:
+    """In its plane: circles about A and B, the line AB, and where C, D and P are in line."""
+    ax = plot.workspace(closedform.hybrid_five_bar, ("y", "x"), at=[0, 0, 0], resolution=241)
+    curves = [np.column_stack(l.get_data()) for l in ax.lines]
+    L0, L1, L2 = closedform.hybrid_five_bar.Parameters()
+    for curve in curves:
+        about = [np.linalg.norm(curve - np.array([y, 0.0]), axis=1) for y in (0.0, L0)]
+        border = np.min([np.abs(r - s) for r in about for s in (L1 + L2, L1 - L2)], axis=0)
+        x = np.column_stack([curve[:, 1], curve[:, 0], 0 * curve[:, 0]])
+        q, _ = closedform.hybrid_five_bar.ik(x)
+        parallel = closedform.hybrid_five_bar.singularities(q)[..., 3]
+        near = np.nanmin(np.where(np.isnan(parallel), np.inf, np.abs(parallel)), axis=(1, 2))
+        on_base_line = np.abs(curve[:, 1]) < 0.2
+        assert ((border < 0.25) | (near < 2.5) | on_base_line).mean() > 0.95
+    assert len(curves) > 3
 
 
 def test_field_has_the_values_of_the_function() -> None:
@@ -109,7 +131,7 @@ def test_path_starts_in_the_branch_nearest_to_given_joints() -> None:
     for k, name in enumerate(closedform.planar_2r.BRANCHES):
         q = closedform.planar_2r.ik(xs[0]).q[k]
         ax = plot.path(closedform.planar_2r, xs, start=q + 0.1)
-        assert ax.get_title() == f"branch {name}"
+        assert ax.get_title() == f"branch {spoken(name)}"
 
 
 @pytest.mark.parametrize("kind", ["mechanism", "branches", "workspace", "singularities", "field"])

@@ -1,15 +1,11 @@
 """The errors that the claims of Reddy and Babu show, and how grave they are."""
 
-from functools import cache
-
+import claimed
 import pytest
-from closedform.derivations import planar_2r, spherical_wrist
 
 from closedform.model.claims import Gravity
-from closedform.model.derivation import Derivation
-from closedform.proof.claims import ClaimResult, judge
+from closedform.proof.claims import ClaimResult
 
-ROBOTS = {"planar_2r": planar_2r.d, "spherical_wrist": spherical_wrist.d}
 ERRATA = {
     "planar_2r": {
         "folded": (Gravity.OMISSION, {"one solution": "incomplete"}),
@@ -43,27 +39,25 @@ ERRATA = {
 }  # fmt: skip
 
 
-@cache
 def results(name: str) -> dict[str, ClaimResult]:
     """The claims that show an erratum; the others are proved when the robot is derived."""
-    d = ROBOTS[name]
-    return {c.label: judge(c, d.errata) for c in d.claims if c.erratum}
+    return {label: r for label, r in claimed.results(name).items() if r.erratum}
 
 
-def described(d: Derivation) -> dict[str, Gravity]:
-    return {e.key: e.gravity for e in d.errata}
+def described(name: str) -> dict[str, Gravity]:
+    return {e.key: e.gravity for e in claimed.derivation(name).errata}
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", ERRATA)
 def test_distinct_errors(name: str) -> None:
     found: dict[str, dict[str, str]] = {}
     for label, result in results(name).items():
         found.setdefault(result.erratum, {})[label] = result.kind
     assert found == {key: places for key, (_, places) in ERRATA[name].items()}
-    assert described(ROBOTS[name]) == {key: gravity for key, (gravity, _) in ERRATA[name].items()}
+    assert described(name) == {key: gravity for key, (gravity, _) in ERRATA[name].items()}
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", ERRATA)
 def test_every_error_has_a_correction_with_digits_as_printed(name: str) -> None:
     assert all(result.corrected for result in results(name).values())
 

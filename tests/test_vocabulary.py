@@ -17,7 +17,7 @@ from closedform.check.clibrary import CLibrary
 from closedform.check.crosscheck import Backend, crosscheck, float_backend, module_backend
 from closedform.emit.pages import pages, shared_files
 from closedform.lemmas.sine_cosine import linear_pair
-from closedform.lemmas.triangle import two_link_triangle
+from closedform.lemmas.triangle import Triangle
 from closedform.mechanics.frames import (
     adjoint,
     chain,
@@ -28,8 +28,9 @@ from closedform.mechanics.frames import (
     revolute_twist,
     vee,
 )
-from closedform.model.derivation import Derivation, Inverse, Paper, Solved
+from closedform.model.derivation import Derivation, Paper, Solved
 from closedform.model.functions import Program, branches, choose, real
+from closedform.model.inverse import Inverse
 from closedform.model.tolerances import DOUBLE
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
@@ -283,6 +284,6 @@ def test_tolerances_are_honoured() -> None:
     p = Program()
     r, sigma = real("r", nonnegative=True), real("sigma")
     one = sp.Integer(1)
-    two_link_triangle(p, one, one, r, real("elbow"), real("base"), sigma)
+    Triangle.from_reach(p, (one, one), r, sigma)
     assert [s.scale for s in p.body if hasattr(s, "scale")] == [2, 2, 2]
     assert d.actuated == ()

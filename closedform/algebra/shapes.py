@@ -7,29 +7,27 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.tower import shortened
-
-LINEAR = "a sin x + b cos x = c"
-"""The lemma for an equation that is linear in the sine and the cosine of the unknown."""
-PAIR = "atan2 of a linear pair"
-"""The lemma for an angle given by its direction, which may also turn with other joints."""
+from closedform.model.lemma import Lemma, Shape
 
 
 class ShapeError(ValueError):
     """A lemma is applied to an equation of another shape."""
 
 
-def require_shape(lemma: str, equation: Any, unknown: sp.Symbol) -> None:
+def require_shape(lemma: Lemma, equation: Any, unknown: sp.Symbol) -> None:
     """Raise :class:`ShapeError` if the lemma cannot solve ``equation = 0``."""
-    if lemma == LINEAR:
-        coefficients(equation, unknown)
-    elif lemma == PAIR and not equation.has(unknown):
+    if lemma.shape is Shape.LINEAR:
+        coefficients(equation, unknown, lemma.name)
+    elif lemma.shape is Shape.CONTAINS and not equation.has(unknown):
         raise ShapeError(
-            f"the lemma {lemma!r} for {unknown} needs an equation in sin({unknown}) and "
+            f"the lemma {lemma.name!r} for {unknown} needs an equation in sin({unknown}) and "
             f"cos({unknown}); 0 = {shortened(equation)} does not contain {unknown}"
         )
 
 
-def coefficients(equation: Any, x: sp.Symbol) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+def coefficients(
+    equation: Any, x: sp.Symbol, lemma: str = "a sin x + b cos x = c"
+) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
     """``a, b, c`` of an equation ``a sin x + b cos x - c = 0``.
 
     >>> l, y = sp.symbols("l y")
@@ -39,7 +37,7 @@ def coefficients(equation: Any, x: sp.Symbol) -> tuple[sp.Expr, sp.Expr, sp.Expr
     s, c = sp.Dummy("s"), sp.Dummy("c")
     expanded = sp.expand(sp.expand_trig(sp.expand(equation)))
     renamed = expanded.xreplace({sp.sin(x): s, sp.cos(x): c})
-    needs = f"the lemma {LINEAR!r} for {x} needs an equation that is linear in sin({x}), cos({x})"
+    needs = f"the lemma {lemma!r} for {x} needs an equation that is linear in sin({x}), cos({x})"
     if renamed.has(x):
         raise ShapeError(f"{needs}; in 0 = {shortened(equation)} the unknown occurs elsewhere")
     try:

@@ -170,11 +170,18 @@ class _System:
         """
         self._merged: dict[Symbol, Expr] = {}
         free = {s for p in self.polynomials for s in p.free_symbols}
-        for a, b in combinations(sorted(free - set(self.variables), key=str), 2):
-            slopes = [(p.diff(a), p.diff(b)) for p in self.polynomials]
+        parameters = sorted(free - set(self.variables), key=str)
+        if len(parameters) < 2:
+            return
+        ring = PolyRing([*self.variables, *parameters], QQ, grevlex)
+        read = [_element(ring, p) for p in self.polynomials]
+        generators = dict(zip(ring.symbols, ring.gens, strict=True))
+        for a, b in combinations(parameters, 2):
+            slopes = [(p.diff(generators[a]), p.diff(generators[b])) for p in read]
             for sign in (1, -1):
-                if all(sp.expand(x - sign * y) == 0 for x, y in slopes):
+                if all(x == sign * y for x, y in slopes):
                     self.polynomials = [p.subs(b, 0) for p in self.polynomials]
+                    read = [p.evaluate(generators[b], 0).set_ring(ring) for p in read]
                     if any(x != 0 for x, _ in slopes):
                         self._merged[a] = self._merged.get(a, sp.Dummy(f"{a}'")) - sign * b
                     break

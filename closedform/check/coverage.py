@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from closedform.model.claims import Claim
-from closedform.model.derivation import Paper
+from closedform.model.paper import Paper
 
 _SHORTEST_FRAGMENT = 4
 _SHORTEST_GAP = 12

@@ -23,8 +23,9 @@ from closedform.algebra.balls import to_float
 from closedform.check.samples import Sample, inverse_postures, joint_samples, perturbed
 from closedform.check.singular import singular_samples
 from closedform.check.truth import Solutions, Values, condition_of, kept, solutions_of, values_of
-from closedform.model.derivation import Derivation, Inverse
+from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
+from closedform.model.inverse import Inverse
 from closedform.model.tolerances import DOUBLE, FLOAT, Tolerances
 
 WELL_CONDITIONED = 3.0
@@ -258,7 +259,7 @@ def check_inverse(
     truth = solutions_of(derivation, function, inverse)
     if not truth.has_images:
         for sample in joint_samples(derivation, function):
-            _check_batch(finding, truth, backend, _round(sample, backend), None, exact=True)
+            _Batch(finding, truth, backend, _round(sample, backend), exact=True).check(None)
         return finding
     answers = len(inverse.unknowns) * len(list(function.cases()))
     for sample in inverse_postures(derivation, inverse.unknowns):
@@ -268,104 +269,134 @@ def check_inverse(
             continue
         for values, known in ((images, known_postures), (perturbed(images), None)):
             posed = _round(Sample(sample.name, values, sample.parameters), backend)
-            _check_batch(finding, truth, backend, posed, known, exact=known is not None)
+            _Batch(finding, truth, backend, posed, exact=known is not None).check(known)
     for sample in _singular_samples(derivation, inverse.unknowns):
         _check_round_trips(finding, truth, backend, _round(sample, backend))
     return finding
 
 
-def _check_batch(
-    finding: Finding,
-    truth: Solutions,
-    backend: Backend,
-    sample: Sample,
-    known: NDArray[Any] | None,
-    *,
-    exact: bool,
-) -> None:
-    """Compare a batch; only what may be wrong, or worse than the worst so far, needs Arb."""
-    solutions, status = _call(backend, truth.function, sample)
-    slack, parameters = 2 * backend.tolerances.feasibility, sample.parameters
-    margins = truth.margins(sample.values, parameters, slack, -slack, -16 * backend.eps)
-    feasible = np.where(abs(margins) > slack, np.sign(margins), 0)
-    wrong = _suspicious(truth, backend, solutions, status, feasible, exact)
+@dataclass(frozen=True)
+class _Batch:
+    """A batch of targets, which is compared with the exact equations.
 
-    def where(row: Any) -> str:
-        return f"{sample.name}: {sample.values[row].tolist()}, parameters {parameters}"
+    With ``exact`` the targets are images of postures, so they can be reached.
+    """
 
-    for row, branch in np.argwhere(wrong):
-        solution, given = solutions[row, branch], sample.values[row]
-        code, reached = int(status[row, branch]), feasible[row, branch]
-        if problem := _contradiction(truth, backend, solution, code, reached, exact):
-            if reached < 0 and code in (OK, SINGULAR):
-                # where a joint is free, another turn of it may reach what the generic one does not
-                missed = truth.residual(solution, given, parameters)
-                allowed = backend.tolerances.round_trip + truth.unfit(given, parameters)
-                problem = "" if missed <= allowed else problem
+    finding: Finding
+    truth: Solutions
+    backend: Backend
+    sample: Sample
+    exact: bool
+
+    def check(self, known: NDArray[Any] | None) -> None:
+        """Compare; only what may be wrong, or worse than the worst so far, needs Arb.
+
+        The ``known`` postures must be among the answers.
+        """
+        truth, sample, eps = self.truth, self.sample, self.backend.eps
+        solutions, status = _call(self.backend, truth.function, sample)
+        slack = 2 * self.backend.tolerances.feasibility
+        margins = truth.margins(sample.values, sample.parameters, slack, -slack, -16 * eps)
+        feasible = np.where(abs(margins) > slack, np.sign(margins), 0)
+        wrong = self._suspicious(solutions, status, feasible)
+        for row, branch in np.argwhere(wrong):
+            code, reached = int(status[row, branch]), feasible[row, branch]
+            problem = self._problem(row, solutions[row, branch], code, reached)
             if problem:
-                finding.fail(f"branch {branch} {problem}; {where(row)}")
-        wrong[row, branch] = bool(problem)
-        if finding.full:
+                self.finding.fail(f"branch {branch} {problem}; {self._where(row)}")
+            wrong[row, branch] = bool(problem)
+            if self.finding.full:
+                return
+        if self.exact:
+            answered = np.argwhere(~wrong & np.isin(status, (OK, SINGULAR)))
+            self._see_residuals(solutions, margins, answered)
+        if known is not None:
+            spread = eps * _spread(sample.parameters)
+            gap = np.fmin.reduce(truth.gap(solutions, known[:, None]), axis=1, initial=np.inf)
+            for row in np.flatnonzero(~(gap <= 1e3 * spread) & ~(status == SINGULAR).any(axis=1)):
+                self._check_known(row, solutions[row], known[row])
+                if self.finding.full:
+                    return
+
+    def _where(self, row: Any) -> str:
+        sample = self.sample
+        return f"{sample.name}: {sample.values[row].tolist()}, parameters {sample.parameters}"
+
+    def _suspicious(
+        self, solutions: NDArray[Any], status: NDArray[Any], feasible: NDArray[Any]
+    ) -> NDArray[np.bool_]:
+        """What :meth:`_contradiction` says something about."""
+        empty, whole = np.isnan(solutions).all(axis=-1), np.isfinite(solutions).all(axis=-1)
+        with np.errstate(invalid="ignore"):
+            turned = abs(solutions[..., self.truth.angular]) > np.pi * (1 + self.backend.eps)
+        refused = ~empty | ((feasible > 0) & self.exact)
+        accepted = (feasible < 0) | ~whole | turned.any(axis=-1)
+        return np.asarray(np.where(np.isin(status, (UNREACHABLE, INVALID)), refused, accepted))
+
+    def _problem(self, row: Any, solution: NDArray[Any], code: int, feasible: float) -> str:
+        """What is wrong with an answer, unless a free joint explains it; empty if nothing is."""
+        problem = self._contradiction(solution, code, feasible)
+        if problem and feasible < 0 and code in (OK, SINGULAR):
+            # where a joint is free, another turn of it may reach what the generic one does not
+            given, parameters = self.sample.values[row], self.sample.parameters
+            missed = self.truth.residual(solution, given, parameters)
+            allowed = self.backend.tolerances.round_trip + self.truth.unfit(given, parameters)
+            return "" if missed <= allowed else problem
+        return problem
+
+    def _contradiction(self, solution: NDArray[Any], code: int, feasible: float) -> str:
+        """What is wrong with a status and its answer; empty if nothing is."""
+        if code in (UNREACHABLE, INVALID):
+            if not np.isnan(solution).all():
+                return f"has status {code} and an answer"
+            return f"has status {code} but can be reached" if feasible > 0 and self.exact else ""
+        if feasible < 0:
+            return f"has status {code} but is out of reach"
+        angles = solution[self.truth.angular]
+        if not np.isfinite(solution).all() or (abs(angles) > np.pi * (1 + self.backend.eps)).any():
+            return f"has status {code} and the answer {solution.tolist()}"
+        return ""
+
+    def _see_residuals(
+        self, solutions: NDArray[Any], margins: NDArray[Any], answered: NDArray[np.intp]
+    ) -> None:
+        """By how much the answers violate the equations."""
+        row, branch = answered.T
+        eps, parameters = self.backend.eps, self.sample.parameters
+        # where it is out of reach, an answer misses by that
+        counted = ~(margins[row, branch] < -16 * eps)
+        self.finding.compared += int(counted.sum())
+        answers, given = solutions[row, branch].astype(float), self.sample.values[row]
+        bounds = self.truth.residual_bounds(answers, given, parameters)
+        allowed = self.backend.tolerances.round_trip
+        for k in np.argsort(-bounds):
+            worse = counted[k] and bounds[k] > self.finding.worst * eps
+            if not (worse or bounds[k] > allowed):
+                continue
+            residual = self.truth.residual(solutions[row[k], branch[k]], given[k], parameters)
+            where = self._where(row[k])
+            if counted[k]:
+                self.finding.see(residual / eps, lambda: where)  # noqa: B023
+            if not residual <= allowed:
+                self.finding.fail(f"branch {branch[k]} misses by {residual:.3g}; {where}")
+                if self.finding.full:
+                    return
+
+    def _check_known(self, row: Any, solutions: NDArray[Any], posture: NDArray[Any]) -> None:
+        """Check that the posture behind a target is among the branches, unless a joint is free."""
+        truth, backend, parameters = self.truth, self.backend, self.sample.parameters
+        one = Sample(self.sample.name, self.sample.values[row : row + 1], parameters)
+        condition = max(truth.condition(posture, parameters), math.sqrt(backend.eps))
+        nearest = np.nanmin(truth.gap(solutions, posture), initial=np.inf)
+        if np.isnan(solutions).all() and _leaves_the_workspace(truth, backend, one):
             return
-    if exact:
-        answered = np.argwhere(~wrong & np.isin(status, (OK, SINGULAR)))
-        _see_residuals(finding, truth, backend, sample, (solutions, margins), answered)
-    if known is not None:
-        spread = backend.eps * _spread(parameters)
-        apart = np.fmin.reduce(truth.gap(solutions, known[:, None]), axis=1, initial=np.inf)
-        for row in np.flatnonzero(~(apart <= 1e3 * spread) & ~(status == SINGULAR).any(axis=1)):
-            one = Sample(sample.name, sample.values[row : row + 1], parameters)
-            _check_known(finding, truth, backend, one, solutions[row], known[row], where(row))
-            if finding.full:
-                return
-
-
-def _see_residuals(
-    finding: Finding,
-    truth: Solutions,
-    backend: Backend,
-    sample: Sample,
-    found: tuple[NDArray[Any], NDArray[Any]],
-    answered: NDArray[np.intp],
-) -> None:
-    """By how much the answers violate the equations."""
-    solutions, margins = found
-    row, branch = answered.T
-    # where it is out of reach, an answer misses by that
-    counted = ~(margins[row, branch] < -16 * backend.eps)
-    finding.compared += int(counted.sum())
-    answers, given = solutions[row, branch].astype(float), sample.values[row]
-    bounds = truth.residual_bounds(answers, given, sample.parameters)
-    allowed = backend.tolerances.round_trip
-    for k in np.argsort(-bounds):
-        worse = counted[k] and bounds[k] > finding.worst * backend.eps
-        if not (worse or bounds[k] > allowed):
-            continue
-        residual = truth.residual(solutions[row[k], branch[k]], given[k], sample.parameters)
-        where = f"{sample.name}: {given[k].tolist()}, parameters {sample.parameters}"
-        if counted[k]:
-            finding.see(residual / backend.eps, lambda: where)  # noqa: B023
-        if not residual <= allowed:
-            finding.fail(f"branch {branch[k]} misses by {residual:.3g}; {where}")
-            if finding.full:
-                return
-
-
-def _suspicious(
-    truth: Solutions,
-    backend: Backend,
-    solutions: NDArray[Any],
-    status: NDArray[Any],
-    feasible: NDArray[Any],
-    exact: bool,
-) -> NDArray[np.bool_]:
-    """What :func:`_contradiction` says something about."""
-    empty, whole = np.isnan(solutions).all(axis=-1), np.isfinite(solutions).all(axis=-1)
-    with np.errstate(invalid="ignore"):
-        turned = abs(solutions[..., truth.angular]) > np.pi * (1 + backend.eps)
-    refused = ~empty | ((feasible > 0) & exact)
-    accepted = (feasible < 0) | ~whole | turned.any(axis=-1)
-    return np.asarray(np.where(np.isin(status, (UNREACHABLE, INVALID)), refused, accepted))
+        allowed = backend.eps * _spread(parameters) / condition
+        if nearest > 1e3 * allowed:  # an ulp of the target turns a nearly free joint far
+            allowed += _movement(truth, backend, one, solutions)
+        if not nearest <= 1e3 * allowed:
+            self.finding.fail(
+                f"{posture.tolist()} is not among {solutions.tolist()}; {self._where(row)}"
+            )
 
 
 def _check_round_trips(
@@ -396,52 +427,6 @@ def _check_round_trips(
                     f"branch {branch[k]} is OK, but fk misses by {exact:.3g}; "
                     f"{posed.name}: {given[k].tolist()}, parameters {parameters}"
                 )
-
-
-def _contradiction(
-    truth: Solutions,
-    backend: Backend,
-    solution: NDArray[Any],
-    code: int,
-    feasible: float,
-    exact: bool,
-) -> str:
-    """What is wrong with a status and its answer; empty if nothing is."""
-    if code in (UNREACHABLE, INVALID):
-        if not np.isnan(solution).all():
-            return f"has status {code} and an answer"
-        return f"has status {code} but can be reached" if feasible > 0 and exact else ""
-    if feasible < 0:
-        return f"has status {code} but is out of reach"
-    angles = solution[truth.angular]
-    if not np.isfinite(solution).all() or (abs(angles) > np.pi * (1 + backend.eps)).any():
-        return f"has status {code} and the answer {solution.tolist()}"
-    return ""
-
-
-def _check_known(
-    finding: Finding,
-    truth: Solutions,
-    backend: Backend,
-    sample: Sample,
-    solutions: NDArray[Any],
-    posture: NDArray[Any],
-    where: str,
-) -> None:
-    """Check that the posture behind the input is among the branches, unless a joint is free."""
-    parameters = sample.parameters
-    condition = max(truth.condition(posture, parameters), math.sqrt(backend.eps))
-    spread = _spread(parameters)
-    nearest = np.nanmin(truth.gap(solutions, posture), initial=np.inf)
-    if truth.undetermined(posture, parameters) and not np.isnan(solutions).all():
-        return
-    if np.isnan(solutions).all() and _leaves_the_workspace(truth, backend, sample):
-        return
-    allowed = backend.eps * spread / condition
-    if nearest > 1e3 * allowed:  # an ulp of the target turns a nearly free joint far
-        allowed += _movement(truth, backend, sample, solutions)
-    if not nearest <= 1e3 * allowed:
-        finding.fail(f"{posture.tolist()} is not among {solutions.tolist()}; {where}")
 
 
 def _spread(parameters: Sequence[float]) -> float:

@@ -19,8 +19,9 @@ from closedform.check.rows import RowEvaluator, beside
 from closedform.check.samples import Magnitudes, Sample, with_parameters
 from closedform.lemmas.chain import numbers_of_tool
 from closedform.lower import lower
-from closedform.model.derivation import Derivation, Inverse
+from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Function, Let, Require, Vanishes, substitute
+from closedform.model.inverse import Combination, Inverse
 
 Array = NDArray[Any]
 T = TypeVar("T")
@@ -314,7 +315,7 @@ values_of, condition_of = kept(Values), kept(Condition)
 @kept
 def solutions_of(derivation: Derivation, function: Function, inverse: Inverse) -> Solutions:
     """The exact equations of an inverse; of a reduced one, those of its forward map."""
-    if inverse.reduction:
+    if isinstance(inverse.glue, Combination):
         inverse = inverse.posed(function.symbols, derivation[inverse.images].values({}))
     return Solutions(derivation, function, inverse)
 

@@ -17,7 +17,7 @@ from functools import partial
 from pathlib import Path
 
 from closedform._version import __version__
-from closedform.cli import claims, console, plot
+from closedform.cli import claims, console, figures, plot
 from closedform.cli.console import Progress
 from closedform.pipeline import run as pipeline
 from closedform.pipeline import versions
@@ -162,11 +162,15 @@ def parser() -> argparse.ArgumentParser:
     )
     claims.add_options(command("claims", claims_command))
     plot.add_options(command("plot", plot_command))
-    figures = command("figures", figures_command)
-    figures.add_argument(
+    drawn = command("figures", figures_command)
+    drawn.add_argument("names", metavar="NAME", nargs="*", help="default: all mechanisms")
+    drawn.add_argument(
         "-o", "--output", metavar="DIR", type=Path, default=Path("build/figures"),
-        help="default: build/figures",
+        help="for pdf files and their captions; default: build/figures",
     )  # fmt: skip
+    drawn.add_argument(
+        "--docs", metavar="DIR", type=Path, help="also the page figures.md and what it shows"
+    )
     errata = command("errata", errata_command)
     errata.add_argument(
         "paper", metavar="PAPER", nargs="?", help="the key of a paper; default: all papers"
@@ -380,9 +384,12 @@ def plot_command(options: argparse.Namespace) -> None:
 def figures_command(options: argparse.Namespace) -> None:
     """Draw every figure of every generated mechanism."""
     try:
-        for line in plot.draw_all(options.output):
+        for line in figures.draw_all(options.output, options.names):
             console.write(line)
-    except ModuleNotFoundError as error:
+        if options.docs is not None:
+            for line in figures.draw_documentation(options.docs, options.names):
+                console.write(line)
+    except (ModuleNotFoundError, ValueError) as error:
         raise CommandError(str(error)) from error
 
 

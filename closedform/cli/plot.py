@@ -1,21 +1,22 @@
-"""The commands ``closedform plot`` and ``make figures``."""
+"""The command ``closedform plot``: one figure."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from closedform.pipeline import run as pipeline
+
+if TYPE_CHECKING:
+    from closedform.plot.catalogue import Figure
 
 KINDS = ("mechanism", "branches", "workspace", "singularities", "field", "path")
 SUFFIXES = (".svg", ".pdf", ".png")
 STEPS = 200
-PLACES = ("x", "y", "z", "T14", "T24", "T34")
-"""Task coordinates that are a position."""
 
 
 class PlotError(ValueError):
@@ -25,7 +26,9 @@ class PlotError(ValueError):
 def add_options(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     parser.add_argument("robot", metavar="ROBOT", help="a generated mechanism")
-    parser.add_argument("what", metavar="WHAT", choices=KINDS, help=", ".join(KINDS))
+    parser.add_argument(
+        "what", metavar="WHAT", help=f"{', '.join(KINDS)}, or a figure of its paper, such as fig1"
+    )
     parser.add_argument(
         "-o", "--output", metavar="FILE", type=Path, required=True, help="an svg, pdf or png file"
     )
@@ -52,26 +55,24 @@ def draw(options: argparse.Namespace) -> str:
             f"{', '.join(robot.BRANCHES)}"
         )
     drawn = figures(robot, plane=options.plane, branch=options.branch, function=options.function)
-    write(drawn[options.what], target)
+    named = {f.name: f for f in catalogue(options.robot)}
+    if options.what not in {*drawn, *named}:
+        known = ", ".join(dict.fromkeys([*drawn, *named]))
+        raise PlotError(f"{options.robot} has no figure {options.what!r}; there are {known}")
+    write(drawn.get(options.what, lambda: named[options.what].draw(robot)), target)
     return f"{target}: {options.what} of {options.robot}\n"
 
 
-def draw_all(folder: Path) -> Iterator[str]:
-    """Draw every figure that fits every mechanism; yields a line for each mechanism."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for source in pipeline.sources():
-        robot = module(source.name)
-        drawn = [kind for kind in KINDS if fits(robot, kind)]
-        for kind in drawn:
-            write(figures(robot, function="condition")[kind], folder / f"{source.name}-{kind}.svg")
-        yield f"{source.name}: {', '.join(drawn)}\n"
+def drawings() -> Any:
+    """How the figures of mechanisms and papers are drawn."""
+    return import_module("closedform.derivations.figures")
 
 
-def fits(robot: ModuleType, kind: str) -> bool:
-    """Whether a figure makes sense for a mechanism: a map needs a position in the task."""
-    if kind == "mechanism":
-        return True
-    return hasattr(robot, "ik") and (kind == "branches" or not set(robot.TASK).isdisjoint(PLACES))
+def catalogue(name: str) -> list[Figure]:
+    """The figures of a mechanism, as far as its task allows them."""
+    from closedform.plot.catalogue import fits
+
+    return [f for f in drawings().figures(name) if fits(module(name), f.name)]
 
 
 def module(name: str) -> ModuleType:

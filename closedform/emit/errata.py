@@ -20,7 +20,8 @@ from closedform.model.claims import (
     VERDICTS,
     Gravity,
 )
-from closedform.model.derivation import Derivation, Paper
+from closedform.model.derivation import Derivation
+from closedform.model.paper import Paper
 from closedform.proof.claims import ClaimResult, ErratumResult
 from closedform.proof.prove import Proof
 

@@ -5,6 +5,6 @@ returns a :class:`~closedform.model.lemma.Lemma`: the equations, the unknowns an
 each.  The closed forms are chosen for the boundary of the workspace: differences of lengths, or of
 their squares, under the roots instead of ``1 - cos(x)**2``, and ``atan2`` instead of ``acos``.
 
-:func:`closedform.proof.lemma.prove_lemma` proves a lemma once, for symbolic coefficients: its
+:func:`closedform.proof.links.prove_lemma` proves a lemma once, for symbolic coefficients: its
 solutions satisfy the equations, and the equations have no others.
 """

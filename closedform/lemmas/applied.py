@@ -8,9 +8,9 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.lemmas.pairs import Pair
-from closedform.model.derivation import Degenerate, Relation
+from closedform.model.inverse import Degenerate, Relation
 from closedform.model.lemma import Lemma
+from closedform.model.pair import Pair
 
 
 @dataclass(frozen=True)
@@ -23,5 +23,5 @@ class Applied:
     given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     degenerate: tuple[Degenerate, ...] = ()
     halves: Mapping[sp.Symbol, tuple[Pair, sp.Expr]] = field(default_factory=dict)
-    relations: tuple[Relation, ...] = ()
     """Angles as that of a pair, the same in every branch, and none or half a turn."""
+    relations: tuple[Relation, ...] = ()

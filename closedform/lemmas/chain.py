@@ -3,7 +3,7 @@
 A :class:`Chain` is built like the inverse is explained: *solve the first joint from this equation,
 turn the target into its frame, solve the next*.  Each lemma hands its joint on as a sine-cosine
 pair.  The chain knows what every name stands for at a posture, so that the proof is the same for
-every robot (see :mod:`closedform.proof.chain`):
+every robot (see :mod:`closedform.proof.glue`):
 
 - each lemma, for the coefficients it is applied to as free symbols, is sound and gives all
   solutions of its equations;
@@ -21,8 +21,10 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.applied import Applied
-from closedform.lemmas.pairs import Pair, direction
-from closedform.model.derivation import Continuum, Derivation, Inverse, Link, Relation, Solved
+from closedform.lemmas.pairs import direction
+from closedform.lemmas.registry import theorem
+from closedform.mechanics.frames import require_pose
+from closedform.model.derivation import Derivation, Solved
 from closedform.model.functions import (
     SINGLE,
     Bound,
@@ -35,9 +37,20 @@ from closedform.model.functions import (
     real,
     substitute,
 )
+from closedform.model.inverse import Degenerate, Inverse, Link, Rank, Relation
 from closedform.model.lemma import Lemma
+from closedform.model.pair import Pair
 
 Choice = Mapping[int, str]
+
+theorem(
+    "given joint",
+    statement=r"""Let $\theta_{\text{given}}$ be an angle.  In $(-\pi, \pi]$ exactly one $\theta$
+equals it up to whole turns, $\theta = \operatorname{atan2}(\sin\theta_{\text{given}},
+\cos\theta_{\text{given}})$.""",
+    proof=r"""Angles with the same sine and cosine differ by whole turns, and one of them is in
+$(-\pi, \pi]$.""",
+)
 
 
 @dataclass
@@ -61,7 +74,7 @@ class Chain:
     defined: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     lengths: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
-    continua: list[Continuum] = field(default_factory=list)
+    degenerate: list[Degenerate] = field(default_factory=list)
     units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = field(default_factory=list)
     halves: dict[sp.Symbol, tuple[Pair, sp.Expr]] = field(default_factory=dict)
     directions: dict[sp.Expr, Pair] = field(default_factory=dict)
@@ -76,13 +89,7 @@ class Chain:
         if self.is_pose:
             self.T = sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
             self.R, self.p = self.T[:3, :3], self.T[:3, 3]
-            n, o, a = (self.R[:, j] for j in range(3))
-            bottom = [*self.T[3, :3], self.T[3, 3] - 1]
-            self.program.require(
-                [*(n.cross(o) - a), n.dot(n) - 1, o.dot(o) - 1, n.dot(o), *bottom],
-                1,
-                "a homogeneous transform with a proper rotation",
-            )
+            require_pose(self.program, self.T)
             self.targets: tuple[sp.Symbol, ...] = tuple(self.T)
             self.images: tuple[sp.Expr, ...] = tuple(self.forward)
             self.inputs: dict[str, Any] = {"T": self.T}
@@ -119,7 +126,7 @@ class Chain:
         self.targets, self.images = (*self.targets, symbol), (*self.images, joint)
         self.angles = (*self.angles, joint.name)
 
-        def apply(chain: Chain) -> Applied:
+        def given(chain: Chain) -> Applied:
             pair = Pair(sp.sin(symbol), sp.cos(symbol)).known_as(chain.program, f"_{joint.name}")
             lemma = Lemma(
                 "given joint",
@@ -130,7 +137,7 @@ class Chain:
             )
             return Applied(lemma, pair, {pair.s: sp.sin(joint), pair.c: sp.cos(joint)})
 
-        found: Pair = self.solve(apply)
+        found: Pair = self.solve(given)
         return found
 
     def reached(self, rest: sp.Matrix | None = None) -> None:
@@ -252,10 +259,12 @@ class Chain:
         self._check_coefficients(applied.lemma)
         self.links.append(
             Link(
-                applied.lemma,
+                tuple(applied.lemma.solution),
+                applied.lemma.equations,
+                dict(applied.given),
+                replace(applied.lemma, kind=lemma.__name__),
                 body,
                 dict(applied.means),
-                dict(applied.given),
                 applied.degenerate,
                 tuple(map(self._written_out, applied.relations)),
             )
@@ -378,7 +387,7 @@ class Chain:
     def _leave_out_unused(self) -> None:
         """Names that a lemma hands on, and nobody takes."""
         needed = {s for j in self.joints for s in self.values[j].free_symbols}
-        needed |= {s for link in self.links for e in link.lemma.equations for s in e.free_symbols}
+        needed |= {s for link in self.links for e in link.equations for s in e.free_symbols}
         needed |= {s for pair in self.units for e in pair[:2] for s in e.free_symbols}
         matches = [s.value for s in self.program.body if isinstance(s, Match)]
         needed |= {s for e in matches for s in e.free_symbols}
@@ -408,7 +417,7 @@ class Chain:
         if not flags:
             raise ShapeError(f"{self.d.name}: no lemma of the chain leaves {free} free anywhere")
         exact = {s: sp.sympify(e, strict=True) for s, e in locus.items()}
-        self.continua.append(Continuum(flags[0], exact, free, relation))
+        self.degenerate.append(Degenerate((flags[0],), exact, free, relation=relation))
 
     def finish(
         self,
@@ -447,21 +456,21 @@ class Chain:
             notes=(*dict.fromkeys([*notes, *said]),),
         )
         for link in self.links:
-            unknown = next(iter(link.lemma.solution))
-            shown = next((e for e in link.lemma.equations if e.has(unknown)), sp.S.Zero)
-            d.solved.append(Solved(self.name, unknown, link.lemma, shown))
+            assert link.lemma is not None
+            unknown = link.unknowns[0]
+            shown = [e for e in link.equations if e.has(unknown)]
+            d.solved.append(
+                Solved(self.name, unknown, link.lemma, shown[0] if shown else sp.S.Zero)
+            )
         inverse = Inverse(
             self.name,
             self.joints,
             self.targets,
             self.images,
-            tuple(self.continua),
+            tuple(self.degenerate),
             angles=tuple(real(f"x_{n}") for n in self.angles),
-            chain=tuple(self.links),
-            meaning={**self.meaning},
-            defined={**self.defined},
-            lengths={**self.lengths},
-            units=tuple(self.units),
+            links=tuple(self.links),
+            glue=Rank({**self.meaning}, {**self.defined}, {**self.lengths}, tuple(self.units)),
         )
         d.inverses.append(inverse)
         return inverse

@@ -6,8 +6,29 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from closedform.lemmas.registry import theorem
 from closedform.model.functions import Program, choose
 from closedform.model.lemma import Lemma
+
+theorem(
+    "circle intersection",
+    statement=r"""Let $\mathbf n$ be a unit vector of the plane, $\mathbf n^\perp$ the same vector
+turned by a right angle to the left, and $d > 0$.  The points $\mathbf x$ at the distance $r_1 >
+0$ from the origin and $r_2 > 0$ from $d\,\mathbf n$ are
+$$\mathbf x = \frac{d^2 + r_1^2 - r_2^2}{2 d}\,\mathbf n + \sigma h\,\mathbf n^\perp, \qquad
+h = \frac{\sqrt{S A B C}}{2 d}, \qquad \sigma = \pm 1,$$
+with $S = r_1 + r_2 + d$, $A = r_1 + r_2 - d$, $B = d + r_1 - r_2$ and $C = d - r_1 + r_2$.  They
+exist if and only if $A$, $B$ and $C$ are not negative, and coincide if and only if one of these
+is zero.""",
+    proof=r"""Write $\mathbf x = s\,\mathbf n + t\,\mathbf n^\perp$.  The distances say $s^2 + t^2
+= r_1^2$ and $(s - d)^2 + t^2 = r_2^2$.  Their difference is linear in $s$ and gives $2 d s = d^2
++ r_1^2 - r_2^2$.  Then $4 d^2 t^2 = (2 d r_1 - 2 d s)(2 d r_1 + 2 d s) = \bigl(r_2^2 - (d -
+r_1)^2\bigr)\bigl((d + r_1)^2 - r_2^2\bigr) = A C\, B S$. Of $A$, $B$ and $C$ at most one is
+negative, because the sum of any two is twice a length.  So the product is not negative if and
+only if none of them is.""",
+    exception=r"""If $d = 0$ and $r_1 = r_2$, the circles are the same and $\mathbf x$ is free on
+it; if $d = 0$ and $r_1 \ne r_2$, there is no such point.""",
+)
 
 
 @dataclass(frozen=True)
@@ -28,16 +49,15 @@ class Chord:
 def circle_intersection(
     program: Program,
     centres: tuple[sp.Expr, sp.Expr],
-    first: sp.Expr,
-    second: sp.Expr,
+    radii: tuple[sp.Expr, sp.Expr],
     unknowns: tuple[sp.Symbol, sp.Symbol],
     sigma: sp.Symbol,
-    scale: sp.Expr,
     *,
+    scale: sp.Expr,
     free: tuple[sp.Symbol, ...] = (),
     suffix: str = "",
 ) -> tuple[Lemma, Chord]:
-    """The points at the distances ``first`` and ``second`` from two points.
+    """The points at two distances, the ``radii``, from two points.
 
     ``centres`` is the vector from the first to the second, and ``unknowns`` the vector from the
     first to the point.  With the factors of Heron's formula the height of the triangle is
@@ -46,27 +66,27 @@ def circle_intersection(
     a circle; for one radius the convention is that of centres which are parted along the first
     axis, for two it is the point on this axis.  Circles that touch meet in one point.
     """
-    x, y = unknowns
-    apart = program.let(
+    (x, y), (first, second) = unknowns, radii
+    distance = program.let(
         f"apart{suffix}", sp.sqrt(centres[0] ** 2 + centres[1] ** 2), nonnegative=True
     )
-    S = first + second + apart
-    A = program.bound(f"slack{suffix}", first + second - apart, scale, "the bars meet")
+    S = first + second + distance
+    A = program.bound(f"slack{suffix}", first + second - distance, scale, "the bars meet")
     touching = program.vanishes(f"touching{suffix}", A, scale, "the bars are in line")
-    flag = program.vanishes(f"coincide{suffix}", apart, scale, "the centres coincide", free)
+    flag = program.vanishes(f"coincide{suffix}", distance, scale, "the centres coincide", free)
     n: tuple[sp.Expr, sp.Expr] = (
-        choose(flag, 1, centres[0] / apart),
-        choose(flag, 0, centres[1] / apart),
+        choose(flag, 1, centres[0] / distance),
+        choose(flag, 0, centres[1] / distance),
     )
     if first == second:
-        d = program.let(f"distance{suffix}", choose(flag, 0, apart), nonnegative=True)
+        d = program.let(f"distance{suffix}", choose(flag, 0, distance), nonnegative=True)
         along, height = d / 2, sp.sqrt(S) * sp.sqrt(A) / 2
     else:
-        d = apart
-        B = program.bound(f"outer{suffix}", apart + first - second, scale, "the bars meet")
-        C = program.bound(f"inner{suffix}", apart - first + second, scale, "the bars meet")
-        along = choose(flag, first, (apart + (first - second) * (first + second) / apart) / 2)
-        rise = sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) / (2 * apart)
+        d = distance
+        B = program.bound(f"outer{suffix}", distance + first - second, scale, "the bars meet")
+        C = program.bound(f"inner{suffix}", distance - first + second, scale, "the bars meet")
+        along = choose(flag, first, (distance + (first - second) * (first + second) / distance) / 2)
+        rise = sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) / (2 * distance)
         height = choose(flag, 0, rise)
     n = (program.let(f"n_1{suffix}", n[0]), program.let(f"n_2{suffix}", n[1]))
     height = program.let(f"height{suffix}", choose(touching, 0, height), nonnegative=True)
@@ -81,4 +101,5 @@ def circle_intersection(
         ),
         {x: along * n[0] - sigma * height * n[1], y: along * n[1] + sigma * height * n[0]},
         2,
+        signs=(sigma,),
     ), Chord(n, d, along, height, flag)

@@ -18,17 +18,18 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import rotation_parametrisation
+from closedform.lemmas.amplitude import Amplitude
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
-from closedform.lemmas.pairs import LinksAtHeight, Pair, amplitude_lemma, direction
-from closedform.lemmas.registry import chain_lemma
-from closedform.lemmas.sine_cosine import nearly_tangent
-from closedform.lemmas.tangent import Links, Turn, Turned, leaving
-from closedform.lemmas.triangle import heron_factors
+from closedform.lemmas.pairs import direction
+from closedform.lemmas.registry import chain_lemma, theorem
+from closedform.lemmas.tangent import Anywhere, Goal, Offset, Tangency, Turned
+from closedform.lemmas.triangle import Triangle
 from closedform.lemmas.zyz import zyz_angles, zyz_lemma
-from closedform.model.derivation import Degenerate
 from closedform.model.functions import Let, choose, real
+from closedform.model.inverse import Degenerate
 from closedform.model.lemma import Lemma, label
+from closedform.model.pair import Pair
 from closedform.model.tolerances import FLOAT
 
 _ROUNDINGS = 16
@@ -36,6 +37,8 @@ _ROUNDINGS = 16
 target.  A wrist within it counts as aligned, which turns the hand by 3e-14 at most; 98 of 100
 random postures of a Puma whose wrist is aligned exactly are seen as such, of the others the angles
 that come back are right as well."""
+
+ANYWHERE = Anywhere()
 
 
 def turned(pair: Pair) -> sp.Matrix:
@@ -102,7 +105,7 @@ def turn(
     c: sp.Expr,
     choice: Choice,
     *,
-    toward: Links | LinksAtHeight | None = None,
+    toward: Goal = ANYWHERE,
     scale: sp.Expr | None = None,
     name: str = "",
 ) -> Applied:
@@ -117,34 +120,52 @@ def turn(
     a, b, c = (
         chain.coefficient(f"{n}_turn{tag}", e) for n, e in zip("abc", (a, b, c), strict=True)
     )
-    h = p.let(f"h{tag}", sp.sqrt(a**2 + b**2), nonnegative=True)
     # half: what is clamped stays well within the round trip that is promised
-    scale = chain.size / 2 if scale is None else scale
-    below = p.bound(f"below{tag}", h - c, scale, "the amplitude is not smaller than c")
-    above = p.bound(f"above{tag}", h + c, scale, "the amplitude is not smaller than -c")
+    missed_by = (lambda _: chain.size / 2) if scale is None else (lambda _: scale)
+    at = Amplitude.of(p, x, (a, b, c), sigma, scale=missed_by, suffix=tag)
     flag: Any = sp.false
     if not any(differs_from_zero(chain, e, chain.size) for e in (a, b, c)):
-        flag = p.vanishes(f"free{tag}", h, chain.size, f"the axis of {x.name} is met", free=(x,))
-    root = p.let(f"root{tag}", sp.sqrt(below) * sp.sqrt(above), nonnegative=True)
-    width = p.let(f"width{tag}", below + above, nonnegative=True)
-    lever = root
-    if isinstance(toward, LinksAtHeight):
-        root, width = toward.reached(p, (below, above), (root, width), h, chain.size, tag)
-    away = Pair(2 * sigma * root / width, (above - below) / width)
-    both = Pair(a / h, b / h) + away
-    found = Pair(choose(flag, 0, both.s), choose(flag, 1, both.c))
-    if isinstance(toward, Links):
-        tangent = nearly_tangent(p, root, chain.size, tag)
-        near = toward.reached(Turn(chain, found, root, c, tag).renamed(found, f"{tag}_1"))
-        found = Pair(choose(tangent, near.s, found.s), choose(tangent, near.c, found.c))
-    pair, means = named(chain, x, found)
-    across = a * pair.c - b * pair.s if isinstance(toward, Links) else -sigma * root
+        flag = p.vanishes(f"free{tag}", at.h, chain.size, f"the axis of {x.name} is met", free=(x,))
+    root = p.let(f"root{tag}", at.root, nonnegative=True)
+    width = p.let(f"width{tag}", at.below + at.above, nonnegative=True)
+    found = toward.reached(Tangency(chain, at, root, width, tag, flag))
+    pair, means = named(chain, x, found.pair)
+    across = a * pair.c - b * pair.s if found.root is None else -sigma * found.root
     ahead = p.let(f"ahead{tag}", across)
     means[ahead] = a * sp.cos(x) - b * sp.sin(x)
-    lemma = amplitude_lemma(x, a, b, c, pair)
+    how = (
+        r"\sigma\delta,\ (\cos\delta, \sin\delta) = \frac{(c, \sqrt{(h - c)(h + c)})}{h},\ "
+        r"h = \sqrt{a^2+b^2}"
+    )
+    lemma = at.lemma(pair.angle, how)
     meaning = f"all coefficients of the equation for {x} vanish; {x} is free, 0 is returned."
     cases = degenerate(flag, [vanishing(a, b, c)], x, meaning)
-    return Applied(lemma, Facing(pair.s, pair.c, lever, ahead, sigma), means, {}, cases)
+    return Applied(lemma, Facing(pair.s, pair.c, root, ahead, sigma), means, {}, cases)
+
+
+theorem(
+    "two-link arm",
+    statement=r"""Let $u(\theta) = (\cos\theta, \sin\theta)$, $l_1, l_2 > 0$ and $(x, y) \ne 0$.
+With $r = \sqrt{x^2 + y^2}$ and the factors $S$, $A$, $B$ and $C$ of the triangle with the sides
+$l_1$, $l_2$ and $r$, the equation $l_1 u(\theta) + l_2 u(\theta + \varphi) = (x, y)$ has a
+solution if and only if $A$, $B$ and $C$ are not negative.  The solutions are
+$$(\cos\varphi, \sin\varphi) = \frac{(B C - S A,\ 2\sigma\sqrt{S A B C})}{B C + S A}, \qquad
+\theta = \operatorname{atan2}(y, x) - \alpha,$$
+$$(\cos\alpha, \sin\alpha) = \frac{(S B - A C,\ 2\sigma\sqrt{S A B C})}{S B + A C}, \qquad
+\sigma = \pm 1.$$
+A second link that is cranked, $(b - i a)\, e^{i y}$ instead of $l_2 e^{i y}$ in the complex
+plane, is a straight one of length $\sqrt{a^2 + b^2}$ at the angle $y - \operatorname{atan2}(a,
+b)$.""",
+    proof=r"""Turn the plane by $-\theta$: the first link is then at the angle $0$, the second at
+$\varphi$, and $(x, y)$ at $\alpha = \operatorname{atan2}(y, x) - \theta$.  These are the
+equations of the two-link triangle.  Its tangents of half angles are those of the stated sines and
+cosines, by $(\cos\varphi, \sin\varphi) = (1 - t^2,\ 2 t)/(1 + t^2)$ with $t = \tan(\varphi/2)$,
+and likewise for $\alpha$.  For the cranked link, $b - i a = \sqrt{a^2 + b^2}\,
+e^{-i\operatorname{atan2}(a, b)}$.""",
+    exception=r"""If $(x, y) = 0$, which needs $l_1 = l_2$, the arm is folded and $\theta$ is
+free.  If a link has no length, $\varphi$ is free, and a stretched arm is returned.""",
+    rests_on=("two-link triangle",),
+)
 
 
 @chain_lemma("l1 u(x1) + l2 u(x1 + x2) = (x, y)", "both pairs")
@@ -180,41 +201,32 @@ def two_links(
                 f"{chain.d.name}: the two-link arm for {first} and {second} has the length "
                 f"{length}; give it as positive, and add pi to the angle of that link"
             )
-    apart = [l1 - l2, x, y]
+    at_zero = [l1 - l2, x, y]
     x, y = (e if e.is_Symbol else chain.named(f"{n}_{name}", e) for n, e in (("x", x), ("y", y)))
     l1, l2 = (
         chain.coefficient(f"l{i}_{name}", e, nonnegative=True) for i, e in enumerate((l1, l2), 1)
     )
     r = p.let(f"r_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
-    half = scale / 2  # what is clamped stays well within the round trip that is promised
-    S, A, B, C = heron_factors(p, l1, l2, r, half, suffix=f"_{name}")
+    # half: what is clamped stays well within the round trip that is promised
+    triangle = Triangle.from_reach(p, (l1, l2), r, sigma, scale=scale / 2, suffix=f"_{name}")
     no_link: Any = sp.false
     if not differs_from_zero(chain, l1 * l2, (l1 + l2) ** 2):
         no_link = p.vanishes(
             f"no_link_{name}", l1 * l2, (l1 + l2) ** 2, "a link has no length", free=(second,)
         )
     folded: Any = sp.false
-    if not any(differs_from_zero(chain, e, scale) for e in apart):
+    if not any(differs_from_zero(chain, e, scale) for e in at_zero):
         folded = p.vanishes(
             f"folded_{name}", r, scale, f"the arm ends on the axis of {first}", free=(first,)
         )
-    root = p.let(
-        f"area_{name}", 2 * sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C), nonnegative=True
-    )
-    at_elbow = p.let(f"sum_{name}", B * C + S * A, nonnegative=True)
-    at_base = p.let(f"width_{name}", S * B + A * C, nonnegative=True)
-    bend, means = named(
-        chain,
-        second,
-        Pair(
-            choose(no_link, 0, sigma * root / at_elbow),
-            choose(no_link, 1, (B * C - S * A) / at_elbow),
-        ),
-    )
+    twice = p.let(f"area_{name}", 2 * triangle.root, nonnegative=True)
+    whole = p.let(f"sum_{name}", triangle.whole, nonnegative=True)
+    width = p.let(f"width_{name}", triangle.width, nonnegative=True)
+    at_elbow, at_base = triangle.elbow_pair(twice, whole), triangle.base_pair(twice, width)
+    bent = Pair(choose(no_link, 0, at_elbow.s), choose(no_link, 1, at_elbow.c))
+    bend, means = named(chain, second, bent)
     unturned = sp.Or(no_link, folded)
-    off = Pair(
-        choose(unturned, 0, sigma * root / at_base), choose(unturned, 1, (S * B - A * C) / at_base)
-    )
+    off = Pair(choose(unturned, 0, at_base.s), choose(unturned, 1, at_base.c))
     bearing = direction(y, x, r, folded)
     lift, more = named(chain, first, bearing - off.known_as(p, f"_base_{name}"))
     lemma = Lemma(
@@ -261,6 +273,19 @@ def _stretched(
     ]
 
 
+theorem(
+    "polar coordinates",
+    statement=r"""Let $u(\theta) = (\cos\theta, \sin\theta)$ and $(x, y) \ne 0$.  The equation
+$\rho\,u(\theta) = (x, y)$ has two solutions with $\theta$ in $(-\pi, \pi]$: for $\sigma = \pm 1$,
+$\rho = \sigma\sqrt{x^2 + y^2}$ and $\theta = \operatorname{atan2}(\sigma y, \sigma x)$.  One of
+them has $\rho > 0$.""",
+    proof=r"""The squares of both sides say $\rho^2 = x^2 + y^2$.  For either sign of $\rho$ the
+unit vector $u(\theta)$ is $(x, y)/\rho$, whose angle is $\operatorname{atan2}(\sigma y, \sigma
+x)$.""",
+    exception=r"""If $x = y = 0$, then $\rho = 0$ and $\theta$ is free.""",
+)
+
+
 @chain_lemma("r u(x) = (x, y)", "the pair of x, and r")
 def polar(
     chain: Chain,
@@ -299,11 +324,31 @@ def polar(
     return Applied(lemma, (pair, value), means | {value: length}, {}, cases)
 
 
+theorem(
+    "slide",
+    statement=r"""The equation $d = z$ has the one solution $d = z$.""",
+    proof=r"""A prismatic joint along the direction of a coordinate moves the hand by as much as
+it is extended; nothing has to be solved.""",
+)
+
+
 @chain_lemma("d = value", "the value")
 def slide(chain: Chain, joint: sp.Symbol, value: sp.Expr) -> Applied:
     """``joint = value``: a prismatic joint along the direction of a coordinate."""
     lemma = Lemma("slide", r"d = z", (joint - value,), {joint: value}, 1)
     return Applied(lemma, value)
+
+
+theorem(
+    "remaining angle",
+    statement=r"""Let $\psi$ and $\varphi$ be given by their sines and cosines.  In $(-\pi, \pi]$
+exactly one $\theta$ has $\theta + \varphi = \psi$ up to whole turns,
+$$\theta = \operatorname{atan2}(\sin\psi\cos\varphi - \cos\psi\sin\varphi,\
+\cos\psi\cos\varphi + \sin\psi\sin\varphi).$$""",
+    proof=r"""By the addition theorems the arguments are $\sin(\psi - \varphi)$ and $\cos(\psi -
+\varphi)$.  Angles with the same sine and cosine differ by whole turns, and one of them is in
+$(-\pi, \pi]$.""",
+)
 
 
 @chain_lemma("x = value", "the angle")
@@ -358,7 +403,7 @@ def zyz(
     near: tuple[sp.Symbol, ...] = ()
     if reaching is None:
         angles = zyz_angles(
-            p, R, first, middle, last, sigma, free=(free,), scale=_ROUNDINGS, suffix=f"_{name}"
+            p, R, (first, middle, last), sigma, free=(free,), scale=_ROUNDINGS, suffix=f"_{name}"
         )
         lemma, aligned = angles.lemma, angles.aligned
         halves = {first: (angles.first, angles.flip), last: (angles.last, angles.flip)}
@@ -371,7 +416,7 @@ def zyz(
         )
         found, near, unit = _within_reach(reaching, R, h, first, sigma, aligned)
         pair, means = named(chain, first, found)
-        lemma, _ = zyz_lemma(R, first, middle, last, pair, sp.S.One, sp.S.Zero)
+        lemma, _ = zyz_lemma(R, (first, middle, last), pair)
     given = dict(zip(R, rotation_parametrisation(), strict=True))
     cases = [
         Degenerate(
@@ -403,7 +448,7 @@ def _within_reach(
         p.let(f"s_{first}", choose(aligned, 0, sigma * R[1, 2] / h)),
         p.let(f"c_{first}", choose(aligned, 1, sigma * R[0, 2] / h)),
     )
-    back = Pair(-reaching.ahead.s, reaching.ahead.c)
+    back = -reaching.ahead
     start = reaching.middle() + back
     close, moves, inside, moved = reaching.moved(raw + reaching.ahead, h)
     off = moved + back
@@ -451,7 +496,8 @@ class Reaching:
             return self.chain.program.vanishes(name, value, scale, "the turn has no effect")
 
         at = (self.x, self.y)
-        pair, unit = leaving(self.chain, at, self._r, self.offset, reach, side, name, vanishes)
+        past = Offset(at, self._r, self.offset, vanishes)
+        pair, unit = past.leaving(self.chain, reach, side, name)
         self.chain.units.append((pair.s, pair.c, unit))
         return pair
 

@@ -1,17 +1,21 @@
-"""The lemmas that a chain applies, found by looking through the modules of this folder.
+"""The lemmas, found by looking through the modules of this folder.
 
-A lemma registers itself with the decorator :func:`chain_lemma`.  ``closedform new`` and the guide
-read the list; ``docs/adding-a-lemma.md`` says how to write one.
+What solves for a joint in a chain registers itself with the decorator :func:`chain_lemma`;
+``closedform new`` and the guide read the list.  What a lemma says, and why it is true, is
+registered by :func:`theorem`; the book reads that list.  ``docs/adding-a-lemma.md`` says how to
+write one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
 from typing import Any, TypeVar
+
+from closedform.model.lemma import Theorem
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -42,9 +46,47 @@ def chain_lemma(equation: str, result: str) -> Callable[[_Function], _Function]:
     return register
 
 
+_theorems: dict[str, Theorem] = {}
+
+
+def theorem(
+    name: str,
+    *,
+    statement: str,
+    proof: str,
+    exception: str = "",
+    rests_on: Sequence[str] = (),
+    title: str = "",
+) -> Theorem:
+    """Register what the lemma of this name says, and its proof; see :class:`Theorem`."""
+    found = Theorem(name, statement, proof, exception, tuple(rests_on), title)
+    _theorems[name] = found
+    return found
+
+
 def chain_lemmas() -> dict[str, ChainLemma]:
     """Every lemma of this folder, by name."""
+    _look_through_the_folder()
+    return dict(sorted(_registered.items()))
+
+
+def theorems() -> dict[str, Theorem]:
+    """What every lemma says, by name; what a proof uses comes before it."""
+    _look_through_the_folder()
+    ordered: dict[str, Theorem] = {}
+
+    def add(name: str) -> None:
+        for other in _theorems[name].rests_on:
+            if other not in ordered:
+                add(other)
+        ordered[name] = _theorems[name]
+
+    for name in sorted(_theorems, key=lambda n: (len(_theorems[n].rests_on) > 0, n)):
+        add(name)
+    return ordered
+
+
+def _look_through_the_folder() -> None:
     package = __name__.rpartition(".")[0]
     for module in iter_modules([str(Path(__file__).parent)]):
         import_module(f"{package}.{module.name}")
-    return dict(sorted(_registered.items()))

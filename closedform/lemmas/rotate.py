@@ -11,10 +11,23 @@ from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain
 from closedform.lemmas.links import degenerate, differs_from_zero, named, vanishing
 from closedform.lemmas.pairs import direction
-from closedform.lemmas.registry import chain_lemma
-from closedform.model.derivation import Relation
+from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.model.functions import real
+from closedform.model.inverse import Relation
 from closedform.model.lemma import Lemma, label
+
+theorem(
+    "rotation of a vector",
+    statement=r"""Let $w$ and $v$ be vectors of the plane with $|w| = |v| > 0$.  In $(-\pi, \pi]$
+the equation $R(\theta)\,w = v$ has exactly one solution,
+$$\theta = \operatorname{atan2}(w_1 v_2 - w_2 v_1,\ w_1 v_1 + w_2 v_2).$$""",
+    proof=r"""In the complex plane the equation is $e^{i\theta}\,w = v$, so that $e^{i\theta} = v/w
+= \bar w v/|w|^2$, a number of absolute value $|v|/|w| = 1$.  The real part of $\bar w v$ is
+$w_1 v_1 + w_2 v_2$ and the imaginary part is $w_1 v_2 - w_2 v_1$.  For the angle of this number
+$e^{i\theta}\,w = v$, and no other angle in $(-\pi, \pi]$ has the same sine and cosine.""",
+    exception=r"""If $w = v = 0$, every $\theta$ is a solution: the joint is free.  If $|w| \ne
+|v|$, there is no solution.""",
+)
 
 
 @chain_lemma("Rz(x) w = v", "the pair of x")

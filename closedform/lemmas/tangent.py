@@ -9,12 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import sympy as sp
 
+from closedform.lemmas.amplitude import Amplitude, nearly_tangent
 from closedform.lemmas.chain import Chain
-from closedform.lemmas.pairs import Pair
-from closedform.model.functions import choose, real, sign_of
+from closedform.lemmas.pairs import direction
+from closedform.model.functions import Program, choose, real, sign_of
+from closedform.model.pair import Pair
 
 ROUNDING = sp.Rational(1, 2**44)
 """How far a turn may move the target, in units of the size of the arm: 256 units in its last place,
@@ -38,11 +41,13 @@ class Turned(Pair):
 class Within:
     """A point whose distance from the origin must be between ``low`` and ``high``.
 
-    A turn moves the point by ``rate`` times its angle.
+    A turn moves the point by ``rate`` times its angle.  ``bend`` times the square of the angle is
+    what that adds to the square of the distance, beside the linear part.
     """
 
     point: tuple[sp.Expr, sp.Expr]
     rate: tuple[sp.Expr, sp.Expr]
+    bend: sp.Expr
     low: sp.Expr
     high: sp.Expr
 
@@ -102,27 +107,110 @@ class Turn:
         return self.pair + Pair(s, c)
 
     def least(self, goal: Within) -> Pair:
-        """Turned as little as brings a point within reach."""
+        """Turned as little as brings a point within reach, up to rounding of the target.
+
+        A quarter turn or more is never little.
+        """
         (x, y), (dx, dy) = goal.point, goal.rate
         square = self.let("square", x**2 + y**2)
-        low, high = self.let("low", goal.low**2), self.let("high", goal.high**2)
+        play = self.chain.size * ROUNDING
+        low = self.let("low", sp.Max(0, goal.low - play) ** 2)
+        high = self.let("high", (goal.high + play) ** 2)
         miss = self.let("miss", square - sp.Max(low, sp.Min(high, square)))
-        slope, bend = self.let("slope", x * dx + y * dy), self.let("bend", dx**2 + dy**2)
+        slope, bend = self.let("slope", x * dx + y * dy), self.let("bend", goal.bend)
         inner = self.let("inner", slope**2 - bend * miss)
         outer = self.let("outer", slope + sign_of(slope) * sp.sqrt(sp.Max(inner, 0)))
-        half = self.let(
-            "half",
-            sp.Piecewise(
-                (-slope / (2 * bend), inner < 0),
-                (0, sp.Eq(outer, 0)),  # no turn changes the distance
-                (-miss / (2 * outer), True),
-            ),
+        above, below = (
+            self.let(n, sp.Piecewise((closest, inner < 0), (there, True)))
+            for n, closest, there in (("above", slope, miss), ("below", 2 * bend, 2 * outer))
         )
+        large = sp.Abs(above) >= sp.Abs(below)
+        half = self.let("half", choose(large, 0, -above / below))
         total = self.let("total", 1 + half**2)
         return self.by(
             self.let("by_s", 2 * half / total),
             self.let("by_c", (1 - half**2) / total),
         )
+
+
+@dataclass(frozen=True)
+class Tangency:
+    """A turn that is solved up to the choice that its goal makes near a tangent."""
+
+    chain: Chain
+    at: Amplitude
+    root: sp.Symbol
+    width: sp.Symbol
+    suffix: str
+    free: Any
+    """The flag that the turn is free, or false; then its angle is 0."""
+
+    def pair(self, root: sp.Expr, width: sp.Expr) -> Pair:
+        """The pair of the turn from its root and width."""
+        both = self.at.pair(root, width)
+        return Pair(choose(self.free, 0, both.s), choose(self.free, 1, both.c))
+
+
+@dataclass(frozen=True)
+class Reached:
+    """The pair that a goal has chosen, and the root that belongs to it.
+
+    There is no root where the pair was turned further than the equation says.
+    """
+
+    pair: Pair
+    root: sp.Expr | None
+
+
+class Goal(Protocol):
+    """What later joints have to reach; it chooses among turns that rounding does not tell apart."""
+
+    def reached(self, turn: Tangency) -> Reached:
+        """The turn within reach that is nearest to the computed one."""
+
+
+class Anywhere:
+    """No goal: the turn is as it was computed."""
+
+    def reached(self, turn: Tangency) -> Reached:
+        return Reached(turn.pair(turn.root, turn.width), turn.root)
+
+
+@dataclass(frozen=True)
+class LinksAtHeight:
+    """Two links that have to reach a point at a ``height``, whose other coordinate a turn gives.
+
+    That is the root of the turn.  Where the root is small, rounding changes it by a multiple, and
+    links much shorter than the amplitude might seem too short.
+    """
+
+    l1: sp.Expr
+    l2: sp.Expr
+    height: sp.Expr
+
+    def held(self, program: Program, at: Amplitude, scale: sp.Expr, suffix: str) -> sp.Symbol:
+        """The square of the root, brought within reach if rounding puts it out of reach."""
+        square = at.below * at.above
+        farthest = (self.l1 + self.l2) ** 2 - self.height**2
+        nearest = (self.l1 - self.l2) ** 2 - self.height**2
+        wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
+        rounding = 2 * at.h * scale / 2**44
+        return program.let(
+            f"held{suffix}",
+            sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True)),
+            nonnegative=True,
+        )
+
+    def reached(self, turn: Tangency) -> Reached:
+        """The pair of the turn, from the root within reach that is nearest to the computed one."""
+        p, at, suffix = turn.chain.program, turn.at, turn.suffix
+        tangent = nearly_tangent(p, turn.root, at.h, suffix)
+        held = self.held(p, at, turn.chain.size, suffix)
+        whole = sp.sqrt(4 * held + (at.above - at.below) ** 2)
+        root = choose(tangent, sp.sqrt(held), turn.root)
+        root = p.let(f"kept{suffix}", root, nonnegative=True)
+        width = p.let(f"span{suffix}", choose(tangent, whole, turn.width), nonnegative=True)
+        return Reached(turn.pair(root, width), root)
 
 
 @dataclass(frozen=True)
@@ -133,10 +221,22 @@ class Links:
     l1: sp.Expr
     l2: sp.Expr
 
-    def reached(self, turn: Turn) -> Pair:
+    def reached(self, turn: Tangency) -> Reached:
+        """The pair of the turn, changed by no more than rounding where it is tangent."""
+        chain, at, suffix = turn.chain, turn.at, turn.suffix
+        found = turn.pair(turn.root, turn.width)
+        tangent = nearly_tangent(chain.program, turn.root, chain.size, suffix)
+        near = self.nearest(
+            Turn(chain, found, turn.root, at.c, suffix).renamed(found, f"{suffix}_1")
+        )
+        s, c = choose(tangent, near.s, found.s), choose(tangent, near.c, found.c)
+        return Reached(Pair(s, c), None)
+
+    def nearest(self, turn: Turn) -> Pair:
         """The pair of the turn, changed by no more than rounding, with q within reach."""
         x, y = turn.linear("q", self.q)
-        return turn.least(Within(x, y, sp.Abs(self.l1 - self.l2), self.l1 + self.l2))
+        bend = y[0] ** 2 + y[1] ** 2
+        return turn.least(Within(x, y, bend, sp.Abs(self.l1 - self.l2), self.l1 + self.l2))
 
 
 @dataclass(frozen=True)
@@ -151,41 +251,52 @@ class LinksAndWrist(Links):
     ahead: Pair
     sigma: sp.Symbol = real("sigma_wrist")  # noqa: RUF009
 
-    def reached(self, turn: Turn) -> Pair:
-        first = turn.least(self.goal(turn, sp.Max(turn.lever, turn.chain.size / 2**22)))
-        turn = turn.renamed(first, f"{turn.name}_2")
-        second = self.aligned(turn)
+    def nearest(self, turn: Turn) -> Pair:
+        found = turn.least(self.goal(turn, sp.Max(turn.lever, turn.chain.size / 2**22)))
+        turn = turn.renamed(found, f"{turn.name}_2")
+        found = self.aligned(turn)
         for step in ("3", "4"):
-            turn = turn.renamed(second, f"{turn.name}_{step}")
-            second = turn.least(self.goal(turn, turn.chain.size))
-        return second
+            turn = turn.renamed(found, f"{turn.name}_{step}")
+            found = turn.least(self.goal(turn, turn.chain.size))
+        return found
+
+    def wrist(self, turn: Turn, ax: sp.Expr, ay: sp.Expr) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+        """The sine between the axis and the normal of the plane, and the direction of the offset.
+
+        It has none where the axis is normal to the plane.
+        """
+        h = turn.let("h", sp.sqrt(ax**2 + ay**2))
+        u = direction(self.sigma * ay, self.sigma * ax, h, sp.Eq(h, 0)) + self.ahead
+        return h, turn.let("us", u.s), turn.let("uc", u.c)
 
     def goal(self, turn: Turn, lever: sp.Expr) -> Within:
         """Where rounding over a ``lever`` turns the wrist by any angle, so it does the offset."""
         (qx, qy), (dqx, dqy) = turn.linear("q", self.q)
         (ax, ay), (dax, day) = turn.linear("axis", self.axis)
-        h = turn.let("h", sp.sqrt(ax**2 + ay**2))
-        u = Pair(self.sigma * ay / h, self.sigma * ax / h) + self.ahead
-        us, uc = turn.let("us", u.s), turn.let("uc", u.c)
-        rate = turn.let("rate", self.offset * (ax * day - ay * dax) / h**2)
+        h, us, uc = self.wrist(turn, ax, ay)
         least = turn.let("fold", sp.Abs(self.l1 - self.l2))
         most = turn.let("full", self.l1 + self.l2)
         size = turn.let("size", turn.chain.size)
-        slack = turn.let("slack", h * lever)
-        loose = slack <= size / 2**46
+        loose = h * lever <= size / 2**46
+        spin = turn.let("spin", choose(loose, 0, (ax * day - ay * dax) / h**2))
+        rate = turn.let("rate", self.offset * spin)
+        # u only turns: the square of its length has no part in the bend
+        straight = turn.let("straight", dqx**2 + dqy**2)
+        bent = straight + rate * (spin * (qx * uc + qy * us) + 2 * (dqx * us - dqy * uc))
         apart = turn.let("apart", sp.Max(least - self.offset, self.offset - most))
-        x, y, dx, dy, low, high = (
+        x, y, dx, dy, bend, low, high = (
             turn.let(n, sp.Piecewise((a, loose), (b, True)))
             for n, a, b in (
                 ("x", qx, qx - self.offset * uc),
                 ("y", qy, qy - self.offset * us),
                 ("dx", dqx, dqx + rate * us),
                 ("dy", dqy, dqy - rate * uc),
+                ("bends", straight, bent),
                 ("nearest", sp.Max(0, apart), least),
                 ("farthest", most + self.offset, most),
             )
         )
-        return Within((x, y), (dx, dy), low, high)
+        return Within((x, y), (dx, dy), bend, low, high)
 
     def aligned(self, turn: Turn) -> Pair:
         """Turned so that the axis of the wrist has the nearest direction that is within reach.
@@ -196,9 +307,7 @@ class LinksAndWrist(Links):
         chain = turn.chain
         (qx, qy), _ = turn.linear("q", self.q)
         (ax, ay), (dax, _) = turn.linear("axis", self.axis)
-        h = turn.let("h", sp.sqrt(ax**2 + ay**2))
-        u = Pair(self.sigma * ay / h, self.sigma * ax / h) + self.ahead
-        us, uc = turn.let("us", u.s), turn.let("uc", u.c)
+        _, us, uc = self.wrist(turn, ax, ay)
         there = turn.let(
             "there", sp.sqrt((qx - self.offset * uc) ** 2 + (qy - self.offset * us) ** 2)
         )
@@ -206,31 +315,30 @@ class LinksAndWrist(Links):
         reach = turn.let("goal", sp.Min(sp.Max(there, nearest), farthest))
         side = turn.let("side", sign_of(qx * us - qy * uc))
         r = turn.let("r", sp.sqrt(qx**2 + qy**2))
-        back = Pair(-self.ahead.s, self.ahead.c)
+        past = Offset((qx, qy), r, self.offset)
+        back = -self.ahead
         (vs, vc), (ws, wc) = (
             (turn.let(f"{n}s", v.s), turn.let(f"{n}c", v.c))
             for n, sign in (("v", 1), ("w", -1))
-            for v in [
-                leaving(
-                    chain, (qx, qy), r, self.offset, reach, sign * side, f"{n}_{turn.name}", plain
-                )[0]
-                + back
-            ]
+            for v in [past.leaving(chain, reach, sign * side, f"{n}_{turn.name}")[0] + back]
         )
         other = turn.let("other", self.sigma * ay * vs) < 0  # the turn does not change ay
         vs, vc = (
             turn.let(n, sp.Piecewise((w, other), (v, True)))
             for n, v, w in (("to_s", vs, ws), ("to_c", vc, wc))
         )
-        nothing = sp.Abs(ay) <= 16 * LAST
         most = turn.let("most", sp.sqrt(ax**2 + dax**2))
-        wanted = turn.let("wanted", choose(nothing, 0, ay * vc / vs))
-        wanted = turn.let("kept", sp.Max(-most, sp.Min(most, wanted)))
-        rest = turn.let("rest", sign_of(dax) * sp.sqrt((most - wanted) * (most + wanted)))
-        inside = sp.Abs(reach - there) <= chain.size * LAST
+        across = turn.let("across", choose(sp.Abs(ay) <= 16 * LAST, 0, ay * vc * sign_of(vs)))
+        beyond = sp.Abs(across) >= most * sp.Abs(vs)
+        limited = choose(beyond, most * sign_of(across), across / sp.Abs(vs))
+        wanted = turn.let("wanted", choose(sp.Eq(across, 0), 0, limited))
+        room = turn.let("room", sp.Max(0, (most - wanted) * (most + wanted)))
+        rest = turn.let("rest", sign_of(dax) * sp.sqrt(room))
+        inside = sp.Abs(reach - there) <= chain.size * ROUNDING
+        fixed = most <= LAST  # the axis is that of the turn
         return turn.by(
-            turn.let("by_s", (dax * wanted - ax * rest) / most**2),
-            turn.let("by_c", (ax * wanted + dax * rest) / most**2),
+            turn.let("by_s", choose(fixed, 0, (dax * wanted - ax * rest) / most**2)),
+            turn.let("by_c", choose(fixed, 1, (ax * wanted + dax * rest) / most**2)),
             unless=inside,
         )
 
@@ -240,29 +348,35 @@ def plain(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Basic:
     return value <= scale * LAST
 
 
-def leaving(
-    chain: Chain,
-    point: tuple[sp.Expr, sp.Expr],
-    r: sp.Expr,
-    offset: sp.Expr,
-    reach: sp.Expr,
-    side: sp.Expr,
-    name: str,
-    vanishes: Callable[[str, sp.Expr, sp.Expr], sp.Basic],
-) -> tuple[Pair, tuple[sp.Expr, ...]]:
-    """The direction u for which a point, r away, less ``offset`` times u is ``reach`` away.
+@dataclass(frozen=True)
+class Offset:
+    """A ``point``, ``r`` away, from which an ``offset`` leads in a direction that is free.
 
-    It follows from the cosine rule in half angles, to one ``side`` of the point; what it is made of
-    is returned too.
+    ``vanishes`` makes the flags: of a name, a value and its scale.
     """
-    p, e, (x, y) = chain.program, offset, point
-    cc = p.let(f"k_{name}", sp.Max(0, (r + e - reach) * (r + e + reach)), nonnegative=True)
-    ss = p.let(f"d_{name}", sp.Max(0, (reach - r + e) * (reach + r - e)), nonnegative=True)
-    total = p.let(f"n_{name}", cc + ss, nonnegative=True)
-    any_turn = vanishes(f"any_{name}", total, chain.size**2)
-    cosine = p.let(f"uc_{name}", choose(any_turn, 1, (cc - ss) / total))
-    sine = p.let(f"us_{name}", choose(any_turn, 0, 2 * side * sp.sqrt(cc) * sp.sqrt(ss) / total))
-    at_hub = vanishes(f"hub_{name}", r, chain.size)
-    s = p.let(f"s_{name}", choose(at_hub, 0, (y * cosine + x * sine) / r))
-    c = p.let(f"c_{name}", choose(at_hub, 1, (x * cosine - y * sine) / r))
-    return Pair(s, c), (cc, ss, side)
+
+    point: tuple[sp.Expr, sp.Expr]
+    r: sp.Expr
+    offset: sp.Expr
+    vanishes: Callable[[str, sp.Expr, sp.Expr], sp.Basic] = plain
+
+    def leaving(
+        self, chain: Chain, reach: sp.Expr, side: sp.Expr, name: str
+    ) -> tuple[Pair, tuple[sp.Expr, ...]]:
+        """The direction u for which the point less ``offset`` times u is ``reach`` away.
+
+        It follows from the cosine rule in half angles, to one ``side`` of the point; what it is
+        made of is returned too.
+        """
+        p, r, e, (x, y) = chain.program, self.r, self.offset, self.point
+        cc = p.let(f"k_{name}", sp.Max(0, (r + e - reach) * (r + e + reach)), nonnegative=True)
+        ss = p.let(f"d_{name}", sp.Max(0, (reach - r + e) * (reach + r - e)), nonnegative=True)
+        total = p.let(f"n_{name}", cc + ss, nonnegative=True)
+        any_turn = self.vanishes(f"any_{name}", total, chain.size * (r + e))
+        cosine = p.let(f"uc_{name}", choose(any_turn, 1, (cc - ss) / total))
+        across = 2 * side * sp.sqrt(cc) * sp.sqrt(ss) / total
+        sine = p.let(f"us_{name}", choose(any_turn, 0, across))
+        at_hub = self.vanishes(f"hub_{name}", r, chain.size)
+        s = p.let(f"s_{name}", choose(at_hub, 0, (y * cosine + x * sine) / r))
+        c = p.let(f"c_{name}", choose(at_hub, 1, (x * cosine - y * sine) / r))
+        return Pair(s, c), (cc, ss, side)

@@ -1,166 +1,251 @@
-"""The two-link triangle, by half angles and by squares."""
+"""The triangle of two links and the line between their ends."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import sympy as sp
 
+from closedform.lemmas.registry import theorem
 from closedform.model.functions import Program, choose
 from closedform.model.lemma import Lemma
+from closedform.model.pair import Pair
+
+NEARER, FARTHER = "nearer than full stretch", "farther than the fold"
+"""What the bounds of a triangle mean: it exists where both hold."""
+
+theorem(
+    "two-link triangle",
+    statement=r"""Two links of lengths $l_1, l_2 > 0$ are joined at the angle $\theta$, and their
+ends are at the distance $R > 0$.  Let $\alpha$ be the angle from the first link to the line of
+the ends: $l_1 + l_2\cos\theta = R\cos\alpha$ and $l_2\sin\theta = R\sin\alpha$.  With $N = (l_1 +
+l_2)^2 - R^2$ and $M = R^2 - (l_1 - l_2)^2$ there is a solution if and only if $N \ge 0$ and $M
+\ge 0$.  The solutions are
+$$\tan\frac{\theta}{2} = \sigma\frac{\sqrt N}{\sqrt M}, \qquad
+\tan\alpha = \sigma\frac{2 l_2\sqrt{N M}}{(l_1 - l_2) N + (l_1 + l_2) M}, \qquad \sigma = \pm 1.$$
+With the factors of Heron's formula, $S = l_1 + l_2 + R$, $A = l_1 + l_2 - R$, $B = R + l_1 - l_2$
+and $C = R - l_1 + l_2$, the same solutions are
+$$\tan\frac{\theta}{2} = \sigma\frac{\sqrt{S A}}{\sqrt{B C}}, \qquad
+\tan\frac{\alpha}{2} = \sigma\frac{\sqrt{A C}}{\sqrt{S B}}.$$""",
+    proof=r"""The sum of the squares of both equations is $l_1^2 + l_2^2 + 2 l_1 l_2\cos\theta =
+R^2$.  Since $N + M = 4 l_1 l_2$, this says $\cos\theta = (M - N)/(M + N)$.  Such a $\theta$
+exists if and only if $N$ and $M$ are not negative, because their sum is positive.  Then
+$\tan^2(\theta/2) = (1 - \cos\theta)/(1 + \cos\theta) = N/M$, and $\sigma$ is the sign of
+$\theta$.  Here $\sin\theta = 2\sigma\sqrt{N M}/(N + M)$.  Inserted into both equations, this
+gives $R\cos\alpha$ and $R\sin\alpha$, and $\tan\alpha$ as their quotient.  The first two factors
+of Heron's formula give $N = S A$ and the others $M = B C$.  The law of cosines for the angle at
+the base, $2 R l_1\cos\alpha = R^2 + l_1^2 - l_2^2$, gives $\tan^2(\alpha/2) = (1 - \cos\alpha)/(1
++ \cos\alpha) = A C/(S B)$ in the same way; $\alpha$ has the sign of $\theta$, because
+$R\sin\alpha = l_2\sin\theta$.""",
+    exception=r"""If a link has no length, $N + M = 0$ and $\theta$ is free.  If $R = 0$, which
+needs $l_1 = l_2$, the links lie on each other and $\alpha$ is free.""",
+)
 
 
-def heron_factors(
-    program: Program,
-    first: sp.Expr,
-    second: sp.Expr,
-    reach: sp.Expr,
-    scale: sp.Expr,
-    *,
-    suffix: str = "",
-) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, sp.Symbol]:
-    """The factors S, A, B, C of Heron's formula; a triangle exists where none is negative."""
-    return (
-        program.let(f"S{suffix}", first + second + reach, nonnegative=True),
-        program.bound(f"A{suffix}", first + second - reach, scale, "nearer than full stretch"),
-        program.bound(f"B{suffix}", reach + first - second, scale, "farther than the fold"),
-        program.bound(f"C{suffix}", reach - first + second, scale, "farther than the fold"),
-    )
+@dataclass(frozen=True)
+class Triangle:
+    """Two links of lengths l1 = ``first`` and l2 = ``second`` whose ends are R apart.
 
-
-def square_factors(
-    program: Program,
-    first: sp.Expr,
-    second: sp.Expr,
-    square: sp.Expr,
-    scale: sp.Expr,
-    *,
-    suffix: str = "",
-) -> tuple[sp.Symbol, sp.Symbol]:
-    """N and M of :func:`two_link_triangle_by_square`; a triangle exists where none is negative.
-
-    A fold of some 2^-44 of the links is none: there M may be missed by its own square.
-    """
-    total, apart = first + second, first - second
-    N = program.bound(
-        f"N{suffix}", total**2 - square, 2 * total * scale, "nearer than full stretch"
-    )
-    M = program.bound(
-        f"M{suffix}",
-        square - apart**2,
-        2 * (sp.Abs(apart) + total / 2**44) * scale,
-        "farther than the fold",
-    )
-    return N, M
-
-
-def triangle_equations(
-    first: sp.Expr, second: sp.Expr, reach: sp.Expr, elbow: sp.Symbol, base: sp.Symbol
-) -> tuple[sp.Expr, sp.Expr]:
-    """Two links, at 0 and at ``elbow``, end ``reach`` away in the direction ``base``."""
-    return (
-        first + second * sp.cos(elbow) - reach * sp.cos(base),
-        second * sp.sin(elbow) - reach * sp.sin(base),
-    )
-
-
-def two_link_triangle(
-    program: Program,
-    first: sp.Expr,
-    second: sp.Expr,
-    reach: sp.Expr,
-    elbow: sp.Symbol,
-    base: sp.Symbol,
-    sigma: sp.Symbol,
-    *,
-    scale: sp.Expr | None = None,
-    suffix: str = "",
-) -> Lemma:
-    """The triangle of two links of lengths ``first``, ``second`` whose ends are ``reach`` apart.
-
-    ``elbow`` is the joint angle between the links (zero when stretched), ``base`` the angle from
+    ``elbow`` is the joint angle between the links, zero when stretched, and ``base`` the angle from
     the first link to the line of the ends, so that a link at ``theta`` reaches the direction
-    ``theta + base``.  Two mirror solutions.  With the four factors of Heron's formula, S, A, B, C,
+    ``theta + base``.  There are two mirror images, by ``sigma``.  With
 
-        tan(elbow / 2) = sqrt(S A) / sqrt(B C),   tan(base / 2) = sqrt(A C) / sqrt(S B).
+        N = (l1 + l2)^2 - R^2,   M = R^2 - (l1 - l2)^2
 
-    The elbow is free where a link has no length, and the base where the reach is zero.  ``scale``
-    is the natural scale of the lengths: by default that of the links, more where the reach is a
-    difference of larger lengths.
-    """
-    scale = first + second if scale is None else scale
-    S, A, B, C = heron_factors(program, first, second, reach, scale, suffix=suffix)
-    rS, rA, rB, rC = (
-        program.let(f"r{name}{suffix}", sp.sqrt(value), nonnegative=True)
-        for name, value in (("S", S), ("A", A), ("B", B), ("C", C))
-    )
-    return Lemma(
-        "two-link triangle",
-        r"\tan\frac{\theta}{2} = \sigma\frac{\sqrt{S A}}{\sqrt{B C}},\quad "
-        r"\tan\frac{\alpha}{2} = \sigma\frac{\sqrt{A C}}{\sqrt{S B}}",
-        triangle_equations(first, second, reach, elbow, base),
-        {
-            elbow: 2 * sigma * sp.atan2(rS * rA, rB * rC),
-            base: 2 * sigma * sp.atan2(rA * rC, rS * rB),
-        },
-        2,
-    )
-
-
-def triangle_angles(
-    first: sp.Expr, second: sp.Expr, N: sp.Expr, M: sp.Expr, sigma: sp.Expr
-) -> tuple[sp.Expr, sp.Expr]:
-    """Elbow and base of :func:`two_link_triangle_by_square`, for N and M."""
-    elbow = 2 * sigma * sp.atan2(sp.sqrt(N), sp.sqrt(M))
-    beyond = 2 * sigma * second * (sp.sqrt(N) * sp.sqrt(M))
-    return elbow, sp.atan2(beyond, (first - second) * N + (first + second) * M)
-
-
-def two_link_triangle_by_square(
-    program: Program,
-    first: sp.Expr,
-    second: sp.Expr,
-    square: sp.Expr,
-    elbow: sp.Symbol,
-    base: sp.Symbol,
-    sigma: sp.Symbol,
-    *,
-    scale: sp.Expr | None = None,
-    suffix: str = "",
-    free: Sequence[sp.Symbol] = (),
-) -> tuple[Lemma, tuple[sp.Expr, sp.Expr]]:
-    """As :func:`two_link_triangle`, by the ``square`` of the distance R of the ends.
-
-    With N = (l1 + l2)^2 - R^2 and M = R^2 - (l1 - l2)^2
+    both angles follow without R itself:
 
         tan(elbow / 2) = sqrt(N / M),
-        tan(base) = 2 l2 sqrt(N M) / ((l1 - l2) N + (l1 + l2) M),
+        tan(base) = 2 l2 sqrt(N M) / ((l1 - l2) N + (l1 + l2) M).
 
-    without R itself.  Cosine and sine of the base, times 4 l1 l2 R, are returned too, for what
-    turns with it.  Both angles rest on the same N and M, whose rounding counts as some of R; so
-    the links end where they should even where their angles are ill-conditioned.
-
-    The elbow is free where a link has no length: the convention is a stretched one, and the
-    ``free`` joints get the status for it.  The base is free where R = 0.  ``scale`` is the natural
-    scale of the lengths: by default that of the links, more where R comes from larger ones.
+    Where R is known and not only its square, N = S A and M = B C with the ``factors`` of Heron's
+    formula, which lose no digits at the limits, and tan(base / 2) = sqrt(A C) / sqrt(S B).
     """
-    total = first + second
-    N, M = square_factors(
-        program, first, second, square, total if scale is None else scale, suffix=suffix
-    )
-    bend, lead = triangle_angles(first, second, N, M, sigma)
-    no_link = program.vanishes(
-        f"no_link{suffix}", first * second, total**2, "a link has no length", free
-    )
-    ahead = program.let(f"ahead{suffix}", choose(no_link, 1, lead.args[1]))
-    beyond = program.let(f"beyond{suffix}", choose(no_link, 0, lead.args[0]))
-    lemma = Lemma(
-        "two-link triangle",
-        r"N = (l_1 + l_2)^2 - R^2,\ M = R^2 - (l_1 - l_2)^2:\quad "
-        r"\tan\frac{\theta}{2} = \sigma\frac{\sqrt N}{\sqrt M},\quad "
-        r"\tan\alpha = \sigma\frac{2 l_2 \sqrt{N M}}{(l_1 - l_2) N + (l_1 + l_2) M}",
-        triangle_equations(first, second, sp.sqrt(square), elbow, base),
-        {elbow: choose(no_link, 0, bend), base: sp.atan2(beyond, ahead)},
-        2,
-    )
-    return lemma, (ahead, beyond)
+
+    first: sp.Expr
+    second: sp.Expr
+    sigma: sp.Expr
+    N: sp.Expr
+    M: sp.Expr
+    factors: tuple[sp.Expr, ...] = ()
+    """S, A, B and C, where the triangle is made from a reach."""
+
+    @classmethod
+    def from_reach(
+        cls,
+        program: Program,
+        links: tuple[sp.Expr, sp.Expr],
+        reach: sp.Expr,
+        sigma: sp.Expr,
+        *,
+        scale: sp.Expr | None = None,
+        suffix: str = "",
+    ) -> Triangle:
+        """The triangle whose ends are ``reach`` apart, with its four bounds.
+
+        ``scale`` is the natural scale of the lengths: by default that of the links, more where the
+        reach is a difference of larger lengths.
+        """
+        first, second = links
+        scale = first + second if scale is None else scale
+        S = program.let(f"S{suffix}", first + second + reach, nonnegative=True)
+        A, B, C = (
+            program.bound(f"{name}{suffix}", value, scale, meaning)
+            for name, value, meaning in (
+                ("A", first + second - reach, NEARER),
+                ("B", reach + first - second, FARTHER),
+                ("C", reach - first + second, FARTHER),
+            )
+        )
+        return cls(first, second, sigma, S * A, B * C, (S, A, B, C))
+
+    @classmethod
+    def from_square(
+        cls,
+        program: Program,
+        links: tuple[sp.Expr, sp.Expr],
+        square: sp.Expr,
+        sigma: sp.Expr,
+        *,
+        scale: sp.Expr | None = None,
+        suffix: str = "",
+    ) -> Triangle:
+        """The triangle with the ``square`` of the distance of the ends, and its two bounds.
+
+        Both angles rest on the same N and M, whose rounding counts as some of R.  So the links end
+        where they should even where their angles are ill-conditioned.  ``scale`` is as in
+        :meth:`from_reach`.  A fold closer than 2^-44 of the links does not count as one: there M
+        may be missed by its own square.
+        """
+        first, second = links
+        total, difference = first + second, first - second
+        scale = total if scale is None else scale
+        N = program.bound(f"N{suffix}", total**2 - square, 2 * total * scale, NEARER)
+        M = program.bound(
+            f"M{suffix}",
+            square - difference**2,
+            2 * (sp.Abs(difference) + total / 2**44) * scale,
+            FARTHER,
+        )
+        return cls(first, second, sigma, N, M)
+
+    @property
+    def whole(self) -> sp.Expr:
+        """``4 l1 l2``, as a sum of what the elbow is computed from."""
+        return self.N + self.M
+
+    @property
+    def root(self) -> sp.Expr:
+        """The root of ``N M``, which is four times the area."""
+        return sp.Mul(*map(sp.sqrt, self.factors or (self.N, self.M)))
+
+    def rooted(self, program: Program, suffix: str = "") -> Triangle:
+        """The same with names for the roots of the four factors."""
+        S, A, B, C = (
+            program.let(f"r{name}{suffix}", sp.sqrt(value), nonnegative=True) ** 2
+            for name, value in zip("SABC", self.factors, strict=True)
+        )
+        return Triangle(self.first, self.second, self.sigma, S * A, B * C, (S, A, B, C))
+
+    @property
+    def elbow(self) -> sp.Expr:
+        """The angle between the links; free where a link has no length."""
+        return 2 * self.sigma * sp.atan2(sp.sqrt(self.N), sp.sqrt(self.M))
+
+    def elbow_pair(self, twice: sp.Expr, whole: sp.Expr) -> Pair:
+        """Its pair, from names for twice the :attr:`root` and the :attr:`whole`."""
+        return Pair(self.sigma * twice / whole, (self.M - self.N) / whole)
+
+    @property
+    def base(self) -> sp.Expr:
+        """The angle from the first link to the line of the ends; free where R = 0."""
+        if self.factors:
+            S, A, B, C = self.factors
+            return 2 * self.sigma * sp.atan2(sp.sqrt(A * C), sp.sqrt(S * B))
+        return sp.atan2(self.beyond, self.ahead)
+
+    @property
+    def width(self) -> sp.Expr:
+        """``4 l1 R``, as a sum of what the base is computed from."""
+        S, A, B, C = self.factors
+        return S * B + A * C
+
+    def base_pair(self, twice: sp.Expr, width: sp.Expr) -> Pair:
+        """The pair of the base, from names for twice the :attr:`root` and the :attr:`width`."""
+        S, A, B, C = self.factors
+        return Pair(self.sigma * twice / width, (S * B - A * C) / width)
+
+    @property
+    def ahead(self) -> sp.Expr:
+        """``4 l1 R cos(base)``, without R."""
+        return (self.first - self.second) * self.N + (self.first + self.second) * self.M
+
+    @property
+    def beyond(self) -> sp.Expr:
+        """``4 l1 R sin(base)``, without R."""
+        return 2 * self.sigma * self.second * self.root
+
+    def lemma(
+        self,
+        angles: tuple[sp.Symbol, sp.Symbol],
+        reach: sp.Expr,
+        elbow: sp.Expr | None = None,
+        base: sp.Expr | None = None,
+    ) -> Lemma:
+        """The lemma for the ``angles`` of the elbow and of the base.
+
+        ``elbow`` and ``base`` are the closed forms where a flag chooses between them and a
+        convention; by default those of the triangle.
+        """
+        statement = (
+            r"\tan\frac{\theta}{2} = \sigma\frac{\sqrt{S A}}{\sqrt{B C}},\quad "
+            r"\tan\frac{\alpha}{2} = \sigma\frac{\sqrt{A C}}{\sqrt{S B}}"
+            if self.factors
+            else r"N = (l_1 + l_2)^2 - R^2,\ M = R^2 - (l_1 - l_2)^2:\quad "
+            r"\tan\frac{\theta}{2} = \sigma\frac{\sqrt N}{\sqrt M},\quad "
+            r"\tan\alpha = \sigma\frac{2 l_2 \sqrt{N M}}{(l_1 - l_2) N + (l_1 + l_2) M}"
+        )
+        at_elbow, at_base = angles
+        return Lemma(
+            "two-link triangle",
+            statement,
+            (
+                self.first + self.second * sp.cos(at_elbow) - reach * sp.cos(at_base),
+                self.second * sp.sin(at_elbow) - reach * sp.sin(at_base),
+            ),
+            {
+                at_elbow: self.elbow if elbow is None else elbow,
+                at_base: self.base if base is None else base,
+            },
+            2,
+            signs=(self.sigma,),
+        )
+
+    def stretched_without_link(
+        self,
+        program: Program,
+        angles: tuple[sp.Symbol, sp.Symbol],
+        reach: sp.Expr,
+        *,
+        free: Sequence[sp.Symbol] = (),
+        suffix: str = "",
+    ) -> tuple[Lemma, tuple[sp.Symbol, sp.Symbol]]:
+        """The lemma, and names for :attr:`ahead` and :attr:`beyond`, for what turns with the base.
+
+        The elbow is free where a link has no length: then a stretched one is returned, and the
+        ``free`` joints get the status for it.
+        """
+        no_link = program.vanishes(
+            f"no_link{suffix}",
+            self.first * self.second,
+            (self.first + self.second) ** 2,
+            "a link has no length",
+            free,
+        )
+        ahead = program.let(f"ahead{suffix}", choose(no_link, 1, self.ahead))
+        beyond = program.let(f"beyond{suffix}", choose(no_link, 0, self.beyond))
+        elbow = choose(no_link, 0, self.elbow)
+        return self.lemma(angles, reach, elbow, sp.atan2(beyond, ahead)), (ahead, beyond)
+
+
+__all__ = ["FARTHER", "NEARER", "Triangle"]

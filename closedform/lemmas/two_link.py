@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from closedform.lemmas.triangle import square_factors
-from closedform.model.functions import Number, Program, choose
+from closedform.lemmas.triangle import FARTHER, NEARER, Triangle
+from closedform.model.functions import Program, choose
 from closedform.model.lemma import Lemma
+from closedform.model.pair import Pair
+
+LEVEL = Pair(sp.S.Zero, sp.S.One)
+"""The direction of an upper arm where nothing else determines it."""
+
+
+Vector = tuple[sp.Expr, sp.Expr]
 
 
 def two_link_arm(
     program: Program,
     lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
-    target: tuple[sp.Expr, sp.Expr],
+    target: Vector,
     unknowns: tuple[sp.Symbol, sp.Symbol],
     sigma: sp.Symbol,
     *,
@@ -31,69 +38,65 @@ def two_link_arm(
         l cos(x) + a sin(y) + b cos(y) = r,   l sin(x) - a cos(y) + b sin(y) = h.
 
     The fore-arm is a link of length sqrt(a^2 + b^2) that lags behind y by atan2(a, b).  Both angles
-    turn together where r = h = 0, and one of them is free where a link has no length.  ``scale`` is
-    that of what the target may be missed by, if it is not the length of the arm.
+    turn together where r = h = 0, and one of them is free where a link has no length; the ``free``
+    joints get the status for it.  ``scale`` is that of what the target may be missed by, if it is
+    not the length of the arm.
     """
     upper, along, across = lengths
-    r, h = target
     start = len(program.body)
     second = program.let(f"fore{suffix}", sp.sqrt(along**2 + across**2), nonnegative=True)
-    square = program.let(f"square{suffix}", r**2 + h**2, nonnegative=True)
-    size = upper + second if scale is None else scale
-    squares = square_factors(program, upper, second, square, size, suffix=suffix)
-    flags = _degenerate(program, upper, second, sp.Abs(r) + sp.Abs(h), suffix, free)
-    return _arm(
-        program, lengths, second, target, unknowns, sigma, squares, flags, suffix, start, (1, 0)
+    square = program.let(f"square{suffix}", target[0] ** 2 + target[1] ** 2, nonnegative=True)
+    triangle = Triangle.from_square(
+        program, (upper, second), square, sigma, scale=scale, suffix=suffix
     )
+    return _Arm(program, lengths, target, unknowns, triangle, suffix).lemma(start, free)
 
 
 def two_link_arm_beside(
     program: Program,
     lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
-    second: sp.Symbol,
-    target: tuple[sp.Expr, sp.Expr],
+    target: Vector,
     unknowns: tuple[sp.Symbol, sp.Symbol],
     sigma: sp.Symbol,
-    squares: tuple[sp.Expr, sp.Expr],
-    scale: sp.Expr,
     *,
-    apart: Number = 0,
+    second: sp.Symbol,
+    squares: Vector,
+    scale: sp.Expr,
     suffix: str = "",
     sided: bool = False,
     free: Sequence[sp.Symbol] = (),
-    rest: tuple[Number, Number] = (1, 0),
+    rest: Pair = LEVEL,
 ) -> Lemma:
     """The two-link arm, where another arm knows better than the target how far it is bent.
 
-    As :func:`two_link_arm`, for a fore-arm of length ``second``.  With the reach R the ``squares``
-    are N = (l + f)^2 - R^2 and M = R^2 - (l - f)^2, so that tan(elbow / 2) = sqrt(N / M).  Taken
-    from the target, N has lost all its digits where the arm is straight, and the elbow half of
-    them; an arm nearby gives them without a difference of nearly equal lengths.  M is another
-    matter where the end is close to the shoulder, closer than to the end of the other arm: there R
-    is short and has all its digits.  ``apart`` is the square of the distance of both ends, which
-    tells the one from the other; with zero M is always that of ``squares``.  ``scale`` is that of
-    the distance between both, which decides how far the target may be missed.  ``sided`` keeps the
-    elbow from being quite straight, so that its side can be read from the answer.  ``rest`` is the
-    direction of the upper arm where the end is on the shoulder; the end has seen some roundings, so
-    that a multiple of the usual tolerance counts as there.
+    Taken from the target, the N of its triangle has lost all its digits where the arm is straight,
+    and the elbow half of them.  An arm nearby gives N and M without a difference of nearly equal
+    lengths.  The first arguments are those of :func:`two_link_arm`, the keywords
+
+    ``second``
+        the length of the fore-arm;
+    ``squares``
+        N and M, see :class:`~closedform.lemmas.triangle.Triangle`;
+    ``scale``
+        the scale of the distance of both ends, which decides how far the target may be missed;
+    ``sided``
+        whether the elbow is kept from being quite straight, so that its side can be read from the
+        answer;
+    ``free``
+        the joints that are free in a degenerate case;
+    ``rest``
+        the direction of the upper arm where the end is on the shoulder.  The end has seen some
+        roundings, so a multiple of the usual tolerance counts as there.
     """
     upper, along, across = lengths
-    r, h = target
-    area, squared = (upper + second) * scale, r**2 + h**2
-    beside = (upper + second) ** 2 * squared < apart**2
-    folding = sp.Piecewise((squared - (upper - second) ** 2, beside), (squares[1], True))
+    area, squared = (upper + second) * scale, target[0] ** 2 + target[1] ** 2
     N, M = (
         program.bound(f"{name}{suffix}", value, area, meaning, positive=sided)
-        for name, value, meaning in (
-            ("N", squares[0], "nearer than full stretch"),
-            ("M", folding, "farther than the fold"),
-        )
+        for name, value, meaning in zip("NM", squares, (NEARER, FARTHER), strict=True)
     )
     start = len(program.body)
-    flags = _degenerate(program, upper, second, sp.Abs(r) + sp.Abs(h), suffix, free, roundings=64)
-    lemma = _arm(
-        program, lengths, second, target, unknowns, sigma, (N, M), flags, suffix, start, rest
-    )
+    triangle = Triangle(upper, second, sigma, N, M)
+    lemma = _Arm(program, lengths, target, unknowns, triangle, suffix).lemma(start, free, rest, 64)
     premises = {
         second: sp.sqrt(along**2 + across**2),
         N: (upper + second) ** 2 - squared,
@@ -106,19 +109,18 @@ def elbow_squares(
     program: Program,
     lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
     second: sp.Symbol,
-    elbow: tuple[sp.Expr, sp.Expr],
+    elbow: Pair,
     *,
     suffix: str = "",
 ) -> tuple[tuple[sp.Symbol, sp.Symbol], sp.Symbol]:
-    """N and M of an arm from cosine and sine of y - x, and the sine of its bend times ``second``.
+    """N and M of an arm from the pair of y - x, and the sine of its bend times ``second``.
 
     N = 2 l (f - f cos(bend)) and M = 2 l (f + f cos(bend)); of f - |..| and f + |..| the smaller
     one is the square of f sin(bend) over the larger one.
     """
     upper, along, across = lengths
-    c, s = elbow
-    straight = program.let(f"straight{suffix}", along * s + across * c)
-    bent = program.let(f"bent{suffix}", across * s - along * c)
+    straight = program.let(f"straight{suffix}", along * elbow.s + across * elbow.c)
+    bent = program.let(f"bent{suffix}", across * elbow.s - along * elbow.c)
     stretched = straight >= 0
     large = program.let(
         f"large{suffix}", second + sp.Piecewise((straight, stretched), (-straight, True))
@@ -129,83 +131,103 @@ def elbow_squares(
     return (N, M), bent
 
 
-def _degenerate(
-    program: Program,
-    upper: sp.Expr,
-    second: sp.Expr,
-    reach: sp.Expr,
-    suffix: str,
-    free: Sequence[sp.Symbol],
-    roundings: int = 1,
-) -> tuple[sp.Symbol, sp.Symbol]:
-    """The flags of an arm: its end is on the shoulder, or a link has no length."""
-    size = upper + second
-    return (
-        program.vanishes(
-            f"folded{suffix}", reach, roundings * size, "the end is on the shoulder", free
-        ),
-        program.vanishes(f"short{suffix}", upper * second, size**2, "a link has no length", free),
-    )
+@dataclass(frozen=True)
+class _Arm:
+    """An arm whose triangle is known."""
+
+    program: Program
+    lengths: tuple[sp.Expr, sp.Expr, sp.Expr]
+    target: Vector
+    unknowns: tuple[sp.Symbol, sp.Symbol]
+    triangle: Triangle
+    suffix: str
+
+    def let(self, name: str, value: sp.Expr, **assumptions: bool) -> sp.Symbol:
+        return self.program.let(f"{name}{self.suffix}", value, **assumptions)
+
+    def vanishes(
+        self,
+        name: str,
+        value: sp.Expr,
+        scale: sp.Expr,
+        meaning: str,
+        free: Sequence[sp.Symbol] = (),
+    ) -> sp.Symbol:
+        return self.program.vanishes(f"{name}{self.suffix}", value, scale, meaning, free)
+
+    def lemma(
+        self, start: int, free: Sequence[sp.Symbol], rest: Pair = LEVEL, roundings: int = 1
+    ) -> Lemma:
+        """The lemma, whose statements begin at ``start``.
+
+        ``roundings`` multiplies the tolerance within which the end is on the shoulder.
+        """
+        (r, h), (x, y) = self.target, self.unknowns
+        upper, second = self.triangle.first, self.triangle.second
+        size, reach = upper + second, sp.Abs(r) + sp.Abs(h)
+        folded = self.vanishes(
+            "folded", reach, roundings * size, "the end is on the shoulder", free
+        )
+        short = self.vanishes("short", upper * second, size**2, "a link has no length", free)
+        bend, elbow, share = self._elbow(short)
+        # 1 + cos(bend) = 2 M / (N + M): without a difference of nearly equal lengths at the fold
+        ahead = choose(short, size, upper - second + 2 * second * share)
+        beyond = (self.let("ahead_1", ahead), second * bend.s)
+        out = self.let("out", r * beyond[0] + h * beyond[1])
+        up = self.let("up", h * beyond[0] - r * beyond[1])
+        norm = self.let("norm", sp.sqrt(out**2 + up**2), nonnegative=True)
+        cx = self.program.let(f"c{x.name}", choose(folded, rest.c, out / norm))
+        sx = self.program.let(f"s{x.name}", choose(folded, rest.s, up / norm))
+        lag = self._lag()
+        turn = bend + lag
+        turn = Pair(c=self.let("c_relative", turn.c), s=self.let("s_relative", turn.s))
+        fore = Pair(sx, cx) + turn
+        cy, sy = self.program.let(f"c{y.name}", fore.c), self.program.let(f"s{y.name}", fore.s)
+        upwards = choose(folded, rest.angle, sp.atan2(up, out))
+        _, along, across = self.lengths
+        return Lemma(
+            "two-link arm",
+            r"l e^{ix} + (b - ia) e^{iy} = r + ih \;\Rightarrow\; x = \operatorname{atan2}(h, r) - "
+            r"\alpha,\ y = x + \theta + \operatorname{atan2}(a, b), \text{ with } \theta, \alpha "
+            r"\text{ of the two-link triangle}",
+            (
+                upper * sp.cos(x) + along * sp.sin(y) + across * sp.cos(y) - r,
+                upper * sp.sin(x) - along * sp.cos(y) + across * sp.sin(y) - h,
+            ),
+            {x: upwards, y: upwards + elbow + lag.angle},
+            2,
+            means={
+                name: f(angle)
+                for angle, pair in ((x, Pair(sx, cx)), (y, Pair(sy, cy)), (y - x, turn))
+                for f, name in ((sp.cos, pair.c), (sp.sin, pair.s))
+            },
+            body=tuple(self.program.body[start:]),
+            signs=(self.triangle.sigma,),
+        )
+
+    def _elbow(self, short: sp.Symbol) -> tuple[Pair, sp.Expr, sp.Expr]:
+        """The pair and the angle of the elbow, and half of one plus its cosine."""
+        at = self.triangle
+        rN, rM = (
+            self.program.let(f"r{e.name}", sp.sqrt(e), nonnegative=True) for e in (at.N, at.M)
+        )
+        whole = self.let("whole", at.whole)
+        found = at.elbow_pair(2 * rN * rM, whole)
+        bend = Pair(
+            c=self.let("c_bend", choose(short, 1, found.c)),
+            s=self.let("s_bend", choose(short, 0, found.s)),
+        )
+        return bend, choose(short, 0, 2 * at.sigma * sp.atan2(rN, rM)), at.M / whole
+
+    def _lag(self) -> Pair:
+        """The pair of the angle by which the fore-arm lags behind; zero without a fore-arm."""
+        upper, along, across = self.lengths
+        second = self.triangle.second
+        bare = self.vanishes("bare", second, upper + second, "the fore-arm has no length")
+        return Pair(
+            c=self.let("c_lag", choose(bare, 1, across / second)),
+            s=self.let("s_lag", choose(bare, 0, along / second)),
+        )
 
 
-def _arm(
-    program: Program,
-    lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
-    second: sp.Symbol,
-    target: tuple[sp.Expr, sp.Expr],
-    unknowns: tuple[sp.Symbol, sp.Symbol],
-    sigma: sp.Symbol,
-    squares: tuple[sp.Symbol, sp.Symbol],
-    flags: tuple[sp.Symbol, sp.Symbol],
-    suffix: str,
-    start: int,
-    rest: tuple[Number, Number],
-) -> Lemma:
-    """The lemma of an arm from N and M and the flags of :func:`_degenerate`.
-
-    ``rest`` is the direction of the upper arm where the end is on the shoulder.
-    """
-    (upper, along, across), (r, h), (x, y), (N, M) = lengths, target, unknowns, squares
-    folded, short = flags
-    rN, rM = (program.let(f"r{e.name}", sp.sqrt(e), nonnegative=True) for e in (N, M))
-    whole = program.let(f"whole{suffix}", N + M)
-    bend = (
-        program.let(f"c_bend{suffix}", choose(short, 1, (M - N) / whole)),
-        program.let(f"s_bend{suffix}", choose(short, 0, 2 * sigma * rN * rM / whole)),
-    )
-    # 1 + cos(bend) = 2 M / (N + M): without a difference of nearly equal lengths at the fold
-    ahead = choose(short, upper + second, upper - second + 2 * second * (M / whole))
-    beyond = (program.let(f"ahead_1{suffix}", ahead), second * bend[1])
-    out = program.let(f"out{suffix}", r * beyond[0] + h * beyond[1])
-    up = program.let(f"up{suffix}", h * beyond[0] - r * beyond[1])
-    norm = program.let(f"norm{suffix}", sp.sqrt(out**2 + up**2), nonnegative=True)
-    cx = program.let(f"c{x.name}", choose(folded, rest[0], out / norm))
-    sx = program.let(f"s{x.name}", choose(folded, rest[1], up / norm))
-    size = upper + second
-    bare = program.vanishes(f"bare{suffix}", second, size, "the fore-arm has no length")
-    lag = (choose(bare, 1, across / second), choose(bare, 0, along / second))
-    lag = tuple(program.let(f"{f}_lag{suffix}", e) for f, e in zip("cs", lag, strict=True))
-    turn = (bend[0] * lag[0] - bend[1] * lag[1], bend[1] * lag[0] + bend[0] * lag[1])
-    turn = tuple(program.let(f"{f}_relative{suffix}", e) for f, e in zip("cs", turn, strict=True))
-    cy = program.let(f"c{y.name}", cx * turn[0] - sx * turn[1])
-    sy = program.let(f"s{y.name}", sx * turn[0] + cx * turn[1])
-    upwards = choose(folded, sp.atan2(rest[1], rest[0]), sp.atan2(up, out))
-    elbow = choose(short, 0, 2 * sigma * sp.atan2(rN, rM))
-    return Lemma(
-        "two-link arm",
-        r"l e^{ix} + (b - ia) e^{iy} = r + ih \;\Rightarrow\; x = \operatorname{atan2}(h, r) - "
-        r"\alpha,\ y = x + \theta + \operatorname{atan2}(a, b), \text{ with } \theta, \alpha "
-        r"\text{ of the two-link triangle}",
-        (
-            upper * sp.cos(x) + along * sp.sin(y) + across * sp.cos(y) - r,
-            upper * sp.sin(x) - along * sp.cos(y) + across * sp.sin(y) - h,
-        ),
-        {x: upwards, y: upwards + elbow + sp.atan2(lag[1], lag[0])},
-        2,
-        means={
-            name: f(angle)
-            for angle, pair in ((x, (cx, sx)), (y, (cy, sy)), (y - x, turn))
-            for f, name in zip((sp.cos, sp.sin), pair, strict=True)
-        },
-        body=tuple(program.body[start:]),
-    )
+__all__ = ["elbow_squares", "two_link_arm", "two_link_arm_beside"]

@@ -6,21 +6,38 @@ from collections.abc import Sequence
 
 import sympy as sp
 
+from closedform.lemmas.registry import theorem
 from closedform.model.functions import Program, choose, sign_of, used_up
 from closedform.model.lemma import Lemma
+
+Vector = tuple[sp.Expr, sp.Expr]
+theorem(
+    "two sines",
+    statement=r"""Let $u$, $v$ and $p$ be vectors of the plane with $u \times v \ne 0$.  The
+equation $u\sin x + v\sin y = p$ with $\cos x \ge 0$ and $\cos y \ge 0$ has exactly one solution,
+$$\sin y = \frac{u \times p}{u \times v}, \qquad \sin x = \frac{u \cdot (p - v\sin y)}{u \cdot u},$$
+if both quotients are in $[-1, 1]$, and none otherwise.""",
+    proof=r"""The cross product of $u$ with the equation is $(u \times v)\sin y = u \times p$.
+With this $\sin y$ the vector $p - v\sin y$ is parallel to $u$, and its scalar product with $u$
+gives $\sin x$.  A sine in $[-1, 1]$ and a cosine that is not negative belong to one angle, in
+$[-\pi/2, \pi/2]$.  Without the inequalities there are three further solutions, with other signs
+of the cosines.""",
+    exception=r"""If $u$ and $v$ are parallel, only one combination of the sines is determined.""",
+)
 
 
 def two_sines(
     program: Program,
     unknowns: tuple[sp.Symbol, sp.Symbol],
-    u: tuple[sp.Expr, sp.Expr],
-    v: tuple[sp.Expr, sp.Expr],
-    p: tuple[sp.Expr, sp.Expr],
-    scale: sp.Expr,
+    vectors: tuple[Vector, Vector],
+    p: Vector,
     *,
+    scale: sp.Expr,
     free: Sequence[sp.Symbol] = (),
 ) -> Lemma:
     """``u sin x + v sin y = p`` for vectors of the plane, and cosines that are not negative.
+
+    ``unknowns`` are x and y, ``vectors`` are u and v.
 
     The part of the equation across u gives sin y; what is left along u gives sin x, so that an
     error of y does no harm where u and v are nearly parallel.  There sin y is not known to many
@@ -31,7 +48,7 @@ def two_sines(
     zero, so that their sign can be read from the answer.  ``scale`` is the natural scale of p,
     which decides how far the equation may be missed.
     """
-    x, y = unknowns
+    (x, y), (u, v) = unknowns, vectors
     area = program.let("area_uv", u[0] * v[1] - u[1] * v[0])
     sigma = program.let("sigma_uv", sign_of(area))
     start = len(program.body)
@@ -73,6 +90,7 @@ def two_sines(
         excluded=3,
         means={cx: sp.cos(x), sx: sp.sin(x), cy: sp.cos(y), sy: sp.sin(y)},
         body=tuple(program.body[start:]),
+        signs=(sigma,),
     )
 
 

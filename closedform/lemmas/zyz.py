@@ -3,13 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from closedform.lemmas.pairs import Pair, direction
+from closedform.lemmas.pairs import direction
+from closedform.lemmas.registry import theorem
 from closedform.model.functions import Program, choose
 from closedform.model.lemma import Lemma, label
+from closedform.model.pair import Pair
+
+theorem(
+    "ZYZ angles",
+    statement=r"""Let $R$ be a rotation with $h = \sqrt{R_{13}^2 + R_{23}^2} > 0$.  The equation
+$R_z(\theta_1)\, R_y(\theta_2)\, R_z(\theta_3) = R$ has two solutions with angles in $(-\pi,
+\pi]$. For $\sigma = \pm 1$, the sign of $\sin\theta_2$, they are
+$$(\cos\theta_1, \sin\theta_1) = (c_1, s_1) = \frac{\sigma}{h}(R_{13}, R_{23}), \qquad
+\theta_2 = \operatorname{atan2}(c_1 R_{13} + s_1 R_{23},\ R_{33}),$$
+$$\theta_3 = \operatorname{atan2}(c_1 R_{21} - s_1 R_{11},\ c_1 R_{22} - s_1 R_{12}).$$""",
+    proof=r"""The third column of the product is $(\cos\theta_1\sin\theta_2,\
+\sin\theta_1\sin\theta_2,\ \cos\theta_2)$.  So $|\sin\theta_2| = h \ne 0$; if $\sigma$ is its
+sign, $c_1$ and $s_1$ are as stated, and $\sin\theta_2 = c_1 R_{13} + s_1 R_{23}$.  The equation
+leaves $R_z(\theta_1)^T R = R_y(\theta_2)\, R_z(\theta_3)$, whose second row is $(\sin\theta_3,
+\cos\theta_3, 0)$; this gives $\theta_3$.  Conversely, for these $\theta_1$ and $\theta_2$ the
+third column of $R_z(\theta_1)^T R$ is $(\sigma h, 0, R_{33})$, which is that of $R_y(\theta_2)$.
+So $R_y(\theta_2)^T R_z(\theta_1)^T R$ is a rotation about the $z$ axis.  $R_y$ does not change
+second rows, so its angle is $\theta_3$.""",
+    exception=r"""If $h = 0$, the first and the last axis coincide.  For $R_{33} = 1$ only
+$\theta_1 + \theta_3$ is determined, for $R_{33} = -1$ only $\theta_1 - \theta_3$.""",
+)
 
 
 @dataclass(frozen=True)
@@ -26,9 +48,7 @@ class Zyz:
 def zyz_angles(
     program: Program,
     R: sp.Matrix,
-    first: sp.Symbol,
-    middle: sp.Symbol,
-    last: sp.Symbol,
+    angles: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
     sigma: sp.Symbol,
     *,
     free: Sequence[sp.Symbol] = (),
@@ -37,7 +57,8 @@ def zyz_angles(
 ) -> Zyz:
     """``Rz(first) Ry(middle) Rz(last) = R``: two solutions, by the sign of sin(middle).
 
-    The second solution is the first with a half turn of both outer angles.  Where ``sin(middle) =
+    ``angles`` are first, middle and last.  The second solution is the first with a half turn of
+    both outer angles.  Where ``sin(middle) =
     0`` only ``first + last`` (or ``first - last``) is determined; the convention is ``first = 0``,
     and ``free`` says which joint that is, if not the first angle itself.  ``scale`` counts the
     roundings that R has seen.
@@ -48,31 +69,32 @@ def zyz_angles(
         h,
         scale,
         "the first and the last axis coincide",
-        free=free or (first,),
+        free=free or angles[:1],
     )
     pair = direction(R[1, 2], R[0, 2], h, aligned)
-    pair = pair.known_as(program, suffix or label(first))
+    pair = pair.known_as(program, suffix or label(angles[0]))
     flip = program.let(f"flip{suffix}", choose(aligned, 0, (1 - sigma) * sp.pi / 2))
-    lemma, rest = zyz_lemma(R, first, middle, last, pair, sigma, flip)
-    return Zyz(lemma, pair, rest, flip, aligned)
+    lemma, rest = zyz_lemma(R, angles, pair, sigma, flip)
+    return Zyz(replace(lemma, signs=(sigma,)), pair, rest, flip, aligned)
 
 
 def zyz_lemma(
     R: sp.Matrix,
-    first: sp.Symbol,
-    middle: sp.Symbol,
-    last: sp.Symbol,
+    angles: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
     pair: Pair,
-    side: sp.Expr,
-    flip: sp.Expr,
+    side: sp.Expr = sp.S.One,
+    flip: sp.Expr = sp.S.Zero,
 ) -> tuple[Lemma, Pair]:
     """The lemma, once the ``pair`` of the first angle is known, and the pair of the last.
+
+    ``side`` is the sign of sin(middle), and ``flip`` a turn that is added to both outer angles.
 
     The third column of R gives the first two angles.  The last is *not* read from the third row, as
     the textbooks do: near ``middle = 0`` that row knows nothing of it.  It follows from the
     rotation that the first angle leaves, ``Rz(first)^T R = Ry(middle) Rz(last)``, whose second row
     is ``(sin(last), cos(last), 0)``, and so keeps the product exact whatever error ``first`` has.
     """
+    first, middle, last = angles
     s, c = pair.s, pair.c
     rest = Pair(c * R[1, 0] - s * R[0, 0], c * R[1, 1] - s * R[0, 1])
     cf, sf, cm, sm, cl, sl = (f(x) for x in (first, middle, last) for f in (sp.cos, sp.sin))

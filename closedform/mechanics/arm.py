@@ -120,9 +120,12 @@ class Serial:
             "Pose",
             "The product of the motions from link to link, the angles of parallel axes added.",
             {**{f"A_{i}": A for i, A in enumerate(self.moves, 1)}, "T": self.pose},
+            proves=(
+                "T is the product of the motions, and what the printed code computes link by link."
+            ),
             equal=[(sp.prod(self.moves), self.pose), (pose.explicit, self.pose)],
         )
-        _export(d, "pose", "Pose of the tool in the base frame.", q, "T", pose)
+        _export(d, "pose", "Pose of the tool in the base frame.", q, "T", pose, equation="T")
         drawn = serial_skeleton(d, self.groups, q, self.lead, self.last)
         skeleton(d, **drawn, hand_at=self.position)
         geometric = linkwise.geometric_jacobian(d.program(), links, q)
@@ -134,6 +137,11 @@ class Serial:
             "joint is its axis w and the velocity -w x p that it gives to the origin, that of a "
             "prismatic joint its direction.  Differentiating the pose gives the same.",
             {"J": self.geometric, "J_s": self.space, "J_b": self.body},
+            proves=(
+                "J is the derivative of the position with the axes below it; the derivative of T "
+                "by each joint is its column of J_s, as a matrix, times T, and T times its "
+                "column of J_b."
+            ),
             equal=[
                 (self.geometric[:3, :], self.position.jacobian(q)),
                 (self.geometric[3:, :], self.space[3:, :]),
@@ -154,13 +162,12 @@ class Serial:
             self._export_pose_task(d, pose, geometric, singular)
         else:
             self._export_coordinates(d, task, pose, geometric, singular)
-        for frame, name, found in (
-            ("the base frame", "jacobian_space", space),
-            ("its own frame", "jacobian_body", body),
+        for frame, name, found, equation in (
+            ("the base frame", "jacobian_space", space, "J_s"),
+            ("its own frame", "jacobian_body", body, "J_b"),
         ):
-            _export(
-                d, name, f"Twist (v; omega) of the tool in {frame} per joint rate.", q, "J", found
-            )
+            summary = f"Twist (v; omega) of the tool in {frame} per joint rate."
+            _export(d, name, summary, q, "J", found, equation=equation)
         return self.pose if task is None else task.values
 
     def _export_pose_task(
@@ -169,7 +176,7 @@ class Serial:
         q = self.joints
         if not d.task:
             d.task = [f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)]
-        _export(d, "fk", "Pose of the tool in the base frame.", q, "T", pose)
+        _export(d, "fk", "Pose of the tool in the base frame.", q, "T", pose, equation="T")
         _export(
             d,
             "jacobian",
@@ -178,9 +185,10 @@ class Serial:
             "J",
             geometric,
             "The geometric Jacobian: rows (v; omega), v of the origin of the tool.",
+            equation="J",
         )
         if len(q) == 6:
-            self._export_determinant(d, self.determinant(), (), singular)
+            self._export_determinant(d, {r"\det J": self.determinant()}, (), singular)
 
     def _export_coordinates(
         self,
@@ -201,6 +209,7 @@ class Serial:
                 "Task coordinates",
                 "The joints turn the tool about z alone: its yaw is the direction of its x axis.",
                 {r"\psi": turn},
+                proves="The x axis of the tool is (cos(psi), sin(psi)).",
                 equal=[(self.pose[:2, 0], sp.Matrix([sp.cos(turn), sp.sin(turn)]))],
             )
             values.append(sp.atan2(sp.sin(turn), sp.cos(turn)))
@@ -215,22 +224,24 @@ class Serial:
             notes=notes,
         )
         J = geometric.part(task.rows, range(len(q)))
-        _export(d, "jacobian", f"Derivative of ({shown}) by the joints.", q, "J", J)
+        name = r"J_{\mathrm{task}}"
+        summary = f"Derivative of ({shown}) by the joints."
+        _export(d, "jacobian", summary, q, "J", J, equation=name)
         det = _determinant(task.J)
         check = [
             (task.values.jacobian(q), task.J),
             (task.J.det(method="berkowitz"), det),
         ]
-        self._export_determinant(d, det, check, singular)
+        self._export_determinant(d, {name: task.J, rf"\det {name}": det}, check, singular)
 
     def _export_determinant(
         self,
         d: Derivation,
-        det: sp.Expr,
+        shown: Mapping[str, Any],
         equal: Sequence[tuple[Any, Any]],
         singular: Mapping[str, sp.Expr] | None,
     ) -> None:
-        q = self.joints
+        q, (*others, (name, det)) = self.joints, shown.items()
         factors = joint_factors(det, q)
         if singular is not None:
             factors, d.singularities = list(singular.values()), tuple(singular)
@@ -242,15 +253,18 @@ class Serial:
             "Determinant and singular set",
             "The arm is singular exactly where a factor that holds a joint vanishes (for links "
             "that have a length): the joints then cannot move the tool in some direction.",
-            {r"\det J": det},
+            {**dict(others), name: det},
+            proves="The determinant of J is the stated product, up to a factor without joints.",
             equal=[*equal, (det, sp.cancel(det / sp.prod(factors)) * sp.prod(factors))],
         )
-        d.function("determinant", "Determinant of the Jacobian.", {"q": q}, {"det": det})
+        d.function(
+            "determinant", "Determinant of the Jacobian.", {"q": q}, {"det": det}, equation=name
+        )
         summary = "The factors of the determinant that hold a joint."
         d.function("singularities", summary, {"q": q}, {"factors": factors})
         if len(d.singularities) != len(factors):
-            shown = (f.primitive()[1] for f in factors)
-            d.singularities = tuple(f"{f} = 0".replace("**", "^") for f in shown)
+            written = (f.primitive()[1] for f in factors)
+            d.singularities = tuple(f"{f} = 0".replace("**", "^") for f in written)
 
 
 def _export(
@@ -261,8 +275,17 @@ def _export(
     output: str,
     value: Named,
     *notes: str,
+    equation: str,
 ) -> None:
-    d.function(name, summary, {"q": q}, {output: value.matrix}, program=value.program, notes=notes)
+    d.function(
+        name,
+        summary,
+        {"q": q},
+        {output: value.matrix},
+        program=value.program,
+        notes=notes,
+        equation=equation,
+    )
 
 
 @dataclass(frozen=True)

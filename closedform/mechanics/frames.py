@@ -12,6 +12,7 @@ from itertools import combinations
 import sympy as sp
 
 from closedform.algebra.normal_form import normal
+from closedform.model.functions import Program
 
 
 def rotation(axis: str, angle: sp.Expr) -> sp.Matrix:
@@ -29,6 +30,27 @@ def rotation(axis: str, angle: sp.Expr) -> sp.Matrix:
 def homogeneous(R: sp.Matrix, p: Sequence[sp.Expr] = (0, 0, 0)) -> sp.Matrix:
     """The 4x4 transform of a rotation and a translation."""
     return sp.Matrix([[*R[i, :], p[i]] for i in range(3)] + [[0, 0, 0, 1]])
+
+
+def require_rotation(program: Program, R: sp.Matrix) -> None:
+    """Demand of the input R that it is a proper rotation."""
+    program.require(_rotation_residues(R), 1, "a proper rotation")
+
+
+def require_pose(program: Program, T: sp.Matrix) -> None:
+    """Demand of the input T that it is a homogeneous transform with a proper rotation."""
+    bottom = [*T[3, :3], T[3, 3] - 1]
+    program.require(
+        [*_rotation_residues(T[:3, :3]), *bottom],
+        1,
+        "a homogeneous transform with a proper rotation",
+    )
+
+
+def _rotation_residues(R: sp.Matrix) -> list[sp.Expr]:
+    """What vanishes if the columns are unit vectors at right angles, and right-handed."""
+    n, o, a = (R[:, j] for j in range(3))
+    return [*(n.cross(o) - a), n.dot(n) - 1, o.dot(o) - 1, n.dot(o)]
 
 
 def denavit_hartenberg(

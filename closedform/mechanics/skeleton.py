@@ -100,6 +100,10 @@ def skeleton(
         "The points through which the links are drawn.  No link changes its length when the joints "
         "move, and the hand is where the forward map says.",
         shown,
+        proves=(
+            "The squared distance of each pair of neighbouring points is that of the length, and "
+            "the hand is at the position of the forward map."
+        ),
         equal=equal,
         nonnegative=bounds,
     )

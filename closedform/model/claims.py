@@ -107,6 +107,8 @@ class Claim(Shown):
     ``check`` takes the formulas (each a tuple of relations, or the relation itself if there is one)
     and the meanings of the phrases; without it, the formulas are equations that always hold.  Each
     mapping of ``phrases`` gives the phrases that can stand in one place, with their meanings.
+    ``opposites`` maps words in braces, such as "must", to words that turn the statement into its
+    opposite, such as "need not"; the check does not take them, but they reverse its verdict.
     ``corrected`` is the statement that holds instead, written
     like ``printed``; the same check has to prove it.  The first of several ``readings`` is the one
     that the context of the paper supports, and gives the verdict.  ``erratum`` is the key of the
@@ -120,6 +122,7 @@ class Claim(Shown):
     where: str = ""
     notation: Notation = field(default_factory=lambda: Notation({}))
     phrases: tuple[Mapping[str, Any], ...] = ()
+    opposites: Mapping[str, str] = field(default_factory=dict)
     corrected: str = ""
     readings: tuple[Reading, ...] = ()
     erratum: str = ""
@@ -158,9 +161,19 @@ class Claim(Shown):
             if match["formula"] is not None:
                 relations = notation.read(match["formula"])
                 found.append(relations[0] if len(relations) == 1 else relations)
-            else:
+            elif match["phrase"] not in self.turning:
                 found.append(self.meaning(match["phrase"]))
         return found
+
+    @property
+    def turning(self) -> set[str]:
+        """The words that keep the statement or turn it into its opposite."""
+        return {*self.opposites, *self.opposites.values()}
+
+    def is_opposite(self, text: str) -> bool:
+        """Whether the words of a text make it the opposite of what the check judges."""
+        words = [m["phrase"] for m in PIECE.finditer(text)]
+        return sum(word in self.opposites.values() for word in words) % 2 == 1
 
     def vocabulary(self, phrase: str) -> Mapping[str, Any]:
         """The phrases that can stand in the place of one, with their meanings."""
@@ -198,6 +211,8 @@ class Erratum(Shown):
     """One error of a paper, which may stand in several places: the claims that name its key.
 
     ``why`` explains the error to its author, and ``use`` says what follows for someone who used it.
+    ``numbers`` maps names to constants, each with a number of digits after the point: ``[miss]`` in
+    the texts stands for the decimal of the constant ``miss``.
     """
 
     key: str
@@ -205,11 +220,15 @@ class Erratum(Shown):
     gravity: Gravity
     why: str
     use: str
+    numbers: Mapping[str, tuple[Any, int]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_key(self.key, "key of an erratum")
         check_text(f"erratum {self.key}", self.title, self.why, self.use)
         check_formulas(f"erratum {self.key}", self.title, self.why, self.use)
+        for name in self.numbers:
+            if f"[{name}]" not in self.why + self.use:
+                raise ValueError(f"erratum {self.key}: no text contains the number [{name}]")
 
 
 __all__ = [

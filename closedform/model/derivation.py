@@ -8,7 +8,7 @@ the paper.  All later stages (proof, lowering, emission, LaTeX, reference) read 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import Any, Literal
 
@@ -21,18 +21,16 @@ from closedform.model.functions import (
     Function,
     Number,
     Program,
-    Statement,
     array,
     real,
     reject_floats,
 )
+from closedform.model.inverse import Inverse
 from closedform.model.lemma import Lemma
 from closedform.model.names import (
     check_argument,
-    check_formulas,
     check_function,
     check_identifier,
-    check_key,
     check_labels,
     check_own,
     check_robot,
@@ -40,32 +38,8 @@ from closedform.model.names import (
     check_text,
 )
 from closedform.model.notation import Notation
+from closedform.model.paper import Paper as Paper
 from closedform.model.skeleton import Skeleton
-
-
-@dataclass(frozen=True)
-class Paper:
-    """A published source."""
-
-    key: str
-    title: str
-    authors: tuple[str, ...]
-    reference: str = ""
-    source: str = ""
-    """How the text was read, and which claims a mistake of the reading may touch."""
-    out_of_scope: tuple[tuple[str, str, str], ...] = ()
-    """What the claims leave out: the first and the last words of a passage, and the reason."""
-
-    def __post_init__(self) -> None:
-        check_key(self.key, "key of the paper")
-        check_text("title of the paper", self.title)
-        if isinstance(self.authors, str):
-            raise TypeError(f"authors of the paper: write a tuple, as in ({self.authors!r},)")
-        check_text("authors of the paper", *self.authors)
-        check_text("reference of the paper", self.reference)
-        check_text("source of the paper", self.source)
-        check_formulas("source of the paper", self.source)
-        check_text("passage of the paper", *(part for p in self.out_of_scope for part in p))
 
 
 @dataclass(frozen=True)
@@ -119,6 +93,18 @@ class Step:
     rows: tuple[tuple[Any, ...], ...] = ()
     """The rows of a table; the first is its head.  A cell is a sentence, an expression or an
     increasing chain of expressions, such as ``(0, x, 1)`` for 0 <= x <= 1."""
+    proves: str = ""
+    """What the differences say that vanish: sentences."""
+    uses: tuple[Step, ...] = ()
+    """Earlier steps whose equations this one rests on."""
+
+
+@dataclass(frozen=True)
+class Written:
+    """How formulas write a symbol, and what it means: plain text."""
+
+    latex: str
+    meaning: str
 
 
 @dataclass(frozen=True)
@@ -131,157 +117,6 @@ class Solved:
     equation: sp.Expr
     posture: Mapping[sp.Symbol, sp.Expr] | None = None
     """The inputs in terms of the joints (including passive ones), unless the inverse gives them."""
-
-
-@dataclass(frozen=True)
-class Continuum:
-    """A flagged case: on ``locus`` a joint is free; ``relation`` (LaTeX) holds for the others.
-
-    It occurs in the named ``branches``, or in all branches if none is named.  If the inverse has
-    stages, the locus may be written in the unknowns of earlier stages.
-    """
-
-    flag: sp.Symbol
-    locus: Mapping[sp.Symbol, sp.Expr]
-    free: sp.Symbol
-    relation: str
-    branches: tuple[str, ...] = ()
-    also: tuple[sp.Symbol, ...] = ()
-    """Other flags that are true on the locus."""
-
-    def __post_init__(self) -> None:
-        check_text(f"relation on the continuum {self.flag}", self.relation)
-
-
-@dataclass(frozen=True)
-class Stage:
-    """One of several stages in which the solutions of a system are counted.
-
-    ``equations`` are indices of equations of the system, which contain only the unknowns of this
-    and earlier stages.  ``given`` writes the inputs in terms of earlier unknowns, so that every
-    equation of an earlier stage whose unknowns occur there holds identically.
-    """
-
-    unknowns: tuple[sp.Symbol, ...]
-    equations: tuple[int, ...]
-    given: Mapping[sp.Symbol, sp.Expr]
-
-
-@dataclass(frozen=True)
-class Reduction:
-    """An inverse that is too large for one Groebner basis and is proved lemma by lemma.
-
-    ``joints`` gives each unknown of the inverse in the unknowns of the ``lemmas`` and names of the
-    program.  The equations of the lemmas, multiplied by the invertible matrix ``combination``, are
-    those of the inverse.  So both have the same solutions, and each lemma is proved to give all of
-    its own.  If a side condition keeps only one of every ``solutions_per_branch`` solutions,
-    ``because`` is the reason.
-    """
-
-    lemmas: tuple[Lemma, ...]
-    joints: Mapping[sp.Symbol, sp.Expr]
-    combination: sp.Matrix
-    solutions_per_branch: int = 1
-    because: str = ""
-
-
-@dataclass(frozen=True)
-class Degenerate:
-    """A flagged case of a lemma: with its coefficients on ``locus``, the joint ``free`` is free."""
-
-    flags: tuple[sp.Symbol, ...]
-    locus: Mapping[sp.Symbol, sp.Expr]
-    free: sp.Symbol | None
-    meaning: str
-
-
-@dataclass(frozen=True)
-class Relation:
-    """What the coefficients of a lemma have to satisfy: ``value`` is zero.
-
-    It is the sum of the equations of earlier lemmas, each times a factor; each term is the unknown
-    that the lemma solved for first, and the factor of its first equation.
-    """
-
-    value: sp.Expr
-    terms: tuple[tuple[sp.Symbol, sp.Expr], ...]
-    meaning: str
-
-
-@dataclass(frozen=True)
-class Link:
-    """A lemma in a chain, with the statements it added; ``means`` are its names at a posture.
-
-    ``given`` writes coefficients that depend on each other in free symbols.  ``relations`` say why
-    they do: each is zero wherever the equations of the earlier lemmas hold.
-    """
-
-    lemma: Lemma
-    body: tuple[Statement, ...]
-    means: Mapping[sp.Symbol, sp.Expr]
-    given: Mapping[sp.Symbol, sp.Expr]
-    degenerate: tuple[Degenerate, ...] = ()
-    relations: tuple[Relation, ...] = ()
-
-
-@dataclass(frozen=True)
-class Inverse:
-    """The equations of an inverse: ``forward``, in the ``unknowns``, equals the ``targets``.
-
-    Targets that depend on each other (the entries of a rotation) have a ``parametrisation``: the
-    same number of expressions in free symbols.  For targets in ``angles`` only the sine and the
-    cosine count.
-
-    A closed loop gives equations that contain both unknowns and inputs.  They are ``forward``, and
-    the ``targets`` are zeros.  ``images`` names a function whose values, in each assembly mode, are
-    inputs with a known solution.  ``stages`` count the solutions stage by stage.
-
-    If the solved equations are not the forward map itself, the targets are expressions in the
-    inputs (such as ``tan(psi)``), and ``forward`` may contain inputs.  Then ``reduction`` proves
-    the inverse lemma by lemma; a step shows that the map named by ``images`` satisfies the
-    equations; the cross-check substitutes the answers into that map.
-
-    An inverse with a ``chain`` is proved link by link.
-    """
-
-    function: str
-    unknowns: tuple[sp.Symbol, ...]
-    targets: tuple[Any, ...]
-    forward: tuple[sp.Expr, ...]
-    continua: tuple[Continuum, ...] = ()
-    parametrisation: tuple[sp.Expr, ...] = ()
-    angles: tuple[sp.Symbol, ...] = ()
-    images: str = ""
-    stages: tuple[Stage, ...] = ()
-    nonnegative: tuple[sp.Symbol, ...] = ()
-    """Unknowns that are lengths: two solutions that differ only in their sign count as one."""
-    chain: tuple[Link, ...] = ()
-    meaning: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    """The values of names of the program at a posture, in the unknowns."""
-    defined: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    """Auxiliary angles: sums of the unknowns."""
-    lengths: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    """Auxiliary lengths, at a posture."""
-    units: tuple[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]], ...] = ()
-    """Sine and cosine of angles that may be chosen freely, and the names that are free in them."""
-    reduction: Reduction | None = None
-    condition: sp.Expr = sp.S.Zero
-    """By how much the mechanism amplifies roundings, in its parameters; see ``promised``."""
-
-    def posed(self, inputs: tuple[sp.Symbol, ...], image: tuple[sp.Expr, ...]) -> Inverse:
-        """The same inverse with the forward map ``image`` as its equations."""
-        return replace(self, targets=inputs, forward=image, images="")
-
-    @property
-    def equations(self) -> tuple[sp.Expr, ...]:
-        """The expressions that vanish at a solution."""
-        return tuple(
-            equation
-            for f, x in zip(self.forward, self.targets, strict=True)
-            for equation in (
-                (sp.cos(f) - sp.cos(x), sp.sin(f) - sp.sin(x)) if x in self.angles else (f - x,)
-            )
-        )
 
 
 @dataclass(frozen=True)
@@ -320,6 +155,8 @@ class Derivation(Shown):
     branches: tuple[str, ...] = ()
     assembly_modes: tuple[str, ...] = ()
     singularities: tuple[str, ...] = ()
+    poles: tuple[str, ...] = ()
+    """The singularities where the Jacobian is unbounded; at the others it loses rank."""
     steps: list[Step] = field(default_factory=list)
     solved: list[Solved] = field(default_factory=list)
     inverses: list[Inverse] = field(default_factory=list)
@@ -329,6 +166,8 @@ class Derivation(Shown):
     errata: list[Erratum] = field(default_factory=list)
     skeleton: Skeleton | None = None
     """The points, links and joints that the function ``skeleton`` draws."""
+    written: dict[str, Written] = field(default_factory=dict)
+    """Symbols that are not written as their name says, or whose meaning no equation gives."""
     without_inverse: str = ""
     """Why there is no inverse, as a clause; empty if there is one, or if no reason is given."""
 
@@ -378,6 +217,14 @@ class Derivation(Shown):
         self.joints.append(Joint(symbol, kind, passive, coupling, beside))
         return symbol
 
+    def write(self, symbol: sp.Symbol | str, latex: str = "", meaning: str = "") -> None:
+        """Say how formulas write a symbol, as in ``write("rS", r"\\varrho_S")``, and what it is."""
+        name = str(symbol)
+        check_text(f"{self.name}: {name}", latex, meaning)
+        if name in self.written:
+            raise ValueError(f"{self.name}: the symbol {name} is described twice")
+        self.written[name] = Written(latex, meaning)
+
     def couple(self, expr: Any) -> Any:
         """``expr`` with every coupled joint replaced by its coupling."""
         couplings = {j.symbol: j.coupling for j in self.joints if j.coupling is not None}
@@ -402,29 +249,36 @@ class Derivation(Shown):
         equal: Sequence[tuple[Any, Any]] = (),
         nonnegative: Sequence[sp.Expr] = (),
         rows: Sequence[Sequence[Any]] = (),
-    ) -> None:
+        proves: str = "",
+        uses: Sequence[Step] = (),
+    ) -> Step:
         """Record a step.  ``shown`` maps a LaTeX left-hand side to the derived expression.
 
-        Each pair in ``equal`` is proved to be equal; the build fails if the proof does.  ``rows``
-        is a table, see :class:`Step`.
+        Each pair in ``equal`` is proved to be equal; the build fails if the proof does.  ``proves``
+        says in sentences what these equalities mean.  ``rows`` is a table, see :class:`Step`.  The
+        text refers to the equations of the steps in ``uses``; these are what ``step`` returned.
         """
         for value in (*shown.values(), *(e for pair in equal for e in pair)):
             self._reject_floats(value, f"{self.name}, step {title!r}")
         where = f"{self.name}, step {title!r}"
         check_text(f"{self.name}, title of a step", title)
-        check_text(where, reason, lines=True)
+        check_text(where, reason, proves, lines=True)
+        if any(step not in self.steps for step in uses):
+            raise ValueError(f"{where}: it can only use earlier steps of {self.name}")
         check_text(where, *shown, *published, *(c for r in rows for c in r if isinstance(c, str)))
-        self.steps.append(
-            Step(
-                title,
-                reason,
-                tuple(shown.items()),
-                tuple(published),
-                tuple(a - b for a, b in equal),
-                tuple(nonnegative),
-                tuple(map(tuple, rows)),
-            )
+        step = Step(
+            title,
+            reason,
+            tuple(shown.items()),
+            tuple(published),
+            tuple(a - b for a, b in equal),
+            tuple(nonnegative),
+            tuple(map(tuple, rows)),
+            proves,
+            tuple(uses),
         )
+        self.steps.append(step)
+        return step
 
     def function(
         self,
@@ -439,8 +293,13 @@ class Derivation(Shown):
         source: str = "",
         notes: Sequence[str] = (),
         boolean: bool = False,
+        equation: str = "",
+        entries: Sequence[sp.Symbol] = (),
     ) -> Function:
-        """Export a function.  Inputs and outputs are named scalars, vectors, matrices or arrays."""
+        """Export a function.  Inputs and outputs are named scalars, vectors, matrices or arrays.
+
+        See :class:`Function` for ``equation`` and ``entries``, which are for readers.
+        """
         self._check_function(name, [*inputs, *outputs], result)
         check_text(f"{self.name}.{name}", summary, source)
         check_text(f"{self.name}.{name}", *notes, lines=True)
@@ -455,6 +314,8 @@ class Derivation(Shown):
             source,
             tuple(notes),
             boolean,
+            equation,
+            tuple(entries),
         )
         self._check_symbols(function)
         self.functions.append(function)
@@ -470,6 +331,7 @@ class Derivation(Shown):
         notation: Notation | None = None,
         means: Mapping[str, Any] | None = None,
         phrases: Sequence[Mapping[str, Any]] = (),
+        opposites: Mapping[str, str] | None = None,
         corrected: str = "",
         readings: Sequence[Reading] = (),
         erratum: str = "",
@@ -489,6 +351,7 @@ class Derivation(Shown):
                 where,
                 (notation or Notation({})).extended(means or {}),
                 tuple(phrases),
+                opposites or {},
                 corrected,
                 tuple(readings),
                 erratum,
@@ -497,11 +360,20 @@ class Derivation(Shown):
             )
         )
 
-    def erratum(self, key: str, title: str, gravity: Gravity, *, why: str, use: str) -> None:
-        """Describe an error of the paper; claims that show it name its key."""
+    def erratum(
+        self,
+        key: str,
+        title: str,
+        gravity: Gravity,
+        *,
+        why: str,
+        use: str,
+        numbers: Mapping[str, tuple[Any, int]] | None = None,
+    ) -> None:
+        """Describe an error of the paper (:class:`Erratum`); claims that show it name its key."""
         if key in [e.key for e in self.errata]:
             raise ValueError(f"{self.name}: the erratum {key} is described twice")
-        self.errata.append(Erratum(key, title, gravity, why, use))
+        self.errata.append(Erratum(key, title, gravity, why, use, numbers or {}))
 
     def no_inverse(self, because: str) -> None:
         """Give the reason why there is no inverse, such as ``"axes 5 and 6 do not intersect"``."""
@@ -533,7 +405,7 @@ class Derivation(Shown):
             check_text(where, value)
         elif attribute == "mechanism":
             check_text(where, value, lines=True)
-        elif attribute == "singularities":
+        elif attribute in ("singularities", "poles"):
             check_text(where, *value)
         elif attribute in ("task", "branches", "assembly_modes"):
             check_labels(value, where)

@@ -217,6 +217,10 @@ class Function:
     source: str = ""
     notes: tuple[str, ...] = ()
     boolean: bool = False
+    equation: str = ""
+    """The left-hand side, as a step shows it, of the equation that this function evaluates."""
+    entries: tuple[sp.Symbol, ...] = ()
+    """What the entries of the result are called, if that does not follow from its name."""
 
     def __post_init__(self) -> None:
         known: set[sp.Basic] = set()
@@ -255,6 +259,11 @@ class Function:
         else:
             yield from zip(self.branches.labels, self.branches.signs, strict=True)
 
+    @property
+    def signs(self) -> tuple[sp.Symbol, ...]:
+        """The symbols whose signs tell the branches apart."""
+        return tuple(dict.fromkeys(s for _, signs in self.cases() for s in signs))
+
     def values(self, signs: Mapping[sp.Symbol, int]) -> tuple[sp.Expr, ...]:
         """The outputs of one branch as explicit expressions of inputs and parameters.
 
@@ -288,31 +297,34 @@ class Function:
 
         Flags that are not in ``flags`` are false.  ``locus`` replaces inputs and parameters.
         """
-        known: dict[sp.Basic, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
-        known |= locus or {}
-        # what only another case needs is not even written out
-        states = {
-            s.symbol: sp.sympify((flags or {}).get(s.symbol, False), strict=True)
-            for s in self.body
-            if isinstance(s, Vanishes)
-        }
-        exprs = [substitute(e, states) for e in exprs]
-        values = {
-            s.symbol: substitute(s.value, states) for s in self.body if isinstance(s, (Let, Bound))
-        }
-        needed = {s for e in exprs for s in e.free_symbols} - known.keys()
-        for symbol, value in reversed(values.items()):
-            if symbol in needed:
-                needed |= value.free_symbols - known.keys()
-        bounds = []
-        for statement in self.body:
-            if isinstance(statement, (Let, Bound)) and statement.symbol in needed:
-                symbol = statement.symbol
-                value = known[symbol] = substitute(values[symbol], known)
-                sum_of_squares = value.is_Add and symbol.is_nonnegative
-                if isinstance(statement, Bound) or (sum_of_squares and value.is_nonnegative):
-                    bounds.append(value)
-        return tuple(substitute(e, known) for e in exprs), tuple(bounds)
+        return explicit(self.body, exprs, {**signs, **(flags or {}), **(locus or {})})
+
+
+def explicit(
+    body: Sequence[Statement], exprs: Sequence[sp.Expr], given: Mapping[sp.Basic, Any]
+) -> tuple[tuple[sp.Expr, ...], tuple[sp.Expr, ...]]:
+    """Expressions without the names of a body, and the bounds that they depend on.
+
+    ``given`` replaces symbols; flags that are not in it are false.
+    """
+    known = {s: sp.sympify(e, strict=True) for s, e in given.items()}
+    # what only another case needs is not even written out
+    flags = {s.symbol: known.get(s.symbol, sp.false) for s in body if isinstance(s, Vanishes)}
+    exprs = [substitute(e, flags) for e in exprs]
+    values = {s.symbol: substitute(s.value, flags) for s in body if isinstance(s, (Let, Bound))}
+    needed = {s for e in exprs for s in e.free_symbols} - known.keys()
+    for symbol, value in reversed(values.items()):
+        if symbol in needed:
+            needed |= value.free_symbols - known.keys()
+    bounds = []
+    for statement in body:
+        if isinstance(statement, (Let, Bound)) and statement.symbol in needed:
+            symbol = statement.symbol
+            value = known[symbol] = substitute(values[symbol], known)
+            sum_of_squares = value.is_Add and symbol.is_nonnegative
+            if isinstance(statement, Bound) or (sum_of_squares and value.is_nonnegative):
+                bounds.append(value)
+    return tuple(substitute(e, known) for e in exprs), tuple(bounds)
 
 
 SIMPLE = 50
@@ -462,6 +474,7 @@ __all__ = [
     "array",
     "branches",
     "choose",
+    "explicit",
     "real",
     "reject_floats",
     "sign_of",

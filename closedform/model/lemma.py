@@ -4,15 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import Enum
 
 import sympy as sp
 
 from closedform.model.functions import Statement
+from closedform.model.names import check_formulas, check_text
+from closedform.model.pair import Pair
+
+
+class Shape(Enum):
+    """What the equation that a lemma solves looks like in its unknown x."""
+
+    ANY = "any"
+    LINEAR = "linear in sin(x) and cos(x)"
+    CONTAINS = "contains x"
 
 
 @dataclass(frozen=True)
 class Lemma:
     """One application of a lemma: ``equations`` vanish at ``solution`` (unknown -> closed form).
+
+    ``signs`` are the symbols that stand for 1 or -1: those of the branches, and others that it is
+    proved for with either value.  ``shape`` says what its equation looks like in the unknown, and
+    ``kind`` is the name of the function that made it, where a chain applied it.
 
     ``excluded`` is the number of solutions of the equations that violate the inequality in
     ``statement``.  ``means`` maps names for later steps to their meaning in the unknowns: cosine
@@ -30,17 +45,45 @@ class Lemma:
     means: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     body: tuple[Statement, ...] = ()
     premises: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    signs: tuple[sp.Symbol, ...] = ()
+    shape: Shape = Shape.ANY
+    kind: str = ""
 
     def __getitem__(self, unknown: sp.Symbol) -> sp.Expr:
         return self.solution[unknown]
 
     def known(self, value: sp.Expr) -> sp.Symbol:
         """The name of a value in the unknowns, such as ``cos(x)``."""
-        return next(name for name, meaning in self.means.items() if meaning == value)
+        (name,) = (name for name, meaning in self.means.items() if meaning == value)
+        return name
 
-    def pair(self, angle: sp.Expr) -> tuple[sp.Symbol, sp.Symbol]:
-        """The names of the cosine and the sine of an angle."""
-        return self.known(sp.cos(angle)), self.known(sp.sin(angle))
+    def pair(self, angle: sp.Expr) -> Pair:
+        """The names of the sine and the cosine of an angle."""
+        return Pair(self.known(sp.sin(angle)), self.known(sp.cos(angle)))
+
+
+@dataclass(frozen=True)
+class Theorem:
+    """A lemma as a book prints it; texts, with formulas between dollar signs.
+
+    ``exception`` says what happens where the assumptions of the statement fail, and ``rests_on``
+    names the lemmas that the proof uses.
+    """
+
+    name: str
+    statement: str
+    proof: str
+    exception: str = ""
+    rests_on: tuple[str, ...] = ()
+    title: str = ""
+    """The name as a formula, if it is one."""
+
+    def __post_init__(self) -> None:
+        where = f"lemma {self.name!r}"
+        texts = (self.statement, self.proof, self.exception, self.title)
+        check_text(where, self.name, *self.rests_on)
+        check_text(where, *texts, lines=True)
+        check_formulas(where, *texts)
 
 
 def label(joint: sp.Symbol) -> str:

@@ -196,8 +196,8 @@ def load(source: Source) -> Derivation:
 def _module(source: Source) -> Any:
     if source.module:
         return importlib.import_module(source.module)
-    mark = _digest(sources_of([source.path]))
-    if (known := _modules.get(source.path)) and known[0] == mark:
+    digested = _digest(sources_of([source.path]))
+    if (known := _modules.get(source.path)) and known[0] == digested:
         return known[1]
     folder = str(source.path.parent)
     if folder not in sys.path:
@@ -207,7 +207,7 @@ def _module(source: Source) -> Any:
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)
-    _modules[source.path] = mark, module
+    _modules[source.path] = digested, module
     return module
 
 
@@ -251,27 +251,29 @@ class Store:
     def __init__(self, folder: Path | None):
         self.folder = folder
 
-    def get(self, source: Source, mark: str | None = None) -> tuple[Proof, float] | None:
+    def get(self, source: Source, digested: str | None = None) -> tuple[Proof, float] | None:
         """The proof of a script and the seconds it took, if nothing has changed since."""
         from closedform.proof.prove import Proof
 
         try:
             data = self.read(source)
             certified = hashlib.sha256(self.certificates(source).read_bytes()).hexdigest()
-            if data["digest"] == (mark or digest(source)) and data["certificates"] == certified:
+            if data["digest"] == (digested or digest(source)) and data["certificates"] == certified:
                 return Proof.from_dict(data["proof"]), float(data["seconds"])
         except (OSError, ValueError, KeyError, TypeError):
             pass
         return None
 
-    def put(self, source: Source, mark: str, proof: Proof, record: Record, seconds: float) -> None:
+    def put(
+        self, source: Source, digested: str, proof: Proof, record: Record, seconds: float
+    ) -> None:
         """Keep a proof.  If the disk is read-only, the script is proved again the next time.
 
-        ``mark`` is the digest from before the proof, because a script may be edited meanwhile.
+        ``digested`` is the digest from before the proof, because a script may be edited meanwhile.
         """
-        certificates = record.text(source.name, mark).encode()
+        certificates = record.text(source.name, digested).encode()
         data = {
-            "digest": mark,
+            "digest": digested,
             "certificates": hashlib.sha256(certificates).hexdigest(),
             "seconds": seconds,
             "proof": proof.as_dict(),
@@ -329,16 +331,16 @@ def print_robot(
 
     report(source.name, "deriving")
     start = time.perf_counter()
-    mark = digest(source)
+    digested = digest(source)
     derivation = load(source)
-    kept = None if fresh else store.get(source, mark)
+    kept = None if fresh else store.get(source, digested)
     if kept:
         proof, seconds = kept
     else:
         report(source.name, "proving")
         proof, record = _proved(derivation, report)
         seconds = time.perf_counter() - start
-        store.put(source, mark, proof, record, seconds)
+        store.put(source, digested, proof, record, seconds)
     report(source.name, "generating")
     try:
         printed = pages(derivation, proof, backends)

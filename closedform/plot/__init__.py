@@ -9,19 +9,27 @@ Every function takes a generated module, ``closedform.generated.numpy.<robot>`` 
     >>> ax.figure.savefig("branches.svg")
 """
 
+from closedform.plot.axes import joint_axes
+from closedform.plot.diagram import Diagram
 from closedform.plot.maps import field, singularities, workspace
 from closedform.plot.paths import line, path
 from closedform.plot.postures import branches, mechanism, posture
-from closedform.plot.style import save
+from closedform.plot.style import colour, new_axes, new_panels, save, styled
 
 __all__ = [
+    "Diagram",
     "branches",
+    "colour",
     "field",
+    "joint_axes",
     "line",
     "mechanism",
+    "new_axes",
+    "new_panels",
     "path",
     "posture",
     "save",
     "singularities",
+    "styled",
     "workspace",
 ]

@@ -2,36 +2,53 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from textwrap import fill
 from types import ModuleType
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from contourpy import contour_generator
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import ArrayLike, NDArray
 
-from closedform.plot.postures import OK
+from closedform.plot.postures import OK, spoken
 from closedform.plot.robot import Array, Robot, positions, singular_values
-from closedform.plot.style import GROUND, colour, new_axes
+from closedform.plot.style import colour, new_axes, styled
+from closedform.plot.symbols import symbol
 
+Limits = Sequence[tuple[float, float]]
 SINGULAR = 2
-NEAR = 0.03
-"""A factor below this part of its usual size counts as near zero in a drawing."""
+NEAR_EDGE = 0.2
+"""A factor below this part of its usual size beside the border counts as zero on it."""
+BLUES = mpl.colormaps["Blues"]
+DEEP = 1.9
+"""The number of branches that has the deepest blue, in units of all: curves stay visible."""
+FEW = 0.002
+"""A number of branches that fewer points than this part of the map have is left out."""
+WIDE = 30
+"""Where a line of a legend is broken, in letters."""
+SHORT = 25
+"""A curve of fewer points than this is taken for noise of the grid."""
 
 
+@styled
 def workspace(
     robot: ModuleType,
     plane: Sequence[str] | None = None,
     *,
     at: ArrayLike | None = None,
     params: Any = None,
+    limits: Limits | None = None,
     resolution: int = 400,
+    singular: bool = True,
     ax: Any = None,
 ) -> Any:
-    """Draw how many branches reach each point of a plane of the task.
+    """Draw how many branches reach each point of a plane of the task, and the singular set in it.
 
     Parameters
     ----------
@@ -41,28 +58,123 @@ def workspace(
         two task coordinates, such as ``("x", "z")``; by default the first two lengths
     at
         the target that gives the other coordinates; by default the image of a regular posture
+    limits
+        the lowest and highest value of each of the two; by default what random postures reach
     resolution
         points along each side
+    singular
+        whether a line shows where a branch is singular
     params, ax
         as in :func:`closedform.plot.mechanism`
     """
     r = Robot.of(robot, params)
-    grid = _task_plane(r, plane, at, resolution)
-    _, status = r.branches(grid.targets)
+    grid = _task_plane(r, plane, at, resolution, limits)
+    q, status = r.branches(grid.targets)
     reached = answered(status).sum(-1)
     ax = new_axes(False) if ax is None else ax
     top = len(robot.BRANCHES)
     shown = np.where(reached > 0, reached, np.nan)
-    image = ax.pcolormesh(
-        *grid.sides, shown, cmap=_steps(top), vmin=0.5, vmax=top + 0.5, rasterized=True
+    ax.pcolormesh(
+        *grid.sides, shown, cmap=BLUES, vmin=0.0, vmax=DEEP * top, rasterized=True, zorder=0
     )
-    present = np.unique(reached[reached > 0])
-    bar = ax.figure.colorbar(image, ax=ax, ticks=present, shrink=0.8)
-    bar.set_label("branches that reach the point")
+    signs: list[Any] = [
+        Patch(color=BLUES(n / (DEEP * top)), label=f"{n} branches" if n > 1 else "1 branch")
+        for n in np.unique(reached[reached > 0])
+        if (reached == n).mean() > FEW
+    ]
+    if singular:
+        signs += _singular_curves(ax, r, grid, q, status)
+    ax.legend(handles=signs, loc="center left", bbox_to_anchor=(1.02, 0.5), handlelength=1.6)
     _name(ax, grid)
     return ax
 
 
+def _singular_curves(
+    ax: Any, r: Robot, grid: _Grid, q: Array, status: NDArray[np.uint8]
+) -> list[Any]:
+    """The border, and where a factor of a branch changes its sign inside; what the legend shows."""
+    there = answered(status)
+    count = there.sum(-1)
+    factors = _of_branches(r, grid.targets, np.where(there[..., None], q, np.nan))
+    edge = _beside_the_border(count)
+    at_edge, signs = [], []
+    for k, name in enumerate(r.module.SINGULARITIES):
+        values = factors[..., k]
+        finite = np.abs(values[np.isfinite(values)])
+        scale = float(np.quantile(finite, 0.95)) if finite.size else 0.0
+        if scale == 0:
+            continue
+        with np.errstate(invalid="ignore"):
+            least = np.nanmin(np.where(np.isfinite(values), np.abs(values), np.inf), axis=-1)
+            if edge.any() and (least[edge] < NEAR_EDGE * scale).mean() > 0.2:
+                at_edge.append(name)
+        found = False
+        for b in range(values.shape[-1]):
+            kept = _without_jumps(values[..., b], 0.5 * scale)
+            inside = kept[np.isfinite(kept)]
+            if inside.size and inside.min() < -1e-9 * scale and inside.max() > 1e-9 * scale:
+                for curve in _lines(grid, np.ma.masked_invalid(kept), 0.0):
+                    ax.plot(*curve.T, color=colour(k + 1), linewidth=1.3, zorder=3)
+                    found = True
+        if found:
+            signs.append(Line2D([], [], color=colour(k + 1), label=fill(name, WIDE)))
+    for curve in _edges(grid, count):
+        ax.plot(*curve.T, color="#222222", linewidth=0.8, zorder=2)
+    border = "branches end: " + "; ".join(at_edge) if at_edge else "branches end"
+    return [Line2D([], [], color="#222222", linewidth=0.8, label=fill(border, WIDE)), *signs]
+
+
+def _lines(grid: _Grid, values: Any, level: float) -> Iterator[Array]:
+    """The curves on which values on the grid have a level, without the shortest."""
+    for curve in contour_generator(*grid.sides, values).lines(level):
+        points = np.asarray(curve, dtype=float)
+        if len(points) >= SHORT:
+            yield points
+
+
+def _edges(grid: _Grid, count: NDArray[np.int_]) -> Iterator[Array]:
+    """The curves at which the number of branches changes."""
+    present = [n for n in np.unique(count) if (count == n).mean() > FEW]
+    for low, high in pairwise(present):
+        above = (count > (low + high) / 2).astype(float)
+        yield from _lines(grid, above, 0.5)
+
+
+def _of_branches(r: Robot, targets: Array, q: Array) -> Array:
+    """The factors of each branch, in the assembly mode that reaches the target."""
+    factors = np.asarray(r.call("singularities", q))
+    if not r.modes:
+        return factors
+    x = r.task(q)
+    gap = np.abs(x - targets[..., None, None, :]).max(-1)
+    mode = np.argmin(np.where(np.isfinite(gap), gap, np.inf), axis=-1)
+    return np.take_along_axis(factors, mode[..., None, None], axis=-2)[..., 0, :]
+
+
+def _without_jumps(values: Array, most: float) -> Array:
+    """The values, without those beside a jump, where the sign may change without a zero."""
+    kept = values.copy()
+    with np.errstate(invalid="ignore"):
+        for axis in (0, 1):
+            jump = np.abs(np.diff(values, axis=axis)) > most
+            first, second = [slice(None)] * 2, [slice(None)] * 2
+            first[axis], second[axis] = slice(None, -1), slice(1, None)
+            kept[tuple(first)][jump] = np.nan
+            kept[tuple(second)][jump] = np.nan
+    return kept
+
+
+def _beside_the_border(count: NDArray[np.int_]) -> NDArray[np.bool_]:
+    """The points that are reached by more branches than a neighbour."""
+    edge = np.zeros(count.shape, dtype=bool)
+    for axis in (0, 1):
+        for shift in (1, -1):
+            edge |= count > np.roll(count, shift, axis)
+    edge[[0, -1]] = edge[:, [0, -1]] = False
+    return edge
+
+
+@styled
 def field(
     robot: ModuleType,
     function: str | Callable[[Array], Array] = "manipulability",
@@ -71,6 +183,7 @@ def field(
     at: ArrayLike | None = None,
     branch: int | str = 0,
     params: Any = None,
+    limits: Limits | None = None,
     resolution: int = 400,
     ax: Any = None,
 ) -> Any:
@@ -86,11 +199,11 @@ def field(
         two task coordinates, or two joints
     branch
         over the task: the branch whose postures are measured
-    at, resolution, params, ax
+    at, limits, resolution, params, ax
         as in :func:`workspace`; over two joints, ``at`` gives the other joints
     """
     r = Robot.of(robot, params)
-    grid = _plane(r, plane, at, resolution)
+    grid = _plane(r, plane, at, resolution, limits)
     q = grid.targets if grid.joints else _answers(r, grid.targets, branch)
     values, label = _quantity(r, q, function)
     ax = new_axes(False) if ax is None else ax
@@ -99,28 +212,30 @@ def field(
     image = ax.pcolormesh(*grid.sides, values, cmap="viridis", vmax=high, rasterized=True)
     ax.figure.colorbar(image, ax=ax, shrink=0.8, label=label)
     if not grid.joints:
-        ax.set_title(f"branch {_branch_name(r, branch)}")
+        ax.set_title(spoken(_branch_name(r, branch)))
     _name(ax, grid)
     return ax
 
 
+@styled
 def singularities(
     robot: ModuleType,
     plane: Sequence[str] | None = None,
     *,
     at: ArrayLike | None = None,
     params: Any = None,
+    limits: Limits | None = None,
     resolution: int = 400,
     ax: Any = None,
 ) -> Any:
     """Draw where each factor of the singular set vanishes, over the task or over two joints.
 
-    Over two joints these are curves.  Over the task, a colour marks where a factor of some branch
-    is below 3 % of its usual size, and a line the border of the workspace.  The parameters are
-    those of :func:`field`.
+    Over the task, these are the curves inside the workspace where a factor of some branch changes
+    its sign, and the border, with the factors that vanish there.  The parameters are those of
+    :func:`field`.
     """
     r = Robot.of(robot, params)
-    grid = _plane(r, plane, at, resolution)
+    grid = _plane(r, plane, at, resolution, limits)
     ax = new_axes(False) if ax is None else ax
     drawn: dict[str, Any] = {}
     if grid.joints:
@@ -135,21 +250,7 @@ def singularities(
                     drawn[name] = Line2D([], [], color=colour(k))
     else:
         q, status = r.branches(grid.targets)
-        answers = answered(status)
-        count = answers.sum(-1).astype(float)
-        factors = np.abs(_factors(r, np.where(answers[..., None], q, np.nan)))
-        ax.contour(*grid.sides, count, levels=[0.5], colors=[GROUND], linewidths=1.0)
-        for k, name in enumerate(robot.SINGULARITIES):
-            values = factors[..., k].reshape(*count.shape, -1)
-            finite = values[np.isfinite(values)]
-            if not finite.size or finite.max() == 0:
-                continue
-            least = np.where(np.isfinite(values), values, np.inf).min(-1)
-            near = np.where(np.isfinite(least), least / np.quantile(finite, 0.95), np.nan)
-            if np.nanmin(near) < NEAR:
-                band = np.ma.masked_invalid(near)
-                ax.contourf(*grid.sides, band, levels=[-1.0, NEAR], colors=[colour(k)], alpha=0.8)
-                drawn[name] = Patch(color=colour(k), alpha=0.8)
+        drawn = {str(s.get_label()): s for s in _singular_curves(ax, r, grid, q, status)}
     if drawn:
         ax.figure.legend(drawn.values(), drawn.keys(), loc="outside lower center", ncols=1)
     _name(ax, grid)
@@ -175,28 +276,36 @@ class _Grid:
     targets: Array
     names: tuple[str, str]
     joints: bool
+    section: str = ""
+    """The other coordinates of the position."""
 
 
-def _plane(r: Robot, plane: Sequence[str] | None, at: ArrayLike | None, resolution: int) -> _Grid:
+def _plane(
+    r: Robot,
+    plane: Sequence[str] | None,
+    at: ArrayLike | None,
+    resolution: int,
+    limits: Limits | None,
+) -> _Grid:
     """A plane of the task, or of two joints where both names are joints."""
     names = list(r.module.JOINTS)
     if plane is None or not all(p in names for p in plane):
-        return _task_plane(r, plane, at, resolution)
+        return _task_plane(r, plane, at, resolution, limits)
     base = r.posture() if at is None else np.asarray(at, dtype=float)
     places = [names.index(p) for p in plane]
-    sides = tuple(
-        np.linspace(0, r.size, resolution)
-        if k in r.slides
-        else np.linspace(-np.pi, np.pi, resolution)
-        for k in places
-    )
+    ends = limits or [(0, r.size) if k in r.slides else (-np.pi, np.pi) for k in places]
+    sides = tuple(np.linspace(low, high, resolution) for low, high in ends)
     targets = np.broadcast_to(base, (resolution, resolution, len(names))).copy()
     targets[..., places[0]], targets[..., places[1]] = sides[0], sides[1][:, None]
     return _Grid((sides[0], sides[1]), targets, (plane[0], plane[1]), True)
 
 
 def _task_plane(
-    r: Robot, plane: Sequence[str] | None, at: ArrayLike | None, resolution: int
+    r: Robot,
+    plane: Sequence[str] | None,
+    at: ArrayLike | None,
+    resolution: int,
+    limits: Limits | None,
 ) -> _Grid:
     r.require("ik")
     posture = r.posture()
@@ -210,8 +319,8 @@ def _task_plane(
     hand = r.module.SKELETON.points.index(r.module.SKELETON.hand)
     seen = r.points(r.draw(2000, seed=2))[..., hand, :].reshape(-1, 3)
     seen = seen[np.isfinite(seen).all(1)]
-    sides = []
-    for name in chosen:
+    sides = [np.linspace(low, high, resolution) for low, high in limits or ()]
+    for name in chosen[len(sides) :]:
         low, high = np.quantile(seen[:, "xyz".index(name)], (0, 1))
         margin = 0.08 * (high - low)
         sides.append(np.linspace(low - margin, high + margin, resolution))
@@ -223,7 +332,9 @@ def _task_plane(
     flat[..., places[chosen[0]]] = sides[0]
     flat[..., places[chosen[1]]] = sides[1][:, None]
     targets = flat.reshape(resolution, resolution, *target.shape)
-    return _Grid((sides[0], sides[1]), targets, (chosen[0], chosen[1]), False)
+    others = [n for n in places if n not in chosen]
+    section = ", ".join(f"${n} = {flat[0, 0, places[n]] + 0.0:.3g}$" for n in others)
+    return _Grid((sides[0], sides[1]), targets, (chosen[0], chosen[1]), False, section)
 
 
 def _answers(r: Robot, targets: Array, branch: int | str) -> Array:
@@ -258,12 +369,9 @@ def _quantity(r: Robot, q: Array, function: str | Callable[[Array], Array]) -> t
     return np.prod(sizes, axis=-1), "manipulability"
 
 
-def _steps(n: int) -> Any:
-    """One colour for each number of branches."""
-    return mpl.colormaps["Blues"].resampled(n + 1)
-
-
 def _name(ax: Any, grid: _Grid) -> None:
-    ax.set(xlabel=grid.names[0], ylabel=grid.names[1])
+    ax.set(xlabel=symbol(grid.names[0]), ylabel=symbol(grid.names[1]))
     if not grid.joints:
         ax.set_aspect("equal")
+        named = [text for text in (ax.get_title(), grid.section) if text]
+        ax.set_title(", ".join(named), fontsize=9)

@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from closedform.plot.postures import OK, regular_target
+from closedform.plot.postures import OK, regular_target, spoken
 from closedform.plot.robot import Array, Robot, positions
-from closedform.plot.style import colour, new_axes
+from closedform.plot.style import colour, new_axes, styled
+from closedform.plot.symbols import symbol
 
 
+@styled
 def path(
     robot: ModuleType,
     xs: ArrayLike,
@@ -52,9 +54,9 @@ def path(
     curves[:, angles] = _unwrapped(curves[:, angles])
     ax = new_axes(False, (5.6, 3.4)) if ax is None else ax
     for j, name in enumerate(robot.JOINTS):
-        ax.plot(curves[:, j], color=colour(j), label=name, linewidth=1.6)
+        ax.plot(curves[:, j], color=colour(j), label=symbol(name), linewidth=1.6)
     ax.set(xlabel="target", ylabel="angle in radians" if not r.slides else "joint")
-    ax.set_title(f"branch {robot.BRANCHES[k]}")
+    ax.set_title(f"branch {spoken(robot.BRANCHES[k])}")
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     ax.grid(alpha=0.3)
     return ax

@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from closedform.plot.axes import joint_axes
+from closedform.plot.diagram import Diagram
+from closedform.plot.labels import Layout, place
 from closedform.plot.robot import Array, Robot
-from closedform.plot.style import GROUND, colour, new_axes
+from closedform.plot.style import GROUND, colour, new_axes, new_panels, styled
+from closedform.plot.symbols import lengths, symbol
 
 OK = 0
-WIDEST, THINNER = 4.6, 0.42
+SMALL = 0.03
+"""An arm of a joint that is shorter than this part of the drawing is too short for an arc."""
+WRIST = 3
+"""If branches look alike, they differ in the axes of these last joints."""
+OVERLAID = 2
+"""More branches than this are drawn side by side."""
 
 
+@styled
 def mechanism(
     robot: ModuleType,
     q: ArrayLike | None = None,
@@ -23,8 +34,10 @@ def mechanism(
     mode: int = 0,
     ax: Any = None,
     labels: bool = True,
+    axes: bool = True,
+    faint: Collection[str] = (),
 ) -> Any:
-    """Draw a mechanism in one posture.
+    """Draw a mechanism in one posture, with the axes of its joints, its lengths and angles.
 
     Parameters
     ----------
@@ -39,7 +52,11 @@ def mechanism(
     ax
         the axes to draw on, with a 3D projection unless the mechanism is planar
     labels
-        whether joints and the hand are named
+        whether lengths, angles and the frame of the base are shown and named
+    axes
+        whether the axes of joints in space are shown
+    faint
+        links that are drawn thinner, such as those of an equivalent mechanism
     """
     r = Robot.of(robot, params)
     joints = r.posture() if q is None else np.asarray(q, dtype=float)
@@ -53,9 +70,25 @@ def mechanism(
             f"modes that exist there: {', '.join(modes) or 'none'}"
         )
     ax = new_axes(not r.flat) if ax is None else ax
-    _draw(ax, r, points, colour(0), labels=labels)
-    _frame(ax, r, [points])
+    diagram = Diagram(ax, extent([points]))
+    along = joint_axes(robot, joints, params=r.params, mode=mode)
+    draw(diagram, r, points, colour(0), along=along if axes else {}, faint=faint)
+    shown = [points]
+    if axes and diagram.spatial:
+        shown += _show_axes(diagram, along)
+    if labels:
+        _name(diagram, r, joints, mode, along)
+        shown.append(_base_frame(diagram, r, points))
+    diagram.clean(shown)
+    _settle(ax)
     return ax
+
+
+def _settle(ax: Any) -> None:
+    """Place the labels now on a figure that is not of this package; others do it when drawn."""
+    if not isinstance(ax.figure.get_layout_engine(), Layout):
+        ax.figure.draw_without_rendering()
+        place(ax.figure)
 
 
 def posture(robot: ModuleType, *, params: Any = None) -> Array:
@@ -63,8 +96,14 @@ def posture(robot: ModuleType, *, params: Any = None) -> Array:
     return Robot.of(robot, params).posture()
 
 
+@styled
 def branches(
-    robot: ModuleType, x: ArrayLike | None = None, *, params: Any = None, ax: Any = None
+    robot: ModuleType,
+    x: ArrayLike | None = None,
+    *,
+    params: Any = None,
+    ax: Any = None,
+    faint: Collection[str] = (),
 ) -> Any:
     """Draw all postures that reach a target, one colour a branch.
 
@@ -74,8 +113,11 @@ def branches(
         a generated module with an inverse
     x
         the target, as ``ik`` takes it; by default one that most branches reach
-    params, ax
+    params, faint
         as in :func:`mechanism`
+    ax
+        the axes to draw all branches on; by default more than two are drawn side by side, with
+        the others behind each in grey, and the axes of the first are returned
     """
     r = Robot.of(robot, params)
     r.require("ik")
@@ -84,19 +126,73 @@ def branches(
     q, status = r.branches(x)
     if status.shape != (len(robot.BRANCHES),):
         raise ValueError(f"x must be one target of {r.name}, not {np.shape(x)}")
-    ax = new_axes(not r.flat) if ax is None else ax
-    drawn: list[Array] = []
-    for k, name in enumerate(robot.BRANCHES):
-        if status[k] == OK:
-            points = r.points(q[k])[r.mode_that_reaches(q[k], x)]
-            width = WIDEST - THINNER * len(drawn)  # a branch that lies on another stays visible
-            _draw(ax, r, points, colour(k), label=name, labels=False, width=width)
-            drawn.append(points)
-    if not drawn:
+    found = {
+        name: r.points(q[k])[r.mode_that_reaches(q[k], x)]
+        for k, name in enumerate(robot.BRANCHES)
+        if status[k] == OK
+    }
+    if not found:
         raise ValueError(f"{r.name} reaches the target {np.asarray(x).tolist()} in no branch")
-    _frame(ax, r, drawn)
-    ax.figure.legend(loc="outside lower center", ncols=2 if len(drawn) > 3 else len(drawn))
-    return ax
+    frame = [np.vstack(list(found.values()))]
+    names = list(robot.BRANCHES)
+    alike = len(found) > 1 and any(
+        np.allclose(p, frame[0][: len(p)]) for p in [*found.values()][1:]
+    )
+    if ax is not None or (len(found) <= OVERLAID and not alike):
+        ax = new_axes(not r.flat) if ax is None else ax
+        diagram = Diagram(ax, extent(frame))
+        for name, points in found.items():
+            shade = colour(names.index(name))
+            draw(diagram, r, points, shade, label=spoken(name), faint=faint)
+        diagram.clean([*frame, _base_frame(diagram, r, frame[0])])
+        ax.figure.legend(loc="outside lower center", ncols=min(len(found), 4))
+        _settle(ax)
+        return ax
+    columns = 4 if len(found) > 4 else 2
+    rows = -(-len(found) // columns)
+    panels = new_panels(rows, columns, spatial=not r.flat, size=(2.35 * columns, 2.3 * rows))
+    for panel in panels[len(found) :]:
+        panel.set_axis_off()
+    for panel, name in zip(panels, found, strict=False):
+        diagram = Diagram(panel, extent(frame))
+        others = [points for other, points in found.items() if other != name]
+        diagram.link(_outlines(r, others), "#dddddd", linewidth=1.0)
+        along = joint_axes(robot, q[names.index(name)], params=r.params) if alike else {}
+        along = dict(list(along.items())[-WRIST:])
+        draw(
+            diagram, r, found[name], colour(names.index(name)), width=2.2, faint=faint, along=along
+        )
+        ends = _show_axes(diagram, along)
+        diagram.clean([*frame, *ends], margin=0.02)
+        panel.set_title(spoken(name), fontsize=9, y=1.0)
+    return panels[0]
+
+
+def _outlines(r: Robot, postures: list[Array]) -> Array:
+    """The links of several postures as one line, with gaps between them."""
+    names = r.module.SKELETON.points
+    gap = np.full((1, 3), np.nan)
+    ways = [*r.module.SKELETON.links.values()]
+    ways += [j.points for j in r.module.SKELETON.joints.values() if j.kind == "prismatic"]
+    parts = [
+        part
+        for points in postures
+        for way in ways
+        for part in (points[[names.index(p) for p in way]], gap)
+    ]
+    return np.vstack(parts)
+
+
+def spoken(name: str) -> str:
+    """The name of a branch in words, with the joints in it as formulas."""
+    words = name.split("_")
+    return " ".join(symbol(w) if w[-1:].isdigit() else w for w in words)
+
+
+def extent(drawn: list[Array]) -> float:
+    """The diagonal of the box around points: the scale of a drawing."""
+    everything = np.vstack([*drawn, np.zeros((1, 3))])
+    return float(np.linalg.norm(np.nanmax(everything, axis=0) - np.nanmin(everything, axis=0)))
 
 
 def regular_target(r: Robot) -> Array:
@@ -110,80 +206,121 @@ def regular_target(r: Robot) -> Array:
     return np.asarray(x[np.argmax(reached)])
 
 
-def _draw(
-    ax: Any,
+def draw(
+    diagram: Diagram,
     r: Robot,
     points: Array,
     shade: str,
     *,
+    along: Mapping[str, tuple[Array, Array]] | None = None,
     label: str = "",
-    labels: bool = True,
     width: float = 2.6,
+    faint: Collection[str] = (),
 ) -> None:
-    """The links and the joints of one posture."""
+    """The links, the joints and the hand of one posture."""
     skeleton = r.module.SKELETON
-    place = dict(zip(skeleton.points, points[:, :2] if _planar(ax) else points, strict=True))
-    named = bool(label)
+    place = dict(zip(skeleton.points, points, strict=True))
+    named: dict[str, Any] = {"label": label} if label else {}
     for name, link in skeleton.links.items():
-        own = name == "ground" or set(link) <= set(skeleton.ground)
-        line = np.array([place[p] for p in link]).T
-        ax.plot(
-            *line,
-            color=GROUND if own else shade,
-            linewidth=1.6 if own else width,
-            solid_capstyle="round",
-            solid_joinstyle="round",
-            label=label if named and not own else None,
-            zorder=2,
-        )
-        named = named and own
-    for name, joint in skeleton.joints.items():
+        style: dict[str, Any] = {"linewidth": width, "color": shade}
+        if name == "ground" or set(link) <= set(skeleton.ground):
+            style = {"linewidth": 1.6, "color": GROUND}
+        elif name in faint:
+            style |= {"linewidth": 0.5 * width, "linestyle": (0, (4, 1.5)), "alpha": 0.75}
+        elif named:
+            style |= named
+            named = {}
+        diagram.link([place[p] for p in link], **style)
+    for joint in skeleton.joints.values():
         ends = np.array([place[p] for p in joint.points])
         if joint.kind == "prismatic":
-            ax.plot(
-                *ends.T, color=shade, linewidth=1.4, linestyle=(0, (4, 1.5)), zorder=2,
-                label=label if named else None,
-            )  # fmt: skip
-            named = False
+            _slide(diagram, ends, shade, width, named)
+            named = {}
+    for name, joint in skeleton.joints.items():
+        if joint.kind == "revolute":
+            _, way = (along or {}).get(name, (None, None))
+            diagram.revolute(place[joint.points[0]], shade, axis=way)
+    diagram.hand(place[skeleton.hand], shade)
+
+
+def _slide(diagram: Diagram, ends: Array, shade: str, width: float, named: dict[str, Any]) -> None:
+    """A slide: a wide sleeve, and the rod that comes out of it."""
+    a, b = ends
+    diagram.link(ends, shade, linewidth=0.6 * width, **named)
+    sleeve = [a + 0.1 * (b - a), a + 0.5 * (b - a)]
+    diagram.link(sleeve, shade, linewidth=2.6 * width, solid_capstyle="butt")
+    diagram.link(sleeve, "white", linewidth=1.6 * width, solid_capstyle="butt")
+
+
+def _show_axes(diagram: Diagram, along: Mapping[str, tuple[Array, Array]]) -> list[Array]:
+    """The axis of each revolute joint; joints that share theirs have one line."""
+    ends: list[Array] = []
+    seen: list[tuple[Array, Array]] = []
+    for at, way in along.values():
+        if any(
+            np.linalg.norm(np.cross(at - p, w)) < 1e-6 * diagram.size and abs(way @ w) > 1 - 1e-9
+            and np.linalg.norm(at - p) < 1e-6 * diagram.size
+            for p, w in seen
+        ):  # fmt: skip
+            continue
+        seen.append((at, way))
+        end = diagram.axis(at, way)
+        ends.append(np.array([end]))
+    return ends
+
+
+def _name(
+    diagram: Diagram, r: Robot, q: Array, mode: int, along: Mapping[str, tuple[Array, Array]]
+) -> None:
+    """Lengths at their segments, and angles as arcs, or as arrows about their axes."""
+    points = r.points(q)[mode]
+    skeleton = r.module.SKELETON
+    place = dict(zip(skeleton.points, points, strict=True))
+    for field, pair in lengths(r, q, mode).items():
+        diagram.dimension(place[pair[0]], place[pair[1]], symbol(field))
+    for name, joint in skeleton.joints.items():
+        if joint.kind == "prismatic":
+            a, b = joint.points
+            diagram.dimension(place[a], place[b], symbol(name))
+            continue
+        if name not in along:
+            diagram.label(place[joint.points[0]], symbol(name))
+            continue
+        at, way = along[name]
+        if name not in r.module.JOINTS:
+            diagram.label(at, symbol(name))
+            continue
+        turn = float(q[list(r.module.JOINTS).index(name)])
+        turn = float(np.angle(np.exp(1j * turn)))
+        foot = joint.points[0]
+        beside = {p for k in skeleton.links.values() if foot in k for p in k}
+        arm = _arm(r, q, mode, name, [p for p in beside if p != foot])
+        across = arm - way * (arm @ way)
+        size = float(np.linalg.norm(across))
+        if size < SMALL * diagram.size or abs(turn) < 0.05 or len(joint.points) == 2:
+            diagram.spin(at + 0.1 * diagram.size * way, way, symbol(name))
         else:
-            ax.plot(*ends[:1].T, "o", color="white", markeredgecolor=shade, markersize=5, zorder=3)
-        if labels:
-            at = ends.mean(0) if joint.kind == "prismatic" else ends[0]
-            _write(ax, at, name.replace("theta", "θ").replace("rho", "ρ"), r.size)
-    ax.plot(*place[skeleton.hand][:, None], "D", color=shade, markersize=4.5, zorder=4)
-    if labels:
-        _write(ax, place[skeleton.hand], "hand", r.size)
+            back = np.cos(turn) * across - np.sin(turn) * np.cross(way, across)
+            diagram.angle(place[foot], back, way, turn, symbol(name))
 
 
-def _write(ax: Any, at: Array, text: str, size: float) -> None:
-    """A label beside a point; several joints at one point share a line."""
-    written = ax.__dict__.setdefault("_closedform_labels", [])
-    for other, note in written:
-        if np.abs(other - at).max() < 1e-3 * size:
-            note.set_text(f"{note.get_text()}, {text}")
-            return
-    note = ax.text(*at, f"  {text}", fontsize=8, va="bottom", zorder=5)
-    written.append((at, note))
+def _arm(r: Robot, q: Array, mode: int, name: str, beside: list[str]) -> Array:
+    """From a joint to the end of the link that it turns; zero where nothing beside it moves."""
+    names = r.module.SKELETON.points
+    step = 1e-4 * np.eye(len(q))[list(r.module.JOINTS).index(name)]
+    here, moved = r.points(q)[mode], r.points(q + step)[mode]
+    foot = r.module.SKELETON.joints[name].points[0]
+    best = np.zeros(3)
+    for point in sorted(beside, key=names.index):
+        k = names.index(point)
+        gap = here[k] - here[names.index(foot)]
+        if np.linalg.norm(moved[k] - here[k]) > 1e-7 * r.size and best @ best < gap @ gap:
+            best = gap
+    return best
 
 
-def _frame(ax: Any, r: Robot, drawn: list[Array]) -> None:
-    """Equal scales, a margin, and the names of the axes."""
-    everything = np.vstack([*drawn, np.zeros((1, 3))])
-    low, high = everything.min(0), everything.max(0)
-    half = 0.56 * max((high - low).max(), 1e-9)
-    middle = (low + high) / 2
-    if _planar(ax):
-        ax.set_aspect("equal", adjustable="datalim")
-        ax.set(xlabel="x", ylabel="y")
-        ax.margins(0.12)
-    else:
-        ax.set(xlabel="x", ylabel="y", zlabel="z")
-        for k, axis in enumerate("xyz"):
-            getattr(ax, f"set_{axis}lim")(middle[k] - half, middle[k] + half)
-            getattr(ax, f"{axis}axis").set_pane_color((1, 1, 1, 0))
-        ax.set_box_aspect((1, 1, 1))
-    ax.grid(alpha=0.3)
-
-
-def _planar(ax: Any) -> bool:
-    return getattr(ax, "name", "") != "3d"
+def _base_frame(diagram: Diagram, r: Robot, points: Array) -> Array:
+    """The frame of the base at the origin, or beside the drawing if that is too crowded."""
+    reach = 0.13
+    diagram.frame(np.zeros(3), reach=reach)
+    return np.vstack([np.zeros(3), reach * diagram.size * np.eye(3)])

@@ -13,6 +13,7 @@ from closedform.model.claims import (
     HOLDS,
     NOT_DECIDABLE,
     PROVED,
+    REFUTED,
     Check,
     Claim,
     Erratum,
@@ -22,6 +23,7 @@ from closedform.model.claims import (
 )
 from closedform.model.notation import Notation, Relation
 from closedform.proof.checks.equations import Equal
+from closedform.proof.checks.evidence import constant, fixed, nearest
 from closedform.proof.require import ProofError
 
 
@@ -105,7 +107,11 @@ def judge(claim: Claim, errata: Sequence[Erratum]) -> ClaimResult:
 
 def judged(claim: Claim, text: str, reading: Reading | None = None) -> Verdict:
     """The verdict of a text of a claim."""
-    return claim.checked(text, reading or next(iter(claim.readings), None), as_printed).judge()
+    reading = reading or next(iter(claim.readings), None)
+    verdict = claim.checked(text, reading, as_printed).judge()
+    if not claim.is_opposite(text) or verdict.kind not in (*HOLDS, REFUTED):
+        return verdict
+    return Verdict(PROVED if verdict.kind == REFUTED else REFUTED, verdict.evidence)
 
 
 def as_printed(*formulas: Relation | tuple[Relation, ...]) -> Check:
@@ -123,7 +129,11 @@ def require_shown(errata: Sequence[Erratum], results: Sequence[ClaimResult]) -> 
 
 
 def erratum_result(erratum: Erratum) -> ErratumResult:
-    return ErratumResult(erratum.key, erratum.title, erratum.gravity.name, erratum.why, erratum.use)
+    why, use = erratum.why, erratum.use
+    for name, (value, digits) in erratum.numbers.items():
+        decimal = fixed(nearest(constant(value) * 10**digits), digits)
+        why, use = (text.replace(f"[{name}]", decimal) for text in (why, use))
+    return ErratumResult(erratum.key, erratum.title, erratum.gravity.name, why, use)
 
 
 def _text(evidence: Sequence[Any], notation: Notation) -> str:

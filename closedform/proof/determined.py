@@ -4,24 +4,16 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import sympy as sp
 
 from closedform.algebra import certificates
 from closedform.algebra.balls import Evaluator
-from closedform.model.derivation import Inverse
+from closedform.model.inverse import Inverse
+from closedform.proof.posture import Posture
 
 Expr = Any
-
-
-class Postures(Protocol):
-    """Expressions in the unknowns and the target, and the target at a posture."""
-
-    targets: dict[Expr, Expr]
-    lengths: dict[Expr, Expr]
-
-    def named(self, e: Expr) -> Expr: ...
 
 
 def random_posture(draw: random.Random, symbols: Sequence[Expr]) -> dict[Expr, Expr]:
@@ -30,15 +22,15 @@ def random_posture(draw: random.Random, symbols: Sequence[Expr]) -> dict[Expr, E
     }
 
 
-def undetermined(inverse: Inverse, graph: Postures, equations: Sequence[Expr]) -> list[str]:
+def undetermined(inverse: Inverse, posture: Posture, equations: Sequence[Expr]) -> list[str]:
     """The coordinates of the target that the equations leave open, given the joints.
 
     Equations that are linear in what is not known yet determine more of it, until nothing is added.
     """
     draw = random.Random(2)
-    columns, circle = _columns(inverse, graph)
+    columns, circle = _columns(inverse, posture)
     constant = [x - f for x, f in zip(inverse.targets, inverse.forward, strict=True) if f.is_number]
-    left = [sp.expand_trig(graph.named(e)).xreplace(circle) for e in (*equations, *constant)]
+    left = [sp.expand_trig(posture.named(e)).xreplace(circle) for e in (*equations, *constant)]
     known: dict[Expr, Expr] = {}
     while True:
         open_columns = [x for x in columns if x not in known]
@@ -51,7 +43,7 @@ def undetermined(inverse: Inverse, graph: Postures, equations: Sequence[Expr]) -
         known |= {x: columns[x] for x in found}
 
 
-def _columns(inverse: Inverse, graph: Postures) -> tuple[dict[Expr, Expr], dict[Expr, Expr]]:
+def _columns(inverse: Inverse, posture: Posture) -> tuple[dict[Expr, Expr], dict[Expr, Expr]]:
     """The coordinates of the target and the auxiliary lengths, with their values at a posture.
 
     An angle has two, its cosine and its sine.
@@ -59,14 +51,14 @@ def _columns(inverse: Inverse, graph: Postures) -> tuple[dict[Expr, Expr], dict[
     columns: dict[Expr, Expr] = {}
     circle: dict[Expr, Expr] = {}
     for x in inverse.targets:
-        value = graph.targets[x]
+        value = posture.targets[x]
         if x in inverse.angles:
             c, s = sp.Dummy(f"c_{x}"), sp.Dummy(f"s_{x}")
             circle |= {sp.cos(x): c, sp.sin(x): s}
             columns |= {c: sp.cos(value), s: sp.sin(value)}
         else:
             columns[x] = value
-    return columns | graph.lengths, circle
+    return columns | posture.lengths, circle
 
 
 def _linear_rows(

@@ -73,7 +73,7 @@ def _mixed(found: list[Mutation], label: str) -> list[Mutation]:
 
 
 def mutations(claim: Claim) -> Iterator[Mutation]:
-    """All changed texts: a sign, a number, a function, a name, a relation or a phrase differs.
+    """All texts with a sign, number, function, name, relation, phrase or word changed.
 
     A claim that does not hold yields its correction alone, which has to hold.
     """
@@ -94,6 +94,9 @@ def mutations(claim: Claim) -> Iterator[Mutation]:
 
 
 def _phrases(claim: Claim, phrase: str) -> Iterator[tuple[str, int, int, str]]:
+    if phrase in claim.opposites:
+        yield "word", 0, len(phrase), claim.opposites[phrase]
+        return
     meaning, others = claim.meaning(phrase), claim.vocabulary(phrase)
     if others is NUMBERS:
         near = [word for word, n in NUMBERS.items() if n is not None and n == (meaning or 0) + 1]

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 import sympy as sp
 
-from closedform.model.derivation import Derivation, Inverse
+from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
+from closedform.model.inverse import Inverse
 
 _POSTURES = 60
 

@@ -17,8 +17,9 @@ from typing import Any
 from closedform.algebra.formulas import number
 from closedform.mechanics.arm import RowError, Serial, from_dh, from_screws
 from closedform.mechanics.mobility import SingularEverywhereError
-from closedform.model.derivation import Derivation, Paper
+from closedform.model.derivation import Derivation
 from closedform.model.names import check_robot, check_text
+from closedform.model.paper import Paper
 from closedform.scaffold.limit import LimitError, limited
 from closedform.scaffold.propose import NoChainError, propose
 from closedform.scaffold.recognise import recognised

@@ -164,48 +164,17 @@ def _cells(line: str, where: str) -> list[str]:
 def read_dh(path: Path, *, modified: bool = False) -> Table:
     """A Denavit-Hartenberg table from CSV."""
     table = Table(modified=modified)
-    unread: dict[str, tuple[str, str]] = {}
-    numbered, places = [], []
-    for i, line in enumerate(_text(path).splitlines(), 1):
-        where = f"{path.name}, line {i}"
-        if remark := _remark(line.strip()):
-            symbol, value, unit, meaning = remark
-            if not any(c.isdecimal() for c in value):  # perhaps a sentence, not a value
-                unread[symbol] = where, value
-                continue
-            if symbol in table.parameters:
-                raise TableError(f"{where}: the parameter {symbol} already has a value")
-            _check_value(symbol, value, where)
-            table.parameters[symbol] = {"value": value, "unit": unit, "meaning": meaning}
-        elif line.strip() and not line.lstrip().startswith("#"):
-            numbered.append((i, _cells(line, where)))
+    numbered, unread = _split(path, table)
     if not numbered:
         raise TableError(f"{path.name}: the table is empty")
-    header = _header(numbered[0][1], f"{path.name}, line {numbered[0][0]}")
+    header = _header(numbered[0][1], numbered[0][0])
     if len(numbered) == 1:
         raise TableError(f"{path.name}: the table has only column names and no rows")
     if len(numbered) > ROWS + 1:
         raise TableError(f"{path.name}: the table has more than {ROWS} rows")
-    for i, cells in numbered[1:]:
-        where = f"{path.name}, line {i}"
-        if len(cells) != len(header):
-            raise TableError(
-                f"{where}: {len(cells)} entries in {len(header)} columns; there must be one entry "
-                f"for each of {', '.join(header)}"
-            )
-        cell = dict(zip(header, (c.strip() for c in cells), strict=True))
-        entries = {c: _expression(cell[c], f"{where}, column {c}") for c in COLUMNS}
-        for column in ("alpha", "theta"):
-            _check_angle(entries[column], cell[column], f"{where}, column {column}")
-        found = _joint(cell.get("joint", ""), entries, where, table.parameters)
-        if found:
-            add_joint(table, *found, where)
-        if given := cell.get("motors", ""):
-            _couple(table, found[0] if found else "", given, f"{where}, column motors")
-        if not found:
-            table.notes.append(f"{where}: the row has no joint, so it is a fixed transform")
-        table.rows.append(tuple(entries[c] for c in COLUMNS))
-        places.append(where)
+    for where, cells in numbered[1:]:
+        _read_row(table, header, cells, where)
+    places = [where for where, _ in numbered[1:]]
     if not table.joints:
         raise TableError(
             f"{places[0]}: there is no joint, because neither theta nor d has a symbol without a "
@@ -227,6 +196,52 @@ def read_dh(path: Path, *, modified: bool = False) -> Table:
     ]
     _declare(table, angles)
     return table
+
+
+def _split(
+    path: Path, table: Table
+) -> tuple[list[tuple[str, list[str]]], dict[str, tuple[str, str]]]:
+    """The cells of every row, and remarks that may be values; the values go into the table.
+
+    Each has its place in the file, for messages.
+    """
+    rows: list[tuple[str, list[str]]] = []
+    unread: dict[str, tuple[str, str]] = {}
+    for i, line in enumerate(_text(path).splitlines(), 1):
+        where = f"{path.name}, line {i}"
+        if remark := _remark(line.strip()):
+            symbol, value, unit, meaning = remark
+            if not any(c.isdecimal() for c in value):  # perhaps a sentence, not a value
+                unread[symbol] = where, value
+                continue
+            if symbol in table.parameters:
+                raise TableError(f"{where}: the parameter {symbol} already has a value")
+            _check_value(symbol, value, where)
+            table.parameters[symbol] = {"value": value, "unit": unit, "meaning": meaning}
+        elif line.strip() and not line.lstrip().startswith("#"):
+            rows.append((where, _cells(line, where)))
+    return rows, unread
+
+
+def _read_row(table: Table, header: Sequence[str], cells: Sequence[str], where: str) -> None:
+    """Add a row to a table, with its joint if it has one."""
+    if len(cells) != len(header):
+        raise TableError(
+            f"{where}: {len(cells)} entries in {len(header)} columns; there must be one entry "
+            f"for each of {', '.join(header)}"
+        )
+    cell = dict(zip(header, (c.strip() for c in cells), strict=True))
+    entries = {c: _expression(cell[c], f"{where}, column {c}") for c in COLUMNS}
+    for column in ("alpha", "theta"):
+        _check_angle(entries[column], cell[column], f"{where}, column {column}")
+    found = _joint(cell.get("joint", ""), entries, where, table.parameters)
+    if found:
+        add_joint(table, *found, where)
+    if given := cell.get("motors", ""):
+        _couple(table, found[0] if found else "", given, f"{where}, column motors")
+    if not found:
+        table.notes.append(f"{where}: the row has no joint, so it is a fixed transform")
+    table.rows.append(tuple(entries[c] for c in COLUMNS))
 
 
 def _angles(table: Table) -> exact.Angles:

@@ -43,7 +43,7 @@ GENERAL = (
 def state(d: Derivation, r: Robot, printed: Notation) -> None:
     """Sections 3.2 and 3.3, up to the length of the wrist."""
     symmetric_motions(d, r, printed)
-    errors(d)
+    errors(d, r)
     point_from_tips(d, r, printed)
     averages(d, r, printed)
 
@@ -102,7 +102,20 @@ def symmetric_motions(d: Derivation, r: Robot, printed: Notation) -> None:
     )
 
 
-def errors(d: Derivation) -> None:
+def off_the_middle(r: Robot, yaw: sp.Expr) -> sp.Expr:
+    """The distance of (7) from the middle of the tips, with a level fore-arm and without roll."""
+    m, fore = r.m, r.A2 + r.A3
+    upper_by = sp.Matrix([-m.L1 * sin(r.A2), m.L1 * cos(r.A2)])
+    fore_by = sp.Matrix([m.L2 * cos(fore) - m.a3 * sin(fore), m.L2 * sin(fore) + m.a3 * cos(fore)])
+    apart = sp.Matrix([m.d * sp.tan(yaw), 0])  # half of what is between the tips of the arms
+    sines = sp.Matrix.hstack(upper_by, fore_by).inv() * apart
+    lost = [1 - sp.sqrt(1 - s**2) for s in sines]
+    along = [sp.Matrix([-v[1], v[0]]) for v in (upper_by, fore_by)]  # the links have these lengths
+    at = r.example | {r.A2: pi / 3, r.A3: pi / 6}
+    return (lost[0] * along[0] + lost[1] * along[1]).subs(at).norm()
+
+
+def errors(d: Derivation, r: Robot) -> None:
     """What is wrong in sections 3.2 and 3.3."""
     d.erratum(
         "roll-sign",
@@ -122,8 +135,12 @@ def errors(d: Derivation) -> None:
         "planes of the base.  Eq. (9) turns the wrist about the axes of the fore-arm.  The two "
         "agree only if the fore-arm is level and only one of the angles differs from zero; the "
         "inverse uses (3) and (4) for all postures.",
-        use="With arms of 0.8 m, a fore-arm far from level and 10 degrees of yaw, the tip misses "
-        "by several millimetres and the roll by several degrees; both grow with yaw and roll.",
+        use=r"For $d = [d]$ m, 10 degrees of yaw and a fore-arm at $\theta_{23} = 45^\circ$, (4) "
+        "puts the right tip [gap] mm from where (9) has it; the distance grows with yaw and roll.",
+        numbers={
+            "d": (r.example[r.m.d], 2),
+            "gap": (1000 * r.example[r.m.d] * sp.tan(pi / 18) * 2 * sp.sin(pi / 8), 0),
+        },
     )
     d.erratum(
         "averages",
@@ -133,8 +150,14 @@ def errors(d: Derivation) -> None:
         r"to that point are shortened: $L_1$ by the cosine of half the difference of the shoulder "
         r"angles, $L_2$ and $a_3$ by that of half the difference of the $\theta_{23}$.  So (7), "
         "and the left arm computed from the averages, hold only approximately.",
-        use="The error is of second order in the differences of the arms.  For arms of 0.8 m it "
-        "is below 1 mm at 15 degrees of yaw, and 4 mm at 30 degrees.",
+        use="The error is of second order in the differences of the arms.  For $L_1 = [L1]$ m, "
+        r"$L_2 = [L2]$ m, $d = [d]$ m, $\theta_2^A = 60^\circ$ and a level fore-arm it is "
+        "[some] mm at 15 degrees of yaw, and [more] mm at 30 degrees.",
+        numbers={
+            **{name: (r.example[getattr(r.m, name)], 2) for name in ("L1", "L2", "d")},
+            "some": (1000 * off_the_middle(r, pi / 12), 1),
+            "more": (1000 * off_the_middle(r, pi / 6), 1),
+        },
     )
 
 

@@ -207,12 +207,66 @@ QUADRANTS = Reading(
 )
 
 
+def by_side(r: Robot, v: Virtual) -> Postures:
+    """The postures, in groups: is the target in front of the robot?"""
+    x, y, _ = v.tip.values()
+    outward = cos(r.q.theta1) * x + sin(r.q.theta1) * y
+    return replace(
+        v.postures, groups={"target in front": outward > 0, "target behind": outward < 0}
+    )
+
+
+def solves_waist(r: Robot, v: Virtual, formulas: tuple[Relation, Relation]) -> Solves:
+    """The waist angle and its auxiliary angle solve (11)."""
+    turn, gamma = formulas
+    x, y, _ = v.tip.values()
+    size, aside = sqrt(x**2 + y**2), v.lengths[r"L_\theta"]
+    (eleventh,) = v.names.read(EQ11)
+    return Solves(
+        {turn.left: turn.right.subs(gamma.left, gamma.right)},
+        [eleventh.left - eleventh.right],
+        by_side(r, v),
+        (size - aside, size + aside),
+    )
+
+
+def solves_elbow(r: Robot, v: Virtual, formula: Relation) -> Solves:
+    """The elbow angle solves the relation before (13)."""
+    _, along, across, square = v.lengths.values()
+    fore = sqrt(along**2 + across**2)
+    bent = 2 * r.m.L1 * (along * sin(r.A3) + across * cos(r.A3))
+    wrist = {s: v.postures.inputs[s] for s in (along, across)}
+    return Solves(
+        {formula.left: formula.right},
+        [bent - square],
+        replace(v.postures, inputs=wrist | {square: bent.subs(wrist)}),
+        (along, 2 * r.m.L1 * fore - square, 2 * r.m.L1 * fore + square),
+    )
+
+
+def solves_shoulder(r: Robot, v: Virtual, formula: Relation) -> Solves:
+    """The angle of the fore-arm solves the two equations before (14)."""
+    _, along, across, _ = v.lengths.values()
+    sides = [f"{BEFORE_14[0]}", f"{BEFORE_14[1]} + L_{{2W}}"]
+    names = v.names.extended(of_fore_arm(r))
+    equations = [e.left - e.right for text in sides for e in names.read(text)]
+    across_bend, along_bend = r.m.L1 * cos(r.A3) + across, r.m.L1 * sin(r.A3) + along
+    return Solves(
+        {formula.left: formula.right},
+        equations,
+        replace(v.postures, groups=directions(r.A23)),
+        (sp.expand(across_bend**2 + along_bend**2),),
+        v.reached,
+    )
+
+
+def of_fore_arm(r: Robot) -> dict[str, sp.Expr]:
+    return {"c_{23}^A": cos(r.A23), "s_{23}^A": sin(r.A23), r"\theta_{23}^A": r.A23}
+
+
 def waist(d: Derivation, r: Robot, v: Virtual) -> None:
     """Eqs. (11), (12) and the waist angle."""
     claim = partial(d.claim, where=INVERSE, notation=v.names)
-    theta1 = r.q.theta1
-    x, y, _ = v.tip.values()
-    size, aside = sqrt(x**2 + y**2), v.lengths[r"L_\theta"]
     claim(
         "eq. (11)",
         rf"From (9a) and (9b), the relation ${EQ11}$",
@@ -230,20 +284,10 @@ def waist(d: Derivation, r: Robot, v: Virtual) -> None:
         ),
         means={r"\kappa": kappa, r"\rho": rho, "x": angle, r"\gamma": gamma},
     )
-    (eleventh,) = v.names.read(EQ11)
-    outward = cos(theta1) * x + sin(theta1) * y
     claim(
         "waist angle",
         f"Applying this identity to (11) leads to the waist angle being given by ${WAIST}$",
-        lambda pair: Solves(
-            {pair[0].left: pair[0].right.subs(pair[1].left, pair[1].right)},
-            [eleventh.left - eleventh.right],
-            replace(
-                v.postures,
-                groups={"target in front": outward > 0, "target behind": outward < 0},
-            ),
-            (size - aside, size + aside),
-        ),
+        partial(solves_waist, r, v),
         corrected="Applying this identity to (11) leads to the waist angle being given by "
         f"${BOTH_WAISTS}$",
         erratum="waist-rear",
@@ -253,24 +297,16 @@ def waist(d: Derivation, r: Robot, v: Virtual) -> None:
 def elbow(d: Derivation, r: Robot, v: Virtual) -> None:
     """Eq. (13)."""
     claim = partial(d.claim, where=INVERSE, notation=v.names)
-    m, (_, along, across, square) = r.m, v.lengths.values()
+    m, square = r.m, v.lengths["L_{3A}"]
     claim(
         "before eq. (13)",
         "The angle [...] is evaluated using the relation " + f"${ELBOW_SQUARE}$",
         lambda f: Equal(f, on=v.reached, defines=square),
     )
-    fore = sqrt(along**2 + across**2)
-    bent = 2 * m.L1 * (along * sin(r.A3) + across * cos(r.A3))
-    wrist = {s: v.postures.inputs[s] for s in (along, across)}
     claim(
         "eq. (13)",
         f"${ELBOW}$",
-        lambda f: Solves(
-            {f.left: f.right},
-            [bent - square],
-            replace(v.postures, inputs=wrist | {square: bent.subs(wrist)}),
-            (along, 2 * m.L1 * fore - square, 2 * m.L1 * fore + square),
-        ),
+        partial(solves_elbow, r, v),
         corrected=f"$\\theta_3^A = {both_elbows(ELBOW_SINES)}$",
         erratum="one-elbow",
     )
@@ -303,7 +339,6 @@ def elbow(d: Derivation, r: Robot, v: Virtual) -> None:
 def shoulder(d: Derivation, r: Robot, v: Virtual) -> None:
     """Eq. (14)."""
     claim = partial(d.claim, where=INVERSE, notation=v.names)
-    m, (_, along, across, _) = r.m, v.lengths.values()
     claim(
         "first equation before (14)",
         f"${BEFORE_14[0]}$",
@@ -316,21 +351,11 @@ def shoulder(d: Derivation, r: Robot, v: Virtual) -> None:
         corrected=f"${BEFORE_14[1]} + L_{{2W}}$",
         erratum="sign-before-14",
     )
-    unknown = {"c_{23}^A": cos(r.A23), "s_{23}^A": sin(r.A23), r"\theta_{23}^A": r.A23}
-    sides = [f"{BEFORE_14[0]}", f"{BEFORE_14[1]} + L_{{2W}}"]
-    equations = [e.left - e.right for text in sides for e in v.names.extended(unknown).read(text)]
-    across_bend, along_bend = m.L1 * cos(r.A3) + across, m.L1 * sin(r.A3) + along
     claim(
         "eq. (14)",
         f"$\\theta_{{23}}^{{A}} = {quotient(SHOULDER)}$",
-        lambda f: Solves(
-            {f.left: f.right},
-            equations,
-            replace(v.postures, groups=directions(r.A23)),
-            (sp.expand(across_bend**2 + along_bend**2),),
-            v.reached,
-        ),
-        means=unknown,
+        partial(solves_shoulder, r, v),
+        means=of_fore_arm(r),
         corrected=f"$\\theta_{{23}}^{{A}} = {quadrants(SHOULDER)}$",
         erratum="quadrant",
         readings=[Reading(PRINCIPAL), QUADRANTS],
@@ -344,30 +369,31 @@ def directions(fore: sp.Symbol) -> dict[str, sp.Expr]:
 def whole(d: Derivation, r: Robot, v: Virtual) -> None:
     """The angles of the virtual arm, one after the other."""
     square = v.lengths["L_{3A}"]
-    x, y, _ = v.tip.values()
-    outward = cos(r.q.theta1) * x + sin(r.q.theta1) * y
 
     def in_order(
         turn: tuple[Relation, Relation], bend: Relation, third: Relation, sum_: Relation
     ) -> Check:
         names = {turn[1].left: turn[1].right, turn[0].left: turn[0].right}
         names |= {square: bend.sides[1], third.left: third.right, sum_.left: sum_.right}
-        upper = {r.A2: r.A23 - r.A3}
-        groups = {"target in front": outward > 0, "target behind": outward < 0}
-        reached = {t: e.subs(upper) for t, e in v.reached.items()}
-        return Procedure(names, reached, replace(v.postures, groups=groups))
+        reached = {t: e.subs(r.A2, r.A23 - r.A3) for t, e in v.reached.items()}
+        steps: dict[str, Check] = {
+            "the waist": solves_waist(r, v, turn),
+            "the relation for the elbow": Equal(bend, on=v.reached, defines=square),
+            "the elbow": solves_elbow(r, v, third),
+            "the shoulder": solves_shoulder(r, v, sum_),
+        }
+        return Procedure(names, reached, by_side(r, v), steps)
 
+    text = f"$%s$ [...] ${ELBOW_SQUARE}$ [...] $\\theta_3^A = %s$ [...] $\\theta_{{23}}^{{A}} = %s$"
     d.claim(
         "inverse of the virtual arm",
-        f"${WAIST}$ [...] ${ELBOW_SQUARE}$ [...] ${ELBOW}$ [...] "
-        f"$\\theta_{{23}}^{{A}} = {quotient(SHOULDER)}$",
+        text % (WAIST, f"{ELBOW_SINES[0]} - {ELBOW_SINES[1]}", quotient(SHOULDER)),
         in_order,
         where=INVERSE,
         notation=v.names.extended({r"\theta_{23}^A": r.A23}),
+        corrected=text % (BOTH_WAISTS, both_elbows(ELBOW_SINES), quadrants(SHOULDER)),
         erratum="quadrant",
         readings=[Reading(PRINCIPAL)],
-        fixed="several formulas are at fault, and one change does not mend them; each of them is a "
-        "claim of its own, with its correction",
     )
 
 

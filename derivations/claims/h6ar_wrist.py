@@ -37,6 +37,7 @@ LENGTH = (
 
 def state(d: Derivation, r: Robot, printed: Notation) -> None:
     """The end of section 3.3, and section 3.4."""
+    yawed = wrist_length(r).subs(r.example).subs(r.psi, pi / 6)
     d.erratum(
         "roll-in-wrist",
         "The wrist is computed and designed for pure yaw; roll makes its base line longer",
@@ -44,9 +45,14 @@ def state(d: Derivation, r: Robot, printed: Notation) -> None:
         why=r"The tips are $2d/\cos\psi$ apart if the robot yaws, but "
         r"$2d/(\cos\psi\cos\phi)$ if it also rolls.  The wrist links then lie flatter: $l_W$ in "
         "(8) is too long, and the links that (10) asks for are too short.",
-        use="The tip is misplaced whenever the robot rolls, by centimetres at 30 degrees of yaw "
-        "and roll.  Wrist links as short as (10) allows reach their singular configuration, or do "
+        use="The tip is misplaced whenever the robot rolls.  At 30 degrees of yaw and roll the "
+        "wrist of the example ($d = [d]$ m, $\\alpha l = [al]$ m) is [gap] mm shorter than (8) has "
+        "it.  Wrist links as short as (10) allows reach their singular configuration, or do "
         "not reach from tip to tip, before both angles are at their limits.",
+        numbers={
+            **{name: (r.example[getattr(r.m, name)], 2) for name in ("d", "al")},
+            "gap": (1000 * (yawed.subs(r.phi, 0) - yawed.subs(r.phi, pi / 6)), 0),
+        },
     )
     length(d, r, printed)
     tip(d, r, printed)
@@ -302,15 +308,16 @@ def design(d: Derivation, r: Robot, printed: Notation) -> None:
     both, yaw_only = "roll and yaw angles", "yaw angles"
     d.claim(
         "design of the wrist",
-        "“The parameters αl and β are designed so that the wrist does not assume a singular "
-        "configuration for the allowed {roll and yaw angles}.”",
+        "“The parameters αl and β are designed so that the wrist {does not assume} a "
+        "singular configuration for the allowed {roll and yaw angles}.”",
         lambda largest: ForAll(
             sp.Le(needed(r.psi, largest), needed(r.psi, sp.S.Zero)),
             where=[sp.Lt(sp.Abs(r.psi), pi / 2), sp.Lt(sp.Abs(r.phi), pi / 2)],
         ),
         where="2 Description of the H6AR",
         phrases=[{both: r.phi, yaw_only: sp.S.Zero}],
-        corrected="“The parameters αl and β are designed so that the wrist does not assume a "
+        opposites={"does not assume": "assumes"},
+        corrected="“The parameters αl and β are designed so that the wrist {does not assume} a "
         "singular configuration for the allowed {yaw angles}.”",
         erratum="roll-in-wrist",
     )

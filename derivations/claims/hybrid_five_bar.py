@@ -110,9 +110,10 @@ def abstract(d: Derivation, bar: FiveBar) -> None:
     A, B = bar.pivots
     claim(
         "all actuators on the first axis",
-        "“Furthermore, since all actuators are located on the {first} axis”",
+        "“Furthermore, since {all} actuators are located on the {first} axis”",
         lambda axis: Identity(axis.cross(B - A), sp.zeros(3, 1)),
         phrases=[{"first": J, "second": bar.k}],
+        opposites={"all": "not all"},
     )
     claim(
         "inertial effects",

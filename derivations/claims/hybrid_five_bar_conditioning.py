@@ -229,9 +229,10 @@ def extremes(d: Derivation, bar: FiveBar) -> None:
     claim(
         "isotropic",
         "“When matrix” [...] “attains a condition number of {unity}, it is termed *isotropic*, its "
-        "inversion being performed without any roundoff-error amplification.”",
+        "inversion being performed {without any} roundoff-error amplification.”",
         kept,
         phrases=[{"unity": 1, "two": 2}],
+        opposites={"without any": "with"},
         readings=[
             Reading("its inverse changes the lengths of all vectors by the same factor, so it does "
                     "not enlarge their relative errors")

@@ -203,10 +203,11 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
 
     claim(
         "two operative working modes",
-        "“We notice that the optimum manipulator has only {two} operative working mode because the "
-        "other {two} working modes lie in parallel singular configurations (see figures 4 b & c "
-        "when $L_0 = 0$ and $L_1 = L_2$)”",
+        "“We notice that the optimum manipulator has {only} {two} operative working mode because "
+        "the other {two} working modes lie in parallel singular configurations (see figures 4 b & "
+        "c when $L_0 = 0$ and $L_1 = L_2$)”",
         operative,
+        opposites={"only": "not only"},
         readings=[
             Reading("of the four working modes of figure 4, for P on one side of AB"),
             Reading("of all eight working modes", partial(operative, times=2)),
@@ -235,8 +236,9 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
 
     claim(
         "all singularities at the border",
-        "“Thus, all singularities of this mechanism lie {at the border of the workspace}.”",
+        "“Thus, {all} singularities of this mechanism lie {at the border of the workspace}.”",
         lie_on,
+        opposites={"all": "not all"},
         phrases=[
             {
                 "at the border of the workspace": border,
@@ -249,8 +251,8 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
                 "of the inner sphere, counts as border"
             )
         ],
-        corrected="“Thus, all singularities of this mechanism lie {at the border of the workspace "
-        "or on the axis AB}.”",
+        corrected="“Thus, {all} singularities of this mechanism lie {at the border of the "
+        "workspace or on the axis AB}.”",
         erratum=AXIS_TOO,
     )
 
@@ -302,15 +304,16 @@ def by_design(d: Derivation, bar: FiveBar) -> None:
         erratum="C-meets-D",
     )
     before, after = (
-        "“In the same way, we can eliminate all parallel singularities if the condition below is "
-        "imposed:",
-        "In using this property, the mechanism has no parallel singularity”",
+        "“In the same way, we can eliminate {all} parallel singularities if the condition below "
+        "is imposed:",
+        "In using this property, the mechanism has {no} parallel singularity”",
     )
     first = relations(notation(bar).read("L_1 + L_1 > L_0"))
     claim(
         "no parallel singularity",
         f"{before} $2L_2 - 2L_1 > L_0$ {after}",
         lambda printed: avoids([apart, never_in_line], relations(printed)),
+        opposites={"all": "not all", "no": "a"},
         readings=[
             Reading("the condition is sufficient alone"),
             Reading(

@@ -76,10 +76,16 @@ def parallel(d: Derivation, bar: FiveBar) -> None:
 
     claim(
         "efforts in some direction",
-        "“They are particularly undesirable because the manipulator can not resist efforts in "
-        "{some} direction(s).”",
+        "“They are particularly undesirable because the manipulator {can not resist efforts "
+        "in some} direction(s).”",
         unresisted,
-        phrases=[{"some": 1, "all": 3}],
+        phrases=[
+            {
+                "can not resist efforts in some": 1,
+                "can not resist efforts in all": 3,
+                "can resist efforts in every": 0,
+            }
+        ],
     )
     claim(
         "eq. (6)",
@@ -130,10 +136,11 @@ def parallel(d: Derivation, bar: FiveBar) -> None:
     chord = CP - DP  # CD, since the loop is closed
     claim(
         "no effort across DC",
-        "“In such configurations, the manipulator cannot resist an effort in the {orthogonal} "
-        "direction of DC (Figure 5).”",
+        "“In such configurations, the manipulator {cannot} resist an effort in the "
+        "{orthogonal} direction of DC (Figure 5).”",
         lambda free: Identity((bar.A * free).subs(t5, t4 + pi), sp.zeros(3, 1)),
         phrases=[{"orthogonal": bar.k.cross(chord), "same": chord}],
+        opposites={"cannot": "can"},
     )
     free = real("phi")
 
@@ -159,10 +166,11 @@ def parallel(d: Derivation, bar: FiveBar) -> None:
 
     claim(
         "C and D coincide",
-        "“when the points C and D coincide, the position of P is no longer controllable since P "
+        "“when the points C and D coincide, the position of P is {no longer} controllable since P "
         "can rotate freely around {D} even if the actuated joints are locked (Figure 6).”",
         circles,
         phrases=[{"D": bar.elbows[1], "B": bar.pivots[1]}],
+        opposites={"no longer": "still"},
     )
     claim(
         "by design or by path-planning",
@@ -241,10 +249,13 @@ def serial(d: Derivation, bar: FiveBar) -> None:
         "no velocity in one direction",
         "“Serial singularities occur when the determinant of the inverse kinematics matrix” [...] "
         "“vanishes. When the manipulator is in such a singularity there exists {a direction} along "
-        "which no Cartesian velocity can be produced (Figure 7).”",
-        lambda directions: Every(
+        "which {no} Cartesian velocity can be produced (Figure 7).”",
+        lambda directions, speed: Every(
             {
-                **{n: Identity(row.subs(at), sp.zeros(1, 3)) for n, (row, at) in cases.items()},
+                **{
+                    n: Identity(row.subs(at), speed * sp.ones(1, 3))
+                    for n, (row, at) in cases.items()
+                },
                 "their number": Enumeration(
                     directions,
                     lambda: 3 - sp.diag(0, bar.B[1, 1], bar.B[2, 2]).rank(),
@@ -252,7 +263,7 @@ def serial(d: Derivation, bar: FiveBar) -> None:
                 ),
             }
         ),
-        phrases=[{"a direction": 1, "a plane of directions": 2}],
+        phrases=[{"a direction": 1, "a plane of directions": 2}, {"no": 0, "a": 1}],
     )
     legs = {"AC and CP aligned", "BD and DP aligned"}
     d.erratum(

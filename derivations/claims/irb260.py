@@ -212,7 +212,7 @@ def linkages(d: Derivation, arm: Palletiser) -> None:
     claim(
         "planar translation",
         "“Since the four links constitutes {a parallelogram} and one link is fixed, the coupler "
-        "can {only achieve the planar translation} no matter the angle that the input link "
+        "can {only achieve the planar translation} {no matter} the angle that the input link "
         "rotates.”",
         lambda assembly, moving: Every(
             {
@@ -227,6 +227,7 @@ def linkages(d: Derivation, arm: Palletiser) -> None:
             {"a parallelogram": 1, "an antiparallelogram": -1},
             {"only achieve the planar translation": 0, "only turn with the input link": 1},
         ],
+        opposites={"no matter": "but not whatever"},
         readings=[
             Reading(
                 "the links form a parallelogram, as the sentence says, in all postures; a planar "
@@ -274,12 +275,13 @@ def modeling(d: Derivation, arm: Palletiser) -> None:
     )
     claim(
         "not an open chain",
-        "“As the description above, this robot is not an open-chain system because a rotation of "
+        "“As the description above, this robot is {not} an open-chain system because a rotation of "
         "the end-effector is {confined}.”",
         lambda confined: stated(
             confined, Not(Count(loops_at_posture(arm), (plate, rod, second, other), None))
         ),
         phrases=[{"confined": True, "free": False}],
+        opposites={"not": "indeed"},
         readings=[
             Reading(
                 "by closed loops, as the section before describes: the equations of the two loops "
@@ -314,7 +316,7 @@ def modeling(d: Derivation, arm: Palletiser) -> None:
     )
     claim(
         "axes 1 and 5",
-        "“Since {the axis 1 and 5} are only rotating along the {z} axis, so they can be ignored "
+        "“Since {the axis 1 and 5} are {only} rotating along the {z} axis, so they can be ignored "
         "temporarily.”",
         lambda rotations, axis: Every(
             {
@@ -329,6 +331,7 @@ def modeling(d: Derivation, arm: Palletiser) -> None:
             },
             {"z": VERTICAL, "x": sp.Matrix([1, 0, 0])},
         ],
+        opposites={"only": "not only"},
     )
     turned = arm.linkage(arm.bracket())[:3, :3]
     claim(
@@ -398,11 +401,12 @@ def virtual_joint(d: Derivation, arm: Palletiser) -> None:
     )
     claim(
         "virtual constraint",
-        r"“It is assumed that this virtual motor always rotates the same amount of the angle as "
+        r"“It is assumed that this virtual motor {always} rotates the same amount of the angle as "
         r"the summation of rotation angles of the joint 2 and joint 3 but in an opposite "
         r"direction, i.e., $\theta_4 = -(\theta_2 + \theta_3)$.”",
         notation=names(arm),
         means={r"\theta_4": arm.bracket() - theta2 - theta3},
+        opposites={"always": "not always"},
         readings=[
             Reading(
                 "the two loops are parallelograms",

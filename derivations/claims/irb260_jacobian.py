@@ -85,7 +85,7 @@ def actuated(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None:
     )
     claim(
         "actuated joints",
-        "“Although there are {five} joints in this model, only {four} of them, the joints "
+        "“Although there are {five} joints in this model, {only} {four} of them, the joints "
         "{1, 2, 3, and 5}, are actuated.”",
         lambda five, four, joints: Every(
             {
@@ -103,6 +103,7 @@ def actuated(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None:
             }
         ),
         phrases=[{"1, 2, 3, and 5": (1, 2, 3, 5), "1, 2, 3, and 4": (1, 2, 3, 4)}],
+        opposites={"only": "not only"},
         readings=[
             Reading(
                 "joint 4 has no motor, as section III says; the rates of the actuated joints "

@@ -44,9 +44,10 @@ def verification(d: Derivation, arm: Palletiser) -> None:
     columns = [twist_matrix(arm.J_space[:, i]) for i in range(4)]
     claim(
         "checking the Jacobian",
-        "“If we can check that the Jacobian matrix is {correct}, all the kinematics problems "
+        "“If we can check that the Jacobian matrix is {correct}, {all} the kinematics problems "
         "talked above can be verified.”",
         phrases=[{"correct": 1, "correct up to its sign": -1}],
+        opposites={"all": "not all"},
         readings=[
             Reading(
                 r"the initial configuration $g_{st}(0)$ is taken to be right: then $g^{-1} h$ is "

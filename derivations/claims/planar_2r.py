@@ -130,7 +130,7 @@ def geometry(d: Derivation, arm: Arm, known: Notation) -> None:
         "base, and there are infinitely many.",
     )
     one_solution = (
-        "“or there may be {exactly one} solution if the manipulator must be {%s} to reach the "
+        "“or there may be {exactly one} solution if the manipulator {must be %s} to reach the "
         "point”"
     )
     claim(
@@ -140,9 +140,9 @@ def geometry(d: Derivation, arm: Arm, known: Notation) -> None:
         phrases=[
             {"exactly one": 1, "two": 2},
             {
-                "fully extended": (sp.Integer(0),),
-                "fully extended or folded": (sp.Integer(0), pi),
-                "half extended": (pi / 2,),
+                "must be fully extended": (sp.Integer(0),),
+                "must be fully extended or folded": (sp.Integer(0), pi),
+                "need not be fully extended": (sp.Integer(0), pi / 2),
             },
         ],
         corrected=one_solution % "fully extended or folded",
@@ -259,16 +259,23 @@ def results(d: Derivation, arm: Arm, known: Notation) -> None:
         notation=known.extended({"x": real("x"), "y": real("y")}),
     )
 
+    hand = arm.position.subs(example)
+    in_B = [known.extended({"x": real("x"), "y": real("y")}).read(text)[0] for text in IN_B]
     d.erratum(
         "rounding",
         "The last digits of the positions in the examples are wrong",
         Gravity.RESULT,
-        why="The exact position is $x = 4 + 5\\sqrt{3} = 12.66025$, $y = 5 + 4\\sqrt{3} = "
-        "11.92820$.  In A, $x$ is cut instead of rounded.  In B, both values are too small by more "
+        why="The exact position is $x = 4 + 5\\sqrt{3} = [x]$, $y = 5 + 4\\sqrt{3} = [y]$.  In A, "
+        "$x$ is cut instead of rounded.  In B, both values are too small by more "
         "than one unit of the last digit, so they differ from those of A for the same arm at the "
         "same angles.",
-        use="The hand is off by 0.0002 cm at most.  Both methods give the same position: the "
+        use="The hand is off by [off] cm at most.  Both methods give the same position: the "
         "different digits do not come from the methods.",
+        numbers={
+            "x": (hand[0], 5),
+            "y": (hand[1], 5),
+            "off": (sp.Max(*(h - r.right for h, r in zip(hand, in_B, strict=True))), 4),
+        },
     )
     claim(
         "Results A, x",
@@ -373,15 +380,27 @@ def by_arctangent(arm: Arm, named: tuple[str, ...]) -> Check:
 
 def solutions(d: Derivation, arm: Arm, claim: partial[None]) -> None:
     """The two solutions of the example, and its orientation."""
+    example, bent = example_of(arm), elbow_solution(arm, -1)
+    hand = arm.position.subs(example)
+    angles = (arm.theta1, arm.theta2)
+    mirrored = arm.position.subs(example | {q: -example[q] for q in angles})
     d.erratum(
         "elbow-up",
         "The elbow-up solution of the example is wrong",
         Gravity.RESULT,
-        why="With both angles negative the arm is mirrored: its hand is at $(12.66, -11.93)$ "
-        "instead of $(12.66, 11.93)$.  Eq. (4), with $\\theta_2 = -30^\\circ$, gives "
-        "$\\theta_1 = 56.5894^\\circ$, so $\\phi = 26.5894^\\circ$.",
-        use="An arm that takes the printed angles misses the point by 23.9 cm.  The formulas of "
+        why="With both angles negative the arm is mirrored: its hand is at $([x], [mirrored])$ "
+        "instead of $([x], [y])$.  Eq. (4), with $\\theta_2 = -30^\\circ$, gives "
+        "$\\theta_1 = [shoulder]^\\circ$, so $\\phi = [sum]^\\circ$.",
+        use="An arm that takes the printed angles misses the point by [miss] cm.  The formulas of "
         "the paper are not affected.",
+        numbers={
+            "x": (hand[0], 2),
+            "y": (hand[1], 2),
+            "mirrored": (mirrored[1], 2),
+            "miss": (sp.sqrt(sum(e**2 for e in hand - mirrored)), 1),
+            "shoulder": (bent[arm.theta1] * 180 / pi, 4),
+            "sum": ((bent[arm.theta1] + bent[arm.theta2]) * 180 / pi, 4),
+        },
     )
 
     def rounded(elbow: int, angles: tuple[Relation, ...]) -> Check:

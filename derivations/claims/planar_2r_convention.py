@@ -252,6 +252,7 @@ def forward(d: Derivation, arm: Arm, known: Notation) -> None:
     )
     claim("c1, after eq. (8)", r"$c_1 = \cos \theta_1$", means={"c_1": A1[0, 0]})
     claim("s1, after eq. (8)", r"$s_1 = \sin \theta_1$", means={"s_1": A1[1, 0]})
+    example = example_of(arm)
     d.erratum(
         "sum-of-cosines",
         "$c_{12}$ is explained as a sum of cosines",
@@ -260,8 +261,12 @@ def forward(d: Derivation, arm: Arm, known: Notation) -> None:
         "the angles; $s_{12}$ is likewise the sine of the sum.  At $\\theta_1 = \\theta_2 = "
         "30^\\circ$ the printed sum is $\\sqrt{3}$, which is not a cosine.",
         use="The positions of the example show that the cosine of the sum was used.  A program "
-        "with the printed sum would put the hand of the example at $x = 22.5$ cm instead of "
-        "12.7 cm.",
+        "with the printed sum would put the hand of the example at $x = [wrong]$ cm instead "
+        "of [x] cm.",
+        numbers={
+            "wrong": ((l1 * cos(theta1) + l2 * (cos(theta1) + cos(theta2))).subs(example), 1),
+            "x": ((A1 * A2)[0, 3].subs(example), 1),
+        },
     )
     claim(
         "c12, after eq. (8)",

@@ -86,11 +86,12 @@ def rotations(d: Derivation, wrist: Wrist) -> None:
     turn = denavit_hartenberg(real("a_i"), real("alpha_i"), offset, theta)[:3, :3]
     claim(
         "revolute joints",
-        "“These joints must be of the {revolute} type.”",
+        "“These joints {must} be of the {revolute} type.”",
         lambda moved: Not(
             Identity(turn.diff(moved), sp.zeros(3), names=("the rate of the rotation", "no rate"))
         ),
         phrases=[{"revolute": theta, "prismatic": offset}],
+        opposites={"must": "need not"},
     )
     claim(
         "spherical joint",
@@ -233,7 +234,7 @@ def euler_angles(d: Derivation, wrist: Wrist, known: Notation) -> None:
     )
     claim(
         "identical axes",
-        "“Identical axes should not be in {consecutive places} (e.g. {ZZZ}).”",
+        "“Identical axes {should not} be in {consecutive places} (e.g. {ZZZ}).”",
         lambda excludes, example: Every(
             {
                 "the sequences that remain": Enumeration(
@@ -246,6 +247,7 @@ def euler_angles(d: Derivation, wrist: Wrist, known: Notation) -> None:
                 ),
             }
         ),
+        opposites={"should not": "should"},
         phrases=[
             {
                 "consecutive places": lambda s: s[0] == s[1] or s[1] == s[2],

@@ -15,7 +15,8 @@ CHABLAT_WENGER_ANGELES = Paper(
     "chablat-wenger-angeles",
     "The Kinematic Design of a 3-DOF Hybrid Manipulator",
     ("Damien Chablat", "Philippe Wenger", "Jorge Angeles"),
-    "Integrated Design and Manufacturing in Mechanical Engineering, Compiègne, 1998",
+    "Integrated Design and Manufacturing in Mechanical Engineering, Compiègne",
+    year="1998",
     source="The text is a scan of the paper, read by optical character recognition, without its "
            "figures.  A misread index or fraction could affect eq. (4), the condition after eq. "
            "(6), the eigenvalues, eq. (8) and the angles that follow it.  The wrong indices of "

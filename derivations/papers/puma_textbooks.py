@@ -1,5 +1,13 @@
 """The textbooks on the Puma 560."""
 
+from closedform.derivations.papers.textbooks import (
+    CORKE,
+    CRAIG,
+    LEE_ZIEGLER,
+    PAUL,
+    SPONG_HUTCHINSON_VIDYASAGAR,
+)
+
 from closedform import Paper
 
 PUMA_TEXTBOOKS = Paper(
@@ -12,4 +20,5 @@ PUMA_TEXTBOOKS = Paper(
     source="The books are quoted from memory for results that are common knowledge: each claim "
     "gives the content of a formula or a sentence, not its wording.  A mistake of memory may touch "
     "any of them.",
+    works=(CORKE, CRAIG, LEE_ZIEGLER, PAUL, SPONG_HUTCHINSON_VIDYASAGAR),
 )

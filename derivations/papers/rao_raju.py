@@ -15,6 +15,7 @@ RAO_RAJU = Paper(
     "Forward and inverse kinematics of a hybrid series-parallel manipulator",
     ("Sachit Rao", "Jagannath Raju"),
     "15th National Conference on Machines and Mechanisms, NaCoMM2011-134",
+    year="2011",
     source="The text was read from a scan by optical character recognition, without the figures.  "
     "The order of the axes of the wrist is taken from (9), because Fig. 4 is not legible there.  A "
     "mistake of the scan may touch signs and indices: eq. (3), whose sign is compared with (9), "

@@ -10,7 +10,7 @@
 #   singularities: 6 add, 11 multiply, 4 sincos
 #   jacobian_space: 29 add, 57 multiply, 5 sincos
 #   jacobian_body: 27 add, 58 multiply, 5 sincos
-#   ik: 732 compare and select, 675 add, 32 atan2, 141 divide, 1082 multiply, 80 sqrt
+#   ik: 884 compare and select, 719 add, 32 atan2, 131 divide, 1166 multiply, 80 sqrt
 #   ik where nothing vanishes: 158 compare and select, 183 add, 30 atan2, 18 divide, 218 multiply,
 #     12 sqrt
 """UR-type arm (three parallel axes).
@@ -834,2178 +834,2291 @@ def _ik(
     t9 = t6 * (w_x * t8)
     c_1_1 = _runtime.select(free1, 1.0, t7 - t9)
     t10 = np.maximum(root1, size * 2.384185791015625e-07)
-    t11 = T33 * T33
-    t12 = w_x * t5 * t6
+    t11 = 70368744177664.0 * t10
+    del t10
+    t12 = T33 * T33
+    t13 = w_x * t5 * t6
     del t5
-    t13 = t6 * (w_y * t8)
+    t14 = t6 * (w_y * t8)
     del t6, t8
-    t14 = _runtime.select(free1, 0.0, t12 + t13)
-    axisx_1_1 = T13 * c_1_1 - T23 * t14
-    h_1_1 = np.sqrt(t11 + axisx_1_1 * axisx_1_1)
-    t15 = size * 1.4210854715202004e-14
-    t16 = t10 * h_1_1 <= t15
-    qx_1_1 = w_x * c_1_1 - w_y * t14
-    t17 = 1.0 / h_1_1
-    uc_1_1 = T33 * t17
-    t18 = d5 * uc_1_1
-    x_1_1 = _runtime.select(t16, qx_1_1, qx_1_1 - t18)
-    dqx_1_1 = w_y * c_1_1 + w_x * t14
-    us_1_1_left_flip_up = axisx_1_1 * t17
-    del axisx_1_1, t17
-    t19 = d5 * (T33 * (T13 * t14 + T23 * c_1_1)) / (h_1_1 * h_1_1)
+    t15 = _runtime.select(free1, 0.0, t13 + t14)
+    axisx_1_1 = T13 * c_1_1 - T23 * t15
+    h_1_1 = np.sqrt(t12 + axisx_1_1 * axisx_1_1)
+    t16 = t11 * h_1_1 <= size
+    qx_1_1 = w_x * c_1_1 - w_y * t15
+    t17 = h_1_1 == 0.0
+    t18 = 1.0 / h_1_1
+    uc_1_1 = _runtime.select(t17, 0.0, T33 * t18)
+    t19 = d5 * uc_1_1
+    x_1_1 = _runtime.select(t16, qx_1_1, qx_1_1 - t19)
+    dqx_1_1 = w_y * c_1_1 + w_x * t15
+    t20 = T33 * (T13 * t15 + T23 * c_1_1) / (h_1_1 * h_1_1)
     del h_1_1
-    t20 = us_1_1_left_flip_up * t19
-    dx_1_1 = _runtime.select(t16, dqx_1_1, dqx_1_1 + t20)
-    t21 = d1 - (T34 - T33 * d6)
-    t22 = d5 * us_1_1_left_flip_up
-    del us_1_1_left_flip_up
-    t23 = _runtime.select(t16, t21, t21 - t22)
-    dy_1_1 = _runtime.select(t16, 0.0, uc_1_1 * t19)
-    del t19, uc_1_1
-    slope_1_1 = x_1_1 * dx_1_1 - t23 * dy_1_1
-    square_1_1 = x_1_1 * x_1_1 + t23 * t23
-    del t23, x_1_1
-    t24 = L2 - L3
-    fold_1_1 = np.abs(t24)
-    t25 = np.maximum(0.0, np.maximum(fold_1_1 - d5, d5 - full_1_1))
-    nearest_1_1 = _runtime.select(t16, t25, fold_1_1)
-    low_1_1 = nearest_1_1 * nearest_1_1
-    del nearest_1_1
-    farthest_1_1 = _runtime.select(t16, t3, full_1_1)
-    high_1_1 = farthest_1_1 * farthest_1_1
-    del farthest_1_1
-    t26 = np.maximum(low_1_1, np.minimum(high_1_1, square_1_1))
-    miss_1_1 = square_1_1 - t26
-    del square_1_1, t26
-    t27 = dy_1_1 * dy_1_1
-    bend_1_1 = dx_1_1 * dx_1_1 + t27
+    t21 = _runtime.select(t16, 0.0, t20)
+    del t20
+    t22 = d5 * t21
+    t23 = axisx_1_1 * t18
+    del axisx_1_1, t18
+    t24 = _runtime.select(t17, 1.0, t23)
+    dx_1_1 = _runtime.select(t16, dqx_1_1, dqx_1_1 + t22 * t24)
+    t25 = d1 - (T34 - T33 * d6)
+    t26 = _runtime.select(t16, t25, t25 - d5 * t24)
+    dy_1_1 = _runtime.select(t16, 0.0, t22 * uc_1_1)
+    slope_1_1 = x_1_1 * dx_1_1 - t26 * dy_1_1
     del dx_1_1
-    inner_1_1 = slope_1_1 * slope_1_1 - miss_1_1 * bend_1_1
-    t28 = _runtime.sign(slope_1_1) * np.sqrt(np.maximum(0.0, inner_1_1))
-    outer_1_1 = slope_1_1 + t28
-    del t28
-    t29 = _runtime.select(outer_1_1 == 0.0, 0.0, miss_1_1 / (2.0 * outer_1_1))
-    del miss_1_1, outer_1_1
-    t30 = _runtime.select(inner_1_1 < 0.0, slope_1_1 / (2.0 * bend_1_1), t29)
-    del bend_1_1, inner_1_1, slope_1_1, t29
-    t31 = t30 * t30
-    t32 = 1.0 / (1.0 + t31)
-    t33 = 2.0 * t30 * t32
-    del t30
-    by_c_1_1 = t32 * (1.0 - t31)
-    del t31, t32
-    cost_1_1 = d4 * (t33 * t33) / (1.0 + np.abs(by_c_1_1)) + root1 * np.abs(t33)
+    straight_1_1 = dqx_1_1 * dqx_1_1
+    t27 = 2.0 * dqx_1_1
+    t28 = qx_1_1 * uc_1_1
+    del uc_1_1
+    t29 = straight_1_1 + t22 * (t27 * t24 + t21 * (t28 + t25 * t24))
+    del t24
+    bends_1_1 = _runtime.select(t16, straight_1_1, t29)
+    del t29
+    square_1_1 = x_1_1 * x_1_1 + t26 * t26
+    del t26, x_1_1
+    t30 = L2 - L3
+    fold_1_1 = np.abs(t30)
+    t31 = np.maximum(0.0, np.maximum(fold_1_1 - d5, d5 - full_1_1))
     whole_1_1 = size * 5.684341886080802e-14
-    t34 = (cost_1_1 <= whole_1_1) & (0.0 < by_c_1_1)
+    t32 = _runtime.select(t16, t31, fold_1_1) - whole_1_1
+    t33 = np.maximum(0.0, t32)
+    del t32
+    low_1_1 = t33 * t33
+    del t33
+    t34 = whole_1_1 + _runtime.select(t16, t3, full_1_1)
+    high_1_1 = t34 * t34
+    del t34
+    t35 = np.maximum(low_1_1, np.minimum(high_1_1, square_1_1))
+    miss_1_1 = square_1_1 - t35
+    del square_1_1, t35
+    inner_1_1 = slope_1_1 * slope_1_1 - bends_1_1 * miss_1_1
+    t36 = inner_1_1 < 0.0
+    t37 = _runtime.sign(slope_1_1) * np.sqrt(np.maximum(0.0, inner_1_1))
+    del inner_1_1
+    below_1_1 = _runtime.select(t36, 2.0 * bends_1_1, 2.0 * (slope_1_1 + t37))
+    del bends_1_1, t37
+    above_1_1 = _runtime.select(t36, slope_1_1, miss_1_1)
+    del miss_1_1, slope_1_1, t36
+    t38 = _runtime.select(np.abs(below_1_1) <= np.abs(above_1_1), 0.0, above_1_1 / below_1_1)
+    del above_1_1, below_1_1
+    t39 = t38 * t38
+    t40 = 1.0 / (1.0 + t39)
+    t41 = 2.0 * t38 * t40
+    del t38
+    by_c_1_1 = t40 * (1.0 - t39)
+    del t39, t40
+    cost_1_1 = d4 * (t41 * t41) / (1.0 + np.abs(by_c_1_1)) + root1 * np.abs(t41)
+    t42 = (cost_1_1 <= whole_1_1) & (0.0 < by_c_1_1)
     del cost_1_1
-    cosine_1_1 = _runtime.select(t34, by_c_1_1, 1.0)
+    cosine_1_1 = _runtime.select(t42, by_c_1_1, 1.0)
     del by_c_1_1
-    sine_1_1 = _runtime.select(t34, -t33, 0.0)
-    del t33, t34
-    c_1_1_2 = c_1_1 * cosine_1_1 + t14 * sine_1_1
-    s_1_1_2 = c_1_1 * sine_1_1 - t14 * cosine_1_1
+    sine_1_1 = _runtime.select(t42, -t41, 0.0)
+    del t41, t42
+    c_1_1_2 = c_1_1 * cosine_1_1 + t15 * sine_1_1
+    s_1_1_2 = c_1_1 * sine_1_1 - t15 * cosine_1_1
     del cosine_1_1, sine_1_1
     axisx_1_1_2 = T13 * c_1_1_2 + T23 * s_1_1_2
-    t35 = axisx_1_1_2 * axisx_1_1_2
-    t36 = T13 * s_1_1_2 - T23 * c_1_1_2
-    most_1_1_2 = np.sqrt(t35 + t36 * t36)
-    t37 = np.abs(T33) <= 1.4210854715202004e-14
-    t38 = t21 * t21
+    t43 = axisx_1_1_2 * axisx_1_1_2
+    t44 = T13 * s_1_1_2 - T23 * c_1_1_2
+    most_1_1_2 = np.sqrt(t43 + t44 * t44)
+    t45 = most_1_1_2 <= 8.881784197001252e-16
+    t46 = np.abs(T33) <= 1.4210854715202004e-14
+    t47 = t25 * t25
     qx_1_1_2 = w_x * c_1_1_2 + w_y * s_1_1_2
-    r_1_1_2 = np.sqrt(t38 + qx_1_1_2 * qx_1_1_2)
-    t39 = size * 8.881784197001252e-16
-    t40 = r_1_1_2 <= t39
-    t41 = d5 + r_1_1_2
-    t42 = 1.0 / np.sqrt(t11 + t35)
-    del t35
-    uc_1_1_2 = T33 * t42
-    t43 = qx_1_1_2 - d5 * uc_1_1_2
-    t44 = axisx_1_1_2 * t42
-    del t42
-    t45 = t21 - d5 * t44
-    there_1_1_2 = np.sqrt(t43 * t43 + t45 * t45)
-    del t43, t45
+    r_1_1_2 = np.sqrt(t47 + qx_1_1_2 * qx_1_1_2)
+    t48 = size * 8.881784197001252e-16
+    t49 = r_1_1_2 <= t48
+    t50 = d5 + r_1_1_2
+    h_1_1_2 = np.sqrt(t12 + t43)
+    del t43
+    t51 = h_1_1_2 == 0.0
+    t52 = 1.0 / h_1_1_2
+    del h_1_1_2
+    uc_1_1_2 = _runtime.select(t51, 0.0, T33 * t52)
+    t53 = qx_1_1_2 - d5 * uc_1_1_2
+    t54 = _runtime.select(t51, 1.0, axisx_1_1_2 * t52)
+    del t51, t52
+    t55 = t25 - d5 * t54
+    there_1_1_2 = np.sqrt(t53 * t53 + t55 * t55)
+    del t53, t55
     goal_1_1_2 = np.minimum(full_1_1, np.maximum(there_1_1_2, fold_1_1))
-    k_v_1_1_2 = np.maximum(0.0, (t41 - goal_1_1_2) * (t41 + goal_1_1_2))
-    del t41
-    t46 = d5 - r_1_1_2
-    d_v_1_1_2 = np.maximum(0.0, (goal_1_1_2 - t46) * (goal_1_1_2 + t46))
-    del t46
+    k_v_1_1_2 = np.maximum(0.0, (t50 - goal_1_1_2) * (t50 + goal_1_1_2))
+    t56 = d5 - r_1_1_2
+    d_v_1_1_2 = np.maximum(0.0, (goal_1_1_2 - t56) * (goal_1_1_2 + t56))
+    del t56
     n_v_1_1_2 = k_v_1_1_2 + d_v_1_1_2
-    t47 = size * size
-    t48 = t47 * 8.881784197001252e-16
-    t49 = n_v_1_1_2 <= t48
-    t50 = 1.0 / n_v_1_1_2
+    t57 = n_v_1_1_2 <= size * t50 * 8.881784197001252e-16
+    del t50
+    t58 = 1.0 / n_v_1_1_2
     del n_v_1_1_2
-    uc_v_1_1_2 = _runtime.select(t49, 1.0, (k_v_1_1_2 - d_v_1_1_2) * t50)
-    t51 = qx_1_1_2 * uc_v_1_1_2
-    side_1_1_2 = _runtime.sign(t21 * uc_1_1_2 - qx_1_1_2 * t44)
-    del t44, uc_1_1_2
-    t52 = 2.0 * side_1_1_2 * np.sqrt(k_v_1_1_2 * d_v_1_1_2)
+    uc_v_1_1_2 = _runtime.select(t57, 1.0, (k_v_1_1_2 - d_v_1_1_2) * t58)
+    t59 = qx_1_1_2 * uc_v_1_1_2
+    side_1_1_2 = _runtime.sign(t25 * uc_1_1_2 - qx_1_1_2 * t54)
+    del t54, uc_1_1_2
+    t60 = 2.0 * side_1_1_2 * np.sqrt(k_v_1_1_2 * d_v_1_1_2)
     del d_v_1_1_2, k_v_1_1_2, side_1_1_2
-    us_v_1_1_2 = _runtime.select(t49, 0.0, t50 * t52)
-    del t49, t50, t52
-    t53 = t21 * us_v_1_1_2
-    t54 = 1.0 / r_1_1_2
+    us_v_1_1_2 = _runtime.select(t57, 0.0, t58 * t60)
+    del t57, t58, t60
+    t61 = t25 * us_v_1_1_2
+    t62 = 1.0 / r_1_1_2
     del r_1_1_2
-    c_v_1_1_2 = _runtime.select(t40, 1.0, (t51 + t53) * t54)
-    t55 = T33 * c_v_1_1_2 < 0.0
-    t56 = qx_1_1_2 * us_v_1_1_2
+    c_v_1_1_2 = _runtime.select(t49, 1.0, (t59 + t61) * t62)
+    t63 = T33 * c_v_1_1_2 < 0.0
+    t64 = qx_1_1_2 * us_v_1_1_2
     del qx_1_1_2, us_v_1_1_2
-    t57 = t21 * uc_v_1_1_2
+    t65 = t25 * uc_v_1_1_2
     del uc_v_1_1_2
-    to_c_1_1_2 = _runtime.select(t55, _runtime.select(t40, 0.0, t54 * (t56 + t57)), -_runtime.select(t40, 0.0, t54 * (t56 - t57)))
-    del t56, t57
-    to_s_1_1_2 = _runtime.select(t55, _runtime.select(t40, 1.0, t54 * (t51 - t53)), c_v_1_1_2)
-    del c_v_1_1_2, t40, t51, t53, t54, t55
-    wanted_1_1_2 = _runtime.select(t37, 0.0, T33 * to_c_1_1_2 / to_s_1_1_2)
-    del to_c_1_1_2, to_s_1_1_2
-    kept_1_1_2 = np.maximum(-most_1_1_2, np.minimum(most_1_1_2, wanted_1_1_2))
-    del wanted_1_1_2
-    t58 = (most_1_1_2 - kept_1_1_2) * (most_1_1_2 + kept_1_1_2)
-    rest_1_1_2 = np.sqrt(t58) * _runtime.sign(-t36)
-    del t58
-    t59 = 1.0 / (most_1_1_2 * most_1_1_2)
+    to_c_1_1_2 = _runtime.select(t63, _runtime.select(t49, 0.0, t62 * (t64 + t65)), -_runtime.select(t49, 0.0, t62 * (t64 - t65)))
+    del t64, t65
+    to_s_1_1_2 = _runtime.select(t63, _runtime.select(t49, 1.0, t62 * (t59 - t61)), c_v_1_1_2)
+    del c_v_1_1_2, t49, t59, t61, t62, t63
+    across_1_1_2 = _runtime.select(t46, 0.0, T33 * to_c_1_1_2 * _runtime.sign(to_s_1_1_2))
+    del to_c_1_1_2
+    t66 = np.abs(to_s_1_1_2)
+    del to_s_1_1_2
+    t67 = _runtime.select(most_1_1_2 * t66 <= np.abs(across_1_1_2), most_1_1_2 * _runtime.sign(across_1_1_2), across_1_1_2 / t66)
+    del t66
+    wanted_1_1_2 = _runtime.select(across_1_1_2 == 0.0, 0.0, t67)
+    del across_1_1_2, t67
+    t68 = (most_1_1_2 - wanted_1_1_2) * (most_1_1_2 + wanted_1_1_2)
+    rest_1_1_2 = np.sqrt(np.maximum(0.0, t68)) * _runtime.sign(-t44)
+    del t68
+    t69 = axisx_1_1_2 * rest_1_1_2 + t44 * wanted_1_1_2
+    t70 = 1.0 / (most_1_1_2 * most_1_1_2)
     del most_1_1_2
-    t60 = (axisx_1_1_2 * rest_1_1_2 + t36 * kept_1_1_2) * t59
-    by_c_1_1_2 = t59 * (axisx_1_1_2 * kept_1_1_2 - t36 * rest_1_1_2)
-    del axisx_1_1_2, kept_1_1_2, rest_1_1_2, t36, t59
-    t61 = d4 * (t60 * t60) / (1.0 + np.abs(by_c_1_1_2))
-    t62 = (t61 + root1 * np.abs(t60) <= whole_1_1) & (0.0 < by_c_1_1_2)
-    del t61
-    t63 = 1125899906842624.0 * np.abs(there_1_1_2 - goal_1_1_2)
+    t71 = _runtime.select(t45, 0.0, t69 * t70)
+    del t69
+    t72 = axisx_1_1_2 * wanted_1_1_2 - t44 * rest_1_1_2
+    del axisx_1_1_2, rest_1_1_2, t44, wanted_1_1_2
+    by_c_1_1_2 = _runtime.select(t45, 1.0, t70 * t72)
+    del t45, t70, t72
+    t73 = d4 * (t71 * t71) / (1.0 + np.abs(by_c_1_1_2))
+    t74 = (t73 + root1 * np.abs(t71) <= whole_1_1) & (0.0 < by_c_1_1_2)
+    del t73
+    t75 = 17592186044416.0 * np.abs(there_1_1_2 - goal_1_1_2)
     del goal_1_1_2, there_1_1_2
-    t64 = t62 & (size < t63)
-    del t62, t63
-    cosine_1_1_2 = _runtime.select(t64, by_c_1_1_2, 1.0)
+    t76 = t74 & (size < t75)
+    del t74, t75
+    cosine_1_1_2 = _runtime.select(t76, by_c_1_1_2, 1.0)
     del by_c_1_1_2
-    sine_1_1_2 = _runtime.select(t64, -t60, 0.0)
-    del t60, t64
+    sine_1_1_2 = _runtime.select(t76, -t71, 0.0)
+    del t71, t76
     c_1_1_2_3 = c_1_1_2 * cosine_1_1_2 - s_1_1_2 * sine_1_1_2
+    t77 = 70368744177664.0 * size
     s_1_1_2_3 = c_1_1_2 * sine_1_1_2 + s_1_1_2 * cosine_1_1_2
     del c_1_1_2, cosine_1_1_2, s_1_1_2, sine_1_1_2
     axisx_1_1_2_3 = T13 * c_1_1_2_3 + T23 * s_1_1_2_3
-    h_1_1_2_3 = np.sqrt(t11 + axisx_1_1_2_3 * axisx_1_1_2_3)
-    t65 = size * h_1_1_2_3 <= t15
+    h_1_1_2_3 = np.sqrt(t12 + axisx_1_1_2_3 * axisx_1_1_2_3)
+    t78 = t77 * h_1_1_2_3 <= size
     qx_1_1_2_3 = w_x * c_1_1_2_3 + w_y * s_1_1_2_3
-    t66 = 1.0 / h_1_1_2_3
-    uc_1_1_2_3 = T33 * t66
-    x_1_1_2_3 = _runtime.select(t65, qx_1_1_2_3, qx_1_1_2_3 - d5 * uc_1_1_2_3)
-    del qx_1_1_2_3
+    t79 = h_1_1_2_3 == 0.0
+    t80 = 1.0 / h_1_1_2_3
+    uc_1_1_2_3 = _runtime.select(t79, 0.0, T33 * t80)
+    x_1_1_2_3 = _runtime.select(t78, qx_1_1_2_3, qx_1_1_2_3 - d5 * uc_1_1_2_3)
     dqx_1_1_2_3 = w_y * c_1_1_2_3 - w_x * s_1_1_2_3
-    t67 = axisx_1_1_2_3 * t66
-    del axisx_1_1_2_3, t66
-    t68 = d5 * (T33 * (T13 * s_1_1_2_3 - T23 * c_1_1_2_3))
-    rate_1_1_2_3 = t68 / (h_1_1_2_3 * h_1_1_2_3)
-    del h_1_1_2_3, t68
-    dx_1_1_2_3 = _runtime.select(t65, dqx_1_1_2_3, dqx_1_1_2_3 - t67 * rate_1_1_2_3)
-    del dqx_1_1_2_3
-    t69 = _runtime.select(t65, t21, t21 - d5 * t67)
-    del t67
-    t70 = _runtime.select(t65, 0.0, uc_1_1_2_3 * rate_1_1_2_3)
-    del rate_1_1_2_3, uc_1_1_2_3
-    slope_1_1_2_3 = x_1_1_2_3 * dx_1_1_2_3 + t69 * t70
-    square_1_1_2_3 = x_1_1_2_3 * x_1_1_2_3 + t69 * t69
-    del t69, x_1_1_2_3
-    nearest_1_1_2_3 = _runtime.select(t65, t25, fold_1_1)
-    farthest_1_1_2_3 = _runtime.select(t65, t3, full_1_1)
-    del t65
-    t71 = np.minimum(farthest_1_1_2_3 * farthest_1_1_2_3, square_1_1_2_3)
-    del farthest_1_1_2_3
-    t72 = np.maximum(nearest_1_1_2_3 * nearest_1_1_2_3, t71)
-    del nearest_1_1_2_3, t71
-    miss_1_1_2_3 = square_1_1_2_3 - t72
-    del square_1_1_2_3, t72
-    bend_1_1_2_3 = dx_1_1_2_3 * dx_1_1_2_3 + t70 * t70
-    del dx_1_1_2_3, t70
-    inner_1_1_2_3 = slope_1_1_2_3 * slope_1_1_2_3 - miss_1_1_2_3 * bend_1_1_2_3
-    t73 = _runtime.sign(slope_1_1_2_3) * np.sqrt(np.maximum(0.0, inner_1_1_2_3))
-    outer_1_1_2_3 = slope_1_1_2_3 + t73
-    del t73
-    t74 = _runtime.select(outer_1_1_2_3 == 0.0, 0.0, miss_1_1_2_3 / (2.0 * outer_1_1_2_3))
-    del miss_1_1_2_3, outer_1_1_2_3
-    t75 = _runtime.select(inner_1_1_2_3 < 0.0, slope_1_1_2_3 / (2.0 * bend_1_1_2_3), t74)
-    del bend_1_1_2_3, inner_1_1_2_3, slope_1_1_2_3, t74
-    t76 = t75 * t75
-    t77 = 1.0 / (1.0 + t76)
-    t78 = 2.0 * t75 * t77
-    del t75
-    by_c_1_1_2_3 = t77 * (1.0 - t76)
-    del t76, t77
-    t79 = d4 * (t78 * t78) / (1.0 + np.abs(by_c_1_1_2_3))
-    t80 = (t79 + root1 * np.abs(t78) <= whole_1_1) & (0.0 < by_c_1_1_2_3)
-    del t79
-    cosine_1_1_2_3 = _runtime.select(t80, by_c_1_1_2_3, 1.0)
+    t81 = T33 * (T13 * s_1_1_2_3 - T23 * c_1_1_2_3) / (h_1_1_2_3 * h_1_1_2_3)
+    del h_1_1_2_3
+    spin_1_1_2_3 = _runtime.select(t78, 0.0, t81)
+    del t81
+    rate_1_1_2_3 = d5 * spin_1_1_2_3
+    t82 = _runtime.select(t79, 1.0, axisx_1_1_2_3 * t80)
+    del axisx_1_1_2_3, t79, t80
+    dx_1_1_2_3 = _runtime.select(t78, dqx_1_1_2_3, dqx_1_1_2_3 - rate_1_1_2_3 * t82)
+    t83 = _runtime.select(t78, t25, t25 - d5 * t82)
+    t84 = _runtime.select(t78, 0.0, rate_1_1_2_3 * uc_1_1_2_3)
+    slope_1_1_2_3 = x_1_1_2_3 * dx_1_1_2_3 + t83 * t84
+    del dx_1_1_2_3, t84
+    straight_1_1_2_3 = dqx_1_1_2_3 * dqx_1_1_2_3
+    t85 = spin_1_1_2_3 * (qx_1_1_2_3 * uc_1_1_2_3 + t25 * t82)
+    del qx_1_1_2_3, spin_1_1_2_3, uc_1_1_2_3
+    t86 = rate_1_1_2_3 * (2.0 * dqx_1_1_2_3 * t82 - t85)
+    del dqx_1_1_2_3, rate_1_1_2_3, t82, t85
+    bends_1_1_2_3 = _runtime.select(t78, straight_1_1_2_3, straight_1_1_2_3 - t86)
+    del straight_1_1_2_3, t86
+    square_1_1_2_3 = x_1_1_2_3 * x_1_1_2_3 + t83 * t83
+    del t83, x_1_1_2_3
+    t87 = _runtime.select(t78, t31, fold_1_1) - whole_1_1
+    t88 = np.maximum(0.0, t87)
+    del t87
+    t89 = whole_1_1 + _runtime.select(t78, t3, full_1_1)
+    del t78
+    t90 = np.maximum(t88 * t88, np.minimum(t89 * t89, square_1_1_2_3))
+    del t88, t89
+    miss_1_1_2_3 = square_1_1_2_3 - t90
+    del square_1_1_2_3, t90
+    inner_1_1_2_3 = slope_1_1_2_3 * slope_1_1_2_3 - bends_1_1_2_3 * miss_1_1_2_3
+    t91 = inner_1_1_2_3 < 0.0
+    t92 = _runtime.sign(slope_1_1_2_3) * np.sqrt(np.maximum(0.0, inner_1_1_2_3))
+    del inner_1_1_2_3
+    below_1_1_2_3 = _runtime.select(t91, 2.0 * bends_1_1_2_3, 2.0 * (slope_1_1_2_3 + t92))
+    del bends_1_1_2_3, t92
+    above_1_1_2_3 = _runtime.select(t91, slope_1_1_2_3, miss_1_1_2_3)
+    del miss_1_1_2_3, slope_1_1_2_3, t91
+    t93 = np.abs(below_1_1_2_3) <= np.abs(above_1_1_2_3)
+    t94 = _runtime.select(t93, 0.0, above_1_1_2_3 / below_1_1_2_3)
+    del above_1_1_2_3, below_1_1_2_3, t93
+    t95 = t94 * t94
+    t96 = 1.0 / (1.0 + t95)
+    t97 = 2.0 * t94 * t96
+    del t94
+    by_c_1_1_2_3 = t96 * (1.0 - t95)
+    del t95, t96
+    t98 = d4 * (t97 * t97) / (1.0 + np.abs(by_c_1_1_2_3))
+    t99 = (t98 + root1 * np.abs(t97) <= whole_1_1) & (0.0 < by_c_1_1_2_3)
+    del t98
+    cosine_1_1_2_3 = _runtime.select(t99, by_c_1_1_2_3, 1.0)
     del by_c_1_1_2_3
-    sine_1_1_2_3 = _runtime.select(t80, -t78, 0.0)
-    del t78, t80
+    sine_1_1_2_3 = _runtime.select(t99, -t97, 0.0)
+    del t97, t99
     c_1_1_2_3_4 = c_1_1_2_3 * cosine_1_1_2_3 - s_1_1_2_3 * sine_1_1_2_3
     s_1_1_2_3_4 = c_1_1_2_3 * sine_1_1_2_3 + s_1_1_2_3 * cosine_1_1_2_3
     del c_1_1_2_3, cosine_1_1_2_3, s_1_1_2_3, sine_1_1_2_3
     axisx_1_1_2_3_4 = T13 * c_1_1_2_3_4 + T23 * s_1_1_2_3_4
-    h_1_1_2_3_4 = np.sqrt(t11 + axisx_1_1_2_3_4 * axisx_1_1_2_3_4)
-    t81 = size * h_1_1_2_3_4 <= t15
+    h_1_1_2_3_4 = np.sqrt(t12 + axisx_1_1_2_3_4 * axisx_1_1_2_3_4)
+    t100 = t77 * h_1_1_2_3_4 <= size
     qx_1_1_2_3_4 = w_x * c_1_1_2_3_4 + w_y * s_1_1_2_3_4
-    t82 = 1.0 / h_1_1_2_3_4
-    uc_1_1_2_3_4 = T33 * t82
-    x_1_1_2_3_4 = _runtime.select(t81, qx_1_1_2_3_4, qx_1_1_2_3_4 - d5 * uc_1_1_2_3_4)
-    del qx_1_1_2_3_4
+    t101 = h_1_1_2_3_4 == 0.0
+    t102 = 1.0 / h_1_1_2_3_4
+    uc_1_1_2_3_4 = _runtime.select(t101, 0.0, T33 * t102)
+    x_1_1_2_3_4 = _runtime.select(t100, qx_1_1_2_3_4, qx_1_1_2_3_4 - d5 * uc_1_1_2_3_4)
     dqx_1_1_2_3_4 = w_y * c_1_1_2_3_4 - w_x * s_1_1_2_3_4
-    t83 = axisx_1_1_2_3_4 * t82
-    del axisx_1_1_2_3_4, t82
-    t84 = T33 * (T13 * s_1_1_2_3_4 - T23 * c_1_1_2_3_4)
-    rate_1_1_2_3_4 = d5 * t84 / (h_1_1_2_3_4 * h_1_1_2_3_4)
-    del h_1_1_2_3_4, t84
-    dx_1_1_2_3_4 = _runtime.select(t81, dqx_1_1_2_3_4, dqx_1_1_2_3_4 - t83 * rate_1_1_2_3_4)
-    del dqx_1_1_2_3_4
-    t85 = _runtime.select(t81, t21, t21 - d5 * t83)
-    del t83
-    t86 = _runtime.select(t81, 0.0, uc_1_1_2_3_4 * rate_1_1_2_3_4)
-    del rate_1_1_2_3_4, uc_1_1_2_3_4
-    slope_1_1_2_3_4 = x_1_1_2_3_4 * dx_1_1_2_3_4 + t85 * t86
-    square_1_1_2_3_4 = x_1_1_2_3_4 * x_1_1_2_3_4 + t85 * t85
-    del t85, x_1_1_2_3_4
-    nearest_1_1_2_3_4 = _runtime.select(t81, t25, fold_1_1)
-    farthest_1_1_2_3_4 = _runtime.select(t81, t3, full_1_1)
-    del t81
-    t87 = np.minimum(farthest_1_1_2_3_4 * farthest_1_1_2_3_4, square_1_1_2_3_4)
-    del farthest_1_1_2_3_4
-    t88 = np.maximum(nearest_1_1_2_3_4 * nearest_1_1_2_3_4, t87)
-    del nearest_1_1_2_3_4, t87
-    miss_1_1_2_3_4 = square_1_1_2_3_4 - t88
-    del square_1_1_2_3_4, t88
-    bend_1_1_2_3_4 = dx_1_1_2_3_4 * dx_1_1_2_3_4 + t86 * t86
-    del dx_1_1_2_3_4, t86
-    inner_1_1_2_3_4 = slope_1_1_2_3_4 * slope_1_1_2_3_4 - miss_1_1_2_3_4 * bend_1_1_2_3_4
-    t89 = _runtime.sign(slope_1_1_2_3_4) * np.sqrt(np.maximum(0.0, inner_1_1_2_3_4))
-    outer_1_1_2_3_4 = slope_1_1_2_3_4 + t89
-    del t89
-    t90 = _runtime.select(outer_1_1_2_3_4 == 0.0, 0.0, miss_1_1_2_3_4 / (2.0 * outer_1_1_2_3_4))
-    del miss_1_1_2_3_4, outer_1_1_2_3_4
-    t91 = _runtime.select(inner_1_1_2_3_4 < 0.0, slope_1_1_2_3_4 / (2.0 * bend_1_1_2_3_4), t90)
-    del bend_1_1_2_3_4, inner_1_1_2_3_4, slope_1_1_2_3_4, t90
-    t92 = t91 * t91
-    t93 = 1.0 / (1.0 + t92)
-    t94 = 2.0 * t91 * t93
-    del t91
-    by_c_1_1_2_3_4 = t93 * (1.0 - t92)
-    del t92, t93
-    t95 = d4 * (t94 * t94) / (1.0 + np.abs(by_c_1_1_2_3_4))
-    t96 = (t95 + root1 * np.abs(t94) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4)
-    del t95
-    sine_1_1_2_3_4 = _runtime.select(t96, -t94, 0.0)
-    del t94
-    cosine_1_1_2_3_4 = _runtime.select(t96, by_c_1_1_2_3_4, 1.0)
-    del by_c_1_1_2_3_4, t96
-    t97 = c_1_1_2_3_4 * sine_1_1_2_3_4 + s_1_1_2_3_4 * cosine_1_1_2_3_4
-    s1 = _runtime.select(tangent1, t97, -t14)
-    del t97
-    t98 = c_1_1_2_3_4 * cosine_1_1_2_3_4 - s_1_1_2_3_4 * sine_1_1_2_3_4
-    del c_1_1_2_3_4, cosine_1_1_2_3_4, s_1_1_2_3_4, sine_1_1_2_3_4
-    c1 = _runtime.select(tangent1, t98, c_1_1)
-    del t98
-    t99 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
-    t100 = t99 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
-    del t99
-    t101 = t100 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    t103 = T33 * (T13 * s_1_1_2_3_4 - T23 * c_1_1_2_3_4)
+    spin_1_1_2_3_4 = _runtime.select(t100, 0.0, t103 / (h_1_1_2_3_4 * h_1_1_2_3_4))
+    del h_1_1_2_3_4, t103
+    rate_1_1_2_3_4 = d5 * spin_1_1_2_3_4
+    t104 = _runtime.select(t101, 1.0, axisx_1_1_2_3_4 * t102)
+    del axisx_1_1_2_3_4, t101, t102
+    dx_1_1_2_3_4 = _runtime.select(t100, dqx_1_1_2_3_4, dqx_1_1_2_3_4 - rate_1_1_2_3_4 * t104)
+    t105 = _runtime.select(t100, t25, t25 - d5 * t104)
+    t106 = _runtime.select(t100, 0.0, rate_1_1_2_3_4 * uc_1_1_2_3_4)
+    slope_1_1_2_3_4 = x_1_1_2_3_4 * dx_1_1_2_3_4 + t105 * t106
+    del dx_1_1_2_3_4, t106
+    straight_1_1_2_3_4 = dqx_1_1_2_3_4 * dqx_1_1_2_3_4
+    t107 = spin_1_1_2_3_4 * (qx_1_1_2_3_4 * uc_1_1_2_3_4 + t25 * t104)
+    del qx_1_1_2_3_4, spin_1_1_2_3_4, uc_1_1_2_3_4
+    t108 = rate_1_1_2_3_4 * (2.0 * dqx_1_1_2_3_4 * t104 - t107)
+    del dqx_1_1_2_3_4, rate_1_1_2_3_4, t104, t107
+    bends_1_1_2_3_4 = _runtime.select(t100, straight_1_1_2_3_4, straight_1_1_2_3_4 - t108)
+    del straight_1_1_2_3_4, t108
+    square_1_1_2_3_4 = x_1_1_2_3_4 * x_1_1_2_3_4 + t105 * t105
+    del t105, x_1_1_2_3_4
+    t109 = _runtime.select(t100, t31, fold_1_1) - whole_1_1
+    t110 = np.maximum(0.0, t109)
+    del t109
+    t111 = whole_1_1 + _runtime.select(t100, t3, full_1_1)
     del t100
-    t102 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
-    t103 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
-    t104 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
-    t105 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
-    t106 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
-    t107 = t101 & t102 & t103 & t104 & t105 & (t106 <= _runtime.ROTATION)
-    del t101, t102, t103, t104, t105, t106
-    t108 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
-    t109 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
-    t110 = t107 & (t108 <= _runtime.ROTATION) & t109 & (np.abs(T41) <= _runtime.ROTATION)
-    del t107, t108, t109
-    t111 = t110 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
-    del t110
-    t112 = t111 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
-    del t111
-    invalid = np.logical_not(t112)
-    del t112
-    t113 = -(_runtime.FEASIBILITY * (size * 0.5))
-    t114 = (t113 <= t1) & (t113 <= t2)
+    t112 = np.maximum(t110 * t110, np.minimum(t111 * t111, square_1_1_2_3_4))
+    del t110, t111
+    miss_1_1_2_3_4 = square_1_1_2_3_4 - t112
+    del square_1_1_2_3_4, t112
+    inner_1_1_2_3_4 = slope_1_1_2_3_4 * slope_1_1_2_3_4 - bends_1_1_2_3_4 * miss_1_1_2_3_4
+    t113 = inner_1_1_2_3_4 < 0.0
+    t114 = _runtime.sign(slope_1_1_2_3_4) * np.sqrt(np.maximum(0.0, inner_1_1_2_3_4))
+    del inner_1_1_2_3_4
+    below_1_1_2_3_4 = _runtime.select(t113, 2.0 * bends_1_1_2_3_4, 2.0 * (slope_1_1_2_3_4 + t114))
+    del bends_1_1_2_3_4, t114
+    above_1_1_2_3_4 = _runtime.select(t113, slope_1_1_2_3_4, miss_1_1_2_3_4)
+    del miss_1_1_2_3_4, slope_1_1_2_3_4, t113
+    t115 = np.abs(below_1_1_2_3_4) <= np.abs(above_1_1_2_3_4)
+    t116 = _runtime.select(t115, 0.0, above_1_1_2_3_4 / below_1_1_2_3_4)
+    del above_1_1_2_3_4, below_1_1_2_3_4, t115
+    t117 = t116 * t116
+    t118 = 1.0 / (1.0 + t117)
+    t119 = 2.0 * t116 * t118
+    del t116
+    by_c_1_1_2_3_4 = t118 * (1.0 - t117)
+    del t117, t118
+    t120 = d4 * (t119 * t119) / (1.0 + np.abs(by_c_1_1_2_3_4))
+    t121 = (t120 + root1 * np.abs(t119) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4)
+    del t120
+    sine_1_1_2_3_4 = _runtime.select(t121, -t119, 0.0)
+    del t119
+    cosine_1_1_2_3_4 = _runtime.select(t121, by_c_1_1_2_3_4, 1.0)
+    del by_c_1_1_2_3_4, t121
+    t122 = c_1_1_2_3_4 * sine_1_1_2_3_4 + s_1_1_2_3_4 * cosine_1_1_2_3_4
+    s1 = _runtime.select(tangent1, t122, -t15)
+    del t122
+    t123 = c_1_1_2_3_4 * cosine_1_1_2_3_4 - s_1_1_2_3_4 * sine_1_1_2_3_4
+    del c_1_1_2_3_4, cosine_1_1_2_3_4, s_1_1_2_3_4, sine_1_1_2_3_4
+    c1 = _runtime.select(tangent1, t123, c_1_1)
+    del t123
+    t124 = np.isfinite(d1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(d4) & np.isfinite(d5) & np.isfinite(d6)
+    t125 = t124 & (0.0 <= d1) & (0.0 <= L2) & (0.0 <= L3)
+    del t124
+    t126 = t125 & (0.0 <= d4) & (0.0 <= d5) & (0.0 <= d6)
+    del t125
+    t127 = np.isfinite(T14) & np.isfinite(T24) & np.isfinite(T34)
+    t128 = np.abs(T13 - T21 * T32 + T22 * T31) <= _runtime.ROTATION
+    t129 = np.abs(T23 + T11 * T32 - T12 * T31) <= _runtime.ROTATION
+    t130 = np.abs(T33 - T11 * T22 + T12 * T21) <= _runtime.ROTATION
+    t131 = np.abs(1.0 - T11 * T11 - T21 * T21 - T31 * T31)
+    t132 = t126 & t127 & t128 & t129 & t130 & (t131 <= _runtime.ROTATION)
+    del t126, t127, t128, t129, t130, t131
+    t133 = np.abs(1.0 - T12 * T12 - T22 * T22 - T32 * T32)
+    t134 = np.abs(T11 * T12 + T21 * T22 + T31 * T32) <= _runtime.ROTATION
+    t135 = t132 & (t133 <= _runtime.ROTATION) & t134 & (np.abs(T41) <= _runtime.ROTATION)
+    del t132, t133, t134
+    t136 = t135 & (np.abs(T42) <= _runtime.ROTATION) & (np.abs(T43) <= _runtime.ROTATION)
+    del t135
+    t137 = t136 & (np.abs(T44 - 1.0) <= _runtime.ROTATION)
+    del t136
+    invalid = np.logical_not(t137)
+    del t137
+    t138 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t139 = (t138 <= t1) & (t138 <= t2)
     del t1, t2
     across = w_x * c1 + w_y * s1
     M_13 = T13 * c1 + T23 * s1
-    h_wrist = np.sqrt(t11 + M_13 * M_13)
-    t115 = _runtime.VANISHING * 16.0
-    aligned_wrist = h_wrist <= t115
-    r_hub = np.sqrt(t38 + across * across)
+    h_wrist = np.sqrt(t12 + M_13 * M_13)
+    t140 = _runtime.VANISHING * 16.0
+    aligned_wrist = h_wrist <= t140
+    r_hub = np.sqrt(t47 + across * across)
     hub_mid = r_hub <= t4
-    t116 = d5 + r_hub
-    t117 = d5 - r_hub
-    mid_reach = np.minimum(full_1_1, t116) * 0.5 + np.maximum(fold_1_1, np.abs(t117)) * 0.5
-    k_mid = np.maximum(0.0, (t116 - mid_reach) * (t116 + mid_reach))
-    d_mid = np.maximum(0.0, -((t117 - mid_reach) * (t117 + mid_reach)))
+    t141 = d5 + r_hub
+    t142 = d5 - r_hub
+    mid_reach = np.minimum(full_1_1, t141) * 0.5 + np.maximum(fold_1_1, np.abs(t142)) * 0.5
+    k_mid = np.maximum(0.0, (t141 - mid_reach) * (t141 + mid_reach))
+    d_mid = np.maximum(0.0, -((t142 - mid_reach) * (t142 + mid_reach)))
     del mid_reach
     n_mid = k_mid + d_mid
-    t118 = _runtime.VANISHING * t47
-    del t47
-    any_mid = n_mid <= t118
-    t119 = 1.0 / n_mid
+    t143 = _runtime.VANISHING * (size * t141)
+    any_mid = n_mid <= t143
+    t144 = 1.0 / n_mid
     del n_mid
-    uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) * t119)
-    us_mid = _runtime.select(any_mid, 0.0, t119 * (2.0 * np.sqrt(k_mid * d_mid)))
-    del any_mid, d_mid, k_mid, t119
-    t120 = 1.0 / r_hub
+    uc_mid = _runtime.select(any_mid, 1.0, (k_mid - d_mid) * t144)
+    us_mid = _runtime.select(any_mid, 0.0, t144 * (2.0 * np.sqrt(k_mid * d_mid)))
+    del any_mid, d_mid, k_mid, t144
+    t145 = 1.0 / r_hub
     del r_hub
-    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t21 * us_mid) * t120)
-    t121 = size * 0.00048828125
-    close = root1 * h_wrist - t121 <= t4
-    t122 = 1.0 / h_wrist
-    s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t122)
-    t123 = across - d5 * s_phi
-    c_phi = _runtime.select(aligned_wrist, 1.0, M_13 * t122)
-    del t122
-    t124 = t21 - d5 * c_phi
-    here = np.sqrt(t123 * t123 + t124 * t124)
-    del t123, t124
+    c_mid = _runtime.select(hub_mid, 1.0, (across * uc_mid + t25 * us_mid) * t145)
+    t146 = size * 0.00048828125
+    close = root1 * h_wrist - t146 <= t4
+    t147 = 1.0 / h_wrist
+    s_phi = _runtime.select(aligned_wrist, 0.0, T33 * t147)
+    t148 = across - d5 * s_phi
+    c_phi = _runtime.select(aligned_wrist, 1.0, M_13 * t147)
+    del t147
+    t149 = t25 - d5 * c_phi
+    here = np.sqrt(t148 * t148 + t149 * t149)
+    del t148, t149
     in_reach = np.minimum(full_1_1, np.maximum(here, fold_1_1))
-    k_near = np.maximum(0.0, (t116 - in_reach) * (t116 + in_reach))
-    del t116
-    d_near = np.maximum(0.0, -((t117 - in_reach) * (t117 + in_reach)))
-    del t117
-    n_near = k_near + d_near
-    any_near = n_near <= t118
-    t125 = 1.0 / n_near
-    del n_near
-    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t125)
-    t126 = across * c_phi - t21 * s_phi
-    t127 = np.abs(t126)
-    side = _runtime.select(t127 <= t4, 1.0, -(t126 / t127))
-    del t126, t127
-    t128 = t125 * (2.0 * side * np.sqrt(k_near * d_near))
-    del d_near, k_near, side, t125
-    us_near = _runtime.select(any_near, 0.0, t128)
-    del any_near, t128
-    c_near = _runtime.select(hub_mid, 1.0, t120 * (across * uc_near + t21 * us_near))
-    t129 = s_phi - c_near
-    s_near = _runtime.select(hub_mid, 0.0, t120 * (across * us_near - t21 * uc_near))
-    del uc_near, us_near
-    t130 = c_phi + s_near
-    t131 = h_wrist * np.sqrt(t129 * t129 + t130 * t130) - 2.2737367544323206e-13
-    del h_wrist, t129, t130
-    t132 = _runtime.VANISHING * 4.0
-    t133 = np.logical_not(np.abs(here - in_reach) <= t4)
-    del here, in_reach
-    t134 = (t131 <= t132) & t133
-    del t131, t133
-    t135 = _runtime.select(close, _runtime.select(t134, c_near, s_phi), s_phi)
-    del c_near, s_phi
-    sphi = _runtime.select(aligned_wrist, c_mid, t135)
-    del c_mid, t135
-    t136 = across - d5 * sphi
-    s_mid = _runtime.select(hub_mid, 0.0, t120 * (across * us_mid - t21 * uc_mid))
-    del across, hub_mid, t120, uc_mid, us_mid
-    t137 = _runtime.select(close, _runtime.select(t134, -s_near, c_phi), c_phi)
-    del c_phi, close, s_near, t134
-    cphi = _runtime.select(aligned_wrist, -s_mid, t137)
-    del s_mid, t137
-    ey = t21 - d5 * cphi
-    r_elbow = np.sqrt(t136 * t136 + ey * ey)
-    t138 = full_1_1 - r_elbow
-    t139 = t24 + r_elbow
-    t140 = r_elbow - t24
-    t141 = t114 & (t113 <= t138) & (t113 <= t139) & (t113 <= t140)
-    unreachable = np.logical_not(t141)
+    k_near = np.maximum(0.0, (t141 - in_reach) * (t141 + in_reach))
     del t141
-    t142 = _runtime.poison(invalid | unreachable)
-    t143 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t142
+    d_near = np.maximum(0.0, -((t142 - in_reach) * (t142 + in_reach)))
+    del t142
+    n_near = k_near + d_near
+    any_near = n_near <= t143
+    del t143
+    t150 = 1.0 / n_near
+    del n_near
+    uc_near = _runtime.select(any_near, 1.0, (k_near - d_near) * t150)
+    t151 = across * c_phi - t25 * s_phi
+    t152 = np.abs(t151)
+    side = _runtime.select(t152 <= t4, 1.0, -(t151 / t152))
+    del t151, t152
+    t153 = t150 * (2.0 * side * np.sqrt(k_near * d_near))
+    del d_near, k_near, side, t150
+    us_near = _runtime.select(any_near, 0.0, t153)
+    del any_near, t153
+    c_near = _runtime.select(hub_mid, 1.0, t145 * (across * uc_near + t25 * us_near))
+    t154 = s_phi - c_near
+    s_near = _runtime.select(hub_mid, 0.0, t145 * (across * us_near - t25 * uc_near))
+    del uc_near, us_near
+    t155 = c_phi + s_near
+    t156 = h_wrist * np.sqrt(t154 * t154 + t155 * t155) - 2.2737367544323206e-13
+    del h_wrist, t154, t155
+    t157 = _runtime.VANISHING * 4.0
+    t158 = np.logical_not(np.abs(here - in_reach) <= t4)
+    del here, in_reach
+    t159 = (t156 <= t157) & t158
+    del t156, t158
+    t160 = _runtime.select(close, _runtime.select(t159, c_near, s_phi), s_phi)
+    del c_near, s_phi
+    sphi = _runtime.select(aligned_wrist, c_mid, t160)
+    del c_mid, t160
+    t161 = across - d5 * sphi
+    s_mid = _runtime.select(hub_mid, 0.0, t145 * (across * us_mid - t25 * uc_mid))
+    del across, hub_mid, t145, uc_mid, us_mid
+    t162 = _runtime.select(close, _runtime.select(t159, -s_near, c_phi), c_phi)
+    del c_phi, close, s_near, t159
+    cphi = _runtime.select(aligned_wrist, -s_mid, t162)
+    del s_mid, t162
+    ey = t25 - d5 * cphi
+    r_elbow = np.sqrt(t161 * t161 + ey * ey)
+    t163 = full_1_1 - r_elbow
+    t164 = t30 + r_elbow
+    t165 = r_elbow - t30
+    t166 = t139 & (t138 <= t163) & (t138 <= t164) & (t138 <= t165)
+    unreachable = np.logical_not(t166)
+    del t166
+    t167 = _runtime.poison(invalid | unreachable)
+    t168 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t167
     folded_elbow = r_elbow <= t4
     no_link_elbow = L2 * L3 <= _runtime.VANISHING * (full_1_1 * full_1_1)
-    t144 = folded_elbow | no_link_elbow
-    A_elbow = np.maximum(t138, 0.0)
-    del t138
-    C_elbow = np.maximum(t140, 0.0)
-    del t140
-    t145 = A_elbow * C_elbow
+    t169 = folded_elbow | no_link_elbow
+    A_elbow = np.maximum(t163, 0.0)
+    del t163
+    C_elbow = np.maximum(t165, 0.0)
+    del t165
+    t170 = A_elbow * C_elbow
     S_elbow = full_1_1 + r_elbow
-    B_elbow = np.maximum(t139, 0.0)
-    del t139
-    t146 = S_elbow * B_elbow
-    t147 = 1.0 / (t145 + t146)
-    c_base_elbow = _runtime.select(t144, 1.0, -((t145 - t146) * t147))
-    t148 = 1.0 / r_elbow
-    del r_elbow
-    t149 = _runtime.select(folded_elbow, 0.0, ey * t148)
-    del ey
-    t150 = c_base_elbow * t149
-    area_elbow = 2.0 * np.sqrt(t145 * t146)
-    del t145, t146
-    s_base_elbow = _runtime.select(t144, 0.0, t147 * area_elbow)
-    del t144, t147
-    t151 = _runtime.select(folded_elbow, 1.0, -(t136 * t148))
-    del t136, t148
-    t152 = s_base_elbow * t151
-    s2 = t150 - t152
-    t153 = c_base_elbow * t151
-    del c_base_elbow, t151
-    t154 = t149 * s_base_elbow
-    del s_base_elbow, t149
-    c2 = t153 + t154
-    t155 = A_elbow * S_elbow
-    del A_elbow, S_elbow
-    t156 = C_elbow * B_elbow
-    del B_elbow, C_elbow
-    t157 = 1.0 / (t155 + t156)
-    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t157)
-    del area_elbow
-    c3 = _runtime.select(no_link_elbow, 1.0, -(t157 * (t155 - t156)))
-    del t155, t156, t157
-    t158 = np.arctan2(s3, c3)
-    t159 = sphi * c2 - cphi * s2
-    t160 = cphi * c2 + sphi * s2
-    t161 = np.arctan2(c3 * t159 - s3 * t160, c3 * t160 + s3 * t159)
-    del t159, t160
-    t162 = np.arctan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1)
-    del M_13
-    t163 = _runtime.wrap_cut(-t162) + t142
-    del t162
-    t164 = np.arctan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12 * c1 + T22 * s1))
-    del c1, s1
-    t165 = _runtime.wrap_cut(-t164) + t142
+    B_elbow = np.maximum(t164, 0.0)
     del t164
-    s2_left_noflip_down = t150 + t152
-    del t150, t152
-    c2_left_noflip_down = t153 - t154
-    del t153, t154
-    t166 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
-    t167 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
-    t168 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
+    t171 = S_elbow * B_elbow
+    t172 = 1.0 / (t170 + t171)
+    c_base_elbow = _runtime.select(t169, 1.0, -((t170 - t171) * t172))
+    t173 = 1.0 / r_elbow
+    del r_elbow
+    t174 = _runtime.select(folded_elbow, 0.0, ey * t173)
+    del ey
+    t175 = c_base_elbow * t174
+    area_elbow = 2.0 * np.sqrt(t170 * t171)
+    del t170, t171
+    s_base_elbow = _runtime.select(t169, 0.0, t172 * area_elbow)
+    del t169, t172
+    t176 = _runtime.select(folded_elbow, 1.0, -(t161 * t173))
+    del t161, t173
+    t177 = s_base_elbow * t176
+    s2 = t175 - t177
+    t178 = c_base_elbow * t176
+    del c_base_elbow, t176
+    t179 = t174 * s_base_elbow
+    del s_base_elbow, t174
+    c2 = t178 + t179
+    t180 = A_elbow * S_elbow
+    del A_elbow, S_elbow
+    t181 = C_elbow * B_elbow
+    del B_elbow, C_elbow
+    t182 = 1.0 / (t180 + t181)
+    s3 = _runtime.select(no_link_elbow, 0.0, area_elbow * t182)
+    del area_elbow
+    c3 = _runtime.select(no_link_elbow, 1.0, -(t182 * (t180 - t181)))
+    del t180, t181, t182
+    t183 = np.arctan2(s3, c3)
+    t184 = sphi * c2 - cphi * s2
+    t185 = cphi * c2 + sphi * s2
+    t186 = np.arctan2(c3 * t184 - s3 * t185, c3 * t185 + s3 * t184)
+    del t184, t185
+    t187 = np.arctan2(M_13 * cphi + T33 * sphi, T13 * s1 - T23 * c1)
+    del M_13
+    t188 = _runtime.wrap_cut(-t187) + t167
+    del t187
+    t189 = np.arctan2(sphi * (T11 * c1 + T21 * s1) - T31 * cphi, T32 * cphi - sphi * (T12 * c1 + T22 * s1))
+    del c1, s1
+    t190 = _runtime.wrap_cut(-t189) + t167
+    del t189
+    s2_left_noflip_down = t175 + t177
+    del t175, t177
+    c2_left_noflip_down = t178 - t179
+    del t178, t179
+    t191 = np.arctan2(s2_left_noflip_down, c2_left_noflip_down)
+    t192 = sphi * c2_left_noflip_down - cphi * s2_left_noflip_down
+    t193 = cphi * c2_left_noflip_down + sphi * s2_left_noflip_down
     del c2_left_noflip_down, cphi, s2_left_noflip_down, sphi
-    t169 = np.arctan2(c3 * t167 + s3 * t168, c3 * t168 - s3 * t167)
-    del c3, s3, t167, t168
-    x_1_1_left_flip_up = _runtime.select(t16, qx_1_1, qx_1_1 + t18)
-    del qx_1_1, t18
-    dx_1_1_left_flip_up = _runtime.select(t16, dqx_1_1, dqx_1_1 - t20)
-    del dqx_1_1, t20
-    t170 = _runtime.select(t16, t21, t21 + t22)
-    del t16, t22
-    slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t170
-    del dy_1_1
-    t171 = slope_1_1_left_flip_up * slope_1_1_left_flip_up
-    square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t170 * t170
-    del t170, x_1_1_left_flip_up
-    t172 = np.minimum(high_1_1, square_1_1_left_flip_up)
+    t194 = np.arctan2(c3 * t192 + s3 * t193, c3 * t193 - s3 * t192)
+    del c3, s3, t192, t193
+    x_1_1_left_flip_up = _runtime.select(t16, qx_1_1, qx_1_1 + t19)
+    del qx_1_1, t19
+    t195 = _runtime.select(t17, 1.0, -t23)
+    del t17, t23
+    dx_1_1_left_flip_up = _runtime.select(t16, dqx_1_1, dqx_1_1 + t22 * t195)
+    del dqx_1_1
+    t196 = _runtime.select(t16, t25, t25 - d5 * t195)
+    slope_1_1_left_flip_up = x_1_1_left_flip_up * dx_1_1_left_flip_up + dy_1_1 * t196
+    del dx_1_1_left_flip_up, dy_1_1
+    t197 = slope_1_1_left_flip_up * slope_1_1_left_flip_up
+    t198 = t22 * (t27 * t195 - t21 * (t28 - t25 * t195))
+    del t195, t21, t22, t27, t28
+    bends_1_1_left_flip_up = _runtime.select(t16, straight_1_1, straight_1_1 + t198)
+    del straight_1_1, t16, t198
+    square_1_1_left_flip_up = x_1_1_left_flip_up * x_1_1_left_flip_up + t196 * t196
+    del t196, x_1_1_left_flip_up
+    t199 = np.minimum(high_1_1, square_1_1_left_flip_up)
     del high_1_1
-    miss_1_1_left_flip_up = square_1_1_left_flip_up - np.maximum(low_1_1, t172)
-    del low_1_1, square_1_1_left_flip_up, t172
-    bend_1_1_left_flip_up = t27 + dx_1_1_left_flip_up * dx_1_1_left_flip_up
-    del dx_1_1_left_flip_up, t27
-    t173 = miss_1_1_left_flip_up * bend_1_1_left_flip_up
-    inner_1_1_left_flip_up = t171 - t173
-    del t171, t173
-    t174 = slope_1_1_left_flip_up / (2.0 * bend_1_1_left_flip_up)
-    del bend_1_1_left_flip_up
-    t175 = np.sqrt(np.maximum(0.0, inner_1_1_left_flip_up))
-    outer_1_1_left_flip_up = slope_1_1_left_flip_up + _runtime.sign(slope_1_1_left_flip_up) * t175
-    del slope_1_1_left_flip_up, t175
-    t176 = miss_1_1_left_flip_up / (2.0 * outer_1_1_left_flip_up)
-    del miss_1_1_left_flip_up
-    t177 = _runtime.select(outer_1_1_left_flip_up == 0.0, 0.0, t176)
-    del outer_1_1_left_flip_up, t176
-    t178 = _runtime.select(inner_1_1_left_flip_up < 0.0, t174, t177)
-    del inner_1_1_left_flip_up, t174, t177
-    t179 = t178 * t178
-    t180 = 1.0 / (1.0 + t179)
-    t181 = 2.0 * t178 * t180
-    del t178
-    by_c_1_1_left_flip_up = t180 * (1.0 - t179)
-    del t179, t180
-    t182 = d4 * (t181 * t181) / (1.0 + np.abs(by_c_1_1_left_flip_up))
-    t183 = (t182 + root1 * np.abs(t181) <= whole_1_1) & (0.0 < by_c_1_1_left_flip_up)
-    del t182
-    cosine_1_1_left_flip_up = _runtime.select(t183, by_c_1_1_left_flip_up, 1.0)
+    miss_1_1_left_flip_up = square_1_1_left_flip_up - np.maximum(low_1_1, t199)
+    del low_1_1, square_1_1_left_flip_up, t199
+    t200 = bends_1_1_left_flip_up * miss_1_1_left_flip_up
+    inner_1_1_left_flip_up = t197 - t200
+    del t197, t200
+    t201 = inner_1_1_left_flip_up < 0.0
+    t202 = np.sqrt(np.maximum(0.0, inner_1_1_left_flip_up))
+    del inner_1_1_left_flip_up
+    outer_1_1_left_flip_up = slope_1_1_left_flip_up + _runtime.sign(slope_1_1_left_flip_up) * t202
+    del t202
+    below_1_1_left_flip_up = _runtime.select(t201, 2.0 * bends_1_1_left_flip_up, 2.0 * outer_1_1_left_flip_up)
+    del bends_1_1_left_flip_up, outer_1_1_left_flip_up
+    above_1_1_left_flip_up = _runtime.select(t201, slope_1_1_left_flip_up, miss_1_1_left_flip_up)
+    del miss_1_1_left_flip_up, slope_1_1_left_flip_up, t201
+    t203 = np.abs(below_1_1_left_flip_up) <= np.abs(above_1_1_left_flip_up)
+    t204 = above_1_1_left_flip_up / below_1_1_left_flip_up
+    del above_1_1_left_flip_up, below_1_1_left_flip_up
+    t205 = _runtime.select(t203, 0.0, t204)
+    del t203, t204
+    t206 = t205 * t205
+    t207 = 1.0 / (1.0 + t206)
+    t208 = 2.0 * t205 * t207
+    del t205
+    by_c_1_1_left_flip_up = t207 * (1.0 - t206)
+    del t206, t207
+    t209 = d4 * (t208 * t208) / (1.0 + np.abs(by_c_1_1_left_flip_up))
+    t210 = (t209 + root1 * np.abs(t208) <= whole_1_1) & (0.0 < by_c_1_1_left_flip_up)
+    del t209
+    cosine_1_1_left_flip_up = _runtime.select(t210, by_c_1_1_left_flip_up, 1.0)
     del by_c_1_1_left_flip_up
-    sine_1_1_left_flip_up = _runtime.select(t183, -t181, 0.0)
-    del t181, t183
-    c_1_1_2_left_flip_up = c_1_1 * cosine_1_1_left_flip_up + t14 * sine_1_1_left_flip_up
-    s_1_1_2_left_flip_up = c_1_1 * sine_1_1_left_flip_up - t14 * cosine_1_1_left_flip_up
+    sine_1_1_left_flip_up = _runtime.select(t210, -t208, 0.0)
+    del t208, t210
+    c_1_1_2_left_flip_up = c_1_1 * cosine_1_1_left_flip_up + t15 * sine_1_1_left_flip_up
+    s_1_1_2_left_flip_up = c_1_1 * sine_1_1_left_flip_up - t15 * cosine_1_1_left_flip_up
     del cosine_1_1_left_flip_up, sine_1_1_left_flip_up
     axisx_1_1_2_left_flip_up = T13 * c_1_1_2_left_flip_up + T23 * s_1_1_2_left_flip_up
-    t184 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up
-    t185 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up
-    most_1_1_2_left_flip_up = np.sqrt(t184 + t185 * t185)
+    t211 = axisx_1_1_2_left_flip_up * axisx_1_1_2_left_flip_up
+    t212 = T13 * s_1_1_2_left_flip_up - T23 * c_1_1_2_left_flip_up
+    most_1_1_2_left_flip_up = np.sqrt(t211 + t212 * t212)
+    t213 = most_1_1_2_left_flip_up <= 8.881784197001252e-16
     qx_1_1_2_left_flip_up = w_x * c_1_1_2_left_flip_up + w_y * s_1_1_2_left_flip_up
-    t186 = qx_1_1_2_left_flip_up * qx_1_1_2_left_flip_up
-    r_1_1_2_left_flip_up = np.sqrt(t38 + t186)
-    del t186
-    t187 = r_1_1_2_left_flip_up <= t39
-    t188 = d5 + r_1_1_2_left_flip_up
-    t189 = 1.0 / np.sqrt(t11 + t184)
-    del t184
-    t190 = T33 * t189
-    t191 = qx_1_1_2_left_flip_up + d5 * t190
-    us_1_1_2_left_flip_up = axisx_1_1_2_left_flip_up * t189
-    del t189
-    t192 = t21 + d5 * us_1_1_2_left_flip_up
-    there_1_1_2_left_flip_up = np.sqrt(t191 * t191 + t192 * t192)
-    del t191, t192
-    t193 = np.maximum(there_1_1_2_left_flip_up, fold_1_1)
-    goal_1_1_2_left_flip_up = np.minimum(full_1_1, t193)
-    del t193
-    t194 = (t188 - goal_1_1_2_left_flip_up) * (t188 + goal_1_1_2_left_flip_up)
-    del t188
-    k_v_1_1_2_left_flip_up = np.maximum(0.0, t194)
-    del t194
-    t195 = d5 - r_1_1_2_left_flip_up
-    t196 = (goal_1_1_2_left_flip_up - t195) * (goal_1_1_2_left_flip_up + t195)
-    del t195
-    d_v_1_1_2_left_flip_up = np.maximum(0.0, t196)
-    del t196
-    n_v_1_1_2_left_flip_up = k_v_1_1_2_left_flip_up + d_v_1_1_2_left_flip_up
-    t197 = n_v_1_1_2_left_flip_up <= t48
-    t198 = k_v_1_1_2_left_flip_up - d_v_1_1_2_left_flip_up
-    t199 = 1.0 / n_v_1_1_2_left_flip_up
-    del n_v_1_1_2_left_flip_up
-    uc_v_1_1_2_left_flip_up = _runtime.select(t197, 1.0, t198 * t199)
-    del t198
-    t200 = qx_1_1_2_left_flip_up * uc_v_1_1_2_left_flip_up
-    t201 = qx_1_1_2_left_flip_up * us_1_1_2_left_flip_up
-    del us_1_1_2_left_flip_up
-    t202 = k_v_1_1_2_left_flip_up * d_v_1_1_2_left_flip_up
-    del d_v_1_1_2_left_flip_up, k_v_1_1_2_left_flip_up
-    t203 = 2.0 * _runtime.sign(t201 - t21 * t190) * np.sqrt(t202)
-    del t190, t201, t202
-    us_v_1_1_2_left_flip_up = _runtime.select(t197, 0.0, t199 * t203)
-    del t197, t199, t203
-    t204 = t21 * us_v_1_1_2_left_flip_up
-    t205 = 1.0 / r_1_1_2_left_flip_up
-    del r_1_1_2_left_flip_up
-    c_v_1_1_2_left_flip_up = _runtime.select(t187, 1.0, (t200 + t204) * t205)
-    t206 = -(T33 * c_v_1_1_2_left_flip_up) < 0.0
-    t207 = qx_1_1_2_left_flip_up * us_v_1_1_2_left_flip_up
-    del qx_1_1_2_left_flip_up, us_v_1_1_2_left_flip_up
-    t208 = t21 * uc_v_1_1_2_left_flip_up
-    del uc_v_1_1_2_left_flip_up
-    wc_1_1_2_left_flip_up = _runtime.select(t187, 0.0, t205 * (t207 + t208))
-    s_v_1_1_2_left_flip_up = _runtime.select(t187, 0.0, t205 * (t207 - t208))
-    del t207, t208
-    to_c_1_1_2_left_flip_up = _runtime.select(t206, wc_1_1_2_left_flip_up, -s_v_1_1_2_left_flip_up)
-    del s_v_1_1_2_left_flip_up, wc_1_1_2_left_flip_up
-    c_w_1_1_2_left_flip_up = _runtime.select(t187, 1.0, t205 * (t200 - t204))
-    del t187, t200, t204, t205
-    to_s_1_1_2_left_flip_up = _runtime.select(t206, c_w_1_1_2_left_flip_up, c_v_1_1_2_left_flip_up)
-    del c_v_1_1_2_left_flip_up, c_w_1_1_2_left_flip_up, t206
-    t209 = T33 * to_c_1_1_2_left_flip_up / to_s_1_1_2_left_flip_up
-    del to_c_1_1_2_left_flip_up, to_s_1_1_2_left_flip_up
-    t210 = np.minimum(most_1_1_2_left_flip_up, _runtime.select(t37, 0.0, t209))
-    del t209
-    kept_1_1_2_left_flip_up = np.maximum(-most_1_1_2_left_flip_up, t210)
-    del t210
-    t211 = most_1_1_2_left_flip_up - kept_1_1_2_left_flip_up
-    t212 = most_1_1_2_left_flip_up + kept_1_1_2_left_flip_up
-    rest_1_1_2_left_flip_up = np.sqrt(t211 * t212) * _runtime.sign(-t185)
-    del t211, t212
-    t213 = axisx_1_1_2_left_flip_up * rest_1_1_2_left_flip_up
-    t214 = most_1_1_2_left_flip_up * most_1_1_2_left_flip_up
-    del most_1_1_2_left_flip_up
-    t215 = 1.0 / t214
+    t214 = qx_1_1_2_left_flip_up * qx_1_1_2_left_flip_up
+    r_1_1_2_left_flip_up = np.sqrt(t47 + t214)
     del t214
-    t216 = (t213 + t185 * kept_1_1_2_left_flip_up) * t215
-    del t213
-    t217 = axisx_1_1_2_left_flip_up * kept_1_1_2_left_flip_up
-    del axisx_1_1_2_left_flip_up, kept_1_1_2_left_flip_up
-    by_c_1_1_2_left_flip_up = t215 * (t217 - t185 * rest_1_1_2_left_flip_up)
-    del rest_1_1_2_left_flip_up, t185, t215, t217
-    t218 = d4 * (t216 * t216) / (1.0 + np.abs(by_c_1_1_2_left_flip_up))
-    t219 = (t218 + root1 * np.abs(t216) <= whole_1_1) & (0.0 < by_c_1_1_2_left_flip_up)
-    del t218
-    t220 = there_1_1_2_left_flip_up - goal_1_1_2_left_flip_up
-    del goal_1_1_2_left_flip_up, there_1_1_2_left_flip_up
-    t221 = t219 & (size < 1125899906842624.0 * np.abs(t220))
-    del t219, t220
-    cosine_1_1_2_left_flip_up = _runtime.select(t221, by_c_1_1_2_left_flip_up, 1.0)
-    del by_c_1_1_2_left_flip_up
-    t222 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
-    sine_1_1_2_left_flip_up = _runtime.select(t221, -t216, 0.0)
-    del t216, t221
-    t223 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
-    c_1_1_2_3_left_flip_up = t222 - t223
-    del t222, t223
-    t224 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
-    del c_1_1_2_left_flip_up, sine_1_1_2_left_flip_up
-    t225 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
-    del cosine_1_1_2_left_flip_up, s_1_1_2_left_flip_up
-    s_1_1_2_3_left_flip_up = t224 + t225
-    del t224, t225
-    axisx_1_1_2_3_left_flip_up = T13 * c_1_1_2_3_left_flip_up + T23 * s_1_1_2_3_left_flip_up
-    t226 = axisx_1_1_2_3_left_flip_up * axisx_1_1_2_3_left_flip_up
-    h_1_1_2_3_left_flip_up = np.sqrt(t11 + t226)
+    t215 = r_1_1_2_left_flip_up <= t48
+    t216 = d5 + r_1_1_2_left_flip_up
+    h_1_1_2_left_flip_up = np.sqrt(t12 + t211)
+    del t211
+    t217 = h_1_1_2_left_flip_up == 0.0
+    t218 = 1.0 / h_1_1_2_left_flip_up
+    del h_1_1_2_left_flip_up
+    t219 = _runtime.select(t217, 0.0, T33 * t218)
+    t220 = qx_1_1_2_left_flip_up + d5 * t219
+    t221 = _runtime.select(t217, 1.0, -(axisx_1_1_2_left_flip_up * t218))
+    del t217, t218
+    t222 = t25 - d5 * t221
+    there_1_1_2_left_flip_up = np.sqrt(t220 * t220 + t222 * t222)
+    del t220, t222
+    t223 = np.maximum(there_1_1_2_left_flip_up, fold_1_1)
+    goal_1_1_2_left_flip_up = np.minimum(full_1_1, t223)
+    del t223
+    t224 = (t216 - goal_1_1_2_left_flip_up) * (t216 + goal_1_1_2_left_flip_up)
+    k_v_1_1_2_left_flip_up = np.maximum(0.0, t224)
+    del t224
+    t225 = d5 - r_1_1_2_left_flip_up
+    t226 = (goal_1_1_2_left_flip_up - t225) * (goal_1_1_2_left_flip_up + t225)
+    del t225
+    d_v_1_1_2_left_flip_up = np.maximum(0.0, t226)
     del t226
-    t227 = size * h_1_1_2_3_left_flip_up <= t15
-    qx_1_1_2_3_left_flip_up = w_x * c_1_1_2_3_left_flip_up + w_y * s_1_1_2_3_left_flip_up
-    t228 = 1.0 / h_1_1_2_3_left_flip_up
-    t229 = T33 * t228
-    x_1_1_2_3_left_flip_up = _runtime.select(t227, qx_1_1_2_3_left_flip_up, qx_1_1_2_3_left_flip_up + d5 * t229)
-    del qx_1_1_2_3_left_flip_up
-    dqx_1_1_2_3_left_flip_up = w_y * c_1_1_2_3_left_flip_up - w_x * s_1_1_2_3_left_flip_up
-    us_1_1_2_3_left_flip_up = axisx_1_1_2_3_left_flip_up * t228
-    del axisx_1_1_2_3_left_flip_up, t228
-    t230 = T13 * s_1_1_2_3_left_flip_up - T23 * c_1_1_2_3_left_flip_up
-    t231 = h_1_1_2_3_left_flip_up * h_1_1_2_3_left_flip_up
-    del h_1_1_2_3_left_flip_up
-    rate_1_1_2_3_left_flip_up = d5 * (T33 * t230) / t231
-    del t230, t231
-    t232 = us_1_1_2_3_left_flip_up * rate_1_1_2_3_left_flip_up
-    dx_1_1_2_3_left_flip_up = _runtime.select(t227, dqx_1_1_2_3_left_flip_up, dqx_1_1_2_3_left_flip_up + t232)
-    del dqx_1_1_2_3_left_flip_up, t232
-    t233 = x_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
-    t234 = _runtime.select(t227, t21, t21 + d5 * us_1_1_2_3_left_flip_up)
-    del us_1_1_2_3_left_flip_up
-    dy_1_1_2_3_left_flip_up = _runtime.select(t227, 0.0, t229 * rate_1_1_2_3_left_flip_up)
-    del rate_1_1_2_3_left_flip_up, t229
-    slope_1_1_2_3_left_flip_up = t233 - t234 * dy_1_1_2_3_left_flip_up
-    del t233
-    t235 = slope_1_1_2_3_left_flip_up * slope_1_1_2_3_left_flip_up
-    t236 = x_1_1_2_3_left_flip_up * x_1_1_2_3_left_flip_up
-    del x_1_1_2_3_left_flip_up
-    square_1_1_2_3_left_flip_up = t236 + t234 * t234
-    del t234, t236
-    nearest_1_1_2_3_left_flip_up = _runtime.select(t227, t25, fold_1_1)
-    low_1_1_2_3_left_flip_up = nearest_1_1_2_3_left_flip_up * nearest_1_1_2_3_left_flip_up
-    del nearest_1_1_2_3_left_flip_up
-    farthest_1_1_2_3_left_flip_up = _runtime.select(t227, t3, full_1_1)
-    del t227
-    high_1_1_2_3_left_flip_up = farthest_1_1_2_3_left_flip_up * farthest_1_1_2_3_left_flip_up
-    del farthest_1_1_2_3_left_flip_up
-    t237 = np.minimum(high_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up)
-    del high_1_1_2_3_left_flip_up
-    miss_1_1_2_3_left_flip_up = square_1_1_2_3_left_flip_up - np.maximum(low_1_1_2_3_left_flip_up, t237)
-    del low_1_1_2_3_left_flip_up, square_1_1_2_3_left_flip_up, t237
-    t238 = dx_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
-    del dx_1_1_2_3_left_flip_up
-    t239 = dy_1_1_2_3_left_flip_up * dy_1_1_2_3_left_flip_up
-    del dy_1_1_2_3_left_flip_up
-    bend_1_1_2_3_left_flip_up = t238 + t239
-    del t238, t239
-    t240 = miss_1_1_2_3_left_flip_up * bend_1_1_2_3_left_flip_up
-    inner_1_1_2_3_left_flip_up = t235 - t240
-    del t235, t240
-    t241 = slope_1_1_2_3_left_flip_up / (2.0 * bend_1_1_2_3_left_flip_up)
-    del bend_1_1_2_3_left_flip_up
-    t242 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_left_flip_up))
-    t243 = _runtime.sign(slope_1_1_2_3_left_flip_up) * t242
-    del t242
-    outer_1_1_2_3_left_flip_up = slope_1_1_2_3_left_flip_up + t243
-    del slope_1_1_2_3_left_flip_up, t243
-    t244 = miss_1_1_2_3_left_flip_up / (2.0 * outer_1_1_2_3_left_flip_up)
-    del miss_1_1_2_3_left_flip_up
-    t245 = _runtime.select(outer_1_1_2_3_left_flip_up == 0.0, 0.0, t244)
-    del outer_1_1_2_3_left_flip_up, t244
-    t246 = _runtime.select(inner_1_1_2_3_left_flip_up < 0.0, t241, t245)
-    del inner_1_1_2_3_left_flip_up, t241, t245
-    t247 = t246 * t246
-    t248 = 1.0 / (1.0 + t247)
-    t249 = 2.0 * t246 * t248
+    n_v_1_1_2_left_flip_up = k_v_1_1_2_left_flip_up + d_v_1_1_2_left_flip_up
+    t227 = n_v_1_1_2_left_flip_up <= size * t216 * 8.881784197001252e-16
+    del t216
+    t228 = k_v_1_1_2_left_flip_up - d_v_1_1_2_left_flip_up
+    t229 = 1.0 / n_v_1_1_2_left_flip_up
+    del n_v_1_1_2_left_flip_up
+    uc_v_1_1_2_left_flip_up = _runtime.select(t227, 1.0, t228 * t229)
+    del t228
+    t230 = qx_1_1_2_left_flip_up * uc_v_1_1_2_left_flip_up
+    side_1_1_2_left_flip_up = _runtime.sign(-(qx_1_1_2_left_flip_up * t221 + t25 * t219))
+    del t219, t221
+    t231 = k_v_1_1_2_left_flip_up * d_v_1_1_2_left_flip_up
+    del d_v_1_1_2_left_flip_up, k_v_1_1_2_left_flip_up
+    t232 = 2.0 * side_1_1_2_left_flip_up * np.sqrt(t231)
+    del side_1_1_2_left_flip_up, t231
+    us_v_1_1_2_left_flip_up = _runtime.select(t227, 0.0, t229 * t232)
+    del t227, t229, t232
+    t233 = t25 * us_v_1_1_2_left_flip_up
+    t234 = 1.0 / r_1_1_2_left_flip_up
+    del r_1_1_2_left_flip_up
+    c_v_1_1_2_left_flip_up = _runtime.select(t215, 1.0, (t230 + t233) * t234)
+    t235 = -(T33 * c_v_1_1_2_left_flip_up) < 0.0
+    t236 = qx_1_1_2_left_flip_up * us_v_1_1_2_left_flip_up
+    del qx_1_1_2_left_flip_up, us_v_1_1_2_left_flip_up
+    t237 = t25 * uc_v_1_1_2_left_flip_up
+    del uc_v_1_1_2_left_flip_up
+    wc_1_1_2_left_flip_up = _runtime.select(t215, 0.0, t234 * (t236 + t237))
+    s_v_1_1_2_left_flip_up = _runtime.select(t215, 0.0, t234 * (t236 - t237))
+    del t236, t237
+    to_c_1_1_2_left_flip_up = _runtime.select(t235, wc_1_1_2_left_flip_up, -s_v_1_1_2_left_flip_up)
+    del s_v_1_1_2_left_flip_up, wc_1_1_2_left_flip_up
+    c_w_1_1_2_left_flip_up = _runtime.select(t215, 1.0, t234 * (t230 - t233))
+    del t215, t230, t233, t234
+    to_s_1_1_2_left_flip_up = _runtime.select(t235, c_w_1_1_2_left_flip_up, c_v_1_1_2_left_flip_up)
+    del c_v_1_1_2_left_flip_up, c_w_1_1_2_left_flip_up, t235
+    t238 = T33 * to_c_1_1_2_left_flip_up * _runtime.sign(to_s_1_1_2_left_flip_up)
+    del to_c_1_1_2_left_flip_up
+    across_1_1_2_left_flip_up = _runtime.select(t46, 0.0, t238)
+    del t238
+    t239 = np.abs(to_s_1_1_2_left_flip_up)
+    del to_s_1_1_2_left_flip_up
+    t240 = most_1_1_2_left_flip_up * t239 <= np.abs(across_1_1_2_left_flip_up)
+    t241 = most_1_1_2_left_flip_up * _runtime.sign(across_1_1_2_left_flip_up)
+    t242 = _runtime.select(t240, t241, across_1_1_2_left_flip_up / t239)
+    del t239, t240, t241
+    wanted_1_1_2_left_flip_up = _runtime.select(across_1_1_2_left_flip_up == 0.0, 0.0, t242)
+    del across_1_1_2_left_flip_up, t242
+    t243 = most_1_1_2_left_flip_up - wanted_1_1_2_left_flip_up
+    t244 = most_1_1_2_left_flip_up + wanted_1_1_2_left_flip_up
+    rest_1_1_2_left_flip_up = np.sqrt(np.maximum(0.0, t243 * t244)) * _runtime.sign(-t212)
+    del t243, t244
+    t245 = axisx_1_1_2_left_flip_up * rest_1_1_2_left_flip_up
+    t246 = most_1_1_2_left_flip_up * most_1_1_2_left_flip_up
+    del most_1_1_2_left_flip_up
+    t247 = 1.0 / t246
     del t246
-    by_c_1_1_2_3_left_flip_up = t248 * (1.0 - t247)
-    del t247, t248
-    t250 = d4 * (t249 * t249) / (1.0 + np.abs(by_c_1_1_2_3_left_flip_up))
-    t251 = (t250 + root1 * np.abs(t249) <= whole_1_1) & (0.0 < by_c_1_1_2_3_left_flip_up)
-    del t250
-    cosine_1_1_2_3_left_flip_up = _runtime.select(t251, by_c_1_1_2_3_left_flip_up, 1.0)
+    t248 = (t245 + t212 * wanted_1_1_2_left_flip_up) * t247
+    del t245
+    t249 = _runtime.select(t213, 0.0, t248)
+    del t248
+    t250 = axisx_1_1_2_left_flip_up * wanted_1_1_2_left_flip_up
+    del axisx_1_1_2_left_flip_up, wanted_1_1_2_left_flip_up
+    t251 = t247 * (t250 - t212 * rest_1_1_2_left_flip_up)
+    del rest_1_1_2_left_flip_up, t212, t247, t250
+    by_c_1_1_2_left_flip_up = _runtime.select(t213, 1.0, t251)
+    del t213, t251
+    t252 = d4 * (t249 * t249) / (1.0 + np.abs(by_c_1_1_2_left_flip_up))
+    t253 = (t252 + root1 * np.abs(t249) <= whole_1_1) & (0.0 < by_c_1_1_2_left_flip_up)
+    del t252
+    t254 = there_1_1_2_left_flip_up - goal_1_1_2_left_flip_up
+    del goal_1_1_2_left_flip_up, there_1_1_2_left_flip_up
+    t255 = t253 & (size < 17592186044416.0 * np.abs(t254))
+    del t253, t254
+    cosine_1_1_2_left_flip_up = _runtime.select(t255, by_c_1_1_2_left_flip_up, 1.0)
+    del by_c_1_1_2_left_flip_up
+    t256 = c_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
+    sine_1_1_2_left_flip_up = _runtime.select(t255, -t249, 0.0)
+    del t249, t255
+    t257 = s_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
+    c_1_1_2_3_left_flip_up = t256 - t257
+    del t256, t257
+    t258 = c_1_1_2_left_flip_up * sine_1_1_2_left_flip_up
+    del c_1_1_2_left_flip_up, sine_1_1_2_left_flip_up
+    t259 = s_1_1_2_left_flip_up * cosine_1_1_2_left_flip_up
+    del cosine_1_1_2_left_flip_up, s_1_1_2_left_flip_up
+    s_1_1_2_3_left_flip_up = t258 + t259
+    del t258, t259
+    axisx_1_1_2_3_left_flip_up = T13 * c_1_1_2_3_left_flip_up + T23 * s_1_1_2_3_left_flip_up
+    t260 = axisx_1_1_2_3_left_flip_up * axisx_1_1_2_3_left_flip_up
+    h_1_1_2_3_left_flip_up = np.sqrt(t12 + t260)
+    del t260
+    t261 = t77 * h_1_1_2_3_left_flip_up <= size
+    qx_1_1_2_3_left_flip_up = w_x * c_1_1_2_3_left_flip_up + w_y * s_1_1_2_3_left_flip_up
+    t262 = h_1_1_2_3_left_flip_up == 0.0
+    t263 = 1.0 / h_1_1_2_3_left_flip_up
+    t264 = _runtime.select(t262, 0.0, T33 * t263)
+    x_1_1_2_3_left_flip_up = _runtime.select(t261, qx_1_1_2_3_left_flip_up, qx_1_1_2_3_left_flip_up + d5 * t264)
+    dqx_1_1_2_3_left_flip_up = w_y * c_1_1_2_3_left_flip_up - w_x * s_1_1_2_3_left_flip_up
+    t265 = T13 * s_1_1_2_3_left_flip_up - T23 * c_1_1_2_3_left_flip_up
+    t266 = h_1_1_2_3_left_flip_up * h_1_1_2_3_left_flip_up
+    del h_1_1_2_3_left_flip_up
+    spin_1_1_2_3_left_flip_up = _runtime.select(t261, 0.0, T33 * t265 / t266)
+    del t265, t266
+    rate_1_1_2_3_left_flip_up = d5 * spin_1_1_2_3_left_flip_up
+    t267 = _runtime.select(t262, 1.0, -(axisx_1_1_2_3_left_flip_up * t263))
+    del axisx_1_1_2_3_left_flip_up, t262, t263
+    t268 = dqx_1_1_2_3_left_flip_up - rate_1_1_2_3_left_flip_up * t267
+    dx_1_1_2_3_left_flip_up = _runtime.select(t261, dqx_1_1_2_3_left_flip_up, t268)
+    del t268
+    t269 = x_1_1_2_3_left_flip_up * dx_1_1_2_3_left_flip_up
+    del dx_1_1_2_3_left_flip_up
+    t270 = _runtime.select(t261, t25, t25 - d5 * t267)
+    dy_1_1_2_3_left_flip_up = _runtime.select(t261, 0.0, rate_1_1_2_3_left_flip_up * t264)
+    slope_1_1_2_3_left_flip_up = t269 - t270 * dy_1_1_2_3_left_flip_up
+    del dy_1_1_2_3_left_flip_up, t269
+    t271 = slope_1_1_2_3_left_flip_up * slope_1_1_2_3_left_flip_up
+    straight_1_1_2_3_left_flip_up = dqx_1_1_2_3_left_flip_up * dqx_1_1_2_3_left_flip_up
+    t272 = spin_1_1_2_3_left_flip_up * (qx_1_1_2_3_left_flip_up * t264 - t25 * t267)
+    del qx_1_1_2_3_left_flip_up, spin_1_1_2_3_left_flip_up, t264
+    t273 = rate_1_1_2_3_left_flip_up * (2.0 * dqx_1_1_2_3_left_flip_up * t267 + t272)
+    del dqx_1_1_2_3_left_flip_up, rate_1_1_2_3_left_flip_up, t267, t272
+    bends_1_1_2_3_left_flip_up = _runtime.select(t261, straight_1_1_2_3_left_flip_up, straight_1_1_2_3_left_flip_up - t273)
+    del straight_1_1_2_3_left_flip_up, t273
+    t274 = x_1_1_2_3_left_flip_up * x_1_1_2_3_left_flip_up
+    del x_1_1_2_3_left_flip_up
+    square_1_1_2_3_left_flip_up = t274 + t270 * t270
+    del t270, t274
+    t275 = _runtime.select(t261, t31, fold_1_1) - whole_1_1
+    t276 = np.maximum(0.0, t275)
+    del t275
+    t277 = whole_1_1 + _runtime.select(t261, t3, full_1_1)
+    del t261
+    t278 = np.minimum(t277 * t277, square_1_1_2_3_left_flip_up)
+    del t277
+    miss_1_1_2_3_left_flip_up = square_1_1_2_3_left_flip_up - np.maximum(t276 * t276, t278)
+    del square_1_1_2_3_left_flip_up, t276, t278
+    t279 = bends_1_1_2_3_left_flip_up * miss_1_1_2_3_left_flip_up
+    inner_1_1_2_3_left_flip_up = t271 - t279
+    del t271, t279
+    t280 = inner_1_1_2_3_left_flip_up < 0.0
+    t281 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_left_flip_up))
+    del inner_1_1_2_3_left_flip_up
+    t282 = _runtime.sign(slope_1_1_2_3_left_flip_up) * t281
+    del t281
+    below_1_1_2_3_left_flip_up = _runtime.select(t280, 2.0 * bends_1_1_2_3_left_flip_up, 2.0 * (slope_1_1_2_3_left_flip_up + t282))
+    del bends_1_1_2_3_left_flip_up, t282
+    above_1_1_2_3_left_flip_up = _runtime.select(t280, slope_1_1_2_3_left_flip_up, miss_1_1_2_3_left_flip_up)
+    del miss_1_1_2_3_left_flip_up, slope_1_1_2_3_left_flip_up, t280
+    t283 = np.abs(below_1_1_2_3_left_flip_up) <= np.abs(above_1_1_2_3_left_flip_up)
+    t284 = above_1_1_2_3_left_flip_up / below_1_1_2_3_left_flip_up
+    del above_1_1_2_3_left_flip_up, below_1_1_2_3_left_flip_up
+    t285 = _runtime.select(t283, 0.0, t284)
+    del t283, t284
+    t286 = t285 * t285
+    t287 = 1.0 / (1.0 + t286)
+    t288 = 2.0 * t285 * t287
+    del t285
+    by_c_1_1_2_3_left_flip_up = t287 * (1.0 - t286)
+    del t286, t287
+    t289 = d4 * (t288 * t288) / (1.0 + np.abs(by_c_1_1_2_3_left_flip_up))
+    t290 = (t289 + root1 * np.abs(t288) <= whole_1_1) & (0.0 < by_c_1_1_2_3_left_flip_up)
+    del t289
+    cosine_1_1_2_3_left_flip_up = _runtime.select(t290, by_c_1_1_2_3_left_flip_up, 1.0)
     del by_c_1_1_2_3_left_flip_up
-    t252 = c_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
-    sine_1_1_2_3_left_flip_up = _runtime.select(t251, -t249, 0.0)
-    del t249, t251
-    t253 = s_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
-    c_1_1_2_3_4_left_flip_up = t252 - t253
-    del t252, t253
-    t254 = c_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
+    t291 = c_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
+    sine_1_1_2_3_left_flip_up = _runtime.select(t290, -t288, 0.0)
+    del t288, t290
+    t292 = s_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
+    c_1_1_2_3_4_left_flip_up = t291 - t292
+    del t291, t292
+    t293 = c_1_1_2_3_left_flip_up * sine_1_1_2_3_left_flip_up
     del c_1_1_2_3_left_flip_up, sine_1_1_2_3_left_flip_up
-    t255 = s_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
+    t294 = s_1_1_2_3_left_flip_up * cosine_1_1_2_3_left_flip_up
     del cosine_1_1_2_3_left_flip_up, s_1_1_2_3_left_flip_up
-    s_1_1_2_3_4_left_flip_up = t254 + t255
-    del t254, t255
+    s_1_1_2_3_4_left_flip_up = t293 + t294
+    del t293, t294
     axisx_1_1_2_3_4_left_flip_up = T13 * c_1_1_2_3_4_left_flip_up + T23 * s_1_1_2_3_4_left_flip_up
-    t256 = axisx_1_1_2_3_4_left_flip_up * axisx_1_1_2_3_4_left_flip_up
-    h_1_1_2_3_4_left_flip_up = np.sqrt(t11 + t256)
-    del t256
-    t257 = size * h_1_1_2_3_4_left_flip_up <= t15
+    t295 = axisx_1_1_2_3_4_left_flip_up * axisx_1_1_2_3_4_left_flip_up
+    h_1_1_2_3_4_left_flip_up = np.sqrt(t12 + t295)
+    del t295
+    t296 = t77 * h_1_1_2_3_4_left_flip_up <= size
     qx_1_1_2_3_4_left_flip_up = w_x * c_1_1_2_3_4_left_flip_up + w_y * s_1_1_2_3_4_left_flip_up
-    t258 = 1.0 / h_1_1_2_3_4_left_flip_up
-    t259 = T33 * t258
-    x_1_1_2_3_4_left_flip_up = _runtime.select(t257, qx_1_1_2_3_4_left_flip_up, qx_1_1_2_3_4_left_flip_up + d5 * t259)
-    del qx_1_1_2_3_4_left_flip_up
+    t297 = h_1_1_2_3_4_left_flip_up == 0.0
+    t298 = 1.0 / h_1_1_2_3_4_left_flip_up
+    t299 = _runtime.select(t297, 0.0, T33 * t298)
+    x_1_1_2_3_4_left_flip_up = _runtime.select(t296, qx_1_1_2_3_4_left_flip_up, qx_1_1_2_3_4_left_flip_up + d5 * t299)
     dqx_1_1_2_3_4_left_flip_up = w_y * c_1_1_2_3_4_left_flip_up - w_x * s_1_1_2_3_4_left_flip_up
-    us_1_1_2_3_4_left_flip_up = axisx_1_1_2_3_4_left_flip_up * t258
-    del axisx_1_1_2_3_4_left_flip_up, t258
-    t260 = T13 * s_1_1_2_3_4_left_flip_up - T23 * c_1_1_2_3_4_left_flip_up
-    t261 = h_1_1_2_3_4_left_flip_up * h_1_1_2_3_4_left_flip_up
+    t300 = T13 * s_1_1_2_3_4_left_flip_up - T23 * c_1_1_2_3_4_left_flip_up
+    t301 = h_1_1_2_3_4_left_flip_up * h_1_1_2_3_4_left_flip_up
     del h_1_1_2_3_4_left_flip_up
-    rate_1_1_2_3_4_left_flip_up = d5 * (T33 * t260) / t261
-    del t260, t261
-    t262 = us_1_1_2_3_4_left_flip_up * rate_1_1_2_3_4_left_flip_up
-    dx_1_1_2_3_4_left_flip_up = _runtime.select(t257, dqx_1_1_2_3_4_left_flip_up, dqx_1_1_2_3_4_left_flip_up + t262)
-    del dqx_1_1_2_3_4_left_flip_up, t262
-    t263 = x_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
-    t264 = _runtime.select(t257, t21, t21 + d5 * us_1_1_2_3_4_left_flip_up)
-    del us_1_1_2_3_4_left_flip_up
-    dy_1_1_2_3_4_left_flip_up = _runtime.select(t257, 0.0, t259 * rate_1_1_2_3_4_left_flip_up)
-    del rate_1_1_2_3_4_left_flip_up, t259
-    slope_1_1_2_3_4_left_flip_up = t263 - t264 * dy_1_1_2_3_4_left_flip_up
-    del t263
-    t265 = slope_1_1_2_3_4_left_flip_up * slope_1_1_2_3_4_left_flip_up
-    t266 = x_1_1_2_3_4_left_flip_up * x_1_1_2_3_4_left_flip_up
-    del x_1_1_2_3_4_left_flip_up
-    square_1_1_2_3_4_left_flip_up = t266 + t264 * t264
-    del t264, t266
-    nearest_1_1_2_3_4_left_flip_up = _runtime.select(t257, t25, fold_1_1)
-    low_1_1_2_3_4_left_flip_up = nearest_1_1_2_3_4_left_flip_up * nearest_1_1_2_3_4_left_flip_up
-    del nearest_1_1_2_3_4_left_flip_up
-    farthest_1_1_2_3_4_left_flip_up = _runtime.select(t257, t3, full_1_1)
-    del t257
-    high_1_1_2_3_4_left_flip_up = farthest_1_1_2_3_4_left_flip_up * farthest_1_1_2_3_4_left_flip_up
-    del farthest_1_1_2_3_4_left_flip_up
-    t267 = np.minimum(high_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up)
-    del high_1_1_2_3_4_left_flip_up
-    miss_1_1_2_3_4_left_flip_up = square_1_1_2_3_4_left_flip_up - np.maximum(low_1_1_2_3_4_left_flip_up, t267)
-    del low_1_1_2_3_4_left_flip_up, square_1_1_2_3_4_left_flip_up, t267
-    t268 = dx_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
+    spin_1_1_2_3_4_left_flip_up = _runtime.select(t296, 0.0, T33 * t300 / t301)
+    del t300, t301
+    rate_1_1_2_3_4_left_flip_up = d5 * spin_1_1_2_3_4_left_flip_up
+    t302 = _runtime.select(t297, 1.0, -(axisx_1_1_2_3_4_left_flip_up * t298))
+    del axisx_1_1_2_3_4_left_flip_up, t297, t298
+    t303 = dqx_1_1_2_3_4_left_flip_up - rate_1_1_2_3_4_left_flip_up * t302
+    dx_1_1_2_3_4_left_flip_up = _runtime.select(t296, dqx_1_1_2_3_4_left_flip_up, t303)
+    del t303
+    t304 = x_1_1_2_3_4_left_flip_up * dx_1_1_2_3_4_left_flip_up
     del dx_1_1_2_3_4_left_flip_up
-    t269 = dy_1_1_2_3_4_left_flip_up * dy_1_1_2_3_4_left_flip_up
-    del dy_1_1_2_3_4_left_flip_up
-    bend_1_1_2_3_4_left_flip_up = t268 + t269
-    del t268, t269
-    t270 = miss_1_1_2_3_4_left_flip_up * bend_1_1_2_3_4_left_flip_up
-    inner_1_1_2_3_4_left_flip_up = t265 - t270
-    del t265, t270
-    t271 = slope_1_1_2_3_4_left_flip_up / (2.0 * bend_1_1_2_3_4_left_flip_up)
-    del bend_1_1_2_3_4_left_flip_up
-    t272 = np.maximum(0.0, inner_1_1_2_3_4_left_flip_up)
-    t273 = _runtime.sign(slope_1_1_2_3_4_left_flip_up) * np.sqrt(t272)
-    del t272
-    outer_1_1_2_3_4_left_flip_up = slope_1_1_2_3_4_left_flip_up + t273
-    del slope_1_1_2_3_4_left_flip_up, t273
-    t274 = miss_1_1_2_3_4_left_flip_up / (2.0 * outer_1_1_2_3_4_left_flip_up)
-    del miss_1_1_2_3_4_left_flip_up
-    t275 = _runtime.select(outer_1_1_2_3_4_left_flip_up == 0.0, 0.0, t274)
-    del outer_1_1_2_3_4_left_flip_up, t274
-    t276 = _runtime.select(inner_1_1_2_3_4_left_flip_up < 0.0, t271, t275)
-    del inner_1_1_2_3_4_left_flip_up, t271, t275
-    t277 = t276 * t276
-    t278 = 1.0 / (1.0 + t277)
-    t279 = 2.0 * t276 * t278
-    del t276
-    by_c_1_1_2_3_4_left_flip_up = t278 * (1.0 - t277)
-    del t277, t278
-    t280 = d4 * (t279 * t279) / (1.0 + np.abs(by_c_1_1_2_3_4_left_flip_up))
-    t281 = (t280 + root1 * np.abs(t279) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_left_flip_up)
-    del t280
-    sine_1_1_2_3_4_left_flip_up = _runtime.select(t281, -t279, 0.0)
-    del t279
-    t282 = c_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
-    cosine_1_1_2_3_4_left_flip_up = _runtime.select(t281, by_c_1_1_2_3_4_left_flip_up, 1.0)
-    del by_c_1_1_2_3_4_left_flip_up, t281
-    t283 = s_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
-    s1_left_flip_up = _runtime.select(tangent1, t282 + t283, -t14)
-    del t14, t282, t283
-    t284 = c_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
+    t305 = _runtime.select(t296, t25, t25 - d5 * t302)
+    dy_1_1_2_3_4_left_flip_up = _runtime.select(t296, 0.0, rate_1_1_2_3_4_left_flip_up * t299)
+    slope_1_1_2_3_4_left_flip_up = t304 - t305 * dy_1_1_2_3_4_left_flip_up
+    del dy_1_1_2_3_4_left_flip_up, t304
+    t306 = slope_1_1_2_3_4_left_flip_up * slope_1_1_2_3_4_left_flip_up
+    straight_1_1_2_3_4_left_flip_up = dqx_1_1_2_3_4_left_flip_up * dqx_1_1_2_3_4_left_flip_up
+    t307 = qx_1_1_2_3_4_left_flip_up * t299 - t25 * t302
+    del qx_1_1_2_3_4_left_flip_up, t299
+    t308 = 2.0 * dqx_1_1_2_3_4_left_flip_up * t302 + spin_1_1_2_3_4_left_flip_up * t307
+    del dqx_1_1_2_3_4_left_flip_up, spin_1_1_2_3_4_left_flip_up, t302, t307
+    t309 = straight_1_1_2_3_4_left_flip_up - rate_1_1_2_3_4_left_flip_up * t308
+    del rate_1_1_2_3_4_left_flip_up, t308
+    bends_1_1_2_3_4_left_flip_up = _runtime.select(t296, straight_1_1_2_3_4_left_flip_up, t309)
+    del straight_1_1_2_3_4_left_flip_up, t309
+    t310 = x_1_1_2_3_4_left_flip_up * x_1_1_2_3_4_left_flip_up
+    del x_1_1_2_3_4_left_flip_up
+    square_1_1_2_3_4_left_flip_up = t310 + t305 * t305
+    del t305, t310
+    t311 = _runtime.select(t296, t31, fold_1_1) - whole_1_1
+    t312 = np.maximum(0.0, t311)
+    del t311
+    t313 = whole_1_1 + _runtime.select(t296, t3, full_1_1)
+    del t296
+    t314 = np.minimum(t313 * t313, square_1_1_2_3_4_left_flip_up)
+    del t313
+    miss_1_1_2_3_4_left_flip_up = square_1_1_2_3_4_left_flip_up - np.maximum(t312 * t312, t314)
+    del square_1_1_2_3_4_left_flip_up, t312, t314
+    t315 = bends_1_1_2_3_4_left_flip_up * miss_1_1_2_3_4_left_flip_up
+    inner_1_1_2_3_4_left_flip_up = t306 - t315
+    del t306, t315
+    t316 = inner_1_1_2_3_4_left_flip_up < 0.0
+    t317 = np.maximum(0.0, inner_1_1_2_3_4_left_flip_up)
+    del inner_1_1_2_3_4_left_flip_up
+    t318 = _runtime.sign(slope_1_1_2_3_4_left_flip_up) * np.sqrt(t317)
+    del t317
+    below_1_1_2_3_4_left_flip_up = _runtime.select(t316, 2.0 * bends_1_1_2_3_4_left_flip_up, 2.0 * (slope_1_1_2_3_4_left_flip_up + t318))
+    del bends_1_1_2_3_4_left_flip_up, t318
+    above_1_1_2_3_4_left_flip_up = _runtime.select(t316, slope_1_1_2_3_4_left_flip_up, miss_1_1_2_3_4_left_flip_up)
+    del miss_1_1_2_3_4_left_flip_up, slope_1_1_2_3_4_left_flip_up, t316
+    t319 = np.abs(below_1_1_2_3_4_left_flip_up) <= np.abs(above_1_1_2_3_4_left_flip_up)
+    t320 = above_1_1_2_3_4_left_flip_up / below_1_1_2_3_4_left_flip_up
+    del above_1_1_2_3_4_left_flip_up, below_1_1_2_3_4_left_flip_up
+    t321 = _runtime.select(t319, 0.0, t320)
+    del t319, t320
+    t322 = t321 * t321
+    t323 = 1.0 / (1.0 + t322)
+    t324 = 2.0 * t321 * t323
+    del t321
+    by_c_1_1_2_3_4_left_flip_up = t323 * (1.0 - t322)
+    del t322, t323
+    t325 = d4 * (t324 * t324) / (1.0 + np.abs(by_c_1_1_2_3_4_left_flip_up))
+    t326 = (t325 + root1 * np.abs(t324) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_left_flip_up)
+    del t325
+    sine_1_1_2_3_4_left_flip_up = _runtime.select(t326, -t324, 0.0)
+    del t324
+    t327 = c_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
+    cosine_1_1_2_3_4_left_flip_up = _runtime.select(t326, by_c_1_1_2_3_4_left_flip_up, 1.0)
+    del by_c_1_1_2_3_4_left_flip_up, t326
+    t328 = s_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
+    s1_left_flip_up = _runtime.select(tangent1, t327 + t328, -t15)
+    del t15, t327, t328
+    t329 = c_1_1_2_3_4_left_flip_up * cosine_1_1_2_3_4_left_flip_up
     del c_1_1_2_3_4_left_flip_up, cosine_1_1_2_3_4_left_flip_up
-    t285 = s_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
+    t330 = s_1_1_2_3_4_left_flip_up * sine_1_1_2_3_4_left_flip_up
     del s_1_1_2_3_4_left_flip_up, sine_1_1_2_3_4_left_flip_up
-    c1_left_flip_up = _runtime.select(tangent1, t284 - t285, c_1_1)
-    del c_1_1, t284, t285
-    t286 = _runtime.wrap_cut(np.arctan2(s1_left_flip_up, c1_left_flip_up))
+    c1_left_flip_up = _runtime.select(tangent1, t329 - t330, c_1_1)
+    del c_1_1, t329, t330
+    t331 = _runtime.wrap_cut(np.arctan2(s1_left_flip_up, c1_left_flip_up))
     across_left_flip_up = w_x * c1_left_flip_up + w_y * s1_left_flip_up
     M_13_left_flip_up = T13 * c1_left_flip_up + T23 * s1_left_flip_up
-    h_wrist_left_flip_up = np.sqrt(t11 + M_13_left_flip_up * M_13_left_flip_up)
-    aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t115
-    t287 = t38 + across_left_flip_up * across_left_flip_up
-    r_hub_left_flip_up = np.sqrt(t287)
-    del t287
+    h_wrist_left_flip_up = np.sqrt(t12 + M_13_left_flip_up * M_13_left_flip_up)
+    aligned_wrist_left_flip_up = h_wrist_left_flip_up <= t140
+    t332 = t47 + across_left_flip_up * across_left_flip_up
+    r_hub_left_flip_up = np.sqrt(t332)
+    del t332
     hub_mid_left_flip_up = r_hub_left_flip_up <= t4
-    t288 = d5 + r_hub_left_flip_up
-    t289 = d5 - r_hub_left_flip_up
-    mid_reach_left_flip_up = np.minimum(full_1_1, t288) * 0.5 + np.maximum(fold_1_1, np.abs(t289)) * 0.5
-    t290 = (t288 - mid_reach_left_flip_up) * (t288 + mid_reach_left_flip_up)
-    k_mid_left_flip_up = np.maximum(0.0, t290)
-    del t290
-    t291 = (t289 - mid_reach_left_flip_up) * (t289 + mid_reach_left_flip_up)
+    t333 = d5 + r_hub_left_flip_up
+    t334 = d5 - r_hub_left_flip_up
+    mid_reach_left_flip_up = np.minimum(full_1_1, t333) * 0.5 + np.maximum(fold_1_1, np.abs(t334)) * 0.5
+    t335 = (t333 - mid_reach_left_flip_up) * (t333 + mid_reach_left_flip_up)
+    k_mid_left_flip_up = np.maximum(0.0, t335)
+    del t335
+    t336 = (t334 - mid_reach_left_flip_up) * (t334 + mid_reach_left_flip_up)
     del mid_reach_left_flip_up
-    d_mid_left_flip_up = np.maximum(0.0, -t291)
-    del t291
+    d_mid_left_flip_up = np.maximum(0.0, -t336)
+    del t336
     n_mid_left_flip_up = k_mid_left_flip_up + d_mid_left_flip_up
-    any_mid_left_flip_up = n_mid_left_flip_up <= t118
-    t292 = 1.0 / n_mid_left_flip_up
+    t337 = _runtime.VANISHING * (size * t333)
+    any_mid_left_flip_up = n_mid_left_flip_up <= t337
+    t338 = 1.0 / n_mid_left_flip_up
     del n_mid_left_flip_up
-    t293 = (k_mid_left_flip_up - d_mid_left_flip_up) * t292
-    uc_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 1.0, t293)
-    del t293
-    t294 = np.sqrt(k_mid_left_flip_up * d_mid_left_flip_up)
+    t339 = (k_mid_left_flip_up - d_mid_left_flip_up) * t338
+    uc_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 1.0, t339)
+    del t339
+    t340 = np.sqrt(k_mid_left_flip_up * d_mid_left_flip_up)
     del d_mid_left_flip_up, k_mid_left_flip_up
-    us_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 0.0, t292 * (2.0 * t294))
-    del any_mid_left_flip_up, t292, t294
-    t295 = across_left_flip_up * uc_mid_left_flip_up + t21 * us_mid_left_flip_up
-    t296 = 1.0 / r_hub_left_flip_up
+    us_mid_left_flip_up = _runtime.select(any_mid_left_flip_up, 0.0, t338 * (2.0 * t340))
+    del any_mid_left_flip_up, t338, t340
+    t341 = across_left_flip_up * uc_mid_left_flip_up + t25 * us_mid_left_flip_up
+    t342 = 1.0 / r_hub_left_flip_up
     del r_hub_left_flip_up
-    c_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t295 * t296)
-    del t295
-    close_left_flip_up = root1 * h_wrist_left_flip_up - t121 <= t4
-    t297 = 1.0 / h_wrist_left_flip_up
-    t298 = _runtime.select(aligned_wrist_left_flip_up, 0.0, T33 * t297)
-    t299 = across_left_flip_up + d5 * t298
-    c_phi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, 1.0, -(M_13_left_flip_up * t297))
-    del t297
-    t300 = t21 - d5 * c_phi_left_flip_up
-    here_left_flip_up = np.sqrt(t299 * t299 + t300 * t300)
-    del t299, t300
+    c_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t341 * t342)
+    del t341
+    close_left_flip_up = root1 * h_wrist_left_flip_up - t146 <= t4
+    t343 = 1.0 / h_wrist_left_flip_up
+    t344 = _runtime.select(aligned_wrist_left_flip_up, 0.0, T33 * t343)
+    t345 = across_left_flip_up + d5 * t344
+    c_phi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, 1.0, -(M_13_left_flip_up * t343))
+    del t343
+    t346 = t25 - d5 * c_phi_left_flip_up
+    here_left_flip_up = np.sqrt(t345 * t345 + t346 * t346)
+    del t345, t346
     in_reach_left_flip_up = np.minimum(full_1_1, np.maximum(here_left_flip_up, fold_1_1))
-    t301 = (t288 - in_reach_left_flip_up) * (t288 + in_reach_left_flip_up)
-    del t288
-    k_near_left_flip_up = np.maximum(0.0, t301)
-    del t301
-    t302 = (t289 - in_reach_left_flip_up) * (t289 + in_reach_left_flip_up)
-    del t289
-    d_near_left_flip_up = np.maximum(0.0, -t302)
-    del t302
+    t347 = (t333 - in_reach_left_flip_up) * (t333 + in_reach_left_flip_up)
+    del t333
+    k_near_left_flip_up = np.maximum(0.0, t347)
+    del t347
+    t348 = (t334 - in_reach_left_flip_up) * (t334 + in_reach_left_flip_up)
+    del t334
+    d_near_left_flip_up = np.maximum(0.0, -t348)
+    del t348
     n_near_left_flip_up = k_near_left_flip_up + d_near_left_flip_up
-    any_near_left_flip_up = n_near_left_flip_up <= t118
-    t303 = 1.0 / n_near_left_flip_up
+    any_near_left_flip_up = n_near_left_flip_up <= t337
+    del t337
+    t349 = 1.0 / n_near_left_flip_up
     del n_near_left_flip_up
-    t304 = (k_near_left_flip_up - d_near_left_flip_up) * t303
-    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t304)
-    del t304
-    t305 = across_left_flip_up * c_phi_left_flip_up + t21 * t298
-    t306 = np.abs(t305)
-    side_left_flip_up = _runtime.select(t306 <= t4, 1.0, -(t305 / t306))
-    del t305, t306
-    t307 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
+    t350 = (k_near_left_flip_up - d_near_left_flip_up) * t349
+    uc_near_left_flip_up = _runtime.select(any_near_left_flip_up, 1.0, t350)
+    del t350
+    t351 = across_left_flip_up * c_phi_left_flip_up + t25 * t344
+    t352 = np.abs(t351)
+    side_left_flip_up = _runtime.select(t352 <= t4, 1.0, -(t351 / t352))
+    del t351, t352
+    t353 = np.sqrt(k_near_left_flip_up * d_near_left_flip_up)
     del d_near_left_flip_up, k_near_left_flip_up
-    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t303 * (2.0 * side_left_flip_up * t307))
-    del any_near_left_flip_up, side_left_flip_up, t303, t307
-    t308 = across_left_flip_up * uc_near_left_flip_up + t21 * us_near_left_flip_up
-    c_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t296 * t308)
-    del t308
-    t309 = t298 + c_near_left_flip_up
-    t310 = across_left_flip_up * us_near_left_flip_up - t21 * uc_near_left_flip_up
+    us_near_left_flip_up = _runtime.select(any_near_left_flip_up, 0.0, t349 * (2.0 * side_left_flip_up * t353))
+    del any_near_left_flip_up, side_left_flip_up, t349, t353
+    t354 = across_left_flip_up * uc_near_left_flip_up + t25 * us_near_left_flip_up
+    c_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 1.0, t342 * t354)
+    del t354
+    t355 = t344 + c_near_left_flip_up
+    t356 = across_left_flip_up * us_near_left_flip_up - t25 * uc_near_left_flip_up
     del uc_near_left_flip_up, us_near_left_flip_up
-    s_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t296 * t310)
-    del t310
-    t311 = c_phi_left_flip_up + s_near_left_flip_up
-    t312 = h_wrist_left_flip_up * np.sqrt(t309 * t309 + t311 * t311)
-    del h_wrist_left_flip_up, t309, t311
-    t313 = np.abs(here_left_flip_up - in_reach_left_flip_up)
+    s_near_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t342 * t356)
+    del t356
+    t357 = c_phi_left_flip_up + s_near_left_flip_up
+    t358 = h_wrist_left_flip_up * np.sqrt(t355 * t355 + t357 * t357)
+    del h_wrist_left_flip_up, t355, t357
+    t359 = np.abs(here_left_flip_up - in_reach_left_flip_up)
     del here_left_flip_up, in_reach_left_flip_up
-    t314 = (t312 - 2.2737367544323206e-13 <= t132) & np.logical_not(t313 <= t4)
-    del t312, t313
-    s_kept_left_flip_up = _runtime.select(t314, c_near_left_flip_up, -t298)
+    t360 = (t358 - 2.2737367544323206e-13 <= t157) & np.logical_not(t359 <= t4)
+    del t358, t359
+    s_kept_left_flip_up = _runtime.select(t360, c_near_left_flip_up, -t344)
     del c_near_left_flip_up
-    t315 = _runtime.select(close_left_flip_up, s_kept_left_flip_up, -t298)
-    del s_kept_left_flip_up, t298
-    sphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, c_mid_left_flip_up, t315)
-    del c_mid_left_flip_up, t315
-    t316 = across_left_flip_up - d5 * sphi_left_flip_up
-    t317 = across_left_flip_up * us_mid_left_flip_up - t21 * uc_mid_left_flip_up
+    t361 = _runtime.select(close_left_flip_up, s_kept_left_flip_up, -t344)
+    del s_kept_left_flip_up, t344
+    sphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, c_mid_left_flip_up, t361)
+    del c_mid_left_flip_up, t361
+    t362 = across_left_flip_up - d5 * sphi_left_flip_up
+    t363 = across_left_flip_up * us_mid_left_flip_up - t25 * uc_mid_left_flip_up
     del across_left_flip_up, uc_mid_left_flip_up, us_mid_left_flip_up
-    s_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t296 * t317)
-    del hub_mid_left_flip_up, t296, t317
-    c_kept_left_flip_up = _runtime.select(t314, -s_near_left_flip_up, c_phi_left_flip_up)
-    del s_near_left_flip_up, t314
-    t318 = _runtime.select(close_left_flip_up, c_kept_left_flip_up, c_phi_left_flip_up)
+    s_mid_left_flip_up = _runtime.select(hub_mid_left_flip_up, 0.0, t342 * t363)
+    del hub_mid_left_flip_up, t342, t363
+    c_kept_left_flip_up = _runtime.select(t360, -s_near_left_flip_up, c_phi_left_flip_up)
+    del s_near_left_flip_up, t360
+    t364 = _runtime.select(close_left_flip_up, c_kept_left_flip_up, c_phi_left_flip_up)
     del c_kept_left_flip_up, c_phi_left_flip_up, close_left_flip_up
-    cphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, -s_mid_left_flip_up, t318)
-    del s_mid_left_flip_up, t318
-    ey_left_flip_up = t21 - d5 * cphi_left_flip_up
-    t319 = t316 * t316 + ey_left_flip_up * ey_left_flip_up
-    r_elbow_left_flip_up = np.sqrt(t319)
-    del t319
-    t320 = full_1_1 - r_elbow_left_flip_up
-    t321 = t24 + r_elbow_left_flip_up
-    t322 = r_elbow_left_flip_up - t24
-    t323 = t114 & (t113 <= t320) & (t113 <= t321) & (t113 <= t322)
-    unreachable_2 = np.logical_not(t323)
-    del t323
-    t324 = _runtime.poison(invalid | unreachable_2)
-    t325 = t286 + t324
-    del t286
+    cphi_left_flip_up = _runtime.select(aligned_wrist_left_flip_up, -s_mid_left_flip_up, t364)
+    del s_mid_left_flip_up, t364
+    ey_left_flip_up = t25 - d5 * cphi_left_flip_up
+    t365 = t362 * t362 + ey_left_flip_up * ey_left_flip_up
+    r_elbow_left_flip_up = np.sqrt(t365)
+    del t365
+    t366 = full_1_1 - r_elbow_left_flip_up
+    t367 = t30 + r_elbow_left_flip_up
+    t368 = r_elbow_left_flip_up - t30
+    t369 = t139 & (t138 <= t366) & (t138 <= t367) & (t138 <= t368)
+    unreachable_2 = np.logical_not(t369)
+    del t369
+    t370 = _runtime.poison(invalid | unreachable_2)
+    t371 = t331 + t370
+    del t331
     folded_elbow_left_flip_up = r_elbow_left_flip_up <= t4
-    t326 = folded_elbow_left_flip_up | no_link_elbow
-    A_elbow_left_flip_up = np.maximum(t320, 0.0)
-    del t320
-    C_elbow_left_flip_up = np.maximum(t322, 0.0)
-    del t322
-    t327 = A_elbow_left_flip_up * C_elbow_left_flip_up
+    t372 = folded_elbow_left_flip_up | no_link_elbow
+    A_elbow_left_flip_up = np.maximum(t366, 0.0)
+    del t366
+    C_elbow_left_flip_up = np.maximum(t368, 0.0)
+    del t368
+    t373 = A_elbow_left_flip_up * C_elbow_left_flip_up
     S_elbow_left_flip_up = full_1_1 + r_elbow_left_flip_up
-    B_elbow_left_flip_up = np.maximum(t321, 0.0)
-    del t321
-    t328 = S_elbow_left_flip_up * B_elbow_left_flip_up
-    t329 = 1.0 / (t327 + t328)
-    c_base_elbow_left_flip_up = _runtime.select(t326, 1.0, -((t327 - t328) * t329))
-    t330 = 1.0 / r_elbow_left_flip_up
+    B_elbow_left_flip_up = np.maximum(t367, 0.0)
+    del t367
+    t374 = S_elbow_left_flip_up * B_elbow_left_flip_up
+    t375 = 1.0 / (t373 + t374)
+    c_base_elbow_left_flip_up = _runtime.select(t372, 1.0, -((t373 - t374) * t375))
+    t376 = 1.0 / r_elbow_left_flip_up
     del r_elbow_left_flip_up
-    t331 = _runtime.select(folded_elbow_left_flip_up, 0.0, ey_left_flip_up * t330)
+    t377 = _runtime.select(folded_elbow_left_flip_up, 0.0, ey_left_flip_up * t376)
     del ey_left_flip_up
-    t332 = c_base_elbow_left_flip_up * t331
-    area_elbow_left_flip_up = 2.0 * np.sqrt(t327 * t328)
-    del t327, t328
-    s_base_elbow_left_flip_up = _runtime.select(t326, 0.0, t329 * area_elbow_left_flip_up)
-    del t326, t329
-    t333 = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t316 * t330))
-    del t316, t330
-    t334 = s_base_elbow_left_flip_up * t333
-    s2_left_flip_up = t332 - t334
-    t335 = c_base_elbow_left_flip_up * t333
-    del c_base_elbow_left_flip_up, t333
-    t336 = t331 * s_base_elbow_left_flip_up
-    del s_base_elbow_left_flip_up, t331
-    c2_left_flip_up = t335 + t336
-    t337 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
-    t338 = A_elbow_left_flip_up * S_elbow_left_flip_up
+    t378 = c_base_elbow_left_flip_up * t377
+    area_elbow_left_flip_up = 2.0 * np.sqrt(t373 * t374)
+    del t373, t374
+    s_base_elbow_left_flip_up = _runtime.select(t372, 0.0, t375 * area_elbow_left_flip_up)
+    del t372, t375
+    t379 = _runtime.select(folded_elbow_left_flip_up, 1.0, -(t362 * t376))
+    del t362, t376
+    t380 = s_base_elbow_left_flip_up * t379
+    s2_left_flip_up = t378 - t380
+    t381 = c_base_elbow_left_flip_up * t379
+    del c_base_elbow_left_flip_up, t379
+    t382 = t377 * s_base_elbow_left_flip_up
+    del s_base_elbow_left_flip_up, t377
+    c2_left_flip_up = t381 + t382
+    t383 = _runtime.wrap_cut(np.arctan2(s2_left_flip_up, c2_left_flip_up))
+    t384 = A_elbow_left_flip_up * S_elbow_left_flip_up
     del A_elbow_left_flip_up, S_elbow_left_flip_up
-    t339 = C_elbow_left_flip_up * B_elbow_left_flip_up
+    t385 = C_elbow_left_flip_up * B_elbow_left_flip_up
     del B_elbow_left_flip_up, C_elbow_left_flip_up
-    t340 = 1.0 / (t338 + t339)
-    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t340)
+    t386 = 1.0 / (t384 + t385)
+    s3_left_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_left_flip_up * t386)
     del area_elbow_left_flip_up
-    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t340 * (t338 - t339)))
-    del t338, t339, t340
-    t341 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
-    t342 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
-    t343 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
+    c3_left_flip_up = _runtime.select(no_link_elbow, 1.0, -(t386 * (t384 - t385)))
+    del t384, t385, t386
+    t387 = np.arctan2(s3_left_flip_up, c3_left_flip_up)
+    t388 = sphi_left_flip_up * c2_left_flip_up - cphi_left_flip_up * s2_left_flip_up
+    t389 = cphi_left_flip_up * c2_left_flip_up + sphi_left_flip_up * s2_left_flip_up
     del c2_left_flip_up, s2_left_flip_up
-    t344 = c3_left_flip_up * t342 - s3_left_flip_up * t343
-    t345 = c3_left_flip_up * t343 + s3_left_flip_up * t342
-    del t342, t343
-    t346 = _runtime.wrap_cut(np.arctan2(t344, t345)) + t324
-    del t344, t345
-    t347 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up
+    t390 = c3_left_flip_up * t388 - s3_left_flip_up * t389
+    t391 = c3_left_flip_up * t389 + s3_left_flip_up * t388
+    del t388, t389
+    t392 = _runtime.wrap_cut(np.arctan2(t390, t391)) + t370
+    del t390, t391
+    t393 = M_13_left_flip_up * cphi_left_flip_up + T33 * sphi_left_flip_up
     del M_13_left_flip_up
     M_33_left_flip_up = T13 * s1_left_flip_up - T23 * c1_left_flip_up
-    t348 = _runtime.wrap_cut(-np.arctan2(t347, M_33_left_flip_up))
-    del M_33_left_flip_up, t347
-    t349 = t348 + t324
-    del t348
+    t394 = _runtime.wrap_cut(-np.arctan2(t393, M_33_left_flip_up))
+    del M_33_left_flip_up, t393
+    t395 = t394 + t370
+    del t394
     M_11_left_flip_up = T11 * c1_left_flip_up + T21 * s1_left_flip_up
-    t350 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up
+    t396 = sphi_left_flip_up * M_11_left_flip_up - T31 * cphi_left_flip_up
     del M_11_left_flip_up
     M_12_left_flip_up = T12 * c1_left_flip_up + T22 * s1_left_flip_up
     del c1_left_flip_up, s1_left_flip_up
-    t351 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up
+    t397 = T32 * cphi_left_flip_up - sphi_left_flip_up * M_12_left_flip_up
     del M_12_left_flip_up
-    t352 = _runtime.wrap_cut(-np.arctan2(t350, t351)) + t324
-    del t350, t351
-    s2_left_flip_down = t332 + t334
-    del t332, t334
-    c2_left_flip_down = t335 - t336
-    del t335, t336
-    t353 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
-    t354 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
-    t355 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
+    t398 = _runtime.wrap_cut(-np.arctan2(t396, t397)) + t370
+    del t396, t397
+    s2_left_flip_down = t378 + t380
+    del t378, t380
+    c2_left_flip_down = t381 - t382
+    del t381, t382
+    t399 = np.arctan2(s2_left_flip_down, c2_left_flip_down)
+    t400 = sphi_left_flip_up * c2_left_flip_down - cphi_left_flip_up * s2_left_flip_down
+    t401 = cphi_left_flip_up * c2_left_flip_down + sphi_left_flip_up * s2_left_flip_down
     del c2_left_flip_down, cphi_left_flip_up, s2_left_flip_down, sphi_left_flip_up
-    t356 = c3_left_flip_up * t354 + s3_left_flip_up * t355
-    t357 = c3_left_flip_up * t355 - s3_left_flip_up * t354
-    del c3_left_flip_up, s3_left_flip_up, t354, t355
-    t358 = _runtime.wrap_cut(np.arctan2(t356, t357)) + t324
-    del t356, t357
+    t402 = c3_left_flip_up * t400 + s3_left_flip_up * t401
+    t403 = c3_left_flip_up * t401 - s3_left_flip_up * t400
+    del c3_left_flip_up, s3_left_flip_up, t400, t401
+    t404 = _runtime.wrap_cut(np.arctan2(t402, t403)) + t370
+    del t402, t403
     c_1_1_right_noflip_up = _runtime.select(free1, 1.0, t7 + t9)
     del t7, t9
-    t359 = _runtime.select(free1, 0.0, t12 - t13)
-    del t12, t13
-    axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t359
-    t360 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up
-    h_1_1_right_noflip_up = np.sqrt(t11 + t360)
-    del t360
-    t361 = t10 * h_1_1_right_noflip_up <= t15
-    del t10
-    qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t359
-    t362 = 1.0 / h_1_1_right_noflip_up
-    uc_1_1_right_noflip_up = T33 * t362
-    t363 = d5 * uc_1_1_right_noflip_up
-    x_1_1_right_noflip_up = _runtime.select(t361, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up - t363)
-    dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t359
-    us_1_1_right_flip_up = axisx_1_1_right_noflip_up * t362
-    del axisx_1_1_right_noflip_up, t362
-    t364 = T33 * (T13 * t359 + T23 * c_1_1_right_noflip_up)
-    t365 = h_1_1_right_noflip_up * h_1_1_right_noflip_up
+    t405 = _runtime.select(free1, 0.0, t13 - t14)
+    del t13, t14
+    axisx_1_1_right_noflip_up = T13 * c_1_1_right_noflip_up - T23 * t405
+    t406 = axisx_1_1_right_noflip_up * axisx_1_1_right_noflip_up
+    h_1_1_right_noflip_up = np.sqrt(t12 + t406)
+    del t406
+    t407 = t11 * h_1_1_right_noflip_up <= size
+    del t11
+    qx_1_1_right_noflip_up = w_x * c_1_1_right_noflip_up - w_y * t405
+    t408 = h_1_1_right_noflip_up == 0.0
+    t409 = 1.0 / h_1_1_right_noflip_up
+    uc_1_1_right_noflip_up = _runtime.select(t408, 0.0, T33 * t409)
+    t410 = d5 * uc_1_1_right_noflip_up
+    x_1_1_right_noflip_up = _runtime.select(t407, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up - t410)
+    dqx_1_1_right_noflip_up = w_y * c_1_1_right_noflip_up + w_x * t405
+    t411 = T33 * (T13 * t405 + T23 * c_1_1_right_noflip_up)
+    t412 = h_1_1_right_noflip_up * h_1_1_right_noflip_up
     del h_1_1_right_noflip_up
-    t366 = d5 * t364 / t365
-    del t364, t365
-    t367 = us_1_1_right_flip_up * t366
-    dx_1_1_right_noflip_up = _runtime.select(t361, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t367)
-    t368 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up
-    t369 = d5 * us_1_1_right_flip_up
-    del us_1_1_right_flip_up
-    t370 = _runtime.select(t361, t21, t21 - t369)
-    t371 = _runtime.select(t361, 0.0, uc_1_1_right_noflip_up * t366)
-    del t366, uc_1_1_right_noflip_up
-    slope_1_1_right_noflip_up = t368 - t370 * t371
-    del t368
-    t372 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up
-    t373 = x_1_1_right_noflip_up * x_1_1_right_noflip_up
-    del x_1_1_right_noflip_up
-    square_1_1_right_noflip_up = t373 + t370 * t370
-    del t370, t373
-    nearest_1_1_right_noflip_up = _runtime.select(t361, t25, fold_1_1)
-    low_1_1_right_noflip_up = nearest_1_1_right_noflip_up * nearest_1_1_right_noflip_up
-    del nearest_1_1_right_noflip_up
-    farthest_1_1_right_noflip_up = _runtime.select(t361, t3, full_1_1)
-    high_1_1_right_noflip_up = farthest_1_1_right_noflip_up * farthest_1_1_right_noflip_up
-    del farthest_1_1_right_noflip_up
-    t374 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_noflip_up)
-    miss_1_1_right_noflip_up = square_1_1_right_noflip_up - np.maximum(low_1_1_right_noflip_up, t374)
-    del square_1_1_right_noflip_up, t374
-    t375 = dx_1_1_right_noflip_up * dx_1_1_right_noflip_up
+    t413 = _runtime.select(t407, 0.0, t411 / t412)
+    del t411, t412
+    t414 = d5 * t413
+    t415 = axisx_1_1_right_noflip_up * t409
+    del axisx_1_1_right_noflip_up, t409
+    t416 = _runtime.select(t408, 1.0, t415)
+    dx_1_1_right_noflip_up = _runtime.select(t407, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t414 * t416)
+    t417 = x_1_1_right_noflip_up * dx_1_1_right_noflip_up
     del dx_1_1_right_noflip_up
-    t376 = t371 * t371
-    bend_1_1_right_noflip_up = t375 + t376
-    del t375
-    t377 = miss_1_1_right_noflip_up * bend_1_1_right_noflip_up
-    inner_1_1_right_noflip_up = t372 - t377
-    del t372, t377
-    t378 = slope_1_1_right_noflip_up / (2.0 * bend_1_1_right_noflip_up)
-    del bend_1_1_right_noflip_up
-    t379 = np.sqrt(np.maximum(0.0, inner_1_1_right_noflip_up))
-    t380 = _runtime.sign(slope_1_1_right_noflip_up) * t379
-    del t379
-    outer_1_1_right_noflip_up = slope_1_1_right_noflip_up + t380
-    del slope_1_1_right_noflip_up, t380
-    t381 = miss_1_1_right_noflip_up / (2.0 * outer_1_1_right_noflip_up)
-    del miss_1_1_right_noflip_up
-    t382 = _runtime.select(outer_1_1_right_noflip_up == 0.0, 0.0, t381)
-    del outer_1_1_right_noflip_up, t381
-    t383 = _runtime.select(inner_1_1_right_noflip_up < 0.0, t378, t382)
-    del inner_1_1_right_noflip_up, t378, t382
-    t384 = t383 * t383
-    t385 = 1.0 / (1.0 + t384)
-    t386 = 2.0 * t383 * t385
-    del t383
-    by_c_1_1_right_noflip_up = t385 * (1.0 - t384)
-    del t384, t385
-    t387 = d4 * (t386 * t386) / (1.0 + np.abs(by_c_1_1_right_noflip_up))
-    t388 = (t387 + root1 * np.abs(t386) <= whole_1_1) & (0.0 < by_c_1_1_right_noflip_up)
-    del t387
-    cosine_1_1_right_noflip_up = _runtime.select(t388, by_c_1_1_right_noflip_up, 1.0)
-    del by_c_1_1_right_noflip_up
-    t389 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up
-    sine_1_1_right_noflip_up = _runtime.select(t388, -t386, 0.0)
-    del t386, t388
-    c_1_1_2_right_noflip_up = t389 + t359 * sine_1_1_right_noflip_up
-    del t389
-    t390 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up
-    del sine_1_1_right_noflip_up
-    s_1_1_2_right_noflip_up = t390 - t359 * cosine_1_1_right_noflip_up
-    del cosine_1_1_right_noflip_up, t390
-    axisx_1_1_2_right_noflip_up = T13 * c_1_1_2_right_noflip_up + T23 * s_1_1_2_right_noflip_up
-    t391 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up
-    t392 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up
-    most_1_1_2_right_noflip_up = np.sqrt(t391 + t392 * t392)
-    qx_1_1_2_right_noflip_up = w_x * c_1_1_2_right_noflip_up + w_y * s_1_1_2_right_noflip_up
-    t393 = qx_1_1_2_right_noflip_up * qx_1_1_2_right_noflip_up
-    r_1_1_2_right_noflip_up = np.sqrt(t38 + t393)
-    del t393
-    t394 = r_1_1_2_right_noflip_up <= t39
-    t395 = d5 + r_1_1_2_right_noflip_up
-    t396 = 1.0 / np.sqrt(t11 + t391)
-    del t391
-    uc_1_1_2_right_noflip_up = T33 * t396
-    t397 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up
-    t398 = axisx_1_1_2_right_noflip_up * t396
-    del t396
-    t399 = t21 - d5 * t398
-    there_1_1_2_right_noflip_up = np.sqrt(t397 * t397 + t399 * t399)
-    del t397, t399
-    t400 = np.maximum(there_1_1_2_right_noflip_up, fold_1_1)
-    goal_1_1_2_right_noflip_up = np.minimum(full_1_1, t400)
-    del t400
-    t401 = (t395 - goal_1_1_2_right_noflip_up) * (t395 + goal_1_1_2_right_noflip_up)
-    del t395
-    k_v_1_1_2_right_noflip_up = np.maximum(0.0, t401)
-    del t401
-    t402 = d5 - r_1_1_2_right_noflip_up
-    t403 = (goal_1_1_2_right_noflip_up - t402) * (goal_1_1_2_right_noflip_up + t402)
-    del t402
-    d_v_1_1_2_right_noflip_up = np.maximum(0.0, t403)
-    del t403
-    n_v_1_1_2_right_noflip_up = k_v_1_1_2_right_noflip_up + d_v_1_1_2_right_noflip_up
-    t404 = n_v_1_1_2_right_noflip_up <= t48
-    t405 = k_v_1_1_2_right_noflip_up - d_v_1_1_2_right_noflip_up
-    t406 = 1.0 / n_v_1_1_2_right_noflip_up
-    del n_v_1_1_2_right_noflip_up
-    uc_v_1_1_2_right_noflip_up = _runtime.select(t404, 1.0, t405 * t406)
-    del t405
-    t407 = qx_1_1_2_right_noflip_up * uc_v_1_1_2_right_noflip_up
-    t408 = t21 * uc_1_1_2_right_noflip_up - qx_1_1_2_right_noflip_up * t398
-    del t398, uc_1_1_2_right_noflip_up
-    t409 = k_v_1_1_2_right_noflip_up * d_v_1_1_2_right_noflip_up
-    del d_v_1_1_2_right_noflip_up, k_v_1_1_2_right_noflip_up
-    t410 = t406 * (2.0 * _runtime.sign(t408) * np.sqrt(t409))
-    del t406, t408, t409
-    us_v_1_1_2_right_noflip_up = _runtime.select(t404, 0.0, t410)
-    del t404, t410
-    t411 = t21 * us_v_1_1_2_right_noflip_up
-    t412 = 1.0 / r_1_1_2_right_noflip_up
-    del r_1_1_2_right_noflip_up
-    c_v_1_1_2_right_noflip_up = _runtime.select(t394, 1.0, (t407 + t411) * t412)
-    t413 = T33 * c_v_1_1_2_right_noflip_up < 0.0
-    t414 = qx_1_1_2_right_noflip_up * us_v_1_1_2_right_noflip_up
-    del qx_1_1_2_right_noflip_up, us_v_1_1_2_right_noflip_up
-    t415 = t21 * uc_v_1_1_2_right_noflip_up
-    del uc_v_1_1_2_right_noflip_up
-    wc_1_1_2_right_noflip_up = _runtime.select(t394, 0.0, t412 * (t414 + t415))
-    s_v_1_1_2_right_noflip_up = _runtime.select(t394, 0.0, t412 * (t414 - t415))
-    del t414, t415
-    to_c_1_1_2_right_noflip_up = _runtime.select(t413, wc_1_1_2_right_noflip_up, -s_v_1_1_2_right_noflip_up)
-    del s_v_1_1_2_right_noflip_up, wc_1_1_2_right_noflip_up
-    c_w_1_1_2_right_noflip_up = _runtime.select(t394, 1.0, t412 * (t407 - t411))
-    del t394, t407, t411, t412
-    to_s_1_1_2_right_noflip_up = _runtime.select(t413, c_w_1_1_2_right_noflip_up, c_v_1_1_2_right_noflip_up)
-    del c_v_1_1_2_right_noflip_up, c_w_1_1_2_right_noflip_up, t413
-    t416 = T33 * to_c_1_1_2_right_noflip_up / to_s_1_1_2_right_noflip_up
-    del to_c_1_1_2_right_noflip_up, to_s_1_1_2_right_noflip_up
-    t417 = np.minimum(most_1_1_2_right_noflip_up, _runtime.select(t37, 0.0, t416))
-    del t416
-    kept_1_1_2_right_noflip_up = np.maximum(-most_1_1_2_right_noflip_up, t417)
+    t418 = _runtime.select(t407, t25, t25 - d5 * t416)
+    t419 = _runtime.select(t407, 0.0, t414 * uc_1_1_right_noflip_up)
+    slope_1_1_right_noflip_up = t417 - t418 * t419
     del t417
-    t418 = most_1_1_2_right_noflip_up - kept_1_1_2_right_noflip_up
-    t419 = most_1_1_2_right_noflip_up + kept_1_1_2_right_noflip_up
-    rest_1_1_2_right_noflip_up = np.sqrt(t418 * t419) * _runtime.sign(-t392)
-    del t418, t419
-    t420 = axisx_1_1_2_right_noflip_up * rest_1_1_2_right_noflip_up
-    t421 = most_1_1_2_right_noflip_up * most_1_1_2_right_noflip_up
-    del most_1_1_2_right_noflip_up
-    t422 = 1.0 / t421
-    del t421
-    t423 = (t420 + t392 * kept_1_1_2_right_noflip_up) * t422
-    del t420
-    t424 = axisx_1_1_2_right_noflip_up * kept_1_1_2_right_noflip_up
-    del axisx_1_1_2_right_noflip_up, kept_1_1_2_right_noflip_up
-    by_c_1_1_2_right_noflip_up = t422 * (t424 - t392 * rest_1_1_2_right_noflip_up)
-    del rest_1_1_2_right_noflip_up, t392, t422, t424
-    t425 = d4 * (t423 * t423) / (1.0 + np.abs(by_c_1_1_2_right_noflip_up))
-    t426 = (t425 + root1 * np.abs(t423) <= whole_1_1) & (0.0 < by_c_1_1_2_right_noflip_up)
+    t420 = slope_1_1_right_noflip_up * slope_1_1_right_noflip_up
+    straight_1_1_right_noflip_up = dqx_1_1_right_noflip_up * dqx_1_1_right_noflip_up
+    t421 = 2.0 * dqx_1_1_right_noflip_up
+    t422 = qx_1_1_right_noflip_up * uc_1_1_right_noflip_up
+    del uc_1_1_right_noflip_up
+    t423 = t414 * (t421 * t416 + t413 * (t422 + t25 * t416))
+    del t416
+    bends_1_1_right_noflip_up = _runtime.select(t407, straight_1_1_right_noflip_up, straight_1_1_right_noflip_up + t423)
+    del t423
+    t424 = x_1_1_right_noflip_up * x_1_1_right_noflip_up
+    del x_1_1_right_noflip_up
+    square_1_1_right_noflip_up = t424 + t418 * t418
+    del t418, t424
+    t425 = _runtime.select(t407, t31, fold_1_1) - whole_1_1
+    t426 = np.maximum(0.0, t425)
     del t425
-    t427 = there_1_1_2_right_noflip_up - goal_1_1_2_right_noflip_up
-    del goal_1_1_2_right_noflip_up, there_1_1_2_right_noflip_up
-    t428 = t426 & (size < 1125899906842624.0 * np.abs(t427))
-    del t426, t427
-    cosine_1_1_2_right_noflip_up = _runtime.select(t428, by_c_1_1_2_right_noflip_up, 1.0)
-    del by_c_1_1_2_right_noflip_up
-    t429 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
-    sine_1_1_2_right_noflip_up = _runtime.select(t428, -t423, 0.0)
-    del t423, t428
-    t430 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
-    c_1_1_2_3_right_noflip_up = t429 - t430
-    del t429, t430
-    t431 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
-    del c_1_1_2_right_noflip_up, sine_1_1_2_right_noflip_up
-    t432 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
-    del cosine_1_1_2_right_noflip_up, s_1_1_2_right_noflip_up
-    s_1_1_2_3_right_noflip_up = t431 + t432
-    del t431, t432
-    axisx_1_1_2_3_right_noflip_up = T13 * c_1_1_2_3_right_noflip_up + T23 * s_1_1_2_3_right_noflip_up
-    t433 = axisx_1_1_2_3_right_noflip_up * axisx_1_1_2_3_right_noflip_up
-    h_1_1_2_3_right_noflip_up = np.sqrt(t11 + t433)
-    del t433
-    t434 = size * h_1_1_2_3_right_noflip_up <= t15
-    qx_1_1_2_3_right_noflip_up = w_x * c_1_1_2_3_right_noflip_up + w_y * s_1_1_2_3_right_noflip_up
-    t435 = 1.0 / h_1_1_2_3_right_noflip_up
-    uc_1_1_2_3_right_noflip_up = T33 * t435
-    t436 = qx_1_1_2_3_right_noflip_up - d5 * uc_1_1_2_3_right_noflip_up
-    x_1_1_2_3_right_noflip_up = _runtime.select(t434, qx_1_1_2_3_right_noflip_up, t436)
-    del qx_1_1_2_3_right_noflip_up, t436
-    dqx_1_1_2_3_right_noflip_up = w_y * c_1_1_2_3_right_noflip_up - w_x * s_1_1_2_3_right_noflip_up
-    t437 = axisx_1_1_2_3_right_noflip_up * t435
-    del axisx_1_1_2_3_right_noflip_up, t435
-    t438 = T13 * s_1_1_2_3_right_noflip_up - T23 * c_1_1_2_3_right_noflip_up
-    t439 = h_1_1_2_3_right_noflip_up * h_1_1_2_3_right_noflip_up
-    del h_1_1_2_3_right_noflip_up
-    rate_1_1_2_3_right_noflip_up = d5 * (T33 * t438) / t439
-    del t438, t439
-    t440 = dqx_1_1_2_3_right_noflip_up - t437 * rate_1_1_2_3_right_noflip_up
-    dx_1_1_2_3_right_noflip_up = _runtime.select(t434, dqx_1_1_2_3_right_noflip_up, t440)
-    del dqx_1_1_2_3_right_noflip_up, t440
-    t441 = x_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
-    t442 = _runtime.select(t434, t21, t21 - d5 * t437)
-    del t437
-    t443 = uc_1_1_2_3_right_noflip_up * rate_1_1_2_3_right_noflip_up
-    del rate_1_1_2_3_right_noflip_up, uc_1_1_2_3_right_noflip_up
-    t444 = _runtime.select(t434, 0.0, t443)
-    del t443
-    slope_1_1_2_3_right_noflip_up = t441 + t442 * t444
+    low_1_1_right_noflip_up = t426 * t426
+    del t426
+    t427 = whole_1_1 + _runtime.select(t407, t3, full_1_1)
+    high_1_1_right_noflip_up = t427 * t427
+    del t427
+    t428 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_noflip_up)
+    miss_1_1_right_noflip_up = square_1_1_right_noflip_up - np.maximum(low_1_1_right_noflip_up, t428)
+    del square_1_1_right_noflip_up, t428
+    t429 = bends_1_1_right_noflip_up * miss_1_1_right_noflip_up
+    inner_1_1_right_noflip_up = t420 - t429
+    del t420, t429
+    t430 = inner_1_1_right_noflip_up < 0.0
+    t431 = np.sqrt(np.maximum(0.0, inner_1_1_right_noflip_up))
+    del inner_1_1_right_noflip_up
+    t432 = _runtime.sign(slope_1_1_right_noflip_up) * t431
+    del t431
+    below_1_1_right_noflip_up = _runtime.select(t430, 2.0 * bends_1_1_right_noflip_up, 2.0 * (slope_1_1_right_noflip_up + t432))
+    del bends_1_1_right_noflip_up, t432
+    above_1_1_right_noflip_up = _runtime.select(t430, slope_1_1_right_noflip_up, miss_1_1_right_noflip_up)
+    del miss_1_1_right_noflip_up, slope_1_1_right_noflip_up, t430
+    t433 = np.abs(below_1_1_right_noflip_up) <= np.abs(above_1_1_right_noflip_up)
+    t434 = above_1_1_right_noflip_up / below_1_1_right_noflip_up
+    del above_1_1_right_noflip_up, below_1_1_right_noflip_up
+    t435 = _runtime.select(t433, 0.0, t434)
+    del t433, t434
+    t436 = t435 * t435
+    t437 = 1.0 / (1.0 + t436)
+    t438 = 2.0 * t435 * t437
+    del t435
+    by_c_1_1_right_noflip_up = t437 * (1.0 - t436)
+    del t436, t437
+    t439 = d4 * (t438 * t438) / (1.0 + np.abs(by_c_1_1_right_noflip_up))
+    t440 = (t439 + root1 * np.abs(t438) <= whole_1_1) & (0.0 < by_c_1_1_right_noflip_up)
+    del t439
+    cosine_1_1_right_noflip_up = _runtime.select(t440, by_c_1_1_right_noflip_up, 1.0)
+    del by_c_1_1_right_noflip_up
+    t441 = c_1_1_right_noflip_up * cosine_1_1_right_noflip_up
+    sine_1_1_right_noflip_up = _runtime.select(t440, -t438, 0.0)
+    del t438, t440
+    c_1_1_2_right_noflip_up = t441 + t405 * sine_1_1_right_noflip_up
     del t441
-    t445 = slope_1_1_2_3_right_noflip_up * slope_1_1_2_3_right_noflip_up
-    t446 = x_1_1_2_3_right_noflip_up * x_1_1_2_3_right_noflip_up
-    del x_1_1_2_3_right_noflip_up
-    square_1_1_2_3_right_noflip_up = t446 + t442 * t442
-    del t442, t446
-    nearest_1_1_2_3_right_noflip_up = _runtime.select(t434, t25, fold_1_1)
-    low_1_1_2_3_right_noflip_up = nearest_1_1_2_3_right_noflip_up * nearest_1_1_2_3_right_noflip_up
-    del nearest_1_1_2_3_right_noflip_up
-    farthest_1_1_2_3_right_noflip_up = _runtime.select(t434, t3, full_1_1)
-    del t434
-    high_1_1_2_3_right_noflip_up = farthest_1_1_2_3_right_noflip_up * farthest_1_1_2_3_right_noflip_up
-    del farthest_1_1_2_3_right_noflip_up
-    t447 = np.minimum(high_1_1_2_3_right_noflip_up, square_1_1_2_3_right_noflip_up)
-    del high_1_1_2_3_right_noflip_up
-    t448 = np.maximum(low_1_1_2_3_right_noflip_up, t447)
-    del low_1_1_2_3_right_noflip_up, t447
-    miss_1_1_2_3_right_noflip_up = square_1_1_2_3_right_noflip_up - t448
-    del square_1_1_2_3_right_noflip_up, t448
-    t449 = dx_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
-    del dx_1_1_2_3_right_noflip_up
-    bend_1_1_2_3_right_noflip_up = t449 + t444 * t444
-    del t444, t449
-    t450 = miss_1_1_2_3_right_noflip_up * bend_1_1_2_3_right_noflip_up
-    inner_1_1_2_3_right_noflip_up = t445 - t450
-    del t445, t450
-    t451 = slope_1_1_2_3_right_noflip_up / (2.0 * bend_1_1_2_3_right_noflip_up)
-    del bend_1_1_2_3_right_noflip_up
-    t452 = np.maximum(0.0, inner_1_1_2_3_right_noflip_up)
-    t453 = _runtime.sign(slope_1_1_2_3_right_noflip_up) * np.sqrt(t452)
-    del t452
-    outer_1_1_2_3_right_noflip_up = slope_1_1_2_3_right_noflip_up + t453
-    del slope_1_1_2_3_right_noflip_up, t453
-    t454 = miss_1_1_2_3_right_noflip_up / (2.0 * outer_1_1_2_3_right_noflip_up)
-    del miss_1_1_2_3_right_noflip_up
-    t455 = _runtime.select(outer_1_1_2_3_right_noflip_up == 0.0, 0.0, t454)
-    del outer_1_1_2_3_right_noflip_up, t454
-    t456 = _runtime.select(inner_1_1_2_3_right_noflip_up < 0.0, t451, t455)
-    del inner_1_1_2_3_right_noflip_up, t451, t455
-    t457 = t456 * t456
-    t458 = 1.0 / (1.0 + t457)
-    t459 = 2.0 * t456 * t458
+    t442 = c_1_1_right_noflip_up * sine_1_1_right_noflip_up
+    del sine_1_1_right_noflip_up
+    s_1_1_2_right_noflip_up = t442 - t405 * cosine_1_1_right_noflip_up
+    del cosine_1_1_right_noflip_up, t442
+    axisx_1_1_2_right_noflip_up = T13 * c_1_1_2_right_noflip_up + T23 * s_1_1_2_right_noflip_up
+    t443 = axisx_1_1_2_right_noflip_up * axisx_1_1_2_right_noflip_up
+    t444 = T13 * s_1_1_2_right_noflip_up - T23 * c_1_1_2_right_noflip_up
+    most_1_1_2_right_noflip_up = np.sqrt(t443 + t444 * t444)
+    t445 = most_1_1_2_right_noflip_up <= 8.881784197001252e-16
+    qx_1_1_2_right_noflip_up = w_x * c_1_1_2_right_noflip_up + w_y * s_1_1_2_right_noflip_up
+    t446 = qx_1_1_2_right_noflip_up * qx_1_1_2_right_noflip_up
+    r_1_1_2_right_noflip_up = np.sqrt(t47 + t446)
+    del t446
+    t447 = r_1_1_2_right_noflip_up <= t48
+    t448 = d5 + r_1_1_2_right_noflip_up
+    h_1_1_2_right_noflip_up = np.sqrt(t12 + t443)
+    del t443
+    t449 = h_1_1_2_right_noflip_up == 0.0
+    t450 = 1.0 / h_1_1_2_right_noflip_up
+    del h_1_1_2_right_noflip_up
+    uc_1_1_2_right_noflip_up = _runtime.select(t449, 0.0, T33 * t450)
+    t451 = qx_1_1_2_right_noflip_up - d5 * uc_1_1_2_right_noflip_up
+    t452 = _runtime.select(t449, 1.0, axisx_1_1_2_right_noflip_up * t450)
+    del t449, t450
+    t453 = t25 - d5 * t452
+    there_1_1_2_right_noflip_up = np.sqrt(t451 * t451 + t453 * t453)
+    del t451, t453
+    t454 = np.maximum(there_1_1_2_right_noflip_up, fold_1_1)
+    goal_1_1_2_right_noflip_up = np.minimum(full_1_1, t454)
+    del t454
+    t455 = (t448 - goal_1_1_2_right_noflip_up) * (t448 + goal_1_1_2_right_noflip_up)
+    k_v_1_1_2_right_noflip_up = np.maximum(0.0, t455)
+    del t455
+    t456 = d5 - r_1_1_2_right_noflip_up
+    t457 = (goal_1_1_2_right_noflip_up - t456) * (goal_1_1_2_right_noflip_up + t456)
     del t456
-    by_c_1_1_2_3_right_noflip_up = t458 * (1.0 - t457)
-    del t457, t458
-    t460 = d4 * (t459 * t459) / (1.0 + np.abs(by_c_1_1_2_3_right_noflip_up))
-    t461 = (t460 + root1 * np.abs(t459) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_noflip_up)
-    del t460
-    cosine_1_1_2_3_right_noflip_up = _runtime.select(t461, by_c_1_1_2_3_right_noflip_up, 1.0)
-    del by_c_1_1_2_3_right_noflip_up
-    t462 = c_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
-    sine_1_1_2_3_right_noflip_up = _runtime.select(t461, -t459, 0.0)
-    del t459, t461
-    t463 = s_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
-    c_1_1_2_3_4_right_noflip_up = t462 - t463
-    del t462, t463
-    t464 = c_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
-    del c_1_1_2_3_right_noflip_up, sine_1_1_2_3_right_noflip_up
-    t465 = s_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
-    del cosine_1_1_2_3_right_noflip_up, s_1_1_2_3_right_noflip_up
-    s_1_1_2_3_4_right_noflip_up = t464 + t465
-    del t464, t465
-    axisx_1_1_2_3_4_right_noflip_up = T13 * c_1_1_2_3_4_right_noflip_up + T23 * s_1_1_2_3_4_right_noflip_up
-    t466 = axisx_1_1_2_3_4_right_noflip_up * axisx_1_1_2_3_4_right_noflip_up
-    h_1_1_2_3_4_right_noflip_up = np.sqrt(t11 + t466)
-    del t466
-    t467 = size * h_1_1_2_3_4_right_noflip_up <= t15
-    qx_1_1_2_3_4_right_noflip_up = w_x * c_1_1_2_3_4_right_noflip_up + w_y * s_1_1_2_3_4_right_noflip_up
-    t468 = 1.0 / h_1_1_2_3_4_right_noflip_up
-    uc_1_1_2_3_4_right_noflip_up = T33 * t468
-    t469 = qx_1_1_2_3_4_right_noflip_up - d5 * uc_1_1_2_3_4_right_noflip_up
-    x_1_1_2_3_4_right_noflip_up = _runtime.select(t467, qx_1_1_2_3_4_right_noflip_up, t469)
-    del qx_1_1_2_3_4_right_noflip_up, t469
-    dqx_1_1_2_3_4_right_noflip_up = w_y * c_1_1_2_3_4_right_noflip_up - w_x * s_1_1_2_3_4_right_noflip_up
-    t470 = axisx_1_1_2_3_4_right_noflip_up * t468
-    del axisx_1_1_2_3_4_right_noflip_up, t468
-    t471 = T13 * s_1_1_2_3_4_right_noflip_up - T23 * c_1_1_2_3_4_right_noflip_up
-    t472 = h_1_1_2_3_4_right_noflip_up * h_1_1_2_3_4_right_noflip_up
-    del h_1_1_2_3_4_right_noflip_up
-    rate_1_1_2_3_4_right_noflip_up = d5 * (T33 * t471) / t472
-    del t471, t472
-    t473 = dqx_1_1_2_3_4_right_noflip_up - t470 * rate_1_1_2_3_4_right_noflip_up
-    dx_1_1_2_3_4_right_noflip_up = _runtime.select(t467, dqx_1_1_2_3_4_right_noflip_up, t473)
-    del dqx_1_1_2_3_4_right_noflip_up, t473
-    t474 = x_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
-    t475 = _runtime.select(t467, t21, t21 - d5 * t470)
+    d_v_1_1_2_right_noflip_up = np.maximum(0.0, t457)
+    del t457
+    n_v_1_1_2_right_noflip_up = k_v_1_1_2_right_noflip_up + d_v_1_1_2_right_noflip_up
+    t458 = n_v_1_1_2_right_noflip_up <= size * t448 * 8.881784197001252e-16
+    del t448
+    t459 = k_v_1_1_2_right_noflip_up - d_v_1_1_2_right_noflip_up
+    t460 = 1.0 / n_v_1_1_2_right_noflip_up
+    del n_v_1_1_2_right_noflip_up
+    uc_v_1_1_2_right_noflip_up = _runtime.select(t458, 1.0, t459 * t460)
+    del t459
+    t461 = qx_1_1_2_right_noflip_up * uc_v_1_1_2_right_noflip_up
+    t462 = t25 * uc_1_1_2_right_noflip_up - qx_1_1_2_right_noflip_up * t452
+    del t452, uc_1_1_2_right_noflip_up
+    t463 = k_v_1_1_2_right_noflip_up * d_v_1_1_2_right_noflip_up
+    del d_v_1_1_2_right_noflip_up, k_v_1_1_2_right_noflip_up
+    t464 = t460 * (2.0 * _runtime.sign(t462) * np.sqrt(t463))
+    del t460, t462, t463
+    us_v_1_1_2_right_noflip_up = _runtime.select(t458, 0.0, t464)
+    del t458, t464
+    t465 = t25 * us_v_1_1_2_right_noflip_up
+    t466 = 1.0 / r_1_1_2_right_noflip_up
+    del r_1_1_2_right_noflip_up
+    c_v_1_1_2_right_noflip_up = _runtime.select(t447, 1.0, (t461 + t465) * t466)
+    t467 = T33 * c_v_1_1_2_right_noflip_up < 0.0
+    t468 = qx_1_1_2_right_noflip_up * us_v_1_1_2_right_noflip_up
+    del qx_1_1_2_right_noflip_up, us_v_1_1_2_right_noflip_up
+    t469 = t25 * uc_v_1_1_2_right_noflip_up
+    del uc_v_1_1_2_right_noflip_up
+    wc_1_1_2_right_noflip_up = _runtime.select(t447, 0.0, t466 * (t468 + t469))
+    s_v_1_1_2_right_noflip_up = _runtime.select(t447, 0.0, t466 * (t468 - t469))
+    del t468, t469
+    to_c_1_1_2_right_noflip_up = _runtime.select(t467, wc_1_1_2_right_noflip_up, -s_v_1_1_2_right_noflip_up)
+    del s_v_1_1_2_right_noflip_up, wc_1_1_2_right_noflip_up
+    c_w_1_1_2_right_noflip_up = _runtime.select(t447, 1.0, t466 * (t461 - t465))
+    del t447, t461, t465, t466
+    to_s_1_1_2_right_noflip_up = _runtime.select(t467, c_w_1_1_2_right_noflip_up, c_v_1_1_2_right_noflip_up)
+    del c_v_1_1_2_right_noflip_up, c_w_1_1_2_right_noflip_up, t467
+    t470 = T33 * to_c_1_1_2_right_noflip_up * _runtime.sign(to_s_1_1_2_right_noflip_up)
+    del to_c_1_1_2_right_noflip_up
+    across_1_1_2_right_noflip_up = _runtime.select(t46, 0.0, t470)
     del t470
-    t476 = uc_1_1_2_3_4_right_noflip_up * rate_1_1_2_3_4_right_noflip_up
-    del rate_1_1_2_3_4_right_noflip_up, uc_1_1_2_3_4_right_noflip_up
-    t477 = _runtime.select(t467, 0.0, t476)
-    del t476
-    slope_1_1_2_3_4_right_noflip_up = t474 + t475 * t477
-    del t474
-    t478 = slope_1_1_2_3_4_right_noflip_up * slope_1_1_2_3_4_right_noflip_up
-    t479 = x_1_1_2_3_4_right_noflip_up * x_1_1_2_3_4_right_noflip_up
-    del x_1_1_2_3_4_right_noflip_up
-    square_1_1_2_3_4_right_noflip_up = t479 + t475 * t475
-    del t475, t479
-    nearest_1_1_2_3_4_right_noflip_up = _runtime.select(t467, t25, fold_1_1)
-    low_1_1_2_3_4_right_noflip_up = nearest_1_1_2_3_4_right_noflip_up * nearest_1_1_2_3_4_right_noflip_up
-    del nearest_1_1_2_3_4_right_noflip_up
-    farthest_1_1_2_3_4_right_noflip_up = _runtime.select(t467, t3, full_1_1)
-    del t467
-    high_1_1_2_3_4_right_noflip_up = farthest_1_1_2_3_4_right_noflip_up * farthest_1_1_2_3_4_right_noflip_up
-    del farthest_1_1_2_3_4_right_noflip_up
-    t480 = np.minimum(high_1_1_2_3_4_right_noflip_up, square_1_1_2_3_4_right_noflip_up)
-    del high_1_1_2_3_4_right_noflip_up
-    t481 = np.maximum(low_1_1_2_3_4_right_noflip_up, t480)
-    del low_1_1_2_3_4_right_noflip_up, t480
-    miss_1_1_2_3_4_right_noflip_up = square_1_1_2_3_4_right_noflip_up - t481
-    del square_1_1_2_3_4_right_noflip_up, t481
-    t482 = dx_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
-    del dx_1_1_2_3_4_right_noflip_up
-    bend_1_1_2_3_4_right_noflip_up = t482 + t477 * t477
-    del t477, t482
-    t483 = miss_1_1_2_3_4_right_noflip_up * bend_1_1_2_3_4_right_noflip_up
-    inner_1_1_2_3_4_right_noflip_up = t478 - t483
-    del t478, t483
-    t484 = slope_1_1_2_3_4_right_noflip_up / (2.0 * bend_1_1_2_3_4_right_noflip_up)
-    del bend_1_1_2_3_4_right_noflip_up
-    t485 = _runtime.sign(slope_1_1_2_3_4_right_noflip_up)
-    t486 = np.maximum(0.0, inner_1_1_2_3_4_right_noflip_up)
-    outer_1_1_2_3_4_right_noflip_up = slope_1_1_2_3_4_right_noflip_up + t485 * np.sqrt(t486)
-    del slope_1_1_2_3_4_right_noflip_up, t485, t486
-    t487 = miss_1_1_2_3_4_right_noflip_up / (2.0 * outer_1_1_2_3_4_right_noflip_up)
-    del miss_1_1_2_3_4_right_noflip_up
-    t488 = _runtime.select(outer_1_1_2_3_4_right_noflip_up == 0.0, 0.0, t487)
-    del outer_1_1_2_3_4_right_noflip_up, t487
-    t489 = _runtime.select(inner_1_1_2_3_4_right_noflip_up < 0.0, t484, t488)
-    del inner_1_1_2_3_4_right_noflip_up, t484, t488
-    t490 = t489 * t489
-    t491 = 1.0 / (1.0 + t490)
-    t492 = 2.0 * t489 * t491
-    del t489
-    by_c_1_1_2_3_4_right_noflip_up = t491 * (1.0 - t490)
+    t471 = np.abs(to_s_1_1_2_right_noflip_up)
+    del to_s_1_1_2_right_noflip_up
+    t472 = most_1_1_2_right_noflip_up * t471 <= np.abs(across_1_1_2_right_noflip_up)
+    t473 = most_1_1_2_right_noflip_up * _runtime.sign(across_1_1_2_right_noflip_up)
+    t474 = _runtime.select(t472, t473, across_1_1_2_right_noflip_up / t471)
+    del t471, t472, t473
+    wanted_1_1_2_right_noflip_up = _runtime.select(across_1_1_2_right_noflip_up == 0.0, 0.0, t474)
+    del across_1_1_2_right_noflip_up, t474
+    t475 = most_1_1_2_right_noflip_up - wanted_1_1_2_right_noflip_up
+    t476 = most_1_1_2_right_noflip_up + wanted_1_1_2_right_noflip_up
+    rest_1_1_2_right_noflip_up = np.sqrt(np.maximum(0.0, t475 * t476)) * _runtime.sign(-t444)
+    del t475, t476
+    t477 = axisx_1_1_2_right_noflip_up * rest_1_1_2_right_noflip_up
+    t478 = most_1_1_2_right_noflip_up * most_1_1_2_right_noflip_up
+    del most_1_1_2_right_noflip_up
+    t479 = 1.0 / t478
+    del t478
+    t480 = (t477 + t444 * wanted_1_1_2_right_noflip_up) * t479
+    del t477
+    t481 = _runtime.select(t445, 0.0, t480)
+    del t480
+    t482 = axisx_1_1_2_right_noflip_up * wanted_1_1_2_right_noflip_up
+    del axisx_1_1_2_right_noflip_up, wanted_1_1_2_right_noflip_up
+    t483 = t479 * (t482 - t444 * rest_1_1_2_right_noflip_up)
+    del rest_1_1_2_right_noflip_up, t444, t479, t482
+    by_c_1_1_2_right_noflip_up = _runtime.select(t445, 1.0, t483)
+    del t445, t483
+    t484 = d4 * (t481 * t481) / (1.0 + np.abs(by_c_1_1_2_right_noflip_up))
+    t485 = (t484 + root1 * np.abs(t481) <= whole_1_1) & (0.0 < by_c_1_1_2_right_noflip_up)
+    del t484
+    t486 = there_1_1_2_right_noflip_up - goal_1_1_2_right_noflip_up
+    del goal_1_1_2_right_noflip_up, there_1_1_2_right_noflip_up
+    t487 = t485 & (size < 17592186044416.0 * np.abs(t486))
+    del t485, t486
+    cosine_1_1_2_right_noflip_up = _runtime.select(t487, by_c_1_1_2_right_noflip_up, 1.0)
+    del by_c_1_1_2_right_noflip_up
+    t488 = c_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
+    sine_1_1_2_right_noflip_up = _runtime.select(t487, -t481, 0.0)
+    del t481, t487
+    t489 = s_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
+    c_1_1_2_3_right_noflip_up = t488 - t489
+    del t488, t489
+    t490 = c_1_1_2_right_noflip_up * sine_1_1_2_right_noflip_up
+    del c_1_1_2_right_noflip_up, sine_1_1_2_right_noflip_up
+    t491 = s_1_1_2_right_noflip_up * cosine_1_1_2_right_noflip_up
+    del cosine_1_1_2_right_noflip_up, s_1_1_2_right_noflip_up
+    s_1_1_2_3_right_noflip_up = t490 + t491
     del t490, t491
-    t493 = d4 * (t492 * t492) / (1.0 + np.abs(by_c_1_1_2_3_4_right_noflip_up))
-    t494 = (t493 + root1 * np.abs(t492) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_noflip_up)
-    del t493
-    sine_1_1_2_3_4_right_noflip_up = _runtime.select(t494, -t492, 0.0)
+    axisx_1_1_2_3_right_noflip_up = T13 * c_1_1_2_3_right_noflip_up + T23 * s_1_1_2_3_right_noflip_up
+    t492 = axisx_1_1_2_3_right_noflip_up * axisx_1_1_2_3_right_noflip_up
+    h_1_1_2_3_right_noflip_up = np.sqrt(t12 + t492)
     del t492
-    t495 = c_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
-    cosine_1_1_2_3_4_right_noflip_up = _runtime.select(t494, by_c_1_1_2_3_4_right_noflip_up, 1.0)
-    del by_c_1_1_2_3_4_right_noflip_up, t494
-    t496 = s_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
-    s1_right_noflip_up = _runtime.select(tangent1, t495 + t496, -t359)
-    del t495, t496
-    t497 = c_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
-    del c_1_1_2_3_4_right_noflip_up, cosine_1_1_2_3_4_right_noflip_up
-    t498 = s_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
-    del s_1_1_2_3_4_right_noflip_up, sine_1_1_2_3_4_right_noflip_up
-    c1_right_noflip_up = _runtime.select(tangent1, t497 - t498, c_1_1_right_noflip_up)
+    t493 = t77 * h_1_1_2_3_right_noflip_up <= size
+    qx_1_1_2_3_right_noflip_up = w_x * c_1_1_2_3_right_noflip_up + w_y * s_1_1_2_3_right_noflip_up
+    t494 = h_1_1_2_3_right_noflip_up == 0.0
+    t495 = 1.0 / h_1_1_2_3_right_noflip_up
+    uc_1_1_2_3_right_noflip_up = _runtime.select(t494, 0.0, T33 * t495)
+    t496 = qx_1_1_2_3_right_noflip_up - d5 * uc_1_1_2_3_right_noflip_up
+    x_1_1_2_3_right_noflip_up = _runtime.select(t493, qx_1_1_2_3_right_noflip_up, t496)
+    del t496
+    dqx_1_1_2_3_right_noflip_up = w_y * c_1_1_2_3_right_noflip_up - w_x * s_1_1_2_3_right_noflip_up
+    t497 = T13 * s_1_1_2_3_right_noflip_up - T23 * c_1_1_2_3_right_noflip_up
+    t498 = h_1_1_2_3_right_noflip_up * h_1_1_2_3_right_noflip_up
+    del h_1_1_2_3_right_noflip_up
+    spin_1_1_2_3_right_noflip_up = _runtime.select(t493, 0.0, T33 * t497 / t498)
     del t497, t498
-    t499 = np.arctan2(s1_right_noflip_up, c1_right_noflip_up)
+    rate_1_1_2_3_right_noflip_up = d5 * spin_1_1_2_3_right_noflip_up
+    t499 = _runtime.select(t494, 1.0, axisx_1_1_2_3_right_noflip_up * t495)
+    del axisx_1_1_2_3_right_noflip_up, t494, t495
+    t500 = dqx_1_1_2_3_right_noflip_up - rate_1_1_2_3_right_noflip_up * t499
+    dx_1_1_2_3_right_noflip_up = _runtime.select(t493, dqx_1_1_2_3_right_noflip_up, t500)
+    del t500
+    t501 = x_1_1_2_3_right_noflip_up * dx_1_1_2_3_right_noflip_up
+    del dx_1_1_2_3_right_noflip_up
+    t502 = _runtime.select(t493, t25, t25 - d5 * t499)
+    t503 = rate_1_1_2_3_right_noflip_up * uc_1_1_2_3_right_noflip_up
+    slope_1_1_2_3_right_noflip_up = t501 + t502 * _runtime.select(t493, 0.0, t503)
+    del t501, t503
+    t504 = slope_1_1_2_3_right_noflip_up * slope_1_1_2_3_right_noflip_up
+    straight_1_1_2_3_right_noflip_up = dqx_1_1_2_3_right_noflip_up * dqx_1_1_2_3_right_noflip_up
+    t505 = qx_1_1_2_3_right_noflip_up * uc_1_1_2_3_right_noflip_up
+    del qx_1_1_2_3_right_noflip_up, uc_1_1_2_3_right_noflip_up
+    t506 = spin_1_1_2_3_right_noflip_up * (t505 + t25 * t499)
+    del spin_1_1_2_3_right_noflip_up, t505
+    t507 = 2.0 * dqx_1_1_2_3_right_noflip_up * t499 - t506
+    del dqx_1_1_2_3_right_noflip_up, t499, t506
+    t508 = straight_1_1_2_3_right_noflip_up - rate_1_1_2_3_right_noflip_up * t507
+    del rate_1_1_2_3_right_noflip_up, t507
+    bends_1_1_2_3_right_noflip_up = _runtime.select(t493, straight_1_1_2_3_right_noflip_up, t508)
+    del straight_1_1_2_3_right_noflip_up, t508
+    t509 = x_1_1_2_3_right_noflip_up * x_1_1_2_3_right_noflip_up
+    del x_1_1_2_3_right_noflip_up
+    square_1_1_2_3_right_noflip_up = t509 + t502 * t502
+    del t502, t509
+    t510 = _runtime.select(t493, t31, fold_1_1) - whole_1_1
+    t511 = np.maximum(0.0, t510)
+    del t510
+    t512 = whole_1_1 + _runtime.select(t493, t3, full_1_1)
+    del t493
+    t513 = np.minimum(t512 * t512, square_1_1_2_3_right_noflip_up)
+    del t512
+    miss_1_1_2_3_right_noflip_up = square_1_1_2_3_right_noflip_up - np.maximum(t511 * t511, t513)
+    del square_1_1_2_3_right_noflip_up, t511, t513
+    t514 = bends_1_1_2_3_right_noflip_up * miss_1_1_2_3_right_noflip_up
+    inner_1_1_2_3_right_noflip_up = t504 - t514
+    del t504, t514
+    t515 = inner_1_1_2_3_right_noflip_up < 0.0
+    t516 = np.maximum(0.0, inner_1_1_2_3_right_noflip_up)
+    del inner_1_1_2_3_right_noflip_up
+    t517 = _runtime.sign(slope_1_1_2_3_right_noflip_up) * np.sqrt(t516)
+    del t516
+    below_1_1_2_3_right_noflip_up = _runtime.select(t515, 2.0 * bends_1_1_2_3_right_noflip_up, 2.0 * (slope_1_1_2_3_right_noflip_up + t517))
+    del bends_1_1_2_3_right_noflip_up, t517
+    above_1_1_2_3_right_noflip_up = _runtime.select(t515, slope_1_1_2_3_right_noflip_up, miss_1_1_2_3_right_noflip_up)
+    del miss_1_1_2_3_right_noflip_up, slope_1_1_2_3_right_noflip_up, t515
+    t518 = np.abs(below_1_1_2_3_right_noflip_up) <= np.abs(above_1_1_2_3_right_noflip_up)
+    t519 = above_1_1_2_3_right_noflip_up / below_1_1_2_3_right_noflip_up
+    del above_1_1_2_3_right_noflip_up, below_1_1_2_3_right_noflip_up
+    t520 = _runtime.select(t518, 0.0, t519)
+    del t518, t519
+    t521 = t520 * t520
+    t522 = 1.0 / (1.0 + t521)
+    t523 = 2.0 * t520 * t522
+    del t520
+    by_c_1_1_2_3_right_noflip_up = t522 * (1.0 - t521)
+    del t521, t522
+    t524 = d4 * (t523 * t523) / (1.0 + np.abs(by_c_1_1_2_3_right_noflip_up))
+    t525 = (t524 + root1 * np.abs(t523) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_noflip_up)
+    del t524
+    cosine_1_1_2_3_right_noflip_up = _runtime.select(t525, by_c_1_1_2_3_right_noflip_up, 1.0)
+    del by_c_1_1_2_3_right_noflip_up
+    t526 = c_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
+    sine_1_1_2_3_right_noflip_up = _runtime.select(t525, -t523, 0.0)
+    del t523, t525
+    t527 = s_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
+    c_1_1_2_3_4_right_noflip_up = t526 - t527
+    del t526, t527
+    t528 = c_1_1_2_3_right_noflip_up * sine_1_1_2_3_right_noflip_up
+    del c_1_1_2_3_right_noflip_up, sine_1_1_2_3_right_noflip_up
+    t529 = s_1_1_2_3_right_noflip_up * cosine_1_1_2_3_right_noflip_up
+    del cosine_1_1_2_3_right_noflip_up, s_1_1_2_3_right_noflip_up
+    s_1_1_2_3_4_right_noflip_up = t528 + t529
+    del t528, t529
+    axisx_1_1_2_3_4_right_noflip_up = T13 * c_1_1_2_3_4_right_noflip_up + T23 * s_1_1_2_3_4_right_noflip_up
+    t530 = axisx_1_1_2_3_4_right_noflip_up * axisx_1_1_2_3_4_right_noflip_up
+    h_1_1_2_3_4_right_noflip_up = np.sqrt(t12 + t530)
+    del t530
+    t531 = t77 * h_1_1_2_3_4_right_noflip_up <= size
+    qx_1_1_2_3_4_right_noflip_up = w_x * c_1_1_2_3_4_right_noflip_up + w_y * s_1_1_2_3_4_right_noflip_up
+    t532 = h_1_1_2_3_4_right_noflip_up == 0.0
+    t533 = 1.0 / h_1_1_2_3_4_right_noflip_up
+    uc_1_1_2_3_4_right_noflip_up = _runtime.select(t532, 0.0, T33 * t533)
+    t534 = qx_1_1_2_3_4_right_noflip_up - d5 * uc_1_1_2_3_4_right_noflip_up
+    x_1_1_2_3_4_right_noflip_up = _runtime.select(t531, qx_1_1_2_3_4_right_noflip_up, t534)
+    del t534
+    dqx_1_1_2_3_4_right_noflip_up = w_y * c_1_1_2_3_4_right_noflip_up - w_x * s_1_1_2_3_4_right_noflip_up
+    t535 = T13 * s_1_1_2_3_4_right_noflip_up - T23 * c_1_1_2_3_4_right_noflip_up
+    t536 = h_1_1_2_3_4_right_noflip_up * h_1_1_2_3_4_right_noflip_up
+    del h_1_1_2_3_4_right_noflip_up
+    spin_1_1_2_3_4_right_noflip_up = _runtime.select(t531, 0.0, T33 * t535 / t536)
+    del t535, t536
+    rate_1_1_2_3_4_right_noflip_up = d5 * spin_1_1_2_3_4_right_noflip_up
+    t537 = _runtime.select(t532, 1.0, axisx_1_1_2_3_4_right_noflip_up * t533)
+    del axisx_1_1_2_3_4_right_noflip_up, t532, t533
+    t538 = dqx_1_1_2_3_4_right_noflip_up - rate_1_1_2_3_4_right_noflip_up * t537
+    dx_1_1_2_3_4_right_noflip_up = _runtime.select(t531, dqx_1_1_2_3_4_right_noflip_up, t538)
+    del t538
+    t539 = x_1_1_2_3_4_right_noflip_up * dx_1_1_2_3_4_right_noflip_up
+    del dx_1_1_2_3_4_right_noflip_up
+    t540 = _runtime.select(t531, t25, t25 - d5 * t537)
+    t541 = rate_1_1_2_3_4_right_noflip_up * uc_1_1_2_3_4_right_noflip_up
+    slope_1_1_2_3_4_right_noflip_up = t539 + t540 * _runtime.select(t531, 0.0, t541)
+    del t539, t541
+    t542 = slope_1_1_2_3_4_right_noflip_up * slope_1_1_2_3_4_right_noflip_up
+    straight_1_1_2_3_4_right_noflip_up = dqx_1_1_2_3_4_right_noflip_up * dqx_1_1_2_3_4_right_noflip_up
+    t543 = qx_1_1_2_3_4_right_noflip_up * uc_1_1_2_3_4_right_noflip_up
+    del qx_1_1_2_3_4_right_noflip_up, uc_1_1_2_3_4_right_noflip_up
+    t544 = spin_1_1_2_3_4_right_noflip_up * (t543 + t25 * t537)
+    del spin_1_1_2_3_4_right_noflip_up, t543
+    t545 = 2.0 * dqx_1_1_2_3_4_right_noflip_up * t537 - t544
+    del dqx_1_1_2_3_4_right_noflip_up, t537, t544
+    t546 = straight_1_1_2_3_4_right_noflip_up - rate_1_1_2_3_4_right_noflip_up * t545
+    del rate_1_1_2_3_4_right_noflip_up, t545
+    bends_1_1_2_3_4_right_noflip_up = _runtime.select(t531, straight_1_1_2_3_4_right_noflip_up, t546)
+    del straight_1_1_2_3_4_right_noflip_up, t546
+    t547 = x_1_1_2_3_4_right_noflip_up * x_1_1_2_3_4_right_noflip_up
+    del x_1_1_2_3_4_right_noflip_up
+    square_1_1_2_3_4_right_noflip_up = t547 + t540 * t540
+    del t540, t547
+    t548 = _runtime.select(t531, t31, fold_1_1) - whole_1_1
+    t549 = np.maximum(0.0, t548)
+    del t548
+    t550 = whole_1_1 + _runtime.select(t531, t3, full_1_1)
+    del t531
+    t551 = np.minimum(t550 * t550, square_1_1_2_3_4_right_noflip_up)
+    del t550
+    miss_1_1_2_3_4_right_noflip_up = square_1_1_2_3_4_right_noflip_up - np.maximum(t549 * t549, t551)
+    del square_1_1_2_3_4_right_noflip_up, t549, t551
+    t552 = bends_1_1_2_3_4_right_noflip_up * miss_1_1_2_3_4_right_noflip_up
+    inner_1_1_2_3_4_right_noflip_up = t542 - t552
+    del t542, t552
+    t553 = inner_1_1_2_3_4_right_noflip_up < 0.0
+    t554 = _runtime.sign(slope_1_1_2_3_4_right_noflip_up)
+    t555 = np.maximum(0.0, inner_1_1_2_3_4_right_noflip_up)
+    del inner_1_1_2_3_4_right_noflip_up
+    outer_1_1_2_3_4_right_noflip_up = slope_1_1_2_3_4_right_noflip_up + t554 * np.sqrt(t555)
+    del t554, t555
+    below_1_1_2_3_4_right_noflip_up = _runtime.select(t553, 2.0 * bends_1_1_2_3_4_right_noflip_up, 2.0 * outer_1_1_2_3_4_right_noflip_up)
+    del bends_1_1_2_3_4_right_noflip_up, outer_1_1_2_3_4_right_noflip_up
+    above_1_1_2_3_4_right_noflip_up = _runtime.select(t553, slope_1_1_2_3_4_right_noflip_up, miss_1_1_2_3_4_right_noflip_up)
+    del miss_1_1_2_3_4_right_noflip_up, slope_1_1_2_3_4_right_noflip_up, t553
+    t556 = np.abs(below_1_1_2_3_4_right_noflip_up) <= np.abs(above_1_1_2_3_4_right_noflip_up)
+    t557 = above_1_1_2_3_4_right_noflip_up / below_1_1_2_3_4_right_noflip_up
+    del above_1_1_2_3_4_right_noflip_up, below_1_1_2_3_4_right_noflip_up
+    t558 = _runtime.select(t556, 0.0, t557)
+    del t556, t557
+    t559 = t558 * t558
+    t560 = 1.0 / (1.0 + t559)
+    t561 = 2.0 * t558 * t560
+    del t558
+    by_c_1_1_2_3_4_right_noflip_up = t560 * (1.0 - t559)
+    del t559, t560
+    t562 = d4 * (t561 * t561) / (1.0 + np.abs(by_c_1_1_2_3_4_right_noflip_up))
+    t563 = (t562 + root1 * np.abs(t561) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_noflip_up)
+    del t562
+    sine_1_1_2_3_4_right_noflip_up = _runtime.select(t563, -t561, 0.0)
+    del t561
+    t564 = c_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
+    cosine_1_1_2_3_4_right_noflip_up = _runtime.select(t563, by_c_1_1_2_3_4_right_noflip_up, 1.0)
+    del by_c_1_1_2_3_4_right_noflip_up, t563
+    t565 = s_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
+    s1_right_noflip_up = _runtime.select(tangent1, t564 + t565, -t405)
+    del t564, t565
+    t566 = c_1_1_2_3_4_right_noflip_up * cosine_1_1_2_3_4_right_noflip_up
+    del c_1_1_2_3_4_right_noflip_up, cosine_1_1_2_3_4_right_noflip_up
+    t567 = s_1_1_2_3_4_right_noflip_up * sine_1_1_2_3_4_right_noflip_up
+    del s_1_1_2_3_4_right_noflip_up, sine_1_1_2_3_4_right_noflip_up
+    c1_right_noflip_up = _runtime.select(tangent1, t566 - t567, c_1_1_right_noflip_up)
+    del t566, t567
+    t568 = np.arctan2(s1_right_noflip_up, c1_right_noflip_up)
     across_right_noflip_up = w_x * c1_right_noflip_up + w_y * s1_right_noflip_up
     M_13_right_noflip_up = T13 * c1_right_noflip_up + T23 * s1_right_noflip_up
-    t500 = t11 + M_13_right_noflip_up * M_13_right_noflip_up
-    h_wrist_right_noflip_up = np.sqrt(t500)
-    del t500
-    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t115
-    t501 = across_right_noflip_up * across_right_noflip_up
-    r_hub_right_noflip_up = np.sqrt(t38 + t501)
-    del t501
+    t569 = t12 + M_13_right_noflip_up * M_13_right_noflip_up
+    h_wrist_right_noflip_up = np.sqrt(t569)
+    del t569
+    aligned_wrist_right_noflip_up = h_wrist_right_noflip_up <= t140
+    t570 = across_right_noflip_up * across_right_noflip_up
+    r_hub_right_noflip_up = np.sqrt(t47 + t570)
+    del t570
     hub_mid_right_noflip_up = r_hub_right_noflip_up <= t4
-    t502 = d5 + r_hub_right_noflip_up
-    t503 = d5 - r_hub_right_noflip_up
-    mid_reach_right_noflip_up = np.minimum(full_1_1, t502) * 0.5 + np.maximum(fold_1_1, np.abs(t503)) * 0.5
-    t504 = (t502 - mid_reach_right_noflip_up) * (t502 + mid_reach_right_noflip_up)
-    k_mid_right_noflip_up = np.maximum(0.0, t504)
-    del t504
-    t505 = (t503 - mid_reach_right_noflip_up) * (t503 + mid_reach_right_noflip_up)
+    t571 = d5 + r_hub_right_noflip_up
+    t572 = d5 - r_hub_right_noflip_up
+    mid_reach_right_noflip_up = np.minimum(full_1_1, t571) * 0.5 + np.maximum(fold_1_1, np.abs(t572)) * 0.5
+    t573 = (t571 - mid_reach_right_noflip_up) * (t571 + mid_reach_right_noflip_up)
+    k_mid_right_noflip_up = np.maximum(0.0, t573)
+    del t573
+    t574 = (t572 - mid_reach_right_noflip_up) * (t572 + mid_reach_right_noflip_up)
     del mid_reach_right_noflip_up
-    d_mid_right_noflip_up = np.maximum(0.0, -t505)
-    del t505
+    d_mid_right_noflip_up = np.maximum(0.0, -t574)
+    del t574
     n_mid_right_noflip_up = k_mid_right_noflip_up + d_mid_right_noflip_up
-    any_mid_right_noflip_up = n_mid_right_noflip_up <= t118
-    t506 = k_mid_right_noflip_up - d_mid_right_noflip_up
-    t507 = 1.0 / n_mid_right_noflip_up
+    t575 = _runtime.VANISHING * (size * t571)
+    any_mid_right_noflip_up = n_mid_right_noflip_up <= t575
+    t576 = k_mid_right_noflip_up - d_mid_right_noflip_up
+    t577 = 1.0 / n_mid_right_noflip_up
     del n_mid_right_noflip_up
-    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t506 * t507)
-    del t506
-    t508 = across_right_noflip_up * uc_mid_right_noflip_up
-    t509 = k_mid_right_noflip_up * d_mid_right_noflip_up
+    uc_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 1.0, t576 * t577)
+    del t576
+    t578 = across_right_noflip_up * uc_mid_right_noflip_up
+    t579 = k_mid_right_noflip_up * d_mid_right_noflip_up
     del d_mid_right_noflip_up, k_mid_right_noflip_up
-    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t507 * (2.0 * np.sqrt(t509)))
-    del any_mid_right_noflip_up, t507, t509
-    t510 = 1.0 / r_hub_right_noflip_up
+    us_mid_right_noflip_up = _runtime.select(any_mid_right_noflip_up, 0.0, t577 * (2.0 * np.sqrt(t579)))
+    del any_mid_right_noflip_up, t577, t579
+    t580 = 1.0 / r_hub_right_noflip_up
     del r_hub_right_noflip_up
-    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t508 + t21 * us_mid_right_noflip_up) * t510)
-    del t508
-    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t121 <= t4
-    t511 = 1.0 / h_wrist_right_noflip_up
-    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t511)
-    t512 = across_right_noflip_up - d5 * s_phi_right_noflip_up
-    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, M_13_right_noflip_up * t511)
-    del t511
-    t513 = t21 - d5 * c_phi_right_noflip_up
-    here_right_noflip_up = np.sqrt(t512 * t512 + t513 * t513)
-    del t512, t513
+    c_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, (t578 + t25 * us_mid_right_noflip_up) * t580)
+    del t578
+    close_right_noflip_up = root1 * h_wrist_right_noflip_up - t146 <= t4
+    t581 = 1.0 / h_wrist_right_noflip_up
+    s_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 0.0, T33 * t581)
+    t582 = across_right_noflip_up - d5 * s_phi_right_noflip_up
+    c_phi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, 1.0, M_13_right_noflip_up * t581)
+    del t581
+    t583 = t25 - d5 * c_phi_right_noflip_up
+    here_right_noflip_up = np.sqrt(t582 * t582 + t583 * t583)
+    del t582, t583
     in_reach_right_noflip_up = np.minimum(full_1_1, np.maximum(here_right_noflip_up, fold_1_1))
-    t514 = (t502 - in_reach_right_noflip_up) * (t502 + in_reach_right_noflip_up)
-    del t502
-    k_near_right_noflip_up = np.maximum(0.0, t514)
-    del t514
-    t515 = (t503 - in_reach_right_noflip_up) * (t503 + in_reach_right_noflip_up)
-    del t503
-    d_near_right_noflip_up = np.maximum(0.0, -t515)
-    del t515
+    t584 = (t571 - in_reach_right_noflip_up) * (t571 + in_reach_right_noflip_up)
+    del t571
+    k_near_right_noflip_up = np.maximum(0.0, t584)
+    del t584
+    t585 = (t572 - in_reach_right_noflip_up) * (t572 + in_reach_right_noflip_up)
+    del t572
+    d_near_right_noflip_up = np.maximum(0.0, -t585)
+    del t585
     n_near_right_noflip_up = k_near_right_noflip_up + d_near_right_noflip_up
-    any_near_right_noflip_up = n_near_right_noflip_up <= t118
-    t516 = k_near_right_noflip_up - d_near_right_noflip_up
-    t517 = 1.0 / n_near_right_noflip_up
+    any_near_right_noflip_up = n_near_right_noflip_up <= t575
+    del t575
+    t586 = k_near_right_noflip_up - d_near_right_noflip_up
+    t587 = 1.0 / n_near_right_noflip_up
     del n_near_right_noflip_up
-    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t516 * t517)
-    del t516
-    t518 = across_right_noflip_up * uc_near_right_noflip_up
-    t519 = across_right_noflip_up * c_phi_right_noflip_up
-    t520 = t519 - t21 * s_phi_right_noflip_up
-    del t519
-    t521 = np.abs(t520)
-    side_right_noflip_up = _runtime.select(t521 <= t4, 1.0, -(t520 / t521))
-    del t520, t521
-    t522 = k_near_right_noflip_up * d_near_right_noflip_up
+    uc_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 1.0, t586 * t587)
+    del t586
+    t588 = across_right_noflip_up * uc_near_right_noflip_up
+    t589 = across_right_noflip_up * c_phi_right_noflip_up
+    t590 = t589 - t25 * s_phi_right_noflip_up
+    del t589
+    t591 = np.abs(t590)
+    side_right_noflip_up = _runtime.select(t591 <= t4, 1.0, -(t590 / t591))
+    del t590, t591
+    t592 = k_near_right_noflip_up * d_near_right_noflip_up
     del d_near_right_noflip_up, k_near_right_noflip_up
-    t523 = t517 * (2.0 * side_right_noflip_up * np.sqrt(t522))
-    del side_right_noflip_up, t517, t522
-    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t523)
-    del any_near_right_noflip_up, t523
-    t524 = t510 * (t518 + t21 * us_near_right_noflip_up)
-    del t518
-    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t524)
-    del t524
-    t525 = s_phi_right_noflip_up - c_near_right_noflip_up
-    t526 = across_right_noflip_up * us_near_right_noflip_up
+    t593 = t587 * (2.0 * side_right_noflip_up * np.sqrt(t592))
+    del side_right_noflip_up, t587, t592
+    us_near_right_noflip_up = _runtime.select(any_near_right_noflip_up, 0.0, t593)
+    del any_near_right_noflip_up, t593
+    t594 = t580 * (t588 + t25 * us_near_right_noflip_up)
+    del t588
+    c_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 1.0, t594)
+    del t594
+    t595 = s_phi_right_noflip_up - c_near_right_noflip_up
+    t596 = across_right_noflip_up * us_near_right_noflip_up
     del us_near_right_noflip_up
-    t527 = t510 * (t526 - t21 * uc_near_right_noflip_up)
-    del t526, uc_near_right_noflip_up
-    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t527)
-    del t527
-    t528 = c_phi_right_noflip_up + s_near_right_noflip_up
-    t529 = h_wrist_right_noflip_up * np.sqrt(t525 * t525 + t528 * t528)
-    del h_wrist_right_noflip_up, t525, t528
-    t530 = here_right_noflip_up - in_reach_right_noflip_up
+    t597 = t580 * (t596 - t25 * uc_near_right_noflip_up)
+    del t596, uc_near_right_noflip_up
+    s_near_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t597)
+    del t597
+    t598 = c_phi_right_noflip_up + s_near_right_noflip_up
+    t599 = h_wrist_right_noflip_up * np.sqrt(t595 * t595 + t598 * t598)
+    del h_wrist_right_noflip_up, t595, t598
+    t600 = here_right_noflip_up - in_reach_right_noflip_up
     del here_right_noflip_up, in_reach_right_noflip_up
-    t531 = (t529 - 2.2737367544323206e-13 <= t132) & np.logical_not(np.abs(t530) <= t4)
-    del t529, t530
-    s_kept_right_noflip_up = _runtime.select(t531, c_near_right_noflip_up, s_phi_right_noflip_up)
+    t601 = (t599 - 2.2737367544323206e-13 <= t157) & np.logical_not(np.abs(t600) <= t4)
+    del t599, t600
+    s_kept_right_noflip_up = _runtime.select(t601, c_near_right_noflip_up, s_phi_right_noflip_up)
     del c_near_right_noflip_up
-    t532 = _runtime.select(close_right_noflip_up, s_kept_right_noflip_up, s_phi_right_noflip_up)
+    t602 = _runtime.select(close_right_noflip_up, s_kept_right_noflip_up, s_phi_right_noflip_up)
     del s_kept_right_noflip_up, s_phi_right_noflip_up
-    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t532)
-    del c_mid_right_noflip_up, t532
-    t533 = across_right_noflip_up - d5 * sphi_right_noflip_up
-    t534 = across_right_noflip_up * us_mid_right_noflip_up
+    sphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, c_mid_right_noflip_up, t602)
+    del c_mid_right_noflip_up, t602
+    t603 = across_right_noflip_up - d5 * sphi_right_noflip_up
+    t604 = across_right_noflip_up * us_mid_right_noflip_up
     del across_right_noflip_up, us_mid_right_noflip_up
-    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t510 * (t534 - t21 * uc_mid_right_noflip_up))
-    del hub_mid_right_noflip_up, t510, t534, uc_mid_right_noflip_up
-    c_kept_right_noflip_up = _runtime.select(t531, -s_near_right_noflip_up, c_phi_right_noflip_up)
-    del s_near_right_noflip_up, t531
-    t535 = _runtime.select(close_right_noflip_up, c_kept_right_noflip_up, c_phi_right_noflip_up)
+    s_mid_right_noflip_up = _runtime.select(hub_mid_right_noflip_up, 0.0, t580 * (t604 - t25 * uc_mid_right_noflip_up))
+    del hub_mid_right_noflip_up, t580, t604, uc_mid_right_noflip_up
+    c_kept_right_noflip_up = _runtime.select(t601, -s_near_right_noflip_up, c_phi_right_noflip_up)
+    del s_near_right_noflip_up, t601
+    t605 = _runtime.select(close_right_noflip_up, c_kept_right_noflip_up, c_phi_right_noflip_up)
     del c_kept_right_noflip_up, c_phi_right_noflip_up, close_right_noflip_up
-    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t535)
-    del s_mid_right_noflip_up, t535
-    ey_right_noflip_up = t21 - d5 * cphi_right_noflip_up
-    t536 = t533 * t533 + ey_right_noflip_up * ey_right_noflip_up
-    r_elbow_right_noflip_up = np.sqrt(t536)
-    del t536
-    t537 = full_1_1 - r_elbow_right_noflip_up
-    t538 = t24 + r_elbow_right_noflip_up
-    t539 = r_elbow_right_noflip_up - t24
-    t540 = t114 & (t113 <= t537) & (t113 <= t538) & (t113 <= t539)
-    unreachable_3 = np.logical_not(t540)
-    del t540
-    t541 = _runtime.poison(invalid | unreachable_3)
-    t542 = _runtime.wrap_cut(t499) + t541
-    del t499
+    cphi_right_noflip_up = _runtime.select(aligned_wrist_right_noflip_up, -s_mid_right_noflip_up, t605)
+    del s_mid_right_noflip_up, t605
+    ey_right_noflip_up = t25 - d5 * cphi_right_noflip_up
+    t606 = t603 * t603 + ey_right_noflip_up * ey_right_noflip_up
+    r_elbow_right_noflip_up = np.sqrt(t606)
+    del t606
+    t607 = full_1_1 - r_elbow_right_noflip_up
+    t608 = t30 + r_elbow_right_noflip_up
+    t609 = r_elbow_right_noflip_up - t30
+    t610 = t139 & (t138 <= t607) & (t138 <= t608) & (t138 <= t609)
+    unreachable_3 = np.logical_not(t610)
+    del t610
+    t611 = _runtime.poison(invalid | unreachable_3)
+    t612 = _runtime.wrap_cut(t568) + t611
+    del t568
     folded_elbow_right_noflip_up = r_elbow_right_noflip_up <= t4
-    t543 = folded_elbow_right_noflip_up | no_link_elbow
-    A_elbow_right_noflip_up = np.maximum(t537, 0.0)
-    del t537
-    C_elbow_right_noflip_up = np.maximum(t539, 0.0)
-    del t539
-    t544 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
+    t613 = folded_elbow_right_noflip_up | no_link_elbow
+    A_elbow_right_noflip_up = np.maximum(t607, 0.0)
+    del t607
+    C_elbow_right_noflip_up = np.maximum(t609, 0.0)
+    del t609
+    t614 = A_elbow_right_noflip_up * C_elbow_right_noflip_up
     S_elbow_right_noflip_up = full_1_1 + r_elbow_right_noflip_up
-    B_elbow_right_noflip_up = np.maximum(t538, 0.0)
-    del t538
-    t545 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
-    t546 = 1.0 / (t544 + t545)
-    c_base_elbow_right_noflip_up = _runtime.select(t543, 1.0, -((t544 - t545) * t546))
-    t547 = 1.0 / r_elbow_right_noflip_up
+    B_elbow_right_noflip_up = np.maximum(t608, 0.0)
+    del t608
+    t615 = S_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t616 = 1.0 / (t614 + t615)
+    c_base_elbow_right_noflip_up = _runtime.select(t613, 1.0, -((t614 - t615) * t616))
+    t617 = 1.0 / r_elbow_right_noflip_up
     del r_elbow_right_noflip_up
-    t548 = _runtime.select(folded_elbow_right_noflip_up, 0.0, ey_right_noflip_up * t547)
+    t618 = _runtime.select(folded_elbow_right_noflip_up, 0.0, ey_right_noflip_up * t617)
     del ey_right_noflip_up
-    t549 = c_base_elbow_right_noflip_up * t548
-    area_elbow_right_noflip_up = 2.0 * np.sqrt(t544 * t545)
-    del t544, t545
-    s_base_elbow_right_noflip_up = _runtime.select(t543, 0.0, t546 * area_elbow_right_noflip_up)
-    del t543, t546
-    t550 = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t533 * t547))
-    del t533, t547
-    t551 = s_base_elbow_right_noflip_up * t550
-    s2_right_noflip_up = t549 - t551
-    t552 = c_base_elbow_right_noflip_up * t550
-    del c_base_elbow_right_noflip_up, t550
-    t553 = t548 * s_base_elbow_right_noflip_up
-    del s_base_elbow_right_noflip_up, t548
-    c2_right_noflip_up = t552 + t553
-    t554 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
-    t555 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
+    t619 = c_base_elbow_right_noflip_up * t618
+    area_elbow_right_noflip_up = 2.0 * np.sqrt(t614 * t615)
+    del t614, t615
+    s_base_elbow_right_noflip_up = _runtime.select(t613, 0.0, t616 * area_elbow_right_noflip_up)
+    del t613, t616
+    t620 = _runtime.select(folded_elbow_right_noflip_up, 1.0, -(t603 * t617))
+    del t603, t617
+    t621 = s_base_elbow_right_noflip_up * t620
+    s2_right_noflip_up = t619 - t621
+    t622 = c_base_elbow_right_noflip_up * t620
+    del c_base_elbow_right_noflip_up, t620
+    t623 = t618 * s_base_elbow_right_noflip_up
+    del s_base_elbow_right_noflip_up, t618
+    c2_right_noflip_up = t622 + t623
+    t624 = np.arctan2(s2_right_noflip_up, c2_right_noflip_up)
+    t625 = A_elbow_right_noflip_up * S_elbow_right_noflip_up
     del A_elbow_right_noflip_up, S_elbow_right_noflip_up
-    t556 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
+    t626 = C_elbow_right_noflip_up * B_elbow_right_noflip_up
     del B_elbow_right_noflip_up, C_elbow_right_noflip_up
-    t557 = 1.0 / (t555 + t556)
-    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t557)
+    t627 = 1.0 / (t625 + t626)
+    s3_right_noflip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_noflip_up * t627)
     del area_elbow_right_noflip_up
-    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t557 * (t555 - t556)))
-    del t555, t556, t557
-    t558 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
-    t559 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
-    t560 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
+    c3_right_noflip_up = _runtime.select(no_link_elbow, 1.0, -(t627 * (t625 - t626)))
+    del t625, t626, t627
+    t628 = np.arctan2(s3_right_noflip_up, c3_right_noflip_up)
+    t629 = sphi_right_noflip_up * c2_right_noflip_up - cphi_right_noflip_up * s2_right_noflip_up
+    t630 = cphi_right_noflip_up * c2_right_noflip_up + sphi_right_noflip_up * s2_right_noflip_up
     del c2_right_noflip_up, s2_right_noflip_up
-    t561 = c3_right_noflip_up * t559 - s3_right_noflip_up * t560
-    t562 = c3_right_noflip_up * t560 + s3_right_noflip_up * t559
-    del t559, t560
-    t563 = _runtime.wrap_cut(np.arctan2(t561, t562)) + t541
-    del t561, t562
-    t564 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
+    t631 = c3_right_noflip_up * t629 - s3_right_noflip_up * t630
+    t632 = c3_right_noflip_up * t630 + s3_right_noflip_up * t629
+    del t629, t630
+    t633 = _runtime.wrap_cut(np.arctan2(t631, t632)) + t611
+    del t631, t632
+    t634 = M_13_right_noflip_up * cphi_right_noflip_up + T33 * sphi_right_noflip_up
     del M_13_right_noflip_up
     M_33_right_noflip_up = T13 * s1_right_noflip_up - T23 * c1_right_noflip_up
-    t565 = _runtime.wrap_cut(-np.arctan2(t564, M_33_right_noflip_up))
-    del M_33_right_noflip_up, t564
-    t566 = t565 + t541
-    del t565
+    t635 = _runtime.wrap_cut(-np.arctan2(t634, M_33_right_noflip_up))
+    del M_33_right_noflip_up, t634
+    t636 = t635 + t611
+    del t635
     M_11_right_noflip_up = T11 * c1_right_noflip_up + T21 * s1_right_noflip_up
-    t567 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
+    t637 = sphi_right_noflip_up * M_11_right_noflip_up - T31 * cphi_right_noflip_up
     del M_11_right_noflip_up
     M_12_right_noflip_up = T12 * c1_right_noflip_up + T22 * s1_right_noflip_up
     del c1_right_noflip_up, s1_right_noflip_up
-    t568 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
+    t638 = T32 * cphi_right_noflip_up - sphi_right_noflip_up * M_12_right_noflip_up
     del M_12_right_noflip_up
-    t569 = _runtime.wrap_cut(-np.arctan2(t567, t568)) + t541
-    del t567, t568
-    s2_right_noflip_down = t549 + t551
-    del t549, t551
-    c2_right_noflip_down = t552 - t553
-    del t552, t553
-    t570 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
-    t571 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
-    t572 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
+    t639 = _runtime.wrap_cut(-np.arctan2(t637, t638)) + t611
+    del t637, t638
+    s2_right_noflip_down = t619 + t621
+    del t619, t621
+    c2_right_noflip_down = t622 - t623
+    del t622, t623
+    t640 = np.arctan2(s2_right_noflip_down, c2_right_noflip_down)
+    t641 = sphi_right_noflip_up * c2_right_noflip_down - cphi_right_noflip_up * s2_right_noflip_down
+    t642 = cphi_right_noflip_up * c2_right_noflip_down + sphi_right_noflip_up * s2_right_noflip_down
     del c2_right_noflip_down, cphi_right_noflip_up, s2_right_noflip_down, sphi_right_noflip_up
-    t573 = c3_right_noflip_up * t571 + s3_right_noflip_up * t572
-    t574 = c3_right_noflip_up * t572 - s3_right_noflip_up * t571
-    del c3_right_noflip_up, s3_right_noflip_up, t571, t572
-    t575 = _runtime.wrap_cut(np.arctan2(t573, t574)) + t541
-    del t573, t574
-    x_1_1_right_flip_up = _runtime.select(t361, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up + t363)
-    del qx_1_1_right_noflip_up, t363
-    dx_1_1_right_flip_up = _runtime.select(t361, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up - t367)
-    del dqx_1_1_right_noflip_up, t367
-    t576 = _runtime.select(t361, t21, t21 + t369)
-    del t361, t369
-    slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t371 * t576
-    del t371
-    t577 = slope_1_1_right_flip_up * slope_1_1_right_flip_up
-    square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t576 * t576
-    del t576, x_1_1_right_flip_up
-    t578 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_flip_up)
+    t643 = c3_right_noflip_up * t641 + s3_right_noflip_up * t642
+    t644 = c3_right_noflip_up * t642 - s3_right_noflip_up * t641
+    del c3_right_noflip_up, s3_right_noflip_up, t641, t642
+    t645 = _runtime.wrap_cut(np.arctan2(t643, t644)) + t611
+    del t643, t644
+    x_1_1_right_flip_up = _runtime.select(t407, qx_1_1_right_noflip_up, qx_1_1_right_noflip_up + t410)
+    del qx_1_1_right_noflip_up, t410
+    t646 = _runtime.select(t408, 1.0, -t415)
+    del t408, t415
+    dx_1_1_right_flip_up = _runtime.select(t407, dqx_1_1_right_noflip_up, dqx_1_1_right_noflip_up + t414 * t646)
+    del dqx_1_1_right_noflip_up
+    t647 = _runtime.select(t407, t25, t25 - d5 * t646)
+    slope_1_1_right_flip_up = x_1_1_right_flip_up * dx_1_1_right_flip_up + t419 * t647
+    del dx_1_1_right_flip_up, t419
+    t648 = slope_1_1_right_flip_up * slope_1_1_right_flip_up
+    t649 = t414 * (t421 * t646 - t413 * (t422 - t25 * t646))
+    del t413, t414, t421, t422, t646
+    bends_1_1_right_flip_up = _runtime.select(t407, straight_1_1_right_noflip_up, straight_1_1_right_noflip_up + t649)
+    del straight_1_1_right_noflip_up, t407, t649
+    square_1_1_right_flip_up = x_1_1_right_flip_up * x_1_1_right_flip_up + t647 * t647
+    del t647, x_1_1_right_flip_up
+    t650 = np.minimum(high_1_1_right_noflip_up, square_1_1_right_flip_up)
     del high_1_1_right_noflip_up
-    miss_1_1_right_flip_up = square_1_1_right_flip_up - np.maximum(low_1_1_right_noflip_up, t578)
-    del low_1_1_right_noflip_up, square_1_1_right_flip_up, t578
-    bend_1_1_right_flip_up = t376 + dx_1_1_right_flip_up * dx_1_1_right_flip_up
-    del dx_1_1_right_flip_up, t376
-    t579 = miss_1_1_right_flip_up * bend_1_1_right_flip_up
-    inner_1_1_right_flip_up = t577 - t579
-    del t577, t579
-    t580 = slope_1_1_right_flip_up / (2.0 * bend_1_1_right_flip_up)
-    del bend_1_1_right_flip_up
-    t581 = np.sqrt(np.maximum(0.0, inner_1_1_right_flip_up))
-    t582 = _runtime.sign(slope_1_1_right_flip_up) * t581
-    del t581
-    outer_1_1_right_flip_up = slope_1_1_right_flip_up + t582
-    del slope_1_1_right_flip_up, t582
-    t583 = miss_1_1_right_flip_up / (2.0 * outer_1_1_right_flip_up)
-    del miss_1_1_right_flip_up
-    t584 = _runtime.select(outer_1_1_right_flip_up == 0.0, 0.0, t583)
-    del outer_1_1_right_flip_up, t583
-    t585 = _runtime.select(inner_1_1_right_flip_up < 0.0, t580, t584)
-    del inner_1_1_right_flip_up, t580, t584
-    t586 = t585 * t585
-    t587 = 1.0 / (1.0 + t586)
-    t588 = 2.0 * t585 * t587
-    del t585
-    by_c_1_1_right_flip_up = t587 * (1.0 - t586)
-    del t586, t587
-    t589 = d4 * (t588 * t588) / (1.0 + np.abs(by_c_1_1_right_flip_up))
-    t590 = (t589 + root1 * np.abs(t588) <= whole_1_1) & (0.0 < by_c_1_1_right_flip_up)
-    del t589
-    cosine_1_1_right_flip_up = _runtime.select(t590, by_c_1_1_right_flip_up, 1.0)
+    miss_1_1_right_flip_up = square_1_1_right_flip_up - np.maximum(low_1_1_right_noflip_up, t650)
+    del low_1_1_right_noflip_up, square_1_1_right_flip_up, t650
+    t651 = bends_1_1_right_flip_up * miss_1_1_right_flip_up
+    inner_1_1_right_flip_up = t648 - t651
+    del t648, t651
+    t652 = inner_1_1_right_flip_up < 0.0
+    t653 = np.sqrt(np.maximum(0.0, inner_1_1_right_flip_up))
+    del inner_1_1_right_flip_up
+    t654 = _runtime.sign(slope_1_1_right_flip_up) * t653
+    del t653
+    below_1_1_right_flip_up = _runtime.select(t652, 2.0 * bends_1_1_right_flip_up, 2.0 * (slope_1_1_right_flip_up + t654))
+    del bends_1_1_right_flip_up, t654
+    above_1_1_right_flip_up = _runtime.select(t652, slope_1_1_right_flip_up, miss_1_1_right_flip_up)
+    del miss_1_1_right_flip_up, slope_1_1_right_flip_up, t652
+    t655 = np.abs(below_1_1_right_flip_up) <= np.abs(above_1_1_right_flip_up)
+    t656 = above_1_1_right_flip_up / below_1_1_right_flip_up
+    del above_1_1_right_flip_up, below_1_1_right_flip_up
+    t657 = _runtime.select(t655, 0.0, t656)
+    del t655, t656
+    t658 = t657 * t657
+    t659 = 1.0 / (1.0 + t658)
+    t660 = 2.0 * t657 * t659
+    del t657
+    by_c_1_1_right_flip_up = t659 * (1.0 - t658)
+    del t658, t659
+    t661 = d4 * (t660 * t660) / (1.0 + np.abs(by_c_1_1_right_flip_up))
+    t662 = (t661 + root1 * np.abs(t660) <= whole_1_1) & (0.0 < by_c_1_1_right_flip_up)
+    del t661
+    cosine_1_1_right_flip_up = _runtime.select(t662, by_c_1_1_right_flip_up, 1.0)
     del by_c_1_1_right_flip_up
-    t591 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up
-    sine_1_1_right_flip_up = _runtime.select(t590, -t588, 0.0)
-    del t588, t590
-    c_1_1_2_right_flip_up = t591 + t359 * sine_1_1_right_flip_up
-    del t591
-    t592 = c_1_1_right_noflip_up * sine_1_1_right_flip_up
+    t663 = c_1_1_right_noflip_up * cosine_1_1_right_flip_up
+    sine_1_1_right_flip_up = _runtime.select(t662, -t660, 0.0)
+    del t660, t662
+    c_1_1_2_right_flip_up = t663 + t405 * sine_1_1_right_flip_up
+    del t663
+    t664 = c_1_1_right_noflip_up * sine_1_1_right_flip_up
     del sine_1_1_right_flip_up
-    s_1_1_2_right_flip_up = t592 - t359 * cosine_1_1_right_flip_up
-    del cosine_1_1_right_flip_up, t592
+    s_1_1_2_right_flip_up = t664 - t405 * cosine_1_1_right_flip_up
+    del cosine_1_1_right_flip_up, t664
     axisx_1_1_2_right_flip_up = T13 * c_1_1_2_right_flip_up + T23 * s_1_1_2_right_flip_up
-    t593 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up
-    t594 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up
-    most_1_1_2_right_flip_up = np.sqrt(t593 + t594 * t594)
+    t665 = axisx_1_1_2_right_flip_up * axisx_1_1_2_right_flip_up
+    t666 = T13 * s_1_1_2_right_flip_up - T23 * c_1_1_2_right_flip_up
+    most_1_1_2_right_flip_up = np.sqrt(t665 + t666 * t666)
+    t667 = most_1_1_2_right_flip_up <= 8.881784197001252e-16
     qx_1_1_2_right_flip_up = w_x * c_1_1_2_right_flip_up + w_y * s_1_1_2_right_flip_up
-    t595 = qx_1_1_2_right_flip_up * qx_1_1_2_right_flip_up
-    r_1_1_2_right_flip_up = np.sqrt(t38 + t595)
-    del t595
-    t596 = r_1_1_2_right_flip_up <= t39
-    del t39
-    t597 = d5 + r_1_1_2_right_flip_up
-    t598 = 1.0 / np.sqrt(t11 + t593)
-    del t593
-    t599 = T33 * t598
-    t600 = qx_1_1_2_right_flip_up + d5 * t599
-    us_1_1_2_right_flip_up = axisx_1_1_2_right_flip_up * t598
-    del t598
-    t601 = t21 + d5 * us_1_1_2_right_flip_up
-    there_1_1_2_right_flip_up = np.sqrt(t600 * t600 + t601 * t601)
-    del t600, t601
-    t602 = np.maximum(there_1_1_2_right_flip_up, fold_1_1)
-    goal_1_1_2_right_flip_up = np.minimum(full_1_1, t602)
-    del t602
-    t603 = (t597 - goal_1_1_2_right_flip_up) * (t597 + goal_1_1_2_right_flip_up)
-    del t597
-    k_v_1_1_2_right_flip_up = np.maximum(0.0, t603)
-    del t603
-    t604 = d5 - r_1_1_2_right_flip_up
-    t605 = (goal_1_1_2_right_flip_up - t604) * (goal_1_1_2_right_flip_up + t604)
-    del t604
-    d_v_1_1_2_right_flip_up = np.maximum(0.0, t605)
-    del t605
-    n_v_1_1_2_right_flip_up = k_v_1_1_2_right_flip_up + d_v_1_1_2_right_flip_up
-    t606 = n_v_1_1_2_right_flip_up <= t48
+    t668 = qx_1_1_2_right_flip_up * qx_1_1_2_right_flip_up
+    r_1_1_2_right_flip_up = np.sqrt(t47 + t668)
+    del t668
+    t669 = r_1_1_2_right_flip_up <= t48
     del t48
-    t607 = k_v_1_1_2_right_flip_up - d_v_1_1_2_right_flip_up
-    t608 = 1.0 / n_v_1_1_2_right_flip_up
-    del n_v_1_1_2_right_flip_up
-    uc_v_1_1_2_right_flip_up = _runtime.select(t606, 1.0, t607 * t608)
-    del t607
-    t609 = qx_1_1_2_right_flip_up * uc_v_1_1_2_right_flip_up
-    t610 = qx_1_1_2_right_flip_up * us_1_1_2_right_flip_up
-    del us_1_1_2_right_flip_up
-    t611 = k_v_1_1_2_right_flip_up * d_v_1_1_2_right_flip_up
-    del d_v_1_1_2_right_flip_up, k_v_1_1_2_right_flip_up
-    t612 = 2.0 * _runtime.sign(t610 - t21 * t599) * np.sqrt(t611)
-    del t599, t610, t611
-    us_v_1_1_2_right_flip_up = _runtime.select(t606, 0.0, t608 * t612)
-    del t606, t608, t612
-    t613 = t21 * us_v_1_1_2_right_flip_up
-    t614 = 1.0 / r_1_1_2_right_flip_up
-    del r_1_1_2_right_flip_up
-    c_v_1_1_2_right_flip_up = _runtime.select(t596, 1.0, (t609 + t613) * t614)
-    t615 = -(T33 * c_v_1_1_2_right_flip_up) < 0.0
-    t616 = qx_1_1_2_right_flip_up * us_v_1_1_2_right_flip_up
-    del qx_1_1_2_right_flip_up, us_v_1_1_2_right_flip_up
-    t617 = t21 * uc_v_1_1_2_right_flip_up
-    del uc_v_1_1_2_right_flip_up
-    wc_1_1_2_right_flip_up = _runtime.select(t596, 0.0, t614 * (t616 + t617))
-    s_v_1_1_2_right_flip_up = _runtime.select(t596, 0.0, t614 * (t616 - t617))
-    del t616, t617
-    to_c_1_1_2_right_flip_up = _runtime.select(t615, wc_1_1_2_right_flip_up, -s_v_1_1_2_right_flip_up)
-    del s_v_1_1_2_right_flip_up, wc_1_1_2_right_flip_up
-    c_w_1_1_2_right_flip_up = _runtime.select(t596, 1.0, t614 * (t609 - t613))
-    del t596, t609, t613, t614
-    to_s_1_1_2_right_flip_up = _runtime.select(t615, c_w_1_1_2_right_flip_up, c_v_1_1_2_right_flip_up)
-    del c_v_1_1_2_right_flip_up, c_w_1_1_2_right_flip_up, t615
-    t618 = T33 * to_c_1_1_2_right_flip_up / to_s_1_1_2_right_flip_up
-    del to_c_1_1_2_right_flip_up, to_s_1_1_2_right_flip_up
-    t619 = np.minimum(most_1_1_2_right_flip_up, _runtime.select(t37, 0.0, t618))
-    del t37, t618
-    kept_1_1_2_right_flip_up = np.maximum(-most_1_1_2_right_flip_up, t619)
-    del t619
-    t620 = most_1_1_2_right_flip_up - kept_1_1_2_right_flip_up
-    t621 = most_1_1_2_right_flip_up + kept_1_1_2_right_flip_up
-    rest_1_1_2_right_flip_up = np.sqrt(t620 * t621) * _runtime.sign(-t594)
-    del t620, t621
-    t622 = axisx_1_1_2_right_flip_up * rest_1_1_2_right_flip_up
-    t623 = most_1_1_2_right_flip_up * most_1_1_2_right_flip_up
-    del most_1_1_2_right_flip_up
-    t624 = 1.0 / t623
-    del t623
-    t625 = (t622 + t594 * kept_1_1_2_right_flip_up) * t624
-    del t622
-    t626 = axisx_1_1_2_right_flip_up * kept_1_1_2_right_flip_up
-    del axisx_1_1_2_right_flip_up, kept_1_1_2_right_flip_up
-    by_c_1_1_2_right_flip_up = t624 * (t626 - t594 * rest_1_1_2_right_flip_up)
-    del rest_1_1_2_right_flip_up, t594, t624, t626
-    t627 = d4 * (t625 * t625) / (1.0 + np.abs(by_c_1_1_2_right_flip_up))
-    t628 = (t627 + root1 * np.abs(t625) <= whole_1_1) & (0.0 < by_c_1_1_2_right_flip_up)
-    del t627
-    t629 = there_1_1_2_right_flip_up - goal_1_1_2_right_flip_up
-    del goal_1_1_2_right_flip_up, there_1_1_2_right_flip_up
-    t630 = t628 & (size < 1125899906842624.0 * np.abs(t629))
-    del t628, t629
-    cosine_1_1_2_right_flip_up = _runtime.select(t630, by_c_1_1_2_right_flip_up, 1.0)
-    del by_c_1_1_2_right_flip_up
-    t631 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
-    sine_1_1_2_right_flip_up = _runtime.select(t630, -t625, 0.0)
-    del t625, t630
-    t632 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
-    c_1_1_2_3_right_flip_up = t631 - t632
-    del t631, t632
-    t633 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
-    del c_1_1_2_right_flip_up, sine_1_1_2_right_flip_up
-    t634 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
-    del cosine_1_1_2_right_flip_up, s_1_1_2_right_flip_up
-    s_1_1_2_3_right_flip_up = t633 + t634
-    del t633, t634
-    axisx_1_1_2_3_right_flip_up = T13 * c_1_1_2_3_right_flip_up + T23 * s_1_1_2_3_right_flip_up
-    t635 = axisx_1_1_2_3_right_flip_up * axisx_1_1_2_3_right_flip_up
-    h_1_1_2_3_right_flip_up = np.sqrt(t11 + t635)
-    del t635
-    t636 = size * h_1_1_2_3_right_flip_up <= t15
-    qx_1_1_2_3_right_flip_up = w_x * c_1_1_2_3_right_flip_up + w_y * s_1_1_2_3_right_flip_up
-    t637 = 1.0 / h_1_1_2_3_right_flip_up
-    t638 = T33 * t637
-    x_1_1_2_3_right_flip_up = _runtime.select(t636, qx_1_1_2_3_right_flip_up, qx_1_1_2_3_right_flip_up + d5 * t638)
-    del qx_1_1_2_3_right_flip_up
-    dqx_1_1_2_3_right_flip_up = w_y * c_1_1_2_3_right_flip_up - w_x * s_1_1_2_3_right_flip_up
-    us_1_1_2_3_right_flip_up = axisx_1_1_2_3_right_flip_up * t637
-    del axisx_1_1_2_3_right_flip_up, t637
-    t639 = T13 * s_1_1_2_3_right_flip_up - T23 * c_1_1_2_3_right_flip_up
-    t640 = h_1_1_2_3_right_flip_up * h_1_1_2_3_right_flip_up
-    del h_1_1_2_3_right_flip_up
-    rate_1_1_2_3_right_flip_up = d5 * (T33 * t639) / t640
-    del t639, t640
-    t641 = us_1_1_2_3_right_flip_up * rate_1_1_2_3_right_flip_up
-    dx_1_1_2_3_right_flip_up = _runtime.select(t636, dqx_1_1_2_3_right_flip_up, dqx_1_1_2_3_right_flip_up + t641)
-    del dqx_1_1_2_3_right_flip_up, t641
-    t642 = x_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
-    t643 = _runtime.select(t636, t21, t21 + d5 * us_1_1_2_3_right_flip_up)
-    del us_1_1_2_3_right_flip_up
-    dy_1_1_2_3_right_flip_up = _runtime.select(t636, 0.0, t638 * rate_1_1_2_3_right_flip_up)
-    del rate_1_1_2_3_right_flip_up, t638
-    slope_1_1_2_3_right_flip_up = t642 - t643 * dy_1_1_2_3_right_flip_up
-    del t642
-    t644 = slope_1_1_2_3_right_flip_up * slope_1_1_2_3_right_flip_up
-    t645 = x_1_1_2_3_right_flip_up * x_1_1_2_3_right_flip_up
-    del x_1_1_2_3_right_flip_up
-    square_1_1_2_3_right_flip_up = t645 + t643 * t643
-    del t643, t645
-    nearest_1_1_2_3_right_flip_up = _runtime.select(t636, t25, fold_1_1)
-    low_1_1_2_3_right_flip_up = nearest_1_1_2_3_right_flip_up * nearest_1_1_2_3_right_flip_up
-    del nearest_1_1_2_3_right_flip_up
-    farthest_1_1_2_3_right_flip_up = _runtime.select(t636, t3, full_1_1)
-    del t636
-    high_1_1_2_3_right_flip_up = farthest_1_1_2_3_right_flip_up * farthest_1_1_2_3_right_flip_up
-    del farthest_1_1_2_3_right_flip_up
-    t646 = np.minimum(high_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up)
-    del high_1_1_2_3_right_flip_up
-    miss_1_1_2_3_right_flip_up = square_1_1_2_3_right_flip_up - np.maximum(low_1_1_2_3_right_flip_up, t646)
-    del low_1_1_2_3_right_flip_up, square_1_1_2_3_right_flip_up, t646
-    t647 = dx_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
-    del dx_1_1_2_3_right_flip_up
-    t648 = dy_1_1_2_3_right_flip_up * dy_1_1_2_3_right_flip_up
-    del dy_1_1_2_3_right_flip_up
-    bend_1_1_2_3_right_flip_up = t647 + t648
-    del t647, t648
-    t649 = miss_1_1_2_3_right_flip_up * bend_1_1_2_3_right_flip_up
-    inner_1_1_2_3_right_flip_up = t644 - t649
-    del t644, t649
-    t650 = slope_1_1_2_3_right_flip_up / (2.0 * bend_1_1_2_3_right_flip_up)
-    del bend_1_1_2_3_right_flip_up
-    t651 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_right_flip_up))
-    t652 = _runtime.sign(slope_1_1_2_3_right_flip_up) * t651
-    del t651
-    outer_1_1_2_3_right_flip_up = slope_1_1_2_3_right_flip_up + t652
-    del slope_1_1_2_3_right_flip_up, t652
-    t653 = miss_1_1_2_3_right_flip_up / (2.0 * outer_1_1_2_3_right_flip_up)
-    del miss_1_1_2_3_right_flip_up
-    t654 = _runtime.select(outer_1_1_2_3_right_flip_up == 0.0, 0.0, t653)
-    del outer_1_1_2_3_right_flip_up, t653
-    t655 = _runtime.select(inner_1_1_2_3_right_flip_up < 0.0, t650, t654)
-    del inner_1_1_2_3_right_flip_up, t650, t654
-    t656 = t655 * t655
-    t657 = 1.0 / (1.0 + t656)
-    t658 = 2.0 * t655 * t657
-    del t655
-    by_c_1_1_2_3_right_flip_up = t657 * (1.0 - t656)
-    del t656, t657
-    t659 = d4 * (t658 * t658) / (1.0 + np.abs(by_c_1_1_2_3_right_flip_up))
-    t660 = (t659 + root1 * np.abs(t658) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_flip_up)
-    del t659
-    cosine_1_1_2_3_right_flip_up = _runtime.select(t660, by_c_1_1_2_3_right_flip_up, 1.0)
-    del by_c_1_1_2_3_right_flip_up
-    t661 = c_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
-    sine_1_1_2_3_right_flip_up = _runtime.select(t660, -t658, 0.0)
-    del t658, t660
-    t662 = s_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
-    c_1_1_2_3_4_right_flip_up = t661 - t662
-    del t661, t662
-    t663 = c_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
-    del c_1_1_2_3_right_flip_up, sine_1_1_2_3_right_flip_up
-    t664 = s_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
-    del cosine_1_1_2_3_right_flip_up, s_1_1_2_3_right_flip_up
-    s_1_1_2_3_4_right_flip_up = t663 + t664
-    del t663, t664
-    axisx_1_1_2_3_4_right_flip_up = T13 * c_1_1_2_3_4_right_flip_up + T23 * s_1_1_2_3_4_right_flip_up
-    t665 = axisx_1_1_2_3_4_right_flip_up * axisx_1_1_2_3_4_right_flip_up
-    h_1_1_2_3_4_right_flip_up = np.sqrt(t11 + t665)
+    t670 = d5 + r_1_1_2_right_flip_up
+    h_1_1_2_right_flip_up = np.sqrt(t12 + t665)
     del t665
-    t666 = size * h_1_1_2_3_4_right_flip_up <= t15
-    del size, t15
-    qx_1_1_2_3_4_right_flip_up = w_x * c_1_1_2_3_4_right_flip_up + w_y * s_1_1_2_3_4_right_flip_up
-    t667 = 1.0 / h_1_1_2_3_4_right_flip_up
-    t668 = T33 * t667
-    x_1_1_2_3_4_right_flip_up = _runtime.select(t666, qx_1_1_2_3_4_right_flip_up, qx_1_1_2_3_4_right_flip_up + d5 * t668)
-    del qx_1_1_2_3_4_right_flip_up
-    dqx_1_1_2_3_4_right_flip_up = w_y * c_1_1_2_3_4_right_flip_up - w_x * s_1_1_2_3_4_right_flip_up
-    us_1_1_2_3_4_right_flip_up = axisx_1_1_2_3_4_right_flip_up * t667
-    del axisx_1_1_2_3_4_right_flip_up, t667
-    t669 = T13 * s_1_1_2_3_4_right_flip_up - T23 * c_1_1_2_3_4_right_flip_up
-    t670 = h_1_1_2_3_4_right_flip_up * h_1_1_2_3_4_right_flip_up
-    del h_1_1_2_3_4_right_flip_up
-    rate_1_1_2_3_4_right_flip_up = d5 * (T33 * t669) / t670
-    del t669, t670
-    t671 = us_1_1_2_3_4_right_flip_up * rate_1_1_2_3_4_right_flip_up
-    dx_1_1_2_3_4_right_flip_up = _runtime.select(t666, dqx_1_1_2_3_4_right_flip_up, dqx_1_1_2_3_4_right_flip_up + t671)
-    del dqx_1_1_2_3_4_right_flip_up, t671
-    t672 = x_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
-    t673 = _runtime.select(t666, t21, t21 + d5 * us_1_1_2_3_4_right_flip_up)
-    del us_1_1_2_3_4_right_flip_up
-    dy_1_1_2_3_4_right_flip_up = _runtime.select(t666, 0.0, t668 * rate_1_1_2_3_4_right_flip_up)
-    del rate_1_1_2_3_4_right_flip_up, t668
-    slope_1_1_2_3_4_right_flip_up = t672 - t673 * dy_1_1_2_3_4_right_flip_up
-    del t672
-    t674 = slope_1_1_2_3_4_right_flip_up * slope_1_1_2_3_4_right_flip_up
-    t675 = x_1_1_2_3_4_right_flip_up * x_1_1_2_3_4_right_flip_up
-    del x_1_1_2_3_4_right_flip_up
-    square_1_1_2_3_4_right_flip_up = t675 + t673 * t673
-    del t673, t675
-    nearest_1_1_2_3_4_right_flip_up = _runtime.select(t666, t25, fold_1_1)
-    del t25
-    low_1_1_2_3_4_right_flip_up = nearest_1_1_2_3_4_right_flip_up * nearest_1_1_2_3_4_right_flip_up
-    del nearest_1_1_2_3_4_right_flip_up
-    farthest_1_1_2_3_4_right_flip_up = _runtime.select(t666, t3, full_1_1)
-    del t3, t666
-    high_1_1_2_3_4_right_flip_up = farthest_1_1_2_3_4_right_flip_up * farthest_1_1_2_3_4_right_flip_up
-    del farthest_1_1_2_3_4_right_flip_up
-    t676 = np.minimum(high_1_1_2_3_4_right_flip_up, square_1_1_2_3_4_right_flip_up)
-    del high_1_1_2_3_4_right_flip_up
-    t677 = np.maximum(low_1_1_2_3_4_right_flip_up, t676)
-    del low_1_1_2_3_4_right_flip_up, t676
-    miss_1_1_2_3_4_right_flip_up = square_1_1_2_3_4_right_flip_up - t677
-    del square_1_1_2_3_4_right_flip_up, t677
-    t678 = dx_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
-    del dx_1_1_2_3_4_right_flip_up
-    t679 = dy_1_1_2_3_4_right_flip_up * dy_1_1_2_3_4_right_flip_up
-    del dy_1_1_2_3_4_right_flip_up
-    bend_1_1_2_3_4_right_flip_up = t678 + t679
-    del t678, t679
-    t680 = miss_1_1_2_3_4_right_flip_up * bend_1_1_2_3_4_right_flip_up
-    inner_1_1_2_3_4_right_flip_up = t674 - t680
-    del t674, t680
-    t681 = slope_1_1_2_3_4_right_flip_up / (2.0 * bend_1_1_2_3_4_right_flip_up)
-    del bend_1_1_2_3_4_right_flip_up
-    t682 = np.maximum(0.0, inner_1_1_2_3_4_right_flip_up)
-    t683 = _runtime.sign(slope_1_1_2_3_4_right_flip_up) * np.sqrt(t682)
+    t671 = h_1_1_2_right_flip_up == 0.0
+    t672 = 1.0 / h_1_1_2_right_flip_up
+    del h_1_1_2_right_flip_up
+    t673 = _runtime.select(t671, 0.0, T33 * t672)
+    t674 = qx_1_1_2_right_flip_up + d5 * t673
+    t675 = _runtime.select(t671, 1.0, -(axisx_1_1_2_right_flip_up * t672))
+    del t671, t672
+    t676 = t25 - d5 * t675
+    there_1_1_2_right_flip_up = np.sqrt(t674 * t674 + t676 * t676)
+    del t674, t676
+    t677 = np.maximum(there_1_1_2_right_flip_up, fold_1_1)
+    goal_1_1_2_right_flip_up = np.minimum(full_1_1, t677)
+    del t677
+    t678 = (t670 - goal_1_1_2_right_flip_up) * (t670 + goal_1_1_2_right_flip_up)
+    k_v_1_1_2_right_flip_up = np.maximum(0.0, t678)
+    del t678
+    t679 = d5 - r_1_1_2_right_flip_up
+    t680 = (goal_1_1_2_right_flip_up - t679) * (goal_1_1_2_right_flip_up + t679)
+    del t679
+    d_v_1_1_2_right_flip_up = np.maximum(0.0, t680)
+    del t680
+    n_v_1_1_2_right_flip_up = k_v_1_1_2_right_flip_up + d_v_1_1_2_right_flip_up
+    t681 = n_v_1_1_2_right_flip_up <= size * t670 * 8.881784197001252e-16
+    del t670
+    t682 = k_v_1_1_2_right_flip_up - d_v_1_1_2_right_flip_up
+    t683 = 1.0 / n_v_1_1_2_right_flip_up
+    del n_v_1_1_2_right_flip_up
+    uc_v_1_1_2_right_flip_up = _runtime.select(t681, 1.0, t682 * t683)
     del t682
-    outer_1_1_2_3_4_right_flip_up = slope_1_1_2_3_4_right_flip_up + t683
-    del slope_1_1_2_3_4_right_flip_up, t683
-    t684 = miss_1_1_2_3_4_right_flip_up / (2.0 * outer_1_1_2_3_4_right_flip_up)
-    del miss_1_1_2_3_4_right_flip_up
-    t685 = _runtime.select(outer_1_1_2_3_4_right_flip_up == 0.0, 0.0, t684)
-    del outer_1_1_2_3_4_right_flip_up, t684
-    t686 = _runtime.select(inner_1_1_2_3_4_right_flip_up < 0.0, t681, t685)
-    del inner_1_1_2_3_4_right_flip_up, t681, t685
-    t687 = t686 * t686
-    t688 = 1.0 / (1.0 + t687)
-    t689 = 2.0 * t686 * t688
-    del t686
-    by_c_1_1_2_3_4_right_flip_up = t688 * (1.0 - t687)
-    del t687, t688
-    t690 = d4 * (t689 * t689) / (1.0 + np.abs(by_c_1_1_2_3_4_right_flip_up))
-    t691 = (t690 + root1 * np.abs(t689) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_flip_up)
-    del t690, whole_1_1
-    sine_1_1_2_3_4_right_flip_up = _runtime.select(t691, -t689, 0.0)
-    del t689
-    t692 = c_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
-    cosine_1_1_2_3_4_right_flip_up = _runtime.select(t691, by_c_1_1_2_3_4_right_flip_up, 1.0)
-    del by_c_1_1_2_3_4_right_flip_up, t691
-    t693 = s_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
-    s1_right_flip_up = _runtime.select(tangent1, t692 + t693, -t359)
-    del t359, t692, t693
-    t694 = c_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
+    t684 = qx_1_1_2_right_flip_up * uc_v_1_1_2_right_flip_up
+    t685 = -(qx_1_1_2_right_flip_up * t675 + t25 * t673)
+    del t673, t675
+    t686 = k_v_1_1_2_right_flip_up * d_v_1_1_2_right_flip_up
+    del d_v_1_1_2_right_flip_up, k_v_1_1_2_right_flip_up
+    t687 = t683 * (2.0 * _runtime.sign(t685) * np.sqrt(t686))
+    del t683, t685, t686
+    us_v_1_1_2_right_flip_up = _runtime.select(t681, 0.0, t687)
+    del t681, t687
+    t688 = t25 * us_v_1_1_2_right_flip_up
+    t689 = 1.0 / r_1_1_2_right_flip_up
+    del r_1_1_2_right_flip_up
+    c_v_1_1_2_right_flip_up = _runtime.select(t669, 1.0, (t684 + t688) * t689)
+    t690 = -(T33 * c_v_1_1_2_right_flip_up) < 0.0
+    t691 = qx_1_1_2_right_flip_up * us_v_1_1_2_right_flip_up
+    del qx_1_1_2_right_flip_up, us_v_1_1_2_right_flip_up
+    t692 = t25 * uc_v_1_1_2_right_flip_up
+    del uc_v_1_1_2_right_flip_up
+    wc_1_1_2_right_flip_up = _runtime.select(t669, 0.0, t689 * (t691 + t692))
+    s_v_1_1_2_right_flip_up = _runtime.select(t669, 0.0, t689 * (t691 - t692))
+    del t691, t692
+    to_c_1_1_2_right_flip_up = _runtime.select(t690, wc_1_1_2_right_flip_up, -s_v_1_1_2_right_flip_up)
+    del s_v_1_1_2_right_flip_up, wc_1_1_2_right_flip_up
+    c_w_1_1_2_right_flip_up = _runtime.select(t669, 1.0, t689 * (t684 - t688))
+    del t669, t684, t688, t689
+    to_s_1_1_2_right_flip_up = _runtime.select(t690, c_w_1_1_2_right_flip_up, c_v_1_1_2_right_flip_up)
+    del c_v_1_1_2_right_flip_up, c_w_1_1_2_right_flip_up, t690
+    t693 = T33 * to_c_1_1_2_right_flip_up * _runtime.sign(to_s_1_1_2_right_flip_up)
+    del to_c_1_1_2_right_flip_up
+    across_1_1_2_right_flip_up = _runtime.select(t46, 0.0, t693)
+    del t46, t693
+    t694 = np.abs(to_s_1_1_2_right_flip_up)
+    del to_s_1_1_2_right_flip_up
+    t695 = most_1_1_2_right_flip_up * t694 <= np.abs(across_1_1_2_right_flip_up)
+    t696 = most_1_1_2_right_flip_up * _runtime.sign(across_1_1_2_right_flip_up)
+    t697 = _runtime.select(t695, t696, across_1_1_2_right_flip_up / t694)
+    del t694, t695, t696
+    wanted_1_1_2_right_flip_up = _runtime.select(across_1_1_2_right_flip_up == 0.0, 0.0, t697)
+    del across_1_1_2_right_flip_up, t697
+    t698 = most_1_1_2_right_flip_up - wanted_1_1_2_right_flip_up
+    t699 = most_1_1_2_right_flip_up + wanted_1_1_2_right_flip_up
+    rest_1_1_2_right_flip_up = np.sqrt(np.maximum(0.0, t698 * t699)) * _runtime.sign(-t666)
+    del t698, t699
+    t700 = axisx_1_1_2_right_flip_up * rest_1_1_2_right_flip_up
+    t701 = most_1_1_2_right_flip_up * most_1_1_2_right_flip_up
+    del most_1_1_2_right_flip_up
+    t702 = 1.0 / t701
+    del t701
+    t703 = (t700 + t666 * wanted_1_1_2_right_flip_up) * t702
+    del t700
+    t704 = _runtime.select(t667, 0.0, t703)
+    del t703
+    t705 = axisx_1_1_2_right_flip_up * wanted_1_1_2_right_flip_up
+    del axisx_1_1_2_right_flip_up, wanted_1_1_2_right_flip_up
+    t706 = t702 * (t705 - t666 * rest_1_1_2_right_flip_up)
+    del rest_1_1_2_right_flip_up, t666, t702, t705
+    by_c_1_1_2_right_flip_up = _runtime.select(t667, 1.0, t706)
+    del t667, t706
+    t707 = d4 * (t704 * t704) / (1.0 + np.abs(by_c_1_1_2_right_flip_up))
+    t708 = (t707 + root1 * np.abs(t704) <= whole_1_1) & (0.0 < by_c_1_1_2_right_flip_up)
+    del t707
+    t709 = there_1_1_2_right_flip_up - goal_1_1_2_right_flip_up
+    del goal_1_1_2_right_flip_up, there_1_1_2_right_flip_up
+    t710 = t708 & (size < 17592186044416.0 * np.abs(t709))
+    del t708, t709
+    cosine_1_1_2_right_flip_up = _runtime.select(t710, by_c_1_1_2_right_flip_up, 1.0)
+    del by_c_1_1_2_right_flip_up
+    t711 = c_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
+    sine_1_1_2_right_flip_up = _runtime.select(t710, -t704, 0.0)
+    del t704, t710
+    t712 = s_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
+    c_1_1_2_3_right_flip_up = t711 - t712
+    del t711, t712
+    t713 = c_1_1_2_right_flip_up * sine_1_1_2_right_flip_up
+    del c_1_1_2_right_flip_up, sine_1_1_2_right_flip_up
+    t714 = s_1_1_2_right_flip_up * cosine_1_1_2_right_flip_up
+    del cosine_1_1_2_right_flip_up, s_1_1_2_right_flip_up
+    s_1_1_2_3_right_flip_up = t713 + t714
+    del t713, t714
+    axisx_1_1_2_3_right_flip_up = T13 * c_1_1_2_3_right_flip_up + T23 * s_1_1_2_3_right_flip_up
+    t715 = axisx_1_1_2_3_right_flip_up * axisx_1_1_2_3_right_flip_up
+    h_1_1_2_3_right_flip_up = np.sqrt(t12 + t715)
+    del t715
+    t716 = t77 * h_1_1_2_3_right_flip_up <= size
+    qx_1_1_2_3_right_flip_up = w_x * c_1_1_2_3_right_flip_up + w_y * s_1_1_2_3_right_flip_up
+    t717 = h_1_1_2_3_right_flip_up == 0.0
+    t718 = 1.0 / h_1_1_2_3_right_flip_up
+    t719 = _runtime.select(t717, 0.0, T33 * t718)
+    x_1_1_2_3_right_flip_up = _runtime.select(t716, qx_1_1_2_3_right_flip_up, qx_1_1_2_3_right_flip_up + d5 * t719)
+    dqx_1_1_2_3_right_flip_up = w_y * c_1_1_2_3_right_flip_up - w_x * s_1_1_2_3_right_flip_up
+    t720 = T13 * s_1_1_2_3_right_flip_up - T23 * c_1_1_2_3_right_flip_up
+    t721 = h_1_1_2_3_right_flip_up * h_1_1_2_3_right_flip_up
+    del h_1_1_2_3_right_flip_up
+    spin_1_1_2_3_right_flip_up = _runtime.select(t716, 0.0, T33 * t720 / t721)
+    del t720, t721
+    rate_1_1_2_3_right_flip_up = d5 * spin_1_1_2_3_right_flip_up
+    t722 = _runtime.select(t717, 1.0, -(axisx_1_1_2_3_right_flip_up * t718))
+    del axisx_1_1_2_3_right_flip_up, t717, t718
+    t723 = dqx_1_1_2_3_right_flip_up - rate_1_1_2_3_right_flip_up * t722
+    dx_1_1_2_3_right_flip_up = _runtime.select(t716, dqx_1_1_2_3_right_flip_up, t723)
+    del t723
+    t724 = x_1_1_2_3_right_flip_up * dx_1_1_2_3_right_flip_up
+    del dx_1_1_2_3_right_flip_up
+    t725 = _runtime.select(t716, t25, t25 - d5 * t722)
+    dy_1_1_2_3_right_flip_up = _runtime.select(t716, 0.0, rate_1_1_2_3_right_flip_up * t719)
+    slope_1_1_2_3_right_flip_up = t724 - t725 * dy_1_1_2_3_right_flip_up
+    del dy_1_1_2_3_right_flip_up, t724
+    t726 = slope_1_1_2_3_right_flip_up * slope_1_1_2_3_right_flip_up
+    straight_1_1_2_3_right_flip_up = dqx_1_1_2_3_right_flip_up * dqx_1_1_2_3_right_flip_up
+    t727 = spin_1_1_2_3_right_flip_up * (qx_1_1_2_3_right_flip_up * t719 - t25 * t722)
+    del qx_1_1_2_3_right_flip_up, spin_1_1_2_3_right_flip_up, t719
+    t728 = 2.0 * dqx_1_1_2_3_right_flip_up * t722 + t727
+    del dqx_1_1_2_3_right_flip_up, t722, t727
+    t729 = straight_1_1_2_3_right_flip_up - rate_1_1_2_3_right_flip_up * t728
+    del rate_1_1_2_3_right_flip_up, t728
+    bends_1_1_2_3_right_flip_up = _runtime.select(t716, straight_1_1_2_3_right_flip_up, t729)
+    del straight_1_1_2_3_right_flip_up, t729
+    t730 = x_1_1_2_3_right_flip_up * x_1_1_2_3_right_flip_up
+    del x_1_1_2_3_right_flip_up
+    square_1_1_2_3_right_flip_up = t730 + t725 * t725
+    del t725, t730
+    t731 = _runtime.select(t716, t31, fold_1_1) - whole_1_1
+    t732 = np.maximum(0.0, t731)
+    del t731
+    t733 = whole_1_1 + _runtime.select(t716, t3, full_1_1)
+    del t716
+    t734 = np.minimum(t733 * t733, square_1_1_2_3_right_flip_up)
+    del t733
+    miss_1_1_2_3_right_flip_up = square_1_1_2_3_right_flip_up - np.maximum(t732 * t732, t734)
+    del square_1_1_2_3_right_flip_up, t732, t734
+    t735 = bends_1_1_2_3_right_flip_up * miss_1_1_2_3_right_flip_up
+    inner_1_1_2_3_right_flip_up = t726 - t735
+    del t726, t735
+    t736 = inner_1_1_2_3_right_flip_up < 0.0
+    t737 = np.sqrt(np.maximum(0.0, inner_1_1_2_3_right_flip_up))
+    del inner_1_1_2_3_right_flip_up
+    t738 = _runtime.sign(slope_1_1_2_3_right_flip_up) * t737
+    del t737
+    below_1_1_2_3_right_flip_up = _runtime.select(t736, 2.0 * bends_1_1_2_3_right_flip_up, 2.0 * (slope_1_1_2_3_right_flip_up + t738))
+    del bends_1_1_2_3_right_flip_up, t738
+    above_1_1_2_3_right_flip_up = _runtime.select(t736, slope_1_1_2_3_right_flip_up, miss_1_1_2_3_right_flip_up)
+    del miss_1_1_2_3_right_flip_up, slope_1_1_2_3_right_flip_up, t736
+    t739 = np.abs(below_1_1_2_3_right_flip_up) <= np.abs(above_1_1_2_3_right_flip_up)
+    t740 = above_1_1_2_3_right_flip_up / below_1_1_2_3_right_flip_up
+    del above_1_1_2_3_right_flip_up, below_1_1_2_3_right_flip_up
+    t741 = _runtime.select(t739, 0.0, t740)
+    del t739, t740
+    t742 = t741 * t741
+    t743 = 1.0 / (1.0 + t742)
+    t744 = 2.0 * t741 * t743
+    del t741
+    by_c_1_1_2_3_right_flip_up = t743 * (1.0 - t742)
+    del t742, t743
+    t745 = d4 * (t744 * t744) / (1.0 + np.abs(by_c_1_1_2_3_right_flip_up))
+    t746 = (t745 + root1 * np.abs(t744) <= whole_1_1) & (0.0 < by_c_1_1_2_3_right_flip_up)
+    del t745
+    cosine_1_1_2_3_right_flip_up = _runtime.select(t746, by_c_1_1_2_3_right_flip_up, 1.0)
+    del by_c_1_1_2_3_right_flip_up
+    t747 = c_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
+    sine_1_1_2_3_right_flip_up = _runtime.select(t746, -t744, 0.0)
+    del t744, t746
+    t748 = s_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
+    c_1_1_2_3_4_right_flip_up = t747 - t748
+    del t747, t748
+    t749 = c_1_1_2_3_right_flip_up * sine_1_1_2_3_right_flip_up
+    del c_1_1_2_3_right_flip_up, sine_1_1_2_3_right_flip_up
+    t750 = s_1_1_2_3_right_flip_up * cosine_1_1_2_3_right_flip_up
+    del cosine_1_1_2_3_right_flip_up, s_1_1_2_3_right_flip_up
+    s_1_1_2_3_4_right_flip_up = t749 + t750
+    del t749, t750
+    axisx_1_1_2_3_4_right_flip_up = T13 * c_1_1_2_3_4_right_flip_up + T23 * s_1_1_2_3_4_right_flip_up
+    t751 = axisx_1_1_2_3_4_right_flip_up * axisx_1_1_2_3_4_right_flip_up
+    h_1_1_2_3_4_right_flip_up = np.sqrt(t12 + t751)
+    del t751
+    t752 = t77 * h_1_1_2_3_4_right_flip_up <= size
+    del t77
+    qx_1_1_2_3_4_right_flip_up = w_x * c_1_1_2_3_4_right_flip_up + w_y * s_1_1_2_3_4_right_flip_up
+    t753 = h_1_1_2_3_4_right_flip_up == 0.0
+    t754 = 1.0 / h_1_1_2_3_4_right_flip_up
+    t755 = _runtime.select(t753, 0.0, T33 * t754)
+    x_1_1_2_3_4_right_flip_up = _runtime.select(t752, qx_1_1_2_3_4_right_flip_up, qx_1_1_2_3_4_right_flip_up + d5 * t755)
+    dqx_1_1_2_3_4_right_flip_up = w_y * c_1_1_2_3_4_right_flip_up - w_x * s_1_1_2_3_4_right_flip_up
+    t756 = T13 * s_1_1_2_3_4_right_flip_up - T23 * c_1_1_2_3_4_right_flip_up
+    t757 = h_1_1_2_3_4_right_flip_up * h_1_1_2_3_4_right_flip_up
+    del h_1_1_2_3_4_right_flip_up
+    spin_1_1_2_3_4_right_flip_up = _runtime.select(t752, 0.0, T33 * t756 / t757)
+    del t756, t757
+    rate_1_1_2_3_4_right_flip_up = d5 * spin_1_1_2_3_4_right_flip_up
+    t758 = _runtime.select(t753, 1.0, -(axisx_1_1_2_3_4_right_flip_up * t754))
+    del axisx_1_1_2_3_4_right_flip_up, t753, t754
+    t759 = dqx_1_1_2_3_4_right_flip_up - rate_1_1_2_3_4_right_flip_up * t758
+    dx_1_1_2_3_4_right_flip_up = _runtime.select(t752, dqx_1_1_2_3_4_right_flip_up, t759)
+    del t759
+    t760 = x_1_1_2_3_4_right_flip_up * dx_1_1_2_3_4_right_flip_up
+    del dx_1_1_2_3_4_right_flip_up
+    t761 = _runtime.select(t752, t25, t25 - d5 * t758)
+    dy_1_1_2_3_4_right_flip_up = _runtime.select(t752, 0.0, rate_1_1_2_3_4_right_flip_up * t755)
+    slope_1_1_2_3_4_right_flip_up = t760 - t761 * dy_1_1_2_3_4_right_flip_up
+    del dy_1_1_2_3_4_right_flip_up, t760
+    t762 = slope_1_1_2_3_4_right_flip_up * slope_1_1_2_3_4_right_flip_up
+    straight_1_1_2_3_4_right_flip_up = dqx_1_1_2_3_4_right_flip_up * dqx_1_1_2_3_4_right_flip_up
+    t763 = qx_1_1_2_3_4_right_flip_up * t755 - t25 * t758
+    del qx_1_1_2_3_4_right_flip_up, t755
+    t764 = 2.0 * dqx_1_1_2_3_4_right_flip_up * t758 + spin_1_1_2_3_4_right_flip_up * t763
+    del dqx_1_1_2_3_4_right_flip_up, spin_1_1_2_3_4_right_flip_up, t758, t763
+    t765 = straight_1_1_2_3_4_right_flip_up - rate_1_1_2_3_4_right_flip_up * t764
+    del rate_1_1_2_3_4_right_flip_up, t764
+    bends_1_1_2_3_4_right_flip_up = _runtime.select(t752, straight_1_1_2_3_4_right_flip_up, t765)
+    del straight_1_1_2_3_4_right_flip_up, t765
+    t766 = x_1_1_2_3_4_right_flip_up * x_1_1_2_3_4_right_flip_up
+    del x_1_1_2_3_4_right_flip_up
+    square_1_1_2_3_4_right_flip_up = t766 + t761 * t761
+    del t761, t766
+    t767 = _runtime.select(t752, t31, fold_1_1) - whole_1_1
+    del t31
+    t768 = np.maximum(0.0, t767)
+    del t767
+    t769 = whole_1_1 + _runtime.select(t752, t3, full_1_1)
+    del t3, t752
+    t770 = np.minimum(t769 * t769, square_1_1_2_3_4_right_flip_up)
+    del t769
+    miss_1_1_2_3_4_right_flip_up = square_1_1_2_3_4_right_flip_up - np.maximum(t768 * t768, t770)
+    del square_1_1_2_3_4_right_flip_up, t768, t770
+    t771 = bends_1_1_2_3_4_right_flip_up * miss_1_1_2_3_4_right_flip_up
+    inner_1_1_2_3_4_right_flip_up = t762 - t771
+    del t762, t771
+    t772 = inner_1_1_2_3_4_right_flip_up < 0.0
+    t773 = np.maximum(0.0, inner_1_1_2_3_4_right_flip_up)
+    del inner_1_1_2_3_4_right_flip_up
+    t774 = _runtime.sign(slope_1_1_2_3_4_right_flip_up) * np.sqrt(t773)
+    del t773
+    below_1_1_2_3_4_right_flip_up = _runtime.select(t772, 2.0 * bends_1_1_2_3_4_right_flip_up, 2.0 * (slope_1_1_2_3_4_right_flip_up + t774))
+    del bends_1_1_2_3_4_right_flip_up, t774
+    above_1_1_2_3_4_right_flip_up = _runtime.select(t772, slope_1_1_2_3_4_right_flip_up, miss_1_1_2_3_4_right_flip_up)
+    del miss_1_1_2_3_4_right_flip_up, slope_1_1_2_3_4_right_flip_up, t772
+    t775 = np.abs(below_1_1_2_3_4_right_flip_up) <= np.abs(above_1_1_2_3_4_right_flip_up)
+    t776 = above_1_1_2_3_4_right_flip_up / below_1_1_2_3_4_right_flip_up
+    del above_1_1_2_3_4_right_flip_up, below_1_1_2_3_4_right_flip_up
+    t777 = _runtime.select(t775, 0.0, t776)
+    del t775, t776
+    t778 = t777 * t777
+    t779 = 1.0 / (1.0 + t778)
+    t780 = 2.0 * t777 * t779
+    del t777
+    by_c_1_1_2_3_4_right_flip_up = t779 * (1.0 - t778)
+    del t778, t779
+    t781 = d4 * (t780 * t780) / (1.0 + np.abs(by_c_1_1_2_3_4_right_flip_up))
+    t782 = (t781 + root1 * np.abs(t780) <= whole_1_1) & (0.0 < by_c_1_1_2_3_4_right_flip_up)
+    del t781, whole_1_1
+    sine_1_1_2_3_4_right_flip_up = _runtime.select(t782, -t780, 0.0)
+    del t780
+    t783 = c_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
+    cosine_1_1_2_3_4_right_flip_up = _runtime.select(t782, by_c_1_1_2_3_4_right_flip_up, 1.0)
+    del by_c_1_1_2_3_4_right_flip_up, t782
+    t784 = s_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
+    s1_right_flip_up = _runtime.select(tangent1, t783 + t784, -t405)
+    del t405, t783, t784
+    t785 = c_1_1_2_3_4_right_flip_up * cosine_1_1_2_3_4_right_flip_up
     del c_1_1_2_3_4_right_flip_up, cosine_1_1_2_3_4_right_flip_up
-    t695 = s_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
+    t786 = s_1_1_2_3_4_right_flip_up * sine_1_1_2_3_4_right_flip_up
     del s_1_1_2_3_4_right_flip_up, sine_1_1_2_3_4_right_flip_up
-    c1_right_flip_up = _runtime.select(tangent1, t694 - t695, c_1_1_right_noflip_up)
-    del c_1_1_right_noflip_up, t694, t695, tangent1
-    t696 = np.arctan2(s1_right_flip_up, c1_right_flip_up)
+    c1_right_flip_up = _runtime.select(tangent1, t785 - t786, c_1_1_right_noflip_up)
+    del c_1_1_right_noflip_up, t785, t786, tangent1
+    t787 = np.arctan2(s1_right_flip_up, c1_right_flip_up)
     across_right_flip_up = w_x * c1_right_flip_up + w_y * s1_right_flip_up
     del w_x, w_y
     M_13_right_flip_up = T13 * c1_right_flip_up + T23 * s1_right_flip_up
-    t697 = t11 + M_13_right_flip_up * M_13_right_flip_up
-    del t11
-    h_wrist_right_flip_up = np.sqrt(t697)
-    del t697
-    aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t115
-    del t115
-    t698 = t38 + across_right_flip_up * across_right_flip_up
-    del t38
-    r_hub_right_flip_up = np.sqrt(t698)
-    del t698
+    t788 = t12 + M_13_right_flip_up * M_13_right_flip_up
+    del t12
+    h_wrist_right_flip_up = np.sqrt(t788)
+    del t788
+    aligned_wrist_right_flip_up = h_wrist_right_flip_up <= t140
+    del t140
+    t789 = t47 + across_right_flip_up * across_right_flip_up
+    del t47
+    r_hub_right_flip_up = np.sqrt(t789)
+    del t789
     hub_mid_right_flip_up = r_hub_right_flip_up <= t4
-    t699 = d5 + r_hub_right_flip_up
-    t700 = d5 - r_hub_right_flip_up
-    mid_reach_right_flip_up = np.minimum(full_1_1, t699) * 0.5 + np.maximum(fold_1_1, np.abs(t700)) * 0.5
-    t701 = (t699 - mid_reach_right_flip_up) * (t699 + mid_reach_right_flip_up)
-    k_mid_right_flip_up = np.maximum(0.0, t701)
-    del t701
-    t702 = (t700 - mid_reach_right_flip_up) * (t700 + mid_reach_right_flip_up)
+    t790 = d5 + r_hub_right_flip_up
+    t791 = d5 - r_hub_right_flip_up
+    mid_reach_right_flip_up = np.minimum(full_1_1, t790) * 0.5 + np.maximum(fold_1_1, np.abs(t791)) * 0.5
+    t792 = (t790 - mid_reach_right_flip_up) * (t790 + mid_reach_right_flip_up)
+    k_mid_right_flip_up = np.maximum(0.0, t792)
+    del t792
+    t793 = (t791 - mid_reach_right_flip_up) * (t791 + mid_reach_right_flip_up)
     del mid_reach_right_flip_up
-    d_mid_right_flip_up = np.maximum(0.0, -t702)
-    del t702
+    d_mid_right_flip_up = np.maximum(0.0, -t793)
+    del t793
     n_mid_right_flip_up = k_mid_right_flip_up + d_mid_right_flip_up
-    any_mid_right_flip_up = n_mid_right_flip_up <= t118
-    t703 = 1.0 / n_mid_right_flip_up
+    t794 = _runtime.VANISHING * (size * t790)
+    del size
+    any_mid_right_flip_up = n_mid_right_flip_up <= t794
+    t795 = 1.0 / n_mid_right_flip_up
     del n_mid_right_flip_up
-    t704 = (k_mid_right_flip_up - d_mid_right_flip_up) * t703
-    uc_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 1.0, t704)
-    del t704
-    t705 = np.sqrt(k_mid_right_flip_up * d_mid_right_flip_up)
+    t796 = (k_mid_right_flip_up - d_mid_right_flip_up) * t795
+    uc_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 1.0, t796)
+    del t796
+    t797 = np.sqrt(k_mid_right_flip_up * d_mid_right_flip_up)
     del d_mid_right_flip_up, k_mid_right_flip_up
-    us_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 0.0, t703 * (2.0 * t705))
-    del any_mid_right_flip_up, t703, t705
-    t706 = across_right_flip_up * uc_mid_right_flip_up + t21 * us_mid_right_flip_up
-    t707 = 1.0 / r_hub_right_flip_up
+    us_mid_right_flip_up = _runtime.select(any_mid_right_flip_up, 0.0, t795 * (2.0 * t797))
+    del any_mid_right_flip_up, t795, t797
+    t798 = across_right_flip_up * uc_mid_right_flip_up + t25 * us_mid_right_flip_up
+    t799 = 1.0 / r_hub_right_flip_up
     del r_hub_right_flip_up
-    c_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t706 * t707)
-    del t706
-    close_right_flip_up = root1 * h_wrist_right_flip_up - t121 <= t4
-    del root1, t121
-    t708 = 1.0 / h_wrist_right_flip_up
-    t709 = _runtime.select(aligned_wrist_right_flip_up, 0.0, T33 * t708)
-    t710 = across_right_flip_up + d5 * t709
-    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, 1.0, -(M_13_right_flip_up * t708))
-    del t708
-    t711 = t21 - d5 * c_phi_right_flip_up
-    here_right_flip_up = np.sqrt(t710 * t710 + t711 * t711)
-    del t710, t711
+    c_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t798 * t799)
+    del t798
+    close_right_flip_up = root1 * h_wrist_right_flip_up - t146 <= t4
+    del root1, t146
+    t800 = 1.0 / h_wrist_right_flip_up
+    t801 = _runtime.select(aligned_wrist_right_flip_up, 0.0, T33 * t800)
+    t802 = across_right_flip_up + d5 * t801
+    c_phi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, 1.0, -(M_13_right_flip_up * t800))
+    del t800
+    t803 = t25 - d5 * c_phi_right_flip_up
+    here_right_flip_up = np.sqrt(t802 * t802 + t803 * t803)
+    del t802, t803
     in_reach_right_flip_up = np.minimum(full_1_1, np.maximum(here_right_flip_up, fold_1_1))
     del fold_1_1
-    t712 = (t699 - in_reach_right_flip_up) * (t699 + in_reach_right_flip_up)
-    del t699
-    k_near_right_flip_up = np.maximum(0.0, t712)
-    del t712
-    t713 = (t700 - in_reach_right_flip_up) * (t700 + in_reach_right_flip_up)
-    del t700
-    d_near_right_flip_up = np.maximum(0.0, -t713)
-    del t713
+    t804 = (t790 - in_reach_right_flip_up) * (t790 + in_reach_right_flip_up)
+    del t790
+    k_near_right_flip_up = np.maximum(0.0, t804)
+    del t804
+    t805 = (t791 - in_reach_right_flip_up) * (t791 + in_reach_right_flip_up)
+    del t791
+    d_near_right_flip_up = np.maximum(0.0, -t805)
+    del t805
     n_near_right_flip_up = k_near_right_flip_up + d_near_right_flip_up
-    any_near_right_flip_up = n_near_right_flip_up <= t118
-    del t118
-    t714 = 1.0 / n_near_right_flip_up
+    any_near_right_flip_up = n_near_right_flip_up <= t794
+    del t794
+    t806 = 1.0 / n_near_right_flip_up
     del n_near_right_flip_up
-    t715 = (k_near_right_flip_up - d_near_right_flip_up) * t714
-    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t715)
-    del t715
-    t716 = across_right_flip_up * c_phi_right_flip_up + t21 * t709
-    t717 = np.abs(t716)
-    side_right_flip_up = _runtime.select(t717 <= t4, 1.0, -(t716 / t717))
-    del t716, t717
-    t718 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
+    t807 = (k_near_right_flip_up - d_near_right_flip_up) * t806
+    uc_near_right_flip_up = _runtime.select(any_near_right_flip_up, 1.0, t807)
+    del t807
+    t808 = across_right_flip_up * c_phi_right_flip_up + t25 * t801
+    t809 = np.abs(t808)
+    side_right_flip_up = _runtime.select(t809 <= t4, 1.0, -(t808 / t809))
+    del t808, t809
+    t810 = np.sqrt(k_near_right_flip_up * d_near_right_flip_up)
     del d_near_right_flip_up, k_near_right_flip_up
-    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t714 * (2.0 * side_right_flip_up * t718))
-    del any_near_right_flip_up, side_right_flip_up, t714, t718
-    t719 = across_right_flip_up * uc_near_right_flip_up + t21 * us_near_right_flip_up
-    c_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t707 * t719)
-    del t719
-    t720 = t709 + c_near_right_flip_up
-    t721 = across_right_flip_up * us_near_right_flip_up - t21 * uc_near_right_flip_up
+    us_near_right_flip_up = _runtime.select(any_near_right_flip_up, 0.0, t806 * (2.0 * side_right_flip_up * t810))
+    del any_near_right_flip_up, side_right_flip_up, t806, t810
+    t811 = across_right_flip_up * uc_near_right_flip_up + t25 * us_near_right_flip_up
+    c_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 1.0, t799 * t811)
+    del t811
+    t812 = t801 + c_near_right_flip_up
+    t813 = across_right_flip_up * us_near_right_flip_up - t25 * uc_near_right_flip_up
     del uc_near_right_flip_up, us_near_right_flip_up
-    s_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t707 * t721)
-    del t721
-    t722 = c_phi_right_flip_up + s_near_right_flip_up
-    t723 = h_wrist_right_flip_up * np.sqrt(t720 * t720 + t722 * t722)
-    del h_wrist_right_flip_up, t720, t722
-    t724 = np.abs(here_right_flip_up - in_reach_right_flip_up)
+    s_near_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t799 * t813)
+    del t813
+    t814 = c_phi_right_flip_up + s_near_right_flip_up
+    t815 = h_wrist_right_flip_up * np.sqrt(t812 * t812 + t814 * t814)
+    del h_wrist_right_flip_up, t812, t814
+    t816 = np.abs(here_right_flip_up - in_reach_right_flip_up)
     del here_right_flip_up, in_reach_right_flip_up
-    t725 = (t723 - 2.2737367544323206e-13 <= t132) & np.logical_not(t724 <= t4)
-    del t132, t723, t724
-    s_kept_right_flip_up = _runtime.select(t725, c_near_right_flip_up, -t709)
+    t817 = (t815 - 2.2737367544323206e-13 <= t157) & np.logical_not(t816 <= t4)
+    del t157, t815, t816
+    s_kept_right_flip_up = _runtime.select(t817, c_near_right_flip_up, -t801)
     del c_near_right_flip_up
-    t726 = _runtime.select(close_right_flip_up, s_kept_right_flip_up, -t709)
-    del s_kept_right_flip_up, t709
-    sphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, c_mid_right_flip_up, t726)
-    del c_mid_right_flip_up, t726
-    t727 = across_right_flip_up - d5 * sphi_right_flip_up
-    t728 = across_right_flip_up * us_mid_right_flip_up - t21 * uc_mid_right_flip_up
+    t818 = _runtime.select(close_right_flip_up, s_kept_right_flip_up, -t801)
+    del s_kept_right_flip_up, t801
+    sphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, c_mid_right_flip_up, t818)
+    del c_mid_right_flip_up, t818
+    t819 = across_right_flip_up - d5 * sphi_right_flip_up
+    t820 = across_right_flip_up * us_mid_right_flip_up - t25 * uc_mid_right_flip_up
     del across_right_flip_up, uc_mid_right_flip_up, us_mid_right_flip_up
-    s_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t707 * t728)
-    del hub_mid_right_flip_up, t707, t728
-    c_kept_right_flip_up = _runtime.select(t725, -s_near_right_flip_up, c_phi_right_flip_up)
-    del s_near_right_flip_up, t725
-    t729 = _runtime.select(close_right_flip_up, c_kept_right_flip_up, c_phi_right_flip_up)
+    s_mid_right_flip_up = _runtime.select(hub_mid_right_flip_up, 0.0, t799 * t820)
+    del hub_mid_right_flip_up, t799, t820
+    c_kept_right_flip_up = _runtime.select(t817, -s_near_right_flip_up, c_phi_right_flip_up)
+    del s_near_right_flip_up, t817
+    t821 = _runtime.select(close_right_flip_up, c_kept_right_flip_up, c_phi_right_flip_up)
     del c_kept_right_flip_up, c_phi_right_flip_up, close_right_flip_up
-    cphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, -s_mid_right_flip_up, t729)
-    del s_mid_right_flip_up, t729
-    ey_right_flip_up = t21 - d5 * cphi_right_flip_up
-    del t21
-    t730 = t727 * t727 + ey_right_flip_up * ey_right_flip_up
-    r_elbow_right_flip_up = np.sqrt(t730)
-    del t730
-    t731 = full_1_1 - r_elbow_right_flip_up
-    t732 = t24 + r_elbow_right_flip_up
-    t733 = r_elbow_right_flip_up - t24
-    del t24
-    t734 = t114 & (t113 <= t731) & (t113 <= t732) & (t113 <= t733)
-    del t113, t114
-    unreachable_4 = np.logical_not(t734)
-    del t734
-    t735 = _runtime.poison(invalid | unreachable_4)
-    t736 = _runtime.wrap_cut(t696) + t735
-    del t696
+    cphi_right_flip_up = _runtime.select(aligned_wrist_right_flip_up, -s_mid_right_flip_up, t821)
+    del s_mid_right_flip_up, t821
+    ey_right_flip_up = t25 - d5 * cphi_right_flip_up
+    del t25
+    t822 = t819 * t819 + ey_right_flip_up * ey_right_flip_up
+    r_elbow_right_flip_up = np.sqrt(t822)
+    del t822
+    t823 = full_1_1 - r_elbow_right_flip_up
+    t824 = t30 + r_elbow_right_flip_up
+    t825 = r_elbow_right_flip_up - t30
+    del t30
+    t826 = t139 & (t138 <= t823) & (t138 <= t824) & (t138 <= t825)
+    del t138, t139
+    unreachable_4 = np.logical_not(t826)
+    del t826
+    t827 = _runtime.poison(invalid | unreachable_4)
+    t828 = _runtime.wrap_cut(t787) + t827
+    del t787
     folded_elbow_right_flip_up = r_elbow_right_flip_up <= t4
     del t4
-    t737 = folded_elbow_right_flip_up | no_link_elbow
-    A_elbow_right_flip_up = np.maximum(t731, 0.0)
-    del t731
-    C_elbow_right_flip_up = np.maximum(t733, 0.0)
-    del t733
-    t738 = A_elbow_right_flip_up * C_elbow_right_flip_up
+    t829 = folded_elbow_right_flip_up | no_link_elbow
+    A_elbow_right_flip_up = np.maximum(t823, 0.0)
+    del t823
+    C_elbow_right_flip_up = np.maximum(t825, 0.0)
+    del t825
+    t830 = A_elbow_right_flip_up * C_elbow_right_flip_up
     S_elbow_right_flip_up = full_1_1 + r_elbow_right_flip_up
     del full_1_1
-    B_elbow_right_flip_up = np.maximum(t732, 0.0)
-    del t732
-    t739 = S_elbow_right_flip_up * B_elbow_right_flip_up
-    t740 = 1.0 / (t738 + t739)
-    c_base_elbow_right_flip_up = _runtime.select(t737, 1.0, -((t738 - t739) * t740))
-    t741 = 1.0 / r_elbow_right_flip_up
+    B_elbow_right_flip_up = np.maximum(t824, 0.0)
+    del t824
+    t831 = S_elbow_right_flip_up * B_elbow_right_flip_up
+    t832 = 1.0 / (t830 + t831)
+    c_base_elbow_right_flip_up = _runtime.select(t829, 1.0, -((t830 - t831) * t832))
+    t833 = 1.0 / r_elbow_right_flip_up
     del r_elbow_right_flip_up
-    t742 = _runtime.select(folded_elbow_right_flip_up, 0.0, ey_right_flip_up * t741)
+    t834 = _runtime.select(folded_elbow_right_flip_up, 0.0, ey_right_flip_up * t833)
     del ey_right_flip_up
-    t743 = c_base_elbow_right_flip_up * t742
-    area_elbow_right_flip_up = 2.0 * np.sqrt(t738 * t739)
-    del t738, t739
-    s_base_elbow_right_flip_up = _runtime.select(t737, 0.0, t740 * area_elbow_right_flip_up)
-    del t737, t740
-    t744 = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t727 * t741))
-    del t727, t741
-    t745 = s_base_elbow_right_flip_up * t744
-    s2_right_flip_up = t743 - t745
-    t746 = c_base_elbow_right_flip_up * t744
-    del c_base_elbow_right_flip_up, t744
-    t747 = t742 * s_base_elbow_right_flip_up
-    del s_base_elbow_right_flip_up, t742
-    c2_right_flip_up = t746 + t747
-    t748 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
-    t749 = A_elbow_right_flip_up * S_elbow_right_flip_up
+    t835 = c_base_elbow_right_flip_up * t834
+    area_elbow_right_flip_up = 2.0 * np.sqrt(t830 * t831)
+    del t830, t831
+    s_base_elbow_right_flip_up = _runtime.select(t829, 0.0, t832 * area_elbow_right_flip_up)
+    del t829, t832
+    t836 = _runtime.select(folded_elbow_right_flip_up, 1.0, -(t819 * t833))
+    del t819, t833
+    t837 = s_base_elbow_right_flip_up * t836
+    s2_right_flip_up = t835 - t837
+    t838 = c_base_elbow_right_flip_up * t836
+    del c_base_elbow_right_flip_up, t836
+    t839 = t834 * s_base_elbow_right_flip_up
+    del s_base_elbow_right_flip_up, t834
+    c2_right_flip_up = t838 + t839
+    t840 = np.arctan2(s2_right_flip_up, c2_right_flip_up)
+    t841 = A_elbow_right_flip_up * S_elbow_right_flip_up
     del A_elbow_right_flip_up, S_elbow_right_flip_up
-    t750 = C_elbow_right_flip_up * B_elbow_right_flip_up
+    t842 = C_elbow_right_flip_up * B_elbow_right_flip_up
     del B_elbow_right_flip_up, C_elbow_right_flip_up
-    t751 = 1.0 / (t749 + t750)
-    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t751)
+    t843 = 1.0 / (t841 + t842)
+    s3_right_flip_up = _runtime.select(no_link_elbow, 0.0, area_elbow_right_flip_up * t843)
     del area_elbow_right_flip_up
-    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t751 * (t749 - t750)))
-    del t749, t750, t751
-    t752 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
-    t753 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
-    t754 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
+    c3_right_flip_up = _runtime.select(no_link_elbow, 1.0, -(t843 * (t841 - t842)))
+    del t841, t842, t843
+    t844 = np.arctan2(s3_right_flip_up, c3_right_flip_up)
+    t845 = sphi_right_flip_up * c2_right_flip_up - cphi_right_flip_up * s2_right_flip_up
+    t846 = cphi_right_flip_up * c2_right_flip_up + sphi_right_flip_up * s2_right_flip_up
     del c2_right_flip_up, s2_right_flip_up
-    t755 = c3_right_flip_up * t753 - s3_right_flip_up * t754
-    t756 = c3_right_flip_up * t754 + s3_right_flip_up * t753
-    del t753, t754
-    t757 = _runtime.wrap_cut(np.arctan2(t755, t756)) + t735
-    del t755, t756
-    t758 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
+    t847 = c3_right_flip_up * t845 - s3_right_flip_up * t846
+    t848 = c3_right_flip_up * t846 + s3_right_flip_up * t845
+    del t845, t846
+    t849 = _runtime.wrap_cut(np.arctan2(t847, t848)) + t827
+    del t847, t848
+    t850 = M_13_right_flip_up * cphi_right_flip_up + T33 * sphi_right_flip_up
     del M_13_right_flip_up
     M_33_right_flip_up = T13 * s1_right_flip_up - T23 * c1_right_flip_up
-    t759 = _runtime.wrap_cut(-np.arctan2(t758, M_33_right_flip_up))
-    del M_33_right_flip_up, t758
-    t760 = t759 + t735
-    del t759
+    t851 = _runtime.wrap_cut(-np.arctan2(t850, M_33_right_flip_up))
+    del M_33_right_flip_up, t850
+    t852 = t851 + t827
+    del t851
     M_11_right_flip_up = T11 * c1_right_flip_up + T21 * s1_right_flip_up
-    t761 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up
+    t853 = sphi_right_flip_up * M_11_right_flip_up - T31 * cphi_right_flip_up
     del M_11_right_flip_up
     M_12_right_flip_up = T12 * c1_right_flip_up + T22 * s1_right_flip_up
     del c1_right_flip_up, s1_right_flip_up
-    t762 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up
+    t854 = T32 * cphi_right_flip_up - sphi_right_flip_up * M_12_right_flip_up
     del M_12_right_flip_up
-    t763 = _runtime.wrap_cut(-np.arctan2(t761, t762)) + t735
-    del t761, t762
-    s2_right_flip_down = t743 + t745
-    del t743, t745
-    c2_right_flip_down = t746 - t747
-    del t746, t747
-    t764 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
-    t765 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
-    t766 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
+    t855 = _runtime.wrap_cut(-np.arctan2(t853, t854)) + t827
+    del t853, t854
+    s2_right_flip_down = t835 + t837
+    del t835, t837
+    c2_right_flip_down = t838 - t839
+    del t838, t839
+    t856 = np.arctan2(s2_right_flip_down, c2_right_flip_down)
+    t857 = sphi_right_flip_up * c2_right_flip_down - cphi_right_flip_up * s2_right_flip_down
+    t858 = cphi_right_flip_up * c2_right_flip_down + sphi_right_flip_up * s2_right_flip_down
     del c2_right_flip_down, cphi_right_flip_up, s2_right_flip_down, sphi_right_flip_up
-    t767 = c3_right_flip_up * t765 + s3_right_flip_up * t766
-    t768 = c3_right_flip_up * t766 - s3_right_flip_up * t765
-    del c3_right_flip_up, s3_right_flip_up, t765, t766
-    t769 = _runtime.wrap_cut(np.arctan2(t767, t768)) + t735
-    del t767, t768
-    t770 = free1 | aligned_wrist | no_link_elbow | folded_elbow
+    t859 = c3_right_flip_up * t857 + s3_right_flip_up * t858
+    t860 = c3_right_flip_up * t858 - s3_right_flip_up * t857
+    del c3_right_flip_up, s3_right_flip_up, t857, t858
+    t861 = _runtime.wrap_cut(np.arctan2(t859, t860)) + t827
+    del t859, t860
+    t862 = free1 | aligned_wrist | no_link_elbow | folded_elbow
     del aligned_wrist, folded_elbow
-    t771 = _runtime.status(invalid, unreachable, t770)
-    del t770, unreachable
-    t772 = free1 | aligned_wrist_left_flip_up | no_link_elbow
+    t863 = _runtime.status(invalid, unreachable, t862)
+    del t862, unreachable
+    t864 = free1 | aligned_wrist_left_flip_up | no_link_elbow
     del aligned_wrist_left_flip_up
-    t773 = _runtime.status(invalid, unreachable_2, t772 | folded_elbow_left_flip_up)
-    del folded_elbow_left_flip_up, t772, unreachable_2
-    t774 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
+    t865 = _runtime.status(invalid, unreachable_2, t864 | folded_elbow_left_flip_up)
+    del folded_elbow_left_flip_up, t864, unreachable_2
+    t866 = free1 | aligned_wrist_right_noflip_up | no_link_elbow
     del aligned_wrist_right_noflip_up
-    t775 = _runtime.status(invalid, unreachable_3, t774 | folded_elbow_right_noflip_up)
-    del folded_elbow_right_noflip_up, t774, unreachable_3
-    t776 = free1 | aligned_wrist_right_flip_up | no_link_elbow
+    t867 = _runtime.status(invalid, unreachable_3, t866 | folded_elbow_right_noflip_up)
+    del folded_elbow_right_noflip_up, t866, unreachable_3
+    t868 = free1 | aligned_wrist_right_flip_up | no_link_elbow
     del aligned_wrist_right_flip_up, free1, no_link_elbow
-    t777 = _runtime.status(invalid, unreachable_4, t776 | folded_elbow_right_flip_up)
-    del folded_elbow_right_flip_up, invalid, t776, unreachable_4
+    t869 = _runtime.status(invalid, unreachable_4, t868 | folded_elbow_right_flip_up)
+    del folded_elbow_right_flip_up, invalid, t868, unreachable_4
     return (
-        t143,
-        _runtime.wrap_cut(np.arctan2(s2, c2)) + t142,
-        _runtime.wrap_cut(t158) + t142,
-        _runtime.wrap_cut(t161) + t142,
-        t163,
-        t165,
-        t143,
-        _runtime.wrap_cut(t166) + t142,
-        _runtime.wrap_cut(-t158) + t142,
-        _runtime.wrap_cut(t169) + t142,
-        t163,
-        t165,
-        t325,
-        t337 + t324,
-        _runtime.wrap_cut(t341) + t324,
-        t346,
-        t349,
-        t352,
-        t325,
-        _runtime.wrap_cut(t353) + t324,
-        _runtime.wrap_cut(-t341) + t324,
-        t358,
-        t349,
-        t352,
-        t542,
-        _runtime.wrap_cut(t554) + t541,
-        _runtime.wrap_cut(t558) + t541,
-        t563,
-        t566,
-        t569,
-        t542,
-        _runtime.wrap_cut(t570) + t541,
-        _runtime.wrap_cut(-t558) + t541,
-        t575,
-        t566,
-        t569,
-        t736,
-        _runtime.wrap_cut(t748) + t735,
-        _runtime.wrap_cut(t752) + t735,
-        t757,
-        t760,
-        t763,
-        t736,
-        _runtime.wrap_cut(t764) + t735,
-        _runtime.wrap_cut(-t752) + t735,
-        t769,
-        t760,
-        t763,
-        t771,
-        t771,
-        t773,
-        t773,
-        t775,
-        t775,
-        t777,
-        t777,
+        t168,
+        _runtime.wrap_cut(np.arctan2(s2, c2)) + t167,
+        _runtime.wrap_cut(t183) + t167,
+        _runtime.wrap_cut(t186) + t167,
+        t188,
+        t190,
+        t168,
+        _runtime.wrap_cut(t191) + t167,
+        _runtime.wrap_cut(-t183) + t167,
+        _runtime.wrap_cut(t194) + t167,
+        t188,
+        t190,
+        t371,
+        t383 + t370,
+        _runtime.wrap_cut(t387) + t370,
+        t392,
+        t395,
+        t398,
+        t371,
+        _runtime.wrap_cut(t399) + t370,
+        _runtime.wrap_cut(-t387) + t370,
+        t404,
+        t395,
+        t398,
+        t612,
+        _runtime.wrap_cut(t624) + t611,
+        _runtime.wrap_cut(t628) + t611,
+        t633,
+        t636,
+        t639,
+        t612,
+        _runtime.wrap_cut(t640) + t611,
+        _runtime.wrap_cut(-t628) + t611,
+        t645,
+        t636,
+        t639,
+        t828,
+        _runtime.wrap_cut(t840) + t827,
+        _runtime.wrap_cut(t844) + t827,
+        t849,
+        t852,
+        t855,
+        t828,
+        _runtime.wrap_cut(t856) + t827,
+        _runtime.wrap_cut(-t844) + t827,
+        t861,
+        t852,
+        t855,
+        t863,
+        t863,
+        t865,
+        t865,
+        t867,
+        t867,
+        t869,
+        t869,
     )
 
 

@@ -38,9 +38,7 @@ class Listing(Check):
             return Verdict(REFUTED, ("not among the ", self.meaning, ": ", *self._listed(wrong)))
         missing = [e for e in found if e not in self.printed]
         if missing:
-            return Verdict(
-                INCOMPLETE, ("of the ", self.meaning, ", it omits ", *self._listed(missing))
-            )
+            return Verdict(INCOMPLETE, (self.meaning, ": it omits ", *self._listed(missing)))
         return Verdict(PROVED, (self.meaning, ": ", *self._listed(found)))
 
     def _listed(self, elements: Sequence[Any]) -> list[Any]:

@@ -39,6 +39,8 @@ from closedform.proof.checks.evidence import (
     shown,
 )
 
+_DEGREE = 6
+"""The degree from which on the terms of an error are not looked at."""
 _SHORT = 40
 """The longest printed side, in characters, that is repeated in the evidence."""
 
@@ -86,10 +88,11 @@ class Identity(Check):
             shown(entries(side)[found.entry], found.point) for side in (self.printed, self.derived)
         )
         left, right = self.names
-        return (
-            *at(found.point), entry, left, " is ", printed, ", but ", entry and "that of ", right,
-            " is ", derived,
-        )  # fmt: skip
+        if right == f"${derived}$":
+            return (*at(found.point), entry, left, " is ", printed, ", not ", derived)
+        of = "" if not entry or right.startswith("that of ") else "that of "
+        apart = (entry, left, " is ", printed, ", but ", of, right, " is ", derived)
+        return (*at(found.point), *apart)
 
 
 def _order(gap: Exact, small: sp.Symbol | tuple[sp.Symbol, ...]) -> tuple[Any, ...]:
@@ -99,18 +102,30 @@ def _order(gap: Exact, small: sp.Symbol | tuple[sp.Symbol, ...]) -> tuple[Any, .
     scaled = {s: scale * s for s in small}
     terms = []
     for entry in entries(gap):
-        gaining = sp.simplify(entry).subs(scaled, simultaneous=True)
-        series = sp.series(gaining, scale, 0, 6).removeO()
-        if series != 0:
-            term = sp.factor(series.as_leading_term(scale))
-            terms.append((sp.degree(sp.numer(term), scale), term))
+        found = _leading(entry.xreplace(scaled), scale)
+        if found is None:
+            return ()
+        if found[1] != 0:
+            terms.append(found)
     if not terms:
         return ()
     degree, term = min(terms, key=lambda t: t[0])
     if degree <= 0:
         return ()
     of = [piece for s in small for piece in (", ", s)]
-    return ("the error is ", term.subs(scale, 1), f" and terms of order {degree + 1} in ", *of[1:])
+    return ("the error is ", term, f" and terms of order {degree + 1} in ", *of[1:])
+
+
+def _leading(e: Expr, scale: sp.Symbol) -> tuple[int, Expr] | None:
+    """The degree and the coefficient of the first term in Taylor's series; None if it has none."""
+    for degree in range(_DEGREE):
+        coefficient = sp.simplify(e.subs(scale, 0) / sp.factorial(degree))
+        if coefficient.has(sp.nan, sp.zoo, sp.oo):
+            return None
+        if coefficient != 0:
+            return degree, sp.factor(coefficient)
+        e = e.diff(scale)
+    return _DEGREE, sp.S.Zero
 
 
 @dataclass(frozen=True)

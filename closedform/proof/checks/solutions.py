@@ -9,21 +9,21 @@ a quarter turn.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from heapq import nsmallest
-from itertools import product
+from itertools import islice, product
 from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from closedform.algebra.balls import Undetermined, evaluate
+from closedform.algebra.balls import Evaluator, Undetermined
 from closedform.algebra.normal_form import Undecided, decide
 from closedform.algebra.solutions import InfinitelyManyError, count_solutions
 from closedform.model.claims import INCOMPLETE, PROVED, REFUTED, Check, Verdict
 from closedform.model.notation import SIGN
+from closedform.proof.checks.equations import Every
 from closedform.proof.checks.evidence import Expr, at, cases, shown
 
 SAMPLES = 100_000
@@ -115,21 +115,56 @@ class Postures:
         drawn |= {s: np.full(SAMPLES, float(v)) for s, v in self.dimensions.items()}
         return drawn | {s: values(e, drawn) for s, e in self.inputs.items()}
 
+    def drawn(self) -> list[Any]:
+        """From where the joints are drawn, in words."""
+        several: dict[str, list[sp.Symbol]] = {}
+        for q in self.joints:
+            low, high = (f"{np.degrees(a):.0f}^\\circ" for a in self.ranges.get(q, (-np.pi, np.pi)))
+            several.setdefault(f"${low}$ to ${high}$", []).append(q)
+        pieces: list[Any] = []
+        for words, joints in several.items():
+            pieces += [", " * bool(pieces), *(p for q in joints for p in (q, ", "))][:-1]
+            pieces.append(f" from {words}")
+        return pieces
+
     def simple(self) -> Iterator[dict[sp.Symbol, Expr]]:
         """Exact postures that a person can check by hand, with unit dimensions."""
         used = {s for e in self.inputs.values() for s in e.free_symbols}
         lengths = dict.fromkeys(sorted(used - set(self.joints), key=str), sp.S.One)
-        ranked = product(range(len(_ANGLES)), repeat=len(self.joints))
-        for ranks in nsmallest(_SIMPLE, ranked, key=lambda ranks: (sum(ranks), ranks)):
+        for ranks in islice(_ranked(len(self.joints)), _SIMPLE):
             yield lengths | {q: _ANGLES[r] for q, r in zip(self.joints, ranks, strict=True)}
+
+
+def _ranked(length: int) -> Iterator[tuple[int, ...]]:
+    """The ranks of so many angles among the simple ones, those with the least sum first."""
+    last = len(_ANGLES) - 1
+    for total in range(length * last + 1):
+        yield from _with_sum(total, length, last)
+
+
+def _with_sum(total: int, length: int, last: int) -> Iterator[tuple[int, ...]]:
+    if not length:
+        yield ()
+        return
+    for first in range(max(0, total - (length - 1) * last), min(total, last) + 1):
+        for others in _with_sum(total - first, length - 1, last):
+            yield (first, *others)
 
 
 def values(e: Expr, at_symbols: Mapping[sp.Symbol, np.ndarray]) -> np.ndarray:
     """The values of an expression over arrays; not a number where it has no real value."""
-    symbols = [s for s in at_symbols if s in e.free_symbols]
+    symbols = tuple(s for s in at_symbols if s in e.free_symbols)
+    size = len(next(iter(at_symbols.values())))
     with np.errstate(all="ignore"):
-        found = sp.lambdify(symbols, e, "numpy")(*(at_symbols[s] for s in symbols))
-    return np.broadcast_to(np.asarray(found), (SAMPLES,))
+        found = _compiled(symbols, e)(*(at_symbols[s] for s in symbols))
+    return np.broadcast_to(np.asarray(found), (size,))
+
+
+@lru_cache(maxsize=64)
+def _compiled(symbols: tuple[sp.Symbol, ...], e: Expr) -> Callable[..., Any]:
+    """An expression as a function; the forward map is evaluated for many claims."""
+    compiled: Callable[..., Any] = sp.lambdify(symbols, e, "numpy", cse=True)
+    return compiled
 
 
 @dataclass(frozen=True)
@@ -209,12 +244,14 @@ class Procedure(Check):
 
     ``formulas`` give names, in order, in the inputs and in names given before.  ``reached`` is the
     forward map in the names; it has to equal the ``targets``, which ``postures`` takes as inputs.
-    A sample can refute a procedure; if no posture is missed, the exact zero test has to prove it.
+    A sample can refute a procedure.  If no posture is missed, the exact zero test has to prove it:
+    that the target is reached, or, with ``steps``, that each formula solves its equation.
     """
 
     formulas: Mapping[sp.Symbol, Expr]
     reached: Mapping[sp.Symbol, Expr]
     postures: Postures
+    steps: Mapping[str, Check] = field(default_factory=dict)
 
     def judge(self) -> Verdict:
         sampled = self.postures.arrays()
@@ -228,7 +265,7 @@ class Procedure(Check):
     def _missed(self, sampled: Mapping[sp.Symbol, np.ndarray]) -> np.ndarray:
         """Whether the target is missed, for each posture and for all signs."""
         size = 1 + sum(np.abs(sampled[t]) for t in self.reached)
-        missed = np.ones(SAMPLES, dtype=bool)
+        missed = np.ones(np.shape(size), dtype=bool)
         for signs in product(
             (1, -1), repeat=len([f for f in self.formulas.values() if f.has(SIGN)])
         ):
@@ -243,12 +280,15 @@ class Procedure(Check):
     def _missed_simple(self) -> list[dict[sp.Symbol, Expr]]:
         """The simple postures that seem to be missed, by their values in floating point."""
         simple = list(self.postures.simple())
-        arrays = {s: np.resize([float(p[s]) for p in simple], SAMPLES) for s in simple[0]}
+        decimal = {value: float(value) for value in (sp.S.One, *_ANGLES)}
+        arrays = {s: np.array([decimal[p[s]] for p in simple]) for s in simple[0]}
         arrays |= {s: values(e, arrays) for s, e in self.postures.inputs.items()}
-        return [p for p, out in zip(simple, self._missed(arrays), strict=False) if out]
+        return [p for p, out in zip(simple, self._missed(arrays), strict=True) if out]
 
     def _proved(self) -> Verdict:
         """The verdict if no sampled posture is missed: an exact proof for each choice of signs."""
+        if self.steps:
+            return Every(self.steps).judge()
         signs = (1, -1) if any(f.has(SIGN) for f in self.formulas.values()) else (1,)
         for s in signs:
             names = dict(self.postures.inputs)
@@ -266,21 +306,22 @@ class Procedure(Check):
         """A posture that a person can check by hand, with what is reached there."""
         if any(f.has(SIGN) for f in self.formulas.values()):
             return ()
+        inputs, both = self.postures.inputs, [*self.reached.values(), *self.reached]
+        evaluator = None
         for posture in self._missed_simple()[:20]:
-            point = dict(posture)
+            point = posture | {s: sp.simplify(e.xreplace(posture)) for s, e in inputs.items()}
+            given = {s: v for s, v in point.items() if s not in self.formulas}
+            evaluator = evaluator or Evaluator(tuple(given), both, named=self.formulas)
             try:
-                point |= {s: sp.simplify(e.subs(posture)) for s, e in self.postures.inputs.items()}
-                for name, formula in self.formulas.items():
-                    point[name] = formula.subs(point)
-                reached = {t: e.subs(point) for t, e in self.reached.items()}
-                balls = evaluate([reached[t] - point[t] for t in self.reached], {})
-            except (Undetermined, TypeError, ValueError, ZeroDivisionError):
+                balls = evaluator(given)
+            except (Undetermined, TypeError):
                 continue
-            missed = [t for t, b in zip(self.reached, balls, strict=True) if not b.contains(0)]
-            if all(b.is_finite() for b in balls) and missed:
+            pairs = list(zip(self.reached, balls, balls[len(self.reached) :], strict=False))
+            apart = [(t, a) for t, a, b in pairs if not (a - b).contains(0)]
+            if all(b.is_finite() for b in balls) and apart:
                 pieces: list[Any] = []
-                for t in missed:
-                    decimal = evaluate([reached[t]], {})[0].str(6, radius=False)
+                for t, ball in apart:
+                    decimal = ball.str(6, radius=False)
                     pieces += [", ", t, f" = ${decimal}$ instead of ", shown(point[t], {})]
                 return ("at ", posture, ": it reaches ", *pieces[1:], "; ")
         return ()
@@ -290,7 +331,8 @@ def share(
     what: str, missed: np.ndarray, postures: Postures, sampled: Mapping[sp.Symbol, np.ndarray]
 ) -> tuple[Any, ...]:
     """How many of the sampled postures are missed, in all and in each group."""
-    pieces = ["; ", f"{what} in {_percent(missed)} of {SAMPLES} sampled postures"]
+    pieces = ["; ", f"{what} in {_percent(missed)} of {SAMPLES} sampled postures, with "]
+    pieces += postures.drawn()
     groups = [
         f"{name}: {_percent(missed[part])}"
         for name, condition in postures.groups.items()

@@ -76,8 +76,20 @@ class Enumeration(Check):
     def judge(self) -> Verdict:
         found = self.found()
         if found == self.printed:
-            return Verdict(PROVED, (f"{self.meaning}: {found}",))
-        return Verdict(REFUTED, (f"{self.meaning}: {found}, not {self.printed}",))
+            return Verdict(PROVED, (f"{self.meaning}: {_in_words(found)}",))
+        text = f"{self.meaning}: {_in_words(found)}, not {_in_words(self.printed)}"
+        return Verdict(REFUTED, (text,))
+
+
+def _in_words(value: Any) -> str:
+    """A number, or a list of names without the signs of the programming language."""
+    if isinstance(value, list | tuple | set | frozenset):
+        parts = list(value) if isinstance(value, list | tuple) else sorted(value, key=str)
+        several = (
+            f"({_in_words(p)})" if isinstance(p, list | tuple) else _in_words(p) for p in parts
+        )
+        return ", ".join(several) or "none"
+    return str(value)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""LaTeX: an article a mechanism, and the errata of all papers in Markdown."""
+"""LaTeX: an article a mechanism, the book of all, and the errata of all papers in Markdown."""
 
 from __future__ import annotations
 
@@ -6,20 +6,28 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from closedform.emit.backend import Backend, Files, Mechanism, Pages
+from closedform.emit.backends.latex import book, errata
 from closedform.emit.backends.latex.article import document
-from closedform.emit.backends.latex.errata import context
-from closedform.emit.errata import Part, part
+from closedform.emit.errata import part
 from closedform.emit.render import render
+
+BOOK = Path("latex", "closedform.tex")
 
 
 class Latex(Backend):
     def pages(self, mechanism: Mechanism) -> Pages:
         derivation, proof = mechanism.derivation, mechanism.proof
         text = render("latex/robot.tex.jinja", document(derivation, proof))
-        return Pages({Path("latex", f"{derivation.name}.tex"): text}, part(derivation, proof))
+        share = book.chapter(derivation, part(derivation, proof))
+        return Pages({Path("latex", f"{derivation.name}.tex"): text}, share)
 
-    def shared(self, shares: Sequence[Part | None]) -> Files:
-        return {Path("errata.md"): render("errata.md.jinja", context(shares))}
+    def shared(self, shares: Sequence[book.Chapter]) -> Files:
+        return {
+            Path("errata.md"): render(
+                "errata.md.jinja", errata.context([share.errata for share in shares])
+            ),
+            BOOK: render("latex/book.tex.jinja", book.context(shares)),
+        }
 
     def first_file(self, robot: str) -> Path:
         return Path("latex", f"{robot}.tex")

@@ -51,7 +51,7 @@ def _paper(found: PaperErrata) -> dict[str, Any]:
         "key": paper.key,
         "title": markdown_text(paper.title),
         "authors": markdown_text(", ".join(paper.authors)),
-        "reference": markdown_text(paper.reference),
+        "reference": markdown_text(", ".join(filter(None, (paper.reference, paper.year)))),
         "source": markdown(paper.source),
         "errors": list(found.errors().values()),
         "total": len(found.claims),

@@ -90,6 +90,12 @@ def symbol_name(name: str) -> str:
     return f"{base}_{{{','.join(parts)}}}" if parts else base
 
 
+def written_name(derivation: Derivation, name: str) -> str:
+    """The LaTeX of a symbol in a derivation, which may have said how to write it."""
+    written = derivation.written.get(name)
+    return written.latex if written and written.latex else symbol_name(name)
+
+
 def _subscript(text: str) -> str:
     if re.fullmatch(r"\d*[a-z]?|\d", text):
         return text
@@ -112,14 +118,20 @@ def escape(text: str) -> str:
     return "".join(parts)
 
 
+UNBROKEN = 140
+"""A fraction in a formula with more characters than this may be wider than its column."""
+
+
 def mixed(text: str) -> str:
     """Text with formulas between dollar signs; a formula that is a matrix shrinks to fit."""
     parts = text.split("$")
     for i, part in enumerate(parts):
         formula = "".join(f"{UNICODE.get(c, c)} " if c in UNICODE else c for c in part)
-        formula = rf"$\displaystyle {formula}$"
-        if part.count(r"\begin") == 1 and re.fullmatch(
-            r"\\begin\{(\w*matrix)\}.*\\end\{\1\}", part
+        formula = rf"$\displaystyle {loosen(formula)}$"
+        wide = len(parts) == 3 and r"\frac" in part and len(part) > UNBROKEN
+        if wide or (
+            part.count(r"\begin") == 1
+            and re.fullmatch(r"\\begin\{(\w*matrix)\}.*\\end\{\1\}", part)
         ):
             formula = rf"\fit{{{formula}}}"
         parts[i] = formula if i % 2 else escape(part)
@@ -134,9 +146,11 @@ class Prose:
         symbols = [p.symbol for p in derivation.parameters] + [j.symbol for j in derivation.joints]
         symbols += [s for f in functions for s in f.symbols]
         symbols += [s.symbol for f in functions for s in f.body if isinstance(s, (Let, Bound))]
-        symbols += [s for step in derivation.steps for s in _symbols(step)]
-        names = {str(s) for s in symbols} | set(derivation.task)
+        symbols += [s for step in derivation.steps for s in symbols_of(step)]
+        names = self.names = {str(s) for s in symbols} | set(derivation.task)
+        self.derivation = derivation
         self.known = GREEK | set(SYMBOL_NAMES)
+        self.known |= set(derivation.written)
         self.known |= {n for n in names - {"a", "A", "I"} if len(n) < 3 or re.search(r"\d|_", n)}
 
     def __call__(self, text: str) -> str:
@@ -186,13 +200,19 @@ class Prose:
                 done.append(re.sub(r"e\+?(-?)0*(\d+)", r"\\cdot 10^{\1\2}", number))
             elif name:
                 short = self._is_symbol(name) or len(name) == 1 or name[1] == "_"
-                done.append(symbol_name(name) if short else rf"\mathrm{{{name}}}")
+                done.append(written_name(self.derivation, name) if short else rf"\mathrm{{{name}}}")
             else:
                 done.append(SIGNS.get(sign, sign) or IN_FORMULA.get(other, other))
         return "".join(done)
 
 
-def _symbols(step: Step) -> set[sp.Symbol]:
+def symbols_declared(derivation: Derivation) -> list[sp.Symbol]:
+    """The parameters and the joints."""
+    parameters = [p.symbol for p in derivation.parameters]
+    return parameters + [j.symbol for j in derivation.joints]
+
+
+def symbols_of(step: Step) -> set[sp.Symbol]:
     """The symbols in the formulas of a step."""
     shown = [value for _, value in step.shown]
     parts = [p for v in shown for p in (v if isinstance(v, list | tuple) else [v])]

@@ -1,0 +1,131 @@
+"""The command ``closedform figures``: every figure of every mechanism, and the page about them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from closedform.cli.plot import catalogue, drawings, module, write
+from closedform.pipeline import run as pipeline
+
+CAPTIONS = "captions.json"
+PAGE = "figures.md"
+OPENING = ("puma560", "branches")
+"""The picture at the top of the README."""
+
+
+def names() -> list[str]:
+    return [source.name for source in pipeline.sources()]
+
+
+def draw_all(folder: Path, chosen: list[str]) -> Iterator[str]:
+    """Draw all figures of mechanisms as pdf, with their captions; a line for each mechanism."""
+    folder.mkdir(parents=True, exist_ok=True)
+    target = folder / CAPTIONS
+    captions: dict[str, str] = json.loads(target.read_text("utf-8")) if target.exists() else {}
+    for name in chosen or names():
+        robot = module(name)
+        captions = {k: c for k, c in captions.items() if not k.startswith(f"{name}-")}
+        drawn = catalogue(name)
+        for figure in drawn:
+            write(partial(figure.draw, robot), folder / f"{name}-{figure.name}.pdf")
+            captions[f"{name}-{figure.name}"] = figure.caption
+        yield f"{name}: {', '.join(f.name for f in drawn)}\n"
+    text = json.dumps(dict(sorted(captions.items())), indent=2, ensure_ascii=False)
+    target.write_text(text + "\n", "utf-8")
+
+
+def draw_documentation(docs: Path, chosen: list[str]) -> Iterator[str]:
+    """Draw what the pages show as svg, and write the page about the figures of the papers."""
+    folder = docs / "figures"
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in chosen or names():
+        robot = module(name)
+        write(partial(thumbnail, name, robot), folder / f"{name}.svg")
+        wanted = [f for f in catalogue(name) if (name, f.name) in shown()]
+        for figure in wanted:
+            write(partial(figure.draw, robot), folder / f"{name}-{figure.name}.svg")
+        yield f"{name}: {', '.join(['thumbnail', *(f.name for f in wanted)])}\n"
+    (docs / PAGE).write_text(page(), "utf-8")
+
+
+def thumbnail(name: str, robot: Any) -> Any:
+    """A small drawing without labels."""
+    from closedform import plot
+
+    view = drawings().view(name)
+    spatial = plot.mechanism(robot).name == "3d"
+    return plot.mechanism(
+        robot, view.general, mode=view.mode, faint=view.faint, labels=False, axes=False,
+        ax=plot.new_axes(spatial, (1.6, 1.4)),
+    )  # fmt: skip
+
+
+def shown() -> set[tuple[str, str]]:
+    """The mechanism and the name of each figure that a page shows."""
+    papers = {
+        (name, figure.name) for paper in drawings().PAPERS for name, figure in paper.drawn.values()
+    }
+    return papers | {OPENING}
+
+
+def page() -> str:
+    """The page that lists the figures of the papers."""
+    lines = [
+        "# Figures",
+        "",
+        "`make figures` draws all figures of all mechanisms as PDF in `build/figures/`, with their",
+        "captions in `captions.json`, and those that these pages show as SVG in `docs/figures/`.",
+        "It also writes this page. `closedform plot` draws a single one:",
+        "",
+        "```sh",
+        "closedform plot irb260 workspace -o workspace.pdf",
+        "closedform plot hybrid_five_bar fig15 -o fig15.svg",
+        "```",
+        "",
+        "Every point, length and curve is computed by the generated modules. The papers give few",
+        "dimensions; unless the caption says otherwise, the drawings use the default parameters,",
+        "whose docstrings name their source.",
+        "",
+        "## Of every mechanism",
+        "",
+        *_of_mechanisms(),
+        "",
+        "## Of the papers",
+    ]
+    for paper in drawings().PAPERS:
+        lines += ["", *_of_paper(paper)]
+    return "\n".join(lines) + "\n"
+
+
+def _of_mechanisms() -> Iterator[str]:
+    figures = [f for f in drawings().figures("planar_2r") if "fig" not in f.name]
+    yield from (f"- `{f.name}`: {f.caption}" for f in figures)
+    extra = {
+        n: [f.name for f in catalogue(n) if (n, f.name) not in shown()][len(figures) :]
+        for n in names()
+    }
+    for name, more in extra.items():
+        if more:
+            yield f"- only of `{name}`: {', '.join(f'`{m}`' for m in more)}"
+
+
+def _of_paper(paper: Any) -> Iterator[str]:
+    yield f"### {paper.heading}"
+    yield ""
+    yield f"{len(paper.drawn)} of {paper.count} figures."
+    for number in range(1, paper.count + 1):
+        yield ""
+        if number in paper.drawn:
+            name, figure = paper.drawn[number]
+            yield f"**{number}.** {figure.caption}"
+            if number in paper.contradicted:
+                yield ""
+                yield f"Contradicted: {paper.contradicted[number]}"
+            yield ""
+            yield f"![Figure {number}](figures/{name}-{figure.name}.svg)"
+        else:
+            yield f"**{number}.** Not reproduced: {paper.missing[number]}."

@@ -1,0 +1,535 @@
+"""A function of a derivation as an algorithm: what a reader computes, line by line.
+
+The statements of a program serve its proof and its rounding as well.  The algorithm is the same
+function without them: each special case stands in a table of its own, names that are words give way
+to what they stand for or to a letter, and what the branches share is computed before they part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations, groupby
+from typing import TYPE_CHECKING, Any
+
+import sympy as sp
+
+from closedform.emit.backends.latex.formulas import FITS, measure
+from closedform.emit.backends.latex.names import is_word, program_name
+from closedform.model.functions import (
+    Bound,
+    Determined,
+    Function,
+    Let,
+    Match,
+    Require,
+    Statement,
+    Vanishes,
+    real,
+    substitute,
+)
+from closedform.model.inverse import Rank
+from closedform.model.lemma import label
+
+if TYPE_CHECKING:
+    from closedform.emit.backends.latex.article import Page
+
+INLINE = 14.0
+"""The widest value that stands in place of a name that is a word."""
+ONCE = 36.0
+"""The same, for a name that occurs once."""
+STATED = 3
+"""A condition with more equations than that is given in words."""
+ANGLES = ("alpha", "gamma", "delta", "eta", "zeta", "mu", "nu", "xi", "chi", "omega")
+"""Letters for angles of which a lemma has named the sine and the cosine."""
+LETTERS = "kwgvqm"
+"""Letters for quantities whose name is a word; the first that the derivation does not use."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the algorithm, how deep it stands, and a remark."""
+
+    text: str
+    depth: int = 0
+    remark: str = ""
+    kind: str = ""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A special case: where it occurs, what it means, and what is returned."""
+
+    where: str
+    meaning: str
+    returned: str
+    status: str = ""
+
+
+@dataclass
+class Algorithm:
+    """The algorithm of a function; ``means`` are names that are sines, cosines or lengths.
+
+    ``model`` is the algorithm of an earlier function that starts with the same statements.
+    """
+
+    page: Page
+    function: Function
+    means: Mapping[sp.Symbol, sp.Expr]
+    model: Algorithm | None = None
+    known: dict[sp.Basic, sp.Basic] = field(default_factory=dict)
+    """What is printed in place of a name."""
+    names: dict[sp.Symbol, str] = field(default_factory=dict)
+    printed: set[sp.Symbol] = field(default_factory=set)
+    quantities: dict[sp.Expr, sp.Symbol] = field(default_factory=dict)
+    """Values of printed names, which later formulas do not repeat."""
+    pairs: dict[sp.Expr, sp.Expr] = field(default_factory=dict)
+    """Values that are the sine or the cosine of an angle."""
+    found: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        body = self.function.body
+        self.flags = {s.symbol: s for s in body if isinstance(s, Vanishes)}
+        self.usual: dict[sp.Basic, Any] = dict.fromkeys(self.flags, sp.false)
+        self.values = {s.symbol: self._generic(s.value) for s in body if isinstance(s, Let | Bound)}
+        self.outputs = [self._generic(e) for a in self.function.outputs for e in a.entries]
+        self.signs = tuple(dict.fromkeys(s for _, c in self.function.cases() for s in c))
+        self.needed = self._needed()
+        self.uses = self._uses()
+        if self.model:
+            self.known |= self.model.known
+            self.names |= self.model.names
+            self.printed |= self.model.printed
+        self.page.printer.names |= self.names
+        self.means = {**self.means, **self._pairs()}
+        for symbol in self.values:
+            if symbol in self.needed and symbol not in self.printed and symbol not in self.known:
+                self._name(symbol)
+        self.page.printer.names |= self.names
+
+    # What is needed, and its names
+
+    def _generic(self, value: sp.Expr) -> sp.Expr:
+        result: sp.Expr = substitute(value, self.usual)
+        return result
+
+    def _needed(self) -> set[sp.Symbol]:
+        """The names that the answers and the conditions of existence depend on."""
+        needed: set[Any] = {s for e in self.outputs for s in e.free_symbols}
+        for statement in reversed(self.function.body):
+            if isinstance(statement, Match):
+                needed |= self._generic(statement.value).free_symbols
+            elif isinstance(statement, Bound) or (
+                isinstance(statement, Let) and statement.symbol in needed
+            ):
+                needed |= self.values[statement.symbol].free_symbols
+        return needed
+
+    def _uses(self) -> dict[sp.Basic, int]:
+        held = [self.values[s] for s in self.values if s in self.needed] + self.outputs
+        uses: dict[sp.Basic, int] = {}
+        for value in held:
+            for s in value.free_symbols:
+                uses[s] = uses.get(s, 0) + 1
+        return uses
+
+    def _pairs(self) -> dict[sp.Symbol, sp.Expr]:
+        """Names that lemmas of a chain gave to a sine and a cosine, see ``Pair.known_as``."""
+        inverse = next(
+            (i for i in self.page.derivation.inverses if i.function == self.function.name), None
+        )
+        if inverse is None or not isinstance(inverse.glue, Rank):
+            return {}
+        names = {str(s.name): s for s in self.values if s in self.needed}
+        joints = {label(j): j for j in inverse.unknowns}
+        letters = iter([g for g in ANGLES if g not in self.page.prose.names])
+        found: dict[sp.Symbol, sp.Expr] = {}
+        for name, sine in names.items():
+            cosine = names.get(f"c{name[1:]}")
+            known = isinstance(self.means.get(sine), sp.sin | sp.cos)
+            if name[0] != "s" or cosine is None or known:
+                continue
+            angle = joints.get(name[1:]) or real(next(letters))
+            found |= {sine: sp.sin(angle), cosine: sp.cos(angle)}
+        return found
+
+    def _name(self, symbol: sp.Symbol) -> None:
+        """Decide what is printed for a name: its meaning, its value, or a letter."""
+        meaning = self.means.get(symbol)
+        value = self.value(symbol)
+        if isinstance(meaning, sp.sin | sp.cos):
+            self.known[symbol] = meaning
+            self.pairs[self.values[symbol]] = meaning
+            return
+        bare = value.as_coeff_Mul()[1]
+        word = is_word(str(symbol.name))
+        width = self.page.lines.width(value)
+        once = self.uses.get(symbol, 0) <= 1 and width <= ONCE
+        if bare.is_Atom or (word and (width <= INLINE or once) and not value.has(sp.Piecewise)):
+            self.known[symbol] = value
+            return
+        if value.is_Add or value.is_Pow:
+            self.quantities[value] = symbol
+        if value.is_Pow and value.exp == sp.S.Half:
+            self.quantities[1 / value] = 1 / symbol
+        if word:
+            self.names[symbol] = f"{self._letter}_{{{self._count() + 1}}}"
+        elif name := program_name(str(symbol.name)) or self._shortened(symbol):
+            self.names[symbol] = name
+        self.page.printer.names |= self.names
+
+    @property
+    def _letter(self) -> str:
+        words = {str(s) for s in self.values}
+        taken = {n[:1] for n in self.page.prose.names if not is_word(n) or n not in words}
+        return next((c for c in LETTERS if c not in taken), LETTERS[0])
+
+    def _count(self) -> int:
+        return sum(n.startswith(f"{self._letter}_") for n in self.names.values())
+
+    def _shortened(self, symbol: sp.Symbol) -> str | None:
+        """A letter without its index, if the function has no other name with this letter."""
+        base, _, index = str(symbol.name).partition("_")
+        others = [str(s) for s in self.values if s != symbol and s in self.needed]
+        others += [str(s) for s in self.page.symbols if s not in self.values]
+        if index and len(base) == 1 and not any(n[:1] == base for n in others):
+            return base
+        return None
+
+    def value(self, symbol: sp.Symbol) -> sp.Expr:
+        """The value of a name in what is printed before it."""
+        if symbol not in self.found:
+            self.found[symbol] = self.shown(self.values[symbol])
+        return self.found[symbol]
+
+    def shown(self, value: Any) -> Any:
+        """An expression in the names that are printed."""
+        value = self._generic(value)
+        if not isinstance(value, sp.MatrixBase):
+            value = value.xreplace(self.pairs)
+        value = substitute(value, self.known)
+        return self.short(value) if isinstance(value, sp.Expr) else value
+
+    def short(self, value: sp.Expr) -> sp.Expr:
+        """The same with the names of quantities that occur in it; signs have the square 1."""
+        powers = {p: p.base ** (p.exp % 2) for p in value.atoms(sp.Pow) if p.base in self.signs}
+        value = value.xreplace({p: e for p, e in powers.items() if p.exp.is_Integer})
+        value = self.page.lines.tidy(value.xreplace(self._sums_of_angles(value)))
+        return value.xreplace({e: s for e, s in self.quantities.items() if e != value})
+
+    def _sums_of_angles(self, value: sp.Expr) -> dict[sp.Basic, sp.Expr]:
+        """Sums that are the sine or the cosine of a sum of two joints."""
+        joints = {j.symbol for j in self.page.derivation.joints}
+        angles = sorted({f.args[0] for f in value.atoms(sp.sin)} & joints, key=str)
+        found: dict[sp.Basic, sp.Expr] = {}
+        for a, b in combinations(angles, 2):
+            for sign in (1, -1):
+                sine = sp.sin(a) * sp.cos(b) + sign * sp.cos(a) * sp.sin(b)
+                cosine = sp.cos(a) * sp.cos(b) - sign * sp.sin(a) * sp.sin(b)
+                total = a + sign * b
+                found |= {sine: sp.sin(total), -sine: -sp.sin(total)}
+                found |= {cosine: sp.cos(total), -cosine: -sp.cos(total)}
+        return found
+
+    def full(self, value: Any) -> Any:
+        """The same, with names that are not printed replaced by their values."""
+        for _ in range(len(self.values)):
+            value = substitute(self._generic(value), self.known)
+            hidden = value.free_symbols & self.values.keys() - self.needed - self.printed
+            if not hidden:
+                break
+            value = substitute(value, {s: self.values[s] for s in hidden})
+        return self.short(value) if isinstance(value, sp.Expr) else value
+
+    # Lines
+
+    def lines(self) -> list[Line]:
+        """What is computed, with the conditions; first what all branches share."""
+        self.page.lines.clear()
+        branched: set[sp.Basic] = set(self.signs)
+        common: list[tuple[str, Any, str]] = []
+        each: list[tuple[str, Any, str]] = []
+        body = self.function.body
+        for statement in body:
+            parts = list(self._statement(statement))
+            used = {s for e in self._expressions(statement) for s in e.free_symbols}
+            if isinstance(statement, Let | Bound) and used & branched:
+                shown = self.known.get(statement.symbol, statement.symbol)
+                branched |= {statement.symbol, *shown.free_symbols}
+            (each if used & branched else common).extend(parts)
+        answer = [line for a in self._answers() for line in [("let", a, "")]]
+        several = self.function.branches is not None and len(self.function.branches) > 1
+        if not several:
+            return self.joined([*common, *each, *answer], 0)
+        head = Line(rf"\textbf{{for each}} {self._choice()}:")
+        return [*self.joined(common, 0), head, *self.joined([*each, *answer], 1)]
+
+    def _choice(self) -> str:
+        names = [self.page.math(s) for s in self.signs]
+        if len(names) == 1:
+            return rf"${names[0]} = \pm 1$"
+        listed = r",\ ".join(names)
+        return rf"$({listed}) \in \{{-1, +1\}}^{{{len(names)}}}$"
+
+    def _expressions(self, statement: Statement) -> Iterable[sp.Expr]:
+        if isinstance(statement, Let | Bound):
+            return [self.value(statement.symbol)]
+        if isinstance(statement, Require):
+            return statement.values
+        return [self.shown(statement.value)]
+
+    def _statement(self, statement: Statement) -> Iterable[tuple[str, str, str]]:
+        """The kind of each line, its text and a remark."""
+        if isinstance(statement, Let | Bound):
+            symbol = statement.symbol
+            fresh = symbol in self.needed and symbol not in self.printed
+            replaced = symbol in self.known and not self.is_pair(symbol)
+            if fresh and not replaced:
+                self.printed.add(symbol)
+                left = self.known.get(symbol, symbol)
+                for text in self.texts(left, self.value(symbol)):
+                    yield "let", text, ""
+            if isinstance(statement, Bound):
+                yield "bound", symbol, self.page.prose(statement.meaning)
+        elif isinstance(statement, Match):
+            yield (
+                "unless",
+                f"${self.page.math(self.full(statement.value))} = 0$",
+                self.page.prose(statement.meaning),
+            )
+        elif isinstance(statement, Require):
+            yield "invalid", self._requirement(statement), ""
+
+    def _requirement(self, statement: Require) -> str:
+        if len(statement.values) > STATED:
+            return f"the input is {self.page.prose(statement.meaning)}"
+        texts = []
+        for value in statement.values:
+            if isinstance(value, sp.Piecewise) and value.args[0][0] == 0:
+                texts.append(self.page.printer.condition(self._condition(value.args[0][1])))
+            else:
+                texts.append(f"${self.page.math(self.full(value))} = 0$")
+        return f"{', '.join(texts)} ({self.page.prose(statement.meaning)})"
+
+    def is_pair(self, symbol: sp.Symbol) -> bool:
+        """Whether a name is the sine or the cosine of an angle."""
+        return isinstance(self.means.get(symbol), sp.sin | sp.cos)
+
+    def _condition(self, condition: Any) -> Any:
+        if isinstance(condition, sp.core.relational.Rel):
+            return condition.func(*map(self.full, condition.args), evaluate=False)
+        return (
+            condition.func(*map(self._condition, condition.args)) if condition.args else condition
+        )
+
+    def conditions(self, bounds: Sequence[sp.Symbol]) -> list[str]:
+        """The conditions that bounds are not negative."""
+        return self.inequalities([self.bound(s) for s in bounds])
+
+    def inequalities(self, values: Sequence[sp.Expr]) -> list[str]:
+        """``|d| <= m <= a`` for m - d, m + d and a - m, and what is left one by one."""
+        math, left = self.page.math, list(dict.fromkeys(values))
+        texts: list[str] = []
+        order = {symbol: k for k, symbol in enumerate(self.values)}
+        pairs = [(*self.magnitude(v, w), v, w) for v, w in combinations(left, 2)]
+        pairs = [p for p in pairs if p[0] in order and p[1] != 0]
+        if pairs:
+            middle, apart, value, other = max(pairs, key=lambda p: order[p[0]])
+            above = next((e + middle for e in left if self.is_above(e, middle)), None)
+            text = rf"{math(sp.Abs(apart, evaluate=False))} \le {math(middle)}"
+            text += rf" \le {math(above)}" if above is not None else ""
+            texts.append(f"${text}$")
+            used = {value, other, *(() if above is None else (above - middle,))}
+            left = [e for e in left if e not in used]
+        return texts + [self.nonnegative(value) for value in left]
+
+    def is_above(self, value: sp.Expr, middle: sp.Expr) -> bool:
+        terms = sp.Add.make_args(value)
+        return -middle in terms and not any(_is_negative(t) for t in terms if t != -middle)
+
+    def bound(self, symbol: sp.Symbol) -> sp.Expr:
+        """What must not be negative: a short value, or the name of a longer one."""
+        value = self.full(self.values[symbol])
+        short = self.page.lines.width(value) <= ONCE and not value.has(sp.Piecewise)
+        if not short and symbol in self.printed and symbol not in self.known:
+            return symbol
+        return value
+
+    def magnitude(self, value: sp.Expr, other: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+        """m and d of two bounds m - d and m + d; d has a positive term first."""
+        middle, apart = sp.expand((value + other) / 2), sp.expand((other - value) / 2)
+        first = self.page.printer._as_ordered_terms(apart)[0] if apart.is_Add else apart
+        if _is_negative(first):
+            apart = -apart
+        return middle, apart
+
+    def nonnegative(self, value: sp.Expr) -> str:
+        """The condition that a value is not negative: ``a <= b`` for ``b - a``."""
+        math = self.page.math
+        less = [-t for t in sp.Add.make_args(value) if t.as_coeff_Mul()[0].is_negative]
+        more = [t for t in sp.Add.make_args(value) if not t.as_coeff_Mul()[0].is_negative]
+        if less and more:
+            return rf"${math(sp.Add(*less))} \le {math(sp.Add(*more))}$"
+        return rf"${math(value)} \ge 0$"
+
+    def texts(self, left: Any, value: Any) -> list[str]:
+        """Equations as formulas in the text, each in one piece."""
+        return whole(self.page.equations(left, value))
+
+    def _answers(self) -> list[str]:
+        entries = iter(self.outputs)
+        rows = []
+        for array in self.function.outputs:
+            shown = [self.shown(next(entries)) for _ in range(array.size)]
+            rows += whole(self.page.array(array, shown))
+        return rows
+
+    def joined(self, lines: Sequence[tuple[str, Any, str]], depth: int) -> list[Line]:
+        """Lines of the page: short equations share one, and so do neighbouring conditions."""
+        done: list[Line] = []
+        for bounds, group in groupby(merged(lines), lambda line: line[0] == "bound"):
+            if bounds:
+                found = list(group)
+                text = ", ".join(self.conditions([symbol for _, symbol, _ in found]))
+                remarks = dict.fromkeys(remark for *_, remark in found)
+                remark = "; ".join(remarks) if len(remarks) == 1 else ""
+                done.append(Line(unless(text, "unreachable"), depth, remark))
+                continue
+            for kind, text, remark in group:
+                wide = measure(done[-1].text + text) > FITS - 14 - 2 * depth if done else True
+                if kind == "let" and done and done[-1].kind == "let" and not wide:
+                    done[-1] = Line(rf"{done[-1].text},\quad {text}", depth, "", "let")
+                elif kind == "let":
+                    done.append(Line(text, depth, "", "let"))
+                else:
+                    done.append(Line(unless(text, STATUS[kind]), depth, remark))
+        return done
+
+    # Special cases
+
+    def cases(self) -> list[Case]:
+        """Where the lines above do not apply, and what holds there."""
+        found = []
+        for flag in self.flags.values():
+            if not self.is_rounding(flag) and (flag.free or self._effect(flag)):
+                found.append(self._case(flag))
+        for statement in self.function.body:
+            if isinstance(statement, Determined):
+                found.append(self._determined(statement))
+        return found
+
+    def roundings(self) -> list[str]:
+        """What is said of the flags that only serve the rounding of a usual posture."""
+        return list(
+            dict.fromkeys(
+                self.page.prose(f.meaning) for f in self.flags.values() if self.is_rounding(f)
+            )
+        )
+
+    def is_rounding(self, flag: Vanishes) -> bool:
+        """Whether the flag compares with a tiny multiple, which no exact quantity does."""
+        tiny = any(q.q >= 2**8 for q in flag.value.atoms(sp.Rational))
+        return tiny and not flag.free
+
+    def _effect(self, flag: Vanishes) -> list[str]:
+        """What a flag puts in place of names and answers that are printed."""
+        usual = {**self.usual, flag.symbol: sp.true}
+        changed: dict[sp.Basic, sp.Expr] = {}
+        printed = [s for s in self.values if s in self.printed]
+        whole = [(s, self.function_value(s)) for s in printed]
+        joints = self.page.answers(self.function)
+        whole += list(zip(joints, self.entries, strict=True)) if joints else []
+        for name, value in whole:
+            if value.has(flag.symbol):
+                other = substitute(substitute(value, usual), self.known).xreplace(changed)
+                other = self.short(other)
+                if self.page.lines.width(other) <= ONCE:
+                    changed[self.known.get(name, name)] = other
+        return [f"${self.page.math(n)} = {self.page.math(e)}$" for n, e in changed.items()]
+
+    @property
+    def entries(self) -> list[sp.Expr]:
+        return [e for a in self.function.outputs for e in a.entries]
+
+    def function_value(self, symbol: sp.Symbol) -> sp.Expr:
+        return next(
+            s.value for s in self.function.body if isinstance(s, Let | Bound) and s.symbol == symbol
+        )
+
+    def _case(self, flag: Vanishes) -> Case:
+        free = " and ".join(f"${self.page.math(s)}$" for s in flag.free)
+        returned = ", ".join(self._effect(flag))
+        if free:
+            verb = "are" if len(flag.free) > 1 else "is"
+            returned = f"{free} {verb} free" + (f"; {returned}" if returned else "")
+        value = self.full(flag.value)
+        value = self.quantities.get(value, value)
+        return Case(
+            self.vanishing(value),
+            self.page.prose(flag.meaning),
+            returned,
+            "singular" if flag.free else "",
+        )
+
+    def vanishing(self, value: sp.Expr) -> str:
+        """The condition that a nonnegative value is zero."""
+        parts = sp.Add.make_args(value)
+        if len(parts) > 1 and all(isinstance(t, sp.Abs) for t in parts):
+            inner = [rf"{self.page.math(self.page.lines.tidy(t.args[0]))} = 0" for t in parts]
+            return ", ".join(f"${t}$" for t in inner)
+        return f"${self.page.math(value)} = 0$"
+
+    def _determined(self, statement: Determined) -> Case:
+        value, scale = self.full(statement.value), self.full(statement.scale)
+        rows = self.page.equations("", value)
+        first, rest = rows[0][1], [f"${a} = {b}$" for a, b in rows[1:]]
+        where = rf"${first} \ll {self.page.math(scale)}$"
+        if rest:
+            where += f", with {', '.join(rest)}"
+        return Case(
+            where,
+            self.page.prose(statement.meaning),
+            "rounded joints do not determine the posture",
+            "singular",
+        )
+
+
+def _is_negative(term: sp.Expr) -> bool:
+    return bool(term.as_coeff_Mul()[0].is_negative)
+
+
+def unless(condition: str, status: str) -> str:
+    return rf"\textbf{{unless}} {condition}: \textsc{{{status}}}"
+
+
+def merged(lines: Sequence[tuple[str, Any, str]]) -> list[tuple[str, Any, str]]:
+    """Neighbouring bounds together, behind the names that are made between them."""
+    done: list[tuple[str, Any, str]] = []
+    waiting: list[tuple[str, Any, str]] = []
+    last = max((k for k, line in enumerate(lines) if line[0] == "bound"), default=-1)
+    for k, line in enumerate(lines):
+        if line[0] == "bound":
+            waiting.append(line)
+            bounded = any(other[0] == "bound" for other in lines[k + 1 : k + 3])
+            if k == last or not bounded:
+                done += waiting
+                waiting = []
+        else:
+            done.append(line)
+    return done
+
+
+def whole(equations: Sequence[tuple[str, str]]) -> list[str]:
+    """Equations as formulas in the text; what was broken into lines is one formula again."""
+    texts: list[str] = []
+    for left, right in equations:
+        if left:
+            texts.append(f"{left} = {right}")
+        else:
+            texts[-1] += f" {right}"
+    return [rf"$\displaystyle {t}$" for t in texts]
+
+
+STATUS = {"unless": "unreachable", "invalid": "invalid"}
+
+__all__ = ["Algorithm", "Case", "Line", "whole"]

@@ -1,0 +1,89 @@
+"""The book: the articles as chapters, between an introduction and the lemmas, errata and index."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from closedform.emit.backends.latex import bibliography, lemmas
+from closedform.emit.backends.latex.prose import escape, mixed
+from closedform.emit.errata import MEANINGS, Entry, PaperErrata, Part, gathered
+from closedform.model.claims import VERDICTS
+from closedform.model.derivation import Derivation
+from closedform.model.paper import Paper
+
+COURSE = (
+    "planar_2r",
+    "spherical_wrist",
+    "scara",
+    "puma560",
+    "stanford_arm",
+    "ur_arm",
+    "rpr_planar",
+    "hybrid_five_bar",
+    "irb260",
+    "h6ar",
+    "h6ar_loop_closed",
+)
+"""The order in which a course would take the mechanisms; others follow, by name."""
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """What one mechanism adds to the book and to the errata."""
+
+    name: str
+    title: str
+    paper: Paper
+    lemmas: tuple[str, ...]
+    errata: Part | None
+
+
+def chapter(derivation: Derivation, errata: Part | None) -> Chapter:
+    used = tuple(lemmas.lemmas_of(derivation))
+    return Chapter(derivation.name, derivation.title, derivation.paper, used, errata)
+
+
+def in_order(chapters: Iterable[Chapter]) -> list[Chapter]:
+    """The chapters as a course would take them."""
+    place = {name: k for k, name in enumerate(COURSE)}
+    return sorted(chapters, key=lambda c: (place.get(c.name, len(COURSE)), c.name))
+
+
+def context(shares: Sequence[Chapter]) -> dict[str, Any]:
+    """The context of ``latex/book.tex.jinja``."""
+    chapters = in_order(shares)
+    used: dict[str, list[str]] = {}
+    for one in chapters:
+        for name in one.lemmas:
+            link = rf"\hyperref[chapter:{one.name}]{{{escape(one.title)}}}"
+            used.setdefault(name, []).append(link)
+    return {
+        "names": [one.name for one in chapters],
+        "theorems": lemmas.context(None, used),
+        "papers": [_paper(p, chapters) for p in gathered(one.errata for one in chapters)],
+        "meanings": [(kind, escape(MEANINGS[kind])) for kind in VERDICTS],
+        "works": bibliography.entries(one.paper for one in chapters),
+    }
+
+
+def _paper(found: PaperErrata, chapters: Sequence[Chapter]) -> dict[str, Any]:
+    return {
+        "title": escape(found.paper.title),
+        "cited": bibliography.cited(found.paper),
+        "verdicts": ", ".join(f"{n} {kind}" for kind, n in found.verdicts().items() if n),
+        "entries": [_entry(e, chapters) for e in found.entries],
+    }
+
+
+def _entry(entry: Entry, chapters: Sequence[Chapter]) -> dict[str, Any]:
+    key = entry.erratum.key
+    shown = next(c for c in chapters if c.errata and any(e.key == key for e in c.errata.errata))
+    return {
+        "number": entry.number,
+        "title": mixed(entry.erratum.title),
+        "label": f"erratum:{shown.name}:{key}",
+        "where": escape("; ".join(dict.fromkeys(c.label for c in entry.claims))),
+        "gravity": entry.gravity.value,
+    }

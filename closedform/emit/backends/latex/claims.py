@@ -1,0 +1,92 @@
+"""The claims of a paper and its errata, as LaTeX, with links to the steps that derive them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from closedform.emit.backends.latex.equations import reference
+from closedform.emit.backends.latex.prose import escape, mixed
+from closedform.emit.errata import Entry, gathered, part
+from closedform.model.claims import HOLDS, PROVED_UNDER
+from closedform.model.derivation import Derivation, Step
+from closedform.proof.claims import ClaimResult
+from closedform.proof.prove import Proof
+
+
+@dataclass(frozen=True)
+class Claims:
+    """The claims of one mechanism; ``labels`` are those of the equations of each step."""
+
+    derivation: Derivation
+    proof: Proof
+    labels: Sequence[Sequence[str]] = ()
+
+    def judged(self, published: str) -> int:
+        """The number of the first claim about an equation of the paper, or 0."""
+        claims = enumerate(self.proof.claims, 1)
+        return next((k for k, c in claims if _is_of(published, c.label)), 0)
+
+    def errata(self) -> list[dict[str, Any]]:
+        """The errors of the paper that this mechanism shows, gravest first."""
+        papers = gathered([part(self.derivation, self.proof)])
+        return [self.erratum(e) for paper in papers for e in paper.entries]
+
+    def erratum(self, entry: Entry) -> dict[str, Any]:
+        return {
+            "key": entry.erratum.key,
+            "title": mixed(entry.erratum.title),
+            "gravity": entry.gravity.value.capitalize(),
+            "verdict": ", ".join(entry.verdicts),
+            "why": mixed(entry.erratum.why),
+            "use": mixed(entry.erratum.use),
+            "claims": [self.claim(c) for c in entry.claims],
+        }
+
+    def rows(self) -> list[dict[str, Any]]:
+        """The rows of the table; ``heading`` is the section of the paper, given once."""
+        rows, where = [], ""
+        for k, claim in enumerate(self.proof.claims, 1):
+            rows.append({**self.claim(claim), "number": k, "heading": claim.where != where})
+            where = claim.where
+        return rows
+
+    def claim(self, claim: ClaimResult) -> dict[str, Any]:
+        titles = {e.key: mixed(e.title) for e in self.proof.errata}
+        steps = self.derivation.steps
+        return {
+            "where": escape(claim.where),
+            "label": escape(claim.label),
+            "step": next((k for k, s in enumerate(steps, 1) if derives(s, claim.label)), 0),
+            "equations": self.equations_of(claim.label),
+            "verdict": claim.kind if claim.kind in HOLDS else rf"\textbf{{{claim.kind}}}",
+            "printed": mixed(claim.printed),
+            "paraphrase": claim.paraphrase,
+            "found": "Assumption:" if claim.kind == PROVED_UNDER else "Found:",
+            "evidence": mixed(claim.evidence),
+            "reading": mixed(claim.readings[0].text) if claim.readings else "",
+            "others": [(mixed(r.text), r.kind, mixed(r.evidence)) for r in claim.readings[1:]],
+            "corrected": mixed(claim.corrected),
+            "erratum": claim.erratum,
+            "title": titles.get(claim.erratum, ""),
+        }
+
+    def equations_of(self, label: str) -> str:
+        """The equations that derive those of a claim."""
+        for step, labels in zip(self.derivation.steps, self.labels, strict=False):
+            names = [n for n in step.published if _is_of(n, label)]
+            if names and len(labels) == len(step.published):
+                return reference([labels[step.published.index(names[0])]])
+            if names:
+                return reference(labels)
+        return ""
+
+
+def derives(step: Step, label: str) -> bool:
+    """Whether a step derives the equation of a claim: ``eq. (9)`` or ``eq. (9), first line``."""
+    return any(_is_of(name, label) for name in step.published)
+
+
+def _is_of(published: str, label: str) -> bool:
+    return bool({label, label.partition(",")[0]} & {published, f"eq. {published}"})

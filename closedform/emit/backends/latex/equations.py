@@ -1,0 +1,142 @@
+"""Numbered equations, and references to them.
+
+Every displayed equation of a derivation gets a label, in the order in which it is printed.  LaTeX
+counts them: an article has (7) where the book has (3.7).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+GREEK_OR_LETTER = r"\\(?!text|mathrm|left|right|[bB]ig|quad|frac|sqrt)[A-Za-z]+|[A-Za-z]"
+SCRIPT = r"[_^](?:\{(?:[^{}]|\{[^{}]*\})*\}|\\[A-Za-z]+|\w)|'"
+NAME = re.compile(
+    rf"\\(?:mathrm|mathit|mathbf|overrightarrow|dot|hat)(?:\{{[A-Za-z\\]+\}}| ?\w)(?:{SCRIPT})*"
+    rf"|(?:{GREEK_OR_LETTER})(?:{SCRIPT})*"
+)
+"""A symbol in a formula, with what stands below and above it."""
+POWER = re.compile(r"\^(?:\{-?\d+\}|\d|\{?T\}?|\{-1\})$")
+COMMANDS = frozenset(
+    [
+        r"\det",
+        r"\partial",
+        r"\times",
+        r"\cdot",
+        r"\sin",
+        r"\cos",
+        r"\tan",
+        r"\pi",
+        r"\le",
+        r"\ge",
+        r"\ll",
+        r"\to",
+        r"\in",
+        r"\operatorname",
+    ]
+)
+
+
+Line = tuple[str, str]
+"""What stands left and right of the sign; nothing on the left goes on from the line before."""
+
+
+@dataclass(frozen=True)
+class Numbered:
+    """One line of a display, with the label of its equation if it is the last line of one."""
+
+    left: str
+    right: str
+    label: str = ""
+    numbered: bool = False
+
+    @property
+    def text(self) -> str:
+        return f"{self.left} = {self.right}" if self.left else self.right
+
+
+def runs(lines: Iterable[Line]) -> list[list[Line]]:
+    """The lines of each equation."""
+    found: list[list[Line]] = []
+    for left, right in lines:
+        if left or not found:
+            found.append([])
+        found[-1].append((left, right))
+    return found
+
+
+@dataclass
+class Numbers:
+    """The labels of the equations of one mechanism, and where each name is defined."""
+
+    robot: str
+    count: int = 0
+    defined: dict[str, str] = field(default_factory=dict)
+    """The label of the equation that defines a name, by the canonical form of the name."""
+    values: dict[tuple[str, str], str] = field(default_factory=dict)
+    right: dict[str, str] = field(default_factory=dict)
+    """The label of the first equation with a right-hand side."""
+
+    def number(self, equations: Iterable[Sequence[Line]]) -> list[Numbered]:
+        """Label equations, each at its last line."""
+        return [line for run in equations for line in self._labelled(run)]
+
+    def is_shown(self, run: Sequence[Line]) -> str:
+        """The label of this very equation if it stands in the document, or nothing."""
+        return self.values.get(self._content(run), "")
+
+    def _content(self, run: Sequence[Line]) -> tuple[str, str]:
+        return canonical(run[0][0]), " ".join(right for _, right in run)
+
+    def _labelled(self, run: Sequence[Line]) -> Iterator[Numbered]:
+        self.count += 1
+        label = f"eq:{self.robot}:{self.count}"
+        content = self._content(run)
+        self.values.setdefault(content, label)
+        self.right.setdefault(content[1], label)
+        for part in run[0][0].split("="):
+            if is_name(part.strip()):
+                self.defined.setdefault(without_power(canonical(part)), label)
+        for k, (left, right) in enumerate(run, 1):
+            yield Numbered(left, right, label if k == len(run) else "", True)
+
+
+def canonical(text: str) -> str:
+    """A formula with braces around every script and no spaces: ``R_1`` is ``R_{1}``."""
+    return re.sub(r"(?<=[_^])(\\[A-Za-z]+|\w)", r"{\1}", text.strip()).replace(" ", "")
+
+
+def without_power(name: str) -> str:
+    """``r`` for ``r^2``."""
+    return POWER.sub("", name)
+
+
+def is_name(text: str) -> bool:
+    """Whether a text is one symbol, or a power of one."""
+    return NAME.fullmatch(text) is not None and text not in COMMANDS
+
+
+def names_in(text: str) -> list[str]:
+    """The symbols of a formula, in canonical form and without their powers."""
+    plain = re.sub(r"(?<![,{])\\(?:text|operatorname)\{[^{}]*\}|\\(?:begin|end)\{\w+\}", " ", text)
+    found = (m[0] for m in NAME.finditer(plain))
+    return [without_power(canonical(n)) for n in found if n not in COMMANDS]
+
+
+def skeleton(name: str) -> str:
+    """What remains of a name without its fonts and the heights of its parts."""
+    return re.sub(r"\\(?:mathrm|mathit|mathbf)|[{}_^, ]", "", name)
+
+
+def reference(labels: Sequence[str]) -> str:
+    """``(3)``, ``(3) and (4)`` or ``(3)--(6)`` for neighbours."""
+    marks = [rf"\eqref{{{label}}}" for label in labels]
+    if len(marks) < 3:
+        return " and ".join(marks)
+    return f"{marks[0]}--{marks[-1]}"
+
+
+def listed(texts: Sequence[str]) -> str:
+    """Texts in a sentence: ``a, b and c``."""
+    return " and ".join(filter(None, [", ".join(texts[:-1]), *texts[-1:]]))

@@ -1,0 +1,48 @@
+"""What TeX reads of the figures that ``make figures`` has drawn, for the articles and the book.
+
+``python -m closedform.emit.backends.latex.figures FOLDER`` reads ``captions.json``, which maps
+``ROBOT-what`` to a caption, and writes ``ROBOT-figures.tex`` for each mechanism that has drawings
+``ROBOT-what.pdf``.  Without them an article has no figures.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from closedform.emit.backends.latex.prose import mixed
+
+FIRST = ("mechanism", "posture", "branches", "workspace", "singularities", "field", "path")
+"""The order of the kinds of figures; others follow, by name."""
+
+
+def pages(captions: Mapping[str, str], drawn: Sequence[str]) -> dict[str, str]:
+    """The figures of each mechanism that were drawn and have a caption."""
+    order = {what: k for k, what in enumerate(FIRST)}
+    robots: dict[str, list[str]] = {}
+    for name in sorted(set(captions) & set(drawn)):
+        robots.setdefault(name.partition("-")[0], []).append(name)
+    return {
+        robot: "".join(
+            rf"\drawing{{{name}}}{{{mixed(captions[name])}}}" + "\n"
+            for name in sorted(names, key=lambda n: (order.get(_what(n), len(FIRST)), n))
+        )
+        for robot, names in robots.items()
+    }
+
+
+def _what(name: str) -> str:
+    return name.partition("-")[2]
+
+
+def main(folder: Path) -> None:
+    known = folder / "captions.json"
+    captions = json.loads(known.read_text("utf-8")) if known.is_file() else {}
+    for robot, text in pages(captions, [p.stem for p in folder.glob("*.pdf")]).items():
+        (folder / f"{robot}-figures.tex").write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,287 @@
+"""Expressions as LaTeX, in the form in which a person writes them.
+
+A sum starts with a positive term.  A product has its factors in a fixed order: numbers, signs of
+branches, lengths, roots, short sines and cosines, sums, long sines and cosines.  The printer does
+not write ``\\left(``, because TeX never breaks inside it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from itertools import chain
+from typing import Any
+
+import sympy as sp
+from sympy.printing.latex import LatexPrinter
+
+from closedform.emit.backends.latex.prose import GREEK, loosen, spaced, symbol_name
+
+FITS = 80.0
+"""The widest formula that is set on one line, in average letters of 10 pt."""
+
+SIGN = re.compile(r"sigma(_|$)")
+JOINT = re.compile(r"theta(\d)([A-Z]?)")
+TRIGONOMETRIC = sp.sin | sp.cos | sp.tan
+
+
+class Printer(LatexPrinter):  # type: ignore[misc]
+    """LaTeX with upright c, s for cosines and sines of (sums of) numbered joint angles.
+
+    ``names`` are the symbols that are not printed by the rule of :func:`symbol_name`.
+    """
+
+    def __init__(self, joints: set[sp.Symbol], names: Mapping[sp.Symbol, str] | None = None):
+        super().__init__({"long_frac_ratio": 20})
+        self.joints, self.legend = joints, dict[str, str]()
+        self.names = dict(names or {})
+        self.written: dict[str, str] = {}
+        """What the derivation says of how symbols are written, by their names."""
+
+    def _print_Symbol(self, expr: sp.Symbol, style: str = "plain") -> str:
+        if known := self.written.get(expr.name) or self.names.get(expr):
+            return known
+        pair = re.fullmatch(r"([cs])(\d)", expr.name)
+        joint = next((j for j in self.joints if pair and j.name == f"theta{pair[2]}"), None)
+        if pair and joint is not None:  # the cosine or the sine of a joint that was solved
+            return str(self._print(sp.cos(joint) if pair[1] == "c" else sp.sin(joint)))
+        return symbol_name(expr.name)
+
+    def _print_Integer(self, expr: sp.Integer) -> str:
+        return integer(int(expr))
+
+    def _print_Rational(self, expr: sp.Rational) -> str:
+        return self._print_Mul(expr) if expr.q != 1 else integer(int(expr))
+
+    # Sums
+
+    def _as_ordered_terms(self, expr: sp.Add, order: str | None = None) -> list[sp.Expr]:
+        """The terms in SymPy's order, but a positive one first, if there is any."""
+        terms: list[sp.Expr] = super()._as_ordered_terms(expr, order=order)
+        if _negative(terms[0]):
+            k = next((k for k, t in enumerate(terms) if not _negative(t)), 0)
+            terms.insert(0, terms.pop(k))
+        return terms
+
+    # Products
+
+    def _print_Mul(self, expr: sp.Mul) -> str:
+        number, factors = _number(expr)
+        over, under, radicands = [], [], ([], [])  # type: ignore[var-annotated]
+        for factor in factors:
+            base, power = factor.as_base_exp()
+            if factor.is_Add and all(map(_negative, factor.args)):
+                number, factor, base = -number, -factor, -factor
+            if power.is_Rational and abs(power) == sp.S.Half:
+                radicands[power.is_negative].append(base)
+            elif power.is_Rational and power.is_negative:
+                under.append(base ** (-power))
+            else:
+                over.append(factor)
+        over_root, under_root = map(self._root, radicands)
+        sign = "- " if number.is_negative else ""
+        p, q = abs(number.p), number.q
+        if not (under or under_root):
+            if q == 1:
+                return sign + self._product(p, over, over_root)
+            if small := _small(p, q):
+                return sign + self._joined([small, self._product(1, over, over_root)])
+            if over or over_root:
+                return sign + self._fractional(p, q, over, over_root)
+        top = self._product(p, over, over_root, alone=True)
+        bottom = self._product(q, under, under_root, alone=True)
+        return rf"{sign}\frac{{{top}}}{{{bottom}}}"
+
+    def _fractional(self, p: int, q: int, factors: Sequence[sp.Expr], root: str) -> str:
+        """A product with a rational number; a sum stands behind the fraction."""
+        numbers = [f for f in factors if f.is_number and not f.is_Add]
+        rest = [f for f in factors if f not in numbers]
+        whole = self._product(p, factors, root, alone=True)
+        if not any(f.is_Add for f in rest) or (len(rest) == 1 and measure(whole) < 12):
+            return rf"\frac{{{whole}}}{{{integer(q)}}}"
+        front = rf"\frac{{{self._product(p, numbers, '', alone=True)}}}{{{integer(q)}}}"
+        return self._joined([front, self._product(1, rest, root)])
+
+    def _root(self, radicands: Sequence[sp.Expr]) -> str:
+        if not radicands:
+            return ""
+        if len(radicands) == 1:
+            return rf"\sqrt{{{self._print(radicands[0])}}}"
+        return rf"\sqrt{{{self._product(1, [f for r in radicands for f in _factors(r)], '')}}}"
+
+    def _product(
+        self, number: int, factors: Sequence[sp.Expr], root: str, *, alone: bool = False
+    ) -> str:
+        """Factors in order; a sum that stands alone in a numerator needs no parentheses."""
+        ordered = sorted(factors, key=self._place)
+        if alone and number == 1 and len(ordered) == 1 and not root:
+            return str(self._print(ordered[0]))
+        parts = [(self._place(f)[0], self._factor(f)) for f in ordered]
+        parts += [(2, root)] if root else []
+        parts.sort(key=lambda part: part[0])
+        texts = ([integer(number)] if number != 1 else []) + [text for _, text in parts]
+        return self._joined([t for t in texts if t != "1"] or ["1"])
+
+    def _factor(self, factor: sp.Expr) -> str:
+        text = str(self._print(factor))
+        if factor.is_Add or factor.is_Piecewise or text.startswith("-"):
+            return rf"\left({text}\right)"
+        return text
+
+    def _joined(self, texts: Sequence[str]) -> str:
+        done = ""
+        for text in texts:
+            digits = done[-1:].isdigit() and text[:1].isdigit()
+            done += (r" \cdot " if digits else " " if done else "") + text
+        return done
+
+    def _place(self, factor: sp.Expr) -> tuple[Any, ...]:
+        """The key by which factors are ordered."""
+        base, power = factor.as_base_exp()
+        if factor.is_number:
+            return (0, 0, "", str(factor))
+        if base.is_Symbol:
+            text = self._print_Symbol(base)
+            kind = 1 if SIGN.match(base.name) else 2
+            greek = re.sub(r"\d.*|_.*", "", base.name) in GREEK
+            return (kind, kind == 2 and greek, natural(text), str(power))
+        if isinstance(base, TRIGONOMETRIC):
+            text = self._print(base)
+            short = text.startswith(r"\mathrm")
+            order = re.sub(r"^\\mathrm\{\w\}", "", text) if short else self._print(base.args[0])
+            return (3 if short else 5, 0, natural(order), (isinstance(base, sp.sin), str(power)))
+        return (4 if factor.is_Add or base.is_Add else 3, 1, natural(str(factor)), str(power))
+
+    # Functions
+
+    def _print_sin(self, expr: sp.Expr, exp: str | None = None) -> str:
+        return self._circular("sin", expr.args[0], exp)
+
+    def _print_cos(self, expr: sp.Expr, exp: str | None = None) -> str:
+        return self._circular("cos", expr.args[0], exp)
+
+    def _circular(self, function: str, angle: sp.Expr, exp: str | None) -> str:
+        power = f"^{{{exp}}}" if exp else ""
+        numbers = [
+            (JOINT.fullmatch(str(term)) if term in self.joints else None)
+            for term in angle.as_ordered_terms()
+        ]
+        over, under = sp.fraction(sp.together(angle))
+        if angle.is_Add and under.is_Integer and under != 1:
+            full = rf"\frac{{{self._print(over)}}}{{{under}}}"
+        else:
+            full = self._print(angle) if angle.is_Symbol else f"({self._print(angle)})"
+        if all(numbers):
+            index = sorted(n[1] + (rf"\mathrm{{{n[2]}}}" if n[2] else "") for n in numbers if n)
+            short = rf"\mathrm{{{function[0]}}}_{{{''.join(index)}}}"
+            self.legend[short] = rf"\{function} {full}"
+            return short + power
+        return rf"\{function}{power} {full}"
+
+    def _print_atan(self, expr: sp.Expr, exp: str | None = None) -> str:
+        return rf"\arctan({self._print(expr.args[0])})"
+
+    def _print_atan2(self, expr: sp.Expr) -> str:
+        y, x = map(self._print, expr.args)
+        return rf"\operatorname{{atan2}}({y},\ {x})"
+
+    def _print_Abs(self, expr: sp.Expr, exp: str | None = None) -> str:
+        power = f"^{{{exp}}}" if exp else ""
+        return rf"\left|{self._print(expr.args[0])}\right|{power}"
+
+    def _print_Piecewise(self, expr: sp.Piecewise) -> str:
+        cases = [rf"{self._print(e)}, & {self.case(c)}" for e, c in expr.args]
+        return rf"\begin{{cases}}{stacked(cases)}\end{{cases}}"
+
+    def case(self, condition: Any) -> str:
+        if condition == sp.true:
+            return r"\text{otherwise}"
+        return rf"\text{{if {self.condition(condition)}}}"
+
+    def condition(self, condition: Any) -> str:
+        """A condition in words and formulas."""
+        if isinstance(condition, sp.Not):
+            return f"not {self.condition(condition.args[0])}"
+        if isinstance(condition, sp.And | sp.Or):
+            word = " and " if isinstance(condition, sp.And) else " or "
+            return word.join(sorted(map(self.condition, condition.args)))
+        if condition.is_Symbol and condition not in self.names:
+            return str(condition.name).replace("_", " ")
+        return f"${self._print(condition)}$"
+
+    def math(self, expr: Any) -> str:
+        """An expression that TeX can break between its terms."""
+        return spaced(loosen(self.doprint(expr)))
+
+
+def _negative(term: sp.Expr) -> bool:
+    return bool(term.as_coeff_Mul()[0].is_negative)
+
+
+def _factors(expr: sp.Expr) -> list[sp.Expr]:
+    return list(sp.Mul.make_args(expr))
+
+
+def _number(expr: sp.Expr) -> tuple[sp.Rational, list[sp.Expr]]:
+    """The rational factor of a product, and the others."""
+    factors = list(chain.from_iterable(map(_factors, _factors(expr))))
+    numbers = [f for f in factors if f.is_Rational]
+    return sp.Mul(*numbers), [f for f in factors if not f.is_Rational]
+
+
+def integer(n: int) -> str:
+    """An integer; a large power of two or ten as a power."""
+    for base, least in ((2, 12), (10, 4)):
+        power, rest = 0, n
+        while rest and rest % base == 0:
+            rest, power = rest // base, power + 1
+        if power >= least and rest < 100:
+            return f"{base}^{{{power}}}" if rest == 1 else rf"{rest} \cdot {base}^{{{power}}}"
+    return str(n)
+
+
+def _small(p: int, q: int) -> str:
+    """A small number as a negative power of two, or of ten with a digit before it."""
+    if p == 1 and q >= 2**12 and q & (q - 1) == 0:
+        return f"2^{{-{q.bit_length() - 1}}}"
+    digits = len(str(q))
+    if q >= 10**4 and 10**digits % q == 0 and (n := p * 10**digits // q) < 10:
+        return rf"{n} \cdot 10^{{-{digits}}}" if n > 1 else f"10^{{-{digits}}}"
+    if q >= 10**4 and 10 ** (digits - 1) == q and p < 10:
+        return rf"{p} \cdot 10^{{-{digits - 1}}}" if p > 1 else f"10^{{-{digits - 1}}}"
+    return ""
+
+
+def natural(text: str) -> tuple[Any, ...]:
+    """A key that puts a_2 before a_10."""
+    return tuple((p.isdigit(), int(p) if p.isdigit() else 0, p) for p in re.split(r"(\d+)", text))
+
+
+def stacked(rows: Sequence[str]) -> str:
+    """Rows of a matrix or of cases; fractions need some space between them."""
+    small = "".join(rows).count(r"\frac") < 2
+    return (r" \\ " if small else r" \\[3pt] ").join(rows)
+
+
+INNERMOST = re.compile(r"\\begin\{(\w+)\}((?:(?!\\begin|\\end).)*)\\end\{\1\}", re.DOTALL)
+FRACTION = re.compile(r"\\frac\{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\}\{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\}")  # fmt: skip  # noqa: E501
+
+
+def measure(text: str) -> float:
+    """The width of a formula, in average letters; a fraction counts as the wider of its parts."""
+    if stack := INNERMOST.search(text):
+        widest = max(map(measure, re.split(r" \\\\(?:\[3pt\])? ", stack[2])))
+        return measure(text[: stack.start()] + text[stack.end() :]) + 3 + widest
+    if fraction := FRACTION.search(text):
+        widest = 0.8 + max(map(measure, fraction.groups()))
+        return measure(text[: fraction.start()] + text[fraction.end() :]) + widest
+    text = re.sub(r"\\(?:mathrm|mathit|operatorname|text|left|right|[bB]ig[lr])\b", "", text)
+    small = sum(
+        len(re.findall(r"\\[A-Za-z]+|[^\s{}\\]", index))
+        for index in re.findall(r"[_^](?:\{((?:[^{}]|\{[^{}]*\})*)\}|\w)", text)
+    )
+    return (
+        len(re.findall(r"\\[a-zA-Z]+|[^\s{}^_]", text))
+        - 0.3 * small
+        + 1.2 * len(re.findall(r"[-+=&]|\\(?:le|ge|sin|cos|max|min)\b", text))
+    )

@@ -1,0 +1,77 @@
+"""Lemmas as LaTeX: what they say, and why it is true."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from closedform.emit.backends.latex.prose import escape, mixed
+from closedform.lemmas.registry import theorems
+from closedform.model.derivation import Derivation
+from closedform.model.lemma import Theorem
+
+
+def lemmas_of(derivation: Derivation) -> list[str]:
+    """The names of the lemmas that the inverses of a derivation apply."""
+    found = [s.lemma.name for s in derivation.solved]
+    for inverse in derivation.inverses:
+        found += [link.lemma.name for link in inverse.links if link.lemma]
+    return list(dict.fromkeys(found))
+
+
+def label(name: str) -> str:
+    """The label of a lemma, ``lemma:two-link-arm``, or nothing if nobody states it."""
+    return f"lemma:{key(name)}" if name in theorems() else ""
+
+
+def key(name: str) -> str:
+    """The name of a lemma in labels: ``two-link-arm``."""
+    return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
+
+
+def context(names: Sequence[str] | None, used: Mapping[str, Sequence[str]]) -> list[dict[str, Any]]:
+    """The lemmas of these names, and those that they rest on; all lemmas for None.
+
+    ``used`` names the mechanisms that apply a lemma, by their LaTeX.
+    """
+    known = _simplest_first(theorems())
+    wanted = set(known if names is None else names)
+    for name in reversed(known):
+        if name in wanted:
+            wanted |= set(known[name].rests_on)
+    return [_theorem(t, used.get(name, ())) for name, t in known.items() if name in wanted]
+
+
+def _simplest_first(known: Mapping[str, Theorem]) -> dict[str, Theorem]:
+    """The lemmas by the length of what is said about them, but after those that they rest on."""
+    ordered: dict[str, Theorem] = {}
+
+    def add(name: str) -> None:
+        for other in known[name].rests_on:
+            add(other)
+        ordered.setdefault(name, known[name])
+
+    for name in sorted(known, key=lambda n: (len(known[n].statement + known[n].proof), n)):
+        add(name)
+    return ordered
+
+
+def _theorem(theorem: Theorem, used: Sequence[str]) -> dict[str, Any]:
+    plain = escape(theorem.name)
+    title = mixed(theorem.title) if theorem.title else plain[:1].upper() + plain[1:]
+    return {
+        "key": key(theorem.name),
+        "title": rf"\texorpdfstring{{{title}}}{{{plain}}}" if theorem.title else title,
+        "index": f"{plain}@{title}" if theorem.title else plain,
+        "statement": displayed(theorem.statement),
+        "proof": displayed(theorem.proof),
+        "exception": displayed(theorem.exception),
+        "used": ", ".join(used),
+    }
+
+
+def displayed(text: str) -> str:
+    """Text with formulas between dollar signs; those between two of them are displays."""
+    parts = text.split("$$")
+    return "".join(rf"\[{p}\]" if k % 2 else mixed(p) for k, p in enumerate(parts))

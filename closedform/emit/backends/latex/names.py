@@ -1,0 +1,114 @@
+"""Names in formulas: entries of matrices, quantities with a name, and names of a program."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Any
+
+import sympy as sp
+
+from closedform.emit.backends.latex.formulas import Printer, measure
+from closedform.emit.backends.latex.prose import GREEK
+from closedform.model.derivation import Derivation
+from closedform.model.functions import real
+
+NAME = re.compile(r"\\?[A-Za-z]+(?:_(?:\w|\{(?:[^{}]|\{[^{}]*\})+\}))?")
+"""The left side of an equation that defines a quantity."""
+LARGEST = 400
+"""The largest number of operations of an expression in which quantities are looked for."""
+NARROWEST = 9.0
+"""The narrowest expression for which its name is printed instead."""
+MATRIX_ENTRY = re.compile(r"([A-Z])(\d)_(\d)(\d)")
+
+
+def element(base: str, index: str) -> str:
+    """The name of an entry of a matrix or a vector."""
+    if subscript := re.fullmatch(r"(.+?)_\{?([^{}]+)\}?", base):
+        return f"{subscript[1]}_{{{subscript[2]},{index}}}"
+    return f"{base}_{{{index}}}" if " " not in base else f"({base})_{{{index}}}"
+
+
+class Quantities:
+    """Quantities that an equation has defined: later formulas contain their names.
+
+    A name that is defined again has its new meaning from there on.  ``kept`` are the left sides
+    that define nothing: joints, and what the mechanism is to reach.
+    """
+
+    def __init__(self, printer: Printer, kept: Iterable[str]):
+        self.printer, self.kept = printer, frozenset(kept)
+        self.known: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
+
+    def define(self, left: str, value: Any) -> None:
+        if not NAME.fullmatch(left) or left in self.kept:
+            return
+        self.known.pop(left, None)
+        named = isinstance(value, sp.Add) or (isinstance(value, sp.Pow) and value.base.is_Add)
+        if named and measure(self.printer.math(value)) >= NARROWEST:
+            symbol = real(f"{left} ")  # a space: it is nobody else's name
+            self.printer.names[symbol] = left
+            self.known[left] = value, symbol
+
+    def __call__(self, value: Any) -> Any:
+        """A value with the names of the quantities that occur in it."""
+        if isinstance(value, sp.MatrixBase):
+            return value.applyfunc(self)
+        if not isinstance(value, sp.Expr) or value.is_Atom or sp.count_ops(value) > LARGEST:
+            return value
+        known = sorted(self.known.values(), key=lambda k: (-sp.count_ops(k[0]), str(k[1])))
+        for expr, symbol in known:
+            if expr.free_symbols <= value.free_symbols:
+                whole = value.xreplace({expr: symbol, -expr: -symbol})
+                value = whole if expr.is_Pow else self._in_sums(whole, expr, symbol)
+        return value
+
+    def _in_sums(self, value: sp.Expr, expr: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
+        """The sum where it is a part of a larger one."""
+        terms = set(expr.args)
+        opposite = {-t for t in terms}
+        changed = {}
+        for total in value.atoms(sp.Add):
+            held = set(total.args)
+            if terms < held:
+                changed[total] = sp.Add(*(held - terms), symbol)
+            elif opposite < held:
+                changed[total] = sp.Add(*(held - opposite), -symbol)
+        return value.xreplace(changed) if changed else value
+
+
+def is_word(name: str) -> bool:
+    """Whether a name of a program is a word of English, and not a letter with an index."""
+    letters = re.match(r"[A-Za-z]*", name)
+    assert letters
+    base = letters[0]
+    if base in GREEK or len(base) < 2 or MATRIX_ENTRY.fullmatch(name):
+        return False
+    if len(base) == 2 and "_" not in name:
+        return base.islower() and base[1] not in "xyz"
+    return True
+
+
+def program_name(name: str) -> str | None:
+    """The LaTeX of an entry of a named matrix: ``R1_23`` is the entry of the first R."""
+    if entry := MATRIX_ENTRY.fullmatch(name):
+        return rf"{entry[1]}^{{({entry[2]})}}_{{{entry[3]}{entry[4]}}}"
+    return None
+
+
+def conventional_names(derivation: Derivation) -> dict[sp.Symbol, str]:
+    """Names that do not follow from those of symbols.
+
+    The entries of a pose are those of its rotation and its position.  An auxiliary angle that is
+    called by a word is a phi with the number of its place.
+    """
+    names: dict[sp.Symbol, str] = {}
+    for array in (a for f in derivation.functions for a in f.inputs if a.shape == (4, 4)):
+        for i in range(3):
+            for j in range(3):
+                names[array.entries[4 * i + j]] = f"R_{{{i + 1}{j + 1}}}"
+            names[array.entries[4 * i + 3]] = f"p_{{{'xyz'[i]}}}"
+    angles = [a for i in derivation.inverses for a in i.rank.defined if is_word(str(a.name))]
+    for k, angle in enumerate(dict.fromkeys(angles), 1):
+        names[angle] = r"\varphi" if len(angles) == 1 else rf"\varphi_{{{k}}}"
+    return names

@@ -1,0 +1,184 @@
+"""The symbols of an article: its notation table, and the check that each has one meaning.
+
+A symbol is a parameter, a joint, a coordinate of the task, a name that an equation defines, or one
+that the derivation explains by ``d.write``.  Two symbols must not look alike, and one symbol must
+not have two forms.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from closedform.emit.backends.latex.equations import (
+    Numbers,
+    canonical,
+    is_name,
+    names_in,
+    reference,
+    skeleton,
+    without_power,
+)
+from closedform.emit.backends.latex.prose import (
+    Prose,
+    symbols_declared,
+    symbols_of,
+    upright,
+    written_name,
+)
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Bound, Let
+
+Printed = Callable[[sp.Symbol], str]
+
+
+@dataclass
+class Forms:
+    """How the symbols of a document are written: by what they look like, form and origin."""
+
+    found: dict[str, dict[str, set[str]]] = field(default_factory=dict)
+
+    def add(self, form: str, name: str) -> None:
+        """A form in LaTeX, and the name of what it stands for; empty if only the form is known."""
+        names = self.found.setdefault(skeleton(form), {}).setdefault(form, set())
+        names |= {name} - {""}
+
+    def clashes(self) -> Iterator[str]:
+        for forms in self.found.values():
+            if len(forms) > 1:
+                yield f"one symbol is written in several ways: {', '.join(sorted(forms))}"
+            for form, names in forms.items():
+                if len(names) > 1:
+                    yield f"{form} is written for {' and for '.join(sorted(names))}"
+
+
+def forms_of(derivation: Derivation, math: Printed, legend: Iterable[tuple[str, str]]) -> Forms:
+    """Every symbol that the formulas of a derivation contain, as ``math`` prints it."""
+    forms = Forms()
+    joints = {j.symbol for j in derivation.joints}
+    targets = {s for f in derivation.functions for s in f.symbols} - joints
+
+    def add(symbol: sp.Symbol) -> None:
+        form = canonical(math(symbol))
+        # one coordinate may be part of the targets of two functions, under two names
+        forms.add(form, f"a target {form}" if symbol in targets else symbol.name)
+
+    for short, _ in legend:
+        forms.add(canonical(short), "")
+    for declared in symbols_declared(derivation):
+        add(declared)
+    for step in derivation.steps:
+        for left in (upright(left) for left, _ in step.shown):
+            for name in names_in(left):
+                forms.add(name, "")
+            for part in map(canonical, left.split("=")):
+                if is_name(part) and without_power(part) != part and not part.endswith("T}"):
+                    forms.add(part, "")
+        for symbol in symbols_of(step):
+            add(symbol)
+    for function in derivation.functions:
+        if function.name != "skeleton":
+            for statement in function.body:
+                if isinstance(statement, Let | Bound):
+                    add(statement.symbol)
+    return forms
+
+
+def clashes(derivation: Derivation, math: Printed, legend: Iterable[tuple[str, str]]) -> list[str]:
+    """What a reader would mistake: two symbols that look alike, one symbol in two forms."""
+    return sorted(set(forms_of(derivation, math, legend).clashes()))
+
+
+def require_distinct(
+    derivation: Derivation, math: Printed, legend: Iterable[tuple[str, str]]
+) -> None:
+    """Raise ``ValueError`` if the symbols of an article can be mistaken for each other."""
+    if found := clashes(derivation, math, legend):
+        raise ValueError(
+            f"the symbols of the article cannot be told apart: {'; '.join(found)}.  Write one of "
+            f"them in another way, with d.write(name, latex)"
+        )
+
+
+def undefined(derivation: Derivation, numbers: Numbers, math: Printed) -> list[str]:
+    """Symbols in the steps that neither an equation defines nor the derivation explains.
+
+    ``math`` prints the sine and the cosine of a joint that was solved as such.
+    """
+    rows = table(derivation, numbers, Prose(derivation))
+    known = set(numbers.defined) | {canonical(form) for form, _ in rows}
+    known |= {_form(derivation, s.name) for s in symbols_declared(derivation)}
+    known |= {_form(derivation, str(s)) for f in derivation.functions for s in f.symbols}
+    used = {s for step in derivation.steps for s in symbols_of(step)}
+    return sorted(
+        s.name
+        for s in used
+        if _form(derivation, s.name) not in known and not re.match(r"\\mathrm\{[cs]\}_", math(s))
+    )
+
+
+def table(derivation: Derivation, numbers: Numbers, prose: Prose) -> list[tuple[str, str]]:
+    """Symbols other than parameters and joints, with their meaning."""
+    declared = {s.name for s in symbols_declared(derivation)}
+    rows: dict[str, list[str]] = {}
+    for name, written in derivation.written.items():
+        if name not in declared:
+            rows.setdefault(_form(derivation, name), []).append(prose(written.meaning))
+    for form, meaning in (*_inputs(derivation), *_signs(derivation)):
+        if form not in rows:
+            rows[form] = [meaning]
+    taken = {_form(derivation, name) for name in declared}
+    said = dict(_summaries(derivation))
+    for form, label in numbers.defined.items():
+        if form not in taken:
+            told = rows.setdefault(form, [prose(said[form])] if form in said else [])
+            told.append(f"see {reference([label])}")
+    cells = ((form, ", ".join(filter(None, texts))) for form, texts in rows.items())
+    return sorted(((f, t) for f, t in cells if t), key=lambda row: (skeleton(row[0]).lower(), row))
+
+
+def _form(derivation: Derivation, name: str) -> str:
+    return without_power(canonical(written_name(derivation, name)))
+
+
+def _inputs(derivation: Derivation) -> Iterator[tuple[str, str]]:
+    """The coordinates of the task, and the entries of the targets."""
+    matrices = [a for f in derivation.functions for a in f.inputs if len(a.shape) > 1]
+    entries = {str(e) for a in matrices for e in a.entries}
+    for name in derivation.task:
+        if name not in entries:
+            yield _form(derivation, name), "task coordinate"
+    for function in derivation.functions:
+        joints = {j.symbol for j in derivation.joints}
+        for array in function.inputs:
+            if joints & set(array.entries):
+                continue
+            whole = _form(derivation, array.name)
+            if len(array.shape) > 1:
+                yield f"{whole}_{{ij}}", f"entry of ${whole}$ in row $i$, column $j$"
+                continue
+            for entry in array.entries:
+                form = _form(derivation, str(entry))
+                yield form, f"coordinate of ${whole}$" if form != whole else "argument"
+
+
+def _summaries(derivation: Derivation) -> Iterator[tuple[str, str]]:
+    """What the functions say that evaluate a named equation."""
+    for function in reversed(derivation.functions):
+        for array in function.outputs:
+            name = canonical(function.equation) or _form(derivation, array.name)
+            yield name, function.summary.partition(". ")[0].partition(";")[0].rstrip(".")
+
+
+def _signs(derivation: Derivation) -> Iterator[tuple[str, str]]:
+    """The signs of the branches, with the number that tells them apart."""
+    for function in derivation.functions:
+        for _, signs in function.cases():
+            for sign in signs:
+                yield _form(derivation, str(sign)), r"branch sign, $+1$ or $-1$"
+
+
+__all__ = ["clashes", "require_distinct", "table", "undefined"]

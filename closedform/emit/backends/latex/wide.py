@@ -1,0 +1,226 @@
+"""Long expressions, taken apart until every line fits.
+
+An equation that is too wide for a line is set with names for its parts, and the parts follow: the
+coefficients of a polynomial, a sum that stands in a product, what stands under a root, in a
+fraction or beside cases.  What is left, a long sum, is broken before its terms.  All choices depend
+on the widths of :func:`~closedform.emit.backends.latex.formulas.measure` alone, so that they are
+the same on every machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import count
+from typing import Any
+
+import sympy as sp
+
+from closedform.emit.backends.latex.formulas import FITS, Printer, measure, stacked
+from closedform.emit.backends.latex.names import element
+from closedform.model.functions import real
+
+Equation = tuple[str, str]
+"""Both sides; a line that continues the one before has no left side."""
+
+SIMPLIFIED = 160
+"""The largest number of operations of an expression that is tried in other forms."""
+FACTORED, FACTORED_SYMBOLS = 40, 8
+"""The largest numbers of operations and of symbols of a sum that is factored."""
+TERMS = 8
+"""A polynomial with fewer terms is printed as it is."""
+SHORT = 16.0
+"""The widest coefficient of a polynomial that stands in it."""
+NAMED = 13.0
+"""The narrowest sum that is worth a name."""
+
+
+class Lines:
+    """Prints equations in lines that fit; names of parts are kept until :meth:`clear`."""
+
+    def __init__(self, printer: Printer, taken: Iterable[str]):
+        self.printer, self.taken = printer, frozenset(taken)
+        self.parts: dict[sp.Basic, sp.Symbol] = {}
+        self._tidied: dict[sp.Basic, sp.Basic] = {}
+
+    def clear(self) -> None:
+        self.parts.clear()
+
+    def width(self, value: Any) -> float:
+        return measure(self.printer.math(value))
+
+    def equations(self, left: str, value: Any) -> list[Equation]:
+        """A value as one equation or, if it is too wide, as several."""
+        if isinstance(value, str):
+            return [(left, value)]
+        if isinstance(value, list | tuple):
+            return [(left, "(" + r",\ ".join(map(self.printer.math, value)) + ")")]
+        if isinstance(value, sp.MatrixBase):
+            return self._matrix(left, value)
+        if not isinstance(value, sp.Expr):
+            return [(left, self.printer.math(value))]
+        value = self.tidy(value)
+        if inner := self._unbreakable(value):
+            return self._with_part(left, value, inner)
+        text = self.printer.math(value)
+        room = FITS - measure(left) - 4
+        if measure(text) <= room:
+            return [(left, text)]
+        if isinstance(value, sp.Piecewise):
+            inner = self._widest_case(value)
+            return self._with_part(left, value, inner) if inner else [(left, text)]
+        if (parts := self._polynomial(value)) is not None:
+            return self._with_coefficients(left, *parts)
+        if inner := self._nested(value):
+            return self._with_part(left, value, inner)
+        return self._broken(left, value, room)
+
+    def tidy(self, value: sp.Expr) -> sp.Expr:
+        """The narrowest of some equal forms: common factors in front, one fraction, factored."""
+        if value not in self._tidied:
+            self._tidied[value] = min(self._forms(value), key=self.width)
+        return self._tidied[value]
+
+    def _forms(self, value: sp.Expr) -> Iterator[sp.Expr]:
+        yield value
+        size = sp.count_ops(value)
+        if value.is_Atom or size > SIMPLIFIED or value.has(sp.Piecewise, sp.Max, sp.Min):
+            return
+        yield sp.factor_terms(value)
+        powers = value.atoms(sp.Pow)
+        if any(p.exp.is_negative for p in powers):
+            yield sp.together(value)
+        if (
+            value.is_Add
+            and size <= FACTORED
+            and len(value.free_symbols) <= FACTORED_SYMBOLS
+            and all(p.exp.is_Integer for p in powers)
+        ):
+            yield sp.factor(value)
+
+    # Parts with names
+
+    def _with_part(self, left: str, value: sp.Basic, inner: sp.Basic) -> list[Equation]:
+        known = inner in self.parts
+        name = self.parts.setdefault(inner, self._new_name())
+        rest = self.equations(left, value.xreplace({inner: name}))
+        return rest if known else rest + self.equations(self.printer.math(name), inner)
+
+    def _new_name(self) -> sp.Symbol:
+        taken = self.taken | {s.name for s in self.parts.values()}
+        return real(next(n for n in map("u{}".format, count(1)) if n not in taken))
+
+    def _unbreakable(self, value: sp.Basic) -> sp.Basic | None:
+        """The smallest part of a formula that is too wide and inside which TeX cannot break.
+
+        This is a radicand, a denominator, a sum in a numerator, or cases next to other terms.
+        """
+        powers = (p for p in value.atoms(sp.Pow) if not p.exp.is_Integer or p.exp.is_negative)
+        wide = [p.base for p in powers if self.width(p.base) > FITS - 12]
+        for fraction in value.atoms(sp.Mul):
+            over, under = sp.fraction(fraction)
+            sums = [a for a in fraction.args if isinstance(a, sp.Add)]
+            if under != 1 and sums and self.width(over) > FITS - 12:
+                wide.append(max(sums, key=lambda e: (self.width(e), str(e))))
+        if isinstance(value, sp.Expr) and not isinstance(value, sp.Piecewise):
+            wide += sorted(value.atoms(sp.Piecewise), key=str)
+        elif isinstance(value, sp.Piecewise):
+            wide += sorted({p for e, _ in value.args for p in e.atoms(sp.Piecewise)}, key=str)
+        return min(wide, key=lambda e: (sp.count_ops(e), str(e)), default=None)
+
+    def _widest_case(self, value: sp.Piecewise) -> sp.Basic | None:
+        """The widest value or side of a condition of cases that has more than a name."""
+        sides = [e for e, _ in value.args]
+        sides += [a for _, c in value.args for r in c.atoms(sp.core.relational.Rel) for a in r.args]
+        wide = [e for e in sides if self.width(e) > NAMED and not e.is_Atom]
+        return max(wide, key=lambda e: (self.width(e), str(e)), default=None)
+
+    def _nested(self, value: sp.Expr) -> sp.Basic | None:
+        """The sum inside products whose name saves most."""
+        found: dict[sp.Basic, int] = {}
+
+        def visit(e: sp.Basic, *, whole: bool) -> None:
+            if isinstance(e, sp.Add) and not whole:
+                found[e] = found.get(e, 0) + 1
+            if not isinstance(e, sp.sin | sp.cos):
+                for a in e.args:
+                    visit(a, whole=False)
+
+        visit(value, whole=True)
+        saved = {e: n * (self.width(e) - 2) for e, n in found.items() if self.width(e) > NAMED}
+        return max(saved, key=lambda e: (saved[e], str(e)), default=None)
+
+    # Polynomials
+
+    def _polynomial(self, value: sp.Expr) -> tuple[sp.Symbol, list[tuple[int, sp.Expr]]] | None:
+        """The symbol by whose powers a long polynomial is collected, and the coefficients."""
+        if not value.is_Add or len(value.args) < TERMS:
+            return None
+        found = []
+        for symbol in sorted(value.free_symbols, key=str):
+            poly = value.as_poly(symbol)
+            if poly is None or not 2 <= poly.degree() <= TERMS:
+                continue
+            terms = [(k, sp.factor(c)) for (k,), c in poly.terms()]
+            if 1 < len(terms) < len(value.args):
+                found.append((sum(self.width(c) for _, c in terms), str(symbol), symbol, terms))
+        return min(found, key=lambda f: f[:2])[2:] if found else None
+
+    def _with_coefficients(
+        self, left: str, symbol: sp.Symbol, terms: list[tuple[int, sp.Expr]]
+    ) -> list[Equation]:
+        named, total = [], []
+        for power, coefficient in terms:
+            if self.width(coefficient) > SHORT and coefficient not in self.parts:
+                self.parts[coefficient] = self._new_name()
+                named.append(coefficient)
+            shown = self.parts.get(coefficient, coefficient)
+            total.append(self.printer.math(sp.Mul(shown, symbol**power, evaluate=False)))
+        text = total[0] + "".join(t if t.startswith("-") else f" + {t}" for t in total[1:])
+        rows = [(left, text)]
+        for coefficient in named:
+            rows += self.equations(self.printer.math(self.parts[coefficient]), coefficient)
+        return rows
+
+    # Lines
+
+    def _broken(self, left: str, value: sp.Expr, room: float) -> list[Equation]:
+        """A sum in several lines, each of which starts with the sign of a term."""
+        terms = self.printer._as_ordered_terms(value) if value.is_Add else [value]
+        lines: list[str] = []
+        line = ""
+        for term in terms:
+            text = self.printer.math(term)
+            text = text if (not line and not lines) or text.startswith("-") else f"+ {text}"
+            if line and measure(f"{line} {text}") > room - 3 * bool(lines):
+                lines.append(line)
+                line = text
+            else:
+                line = f"{line} {text}".strip()
+        lines.append(line)
+        return [(left, lines[0]), *(("", line) for line in lines[1:])]
+
+    # Matrices
+
+    def _matrix(self, left: str, matrix: sp.MatrixBase) -> list[Equation]:
+        """The equations of a matrix; the widest entries get names until the rest fits on a line."""
+        matrix = matrix.applyfunc(lambda e: self.tidy(e) if isinstance(e, sp.Expr) else e)
+        cells = [[self.printer.math(e) for e in matrix.row(i)] for i in range(matrix.rows)]
+        base, named = left.partition("=")[0].strip(), []
+        while (
+            measure(left) + sum(max(map(measure, c)) + 2 for c in zip(*cells, strict=True)) > FITS
+        ):
+            widest, i, j = max(
+                (measure(c), -i, -j) for i, row in enumerate(cells) for j, c in enumerate(row)
+            )
+            name = element(base, f"{1 - i}{1 - j}")
+            if widest <= measure(name):
+                break
+            named.append((-i, -j, name))
+            cells[-i][-j] = name
+        rows = [" & ".join(row) for row in cells]
+        whole = (left, rf"\begin{{bmatrix}} {stacked(rows)} \end{{bmatrix}}")
+        entries = (self.equations(name, matrix[i, j]) for i, j, name in sorted(named))
+        return [whole, *(equation for entry in entries for equation in entry)]
+
+
+__all__ = ["Equation", "Lines"]

@@ -1,0 +1,113 @@
+"""Figures with a name and a caption: those of every mechanism, and those of a paper."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from closedform.plot.maps import Limits, workspace
+from closedform.plot.maps import field as field_map
+from closedform.plot.postures import branches, mechanism, spoken
+from closedform.plot.robot import Robot, positions
+from closedform.plot.style import new_panels, styled
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure of a mechanism: ``draw`` takes its generated module and returns axes."""
+
+    name: str
+    caption: str
+    draw: Callable[[ModuleType], Any]
+
+
+@dataclass(frozen=True)
+class PaperFigures:
+    """The figures of a paper: those that are drawn, by their numbers, and why others are not."""
+
+    paper: str
+    """Its key, as in the errata."""
+    heading: str
+    """Its authors and title."""
+    count: int
+    """How many figures it has."""
+    drawn: Mapping[int, tuple[str, Figure]]
+    """For each number, the mechanism and its figure."""
+    missing: Mapping[int, str]
+    contradicted: Mapping[int, str] = field(default_factory=dict)
+    """What a figure of the paper, or its caption, says that does not hold."""
+
+
+@dataclass(frozen=True)
+class View:
+    """How to show a mechanism; angles in radians."""
+
+    home: Sequence[float] | None = None
+    general: Sequence[float] | None = None
+    mode: int = 0
+    faint: Collection[str] = ()
+    plane: tuple[str, str] | None = None
+    at: Sequence[float] | None = None
+    """A target, for the other coordinates of the section."""
+    limits: Limits | None = None
+    measured: tuple[str, str] | None = None
+    """The plane of the map of conditioning, if it is another one."""
+
+
+def standard(view: View) -> list[Figure]:
+    """The figures that every mechanism has, as far as its task allows them."""
+    return [
+        Figure(
+            "mechanism",
+            "The mechanism at home (left) and in a general posture (right), with the axes of its "
+            "joints, its lengths and its angles.",
+            lambda robot: _both(robot, view),
+        ),
+        Figure(
+            "branches",
+            "All postures that reach one target, one for each branch of the inverse.",
+            lambda robot: branches(robot, faint=view.faint),
+        ),
+        Figure(
+            "workspace",
+            "How many branches reach each point of a section of the workspace, and where branches "
+            "are singular.",
+            lambda robot: workspace(robot, view.plane, at=view.at, limits=view.limits),
+        ),
+        Figure(
+            "conditioning",
+            "The inverse condition number of the Jacobian: 1 where all directions are alike, 0 "
+            "where the mechanism is singular.",
+            lambda robot: field_map(
+                robot, "condition", view.measured or view.plane, at=view.at,
+                limits=None if view.measured else view.limits,
+            ),
+        ),
+    ]  # fmt: skip
+
+
+def fits(robot: ModuleType, figure: str) -> bool:
+    """Whether a figure makes sense for a mechanism: a workspace needs a position in its task."""
+    if figure != "workspace":
+        return True
+    r = Robot.of(robot)
+    image = r.task(r.posture())
+    return bool(positions(r, image[0] if r.modes else image))
+
+
+@styled
+def _both(robot: ModuleType, view: View) -> Any:
+    r = Robot.of(robot)
+    panels = new_panels(1, 2, spatial=not r.flat, size=(7.4, 3.7))
+    home = np.zeros(len(robot.JOINTS)) if view.home is None else view.home
+    general = r.posture() if view.general is None else view.general
+    for ax, q in zip(panels, (home, general), strict=True):
+        mechanism(robot, q, mode=view.mode, ax=ax, faint=view.faint)
+    return panels[0]
+
+
+__all__ = ["Figure", "PaperFigures", "View", "fits", "spoken", "standard"]

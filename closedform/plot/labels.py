@@ -1,0 +1,138 @@
+"""Labels that keep clear of lines and of each other, in the plane and in space."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.transforms import Affine2D, Bbox, ScaledTranslation
+from mpl_toolkits.mplot3d import proj3d
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+DIRECTIONS = 16
+DISTANCES = (4.0, 8.0, 13.0, 19.0)
+"""How far a label may be from its point, in points of the page."""
+POINTS_PER_INCH = 72
+
+
+@dataclass
+class Label:
+    """A text, the place that it names, and the transformation of its axes."""
+
+    text: Any
+    at: Array
+    inside: Any
+    box: Array | None = None
+    """Where it was placed, in pixels."""
+
+
+def add(ax: Any, text: Any, at: Array) -> None:
+    """Register a text, so that it is moved beside its point when the figure is drawn."""
+    text.set(ha="center", va="center")
+    ax.__dict__.setdefault("_closedform_labels", []).append(Label(text, at, text.get_transform()))
+
+
+class Layout(ConstrainedLayoutEngine):
+    """The layout of a figure, which also places its labels: whenever the figure is drawn."""
+
+    def execute(self, fig: Any) -> Any:
+        found = super().execute(fig)
+        place(fig)
+        return found
+
+
+def place(figure: Any) -> None:
+    """Move all registered labels to where they cover the least, in the order of registration."""
+    for ax in figure.axes:
+        mine = getattr(ax, "_closedform_labels", [])
+        if not mine:
+            continue
+        ax.apply_aspect()
+        for label in mine:
+            label.text.set_transform(label.inside)
+        lines = _lines(ax)
+        placed = np.zeros((0, 2, 2))
+        for label in mine:
+            box = _place_one(figure, ax, label, lines, placed)
+            placed = np.concatenate([placed, box[None]])
+            label.box = box
+
+
+def _place_one(figure: Any, ax: Any, label: Label, lines: Array, placed: Array) -> Array:
+    scale = figure.dpi / POINTS_PER_INCH
+    at = pixels(ax, label.at[None])[0]
+    box = label.text.get_window_extent(figure._get_renderer())
+    half = np.array([box.width, box.height]) / 2
+    angles = 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS + np.pi / 4
+    ways = np.column_stack([np.cos(angles), np.sin(angles)])
+    far = np.repeat(DISTANCES, DIRECTIONS)[:, None]
+    way = np.tile(ways, (len(DISTANCES), 1))
+    centres = at + way * (far * scale + half * np.abs(way))
+    cost = far[:, 0] / 40 + _cost(centres, half + 1.5 * scale, lines, placed, ax)
+    centre = centres[np.argmin(np.round(cost, 6))]
+    moved = (centre - at) / figure.dpi
+    label.text.set_transform(
+        label.inside + ScaledTranslation(moved[0], moved[1], figure.dpi_scale_trans)
+    )
+    return np.array([centre - half, centre + half])
+
+
+def _cost(centres: Array, half: Array, lines: Array, placed: Array, ax: Any) -> Array:
+    """What a label would cover at each place: points of lines, other labels, the border."""
+    frame = ax.get_window_extent()
+    near = lines[(np.abs(lines - centres.mean(0)) < half + np.ptp(centres, axis=0)).all(1)]
+    covered = (np.abs(near - centres[:, None]) < half).all(-1).sum(-1)
+    low, high = centres - half, centres + half
+    sides = np.minimum(high[:, None], placed[:, 1]) - np.maximum(low[:, None], placed[:, 0])
+    shared = np.prod(np.clip(sides, 0, None), axis=-1).sum(-1)
+    corner, end = np.array([frame.x0, frame.y0]), np.array([frame.x1, frame.y1])
+    outside = np.maximum(corner - low, high - end).max(-1).clip(0)
+    return np.asarray(0.35 * covered + 0.2 * shared + 0.05 * outside)
+
+
+def _lines(ax: Any) -> Array:
+    """Points along everything that is drawn as a line, in pixels, some three pixels apart."""
+    found = []
+    for line in ax.lines:
+        data = line.get_data_3d() if hasattr(line, "get_data_3d") else line.get_data()
+        points = np.array([np.ravel(d) for d in data], dtype=float).T
+        if line.get_transform() != ax.transData:
+            continue
+        ends = pixels(ax, points)
+        for a, b in pairwise(ends):
+            if np.isfinite([a, b]).all():
+                n = 2 + int(np.hypot(*(b - a)) / 3)
+                found.append(a + np.linspace(0, 1, n)[:, None] * (b - a))
+        if len(ends) == 1:
+            found.append(ends[0] + np.array([[0, 0], [3, 0], [-3, 0], [0, 3], [0, -3]]))
+    return np.vstack(found) if found else np.zeros((0, 2))
+
+
+def pixels(ax: Any, points: Array) -> Array:
+    """Where points of the axes are on the page, in pixels."""
+    if getattr(ax, "name", "") == "3d":
+        x, y, _ = proj3d.proj_transform(*np.asarray(points).T, ax.get_proj())
+        points = np.column_stack([np.asarray(x), np.asarray(y)])
+    return np.asarray(ax.transData.transform(points))
+
+
+def drawn_box(figure: Any, margin: float) -> Bbox:
+    """The part of a page that is drawn on, in inches: of axes that are off, what is in them."""
+    renderer = figure._get_renderer()
+    boxes = [legend.get_window_extent(renderer) for legend in figure.legends]
+    for ax in figure.axes:
+        if ax.axison:
+            boxes.append(ax.get_tightbbox(renderer))
+            continue
+        boxes += [Bbox(label.box) for label in getattr(ax, "_closedform_labels", [])]
+        boxes += [ax.title.get_window_extent(renderer)] * bool(ax.title.get_text())
+        lines = _lines(ax)
+        if len(lines):
+            boxes.append(Bbox([lines.min(0), lines.max(0)]))
+    scale = Affine2D().scale(1 / figure.dpi)
+    found = Bbox.union([b for b in boxes if b is not None]).transformed(scale)
+    return found.padded(margin)

@@ -1,0 +1,52 @@
+"""How names are written in a figure, and which segment of a drawing has which length."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+
+import numpy as np
+
+from closedform.plot.robot import Array, Robot
+
+GREEK = ("alpha", "beta", "gamma", "theta", "rho", "phi", "psi", "sigma")
+WRITTEN = {"al": r"\alpha l"}
+"""Names whose symbol does not follow from their letters."""
+
+
+def symbol(name: str) -> str:
+    """A name such as ``theta2R`` or ``l3`` as a formula."""
+    if name in WRITTEN:
+        return f"${WRITTEN[name]}$"
+    letter = next((g for g in GREEK if name.startswith(g)), name[0])
+    rest = name[len(letter) :]
+    written = rf"\{letter}" if letter in GREEK else letter
+    if not rest:
+        return f"${written}$"
+    below = re.sub(r"([A-Za-z]{2,})", r"\\mathrm{\1}", rest)
+    return f"${written}_{{{below}}}$"
+
+
+def lengths(r: Robot, q: Array, mode: int) -> dict[str, tuple[str, str]]:
+    """For each parameter, the first segment of a link that is as long as it, for any dimensions."""
+    names = r.module.SKELETON.points
+    segments = [pair for link in r.module.SKELETON.links.values() for pair in pairwise(link)]
+    rng = np.random.default_rng(5)
+    base = np.array([float(v) for v in r.params])
+    possible = {(k, pair) for k in range(len(base)) for pair in segments}
+    for _ in range(2):
+        changed = base * rng.uniform(0.97, 1.03, len(base))
+        points = Robot(r.module, r.module.Parameters(*changed)).points(q)[mode]
+        place = dict(zip(names, points, strict=True))
+        possible = {
+            (k, pair)
+            for k, pair in possible
+            if abs(np.linalg.norm(place[pair[1]] - place[pair[0]]) - abs(changed[k]))
+            < 1e-9 * r.size
+        }
+    found: dict[str, tuple[str, str]] = {}
+    for k, field in enumerate(r.module.Parameters._fields):
+        for pair in segments:
+            if (k, pair) in possible and field not in found:
+                found[field] = pair
+    return found

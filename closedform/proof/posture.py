@@ -1,0 +1,106 @@
+"""The values of all names of an inverse at a posture whose image is the target."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import sympy as sp
+
+from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
+from closedform.model.inverse import Combination, Inverse, Rank
+
+Expr = Any
+
+
+class Posture:
+    """The values of the names of a chain, whose glue is a rank."""
+
+    def __init__(self, inverse: Inverse, glue: Rank, function: Function):
+        self.sums: dict[Expr, Expr] = {}
+        taken: set[Expr] = set()
+        for symbol, value in glue.defined.items():
+            # a sum replaces its newest joint, so that only single angles remain
+            held = [j for j in inverse.unknowns if value.has(j) and j not in taken]
+            if held:
+                taken.add(held[-1])
+                (self.sums[held[-1]],) = sp.solve(value - symbol, held[-1])
+        self.names: dict[Expr, Expr] = {}
+        self.meaning = glue.meaning
+        self.made = {s.symbol: s.value for s in function.body if isinstance(s, (Let, Bound))}
+        self.targets = {
+            x: self.in_sums(f) for x, f in zip(inverse.targets, inverse.forward, strict=True)
+        }
+        self.lengths = {s: self.in_sums(e) for s, e in glue.lengths.items()}
+
+    def in_sums(self, e: Expr) -> Expr:
+        for _ in self.sums:
+            e = substitute(e, self.sums)
+        return e
+
+    def named(self, e: Expr) -> Expr:
+        """An expression in terms of the unknowns and the target only."""
+        return self.in_sums(self._written_out(e))
+
+    def _written_out(self, e: Expr) -> Expr:
+        for s in e.free_symbols:
+            if s not in self.names and (s in self.meaning or s in self.made):
+                self.names[s] = self._written_out(self.meaning.get(s, self.made.get(s)))
+        return substitute(e, self.names)
+
+    def __call__(self, e: Expr) -> Expr:
+        """The value of an expression at a posture, with its image as the target."""
+        return substitute(substitute(self.named(e), self.lengths), self.targets)
+
+
+def meanings(function: Function, inverse: Inverse, glue: Combination) -> dict[Expr, Expr]:
+    """The values of the names of a program in inputs, parameters and unknowns of the lemmas.
+
+    Flags are false, as in every proof of the generic case.  Only the values that the equations of
+    the lemmas depend on are written out, because those of other cases may be large.
+    """
+    known: dict[Expr, Expr] = {}
+    inside: set[int] = set()
+    roots: list[Expr] = list(glue.joints.values())
+    for link in inverse.links:
+        known |= link.means
+        inside |= {id(s) for s in link.body}
+        roots += link.equations
+        if link.lemma:
+            premises = link.lemma.premises
+            roots += [*premises, *premises.values(), *link.lemma.signs]
+    flags = {s.symbol: sp.false for s in function.body if isinstance(s, Vanishes)}
+    values = {
+        s.symbol: substitute(s.value, flags)
+        for s in function.body
+        if isinstance(s, (Let, Bound)) and id(s) not in inside
+    }
+    needed = {s for e in roots for s in e.free_symbols}
+    for symbol, value in reversed(values.items()):
+        if symbol in needed:
+            needed |= value.free_symbols - known.keys()
+    known |= flags
+    for symbol in [s for s in values if s in needed]:
+        known[symbol] = substitute(values[symbol], known)
+    return known
+
+
+def outcomes(expr: Expr) -> Iterator[Expr]:
+    """The values of an expression for all outcomes of its choices between sides."""
+    choices = [c for p in expr.atoms(sp.Piecewise) for _, c in p.args if c.is_Relational]
+    if not choices:
+        yield expr
+        return
+    for holds in (sp.true, sp.false):
+        yield from outcomes(expr.xreplace({choices[0]: holds}))
+
+
+def generic(expr: Expr) -> Expr:
+    """The expression with the first case of choices between sides and the last of those by flag."""
+    cases = {
+        p: p.args[0 if p.args[0][1].is_Relational else -1][0] for p in expr.atoms(sp.Piecewise)
+    }
+    return generic(expr.xreplace(cases)) if cases else expr
+
+
+__all__ = ["Posture", "generic", "meanings", "outcomes"]

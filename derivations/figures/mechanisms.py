@@ -1,0 +1,41 @@
+"""How each mechanism is shown: its postures and the section of its workspace."""
+
+import numpy as np
+
+from closedform.plot.catalogue import View
+
+VIRTUAL = ("upper_virtual", "fore_virtual")
+TWIN = (-10, 62, 4, 54, 12, 30)
+"""The angles of the H6AR in a general posture, in degrees: the arms differ, the wrist turns."""
+
+
+def degrees(*angles: float) -> tuple[float, ...]:
+    return tuple(float(a) for a in np.radians(angles))
+
+
+VIEWS = {
+    "planar_2r": View(home=degrees(0, 0), general=degrees(35, 50)),
+    "spherical_wrist": View(
+        home=degrees(0, 0, 0), general=degrees(35, 55, 40), measured=("theta4", "theta5")
+    ),
+    "irb260": View(general=degrees(-50, 25, 15, 40)),
+    "hybrid_five_bar": View(
+        home=degrees(90, 70, 110), general=degrees(65, 75, 85), plane=("y", "x"), at=(0, 0, 0)
+    ),
+    "h6ar": View(home=degrees(0, 60, 30, 60, 30, 0), general=degrees(*TWIN), faint=VIRTUAL),
+    "h6ar_loop_closed": View(
+        home=degrees(0, 60, 30, 60, 30, 0), general=degrees(*TWIN), faint=VIRTUAL
+    ),
+    "puma560": View(),
+    "stanford_arm": View(
+        home=(0, 0, 0.35, 0, 0, 0),
+        general=(*degrees(-30, 60), 0.45, *degrees(40, 45, 20)),
+        limits=((-0.8, 0.8), (-0.8, 0.8)),
+    ),
+    "scara": View(
+        home=(0, 0, 0.2, 0), general=(*degrees(-20, 60), 0.2, *degrees(40)), plane=("x", "y")
+    ),
+    "ur_arm": View(),
+    "rpr_planar": View(home=(0.8, 0.8), general=(0.9, 0.6), limits=((-0.7, 1.7), (-1.1, 1.1))),
+}
+"""For each mechanism; one that is not listed is shown at zero and far from singular."""

@@ -1,0 +1,54 @@
+"""Textbooks and papers on arms of common structure."""
+
+from closedform import Work
+
+CORKE = Work(
+    "corke",
+    ("Peter Corke",),
+    "Robotics, Vision and Control: Fundamental Algorithms in MATLAB",
+    "Springer",
+    "2011",
+)
+CRAIG = Work(
+    "craig",
+    ("John J. Craig",),
+    "Introduction to Robotics: Mechanics and Control",
+    "3rd edition, Pearson Prentice Hall",
+    "2005",
+)
+LEE_ZIEGLER = Work(
+    "lee-ziegler",
+    ("C. S. George Lee", "M. Ziegler"),
+    "Geometric Approach in Solving Inverse Kinematics of PUMA Robots",
+    "IEEE Transactions on Aerospace and Electronic Systems, AES-20(6), 695–706",
+    "1984",
+)
+LYNCH_PARK = Work(
+    "lynch-park",
+    ("Kevin M. Lynch", "Frank C. Park"),
+    "Modern Robotics: Mechanics, Planning, and Control",
+    "Cambridge University Press",
+    "2017",
+)
+MERLET = Work("merlet", ("Jean-Pierre Merlet",), "Parallel Robots", "2nd edition, Springer", "2006")
+MURRAY_LI_SASTRY = Work(
+    "murray-li-sastry",
+    ("Richard M. Murray", "Zexiang Li", "S. Shankar Sastry"),
+    "A Mathematical Introduction to Robotic Manipulation",
+    "CRC Press",
+    "1994",
+)
+PAUL = Work(
+    "paul",
+    ("Richard P. Paul",),
+    "Robot Manipulators: Mathematics, Programming, and Control",
+    "MIT Press",
+    "1981",
+)
+SPONG_HUTCHINSON_VIDYASAGAR = Work(
+    "spong-hutchinson-vidyasagar",
+    ("Mark W. Spong", "Seth Hutchinson", "M. Vidyasagar"),
+    "Robot Modeling and Control",
+    "Wiley",
+    "2006",
+)

@@ -12,14 +12,8 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from closedform.emit.backends.latex.article import (
-    Page,
-    Printer,
-    decimal,
-    derives,
-    document,
-    measure,
-)
+from closedform.emit.backends.latex.article import Page, decimal, derives, document
+from closedform.emit.backends.latex.formulas import Printer, measure
 from closedform.emit.backends.latex.prose import Prose, escape, loosen, mixed, spaced, symbol_name
 from closedform.emit.notebook import notebook
 from closedform.emit.render import render
@@ -403,9 +397,8 @@ def test_a_table_of_a_step() -> None:
 def test_statements_that_functions_share_are_printed_once() -> None:
     d = __import__("closedform.derivations.hybrid_five_bar", fromlist=["d"]).d
     tex = render("latex/robot.tex.jinja", document(d, Proof(d.name, d.paper.key, (), 0, ())))
-    assert tex.count(r"\emph{touching}") == 1
-    assert r"\statement{as in}{\texttt{fk}, Section~\ref{inverse:fk}}" in tex
-    assert r"\statement{as in}{\texttt{jacobian\_parallel}}" in tex
+    assert r"Continue after the lines of \texttt{fk}, Section~\ref{inverse:fk}." in tex
+    assert r"Continue after the lines of \texttt{jacobian\_parallel}." in tex
 
 
 def test_special_characters() -> None:

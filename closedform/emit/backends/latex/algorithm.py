@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations, groupby
+from itertools import combinations, groupby, permutations
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -33,10 +33,12 @@ from closedform.model.lemma import label
 if TYPE_CHECKING:
     from closedform.emit.backends.latex.article import Page
 
-INLINE = 14.0
+INLINE = 10.0
 """The widest value that stands in place of a name that is a word."""
 ONCE = 36.0
 """The same, for a name that occurs once."""
+INDENTED = 6.0
+"""How much narrower the lines of an algorithm are than a page."""
 STATED = 3
 """A condition with more equations than that is given in words."""
 ANGLES = ("alpha", "gamma", "delta", "eta", "zeta", "mu", "nu", "xi", "chi", "omega")
@@ -173,7 +175,7 @@ class Algorithm:
             self.quantities[1 / value] = 1 / symbol
         if word:
             self.names[symbol] = f"{self._letter}_{{{self._count() + 1}}}"
-        elif name := program_name(str(symbol.name)) or self._shortened(symbol):
+        elif name := program_name(symbol, value) or self._shortened(symbol):
             self.names[symbol] = name
         self.page.printer.names |= self.names
 
@@ -245,6 +247,7 @@ class Algorithm:
     def lines(self) -> list[Line]:
         """What is computed, with the conditions; first what all branches share."""
         self.page.lines.clear()
+        self.page.lines.room = FITS - INDENTED
         branched: set[sp.Basic] = set(self.signs)
         common, each, body = [], [], self.function.body
         for statement in body:
@@ -254,7 +257,8 @@ class Algorithm:
                 shown = self.known.get(statement.symbol, statement.symbol)
                 branched |= {statement.symbol, *shown.free_symbols}
             (each if used & branched else common).extend(parts)
-        answer = [line for a in self._answers() for line in [("let", a, "")]]
+        answer = [("let", text, "") for text in self._answers()]
+        self.page.lines.room = FITS
         several = self.function.branches is not None and len(self.function.branches) > 1
         if not several:
             return self.joined([*common, *each, *answer], 0)
@@ -338,11 +342,18 @@ class Algorithm:
             texts.append(f"${text}$")
             used = {value, other, *(() if above is None else (above - middle,))}
             left = [e for e in left if e not in used]
+        for value, other in permutations(left, 2):
+            middle = next((m for m in order if m in value.free_symbols & other.free_symbols), None)
+            if middle and self.is_above(value, middle) and self.is_above(-other, middle):
+                text = rf"{math(middle - other)} \le {math(middle)} \le {math(value + middle)}"
+                texts.append(f"${text}$")
+                left = [e for e in left if e not in (value, other)]
+                break
         return texts + [self.nonnegative(value) for value in left]
 
     def is_above(self, value: sp.Expr, middle: sp.Expr) -> bool:
-        terms = sp.Add.make_args(value)
-        return -middle in terms and not any(_is_negative(t) for t in terms if t != -middle)
+        """Whether a bound is something without ``middle``, less ``middle``."""
+        return -middle in sp.Add.make_args(value) and not (value + middle).has(middle)
 
     def bound(self, symbol: sp.Symbol) -> sp.Expr:
         """What must not be negative: a short value, or the name of a longer one."""
@@ -371,14 +382,22 @@ class Algorithm:
 
     def texts(self, left: Any, value: Any) -> list[str]:
         """Equations as formulas in the text, each in one piece."""
-        return whole(self.page.equations(left, value))
+        return self.parts_first(whole(self.page.equations(left, value)))
+
+    def parts_first(self, texts: Sequence[str]) -> list[str]:
+        """The names of parts before they are used; the part of a part comes first."""
+        names = tuple(
+            rf"$\displaystyle {self.page.math(s)} =" for s in self.page.lines.parts.values()
+        )
+        parts = [t for t in texts if names and t.startswith(names)]
+        return [*reversed(parts), *(t for t in texts if t not in parts)]
 
     def _answers(self) -> list[str]:
         entries = iter(self.outputs)
         rows = []
         for array in self.function.outputs:
             shown = [self.shown(next(entries)) for _ in range(array.size)]
-            rows += whole(self.page.array(array, shown))
+            rows += self.parts_first(whole(self.page.array(array, shown)))
         return rows
 
     def joined(self, lines: Sequence[tuple[str, Any, str]], depth: int) -> list[Line]:

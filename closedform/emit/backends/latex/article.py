@@ -8,7 +8,6 @@ a line are aligned; what does not fit is taken apart in
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import groupby
 from typing import Any
 
 import sympy as sp
@@ -259,19 +258,29 @@ def _key(function: Function) -> str:
 
 
 def blocks(equations: Sequence[Equation]) -> list[str]:
-    """Neighbours that fit on a line as one aligned block, longer equations as paragraphs."""
+    """Neighbours that fit beside each other as one aligned block, longer ones as paragraphs."""
     done: list[str] = []
-    for fits, group in groupby(equations, lambda e: measure(e[0] + e[1]) <= FITS):
-        if fits:
+    group: list[Equation] = []
+
+    def flush() -> None:
+        if group:
             rows = " \\\\\n".join(
                 f"{left} &= {right}" if left else rf"&\quad {right}" for left, right in group
             )
             done.append(f"\\display\n\\begin{{align*}}\n{rows}\n\\end{{align*}}")
-        else:
-            done += [
-                rf"\longformula{{{left} = {right}}}" if left else rf"\longformula{{{right}}}"
-                for left, right in group
-            ]
+        group.clear()
+
+    for left, right in equations:
+        if measure(left + right) > FITS:
+            flush()
+            text = f"{left} = {right}" if left else right
+            done.append(rf"\longformula{{{text}}}")
+            continue
+        sides = zip(*group, (left, right), strict=True)
+        if left and sum(max(map(measure, side)) for side in sides) > FITS:
+            flush()
+        group.append((left, right))
+    flush()
     return done
 
 

@@ -57,7 +57,14 @@ def solvings(inverse: Inverse, solved: Sequence[Solved]) -> list[Solving]:
             Solving(link.lemma, link.lemma.equations, tuple(link.lemma.solution), link)
             for link in inverse.chain
         ]
-    return [Solving(s.lemma, (s.equation,), (s.unknown,)) for s in solved]
+    found = []
+    for s in solved:
+        others = {o.unknown for o in solved if o is not s}
+        joints = [u for u in s.lemma.solution if u in inverse.unknowns and u not in others]
+        unknowns = tuple(dict.fromkeys((s.unknown, *joints)))
+        equations = s.lemma.equations if len(unknowns) > 1 else (s.equation,)
+        found.append(Solving(s.lemma, equations, unknowns))
+    return found
 
 
 class Told:
@@ -220,13 +227,13 @@ class Told:
         before = [f"${page.math(j)}$" for j in sorted(joints, key=order.index)]
         where = self.parts(parts)
         several = len(equations) > 1
-        subject = "Equations" if several else "An equation"
-        start = f"{subject} of the forward map" + (f" for {where}" if where else "")
-        verb = "hold" if several else "holds"
+        source = f"From {where} of the forward map" if where else "From the forward map"
+        verb = "follow equations" if several else "follows an equation"
         unknowns = enumeration([f"${page.math(u)}$" for u in solving.unknowns])
         if before:
-            return f"{start} {verb}, besides {enumeration(before)}, only {unknowns}:"
-        return f"{start} {verb} no other unknown than {unknowns}:"
+            known = "is" if len(before) == 1 else "are"
+            return f"{source} {verb} in {unknowns}, where {enumeration(before)} {known} known:"
+        return f"{source} {verb} in {unknowns} alone:"
 
     def explicit(self, value: sp.Expr) -> sp.Expr:
         """An expression in the target and the joints."""

@@ -89,10 +89,14 @@ def is_word(name: str) -> bool:
     return True
 
 
-def program_name(name: str) -> str | None:
-    """The LaTeX of an entry of a named matrix: ``R1_23`` is the entry of the first R."""
+def program_name(symbol: sp.Symbol, value: sp.Expr) -> str | None:
+    """The LaTeX of an entry of a matrix, as in ``R1_23``, or of a square, as in ``r2``."""
+    name = str(symbol.name)
     if entry := MATRIX_ENTRY.fullmatch(name):
         return rf"{entry[1]}^{{({entry[2]})}}_{{{entry[3]}{entry[4]}}}"
+    squares = value.is_Add and all(t.is_Pow and t.exp == 2 for t in value.args)
+    if squares and re.fullmatch("[a-z]2", name):
+        return f"{name[0]}^{{2}}"
     return None
 
 

@@ -113,17 +113,40 @@ def escape(text: str) -> str:
 
 
 def mixed(text: str) -> str:
-    """Text with formulas between dollar signs; a formula that is a matrix shrinks to fit."""
+    """Text with formulas between dollar signs; a matrix or a wide fraction shrinks to fit."""
     parts = text.split("$")
     for i, part in enumerate(parts):
         formula = "".join(f"{UNICODE.get(c, c)} " if c in UNICODE else c for c in part)
-        formula = rf"$\displaystyle {formula}$"
+        stiff = _widest_fraction(part) > STIFF
         if part.count(r"\begin") == 1 and re.fullmatch(
             r"\\begin\{(\w*matrix)\}.*\\end\{\1\}", part
         ):
-            formula = rf"\fit{{{formula}}}"
+            stiff = True
+        formula = rf"$\displaystyle {formula if stiff else loosen(formula)}$"
+        formula = rf"\fit{{{formula}}}" if stiff else formula
         parts[i] = formula if i % 2 else escape(part)
     return "".join(parts)
+
+
+STIFF = 36
+"""The most letters of a fraction that fits into a column; TeX cannot break it."""
+
+
+def _widest_fraction(formula: str) -> int:
+    """The number of letters above or below the line of the widest fraction."""
+    widest = 0
+    for found in re.finditer(r"\\frac(?=\{)", formula):
+        end = found.end()
+        for _ in range(2):
+            start, depth = end, 0
+            while end < len(formula):
+                depth += {"{": 1, "}": -1}.get(formula[end], 0)
+                end += 1
+                if depth == 0:
+                    break
+            inner = re.sub(r"\\(?:left|right|mathrm)|[\s{}^_]", "", formula[start:end])
+            widest = max(widest, len(re.findall(r"\\[A-Za-z]+|.", inner)))
+    return widest
 
 
 class Prose:

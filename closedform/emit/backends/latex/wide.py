@@ -22,6 +22,10 @@ from closedform.model.functions import real
 Equation = tuple[str, str]
 """Both sides; a line that continues the one before has no left side."""
 
+GAIN = 1.5
+"""By how much another form of an expression has to be narrower."""
+PRODUCT = 3.0
+"""How much wider than a sum a product may be."""
 SIMPLIFIED = 160
 """The largest number of operations of an expression that is tried in other forms."""
 FACTORED, FACTORED_SYMBOLS = 40, 8
@@ -39,6 +43,7 @@ class Lines:
 
     def __init__(self, printer: Printer, taken: Iterable[str]):
         self.printer, self.taken = printer, frozenset(taken)
+        self.room = FITS
         self.parts: dict[sp.Basic, sp.Symbol] = {}
         self._tidied: dict[sp.Basic, sp.Basic] = {}
 
@@ -62,7 +67,7 @@ class Lines:
         if inner := self._unbreakable(value):
             return self._with_part(left, value, inner)
         text = self.printer.math(value)
-        room = FITS - measure(left) - 4
+        room = self.room - measure(left) - 4
         if measure(text) <= room:
             return [(left, text)]
         if isinstance(value, sp.Piecewise):
@@ -77,7 +82,13 @@ class Lines:
     def tidy(self, value: sp.Expr) -> sp.Expr:
         """The narrowest of some equal forms: common factors in front, one fraction, factored."""
         if value not in self._tidied:
-            self._tidied[value] = min(self._forms(value), key=self.width)
+
+            def cost(form: sp.Expr) -> float:
+                return self.width(form) - (PRODUCT if form.is_Mul else 0)
+
+            best = min(self._forms(value), key=cost)
+            narrower = cost(best) < cost(value) - GAIN
+            self._tidied[value] = best if narrower else value
         return self._tidied[value]
 
     def _forms(self, value: sp.Expr) -> Iterator[sp.Expr]:

@@ -127,7 +127,11 @@ def evaluated(algorithm: Algorithm, given: dict) -> list[float]:
     for symbol in algorithm.values:
         if symbol in algorithm.printed:
             value = algorithm.value(symbol).xreplace(known)
-            known[algorithm.known.get(symbol, symbol)] = sp.N(value, 30)
+            shown = algorithm.known.get(symbol, symbol)
+            known[shown] = sp.N(value, 30)
+            for angle in getattr(shown, "args", ()):
+                if {sp.sin(angle), sp.cos(angle)} <= known.keys():
+                    known[angle] = sp.atan2(known[sp.sin(angle)], known[sp.cos(angle)])
     answers = [algorithm.shown(e).xreplace(known) for e in algorithm.outputs]
     return [complex(sp.N(e)).real for e in answers]
 

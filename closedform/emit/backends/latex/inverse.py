@@ -146,7 +146,7 @@ class Told:
             "blocks": page.blocks(rows),
             "lemma": page.prose(solving.lemma.name),
             "matrix": self.matrix(shown),
-            "statement": "" if earlier else loosen(solving.lemma.statement),
+            "statement": [] if earlier else statement(solving.lemma),
             "count": self.count(solving),
             "solution": page.blocks(self.solution(solving)),
             "exists": self.exists(solving),
@@ -454,6 +454,12 @@ class Told:
             for _, chosen in function.cases()
             for name in names
         }
+
+
+def statement(lemma: Lemma) -> list[str]:
+    """The statement of a lemma: what it solves, and the solution on a line of its own."""
+    problem, arrow, solution = loosen(lemma.statement).partition(r"\;\Rightarrow\;")
+    return [problem.strip(), rf"\Rightarrow\quad {solution.strip()}"] if arrow else [problem]
 
 
 def block(array: Array) -> list[sp.Expr]:

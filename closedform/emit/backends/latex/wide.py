@@ -26,9 +26,9 @@ GAIN = 1.5
 """By how much another form of an expression has to be narrower."""
 PRODUCT = 3.0
 """How much wider than a sum a product may be."""
-SIMPLIFIED = 160
+SIMPLIFIED = 80
 """The largest number of operations of an expression that is tried in other forms."""
-FACTORED, FACTORED_SYMBOLS = 40, 8
+FACTORED, FACTORED_SYMBOLS = 30, 7
 """The largest numbers of operations and of symbols of a sum that is factored."""
 TERMS = 8
 """A polynomial with fewer terms is printed as it is."""
@@ -45,13 +45,17 @@ class Lines:
         self.printer, self.taken = printer, frozenset(taken)
         self.room = FITS
         self.parts: dict[sp.Basic, sp.Symbol] = {}
+        self._widths: dict[Any, float] = {}
         self._tidied: dict[sp.Basic, sp.Basic] = {}
 
     def clear(self) -> None:
         self.parts.clear()
+        self._widths.clear()
 
     def width(self, value: Any) -> float:
-        return measure(self.printer.math(value))
+        if value not in self._widths:
+            self._widths[value] = measure(self.printer.math(value))
+        return self._widths[value]
 
     def equations(self, left: str, value: Any) -> list[Equation]:
         """A value as one equation or, if it is too wide, as several."""

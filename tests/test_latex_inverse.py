@@ -206,6 +206,13 @@ def test_a_polynomial_is_collected_and_its_coefficients_are_named() -> None:
     assert sp.expand(sum(e * symbol**k for k, e in terms) - wide) == 0
 
 
+def test_an_equation_to_zero_is_taken_apart_too() -> None:
+    wide = sp.expand((a * x + b * y - c) ** 4 * (x + 7 * a) + b**3 * x**2 * y)
+    rows = Lines(Printer(set()), ()).equations("F", sp.Eq(wide, 0))
+    assert all(measure(left + right) <= FITS + 5 for left, right in rows)
+    assert [left for left, right in rows if right.endswith(" = 0")] == ["F"]
+
+
 def test_a_sum_in_products_gets_a_name_once() -> None:
     part = sum(sp.sin(k * x) * y**k for k in range(1, 4))
     rows = Lines(Printer(set()), ()).equations(

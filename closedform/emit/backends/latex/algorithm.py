@@ -7,6 +7,7 @@ to what they stand for or to a letter, and what the branches share is computed b
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations, groupby, permutations
@@ -128,10 +129,9 @@ class Algorithm:
 
     def _uses(self) -> dict[sp.Basic, int]:
         held = [self.values[s] for s in self.values if s in self.needed] + self.outputs
-        uses: dict[sp.Basic, int] = {}
+        uses = Counter[sp.Basic]()
         for value in held:
-            for s in value.free_symbols:
-                uses[s] = uses.get(s, 0) + 1
+            uses.update(s for s in sp.preorder_traversal(value) if s.is_Symbol)
         return uses
 
     def _pairs(self) -> dict[sp.Symbol, sp.Expr]:
@@ -163,7 +163,10 @@ class Algorithm:
             self.pairs[self.values[symbol]] = meaning
             return
         bare = value.as_coeff_Mul()[1]
-        word = is_word(str(symbol.name))
+        name = str(symbol.name)
+        joints = {label(j.symbol) for j in self.page.derivation.joints}
+        # an italic s_1 or c_1 beside the sine and the cosine of the joint would be read as these
+        word = is_word(name) or (name[0] in "sc" and name[1:] in joints)
         width = self.page.lines.width(value)
         once = self.uses.get(symbol, 0) <= 1 and width <= ONCE
         if bare.is_Atom or (word and (width <= INLINE or once) and not value.has(sp.Piecewise)):
@@ -175,8 +178,8 @@ class Algorithm:
             self.quantities[1 / value] = 1 / symbol
         if word:
             self.names[symbol] = f"{self._letter}_{{{self._count() + 1}}}"
-        elif name := program_name(symbol, value) or self._shortened(symbol):
-            self.names[symbol] = name
+        elif shown := program_name(symbol, value) or self._shortened(symbol):
+            self.names[symbol] = shown
         self.page.printer.names |= self.names
 
     @property
@@ -249,7 +252,8 @@ class Algorithm:
         self.page.lines.clear()
         self.page.lines.room = FITS - INDENTED
         branched: set[sp.Basic] = set(self.signs)
-        common, each, body = [], [], self.function.body
+        common, each = list[tuple[str, Any, str]](), list[tuple[str, Any, str]]()
+        body = self.function.body
         for statement in body:
             parts = list(self._statement(statement))
             used = {s for e in self._expressions(statement) for s in e.free_symbols}

@@ -371,7 +371,7 @@ class Told:
 
     # What was proved
 
-    def continuum(self, inverse: Inverse, case: Continuum) -> dict[str, str]:
+    def continuum(self, inverse: Inverse, case: Continuum) -> dict[str, Any]:
         """The set on which a joint is free, the returned value, and what all solutions share."""
         page, function = self.page, self.function
         rows = [r for a in function.inputs for r in self.located(a, case.locus)]

@@ -156,7 +156,8 @@ class Prose:
         functions = derivation.functions
         symbols = [p.symbol for p in derivation.parameters] + [j.symbol for j in derivation.joints]
         symbols += [s for f in functions for s in f.symbols]
-        symbols += [s.symbol for f in functions for s in f.body if isinstance(s, (Let, Bound))]
+        made = [s.symbol for f in functions for s in f.body if isinstance(s, (Let, Bound))]
+        symbols += [s for s in made if not re.fullmatch("[a-z][a-w]", s.name)]  # "up" is a word
         symbols += [s for step in derivation.steps for s in _symbols(step)]
         names = self.names = {str(s) for s in symbols} | set(derivation.task)
         self.known = GREEK | set(SYMBOL_NAMES)

@@ -65,6 +65,8 @@ class Lines:
             return [(left, "(" + r",\ ".join(map(self.printer.math, value)) + ")")]
         if isinstance(value, sp.MatrixBase):
             return self._matrix(left, value)
+        if isinstance(value, sp.Eq) and isinstance(value.lhs, sp.Expr):
+            return self._equation(left, value)
         if not isinstance(value, sp.Expr):
             return [(left, self.printer.math(value))]
         value = self.tidy(value)
@@ -82,6 +84,13 @@ class Lines:
         if inner := self._nested(value):
             return self._with_part(left, value, inner)
         return self._broken(left, value, room)
+
+    def _equation(self, left: str, value: sp.Eq) -> list[Equation]:
+        """A value that is an equation itself: its right side stands behind its left."""
+        rows = self.equations(left, value.lhs)
+        last = next((k for k, (side, _) in enumerate(rows[1:]) if side), len(rows) - 1)
+        rows[last] = rows[last][0], f"{rows[last][1]} = {self.printer.math(value.rhs)}"
+        return rows
 
     def tidy(self, value: sp.Expr) -> sp.Expr:
         """The narrowest of some equal forms: common factors in front, one fraction, factored."""
@@ -201,7 +210,7 @@ class Lines:
     def _broken(self, left: str, value: sp.Expr, room: float) -> list[Equation]:
         """A sum in several lines, each of which starts with the sign of a term."""
         terms = self.printer._as_ordered_terms(value) if value.is_Add else [value]
-        lines, line = [], ""
+        lines, line = list[str](), ""
         for term in terms:
             text = self.printer.math(term)
             text = text if (not line and not lines) or text.startswith("-") else f"+ {text}"

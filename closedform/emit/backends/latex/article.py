@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from itertools import groupby
 from typing import Any
 
 import sympy as sp
@@ -305,22 +304,34 @@ def _key(function: Function) -> str:
 
 
 def blocks(equations: Sequence[Numbered | Equation]) -> list[str]:
-    """Neighbours that fit on a line as one aligned block, longer equations as paragraphs."""
+    """Neighbours that fit beside each other as one aligned block, longer ones as paragraphs."""
     done: list[str] = []
-    lines = [e if isinstance(e, Numbered) else Numbered(*e) for e in equations]
-    for (fits, numbered), group in groupby(lines, lambda e: (fitting(e), e.numbered)):
-        if fits:
-            rows = " \\\\\n".join(aligned(e) for e in group)
-            kind = "align" if numbered else "align*"
+    group: list[Numbered] = []
+
+    def flush() -> None:
+        if group:
+            rows = " \\\\\n".join(map(aligned, group))
+            kind = "align" if group[0].numbered else "align*"
             done.append(f"\\display\n\\begin{{{kind}}}\n{rows}\n\\end{{{kind}}}")
-        else:
-            done += [
-                rf"\longequation{{{e.label}}}{{{e.text}}}"
-                if e.label
-                else rf"\longformula{{{e.text}}}"
-                for e in group
-            ]
+        group.clear()
+
+    for e in (e if isinstance(e, Numbered) else Numbered(*e) for e in equations):
+        if not fitting(e):
+            flush()
+            label = rf"\longequation{{{e.label}}}" if e.label else r"\longformula"
+            done.append(rf"{label}{{{e.text}}}")
+            continue
+        if group and (e.numbered != group[0].numbered or (e.left and not beside([*group, e]))):
+            flush()
+        group.append(e)
+    flush()
     return done
+
+
+def beside(group: Sequence[Numbered]) -> bool:
+    """Whether the columns of an aligned block fit beside each other, with the numbers."""
+    width = max(measure(e.left) for e in group) + max(measure(e.right) for e in group)
+    return width <= FITS - 6 * any(e.label for e in group)
 
 
 def aligned(equation: Numbered) -> str:

@@ -60,7 +60,14 @@ def solvings(inverse: Inverse, solved: Sequence[Solved]) -> list[Solving]:
             for link in inverse.links
             if link.lemma
         ]
-    return [Solving(s.lemma, (s.equation,), (s.unknown,)) for s in solved]
+    found = []
+    for s in solved:
+        others = {o.unknown for o in solved if o is not s}
+        joints = [u for u in s.lemma.solution if u in inverse.unknowns and u not in others]
+        unknowns = tuple(dict.fromkeys((s.unknown, *joints)))
+        equations = s.lemma.equations if len(unknowns) > 1 else (s.equation,)
+        found.append(Solving(s.lemma, equations, unknowns))
+    return found
 
 
 class Told:
@@ -145,7 +152,7 @@ class Told:
             "lemma": page.prose(solving.lemma.name),
             "label": label(solving.lemma.name),
             "matrix": self.matrix(shown),
-            "statement": "" if earlier else loosen(solving.lemma.statement),
+            "statement": [] if earlier else statement(solving.lemma),
             "count": self.count(solving),
             "solution": page.blocks(self.solution(solving)),
             "exists": self.exists(solving),
@@ -231,13 +238,13 @@ class Told:
         before = [f"${page.math(j)}$" for j in sorted(joints, key=order.index)]
         where = self.parts(parts)
         several = len(equations) > 1
-        subject = "Equations" if several else "An equation"
-        start = f"{subject} of the forward map" + (f" for {where}" if where else "")
-        verb = "hold" if several else "holds"
+        source = f"From {where} of the forward map" if where else "From the forward map"
+        verb = "follow equations" if several else "follows an equation"
         unknowns = enumeration([f"${page.math(u)}$" for u in solving.unknowns])
         if before:
-            return f"{start} {verb}, besides {enumeration(before)}, only {unknowns}:"
-        return f"{start} {verb} no other unknown than {unknowns}:"
+            known = "is" if len(before) == 1 else "are"
+            return f"{source} {verb} in {unknowns}, where {enumeration(before)} {known} known:"
+        return f"{source} {verb} in {unknowns} alone:"
 
     def explicit(self, value: sp.Expr) -> sp.Expr:
         """An expression in the target and the joints."""
@@ -458,6 +465,12 @@ class Told:
             for _, chosen in function.cases()
             for name in names
         }
+
+
+def statement(lemma: Lemma) -> list[str]:
+    """The statement of a lemma: what it solves, and the solution on a line of its own."""
+    problem, arrow, solution = loosen(lemma.statement).partition(r"\;\Rightarrow\;")
+    return [problem.strip(), rf"\Rightarrow\quad {solution.strip()}"] if arrow else [problem]
 
 
 def block(array: Array) -> list[sp.Expr]:

@@ -95,7 +95,12 @@ def forms_of(
     return forms
 
 
-def clashes(derivation: Derivation, math: Printed, legend: Iterable[tuple[str, str]]) -> list[str]:
+def clashes(
+    derivation: Derivation,
+    math: Printed,
+    legend: Iterable[tuple[str, str]],
+    local: Container[sp.Symbol] = (),
+) -> list[str]:
     """What a reader would mistake: two symbols that look alike, one symbol in two forms."""
     return sorted(set(forms_of(derivation, math, legend, local).clashes()))
 

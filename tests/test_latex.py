@@ -193,7 +193,7 @@ def test_claims_link_to_the_step_and_the_error() -> None:
     assert r"eq. (1) \& 50 \%, \mbox" not in text and r"eq. (3), \mbox" not in text
     assert text.count(r"\label{erratum:awkward:long-one}") == 1
     assert r"\hyperref[erratum:awkward:long-one]{100 \% of $\displaystyle x_1$ \& more\_}" in text
-    labels = re.findall(r"\\label\{([^}]+)\}", text)
+    labels = re.findall(r"\\(?:label|longequation)\{([^}#]+)\}", text)
     assert len(set(labels)) == len(labels)
     assert set(re.findall(r"\\(?:(?:eq)?ref\*?\{|hyperref\[)([^}\]]+)", text)) <= set(labels)
 

@@ -381,7 +381,7 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
         "claims": page.claims.rows(),
     }  # fmt: skip
     legend = page.legend()
-    symbols.require_distinct(derivation, page.math, legend)
+    symbols.require_distinct(derivation, page.math, legend, page.printer.names)
     return context | {
         "legend": ",\\quad ".join(map(" = ".join, legend)),
         "symbols": symbols.table(derivation, page.numbers, text),

@@ -11,12 +11,13 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations, groupby, permutations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import sympy as sp
 
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.names import is_word, program_name
+from closedform.emit.backends.latex.sheet import Sheet
 from closedform.model.functions import (
     Bound,
     Determined,
@@ -31,9 +32,6 @@ from closedform.model.functions import (
 )
 from closedform.model.inverse import Rank
 from closedform.model.lemma import label
-
-if TYPE_CHECKING:
-    from closedform.emit.backends.latex.article import Page
 
 INLINE = 10.0
 """The widest value that stands in place of a name that is a word."""
@@ -76,7 +74,7 @@ class Algorithm:
     ``model`` is the algorithm of an earlier function that starts with the same statements.
     """
 
-    page: Page
+    page: Sheet
     function: Function
     means: Mapping[sp.Symbol, sp.Expr]
     model: Algorithm | None = None

@@ -10,16 +10,17 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import sympy as sp
 
 from closedform.algebra.formulas import PRINTED, formula
-from closedform.emit.backends.latex.algorithm import whole
+from closedform.emit.backends.latex.algorithm import Algorithm, whole
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.lemmas import label
 from closedform.emit.backends.latex.names import MATRIX_ENTRY
 from closedform.emit.backends.latex.prose import escape, loosen, upright
+from closedform.emit.backends.latex.sheet import Sheet
 from closedform.model.derivation import Solved
 from closedform.model.functions import (
     Array,
@@ -33,9 +34,6 @@ from closedform.model.functions import (
 from closedform.model.inverse import Degenerate, Inverse, Link, Rank
 from closedform.model.lemma import Lemma
 from closedform.proof.inverse import InverseResult
-
-if TYPE_CHECKING:
-    from closedform.emit.backends.latex.article import Page
 
 FEW = 4
 """More parts of the target than that are not listed."""
@@ -73,14 +71,14 @@ def solvings(inverse: Inverse, solved: Sequence[Solved]) -> list[Solving]:
 class Told:
     """The text of one function that has a status for each branch."""
 
-    def __init__(self, page: Page, function: Function):
+    def __init__(self, page: Sheet, function: Function, algorithm: Algorithm, after: str):
         self.page, self.function = page, function
         derivation = page.derivation
         found = [i for i in derivation.inverses if i.function == function.name]
         self.inverse = found[0] if found else None
         solved = [s for s in derivation.solved if s.function == function.name]
         self.solvings = solvings(self.inverse, solved) if self.inverse else []
-        self.algorithm = page.algorithm(function)
+        self.algorithm, self.after = algorithm, after
         self.inputs = set(function.symbols)
         self.told: set[sp.Symbol] = set()
         """Names that a step has defined."""
@@ -92,7 +90,7 @@ class Told:
         inverse = self.inverse
         return {
             "given": self.given(),
-            "after": self.page.after(function),
+            "after": self.after,
             "stages": [self.stage(k, s) for k, s in enumerate(self.solvings, 1)],
             "order": self.order(),
             "lines": lines,
@@ -106,7 +104,6 @@ class Told:
             "continua": [self.continuum(inverse, c) for c in inverse.degenerate if c.free]
             if inverse
             else [],
-            "proved": [self.proved(r) for r in page.proof.inverses if r.function == function.name],
         }
 
     # The derivation

@@ -37,7 +37,7 @@ INLINE = 10.0
 """The widest value that stands in place of a name that is a word."""
 ONCE = 36.0
 """The same, for a name that occurs once."""
-INDENTED = 6.0
+INDENTED = 8.0
 """How much narrower the lines of an algorithm are than a page."""
 STATED = 3
 """A condition with more equations than that is given in words."""

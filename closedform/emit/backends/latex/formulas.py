@@ -17,7 +17,7 @@ from sympy.printing.latex import LatexPrinter
 
 from closedform.emit.backends.latex.prose import GREEK, loosen, spaced, symbol_name
 
-FITS = 78.0
+FITS = 76.0
 """The widest formula that is set on one line, in average letters of 10 pt."""
 
 SIGN = re.compile(r"sigma(_|$)")

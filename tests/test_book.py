@@ -158,7 +158,7 @@ def test_a_symbol_without_a_meaning_is_found() -> None:
         (r"|\text{A} - \text{B}|", []),
         (r"r_{\mathrm{S}}^2", [r"r_{\mathrm{S}}"]),
         (r"\mathbf p = \mathbf c + \overrightarrow{CP}",
-         [r"\mathbfp", r"\mathbfc", r"\overrightarrow{CP}"]),
+         [r"\mathbf{p}", r"\mathbf{c}", r"\overrightarrow{CP}"]),
     ],
 )  # fmt: skip
 def test_names_in_a_formula(formula: str, names: list[str]) -> None:

@@ -83,7 +83,7 @@ def test_the_whole_inverse_is_mended_in_all_its_parts() -> None:
     claim = claims("h6ar")["inverse of the virtual arm"]
     assert judged(claim, claim.corrected).kind == PROVED
     sign = claim.corrected.replace(r"\pm", "+", 1)
-    assert judged(claim, sign).kind == REFUTED
+    assert judged(claim, sign).kind == INCOMPLETE  # it loses the other waist
 
 
 def test_cases_hold_under_their_conditions_and_leave_no_gap() -> None:

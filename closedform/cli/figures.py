@@ -33,9 +33,9 @@ def draw_all(folder: Path, chosen: list[str]) -> Iterator[str]:
         for figure in drawn:
             write(partial(figure.draw, robot), folder / f"{name}-{figure.name}.pdf")
             captions[f"{name}-{figure.name}"] = figure.caption
+        text = json.dumps(dict(sorted(captions.items())), indent=2, ensure_ascii=False)
+        target.write_text(text + "\n", "utf-8")
         yield f"{name}: {', '.join(f.name for f in drawn)}\n"
-    text = json.dumps(dict(sorted(captions.items())), indent=2, ensure_ascii=False)
-    target.write_text(text + "\n", "utf-8")
 
 
 def draw_documentation(docs: Path, chosen: list[str]) -> Iterator[str]:

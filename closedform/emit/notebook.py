@@ -27,10 +27,15 @@ def notebook(derivation: Derivation) -> str:
             rows.append(rf"&\text{{{escape(function.summary)}}}")
             for s in function.body:
                 if isinstance(s, Let | Bound):
-                    rows += [f"{a} &= {b}" for a, b in page.equations(s.symbol, s.value)]
-            rows += [f"{a} &= {b}" for a, b in page.outputs(function)]
+                    rows += map(_row, page.equations(s.symbol, s.value))
+            rows += map(_row, page.outputs(function))
     rows += [f"{short} &= {full}" for short, full in page.legend()]
     return r"$\displaystyle \begin{aligned}" + " \\\\\n".join(rows) + r"\end{aligned}$"
+
+
+def _row(equation: tuple[str, str]) -> str:
+    left, right = equation
+    return f"{left} &= {right}" if left else rf"&\quad {right}"
 
 
 @prints(Claim)

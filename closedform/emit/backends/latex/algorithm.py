@@ -7,15 +7,17 @@ to what they stand for or to a letter, and what the branches share is computed b
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations, groupby
-from typing import TYPE_CHECKING, Any
+from itertools import combinations, groupby, permutations
+from typing import Any
 
 import sympy as sp
 
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.names import is_word, program_name
+from closedform.emit.backends.latex.sheet import Sheet
 from closedform.model.functions import (
     Bound,
     Determined,
@@ -31,13 +33,12 @@ from closedform.model.functions import (
 from closedform.model.inverse import Rank
 from closedform.model.lemma import label
 
-if TYPE_CHECKING:
-    from closedform.emit.backends.latex.article import Page
-
-INLINE = 14.0
+INLINE = 10.0
 """The widest value that stands in place of a name that is a word."""
 ONCE = 36.0
 """The same, for a name that occurs once."""
+INDENTED = 8.0
+"""How much narrower the lines of an algorithm are than a page."""
 STATED = 3
 """A condition with more equations than that is given in words."""
 ANGLES = ("alpha", "gamma", "delta", "eta", "zeta", "mu", "nu", "xi", "chi", "omega")
@@ -73,7 +74,7 @@ class Algorithm:
     ``model`` is the algorithm of an earlier function that starts with the same statements.
     """
 
-    page: Page
+    page: Sheet
     function: Function
     means: Mapping[sp.Symbol, sp.Expr]
     model: Algorithm | None = None
@@ -127,10 +128,9 @@ class Algorithm:
 
     def _uses(self) -> dict[sp.Basic, int]:
         held = [self.values[s] for s in self.values if s in self.needed] + self.outputs
-        uses: dict[sp.Basic, int] = {}
+        uses = Counter[sp.Basic]()
         for value in held:
-            for s in value.free_symbols:
-                uses[s] = uses.get(s, 0) + 1
+            uses.update(s for s in sp.preorder_traversal(value) if s.is_Symbol)
         return uses
 
     def _pairs(self) -> dict[sp.Symbol, sp.Expr]:
@@ -162,7 +162,10 @@ class Algorithm:
             self.pairs[self.values[symbol]] = meaning
             return
         bare = value.as_coeff_Mul()[1]
-        word = is_word(str(symbol.name))
+        name = str(symbol.name)
+        joints = {label(j.symbol) for j in self.page.derivation.joints}
+        # an italic s_1 or c_1 beside the sine and the cosine of the joint would be read as these
+        word = is_word(name) or (name[0] in "sc" and name[1:] in joints)
         width = self.page.lines.width(value)
         once = self.uses.get(symbol, 0) <= 1 and width <= ONCE
         if bare.is_Atom or (word and (width <= INLINE or once) and not value.has(sp.Piecewise)):
@@ -174,8 +177,8 @@ class Algorithm:
             self.quantities[1 / value] = 1 / symbol
         if word:
             self.names[symbol] = f"{self._letter}_{{{self._count() + 1}}}"
-        elif name := program_name(str(symbol.name)) or self._shortened(symbol):
-            self.names[symbol] = name
+        elif shown := program_name(symbol, value) or self._shortened(symbol):
+            self.names[symbol] = shown
         self.page.printer.names |= self.names
 
     @property
@@ -246,9 +249,9 @@ class Algorithm:
     def lines(self) -> list[Line]:
         """What is computed, with the conditions; first what all branches share."""
         self.page.lines.clear()
+        self.page.lines.room = FITS - INDENTED
         branched: set[sp.Basic] = set(self.signs)
-        common: list[tuple[str, Any, str]] = []
-        each: list[tuple[str, Any, str]] = []
+        common, each = list[tuple[str, Any, str]](), list[tuple[str, Any, str]]()
         body = self.function.body
         for statement in body:
             parts = list(self._statement(statement))
@@ -257,7 +260,8 @@ class Algorithm:
                 shown = self.known.get(statement.symbol, statement.symbol)
                 branched |= {statement.symbol, *shown.free_symbols}
             (each if used & branched else common).extend(parts)
-        answer = [line for a in self._answers() for line in [("let", a, "")]]
+        answer = [("let", text, "") for text in self._answers()]
+        self.page.lines.room = FITS
         several = self.function.branches is not None and len(self.function.branches) > 1
         if not several:
             return self.joined([*common, *each, *answer], 0)
@@ -341,11 +345,18 @@ class Algorithm:
             texts.append(f"${text}$")
             used = {value, other, *(() if above is None else (above - middle,))}
             left = [e for e in left if e not in used]
+        for value, other in permutations(left, 2):
+            middle = next((m for m in order if m in value.free_symbols & other.free_symbols), None)
+            if middle and self.is_above(value, middle) and self.is_above(-other, middle):
+                text = rf"{math(middle - other)} \le {math(middle)} \le {math(value + middle)}"
+                texts.append(f"${text}$")
+                left = [e for e in left if e not in (value, other)]
+                break
         return texts + [self.nonnegative(value) for value in left]
 
     def is_above(self, value: sp.Expr, middle: sp.Expr) -> bool:
-        terms = sp.Add.make_args(value)
-        return -middle in terms and not any(_is_negative(t) for t in terms if t != -middle)
+        """Whether a bound is something without ``middle``, less ``middle``."""
+        return -middle in sp.Add.make_args(value) and not (value + middle).has(middle)
 
     def bound(self, symbol: sp.Symbol) -> sp.Expr:
         """What must not be negative: a short value, or the name of a longer one."""
@@ -374,14 +385,22 @@ class Algorithm:
 
     def texts(self, left: Any, value: Any) -> list[str]:
         """Equations as formulas in the text, each in one piece."""
-        return whole(self.page.equations(left, value))
+        return self.parts_first(whole(self.page.equations(left, value)))
+
+    def parts_first(self, texts: Sequence[str]) -> list[str]:
+        """The names of parts before they are used; the part of a part comes first."""
+        names = tuple(
+            rf"$\displaystyle {self.page.math(s)} =" for s in self.page.lines.parts.values()
+        )
+        parts = [t for t in texts if names and t.startswith(names)]
+        return [*reversed(parts), *(t for t in texts if t not in parts)]
 
     def _answers(self) -> list[str]:
         entries = iter(self.outputs)
         rows = []
         for array in self.function.outputs:
             shown = [self.shown(next(entries)) for _ in range(array.size)]
-            rows += whole(self.page.array(array, shown))
+            rows += self.parts_first(whole(self.page.array(array, shown)))
         return rows
 
     def joined(self, lines: Sequence[tuple[str, Any, str]], depth: int) -> list[Line]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from itertools import groupby
 from typing import Any
 
 import sympy as sp
@@ -26,21 +25,18 @@ from closedform.emit.backends.latex.equations import (
     reference,
     runs,
 )
-from closedform.emit.backends.latex.formulas import FITS, Printer, measure
 from closedform.emit.backends.latex.inverse import Told
-from closedform.emit.backends.latex.names import Quantities, conventional_names, element
 from closedform.emit.backends.latex.prose import (
-    Prose,
     escape,
     mixed,
     symbols_declared,
     symbols_of,
     upright,
-    written_name,
 )
-from closedform.emit.backends.latex.wide import Equation, Lines
+from closedform.emit.backends.latex.sheet import Sheet, blocks
+from closedform.emit.backends.latex.wide import Equation
 from closedform.model.derivation import Derivation, Joint, Step
-from closedform.model.functions import Array, Function
+from closedform.model.functions import Function
 from closedform.proof.prove import Proof
 
 __all__ = ["Page", "document"]
@@ -51,32 +47,17 @@ LISTED = 3
 """More equations than this that only name a symbol, such as lengths, are a list without numbers."""
 
 
-class Page:
+class Page(Sheet):
     """Collects the strings of one document."""
 
     def __init__(self, derivation: Derivation, proof: Proof):
-        self.derivation, self.proof = derivation, proof
-        self.printer = Printer({j.symbol for j in derivation.joints})
-        self.printer.written |= {n: w.latex for n, w in derivation.written.items() if w.latex}
+        super().__init__(derivation)
+        self.proof = proof
         self.numbers = Numbers(derivation.name)
         self.labels: list[list[str]] = []
         """The labels of the equations of each step."""
         self.claims = Claims(derivation, proof, self.labels)
-        self.math, self.prose = self.printer.math, Prose(derivation)
-        self.lines = Lines(self.printer, self.prose.known)
-        kept = [self.written(n) for n in (*derivation.task, *(j.name for j in derivation.joints))]
-        self.quantities = Quantities(self.printer, [upright(n) for n in kept])
-        self.symbols = {p.symbol for p in derivation.parameters}
-        self.symbols |= {s for f in derivation.functions for s in f.symbols}
-        self.printer.names |= conventional_names(derivation)
         self.algorithms: dict[str, Algorithm] = {}
-
-    def written(self, name: str) -> str:
-        """The LaTeX of a symbol that is known by its name."""
-        return written_name(self.derivation, name)
-
-    def blocks(self, equations: Sequence[Equation]) -> list[str]:
-        return blocks(equations)
 
     def algorithm(self, function: Function) -> Algorithm:
         """The algorithm of a function, which goes on where that of an earlier one ends."""
@@ -93,19 +74,6 @@ class Page:
         algorithm = self.algorithms[function.name]
         self.printer.names |= algorithm.names
         return algorithm
-
-    def model(self, function: Function) -> Function | None:
-        """The earlier function whose statements this one starts with, if there is one."""
-        functions = self.derivation.functions
-        earlier = functions[: functions.index(function)]
-        shared = [f for f in earlier if f.body and function.body[: len(f.body)] == f.body]
-        return max(shared, key=lambda f: len(f.body), default=None)
-
-    def answers(self, function: Function) -> list[sp.Symbol]:
-        """The joints that the outputs of an inverse stand for."""
-        found = [i for i in self.derivation.inverses if i.function == function.name]
-        total = sum(a.size for a in function.outputs)
-        return list(found[0].unknowns) if found and len(found[0].unknowns) == total else []
 
     def legend(self) -> list[tuple[str, str]]:
         """The abbreviated sines and cosines that have been printed so far."""
@@ -220,7 +188,10 @@ class Page:
 
     def inverse(self, function: Function) -> dict[str, Any]:
         """A function with a status for each branch."""
-        return {**self.function(function), **Told(self, function).context()}
+        told = Told(self, function, self.algorithm(function), self.after(function))
+        results = [r for r in self.proof.inverses if r.function == function.name]
+        proved = [told.proved(r) for r in results]
+        return {**self.function(function), **told.context(), "proved": proved}
 
     def singular_set(self) -> dict[str, Any]:
         """The factors that vanish, each with its name: where the rank falls, and the poles."""
@@ -249,44 +220,6 @@ class Page:
         names = function.entries
         return [e for a in function.outputs for e in self.array(a, names=names)]
 
-    def assigned(self, array: Array, locus: Mapping[sp.Symbol, sp.Expr]) -> list[Equation]:
-        """An argument and its entries, or the values of the entries on ``locus``."""
-        if not locus or all(e in locus for e in array.entries):
-            entries = [locus.get(e, e) for e in array.entries]
-            matrix = len(array.shape) == 2
-            value = sp.Matrix(*array.shape, entries) if matrix else entries
-            return self.equations(self.written(array.name), value)
-        return [x for e in array.entries if e in locus for x in self.equations(e, locus[e])]
-
-    def array(
-        self,
-        array: Array,
-        entries: Sequence[sp.Expr] | None = None,
-        names: Sequence[sp.Symbol] = (),
-    ) -> list[Equation]:
-        """The equations of a result: a matrix, or a row for each coordinate under its name."""
-        entries = array.entries if entries is None else entries
-        name = self.written(array.name)
-        if len(array.shape) > 1:
-            shape = array.shape[-2:]
-            parts = sp.Matrix(array.size // sp.prod(shape), sp.prod(shape), entries)
-            marks = [f"^{{({k + 1})}}" if len(array.shape) > 2 else "" for k in range(parts.rows)]
-            return [
-                equation
-                for k, mark in enumerate(marks)
-                for equation in self.equations(name + mark, parts.row(k).reshape(*shape))
-            ]
-        left = [element(name, str(k + 1)) if array.shape else name for k in range(array.size)]
-        for known, coordinates in (("q", self.derivation.actuated), ("x", self.derivation.task)):
-            if array.name == known and len(coordinates) == array.size:
-                left = [self.written(str(j)) for j in coordinates]
-        left = [self.math(n) for n in names] or left
-        return [e for n, v in zip(left, entries, strict=True) for e in self.equations(n, v)]
-
-    def equations(self, lhs: Any, value: Any) -> list[Equation]:
-        """A value as one equation or, if it is too wide, as several."""
-        return self.lines.equations(lhs if isinstance(lhs, str) else self.math(lhs), value)
-
 
 def indexed(title: str) -> str:
     """The entry of a step in the index: ``inverse!the elbow`` for "Inverse: the elbow"."""
@@ -302,39 +235,6 @@ def decimal(value: sp.Rational) -> str:
 
 def _key(function: Function) -> str:
     return function.name.replace("_", "-")
-
-
-def blocks(equations: Sequence[Numbered | Equation]) -> list[str]:
-    """Neighbours that fit on a line as one aligned block, longer equations as paragraphs."""
-    done: list[str] = []
-    lines = [e if isinstance(e, Numbered) else Numbered(*e) for e in equations]
-    for (fits, numbered), group in groupby(lines, lambda e: (fitting(e), e.numbered)):
-        if fits:
-            rows = " \\\\\n".join(aligned(e) for e in group)
-            kind = "align" if numbered else "align*"
-            done.append(f"\\display\n\\begin{{{kind}}}\n{rows}\n\\end{{{kind}}}")
-        else:
-            done += [
-                rf"\longequation{{{e.label}}}{{{e.text}}}"
-                if e.label
-                else rf"\longformula{{{e.text}}}"
-                for e in group
-            ]
-    return done
-
-
-def aligned(equation: Numbered) -> str:
-    """A line of an aligned block; what goes on from the line before has nothing on the left."""
-    left, right = equation.left, equation.right
-    text = f"{left} &= {right}" if left else rf"&\quad {right}"
-    if equation.label:
-        return rf"{text} \label{{{equation.label}}}"
-    return rf"{text} \notag" if equation.numbered else text
-
-
-def fitting(equation: Numbered) -> bool:
-    """Whether an equation fits on a line, with its number."""
-    return measure(equation.left + equation.right) <= FITS - 6 * bool(equation.label)
 
 
 def formulas(texts: Sequence[str]) -> str:
@@ -370,7 +270,7 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
         "claims": page.claims.rows(),
     }  # fmt: skip
     legend = page.legend()
-    symbols.require_distinct(derivation, page.math, legend)
+    symbols.require_distinct(derivation, page.math, legend, page.printer.names)
     return context | {
         "legend": ",\\quad ".join(map(" = ".join, legend)),
         "symbols": symbols.table(derivation, page.numbers, text),

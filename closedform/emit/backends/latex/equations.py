@@ -104,7 +104,8 @@ class Numbers:
 
 def canonical(text: str) -> str:
     """A formula with braces around every script and no spaces: ``R_1`` is ``R_{1}``."""
-    return re.sub(r"(?<=[_^])(\\[A-Za-z]+|\w)", r"{\1}", text.strip()).replace(" ", "")
+    text = re.sub(r"(?<=[_^])(\\[A-Za-z]+|\w)", r"{\1}", text.strip())
+    return re.sub(r"(\\(?:math[a-z]+|dot|hat)) (\w)", r"\1{\2}", text).replace(" ", "")
 
 
 def without_power(name: str) -> str:

@@ -17,7 +17,7 @@ from sympy.printing.latex import LatexPrinter
 
 from closedform.emit.backends.latex.prose import GREEK, loosen, spaced, symbol_name
 
-FITS = 80.0
+FITS = 76.0
 """The widest formula that is set on one line, in average letters of 10 pt."""
 
 SIGN = re.compile(r"sigma(_|$)")
@@ -56,11 +56,10 @@ class Printer(LatexPrinter):  # type: ignore[misc]
     # Sums
 
     def _as_ordered_terms(self, expr: sp.Add, order: str | None = None) -> list[sp.Expr]:
-        """The terms in SymPy's order, but a positive one first, if there is any."""
+        """The terms in SymPy's order, but if that starts with a minus, the positive ones first."""
         terms: list[sp.Expr] = super()._as_ordered_terms(expr, order=order)
         if _negative(terms[0]):
-            k = next((k for k, t in enumerate(terms) if not _negative(t)), 0)
-            terms.insert(0, terms.pop(k))
+            terms.sort(key=_negative)
         return terms
 
     # Products
@@ -143,7 +142,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         if base.is_Symbol:
             text = self._print_Symbol(base)
             kind = 1 if SIGN.match(base.name) else 2
-            greek = re.sub(r"\d.*|_.*", "", base.name) in GREEK
+            greek = re.sub(r"\d.*|_.*", "", base.name).strip("\\ ") in GREEK
             return (kind, kind == 2 and greek, natural(text), str(power))
         if isinstance(base, TRIGONOMETRIC):
             text = self._print(base)

@@ -10,16 +10,17 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import sympy as sp
 
 from closedform.algebra.formulas import PRINTED, formula
-from closedform.emit.backends.latex.algorithm import whole
+from closedform.emit.backends.latex.algorithm import Algorithm, whole
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.lemmas import label
 from closedform.emit.backends.latex.names import MATRIX_ENTRY
 from closedform.emit.backends.latex.prose import escape, loosen, upright
+from closedform.emit.backends.latex.sheet import Sheet
 from closedform.model.derivation import Solved
 from closedform.model.functions import (
     Array,
@@ -33,9 +34,6 @@ from closedform.model.functions import (
 from closedform.model.inverse import Degenerate, Inverse, Link, Rank
 from closedform.model.lemma import Lemma
 from closedform.proof.inverse import InverseResult
-
-if TYPE_CHECKING:
-    from closedform.emit.backends.latex.article import Page
 
 FEW = 4
 """More parts of the target than that are not listed."""
@@ -60,20 +58,27 @@ def solvings(inverse: Inverse, solved: Sequence[Solved]) -> list[Solving]:
             for link in inverse.links
             if link.lemma
         ]
-    return [Solving(s.lemma, (s.equation,), (s.unknown,)) for s in solved]
+    found = []
+    for s in solved:
+        others = {o.unknown for o in solved if o is not s}
+        joints = [u for u in s.lemma.solution if u in inverse.unknowns and u not in others]
+        unknowns = tuple(dict.fromkeys((s.unknown, *joints)))
+        equations = s.lemma.equations if len(unknowns) > 1 else (s.equation,)
+        found.append(Solving(s.lemma, equations, unknowns))
+    return found
 
 
 class Told:
     """The text of one function that has a status for each branch."""
 
-    def __init__(self, page: Page, function: Function):
+    def __init__(self, page: Sheet, function: Function, algorithm: Algorithm, after: str):
         self.page, self.function = page, function
         derivation = page.derivation
         found = [i for i in derivation.inverses if i.function == function.name]
         self.inverse = found[0] if found else None
         solved = [s for s in derivation.solved if s.function == function.name]
         self.solvings = solvings(self.inverse, solved) if self.inverse else []
-        self.algorithm = page.algorithm(function)
+        self.algorithm, self.after = algorithm, after
         self.inputs = set(function.symbols)
         self.told: set[sp.Symbol] = set()
         """Names that a step has defined."""
@@ -85,7 +90,7 @@ class Told:
         inverse = self.inverse
         return {
             "given": self.given(),
-            "after": self.page.after(function),
+            "after": self.after,
             "stages": [self.stage(k, s) for k, s in enumerate(self.solvings, 1)],
             "order": self.order(),
             "lines": lines,
@@ -99,7 +104,6 @@ class Told:
             "continua": [self.continuum(inverse, c) for c in inverse.degenerate if c.free]
             if inverse
             else [],
-            "proved": [self.proved(r) for r in page.proof.inverses if r.function == function.name],
         }
 
     # The derivation
@@ -145,7 +149,7 @@ class Told:
             "lemma": page.prose(solving.lemma.name),
             "label": label(solving.lemma.name),
             "matrix": self.matrix(shown),
-            "statement": "" if earlier else loosen(solving.lemma.statement),
+            "statement": [] if earlier else statement(solving.lemma),
             "count": self.count(solving),
             "solution": page.blocks(self.solution(solving)),
             "exists": self.exists(solving),
@@ -231,13 +235,13 @@ class Told:
         before = [f"${page.math(j)}$" for j in sorted(joints, key=order.index)]
         where = self.parts(parts)
         several = len(equations) > 1
-        subject = "Equations" if several else "An equation"
-        start = f"{subject} of the forward map" + (f" for {where}" if where else "")
-        verb = "hold" if several else "holds"
+        source = f"From {where} of the forward map" if where else "From the forward map"
+        verb = "follow equations" if several else "follows an equation"
         unknowns = enumeration([f"${page.math(u)}$" for u in solving.unknowns])
         if before:
-            return f"{start} {verb}, besides {enumeration(before)}, only {unknowns}:"
-        return f"{start} {verb} no other unknown than {unknowns}:"
+            known = "is" if len(before) == 1 else "are"
+            return f"{source} {verb} in {unknowns}, where {enumeration(before)} {known} known:"
+        return f"{source} {verb} in {unknowns} alone:"
 
     def explicit(self, value: sp.Expr) -> sp.Expr:
         """An expression in the target and the joints."""
@@ -458,6 +462,12 @@ class Told:
             for _, chosen in function.cases()
             for name in names
         }
+
+
+def statement(lemma: Lemma) -> list[str]:
+    """The statement of a lemma: what it solves, and the solution on a line of its own."""
+    problem, arrow, solution = loosen(lemma.statement).partition(r"\;\Rightarrow\;")
+    return [problem.strip(), rf"\Rightarrow\quad {solution.strip()}"] if arrow else [problem]
 
 
 def block(array: Array) -> list[sp.Expr]:

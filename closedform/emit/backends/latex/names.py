@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.emit.backends.latex.formulas import Printer, measure
-from closedform.emit.backends.latex.prose import GREEK
+from closedform.emit.backends.latex.prose import GREEK, symbol_name
 from closedform.model.derivation import Derivation
 from closedform.model.functions import real
 
@@ -89,18 +89,23 @@ def is_word(name: str) -> bool:
     return True
 
 
-def program_name(name: str) -> str | None:
-    """The LaTeX of an entry of a named matrix: ``R1_23`` is the entry of the first R."""
+def program_name(symbol: sp.Symbol, value: sp.Expr) -> str | None:
+    """The LaTeX of an entry of a matrix, as in ``R1_23``, or of a square, as in ``r2``."""
+    name = str(symbol.name)
     if entry := MATRIX_ENTRY.fullmatch(name):
         return rf"{entry[1]}^{{({entry[2]})}}_{{{entry[3]}{entry[4]}}}"
+    squares = value.is_Add and all(t.is_Pow and t.exp == 2 for t in value.args)
+    if squares and re.fullmatch("[a-z]2", name):
+        return f"{name[0]}^{{2}}"
     return None
 
 
 def conventional_names(derivation: Derivation) -> dict[sp.Symbol, str]:
     """Names that do not follow from those of symbols.
 
-    The entries of a pose are those of its rotation and its position.  An auxiliary angle that is
-    called by a word is a phi with the number of its place.
+    The entries of a pose are those of its rotation and its position, and the targets of a chain
+    those of the task; an angle that is called by a word is psi.  An auxiliary angle of that kind is
+    phi, with the number of its place if there are several.
     """
     names: dict[sp.Symbol, str] = {}
     for array in (a for f in derivation.functions for a in f.inputs if a.shape == (4, 4)):
@@ -108,6 +113,13 @@ def conventional_names(derivation: Derivation) -> dict[sp.Symbol, str]:
             for j in range(3):
                 names[array.entries[4 * i + j]] = f"R_{{{i + 1}{j + 1}}}"
             names[array.entries[4 * i + 3]] = f"p_{{{'xyz'[i]}}}"
+    used = {s.name for f in derivation.functions for s in f.symbols}
+    used |= {p.name for p in derivation.parameters} | {j.name for j in derivation.joints}
+    for target in (s for f in derivation.functions if f.has_status for s in f.symbols):
+        coordinate = str(target.name).removeprefix("x_")
+        if coordinate != target.name and coordinate in derivation.task and coordinate not in used:
+            free = is_word(coordinate) and not {"psi", "yaw"} & used
+            names[target] = r"\psi" if free else symbol_name(coordinate)
     angles = [a for i in derivation.inverses for a in i.rank.defined if is_word(str(a.name))]
     for k, angle in enumerate(dict.fromkeys(angles), 1):
         names[angle] = r"\varphi" if len(angles) == 1 else rf"\varphi_{{{k}}}"

@@ -118,24 +118,41 @@ def escape(text: str) -> str:
     return "".join(parts)
 
 
-UNBROKEN = 140
-"""A fraction in a formula with more characters than this may be wider than its column."""
-
-
 def mixed(text: str) -> str:
-    """Text with formulas between dollar signs; a formula that is a matrix shrinks to fit."""
+    """Text with formulas between dollar signs; a matrix or a wide fraction shrinks to fit."""
     parts = text.split("$")
     for i, part in enumerate(parts):
         formula = "".join(f"{UNICODE.get(c, c)} " if c in UNICODE else c for c in part)
-        formula = rf"$\displaystyle {loosen(formula)}$"
-        wide = len(parts) == 3 and r"\frac" in part and len(part) > UNBROKEN
-        if wide or (
-            part.count(r"\begin") == 1
-            and re.fullmatch(r"\\begin\{(\w*matrix)\}.*\\end\{\1\}", part)
+        stiff = _widest_fraction(part) > STIFF
+        if part.count(r"\begin") == 1 and re.fullmatch(
+            r"\\begin\{(\w*matrix)\}.*\\end\{\1\}", part
         ):
-            formula = rf"\fit{{{formula}}}"
+            stiff = True
+        formula = rf"$\displaystyle {formula if stiff else loosen(formula)}$"
+        formula = rf"\fit{{{formula}}}" if stiff else formula
         parts[i] = formula if i % 2 else escape(part)
     return "".join(parts)
+
+
+STIFF = 36
+"""The most letters of a fraction that fits into a column; TeX cannot break it."""
+
+
+def _widest_fraction(formula: str) -> int:
+    """The number of letters above or below the line of the widest fraction."""
+    widest = 0
+    for found in re.finditer(r"\\frac(?=\{)", formula):
+        end = found.end()
+        for _ in range(2):
+            start, depth = end, 0
+            while end < len(formula):
+                depth += {"{": 1, "}": -1}.get(formula[end], 0)
+                end += 1
+                if depth == 0:
+                    break
+            inner = re.sub(r"\\(?:left|right|mathrm)|[\s{}^_]", "", formula[start:end])
+            widest = max(widest, len(re.findall(r"\\[A-Za-z]+|.", inner)))
+    return widest
 
 
 class Prose:
@@ -145,7 +162,8 @@ class Prose:
         functions = derivation.functions
         symbols = [p.symbol for p in derivation.parameters] + [j.symbol for j in derivation.joints]
         symbols += [s for f in functions for s in f.symbols]
-        symbols += [s.symbol for f in functions for s in f.body if isinstance(s, (Let, Bound))]
+        made = [s.symbol for f in functions for s in f.body if isinstance(s, (Let, Bound))]
+        symbols += [s for s in made if not re.fullmatch("[a-z][a-w]", s.name)]  # "up" is a word
         symbols += [s for step in derivation.steps for s in symbols_of(step)]
         names = self.names = {str(s) for s in symbols} | set(derivation.task)
         self.derivation = derivation

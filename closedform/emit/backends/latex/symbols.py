@@ -8,7 +8,7 @@ not have two forms.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator
 from dataclasses import dataclass, field
 
 import sympy as sp
@@ -55,8 +55,16 @@ class Forms:
                     yield f"{form} is written for {' and for '.join(sorted(names))}"
 
 
-def forms_of(derivation: Derivation, math: Printed, legend: Iterable[tuple[str, str]]) -> Forms:
-    """Every symbol that the formulas of a derivation contain, as ``math`` prints it."""
+def forms_of(
+    derivation: Derivation,
+    math: Printed,
+    legend: Iterable[tuple[str, str]],
+    local: Container[sp.Symbol] = (),
+) -> Forms:
+    """Every symbol that the formulas of a derivation contain, as ``math`` prints it.
+
+    An algorithm has ``local`` names of its own, which mean nothing beside it.
+    """
     forms = Forms()
     joints = {j.symbol for j in derivation.joints}
     targets = {s for f in derivation.functions for s in f.symbols} - joints
@@ -82,21 +90,29 @@ def forms_of(derivation: Derivation, math: Printed, legend: Iterable[tuple[str, 
     for function in derivation.functions:
         if function.name != "skeleton":
             for statement in function.body:
-                if isinstance(statement, Let | Bound):
+                if isinstance(statement, Let | Bound) and statement.symbol not in local:
                     add(statement.symbol)
     return forms
 
 
-def clashes(derivation: Derivation, math: Printed, legend: Iterable[tuple[str, str]]) -> list[str]:
+def clashes(
+    derivation: Derivation,
+    math: Printed,
+    legend: Iterable[tuple[str, str]],
+    local: Container[sp.Symbol] = (),
+) -> list[str]:
     """What a reader would mistake: two symbols that look alike, one symbol in two forms."""
-    return sorted(set(forms_of(derivation, math, legend).clashes()))
+    return sorted(set(forms_of(derivation, math, legend, local).clashes()))
 
 
 def require_distinct(
-    derivation: Derivation, math: Printed, legend: Iterable[tuple[str, str]]
+    derivation: Derivation,
+    math: Printed,
+    legend: Iterable[tuple[str, str]],
+    local: Container[sp.Symbol] = (),
 ) -> None:
     """Raise ``ValueError`` if the symbols of an article can be mistaken for each other."""
-    if found := clashes(derivation, math, legend):
+    if found := clashes(derivation, math, legend, local):
         raise ValueError(
             f"the symbols of the article cannot be told apart: {'; '.join(found)}.  Write one of "
             f"them in another way, with d.write(name, latex)"

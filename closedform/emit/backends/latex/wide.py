@@ -22,9 +22,13 @@ from closedform.model.functions import real
 Equation = tuple[str, str]
 """Both sides; a line that continues the one before has no left side."""
 
-SIMPLIFIED = 160
+GAIN = 1.5
+"""By how much another form of an expression has to be narrower."""
+PRODUCT = 3.0
+"""How much wider than a sum a product may be."""
+SIMPLIFIED = 80
 """The largest number of operations of an expression that is tried in other forms."""
-FACTORED, FACTORED_SYMBOLS = 40, 8
+FACTORED, FACTORED_SYMBOLS = 30, 7
 """The largest numbers of operations and of symbols of a sum that is factored."""
 TERMS = 8
 """A polynomial with fewer terms is printed as it is."""
@@ -39,14 +43,19 @@ class Lines:
 
     def __init__(self, printer: Printer, taken: Iterable[str]):
         self.printer, self.taken = printer, frozenset(taken)
+        self.room = FITS
         self.parts: dict[sp.Basic, sp.Symbol] = {}
+        self._widths: dict[Any, float] = {}
         self._tidied: dict[sp.Basic, sp.Basic] = {}
 
     def clear(self) -> None:
         self.parts.clear()
+        self._widths.clear()
 
     def width(self, value: Any) -> float:
-        return measure(self.printer.math(value))
+        if value not in self._widths:
+            self._widths[value] = measure(self.printer.math(value))
+        return self._widths[value]
 
     def equations(self, left: str, value: Any) -> list[Equation]:
         """A value as one equation or, if it is too wide, as several."""
@@ -56,13 +65,15 @@ class Lines:
             return [(left, "(" + r",\ ".join(map(self.printer.math, value)) + ")")]
         if isinstance(value, sp.MatrixBase):
             return self._matrix(left, value)
+        if isinstance(value, sp.Eq) and isinstance(value.lhs, sp.Expr):
+            return self._equation(left, value)
         if not isinstance(value, sp.Expr):
             return [(left, self.printer.math(value))]
         value = self.tidy(value)
         if inner := self._unbreakable(value):
             return self._with_part(left, value, inner)
         text = self.printer.math(value)
-        room = FITS - measure(left) - 4
+        room = self.room - measure(left) - 4
         if measure(text) <= room:
             return [(left, text)]
         if isinstance(value, sp.Piecewise):
@@ -74,10 +85,23 @@ class Lines:
             return self._with_part(left, value, inner)
         return self._broken(left, value, room)
 
+    def _equation(self, left: str, value: sp.Eq) -> list[Equation]:
+        """A value that is an equation itself: its right side stands behind its left."""
+        rows = self.equations(left, value.lhs)
+        last = next((k for k, (side, _) in enumerate(rows[1:]) if side), len(rows) - 1)
+        rows[last] = rows[last][0], f"{rows[last][1]} = {self.printer.math(value.rhs)}"
+        return rows
+
     def tidy(self, value: sp.Expr) -> sp.Expr:
         """The narrowest of some equal forms: common factors in front, one fraction, factored."""
         if value not in self._tidied:
-            self._tidied[value] = min(self._forms(value), key=self.width)
+
+            def cost(form: sp.Expr) -> float:
+                return self.width(form) - (PRODUCT if form.is_Mul else 0)
+
+            best = min(self._forms(value), key=cost)
+            narrower = cost(best) < cost(value) - GAIN
+            self._tidied[value] = best if narrower else value
         return self._tidied[value]
 
     def _forms(self, value: sp.Expr) -> Iterator[sp.Expr]:
@@ -186,8 +210,7 @@ class Lines:
     def _broken(self, left: str, value: sp.Expr, room: float) -> list[Equation]:
         """A sum in several lines, each of which starts with the sign of a term."""
         terms = self.printer._as_ordered_terms(value) if value.is_Add else [value]
-        lines: list[str] = []
-        line = ""
+        lines, line = list[str](), ""
         for term in terms:
             text = self.printer.math(term)
             text = text if (not line and not lines) or text.startswith("-") else f"+ {text}"

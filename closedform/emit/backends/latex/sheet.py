@@ -1,0 +1,135 @@
+"""The names, sentences and displays of a mechanism, for all that is printed of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import sympy as sp
+
+from closedform.emit.backends.latex.equations import Numbered
+from closedform.emit.backends.latex.formulas import FITS, Printer, measure
+from closedform.emit.backends.latex.names import Quantities, conventional_names, element
+from closedform.emit.backends.latex.prose import Prose, upright, written_name
+from closedform.emit.backends.latex.wide import Equation, Lines
+from closedform.model.derivation import Derivation
+from closedform.model.functions import Array, Function
+
+
+class Sheet:
+    """Prints symbols, expressions, sentences and equations of a mechanism."""
+
+    def __init__(self, derivation: Derivation):
+        self.derivation = derivation
+        self.printer = Printer({j.symbol for j in derivation.joints})
+        self.printer.written |= {n: w.latex for n, w in derivation.written.items() if w.latex}
+        self.math, self.prose = self.printer.math, Prose(derivation)
+        self.lines = Lines(self.printer, self.prose.known)
+        kept = [self.written(n) for n in (*derivation.task, *(j.name for j in derivation.joints))]
+        self.quantities = Quantities(self.printer, [upright(n) for n in kept])
+        self.symbols = {p.symbol for p in derivation.parameters}
+        self.symbols |= {s for f in derivation.functions for s in f.symbols}
+        self.printer.names |= conventional_names(derivation)
+
+    def written(self, name: str) -> str:
+        """The LaTeX of a symbol that is known by its name."""
+        return written_name(self.derivation, name)
+
+    def blocks(self, equations: Sequence[Equation]) -> list[str]:
+        return blocks(equations)
+
+    def model(self, function: Function) -> Function | None:
+        """The earlier function whose statements this one starts with, if there is one."""
+        functions = self.derivation.functions
+        earlier = functions[: functions.index(function)]
+        shared = [f for f in earlier if f.body and function.body[: len(f.body)] == f.body]
+        return max(shared, key=lambda f: len(f.body), default=None)
+
+    def answers(self, function: Function) -> list[sp.Symbol]:
+        """The joints that the outputs of an inverse stand for."""
+        found = [i for i in self.derivation.inverses if i.function == function.name]
+        total = sum(a.size for a in function.outputs)
+        return list(found[0].unknowns) if found and len(found[0].unknowns) == total else []
+
+    def assigned(self, array: Array, locus: Mapping[sp.Symbol, sp.Expr]) -> list[Equation]:
+        """An argument and its entries, or the values of the entries on ``locus``."""
+        if not locus or all(e in locus for e in array.entries):
+            entries = [locus.get(e, e) for e in array.entries]
+            matrix = len(array.shape) == 2
+            value = sp.Matrix(*array.shape, entries) if matrix else entries
+            return self.equations(self.written(array.name), value)
+        return [x for e in array.entries if e in locus for x in self.equations(e, locus[e])]
+
+    def array(
+        self,
+        array: Array,
+        entries: Sequence[sp.Expr] | None = None,
+        names: Sequence[sp.Symbol] = (),
+    ) -> list[Equation]:
+        """The equations of a result: a matrix, or a row for each coordinate under its name."""
+        entries = array.entries if entries is None else entries
+        name = self.written(array.name)
+        if len(array.shape) > 1:
+            shape = array.shape[-2:]
+            parts = sp.Matrix(array.size // sp.prod(shape), sp.prod(shape), entries)
+            marks = [f"^{{({k + 1})}}" if len(array.shape) > 2 else "" for k in range(parts.rows)]
+            return [
+                equation
+                for k, mark in enumerate(marks)
+                for equation in self.equations(name + mark, parts.row(k).reshape(*shape))
+            ]
+        left = [element(name, str(k + 1)) if array.shape else name for k in range(array.size)]
+        for known, coordinates in (("q", self.derivation.actuated), ("x", self.derivation.task)):
+            if array.name == known and len(coordinates) == array.size:
+                left = [self.written(str(j)) for j in coordinates]
+        left = [self.math(n) for n in names] or left
+        return [e for n, v in zip(left, entries, strict=True) for e in self.equations(n, v)]
+
+    def equations(self, lhs: Any, value: Any) -> list[Equation]:
+        """A value as one equation or, if it is too wide, as several."""
+        return self.lines.equations(lhs if isinstance(lhs, str) else self.math(lhs), value)
+
+
+def blocks(equations: Sequence[Numbered | Equation]) -> list[str]:
+    """Neighbours that fit beside each other as one aligned block, longer ones as paragraphs."""
+    done: list[str] = []
+    group: list[Numbered] = []
+
+    def flush() -> None:
+        if group:
+            rows = " \\\\\n".join(map(aligned, group))
+            kind = "align" if group[0].numbered else "align*"
+            done.append(f"\\display\n\\begin{{{kind}}}\n{rows}\n\\end{{{kind}}}")
+        group.clear()
+
+    for e in (e if isinstance(e, Numbered) else Numbered(*e) for e in equations):
+        if not fitting(e):
+            flush()
+            label = rf"\longequation{{{e.label}}}" if e.label else r"\longformula"
+            done.append(rf"{label}{{{e.text}}}")
+            continue
+        if group and (e.numbered != group[0].numbered or (e.left and not beside([*group, e]))):
+            flush()
+        group.append(e)
+    flush()
+    return done
+
+
+def beside(group: Sequence[Numbered]) -> bool:
+    """Whether the columns of an aligned block fit beside each other, with the numbers."""
+    width = max(measure(e.left) for e in group) + max(measure(e.right) for e in group)
+    return width <= FITS - 6 * any(e.label for e in group)
+
+
+def aligned(equation: Numbered) -> str:
+    """A line of an aligned block; what goes on from the line before has nothing on the left."""
+    left, right = equation.left, equation.right
+    text = f"{left} &= {right}" if left else rf"&\quad {right}"
+    if equation.label:
+        return rf"{text} \label{{{equation.label}}}"
+    return rf"{text} \notag" if equation.numbered else text
+
+
+def fitting(equation: Numbered) -> bool:
+    """Whether an equation fits on a line, with its number."""
+    return measure(equation.left + equation.right) <= FITS - 6 * bool(equation.label)

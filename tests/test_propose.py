@@ -219,7 +219,7 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
                 (b, pi / 3, 0, t2),
                 (c, 0, 0, t3),
             ],
-            "of axes 1, 2 and 3 no two neighbours are parallel or meet",
+            "no two neighbours among axes 1, 2 and 3 are parallel or meet",
         ),
         (
             "t1 t2 t3 t4 t5",

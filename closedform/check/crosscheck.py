@@ -390,6 +390,8 @@ class _Batch:
         nearest = np.nanmin(truth.gap(solutions, posture), initial=np.inf)
         if np.isnan(solutions).all() and _leaves_the_workspace(truth, backend, one):
             return
+        if truth.undetermined(posture, parameters) and not np.isnan(solutions).all():
+            return
         allowed = backend.eps * _spread(parameters) / condition
         if nearest > 1e3 * allowed:  # an ulp of the target turns a nearly free joint far
             allowed += _movement(truth, backend, one, solutions)

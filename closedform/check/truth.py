@@ -120,7 +120,7 @@ class Solutions:
         self._sliding = np.array([u in slides for u in inverse.unknowns])
         self._turns = np.array([x in inverse.angles for x in function.symbols])
         sized = {*parameters, *slides}
-        places = (3, 7, 11) if len(function.symbols) >= 16 else ()
+        places = (3, 7, 11) if function.inputs[0].shape == (4, 4) else ()
         self._sized = [
             np.array([bool(free_symbols([e]) & sized) or k in places for k, e in enumerate(m)])
             for m in maps

@@ -188,8 +188,8 @@ class SubproblemMaker(Maker):
         if one.end == sp.eye(3) and not parallel(two):
             return self._parallel_first(one, two, three)
         raise NoChainError(
-            f"of axes {one.number}, {two.number} and {three.number} no two neighbours are parallel "
-            f"or meet: the tangent of half an angle has an equation of degree 4",
+            f"no two neighbours among axes {one.number}, {two.number} and {three.number} are "
+            f"parallel or meet: the tangent of half an angle has an equation of degree 4",
             "No lemma solves an equation of degree 4; use ssik for a numeric inverse.",
             degree=4,
         )

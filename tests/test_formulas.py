@@ -12,6 +12,7 @@ import sympy as sp
 from closedform.algebra.formulas import FormulaError, formula, number
 from closedform.cli.commands import main
 from closedform.emit.backends.latex.article import Page
+from closedform.emit.backends.latex.inverse import Told
 from closedform.lemmas.chain import Chain
 from closedform.mechanics.arm import from_dh, from_screws
 from closedform.model.derivation import Derivation, Paper
@@ -328,9 +329,10 @@ def test_a_kept_proof_is_data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     d.function("f", "F.", {"q": [t]}, {"x": [L * t]})
     page = Page(d, Proof("toy", "toy", (), 0, ()))
     result = InverseResult("f", 1, 0, 1, "", ("L - sqrt(t**2 + 0.5)",), ())
-    assert r"\sqrt{t^{2} + \frac{1}{2}}" in page.proved(result)["where"]
+    told = Told(page, d["f"], page.algorithm(d["f"]), "")
+    assert r"\sqrt{t^{2} + \frac{1}{2}}" in told.proved(result)["where"]
     with pytest.raises(FormulaError):
-        page.proved(replace(result, assumptions=(OPEN,)))
+        told.proved(replace(result, assumptions=(OPEN,)))
     assert not (tmp_path / MADE).exists()
 
 

@@ -164,7 +164,7 @@ def python_tokens(code: str) -> list[tuple[int, str]]:
 
 
 ESCAPED = {"textbackslash", "textasciitilde", "textasciicircum", "backslash", "sim", "wedge"}
-ESCAPED |= {*r"\&%$#_{}", "mathrm", "textquotedbl", "pm", "operatorname"}
+ESCAPED |= {*r"\&%$#_{},", "mathrm", "textquotedbl", "pm", "operatorname"}
 
 
 def tex_commands(code: str) -> list[str]:

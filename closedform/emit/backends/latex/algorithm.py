@@ -37,7 +37,7 @@ INLINE = 10.0
 """The widest value that stands in place of a name that is a word."""
 ONCE = 36.0
 """The same, for a name that occurs once."""
-INDENTED = 8.0
+INDENTED = 10.0
 """How much narrower the lines of an algorithm are than a page."""
 STATED = 3
 """A condition with more equations than that is given in words."""
@@ -400,7 +400,7 @@ class Algorithm:
         rows = []
         for array in self.function.outputs:
             shown = [self.shown(next(entries)) for _ in range(array.size)]
-            rows += self.parts_first(whole(self.page.array(array, shown)))
+            rows += self.parts_first(whole(self.page.array(array, shown, self.function.entries)))
         return rows
 
     def joined(self, lines: Sequence[tuple[str, Any, str]], depth: int) -> list[Line]:

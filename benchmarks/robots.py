@@ -31,12 +31,13 @@ HEAD = """\
 The inverses that `closedform new` proposes for the tables in `benchmarks/arms`, and that the prover
 accepts.
 
-The lengths are nominal and come from the sources. They are numbers here, so what is proved is
-proved for these numbers; the derivations `puma560`, `ur_arm`, `stanford_arm` and `scara` have the
-lengths as parameters, and their proofs hold for any lengths. A robot that was calibrated has
-other lengths, and its axes are not exactly parallel. A joint that is given is an input of the
-inverse. The seconds are those of one core for reading the table, proposing the chain and proving
-the inverse, without printing. This page is written by `python -m benchmarks.robots`.
+The lengths are nominal; compare them with the linked source before you rely on one. They are
+numbers here, so what is proved is proved for these numbers; the derivations `puma560`, `ur_arm`,
+`stanford_arm` and `scara` have the lengths as parameters, and their proofs hold for any lengths. A
+robot that was calibrated has other lengths, and its axes are not exactly parallel. A joint that is
+given is an input of the inverse. The seconds are those of one core for reading the table, proposing
+the chain and proving the inverse, without printing. This page is written by `python -m
+benchmarks.robots`.
 
 | robot | structure | branches | lemmas | seconds |
 |---|---|---:|---|---:|

@@ -230,7 +230,8 @@ class Lines:
         cells = [[self.printer.math(e) for e in matrix.row(i)] for i in range(matrix.rows)]
         base, named = left.partition("=")[0].strip(), []
         while (
-            measure(left) + sum(max(map(measure, c)) + 2 for c in zip(*cells, strict=True)) > FITS
+            measure(left) + sum(max(map(measure, c)) + 2 for c in zip(*cells, strict=True))
+            > self.room
         ):
             widest, i, j = max(
                 (measure(c), -i, -j) for i, row in enumerate(cells) for j, c in enumerate(row)

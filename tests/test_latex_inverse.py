@@ -97,7 +97,7 @@ def test_each_joint_is_solved_in_a_step_with_its_lemma(name: str) -> None:
     stages = context["stages"]
     unknowns = {u for s in text.solvings for u in s.unknowns}
     assert text.inverse is not None
-    assert set(text.inverse.unknowns) <= unknowns | set(text.inverse.defined)
+    assert set(text.inverse.unknowns) <= unknowns | set(text.inverse.rank.defined)
     for stage, solving in zip(stages, text.solvings, strict=True):
         assert stage["from"].startswith("From")
         assert stage["lemma"]

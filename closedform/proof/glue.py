@@ -142,7 +142,8 @@ class _Chain:
     def _matches_follow(self) -> None:
         """Prove that no posture is refused because its image does not match."""
         place = f"{self.where}: what the target is compared with differs from the forward map"
-        require(sp.Matrix([self.posture(e) for e in self.matches]), (), place)
+        if self.matches:
+            require(sp.Matrix([self.posture(e) for e in self.matches]), (), place)
 
     def _compared_alone(self) -> bool:
         """Whether comparisons and lemmas without relations determine the target."""

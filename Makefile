@@ -156,13 +156,13 @@ build/pdf/%.pdf: generated/latex/%.tex build/derived.txt
 	@echo $@
 
 # The index is made between two passes, and its pages need one more for the contents.
-book: figures build/derived.txt  ## compile the book of all mechanisms, build/pdf/closedform.pdf
+book: figures build/derived.txt  ## compile the book of all mechanisms, build/book/closedform.pdf
 	$(TEX)
 	@for pass in 1 2; do $(call PDFLATEX,generated/latex/closedform.tex,closedform); done
 	@cd build/pdf/unfinished && makeindex -q closedform.idx
 	@for pass in 1 2; do $(call PDFLATEX,generated/latex/closedform.tex,closedform); done
-	@mv build/pdf/unfinished/closedform.pdf build/pdf/closedform.pdf
-	@echo build/pdf/closedform.pdf
+	@mkdir -p build/book && mv build/pdf/unfinished/closedform.pdf build/book/closedform.pdf
+	@echo build/book/closedform.pdf
 
 bench: all  ## time the generated code and the installed peers; writes benchmarks/RESULTS.md
 	$(BIN)/python -m benchmarks $(ARGS)

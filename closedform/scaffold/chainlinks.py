@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.mechanics.arm import Serial
-
-Z = sp.Matrix([0, 0, 1])
+from closedform.mechanics.frames import homogeneous, inverse
+from closedform.scaffold.maker import Z
 
 
 @dataclass(frozen=True)
@@ -118,20 +118,15 @@ def parallel(single: Single) -> bool:
 
 
 def _motion(single: Single) -> sp.Matrix:
-    motion = sp.diag(single.end, 1)
-    motion[:3, 3] = single.shift
-    return motion
+    return homogeneous(single.end, tuple(single.shift))
 
 
 def _inverse(motion: sp.Matrix) -> sp.Matrix:
-    R = motion[:3, :3].T
-    found = sp.diag(R, 1)
-    found[:3, 3] = (-R * motion[:3, 3]).applyfunc(sp.expand)
-    return found
+    return inverse(motion).applyfunc(sp.expand)
 
 
 def _simplified(motion: sp.Matrix) -> sp.Matrix:
     return motion.applyfunc(lambda e: sp.trigsimp(sp.expand(e)) if e.has(sp.sin, sp.cos) else e)
 
 
-__all__ = ["Single", "Singles", "Z", "parallel", "singles"]
+__all__ = ["Single", "Singles", "parallel", "singles"]

@@ -7,7 +7,8 @@ from itertools import pairwise
 import sympy as sp
 
 from closedform.mechanics.arm import Serial
-from closedform.scaffold.chainlinks import Single, Singles, Z, parallel, singles
+from closedform.scaffold.chainlinks import Single, Singles, parallel, singles
+from closedform.scaffold.maker import Z
 
 
 def recognised(arm: Serial) -> list[str]:

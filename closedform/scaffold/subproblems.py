@@ -173,7 +173,7 @@ class SubproblemMaker(Maker):
         """Solve a joint by how far ``p`` is along the next axis; name the point in that frame."""
         g, p = one.end * Z, point("p")
         c = beside + g.dot(one.shift) - g[2] * p[2]
-        pair = self._turn(one, (g[0] * p[1] - g[1] * p[0], g[0] * p[0] + g[1] * p[1], c), toward)
+        pair = self._turn(one, (*turning(g, p), c), toward)
         q = times(one.end.T, f"(turned({pair}).T * p - {source(one.shift)})")
         self.vector("q", q)
         return "q", pair
@@ -217,8 +217,7 @@ class SubproblemMaker(Maker):
         inside = times(two.end, f"(turned({third}) * {source(u)})")
         self.vector("carried", f"{source(t)} + {inside}")
         v = point("carried")
-        sides = (g[0] * p[1] - g[1] * p[0], g[0] * p[0] + g[1] * p[1], v[2] - g[2] * p[2])
-        first = self._turn(one, sides)
+        first = self._turn(one, (*turning(g, p), v[2] - g[2] * p[2]))
         self.vector("seen", times(one.end.T, f"(turned({first}).T * p)"))
         because = (
             f"{{{self.unknowns[three.number]}: 2*ik.size, "
@@ -237,12 +236,11 @@ class SubproblemMaker(Maker):
         far = sp.Symbol("far")
         c = (far**2 + sp.simplify(t.dot(t) - u.dot(u))) / 2 - t[2] * p[2]
         size = sp.sqrt(sp.simplify(u.dot(u)))
-        sides = (t[0] * p[1] - t[1] * p[0], t[0] * p[0] + t[1] * p[1], c)
+        sides = (*turning(t, p), c)
         first = self._turn(one, sides, scale=source(size / 2), by_size=True)
         self.vector("seen", times(one.end.T, f"(turned({first}).T * p - {source(t)})"))
         m = point("seen")
-        sides = (g[0] * m[1] - g[1] * m[0], g[0] * m[0] + g[1] * m[1], u[2] - g[2] * m[2])
-        second = self._turn(two, sides)
+        second = self._turn(two, (*turning(g, m), u[2] - g[2] * m[2]))
         self.add(
             f"beyond = ik.vector('beyond', {times(two.end.T, f'(turned({second}).T * seen)')})"
         )
@@ -259,18 +257,14 @@ class SubproblemMaker(Maker):
     def _parallel_first(self, one: Single, two: Single, three: Single) -> Solved:
         s, t, u, p = one.shift, two.shift, three.shift, point("p")
         f = two.end.T * Z
-        sides = (
-            sp.simplify(f[1] * u[0] - f[0] * u[1]),
-            sp.simplify(f[0] * u[0] + f[1] * u[1]),
-            p[2] - s[2] - t[2] - f[2] * u[2],
-        )
-        third = self._turn(three, sides)
+        a, b = map(sp.simplify, turning(u, f))
+        third = self._turn(three, (a, b, p[2] - s[2] - t[2] - f[2] * u[2]))
         inside = times(two.end, f"(turned({third}) * {source(u)})")
         self.vector("carried", f"{source(t)} + {inside}")
         self.add("far = ik.let('far', sqrt(p[0]**2 + p[1]**2))")
         far, v = sp.Symbol("far"), point("carried")
         c = (far**2 - s[0] ** 2 - s[1] ** 2 - v[0] ** 2 - v[1] ** 2) / 2
-        sides = (s[1] * v[0] - s[0] * v[1], s[0] * v[0] + s[1] * v[1], c)
+        sides = (*turning(v, s), c)
         second = self._turn(two, sides, scale="(far + ik.size/2**44)/2", by_size=True)
         self.vector("seen", f"{source(s)} + turned({second}) * carried")
         first = self._rotate(one, "seen", "p", f"{{{self.unknowns[two.number]}: 2*ik.size}}")
@@ -281,8 +275,7 @@ class SubproblemMaker(Maker):
 
     def _by_distance(self, joint: Single, e: Any, u: Any, c: Any, scale: str) -> str:
         """Solve ``e . Rz(x) u`` by a distance; the equation is divided by the size of the arm."""
-        a = sp.simplify(e[1] * u[0] - e[0] * u[1])
-        b = sp.simplify(e[0] * u[0] + e[1] * u[1])
+        a, b = map(sp.simplify, turning(u, e))
         self.require(
             (a, b) != (0, 0),
             f"the distance of its wrist does not depend on joint {joint.number}",
@@ -343,6 +336,11 @@ class SubproblemMaker(Maker):
         groups = [Group((Row(1, j.turn, (sp.S.Zero,) * 3, False),), j.end) for j in joints]
         groups[-1] = Group(groups[-1].rows, sp.eye(3))
         self.wrist(joints[0].turn, groups, M, sp.eye(3), [j.number for j in joints])
+
+
+def turning(w: Any, v: Any) -> tuple[Any, Any]:
+    """The coefficients of sin(x) and cos(x) in the scalar product of ``v`` and ``Rz(x) w``."""
+    return w[0] * v[1] - w[1] * v[0], w[0] * v[0] + w[1] * v[1]
 
 
 SIDE = "{+1: 'left', -1: 'right'}"

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from closedform.emit.backends.latex.prose import mixed
 
-FIRST = ("mechanism", "posture", "branches", "workspace", "singularities", "field", "path")
+FIRST = ("mechanism", "branches", "workspace", "conditioning")
 """The order of the kinds of figures; others follow, by name."""
 
 

@@ -20,7 +20,7 @@ from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.lemmas import label
 from closedform.emit.backends.latex.names import MATRIX_ENTRY
 from closedform.emit.backends.latex.prose import escape, loosen, upright
-from closedform.emit.backends.latex.sheet import Sheet
+from closedform.emit.backends.latex.sheet import Sheet, blocks
 from closedform.model.derivation import Solved
 from closedform.model.functions import (
     Array,
@@ -145,13 +145,13 @@ class Told:
             "several": len(shown) > 1,
             "unknowns": enumeration([f"${page.math(u)}$" for u in solving.unknowns]),
             "from": self.origin(shown, solving),
-            "blocks": page.blocks(rows),
+            "blocks": blocks(rows),
             "lemma": page.prose(solving.lemma.name),
             "label": label(solving.lemma.name),
             "matrix": self.matrix(shown),
             "statement": [] if earlier else statement(solving.lemma),
             "count": self.count(solving),
-            "solution": page.blocks(self.solution(solving)),
+            "solution": blocks(self.solution(solving)),
             "exists": self.exists(solving),
             "degenerate": self.degenerate(solving),
         }
@@ -362,7 +362,6 @@ class Told:
             for s in (solving.link.body if solving.link else self.function.body)
             if isinstance(s, Vanishes) and (solving.link or set(s.free) & set(solving.unknowns))
         ]
-        cases = solving.link.degenerate if solving.link else ()
         texts = []
         for flag in flags:
             if not flag.free:
@@ -374,7 +373,6 @@ class Told:
                 f"{self.page.prose(flag.meaning)} ({where}): "
                 f"{free} {'are' if len(flag.free) > 1 else 'is'} free"
             )
-        assert all(isinstance(c, Degenerate) for c in cases)
         return "; ".join(texts)
 
     # What was proved
@@ -393,7 +391,7 @@ class Told:
             "free": page.math(case.free),
             "flag": page.prose(self.algorithm.flags[case.flags[0]].meaning),
             "locus": ", ".join(whole(rows)) if narrow else "",
-            "blocks": [] if narrow else page.blocks(rows),
+            "blocks": [] if narrow else blocks(rows),
             "convention": f"{page.math(case.free)} = {page.math(convention)}",
             "relation": upright(case.relation),
         }

@@ -35,9 +35,6 @@ class Sheet:
         """The LaTeX of a symbol that is known by its name."""
         return written_name(self.derivation, name)
 
-    def blocks(self, equations: Sequence[Equation]) -> list[str]:
-        return blocks(equations)
-
     def model(self, function: Function) -> Function | None:
         """The earlier function whose statements this one starts with, if there is one."""
         functions = self.derivation.functions

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from closedform.cli.commands import main
 from closedform.pipeline import disk
 from closedform.pipeline import run as pipeline
 
@@ -384,3 +385,12 @@ def state(pid: int) -> str:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:
         return ""
+
+
+@pytest.mark.parametrize("name", [source.name for source in pipeline.sources()])
+def test_every_derivation_is_verified(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """What ``make`` proved before the tests."""
+    root = pipeline.checkout()
+    if root is None or not (root / "build" / "certificates" / f"{name}.json").exists():
+        pytest.skip("nothing was proved here; run make")
+    assert main(["verify", name]) == 0, capsys.readouterr().out

@@ -569,15 +569,6 @@ def test_an_inverse_of_a_proof_needs_a_certificate(kept: Path) -> None:
     assert main(["verify", str(kept)]) == 0
 
 
-@pytest.mark.parametrize("name", [source.name for source in pipeline.sources()])
-def test_every_derivation_is_verified(name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """What ``make`` proved before the tests."""
-    root = pipeline.checkout()
-    if root is None or not (root / "build" / "certificates" / f"{name}.json").exists():
-        pytest.skip("nothing was proved here; run make")
-    assert main(["verify", name]) == 0, capsys.readouterr().out
-
-
 def test_the_same_proof_writes_the_same_bytes_whatever_the_hash_seed() -> None:
     """Also if it was proved before in the same process."""
     code = (

@@ -15,6 +15,10 @@ from closedform.algebra.solutions import rotation_parametrisation as rotation_pa
 from closedform.lemmas.applied import Applied as Applied
 from closedform.lemmas.chain import Chain as Chain
 from closedform.lemmas.circles import circle_intersection as circle_intersection
+from closedform.lemmas.coupled import coupled as coupled
+from closedform.lemmas.legs import Crank as Crank
+from closedform.lemmas.legs import Slide as Slide
+from closedform.lemmas.legs import Stretch as Stretch
 from closedform.lemmas.links import Reaching as Reaching
 from closedform.lemmas.links import named as named
 from closedform.lemmas.links import polar as polar
@@ -24,6 +28,7 @@ from closedform.lemmas.links import turn as turn
 from closedform.lemmas.links import turned as turned
 from closedform.lemmas.links import two_links as two_links
 from closedform.lemmas.links import zyz as zyz
+from closedform.lemmas.loop import parallel as parallel
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
 from closedform.lemmas.registry import chain_lemma as chain_lemma
 from closedform.lemmas.registry import theorem as theorem

@@ -14,7 +14,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from closedform.algebra.balls import Evaluator, to_float
+from closedform.algebra.balls import Evaluator, Undetermined, to_float
 
 Array = NDArray[Any]
 WIDE = np.longdouble
@@ -45,6 +45,10 @@ class RowEvaluator:
         self._program = _Program(self.symbols, self.exprs, self._named)
         self._exact: dict[tuple[float, ...], list[Any]] = {}
 
+    def apart(self) -> list[RowEvaluator]:
+        """The same for each expression alone."""
+        return [RowEvaluator(self.symbols, [e], self._named) for e in self.exprs]
+
     @cached_property
     def _evaluator(self) -> Evaluator:
         return Evaluator(self.symbols, self.exprs, named=self._named)
@@ -70,11 +74,21 @@ class RowEvaluator:
         """The midpoints alone, for what only chooses points: nothing may be decided by them."""
         return self.balls(rows)[0]
 
-    def settled(self, rows: Array, doubtful: Callable[[Array, Array], Array]) -> Array:
-        """The values; those of the rows that are ``doubtful(middle, radius)`` are those of Arb."""
+    def settled(
+        self, rows: Array, doubtful: Callable[[Array, Array], Array], *, defined: bool = True
+    ) -> Array:
+        """The values; those of the rows that are ``doubtful(middle, radius)`` are those of Arb.
+
+        If they need not be ``defined`` everywhere, a row that Arb cannot settle is NaN.
+        """
         middle, radius = self.balls(rows)
         for row in np.flatnonzero(doubtful(middle, radius).any(axis=1)):
-            middle[row] = [to_float(b) for b in self.exactly(rows[row])]
+            try:
+                middle[row] = [to_float(b) for b in self.exactly(rows[row])]
+            except Undetermined:
+                if defined:
+                    raise
+                middle[row] = np.nan
         return middle
 
 

@@ -14,7 +14,7 @@ import sympy as sp
 from flint import arb
 from numpy.typing import NDArray
 
-from closedform.algebra.balls import free_symbols, to_float
+from closedform.algebra.balls import Undetermined, free_symbols, to_float
 from closedform.check.rows import RowEvaluator, beside
 from closedform.check.samples import Magnitudes, Sample, with_parameters
 from closedform.lemmas.chain import numbers_of_tool
@@ -61,7 +61,7 @@ class Values:
         self.lengths = numbers_of_tool(derivation)
         self.operations = sum(lower(function, derivation).operations().values())
         self._bounds = [_margins(function, symbols, s) for s in signs]
-        self._flags = [_margins(function, symbols, s, Vanishes) for s in signs]
+        self._flags = [f for s in signs for f in _margins(function, symbols, s, Vanishes).apart()]
 
     def existence(self, rows: Array, slack: float) -> Array:
         """Of each entry: 1 where it exists, -1 where not, 0 within ``slack`` of the boundary."""
@@ -69,9 +69,14 @@ class Values:
         return np.repeat((least > slack) * 1 - (least < -slack), self.entries, axis=1)
 
     def flagged(self, rows: Array, limit: float) -> Array:
-        """Where a flag is raised, and so the value a convention."""
-        found = [f.settled(rows, beside(limit)) < limit for f in self._flags]
-        return np.asarray(np.concatenate(found, axis=1).any(axis=1))
+        """Where a flag is raised, and so the value a convention.
+
+        A flag may be defined only where an earlier one is not raised.
+        """
+        found = np.zeros(len(rows), bool)
+        for flag in self._flags:
+            found |= (flag.settled(rows, beside(limit), defined=False) < limit)[:, 0]
+        return found
 
 
 class Condition:
@@ -137,11 +142,17 @@ class Solutions:
         self._factors = RowEvaluator(posture, entries)
 
     def images(self, sample: Sample) -> tuple[Array, Array]:
-        """What the postures are taken to, in each assembly mode they have, and the postures."""
+        """What the postures are taken to, in each assembly mode they have, and the postures.
+
+        Those where a flag of the forward map leaves the target free have none.
+        """
         rows, postures = [], []
         for forward in self._maps:
             for row, posture in zip(sample.rows, sample.values, strict=True):
-                image = forward.exactly(row)
+                try:
+                    image = forward.exactly(row)
+                except Undetermined:
+                    continue
                 if all(b.is_finite() for b in image):
                     rows.append([to_float(b) for b in image])
                     postures.append(posture)
@@ -263,7 +274,8 @@ class Solutions:
 def _least(bounds: RowEvaluator, rows: Array, *limits: float) -> Array:
     """The least of some bounds at each point; 1 where there are none.
 
-    Where one is provably below all limits, the others are not looked at: they may rest on its root.
+    It is NaN where they are defined only for a case that a flag excludes.  Where one is provably
+    below all limits, the others are not looked at: they may rest on its root.
     """
 
     def doubtful(middle: Array, radius: Array) -> Array:
@@ -273,7 +285,7 @@ def _least(bounds: RowEvaluator, rows: Array, *limits: float) -> Array:
 
     if not bounds.exprs:
         return np.ones(len(rows))
-    return np.asarray(np.fmin.reduce(bounds.settled(rows, doubtful), axis=1))
+    return np.asarray(np.fmin.reduce(bounds.settled(rows, doubtful, defined=False), axis=1))
 
 
 def _margins(

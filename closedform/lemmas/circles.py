@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from closedform.lemmas.registry import theorem
-from closedform.model.functions import Program, choose
+from closedform.lemmas.spheres import Meeting
+from closedform.model.functions import Program, choose, real
+from closedform.model.inverse import Degenerate, Link
 from closedform.model.lemma import Lemma
 
 theorem(
@@ -103,3 +106,44 @@ def circle_intersection(
         2,
         signs=(sigma,),
     ), Chord(n, d, along, height, flag)
+
+
+def two_circles(
+    program: Program,
+    centres: Sequence[sp.Matrix],
+    radii: Sequence[sp.Symbol],
+    unknowns: tuple[sp.Symbol, ...],
+    sigma: sp.Symbol,
+    *,
+    scale: sp.Expr,
+    free: Sequence[sp.Symbol] = (),
+) -> Meeting:
+    """The points at two distances from two points, as :func:`circle_intersection` gives them.
+
+    The coordinates of the first of the ``centres`` are symbols, and so are the ``radii``.
+    """
+    p, (r1, r2), (origin, other) = program, radii, centres
+    apart = sp.Matrix([p.let(f"u_{i}", e) for i, e in zip("xy", other - origin, strict=True)])
+    start = len(p.body)
+    x, y = first = real("from_x"), real("from_y")
+    lemma, chord = circle_intersection(
+        p, (apart[0], apart[1]), (r1, r2), first, sigma, scale=scale, free=tuple(free)
+    )
+    placed = {u: x - o for u, x, o in zip(first, unknowns, origin, strict=True)}
+    shifted = replace(
+        lemma,
+        equations=tuple(e.xreplace(placed) for e in lemma.equations),
+        solution={x: o + lemma[u] for u, x, o in zip(first, unknowns, origin, strict=True)},
+    )
+    at_centre = dict.fromkeys(apart, sp.S.Zero) | ({r2: r1} if r2 != r1 else {})
+    case = Degenerate(
+        (chord.flag,), at_centre, free[0] if free else None, "both circles are the same"
+    )
+    rise = sigma * chord.height
+    return Meeting(
+        Link(unknowns, shifted.equations, {}, shifted, tuple(p.body[start:]), degenerate=(case,)),
+        (lemma[x], lemma[y]),
+        sigma,
+        chord.height * chord.distance,
+        sp.Matrix([[chord.along, rise], [chord.along - chord.distance, rise]]),
+    )

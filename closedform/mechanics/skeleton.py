@@ -34,6 +34,7 @@ def skeleton(
     branches: Branches | None = None,
     notes: Sequence[str] = (),
     at_posture: Sequence[Mapping[str, Sequence[Any]]] = (),
+    closing: Mapping[tuple[str, str], sp.Expr] | None = None,
 ) -> None:
     """Export ``skeleton``, the points of the mechanism in the base frame, and prove it.
 
@@ -56,6 +57,9 @@ def skeleton(
     at_posture
         for the proof, the points in angles of the mechanism instead of names of the program; a
         later mapping gives points in another way, for the distances between them
+    closing
+        by how much the squared distance of two points of ``at_posture`` exceeds that of the length:
+        an equation of the loop, which the forward map solves
     """
     kinds = {j.symbol: j.kind for j in d.joints}
     drawn = Skeleton(
@@ -77,7 +81,7 @@ def skeleton(
         notes=notes,
     )
     d.skeleton = drawn
-    own = dict(lengths or {})
+    own, rest = dict(lengths or {}), dict(closing or {})
     pairs = list(dict.fromkeys([*_segments(drawn), *own]))
     equal: list[tuple[Any, Any]] = []
     shown: dict[str, sp.Expr] = {}
@@ -90,18 +94,20 @@ def skeleton(
             length = own.get(pair)
             if length is None:
                 length = sp.sqrt(sp.factor(_still(square, function)))
-            equal.append((square, sp.expand(length**2)))
+            equal.append((square, sp.expand(length**2) + rest.get(pair, 0)))
             ends = (rf"\text{{{name.replace('_', ' ')}}}" for name in pair)
             shown.setdefault(f"|{' - '.join(ends)}|", length)
         if hand_at is not None and hand in at:
             equal.append((at[hand], sp.Matrix(list(hand_at))))
+    closed = "  Where a rod closes a loop, the equation of the loop says so." if rest else ""
     d.step(
         "Skeleton",
         "The points through which the links are drawn.  No link changes its length when the joints "
-        "move, and the hand is where the forward map says.",
+        f"move, and the hand is where the forward map says.{closed}",
         shown,
         proves=(
-            "The squared distance of each pair of neighbouring points is that of the length, and "
+            "The squared distance of each pair of neighbouring points is that of the length"
+            f"{', plus the equation of the loop for a rod that closes it' if rest else ''}, and "
             "the hand is at the position of the forward map."
         ),
         equal=equal,

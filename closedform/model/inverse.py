@@ -5,7 +5,8 @@ glue says why the links together have the solutions of the forward map and no ot
 three kinds:
 
 None
-    the equations of the links are those of the inverse;
+    the equations of the links are those of the inverse, once the names of the program that lemmas
+    have as coefficients are replaced by their values;
 :class:`Rank`
     they follow from the forward map and determine the target;
 :class:`Combination`
@@ -183,6 +184,11 @@ class Inverse:
     def rank(self) -> Rank:
         """The glue if it is a rank; otherwise one that means nothing."""
         return self.glue if isinstance(self.glue, Rank) else Rank()
+
+    @property
+    def by_lemmas(self) -> bool:
+        """Whether lemmas solve for the unknowns."""
+        return any(link.lemma for link in self.links)
 
     @property
     def chained(self) -> tuple[Link, ...]:

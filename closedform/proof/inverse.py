@@ -16,7 +16,7 @@ from closedform.algebra.shapes import ShapeError, require_shape
 from closedform.algebra.solutions import SolutionCount
 from closedform.model.derivation import Derivation
 from closedform.model.functions import substitute
-from closedform.model.inverse import Combination, Inverse, Rank
+from closedform.model.inverse import Combination, Inverse
 from closedform.proof.glue import prove_glue
 from closedform.proof.links import count_system, prove_lemma, prove_system
 from closedform.proof.require import ProofError, require
@@ -41,17 +41,17 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     """Prove that all branches satisfy the equations and that there are no other solutions."""
     function = derivation[inverse.function]
     where = f"{derivation.name}.{function.name}"
-    by_lemmas = inverse.glue is not None
-    if any((link.lemma is not None) != by_lemmas for link in inverse.chained):
-        raise ProofError(
-            f"{where}: an inverse needs glue if each of its links has a lemma, and none otherwise"
-        )
+    by_lemmas = inverse.by_lemmas
+    if any((link.lemma is not None) != by_lemmas for link in inverse.chained) or (
+        inverse.glue is not None and not by_lemmas
+    ):
+        raise ProofError(f"{where}: either each link of an inverse has a lemma, or none has")
     assumptions: list[sp.Expr] = []
     counts: list[tuple[SolutionCount, int]] = []
     for link in inverse.chained:
         if link.lemma:
             found, counted = prove_lemma(link, function.signs, f"{where}: ")
-            if isinstance(inverse.glue, Rank):
+            if not isinstance(inverse.glue, Combination):
                 assumptions += found
             counts.append((counted, link.lemma.excluded))
     if not by_lemmas:
@@ -87,7 +87,7 @@ def _method(inverse: Inverse, counts: Sequence[SolutionCount]) -> str:
     if isinstance(inverse.glue, Combination):
         because = inverse.glue.because
         return "lemma by lemma" + (f"; {because}" if because else "")
-    if isinstance(inverse.glue, Rank):
+    if inverse.by_lemmas:
         return "lemma by lemma"
     return "step by step" if len(counts) > 1 else counts[0].method
 
@@ -103,7 +103,7 @@ def _require_all_branches(derivation: Derivation, inverse: Inverse, count: int, 
         how = "step by step" if len(inverse.chained) > 1 else "from a Groebner basis"
         found = (
             f"the lemmas have {count} solutions together"
-            if inverse.glue
+            if inverse.by_lemmas
             else f"the system has {count} solutions (counted {how})"
         )
         are = f"branch{'es are' if branches > 1 else ' is'} given"
@@ -120,7 +120,7 @@ def _prove_steps_follow(derivation: Derivation, inverse: Inverse) -> tuple[str, 
     graph = dict(zip(inverse.targets, inverse.forward, strict=True))
     lemmas = []
     for solved in derivation.solved:
-        if solved.function != inverse.function or inverse.glue:
+        if solved.function != inverse.function or inverse.by_lemmas:
             continue
         fault = (
             f"{derivation.name}.{inverse.function}: the equation solved for {solved.unknown} by "

@@ -16,6 +16,7 @@ import sympy as sp
 from closedform.algebra.solutions import InfinitelyManyError, SolutionCount, count_solutions
 from closedform.model.functions import Bound, Function, Let, Statement, explicit, real, substitute
 from closedform.model.inverse import Degenerate, Inverse, Link
+from closedform.proof.posture import outcomes
 from closedform.proof.require import ProofError, require
 
 Expr = Any
@@ -90,11 +91,12 @@ def prove_sound(
                     values[len(solution) :], answers.means.values(), strict=True
                 )
             ]
-            vanishing = sp.Matrix([substitute(e, locus) for e in residues])
+            vanishing = sp.ImmutableMatrix([substitute(e, locus) for e in residues])
             guards = tuple(substitute(b, locus) for b in bounds)
             place = fault.replace("{}", _where(label, case))
-            decision = require(vanishing, guards, place, names)
-            found += decision.assumptions if case is None else ()
+            for side in outcomes(vanishing):
+                decision = require(side, guards, place, names)
+                found += decision.assumptions if case is None else ()
     return list(dict.fromkeys(found))
 
 

@@ -37,6 +37,8 @@ INLINE = 10.0
 """The widest value that stands in place of a name that is a word."""
 ONCE = 36.0
 """The same, for a name that occurs once."""
+LONGEST = 150
+"""A condition with more operations is written with names that the algorithm does not print."""
 INDENTED = 10.0
 """How much narrower the lines of an algorithm are than a page."""
 STATED = 3
@@ -500,6 +502,8 @@ class Algorithm:
 
     def _determined(self, statement: Determined) -> Case:
         value, scale = self.full(statement.value), self.full(statement.scale)
+        if sp.count_ops(value) > LONGEST:
+            value = self.shown(statement.value)
         rows = self.page.equations("", value)
         first, rest = rows[0][1], [f"${a} = {b}$" for a, b in rows[1:]]
         where = rf"${first} \ll {self.page.math(scale)}$"

@@ -1,0 +1,270 @@
+"""A single loop: a rod joins the driven leg to another one, whose joint is the task.
+
+The four-bar linkage (two cranks) and the slider-crank (a crank and a slide) are of this kind.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from closedform.lemmas.legs import Crank, Naming, Slide, Solution
+from closedform.lemmas.loop import SIGN, Choice, bounds_of, in_space, size_of, square
+from closedform.mechanics.loops import velocity_matrices
+from closedform.mechanics.skeleton import skeleton
+from closedform.model.derivation import Derivation, Solved, Step
+from closedform.model.functions import Branches, Program, branches, real
+from closedform.model.inverse import Inverse
+
+
+def coupled(
+    d: Derivation,
+    driver: Crank | Slide,
+    follower: Crank | Slide,
+    modes: Choice = SIGN,
+) -> None:
+    """Derive and export a loop of a driven leg, a rod and a leg whose joint is the task.
+
+    Parameters
+    ----------
+    d
+        the derivation, with its parameters and one joint; the task has one coordinate
+    driver, follower
+        the legs, see :mod:`closedform.lemmas.legs`, with the same rod; the joint of the first is
+        that of the derivation, and the joint of the second is the symbol of the task
+    modes
+        the names of the assembly modes, by the sign of the determinant of ``jacobian_parallel``
+    """
+    if driver.rod != follower.rod:
+        raise ValueError(f"{d.name}: the driver and the follower must have the same rod")
+    d.singularities, d.poles = ("driver", "follower"), ("follower",)
+    loop = square(follower.end() - driver.end()) - sp.sympify(driver.rod) ** 2
+    stated = d.step(
+        "The loop",
+        "The driver determines the point b at one end of the rod, and the follower the point c at "
+        "the other end.  The rod keeps its length.",
+        {
+            r"\mathbf b": driver.end(),
+            r"\mathbf c": follower.end(),
+            r"|\mathbf c - \mathbf b|": sp.sympify(driver.rod),
+        },
+    )
+    rod = _forward(d, driver, follower, loop, modes, stated)
+    _draw(d, driver, follower, loop, rod)
+    _velocity(d, driver, follower, loop, rod, stated)
+    _inverse(d, driver, follower, loop, stated)
+
+
+@dataclass(frozen=True)
+class _Rod:
+    """The rod in an assembly mode, from the driver to the follower, in the names of a program."""
+
+    program: Program
+    modes: Branches
+    vector: sp.Matrix
+
+
+def _slid(*legs: Crank | Slide) -> list[sp.Symbol]:
+    return [leg.joint for leg in legs if isinstance(leg, Slide)]
+
+
+def _forward(
+    d: Derivation,
+    driver: Crank | Slide,
+    follower: Crank | Slide,
+    loop: sp.Expr,
+    choice: Choice,
+    stated: Step,
+) -> _Rod:
+    f, sigma = d.program(), real("sigma_assembly")
+    modes = branches((sigma, choice))
+    d.assembly_modes = modes.labels
+    size = f.let("size", size_of(d, _slid(driver)))
+    found = follower.solve(Naming(f, size, "_2"), driver.end() - follower.base, sigma)
+    d.step(
+        "Forward: the follower",
+        "The follower has to reach the point b with the rod.  Both solutions are assembly modes.",
+        {},
+        uses=[stated],
+    )
+    d.function(
+        "fk",
+        f"{follower.joint} in both assembly modes.",
+        {"q": d.actuated},
+        {"p": [found.value]},
+        program=f,
+        branches=modes,
+        result="Positions",
+        notes=(
+            "UNREACHABLE: the rod does not reach, so the loop cannot close.",
+            *_free(found, follower),
+            "Ill-conditioned near the parallel singularity, where both modes meet.",
+        ),
+    )
+    x = follower.joint
+    d.inverses.append(Inverse("fk", (x,), (sp.S.Zero,), (loop,), links=(found.link,)))
+    _tell(d, "fk", found)
+    v = Program(list(f.body), f.taken)
+    along = sp.Matrix([v.let(f"A_1{i}", -e) for i, e in enumerate(found.rod, 1)])
+    return _Rod(v, modes, along)
+
+
+def _free(found: Solution, leg: Crank | Slide) -> list[str]:
+    return [
+        f"SINGULAR: {case.meaning}; {leg.joint} is free, 0 is returned."
+        for case in found.link.degenerate
+    ]
+
+
+def _tell(d: Derivation, function: str, found: Solution) -> None:
+    lemma = found.link.lemma
+    assert lemma is not None
+    d.solved.append(Solved(function, found.link.unknowns[0], lemma, lemma.equations[0]))
+
+
+def _points(driver: Crank | Slide, follower: Crank | Slide) -> dict[str, sp.Matrix]:
+    legs = {"1": driver, "2": follower}
+    return {f"A{k}": leg.base for k, leg in legs.items()} | {
+        f"B{k}": leg.end() for k, leg in legs.items()
+    }
+
+
+def _draw(
+    d: Derivation, driver: Crank | Slide, follower: Crank | Slide, loop: sp.Expr, rod: _Rod
+) -> None:
+    posture = {name: in_space(at) for name, at in _points(driver, follower).items()}
+    end = driver.end() + rod.vector
+    lengths = {("B1", "B2"): sp.sympify(driver.rod)}
+    links = {"ground": ("A1", "A2"), "rod": ("B1", "B2")}
+    joints: dict[sp.Symbol, tuple[str, ...]] = {}
+    for k, leg in enumerate((driver, follower), 1):
+        base, near = f"A{k}", f"B{k}"
+        crank = isinstance(leg, Crank)
+        lengths[base, near] = sp.sympify(leg.length) if isinstance(leg, Crank) else leg.joint
+        if crank:
+            links[f"crank{k}"] = (base, near)
+        if leg.joint in d.actuated:
+            joints[leg.joint] = (base,) if crank else (base, near)
+    skeleton(
+        d,
+        posture | {"B2": in_space(end)},
+        links=links,
+        joints=joints,
+        hand="B2",
+        hand_at=in_space(follower.end()),
+        ground=("A1", "A2"),
+        lengths=lengths,
+        program=rod.program,
+        branches=rod.modes,
+        notes=("NaN for an assembly mode that does not exist.",),
+        at_posture=[posture],
+        closing={("B1", "B2"): loop},
+    )
+
+
+def _velocity(
+    d: Derivation,
+    driver: Crank | Slide,
+    follower: Crank | Slide,
+    loop: sp.Expr,
+    rod: _Rod,
+    stated: Step,
+) -> None:
+    q, x = driver.joint, follower.joint
+    A, B = velocity_matrices([loop], (x,), (q,))
+    along = follower.end() - driver.end()
+    a, b = along.dot(follower.rate), along.dot(driver.rate)
+    d.step(
+        "Velocity and singular sets",
+        "The derivative of the loop equation, halved, gives A dx = B dq.  B vanishes if the driver "
+        "moves b at right angles to the rod (serial: the driver moves and the follower stands "
+        "still).  A vanishes if the follower moves c at right angles to the rod (parallel: the "
+        "driver stands still and cannot hold the follower).",
+        {"A": a, "B": b},
+        proves="A and B are half of the derivatives.",
+        equal=[(A[0] / 2, a), (B[0] / 2, b)],
+        uses=[stated],
+    )
+    v = Program(list(rod.program.body), rod.program.taken)
+    placed = follower.rate_at(driver.end() + rod.vector)
+    A_at, B_at = v.let("A", rod.vector.dot(placed)), v.let("B", rod.vector.dot(driver.rate))
+    none = "NaN for an assembly mode that does not exist."
+    pole = "Not finite at a parallel singularity."
+    functions: list[tuple[str, str, dict[str, Any], tuple[str, ...]]] = [
+        ("jacobian_parallel", "A of A*dx = B*dq.", {"A": [[A_at]]}, ()),
+        (
+            "jacobian_serial",
+            "B of A*dx = B*dq.",
+            {"B": [B_at]},
+            ("Its sign distinguishes the working modes.",),
+        ),
+        ("jacobian", "Derivative of x with respect to q: B/A.", {"J": [[B_at / A_at]]}, (pole,)),
+        ("determinant", "The same as a number.", {"det": B_at / A_at}, (pole,)),
+        ("singularities", "B (serial) and A (parallel).", {"factors": [B_at, A_at]}, ()),
+    ]
+    for name, summary, outputs, notes in functions:
+        d.function(
+            name,
+            summary,
+            {"q": d.actuated},
+            outputs,
+            program=v,
+            branches=rod.modes,
+            notes=(none, *notes),
+        )
+
+
+def _inverse(
+    d: Derivation, driver: Crank | Slide, follower: Crank | Slide, loop: sp.Expr, stated: Step
+) -> None:
+    g, sigma, x = d.program(), real("sigma_driver"), follower.joint
+    size = g.let("size", size_of(d, _slid(follower)))
+    found = driver.solve(Naming(g, size, "_1"), follower.end() - driver.base, sigma)
+    inside = bounds_of(g)
+    A = g.let("A", found.rod.dot(follower.rate))
+    lever = follower.length if isinstance(follower, Crank) else sp.S.One
+    g.determined(sp.Abs(A), driver.rod * lever, "the rod is at right angles to the follower")
+    working = branches((sigma, SIGN))
+    d.branches = working.labels
+    d.step(
+        "Inverse: the driver",
+        "The driver has to reach the point c with the rod, just as the follower reaches b.  Its "
+        "two solutions are told apart by the sign of B.  Near a parallel singularity rounded "
+        "joints do not determine the follower, however they are computed.  The status is SINGULAR "
+        "if A is less than 2^-10 of its largest value.",
+        {},
+        uses=[stated],
+    )
+    d.function(
+        "ik",
+        "The driven joint in both working modes.",
+        {"x": (x,)},
+        {"q": [found.value]},
+        program=g,
+        branches=working,
+        result="Solutions",
+        notes=(
+            "UNREACHABLE: the rod does not reach.",
+            *_free(found, driver),
+            "SINGULAR also near the parallel singularity, where the rod is at right angles to the "
+            "path of the follower: the loop closes, but one ulp of the driver moves the follower "
+            "by more than 1e-12.",
+        ),
+    )
+    d.function(
+        "workspace_contains",
+        "Whether the follower can be there.",
+        {"p": (x,)},
+        {"inside": sp.true},
+        program=inside,
+        boolean=True,
+    )
+    _tell(d, "ik", found)
+    d.inverses.append(
+        Inverse("ik", d.actuated, (sp.S.Zero,), (loop,), images="fk", links=(found.link,))
+    )
+
+
+__all__ = ["coupled"]

@@ -1,0 +1,304 @@
+"""Legs of a closed loop: a joint moves one end of a rod, and the other end is where it should be.
+
+Each kind of leg knows where its joint brings the near end of the rod, and which values of the joint
+bring this end to the distance of the rod from a given point:
+
+:class:`Crank`
+    the end turns on a circle; two solutions, as a triangle has two mirror images;
+:class:`Slide`
+    the end moves along a line; two solutions, where the line meets a sphere;
+:class:`Stretch`
+    the end stays, and the joint is the length of the rod; one solution.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import sympy as sp
+
+from closedform.lemmas.registry import theorem
+from closedform.lemmas.triangle import Triangle
+from closedform.model.functions import Program, choose
+from closedform.model.inverse import Degenerate, Link
+from closedform.model.lemma import Lemma
+from closedform.model.pair import Pair
+
+theorem(
+    "crank and rod",
+    statement=r"""A crank of length $l > 0$ turns about the origin in the plane of the orthonormal
+vectors $\mathbf u$ and $\mathbf v$.  Its end $l(\cos\theta\,\mathbf u + \sin\theta\,\mathbf
+v)$ is at the distance $r$ from the point $\mathbf w$, which is at the distance $p$ from the plane.
+Let $a = \mathbf w\cdot\mathbf u$, $b = \mathbf w\cdot\mathbf v$, $R = \sqrt{a^2 + b^2} > 0$ and
+$s = \sqrt{r^2 - p^2}$.  There is a solution if and only if $r \ge p$ and the lengths $l$, $s$ and
+$R$ are those of a triangle.  The solutions are
+$$\theta = \operatorname{atan2}(b, a) - \alpha, \qquad \tan\frac{\alpha}{2} =
+\sigma\frac{\sqrt{A C}}{\sqrt{S B}}, \qquad \sigma = \pm 1,$$
+with $S = l + s + R$, $A = l + s - R$, $B = R + l - s$ and $C = R - l + s$.""",
+    proof=r"""The squared distance of the end from $\mathbf w$ is $p^2$ plus that of its projection
+onto the plane.  So the projection is at the distance $s$ from the end of the crank, at $R$ from the
+origin, and the crank joins both: a triangle with the sides $l$, $s$ and $R$, whose angle at the
+origin is $\alpha$.  The lemma of the two-link triangle gives both of its mirror images.""",
+    exception=r"""If $R = 0$, every $\theta$ is a solution if $l = s$, and none otherwise; if $l =
+0$, every $\theta$ is one if $s = R$.""",
+    rests_on=("two-link triangle",),
+)
+theorem(
+    "line and sphere",
+    statement=r"""Let $\mathbf s$ be a unit vector, $m = \mathbf w\cdot\mathbf s$ and $p = |\mathbf
+w\times\mathbf s|$.  The point $q\,\mathbf s$ is at the distance $r$ from $\mathbf w$ if and only if
+$r \ge p$ and
+$$q = m - \sigma\sqrt{(r - p)(r + p)}, \qquad \sigma = \pm 1.$$""",
+    proof=r"""$|\mathbf w - q\,\mathbf s|^2 = (m - q)^2 + p^2$, because $|\mathbf w|^2 = m^2 +
+p^2$.""",
+)
+theorem(
+    "length of a leg",
+    statement=r"""A leg of length $q \ge 0$ from the origin ends at $\mathbf w$ for exactly one $q =
+|\mathbf w|$.""",
+    proof=r"""Of the two numbers with the square $|\mathbf w|^2$, one is not negative.""",
+)
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A joint solved for, and the ``rod`` from its near end to its far end, as a vector."""
+
+    link: Link
+    value: sp.Expr
+    rod: sp.Matrix
+
+
+class Leg(Protocol):
+    """What a loop asks of a leg.  Vectors have as many entries as the space has dimensions."""
+
+    joint: sp.Symbol
+    rod: Any
+    on_hand: Sequence[Any]
+
+    @property
+    def base(self) -> sp.Matrix:
+        """The point of the ground from which the near end is seen."""
+
+    @property
+    def rate(self) -> sp.Matrix:
+        """The derivative of the near end with respect to the joint."""
+
+    @property
+    def signs(self) -> int:
+        """The number of its working modes."""
+
+    def end(self) -> sp.Matrix:
+        """Where the joint brings the near end of the rod."""
+
+    def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
+        """The joint, if ``w`` leads from the base of the leg to the far end of the rod."""
+
+
+def vector(entries: Sequence[Any]) -> sp.Matrix:
+    return sp.Matrix([sp.sympify(e, strict=True) for e in entries])
+
+
+@dataclass(frozen=True)
+class Naming:
+    """Names the quantities of one leg in a program; ``size`` is the sum of all lengths."""
+
+    program: Program
+    size: sp.Expr
+    tag: str
+
+    def let(self, name: str, value: sp.Expr, **assumptions: bool) -> sp.Symbol:
+        return self.program.let(f"{name}{self.tag}", value, **assumptions)
+
+    def coefficient(self, name: str, value: Any, **assumptions: bool) -> sp.Symbol:
+        """A symbol as it is, anything else under a name: a lemma is proved for all its values."""
+        value = sp.sympify(value, strict=True)
+        return value if value.is_Symbol else self.let(name, value, **assumptions)
+
+    def bound(self, name: str, value: sp.Expr, meaning: str) -> sp.Symbol:
+        return self.program.bound(f"{name}{self.tag}", value, self.size / 2, meaning)
+
+    def vanishes(self, name: str, value: sp.Expr, meaning: str, free: sp.Symbol) -> sp.Symbol:
+        return self.program.vanishes(f"{name}{self.tag}", value, self.size, meaning, (free,))
+
+
+@dataclass(frozen=True)
+class Crank:
+    """A crank of some ``length`` that turns about ``pivot`` in the plane of ``along``, ``across``.
+
+    Both are unit vectors, at right angles: the crank points along the first at 0 and along the
+    second at 90 degrees.  The rod leads from its end to the point ``on_hand``, as seen from the
+    point that is the hand.
+    """
+
+    joint: sp.Symbol
+    length: Any
+    rod: Any
+    pivot: Sequence[Any]
+    along: Sequence[Any]
+    across: Sequence[Any]
+    on_hand: Sequence[Any] = ()
+    signs: int = 2
+
+    @property
+    def base(self) -> sp.Matrix:
+        return vector(self.pivot)
+
+    @property
+    def rate(self) -> sp.Matrix:
+        return self._turned(Pair(sp.cos(self.joint), -sp.sin(self.joint)))
+
+    def rate_at(self, end: sp.Matrix) -> sp.Matrix:
+        """The rate, where the near end of the rod is known and the angle is not."""
+        u, v, crank = vector(self.along), vector(self.across), end - self.base
+        return crank.dot(u) * v - crank.dot(v) * u
+
+    def _turned(self, pair: Pair) -> sp.Matrix:
+        return self.length * (pair.c * vector(self.along) + pair.s * vector(self.across))
+
+    def end(self) -> sp.Matrix:
+        return self.base + self._turned(Pair(sp.sin(self.joint), sp.cos(self.joint)))
+
+    def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
+        p, q = chain.program, self.joint
+        l = chain.coefficient("l", self.length, nonnegative=True)
+        r = chain.coefficient("r", self.rod, nonnegative=True)
+        u, v = vector(self.along), vector(self.across)
+        a, b = chain.let("wu", w.dot(u)), chain.let("wv", w.dot(v))
+        aside = chain.let("aside", w.dot(u.cross(v))) if len(w) == 3 else sp.S.Zero
+        start = len(p.body)
+        s: sp.Expr = r
+        if aside != 0:
+            meaning = "the rod reaches the plane of the crank"
+            over = chain.bound("over", r - aside, meaning)
+            under = chain.bound("under", r + aside, meaning)
+            s = chain.let("fore", sp.sqrt(over) * sp.sqrt(under), nonnegative=True)
+        R = chain.let("R", sp.sqrt(a**2 + b**2), nonnegative=True)
+        triangle = Triangle.from_reach(p, (l, s), R, sigma, scale=chain.size / 2, suffix=chain.tag)
+        met = chain.vanishes("met", R, "the rod ends on the axis of the crank", q)
+        none = chain.vanishes("no_crank", l, "the crank has no length", q)
+        S, A, B, C = triangle.factors
+        ahead = chain.let("ahead", S * B - A * C)
+        beyond = chain.let("beyond", 2 * triangle.root, nonnegative=True)
+        free = sp.Or(met, none)
+        sine = chain.let("sine", choose(free, 0, b * ahead - sigma * a * beyond))
+        cosine = chain.let("cosine", choose(free, 1, a * ahead + sigma * b * beyond))
+        radius = chain.let("radius", choose(free, 1, R * triangle.width), nonnegative=True)
+        share = chain.let("share", l / radius, nonnegative=True)
+        away = share * cosine * u + share * sine * v
+        lemma = Lemma(
+            "crank and rod",
+            r"\theta = \operatorname{atan2}(b, a) - \alpha,\quad \tan\frac{\alpha}{2} = "
+            r"\sigma\frac{\sqrt{A C}}{\sqrt{S B}}",
+            ((a - l * sp.cos(q)) ** 2 + (b - l * sp.sin(q)) ** 2 + aside**2 - r**2,),
+            {q: sp.atan2(sine, cosine)},
+            2,
+            signs=(sigma,),
+        )
+        root = sp.sqrt(r - aside) * sp.sqrt(r + aside)
+        cases = (
+            Degenerate((met,), {a: 0, b: 0, l: root}, q, f"the rod ends on the axis of {q}"),
+            Degenerate((none,), {l: 0, r: sp.sqrt(a**2 + b**2 + aside**2)}, q, "no crank"),
+        )
+        link = Link((q,), lemma.equations, {}, lemma, tuple(p.body[start:]), degenerate=cases)
+        return Solution(link, lemma[q], w - away)
+
+
+@dataclass(frozen=True)
+class Slide:
+    """A slider that moves from ``start`` along the unit vector ``direction``, at one end of a rod.
+
+    The rod leads to the point ``on_hand``, as seen from the point that is the hand.
+    """
+
+    joint: sp.Symbol
+    rod: Any
+    start: Sequence[Any]
+    direction: Sequence[Any]
+    on_hand: Sequence[Any] = ()
+    signs: int = 2
+
+    @property
+    def base(self) -> sp.Matrix:
+        return vector(self.start)
+
+    @property
+    def rate(self) -> sp.Matrix:
+        return vector(self.direction)
+
+    def rate_at(self, end: sp.Matrix) -> sp.Matrix:
+        return self.rate
+
+    def end(self) -> sp.Matrix:
+        return self.base + self.joint * self.rate
+
+    def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
+        p, q, s = chain.program, self.joint, self.rate
+        r = chain.coefficient("r", self.rod, nonnegative=True)
+        m = chain.let("m", w.dot(s))
+        off = w.cross(s) if len(w) == 3 else sp.Matrix([w[0] * s[1] - w[1] * s[0]])
+        parts = [e for e in off if e != 0]
+        size = sp.sqrt(sum(e**2 for e in parts)) if len(parts) > 1 else parts[0]
+        aside = chain.let("aside", size, nonnegative=len(parts) > 1)
+        start = len(p.body)
+        meaning = "the rod reaches the line of the slider"
+        over = chain.bound("over", r - aside, meaning)
+        under = chain.bound("under", r + aside, meaning)
+        root = chain.let("root", sp.sqrt(over) * sp.sqrt(under), nonnegative=True)
+        value = chain.let("slide", m - sigma * root)
+        lemma = Lemma(
+            "line and sphere",
+            r"q = m - \sigma\sqrt{(r - p)(r + p)}",
+            (q**2 - 2 * m * q + m**2 + aside**2 - r**2,),
+            {q: value},
+            2,
+            signs=(sigma,),
+        )
+        link = Link((q,), lemma.equations, {}, lemma, tuple(p.body[start:]))
+        return Solution(link, value, w - value * s)
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A leg of variable length, the joint, from ``pivot`` to the point ``on_hand``."""
+
+    joint: sp.Symbol
+    pivot: Sequence[Any]
+    on_hand: Sequence[Any] = ()
+    signs: int = 1
+
+    @property
+    def base(self) -> sp.Matrix:
+        return vector(self.pivot)
+
+    @property
+    def rod(self) -> sp.Symbol:
+        return self.joint
+
+    @property
+    def rate(self) -> sp.Matrix:
+        return sp.zeros(len(self.pivot), 1)
+
+    def end(self) -> sp.Matrix:
+        return self.base
+
+    def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
+        q = self.joint
+        named = [chain.coefficient(f"w{k}", e) for k, e in enumerate(w, 1)]
+        start = len(chain.program.body)
+        value = chain.let("leg", sp.sqrt(sum(e**2 for e in named)), nonnegative=True)
+        lemma = Lemma(
+            "length of a leg",
+            r"q = |\mathbf w|",
+            (sum(e**2 for e in named) - q**2,),
+            {q: value},
+            1,
+            excluded=1,
+        )
+        body = tuple(chain.program.body[start:])
+        return Solution(Link((q,), lemma.equations, {}, lemma, body), value, w)
+
+
+__all__ = ["Crank", "Leg", "Naming", "Slide", "Solution", "Stretch", "vector"]

@@ -1,0 +1,504 @@
+"""A hand that legs carry: all that follows from the list of its legs.
+
+:func:`parallel` is for a hand that does not turn, a point or a platform: two legs in a plane, three
+in space.  It exports the forward map with all assembly modes, the inverse with all working modes,
+the velocity, the singular sets, the workspace and the skeleton, and records the steps that prove
+them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+
+from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.circles import two_circles
+from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, vector
+from closedform.lemmas.spheres import three_spheres
+from closedform.mechanics.frames import merge_angles
+from closedform.mechanics.loops import velocity_matrices
+from closedform.mechanics.skeleton import skeleton
+from closedform.model.derivation import Derivation, Solved, Step
+from closedform.model.functions import SINGLE, Bound, Branches, Let, Program, branches, real
+from closedform.model.inverse import Inverse
+
+Choice = Mapping[int, str]
+SIGN = {+1: "plus", -1: "minus"}
+AXES = "xyz"
+
+
+def parallel(
+    d: Derivation,
+    hand: Sequence[sp.Symbol],
+    legs: Sequence[Leg],
+    modes: Choice = SIGN,
+    *,
+    passive: Sequence[sp.Symbol] = (),
+) -> None:
+    """Derive and export a mechanism whose hand does not turn and is carried by legs.
+
+    Parameters
+    ----------
+    d
+        the derivation, with its parameters and joints; the legs are in the order of the joints
+    hand
+        the coordinates of the hand, the symbols of the task: two in a plane, three in space
+    legs
+        as many as there are coordinates, see :mod:`closedform.lemmas.legs`
+    modes
+        the names of the assembly modes, by the sign of the determinant of ``jacobian_parallel``
+    passive
+        the angles of the rods from the x axis, for a mechanism in a plane; with them
+        ``passive_angles`` is exported
+    """
+    mechanism = _Mechanism(d, sp.Matrix(hand), tuple(legs))
+    meet = "rods in line" if len(legs) == 2 else "rods in one plane"
+    d.singularities = (*(f"leg {k}" for k in range(1, len(legs) + 1)), meet)
+    d.poles = (meet,)
+    loop = mechanism.state_loop()
+    posture = _forward(mechanism, modes, loop)
+    if passive:
+        _passive_angles(mechanism, posture, passive)
+    _draw(mechanism, posture)
+    _velocity(mechanism, posture, loop)
+    _inverse(mechanism, loop)
+
+
+@dataclass(frozen=True)
+class _Mechanism:
+    """A hand that does not turn, and its legs."""
+
+    d: Derivation
+    hand: sp.Matrix
+    legs: tuple[Leg, ...]
+
+    def __post_init__(self) -> None:
+        n = len(self.hand)
+        if n not in (2, 3) or len(self.legs) != n:
+            raise ShapeError(
+                f"{self.d.name}: {len(self.legs)} legs for {n} coordinates; a hand that does not "
+                f"turn has two legs in a plane or three in space"
+            )
+        joints = tuple(leg.joint for leg in self.legs)
+        if joints != self.d.actuated:
+            raise ShapeError(
+                f"{self.d.name}: the legs are driven by {_listed(joints)}, but the joints of the "
+                f"derivation are {_listed(self.d.actuated)}; give the legs in this order"
+            )
+
+    @property
+    def joints(self) -> tuple[sp.Symbol, ...]:
+        return self.d.actuated
+
+    @property
+    def count(self) -> str:
+        return {2: "two", 3: "three"}[len(self.legs)]
+
+    def place(self, leg: Leg) -> sp.Matrix:
+        """Where the rod of a leg ends on the hand."""
+        return vector(leg.on_hand or [0] * len(self.hand))
+
+    @cached_property
+    def centres(self) -> list[sp.Matrix]:
+        """The near ends of the rods, less the places of their far ends on the hand."""
+        return [leg.end() - self.place(leg) for leg in self.legs]
+
+    @cached_property
+    def loop(self) -> tuple[sp.Expr, ...]:
+        """The equations of the loop: each rod keeps its length."""
+        ends = zip(self.legs, self.centres, strict=True)
+        return tuple(square(self.hand - c) - sp.sympify(leg.rod) ** 2 for leg, c in ends)
+
+    def state_loop(self) -> Step:
+        shown = {rf"\mathbf b_{k}": c for k, c in enumerate(self.centres, 1)}
+        shown |= {
+            rf"|\mathbf p - \mathbf b_{k}|": sp.sympify(leg.rod)
+            for k, leg in enumerate(self.legs, 1)
+        }
+        carried = any(leg.on_hand for leg in self.legs)
+        less = ", less the place of its far end on the hand," if carried else ""
+        return self.d.step(
+            "The loop",
+            f"The hand p hangs on {self.count} rods.  The near end of each rod{less} is b, which "
+            f"the joint of its leg determines.  The hand is at the length of the rod from it.",
+            shown,
+        )
+
+
+@dataclass(frozen=True)
+class _Posture:
+    """The hand in an assembly mode, in the names of the program of ``fk``."""
+
+    program: Program
+    modes: Branches
+    hand: sp.Matrix
+    rods: tuple[sp.Matrix, ...]
+    """The vectors along the rods, from their near ends to their far ends."""
+    side: sp.Symbol
+    size: sp.Expr
+    """The sign and the size of the determinant of the matrix that has them as rows."""
+
+
+def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
+    d, n, f = m.d, len(m.legs), m.d.program()
+    sigma = real("sigma_assembly")
+    modes = branches((sigma, choice))
+    d.assembly_modes = modes.labels
+    slides = [leg.joint for leg in m.legs if not isinstance(leg, Crank)]
+    size = f.let("size", size_of(d, slides))
+    ends = [
+        sp.Matrix([named_in(f, f"c{k}_{i}", e) for i, e in zip(AXES, c, strict=False)])
+        for k, c in enumerate(m.centres, 1)
+    ]
+    radii = [named_in(f, f"r{k}", sp.sympify(leg.rod)) for k, leg in enumerate(m.legs, 1)]
+    meet = two_circles if n == 2 else three_spheres
+    found = meet(f, ends, radii, tuple(m.hand), sigma, scale=size, free=tuple(m.hand))
+    shape = "circles" if n == 2 else "spheres"
+    d.step(
+        f"Forward: {m.count} {shape}",
+        f"The hand is where {m.count} {shape} about the points b meet, whose radii are the "
+        f"lengths of the rods.  They meet twice, on both sides of the "
+        f"{'line' if n == 2 else 'plane'} of their centres: these are the two assembly modes.  The "
+        f"{'distance' if n == 2 else 'volume'} tells how far the rods are from a parallel "
+        f"singularity.",
+        {
+            rf"\mathbf b_{k} - \mathbf b_1": (c - m.centres[0]).applyfunc(merge_angles)
+            for k, c in enumerate(m.centres[1:], 2)
+        },
+        proves=(
+            "The determinant of the vectors along the rods, in the frame of the lemma, is as "
+            "stated there."
+        ),
+        equal=[(found.rows.det(), found.volume)],
+        uses=[loop],
+    )
+    d.function(
+        "fk",
+        "Position of the hand in both assembly modes.",
+        {"q": m.joints},
+        {"p": [found.lemma[x] for x in m.hand]},
+        program=f,
+        branches=modes,
+        result="Positions",
+        notes=(
+            "UNREACHABLE: the rods do not meet.",
+            "SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of "
+            "its points is returned.",
+            "Ill-conditioned near the parallel singularities, where both modes meet.",
+        ),
+    )
+    d.inverses.append(Inverse("fk", tuple(m.hand), (sp.S.Zero,) * n, m.loop, links=(found.link,)))
+    d.solved.append(Solved("fk", m.hand[0], found.lemma, found.lemma.equations[0]))
+    v = Program(list(f.body), f.taken)
+    first = sp.Matrix([v.let(f"A_1{i}", e) for i, e in enumerate(found.first, 1)])
+    return _Posture(
+        v,
+        modes,
+        ends[0] + first,
+        tuple(first + ends[0] - end for end in ends),
+        found.side,
+        found.size,
+    )
+
+
+def _passive_angles(m: _Mechanism, at: _Posture, passive: Sequence[sp.Symbol]) -> None:
+    m.d.function(
+        "passive_angles",
+        "Angles of the rods from the x axis in both assembly modes.",
+        {"q": m.joints},
+        {"theta": [sp.atan2(rod[1], rod[0]) for rod in at.rods]},
+        program=at.program,
+        branches=at.modes,
+        entries=tuple(passive),
+        notes=("NaN for an assembly mode that does not exist.",),
+    )
+
+
+def _draw(m: _Mechanism, at: _Posture) -> None:
+    links: dict[str, tuple[str, ...]] = {}
+    lengths: dict[tuple[str, str], sp.Expr] = {}
+    closing: dict[tuple[str, str], sp.Expr] = {}
+    joints: dict[sp.Symbol, tuple[str, ...]] = {}
+    for k, (leg, equation) in enumerate(zip(m.legs, m.loop, strict=True), 1):
+        base, end, place = f"A{k}", f"B{k}", m.place(leg)
+        far = "P" if place.is_zero_matrix else f"C{k}"
+        near = base if isinstance(leg, Stretch) else end
+        joints[leg.joint] = (base, far)
+        lengths[near, far], closing[near, far] = sp.sympify(leg.rod), equation
+        if far != "P":
+            links[f"hand{k}"] = ("P", far)
+            lengths["P", far] = sp.sqrt(sp.factor(square(place)))
+        if not isinstance(leg, Stretch):
+            links[f"rod{k}"] = (end, far)
+            joints[leg.joint] = (base, end)
+        if isinstance(leg, Crank):
+            links[f"crank{k}"] = (base, end)
+            lengths[base, end] = sp.sympify(leg.length)
+            joints[leg.joint] = (base,)
+        elif isinstance(leg, Slide):
+            lengths[base, end] = leg.joint
+    ground = tuple(f"A{k}" for k in range(1, len(m.legs) + 1))
+    skeleton(
+        m.d,
+        _points(m, at.hand),
+        links={"ground": ground if len(ground) == 2 else (*ground, ground[0]), **links},
+        joints=joints,
+        hand="P",
+        hand_at=in_space(m.hand),
+        ground=ground,
+        lengths=lengths,
+        program=at.program,
+        branches=at.modes,
+        notes=("NaN for an assembly mode that does not exist.",),
+        at_posture=[_points(m, m.hand)],
+        closing=closing,
+    )
+
+
+def _points(m: _Mechanism, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
+    """The points of the skeleton: the base A, the near end B and the far end C of each leg."""
+    points: dict[str, Sequence[sp.Expr]] = {}
+    for k, leg in enumerate(m.legs, 1):
+        points[f"A{k}"] = in_space(leg.base)
+        if not isinstance(leg, Stretch):
+            points[f"B{k}"] = in_space(leg.end())
+        if not m.place(leg).is_zero_matrix:
+            points[f"C{k}"] = in_space(hand + m.place(leg))
+    return points | {"P": in_space(hand)}
+
+
+def _velocity(m: _Mechanism, at: _Posture, loop: Step) -> None:
+    d, n = m.d, len(m.legs)
+    A, B = velocity_matrices(m.loop, tuple(m.hand), m.joints)
+    rods = [m.hand - c for c in m.centres]
+    rates = [rate_of(leg, rod) for leg, rod in zip(m.legs, rods, strict=True)]
+    a = sp.Matrix(n, n, lambda i, j: real(f"a{i + 1}{j + 1}"))
+    adjugate = a.adjugate()
+    d.step(
+        "Velocity and singular sets",
+        "The derivatives of the loop equations, halved, give A dp = B dq.  The rows of A are the "
+        "vectors along the rods.  B is diagonal, because each leg depends on its own joint alone.  "
+        "B is singular if the joint moves the near end of a rod at right angles to it (serial: "
+        "the joint moves and the hand stands still).  A is singular if the rods are "
+        f"{'in line' if n == 2 else 'in one plane'} (parallel: the hand can move while the joints "
+        "stand still).",
+        {
+            "A": sp.Matrix.vstack(*(r.T for r in rods)),
+            **{f"B_{{{k}{k}}}": e for k, e in enumerate(rates, 1)},
+        },
+        proves="A and B are half of the derivatives, and the adjugate of A gives J with A*J = B.",
+        equal=[
+            (A / 2, sp.Matrix.vstack(*(r.T for r in rods))),
+            (B / 2, sp.diag(*rates)),
+            (a * adjugate, a.det() * sp.eye(n)),
+        ],
+        uses=[loop],
+    )
+    v = Program(list(at.program.body), at.program.taken)
+    placed = {
+        e: named_in(v, f"A_{k}{i}", value)
+        for k, (row, rod) in enumerate(zip(a.tolist(), at.rods, strict=True), 1)
+        for i, (e, value) in enumerate(zip(row, rod, strict=True), 1)
+    }
+    vectors = [sp.Matrix([placed[e] for e in row]) for row in a.tolist()]
+    turned = [rate_of(leg, rod) for leg, rod in zip(m.legs, vectors, strict=True)]
+    driven = [v.let(f"B_{k}{k}", e) for k, e in enumerate(turned, 1)]
+    size = v.let("Delta", at.size, nonnegative=True)
+    side = at.side * size
+    J = adjugate.xreplace(placed) * sp.diag(*driven) / side
+    A_at = a.xreplace(placed)
+    pole = "Not finite at a parallel singularity."
+    functions: list[tuple[str, str, dict[str, Any], tuple[str, ...]]] = [
+        (
+            "jacobian_parallel",
+            "A of A*dp = B*dq; its rows are the vectors along the rods.",
+            {"A": A_at},
+            (),
+        ),
+        (
+            "jacobian_serial",
+            "The diagonal of B of A*dp = B*dq.",
+            {"B": driven},
+            ("Its signs distinguish the working modes; BRANCHES lists them in the same order.",)
+            if all(leg.signs == 2 for leg in m.legs)
+            else (),
+        ),
+        ("jacobian", "Derivative of p with respect to q: A^-1*B.", {"J": J}, (pole,)),
+        (
+            "determinant",
+            "Determinant of the Jacobian.",
+            {"det": sp.Mul(*driven) / side},
+            (pole,),
+        ),
+        (
+            "singularities",
+            "The diagonal of B (serial) and the determinant of A (parallel).",
+            {"factors": [*driven, side]},
+            (),
+        ),
+        ("condition_number", *_conditioning(v, vectors, size)),
+    ]
+    for name, summary, outputs, notes in functions:
+        d.function(
+            name,
+            summary,
+            {"q": m.joints},
+            outputs,
+            program=v,
+            branches=at.modes,
+            notes=("NaN for an assembly mode that does not exist.", *notes),
+        )
+
+
+def rate_of(leg: Leg, rod: sp.Matrix) -> sp.Expr:
+    """The entry of B of a leg, from the vector along its rod."""
+    return leg.joint if isinstance(leg, Stretch) else rod.dot(leg.rate)
+
+
+def _conditioning(
+    v: Program, rods: Sequence[sp.Matrix], size: sp.Expr
+) -> tuple[str, dict[str, Any], tuple[str, ...]]:
+    note = "Infinite at a parallel singularity."
+    squares = [v.let(f"square{k}", square(r)) for k, r in enumerate(rods, 1)]
+    if len(rods) == 2:
+        apart = sp.sqrt((squares[0] - squares[1]) ** 2 + 4 * rods[0].dot(rods[1]) ** 2)
+        value = (sp.Add(*squares) + apart) / (2 * size)
+        return (
+            "Ratio of the largest to the smallest singular value of A.",
+            {"kappa": value},
+            (note,),
+        )
+    rows = [rods[1].cross(rods[2]), rods[2].cross(rods[0]), rods[0].cross(rods[1])]
+    inverse = sp.Add(*map(square, rows))
+    value = sp.sqrt(sp.Add(*squares)) * sp.sqrt(inverse) / (3 * size)
+    return (
+        "Condition number of A in the Frobenius norm, divided by 3: 1 if the rods are equally long "
+        "and at right angles.",
+        {"kappa": value},
+        (note,),
+    )
+
+
+def _inverse(m: _Mechanism, loop: Step) -> None:
+    d, n, g = m.d, len(m.legs), m.d.program()
+    choices: list[tuple[sp.Symbol, Choice]] = []
+    slides = any(not isinstance(leg, Crank) for leg in m.legs)
+    size = g.let("size", size_of(d, tuple(m.hand) if slides else ()))
+    found: list[Solution] = []
+    for k, leg in enumerate(m.legs, 1):
+        sigma = real(f"sigma_leg{k}")
+        if leg.signs == 2:
+            choices.append((sigma, SIGN))
+        w = m.hand + m.place(leg) - leg.base
+        found.append(leg.solve(Naming(g, size, f"_{k}"), w, sigma))
+    inside = bounds_of(g)
+    rods = [
+        sp.Matrix([g.let(f"A_{k}{i}", e) for i, e in enumerate(s.rod, 1)])
+        for k, s in enumerate(found, 1)
+    ]
+    lengths = [
+        s.value if isinstance(leg, Stretch) else sp.sympify(leg.rod)
+        for leg, s in zip(m.legs, found, strict=True)
+    ]
+    meet = "in line" if n == 2 else "in one plane"
+    volume = g.let("Delta", sp.Matrix.hstack(*rods).det())
+    g.determined(sp.Abs(volume), sp.Mul(*lengths), f"the rods are {meet}")
+    working = branches(*choices) if choices else SINGLE
+    d.branches = working.labels
+    signs = "The signs of its two solutions are those of the diagonal of B.  "
+    d.step(
+        "Inverse: leg by leg",
+        f"Each leg is solved alone.  {signs if choices else ''}"
+        "Rounded joints miss the lengths of the rods by a few units in the last place.  The "
+        "error of the hand is this error times up to the product of the lengths of the rods over "
+        "the determinant of A.  So near a parallel singularity the joints do not determine the "
+        "hand, however they are computed.  The status is SINGULAR if the determinant is less than "
+        "2^-10 of the product.",
+        {r"|\det A|": sp.Abs(real("Delta"))},
+        uses=[loop],
+    )
+    d.function(
+        "ik",
+        f"The driven joints of {'all working modes' if choices else 'the only working mode'}.",
+        {"x": tuple(m.hand)},
+        {"q": [s.value for s in found]},
+        program=g,
+        branches=working,
+        result="Solutions",
+        notes=(
+            "UNREACHABLE: a rod does not reach.",
+            *(
+                f"SINGULAR: {case.meaning}; {leg.joint} is free, 0 is returned."
+                for leg, s in zip(m.legs, found, strict=True)
+                for case in s.link.degenerate
+            ),
+            f"SINGULAR also near a parallel singularity, where the rods are {meet}: the loop "
+            "closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.",
+        ),
+    )
+    d.function(
+        "workspace_contains",
+        "Whether the hand can be reached.",
+        {"p": tuple(m.hand)},
+        {"inside": sp.true},
+        program=inside,
+        boolean=True,
+    )
+    for leg, s in zip(m.legs, found, strict=True):
+        assert s.link.lemma is not None
+        d.solved.append(Solved("ik", leg.joint, s.link.lemma, s.link.lemma.equations[0]))
+    d.inverses.append(
+        Inverse(
+            "ik",
+            m.joints,
+            (sp.S.Zero,) * n,
+            m.loop,
+            images="fk",
+            links=tuple(s.link for s in found),
+        )
+    )
+
+
+def size_of(d: Derivation, moved: Sequence[sp.Expr] = ()) -> sp.Expr:
+    """The sum of the lengths of a mechanism, and of what its slides have moved."""
+    lengths = [p for p in d.parameters if p.unit != "rad"]
+    sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
+    return sp.Add(*sized, *map(sp.Abs, moved))
+
+
+def bounds_of(g: Program) -> Program:
+    """What decides whether there is a solution."""
+    kept: list[Bound | Let] = []
+    needed: set[sp.Basic] = set()
+    for statement in reversed(g.body):
+        if isinstance(statement, Bound) or (
+            isinstance(statement, Let) and statement.symbol in needed
+        ):
+            needed |= statement.value.free_symbols
+            if isinstance(statement, Bound):
+                needed |= statement.scale.free_symbols
+            kept.insert(0, statement)
+    return Program([*kept], g.taken)
+
+
+def named_in(p: Program, name: str, value: sp.Expr) -> sp.Symbol:
+    return value if value.is_Symbol else p.let(name, value)
+
+
+def square(v: sp.Matrix) -> sp.Expr:
+    return v.dot(v)
+
+
+def in_space(place: sp.Matrix) -> list[sp.Expr]:
+    return [*place, *[sp.S.Zero] * (3 - len(place))]
+
+
+def _listed(symbols: Sequence[sp.Symbol]) -> str:
+    return ", ".join(map(str, symbols))
+
+
+__all__ = ["SIGN", "Choice", "bounds_of", "in_space", "parallel", "rate_of", "size_of", "square"]

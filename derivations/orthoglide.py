@@ -1,0 +1,21 @@
+"""The Orthoglide (Wenger and Chablat): three sliders at right angles carry a point."""
+
+from closedform.derivations.papers.textbook import TEXTBOOK
+
+from closedform import Derivation, Slide, parallel, real
+
+d = Derivation(
+    "orthoglide",
+    "Orthoglide",
+    TEXTBOOK,
+    "Three sliders move along the axes x, y and z.  Parallelograms of length L lead from them to "
+    "the hand P, which they keep from turning.  Where all sliders are at L, P is at the origin and "
+    "the legs are at right angles: there the mechanism is isotropic.",
+    task=["x", "y", "z"],
+)
+L = d.parameter("L", value=1, unit="m", meaning="length of the legs", source="the unit of length")
+axes = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
+legs = [
+    Slide(d.joint(f"rho{k}", "prismatic"), L, (0, 0, 0), axis) for k, axis in enumerate(axes, 1)
+]
+parallel(d, (real("x"), real("y"), real("z")), legs, {+1: "outer", -1: "inner"})

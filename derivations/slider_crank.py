@@ -1,0 +1,24 @@
+"""The slider-crank: a crank drives a slider by a connecting rod."""
+
+from closedform.derivations.papers.textbook import TEXTBOOK
+
+from closedform import Crank, Derivation, Slide, coupled, real
+
+d = Derivation(
+    "slider_crank",
+    "Slider-crank",
+    TEXTBOOK,
+    "The crank of length r turns about the origin.  The slider moves along a line parallel to the "
+    "x axis, at the height e.  The connecting rod of length l joins the end of the crank to it.",
+    task=["x"],
+)
+r = d.parameter("r", value=1, unit="m", meaning="length of the crank", source="the unit of length")
+l = d.parameter("l", value=3, unit="m", meaning="length of the rod", source="round numbers")
+e = d.parameter(
+    "e", value=0, unit="m", meaning="offset of the slider", source="in line", nonnegative=False
+)
+coupled(
+    d,
+    Crank(d.joint("theta"), r, l, (0, 0), (1, 0), (0, 1)),
+    Slide(real("x"), l, (0, e), (1, 0)),
+)

@@ -322,8 +322,8 @@ def verify_command(options: argparse.Namespace) -> None:
 def new_command(options: argparse.Namespace) -> None:
     """Write the skeleton of a derivation, with pose, Jacobians and a proposed inverse."""
     kind, path = options.table[0], Path(options.table[1])
-    if kind not in ("dh", "screws", "urdf"):
-        kinds = "dh TABLE.csv, screws FILE.toml or urdf FILE.urdf"
+    if kind not in ("dh", "screws", "urdf", "loop"):
+        kinds = "dh TABLE.csv, screws FILE.toml, urdf FILE.urdf or loop FILE.toml"
         raise CommandError(f"--from takes {kinds}, not {kind}", 2)
     if not path.is_file():
         problem = f"{path} is not a file" if path.exists() else f"there is no file {path}"

@@ -123,7 +123,12 @@ def two_circles(
     The coordinates of the first of the ``centres`` are symbols, and so are the ``radii``.
     """
     p, (r1, r2), (origin, other) = program, radii, centres
-    apart = sp.Matrix([p.let(f"u_{i}", e) for i, e in zip("xy", other - origin, strict=True)])
+    apart = sp.Matrix(
+        [
+            e if e.is_Symbol or e == 0 else p.let(f"u_{i}", e)
+            for i, e in zip("xy", other - origin, strict=True)
+        ]
+    )
     start = len(p.body)
     x, y = first = real("from_x"), real("from_y")
     lemma, chord = circle_intersection(
@@ -135,7 +140,7 @@ def two_circles(
         equations=tuple(e.xreplace(placed) for e in lemma.equations),
         solution={x: o + lemma[u] for u, x, o in zip(first, unknowns, origin, strict=True)},
     )
-    at_centre = dict.fromkeys(apart, sp.S.Zero) | ({r2: r1} if r2 != r1 else {})
+    at_centre = dict.fromkeys(apart.free_symbols, sp.S.Zero) | ({r2: r1} if r2 != r1 else {})
     case = Degenerate(
         (chord.flag,), at_centre, free[0] if free else None, "both circles are the same"
     )

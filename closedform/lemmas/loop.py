@@ -44,7 +44,8 @@ def parallel(
     Parameters
     ----------
     d
-        the derivation, with its parameters and joints; the legs are in the order of the joints
+        the derivation, with its parameters and joints; the legs are in the order of the joints.
+        If it has no ``singularities``, they are named after the legs
     hand
         the coordinates of the hand, the symbols of the task: two in a plane, three in space
     legs
@@ -57,8 +58,9 @@ def parallel(
     """
     mechanism = _Mechanism(d, sp.Matrix(hand), tuple(legs))
     meet = "rods in line" if len(legs) == 2 else "rods in one plane"
-    d.singularities = (*(f"leg {k}" for k in range(1, len(legs) + 1)), meet)
-    d.poles = (meet,)
+    if not d.singularities:
+        d.singularities = (*(f"leg {k}" for k in range(1, len(legs) + 1)), meet)
+        d.poles = (meet,)
     loop = mechanism.state_loop()
     posture = _forward(mechanism, modes, loop)
     if passive:
@@ -148,8 +150,9 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
     sigma = real("sigma_assembly")
     modes = branches((sigma, choice))
     d.assembly_modes = modes.labels
-    slides = [leg.joint for leg in m.legs if not isinstance(leg, Crank)]
-    size = f.let("size", size_of(d, slides))
+    stretched = [leg.joint for leg in m.legs if isinstance(leg, Stretch)]
+    slid = [leg.joint for leg in m.legs if isinstance(leg, Slide)]
+    size = f.let("size", size_of(d, slid) + sp.Add(*stretched))
     ends = [
         sp.Matrix([named_in(f, f"c{k}_{i}", e) for i, e in zip(AXES, c, strict=False)])
         for k, c in enumerate(m.centres, 1)
@@ -386,7 +389,7 @@ def _conditioning(
 def _inverse(m: _Mechanism, loop: Step) -> None:
     d, n, g = m.d, len(m.legs), m.d.program()
     choices: list[tuple[sp.Symbol, Choice]] = []
-    slides = any(not isinstance(leg, Crank) for leg in m.legs)
+    slides = any(isinstance(leg, Slide) for leg in m.legs)
     size = g.let("size", size_of(d, tuple(m.hand) if slides else ()))
     found: list[Solution] = []
     for k, leg in enumerate(m.legs, 1):
@@ -396,16 +399,18 @@ def _inverse(m: _Mechanism, loop: Step) -> None:
         w = m.hand + m.place(leg) - leg.base
         found.append(leg.solve(Naming(g, size, f"_{k}"), w, sigma))
     inside = bounds_of(g)
-    rods = [
-        sp.Matrix([g.let(f"A_{k}{i}", e) for i, e in enumerate(s.rod, 1)])
-        for k, s in enumerate(found, 1)
+    # a determinant does not change if a row is subtracted from the others; the hand cancels there
+    rows = [found[0].rod, *(sp.expand(s.rod - found[0].rod) for s in found[1:])]
+    apart = [
+        sp.Matrix([named_in(g, f"A_{k}{i}", e) for i, e in enumerate(row, 1)])
+        for k, row in enumerate(rows, 1)
     ]
     lengths = [
         s.value if isinstance(leg, Stretch) else sp.sympify(leg.rod)
         for leg, s in zip(m.legs, found, strict=True)
     ]
     meet = "in line" if n == 2 else "in one plane"
-    volume = g.let("Delta", sp.Matrix.hstack(*rods).det())
+    volume = g.let("Delta", sp.Matrix.hstack(*apart).det())
     g.determined(sp.Abs(volume), sp.Mul(*lengths), f"the rods are {meet}")
     working = branches(*choices) if choices else SINGLE
     d.branches = working.labels
@@ -440,14 +445,15 @@ def _inverse(m: _Mechanism, loop: Step) -> None:
             "closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.",
         ),
     )
-    d.function(
-        "workspace_contains",
-        "Whether the hand can be reached.",
-        {"p": tuple(m.hand)},
-        {"inside": sp.true},
-        program=inside,
-        boolean=True,
-    )
+    if inside.body:
+        d.function(
+            "workspace_contains",
+            "Whether the hand can be reached.",
+            {"p": tuple(m.hand)},
+            {"inside": sp.true},
+            program=inside,
+            boolean=True,
+        )
     for leg, s in zip(m.legs, found, strict=True):
         assert s.link.lemma is not None
         d.solved.append(Solved("ik", leg.joint, s.link.lemma, s.link.lemma.equations[0]))
@@ -486,7 +492,7 @@ def bounds_of(g: Program) -> Program:
 
 
 def named_in(p: Program, name: str, value: sp.Expr) -> sp.Symbol:
-    return value if value.is_Symbol else p.let(name, value)
+    return value if value.is_Symbol or value == 0 else p.let(name, value)
 
 
 def square(v: sp.Matrix) -> sp.Expr:

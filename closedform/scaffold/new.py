@@ -21,9 +21,10 @@ from closedform.model.derivation import Derivation
 from closedform.model.names import check_robot, check_text
 from closedform.model.paper import Paper
 from closedform.scaffold.limit import LimitError, limited
+from closedform.scaffold.loops import loop_script, read_loop
 from closedform.scaffold.propose import NoChainError, propose
 from closedform.scaffold.recognise import recognised
-from closedform.scaffold.source import source
+from closedform.scaffold.source import literal, source
 from closedform.scaffold.tables import (
     AUTHOR,
     CHAIN,
@@ -100,13 +101,16 @@ def new(
 ) -> Script:
     """A derivation called ``name``, from a table of the given kind.
 
-    ``kind`` is ``"dh"`` (with ``modified``, in Craig's convention), ``"screws"`` or ``"urdf"``
-    (with the links between which the chain is read).  Raises ``ValueError`` if the name or the
-    table cannot be used; it says where and how to correct it.
+    ``kind`` is ``"dh"`` (with ``modified``, in Craig's convention), ``"screws"``, ``"urdf"`` (with
+    the links between which the chain is read) or ``"loop"`` (bodies and joints).  Raises
+    ``ValueError`` if the name or the table cannot be used; it says where and how to correct it.
     """
     search = search or Search()
     search.progress("reading the table")
     check_name(name)
+    if kind == "loop":
+        loop = read_loop(path)
+        return Script(loop_script(name, loop, path.name), f"{len(loop.joints)} joints read")
     if kind == "dh":
         table = read_dh(path, modified=modified)
     elif kind == "urdf":
@@ -120,11 +124,6 @@ def new(
         return skeleton(name, table, path.name, search)
     except (RowError, SingularEverywhereError) as error:
         raise TableError(f"{path.name}: {str(error).removeprefix(f'{name}: ')}") from error
-
-
-def _literal(text: str) -> str:
-    """A text as a Python literal, in double quotes if it contains none."""
-    return repr(text) if '"' in text else f'"{repr(chr(39) + text)[2:]}'
 
 
 def _comment(text: str) -> str:
@@ -178,7 +177,7 @@ def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
         exact = f"{value.numerator}" if value.denominator == 1 else f'Rational("{value}")'
         sign = ", nonnegative=False" if symbol in negative else ""
         unit, meaning = (
-            _literal(given.get(key) or default)
+            literal(given.get(key) or default)
             for key, default in (("unit", "m"), ("meaning", "say what it measures"))
         )
         lines.append(
@@ -301,7 +300,7 @@ def _without_inverse(
         f"# {chain}",
         "# ik.solve(turn, theta1, a, b, c, {+1: 'left', -1: 'right'})",
         '# ik.finish("All solutions.")',
-        f"d.no_inverse({_literal(found)})",
+        f"d.no_inverse({literal(found)})",
     ]
     return _Inverse(lines, f"no inverse, because {found}", list(explained))
 

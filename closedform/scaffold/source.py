@@ -38,6 +38,11 @@ class _Source(StrPrinter):  # type: ignore[misc]
         return "Matrix([" + ", ".join(f"[{', '.join(row)}]" for row in rows) + "])"
 
 
+def literal(text: str) -> str:
+    """A text as a Python literal, in double quotes if it contains none."""
+    return repr(text) if '"' in text else f'"{repr(chr(39) + text)[2:]}'
+
+
 def source(e: Any) -> str:
     """An exact expression or a matrix as Python code, with the names of ``sympy``."""
     exact = sp.sympify(e, strict=True)

@@ -80,12 +80,12 @@ class Table:
 def check_names(table: Table, where: str) -> None:
     """Refuse names that clash, because joints and parameters become variables of the script."""
     for name in (*table.parameters, *table.joints):
-        _check_name(name, where)
+        check_table_name(name, where)
     if both := [name for name in table.joints if name in table.parameters]:
         raise TableError(f"{where}: {both[0]} is a joint and a parameter; rename one of them")
 
 
-def _check_name(name: str, where: str) -> None:
+def check_table_name(name: str, where: str) -> None:
     if name in TAKEN or NUMBERED.fullmatch(name):
         raise TableError(
             f"{where}: the written script uses the name {name} itself; "
@@ -128,7 +128,7 @@ def content_of(path: Path, largest: int, what: str) -> bytes:
     return content
 
 
-def _text(path: Path) -> str:
+def text_of(path: Path) -> str:
     try:
         text = content_of(path, LARGEST, "a table of joints").decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -207,7 +207,7 @@ def _split(
     """
     rows: list[tuple[str, list[str]]] = []
     unread: dict[str, tuple[str, str]] = {}
-    for i, line in enumerate(_text(path).splitlines(), 1):
+    for i, line in enumerate(text_of(path).splitlines(), 1):
         where = f"{path.name}, line {i}"
         if remark := _remark(line.strip()):
             symbol, value, unit, meaning = remark
@@ -231,7 +231,7 @@ def _read_row(table: Table, header: Sequence[str], cells: Sequence[str], where: 
             f"for each of {', '.join(header)}"
         )
     cell = dict(zip(header, (c.strip() for c in cells), strict=True))
-    entries = {c: _expression(cell[c], f"{where}, column {c}") for c in COLUMNS}
+    entries = {c: expression(cell[c], f"{where}, column {c}") for c in COLUMNS}
     for column in ("alpha", "theta"):
         _check_angle(entries[column], cell[column], f"{where}, column {column}")
     found = _joint(cell.get("joint", ""), entries, where, table.parameters)
@@ -268,7 +268,7 @@ def _couple(table: Table, joint: str, text: str, where: str) -> None:
     """Note the motors of a joint."""
     if not joint:
         raise TableError(f"{where}: the row has no joint that motors could drive")
-    total = sp.expand(_expression(text, where))
+    total = sp.expand(expression(text, where))
     terms = total.as_coefficients_dict()
     if not all(t.is_Symbol and k.is_Integer for t, k in terms.items()):
         raise TableError(
@@ -368,25 +368,25 @@ def _joint(
 def read_screws(path: Path) -> Table:
     """Axes and the pose at home from TOML."""
     try:
-        data = tomllib.loads(_text(path), parse_float=str)
+        data = tomllib.loads(text_of(path), parse_float=str)
     except TableError:
         raise
     except (ValueError, RecursionError) as error:
         why = "it is nested too deeply" if isinstance(error, RecursionError) else str(error)
         raise TableError(f"{path.name} is not valid TOML: {why}") from error
-    _check_keys(data, ("parameters", "axes", "home"), path.name)
+    check_keys(data, ("parameters", "axes", "home"), path.name)
     table = Table()
     where = f"{path.name}, [parameters]"
     parameters = data.get("parameters", {})
-    _check_keys(parameters, None, where)
+    check_keys(parameters, None, where)
     for name, entry in parameters.items():
-        table.parameters[name] = _parameter(name, entry, where)
+        table.parameters[name] = parameter(name, entry, where)
     axes = data.get("axes")
     if not isinstance(axes, list) or not axes:
         raise TableError(f"{path.name}: there are no [[axes]]; each joint needs one")
     for i, axis in enumerate(axes, 1):
         where = f"{path.name}, axis {i}"
-        _check_keys(axis, ("joint", "kind", "direction", "point"), where)
+        check_keys(axis, ("joint", "kind", "direction", "point"), where)
         for key in ("joint", "direction"):
             if key not in axis:
                 raise TableError(f"{where}: {key} is missing")
@@ -451,7 +451,7 @@ def _decimals(vector: Any) -> str:
     return f"({', '.join(f'{float(e):.12g}' for e in vector)})"
 
 
-def _check_keys(given: Any, known: Sequence[str] | None, where: str) -> None:
+def check_keys(given: Any, known: Sequence[str] | None, where: str) -> None:
     if not isinstance(given, dict):
         raise TableError(f"{where} must be a table of keys and values, not {_plain(given)}")
     if known is not None and (unknown := [key for key in given if key not in known]):
@@ -460,9 +460,9 @@ def _check_keys(given: Any, known: Sequence[str] | None, where: str) -> None:
         )
 
 
-def _parameter(name: str, entry: Any, where: str) -> dict[str, str]:
+def parameter(name: str, entry: Any, where: str) -> dict[str, str]:
     given = entry if isinstance(entry, dict) else {"value": entry}
-    _check_keys(given, ("value", "unit", "meaning"), f"{where}, {shown_name(name)}")
+    check_keys(given, ("value", "unit", "meaning"), f"{where}, {shown_name(name)}")
     for key in ("unit", "meaning"):
         if not isinstance(given.get(key, ""), str):
             raise TableError(
@@ -491,7 +491,7 @@ def _plain(value: Any) -> str:
 
 def _home(given: Any, where: str) -> sp.Matrix:
     """The pose of the tool, 4x4, when all joints are zero."""
-    _check_keys(given, ("position", "rotation"), where)
+    check_keys(given, ("position", "rotation"), where)
     if "position" not in given:
         raise TableError(
             f"{where}: position is missing; it is the place of the tool when all joints are zero, "
@@ -509,10 +509,10 @@ def _vector(given: Any, where: str) -> list[Any]:
     """Three expressions."""
     if not isinstance(given, list) or len(given) != 3:
         raise TableError(f"{where} needs 3 coordinates, such as [0, 0, 1], not {shown(given)}")
-    return [_expression(entry, where) for entry in given]
+    return [expression(entry, where) for entry in given]
 
 
-def _expression(text: Any, where: str) -> Any:
+def expression(text: Any, where: str) -> Any:
     """An exact expression; decimals are read as exact fractions."""
     if not isinstance(text, str | int) or isinstance(text, bool):
         raise TableError(f"{where}: {shown(text)} is not a number or formula")
@@ -523,7 +523,7 @@ def _expression(text: Any, where: str) -> Any:
 
 
 def _symbol(name: str, where: str) -> Any:
-    _check_name(name, where)
+    check_table_name(name, where)
     return real(name)
 
 

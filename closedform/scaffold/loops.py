@@ -1,0 +1,489 @@
+"""Reads a closed loop, bodies and the joints between them, and writes its derivation.
+
+The file is TOML::
+
+    hand = "P"
+
+    [parameters]
+    L1 = 7
+
+    [bodies.ground]
+    A1 = [0, 0]
+    [bodies.crank1]
+    A1 = [0, 0]
+    B1 = ["L1", 0]
+    [bodies.rod1]
+    length = "L3"
+
+    [joints.theta1]
+    between = ["ground", "crank1"]
+    at = "A1"
+    driven = true
+
+A body has named points; two bodies meet in a point that both have, or that a joint names.  The
+points of the ground, and of a body that a driven joint moves, are where they are when the joint is
+zero; those of the hand are seen from the point of the hand.  A rod has a ``length`` instead of
+points.  The loops are cut at the rods: each keeps the distance of its ends.
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import sympy as sp
+
+from closedform.algebra.formulas import number
+from closedform.model.names import check_symbol
+from closedform.scaffold.source import literal, source
+from closedform.scaffold.tables import (
+    Table,
+    TableError,
+    add_joint,
+    check_keys,
+    expression,
+    parameter,
+    text_of,
+)
+
+GROUND = "ground"
+KINDS = ("revolute", "prismatic", "spherical", "universal")
+NAMES = {"d", "pi", "real", "coupled", "parallel"}
+"""Names that the written script uses itself."""
+AXES = "xyz"
+UNSAID = "say what it measures"
+NO_CLOSED_FORM = {
+    (2, 3): "three legs of a body that turns in a plane lead to an equation of degree 6",
+    (3, 6): "six legs of a body that turns in space lead to an equation of degree 40",
+}
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint of the file."""
+
+    name: str
+    kind: str
+    between: tuple[str, str]
+    at: str
+    axis: sp.Matrix | None
+    driven: bool
+
+    def other(self, body: str) -> str:
+        return self.between[1] if self.between[0] == body else self.between[0]
+
+
+@dataclass
+class Loop:
+    """The content of a file: the bodies with their points, and the joints."""
+
+    file: str
+    dimensions: int
+    hand: str
+    bodies: dict[str, dict[str, sp.Matrix]] = field(default_factory=dict)
+    rods: dict[str, sp.Expr] = field(default_factory=dict)
+    parallelograms: set[str] = field(default_factory=set)
+    joints: dict[str, Joint] = field(default_factory=dict)
+    parameters: dict[str, dict[str, str]] = field(default_factory=dict)
+
+    def of(self, body: str) -> list[Joint]:
+        return [j for j in self.joints.values() if body in j.between]
+
+    def error(self, text: str) -> TableError:
+        return TableError(f"{self.file}: {text}")
+
+
+@dataclass(frozen=True)
+class LoopLeg:
+    """A leg as lines of the script: what makes it, and what it is in words."""
+
+    joint: Joint
+    call: str
+    words: str
+
+
+def read_loop(path: Path) -> Loop:
+    """The bodies and joints of a file; raises :class:`TableError`, which says what to correct."""
+    try:
+        data = tomllib.loads(text_of(path), parse_float=str)
+    except TableError:
+        raise
+    except (ValueError, RecursionError) as error:
+        raise TableError(f"{path.name} is not valid TOML: {error}") from error
+    check_keys(data, ("hand", "parameters", "bodies", "joints"), path.name)
+    for key in ("hand", "bodies", "joints"):
+        if key not in data:
+            raise TableError(f"{path.name}: {key} is missing")
+    if not isinstance(data["hand"], str):
+        raise TableError(f"{path.name}: hand must be the name of a point or of a joint")
+    loop = Loop(path.name, _dimensions(data["bodies"], path.name), data["hand"])
+    for name, entry in data.get("parameters", {}).items():
+        loop.parameters[name] = parameter(name, entry, f"{path.name}, [parameters]")
+    _read_bodies(loop, data["bodies"])
+    _read_joints(loop, data["joints"])
+    return loop
+
+
+def _dimensions(bodies: Any, file: str) -> int:
+    check_keys(bodies, None, f"{file}, [bodies]")
+    places = [
+        at
+        for body in bodies.values()
+        if isinstance(body, dict)
+        for at in body.values()
+        if isinstance(at, list)
+    ]
+    sizes = {len(at) for at in places}
+    if sizes not in ({2}, {3}):
+        raise TableError(
+            f"{file}: all points need 2 coordinates (in a plane) or all need 3 (in space)"
+        )
+    return sizes.pop()
+
+
+def _read_bodies(loop: Loop, bodies: Mapping[str, Any]) -> None:
+    for name, body in bodies.items():
+        where = f"{loop.file}, [bodies.{name}]"
+        check_keys(body, None, where)
+        points: dict[str, sp.Matrix] = {}
+        for key, given in body.items():
+            if key == "length":
+                loop.rods[name] = expression(given, where)
+            elif key == "parallelogram":
+                if given is not True:
+                    raise TableError(f"{where}: parallelogram must be true, or be left out")
+                loop.parallelograms.add(name)
+            elif isinstance(given, list):
+                points[key] = sp.Matrix([expression(e, f"{where}, {key}") for e in given])
+            else:
+                raise TableError(f"{where}: {key} must be a point, such as [0, 0]")
+        loop.bodies[name] = points
+    if GROUND not in loop.bodies:
+        raise loop.error("there is no [bodies.ground]; one body must stand still")
+
+
+def _read_joints(loop: Loop, joints: Any) -> None:
+    check_keys(joints, None, f"{loop.file}, [joints]")
+    for name, given in joints.items():
+        where = f"{loop.file}, [joints.{name}]"
+        _check_joint(name, where)
+        check_keys(given, ("between", "kind", "at", "axis", "driven"), where)
+        kind, between = given.get("kind", "revolute"), given.get("between")
+        if kind not in KINDS:
+            raise TableError(f"{where}: kind must be one of {', '.join(KINDS)}")
+        if not (isinstance(between, list) and len(between) == 2):
+            raise TableError(f'{where}: between must be two bodies, such as ["ground", "crank1"]')
+        missing = [b for b in between if b not in loop.bodies]
+        if missing:
+            raise TableError(f"{where}: there is no body {missing[0]}")
+        axis = given.get("axis")
+        if axis is not None:
+            if not isinstance(axis, list) or len(axis) != loop.dimensions:
+                raise TableError(f"{where}: axis needs {loop.dimensions} coordinates")
+            axis = _unit(sp.Matrix([expression(e, where) for e in axis]), where)
+        driven = given.get("driven", False)
+        if not isinstance(driven, bool):
+            raise TableError(f"{where}: driven must be true or false")
+        at = given.get("at") or _shared(loop, between, where)
+        loop.joints[name] = Joint(name, kind, (between[0], between[1]), at, axis, driven)
+
+
+def _check_joint(name: str, where: str) -> None:
+    try:
+        check_symbol(name, where)
+    except ValueError as error:
+        raise TableError(str(error)) from error
+    if name in NAMES:
+        raise TableError(f"{where}: the written script uses the name {name} itself")
+
+
+def _shared(loop: Loop, between: Sequence[str], where: str) -> str:
+    shared = loop.bodies[between[0]].keys() & loop.bodies[between[1]].keys()
+    if len(shared) != 1:
+        raise TableError(f'{where}: say where the bodies meet, as in at = "A1"')
+    return str(next(iter(shared)))
+
+
+def _unit(v: sp.Matrix, where: str) -> sp.Matrix:
+    size = sp.sqrt(sp.simplify(v.dot(v)))
+    if size == 0:
+        raise TableError(f"{where}: the direction has no length")
+    return (v / size).applyfunc(sp.simplify)
+
+
+# Recognising the legs
+
+
+class _Legs:
+    """Finds the legs of a loop, from the ground to the hand."""
+
+    def __init__(self, loop: Loop):
+        self.loop = loop
+        names = {s.name for e in self._expressions() for s in e.free_symbols}
+        for name in sorted(names - set(loop.parameters)):
+            loop.parameters[name] = {}
+        angles = [n for n, given in loop.parameters.items() if given.get("unit") == "rad"]
+        self.positive = {
+            sp.Symbol(n, real=True): sp.Symbol(n, positive=True) for n in names - set(angles)
+        }
+
+    def _expressions(self) -> list[sp.Expr]:
+        loop = self.loop
+        entries = [e for body in loop.bodies.values() for at in body.values() for e in at]
+        entries += loop.rods.values()
+        return entries + [e for j in loop.joints.values() if j.axis is not None for e in j.axis]
+
+    def length(self, v: sp.Matrix) -> sp.Expr:
+        """The length of a vector, for positive parameters."""
+        square = sp.trigsimp(sp.expand(v.dot(v)).xreplace(self.positive))
+        found = sp.sqrt(sp.factor(square))
+        return found.xreplace({b: a for a, b in self.positive.items()})
+
+    def direction(self, v: sp.Matrix, length: sp.Expr) -> sp.Matrix:
+        return (v / length).applyfunc(sp.simplify)
+
+    def driven_from_ground(self) -> list[Joint]:
+        return [j for j in self.loop.joints.values() if j.driven]
+
+    def legs(self) -> list[LoopLeg]:
+        loop = self.loop
+        driven = self.driven_from_ground()
+        if not driven:
+            raise loop.error("no joint is driven; set driven = true")
+        return [self.leg(j) for j in driven]
+
+    def leg(self, joint: Joint) -> LoopLeg:
+        loop = self.loop
+        if GROUND not in joint.between:
+            return self.stretch(joint)
+        body = joint.other(GROUND)
+        rods = [
+            (j, j.other(body))
+            for j in loop.of(body)
+            if j is not joint and j.other(body) in loop.rods
+        ]
+        if len(rods) != 1:
+            raise loop.error(
+                f"{joint.name} moves {body}, which must carry one rod, a body with a length; it "
+                f"carries {len(rods)}"
+            )
+        (near, rod) = rods[0]
+        place = self.place_on_hand(rod, near)
+        start = loop.bodies[GROUND][joint.at]
+        end = loop.bodies[body].get(near.at)
+        if end is None:
+            raise loop.error(f"{body} has no point {near.at}, where {rod} is joined to it")
+        length = source(loop.rods[rod])
+        tail = f", on_hand={_tuple(place)}" if any(place) else ""
+        name = joint.name
+        if joint.kind == "prismatic":
+            if joint.axis is None:
+                raise loop.error(f"{name} slides; say in which direction with axis")
+            return LoopLeg(
+                joint,
+                f"Slide({name}, {length}, {_tuple(end)}, {_tuple(joint.axis)}{tail})",
+                f"{name} moves a slider, which a rod of length {loop.rods[rod]} joins to the hand",
+            )
+        if joint.kind != "revolute":
+            raise loop.error(f"{name} is driven, so it must be revolute or prismatic")
+        arm = end - start
+        if loop.dimensions == 3:
+            if joint.axis is None:
+                raise loop.error(f"{name} turns in space; say about which axis")
+            along_axis = joint.axis * sp.simplify(arm.dot(joint.axis))
+            start, arm = start + along_axis, (arm - along_axis).applyfunc(sp.simplify)
+        crank = self.length(arm)
+        if crank == 0:
+            raise loop.error(f"the end of {body} is on the axis of {name}, so it does not move")
+        along = self.direction(arm, crank)
+        across = (
+            joint.axis.cross(along)
+            if joint.axis is not None and loop.dimensions == 3
+            else sp.Matrix([-along[1], along[0]])
+        )
+        return LoopLeg(
+            joint,
+            f"Crank({name}, {source(crank)}, {length}, {_tuple(start)}, {_tuple(along)}, "
+            f"{_tuple(across)}{tail})",
+            f"{name} turns a crank of length {crank}, which a rod of length {loop.rods[rod]} "
+            f"joins to the hand",
+        )
+
+    def stretch(self, joint: Joint) -> LoopLeg:
+        """A leg of two bodies that slide along each other."""
+        loop = self.loop
+        if joint.kind != "prismatic":
+            raise loop.error(
+                f"{joint.name} is driven, so it must be between the ground and a body, or slide "
+                f"the two halves of a leg"
+            )
+        ends: dict[bool, Joint] = {}
+        for half in joint.between:
+            others = [j for j in loop.of(half) if j is not joint]
+            if len(others) != 1:
+                raise loop.error(f"{half} is half of a leg, so it needs one more joint")
+            ends[GROUND in others[0].between] = others[0]
+        if len(ends) != 2:
+            raise loop.error(f"one half of the leg of {joint.name} must be joined to the ground")
+        base = loop.bodies[GROUND][ends[True].at]
+        place = self.place_of(ends[False])
+        tail = f", on_hand={_tuple(place)}" if any(place) else ""
+        return LoopLeg(
+            joint,
+            f"Stretch({joint.name}, {_tuple(base)}{tail})",
+            f"{joint.name} is the length of a leg from the ground to the hand",
+        )
+
+    def place_on_hand(self, rod: str, near: Joint) -> sp.Matrix:
+        """Where a rod ends, seen from the point that is the hand."""
+        far = [j for j in self.loop.of(rod) if j is not near]
+        if len(far) != 1 and not all(j.at == self.loop.hand for j in far):
+            raise self.loop.error(f"the rod {rod} must have two ends")
+        if not far:
+            raise self.loop.error(f"the rod {rod} has one end only")
+        return self.place_of(far[0], rod)
+
+    def place_of(self, far: Joint, rod: str = "") -> sp.Matrix:
+        loop = self.loop
+        if far.at == loop.hand:
+            return sp.zeros(loop.dimensions, 1)
+        body = next((b for b in far.between if b != rod and loop.hand in loop.bodies[b]), "")
+        if not body or far.at not in loop.bodies[body]:
+            raise loop.error(f"{far.name} does not lead to the hand {loop.hand}")
+        if rod and rod not in loop.parallelograms:
+            self.refuse_turning(body)
+        return loop.bodies[body][far.at] - loop.bodies[body][loop.hand]
+
+    def refuse_turning(self, body: str) -> None:
+        n = len(self.driven_from_ground())
+        known = NO_CLOSED_FORM.get((self.loop.dimensions, n))
+        why = f"; {known}, so there is no closed form" if known else ""
+        raise self.loop.error(
+            f"{body} may turn{why}.  If the rods are parallelograms, which keep it from turning, "
+            f"say so: parallelogram = true"
+        )
+
+
+def _tuple(v: sp.Matrix) -> str:
+    return f"({', '.join(map(source, v))})"
+
+
+# The script
+
+
+def loop_script(name: str, loop: Loop, origin: str) -> str:
+    """The derivation of a loop, as Python."""
+    found = _Legs(loop)
+    follower = loop.joints.get(loop.hand)
+    if follower and not follower.driven:
+        legs, task = _coupled(found, follower), [loop.hand]
+    else:
+        points = {j.at for j in loop.joints.values()}.union(*loop.bodies.values())
+        if loop.hand not in points:
+            raise loop.error(
+                f"hand = {loop.hand!r} is neither a point nor a joint that is not driven"
+            )
+        legs, task = found.legs(), list(AXES[: loop.dimensions])
+        if len(legs) != loop.dimensions:
+            known = NO_CLOSED_FORM.get((loop.dimensions, len(legs)), "")
+            raise loop.error(
+                f"{len(legs)} joints are driven, but a hand that does not turn needs "
+                f"{loop.dimensions}" + (f"; {known}" if known else "")
+            )
+    table = Table()
+    for leg in legs:
+        if leg.joint.driven:
+            kind = "prismatic" if leg.joint.kind == "prismatic" else "revolute"
+            add_joint(table, leg.joint.name, kind, loop.file)
+    return "\n".join([*_head(name, loop, legs, task, origin), *_body(table, legs, task)]) + "\n"
+
+
+def _coupled(found: _Legs, follower: Joint) -> list[LoopLeg]:
+    """The driver and the follower of a single loop."""
+    loop = found.loop
+    drivers = found.driven_from_ground()
+    if len(drivers) != 1 or GROUND not in follower.between:
+        raise loop.error("a loop with one driven joint needs a follower that is on the ground")
+    driver, ends = drivers[0], []
+    for joint in (driver, follower):
+        body = joint.other(GROUND)
+        near = next((j for j in loop.of(body) if j is not joint), None)
+        if near is None:
+            raise loop.error(f"{body} is joined to the ground alone")
+        ends.append((joint, near))
+    hand = loop.hand
+    loop.hand = ends[1][1].at
+    first = found.leg(driver)
+    loop.hand = ends[0][1].at
+    second = found.leg(follower)
+    loop.hand = hand
+    return [first, second]
+
+
+def _head(
+    name: str, loop: Loop, legs: Sequence[LoopLeg], task: Sequence[str], origin: str
+) -> list[str]:
+    title = name.replace("_", " ").capitalize()
+    coupled = len(legs) == 2 and not legs[1].joint.driven
+    words = "  ".join(f"{leg.words[0].upper()}{leg.words[1:]}." for leg in legs)
+    calls = sorted({leg.call.partition("(")[0] for leg in legs})
+    names = sorted([*calls, "Derivation", "Paper", "coupled" if coupled else "parallel", "real"])
+    fractions = [number(given.get("value") or "1") for given in loop.parameters.values()]
+    used = " ".join(leg.call for leg in legs) + "Rational(" * any(
+        f.denominator != 1 for f in fractions
+    )
+    functions = [f for f in ("Rational", "cos", "sin", "sqrt") if f"{f}(" in used]
+    functions += ["pi"] * bool(re.search(r"\bpi\b", used))
+    lines = [
+        f'"""{title}: a derivation from {origin}."""',
+        "",
+        *([f"from sympy import {', '.join(sorted(functions))}", ""] if functions else []),
+        f"from closedform import {', '.join(names)}",
+        "",
+        "d = Derivation(",
+        f'    "{name}",',
+        f'    "{title}",',
+        f'    Paper("{name}", "{title}", ("the maker of the mechanism",)),',
+        *wrapped_literal(words),
+        f"    task=[{', '.join(literal(x) for x in task)}],",
+        ")",
+    ]
+    for symbol, given in loop.parameters.items():
+        value = number(given.get("value") or "1")
+        exact = f"{value.numerator}" if value.denominator == 1 else f'Rational("{value}")'
+        angle = given.get("unit") == "rad" or (given.get("value") or "1").startswith("-")
+        sign = ", nonnegative=False" if angle else ""
+        lines.append(
+            f'{symbol} = d.parameter("{symbol}", value={exact}, '
+            f"unit={literal(given.get('unit') or 'm')}, "
+            f'meaning={literal(given.get("meaning") or UNSAID)}, source="{origin}"{sign})'
+        )
+    return lines
+
+
+def wrapped_literal(text: str) -> list[str]:
+    """A text as an argument in several lines, each a literal."""
+    rows = textwrap.wrap(text, 88, drop_whitespace=False)
+    return [f"    {literal(row)}{',' * (row is rows[-1])}" for row in rows]
+
+
+def _body(table: Table, legs: Sequence[LoopLeg], task: Sequence[str]) -> list[str]:
+    lines = []
+    for joint, kind in table.joints.items():
+        argument = ', "prismatic"' if kind == "prismatic" else ""
+        lines.append(f'{joint} = d.joint("{joint}"{argument})')
+    if len(task) == 1:
+        (x,) = task
+        lines += [f'{x} = real("{x}")', "coupled(", "    d,"]
+        return [*lines, *(f"    {leg.call}," for leg in legs), ")"]
+    hand = ", ".join(f'real("{x}")' for x in task)
+    lines += ["parallel(", "    d,", f"    ({hand}),", "    ["]
+    return [*lines, *(f"        {leg.call}," for leg in legs), "    ],", ")"]
+
+
+__all__ = ["Loop", "loop_script", "read_loop"]

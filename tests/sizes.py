@@ -4,7 +4,12 @@ import numpy as np
 
 LENGTHS = {
     "planar_2r": {"x": [0, 1]},
-    "rpr_planar": {"x": [0, 1], "q": [0, 1]},
+    "rpr_planar": {"x": [0, 1], "q": [0, 1], "p": [0, 1]},
+    "five_bar": {"x": [0, 1], "p": [0, 1]},
+    "delta": {"x": [0, 1, 2], "p": [0, 1, 2]},
+    "linear_delta": {"x": [0, 1, 2], "q": [0, 1, 2], "p": [0, 1, 2]},
+    "orthoglide": {"x": [0, 1, 2], "q": [0, 1, 2], "p": [0, 1, 2]},
+    "slider_crank": {"x": [0], "p": [0]},
     "scara": {"x": [0, 1, 2], "q": [2]},
     "stanford_arm": {"q": [2]},
     "irb260": {"x": [0, 1, 2], "p": [0, 1, 2]},

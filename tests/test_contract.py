@@ -10,6 +10,27 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+SINGLE_LOOP = {
+    "jacobian_parallel": (2, 1, 1),
+    "jacobian_serial": (2, 1),
+    "jacobian": (2, 1, 1),
+    "determinant": (2,),
+    "singularities": (2, 2),
+}
+
+
+def legs(n: int) -> dict[str, tuple[int, ...]]:
+    """The shapes of a hand on ``n`` legs."""
+    return {
+        "jacobian_parallel": (2, n, n),
+        "jacobian_serial": (2, n),
+        "jacobian": (2, n, n),
+        "determinant": (2,),
+        "condition_number": (2,),
+        "singularities": (2, n + 1),
+    }
+
+
 ROBOTS = {
     "planar_2r": {
         "fields": ("l1", "l2"),
@@ -138,13 +159,56 @@ ROBOTS = {
         "fields": ("b",),
         "joints": ("rho1", "rho2"),
         "task": ("x", "y"),
-        "shapes": {
-            "passive_angles": (2, 2),
-            "jacobian": (2, 2, 2),
-            "determinant": (2,),
-            "singularities": (2, 3),
-        },
+        "shapes": {"passive_angles": (2, 2), **legs(2)},
         "branches": 1,
+        "assembly_modes": 2,
+    },
+    "five_bar": {
+        "fields": ("L0", "L1", "L2", "L3", "L4"),
+        "joints": ("theta1", "theta2"),
+        "task": ("x", "y"),
+        "shapes": {"passive_angles": (2, 2), **legs(2)},
+        "branches": 4,
+        "assembly_modes": 2,
+    },
+    "delta": {
+        "fields": ("f", "e", "L", "l", "alpha1", "alpha2", "alpha3"),
+        "joints": ("theta1", "theta2", "theta3"),
+        "task": ("x", "y", "z"),
+        "shapes": legs(3),
+        "branches": 8,
+        "assembly_modes": 2,
+    },
+    "linear_delta": {
+        "fields": ("f", "e", "l", "alpha1", "alpha2", "alpha3"),
+        "joints": ("rho1", "rho2", "rho3"),
+        "task": ("x", "y", "z"),
+        "shapes": legs(3),
+        "branches": 8,
+        "assembly_modes": 2,
+    },
+    "orthoglide": {
+        "fields": ("L",),
+        "joints": ("rho1", "rho2", "rho3"),
+        "task": ("x", "y", "z"),
+        "shapes": legs(3),
+        "branches": 8,
+        "assembly_modes": 2,
+    },
+    "four_bar": {
+        "fields": ("L1", "L2", "L3", "L4"),
+        "joints": ("theta",),
+        "task": ("psi",),
+        "shapes": SINGLE_LOOP,
+        "branches": 2,
+        "assembly_modes": 2,
+    },
+    "slider_crank": {
+        "fields": ("r", "l", "e"),
+        "joints": ("theta",),
+        "task": ("x",),
+        "shapes": SINGLE_LOOP,
+        "branches": 2,
         "assembly_modes": 2,
     },
 }

@@ -26,14 +26,20 @@ from closedform.model.derivation import Derivation
 from closedform.model.tolerances import DOUBLE
 
 ROBOTS = (
+    "delta",
+    "five_bar",
+    "four_bar",
     "h6ar",
     "h6ar_loop_closed",
     "hybrid_five_bar",
     "irb260",
+    "linear_delta",
+    "orthoglide",
     "planar_2r",
     "puma560",
     "rpr_planar",
     "scara",
+    "slider_crank",
     "spherical_wrist",
     "stanford_arm",
     "ur_arm",

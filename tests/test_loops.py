@@ -1,0 +1,473 @@
+"""Closed loops: a hand on legs, and a single loop; against numbers found by other means."""
+
+import importlib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from closedform import Crank, Derivation, Paper, Slide, Stretch, coupled, parallel, prove, real
+from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.legs import Naming
+from closedform.lemmas.spheres import three_spheres
+from closedform.model.functions import Program
+from closedform.proof.links import prove_lemma
+from closedform.proof.require import ProofError
+from closedform.scaffold.loops import loop_script, read_loop
+from closedform.scaffold.tables import TableError
+
+OK, UNREACHABLE, SINGULAR, INVALID = range(4)
+HANDS = ("five_bar", "delta", "linear_delta", "orthoglide", "rpr_planar")
+SINGLE = ("four_bar", "slider_crank")
+STARTS = 40
+LENGTH, ROD = real("l", nonnegative=True), real("r", nonnegative=True)
+
+
+def robot(name: str):
+    return importlib.import_module(f"closedform.generated.numpy.{name}")
+
+
+def joints(module, rng, rows: int) -> np.ndarray:
+    """Random joints; sliders within about the length of the legs."""
+    slides = [module.SKELETON.joints[name].kind == "prismatic" for name in module.JOINTS]
+    size = max(map(abs, module.Parameters()))
+    low = np.where(slides, 0.2 * size, -np.pi)
+    return rng.uniform(low, np.where(slides, size, np.pi), (rows, len(slides)))
+
+
+# By Newton's method on the equations of the loop, written here from the drawing
+
+
+def rods(name: str, q: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """By how much the length of each rod is missed."""
+    values = robot(name).Parameters()
+    if name == "five_bar":
+        L0, L1, L2, L3, L4 = values
+        ends = [(L1 * np.cos(q[0]), L1 * np.sin(q[0])), (L0 + L2 * np.cos(q[1]), L2 * np.sin(q[1]))]
+        lengths = [L3, L4]
+    elif name == "rpr_planar":
+        ends, lengths = [(0.0, 0.0), (values.b, 0.0)], list(q)
+    elif name == "orthoglide":
+        ends, lengths = list(np.diag(q)), [values.L] * 3
+    else:
+        ends, lengths = [], [values.l] * 3
+        for k in range(3):
+            alpha = values[-3 + k]
+            out = values.f - values.e
+            out, up = (
+                (out + values.L * np.cos(q[k]), -values.L * np.sin(q[k]))
+                if name == "delta"
+                else (out, q[k])
+            )
+            ends.append((out * np.cos(alpha), out * np.sin(alpha), up))
+    return np.array([np.linalg.norm(p - e) - r for e, r in zip(ends, lengths, strict=True)])
+
+
+def newton(f, x: np.ndarray) -> np.ndarray | None:
+    for _ in range(60):
+        here = f(x)
+        if np.abs(here).max() < 1e-13:
+            return x
+        steps = 1e-7 * np.eye(len(x))
+        rates = np.array([(f(x + s) - f(x - s)) / 2e-7 for s in steps]).T
+        try:
+            step = np.linalg.solve(rates, here)
+        except np.linalg.LinAlgError:
+            return None
+        x = x - step / max(1.0, np.abs(step).max())
+    return None
+
+
+def apart(a: np.ndarray, b: np.ndarray, turns: np.ndarray) -> np.ndarray:
+    return np.abs(np.where(turns, np.angle(np.exp(1j * (a - b))), a - b)).max(axis=-1)
+
+
+@pytest.mark.parametrize("name", HANDS)
+def test_newton_finds_no_posture_that_the_closed_form_lacks(name: str) -> None:
+    module, rng = robot(name), np.random.default_rng(5)
+    turns = np.array([module.SKELETON.joints[j].kind == "revolute" for j in module.JOINTS])
+    forward = inverse = 0
+    for q in joints(module, rng, 6):
+        found = module.fk(q)
+        size = max(map(abs, module.Parameters()))
+        for start in rng.uniform(-2 * size, 2 * size, (STARTS, found.p.shape[-1])):
+            p = newton(lambda p: rods(name, q, p), start)  # noqa: B023
+            if p is not None:
+                forward += 1
+                assert np.nanmin(np.abs(found.p - p).max(axis=-1)) < 1e-6, (q, p)
+        if not (found.status == OK).any():
+            continue
+        target = found.p[found.status == OK][0]
+        answers = module.ik(target)
+        for start in joints(module, rng, STARTS):
+            posture = newton(lambda q: rods(name, q, target), start)  # noqa: B023
+            if posture is not None and not (name == "rpr_planar" and (posture < 0).any()):
+                inverse += 1
+                gap = apart(answers.q, posture, turns)
+                assert np.nanmin(gap) < 1e-5, (target, posture)
+    assert forward > 20
+    assert inverse > 20
+
+
+@pytest.mark.parametrize("name", HANDS + SINGLE)
+def test_inverse_and_forward_map_invert_each_other(name: str) -> None:
+    """Every posture is among the branches of its image, and every branch leads back to it."""
+    module, rng = robot(name), np.random.default_rng(6)
+    turns = np.array([module.SKELETON.joints[j].kind == "revolute" for j in module.JOINTS])
+    q = joints(module, rng, 20_000)
+    p, status = module.fk(q)
+    mode = rng.integers(2, size=len(q))
+    p, status = p[np.arange(len(q)), mode], status[np.arange(len(q)), mode]
+    q, p = q[status == OK], p[status == OK]
+    assert len(q) > 1000
+    answers = module.ik(p)
+    assert np.nanmin(apart(answers.q, q[:, None], turns), axis=1).max() < 1e-6
+    back, there = module.fk(answers.q)
+    scale = np.sum(np.abs(module.Parameters())) + (0 if turns.all() else np.abs(q).max())
+    angle = name == "four_bar"
+    miss = apart(back, p[:, None, None], np.array([angle]))
+    miss = np.where(there == OK, miss, np.inf).min(axis=-1)
+    good = answers.status == OK
+    assert good.mean() > 0.4
+    assert miss[good].max() < 1e-12 * (1 if angle else scale)
+
+
+@pytest.mark.parametrize("name", HANDS + SINGLE)
+def test_the_jacobian_is_the_derivative(name: str) -> None:
+    module, rng = robot(name), np.random.default_rng(7)
+    q = joints(module, rng, 400)
+    steps = 1e-6 * np.eye(q.shape[-1])
+    rates = [(module.fk(q + s).p - module.fk(q - s).p) / 2e-6 for s in steps]
+    expected = np.stack(rates, axis=-1)
+    J, kept = module.jacobian(q), np.isfinite(expected).all(axis=(-1, -2))
+    if name in HANDS:
+        kept &= module.condition_number(q) < 20
+    kept &= np.abs(J).max(axis=(-1, -2)) < 20
+    assert kept.sum() > 100
+    np.testing.assert_allclose(J[kept], expected[kept], atol=1e-6)
+    A, B = module.jacobian_parallel(q), module.jacobian_serial(q)
+    np.testing.assert_allclose((A @ J)[kept], (B[..., None] * np.eye(B.shape[-1]))[kept], atol=1e-9)
+
+
+@pytest.mark.parametrize("name", HANDS[:4])
+def test_the_sign_of_each_leg_names_its_working_mode(name: str) -> None:
+    module, rng = robot(name), np.random.default_rng(8)
+    p, status = module.fk(joints(module, rng, 300))
+    answers = module.ik(p[status == OK])
+    B = module.jacobian_serial(answers.q)
+    modes = np.array([[-1 if s == "minus" else 1 for s in b.split("_")] for b in module.BRANCHES])
+    target = p[status == OK][:, None, None]
+    there = np.abs(module.fk(answers.q).p - target).max(axis=-1) < 1e-9
+    for row, branch, mode in np.argwhere(there & (answers.status == OK)[..., None]):
+        assert (B[row, branch, mode] * modes[branch] > -1e-9).all()
+
+
+def test_linear_delta_as_firmware_computes_it() -> None:
+    """Carriages stand above the hand: the height of the hand, and a leg of a right triangle."""
+    module, rng = robot("linear_delta"), np.random.default_rng(9)
+    f, e, l, *alpha = module.Parameters()
+    p = np.concatenate([rng.uniform(-0.1, 0.1, (500, 2)), rng.uniform(0, 0.3, (500, 1))], axis=1)
+    towers = (f - e) * np.stack([np.cos(alpha), np.sin(alpha)], axis=-1)
+    square = ((p[:, None, :2] - towers) ** 2).sum(axis=-1)
+    carriages = p[:, 2:] + np.sqrt(l**2 - square)
+    answers = module.ik(p)
+    above = module.BRANCHES.index("minus_minus_minus")
+    np.testing.assert_allclose(answers.q[:, above], carriages, rtol=0, atol=1e-15)
+
+
+def test_rotary_delta_as_it_is_usually_computed() -> None:
+    """An arm in the plane x z: the elbow is where two circles meet."""
+    module, rng = robot("delta"), np.random.default_rng(10)
+    f, e, L, l, *alphas = module.Parameters()
+    p = np.concatenate([rng.uniform(-0.1, 0.1, (500, 2)), rng.uniform(-0.4, -0.25, (500, 1))], 1)
+    outer = module.BRANCHES.index("plus_plus_plus")
+    found = module.ik(p)
+    for k, alpha in enumerate(alphas):
+        x = p[:, 0] * np.cos(alpha) + p[:, 1] * np.sin(alpha) + e - f
+        y, z = p[:, 1] * np.cos(alpha) - p[:, 0] * np.sin(alpha), p[:, 2]
+        short = np.sqrt(l**2 - y**2)
+        reach = np.hypot(x, z)
+        bend = np.arccos((L**2 + reach**2 - short**2) / (2 * L * reach))
+        angles = np.stack([np.arctan2(-z, x) - bend, np.arctan2(-z, x) + bend])
+        gap = np.abs(np.angle(np.exp(1j * (angles - found.q[:, outer, k]))))
+        assert gap.min(axis=0).max() < 1e-12
+
+
+def test_orthoglide_is_isotropic_at_home() -> None:
+    module = robot("orthoglide")
+    q = np.ones(3)
+    (mode,) = np.flatnonzero(np.abs(module.fk(q).p).max(axis=-1) < 1e-12)
+    assert module.condition_number(q)[mode] == pytest.approx(1)
+    np.testing.assert_allclose(np.abs(module.jacobian(q)[mode]), np.eye(3), atol=1e-12)
+
+
+def test_four_bar_satisfies_freudensteins_equation() -> None:
+    module = robot("four_bar")
+    L1, L2, L3, L4 = module.Parameters()
+    theta = np.linspace(-3, 3, 101)[:, None]
+    psi = module.fk(theta).p[..., 0]
+    total = L1**2 + L2**2 - L3**2 + L4**2
+    left = 2 * L1 * L4 * np.cos(psi) - 2 * L1 * L2 * np.cos(theta) + total
+    np.testing.assert_allclose(left, 2 * L2 * L4 * np.cos(theta - psi), atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["delta", "orthoglide", "five_bar"])
+def test_where_the_centres_coincide_the_hand_is_free(name: str) -> None:
+    """Two legs with the same end: the status says so, and the answer satisfies the loop."""
+    module = robot(name)
+    q, parameters = {
+        "delta": ([0.3, 0.3, 0.5], (0.1, 0.04, 0.15, 0.35, 1.0, 1.0, 2.0)),
+        "orthoglide": ([0.0, 0.0, 0.3], (1.0,)),
+        "five_bar": ([0.4, 0.4], (0.0, 2.0, 2.0, 1.0, 1.0)),
+    }[name]
+    p, status = module.fk(np.array(q), parameters)
+    assert (status == SINGULAR).all()
+    A = module.jacobian_parallel(np.array(q), parameters)
+    lengths = np.linalg.norm(A, axis=-1)
+    np.testing.assert_allclose(lengths, lengths[0, 0], rtol=1e-12)
+    assert np.isfinite(p).all()
+
+
+# Proofs can fail
+
+
+def spheres(sign: int = 1):
+    program, x = Program(), tuple(map(real, "xyz"))
+    radius = real("r", nonnegative=True)
+    centres = [sp.Matrix([real(f"c{3 * k + i}") for i in range(3)]) for k in range(3)]
+    found = three_spheres(program, centres, [radius] * 3, x, real("sigma"), scale=real("size"))
+    solution = {u: sign * e for u, e in found.lemma.solution.items()}
+    return replace(found.link, lemma=replace(found.lemma, solution=solution))
+
+
+def test_three_spheres_is_proved_and_can_fail() -> None:
+    assert prove_lemma(spheres(), (real("sigma"),), "")[1].count == 2
+    with pytest.raises(ProofError, match="does not satisfy its equations"):
+        prove_lemma(spheres(-1), (real("sigma"),), "")
+
+
+@pytest.mark.parametrize(
+    "leg",
+    [
+        Crank(real("q"), LENGTH, ROD, (0, 0), (1, 0), (0, 1)),
+        Crank(real("q"), LENGTH, ROD, (0, 0, 0), (1, 0, 0), (0, 1, 0)),
+        Slide(real("q"), ROD, (0, 0, 0), (0, 0, 1)),
+        Stretch(real("q"), (0, 0, 0)),
+    ],
+    ids=["crank in a plane", "crank in space", "slide", "stretch"],
+)
+def test_the_lemma_of_each_leg(leg) -> None:
+    w = sp.Matrix([real(f"w{i}") for i in range(len(leg.base))])
+    found = leg.solve(Naming(Program(), real("size"), "_1"), w, real("sigma"))
+    counted = prove_lemma(found.link, (real("sigma"),), "")[1]
+    assert counted.count == found.link.lemma.branches + found.link.lemma.excluded
+
+
+def a_five_bar(second: Crank | None = None) -> Derivation:
+    d = Derivation(
+        "loop", "Loop", Paper("loop", "A loop", ("A. Nonymous",)), "A loop.", task=["x", "y"]
+    )
+    L, M = (
+        d.parameter(n, value=v, unit="m", meaning="a length", source="a test")
+        for n, v in (("L", 2), ("M", 3))
+    )
+    q1, q2 = d.joint("q1"), d.joint("q2")
+    legs = [Crank(q1, L, M, (0, 0), (1, 0), (0, 1)), Crank(q2, L, M, (L, 0), (1, 0), (0, 1))]
+    parallel(d, (real("x"), real("y")), [legs[0], second or legs[1]])
+    return d
+
+
+def test_a_crank_whose_directions_are_not_at_right_angles_is_found() -> None:
+    d = a_five_bar()
+    with pytest.raises(ProofError):
+        slanted = Crank(
+            real("q2"), d.parameters[0].symbol, d.parameters[1].symbol, (1, 0), (1, 0), (1, 1)
+        )
+        prove(a_five_bar(slanted))
+    assert {i.function: i.solutions for i in prove(d).inverses} == {"fk": 2, "ik": 4}
+
+
+def test_legs_and_joints_must_agree() -> None:
+    d = a_five_bar()
+    with pytest.raises(ShapeError, match="two legs in a plane or three in space"):
+        parallel(d, (real("x"), real("y")), [Stretch(real("q1"), (0, 0))])
+    with pytest.raises(ShapeError, match="give the legs in this order"):
+        parallel(d, (real("x"), real("y")), [Stretch(q, (0, 0)) for q in (real("q2"), real("q1"))])
+    with pytest.raises(ValueError, match="same rod"):
+        coupled(
+            d,
+            Crank(real("q1"), 1, 2, (0, 0), (1, 0), (0, 1)),
+            Slide(real("x"), 3, (0, 0), (1, 0)),
+        )
+
+
+# From a file
+
+FIVE_BAR = """
+hand = "P"
+[parameters]
+L0 = {value = "0.5", meaning = "distance of the pivots"}
+[bodies.ground]
+A1 = [0, 0]
+A2 = ["L0", 0]
+[bodies.crank1]
+B1 = ["L1", 0]
+[bodies.crank2]
+B2 = ["L0 + L2", 0]
+[bodies.rod1]
+length = "L3"
+[bodies.rod2]
+length = "L4"
+[joints.theta1]
+between = ["ground", "crank1"]
+at = "A1"
+driven = true
+[joints.theta2]
+between = ["ground", "crank2"]
+at = "A2"
+driven = true
+[joints.b1]
+between = ["crank1", "rod1"]
+at = "B1"
+[joints.b2]
+between = ["crank2", "rod2"]
+at = "B2"
+[joints.p]
+between = ["rod1", "rod2"]
+at = "P"
+"""
+
+
+def written(text: str, tmp_path: Path) -> Derivation:
+    path = tmp_path / "loop.toml"
+    path.write_text(text, "utf-8")
+    script = loop_script("my_loop", read_loop(path), path.name)
+    space: dict = {}
+    exec(compile(script, "my_loop.py", "exec"), space)
+    return space["d"]
+
+
+def test_a_loop_from_a_file_is_the_one_from_legs(tmp_path: Path) -> None:
+    d = written(FIVE_BAR, tmp_path)
+    original = importlib.import_module("closedform.derivations.five_bar").d
+    assert [f.name for f in d.functions] == [
+        f.name for f in original.functions if f.name != "passive_angles"
+    ]
+    names = {p.symbol: sp.Symbol(p.name) for p in (*d.parameters, *original.parameters)}
+    own, given = (i.inverses[1].forward for i in (d, original))
+    assert [e.xreplace(names) for e in own] == [e.xreplace(names) for e in given]
+
+
+SLIDERS = """
+hand = "P"
+[bodies.ground]
+O = [0, 0, 0]
+[bodies.x]
+O = [0, 0, 0]
+[bodies.y]
+O = [0, 0, 0]
+[bodies.z]
+O = [0, 0, 0]
+[bodies.rod1]
+length = "L"
+parallelogram = true
+[bodies.rod2]
+length = "L"
+parallelogram = true
+[bodies.rod3]
+length = "L"
+parallelogram = true
+[bodies.hand]
+P = [0, 0, 0]
+C = ["e", 0, 0]
+[joints.q1]
+between = ["ground", "x"]
+kind = "prismatic"
+axis = [1, 0, 0]
+driven = true
+[joints.q2]
+between = ["ground", "y"]
+kind = "prismatic"
+axis = [0, 1, 0]
+driven = true
+[joints.q3]
+between = ["ground", "z"]
+kind = "prismatic"
+axis = [0, 0, 2]
+driven = true
+[joints.b1]
+between = ["x", "rod1"]
+at = "O"
+[joints.b2]
+between = ["y", "rod2"]
+at = "O"
+[joints.b3]
+between = ["z", "rod3"]
+at = "O"
+[joints.c1]
+between = ["rod1", "hand"]
+at = "C"
+[joints.c2]
+between = ["rod2", "hand"]
+at = "C"
+[joints.c3]
+between = ["rod3", "hand"]
+at = "C"
+"""
+
+
+def test_three_sliders_from_a_file_are_proved(tmp_path: Path) -> None:
+    proof = prove(written(SLIDERS, tmp_path))
+    assert {i.function: i.solutions for i in proof.inverses} == {"fk": 2, "ik": 8}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('hand = "P"', 'hand = "Q"', "neither a point nor a joint"),
+        ("driven = true", "driven = false", "no joint is driven"),
+        ("parallelogram = true\n", "", "may turn"),
+        ("axis = [0, 0, 2]\n", "", "say in which direction"),
+        ("axis = [0, 0, 2]", "axis = [0, 0, 0]", "has no length"),
+        ("axis = [0, 0, 2]", "axis = [0, 0]", "needs 3 coordinates"),
+        ('between = ["z", "rod3"]', 'between = ["z", "rod4"]', "there is no body rod4"),
+        ("[bodies.ground]", "[bodies.frame]", "there is no"),
+        ('length = "L"', 'length = "().__class__"', "loop.toml"),
+        ("O = [0, 0, 0]", "O = [0, 0]", "2 coordinates"),
+        ("driven = true", 'driven = "yes"', "true or false"),
+    ],
+)
+def test_a_file_that_cannot_be_read_says_why(
+    old: str, new: str, message: str, tmp_path: Path
+) -> None:
+    with pytest.raises(TableError, match=message):
+        written(SLIDERS.replace(old, new), tmp_path)
+
+
+def test_three_legs_of_a_body_that_turns_have_no_closed_form(tmp_path: Path) -> None:
+    """The degree is said."""
+    legs = "".join(
+        f"""
+[bodies.rod{k}]
+length = "l"
+[joints.q{k}]
+between = ["ground", "crank{k}"]
+at = "A{k}"
+driven = true
+[joints.b{k}]
+between = ["crank{k}", "rod{k}"]
+at = "B{k}"
+[joints.c{k}]
+between = ["rod{k}", "hand"]
+at = "C{k}"
+[bodies.crank{k}]
+B{k} = [{k}, "L"]
+"""
+        for k in (1, 2, 3)
+    )
+    ground = "[bodies.ground]\n" + "".join(f"A{k} = [{k}, 0]\n" for k in (1, 2, 3))
+    hand = "[bodies.hand]\nP = [0, 0]\n" + "".join(f"C{k} = [{k}, 1]\n" for k in (1, 2, 3))
+    with pytest.raises(TableError, match="degree 6"):
+        written('hand = "P"\n' + ground + hand + legs, tmp_path)

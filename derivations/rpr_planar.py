@@ -8,9 +8,9 @@ d = Derivation(
     "rpr_planar",
     "Planar parallel mechanism (two RPR legs)",
     TEXTBOOK,
-    "Two legs turn freely about A1 at the origin and A2 at b on the x axis.  They slide out by rho1 "
-    "and rho2, and both carry the point P.  The slides are driven; the angles theta1 and theta2 of "
-    "the legs follow.",
+    "Two legs turn freely about A1 at the origin and A2 at b on the x axis.  They slide out by "
+    "rho1 and rho2, and both carry the point P.  The slides are driven; the angles theta1 and "
+    "theta2 of the legs follow.",
     task=["x", "y"],
     singularities=("leg 1", "leg 2", "flat"),
     poles=("flat",),

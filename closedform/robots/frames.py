@@ -9,6 +9,7 @@ from closedform.robots.mechanism import Array, Mechanism
 from closedform.robots.mounting import or_identity
 
 AGREES = 1e-9
+_NO_CHAIN = "{} is not a serial chain of its joints, so its links have no frames"
 TRIALS = 3
 
 
@@ -51,7 +52,10 @@ def _at_home(mechanism: Mechanism) -> tuple[Array, Array, Array]:
     for k, name in enumerate(mechanism.joints):
         at = points[names.index(mechanism.module.SKELETON.joints[name].points[0])]
         home[k, :3, 3] = at
-        home[k, :3, :3] = _with_z_along(screws[3:, k] if mechanism.revolute[k] else screws[:3, k])
+        axis = screws[3:, k] if mechanism.revolute[k] else screws[:3, k]
+        if not axis.any():
+            raise ValueError(_NO_CHAIN.format(mechanism.name))
+        home[k, :3, :3] = _with_z_along(axis)
     return screws, home, np.asarray(mechanism.call("pose", zero))
 
 
@@ -64,9 +68,7 @@ def _require_chain(mechanism: Mechanism, screws: Array, end: Array) -> None:
     expected = np.asarray(mechanism.call("pose", q))
     scale = 1 + np.abs(expected).max()
     if not (np.abs(moved @ end - expected) <= AGREES * scale).all():
-        raise ValueError(
-            f"{mechanism.name} is not a serial chain of its joints, so it has no frames"
-        )
+        raise ValueError(_NO_CHAIN.format(mechanism.name))
 
 
 def _with_z_along(axis: Array) -> Array:

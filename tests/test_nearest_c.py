@@ -16,7 +16,8 @@ from closedform.robots import Robot
 C = Path(__file__).parents[1] / "generated" / "c"
 NAMES = ("hybrid_five_bar", "irb260", "planar_2r", "puma560", "spherical_wrist", "ur_arm")
 WARNINGS = (
-    "-std=c99 -pedantic -Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Werror".split()
+    *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion"),
+    *("-Wshadow", "-Werror"),
 )
 SINGULAR = 2
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
@@ -139,7 +140,7 @@ def test_a_seed_that_reaches_a_singular_target_is_the_answer(library: ctypes.CDL
 def test_what_is_not_a_target(library: ctypes.CDLL) -> None:
     arm = robot("puma560")
     good, nan = arm.fk(np.full(6, 0.4)), np.full(6, np.nan)
-    far = good + [[0, 0, 0, 9], [0] * 4, [0] * 4, [0] * 4]
+    far = good + 9.0 * np.eye(4, k=3)
     assert nearest(library, arm, far, np.zeros(6), np.ones(6))[::2] == (-1, 1)
     assert nearest(library, arm, good * np.nan, np.zeros(6), np.ones(6))[::2] == (-1, 3)
     branch, q, status, _ = nearest(library, arm, good, nan, np.ones(6))
@@ -165,7 +166,7 @@ def test_the_control_loop_runs(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(shutil.which("c++") is None, reason="there is no C++ compiler")
 def test_the_header_for_cpp_adds_no_call(tmp_path: Path) -> None:
-    """Every header compiles, the loop runs, and optimised code of the wrapper is a jump to the C."""
+    """Every header compiles, the loop runs, and an optimised wrapper only calls the C."""
     flags = ["-std=c++20", "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror", f"-I{C}"]
     every = tmp_path / "every.cpp"
     every.write_text("".join(f'#include "{p.name}"\n' for p in sorted(C.glob("*.hpp"))), "utf-8")

@@ -409,7 +409,7 @@ def blocks(language: str, page: Path = README) -> list[str]:
 
 
 def test_the_python_examples_run() -> None:
-    (short,), (long, _) = blocks("python"), blocks("python", GUIDE)
+    (short,), (long, *_) = blocks("python"), blocks("python", GUIDE)
     for code in (short, long):
         done = subprocess.run(
             [sys.executable, "-c", code], capture_output=True, text=True, check=True
@@ -417,8 +417,14 @@ def test_the_python_examples_run() -> None:
         assert "'elbow_up': [0.3, -1.1]" in done.stdout
 
 
+def test_the_robots_of_the_guide_move() -> None:
+    _, code, _ = blocks("python", GUIDE)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "branch changes: [] jumps: []" in done.stdout and "True [" in done.stdout
+
+
 def test_the_plots_of_the_guide_are_drawn(tmp_path: Path) -> None:
-    _, code = blocks("python", GUIDE)
+    *_, code = blocks("python", GUIDE)
     env = os.environ | {"MPLBACKEND": "Agg"}
     subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=env, check=True)
     assert (tmp_path / "singularities.svg").read_text("utf-8").startswith("<?xml")

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
+from closedform import robots
 from closedform._version import __version__
 from closedform.cli import claims, console, figures, plot
 from closedform.cli.console import Progress
@@ -102,7 +103,13 @@ def parser() -> argparse.ArgumentParser:
         added.set_defaults(command=function)
         return added
 
-    command("list", list_command)
+    listed = command("list", list_command)
+    listed.add_argument(
+        "--robots", action="store_true", help="the ready robots and their families instead"
+    )
+    listed.add_argument(
+        "--sources", action="store_true", help="with --robots, where the numbers are from"
+    )
     show = command("show", show_command)
     show.add_argument("name", metavar="NAME", help="a derivation or the path of a script")
     show.add_argument("--format", choices=("text", "latex"), default="text", help="default: text")
@@ -192,8 +199,23 @@ def _seconds(text: str) -> float:
     return value
 
 
+def robots_listed(sources: bool) -> str:
+    """A line for each ready robot, and below it the sources of its numbers."""
+    lines = []
+    for name, entry in robots.entries().items():
+        lines.append(f"{name:<13} {entry['family']:<13} {entry['title']}")
+        if sources:
+            lines.append(f"    parameters: {entry['source']}")
+            parts = [part for part in ("limits", "zero", "base", "tool") if part in entry]
+            lines += [f"    {part}: {entry[part]['source']}" for part in parts]
+    return "".join(f"{line}\n" for line in lines)
+
+
 def list_command(options: argparse.Namespace) -> None:
-    """List the derivations."""
+    """List the derivations, or the ready robots."""
+    if options.robots:
+        console.write(robots_listed(options.sources))
+        return
     sources = pipeline.sources()
     width = max((len(s.name) for s in sources), default=0)
     console.write("".join(f"{s.name:<{width}}  {s.title}\n" for s in sources))

@@ -1,4 +1,4 @@
-"""C99: a header and a source a robot, the header that all share, and the table for Python."""
+"""C99 and C++20: headers and a source a robot, headers that all share, and the table for Python."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from typing import Any
 from closedform._version import __version__
 from closedform.emit import sines
 from closedform.emit.backend import Backend, Files, Mechanism, Pages, runtime
+from closedform.emit.backends.c.nearest import nearest
 from closedform.emit.backends.c.robot import robot
 from closedform.emit.render import render
 from closedform.model.tolerances import DOUBLE, FLOAT, GENERATED, HIGHEST_DEGREE, Tolerances
 
 HEADER = Path("c", "closedform.h")
+NEAREST = Path("c", "closedform_nearest.h")
 SHARED = ("extension.c", "CMakeLists.txt", "closedform-config.cmake.in")
 
 
@@ -28,12 +30,21 @@ class C(Backend):
             Path("c", f"{name}.c"): render("c/robot.c.jinja", context),
             Path("c", f"{name}.py"): render("c/module.py.jinja", context),
         }
+        found = nearest(mechanism.derivation, context["functions"])
+        context = {**context, "nearest": found}
+        if found is not None:
+            printed[Path("c", f"{name}_nearest.h")] = render("c/nearest.h.jinja", context)
+        printed[Path("c", f"{name}.hpp")] = render("c/robot.hpp.jinja", context)
         return Pages(printed, context)
 
     def shared(self, shares: Sequence[Mapping[str, Any]]) -> Files:
         context = {"robots": shares, "version": __version__}
         printed = {Path("c", name): render(f"c/{name}.jinja", context) for name in SHARED}
-        return {HEADER: runtime("c/closedform.h", _numbers()), **printed}
+        headers = {
+            HEADER: runtime("c/closedform.h", _numbers()),
+            NEAREST: runtime("c/closedform_nearest.h", ()),
+        }
+        return {**headers, **printed}
 
     def works_alone(self, path: Path) -> bool:
         """All but the binding to Python."""

@@ -27,7 +27,11 @@ class JavaScript(Backend):
     def shared(self, shares: Sequence[str]) -> Files:
         context = {"robots": sorted(shares), "version": __version__}
         printed = {Path("js", name): render(f"js/{name}.jinja", context) for name in SHARED}
-        return {Path("js", "_runtime.js"): runtime("js/_runtime.js", _numbers()), **printed}
+        shared = {
+            Path("js", "_runtime.js"): runtime("js/_runtime.js", _numbers()),
+            Path("js", "_nearest.js"): runtime("js/_nearest.js", ()),
+        }
+        return {**shared, **printed}
 
     def first_file(self, robot: str) -> Path:
         return Path("js", f"{robot}.js")

@@ -1,0 +1,64 @@
+"""The header of a robot with the posture nearest to a seed: what the shared one needs to know."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from closedform.emit.backends.c.robot import CFunction
+from closedform.model.derivation import Derivation
+
+ANGLES = ("yaw", "pitch", "roll", "psi", "phi", "theta")
+"""Task coordinates that count modulo a turn."""
+
+
+@dataclass(frozen=True)
+class CNearest:
+    """Sizes and calls of one robot; ``target`` is the argument of its inverse."""
+
+    target: str
+    joints: int
+    branches: int
+    task: int
+    modes: int
+    rows: int
+    jacobian: str
+    jacobian_rows: int
+    fields: int
+    revolute: str
+    angles: str
+    fk_status: int
+    joint_names: str
+
+
+def nearest(derivation: Derivation, functions: Sequence[CFunction]) -> CNearest | None:
+    """None if the inverse takes more than a target, or there is no Jacobian."""
+    known = {f.name: f for f in functions}
+    ik, fk = known.get("ik"), known.get("fk")
+    if ik is None or fk is None or len(ik.inputs) != 1:
+        return None
+    joints = derivation.actuated
+    task = ik.inputs[0].size
+    modes = fk.outputs[0].size // task
+    jacobian = known.get("jacobian_space" if task in (9, 16) else "jacobian")
+    if jacobian is None:
+        return None
+    rows = {16: 6, 9: 3}.get(task, task)
+    kinds = {j.symbol: j.kind for j in derivation.joints}
+    revolute = sum(1 << k for k, j in enumerate(joints) if kinds[j] == "revolute")
+    named = sum(1 << k for k, name in enumerate(derivation.task) if name in ANGLES)
+    return CNearest(
+        target=ik.inputs[0].name,
+        joints=len(joints),
+        branches=ik.outputs[0].size // len(joints),
+        task=task,
+        modes=modes,
+        rows=rows,
+        jacobian=jacobian.full,
+        jacobian_rows=jacobian.outputs[0].size // (modes * len(joints)),
+        fields=len(derivation.parameters),
+        revolute=f"0x{revolute:x}u",
+        angles=f"0x{named if task not in (9, 16) else 0:x}u",
+        fk_status=modes if len(fk.outputs) > 1 else 0,
+        joint_names=", ".join(j.name for j in joints),
+    )

@@ -1,0 +1,148 @@
+"""Of all branches and turns of an inverse, the posture that is nearest to a seed."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from closedform.robots.limits import Limits, nearest_turn
+from closedform.robots.mechanism import Array, Mechanism
+from closedform.robots.selfmotion import SINGULAR, at_seed
+
+OK, UNREACHABLE, INVALID = 0, 1, 3
+BLOCK = 1000
+"""Targets that are compared at once: the arrays of all their branches then stay in the cache."""
+TIE = 1e-9
+"""Branches count as equally near if their distances differ by less than this share."""
+
+
+class Nearest(NamedTuple):
+    """The posture that was found for each target, and why there is none.
+
+    ``q`` has the shape (..., joints) and is NaN if there is none.  ``status`` is that of the
+    branch, or UNREACHABLE or INVALID.  ``branch`` is its index in ``branches``, or -1.
+    ``distance`` is that from the seed, or infinite.  ``outside``, of shape (..., branches, joints),
+    says which joint of which branch has no turn within its limits; such a branch is not taken.
+    """
+
+    q: Array
+    status: NDArray[np.uint8]
+    branch: NDArray[np.intp]
+    distance: Array
+    outside: NDArray[np.bool_]
+
+
+class Candidates(NamedTuple):
+    """All branches for targets, each at the turns that are nearest to the seed."""
+
+    q: Array
+    status: NDArray[np.uint8]
+    outside: NDArray[np.bool_]
+    distance: Array
+
+
+def nearest(
+    mechanism: Mechanism, x: ArrayLike, q_seed: ArrayLike, limits: Limits, weights: Any = None
+) -> Nearest:
+    """The solution with the least weighted distance from ``q_seed`` within the limits."""
+    seed = mechanism.as_joints(q_seed, "q_seed")
+    found = mechanism.ik(x)
+    lead = np.broadcast_shapes(
+        found.q.shape[:-2], seed.shape[:-1], limits.lower.shape[:-1], limits.upper.shape[:-1]
+    )
+    branches, n = found.q.shape[-2:]
+    q = np.broadcast_to(found.q, (*lead, branches, n))
+    status = np.broadcast_to(found.status, (*lead, branches))
+    seed = np.broadcast_to(seed, (*lead, n))
+    q = at_seed(mechanism, q, status, np.asarray(x, float), seed, limits)
+    chosen = weights_of(mechanism, weights)
+    rows = [
+        np.broadcast_to(a, (*lead, *core)).reshape(-1, *core)
+        for a, core in (
+            (q, (branches, n)),
+            (status, (branches,)),
+            (seed, (n,)),
+            (limits.lower, (n,)),
+            (limits.upper, (n,)),
+            (chosen, (n,)),
+        )
+    ]
+    size = len(rows[0])
+    result = Nearest(
+        np.empty((size, n)),
+        np.empty(size, np.uint8),
+        np.empty(size, np.intp),
+        np.empty(size),
+        np.empty((size, branches, n), bool),
+    )
+    for start in range(0, size, BLOCK):
+        block = slice(start, start + BLOCK)
+        q, status, seed, lower, upper, chosen = (a[block] for a in rows)
+        some = _of_block(mechanism, q, status, seed, Limits(lower, upper), chosen)
+        for whole, part in zip(result, some, strict=True):
+            np.asarray(whole)[block] = part
+    return Nearest(*(a.reshape((*lead, *a.shape[1:]))[()] for a in result))
+
+
+def _of_block(
+    mechanism: Mechanism,
+    q: Array,
+    status: NDArray[np.uint8],
+    seed: Array,
+    limits: Limits,
+    weights: Array,
+) -> Nearest:
+    all_of = candidates(mechanism, q, status, seed, limits, weights)
+    branch = first_of_the_nearest(all_of.distance)
+    rows = np.arange(len(q))
+    distance = all_of.distance[rows, branch]
+    none = ~np.isfinite(distance)
+    invalid = (status == INVALID).all(-1) | ~np.isfinite(seed).all(-1)
+    told = np.where(none, np.where(invalid, INVALID, UNREACHABLE), status[rows, branch])
+    return Nearest(
+        np.where(none[:, None], np.nan, all_of.q[rows, branch]),
+        told.astype(np.uint8),
+        np.where(none, -1, branch),
+        distance,
+        all_of.outside,
+    )
+
+
+def weights_of(mechanism: Mechanism, weights: Any) -> Array:
+    """The weights of the joints, 1 by default."""
+    n = len(mechanism.joints)
+    if weights is None:
+        return np.ones(n)
+    given = np.asarray(weights, dtype=float)
+    if given.shape[-1:] != (n,) or not (given >= 0).all():
+        raise ValueError(f"weights must be {n} numbers that are not negative, one for each joint")
+    return given
+
+
+def candidates(
+    mechanism: Mechanism,
+    q: Array,
+    status: NDArray[np.uint8],
+    seed: Array,
+    limits: Limits,
+    weights: Array,
+) -> Candidates:
+    """All branches at the turns nearest to the seed; the distance of one that fails is infinite."""
+    q, outside = nearest_turn(mechanism, q, seed[..., None, :], limits.at(1))
+    solved = (status == OK) | (status == SINGULAR)
+    usable = solved & ~outside.any(-1)
+    with np.errstate(invalid="ignore"):
+        gap = (q - seed[..., None, :]) ** 2
+        distance = np.sqrt((weights[..., None, :] * gap).sum(-1))
+    known = usable & np.isfinite(distance)
+    return Candidates(
+        q, np.asarray(status), outside & solved[..., None], np.where(known, distance, np.inf)
+    )
+
+
+def first_of_the_nearest(distance: Array) -> NDArray[np.intp]:
+    """The index of the least distance, and of several that are equal, the first."""
+    least = distance.min(-1, keepdims=True)
+    return np.asarray((distance <= least * (1 + TIE) + TIE**2).argmax(-1))

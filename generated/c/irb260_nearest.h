@@ -1,0 +1,50 @@
+/*
+ * ABB IRB 260 palletiser: the posture nearest to a seed, printed by closedform.
+ * Do not edit: change the template and run make.
+ */
+#ifndef CLOSEDFORM_IRB260_NEAREST_H
+#define CLOSEDFORM_IRB260_NEAREST_H
+
+#include "closedform_nearest.h"
+#include "irb260.h"
+
+#define IRB260_JOINTS 4
+#define IRB260_BRANCHES 4
+
+static inline void irb260_nearest_ik(const void *params, const real_t *x, real_t *q, uint8_t *status)
+{
+    irb260_ik((const irb260_params *)params, x, q, status);
+}
+
+static inline void irb260_nearest_fk(const void *params, const real_t *q, real_t *x)
+{
+    irb260_fk((const irb260_params *)params, q, x);
+}
+
+static inline void irb260_nearest_jacobian(const void *params, const real_t *q, real_t *J)
+{
+    irb260_jacobian((const irb260_params *)params, q, J);
+}
+
+/*
+ * Of all branches of irb260_ik, and all turns of each joint, the posture that is nearest to a seed.
+ *
+ * limits: the lower limits of all joints (theta1, theta2, theta3, theta5), then the upper ones; NULL: none.
+ * weights: of the squares of the joints in the distance; NULL: all 1.
+ * q, status: the posture and the status of its branch; NaN and CLOSEDFORM_UNREACHABLE or
+ *     CLOSEDFORM_INVALID if there is none within the limits. Where a joint is free
+ *     (CLOSEDFORM_SINGULAR), it keeps the value of the seed, and the others follow.
+ * outside: for each branch, a bit for each joint that has no turn within its limits; may be NULL.
+ * Returns the index of the branch, or -1. Of equal distances the first branch and the lower turn win.
+ */
+static inline int irb260_nearest(const irb260_params *params, const real_t x[4],
+    const real_t q_seed[4], const real_t *limits, const real_t *weights, real_t q[4], uint8_t *status,
+    uint32_t *outside)
+{
+    static const cf_robot robot = { 4, 4, 4, 1, 4, 4, 6, 0xfu,
+        0x8u, irb260_nearest_ik, irb260_nearest_fk, irb260_nearest_jacobian };
+    return cf_nearest_posture(
+        &robot, params, x, q_seed, limits, weights, q, status, outside);
+}
+
+#endif

@@ -1,0 +1,108 @@
+/*
+ * Planar parallel mechanism (two RPR legs): the C of rpr_planar.h for C++20, printed by closedform. Header only; every
+ * function is one call of the C, with std::span for what it reads and std::array for what it returns.
+ * Do not edit: change the template and run make.
+ */
+#ifndef CLOSEDFORM_RPR_PLANAR_HPP
+#define CLOSEDFORM_RPR_PLANAR_HPP
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "rpr_planar_nearest.h"
+
+namespace closedform::rpr_planar {
+
+using Parameters = rpr_planar_params;
+
+inline constexpr Parameters defaults = RPR_PLANAR_DEFAULTS;
+
+struct FkResult {
+    std::array<real_t, 4> p;
+    std::array<uint8_t, 2> status;
+};
+
+[[nodiscard]] inline auto fk(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    FkResult result;
+    rpr_planar_fk(&parameters, q.data(), result.p.data(), result.status.data());
+    return result;
+}
+
+[[nodiscard]] inline auto passive_angles(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 4> result;
+    rpr_planar_passive_angles(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto skeleton(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 18> result;
+    rpr_planar_skeleton(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto jacobian(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 8> result;
+    rpr_planar_jacobian(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto determinant(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 2> result;
+    rpr_planar_determinant(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto singularities(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 6> result;
+    rpr_planar_singularities(&parameters, q.data(), result.data());
+    return result;
+}
+
+struct IkResult {
+    std::array<real_t, 2> q;
+    std::array<uint8_t, 1> status;
+};
+
+[[nodiscard]] inline auto ik(std::span<const real_t, 2> x, const Parameters &parameters = defaults) noexcept
+{
+    IkResult result;
+    rpr_planar_ik(&parameters, x.data(), result.q.data(), result.status.data());
+    return result;
+}
+
+/* The lower and the upper limits of all joints; without limits they are infinite. */
+struct Limits {
+    std::array<real_t, 2> lower, upper;
+};
+
+struct Nearest {
+    std::array<real_t, 2> q;
+    std::array<std::uint32_t, 1> outside; /* bits of joints, by branch */
+    int branch;                                /* -1 if there is none */
+    std::uint8_t status;
+};
+
+/* See rpr_planar_nearest. */
+[[nodiscard]] inline Nearest nearest(std::span<const real_t, 2> x, std::span<const real_t, 2> q_seed,
+    const Limits *limits = nullptr, const std::array<real_t, 2> *weights = nullptr,
+    const Parameters &parameters = defaults) noexcept
+{
+    static_assert(sizeof(Limits) == 2 * 2 * sizeof(real_t));
+    Nearest found;
+    found.branch = rpr_planar_nearest(&parameters, x.data(), q_seed.data(),
+        limits != nullptr ? limits->lower.data() : nullptr,
+        weights != nullptr ? weights->data() : nullptr, found.q.data(), &found.status,
+        found.outside.data());
+    return found;
+}
+
+}  // namespace closedform::rpr_planar
+
+#endif

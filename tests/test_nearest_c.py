@@ -1,0 +1,201 @@
+"""NAME_nearest of the printed C: the answers of the Python robots, also at singular targets."""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import closedform
+from closedform.robots import Robot
+
+C = Path(__file__).parents[1] / "generated" / "c"
+NAMES = ("hybrid_five_bar", "irb260", "planar_2r", "puma560", "spherical_wrist", "ur_arm")
+WARNINGS = (
+    *("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion"),
+    *("-Wshadow", "-Werror"),
+)
+SINGULAR = 2
+pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="there is no C compiler")
+
+
+def compiled(folder: Path, *options: str) -> Path:
+    """A library with the function of every robot of this test."""
+    calls = "".join(
+        f'#include "{name}_nearest.h"\n'
+        f"int call_{name}(const real_t *p, const real_t *x, const real_t *seed, const real_t *l,\n"
+        "    const real_t *w, real_t *q, uint8_t *status, uint32_t *outside);\n"
+        f"int call_{name}(const real_t *p, const real_t *x, const real_t *seed, const real_t *l,\n"
+        "    const real_t *w, real_t *q, uint8_t *status, uint32_t *outside)\n"
+        f"{{ {name}_params params; memcpy(&params, p, sizeof params);\n"
+        f"  return {name}_nearest(&params, x, seed, l, w, q, status, outside); }}\n"
+        for name in NAMES
+    )
+    (folder / "calls.c").write_text(calls, "utf-8")
+    library = folder / "nearest.so"
+    robots = [str(C / f"{name}.c") for name in NAMES]
+    subprocess.run(
+        ["cc", *WARNINGS, "-O0", "-fPIC", "-shared", f"-I{C}", *options, "-o", str(library),
+         str(folder / "calls.c"), *robots, "-lm"],
+        check=True,
+    )  # fmt: skip
+    return library
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
+    return ctypes.CDLL(str(compiled(tmp_path_factory.mktemp("nearest"))))
+
+
+def pointer(values: np.ndarray) -> ctypes.c_void_p:
+    return ctypes.c_void_p(values.ctypes.data)
+
+
+def nearest(
+    library: ctypes.CDLL, arm: Robot, x: np.ndarray, seed: np.ndarray, w: np.ndarray
+) -> tuple[int, np.ndarray, int, np.ndarray]:
+    params = np.array(arm.parameters, dtype=float)
+    limits = np.concatenate([arm.limits.lower, arm.limits.upper])
+    q, status = np.empty(len(arm.joints)), np.zeros(1, np.uint8)
+    outside = np.zeros(len(arm.branches), np.uint32)
+    arrays = [np.ascontiguousarray(a, dtype=float) for a in (params, x, seed, limits, w)]
+    branch = getattr(library, f"call_{arm.name}")(
+        *map(pointer, arrays), pointer(q), pointer(status), pointer(outside)
+    )
+    bits = (outside[:, None] >> np.arange(len(arm.joints)).astype(np.uint32)) & 1
+    return branch, q, int(status[0]), bits.astype(bool)
+
+
+def robot(name: str, parameters: object = None) -> Robot:
+    module = getattr(closedform, name)
+    n = len(module.JOINTS)
+    return Robot(module, parameters, limits=(np.full(n, -4.0), np.full(n, 4.5)))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_regular_targets(library: ctypes.CDLL, name: str) -> None:
+    arm = robot(name)
+    rng = np.random.default_rng(0)
+    for _ in range(30):
+        q = rng.uniform(-1, 1, len(arm.joints))
+        x = arm.fk(q)
+        x = x.p[0] if hasattr(x, "p") else x
+        seed, weights = rng.uniform(-5, 5, len(q)), rng.uniform(0.5, 2, len(q))
+        expected = arm.nearest(x, seed, weights=weights)
+        branch, found, status, outside = nearest(library, arm, x, seed, weights)
+        assert branch == expected.branch and status == expected.status
+        assert np.array_equal(outside, expected.outside)
+        assert np.allclose(found, expected.q, rtol=0, atol=1e-8, equal_nan=True)
+
+
+@pytest.mark.parametrize(
+    ("name", "parameters", "q", "kept"),
+    [
+        ("puma560", None, [0.3, -0.5, 0.4, 0.6, 0.0, 0.8], 3),
+        ("spherical_wrist", None, [0.6, 0.0, 0.8], 0),
+        ("planar_2r", (1.0, 1.0), [0.4, np.pi], 0),
+        ("planar_2r", (1.0, 0.0), [0.4, 1.0], 1),
+        ("ur_arm", None, [0.3, -1.1, 0.9, 0.4, 0.0, 0.7], None),
+        ("irb260", None, None, 0),
+        ("hybrid_five_bar", None, None, 0),
+    ],
+)
+def test_a_free_joint_keeps_the_value_of_the_seed(
+    library: ctypes.CDLL, name: str, parameters: object, q: list[float] | None, kept: int | None
+) -> None:
+    arm = robot(name, parameters)
+    if q is not None:
+        x = arm.fk(q)
+        seeds = np.array(q) + np.random.default_rng(1).normal(0, 0.05, (5, len(q)))
+    else:
+        x = np.array([0.0, 0.0, 0.9, 0.4] if name == "irb260" else [0.0, 3.5, 0.0])
+        seeds = np.random.default_rng(1).normal(0, 0.5, (5, len(arm.joints)))
+    for seed in seeds:
+        branch, found, status, _ = nearest(library, arm, x, seed, np.ones(len(seed)))
+        assert status == SINGULAR and branch >= 0
+        at = arm.fk(found)
+        gap = np.nanmin(np.abs(at.p - x).max(-1)) if hasattr(at, "p") else np.abs(at - x).max()
+        assert gap < 1e-11
+        if kept is not None:
+            assert found[kept] == seed[kept]
+        expected = arm.nearest(x, seed)
+        assert np.linalg.norm(found - seed) <= expected.distance * 1.001 + 1e-9
+
+
+def test_a_seed_that_reaches_a_singular_target_is_the_answer(library: ctypes.CDLL) -> None:
+    arm = robot("ur_arm")
+    for q in np.random.default_rng(2).uniform(-1, 1, (10, 6)):
+        q[4] = 0.0
+        branch, found, status, _ = nearest(library, arm, arm.fk(q), q, np.ones(6))
+        assert status == SINGULAR and np.abs(found - q).max() < 1e-7
+        # flip and noflip coincide; the elbow is that of the posture
+        names = arm.branches[branch], arm.branches[arm.nearest(arm.fk(q), q).branch]
+        assert names[0].endswith("up") == names[1].endswith("up")
+
+
+def test_what_is_not_a_target(library: ctypes.CDLL) -> None:
+    arm = robot("puma560")
+    good, nan = arm.fk(np.full(6, 0.4)), np.full(6, np.nan)
+    far = good + 9.0 * np.eye(4, k=3)
+    assert nearest(library, arm, far, np.zeros(6), np.ones(6))[::2] == (-1, 1)
+    assert nearest(library, arm, good * np.nan, np.zeros(6), np.ones(6))[::2] == (-1, 3)
+    branch, q, status, _ = nearest(library, arm, good, nan, np.ones(6))
+    assert (branch, status) == (-1, 3) and np.isnan(q).all()
+
+
+def test_it_compiles_without_warnings_in_single_precision(tmp_path: Path) -> None:
+    compiled(tmp_path, "-DCLOSEDFORM_FLOAT", "-fsyntax-only")
+
+
+def test_the_control_loop_runs(tmp_path: Path) -> None:
+    program = tmp_path / "loop"
+    source = Path(__file__).parent / "c" / "control_loop.c"
+    assert len(source.read_text("utf-8").splitlines()) <= 45
+    subprocess.run(
+        ["cc", *WARNINGS, "-O0", f"-I{C}", "-o", str(program), str(source), str(C / "ur_arm.c"),
+         "-lm"],
+        check=True,
+    )  # fmt: skip
+    done = subprocess.run([program], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "500 cycles on branch 0, largest step 0.0008 rad"
+
+
+@pytest.mark.skipif(shutil.which("c++") is None, reason="there is no C++ compiler")
+def test_the_header_for_cpp_adds_no_call(tmp_path: Path) -> None:
+    """Every header compiles, the loop runs, and an optimised wrapper only calls the C."""
+    flags = ["-std=c++20", "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror", f"-I{C}"]
+    every = tmp_path / "every.cpp"
+    every.write_text("".join(f'#include "{p.name}"\n' for p in sorted(C.glob("*.hpp"))), "utf-8")
+    subprocess.run(["c++", *flags, "-Wno-unused-function", "-fsyntax-only", str(every)], check=True)
+    subprocess.run(
+        ["cc", "-O0", "-c", f"-I{C}", "-o", str(tmp_path / "ur_arm.o"), str(C / "ur_arm.c")],
+        check=True,
+    )
+    program, source = tmp_path / "loop", Path(__file__).parent / "c" / "control_loop.cpp"
+    subprocess.run(
+        ["c++", *flags, "-O1", "-o", str(program), str(source), str(tmp_path / "ur_arm.o"), "-lm"],
+        check=True,
+    )
+    done = subprocess.run([program], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "48 joint values, branch 0 is OK"
+    both = tmp_path / "both.cpp"
+    both.write_text(
+        '#include "scara.hpp"\n'
+        'extern "C" void by_c(const real_t *q, real_t *x)\n'
+        "{ scara_fk(&closedform::scara::defaults, q, x); }\n"
+        'extern "C" void by_cpp(const real_t *q, std::array<real_t, 4> *x)\n'
+        "{ *x = closedform::scara::fk(std::span<const real_t, 4>(q, 4)); }\n",
+        "utf-8",
+    )
+    told = subprocess.run(
+        ["c++", *flags, "-Wno-unused-function", "-O2", "-S", "-o", "-", str(both)],
+        check=True, capture_output=True, text=True,
+    ).stdout  # fmt: skip
+    body = told[told.index("by_cpp:") :]
+    calls = [line for line in body.splitlines() if "call" in line or "jmp" in line or "\tb" in line]
+    assert sum("scara_fk" in line for line in calls) == 1
+    assert not any("span" in line or "array" in line for line in calls)

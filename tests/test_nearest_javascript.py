@@ -1,0 +1,109 @@
+"""``nearest`` of the JavaScript package: the answers of the Python robots."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import closedform
+from closedform.robots import Robot
+
+INDEX = Path(__file__).parents[1] / "generated" / "js" / "index.js"
+NAMES = ("hybrid_five_bar", "irb260", "planar_2r", "puma560", "spherical_wrist", "ur_arm")
+SCRIPT = """
+import * as closedform from "INDEX";
+import { readFileSync } from "node:fs";
+const cases = JSON.parse(readFileSync(0, "utf8"));
+const found = cases.map(({ name, x, seed, limits, weights, parameters }) =>
+    closedform.nearest(closedform[name], x, seed, { limits, weights }, parameters));
+process.stdout.write(JSON.stringify(found));
+"""
+pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node is not installed")
+
+
+def answers(cases: list[dict[str, object]]) -> list[dict[str, object]]:
+    script = SCRIPT.replace("INDEX", INDEX.as_uri())
+    done = subprocess.run(
+        ["node", "--input-type=module", "-e", script],
+        input=json.dumps(cases), capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def robot(name: str, parameters: dict[str, float] | None = None) -> Robot:
+    module = getattr(closedform, name)
+    n = len(module.JOINTS)
+    return Robot(module, parameters, limits=(np.full(n, -4.0), np.full(n, 4.5)))
+
+
+def case(arm: Robot, x: np.ndarray, seed: np.ndarray, weights: np.ndarray) -> dict[str, object]:
+    return {
+        "name": arm.name,
+        "x": np.asarray(x).ravel().tolist(),
+        "seed": list(seed),
+        "limits": [arm.limits.lower.tolist(), arm.limits.upper.tolist()],
+        "weights": list(weights),
+        "parameters": arm.parameters._asdict(),
+    }
+
+
+def test_regular_targets() -> None:
+    rng = np.random.default_rng(0)
+    cases, expected = [], []
+    for name in NAMES:
+        arm = robot(name)
+        for _ in range(20):
+            x = arm.fk(rng.uniform(-1, 1, len(arm.joints)))
+            x = x.p[0] if hasattr(x, "p") else x
+            if not np.isfinite(x).all():
+                continue
+            n = len(arm.joints)
+            seed, weights = rng.uniform(-5, 5, n), rng.uniform(0.5, 2, n)
+            cases.append(case(arm, x, seed, weights))
+            expected.append(arm.nearest(x, seed, weights=weights))
+    for found, right in zip(answers(cases), expected, strict=True):
+        assert found["branch"] == right.branch and found["status"] == right.status
+        assert found["outside"] == right.outside.tolist()
+        if right.branch >= 0:
+            assert np.abs(np.array(found["q"]) - right.q).max() < 1e-8
+            assert found["distance"] == pytest.approx(right.distance)
+
+
+def test_free_joints_keep_their_values() -> None:
+    rng = np.random.default_rng(1)
+    chosen = [
+        ("puma560", None, [0.3, -0.5, 0.4, 0.6, 0.0, 0.8], 3),
+        ("spherical_wrist", None, [0.6, 0.0, 0.8], 0),
+        ("planar_2r", {"l1": 1.0, "l2": 1.0}, [0.4, np.pi], 0),
+        ("ur_arm", None, [0.3, -1.1, 0.9, 0.4, 0.0, 0.7], None),
+    ]
+    cases, expected = [], []
+    for name, parameters, q, kept in chosen:
+        arm = robot(name, parameters)
+        seed = np.array(q) + rng.normal(0, 0.05, len(q))
+        cases.append(case(arm, arm.fk(q), seed, np.ones(len(q))))
+        expected.append((arm, arm.fk(q), seed, kept))
+    arm = robot("irb260")
+    x, seed = np.array([0.0, 0.0, 0.9, 0.4]), np.array([1.0, 0.6, 2.3, -0.5])
+    cases.append(case(arm, x, seed, np.ones(4)))
+    expected.append((arm, x, seed, 0))
+    for found, (arm, x, seed, kept) in zip(answers(cases), expected, strict=True):
+        q = np.array(found["q"])
+        assert found["status"] == 2 and np.abs(arm.fk(q) - x).max() < 1e-11
+        assert kept is None or q[kept] == seed[kept]
+        assert found["distance"] <= arm.nearest(x, seed).distance * 1.001 + 1e-9
+
+
+def test_what_is_not_a_target() -> None:
+    arm = robot("planar_2r")
+    far = case(arm, np.array([99.0, 0.0]), np.zeros(2), np.ones(2))
+    (found,) = answers([far])
+    assert (found["branch"], found["status"]) == (-1, 1) and found["q"] == [None, None]
+    with pytest.raises(AssertionError, match="nearest: seed has length 3, expected 2"):
+        answers([{**far, "seed": [0, 0, 0]}])

@@ -281,16 +281,47 @@ def evaluate(kernel: Kernel, args: Sequence[Any], params: Any) -> Any:
     cores = [spec.shape for spec in kernel.inputs] + [()] * len(fields)
     leads = [_lead(kernel, n, a, c) for n, a, c in zip(names, arrays, cores, strict=True)]
     lead = _broadcast(kernel, names, leads)
+    tensors = any(map(_is_tensor, arrays))
+    if not tensors and compat.is_dask_namespace(ops.xp):
+        return _by_chunks(kernel, arrays, ops)
     planes = [
         array[(..., *index)]
         for spec, array in zip(kernel.inputs, arrays, strict=False)
         for index in _indices(spec.shape)
     ]
     given = dict(zip(kernel.fields, arrays[len(kernel.inputs) :], strict=True))
-    with nullcontext() if any(map(_is_tensor, arrays)) else np.errstate(all="ignore"):
+    with nullcontext() if tensors else np.errstate(all="ignore"):
         values = iter(_values(ops, kernel, [*planes, *(given[name] for name in kernel.used)]))
     results = [_stacked(ops, spec, lead, values) for spec in kernel.outputs]
     return results[0] if len(results) == 1 else tuple(results)
+
+
+def _by_chunks(kernel: Kernel, arrays: Sequence[Array], ops: Operations) -> Any:
+    """The same for arrays of Dask: one task for each chunk, which evaluates the kernel."""
+
+    def axes(spec: Spec, label: str) -> list[str]:
+        return [f"{spec.name}_{label}_{k}" for k in range(len(spec.shape))]
+
+    def one(*chunks: Any) -> Any:
+        return evaluate(kernel, chunks[:count], list(chunks[count:]))
+
+    count = len(kernel.inputs)
+    given = [axes(spec, "given") for spec in kernel.inputs] + [[] for _ in kernel.fields]
+    found = [axes(spec, "found") for spec in kernel.outputs]
+    left, right = (",".join(f"({','.join(names)})" for names in side) for side in (given, found))
+    types = {"real": np.dtype(ops.dtype), "status": np.dtype("uint8"), "bool": np.dtype("bool")}
+    dask: Any = sys.modules["dask.array"]
+    return dask.apply_gufunc(
+        one,
+        f"{left}->{right}",
+        *arrays,
+        output_dtypes=[types[spec.kind] for spec in kernel.outputs],
+        output_sizes={
+            name: size
+            for spec, names in zip(kernel.outputs, found, strict=True)
+            for name, size in zip(names, spec.shape, strict=True)
+        },
+    )
 
 
 def _fields(kernel: Kernel, params: Any) -> list[Any]:

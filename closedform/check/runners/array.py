@@ -1,11 +1,13 @@
 """Modules for any array library: with NumPy in both float types, and with others if installed.
 
-JAX compiles each operation for each shape.  So batches are filled up to a few sizes.
+JAX compiles every operation for every shape of its operands.  So its batches are filled up to a few
+lengths, and it is taken in double precision only.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,52 +15,60 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from closedform.check.crosscheck import Backend
 from closedform.check.failures import UnavailableError
 from closedform.check.runners.python import module
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Function
-from closedform.model.tolerances import DOUBLE, FLOAT, Tolerances
+from closedform.model.tolerances import DOUBLE, FLOAT
 
-TYPES: tuple[tuple[str, type, Tolerances], ...] = (
-    ("", np.float64, DOUBLE),
-    (" float", np.float32, FLOAT),
-)
-FILLED = 64
+FILLED = 128
+"""The length of a batch of JAX is a multiple of this."""
+
+
+@dataclass(frozen=True)
+class Library:
+    """How a library makes an array, and of which length batches are a multiple."""
+
+    array: Callable[[NDArray[Any]], Any]
+    multiple: int = 1
+
+    def call(self, function: Callable[..., Any], dtype: type, *given: Any) -> tuple[Any, ...]:
+        arrays: list[NDArray[Any]] = [np.asarray(x, dtype) for x in given]
+        inputs, params = arrays[:-1], arrays[-1]
+        postures = len(inputs[0]) if inputs else 1
+        more = -postures % self.multiple if inputs and postures else 0
+        filled = [np.concatenate([x, np.repeat(x[-1:], more, axis=0)]) for x in inputs]
+        found = function(*map(self.array, filled), self.array(params))
+        results = found if isinstance(found, tuple) else (found,)
+        return tuple(np.asarray(r)[:postures] if inputs else np.asarray(r) for r in results)
 
 
 def run(name: str, derivation: Derivation, folder: Path, scratch: Path) -> Iterator[Backend]:
     if not find_spec("array_api_compat"):
         raise UnavailableError("array-api-compat is not installed")
     printed = module(folder, derivation.name)
-    for library, arrays in _libraries().items():
-        for suffix, dtype, tolerances in TYPES:
-            call = _caller(printed, derivation, arrays, dtype)
-            yield Backend(f"{library}{suffix}", call, dtype, tolerances)
-
-
-def _libraries() -> dict[str, Callable[[Any], Any]]:
-    """The libraries that are installed, and how each makes an array of one of NumPy."""
-    found: dict[str, Callable[[Any], Any]] = {"array": np.asarray}
+    numpy = Library(np.asarray)
+    yield _backend("array", printed, numpy)
+    yield _backend("array float", printed, numpy, single=True)
     if find_spec("torch"):
-        found["torch"] = import_module("torch").asarray
-    return found
+        torch = Library(import_module("torch").asarray)
+        yield _backend("torch", printed, torch)
+        yield _backend("torch float", printed, torch, single=True)
+    if find_spec("jax"):
+        jax = import_module("jax")
+        with jax.enable_x64(True):
+            yield _backend("jax", printed, Library(jax.numpy.asarray, FILLED))
 
 
-def _caller(
-    printed: ModuleType, derivation: Derivation, arrays: Callable[[Any], Any], dtype: type
-) -> Callable[[str], Callable[..., Any]]:
+def _backend(name: str, printed: ModuleType, library: Library, *, single: bool = False) -> Backend:
+    dtype, tolerances = (np.float32, FLOAT) if single else (np.float64, DOUBLE)
+
     def function(name: str) -> Callable[..., Any]:
-        described: Function = derivation[name]
+        def called(*given: Any) -> Any:
+            return library.call(getattr(printed, name), dtype, *given)
 
-        def call(*given: Any) -> Any:
-            *inputs, params = (arrays(np.asarray(x, dtype)) for x in given)
-            found = getattr(printed, name)(*inputs, params)
-            if described.has_status:
-                return tuple(map(np.asarray, found))
-            return np.asarray(found)
+        return called
 
-        return call
-
-    return function
+    return Backend(name, function, dtype, tolerances)

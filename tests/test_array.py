@@ -139,6 +139,13 @@ def test_single_precision_of_any_size() -> None:
         assert abs(back - x[:2, None]).max() < FLOAT.forward * 0.7 * unit
 
 
+def test_tolerances_follow_the_type() -> None:
+    """Out of reach by half of a millionth is at full stretch in single precision, not in double."""
+    x = np.array([18.0 * (1 + 5e-7), 0.0])
+    assert planar_2r.ik(x.astype(np.float32)).status.tolist() == [0, 0]
+    assert planar_2r.ik(x).status.tolist() == [1, 1]
+
+
 def test_dimensions_broadcast() -> None:
     l1 = np.array([[1.0], [2.0]])
     q = np.array([[0.1, 0.2], [0.3, 0.4], [0.5, 0.6]])

@@ -205,3 +205,36 @@ def test_without_safe_operands_derivatives_are_not_finite(
         (found,) = tape.gradients(solved.q, 1.0, [l1])
         finite.append(bool(np.isfinite(found)))
     assert finite == [True, False]
+
+
+def test_derivatives_at_the_cut_of_an_angle_are_those_beside_it() -> None:
+    """An angle of pi, and one that a turn is taken from."""
+    array, _ = modules("planar_2r")
+    for angles in ([np.pi, 0.0], [-np.pi, 0.0], [np.pi, np.pi], [3 * np.pi, -1.0], [1e9, 2.0]):
+        q = tape.asarray(np.array(angles))
+        (found,) = tape.gradients(array.orientation(q), 1.0, [q])
+        np.testing.assert_allclose(found, [1.0, 1.0], rtol=1e-9)
+    arm = [tape.asarray(2.0), tape.asarray(1.0)]
+    x = tape.asarray(np.array([[-2.5, 0.0], [-2.5, -0.0]]))
+    solved = array.ik(x, arm)
+    assert solved.status.value.tolist() == [[0, 0], [0, 0]]
+    beside = tape.asarray(np.array([[-2.5, 1e-9], [-2.5, 1e-9]]))
+    for branch in range(2):
+        weights = np.zeros((2, 2, 2))
+        weights[:, branch, 0] = 1.0
+        (at,) = tape.gradients(solved.q, weights, [x])
+        (near,) = tape.gradients(array.ik(beside, arm).q, weights, [beside])
+        np.testing.assert_allclose(at, near, atol=1e-6)
+
+
+def test_roots_and_angles_at_zero_have_the_derivative_zero() -> None:
+    ops = importlib.import_module("closedform.generated.array._runtime").Operations(
+        tape, tape.float64, "tape"
+    )
+    for value in (0.0, -0.0):
+        x, y = tape.asarray(value), tape.asarray(0.0)
+        root, angle = ops.sqrt(x), ops.atan2(y, x)
+        assert root.value == 0 and angle.value == 0
+        assert [float(d) for d in tape.gradients(root, 1.0, [x])] == [0.0]
+        assert [float(d) for d in tape.gradients(angle, 1.0, [x])] == [0.0]
+        assert np.isfinite(tape.gradients(angle, 1.0, [y])[0])

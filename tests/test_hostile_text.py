@@ -193,17 +193,17 @@ def harmless() -> dict[Path, Any]:
 
 
 @cache
-def runtime_of_the_modules() -> types.ModuleType:
+def runtime_of_the_modules(backend: str) -> types.ModuleType:
     module = types.ModuleType("hostile._runtime")
-    exec(shared_files([], ["numpy"])[Path("numpy", "_runtime.py")], module.__dict__)
+    exec(shared_files([], [backend])[Path(backend, "_runtime.py")], module.__dict__)
     return module
 
 
-def imported(code: str) -> dict[str, Any]:
-    """A printed NumPy module, run beside the runtime."""
+def imported(code: str, backend: str = "numpy") -> dict[str, Any]:
+    """A printed Python module, run beside the runtime."""
     package = types.ModuleType("hostile")
     package.__path__ = []
-    runtime_module = runtime_of_the_modules()
+    runtime_module = runtime_of_the_modules(backend)
     sys.modules |= {"hostile": package, "hostile._runtime": runtime_module}
     package._runtime = runtime_module  # type: ignore[attr-defined]
     names: dict[str, Any] = {"__name__": "hostile.robot", "__package__": "hostile"}
@@ -420,7 +420,7 @@ def test_a_name_that_is_not_refused_works(tmp_path: Path) -> None:
     target = np.array([3.0, 4.0])
     for k, (names, d) in enumerate(combinations()):
         assert names, "a name that is accepted alone goes with no other"
-        own = pages(d, NOTHING_PROVED, ("numpy", "c", "data", "js"))
+        own = pages(d, NOTHING_PROVED, ("array", "numpy", "c", "data", "js"))
         files = own.files
         assert all(len(p.parts) == 2 and ".." not in p.parts for p in files)
         folder = tmp_path / str(k)
@@ -431,14 +431,15 @@ def test_a_name_that_is_not_refused_works(tmp_path: Path) -> None:
         sources.append(folder / f"{d.name}.c")
         forms = {**files, **shared_files([own.share], ["js"])}
         write_javascript(tmp_path / "js" / str(k), forms)
-        module = imported(files[Path("numpy", f"{d.name}.py")])
-        assert set(module["__all__"]) <= module.keys()
-        solutions = module["ik"](target)
-        np.testing.assert_allclose(
-            solutions.q[0], [np.arctan2(4, 3), 3], atol=1e-12, err_msg=str(names)
-        )
-        forward = module[names.get("forward", "forward")]
-        np.testing.assert_allclose(forward([0.0, 1.0]), [3, 0], err_msg=str(names))
+        for backend in ("array", "numpy"):
+            module = imported(files[Path(backend, f"{d.name}.py")], backend)
+            assert set(module["__all__"]) <= module.keys()
+            solutions = module["ik"](target)
+            np.testing.assert_allclose(
+                solutions.q[0], [np.arctan2(4, 3), 3], atol=1e-12, err_msg=str(names)
+            )
+            forward = module[names.get("forward", "forward")]
+            np.testing.assert_allclose(forward([0.0, 1.0]), [3, 0], err_msg=str(names))
     shutil.copy(HEADER, tmp_path)
     headers = ["-include", "errno.h", "-include", "complex.h", "-include", "stdio.h"]
     compile_c(sources, "-std=gnu17", "-D_GNU_SOURCE", f"-I{tmp_path}", *headers)

@@ -57,6 +57,8 @@ class Wording:
         What stands around code.
     constants
         Whether branches are listed in a constant of the module.
+    out
+        Whether a function takes arrays to write the results to.
     """
 
     given: str
@@ -67,26 +69,29 @@ class Wording:
     status: str = "A `Status`"
     quote: str = "`"
     constants: bool = True
+    out: bool = True
 
 
-def _python_kind(dtype: str, branches: int, shape: Sequence[int]) -> str:
+def python_kind(dtype: str, branches: int, shape: Sequence[int]) -> str:
     axes = ["...", *([branches] if branches else []), *shape]
     return f"{dtype}, shape ({', '.join(map(str, axes))})"
 
 
 PYTHON = Wording(
-    "array_like", "ndarray of float64", "ndarray of bool", "ndarray of uint8", _python_kind
+    "array_like", "ndarray of float64", "ndarray of bool", "ndarray of uint8", python_kind
 )
 
 
-def docstring(derivation: Derivation, function: Function, width: int) -> list[str]:
-    """The lines of a docstring."""
+def docstring(
+    derivation: Derivation, function: Function, width: int, wording: Wording = PYTHON
+) -> list[str]:
+    """The lines of a docstring of Python."""
     dimensions = Item(
         "params",
         "Parameters, optional",
         "The dimensions. Each may be an array that broadcasts with the leading axes.",
     )
-    results = results_of(derivation, function, PYTHON)
+    results = results_of(derivation, function, wording)
     several = len(results) > 1
     out = Item(
         "out",
@@ -95,14 +100,14 @@ def docstring(derivation: Derivation, function: Function, width: int) -> list[st
         if several
         else "An array to write the result to; it is returned.",
     )
-    arguments = inputs_of(derivation, function, PYTHON)
+    arguments = [*inputs_of(derivation, function, wording), dimensions]
     raises = [Item("", name, text) for name, text in RAISES]
     return [
         *opening(function, width),
-        *section("Parameters", [*arguments, dimensions, out], width),
+        *section("Parameters", [*arguments, out] if wording.out else arguments, width),
         *section("Returns", results, width),
         *section("Raises", raises, width),
-        *notes(derivation, function, width, PYTHON),
+        *notes(derivation, function, width, wording),
     ]
 
 

@@ -1,0 +1,240 @@
+"""Derivatives of the modules for any array library, against the symbolic ones and differences.
+
+They are taken with the small library of ``tape.py``, whose derivatives hide nothing, so these tests
+need no other one; ``test_array_libraries.py`` has the others.
+"""
+
+from __future__ import annotations
+
+import importlib
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+import tape
+
+from closedform.check.runners.python import module
+from closedform.emit.backend import Mechanism
+from closedform.emit.backends import array as backend
+from closedform.lower.finite import finite_derivatives
+from closedform.pipeline.run import write
+from closedform.proof.prove import Proof
+
+ROBOTS = (
+    "h6ar",
+    "hybrid_five_bar",
+    "irb260",
+    "planar_2r",
+    "puma560",
+    "rpr_planar",
+    "scara",
+    "spherical_wrist",
+    "stanford_arm",
+    "ur_arm",
+)
+all_robots = pytest.mark.parametrize("robot", ROBOTS)
+CONDITION = 1e4
+"""Derivatives of an inverse are compared where the Jacobian is better conditioned than this."""
+
+
+def modules(robot: str) -> tuple[ModuleType, ModuleType]:
+    """The module under test, and that of NumPy."""
+    return (
+        importlib.import_module(f"closedform.generated.array.{robot}"),
+        importlib.import_module(f"closedform.generated.numpy.{robot}"),
+    )
+
+
+@cache
+def postures(robot: str) -> np.ndarray:
+    """Random joints; then joints at right angles and near them, where branches meet."""
+    _, numpy = modules(robot)
+    random = np.random.default_rng(5)
+    n = len(numpy.JOINTS)
+    corners = random.choice((0.0, np.pi / 2, np.pi, -np.pi / 2), (40, n))
+    near = random.choice((0.0, 1e-15, 1e-9, 1e-4), (40, n))
+    return np.concatenate([random.uniform(-2, 2, (20, n)), corners + near, np.zeros((1, n))])
+
+
+@cache
+def targets(robot: str) -> np.ndarray:
+    """What the postures reach; then targets out of reach, at the origin, and not finite."""
+    _, numpy = modules(robot)
+    x = numpy.fk(postures(robot))
+    if numpy.ASSEMBLY_MODES:
+        x = np.nan_to_num(x.p[:, 0])
+    far, lost = np.full_like(x[:2], np.inf), np.full_like(x[:2], np.nan)
+    return np.concatenate([x, x[:4] * 1e3, x[:4] * 0, x[:4] * 1e-12, far, lost])
+
+
+def symbolic(numpy: ModuleType, q: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """The derivative of the forward map by each joint, which stands first: from the Jacobians."""
+    if x.shape[-1] == len(numpy.TASK) and hasattr(numpy, "jacobian"):
+        found = numpy.jacobian(q)[..., : x.shape[-1], :]
+        if numpy.ASSEMBLY_MODES:
+            p = numpy.fk(q).p
+            mode = np.nanargmin(np.where(np.isnan(p), np.inf, abs(p - x[..., None, :])).sum(-1), -1)
+            found = np.take_along_axis(found, mode[..., None, None, None], -3)[..., 0, :, :]
+        return np.moveaxis(found, -1, 0)
+    columns = np.moveaxis(numpy.jacobian_space(q), -1, 0)
+    rates, zero = columns[..., -3:], np.zeros(columns.shape[:-1])
+    a, b, c = np.moveaxis(rates, -1, 0)
+    turn = np.stack([zero, -c, b, c, zero, -a, -b, a, zero], -1).reshape(*zero.shape, 3, 3)
+    if x.shape[-1] == 3:
+        return turn @ x
+    twist = np.zeros((*zero.shape, 4, 4))
+    twist[..., :3, :3], twist[..., :3, 3] = turn, columns[..., :3]
+    return twist @ x
+
+
+@all_robots
+def test_the_forward_map_has_the_symbolic_jacobian(robot: str) -> None:
+    array, numpy = modules(robot)
+    q = tape.asarray(postures(robot))
+    result = array.fk(q)
+    x = result.p if numpy.ASSEMBLY_MODES else result
+    random = np.random.default_rng(1)
+    weights = random.normal(size=x.shape)
+    if not numpy.ASSEMBLY_MODES:
+        (found,) = tape.gradients(x, weights, [q])
+        expected = symbolic(numpy, q.value, x.value)
+        axes = tuple(range(2, expected.ndim))
+        contracted = (weights * expected).sum(axes).T
+        defined = np.isfinite(contracted).all(-1)
+        assert defined.sum() > 15
+        np.testing.assert_allclose(found[defined], contracted[defined], rtol=1e-7, atol=1e-9)
+        return
+    exists = (result.status.value == 0) & np.isfinite(numpy.jacobian(q.value)).all((-1, -2))
+    weights = np.where(exists[..., None], weights, 0.0)
+    (found,) = tape.gradients(x, weights, [q])
+    jacobian = np.where(exists[..., None, None], numpy.jacobian(q.value), 0.0)
+    expected = (weights[..., None] * jacobian).sum((1, 2))
+    assert exists.sum() > 10
+    np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6)
+
+
+@all_robots
+def test_an_inverse_has_the_inverse_of_the_symbolic_jacobian(robot: str) -> None:
+    """Along the forward derivative by a joint, that joint changes by one, and no other."""
+    array, numpy = modules(robot)
+    x = targets(robot)[:20]
+    solved = numpy.ik(x)
+    branches, n = solved.q.shape[1:]
+    along = np.stack([symbolic(numpy, solved.q[:, b], x) for b in range(branches)])
+    columns = along.reshape(branches, n, len(x), -1)
+    usable = (solved.status.T == 0) & np.isfinite(columns).all((1, 3))
+    conditions = np.linalg.cond(np.where(usable[..., None, None], np.moveaxis(columns, 1, 2), 1.0))
+    usable &= conditions < CONDITION
+    assert usable.any(axis=1).sum() > branches // 2
+    tiled = tape.asarray(np.broadcast_to(x, (branches, *x.shape)))
+    weights = np.random.default_rng(2).normal(size=(branches, len(x), n)) * usable[..., None]
+    own = np.zeros((branches, len(x), branches, n))
+    own[np.arange(branches), :, np.arange(branches)] = weights
+    (found,) = tape.gradients(array.ik(tiled).q, own, [tiled])
+    moved = np.where(
+        usable[:, None], (found.reshape(branches, 1, len(x), -1) * columns).sum(-1), 0.0
+    )
+    np.testing.assert_allclose(np.moveaxis(moved, 1, -1), weights, rtol=1e-6, atol=1e-7)
+
+
+@all_robots
+def test_derivatives_of_an_inverse_by_dimensions(robot: str) -> None:
+    """If a dimension changes and the target does not, the joints move so that the hand stays."""
+    array, numpy = modules(robot)
+    x = targets(robot)[:20]
+    solved = numpy.ik(x)
+    along = np.moveaxis(symbolic(numpy, solved.q[:, 0], x), 0, 1).reshape(*solved.q[:, 0].shape, -1)
+    usable = (solved.status[:, 0] == 0) & np.isfinite(along).all((1, 2))
+    x, q, along = x[usable], solved.q[usable, 0], along[usable]
+    count, n = q.shape
+    dimensions = np.array([float(v) for v in numpy.Parameters()])
+    # for each joint a copy of the targets, with dimensions of its own
+    copies = tape.asarray(np.broadcast_to(x, (n, *x.shape)))
+    fields = [tape.asarray(np.full((n, count), v)) for v in dimensions]
+    weights = np.zeros((n, count, *solved.q.shape[1:]))
+    weights[np.arange(n), :, 0, np.arange(n)] = 1.0
+    rates = tape.gradients(array.ik(copies, fields).q, weights, fields)
+
+    def reached(lengths: np.ndarray) -> np.ndarray:
+        found = numpy.fk(q, tuple(lengths))
+        if not numpy.ASSEMBLY_MODES:
+            return found.reshape(count, -1)
+        mode = np.nanargmin(abs(numpy.fk(q).p - x[:, None]).sum(-1), -1)
+        return found.p[np.arange(count), mode]
+
+    for k, rate in enumerate(rates):
+        step = np.zeros_like(dimensions)
+        step[k] = 1e-6 * max(dimensions.max(), 1.0)
+        by_dimension = (reached(dimensions + step) - reached(dimensions - step)) / (2 * step[k])
+        by_joints = np.einsum("jp,pjx->px", rate, along)
+        assert count and (abs(by_joints + by_dimension) / (1 + abs(by_joints))).max() < 1e-5
+
+
+@all_robots
+def test_derivatives_are_finite_wherever_the_status_is_ok(robot: str) -> None:
+    """Also by dimensions that all targets share, those that are not OK among them."""
+    array, numpy = modules(robot)
+    x = tape.asarray(targets(robot))
+    fields = [tape.asarray(float(v)) for v in numpy.Parameters()]
+    solved = array.ik(x, fields)
+    ok = solved.status.value == 0
+    np.testing.assert_array_equal(solved.status.value, numpy.ik(x.value).status)
+    assert 0 < ok.sum() < ok.size
+    for found in tape.gradients(solved.q, np.where(ok[..., None], 1.0, 0.0), [x, *fields]):
+        assert np.isfinite(found).all()
+
+
+def test_without_safe_operands_derivatives_are_not_finite(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What programs are changed for: with a link of no length, a quotient is 0 / 0."""
+    d = importlib.import_module("closedform.derivations.planar_2r").d
+    d = replace(d, functions=[d["ik"], d["ik_pose"]])
+    finite = []
+    for number, change in enumerate((finite_derivatives, lambda program: program)):
+        monkeypatch.setattr(backend, "finite_derivatives", change)
+        printed = backend.BACKEND.pages(Mechanism(d, Proof(d.name, "own", (), 0, ()))).files
+        folder = tmp_path / str(number)
+        write(folder, {**printed, **backend.BACKEND.shared([])})
+        ik_pose = module(folder / "array", d.name).ik_pose
+        l1 = tape.asarray(0.0)
+        solved = ik_pose(tape.asarray(np.eye(4)), (l1, 0.0))
+        (found,) = tape.gradients(solved.q, 1.0, [l1])
+        finite.append(bool(np.isfinite(found)))
+    assert finite == [True, False]
+
+
+def test_derivatives_at_the_cut_of_an_angle_are_those_beside_it() -> None:
+    """An angle of pi, and one that a turn is taken from."""
+    array, _ = modules("planar_2r")
+    for angles in ([np.pi, 0.0], [-np.pi, 0.0], [np.pi, np.pi], [3 * np.pi, -1.0], [1e9, 2.0]):
+        q = tape.asarray(np.array(angles))
+        (found,) = tape.gradients(array.orientation(q), 1.0, [q])
+        np.testing.assert_allclose(found, [1.0, 1.0], rtol=1e-9)
+    arm = [tape.asarray(2.0), tape.asarray(1.0)]
+    x = tape.asarray(np.array([[-2.5, 0.0], [-2.5, -0.0]]))
+    solved = array.ik(x, arm)
+    assert solved.status.value.tolist() == [[0, 0], [0, 0]]
+    beside = tape.asarray(np.array([[-2.5, 1e-9], [-2.5, 1e-9]]))
+    for branch in range(2):
+        weights = np.zeros((2, 2, 2))
+        weights[:, branch, 0] = 1.0
+        (at,) = tape.gradients(solved.q, weights, [x])
+        (near,) = tape.gradients(array.ik(beside, arm).q, weights, [beside])
+        np.testing.assert_allclose(at, near, atol=1e-6)
+
+
+def test_roots_and_angles_at_zero_have_the_derivative_zero() -> None:
+    ops = importlib.import_module("closedform.generated.array._runtime").Operations(
+        tape, tape.float64, "tape"
+    )
+    for value in (0.0, -0.0):
+        x, y = tape.asarray(value), tape.asarray(0.0)
+        root, angle = ops.sqrt(x), ops.atan2(y, x)
+        assert root.value == 0 and angle.value == 0
+        assert [float(d) for d in tape.gradients(root, 1.0, [x])] == [0.0]
+        assert [float(d) for d in tape.gradients(angle, 1.0, [x])] == [0.0]
+        assert np.isfinite(tape.gradients(angle, 1.0, [y])[0])

@@ -18,7 +18,7 @@ import time
 import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
@@ -129,7 +129,7 @@ def sources() -> list[Source]:
     return [
         Source(path.stem, path, f"closedform.derivations.{path.stem}")
         for path in sorted(scripts().glob("*.py"))
-        if _defines_derivation(path)
+        if _assigns_d(path.read_bytes())
     ]
 
 
@@ -156,10 +156,11 @@ def _find(name: str, known: Mapping[str, Source]) -> Source:
     return Source(path.stem, path)
 
 
-def _defines_derivation(path: Path) -> bool:
+@cache
+def _assigns_d(text: bytes) -> bool:
     """Whether a script assigns ``d``.  If it does not parse, True: the error is reported later."""
     try:
-        statements = ast.parse(path.read_bytes()).body
+        statements = ast.parse(text).body
     except SyntaxError:
         return True
     targets: list[ast.expr] = []

@@ -392,7 +392,10 @@ def test_errata_of_all_papers_and_of_one(
 
 @pytest.mark.parametrize(
     ("flags", "jobs"),
-    [("", 1), (" -j2 --jobserver-auth=3,4", 2), ("k -j8", 8), ("-j", os.cpu_count()), ("-n", 1)],
+    [
+        *((flags, os.cpu_count()) for flags in ("", "-j", "-n", "k --jobserver-auth=3,4")),
+        *((" -j1", 1), (" -j2 --jobserver-auth=3,4", 2), ("k -j83", 83)),
+    ],
 )
 def test_make_decides_how_many_processes(
     monkeypatch: pytest.MonkeyPatch, flags: str, jobs: int

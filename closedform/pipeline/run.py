@@ -418,11 +418,10 @@ def _length(source: Source) -> int:
 
 
 def default_jobs() -> int:
-    """As many processes as ``make -j`` allows; outside of make, one for each core."""
-    flags = os.environ.get("MAKEFLAGS") if "MAKELEVEL" in os.environ else "-j"
-    if match := re.search(r"(?:^|\s)-j ?(\d*)(?=\s|$)", flags or ""):
-        return int(match[1]) if match[1] else os.cpu_count() or 1
-    return 1
+    """One process for each core, or as many as ``make -j N`` allows."""
+    flags = os.environ.get("MAKEFLAGS", "") if "MAKELEVEL" in os.environ else ""
+    match = re.search(r"(?:^|\s)-j ?(\d+)(?=\s|$)", flags)
+    return int(match[1]) if match else os.cpu_count() or 1
 
 
 # Writing and comparing

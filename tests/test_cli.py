@@ -271,8 +271,10 @@ def test_claims_are_judged_and_changed(slider: Path, capsys: pytest.CaptureFixtu
 
 
 def test_claims_beside_the_text_of_the_paper(
-    slider: Path, capsys: pytest.CaptureFixture[str]
+    slider: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    (planar,) = pipeline.find(["planar_2r"])  # of all derivations, one of another paper
+    monkeypatch.setattr(pipeline, "sources", lambda: [planar])
     text = WRONG_SIGN.replace("{erratum}", ', erratum="sign"')
     slider.write_text(SLIDER + text + ERRATUM, "utf-8")
     paper = slider.parent / "paper.txt"

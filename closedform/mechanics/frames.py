@@ -219,7 +219,8 @@ def _merge_pair(expr: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
 
 def _replaced(expr: sp.Expr, product: sp.Expr, sum_: sp.Expr) -> sp.Expr:
     """An expanded expression with a product replaced, and expanded again where it occurred."""
-    rest, changed = [], []
+    rest: list[sp.Expr] = []
+    changed: list[sp.Expr] = []
     for term in sp.Add.make_args(expr):
         replaced = _replaced_in(term, product, sum_)
         (rest if replaced is term else changed).append(replaced)

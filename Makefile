@@ -1,4 +1,4 @@
-# make help lists the targets. make -j N proves N robots at a time.
+# make help lists the targets. make -j N proves N robots at a time, make alone one for each core.
 
 ifndef PYTHON
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \

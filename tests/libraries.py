@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from compiling import compiled
 from sharing import shared
 
 C = Path(__file__).resolve().parent.parent / "generated" / "c"
@@ -41,10 +42,8 @@ def library(
     def compile_into(folder: Path) -> None:
         define = ["-DCLOSEDFORM_FLOAT"] if single else []
         flags = [*FLAGS.split(), *define, "-fPIC", "-shared", "-fopt-info-loop-vec-optimized"]
-        command = ["gcc", *flags, str(C / f"{robot}.c"), "-o", str(folder / "library.so"), "-lm"]
-        done = subprocess.run(command, capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        (folder / "told.txt").write_text(done.stderr, "utf-8")
+        said = compiled(["gcc", *flags, C / f"{robot}.c", "-lm"], folder / "library.so")
+        (folder / "told.txt").write_text(said, "utf-8")
 
     folder = shared(factory, f"{robot}_{'float' if single else 'double'}", compile_into)
     return folder / "library.so", (folder / "told.txt").read_text("utf-8")

@@ -1,9 +1,11 @@
 """Things that take long to make are made once for all processes that run the tests."""
 
 import os
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import compiling
 import pytest
 
 from closedform.check.clibrary import compiler
@@ -26,9 +28,14 @@ def shared(
     return folder
 
 
-def quick_compiler(folder: Path, level: str = "-O1") -> str:
-    """The C compiler as a program that optimises little, for code whose speed is not looked at."""
-    program = folder / "cc-quick"
-    program.write_text(f'#!/bin/sh\nexec {compiler()} "$@" {level}\n', "utf-8")
+def quick_compiler(folder: Path, level: str = "-O0") -> str:
+    """The C compiler as a program that does not optimise, for code whose speed is not looked at."""
+    return remembering(folder / "cc-quick", f'{compiler()} "$@" {level}')
+
+
+def remembering(program: Path, command: str = '"$@"') -> str:
+    """A program that runs a compiler which remembers what it compiled."""
+    script = f'#!/bin/sh\nexec "{sys.executable}" "{compiling.__file__}" {command}\n'
+    program.write_text(script, "utf-8")
     program.chmod(0o755)
     return str(program)

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from closedform.generated.numpy import _runtime
+from compiling import compiled
 from flint import arb, ctx
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -87,7 +88,7 @@ def header(request, tmp_path_factory):
     compiler, code, real = request.param
     target = tmp_path_factory.mktemp("header") / "header.so"
     flags = ["-std=c99", *WARNINGS, *OPTIMISED, *CODE[code], *real_flags(real)]
-    run(compiler, *flags, "-I", HEADER, "-shared", "-fPIC", DRIVER, "-o", target, "-lm")
+    compiled([compiler, *flags, "-I", HEADER, "-shared", "-fPIC", DRIVER, "-lm"], target)
     return Header(ctypes.CDLL(str(target)), real)
 
 
@@ -383,7 +384,7 @@ def test_sanitizers_find_nothing(real, compiler, level, tmp_path):
     probe = [compiler, *checks, "-x", "c", "-", "-o", program]
     if subprocess.run(probe, input=b"int main(void) { return 0; }", capture_output=True).returncode:
         pytest.skip(f"{compiler} has no sanitizers")
-    run(compiler, *flags, DRIVER.with_name("header_main.c"), "-o", program, "-lm")
+    compiled([compiler, *flags, DRIVER.with_name("header_main.c"), "-lm"], program)
     assert run(program) == "784\n"
 
 

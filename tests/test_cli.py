@@ -271,8 +271,10 @@ def test_claims_are_judged_and_changed(slider: Path, capsys: pytest.CaptureFixtu
 
 
 def test_claims_beside_the_text_of_the_paper(
-    slider: Path, capsys: pytest.CaptureFixture[str]
+    slider: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    (planar,) = pipeline.find(["planar_2r"])  # of all derivations, one of another paper
+    monkeypatch.setattr(pipeline, "sources", lambda: [planar])
     text = WRONG_SIGN.replace("{erratum}", ', erratum="sign"')
     slider.write_text(SLIDER + text + ERRATUM, "utf-8")
     paper = slider.parent / "paper.txt"
@@ -392,7 +394,10 @@ def test_errata_of_all_papers_and_of_one(
 
 @pytest.mark.parametrize(
     ("flags", "jobs"),
-    [("", 1), (" -j2 --jobserver-auth=3,4", 2), ("k -j8", 8), ("-j", os.cpu_count()), ("-n", 1)],
+    [
+        *((flags, os.cpu_count()) for flags in ("", "-j", "-n", "k --jobserver-auth=3,4")),
+        *((" -j1", 1), (" -j2 --jobserver-auth=3,4", 2), ("k -j83", 83)),
+    ],
 )
 def test_make_decides_how_many_processes(
     monkeypatch: pytest.MonkeyPatch, flags: str, jobs: int

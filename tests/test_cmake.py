@@ -5,6 +5,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from sharing import remembering
 
 from closedform.pipeline.run import generated
 
@@ -23,6 +24,8 @@ def run(*command: str | Path) -> str:
 
 def build(source: Path, folder: Path, *options: str) -> None:
     # Unoptimised, to save time; make check tries the flags of a release.
+    launcher = remembering(folder.with_suffix(".sh"))
+    options = (*options, f"-DCMAKE_C_COMPILER_LAUNCHER={launcher}")
     run("cmake", "-S", source, "-B", folder, "-DCMAKE_BUILD_TYPE=Debug", *options)
     run("cmake", "--build", folder, "--parallel", "2")
 

@@ -3,6 +3,9 @@
 import importlib
 import itertools
 from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from math import comb
 
 import numpy as np
 import pytest
@@ -31,12 +34,19 @@ def arm(request: pytest.FixtureRequest):
     return importlib.import_module(f"closedform.generated.{request.param}.hybrid_five_bar")
 
 
+@cache
 def points(arm, lengths, n: int = 4000) -> np.ndarray:
     """Random points of the workspace."""
     L0, L1, L2 = lengths
     rng = np.random.default_rng(0)
-    p = rng.uniform(-1, 1, (200 * n, 3)) * (L1 + L2) + [0, L0 / 2, 0]
-    return p[arm.workspace_contains(p, lengths)][:n]
+    found = np.empty((0, 3))
+    for _ in range(20):  # of a workspace that is hard to hit there may be fewer
+        p = rng.uniform(-1, 1, (10 * n, 3)) * (L1 + L2) + [0, L0 / 2, 0]
+        found = np.concatenate([found, p[arm.workspace_contains(p, lengths)]])[:n]
+        if len(found) == n:
+            break
+    found.flags.writeable = False
+    return found
 
 
 def bars(arm, q, lengths):
@@ -438,22 +448,32 @@ def test_loci_hold_the_postures_they_describe(arm, kappa: float, mirrored: int) 
     assert np.median(np.abs(off.sum(axis=0)) / np.abs(off).sum(axis=0)) > 1e-6
 
 
+def on_a_line(curve: sp.Poly, at: Fraction, slope: Fraction) -> list[float]:
+    """The coefficients of the curve at (at + slope t, t), the highest power of t first."""
+    found = [Fraction(0)] * (curve.total_degree() + 1)
+    for (m, n), value in curve.terms():
+        for k in range(m + 1):
+            part = comb(m, k) * at ** (m - k) * slope**k
+            found[k + n] += Fraction(int(value.p), int(value.q)) * part
+    while found and not found[-1]:
+        found.pop()
+    return [float(x) for x in reversed(found)]
+
+
 @pytest.mark.parametrize("psi", [0.0, np.pi, np.pi / 2, -np.pi / 2, 1.0, -2.0])
 @pytest.mark.parametrize("lengths", [(7, 8, 5), (0, 3, 2), (3, 1, 3), (1, 1, 2)])
 def test_real_points_of_the_loci_are_postures(lengths, psi: float) -> None:
     """On random lines: the real roots are postures, made by own circles, with CP turned by psi."""
     L0, L1, L2 = lengths
-    t = sp.Symbol("t")
     curve = design.by_cramer(*map(sp.Rational, (np.cos(psi), np.sin(psi))))
-    curve = curve.subs(dict(zip(design.lengths, lengths, strict=True)))
+    curve = sp.Poly(curve.subs(dict(zip(design.lengths, lengths, strict=True))), *design.plane)
     rng = np.random.default_rng(13)
     seen = 0
     for _ in range(25):
         at, slope = rng.uniform(-1, 1, 2) * (L1 + L2)
-        line = {design.plane[0]: sp.Rational(at) + t * sp.Rational(slope), design.plane[1]: t}
-        polynomial = sp.Poly(sp.expand(curve.subs(line)), t)
-        assert polynomial.degree() <= 6
-        roots = np.roots([float(c) for c in polynomial.all_coeffs()])
+        polynomial = on_a_line(curve, Fraction(at), Fraction(slope))
+        assert len(polynomial) <= 7
+        roots = np.roots(polynomial)
         for rho in roots[np.abs(roots.imag) < 1e-9].real:
             P = at + slope * rho + 1j * rho
             ends = []

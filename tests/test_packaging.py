@@ -31,7 +31,7 @@ def build(folder: Path) -> None:
     assert ROOT is not None
     shutil.copytree(ROOT, folder / "checkout", ignore=OUTSIDE)
     (folder / "quick").mkdir()
-    compiler = {"CC": quick_compiler(folder / "quick", "-O0")} if os.name == "posix" else {}
+    compiler = {"CC": quick_compiler(folder / "quick")} if os.name == "posix" else {}
     run("-m", "build", "--no-isolation", "--outdir", folder, folder / "checkout", **compiler)
     (wheel,) = folder.glob("*.whl")
     pip = ("-m", "pip", "install", "--quiet", "--no-deps", "--no-index")

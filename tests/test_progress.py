@@ -49,6 +49,7 @@ def on_a_terminal(*arguments: str) -> str:
     return shown.decode()
 
 
+@pytest.mark.usefixtures("compiled_quickly")
 @pytest.mark.skipif(os.name != "posix", reason="terminals are those of POSIX")
 def test_progress_is_one_line_of_a_terminal(tmp_path: Path) -> None:
     shown = on_a_terminal("0", "derive", "planar_2r", "--fresh", "-o", str(tmp_path))

@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from compiling import compiled
 
 ROOT = Path(__file__).parent.parent
 GENERATED = ROOT / "generated" / "c"
@@ -67,7 +68,7 @@ def run(*command: str | Path) -> str:
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_float(tmp_path: Path, robot: str) -> None:
     library = tmp_path / "library.so"
-    run("gcc", *FLAGS.split(), GENERATED / f"{robot}.c", "-o", library, "-lm")
+    compiled(["gcc", *FLAGS.split(), GENERATED / f"{robot}.c", "-lm"], library)
     called = functions(robot)
     module = importlib.import_module(f"closedform.generated.numpy.{robot}")
     assert {name.removeprefix(f"{robot}_").removesuffix("_batch") for name, _ in called} <= {

@@ -181,9 +181,13 @@ def _product(*factors: Ball) -> Ball:
 
 def _times(a: Ball, b: Ball) -> Ball:
     (x, r), (y, s) = a, b
-    value, radius = _rounded(x * y, abs(x) * s + (abs(y) + s) * r)
-    lost = (abs(value) < LEAST) & (x != 0) & (y != 0)
-    return value, np.where(lost, OPEN, radius) if np.any(lost) else radius
+    value = x * y
+    size = abs(value)
+    radius = abs(x) * s + (abs(y) + s) * r + size * ROUNDING
+    small = size < LEAST
+    if small.any():
+        radius = np.where(small & (x != 0) & (y != 0), OPEN, radius)
+    return value, radius
 
 
 def _reciprocal(a: Ball) -> Ball:

@@ -10,6 +10,7 @@ import re
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import groupby, pairwise
 
 import sympy as sp
@@ -267,8 +268,7 @@ def _units(derivation: Derivation) -> dict[str, str]:
         values = [e for a in function.outputs for e in a.entries]
         for statement in function.body:
             values += [getattr(statement, "value", sp.S.Zero), *getattr(statement, "values", ())]
-        circular = {t for e in values for t in e.atoms(sp.sin, sp.cos, sp.tan)}
-        angles |= {str(s) for t in circular for s in t.free_symbols if s in given}
+        angles |= {str(s) for e in values for s in _in_circular_functions(e) if s in given}
     for inverse in derivation.inverses:
         solver = derivation[inverse.function]
         if solver.result == "Solutions" and len(solver.symbols) == len(derivation.task):
@@ -277,3 +277,9 @@ def _units(derivation: Derivation) -> dict[str, str]:
     units |= dict.fromkeys(angles, ANGLE)
     units |= {j.name: ANGLE if j.kind == "revolute" else LENGTH for j in derivation.joints}
     return units
+
+
+@cache
+def _in_circular_functions(expr: sp.Basic) -> frozenset[sp.Symbol]:
+    """The symbols in the arguments of sines, cosines and tangents; asked for each docstring."""
+    return frozenset(s for t in expr.atoms(sp.sin, sp.cos, sp.tan) for s in t.free_symbols)

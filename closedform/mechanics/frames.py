@@ -219,16 +219,36 @@ def _merge_pair(expr: sp.Expr, a: sp.Expr, b: sp.Expr) -> sp.Expr:
 
 def _replaced(expr: sp.Expr, product: sp.Expr, sum_: sp.Expr) -> sp.Expr:
     """An expanded expression with a product replaced, and expanded again where it occurred."""
-    # Only terms with both factors change, and the others are expanded already: few are touched.
-    factors = product.atoms(sp.sin, sp.cos)
-    rest, changed = [], []
+    rest: list[sp.Expr] = []
+    changed: list[sp.Expr] = []
     for term in sp.Add.make_args(expr):
-        replaced = term.subs(product, sum_) if factors <= term.atoms(sp.sin, sp.cos) else term
-        if replaced == term:
-            rest.append(term)
-        else:
-            changed.append(sp.expand(replaced))
+        replaced = _replaced_in(term, product, sum_)
+        (rest if replaced is term else changed).append(replaced)
     return sp.Add(*rest, *changed) if changed else expr
+
+
+def _replaced_in(term: sp.Expr, product: sp.Expr, sum_: sp.Expr) -> sp.Expr:
+    """The same for a term; the term itself, if the product is not in it."""
+    if not product.atoms(sp.sin, sp.cos) <= term.atoms(sp.sin, sp.cos):
+        return term
+    powers = dict.fromkeys(product.args, 0)
+    others = []
+    for factor in sp.Mul.make_args(term):
+        base, exponent = factor.args if factor.is_Pow else (factor, sp.S.One)
+        if base in powers and exponent.is_Integer and exponent.is_positive:
+            powers[base] += int(exponent)
+        else:
+            others.append(factor)
+    if any(other.has(*powers) for other in others):  # in a root or a denominator
+        replaced = term.subs(product, sum_)
+        return term if replaced == term else sp.expand(replaced)
+    times = min(powers.values())
+    if times == 0:
+        return term
+    left = sp.Mul(*others, *(base ** (n - times) for base, n in powers.items()))
+    if times == 1:
+        return sp.Add(*(left * part for part in sum_.args))
+    return sp.expand(left * sum_**times)
 
 
 @cache

@@ -12,6 +12,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.algebra.normal_form import normal
 from closedform.mechanics.frames import rotation
 from closedform.mechanics.links import Group
 from closedform.model.derivation import Derivation
@@ -143,7 +144,7 @@ def _cases(
 
 def _still(square: sp.Expr, function: Function) -> sp.Expr:
     """A squared distance that does not depend on the inputs, from one posture."""
-    return sp.simplify(square.subs(dict.fromkeys(function.symbols, 0)))
+    return normal(square.subs(dict.fromkeys(function.symbols, 0)))
 
 
 def serial_skeleton(

@@ -52,7 +52,7 @@ def _candidates(text: bytes, folder: Path) -> tuple[Path, ...]:
 def _imported(tree: ast.Module) -> Iterator[tuple[str, int]]:
     """The modules that a file may import, each with the number of its leading dots."""
     known = homes([str(package())])
-    for node in ast.walk(tree):
+    for node in _statements(tree):
         if isinstance(node, ast.Import):
             yield from ((alias.name, 0) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -62,6 +62,15 @@ def _imported(tree: ast.Module) -> Iterator[tuple[str, int]]:
                 own = module == PACKAGE and not node.level
                 name = known.get(alias.name, "") if own else ""
                 yield name or f"{module}.{alias.name}".lstrip("."), node.level
+
+
+def _statements(block: ast.AST) -> Iterator[ast.AST]:
+    """The statements below a node, at any depth; most nodes are expressions and left out."""
+    for name in ("body", "handlers", "cases", "orelse", "finalbody"):
+        below = getattr(block, name, ())
+        for node in below if isinstance(below, list) else ():
+            yield node
+            yield from _statements(node)
 
 
 def _files_of(names: Iterable[tuple[str, int]], folder: Path) -> Iterator[Path]:

@@ -18,7 +18,7 @@ import time
 import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
@@ -129,7 +129,7 @@ def sources() -> list[Source]:
     return [
         Source(path.stem, path, f"closedform.derivations.{path.stem}")
         for path in sorted(scripts().glob("*.py"))
-        if _defines_derivation(path)
+        if _assigns_d(path.read_bytes())
     ]
 
 
@@ -156,10 +156,11 @@ def _find(name: str, known: Mapping[str, Source]) -> Source:
     return Source(path.stem, path)
 
 
-def _defines_derivation(path: Path) -> bool:
+@cache
+def _assigns_d(text: bytes) -> bool:
     """Whether a script assigns ``d``.  If it does not parse, True: the error is reported later."""
     try:
-        statements = ast.parse(path.read_bytes()).body
+        statements = ast.parse(text).body
     except SyntaxError:
         return True
     targets: list[ast.expr] = []
@@ -417,11 +418,10 @@ def _length(source: Source) -> int:
 
 
 def default_jobs() -> int:
-    """As many processes as ``make -j`` allows; outside of make, one for each core."""
-    flags = os.environ.get("MAKEFLAGS") if "MAKELEVEL" in os.environ else "-j"
-    if match := re.search(r"(?:^|\s)-j ?(\d*)(?=\s|$)", flags or ""):
-        return int(match[1]) if match[1] else os.cpu_count() or 1
-    return 1
+    """One process for each core, or as many as ``make -j N`` allows."""
+    flags = os.environ.get("MAKEFLAGS", "") if "MAKELEVEL" in os.environ else ""
+    match = re.search(r"(?:^|\s)-j ?(\d+)(?=\s|$)", flags)
+    return int(match[1]) if match else os.cpu_count() or 1
 
 
 # Writing and comparing

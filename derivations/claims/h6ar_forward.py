@@ -105,14 +105,19 @@ def symmetric_motions(d: Derivation, r: Robot, printed: Notation) -> None:
 def off_the_middle(r: Robot, yaw: sp.Expr) -> sp.Expr:
     """The distance of (7) from the middle of the tips, with a level fore-arm and without roll."""
     m, fore = r.m, r.A2 + r.A3
-    upper_by = sp.Matrix([-m.L1 * sin(r.A2), m.L1 * cos(r.A2)])
-    fore_by = sp.Matrix([m.L2 * cos(fore) - m.a3 * sin(fore), m.L2 * sin(fore) + m.a3 * cos(fore)])
-    apart = sp.Matrix([m.d * sp.tan(yaw), 0])  # half of what is between the tips of the arms
+    at = r.example | {r.A2: pi / 3, r.A3: pi / 6}
+    upper_by, fore_by, apart = (
+        sp.Matrix(vector).subs(at)
+        for vector in (
+            [-m.L1 * sin(r.A2), m.L1 * cos(r.A2)],
+            [m.L2 * cos(fore) - m.a3 * sin(fore), m.L2 * sin(fore) + m.a3 * cos(fore)],
+            [m.d * sp.tan(yaw), 0],  # half of what is between the tips of the arms
+        )
+    )
     sines = sp.Matrix.hstack(upper_by, fore_by).inv() * apart
     lost = [1 - sp.sqrt(1 - s**2) for s in sines]
     along = [sp.Matrix([-v[1], v[0]]) for v in (upper_by, fore_by)]  # the links have these lengths
-    at = r.example | {r.A2: pi / 3, r.A3: pi / 6}
-    return (lost[0] * along[0] + lost[1] * along[1]).subs(at).norm()
+    return (lost[0] * along[0] + lost[1] * along[1]).norm()
 
 
 def errors(d: Derivation, r: Robot) -> None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import importlib.util
 import os
-import subprocess
 import sys
 import sysconfig
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from compiling import compiled
 
 from .toy import ROWS
 
@@ -37,7 +37,7 @@ def compile_toy(folder: Path) -> None:
     command += ["-fno-math-errno", "-fno-trapping-math", "-DCF_MODULE_NAME=toy_native"]
     command += SANITIZE if SANITIZED else []
     command += [*INCLUDES, *map(str, sorted(RUNTIME.glob("*.c"))), str(TOY), "-lm"]
-    subprocess.run([*command, "-o", str(_target(folder))], check=True)
+    compiled(command, _target(folder))
 
 
 def loaded(folder: Path) -> Any:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import shutil
 import subprocess
+import tempfile
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
@@ -12,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from compiling import compiled
 
 from .outcome import Failure, Outcome
 
@@ -59,27 +62,19 @@ def _run(seed: int, calls: int, only: int | None = None) -> tuple[str, int]:
 @cache
 def driver() -> Path:
     """The driver with all generated C; only what changed is compiled again."""
-    folder = ROOT / "build" / "fuzz"
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = Path(tempfile.mkdtemp(prefix="closedform-fuzz-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
     sources = [ROOT / "tests" / "c" / "random_driver.c", *sorted(GENERATED.glob("*.c"))]
-    newest_header = max(p.stat().st_mtime for p in [*GENERATED.glob("*.h"), *RUNTIME.glob("*.h")])
     command = ["gcc", "-std=c99", "-O1", "-ftree-vectorize", *SANITIZE]
     command += [f"-I{GENERATED}", f"-I{RUNTIME}"]
 
-    def compiled(source: Path) -> Path:
+    def one(source: Path) -> Path:
         target = folder / f"{source.stem}.o"
-        newest = max(source.stat().st_mtime, newest_header)
-        if not target.is_file() or target.stat().st_mtime < newest:
-            unfinished = target.with_suffix(f".{os.getpid()}.o")
-            subprocess.run([*command, "-c", source, "-o", unfinished], check=True)
-            unfinished.replace(target)
+        compiled([*command, "-c", source], target)
         return target
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        objects = list(pool.map(compiled, sources))
+        objects = list(pool.map(one, sources))
     program = folder / "driver"
-    if not program.is_file() or program.stat().st_mtime < max(o.stat().st_mtime for o in objects):
-        unfinished = program.with_suffix(f".{os.getpid()}")
-        subprocess.run(["gcc", *SANITIZE, *objects, "-o", unfinished, "-lm"], check=True)
-        unfinished.replace(program)
+    subprocess.run(["gcc", *SANITIZE, *objects, "-o", program, "-lm"], check=True)
     return program

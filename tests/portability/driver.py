@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from compiling import CompilerError, compiled
 from numpy.typing import NDArray
 
 from closedform.model.derivation import Derivation
@@ -209,19 +210,23 @@ def compile_driver(
 
     def one(pair: tuple[Path, Path]) -> None:
         source, target = pair
-        built([*start, "-c", str(source), "-o", str(target)])
+        try:
+            compiled([*start, "-c", source], target)
+        except CompilerError as error:
+            raise _reason(command, str(error)) from None
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(one, zip(sources, objects, strict=True)))
     program = folder / "driver"
-    built([*command, *map(str, objects), "-o", str(program), *link, "-lm"])
+    linked = [*command, *map(str, objects), "-o", str(program), *link, "-lm"]
+    done = subprocess.run(linked, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise _reason(linked, done.stderr)
     return Program(program, tuple(robots), tuple(runner))
 
 
-def built(command: Sequence[str]) -> None:
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode:
-        errors = [line for line in done.stderr.splitlines() if "error" in line]
-        if any(REFUSED in line for line in errors):
-            raise RefusedError(errors[0])
-        raise RuntimeError(f"{' '.join(command)}\n{done.stderr[:2000]}")
+def _reason(command: Sequence[str], said: str) -> Exception:
+    errors = [line for line in said.splitlines() if "error" in line]
+    if any(REFUSED in line for line in errors):
+        return RefusedError(errors[0])
+    return RuntimeError(f"{' '.join(command)}\n{said[:2000]}")

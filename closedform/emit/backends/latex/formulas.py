@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from functools import cache
 from itertools import chain
 from typing import Any
 
@@ -57,7 +58,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
 
     def _as_ordered_terms(self, expr: sp.Add, order: str | None = None) -> list[sp.Expr]:
         """The terms in SymPy's order, but if that starts with a minus, the positive ones first."""
-        terms: list[sp.Expr] = super()._as_ordered_terms(expr, order=order)
+        terms = list(_ordered_terms(expr, order or self.order))
         if _negative(terms[0]):
             terms.sort(key=_negative)
         return terms
@@ -112,10 +113,10 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         self, number: int, factors: Sequence[sp.Expr], root: str, *, alone: bool = False
     ) -> str:
         """Factors in order; a sum that stands alone in a numerator needs no parentheses."""
-        ordered = sorted(factors, key=self._place)
-        if alone and number == 1 and len(ordered) == 1 and not root:
-            return str(self._print(ordered[0]))
-        parts = [(self._place(f)[0], self._factor(f)) for f in ordered]
+        if alone and number == 1 and len(factors) == 1 and not root:
+            return str(self._print(factors[0]))
+        placed = sorted(((self._place(f), f) for f in factors), key=lambda pair: pair[0])
+        parts = [(place[0], self._factor(f)) for place, f in placed]
         parts += [(2, root)] if root else []
         parts.sort(key=lambda part: part[0])
         texts = ([integer(number)] if number != 1 else []) + [text for _, text in parts]
@@ -163,9 +164,9 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         power = f"^{{{exp}}}" if exp else ""
         numbers = [
             (JOINT.fullmatch(str(term)) if term in self.joints else None)
-            for term in angle.as_ordered_terms()
+            for term in _ordered_terms(angle, None)
         ]
-        over, under = sp.fraction(sp.together(angle))
+        over, under = _over_under(angle)
         if angle.is_Add and under.is_Integer and under != 1:
             full = rf"\frac{{{self._print(over)}}}{{{under}}}"
         else:
@@ -211,6 +212,18 @@ class Printer(LatexPrinter):  # type: ignore[misc]
     def math(self, expr: Any) -> str:
         """An expression that TeX can break between its terms."""
         return spaced(loosen(self.doprint(expr)))
+
+
+# The same sums and angles are printed again and again, to find the narrowest form.
+@cache
+def _ordered_terms(expr: sp.Expr, order: str | None) -> tuple[sp.Expr, ...]:
+    return tuple(expr.as_ordered_terms(order=order))
+
+
+@cache
+def _over_under(angle: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    over, under = sp.fraction(sp.together(angle))
+    return over, under
 
 
 def _negative(term: sp.Expr) -> bool:

@@ -1,0 +1,52 @@
+"""Angles of parallel axes are added: by examples, and by values."""
+
+import random
+
+import pytest
+import sympy as sp
+from sympy import cos, sin, sqrt
+
+from closedform.mechanics.frames import merge_angles
+
+a, b, c, x, y = sp.symbols("a b c x y", real=True)
+MERGED = {
+    cos(a) * cos(b) - sin(a) * sin(b): cos(a + b),
+    x * sin(a) * cos(b) - x * cos(a) * sin(b) + y: x * sin(a - b) + y,
+    cos(a) ** 2 * cos(b) ** 2
+    - 2 * cos(a) * cos(b) * sin(a) * sin(b)
+    + sin(a) ** 2 * sin(b) ** 2: cos(a + b) ** 2,
+    x * cos(a) ** 2 * cos(b) - x * cos(a) * sin(a) * sin(b): x * cos(a) * cos(a + b),
+    (cos(a) * cos(b) - sin(a) * sin(b)) * cos(c)
+    - (sin(a) * cos(b) + cos(a) * sin(b)) * sin(c): cos(a + b + c),
+}
+KEPT = [
+    x * cos(a) * cos(b),
+    cos(a) + cos(b),
+    cos(a) * cos(b) * cos(c) + x,
+    x / (cos(a) * cos(b)),
+    sqrt(x + cos(a) * cos(b)),
+    cos(a) / cos(b) + sin(a) ** 3,
+]
+
+
+@pytest.mark.parametrize("expr", MERGED, ids=str)
+def test_merged(expr: sp.Expr) -> None:
+    assert merge_angles(expr) == MERGED[expr]
+
+
+@pytest.mark.parametrize("expr", KEPT, ids=str)
+def test_kept(expr: sp.Expr) -> None:
+    assert merge_angles(expr) == expr
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_values_stay_the_same(seed: int) -> None:
+    """Of sums of products with powers, roots and denominators that hold both angles."""
+    choose = random.Random(seed)
+    factors = [
+        *(f(angle) ** n for f in (sin, cos) for angle in (a, b) for n in (1, 2, 3)),
+        sqrt(2 + cos(a) * cos(b)), 1 / (3 + sin(a) * sin(b)), 1 / cos(a), x,
+    ]  # fmt: skip
+    expr = sum(choose.choice((1, -1)) * sp.Mul(*choose.sample(factors, 4)) for _ in range(6))
+    at = {a: 0.3, b: -1.1, x: 2.7}
+    assert float(merge_angles(expr).subs(at)) == pytest.approx(float(expr.subs(at)), abs=1e-12)

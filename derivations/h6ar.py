@@ -415,7 +415,7 @@ slants = p.let("t_psi", sin(psi) / cos(psi)), p.let("t_phi", sin(phi) / cos(phi)
 gap = p.let("ahead", m.d * slants[0]), p.let("higher", m.d * slants[1])
 apart_by = sum(sp.Abs(g * t) for g, t in zip(gap, slants, strict=True))
 slack, beside = play(p, m, apart_by, gap)
-middle = solve_mid_plane(p, m, q, (length, base), slack)
+middle = solve_mid_plane(p, m, q, (length, base), slack, gap)
 upper, elbow = middle.upper, middle.elbow
 # in the axes of the upper arm: there sin(alpha) multiplies (0, L1)
 seen = (
@@ -463,6 +463,15 @@ for sine in ("alpha", "beta"):
 half = two_sines(
     p, (alpha, beta), ((sp.S.Zero, m.L1), v), seen, scale=beside, free=(theta3R, theta3L)
 )
+# sines at their limits may miss the gap by more than yaw and roll allow, near a right angle
+at_limit = sp.Or(*(sp.Symbol(f"spent_{n}") for n in ("alpha", "beta", "along")))
+sines = [next(s for s, e in half.means.items() if e == sin(x)) for x in (alpha, beta)]
+missed = v[0] * sines[1] - seen[0], m.L1 * sines[0] + v[1] * sines[1] - seen[1]
+missed = p.let("missed", choose(at_limit, sum(map(sp.Abs, missed)), 0))
+allowed = (1 + sp.Min(*(t**2 for t in slants))) * (m.d + sum(m) / 64)
+p.determined(
+    choose(at_limit, allowed, 1), missed * 2**50, "sines at their limits miss the gap of the tips"
+)
 lemmas = (*middle.lemmas, half)
 solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
 turned_halves = {
@@ -495,7 +504,8 @@ d.function(
         "alpha and beta are half the differences of the arms' angles, and sines of equal size are "
         "returned.",
         "SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): "
-        "rounded joints do not determine the tip to 1e-12 there.",
+        "rounded joints do not determine the tip to 1e-12 there; or if a half difference is at a "
+        "right angle and rounding of the target decides whether the tips can be so far apart.",
         ACCURACY,
         "INVALID: d, L1, or both L2 and a3 are zero.",
     ),

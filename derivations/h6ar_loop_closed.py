@@ -518,6 +518,17 @@ for name, sigma, unknowns in (
             rest=upper,
         )
     )
+# an arm at its limit may be bent otherwise than the virtual arm, and the wrist points elsewhere
+kept = [real(f"{k}_{name}", nonnegative=True) for k in "NM" for name in ("right", "left")]
+N, M = (kept[0] + kept[1]) / 2 + gap, (kept[2] + kept[3]) / 2 - gap
+bends = 2 * m.L1 * bent - side * sqrt(sp.Max(0, N)) * sqrt(sp.Max(0, M))
+L_2W, a_3W = real("L_2W"), real("a_3W")
+aside = (sp.Abs(L_2W - m.L2) + sp.Abs(a_3W - m.a3)) * sp.Abs(bends)
+p.determined(
+    choose(spent, m.L1 * second * sum(m), 1),
+    p.let("astray", choose(spent, aside * 2**50, 0)),
+    "arms at their limits do not bend as the virtual arm",
+)
 lemmas = (*mid.lemmas, *arms)
 joints = {s: s for s in q} | {theta3R: theta23R - theta2R, theta3L: theta23L - theta2L}
 solution = {s: e for lemma in lemmas for s, e in lemma.solution.items()}
@@ -541,7 +552,8 @@ d.function(
         "SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a "
         "folded virtual arm (its reach times its bend is less than 2^-10 of its size times half "
         "the distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and "
-        "near stretched wrist links (l_W is less than 2^-10 al).",
+        "near stretched wrist links (l_W is less than 2^-10 al).  An arm at its limit that "
+        "rounding bends otherwise than the virtual arm is SINGULAR too.",
         ACCURACY,
         "INVALID: d, L1, or both L2 and a3 are zero.",
         "A straight right arm is returned bent by a few units in the last place, so that fk can "

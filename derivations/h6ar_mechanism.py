@@ -23,6 +23,7 @@ from closedform import (
     linear_pair,
     real,
     rotation,
+    sign_of,
     sine_cosine,
     two_link_arm,
 )
@@ -291,13 +292,46 @@ def play(
 ) -> tuple[sp.Symbol, sp.Symbol]:
     """Scales of what a target may be missed by: at the tip, and at the tips of the real arms.
 
+    They are a quarter of what an answer may miss, because several limits may be missed at once.
     Yaw and roll are given to some units in the last place, and so is what is ``apart`` by as many.
     """
     far = program.let("far_apart", apart / 512, nonnegative=True)
     lengths = program.let("lengths", sum(m))
-    reached = program.let("slack", lengths + far, nonnegative=True)
-    beside = program.let("play", sum(map(sp.Abs, gap), m.d) + lengths / 512 + far)
+    reached = program.let("slack", lengths / 4 + far, nonnegative=True)
+    beside = program.let("play", sum(map(sp.Abs, gap), m.d) / 4 + lengths / 2048 + far)
     return reached, beside
+
+
+def along_gap(
+    program: Program,
+    m: Dimensions,
+    gap: tuple[sp.Expr, sp.Expr],
+    fore: tuple[sp.Expr, sp.Expr],
+    height: sp.Expr,
+) -> tuple[sp.Symbol, ...]:
+    """How far the tip may be from the waist axis if the gap of the tips is across the longer link.
+
+    The ``fore`` link, along and across, ends at the tip, at a ``height`` above the shoulder.  At
+    the limit of the waist, rounding of the target leaves the distance open.  The gap determines it,
+    if the other link is much shorter: other postures do not have that gap.
+    """
+    let = program.let
+    along, across = fore
+    second, whole = sqrt(m.L2**2 + m.a3**2), sqrt(along**2 + across**2)
+    by_fore = second > m.L1
+    size = let("gap_size", sqrt(gap[0] ** 2 + gap[1] ** 2) + (m.L1 + second) / 2**100)
+    x = sp.Piecewise(((across * m.L2 - along * m.a3) / second, by_fore), (0, True))
+    y = sp.Piecewise(((across * m.a3 + along * m.L2) / second, by_fore), (m.L1, True))
+    x, y = let("long_x", x / size), let("long_y", -y / size)
+    long_r, long_h = let("long_r", x * gap[0] - y * gap[1]), let("long_h", x * gap[1] + y * gap[0])
+    shorter = let("shorter", sp.Piecewise((m.L1, by_fore), (whole, True)))
+    across = let("across_gap", sign_of(height * long_h) * long_h)
+    beyond = let("beyond_gap", height - across)
+    short_h = let("short_h", sp.Max(-shorter, sp.Min(shorter, beyond)))
+    square = long_r**2 + (short_h - beyond) * (across + height - short_h)
+    left_r = let("left_r", sqrt(sp.Max(0, square)))
+    short_r = let("short_r", sqrt((shorter - short_h) * (shorter + short_h)))
+    return let("root_same", left_r + short_r), let("root_apart", sp.Abs(left_r - short_r))
 
 
 class MidPlane(NamedTuple):
@@ -316,8 +350,13 @@ def solve_mid_plane(
     q: Joints,
     wrist: tuple[sp.Symbol, sp.Symbol],
     slack: sp.Symbol,
+    gap: tuple[sp.Expr, sp.Expr] | None = None,
 ) -> MidPlane:
-    """Solve for pitch, waist and virtual arm; ``wrist`` is its length and half its base line."""
+    """Solve for pitch, waist and virtual arm; ``wrist`` is its length and half its base line.
+
+    ``gap`` is how far the right tip is ahead of the middle of the tips and above it, if that does
+    not depend on the virtual arm.
+    """
     given = (pair(psi), pair(phi), pair(pitch))
     program.let("extent", m.d * m.L1 * (m.L2 + m.a3))
     program.require(
@@ -331,6 +370,7 @@ def solve_mid_plane(
     aside, along, across = (
         program.let(n, e) for n, e in zip(names, extended(m, known), strict=True)
     )
+    preferred = along_gap(program, m, gap, (along, across), z - m.d1) if gap else ()
     turn = sine_cosine(
         program,
         q.theta1,
@@ -339,7 +379,7 @@ def solve_mid_plane(
         free=(q.theta1,),
         scale=sum(m),
         slack=slack,
-        toward=LinksAtHeight(m.L1, sqrt(along**2 + across**2), z - m.d1),
+        toward=LinksAtHeight(m.L1, sqrt(along**2 + across**2), z - m.d1, preferred),
     )
     outward = turn.known(x * cos(q.theta1) + y * sin(q.theta1))
     sigma_bend = program.let("sigma_bend", -sigma_waist * sigma_elbow)

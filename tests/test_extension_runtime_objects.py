@@ -21,6 +21,7 @@ import numpy as np
 import pytest
 from extension_toy.build import SANITIZED, function
 from extension_toy.toy import ROWS, Mixed, Two, chain, check, polar, two, values
+from portability import threads
 
 # Errors
 
@@ -446,3 +447,12 @@ def test_threads_do_not_disturb_each_other(native: Any) -> None:
     for thread in threads:
         thread.join()
     assert right == [True] * 4
+
+
+@pytest.mark.parametrize(
+    "attempt", ["shared_arrays", "shared_parameters", "changing_lists", "making_functions"]
+)
+def test_threads_may_share(native: Any, monkeypatch: pytest.MonkeyPatch, attempt: str) -> None:
+    """``make portability`` repeats this without a GIL."""
+    monkeypatch.setattr(threads, "ROUNDS", 10)
+    getattr(threads, attempt)(native)

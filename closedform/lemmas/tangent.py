@@ -7,7 +7,7 @@ the target does not tell apart, one is taken that leaves them within reach.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -181,12 +181,14 @@ class LinksAtHeight:
     """Two links that have to reach a point at a ``height``, whose other coordinate a turn gives.
 
     That is the root of the turn.  Where the root is small, rounding changes it by a multiple, and
-    links much shorter than the amplitude might seem too short.
+    links much shorter than the amplitude might seem too short.  The first of the ``preferred``
+    roots is taken that rounding does not tell from the computed one.
     """
 
     l1: sp.Expr
     l2: sp.Expr
     height: sp.Expr
+    preferred: Sequence[sp.Symbol] = ()
 
     def held(self, program: Program, at: Amplitude, scale: sp.Expr, suffix: str) -> sp.Symbol:
         """The square of the root, brought within reach if rounding puts it out of reach."""
@@ -195,11 +197,12 @@ class LinksAtHeight:
         nearest = (self.l1 - self.l2) ** 2 - self.height**2
         wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
         rounding = 2 * at.h * scale / 2**44
-        return program.let(
-            f"held{suffix}",
-            sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True)),
-            nonnegative=True,
-        )
+        held = sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True))
+        for root in reversed(self.preferred):
+            other = program.let(f"{root}_squared{suffix}", root**2)
+            near = sp.Abs(other - square) <= 8 * rounding
+            held = sp.Piecewise((other, near), *held.args)
+        return program.let(f"held{suffix}", held, nonnegative=True)
 
     def reached(self, turn: Tangency) -> Reached:
         """The pair of the turn, from the root within reach that is nearest to the computed one."""

@@ -13,9 +13,9 @@
  *   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
  *   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
  *   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
- *   ik: 517 compare and select, 404 add, 33 atan2, 128 divide, 511 multiply, 1 reduce to a turn, 3
- *     sincos, 38 sqrt
- *   ik where nothing vanishes: 244 compare and select, 166 add, 17 atan2, 28 divide, 146 multiply,
+ *   ik: 565 compare and select, 447 add, 33 atan2, 148 divide, 554 multiply, 1 reduce to a turn, 3
+ *     sincos, 40 sqrt
+ *   ik where nothing vanishes: 246 compare and select, 166 add, 17 atan2, 32 divide, 146 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
  *   wrist_length: 5 add, 20 compare and select, 1 divide, 5 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -272,7 +272,8 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
  *   sum of L1 sin(alpha) and f sin(beta) (straight) or their difference (folded); alpha and
  *   beta are half the differences of the arms' angles, and sines of equal size are returned.
  * - SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): rounded
- *   joints do not determine the tip to 1e-12 there.
+ *   joints do not determine the tip to 1e-12 there; or if a half difference is at a right angle
+ *   and rounding of the target decides whether the tips can be so far apart.
  * - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
  *   yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.
  * - INVALID: d, L1, or both L2 and a3 are zero.

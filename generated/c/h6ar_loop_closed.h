@@ -13,9 +13,9 @@
  *   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
  *   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
  *   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
- *   ik: 831 compare and select, 609 add, 28 atan2, 135 divide, 884 multiply, 1 reduce to a turn, 3
- *     sincos, 37 sqrt
- *   ik where nothing vanishes: 276 compare and select, 260 add, 23 atan2, 31 divide, 334 multiply,
+ *   ik: 861 compare and select, 632 add, 28 atan2, 153 divide, 906 multiply, 1 reduce to a turn, 3
+ *     sincos, 41 sqrt
+ *   ik where nothing vanishes: 281 compare and select, 260 add, 23 atan2, 33 divide, 334 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
  *   wrist_length: 5 add, 20 compare and select, 1 divide, 6 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
@@ -290,7 +290,8 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
  * - SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a
  *   folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
  *   distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and near
- *   stretched wrist links (l_W is less than 2^-10 al).
+ *   stretched wrist links (l_W is less than 2^-10 al). An arm at its limit that rounding bends
+ *   otherwise than the virtual arm is SINGULAR too.
  * - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
  *   yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.
  * - INVALID: d, L1, or both L2 and a3 are zero.

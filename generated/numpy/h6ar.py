@@ -12,9 +12,9 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
-#   ik: 517 compare and select, 404 add, 33 atan2, 128 divide, 511 multiply, 1 reduce to a turn, 3
-#     sincos, 38 sqrt
-#   ik where nothing vanishes: 244 compare and select, 166 add, 17 atan2, 28 divide, 146 multiply,
+#   ik: 565 compare and select, 447 add, 33 atan2, 148 divide, 554 multiply, 1 reduce to a turn, 3
+#     sincos, 40 sqrt
+#   ik where nothing vanishes: 246 compare and select, 166 add, 17 atan2, 32 divide, 146 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 5 add, 20 compare and select, 1 divide, 5 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
@@ -1526,1212 +1526,1307 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del s_psi, t9
     ahead = d * t_psi
     far_apart = np.abs(t_phi * higher) * 0.001953125 + np.abs(t_psi * ahead) * 0.001953125
-    del t_phi, t_psi
-    slack = far_apart + lengths
+    slack = far_apart + lengths * 0.25
     t17 = h * slack
     del h
     tangent = 4.0 * root * t16 - t17 * 0.00390625 <= _runtime.VANISHING * t17
-    t18 = L1 - fore
-    t19 = t18 * t18
-    t20 = z - d1
-    t21 = t20 * t20
-    t22 = t16 * t16
-    wanted = np.maximum(np.maximum(0.0, t19 - t21), np.minimum(t15, t22 - t21))
-    t23 = 8796093022208.0 * np.abs(t15 - wanted) <= t17
-    del t17
-    t24 = np.sqrt(_runtime.select(t23, wanted, t15))
-    del t15, t23, wanted
-    t25 = _runtime.select(tangent, np.arctan2(t24, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
-    del above, below
-    t26 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t25))
-    t27 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t28 = t27 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t27
-    t29 = t28 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t28
-    t30 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t31 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
-    del t2
-    t32 = t29 & (0.0 <= loff) & (0.0 <= lp) & t30 & (t31 <= _runtime.ROTATION)
-    del t29, t30, t31
-    invalid = np.logical_not(t32)
-    del t32
-    t33 = -(_runtime.FEASIBILITY * (t5 * 1.015625))
-    del t5
-    t34 = (-_runtime.FEASIBILITY <= c_phi) & (t33 <= t6)
-    del c_phi, t6
-    t35 = -(_runtime.FEASIBILITY * slack)
-    t36 = t34 & (t33 <= t7) & (t35 <= t14) & (t35 <= t13)
-    del t13, t14, t33, t34, t35, t7
-    t37 = 2.0 * fore
-    t38 = _runtime.FEASIBILITY * ((L1 * 2.0 + t37) * slack)
-    in_reach = _runtime.select(tangent, t24, root)
-    del root, t24, tangent
-    square = t21 + in_reach * in_reach
-    del t21
-    t39 = t22 - square
-    t40 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t41 = _runtime.FEASIBILITY * ((t40 + 2.0 * np.abs(t18)) * slack)
-    del t40
-    t42 = square - t19
-    del square, t19
-    t43 = t36 & (-t38 <= t39) & (-t41 <= t42)
-    del t36, t38, t41
-    t44 = L2 * L2 + a3 * a3
-    t45 = d + np.abs(higher) + far_apart + np.abs(ahead)
-    del far_apart
-    play = t45 + lengths * 0.001953125
-    del lengths, t45
-    t46 = np.sqrt(t44) * play
-    t47 = _runtime.VANISHING * t16
-    folded = np.abs(t20) + np.abs(in_reach) <= t47
-    short = L1 * fore <= _runtime.VANISHING * t22
+    fore_size = np.sqrt(L2 * L2 + a3 * a3)
+    t18 = L1 * 7.888609052210118e-31 + fore_size * 7.888609052210118e-31
+    gap_size = t18 + np.sqrt(higher * higher + ahead * ahead)
+    del t18
+    t19 = 1.0 / gap_size
+    del gap_size
+    t20 = L1 < fore_size
+    t21 = 1.0 / fore_size
+    t22 = _runtime.select(t20, -(t21 * (a3 * L_2W - L2 * a_3W)), 0.0)
+    long_x = t19 * t22
     del t22
-    M = np.maximum(t42, 0.0)
-    del t42
-    N = np.maximum(t39, 0.0)
-    del t39
-    t48 = 1.0 / (M + N)
-    ahead_1 = _runtime.select(short, t16, t18 + t37 * M * t48)
-    del t16, t18, t37
-    t49 = in_reach * ahead_1
-    t50 = 2.0 * np.sqrt(M * N)
-    s_bend_front_elbow_down = _runtime.select(short, 0.0, t48 * t50)
-    t51 = fore * s_bend_front_elbow_down
-    t52 = t20 * t51
-    out_2 = t49 - t52
-    t53 = t20 * ahead_1
-    del ahead_1, t20
-    t54 = in_reach * t51
-    del in_reach, t51
-    up = t53 + t54
-    t55 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
-    t56 = out_2 * t55
-    ctheta2A = _runtime.select(folded, 1.0, t56)
-    stheta2A = _runtime.select(folded, 0.0, up * t55)
+    t23 = _runtime.select(t20, t21 * (L2 * L_2W + a3 * a_3W), L1)
+    del t21
+    t24 = t19 * t23
+    del t19, t23
+    long_r = ahead * long_x + higher * t24
+    t25 = z - d1
+    t26 = ahead * t24 - higher * long_x
+    del long_x, t24
+    t27 = t26 * _runtime.sign(-(t25 * t26))
+    del t26
+    beyond_gap = t25 + t27
+    shorter = _runtime.select(t20, L1, fore)
+    del t20
+    short_h = np.maximum(-shorter, np.minimum(beyond_gap, shorter))
+    t28 = (beyond_gap - short_h) * (t25 - t27 - short_h)
+    del beyond_gap, t27
+    left_r = np.sqrt(np.maximum(0.0, long_r * long_r - t28))
+    del long_r, t28
+    short_r = np.sqrt((shorter - short_h) * (shorter + short_h))
+    del short_h, shorter
+    root_same = left_r + short_r
+    root_same_squared = root_same * root_same
+    del root_same
+    t29 = 1099511627776.0 * np.abs(t15 - root_same_squared)
+    root_apart = np.abs(left_r - short_r)
+    del left_r, short_r
+    root_apart_squared = root_apart * root_apart
+    del root_apart
+    t30 = 1099511627776.0 * np.abs(t15 - root_apart_squared)
+    t31 = L1 - fore
+    t32 = t31 * t31
+    t33 = t25 * t25
+    t34 = t16 * t16
+    wanted = np.maximum(np.maximum(0.0, t32 - t33), np.minimum(t15, t34 - t33))
+    t35 = 8796093022208.0 * np.abs(t15 - wanted) <= t17
+    t36 = _runtime.select(t30 <= t17, root_apart_squared, _runtime.select(t35, wanted, t15))
+    del root_apart_squared, t15, t30, t35, wanted
+    held = _runtime.select(t29 <= t17, root_same_squared, t36)
+    del root_same_squared, t17, t29, t36
+    t37 = np.sqrt(held)
+    del held
+    t38 = _runtime.select(tangent, np.arctan2(t37, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    del above, below
+    t39 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t38))
+    t40 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t41 = t40 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t40
+    t42 = t41 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t41
+    t43 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t44 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
+    del t2
+    t45 = t42 & (0.0 <= loff) & (0.0 <= lp) & t43 & (t44 <= _runtime.ROTATION)
+    del t42, t43, t44
+    invalid = np.logical_not(t45)
+    del t45
+    t46 = -(_runtime.FEASIBILITY * (t5 * 1.015625))
+    del t5
+    t47 = (-_runtime.FEASIBILITY <= c_phi) & (t46 <= t6)
+    del c_phi, t6
+    t48 = -(_runtime.FEASIBILITY * slack)
+    t49 = t47 & (t46 <= t7) & (t48 <= t14) & (t48 <= t13)
+    del t13, t14, t46, t47, t48, t7
+    t50 = 2.0 * fore
+    t51 = _runtime.FEASIBILITY * ((L1 * 2.0 + t50) * slack)
+    in_reach = _runtime.select(tangent, t37, root)
+    del root, t37, tangent
+    square = t33 + in_reach * in_reach
+    del t33
+    t52 = t34 - square
+    t53 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t54 = _runtime.FEASIBILITY * ((t53 + 2.0 * np.abs(t31)) * slack)
+    del t53
+    t55 = square - t32
+    del square, t32
+    t56 = t49 & (-t51 <= t52) & (-t54 <= t55)
+    del t49, t51, t54
+    t57 = d * 0.25 + np.abs(higher) * 0.25 + far_apart + np.abs(ahead) * 0.25
+    del far_apart
+    play = t57 + lengths * 0.00048828125
+    del lengths, t57
+    t58 = fore_size * play
+    t59 = _runtime.VANISHING * t16
+    folded = np.abs(t25) + np.abs(in_reach) <= t59
+    short = L1 * fore <= _runtime.VANISHING * t34
+    del t34
+    M = np.maximum(t55, 0.0)
     del t55
-    t57 = higher * stheta2A
-    p_1 = ahead * ctheta2A + t57
-    bare = fore <= t47
-    del t47
-    t58 = 1.0 / fore
-    s_lag = _runtime.select(bare, 0.0, L_2W * t58)
-    t59 = M - N
+    N = np.maximum(t52, 0.0)
+    del t52
+    t60 = 1.0 / (M + N)
+    ahead_1 = _runtime.select(short, t16, t31 + t50 * M * t60)
+    del t16, t31, t50
+    t61 = in_reach * ahead_1
+    t62 = 2.0 * np.sqrt(M * N)
+    s_bend_front_elbow_down = _runtime.select(short, 0.0, t60 * t62)
+    t63 = fore * s_bend_front_elbow_down
+    t64 = t25 * t63
+    out_2 = t61 - t64
+    t65 = t25 * ahead_1
+    del ahead_1, t25
+    t66 = in_reach * t63
+    del in_reach, t63
+    up = t65 + t66
+    t67 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
+    t68 = out_2 * t67
+    ctheta2A = _runtime.select(folded, 1.0, t68)
+    stheta2A = _runtime.select(folded, 0.0, up * t67)
+    del t67
+    t69 = higher * stheta2A
+    p_1 = ahead * ctheta2A + t69
+    bare = fore <= t59
+    del t59
+    t70 = 1.0 / fore
+    s_lag = _runtime.select(bare, 0.0, L_2W * t70)
+    t71 = M - N
     del M, N
-    c_bend = _runtime.select(short, 1.0, t48 * t59)
-    del t48
-    t60 = s_lag * c_bend
-    c_lag = _runtime.select(bare, 1.0, a_3W * t58)
-    del bare, t58
-    t61 = c_lag * s_bend_front_elbow_down
-    s_relative = t60 - t61
-    t62 = c_lag * c_bend
+    c_bend = _runtime.select(short, 1.0, t60 * t71)
+    del t60
+    t72 = s_lag * c_bend
+    c_lag = _runtime.select(bare, 1.0, a_3W * t70)
+    del bare, t70
+    t73 = c_lag * s_bend_front_elbow_down
+    s_relative = t72 - t73
+    t74 = c_lag * c_bend
     del c_bend
-    t63 = s_lag * s_bend_front_elbow_down
+    t75 = s_lag * s_bend_front_elbow_down
     del s_bend_front_elbow_down
-    c_relative = t62 + t63
+    c_relative = t74 + t75
     v_2 = L2 * s_relative + a3 * c_relative
-    t64 = ahead * stheta2A
+    t76 = ahead * stheta2A
     del stheta2A
-    t65 = t64 - higher * ctheta2A
+    t77 = t76 - higher * ctheta2A
     del ctheta2A
     v_1 = L2 * c_relative - a3 * s_relative
-    t66 = p_1 * v_2 + t65 * v_1
+    t78 = p_1 * v_2 + t77 * v_1
     whole_alpha = L1 * v_1
-    t67 = np.abs(whole_alpha)
-    t68 = np.abs(t66) - t67
-    t69 = np.maximum(t68 * 9.094947017729282e-13, -t68)
-    t70 = _runtime.VANISHING * t46
-    spent_alpha = t69 <= t70
-    del t69
-    t71 = v_2 * _runtime.sign(whole_alpha)
+    t79 = np.abs(whole_alpha)
+    t80 = np.abs(t78) - t79
+    t81 = np.maximum(t80 * 9.094947017729282e-13, -t80)
+    t82 = _runtime.VANISHING * t58
+    spent_alpha = t81 <= t82
+    del t81
+    t83 = v_2 * _runtime.sign(whole_alpha)
     del whole_alpha
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    t72 = t71 * drawn
-    t73 = _runtime.sign(-t66) * (p_1 * v_1 - v_2 * t65)
-    del t66
-    t74 = t72 - t73
-    del t73
-    t75 = np.abs(t74)
-    t76 = 1.0 / slack
-    t77 = 1.4142135623730951 * np.sqrt(slack)
-    del slack
-    t78 = 1.0 / L1
-    t79 = 1.0 - t78 * drawn
-    t80 = t77 * np.sqrt(fore + L1 * (t79 * t79)) / 2000000.0
-    del t79
-    t81 = np.abs(L_2W * c_relative - a_3W * s_relative)
-    del c_relative, s_relative
-    t82 = t76 * (t80 + t81)
-    del t80, t81
-    heavy_0_alpha = _runtime.select(spent_alpha, t82, 1.0)
-    gain_0_alpha = _runtime.select(spent_alpha, t75 / heavy_0_alpha, 0.0)
-    slope_aside_alpha = L1 * t71
-    del t71
-    t83 = np.abs(slope_aside_alpha)
-    t84 = t76 * (L1 + np.sqrt(L1) * t77 / 2000000.0)
-    heavy_1_alpha = _runtime.select(spent_alpha, t84, 1.0)
-    gain_1_alpha = _runtime.select(spent_alpha, t83 / heavy_1_alpha, 0.0)
-    t85 = _runtime.select(spent_alpha, gain_0_alpha + gain_1_alpha, 0.0)
-    t86 = -(_runtime.FEASIBILITY * (t46 + t85)) <= -t68
+    t84 = t83 * drawn
+    t85 = _runtime.sign(-t78) * (p_1 * v_1 - v_2 * t77)
+    del t78
+    t86 = t84 - t85
     del t85
-    t87 = L1 * play
-    t88 = gain_1_alpha * gain_1_alpha
-    del gain_1_alpha
-    t89 = play * play
-    t90 = np.sqrt(t44 * t44) * t89
-    del t44
-    t91 = t88 / (t88 + t90 + gain_0_alpha * gain_0_alpha)
-    del gain_0_alpha, t88
-    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t68 < 0.0, t91, 0.0), 0.0)
+    t87 = np.abs(t86)
+    t88 = 1.0 / slack
+    t89 = 1.4142135623730951 * np.sqrt(slack)
+    del slack
+    t90 = 1.0 / L1
+    t91 = 1.0 - t90 * drawn
+    t92 = t89 * np.sqrt(fore + L1 * (t91 * t91)) / 2000000.0
     del t91
-    t92 = _runtime.sign(slope_aside_alpha)
-    del slope_aside_alpha
-    t93 = t83 + t46 * heavy_1_alpha * 5.960464477539063e-08
-    del heavy_1_alpha
-    aside_alpha = _runtime.select(spent_alpha, t68 * share_alpha * t92 / t93, 0.0)
-    del t93
-    lack_alpha = t68 * (1.0 - share_alpha)
-    del share_alpha, t68
-    t94 = t75 + t46 * heavy_0_alpha * 5.960464477539063e-08
-    del t75
-    t95 = 1.0 / t94
-    del t94
-    t96 = heavy_0_alpha * lack_alpha * t95 <= 9.094947017729282e-13
-    del heavy_0_alpha
-    t97 = lack_alpha * t95
-    del lack_alpha, t95
-    t98 = _runtime.sign(-t74) * _runtime.select(t96 & (0.0 < t97), t97, 0.0)
-    del t74, t96, t97
-    turn_alpha = _runtime.select(spent_alpha, t98, 0.0)
-    del t98
-    t99 = aside_alpha + turn_alpha - t78 * (drawn * turn_alpha)
-    del aside_alpha
-    lean_alpha = _runtime.select(spent_alpha, t99, 0.0)
-    del t99
-    t100 = np.sqrt(1.0 + lean_alpha * lean_alpha)
-    t101 = 1.0 / t100
-    p_1_alpha = _runtime.select(spent_alpha, p_1 * t101 - t65 * lean_alpha * t101, p_1)
-    part_beta = L1 * p_1_alpha
-    t102 = t100 * np.sqrt(1.0 + turn_alpha * turn_alpha)
-    del t100
-    t103 = 1.0 / t102
-    del t102
-    t104 = t103 + t103 * (turn_alpha * lean_alpha)
-    t105 = lean_alpha * t103 - turn_alpha * t103
+    t93 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    del c_relative, s_relative
+    t94 = t88 * (t92 + t93)
+    del t92, t93
+    heavy_0_alpha = _runtime.select(spent_alpha, t94, 1.0)
+    gain_0_alpha = _runtime.select(spent_alpha, t87 / heavy_0_alpha, 0.0)
+    slope_aside_alpha = L1 * t83
+    del t83
+    t95 = np.abs(slope_aside_alpha)
+    t96 = t88 * (L1 + np.sqrt(L1) * t89 / 2000000.0)
+    heavy_1_alpha = _runtime.select(spent_alpha, t96, 1.0)
+    gain_1_alpha = _runtime.select(spent_alpha, t95 / heavy_1_alpha, 0.0)
+    t97 = _runtime.select(spent_alpha, gain_0_alpha + gain_1_alpha, 0.0)
+    t98 = -(_runtime.FEASIBILITY * (t58 + t97)) <= -t80
+    del t97
+    t99 = L1 * play
+    t100 = gain_1_alpha * gain_1_alpha
+    del gain_1_alpha
+    t101 = play * play
+    t102 = fore_size * fore_size * t101
+    del fore_size
+    t103 = t100 / (t100 + t102 + gain_0_alpha * gain_0_alpha)
+    del gain_0_alpha, t100
+    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t80 < 0.0, t103, 0.0), 0.0)
     del t103
-    v_1_alpha = _runtime.select(spent_alpha, v_1 * t104 + v_2 * t105, v_1)
-    whole_beta = L1 * v_1_alpha
-    t106 = np.abs(part_beta) - np.abs(whole_beta)
-    t107 = np.maximum(t106 * 9.094947017729282e-13, -t106)
-    t108 = _runtime.VANISHING * t87
-    spent_beta = t107 <= t108
-    del t107
-    v_2_alpha = _runtime.select(spent_alpha, v_2 * t104 - v_1 * t105, v_2)
-    del t104, t105
-    t109 = v_2_alpha * _runtime.sign(whole_beta)
-    del whole_beta
-    t110 = _runtime.select(spent_alpha, t101 * (p_1 * lean_alpha) + t65 * t101, t65)
-    del p_1, spent_alpha, t101, t65
-    t111 = t110 * _runtime.sign(part_beta)
-    del part_beta
-    t112 = L1 - drawn
-    t113 = drawn * t109 - t111 * t112
-    t114 = np.abs(t113)
-    heavy_0_beta = _runtime.select(spent_beta, t82, 1.0)
-    gain_0_beta = _runtime.select(spent_beta, t114 / heavy_0_beta, 0.0)
-    slope_aside_beta = L1 * (t109 + t111)
-    del t109, t111
-    t115 = np.abs(slope_aside_beta)
-    heavy_1_beta = _runtime.select(spent_beta, t84, 1.0)
-    gain_1_beta = _runtime.select(spent_beta, t115 / heavy_1_beta, 0.0)
-    t116 = _runtime.select(spent_beta, gain_0_beta + gain_1_beta, 0.0)
-    t117 = -(_runtime.FEASIBILITY * (t87 + t116)) <= -t106
-    del t116
-    t118 = -(_runtime.FEASIBILITY * play)
-    t119 = gain_1_beta * gain_1_beta
-    del gain_1_beta
-    t120 = L1 * L1 * t89
-    del t89
-    t121 = t119 / (t119 + t120 + gain_0_beta * gain_0_beta)
-    del gain_0_beta, t119
-    share_beta = _runtime.select(spent_beta, _runtime.select(-t106 < 0.0, t121, 0.0), 0.0)
-    del t121
-    lack_beta = t106 * (1.0 - share_beta)
-    t122 = t114 + t87 * heavy_0_beta * 5.960464477539063e-08
+    t104 = _runtime.sign(slope_aside_alpha)
+    del slope_aside_alpha
+    t105 = t95 + t58 * heavy_1_alpha * 5.960464477539063e-08
+    del heavy_1_alpha
+    aside_alpha = _runtime.select(spent_alpha, t80 * share_alpha * t104 / t105, 0.0)
+    del t105
+    lack_alpha = t80 * (1.0 - share_alpha)
+    del share_alpha, t80
+    t106 = t87 + t58 * heavy_0_alpha * 5.960464477539063e-08
+    del t87
+    t107 = 1.0 / t106
+    del t106
+    t108 = heavy_0_alpha * lack_alpha * t107 <= 9.094947017729282e-13
+    del heavy_0_alpha
+    t109 = lack_alpha * t107
+    del lack_alpha, t107
+    t110 = _runtime.select(t108 & (0.0 < t109), t109, 0.0)
+    del t108, t109
+    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(-t86) * t110, 0.0)
+    del t110, t86
+    t111 = aside_alpha + turn_alpha - t90 * (drawn * turn_alpha)
+    del aside_alpha
+    lean_alpha = _runtime.select(spent_alpha, t111, 0.0)
+    del t111
+    t112 = np.sqrt(1.0 + lean_alpha * lean_alpha)
+    t113 = 1.0 / t112
+    p_1_alpha = _runtime.select(spent_alpha, p_1 * t113 - t77 * lean_alpha * t113, p_1)
+    part_beta = L1 * p_1_alpha
+    t114 = t112 * np.sqrt(1.0 + turn_alpha * turn_alpha)
+    del t112
+    t115 = 1.0 / t114
     del t114
-    t123 = 1.0 / t122
-    del t122
-    t124 = heavy_0_beta * lack_beta * t123 <= 9.094947017729282e-13
+    t116 = t115 + t115 * (turn_alpha * lean_alpha)
+    t117 = lean_alpha * t115 - turn_alpha * t115
+    del t115
+    v_1_alpha = _runtime.select(spent_alpha, v_1 * t116 + v_2 * t117, v_1)
+    whole_beta = L1 * v_1_alpha
+    t118 = np.abs(part_beta) - np.abs(whole_beta)
+    t119 = np.maximum(t118 * 9.094947017729282e-13, -t118)
+    t120 = _runtime.VANISHING * t99
+    spent_beta = t119 <= t120
+    del t119
+    v_2_alpha = _runtime.select(spent_alpha, v_2 * t116 - v_1 * t117, v_2)
+    del t116, t117
+    t121 = v_2_alpha * _runtime.sign(whole_beta)
+    del whole_beta
+    t122 = _runtime.select(spent_alpha, t113 * (p_1 * lean_alpha) + t77 * t113, t77)
+    del p_1, t113, t77
+    t123 = t122 * _runtime.sign(part_beta)
+    del part_beta
+    t124 = L1 - drawn
+    t125 = drawn * t121 - t123 * t124
+    t126 = np.abs(t125)
+    heavy_0_beta = _runtime.select(spent_beta, t94, 1.0)
+    gain_0_beta = _runtime.select(spent_beta, t126 / heavy_0_beta, 0.0)
+    slope_aside_beta = L1 * (t121 + t123)
+    del t121, t123
+    t127 = np.abs(slope_aside_beta)
+    heavy_1_beta = _runtime.select(spent_beta, t96, 1.0)
+    gain_1_beta = _runtime.select(spent_beta, t127 / heavy_1_beta, 0.0)
+    t128 = _runtime.select(spent_beta, gain_0_beta + gain_1_beta, 0.0)
+    t129 = -(_runtime.FEASIBILITY * (t99 + t128)) <= -t118
+    del t128
+    t130 = -(_runtime.FEASIBILITY * play)
+    t131 = gain_1_beta * gain_1_beta
+    del gain_1_beta
+    t132 = L1 * L1 * t101
+    del t101
+    t133 = t131 / (t131 + t132 + gain_0_beta * gain_0_beta)
+    del gain_0_beta, t131
+    share_beta = _runtime.select(spent_beta, _runtime.select(-t118 < 0.0, t133, 0.0), 0.0)
+    del t133
+    lack_beta = t118 * (1.0 - share_beta)
+    t134 = t126 + t99 * heavy_0_beta * 5.960464477539063e-08
+    del t126
+    t135 = 1.0 / t134
+    del t134
+    t136 = heavy_0_beta * lack_beta * t135 <= 9.094947017729282e-13
     del heavy_0_beta
-    t125 = lack_beta * t123
-    del lack_beta, t123
-    t126 = _runtime.select(t124 & (0.0 < t125), t125, 0.0)
-    del t124, t125
-    turn_beta = _runtime.select(spent_beta, _runtime.sign(-t113) * t126, 0.0)
-    del t113, t126
-    t127 = t106 * share_beta * _runtime.sign(slope_aside_beta)
-    del share_beta, slope_aside_beta, t106
-    t128 = t115 + t87 * heavy_1_beta * 5.960464477539063e-08
-    del heavy_1_beta, t115
-    aside_beta = _runtime.select(spent_beta, t127 / t128, 0.0)
-    del t127, t128
-    t129 = turn_beta + aside_beta - t78 * (drawn * turn_beta)
+    t137 = lack_beta * t135
+    del lack_beta, t135
+    t138 = _runtime.select(t136 & (0.0 < t137), t137, 0.0)
+    del t136, t137
+    turn_beta = _runtime.select(spent_beta, _runtime.sign(-t125) * t138, 0.0)
+    del t125, t138
+    t139 = t118 * share_beta * _runtime.sign(slope_aside_beta)
+    del share_beta, slope_aside_beta, t118
+    t140 = t127 + t99 * heavy_1_beta * 5.960464477539063e-08
+    del heavy_1_beta, t127
+    aside_beta = _runtime.select(spent_beta, t139 / t140, 0.0)
+    del t139, t140
+    t141 = turn_beta + aside_beta - t90 * (drawn * turn_beta)
     del aside_beta
-    lean_beta = _runtime.select(spent_beta, t129, 0.0)
-    del t129
-    t130 = np.sqrt(1.0 + lean_beta * lean_beta)
-    t131 = 1.0 / (t130 * np.sqrt(1.0 + turn_beta * turn_beta))
-    t132 = t131 + t131 * (turn_beta * lean_beta)
-    t133 = lean_beta * t131 - turn_beta * t131
-    del t131
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t132 + v_2_alpha * t133, v_1_alpha)
+    lean_beta = _runtime.select(spent_beta, t141, 0.0)
+    del t141
+    t142 = np.sqrt(1.0 + lean_beta * lean_beta)
+    t143 = 1.0 / (t142 * np.sqrt(1.0 + turn_beta * turn_beta))
+    t144 = t143 + t143 * (turn_beta * lean_beta)
+    t145 = lean_beta * t143 - turn_beta * t143
+    del t143
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t144 + v_2_alpha * t145, v_1_alpha)
     sigma_uv = _runtime.sign(-(L1 * v_1_beta))
-    t134 = 1.0 / t130
-    del t130
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t134 - t110 * lean_beta * t134, p_1_alpha)
-    t135 = sigma_uv * p_1_beta
-    del p_1_beta
-    t136 = v_1_beta * sigma_uv
-    del sigma_uv, v_1_beta
-    t137 = t43 & t86 & t117 & (t118 <= t135 - t136) & (t118 <= -(t136 + t135))
-    del t117, t86
-    v_2_beta = _runtime.select(spent_beta, v_2_alpha * t132 - v_1_alpha * t133, v_2_alpha)
-    del t132, t133, v_1_alpha, v_2_alpha
-    t138 = np.abs(v_2_beta)
-    parallel = -t136 <= _runtime.VANISHING * (64.0 * t138)
-    whole_y = _runtime.select(parallel, L1 + t138, -t136)
-    t139 = _runtime.select(spent_beta, t134 * (p_1_alpha * lean_beta) + t110 * t134, t110)
-    del p_1_alpha, spent_beta, t110, t134
-    t140 = _runtime.select(parallel, t139 * _runtime.sign(v_2_beta), t135)
-    del t135
-    t141 = whole_y + t140
-    t142 = whole_y - t140
-    t143 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t141, t143)
-    above_beta_0 = np.maximum(t142, t143)
-    t144 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
+    t146 = 1.0 / t142
+    del t142
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t146 - t122 * lean_beta * t146, p_1_alpha)
+    t147 = sigma_uv * p_1_beta
+    t148 = v_1_beta * sigma_uv
+    del sigma_uv
+    t149 = t56 & t98 & t129 & (t130 <= t147 - t148) & (t130 <= -(t148 + t147))
+    del t129, t98
+    v_2_beta = _runtime.select(spent_beta, v_2_alpha * t144 - v_1_alpha * t145, v_2_alpha)
+    del t144, t145, v_1_alpha, v_2_alpha
+    t150 = np.abs(v_2_beta)
+    parallel = -t148 <= _runtime.VANISHING * (64.0 * t150)
+    whole_y = _runtime.select(parallel, L1 + t150, -t148)
+    t151 = _runtime.select(spent_beta, t146 * (p_1_alpha * lean_beta) + t122 * t146, t122)
+    del p_1_alpha, t122, t146
+    t152 = _runtime.select(parallel, t151 * _runtime.sign(v_2_beta), t147)
+    del t147
+    t153 = whole_y + t152
+    t154 = whole_y - t152
+    t155 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t153, t155)
+    above_beta_0 = np.maximum(t154, t155)
+    t156 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
     del above_beta_0, below_beta_0
-    t145 = t139 - v_2_beta * t144
-    del t144
-    left_along = L1 - np.abs(t145)
-    t146 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
-    t147 = _runtime.VANISHING * play
-    spent_along = t146 <= t147
-    del t146
-    t148 = L1 / 1000000000.0
-    t149 = _runtime.select(spent_along, t138 / (t148 - t136), 0.0)
-    del t138
-    t150 = -(_runtime.FEASIBILITY * (play * (1.0 + t149)))
-    del t149
-    t151 = t137 & (t118 <= t141) & (t118 <= t142) & (t150 <= left_along)
-    del t137, t141, t142, t150
-    t152 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
-    del left_along
-    t153 = t152 / (t136 * t136 + v_2_beta * v_2_beta) * _runtime.sign(-t145)
-    del t136, t145, t152
-    t154 = _runtime.select(spent_along, t140 + whole_y * t153, t140)
-    del spent_along, t140, t153
-    t155 = whole_y + t154
-    t156 = whole_y - t154
-    del t154, whole_y
-    below_beta = np.maximum(t155, t143)
-    above_beta = np.maximum(t156, t143)
-    t157 = below_beta - above_beta
-    t158 = v_2_beta * (t157 / (below_beta + above_beta))
-    del v_2_beta
-    t159 = t139 - t158
-    del t139, t158
-    t160 = L1 + t159
-    t161 = t151 & (t118 <= t155) & (t118 <= t156) & (t118 <= t160)
-    del t151, t155, t156
-    t162 = L1 - t159
-    del t159
-    unreachable = np.logical_not(t161 & (t118 <= t162))
+    t157 = t151 - v_2_beta * t156
+    del t156
+    left_along = L1 - np.abs(t157)
+    t158 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t159 = _runtime.VANISHING * play
+    spent_along = t158 <= t159
+    del t158
+    t160 = L1 / 1000000000.0
+    t161 = _runtime.select(spent_along, t150 / (t160 - t148), 0.0)
+    del t150
+    t162 = -(_runtime.FEASIBILITY * (play * (1.0 + t161)))
     del t161
-    t163 = _runtime.poison(invalid | unreachable)
-    t164 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
-    t165 = np.arctan2(lean_alpha, 1.0) + np.arctan2(lean_beta, 1.0)
-    del lean_alpha, lean_beta
-    t166 = t164 + t165
-    del t164
-    below_alpha = np.maximum(t160, t143)
-    del t160
-    above_alpha = np.maximum(t162, t143)
-    del t162
-    t167 = np.arctan2(below_alpha - above_alpha, 2.0 * np.sqrt(below_alpha * above_alpha))
-    del above_alpha, below_alpha
-    t168 = np.arctan2(turn_alpha, 1.0) + np.arctan2(turn_beta, 1.0)
-    del turn_alpha, turn_beta
-    t169 = np.arctan2(s_lag, c_lag)
-    del c_lag, s_lag
-    t170 = _runtime.select(short, 0.0, np.arctan2(t50, t59))
-    del t50, t59
-    t171 = t169 - t170
-    t172 = t168 - (t165 - t171)
-    del t165, t168
-    t173 = np.arctan2(t157, 2.0 * np.sqrt(below_beta * above_beta))
-    del above_beta, below_beta, t157
-    t174 = t167 - t173
+    t163 = t149 & (t130 <= t153) & (t130 <= t154) & (t162 <= left_along)
+    del t149, t153, t154, t162
+    t164 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
+    del left_along
+    t165 = t164 / (t148 * t148 + v_2_beta * v_2_beta) * _runtime.sign(-t157)
+    del t148, t157, t164
+    t166 = _runtime.select(spent_along, t152 + whole_y * t165, t152)
+    del t152, t165
+    t167 = whole_y + t166
+    t168 = whole_y - t166
+    del t166, whole_y
+    below_beta = np.maximum(t167, t155)
+    above_beta = np.maximum(t168, t155)
+    t169 = below_beta - above_beta
+    t170 = t169 / (below_beta + above_beta)
+    t171 = t151 - v_2_beta * t170
+    del t151, v_2_beta
+    t172 = L1 + t171
+    t173 = t163 & (t130 <= t167) & (t130 <= t168) & (t130 <= t172)
+    del t163, t167, t168
+    t174 = L1 - t171
+    unreachable = np.logical_not(t173 & (t130 <= t174))
     del t173
-    t175 = _runtime.wrap(principal_pitch)
-    del principal_pitch
-    out_front_elbow_down = t49 + t52
-    del t49, t52
-    up_front_elbow_down = t53 - t54
-    del t53, t54
-    t176 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
-    t177 = 1.0 / np.sqrt(t176)
+    t175 = _runtime.poison(invalid | unreachable)
+    t176 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
+    t177 = np.arctan2(lean_alpha, 1.0) + np.arctan2(lean_beta, 1.0)
+    del lean_alpha, lean_beta
+    t178 = t176 + t177
     del t176
-    t178 = out_front_elbow_down * t177
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t178)
-    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t177)
-    del t177
-    t179 = higher * stheta2A_front_elbow_down
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t179
-    s_relative_front_elbow_down = t60 + t61
-    del t60, t61
-    c_relative_front_elbow_down = t62 - t63
-    del t62, t63
+    below_alpha = np.maximum(t172, t155)
+    del t172
+    above_alpha = np.maximum(t174, t155)
+    del t174
+    t179 = below_alpha - above_alpha
+    t180 = np.arctan2(t179, 2.0 * np.sqrt(below_alpha * above_alpha))
+    t181 = np.arctan2(turn_alpha, 1.0) + np.arctan2(turn_beta, 1.0)
+    del turn_alpha, turn_beta
+    t182 = np.arctan2(s_lag, c_lag)
+    del c_lag, s_lag
+    t183 = _runtime.select(short, 0.0, np.arctan2(t62, t71))
+    del t62, t71
+    t184 = t182 - t183
+    t185 = t181 - (t177 - t184)
+    del t177, t181
+    t186 = np.arctan2(t169, 2.0 * np.sqrt(below_beta * above_beta))
+    del above_beta, below_beta, t169
+    t187 = t180 - t186
+    del t186
+    t188 = _runtime.wrap(principal_pitch)
+    del principal_pitch
+    out_front_elbow_down = t61 + t64
+    del t61, t64
+    up_front_elbow_down = t65 - t66
+    del t65, t66
+    t189 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t190 = 1.0 / np.sqrt(t189)
+    del t189
+    t191 = out_front_elbow_down * t190
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t191)
+    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t190)
+    del t190
+    t192 = higher * stheta2A_front_elbow_down
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t192
+    s_relative_front_elbow_down = t72 + t73
+    del t72, t73
+    c_relative_front_elbow_down = t74 - t75
+    del t74, t75
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    t180 = ahead * stheta2A_front_elbow_down
+    t193 = ahead * stheta2A_front_elbow_down
     del stheta2A_front_elbow_down
-    t181 = t180 - higher * ctheta2A_front_elbow_down
+    t194 = t193 - higher * ctheta2A_front_elbow_down
     del ctheta2A_front_elbow_down
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    t182 = p_1_front_elbow_down * v_2_front_elbow_down + t181 * v_1_front_elbow_down
+    t195 = p_1_front_elbow_down * v_2_front_elbow_down + t194 * v_1_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t183 = np.abs(whole_alpha_front_elbow_down)
-    t184 = np.abs(t182) - t183
-    t185 = np.maximum(t184 * 9.094947017729282e-13, -t184)
-    spent_alpha_front_elbow_down = t185 <= t70
-    del t185
-    t186 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
+    t196 = np.abs(whole_alpha_front_elbow_down)
+    t197 = np.abs(t195) - t196
+    t198 = np.maximum(t197 * 9.094947017729282e-13, -t197)
+    spent_alpha_front_elbow_down = t198 <= t82
+    del t198
+    t199 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
-    t187 = t186 * drawn_front_elbow_down
-    t188 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t181
-    t189 = t187 - _runtime.sign(-t182) * t188
-    del t182, t188
-    t190 = np.abs(t189)
-    t191 = 1.0 - t78 * drawn_front_elbow_down
-    t192 = t77 * np.sqrt(fore + L1 * (t191 * t191)) / 2000000.0
-    del fore, t191, t77
+    t200 = t199 * drawn_front_elbow_down
+    t201 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t194
+    t202 = t200 - _runtime.sign(-t195) * t201
+    del t195, t201
+    t203 = np.abs(t202)
+    t204 = 1.0 - t90 * drawn_front_elbow_down
+    t205 = t89 * np.sqrt(fore + L1 * (t204 * t204)) / 2000000.0
+    del fore, t204, t89
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
     del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
-    t193 = t76 * (t192 + np.abs(tilt_front_elbow_down))
-    del t192, t76, tilt_front_elbow_down
-    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t193, 1.0)
-    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t190 / heavy_0_alpha_front_elbow_down, 0.0)
-    slope_aside_alpha_front_elbow_down = L1 * t186
-    del t186
-    t194 = np.abs(slope_aside_alpha_front_elbow_down)
-    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t84, 1.0)
-    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t194 / heavy_1_alpha_front_elbow_down, 0.0)
-    t195 = gain_0_alpha_front_elbow_down + gain_1_alpha_front_elbow_down
-    t196 = _runtime.select(spent_alpha_front_elbow_down, t195, 0.0)
-    del t195
-    t197 = -(_runtime.FEASIBILITY * (t46 + t196)) <= -t184
-    del t196
-    t198 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
-    del gain_1_alpha_front_elbow_down
-    t199 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
-    del gain_0_alpha_front_elbow_down
-    t200 = _runtime.select(-t184 < 0.0, t198 / (t90 + t198 + t199), 0.0)
-    del t198, t199
-    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t200, 0.0)
-    del t200
-    t201 = _runtime.sign(slope_aside_alpha_front_elbow_down)
-    del slope_aside_alpha_front_elbow_down
-    t202 = t46 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_front_elbow_down
-    t203 = t184 * share_alpha_front_elbow_down * t201 / (t194 + t202)
-    del t202
-    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t203, 0.0)
-    del t203
-    lack_alpha_front_elbow_down = t184 * (1.0 - share_alpha_front_elbow_down)
-    del share_alpha_front_elbow_down, t184
-    t204 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
-    t205 = t46 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
-    del heavy_0_alpha_front_elbow_down
-    t206 = 1.0 / (t190 + t205)
-    del t190, t205
-    t207 = lack_alpha_front_elbow_down * t206
-    del lack_alpha_front_elbow_down
-    t208 = (t204 * t206 <= 9.094947017729282e-13) & (0.0 < t207)
-    del t204, t206
-    t209 = _runtime.sign(-t189) * _runtime.select(t208, t207, 0.0)
-    del t189, t207, t208
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t209, 0.0)
+    t206 = t88 * (t205 + np.abs(tilt_front_elbow_down))
+    del t205, t88, tilt_front_elbow_down
+    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t206, 1.0)
+    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t203 / heavy_0_alpha_front_elbow_down, 0.0)
+    slope_aside_alpha_front_elbow_down = L1 * t199
+    del t199
+    t207 = np.abs(slope_aside_alpha_front_elbow_down)
+    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t96, 1.0)
+    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t207 / heavy_1_alpha_front_elbow_down, 0.0)
+    t208 = gain_0_alpha_front_elbow_down + gain_1_alpha_front_elbow_down
+    t209 = _runtime.select(spent_alpha_front_elbow_down, t208, 0.0)
+    del t208
+    t210 = -(_runtime.FEASIBILITY * (t58 + t209)) <= -t197
     del t209
-    t210 = aside_alpha_front_elbow_down + turn_alpha_front_elbow_down
-    del aside_alpha_front_elbow_down
-    t211 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t210 - t78 * t211, 0.0)
-    del t210, t211
-    t212 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t213 = np.sqrt(1.0 + t212)
-    del t212
-    t214 = 1.0 / t213
-    t215 = p_1_front_elbow_down * t214 - t181 * lean_alpha_front_elbow_down * t214
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t215, p_1_front_elbow_down)
+    t211 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
+    del gain_1_alpha_front_elbow_down
+    t212 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
+    del gain_0_alpha_front_elbow_down
+    t213 = _runtime.select(-t197 < 0.0, t211 / (t102 + t211 + t212), 0.0)
+    del t211, t212
+    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t213, 0.0)
+    del t213
+    t214 = _runtime.sign(slope_aside_alpha_front_elbow_down)
+    del slope_aside_alpha_front_elbow_down
+    t215 = t58 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_front_elbow_down
+    t216 = t197 * share_alpha_front_elbow_down * t214 / (t207 + t215)
     del t215
+    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t216, 0.0)
+    del t216
+    lack_alpha_front_elbow_down = t197 * (1.0 - share_alpha_front_elbow_down)
+    del share_alpha_front_elbow_down, t197
+    t217 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
+    t218 = t58 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_0_alpha_front_elbow_down
+    t219 = 1.0 / (t203 + t218)
+    del t203, t218
+    t220 = lack_alpha_front_elbow_down * t219
+    del lack_alpha_front_elbow_down
+    t221 = (t217 * t219 <= 9.094947017729282e-13) & (0.0 < t220)
+    del t217, t219
+    t222 = _runtime.sign(-t202) * _runtime.select(t221, t220, 0.0)
+    del t202, t220, t221
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t222, 0.0)
+    del t222
+    t223 = aside_alpha_front_elbow_down + turn_alpha_front_elbow_down
+    del aside_alpha_front_elbow_down
+    t224 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t223 - t90 * t224, 0.0)
+    del t223, t224
+    t225 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t226 = np.sqrt(1.0 + t225)
+    del t225
+    t227 = 1.0 / t226
+    t228 = p_1_front_elbow_down * t227 - t194 * lean_alpha_front_elbow_down * t227
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t228, p_1_front_elbow_down)
+    del t228
     part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t216 = turn_alpha_front_elbow_down * turn_alpha_front_elbow_down
-    t217 = 1.0 / (t213 * np.sqrt(1.0 + t216))
-    del t213, t216
-    t218 = turn_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t219 = t217 + t217 * t218
-    del t218
-    t220 = lean_alpha_front_elbow_down * t217 - turn_alpha_front_elbow_down * t217
-    del t217
-    t221 = v_1_front_elbow_down * t219 + v_2_front_elbow_down * t220
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t221, v_1_front_elbow_down)
-    del t221
-    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t222 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    t223 = np.maximum(t222 * 9.094947017729282e-13, -t222)
-    spent_beta_front_elbow_down = t223 <= t108
-    del t223
-    t224 = v_2_front_elbow_down * t219 - v_1_front_elbow_down * t220
-    del t219, t220
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t224, v_2_front_elbow_down)
-    del t224
-    t225 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
-    del whole_beta_front_elbow_down
-    t226 = p_1_front_elbow_down * lean_alpha_front_elbow_down
-    del p_1_front_elbow_down
-    t227 = _runtime.select(spent_alpha_front_elbow_down, t214 * t226 + t181 * t214, t181)
-    del spent_alpha_front_elbow_down, t181, t214, t226
-    t228 = t227 * _runtime.sign(part_beta_front_elbow_down)
-    del part_beta_front_elbow_down
-    t229 = L1 - drawn_front_elbow_down
-    t230 = drawn_front_elbow_down * t225 - t228 * t229
-    t231 = np.abs(t230)
-    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t193, 1.0)
-    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t231 / heavy_0_beta_front_elbow_down, 0.0)
-    slope_aside_beta_front_elbow_down = L1 * (t225 + t228)
-    del t225, t228
-    t232 = np.abs(slope_aside_beta_front_elbow_down)
-    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t84, 1.0)
-    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t232 / heavy_1_beta_front_elbow_down, 0.0)
-    t233 = gain_0_beta_front_elbow_down + gain_1_beta_front_elbow_down
-    t234 = _runtime.select(spent_beta_front_elbow_down, t233, 0.0)
-    del t233
-    t235 = -(_runtime.FEASIBILITY * (t87 + t234)) <= -t222
+    t229 = turn_alpha_front_elbow_down * turn_alpha_front_elbow_down
+    t230 = 1.0 / (t226 * np.sqrt(1.0 + t229))
+    del t226, t229
+    t231 = turn_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t232 = t230 + t230 * t231
+    del t231
+    t233 = lean_alpha_front_elbow_down * t230 - turn_alpha_front_elbow_down * t230
+    del t230
+    t234 = v_1_front_elbow_down * t232 + v_2_front_elbow_down * t233
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t234, v_1_front_elbow_down)
     del t234
-    t236 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
-    del gain_1_beta_front_elbow_down
-    t237 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
-    del gain_0_beta_front_elbow_down
-    t238 = _runtime.select(-t222 < 0.0, t236 / (t120 + t236 + t237), 0.0)
-    del t236, t237
-    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t238, 0.0)
-    del t238
-    lack_beta_front_elbow_down = t222 * (1.0 - share_beta_front_elbow_down)
-    t239 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
-    t240 = t87 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
-    del heavy_0_beta_front_elbow_down
-    t241 = 1.0 / (t231 + t240)
-    del t231, t240
-    t242 = lack_beta_front_elbow_down * t241
-    del lack_beta_front_elbow_down
-    t243 = (t239 * t241 <= 9.094947017729282e-13) & (0.0 < t242)
-    del t239, t241
-    t244 = _runtime.sign(-t230) * _runtime.select(t243, t242, 0.0)
-    del t230, t242, t243
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t244, 0.0)
-    del t244
-    t245 = _runtime.sign(slope_aside_beta_front_elbow_down)
-    del slope_aside_beta_front_elbow_down
-    t246 = t87 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
-    del heavy_1_beta_front_elbow_down
-    t247 = t222 * share_beta_front_elbow_down * t245 / (t232 + t246)
-    del share_beta_front_elbow_down, t222, t232, t245, t246
-    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t247, 0.0)
+    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
+    t235 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    t236 = np.maximum(t235 * 9.094947017729282e-13, -t235)
+    spent_beta_front_elbow_down = t236 <= t120
+    del t236
+    t237 = v_2_front_elbow_down * t232 - v_1_front_elbow_down * t233
+    del t232, t233
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t237, v_2_front_elbow_down)
+    del t237
+    t238 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
+    del whole_beta_front_elbow_down
+    t239 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    del p_1_front_elbow_down
+    t240 = _runtime.select(spent_alpha_front_elbow_down, t227 * t239 + t194 * t227, t194)
+    del t194, t227, t239
+    t241 = t240 * _runtime.sign(part_beta_front_elbow_down)
+    del part_beta_front_elbow_down
+    t242 = L1 - drawn_front_elbow_down
+    t243 = drawn_front_elbow_down * t238 - t241 * t242
+    t244 = np.abs(t243)
+    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t206, 1.0)
+    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t244 / heavy_0_beta_front_elbow_down, 0.0)
+    slope_aside_beta_front_elbow_down = L1 * (t238 + t241)
+    del t238, t241
+    t245 = np.abs(slope_aside_beta_front_elbow_down)
+    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t96, 1.0)
+    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t245 / heavy_1_beta_front_elbow_down, 0.0)
+    t246 = gain_0_beta_front_elbow_down + gain_1_beta_front_elbow_down
+    t247 = _runtime.select(spent_beta_front_elbow_down, t246, 0.0)
+    del t246
+    t248 = -(_runtime.FEASIBILITY * (t99 + t247)) <= -t235
     del t247
-    t248 = turn_beta_front_elbow_down + aside_beta_front_elbow_down
-    del aside_beta_front_elbow_down
-    t249 = drawn_front_elbow_down * turn_beta_front_elbow_down
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t248 - t78 * t249, 0.0)
-    del t248, t249
-    t250 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
-    t251 = np.sqrt(1.0 + t250)
-    del t250
-    t252 = turn_beta_front_elbow_down * turn_beta_front_elbow_down
-    t253 = 1.0 / (t251 * np.sqrt(1.0 + t252))
-    del t252
-    t254 = turn_beta_front_elbow_down * lean_beta_front_elbow_down
-    t255 = t253 + t253 * t254
-    del t254
-    t256 = lean_beta_front_elbow_down * t253 - turn_beta_front_elbow_down * t253
-    del t253
-    t257 = v_1_alpha_front_elbow_down * t255 + v_2_alpha_front_elbow_down * t256
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t257, v_1_alpha_front_elbow_down)
-    del t257
-    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t258 = 1.0 / t251
+    t249 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
+    del gain_1_beta_front_elbow_down
+    t250 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
+    del gain_0_beta_front_elbow_down
+    t251 = _runtime.select(-t235 < 0.0, t249 / (t132 + t249 + t250), 0.0)
+    del t249, t250
+    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t251, 0.0)
     del t251
-    t259 = p_1_alpha_front_elbow_down * t258 - t227 * lean_beta_front_elbow_down * t258
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t259, p_1_alpha_front_elbow_down)
-    del t259
-    t260 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
-    del p_1_beta_front_elbow_down
-    t261 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
-    del sigma_uv_front_elbow_down, v_1_beta_front_elbow_down
-    t262 = t43 & t197 & t235 & (t118 <= t260 - t261) & (t118 <= -(t261 + t260))
-    del t197, t235
-    t263 = v_2_alpha_front_elbow_down * t255 - v_1_alpha_front_elbow_down * t256
-    del t255, t256, v_1_alpha_front_elbow_down
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t263, v_2_alpha_front_elbow_down)
-    del t263, v_2_alpha_front_elbow_down
-    t264 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t261 <= _runtime.VANISHING * (64.0 * t264)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t264, -t261)
-    t265 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    lack_beta_front_elbow_down = t235 * (1.0 - share_beta_front_elbow_down)
+    t252 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
+    t253 = t99 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
+    del heavy_0_beta_front_elbow_down
+    t254 = 1.0 / (t244 + t253)
+    del t244, t253
+    t255 = lack_beta_front_elbow_down * t254
+    del lack_beta_front_elbow_down
+    t256 = (t252 * t254 <= 9.094947017729282e-13) & (0.0 < t255)
+    del t252, t254
+    t257 = _runtime.sign(-t243) * _runtime.select(t256, t255, 0.0)
+    del t243, t255, t256
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t257, 0.0)
+    del t257
+    t258 = _runtime.sign(slope_aside_beta_front_elbow_down)
+    del slope_aside_beta_front_elbow_down
+    t259 = t99 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_front_elbow_down
+    t260 = t235 * share_beta_front_elbow_down * t258 / (t245 + t259)
+    del share_beta_front_elbow_down, t235, t245, t258, t259
+    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t260, 0.0)
+    del t260
+    t261 = turn_beta_front_elbow_down + aside_beta_front_elbow_down
+    del aside_beta_front_elbow_down
+    t262 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t261 - t90 * t262, 0.0)
+    del t261, t262
+    t263 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
+    t264 = np.sqrt(1.0 + t263)
+    del t263
+    t265 = turn_beta_front_elbow_down * turn_beta_front_elbow_down
+    t266 = 1.0 / (t264 * np.sqrt(1.0 + t265))
+    del t265
+    t267 = turn_beta_front_elbow_down * lean_beta_front_elbow_down
+    t268 = t266 + t266 * t267
+    del t267
+    t269 = lean_beta_front_elbow_down * t266 - turn_beta_front_elbow_down * t266
+    del t266
+    t270 = v_1_alpha_front_elbow_down * t268 + v_2_alpha_front_elbow_down * t269
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t270, v_1_alpha_front_elbow_down)
+    del t270
+    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
+    t271 = 1.0 / t264
+    del t264
+    t272 = p_1_alpha_front_elbow_down * t271 - t240 * lean_beta_front_elbow_down * t271
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t272, p_1_alpha_front_elbow_down)
+    del t272
+    t273 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t274 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    del sigma_uv_front_elbow_down
+    t275 = t56 & t210 & t248 & (t130 <= t273 - t274) & (t130 <= -(t274 + t273))
+    del t210, t248
+    t276 = v_2_alpha_front_elbow_down * t268 - v_1_alpha_front_elbow_down * t269
+    del t268, t269, v_1_alpha_front_elbow_down
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t276, v_2_alpha_front_elbow_down)
+    del t276, v_2_alpha_front_elbow_down
+    t277 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t274 <= _runtime.VANISHING * (64.0 * t277)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t277, -t274)
+    t278 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
     del p_1_alpha_front_elbow_down
-    t266 = _runtime.select(spent_beta_front_elbow_down, t258 * t265 + t227 * t258, t227)
-    del spent_beta_front_elbow_down, t227, t258, t265
-    t267 = t266 * _runtime.sign(v_2_beta_front_elbow_down)
-    t268 = _runtime.select(parallel_front_elbow_down, t267, t260)
-    del t260, t267
-    t269 = whole_y_front_elbow_down + t268
-    t270 = whole_y_front_elbow_down - t268
-    below_beta_0_front_elbow_down = np.maximum(t269, t143)
-    above_beta_0_front_elbow_down = np.maximum(t270, t143)
-    t271 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t279 = _runtime.select(spent_beta_front_elbow_down, t271 * t278 + t240 * t271, t240)
+    del t240, t271, t278
+    t280 = t279 * _runtime.sign(v_2_beta_front_elbow_down)
+    t281 = _runtime.select(parallel_front_elbow_down, t280, t273)
+    del t273, t280
+    t282 = whole_y_front_elbow_down + t281
+    t283 = whole_y_front_elbow_down - t281
+    below_beta_0_front_elbow_down = np.maximum(t282, t155)
+    above_beta_0_front_elbow_down = np.maximum(t283, t155)
+    t284 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t272 = v_2_beta_front_elbow_down * (t271 / total_beta_0_front_elbow_down)
-    del t271, total_beta_0_front_elbow_down
-    t273 = t266 - t272
-    del t272
-    left_along_front_elbow_down = L1 - np.abs(t273)
-    t274 = left_along_front_elbow_down * 9.094947017729282e-13
-    t275 = np.maximum(-t274, left_along_front_elbow_down)
-    del t274
-    spent_along_front_elbow_down = t275 <= t147
-    del t275
-    t276 = _runtime.select(spent_along_front_elbow_down, t264 / (t148 - t261), 0.0)
-    del t264
-    t277 = -(_runtime.FEASIBILITY * (play * (1.0 + t276)))
-    del t276
-    t278 = t262 & (t118 <= t269) & (t118 <= t270) & (t277 <= left_along_front_elbow_down)
-    del t262, t269, t270, t277
-    t279 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
-    del left_along_front_elbow_down
-    t280 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t281 = v_2_beta_front_elbow_down * t279 / (t261 * t261 + t280)
-    del t261, t279, t280
-    t282 = whole_y_front_elbow_down * (t281 * _runtime.sign(-t273))
-    del t273, t281
-    t283 = _runtime.select(spent_along_front_elbow_down, t268 + t282, t268)
-    del spent_along_front_elbow_down, t268, t282
-    t284 = whole_y_front_elbow_down + t283
-    t285 = whole_y_front_elbow_down - t283
-    del t283, whole_y_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t284, t143)
-    above_beta_front_elbow_down = np.maximum(t285, t143)
-    t286 = below_beta_front_elbow_down - above_beta_front_elbow_down
-    total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t287 = v_2_beta_front_elbow_down * (t286 / total_beta_front_elbow_down)
-    del total_beta_front_elbow_down, v_2_beta_front_elbow_down
-    t288 = t266 - t287
-    del t266, t287
-    t289 = L1 + t288
-    t290 = t278 & (t118 <= t284) & (t118 <= t285) & (t118 <= t289)
-    del t278, t284, t285
-    t291 = L1 - t288
+    t285 = v_2_beta_front_elbow_down * (t284 / total_beta_0_front_elbow_down)
+    del t284, total_beta_0_front_elbow_down
+    t286 = t279 - t285
+    del t285
+    left_along_front_elbow_down = L1 - np.abs(t286)
+    t287 = left_along_front_elbow_down * 9.094947017729282e-13
+    t288 = np.maximum(-t287, left_along_front_elbow_down)
+    del t287
+    spent_along_front_elbow_down = t288 <= t159
     del t288
-    unreachable_2 = np.logical_not(t290 & (t118 <= t291))
-    del t290
-    t292 = _runtime.poison(invalid | unreachable_2)
-    t293 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
-    t294 = np.arctan2(lean_alpha_front_elbow_down, 1.0) + np.arctan2(lean_beta_front_elbow_down, 1.0)
-    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t295 = _runtime.select(folded, 0.0, t293) + t294
-    del t293
-    below_alpha_front_elbow_down = np.maximum(t289, t143)
+    t289 = _runtime.select(spent_along_front_elbow_down, t277 / (t160 - t274), 0.0)
+    del t277
+    t290 = -(_runtime.FEASIBILITY * (play * (1.0 + t289)))
     del t289
-    above_alpha_front_elbow_down = np.maximum(t291, t143)
-    del t291
-    t296 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    t297 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
-    del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t298 = np.arctan2(t296, 2.0 * np.sqrt(t297))
-    del t296, t297
-    t299 = np.arctan2(turn_alpha_front_elbow_down, 1.0) + np.arctan2(turn_beta_front_elbow_down, 1.0)
+    t291 = t275 & (t130 <= t282) & (t130 <= t283) & (t290 <= left_along_front_elbow_down)
+    del t275, t282, t283, t290
+    t292 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
+    del left_along_front_elbow_down
+    t293 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t294 = v_2_beta_front_elbow_down * t292 / (t274 * t274 + t293)
+    del t274, t292, t293
+    t295 = whole_y_front_elbow_down * (t294 * _runtime.sign(-t286))
+    del t286, t294
+    t296 = _runtime.select(spent_along_front_elbow_down, t281 + t295, t281)
+    del t281, t295
+    t297 = whole_y_front_elbow_down + t296
+    t298 = whole_y_front_elbow_down - t296
+    del t296, whole_y_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t297, t155)
+    above_beta_front_elbow_down = np.maximum(t298, t155)
+    t299 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
+    t300 = t299 / total_beta_front_elbow_down
+    del total_beta_front_elbow_down
+    t301 = t279 - v_2_beta_front_elbow_down * t300
+    del t279, v_2_beta_front_elbow_down
+    t302 = L1 + t301
+    t303 = t291 & (t130 <= t297) & (t130 <= t298) & (t130 <= t302)
+    del t291, t297, t298
+    t304 = L1 - t301
+    unreachable_2 = np.logical_not(t303 & (t130 <= t304))
+    del t303
+    t305 = _runtime.poison(invalid | unreachable_2)
+    t306 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
+    t307 = np.arctan2(lean_alpha_front_elbow_down, 1.0) + np.arctan2(lean_beta_front_elbow_down, 1.0)
+    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
+    t308 = _runtime.select(folded, 0.0, t306) + t307
+    del t306
+    below_alpha_front_elbow_down = np.maximum(t302, t155)
+    del t302
+    above_alpha_front_elbow_down = np.maximum(t304, t155)
+    del t304
+    t309 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t310 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
+    t311 = np.arctan2(t309, 2.0 * np.sqrt(t310))
+    del t310
+    t312 = np.arctan2(turn_alpha_front_elbow_down, 1.0) + np.arctan2(turn_beta_front_elbow_down, 1.0)
     del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t300 = t169 + t170
-    del t169, t170
-    t301 = t299 - (t294 - t300)
-    del t294, t299
-    t302 = below_beta_front_elbow_down * above_beta_front_elbow_down
+    t313 = t182 + t183
+    del t182, t183
+    t314 = t312 - (t307 - t313)
+    del t307, t312
+    t315 = below_beta_front_elbow_down * above_beta_front_elbow_down
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t303 = t298 - np.arctan2(t286, 2.0 * np.sqrt(t302))
-    del t286, t302
-    t304 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t25))
-    del t25, t3
-    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t56)
-    del t56
-    p_1_rear_elbow_up = t57 + ahead * ctheta2A_rear_elbow_up
-    del t57
-    t305 = t64 - higher * ctheta2A_rear_elbow_up
-    del ctheta2A_rear_elbow_up, t64
-    t306 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t305
-    room_alpha_rear_elbow_up = t183 - np.abs(t306)
-    del t183
-    t307 = room_alpha_rear_elbow_up * 9.094947017729282e-13
-    spent_alpha_rear_elbow_up = np.maximum(-t307, room_alpha_rear_elbow_up) <= t70
-    del t307
-    t308 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t305
-    t309 = t187 - _runtime.sign(-t306) * t308
-    del t187, t306, t308
-    t310 = np.abs(t309)
-    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t193, 1.0)
-    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t310 / heavy_0_alpha_rear_elbow_up, 0.0)
-    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t84, 1.0)
-    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t194 / heavy_1_alpha_rear_elbow_up, 0.0)
-    t311 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
-    t312 = _runtime.select(spent_alpha_rear_elbow_up, t311, 0.0)
-    del t311
-    t313 = -(_runtime.FEASIBILITY * (t46 + t312)) <= room_alpha_rear_elbow_up
-    del t312
-    t314 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
+    t316 = t311 - np.arctan2(t299, 2.0 * np.sqrt(t315))
+    del t299, t315
+    t317 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t38))
+    del t3, t38
+    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t68)
+    del t68
+    p_1_rear_elbow_up = t69 + ahead * ctheta2A_rear_elbow_up
+    del t69
+    t318 = t76 - higher * ctheta2A_rear_elbow_up
+    del ctheta2A_rear_elbow_up, t76
+    t319 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t318
+    room_alpha_rear_elbow_up = t196 - np.abs(t319)
+    del t196
+    t320 = room_alpha_rear_elbow_up * 9.094947017729282e-13
+    spent_alpha_rear_elbow_up = np.maximum(-t320, room_alpha_rear_elbow_up) <= t82
+    del t320
+    t321 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t318
+    t322 = t200 - _runtime.sign(-t319) * t321
+    del t200, t319, t321
+    t323 = np.abs(t322)
+    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t206, 1.0)
+    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t323 / heavy_0_alpha_rear_elbow_up, 0.0)
+    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t96, 1.0)
+    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t207 / heavy_1_alpha_rear_elbow_up, 0.0)
+    t324 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
+    t325 = _runtime.select(spent_alpha_rear_elbow_up, t324, 0.0)
+    del t324
+    t326 = -(_runtime.FEASIBILITY * (t58 + t325)) <= room_alpha_rear_elbow_up
+    del t325
+    t327 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
     del gain_1_alpha_rear_elbow_up
-    t315 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
+    t328 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
     del gain_0_alpha_rear_elbow_up
-    t316 = _runtime.select(room_alpha_rear_elbow_up < 0.0, t314 / (t90 + t314 + t315), 0.0)
-    del t314, t315
-    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t316, 0.0)
-    del t316
-    t317 = t201 * room_alpha_rear_elbow_up * share_alpha_rear_elbow_up
-    del t201
-    t318 = t46 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
+    t329 = _runtime.select(room_alpha_rear_elbow_up < 0.0, t327 / (t102 + t327 + t328), 0.0)
+    del t327, t328
+    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t329, 0.0)
+    del t329
+    t330 = t214 * room_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    del t214
+    t331 = t58 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_up
-    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t317 / (t194 + t318)), 0.0)
-    del t194, t317, t318
-    t319 = room_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t330 / (t207 + t331)), 0.0)
+    del t207, t330, t331
+    t332 = room_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
     del room_alpha_rear_elbow_up, share_alpha_rear_elbow_up
-    t320 = t46 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
-    t321 = 1.0 / (t310 + t320)
-    del t310, t320
-    t322 = -(heavy_0_alpha_rear_elbow_up * t319 * t321) <= 9.094947017729282e-13
+    t333 = t58 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
+    t334 = 1.0 / (t323 + t333)
+    del t323, t333
+    t335 = -(heavy_0_alpha_rear_elbow_up * t332 * t334) <= 9.094947017729282e-13
     del heavy_0_alpha_rear_elbow_up
-    t323 = -(t319 * t321)
-    del t319, t321
-    t324 = _runtime.select(t322 & (0.0 < t323), t323, 0.0)
-    del t322, t323
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t309) * t324, 0.0)
-    del t309, t324
-    t325 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
+    t336 = -(t332 * t334)
+    del t332, t334
+    t337 = _runtime.select(t335 & (0.0 < t336), t336, 0.0)
+    del t335, t336
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t322) * t337, 0.0)
+    del t322, t337
+    t338 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
     del aside_alpha_rear_elbow_up
-    t326 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t325 - t78 * t326, 0.0)
-    del t325, t326
-    t327 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t328 = np.sqrt(1.0 + t327)
-    del t327
-    t329 = 1.0 / t328
-    t330 = p_1_rear_elbow_up * t329 - t305 * lean_alpha_rear_elbow_up * t329
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t330, p_1_rear_elbow_up)
-    del t330
+    t339 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t338 - t90 * t339, 0.0)
+    del t338, t339
+    t340 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t341 = np.sqrt(1.0 + t340)
+    del t340
+    t342 = 1.0 / t341
+    t343 = p_1_rear_elbow_up * t342 - t318 * lean_alpha_rear_elbow_up * t342
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t343, p_1_rear_elbow_up)
+    del t343
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t331 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
-    t332 = 1.0 / (t328 * np.sqrt(1.0 + t331))
-    del t328, t331
-    t333 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t334 = t332 + t332 * t333
-    del t333
-    t335 = lean_alpha_rear_elbow_up * t332 - turn_alpha_rear_elbow_up * t332
-    del t332
-    t336 = v_1_front_elbow_down * t334 + v_2_front_elbow_down * t335
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t336, v_1_front_elbow_down)
-    del t336
+    t344 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
+    t345 = 1.0 / (t341 * np.sqrt(1.0 + t344))
+    del t341, t344
+    t346 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t347 = t345 + t345 * t346
+    del t346
+    t348 = lean_alpha_rear_elbow_up * t345 - turn_alpha_rear_elbow_up * t345
+    del t345
+    t349 = v_1_front_elbow_down * t347 + v_2_front_elbow_down * t348
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t349, v_1_front_elbow_down)
+    del t349
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t337 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    t338 = np.maximum(t337 * 9.094947017729282e-13, -t337)
-    spent_beta_rear_elbow_up = t338 <= t108
-    del t338
-    t339 = v_2_front_elbow_down * t334 - v_1_front_elbow_down * t335
-    del t334, t335, v_1_front_elbow_down
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t339, v_2_front_elbow_down)
-    del t339, v_2_front_elbow_down
-    t340 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
+    t350 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t351 = np.maximum(t350 * 9.094947017729282e-13, -t350)
+    spent_beta_rear_elbow_up = t351 <= t120
+    del t351
+    t352 = v_2_front_elbow_down * t347 - v_1_front_elbow_down * t348
+    del t347, t348, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t352, v_2_front_elbow_down)
+    del t352, v_2_front_elbow_down
+    t353 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
     del whole_beta_rear_elbow_up
-    t341 = t329 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
+    t354 = t342 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
     del p_1_rear_elbow_up
-    t342 = _runtime.select(spent_alpha_rear_elbow_up, t341 + t305 * t329, t305)
-    del spent_alpha_rear_elbow_up, t305, t329, t341
-    t343 = t342 * _runtime.sign(part_beta_rear_elbow_up)
+    t355 = _runtime.select(spent_alpha_rear_elbow_up, t354 + t318 * t342, t318)
+    del t318, t342, t354
+    t356 = t355 * _runtime.sign(part_beta_rear_elbow_up)
     del part_beta_rear_elbow_up
-    t344 = drawn_front_elbow_down * t340 - t229 * t343
-    del t229
-    t345 = np.abs(t344)
-    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t193, 1.0)
-    del t193
-    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t345 / heavy_0_beta_rear_elbow_up, 0.0)
-    slope_aside_beta_rear_elbow_up = L1 * (t340 + t343)
-    del t340, t343
-    t346 = np.abs(slope_aside_beta_rear_elbow_up)
-    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t84, 1.0)
-    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t346 / heavy_1_beta_rear_elbow_up, 0.0)
-    t347 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
-    t348 = _runtime.select(spent_beta_rear_elbow_up, t347, 0.0)
-    del t347
-    t349 = -(_runtime.FEASIBILITY * (t87 + t348)) <= -t337
-    del t348
-    t350 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
-    del gain_1_beta_rear_elbow_up
-    t351 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
-    del gain_0_beta_rear_elbow_up
-    t352 = _runtime.select(-t337 < 0.0, t350 / (t120 + t350 + t351), 0.0)
-    del t350, t351
-    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t352, 0.0)
-    del t352
-    lack_beta_rear_elbow_up = t337 * (1.0 - share_beta_rear_elbow_up)
-    t353 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
-    t354 = t87 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
-    del heavy_0_beta_rear_elbow_up
-    t355 = 1.0 / (t345 + t354)
-    del t345, t354
-    t356 = lack_beta_rear_elbow_up * t355
-    del lack_beta_rear_elbow_up
-    t357 = (t353 * t355 <= 9.094947017729282e-13) & (0.0 < t356)
-    del t353, t355
-    t358 = _runtime.sign(-t344) * _runtime.select(t357, t356, 0.0)
-    del t344, t356, t357
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t358, 0.0)
-    del t358
-    t359 = _runtime.sign(slope_aside_beta_rear_elbow_up)
-    del slope_aside_beta_rear_elbow_up
-    t360 = t87 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
-    del heavy_1_beta_rear_elbow_up
-    t361 = t337 * share_beta_rear_elbow_up * t359 / (t346 + t360)
-    del share_beta_rear_elbow_up, t337, t346, t359, t360
-    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t361, 0.0)
+    t357 = drawn_front_elbow_down * t353 - t242 * t356
+    del t242
+    t358 = np.abs(t357)
+    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t206, 1.0)
+    del t206
+    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t358 / heavy_0_beta_rear_elbow_up, 0.0)
+    slope_aside_beta_rear_elbow_up = L1 * (t353 + t356)
+    del t353, t356
+    t359 = np.abs(slope_aside_beta_rear_elbow_up)
+    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t96, 1.0)
+    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t359 / heavy_1_beta_rear_elbow_up, 0.0)
+    t360 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
+    t361 = _runtime.select(spent_beta_rear_elbow_up, t360, 0.0)
+    del t360
+    t362 = -(_runtime.FEASIBILITY * (t99 + t361)) <= -t350
     del t361
-    t362 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
-    del aside_beta_rear_elbow_up
-    t363 = drawn_front_elbow_down * turn_beta_rear_elbow_up
-    del drawn_front_elbow_down
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t362 - t78 * t363, 0.0)
-    del t362, t363
-    t364 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t365 = np.sqrt(1.0 + t364)
-    del t364
-    t366 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
-    t367 = 1.0 / (t365 * np.sqrt(1.0 + t366))
-    del t366
-    t368 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t369 = t367 + t367 * t368
-    del t368
-    t370 = lean_beta_rear_elbow_up * t367 - turn_beta_rear_elbow_up * t367
-    del t367
-    t371 = v_1_alpha_rear_elbow_up * t369 + v_2_alpha_rear_elbow_up * t370
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t371, v_1_alpha_rear_elbow_up)
-    del t371
-    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t372 = 1.0 / t365
+    t363 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
+    del gain_1_beta_rear_elbow_up
+    t364 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
+    del gain_0_beta_rear_elbow_up
+    t365 = _runtime.select(-t350 < 0.0, t363 / (t132 + t363 + t364), 0.0)
+    del t363, t364
+    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t365, 0.0)
     del t365
-    t373 = p_1_alpha_rear_elbow_up * t372 - t342 * lean_beta_rear_elbow_up * t372
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t373, p_1_alpha_rear_elbow_up)
-    del t373
-    t374 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
-    del p_1_beta_rear_elbow_up
-    t375 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    del sigma_uv_rear_elbow_up, v_1_beta_rear_elbow_up
-    t376 = t43 & t313 & t349 & (t118 <= t374 - t375) & (t118 <= -(t375 + t374))
-    del t313, t349
-    t377 = v_2_alpha_rear_elbow_up * t369 - v_1_alpha_rear_elbow_up * t370
-    del t369, t370, v_1_alpha_rear_elbow_up
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t377, v_2_alpha_rear_elbow_up)
-    del t377, v_2_alpha_rear_elbow_up
-    t378 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t375 <= _runtime.VANISHING * (64.0 * t378)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t378, -t375)
-    t379 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    del p_1_alpha_rear_elbow_up
-    t380 = _runtime.select(spent_beta_rear_elbow_up, t372 * t379 + t342 * t372, t342)
-    del spent_beta_rear_elbow_up, t342, t372, t379
-    t381 = _runtime.select(parallel_rear_elbow_up, t380 * _runtime.sign(v_2_beta_rear_elbow_up), t374)
+    lack_beta_rear_elbow_up = t350 * (1.0 - share_beta_rear_elbow_up)
+    t366 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
+    t367 = t99 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_up
+    t368 = 1.0 / (t358 + t367)
+    del t358, t367
+    t369 = lack_beta_rear_elbow_up * t368
+    del lack_beta_rear_elbow_up
+    t370 = (t366 * t368 <= 9.094947017729282e-13) & (0.0 < t369)
+    del t366, t368
+    t371 = _runtime.sign(-t357) * _runtime.select(t370, t369, 0.0)
+    del t357, t369, t370
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t371, 0.0)
+    del t371
+    t372 = _runtime.sign(slope_aside_beta_rear_elbow_up)
+    del slope_aside_beta_rear_elbow_up
+    t373 = t99 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_up
+    t374 = t350 * share_beta_rear_elbow_up * t372 / (t359 + t373)
+    del share_beta_rear_elbow_up, t350, t359, t372, t373
+    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t374, 0.0)
     del t374
-    t382 = whole_y_rear_elbow_up + t381
-    t383 = whole_y_rear_elbow_up - t381
-    below_beta_0_rear_elbow_up = np.maximum(t382, t143)
-    above_beta_0_rear_elbow_up = np.maximum(t383, t143)
-    t384 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t375 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
+    del aside_beta_rear_elbow_up
+    t376 = drawn_front_elbow_down * turn_beta_rear_elbow_up
+    del drawn_front_elbow_down
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t375 - t90 * t376, 0.0)
+    del t375, t376
+    t377 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t378 = np.sqrt(1.0 + t377)
+    del t377
+    t379 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
+    t380 = 1.0 / (t378 * np.sqrt(1.0 + t379))
+    del t379
+    t381 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t382 = t380 + t380 * t381
+    del t381
+    t383 = lean_beta_rear_elbow_up * t380 - turn_beta_rear_elbow_up * t380
+    del t380
+    t384 = v_1_alpha_rear_elbow_up * t382 + v_2_alpha_rear_elbow_up * t383
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t384, v_1_alpha_rear_elbow_up)
+    del t384
+    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
+    t385 = 1.0 / t378
+    del t378
+    t386 = p_1_alpha_rear_elbow_up * t385 - t355 * lean_beta_rear_elbow_up * t385
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t386, p_1_alpha_rear_elbow_up)
+    del t386
+    t387 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t388 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    del sigma_uv_rear_elbow_up
+    t389 = t56 & t326 & t362 & (t130 <= t387 - t388) & (t130 <= -(t388 + t387))
+    del t326, t362
+    t390 = v_2_alpha_rear_elbow_up * t382 - v_1_alpha_rear_elbow_up * t383
+    del t382, t383, v_1_alpha_rear_elbow_up
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t390, v_2_alpha_rear_elbow_up)
+    del t390, v_2_alpha_rear_elbow_up
+    t391 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t388 <= _runtime.VANISHING * (64.0 * t391)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t391, -t388)
+    t392 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    del p_1_alpha_rear_elbow_up
+    t393 = _runtime.select(spent_beta_rear_elbow_up, t385 * t392 + t355 * t385, t355)
+    del t355, t385, t392
+    t394 = _runtime.select(parallel_rear_elbow_up, t393 * _runtime.sign(v_2_beta_rear_elbow_up), t387)
+    del t387
+    t395 = whole_y_rear_elbow_up + t394
+    t396 = whole_y_rear_elbow_up - t394
+    below_beta_0_rear_elbow_up = np.maximum(t395, t155)
+    above_beta_0_rear_elbow_up = np.maximum(t396, t155)
+    t397 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t385 = v_2_beta_rear_elbow_up * (t384 / total_beta_0_rear_elbow_up)
-    del t384, total_beta_0_rear_elbow_up
-    t386 = t380 - t385
-    del t385
-    left_along_rear_elbow_up = L1 - np.abs(t386)
-    t387 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t387, left_along_rear_elbow_up) <= t147
-    del t387
-    t388 = _runtime.select(spent_along_rear_elbow_up, t378 / (t148 - t375), 0.0)
-    del t378
-    t389 = -(_runtime.FEASIBILITY * (play * (1.0 + t388)))
-    del t388
-    t390 = t376 & (t118 <= t382) & (t118 <= t383) & (t389 <= left_along_rear_elbow_up)
-    del t376, t382, t383, t389
-    t391 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
-    del left_along_rear_elbow_up
-    t392 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t393 = v_2_beta_rear_elbow_up * t391 / (t375 * t375 + t392)
-    del t375, t391, t392
-    t394 = whole_y_rear_elbow_up * (t393 * _runtime.sign(-t386))
-    del t386, t393
-    t395 = _runtime.select(spent_along_rear_elbow_up, t381 + t394, t381)
-    del spent_along_rear_elbow_up, t381, t394
-    t396 = whole_y_rear_elbow_up + t395
-    t397 = whole_y_rear_elbow_up - t395
-    del t395, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t396, t143)
-    above_beta_rear_elbow_up = np.maximum(t397, t143)
-    t398 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
-    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t399 = v_2_beta_rear_elbow_up * (t398 / total_beta_rear_elbow_up)
-    del total_beta_rear_elbow_up, v_2_beta_rear_elbow_up
-    t400 = t380 - t399
-    del t380, t399
-    t401 = L1 + t400
-    t402 = t390 & (t118 <= t396) & (t118 <= t397) & (t118 <= t401)
-    del t390, t396, t397
-    t403 = L1 - t400
+    t398 = v_2_beta_rear_elbow_up * (t397 / total_beta_0_rear_elbow_up)
+    del t397, total_beta_0_rear_elbow_up
+    t399 = t393 - t398
+    del t398
+    left_along_rear_elbow_up = L1 - np.abs(t399)
+    t400 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t400, left_along_rear_elbow_up) <= t159
     del t400
-    unreachable_3 = np.logical_not(t402 & (t118 <= t403))
-    del t402
-    t404 = _runtime.poison(invalid | unreachable_3)
-    t405 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
-    del out_2, up
-    t406 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
-    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t407 = t405 + t406
-    del t405
-    below_alpha_rear_elbow_up = np.maximum(t401, t143)
+    t401 = _runtime.select(spent_along_rear_elbow_up, t391 / (t160 - t388), 0.0)
+    del t391
+    t402 = -(_runtime.FEASIBILITY * (play * (1.0 + t401)))
     del t401
-    above_alpha_rear_elbow_up = np.maximum(t403, t143)
-    del t403
-    t408 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    t409 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
-    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t410 = np.arctan2(t408, 2.0 * np.sqrt(t409))
-    del t408, t409
-    t411 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
-    del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t412 = t411 + (t300 - t406)
-    del t300, t406, t411
-    t413 = below_beta_rear_elbow_up * above_beta_rear_elbow_up
-    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t414 = t410 - np.arctan2(t398, 2.0 * np.sqrt(t413))
-    del t398, t413
-    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t178)
-    del t178
-    p_1_rear_elbow_down = t179 + ahead * ctheta2A_rear_elbow_down
-    del ahead, t179
-    t415 = t180 - higher * ctheta2A_rear_elbow_down
-    del ctheta2A_rear_elbow_down, higher, t180
-    t416 = v_2 * p_1_rear_elbow_down + v_1 * t415
-    room_alpha_rear_elbow_down = t67 - np.abs(t416)
-    del t67
-    t417 = room_alpha_rear_elbow_down * 9.094947017729282e-13
-    t418 = np.maximum(-t417, room_alpha_rear_elbow_down)
-    del t417
-    spent_alpha_rear_elbow_down = t418 <= t70
-    del t418, t70
-    t419 = _runtime.sign(-t416) * (v_1 * p_1_rear_elbow_down - v_2 * t415)
+    t403 = t389 & (t130 <= t395) & (t130 <= t396) & (t402 <= left_along_rear_elbow_up)
+    del t389, t395, t396, t402
+    t404 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
+    del left_along_rear_elbow_up
+    t405 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t406 = v_2_beta_rear_elbow_up * t404 / (t388 * t388 + t405)
+    del t388, t404, t405
+    t407 = whole_y_rear_elbow_up * (t406 * _runtime.sign(-t399))
+    del t399, t406
+    t408 = _runtime.select(spent_along_rear_elbow_up, t394 + t407, t394)
+    del t394, t407
+    t409 = whole_y_rear_elbow_up + t408
+    t410 = whole_y_rear_elbow_up - t408
+    del t408, whole_y_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t409, t155)
+    above_beta_rear_elbow_up = np.maximum(t410, t155)
+    t411 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
+    t412 = t411 / total_beta_rear_elbow_up
+    del total_beta_rear_elbow_up
+    t413 = t393 - v_2_beta_rear_elbow_up * t412
+    del t393, v_2_beta_rear_elbow_up
+    t414 = L1 + t413
+    t415 = t403 & (t130 <= t409) & (t130 <= t410) & (t130 <= t414)
+    del t403, t409, t410
+    t416 = L1 - t413
+    unreachable_3 = np.logical_not(t415 & (t130 <= t416))
+    del t415
+    t417 = _runtime.poison(invalid | unreachable_3)
+    t418 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
+    del out_2, up
+    t419 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
+    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
+    t420 = t418 + t419
+    del t418
+    below_alpha_rear_elbow_up = np.maximum(t414, t155)
+    del t414
+    above_alpha_rear_elbow_up = np.maximum(t416, t155)
     del t416
-    t420 = t72 - t419
-    del t419, t72
-    t421 = np.abs(t420)
-    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t82, 1.0)
-    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t421 / heavy_0_alpha_rear_elbow_down, 0.0)
-    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t84, 1.0)
-    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t83 / heavy_1_alpha_rear_elbow_down, 0.0)
-    t422 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
-    t423 = _runtime.select(spent_alpha_rear_elbow_down, t422, 0.0)
+    t421 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t422 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
+    t423 = np.arctan2(t421, 2.0 * np.sqrt(t422))
     del t422
-    t424 = -(_runtime.FEASIBILITY * (t46 + t423)) <= room_alpha_rear_elbow_down
-    del t423
-    t425 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
-    del gain_1_alpha_rear_elbow_down
-    t426 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
-    del gain_0_alpha_rear_elbow_down
-    t427 = _runtime.select(room_alpha_rear_elbow_down < 0.0, t425 / (t90 + t425 + t426), 0.0)
-    del t425, t426, t90
-    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t427, 0.0)
-    del t427
-    t428 = t92 * room_alpha_rear_elbow_down * share_alpha_rear_elbow_down
-    del t92
-    t429 = t46 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_rear_elbow_down
-    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t428 / (t83 + t429)), 0.0)
-    del t428, t429, t83
-    t430 = room_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
-    del room_alpha_rear_elbow_down, share_alpha_rear_elbow_down
-    t431 = t46 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
-    del t46
-    t432 = 1.0 / (t421 + t431)
-    del t421, t431
-    t433 = -(heavy_0_alpha_rear_elbow_down * t430 * t432)
-    del heavy_0_alpha_rear_elbow_down
-    t434 = -(t430 * t432)
-    del t430, t432
-    t435 = (t433 <= 9.094947017729282e-13) & (0.0 < t434)
-    del t433
-    t436 = _runtime.sign(-t420) * _runtime.select(t435, t434, 0.0)
-    del t420, t434, t435
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t436, 0.0)
+    t424 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
+    del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
+    t425 = t424 + (t313 - t419)
+    del t313, t419, t424
+    t426 = below_beta_rear_elbow_up * above_beta_rear_elbow_up
+    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
+    t427 = t423 - np.arctan2(t411, 2.0 * np.sqrt(t426))
+    del t411, t426
+    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t191)
+    del t191
+    p_1_rear_elbow_down = t192 + ahead * ctheta2A_rear_elbow_down
+    del ahead, t192
+    t428 = t193 - higher * ctheta2A_rear_elbow_down
+    del ctheta2A_rear_elbow_down, higher, t193
+    t429 = v_2 * p_1_rear_elbow_down + v_1 * t428
+    room_alpha_rear_elbow_down = t79 - np.abs(t429)
+    del t79
+    t430 = room_alpha_rear_elbow_down * 9.094947017729282e-13
+    t431 = np.maximum(-t430, room_alpha_rear_elbow_down)
+    del t430
+    spent_alpha_rear_elbow_down = t431 <= t82
+    del t431, t82
+    t432 = _runtime.sign(-t429) * (v_1 * p_1_rear_elbow_down - v_2 * t428)
+    del t429
+    t433 = t84 - t432
+    del t432, t84
+    t434 = np.abs(t433)
+    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t94, 1.0)
+    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t434 / heavy_0_alpha_rear_elbow_down, 0.0)
+    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t96, 1.0)
+    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t95 / heavy_1_alpha_rear_elbow_down, 0.0)
+    t435 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
+    t436 = _runtime.select(spent_alpha_rear_elbow_down, t435, 0.0)
+    del t435
+    t437 = -(_runtime.FEASIBILITY * (t58 + t436)) <= room_alpha_rear_elbow_down
     del t436
-    t437 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
+    t438 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
+    del gain_1_alpha_rear_elbow_down
+    t439 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
+    del gain_0_alpha_rear_elbow_down
+    t440 = _runtime.select(room_alpha_rear_elbow_down < 0.0, t438 / (t102 + t438 + t439), 0.0)
+    del t102, t438, t439
+    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t440, 0.0)
+    del t440
+    t441 = t104 * room_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    del t104
+    t442 = t58 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_rear_elbow_down
+    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t441 / (t95 + t442)), 0.0)
+    del t441, t442, t95
+    t443 = room_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    del room_alpha_rear_elbow_down, share_alpha_rear_elbow_down
+    t444 = t58 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
+    del t58
+    t445 = 1.0 / (t434 + t444)
+    del t434, t444
+    t446 = -(heavy_0_alpha_rear_elbow_down * t443 * t445)
+    del heavy_0_alpha_rear_elbow_down
+    t447 = -(t443 * t445)
+    del t443, t445
+    t448 = (t446 <= 9.094947017729282e-13) & (0.0 < t447)
+    del t446
+    t449 = _runtime.sign(-t433) * _runtime.select(t448, t447, 0.0)
+    del t433, t447, t448
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t449, 0.0)
+    del t449
+    t450 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
     del aside_alpha_rear_elbow_down
-    t438 = t437 - t78 * (drawn * turn_alpha_rear_elbow_down)
-    del t437
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t438, 0.0)
-    del t438
-    t439 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t440 = np.sqrt(1.0 + t439)
-    del t439
-    t441 = 1.0 / t440
-    t442 = p_1_rear_elbow_down * t441 - t415 * lean_alpha_rear_elbow_down * t441
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t442, p_1_rear_elbow_down)
-    del t442
+    t451 = t450 - t90 * (drawn * turn_alpha_rear_elbow_down)
+    del t450
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t451, 0.0)
+    del t451
+    t452 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t453 = np.sqrt(1.0 + t452)
+    del t452
+    t454 = 1.0 / t453
+    t455 = p_1_rear_elbow_down * t454 - t428 * lean_alpha_rear_elbow_down * t454
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t455, p_1_rear_elbow_down)
+    del t455
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t443 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
-    t444 = 1.0 / (t440 * np.sqrt(1.0 + t443))
-    del t440, t443
-    t445 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t446 = t444 + t444 * t445
-    del t445
-    t447 = lean_alpha_rear_elbow_down * t444 - turn_alpha_rear_elbow_down * t444
-    del t444
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t446 + v_2 * t447, v_1)
-    whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t448 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    t449 = np.maximum(t448 * 9.094947017729282e-13, -t448)
-    spent_beta_rear_elbow_down = t449 <= t108
-    del t108, t449
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t446 - v_1 * t447, v_2)
-    del t446, t447, v_1, v_2
-    t450 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
-    del whole_beta_rear_elbow_down
-    t451 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
-    del p_1_rear_elbow_down
-    t452 = _runtime.select(spent_alpha_rear_elbow_down, t441 * t451 + t415 * t441, t415)
-    del spent_alpha_rear_elbow_down, t415, t441, t451
-    t453 = t452 * _runtime.sign(part_beta_rear_elbow_down)
-    del part_beta_rear_elbow_down
-    t454 = drawn * t450 - t112 * t453
-    del t112
-    t455 = np.abs(t454)
-    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t82, 1.0)
-    del t82
-    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t455 / heavy_0_beta_rear_elbow_down, 0.0)
-    slope_aside_beta_rear_elbow_down = L1 * (t450 + t453)
-    del t450, t453
-    t456 = np.abs(slope_aside_beta_rear_elbow_down)
-    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t84, 1.0)
-    del t84
-    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t456 / heavy_1_beta_rear_elbow_down, 0.0)
-    t457 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
-    t458 = _runtime.select(spent_beta_rear_elbow_down, t457, 0.0)
-    del t457
-    t459 = -(_runtime.FEASIBILITY * (t87 + t458)) <= -t448
+    t456 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
+    t457 = 1.0 / (t453 * np.sqrt(1.0 + t456))
+    del t453, t456
+    t458 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t459 = t457 + t457 * t458
     del t458
-    t460 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
-    del gain_1_beta_rear_elbow_down
-    t461 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
-    del gain_0_beta_rear_elbow_down
-    t462 = _runtime.select(-t448 < 0.0, t460 / (t120 + t460 + t461), 0.0)
-    del t120, t460, t461
-    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t462, 0.0)
-    del t462
-    lack_beta_rear_elbow_down = t448 * (1.0 - share_beta_rear_elbow_down)
-    t463 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
-    t464 = t87 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_0_beta_rear_elbow_down
-    t465 = 1.0 / (t455 + t464)
-    del t455, t464
-    t466 = lack_beta_rear_elbow_down * t465
-    del lack_beta_rear_elbow_down
-    t467 = (t463 * t465 <= 9.094947017729282e-13) & (0.0 < t466)
-    del t463, t465
-    t468 = _runtime.sign(-t454) * _runtime.select(t467, t466, 0.0)
-    del t454, t466, t467
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t468, 0.0)
-    del t468
-    t469 = _runtime.sign(slope_aside_beta_rear_elbow_down)
-    del slope_aside_beta_rear_elbow_down
-    t470 = t87 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_beta_rear_elbow_down, t87
-    t471 = t448 * share_beta_rear_elbow_down * t469 / (t456 + t470)
-    del share_beta_rear_elbow_down, t448, t456, t469, t470
-    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t471, 0.0)
+    t460 = lean_alpha_rear_elbow_down * t457 - turn_alpha_rear_elbow_down * t457
+    del t457
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t459 + v_2 * t460, v_1)
+    whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
+    t461 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t462 = np.maximum(t461 * 9.094947017729282e-13, -t461)
+    spent_beta_rear_elbow_down = t462 <= t120
+    del t120, t462
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t459 - v_1 * t460, v_2)
+    del t459, t460, v_1, v_2
+    t463 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    del whole_beta_rear_elbow_down
+    t464 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    del p_1_rear_elbow_down
+    t465 = _runtime.select(spent_alpha_rear_elbow_down, t454 * t464 + t428 * t454, t428)
+    del t428, t454, t464
+    t466 = t465 * _runtime.sign(part_beta_rear_elbow_down)
+    del part_beta_rear_elbow_down
+    t467 = drawn * t463 - t124 * t466
+    del t124
+    t468 = np.abs(t467)
+    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t94, 1.0)
+    del t94
+    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t468 / heavy_0_beta_rear_elbow_down, 0.0)
+    slope_aside_beta_rear_elbow_down = L1 * (t463 + t466)
+    del t463, t466
+    t469 = np.abs(slope_aside_beta_rear_elbow_down)
+    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t96, 1.0)
+    del t96
+    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t469 / heavy_1_beta_rear_elbow_down, 0.0)
+    t470 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
+    t471 = _runtime.select(spent_beta_rear_elbow_down, t470, 0.0)
+    del t470
+    t472 = -(_runtime.FEASIBILITY * (t99 + t471)) <= -t461
     del t471
-    t472 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
-    del aside_beta_rear_elbow_down
-    t473 = t472 - t78 * (drawn * turn_beta_rear_elbow_down)
-    del drawn, t472, t78
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t473, 0.0)
-    del t473
-    t474 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t475 = np.sqrt(1.0 + t474)
-    del t474
-    t476 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
-    t477 = 1.0 / (t475 * np.sqrt(1.0 + t476))
-    del t476
-    t478 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t479 = t477 + t477 * t478
-    del t478
-    t480 = lean_beta_rear_elbow_down * t477 - turn_beta_rear_elbow_down * t477
-    del t477
-    t481 = v_1_alpha_rear_elbow_down * t479 + v_2_alpha_rear_elbow_down * t480
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t481, v_1_alpha_rear_elbow_down)
-    del t481
-    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t482 = 1.0 / t475
+    t473 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
+    del gain_1_beta_rear_elbow_down
+    t474 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
+    del gain_0_beta_rear_elbow_down
+    t475 = _runtime.select(-t461 < 0.0, t473 / (t132 + t473 + t474), 0.0)
+    del t132, t473, t474
+    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t475, 0.0)
     del t475
-    t483 = p_1_alpha_rear_elbow_down * t482 - t452 * lean_beta_rear_elbow_down * t482
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t483, p_1_alpha_rear_elbow_down)
-    del t483
-    t484 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    del p_1_beta_rear_elbow_down
-    t485 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
-    del sigma_uv_rear_elbow_down, v_1_beta_rear_elbow_down
-    t486 = t43 & t424 & t459 & (t118 <= t484 - t485) & (t118 <= -(t485 + t484))
-    del t424, t43, t459
-    t487 = v_2_alpha_rear_elbow_down * t479 - v_1_alpha_rear_elbow_down * t480
-    del t479, t480, v_1_alpha_rear_elbow_down
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t487, v_2_alpha_rear_elbow_down)
-    del t487, v_2_alpha_rear_elbow_down
-    t488 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t485 <= _runtime.VANISHING * (64.0 * t488)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t488, -t485)
-    t489 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    lack_beta_rear_elbow_down = t461 * (1.0 - share_beta_rear_elbow_down)
+    t476 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
+    t477 = t99 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_down
+    t478 = 1.0 / (t468 + t477)
+    del t468, t477
+    t479 = lack_beta_rear_elbow_down * t478
+    del lack_beta_rear_elbow_down
+    t480 = (t476 * t478 <= 9.094947017729282e-13) & (0.0 < t479)
+    del t476, t478
+    t481 = _runtime.sign(-t467) * _runtime.select(t480, t479, 0.0)
+    del t467, t479, t480
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t481, 0.0)
+    del t481
+    t482 = _runtime.sign(slope_aside_beta_rear_elbow_down)
+    del slope_aside_beta_rear_elbow_down
+    t483 = t99 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_down, t99
+    t484 = t461 * share_beta_rear_elbow_down * t482 / (t469 + t483)
+    del share_beta_rear_elbow_down, t461, t469, t482, t483
+    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t484, 0.0)
+    del t484
+    t485 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
+    del aside_beta_rear_elbow_down
+    t486 = t485 - t90 * (drawn * turn_beta_rear_elbow_down)
+    del drawn, t485, t90
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t486, 0.0)
+    del t486
+    t487 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t488 = np.sqrt(1.0 + t487)
+    del t487
+    t489 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
+    t490 = 1.0 / (t488 * np.sqrt(1.0 + t489))
+    del t489
+    t491 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t492 = t490 + t490 * t491
+    del t491
+    t493 = lean_beta_rear_elbow_down * t490 - turn_beta_rear_elbow_down * t490
+    del t490
+    t494 = v_1_alpha_rear_elbow_down * t492 + v_2_alpha_rear_elbow_down * t493
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t494, v_1_alpha_rear_elbow_down)
+    del t494
+    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
+    t495 = 1.0 / t488
+    del t488
+    t496 = p_1_alpha_rear_elbow_down * t495 - t465 * lean_beta_rear_elbow_down * t495
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t496, p_1_alpha_rear_elbow_down)
+    del t496
+    t497 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t498 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    del sigma_uv_rear_elbow_down
+    t499 = t56 & t437 & t472 & (t130 <= t497 - t498) & (t130 <= -(t498 + t497))
+    del t437, t472, t56
+    t500 = v_2_alpha_rear_elbow_down * t492 - v_1_alpha_rear_elbow_down * t493
+    del t492, t493, v_1_alpha_rear_elbow_down
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t500, v_2_alpha_rear_elbow_down)
+    del t500, v_2_alpha_rear_elbow_down
+    t501 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t498 <= _runtime.VANISHING * (64.0 * t501)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t501, -t498)
+    t502 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
     del p_1_alpha_rear_elbow_down
-    t490 = _runtime.select(spent_beta_rear_elbow_down, t482 * t489 + t452 * t482, t452)
-    del spent_beta_rear_elbow_down, t452, t482, t489
-    t491 = t490 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t492 = _runtime.select(parallel_rear_elbow_down, t491, t484)
-    del t484, t491
-    t493 = whole_y_rear_elbow_down + t492
-    t494 = whole_y_rear_elbow_down - t492
-    below_beta_0_rear_elbow_down = np.maximum(t493, t143)
-    above_beta_0_rear_elbow_down = np.maximum(t494, t143)
-    t495 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t503 = _runtime.select(spent_beta_rear_elbow_down, t495 * t502 + t465 * t495, t465)
+    del t465, t495, t502
+    t504 = t503 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t505 = _runtime.select(parallel_rear_elbow_down, t504, t497)
+    del t497, t504
+    t506 = whole_y_rear_elbow_down + t505
+    t507 = whole_y_rear_elbow_down - t505
+    below_beta_0_rear_elbow_down = np.maximum(t506, t155)
+    above_beta_0_rear_elbow_down = np.maximum(t507, t155)
+    t508 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t496 = v_2_beta_rear_elbow_down * (t495 / total_beta_0_rear_elbow_down)
-    del t495, total_beta_0_rear_elbow_down
-    t497 = t490 - t496
-    del t496
-    left_along_rear_elbow_down = L1 - np.abs(t497)
-    t498 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t499 = np.maximum(-t498, left_along_rear_elbow_down)
-    del t498
-    spent_along_rear_elbow_down = t499 <= t147
-    del t147, t499
-    t500 = _runtime.select(spent_along_rear_elbow_down, t488 / (t148 - t485), 0.0)
-    del t148, t488
-    t501 = -(_runtime.FEASIBILITY * (play * (1.0 + t500)))
-    del play, t500
-    t502 = t486 & (t118 <= t493) & (t118 <= t494) & (t501 <= left_along_rear_elbow_down)
-    del t486, t493, t494, t501
-    t503 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
+    t509 = v_2_beta_rear_elbow_down * (t508 / total_beta_0_rear_elbow_down)
+    del t508, total_beta_0_rear_elbow_down
+    t510 = t503 - t509
+    del t509
+    left_along_rear_elbow_down = L1 - np.abs(t510)
+    t511 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t512 = np.maximum(-t511, left_along_rear_elbow_down)
+    del t511
+    spent_along_rear_elbow_down = t512 <= t159
+    del t159, t512
+    t513 = _runtime.select(spent_along_rear_elbow_down, t501 / (t160 - t498), 0.0)
+    del t160, t501
+    t514 = -(_runtime.FEASIBILITY * (play * (1.0 + t513)))
+    del play, t513
+    t515 = t499 & (t130 <= t506) & (t130 <= t507) & (t514 <= left_along_rear_elbow_down)
+    del t499, t506, t507, t514
+    t516 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
     del left_along_rear_elbow_down
-    t504 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t505 = v_2_beta_rear_elbow_down * t503 / (t485 * t485 + t504)
-    del t485, t503, t504
-    t506 = whole_y_rear_elbow_down * (t505 * _runtime.sign(-t497))
-    del t497, t505
-    t507 = _runtime.select(spent_along_rear_elbow_down, t492 + t506, t492)
-    del spent_along_rear_elbow_down, t492, t506
-    t508 = whole_y_rear_elbow_down + t507
-    t509 = whole_y_rear_elbow_down - t507
-    del t507, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t508, t143)
-    above_beta_rear_elbow_down = np.maximum(t509, t143)
-    t510 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t517 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t518 = v_2_beta_rear_elbow_down * t516 / (t498 * t498 + t517)
+    del t498, t516, t517
+    t519 = whole_y_rear_elbow_down * (t518 * _runtime.sign(-t510))
+    del t510, t518
+    t520 = _runtime.select(spent_along_rear_elbow_down, t505 + t519, t505)
+    del t505, t519
+    t521 = whole_y_rear_elbow_down + t520
+    t522 = whole_y_rear_elbow_down - t520
+    del t520, whole_y_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t521, t155)
+    above_beta_rear_elbow_down = np.maximum(t522, t155)
+    t523 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t511 = v_2_beta_rear_elbow_down * (t510 / total_beta_rear_elbow_down)
-    del total_beta_rear_elbow_down, v_2_beta_rear_elbow_down
-    t512 = t490 - t511
-    del t490, t511
-    t513 = L1 + t512
-    t514 = t502 & (t118 <= t508) & (t118 <= t509) & (t118 <= t513)
-    del t502, t508, t509
-    t515 = L1 - t512
-    del t512
-    unreachable_4 = np.logical_not(t514 & (t118 <= t515))
-    del t118, t514
-    t516 = _runtime.poison(invalid | unreachable_4)
-    t517 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
+    t524 = t523 / total_beta_rear_elbow_down
+    del total_beta_rear_elbow_down
+    t525 = t503 - v_2_beta_rear_elbow_down * t524
+    del t503, v_2_beta_rear_elbow_down
+    t526 = L1 + t525
+    t527 = t515 & (t130 <= t521) & (t130 <= t522) & (t130 <= t526)
+    del t515, t521, t522
+    t528 = L1 - t525
+    unreachable_4 = np.logical_not(t527 & (t130 <= t528))
+    del t130, t527
+    t529 = _runtime.poison(invalid | unreachable_4)
+    t530 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
     del out_front_elbow_down, up_front_elbow_down
-    t518 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
+    t531 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
     del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t519 = _runtime.select(folded, 0.0, t517) + t518
-    del t517
-    below_alpha_rear_elbow_down = np.maximum(t513, t143)
-    del t513
-    above_alpha_rear_elbow_down = np.maximum(t515, t143)
-    del t143, t515
-    t520 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    t521 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
-    del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t522 = np.arctan2(t520, 2.0 * np.sqrt(t521))
-    del t520, t521
-    t523 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
+    t532 = _runtime.select(folded, 0.0, t530) + t531
+    del t530
+    below_alpha_rear_elbow_down = np.maximum(t526, t155)
+    del t526
+    above_alpha_rear_elbow_down = np.maximum(t528, t155)
+    del t155, t528
+    t533 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t534 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
+    t535 = np.arctan2(t533, 2.0 * np.sqrt(t534))
+    del t534
+    t536 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
     del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t524 = t523 + (t171 - t518)
-    del t171, t518, t523
-    t525 = below_beta_rear_elbow_down * above_beta_rear_elbow_down
+    t537 = t536 + (t184 - t531)
+    del t184, t531, t536
+    t538 = below_beta_rear_elbow_down * above_beta_rear_elbow_down
     del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t526 = t522 - np.arctan2(t510, 2.0 * np.sqrt(t525))
-    del t510, t525
-    t527 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    t539 = t535 - np.arctan2(t523, 2.0 * np.sqrt(t538))
+    del t523, t538
+    t540 = (wrist <= al * _runtime.DETERMINED) | nowhere
     del nowhere, wrist
-    t528 = t527 | folded | short
-    del folded, short, t527
-    t529 = _runtime.status(invalid, unreachable, t528 | parallel)
-    del parallel, unreachable
-    t530 = _runtime.status(invalid, unreachable_2, t528 | parallel_front_elbow_down)
-    del parallel_front_elbow_down, unreachable_2
-    t531 = _runtime.status(invalid, unreachable_3, t528 | parallel_rear_elbow_up)
-    del parallel_rear_elbow_up, unreachable_3
-    t532 = _runtime.status(invalid, unreachable_4, t528 | parallel_rear_elbow_down)
-    del invalid, parallel_rear_elbow_down, t528, unreachable_4
+    t541 = t540 | folded | short
+    del folded, short, t540
+    t542 = spent_along | spent_alpha | spent_beta
+    del spent_along, spent_alpha, spent_beta
+    t543 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t544 = t543 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
+    del t543
+    t545 = t544 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    del t544
+    t546 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
+    del t_phi, t_psi
+    t547 = t545 * t546
+    del t545, t546
+    t548 = t171 - L1 * (t179 / (below_alpha + above_alpha))
+    del above_alpha, below_alpha, t171, t179
+    t549 = np.abs(p_1_beta + v_1_beta * t170) + np.abs(t548)
+    del p_1_beta, t170, t548, v_1_beta
+    t550 = 1125899906842624.0 * _runtime.select(t542, t549, 0.0)
+    del t549
+    t551 = _runtime.select(t542, t547, 1.0) <= _runtime.DETERMINED * t550
+    del t542, t550
+    t552 = _runtime.status(invalid, unreachable, t541 | parallel | t551)
+    del parallel, t551, unreachable
+    t553 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
+    del spent_along_front_elbow_down, spent_alpha_front_elbow_down
+    t554 = t553 | spent_beta_front_elbow_down
+    del spent_beta_front_elbow_down, t553
+    t555 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t300
+    del p_1_beta_front_elbow_down, t300, v_1_beta_front_elbow_down
+    total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
+    del above_alpha_front_elbow_down, below_alpha_front_elbow_down
+    t556 = t301 - L1 * (t309 / total_alpha_front_elbow_down)
+    del t301, t309, total_alpha_front_elbow_down
+    missed_front_elbow_down = _runtime.select(t554, np.abs(t555) + np.abs(t556), 0.0)
+    del t555, t556
+    t557 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
+    del missed_front_elbow_down
+    t558 = t541 | parallel_front_elbow_down | (_runtime.select(t554, t547, 1.0) <= t557)
+    del parallel_front_elbow_down, t554, t557
+    t559 = _runtime.status(invalid, unreachable_2, t558)
+    del t558, unreachable_2
+    t560 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
+    del spent_along_rear_elbow_up, spent_alpha_rear_elbow_up
+    t561 = t560 | spent_beta_rear_elbow_up
+    del spent_beta_rear_elbow_up, t560
+    t562 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t412
+    del p_1_beta_rear_elbow_up, t412, v_1_beta_rear_elbow_up
+    total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
+    del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
+    t563 = t413 - L1 * (t421 / total_alpha_rear_elbow_up)
+    del t413, t421, total_alpha_rear_elbow_up
+    missed_rear_elbow_up = _runtime.select(t561, np.abs(t562) + np.abs(t563), 0.0)
+    del t562, t563
+    t564 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
+    del missed_rear_elbow_up
+    t565 = t541 | parallel_rear_elbow_up | (_runtime.select(t561, t547, 1.0) <= t564)
+    del parallel_rear_elbow_up, t561, t564
+    t566 = _runtime.status(invalid, unreachable_3, t565)
+    del t565, unreachable_3
+    t567 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
+    del spent_along_rear_elbow_down, spent_alpha_rear_elbow_down
+    t568 = t567 | spent_beta_rear_elbow_down
+    del spent_beta_rear_elbow_down, t567
+    t569 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t524
+    del p_1_beta_rear_elbow_down, t524, v_1_beta_rear_elbow_down
+    total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
+    del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
+    t570 = t525 - L1 * (t533 / total_alpha_rear_elbow_down)
+    del t525, t533, total_alpha_rear_elbow_down
+    missed_rear_elbow_down = _runtime.select(t568, np.abs(t569) + np.abs(t570), 0.0)
+    del t569, t570
+    t571 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
+    del missed_rear_elbow_down
+    t572 = t541 | parallel_rear_elbow_down | (_runtime.select(t568, t547, 1.0) <= t571)
+    del parallel_rear_elbow_down, t541, t547, t568, t571
+    t573 = _runtime.status(invalid, unreachable_4, t572)
+    del invalid, t572, unreachable_4
     return (
-        t26 + t163,
-        _runtime.wrap(t166 - t167) + t163,
-        _runtime.wrap(t172 + t174) + t163,
-        _runtime.wrap(t166 + t167) + t163,
-        _runtime.wrap(t172 - t174) + t163,
-        t175 + t163,
-        t26 + t292,
-        _runtime.wrap(t295 - t298) + t292,
-        _runtime.wrap(t301 + t303) + t292,
-        _runtime.wrap(t295 + t298) + t292,
-        _runtime.wrap(t301 - t303) + t292,
-        t175 + t292,
-        t304 + t404,
-        _runtime.wrap(t407 - t410) + t404,
-        _runtime.wrap(t412 + t414) + t404,
-        _runtime.wrap(t407 + t410) + t404,
-        _runtime.wrap(t412 - t414) + t404,
-        t175 + t404,
-        t304 + t516,
-        _runtime.wrap(t519 - t522) + t516,
-        _runtime.wrap(t524 + t526) + t516,
-        _runtime.wrap(t519 + t522) + t516,
-        _runtime.wrap(t524 - t526) + t516,
-        t175 + t516,
-        t529,
-        t530,
-        t531,
-        t532,
+        t39 + t175,
+        _runtime.wrap(t178 - t180) + t175,
+        _runtime.wrap(t185 + t187) + t175,
+        _runtime.wrap(t178 + t180) + t175,
+        _runtime.wrap(t185 - t187) + t175,
+        t188 + t175,
+        t39 + t305,
+        _runtime.wrap(t308 - t311) + t305,
+        _runtime.wrap(t314 + t316) + t305,
+        _runtime.wrap(t308 + t311) + t305,
+        _runtime.wrap(t314 - t316) + t305,
+        t188 + t305,
+        t317 + t417,
+        _runtime.wrap(t420 - t423) + t417,
+        _runtime.wrap(t425 + t427) + t417,
+        _runtime.wrap(t420 + t423) + t417,
+        _runtime.wrap(t425 - t427) + t417,
+        t188 + t417,
+        t317 + t529,
+        _runtime.wrap(t532 - t535) + t529,
+        _runtime.wrap(t537 + t539) + t529,
+        _runtime.wrap(t532 + t535) + t529,
+        _runtime.wrap(t537 - t539) + t529,
+        t188 + t529,
+        t552,
+        t559,
+        t566,
+        t573,
     )
 
 
@@ -2791,7 +2886,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t_phi, t_psi
     lengths = L1 + d1 + d + loff + lp + t2 + t20
     del t2, t20
-    slack = far_apart + lengths
+    slack = far_apart + lengths * 0.25
     t25 = -(_runtime.FEASIBILITY * slack)
     t26 = t24 & (t23 <= t5) & (t25 <= t12) & (t25 <= t11)
     del t11, t12, t23, t24, t25, t5
@@ -2815,9 +2910,9 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del square
     t37 = t26 & (-t28 <= t32) & (-t35 <= t36)
     del t26, t28, t35
-    t38 = d + np.abs(higher) + far_apart + np.abs(ahead)
+    t38 = d * 0.25 + np.abs(higher) * 0.25 + far_apart + np.abs(ahead) * 0.25
     del far_apart
-    play = t38 + lengths * 0.001953125
+    play = t38 + lengths * 0.00048828125
     del t38
     play_alpha = np.sqrt(L2 * L2 + a3 * a3) * play
     t39 = -(_runtime.FEASIBILITY * play_alpha)
@@ -3116,7 +3211,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
     t163 = t161 - np.arctan2(t152, 2.0 * np.sqrt(t162))
     del t152, t162
-    t164 = wrist <= al * _runtime.DETERMINED
+    t164 = (wrist <= al * _runtime.DETERMINED) | (1.0 <= 0.0)
     del wrist
     t165 = _runtime.status(invalid, unreachable_2, t164)
     del unreachable_2
@@ -3278,7 +3373,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       sum of L1 sin(alpha) and f sin(beta) (straight) or their difference (folded); alpha and
       beta are half the differences of the arms' angles, and sines of equal size are returned.
     - SINGULAR also if the wrist links are nearly stretched (l_W is less than 2^-10 al): rounded
-      joints do not determine the tip to 1e-12 there.
+      joints do not determine the tip to 1e-12 there; or if a half difference is at a right
+      angle and rounding of the target decides whether the tips can be so far apart.
     - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
       yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.
     - INVALID: d, L1, or both L2 and a3 are zero.

@@ -12,9 +12,9 @@
 #   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
 #   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
 #   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
-#   ik: 831 compare and select, 609 add, 28 atan2, 135 divide, 884 multiply, 1 reduce to a turn, 3
-#     sincos, 37 sqrt
-#   ik where nothing vanishes: 276 compare and select, 260 add, 23 atan2, 31 divide, 334 multiply,
+#   ik: 861 compare and select, 632 add, 28 atan2, 153 divide, 906 multiply, 1 reduce to a turn, 3
+#     sincos, 41 sqrt
+#   ik where nothing vanishes: 281 compare and select, 260 add, 23 atan2, 33 divide, 334 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
 #   wrist_length: 5 add, 20 compare and select, 1 divide, 6 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
@@ -2085,7 +2085,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del c_psi, s_psi
     far_apart = np.abs(base * t_phi) * 0.001953125 + np.abs(t_psi * base) * 0.001953125
     del base
-    slack = far_apart + lengths
+    slack = far_apart + lengths * 0.25
     t19 = h * slack
     del h
     tangent = 4.0 * root * t17 - t19 * 0.00390625 <= _runtime.VANISHING * t19
@@ -2138,8 +2138,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t38, t41, t44
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
-    play = d + far_apart + lengths * 0.001953125
-    del far_apart, lengths
+    play = d * 0.25 + far_apart + lengths * 0.00048828125
+    del far_apart
     t47 = size * play
     t48 = size * size
     t49 = _runtime.VANISHING * t17
@@ -2486,1620 +2486,1676 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     folded_right = np.abs(h_right) + np.abs(r_right) <= t204
     t205 = np.arctan2(stheta2A, ctheta2A)
     del ctheta2A
-    short_right = L1 * fore_arm <= _runtime.VANISHING * t48
-    t206 = 2.0 * fore_arm
-    t207 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t47))
-    M_right = np.maximum(t194, t207)
+    t206 = L1 * fore_arm
+    short_right = t206 <= _runtime.VANISHING * t48
+    t207 = 2.0 * fore_arm
+    t208 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t47))
+    M_right = np.maximum(t194, t208)
     del t194
-    N_right = np.maximum(t193, t207)
+    N_right = np.maximum(t193, t208)
     del t193
-    t208 = 1.0 / (M_right + N_right)
-    ahead_1_right = _runtime.select(short_right, size, t69 + t206 * M_right * t208)
-    t209 = t72 * (1.0 + turn_both * lean) - straight_mid * (turn_both - lean)
+    t209 = 1.0 / (M_right + N_right)
+    ahead_1_right = _runtime.select(short_right, size, t69 + t207 * M_right * t209)
+    t210 = t72 * (1.0 + turn_both * lean) - straight_mid * (turn_both - lean)
     del lean, turn_both
-    sigma_right = _runtime.sign(-_runtime.select(t103, t209, t72))
+    t211 = _runtime.select(t103, t210, t72)
+    del t210
+    sigma_right = _runtime.sign(-t211)
+    t212 = 2.0 * sigma_right
+    t213 = np.sqrt(M_right * N_right)
+    s_bend_right = _runtime.select(short_right, 0.0, t209 * (t212 * t213))
     del t209
-    t210 = 2.0 * sigma_right
-    t211 = np.sqrt(M_right * N_right)
-    s_bend_right = _runtime.select(short_right, 0.0, t208 * (t210 * t211))
-    del t208
-    t212 = fore_arm * s_bend_right
+    t214 = fore_arm * s_bend_right
     del s_bend_right
-    t213 = np.arctan2(h_right * ahead_1_right - r_right * t212, r_right * ahead_1_right + h_right * t212)
-    del ahead_1_right, h_right, r_right, t212
-    t214 = _runtime.wrap_cut(_runtime.select(folded_right, t205, t213))
-    del t213
-    t215 = t214 + t202
-    del t214
+    t215 = np.arctan2(h_right * ahead_1_right - r_right * t214, r_right * ahead_1_right + h_right * t214)
+    del ahead_1_right, h_right, r_right, t214
+    t216 = _runtime.wrap_cut(_runtime.select(folded_right, t205, t215))
+    del t215
+    t217 = t216 + t202
+    del t216
     bare_right = fore_arm <= _runtime.VANISHING * size
-    t216 = 1.0 / fore_arm
-    t217 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t216), _runtime.select(bare_right, 1.0, a3 * t216))
-    del bare_right, t216
-    t218 = sigma_right * np.arctan2(2.0 * t211, M_right - N_right)
-    del M_right, N_right, t211
-    t219 = t217 + _runtime.select(short_right, 0.0, t218)
-    del t218
-    t220 = _runtime.wrap(t219) + t202
-    del t219
+    t218 = 1.0 / fore_arm
+    t219 = np.arctan2(_runtime.select(bare_right, 0.0, L2 * t218), _runtime.select(bare_right, 1.0, a3 * t218))
+    del bare_right, t218
+    t220 = sigma_right * np.arctan2(2.0 * t213, M_right - N_right)
+    del t213
+    t221 = t219 + _runtime.select(short_right, 0.0, t220)
+    del t220
+    t222 = _runtime.wrap(t221) + t202
+    del t221
     h_left = _runtime.select(t103, h_left_0 + more_left_21, h_left_0)
     del h_left_0, more_left_21
     r_left = _runtime.select(t103, r_left_0 - t198, r_left_0)
-    del r_left_0, t103, t198
+    del r_left_0, t198
     folded_left = np.abs(h_left) + np.abs(r_left) <= t204
     M_left = np.maximum(t201, 0.0)
     del t201
     N_left = np.maximum(t200, 0.0)
     del t200
-    t221 = 1.0 / (M_left + N_left)
-    ahead_1_left = _runtime.select(short_right, size, t69 + t206 * M_left * t221)
-    t222 = h_left * ahead_1_left
-    t223 = np.sqrt(M_left * N_left)
-    s_bend_left = _runtime.select(short_right, 0.0, t221 * (t210 * t223))
-    del t210, t221
-    t224 = fore_arm * s_bend_left
+    t223 = 1.0 / (M_left + N_left)
+    ahead_1_left = _runtime.select(short_right, size, t69 + t207 * M_left * t223)
+    t224 = h_left * ahead_1_left
+    t225 = np.sqrt(M_left * N_left)
+    s_bend_left = _runtime.select(short_right, 0.0, t223 * (t212 * t225))
+    del t212, t223
+    t226 = fore_arm * s_bend_left
     del s_bend_left
-    t225 = r_left * t224
-    t226 = r_left * ahead_1_left
+    t227 = r_left * t226
+    t228 = r_left * ahead_1_left
     del ahead_1_left, r_left
-    t227 = h_left * t224
-    del h_left, t224
-    t228 = _runtime.select(folded_left, t205, np.arctan2(t222 - t225, t226 + t227))
-    t229 = sigma_right * np.arctan2(2.0 * t223, M_left - N_left)
-    del M_left, N_left, sigma_right, t223
-    t230 = _runtime.select(short_right, 0.0, t229)
-    del t229
-    t231 = _runtime.wrap(principal_pitch)
+    t229 = h_left * t226
+    del h_left, t226
+    t230 = _runtime.select(folded_left, t205, np.arctan2(t224 - t227, t228 + t229))
+    t231 = sigma_right * np.arctan2(2.0 * t225, M_left - N_left)
+    del t225
+    t232 = _runtime.select(short_right, 0.0, t231)
+    del t231
+    t233 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    t232 = t231 + t202
-    t233 = _runtime.select(folded_left, t205, np.arctan2(t222 + t225, t226 - t227))
-    del t205, t222, t225, t226, t227
+    t234 = t233 + t202
+    t235 = _runtime.select(folded_left, t205, np.arctan2(t224 + t227, t228 - t229))
+    del t205, t224, t227, t228, t229
     up_front_elbow_down_alike = t51 - t53
     del t51, t53
     out_front_elbow_down_alike = t54 + t55
     del t54, t55
-    t234 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t235 = up_front_elbow_down_alike * up_front_elbow_down_alike
-    t236 = 1.0 / np.sqrt(t234 + t235)
-    del t234, t235
-    stheta2A_front_elbow_down_alike = _runtime.select(folded, 0.0, up_front_elbow_down_alike * t236)
+    t236 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t237 = up_front_elbow_down_alike * up_front_elbow_down_alike
+    t238 = 1.0 / np.sqrt(t236 + t237)
+    del t236, t237
+    stheta2A_front_elbow_down_alike = _runtime.select(folded, 0.0, up_front_elbow_down_alike * t238)
     del up_front_elbow_down_alike
     elbow_21_front_elbow_down_alike = L1 * stheta2A_front_elbow_down_alike
-    t237 = out_front_elbow_down_alike * t236
-    del out_front_elbow_down_alike, t236
-    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, t237)
+    t239 = out_front_elbow_down_alike * t238
+    del out_front_elbow_down_alike, t238
+    ctheta2A_front_elbow_down_alike = _runtime.select(folded, 1.0, t239)
     c_relative_front_elbow_down_alike = t59 - t60
     del t59, t60
-    t238 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t240 = ctheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
     s_relative_front_elbow_down_alike = t61 + t62
     del t61, t62
-    t239 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    ctheta23A_front_elbow_down_alike = t238 - t239
-    del t238, t239
-    t240 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
-    t241 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
-    t242 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
-    stheta23A_front_elbow_down_alike = t241 + t242
-    del t241, t242
-    point_21_front_elbow_down_alike = t240 + a3 * stheta23A_front_elbow_down_alike
-    del t240
-    t243 = t18 * (t_psi * ctheta23A_front_elbow_down_alike)
-    t244 = t243 + t_phi * stheta23A_front_elbow_down_alike
-    del t243
-    t245 = d * t244
-    del t244
-    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t245
-    t246 = h_right_0_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t241 = stheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    ctheta23A_front_elbow_down_alike = t240 - t241
+    del t240, t241
+    t242 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_front_elbow_down_alike
+    t243 = stheta2A_front_elbow_down_alike * c_relative_front_elbow_down_alike
+    t244 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike
+    stheta23A_front_elbow_down_alike = t243 + t244
+    del t243, t244
+    point_21_front_elbow_down_alike = t242 + a3 * stheta23A_front_elbow_down_alike
+    del t242
+    t245 = t18 * (t_psi * ctheta23A_front_elbow_down_alike)
+    t246 = t245 + t_phi * stheta23A_front_elbow_down_alike
+    del t245
+    t247 = d * t246
+    del t246
+    h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t247
+    t248 = h_right_0_front_elbow_down_alike * h_right_0_front_elbow_down_alike
     elbow_11_front_elbow_down_alike = L1 * ctheta2A_front_elbow_down_alike
-    t247 = elbow_11_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = t247 + a3 * ctheta23A_front_elbow_down_alike
-    del t247
-    t248 = t18 * (t_psi * stheta23A_front_elbow_down_alike)
-    del stheta23A_front_elbow_down_alike
-    t249 = t_phi * ctheta23A_front_elbow_down_alike - t248
-    del ctheta23A_front_elbow_down_alike, t248
-    t250 = d * t249
+    t249 = elbow_11_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
+    point_11_front_elbow_down_alike = t249 + a3 * ctheta23A_front_elbow_down_alike
     del t249
-    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t250
-    t251 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t252 = t246 + t251
-    del t246, t251
-    gap_front_elbow_down_alike = t250 * t250 + t245 * t245
-    t253 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    t250 = t18 * (t_psi * stheta23A_front_elbow_down_alike)
+    del stheta23A_front_elbow_down_alike
+    t251 = t_phi * ctheta23A_front_elbow_down_alike - t250
+    del ctheta23A_front_elbow_down_alike, t250
+    t252 = d * t251
+    del t251
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t252
+    t253 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t254 = t248 + t253
+    del t248, t253
+    gap_front_elbow_down_alike = t252 * t252 + t247 * t247
+    t255 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
     straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t254 = 0.0 <= straight_mid_front_elbow_down_alike
+    t256 = 0.0 <= straight_mid_front_elbow_down_alike
     large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
-    t255 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
-    small_mid_front_elbow_down_alike = t255 * t255 / large_mid_front_elbow_down_alike
-    t256 = _runtime.select(t254, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    M_mid_front_elbow_down_alike = t39 * t256
-    del t256
-    t257 = gap_front_elbow_down_alike + M_mid_front_elbow_down_alike
-    t258 = 2.0 * point_11_front_elbow_down_alike * t250 + 2.0 * point_21_front_elbow_down_alike * t245
-    farther_right_front_elbow_down_alike = _runtime.select(t48 * t252 < t253, t252 - t70, t257 - t258)
-    del t252
-    t259 = _runtime.select(t254, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t254
-    N_mid_front_elbow_down_alike = t39 * t259
-    del t259
-    t260 = gap_front_elbow_down_alike - N_mid_front_elbow_down_alike
-    nearer_right_front_elbow_down_alike = t258 - t260
-    room_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
-    t261 = room_right_front_elbow_down_alike * 9.094947017729282e-13
-    t262 = np.maximum(-t261, room_right_front_elbow_down_alike)
+    t257 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    small_mid_front_elbow_down_alike = t257 * t257 / large_mid_front_elbow_down_alike
+    t258 = _runtime.select(t256, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    M_mid_front_elbow_down_alike = t39 * t258
+    del t258
+    t259 = gap_front_elbow_down_alike + M_mid_front_elbow_down_alike
+    t260 = 2.0 * point_11_front_elbow_down_alike * t252 + 2.0 * point_21_front_elbow_down_alike * t247
+    farther_right_front_elbow_down_alike = _runtime.select(t48 * t254 < t255, t254 - t70, t259 - t260)
+    del t254
+    t261 = _runtime.select(t256, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t256
+    N_mid_front_elbow_down_alike = t39 * t261
     del t261
-    spent_right_front_elbow_down_alike = t262 <= t77
-    del t262
-    t263 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
-    t264 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t265 = nearer_right_front_elbow_down_alike <= farther_right_front_elbow_down_alike
-    t266 = _runtime.select(t265, 1.0, -1.0)
-    del t265
-    t267 = (t263 - t264) * t266
-    del t263, t264
-    t268 = L1 + L_2W * s_relative_front_elbow_down_alike
-    drawn_front_elbow_down_alike = t268 + a_3W * c_relative_front_elbow_down_alike
-    del t268
-    t269 = 2.0 * drawn_front_elbow_down_alike
-    slope_right_front_elbow_down_alike = t267 * t269
-    t270 = 1.0 - t83 * drawn_front_elbow_down_alike
-    t271 = t82 * np.sqrt(fore + L1 * (t270 * t270)) / 2000000.0
-    del fore, t270, t82
-    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
-    del L_2W, a_3W
-    t272 = t81 * (t271 + np.abs(tilt_front_elbow_down_alike))
-    del t271, t81, tilt_front_elbow_down_alike
-    heavy_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t272, 1.0)
-    t273 = np.abs(slope_right_front_elbow_down_alike) / heavy_0_right_front_elbow_down_alike
-    gain_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t273, 0.0)
-    del t273
-    t274 = t39 * t267
+    t262 = gap_front_elbow_down_alike - N_mid_front_elbow_down_alike
+    nearer_right_front_elbow_down_alike = t260 - t262
+    room_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
+    t263 = room_right_front_elbow_down_alike * 9.094947017729282e-13
+    t264 = np.maximum(-t263, room_right_front_elbow_down_alike)
+    del t263
+    spent_right_front_elbow_down_alike = t264 <= t77
+    del t264
+    t265 = ctheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t266 = stheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t267 = nearer_right_front_elbow_down_alike <= farther_right_front_elbow_down_alike
+    t268 = _runtime.select(t267, 1.0, -1.0)
     del t267
-    t275 = np.abs(t274)
+    t269 = (t265 - t266) * t268
+    del t265, t266
+    t270 = L1 + L_2W * s_relative_front_elbow_down_alike
+    drawn_front_elbow_down_alike = t270 + a_3W * c_relative_front_elbow_down_alike
+    del t270
+    t271 = 2.0 * drawn_front_elbow_down_alike
+    slope_right_front_elbow_down_alike = t269 * t271
+    t272 = 1.0 - t83 * drawn_front_elbow_down_alike
+    t273 = t82 * np.sqrt(fore + L1 * (t272 * t272)) / 2000000.0
+    del fore, t272, t82
+    tilt_front_elbow_down_alike = L_2W * c_relative_front_elbow_down_alike - a_3W * s_relative_front_elbow_down_alike
+    t274 = t81 * (t273 + np.abs(tilt_front_elbow_down_alike))
+    del t273, t81, tilt_front_elbow_down_alike
+    heavy_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t274, 1.0)
+    t275 = np.abs(slope_right_front_elbow_down_alike) / heavy_0_right_front_elbow_down_alike
+    gain_0_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t275, 0.0)
+    del t275
+    t276 = t39 * t269
+    del t269
+    t277 = np.abs(t276)
     heavy_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t90, 1.0)
-    gain_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t275 / heavy_1_right_front_elbow_down_alike, 0.0)
-    t276 = gain_0_right_front_elbow_down_alike + gain_1_right_front_elbow_down_alike
-    t277 = _runtime.select(spent_right_front_elbow_down_alike, t276, 0.0)
-    del t276
-    t278 = -(_runtime.FEASIBILITY * (t47 + t277)) <= room_right_front_elbow_down_alike
-    del t277
-    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t245
-    del point_21_front_elbow_down_alike, t245
-    t279 = h_left_0_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t250
-    del point_11_front_elbow_down_alike, t250
-    t280 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t281 = t279 + t280
-    del t279, t280
-    farther_left_front_elbow_down_alike = _runtime.select(t48 * t281 < t253, t281 - t70, t257 + t258)
-    del t253, t257, t281
-    t282 = t258 + t260
-    del t258, t260
-    room_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, -t282)
-    t283 = room_left_front_elbow_down_alike * 9.094947017729282e-13
-    t284 = np.maximum(-t283, room_left_front_elbow_down_alike)
-    del t283
-    spent_left_front_elbow_down_alike = t284 <= t77
-    del t284
-    t285 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    t286 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t287 = _runtime.select(-t282 <= farther_left_front_elbow_down_alike, 1.0, -1.0)
-    t288 = (t285 - t286) * t287
-    del t285, t286
-    slope_left_front_elbow_down_alike = t269 * t288
-    heavy_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t272, 1.0)
-    t289 = np.abs(slope_left_front_elbow_down_alike) / heavy_0_left_front_elbow_down_alike
-    gain_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t289, 0.0)
-    del t289
-    t290 = t39 * t288
-    del t288
-    t291 = np.abs(t290)
+    gain_1_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t277 / heavy_1_right_front_elbow_down_alike, 0.0)
+    t278 = gain_0_right_front_elbow_down_alike + gain_1_right_front_elbow_down_alike
+    t279 = _runtime.select(spent_right_front_elbow_down_alike, t278, 0.0)
+    del t278
+    t280 = -(_runtime.FEASIBILITY * (t47 + t279)) <= room_right_front_elbow_down_alike
+    del t279
+    h_left_0_front_elbow_down_alike = point_21_front_elbow_down_alike + t247
+    del point_21_front_elbow_down_alike, t247
+    t281 = h_left_0_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t252
+    del point_11_front_elbow_down_alike, t252
+    t282 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t283 = t281 + t282
+    del t281, t282
+    farther_left_front_elbow_down_alike = _runtime.select(t48 * t283 < t255, t283 - t70, t259 + t260)
+    del t255, t259, t283
+    t284 = t260 + t262
+    del t260, t262
+    room_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, -t284)
+    t285 = room_left_front_elbow_down_alike * 9.094947017729282e-13
+    t286 = np.maximum(-t285, room_left_front_elbow_down_alike)
+    del t285
+    spent_left_front_elbow_down_alike = t286 <= t77
+    del t286
+    t287 = ctheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    t288 = stheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t289 = _runtime.select(-t284 <= farther_left_front_elbow_down_alike, 1.0, -1.0)
+    t290 = (t287 - t288) * t289
+    del t287, t288
+    slope_left_front_elbow_down_alike = t271 * t290
+    heavy_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t274, 1.0)
+    t291 = np.abs(slope_left_front_elbow_down_alike) / heavy_0_left_front_elbow_down_alike
+    gain_0_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t291, 0.0)
+    del t291
+    t292 = t39 * t290
+    del t290
+    t293 = np.abs(t292)
     heavy_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t90, 1.0)
-    gain_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t291 / heavy_1_left_front_elbow_down_alike, 0.0)
-    t292 = gain_0_left_front_elbow_down_alike + gain_1_left_front_elbow_down_alike
-    t293 = _runtime.select(spent_left_front_elbow_down_alike, t292, 0.0)
-    del t292
-    t294 = -(_runtime.FEASIBILITY * (t47 + t293)) <= room_left_front_elbow_down_alike
-    del t293
-    t295 = spent_left_front_elbow_down_alike | spent_right_front_elbow_down_alike
-    t296 = gain_1_left_front_elbow_down_alike * gain_1_left_front_elbow_down_alike
+    gain_1_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t293 / heavy_1_left_front_elbow_down_alike, 0.0)
+    t294 = gain_0_left_front_elbow_down_alike + gain_1_left_front_elbow_down_alike
+    t295 = _runtime.select(spent_left_front_elbow_down_alike, t294, 0.0)
+    del t294
+    t296 = -(_runtime.FEASIBILITY * (t47 + t295)) <= room_left_front_elbow_down_alike
+    del t295
+    t297 = spent_left_front_elbow_down_alike | spent_right_front_elbow_down_alike
+    t298 = gain_1_left_front_elbow_down_alike * gain_1_left_front_elbow_down_alike
     del gain_1_left_front_elbow_down_alike
-    t297 = gain_0_left_front_elbow_down_alike * gain_0_left_front_elbow_down_alike
+    t299 = gain_0_left_front_elbow_down_alike * gain_0_left_front_elbow_down_alike
     del gain_0_left_front_elbow_down_alike
-    t298 = _runtime.select(room_left_front_elbow_down_alike < 0.0, t296 / (t105 + t296 + t297), 0.0)
-    del t296, t297
-    share_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t298, 0.0)
-    del t298
-    t299 = room_left_front_elbow_down_alike * (1.0 - share_left_front_elbow_down_alike)
-    t300 = heavy_0_left_front_elbow_down_alike * t299
-    t301 = drawn_front_elbow_down_alike * drawn_front_elbow_down_alike
-    t302 = ctheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t303 = stheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
-    t304 = t83 * (t287 * t301 * (L1 - t302 - t303))
-    del t287, t302, t303
-    t305 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
-    t306 = np.sqrt(np.maximum(0.0, 4.0 * t299 * t304 + t305))
-    del t305
-    root_on_1_both_front_elbow_down_alike = _runtime.select(t295, t306, 0.0)
-    del t306
-    t307 = slope_left_front_elbow_down_alike - root_on_1_both_front_elbow_down_alike
-    t308 = t47 * heavy_0_left_front_elbow_down_alike
-    t309 = t308 * 5.960464477539063e-08
-    t310 = 1.0 / (t307 - t309)
-    t311 = (t300 * t310 <= 4.547473508864641e-13) & (0.0 < t299 * t310)
-    t312 = 2.0 * t299
-    t313 = 0.0 < -t299
-    t314 = slope_left_front_elbow_down_alike + root_on_1_both_front_elbow_down_alike
-    del root_on_1_both_front_elbow_down_alike
-    t315 = t308 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t304)
-    del t308
-    t316 = 1.0 / t315
-    del t315
-    t317 = heavy_0_left_front_elbow_down_alike * t314 * t316
-    t318 = t314 * t316
-    t319 = (t317 <= 9.094947017729282e-13) & (0.0 < t318)
-    del t317
-    far_back_1_both_front_elbow_down_alike = _runtime.select(t295, _runtime.select(t319, t318, 0.0), 0.0)
-    del t318, t319
-    t320 = _runtime.select(t313, far_back_1_both_front_elbow_down_alike, 0.0)
-    t321 = _runtime.select(slope_left_front_elbow_down_alike <= 0.0, _runtime.select(t311, t310 * t312, 0.0), t320)
-    del t310, t311, t320
-    t322 = gain_1_right_front_elbow_down_alike * gain_1_right_front_elbow_down_alike
-    del gain_1_right_front_elbow_down_alike
-    t323 = gain_0_right_front_elbow_down_alike * gain_0_right_front_elbow_down_alike
-    del gain_0_right_front_elbow_down_alike
-    t324 = _runtime.select(room_right_front_elbow_down_alike < 0.0, t322 / (t105 + t322 + t323), 0.0)
-    del t322, t323
-    share_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t324, 0.0)
-    del t324
-    t325 = room_right_front_elbow_down_alike * (1.0 - share_right_front_elbow_down_alike)
-    t326 = heavy_0_right_front_elbow_down_alike * t325
-    t327 = ctheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t328 = stheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
-    t329 = t83 * (t266 * t301 * (L1 - t327 - t328))
-    del t266, t327, t328
-    t330 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
-    t331 = np.sqrt(np.maximum(0.0, 4.0 * t325 * t329 + t330))
-    del t330
-    root_on_0_both_front_elbow_down_alike = _runtime.select(t295, t331, 0.0)
-    del t331
-    t332 = slope_right_front_elbow_down_alike - root_on_0_both_front_elbow_down_alike
-    t333 = t47 * heavy_0_right_front_elbow_down_alike
-    t334 = t333 * 5.960464477539063e-08
-    t335 = 1.0 / (t332 - t334)
-    t336 = (t326 * t335 <= 4.547473508864641e-13) & (0.0 < t325 * t335)
-    t337 = 2.0 * t325
-    t338 = 0.0 < -t325
-    t339 = slope_right_front_elbow_down_alike + root_on_0_both_front_elbow_down_alike
-    del root_on_0_both_front_elbow_down_alike
-    t340 = t333 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t329)
-    del t333
-    t341 = 1.0 / t340
-    del t340
-    t342 = heavy_0_right_front_elbow_down_alike * t339 * t341
-    t343 = t339 * t341
-    t344 = (t342 <= 9.094947017729282e-13) & (0.0 < t343)
-    del t342
-    far_back_0_both_front_elbow_down_alike = _runtime.select(t295, _runtime.select(t344, t343, 0.0), 0.0)
-    del t343, t344
-    t345 = _runtime.select(t338, far_back_0_both_front_elbow_down_alike, 0.0)
-    t346 = _runtime.select(slope_right_front_elbow_down_alike <= 0.0, _runtime.select(t336, t335 * t337, 0.0), t345)
-    del t335, t336, t345
-    near_back_both_front_elbow_down_alike = _runtime.select(t295, np.maximum(np.maximum(0.0, t321), t346), 0.0)
-    del t321, t346
-    t347 = slope_right_front_elbow_down_alike + t329 * near_back_both_front_elbow_down_alike
-    t348 = near_back_both_front_elbow_down_alike * t347 - t325
-    del t347
-    t349 = _runtime.select(0.0 < t348, far_back_0_both_front_elbow_down_alike, 0.0)
-    del far_back_0_both_front_elbow_down_alike, t348
-    t350 = np.maximum(near_back_both_front_elbow_down_alike, t349)
-    del t349
-    t351 = slope_left_front_elbow_down_alike + t304 * near_back_both_front_elbow_down_alike
-    t352 = near_back_both_front_elbow_down_alike * t351 - t299
-    del near_back_both_front_elbow_down_alike, t351
-    t353 = _runtime.select(0.0 < t352, far_back_1_both_front_elbow_down_alike, 0.0)
-    del far_back_1_both_front_elbow_down_alike, t352
-    turn_back_both_front_elbow_down_alike = _runtime.select(t295, np.maximum(t350, t353), 0.0)
-    del t350, t353
-    t354 = slope_left_front_elbow_down_alike + t304 * turn_back_both_front_elbow_down_alike
-    t355 = t299 - turn_back_both_front_elbow_down_alike * t354
-    del t354
-    t356 = slope_right_front_elbow_down_alike + t329 * turn_back_both_front_elbow_down_alike
-    t357 = t325 - turn_back_both_front_elbow_down_alike * t356
-    del t356
-    left_back_both_front_elbow_down_alike = _runtime.select(t295, np.minimum(t355, t357), 0.0)
-    del t355, t357
-    t358 = 1.0 / (t309 + t314)
-    del t309, t314
-    t359 = (-(t300 * t358) <= 4.547473508864641e-13) & (0.0 < -(t299 * t358))
+    t300 = _runtime.select(room_left_front_elbow_down_alike < 0.0, t298 / (t105 + t298 + t299), 0.0)
+    del t298, t299
+    share_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t300, 0.0)
     del t300
-    t360 = t316 * (heavy_0_left_front_elbow_down_alike * t307)
-    del heavy_0_left_front_elbow_down_alike
-    t361 = -(t307 * t316)
-    del t307, t316
-    t362 = (-t360 <= 9.094947017729282e-13) & (0.0 < t361)
-    del t360
-    far_on_1_both_front_elbow_down_alike = _runtime.select(t295, _runtime.select(t362, t361, 0.0), 0.0)
-    del t361, t362
-    t363 = _runtime.select(t313, far_on_1_both_front_elbow_down_alike, 0.0)
-    del t313
-    t364 = _runtime.select(0.0 <= slope_left_front_elbow_down_alike, _runtime.select(t359, -(t312 * t358), 0.0), t363)
-    del t312, t358, t359, t363
-    t365 = 1.0 / (t334 + t339)
-    del t334, t339
-    t366 = (-(t326 * t365) <= 4.547473508864641e-13) & (0.0 < -(t325 * t365))
+    t301 = room_left_front_elbow_down_alike * (1.0 - share_left_front_elbow_down_alike)
+    t302 = heavy_0_left_front_elbow_down_alike * t301
+    t303 = drawn_front_elbow_down_alike * drawn_front_elbow_down_alike
+    t304 = ctheta2A_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t305 = stheta2A_front_elbow_down_alike * h_left_0_front_elbow_down_alike
+    t306 = t83 * (t289 * t303 * (L1 - t304 - t305))
+    del t289, t304, t305
+    t307 = slope_left_front_elbow_down_alike * slope_left_front_elbow_down_alike
+    t308 = np.sqrt(np.maximum(0.0, 4.0 * t301 * t306 + t307))
+    del t307
+    root_on_1_both_front_elbow_down_alike = _runtime.select(t297, t308, 0.0)
+    del t308
+    t309 = slope_left_front_elbow_down_alike - root_on_1_both_front_elbow_down_alike
+    t310 = t47 * heavy_0_left_front_elbow_down_alike
+    t311 = t310 * 5.960464477539063e-08
+    t312 = 1.0 / (t309 - t311)
+    t313 = (t302 * t312 <= 4.547473508864641e-13) & (0.0 < t301 * t312)
+    t314 = 2.0 * t301
+    t315 = 0.0 < -t301
+    t316 = slope_left_front_elbow_down_alike + root_on_1_both_front_elbow_down_alike
+    del root_on_1_both_front_elbow_down_alike
+    t317 = t310 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t306)
+    del t310
+    t318 = 1.0 / t317
+    del t317
+    t319 = heavy_0_left_front_elbow_down_alike * t316 * t318
+    t320 = t316 * t318
+    t321 = (t319 <= 9.094947017729282e-13) & (0.0 < t320)
+    del t319
+    far_back_1_both_front_elbow_down_alike = _runtime.select(t297, _runtime.select(t321, t320, 0.0), 0.0)
+    del t320, t321
+    t322 = _runtime.select(t315, far_back_1_both_front_elbow_down_alike, 0.0)
+    t323 = _runtime.select(slope_left_front_elbow_down_alike <= 0.0, _runtime.select(t313, t312 * t314, 0.0), t322)
+    del t312, t313, t322
+    t324 = gain_1_right_front_elbow_down_alike * gain_1_right_front_elbow_down_alike
+    del gain_1_right_front_elbow_down_alike
+    t325 = gain_0_right_front_elbow_down_alike * gain_0_right_front_elbow_down_alike
+    del gain_0_right_front_elbow_down_alike
+    t326 = _runtime.select(room_right_front_elbow_down_alike < 0.0, t324 / (t105 + t324 + t325), 0.0)
+    del t324, t325
+    share_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t326, 0.0)
     del t326
-    t367 = t341 * (heavy_0_right_front_elbow_down_alike * t332)
+    t327 = room_right_front_elbow_down_alike * (1.0 - share_right_front_elbow_down_alike)
+    t328 = heavy_0_right_front_elbow_down_alike * t327
+    t329 = ctheta2A_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t330 = stheta2A_front_elbow_down_alike * h_right_0_front_elbow_down_alike
+    t331 = t83 * (t268 * t303 * (L1 - t329 - t330))
+    del t268, t329, t330
+    t332 = slope_right_front_elbow_down_alike * slope_right_front_elbow_down_alike
+    t333 = np.sqrt(np.maximum(0.0, 4.0 * t327 * t331 + t332))
+    del t332
+    root_on_0_both_front_elbow_down_alike = _runtime.select(t297, t333, 0.0)
+    del t333
+    t334 = slope_right_front_elbow_down_alike - root_on_0_both_front_elbow_down_alike
+    t335 = t47 * heavy_0_right_front_elbow_down_alike
+    t336 = t335 * 5.960464477539063e-08
+    t337 = 1.0 / (t334 - t336)
+    t338 = (t328 * t337 <= 4.547473508864641e-13) & (0.0 < t327 * t337)
+    t339 = 2.0 * t327
+    t340 = 0.0 < -t327
+    t341 = slope_right_front_elbow_down_alike + root_on_0_both_front_elbow_down_alike
+    del root_on_0_both_front_elbow_down_alike
+    t342 = t335 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t331)
+    del t335
+    t343 = 1.0 / t342
+    del t342
+    t344 = heavy_0_right_front_elbow_down_alike * t341 * t343
+    t345 = t341 * t343
+    t346 = (t344 <= 9.094947017729282e-13) & (0.0 < t345)
+    del t344
+    far_back_0_both_front_elbow_down_alike = _runtime.select(t297, _runtime.select(t346, t345, 0.0), 0.0)
+    del t345, t346
+    t347 = _runtime.select(t340, far_back_0_both_front_elbow_down_alike, 0.0)
+    t348 = _runtime.select(slope_right_front_elbow_down_alike <= 0.0, _runtime.select(t338, t337 * t339, 0.0), t347)
+    del t337, t338, t347
+    near_back_both_front_elbow_down_alike = _runtime.select(t297, np.maximum(np.maximum(0.0, t323), t348), 0.0)
+    del t323, t348
+    t349 = slope_right_front_elbow_down_alike + t331 * near_back_both_front_elbow_down_alike
+    t350 = near_back_both_front_elbow_down_alike * t349 - t327
+    del t349
+    t351 = _runtime.select(0.0 < t350, far_back_0_both_front_elbow_down_alike, 0.0)
+    del far_back_0_both_front_elbow_down_alike, t350
+    t352 = np.maximum(near_back_both_front_elbow_down_alike, t351)
+    del t351
+    t353 = slope_left_front_elbow_down_alike + t306 * near_back_both_front_elbow_down_alike
+    t354 = near_back_both_front_elbow_down_alike * t353 - t301
+    del near_back_both_front_elbow_down_alike, t353
+    t355 = _runtime.select(0.0 < t354, far_back_1_both_front_elbow_down_alike, 0.0)
+    del far_back_1_both_front_elbow_down_alike, t354
+    turn_back_both_front_elbow_down_alike = _runtime.select(t297, np.maximum(t352, t355), 0.0)
+    del t352, t355
+    t356 = slope_left_front_elbow_down_alike + t306 * turn_back_both_front_elbow_down_alike
+    t357 = t301 - turn_back_both_front_elbow_down_alike * t356
+    del t356
+    t358 = slope_right_front_elbow_down_alike + t331 * turn_back_both_front_elbow_down_alike
+    t359 = t327 - turn_back_both_front_elbow_down_alike * t358
+    del t358
+    left_back_both_front_elbow_down_alike = _runtime.select(t297, np.minimum(t357, t359), 0.0)
+    del t357, t359
+    t360 = 1.0 / (t311 + t316)
+    del t311, t316
+    t361 = (-(t302 * t360) <= 4.547473508864641e-13) & (0.0 < -(t301 * t360))
+    del t302
+    t362 = t318 * (heavy_0_left_front_elbow_down_alike * t309)
+    del heavy_0_left_front_elbow_down_alike
+    t363 = -(t309 * t318)
+    del t309, t318
+    t364 = (-t362 <= 9.094947017729282e-13) & (0.0 < t363)
+    del t362
+    far_on_1_both_front_elbow_down_alike = _runtime.select(t297, _runtime.select(t364, t363, 0.0), 0.0)
+    del t363, t364
+    t365 = _runtime.select(t315, far_on_1_both_front_elbow_down_alike, 0.0)
+    del t315
+    t366 = _runtime.select(0.0 <= slope_left_front_elbow_down_alike, _runtime.select(t361, -(t314 * t360), 0.0), t365)
+    del t314, t360, t361, t365
+    t367 = 1.0 / (t336 + t341)
+    del t336, t341
+    t368 = (-(t328 * t367) <= 4.547473508864641e-13) & (0.0 < -(t327 * t367))
+    del t328
+    t369 = t343 * (heavy_0_right_front_elbow_down_alike * t334)
     del heavy_0_right_front_elbow_down_alike
-    t368 = -(t332 * t341)
-    del t332, t341
-    t369 = (-t367 <= 9.094947017729282e-13) & (0.0 < t368)
-    del t367
-    far_on_0_both_front_elbow_down_alike = _runtime.select(t295, _runtime.select(t369, t368, 0.0), 0.0)
-    del t368, t369
-    t370 = _runtime.select(t338, far_on_0_both_front_elbow_down_alike, 0.0)
-    del t338
-    t371 = _runtime.select(0.0 <= slope_right_front_elbow_down_alike, _runtime.select(t366, -(t337 * t365), 0.0), t370)
-    del t337, t365, t366, t370
-    near_on_both_front_elbow_down_alike = _runtime.select(t295, np.maximum(np.maximum(0.0, t364), t371), 0.0)
-    del t364, t371
-    t372 = slope_right_front_elbow_down_alike - t329 * near_on_both_front_elbow_down_alike
-    t373 = t325 + near_on_both_front_elbow_down_alike * t372
-    del t372
-    t374 = _runtime.select(0.0 < -t373, far_on_0_both_front_elbow_down_alike, 0.0)
-    del far_on_0_both_front_elbow_down_alike, t373
-    t375 = np.maximum(near_on_both_front_elbow_down_alike, t374)
+    t370 = -(t334 * t343)
+    del t334, t343
+    t371 = (-t369 <= 9.094947017729282e-13) & (0.0 < t370)
+    del t369
+    far_on_0_both_front_elbow_down_alike = _runtime.select(t297, _runtime.select(t371, t370, 0.0), 0.0)
+    del t370, t371
+    t372 = _runtime.select(t340, far_on_0_both_front_elbow_down_alike, 0.0)
+    del t340
+    t373 = _runtime.select(0.0 <= slope_right_front_elbow_down_alike, _runtime.select(t368, -(t339 * t367), 0.0), t372)
+    del t339, t367, t368, t372
+    near_on_both_front_elbow_down_alike = _runtime.select(t297, np.maximum(np.maximum(0.0, t366), t373), 0.0)
+    del t366, t373
+    t374 = slope_right_front_elbow_down_alike - t331 * near_on_both_front_elbow_down_alike
+    t375 = t327 + near_on_both_front_elbow_down_alike * t374
     del t374
-    t376 = slope_left_front_elbow_down_alike - t304 * near_on_both_front_elbow_down_alike
-    t377 = t299 + near_on_both_front_elbow_down_alike * t376
-    del near_on_both_front_elbow_down_alike, t376
-    t378 = _runtime.select(0.0 < -t377, far_on_1_both_front_elbow_down_alike, 0.0)
-    del far_on_1_both_front_elbow_down_alike, t377
-    turn_on_both_front_elbow_down_alike = _runtime.select(t295, np.maximum(t375, t378), 0.0)
-    del t375, t378
-    t379 = slope_left_front_elbow_down_alike - t304 * turn_on_both_front_elbow_down_alike
-    del slope_left_front_elbow_down_alike, t304
-    t380 = t299 + turn_on_both_front_elbow_down_alike * t379
-    del t299, t379
-    t381 = slope_right_front_elbow_down_alike - t329 * turn_on_both_front_elbow_down_alike
-    del slope_right_front_elbow_down_alike, t329
-    t382 = t325 + turn_on_both_front_elbow_down_alike * t381
-    del t325, t381
-    left_on_both_front_elbow_down_alike = _runtime.select(t295, np.minimum(t380, t382), 0.0)
-    del t380, t382
-    t383 = left_back_both_front_elbow_down_alike <= left_on_both_front_elbow_down_alike
+    t376 = _runtime.select(0.0 < -t375, far_on_0_both_front_elbow_down_alike, 0.0)
+    del far_on_0_both_front_elbow_down_alike, t375
+    t377 = np.maximum(near_on_both_front_elbow_down_alike, t376)
+    del t376
+    t378 = slope_left_front_elbow_down_alike - t306 * near_on_both_front_elbow_down_alike
+    t379 = t301 + near_on_both_front_elbow_down_alike * t378
+    del near_on_both_front_elbow_down_alike, t378
+    t380 = _runtime.select(0.0 < -t379, far_on_1_both_front_elbow_down_alike, 0.0)
+    del far_on_1_both_front_elbow_down_alike, t379
+    turn_on_both_front_elbow_down_alike = _runtime.select(t297, np.maximum(t377, t380), 0.0)
+    del t377, t380
+    t381 = slope_left_front_elbow_down_alike - t306 * turn_on_both_front_elbow_down_alike
+    del slope_left_front_elbow_down_alike, t306
+    t382 = t301 + turn_on_both_front_elbow_down_alike * t381
+    del t301, t381
+    t383 = slope_right_front_elbow_down_alike - t331 * turn_on_both_front_elbow_down_alike
+    del slope_right_front_elbow_down_alike, t331
+    t384 = t327 + turn_on_both_front_elbow_down_alike * t383
+    del t327, t383
+    left_on_both_front_elbow_down_alike = _runtime.select(t297, np.minimum(t382, t384), 0.0)
+    del t382, t384
+    t385 = left_back_both_front_elbow_down_alike <= left_on_both_front_elbow_down_alike
     del left_back_both_front_elbow_down_alike, left_on_both_front_elbow_down_alike
-    t384 = _runtime.select(t383, turn_on_both_front_elbow_down_alike, -turn_back_both_front_elbow_down_alike)
-    del t383, turn_back_both_front_elbow_down_alike, turn_on_both_front_elbow_down_alike
-    turn_both_front_elbow_down_alike = _runtime.select(t295, t384, 0.0)
-    del t384
-    t385 = room_left_front_elbow_down_alike * share_left_front_elbow_down_alike
+    t386 = _runtime.select(t385, turn_on_both_front_elbow_down_alike, -turn_back_both_front_elbow_down_alike)
+    del t385, turn_back_both_front_elbow_down_alike, turn_on_both_front_elbow_down_alike
+    turn_both_front_elbow_down_alike = _runtime.select(t297, t386, 0.0)
+    del t386
+    t387 = room_left_front_elbow_down_alike * share_left_front_elbow_down_alike
     del room_left_front_elbow_down_alike, share_left_front_elbow_down_alike
-    t386 = t47 * heavy_1_left_front_elbow_down_alike * 5.960464477539063e-08
+    t388 = t47 * heavy_1_left_front_elbow_down_alike * 5.960464477539063e-08
     del heavy_1_left_front_elbow_down_alike
-    t387 = -(t385 * _runtime.sign(-t290) / (t291 + t386))
-    del t290, t291, t385, t386
-    aside_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t387, 0.0)
-    del spent_left_front_elbow_down_alike, t387
-    t388 = room_right_front_elbow_down_alike * share_right_front_elbow_down_alike
+    t389 = -(t387 * _runtime.sign(-t292) / (t293 + t388))
+    del t292, t293, t387, t388
+    aside_left_front_elbow_down_alike = _runtime.select(spent_left_front_elbow_down_alike, t389, 0.0)
+    del spent_left_front_elbow_down_alike, t389
+    t390 = room_right_front_elbow_down_alike * share_right_front_elbow_down_alike
     del room_right_front_elbow_down_alike, share_right_front_elbow_down_alike
-    t389 = t47 * heavy_1_right_front_elbow_down_alike * 5.960464477539063e-08
+    t391 = t47 * heavy_1_right_front_elbow_down_alike * 5.960464477539063e-08
     del heavy_1_right_front_elbow_down_alike
-    t390 = -(t388 * _runtime.sign(-t274) / (t275 + t389))
-    del t274, t275, t388, t389
-    aside_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t390, 0.0)
-    del spent_right_front_elbow_down_alike, t390
-    t391 = np.abs(aside_left_front_elbow_down_alike) <= np.abs(aside_right_front_elbow_down_alike)
-    t392 = _runtime.select(t391, aside_right_front_elbow_down_alike, aside_left_front_elbow_down_alike)
-    del aside_left_front_elbow_down_alike, aside_right_front_elbow_down_alike, t391
-    t393 = drawn_front_elbow_down_alike * turn_both_front_elbow_down_alike
-    t394 = turn_both_front_elbow_down_alike + t392 - t83 * t393
-    del t392, t393
-    lean_front_elbow_down_alike = _runtime.select(t295, t394, 0.0)
-    del t394
-    t395 = lean_front_elbow_down_alike * lean_front_elbow_down_alike
-    t396 = 1.0 + t395
-    t397 = 1.0 / np.sqrt(t396)
-    t398 = 1.0 / (t396 * (1.0 + t397))
+    t392 = -(t390 * _runtime.sign(-t276) / (t277 + t391))
+    del t276, t277, t390, t391
+    aside_right_front_elbow_down_alike = _runtime.select(spent_right_front_elbow_down_alike, t392, 0.0)
+    del spent_right_front_elbow_down_alike, t392
+    t393 = np.abs(aside_left_front_elbow_down_alike) <= np.abs(aside_right_front_elbow_down_alike)
+    t394 = _runtime.select(t393, aside_right_front_elbow_down_alike, aside_left_front_elbow_down_alike)
+    del aside_left_front_elbow_down_alike, aside_right_front_elbow_down_alike, t393
+    t395 = drawn_front_elbow_down_alike * turn_both_front_elbow_down_alike
+    t396 = turn_both_front_elbow_down_alike + t394 - t83 * t395
+    del t394, t395
+    lean_front_elbow_down_alike = _runtime.select(t297, t396, 0.0)
     del t396
-    t399 = elbow_11_front_elbow_down_alike * t395 * t398
-    t400 = elbow_21_front_elbow_down_alike * lean_front_elbow_down_alike
-    t401 = t399 + t397 * t400
-    del t399, t400
-    t402 = turn_both_front_elbow_down_alike * turn_both_front_elbow_down_alike
-    t403 = elbow_11_front_elbow_down_alike - r_right_0_front_elbow_down_alike
-    t404 = 1.0 + t402
-    t405 = 1.0 / np.sqrt(t404)
-    t406 = 1.0 / (t404 * (1.0 + t405))
-    del t404
-    t407 = elbow_21_front_elbow_down_alike - h_right_0_front_elbow_down_alike
-    t408 = t405 * (turn_both_front_elbow_down_alike * t407)
-    t409 = t401 - t402 * t403 * t406 - t408
-    del t408
-    t410 = t409 - 2.0 * r_right_0_front_elbow_down_alike
-    t411 = elbow_11_front_elbow_down_alike * lean_front_elbow_down_alike
-    t412 = t398 * (elbow_21_front_elbow_down_alike * t395)
-    del t395, t398
-    swing_21_front_elbow_down_alike = t397 * t411 - t412
-    del t397, t411, t412
-    t413 = swing_21_front_elbow_down_alike + t406 * (t402 * t407)
-    del t407
-    t414 = t405 * (turn_both_front_elbow_down_alike * t403)
-    del t403
-    more_right_21_front_elbow_down_alike = t413 - t414
-    del t413, t414
-    t415 = more_right_21_front_elbow_down_alike + 2.0 * h_right_0_front_elbow_down_alike
-    t416 = t409 * t410 + more_right_21_front_elbow_down_alike * t415
-    del t410, t415
-    change_right_front_elbow_down_alike = _runtime.select(t295, t416, 0.0)
-    del t416
-    t417 = nearer_right_front_elbow_down_alike - change_right_front_elbow_down_alike
-    del nearer_right_front_elbow_down_alike
-    t418 = farther_right_front_elbow_down_alike + change_right_front_elbow_down_alike
-    del change_right_front_elbow_down_alike, farther_right_front_elbow_down_alike
-    t419 = t46 & t278 & t294 & (t102 <= t417) & (t102 <= t418)
-    del t278, t294
-    t420 = elbow_11_front_elbow_down_alike - r_left_0_front_elbow_down_alike
-    del elbow_11_front_elbow_down_alike
-    t421 = elbow_21_front_elbow_down_alike - h_left_0_front_elbow_down_alike
-    t422 = t405 * (turn_both_front_elbow_down_alike * t421)
-    t423 = t401 - t406 * (t402 * t420) - t422
-    del t401, t422
-    t424 = t423 * (t423 - 2.0 * r_left_0_front_elbow_down_alike)
-    t425 = swing_21_front_elbow_down_alike + t406 * (t402 * t421)
-    del swing_21_front_elbow_down_alike, t402, t406, t421
-    t426 = t405 * (turn_both_front_elbow_down_alike * t420)
-    del t405, t420
-    more_left_21_front_elbow_down_alike = t425 - t426
-    del t425, t426
-    t427 = more_left_21_front_elbow_down_alike + 2.0 * h_left_0_front_elbow_down_alike
-    t428 = t424 + more_left_21_front_elbow_down_alike * t427
-    del t424, t427
-    change_left_front_elbow_down_alike = _runtime.select(t295, t428, 0.0)
-    del t428
-    t429 = -(t282 + change_left_front_elbow_down_alike)
-    del t282
-    t430 = farther_left_front_elbow_down_alike + change_left_front_elbow_down_alike
-    del change_left_front_elbow_down_alike, farther_left_front_elbow_down_alike
-    unreachable_2 = np.logical_not(t419 & (t102 <= t429) & (t102 <= t430))
-    del t419
-    t431 = _runtime.poison(invalid | unreachable_2)
-    t432 = t28 + t431
-    del t28
-    t433 = h_right_0_front_elbow_down_alike + more_right_21_front_elbow_down_alike
-    del more_right_21_front_elbow_down_alike
-    h_right_front_elbow_down_alike = _runtime.select(t295, t433, h_right_0_front_elbow_down_alike)
-    del h_right_0_front_elbow_down_alike, t433
-    r_right_front_elbow_down_alike = _runtime.select(t295, r_right_0_front_elbow_down_alike - t409, r_right_0_front_elbow_down_alike)
-    del r_right_0_front_elbow_down_alike, t409
-    t434 = np.abs(h_right_front_elbow_down_alike) + np.abs(r_right_front_elbow_down_alike)
-    folded_right_front_elbow_down_alike = t434 <= t204
-    del t434
-    t435 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
-    del ctheta2A_front_elbow_down_alike
-    M_right_front_elbow_down_alike = np.maximum(t418, t207)
+    t397 = lean_front_elbow_down_alike * lean_front_elbow_down_alike
+    t398 = 1.0 + t397
+    t399 = 1.0 / np.sqrt(t398)
+    t400 = 1.0 / (t398 * (1.0 + t399))
+    del t398
+    t401 = elbow_11_front_elbow_down_alike * t397 * t400
+    t402 = elbow_21_front_elbow_down_alike * lean_front_elbow_down_alike
+    t403 = t401 + t399 * t402
+    del t401, t402
+    t404 = turn_both_front_elbow_down_alike * turn_both_front_elbow_down_alike
+    t405 = elbow_11_front_elbow_down_alike - r_right_0_front_elbow_down_alike
+    t406 = 1.0 + t404
+    t407 = 1.0 / np.sqrt(t406)
+    t408 = 1.0 / (t406 * (1.0 + t407))
+    del t406
+    t409 = elbow_21_front_elbow_down_alike - h_right_0_front_elbow_down_alike
+    t410 = t407 * (turn_both_front_elbow_down_alike * t409)
+    t411 = t403 - t404 * t405 * t408 - t410
+    del t410
+    t412 = t411 - 2.0 * r_right_0_front_elbow_down_alike
+    t413 = elbow_11_front_elbow_down_alike * lean_front_elbow_down_alike
+    t414 = t400 * (elbow_21_front_elbow_down_alike * t397)
+    del t397, t400
+    swing_21_front_elbow_down_alike = t399 * t413 - t414
+    del t399, t413, t414
+    t415 = swing_21_front_elbow_down_alike + t408 * (t404 * t409)
+    del t409
+    t416 = t407 * (turn_both_front_elbow_down_alike * t405)
+    del t405
+    more_right_21_front_elbow_down_alike = t415 - t416
+    del t415, t416
+    t417 = more_right_21_front_elbow_down_alike + 2.0 * h_right_0_front_elbow_down_alike
+    t418 = t411 * t412 + more_right_21_front_elbow_down_alike * t417
+    del t412, t417
+    change_right_front_elbow_down_alike = _runtime.select(t297, t418, 0.0)
     del t418
-    N_right_front_elbow_down_alike = np.maximum(t417, t207)
-    del t417
-    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t436 = 1.0 / whole_right_front_elbow_down_alike
-    del whole_right_front_elbow_down_alike
-    t437 = t69 + t206 * M_right_front_elbow_down_alike * t436
-    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t437)
-    del t437
-    t438 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    t439 = turn_both_front_elbow_down_alike * lean_front_elbow_down_alike
-    t440 = turn_both_front_elbow_down_alike - lean_front_elbow_down_alike
-    del lean_front_elbow_down_alike, turn_both_front_elbow_down_alike
-    t441 = t255 * (1.0 + t439) - straight_mid_front_elbow_down_alike * t440
-    del t439, t440
-    sigma_right_front_elbow_down_alike = _runtime.sign(-_runtime.select(t295, t441, t255))
-    del t441
-    t442 = 2.0 * sigma_right_front_elbow_down_alike
-    t443 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
-    t444 = np.sqrt(t443)
-    del t443
-    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t436 * (t442 * t444))
-    del t436
-    t445 = fore_arm * s_bend_right_front_elbow_down_alike
-    del s_bend_right_front_elbow_down_alike
-    t446 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
-    del ahead_1_right_front_elbow_down_alike
-    t447 = np.arctan2(t438 - r_right_front_elbow_down_alike * t445, t446 + h_right_front_elbow_down_alike * t445)
-    del h_right_front_elbow_down_alike, r_right_front_elbow_down_alike, t438, t445, t446
-    t448 = _runtime.select(folded_right_front_elbow_down_alike, t435, t447)
-    del t447
-    t449 = _runtime.wrap_cut(t448) + t431
-    del t448
-    t450 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
-    del M_right_front_elbow_down_alike, N_right_front_elbow_down_alike
-    t451 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t444, t450)
-    del t444, t450
-    t452 = t217 + _runtime.select(short_right, 0.0, t451)
-    del t451
-    t453 = _runtime.wrap(t452) + t431
-    del t452
-    t454 = h_left_0_front_elbow_down_alike + more_left_21_front_elbow_down_alike
-    del more_left_21_front_elbow_down_alike
-    h_left_front_elbow_down_alike = _runtime.select(t295, t454, h_left_0_front_elbow_down_alike)
-    del h_left_0_front_elbow_down_alike, t454
-    r_left_front_elbow_down_alike = _runtime.select(t295, r_left_0_front_elbow_down_alike - t423, r_left_0_front_elbow_down_alike)
-    del r_left_0_front_elbow_down_alike, t295, t423
-    t455 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
-    folded_left_front_elbow_down_alike = t455 <= t204
-    del t455
-    M_left_front_elbow_down_alike = np.maximum(t430, 0.0)
+    t419 = nearer_right_front_elbow_down_alike - change_right_front_elbow_down_alike
+    del nearer_right_front_elbow_down_alike
+    t420 = farther_right_front_elbow_down_alike + change_right_front_elbow_down_alike
+    del change_right_front_elbow_down_alike, farther_right_front_elbow_down_alike
+    t421 = t46 & t280 & t296 & (t102 <= t419) & (t102 <= t420)
+    del t280, t296
+    t422 = elbow_11_front_elbow_down_alike - r_left_0_front_elbow_down_alike
+    del elbow_11_front_elbow_down_alike
+    t423 = elbow_21_front_elbow_down_alike - h_left_0_front_elbow_down_alike
+    t424 = t407 * (turn_both_front_elbow_down_alike * t423)
+    t425 = t403 - t408 * (t404 * t422) - t424
+    del t403, t424
+    t426 = t425 * (t425 - 2.0 * r_left_0_front_elbow_down_alike)
+    t427 = swing_21_front_elbow_down_alike + t408 * (t404 * t423)
+    del swing_21_front_elbow_down_alike, t404, t408, t423
+    t428 = t407 * (turn_both_front_elbow_down_alike * t422)
+    del t407, t422
+    more_left_21_front_elbow_down_alike = t427 - t428
+    del t427, t428
+    t429 = more_left_21_front_elbow_down_alike + 2.0 * h_left_0_front_elbow_down_alike
+    t430 = t426 + more_left_21_front_elbow_down_alike * t429
+    del t426, t429
+    change_left_front_elbow_down_alike = _runtime.select(t297, t430, 0.0)
     del t430
-    N_left_front_elbow_down_alike = np.maximum(t429, 0.0)
-    del t429
+    t431 = -(t284 + change_left_front_elbow_down_alike)
+    del t284
+    t432 = farther_left_front_elbow_down_alike + change_left_front_elbow_down_alike
+    del change_left_front_elbow_down_alike, farther_left_front_elbow_down_alike
+    unreachable_2 = np.logical_not(t421 & (t102 <= t431) & (t102 <= t432))
+    del t421
+    t433 = _runtime.poison(invalid | unreachable_2)
+    t434 = t28 + t433
+    del t28
+    t435 = h_right_0_front_elbow_down_alike + more_right_21_front_elbow_down_alike
+    del more_right_21_front_elbow_down_alike
+    h_right_front_elbow_down_alike = _runtime.select(t297, t435, h_right_0_front_elbow_down_alike)
+    del h_right_0_front_elbow_down_alike, t435
+    r_right_front_elbow_down_alike = _runtime.select(t297, r_right_0_front_elbow_down_alike - t411, r_right_0_front_elbow_down_alike)
+    del r_right_0_front_elbow_down_alike, t411
+    t436 = np.abs(h_right_front_elbow_down_alike) + np.abs(r_right_front_elbow_down_alike)
+    folded_right_front_elbow_down_alike = t436 <= t204
+    del t436
+    t437 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_front_elbow_down_alike)
+    del ctheta2A_front_elbow_down_alike
+    M_right_front_elbow_down_alike = np.maximum(t420, t208)
+    del t420
+    N_right_front_elbow_down_alike = np.maximum(t419, t208)
+    del t419
+    whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
+    t438 = 1.0 / whole_right_front_elbow_down_alike
+    del whole_right_front_elbow_down_alike
+    t439 = t69 + t207 * M_right_front_elbow_down_alike * t438
+    ahead_1_right_front_elbow_down_alike = _runtime.select(short_right, size, t439)
+    del t439
+    t440 = h_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    t441 = turn_both_front_elbow_down_alike * lean_front_elbow_down_alike
+    t442 = turn_both_front_elbow_down_alike - lean_front_elbow_down_alike
+    del lean_front_elbow_down_alike, turn_both_front_elbow_down_alike
+    t443 = t257 * (1.0 + t441) - straight_mid_front_elbow_down_alike * t442
+    del t441, t442
+    t444 = _runtime.select(t297, t443, t257)
+    del t443
+    sigma_right_front_elbow_down_alike = _runtime.sign(-t444)
+    t445 = 2.0 * sigma_right_front_elbow_down_alike
+    t446 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
+    t447 = np.sqrt(t446)
+    del t446
+    s_bend_right_front_elbow_down_alike = _runtime.select(short_right, 0.0, t438 * (t445 * t447))
+    del t438
+    t448 = fore_arm * s_bend_right_front_elbow_down_alike
+    del s_bend_right_front_elbow_down_alike
+    t449 = r_right_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    del ahead_1_right_front_elbow_down_alike
+    t450 = np.arctan2(t440 - r_right_front_elbow_down_alike * t448, t449 + h_right_front_elbow_down_alike * t448)
+    del h_right_front_elbow_down_alike, r_right_front_elbow_down_alike, t440, t448, t449
+    t451 = _runtime.select(folded_right_front_elbow_down_alike, t437, t450)
+    del t450
+    t452 = _runtime.wrap_cut(t451) + t433
+    del t451
+    t453 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
+    t454 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t447, t453)
+    del t447, t453
+    t455 = t219 + _runtime.select(short_right, 0.0, t454)
+    del t454
+    t456 = _runtime.wrap(t455) + t433
+    del t455
+    t457 = h_left_0_front_elbow_down_alike + more_left_21_front_elbow_down_alike
+    del more_left_21_front_elbow_down_alike
+    h_left_front_elbow_down_alike = _runtime.select(t297, t457, h_left_0_front_elbow_down_alike)
+    del h_left_0_front_elbow_down_alike, t457
+    r_left_front_elbow_down_alike = _runtime.select(t297, r_left_0_front_elbow_down_alike - t425, r_left_0_front_elbow_down_alike)
+    del r_left_0_front_elbow_down_alike, t425
+    t458 = np.abs(h_left_front_elbow_down_alike) + np.abs(r_left_front_elbow_down_alike)
+    folded_left_front_elbow_down_alike = t458 <= t204
+    del t458
+    M_left_front_elbow_down_alike = np.maximum(t432, 0.0)
+    del t432
+    N_left_front_elbow_down_alike = np.maximum(t431, 0.0)
+    del t431
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t456 = 1.0 / whole_left_front_elbow_down_alike
+    t459 = 1.0 / whole_left_front_elbow_down_alike
     del whole_left_front_elbow_down_alike
-    t457 = t69 + t206 * M_left_front_elbow_down_alike * t456
-    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t457)
-    del t457
-    t458 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
-    t459 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
-    t460 = np.sqrt(t459)
-    del t459
-    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t456 * (t442 * t460))
-    del t442, t456
-    t461 = fore_arm * s_bend_left_front_elbow_down_alike
+    t460 = t69 + t207 * M_left_front_elbow_down_alike * t459
+    ahead_1_left_front_elbow_down_alike = _runtime.select(short_right, size, t460)
+    del t460
+    t461 = h_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t462 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
+    t463 = np.sqrt(t462)
+    del t462
+    s_bend_left_front_elbow_down_alike = _runtime.select(short_right, 0.0, t459 * (t445 * t463))
+    del t445, t459
+    t464 = fore_arm * s_bend_left_front_elbow_down_alike
     del s_bend_left_front_elbow_down_alike
-    t462 = r_left_front_elbow_down_alike * t461
-    t463 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    t465 = r_left_front_elbow_down_alike * t464
+    t466 = r_left_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     del ahead_1_left_front_elbow_down_alike, r_left_front_elbow_down_alike
-    t464 = h_left_front_elbow_down_alike * t461
-    del h_left_front_elbow_down_alike, t461
-    t465 = _runtime.select(folded_left_front_elbow_down_alike, t435, np.arctan2(t458 - t462, t463 + t464))
-    t466 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
-    del M_left_front_elbow_down_alike, N_left_front_elbow_down_alike
-    t467 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t460, t466)
-    del sigma_right_front_elbow_down_alike, t460, t466
-    t468 = _runtime.select(short_right, 0.0, t467)
-    del t467
-    t469 = t231 + t431
-    t470 = _runtime.select(folded_left_front_elbow_down_alike, t435, np.arctan2(t458 + t462, t463 - t464))
-    del t435, t458, t462, t463, t464
-    t471 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t27))
+    t467 = h_left_front_elbow_down_alike * t464
+    del h_left_front_elbow_down_alike, t464
+    t468 = _runtime.select(folded_left_front_elbow_down_alike, t437, np.arctan2(t461 - t465, t466 + t467))
+    t469 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
+    t470 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t463, t469)
+    del t463, t469
+    t471 = _runtime.select(short_right, 0.0, t470)
+    del t470
+    t472 = t233 + t433
+    t473 = _runtime.select(folded_left_front_elbow_down_alike, t437, np.arctan2(t461 + t465, t466 - t467))
+    del t437, t461, t465, t466, t467
+    t474 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t27))
     del t27, t3
     ctheta2A_rear_elbow_up_alike = _runtime.select(folded, 1.0, -t57)
     del t57
-    t472 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
-    ctheta23A_rear_elbow_up_alike = t472 - stheta2A * s_relative_front_elbow_down_alike
-    del t472
-    t473 = elbow_21 - L2 * ctheta23A_rear_elbow_up_alike
-    t474 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
-    del s_relative_front_elbow_down_alike
-    stheta23A_rear_elbow_up_alike = stheta2A * c_relative_front_elbow_down_alike + t474
-    del c_relative_front_elbow_down_alike, t474
-    point_21_rear_elbow_up_alike = t473 + a3 * stheta23A_rear_elbow_up_alike
-    del t473
-    t475 = t18 * (t_psi * ctheta23A_rear_elbow_up_alike)
-    t476 = d * (t475 + t_phi * stheta23A_rear_elbow_up_alike)
+    t475 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
+    ctheta23A_rear_elbow_up_alike = t475 - stheta2A * s_relative_front_elbow_down_alike
     del t475
-    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t476
-    t477 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    elbow_11_rear_elbow_up_alike = L1 * ctheta2A_rear_elbow_up_alike
-    t478 = elbow_11_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
-    point_11_rear_elbow_up_alike = t478 + a3 * ctheta23A_rear_elbow_up_alike
+    t476 = elbow_21 - L2 * ctheta23A_rear_elbow_up_alike
+    t477 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
+    del s_relative_front_elbow_down_alike
+    stheta23A_rear_elbow_up_alike = stheta2A * c_relative_front_elbow_down_alike + t477
+    del c_relative_front_elbow_down_alike, t477
+    point_21_rear_elbow_up_alike = t476 + a3 * stheta23A_rear_elbow_up_alike
+    del t476
+    t478 = t18 * (t_psi * ctheta23A_rear_elbow_up_alike)
+    t479 = d * (t478 + t_phi * stheta23A_rear_elbow_up_alike)
     del t478
-    t479 = t18 * (t_psi * stheta23A_rear_elbow_up_alike)
+    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t479
+    t480 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    elbow_11_rear_elbow_up_alike = L1 * ctheta2A_rear_elbow_up_alike
+    t481 = elbow_11_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
+    point_11_rear_elbow_up_alike = t481 + a3 * ctheta23A_rear_elbow_up_alike
+    del t481
+    t482 = t18 * (t_psi * stheta23A_rear_elbow_up_alike)
     del stheta23A_rear_elbow_up_alike
-    t480 = d * (t_phi * ctheta23A_rear_elbow_up_alike - t479)
-    del ctheta23A_rear_elbow_up_alike, t479
-    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t480
-    t481 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t482 = t477 + t481
-    del t477, t481
-    gap_rear_elbow_up_alike = t480 * t480 + t476 * t476
-    t483 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t484 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
-    t485 = 2.0 * point_11_rear_elbow_up_alike * t480 + 2.0 * point_21_rear_elbow_up_alike * t476
-    farther_right_rear_elbow_up_alike = _runtime.select(t48 * t482 < t483, t482 - t70, t484 - t485)
-    del t482
-    t486 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
+    t483 = d * (t_phi * ctheta23A_rear_elbow_up_alike - t482)
+    del ctheta23A_rear_elbow_up_alike, t482
+    r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t483
+    t484 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t485 = t480 + t484
+    del t480, t484
+    gap_rear_elbow_up_alike = t483 * t483 + t479 * t479
+    t486 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t487 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
+    t488 = 2.0 * point_11_rear_elbow_up_alike * t483 + 2.0 * point_21_rear_elbow_up_alike * t479
+    farther_right_rear_elbow_up_alike = _runtime.select(t48 * t485 < t486, t485 - t70, t487 - t488)
+    del t485
+    t489 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
     del N_mid_front_elbow_down_alike
-    nearer_right_rear_elbow_up_alike = t485 + t486
+    nearer_right_rear_elbow_up_alike = t488 + t489
     room_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
-    t487 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t488 = np.maximum(-t487, room_right_rear_elbow_up_alike)
-    del t487
-    spent_right_rear_elbow_up_alike = t488 <= t77
-    del t488
-    t489 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    t490 = t489 - stheta2A * r_right_0_rear_elbow_up_alike
-    del t489
-    t491 = nearer_right_rear_elbow_up_alike <= farther_right_rear_elbow_up_alike
-    t492 = _runtime.select(t491, 1.0, -1.0)
-    del t491
-    t493 = t490 * t492
+    t490 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t491 = np.maximum(-t490, room_right_rear_elbow_up_alike)
     del t490
-    slope_right_rear_elbow_up_alike = t269 * t493
-    heavy_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t272, 1.0)
-    t494 = np.abs(slope_right_rear_elbow_up_alike) / heavy_0_right_rear_elbow_up_alike
-    gain_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t494, 0.0)
+    spent_right_rear_elbow_up_alike = t491 <= t77
+    del t491
+    t492 = ctheta2A_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t493 = t492 - stheta2A * r_right_0_rear_elbow_up_alike
+    del t492
+    t494 = nearer_right_rear_elbow_up_alike <= farther_right_rear_elbow_up_alike
+    t495 = _runtime.select(t494, 1.0, -1.0)
     del t494
-    t495 = t39 * t493
+    t496 = t493 * t495
     del t493
-    t496 = np.abs(t495)
-    heavy_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t90, 1.0)
-    gain_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t496 / heavy_1_right_rear_elbow_up_alike, 0.0)
-    t497 = gain_0_right_rear_elbow_up_alike + gain_1_right_rear_elbow_up_alike
-    t498 = _runtime.select(spent_right_rear_elbow_up_alike, t497, 0.0)
+    slope_right_rear_elbow_up_alike = t271 * t496
+    heavy_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t274, 1.0)
+    t497 = np.abs(slope_right_rear_elbow_up_alike) / heavy_0_right_rear_elbow_up_alike
+    gain_0_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t497, 0.0)
     del t497
-    t499 = -(_runtime.FEASIBILITY * (t47 + t498)) <= room_right_rear_elbow_up_alike
-    del t498
-    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t476
-    del point_21_rear_elbow_up_alike, t476
-    t500 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t480
-    del point_11_rear_elbow_up_alike, t480
-    t501 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    t502 = t500 + t501
-    del t500, t501
-    farther_left_rear_elbow_up_alike = _runtime.select(t48 * t502 < t483, t502 - t70, t484 + t485)
-    del t483, t484, t502
-    t503 = t485 - t486
-    del t485, t486
-    room_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, -t503)
-    t504 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t505 = np.maximum(-t504, room_left_rear_elbow_up_alike)
-    del t504
-    spent_left_rear_elbow_up_alike = t505 <= t77
-    del t505
-    t506 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    t507 = t506 - stheta2A * r_left_0_rear_elbow_up_alike
-    del t506
-    t508 = _runtime.select(-t503 <= farther_left_rear_elbow_up_alike, 1.0, -1.0)
-    t509 = t507 * t508
+    t498 = t39 * t496
+    del t496
+    t499 = np.abs(t498)
+    heavy_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t90, 1.0)
+    gain_1_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t499 / heavy_1_right_rear_elbow_up_alike, 0.0)
+    t500 = gain_0_right_rear_elbow_up_alike + gain_1_right_rear_elbow_up_alike
+    t501 = _runtime.select(spent_right_rear_elbow_up_alike, t500, 0.0)
+    del t500
+    t502 = -(_runtime.FEASIBILITY * (t47 + t501)) <= room_right_rear_elbow_up_alike
+    del t501
+    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t479
+    del point_21_rear_elbow_up_alike, t479
+    t503 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike + t483
+    del point_11_rear_elbow_up_alike, t483
+    t504 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t505 = t503 + t504
+    del t503, t504
+    farther_left_rear_elbow_up_alike = _runtime.select(t48 * t505 < t486, t505 - t70, t487 + t488)
+    del t486, t487, t505
+    t506 = t488 - t489
+    del t488, t489
+    room_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, -t506)
+    t507 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t508 = np.maximum(-t507, room_left_rear_elbow_up_alike)
     del t507
-    slope_left_rear_elbow_up_alike = t269 * t509
-    del t269
-    heavy_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t272, 1.0)
-    del t272
-    t510 = np.abs(slope_left_rear_elbow_up_alike) / heavy_0_left_rear_elbow_up_alike
-    gain_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t510, 0.0)
-    del t510
-    t511 = t39 * t509
+    spent_left_rear_elbow_up_alike = t508 <= t77
+    del t508
+    t509 = ctheta2A_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    t510 = t509 - stheta2A * r_left_0_rear_elbow_up_alike
     del t509
-    t512 = np.abs(t511)
-    heavy_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t90, 1.0)
-    gain_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t512 / heavy_1_left_rear_elbow_up_alike, 0.0)
-    t513 = gain_0_left_rear_elbow_up_alike + gain_1_left_rear_elbow_up_alike
-    t514 = _runtime.select(spent_left_rear_elbow_up_alike, t513, 0.0)
+    t511 = _runtime.select(-t506 <= farther_left_rear_elbow_up_alike, 1.0, -1.0)
+    t512 = t510 * t511
+    del t510
+    slope_left_rear_elbow_up_alike = t271 * t512
+    del t271
+    heavy_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t274, 1.0)
+    del t274
+    t513 = np.abs(slope_left_rear_elbow_up_alike) / heavy_0_left_rear_elbow_up_alike
+    gain_0_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t513, 0.0)
     del t513
-    t515 = -(_runtime.FEASIBILITY * (t47 + t514)) <= room_left_rear_elbow_up_alike
-    del t514
-    t516 = spent_left_rear_elbow_up_alike | spent_right_rear_elbow_up_alike
-    t517 = gain_1_left_rear_elbow_up_alike * gain_1_left_rear_elbow_up_alike
+    t514 = t39 * t512
+    del t512
+    t515 = np.abs(t514)
+    heavy_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t90, 1.0)
+    gain_1_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t515 / heavy_1_left_rear_elbow_up_alike, 0.0)
+    t516 = gain_0_left_rear_elbow_up_alike + gain_1_left_rear_elbow_up_alike
+    t517 = _runtime.select(spent_left_rear_elbow_up_alike, t516, 0.0)
+    del t516
+    t518 = -(_runtime.FEASIBILITY * (t47 + t517)) <= room_left_rear_elbow_up_alike
+    del t517
+    t519 = spent_left_rear_elbow_up_alike | spent_right_rear_elbow_up_alike
+    t520 = gain_1_left_rear_elbow_up_alike * gain_1_left_rear_elbow_up_alike
     del gain_1_left_rear_elbow_up_alike
-    t518 = gain_0_left_rear_elbow_up_alike * gain_0_left_rear_elbow_up_alike
+    t521 = gain_0_left_rear_elbow_up_alike * gain_0_left_rear_elbow_up_alike
     del gain_0_left_rear_elbow_up_alike
-    t519 = _runtime.select(room_left_rear_elbow_up_alike < 0.0, t517 / (t105 + t517 + t518), 0.0)
-    del t517, t518
-    share_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t519, 0.0)
-    del t519
-    t520 = room_left_rear_elbow_up_alike * (1.0 - share_left_rear_elbow_up_alike)
-    t521 = heavy_0_left_rear_elbow_up_alike * t520
-    t522 = ctheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    t523 = L1 - t522 - stheta2A * h_left_0_rear_elbow_up_alike
+    t522 = _runtime.select(room_left_rear_elbow_up_alike < 0.0, t520 / (t105 + t520 + t521), 0.0)
+    del t520, t521
+    share_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t522, 0.0)
     del t522
-    t524 = t83 * (t301 * t508 * t523)
-    del t508, t523
-    t525 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
-    t526 = np.sqrt(np.maximum(0.0, 4.0 * t520 * t524 + t525))
+    t523 = room_left_rear_elbow_up_alike * (1.0 - share_left_rear_elbow_up_alike)
+    t524 = heavy_0_left_rear_elbow_up_alike * t523
+    t525 = ctheta2A_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t526 = L1 - t525 - stheta2A * h_left_0_rear_elbow_up_alike
     del t525
-    root_on_1_both_rear_elbow_up_alike = _runtime.select(t516, t526, 0.0)
-    del t526
-    t527 = slope_left_rear_elbow_up_alike - root_on_1_both_rear_elbow_up_alike
-    t528 = t47 * heavy_0_left_rear_elbow_up_alike
-    t529 = t528 * 5.960464477539063e-08
-    t530 = 1.0 / (t527 - t529)
-    t531 = (t521 * t530 <= 4.547473508864641e-13) & (0.0 < t520 * t530)
-    t532 = 2.0 * t520
-    t533 = 0.0 < -t520
-    t534 = slope_left_rear_elbow_up_alike + root_on_1_both_rear_elbow_up_alike
-    del root_on_1_both_rear_elbow_up_alike
-    t535 = t528 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t524)
+    t527 = t83 * (t303 * t511 * t526)
+    del t511, t526
+    t528 = slope_left_rear_elbow_up_alike * slope_left_rear_elbow_up_alike
+    t529 = np.sqrt(np.maximum(0.0, 4.0 * t523 * t527 + t528))
     del t528
-    t536 = 1.0 / t535
-    del t535
-    t537 = heavy_0_left_rear_elbow_up_alike * t534 * t536
-    t538 = t534 * t536
-    t539 = (t537 <= 9.094947017729282e-13) & (0.0 < t538)
-    del t537
-    far_back_1_both_rear_elbow_up_alike = _runtime.select(t516, _runtime.select(t539, t538, 0.0), 0.0)
-    del t538, t539
-    t540 = _runtime.select(t533, far_back_1_both_rear_elbow_up_alike, 0.0)
-    t541 = _runtime.select(slope_left_rear_elbow_up_alike <= 0.0, _runtime.select(t531, t530 * t532, 0.0), t540)
-    del t530, t531, t540
-    t542 = gain_1_right_rear_elbow_up_alike * gain_1_right_rear_elbow_up_alike
+    root_on_1_both_rear_elbow_up_alike = _runtime.select(t519, t529, 0.0)
+    del t529
+    t530 = slope_left_rear_elbow_up_alike - root_on_1_both_rear_elbow_up_alike
+    t531 = t47 * heavy_0_left_rear_elbow_up_alike
+    t532 = t531 * 5.960464477539063e-08
+    t533 = 1.0 / (t530 - t532)
+    t534 = (t524 * t533 <= 4.547473508864641e-13) & (0.0 < t523 * t533)
+    t535 = 2.0 * t523
+    t536 = 0.0 < -t523
+    t537 = slope_left_rear_elbow_up_alike + root_on_1_both_rear_elbow_up_alike
+    del root_on_1_both_rear_elbow_up_alike
+    t538 = t531 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t527)
+    del t531
+    t539 = 1.0 / t538
+    del t538
+    t540 = heavy_0_left_rear_elbow_up_alike * t537 * t539
+    t541 = t537 * t539
+    t542 = (t540 <= 9.094947017729282e-13) & (0.0 < t541)
+    del t540
+    far_back_1_both_rear_elbow_up_alike = _runtime.select(t519, _runtime.select(t542, t541, 0.0), 0.0)
+    del t541, t542
+    t543 = _runtime.select(t536, far_back_1_both_rear_elbow_up_alike, 0.0)
+    t544 = _runtime.select(slope_left_rear_elbow_up_alike <= 0.0, _runtime.select(t534, t533 * t535, 0.0), t543)
+    del t533, t534, t543
+    t545 = gain_1_right_rear_elbow_up_alike * gain_1_right_rear_elbow_up_alike
     del gain_1_right_rear_elbow_up_alike
-    t543 = gain_0_right_rear_elbow_up_alike * gain_0_right_rear_elbow_up_alike
+    t546 = gain_0_right_rear_elbow_up_alike * gain_0_right_rear_elbow_up_alike
     del gain_0_right_rear_elbow_up_alike
-    t544 = _runtime.select(room_right_rear_elbow_up_alike < 0.0, t542 / (t105 + t542 + t543), 0.0)
-    del t542, t543
-    share_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t544, 0.0)
-    del t544
-    t545 = room_right_rear_elbow_up_alike * (1.0 - share_right_rear_elbow_up_alike)
-    t546 = heavy_0_right_rear_elbow_up_alike * t545
-    t547 = ctheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t548 = L1 - t547 - stheta2A * h_right_0_rear_elbow_up_alike
+    t547 = _runtime.select(room_right_rear_elbow_up_alike < 0.0, t545 / (t105 + t545 + t546), 0.0)
+    del t545, t546
+    share_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t547, 0.0)
     del t547
-    t549 = t83 * (t301 * t492 * t548)
-    del t301, t492, t548
-    t550 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
-    t551 = np.sqrt(np.maximum(0.0, 4.0 * t545 * t549 + t550))
+    t548 = room_right_rear_elbow_up_alike * (1.0 - share_right_rear_elbow_up_alike)
+    t549 = heavy_0_right_rear_elbow_up_alike * t548
+    t550 = ctheta2A_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t551 = L1 - t550 - stheta2A * h_right_0_rear_elbow_up_alike
     del t550
-    root_on_0_both_rear_elbow_up_alike = _runtime.select(t516, t551, 0.0)
-    del t551
-    t552 = slope_right_rear_elbow_up_alike - root_on_0_both_rear_elbow_up_alike
-    t553 = t47 * heavy_0_right_rear_elbow_up_alike
-    t554 = t553 * 5.960464477539063e-08
-    t555 = 1.0 / (t552 - t554)
-    t556 = (t546 * t555 <= 4.547473508864641e-13) & (0.0 < t545 * t555)
-    t557 = 2.0 * t545
-    t558 = 0.0 < -t545
-    t559 = slope_right_rear_elbow_up_alike + root_on_0_both_rear_elbow_up_alike
-    del root_on_0_both_rear_elbow_up_alike
-    t560 = t553 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t549)
+    t552 = t83 * (t303 * t495 * t551)
+    del t303, t495, t551
+    t553 = slope_right_rear_elbow_up_alike * slope_right_rear_elbow_up_alike
+    t554 = np.sqrt(np.maximum(0.0, 4.0 * t548 * t552 + t553))
     del t553
-    t561 = 1.0 / t560
-    del t560
-    t562 = heavy_0_right_rear_elbow_up_alike * t559 * t561
-    t563 = t559 * t561
-    t564 = (t562 <= 9.094947017729282e-13) & (0.0 < t563)
-    del t562
-    far_back_0_both_rear_elbow_up_alike = _runtime.select(t516, _runtime.select(t564, t563, 0.0), 0.0)
-    del t563, t564
-    t565 = _runtime.select(t558, far_back_0_both_rear_elbow_up_alike, 0.0)
-    t566 = _runtime.select(slope_right_rear_elbow_up_alike <= 0.0, _runtime.select(t556, t555 * t557, 0.0), t565)
-    del t555, t556, t565
-    near_back_both_rear_elbow_up_alike = _runtime.select(t516, np.maximum(np.maximum(0.0, t541), t566), 0.0)
-    del t541, t566
-    t567 = slope_right_rear_elbow_up_alike + t549 * near_back_both_rear_elbow_up_alike
-    t568 = near_back_both_rear_elbow_up_alike * t567 - t545
-    del t567
-    t569 = _runtime.select(0.0 < t568, far_back_0_both_rear_elbow_up_alike, 0.0)
-    del far_back_0_both_rear_elbow_up_alike, t568
-    t570 = np.maximum(near_back_both_rear_elbow_up_alike, t569)
-    del t569
-    t571 = slope_left_rear_elbow_up_alike + t524 * near_back_both_rear_elbow_up_alike
-    t572 = near_back_both_rear_elbow_up_alike * t571 - t520
-    del near_back_both_rear_elbow_up_alike, t571
-    t573 = _runtime.select(0.0 < t572, far_back_1_both_rear_elbow_up_alike, 0.0)
-    del far_back_1_both_rear_elbow_up_alike, t572
-    turn_back_both_rear_elbow_up_alike = _runtime.select(t516, np.maximum(t570, t573), 0.0)
-    del t570, t573
-    t574 = slope_left_rear_elbow_up_alike + t524 * turn_back_both_rear_elbow_up_alike
-    t575 = t520 - turn_back_both_rear_elbow_up_alike * t574
-    del t574
-    t576 = slope_right_rear_elbow_up_alike + t549 * turn_back_both_rear_elbow_up_alike
-    t577 = t545 - turn_back_both_rear_elbow_up_alike * t576
-    del t576
-    left_back_both_rear_elbow_up_alike = _runtime.select(t516, np.minimum(t575, t577), 0.0)
-    del t575, t577
-    t578 = 1.0 / (t529 + t534)
-    del t529, t534
-    t579 = (-(t521 * t578) <= 4.547473508864641e-13) & (0.0 < -(t520 * t578))
-    del t521
-    t580 = t536 * (heavy_0_left_rear_elbow_up_alike * t527)
+    root_on_0_both_rear_elbow_up_alike = _runtime.select(t519, t554, 0.0)
+    del t554
+    t555 = slope_right_rear_elbow_up_alike - root_on_0_both_rear_elbow_up_alike
+    t556 = t47 * heavy_0_right_rear_elbow_up_alike
+    t557 = t556 * 5.960464477539063e-08
+    t558 = 1.0 / (t555 - t557)
+    t559 = (t549 * t558 <= 4.547473508864641e-13) & (0.0 < t548 * t558)
+    t560 = 2.0 * t548
+    t561 = 0.0 < -t548
+    t562 = slope_right_rear_elbow_up_alike + root_on_0_both_rear_elbow_up_alike
+    del root_on_0_both_rear_elbow_up_alike
+    t563 = t556 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t552)
+    del t556
+    t564 = 1.0 / t563
+    del t563
+    t565 = heavy_0_right_rear_elbow_up_alike * t562 * t564
+    t566 = t562 * t564
+    t567 = (t565 <= 9.094947017729282e-13) & (0.0 < t566)
+    del t565
+    far_back_0_both_rear_elbow_up_alike = _runtime.select(t519, _runtime.select(t567, t566, 0.0), 0.0)
+    del t566, t567
+    t568 = _runtime.select(t561, far_back_0_both_rear_elbow_up_alike, 0.0)
+    t569 = _runtime.select(slope_right_rear_elbow_up_alike <= 0.0, _runtime.select(t559, t558 * t560, 0.0), t568)
+    del t558, t559, t568
+    near_back_both_rear_elbow_up_alike = _runtime.select(t519, np.maximum(np.maximum(0.0, t544), t569), 0.0)
+    del t544, t569
+    t570 = slope_right_rear_elbow_up_alike + t552 * near_back_both_rear_elbow_up_alike
+    t571 = near_back_both_rear_elbow_up_alike * t570 - t548
+    del t570
+    t572 = _runtime.select(0.0 < t571, far_back_0_both_rear_elbow_up_alike, 0.0)
+    del far_back_0_both_rear_elbow_up_alike, t571
+    t573 = np.maximum(near_back_both_rear_elbow_up_alike, t572)
+    del t572
+    t574 = slope_left_rear_elbow_up_alike + t527 * near_back_both_rear_elbow_up_alike
+    t575 = near_back_both_rear_elbow_up_alike * t574 - t523
+    del near_back_both_rear_elbow_up_alike, t574
+    t576 = _runtime.select(0.0 < t575, far_back_1_both_rear_elbow_up_alike, 0.0)
+    del far_back_1_both_rear_elbow_up_alike, t575
+    turn_back_both_rear_elbow_up_alike = _runtime.select(t519, np.maximum(t573, t576), 0.0)
+    del t573, t576
+    t577 = slope_left_rear_elbow_up_alike + t527 * turn_back_both_rear_elbow_up_alike
+    t578 = t523 - turn_back_both_rear_elbow_up_alike * t577
+    del t577
+    t579 = slope_right_rear_elbow_up_alike + t552 * turn_back_both_rear_elbow_up_alike
+    t580 = t548 - turn_back_both_rear_elbow_up_alike * t579
+    del t579
+    left_back_both_rear_elbow_up_alike = _runtime.select(t519, np.minimum(t578, t580), 0.0)
+    del t578, t580
+    t581 = 1.0 / (t532 + t537)
+    del t532, t537
+    t582 = (-(t524 * t581) <= 4.547473508864641e-13) & (0.0 < -(t523 * t581))
+    del t524
+    t583 = t539 * (heavy_0_left_rear_elbow_up_alike * t530)
     del heavy_0_left_rear_elbow_up_alike
-    t581 = -(t527 * t536)
-    del t527, t536
-    t582 = (-t580 <= 9.094947017729282e-13) & (0.0 < t581)
-    del t580
-    far_on_1_both_rear_elbow_up_alike = _runtime.select(t516, _runtime.select(t582, t581, 0.0), 0.0)
-    del t581, t582
-    t583 = _runtime.select(t533, far_on_1_both_rear_elbow_up_alike, 0.0)
-    del t533
-    t584 = _runtime.select(0.0 <= slope_left_rear_elbow_up_alike, _runtime.select(t579, -(t532 * t578), 0.0), t583)
-    del t532, t578, t579, t583
-    t585 = 1.0 / (t554 + t559)
-    del t554, t559
-    t586 = (-(t546 * t585) <= 4.547473508864641e-13) & (0.0 < -(t545 * t585))
-    del t546
-    t587 = t561 * (heavy_0_right_rear_elbow_up_alike * t552)
+    t584 = -(t530 * t539)
+    del t530, t539
+    t585 = (-t583 <= 9.094947017729282e-13) & (0.0 < t584)
+    del t583
+    far_on_1_both_rear_elbow_up_alike = _runtime.select(t519, _runtime.select(t585, t584, 0.0), 0.0)
+    del t584, t585
+    t586 = _runtime.select(t536, far_on_1_both_rear_elbow_up_alike, 0.0)
+    del t536
+    t587 = _runtime.select(0.0 <= slope_left_rear_elbow_up_alike, _runtime.select(t582, -(t535 * t581), 0.0), t586)
+    del t535, t581, t582, t586
+    t588 = 1.0 / (t557 + t562)
+    del t557, t562
+    t589 = (-(t549 * t588) <= 4.547473508864641e-13) & (0.0 < -(t548 * t588))
+    del t549
+    t590 = t564 * (heavy_0_right_rear_elbow_up_alike * t555)
     del heavy_0_right_rear_elbow_up_alike
-    t588 = -(t552 * t561)
-    del t552, t561
-    t589 = (-t587 <= 9.094947017729282e-13) & (0.0 < t588)
-    del t587
-    far_on_0_both_rear_elbow_up_alike = _runtime.select(t516, _runtime.select(t589, t588, 0.0), 0.0)
-    del t588, t589
-    t590 = _runtime.select(t558, far_on_0_both_rear_elbow_up_alike, 0.0)
-    del t558
-    t591 = _runtime.select(0.0 <= slope_right_rear_elbow_up_alike, _runtime.select(t586, -(t557 * t585), 0.0), t590)
-    del t557, t585, t586, t590
-    near_on_both_rear_elbow_up_alike = _runtime.select(t516, np.maximum(np.maximum(0.0, t584), t591), 0.0)
-    del t584, t591
-    t592 = slope_right_rear_elbow_up_alike - t549 * near_on_both_rear_elbow_up_alike
-    t593 = t545 + near_on_both_rear_elbow_up_alike * t592
-    del t592
-    t594 = _runtime.select(0.0 < -t593, far_on_0_both_rear_elbow_up_alike, 0.0)
-    del far_on_0_both_rear_elbow_up_alike, t593
-    t595 = np.maximum(near_on_both_rear_elbow_up_alike, t594)
-    del t594
-    t596 = slope_left_rear_elbow_up_alike - t524 * near_on_both_rear_elbow_up_alike
-    t597 = t520 + near_on_both_rear_elbow_up_alike * t596
-    del near_on_both_rear_elbow_up_alike, t596
-    t598 = _runtime.select(0.0 < -t597, far_on_1_both_rear_elbow_up_alike, 0.0)
-    del far_on_1_both_rear_elbow_up_alike, t597
-    turn_on_both_rear_elbow_up_alike = _runtime.select(t516, np.maximum(t595, t598), 0.0)
-    del t595, t598
-    t599 = slope_left_rear_elbow_up_alike - t524 * turn_on_both_rear_elbow_up_alike
-    del slope_left_rear_elbow_up_alike, t524
-    t600 = t520 + turn_on_both_rear_elbow_up_alike * t599
-    del t520, t599
-    t601 = slope_right_rear_elbow_up_alike - t549 * turn_on_both_rear_elbow_up_alike
-    del slope_right_rear_elbow_up_alike, t549
-    t602 = t545 + turn_on_both_rear_elbow_up_alike * t601
-    del t545, t601
-    left_on_both_rear_elbow_up_alike = _runtime.select(t516, np.minimum(t600, t602), 0.0)
-    del t600, t602
-    t603 = left_back_both_rear_elbow_up_alike <= left_on_both_rear_elbow_up_alike
+    t591 = -(t555 * t564)
+    del t555, t564
+    t592 = (-t590 <= 9.094947017729282e-13) & (0.0 < t591)
+    del t590
+    far_on_0_both_rear_elbow_up_alike = _runtime.select(t519, _runtime.select(t592, t591, 0.0), 0.0)
+    del t591, t592
+    t593 = _runtime.select(t561, far_on_0_both_rear_elbow_up_alike, 0.0)
+    del t561
+    t594 = _runtime.select(0.0 <= slope_right_rear_elbow_up_alike, _runtime.select(t589, -(t560 * t588), 0.0), t593)
+    del t560, t588, t589, t593
+    near_on_both_rear_elbow_up_alike = _runtime.select(t519, np.maximum(np.maximum(0.0, t587), t594), 0.0)
+    del t587, t594
+    t595 = slope_right_rear_elbow_up_alike - t552 * near_on_both_rear_elbow_up_alike
+    t596 = t548 + near_on_both_rear_elbow_up_alike * t595
+    del t595
+    t597 = _runtime.select(0.0 < -t596, far_on_0_both_rear_elbow_up_alike, 0.0)
+    del far_on_0_both_rear_elbow_up_alike, t596
+    t598 = np.maximum(near_on_both_rear_elbow_up_alike, t597)
+    del t597
+    t599 = slope_left_rear_elbow_up_alike - t527 * near_on_both_rear_elbow_up_alike
+    t600 = t523 + near_on_both_rear_elbow_up_alike * t599
+    del near_on_both_rear_elbow_up_alike, t599
+    t601 = _runtime.select(0.0 < -t600, far_on_1_both_rear_elbow_up_alike, 0.0)
+    del far_on_1_both_rear_elbow_up_alike, t600
+    turn_on_both_rear_elbow_up_alike = _runtime.select(t519, np.maximum(t598, t601), 0.0)
+    del t598, t601
+    t602 = slope_left_rear_elbow_up_alike - t527 * turn_on_both_rear_elbow_up_alike
+    del slope_left_rear_elbow_up_alike, t527
+    t603 = t523 + turn_on_both_rear_elbow_up_alike * t602
+    del t523, t602
+    t604 = slope_right_rear_elbow_up_alike - t552 * turn_on_both_rear_elbow_up_alike
+    del slope_right_rear_elbow_up_alike, t552
+    t605 = t548 + turn_on_both_rear_elbow_up_alike * t604
+    del t548, t604
+    left_on_both_rear_elbow_up_alike = _runtime.select(t519, np.minimum(t603, t605), 0.0)
+    del t603, t605
+    t606 = left_back_both_rear_elbow_up_alike <= left_on_both_rear_elbow_up_alike
     del left_back_both_rear_elbow_up_alike, left_on_both_rear_elbow_up_alike
-    t604 = _runtime.select(t603, turn_on_both_rear_elbow_up_alike, -turn_back_both_rear_elbow_up_alike)
-    del t603, turn_back_both_rear_elbow_up_alike, turn_on_both_rear_elbow_up_alike
-    turn_both_rear_elbow_up_alike = _runtime.select(t516, t604, 0.0)
-    del t604
-    t605 = room_left_rear_elbow_up_alike * share_left_rear_elbow_up_alike
+    t607 = _runtime.select(t606, turn_on_both_rear_elbow_up_alike, -turn_back_both_rear_elbow_up_alike)
+    del t606, turn_back_both_rear_elbow_up_alike, turn_on_both_rear_elbow_up_alike
+    turn_both_rear_elbow_up_alike = _runtime.select(t519, t607, 0.0)
+    del t607
+    t608 = room_left_rear_elbow_up_alike * share_left_rear_elbow_up_alike
     del room_left_rear_elbow_up_alike, share_left_rear_elbow_up_alike
-    t606 = t47 * heavy_1_left_rear_elbow_up_alike * 5.960464477539063e-08
+    t609 = t47 * heavy_1_left_rear_elbow_up_alike * 5.960464477539063e-08
     del heavy_1_left_rear_elbow_up_alike
-    t607 = -(t605 * _runtime.sign(-t511) / (t512 + t606))
-    del t511, t512, t605, t606
-    aside_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t607, 0.0)
-    del spent_left_rear_elbow_up_alike, t607
-    t608 = room_right_rear_elbow_up_alike * share_right_rear_elbow_up_alike
+    t610 = -(t608 * _runtime.sign(-t514) / (t515 + t609))
+    del t514, t515, t608, t609
+    aside_left_rear_elbow_up_alike = _runtime.select(spent_left_rear_elbow_up_alike, t610, 0.0)
+    del spent_left_rear_elbow_up_alike, t610
+    t611 = room_right_rear_elbow_up_alike * share_right_rear_elbow_up_alike
     del room_right_rear_elbow_up_alike, share_right_rear_elbow_up_alike
-    t609 = t47 * heavy_1_right_rear_elbow_up_alike * 5.960464477539063e-08
+    t612 = t47 * heavy_1_right_rear_elbow_up_alike * 5.960464477539063e-08
     del heavy_1_right_rear_elbow_up_alike
-    t610 = -(t608 * _runtime.sign(-t495) / (t496 + t609))
-    del t495, t496, t608, t609
-    aside_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t610, 0.0)
-    del spent_right_rear_elbow_up_alike, t610
-    t611 = np.abs(aside_left_rear_elbow_up_alike) <= np.abs(aside_right_rear_elbow_up_alike)
-    t612 = _runtime.select(t611, aside_right_rear_elbow_up_alike, aside_left_rear_elbow_up_alike)
-    del aside_left_rear_elbow_up_alike, aside_right_rear_elbow_up_alike, t611
-    t613 = drawn_front_elbow_down_alike * turn_both_rear_elbow_up_alike
+    t613 = -(t611 * _runtime.sign(-t498) / (t499 + t612))
+    del t498, t499, t611, t612
+    aside_right_rear_elbow_up_alike = _runtime.select(spent_right_rear_elbow_up_alike, t613, 0.0)
+    del spent_right_rear_elbow_up_alike, t613
+    t614 = np.abs(aside_left_rear_elbow_up_alike) <= np.abs(aside_right_rear_elbow_up_alike)
+    t615 = _runtime.select(t614, aside_right_rear_elbow_up_alike, aside_left_rear_elbow_up_alike)
+    del aside_left_rear_elbow_up_alike, aside_right_rear_elbow_up_alike, t614
+    t616 = drawn_front_elbow_down_alike * turn_both_rear_elbow_up_alike
     del drawn_front_elbow_down_alike
-    t614 = turn_both_rear_elbow_up_alike + t612 - t83 * t613
-    del t612, t613
-    lean_rear_elbow_up_alike = _runtime.select(t516, t614, 0.0)
-    del t614
-    t615 = lean_rear_elbow_up_alike * lean_rear_elbow_up_alike
-    t616 = 1.0 + t615
-    t617 = 1.0 / np.sqrt(t616)
-    t618 = 1.0 / (t616 * (1.0 + t617))
-    del t616
-    t619 = elbow_11_rear_elbow_up_alike * t615 * t618 + t617 * (elbow_21 * lean_rear_elbow_up_alike)
-    t620 = turn_both_rear_elbow_up_alike * turn_both_rear_elbow_up_alike
-    t621 = elbow_11_rear_elbow_up_alike - r_right_0_rear_elbow_up_alike
-    t622 = 1.0 + t620
-    t623 = 1.0 / np.sqrt(t622)
-    t624 = 1.0 / (t622 * (1.0 + t623))
-    del t622
-    t625 = elbow_21 - h_right_0_rear_elbow_up_alike
-    t626 = t623 * (turn_both_rear_elbow_up_alike * t625)
-    t627 = t619 - t620 * t621 * t624 - t626
-    del t626
-    t628 = t627 * (t627 - 2.0 * r_right_0_rear_elbow_up_alike)
-    t629 = elbow_11_rear_elbow_up_alike * lean_rear_elbow_up_alike
-    swing_21_rear_elbow_up_alike = t617 * t629 - t618 * (elbow_21 * t615)
-    del t615, t617, t618, t629
-    t630 = swing_21_rear_elbow_up_alike + t624 * (t620 * t625)
+    t617 = turn_both_rear_elbow_up_alike + t615 - t83 * t616
+    del t615, t616
+    lean_rear_elbow_up_alike = _runtime.select(t519, t617, 0.0)
+    del t617
+    t618 = lean_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    t619 = 1.0 + t618
+    t620 = 1.0 / np.sqrt(t619)
+    t621 = 1.0 / (t619 * (1.0 + t620))
+    del t619
+    t622 = elbow_11_rear_elbow_up_alike * t618 * t621 + t620 * (elbow_21 * lean_rear_elbow_up_alike)
+    t623 = turn_both_rear_elbow_up_alike * turn_both_rear_elbow_up_alike
+    t624 = elbow_11_rear_elbow_up_alike - r_right_0_rear_elbow_up_alike
+    t625 = 1.0 + t623
+    t626 = 1.0 / np.sqrt(t625)
+    t627 = 1.0 / (t625 * (1.0 + t626))
     del t625
-    t631 = t623 * (turn_both_rear_elbow_up_alike * t621)
-    del t621
-    more_right_21_rear_elbow_up_alike = t630 - t631
-    del t630, t631
-    t632 = more_right_21_rear_elbow_up_alike + 2.0 * h_right_0_rear_elbow_up_alike
-    t633 = t628 + more_right_21_rear_elbow_up_alike * t632
-    del t628, t632
-    change_right_rear_elbow_up_alike = _runtime.select(t516, t633, 0.0)
-    del t633
-    t634 = nearer_right_rear_elbow_up_alike - change_right_rear_elbow_up_alike
-    del nearer_right_rear_elbow_up_alike
-    t635 = farther_right_rear_elbow_up_alike + change_right_rear_elbow_up_alike
-    del change_right_rear_elbow_up_alike, farther_right_rear_elbow_up_alike
-    t636 = t46 & t499 & t515 & (t102 <= t634) & (t102 <= t635)
-    del t499, t515
-    t637 = elbow_11_rear_elbow_up_alike - r_left_0_rear_elbow_up_alike
-    del elbow_11_rear_elbow_up_alike
-    t638 = elbow_21 - h_left_0_rear_elbow_up_alike
-    del elbow_21
-    t639 = t623 * (turn_both_rear_elbow_up_alike * t638)
-    t640 = t619 - t624 * (t620 * t637) - t639
-    del t619, t639
-    t641 = t640 * (t640 - 2.0 * r_left_0_rear_elbow_up_alike)
-    t642 = swing_21_rear_elbow_up_alike + t624 * (t620 * t638)
-    del swing_21_rear_elbow_up_alike, t620, t624, t638
-    t643 = t623 * (turn_both_rear_elbow_up_alike * t637)
-    del t623, t637
-    more_left_21_rear_elbow_up_alike = t642 - t643
-    del t642, t643
-    t644 = more_left_21_rear_elbow_up_alike + 2.0 * h_left_0_rear_elbow_up_alike
-    t645 = t641 + more_left_21_rear_elbow_up_alike * t644
-    del t641, t644
-    change_left_rear_elbow_up_alike = _runtime.select(t516, t645, 0.0)
-    del t645
-    t646 = -(t503 + change_left_rear_elbow_up_alike)
-    del t503
-    t647 = farther_left_rear_elbow_up_alike + change_left_rear_elbow_up_alike
-    del change_left_rear_elbow_up_alike, farther_left_rear_elbow_up_alike
-    unreachable_3 = np.logical_not(t636 & (t102 <= t646) & (t102 <= t647))
+    t628 = elbow_21 - h_right_0_rear_elbow_up_alike
+    t629 = t626 * (turn_both_rear_elbow_up_alike * t628)
+    t630 = t622 - t623 * t624 * t627 - t629
+    del t629
+    t631 = t630 * (t630 - 2.0 * r_right_0_rear_elbow_up_alike)
+    t632 = elbow_11_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    swing_21_rear_elbow_up_alike = t620 * t632 - t621 * (elbow_21 * t618)
+    del t618, t620, t621, t632
+    t633 = swing_21_rear_elbow_up_alike + t627 * (t623 * t628)
+    del t628
+    t634 = t626 * (turn_both_rear_elbow_up_alike * t624)
+    del t624
+    more_right_21_rear_elbow_up_alike = t633 - t634
+    del t633, t634
+    t635 = more_right_21_rear_elbow_up_alike + 2.0 * h_right_0_rear_elbow_up_alike
+    t636 = t631 + more_right_21_rear_elbow_up_alike * t635
+    del t631, t635
+    change_right_rear_elbow_up_alike = _runtime.select(t519, t636, 0.0)
     del t636
-    t648 = _runtime.poison(invalid | unreachable_3)
-    t649 = t471 + t648
-    t650 = h_right_0_rear_elbow_up_alike + more_right_21_rear_elbow_up_alike
+    t637 = nearer_right_rear_elbow_up_alike - change_right_rear_elbow_up_alike
+    del nearer_right_rear_elbow_up_alike
+    t638 = farther_right_rear_elbow_up_alike + change_right_rear_elbow_up_alike
+    del change_right_rear_elbow_up_alike, farther_right_rear_elbow_up_alike
+    t639 = t46 & t502 & t518 & (t102 <= t637) & (t102 <= t638)
+    del t502, t518
+    t640 = elbow_11_rear_elbow_up_alike - r_left_0_rear_elbow_up_alike
+    del elbow_11_rear_elbow_up_alike
+    t641 = elbow_21 - h_left_0_rear_elbow_up_alike
+    del elbow_21
+    t642 = t626 * (turn_both_rear_elbow_up_alike * t641)
+    t643 = t622 - t627 * (t623 * t640) - t642
+    del t622, t642
+    t644 = t643 * (t643 - 2.0 * r_left_0_rear_elbow_up_alike)
+    t645 = swing_21_rear_elbow_up_alike + t627 * (t623 * t641)
+    del swing_21_rear_elbow_up_alike, t623, t627, t641
+    t646 = t626 * (turn_both_rear_elbow_up_alike * t640)
+    del t626, t640
+    more_left_21_rear_elbow_up_alike = t645 - t646
+    del t645, t646
+    t647 = more_left_21_rear_elbow_up_alike + 2.0 * h_left_0_rear_elbow_up_alike
+    t648 = t644 + more_left_21_rear_elbow_up_alike * t647
+    del t644, t647
+    change_left_rear_elbow_up_alike = _runtime.select(t519, t648, 0.0)
+    del t648
+    t649 = -(t506 + change_left_rear_elbow_up_alike)
+    del t506
+    t650 = farther_left_rear_elbow_up_alike + change_left_rear_elbow_up_alike
+    del change_left_rear_elbow_up_alike, farther_left_rear_elbow_up_alike
+    unreachable_3 = np.logical_not(t639 & (t102 <= t649) & (t102 <= t650))
+    del t639
+    t651 = _runtime.poison(invalid | unreachable_3)
+    t652 = t474 + t651
+    t653 = h_right_0_rear_elbow_up_alike + more_right_21_rear_elbow_up_alike
     del more_right_21_rear_elbow_up_alike
-    h_right_rear_elbow_up_alike = _runtime.select(t516, t650, h_right_0_rear_elbow_up_alike)
-    del h_right_0_rear_elbow_up_alike, t650
-    r_right_rear_elbow_up_alike = _runtime.select(t516, r_right_0_rear_elbow_up_alike - t627, r_right_0_rear_elbow_up_alike)
-    del r_right_0_rear_elbow_up_alike, t627
-    t651 = np.abs(h_right_rear_elbow_up_alike) + np.abs(r_right_rear_elbow_up_alike)
-    folded_right_rear_elbow_up_alike = t651 <= t204
-    del t651
-    t652 = np.arctan2(stheta2A, ctheta2A_rear_elbow_up_alike)
-    del ctheta2A_rear_elbow_up_alike, stheta2A
-    M_right_rear_elbow_up_alike = np.maximum(t635, t207)
-    del t635
-    N_right_rear_elbow_up_alike = np.maximum(t634, t207)
-    del t634
-    whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t653 = 1.0 / whole_right_rear_elbow_up_alike
-    del whole_right_rear_elbow_up_alike
-    t654 = t69 + t206 * M_right_rear_elbow_up_alike * t653
-    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t654)
+    h_right_rear_elbow_up_alike = _runtime.select(t519, t653, h_right_0_rear_elbow_up_alike)
+    del h_right_0_rear_elbow_up_alike, t653
+    r_right_rear_elbow_up_alike = _runtime.select(t519, r_right_0_rear_elbow_up_alike - t630, r_right_0_rear_elbow_up_alike)
+    del r_right_0_rear_elbow_up_alike, t630
+    t654 = np.abs(h_right_rear_elbow_up_alike) + np.abs(r_right_rear_elbow_up_alike)
+    folded_right_rear_elbow_up_alike = t654 <= t204
     del t654
-    t655 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t656 = turn_both_rear_elbow_up_alike * lean_rear_elbow_up_alike
-    t657 = turn_both_rear_elbow_up_alike - lean_rear_elbow_up_alike
+    t655 = np.arctan2(stheta2A, ctheta2A_rear_elbow_up_alike)
+    del ctheta2A_rear_elbow_up_alike, stheta2A
+    M_right_rear_elbow_up_alike = np.maximum(t638, t208)
+    del t638
+    N_right_rear_elbow_up_alike = np.maximum(t637, t208)
+    del t637
+    whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
+    t656 = 1.0 / whole_right_rear_elbow_up_alike
+    del whole_right_rear_elbow_up_alike
+    t657 = t69 + t207 * M_right_rear_elbow_up_alike * t656
+    ahead_1_right_rear_elbow_up_alike = _runtime.select(short_right, size, t657)
+    del t657
+    t658 = h_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t659 = turn_both_rear_elbow_up_alike * lean_rear_elbow_up_alike
+    t660 = turn_both_rear_elbow_up_alike - lean_rear_elbow_up_alike
     del lean_rear_elbow_up_alike, turn_both_rear_elbow_up_alike
-    t658 = t255 * (1.0 + t656) - straight_mid_front_elbow_down_alike * t657
-    del straight_mid_front_elbow_down_alike, t656, t657
-    sigma_right_rear_elbow_up_alike = _runtime.sign(-_runtime.select(t516, t658, t255))
-    del t255, t658
-    t659 = 2.0 * sigma_right_rear_elbow_up_alike
-    t660 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
-    t661 = np.sqrt(t660)
-    del t660
-    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t653 * (t659 * t661))
-    del t653
-    t662 = fore_arm * s_bend_right_rear_elbow_up_alike
-    del s_bend_right_rear_elbow_up_alike
-    t663 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    del ahead_1_right_rear_elbow_up_alike
-    t664 = np.arctan2(t655 - r_right_rear_elbow_up_alike * t662, t663 + h_right_rear_elbow_up_alike * t662)
-    del h_right_rear_elbow_up_alike, r_right_rear_elbow_up_alike, t655, t662, t663
-    t665 = _runtime.select(folded_right_rear_elbow_up_alike, t652, t664)
+    t661 = t257 * (1.0 + t659) - straight_mid_front_elbow_down_alike * t660
+    del straight_mid_front_elbow_down_alike, t659, t660
+    t662 = _runtime.select(t519, t661, t257)
+    del t257, t661
+    sigma_right_rear_elbow_up_alike = _runtime.sign(-t662)
+    t663 = 2.0 * sigma_right_rear_elbow_up_alike
+    t664 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
+    t665 = np.sqrt(t664)
     del t664
-    t666 = _runtime.wrap_cut(t665) + t648
-    del t665
-    t667 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
-    del M_right_rear_elbow_up_alike, N_right_rear_elbow_up_alike
-    t668 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t661, t667)
-    del t661, t667
-    t669 = t217 + _runtime.select(short_right, 0.0, t668)
+    s_bend_right_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t656 * (t663 * t665))
+    del t656
+    t666 = fore_arm * s_bend_right_rear_elbow_up_alike
+    del s_bend_right_rear_elbow_up_alike
+    t667 = r_right_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    del ahead_1_right_rear_elbow_up_alike
+    t668 = np.arctan2(t658 - r_right_rear_elbow_up_alike * t666, t667 + h_right_rear_elbow_up_alike * t666)
+    del h_right_rear_elbow_up_alike, r_right_rear_elbow_up_alike, t658, t666, t667
+    t669 = _runtime.select(folded_right_rear_elbow_up_alike, t655, t668)
     del t668
-    t670 = _runtime.wrap(t669) + t648
+    t670 = _runtime.wrap_cut(t669) + t651
     del t669
-    t671 = h_left_0_rear_elbow_up_alike + more_left_21_rear_elbow_up_alike
-    del more_left_21_rear_elbow_up_alike
-    h_left_rear_elbow_up_alike = _runtime.select(t516, t671, h_left_0_rear_elbow_up_alike)
-    del h_left_0_rear_elbow_up_alike, t671
-    r_left_rear_elbow_up_alike = _runtime.select(t516, r_left_0_rear_elbow_up_alike - t640, r_left_0_rear_elbow_up_alike)
-    del r_left_0_rear_elbow_up_alike, t516, t640
-    t672 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
-    folded_left_rear_elbow_up_alike = t672 <= t204
+    t671 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
+    t672 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t665, t671)
+    del t665, t671
+    t673 = t219 + _runtime.select(short_right, 0.0, t672)
     del t672
-    M_left_rear_elbow_up_alike = np.maximum(t647, 0.0)
-    del t647
-    N_left_rear_elbow_up_alike = np.maximum(t646, 0.0)
-    del t646
-    whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t673 = 1.0 / whole_left_rear_elbow_up_alike
-    del whole_left_rear_elbow_up_alike
-    t674 = t69 + t206 * M_left_rear_elbow_up_alike * t673
-    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t674)
-    del t674
-    t675 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t676 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
-    t677 = np.sqrt(t676)
+    t674 = _runtime.wrap(t673) + t651
+    del t673
+    t675 = h_left_0_rear_elbow_up_alike + more_left_21_rear_elbow_up_alike
+    del more_left_21_rear_elbow_up_alike
+    h_left_rear_elbow_up_alike = _runtime.select(t519, t675, h_left_0_rear_elbow_up_alike)
+    del h_left_0_rear_elbow_up_alike, t675
+    r_left_rear_elbow_up_alike = _runtime.select(t519, r_left_0_rear_elbow_up_alike - t643, r_left_0_rear_elbow_up_alike)
+    del r_left_0_rear_elbow_up_alike, t643
+    t676 = np.abs(h_left_rear_elbow_up_alike) + np.abs(r_left_rear_elbow_up_alike)
+    folded_left_rear_elbow_up_alike = t676 <= t204
     del t676
-    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t673 * (t659 * t677))
-    del t659, t673
-    t678 = fore_arm * s_bend_left_rear_elbow_up_alike
+    M_left_rear_elbow_up_alike = np.maximum(t650, 0.0)
+    del t650
+    N_left_rear_elbow_up_alike = np.maximum(t649, 0.0)
+    del t649
+    whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
+    t677 = 1.0 / whole_left_rear_elbow_up_alike
+    del whole_left_rear_elbow_up_alike
+    t678 = t69 + t207 * M_left_rear_elbow_up_alike * t677
+    ahead_1_left_rear_elbow_up_alike = _runtime.select(short_right, size, t678)
+    del t678
+    t679 = h_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t680 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
+    t681 = np.sqrt(t680)
+    del t680
+    s_bend_left_rear_elbow_up_alike = _runtime.select(short_right, 0.0, t677 * (t663 * t681))
+    del t663, t677
+    t682 = fore_arm * s_bend_left_rear_elbow_up_alike
     del s_bend_left_rear_elbow_up_alike
-    t679 = r_left_rear_elbow_up_alike * t678
-    t680 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t683 = r_left_rear_elbow_up_alike * t682
+    t684 = r_left_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     del ahead_1_left_rear_elbow_up_alike, r_left_rear_elbow_up_alike
-    t681 = h_left_rear_elbow_up_alike * t678
-    del h_left_rear_elbow_up_alike, t678
-    t682 = _runtime.select(folded_left_rear_elbow_up_alike, t652, np.arctan2(t675 - t679, t680 + t681))
-    t683 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
-    del M_left_rear_elbow_up_alike, N_left_rear_elbow_up_alike
-    t684 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t677, t683)
-    del sigma_right_rear_elbow_up_alike, t677, t683
-    t685 = _runtime.select(short_right, 0.0, t684)
-    del t684
-    t686 = t231 + t648
-    t687 = _runtime.select(folded_left_rear_elbow_up_alike, t652, np.arctan2(t675 + t679, t680 - t681))
-    del t652, t675, t679, t680, t681
-    ctheta2A_rear_elbow_down_alike = _runtime.select(folded, 1.0, -t237)
-    del t237
+    t685 = h_left_rear_elbow_up_alike * t682
+    del h_left_rear_elbow_up_alike, t682
+    t686 = _runtime.select(folded_left_rear_elbow_up_alike, t655, np.arctan2(t679 - t683, t684 + t685))
+    t687 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
+    t688 = sigma_right_rear_elbow_up_alike * np.arctan2(2.0 * t681, t687)
+    del t681, t687
+    t689 = _runtime.select(short_right, 0.0, t688)
+    del t688
+    t690 = t233 + t651
+    t691 = _runtime.select(folded_left_rear_elbow_up_alike, t655, np.arctan2(t679 + t683, t684 - t685))
+    del t655, t679, t683, t684, t685
+    ctheta2A_rear_elbow_down_alike = _runtime.select(folded, 1.0, -t239)
+    del t239
     ctheta23A_rear_elbow_down_alike = c_relative * ctheta2A_rear_elbow_down_alike - s_relative * stheta2A_front_elbow_down_alike
-    t688 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
+    t692 = elbow_21_front_elbow_down_alike - L2 * ctheta23A_rear_elbow_down_alike
     stheta23A_rear_elbow_down_alike = c_relative * stheta2A_front_elbow_down_alike + s_relative * ctheta2A_rear_elbow_down_alike
     del c_relative, s_relative
-    point_21_rear_elbow_down_alike = t688 + a3 * stheta23A_rear_elbow_down_alike
-    del t688
-    t689 = t18 * (t_psi * ctheta23A_rear_elbow_down_alike)
-    t690 = t689 + t_phi * stheta23A_rear_elbow_down_alike
-    del t689
-    t691 = d * t690
-    del t690
-    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t691
-    t692 = h_right_0_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
-    elbow_11_rear_elbow_down_alike = L1 * ctheta2A_rear_elbow_down_alike
-    t693 = elbow_11_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
-    point_11_rear_elbow_down_alike = t693 + a3 * ctheta23A_rear_elbow_down_alike
+    point_21_rear_elbow_down_alike = t692 + a3 * stheta23A_rear_elbow_down_alike
+    del t692
+    t693 = t18 * (t_psi * ctheta23A_rear_elbow_down_alike)
+    t694 = t693 + t_phi * stheta23A_rear_elbow_down_alike
     del t693
-    t694 = t18 * (t_psi * stheta23A_rear_elbow_down_alike)
+    t695 = d * t694
+    del t694
+    h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t695
+    t696 = h_right_0_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    elbow_11_rear_elbow_down_alike = L1 * ctheta2A_rear_elbow_down_alike
+    t697 = elbow_11_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
+    point_11_rear_elbow_down_alike = t697 + a3 * ctheta23A_rear_elbow_down_alike
+    del t697
+    t698 = t18 * (t_psi * stheta23A_rear_elbow_down_alike)
     del stheta23A_rear_elbow_down_alike, t18, t_psi
-    t695 = t_phi * ctheta23A_rear_elbow_down_alike - t694
-    del ctheta23A_rear_elbow_down_alike, t694, t_phi
-    t696 = d * t695
-    del t695
-    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t696
-    t697 = r_right_0_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    t698 = t692 + t697
-    del t692, t697
-    gap_rear_elbow_down_alike = t696 * t696 + t691 * t691
-    t699 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t700 = M_mid + gap_rear_elbow_down_alike
-    t701 = 2.0 * point_11_rear_elbow_down_alike * t696 + 2.0 * point_21_rear_elbow_down_alike * t691
-    farther_right_rear_elbow_down_alike = _runtime.select(t48 * t698 < t699, t698 - t70, t700 - t701)
-    del t698
-    t702 = N_mid - gap_rear_elbow_down_alike
+    t699 = t_phi * ctheta23A_rear_elbow_down_alike - t698
+    del ctheta23A_rear_elbow_down_alike, t698, t_phi
+    t700 = d * t699
+    del t699
+    r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t700
+    t701 = r_right_0_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t702 = t696 + t701
+    del t696, t701
+    gap_rear_elbow_down_alike = t700 * t700 + t695 * t695
+    t703 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t704 = M_mid + gap_rear_elbow_down_alike
+    t705 = 2.0 * point_11_rear_elbow_down_alike * t700 + 2.0 * point_21_rear_elbow_down_alike * t695
+    farther_right_rear_elbow_down_alike = _runtime.select(t48 * t702 < t703, t702 - t70, t704 - t705)
+    del t702
+    t706 = N_mid - gap_rear_elbow_down_alike
     del N_mid
-    nearer_right_rear_elbow_down_alike = t701 + t702
+    nearer_right_rear_elbow_down_alike = t705 + t706
     room_right_rear_elbow_down_alike = np.minimum(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
-    t703 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t704 = np.maximum(-t703, room_right_rear_elbow_down_alike)
-    del t703
-    spent_right_rear_elbow_down_alike = t704 <= t77
-    del t704
-    t705 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
-    t706 = stheta2A_front_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    t707 = nearer_right_rear_elbow_down_alike <= farther_right_rear_elbow_down_alike
-    t708 = _runtime.select(t707, 1.0, -1.0)
+    t707 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t708 = np.maximum(-t707, room_right_rear_elbow_down_alike)
     del t707
-    t709 = (t705 - t706) * t708
-    del t705, t706
-    slope_right_rear_elbow_down_alike = t80 * t709
+    spent_right_rear_elbow_down_alike = t708 <= t77
+    del t708
+    t709 = ctheta2A_rear_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t710 = stheta2A_front_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t711 = nearer_right_rear_elbow_down_alike <= farther_right_rear_elbow_down_alike
+    t712 = _runtime.select(t711, 1.0, -1.0)
+    del t711
+    t713 = (t709 - t710) * t712
+    del t709, t710
+    slope_right_rear_elbow_down_alike = t80 * t713
     heavy_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t87, 1.0)
-    t710 = np.abs(slope_right_rear_elbow_down_alike) / heavy_0_right_rear_elbow_down_alike
-    gain_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t710, 0.0)
-    del t710
-    t711 = t39 * t709
-    del t709
-    t712 = np.abs(t711)
-    heavy_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t90, 1.0)
-    gain_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t712 / heavy_1_right_rear_elbow_down_alike, 0.0)
-    t713 = gain_0_right_rear_elbow_down_alike + gain_1_right_rear_elbow_down_alike
-    t714 = _runtime.select(spent_right_rear_elbow_down_alike, t713, 0.0)
-    del t713
-    t715 = -(_runtime.FEASIBILITY * (t47 + t714)) <= room_right_rear_elbow_down_alike
+    t714 = np.abs(slope_right_rear_elbow_down_alike) / heavy_0_right_rear_elbow_down_alike
+    gain_0_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t714, 0.0)
     del t714
-    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t691
-    del point_21_rear_elbow_down_alike, t691
-    t716 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t696
-    del point_11_rear_elbow_down_alike, t696
-    t717 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t718 = t716 + t717
-    del t716, t717
-    farther_left_rear_elbow_down_alike = _runtime.select(t48 * t718 < t699, t718 - t70, t700 + t701)
-    del t699, t700, t718
-    t719 = t701 - t702
-    del t701, t702
-    room_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, -t719)
-    t720 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t721 = np.maximum(-t720, room_left_rear_elbow_down_alike)
-    del t720
-    spent_left_rear_elbow_down_alike = t721 <= t77
-    del t721, t77
-    t722 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    t723 = stheta2A_front_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t724 = _runtime.select(-t719 <= farther_left_rear_elbow_down_alike, 1.0, -1.0)
-    t725 = (t722 - t723) * t724
-    del t722, t723
-    slope_left_rear_elbow_down_alike = t80 * t725
+    t715 = t39 * t713
+    del t713
+    t716 = np.abs(t715)
+    heavy_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t90, 1.0)
+    gain_1_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t716 / heavy_1_right_rear_elbow_down_alike, 0.0)
+    t717 = gain_0_right_rear_elbow_down_alike + gain_1_right_rear_elbow_down_alike
+    t718 = _runtime.select(spent_right_rear_elbow_down_alike, t717, 0.0)
+    del t717
+    t719 = -(_runtime.FEASIBILITY * (t47 + t718)) <= room_right_rear_elbow_down_alike
+    del t718
+    h_left_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike + t695
+    del point_21_rear_elbow_down_alike, t695
+    t720 = h_left_0_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    r_left_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike + t700
+    del point_11_rear_elbow_down_alike, t700
+    t721 = r_left_0_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t722 = t720 + t721
+    del t720, t721
+    farther_left_rear_elbow_down_alike = _runtime.select(t48 * t722 < t703, t722 - t70, t704 + t705)
+    del t703, t704, t722
+    t723 = t705 - t706
+    del t705, t706
+    room_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, -t723)
+    t724 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t725 = np.maximum(-t724, room_left_rear_elbow_down_alike)
+    del t724
+    spent_left_rear_elbow_down_alike = t725 <= t77
+    del t725, t77
+    t726 = ctheta2A_rear_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    t727 = stheta2A_front_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t728 = _runtime.select(-t723 <= farther_left_rear_elbow_down_alike, 1.0, -1.0)
+    t729 = (t726 - t727) * t728
+    del t726, t727
+    slope_left_rear_elbow_down_alike = t80 * t729
     del t80
     heavy_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t87, 1.0)
     del t87
-    t726 = np.abs(slope_left_rear_elbow_down_alike) / heavy_0_left_rear_elbow_down_alike
-    gain_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t726, 0.0)
-    del t726
-    t727 = t39 * t725
-    del t39, t725
-    t728 = np.abs(t727)
+    t730 = np.abs(slope_left_rear_elbow_down_alike) / heavy_0_left_rear_elbow_down_alike
+    gain_0_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t730, 0.0)
+    del t730
+    t731 = t39 * t729
+    del t729
+    t732 = np.abs(t731)
     heavy_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t90, 1.0)
     del t90
-    gain_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t728 / heavy_1_left_rear_elbow_down_alike, 0.0)
-    t729 = gain_0_left_rear_elbow_down_alike + gain_1_left_rear_elbow_down_alike
-    t730 = _runtime.select(spent_left_rear_elbow_down_alike, t729, 0.0)
-    del t729
-    t731 = -(_runtime.FEASIBILITY * (t47 + t730)) <= room_left_rear_elbow_down_alike
-    del t730
-    t732 = spent_left_rear_elbow_down_alike | spent_right_rear_elbow_down_alike
-    t733 = gain_1_left_rear_elbow_down_alike * gain_1_left_rear_elbow_down_alike
+    gain_1_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t732 / heavy_1_left_rear_elbow_down_alike, 0.0)
+    t733 = gain_0_left_rear_elbow_down_alike + gain_1_left_rear_elbow_down_alike
+    t734 = _runtime.select(spent_left_rear_elbow_down_alike, t733, 0.0)
+    del t733
+    t735 = -(_runtime.FEASIBILITY * (t47 + t734)) <= room_left_rear_elbow_down_alike
+    del t734
+    t736 = spent_left_rear_elbow_down_alike | spent_right_rear_elbow_down_alike
+    t737 = gain_1_left_rear_elbow_down_alike * gain_1_left_rear_elbow_down_alike
     del gain_1_left_rear_elbow_down_alike
-    t734 = gain_0_left_rear_elbow_down_alike * gain_0_left_rear_elbow_down_alike
+    t738 = gain_0_left_rear_elbow_down_alike * gain_0_left_rear_elbow_down_alike
     del gain_0_left_rear_elbow_down_alike
-    t735 = _runtime.select(room_left_rear_elbow_down_alike < 0.0, t733 / (t105 + t733 + t734), 0.0)
-    del t733, t734
-    share_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t735, 0.0)
-    del t735
-    t736 = room_left_rear_elbow_down_alike * (1.0 - share_left_rear_elbow_down_alike)
-    t737 = heavy_0_left_rear_elbow_down_alike * t736
-    t738 = ctheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
-    t739 = stheta2A_front_elbow_down_alike * h_left_0_rear_elbow_down_alike
-    t740 = t83 * (t109 * t724 * (L1 - t738 - t739))
-    del t724, t738, t739
-    t741 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
-    t742 = np.sqrt(np.maximum(0.0, 4.0 * t736 * t740 + t741))
-    del t741
-    root_on_1_both_rear_elbow_down_alike = _runtime.select(t732, t742, 0.0)
-    del t742
-    t743 = slope_left_rear_elbow_down_alike - root_on_1_both_rear_elbow_down_alike
-    t744 = t47 * heavy_0_left_rear_elbow_down_alike
-    t745 = t744 * 5.960464477539063e-08
-    t746 = 1.0 / (t743 - t745)
-    t747 = (t737 * t746 <= 4.547473508864641e-13) & (0.0 < t736 * t746)
-    t748 = 2.0 * t736
-    t749 = 0.0 < -t736
-    t750 = slope_left_rear_elbow_down_alike + root_on_1_both_rear_elbow_down_alike
+    t739 = _runtime.select(room_left_rear_elbow_down_alike < 0.0, t737 / (t105 + t737 + t738), 0.0)
+    del t737, t738
+    share_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t739, 0.0)
+    del t739
+    t740 = room_left_rear_elbow_down_alike * (1.0 - share_left_rear_elbow_down_alike)
+    t741 = heavy_0_left_rear_elbow_down_alike * t740
+    t742 = ctheta2A_rear_elbow_down_alike * r_left_0_rear_elbow_down_alike
+    t743 = stheta2A_front_elbow_down_alike * h_left_0_rear_elbow_down_alike
+    t744 = t83 * (t109 * t728 * (L1 - t742 - t743))
+    del t728, t742, t743
+    t745 = slope_left_rear_elbow_down_alike * slope_left_rear_elbow_down_alike
+    t746 = np.sqrt(np.maximum(0.0, 4.0 * t740 * t744 + t745))
+    del t745
+    root_on_1_both_rear_elbow_down_alike = _runtime.select(t736, t746, 0.0)
+    del t746
+    t747 = slope_left_rear_elbow_down_alike - root_on_1_both_rear_elbow_down_alike
+    t748 = t47 * heavy_0_left_rear_elbow_down_alike
+    t749 = t748 * 5.960464477539063e-08
+    t750 = 1.0 / (t747 - t749)
+    t751 = (t741 * t750 <= 4.547473508864641e-13) & (0.0 < t740 * t750)
+    t752 = 2.0 * t740
+    t753 = 0.0 < -t740
+    t754 = slope_left_rear_elbow_down_alike + root_on_1_both_rear_elbow_down_alike
     del root_on_1_both_rear_elbow_down_alike
-    t751 = t744 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t740)
-    del t744
-    t752 = 1.0 / t751
-    del t751
-    t753 = heavy_0_left_rear_elbow_down_alike * t750 * t752
-    t754 = t750 * t752
-    t755 = (t753 <= 9.094947017729282e-13) & (0.0 < t754)
-    del t753
-    far_back_1_both_rear_elbow_down_alike = _runtime.select(t732, _runtime.select(t755, t754, 0.0), 0.0)
-    del t754, t755
-    t756 = _runtime.select(t749, far_back_1_both_rear_elbow_down_alike, 0.0)
-    t757 = _runtime.select(slope_left_rear_elbow_down_alike <= 0.0, _runtime.select(t747, t746 * t748, 0.0), t756)
-    del t746, t747, t756
-    t758 = gain_1_right_rear_elbow_down_alike * gain_1_right_rear_elbow_down_alike
+    t755 = t748 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t744)
+    del t748
+    t756 = 1.0 / t755
+    del t755
+    t757 = heavy_0_left_rear_elbow_down_alike * t754 * t756
+    t758 = t754 * t756
+    t759 = (t757 <= 9.094947017729282e-13) & (0.0 < t758)
+    del t757
+    far_back_1_both_rear_elbow_down_alike = _runtime.select(t736, _runtime.select(t759, t758, 0.0), 0.0)
+    del t758, t759
+    t760 = _runtime.select(t753, far_back_1_both_rear_elbow_down_alike, 0.0)
+    t761 = _runtime.select(slope_left_rear_elbow_down_alike <= 0.0, _runtime.select(t751, t750 * t752, 0.0), t760)
+    del t750, t751, t760
+    t762 = gain_1_right_rear_elbow_down_alike * gain_1_right_rear_elbow_down_alike
     del gain_1_right_rear_elbow_down_alike
-    t759 = gain_0_right_rear_elbow_down_alike * gain_0_right_rear_elbow_down_alike
+    t763 = gain_0_right_rear_elbow_down_alike * gain_0_right_rear_elbow_down_alike
     del gain_0_right_rear_elbow_down_alike
-    t760 = _runtime.select(room_right_rear_elbow_down_alike < 0.0, t758 / (t105 + t758 + t759), 0.0)
-    del t105, t758, t759
-    share_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t760, 0.0)
-    del t760
-    t761 = room_right_rear_elbow_down_alike * (1.0 - share_right_rear_elbow_down_alike)
-    t762 = heavy_0_right_rear_elbow_down_alike * t761
-    t763 = ctheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
-    t764 = stheta2A_front_elbow_down_alike * h_right_0_rear_elbow_down_alike
-    t765 = t83 * (t109 * t708 * (L1 - t763 - t764))
-    del t109, t708, t763, t764
-    t766 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
-    t767 = np.sqrt(np.maximum(0.0, 4.0 * t761 * t765 + t766))
-    del t766
-    root_on_0_both_rear_elbow_down_alike = _runtime.select(t732, t767, 0.0)
-    del t767
-    t768 = slope_right_rear_elbow_down_alike - root_on_0_both_rear_elbow_down_alike
-    t769 = t47 * heavy_0_right_rear_elbow_down_alike
-    t770 = t769 * 5.960464477539063e-08
-    t771 = 1.0 / (t768 - t770)
-    t772 = (t762 * t771 <= 4.547473508864641e-13) & (0.0 < t761 * t771)
-    t773 = 2.0 * t761
-    t774 = 0.0 < -t761
-    t775 = slope_right_rear_elbow_down_alike + root_on_0_both_rear_elbow_down_alike
+    t764 = _runtime.select(room_right_rear_elbow_down_alike < 0.0, t762 / (t105 + t762 + t763), 0.0)
+    del t105, t762, t763
+    share_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t764, 0.0)
+    del t764
+    t765 = room_right_rear_elbow_down_alike * (1.0 - share_right_rear_elbow_down_alike)
+    t766 = heavy_0_right_rear_elbow_down_alike * t765
+    t767 = ctheta2A_rear_elbow_down_alike * r_right_0_rear_elbow_down_alike
+    t768 = stheta2A_front_elbow_down_alike * h_right_0_rear_elbow_down_alike
+    t769 = t83 * (t109 * t712 * (L1 - t767 - t768))
+    del t109, t712, t767, t768
+    t770 = slope_right_rear_elbow_down_alike * slope_right_rear_elbow_down_alike
+    t771 = np.sqrt(np.maximum(0.0, 4.0 * t765 * t769 + t770))
+    del t770
+    root_on_0_both_rear_elbow_down_alike = _runtime.select(t736, t771, 0.0)
+    del t771
+    t772 = slope_right_rear_elbow_down_alike - root_on_0_both_rear_elbow_down_alike
+    t773 = t47 * heavy_0_right_rear_elbow_down_alike
+    t774 = t773 * 5.960464477539063e-08
+    t775 = 1.0 / (t772 - t774)
+    t776 = (t766 * t775 <= 4.547473508864641e-13) & (0.0 < t765 * t775)
+    t777 = 2.0 * t765
+    t778 = 0.0 < -t765
+    t779 = slope_right_rear_elbow_down_alike + root_on_0_both_rear_elbow_down_alike
     del root_on_0_both_rear_elbow_down_alike
-    t776 = t769 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t765)
-    del t769
-    t777 = 1.0 / t776
-    del t776
-    t778 = heavy_0_right_rear_elbow_down_alike * t775 * t777
-    t779 = t775 * t777
-    t780 = (t778 <= 9.094947017729282e-13) & (0.0 < t779)
-    del t778
-    far_back_0_both_rear_elbow_down_alike = _runtime.select(t732, _runtime.select(t780, t779, 0.0), 0.0)
-    del t779, t780
-    t781 = _runtime.select(t774, far_back_0_both_rear_elbow_down_alike, 0.0)
-    t782 = _runtime.select(slope_right_rear_elbow_down_alike <= 0.0, _runtime.select(t772, t771 * t773, 0.0), t781)
-    del t771, t772, t781
-    near_back_both_rear_elbow_down_alike = _runtime.select(t732, np.maximum(np.maximum(0.0, t757), t782), 0.0)
-    del t757, t782
-    t783 = slope_right_rear_elbow_down_alike + t765 * near_back_both_rear_elbow_down_alike
-    t784 = near_back_both_rear_elbow_down_alike * t783 - t761
-    del t783
-    t785 = _runtime.select(0.0 < t784, far_back_0_both_rear_elbow_down_alike, 0.0)
-    del far_back_0_both_rear_elbow_down_alike, t784
-    t786 = np.maximum(near_back_both_rear_elbow_down_alike, t785)
-    del t785
-    t787 = slope_left_rear_elbow_down_alike + t740 * near_back_both_rear_elbow_down_alike
-    t788 = near_back_both_rear_elbow_down_alike * t787 - t736
-    del near_back_both_rear_elbow_down_alike, t787
-    t789 = _runtime.select(0.0 < t788, far_back_1_both_rear_elbow_down_alike, 0.0)
-    del far_back_1_both_rear_elbow_down_alike, t788
-    turn_back_both_rear_elbow_down_alike = _runtime.select(t732, np.maximum(t786, t789), 0.0)
-    del t786, t789
-    t790 = slope_left_rear_elbow_down_alike + t740 * turn_back_both_rear_elbow_down_alike
-    t791 = t736 - turn_back_both_rear_elbow_down_alike * t790
-    del t790
-    t792 = slope_right_rear_elbow_down_alike + t765 * turn_back_both_rear_elbow_down_alike
-    t793 = t761 - turn_back_both_rear_elbow_down_alike * t792
-    del t792
-    left_back_both_rear_elbow_down_alike = _runtime.select(t732, np.minimum(t791, t793), 0.0)
-    del t791, t793
-    t794 = 1.0 / (t745 + t750)
-    del t745, t750
-    t795 = (-(t737 * t794) <= 4.547473508864641e-13) & (0.0 < -(t736 * t794))
-    del t737
-    t796 = t752 * (heavy_0_left_rear_elbow_down_alike * t743)
-    del heavy_0_left_rear_elbow_down_alike
-    t797 = -(t743 * t752)
-    del t743, t752
-    t798 = (-t796 <= 9.094947017729282e-13) & (0.0 < t797)
+    t780 = t773 * 3.552713678800501e-15 + 2.0 * np.maximum(0.0, -t769)
+    del t773
+    t781 = 1.0 / t780
+    del t780
+    t782 = heavy_0_right_rear_elbow_down_alike * t779 * t781
+    t783 = t779 * t781
+    t784 = (t782 <= 9.094947017729282e-13) & (0.0 < t783)
+    del t782
+    far_back_0_both_rear_elbow_down_alike = _runtime.select(t736, _runtime.select(t784, t783, 0.0), 0.0)
+    del t783, t784
+    t785 = _runtime.select(t778, far_back_0_both_rear_elbow_down_alike, 0.0)
+    t786 = _runtime.select(slope_right_rear_elbow_down_alike <= 0.0, _runtime.select(t776, t775 * t777, 0.0), t785)
+    del t775, t776, t785
+    near_back_both_rear_elbow_down_alike = _runtime.select(t736, np.maximum(np.maximum(0.0, t761), t786), 0.0)
+    del t761, t786
+    t787 = slope_right_rear_elbow_down_alike + t769 * near_back_both_rear_elbow_down_alike
+    t788 = near_back_both_rear_elbow_down_alike * t787 - t765
+    del t787
+    t789 = _runtime.select(0.0 < t788, far_back_0_both_rear_elbow_down_alike, 0.0)
+    del far_back_0_both_rear_elbow_down_alike, t788
+    t790 = np.maximum(near_back_both_rear_elbow_down_alike, t789)
+    del t789
+    t791 = slope_left_rear_elbow_down_alike + t744 * near_back_both_rear_elbow_down_alike
+    t792 = near_back_both_rear_elbow_down_alike * t791 - t740
+    del near_back_both_rear_elbow_down_alike, t791
+    t793 = _runtime.select(0.0 < t792, far_back_1_both_rear_elbow_down_alike, 0.0)
+    del far_back_1_both_rear_elbow_down_alike, t792
+    turn_back_both_rear_elbow_down_alike = _runtime.select(t736, np.maximum(t790, t793), 0.0)
+    del t790, t793
+    t794 = slope_left_rear_elbow_down_alike + t744 * turn_back_both_rear_elbow_down_alike
+    t795 = t740 - turn_back_both_rear_elbow_down_alike * t794
+    del t794
+    t796 = slope_right_rear_elbow_down_alike + t769 * turn_back_both_rear_elbow_down_alike
+    t797 = t765 - turn_back_both_rear_elbow_down_alike * t796
     del t796
-    far_on_1_both_rear_elbow_down_alike = _runtime.select(t732, _runtime.select(t798, t797, 0.0), 0.0)
-    del t797, t798
-    t799 = _runtime.select(t749, far_on_1_both_rear_elbow_down_alike, 0.0)
-    del t749
-    t800 = _runtime.select(0.0 <= slope_left_rear_elbow_down_alike, _runtime.select(t795, -(t748 * t794), 0.0), t799)
-    del t748, t794, t795, t799
-    t801 = 1.0 / (t770 + t775)
-    del t770, t775
-    t802 = (-(t762 * t801) <= 4.547473508864641e-13) & (0.0 < -(t761 * t801))
-    del t762
-    t803 = t777 * (heavy_0_right_rear_elbow_down_alike * t768)
+    left_back_both_rear_elbow_down_alike = _runtime.select(t736, np.minimum(t795, t797), 0.0)
+    del t795, t797
+    t798 = 1.0 / (t749 + t754)
+    del t749, t754
+    t799 = (-(t741 * t798) <= 4.547473508864641e-13) & (0.0 < -(t740 * t798))
+    del t741
+    t800 = t756 * (heavy_0_left_rear_elbow_down_alike * t747)
+    del heavy_0_left_rear_elbow_down_alike
+    t801 = -(t747 * t756)
+    del t747, t756
+    t802 = (-t800 <= 9.094947017729282e-13) & (0.0 < t801)
+    del t800
+    far_on_1_both_rear_elbow_down_alike = _runtime.select(t736, _runtime.select(t802, t801, 0.0), 0.0)
+    del t801, t802
+    t803 = _runtime.select(t753, far_on_1_both_rear_elbow_down_alike, 0.0)
+    del t753
+    t804 = _runtime.select(0.0 <= slope_left_rear_elbow_down_alike, _runtime.select(t799, -(t752 * t798), 0.0), t803)
+    del t752, t798, t799, t803
+    t805 = 1.0 / (t774 + t779)
+    del t774, t779
+    t806 = (-(t766 * t805) <= 4.547473508864641e-13) & (0.0 < -(t765 * t805))
+    del t766
+    t807 = t781 * (heavy_0_right_rear_elbow_down_alike * t772)
     del heavy_0_right_rear_elbow_down_alike
-    t804 = -(t768 * t777)
-    del t768, t777
-    t805 = (-t803 <= 9.094947017729282e-13) & (0.0 < t804)
-    del t803
-    far_on_0_both_rear_elbow_down_alike = _runtime.select(t732, _runtime.select(t805, t804, 0.0), 0.0)
-    del t804, t805
-    t806 = _runtime.select(t774, far_on_0_both_rear_elbow_down_alike, 0.0)
-    del t774
-    t807 = _runtime.select(0.0 <= slope_right_rear_elbow_down_alike, _runtime.select(t802, -(t773 * t801), 0.0), t806)
-    del t773, t801, t802, t806
-    near_on_both_rear_elbow_down_alike = _runtime.select(t732, np.maximum(np.maximum(0.0, t800), t807), 0.0)
-    del t800, t807
-    t808 = slope_right_rear_elbow_down_alike - t765 * near_on_both_rear_elbow_down_alike
-    t809 = t761 + near_on_both_rear_elbow_down_alike * t808
-    del t808
-    t810 = _runtime.select(0.0 < -t809, far_on_0_both_rear_elbow_down_alike, 0.0)
-    del far_on_0_both_rear_elbow_down_alike, t809
-    t811 = np.maximum(near_on_both_rear_elbow_down_alike, t810)
-    del t810
-    t812 = slope_left_rear_elbow_down_alike - t740 * near_on_both_rear_elbow_down_alike
-    t813 = t736 + near_on_both_rear_elbow_down_alike * t812
-    del near_on_both_rear_elbow_down_alike, t812
-    t814 = _runtime.select(0.0 < -t813, far_on_1_both_rear_elbow_down_alike, 0.0)
-    del far_on_1_both_rear_elbow_down_alike, t813
-    turn_on_both_rear_elbow_down_alike = _runtime.select(t732, np.maximum(t811, t814), 0.0)
-    del t811, t814
-    t815 = slope_left_rear_elbow_down_alike - t740 * turn_on_both_rear_elbow_down_alike
-    del slope_left_rear_elbow_down_alike, t740
-    t816 = t736 + turn_on_both_rear_elbow_down_alike * t815
-    del t736, t815
-    t817 = slope_right_rear_elbow_down_alike - t765 * turn_on_both_rear_elbow_down_alike
-    del slope_right_rear_elbow_down_alike, t765
-    t818 = t761 + turn_on_both_rear_elbow_down_alike * t817
-    del t761, t817
-    left_on_both_rear_elbow_down_alike = _runtime.select(t732, np.minimum(t816, t818), 0.0)
-    del t816, t818
-    t819 = left_back_both_rear_elbow_down_alike <= left_on_both_rear_elbow_down_alike
+    t808 = -(t772 * t781)
+    del t772, t781
+    t809 = (-t807 <= 9.094947017729282e-13) & (0.0 < t808)
+    del t807
+    far_on_0_both_rear_elbow_down_alike = _runtime.select(t736, _runtime.select(t809, t808, 0.0), 0.0)
+    del t808, t809
+    t810 = _runtime.select(t778, far_on_0_both_rear_elbow_down_alike, 0.0)
+    del t778
+    t811 = _runtime.select(0.0 <= slope_right_rear_elbow_down_alike, _runtime.select(t806, -(t777 * t805), 0.0), t810)
+    del t777, t805, t806, t810
+    near_on_both_rear_elbow_down_alike = _runtime.select(t736, np.maximum(np.maximum(0.0, t804), t811), 0.0)
+    del t804, t811
+    t812 = slope_right_rear_elbow_down_alike - t769 * near_on_both_rear_elbow_down_alike
+    t813 = t765 + near_on_both_rear_elbow_down_alike * t812
+    del t812
+    t814 = _runtime.select(0.0 < -t813, far_on_0_both_rear_elbow_down_alike, 0.0)
+    del far_on_0_both_rear_elbow_down_alike, t813
+    t815 = np.maximum(near_on_both_rear_elbow_down_alike, t814)
+    del t814
+    t816 = slope_left_rear_elbow_down_alike - t744 * near_on_both_rear_elbow_down_alike
+    t817 = t740 + near_on_both_rear_elbow_down_alike * t816
+    del near_on_both_rear_elbow_down_alike, t816
+    t818 = _runtime.select(0.0 < -t817, far_on_1_both_rear_elbow_down_alike, 0.0)
+    del far_on_1_both_rear_elbow_down_alike, t817
+    turn_on_both_rear_elbow_down_alike = _runtime.select(t736, np.maximum(t815, t818), 0.0)
+    del t815, t818
+    t819 = slope_left_rear_elbow_down_alike - t744 * turn_on_both_rear_elbow_down_alike
+    del slope_left_rear_elbow_down_alike, t744
+    t820 = t740 + turn_on_both_rear_elbow_down_alike * t819
+    del t740, t819
+    t821 = slope_right_rear_elbow_down_alike - t769 * turn_on_both_rear_elbow_down_alike
+    del slope_right_rear_elbow_down_alike, t769
+    t822 = t765 + turn_on_both_rear_elbow_down_alike * t821
+    del t765, t821
+    left_on_both_rear_elbow_down_alike = _runtime.select(t736, np.minimum(t820, t822), 0.0)
+    del t820, t822
+    t823 = left_back_both_rear_elbow_down_alike <= left_on_both_rear_elbow_down_alike
     del left_back_both_rear_elbow_down_alike, left_on_both_rear_elbow_down_alike
-    t820 = _runtime.select(t819, turn_on_both_rear_elbow_down_alike, -turn_back_both_rear_elbow_down_alike)
-    del t819, turn_back_both_rear_elbow_down_alike, turn_on_both_rear_elbow_down_alike
-    turn_both_rear_elbow_down_alike = _runtime.select(t732, t820, 0.0)
-    del t820
-    t821 = room_left_rear_elbow_down_alike * share_left_rear_elbow_down_alike
+    t824 = _runtime.select(t823, turn_on_both_rear_elbow_down_alike, -turn_back_both_rear_elbow_down_alike)
+    del t823, turn_back_both_rear_elbow_down_alike, turn_on_both_rear_elbow_down_alike
+    turn_both_rear_elbow_down_alike = _runtime.select(t736, t824, 0.0)
+    del t824
+    t825 = room_left_rear_elbow_down_alike * share_left_rear_elbow_down_alike
     del room_left_rear_elbow_down_alike, share_left_rear_elbow_down_alike
-    t822 = t47 * heavy_1_left_rear_elbow_down_alike * 5.960464477539063e-08
+    t826 = t47 * heavy_1_left_rear_elbow_down_alike * 5.960464477539063e-08
     del heavy_1_left_rear_elbow_down_alike
-    t823 = -(t821 * _runtime.sign(-t727) / (t728 + t822))
-    del t727, t728, t821, t822
-    aside_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t823, 0.0)
-    del spent_left_rear_elbow_down_alike, t823
-    t824 = room_right_rear_elbow_down_alike * share_right_rear_elbow_down_alike
+    t827 = -(t825 * _runtime.sign(-t731) / (t732 + t826))
+    del t731, t732, t825, t826
+    aside_left_rear_elbow_down_alike = _runtime.select(spent_left_rear_elbow_down_alike, t827, 0.0)
+    del spent_left_rear_elbow_down_alike, t827
+    t828 = room_right_rear_elbow_down_alike * share_right_rear_elbow_down_alike
     del room_right_rear_elbow_down_alike, share_right_rear_elbow_down_alike
-    t825 = t47 * heavy_1_right_rear_elbow_down_alike * 5.960464477539063e-08
+    t829 = t47 * heavy_1_right_rear_elbow_down_alike * 5.960464477539063e-08
     del heavy_1_right_rear_elbow_down_alike, t47
-    t826 = -(t824 * _runtime.sign(-t711) / (t712 + t825))
-    del t711, t712, t824, t825
-    aside_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t826, 0.0)
-    del spent_right_rear_elbow_down_alike, t826
-    t827 = np.abs(aside_left_rear_elbow_down_alike) <= np.abs(aside_right_rear_elbow_down_alike)
-    t828 = _runtime.select(t827, aside_right_rear_elbow_down_alike, aside_left_rear_elbow_down_alike)
-    del aside_left_rear_elbow_down_alike, aside_right_rear_elbow_down_alike, t827
-    t829 = t83 * (drawn * turn_both_rear_elbow_down_alike)
+    t830 = -(t828 * _runtime.sign(-t715) / (t716 + t829))
+    del t715, t716, t828, t829
+    aside_right_rear_elbow_down_alike = _runtime.select(spent_right_rear_elbow_down_alike, t830, 0.0)
+    del spent_right_rear_elbow_down_alike, t830
+    t831 = np.abs(aside_left_rear_elbow_down_alike) <= np.abs(aside_right_rear_elbow_down_alike)
+    t832 = _runtime.select(t831, aside_right_rear_elbow_down_alike, aside_left_rear_elbow_down_alike)
+    del aside_left_rear_elbow_down_alike, aside_right_rear_elbow_down_alike, t831
+    t833 = t83 * (drawn * turn_both_rear_elbow_down_alike)
     del drawn, t83
-    t830 = turn_both_rear_elbow_down_alike + t828 - t829
-    del t828, t829
-    lean_rear_elbow_down_alike = _runtime.select(t732, t830, 0.0)
-    del t830
-    t831 = lean_rear_elbow_down_alike * lean_rear_elbow_down_alike
-    t832 = 1.0 + t831
-    t833 = 1.0 / np.sqrt(t832)
-    t834 = 1.0 / (t832 * (1.0 + t833))
-    del t832
-    t835 = elbow_21_front_elbow_down_alike * lean_rear_elbow_down_alike
-    t836 = elbow_11_rear_elbow_down_alike * t831 * t834 + t833 * t835
-    del t835
-    t837 = turn_both_rear_elbow_down_alike * turn_both_rear_elbow_down_alike
-    t838 = elbow_11_rear_elbow_down_alike - r_right_0_rear_elbow_down_alike
-    t839 = 1.0 + t837
-    t840 = 1.0 / np.sqrt(t839)
-    t841 = 1.0 / (t839 * (1.0 + t840))
+    t834 = turn_both_rear_elbow_down_alike + t832 - t833
+    del t832, t833
+    lean_rear_elbow_down_alike = _runtime.select(t736, t834, 0.0)
+    del t834
+    t835 = lean_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t836 = 1.0 + t835
+    t837 = 1.0 / np.sqrt(t836)
+    t838 = 1.0 / (t836 * (1.0 + t837))
+    del t836
+    t839 = elbow_21_front_elbow_down_alike * lean_rear_elbow_down_alike
+    t840 = elbow_11_rear_elbow_down_alike * t835 * t838 + t837 * t839
     del t839
-    t842 = elbow_21_front_elbow_down_alike - h_right_0_rear_elbow_down_alike
-    t843 = t840 * (turn_both_rear_elbow_down_alike * t842)
-    t844 = t836 - t837 * t838 * t841 - t843
+    t841 = turn_both_rear_elbow_down_alike * turn_both_rear_elbow_down_alike
+    t842 = elbow_11_rear_elbow_down_alike - r_right_0_rear_elbow_down_alike
+    t843 = 1.0 + t841
+    t844 = 1.0 / np.sqrt(t843)
+    t845 = 1.0 / (t843 * (1.0 + t844))
     del t843
-    t845 = t844 * (t844 - 2.0 * r_right_0_rear_elbow_down_alike)
-    t846 = elbow_11_rear_elbow_down_alike * lean_rear_elbow_down_alike
-    t847 = t834 * (elbow_21_front_elbow_down_alike * t831)
-    del t831, t834
-    swing_21_rear_elbow_down_alike = t833 * t846 - t847
-    del t833, t846, t847
-    t848 = swing_21_rear_elbow_down_alike + t841 * (t837 * t842)
+    t846 = elbow_21_front_elbow_down_alike - h_right_0_rear_elbow_down_alike
+    t847 = t844 * (turn_both_rear_elbow_down_alike * t846)
+    t848 = t840 - t841 * t842 * t845 - t847
+    del t847
+    t849 = t848 * (t848 - 2.0 * r_right_0_rear_elbow_down_alike)
+    t850 = elbow_11_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t851 = t838 * (elbow_21_front_elbow_down_alike * t835)
+    del t835, t838
+    swing_21_rear_elbow_down_alike = t837 * t850 - t851
+    del t837, t850, t851
+    t852 = swing_21_rear_elbow_down_alike + t845 * (t841 * t846)
+    del t846
+    t853 = t844 * (turn_both_rear_elbow_down_alike * t842)
     del t842
-    t849 = t840 * (turn_both_rear_elbow_down_alike * t838)
-    del t838
-    more_right_21_rear_elbow_down_alike = t848 - t849
-    del t848, t849
-    t850 = more_right_21_rear_elbow_down_alike + 2.0 * h_right_0_rear_elbow_down_alike
-    t851 = t845 + more_right_21_rear_elbow_down_alike * t850
-    del t845, t850
-    change_right_rear_elbow_down_alike = _runtime.select(t732, t851, 0.0)
-    del t851
-    t852 = nearer_right_rear_elbow_down_alike - change_right_rear_elbow_down_alike
+    more_right_21_rear_elbow_down_alike = t852 - t853
+    del t852, t853
+    t854 = more_right_21_rear_elbow_down_alike + 2.0 * h_right_0_rear_elbow_down_alike
+    t855 = t849 + more_right_21_rear_elbow_down_alike * t854
+    del t849, t854
+    change_right_rear_elbow_down_alike = _runtime.select(t736, t855, 0.0)
+    del t855
+    t856 = nearer_right_rear_elbow_down_alike - change_right_rear_elbow_down_alike
     del nearer_right_rear_elbow_down_alike
-    t853 = farther_right_rear_elbow_down_alike + change_right_rear_elbow_down_alike
+    t857 = farther_right_rear_elbow_down_alike + change_right_rear_elbow_down_alike
     del change_right_rear_elbow_down_alike, farther_right_rear_elbow_down_alike
-    t854 = t46 & t715 & t731 & (t102 <= t852) & (t102 <= t853)
-    del t46, t715, t731
-    t855 = elbow_11_rear_elbow_down_alike - r_left_0_rear_elbow_down_alike
+    t858 = t46 & t719 & t735 & (t102 <= t856) & (t102 <= t857)
+    del t46, t719, t735
+    t859 = elbow_11_rear_elbow_down_alike - r_left_0_rear_elbow_down_alike
     del elbow_11_rear_elbow_down_alike
-    t856 = elbow_21_front_elbow_down_alike - h_left_0_rear_elbow_down_alike
+    t860 = elbow_21_front_elbow_down_alike - h_left_0_rear_elbow_down_alike
     del elbow_21_front_elbow_down_alike
-    t857 = t840 * (turn_both_rear_elbow_down_alike * t856)
-    t858 = t836 - t841 * (t837 * t855) - t857
-    del t836, t857
-    t859 = t858 * (t858 - 2.0 * r_left_0_rear_elbow_down_alike)
-    t860 = swing_21_rear_elbow_down_alike + t841 * (t837 * t856)
-    del swing_21_rear_elbow_down_alike, t837, t841, t856
-    t861 = t840 * (turn_both_rear_elbow_down_alike * t855)
-    del t840, t855
-    more_left_21_rear_elbow_down_alike = t860 - t861
-    del t860, t861
-    t862 = more_left_21_rear_elbow_down_alike + 2.0 * h_left_0_rear_elbow_down_alike
-    t863 = t859 + more_left_21_rear_elbow_down_alike * t862
-    del t859, t862
-    change_left_rear_elbow_down_alike = _runtime.select(t732, t863, 0.0)
-    del t863
-    t864 = -(t719 + change_left_rear_elbow_down_alike)
-    del t719
-    t865 = farther_left_rear_elbow_down_alike + change_left_rear_elbow_down_alike
+    t861 = t844 * (turn_both_rear_elbow_down_alike * t860)
+    t862 = t840 - t845 * (t841 * t859) - t861
+    del t840, t861
+    t863 = t862 * (t862 - 2.0 * r_left_0_rear_elbow_down_alike)
+    t864 = swing_21_rear_elbow_down_alike + t845 * (t841 * t860)
+    del swing_21_rear_elbow_down_alike, t841, t845, t860
+    t865 = t844 * (turn_both_rear_elbow_down_alike * t859)
+    del t844, t859
+    more_left_21_rear_elbow_down_alike = t864 - t865
+    del t864, t865
+    t866 = more_left_21_rear_elbow_down_alike + 2.0 * h_left_0_rear_elbow_down_alike
+    t867 = t863 + more_left_21_rear_elbow_down_alike * t866
+    del t863, t866
+    change_left_rear_elbow_down_alike = _runtime.select(t736, t867, 0.0)
+    del t867
+    t868 = -(t723 + change_left_rear_elbow_down_alike)
+    del t723
+    t869 = farther_left_rear_elbow_down_alike + change_left_rear_elbow_down_alike
     del change_left_rear_elbow_down_alike, farther_left_rear_elbow_down_alike
-    unreachable_4 = np.logical_not(t854 & (t102 <= t864) & (t102 <= t865))
-    del t102, t854
-    t866 = _runtime.poison(invalid | unreachable_4)
-    t867 = t471 + t866
-    del t471
-    t868 = h_right_0_rear_elbow_down_alike + more_right_21_rear_elbow_down_alike
+    unreachable_4 = np.logical_not(t858 & (t102 <= t868) & (t102 <= t869))
+    del t102, t858
+    t870 = _runtime.poison(invalid | unreachable_4)
+    t871 = t474 + t870
+    del t474
+    t872 = h_right_0_rear_elbow_down_alike + more_right_21_rear_elbow_down_alike
     del more_right_21_rear_elbow_down_alike
-    h_right_rear_elbow_down_alike = _runtime.select(t732, t868, h_right_0_rear_elbow_down_alike)
-    del h_right_0_rear_elbow_down_alike, t868
-    r_right_rear_elbow_down_alike = _runtime.select(t732, r_right_0_rear_elbow_down_alike - t844, r_right_0_rear_elbow_down_alike)
-    del r_right_0_rear_elbow_down_alike, t844
-    t869 = np.abs(h_right_rear_elbow_down_alike) + np.abs(r_right_rear_elbow_down_alike)
-    folded_right_rear_elbow_down_alike = t869 <= t204
-    del t869
-    t870 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
+    h_right_rear_elbow_down_alike = _runtime.select(t736, t872, h_right_0_rear_elbow_down_alike)
+    del h_right_0_rear_elbow_down_alike, t872
+    r_right_rear_elbow_down_alike = _runtime.select(t736, r_right_0_rear_elbow_down_alike - t848, r_right_0_rear_elbow_down_alike)
+    del r_right_0_rear_elbow_down_alike, t848
+    t873 = np.abs(h_right_rear_elbow_down_alike) + np.abs(r_right_rear_elbow_down_alike)
+    folded_right_rear_elbow_down_alike = t873 <= t204
+    del t873
+    t874 = np.arctan2(stheta2A_front_elbow_down_alike, ctheta2A_rear_elbow_down_alike)
     del ctheta2A_rear_elbow_down_alike, stheta2A_front_elbow_down_alike
-    M_right_rear_elbow_down_alike = np.maximum(t853, t207)
-    del t853
-    N_right_rear_elbow_down_alike = np.maximum(t852, t207)
-    del t207, t852
+    M_right_rear_elbow_down_alike = np.maximum(t857, t208)
+    del t857
+    N_right_rear_elbow_down_alike = np.maximum(t856, t208)
+    del t208, t856
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t871 = 1.0 / whole_right_rear_elbow_down_alike
+    t875 = 1.0 / whole_right_rear_elbow_down_alike
     del whole_right_rear_elbow_down_alike
-    t872 = t69 + t206 * M_right_rear_elbow_down_alike * t871
-    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t872)
-    del t872
-    t873 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    t874 = turn_both_rear_elbow_down_alike * lean_rear_elbow_down_alike
-    t875 = turn_both_rear_elbow_down_alike - lean_rear_elbow_down_alike
-    del lean_rear_elbow_down_alike, turn_both_rear_elbow_down_alike
-    t876 = _runtime.select(t732, t72 * (1.0 + t874) - straight_mid * t875, t72)
-    del straight_mid, t72, t874, t875
-    sigma_right_rear_elbow_down_alike = _runtime.sign(-t876)
+    t876 = t69 + t207 * M_right_rear_elbow_down_alike * t875
+    ahead_1_right_rear_elbow_down_alike = _runtime.select(short_right, size, t876)
     del t876
-    t877 = 2.0 * sigma_right_rear_elbow_down_alike
-    t878 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
-    t879 = np.sqrt(t878)
-    del t878
-    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t871 * (t877 * t879))
-    del t871
-    t880 = fore_arm * s_bend_right_rear_elbow_down_alike
-    del s_bend_right_rear_elbow_down_alike
-    t881 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
-    del ahead_1_right_rear_elbow_down_alike
-    t882 = np.arctan2(t873 - r_right_rear_elbow_down_alike * t880, t881 + h_right_rear_elbow_down_alike * t880)
-    del h_right_rear_elbow_down_alike, r_right_rear_elbow_down_alike, t873, t880, t881
-    t883 = _runtime.select(folded_right_rear_elbow_down_alike, t870, t882)
+    t877 = h_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    t878 = turn_both_rear_elbow_down_alike * lean_rear_elbow_down_alike
+    t879 = turn_both_rear_elbow_down_alike - lean_rear_elbow_down_alike
+    del lean_rear_elbow_down_alike, turn_both_rear_elbow_down_alike
+    t880 = _runtime.select(t736, t72 * (1.0 + t878) - straight_mid * t879, t72)
+    del straight_mid, t72, t878, t879
+    sigma_right_rear_elbow_down_alike = _runtime.sign(-t880)
+    t881 = 2.0 * sigma_right_rear_elbow_down_alike
+    t882 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
+    t883 = np.sqrt(t882)
     del t882
-    t884 = _runtime.wrap_cut(t883) + t866
-    del t883
-    t885 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
-    del M_right_rear_elbow_down_alike, N_right_rear_elbow_down_alike
-    t886 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t879, t885)
-    del t879, t885
-    t887 = t217 + _runtime.select(short_right, 0.0, t886)
+    s_bend_right_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t875 * (t881 * t883))
+    del t875
+    t884 = fore_arm * s_bend_right_rear_elbow_down_alike
+    del s_bend_right_rear_elbow_down_alike
+    t885 = r_right_rear_elbow_down_alike * ahead_1_right_rear_elbow_down_alike
+    del ahead_1_right_rear_elbow_down_alike
+    t886 = np.arctan2(t877 - r_right_rear_elbow_down_alike * t884, t885 + h_right_rear_elbow_down_alike * t884)
+    del h_right_rear_elbow_down_alike, r_right_rear_elbow_down_alike, t877, t884, t885
+    t887 = _runtime.select(folded_right_rear_elbow_down_alike, t874, t886)
     del t886
-    t888 = _runtime.wrap(t887) + t866
+    t888 = _runtime.wrap_cut(t887) + t870
     del t887
-    t889 = h_left_0_rear_elbow_down_alike + more_left_21_rear_elbow_down_alike
+    t889 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
+    t890 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t883, t889)
+    del t883, t889
+    t891 = t219 + _runtime.select(short_right, 0.0, t890)
+    del t890
+    t892 = _runtime.wrap(t891) + t870
+    del t891
+    t893 = h_left_0_rear_elbow_down_alike + more_left_21_rear_elbow_down_alike
     del more_left_21_rear_elbow_down_alike
-    h_left_rear_elbow_down_alike = _runtime.select(t732, t889, h_left_0_rear_elbow_down_alike)
-    del h_left_0_rear_elbow_down_alike, t889
-    r_left_rear_elbow_down_alike = _runtime.select(t732, r_left_0_rear_elbow_down_alike - t858, r_left_0_rear_elbow_down_alike)
-    del r_left_0_rear_elbow_down_alike, t732, t858
-    t890 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
-    folded_left_rear_elbow_down_alike = t890 <= t204
-    del t204, t890
-    M_left_rear_elbow_down_alike = np.maximum(t865, 0.0)
-    del t865
-    N_left_rear_elbow_down_alike = np.maximum(t864, 0.0)
-    del t864
+    h_left_rear_elbow_down_alike = _runtime.select(t736, t893, h_left_0_rear_elbow_down_alike)
+    del h_left_0_rear_elbow_down_alike, t893
+    r_left_rear_elbow_down_alike = _runtime.select(t736, r_left_0_rear_elbow_down_alike - t862, r_left_0_rear_elbow_down_alike)
+    del r_left_0_rear_elbow_down_alike, t862
+    t894 = np.abs(h_left_rear_elbow_down_alike) + np.abs(r_left_rear_elbow_down_alike)
+    folded_left_rear_elbow_down_alike = t894 <= t204
+    del t204, t894
+    M_left_rear_elbow_down_alike = np.maximum(t869, 0.0)
+    del t869
+    N_left_rear_elbow_down_alike = np.maximum(t868, 0.0)
+    del t868
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t891 = 1.0 / whole_left_rear_elbow_down_alike
+    t895 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    t892 = t69 + t206 * M_left_rear_elbow_down_alike * t891
-    del t206, t69
-    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t892)
-    del size, t892
-    t893 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
-    t894 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
-    t895 = np.sqrt(t894)
-    del t894
-    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t891 * (t877 * t895))
-    del t877, t891
-    t896 = fore_arm * s_bend_left_rear_elbow_down_alike
+    t896 = t69 + t207 * M_left_rear_elbow_down_alike * t895
+    del t207, t69
+    ahead_1_left_rear_elbow_down_alike = _runtime.select(short_right, size, t896)
+    del size, t896
+    t897 = h_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t898 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
+    t899 = np.sqrt(t898)
+    del t898
+    s_bend_left_rear_elbow_down_alike = _runtime.select(short_right, 0.0, t895 * (t881 * t899))
+    del t881, t895
+    t900 = fore_arm * s_bend_left_rear_elbow_down_alike
     del fore_arm, s_bend_left_rear_elbow_down_alike
-    t897 = r_left_rear_elbow_down_alike * t896
-    t898 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
+    t901 = r_left_rear_elbow_down_alike * t900
+    t902 = r_left_rear_elbow_down_alike * ahead_1_left_rear_elbow_down_alike
     del ahead_1_left_rear_elbow_down_alike, r_left_rear_elbow_down_alike
-    t899 = h_left_rear_elbow_down_alike * t896
-    del h_left_rear_elbow_down_alike, t896
-    t900 = _runtime.select(folded_left_rear_elbow_down_alike, t870, np.arctan2(t893 - t897, t898 + t899))
-    t901 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
-    del M_left_rear_elbow_down_alike, N_left_rear_elbow_down_alike
-    t902 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t895, t901)
-    del sigma_right_rear_elbow_down_alike, t895, t901
-    t903 = _runtime.select(short_right, 0.0, t902)
-    del t902
-    t904 = t231 + t866
-    del t231
-    t905 = _runtime.select(folded_left_rear_elbow_down_alike, t870, np.arctan2(t893 + t897, t898 - t899))
-    del t870, t893, t897, t898, t899
-    t906 = nowhere | folded | short
+    t903 = h_left_rear_elbow_down_alike * t900
+    del h_left_rear_elbow_down_alike, t900
+    t904 = _runtime.select(folded_left_rear_elbow_down_alike, t874, np.arctan2(t897 - t901, t902 + t903))
+    t905 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
+    t906 = sigma_right_rear_elbow_down_alike * np.arctan2(2.0 * t899, t905)
+    del t899, t905
+    t907 = _runtime.select(short_right, 0.0, t906)
+    del t906
+    t908 = t233 + t870
+    del t233
+    t909 = _runtime.select(folded_left_rear_elbow_down_alike, t874, np.arctan2(t897 + t901, t902 - t903))
+    del t874, t897, t901, t902, t903
+    t910 = nowhere | folded | short
     del folded, nowhere, short
     square_mid = t70 + M_mid
-    t907 = M_mid * square_mid
+    t911 = M_mid * square_mid
     del M_mid
-    t908 = _runtime.DETERMINED * _runtime.DETERMINED
-    t909 = t48 * t908
-    t910 = square_mid <= t909
+    t912 = _runtime.DETERMINED * _runtime.DETERMINED
+    t913 = t48 * t912
+    t914 = square_mid <= t913
     del square_mid
-    t911 = wrist <= al * _runtime.DETERMINED
+    t915 = wrist <= al * _runtime.DETERMINED
     del wrist
-    t912 = t906 | (t907 <= t908 * (t48 * gap)) | t910 | t911
-    del gap
-    t913 = t912 | folded_right | short_right | folded_left
-    del folded_left, folded_right, t912
-    t914 = _runtime.status(invalid, unreachable, t913)
-    del t913, unreachable
+    t916 = t910 | (t911 <= t912 * (t48 * gap)) | t914 | t915
+    t917 = t916 | folded_right | short_right | folded_left
+    del folded_left, folded_right, t916
+    t918 = t206 * lengths
+    del lengths, t206
+    t919 = 1125899906842624.0 * (np.abs(L2 - L_2W) + np.abs(a3 - a_3W))
+    del L_2W, a_3W
+    t920 = np.maximum(0.0, M_right * 0.5 - (gap - M_left * 0.5))
+    del M_left, M_right
+    t921 = np.maximum(0.0, gap + N_left * 0.5 + N_right * 0.5)
+    del N_left, N_right, gap
+    t922 = t39 * t211 + sigma_right * np.sqrt(t920 * t921)
+    del sigma_right, t211, t920, t921
+    astray = _runtime.select(t103, t919 * np.abs(t922), 0.0)
+    del t922
+    t923 = _runtime.select(t103, t918, 1.0) <= _runtime.DETERMINED * astray
+    del astray, t103
+    t924 = _runtime.status(invalid, unreachable, t917 | t923)
+    del t917, t923, unreachable
     square_mid_front_elbow_down_alike = t70 + M_mid_front_elbow_down_alike
     del t70
-    t915 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t925 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t916 = t915 <= t908 * (t48 * gap_front_elbow_down_alike)
-    del gap_front_elbow_down_alike
-    t917 = square_mid_front_elbow_down_alike <= t909
-    del square_mid_front_elbow_down_alike, t909
-    t918 = t906 | t916 | t917 | t911 | folded_right_front_elbow_down_alike
-    del folded_right_front_elbow_down_alike, t916
-    t919 = t918 | short_right | folded_left_front_elbow_down_alike
-    del folded_left_front_elbow_down_alike, t918
-    t920 = _runtime.status(invalid, unreachable_2, t919)
-    del t919, unreachable_2
-    t921 = t915 <= t908 * (t48 * gap_rear_elbow_up_alike)
-    del gap_rear_elbow_up_alike, t915
-    t922 = t906 | t921 | t917 | t911 | folded_right_rear_elbow_up_alike
-    del folded_right_rear_elbow_up_alike, t917, t921
-    t923 = t922 | short_right | folded_left_rear_elbow_up_alike
-    del folded_left_rear_elbow_up_alike, t922
-    t924 = _runtime.status(invalid, unreachable_3, t923)
-    del t923, unreachable_3
-    t925 = t907 <= t908 * (t48 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t48, t907, t908
-    t926 = t906 | t925 | t910 | t911 | folded_right_rear_elbow_down_alike
-    del folded_right_rear_elbow_down_alike, t906, t910, t911, t925
-    t927 = t926 | short_right | folded_left_rear_elbow_down_alike
-    del folded_left_rear_elbow_down_alike, short_right, t926
-    t928 = _runtime.status(invalid, unreachable_4, t927)
-    del invalid, t927, unreachable_4
+    t926 = t925 <= t912 * (t48 * gap_front_elbow_down_alike)
+    t927 = square_mid_front_elbow_down_alike <= t913
+    del square_mid_front_elbow_down_alike, t913
+    t928 = t910 | t926 | t927 | t915 | folded_right_front_elbow_down_alike
+    del folded_right_front_elbow_down_alike, t926
+    t929 = t928 | short_right | folded_left_front_elbow_down_alike
+    del folded_left_front_elbow_down_alike, t928
+    t930 = gap_front_elbow_down_alike - M_left_front_elbow_down_alike * 0.5
+    del M_left_front_elbow_down_alike
+    t931 = np.maximum(0.0, M_right_front_elbow_down_alike * 0.5 - t930)
+    del M_right_front_elbow_down_alike, t930
+    t932 = gap_front_elbow_down_alike + N_left_front_elbow_down_alike * 0.5
+    del N_left_front_elbow_down_alike, gap_front_elbow_down_alike
+    t933 = np.maximum(0.0, t932 + N_right_front_elbow_down_alike * 0.5)
+    del N_right_front_elbow_down_alike, t932
+    t934 = sigma_right_front_elbow_down_alike * np.sqrt(t931 * t933)
+    del sigma_right_front_elbow_down_alike, t931, t933
+    astray_front_elbow_down_alike = _runtime.select(t297, t919 * np.abs(t39 * t444 + t934), 0.0)
+    del t444, t934
+    t935 = _runtime.DETERMINED * astray_front_elbow_down_alike
+    del astray_front_elbow_down_alike
+    t936 = t929 | (_runtime.select(t297, t918, 1.0) <= t935)
+    del t297, t929, t935
+    t937 = _runtime.status(invalid, unreachable_2, t936)
+    del t936, unreachable_2
+    t938 = t925 <= t912 * (t48 * gap_rear_elbow_up_alike)
+    del t925
+    t939 = t910 | t938 | t927 | t915 | folded_right_rear_elbow_up_alike
+    del folded_right_rear_elbow_up_alike, t927, t938
+    t940 = t939 | short_right | folded_left_rear_elbow_up_alike
+    del folded_left_rear_elbow_up_alike, t939
+    t941 = gap_rear_elbow_up_alike - M_left_rear_elbow_up_alike * 0.5
+    del M_left_rear_elbow_up_alike
+    t942 = np.maximum(0.0, M_right_rear_elbow_up_alike * 0.5 - t941)
+    del M_right_rear_elbow_up_alike, t941
+    t943 = gap_rear_elbow_up_alike + N_left_rear_elbow_up_alike * 0.5
+    del N_left_rear_elbow_up_alike, gap_rear_elbow_up_alike
+    t944 = np.maximum(0.0, t943 + N_right_rear_elbow_up_alike * 0.5)
+    del N_right_rear_elbow_up_alike, t943
+    t945 = sigma_right_rear_elbow_up_alike * np.sqrt(t942 * t944)
+    del sigma_right_rear_elbow_up_alike, t942, t944
+    astray_rear_elbow_up_alike = _runtime.select(t519, t919 * np.abs(t39 * t662 + t945), 0.0)
+    del t662, t945
+    t946 = _runtime.DETERMINED * astray_rear_elbow_up_alike
+    del astray_rear_elbow_up_alike
+    t947 = t940 | (_runtime.select(t519, t918, 1.0) <= t946)
+    del t519, t940, t946
+    t948 = _runtime.status(invalid, unreachable_3, t947)
+    del t947, unreachable_3
+    t949 = t911 <= t912 * (t48 * gap_rear_elbow_down_alike)
+    del t48, t911, t912
+    t950 = t910 | t949 | t914 | t915 | folded_right_rear_elbow_down_alike
+    del folded_right_rear_elbow_down_alike, t910, t914, t915, t949
+    t951 = t950 | short_right | folded_left_rear_elbow_down_alike
+    del folded_left_rear_elbow_down_alike, short_right, t950
+    t952 = gap_rear_elbow_down_alike - M_left_rear_elbow_down_alike * 0.5
+    del M_left_rear_elbow_down_alike
+    t953 = np.maximum(0.0, M_right_rear_elbow_down_alike * 0.5 - t952)
+    del M_right_rear_elbow_down_alike, t952
+    t954 = gap_rear_elbow_down_alike + N_left_rear_elbow_down_alike * 0.5
+    del N_left_rear_elbow_down_alike, gap_rear_elbow_down_alike
+    t955 = np.maximum(0.0, t954 + N_right_rear_elbow_down_alike * 0.5)
+    del N_right_rear_elbow_down_alike, t954
+    t956 = sigma_right_rear_elbow_down_alike * np.sqrt(t953 * t955)
+    del sigma_right_rear_elbow_down_alike, t953, t955
+    astray_rear_elbow_down_alike = _runtime.select(t736, t919 * np.abs(t39 * t880 + t956), 0.0)
+    del t39, t880, t919, t956
+    t957 = _runtime.DETERMINED * astray_rear_elbow_down_alike
+    del astray_rear_elbow_down_alike
+    t958 = t951 | (_runtime.select(t736, t918, 1.0) <= t957)
+    del t736, t918, t951, t957
+    t959 = _runtime.status(invalid, unreachable_4, t958)
+    del invalid, t958, unreachable_4
     return (
         t203,
-        t215,
-        t220,
-        _runtime.wrap_cut(t228) + t202,
-        _runtime.wrap(t217 + t230) + t202,
-        t232,
+        t217,
+        t222,
+        _runtime.wrap_cut(t230) + t202,
+        _runtime.wrap(t219 + t232) + t202,
+        t234,
         t203,
-        t215,
-        t220,
-        _runtime.wrap_cut(t233) + t202,
-        _runtime.wrap(t217 - t230) + t202,
-        t232,
-        t432,
-        t449,
-        t453,
-        _runtime.wrap_cut(t465) + t431,
-        _runtime.wrap(t217 + t468) + t431,
-        t469,
-        t432,
-        t449,
-        t453,
-        _runtime.wrap_cut(t470) + t431,
-        _runtime.wrap(t217 - t468) + t431,
-        t469,
-        t649,
-        t666,
+        t217,
+        t222,
+        _runtime.wrap_cut(t235) + t202,
+        _runtime.wrap(t219 - t232) + t202,
+        t234,
+        t434,
+        t452,
+        t456,
+        _runtime.wrap_cut(t468) + t433,
+        _runtime.wrap(t219 + t471) + t433,
+        t472,
+        t434,
+        t452,
+        t456,
+        _runtime.wrap_cut(t473) + t433,
+        _runtime.wrap(t219 - t471) + t433,
+        t472,
+        t652,
         t670,
-        _runtime.wrap_cut(t682) + t648,
-        _runtime.wrap(t217 + t685) + t648,
-        t686,
-        t649,
-        t666,
+        t674,
+        _runtime.wrap_cut(t686) + t651,
+        _runtime.wrap(t219 + t689) + t651,
+        t690,
+        t652,
         t670,
-        _runtime.wrap_cut(t687) + t648,
-        _runtime.wrap(t217 - t685) + t648,
-        t686,
-        t867,
-        t884,
+        t674,
+        _runtime.wrap_cut(t691) + t651,
+        _runtime.wrap(t219 - t689) + t651,
+        t690,
+        t871,
         t888,
-        _runtime.wrap_cut(t900) + t866,
-        _runtime.wrap(t217 + t903) + t866,
-        t904,
-        t867,
-        t884,
+        t892,
+        _runtime.wrap_cut(t904) + t870,
+        _runtime.wrap(t219 + t907) + t870,
+        t908,
+        t871,
         t888,
-        _runtime.wrap_cut(t905) + t866,
-        _runtime.wrap(t217 - t903) + t866,
-        t904,
-        t914,
-        t914,
-        t920,
-        t920,
+        t892,
+        _runtime.wrap_cut(t909) + t870,
+        _runtime.wrap(t219 - t907) + t870,
+        t908,
         t924,
         t924,
-        t928,
-        t928,
+        t937,
+        t937,
+        t948,
+        t948,
+        t959,
+        t959,
     )
 
 
@@ -4162,7 +4218,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del base
     lengths = L1 + d1 + d + loff + lp + t4 + t21
     del t21, t4
-    slack = far_apart + lengths
+    slack = far_apart + lengths * 0.25
     t27 = -(_runtime.FEASIBILITY * slack)
     t28 = t25 & (t24 <= t7) & (t27 <= t13) & (t27 <= t12)
     del t12, t13, t24, t25, t27, t7
@@ -4189,8 +4245,10 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t28, t31, t38
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
     size = L1 + fore_arm
-    play_right = size * (d + far_apart + lengths * 0.001953125)
+    play = d * 0.25 + far_apart + lengths * 0.00048828125
     del far_apart
+    play_right = size * play
+    del play
     t41 = -(_runtime.FEASIBILITY * play_right)
     t42 = size * size
     M = np.maximum(t39, 0.0)
@@ -4700,89 +4758,92 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del square_mid
     t260 = wrist <= al * _runtime.DETERMINED
     del wrist
-    t261 = _runtime.status(invalid, unreachable, (t256 <= t257 * (t42 * gap)) | t259 | t260)
-    del gap, unreachable
+    t261 = 1.0 <= 0.0
+    t262 = (t256 <= t257 * (t42 * gap)) | t259 | t260 | t261
+    del gap
+    t263 = _runtime.status(invalid, unreachable, t262)
+    del t262, unreachable
     square_mid_front_elbow_down_alike = t64 + M_mid_front_elbow_down_alike
     del t64
-    t262 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t264 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t263 = t262 <= t257 * (t42 * gap_front_elbow_down_alike)
+    t265 = t264 <= t257 * (t42 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t264 = square_mid_front_elbow_down_alike <= t258
+    t266 = square_mid_front_elbow_down_alike <= t258
     del square_mid_front_elbow_down_alike, t258
-    t265 = _runtime.status(invalid, unreachable_2, t263 | t264 | t260)
-    del t263, unreachable_2
-    t266 = t262 <= t257 * (t42 * gap_rear_elbow_up_alike)
-    del gap_rear_elbow_up_alike, t262
-    t267 = _runtime.status(invalid, unreachable_3, t266 | t264 | t260)
-    del t264, t266, unreachable_3
-    t268 = t256 <= t257 * (t42 * gap_rear_elbow_down_alike)
+    t267 = _runtime.status(invalid, unreachable_2, t265 | t266 | t260 | t261)
+    del t265, unreachable_2
+    t268 = t264 <= t257 * (t42 * gap_rear_elbow_up_alike)
+    del gap_rear_elbow_up_alike, t264
+    t269 = _runtime.status(invalid, unreachable_3, t268 | t266 | t260 | t261)
+    del t266, t268, unreachable_3
+    t270 = t256 <= t257 * (t42 * gap_rear_elbow_down_alike)
     del gap_rear_elbow_down_alike, t256, t257
-    t269 = _runtime.status(invalid, unreachable_4, t268 | t259 | t260)
-    del invalid, t259, t260, t268, unreachable_4
-    t270 = h * slack
+    t271 = _runtime.status(invalid, unreachable_4, t270 | t259 | t260 | t261)
+    del invalid, t259, t260, t261, t270, unreachable_4
+    t272 = h * slack
     del slack
-    tangent = 4.0 * root * t32 - t270 * 0.00390625 <= _runtime.VANISHING * t270
-    del t270
-    t271 = tangent | (h <= _runtime.VANISHING * lengths)
+    tangent = 4.0 * root * t32 - t272 * 0.00390625 <= _runtime.VANISHING * t272
+    del t272
+    t273 = tangent | (h <= _runtime.VANISHING * lengths)
     del h, lengths, tangent
-    t272 = t271 | (L1 * fore <= _runtime.VANISHING * t33)
-    del t271, t33
-    t273 = _runtime.VANISHING * t32
+    t274 = t273 | (L1 * fore <= _runtime.VANISHING * t33)
+    del t273, t33
+    t275 = _runtime.VANISHING * t32
     del t32
-    t274 = t272 | (np.abs(t34) + np.abs(root) <= t273) | (fore <= t273)
-    del fore, root, t272, t273, t34
-    t275 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
+    t276 = t274 | (np.abs(t34) + np.abs(root) <= t275) | (fore <= t275)
+    del fore, root, t274, t275, t34
+    t277 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
     del room_right
-    t276 = _runtime.VANISHING * play_right
+    t278 = _runtime.VANISHING * play_right
     del play_right
-    t277 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
+    t279 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
     del room_left
-    t278 = t274 | (t275 <= t276) | (t277 <= t276) | (L1 * fore_arm <= _runtime.VANISHING * t42)
-    del t274, t275, t277, t42
-    t279 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    t280 = t278 | (np.abs(h_right_0) + np.abs(-t60) <= t279)
-    del h_right_0, t278, t60
-    t281 = t280 | (fore_arm <= _runtime.VANISHING * size)
-    del fore_arm, size, t280
-    t282 = t281 | (np.abs(h_left_0) + np.abs(-t70) <= t279)
-    del h_left_0, t281, t70
-    t283 = room_right_front_elbow_down_alike * 9.094947017729282e-13
-    t284 = np.maximum(-t283, room_right_front_elbow_down_alike)
-    del room_right_front_elbow_down_alike, t283
-    t285 = room_left_front_elbow_down_alike * 9.094947017729282e-13
-    t286 = np.maximum(-t285, room_left_front_elbow_down_alike)
-    del room_left_front_elbow_down_alike, t285
-    t287 = np.abs(-t111) + np.abs(r_right_0_front_elbow_down_alike)
+    t280 = t276 | (t277 <= t278) | (t279 <= t278) | (L1 * fore_arm <= _runtime.VANISHING * t42)
+    del t276, t277, t279, t42
+    t281 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    t282 = t280 | (np.abs(h_right_0) + np.abs(-t60) <= t281)
+    del h_right_0, t280, t60
+    t283 = t282 | (fore_arm <= _runtime.VANISHING * size)
+    del fore_arm, size, t282
+    t284 = t283 | (np.abs(h_left_0) + np.abs(-t70) <= t281)
+    del h_left_0, t283, t70
+    t285 = room_right_front_elbow_down_alike * 9.094947017729282e-13
+    t286 = np.maximum(-t285, room_right_front_elbow_down_alike)
+    del room_right_front_elbow_down_alike, t285
+    t287 = room_left_front_elbow_down_alike * 9.094947017729282e-13
+    t288 = np.maximum(-t287, room_left_front_elbow_down_alike)
+    del room_left_front_elbow_down_alike, t287
+    t289 = np.abs(-t111) + np.abs(r_right_0_front_elbow_down_alike)
     del r_right_0_front_elbow_down_alike, t111
-    t288 = t282 | (t284 <= t276) | (t286 <= t276) | (t287 <= t279)
-    del t282, t284, t286, t287
-    t289 = np.abs(-t125) + np.abs(r_left_0_front_elbow_down_alike)
+    t290 = t284 | (t286 <= t278) | (t288 <= t278) | (t289 <= t281)
+    del t284, t286, t288, t289
+    t291 = np.abs(-t125) + np.abs(r_left_0_front_elbow_down_alike)
     del r_left_0_front_elbow_down_alike, t125
-    t290 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t291 = np.maximum(-t290, room_right_rear_elbow_up_alike)
-    del room_right_rear_elbow_up_alike, t290
-    t292 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t293 = np.maximum(-t292, room_left_rear_elbow_up_alike)
-    del room_left_rear_elbow_up_alike, t292
-    t294 = t288 | (t289 <= t279) | (t291 <= t276) | (t293 <= t276)
-    del t288, t289, t291, t293
-    t295 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
+    t292 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t293 = np.maximum(-t292, room_right_rear_elbow_up_alike)
+    del room_right_rear_elbow_up_alike, t292
+    t294 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t295 = np.maximum(-t294, room_left_rear_elbow_up_alike)
+    del room_left_rear_elbow_up_alike, t294
+    t296 = t290 | (t291 <= t281) | (t293 <= t278) | (t295 <= t278)
+    del t290, t291, t293, t295
+    t297 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
     del h_right_0_rear_elbow_up_alike, r_right_0_rear_elbow_up_alike
-    t296 = np.abs(h_left_0_rear_elbow_up_alike) + np.abs(r_left_0_rear_elbow_up_alike)
+    t298 = np.abs(h_left_0_rear_elbow_up_alike) + np.abs(r_left_0_rear_elbow_up_alike)
     del h_left_0_rear_elbow_up_alike, r_left_0_rear_elbow_up_alike
-    t297 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t298 = np.maximum(-t297, room_right_rear_elbow_down_alike)
-    del room_right_rear_elbow_down_alike, t297
-    t299 = t294 | (t295 <= t279) | (t296 <= t279) | (t298 <= t276)
-    del t294, t295, t296, t298
-    t300 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t301 = np.maximum(-t300, room_left_rear_elbow_down_alike)
-    del room_left_rear_elbow_down_alike, t300
-    t302 = t299 | (t301 <= t276) | (np.abs(-t212) + np.abs(-t214) <= t279)
-    del t212, t214, t276, t299, t301
-    t303 = t302 | (np.abs(-t223) + np.abs(-t224) <= t279)
-    del t223, t224, t279, t302
+    t299 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t300 = np.maximum(-t299, room_right_rear_elbow_down_alike)
+    del room_right_rear_elbow_down_alike, t299
+    t301 = t296 | (t297 <= t281) | (t298 <= t281) | (t300 <= t278)
+    del t296, t297, t298, t300
+    t302 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t303 = np.maximum(-t302, room_left_rear_elbow_down_alike)
+    del room_left_rear_elbow_down_alike, t302
+    t304 = t301 | (t303 <= t278) | (np.abs(-t212) + np.abs(-t214) <= t281)
+    del t212, t214, t278, t301, t303
+    t305 = t304 | (np.abs(-t223) + np.abs(-t224) <= t281)
+    del t223, t224, t281, t304
     return (
         t76,
         t84,
@@ -4832,15 +4893,15 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
         t255 + t231,
         _runtime.wrap(t85 - t253) + t231,
         t254,
-        t261,
-        t261,
-        t265,
-        t265,
+        t263,
+        t263,
         t267,
         t267,
         t269,
         t269,
-        t303,
+        t271,
+        t271,
+        t305,
     )
 
 
@@ -4900,7 +4961,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - SINGULAR also if rounded joints do not determine the tip, yaw and roll to 1e-12: near a
       folded virtual arm (its reach times its bend is less than 2^-10 of its size times half the
       distance of the tips), with a virtual arm shorter than 2^-10 of a stretched one, and near
-      stretched wrist links (l_W is less than 2^-10 al).
+      stretched wrist links (l_W is less than 2^-10 al). An arm at its limit that rounding bends
+      otherwise than the virtual arm is SINGULAR too.
     - OK answers hold to 2^-46 of the sum of the lengths over d, where that is more than 1e-12:
       yaw and roll have a lever of d, and what rounded joints do to the tips is divided by it.
     - INVALID: d, L1, or both L2 and a3 are zero.

@@ -199,6 +199,12 @@ def _script(text: str) -> str:
         tree = ast.parse(text)
     except (SyntaxError, ValueError) as error:
         return f"the script does not parse: {error}"
+    exported = {
+        alias.name
+        for node in tree.body
+        if isinstance(node, ast.ImportFrom) and node.module == "closedform"
+        for alias in node.names
+    }
     for node in ast.walk(tree):
         if isinstance(node, ast.Call):
             name = node.func
@@ -207,7 +213,7 @@ def _script(text: str) -> str:
                     return f"the script calls {ast.unparse(node)[:100]}"
                 name = name.value
             allowed = isinstance(name, ast.Name) and (
-                name.id in CALLED or isinstance(node.func, ast.Attribute)
+                name.id in CALLED | exported or isinstance(node.func, ast.Attribute)
             )
             if not allowed:
                 return f"the script calls {ast.unparse(node)[:100]}"

@@ -3,8 +3,9 @@
     python tests/portability/run.py [--all]
 
 Each attempt prints a line: right, skipped with the reason, or what is wrong, which fails the run.
-Nothing is timed. Without --all only two robots are tried, and no Python environment is made.
-PYTHONS lists the other interpreters to try.
+Nothing is timed. Every Python builds the runtime of the extension and calls it from several
+threads. With --all there are all robots and flags, and every Python builds the whole extension
+with two versions of NumPy. PYTHONS lists other interpreters to try.
 """
 
 from __future__ import annotations
@@ -111,14 +112,15 @@ def processors(robots: Sequence[str]) -> Iterator[tuple[str, str]]:
             yield target, ", ".join(done)
 
 
-def interpreters() -> Iterator[tuple[str, str]]:
-    """The extension, built against each NumPy in an environment of its own."""
+def interpreters(*, everything: bool) -> Iterator[tuple[str, str]]:
+    """The runtime of the extension, or the extension, built in an environment of its own."""
     named = os.environ.get("PYTHONS", "").split()
     for python in dict.fromkeys([*PYTHONS, *named]):
         if not works(python):
             yield python, "skipped: it is not installed"
             continue
-        for numpy in NUMPY:
+        yield f"{python}, threads", threads(python)
+        for numpy in NUMPY if everything else ():
             yield f"{python}, {numpy}", extension(python, numpy)
 
 
@@ -128,30 +130,52 @@ def works(python: str) -> bool:
     return subprocess.run([python, "-c", ""], capture_output=True).returncode == 0
 
 
+def environment(python: str, *packages: str) -> list[list[str]]:
+    """Commands that make an environment in the current folder; the last one installs packages."""
+    own = "env/bin/python"
+    install = ["-m", "pip", "install", "-q", "--only-binary=:all:", *packages]
+    return [[python, "-m", "venv", "env"], [own, *install]]
+
+
+def threads(python: str) -> str:
+    script = str(Path(__file__).with_name("threads.py"))
+    with tempfile.TemporaryDirectory() as folder:
+        steps = [*environment(python, "numpy"), ["env/bin/python", script, folder]]
+        return attempted(steps, folder)
+
+
 def extension(python: str, numpy: str) -> str:
     with tempfile.TemporaryDirectory() as folder:
         own = f"{folder}/env/bin/python"
         source = f"{folder}/source"
         ignored = shutil.ignore_patterns(".*", "build", "*.so", "__pycache__", "*.egg-info")
         shutil.copytree(ROOT, source, ignore=ignored)
-        steps = [
-            [python, "-m", "venv", f"{folder}/env"],
-            [own, "-m", "pip", "install", "-q", "--only-binary=:all:", numpy, "setuptools"],
-            [own, "setup.py", "-q", "build_ext", "--build-lib", f"{folder}/lib"],
-            [own, "setup.py", "-q", "build_py", "--build-lib", f"{folder}/lib"],
-            [own, "-c", IMPORT],
-        ]
-        for step in steps:
-            place = folder if step[1] == "-c" else source
-            environment = os.environ | {"PYTHONPATH": f"{folder}/lib", "CLOSEDFORM_DISPATCH": "0"}
-            done = subprocess.run(
-                step, cwd=place, env=environment, capture_output=True, text=True, check=False
-            )
-            if done.returncode and step[2:4] == ["pip", "install"]:
-                return f"skipped: pip finds no wheel of {numpy}"
-            if done.returncode:
-                return f"WRONG: {' '.join(step[1:4])}: {done.stderr[-300:]}"
-        return f"right {done.stdout.strip()}"
+        return attempted(
+            [
+                *environment(python, numpy, "setuptools"),
+                [own, "setup.py", "-q", "build_ext", "--build-lib", f"{folder}/lib"],
+                [own, "setup.py", "-q", "build_py", "--build-lib", f"{folder}/lib"],
+                [own, "-c", IMPORT],
+            ],
+            folder,
+        )
+
+
+def attempted(steps: Sequence[Sequence[str]], folder: str) -> str:
+    """The result of steps in a folder, the second of which installs packages."""
+    environment = os.environ | {"PYTHONPATH": f"{folder}/lib", "CLOSEDFORM_DISPATCH": "0"}
+    for k, step in enumerate(steps):
+        place = f"{folder}/source" if "setup.py" in step else folder
+        done = subprocess.run(
+            step, cwd=place, env=environment, capture_output=True, text=True, check=False
+        )
+        if done.returncode and k < 2:
+            what = "no module venv" if k == 0 else "no wheel of NumPy that pip finds"
+            return f"skipped: there is {what}"
+        if done.returncode:
+            said = (done.stderr or done.stdout)[-300:]
+            return f"WRONG: {' '.join(step[1:4])}: {said}"
+    return f"right {done.stdout.strip()}"
 
 
 def main() -> int:
@@ -160,13 +184,17 @@ def main() -> int:
     everything = parser.parse_args().all
     robots = ROBOTS if everything else FEW
     wrong = 0
-    attempts = [compilers(robots, everything=everything), processors(robots)]
-    for attempt in [*attempts, interpreters()] if everything else attempts:
+    attempts = [
+        compilers(robots, everything=everything),
+        processors(robots),
+        interpreters(everything=everything),
+    ]
+    for attempt in attempts:
         for name, result in attempt:
             wrong += "WRONG" in result
             print(f"{name}: {result}", flush=True)
     if not everything:
-        print("interpreters of Python: skipped without --all")
+        print("the whole extension for each Python: skipped without --all")
     return int(wrong > 0)
 
 

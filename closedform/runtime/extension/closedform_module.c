@@ -5,9 +5,11 @@
  * closedform_call.c, which broadcasts, and from there to closedform_sweep.c, which runs the kernels
  * and does not use Python.
  *
- * The only mutable state is the type of the module and NumPy's table of functions. NumPy exists
- * once per process, so the module declines subinterpreters with a GIL of their own. It does not
- * declare itself safe without a GIL either: nothing may change a list while it is read.
+ * The only mutable state is the type of the module and NumPy's table of functions, which are set when
+ * the module is imported and only read afterwards. NumPy exists once per process, so the module
+ * declines subinterpreters with a GIL of their own. It needs no GIL: a list is locked while it is
+ * read, or copied. As for NumPy itself, no thread may reshape or resize an array that another one
+ * uses, and what a thread reads of an array that another one writes is undefined.
  */
 #include "closedform_numpy.h"
 
@@ -154,9 +156,7 @@ function_dealloc(PyObject *object)
     Function *self = (Function *)object;
     PyTypeObject *type = Py_TYPE(self);
     PyObject_GC_UnTrack(self);
-    if (self->weakrefs != NULL) {
-        PyObject_ClearWeakRefs(object);
-    }
+    PyObject_ClearWeakRefs(object);
     Py_XDECREF(self->results);
     Py_XDECREF(self->names);
     Py_XDECREF(self->dict);
@@ -485,6 +485,9 @@ module_clear(PyObject *module)
 
 static PyModuleDef_Slot module_slots[] = {
     {Py_mod_exec, module_exec},
+#if PY_VERSION_HEX >= 0x030D0000
+    {Py_mod_gil, Py_MOD_GIL_NOT_USED},
+#endif
     {0, NULL},
 };
 

@@ -3,6 +3,15 @@
 #define NO_IMPORT_ARRAY
 #include "closedform_numpy.h"
 
+/* Without a GIL another thread may change an object while this one reads it. */
+#ifdef Py_GIL_DISABLED
+#define CF_LOCK(object) Py_BEGIN_CRITICAL_SECTION(object)
+#define CF_UNLOCK() Py_END_CRITICAL_SECTION()
+#else
+#define CF_LOCK(object) {
+#define CF_UNLOCK() }
+#endif
+
 /* Space for the coordinates of all inputs together; a function with more takes the general path. */
 enum { SPARE = 64 };
 
@@ -79,19 +88,19 @@ plain_number(PyObject *object, double *value)
     return known == 1;
 }
 
+/* The numbers in a tuple or a list, which no other thread changes meanwhile. */
 static int
 plain_numbers(PyObject *sequence, size_t n, double *values)
 {
-    if (PySequence_Fast_GET_SIZE(sequence) != (Py_ssize_t)n) {
-        return 0;
-    }
+    int known;
+    CF_LOCK(sequence);
+    known = PySequence_Fast_GET_SIZE(sequence) == (Py_ssize_t)n;
     PyObject **items = PySequence_Fast_ITEMS(sequence);
-    for (size_t j = 0; j < n; j++) {
-        if (!plain_number(items[j], &values[j])) {
-            return 0;
-        }
+    for (size_t j = 0; j < n && known; j++) {
+        known = plain_number(items[j], &values[j]);
     }
-    return 1;
+    CF_UNLOCK();
+    return known;
 }
 
 /* The values of one posture's input, or NULL if the general path is needed. Python numbers are

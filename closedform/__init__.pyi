@@ -38,6 +38,8 @@ from closedform.lemmas.two_link import elbow_squares as elbow_squares
 from closedform.lemmas.two_link import two_link_arm as two_link_arm
 from closedform.lemmas.two_link import two_link_arm_beside as two_link_arm_beside
 from closedform.lemmas.two_sines import two_sines as two_sines
+from closedform.lemmas.wrist import spin as spin
+from closedform.lemmas.wrist import tilt as tilt
 from closedform.lemmas.zyz import zyz_angles as zyz_angles
 from closedform.mechanics.arm import from_dh as from_dh
 from closedform.mechanics.arm import from_screws as from_screws

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import sympy as sp
@@ -42,17 +43,53 @@ class Serial:
     """
 
     joints: tuple[sp.Symbol, ...]
-    pose: sp.Matrix
-    space: sp.Matrix
-    body: sp.Matrix
-    geometric: sp.Matrix
     moves: tuple[sp.Matrix, ...]
-    middle: sp.Matrix
-    """The twists in the frame, somewhere along the chain, where they are shortest."""
     groups: tuple[Group, ...]
     """The joints by parallel axes, between the frames ``lead`` and ``last``."""
     lead: sp.Matrix
     last: sp.Matrix
+
+    @cached_property
+    def pose(self) -> sp.Matrix:
+        T = self.lead
+        for group in self.groups:
+            T = (T * group.transform()).applyfunc(sp.expand)
+        return reduce_circle((T * self.last).applyfunc(sp.expand))
+
+    @cached_property
+    def space(self) -> sp.Matrix:
+        return sp.Matrix.hstack(
+            *(_to_base(*self.groups[k].twist(j), self.groups[:k], self.lead) for k, j in self.places)
+        )
+
+    @cached_property
+    def body(self) -> sp.Matrix:
+        end = len(self.groups)
+        return sp.Matrix.hstack(
+            *(_to_frame(k, j, self.groups, end, self.last) for k, j in self.places)
+        )
+
+    @cached_property
+    def geometric(self) -> sp.Matrix:
+        return sp.Matrix.hstack(
+            *(_at_tool(k, j, self.groups, self.lead, self.last) for k, j in self.places)
+        )
+
+    @cached_property
+    def middle(self) -> sp.Matrix:
+        """The twists in the frame, somewhere along the chain, where they are shortest."""
+        return min(
+            (
+                sp.Matrix.hstack(*(_seen_from(k, j, self.groups, cut) for k, j in self.places))
+                for cut in range(1, len(self.groups) + 1)
+            ),
+            key=sp.count_ops,
+        )
+
+    @property
+    def places(self) -> list[tuple[int, int]]:
+        """The group of each joint, and its place there."""
+        return [(k, j) for k, group in enumerate(self.groups) for j in range(len(group.rows))]
 
     @property
     def position(self) -> sp.Matrix:
@@ -350,8 +387,8 @@ def from_dh(
     turned = sp.eye(3)
     if lead[:2, 2].is_zero_matrix:  # the base is turned about the first axis, as the joint turns
         turned, lead = lead[:3, :3], homogeneous(sp.eye(3), tuple(lead[:3, 3]))
-    motions = [link.motion for link in links]
-    return _assembled(motions, groups_of(links, turned), lead, last, (*moves, *rest))
+    joints = tuple(link.motion.joint for link in links)
+    return Serial(joints, (*moves, *rest), tuple(groups_of(links, turned)), lead, last)
 
 
 def _dh_row(d: Derivation, row: Sequence[Any], where: str) -> list[sp.Expr]:
@@ -453,7 +490,8 @@ def from_screws(
             after = home[:3, :3] if last else _frame_along(directions[i + 1])
             groups.append(Group(tuple(current), frame.T * after))
             frame, current = after, []
-    return _assembled(motions, groups, lead, sp.eye(4), (*moves, home))
+    moved = tuple(motion.joint for motion in motions)
+    return Serial(moved, (*moves, home), tuple(groups), lead, sp.eye(4))
 
 
 def _frame_along(w: sp.Matrix) -> sp.Matrix:
@@ -475,38 +513,6 @@ def _rational_frame(w: sp.Matrix) -> sp.Matrix:
     turned = sp.Matrix([[1 - share * x**2, -share * x * y], [-share * x * y, 1 - share * y**2]])
     turned = sp.Matrix.hstack(turned.col_join(sp.Matrix([[-x, -y]])), up)
     return turned if up == w else turned * sp.diag(1, -1, -1)
-
-
-def _assembled(
-    motions: Sequence[Motion],
-    groups: Sequence[Group],
-    lead: sp.Matrix,
-    last: sp.Matrix,
-    moves: tuple[sp.Matrix, ...],
-) -> Serial:
-    pose = lead
-    for group in groups:
-        pose = (pose * group.transform()).applyfunc(sp.expand)
-    places = [(k, j) for k, group in enumerate(groups) for j in range(len(group.rows))]
-    middle = min(
-        (
-            sp.Matrix.hstack(*(_seen_from(k, j, groups, cut) for k, j in places))
-            for cut in range(1, len(groups) + 1)
-        ),
-        key=sp.count_ops,
-    )
-    return Serial(
-        tuple(motion.joint for motion in motions),
-        reduce_circle((pose * last).applyfunc(sp.expand)),
-        sp.Matrix.hstack(*(_to_base(*groups[k].twist(j), groups[:k], lead) for k, j in places)),
-        sp.Matrix.hstack(*(_to_frame(k, j, groups, len(groups), last) for k, j in places)),
-        sp.Matrix.hstack(*(_at_tool(k, j, groups, lead, last) for k, j in places)),
-        moves,
-        middle,
-        tuple(groups),
-        lead,
-        last,
-    )
 
 
 def _to_base(w: sp.Matrix, v: sp.Matrix, groups: Sequence[Group], lead: sp.Matrix) -> sp.Matrix:

@@ -28,6 +28,7 @@ from closedform.scaffold.chainlinks import Single, Singles, singles
 from closedform.scaffold.maker import Maker, Z, norm, point, times
 from closedform.scaffold.proposal import NoChainError, Proposal, Tried
 from closedform.scaffold.recognise import general_degree
+from closedform.scaffold.six import SixMaker
 from closedform.scaffold.source import GIVEN, source
 from closedform.scaffold.subproblems import SubproblemMaker
 
@@ -133,17 +134,47 @@ def _six(
     for inverted, wrist in ((False, "spherical wrist"), (True, "spherical shoulder")):
         maker = SubproblemMaker(arm)
         yield f"{wrist}{more}", maker, partial(_with_wrist, maker, whole, given, inverted, more)
+    for name, solve in (
+        ("three parallel axes in the middle", SixMaker.parallel_middle),
+        ("three parallel axes at the end", SixMaker.parallel_first),
+        ("three axes in the middle that meet", SixMaker.meeting_middle),
+    ):
+        for inverted in (False, True):
+            six = SixMaker(arm)
+            seen = ", from the tool" if inverted else ""
+            yield (
+                f"{name}{seen}{more}",
+                six,
+                partial(_in_six, six, solve, whole, given, inverted, more),
+            )
+
+
+def _in_six(
+    maker: SixMaker,
+    solve: Callable[[SixMaker, Singles], str],
+    whole: Singles,
+    given: Single | None,
+    inverted: bool,
+    more: str,
+) -> str:
+    return solve(maker, _left_of(maker, whole, given, inverted)) + more
+
+
+def _left_of(
+    maker: SubproblemMaker, whole: Singles, given: Single | None, inverted: bool
+) -> Singles:
+    """The six joints that are not given, from the base or from the tool."""
+    if given is not None:
+        maker.give(given)
+        turned = rotation("z", given.turn.xreplace({given.joint: GIVEN})).applyfunc(sp.expand_trig)
+        whole = whole.with_given(given.number, turned)
+    return whole.reversed() if inverted else whole
 
 
 def _with_wrist(
     maker: SubproblemMaker, whole: Singles, given: Single | None, inverted: bool, more: str
 ) -> str:
-    if given is not None:
-        maker.give(given)
-        turned = rotation("z", given.turn.xreplace({given.joint: GIVEN})).applyfunc(sp.expand_trig)
-        whole = whole.with_given(given.number, turned)
-    if inverted:
-        whole = whole.reversed()
+    whole = _left_of(maker, whole, given, inverted)
     ends = [s.number for s in whole.joints[3:]]
     found = whole.met(3, 3)
     if found is None:

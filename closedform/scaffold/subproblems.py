@@ -41,6 +41,8 @@ class SubproblemMaker(Maker):
     """Writes the lines for an arm of single joints."""
 
     unknowns: dict[int, str] = field(default_factory=dict)
+    lifted: str = ""
+    """The pair of the first joint of a wrist."""
 
     def vector(self, name: str, value: str, label: str = "") -> None:
         """Name a vector, by default by the name of the variable."""
@@ -291,12 +293,13 @@ class SubproblemMaker(Maker):
         *,
         scale: str = "",
         by_size: bool = False,
+        choice: str = "",
     ) -> str:
         name, pair = self.unknown(joint), f"pair{joint.number}"
         per = "/ik.size" if by_size else ""
         shown = ", ".join(f"({source(e)}){per}" if per and e != 0 else source(e) for e in sides)
         more = (f", toward={toward}" if toward else "") + (f", scale={scale}" if scale else "")
-        self.solve("turn", f"{name}, {shown}, {ELBOW if by_size else SIDE}{more}", pair, 2)
+        self.solve("turn", f"{name}, {shown}, {choice or (ELBOW if by_size else SIDE)}{more}", pair, 2)
         return pair
 
     def _rotate(self, joint: Single, w: str, v: str, because: str = "", scale: str = "") -> str:
@@ -333,9 +336,82 @@ class SubproblemMaker(Maker):
         self._rotate(joints[-1], "(1, 0)", f"{M}[:, 0]", scale="1")
 
     def _wrist(self, joints: Sequence[Single], M: str) -> None:
-        groups = [Group((Row(1, j.turn, (sp.S.Zero,) * 3, False),), j.end) for j in joints]
-        groups[-1] = Group(groups[-1].rows, sp.eye(3))
-        self.wrist(joints[0].turn, groups, M, sp.eye(3), [j.number for j in joints])
+        first, middle, last = joints
+        if all(sp.simplify((j.end * Z)[2]) == 0 for j in (first, middle)):
+            groups = [Group((Row(1, j.turn, (sp.S.Zero,) * 3, False),), j.end) for j in joints]
+            groups[-1] = Group(groups[-1].rows, sp.eye(3))
+            numbers = [j.number for j in joints]
+            pair, epsilon = self.wrist(first.turn, groups, M, sp.eye(3), numbers)
+            self.lifted = self._less_by_angle(pair, epsilon)
+            return
+        self.wrist_about(first, middle, last, M, "")
+
+    def _less_by_angle(self, pair: str, epsilon: sp.Expr) -> str:
+        """The pair of an angle without the constant that was added to it."""
+        if epsilon == 0:
+            return pair
+        sine, cosine = source(sp.sin(-epsilon)), source(sp.cos(epsilon))
+        return f"({pair} + Pair({sine}, {cosine}))"
+
+    def wrist_about(
+        self, first: Single, middle: Single, last: Single, M: str, onward: str = ""
+    ) -> None:
+        """Solve three joints whose axes have any angle for the rotation that is left to them.
+
+        ``onward`` is the rotation after the first joint, if it is not a constant.
+        """
+        w = middle.end * Z
+        self.add(f"M = ik.matrix('M_wrist', {M})")
+        if onward:
+            self.add(f"onto = ik.matrix('onto', {onward})")
+            g = sp.Matrix([sp.Symbol(f"onto[2, {i}]") for i in range(3)])
+            between = "onto"
+        else:
+            g, between = first.end.T * Z, source(first.end)
+        sense = 0 if onward else self._can_align(g, w)
+        if sense:
+            x, pair = self._tilt(middle, g, w, sense)
+        else:
+            a, b = (sp.expand(e) for e in turning(w, g))
+            c = sp.Symbol("M[2, 2]") - sp.expand(g[2] * w[2])
+            x, pair = self.unknown(middle), self._turn(middle, (a, b, c), scale="1", choice=FLIP)
+        self.vector("axis", f"{between} * turned({pair}) * {source(w)}")
+        of = "" if sense > 0 else "-"
+        because = f"{{{x}: {of}(M[2, 2] + axis[2])}}"
+        lifted = self._rotate(first, "axis", "M[:, 2]", because, scale="16")
+        self.add(f"over = turned({lifted}) * {between} * turned({pair}) * {source(middle.end)}")
+        self.add("onward = ik.matrix('onward', over.T * M)")
+        up = "" if sense > 0 else "-"
+        lift = self.unknown(first)
+        each = f"{{{lift}: (-over[0, k], -over[1, k]), {x}: {up}over[2, k]}} for k in (0, 1)"
+        self.solve("spin", f"{self.unknown(last)}, onward, [{each}]", f"pair{last.number}")
+        self.lifted = lifted
+
+    def _can_align(self, g: sp.Matrix, w: sp.Matrix) -> int:
+        """Whether the first and the last axis can point the same way (1), or opposite ways (-1)."""
+        if sp.simplify(g[2] - w[2]) == 0:
+            return 1
+        return -1 if sp.simplify(g[2] + w[2]) == 0 else 0
+
+    def _tilt(self, joint: Single, g: sp.Matrix, w: sp.Matrix, sense: int) -> tuple[str, str]:
+        """Solve the middle joint of a wrist of equal angles; its unknown is zero at alignment."""
+        a, b = (sp.simplify(e) for e in turning(w, g))
+        k = sp.simplify(1 - g[2] ** 2)
+        if a == 0 and sp.simplify(b - k) == 0:
+            offset = sp.S.Zero
+        elif a == 0 and sp.simplify(b + k) == 0:
+            offset = sp.pi
+        else:
+            offset = sp.atan2(a, b)
+        x = self.angle(joint.turn - offset + (sp.pi if sense < 0 else 0))
+        name = f"tilted{joint.number}"
+        more = ", sense=-1" if sense < 0 else ""
+        self.solve("tilt", f"{x}, {source(k)}, M[:, 2], {FLIP}{more}", name, 2)
+        back = offset - (sp.pi if sense < 0 else 0)
+        pair = f"pair{joint.number}"
+        turned = self._less_by_angle(name, -back)
+        self.add(f"{pair} = {turned}")
+        return x, pair
 
 
 def turning(w: Any, v: Any) -> tuple[Any, Any]:
@@ -344,6 +420,7 @@ def turning(w: Any, v: Any) -> tuple[Any, Any]:
 
 
 SIDE = "{+1: 'left', -1: 'right'}"
+FLIP = "{+1: 'noflip', -1: 'flip'}"
 ELBOW = "{+1: 'up', -1: 'down'}"
 """Where a distance decides, the joint bends an elbow."""
 

@@ -477,7 +477,6 @@ class Chain:
         d.inverses.append(inverse)
         return inverse
 
-
     def _rotations(self) -> tuple[sp.Expr, ...]:
         """The targets, with every rotation in free symbols instead of its entries."""
         R = rotation_parametrisation()

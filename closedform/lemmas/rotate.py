@@ -82,7 +82,9 @@ def rotate(
     given = {v1: w1 * c - w2 * s, v2: w1 * s + w2 * c}
     meaning = f"the axis of {x} is met; {x} is free, 0 is returned."
     cases = degenerate(flag, [vanishing(w1, w2, v1, v2)], x, meaning)
-    relations = (Relation(relation, terms(because), f"that {_shown(w)} and {_shown(v)} are equally long"),)
+    relations = (
+        Relation(relation, terms(because), f"that {_shown(w)} and {_shown(v)} are equally long"),
+    )
     return Applied(lemma, pair, means, given, cases, relations=relations)
 
 

@@ -28,7 +28,7 @@ from closedform.mechanics.frames import (
 )
 from closedform.mechanics.links import Group, Link, Motion, Row, groups_of
 from closedform.mechanics.linkwise import Named
-from closedform.mechanics.mobility import dependent_joints, singular_everywhere
+from closedform.mechanics.mobility import dependent_in_chain, dependent_joints, singular_everywhere
 from closedform.mechanics.skeleton import serial_skeleton, skeleton
 from closedform.model.derivation import Derivation
 
@@ -59,7 +59,10 @@ class Serial:
     @cached_property
     def space(self) -> sp.Matrix:
         return sp.Matrix.hstack(
-            *(_to_base(*self.groups[k].twist(j), self.groups[:k], self.lead) for k, j in self.places)
+            *(
+                _to_base(*self.groups[k].twist(j), self.groups[:k], self.lead)
+                for k, j in self.places
+            )
         )
 
     @cached_property
@@ -112,6 +115,8 @@ class Serial:
         task, n = self.coordinates(), len(self.joints)
         if task is None and n != 6:
             return
+        if task is None and dependent_in_chain(self.groups, self.joints)[0] == n:
+            return
         J = self.middle if task is None else task.J
         if dependent_joints(J, self.joints)[0] < n and _determinant(J) == 0:
             raise singular_everywhere(name, J, self.joints)
@@ -122,6 +127,8 @@ class Serial:
         None where the whole pose is the task, or where no such choice is plain.
         """
         n = len(self.joints)
+        if n > 4:  # more than x, y, z and the yaw
+            return None
         moved = [i for i in range(6) if any(e != 0 for e in self.geometric.row(i))]
         linear = [i for i in moved if i < 3]
         rows = next((r for r in (moved, linear) if len(r) == n and set(r) <= {0, 1, 2, 5}), None)

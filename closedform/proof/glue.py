@@ -170,9 +170,7 @@ class _Chain:
                     for factor, equation in zip(factors, solved[u], strict=False)
                 )
                 difference = self.posture.named(relation.value - total)
-                require(
-                    substitute(difference, rotation), (), f"{place}, does not follow so"
-                )
+                require(substitute(difference, rotation), (), f"{place}, does not follow so")
             solved[link.unknowns[0]] = link.equations
 
     def _determines_target(self) -> None:

@@ -147,9 +147,7 @@ class SixMaker(SubproblemMaker):
     def _between_parallel(self, found: Singles) -> str:
         """The same where axes 5 and 6 are parallel: the component along them gives joint 1."""
         one, _, _, four, five, six = found.joints
-        self.require(
-            five.end == sp.eye(3), "its last two axes are opposite", "Turn a frame by pi."
-        )
+        self.require(five.end == sp.eye(3), "its last two axes are opposite", "Turn a frame by pi.")
         self._seen_from_tool(found)
         along = sp.Matrix([sp.Symbol(f"M[{i}, 2]") for i in range(3)])
         s, u, p = one.shift, five.shift, point("p")

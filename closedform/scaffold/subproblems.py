@@ -299,7 +299,9 @@ class SubproblemMaker(Maker):
         per = "/ik.size" if by_size else ""
         shown = ", ".join(f"({source(e)}){per}" if per and e != 0 else source(e) for e in sides)
         more = (f", toward={toward}" if toward else "") + (f", scale={scale}" if scale else "")
-        self.solve("turn", f"{name}, {shown}, {choice or (ELBOW if by_size else SIDE)}{more}", pair, 2)
+        self.solve(
+            "turn", f"{name}, {shown}, {choice or (ELBOW if by_size else SIDE)}{more}", pair, 2
+        )
         return pair
 
     def _rotate(self, joint: Single, w: str, v: str, because: str = "", scale: str = "") -> str:

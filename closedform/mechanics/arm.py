@@ -113,12 +113,11 @@ class Serial:
     def require_regular(self, name: str) -> None:
         """Raise ``SingularEverywhereError`` if no posture is regular."""
         task, n = self.coordinates(), len(self.joints)
-        if task is None and n != 6:
-            return
-        if task is None and dependent_in_chain(self.groups, self.joints)[0] == n:
+        if task is None and (n > 6 or dependent_in_chain(self.groups, self.joints)[0] == n):
             return
         J = self.middle if task is None else task.J
-        if dependent_joints(J, self.joints)[0] < n and _determinant(J) == 0:
+        square = J.rows == n
+        if dependent_joints(J, self.joints)[0] < n and (not square or _determinant(J) == 0):
             raise singular_everywhere(name, J, self.joints)
 
     def coordinates(self) -> Coordinates | None:
@@ -134,11 +133,12 @@ class Serial:
         rows = next((r for r in (moved, linear) if len(r) == n and set(r) <= {0, 1, 2, 5}), None)
         if rows is None:
             return None
+        J = self.geometric.extract(rows, list(range(n)))
+        if rows != moved and dependent_joints(J, self.joints)[0] < n:
+            return None  # such as a wrist whose tool is beside its centre
         values = [self.position[i] if i < 3 else self._yaw() for i in rows]
         names = tuple(("x", "y", "z", "roll", "pitch", "yaw")[i] for i in rows)
-        return Coordinates(
-            names, tuple(rows), sp.Matrix(values), self.geometric.extract(rows, list(range(n)))
-        )
+        return Coordinates(names, tuple(rows), sp.Matrix(values), J)
 
     def _yaw(self) -> sp.Expr:
         """The angle of the tool about z, for an arm whose joints turn it about z alone."""

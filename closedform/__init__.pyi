@@ -27,6 +27,7 @@ from closedform.lemmas.links import zyz as zyz
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
 from closedform.lemmas.registry import chain_lemma as chain_lemma
 from closedform.lemmas.registry import theorem as theorem
+from closedform.lemmas.root import root as root
 from closedform.lemmas.rotate import rotate as rotate
 from closedform.lemmas.sine_cosine import linear_pair as linear_pair
 from closedform.lemmas.sine_cosine import sine_cosine as sine_cosine

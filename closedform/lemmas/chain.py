@@ -159,6 +159,7 @@ class Chain:
             f: pairs[f.args[0]].s if isinstance(f, sp.sin) else pairs[f.args[0]].c
             for f in functions
         }
+        known |= {j: self.values[j] for j in self.joints if j in self.values and j not in pairs}
         for i in range(3):
             for j in range(4):
                 scale = self.size if j == 3 else sp.S.One

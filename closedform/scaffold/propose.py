@@ -80,7 +80,7 @@ def _candidates(arm: Serial, given: str) -> Iterator[tuple[str, Maker, Callable[
     slides = any(row.slides for group in arm.groups for row in group.rows)
     if n != 7 or slides:
         yield "a known structure", known, known.whole
-    if slides:
+    if slides and n > 6:
         return
     whole = singles(arm)
     task = arm.coordinates()
@@ -101,7 +101,11 @@ def _candidates(arm: Serial, given: str) -> Iterator[tuple[str, Maker, Callable[
         for wrist in (w for w in (3, 2, 1) if 0 <= n - w <= 3):
             maker = SubproblemMaker(arm)
             yield f"the last {wrist} of {n} joints", maker, partial(_fewer, maker, whole, wrist)
-        if n == 5:
+        for wrist in (w for w in (3, 2) if 0 <= n - w <= 3):
+            maker = SubproblemMaker(arm)
+            seen = f"the first {wrist} of {n} joints"
+            yield seen, maker, partial(_fewer, maker, whole.reversed(), wrist)
+        if n == 5 and not slides:
             maker = SubproblemMaker(arm)
             met = _met(whole, ((3, 2),))
             yield "three parallel joints", maker, partial(maker.solved_in_plane, met)
@@ -134,6 +138,8 @@ def _six(
     for inverted, wrist in ((False, "spherical wrist"), (True, "spherical shoulder")):
         maker = SubproblemMaker(arm)
         yield f"{wrist}{more}", maker, partial(_with_wrist, maker, whole, given, inverted, more)
+    if any(joint.slides for joint in whole.joints):
+        return
     for name, solve in (
         ("three parallel axes in the middle", SixMaker.parallel_middle),
         ("three parallel axes at the end", SixMaker.parallel_first),

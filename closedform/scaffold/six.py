@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.scaffold.chainlinks import Singles, parallel
-from closedform.scaffold.maker import Z, point, times
+from closedform.scaffold.maker import Z, point, times, turning
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.source import source
-from closedform.scaffold.subproblems import SubproblemMaker, turning
+from closedform.scaffold.subproblems import SubproblemMaker
 
 
 @dataclass
@@ -190,7 +190,7 @@ class SixMaker(SubproblemMaker):
 
 
 def _followed(value: str, R: sp.Matrix) -> str:
-    return value if R == sp.eye(3) else f"{value} * {source(R)}"
+    return value if sp.eye(3) == R else f"{value} * {source(R)}"
 
 
 __all__ = ["SixMaker"]

@@ -18,22 +18,10 @@ import sympy as sp
 
 from closedform.mechanics.arm import Group, Row
 from closedform.scaffold.chainlinks import Single, Singles, parallel
-from closedform.scaffold.maker import Maker, Z, norm, point, times
+from closedform.scaffold.maker import Maker, Solved, Z, norm, point, times, turning
 from closedform.scaffold.proposal import NoChainError
+from closedform.scaffold.slides import Slides
 from closedform.scaffold.source import source
-
-
-@dataclass(frozen=True)
-class Solved:
-    """How the joints that carry a point were solved.
-
-    ``turned`` are their rotations: a pair about z, and the constant rotation after it.  ``rest`` is
-    what fewer than three leave of the point, zero if it can be reached.
-    """
-
-    structure: str
-    turned: Sequence[tuple[str, sp.Matrix]]
-    rest: str = ""
 
 
 @dataclass
@@ -63,7 +51,10 @@ class SubproblemMaker(Maker):
         solved = self.position(before)
         M = times(arm.lead[:3, :3].T, R)
         for k, (pair, end) in enumerate(solved.turned, 1):
-            self.add(f"left{k} = ik.matrix('left{k}', {times(end.T, f'(turned({pair}).T * {M})')})")
+            if not pair and end == sp.eye(3):
+                continue
+            inside = f"(turned({pair}).T * {M})" if pair else M
+            self.add(f"left{k} = ik.matrix('left{k}', {times(end.T, inside)})")
             M = f"left{k}"
         M = self._without_tool(arm.tool[:3, :3], M)
         self.orientation(ends, M)
@@ -133,11 +124,8 @@ class SubproblemMaker(Maker):
 
     def position(self, joints: Sequence[Single]) -> Solved:
         """Solve up to three joints that carry the point ``p``, which is at the end of the last."""
-        self.require(
-            not any(j.slides for j in joints),
-            "a joint slides in an order that is not known",
-            "The known orders are those of polar and cylindrical arms and of gantries.",
-        )
+        if any(j.slides for j in joints):
+            return Slides(self, joints, self.unknown).solved()
         if len(joints) == 3:
             return self._three(*joints)
         if len(joints) == 2:
@@ -414,11 +402,6 @@ class SubproblemMaker(Maker):
         turned = self._less_by_angle(name, -back)
         self.add(f"{pair} = {turned}")
         return x, pair
-
-
-def turning(w: Any, v: Any) -> tuple[Any, Any]:
-    """The coefficients of sin(x) and cos(x) in the scalar product of ``v`` and ``Rz(x) w``."""
-    return w[0] * v[1] - w[1] * v[0], w[0] * v[0] + w[1] * v[1]
 
 
 SIDE = "{+1: 'left', -1: 'right'}"

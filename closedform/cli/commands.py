@@ -122,6 +122,13 @@ def parser() -> argparse.ArgumentParser:
         action="store_true",
         help="with -o, do not compare the printed code with the symbolic source",
     )
+    derive.add_argument(
+        "--timeout",
+        metavar="SECONDS",
+        type=_seconds,
+        default=0.0,
+        help="of computing for each; then print without an inverse; 0: no limit; default: 0",
+    )
     check = command("check", check_command)
     verify = command("verify", verify_command)
     verify.add_argument("names", metavar="NAME", nargs="*", help="default: all derivations")
@@ -262,6 +269,8 @@ def _next(
     robot: pipeline.Printed, source: pipeline.Source, root: Path, backends: Sequence[str]
 ) -> str:
     """What to do next with a robot that was printed into a folder of the user."""
+    if robot.given_up:
+        return "allow more time with --timeout, or name lengths and angles in the table"
     if not robot.proof.inverses:
         return f"write the inverse in {source.path.name}; docs/adding-a-mechanism.md says how"
     from closedform.emit.backends import load
@@ -469,6 +478,7 @@ def _run(
             together=together,
             fresh=getattr(options, "fresh", False),
             jobs=getattr(options, "jobs", None) or pipeline.default_jobs(),
+            timeout=getattr(options, "timeout", 0.0),
             report=progress,
         )
     if result.failures:

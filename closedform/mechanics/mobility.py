@@ -41,7 +41,7 @@ def dependent_in_chain(
     symbols = [*joints, *sorted(free, key=str)]
     evaluate = [sp.lambdify(symbols, part, "numpy") for part in parts]
 
-    def jacobian(point: Sequence[float]) -> np.ndarray:
+    def jacobian(point: np.ndarray) -> np.ndarray:
         T, columns = np.eye(4), []
         for part in evaluate:
             step, *twists = np.hsplit(
@@ -56,7 +56,7 @@ def dependent_in_chain(
 
 
 def _dependent(
-    jacobian: Callable[[Sequence[float]], np.ndarray], symbols: int, joints: Sequence[sp.Symbol]
+    jacobian: Callable[[np.ndarray], np.ndarray], symbols: int, joints: Sequence[sp.Symbol]
 ) -> tuple[int, list[sp.Symbol]]:
     rng = np.random.default_rng(4)
     ranks, involved = [], np.zeros(len(joints), dtype=bool)

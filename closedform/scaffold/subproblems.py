@@ -17,6 +17,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.mechanics.arm import Group, Row
+from closedform.mechanics.frames import rotation
 from closedform.scaffold.chainlinks import Single, Singles, parallel
 from closedform.scaffold.maker import Maker, Solved, Z, norm, point, times, turning
 from closedform.scaffold.proposal import NoChainError
@@ -71,6 +72,29 @@ class SubproblemMaker(Maker):
             self.vector("p", moved, "p0")
         last = replace(arm.joints[-1], shift=tool)
         return self.position([*arm.joints[:-1], last]).structure
+
+    def solved_level(self, arm: Singles) -> str:
+        """Solve three joints for the point that a fourth turns the tool about, and then that."""
+        *before, last = arm.joints
+        self.require(
+            not last.slides,
+            f"joint {last.number} slides after those that turn the tool",
+            "Among four joints with the task x, y, z and yaw the last must turn.",
+        )
+        home = self.arm.pose[:3, :3].subs(dict.fromkeys(self.arm.joints, 0))
+        level = rotation("z", -sp.atan2(home[1, 0], home[0, 0])) * home
+        beside = (level * arm.tool[:3, :3].T * arm.tool[:3, 3]).applyfunc(sp.simplify)
+        self.add("x, y, z, yaw = ik.x")
+        x, y, z, yaw = map(sp.Symbol, ("x", "y", "z", "yaw"))
+        self.vector("p", source(sp.Matrix([x, y, z]) - rotation("z", yaw) * beside), "w")
+        if arm.lead != sp.eye(4):
+            moved = times(arm.lead[:3, :3].T, f"(p - {source(arm.lead[:3, 3])})")
+            self.vector("p", moved, "p0")
+        structure = self.position(before).structure
+        total = self.arm.coordinates().values[-1]  # type: ignore[union-attr]
+        (value,) = sp.solve(total - sp.Symbol("yaw", real=True), last.joint)
+        self.solve("remainder", f"{last.joint}, {source(value)}")
+        return f"{structure}, and a turn of the level tool"
 
     def solved_in_plane(self, arm: Singles) -> str:
         """Solve a turret, three parallel joints and one whose axis does not meet theirs."""

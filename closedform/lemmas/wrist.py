@@ -13,20 +13,20 @@ from closedform.lemmas.links import degenerate, differs_from_zero, named, vanish
 from closedform.lemmas.pairs import direction
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.lemmas.rotate import Because, terms
-from closedform.model.functions import choose, real
+from closedform.model.functions import real
 from closedform.model.inverse import Relation
 from closedform.model.lemma import Lemma, label
 
 theorem(
     "tilt of a wrist",
-    statement=r"""Let $k > 0$, and let $v$ be a unit vector with $v_3 \ne -1$.  The equation
-$k\,(1 - \cos\theta) = 1 - v_3$ has a solution if and only if $m = (v_1^2 + v_2^2)/(1 + v_3) \le
-2k$.  Its solutions are, for $\sigma = \pm 1$,
+    statement=r"""Let $k > 0$, and let $v$ be a unit vector.  The equation $k\,(1 - \cos\theta) = 1
+- v_3$ has a solution if and only if $m = (v_1^2 + v_2^2)/(1 + |v_3|) + |v_3| - v_3 \le 2k$.  Its
+solutions are, for $\sigma = \pm 1$,
 $$(\cos\theta, \sin\theta) = \frac{(k - m,\ \sigma\sqrt{m\,(2k - m)})}{k}.$$""",
-    proof=r"""Since $v_1^2 + v_2^2 = 1 - v_3^2$, the number $m$ is $1 - v_3 \ge 0$, without a
-difference of nearly equal numbers where $v_3$ is close to 1.  The equation says $\cos\theta = 1 -
-m/k$, which is at most 1, and at least $-1$ if and only if $m \le 2k$.  Then $\sin^2\theta = (1 -
-\cos\theta)(1 + \cos\theta) = m\,(2k - m)/k^2$, and either sign of the sine gives an angle.""",
+    proof=r"""Since $v_1^2 + v_2^2 = (1 - |v_3|)(1 + |v_3|)$, the number $m$ is $1 - v_3 \ge 0$,
+without a difference of nearly equal numbers.  The equation says $\cos\theta = 1 - m/k$, which is at
+most 1, and at least $-1$ if and only if $m \le 2k$.  Then $\sin^2\theta = (1 - \cos\theta)(1 +
+\cos\theta) = m\,(2k - m)/k^2$, and either sign of the sine gives an angle.""",
     exception=r"""If $k = 0$, there is no solution unless $v_3 = 1$; then every $\theta$ is one,
 and the joint is free.""",
 )
@@ -53,8 +53,8 @@ def tilt(
     k = chain.coefficient(f"k_tilt{tag}", k, nonnegative=True)
     v1, v2, v3 = v[:3]
     along = sense * v3
-    behind = p.vanishes(f"behind{tag}", 1 + along, 1, "the last axis is opposite to the first")
-    missed = choose(behind, 2, (v1**2 + v2**2) / (1 + along))
+    size = sp.Abs(along)
+    missed = (v1**2 + v2**2) / (1 + size) + (size - along)
     below = p.let(f"below{tag}", missed, nonnegative=True)
     above = p.bound(f"above{tag}", 2 * k - below, sp.S.One, "the wrist does not tilt as far")
     width = p.let(f"width{tag}", below + above, nonnegative=True)
@@ -66,7 +66,8 @@ def tilt(
     lemma = Lemma(
         "tilt of a wrist",
         r"k(1 - \cos\theta) = 1 - v_3 \;\Rightarrow\; (\cos\theta, \sin\theta) = "
-        r"\frac{(k - m, \sigma\sqrt{m(2k - m)})}{k},\ m = \frac{v_1^2 + v_2^2}{1 + v_3}",
+        r"\frac{(k - m, \sigma\sqrt{m(2k - m)})}{k},\ "
+        r"m = \frac{v_1^2 + v_2^2}{1 + |v_3|} + |v_3| - v_3",
         (k * (1 - sp.cos(x)) - 1 + along,),
         {x: pair.angle},
         2,

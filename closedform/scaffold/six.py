@@ -9,12 +9,13 @@ Each also for the arm seen from its tool.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from closedform.scaffold.chainlinks import Singles, parallel
-from closedform.scaffold.maker import Z, point, times, turning
+from closedform.scaffold.chainlinks import Single, Singles, parallel
+from closedform.scaffold.maker import Z, norm, point, times, turning
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.source import source
 from closedform.scaffold.subproblems import SubproblemMaker
@@ -42,6 +43,7 @@ class SixMaker(SubproblemMaker):
         self.add(f"left1 = ik.matrix('left1', {times(one.end.T, inside)})")
         M = self._without_tool(arm.tool[:3, :3], "left1")
         lift = replace(four, turn=two.turn + three.turn + four.turn)
+        self._reach([lift, five, six], w, [q, pair], two.shift, three.shift)
         self.orientation([lift, five, six], M)
         self.vector("q", f"{q} - turned({self.lifted}) * {source(w)}", "q2")
         u, v = two.shift, three.shift
@@ -89,6 +91,8 @@ class SixMaker(SubproblemMaker):
             self.vector("p", f"p - M * turned({sixth}).T * {source(t)}", "p3")
             left = _followed(f"M * turned({sixth}).T", five.end.T)
             self.add(f"left1 = ik.matrix('left1', {left})")
+            links = one.shift, two.shift
+            self._reach([lift, four, five], three.shift, ["p", sixth], *links)
             self.orientation([lift, four, five], "left1")
             self.vector("end", source(three.shift))
         self.vector("q", f"p - turned({self.lifted}) * end")
@@ -160,6 +164,33 @@ class SixMaker(SubproblemMaker):
         both = f"turned({self.pairs[0]} + {self.less(self.pairs[1], t[:2, 0])})"
         middle = times(one.end.T, f"(turned({first}).T * M)")
         return _followed(f"{middle} * {both}", four.end.T)
+
+    def _reach(
+        self,
+        wrist: Sequence[Single],
+        w: sp.Matrix,
+        names: Sequence[str],
+        u: sp.Matrix,
+        v: sp.Matrix,
+    ) -> None:
+        """Keep a wrist within reach of the links ``u`` and ``v`` where it is free.
+
+        It turns the vector ``w``; ``names`` are those of the point and of the pair before.
+        """
+        first = wrist[0]
+        if not self.is_normal(wrist):
+            return
+        q, pair = names
+        e = first.end * Z
+        if e[1].is_negative:
+            e = -e
+        length = norm(w[:2, 0])
+        angle = (sp.atan2(w[1], w[0]) if length != 0 else sp.S.Zero) - sp.atan2(e[1], e[0])
+        ahead = f"Pair({source(sp.sin(angle + sp.pi / 2))}, {source(sp.cos(angle + sp.pi / 2))})"
+        lengths = ", ".join(source(norm(x[:2, 0])) for x in (w, u, v))
+        point_of = f"{q}[0], {q}[1]"
+        self.add(f"reaching = Reaching(ik, {point_of}, {lengths}, {ahead}, {pair}.lever)")
+        self.more = ", reaching=reaching"
 
     def _seen_from_tool(self, found: Singles) -> None:
         """Name the point ``p`` of the last axes, and the rotation ``M`` after the last joint."""

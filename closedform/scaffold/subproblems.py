@@ -32,6 +32,8 @@ class SubproblemMaker(Maker):
     unknowns: dict[int, str] = field(default_factory=dict)
     lifted: str = ""
     """The pair of the first joint of a wrist."""
+    more: str = ""
+    """What the lemma of a wrist is told beside its angles."""
 
     def vector(self, name: str, value: str, label: str = "") -> None:
         """Name a vector, by default by the name of the variable."""
@@ -351,14 +353,18 @@ class SubproblemMaker(Maker):
 
     def _wrist(self, joints: Sequence[Single], M: str) -> None:
         first, middle, last = joints
-        if all(sp.simplify((j.end * Z)[2]) == 0 for j in (first, middle)):
+        if self.is_normal(joints):
             groups = [Group((Row(1, j.turn, (sp.S.Zero,) * 3, False),), j.end) for j in joints]
             groups[-1] = Group(groups[-1].rows, sp.eye(3))
             numbers = [j.number for j in joints]
-            pair, epsilon = self.wrist(first.turn, groups, M, sp.eye(3), numbers)
+            pair, epsilon = self.wrist(first.turn, groups, M, sp.eye(3), numbers, self.more)
             self.lifted = self._less_by_angle(pair, epsilon)
             return
         self.wrist_about(first, middle, last, M, "")
+
+    def is_normal(self, wrist: Sequence[Single]) -> bool:
+        """Whether the neighbours among three axes are at right angles."""
+        return all(sp.simplify((j.end * Z)[2]) == 0 for j in wrist[:2])
 
     def _less_by_angle(self, pair: str, epsilon: sp.Expr) -> str:
         """The pair of an angle without the constant that was added to it."""

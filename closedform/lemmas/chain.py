@@ -249,8 +249,9 @@ class Chain:
     def solve(self, lemma: Any, *arguments: Any, **options: Any) -> Any:
         """Apply a lemma of :mod:`closedform.lemmas.links`; returns what it hands on."""
         start = len(self.program.body)
-        exact = [sp.Integer(a) if type(a) is int else a for a in arguments]
-        applied: Applied = lemma(self, *exact, **options)
+        applied: Applied = lemma(
+            self, *map(_exact, arguments), **{key: _exact(value) for key, value in options.items()}
+        )
         body: tuple[Statement, ...] = tuple(
             s
             for s in self.program.body[start:]
@@ -483,6 +484,10 @@ class Chain:
         R = rotation_parametrisation()
         turned = {self.R[i, j]: R[i, j] for i in range(3) for j in range(3)}
         return tuple(turned.get(x, x) for x in self.targets)
+
+
+def _exact(argument: Any) -> Any:
+    return sp.Integer(argument) if type(argument) is int else argument
 
 
 def lengths_in_numbers(place: sp.Expr) -> sp.Expr:

@@ -121,7 +121,7 @@ def turn(
         chain.coefficient(f"{n}_turn{tag}", e) for n, e in zip("abc", (a, b, c), strict=True)
     )
     # half: what is clamped stays well within the round trip that is promised
-    missed_by = (lambda _: chain.size / 2) if scale is None else (lambda _: sp.sympify(scale))
+    missed_by = (lambda _: chain.size / 2) if scale is None else (lambda _: scale)
     at = Amplitude.of(p, x, (a, b, c), sigma, scale=missed_by, suffix=tag)
     flag: Any = sp.false
     if not any(differs_from_zero(chain, e, chain.size) for e in (a, b, c)):

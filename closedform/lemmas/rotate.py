@@ -51,7 +51,7 @@ def rotate(
     ``scale`` is that of the vectors, by default the size of the arm.
     """
     p, tag = chain.program, name or label(x)
-    size = chain.size if scale is None else sp.sympify(scale)
+    size = chain.size if scale is None else scale
     w, v = ([sp.sympify(e) for e in vector[:2]] for vector in (w, v))
     relation = w[0] ** 2 + w[1] ** 2 - v[0] ** 2 - v[1] ** 2
     w1, w2 = (chain.coefficient(f"w{i}_{tag}", e) for i, e in enumerate(w, 1))

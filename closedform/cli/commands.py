@@ -365,6 +365,8 @@ def new_command(options: argparse.Namespace) -> None:
         raise CommandError(str(error)) from error
     for note in script.notes:
         console.say(f"closedform: note: {note}")
+    if script.advice:
+        console.say(f"closedform: note: {script.advice}")
     if options.explain:
         console.write("".join(f"{line}\n" for line in script.explained))
     _write(options.output, {Path(target.name): script.text})

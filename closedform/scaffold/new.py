@@ -61,6 +61,8 @@ class Script:
     notes: tuple[str, ...] = ()
     explained: tuple[str, ...] = ()
     """What was recognised of the axes, and which chains were tried."""
+    advice: str = ""
+    """What to do if no inverse is proposed."""
 
 
 @dataclass
@@ -199,6 +201,7 @@ def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
         inverse.outcome,
         tuple(table.notes),
         tuple(inverse.explained),
+        inverse.advice,
     )
 
 
@@ -268,6 +271,7 @@ class _Inverse:
     lines: list[str]
     outcome: str
     explained: list[str] = field(default_factory=list)
+    advice: str = ""
 
 
 def _inverse_lines(arm: Serial, search: Search) -> _Inverse:
@@ -307,7 +311,7 @@ def _without_inverse(
         '# ik.finish("All solutions.")',
         f"d.no_inverse({_literal(found)})",
     ]
-    return _Inverse(lines, f"no inverse, because {found}", list(explained))
+    return _Inverse(lines, f"no inverse, because {found}", list(explained), needed)
 
 
 def _imports(text: str) -> str:

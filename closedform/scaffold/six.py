@@ -157,7 +157,9 @@ class SixMaker(SubproblemMaker):
         s, u, p = one.shift, five.shift, point("p")
         t = (four.end.T * four.shift).applyfunc(sp.simplify)
         c = along.dot(p) - t[2] - u[2] - along[2] * s[2]
-        first = self._turn(one, (*turning(s, along), c))
+        lengths = ", ".join(source(norm(x[:2, 0])) for x in (u, t))
+        self.add(f"links = Links(lambda pair: M.T * (p - turned(pair) * {source(s)}), {lengths})")
+        first = self._turn(one, (*turning(s, along), c), "links")
         self.vector("seen", f"M.T * (p - turned({first}) * {source(s)})")
         turns = [-six.turn, -five.turn]
         self.two_links(turns, [u[:2, 0], t[:2, 0]], "seen[0]", "seen[1]")

@@ -213,6 +213,11 @@ class SixMaker(SubproblemMaker):
         found = arm.met(first, 2)
         if found is None:
             one, two = sorted(arm.joints[k].number for k in (first, first + 1))
+            self.require(
+                not parallel(arm.joints[first]),
+                f"axes {one} and {two} are parallel",
+                "Beside the three axes two neighbours have to meet.",
+            )
             raise NoChainError(
                 f"axes {one} and {two} do not meet",
                 "Beside the three axes two neighbours have to meet; otherwise an equation of "

@@ -32,7 +32,7 @@ and the joint is free.""",
 )
 
 
-@chain_lemma("k (1 - cos x) = 1 - v3, |v| = 1", "the pair of x")
+@chain_lemma("k (1 - cos x) = 1 - v3", "the pair of x")
 def tilt(
     chain: Chain,
     x: sp.Symbol,

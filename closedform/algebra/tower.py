@@ -347,9 +347,6 @@ class Tower:
     def _large_root(self, number: fmpz) -> Iterator[tuple[Fraction, int]]:
         """The root of a number; it is a multiple of another if their product is a square."""
         known = next((n for n in self._large if (n * number).is_square()), number)
-        if number.is_square():
-            yield self._constant(int(number.isqrt())), 1
-            return
         self._large.append(known)
         yield self._constant(fmpq((known * number).isqrt(), known)), 1
         yield self._root(self._ctx.constant(known)), 1

@@ -13,14 +13,13 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.algebra.normal_form import determinant
 from closedform.mechanics import linkwise
 from closedform.mechanics.entries import RowError, check_unit, constant, exact, rigid
+from closedform.mechanics.factored import factored_determinant
 from closedform.mechanics.frames import (
     denavit_hartenberg,
     exponential,
     homogeneous,
-    merge_angles,
     reduce_circle,
     rotation,
     simplest,
@@ -108,7 +107,7 @@ class Serial:
 
         A change of frame does not change it, so it is taken where the twists are shortest.
         """
-        return _determinant(self.middle)
+        return factored_determinant(self.middle)
 
     def require_regular(self, name: str) -> None:
         """Raise ``SingularEverywhereError`` if no posture is regular."""
@@ -117,7 +116,7 @@ class Serial:
             return
         J = self.middle if task is None else task.J
         square = J.rows == n
-        if dependent_joints(J, self.joints)[0] < n and (not square or _determinant(J) == 0):
+        if dependent_joints(J, self.joints)[0] < n and (not square or factored_determinant(J) == 0):
             raise singular_everywhere(name, J, self.joints)
 
     def coordinates(self) -> Coordinates | None:
@@ -275,7 +274,7 @@ class Serial:
         name = r"J_{\mathrm{task}}"
         summary = f"Derivative of ({shown}) by the joints."
         _export(d, "jacobian", summary, q, "J", J, equation=name)
-        det = _determinant(task.J)
+        det = factored_determinant(task.J)
         check = [
             (task.values.jacobian(q), task.J),
             (task.J.det(method="berkowitz"), det),
@@ -567,35 +566,6 @@ def _seen_from(k: int, j: int, groups: Sequence[Group], cut: int) -> sp.Matrix:
     if k < cut:
         return _to_frame(k, j, groups, cut, sp.eye(4))
     return _to_base(*groups[k].twist(j), groups[cut:k], sp.eye(4))
-
-
-def _determinant(J: sp.Matrix) -> sp.Expr:
-    """Over the polynomials in sines and cosines, reduced on their circles, factored."""
-    reduced = determinant(J)
-    found = min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=sp.count_ops)
-    return _in_decimals(found)
-
-
-def _in_decimals(product: sp.Expr) -> sp.Expr:
-    """Sums whose coefficients were made whole numbers, by factoring, over a power of ten again.
-
-    A factor then has the size of the lengths that are numbers in it, not a million times that.
-    """
-    number, others = product.as_coeff_Mul()
-    whole, rest = [], []
-    for factor in sp.Mul.make_args(others):
-        base, power = factor.as_base_exp()
-        terms = base.as_coefficients_dict() if base.is_Add else {}
-        digits = len(str(max((abs(int(c)) for c in terms.values()), default=0)))
-        if digits > 1:
-            number *= 10 ** (digits * power)
-            whole.append(sp.Add(*(c * t / 10**digits for t, c in terms.items())) ** power)
-        else:
-            rest.append(factor)
-    if len(whole) == 1 and whole[0].is_Add:
-        whole = [sp.Add(*(number * t for t in whole[0].args))]
-        number = sp.S.One
-    return number * sp.Mul(*whole, *rest)
 
 
 __all__ = [

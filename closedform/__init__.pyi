@@ -32,6 +32,7 @@ from closedform.lemmas.loop import parallel as parallel
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
 from closedform.lemmas.registry import chain_lemma as chain_lemma
 from closedform.lemmas.registry import theorem as theorem
+from closedform.lemmas.root import root as root
 from closedform.lemmas.rotate import rotate as rotate
 from closedform.lemmas.sine_cosine import linear_pair as linear_pair
 from closedform.lemmas.sine_cosine import sine_cosine as sine_cosine
@@ -44,6 +45,8 @@ from closedform.lemmas.two_link import elbow_squares as elbow_squares
 from closedform.lemmas.two_link import two_link_arm as two_link_arm
 from closedform.lemmas.two_link import two_link_arm_beside as two_link_arm_beside
 from closedform.lemmas.two_sines import two_sines as two_sines
+from closedform.lemmas.wrist import spin as spin
+from closedform.lemmas.wrist import tilt as tilt
 from closedform.lemmas.zyz import zyz_angles as zyz_angles
 from closedform.mechanics.arm import from_dh as from_dh
 from closedform.mechanics.arm import from_screws as from_screws

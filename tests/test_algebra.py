@@ -299,3 +299,13 @@ def test_determinant_by_minors() -> None:
     assert equal(determinant(J), J.det(method="berkowitz"))
     J[3, :] = J[0, :] * 2
     assert determinant(J) == 0
+
+
+def test_roots_of_long_numbers_are_not_factored() -> None:
+    """Of two primes with 60 digits each, which nobody could factor; multiples are recognised."""
+    number = (10**60 + 7) * (10**61 + 93)
+    root = sp.Symbol("x", real=True)
+    long = sp.atan2(sp.Pow(number, sp.Rational(1, 2), evaluate=False), root)
+    assert equal(sp.sin(long) ** 2 + sp.cos(long) ** 2, 1)
+    three = sp.sqrt(sp.UnevaluatedExpr(9 * number)).doit()
+    assert equal(three**2, 9 * number)

@@ -1,12 +1,16 @@
 """What `closedform new` does when the time is up, and with coupled joints."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 import sympy as sp
 
+from closedform.pipeline.run import Store, find, print_robot
+from closedform.proof import prove as prove_module
+from closedform.scaffold import limit
 from closedform.scaffold import new as scaffold
-from closedform.scaffold.limit import LimitError, limited
+from closedform.scaffold.limit import LimitError, bounded, limited
 from closedform.scaffold.new import Search, new
 from closedform.scaffold.tables import TableError, motors_of, read_dh
 
@@ -32,6 +36,42 @@ def endless(*_: object) -> None:
 def test_a_computation_without_end_is_stopped() -> None:
     with pytest.raises(LimitError), limited(0.05):
         endless()
+
+
+def test_what_hears_no_signal_is_stopped_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A product of long integers, which is one instruction."""
+    monkeypatch.setattr(limit, "GRACE", 0)
+    said: list[str] = []
+
+    def long_product(say: Callable[[str], None]) -> int:
+        say("multiplying")
+        return 3 ** (10**9)
+
+    with pytest.raises(LimitError):
+        bounded(0.2, long_product, said.append)
+    assert said == ["multiplying"]
+
+
+def test_a_process_of_its_own_hands_back_results_and_errors() -> None:
+    def fails(_: Callable[[str], None]) -> None:
+        raise ValueError("why")
+
+    assert bounded(30, lambda say: 42, print) == 42
+    with pytest.raises(ValueError, match="why"):
+        bounded(30, fails, print)
+
+
+def test_derive_gives_up_the_inverse_and_prints_the_rest(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script = tmp_path / "two.py"
+    script.write_text(written(tmp_path, PLANAR).text, "utf-8")
+    monkeypatch.setattr(prove_module, "prove_inverse", endless)
+    (source,) = find([str(script)])
+    printed = print_robot(source, ("numpy",), Store(None), True, lambda *_: None, timeout=4)
+    assert printed.given_up and "proving" in printed.proof.without_inverse
+    (text,) = (t for path, t in printed.files.items() if path.name == "two.py")
+    assert "def pose(" in text and "def ik(" not in text
 
 
 def test_the_forward_map_is_written_when_the_time_is_up(

@@ -202,17 +202,6 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
             "axes 5 and 6 are parallel",
         ),
         (
-            SIX,
-            lambda a, b, c, e, f, g, *t: [
-                (a, pi / 2, 0, t[0]),
-                *((b, 0, 0, x) for x in t[1:3]),
-                (0, pi / 2, e, t[3]),
-                (0, pi / 3, f, t[4]),
-                (0, 0, g, t[5]),
-            ],
-            "axes 5 and 6 are not at right angles",
-        ),
-        (
             "t1 t2 t3",
             lambda a, b, c, e, f, g, t1, t2, t3: [
                 (a, pi / 3, 0, t1),

@@ -5,15 +5,14 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import sympy as sp
+from chains import arm, solved
 from sympy import cos, pi, sin
 
-import closedform
 from closedform.check.truth import Solutions
-from closedform.lazy import homes
 from closedform.lemmas.chain import Chain
 from closedform.lemmas.links import turn
 from closedform.lemmas.rotate import rotate
-from closedform.mechanics.arm import Serial, from_dh
+from closedform.mechanics.arm import Serial
 from closedform.model.derivation import Derivation, Paper
 from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
@@ -23,25 +22,6 @@ from closedform.scaffold.recognise import recognised
 ROOM = sp.Rational(1, 2)
 WRIST = [(0, -pi / 2, ROOM), (0, pi / 2, 0), (0, 0, 0)]
 """The last three rows of an arm with a spherical wrist."""
-
-
-def arm(rows: list, joints: str = "t1 t2 t3 t4 t5 t6 t7") -> tuple[Derivation, Serial]:
-    d = Derivation("arm", "Arm", Paper("toy", "Toys", ("A.",)), "An arm.")
-    q = [d.joint(name) for name, _ in zip(joints.split(), rows, strict=False)]
-    return d, from_dh(d, [(*row, x) for row, x in zip(rows, q, strict=True)])
-
-
-def solved(d: Derivation, serial: Serial, lines: str) -> Chain:
-    """The chain that the lines build, as the script that holds them does."""
-    task = serial.coordinates()
-    if task is not None:
-        d.task = list(task.names)
-    ik = Chain(d, serial.pose if task is None else task.values)
-    exec("from sympy import *", known := {})
-    known |= {name: getattr(closedform, name) for name in homes(closedform.__path__)}
-    exec(lines, known | {j.name: j for j in ik.joints} | {"ik": ik})
-    ik.finish("All.")
-    return ik
 
 
 CHAINS = {

@@ -27,10 +27,11 @@ from math import gcd, lcm
 from typing import Any, NamedTuple, TypeAlias
 
 import sympy as sp
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
 from sympy import Rational
 from sympy.core.function import AppliedUndef
 
+from closedform.algebra.integers import quick_factors
 from closedform.algebra.trace import Trace
 
 Expr: TypeAlias = Any  # SymPy's annotations are partial
@@ -86,6 +87,7 @@ class Tower:
         self._pairs: dict[int, int] = {}  # slot of the sine -> slot of the cosine
         self._memo: dict[Expr, Fraction] = {}
         self._rotations: dict[Expr, Rotation] = {}
+        self._large: list[fmpz] = []
         self._licences: dict[frozenset[str], tuple[int, Expr]] = {}
         self._denominators: dict[str, fmpq_mpoly] = {}
         self.assumptions: dict[Expr, None] = {}
@@ -334,10 +336,20 @@ class Tower:
 
     def _rational_root(self, value: fmpq) -> Iterator[tuple[Fraction, int]]:
         yield self._constant(fmpq(1, value.q)), 1
-        for prime, power in (value.p * value.q).factor():
+        small, number = quick_factors(value.p * value.q)
+        for prime, power in small:
             yield self._constant(int(prime) ** (power // 2)), 1
             if power % 2:
                 yield self._root(self._ctx.constant(prime)), 1
+        if number != 1:
+            yield from self._large_root(number)
+
+    def _large_root(self, number: fmpz) -> Iterator[tuple[Fraction, int]]:
+        """The root of a number; it is a multiple of another if their product is a square."""
+        known = next((n for n in self._large if (n * number).is_square()), number)
+        self._large.append(known)
+        yield self._constant(fmpq((known * number).isqrt(), known)), 1
+        yield self._root(self._ctx.constant(known)), 1
 
     def _root(self, radicand: fmpq_mpoly) -> Fraction:
         meaning = sp.sqrt(self.expression(radicand))

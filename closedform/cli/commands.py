@@ -129,6 +129,13 @@ def parser() -> argparse.ArgumentParser:
         action="store_true",
         help="with -o, do not compare the printed code with the symbolic source",
     )
+    derive.add_argument(
+        "--timeout",
+        metavar="SECONDS",
+        type=_seconds,
+        default=0.0,
+        help="of computing for each; then print without an inverse; 0: no limit; default: 0",
+    )
     check = command("check", check_command)
     verify = command("verify", verify_command)
     verify.add_argument("names", metavar="NAME", nargs="*", help="default: all derivations")
@@ -284,6 +291,8 @@ def _next(
     robot: pipeline.Printed, source: pipeline.Source, root: Path, backends: Sequence[str]
 ) -> str:
     """What to do next with a robot that was printed into a folder of the user."""
+    if robot.given_up:
+        return "allow more time with --timeout, or name lengths and angles in the table"
     if not robot.proof.inverses:
         return f"write the inverse in {source.path.name}; docs/adding-a-mechanism.md says how"
     from closedform.emit.backends import load
@@ -378,6 +387,8 @@ def new_command(options: argparse.Namespace) -> None:
         raise CommandError(str(error)) from error
     for note in script.notes:
         console.say(f"closedform: note: {note}")
+    if script.advice:
+        console.say(f"closedform: note: {script.advice}")
     if options.explain:
         console.write("".join(f"{line}\n" for line in script.explained))
     _write(options.output, {Path(target.name): script.text})
@@ -491,6 +502,7 @@ def _run(
             together=together,
             fresh=getattr(options, "fresh", False),
             jobs=getattr(options, "jobs", None) or pipeline.default_jobs(),
+            timeout=getattr(options, "timeout", 0.0),
             report=progress,
         )
     if result.failures:

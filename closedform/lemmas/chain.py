@@ -20,6 +20,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
+from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.pairs import direction
 from closedform.lemmas.registry import theorem
@@ -158,6 +159,7 @@ class Chain:
             f: pairs[f.args[0]].s if isinstance(f, sp.sin) else pairs[f.args[0]].c
             for f in functions
         }
+        known |= {j: self.values[j] for j in self.joints if j in self.values and j not in pairs}
         for i in range(3):
             for j in range(4):
                 scale = self.size if j == 3 else sp.S.One
@@ -196,8 +198,8 @@ class Chain:
         return symbol
 
     def coefficient(self, name: str, value: sp.Expr, **assumptions: bool) -> sp.Expr:
-        """A symbol, its negative or a number as it is; anything else under a name."""
-        if value.is_Symbol or (-value).is_Symbol or value.is_number:
+        """A symbol, its negative or a rational number as it is; anything else under a name."""
+        if value.is_Symbol or (-value).is_Symbol or value.is_Rational:
             return value
         return self.named(name, value, **assumptions)
 
@@ -247,8 +249,9 @@ class Chain:
     def solve(self, lemma: Any, *arguments: Any, **options: Any) -> Any:
         """Apply a lemma of :mod:`closedform.lemmas.links`; returns what it hands on."""
         start = len(self.program.body)
-        exact = [sp.Integer(a) if type(a) is int else a for a in arguments]
-        applied: Applied = lemma(self, *exact, **options)
+        applied: Applied = lemma(
+            self, *map(_exact, arguments), **{key: _exact(value) for key, value in options.items()}
+        )
         body: tuple[Statement, ...] = tuple(
             s
             for s in self.program.body[start:]
@@ -287,7 +290,7 @@ class Chain:
                 known[s] = written(made[s])
             return substitute(e, known)
 
-        terms = tuple((u, written(factor)) for u, factor in relation.terms)
+        terms = tuple((u, tuple(map(written, factors))) for u, factors in relation.terms)
         return replace(relation, value=written(relation.value), terms=terms) if terms else relation
 
     def _check_unknown(self, unknown: sp.Symbol, lemma: Lemma) -> None:
@@ -468,12 +471,23 @@ class Chain:
             self.targets,
             self.images,
             tuple(self.degenerate),
+            parametrisation=self._rotations() if self.is_pose else (),
             angles=tuple(real(f"x_{n}") for n in self.angles),
             links=tuple(self.links),
             glue=Rank({**self.meaning}, {**self.defined}, {**self.lengths}, tuple(self.units)),
         )
         d.inverses.append(inverse)
         return inverse
+
+    def _rotations(self) -> tuple[sp.Expr, ...]:
+        """The targets, with every rotation in free symbols instead of its entries."""
+        R = rotation_parametrisation()
+        turned = {self.R[i, j]: R[i, j] for i in range(3) for j in range(3)}
+        return tuple(turned.get(x, x) for x in self.targets)
+
+
+def _exact(argument: Any) -> Any:
+    return sp.Integer(argument) if type(argument) is int else argument
 
 
 def lengths_in_numbers(place: sp.Expr) -> sp.Expr:

@@ -16,6 +16,9 @@ from closedform.model.functions import real
 from closedform.model.inverse import Relation
 from closedform.model.lemma import Lemma, label
 
+Because = Mapping[sp.Symbol, sp.Expr | Sequence[sp.Expr]]
+"""Why coefficients depend on each other: unknowns, and the factors of their equations."""
+
 theorem(
     "rotation of a vector",
     statement=r"""Let $w$ and $v$ be vectors of the plane with $|w| = |v| > 0$.  In $(-\pi, \pi]$
@@ -37,7 +40,7 @@ def rotate(
     w: Sequence[sp.Expr],
     v: Sequence[sp.Expr],
     *,
-    because: Mapping[sp.Symbol, sp.Expr] | None = None,
+    because: Because | None = None,
     scale: sp.Expr | None = None,
     name: str = "",
 ) -> Applied:
@@ -79,9 +82,16 @@ def rotate(
     given = {v1: w1 * c - w2 * s, v2: w1 * s + w2 * c}
     meaning = f"the axis of {x} is met; {x} is free, 0 is returned."
     cases = degenerate(flag, [vanishing(w1, w2, v1, v2)], x, meaning)
-    terms = tuple((u, sp.sympify(factor)) for u, factor in (because or {}).items())
-    relations = (Relation(relation, terms, f"that {_shown(w)} and {_shown(v)} are equally long"),)
+    relations = (
+        Relation(relation, terms(because), f"that {_shown(w)} and {_shown(v)} are equally long"),
+    )
     return Applied(lemma, pair, means, given, cases, relations=relations)
+
+
+def terms(because: Because | None) -> tuple[tuple[sp.Symbol, tuple[sp.Expr, ...]], ...]:
+    """The terms of a relation: for each unknown the factors of its equations."""
+    listed = {u: e if isinstance(e, tuple | list) else (e,) for u, e in (because or {}).items()}
+    return tuple((u, tuple(map(sp.sympify, factors))) for u, factors in listed.items())
 
 
 def _shown(vector: Sequence[sp.Expr]) -> str:

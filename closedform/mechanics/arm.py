@@ -8,18 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import sympy as sp
 
-from closedform.algebra.normal_form import determinant
 from closedform.mechanics import linkwise
 from closedform.mechanics.entries import RowError, check_unit, constant, exact, rigid
+from closedform.mechanics.factored import factored_determinant
 from closedform.mechanics.frames import (
     denavit_hartenberg,
     exponential,
     homogeneous,
-    merge_angles,
     reduce_circle,
     rotation,
     simplest,
@@ -27,7 +27,7 @@ from closedform.mechanics.frames import (
 )
 from closedform.mechanics.links import Group, Link, Motion, Row, groups_of
 from closedform.mechanics.linkwise import Named
-from closedform.mechanics.mobility import dependent_joints, singular_everywhere
+from closedform.mechanics.mobility import dependent_in_chain, dependent_joints, singular_everywhere
 from closedform.mechanics.skeleton import serial_skeleton, skeleton
 from closedform.model.derivation import Derivation
 
@@ -42,17 +42,56 @@ class Serial:
     """
 
     joints: tuple[sp.Symbol, ...]
-    pose: sp.Matrix
-    space: sp.Matrix
-    body: sp.Matrix
-    geometric: sp.Matrix
     moves: tuple[sp.Matrix, ...]
-    middle: sp.Matrix
-    """The twists in the frame, somewhere along the chain, where they are shortest."""
     groups: tuple[Group, ...]
     """The joints by parallel axes, between the frames ``lead`` and ``last``."""
     lead: sp.Matrix
     last: sp.Matrix
+
+    @cached_property
+    def pose(self) -> sp.Matrix:
+        T = self.lead
+        for group in self.groups:
+            T = (T * group.transform()).applyfunc(sp.expand)
+        return reduce_circle((T * self.last).applyfunc(sp.expand))
+
+    @cached_property
+    def space(self) -> sp.Matrix:
+        return sp.Matrix.hstack(
+            *(
+                _to_base(*self.groups[k].twist(j), self.groups[:k], self.lead)
+                for k, j in self.places
+            )
+        )
+
+    @cached_property
+    def body(self) -> sp.Matrix:
+        end = len(self.groups)
+        return sp.Matrix.hstack(
+            *(_to_frame(k, j, self.groups, end, self.last) for k, j in self.places)
+        )
+
+    @cached_property
+    def geometric(self) -> sp.Matrix:
+        return sp.Matrix.hstack(
+            *(_at_tool(k, j, self.groups, self.lead, self.last) for k, j in self.places)
+        )
+
+    @cached_property
+    def middle(self) -> sp.Matrix:
+        """The twists in the frame, somewhere along the chain, where they are shortest."""
+        return min(
+            (
+                sp.Matrix.hstack(*(_seen_from(k, j, self.groups, cut) for k, j in self.places))
+                for cut in range(1, len(self.groups) + 1)
+            ),
+            key=sp.count_ops,
+        )
+
+    @property
+    def places(self) -> list[tuple[int, int]]:
+        """The group of each joint, and its place there."""
+        return [(k, j) for k, group in enumerate(self.groups) for j in range(len(group.rows))]
 
     @property
     def position(self) -> sp.Matrix:
@@ -68,15 +107,16 @@ class Serial:
 
         A change of frame does not change it, so it is taken where the twists are shortest.
         """
-        return _determinant(self.middle)
+        return factored_determinant(self.middle)
 
     def require_regular(self, name: str) -> None:
         """Raise ``SingularEverywhereError`` if no posture is regular."""
         task, n = self.coordinates(), len(self.joints)
-        if task is None and n != 6:
+        if task is None and (n > 6 or dependent_in_chain(self.groups, self.joints)[0] == n):
             return
         J = self.middle if task is None else task.J
-        if dependent_joints(J, self.joints)[0] < n and _determinant(J) == 0:
+        square = J.rows == n
+        if dependent_joints(J, self.joints)[0] < n and (not square or factored_determinant(J) == 0):
             raise singular_everywhere(name, J, self.joints)
 
     def coordinates(self) -> Coordinates | None:
@@ -85,16 +125,23 @@ class Serial:
         None where the whole pose is the task, or where no such choice is plain.
         """
         n = len(self.joints)
+        if n > 4:  # more than x, y, z and the yaw
+            return None
         moved = [i for i in range(6) if any(e != 0 for e in self.geometric.row(i))]
         linear = [i for i in moved if i < 3]
         rows = next((r for r in (moved, linear) if len(r) == n and set(r) <= {0, 1, 2, 5}), None)
         if rows is None:
             return None
+        J = self.geometric.extract(rows, list(range(n)))
+        if rows != moved and dependent_joints(J, self.joints)[0] < n == self._turning_rank():
+            return None  # a wrist whose tool is beside its centre
         values = [self.position[i] if i < 3 else self._yaw() for i in rows]
         names = tuple(("x", "y", "z", "roll", "pitch", "yaw")[i] for i in rows)
-        return Coordinates(
-            names, tuple(rows), sp.Matrix(values), self.geometric.extract(rows, list(range(n)))
-        )
+        return Coordinates(names, tuple(rows), sp.Matrix(values), J)
+
+    def _turning_rank(self) -> int:
+        """The rank of what the joints turn."""
+        return dependent_joints(self.geometric[3:, :], self.joints)[0]
 
     def _yaw(self) -> sp.Expr:
         """The angle of the tool about z, for an arm whose joints turn it about z alone."""
@@ -227,7 +274,7 @@ class Serial:
         name = r"J_{\mathrm{task}}"
         summary = f"Derivative of ({shown}) by the joints."
         _export(d, "jacobian", summary, q, "J", J, equation=name)
-        det = _determinant(task.J)
+        det = factored_determinant(task.J)
         check = [
             (task.values.jacobian(q), task.J),
             (task.J.det(method="berkowitz"), det),
@@ -350,8 +397,8 @@ def from_dh(
     turned = sp.eye(3)
     if lead[:2, 2].is_zero_matrix:  # the base is turned about the first axis, as the joint turns
         turned, lead = lead[:3, :3], homogeneous(sp.eye(3), tuple(lead[:3, 3]))
-    motions = [link.motion for link in links]
-    return _assembled(motions, groups_of(links, turned), lead, last, (*moves, *rest))
+    joints = tuple(link.motion.joint for link in links)
+    return Serial(joints, (*moves, *rest), tuple(groups_of(links, turned)), lead, last)
 
 
 def _dh_row(d: Derivation, row: Sequence[Any], where: str) -> list[sp.Expr]:
@@ -453,7 +500,8 @@ def from_screws(
             after = home[:3, :3] if last else _frame_along(directions[i + 1])
             groups.append(Group(tuple(current), frame.T * after))
             frame, current = after, []
-    return _assembled(motions, groups, lead, sp.eye(4), (*moves, home))
+    moved = tuple(motion.joint for motion in motions)
+    return Serial(moved, (*moves, home), tuple(groups), lead, sp.eye(4))
 
 
 def _frame_along(w: sp.Matrix) -> sp.Matrix:
@@ -475,38 +523,6 @@ def _rational_frame(w: sp.Matrix) -> sp.Matrix:
     turned = sp.Matrix([[1 - share * x**2, -share * x * y], [-share * x * y, 1 - share * y**2]])
     turned = sp.Matrix.hstack(turned.col_join(sp.Matrix([[-x, -y]])), up)
     return turned if up == w else turned * sp.diag(1, -1, -1)
-
-
-def _assembled(
-    motions: Sequence[Motion],
-    groups: Sequence[Group],
-    lead: sp.Matrix,
-    last: sp.Matrix,
-    moves: tuple[sp.Matrix, ...],
-) -> Serial:
-    pose = lead
-    for group in groups:
-        pose = (pose * group.transform()).applyfunc(sp.expand)
-    places = [(k, j) for k, group in enumerate(groups) for j in range(len(group.rows))]
-    middle = min(
-        (
-            sp.Matrix.hstack(*(_seen_from(k, j, groups, cut) for k, j in places))
-            for cut in range(1, len(groups) + 1)
-        ),
-        key=sp.count_ops,
-    )
-    return Serial(
-        tuple(motion.joint for motion in motions),
-        reduce_circle((pose * last).applyfunc(sp.expand)),
-        sp.Matrix.hstack(*(_to_base(*groups[k].twist(j), groups[:k], lead) for k, j in places)),
-        sp.Matrix.hstack(*(_to_frame(k, j, groups, len(groups), last) for k, j in places)),
-        sp.Matrix.hstack(*(_at_tool(k, j, groups, lead, last) for k, j in places)),
-        moves,
-        middle,
-        tuple(groups),
-        lead,
-        last,
-    )
 
 
 def _to_base(w: sp.Matrix, v: sp.Matrix, groups: Sequence[Group], lead: sp.Matrix) -> sp.Matrix:
@@ -550,35 +566,6 @@ def _seen_from(k: int, j: int, groups: Sequence[Group], cut: int) -> sp.Matrix:
     if k < cut:
         return _to_frame(k, j, groups, cut, sp.eye(4))
     return _to_base(*groups[k].twist(j), groups[cut:k], sp.eye(4))
-
-
-def _determinant(J: sp.Matrix) -> sp.Expr:
-    """Over the polynomials in sines and cosines, reduced on their circles, factored."""
-    reduced = determinant(J)
-    found = min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=sp.count_ops)
-    return _in_decimals(found)
-
-
-def _in_decimals(product: sp.Expr) -> sp.Expr:
-    """Sums whose coefficients were made whole numbers, by factoring, over a power of ten again.
-
-    A factor then has the size of the lengths that are numbers in it, not a million times that.
-    """
-    number, others = product.as_coeff_Mul()
-    whole, rest = [], []
-    for factor in sp.Mul.make_args(others):
-        base, power = factor.as_base_exp()
-        terms = base.as_coefficients_dict() if base.is_Add else {}
-        digits = len(str(max((abs(int(c)) for c in terms.values()), default=0)))
-        if digits > 1:
-            number *= 10 ** (digits * power)
-            whole.append(sp.Add(*(c * t / 10**digits for t, c in terms.items())) ** power)
-        else:
-            rest.append(factor)
-    if len(whole) == 1 and whole[0].is_Add:
-        whole = [sp.Add(*(number * t for t in whole[0].args))]
-        number = sp.S.One
-    return number * sp.Mul(*whole, *rest)
 
 
 __all__ = [

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import sympy as sp
+
+from closedform.mechanics.links import Group
 
 POSTURES = 3
 ZERO = 1e-9
@@ -20,11 +22,46 @@ def dependent_joints(J: sp.Matrix, joints: Sequence[sp.Symbol]) -> tuple[int, li
     """The rank of a Jacobian at ordinary postures, and the joints whose columns are dependent."""
     symbols = [*joints, *sorted(J.free_symbols - set(joints), key=str)]
     evaluate = sp.lambdify(symbols, J, "numpy")
+    return _dependent(lambda point: np.array(evaluate(*point), dtype=float), len(symbols), joints)
+
+
+def dependent_in_chain(
+    groups: Sequence[Group], joints: Sequence[sp.Symbol]
+) -> tuple[int, list[sp.Symbol]]:
+    """The same of a serial chain, whose twists are not written out for it."""
+    parts = [
+        sp.Matrix.hstack(
+            group.transform(),
+            *(sp.Matrix([[0, -w[2], w[1], v[0]], [w[2], 0, -w[0], v[1]], [-w[1], w[0], 0, v[2]],
+                         [0, 0, 0, 0]]) for w, v in map(group.twist, range(len(group.rows))))
+        )
+        for group in groups
+    ]  # fmt: skip
+    free = set().union(*(part.free_symbols for part in parts)) - set(joints)
+    symbols = [*joints, *sorted(free, key=str)]
+    evaluate = [sp.lambdify(symbols, part, "numpy") for part in parts]
+
+    def jacobian(point: np.ndarray) -> np.ndarray:
+        T, columns = np.eye(4), []
+        for part in evaluate:
+            step, *twists = np.hsplit(
+                np.array(part(*point), dtype=float), len(part(*point)[0]) // 4
+            )
+            for V in (T @ V @ np.linalg.inv(T) for V in twists):
+                columns.append([*V[:3, 3], V[2, 1], V[0, 2], V[1, 0]])
+            T = T @ step
+        return np.array(columns).T
+
+    return _dependent(jacobian, len(symbols), joints)
+
+
+def _dependent(
+    jacobian: Callable[[np.ndarray], np.ndarray], symbols: int, joints: Sequence[sp.Symbol]
+) -> tuple[int, list[sp.Symbol]]:
     rng = np.random.default_rng(4)
     ranks, involved = [], np.zeros(len(joints), dtype=bool)
     for _ in range(POSTURES):
-        point = rng.uniform(0.3, 1.3, len(symbols))
-        _, sizes, rows = np.linalg.svd(np.array(evaluate(*point), dtype=float))
+        _, sizes, rows = np.linalg.svd(jacobian(rng.uniform(0.3, 1.3, symbols)))
         rank = int((sizes > ZERO * sizes[0]).sum())
         ranks.append(rank)
         involved |= (np.abs(rows[rank:]) > ZERO).any(axis=0)

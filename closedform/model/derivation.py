@@ -380,6 +380,15 @@ class Derivation(Shown):
         check_text(f"{self.name}: no_inverse", because)
         self.without_inverse = because
 
+    def give_up_inverses(self, because: str) -> None:
+        """Leave out all inverses, and say why."""
+        names = {inverse.function for inverse in self.inverses}
+        self.functions[:] = [f for f in self.functions if f.name not in names]
+        self.solved[:] = [s for s in self.solved if s.function not in names]
+        self.inverses.clear()
+        self.branches = ()
+        self.no_inverse(because)
+
     def __getitem__(self, name: str) -> Function:
         for function in self.functions:
             if function.name == name:

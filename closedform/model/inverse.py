@@ -51,11 +51,11 @@ class Relation:
     """What the coefficients of a lemma have to satisfy: ``value`` is zero.
 
     It is the sum of the equations of earlier links, each times a factor; each term is the first
-    unknown of the link, and the factor of its first equation.  ``meaning`` is for messages.
+    unknown of the link, and the factors of its first equations.  ``meaning`` is for messages.
     """
 
     value: sp.Expr
-    terms: tuple[tuple[sp.Symbol, sp.Expr], ...]
+    terms: tuple[tuple[sp.Symbol, tuple[sp.Expr, ...]], ...]
     meaning: str
 
 

@@ -80,6 +80,8 @@ class Printed:
     stored: bool
     files: Files
     share: Share
+    given_up: bool = False
+    """Whether it has no inverse because the limit of time was reached."""
 
     def line(self, width: int = 0) -> str:
         taken = f"{self.seconds:.1f} s{' (unchanged)' if self.stored else ''}"
@@ -325,15 +327,61 @@ def _digest(paths: Iterable[Path], lines: Iterable[str] = ()) -> str:
 
 
 def print_robot(
-    source: Source, backends: Sequence[str], store: Store, fresh: bool, report: Report
+    source: Source,
+    backends: Sequence[str],
+    store: Store,
+    fresh: bool,
+    report: Report,
+    timeout: float = 0,
 ) -> Printed:
-    """Prove one robot, unless its stored proof is still valid, and print its files."""
+    """Prove one robot, unless its stored proof is still valid, and print its files.
+
+    After ``timeout`` seconds of computing its inverse is given up; then it has as many seconds
+    without one.
+    """
+    from closedform.scaffold.limit import LimitError, bounded
+
+    doing = ["starting"]
+
+    def say(what: str) -> None:
+        doing[0] = what
+        report(source.name, what)
+
+    def attempt(reason: str = "") -> Printed:
+        def work(tell: Callable[[str], None]) -> Printed:
+            return _printed(source, backends, store, fresh, lambda _, what: tell(what), reason)
+
+        return bounded(timeout, work, say)
+
+    try:
+        return attempt()
+    except LimitError:
+        reason = f"the limit of {timeout:g} s was reached while {doing[0]}"
+    try:
+        return attempt(reason)
+    except LimitError:
+        message = f"{reason}, and again without the inverse; allow more time with --timeout"
+        raise DerivationError(source.name, message) from None
+
+
+def _printed(
+    source: Source,
+    backends: Sequence[str],
+    store: Store,
+    fresh: bool,
+    report: Report,
+    given_up: str,
+) -> Printed:
+    """Print one robot; if there is a reason why its inverse is ``given_up``, without it."""
     from closedform.emit.pages import pages
 
     report(source.name, "deriving")
     start = time.perf_counter()
     digested = digest(source)
     derivation = load(source)
+    if given_up:
+        derivation.give_up_inverses(given_up)
+        digested = f"{digested} {given_up}"
     kept = None if fresh else store.get(source, digested)
     if kept:
         proof, seconds = kept
@@ -347,7 +395,9 @@ def print_robot(
         printed = pages(derivation, proof, backends)
     except (ValueError, TypeError, KeyError, NotImplementedError) as error:
         raise DerivationError(source.name, f"not printed: {error}") from error
-    return Printed(source.name, proof, seconds, kept is not None, printed.files, printed.share)
+    stored = kept is not None
+    files, share = printed.files, printed.share
+    return Printed(source.name, proof, seconds, stored, files, share, bool(given_up))
 
 
 def run(
@@ -358,19 +408,21 @@ def run(
     store: Store | None = None,
     fresh: bool = False,
     jobs: int = 1,
+    timeout: float = 0,
     report: Report = lambda _name, _what: None,
 ) -> Result:
     """Print the chosen robots, and the files that all of ``together`` share.
 
-    ``together`` is by default the chosen robots.
+    ``together`` is by default the chosen robots.  With a ``timeout`` in seconds the robots are
+    printed one after another.
     """
     from closedform.emit.pages import shared_files
 
     store = store or default_store()
     together = chosen if together is None else together
     everyone = list(dict.fromkeys([*chosen, *together]))
-    job = partial(print_robot, backends=backends, store=store, fresh=fresh)
-    robots, failures = _each(job, everyone, min(jobs, len(everyone)), report)
+    job = partial(print_robot, backends=backends, store=store, fresh=fresh, timeout=timeout)
+    robots, failures = _each(job, everyone, 1 if timeout else min(jobs, len(everyone)), report)
     shared: Files = {}
     if not failures:
         report("", "generating shared files")

@@ -155,21 +155,26 @@ class _Chain:
 
     def _relations_hold(self) -> None:
         """Prove that the coefficients of each lemma satisfy what it requires of them."""
-        first: dict[Expr, Expr] = {}
+        solved: dict[Expr, tuple[Expr, ...]] = {}
+        rotation = dict(zip(self.inverse.targets, self.inverse.parametrisation, strict=False))
         for link in self.inverse.links:
             for relation in link.relations:
                 place = f"{self.where}: {relation.meaning}, which {_title(link)} requires"
-                unknown = [u for u, _ in relation.terms if u not in first]
+                unknown = [u for u, _ in relation.terms if u not in solved]
                 if unknown or not relation.terms:
                     missing = f": no earlier lemma solves for {unknown[0]}" if unknown else ""
                     raise ProofError(
                         f"{place}, does not follow from earlier equations{missing}; say with "
                         f"because= from which"
                     )
-                total = sum(factor * first[u] for u, factor in relation.terms)
+                total = sum(
+                    factor * equation
+                    for u, factors in relation.terms
+                    for factor, equation in zip(factors, solved[u], strict=False)
+                )
                 difference = self.posture.named(relation.value - total)
-                require(difference, (), f"{place}, does not follow so")
-            first[link.unknowns[0]] = link.equations[0]
+                require(substitute(difference, rotation), (), f"{place}, does not follow so")
+            solved[link.unknowns[0]] = link.equations
 
     def _determines_target(self) -> None:
         """Prove that the equations have no other solution for the target than the image."""

@@ -148,9 +148,10 @@ def forget_counts() -> None:
 def _count(link: Link) -> SolutionCount:
     """The solutions of a lemma; equal lemmas of an inverse are counted once."""
     given = {s: e for s, e in link.given.items() if any(q.has(s) for q in link.equations)}
-    key = (link.equations, link.unknowns, tuple(given.items()))
+    equations = tuple(e for e in link.equations if e.xreplace(given) != 0)
+    key = (equations, link.unknowns, tuple(given.items()))
     if key not in _counted:
-        _counted[key] = count_solutions(link.equations, link.unknowns, target_substitution=given)
+        _counted[key] = count_solutions(equations, link.unknowns, target_substitution=given)
     return _counted[key]
 
 

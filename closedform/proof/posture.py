@@ -19,8 +19,10 @@ class Posture:
     def __init__(self, inverse: Inverse, glue: Rank, function: Function):
         self.sums: dict[Expr, Expr] = {}
         taken: set[Expr] = set()
-        for symbol, value in glue.defined.items():
-            # a sum replaces its newest joint, so that only single angles remain
+        for symbol, value in sorted(
+            glue.defined.items(), key=lambda item: sum(item[1].has(j) for j in inverse.unknowns)
+        ):
+            # a sum replaces its newest joint that no shorter one does; only single angles remain
             held = [j for j in inverse.unknowns if value.has(j) and j not in taken]
             if held:
                 taken.add(held[-1])

@@ -25,6 +25,16 @@ class Single:
     shift: sp.Matrix
     end: sp.Matrix
 
+    @property
+    def sense(self) -> int:
+        """Whether a slide moves along its axis (1), or against it (-1)."""
+        return int(self.shift[2].diff(self.joint))
+
+
+def slid(single: Single) -> sp.Expr:
+    """How far a slide moves along its axis; 0 for a joint that turns."""
+    return single.sense * single.joint if single.slides else sp.S.Zero
+
 
 @dataclass(frozen=True)
 class Singles:
@@ -44,12 +54,18 @@ class Singles:
 
     def reversed(self) -> Singles:
         """The arm seen from its tool: the inverse of each motion, in the opposite order."""
-        after = [_inverse(self.lead), *(_inverse(_motion(s)) for s in self.joints)]
+        still = [replace(s, shift=s.shift - slid(s) * Z) for s in self.joints]
+        after = [_inverse(self.lead), *(_inverse(_motion(s)) for s in still)]
         joints = []
         for k in range(len(self.joints) - 1, -1, -1):
             single, motion = self.joints[k], after[k]
             joints.append(
-                replace(single, turn=-single.turn, shift=motion[:3, 3], end=motion[:3, :3])
+                replace(
+                    single,
+                    turn=-single.turn,
+                    shift=motion[:3, 3] - slid(single) * Z,
+                    end=motion[:3, :3],
+                )
             )
         return Singles(tuple(joints), after[-1], not self.inverted)
 
@@ -68,6 +84,8 @@ class Singles:
         """The same with the origins of joints that meet in one point moved there; None if not."""
         joints = list(self.joints)
         lead = self.lead
+        if any(j.slides for j in joints[first : first + count]):
+            return None
         for k in range(first, first + count - 1):
             shift, axis = joints[k].shift, joints[k].end * Z
             across = axis[:2, 0]
@@ -129,4 +147,4 @@ def _simplified(motion: sp.Matrix) -> sp.Matrix:
     return motion.applyfunc(lambda e: sp.trigsimp(sp.expand(e)) if e.has(sp.sin, sp.cos) else e)
 
 
-__all__ = ["Single", "Singles", "parallel", "singles"]
+__all__ = ["Single", "Singles", "parallel", "singles", "slid"]

@@ -16,6 +16,19 @@ from closedform.scaffold.source import source
 Z = sp.Matrix([0, 0, 1])
 
 
+@dataclass(frozen=True)
+class Solved:
+    """How the joints that carry a point were solved.
+
+    ``turned`` are their rotations: a pair about z, and the constant rotation after it.  ``rest`` is
+    what fewer than three leave of the point, zero if it can be reached.
+    """
+
+    structure: str
+    turned: Sequence[tuple[str, sp.Matrix]]
+    rest: str = ""
+
+
 @dataclass
 class Maker:
     """Writes lines that refer to a vector by its name and to a rotation by its pairs' names."""
@@ -158,4 +171,9 @@ def norm(v: sp.Matrix) -> Any:
     return sp.sqrt(sp.simplify(v.dot(v))) if v != sp.zeros(2, 1) else sp.S.Zero
 
 
-__all__ = ["Maker", "Z", "norm", "point", "times"]
+def turning(w: Any, v: Any) -> tuple[Any, Any]:
+    """The coefficients of sin(x) and cos(x) in the scalar product of ``v`` and ``Rz(x) w``."""
+    return w[0] * v[1] - w[1] * v[0], w[0] * v[0] + w[1] * v[1]
+
+
+__all__ = ["Maker", "Solved", "Z", "norm", "point", "times", "turning"]

@@ -10,7 +10,7 @@ import re
 import sys
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ from closedform.mechanics.mobility import SingularEverywhereError
 from closedform.model.derivation import Derivation
 from closedform.model.names import check_robot, check_text
 from closedform.model.paper import Paper
-from closedform.scaffold.limit import LimitError, limited
+from closedform.scaffold.limit import LimitError, bounded
 from closedform.scaffold.loops import loop_script, read_loop
 from closedform.scaffold.propose import NoChainError, propose
 from closedform.scaffold.recognise import recognised
@@ -62,6 +62,8 @@ class Script:
     notes: tuple[str, ...] = ()
     explained: tuple[str, ...] = ()
     """What was recognised of the axes, and which chains were tried."""
+    advice: str = ""
+    """What to do if no inverse is proposed."""
 
 
 @dataclass
@@ -146,14 +148,18 @@ def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
     for joint, kind in table.joints.items():
         d.joint(joint, kind)  # type: ignore[arg-type]
     known = {s.name: s for s in (*(p.symbol for p in d.parameters), *d.actuated)}
+
+    def searched(say: Callable[[str], None]) -> _Inverse:
+        told = replace(search, say=say)
+        told.progress("deriving the forward map")
+        arm = _arm(d, table, known)
+        told.progress("looking for a regular posture")
+        arm.require_regular(name)
+        told.progress("looking for an inverse")
+        return _inverse_lines(arm, told)
+
     try:
-        with limited(search.timeout):
-            search.progress("deriving the forward map")
-            arm = _arm(d, table, known)
-            search.progress("looking for a regular posture")
-            arm.require_regular(name)
-            search.progress("looking for an inverse")
-            inverse = _inverse_lines(arm, search)
+        inverse = bounded(search.timeout, searched, search.progress)
     except LimitError:
         reason = f"the limit of {search.timeout:g} s was reached while {search.doing}"
         inverse = _without_inverse(reason, LONGER, "ik = Chain(d, forward)")
@@ -194,6 +200,7 @@ def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
         inverse.outcome,
         tuple(table.notes),
         tuple(inverse.explained),
+        inverse.advice,
     )
 
 
@@ -263,6 +270,7 @@ class _Inverse:
     lines: list[str]
     outcome: str
     explained: list[str] = field(default_factory=list)
+    advice: str = ""
 
 
 def _inverse_lines(arm: Serial, search: Search) -> _Inverse:
@@ -302,7 +310,7 @@ def _without_inverse(
         '# ik.finish("All solutions.")',
         f"d.no_inverse({literal(found)})",
     ]
-    return _Inverse(lines, f"no inverse, because {found}", list(explained))
+    return _Inverse(lines, f"no inverse, because {found}", list(explained), needed)
 
 
 def _imports(text: str) -> str:

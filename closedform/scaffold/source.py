@@ -8,7 +8,7 @@ from typing import Any
 import sympy as sp
 from sympy.printing.str import StrPrinter
 
-NAME = re.compile(r"[A-Za-z_]\w*(\[\d\]|\.[cs]|\.ahead)?", re.ASCII)
+NAME = re.compile(r"[A-Za-z_]\w*(\[\d(, \d)?\]|\.[cs]|\.ahead)?", re.ASCII)
 """The name of a symbol, an entry of a vector, or a part of what a lemma returns."""
 
 

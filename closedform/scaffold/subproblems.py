@@ -17,23 +17,12 @@ from typing import Any
 import sympy as sp
 
 from closedform.mechanics.arm import Group, Row
+from closedform.mechanics.frames import rotation
 from closedform.scaffold.chainlinks import Single, Singles, parallel
-from closedform.scaffold.maker import Maker, Z, norm, point, times
+from closedform.scaffold.maker import Maker, Solved, Z, norm, point, times, turning
 from closedform.scaffold.proposal import NoChainError
+from closedform.scaffold.slides import Slides
 from closedform.scaffold.source import source
-
-
-@dataclass(frozen=True)
-class Solved:
-    """How the joints that carry a point were solved.
-
-    ``turned`` are their rotations: a pair about z, and the constant rotation after it.  ``rest`` is
-    what fewer than three leave of the point, zero if it can be reached.
-    """
-
-    structure: str
-    turned: Sequence[tuple[str, sp.Matrix]]
-    rest: str = ""
 
 
 @dataclass
@@ -41,6 +30,10 @@ class SubproblemMaker(Maker):
     """Writes the lines for an arm of single joints."""
 
     unknowns: dict[int, str] = field(default_factory=dict)
+    lifted: str = ""
+    """The pair of the first joint of a wrist."""
+    more: str = ""
+    """What the lemma of a wrist is told beside its angles."""
 
     def vector(self, name: str, value: str, label: str = "") -> None:
         """Name a vector, by default by the name of the variable."""
@@ -61,7 +54,10 @@ class SubproblemMaker(Maker):
         solved = self.position(before)
         M = times(arm.lead[:3, :3].T, R)
         for k, (pair, end) in enumerate(solved.turned, 1):
-            self.add(f"left{k} = ik.matrix('left{k}', {times(end.T, f'(turned({pair}).T * {M})')})")
+            if not pair and end == sp.eye(3):
+                continue
+            inside = f"(turned({pair}).T * {M})" if pair else M
+            self.add(f"left{k} = ik.matrix('left{k}', {times(end.T, inside)})")
             M = f"left{k}"
         M = self._without_tool(arm.tool[:3, :3], M)
         self.orientation(ends, M)
@@ -78,6 +74,29 @@ class SubproblemMaker(Maker):
             self.vector("p", moved, "p0")
         last = replace(arm.joints[-1], shift=tool)
         return self.position([*arm.joints[:-1], last]).structure
+
+    def solved_level(self, arm: Singles) -> str:
+        """Solve three joints for the point that a fourth turns the tool about, and then that."""
+        *before, last = arm.joints
+        self.require(
+            not last.slides,
+            f"joint {last.number} slides after those that turn the tool",
+            "Among four joints with the task x, y, z and yaw the last must turn.",
+        )
+        home = self.arm.pose[:3, :3].subs(dict.fromkeys(self.arm.joints, 0))
+        level = rotation("z", -sp.atan2(home[1, 0], home[0, 0])) * home
+        beside = (level * arm.tool[:3, :3].T * arm.tool[:3, 3]).applyfunc(sp.simplify)
+        self.add("x, y, z, yaw = ik.x")
+        x, y, z, yaw = map(sp.Symbol, ("x", "y", "z", "yaw"))
+        self.vector("p", source(sp.Matrix([x, y, z]) - rotation("z", yaw) * beside), "w")
+        if arm.lead != sp.eye(4):
+            moved = times(arm.lead[:3, :3].T, f"(p - {source(arm.lead[:3, 3])})")
+            self.vector("p", moved, "p0")
+        structure = self.position(before).structure
+        total = self.arm.coordinates().values[-1]  # type: ignore[union-attr]
+        (value,) = sp.solve(total - sp.Symbol("yaw", real=True), last.joint)
+        self.solve("remainder", f"{last.joint}, {source(value)}")
+        return f"{structure}, and a turn of the level tool"
 
     def solved_in_plane(self, arm: Singles) -> str:
         """Solve a turret, three parallel joints and one whose axis does not meet theirs."""
@@ -131,11 +150,8 @@ class SubproblemMaker(Maker):
 
     def position(self, joints: Sequence[Single]) -> Solved:
         """Solve up to three joints that carry the point ``p``, which is at the end of the last."""
-        self.require(
-            not any(j.slides for j in joints),
-            "a joint slides in an order that is not known",
-            "The known orders are those of polar and cylindrical arms and of gantries.",
-        )
+        if any(j.slides for j in joints):
+            return Slides(self, joints, self.unknown).solved()
         if len(joints) == 3:
             return self._three(*joints)
         if len(joints) == 2:
@@ -291,12 +307,15 @@ class SubproblemMaker(Maker):
         *,
         scale: str = "",
         by_size: bool = False,
+        choice: str = "",
     ) -> str:
         name, pair = self.unknown(joint), f"pair{joint.number}"
         per = "/ik.size" if by_size else ""
         shown = ", ".join(f"({source(e)}){per}" if per and e != 0 else source(e) for e in sides)
         more = (f", toward={toward}" if toward else "") + (f", scale={scale}" if scale else "")
-        self.solve("turn", f"{name}, {shown}, {ELBOW if by_size else SIDE}{more}", pair, 2)
+        self.solve(
+            "turn", f"{name}, {shown}, {choice or (ELBOW if by_size else SIDE)}{more}", pair, 2
+        )
         return pair
 
     def _rotate(self, joint: Single, w: str, v: str, because: str = "", scale: str = "") -> str:
@@ -333,17 +352,90 @@ class SubproblemMaker(Maker):
         self._rotate(joints[-1], "(1, 0)", f"{M}[:, 0]", scale="1")
 
     def _wrist(self, joints: Sequence[Single], M: str) -> None:
-        groups = [Group((Row(1, j.turn, (sp.S.Zero,) * 3, False),), j.end) for j in joints]
-        groups[-1] = Group(groups[-1].rows, sp.eye(3))
-        self.wrist(joints[0].turn, groups, M, sp.eye(3), [j.number for j in joints])
+        first, middle, last = joints
+        if self.is_normal(joints):
+            groups = [Group((Row(1, j.turn, (sp.S.Zero,) * 3, False),), j.end) for j in joints]
+            groups[-1] = Group(groups[-1].rows, sp.eye(3))
+            numbers = [j.number for j in joints]
+            pair, epsilon = self.wrist(first.turn, groups, M, sp.eye(3), numbers, self.more)
+            self.lifted = self._less_by_angle(pair, epsilon)
+            return
+        self.wrist_about(first, middle, last, M, "")
 
+    def is_normal(self, wrist: Sequence[Single]) -> bool:
+        """Whether the neighbours among three axes are at right angles."""
+        return all(sp.simplify((j.end * Z)[2]) == 0 for j in wrist[:2])
 
-def turning(w: Any, v: Any) -> tuple[Any, Any]:
-    """The coefficients of sin(x) and cos(x) in the scalar product of ``v`` and ``Rz(x) w``."""
-    return w[0] * v[1] - w[1] * v[0], w[0] * v[0] + w[1] * v[1]
+    def _less_by_angle(self, pair: str, epsilon: sp.Expr) -> str:
+        """The pair of an angle without the constant that was added to it."""
+        if epsilon == 0:
+            return pair
+        sine, cosine = source(sp.sin(-epsilon)), source(sp.cos(epsilon))
+        return f"({pair} + Pair({sine}, {cosine}))"
+
+    def wrist_about(
+        self, first: Single, middle: Single, last: Single, M: str, onward: str = ""
+    ) -> None:
+        """Solve three joints whose axes have any angle for the rotation that is left to them.
+
+        ``onward`` is the rotation after the first joint, if it is not a constant.
+        """
+        w = middle.end * Z
+        self.add(f"M = ik.matrix('M_wrist', {M})")
+        if onward:
+            self.add(f"onto = ik.matrix('onto', {onward})")
+            g = sp.Matrix([sp.Symbol(f"onto[2, {i}]") for i in range(3)])
+            between = "onto"
+        else:
+            g, between = first.end.T * Z, source(first.end)
+        sense = 0 if onward else self._can_align(g, w)
+        if sense:
+            x, pair = self._tilt(middle, g, w, sense)
+        else:
+            a, b = (sp.expand(e) for e in turning(w, g))
+            c = sp.Symbol("M[2, 2]") - sp.expand(g[2] * w[2])
+            x, pair = self.unknown(middle), self._turn(middle, (a, b, c), scale="1", choice=FLIP)
+        self.vector("axis", f"{between} * turned({pair}) * {source(w)}")
+        of = "" if sense > 0 else "-"
+        because = f"{{{x}: {of}(M[2, 2] + axis[2])}}"
+        lifted = self._rotate(first, "axis", "M[:, 2]", because, scale="16")
+        self.add(f"over = turned({lifted}) * {between} * turned({pair}) * {source(middle.end)}")
+        self.add("onward = ik.matrix('onward', over.T * M)")
+        up = "" if sense > 0 else "-"
+        lift = self.unknown(first)
+        each = f"{{{lift}: (-over[0, k], -over[1, k]), {x}: {up}over[2, k]}} for k in (0, 1)"
+        self.solve("spin", f"{self.unknown(last)}, onward, [{each}]", f"pair{last.number}")
+        self.lifted = lifted
+
+    def _can_align(self, g: sp.Matrix, w: sp.Matrix) -> int:
+        """Whether the first and the last axis can point the same way (1), or opposite ways (-1)."""
+        if sp.simplify(g[2] - w[2]) == 0:
+            return 1
+        return -1 if sp.simplify(g[2] + w[2]) == 0 else 0
+
+    def _tilt(self, joint: Single, g: sp.Matrix, w: sp.Matrix, sense: int) -> tuple[str, str]:
+        """Solve the middle joint of a wrist of equal angles; its unknown is zero at alignment."""
+        a, b = (sp.simplify(e) for e in turning(w, g))
+        k = sp.simplify(1 - g[2] ** 2)
+        if a == 0 and sp.simplify(b - k) == 0:
+            offset = sp.S.Zero
+        elif a == 0 and sp.simplify(b + k) == 0:
+            offset = sp.pi
+        else:
+            offset = sp.atan2(a, b)
+        x = self.angle(joint.turn - offset + (sp.pi if sense < 0 else 0))
+        name = f"tilted{joint.number}"
+        more = ", sense=-1" if sense < 0 else ""
+        self.solve("tilt", f"{x}, {source(k)}, M[:, 2], {FLIP}{more}", name, 2)
+        back = offset - (sp.pi if sense < 0 else 0)
+        pair = f"pair{joint.number}"
+        turned = self._less_by_angle(name, -back)
+        self.add(f"{pair} = {turned}")
+        return x, pair
 
 
 SIDE = "{+1: 'left', -1: 'right'}"
+FLIP = "{+1: 'noflip', -1: 'flip'}"
 ELBOW = "{+1: 'up', -1: 'down'}"
 """Where a distance decides, the joint bends an elbow."""
 

@@ -50,10 +50,11 @@ SCRIPT = {"arm", "coupling", "d", "forward", "links", "motors", "pair"}
 LINES = {
     "M", "ahead", "ik", "p", "q", "reaching", "turn1", "turn2", "wx", "wy", "x", "y", "yaw", "z",
     "rho", "given", "back", "far", "carried", "seen", "beyond", "left", "onward",
+    "onto", "over", "axis", "before", "end",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""
-NUMBERED = re.compile(r"(alpha|link|pair|left)\d+_?")
+NUMBERED = re.compile(r"(alpha|link|pair|left|tilted)\d+_?")
 """Names with a number that the written script uses itself."""
 
 

@@ -1,0 +1,128 @@
+"""Two joints of a wrist whose axes have any angle: how far it tilts, and the last rotation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import sympy as sp
+
+from closedform.lemmas.applied import Applied
+from closedform.lemmas.chain import Chain, Choice
+from closedform.lemmas.links import degenerate, differs_from_zero, named, vanishing
+from closedform.lemmas.pairs import direction
+from closedform.lemmas.registry import chain_lemma, theorem
+from closedform.lemmas.rotate import Because, terms
+from closedform.model.functions import real
+from closedform.model.inverse import Relation
+from closedform.model.lemma import Lemma, label
+
+theorem(
+    "tilt of a wrist",
+    statement=r"""Let $k > 0$, and let $v$ be a unit vector.  The equation $k\,(1 - \cos\theta) = 1
+- v_3$ has a solution if and only if $m = (v_1^2 + v_2^2)/(1 + |v_3|) + |v_3| - v_3 \le 2k$.  Its
+solutions are, for $\sigma = \pm 1$,
+$$(\cos\theta, \sin\theta) = \frac{(k - m,\ \sigma\sqrt{m\,(2k - m)})}{k}.$$""",
+    proof=r"""Since $v_1^2 + v_2^2 = (1 - |v_3|)(1 + |v_3|)$, the number $m$ is $1 - v_3 \ge 0$,
+without a difference of nearly equal numbers.  The equation says $\cos\theta = 1 - m/k$, which is at
+most 1, and at least $-1$ if and only if $m \le 2k$.  Then $\sin^2\theta = (1 - \cos\theta)(1 +
+\cos\theta) = m\,(2k - m)/k^2$, and either sign of the sine gives an angle.""",
+    exception=r"""If $k = 0$, there is no solution unless $v_3 = 1$; then every $\theta$ is one,
+and the joint is free.""",
+)
+
+
+@chain_lemma("k (1 - cos x) = 1 - v3", "the pair of x")
+def tilt(
+    chain: Chain,
+    x: sp.Symbol,
+    k: sp.Expr,
+    v: Sequence[sp.Expr],
+    choice: Choice,
+    *,
+    sense: int = 1,
+    name: str = "",
+) -> Applied:
+    """``k (1 - cos x) = 1 - sense v3`` for a column v of a rotation: both solutions.
+
+    This is ``a sin x + b cos x = c`` for a wrist whose first and last axis can be aligned.  There
+    the difference of c and its largest value is small, and v1 and v2 know it better.
+    """
+    p, tag = chain.program, name or label(x)
+    sigma = chain.sign(tag, choice)
+    k = chain.coefficient(f"k_tilt{tag}", k, nonnegative=True)
+    v1, v2, v3 = v[:3]
+    along = sense * v3
+    size = sp.Abs(along)
+    missed = (v1**2 + v2**2) / (1 + size) + (size - along)
+    below = p.let(f"below{tag}", missed, nonnegative=True)
+    above = p.bound(f"above{tag}", 2 * k - below, sp.S.One, "the wrist does not tilt as far")
+    width = p.let(f"width{tag}", below + above, nonnegative=True)
+    flag: Any = sp.false
+    if not differs_from_zero(chain, k, sp.S.One):
+        flag = p.vanishes(f"level{tag}", width, 1, "the axes of the wrist are parallel", free=(x,))
+    sine = 2 * sigma * sp.sqrt(below) * sp.sqrt(above)
+    pair, means = named(chain, x, direction(sine, above - below, width, flag))
+    lemma = Lemma(
+        "tilt of a wrist",
+        r"k(1 - \cos\theta) = 1 - v_3 \;\Rightarrow\; (\cos\theta, \sin\theta) = "
+        r"\frac{(k - m, \sigma\sqrt{m(2k - m)})}{k},\ "
+        r"m = \frac{v_1^2 + v_2^2}{1 + |v_3|} + |v_3| - v_3",
+        (k * (1 - sp.cos(x)) - 1 + along,),
+        {x: pair.angle},
+        2,
+    )
+    meaning = f"all axes of the wrist are parallel; {x} is free, 0 is returned."
+    locus = vanishing(k, v1, v2)
+    cases = degenerate(
+        flag, [None if locus is None else locus | {v3: sp.sympify(sense)}], x, meaning
+    )
+    return Applied(lemma, pair, means, dict(zip((v1, v2, v3), _unit(), strict=True)), cases)
+
+
+def _unit() -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    """Every unit vector but one, in free symbols."""
+    a, b = real("tau1"), real("tau2")
+    below = 1 + a**2 + b**2
+    return 2 * a / below, 2 * b / below, (1 - a**2 - b**2) / below
+
+
+theorem(
+    "remaining rotation",
+    statement=r"""Let $N$ be a rotation that keeps the third unit vector.  In $(-\pi, \pi]$ exactly
+one $\theta$ has $R_z(\theta) = N$, which is $\operatorname{atan2}(N_{21}, N_{11})$.""",
+    proof=r"""The first two columns of $N$ are orthonormal and normal to the third unit vector, so
+$N = R_z(\theta)$ for the angle $\theta$ of the first column, $(\cos\theta, \sin\theta, 0)$.  No
+other angle in $(-\pi, \pi]$ has the same sine and cosine.""",
+)
+
+
+@chain_lemma("Rz(x) = N, a rotation about z", "the pair of x")
+def spin(
+    chain: Chain, x: sp.Symbol, N: sp.Matrix, because: Sequence[Because], *, name: str = ""
+) -> Applied:
+    """``Rz(x) = N`` for a rotation that the earlier joints leave.
+
+    That it is one about z follows from the equations that were solved for the unknowns in
+    ``because``: the first two entries of its third column are their sums, each times the factor
+    given.
+    """
+    tag = name or label(x)
+    length = chain.program.let(f"unit_{tag}", sp.sqrt(N[0, 0] ** 2 + N[1, 0] ** 2))
+    pair, means = named(chain, x, direction(N[1, 0], N[0, 0], length))
+    turned = sp.Matrix([[sp.cos(x), -sp.sin(x)], [sp.sin(x), sp.cos(x)], [0, 0]])
+    lemma = Lemma(
+        "remaining rotation",
+        r"R_z(\theta) = N \;\Rightarrow\; \theta = \operatorname{atan2}(N_{21}, N_{11})",
+        tuple(turned - N[:, :2]),
+        {x: pair.angle},
+        1,
+    )
+    t = real("tau")
+    c, s = (1 - t**2) / (1 + t**2), 2 * t / (1 + t**2)
+    about_z = dict(zip(N[:, :2], (c, -s, s, c, sp.S.Zero, sp.S.Zero), strict=True))
+    relations = tuple(
+        Relation(N[i, 2], terms(factors), "that a rotation is one about z")
+        for i, factors in enumerate(because)
+    )
+    return Applied(lemma, pair, means, about_z, relations=relations)

@@ -1,0 +1,40 @@
+"""The determinant of a Jacobian, factored."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from closedform.algebra.normal_form import determinant
+from closedform.mechanics.frames import merge_angles
+
+
+def factored_determinant(J: sp.Matrix) -> sp.Expr:
+    """Over the polynomials in sines and cosines, reduced on their circles, factored."""
+    reduced = determinant(J)
+    found = min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=sp.count_ops)
+    return _in_decimals(found)
+
+
+def _in_decimals(product: sp.Expr) -> sp.Expr:
+    """Sums whose coefficients were made whole numbers, by factoring, over a power of ten again.
+
+    A factor then has the size of the lengths that are numbers in it, not a million times that.
+    """
+    number, others = product.as_coeff_Mul()
+    whole, rest = [], []
+    for factor in sp.Mul.make_args(others):
+        base, power = factor.as_base_exp()
+        terms = base.as_coefficients_dict() if base.is_Add else {}
+        digits = len(str(max((abs(int(c)) for c in terms.values()), default=0)))
+        if digits > 1:
+            number *= 10 ** (digits * power)
+            whole.append(sp.Add(*(c * t / 10**digits for t, c in terms.items())) ** power)
+        else:
+            rest.append(factor)
+    if len(whole) == 1 and whole[0].is_Add:
+        whole = [sp.Add(*(number * t for t in whole[0].args))]
+        number = sp.S.One
+    return number * sp.Mul(*whole, *rest)
+
+
+__all__ = ["factored_determinant"]

@@ -1,0 +1,234 @@
+"""Proposes chains for arms of six joints by where their axes are parallel, or meet in a point.
+
+- Three parallel axes leave the component along their direction to the other joints.  They are the
+  first or the last three, or three of the middle; two neighbours of the others meet.
+- Three axes in the middle that meet in a point leave its distance from where two others meet.
+
+Each also for the arm seen from its tool.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from closedform.scaffold.chainlinks import Single, Singles, parallel
+from closedform.scaffold.maker import Z, norm, point, times, turning
+from closedform.scaffold.proposal import NoChainError
+from closedform.scaffold.source import source
+from closedform.scaffold.subproblems import SubproblemMaker
+
+
+@dataclass
+class SixMaker(SubproblemMaker):
+    """Writes the lines for six joints that have no spherical wrist and no spherical shoulder."""
+
+    def parallel_middle(self, arm: Singles) -> str:
+        """Axes 2, 3 and 4 are parallel, and axes 5 and 6 meet."""
+        _, two, three, four, *_ = arm.joints
+        self._require_parallel(arm, 1)
+        arm = self._require_met(arm, 4)
+        one, two, three, four, five, six = arm.joints
+        self.require(
+            not parallel(one) and not parallel(four),
+            f"axes {one.number} and {two.number} or {four.number} and {five.number} are parallel",
+            "Three parallel axes need others that are not parallel to them.",
+        )
+        R = self._centre(arm)
+        w = four.shift
+        q, pair = self._seen_in_plane(one, two.shift[2] + three.shift[2] + w[2])
+        inside = f"(turned({pair}).T * {times(arm.lead[:3, :3].T, R)})"
+        self.add(f"left1 = ik.matrix('left1', {times(one.end.T, inside)})")
+        M = self._without_tool(arm.tool[:3, :3], "left1")
+        lift = replace(four, turn=two.turn + three.turn + four.turn)
+        self._reach([lift, five, six], w, [q, pair], two.shift, three.shift)
+        self.orientation([lift, five, six], M)
+        self.vector("q", f"{q} - turned({self.lifted}) * {source(w)}", "q2")
+        u, v = two.shift, three.shift
+        self.two_links([two.turn, three.turn], [u[:2, 0], v[:2, 0]], "q[0]", "q[1]")
+        names = [j.number for j in (two, three, four, five, six)]
+        return "axes {}, {} and {} parallel, {} and {} meet".format(*names)
+
+    def parallel_first(self, arm: Singles) -> str:
+        """Axes 1, 2 and 3 are parallel, and axes 5 and 6 or 4 and 5 meet."""
+        self._require_parallel(arm, 0)
+        self.require(
+            not parallel(arm.joints[2]),
+            "four neighbours are parallel",
+            "At most three parallel axes determine each other.",
+        )
+        at_end, inside = arm.met(4, 2), arm.met(3, 2)
+        found = at_end or inside
+        if found is None:
+            numbers = sorted(j.number for j in arm.joints[3:])
+            raise NoChainError(
+                "axes {0} and {1}, and {1} and {2}, do not meet".format(*numbers),
+                "Beside three parallel axes two neighbours have to meet; otherwise an equation of "
+                "degree 4 is left, for which there is no lemma.",
+                degree=4,
+            )
+        one, two, three, four, five, six = found.joints
+        height = sum((s.shift[2] for s in (one, two, three)), sp.S.Zero)
+        lift = replace(three, turn=one.turn + two.turn + three.turn)
+        R = self._centre(found)
+        p = point("p")
+        M = self._without_tool(found.tool[:3, :3], times(found.lead[:3, :3].T, R))
+        if at_end is not None:
+            s, g = four.shift, three.end.T * Z
+            a, b = turning(s, g)
+            fourth = self._turn(four, (a, b, p[2] - height - g[2] * s[2]))
+            self.add(f"before = {times(three.end, f'turned({fourth})')}")
+            self.wrist_about(lift, five, six, M, _followed("before", four.end))
+            self.vector("end", f"{source(three.shift)} + before * {source(s)}")
+        else:
+            self.add(f"M = ik.matrix('M', {M})")
+            t = five.end.T * five.shift
+            u = sp.Matrix([sp.Symbol(f"M[2, {i}]") for i in range(3)])
+            a, b = turning(u, t)
+            sixth = self._turn(six, (a, b, p[2] - height - t[2] * u[2]))
+            self.vector("p", f"p - M * turned({sixth}).T * {source(t)}", "p3")
+            left = _followed(f"M * turned({sixth}).T", five.end.T)
+            self.add(f"left1 = ik.matrix('left1', {left})")
+            links = one.shift, two.shift
+            self._reach([lift, four, five], three.shift, ["p", sixth], *links)
+            self.orientation([lift, four, five], "left1")
+            self.vector("end", source(three.shift))
+        self.vector("q", f"p - turned({self.lifted}) * end")
+        u, v = one.shift, two.shift
+        self.two_links([one.turn, two.turn], [u[:2, 0], v[:2, 0]], "q[0]", "q[1]")
+        meeting = (five, six) if at_end is not None else (four, five)
+        names = [j.number for j in (one, two, three, *meeting)]
+        return "axes {}, {} and {} parallel, {} and {} meet".format(*names)
+
+    def meeting_middle(self, arm: Singles) -> str:
+        """Axes 2, 3 and 4 meet in a point, and axes 5 and 6 meet."""
+        numbers = [j.number for j in arm.joints]
+        found = arm.met(1, 3)
+        if found is None:
+            raise NoChainError(
+                "axes {1}, {2} and {3} do not meet in a point".format(*numbers),
+                "Three neighbours in the middle have to meet in a point.",
+            )
+        outer = "meet"
+        if parallel(found.joints[4]):
+            outer = "are parallel"
+            middle = self._between_parallel(found)
+        else:
+            middle = self._between_meeting(self._require_met(found, 4))
+        self.add(f"left1 = ik.matrix('left1', {middle})")
+        self.orientation(found.joints[1:4], "left1")
+        text = "axes {1}, {2} and {3} meet in a point, {4} and {5} " + outer
+        return text.format(*numbers)
+
+    def _between_meeting(self, found: Singles) -> str:
+        """Solve joints 1, 5 and 6 where the last two meet; return what they leave of the target.
+
+        The distance of both points gives joint 1.
+        """
+        one, _, _, four, five, six = found.joints
+        self._seen_from_tool(found)
+        s, t, p = one.shift, four.shift, point("p")
+        self.add("far = ik.let('far', sqrt(p.dot(p)))")
+        far = sp.Symbol("far")
+        c = (far**2 + sp.simplify(s.dot(s) - t.dot(t))) / 2 - s[2] * p[2]
+        size = sp.sqrt(sp.simplify(t.dot(t)))
+        first = self._turn(one, (*turning(s, p), c), scale=source(size / 2), by_size=True)
+        self.vector("seen", f"M.T * (turned({first}) * {source(s)} - p)")
+        v, g, w = point("seen"), five.end.T * Z, -(four.end.T * t).applyfunc(sp.simplify)
+        sixth = self._turn(six, (*turning(v, g), w[2] - g[2] * v[2]))
+        self.vector("beyond", times(five.end, f"(turned({sixth}) * seen)"))
+        because = (
+            f"{{{self.unknowns[one.number]}: -2*ik.size, "
+            f"{self.unknowns[six.number]}: -beyond[2] - ({source(w[2])})}}"
+        )
+        fifth = self._rotate(five, "beyond", source(w[:2, 0]), because)
+        middle = times(one.end.T, f"(turned({first}).T * M)") + f" * turned({sixth}).T"
+        middle = f"{_followed(middle, five.end.T)} * turned({fifth}).T"
+        return _followed(middle, four.end.T)
+
+    def _between_parallel(self, found: Singles) -> str:
+        """The same where axes 5 and 6 are parallel: the component along them gives joint 1."""
+        one, _, _, four, five, six = found.joints
+        self.require(five.end == sp.eye(3), "its last two axes are opposite", "Turn a frame by pi.")
+        self._seen_from_tool(found)
+        along = sp.Matrix([sp.Symbol(f"M[{i}, 2]") for i in range(3)])
+        s, u, p = one.shift, five.shift, point("p")
+        t = (four.end.T * four.shift).applyfunc(sp.simplify)
+        c = along.dot(p) - t[2] - u[2] - along[2] * s[2]
+        lengths = ", ".join(source(norm(x[:2, 0])) for x in (u, t))
+        self.add(f"links = Links(lambda pair: M.T * (p - turned(pair) * {source(s)}), {lengths})")
+        first = self._turn(one, (*turning(s, along), c), "links")
+        self.vector("seen", f"M.T * (p - turned({first}) * {source(s)})")
+        turns = [-six.turn, -five.turn]
+        self.two_links(turns, [u[:2, 0], t[:2, 0]], "seen[0]", "seen[1]")
+        both = f"turned({self.pairs[0]} + {self.less(self.pairs[1], t[:2, 0])})"
+        middle = times(one.end.T, f"(turned({first}).T * M)")
+        return _followed(f"{middle} * {both}", four.end.T)
+
+    def _reach(
+        self,
+        wrist: Sequence[Single],
+        w: sp.Matrix,
+        names: Sequence[str],
+        u: sp.Matrix,
+        v: sp.Matrix,
+    ) -> None:
+        """Keep a wrist within reach of the links ``u`` and ``v`` where it is free.
+
+        It turns the vector ``w``; ``names`` are those of the point and of the pair before.
+        """
+        first = wrist[0]
+        if not self.is_normal(wrist):
+            return
+        q, pair = names
+        e = first.end * Z
+        if e[1].is_negative:
+            e = -e
+        length = norm(w[:2, 0])
+        angle = (sp.atan2(w[1], w[0]) if length != 0 else sp.S.Zero) - sp.atan2(e[1], e[0])
+        ahead = f"Pair({source(sp.sin(angle + sp.pi / 2))}, {source(sp.cos(angle + sp.pi / 2))})"
+        lengths = ", ".join(source(norm(x[:2, 0])) for x in (w, u, v))
+        point_of = f"{q}[0], {q}[1]"
+        self.add(f"reaching = Reaching(ik, {point_of}, {lengths}, {ahead}, {pair}.lever)")
+        self.more = ", reaching=reaching"
+
+    def _seen_from_tool(self, found: Singles) -> None:
+        """Name the point ``p`` of the last axes, and the rotation ``M`` after the last joint."""
+        R = self._centre(found)
+        M = self._without_tool(found.tool[:3, :3], times(found.lead[:3, :3].T, R))
+        self.add(f"M = ik.matrix('M', {M})")
+
+    def _require_parallel(self, arm: Singles, start: int) -> None:
+        three = arm.joints[start : start + 3]
+        numbers = [j.number for j in three]
+        self.require(
+            three[0].end == three[1].end == sp.eye(3),
+            "axes {}, {} and {} are not parallel".format(*numbers),
+            "This chain needs three parallel axes.",
+        )
+
+    def _require_met(self, arm: Singles, first: int) -> Singles:
+        found = arm.met(first, 2)
+        if found is None:
+            one, two = sorted(arm.joints[k].number for k in (first, first + 1))
+            self.require(
+                not parallel(arm.joints[first]),
+                f"axes {one} and {two} are parallel",
+                "Beside the three axes two neighbours have to meet.",
+            )
+            raise NoChainError(
+                f"axes {one} and {two} do not meet",
+                "Beside the three axes two neighbours have to meet; otherwise an equation of "
+                "degree 4 is left, for which there is no lemma.",
+                degree=4,
+            )
+        return found
+
+
+def _followed(value: str, R: sp.Matrix) -> str:
+    return value if sp.eye(3) == R else f"{value} * {source(R)}"
+
+
+__all__ = ["SixMaker"]

@@ -1,0 +1,41 @@
+"""Arms from tables, and the chains that are proposed for them, as the tests build them."""
+
+import sympy as sp
+
+import closedform
+from closedform.lazy import homes
+from closedform.lemmas.chain import Chain
+from closedform.mechanics.arm import Serial, from_dh
+from closedform.model.derivation import Derivation, Paper
+
+
+def arm(rows: list, joints: str = "t1 t2 t3 t4 t5 t6 t7", **angles: str) -> tuple:
+    """An arm from rows of a, alpha and d, or of a, alpha, None and theta for a slide in d."""
+    d = Derivation("arm", "Arm", Paper("toy", "Toys", ("A.",)), "An arm.")
+    for name, value in angles.items():
+        d.parameter(name, value=sp.Rational(value), unit="rad", meaning=name, nonnegative=False)
+    table = []
+    for name, row in zip(joints.split(), rows, strict=False):
+        q = d.joint(name, "prismatic" if len(row) == 4 else "revolute")
+        table.append((*row[:2], q, row[3]) if len(row) == 4 else (*row, q))
+    return d, from_dh(d, table)
+
+
+def solved(d: Derivation, serial: Serial, lines: str) -> Chain:
+    """The chain that the lines build, as the script that holds them does."""
+    task = serial.coordinates()
+    if task is not None:
+        d.task = list(task.names)
+    angles = ["yaw"] if task is not None and "yaw" in task.names else []
+    ik = Chain(d, serial.pose if task is None else task.values, angles=angles)
+    exec("from sympy import *", known := {})
+    known |= {name: getattr(closedform, name) for name in homes(closedform.__path__)}
+    exec(
+        lines,
+        known
+        | {j.name: j for j in ik.joints}
+        | {p.symbol.name: p.symbol for p in d.parameters}
+        | {"ik": ik},
+    )
+    ik.finish("All.")
+    return ik

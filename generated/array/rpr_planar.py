@@ -5,15 +5,18 @@
 #   fk: 7 add, 37 compare and select, 3 divide, 11 multiply, 2 sqrt
 #   passive_angles: 8 add, 43 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
 #   skeleton: 7 add, 38 compare and select, 4 divide, 9 multiply, 2 sqrt
-#   jacobian: 8 add, 41 compare and select, 8 divide, 13 multiply, 2 sqrt
-#   determinant: 6 add, 34 compare and select, 3 divide, 9 multiply, 2 sqrt
-#   singularities: 6 add, 35 compare and select, 2 divide, 7 multiply, 2 sqrt
+#   jacobian_parallel: 8 add, 37 compare and select, 4 divide, 9 multiply, 2 sqrt
+#   jacobian_serial: 6 add, 15 compare and select, 1 multiply
+#   jacobian: 8 add, 40 compare and select, 8 divide, 14 multiply, 2 sqrt
+#   determinant: 6 add, 31 compare and select, 2 divide, 8 multiply, 2 sqrt
+#   singularities: 6 add, 32 compare and select, 1 divide, 7 multiply, 2 sqrt
+#   condition_number: 15 add, 36 compare and select, 5 divide, 18 multiply, 3 sqrt
 #   ik: 13 compare and select, 3 add, 6 multiply, 4 sqrt
 """Planar parallel mechanism (two RPR legs).
 
-Two legs turn freely about A at the origin and B at b on the x axis.  They slide out by rho1 and
-rho2, and both carry the point P.  The slides are driven; the angles theta1 and theta2 of the
-legs follow.
+Two legs turn freely about A1 at the origin and A2 at b on the x axis.  They slide out by rho1
+and rho2, and both carry the point P.  The slides are driven; the angles theta1 and theta2 of
+the legs follow.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Arrays of any library that follows the array API standard go in, and arrays of the same library,
@@ -36,21 +39,19 @@ BRANCHES = ('only',)
 SINGULARITIES = ('leg 1', 'leg 2', 'flat')
 SKELETON = Skeleton(
     points=(
-        "A",
-        "B",
+        "A1",
+        "A2",
         "P",
     ),
     links={
-        "ground": ('A', 'B'),
+        "ground": ('A1', 'A2'),
     },
     joints={
-        "rho1": SkeletonJoint("prismatic", ('A', 'P')),
-        "rho2": SkeletonJoint("prismatic", ('B', 'P')),
-        "theta1": SkeletonJoint("revolute", ('A',)),
-        "theta2": SkeletonJoint("revolute", ('B',)),
+        "rho1": SkeletonJoint("prismatic", ('A1', 'P')),
+        "rho2": SkeletonJoint("prismatic", ('A2', 'P')),
     },
     hand="P",
-    ground=('A', 'B'),
+    ground=('A1', 'A2'),
 )
 
 __all__ = [
@@ -69,9 +70,12 @@ __all__ = [
     "fk",
     "passive_angles",
     "skeleton",
+    "jacobian_parallel",
+    "jacobian_serial",
     "jacobian",
     "determinant",
     "singularities",
+    "condition_number",
     "ik",
 ]
 
@@ -95,36 +99,36 @@ def _fk(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     invalid = ops.opposite(t1)
     t2 = rho1 + rho2
-    t3 = b + t2
-    t4 = -(ops.feasibility * t3)
-    t5 = t2 - b
-    t6 = rho1 - rho2
-    t7 = b + t6
-    t8 = b - t6
-    unreachable = ops.opposite((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
+    size = b + t2
+    t3 = -(ops.feasibility * size)
+    t4 = t2 - b
+    t5 = rho1 - rho2
+    t6 = b + t5
+    t7 = b - t5
+    unreachable = ops.opposite((t3 <= t4) & (t3 <= t6) & (t3 <= t7))
     failed = invalid | unreachable
-    t9 = ops.vanishing * t3
-    coincide = b <= t9
-    t10 = ops.opposite(failed)
-    t11 = ops.opposite(coincide)
-    t12 = t10 & t11
-    n_1 = ops.select(coincide, 1.0, b / ops.select(t12, b, 1.0))
-    slack = ops.max(t5, 0.0)
-    touching = slack <= t9
-    t13 = t10 & ops.opposite(touching) & t11
-    t14 = 1.0 / ops.select(t12 | t13, b * 2.0, 1.0)
-    t15 = ops.select(coincide, rho1, b * 0.5 + t6 * t2 * t14)
-    t16 = ops.select(failed, ops.nan, n_1 * t15)
-    t17 = ops.select(t13, slack * ops.max(t7, 0.0) * ops.max(t8, 0.0), 1.0)
-    t18 = ops.sqrt(ops.select(t13, t3, 1.0)) * ops.sqrt(t17)
-    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t14 * t18))
-    P_y = n_1 * height
+    t8 = ops.vanishing * size
+    coincide = b <= t8
+    t9 = ops.opposite(failed)
+    t10 = ops.opposite(coincide)
+    t11 = t9 & t10
+    n_1 = ops.select(coincide, 1.0, b / ops.select(t11, b, 1.0))
+    slack = ops.max(t4, 0.0)
+    touching = slack <= t8
+    t12 = t9 & ops.opposite(touching) & t10
+    t13 = 1.0 / ops.select(t11 | t12, b * 2.0, 1.0)
+    t14 = ops.select(coincide, rho1, b * 0.5 + t5 * t2 * t13)
+    t15 = ops.select(failed, ops.nan, n_1 * t14)
+    t16 = ops.select(t12, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
+    t17 = ops.sqrt(ops.select(t12, size, 1.0)) * ops.sqrt(t16)
+    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t13 * t17))
+    t18 = n_1 * height
     t19 = ops.status(invalid, unreachable, coincide)
     return (
-        t16,
-        ops.select(failed, ops.nan, P_y),
-        t16,
-        ops.select(failed, ops.nan, -P_y),
+        t15,
+        ops.select(failed, ops.nan, t18),
+        t15,
+        ops.select(failed, ops.nan, -t18),
         t19,
         t19,
     )
@@ -142,7 +146,7 @@ _FK = _runtime.Kernel(
 
 
 def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
-    """Position of P in both assembly modes.
+    """Position of the hand in both assembly modes.
 
     Parameters
     ----------
@@ -171,9 +175,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
     Notes
     -----
     - Branches in this order, `ASSEMBLY_MODES`: above, below.
-    - UNREACHABLE: the legs do not meet, or a length is negative.
-    - SINGULAR: the pivots coincide (b = 0); P is free on a circle, and its point on the x axis
-      is returned.
+    - UNREACHABLE: the rods do not meet.
+    - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
+      points is returned.
+    - Ill-conditioned near the parallel singularities, where both modes meet.
     """
     result = _runtime.evaluate(_FK, (q,), params)
     return Positions(*result)
@@ -182,41 +187,41 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
 def _passive_angles(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
-    t3 = b + t2
-    t4 = -(ops.feasibility * t3)
-    t5 = t2 - b
-    t6 = rho1 - rho2
-    t7 = b + t6
-    t8 = b - t6
-    unreachable = ops.opposite((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
+    size = b + t2
+    t3 = -(ops.feasibility * size)
+    t4 = t2 - b
+    t5 = rho1 - rho2
+    t6 = b + t5
+    t7 = b - t5
+    unreachable = ops.opposite((t3 <= t4) & (t3 <= t6) & (t3 <= t7))
     failed = ops.opposite(t1) | unreachable
-    t9 = ops.vanishing * t3
-    coincide = b <= t9
-    t10 = ops.opposite(failed)
-    t11 = ops.opposite(coincide)
-    t12 = t10 & t11
-    n_1 = ops.select(coincide, 1.0, b / ops.select(t12, b, 1.0))
-    slack = ops.max(t5, 0.0)
-    touching = slack <= t9
-    t13 = t10 & ops.opposite(touching) & t11
-    t14 = ops.select(t13, slack * ops.max(t7, 0.0) * ops.max(t8, 0.0), 1.0)
-    t15 = ops.sqrt(ops.select(t13, t3, 1.0)) * ops.sqrt(t14)
-    t16 = b * 2.0
-    t17 = ops.select(coincide, 0.0, t15 / ops.select(t13, t16, 1.0))
-    P_y = n_1 * ops.select(touching, 0.0, t17)
-    t18 = b * 0.5 + t6 * t2 / ops.select(t12, t16, 1.0)
-    P_x = n_1 * ops.select(coincide, rho1, t18)
-    t19 = ops.atan2(P_y, ops.select(t10, P_x, 1.0))
-    t20 = ops.select(failed, ops.nan, ops.wrap_cut(t19))
-    t21 = ops.atan2(P_y, ops.select(t10, P_x - b, 1.0))
-    t22 = ops.select(failed, ops.nan, ops.wrap_cut(t21))
-    t23 = ops.select(failed, ops.nan, ops.wrap_cut(-t19))
-    t24 = ops.select(failed, ops.nan, ops.wrap_cut(-t21))
+    t8 = ops.vanishing * size
+    coincide = b <= t8
+    t9 = ops.opposite(failed)
+    t10 = ops.opposite(coincide)
+    t11 = t9 & t10
+    n_1 = ops.select(coincide, 1.0, b / ops.select(t11, b, 1.0))
+    slack = ops.max(t4, 0.0)
+    touching = slack <= t8
+    t12 = t9 & ops.opposite(touching) & t10
+    t13 = ops.select(t12, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
+    t14 = ops.sqrt(ops.select(t12, size, 1.0)) * ops.sqrt(t13)
+    t15 = b * 2.0
+    t16 = ops.select(coincide, 0.0, t14 / ops.select(t12, t15, 1.0))
+    A_12 = n_1 * ops.select(touching, 0.0, t16)
+    t17 = b * 0.5 + t5 * t2 / ops.select(t11, t15, 1.0)
+    A_11 = n_1 * ops.select(coincide, rho1, t17)
+    t18 = ops.atan2(A_12, ops.select(t9, A_11, 1.0))
+    t19 = ops.select(failed, ops.nan, ops.wrap_cut(t18))
+    t20 = ops.atan2(A_12, ops.select(t9, A_11 - b, 1.0))
+    t21 = ops.select(failed, ops.nan, ops.wrap_cut(t20))
+    t22 = ops.select(failed, ops.nan, ops.wrap_cut(-t18))
+    t23 = ops.select(failed, ops.nan, ops.wrap_cut(-t20))
     return (
-        t20,
+        t19,
+        t21,
         t22,
         t23,
-        t24,
     )
 
 
@@ -232,7 +237,7 @@ _PASSIVE_ANGLES = _runtime.Kernel(
 
 
 def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Angles of the legs in both assembly modes.
+    """Angles of the rods from the x axis in both assembly modes.
 
     Parameters
     ----------
@@ -256,6 +261,7 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Notes
     -----
     - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params)
     return result
@@ -264,51 +270,51 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _skeleton(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
-    t3 = b + t2
-    t4 = -(ops.feasibility * t3)
-    t5 = t2 - b
-    t6 = rho1 - rho2
-    t7 = b + t6
-    t8 = b - t6
-    unreachable = ops.opposite((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
+    size = b + t2
+    t3 = -(ops.feasibility * size)
+    t4 = t2 - b
+    t5 = rho1 - rho2
+    t6 = b + t5
+    t7 = b - t5
+    unreachable = ops.opposite((t3 <= t4) & (t3 <= t6) & (t3 <= t7))
     failed = ops.opposite(t1) | unreachable
-    t9 = ops.select(failed, ops.nan, 0.0)
-    t10 = ops.select(failed, ops.nan, b)
-    t11 = ops.vanishing * t3
-    coincide = b <= t11
-    t12 = ops.opposite(failed)
-    t13 = ops.opposite(coincide)
-    t14 = t12 & t13
-    n_1 = ops.select(coincide, 1.0, b / ops.select(t14, b, 1.0))
-    t15 = b * 2.0
-    t16 = b * 0.5 + t6 * t2 / ops.select(t14, t15, 1.0)
-    t17 = ops.select(failed, ops.nan, n_1 * ops.select(coincide, rho1, t16))
-    slack = ops.max(t5, 0.0)
-    touching = slack <= t11
-    t18 = t12 & ops.opposite(touching) & t13
-    t19 = ops.select(t18, slack * ops.max(t7, 0.0) * ops.max(t8, 0.0), 1.0)
-    t20 = ops.sqrt(ops.select(t18, t3, 1.0)) * ops.sqrt(t19)
-    t21 = ops.select(coincide, 0.0, t20 / ops.select(t18, t15, 1.0))
-    P_y = n_1 * ops.select(touching, 0.0, t21)
+    t8 = ops.select(failed, ops.nan, 0.0)
+    t9 = ops.select(failed, ops.nan, b)
+    t10 = ops.vanishing * size
+    coincide = b <= t10
+    t11 = ops.opposite(failed)
+    t12 = ops.opposite(coincide)
+    t13 = t11 & t12
+    n_1 = ops.select(coincide, 1.0, b / ops.select(t13, b, 1.0))
+    t14 = b * 2.0
+    t15 = b * 0.5 + t5 * t2 / ops.select(t13, t14, 1.0)
+    t16 = ops.select(failed, ops.nan, n_1 * ops.select(coincide, rho1, t15))
+    slack = ops.max(t4, 0.0)
+    touching = slack <= t10
+    t17 = t11 & ops.opposite(touching) & t12
+    t18 = ops.select(t17, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
+    t19 = ops.sqrt(ops.select(t17, size, 1.0)) * ops.sqrt(t18)
+    t20 = ops.select(coincide, 0.0, t19 / ops.select(t17, t14, 1.0))
+    A_12 = n_1 * ops.select(touching, 0.0, t20)
     return (
+        t8,
+        t8,
+        t8,
         t9,
+        t8,
+        t8,
+        t16,
+        ops.select(failed, ops.nan, A_12),
+        t8,
+        t8,
+        t8,
+        t8,
         t9,
-        t9,
-        t10,
-        t9,
-        t9,
-        t17,
-        ops.select(failed, ops.nan, P_y),
-        t9,
-        t9,
-        t9,
-        t9,
-        t10,
-        t9,
-        t9,
-        t17,
-        ops.select(failed, ops.nan, -P_y),
-        t9,
+        t8,
+        t8,
+        t16,
+        ops.select(failed, ops.nan, -A_12),
+        t8,
     )
 
 
@@ -347,52 +353,196 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Notes
     -----
     - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params)
+    return result
+
+
+def _jacobian_parallel(ops, rho1, rho2, b):
+    t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
+    t2 = rho1 + rho2
+    size = b + t2
+    t3 = -(ops.feasibility * size)
+    t4 = t2 - b
+    t5 = rho1 - rho2
+    t6 = b + t5
+    t7 = b - t5
+    unreachable = ops.opposite((t3 <= t4) & (t3 <= t6) & (t3 <= t7))
+    failed = ops.opposite(t1) | unreachable
+    t8 = ops.vanishing * size
+    coincide = b <= t8
+    t9 = ops.opposite(failed)
+    t10 = ops.opposite(coincide)
+    t11 = t9 & t10
+    n_1 = ops.select(coincide, 1.0, b / ops.select(t11, b, 1.0))
+    t12 = b * 2.0
+    t13 = b * 0.5 + t5 * t2 / ops.select(t11, t12, 1.0)
+    A_11 = n_1 * ops.select(coincide, rho1, t13)
+    t14 = ops.select(failed, ops.nan, A_11)
+    slack = ops.max(t4, 0.0)
+    touching = slack <= t8
+    t15 = t9 & ops.opposite(touching) & t10
+    t16 = ops.select(t15, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
+    t17 = ops.sqrt(ops.select(t15, size, 1.0)) * ops.sqrt(t16)
+    t18 = ops.select(coincide, 0.0, t17 / ops.select(t15, t12, 1.0))
+    A_12 = n_1 * ops.select(touching, 0.0, t18)
+    t19 = ops.select(failed, ops.nan, A_12)
+    t20 = ops.select(failed, ops.nan, A_11 - b)
+    t21 = ops.select(failed, ops.nan, -A_12)
+    return (
+        t14,
+        t19,
+        t20,
+        t19,
+        t14,
+        t21,
+        t20,
+        t21,
+    )
+
+
+_JACOBIAN_PARALLEL = _runtime.Kernel(
+    "rpr_planar.jacobian_parallel",
+    _jacobian_parallel,
+    (_runtime.Spec("q", (2,)),),
+    (_runtime.Spec("A", (2, 2, 2)),),
+    Parameters._fields,
+    ('b',),
+    _runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1)), 3),
+)
+
+
+def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
+    """A of A*dp = B*dq; its rows are the vectors along the rods.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        rho1, rho2 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+
+    Returns
+    -------
+    A : array, shape (..., 2, 2, 2)
+        One column for each of rho1, rho2.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
+    """
+    result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params)
+    return result
+
+
+def _jacobian_serial(ops, rho1, rho2, b):
+    t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
+    t2 = rho1 + rho2
+    t3 = -(ops.feasibility * (b + t2))
+    t4 = rho1 - rho2
+    t5 = (t3 <= t2 - b) & (t3 <= b + t4) & (t3 <= b - t4)
+    failed = ops.opposite(t1) | ops.opposite(t5)
+    t6 = ops.select(failed, ops.nan, rho1)
+    t7 = ops.select(failed, ops.nan, rho2)
+    return (
+        t6,
+        t7,
+        t6,
+        t7,
+    )
+
+
+_JACOBIAN_SERIAL = _runtime.Kernel(
+    "rpr_planar.jacobian_serial",
+    _jacobian_serial,
+    (_runtime.Spec("q", (2,)),),
+    (_runtime.Spec("B", (2, 2)),),
+    Parameters._fields,
+    ('b',),
+)
+
+
+def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
+    """The diagonal of B of A*dp = B*dq.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        rho1, rho2 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+
+    Returns
+    -------
+    B : array, shape (..., 2, 2)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
+    """
+    result = _runtime.evaluate(_JACOBIAN_SERIAL, (q,), params)
     return result
 
 
 def _jacobian(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
-    t3 = b + t2
-    t4 = -(ops.feasibility * t3)
-    t5 = t2 - b
-    t6 = rho1 - rho2
-    t7 = b + t6
-    t8 = b - t6
-    unreachable = ops.opposite((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
+    size = b + t2
+    t3 = -(ops.feasibility * size)
+    t4 = t2 - b
+    t5 = rho1 - rho2
+    t6 = b + t5
+    t7 = b - t5
+    unreachable = ops.opposite((t3 <= t4) & (t3 <= t6) & (t3 <= t7))
     failed = ops.opposite(t1) | unreachable
+    t8 = ops.vanishing * size
+    coincide = b <= t8
     t9 = ops.opposite(failed)
-    t10 = ops.select(t9, b, 1.0)
-    t11 = ops.select(failed, ops.nan, rho1 / t10)
-    t12 = ops.select(failed, ops.nan, -(rho2 / t10))
-    t13 = ops.vanishing * t3
-    coincide = b <= t13
-    t14 = ops.opposite(coincide)
-    t15 = t9 & t14
-    n_1 = ops.select(coincide, 1.0, b / ops.select(t15, b, 1.0))
-    t16 = b * 2.0
-    t17 = b * 0.5 + t6 * t2 / ops.select(t15, t16, 1.0)
-    P_x = n_1 * ops.select(coincide, rho1, t17)
-    slack = ops.max(t5, 0.0)
-    touching = slack <= t13
-    t18 = t9 & ops.opposite(touching) & t14
-    t19 = ops.select(t18, slack * ops.max(t7, 0.0) * ops.max(t8, 0.0), 1.0)
-    t20 = ops.sqrt(ops.select(t18, t3, 1.0)) * ops.sqrt(t19)
-    t21 = ops.select(coincide, 0.0, t20 / ops.select(t18, t16, 1.0))
-    t22 = ops.select(t9, b * (n_1 * ops.select(touching, 0.0, t21)), 1.0)
-    t23 = (rho1 * b - rho1 * P_x) / t22
-    t24 = rho2 * P_x / t22
+    t10 = ops.opposite(coincide)
+    t11 = t9 & t10
+    n_1 = ops.select(coincide, 1.0, b / ops.select(t11, b, 1.0))
+    slack = ops.max(t4, 0.0)
+    touching = slack <= t8
+    t12 = t9 & ops.opposite(touching) & t10
+    t13 = ops.select(t12, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
+    t14 = ops.sqrt(ops.select(t12, size, 1.0)) * ops.sqrt(t13)
+    t15 = b * 2.0
+    t16 = ops.select(coincide, 0.0, t14 / ops.select(t12, t15, 1.0))
+    height = ops.select(touching, 0.0, t16)
+    A_12 = n_1 * height
+    t17 = ops.select(t9, b * height, 1.0)
+    t18 = ops.select(failed, ops.nan, rho1 * A_12 / t17)
+    t19 = ops.select(failed, ops.nan, -(rho2 * A_12 / t17))
+    t20 = b * 0.5 + t5 * t2 / ops.select(t11, t15, 1.0)
+    A_11 = n_1 * ops.select(coincide, rho1, t20)
+    t21 = rho1 * (b - A_11) / t17
+    t22 = rho2 * A_11 / t17
     return (
-        t11,
-        t12,
-        ops.select(failed, ops.nan, t23),
-        ops.select(failed, ops.nan, t24),
-        t11,
-        t12,
-        ops.select(failed, ops.nan, -t23),
-        ops.select(failed, ops.nan, -t24),
+        t18,
+        t19,
+        ops.select(failed, ops.nan, t21),
+        ops.select(failed, ops.nan, t22),
+        t18,
+        t19,
+        ops.select(failed, ops.nan, -t21),
+        ops.select(failed, ops.nan, -t22),
     )
 
 
@@ -408,7 +558,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Derivative of p with respect to q, A^-1 B.
+    """Derivative of p with respect to q: A^-1*B.
 
     Parameters
     ----------
@@ -432,6 +582,8 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Notes
     -----
     - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
+    - Not finite at a parallel singularity.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params)
     return result
@@ -440,30 +592,28 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _determinant(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
-    t3 = b + t2
-    t4 = -(ops.feasibility * t3)
-    t5 = t2 - b
-    t6 = rho1 - rho2
-    t7 = b + t6
-    t8 = b - t6
-    unreachable = ops.opposite((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
+    size = b + t2
+    t3 = -(ops.feasibility * size)
+    t4 = t2 - b
+    t5 = rho1 - rho2
+    t6 = b + t5
+    t7 = b - t5
+    unreachable = ops.opposite((t3 <= t4) & (t3 <= t6) & (t3 <= t7))
     failed = ops.opposite(t1) | unreachable
-    t9 = ops.opposite(failed)
-    t10 = ops.vanishing * t3
-    coincide = b <= t10
-    t11 = ops.opposite(coincide)
-    n_1 = ops.select(coincide, 1.0, b / ops.select(t9 & t11, b, 1.0))
-    slack = ops.max(t5, 0.0)
-    touching = slack <= t10
-    t12 = t9 & ops.opposite(touching) & t11
-    t13 = ops.select(t12, slack * ops.max(t7, 0.0) * ops.max(t8, 0.0), 1.0)
-    t14 = ops.sqrt(ops.select(t12, t3, 1.0)) * ops.sqrt(t13)
-    t15 = ops.select(coincide, 0.0, t14 / ops.select(t12, b * 2.0, 1.0))
-    t16 = ops.select(t9, b * (n_1 * ops.select(touching, 0.0, t15)), 1.0)
-    t17 = rho1 * rho2 / t16
+    t8 = ops.opposite(failed)
+    slack = ops.max(t4, 0.0)
+    t9 = ops.vanishing * size
+    touching = slack <= t9
+    coincide = b <= t9
+    t10 = t8 & ops.opposite(touching) & ops.opposite(coincide)
+    t11 = ops.select(t10, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
+    t12 = ops.sqrt(ops.select(t10, size, 1.0)) * ops.sqrt(t11)
+    t13 = ops.select(coincide, 0.0, t12 / ops.select(t10, b * 2.0, 1.0))
+    t14 = ops.select(t8, b * ops.select(touching, 0.0, t13), 1.0)
+    t15 = rho1 * rho2 / t14
     return (
-        ops.select(failed, ops.nan, t17),
-        ops.select(failed, ops.nan, -t17),
+        ops.select(failed, ops.nan, t15),
+        ops.select(failed, ops.nan, -t15),
     )
 
 
@@ -502,6 +652,8 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Notes
     -----
     - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
+    - Not finite at a parallel singularity.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params)
     return result
@@ -510,35 +662,33 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _singularities(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
-    t3 = b + t2
-    t4 = -(ops.feasibility * t3)
-    t5 = t2 - b
-    t6 = rho1 - rho2
-    t7 = b + t6
-    t8 = b - t6
-    unreachable = ops.opposite((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
+    size = b + t2
+    t3 = -(ops.feasibility * size)
+    t4 = t2 - b
+    t5 = rho1 - rho2
+    t6 = b + t5
+    t7 = b - t5
+    unreachable = ops.opposite((t3 <= t4) & (t3 <= t6) & (t3 <= t7))
     failed = ops.opposite(t1) | unreachable
-    t9 = ops.select(failed, ops.nan, rho1)
-    t10 = ops.select(failed, ops.nan, rho2)
-    t11 = ops.vanishing * t3
-    coincide = b <= t11
-    t12 = ops.opposite(failed)
-    t13 = ops.opposite(coincide)
-    n_1 = ops.select(coincide, 1.0, b / ops.select(t12 & t13, b, 1.0))
-    slack = ops.max(t5, 0.0)
-    touching = slack <= t11
-    t14 = t12 & ops.opposite(touching) & t13
-    t15 = ops.select(t14, slack * ops.max(t7, 0.0) * ops.max(t8, 0.0), 1.0)
-    t16 = ops.sqrt(ops.select(t14, t3, 1.0)) * ops.sqrt(t15)
-    t17 = ops.select(coincide, 0.0, t16 / ops.select(t14, b * 2.0, 1.0))
-    P_y = n_1 * ops.select(touching, 0.0, t17)
+    t8 = ops.select(failed, ops.nan, rho1)
+    t9 = ops.select(failed, ops.nan, rho2)
+    slack = ops.max(t4, 0.0)
+    t10 = ops.vanishing * size
+    touching = slack <= t10
+    coincide = b <= t10
+    t11 = ops.opposite(failed) & ops.opposite(touching)
+    t12 = t11 & ops.opposite(coincide)
+    t13 = ops.select(t12, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
+    t14 = ops.sqrt(ops.select(t12, size, 1.0)) * ops.sqrt(t13)
+    t15 = ops.select(coincide, 0.0, t14 / ops.select(t12, b * 2.0, 1.0))
+    Delta = b * ops.select(touching, 0.0, t15)
     return (
+        t8,
         t9,
-        t10,
-        ops.select(failed, ops.nan, P_y),
+        ops.select(failed, ops.nan, Delta),
+        t8,
         t9,
-        t10,
-        ops.select(failed, ops.nan, -P_y),
+        ops.select(failed, ops.nan, -Delta),
     )
 
 
@@ -549,12 +699,12 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 3)),),
     Parameters._fields,
     ('b',),
-    _runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 3),
+    _runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 2), (3, 1), (4, 1), (5, 2)), 3),
 )
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """rho1 and rho2 (serial) and y (parallel).
+    """The diagonal of B (serial) and the determinant of A (parallel).
 
     Parameters
     ----------
@@ -578,8 +728,94 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Notes
     -----
     - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params)
+    return result
+
+
+def _condition_number(ops, rho1, rho2, b):
+    t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
+    t2 = rho1 + rho2
+    size = b + t2
+    t3 = -(ops.feasibility * size)
+    t4 = t2 - b
+    t5 = rho1 - rho2
+    t6 = b + t5
+    t7 = b - t5
+    unreachable = ops.opposite((t3 <= t4) & (t3 <= t6) & (t3 <= t7))
+    failed = ops.opposite(t1) | unreachable
+    t8 = ops.vanishing * size
+    coincide = b <= t8
+    t9 = ops.opposite(failed)
+    t10 = ops.opposite(coincide)
+    t11 = t9 & t10
+    n_1 = ops.select(coincide, 1.0, b / ops.select(t11, b, 1.0))
+    t12 = b * 2.0
+    t13 = b * 0.5 + t5 * t2 / ops.select(t11, t12, 1.0)
+    A_11 = n_1 * ops.select(coincide, rho1, t13)
+    slack = ops.max(t4, 0.0)
+    touching = slack <= t8
+    t14 = t9 & ops.opposite(touching) & t10
+    t15 = ops.select(t14, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
+    t16 = ops.sqrt(ops.select(t14, size, 1.0)) * ops.sqrt(t15)
+    t17 = ops.select(coincide, 0.0, t16 / ops.select(t14, t12, 1.0))
+    height = ops.select(touching, 0.0, t17)
+    A_12 = n_1 * height
+    t18 = A_12 * A_12
+    square1 = A_11 * A_11 + t18
+    t19 = b - A_11
+    square2 = t18 + t19 * t19
+    t20 = square1 - square2
+    t21 = t18 - A_11 * t19
+    t22 = ops.select(t9, t20 * t20 + 4.0 * (t21 * t21), 1.0)
+    t23 = (square1 + square2 + ops.sqrt(t22)) / ops.select(t9, 2.0 * (b * height), 1.0)
+    t24 = ops.select(failed, ops.nan, t23)
+    return (
+        t24,
+        t24,
+    )
+
+
+_CONDITION_NUMBER = _runtime.Kernel(
+    "rpr_planar.condition_number",
+    _condition_number,
+    (_runtime.Spec("q", (2,)),),
+    (_runtime.Spec("kappa", (2,)),),
+    Parameters._fields,
+    ('b',),
+    _runtime.Size((0, 1, 2), (), 4),
+)
+
+
+def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
+    """Ratio of the largest to the smallest singular value of A.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        rho1, rho2 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+
+    Returns
+    -------
+    kappa : array, shape (..., 2)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
+    - Infinite at a parallel singularity.
+    """
+    result = _runtime.evaluate(_CONDITION_NUMBER, (q,), params)
     return result
 
 
@@ -589,15 +825,15 @@ def _ik(ops, x, y, b):
     t2 = y * y
     t3 = x * x + t2
     t4 = ops.select(invalid, ops.nan, ops.sqrt(ops.select(t1, t3, 1.0)))
-    t5 = x - b
-    t6 = t2 + t5 * t5
-    t7 = ops.select(invalid, ops.nan, ops.sqrt(ops.select(t1, t6, 1.0)))
-    t8 = ops.determined * (ops.sqrt(t3) * ops.sqrt(t6))
-    t9 = ops.status(invalid, ops.truth(False), b * ops.abs(y) <= t8)
+    w1_2 = x - b
+    t5 = t2 + w1_2 * w1_2
+    t6 = ops.select(invalid, ops.nan, ops.sqrt(ops.select(t1, t5, 1.0)))
+    t7 = ops.determined * (ops.sqrt(t3) * ops.sqrt(t5))
+    t8 = ops.status(invalid, ops.truth(False), ops.abs(y * b) <= t7)
     return (
         t4,
-        t7,
-        t9,
+        t6,
+        t8,
     )
 
 
@@ -613,7 +849,7 @@ _IK = _runtime.Kernel(
 
 
 def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
-    """The lengths of the legs.
+    """The driven joints of the only working mode.
 
     Parameters
     ----------
@@ -641,10 +877,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
 
     Notes
     -----
-    - Every position can be reached, in exactly one way: lengths are not negative.
-    - SINGULAR: the sine of the angle between the legs is less than 2^-10: on and near the line
-      of the pivots, at a distance of more than about 1000 b, and everywhere if b = 0. The
-      lengths are right, but one ulp of them moves P by more than 1e-12 of b + rho1 + rho2.
+    - UNREACHABLE: a rod does not reach.
+    - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes,
+      but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
     """
     result = _runtime.evaluate(_IK, (x,), params)
     return Solutions(*result)

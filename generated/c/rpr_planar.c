@@ -6,9 +6,12 @@
  *   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
  *   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
  *   skeleton: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
- *   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
- *   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
- *   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
+ *   jacobian_parallel: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
+ *   jacobian_serial: 8 add, 14 compare and select, 1 multiply
+ *   jacobian: 14 add, 23 compare and select, 8 divide, 14 multiply, 2 sqrt
+ *   determinant: 8 add, 21 compare and select, 2 divide, 8 multiply, 2 sqrt
+ *   singularities: 10 add, 21 compare and select, 1 divide, 7 multiply, 2 sqrt
+ *   condition_number: 16 add, 23 compare and select, 5 divide, 18 multiply, 3 sqrt
  *   ik: 10 compare and select, 5 add, 6 multiply, 2 sqrt
  */
 #include "rpr_planar.h"
@@ -20,33 +23,33 @@ CF_INLINE void rpr_planar_fk_kernel(const int single, const rpr_planar_params *p
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t t1 = rho1 + rho2;
-    const real_t t2 = b + t1;
-    const real_t t3 = CLOSEDFORM_VANISHING * t2;
-    const int coincide = b <= t3;
+    const real_t size = b + t1;
+    const real_t t2 = CLOSEDFORM_VANISHING * size;
+    const int coincide = b <= t2;
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
-    const real_t t4 = rho1 - rho2;
-    const real_t t5 = CLOSEDFORM_C(1.0) / cf_divisor(single, coincide, b * CLOSEDFORM_C(2.0));
-    const real_t t6 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t4 * t1 * t5);
-    const int t7 = cf_nought(b) == 0;
-    const int t8 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const int invalid = !(t7 & (CLOSEDFORM_C(0.0) <= b) & t8);
-    const real_t t9 = -(CLOSEDFORM_FEASIBILITY * t2);
-    const real_t t10 = t1 - b;
-    const real_t t11 = b + t4;
-    const real_t t12 = b - t4;
-    const int unreachable = !((t9 <= t10) & (t9 <= t11) & (t9 <= t12));
-    const real_t t13 = cf_poison(single, invalid | unreachable);
-    const real_t t14 = n_1 * t6 + t13;
-    const real_t slack = cf_max(t10, CLOSEDFORM_C(0.0));
-    const real_t t15 = slack * cf_max(t11, CLOSEDFORM_C(0.0)) * cf_max(t12, CLOSEDFORM_C(0.0));
-    const real_t t16 = cf_select(coincide, CLOSEDFORM_C(0.0), t5 * (cf_root(single, t2) * cf_sqrt(t15)));
-    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), t16);
-    const real_t P_y = n_1 * height;
+    const real_t t3 = rho1 - rho2;
+    const real_t t4 = CLOSEDFORM_C(1.0) / cf_divisor(single, coincide, b * CLOSEDFORM_C(2.0));
+    const real_t t5 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t3 * t1 * t4);
+    const int t6 = cf_nought(b) == 0;
+    const int t7 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const int invalid = !(t6 & (CLOSEDFORM_C(0.0) <= b) & t7);
+    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * size);
+    const real_t t9 = t1 - b;
+    const real_t t10 = b + t3;
+    const real_t t11 = b - t3;
+    const int unreachable = !((t8 <= t9) & (t8 <= t10) & (t8 <= t11));
+    const real_t t12 = cf_poison(single, invalid | unreachable);
+    const real_t t13 = n_1 * t5 + t12;
+    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
+    const real_t t14 = slack * cf_max(t10, CLOSEDFORM_C(0.0)) * cf_max(t11, CLOSEDFORM_C(0.0));
+    const real_t t15 = cf_select(coincide, CLOSEDFORM_C(0.0), t4 * (cf_root(single, size) * cf_sqrt(t14)));
+    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), t15);
+    const real_t t16 = n_1 * height;
     const real_t t17 = cf_status(single, invalid, unreachable, coincide);
-    p[0] = t14;
-    p[1] = P_y + t13;
-    p[2] = t14;
-    p[3] = -P_y + t13;
+    p[0] = t13;
+    p[1] = t16 + t12;
+    p[2] = t13;
+    p[3] = -t16 + t12;
     status[0] = t17;
     status[1] = t17;
 }
@@ -149,29 +152,29 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const int single, const rpr_plan
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t t1 = rho1 + rho2;
-    const real_t t2 = b + t1;
-    const real_t t3 = CLOSEDFORM_VANISHING * t2;
-    const int coincide = b <= t3;
+    const real_t size = b + t1;
+    const real_t t2 = CLOSEDFORM_VANISHING * size;
+    const int coincide = b <= t2;
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
-    const real_t t4 = t1 - b;
-    const real_t slack = cf_max(t4, CLOSEDFORM_C(0.0));
-    const real_t t5 = rho1 - rho2;
-    const real_t t6 = b + t5;
-    const real_t t7 = b - t5;
-    const real_t t8 = slack * cf_max(t6, CLOSEDFORM_C(0.0)) * cf_max(t7, CLOSEDFORM_C(0.0));
-    const real_t t9 = b * CLOSEDFORM_C(2.0);
-    const real_t t10 = cf_root(single, t2) * cf_sqrt(t8) / cf_divisor(single, coincide | (slack <= t3), t9);
-    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t10));
-    const real_t P_y = n_1 * height;
-    const real_t t11 = b * CLOSEDFORM_C(0.5) + t5 * t1 / cf_divisor(single, coincide, t9);
-    const real_t P_x = n_1 * cf_select(coincide, rho1, t11);
-    const int t12 = cf_nought(b) == 0;
-    const int t13 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t14 = -(CLOSEDFORM_FEASIBILITY * t2);
-    const int failed = (!(t12 & (CLOSEDFORM_C(0.0) <= b) & t13)) | (!((t14 <= t4) & (t14 <= t6) & (t14 <= t7)));
-    const real_t t15 = cf_poison(single, failed);
-    const real_t opposite[2] = { P_y, P_y };
-    const real_t adjacent[2] = { P_x, P_x - b };
+    const real_t t3 = t1 - b;
+    const real_t slack = cf_max(t3, CLOSEDFORM_C(0.0));
+    const real_t t4 = rho1 - rho2;
+    const real_t t5 = b + t4;
+    const real_t t6 = b - t4;
+    const real_t t7 = slack * cf_max(t5, CLOSEDFORM_C(0.0)) * cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t8 = b * CLOSEDFORM_C(2.0);
+    const real_t t9 = cf_root(single, size) * cf_sqrt(t7) / cf_divisor(single, coincide | (slack <= t2), t8);
+    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t9));
+    const real_t A_12 = n_1 * height;
+    const real_t t10 = b * CLOSEDFORM_C(0.5) + t4 * t1 / cf_divisor(single, coincide, t8);
+    const real_t A_11 = n_1 * cf_select(coincide, rho1, t10);
+    const int t11 = cf_nought(b) == 0;
+    const int t12 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t13 = -(CLOSEDFORM_FEASIBILITY * size);
+    const int failed = (!(t11 & (CLOSEDFORM_C(0.0) <= b) & t12)) | (!((t13 <= t3) & (t13 <= t5) & (t13 <= t6)));
+    const real_t t14 = cf_poison(single, failed);
+    const real_t opposite[2] = { A_12, A_12 };
+    const real_t adjacent[2] = { A_11, A_11 - b };
     real_t angles[2];
     if (single) {
         cf_atan2_lanes(2, opposite, adjacent, angles);
@@ -179,10 +182,10 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const int single, const rpr_plan
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
     }
-    theta[0] = cf_wrap_cut(angles[0]) + t15;
-    theta[1] = cf_wrap_cut(angles[1]) + t15;
-    theta[2] = cf_wrap_cut(-angles[0]) + t15;
-    theta[3] = cf_wrap_cut(-angles[1]) + t15;
+    theta[0] = cf_wrap_cut(angles[0]) + t14;
+    theta[1] = cf_wrap_cut(angles[1]) + t14;
+    theta[2] = cf_wrap_cut(-angles[0]) + t14;
+    theta[3] = cf_wrap_cut(-angles[1]) + t14;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -264,45 +267,45 @@ CF_INLINE void rpr_planar_skeleton_kernel(const int single, const rpr_planar_par
     const int t1 = cf_nought(b) == 0;
     const int t2 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const real_t t3 = rho1 + rho2;
-    const real_t t4 = b + t3;
-    const real_t t5 = -(CLOSEDFORM_FEASIBILITY * t4);
-    const real_t t6 = t3 - b;
-    const real_t t7 = rho1 - rho2;
-    const real_t t8 = b + t7;
-    const real_t t9 = b - t7;
-    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!((t5 <= t6) & (t5 <= t8) & (t5 <= t9)));
-    const real_t t10 = cf_poison(single, failed);
-    const real_t t11 = CLOSEDFORM_C(0.0) + t10;
-    const real_t t12 = b + t10;
-    const real_t t13 = CLOSEDFORM_VANISHING * t4;
-    const int coincide = b <= t13;
+    const real_t size = b + t3;
+    const real_t t4 = -(CLOSEDFORM_FEASIBILITY * size);
+    const real_t t5 = t3 - b;
+    const real_t t6 = rho1 - rho2;
+    const real_t t7 = b + t6;
+    const real_t t8 = b - t6;
+    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!((t4 <= t5) & (t4 <= t7) & (t4 <= t8)));
+    const real_t t9 = cf_poison(single, failed);
+    const real_t t10 = CLOSEDFORM_C(0.0) + t9;
+    const real_t t11 = b + t9;
+    const real_t t12 = CLOSEDFORM_VANISHING * size;
+    const int coincide = b <= t12;
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
-    const real_t t14 = b * CLOSEDFORM_C(2.0);
-    const real_t t15 = b * CLOSEDFORM_C(0.5) + t7 * t3 / cf_divisor(single, coincide, t14);
-    const real_t t16 = n_1 * cf_select(coincide, rho1, t15) + t10;
-    const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
-    const real_t t17 = slack * cf_max(t8, CLOSEDFORM_C(0.0)) * cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t18 = cf_root(single, t4) * cf_sqrt(t17) / cf_divisor(single, coincide | (slack <= t13), t14);
-    const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t18));
-    const real_t P_y = n_1 * height;
-    points[0] = t11;
-    points[1] = t11;
-    points[2] = t11;
-    points[3] = t12;
-    points[4] = t11;
-    points[5] = t11;
-    points[6] = t16;
-    points[7] = P_y + t10;
-    points[8] = t11;
-    points[9] = t11;
-    points[10] = t11;
-    points[11] = t11;
-    points[12] = t12;
-    points[13] = t11;
-    points[14] = t11;
-    points[15] = t16;
-    points[16] = -P_y + t10;
-    points[17] = t11;
+    const real_t t13 = b * CLOSEDFORM_C(2.0);
+    const real_t t14 = b * CLOSEDFORM_C(0.5) + t6 * t3 / cf_divisor(single, coincide, t13);
+    const real_t t15 = n_1 * cf_select(coincide, rho1, t14) + t9;
+    const real_t slack = cf_max(t5, CLOSEDFORM_C(0.0));
+    const real_t t16 = slack * cf_max(t7, CLOSEDFORM_C(0.0)) * cf_max(t8, CLOSEDFORM_C(0.0));
+    const real_t t17 = cf_root(single, size) * cf_sqrt(t16) / cf_divisor(single, coincide | (slack <= t12), t13);
+    const real_t height = cf_select(slack <= t12, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t17));
+    const real_t A_12 = n_1 * height;
+    points[0] = t10;
+    points[1] = t10;
+    points[2] = t10;
+    points[3] = t11;
+    points[4] = t10;
+    points[5] = t10;
+    points[6] = t15;
+    points[7] = A_12 + t9;
+    points[8] = t10;
+    points[9] = t10;
+    points[10] = t10;
+    points[11] = t10;
+    points[12] = t11;
+    points[13] = t10;
+    points[14] = t10;
+    points[15] = t15;
+    points[16] = -A_12 + t9;
+    points[17] = t10;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -393,47 +396,218 @@ void rpr_planar_skeleton_batch(size_t n, const rpr_planar_params *params,
     }
 }
 
+CF_INLINE void rpr_planar_jacobian_parallel_kernel(const int single, const rpr_planar_params *params,
+    const real_t q[2], real_t A[8])
+{
+    const real_t b = params->b;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t t1 = rho1 + rho2;
+    const real_t size = b + t1;
+    const real_t t2 = CLOSEDFORM_VANISHING * size;
+    const int coincide = b <= t2;
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
+    const real_t t3 = rho1 - rho2;
+    const real_t t4 = b * CLOSEDFORM_C(2.0);
+    const real_t t5 = b * CLOSEDFORM_C(0.5) + t3 * t1 / cf_divisor(single, coincide, t4);
+    const real_t A_11 = n_1 * cf_select(coincide, rho1, t5);
+    const int t6 = cf_nought(b) == 0;
+    const int t7 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * size);
+    const real_t t9 = t1 - b;
+    const real_t t10 = b + t3;
+    const real_t t11 = b - t3;
+    const int failed = (!(t6 & (CLOSEDFORM_C(0.0) <= b) & t7)) | (!((t8 <= t9) & (t8 <= t10) & (t8 <= t11)));
+    const real_t t12 = cf_poison(single, failed);
+    const real_t t13 = A_11 + t12;
+    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
+    const real_t t14 = slack * cf_max(t10, CLOSEDFORM_C(0.0)) * cf_max(t11, CLOSEDFORM_C(0.0));
+    const real_t t15 = cf_root(single, size) * cf_sqrt(t14) / cf_divisor(single, coincide | (slack <= t2), t4);
+    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t15));
+    const real_t A_12 = n_1 * height;
+    const real_t t16 = A_12 + t12;
+    const real_t t17 = A_11 - b + t12;
+    const real_t t18 = -A_12 + t12;
+    A[0] = t13;
+    A[1] = t16;
+    A[2] = t17;
+    A[3] = t16;
+    A[4] = t13;
+    A[5] = t18;
+    A[6] = t17;
+    A[7] = t18;
+}
+
+CLOSEDFORM_DISPATCHED
+void rpr_planar_jacobian_parallel(const rpr_planar_params *params, const real_t q[2],
+    real_t A[8])
+{
+    static const signed char q_degrees[2] = { 1, 1 };
+    static const signed char A_degrees[8] = { 1, 1, 1, 1, 1, 1, 1, 1 };
+    real_t q_scaled[2];
+    rpr_planar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->b), cf_abs(q[0])), cf_abs(q[1]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.b = CF_LIBM(ldexp)(params->b, -exponent);
+        params = &params_scaled;
+        cf_rescale(2, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
+    rpr_planar_jacobian_parallel_kernel(1, params, q, A);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(8, A_degrees, exponent, A, A);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word rpr_planar_jacobian_parallel_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_abs(q[q_stride + i])), CF_SIZES_3);
+}
+
+CF_RARE void rpr_planar_jacobian_parallel_other_sizes(size_t n, const real_t dimensions,
+    const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(rpr_planar_jacobian_parallel_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t A_i[8];
+        rpr_planar_jacobian_parallel(params, q_i, A_i);
+        for (size_t k = 0; k < 8; ++k) A[k * A_stride + i] = A_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void rpr_planar_jacobian_parallel_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride)
+{
+    const rpr_planar_params local = *params;
+    const real_t dimensions = cf_abs(params->b);
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
+            real_t A_i[8];
+            rpr_planar_jacobian_parallel_kernel(0, &local, q_i, A_i);
+            A[start + i] = A_i[0];
+            A[A_stride + start + i] = A_i[1];
+            A[2 * A_stride + start + i] = A_i[2];
+            A[3 * A_stride + start + i] = A_i[3];
+            A[4 * A_stride + start + i] = A_i[4];
+            A[5 * A_stride + start + i] = A_i[5];
+            A[6 * A_stride + start + i] = A_i[6];
+            A[7 * A_stride + start + i] = A_i[7];
+        }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= rpr_planar_jacobian_parallel_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            rpr_planar_jacobian_parallel_other_sizes(length, dimensions, params, q + start, q_stride, A + start, A_stride);
+    }
+}
+
+CF_INLINE void rpr_planar_jacobian_serial_kernel(const int single, const rpr_planar_params *params,
+    const real_t q[2], real_t B[4])
+{
+    const real_t b = params->b;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const int t1 = cf_nought(b) == 0;
+    const int t2 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t3 = rho1 + rho2;
+    const real_t t4 = -(CLOSEDFORM_FEASIBILITY * (b + t3));
+    const real_t t5 = rho1 - rho2;
+    const int t6 = (t4 <= t3 - b) & (t4 <= b + t5) & (t4 <= b - t5);
+    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!t6);
+    const real_t t7 = cf_poison(single, failed);
+    const real_t t8 = rho1 + t7;
+    const real_t t9 = rho2 + t7;
+    B[0] = t8;
+    B[1] = t9;
+    B[2] = t8;
+    B[3] = t9;
+}
+
+CLOSEDFORM_DISPATCHED
+void rpr_planar_jacobian_serial(const rpr_planar_params *params, const real_t q[2],
+    real_t B[4])
+{
+    rpr_planar_jacobian_serial_kernel(1, params, q, B);
+}
+
+CLOSEDFORM_DISPATCHED
+void rpr_planar_jacobian_serial_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *B, size_t B_stride)
+{
+    const rpr_planar_params local = *params;
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
+            real_t B_i[4];
+            rpr_planar_jacobian_serial_kernel(0, &local, q_i, B_i);
+            B[start + i] = B_i[0];
+            B[B_stride + start + i] = B_i[1];
+            B[2 * B_stride + start + i] = B_i[2];
+            B[3 * B_stride + start + i] = B_i[3];
+        }
+    }
+}
+
 CF_INLINE void rpr_planar_jacobian_kernel(const int single, const rpr_planar_params *params,
     const real_t q[2], real_t J[8])
 {
     const real_t b = params->b;
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
-    const real_t t1 = cf_nonzero(single, b);
-    const int t2 = cf_nought(b) == 0;
-    const int t3 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t4 = rho1 + rho2;
-    const real_t t5 = b + t4;
-    const real_t t6 = -(CLOSEDFORM_FEASIBILITY * t5);
-    const real_t t7 = t4 - b;
-    const real_t t8 = rho1 - rho2;
-    const real_t t9 = b + t8;
-    const real_t t10 = b - t8;
-    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= b) & t3)) | (!((t6 <= t7) & (t6 <= t9) & (t6 <= t10)));
-    const real_t t11 = cf_poison(single, failed);
-    const real_t t12 = rho1 / t1 + t11;
-    const real_t t13 = -(rho2 / t1) + t11;
-    const real_t t14 = CLOSEDFORM_VANISHING * t5;
-    const int coincide = b <= t14;
+    const real_t t1 = rho1 + rho2;
+    const real_t size = b + t1;
+    const real_t t2 = CLOSEDFORM_VANISHING * size;
+    const int coincide = b <= t2;
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
-    const real_t t15 = b * CLOSEDFORM_C(2.0);
-    const real_t t16 = b * CLOSEDFORM_C(0.5) + t8 * t4 / cf_divisor(single, coincide, t15);
-    const real_t P_x = n_1 * cf_select(coincide, rho1, t16);
-    const real_t slack = cf_max(t7, CLOSEDFORM_C(0.0));
-    const real_t t17 = slack * cf_max(t9, CLOSEDFORM_C(0.0)) * cf_max(t10, CLOSEDFORM_C(0.0));
-    const real_t t18 = cf_root(single, t5) * cf_sqrt(t17) / cf_divisor(single, coincide | (slack <= t14), t15);
-    const real_t height = cf_select(slack <= t14, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t18));
-    const real_t t19 = b * (n_1 * height);
-    const real_t t20 = cf_quotient(single, rho1 * b - rho1 * P_x, t19);
-    const real_t t21 = cf_quotient(single, rho2 * P_x, t19);
-    J[0] = t12;
-    J[1] = t13;
-    J[2] = t20 + t11;
-    J[3] = t21 + t11;
-    J[4] = t12;
-    J[5] = t13;
-    J[6] = -t20 + t11;
-    J[7] = -t21 + t11;
+    const real_t t3 = t1 - b;
+    const real_t slack = cf_max(t3, CLOSEDFORM_C(0.0));
+    const real_t t4 = rho1 - rho2;
+    const real_t t5 = b + t4;
+    const real_t t6 = b - t4;
+    const real_t t7 = slack * cf_max(t5, CLOSEDFORM_C(0.0)) * cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t8 = b * CLOSEDFORM_C(2.0);
+    const real_t t9 = cf_root(single, size) * cf_sqrt(t7) / cf_divisor(single, coincide | (slack <= t2), t8);
+    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t9));
+    const real_t A_12 = n_1 * height;
+    const real_t Delta = b * height;
+    const real_t t10 = cf_nonzero(single, Delta);
+    const int t11 = cf_nought(b) == 0;
+    const int t12 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t13 = -(CLOSEDFORM_FEASIBILITY * size);
+    const int failed = (!(t11 & (CLOSEDFORM_C(0.0) <= b) & t12)) | (!((t13 <= t3) & (t13 <= t5) & (t13 <= t6)));
+    const real_t t14 = cf_poison(single, failed);
+    const real_t t15 = rho1 * A_12 / t10 + t14;
+    const real_t t16 = -(rho2 * A_12 / t10) + t14;
+    const real_t t17 = b * CLOSEDFORM_C(0.5) + t4 * t1 / cf_divisor(single, coincide, t8);
+    const real_t A_11 = n_1 * cf_select(coincide, rho1, t17);
+    const real_t t18 = rho1 * (b - A_11) / t10;
+    const real_t t19 = rho2 * A_11 / t10;
+    J[0] = t15;
+    J[1] = t16;
+    J[2] = t18 + t14;
+    J[3] = t19 + t14;
+    J[4] = t15;
+    J[5] = t16;
+    J[6] = -t18 + t14;
+    J[7] = -t19 + t14;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -517,26 +691,24 @@ CF_INLINE void rpr_planar_determinant_kernel(const int single, const rpr_planar_
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t t1 = rho1 + rho2;
-    const real_t t2 = b + t1;
-    const real_t t3 = CLOSEDFORM_VANISHING * t2;
-    const int coincide = b <= t3;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
-    const real_t t4 = t1 - b;
-    const real_t slack = cf_max(t4, CLOSEDFORM_C(0.0));
-    const real_t t5 = rho1 - rho2;
-    const real_t t6 = b + t5;
-    const real_t t7 = b - t5;
-    const real_t t8 = slack * cf_max(t6, CLOSEDFORM_C(0.0)) * cf_max(t7, CLOSEDFORM_C(0.0));
-    const real_t t9 = cf_root(single, t2) * cf_sqrt(t8) / cf_divisor(single, coincide | (slack <= t3), b * CLOSEDFORM_C(2.0));
-    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t9));
-    const real_t t10 = cf_quotient(single, rho1 * rho2, b * (n_1 * height));
-    const int t11 = cf_nought(b) == 0;
-    const int t12 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t13 = -(CLOSEDFORM_FEASIBILITY * t2);
-    const int failed = (!(t11 & (CLOSEDFORM_C(0.0) <= b) & t12)) | (!((t13 <= t4) & (t13 <= t6) & (t13 <= t7)));
-    const real_t t14 = cf_poison(single, failed);
-    det[0] = t10 + t14;
-    det[1] = -t10 + t14;
+    const real_t t2 = t1 - b;
+    const real_t slack = cf_max(t2, CLOSEDFORM_C(0.0));
+    const real_t size = b + t1;
+    const real_t t3 = CLOSEDFORM_VANISHING * size;
+    const real_t t4 = rho1 - rho2;
+    const real_t t5 = b + t4;
+    const real_t t6 = b - t4;
+    const real_t t7 = slack * cf_max(t5, CLOSEDFORM_C(0.0)) * cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t8 = cf_root(single, size) * cf_sqrt(t7) / cf_divisor(single, (slack <= t3) | (b <= t3), b * CLOSEDFORM_C(2.0));
+    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(b <= t3, CLOSEDFORM_C(0.0), t8));
+    const real_t t9 = cf_quotient(single, rho1 * rho2, b * height);
+    const int t10 = cf_nought(b) == 0;
+    const int t11 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t12 = -(CLOSEDFORM_FEASIBILITY * size);
+    const int failed = (!(t10 & (CLOSEDFORM_C(0.0) <= b) & t11)) | (!((t12 <= t2) & (t12 <= t5) & (t12 <= t6)));
+    const real_t t13 = cf_poison(single, failed);
+    det[0] = t9 + t13;
+    det[1] = -t9 + t13;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -616,30 +788,28 @@ CF_INLINE void rpr_planar_singularities_kernel(const int single, const rpr_plana
     const int t1 = cf_nought(b) == 0;
     const int t2 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const real_t t3 = rho1 + rho2;
-    const real_t t4 = b + t3;
-    const real_t t5 = -(CLOSEDFORM_FEASIBILITY * t4);
-    const real_t t6 = t3 - b;
-    const real_t t7 = rho1 - rho2;
-    const real_t t8 = b + t7;
-    const real_t t9 = b - t7;
-    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!((t5 <= t6) & (t5 <= t8) & (t5 <= t9)));
-    const real_t t10 = cf_poison(single, failed);
-    const real_t t11 = rho1 + t10;
-    const real_t t12 = rho2 + t10;
-    const real_t t13 = CLOSEDFORM_VANISHING * t4;
-    const int coincide = b <= t13;
-    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
-    const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
-    const real_t t14 = slack * cf_max(t8, CLOSEDFORM_C(0.0)) * cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t15 = cf_root(single, t4) * cf_sqrt(t14) / cf_divisor(single, coincide | (slack <= t13), b * CLOSEDFORM_C(2.0));
-    const real_t height = cf_select(slack <= t13, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t15));
-    const real_t P_y = n_1 * height;
-    factors[0] = t11;
-    factors[1] = t12;
-    factors[2] = P_y + t10;
-    factors[3] = t11;
-    factors[4] = t12;
-    factors[5] = -P_y + t10;
+    const real_t size = b + t3;
+    const real_t t4 = -(CLOSEDFORM_FEASIBILITY * size);
+    const real_t t5 = t3 - b;
+    const real_t t6 = rho1 - rho2;
+    const real_t t7 = b + t6;
+    const real_t t8 = b - t6;
+    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!((t4 <= t5) & (t4 <= t7) & (t4 <= t8)));
+    const real_t t9 = cf_poison(single, failed);
+    const real_t t10 = rho1 + t9;
+    const real_t t11 = rho2 + t9;
+    const real_t slack = cf_max(t5, CLOSEDFORM_C(0.0));
+    const real_t t12 = CLOSEDFORM_VANISHING * size;
+    const real_t t13 = slack * cf_max(t7, CLOSEDFORM_C(0.0)) * cf_max(t8, CLOSEDFORM_C(0.0));
+    const real_t t14 = cf_root(single, size) * cf_sqrt(t13) / cf_divisor(single, (slack <= t12) | (b <= t12), b * CLOSEDFORM_C(2.0));
+    const real_t height = cf_select(slack <= t12, CLOSEDFORM_C(0.0), cf_select(b <= t12, CLOSEDFORM_C(0.0), t14));
+    const real_t Delta = b * height;
+    factors[0] = t10;
+    factors[1] = t11;
+    factors[2] = Delta + t9;
+    factors[3] = t10;
+    factors[4] = t11;
+    factors[5] = -Delta + t9;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -647,7 +817,7 @@ void rpr_planar_singularities(const rpr_planar_params *params, const real_t q[2]
     real_t factors[6])
 {
     static const signed char q_degrees[2] = { 1, 1 };
-    static const signed char factors_degrees[6] = { 1, 1, 1, 1, 1, 1 };
+    static const signed char factors_degrees[6] = { 1, 1, 2, 1, 1, 2 };
     real_t q_scaled[2];
     rpr_planar_params params_scaled;
     int exponent = 0;
@@ -718,6 +888,114 @@ void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params,
     }
 }
 
+CF_INLINE void rpr_planar_condition_number_kernel(const int single, const rpr_planar_params *params,
+    const real_t q[2], real_t kappa[2])
+{
+    const real_t b = params->b;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t t1 = rho1 + rho2;
+    const real_t size = b + t1;
+    const real_t t2 = CLOSEDFORM_VANISHING * size;
+    const int coincide = b <= t2;
+    const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
+    const real_t t3 = rho1 - rho2;
+    const real_t t4 = b * CLOSEDFORM_C(2.0);
+    const real_t t5 = b * CLOSEDFORM_C(0.5) + t3 * t1 / cf_divisor(single, coincide, t4);
+    const real_t A_11 = n_1 * cf_select(coincide, rho1, t5);
+    const real_t t6 = t1 - b;
+    const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t7 = b + t3;
+    const real_t t8 = b - t3;
+    const real_t t9 = slack * cf_max(t7, CLOSEDFORM_C(0.0)) * cf_max(t8, CLOSEDFORM_C(0.0));
+    const real_t t10 = cf_root(single, size) * cf_sqrt(t9) / cf_divisor(single, coincide | (slack <= t2), t4);
+    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t10));
+    const real_t A_12 = n_1 * height;
+    const real_t t11 = A_12 * A_12;
+    const real_t square1 = A_11 * A_11 + t11;
+    const real_t t12 = b - A_11;
+    const real_t square2 = t11 + t12 * t12;
+    const real_t t13 = square1 - square2;
+    const real_t t14 = t11 - A_11 * t12;
+    const real_t t15 = cf_sqrt(t13 * t13 + CLOSEDFORM_C(4.0) * (t14 * t14));
+    const real_t t16 = cf_quotient(single, square1 + square2 + t15, CLOSEDFORM_C(2.0) * (b * height));
+    const int t17 = cf_nought(b) == 0;
+    const int t18 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t19 = -(CLOSEDFORM_FEASIBILITY * size);
+    const int failed = (!(t17 & (CLOSEDFORM_C(0.0) <= b) & t18)) | (!((t19 <= t6) & (t19 <= t7) & (t19 <= t8)));
+    const real_t t20 = t16 + cf_poison(single, failed);
+    kappa[0] = t20;
+    kappa[1] = t20;
+}
+
+CLOSEDFORM_DISPATCHED
+void rpr_planar_condition_number(const rpr_planar_params *params, const real_t q[2],
+    real_t kappa[2])
+{
+    static const signed char q_degrees[2] = { 1, 1 };
+    real_t q_scaled[2];
+    rpr_planar_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->b), cf_abs(q[0])), cf_abs(q[1]));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_4) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.b = CF_LIBM(ldexp)(params->b, -exponent);
+        params = &params_scaled;
+        cf_rescale(2, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
+    rpr_planar_condition_number_kernel(1, params, q, kappa);
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word rpr_planar_condition_number_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_abs(q[q_stride + i])), CF_SIZES_4);
+}
+
+CF_RARE void rpr_planar_condition_number_other_sizes(size_t n, const real_t dimensions,
+    const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *kappa, size_t kappa_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(rpr_planar_condition_number_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[2];
+        for (size_t k = 0; k < 2; ++k) q_i[k] = q[k * q_stride + i];
+        real_t kappa_i[2];
+        rpr_planar_condition_number(params, q_i, kappa_i);
+        for (size_t k = 0; k < 2; ++k) kappa[k * kappa_stride + i] = kappa_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void rpr_planar_condition_number_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *kappa, size_t kappa_stride)
+{
+    const rpr_planar_params local = *params;
+    const real_t dimensions = cf_abs(params->b);
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[2] = { q[start + i], q[q_stride + start + i] };
+            real_t kappa_i[2];
+            rpr_planar_condition_number_kernel(0, &local, q_i, kappa_i);
+            kappa[start + i] = kappa_i[0];
+            kappa[kappa_stride + start + i] = kappa_i[1];
+        }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= rpr_planar_condition_number_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            rpr_planar_condition_number_other_sizes(length, dimensions, params, q + start, q_stride, kappa + start, kappa_stride);
+    }
+}
+
 CF_INLINE void rpr_planar_ik_kernel(const int single, const real_t one,
     const rpr_planar_params *params, const real_t x[2],
     real_t q[2], real_t status[1])
@@ -726,17 +1004,17 @@ CF_INLINE void rpr_planar_ik_kernel(const int single, const real_t one,
     const real_t x_2 = x[0];
     const real_t y = x[1];
     const real_t t1 = cf_rounded(single, one, y * y);
-    const real_t leg1 = cf_sqrt(cf_rounded(single, one, x_2 * x_2) + t1);
+    const real_t leg_1 = cf_sqrt(cf_rounded(single, one, x_2 * x_2) + t1);
     const int t2 = cf_nought(b) == 0;
     const int t3 = cf_nought(x_2) + cf_nought(y) == 0;
     const int invalid = !(t2 & (CLOSEDFORM_C(0.0) <= b) & t3);
     const real_t t4 = cf_poison(single, invalid);
-    const real_t t5 = x_2 - b;
-    const real_t leg2 = cf_sqrt(t1 + cf_rounded(single, one, t5 * t5));
-    const int t6 = b * cf_abs(y) <= CLOSEDFORM_DETERMINED * (leg1 * leg2);
-    q[0] = leg1 + t4;
-    q[1] = leg2 + t4;
-    status[0] = cf_status(single, invalid, 0, t6);
+    const real_t w1_2 = x_2 - b;
+    const real_t leg_2 = cf_sqrt(t1 + cf_rounded(single, one, w1_2 * w1_2));
+    const int t5 = cf_abs(y * b) <= CLOSEDFORM_DETERMINED * (leg_1 * leg_2);
+    q[0] = leg_1 + t4;
+    q[1] = leg_2 + t4;
+    status[0] = cf_status(single, invalid, 0, t5);
 }
 
 CLOSEDFORM_DISPATCHED

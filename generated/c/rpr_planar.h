@@ -6,9 +6,12 @@
  *   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
  *   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
  *   skeleton: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
- *   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
- *   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
- *   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
+ *   jacobian_parallel: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
+ *   jacobian_serial: 8 add, 14 compare and select, 1 multiply
+ *   jacobian: 14 add, 23 compare and select, 8 divide, 14 multiply, 2 sqrt
+ *   determinant: 8 add, 21 compare and select, 2 divide, 8 multiply, 2 sqrt
+ *   singularities: 10 add, 21 compare and select, 1 divide, 7 multiply, 2 sqrt
+ *   condition_number: 16 add, 23 compare and select, 5 divide, 18 multiply, 3 sqrt
  *   ik: 10 compare and select, 5 add, 6 multiply, 2 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
@@ -35,7 +38,7 @@ typedef struct {
     { CLOSEDFORM_C(1.0) }
 
 /*
- * Position of P in both assembly modes.
+ * Position of the hand in both assembly modes.
  *
  * Inputs
  * ------
@@ -55,9 +58,10 @@ typedef struct {
  * Notes
  * -----
  * - Branches in this order: above, below.
- * - UNREACHABLE: the legs do not meet, or a length is negative.
- * - SINGULAR: the pivots coincide (b = 0); P is free on a circle, and its point on the x axis
- *   is returned.
+ * - UNREACHABLE: the rods do not meet.
+ * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
+ *   points is returned.
+ * - Ill-conditioned near the parallel singularities, where both modes meet.
  */
 void rpr_planar_fk(const rpr_planar_params *params, const real_t q[2],
     real_t p[4], uint8_t status[2]);
@@ -67,7 +71,7 @@ void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params,
     uint8_t *status, size_t status_stride);
 
 /*
- * Angles of the legs in both assembly modes.
+ * Angles of the rods from the x axis in both assembly modes.
  *
  * Inputs
  * ------
@@ -82,6 +86,7 @@ void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params,
  * Notes
  * -----
  * - Branches in this order: above, below.
+ * - NaN for an assembly mode that does not exist.
  */
 void rpr_planar_passive_angles(const rpr_planar_params *params, const real_t q[2],
     real_t theta[4]);
@@ -104,6 +109,7 @@ void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params,
  * Notes
  * -----
  * - Branches in this order: above, below.
+ * - NaN for an assembly mode that does not exist.
  */
 void rpr_planar_skeleton(const rpr_planar_params *params, const real_t q[2],
     real_t points[18]);
@@ -112,7 +118,54 @@ void rpr_planar_skeleton_batch(size_t n, const rpr_planar_params *params,
     real_t *points, size_t points_stride);
 
 /*
- * Derivative of p with respect to q, A^-1 B.
+ * A of A*dp = B*dq; its rows are the vectors along the rods.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     rho1, rho2 in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * A : real_t[8], shape (2, 2, 2)
+ *     One column for each of rho1, rho2.
+ *
+ * Notes
+ * -----
+ * - Branches in this order: above, below.
+ * - NaN for an assembly mode that does not exist.
+ */
+void rpr_planar_jacobian_parallel(const rpr_planar_params *params, const real_t q[2],
+    real_t A[8]);
+void rpr_planar_jacobian_parallel_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *A, size_t A_stride);
+
+/*
+ * The diagonal of B of A*dp = B*dq.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     rho1, rho2 in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * B : real_t[4], shape (2, 2)
+ *
+ * Notes
+ * -----
+ * - Branches in this order: above, below.
+ * - NaN for an assembly mode that does not exist.
+ */
+void rpr_planar_jacobian_serial(const rpr_planar_params *params, const real_t q[2],
+    real_t B[4]);
+void rpr_planar_jacobian_serial_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *B, size_t B_stride);
+
+/*
+ * Derivative of p with respect to q: A^-1*B.
  *
  * Inputs
  * ------
@@ -127,6 +180,8 @@ void rpr_planar_skeleton_batch(size_t n, const rpr_planar_params *params,
  * Notes
  * -----
  * - Branches in this order: above, below.
+ * - NaN for an assembly mode that does not exist.
+ * - Not finite at a parallel singularity.
  */
 void rpr_planar_jacobian(const rpr_planar_params *params, const real_t q[2],
     real_t J[8]);
@@ -149,6 +204,8 @@ void rpr_planar_jacobian_batch(size_t n, const rpr_planar_params *params,
  * Notes
  * -----
  * - Branches in this order: above, below.
+ * - NaN for an assembly mode that does not exist.
+ * - Not finite at a parallel singularity.
  */
 void rpr_planar_determinant(const rpr_planar_params *params, const real_t q[2],
     real_t det[2]);
@@ -157,7 +214,7 @@ void rpr_planar_determinant_batch(size_t n, const rpr_planar_params *params,
     real_t *det, size_t det_stride);
 
 /*
- * rho1 and rho2 (serial) and y (parallel).
+ * The diagonal of B (serial) and the determinant of A (parallel).
  *
  * Inputs
  * ------
@@ -172,6 +229,7 @@ void rpr_planar_determinant_batch(size_t n, const rpr_planar_params *params,
  * Notes
  * -----
  * - Branches in this order: above, below.
+ * - NaN for an assembly mode that does not exist.
  */
 void rpr_planar_singularities(const rpr_planar_params *params, const real_t q[2],
     real_t factors[6]);
@@ -180,7 +238,31 @@ void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params,
     real_t *factors, size_t factors_stride);
 
 /*
- * The lengths of the legs.
+ * Ratio of the largest to the smallest singular value of A.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[2]
+ *     rho1, rho2 in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * kappa : real_t[2]
+ *
+ * Notes
+ * -----
+ * - Branches in this order: above, below.
+ * - NaN for an assembly mode that does not exist.
+ * - Infinite at a parallel singularity.
+ */
+void rpr_planar_condition_number(const rpr_planar_params *params, const real_t q[2],
+    real_t kappa[2]);
+void rpr_planar_condition_number_batch(size_t n, const rpr_planar_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *kappa, size_t kappa_stride);
+
+/*
+ * The driven joints of the only working mode.
  *
  * Inputs
  * ------
@@ -199,10 +281,9 @@ void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params,
  *
  * Notes
  * -----
- * - Every position can be reached, in exactly one way: lengths are not negative.
- * - SINGULAR: the sine of the angle between the legs is less than 2^-10: on and near the line
- *   of the pivots, at a distance of more than about 1000 b, and everywhere if b = 0. The
- *   lengths are right, but one ulp of them moves P by more than 1e-12 of b + rho1 + rho2.
+ * - UNREACHABLE: a rod does not reach.
+ * - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes, but
+ *   one ulp of the joints moves the hand by more than 1e-12 of the lengths.
  */
 void rpr_planar_ik(const rpr_planar_params *params, const real_t x[2],
     real_t q[2], uint8_t status[1]);

@@ -44,6 +44,20 @@ struct FkResult {
     return result;
 }
 
+[[nodiscard]] inline auto jacobian_parallel(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 8> result;
+    rpr_planar_jacobian_parallel(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto jacobian_serial(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 4> result;
+    rpr_planar_jacobian_serial(&parameters, q.data(), result.data());
+    return result;
+}
+
 [[nodiscard]] inline auto jacobian(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
 {
     std::array<real_t, 8> result;
@@ -62,6 +76,13 @@ struct FkResult {
 {
     std::array<real_t, 6> result;
     rpr_planar_singularities(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto condition_number(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 2> result;
+    rpr_planar_condition_number(&parameters, q.data(), result.data());
     return result;
 }
 

@@ -33,16 +33,22 @@ __all__ = [
     "fk",
     "passive_angles",
     "skeleton",
+    "jacobian_parallel",
+    "jacobian_serial",
     "jacobian",
     "determinant",
     "singularities",
+    "condition_number",
     "ik",
 ]
 
 fk = _native.function("rpr_planar.fk", Positions)
 passive_angles = _native.function("rpr_planar.passive_angles")
 skeleton = _native.function("rpr_planar.skeleton")
+jacobian_parallel = _native.function("rpr_planar.jacobian_parallel")
+jacobian_serial = _native.function("rpr_planar.jacobian_serial")
 jacobian = _native.function("rpr_planar.jacobian")
 determinant = _native.function("rpr_planar.determinant")
 singularities = _native.function("rpr_planar.singularities")
+condition_number = _native.function("rpr_planar.condition_number")
 ik = _native.function("rpr_planar.ik", Solutions)

@@ -5,17 +5,20 @@
 //   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
 //   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
 //   skeleton: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
-//   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
-//   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
-//   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
+//   jacobian_parallel: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
+//   jacobian_serial: 8 add, 14 compare and select, 1 multiply
+//   jacobian: 14 add, 23 compare and select, 8 divide, 14 multiply, 2 sqrt
+//   determinant: 8 add, 21 compare and select, 2 divide, 8 multiply, 2 sqrt
+//   singularities: 10 add, 21 compare and select, 1 divide, 7 multiply, 2 sqrt
+//   condition_number: 16 add, 23 compare and select, 5 divide, 18 multiply, 3 sqrt
 //   ik: 10 compare and select, 5 add, 6 multiply, 2 sqrt
 
 /**
  * Planar parallel mechanism (two RPR legs).
  *
- * Two legs turn freely about A at the origin and B at b on the x axis.  They slide out by rho1 and
- * rho2, and both carry the point P.  The slides are driven; the angles theta1 and theta2 of the
- * legs follow.
+ * Two legs turn freely about A1 at the origin and A2 at b on the x axis.  They slide out by rho1
+ * and rho2, and both carry the point P.  The slides are driven; the angles theta1 and theta2 of
+ * the legs follow.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from The closedform authors: Arms of common structure, solved by lemmas.
@@ -36,21 +39,19 @@ export const SINGULARITIES = Object.freeze(/** @type {const} */ (["leg 1", "leg 
 /** What `skeleton` draws: each link is a polyline through points of one rigid body. */
 export const SKELETON = Object.freeze(/** @type {const} */ ({
     points: [
-        "A",
-        "B",
+        "A1",
+        "A2",
         "P",
     ],
     links: {
-        ground: ["A", "B"],
+        ground: ["A1", "A2"],
     },
     joints: {
-        rho1: { kind: "prismatic", points: ["A", "P"] },
-        rho2: { kind: "prismatic", points: ["B", "P"] },
-        theta1: { kind: "revolute", points: ["A"] },
-        theta2: { kind: "revolute", points: ["B"] },
+        rho1: { kind: "prismatic", points: ["A1", "P"] },
+        rho2: { kind: "prismatic", points: ["A2", "P"] },
     },
     hand: "P",
-    ground: ["A", "B"],
+    ground: ["A1", "A2"],
 }));
 
 /**
@@ -71,33 +72,33 @@ function _fk(v, o) {
     const rho2 = v[1];
     const b = v[2];
     const t1 = rho1 + rho2;
-    const t2 = b + t1;
-    const t3 = _runtime.VANISHING * t2;
-    const coincide = b <= t3;
+    const size = b + t1;
+    const t2 = _runtime.VANISHING * size;
+    const coincide = b <= t2;
     const n_1 = coincide ? 1.0 : b / b;
-    const t4 = rho1 - rho2;
-    const t5 = 1.0 / (b * 2.0);
-    const P_x = n_1 * (coincide ? rho1 : b * 0.5 + t4 * t1 * t5);
+    const t3 = rho1 - rho2;
+    const t4 = 1.0 / (b * 2.0);
+    const t5 = n_1 * (coincide ? rho1 : b * 0.5 + t3 * t1 * t4);
     const t6 = Number.isFinite(rho1) && Number.isFinite(rho2);
     const invalid = !(Number.isFinite(b) && 0.0 <= b && t6);
-    const t7 = -(_runtime.FEASIBILITY * t2);
+    const t7 = -(_runtime.FEASIBILITY * size);
     const t8 = t1 - b;
-    const t9 = b + t4;
-    const t10 = b - t4;
+    const t9 = b + t3;
+    const t10 = b - t3;
     const unreachable = !(t7 <= t8 && t7 <= t9 && t7 <= t10);
     const t11 = invalid || unreachable ? NaN : 0;
-    const t12 = P_x + t11;
+    const t12 = t5 + t11;
     const slack = Math.max(t8, 0.0);
     const t13 = slack * Math.max(t9, 0.0) * Math.max(t10, 0.0);
-    const t14 = coincide ? 0.0 : t5 * (Math.sqrt(t2) * Math.sqrt(t13));
-    const P_y = n_1 * (slack <= t3 ? 0.0 : t14);
-    const t15 = invalid ? 3 : unreachable ? 1 : coincide ? 2 : 0;
+    const t14 = coincide ? 0.0 : t4 * (Math.sqrt(size) * Math.sqrt(t13));
+    const t15 = n_1 * (slack <= t2 ? 0.0 : t14);
+    const t16 = invalid ? 3 : unreachable ? 1 : coincide ? 2 : 0;
     o[0] = t12;
-    o[1] = P_y + t11;
+    o[1] = t15 + t11;
     o[2] = t12;
-    o[3] = -P_y + t11;
-    o[4] = t15;
-    o[5] = t15;
+    o[3] = -t15 + t11;
+    o[4] = t16;
+    o[5] = t16;
 }
 
 const _FK = _runtime.kernel({
@@ -122,12 +123,13 @@ const _FK = _runtime.kernel({
 });
 
 /**
- * Position of P in both assembly modes.
+ * Position of the hand in both assembly modes.
  *
  * - Branches in this order, `ASSEMBLY_MODES`: above, below.
- * - UNREACHABLE: the legs do not meet, or a length is negative.
- * - SINGULAR: the pivots coincide (b = 0); P is free on a circle, and its point on the x axis
- *   is returned.
+ * - UNREACHABLE: the rods do not meet.
+ * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
+ *   points is returned.
+ * - Ill-conditioned near the parallel singularities, where both modes meet.
  *
  * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -163,33 +165,33 @@ function _passive_angles(v, o) {
     const rho2 = v[1];
     const b = v[2];
     const t1 = rho1 + rho2;
-    const t2 = b + t1;
-    const t3 = _runtime.VANISHING * t2;
-    const coincide = b <= t3;
+    const size = b + t1;
+    const t2 = _runtime.VANISHING * size;
+    const coincide = b <= t2;
     const n_1 = coincide ? 1.0 : b / b;
-    const t4 = t1 - b;
-    const slack = Math.max(t4, 0.0);
-    const t5 = rho1 - rho2;
-    const t6 = b + t5;
-    const t7 = b - t5;
-    const t8 = slack * Math.max(t6, 0.0) * Math.max(t7, 0.0);
-    const t9 = b * 2.0;
-    const t10 = coincide ? 0.0 : Math.sqrt(t2) * Math.sqrt(t8) / t9;
-    const P_y = n_1 * (slack <= t3 ? 0.0 : t10);
-    const P_x = n_1 * (coincide ? rho1 : b * 0.5 + t5 * t1 / t9);
-    const t11 = Math.atan2(P_y, P_x);
-    const t12 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const t13 = -(_runtime.FEASIBILITY * t2);
-    const failed = !(Number.isFinite(b) && 0.0 <= b && t12) || !(t13 <= t4 && t13 <= t6 && t13
-        <= t7);
-    const t14 = failed ? NaN : 0;
-    const t15 = Math.atan2(P_y, P_x - b);
-    const t16 = -t11;
-    const t17 = -t15;
-    o[0] = (t11 <= -Math.PI ? Math.PI : t11) + t14;
-    o[1] = (t15 <= -Math.PI ? Math.PI : t15) + t14;
-    o[2] = (t16 <= -Math.PI ? Math.PI : t16) + t14;
-    o[3] = (t17 <= -Math.PI ? Math.PI : t17) + t14;
+    const t3 = t1 - b;
+    const slack = Math.max(t3, 0.0);
+    const t4 = rho1 - rho2;
+    const t5 = b + t4;
+    const t6 = b - t4;
+    const t7 = slack * Math.max(t5, 0.0) * Math.max(t6, 0.0);
+    const t8 = b * 2.0;
+    const t9 = coincide ? 0.0 : Math.sqrt(size) * Math.sqrt(t7) / t8;
+    const A_12 = n_1 * (slack <= t2 ? 0.0 : t9);
+    const A_11 = n_1 * (coincide ? rho1 : b * 0.5 + t4 * t1 / t8);
+    const t10 = Math.atan2(A_12, A_11);
+    const t11 = Number.isFinite(rho1) && Number.isFinite(rho2);
+    const t12 = -(_runtime.FEASIBILITY * size);
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t11) || !(t12 <= t3 && t12 <= t5 && t12
+        <= t6);
+    const t13 = failed ? NaN : 0;
+    const t14 = Math.atan2(A_12, A_11 - b);
+    const t15 = -t10;
+    const t16 = -t14;
+    o[0] = (t10 <= -Math.PI ? Math.PI : t10) + t13;
+    o[1] = (t14 <= -Math.PI ? Math.PI : t14) + t13;
+    o[2] = (t15 <= -Math.PI ? Math.PI : t15) + t13;
+    o[3] = (t16 <= -Math.PI ? Math.PI : t16) + t13;
 }
 
 const _PASSIVE_ANGLES = _runtime.kernel({
@@ -213,9 +215,10 @@ const _PASSIVE_ANGLES = _runtime.kernel({
 });
 
 /**
- * Angles of the legs in both assembly modes.
+ * Angles of the rods from the x axis in both assembly modes.
  *
  * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -247,45 +250,45 @@ function _skeleton(v, o) {
     const b = v[2];
     const t1 = Number.isFinite(rho1) && Number.isFinite(rho2);
     const t2 = rho1 + rho2;
-    const t3 = b + t2;
-    const t4 = -(_runtime.FEASIBILITY * t3);
-    const t5 = t2 - b;
-    const t6 = rho1 - rho2;
-    const t7 = b + t6;
-    const t8 = b - t6;
-    const failed = !(Number.isFinite(b) && 0.0 <= b && t1) || !(t4 <= t5 && t4 <= t7 && t4 <=
-        t8);
-    const t9 = failed ? NaN : 0;
-    const t10 = 0.0 + t9;
-    const t11 = b + t9;
-    const t12 = _runtime.VANISHING * t3;
-    const coincide = b <= t12;
+    const size = b + t2;
+    const t3 = -(_runtime.FEASIBILITY * size);
+    const t4 = t2 - b;
+    const t5 = rho1 - rho2;
+    const t6 = b + t5;
+    const t7 = b - t5;
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t1) || !(t3 <= t4 && t3 <= t6 && t3 <=
+        t7);
+    const t8 = failed ? NaN : 0;
+    const t9 = 0.0 + t8;
+    const t10 = b + t8;
+    const t11 = _runtime.VANISHING * size;
+    const coincide = b <= t11;
     const n_1 = coincide ? 1.0 : b / b;
-    const t13 = b * 2.0;
-    const P_x = n_1 * (coincide ? rho1 : b * 0.5 + t6 * t2 / t13);
-    const t14 = P_x + t9;
-    const slack = Math.max(t5, 0.0);
-    const t15 = slack * Math.max(t7, 0.0) * Math.max(t8, 0.0);
-    const t16 = coincide ? 0.0 : Math.sqrt(t3) * Math.sqrt(t15) / t13;
-    const P_y = n_1 * (slack <= t12 ? 0.0 : t16);
-    o[0] = t10;
-    o[1] = t10;
-    o[2] = t10;
-    o[3] = t11;
-    o[4] = t10;
-    o[5] = t10;
-    o[6] = t14;
-    o[7] = P_y + t9;
-    o[8] = t10;
-    o[9] = t10;
-    o[10] = t10;
-    o[11] = t10;
-    o[12] = t11;
-    o[13] = t10;
-    o[14] = t10;
-    o[15] = t14;
-    o[16] = -P_y + t9;
-    o[17] = t10;
+    const t12 = b * 2.0;
+    const A_11 = n_1 * (coincide ? rho1 : b * 0.5 + t5 * t2 / t12);
+    const t13 = A_11 + t8;
+    const slack = Math.max(t4, 0.0);
+    const t14 = slack * Math.max(t6, 0.0) * Math.max(t7, 0.0);
+    const t15 = coincide ? 0.0 : Math.sqrt(size) * Math.sqrt(t14) / t12;
+    const A_12 = n_1 * (slack <= t11 ? 0.0 : t15);
+    o[0] = t9;
+    o[1] = t9;
+    o[2] = t9;
+    o[3] = t10;
+    o[4] = t9;
+    o[5] = t9;
+    o[6] = t13;
+    o[7] = A_12 + t8;
+    o[8] = t9;
+    o[9] = t9;
+    o[10] = t9;
+    o[11] = t9;
+    o[12] = t10;
+    o[13] = t9;
+    o[14] = t9;
+    o[15] = t13;
+    o[16] = -A_12 + t8;
+    o[17] = t9;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -312,6 +315,7 @@ const _SKELETON = _runtime.kernel({
  * Points of the mechanism in the base frame, in the order of SKELETON.points.
  *
  * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -337,42 +341,197 @@ export function skeleton_batch(n, q, points, parameters) {
 }
 
 /** @type {_runtime.Compute} */
-function _jacobian(v, o) {
+function _jacobian_parallel(v, o) {
+    const rho1 = v[0];
+    const rho2 = v[1];
+    const b = v[2];
+    const t1 = rho1 + rho2;
+    const size = b + t1;
+    const t2 = _runtime.VANISHING * size;
+    const coincide = b <= t2;
+    const n_1 = coincide ? 1.0 : b / b;
+    const t3 = rho1 - rho2;
+    const t4 = b * 2.0;
+    const A_11 = n_1 * (coincide ? rho1 : b * 0.5 + t3 * t1 / t4);
+    const t5 = Number.isFinite(rho1) && Number.isFinite(rho2);
+    const t6 = -(_runtime.FEASIBILITY * size);
+    const t7 = t1 - b;
+    const t8 = b + t3;
+    const t9 = b - t3;
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t5) || !(t6 <= t7 && t6 <= t8 && t6 <=
+        t9);
+    const t10 = failed ? NaN : 0;
+    const t11 = A_11 + t10;
+    const slack = Math.max(t7, 0.0);
+    const t12 = slack * Math.max(t8, 0.0) * Math.max(t9, 0.0);
+    const t13 = coincide ? 0.0 : Math.sqrt(size) * Math.sqrt(t12) / t4;
+    const A_12 = n_1 * (slack <= t2 ? 0.0 : t13);
+    const t14 = A_12 + t10;
+    const t15 = A_11 - b + t10;
+    const t16 = -A_12 + t10;
+    o[0] = t11;
+    o[1] = t14;
+    o[2] = t15;
+    o[3] = t14;
+    o[4] = t11;
+    o[5] = t16;
+    o[6] = t15;
+    o[7] = t16;
+}
+
+const _JACOBIAN_PARALLEL = _runtime.kernel({
+    name: "rpr_planar.jacobian_parallel",
+    compute: _jacobian_parallel,
+    common: null,
+    inputs: [
+        { name: "q", shape: [2], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "A", shape: [2, 2], branches: 2, kind: "real" },
+    ],
+    used: ["b"],
+    defaults: DEFAULTS,
+    size: {
+        lengths: [0, 1, 2],
+        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1]],
+        least: 6.681911775230489e-52,
+        most: 1.7498005798264095e+100,
+    },
+});
+
+/**
+ * A of A*dp = B*dq; its rows are the vectors along the rods.
+ *
+ * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - NaN for an assembly mode that does not exist.
+ *
+ * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[][]} 2 branches of 4 numbers (2 x 2 in row order). One column for each of
+ *     rho1, rho2.
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function jacobian_parallel(q, parameters) {
+    return _runtime.single(_JACOBIAN_PARALLEL, [q], parameters);
+}
+
+/**
+ * `jacobian_parallel` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 2 n numbers
+ * @param {Float64Array} [A] 8 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function jacobian_parallel_batch(n, q, A, parameters) {
+    return _runtime.batch(_JACOBIAN_PARALLEL, n, [q], [A], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _jacobian_serial(v, o) {
     const rho1 = v[0];
     const rho2 = v[1];
     const b = v[2];
     const t1 = Number.isFinite(rho1) && Number.isFinite(rho2);
     const t2 = rho1 + rho2;
-    const t3 = b + t2;
-    const t4 = -(_runtime.FEASIBILITY * t3);
-    const t5 = t2 - b;
-    const t6 = rho1 - rho2;
-    const t7 = b + t6;
-    const t8 = b - t6;
-    const failed = !(Number.isFinite(b) && 0.0 <= b && t1) || !(t4 <= t5 && t4 <= t7 && t4 <=
-        t8);
-    const t9 = failed ? NaN : 0;
-    const t10 = rho1 / b + t9;
-    const t11 = -(rho2 / b) + t9;
-    const t12 = _runtime.VANISHING * t3;
-    const coincide = b <= t12;
+    const t3 = -(_runtime.FEASIBILITY * (b + t2));
+    const t4 = rho1 - rho2;
+    const unreachable = !(t3 <= t2 - b && t3 <= b + t4 && t3 <= b - t4);
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t1) || unreachable;
+    const t5 = failed ? NaN : 0;
+    const t6 = rho1 + t5;
+    const t7 = rho2 + t5;
+    o[0] = t6;
+    o[1] = t7;
+    o[2] = t6;
+    o[3] = t7;
+}
+
+const _JACOBIAN_SERIAL = _runtime.kernel({
+    name: "rpr_planar.jacobian_serial",
+    compute: _jacobian_serial,
+    common: null,
+    inputs: [
+        { name: "q", shape: [2], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "B", shape: [2], branches: 2, kind: "real" },
+    ],
+    used: ["b"],
+    defaults: DEFAULTS,
+    size: null,
+});
+
+/**
+ * The diagonal of B of A*dp = B*dq.
+ *
+ * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - NaN for an assembly mode that does not exist.
+ *
+ * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[][]} 2 branches of 2 numbers.
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function jacobian_serial(q, parameters) {
+    return _runtime.single(_JACOBIAN_SERIAL, [q], parameters);
+}
+
+/**
+ * `jacobian_serial` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 2 n numbers
+ * @param {Float64Array} [B] 4 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function jacobian_serial_batch(n, q, B, parameters) {
+    return _runtime.batch(_JACOBIAN_SERIAL, n, [q], [B], parameters);
+}
+
+/** @type {_runtime.Compute} */
+function _jacobian(v, o) {
+    const rho1 = v[0];
+    const rho2 = v[1];
+    const b = v[2];
+    const t1 = rho1 + rho2;
+    const size = b + t1;
+    const t2 = _runtime.VANISHING * size;
+    const coincide = b <= t2;
     const n_1 = coincide ? 1.0 : b / b;
-    const t13 = b * 2.0;
-    const P_x = n_1 * (coincide ? rho1 : b * 0.5 + t6 * t2 / t13);
-    const slack = Math.max(t5, 0.0);
-    const t14 = slack * Math.max(t7, 0.0) * Math.max(t8, 0.0);
-    const t15 = coincide ? 0.0 : Math.sqrt(t3) * Math.sqrt(t14) / t13;
-    const t16 = b * (n_1 * (slack <= t12 ? 0.0 : t15));
-    const t17 = (rho1 * b - rho1 * P_x) / t16;
-    const t18 = rho2 * P_x / t16;
-    o[0] = t10;
-    o[1] = t11;
-    o[2] = t17 + t9;
-    o[3] = t18 + t9;
-    o[4] = t10;
-    o[5] = t11;
-    o[6] = -t17 + t9;
-    o[7] = -t18 + t9;
+    const t3 = t1 - b;
+    const slack = Math.max(t3, 0.0);
+    const t4 = rho1 - rho2;
+    const t5 = b + t4;
+    const t6 = b - t4;
+    const t7 = slack * Math.max(t5, 0.0) * Math.max(t6, 0.0);
+    const t8 = b * 2.0;
+    const t9 = coincide ? 0.0 : Math.sqrt(size) * Math.sqrt(t7) / t8;
+    const height = slack <= t2 ? 0.0 : t9;
+    const A_12 = n_1 * height;
+    const Delta = b * height;
+    const t10 = Number.isFinite(rho1) && Number.isFinite(rho2);
+    const t11 = -(_runtime.FEASIBILITY * size);
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t10) || !(t11 <= t3 && t11 <= t5 && t11
+        <= t6);
+    const t12 = failed ? NaN : 0;
+    const t13 = rho1 * A_12 / Delta + t12;
+    const t14 = -(rho2 * A_12 / Delta) + t12;
+    const A_11 = n_1 * (coincide ? rho1 : b * 0.5 + t4 * t1 / t8);
+    const t15 = rho1 * (b - A_11) / Delta;
+    const t16 = rho2 * A_11 / Delta;
+    o[0] = t13;
+    o[1] = t14;
+    o[2] = t15 + t12;
+    o[3] = t16 + t12;
+    o[4] = t13;
+    o[5] = t14;
+    o[6] = -t15 + t12;
+    o[7] = -t16 + t12;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -396,9 +555,11 @@ const _JACOBIAN = _runtime.kernel({
 });
 
 /**
- * Derivative of p with respect to q, A^-1 B.
+ * Derivative of p with respect to q: A^-1*B.
  *
  * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - NaN for an assembly mode that does not exist.
+ * - Not finite at a parallel singularity.
  *
  * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -430,25 +591,23 @@ function _determinant(v, o) {
     const rho2 = v[1];
     const b = v[2];
     const t1 = rho1 + rho2;
-    const t2 = b + t1;
-    const t3 = _runtime.VANISHING * t2;
-    const coincide = b <= t3;
-    const t4 = t1 - b;
-    const slack = Math.max(t4, 0.0);
-    const t5 = rho1 - rho2;
-    const t6 = b + t5;
-    const t7 = b - t5;
-    const t8 = slack * Math.max(t6, 0.0) * Math.max(t7, 0.0);
-    const t9 = coincide ? 0.0 : Math.sqrt(t2) * Math.sqrt(t8) / (b * 2.0);
-    const P_y = (coincide ? 1.0 : b / b) * (slack <= t3 ? 0.0 : t9);
-    const t10 = rho1 * rho2 / (b * P_y);
-    const t11 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const t12 = -(_runtime.FEASIBILITY * t2);
-    const failed = !(Number.isFinite(b) && 0.0 <= b && t11) || !(t12 <= t4 && t12 <= t6 && t12
-        <= t7);
-    const t13 = failed ? NaN : 0;
-    o[0] = t10 + t13;
-    o[1] = -t10 + t13;
+    const t2 = t1 - b;
+    const slack = Math.max(t2, 0.0);
+    const size = b + t1;
+    const t3 = _runtime.VANISHING * size;
+    const t4 = rho1 - rho2;
+    const t5 = b + t4;
+    const t6 = b - t4;
+    const t7 = slack * Math.max(t5, 0.0) * Math.max(t6, 0.0);
+    const t8 = b <= t3 ? 0.0 : Math.sqrt(size) * Math.sqrt(t7) / (b * 2.0);
+    const t9 = rho1 * rho2 / (b * (slack <= t3 ? 0.0 : t8));
+    const t10 = Number.isFinite(rho1) && Number.isFinite(rho2);
+    const t11 = -(_runtime.FEASIBILITY * size);
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t10) || !(t11 <= t2 && t11 <= t5 && t11
+        <= t6);
+    const t12 = failed ? NaN : 0;
+    o[0] = t9 + t12;
+    o[1] = -t9 + t12;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -475,6 +634,8 @@ const _DETERMINANT = _runtime.kernel({
  * Determinant of the Jacobian.
  *
  * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - NaN for an assembly mode that does not exist.
+ * - Not finite at a parallel singularity.
  *
  * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -506,29 +667,28 @@ function _singularities(v, o) {
     const b = v[2];
     const t1 = Number.isFinite(rho1) && Number.isFinite(rho2);
     const t2 = rho1 + rho2;
-    const t3 = b + t2;
-    const t4 = -(_runtime.FEASIBILITY * t3);
-    const t5 = t2 - b;
-    const t6 = rho1 - rho2;
-    const t7 = b + t6;
-    const t8 = b - t6;
-    const failed = !(Number.isFinite(b) && 0.0 <= b && t1) || !(t4 <= t5 && t4 <= t7 && t4 <=
-        t8);
-    const t9 = failed ? NaN : 0;
-    const t10 = rho1 + t9;
-    const t11 = rho2 + t9;
-    const t12 = _runtime.VANISHING * t3;
-    const coincide = b <= t12;
-    const slack = Math.max(t5, 0.0);
-    const t13 = slack * Math.max(t7, 0.0) * Math.max(t8, 0.0);
-    const t14 = coincide ? 0.0 : Math.sqrt(t3) * Math.sqrt(t13) / (b * 2.0);
-    const P_y = (coincide ? 1.0 : b / b) * (slack <= t12 ? 0.0 : t14);
-    o[0] = t10;
-    o[1] = t11;
-    o[2] = P_y + t9;
-    o[3] = t10;
-    o[4] = t11;
-    o[5] = -P_y + t9;
+    const size = b + t2;
+    const t3 = -(_runtime.FEASIBILITY * size);
+    const t4 = t2 - b;
+    const t5 = rho1 - rho2;
+    const t6 = b + t5;
+    const t7 = b - t5;
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t1) || !(t3 <= t4 && t3 <= t6 && t3 <=
+        t7);
+    const t8 = failed ? NaN : 0;
+    const t9 = rho1 + t8;
+    const t10 = rho2 + t8;
+    const slack = Math.max(t4, 0.0);
+    const t11 = _runtime.VANISHING * size;
+    const t12 = slack * Math.max(t6, 0.0) * Math.max(t7, 0.0);
+    const t13 = b <= t11 ? 0.0 : Math.sqrt(size) * Math.sqrt(t12) / (b * 2.0);
+    const Delta = b * (slack <= t11 ? 0.0 : t13);
+    o[0] = t9;
+    o[1] = t10;
+    o[2] = Delta + t8;
+    o[3] = t9;
+    o[4] = t10;
+    o[5] = -Delta + t8;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -545,16 +705,17 @@ const _SINGULARITIES = _runtime.kernel({
     defaults: DEFAULTS,
     size: {
         lengths: [0, 1, 2],
-        degrees: [[0, 1], [1, 1], [2, 1], [3, 1], [4, 1], [5, 1]],
+        degrees: [[0, 1], [1, 1], [2, 2], [3, 1], [4, 1], [5, 2]],
         least: 6.681911775230489e-52,
         most: 1.7498005798264095e+100,
     },
 });
 
 /**
- * rho1 and rho2 (serial) and y (parallel).
+ * The diagonal of B (serial) and the determinant of A (parallel).
  *
  * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -581,21 +742,108 @@ export function singularities_batch(n, q, factors, parameters) {
 }
 
 /** @type {_runtime.Compute} */
+function _condition_number(v, o) {
+    const rho1 = v[0];
+    const rho2 = v[1];
+    const b = v[2];
+    const t1 = rho1 + rho2;
+    const size = b + t1;
+    const t2 = _runtime.VANISHING * size;
+    const coincide = b <= t2;
+    const n_1 = coincide ? 1.0 : b / b;
+    const t3 = rho1 - rho2;
+    const t4 = b * 2.0;
+    const A_11 = n_1 * (coincide ? rho1 : b * 0.5 + t3 * t1 / t4);
+    const t5 = t1 - b;
+    const slack = Math.max(t5, 0.0);
+    const t6 = b + t3;
+    const t7 = b - t3;
+    const t8 = slack * Math.max(t6, 0.0) * Math.max(t7, 0.0);
+    const t9 = coincide ? 0.0 : Math.sqrt(size) * Math.sqrt(t8) / t4;
+    const height = slack <= t2 ? 0.0 : t9;
+    const A_12 = n_1 * height;
+    const t10 = A_12 * A_12;
+    const square1 = A_11 * A_11 + t10;
+    const t11 = b - A_11;
+    const square2 = t10 + t11 * t11;
+    const t12 = square1 - square2;
+    const t13 = t10 - A_11 * t11;
+    const t14 = square1 + square2 + Math.sqrt(t12 * t12 + 4.0 * (t13 * t13));
+    const t15 = Number.isFinite(rho1) && Number.isFinite(rho2);
+    const t16 = -(_runtime.FEASIBILITY * size);
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t15) || !(t16 <= t5 && t16 <= t6 && t16
+        <= t7);
+    const t17 = t14 / (2.0 * (b * height)) + (failed ? NaN : 0);
+    o[0] = t17;
+    o[1] = t17;
+}
+
+const _CONDITION_NUMBER = _runtime.kernel({
+    name: "rpr_planar.condition_number",
+    compute: _condition_number,
+    common: null,
+    inputs: [
+        { name: "q", shape: [2], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "kappa", shape: [], branches: 2, kind: "real" },
+    ],
+    used: ["b"],
+    defaults: DEFAULTS,
+    size: {
+        lengths: [0, 1, 2],
+        degrees: [],
+        least: 2.938735877055719e-39,
+        most: 1.8092513943330656e+75,
+    },
+});
+
+/**
+ * Ratio of the largest to the smallest singular value of A.
+ *
+ * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - NaN for an assembly mode that does not exist.
+ * - Infinite at a parallel singularity.
+ *
+ * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[]} One number for each of 2 branches.
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has another length.
+ */
+export function condition_number(q, parameters) {
+    return _runtime.single(_CONDITION_NUMBER, [q], parameters);
+}
+
+/**
+ * `condition_number` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 2 n numbers
+ * @param {Float64Array} [kappa] 2 n numbers, written to; made if there is none
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} what was written to
+ */
+export function condition_number_batch(n, q, kappa, parameters) {
+    return _runtime.batch(_CONDITION_NUMBER, n, [q], [kappa], parameters);
+}
+
+/** @type {_runtime.Compute} */
 function _ik(v, o) {
     const x = v[0];
     const y = v[1];
     const b = v[2];
     const t1 = y * y;
-    const leg1 = Math.sqrt(x * x + t1);
+    const leg_1 = Math.sqrt(x * x + t1);
     const t2 = Number.isFinite(b) && 0.0 <= b && (Number.isFinite(x) && Number.isFinite(y));
     const invalid = !t2;
     const t3 = invalid ? NaN : 0;
-    const t4 = x - b;
-    const leg2 = Math.sqrt(t1 + t4 * t4);
-    const t5 = b * Math.abs(y) <= _runtime.DETERMINED * (leg1 * leg2);
-    o[0] = leg1 + t3;
-    o[1] = leg2 + t3;
-    o[2] = invalid ? 3 : false ? 1 : t5 ? 2 : 0;
+    const w1_2 = x - b;
+    const leg_2 = Math.sqrt(t1 + w1_2 * w1_2);
+    const t4 = Math.abs(y * b) <= _runtime.DETERMINED * (leg_1 * leg_2);
+    o[0] = leg_1 + t3;
+    o[1] = leg_2 + t3;
+    o[2] = invalid ? 3 : false ? 1 : t4 ? 2 : 0;
 }
 
 const _IK = _runtime.kernel({
@@ -620,12 +868,11 @@ const _IK = _runtime.kernel({
 });
 
 /**
- * The lengths of the legs.
+ * The driven joints of the only working mode.
  *
- * - Every position can be reached, in exactly one way: lengths are not negative.
- * - SINGULAR: the sine of the angle between the legs is less than 2^-10: on and near the line
- *   of the pivots, at a distance of more than about 1000 b, and everywhere if b = 0. The
- *   lengths are right, but one ulp of them moves P by more than 1e-12 of b + rho1 + rho2.
+ * - UNREACHABLE: a rod does not reach.
+ * - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes, but
+ *   one ulp of the joints moves the hand by more than 1e-12 of the lengths.
  *
  * @param {ArrayLike<number>} x 2 numbers. x, y in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

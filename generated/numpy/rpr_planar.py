@@ -5,15 +5,18 @@
 #   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
 #   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
 #   skeleton: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
-#   jacobian: 14 add, 23 compare and select, 8 divide, 13 multiply, 2 sqrt
-#   determinant: 8 add, 22 compare and select, 3 divide, 9 multiply, 2 sqrt
-#   singularities: 10 add, 22 compare and select, 2 divide, 7 multiply, 2 sqrt
+#   jacobian_parallel: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
+#   jacobian_serial: 8 add, 14 compare and select, 1 multiply
+#   jacobian: 14 add, 23 compare and select, 8 divide, 14 multiply, 2 sqrt
+#   determinant: 8 add, 21 compare and select, 2 divide, 8 multiply, 2 sqrt
+#   singularities: 10 add, 21 compare and select, 1 divide, 7 multiply, 2 sqrt
+#   condition_number: 16 add, 23 compare and select, 5 divide, 18 multiply, 3 sqrt
 #   ik: 10 compare and select, 5 add, 6 multiply, 2 sqrt
 """Planar parallel mechanism (two RPR legs).
 
-Two legs turn freely about A at the origin and B at b on the x axis.  They slide out by rho1 and
-rho2, and both carry the point P.  The slides are driven; the angles theta1 and theta2 of the
-legs follow.
+Two legs turn freely about A1 at the origin and A2 at b on the x axis.  They slide out by rho1
+and rho2, and both carry the point P.  The slides are driven; the angles theta1 and theta2 of
+the legs follow.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from The closedform authors: Arms of common structure, solved by lemmas.
@@ -34,21 +37,19 @@ BRANCHES = ('only',)
 SINGULARITIES = ('leg 1', 'leg 2', 'flat')
 SKELETON = Skeleton(
     points=(
-        "A",
-        "B",
+        "A1",
+        "A2",
         "P",
     ),
     links={
-        "ground": ('A', 'B'),
+        "ground": ('A1', 'A2'),
     },
     joints={
-        "rho1": SkeletonJoint("prismatic", ('A', 'P')),
-        "rho2": SkeletonJoint("prismatic", ('B', 'P')),
-        "theta1": SkeletonJoint("revolute", ('A',)),
-        "theta2": SkeletonJoint("revolute", ('B',)),
+        "rho1": SkeletonJoint("prismatic", ('A1', 'P')),
+        "rho2": SkeletonJoint("prismatic", ('A2', 'P')),
     },
     hand="P",
-    ground=('A', 'B'),
+    ground=('A1', 'A2'),
 )
 
 __all__ = [
@@ -67,9 +68,12 @@ __all__ = [
     "fk",
     "passive_angles",
     "skeleton",
+    "jacobian_parallel",
+    "jacobian_serial",
     "jacobian",
     "determinant",
     "singularities",
+    "condition_number",
     "ik",
 ]
 
@@ -91,42 +95,42 @@ _DEFAULT = Parameters()
 
 def _fk(rho1, rho2, b):
     t1 = rho1 + rho2
-    t2 = b + t1
-    t3 = _runtime.VANISHING * t2
-    coincide = b <= t3
+    size = b + t1
+    t2 = _runtime.VANISHING * size
+    coincide = b <= t2
     n_1 = _runtime.select(coincide, 1.0, b / b)
-    t4 = rho1 - rho2
-    t5 = 1.0 / (b * 2.0)
-    t6 = _runtime.select(coincide, rho1, b * 0.5 + t4 * t1 * t5)
-    t7 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    invalid = np.logical_not(t7)
-    del t7
-    t8 = -(_runtime.FEASIBILITY * t2)
-    t9 = t1 - b
-    del t1
-    t10 = b + t4
-    t11 = b - t4
-    del t4
-    unreachable = np.logical_not((t8 <= t9) & (t8 <= t10) & (t8 <= t11))
-    del t8
-    t12 = _runtime.poison(invalid | unreachable)
-    t13 = n_1 * t6 + t12
+    t3 = rho1 - rho2
+    t4 = 1.0 / (b * 2.0)
+    t5 = _runtime.select(coincide, rho1, b * 0.5 + t3 * t1 * t4)
+    t6 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    invalid = np.logical_not(t6)
     del t6
-    slack = np.maximum(t9, 0.0)
-    del t9
-    t14 = slack * np.maximum(t10, 0.0) * np.maximum(t11, 0.0)
-    del t10, t11
-    t15 = _runtime.select(coincide, 0.0, t5 * (np.sqrt(t2) * np.sqrt(t14)))
-    del t14, t2, t5
-    P_y = n_1 * _runtime.select(slack <= t3, 0.0, t15)
-    del n_1, slack, t15, t3
+    t7 = -(_runtime.FEASIBILITY * size)
+    t8 = t1 - b
+    del t1
+    t9 = b + t3
+    t10 = b - t3
+    del t3
+    unreachable = np.logical_not((t7 <= t8) & (t7 <= t9) & (t7 <= t10))
+    del t7
+    t11 = _runtime.poison(invalid | unreachable)
+    t12 = n_1 * t5 + t11
+    del t5
+    slack = np.maximum(t8, 0.0)
+    del t8
+    t13 = slack * np.maximum(t9, 0.0) * np.maximum(t10, 0.0)
+    del t10, t9
+    t14 = _runtime.select(coincide, 0.0, t4 * (np.sqrt(size) * np.sqrt(t13)))
+    del size, t13, t4
+    t15 = n_1 * _runtime.select(slack <= t2, 0.0, t14)
+    del n_1, slack, t14, t2
     t16 = _runtime.status(invalid, unreachable, coincide)
     del coincide, invalid, unreachable
     return (
-        t13,
-        P_y + t12,
-        t13,
-        -P_y + t12,
+        t12,
+        t15 + t11,
+        t12,
+        -t15 + t11,
         t16,
         t16,
     )
@@ -144,7 +148,7 @@ _FK = _runtime.Kernel(
 
 
 def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Positions":
-    """Position of P in both assembly modes.
+    """Position of the hand in both assembly modes.
 
     Parameters
     ----------
@@ -175,9 +179,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     Notes
     -----
     - Branches in this order, `ASSEMBLY_MODES`: above, below.
-    - UNREACHABLE: the legs do not meet, or a length is negative.
-    - SINGULAR: the pivots coincide (b = 0); P is free on a circle, and its point on the x axis
-      is returned.
+    - UNREACHABLE: the rods do not meet.
+    - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
+      points is returned.
+    - Ill-conditioned near the parallel singularities, where both modes meet.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return Positions(*result)
@@ -185,40 +190,40 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
 def _passive_angles(rho1, rho2, b):
     t1 = rho1 + rho2
-    t2 = b + t1
-    t3 = _runtime.VANISHING * t2
-    coincide = b <= t3
+    size = b + t1
+    t2 = _runtime.VANISHING * size
+    coincide = b <= t2
     n_1 = _runtime.select(coincide, 1.0, b / b)
-    t4 = t1 - b
-    slack = np.maximum(t4, 0.0)
-    t5 = rho1 - rho2
-    t6 = b + t5
-    t7 = b - t5
-    t8 = slack * np.maximum(t6, 0.0) * np.maximum(t7, 0.0)
-    t9 = b * 2.0
-    t10 = _runtime.select(coincide, 0.0, np.sqrt(t2) * np.sqrt(t8) / t9)
-    del t8
-    P_y = n_1 * _runtime.select(slack <= t3, 0.0, t10)
-    del slack, t10, t3
-    t11 = _runtime.select(coincide, rho1, b * 0.5 + t5 * t1 / t9)
-    del coincide, t1, t5, t9
-    P_x = n_1 * t11
-    del n_1, t11
-    t12 = np.arctan2(P_y, P_x)
-    t13 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    t14 = -(_runtime.FEASIBILITY * t2)
-    del t2
-    unreachable = np.logical_not((t14 <= t4) & (t14 <= t6) & (t14 <= t7))
-    del t14, t4, t6, t7
-    t15 = _runtime.poison(np.logical_not(t13) | unreachable)
-    del t13, unreachable
-    t16 = np.arctan2(P_y, P_x - b)
-    del P_x, P_y
+    t3 = t1 - b
+    slack = np.maximum(t3, 0.0)
+    t4 = rho1 - rho2
+    t5 = b + t4
+    t6 = b - t4
+    t7 = slack * np.maximum(t5, 0.0) * np.maximum(t6, 0.0)
+    t8 = b * 2.0
+    t9 = _runtime.select(coincide, 0.0, np.sqrt(size) * np.sqrt(t7) / t8)
+    del t7
+    A_12 = n_1 * _runtime.select(slack <= t2, 0.0, t9)
+    del slack, t2, t9
+    t10 = _runtime.select(coincide, rho1, b * 0.5 + t4 * t1 / t8)
+    del coincide, t1, t4, t8
+    A_11 = n_1 * t10
+    del n_1, t10
+    t11 = np.arctan2(A_12, A_11)
+    t12 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    t13 = -(_runtime.FEASIBILITY * size)
+    del size
+    unreachable = np.logical_not((t13 <= t3) & (t13 <= t5) & (t13 <= t6))
+    del t13, t3, t5, t6
+    t14 = _runtime.poison(np.logical_not(t12) | unreachable)
+    del t12, unreachable
+    t15 = np.arctan2(A_12, A_11 - b)
+    del A_11, A_12
     return (
-        _runtime.wrap_cut(t12) + t15,
-        _runtime.wrap_cut(t16) + t15,
-        _runtime.wrap_cut(-t12) + t15,
-        _runtime.wrap_cut(-t16) + t15,
+        _runtime.wrap_cut(t11) + t14,
+        _runtime.wrap_cut(t15) + t14,
+        _runtime.wrap_cut(-t11) + t14,
+        _runtime.wrap_cut(-t15) + t14,
     )
 
 
@@ -234,7 +239,7 @@ _PASSIVE_ANGLES = _runtime.Kernel(
 
 
 def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Angles of the legs in both assembly modes.
+    """Angles of the rods from the x axis in both assembly modes.
 
     Parameters
     ----------
@@ -260,6 +265,7 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
     Notes
     -----
     - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params, out)
     return result
@@ -268,53 +274,53 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
 def _skeleton(rho1, rho2, b):
     t1 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t2 = rho1 + rho2
-    t3 = b + t2
-    t4 = -(_runtime.FEASIBILITY * t3)
-    t5 = t2 - b
-    t6 = rho1 - rho2
-    t7 = b + t6
-    t8 = b - t6
-    unreachable = np.logical_not((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
-    del t4
-    t9 = _runtime.poison(np.logical_not(t1) | unreachable)
+    size = b + t2
+    t3 = -(_runtime.FEASIBILITY * size)
+    t4 = t2 - b
+    t5 = rho1 - rho2
+    t6 = b + t5
+    t7 = b - t5
+    unreachable = np.logical_not((t3 <= t4) & (t3 <= t6) & (t3 <= t7))
+    del t3
+    t8 = _runtime.poison(np.logical_not(t1) | unreachable)
     del t1, unreachable
-    t10 = 0.0 + t9
-    t11 = b + t9
-    t12 = _runtime.VANISHING * t3
-    coincide = b <= t12
+    t9 = 0.0 + t8
+    t10 = b + t8
+    t11 = _runtime.VANISHING * size
+    coincide = b <= t11
     n_1 = _runtime.select(coincide, 1.0, b / b)
-    t13 = b * 2.0
-    t14 = _runtime.select(coincide, rho1, b * 0.5 + t6 * t2 / t13)
-    del t2, t6
-    t15 = n_1 * t14 + t9
-    del t14
-    slack = np.maximum(t5, 0.0)
-    del t5
-    t16 = slack * np.maximum(t7, 0.0) * np.maximum(t8, 0.0)
-    del t7, t8
-    t17 = _runtime.select(coincide, 0.0, np.sqrt(t3) * np.sqrt(t16) / t13)
-    del coincide, t13, t16, t3
-    P_y = n_1 * _runtime.select(slack <= t12, 0.0, t17)
-    del n_1, slack, t12, t17
+    t12 = b * 2.0
+    t13 = _runtime.select(coincide, rho1, b * 0.5 + t5 * t2 / t12)
+    del t2, t5
+    t14 = n_1 * t13 + t8
+    del t13
+    slack = np.maximum(t4, 0.0)
+    del t4
+    t15 = slack * np.maximum(t6, 0.0) * np.maximum(t7, 0.0)
+    del t6, t7
+    t16 = _runtime.select(coincide, 0.0, np.sqrt(size) * np.sqrt(t15) / t12)
+    del coincide, size, t12, t15
+    A_12 = n_1 * _runtime.select(slack <= t11, 0.0, t16)
+    del n_1, slack, t11, t16
     return (
+        t9,
+        t9,
+        t9,
         t10,
+        t9,
+        t9,
+        t14,
+        A_12 + t8,
+        t9,
+        t9,
+        t9,
+        t9,
         t10,
-        t10,
-        t11,
-        t10,
-        t10,
-        t15,
-        P_y + t9,
-        t10,
-        t10,
-        t10,
-        t10,
-        t11,
-        t10,
-        t10,
-        t15,
-        -P_y + t9,
-        t10,
+        t9,
+        t9,
+        t14,
+        -A_12 + t8,
+        t9,
     )
 
 
@@ -355,56 +361,212 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Notes
     -----
     - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
 
 
-def _jacobian(rho1, rho2, b):
+def _jacobian_parallel(rho1, rho2, b):
+    t1 = rho1 + rho2
+    size = b + t1
+    t2 = _runtime.VANISHING * size
+    coincide = b <= t2
+    n_1 = _runtime.select(coincide, 1.0, b / b)
+    t3 = rho1 - rho2
+    t4 = b * 2.0
+    t5 = _runtime.select(coincide, rho1, b * 0.5 + t3 * t1 / t4)
+    A_11 = n_1 * t5
+    del t5
+    t6 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    t7 = -(_runtime.FEASIBILITY * size)
+    t8 = t1 - b
+    del t1
+    t9 = b + t3
+    t10 = b - t3
+    del t3
+    unreachable = np.logical_not((t7 <= t8) & (t7 <= t9) & (t7 <= t10))
+    del t7
+    t11 = _runtime.poison(np.logical_not(t6) | unreachable)
+    del t6, unreachable
+    t12 = A_11 + t11
+    slack = np.maximum(t8, 0.0)
+    del t8
+    t13 = slack * np.maximum(t9, 0.0) * np.maximum(t10, 0.0)
+    del t10, t9
+    t14 = _runtime.select(coincide, 0.0, np.sqrt(size) * np.sqrt(t13) / t4)
+    del coincide, size, t13, t4
+    A_12 = n_1 * _runtime.select(slack <= t2, 0.0, t14)
+    del n_1, slack, t14, t2
+    t15 = A_12 + t11
+    t16 = A_11 - b + t11
+    del A_11
+    t17 = -A_12 + t11
+    del A_12, t11
+    return (
+        t12,
+        t15,
+        t16,
+        t15,
+        t12,
+        t17,
+        t16,
+        t17,
+    )
+
+
+_JACOBIAN_PARALLEL = _runtime.Kernel(
+    "rpr_planar.jacobian_parallel",
+    _jacobian_parallel,
+    (_runtime.Array("q", (2,)),),
+    (_runtime.Array("A", (2, 2, 2)),),
+    Parameters._fields,
+    ('b',),
+    size=_runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
+)
+
+
+def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """A of A*dp = B*dq; its rows are the vectors along the rods.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        rho1, rho2 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    A : ndarray of float64, shape (..., 2, 2, 2)
+        One column for each of rho1, rho2.
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
+    """
+    result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params, out)
+    return result
+
+
+def _jacobian_serial(rho1, rho2, b):
     t1 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t2 = rho1 + rho2
-    t3 = b + t2
-    t4 = -(_runtime.FEASIBILITY * t3)
-    t5 = t2 - b
-    t6 = rho1 - rho2
-    t7 = b + t6
-    t8 = b - t6
-    unreachable = np.logical_not((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
-    del t4
-    t9 = _runtime.poison(np.logical_not(t1) | unreachable)
-    del t1, unreachable
-    t10 = rho1 / b + t9
-    t11 = -(rho2 / b) + t9
-    t12 = _runtime.VANISHING * t3
-    coincide = b <= t12
-    n_1 = _runtime.select(coincide, 1.0, b / b)
-    t13 = b * 2.0
-    t14 = _runtime.select(coincide, rho1, b * 0.5 + t6 * t2 / t13)
-    del t2, t6
-    P_x = n_1 * t14
-    del t14
-    slack = np.maximum(t5, 0.0)
-    del t5
-    t15 = slack * np.maximum(t7, 0.0) * np.maximum(t8, 0.0)
-    del t7, t8
-    t16 = _runtime.select(coincide, 0.0, np.sqrt(t3) * np.sqrt(t15) / t13)
-    del coincide, t13, t15, t3
-    P_y = n_1 * _runtime.select(slack <= t12, 0.0, t16)
-    del n_1, slack, t12, t16
-    t17 = b * P_y
-    del P_y
-    t18 = (rho1 * b - rho1 * P_x) / t17
-    t19 = rho2 * P_x / t17
-    del P_x, t17
+    t3 = -(_runtime.FEASIBILITY * (b + t2))
+    t4 = rho1 - rho2
+    t5 = (t3 <= t2 - b) & (t3 <= b + t4) & (t3 <= b - t4)
+    del t2, t3, t4
+    t6 = _runtime.poison(np.logical_not(t1) | np.logical_not(t5))
+    del t1, t5
+    t7 = rho1 + t6
+    t8 = rho2 + t6
+    del t6
     return (
-        t10,
-        t11,
-        t18 + t9,
-        t19 + t9,
-        t10,
-        t11,
-        -t18 + t9,
-        -t19 + t9,
+        t7,
+        t8,
+        t7,
+        t8,
+    )
+
+
+_JACOBIAN_SERIAL = _runtime.Kernel(
+    "rpr_planar.jacobian_serial",
+    _jacobian_serial,
+    (_runtime.Array("q", (2,)),),
+    (_runtime.Array("B", (2, 2)),),
+    Parameters._fields,
+    ('b',),
+)
+
+
+def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """The diagonal of B of A*dp = B*dq.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        rho1, rho2 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    B : ndarray of float64, shape (..., 2, 2)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
+    """
+    result = _runtime.evaluate(_JACOBIAN_SERIAL, (q,), params, out)
+    return result
+
+
+def _jacobian(rho1, rho2, b):
+    t1 = rho1 + rho2
+    size = b + t1
+    t2 = _runtime.VANISHING * size
+    coincide = b <= t2
+    n_1 = _runtime.select(coincide, 1.0, b / b)
+    t3 = t1 - b
+    slack = np.maximum(t3, 0.0)
+    t4 = rho1 - rho2
+    t5 = b + t4
+    t6 = b - t4
+    t7 = slack * np.maximum(t5, 0.0) * np.maximum(t6, 0.0)
+    t8 = b * 2.0
+    t9 = _runtime.select(coincide, 0.0, np.sqrt(size) * np.sqrt(t7) / t8)
+    del t7
+    height = _runtime.select(slack <= t2, 0.0, t9)
+    del slack, t2, t9
+    A_12 = n_1 * height
+    Delta = b * height
+    del height
+    t10 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    t11 = -(_runtime.FEASIBILITY * size)
+    del size
+    unreachable = np.logical_not((t11 <= t3) & (t11 <= t5) & (t11 <= t6))
+    del t11, t3, t5, t6
+    t12 = _runtime.poison(np.logical_not(t10) | unreachable)
+    del t10, unreachable
+    t13 = rho1 * A_12 / Delta + t12
+    t14 = -(rho2 * A_12 / Delta) + t12
+    del A_12
+    t15 = _runtime.select(coincide, rho1, b * 0.5 + t4 * t1 / t8)
+    del coincide, t1, t4, t8
+    A_11 = n_1 * t15
+    del n_1, t15
+    t16 = rho1 * (b - A_11) / Delta
+    t17 = rho2 * A_11 / Delta
+    del A_11, Delta
+    return (
+        t13,
+        t14,
+        t16 + t12,
+        t17 + t12,
+        t13,
+        t14,
+        -t16 + t12,
+        -t17 + t12,
     )
 
 
@@ -420,7 +582,7 @@ _JACOBIAN = _runtime.Kernel(
 
 
 def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """Derivative of p with respect to q, A^-1 B.
+    """Derivative of p with respect to q: A^-1*B.
 
     Parameters
     ----------
@@ -446,6 +608,8 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Notes
     -----
     - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
+    - Not finite at a parallel singularity.
     """
     result = _runtime.evaluate(_JACOBIAN, (q,), params, out)
     return result
@@ -453,33 +617,30 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
 def _determinant(rho1, rho2, b):
     t1 = rho1 + rho2
-    t2 = b + t1
-    t3 = _runtime.VANISHING * t2
-    coincide = b <= t3
-    t4 = t1 - b
+    t2 = t1 - b
+    slack = np.maximum(t2, 0.0)
+    size = b + t1
     del t1
-    slack = np.maximum(t4, 0.0)
-    t5 = rho1 - rho2
-    t6 = b + t5
-    t7 = b - t5
-    del t5
-    t8 = slack * np.maximum(t6, 0.0) * np.maximum(t7, 0.0)
-    t9 = _runtime.select(coincide, 0.0, np.sqrt(t2) * np.sqrt(t8) / (b * 2.0))
-    del t8
-    P_y = _runtime.select(coincide, 1.0, b / b) * _runtime.select(slack <= t3, 0.0, t9)
-    del coincide, slack, t3, t9
-    t10 = rho1 * rho2 / (b * P_y)
-    del P_y
-    t11 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    t12 = -(_runtime.FEASIBILITY * t2)
-    del t2
-    unreachable = np.logical_not((t12 <= t4) & (t12 <= t6) & (t12 <= t7))
-    del t12, t4, t6, t7
-    t13 = _runtime.poison(np.logical_not(t11) | unreachable)
-    del t11, unreachable
+    t3 = _runtime.VANISHING * size
+    t4 = rho1 - rho2
+    t5 = b + t4
+    t6 = b - t4
+    del t4
+    t7 = slack * np.maximum(t5, 0.0) * np.maximum(t6, 0.0)
+    t8 = _runtime.select(b <= t3, 0.0, np.sqrt(size) * np.sqrt(t7) / (b * 2.0))
+    del t7
+    t9 = rho1 * rho2 / (b * _runtime.select(slack <= t3, 0.0, t8))
+    del slack, t3, t8
+    t10 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    t11 = -(_runtime.FEASIBILITY * size)
+    del size
+    unreachable = np.logical_not((t11 <= t2) & (t11 <= t5) & (t11 <= t6))
+    del t11, t2, t5, t6
+    t12 = _runtime.poison(np.logical_not(t10) | unreachable)
+    del t10, unreachable
     return (
-        t10 + t13,
-        -t10 + t13,
+        t9 + t12,
+        -t9 + t12,
     )
 
 
@@ -520,6 +681,8 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
     Notes
     -----
     - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
+    - Not finite at a parallel singularity.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
     return result
@@ -528,37 +691,36 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 def _singularities(rho1, rho2, b):
     t1 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t2 = rho1 + rho2
-    t3 = b + t2
-    t4 = -(_runtime.FEASIBILITY * t3)
-    t5 = t2 - b
+    size = b + t2
+    t3 = -(_runtime.FEASIBILITY * size)
+    t4 = t2 - b
     del t2
-    t6 = rho1 - rho2
-    t7 = b + t6
-    t8 = b - t6
-    del t6
-    unreachable = np.logical_not((t4 <= t5) & (t4 <= t7) & (t4 <= t8))
-    del t4
-    t9 = _runtime.poison(np.logical_not(t1) | unreachable)
-    del t1, unreachable
-    t10 = rho1 + t9
-    t11 = rho2 + t9
-    t12 = _runtime.VANISHING * t3
-    coincide = b <= t12
-    slack = np.maximum(t5, 0.0)
+    t5 = rho1 - rho2
+    t6 = b + t5
+    t7 = b - t5
     del t5
-    t13 = slack * np.maximum(t7, 0.0) * np.maximum(t8, 0.0)
-    del t7, t8
-    t14 = _runtime.select(coincide, 0.0, np.sqrt(t3) * np.sqrt(t13) / (b * 2.0))
-    del t13, t3
-    P_y = _runtime.select(coincide, 1.0, b / b) * _runtime.select(slack <= t12, 0.0, t14)
-    del coincide, slack, t12, t14
+    unreachable = np.logical_not((t3 <= t4) & (t3 <= t6) & (t3 <= t7))
+    del t3
+    t8 = _runtime.poison(np.logical_not(t1) | unreachable)
+    del t1, unreachable
+    t9 = rho1 + t8
+    t10 = rho2 + t8
+    slack = np.maximum(t4, 0.0)
+    del t4
+    t11 = _runtime.VANISHING * size
+    t12 = slack * np.maximum(t6, 0.0) * np.maximum(t7, 0.0)
+    del t6, t7
+    t13 = _runtime.select(b <= t11, 0.0, np.sqrt(size) * np.sqrt(t12) / (b * 2.0))
+    del size, t12
+    Delta = b * _runtime.select(slack <= t11, 0.0, t13)
+    del slack, t11, t13
     return (
+        t9,
         t10,
-        t11,
-        P_y + t9,
+        Delta + t8,
+        t9,
         t10,
-        t11,
-        -P_y + t9,
+        -Delta + t8,
     )
 
 
@@ -569,12 +731,12 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 3)),),
     Parameters._fields,
     ('b',),
-    size=_runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
+    size=_runtime.Size((0, 1, 2), ((0, 1), (1, 1), (2, 2), (3, 1), (4, 1), (5, 2)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
 
 def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
-    """rho1 and rho2 (serial) and y (parallel).
+    """The diagonal of B (serial) and the determinant of A (parallel).
 
     Parameters
     ----------
@@ -600,26 +762,120 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     Notes
     -----
     - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
 
 
+def _condition_number(rho1, rho2, b):
+    t1 = rho1 + rho2
+    size = b + t1
+    t2 = _runtime.VANISHING * size
+    coincide = b <= t2
+    n_1 = _runtime.select(coincide, 1.0, b / b)
+    t3 = rho1 - rho2
+    t4 = b * 2.0
+    t5 = _runtime.select(coincide, rho1, b * 0.5 + t3 * t1 / t4)
+    A_11 = n_1 * t5
+    del t5
+    t6 = t1 - b
+    del t1
+    slack = np.maximum(t6, 0.0)
+    t7 = b + t3
+    t8 = b - t3
+    del t3
+    t9 = slack * np.maximum(t7, 0.0) * np.maximum(t8, 0.0)
+    t10 = _runtime.select(coincide, 0.0, np.sqrt(size) * np.sqrt(t9) / t4)
+    del coincide, t4, t9
+    height = _runtime.select(slack <= t2, 0.0, t10)
+    del slack, t10, t2
+    A_12 = n_1 * height
+    del n_1
+    t11 = A_12 * A_12
+    del A_12
+    square1 = A_11 * A_11 + t11
+    t12 = b - A_11
+    square2 = t11 + t12 * t12
+    t13 = square1 - square2
+    t14 = t11 - A_11 * t12
+    del A_11, t11, t12
+    t15 = square1 + square2 + np.sqrt(t13 * t13 + 4.0 * (t14 * t14))
+    del square1, square2, t13, t14
+    t16 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    t17 = -(_runtime.FEASIBILITY * size)
+    del size
+    unreachable = np.logical_not((t17 <= t6) & (t17 <= t7) & (t17 <= t8))
+    del t17, t6, t7, t8
+    t18 = _runtime.poison(np.logical_not(t16) | unreachable)
+    del t16, unreachable
+    t19 = t15 / (2.0 * (b * height)) + t18
+    del height, t15, t18
+    return (
+        t19,
+        t19,
+    )
+
+
+_CONDITION_NUMBER = _runtime.Kernel(
+    "rpr_planar.condition_number",
+    _condition_number,
+    (_runtime.Array("q", (2,)),),
+    (_runtime.Array("kappa", (2,)),),
+    Parameters._fields,
+    ('b',),
+    size=_runtime.Size((0, 1, 2), (), 2.938735877055719e-39, 1.8092513943330656e+75),
+)
+
+
+def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """Ratio of the largest to the smallest singular value of A.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 2)
+        rho1, rho2 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    kappa : ndarray of float64, shape (..., 2)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - NaN for an assembly mode that does not exist.
+    - Infinite at a parallel singularity.
+    """
+    result = _runtime.evaluate(_CONDITION_NUMBER, (q,), params, out)
+    return result
+
+
 def _ik(x, y, b):
     t1 = y * y
-    leg1 = np.sqrt(x * x + t1)
+    leg_1 = np.sqrt(x * x + t1)
     t2 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(x) & np.isfinite(y))
     invalid = np.logical_not(t2)
     del t2
     t3 = _runtime.poison(invalid)
-    t4 = x - b
-    leg2 = np.sqrt(t1 + t4 * t4)
-    del t1, t4
-    t5 = b * np.abs(y) <= _runtime.DETERMINED * (leg1 * leg2)
+    w1_2 = x - b
+    leg_2 = np.sqrt(t1 + w1_2 * w1_2)
+    del t1, w1_2
+    t4 = np.abs(y * b) <= _runtime.DETERMINED * (leg_1 * leg_2)
     return (
-        leg1 + t3,
-        leg2 + t3,
-        _runtime.status(invalid, np.False_, t5),
+        leg_1 + t3,
+        leg_2 + t3,
+        _runtime.status(invalid, np.False_, t4),
     )
 
 
@@ -635,7 +891,7 @@ _IK = _runtime.Kernel(
 
 
 def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "Solutions":
-    """The lengths of the legs.
+    """The driven joints of the only working mode.
 
     Parameters
     ----------
@@ -665,10 +921,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Every position can be reached, in exactly one way: lengths are not negative.
-    - SINGULAR: the sine of the angle between the legs is less than 2^-10: on and near the line
-      of the pivots, at a distance of more than about 1000 b, and everywhere if b = 0. The
-      lengths are right, but one ulp of them moves P by more than 1e-12 of b + rho1 + rho2.
+    - UNREACHABLE: a rod does not reach.
+    - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes,
+      but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return Solutions(*result)

@@ -1,0 +1,54 @@
+"""Delta robot with rotary drives: the generated C, with the names and the meaning of the NumPy module."""
+
+from closedform.generated.numpy.delta import (
+    ASSEMBLY_MODES,
+    BRANCHES,
+    JOINTS,
+    SINGULARITIES,
+    SKELETON,
+    TASK,
+    Parameters,
+    Positions,
+    Skeleton,
+    SkeletonJoint,
+    Solutions,
+    Status,
+)
+
+from . import _native
+
+__all__ = [
+    "ASSEMBLY_MODES",
+    "BRANCHES",
+    "JOINTS",
+    "SINGULARITIES",
+    "SKELETON",
+    "TASK",
+    "Parameters",
+    "Positions",
+    "Skeleton",
+    "SkeletonJoint",
+    "Solutions",
+    "Status",
+    "fk",
+    "skeleton",
+    "jacobian_parallel",
+    "jacobian_serial",
+    "jacobian",
+    "determinant",
+    "singularities",
+    "condition_number",
+    "ik",
+    "workspace_contains",
+]
+
+fk = _native.function("delta.fk", Positions)
+skeleton = _native.function("delta.skeleton")
+jacobian_parallel = _native.function("delta.jacobian_parallel")
+jacobian_serial = _native.function("delta.jacobian_serial")
+jacobian = _native.function("delta.jacobian")
+determinant = _native.function("delta.determinant")
+singularities = _native.function("delta.singularities")
+condition_number = _native.function("delta.condition_number")
+ik = _native.function("delta.ik", Solutions)
+workspace_contains = _native.function("delta.workspace_contains")

@@ -1,0 +1,56 @@
+"""Planar five-bar linkage: the generated C, with the names and the meaning of the NumPy module."""
+
+from closedform.generated.numpy.five_bar import (
+    ASSEMBLY_MODES,
+    BRANCHES,
+    JOINTS,
+    SINGULARITIES,
+    SKELETON,
+    TASK,
+    Parameters,
+    Positions,
+    Skeleton,
+    SkeletonJoint,
+    Solutions,
+    Status,
+)
+
+from . import _native
+
+__all__ = [
+    "ASSEMBLY_MODES",
+    "BRANCHES",
+    "JOINTS",
+    "SINGULARITIES",
+    "SKELETON",
+    "TASK",
+    "Parameters",
+    "Positions",
+    "Skeleton",
+    "SkeletonJoint",
+    "Solutions",
+    "Status",
+    "fk",
+    "passive_angles",
+    "skeleton",
+    "jacobian_parallel",
+    "jacobian_serial",
+    "jacobian",
+    "determinant",
+    "singularities",
+    "condition_number",
+    "ik",
+    "workspace_contains",
+]
+
+fk = _native.function("five_bar.fk", Positions)
+passive_angles = _native.function("five_bar.passive_angles")
+skeleton = _native.function("five_bar.skeleton")
+jacobian_parallel = _native.function("five_bar.jacobian_parallel")
+jacobian_serial = _native.function("five_bar.jacobian_serial")
+jacobian = _native.function("five_bar.jacobian")
+determinant = _native.function("five_bar.determinant")
+singularities = _native.function("five_bar.singularities")
+condition_number = _native.function("five_bar.condition_number")
+ik = _native.function("five_bar.ik", Solutions)
+workspace_contains = _native.function("five_bar.workspace_contains")

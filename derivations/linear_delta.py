@@ -1,7 +1,7 @@
 """The Delta robot with linear drives: three sliders on vertical columns carry a platform."""
 
 from closedform.derivations.papers.textbook import TEXTBOOK
-from sympy import Rational, cos, sin
+from sympy import Rational, sqrt
 
 from closedform import Derivation, Slide, parallel, real
 
@@ -9,8 +9,8 @@ d = Derivation(
     "linear_delta",
     "Delta robot with linear drives",
     TEXTBOOK,
-    "Three sliders move up columns at the distance f from the z axis, in the directions alpha1, "
-    "alpha2 and alpha3.  Parallelograms of length l lead from them to the platform, at the "
+    "Three sliders move up columns at the distance f from the z axis, a third of a turn apart; the "
+    "first is on the x axis.  Parallelograms of length l lead from them to the platform, at the "
     "distance e from its centre P, and keep it from turning.",
     task=["x", "y", "z"],
 )
@@ -23,18 +23,10 @@ f, e, l = (
     d.parameter(name, value=Rational(value), unit="m", meaning=meaning, source="round numbers")
     for name, (value, meaning) in SIZES.items()
 )
+half = Rational(1, 2)
 legs = []
-for k, angle in enumerate(("0", "2.0943951023931953", "4.1887902047863905"), 1):
-    alpha = d.parameter(
-        f"alpha{k}",
-        value=Rational(angle),
-        unit="rad",
-        meaning=f"direction of leg {k}",
-        source="a third of a turn apart",
-        nonnegative=False,
-    )
-    out = (cos(alpha), sin(alpha), 0)
-    start, corner = ([size * x for x in out] for size in (f, e))
+for k, (x, y) in enumerate([(1, 0), (-half, sqrt(3) / 2), (-half, -sqrt(3) / 2)], 1):
+    start, corner = ([size * x, size * y, 0] for size in (f, e))
     slider = d.joint(f"rho{k}", "prismatic")
     legs.append(Slide(slider, l, start, (0, 0, 1), on_hand=corner))
 parallel(d, (real("x"), real("y"), real("z")), legs, {+1: "below", -1: "above"})

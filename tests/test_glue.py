@@ -53,15 +53,18 @@ def test_the_function_must_return_what_the_lemmas_give() -> None:
         prove_inverse(*crank(off=sp.pi))
 
 
-def test_lemmas_need_glue_and_a_system_needs_none() -> None:
+def test_glue_ties_lemmas_and_all_links_have_one_or_none() -> None:
     d, inverse = crank()
+    assert prove_inverse(d, dataclasses.replace(inverse, glue=None)).solutions == 2
+    shifted = dataclasses.replace(inverse, glue=None, forward=(inverse.forward[0] + 1,))
+    with pytest.raises(ProofError, match="do not combine to the system"):
+        prove_inverse(d, shifted)
     alone = (Link(inverse.unknowns, inverse.equations),)
     for wrong in (
-        dataclasses.replace(inverse, glue=None),
         dataclasses.replace(inverse, links=alone),
         dataclasses.replace(inverse, links=inverse.links + alone),
     ):
-        with pytest.raises(ProofError, match="needs glue if each of its links has a lemma"):
+        with pytest.raises(ProofError, match="either each link of an inverse has a lemma"):
             prove_inverse(d, wrong)
 
 

@@ -54,7 +54,7 @@ def rods(name: str, q: np.ndarray, p: np.ndarray) -> np.ndarray:
     else:
         ends, lengths = [], [values.l] * 3
         for k in range(3):
-            alpha = values[-3 + k]
+            alpha = values[-3 + k] if name == "delta" else 2 * np.pi / 3 * k
             out = values.f - values.e
             out, up = (
                 (out + values.L * np.cos(q[k]), -values.L * np.sin(q[k]))
@@ -167,8 +167,9 @@ def test_the_sign_of_each_leg_names_its_working_mode(name: str) -> None:
 def test_linear_delta_as_firmware_computes_it() -> None:
     """Carriages stand above the hand: the height of the hand, and a leg of a right triangle."""
     module, rng = robot("linear_delta"), np.random.default_rng(9)
-    f, e, l, *alpha = module.Parameters()
-    p = np.concatenate([rng.uniform(-0.1, 0.1, (500, 2)), rng.uniform(0, 0.3, (500, 1))], axis=1)
+    f, e, l = module.Parameters()
+    p = np.concatenate([rng.uniform(-0.07, 0.07, (500, 2)), rng.uniform(0, 0.3, (500, 1))], axis=1)
+    alpha = 2 * np.pi / 3 * np.arange(3)
     towers = (f - e) * np.stack([np.cos(alpha), np.sin(alpha)], axis=-1)
     square = ((p[:, None, :2] - towers) ** 2).sum(axis=-1)
     carriages = p[:, 2:] + np.sqrt(l**2 - square)

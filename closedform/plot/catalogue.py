@@ -91,7 +91,12 @@ def standard(view: View) -> list[Figure]:
 
 
 def fits(robot: ModuleType, figure: str) -> bool:
-    """Whether a figure makes sense for a mechanism: a workspace needs a position in its task."""
+    """Whether a figure makes sense for a mechanism.
+
+    A map needs two joints, and a workspace a position in the task.
+    """
+    if figure in ("workspace", "conditioning") and len(robot.JOINTS) < 2:
+        return False
     if figure != "workspace":
         return True
     r = Robot.of(robot)

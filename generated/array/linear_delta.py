@@ -2,21 +2,21 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Arms of common structure, solved by lemmas.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 71 compare and select, 73 add, 8 divide, 92 multiply, 3 sincos, 9 sqrt
-#   skeleton: 92 compare and select, 88 add, 15 divide, 81 multiply, 3 sincos, 9 sqrt
-#   jacobian_parallel: 82 compare and select, 82 add, 15 divide, 81 multiply, 3 sincos, 9 sqrt
-#   jacobian_serial: 70 compare and select, 66 add, 15 divide, 71 multiply, 3 sincos, 9 sqrt
-#   jacobian: 83 compare and select, 100 add, 33 divide, 137 multiply, 3 sincos, 9 sqrt
-#   determinant: 67 compare and select, 66 add, 17 divide, 77 multiply, 3 sincos, 9 sqrt
-#   singularities: 72 compare and select, 66 add, 15 divide, 73 multiply, 3 sincos, 9 sqrt
-#   condition_number: 69 compare and select, 132 add, 17 divide, 158 multiply, 3 sincos, 11 sqrt
-#   ik: 75 compare and select, 80 add, 1 divide, 54 multiply, 3 sincos, 12 sqrt
-#   workspace_contains: 27 compare and select, 26 add, 1 divide, 19 multiply, 3 sincos, 3 sqrt
+#   fk: 69 compare and select, 63 add, 12 divide, 79 multiply, 9 sqrt
+#   skeleton: 84 compare and select, 73 add, 19 divide, 68 multiply, 9 sqrt
+#   jacobian_parallel: 78 compare and select, 71 add, 19 divide, 68 multiply, 9 sqrt
+#   jacobian_serial: 68 compare and select, 57 add, 19 divide, 58 multiply, 9 sqrt
+#   jacobian: 81 compare and select, 89 add, 37 divide, 120 multiply, 9 sqrt
+#   determinant: 65 compare and select, 57 add, 21 divide, 64 multiply, 9 sqrt
+#   singularities: 70 compare and select, 57 add, 19 divide, 60 multiply, 9 sqrt
+#   condition_number: 67 compare and select, 121 add, 21 divide, 139 multiply, 11 sqrt
+#   ik: 75 compare and select, 72 add, 5 divide, 40 multiply, 12 sqrt
+#   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
 
-Three sliders move up columns at the distance f from the z axis, in the directions alpha1,
-alpha2 and alpha3.  Parallelograms of length l lead from them to the platform, at the distance e
-from its centre P, and keep it from turning.
+Three sliders move up columns at the distance f from the z axis, a third of a turn apart; the
+first is on the x axis.  Parallelograms of length l lead from them to the platform, at the
+distance e from its centre P, and keep it from turning.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Arrays of any library that follows the array API standard go in, and arrays of the same library,
@@ -104,122 +104,106 @@ class Parameters(NamedTuple):
     f: Any = 0.2
     e: Any = 0.03
     l: Any = 0.3
-    alpha1: Any = 0.0
-    alpha2: Any = 2.0943951023931953
-    alpha3: Any = 4.1887902047863905
 
 
 Parameters.f.__doc__ = 'distance of the columns from the z axis, in m; default 0.2 (round numbers)'
 Parameters.e.__doc__ = 'distance of the parallelograms from the centre of the platform, in m; default 0.03 (round numbers)'
 Parameters.l.__doc__ = 'length of the parallelograms, in m; default 0.3 (round numbers)'
-Parameters.alpha1.__doc__ = 'direction of leg 1, in rad; default 0.0 (a third of a turn apart)'
-Parameters.alpha2.__doc__ = 'direction of leg 2, in rad; default 2.0943951023931953 (a third of a turn apart)'
-Parameters.alpha3.__doc__ = 'direction of leg 3, in rad; default 4.1887902047863905 (a third of a turn apart)'
 
 _DEFAULT = Parameters()
 
 
-def _fk(ops, rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
-    t1 = ops.finite(f, e, l, alpha1, alpha2, alpha3) & (0.0 <= f)
-    t2 = t1 & (0.0 <= e) & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
+def _fk(ops, rho1, rho2, rho3, f, e, l):
+    t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
+    t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
     invalid = ops.opposite(t2)
-    t3 = e * c_alpha1 - f * c_alpha1
-    u_x = t3 - (e * c_alpha2 - f * c_alpha2)
-    t4 = e * s_alpha1 - f * s_alpha1
-    u_y = t4 - (e * s_alpha2 - f * s_alpha2)
-    t5 = rho1 - rho2
-    t6 = u_x * u_x + u_y * u_y + t5 * t5
+    c1_x = f - e
+    t3 = c1_x - (e * 0.5 - f * 0.5)
+    t4 = rho1 - rho2
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t5 = t3 * t3 + c3_y * c3_y
+    t6 = t4 * t4 + t5
     size_u = ops.sqrt(t6)
+    t7 = rho1 - rho3
+    t8 = t7 * t7 + t5
+    size_v = ops.sqrt(t8)
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * ops.vanishing
-    same = size_u <= t7
-    v_x = t3 - (e * c_alpha3 - f * c_alpha3)
-    t8 = ops.select(same, u_x, v_x)
-    v_y = t4 - (e * s_alpha3 - f * s_alpha3)
-    t9 = rho1 - rho3
-    t10 = v_x * v_x + v_y * v_y + t9 * t9
-    size_v = ops.sqrt(t10)
-    all_same = size_u + size_v <= t7
-    t11 = ops.select(same, v_x, u_x)
+    t9 = size * ops.vanishing
+    all_same = size_u + size_v <= t9
+    same = size_u <= t9
     D = ops.select(same, size_v, size_u)
-    t12 = 1.0 / D
-    E_11 = ops.select(all_same, 1.0, t11 * t12)
-    t13 = ops.select(same, u_y, v_y)
-    t14 = ops.select(same, v_y, u_y)
-    E_12 = ops.select(all_same, 0.0, t14 * t12)
-    t15 = ops.select(same, t5, t9)
-    t16 = ops.select(same, t9, t5)
-    t17 = ops.select(all_same, 0.0, t16 * t12)
-    k_0 = t8 * E_11 + t13 * E_12 + t15 * t17
-    m_x = t8 - E_11 * k_0
-    m_y = t13 - E_12 * k_0
-    t18 = t15 - t17 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t17 * t18
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    t19 = t18 - t17 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + t19 * t19)
-    in_line = j <= t7
-    t20 = t8 * (t11 - t8) + t13 * (t14 - t13) + t15 * (t16 - t15)
-    t21 = ops.abs(ops.select(in_line, -t20, 0.0)) <= ops.feasibility * (size * size)
+    t10 = 1.0 / D
+    E_11 = ops.select(all_same, 1.0, -(t3 * t10))
+    t11 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, c3_y, -c3_y)
+    E_12 = ops.select(all_same, 0.0, t10 * t12)
+    t13 = ops.select(same, t4, t7)
+    t14 = ops.select(same, t7, t4)
+    t15 = ops.select(all_same, 0.0, t10 * t14)
+    t16 = t3 * E_11 - t11 * E_12 - t13 * t15
+    t17 = t3 - E_11 * t16
+    m_y = t11 + E_12 * t16
+    t18 = t13 + t15 * t16
+    t19 = E_11 * t17 - E_12 * m_y - t15 * t18
+    t20 = t17 - E_11 * t19
+    n_y = m_y + E_12 * t19
+    t21 = t18 + t15 * t19
+    j = ops.sqrt(t20 * t20 + n_y * n_y + t21 * t21)
+    in_line = j <= t9
+    left = t11 * (t11 - t12) + t13 * (t13 - t14)
+    t22 = ops.abs(ops.select(in_line, left, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
-    t22 = ops.select(in_line, 0.0, t20 / (2.0 * j))
-    t23 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t22 * t22)
-    unreachable = ops.opposite(t21 & t23)
+    t23 = ops.select(in_line, 0.0, left / (2.0 * j))
+    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
+    unreachable = ops.opposite(t22 & t24)
     failed = invalid | unreachable
-    t24 = ops.opposite(failed)
-    t25 = t24 & ops.opposite(all_same)
-    t26 = ops.select(t25 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t10, 1.0)), ops.sqrt(t26))
+    t25 = ops.opposite(failed)
+    t26 = t25 & ops.opposite(all_same)
+    t27 = ops.select(t26 & ops.opposite(same), t6, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t26 & same, t8, 1.0)), ops.sqrt(t27))
+    t28 = 1.0 / ops.select(t26, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(t3 * t28))
+    t29 = ops.sign(-t15)
+    t30 = ops.select(all_same, 0.0, t28 * t14)
+    t31 = 1.0 / ops.select(t25 & in_line, t30 - t29, 1.0)
+    E_12_2 = ops.select(all_same, 0.0, t28 * t12)
+    t32 = t3 * E_11_2 - t11 * E_12_2 - t13 * t30
+    t33 = t3 - E_11_2 * t32
+    m_y_2 = t11 + E_12_2 * t32
+    t34 = t13 + t30 * t32
+    t35 = E_11_2 * t33 - E_12_2 * m_y_2 - t30 * t34
+    t36 = t33 - E_11_2 * t35
+    t37 = t25 & ops.opposite(in_line)
+    n_y_2 = m_y_2 + E_12_2 * t35
+    t38 = t34 + t30 * t35
+    t39 = ops.select(t37, t36 * t36 + n_y_2 * n_y_2 + t38 * t38, 1.0)
+    j_2 = ops.sqrt(t39)
+    t40 = 1.0 / ops.select(t37, j_2, 1.0)
+    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t29 * t31, -(t36 * t40))
+    t41 = ops.select(in_line, 0.0, left / ops.select(t37, 2.0 * j_2, 1.0))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t27 = t24 & ops.opposite(in_line)
-    t28 = 1.0 / ops.select(t25, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t11 * t28)
-    E_12_2 = ops.select(all_same, 0.0, t14 * t28)
-    t29 = ops.select(all_same, 0.0, t16 * t28)
-    k_0_2 = t8 * E_11_2 + t13 * E_12_2 + t15 * t29
-    m_x_2 = t8 - E_11_2 * k_0_2
-    m_y_2 = t13 - E_12_2 * k_0_2
-    t30 = t15 - t29 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + t29 * t30
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t31 = t30 - t29 * k_1_2
-    t32 = ops.select(t27, n_x_2 * n_x_2 + n_y_2 * n_y_2 + t31 * t31, 1.0)
-    j_2 = ops.sqrt(t32)
-    t33 = ops.select(in_line, 0.0, t20 / ops.select(t27, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t24, X_2 * X_2 + t33 * t33, 1.0))
-    t34 = ops.select(t24, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t34)
-    t35 = ops.sign(-t17)
-    t36 = E_11_2 * t35
-    t37 = 1.0 / ops.select(t27, j_2, 1.0)
-    t38 = ops.select(in_line, t36, t31 * t37)
-    t39 = 1.0 / ops.select(t24 & in_line, t29 - t35, 1.0)
-    E_22 = ops.select(in_line, t39 * (E_12_2 * t36), n_y_2 * t37)
-    t40 = h * (E_12_2 * t38 - t29 * E_22)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t35 * t39, n_x_2 * t37)
-    t41 = E_21 * t33 + (t3 - X_2 * E_11_2)
-    t42 = h * (E_11_2 * t38 - t29 * E_21)
-    t43 = t33 * E_22 + (t4 - X_2 * E_12_2)
-    t44 = t33 * t38 + (rho1 - X_2 * t29)
-    t45 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t46 = ops.status(invalid, unreachable, in_line)
+    t42 = E_21 * t41 + (c1_x + E_11_2 * X_2)
+    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t41 * t41, 1.0))
+    t43 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.sqrt(t43)
+    t44 = E_11_2 * t29
+    t45 = ops.select(in_line, t44, t38 * t40)
+    E_22 = ops.select(in_line, t31 * (E_12_2 * t44), n_y_2 * t40)
+    t46 = h * (E_12_2 * t45 - t30 * E_22)
+    t47 = E_12_2 * X_2 + t41 * E_22
+    t48 = h * (E_11_2 * t45 - t30 * E_21)
+    t49 = t41 * t45 - (rho1 - t30 * X_2)
+    t50 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t51 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, -(t40 + t41)),
-        ops.select(failed, ops.nan, t42 - t43),
-        ops.select(failed, ops.nan, t44 - t45),
-        ops.select(failed, ops.nan, t40 - t41),
-        ops.select(failed, ops.nan, -(t42 + t43)),
-        ops.select(failed, ops.nan, t45 + t44),
-        t46,
-        t46,
+        ops.select(failed, ops.nan, t42 - t46),
+        ops.select(failed, ops.nan, t47 + t48),
+        ops.select(failed, ops.nan, -(t49 + t50)),
+        ops.select(failed, ops.nan, t42 + t46),
+        ops.select(failed, ops.nan, t47 - t48),
+        ops.select(failed, ops.nan, t50 - t49),
+        t51,
+        t51,
     )
 
 
@@ -229,7 +213,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("q", (3,)),),
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2),
 )
 
@@ -273,183 +257,167 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
     return Positions(*result)
 
 
-def _skeleton(ops, rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
-    t1 = ops.finite(f, e, l, alpha1, alpha2, alpha3) & (0.0 <= f)
-    t2 = t1 & (0.0 <= e) & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = e * c_alpha1
-    t4 = f * c_alpha1
-    t5 = t3 - t4
-    t6 = e * c_alpha2
-    t7 = f * c_alpha2
-    u_x = t5 - (t6 - t7)
-    t8 = e * s_alpha1
-    t9 = f * s_alpha1
-    t10 = t8 - t9
-    t11 = e * s_alpha2
-    t12 = f * s_alpha2
-    u_y = t10 - (t11 - t12)
-    t13 = rho1 - rho2
-    t14 = u_x * u_x + u_y * u_y + t13 * t13
-    size_u = ops.sqrt(t14)
+def _skeleton(ops, rho1, rho2, rho3, f, e, l):
+    t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
+    t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
+    c1_x = f - e
+    t3 = e * 0.5
+    t4 = f * 0.5
+    t5 = c1_x - (t3 - t4)
+    t6 = rho1 - rho2
+    t7 = e * 1.7320508075688772 * 0.5
+    t8 = f * 1.7320508075688772 * 0.5
+    c3_y = t7 - t8
+    t9 = t5 * t5 + c3_y * c3_y
+    t10 = t6 * t6 + t9
+    size_u = ops.sqrt(t10)
+    t11 = rho1 - rho3
+    t12 = t11 * t11 + t9
+    size_v = ops.sqrt(t12)
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t15 = size * ops.vanishing
-    same = size_u <= t15
-    t16 = e * c_alpha3
-    t17 = f * c_alpha3
-    v_x = t5 - (t16 - t17)
-    t18 = ops.select(same, u_x, v_x)
-    t19 = e * s_alpha3
-    t20 = f * s_alpha3
-    v_y = t10 - (t19 - t20)
-    t21 = rho1 - rho3
-    t22 = v_x * v_x + v_y * v_y + t21 * t21
-    size_v = ops.sqrt(t22)
-    all_same = size_u + size_v <= t15
-    t23 = ops.select(same, v_x, u_x)
+    t13 = size * ops.vanishing
+    all_same = size_u + size_v <= t13
+    same = size_u <= t13
     D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t23 / D)
-    t24 = ops.select(same, v_y, u_y)
-    E_12 = ops.select(all_same, 0.0, t24 / D)
-    t25 = ops.select(same, u_y, v_y)
-    t26 = ops.select(same, t21, t13)
-    t27 = ops.select(all_same, 0.0, t26 / D)
-    t28 = ops.select(same, t13, t21)
-    k_0 = E_11 * t18 + E_12 * t25 + t27 * t28
-    m_x = t18 - E_11 * k_0
-    m_y = t25 - E_12 * k_0
-    t29 = t28 - t27 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t27 * t29
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    t30 = t29 - t27 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + t30 * t30)
-    in_line = j <= t15
-    t31 = t18 * (t23 - t18) + t25 * (t24 - t25) + t28 * (t26 - t28)
-    t32 = ops.abs(ops.select(in_line, -t31, 0.0)) <= ops.feasibility * (size * size)
+    E_11 = ops.select(all_same, 1.0, -(t5 / D))
+    t14 = ops.select(same, c3_y, -c3_y)
+    E_12 = ops.select(all_same, 0.0, t14 / D)
+    t15 = ops.select(same, -c3_y, c3_y)
+    t16 = ops.select(same, t11, t6)
+    t17 = ops.select(all_same, 0.0, t16 / D)
+    t18 = ops.select(same, t6, t11)
+    t19 = t5 * E_11 - E_12 * t15 - t17 * t18
+    t20 = t5 - E_11 * t19
+    m_y = t15 + E_12 * t19
+    t21 = t18 + t17 * t19
+    t22 = E_11 * t20 - E_12 * m_y - t17 * t21
+    t23 = t20 - E_11 * t22
+    n_y = m_y + E_12 * t22
+    t24 = t21 + t17 * t22
+    j = ops.sqrt(t23 * t23 + n_y * n_y + t24 * t24)
+    in_line = j <= t13
+    t25 = t15 * (t14 - t15) + t18 * (t16 - t18)
+    t26 = ops.abs(ops.select(in_line, -t25, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
-    t33 = ops.select(in_line, 0.0, t31 / (j * 2.0))
-    t34 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t33 * t33)
-    failed = ops.opposite(t2) | ops.opposite(t32 & t34)
-    t35 = ops.select(failed, ops.nan, t4)
-    t36 = ops.select(failed, ops.nan, t9)
-    t37 = ops.select(failed, ops.nan, 0.0)
-    t38 = ops.select(failed, ops.nan, rho1)
-    t39 = ops.opposite(failed)
-    t40 = t39 & ops.opposite(all_same)
-    t41 = ops.select(t40 & ops.opposite(same), t14, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t40 & same, t22, 1.0)), ops.sqrt(t41))
+    t27 = ops.select(in_line, 0.0, t25 / (2.0 * j))
+    t28 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t27 * t27)
+    failed = ops.opposite(t2) | ops.opposite(t26 & t28)
+    t29 = ops.select(failed, ops.nan, f)
+    t30 = ops.select(failed, ops.nan, 0.0)
+    t31 = ops.select(failed, ops.nan, rho1)
+    t32 = ops.opposite(failed)
+    t33 = t32 & ops.opposite(all_same)
+    t34 = ops.select(t33 & ops.opposite(same), t10, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t33 & same, t12, 1.0)), ops.sqrt(t34))
+    t35 = ops.select(t33, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(t5 / t35))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t42 = t39 & ops.opposite(in_line)
-    t43 = ops.select(t40, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t23 / t43)
-    E_12_2 = ops.select(all_same, 0.0, t24 / t43)
-    t44 = ops.select(all_same, 0.0, t26 / t43)
-    k_0_2 = E_11_2 * t18 + E_12_2 * t25 + t44 * t28
-    m_x_2 = t18 - E_11_2 * k_0_2
-    m_y_2 = t25 - E_12_2 * k_0_2
-    t45 = t28 - t44 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + t44 * t45
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t46 = t45 - t44 * k_1_2
-    t47 = ops.select(t42, n_x_2 * n_x_2 + n_y_2 * n_y_2 + t46 * t46, 1.0)
-    j_2 = ops.sqrt(t47)
-    t48 = ops.select(in_line, 0.0, t31 / ops.select(t42, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t39, X_2 * X_2 + t48 * t48, 1.0))
-    t49 = ops.select(t39, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t49)
-    t50 = ops.sign(-t27)
-    t51 = E_11_2 * t50
-    t52 = ops.select(t42, j_2, 1.0)
-    t53 = ops.select(in_line, t51, t46 / t52)
-    t54 = ops.select(t39 & in_line, t44 - t50, 1.0)
-    E_22 = ops.select(in_line, E_12_2 * t51 / t54, n_y_2 / t52)
-    t55 = h * (E_12_2 * t53 - t44 * E_22)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t50 / t54, n_x_2 / t52)
-    t56 = E_11_2 * X_2 - E_21 * t48
-    t57 = t5 + (t55 - t56)
-    t58 = (E_11_2 * t53 - t44 * E_21) * h
-    t59 = E_12_2 * X_2 - t48 * E_22
-    t60 = t10 - (t58 + t59)
-    t61 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t62 = t44 * X_2 - t53 * t48
-    t63 = ops.select(failed, ops.nan, rho1 - (t61 + t62))
-    t64 = ops.select(failed, ops.nan, t7)
-    t65 = ops.select(failed, ops.nan, t12)
-    t66 = ops.select(failed, ops.nan, rho2)
-    t67 = ops.select(failed, ops.nan, t17)
-    t68 = ops.select(failed, ops.nan, t20)
-    t69 = ops.select(failed, ops.nan, rho3)
-    t70 = t5 - (t55 + t56)
-    t71 = t10 + (t58 - t59)
-    t72 = ops.select(failed, ops.nan, rho1 + (t61 - t62))
+    t36 = t32 & ops.opposite(in_line)
+    E_12_2 = ops.select(all_same, 0.0, t14 / t35)
+    t37 = ops.select(all_same, 0.0, t16 / t35)
+    t38 = t5 * E_11_2 - E_12_2 * t15 - t37 * t18
+    t39 = t5 - E_11_2 * t38
+    m_y_2 = t15 + E_12_2 * t38
+    t40 = t18 + t37 * t38
+    t41 = E_11_2 * t39 - E_12_2 * m_y_2 - t37 * t40
+    t42 = t39 - E_11_2 * t41
+    n_y_2 = m_y_2 + E_12_2 * t41
+    t43 = t40 + t37 * t41
+    t44 = ops.select(t36, t42 * t42 + n_y_2 * n_y_2 + t43 * t43, 1.0)
+    j_2 = ops.sqrt(t44)
+    t45 = ops.select(in_line, 0.0, t25 / ops.select(t36, 2.0 * j_2, 1.0))
+    t46 = ops.sign(-t17)
+    t47 = ops.select(t32 & in_line, t37 - t46, 1.0)
+    t48 = ops.select(t36, j_2, 1.0)
+    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t46 / t47, -(t42 / t48))
+    t49 = E_11_2 * X_2 - t45 * E_21
+    rho = ops.sqrt(ops.select(t32, X_2 * X_2 + t45 * t45, 1.0))
+    t50 = ops.select(t32, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.sqrt(t50)
+    t51 = E_11_2 * t46
+    t52 = ops.select(in_line, t51, t43 / t48)
+    E_22 = ops.select(in_line, E_12_2 * t51 / t47, n_y_2 / t48)
+    t53 = h * (E_12_2 * t52 - t37 * E_22)
+    t54 = c1_x + (t49 - t53)
+    t55 = E_12_2 * X_2 - t45 * E_22
+    t56 = h * (E_11_2 * t52 - t37 * E_21)
+    A_12 = t55 + t56
+    t57 = ops.select(failed, ops.nan, A_12)
+    t58 = t37 * X_2 - t45 * t52
+    t59 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t60 = ops.select(failed, ops.nan, rho1 - (t58 + t59))
+    t61 = ops.select(failed, ops.nan, -t4)
+    t62 = ops.select(failed, ops.nan, t8)
+    t63 = ops.select(failed, ops.nan, rho2)
+    t64 = ops.select(failed, ops.nan, t54 - t3)
+    t65 = ops.select(failed, ops.nan, -t8)
+    t66 = ops.select(failed, ops.nan, rho3)
+    t67 = c1_x + (t49 + t53)
+    A_12_above = t55 - t56
+    t68 = ops.select(failed, ops.nan, A_12_above)
+    t69 = ops.select(failed, ops.nan, rho1 - (t58 - t59))
+    t70 = ops.select(failed, ops.nan, t67 - t3)
     return (
-        t35,
-        t36,
-        t37,
-        t35,
-        t36,
-        t38,
-        ops.select(failed, ops.nan, t3 - t57),
-        ops.select(failed, ops.nan, t8 - t60),
+        t29,
+        t30,
+        t30,
+        t29,
+        t30,
+        t31,
+        ops.select(failed, ops.nan, e + t54),
+        t57,
+        t60,
+        t61,
+        t62,
+        t30,
+        t61,
+        t62,
         t63,
         t64,
+        ops.select(failed, ops.nan, t7 + A_12),
+        t60,
+        t61,
         t65,
-        t37,
-        t64,
-        t65,
-        t66,
-        ops.select(failed, ops.nan, t6 - t57),
-        ops.select(failed, ops.nan, t11 - t60),
-        t63,
-        t67,
-        t68,
-        t37,
-        t67,
-        t68,
-        t69,
-        ops.select(failed, ops.nan, t16 - t57),
-        ops.select(failed, ops.nan, t19 - t60),
-        t63,
-        ops.select(failed, ops.nan, -t57),
-        ops.select(failed, ops.nan, -t60),
-        t63,
-        t35,
-        t36,
-        t37,
-        t35,
-        t36,
-        t38,
-        ops.select(failed, ops.nan, t3 - t70),
-        ops.select(failed, ops.nan, t8 - t71),
-        t72,
-        t64,
-        t65,
-        t37,
-        t64,
+        t30,
+        t61,
         t65,
         t66,
-        ops.select(failed, ops.nan, t6 - t70),
-        ops.select(failed, ops.nan, t11 - t71),
-        t72,
-        t67,
-        t68,
-        t37,
-        t67,
+        t64,
+        ops.select(failed, ops.nan, A_12 - t7),
+        t60,
+        ops.select(failed, ops.nan, t54),
+        t57,
+        t60,
+        t29,
+        t30,
+        t30,
+        t29,
+        t30,
+        t31,
+        ops.select(failed, ops.nan, e + t67),
         t68,
         t69,
-        ops.select(failed, ops.nan, t16 - t70),
-        ops.select(failed, ops.nan, t19 - t71),
-        t72,
-        ops.select(failed, ops.nan, -t70),
-        ops.select(failed, ops.nan, -t71),
-        t72,
+        t61,
+        t62,
+        t30,
+        t61,
+        t62,
+        t63,
+        t70,
+        ops.select(failed, ops.nan, t7 + A_12_above),
+        t69,
+        t61,
+        t65,
+        t30,
+        t61,
+        t65,
+        t66,
+        t70,
+        ops.select(failed, ops.nan, A_12_above - t7),
+        t69,
+        ops.select(failed, ops.nan, t67),
+        t68,
+        t69,
     )
 
 
@@ -459,8 +427,8 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("q", (3,)),),
     (_runtime.Spec("points", (2, 10, 3)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1)), 2),
+    ('f', 'e', 'l'),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (33, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1)), 2),
 )
 
 
@@ -495,121 +463,112 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     return result
 
 
-def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
-    t1 = ops.finite(f, e, l, alpha1, alpha2, alpha3) & (0.0 <= f)
-    t2 = t1 & (0.0 <= e) & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = e * c_alpha1 - f * c_alpha1
-    u_x = t3 - (e * c_alpha2 - f * c_alpha2)
-    t4 = e * s_alpha1 - f * s_alpha1
-    u_y = t4 - (e * s_alpha2 - f * s_alpha2)
-    t5 = rho1 - rho2
-    t6 = u_x * u_x + u_y * u_y + t5 * t5
+def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
+    t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
+    t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
+    t3 = f - e - (e * 0.5 - f * 0.5)
+    t4 = rho1 - rho2
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t5 = t3 * t3 + c3_y * c3_y
+    t6 = t4 * t4 + t5
     size_u = ops.sqrt(t6)
+    t7 = rho1 - rho3
+    t8 = t7 * t7 + t5
+    size_v = ops.sqrt(t8)
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * ops.vanishing
-    same = size_u <= t7
-    v_x = t3 - (e * c_alpha3 - f * c_alpha3)
-    t8 = ops.select(same, u_x, v_x)
-    v_y = t4 - (e * s_alpha3 - f * s_alpha3)
-    t9 = rho1 - rho3
-    t10 = v_x * v_x + v_y * v_y + t9 * t9
-    size_v = ops.sqrt(t10)
-    all_same = size_u + size_v <= t7
-    t11 = ops.select(same, v_x, u_x)
+    t9 = size * ops.vanishing
+    all_same = size_u + size_v <= t9
+    same = size_u <= t9
     D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t11 / D)
-    t12 = ops.select(same, v_y, u_y)
-    E_12 = ops.select(all_same, 0.0, t12 / D)
-    t13 = ops.select(same, u_y, v_y)
-    t14 = ops.select(same, t9, t5)
-    t15 = ops.select(all_same, 0.0, t14 / D)
-    t16 = ops.select(same, t5, t9)
-    k_0 = E_11 * t8 + E_12 * t13 + t15 * t16
-    m_x = t8 - E_11 * k_0
-    m_y = t13 - E_12 * k_0
-    t17 = t16 - t15 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t15 * t17
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    t18 = t17 - t15 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + t18 * t18)
-    in_line = j <= t7
-    t19 = t8 * (t11 - t8) + t13 * (t12 - t13) + t16 * (t14 - t16)
-    t20 = ops.abs(ops.select(in_line, -t19, 0.0)) <= ops.feasibility * (size * size)
+    E_11 = ops.select(all_same, 1.0, -(t3 / D))
+    t10 = ops.select(same, c3_y, -c3_y)
+    E_12 = ops.select(all_same, 0.0, t10 / D)
+    t11 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, t7, t4)
+    t13 = ops.select(all_same, 0.0, t12 / D)
+    t14 = ops.select(same, t4, t7)
+    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
+    t16 = t3 - E_11 * t15
+    m_y = t11 + E_12 * t15
+    t17 = t14 + t13 * t15
+    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
+    t19 = t16 - E_11 * t18
+    n_y = m_y + E_12 * t18
+    t20 = t17 + t13 * t18
+    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
+    in_line = j <= t9
+    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
+    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
-    t21 = ops.select(in_line, 0.0, t19 / (j * 2.0))
-    t22 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t21 * t21)
-    failed = ops.opposite(t2) | ops.opposite(t20 & t22)
-    t23 = ops.opposite(failed)
-    t24 = t23 & ops.opposite(all_same)
-    t25 = ops.select(t24 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t24 & same, t10, 1.0)), ops.sqrt(t25))
+    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
+    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
+    failed = ops.opposite(t2) | ops.opposite(t22 & t24)
+    t25 = ops.opposite(failed)
+    t26 = t25 & ops.opposite(all_same)
+    t27 = ops.select(t26 & ops.opposite(same), t6, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t26 & same, t8, 1.0)), ops.sqrt(t27))
+    t28 = ops.select(t26, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(t3 / t28))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t26 = t23 & ops.opposite(in_line)
-    t27 = ops.select(t24, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t11 / t27)
-    E_12_2 = ops.select(all_same, 0.0, t12 / t27)
-    t28 = ops.select(all_same, 0.0, t14 / t27)
-    k_0_2 = E_11_2 * t8 + E_12_2 * t13 + t28 * t16
-    m_x_2 = t8 - E_11_2 * k_0_2
-    m_y_2 = t13 - E_12_2 * k_0_2
-    t29 = t16 - t28 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + t28 * t29
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t30 = t29 - t28 * k_1_2
-    t31 = ops.select(t26, n_x_2 * n_x_2 + n_y_2 * n_y_2 + t30 * t30, 1.0)
-    j_2 = ops.sqrt(t31)
-    t32 = ops.select(in_line, 0.0, t19 / ops.select(t26, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t23, X_2 * X_2 + t32 * t32, 1.0))
-    t33 = ops.select(t23, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t33)
-    t34 = ops.sign(-t15)
-    t35 = E_11_2 * t34
-    t36 = ops.select(t26, j_2, 1.0)
-    t37 = ops.select(in_line, t35, t30 / t36)
-    t38 = ops.select(t23 & in_line, t28 - t34, 1.0)
-    E_22 = ops.select(in_line, E_12_2 * t35 / t38, n_y_2 / t36)
-    t39 = h * (E_12_2 * t37 - t28 * E_22)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t34 / t38, n_x_2 / t36)
-    t40 = E_11_2 * X_2 - E_21 * t32
-    t41 = t39 - t40
-    t42 = (E_11_2 * t37 - t28 * E_21) * h
-    t43 = E_12_2 * X_2 - t32 * E_22
-    A_12 = t42 + t43
-    t44 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t45 = t28 * X_2 - t37 * t32
-    t46 = t44 + t45
-    A_11_above = t39 + t40
-    t47 = t42 - t43
-    A_13_above = t44 - t45
-    t48 = ops.select(failed, ops.nan, A_11_above - u_x)
-    t49 = ops.select(failed, ops.nan, A_11_above - v_x)
+    t29 = ops.sign(-t13)
+    t30 = ops.select(all_same, 0.0, t12 / t28)
+    t31 = ops.select(t25 & in_line, t30 - t29, 1.0)
+    E_12_2 = ops.select(all_same, 0.0, t10 / t28)
+    t32 = t3 * E_11_2 - E_12_2 * t11 - t30 * t14
+    t33 = t3 - E_11_2 * t32
+    m_y_2 = t11 + E_12_2 * t32
+    t34 = t14 + t30 * t32
+    t35 = E_11_2 * t33 - E_12_2 * m_y_2 - t30 * t34
+    t36 = t33 - E_11_2 * t35
+    t37 = t25 & ops.opposite(in_line)
+    n_y_2 = m_y_2 + E_12_2 * t35
+    t38 = t34 + t30 * t35
+    t39 = ops.select(t37, t36 * t36 + n_y_2 * n_y_2 + t38 * t38, 1.0)
+    j_2 = ops.sqrt(t39)
+    t40 = ops.select(t37, j_2, 1.0)
+    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t29 / t31, -(t36 / t40))
+    t41 = ops.select(in_line, 0.0, t21 / ops.select(t37, 2.0 * j_2, 1.0))
+    t42 = E_11_2 * X_2 - E_21 * t41
+    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t41 * t41, 1.0))
+    t43 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.sqrt(t43)
+    t44 = E_11_2 * t29
+    t45 = ops.select(in_line, t44, t38 / t40)
+    E_22 = ops.select(in_line, E_12_2 * t44 / t31, n_y_2 / t40)
+    t46 = h * (E_12_2 * t45 - t30 * E_22)
+    A_11 = t42 - t46
+    t47 = X_2 * E_12_2 - t41 * E_22
+    t48 = h * (E_11_2 * t45 - t30 * E_21)
+    A_12 = t47 + t48
+    t49 = X_2 * t30 - t41 * t45
+    t50 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t51 = t49 + t50
+    t52 = ops.select(failed, ops.nan, t3 + A_11)
+    A_11_above = t42 + t46
+    A_12_above = t47 - t48
+    t53 = t49 - t50
+    t54 = ops.select(failed, ops.nan, t3 + A_11_above)
+    t55 = ops.select(failed, ops.nan, c3_y + A_12_above)
+    t56 = ops.select(failed, ops.nan, A_12_above - c3_y)
     return (
-        ops.select(failed, ops.nan, -t41),
+        ops.select(failed, ops.nan, A_11),
         ops.select(failed, ops.nan, A_12),
-        ops.select(failed, ops.nan, -t46),
-        ops.select(failed, ops.nan, -(u_x + t41)),
-        ops.select(failed, ops.nan, A_12 - u_y),
-        ops.select(failed, ops.nan, t5 - t46),
-        ops.select(failed, ops.nan, -(v_x + t41)),
-        ops.select(failed, ops.nan, A_12 - v_y),
-        ops.select(failed, ops.nan, t9 - t46),
+        ops.select(failed, ops.nan, -t51),
+        t52,
+        ops.select(failed, ops.nan, c3_y + A_12),
+        ops.select(failed, ops.nan, t4 - t51),
+        t52,
+        ops.select(failed, ops.nan, A_12 - c3_y),
+        ops.select(failed, ops.nan, t7 - t51),
         ops.select(failed, ops.nan, A_11_above),
-        ops.select(failed, ops.nan, -t47),
-        ops.select(failed, ops.nan, A_13_above),
-        t48,
-        ops.select(failed, ops.nan, -(u_y + t47)),
-        ops.select(failed, ops.nan, t5 + A_13_above),
-        t49,
-        ops.select(failed, ops.nan, -(v_y + t47)),
-        ops.select(failed, ops.nan, t9 + A_13_above),
+        ops.select(failed, ops.nan, A_12_above),
+        ops.select(failed, ops.nan, -t53),
+        t54,
+        t55,
+        ops.select(failed, ops.nan, t4 - t53),
+        t54,
+        t56,
+        ops.select(failed, ops.nan, t7 - t53),
     )
 
 
@@ -619,7 +578,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("q", (3,)),),
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2),
 )
 
@@ -655,97 +614,86 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     return result
 
 
-def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
-    t1 = ops.finite(f, e, l, alpha1, alpha2, alpha3) & (0.0 <= f)
-    t2 = t1 & (0.0 <= e) & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = e * c_alpha1 - f * c_alpha1
-    u_x = t3 - (e * c_alpha2 - f * c_alpha2)
-    t4 = e * s_alpha1 - f * s_alpha1
-    u_y = t4 - (e * s_alpha2 - f * s_alpha2)
-    t5 = rho1 - rho2
-    t6 = u_x * u_x + u_y * u_y + t5 * t5
+def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
+    t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
+    t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
+    t3 = f - e - (e * 0.5 - f * 0.5)
+    t4 = rho1 - rho2
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t5 = t3 * t3 + c3_y * c3_y
+    t6 = t4 * t4 + t5
     size_u = ops.sqrt(t6)
+    t7 = rho1 - rho3
+    t8 = t7 * t7 + t5
+    size_v = ops.sqrt(t8)
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * ops.vanishing
-    same = size_u <= t7
-    v_x = t3 - (e * c_alpha3 - f * c_alpha3)
-    t8 = ops.select(same, u_x, v_x)
-    v_y = t4 - (e * s_alpha3 - f * s_alpha3)
-    t9 = rho1 - rho3
-    t10 = v_x * v_x + v_y * v_y + t9 * t9
-    size_v = ops.sqrt(t10)
-    all_same = size_u + size_v <= t7
-    t11 = ops.select(same, v_x, u_x)
+    t9 = size * ops.vanishing
+    all_same = size_u + size_v <= t9
+    same = size_u <= t9
     D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t11 / D)
-    t12 = ops.select(same, v_y, u_y)
-    E_12 = ops.select(all_same, 0.0, t12 / D)
-    t13 = ops.select(same, u_y, v_y)
-    t14 = ops.select(same, t9, t5)
-    t15 = ops.select(all_same, 0.0, t14 / D)
-    t16 = ops.select(same, t5, t9)
-    k_0 = E_11 * t8 + E_12 * t13 + t15 * t16
-    m_x = t8 - E_11 * k_0
-    m_y = t13 - E_12 * k_0
-    t17 = t16 - t15 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t15 * t17
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    t18 = t17 - t15 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + t18 * t18)
-    in_line = j <= t7
-    t19 = t8 * (t11 - t8) + t13 * (t12 - t13) + t16 * (t14 - t16)
-    t20 = ops.abs(ops.select(in_line, -t19, 0.0)) <= ops.feasibility * (size * size)
+    E_11 = ops.select(all_same, 1.0, -(t3 / D))
+    t10 = ops.select(same, c3_y, -c3_y)
+    E_12 = ops.select(all_same, 0.0, t10 / D)
+    t11 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, t7, t4)
+    t13 = ops.select(all_same, 0.0, t12 / D)
+    t14 = ops.select(same, t4, t7)
+    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
+    t16 = t3 - E_11 * t15
+    m_y = t11 + E_12 * t15
+    t17 = t14 + t13 * t15
+    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
+    t19 = t16 - E_11 * t18
+    n_y = m_y + E_12 * t18
+    t20 = t17 + t13 * t18
+    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
+    in_line = j <= t9
+    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
+    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
-    t21 = ops.select(in_line, 0.0, t19 / (j * 2.0))
-    t22 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t21 * t21)
-    failed = ops.opposite(t2) | ops.opposite(t20 & t22)
-    t23 = ops.opposite(failed)
-    t24 = t23 & ops.opposite(all_same)
-    t25 = ops.select(t24 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t24 & same, t10, 1.0)), ops.sqrt(t25))
+    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
+    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
+    failed = ops.opposite(t2) | ops.opposite(t22 & t24)
+    t25 = ops.opposite(failed)
+    t26 = t25 & ops.opposite(all_same)
+    t27 = ops.select(t26 & ops.opposite(same), t6, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t26 & same, t8, 1.0)), ops.sqrt(t27))
+    t28 = ops.select(t26, D_2, 1.0)
+    t29 = ops.select(all_same, 0.0, t12 / t28)
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t26 = t23 & ops.opposite(in_line)
-    t27 = ops.select(t24, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t11 / t27)
-    E_12_2 = ops.select(all_same, 0.0, t12 / t27)
-    t28 = ops.select(all_same, 0.0, t14 / t27)
-    k_0_2 = E_11_2 * t8 + E_12_2 * t13 + t28 * t16
-    m_x_2 = t8 - E_11_2 * k_0_2
-    m_y_2 = t13 - E_12_2 * k_0_2
-    t29 = t16 - t28 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + t28 * t29
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t30 = t29 - t28 * k_1_2
-    t31 = ops.select(t26, n_x_2 * n_x_2 + n_y_2 * n_y_2 + t30 * t30, 1.0)
-    j_2 = ops.sqrt(t31)
-    t32 = ops.select(in_line, 0.0, t19 / ops.select(t26, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t23, X_2 * X_2 + t32 * t32, 1.0))
-    t33 = ops.select(t23, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    t34 = ops.sign(-t15)
-    t35 = ops.select(t23 & in_line, t28 - t34, 1.0)
-    t36 = ops.select(t26, j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t34 / t35, n_x_2 / t36)
-    t37 = E_11_2 * t34
-    E_22 = ops.select(in_line, E_12_2 * t37 / t35, n_y_2 / t36)
-    t38 = ops.sqrt(t33) * (E_12_2 * E_21 - E_11_2 * E_22)
-    t39 = t28 * X_2 - ops.select(in_line, t37, t30 / t36) * t32
-    t40 = t38 + t39
-    A_13_above = t38 - t39
+    E_11_2 = ops.select(all_same, 1.0, -(t3 / t28))
+    t30 = ops.sign(-t13)
+    t31 = E_11_2 * t30
+    E_12_2 = ops.select(all_same, 0.0, t10 / t28)
+    t32 = t3 * E_11_2 - E_12_2 * t11 - t29 * t14
+    t33 = t14 + t29 * t32
+    t34 = t3 - E_11_2 * t32
+    m_y_2 = t11 + E_12_2 * t32
+    t35 = E_11_2 * t34 - E_12_2 * m_y_2 - t29 * t33
+    t36 = t33 + t29 * t35
+    t37 = t25 & ops.opposite(in_line)
+    t38 = t34 - E_11_2 * t35
+    n_y_2 = m_y_2 + E_12_2 * t35
+    t39 = ops.select(t37, t38 * t38 + n_y_2 * n_y_2 + t36 * t36, 1.0)
+    j_2 = ops.sqrt(t39)
+    t40 = ops.select(t37, j_2, 1.0)
+    t41 = ops.select(in_line, 0.0, t21 / ops.select(t37, 2.0 * j_2, 1.0))
+    t42 = t29 * X_2 - ops.select(in_line, t31, t36 / t40) * t41
+    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t41 * t41, 1.0))
+    t43 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    t44 = ops.select(t25 & in_line, t29 - t30, 1.0)
+    E_21 = ops.select(in_line, 1.0 + t30 * (E_11_2 * E_11_2) / t44, -(t38 / t40))
+    E_22 = ops.select(in_line, E_12_2 * t31 / t44, n_y_2 / t40)
+    t45 = ops.sqrt(t43) * (E_12_2 * E_21 - E_11_2 * E_22)
+    t46 = t42 + t45
+    t47 = t42 - t45
     return (
-        ops.select(failed, ops.nan, -t40),
-        ops.select(failed, ops.nan, t5 - t40),
-        ops.select(failed, ops.nan, t9 - t40),
-        ops.select(failed, ops.nan, A_13_above),
-        ops.select(failed, ops.nan, t5 + A_13_above),
-        ops.select(failed, ops.nan, t9 + A_13_above),
+        ops.select(failed, ops.nan, -t46),
+        ops.select(failed, ops.nan, t4 - t46),
+        ops.select(failed, ops.nan, t7 - t46),
+        ops.select(failed, ops.nan, -t47),
+        ops.select(failed, ops.nan, t4 - t47),
+        ops.select(failed, ops.nan, t7 - t47),
     )
 
 
@@ -755,7 +703,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("q", (3,)),),
     (_runtime.Spec("B", (2, 3)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2),
 )
 
@@ -791,149 +739,141 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     return result
 
 
-def _jacobian(ops, rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
-    t1 = ops.finite(f, e, l, alpha1, alpha2, alpha3) & (0.0 <= f)
-    t2 = t1 & (0.0 <= e) & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = e * c_alpha1 - f * c_alpha1
-    u_x = t3 - (e * c_alpha2 - f * c_alpha2)
-    t4 = e * s_alpha1 - f * s_alpha1
-    u_y = t4 - (e * s_alpha2 - f * s_alpha2)
-    t5 = rho1 - rho2
-    t6 = u_x * u_x + u_y * u_y + t5 * t5
+def _jacobian(ops, rho1, rho2, rho3, f, e, l):
+    t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
+    t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
+    t3 = f - e - (e * 0.5 - f * 0.5)
+    t4 = rho1 - rho2
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t5 = t3 * t3 + c3_y * c3_y
+    t6 = t4 * t4 + t5
     size_u = ops.sqrt(t6)
+    t7 = rho1 - rho3
+    t8 = t7 * t7 + t5
+    size_v = ops.sqrt(t8)
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * ops.vanishing
-    same = size_u <= t7
-    v_x = t3 - (e * c_alpha3 - f * c_alpha3)
-    t8 = ops.select(same, u_x, v_x)
-    v_y = t4 - (e * s_alpha3 - f * s_alpha3)
-    t9 = rho1 - rho3
-    t10 = v_x * v_x + v_y * v_y + t9 * t9
-    size_v = ops.sqrt(t10)
-    all_same = size_u + size_v <= t7
-    t11 = ops.select(same, v_x, u_x)
+    t9 = size * ops.vanishing
+    all_same = size_u + size_v <= t9
+    same = size_u <= t9
     D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t11 / D)
-    t12 = ops.select(same, v_y, u_y)
-    E_12 = ops.select(all_same, 0.0, t12 / D)
-    t13 = ops.select(same, u_y, v_y)
-    t14 = ops.select(same, t9, t5)
-    t15 = ops.select(all_same, 0.0, t14 / D)
-    t16 = ops.select(same, t5, t9)
-    k_0 = E_11 * t8 + E_12 * t13 + t15 * t16
-    m_x = t8 - E_11 * k_0
-    m_y = t13 - E_12 * k_0
-    t17 = t16 - t15 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t15 * t17
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    t18 = t17 - t15 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + t18 * t18)
-    in_line = j <= t7
-    t19 = t8 * (t11 - t8) + t13 * (t12 - t13) + t16 * (t14 - t16)
-    t20 = ops.abs(ops.select(in_line, -t19, 0.0)) <= ops.feasibility * (size * size)
+    E_11 = ops.select(all_same, 1.0, -(t3 / D))
+    t10 = ops.select(same, c3_y, -c3_y)
+    E_12 = ops.select(all_same, 0.0, t10 / D)
+    t11 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, t7, t4)
+    t13 = ops.select(all_same, 0.0, t12 / D)
+    t14 = ops.select(same, t4, t7)
+    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
+    t16 = t3 - E_11 * t15
+    m_y = t11 + E_12 * t15
+    t17 = t14 + t13 * t15
+    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
+    t19 = t16 - E_11 * t18
+    n_y = m_y + E_12 * t18
+    t20 = t17 + t13 * t18
+    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
+    in_line = j <= t9
+    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
+    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
-    t21 = ops.select(in_line, 0.0, t19 / (j * 2.0))
-    t22 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t21 * t21)
-    failed = ops.opposite(t2) | ops.opposite(t20 & t22)
-    t23 = ops.opposite(failed)
-    t24 = ops.select(t23 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t23 & same, t10, 1.0)), ops.sqrt(t24))
+    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
+    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
+    failed = ops.opposite(t2) | ops.opposite(t22 & t24)
+    t25 = ops.opposite(failed)
+    t26 = ops.select(t25 & ops.opposite(same), t6, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t8, 1.0)), ops.sqrt(t26))
+    t27 = ops.select(t25 & ops.opposite(all_same), D_2, 1.0)
+    t28 = ops.select(all_same, 0.0, t12 / t27)
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t25 = t23 & ops.opposite(in_line)
-    t26 = ops.select(t23 & ops.opposite(all_same), D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t11 / t26)
-    E_12_2 = ops.select(all_same, 0.0, t12 / t26)
-    t27 = ops.select(all_same, 0.0, t14 / t26)
-    k_0_2 = E_11_2 * t8 + E_12_2 * t13 + t27 * t16
-    m_x_2 = t8 - E_11_2 * k_0_2
-    m_y_2 = t13 - E_12_2 * k_0_2
-    t28 = t16 - t27 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + t27 * t28
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t29 = t28 - t27 * k_1_2
-    t30 = ops.select(t23, n_x_2 * n_x_2 + n_y_2 * n_y_2 + t29 * t29, 1.0)
-    j_2 = ops.sqrt(t30)
-    t31 = ops.select(in_line, 0.0, t19 / ops.select(t25, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t23, X_2 * X_2 + t31 * t31, 1.0))
-    t32 = ops.select(t23, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t32)
-    t33 = ops.sign(-t15)
-    t34 = ops.select(t23 & in_line, t27 - t33, 1.0)
-    t35 = ops.select(t25, j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t33 / t34, n_x_2 / t35)
-    t36 = E_11_2 * t33
-    E_22 = ops.select(in_line, E_12_2 * t36 / t34, n_y_2 / t35)
-    t37 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t38 = ops.select(in_line, t36, t29 / t35)
-    t39 = t27 * X_2 - t38 * t31
-    t40 = t37 + t39
-    t41 = (E_11_2 * t38 - t27 * E_21) * h
-    t42 = E_12_2 * X_2 - t31 * E_22
-    A_12 = t41 + t42
-    t43 = u_y - A_12
-    A_33 = t9 - t40
-    A_23 = t5 - t40
-    t44 = v_y - A_12
-    t45 = ops.select(t23, D_2 * j_2 * h, 1.0)
-    t46 = ops.select(failed, ops.nan, t40 * (t43 * A_33 - A_23 * t44) / t45)
-    t47 = ops.select(failed, ops.nan, -(A_23 * (A_12 * A_33 - t40 * t44) / t45))
-    t48 = ops.select(failed, ops.nan, A_33 * (A_12 * A_23 - t40 * t43) / t45)
-    t49 = h * (E_12_2 * t38 - t27 * E_22)
-    t50 = E_11_2 * X_2 - E_21 * t31
-    t51 = t49 - t50
-    t52 = u_x + t51
-    t53 = v_x + t51
-    t54 = ops.select(failed, ops.nan, -(t40 * (A_33 * t52 - A_23 * t53) / t45))
-    t55 = ops.select(failed, ops.nan, -(A_23 * (A_33 * t51 + t40 * t53) / t45))
-    t56 = ops.select(failed, ops.nan, A_33 * (A_23 * t51 + t40 * t52) / t45)
-    t57 = ops.select(failed, ops.nan, -(t40 * (t44 * t52 - t43 * t53) / t45))
-    t58 = ops.select(failed, ops.nan, -(A_23 * (t44 * t51 + A_12 * t53) / t45))
-    t59 = ops.select(failed, ops.nan, A_33 * (t43 * t51 + A_12 * t52) / t45)
-    A_13_above = t37 - t39
-    t60 = t41 - t42
-    t61 = u_y + t60
-    A_33_above = t9 + A_13_above
-    A_23_above = t5 + A_13_above
-    t62 = v_y + t60
-    t63 = A_13_above * (t61 * A_33_above - A_23_above * t62)
-    t64 = A_23_above * (t60 * A_33_above - A_13_above * t62)
-    t65 = A_33_above * (t60 * A_23_above - A_13_above * t61)
-    A_11_above = t49 + t50
-    t66 = u_x - A_11_above
-    t67 = v_x - A_11_above
-    t68 = A_13_above * (A_33_above * t66 - A_23_above * t67)
-    t69 = A_23_above * (A_33_above * A_11_above + A_13_above * t67)
-    t70 = A_33_above * (A_23_above * A_11_above + A_13_above * t66)
-    t71 = -(A_13_above * (t62 * t66 - t61 * t67) / t45)
-    t72 = A_23_above * (t62 * A_11_above + t60 * t67) / t45
-    t73 = A_33_above * (t61 * A_11_above + t60 * t66) / t45
+    E_11_2 = ops.select(all_same, 1.0, -(t3 / t27))
+    t29 = ops.sign(-t13)
+    t30 = E_11_2 * t29
+    E_12_2 = ops.select(all_same, 0.0, t10 / t27)
+    t31 = t3 * E_11_2 - E_12_2 * t11 - t28 * t14
+    t32 = t14 + t28 * t31
+    t33 = t3 - E_11_2 * t31
+    m_y_2 = t11 + E_12_2 * t31
+    t34 = E_11_2 * t33 - E_12_2 * m_y_2 - t28 * t32
+    t35 = t32 + t28 * t34
+    t36 = t25 & ops.opposite(in_line)
+    t37 = t33 - E_11_2 * t34
+    n_y_2 = m_y_2 + E_12_2 * t34
+    t38 = ops.select(t25, t37 * t37 + n_y_2 * n_y_2 + t35 * t35, 1.0)
+    j_2 = ops.sqrt(t38)
+    t39 = ops.select(t36, j_2, 1.0)
+    t40 = ops.select(in_line, t30, t35 / t39)
+    t41 = ops.select(in_line, 0.0, t21 / ops.select(t36, 2.0 * j_2, 1.0))
+    t42 = t28 * X_2 - t40 * t41
+    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t41 * t41, 1.0))
+    t43 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.sqrt(t43)
+    t44 = ops.select(t25 & in_line, t28 - t29, 1.0)
+    E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t44, -(t37 / t39))
+    E_22 = ops.select(in_line, E_12_2 * t30 / t44, n_y_2 / t39)
+    t45 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t46 = t42 + t45
+    t47 = X_2 * E_12_2 - t41 * E_22
+    t48 = h * (E_11_2 * t40 - t28 * E_21)
+    A_12 = t47 + t48
+    A_22 = c3_y + A_12
+    A_33 = t7 - t46
+    A_23 = t4 - t46
+    t49 = c3_y - A_12
+    t50 = ops.select(t25, D_2 * j_2 * h, 1.0)
+    t51 = ops.select(failed, ops.nan, -(t46 * (A_22 * A_33 + A_23 * t49) / t50))
+    t52 = ops.select(failed, ops.nan, -(A_23 * (A_12 * A_33 - t46 * t49) / t50))
+    t53 = ops.select(failed, ops.nan, A_33 * (A_12 * A_23 + t46 * A_22) / t50)
+    t54 = X_2 * E_11_2 - t41 * E_21
+    t55 = h * (E_12_2 * t40 - t28 * E_22)
+    A_11 = t54 - t55
+    A_21 = t3 + A_11
+    t56 = ops.select(failed, ops.nan, t46 * (A_33 * A_21 - A_23 * A_21) / t50)
+    t57 = t46 * A_21
+    t58 = ops.select(failed, ops.nan, A_23 * (A_33 * A_11 + t57) / t50)
+    t59 = ops.select(failed, ops.nan, -(A_33 * (t57 + A_23 * A_11) / t50))
+    t60 = ops.select(failed, ops.nan, t46 * (t49 * A_21 + A_22 * A_21) / t50)
+    t61 = A_12 * A_21
+    t62 = ops.select(failed, ops.nan, A_23 * (t49 * A_11 + t61) / t50)
+    t63 = ops.select(failed, ops.nan, -(A_33 * (t61 - A_22 * A_11) / t50))
+    t64 = t42 - t45
+    A_12_above = t47 - t48
+    A_22_above = c3_y + A_12_above
+    A_33_above = t7 - t64
+    A_23_above = t4 - t64
+    t65 = c3_y - A_12_above
+    t66 = t64 * (A_22_above * A_33_above + A_23_above * t65)
+    t67 = A_23_above * (A_12_above * A_33_above - t64 * t65)
+    t68 = A_33_above * (A_12_above * A_23_above + t64 * A_22_above)
+    A_11_above = t54 + t55
+    A_21_above = t3 + A_11_above
+    t69 = A_33_above * A_21_above - A_23_above * A_21_above
+    t70 = ops.select(failed, ops.nan, -(t64 * t69 / t50))
+    t71 = t64 * A_21_above
+    t72 = A_23_above * (A_33_above * A_11_above + t71) / t50
+    t73 = A_33_above * (t71 + A_23_above * A_11_above) / t50
+    t74 = t64 * (t65 * A_21_above + A_22_above * A_21_above)
+    t75 = A_12_above * A_21_above
+    t76 = -(A_23_above * (t65 * A_11_above + t75) / t50)
+    t77 = A_33_above * (t75 - A_22_above * A_11_above) / t50
     return (
-        t46,
-        t47,
-        t48,
-        t54,
-        t55,
+        t51,
+        t52,
+        t53,
         t56,
-        t57,
         t58,
         t59,
-        ops.select(failed, ops.nan, t63 / t45),
-        ops.select(failed, ops.nan, -(t64 / t45)),
-        ops.select(failed, ops.nan, t65 / t45),
-        ops.select(failed, ops.nan, -(t68 / t45)),
-        ops.select(failed, ops.nan, -(t69 / t45)),
-        ops.select(failed, ops.nan, t70 / t45),
-        ops.select(failed, ops.nan, t71),
+        t60,
+        t62,
+        t63,
+        ops.select(failed, ops.nan, t66 / t50),
+        ops.select(failed, ops.nan, t67 / t50),
+        ops.select(failed, ops.nan, -(t68 / t50)),
+        t70,
         ops.select(failed, ops.nan, -t72),
         ops.select(failed, ops.nan, t73),
+        ops.select(failed, ops.nan, -(t74 / t50)),
+        ops.select(failed, ops.nan, t76),
+        ops.select(failed, ops.nan, t77),
     )
 
 
@@ -943,7 +883,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Spec("q", (3,)),),
     (_runtime.Spec("J", (2, 3, 3)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     _runtime.Size((0, 1, 2, 3, 4, 5), (), 3),
 )
 
@@ -980,96 +920,85 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     return result
 
 
-def _determinant(ops, rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
-    t1 = ops.finite(f, e, l, alpha1, alpha2, alpha3) & (0.0 <= f)
-    t2 = t1 & (0.0 <= e) & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = e * c_alpha1 - f * c_alpha1
-    u_x = t3 - (e * c_alpha2 - f * c_alpha2)
-    t4 = e * s_alpha1 - f * s_alpha1
-    u_y = t4 - (e * s_alpha2 - f * s_alpha2)
-    t5 = rho1 - rho2
-    t6 = u_x * u_x + u_y * u_y + t5 * t5
+def _determinant(ops, rho1, rho2, rho3, f, e, l):
+    t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
+    t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
+    t3 = f - e - (e * 0.5 - f * 0.5)
+    t4 = rho1 - rho2
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t5 = t3 * t3 + c3_y * c3_y
+    t6 = t4 * t4 + t5
     size_u = ops.sqrt(t6)
+    t7 = rho1 - rho3
+    t8 = t7 * t7 + t5
+    size_v = ops.sqrt(t8)
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * ops.vanishing
-    same = size_u <= t7
-    v_x = t3 - (e * c_alpha3 - f * c_alpha3)
-    t8 = ops.select(same, u_x, v_x)
-    v_y = t4 - (e * s_alpha3 - f * s_alpha3)
-    t9 = rho1 - rho3
-    t10 = v_x * v_x + v_y * v_y + t9 * t9
-    size_v = ops.sqrt(t10)
-    all_same = size_u + size_v <= t7
-    t11 = ops.select(same, v_x, u_x)
+    t9 = size * ops.vanishing
+    all_same = size_u + size_v <= t9
+    same = size_u <= t9
     D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t11 / D)
-    t12 = ops.select(same, v_y, u_y)
-    E_12 = ops.select(all_same, 0.0, t12 / D)
-    t13 = ops.select(same, u_y, v_y)
-    t14 = ops.select(same, t9, t5)
-    t15 = ops.select(all_same, 0.0, t14 / D)
-    t16 = ops.select(same, t5, t9)
-    k_0 = E_11 * t8 + E_12 * t13 + t15 * t16
-    m_x = t8 - E_11 * k_0
-    m_y = t13 - E_12 * k_0
-    t17 = t16 - t15 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t15 * t17
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    t18 = t17 - t15 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + t18 * t18)
-    in_line = j <= t7
-    t19 = t8 * (t11 - t8) + t13 * (t12 - t13) + t16 * (t14 - t16)
-    t20 = ops.abs(ops.select(in_line, -t19, 0.0)) <= ops.feasibility * (size * size)
+    E_11 = ops.select(all_same, 1.0, -(t3 / D))
+    t10 = ops.select(same, c3_y, -c3_y)
+    E_12 = ops.select(all_same, 0.0, t10 / D)
+    t11 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, t7, t4)
+    t13 = ops.select(all_same, 0.0, t12 / D)
+    t14 = ops.select(same, t4, t7)
+    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
+    t16 = t3 - E_11 * t15
+    m_y = t11 + E_12 * t15
+    t17 = t14 + t13 * t15
+    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
+    t19 = t16 - E_11 * t18
+    n_y = m_y + E_12 * t18
+    t20 = t17 + t13 * t18
+    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
+    in_line = j <= t9
+    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
+    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
-    t21 = ops.select(in_line, 0.0, t19 / (j * 2.0))
-    t22 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t21 * t21)
-    failed = ops.opposite(t2) | ops.opposite(t20 & t22)
-    t23 = ops.opposite(failed)
-    t24 = ops.select(t23 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t23 & same, t10, 1.0)), ops.sqrt(t24))
+    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
+    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
+    failed = ops.opposite(t2) | ops.opposite(t22 & t24)
+    t25 = ops.opposite(failed)
+    t26 = ops.select(t25 & ops.opposite(same), t6, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t8, 1.0)), ops.sqrt(t26))
+    t27 = ops.select(t25 & ops.opposite(all_same), D_2, 1.0)
+    t28 = ops.select(all_same, 0.0, t12 / t27)
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t25 = t23 & ops.opposite(in_line)
-    t26 = ops.select(t23 & ops.opposite(all_same), D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t11 / t26)
-    E_12_2 = ops.select(all_same, 0.0, t12 / t26)
-    t27 = ops.select(all_same, 0.0, t14 / t26)
-    k_0_2 = E_11_2 * t8 + E_12_2 * t13 + t27 * t16
-    m_x_2 = t8 - E_11_2 * k_0_2
-    m_y_2 = t13 - E_12_2 * k_0_2
-    t28 = t16 - t27 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + t27 * t28
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t29 = t28 - t27 * k_1_2
-    t30 = ops.select(t23, n_x_2 * n_x_2 + n_y_2 * n_y_2 + t29 * t29, 1.0)
-    j_2 = ops.sqrt(t30)
-    t31 = ops.select(in_line, 0.0, t19 / ops.select(t25, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t23, X_2 * X_2 + t31 * t31, 1.0))
-    t32 = ops.select(t23, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t32)
-    t33 = ops.sign(-t15)
-    t34 = ops.select(t23 & in_line, t27 - t33, 1.0)
-    t35 = ops.select(t25, j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t33 / t34, n_x_2 / t35)
-    t36 = E_11_2 * t33
-    E_22 = ops.select(in_line, E_12_2 * t36 / t34, n_y_2 / t35)
-    t37 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t38 = t27 * X_2 - ops.select(in_line, t36, t29 / t35) * t31
-    t39 = t37 + t38
-    t40 = ops.select(t23, D_2 * j_2 * h, 1.0)
-    t41 = ops.select(failed, ops.nan, -(t39 * (t5 - t39) * (t9 - t39) / t40))
-    A_13_above = t37 - t38
-    t42 = A_13_above * (t5 + A_13_above) * (t9 + A_13_above)
+    E_11_2 = ops.select(all_same, 1.0, -(t3 / t27))
+    t29 = ops.sign(-t13)
+    t30 = E_11_2 * t29
+    E_12_2 = ops.select(all_same, 0.0, t10 / t27)
+    t31 = t3 * E_11_2 - E_12_2 * t11 - t28 * t14
+    t32 = t14 + t28 * t31
+    t33 = t3 - E_11_2 * t31
+    m_y_2 = t11 + E_12_2 * t31
+    t34 = E_11_2 * t33 - E_12_2 * m_y_2 - t28 * t32
+    t35 = t32 + t28 * t34
+    t36 = t25 & ops.opposite(in_line)
+    t37 = t33 - E_11_2 * t34
+    n_y_2 = m_y_2 + E_12_2 * t34
+    t38 = ops.select(t25, t37 * t37 + n_y_2 * n_y_2 + t35 * t35, 1.0)
+    j_2 = ops.sqrt(t38)
+    t39 = ops.select(t36, j_2, 1.0)
+    t40 = ops.select(in_line, 0.0, t21 / ops.select(t36, 2.0 * j_2, 1.0))
+    t41 = t28 * X_2 - ops.select(in_line, t30, t35 / t39) * t40
+    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t40 * t40, 1.0))
+    t42 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.sqrt(t42)
+    t43 = ops.select(t25 & in_line, t28 - t29, 1.0)
+    E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t43, -(t37 / t39))
+    E_22 = ops.select(in_line, E_12_2 * t30 / t43, n_y_2 / t39)
+    t44 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t45 = t41 + t44
+    t46 = ops.select(t25, D_2 * j_2 * h, 1.0)
+    t47 = ops.select(failed, ops.nan, -(t45 * (t4 - t45) * (t7 - t45) / t46))
+    t48 = t41 - t44
+    t49 = ops.select(failed, ops.nan, t48 * (t4 - t48) * (t7 - t48) / t46)
     return (
-        t41,
-        ops.select(failed, ops.nan, -(t42 / t40)),
+        t47,
+        t49,
     )
 
 
@@ -1079,7 +1008,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Spec("q", (3,)),),
     (_runtime.Spec("det", (2,)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     _runtime.Size((0, 1, 2, 3, 4, 5), (), 3),
 )
 
@@ -1115,99 +1044,88 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     return result
 
 
-def _singularities(ops, rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
-    t1 = ops.finite(f, e, l, alpha1, alpha2, alpha3) & (0.0 <= f)
-    t2 = t1 & (0.0 <= e) & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = e * c_alpha1 - f * c_alpha1
-    u_x = t3 - (e * c_alpha2 - f * c_alpha2)
-    t4 = e * s_alpha1 - f * s_alpha1
-    u_y = t4 - (e * s_alpha2 - f * s_alpha2)
-    t5 = rho1 - rho2
-    t6 = u_x * u_x + u_y * u_y + t5 * t5
+def _singularities(ops, rho1, rho2, rho3, f, e, l):
+    t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
+    t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
+    t3 = f - e - (e * 0.5 - f * 0.5)
+    t4 = rho1 - rho2
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t5 = t3 * t3 + c3_y * c3_y
+    t6 = t4 * t4 + t5
     size_u = ops.sqrt(t6)
+    t7 = rho1 - rho3
+    t8 = t7 * t7 + t5
+    size_v = ops.sqrt(t8)
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * ops.vanishing
-    same = size_u <= t7
-    v_x = t3 - (e * c_alpha3 - f * c_alpha3)
-    t8 = ops.select(same, u_x, v_x)
-    v_y = t4 - (e * s_alpha3 - f * s_alpha3)
-    t9 = rho1 - rho3
-    t10 = v_x * v_x + v_y * v_y + t9 * t9
-    size_v = ops.sqrt(t10)
-    all_same = size_u + size_v <= t7
-    t11 = ops.select(same, v_x, u_x)
+    t9 = size * ops.vanishing
+    all_same = size_u + size_v <= t9
+    same = size_u <= t9
     D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t11 / D)
-    t12 = ops.select(same, v_y, u_y)
-    E_12 = ops.select(all_same, 0.0, t12 / D)
-    t13 = ops.select(same, u_y, v_y)
-    t14 = ops.select(same, t9, t5)
-    t15 = ops.select(all_same, 0.0, t14 / D)
-    t16 = ops.select(same, t5, t9)
-    k_0 = E_11 * t8 + E_12 * t13 + t15 * t16
-    m_x = t8 - E_11 * k_0
-    m_y = t13 - E_12 * k_0
-    t17 = t16 - t15 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t15 * t17
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    t18 = t17 - t15 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + t18 * t18)
-    in_line = j <= t7
-    t19 = t8 * (t11 - t8) + t13 * (t12 - t13) + t16 * (t14 - t16)
-    t20 = ops.abs(ops.select(in_line, -t19, 0.0)) <= ops.feasibility * (size * size)
+    E_11 = ops.select(all_same, 1.0, -(t3 / D))
+    t10 = ops.select(same, c3_y, -c3_y)
+    E_12 = ops.select(all_same, 0.0, t10 / D)
+    t11 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, t7, t4)
+    t13 = ops.select(all_same, 0.0, t12 / D)
+    t14 = ops.select(same, t4, t7)
+    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
+    t16 = t3 - E_11 * t15
+    m_y = t11 + E_12 * t15
+    t17 = t14 + t13 * t15
+    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
+    t19 = t16 - E_11 * t18
+    n_y = m_y + E_12 * t18
+    t20 = t17 + t13 * t18
+    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
+    in_line = j <= t9
+    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
+    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
-    t21 = ops.select(in_line, 0.0, t19 / (j * 2.0))
-    t22 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t21 * t21)
-    failed = ops.opposite(t2) | ops.opposite(t20 & t22)
-    t23 = ops.opposite(failed)
-    t24 = ops.select(t23 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t23 & same, t10, 1.0)), ops.sqrt(t24))
+    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
+    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
+    failed = ops.opposite(t2) | ops.opposite(t22 & t24)
+    t25 = ops.opposite(failed)
+    t26 = ops.select(t25 & ops.opposite(same), t6, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t8, 1.0)), ops.sqrt(t26))
+    t27 = ops.select(t25 & ops.opposite(all_same), D_2, 1.0)
+    t28 = ops.select(all_same, 0.0, t12 / t27)
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t25 = t23 & ops.opposite(in_line)
-    t26 = ops.select(t23 & ops.opposite(all_same), D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t11 / t26)
-    E_12_2 = ops.select(all_same, 0.0, t12 / t26)
-    t27 = ops.select(all_same, 0.0, t14 / t26)
-    k_0_2 = E_11_2 * t8 + E_12_2 * t13 + t27 * t16
-    m_x_2 = t8 - E_11_2 * k_0_2
-    m_y_2 = t13 - E_12_2 * k_0_2
-    t28 = t16 - t27 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + t27 * t28
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t29 = t28 - t27 * k_1_2
-    t30 = ops.select(t23, n_x_2 * n_x_2 + n_y_2 * n_y_2 + t29 * t29, 1.0)
-    j_2 = ops.sqrt(t30)
-    t31 = ops.select(in_line, 0.0, t19 / ops.select(t25, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t23, X_2 * X_2 + t31 * t31, 1.0))
-    t32 = ops.select(t23, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t32)
-    t33 = ops.sign(-t15)
-    t34 = ops.select(t23 & in_line, t27 - t33, 1.0)
-    t35 = ops.select(t25, j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t33 / t34, n_x_2 / t35)
-    t36 = E_11_2 * t33
-    E_22 = ops.select(in_line, E_12_2 * t36 / t34, n_y_2 / t35)
-    t37 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t38 = t27 * X_2 - ops.select(in_line, t36, t29 / t35) * t31
-    t39 = t37 + t38
+    E_11_2 = ops.select(all_same, 1.0, -(t3 / t27))
+    t29 = ops.sign(-t13)
+    t30 = E_11_2 * t29
+    E_12_2 = ops.select(all_same, 0.0, t10 / t27)
+    t31 = t3 * E_11_2 - E_12_2 * t11 - t28 * t14
+    t32 = t14 + t28 * t31
+    t33 = t3 - E_11_2 * t31
+    m_y_2 = t11 + E_12_2 * t31
+    t34 = E_11_2 * t33 - E_12_2 * m_y_2 - t28 * t32
+    t35 = t32 + t28 * t34
+    t36 = t25 & ops.opposite(in_line)
+    t37 = t33 - E_11_2 * t34
+    n_y_2 = m_y_2 + E_12_2 * t34
+    t38 = ops.select(t25, t37 * t37 + n_y_2 * n_y_2 + t35 * t35, 1.0)
+    j_2 = ops.sqrt(t38)
+    t39 = ops.select(t36, j_2, 1.0)
+    t40 = ops.select(in_line, 0.0, t21 / ops.select(t36, 2.0 * j_2, 1.0))
+    t41 = t28 * X_2 - ops.select(in_line, t30, t35 / t39) * t40
+    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t40 * t40, 1.0))
+    t42 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.sqrt(t42)
+    t43 = ops.select(t25 & in_line, t28 - t29, 1.0)
+    E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t43, -(t37 / t39))
+    E_22 = ops.select(in_line, E_12_2 * t30 / t43, n_y_2 / t39)
+    t44 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t45 = t41 + t44
     Delta = D_2 * j_2 * h
-    A_13_above = t37 - t38
+    t46 = t41 - t44
     return (
-        ops.select(failed, ops.nan, -t39),
-        ops.select(failed, ops.nan, t5 - t39),
-        ops.select(failed, ops.nan, t9 - t39),
+        ops.select(failed, ops.nan, -t45),
+        ops.select(failed, ops.nan, t4 - t45),
+        ops.select(failed, ops.nan, t7 - t45),
         ops.select(failed, ops.nan, Delta),
-        ops.select(failed, ops.nan, A_13_above),
-        ops.select(failed, ops.nan, t5 + A_13_above),
-        ops.select(failed, ops.nan, t9 + A_13_above),
+        ops.select(failed, ops.nan, -t46),
+        ops.select(failed, ops.nan, t4 - t46),
+        ops.select(failed, ops.nan, t7 - t46),
         ops.select(failed, ops.nan, -Delta),
     )
 
@@ -1218,7 +1136,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("q", (3,)),),
     (_runtime.Spec("factors", (2, 4)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 3),
 )
 
@@ -1254,146 +1172,138 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     return result
 
 
-def _condition_number(ops, rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
-    t1 = ops.finite(f, e, l, alpha1, alpha2, alpha3) & (0.0 <= f)
-    t2 = t1 & (0.0 <= e) & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
-    t3 = e * c_alpha1 - f * c_alpha1
-    u_x = t3 - (e * c_alpha2 - f * c_alpha2)
-    t4 = e * s_alpha1 - f * s_alpha1
-    u_y = t4 - (e * s_alpha2 - f * s_alpha2)
-    t5 = rho1 - rho2
-    t6 = u_x * u_x + u_y * u_y + t5 * t5
+def _condition_number(ops, rho1, rho2, rho3, f, e, l):
+    t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
+    t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
+    t3 = f - e - (e * 0.5 - f * 0.5)
+    t4 = rho1 - rho2
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t5 = t3 * t3 + c3_y * c3_y
+    t6 = t4 * t4 + t5
     size_u = ops.sqrt(t6)
+    t7 = rho1 - rho3
+    t8 = t7 * t7 + t5
+    size_v = ops.sqrt(t8)
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t7 = size * ops.vanishing
-    same = size_u <= t7
-    v_x = t3 - (e * c_alpha3 - f * c_alpha3)
-    t8 = ops.select(same, u_x, v_x)
-    v_y = t4 - (e * s_alpha3 - f * s_alpha3)
-    t9 = rho1 - rho3
-    t10 = v_x * v_x + v_y * v_y + t9 * t9
-    size_v = ops.sqrt(t10)
-    all_same = size_u + size_v <= t7
-    t11 = ops.select(same, v_x, u_x)
+    t9 = size * ops.vanishing
+    all_same = size_u + size_v <= t9
+    same = size_u <= t9
     D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t11 / D)
-    t12 = ops.select(same, v_y, u_y)
-    E_12 = ops.select(all_same, 0.0, t12 / D)
-    t13 = ops.select(same, u_y, v_y)
-    t14 = ops.select(same, t9, t5)
-    t15 = ops.select(all_same, 0.0, t14 / D)
-    t16 = ops.select(same, t5, t9)
-    k_0 = E_11 * t8 + E_12 * t13 + t15 * t16
-    m_x = t8 - E_11 * k_0
-    m_y = t13 - E_12 * k_0
-    t17 = t16 - t15 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t15 * t17
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    t18 = t17 - t15 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + t18 * t18)
-    in_line = j <= t7
-    t19 = t8 * (t11 - t8) + t13 * (t12 - t13) + t16 * (t14 - t16)
-    t20 = ops.abs(ops.select(in_line, -t19, 0.0)) <= ops.feasibility * (size * size)
+    E_11 = ops.select(all_same, 1.0, -(t3 / D))
+    t10 = ops.select(same, c3_y, -c3_y)
+    E_12 = ops.select(all_same, 0.0, t10 / D)
+    t11 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, t7, t4)
+    t13 = ops.select(all_same, 0.0, t12 / D)
+    t14 = ops.select(same, t4, t7)
+    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
+    t16 = t3 - E_11 * t15
+    m_y = t11 + E_12 * t15
+    t17 = t14 + t13 * t15
+    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
+    t19 = t16 - E_11 * t18
+    n_y = m_y + E_12 * t18
+    t20 = t17 + t13 * t18
+    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
+    in_line = j <= t9
+    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
+    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
-    t21 = ops.select(in_line, 0.0, t19 / (j * 2.0))
-    t22 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t21 * t21)
-    failed = ops.opposite(t2) | ops.opposite(t20 & t22)
-    t23 = ops.opposite(failed)
-    t24 = ops.select(t23 & ops.opposite(same), t6, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t23 & same, t10, 1.0)), ops.sqrt(t24))
+    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
+    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
+    failed = ops.opposite(t2) | ops.opposite(t22 & t24)
+    t25 = ops.opposite(failed)
+    t26 = ops.select(t25 & ops.opposite(same), t6, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t8, 1.0)), ops.sqrt(t26))
+    t27 = ops.select(t25 & ops.opposite(all_same), D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(t3 / t27))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t25 = t23 & ops.opposite(in_line)
-    t26 = ops.select(t23 & ops.opposite(all_same), D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t11 / t26)
-    E_12_2 = ops.select(all_same, 0.0, t12 / t26)
-    t27 = ops.select(all_same, 0.0, t14 / t26)
-    k_0_2 = E_11_2 * t8 + E_12_2 * t13 + t27 * t16
-    m_x_2 = t8 - E_11_2 * k_0_2
-    m_y_2 = t13 - E_12_2 * k_0_2
-    t28 = t16 - t27 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + t27 * t28
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t29 = t28 - t27 * k_1_2
-    t30 = ops.select(t23, n_x_2 * n_x_2 + n_y_2 * n_y_2 + t29 * t29, 1.0)
-    j_2 = ops.sqrt(t30)
-    t31 = ops.select(in_line, 0.0, t19 / ops.select(t25, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t23, X_2 * X_2 + t31 * t31, 1.0))
-    t32 = ops.select(t23, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t32)
-    t33 = ops.sign(-t15)
-    t34 = E_11_2 * t33
-    t35 = ops.select(t25, j_2, 1.0)
-    t36 = ops.select(in_line, t34, t29 / t35)
-    t37 = ops.select(t23 & in_line, t27 - t33, 1.0)
-    E_22 = ops.select(in_line, E_12_2 * t34 / t37, n_y_2 / t35)
-    t38 = h * (E_12_2 * t36 - t27 * E_22)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t33 / t37, n_x_2 / t35)
-    t39 = E_11_2 * X_2 - E_21 * t31
-    t40 = t38 - t39
-    t41 = (E_11_2 * t36 - t27 * E_21) * h
-    t42 = E_12_2 * X_2 - t31 * E_22
-    A_12 = t41 + t42
-    t43 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t44 = t27 * X_2 - t36 * t31
-    t45 = t43 + t44
-    t46 = u_x + t40
-    t47 = u_y - A_12
-    A_23 = t5 - t45
-    t48 = t40 * t40 + A_12 * A_12 + t45 * t45 + (t46 * t46 + t47 * t47 + A_23 * A_23)
-    t49 = v_x + t40
-    t50 = v_y - A_12
-    A_33 = t9 - t45
-    t51 = t40 * t47 + A_12 * t46
-    t52 = t40 * A_23 + t45 * t46
-    t53 = t40 * t50 + A_12 * t49
-    t54 = t40 * A_33 + t45 * t49
-    t55 = t51 * t51 + t52 * t52 + t53 * t53 + t54 * t54
-    t56 = A_12 * A_23 - t45 * t47
-    t57 = A_12 * A_33 - t45 * t50
-    t58 = t46 * t50 - t47 * t49
-    t59 = t46 * A_33 - A_23 * t49
-    t60 = t55 + t56 * t56 + t57 * t57 + t58 * t58 + t59 * t59
-    t61 = t47 * A_33 - A_23 * t50
-    t62 = (t48 + (t49 * t49 + t50 * t50 + A_33 * A_33)) * (t60 + t61 * t61)
-    t63 = ops.select(t23, 3.0 * (D_2 * j_2 * h), 1.0)
-    t64 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t23, t62, 1.0)) / t63)
-    A_11_above = t38 + t39
-    t65 = t41 - t42
-    A_13_above = t43 - t44
-    square1_above = A_11_above * A_11_above + t65 * t65 + A_13_above * A_13_above
-    t66 = u_x - A_11_above
-    t67 = u_y + t65
-    A_23_above = t5 + A_13_above
-    square2_above = t66 * t66 + t67 * t67 + A_23_above * A_23_above
-    t68 = v_x - A_11_above
-    t69 = v_y + t65
-    A_33_above = t9 + A_13_above
-    square3_above = t68 * t68 + t69 * t69 + A_33_above * A_33_above
-    t70 = square1_above + square2_above + square3_above
-    t71 = A_11_above * t67 + t65 * t66
-    t72 = A_11_above * A_23_above + A_13_above * t66
-    t73 = A_11_above * t69 + t65 * t68
-    t74 = A_11_above * A_33_above + A_13_above * t68
-    t75 = t71 * t71 + t72 * t72 + t73 * t73 + t74 * t74
-    t76 = t65 * A_23_above - A_13_above * t67
-    t77 = t65 * A_33_above - A_13_above * t69
-    t78 = t66 * t69 - t67 * t68
-    t79 = t66 * A_33_above - A_23_above * t68
-    t80 = t75 + t76 * t76 + t77 * t77 + t78 * t78 + t79 * t79
-    t81 = t67 * A_33_above - A_23_above * t69
-    t82 = ops.select(t23, t70 * (t80 + t81 * t81), 1.0)
-    t83 = ops.select(failed, ops.nan, ops.sqrt(t82) / t63)
+    t28 = ops.sign(-t13)
+    t29 = ops.select(all_same, 0.0, t12 / t27)
+    t30 = ops.select(t25 & in_line, t29 - t28, 1.0)
+    E_12_2 = ops.select(all_same, 0.0, t10 / t27)
+    t31 = t3 * E_11_2 - E_12_2 * t11 - t29 * t14
+    t32 = t3 - E_11_2 * t31
+    m_y_2 = t11 + E_12_2 * t31
+    t33 = t14 + t29 * t31
+    t34 = E_11_2 * t32 - E_12_2 * m_y_2 - t29 * t33
+    t35 = t32 - E_11_2 * t34
+    t36 = t25 & ops.opposite(in_line)
+    n_y_2 = m_y_2 + E_12_2 * t34
+    t37 = t33 + t29 * t34
+    t38 = ops.select(t25, t35 * t35 + n_y_2 * n_y_2 + t37 * t37, 1.0)
+    j_2 = ops.sqrt(t38)
+    t39 = ops.select(t36, j_2, 1.0)
+    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t28 / t30, -(t35 / t39))
+    t40 = ops.select(in_line, 0.0, t21 / ops.select(t36, 2.0 * j_2, 1.0))
+    t41 = E_11_2 * X_2 - E_21 * t40
+    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t40 * t40, 1.0))
+    t42 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.sqrt(t42)
+    t43 = E_11_2 * t28
+    t44 = ops.select(in_line, t43, t37 / t39)
+    E_22 = ops.select(in_line, E_12_2 * t43 / t30, n_y_2 / t39)
+    t45 = h * (E_12_2 * t44 - t29 * E_22)
+    A_11 = t41 - t45
+    t46 = X_2 * E_12_2 - t40 * E_22
+    t47 = h * (E_11_2 * t44 - t29 * E_21)
+    A_12 = t46 + t47
+    t48 = X_2 * t29 - t40 * t44
+    t49 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t50 = t48 + t49
+    A_21 = t3 + A_11
+    t51 = A_21 * A_21
+    A_22 = c3_y + A_12
+    A_23 = t4 - t50
+    t52 = A_11 * A_11 + A_12 * A_12 + t50 * t50 + (t51 + A_22 * A_22 + A_23 * A_23)
+    t53 = c3_y - A_12
+    A_33 = t7 - t50
+    t54 = A_12 * A_21
+    t55 = A_11 * A_22 - t54
+    t56 = t50 * A_21
+    t57 = A_11 * A_23 + t56
+    t58 = t54 + A_11 * t53
+    t59 = t56 + A_11 * A_33
+    t60 = t55 * t55 + t57 * t57 + t58 * t58 + t59 * t59
+    t61 = A_12 * A_23 + t50 * A_22
+    t62 = A_12 * A_33 - t50 * t53
+    t63 = A_21 * t53 + A_21 * A_22
+    t64 = A_21 * A_33 - A_21 * A_23
+    t65 = t60 + t61 * t61 + t62 * t62 + t63 * t63 + t64 * t64
+    t66 = A_22 * A_33 + A_23 * t53
+    t67 = (t52 + (t51 + t53 * t53 + A_33 * A_33)) * (t65 + t66 * t66)
+    t68 = ops.select(t25, 3.0 * (D_2 * j_2 * h), 1.0)
+    t69 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t25, t67, 1.0)) / t68)
+    A_11_above = t41 + t45
+    A_12_above = t46 - t47
+    t70 = A_11_above * A_11_above + A_12_above * A_12_above
+    t71 = t48 - t49
+    A_21_above = t3 + A_11_above
+    t72 = A_21_above * A_21_above
+    A_22_above = c3_y + A_12_above
+    A_23_above = t4 - t71
+    square2_above = t72 + A_22_above * A_22_above + A_23_above * A_23_above
+    t73 = c3_y - A_12_above
+    A_33_above = t7 - t71
+    t74 = t70 + t71 * t71 + square2_above + (t72 + t73 * t73 + A_33_above * A_33_above)
+    t75 = A_12_above * A_21_above
+    t76 = A_11_above * A_22_above - t75
+    t77 = t71 * A_21_above
+    t78 = A_11_above * A_23_above + t77
+    t79 = t75 + A_11_above * t73
+    t80 = t77 + A_11_above * A_33_above
+    t81 = t76 * t76 + t78 * t78 + t79 * t79 + t80 * t80
+    t82 = A_12_above * A_23_above + t71 * A_22_above
+    t83 = A_12_above * A_33_above - t71 * t73
+    t84 = A_21_above * t73 + A_21_above * A_22_above
+    t85 = A_21_above * A_33_above - A_21_above * A_23_above
+    t86 = t81 + t82 * t82 + t83 * t83 + t84 * t84 + t85 * t85
+    t87 = A_22_above * A_33_above + A_23_above * t73
+    t88 = ops.select(t25, t74 * (t86 + t87 * t87), 1.0)
+    t89 = ops.select(failed, ops.nan, ops.sqrt(t88) / t68)
     return (
-        t64,
-        t83,
+        t69,
+        t89,
     )
 
 
@@ -1403,7 +1313,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Spec("q", (3,)),),
     (_runtime.Spec("kappa", (2,)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     _runtime.Size((0, 1, 2, 3, 4, 5), (), 6),
 )
 
@@ -1440,143 +1350,124 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     return result
 
 
-def _ik(ops, x, y, z, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
-    t1 = ops.finite(f, e, l, alpha1, alpha2, alpha3) & (0.0 <= f)
-    t2 = t1 & (0.0 <= e) & (0.0 <= l) & ops.finite(x, y, z)
-    invalid = ops.opposite(t2)
+def _ik(ops, x, y, z, f, e, l):
+    t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
+    invalid = ops.opposite(t1 & (0.0 <= l) & ops.finite(x, y, z))
     size = f + e + l + ops.abs(x) + ops.abs(y) + ops.abs(z)
-    t3 = -(ops.feasibility * (size * 0.5))
-    t4 = e * s_alpha1 - f * s_alpha1
-    A_12 = y + t4
-    t5 = e * c_alpha1 - f * c_alpha1
-    A_11 = x + t5
-    t6 = A_12 * A_12 + A_11 * A_11
-    aside_1 = ops.sqrt(t6)
-    t7 = l - aside_1
-    t8 = l + aside_1
-    t9 = e * s_alpha2 - f * s_alpha2
-    t10 = y + t9
-    t11 = e * c_alpha2 - f * c_alpha2
-    t12 = x + t11
-    t13 = t10 * t10 + t12 * t12
-    aside_2 = ops.sqrt(t13)
-    t14 = l - aside_2
-    t15 = l + aside_2
-    t16 = (t3 <= t7) & (t3 <= t8) & (t3 <= t14) & (t3 <= t15)
-    t17 = e * s_alpha3 - f * s_alpha3
-    t18 = y + t17
-    t19 = e * c_alpha3 - f * c_alpha3
-    t20 = x + t19
-    t21 = t18 * t18 + t20 * t20
-    aside_3 = ops.sqrt(t21)
-    t22 = l - aside_3
-    t23 = l + aside_3
-    unreachable = ops.opposite(t16 & (t3 <= t22) & (t3 <= t23))
+    t2 = -(ops.feasibility * (size * 0.5))
+    A_11 = x - f + e
+    t3 = y * y + A_11 * A_11
+    aside_1 = ops.sqrt(t3)
+    t4 = l - aside_1
+    t5 = l + aside_1
+    t6 = x - e * 0.5 + f * 0.5
+    t7 = t6 * t6
+    A_22 = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t8 = y + A_22
+    t9 = t7 + t8 * t8
+    aside_2 = ops.sqrt(t9)
+    t10 = l - aside_2
+    t11 = l + aside_2
+    t12 = (t2 <= t4) & (t2 <= t5) & (t2 <= t10) & (t2 <= t11)
+    t13 = y - A_22
+    t14 = t7 + t13 * t13
+    aside_3 = ops.sqrt(t14)
+    t15 = l - aside_3
+    t16 = l + aside_3
+    unreachable = ops.opposite(t12 & (t2 <= t15) & (t2 <= t16))
     failed = invalid | unreachable
-    t24 = ops.opposite(failed)
-    aside_1_2 = ops.sqrt(ops.select(t24, t6, 1.0))
-    t25 = ops.max(l - aside_1_2, 0.0) * ops.max(l + aside_1_2, 0.0)
-    root_1 = ops.sqrt(ops.select(t24, t25, 1.0))
-    t26 = ops.select(failed, ops.nan, z - root_1)
-    aside_2_2 = ops.sqrt(ops.select(t24, t13, 1.0))
-    t27 = ops.max(l - aside_2_2, 0.0) * ops.max(l + aside_2_2, 0.0)
-    root_2 = ops.sqrt(ops.select(t24, t27, 1.0))
-    t28 = ops.select(failed, ops.nan, z - root_2)
-    aside_3_2 = ops.sqrt(ops.select(t24, t21, 1.0))
-    t29 = ops.max(l - aside_3_2, 0.0) * ops.max(l + aside_3_2, 0.0)
-    root_3 = ops.sqrt(ops.select(t24, t29, 1.0))
-    t30 = ops.select(failed, ops.nan, z - root_3)
-    t31 = ops.select(failed, ops.nan, z + root_3)
-    t32 = ops.select(failed, ops.nan, z + root_2)
-    t33 = ops.select(failed, ops.nan, z + root_1)
-    root_1_2 = ops.sqrt(ops.max(t7, 0.0) * ops.max(t8, 0.0))
+    t17 = ops.opposite(failed)
+    aside_1_2 = ops.sqrt(ops.select(t17, t3, 1.0))
+    t18 = ops.max(l - aside_1_2, 0.0) * ops.max(l + aside_1_2, 0.0)
+    root_1 = ops.sqrt(ops.select(t17, t18, 1.0))
+    t19 = ops.select(failed, ops.nan, z - root_1)
+    aside_2_2 = ops.sqrt(ops.select(t17, t9, 1.0))
+    t20 = ops.max(l - aside_2_2, 0.0) * ops.max(l + aside_2_2, 0.0)
+    root_2 = ops.sqrt(ops.select(t17, t20, 1.0))
+    t21 = ops.select(failed, ops.nan, z - root_2)
+    aside_3_2 = ops.sqrt(ops.select(t17, t14, 1.0))
+    t22 = ops.max(l - aside_3_2, 0.0) * ops.max(l + aside_3_2, 0.0)
+    root_3 = ops.sqrt(ops.select(t17, t22, 1.0))
+    t23 = ops.select(failed, ops.nan, z - root_3)
+    t24 = ops.select(failed, ops.nan, z + root_3)
+    t25 = ops.select(failed, ops.nan, z + root_2)
+    t26 = ops.select(failed, ops.nan, z + root_1)
+    root_1_2 = ops.sqrt(ops.max(t4, 0.0) * ops.max(t5, 0.0))
     slide_1 = z - root_1_2
-    A_13 = z - slide_1
-    t34 = t5 - t11
-    t35 = t4 - t17
-    t36 = t34 * t35
-    t37 = t4 - t9
-    t38 = t5 - t19
-    t39 = t37 * t38
-    t40 = A_13 * t36 - A_13 * t39
-    root_3_2 = ops.sqrt(ops.max(t22, 0.0) * ops.max(t23, 0.0))
+    t27 = e * 1.5 - f * 1.5
+    t28 = t27 * A_22
+    t29 = (z - slide_1) * t28
+    t30 = t29 + t29
+    t31 = A_11 * A_22
+    root_3_2 = ops.sqrt(ops.max(t15, 0.0) * ops.max(t16, 0.0))
     slide_3 = z - root_3_2
     A_33 = slide_1 - slide_3
-    t41 = A_11 * t37
-    t42 = A_12 * t34
-    t43 = t40 - (A_33 * t41 - A_33 * t42)
-    root_2_2 = ops.sqrt(ops.max(t14, 0.0) * ops.max(t15, 0.0))
+    t32 = y * t27
+    t33 = t30 + (t31 * A_33 + t32 * A_33)
+    root_2_2 = ops.sqrt(ops.max(t10, 0.0) * ops.max(t11, 0.0))
     slide_2 = z - root_2_2
     A_23 = slide_1 - slide_2
-    t44 = A_11 * t35
-    t45 = A_12 * t38
-    t46 = A_23 * t44 - A_23 * t45
-    t47 = ops.determined * (l * l * l)
-    t48 = ops.status(invalid, unreachable, ops.abs(-(t43 + t46)) <= t47)
+    t34 = t31 * A_23 - t32 * A_23
+    t35 = ops.determined * (l * l * l)
+    t36 = ops.status(invalid, unreachable, ops.abs(t33 + t34) <= t35)
     slide_3_plus_plus_minus = z + root_3_2
     A_33_plus_plus_minus = slide_1 - slide_3_plus_plus_minus
-    t49 = t41 * A_33_plus_plus_minus - t42 * A_33_plus_plus_minus
-    t50 = t40 - t49
-    t51 = ops.status(invalid, unreachable, ops.abs(t46 + t50) <= t47)
+    t37 = t31 * A_33_plus_plus_minus + t32 * A_33_plus_plus_minus
+    t38 = t30 + t37
+    t39 = ops.status(invalid, unreachable, ops.abs(t34 + t38) <= t35)
     slide_2_plus_minus_plus = z + root_2_2
     A_23_plus_minus_plus = slide_1 - slide_2_plus_minus_plus
-    t52 = t44 * A_23_plus_minus_plus - t45 * A_23_plus_minus_plus
-    t53 = ops.status(invalid, unreachable, ops.abs(-(t43 + t52)) <= t47)
-    t54 = ops.status(invalid, unreachable, ops.abs(t50 + t52) <= t47)
+    t40 = t31 * A_23_plus_minus_plus - t32 * A_23_plus_minus_plus
+    t41 = ops.status(invalid, unreachable, ops.abs(t33 + t40) <= t35)
+    t42 = ops.status(invalid, unreachable, ops.abs(t38 + t40) <= t35)
     slide_1_minus_plus_plus = z + root_1_2
-    A_13_minus_plus_plus = z - slide_1_minus_plus_plus
-    t55 = t36 * A_13_minus_plus_plus - t39 * A_13_minus_plus_plus
-    t56 = slide_3 - slide_1_minus_plus_plus
-    t57 = t55 + (t41 * t56 - t42 * t56)
-    t58 = slide_2 - slide_1_minus_plus_plus
-    t59 = t44 * t58 - t45 * t58
-    t60 = ops.status(invalid, unreachable, ops.abs(t57 - t59) <= t47)
-    t61 = slide_3_plus_plus_minus - slide_1_minus_plus_plus
-    t62 = t55 + (t41 * t61 - t42 * t61)
-    t63 = ops.status(invalid, unreachable, ops.abs(t59 - t62) <= t47)
-    t64 = slide_2_plus_minus_plus - slide_1_minus_plus_plus
-    t65 = t44 * t64 - t45 * t64
-    t66 = ops.status(invalid, unreachable, ops.abs(t57 - t65) <= t47)
-    t67 = ops.status(invalid, unreachable, ops.abs(t62 - t65) <= t47)
+    t43 = (z - slide_1_minus_plus_plus) * t28
+    t44 = t43 + t43
+    t45 = slide_1_minus_plus_plus - slide_3
+    t46 = t44 + (t31 * t45 + t32 * t45)
+    t47 = slide_1_minus_plus_plus - slide_2
+    t48 = t31 * t47 - t32 * t47
+    t49 = ops.status(invalid, unreachable, ops.abs(-(t46 + t48)) <= t35)
+    t50 = slide_1_minus_plus_plus - slide_3_plus_plus_minus
+    t51 = t44 + (t31 * t50 + t32 * t50)
+    t52 = ops.status(invalid, unreachable, ops.abs(-(t48 + t51)) <= t35)
+    t53 = slide_1_minus_plus_plus - slide_2_plus_minus_plus
+    t54 = t31 * t53 - t32 * t53
+    t55 = ops.status(invalid, unreachable, ops.abs(-(t46 + t54)) <= t35)
+    t56 = ops.status(invalid, unreachable, ops.abs(t51 + t54) <= t35)
     return (
+        t19,
+        t21,
+        t23,
+        t19,
+        t21,
+        t24,
+        t19,
+        t25,
+        t23,
+        t19,
+        t25,
+        t24,
         t26,
-        t28,
-        t30,
+        t21,
+        t23,
         t26,
-        t28,
-        t31,
+        t21,
+        t24,
         t26,
-        t32,
-        t30,
+        t25,
+        t23,
         t26,
-        t32,
-        t31,
-        t33,
-        t28,
-        t30,
-        t33,
-        t28,
-        t31,
-        t33,
-        t32,
-        t30,
-        t33,
-        t32,
-        t31,
-        t48,
-        t51,
-        t53,
-        t54,
-        t60,
-        t63,
-        t66,
-        t67,
+        t25,
+        t24,
+        t36,
+        t39,
+        t41,
+        t42,
+        t49,
+        t52,
+        t55,
+        t56,
     )
 
 
@@ -1586,7 +1477,7 @@ _IK = _runtime.Kernel(
     (_runtime.Spec("x", (3,)),),
     (_runtime.Spec("q", (8, 3)), _runtime.Spec("status", (8,), "status")),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 3),
 )
 
@@ -1630,29 +1521,23 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
     return Solutions(*result)
 
 
-def _workspace_contains(ops, x, y, z, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1 = ops.sin(alpha1)
-    c_alpha1 = ops.cos(alpha1)
-    s_alpha2 = ops.sin(alpha2)
-    c_alpha2 = ops.cos(alpha2)
-    s_alpha3 = ops.sin(alpha3)
-    c_alpha3 = ops.cos(alpha3)
-    t1 = ops.finite(f, e, l, alpha1, alpha2, alpha3) & (0.0 <= f)
-    t2 = t1 & (0.0 <= e) & (0.0 <= l) & ops.finite(x, y, z)
+def _workspace_contains(ops, x, y, z, f, e, l):
+    t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
+    invalid = ops.opposite(t1 & (0.0 <= l) & ops.finite(x, y, z))
     size = f + e + l + ops.abs(x) + ops.abs(y) + ops.abs(z)
-    t3 = -(ops.feasibility * (size * 0.5))
-    t4 = y + e * s_alpha1 - f * s_alpha1
-    t5 = x + e * c_alpha1 - f * c_alpha1
-    aside_1 = ops.sqrt(t4 * t4 + t5 * t5)
-    t6 = y + e * s_alpha2 - f * s_alpha2
-    t7 = x + e * c_alpha2 - f * c_alpha2
-    aside_2 = ops.sqrt(t6 * t6 + t7 * t7)
-    t8 = (t3 <= l - aside_1) & (t3 <= l + aside_1) & (t3 <= l - aside_2)
-    t9 = y + e * s_alpha3 - f * s_alpha3
-    t10 = x + e * c_alpha3 - f * c_alpha3
-    aside_3 = ops.sqrt(t9 * t9 + t10 * t10)
-    t11 = t8 & (t3 <= l + aside_2) & (t3 <= l - aside_3)
-    failed = ops.opposite(t2) | ops.opposite(t11 & (t3 <= l + aside_3))
+    t2 = -(ops.feasibility * (size * 0.5))
+    t3 = x - f + e
+    aside_1 = ops.sqrt(y * y + t3 * t3)
+    t4 = x - e * 0.5 + f * 0.5
+    t5 = t4 * t4
+    t6 = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t7 = y + t6
+    aside_2 = ops.sqrt(t5 + t7 * t7)
+    t8 = (t2 <= l - aside_1) & (t2 <= l + aside_1) & (t2 <= l - aside_2)
+    t9 = y - t6
+    aside_3 = ops.sqrt(t5 + t9 * t9)
+    t10 = t8 & (t2 <= l + aside_2) & (t2 <= l - aside_3)
+    failed = invalid | ops.opposite(t10 & (t2 <= l + aside_3))
     return (
         ops.opposite(failed),
     )
@@ -1664,7 +1549,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
     (_runtime.Spec("p", (3,)),),
     (_runtime.Spec("inside", (), "bool"),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     _runtime.Size((0, 1, 2, 3, 4, 5), (), 2),
 )
 

@@ -1672,7 +1672,7 @@ static const cf_array irb260_workspace_contains_out[] = {
     { "inside", 0, { 0 }, 1, CF_BOOL },
 };
 
-static const char *const linear_delta_fields[] = { "f", "e", "l", "alpha1", "alpha2", "alpha3" };
+static const char *const linear_delta_fields[] = { "f", "e", "l" };
 static const double linear_delta_values[] = LINEAR_DELTA_DEFAULTS;
 
 static void linear_delta_fk_one(const double *params, const double *const *in, void *const *out)
@@ -6326,7 +6326,7 @@ const cf_function cf_functions[] = {
       "  points is returned.\n"
       "- Ill-conditioned near the parallel singularities, where both modes meet.\n"
       ,
-      6, linear_delta_values, linear_delta_fields,
+      3, linear_delta_values, linear_delta_fields,
       1, linear_delta_fk_in, 2, linear_delta_fk_out,
       linear_delta_fk_one, linear_delta_fk_many },
     { "linear_delta.skeleton",
@@ -6358,7 +6358,7 @@ const cf_function cf_functions[] = {
       "- Branches in this order, `ASSEMBLY_MODES`: below, above.\n"
       "- NaN for an assembly mode that does not exist.\n"
       ,
-      6, linear_delta_values, linear_delta_fields,
+      3, linear_delta_values, linear_delta_fields,
       1, linear_delta_skeleton_in, 1, linear_delta_skeleton_out,
       linear_delta_skeleton_one, linear_delta_skeleton_many },
     { "linear_delta.jacobian_parallel",
@@ -6390,7 +6390,7 @@ const cf_function cf_functions[] = {
       "- Branches in this order, `ASSEMBLY_MODES`: below, above.\n"
       "- NaN for an assembly mode that does not exist.\n"
       ,
-      6, linear_delta_values, linear_delta_fields,
+      3, linear_delta_values, linear_delta_fields,
       1, linear_delta_jacobian_parallel_in, 1, linear_delta_jacobian_parallel_out,
       linear_delta_jacobian_parallel_one, linear_delta_jacobian_parallel_many },
     { "linear_delta.jacobian_serial",
@@ -6422,7 +6422,7 @@ const cf_function cf_functions[] = {
       "- NaN for an assembly mode that does not exist.\n"
       "- Its signs distinguish the working modes; BRANCHES lists them in the same order.\n"
       ,
-      6, linear_delta_values, linear_delta_fields,
+      3, linear_delta_values, linear_delta_fields,
       1, linear_delta_jacobian_serial_in, 1, linear_delta_jacobian_serial_out,
       linear_delta_jacobian_serial_one, linear_delta_jacobian_serial_many },
     { "linear_delta.jacobian",
@@ -6455,7 +6455,7 @@ const cf_function cf_functions[] = {
       "- NaN for an assembly mode that does not exist.\n"
       "- Not finite at a parallel singularity.\n"
       ,
-      6, linear_delta_values, linear_delta_fields,
+      3, linear_delta_values, linear_delta_fields,
       1, linear_delta_jacobian_in, 1, linear_delta_jacobian_out,
       linear_delta_jacobian_one, linear_delta_jacobian_many },
     { "linear_delta.determinant",
@@ -6487,7 +6487,7 @@ const cf_function cf_functions[] = {
       "- NaN for an assembly mode that does not exist.\n"
       "- Not finite at a parallel singularity.\n"
       ,
-      6, linear_delta_values, linear_delta_fields,
+      3, linear_delta_values, linear_delta_fields,
       1, linear_delta_determinant_in, 1, linear_delta_determinant_out,
       linear_delta_determinant_one, linear_delta_determinant_many },
     { "linear_delta.singularities",
@@ -6519,7 +6519,7 @@ const cf_function cf_functions[] = {
       "- Branches in this order, `ASSEMBLY_MODES`: below, above.\n"
       "- NaN for an assembly mode that does not exist.\n"
       ,
-      6, linear_delta_values, linear_delta_fields,
+      3, linear_delta_values, linear_delta_fields,
       1, linear_delta_singularities_in, 1, linear_delta_singularities_out,
       linear_delta_singularities_one, linear_delta_singularities_many },
     { "linear_delta.condition_number",
@@ -6552,7 +6552,7 @@ const cf_function cf_functions[] = {
       "- NaN for an assembly mode that does not exist.\n"
       "- Infinite at a parallel singularity.\n"
       ,
-      6, linear_delta_values, linear_delta_fields,
+      3, linear_delta_values, linear_delta_fields,
       1, linear_delta_condition_number_in, 1, linear_delta_condition_number_out,
       linear_delta_condition_number_one, linear_delta_condition_number_many },
     { "linear_delta.ik",
@@ -6592,7 +6592,7 @@ const cf_function cf_functions[] = {
       "- SINGULAR also near a parallel singularity, where the rods are in one plane: the loop\n"
       "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.\n"
       ,
-      6, linear_delta_values, linear_delta_fields,
+      3, linear_delta_values, linear_delta_fields,
       1, linear_delta_ik_in, 2, linear_delta_ik_out,
       linear_delta_ik_one, linear_delta_ik_many },
     { "linear_delta.workspace_contains",
@@ -6618,7 +6618,7 @@ const cf_function cf_functions[] = {
       "ValueError\n"
       "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
       ,
-      6, linear_delta_values, linear_delta_fields,
+      3, linear_delta_values, linear_delta_fields,
       1, linear_delta_workspace_contains_in, 1, linear_delta_workspace_contains_out,
       linear_delta_workspace_contains_one, linear_delta_workspace_contains_many },
     { "orthoglide.fk",

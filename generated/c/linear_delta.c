@@ -3,123 +3,105 @@
  * derivations/linear_delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, solved by lemmas.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 42 compare and select, 65 add, 5 divide, 71 multiply, 3 sincos, 5 sqrt
- *   skeleton: 41 compare and select, 102 add, 10 divide, 63 multiply, 3 sincos, 5 sqrt
- *   jacobian_parallel: 41 compare and select, 86 add, 10 divide, 63 multiply, 3 sincos, 5 sqrt
- *   jacobian_serial: 41 compare and select, 58 add, 10 divide, 53 multiply, 3 sincos, 5 sqrt
- *   jacobian: 41 compare and select, 104 add, 28 divide, 119 multiply, 3 sincos, 5 sqrt
- *   determinant: 41 compare and select, 54 add, 12 divide, 59 multiply, 3 sincos, 5 sqrt
- *   singularities: 41 compare and select, 60 add, 10 divide, 55 multiply, 3 sincos, 5 sqrt
- *   condition_number: 41 compare and select, 120 add, 12 divide, 140 multiply, 3 sincos, 7 sqrt
- *   ik: 57 compare and select, 74 add, 1 divide, 51 multiply, 3 sincos, 6 sqrt
- *   workspace_contains: 27 compare and select, 26 add, 1 divide, 19 multiply, 3 sincos, 3 sqrt
+ *   fk: 40 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
+ *   skeleton: 39 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
+ *   jacobian_parallel: 39 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
+ *   jacobian_serial: 39 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
+ *   jacobian: 39 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
+ *   determinant: 39 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
+ *   singularities: 39 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
+ *   condition_number: 39 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
+ *   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
+ *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  */
 #include "linear_delta.h"
 
 CF_INLINE void linear_delta_fk_kernel(const int single, const real_t one,
     const linear_delta_params *params,
-    const real_t q[3], const real_t *sines,
-    const real_t *cosines, real_t p[6], real_t status[2])
+    const real_t q[3], real_t p[6], real_t status[2])
 {
     const real_t f = params->f;
     const real_t e = params->e;
     const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s_alpha2 = sines[1];
-    const real_t c_alpha2 = cosines[1];
-    const real_t s_alpha3 = sines[2];
-    const real_t c_alpha3 = cosines[2];
-    const real_t t1 = cf_rounded(single, one, e * c_alpha1) - cf_rounded(single, one, f * c_alpha1);
-    const real_t t2 = cf_rounded(single, one, e * c_alpha2) - cf_rounded(single, one, f * c_alpha2);
-    const real_t u_x = t1 - t2;
-    const real_t t3 = cf_rounded(single, one, e * s_alpha1) - cf_rounded(single, one, f * s_alpha1);
-    const real_t t4 = cf_rounded(single, one, e * s_alpha2) - cf_rounded(single, one, f * s_alpha2);
-    const real_t u_y = t3 - t4;
-    const real_t t5 = cf_rounded(single, one, u_x * u_x) + cf_rounded(single, one, u_y * u_y);
-    const real_t t6 = rho1 - rho2;
-    const real_t size_u = cf_sqrt(t5 + cf_rounded(single, one, t6 * t6));
-    const real_t t7 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
-    const real_t v_x = t1 - t7;
-    const real_t t8 = cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
-    const real_t v_y = t3 - t8;
-    const real_t t9 = cf_rounded(single, one, v_x * v_x) + cf_rounded(single, one, v_y * v_y);
-    const real_t t10 = rho1 - rho3;
-    const real_t size_v = cf_sqrt(t9 + cf_rounded(single, one, t10 * t10));
+    const real_t c1_x = f - e;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t1 = c1_x - c2_x;
+    const real_t t2 = rho1 - rho2;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = cf_rounded(single, one, t1 * t1) + cf_rounded(single, one, c3_y * c3_y);
+    const real_t size_u = cf_sqrt(cf_rounded(single, one, t2 * t2) + t5);
+    const real_t t6 = rho1 - rho3;
+    const real_t size_v = cf_sqrt(cf_rounded(single, one, t6 * t6) + t5);
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t11 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t11;
-    const int same = size_u <= t11;
+    const real_t t7 = size * CLOSEDFORM_VANISHING;
+    const int all_same = size_u + size_v <= t7;
+    const int same = size_u <= t7;
     const real_t D = cf_rarely(single, same, size_v, size_u);
+    const real_t t8 = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, D);
+    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(t1 * t8));
+    const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t10 = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 * t10);
+    const real_t t11 = cf_rounded(single, one, t1 * E_11) - cf_rounded(single, one, t9 * E_12);
+    const real_t t12 = cf_rarely(single, same, t2, t6);
+    const real_t t13 = cf_rarely(single, same, t6, t2);
+    const real_t t14 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 * t13);
+    const real_t t15 = t11 - cf_rounded(single, one, t12 * t14);
+    const real_t t16 = t1 - cf_rounded(single, one, E_11 * t15);
+    const real_t m_y = t9 + cf_rounded(single, one, E_12 * t15);
+    const real_t t17 = cf_rounded(single, one, E_11 * t16) - cf_rounded(single, one, E_12 * m_y);
+    const real_t t18 = t12 + cf_rounded(single, one, t14 * t15);
+    const real_t t19 = t17 - cf_rounded(single, one, t14 * t18);
+    const real_t t20 = t16 - cf_rounded(single, one, E_11 * t19);
+    const real_t n_y = m_y + cf_rounded(single, one, E_12 * t19);
+    const real_t t21 = cf_rounded(single, one, t20 * t20) + cf_rounded(single, one, n_y * n_y);
+    const real_t t22 = t18 + cf_rounded(single, one, t14 * t19);
+    const real_t j = cf_sqrt(t21 + cf_rounded(single, one, t22 * t22));
+    const int in_line = j <= t7;
+    const real_t t23 = cf_sign(-t14);
+    const real_t t24 = CLOSEDFORM_C(1.0) / cf_nonzero(single, t14 - t23);
+    const real_t t25 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, j);
+    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t23 * t24, -(t20 * t25));
+    const real_t left = cf_rounded(single, one, t9 * (t9 - t10)) + cf_rounded(single, one, t12 * (t12 - t13));
+    const real_t t26 = left / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
+    const real_t t27 = cf_select(in_line, CLOSEDFORM_C(0.0), t26);
     const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t t12 = cf_rarely(single, same, u_x, v_x);
-    const real_t t13 = cf_rarely(single, same, v_x, u_x);
-    const real_t t14 = CLOSEDFORM_C(1.0) / cf_divisor(single, all_same, D);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), t13 * t14);
-    const real_t t15 = cf_rarely(single, same, u_y, v_y);
-    const real_t t16 = cf_rarely(single, same, v_y, u_y);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t16 * t14);
-    const real_t t17 = cf_rounded(single, one, t12 * E_11) + cf_rounded(single, one, t15 * E_12);
-    const real_t t18 = cf_rarely(single, same, t6, t10);
-    const real_t t19 = cf_rarely(single, same, t10, t6);
-    const real_t t20 = cf_select(all_same, CLOSEDFORM_C(0.0), t19 * t14);
-    const real_t k_0 = t17 + cf_rounded(single, one, t18 * t20);
-    const real_t m_x = t12 - cf_rounded(single, one, E_11 * k_0);
-    const real_t m_y = t15 - cf_rounded(single, one, E_12 * k_0);
-    const real_t t21 = cf_rounded(single, one, E_11 * m_x) + cf_rounded(single, one, E_12 * m_y);
-    const real_t t22 = t18 - cf_rounded(single, one, t20 * k_0);
-    const real_t k_1 = t21 + cf_rounded(single, one, t20 * t22);
-    const real_t n_x = m_x - cf_rounded(single, one, E_11 * k_1);
-    const real_t n_y = m_y - cf_rounded(single, one, E_12 * k_1);
-    const real_t t23 = cf_rounded(single, one, n_x * n_x) + cf_rounded(single, one, n_y * n_y);
-    const real_t t24 = t22 - cf_rounded(single, one, t20 * k_1);
-    const real_t j = cf_sqrt(t23 + cf_rounded(single, one, t24 * t24));
-    const int in_line = j <= t11;
-    const real_t t25 = cf_rounded(single, one, t12 * (t13 - t12)) + cf_rounded(single, one, t15 * (t16 - t15));
-    const real_t t26 = t25 + cf_rounded(single, one, t18 * (t19 - t18));
-    const real_t t27 = t26 / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
-    const real_t t28 = cf_select(in_line, CLOSEDFORM_C(0.0), t27);
-    const real_t t29 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t28 * t28);
+    const real_t t28 = E_21 * t27 + (c1_x + E_11 * X);
+    const real_t t29 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t27 * t27);
     const real_t rho = cf_sqrt(t29);
     const real_t t30 = l - rho;
     const real_t h = cf_root(single, cf_max(t30, CLOSEDFORM_C(0.0)) * (l + rho));
-    const real_t t31 = cf_sign(-t20);
-    const real_t t32 = E_11 * t31;
-    const real_t t33 = CLOSEDFORM_C(1.0) / cf_divisor(single, in_line, j);
-    const real_t t34 = cf_rarely(single, in_line, t32, t24 * t33);
-    const real_t t35 = CLOSEDFORM_C(1.0) / cf_nonzero(single, t20 - t31);
-    const real_t E_22 = cf_rarely(single, in_line, t35 * (E_12 * t32), n_y * t33);
-    const real_t t36 = h * (E_12 * t34 - t20 * E_22);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t31 * t35, n_x * t33);
-    const real_t t37 = E_21 * t28 + (t1 - X * E_11);
-    const int t38 = cf_nought(f) + cf_nought(e) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t39 = t38 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t40 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const int invalid = !(t39 & (CLOSEDFORM_C(0.0) <= l) & t40);
-    const real_t t41 = cf_rarely(single, in_line, -t26, CLOSEDFORM_C(0.0));
-    const int t42 = cf_abs(t41) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t43 = t42 & (-(size * CLOSEDFORM_FEASIBILITY) <= t30);
-    const int unreachable = !t43;
-    const real_t t44 = cf_poison(single, invalid | unreachable);
-    const real_t t45 = h * (E_11 * t34 - t20 * E_21);
-    const real_t t46 = t28 * E_22 + (t3 - X * E_12);
-    const real_t t47 = t28 * t34 + (rho1 - X * t20);
-    const real_t t48 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t49 = cf_status(single, invalid, unreachable, in_line);
-    p[0] = -(t36 + t37) + t44;
-    p[1] = t45 - t46 + t44;
-    p[2] = t47 - t48 + t44;
-    p[3] = t36 - t37 + t44;
-    p[4] = -(t45 + t46) + t44;
-    p[5] = t48 + t47 + t44;
-    status[0] = t49;
-    status[1] = t49;
+    const real_t t31 = E_11 * t23;
+    const real_t t32 = cf_rarely(single, in_line, t31, t22 * t25);
+    const real_t E_22 = cf_rarely(single, in_line, t24 * (E_12 * t31), n_y * t25);
+    const real_t t33 = h * (E_12 * t32 - t14 * E_22);
+    const int t34 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t35 = t34 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t36 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int invalid = !(t35 & (CLOSEDFORM_C(0.0) <= l) & t36);
+    const real_t t37 = cf_rarely(single, in_line, left, CLOSEDFORM_C(0.0));
+    const int t38 = cf_abs(t37) <= CLOSEDFORM_FEASIBILITY * (size * size);
+    const int t39 = t38 & (-(size * CLOSEDFORM_FEASIBILITY) <= t30);
+    const int unreachable = !t39;
+    const real_t t40 = cf_poison(single, invalid | unreachable);
+    const real_t t41 = E_12 * X + t27 * E_22;
+    const real_t t42 = h * (E_11 * t32 - t14 * E_21);
+    const real_t t43 = t27 * t32 - (rho1 - t14 * X);
+    const real_t t44 = h * (E_12 * E_21 - E_11 * E_22);
+    const real_t t45 = cf_status(single, invalid, unreachable, in_line);
+    p[0] = t28 - t33 + t40;
+    p[1] = t41 + t42 + t40;
+    p[2] = -(t43 + t44) + t40;
+    p[3] = t28 + t33 + t40;
+    p[4] = t41 - t42 + t40;
+    p[5] = t44 - t43 + t40;
+    status[0] = t45;
+    status[1] = t45;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -143,11 +125,8 @@ void linear_delta_fk(const linear_delta_params *params,
         q = q_scaled;
     }
     const real_t one = cf_one();
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3 };
-    cf_sincos_lanes_rounded(4, one, lanes, sines, cosines);
     real_t status_real[2];
-    linear_delta_fk_kernel(1, one, params, q, sines, cosines, p, status_real);
+    linear_delta_fk_kernel(1, one, params, q, p, status_real);
     for (size_t i = 0; i < 2; ++i)
         status[i] = (uint8_t)status_real[i];
     if (CF_UNLIKELY(exponent != 0)) {
@@ -192,28 +171,13 @@ void linear_delta_fk_batch(size_t n, const linear_delta_params *params,
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
         real_t status_real[2][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t p_i[6];
             real_t status_i[2];
-            linear_delta_fk_kernel(0, one, &local, q_i, sines_i, cosines_i, p_i, status_i);
+            linear_delta_fk_kernel(0, one, &local, q_i, p_i, status_i);
             p[start + i] = p_i[0];
             p[p_stride + start + i] = p_i[1];
             p[2 * p_stride + start + i] = p_i[2];
@@ -238,174 +202,154 @@ void linear_delta_fk_batch(size_t n, const linear_delta_params *params,
 }
 
 CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta_params *params,
-    const real_t q[3], const real_t *sines,
-    const real_t *cosines, real_t points[60])
+    const real_t q[3], real_t points[60])
 {
     const real_t f = params->f;
     const real_t e = params->e;
     const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s_alpha2 = sines[1];
-    const real_t c_alpha2 = cosines[1];
-    const real_t s_alpha3 = sines[2];
-    const real_t c_alpha3 = cosines[2];
-    const real_t t1 = f * c_alpha1;
-    const int t2 = cf_nought(f) + cf_nought(e) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t3 = t2 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t4 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t5 = e * c_alpha1;
-    const real_t t6 = t5 - t1;
-    const real_t t7 = e * c_alpha2;
-    const real_t t8 = f * c_alpha2;
-    const real_t u_x = t6 - (t7 - t8);
-    const real_t t9 = e * s_alpha1;
-    const real_t t10 = f * s_alpha1;
-    const real_t t11 = t9 - t10;
-    const real_t t12 = e * s_alpha2;
-    const real_t t13 = f * s_alpha2;
-    const real_t u_y = t11 - (t12 - t13);
-    const real_t t14 = rho1 - rho2;
-    const real_t size_u = cf_sqrt(u_x * u_x + u_y * u_y + t14 * t14);
+    const int t1 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t2 = t1 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t3 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t c1_x = f - e;
+    const real_t t4 = e * CLOSEDFORM_C(0.5);
+    const real_t t5 = f * CLOSEDFORM_C(0.5);
+    const real_t t6 = c1_x - (t4 - t5);
+    const real_t t7 = rho1 - rho2;
+    const real_t t8 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t9 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t8 - t9;
+    const real_t t10 = t6 * t6 + c3_y * c3_y;
+    const real_t size_u = cf_sqrt(t7 * t7 + t10);
+    const real_t t11 = rho1 - rho3;
+    const real_t size_v = cf_sqrt(t11 * t11 + t10);
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t15 = size * CLOSEDFORM_VANISHING;
-    const int same = size_u <= t15;
-    const real_t t16 = e * c_alpha3;
-    const real_t t17 = f * c_alpha3;
-    const real_t v_x = t6 - (t16 - t17);
-    const real_t t18 = cf_rarely(single, same, u_x, v_x);
-    const real_t t19 = e * s_alpha3;
-    const real_t t20 = f * s_alpha3;
-    const real_t v_y = t11 - (t19 - t20);
-    const real_t t21 = rho1 - rho3;
-    const real_t size_v = cf_sqrt(v_x * v_x + v_y * v_y + t21 * t21);
-    const int all_same = size_u + size_v <= t15;
-    const real_t t22 = cf_rarely(single, same, v_x, u_x);
+    const real_t t12 = size * CLOSEDFORM_VANISHING;
+    const int all_same = size_u + size_v <= t12;
+    const int same = size_u <= t12;
     const real_t D = cf_rarely(single, same, size_v, size_u);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), t22 / cf_divisor(single, all_same, D));
-    const real_t t23 = cf_rarely(single, same, v_y, u_y);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t23 / cf_divisor(single, all_same, D));
-    const real_t t24 = cf_rarely(single, same, u_y, v_y);
-    const real_t t25 = cf_rarely(single, same, t21, t14);
-    const real_t t26 = cf_select(all_same, CLOSEDFORM_C(0.0), t25 / cf_divisor(single, all_same, D));
-    const real_t t27 = cf_rarely(single, same, t14, t21);
-    const real_t k_0 = E_11 * t18 + E_12 * t24 + t26 * t27;
-    const real_t m_x = t18 - E_11 * k_0;
-    const real_t m_y = t24 - E_12 * k_0;
-    const real_t t28 = t27 - t26 * k_0;
-    const real_t k_1 = E_11 * m_x + E_12 * m_y + t26 * t28;
-    const real_t n_x = m_x - E_11 * k_1;
-    const real_t n_y = m_y - E_12 * k_1;
-    const real_t t29 = t28 - t26 * k_1;
-    const real_t j = cf_sqrt(n_x * n_x + n_y * n_y + t29 * t29);
-    const int in_line = j <= t15;
-    const real_t t30 = t18 * (t22 - t18) + t24 * (t23 - t24) + t27 * (t25 - t27);
-    const real_t t31 = cf_rarely(single, in_line, -t30, CLOSEDFORM_C(0.0));
-    const int t32 = cf_abs(t31) <= CLOSEDFORM_FEASIBILITY * (size * size);
+    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(t6 / cf_divisor(single, all_same, D)));
+    const real_t t13 = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t13 / cf_divisor(single, all_same, D));
+    const real_t t14 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t15 = cf_rarely(single, same, t11, t7);
+    const real_t t16 = cf_select(all_same, CLOSEDFORM_C(0.0), t15 / cf_divisor(single, all_same, D));
+    const real_t t17 = cf_rarely(single, same, t7, t11);
+    const real_t t18 = t6 * E_11 - E_12 * t14 - t16 * t17;
+    const real_t t19 = t6 - E_11 * t18;
+    const real_t m_y = t14 + E_12 * t18;
+    const real_t t20 = t17 + t16 * t18;
+    const real_t t21 = E_11 * t19 - E_12 * m_y - t16 * t20;
+    const real_t t22 = t19 - E_11 * t21;
+    const real_t n_y = m_y + E_12 * t21;
+    const real_t t23 = t20 + t16 * t21;
+    const real_t j = cf_sqrt(t22 * t22 + n_y * n_y + t23 * t23);
+    const int in_line = j <= t12;
+    const real_t t24 = t14 * (t13 - t14) + t17 * (t15 - t17);
+    const real_t t25 = cf_rarely(single, in_line, -t24, CLOSEDFORM_C(0.0));
+    const int t26 = cf_abs(t25) <= CLOSEDFORM_FEASIBILITY * (size * size);
     const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t t33 = t30 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t34 = cf_select(in_line, CLOSEDFORM_C(0.0), t33);
-    const real_t rho = cf_sqrt(X * X + t34 * t34);
-    const real_t t35 = l - rho;
-    const int t36 = t32 & (-(size * CLOSEDFORM_FEASIBILITY) <= t35);
-    const int failed = (!(t3 & (CLOSEDFORM_C(0.0) <= l) & t4)) | (!t36);
-    const real_t t37 = cf_poison(single, failed);
-    const real_t t38 = t1 + t37;
-    const real_t t39 = t10 + t37;
-    const real_t t40 = CLOSEDFORM_C(0.0) + t37;
-    const real_t t41 = rho1 + t37;
-    const real_t h = cf_root(single, cf_max(t35, CLOSEDFORM_C(0.0)) * (l + rho));
-    const real_t t42 = cf_sign(-t26);
-    const real_t t43 = E_11 * t42;
-    const real_t t44 = cf_rarely(single, in_line, t43, t29 / cf_divisor(single, in_line, j));
-    const real_t t45 = t26 - t42;
-    const real_t t46 = cf_nonzero(single, t45);
-    const real_t E_22 = cf_rarely(single, in_line, E_12 * t43 / t46, n_y / cf_divisor(single, in_line, j));
-    const real_t t47 = h * (E_12 * t44 - t26 * E_22);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t42 / t46, n_x / cf_divisor(single, in_line, j));
-    const real_t t48 = E_11 * X - E_21 * t34;
-    const real_t t49 = t6 + (t47 - t48);
-    const real_t t50 = (E_11 * t44 - t26 * E_21) * h;
-    const real_t t51 = E_12 * X - t34 * E_22;
-    const real_t t52 = t11 - (t50 + t51);
-    const real_t t53 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t54 = t26 * X - t44 * t34;
-    const real_t t55 = rho1 - (t53 + t54) + t37;
-    const real_t t56 = t8 + t37;
-    const real_t t57 = t13 + t37;
-    const real_t t58 = rho2 + t37;
-    const real_t t59 = t17 + t37;
-    const real_t t60 = t20 + t37;
-    const real_t t61 = rho3 + t37;
-    const real_t t62 = t6 - (t47 + t48);
-    const real_t t63 = t11 + (t50 - t51);
-    const real_t t64 = rho1 + (t53 - t54) + t37;
-    points[0] = t38;
-    points[1] = t39;
-    points[2] = t40;
-    points[3] = t38;
-    points[4] = t39;
-    points[5] = t41;
-    points[6] = t5 - t49 + t37;
-    points[7] = t9 - t52 + t37;
-    points[8] = t55;
-    points[9] = t56;
-    points[10] = t57;
-    points[11] = t40;
-    points[12] = t56;
-    points[13] = t57;
-    points[14] = t58;
-    points[15] = t7 - t49 + t37;
-    points[16] = t12 - t52 + t37;
-    points[17] = t55;
-    points[18] = t59;
-    points[19] = t60;
-    points[20] = t40;
-    points[21] = t59;
-    points[22] = t60;
-    points[23] = t61;
-    points[24] = t16 - t49 + t37;
-    points[25] = t19 - t52 + t37;
-    points[26] = t55;
-    points[27] = -t49 + t37;
-    points[28] = -t52 + t37;
-    points[29] = t55;
-    points[30] = t38;
-    points[31] = t39;
-    points[32] = t40;
-    points[33] = t38;
-    points[34] = t39;
-    points[35] = t41;
-    points[36] = t5 - t62 + t37;
-    points[37] = t9 - t63 + t37;
-    points[38] = t64;
-    points[39] = t56;
-    points[40] = t57;
-    points[41] = t40;
-    points[42] = t56;
-    points[43] = t57;
-    points[44] = t58;
-    points[45] = t7 - t62 + t37;
-    points[46] = t12 - t63 + t37;
-    points[47] = t64;
-    points[48] = t59;
-    points[49] = t60;
-    points[50] = t40;
-    points[51] = t59;
-    points[52] = t60;
-    points[53] = t61;
-    points[54] = t16 - t62 + t37;
-    points[55] = t19 - t63 + t37;
-    points[56] = t64;
-    points[57] = -t62 + t37;
-    points[58] = -t63 + t37;
-    points[59] = t64;
+    const real_t t27 = t24 / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
+    const real_t t28 = cf_select(in_line, CLOSEDFORM_C(0.0), t27);
+    const real_t rho = cf_sqrt(X * X + t28 * t28);
+    const real_t t29 = l - rho;
+    const int t30 = t26 & (-(size * CLOSEDFORM_FEASIBILITY) <= t29);
+    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | (!t30);
+    const real_t t31 = cf_poison(single, failed);
+    const real_t t32 = f + t31;
+    const real_t t33 = CLOSEDFORM_C(0.0) + t31;
+    const real_t t34 = rho1 + t31;
+    const real_t t35 = cf_sign(-t16);
+    const real_t t36 = t16 - t35;
+    const real_t t37 = cf_nonzero(single, t36);
+    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t35 / t37, -(t22 / cf_divisor(single, in_line, j)));
+    const real_t t38 = E_11 * X - t28 * E_21;
+    const real_t h = cf_root(single, cf_max(t29, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t t39 = E_11 * t35;
+    const real_t t40 = cf_rarely(single, in_line, t39, t23 / cf_divisor(single, in_line, j));
+    const real_t E_22 = cf_rarely(single, in_line, E_12 * t39 / t37, n_y / cf_divisor(single, in_line, j));
+    const real_t t41 = h * (E_12 * t40 - t16 * E_22);
+    const real_t t42 = c1_x + (t38 - t41);
+    const real_t t43 = E_12 * X - t28 * E_22;
+    const real_t t44 = h * (E_11 * t40 - t16 * E_21);
+    const real_t A_12 = t43 + t44;
+    const real_t t45 = A_12 + t31;
+    const real_t t46 = t16 * X - t28 * t40;
+    const real_t t47 = h * (E_12 * E_21 - E_11 * E_22);
+    const real_t t48 = rho1 - (t46 + t47) + t31;
+    const real_t t49 = -t5 + t31;
+    const real_t t50 = t9 + t31;
+    const real_t t51 = rho2 + t31;
+    const real_t t52 = t42 - t4 + t31;
+    const real_t t53 = -t9 + t31;
+    const real_t t54 = rho3 + t31;
+    const real_t t55 = c1_x + (t38 + t41);
+    const real_t A_12_above = t43 - t44;
+    const real_t t56 = A_12_above + t31;
+    const real_t t57 = rho1 - (t46 - t47) + t31;
+    const real_t t58 = t55 - t4 + t31;
+    points[0] = t32;
+    points[1] = t33;
+    points[2] = t33;
+    points[3] = t32;
+    points[4] = t33;
+    points[5] = t34;
+    points[6] = e + t42 + t31;
+    points[7] = t45;
+    points[8] = t48;
+    points[9] = t49;
+    points[10] = t50;
+    points[11] = t33;
+    points[12] = t49;
+    points[13] = t50;
+    points[14] = t51;
+    points[15] = t52;
+    points[16] = t8 + A_12 + t31;
+    points[17] = t48;
+    points[18] = t49;
+    points[19] = t53;
+    points[20] = t33;
+    points[21] = t49;
+    points[22] = t53;
+    points[23] = t54;
+    points[24] = t52;
+    points[25] = A_12 - t8 + t31;
+    points[26] = t48;
+    points[27] = t42 + t31;
+    points[28] = t45;
+    points[29] = t48;
+    points[30] = t32;
+    points[31] = t33;
+    points[32] = t33;
+    points[33] = t32;
+    points[34] = t33;
+    points[35] = t34;
+    points[36] = e + t55 + t31;
+    points[37] = t56;
+    points[38] = t57;
+    points[39] = t49;
+    points[40] = t50;
+    points[41] = t33;
+    points[42] = t49;
+    points[43] = t50;
+    points[44] = t51;
+    points[45] = t58;
+    points[46] = t8 + A_12_above + t31;
+    points[47] = t57;
+    points[48] = t49;
+    points[49] = t53;
+    points[50] = t33;
+    points[51] = t49;
+    points[52] = t53;
+    points[53] = t54;
+    points[54] = t58;
+    points[55] = A_12_above - t8 + t31;
+    points[56] = t57;
+    points[57] = t55 + t31;
+    points[58] = t56;
+    points[59] = t57;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -413,7 +357,7 @@ void linear_delta_skeleton(const linear_delta_params *params,
     const real_t q[3], real_t points[60])
 {
     static const signed char q_degrees[3] = { 1, 1, 1 };
-    static const signed char points_degrees[60] = { 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    static const signed char points_degrees[60] = { 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
     real_t q_scaled[3];
     linear_delta_params params_scaled;
     int exponent = 0;
@@ -428,10 +372,7 @@ void linear_delta_skeleton(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3 };
-    cf_sincos_lanes(4, lanes, sines, cosines);
-    linear_delta_skeleton_kernel(1, params, q, sines, cosines, points);
+    linear_delta_skeleton_kernel(1, params, q, points);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(60, points_degrees, exponent, points, points);
     }
@@ -469,26 +410,11 @@ void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha2;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha3;
-        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t points_i[60];
-            linear_delta_skeleton_kernel(0, &local, q_i, sines_i, cosines_i, points_i);
+            linear_delta_skeleton_kernel(0, &local, q_i, points_i);
             points[start + i] = points_i[0];
             points[points_stride + start + i] = points_i[1];
             points[2 * points_stride + start + i] = points_i[2];
@@ -559,110 +485,100 @@ void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
 }
 
 CF_INLINE void linear_delta_jacobian_parallel_kernel(const int single, const linear_delta_params *params,
-    const real_t q[3], const real_t *sines,
-    const real_t *cosines, real_t A[18])
+    const real_t q[3], real_t A[18])
 {
     const real_t f = params->f;
     const real_t e = params->e;
     const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s_alpha2 = sines[1];
-    const real_t c_alpha2 = cosines[1];
-    const real_t s_alpha3 = sines[2];
-    const real_t c_alpha3 = cosines[2];
-    const real_t t1 = e * c_alpha1 - f * c_alpha1;
-    const real_t u_x = t1 - (e * c_alpha2 - f * c_alpha2);
-    const real_t t2 = e * s_alpha1 - f * s_alpha1;
-    const real_t u_y = t2 - (e * s_alpha2 - f * s_alpha2);
-    const real_t t3 = rho1 - rho2;
-    const real_t size_u = cf_sqrt(u_x * u_x + u_y * u_y + t3 * t3);
-    const real_t v_x = t1 - (e * c_alpha3 - f * c_alpha3);
-    const real_t v_y = t2 - (e * s_alpha3 - f * s_alpha3);
-    const real_t t4 = rho1 - rho3;
-    const real_t size_v = cf_sqrt(v_x * v_x + v_y * v_y + t4 * t4);
+    const real_t t1 = rho1 - rho2;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t2 * t2 + c3_y * c3_y;
+    const real_t size_u = cf_sqrt(t1 * t1 + t5);
+    const real_t t6 = rho1 - rho3;
+    const real_t size_v = cf_sqrt(t6 * t6 + t5);
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t5 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t5;
-    const int same = size_u <= t5;
+    const real_t t7 = size * CLOSEDFORM_VANISHING;
+    const int all_same = size_u + size_v <= t7;
+    const int same = size_u <= t7;
     const real_t D = cf_rarely(single, same, size_v, size_u);
+    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(t2 / cf_divisor(single, all_same, D)));
     const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t t6 = cf_rarely(single, same, u_x, v_x);
-    const real_t t7 = cf_rarely(single, same, v_x, u_x);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), t7 / cf_divisor(single, all_same, D));
-    const real_t t8 = cf_rarely(single, same, v_y, u_y);
+    const real_t t8 = cf_rarely(single, same, c3_y, -c3_y);
     const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 / cf_divisor(single, all_same, D));
-    const real_t t9 = cf_rarely(single, same, u_y, v_y);
-    const real_t t10 = cf_rarely(single, same, t4, t3);
+    const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t10 = cf_rarely(single, same, t6, t1);
     const real_t t11 = cf_select(all_same, CLOSEDFORM_C(0.0), t10 / cf_divisor(single, all_same, D));
-    const real_t t12 = cf_rarely(single, same, t3, t4);
-    const real_t k_0 = E_11 * t6 + E_12 * t9 + t11 * t12;
-    const real_t m_x = t6 - E_11 * k_0;
-    const real_t m_y = t9 - E_12 * k_0;
-    const real_t t13 = t12 - t11 * k_0;
-    const real_t k_1 = E_11 * m_x + E_12 * m_y + t11 * t13;
-    const real_t n_x = m_x - E_11 * k_1;
-    const real_t n_y = m_y - E_12 * k_1;
-    const real_t t14 = t13 - t11 * k_1;
-    const real_t j = cf_sqrt(n_x * n_x + n_y * n_y + t14 * t14);
-    const int in_line = j <= t5;
-    const real_t t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12);
-    const real_t t16 = t15 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t17 = cf_select(in_line, CLOSEDFORM_C(0.0), t16);
-    const real_t rho = cf_sqrt(X * X + t17 * t17);
-    const real_t t18 = l - rho;
-    const real_t h = cf_root(single, cf_max(t18, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t t12 = cf_rarely(single, same, t1, t6);
+    const real_t t13 = t2 * E_11 - E_12 * t9 - t11 * t12;
+    const real_t t14 = t2 - E_11 * t13;
+    const real_t m_y = t9 + E_12 * t13;
+    const real_t t15 = t12 + t11 * t13;
+    const real_t t16 = E_11 * t14 - E_12 * m_y - t11 * t15;
+    const real_t t17 = t14 - E_11 * t16;
+    const real_t n_y = m_y + E_12 * t16;
+    const real_t t18 = t15 + t11 * t16;
+    const real_t j = cf_sqrt(t17 * t17 + n_y * n_y + t18 * t18);
+    const int in_line = j <= t7;
     const real_t t19 = cf_sign(-t11);
-    const real_t t20 = E_11 * t19;
-    const real_t t21 = cf_rarely(single, in_line, t20, t14 / cf_divisor(single, in_line, j));
-    const real_t t22 = t11 - t19;
-    const real_t t23 = cf_nonzero(single, t22);
-    const real_t E_22 = cf_rarely(single, in_line, E_12 * t20 / t23, n_y / cf_divisor(single, in_line, j));
-    const real_t t24 = h * (E_12 * t21 - t11 * E_22);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t19 / t23, n_x / cf_divisor(single, in_line, j));
-    const real_t t25 = E_11 * X - E_21 * t17;
-    const real_t t26 = t24 - t25;
-    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t30 = cf_rarely(single, in_line, -t15, CLOSEDFORM_C(0.0));
-    const int t31 = cf_abs(t30) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t32 = t31 & (-(size * CLOSEDFORM_FEASIBILITY) <= t18);
-    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
-    const real_t t33 = cf_poison(single, failed);
-    const real_t t34 = (E_11 * t21 - t11 * E_21) * h;
-    const real_t t35 = E_12 * X - t17 * E_22;
-    const real_t A_12 = t34 + t35;
-    const real_t t36 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t37 = t11 * X - t21 * t17;
-    const real_t t38 = t36 + t37;
-    const real_t A_11_above = t24 + t25;
-    const real_t t39 = t34 - t35;
-    const real_t A_13_above = t36 - t37;
-    A[0] = -t26 + t33;
-    A[1] = A_12 + t33;
-    A[2] = -t38 + t33;
-    A[3] = -(u_x + t26) + t33;
-    A[4] = A_12 - u_y + t33;
-    A[5] = t3 - t38 + t33;
-    A[6] = -(v_x + t26) + t33;
-    A[7] = A_12 - v_y + t33;
-    A[8] = t4 - t38 + t33;
-    A[9] = A_11_above + t33;
-    A[10] = -t39 + t33;
-    A[11] = A_13_above + t33;
-    A[12] = A_11_above - u_x + t33;
-    A[13] = -(u_y + t39) + t33;
-    A[14] = t3 + A_13_above + t33;
-    A[15] = A_11_above - v_x + t33;
-    A[16] = -(v_y + t39) + t33;
-    A[17] = t4 + A_13_above + t33;
+    const real_t t20 = t11 - t19;
+    const real_t t21 = cf_nonzero(single, t20);
+    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t19 / t21, -(t17 / cf_divisor(single, in_line, j)));
+    const real_t t22 = t9 * (t8 - t9) + t12 * (t10 - t12);
+    const real_t t23 = t22 / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
+    const real_t t24 = cf_select(in_line, CLOSEDFORM_C(0.0), t23);
+    const real_t t25 = E_11 * X - E_21 * t24;
+    const real_t rho = cf_sqrt(X * X + t24 * t24);
+    const real_t t26 = l - rho;
+    const real_t h = cf_root(single, cf_max(t26, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t t27 = E_11 * t19;
+    const real_t t28 = cf_rarely(single, in_line, t27, t18 / cf_divisor(single, in_line, j));
+    const real_t E_22 = cf_rarely(single, in_line, E_12 * t27 / t21, n_y / cf_divisor(single, in_line, j));
+    const real_t t29 = h * (E_12 * t28 - t11 * E_22);
+    const real_t A_11 = t25 - t29;
+    const int t30 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t31 = t30 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t32 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t33 = cf_rarely(single, in_line, -t22, CLOSEDFORM_C(0.0));
+    const int t34 = cf_abs(t33) <= CLOSEDFORM_FEASIBILITY * (size * size);
+    const int t35 = t34 & (-(size * CLOSEDFORM_FEASIBILITY) <= t26);
+    const int failed = (!(t31 & (CLOSEDFORM_C(0.0) <= l) & t32)) | (!t35);
+    const real_t t36 = cf_poison(single, failed);
+    const real_t t37 = X * E_12 - t24 * E_22;
+    const real_t t38 = h * (E_11 * t28 - t11 * E_21);
+    const real_t A_12 = t37 + t38;
+    const real_t t39 = X * t11 - t24 * t28;
+    const real_t t40 = h * (E_12 * E_21 - E_11 * E_22);
+    const real_t t41 = t39 + t40;
+    const real_t t42 = t2 + A_11 + t36;
+    const real_t A_11_above = t25 + t29;
+    const real_t A_12_above = t37 - t38;
+    const real_t t43 = t39 - t40;
+    const real_t t44 = t2 + A_11_above + t36;
+    A[0] = A_11 + t36;
+    A[1] = A_12 + t36;
+    A[2] = -t41 + t36;
+    A[3] = t42;
+    A[4] = c3_y + A_12 + t36;
+    A[5] = t1 - t41 + t36;
+    A[6] = t42;
+    A[7] = A_12 - c3_y + t36;
+    A[8] = t6 - t41 + t36;
+    A[9] = A_11_above + t36;
+    A[10] = A_12_above + t36;
+    A[11] = -t43 + t36;
+    A[12] = t44;
+    A[13] = c3_y + A_12_above + t36;
+    A[14] = t1 - t43 + t36;
+    A[15] = t44;
+    A[16] = A_12_above - c3_y + t36;
+    A[17] = t6 - t43 + t36;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -685,10 +601,7 @@ void linear_delta_jacobian_parallel(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3 };
-    cf_sincos_lanes(4, lanes, sines, cosines);
-    linear_delta_jacobian_parallel_kernel(1, params, q, sines, cosines, A);
+    linear_delta_jacobian_parallel_kernel(1, params, q, A);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(18, A_degrees, exponent, A, A);
     }
@@ -726,26 +639,11 @@ void linear_delta_jacobian_parallel_batch(size_t n, const linear_delta_params *p
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha2;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha3;
-        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t A_i[18];
-            linear_delta_jacobian_parallel_kernel(0, &local, q_i, sines_i, cosines_i, A_i);
+            linear_delta_jacobian_parallel_kernel(0, &local, q_i, A_i);
             A[start + i] = A_i[0];
             A[A_stride + start + i] = A_i[1];
             A[2 * A_stride + start + i] = A_i[2];
@@ -774,90 +672,79 @@ void linear_delta_jacobian_parallel_batch(size_t n, const linear_delta_params *p
 }
 
 CF_INLINE void linear_delta_jacobian_serial_kernel(const int single, const linear_delta_params *params,
-    const real_t q[3], const real_t *sines,
-    const real_t *cosines, real_t B[6])
+    const real_t q[3], real_t B[6])
 {
     const real_t f = params->f;
     const real_t e = params->e;
     const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s_alpha2 = sines[1];
-    const real_t c_alpha2 = cosines[1];
-    const real_t s_alpha3 = sines[2];
-    const real_t c_alpha3 = cosines[2];
-    const real_t t1 = e * c_alpha1 - f * c_alpha1;
-    const real_t u_x = t1 - (e * c_alpha2 - f * c_alpha2);
-    const real_t t2 = e * s_alpha1 - f * s_alpha1;
-    const real_t u_y = t2 - (e * s_alpha2 - f * s_alpha2);
-    const real_t t3 = rho1 - rho2;
-    const real_t size_u = cf_sqrt(u_x * u_x + u_y * u_y + t3 * t3);
-    const real_t v_x = t1 - (e * c_alpha3 - f * c_alpha3);
-    const real_t v_y = t2 - (e * s_alpha3 - f * s_alpha3);
-    const real_t t4 = rho1 - rho3;
-    const real_t size_v = cf_sqrt(v_x * v_x + v_y * v_y + t4 * t4);
+    const real_t t1 = rho1 - rho2;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t2 * t2 + c3_y * c3_y;
+    const real_t size_u = cf_sqrt(t1 * t1 + t5);
+    const real_t t6 = rho1 - rho3;
+    const real_t size_v = cf_sqrt(t6 * t6 + t5);
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t5 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t5;
-    const int same = size_u <= t5;
+    const real_t t7 = size * CLOSEDFORM_VANISHING;
+    const int all_same = size_u + size_v <= t7;
+    const int same = size_u <= t7;
+    const real_t t8 = cf_rarely(single, same, t6, t1);
     const real_t D = cf_rarely(single, same, size_v, size_u);
+    const real_t t9 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 / cf_divisor(single, all_same, D));
     const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t t6 = cf_rarely(single, same, u_x, v_x);
-    const real_t t7 = cf_rarely(single, same, v_x, u_x);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), t7 / cf_divisor(single, all_same, D));
-    const real_t t8 = cf_rarely(single, same, v_y, u_y);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 / cf_divisor(single, all_same, D));
-    const real_t t9 = cf_rarely(single, same, u_y, v_y);
-    const real_t t10 = cf_rarely(single, same, t4, t3);
-    const real_t t11 = cf_select(all_same, CLOSEDFORM_C(0.0), t10 / cf_divisor(single, all_same, D));
-    const real_t t12 = cf_rarely(single, same, t3, t4);
-    const real_t k_0 = E_11 * t6 + E_12 * t9 + t11 * t12;
-    const real_t m_x = t6 - E_11 * k_0;
-    const real_t m_y = t9 - E_12 * k_0;
-    const real_t t13 = t12 - t11 * k_0;
-    const real_t k_1 = E_11 * m_x + E_12 * m_y + t11 * t13;
-    const real_t n_x = m_x - E_11 * k_1;
-    const real_t n_y = m_y - E_12 * k_1;
-    const real_t t14 = t13 - t11 * k_1;
-    const real_t j = cf_sqrt(n_x * n_x + n_y * n_y + t14 * t14);
-    const int in_line = j <= t5;
-    const real_t t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12);
-    const real_t t16 = t15 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t17 = cf_select(in_line, CLOSEDFORM_C(0.0), t16);
-    const real_t rho = cf_sqrt(X * X + t17 * t17);
-    const real_t t18 = l - rho;
-    const real_t h = cf_root(single, cf_max(t18, CLOSEDFORM_C(0.0)) * (l + rho));
-    const real_t t19 = cf_sign(-t11);
-    const real_t t20 = t11 - t19;
-    const real_t t21 = cf_nonzero(single, t20);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t19 / t21, n_x / cf_divisor(single, in_line, j));
-    const real_t t22 = E_11 * t19;
-    const real_t E_22 = cf_rarely(single, in_line, E_12 * t22 / t21, n_y / cf_divisor(single, in_line, j));
-    const real_t t23 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t24 = cf_rarely(single, in_line, t22, t14 / cf_divisor(single, in_line, j));
-    const real_t t25 = t11 * X - t24 * t17;
-    const real_t t26 = t23 + t25;
-    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t30 = cf_rarely(single, in_line, -t15, CLOSEDFORM_C(0.0));
-    const int t31 = cf_abs(t30) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t32 = t31 & (-(size * CLOSEDFORM_FEASIBILITY) <= t18);
-    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
-    const real_t t33 = cf_poison(single, failed);
-    const real_t A_13_above = t23 - t25;
-    B[0] = -t26 + t33;
-    B[1] = t3 - t26 + t33;
-    B[2] = t4 - t26 + t33;
-    B[3] = A_13_above + t33;
-    B[4] = t3 + A_13_above + t33;
-    B[5] = t4 + A_13_above + t33;
+    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(t2 / cf_divisor(single, all_same, D)));
+    const real_t t10 = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t10 / cf_divisor(single, all_same, D));
+    const real_t t11 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t12 = cf_rarely(single, same, t1, t6);
+    const real_t t13 = t2 * E_11 - E_12 * t11 - t9 * t12;
+    const real_t t14 = t2 - E_11 * t13;
+    const real_t m_y = t11 + E_12 * t13;
+    const real_t t15 = t12 + t9 * t13;
+    const real_t t16 = E_11 * t14 - E_12 * m_y - t9 * t15;
+    const real_t t17 = t14 - E_11 * t16;
+    const real_t n_y = m_y + E_12 * t16;
+    const real_t t18 = t15 + t9 * t16;
+    const real_t j = cf_sqrt(t17 * t17 + n_y * n_y + t18 * t18);
+    const int in_line = j <= t7;
+    const real_t t19 = cf_sign(-t9);
+    const real_t t20 = E_11 * t19;
+    const real_t t21 = cf_rarely(single, in_line, t20, t18 / cf_divisor(single, in_line, j));
+    const real_t t22 = t11 * (t10 - t11) + t12 * (t8 - t12);
+    const real_t t23 = t22 / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
+    const real_t t24 = cf_select(in_line, CLOSEDFORM_C(0.0), t23);
+    const real_t t25 = t9 * X - t21 * t24;
+    const real_t rho = cf_sqrt(X * X + t24 * t24);
+    const real_t t26 = l - rho;
+    const real_t h = cf_root(single, cf_max(t26, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t t27 = t9 - t19;
+    const real_t t28 = cf_nonzero(single, t27);
+    const real_t t29 = CLOSEDFORM_C(1.0) + t19 * (E_11 * E_11) / t28;
+    const real_t E_21 = cf_rarely(single, in_line, t29, -(t17 / cf_divisor(single, in_line, j)));
+    const real_t E_22 = cf_rarely(single, in_line, E_12 * t20 / t28, n_y / cf_divisor(single, in_line, j));
+    const real_t t30 = h * (E_12 * E_21 - E_11 * E_22);
+    const real_t t31 = t25 + t30;
+    const int t32 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t33 = t32 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t34 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t35 = cf_rarely(single, in_line, -t22, CLOSEDFORM_C(0.0));
+    const int t36 = cf_abs(t35) <= CLOSEDFORM_FEASIBILITY * (size * size);
+    const int t37 = t36 & (-(size * CLOSEDFORM_FEASIBILITY) <= t26);
+    const int failed = (!(t33 & (CLOSEDFORM_C(0.0) <= l) & t34)) | (!t37);
+    const real_t t38 = cf_poison(single, failed);
+    const real_t t39 = t25 - t30;
+    B[0] = -t31 + t38;
+    B[1] = t1 - t31 + t38;
+    B[2] = t6 - t31 + t38;
+    B[3] = -t39 + t38;
+    B[4] = t1 - t39 + t38;
+    B[5] = t6 - t39 + t38;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -880,10 +767,7 @@ void linear_delta_jacobian_serial(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3 };
-    cf_sincos_lanes(4, lanes, sines, cosines);
-    linear_delta_jacobian_serial_kernel(1, params, q, sines, cosines, B);
+    linear_delta_jacobian_serial_kernel(1, params, q, B);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(6, B_degrees, exponent, B, B);
     }
@@ -921,26 +805,11 @@ void linear_delta_jacobian_serial_batch(size_t n, const linear_delta_params *par
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha2;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha3;
-        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t B_i[6];
-            linear_delta_jacobian_serial_kernel(0, &local, q_i, sines_i, cosines_i, B_i);
+            linear_delta_jacobian_serial_kernel(0, &local, q_i, B_i);
             B[start + i] = B_i[0];
             B[B_stride + start + i] = B_i[1];
             B[2 * B_stride + start + i] = B_i[2];
@@ -957,137 +826,128 @@ void linear_delta_jacobian_serial_batch(size_t n, const linear_delta_params *par
 }
 
 CF_INLINE void linear_delta_jacobian_kernel(const int single, const linear_delta_params *params,
-    const real_t q[3], const real_t *sines,
-    const real_t *cosines, real_t J[18])
+    const real_t q[3], real_t J[18])
 {
     const real_t f = params->f;
     const real_t e = params->e;
     const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s_alpha2 = sines[1];
-    const real_t c_alpha2 = cosines[1];
-    const real_t s_alpha3 = sines[2];
-    const real_t c_alpha3 = cosines[2];
-    const real_t t1 = e * c_alpha1 - f * c_alpha1;
-    const real_t u_x = t1 - (e * c_alpha2 - f * c_alpha2);
-    const real_t t2 = e * s_alpha1 - f * s_alpha1;
-    const real_t u_y = t2 - (e * s_alpha2 - f * s_alpha2);
-    const real_t t3 = rho1 - rho2;
-    const real_t size_u = cf_sqrt(u_x * u_x + u_y * u_y + t3 * t3);
-    const real_t v_x = t1 - (e * c_alpha3 - f * c_alpha3);
-    const real_t v_y = t2 - (e * s_alpha3 - f * s_alpha3);
-    const real_t t4 = rho1 - rho3;
-    const real_t size_v = cf_sqrt(v_x * v_x + v_y * v_y + t4 * t4);
+    const real_t t1 = rho1 - rho2;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t2 * t2 + c3_y * c3_y;
+    const real_t size_u = cf_sqrt(t1 * t1 + t5);
+    const real_t t6 = rho1 - rho3;
+    const real_t size_v = cf_sqrt(t6 * t6 + t5);
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t5 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t5;
-    const int same = size_u <= t5;
+    const real_t t7 = size * CLOSEDFORM_VANISHING;
+    const int all_same = size_u + size_v <= t7;
+    const int same = size_u <= t7;
+    const real_t t8 = cf_rarely(single, same, t6, t1);
     const real_t D = cf_rarely(single, same, size_v, size_u);
+    const real_t t9 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 / cf_divisor(single, all_same, D));
     const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t t6 = cf_rarely(single, same, u_x, v_x);
-    const real_t t7 = cf_rarely(single, same, v_x, u_x);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), t7 / cf_divisor(single, all_same, D));
-    const real_t t8 = cf_rarely(single, same, v_y, u_y);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 / cf_divisor(single, all_same, D));
-    const real_t t9 = cf_rarely(single, same, u_y, v_y);
-    const real_t t10 = cf_rarely(single, same, t4, t3);
-    const real_t t11 = cf_select(all_same, CLOSEDFORM_C(0.0), t10 / cf_divisor(single, all_same, D));
-    const real_t t12 = cf_rarely(single, same, t3, t4);
-    const real_t k_0 = E_11 * t6 + E_12 * t9 + t11 * t12;
-    const real_t m_x = t6 - E_11 * k_0;
-    const real_t m_y = t9 - E_12 * k_0;
-    const real_t t13 = t12 - t11 * k_0;
-    const real_t k_1 = E_11 * m_x + E_12 * m_y + t11 * t13;
-    const real_t n_x = m_x - E_11 * k_1;
-    const real_t n_y = m_y - E_12 * k_1;
-    const real_t t14 = t13 - t11 * k_1;
-    const real_t j = cf_sqrt(n_x * n_x + n_y * n_y + t14 * t14);
-    const int in_line = j <= t5;
-    const real_t t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12);
-    const real_t t16 = t15 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t17 = cf_select(in_line, CLOSEDFORM_C(0.0), t16);
-    const real_t rho = cf_sqrt(X * X + t17 * t17);
-    const real_t t18 = l - rho;
-    const real_t h = cf_root(single, cf_max(t18, CLOSEDFORM_C(0.0)) * (l + rho));
-    const real_t t19 = cf_sign(-t11);
-    const real_t t20 = t11 - t19;
-    const real_t t21 = cf_nonzero(single, t20);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t19 / t21, n_x / cf_divisor(single, in_line, j));
-    const real_t t22 = E_11 * t19;
-    const real_t E_22 = cf_rarely(single, in_line, E_12 * t22 / t21, n_y / cf_divisor(single, in_line, j));
-    const real_t t23 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t24 = cf_rarely(single, in_line, t22, t14 / cf_divisor(single, in_line, j));
-    const real_t t25 = t11 * X - t24 * t17;
-    const real_t t26 = t23 + t25;
-    const real_t t27 = (E_11 * t24 - t11 * E_21) * h;
-    const real_t t28 = E_12 * X - t17 * E_22;
-    const real_t A_12 = t27 + t28;
-    const real_t t29 = u_y - A_12;
-    const real_t A_33 = t4 - t26;
-    const real_t A_23 = t3 - t26;
-    const real_t t30 = v_y - A_12;
+    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(t2 / cf_divisor(single, all_same, D)));
+    const real_t t10 = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t10 / cf_divisor(single, all_same, D));
+    const real_t t11 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t12 = cf_rarely(single, same, t1, t6);
+    const real_t t13 = t2 * E_11 - E_12 * t11 - t9 * t12;
+    const real_t t14 = t2 - E_11 * t13;
+    const real_t m_y = t11 + E_12 * t13;
+    const real_t t15 = t12 + t9 * t13;
+    const real_t t16 = E_11 * t14 - E_12 * m_y - t9 * t15;
+    const real_t t17 = t14 - E_11 * t16;
+    const real_t n_y = m_y + E_12 * t16;
+    const real_t t18 = t15 + t9 * t16;
+    const real_t j = cf_sqrt(t17 * t17 + n_y * n_y + t18 * t18);
+    const int in_line = j <= t7;
+    const real_t t19 = cf_sign(-t9);
+    const real_t t20 = E_11 * t19;
+    const real_t t21 = cf_rarely(single, in_line, t20, t18 / cf_divisor(single, in_line, j));
+    const real_t t22 = t11 * (t10 - t11) + t12 * (t8 - t12);
+    const real_t t23 = t22 / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
+    const real_t t24 = cf_select(in_line, CLOSEDFORM_C(0.0), t23);
+    const real_t t25 = t9 * X - t21 * t24;
+    const real_t rho = cf_sqrt(X * X + t24 * t24);
+    const real_t t26 = l - rho;
+    const real_t h = cf_root(single, cf_max(t26, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t t27 = t9 - t19;
+    const real_t t28 = cf_nonzero(single, t27);
+    const real_t t29 = CLOSEDFORM_C(1.0) + t19 * (E_11 * E_11) / t28;
+    const real_t E_21 = cf_rarely(single, in_line, t29, -(t17 / cf_divisor(single, in_line, j)));
+    const real_t E_22 = cf_rarely(single, in_line, E_12 * t20 / t28, n_y / cf_divisor(single, in_line, j));
+    const real_t t30 = h * (E_12 * E_21 - E_11 * E_22);
+    const real_t t31 = t25 + t30;
+    const real_t t32 = X * E_12 - t24 * E_22;
+    const real_t t33 = h * (E_11 * t21 - t9 * E_21);
+    const real_t A_12 = t32 + t33;
+    const real_t A_22 = c3_y + A_12;
+    const real_t A_33 = t6 - t31;
+    const real_t A_23 = t1 - t31;
+    const real_t t34 = c3_y - A_12;
     const real_t Delta = D * j * h;
-    const real_t t31 = cf_nonzero(single, Delta);
-    const int t32 = cf_nought(f) + cf_nought(e) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t33 = t32 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t34 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t35 = cf_rarely(single, in_line, -t15, CLOSEDFORM_C(0.0));
-    const int t36 = cf_abs(t35) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t37 = t36 & (-(size * CLOSEDFORM_FEASIBILITY) <= t18);
-    const int failed = (!(t33 & (CLOSEDFORM_C(0.0) <= l) & t34)) | (!t37);
-    const real_t t38 = cf_poison(single, failed);
-    const real_t t39 = -(A_23 * (A_12 * A_33 - t26 * t30) / t31) + t38;
-    const real_t t40 = h * (E_12 * t24 - t11 * E_22);
-    const real_t t41 = E_11 * X - E_21 * t17;
-    const real_t t42 = t40 - t41;
-    const real_t t43 = u_x + t42;
-    const real_t t44 = v_x + t42;
-    const real_t t45 = -(t26 * (A_33 * t43 - A_23 * t44) / t31) + t38;
-    const real_t t46 = -(A_23 * (A_33 * t42 + t26 * t44) / t31) + t38;
-    const real_t t47 = -(A_23 * (t30 * t42 + A_12 * t44) / t31) + t38;
-    const real_t A_13_above = t23 - t25;
-    const real_t t48 = t27 - t28;
-    const real_t t49 = u_y + t48;
-    const real_t A_33_above = t4 + A_13_above;
-    const real_t A_23_above = t3 + A_13_above;
-    const real_t t50 = v_y + t48;
-    const real_t t51 = A_13_above * (t49 * A_33_above - A_23_above * t50);
-    const real_t t52 = A_23_above * (t48 * A_33_above - A_13_above * t50);
-    const real_t t53 = A_33_above * (t48 * A_23_above - A_13_above * t49);
-    const real_t A_11_above = t40 + t41;
-    const real_t t54 = u_x - A_11_above;
-    const real_t t55 = v_x - A_11_above;
-    const real_t t56 = A_13_above * (A_33_above * t54 - A_23_above * t55);
-    const real_t t57 = A_23_above * (A_33_above * A_11_above + A_13_above * t55);
-    const real_t t58 = A_33_above * (A_23_above * A_11_above + A_13_above * t54);
-    const real_t t59 = -(A_13_above * (t50 * t54 - t49 * t55) / t31);
-    const real_t t60 = A_23_above * (t50 * A_11_above + t48 * t55) / t31;
-    const real_t t61 = A_33_above * (t49 * A_11_above + t48 * t54) / t31;
-    J[0] = t26 * (t29 * A_33 - A_23 * t30) / t31 + t38;
-    J[1] = t39;
-    J[2] = A_33 * (A_12 * A_23 - t26 * t29) / t31 + t38;
-    J[3] = t45;
-    J[4] = t46;
-    J[5] = A_33 * (A_23 * t42 + t26 * t43) / t31 + t38;
-    J[6] = -(t26 * (t30 * t43 - t29 * t44) / t31) + t38;
-    J[7] = t47;
-    J[8] = A_33 * (t29 * t42 + A_12 * t43) / t31 + t38;
-    J[9] = t51 / t31 + t38;
-    J[10] = -(t52 / t31) + t38;
-    J[11] = t53 / t31 + t38;
-    J[12] = -(t56 / t31) + t38;
-    J[13] = -(t57 / t31) + t38;
-    J[14] = t58 / t31 + t38;
-    J[15] = t59 + t38;
-    J[16] = -t60 + t38;
-    J[17] = t61 + t38;
+    const real_t t35 = cf_nonzero(single, Delta);
+    const int t36 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t37 = t36 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t38 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t39 = cf_rarely(single, in_line, -t22, CLOSEDFORM_C(0.0));
+    const int t40 = cf_abs(t39) <= CLOSEDFORM_FEASIBILITY * (size * size);
+    const int t41 = t40 & (-(size * CLOSEDFORM_FEASIBILITY) <= t26);
+    const int failed = (!(t37 & (CLOSEDFORM_C(0.0) <= l) & t38)) | (!t41);
+    const real_t t42 = cf_poison(single, failed);
+    const real_t t43 = -(t31 * (A_22 * A_33 + A_23 * t34) / t35) + t42;
+    const real_t t44 = -(A_23 * (A_12 * A_33 - t31 * t34) / t35) + t42;
+    const real_t t45 = A_33 * (A_12 * A_23 + t31 * A_22) / t35 + t42;
+    const real_t t46 = X * E_11 - t24 * E_21;
+    const real_t t47 = h * (E_12 * t21 - t9 * E_22);
+    const real_t A_11 = t46 - t47;
+    const real_t A_21 = t2 + A_11;
+    const real_t t48 = t31 * (A_33 * A_21 - A_23 * A_21) / t35 + t42;
+    const real_t t49 = t31 * A_21;
+    const real_t t50 = A_12 * A_21;
+    const real_t t51 = t25 - t30;
+    const real_t A_12_above = t32 - t33;
+    const real_t A_22_above = c3_y + A_12_above;
+    const real_t A_33_above = t6 - t51;
+    const real_t A_23_above = t1 - t51;
+    const real_t t52 = c3_y - A_12_above;
+    const real_t t53 = t51 * (A_22_above * A_33_above + A_23_above * t52);
+    const real_t t54 = A_23_above * (A_12_above * A_33_above - t51 * t52);
+    const real_t t55 = A_33_above * (A_12_above * A_23_above + t51 * A_22_above);
+    const real_t A_11_above = t46 + t47;
+    const real_t A_21_above = t2 + A_11_above;
+    const real_t t56 = A_33_above * A_21_above - A_23_above * A_21_above;
+    const real_t t57 = t51 * A_21_above;
+    const real_t t58 = A_23_above * (A_33_above * A_11_above + t57) / t35;
+    const real_t t59 = A_33_above * (t57 + A_23_above * A_11_above) / t35;
+    const real_t t60 = t51 * (t52 * A_21_above + A_22_above * A_21_above);
+    const real_t t61 = A_12_above * A_21_above;
+    const real_t t62 = -(A_23_above * (t52 * A_11_above + t61) / t35);
+    const real_t t63 = A_33_above * (t61 - A_22_above * A_11_above) / t35;
+    J[0] = t43;
+    J[1] = t44;
+    J[2] = t45;
+    J[3] = t48;
+    J[4] = A_23 * (A_33 * A_11 + t49) / t35 + t42;
+    J[5] = -(A_33 * (t49 + A_23 * A_11) / t35) + t42;
+    J[6] = t31 * (t34 * A_21 + A_22 * A_21) / t35 + t42;
+    J[7] = A_23 * (t34 * A_11 + t50) / t35 + t42;
+    J[8] = -(A_33 * (t50 - A_22 * A_11) / t35) + t42;
+    J[9] = t53 / t35 + t42;
+    J[10] = t54 / t35 + t42;
+    J[11] = -(t55 / t35) + t42;
+    J[12] = -(t51 * t56 / t35) + t42;
+    J[13] = -t58 + t42;
+    J[14] = t59 + t42;
+    J[15] = -(t60 / t35) + t42;
+    J[16] = t62 + t42;
+    J[17] = t63 + t42;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1109,10 +969,7 @@ void linear_delta_jacobian(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3 };
-    cf_sincos_lanes(4, lanes, sines, cosines);
-    linear_delta_jacobian_kernel(1, params, q, sines, cosines, J);
+    linear_delta_jacobian_kernel(1, params, q, J);
 }
 
 /* Has its sign bit set where powers of the size of a posture may leave the range. */
@@ -1147,26 +1004,11 @@ void linear_delta_jacobian_batch(size_t n, const linear_delta_params *params,
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha2;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha3;
-        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t J_i[18];
-            linear_delta_jacobian_kernel(0, &local, q_i, sines_i, cosines_i, J_i);
+            linear_delta_jacobian_kernel(0, &local, q_i, J_i);
             J[start + i] = J_i[0];
             J[J_stride + start + i] = J_i[1];
             J[2 * J_stride + start + i] = J_i[2];
@@ -1195,89 +1037,78 @@ void linear_delta_jacobian_batch(size_t n, const linear_delta_params *params,
 }
 
 CF_INLINE void linear_delta_determinant_kernel(const int single, const linear_delta_params *params,
-    const real_t q[3], const real_t *sines,
-    const real_t *cosines, real_t det[2])
+    const real_t q[3], real_t det[2])
 {
     const real_t f = params->f;
     const real_t e = params->e;
     const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s_alpha2 = sines[1];
-    const real_t c_alpha2 = cosines[1];
-    const real_t s_alpha3 = sines[2];
-    const real_t c_alpha3 = cosines[2];
-    const real_t t1 = e * c_alpha1 - f * c_alpha1;
-    const real_t u_x = t1 - (e * c_alpha2 - f * c_alpha2);
-    const real_t t2 = e * s_alpha1 - f * s_alpha1;
-    const real_t u_y = t2 - (e * s_alpha2 - f * s_alpha2);
-    const real_t t3 = rho1 - rho2;
-    const real_t size_u = cf_sqrt(u_x * u_x + u_y * u_y + t3 * t3);
-    const real_t v_x = t1 - (e * c_alpha3 - f * c_alpha3);
-    const real_t v_y = t2 - (e * s_alpha3 - f * s_alpha3);
-    const real_t t4 = rho1 - rho3;
-    const real_t size_v = cf_sqrt(v_x * v_x + v_y * v_y + t4 * t4);
+    const real_t t1 = rho1 - rho2;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t2 * t2 + c3_y * c3_y;
+    const real_t size_u = cf_sqrt(t1 * t1 + t5);
+    const real_t t6 = rho1 - rho3;
+    const real_t size_v = cf_sqrt(t6 * t6 + t5);
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t5 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t5;
-    const int same = size_u <= t5;
+    const real_t t7 = size * CLOSEDFORM_VANISHING;
+    const int all_same = size_u + size_v <= t7;
+    const int same = size_u <= t7;
+    const real_t t8 = cf_rarely(single, same, t6, t1);
     const real_t D = cf_rarely(single, same, size_v, size_u);
+    const real_t t9 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 / cf_divisor(single, all_same, D));
     const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t t6 = cf_rarely(single, same, u_x, v_x);
-    const real_t t7 = cf_rarely(single, same, v_x, u_x);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), t7 / cf_divisor(single, all_same, D));
-    const real_t t8 = cf_rarely(single, same, v_y, u_y);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 / cf_divisor(single, all_same, D));
-    const real_t t9 = cf_rarely(single, same, u_y, v_y);
-    const real_t t10 = cf_rarely(single, same, t4, t3);
-    const real_t t11 = cf_select(all_same, CLOSEDFORM_C(0.0), t10 / cf_divisor(single, all_same, D));
-    const real_t t12 = cf_rarely(single, same, t3, t4);
-    const real_t k_0 = E_11 * t6 + E_12 * t9 + t11 * t12;
-    const real_t m_x = t6 - E_11 * k_0;
-    const real_t m_y = t9 - E_12 * k_0;
-    const real_t t13 = t12 - t11 * k_0;
-    const real_t k_1 = E_11 * m_x + E_12 * m_y + t11 * t13;
-    const real_t n_x = m_x - E_11 * k_1;
-    const real_t n_y = m_y - E_12 * k_1;
-    const real_t t14 = t13 - t11 * k_1;
-    const real_t j = cf_sqrt(n_x * n_x + n_y * n_y + t14 * t14);
-    const int in_line = j <= t5;
-    const real_t t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12);
-    const real_t t16 = t15 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t17 = cf_select(in_line, CLOSEDFORM_C(0.0), t16);
-    const real_t rho = cf_sqrt(X * X + t17 * t17);
-    const real_t t18 = l - rho;
-    const real_t h = cf_root(single, cf_max(t18, CLOSEDFORM_C(0.0)) * (l + rho));
-    const real_t t19 = cf_sign(-t11);
-    const real_t t20 = t11 - t19;
-    const real_t t21 = cf_nonzero(single, t20);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t19 / t21, n_x / cf_divisor(single, in_line, j));
-    const real_t t22 = E_11 * t19;
-    const real_t E_22 = cf_rarely(single, in_line, E_12 * t22 / t21, n_y / cf_divisor(single, in_line, j));
-    const real_t t23 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t24 = cf_rarely(single, in_line, t22, t14 / cf_divisor(single, in_line, j));
-    const real_t t25 = t11 * X - t24 * t17;
-    const real_t t26 = t23 + t25;
+    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(t2 / cf_divisor(single, all_same, D)));
+    const real_t t10 = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t10 / cf_divisor(single, all_same, D));
+    const real_t t11 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t12 = cf_rarely(single, same, t1, t6);
+    const real_t t13 = t2 * E_11 - E_12 * t11 - t9 * t12;
+    const real_t t14 = t2 - E_11 * t13;
+    const real_t m_y = t11 + E_12 * t13;
+    const real_t t15 = t12 + t9 * t13;
+    const real_t t16 = E_11 * t14 - E_12 * m_y - t9 * t15;
+    const real_t t17 = t14 - E_11 * t16;
+    const real_t n_y = m_y + E_12 * t16;
+    const real_t t18 = t15 + t9 * t16;
+    const real_t j = cf_sqrt(t17 * t17 + n_y * n_y + t18 * t18);
+    const int in_line = j <= t7;
+    const real_t t19 = cf_sign(-t9);
+    const real_t t20 = E_11 * t19;
+    const real_t t21 = cf_rarely(single, in_line, t20, t18 / cf_divisor(single, in_line, j));
+    const real_t t22 = t11 * (t10 - t11) + t12 * (t8 - t12);
+    const real_t t23 = t22 / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
+    const real_t t24 = cf_select(in_line, CLOSEDFORM_C(0.0), t23);
+    const real_t t25 = t9 * X - t21 * t24;
+    const real_t rho = cf_sqrt(X * X + t24 * t24);
+    const real_t t26 = l - rho;
+    const real_t h = cf_root(single, cf_max(t26, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t t27 = t9 - t19;
+    const real_t t28 = cf_nonzero(single, t27);
+    const real_t t29 = CLOSEDFORM_C(1.0) + t19 * (E_11 * E_11) / t28;
+    const real_t E_21 = cf_rarely(single, in_line, t29, -(t17 / cf_divisor(single, in_line, j)));
+    const real_t E_22 = cf_rarely(single, in_line, E_12 * t20 / t28, n_y / cf_divisor(single, in_line, j));
+    const real_t t30 = h * (E_12 * E_21 - E_11 * E_22);
+    const real_t t31 = t25 + t30;
     const real_t Delta = D * j * h;
-    const real_t t27 = cf_quotient(single, t26 * (t3 - t26) * (t4 - t26), Delta);
-    const int t28 = cf_nought(f) + cf_nought(e) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t29 = t28 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t30 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t31 = cf_rarely(single, in_line, -t15, CLOSEDFORM_C(0.0));
-    const int t32 = cf_abs(t31) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t33 = t32 & (-(size * CLOSEDFORM_FEASIBILITY) <= t18);
-    const int failed = (!(t29 & (CLOSEDFORM_C(0.0) <= l) & t30)) | (!t33);
-    const real_t t34 = cf_poison(single, failed);
-    const real_t A_13_above = t23 - t25;
-    const real_t t35 = A_13_above * (t3 + A_13_above) * (t4 + A_13_above);
-    det[0] = -t27 + t34;
-    det[1] = -cf_quotient(single, t35, Delta) + t34;
+    const real_t t32 = cf_quotient(single, t31 * (t1 - t31) * (t6 - t31), Delta);
+    const int t33 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t34 = t33 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t35 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t36 = cf_rarely(single, in_line, -t22, CLOSEDFORM_C(0.0));
+    const int t37 = cf_abs(t36) <= CLOSEDFORM_FEASIBILITY * (size * size);
+    const int t38 = t37 & (-(size * CLOSEDFORM_FEASIBILITY) <= t26);
+    const int failed = (!(t34 & (CLOSEDFORM_C(0.0) <= l) & t35)) | (!t38);
+    const real_t t39 = cf_poison(single, failed);
+    const real_t t40 = t25 - t30;
+    const real_t t41 = cf_quotient(single, t40 * (t1 - t40) * (t6 - t40), Delta);
+    det[0] = -t32 + t39;
+    det[1] = t41 + t39;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1299,10 +1130,7 @@ void linear_delta_determinant(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3 };
-    cf_sincos_lanes(4, lanes, sines, cosines);
-    linear_delta_determinant_kernel(1, params, q, sines, cosines, det);
+    linear_delta_determinant_kernel(1, params, q, det);
 }
 
 /* Has its sign bit set where powers of the size of a posture may leave the range. */
@@ -1337,26 +1165,11 @@ void linear_delta_determinant_batch(size_t n, const linear_delta_params *params,
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha2;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha3;
-        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t det_i[2];
-            linear_delta_determinant_kernel(0, &local, q_i, sines_i, cosines_i, det_i);
+            linear_delta_determinant_kernel(0, &local, q_i, det_i);
             det[start + i] = det_i[0];
             det[det_stride + start + i] = det_i[1];
         }
@@ -1369,93 +1182,82 @@ void linear_delta_determinant_batch(size_t n, const linear_delta_params *params,
 }
 
 CF_INLINE void linear_delta_singularities_kernel(const int single, const linear_delta_params *params,
-    const real_t q[3], const real_t *sines,
-    const real_t *cosines, real_t factors[8])
+    const real_t q[3], real_t factors[8])
 {
     const real_t f = params->f;
     const real_t e = params->e;
     const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s_alpha2 = sines[1];
-    const real_t c_alpha2 = cosines[1];
-    const real_t s_alpha3 = sines[2];
-    const real_t c_alpha3 = cosines[2];
-    const real_t t1 = e * c_alpha1 - f * c_alpha1;
-    const real_t u_x = t1 - (e * c_alpha2 - f * c_alpha2);
-    const real_t t2 = e * s_alpha1 - f * s_alpha1;
-    const real_t u_y = t2 - (e * s_alpha2 - f * s_alpha2);
-    const real_t t3 = rho1 - rho2;
-    const real_t size_u = cf_sqrt(u_x * u_x + u_y * u_y + t3 * t3);
-    const real_t v_x = t1 - (e * c_alpha3 - f * c_alpha3);
-    const real_t v_y = t2 - (e * s_alpha3 - f * s_alpha3);
-    const real_t t4 = rho1 - rho3;
-    const real_t size_v = cf_sqrt(v_x * v_x + v_y * v_y + t4 * t4);
+    const real_t t1 = rho1 - rho2;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t2 * t2 + c3_y * c3_y;
+    const real_t size_u = cf_sqrt(t1 * t1 + t5);
+    const real_t t6 = rho1 - rho3;
+    const real_t size_v = cf_sqrt(t6 * t6 + t5);
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t5 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t5;
-    const int same = size_u <= t5;
+    const real_t t7 = size * CLOSEDFORM_VANISHING;
+    const int all_same = size_u + size_v <= t7;
+    const int same = size_u <= t7;
+    const real_t t8 = cf_rarely(single, same, t6, t1);
     const real_t D = cf_rarely(single, same, size_v, size_u);
+    const real_t t9 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 / cf_divisor(single, all_same, D));
     const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t t6 = cf_rarely(single, same, u_x, v_x);
-    const real_t t7 = cf_rarely(single, same, v_x, u_x);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), t7 / cf_divisor(single, all_same, D));
-    const real_t t8 = cf_rarely(single, same, v_y, u_y);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 / cf_divisor(single, all_same, D));
-    const real_t t9 = cf_rarely(single, same, u_y, v_y);
-    const real_t t10 = cf_rarely(single, same, t4, t3);
-    const real_t t11 = cf_select(all_same, CLOSEDFORM_C(0.0), t10 / cf_divisor(single, all_same, D));
-    const real_t t12 = cf_rarely(single, same, t3, t4);
-    const real_t k_0 = E_11 * t6 + E_12 * t9 + t11 * t12;
-    const real_t m_x = t6 - E_11 * k_0;
-    const real_t m_y = t9 - E_12 * k_0;
-    const real_t t13 = t12 - t11 * k_0;
-    const real_t k_1 = E_11 * m_x + E_12 * m_y + t11 * t13;
-    const real_t n_x = m_x - E_11 * k_1;
-    const real_t n_y = m_y - E_12 * k_1;
-    const real_t t14 = t13 - t11 * k_1;
-    const real_t j = cf_sqrt(n_x * n_x + n_y * n_y + t14 * t14);
-    const int in_line = j <= t5;
-    const real_t t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12);
-    const real_t t16 = t15 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t17 = cf_select(in_line, CLOSEDFORM_C(0.0), t16);
-    const real_t rho = cf_sqrt(X * X + t17 * t17);
-    const real_t t18 = l - rho;
-    const real_t h = cf_root(single, cf_max(t18, CLOSEDFORM_C(0.0)) * (l + rho));
-    const real_t t19 = cf_sign(-t11);
-    const real_t t20 = t11 - t19;
-    const real_t t21 = cf_nonzero(single, t20);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t19 / t21, n_x / cf_divisor(single, in_line, j));
-    const real_t t22 = E_11 * t19;
-    const real_t E_22 = cf_rarely(single, in_line, E_12 * t22 / t21, n_y / cf_divisor(single, in_line, j));
-    const real_t t23 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t24 = cf_rarely(single, in_line, t22, t14 / cf_divisor(single, in_line, j));
-    const real_t t25 = t11 * X - t24 * t17;
-    const real_t t26 = t23 + t25;
-    const int t27 = cf_nought(f) + cf_nought(e) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t28 = t27 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t30 = cf_rarely(single, in_line, -t15, CLOSEDFORM_C(0.0));
-    const int t31 = cf_abs(t30) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t32 = t31 & (-(size * CLOSEDFORM_FEASIBILITY) <= t18);
-    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= l) & t29)) | (!t32);
-    const real_t t33 = cf_poison(single, failed);
+    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(t2 / cf_divisor(single, all_same, D)));
+    const real_t t10 = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t10 / cf_divisor(single, all_same, D));
+    const real_t t11 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t12 = cf_rarely(single, same, t1, t6);
+    const real_t t13 = t2 * E_11 - E_12 * t11 - t9 * t12;
+    const real_t t14 = t2 - E_11 * t13;
+    const real_t m_y = t11 + E_12 * t13;
+    const real_t t15 = t12 + t9 * t13;
+    const real_t t16 = E_11 * t14 - E_12 * m_y - t9 * t15;
+    const real_t t17 = t14 - E_11 * t16;
+    const real_t n_y = m_y + E_12 * t16;
+    const real_t t18 = t15 + t9 * t16;
+    const real_t j = cf_sqrt(t17 * t17 + n_y * n_y + t18 * t18);
+    const int in_line = j <= t7;
+    const real_t t19 = cf_sign(-t9);
+    const real_t t20 = E_11 * t19;
+    const real_t t21 = cf_rarely(single, in_line, t20, t18 / cf_divisor(single, in_line, j));
+    const real_t t22 = t11 * (t10 - t11) + t12 * (t8 - t12);
+    const real_t t23 = t22 / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
+    const real_t t24 = cf_select(in_line, CLOSEDFORM_C(0.0), t23);
+    const real_t t25 = t9 * X - t21 * t24;
+    const real_t rho = cf_sqrt(X * X + t24 * t24);
+    const real_t t26 = l - rho;
+    const real_t h = cf_root(single, cf_max(t26, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t t27 = t9 - t19;
+    const real_t t28 = cf_nonzero(single, t27);
+    const real_t t29 = CLOSEDFORM_C(1.0) + t19 * (E_11 * E_11) / t28;
+    const real_t E_21 = cf_rarely(single, in_line, t29, -(t17 / cf_divisor(single, in_line, j)));
+    const real_t E_22 = cf_rarely(single, in_line, E_12 * t20 / t28, n_y / cf_divisor(single, in_line, j));
+    const real_t t30 = h * (E_12 * E_21 - E_11 * E_22);
+    const real_t t31 = t25 + t30;
+    const int t32 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t33 = t32 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t34 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t35 = cf_rarely(single, in_line, -t22, CLOSEDFORM_C(0.0));
+    const int t36 = cf_abs(t35) <= CLOSEDFORM_FEASIBILITY * (size * size);
+    const int t37 = t36 & (-(size * CLOSEDFORM_FEASIBILITY) <= t26);
+    const int failed = (!(t33 & (CLOSEDFORM_C(0.0) <= l) & t34)) | (!t37);
+    const real_t t38 = cf_poison(single, failed);
     const real_t Delta = D * j * h;
-    const real_t A_13_above = t23 - t25;
-    factors[0] = -t26 + t33;
-    factors[1] = t3 - t26 + t33;
-    factors[2] = t4 - t26 + t33;
-    factors[3] = Delta + t33;
-    factors[4] = A_13_above + t33;
-    factors[5] = t3 + A_13_above + t33;
-    factors[6] = t4 + A_13_above + t33;
-    factors[7] = -Delta + t33;
+    const real_t t39 = t25 - t30;
+    factors[0] = -t31 + t38;
+    factors[1] = t1 - t31 + t38;
+    factors[2] = t6 - t31 + t38;
+    factors[3] = Delta + t38;
+    factors[4] = -t39 + t38;
+    factors[5] = t1 - t39 + t38;
+    factors[6] = t6 - t39 + t38;
+    factors[7] = -Delta + t38;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1478,10 +1280,7 @@ void linear_delta_singularities(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3 };
-    cf_sincos_lanes(4, lanes, sines, cosines);
-    linear_delta_singularities_kernel(1, params, q, sines, cosines, factors);
+    linear_delta_singularities_kernel(1, params, q, factors);
     if (CF_UNLIKELY(exponent != 0)) {
         cf_rescale(8, factors_degrees, exponent, factors, factors);
     }
@@ -1519,26 +1318,11 @@ void linear_delta_singularities_batch(size_t n, const linear_delta_params *param
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha2;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha3;
-        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t factors_i[8];
-            linear_delta_singularities_kernel(0, &local, q_i, sines_i, cosines_i, factors_i);
+            linear_delta_singularities_kernel(0, &local, q_i, factors_i);
             factors[start + i] = factors_i[0];
             factors[factors_stride + start + i] = factors_i[1];
             factors[2 * factors_stride + start + i] = factors_i[2];
@@ -1557,136 +1341,127 @@ void linear_delta_singularities_batch(size_t n, const linear_delta_params *param
 }
 
 CF_INLINE void linear_delta_condition_number_kernel(const int single, const linear_delta_params *params,
-    const real_t q[3], const real_t *sines,
-    const real_t *cosines, real_t kappa[2])
+    const real_t q[3], real_t kappa[2])
 {
     const real_t f = params->f;
     const real_t e = params->e;
     const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
     const real_t rho1 = q[0];
     const real_t rho2 = q[1];
     const real_t rho3 = q[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s_alpha2 = sines[1];
-    const real_t c_alpha2 = cosines[1];
-    const real_t s_alpha3 = sines[2];
-    const real_t c_alpha3 = cosines[2];
-    const real_t t1 = e * c_alpha1 - f * c_alpha1;
-    const real_t u_x = t1 - (e * c_alpha2 - f * c_alpha2);
-    const real_t t2 = e * s_alpha1 - f * s_alpha1;
-    const real_t u_y = t2 - (e * s_alpha2 - f * s_alpha2);
-    const real_t t3 = rho1 - rho2;
-    const real_t size_u = cf_sqrt(u_x * u_x + u_y * u_y + t3 * t3);
-    const real_t v_x = t1 - (e * c_alpha3 - f * c_alpha3);
-    const real_t v_y = t2 - (e * s_alpha3 - f * s_alpha3);
-    const real_t t4 = rho1 - rho3;
-    const real_t size_v = cf_sqrt(v_x * v_x + v_y * v_y + t4 * t4);
+    const real_t t1 = rho1 - rho2;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t2 * t2 + c3_y * c3_y;
+    const real_t size_u = cf_sqrt(t1 * t1 + t5);
+    const real_t t6 = rho1 - rho3;
+    const real_t size_v = cf_sqrt(t6 * t6 + t5);
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t5 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t5;
-    const int same = size_u <= t5;
+    const real_t t7 = size * CLOSEDFORM_VANISHING;
+    const int all_same = size_u + size_v <= t7;
+    const int same = size_u <= t7;
     const real_t D = cf_rarely(single, same, size_v, size_u);
+    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(t2 / cf_divisor(single, all_same, D)));
     const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t t6 = cf_rarely(single, same, u_x, v_x);
-    const real_t t7 = cf_rarely(single, same, v_x, u_x);
-    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), t7 / cf_divisor(single, all_same, D));
-    const real_t t8 = cf_rarely(single, same, v_y, u_y);
+    const real_t t8 = cf_rarely(single, same, c3_y, -c3_y);
     const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 / cf_divisor(single, all_same, D));
-    const real_t t9 = cf_rarely(single, same, u_y, v_y);
-    const real_t t10 = cf_rarely(single, same, t4, t3);
+    const real_t t9 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t10 = cf_rarely(single, same, t6, t1);
     const real_t t11 = cf_select(all_same, CLOSEDFORM_C(0.0), t10 / cf_divisor(single, all_same, D));
-    const real_t t12 = cf_rarely(single, same, t3, t4);
-    const real_t k_0 = E_11 * t6 + E_12 * t9 + t11 * t12;
-    const real_t m_x = t6 - E_11 * k_0;
-    const real_t m_y = t9 - E_12 * k_0;
-    const real_t t13 = t12 - t11 * k_0;
-    const real_t k_1 = E_11 * m_x + E_12 * m_y + t11 * t13;
-    const real_t n_x = m_x - E_11 * k_1;
-    const real_t n_y = m_y - E_12 * k_1;
-    const real_t t14 = t13 - t11 * k_1;
-    const real_t j = cf_sqrt(n_x * n_x + n_y * n_y + t14 * t14);
-    const int in_line = j <= t5;
-    const real_t t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12);
-    const real_t t16 = t15 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
-    const real_t t17 = cf_select(in_line, CLOSEDFORM_C(0.0), t16);
-    const real_t rho = cf_sqrt(X * X + t17 * t17);
-    const real_t t18 = l - rho;
-    const real_t h = cf_root(single, cf_max(t18, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t t12 = cf_rarely(single, same, t1, t6);
+    const real_t t13 = t2 * E_11 - E_12 * t9 - t11 * t12;
+    const real_t t14 = t2 - E_11 * t13;
+    const real_t m_y = t9 + E_12 * t13;
+    const real_t t15 = t12 + t11 * t13;
+    const real_t t16 = E_11 * t14 - E_12 * m_y - t11 * t15;
+    const real_t t17 = t14 - E_11 * t16;
+    const real_t n_y = m_y + E_12 * t16;
+    const real_t t18 = t15 + t11 * t16;
+    const real_t j = cf_sqrt(t17 * t17 + n_y * n_y + t18 * t18);
+    const int in_line = j <= t7;
     const real_t t19 = cf_sign(-t11);
-    const real_t t20 = E_11 * t19;
-    const real_t t21 = cf_rarely(single, in_line, t20, t14 / cf_divisor(single, in_line, j));
-    const real_t t22 = t11 - t19;
-    const real_t t23 = cf_nonzero(single, t22);
-    const real_t E_22 = cf_rarely(single, in_line, E_12 * t20 / t23, n_y / cf_divisor(single, in_line, j));
-    const real_t t24 = h * (E_12 * t21 - t11 * E_22);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t19 / t23, n_x / cf_divisor(single, in_line, j));
-    const real_t t25 = E_11 * X - E_21 * t17;
-    const real_t t26 = t24 - t25;
-    const real_t t27 = (E_11 * t21 - t11 * E_21) * h;
-    const real_t t28 = E_12 * X - t17 * E_22;
-    const real_t A_12 = t27 + t28;
-    const real_t t29 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t30 = t11 * X - t21 * t17;
-    const real_t t31 = t29 + t30;
-    const real_t t32 = u_x + t26;
-    const real_t t33 = u_y - A_12;
-    const real_t A_23 = t3 - t31;
-    const real_t t34 = t26 * t26 + A_12 * A_12 + t31 * t31 + (t32 * t32 + t33 * t33 + A_23 * A_23);
-    const real_t t35 = v_x + t26;
-    const real_t t36 = v_y - A_12;
-    const real_t A_33 = t4 - t31;
-    const real_t t37 = t26 * t33 + A_12 * t32;
-    const real_t t38 = t26 * A_23 + t31 * t32;
-    const real_t t39 = t26 * t36 + A_12 * t35;
-    const real_t t40 = t26 * A_33 + t31 * t35;
-    const real_t t41 = t37 * t37 + t38 * t38 + t39 * t39 + t40 * t40;
-    const real_t t42 = A_12 * A_23 - t31 * t33;
-    const real_t t43 = A_12 * A_33 - t31 * t36;
-    const real_t t44 = t32 * t36 - t33 * t35;
-    const real_t t45 = t32 * A_33 - A_23 * t35;
-    const real_t t46 = t41 + t42 * t42 + t43 * t43 + t44 * t44 + t45 * t45;
-    const real_t t47 = t33 * A_33 - A_23 * t36;
-    const real_t t48 = (t34 + (t35 * t35 + t36 * t36 + A_33 * A_33)) * (t46 + t47 * t47);
-    const real_t t49 = CLOSEDFORM_C(3.0) * (D * j * h);
-    const int t50 = cf_nought(f) + cf_nought(e) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t51 = t50 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t52 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
-    const real_t t53 = cf_rarely(single, in_line, -t15, CLOSEDFORM_C(0.0));
-    const int t54 = cf_abs(t53) <= CLOSEDFORM_FEASIBILITY * (size * size);
-    const int t55 = t54 & (-(size * CLOSEDFORM_FEASIBILITY) <= t18);
-    const int failed = (!(t51 & (CLOSEDFORM_C(0.0) <= l) & t52)) | (!t55);
-    const real_t t56 = cf_poison(single, failed);
-    const real_t A_11_above = t24 + t25;
-    const real_t t57 = t27 - t28;
-    const real_t A_13_above = t29 - t30;
-    const real_t square1_above = A_11_above * A_11_above + t57 * t57 + A_13_above * A_13_above;
-    const real_t t58 = u_x - A_11_above;
-    const real_t t59 = u_y + t57;
-    const real_t A_23_above = t3 + A_13_above;
-    const real_t square2_above = t58 * t58 + t59 * t59 + A_23_above * A_23_above;
-    const real_t t60 = v_x - A_11_above;
-    const real_t t61 = v_y + t57;
-    const real_t A_33_above = t4 + A_13_above;
-    const real_t square3_above = t60 * t60 + t61 * t61 + A_33_above * A_33_above;
-    const real_t t62 = square1_above + square2_above + square3_above;
-    const real_t t63 = A_11_above * t59 + t57 * t58;
-    const real_t t64 = A_11_above * A_23_above + A_13_above * t58;
-    const real_t t65 = A_11_above * t61 + t57 * t60;
-    const real_t t66 = A_11_above * A_33_above + A_13_above * t60;
-    const real_t t67 = t63 * t63 + t64 * t64 + t65 * t65 + t66 * t66;
-    const real_t t68 = t57 * A_23_above - A_13_above * t59;
-    const real_t t69 = t57 * A_33_above - A_13_above * t61;
-    const real_t t70 = t58 * t61 - t59 * t60;
-    const real_t t71 = t58 * A_33_above - A_23_above * t60;
-    const real_t t72 = t67 + t68 * t68 + t69 * t69 + t70 * t70 + t71 * t71;
-    const real_t t73 = t59 * A_33_above - A_23_above * t61;
-    const real_t t74 = cf_quotient(single, cf_sqrt(t62 * (t72 + t73 * t73)), t49);
-    kappa[0] = cf_quotient(single, cf_sqrt(t48), t49) + t56;
-    kappa[1] = t74 + t56;
+    const real_t t20 = t11 - t19;
+    const real_t t21 = cf_nonzero(single, t20);
+    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t19 / t21, -(t17 / cf_divisor(single, in_line, j)));
+    const real_t t22 = t9 * (t8 - t9) + t12 * (t10 - t12);
+    const real_t t23 = t22 / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
+    const real_t t24 = cf_select(in_line, CLOSEDFORM_C(0.0), t23);
+    const real_t t25 = E_11 * X - E_21 * t24;
+    const real_t rho = cf_sqrt(X * X + t24 * t24);
+    const real_t t26 = l - rho;
+    const real_t h = cf_root(single, cf_max(t26, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t t27 = E_11 * t19;
+    const real_t t28 = cf_rarely(single, in_line, t27, t18 / cf_divisor(single, in_line, j));
+    const real_t E_22 = cf_rarely(single, in_line, E_12 * t27 / t21, n_y / cf_divisor(single, in_line, j));
+    const real_t t29 = h * (E_12 * t28 - t11 * E_22);
+    const real_t A_11 = t25 - t29;
+    const real_t t30 = X * E_12 - t24 * E_22;
+    const real_t t31 = h * (E_11 * t28 - t11 * E_21);
+    const real_t A_12 = t30 + t31;
+    const real_t t32 = X * t11 - t24 * t28;
+    const real_t t33 = h * (E_12 * E_21 - E_11 * E_22);
+    const real_t t34 = t32 + t33;
+    const real_t A_21 = t2 + A_11;
+    const real_t t35 = A_21 * A_21;
+    const real_t A_22 = c3_y + A_12;
+    const real_t A_23 = t1 - t34;
+    const real_t t36 = A_11 * A_11 + A_12 * A_12 + t34 * t34 + (t35 + A_22 * A_22 + A_23 * A_23);
+    const real_t t37 = c3_y - A_12;
+    const real_t A_33 = t6 - t34;
+    const real_t t38 = A_12 * A_21;
+    const real_t t39 = A_11 * A_22 - t38;
+    const real_t t40 = t34 * A_21;
+    const real_t t41 = A_11 * A_23 + t40;
+    const real_t t42 = t38 + A_11 * t37;
+    const real_t t43 = t40 + A_11 * A_33;
+    const real_t t44 = t39 * t39 + t41 * t41 + t42 * t42 + t43 * t43;
+    const real_t t45 = A_12 * A_23 + t34 * A_22;
+    const real_t t46 = A_12 * A_33 - t34 * t37;
+    const real_t t47 = A_21 * t37 + A_21 * A_22;
+    const real_t t48 = A_21 * A_33 - A_21 * A_23;
+    const real_t t49 = t44 + t45 * t45 + t46 * t46 + t47 * t47 + t48 * t48;
+    const real_t t50 = A_22 * A_33 + A_23 * t37;
+    const real_t t51 = (t36 + (t35 + t37 * t37 + A_33 * A_33)) * (t49 + t50 * t50);
+    const real_t t52 = CLOSEDFORM_C(3.0) * (D * j * h);
+    const int t53 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t54 = t53 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t55 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t56 = cf_rarely(single, in_line, -t22, CLOSEDFORM_C(0.0));
+    const int t57 = cf_abs(t56) <= CLOSEDFORM_FEASIBILITY * (size * size);
+    const int t58 = t57 & (-(size * CLOSEDFORM_FEASIBILITY) <= t26);
+    const int failed = (!(t54 & (CLOSEDFORM_C(0.0) <= l) & t55)) | (!t58);
+    const real_t t59 = cf_poison(single, failed);
+    const real_t A_11_above = t25 + t29;
+    const real_t A_12_above = t30 - t31;
+    const real_t t60 = A_11_above * A_11_above + A_12_above * A_12_above;
+    const real_t t61 = t32 - t33;
+    const real_t A_21_above = t2 + A_11_above;
+    const real_t t62 = A_21_above * A_21_above;
+    const real_t A_22_above = c3_y + A_12_above;
+    const real_t A_23_above = t1 - t61;
+    const real_t square2_above = t62 + A_22_above * A_22_above + A_23_above * A_23_above;
+    const real_t t63 = c3_y - A_12_above;
+    const real_t A_33_above = t6 - t61;
+    const real_t t64 = t60 + t61 * t61 + square2_above + (t62 + t63 * t63 + A_33_above * A_33_above);
+    const real_t t65 = A_12_above * A_21_above;
+    const real_t t66 = A_11_above * A_22_above - t65;
+    const real_t t67 = t61 * A_21_above;
+    const real_t t68 = A_11_above * A_23_above + t67;
+    const real_t t69 = t65 + A_11_above * t63;
+    const real_t t70 = t67 + A_11_above * A_33_above;
+    const real_t t71 = t66 * t66 + t68 * t68 + t69 * t69 + t70 * t70;
+    const real_t t72 = A_12_above * A_23_above + t61 * A_22_above;
+    const real_t t73 = A_12_above * A_33_above - t61 * t63;
+    const real_t t74 = A_21_above * t63 + A_21_above * A_22_above;
+    const real_t t75 = A_21_above * A_33_above - A_21_above * A_23_above;
+    const real_t t76 = t71 + t72 * t72 + t73 * t73 + t74 * t74 + t75 * t75;
+    const real_t t77 = A_22_above * A_33_above + A_23_above * t63;
+    const real_t t78 = cf_quotient(single, cf_sqrt(t64 * (t76 + t77 * t77)), t52);
+    kappa[0] = cf_quotient(single, cf_sqrt(t51), t52) + t59;
+    kappa[1] = t78 + t59;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1708,10 +1483,7 @@ void linear_delta_condition_number(const linear_delta_params *params,
         cf_rescale(3, q_degrees, -exponent, q, q_scaled);
         q = q_scaled;
     }
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3 };
-    cf_sincos_lanes(4, lanes, sines, cosines);
-    linear_delta_condition_number_kernel(1, params, q, sines, cosines, kappa);
+    linear_delta_condition_number_kernel(1, params, q, kappa);
 }
 
 /* Has its sign bit set where powers of the size of a posture may leave the range. */
@@ -1746,26 +1518,11 @@ void linear_delta_condition_number_batch(size_t n, const linear_delta_params *pa
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha2;
-        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha3;
-        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t kappa_i[2];
-            linear_delta_condition_number_kernel(0, &local, q_i, sines_i, cosines_i, kappa_i);
+            linear_delta_condition_number_kernel(0, &local, q_i, kappa_i);
             kappa[start + i] = kappa_i[0];
             kappa[kappa_stride + start + i] = kappa_i[1];
         }
@@ -1779,156 +1536,133 @@ void linear_delta_condition_number_batch(size_t n, const linear_delta_params *pa
 
 CF_INLINE void linear_delta_ik_kernel(const int single, const real_t one,
     const linear_delta_params *params,
-    const real_t x[3], const real_t *sines,
-    const real_t *cosines, real_t q[24],
-    real_t status[8])
+    const real_t x[3], real_t q[24], real_t status[8])
 {
     const real_t f = params->f;
     const real_t e = params->e;
     const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
     const real_t x_2 = x[0];
     const real_t y = x[1];
     const real_t z = x[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s_alpha2 = sines[1];
-    const real_t c_alpha2 = cosines[1];
-    const real_t s_alpha3 = sines[2];
-    const real_t c_alpha3 = cosines[2];
-    const real_t t1 = cf_rounded(single, one, e * s_alpha1) - cf_rounded(single, one, f * s_alpha1);
-    const real_t A_12 = y + t1;
-    const real_t t2 = cf_rounded(single, one, e * c_alpha1) - cf_rounded(single, one, f * c_alpha1);
-    const real_t A_11 = x_2 + t2;
-    const real_t t3 = cf_rounded(single, one, A_12 * A_12) + cf_rounded(single, one, A_11 * A_11);
-    const real_t aside_1 = cf_sqrt(t3);
-    const real_t t4 = l - aside_1;
-    const real_t t5 = l + aside_1;
-    const real_t t6 = cf_max(t4, CLOSEDFORM_C(0.0)) * cf_max(t5, CLOSEDFORM_C(0.0));
-    const real_t root_1 = cf_sqrt(t6);
+    const real_t A_11 = x_2 - f + e;
+    const real_t t1 = cf_rounded(single, one, y * y) + cf_rounded(single, one, A_11 * A_11);
+    const real_t aside_1 = cf_sqrt(t1);
+    const real_t t2 = l - aside_1;
+    const real_t t3 = l + aside_1;
+    const real_t t4 = cf_max(t2, CLOSEDFORM_C(0.0)) * cf_max(t3, CLOSEDFORM_C(0.0));
+    const real_t root_1 = cf_sqrt(t4);
     const real_t slide_1 = z - root_1;
-    const int t7 = cf_nought(f) + cf_nought(e) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
-    const int t8 = t7 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
-    const int t9 = cf_nought(x_2) + cf_nought(y) + cf_nought(z) == 0;
-    const int invalid = !(t8 & (CLOSEDFORM_C(0.0) <= l) & t9);
+    const int t5 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t6 = t5 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t7 = cf_nought(x_2) + cf_nought(y) + cf_nought(z) == 0;
+    const int invalid = !(t6 & (CLOSEDFORM_C(0.0) <= l) & t7);
     const real_t size = f + e + l + cf_abs(x_2) + cf_abs(y) + cf_abs(z);
-    const real_t t10 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
-    const real_t t11 = cf_rounded(single, one, e * s_alpha2) - cf_rounded(single, one, f * s_alpha2);
-    const real_t t12 = y + t11;
-    const real_t t13 = cf_rounded(single, one, e * c_alpha2) - cf_rounded(single, one, f * c_alpha2);
-    const real_t t14 = x_2 + t13;
-    const real_t t15 = cf_rounded(single, one, t12 * t12) + cf_rounded(single, one, t14 * t14);
-    const real_t aside_2 = cf_sqrt(t15);
-    const real_t t16 = l - aside_2;
-    const real_t t17 = l + aside_2;
-    const int t18 = (-t10 <= t4) & (-t10 <= t5) & (-t10 <= t16) & (-t10 <= t17);
-    const real_t t19 = cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
-    const real_t t20 = y + t19;
-    const real_t t21 = cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
-    const real_t t22 = x_2 + t21;
-    const real_t t23 = cf_rounded(single, one, t20 * t20) + cf_rounded(single, one, t22 * t22);
-    const real_t aside_3 = cf_sqrt(t23);
-    const real_t t24 = l - aside_3;
-    const real_t t25 = l + aside_3;
-    const int unreachable = !(t18 & (-t10 <= t24) & (-t10 <= t25));
-    const real_t t26 = cf_poison(single, invalid | unreachable);
-    const real_t t27 = slide_1 + t26;
-    const real_t t28 = cf_max(t16, CLOSEDFORM_C(0.0)) * cf_max(t17, CLOSEDFORM_C(0.0));
-    const real_t root_2 = cf_sqrt(t28);
+    const real_t t8 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
+    const real_t t9 = x_2 - e * CLOSEDFORM_C(0.5) + f * CLOSEDFORM_C(0.5);
+    const real_t t10 = cf_rounded(single, one, t9 * t9);
+    const real_t t11 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t12 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t A_22 = t11 - t12;
+    const real_t t13 = y + A_22;
+    const real_t aside_2 = cf_sqrt(t10 + cf_rounded(single, one, t13 * t13));
+    const real_t t14 = l - aside_2;
+    const real_t t15 = l + aside_2;
+    const int t16 = (-t8 <= t2) & (-t8 <= t3) & (-t8 <= t14) & (-t8 <= t15);
+    const real_t t17 = y - A_22;
+    const real_t aside_3 = cf_sqrt(t10 + cf_rounded(single, one, t17 * t17));
+    const real_t t18 = l - aside_3;
+    const real_t t19 = l + aside_3;
+    const int unreachable = !(t16 & (-t8 <= t18) & (-t8 <= t19));
+    const real_t t20 = cf_poison(single, invalid | unreachable);
+    const real_t t21 = slide_1 + t20;
+    const real_t t22 = cf_max(t14, CLOSEDFORM_C(0.0)) * cf_max(t15, CLOSEDFORM_C(0.0));
+    const real_t root_2 = cf_sqrt(t22);
     const real_t slide_2 = z - root_2;
-    const real_t t29 = slide_2 + t26;
-    const real_t t30 = cf_max(t24, CLOSEDFORM_C(0.0)) * cf_max(t25, CLOSEDFORM_C(0.0));
-    const real_t root_3 = cf_sqrt(t30);
+    const real_t t23 = slide_2 + t20;
+    const real_t t24 = cf_max(t18, CLOSEDFORM_C(0.0)) * cf_max(t19, CLOSEDFORM_C(0.0));
+    const real_t root_3 = cf_sqrt(t24);
     const real_t slide_3 = z - root_3;
-    const real_t t31 = slide_3 + t26;
+    const real_t t25 = slide_3 + t20;
     const real_t slide_3_plus_plus_minus = z + root_3;
-    const real_t t32 = slide_3_plus_plus_minus + t26;
+    const real_t t26 = slide_3_plus_plus_minus + t20;
     const real_t slide_2_plus_minus_plus = z + root_2;
-    const real_t t33 = slide_2_plus_minus_plus + t26;
+    const real_t t27 = slide_2_plus_minus_plus + t20;
     const real_t slide_1_minus_plus_plus = z + root_1;
-    const real_t t34 = slide_1_minus_plus_plus + t26;
-    const real_t A_13 = z - slide_1;
-    const real_t t35 = t2 - t13;
-    const real_t t36 = t1 - t19;
-    const real_t t37 = t35 * t36;
-    const real_t t38 = t1 - t11;
-    const real_t t39 = t2 - t21;
-    const real_t t40 = t38 * t39;
-    const real_t t41 = cf_rounded(single, one, A_13 * t37) - cf_rounded(single, one, A_13 * t40);
+    const real_t t28 = slide_1_minus_plus_plus + t20;
+    const real_t t29 = cf_rounded(single, one, e * CLOSEDFORM_C(1.5));
+    const real_t t30 = cf_rounded(single, one, f * CLOSEDFORM_C(1.5));
+    const real_t t31 = t29 - t30;
+    const real_t t32 = t31 * A_22;
+    const real_t t33 = cf_rounded(single, one, (z - slide_1) * t32);
+    const real_t t34 = t33 + t33;
+    const real_t t35 = A_11 * A_22;
     const real_t A_33 = slide_1 - slide_3;
-    const real_t t42 = A_11 * t38;
-    const real_t t43 = A_12 * t35;
-    const real_t t44 = cf_rounded(single, one, A_33 * t42) - cf_rounded(single, one, A_33 * t43);
-    const real_t t45 = t41 - t44;
+    const real_t t36 = y * t31;
+    const real_t t37 = cf_rounded(single, one, t35 * A_33) + cf_rounded(single, one, t36 * A_33);
+    const real_t t38 = t34 + t37;
     const real_t A_23 = slide_1 - slide_2;
-    const real_t t46 = A_11 * t36;
-    const real_t t47 = A_12 * t39;
-    const real_t t48 = cf_rounded(single, one, A_23 * t46) - cf_rounded(single, one, A_23 * t47);
-    const real_t t49 = CLOSEDFORM_DETERMINED * (l * l * l);
-    const int t50 = cf_abs(-(t45 + t48)) <= t49;
+    const real_t t39 = cf_rounded(single, one, t35 * A_23) - cf_rounded(single, one, t36 * A_23);
+    const real_t t40 = CLOSEDFORM_DETERMINED * (l * l * l);
+    const int t41 = cf_abs(t38 + t39) <= t40;
     const real_t A_33_plus_plus_minus = slide_1 - slide_3_plus_plus_minus;
-    const real_t t51 = cf_rounded(single, one, t42 * A_33_plus_plus_minus);
-    const real_t t52 = cf_rounded(single, one, t43 * A_33_plus_plus_minus);
-    const real_t t53 = t41 - (t51 - t52);
-    const int t54 = cf_abs(t48 + t53) <= t49;
+    const real_t t42 = cf_rounded(single, one, t35 * A_33_plus_plus_minus);
+    const real_t t43 = cf_rounded(single, one, t36 * A_33_plus_plus_minus);
+    const real_t t44 = t34 + (t42 + t43);
+    const int t45 = cf_abs(t39 + t44) <= t40;
     const real_t A_23_plus_minus_plus = slide_1 - slide_2_plus_minus_plus;
-    const real_t t55 = cf_rounded(single, one, t46 * A_23_plus_minus_plus);
-    const real_t t56 = cf_rounded(single, one, t47 * A_23_plus_minus_plus);
-    const real_t t57 = t55 - t56;
-    const int t58 = cf_abs(-(t45 + t57)) <= t49;
-    const int t59 = cf_abs(t53 + t57) <= t49;
-    const real_t A_13_minus_plus_plus = z - slide_1_minus_plus_plus;
-    const real_t t60 = cf_rounded(single, one, t37 * A_13_minus_plus_plus);
-    const real_t t61 = cf_rounded(single, one, t40 * A_13_minus_plus_plus);
-    const real_t t62 = t60 - t61;
-    const real_t t63 = slide_3 - slide_1_minus_plus_plus;
-    const real_t t64 = cf_rounded(single, one, t42 * t63) - cf_rounded(single, one, t43 * t63);
-    const real_t t65 = t62 + t64;
-    const real_t t66 = slide_2 - slide_1_minus_plus_plus;
-    const real_t t67 = cf_rounded(single, one, t46 * t66) - cf_rounded(single, one, t47 * t66);
-    const int t68 = cf_abs(t65 - t67) <= t49;
-    const real_t t69 = slide_3_plus_plus_minus - slide_1_minus_plus_plus;
-    const real_t t70 = cf_rounded(single, one, t42 * t69) - cf_rounded(single, one, t43 * t69);
-    const real_t t71 = t62 + t70;
-    const int t72 = cf_abs(t67 - t71) <= t49;
-    const real_t t73 = slide_2_plus_minus_plus - slide_1_minus_plus_plus;
-    const real_t t74 = cf_rounded(single, one, t46 * t73) - cf_rounded(single, one, t47 * t73);
-    const int t75 = cf_abs(t65 - t74) <= t49;
-    const int t76 = cf_abs(t71 - t74) <= t49;
-    q[0] = t27;
-    q[1] = t29;
-    q[2] = t31;
-    q[3] = t27;
-    q[4] = t29;
-    q[5] = t32;
-    q[6] = t27;
-    q[7] = t33;
-    q[8] = t31;
-    q[9] = t27;
-    q[10] = t33;
-    q[11] = t32;
-    q[12] = t34;
-    q[13] = t29;
-    q[14] = t31;
-    q[15] = t34;
-    q[16] = t29;
-    q[17] = t32;
-    q[18] = t34;
-    q[19] = t33;
-    q[20] = t31;
-    q[21] = t34;
-    q[22] = t33;
-    q[23] = t32;
-    status[0] = cf_status(single, invalid, unreachable, t50);
-    status[1] = cf_status(single, invalid, unreachable, t54);
-    status[2] = cf_status(single, invalid, unreachable, t58);
-    status[3] = cf_status(single, invalid, unreachable, t59);
-    status[4] = cf_status(single, invalid, unreachable, t68);
-    status[5] = cf_status(single, invalid, unreachable, t72);
-    status[6] = cf_status(single, invalid, unreachable, t75);
-    status[7] = cf_status(single, invalid, unreachable, t76);
+    const real_t t46 = cf_rounded(single, one, t35 * A_23_plus_minus_plus);
+    const real_t t47 = cf_rounded(single, one, t36 * A_23_plus_minus_plus);
+    const real_t t48 = t46 - t47;
+    const int t49 = cf_abs(t38 + t48) <= t40;
+    const int t50 = cf_abs(t44 + t48) <= t40;
+    const real_t t51 = cf_rounded(single, one, (z - slide_1_minus_plus_plus) * t32);
+    const real_t t52 = t51 + t51;
+    const real_t t53 = slide_1_minus_plus_plus - slide_3;
+    const real_t t54 = cf_rounded(single, one, t35 * t53) + cf_rounded(single, one, t36 * t53);
+    const real_t t55 = t52 + t54;
+    const real_t t56 = slide_1_minus_plus_plus - slide_2;
+    const real_t t57 = cf_rounded(single, one, t35 * t56) - cf_rounded(single, one, t36 * t56);
+    const int t58 = cf_abs(-(t55 + t57)) <= t40;
+    const real_t t59 = slide_1_minus_plus_plus - slide_3_plus_plus_minus;
+    const real_t t60 = cf_rounded(single, one, t35 * t59) + cf_rounded(single, one, t36 * t59);
+    const real_t t61 = t52 + t60;
+    const int t62 = cf_abs(-(t57 + t61)) <= t40;
+    const real_t t63 = slide_1_minus_plus_plus - slide_2_plus_minus_plus;
+    const real_t t64 = cf_rounded(single, one, t35 * t63) - cf_rounded(single, one, t36 * t63);
+    const int t65 = cf_abs(-(t55 + t64)) <= t40;
+    const int t66 = cf_abs(t61 + t64) <= t40;
+    q[0] = t21;
+    q[1] = t23;
+    q[2] = t25;
+    q[3] = t21;
+    q[4] = t23;
+    q[5] = t26;
+    q[6] = t21;
+    q[7] = t27;
+    q[8] = t25;
+    q[9] = t21;
+    q[10] = t27;
+    q[11] = t26;
+    q[12] = t28;
+    q[13] = t23;
+    q[14] = t25;
+    q[15] = t28;
+    q[16] = t23;
+    q[17] = t26;
+    q[18] = t28;
+    q[19] = t27;
+    q[20] = t25;
+    q[21] = t28;
+    q[22] = t27;
+    q[23] = t26;
+    status[0] = cf_status(single, invalid, unreachable, t41);
+    status[1] = cf_status(single, invalid, unreachable, t45);
+    status[2] = cf_status(single, invalid, unreachable, t49);
+    status[3] = cf_status(single, invalid, unreachable, t50);
+    status[4] = cf_status(single, invalid, unreachable, t58);
+    status[5] = cf_status(single, invalid, unreachable, t62);
+    status[6] = cf_status(single, invalid, unreachable, t65);
+    status[7] = cf_status(single, invalid, unreachable, t66);
 }
 
 CLOSEDFORM_DISPATCHED
@@ -1952,11 +1686,8 @@ void linear_delta_ik(const linear_delta_params *params,
         x = x_scaled;
     }
     const real_t one = cf_one();
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3 };
-    cf_sincos_lanes_rounded(4, one, lanes, sines, cosines);
     real_t status_real[8];
-    linear_delta_ik_kernel(1, one, params, x, sines, cosines, q, status_real);
+    linear_delta_ik_kernel(1, one, params, x, q, status_real);
     for (size_t i = 0; i < 8; ++i)
         status[i] = (uint8_t)status_real[i];
     if (CF_UNLIKELY(exponent != 0)) {
@@ -2001,28 +1732,13 @@ void linear_delta_ik_batch(size_t n, const linear_delta_params *params,
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
         real_t status_real[8][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t x_i[3] = { x[start + i], x[x_stride + start + i], x[2 * x_stride + start + i] };
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t q_i[24];
             real_t status_i[8];
-            linear_delta_ik_kernel(0, one, &local, x_i, sines_i, cosines_i, q_i, status_i);
+            linear_delta_ik_kernel(0, one, &local, x_i, q_i, status_i);
             q[start + i] = q_i[0];
             q[q_stride + start + i] = q_i[1];
             q[2 * q_stride + start + i] = q_i[2];
@@ -2090,43 +1806,33 @@ void linear_delta_ik_batch(size_t n, const linear_delta_params *params,
 
 CF_INLINE void linear_delta_workspace_contains_kernel(const int single, const real_t one,
     const linear_delta_params *params,
-    const real_t p[3], const real_t *sines,
-    const real_t *cosines, real_t inside[1])
+    const real_t p[3], real_t inside[1])
 {
     const real_t f = params->f;
     const real_t e = params->e;
     const real_t l = params->l;
-    const real_t alpha1 = params->alpha1;
-    const real_t alpha2 = params->alpha2;
-    const real_t alpha3 = params->alpha3;
     const real_t x = p[0];
     const real_t y = p[1];
     const real_t z = p[2];
-    const real_t s_alpha1 = sines[0];
-    const real_t c_alpha1 = cosines[0];
-    const real_t s_alpha2 = sines[1];
-    const real_t c_alpha2 = cosines[1];
-    const real_t s_alpha3 = sines[2];
-    const real_t c_alpha3 = cosines[2];
-    const int t1 = cf_nought(f) + cf_nought(e) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t1 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
     const int t2 = t1 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
     const int t3 = cf_nought(x) + cf_nought(y) + cf_nought(z) == 0;
     const real_t size = f + e + l + cf_abs(x) + cf_abs(y) + cf_abs(z);
     const real_t t4 = CLOSEDFORM_FEASIBILITY * (size * CLOSEDFORM_C(0.5));
-    const real_t t5 = y + cf_rounded(single, one, e * s_alpha1) - cf_rounded(single, one, f * s_alpha1);
-    const real_t t6 = x + cf_rounded(single, one, e * c_alpha1) - cf_rounded(single, one, f * c_alpha1);
-    const real_t t7 = cf_rounded(single, one, t5 * t5) + cf_rounded(single, one, t6 * t6);
-    const real_t aside_1 = cf_sqrt(t7);
-    const real_t t8 = y + cf_rounded(single, one, e * s_alpha2) - cf_rounded(single, one, f * s_alpha2);
-    const real_t t9 = x + cf_rounded(single, one, e * c_alpha2) - cf_rounded(single, one, f * c_alpha2);
-    const real_t t10 = cf_rounded(single, one, t8 * t8) + cf_rounded(single, one, t9 * t9);
-    const real_t aside_2 = cf_sqrt(t10);
-    const int t11 = (-t4 <= l - aside_1) & (-t4 <= l + aside_1) & (-t4 <= l - aside_2);
-    const real_t t12 = y + cf_rounded(single, one, e * s_alpha3) - cf_rounded(single, one, f * s_alpha3);
-    const real_t t13 = x + cf_rounded(single, one, e * c_alpha3) - cf_rounded(single, one, f * c_alpha3);
-    const real_t t14 = cf_rounded(single, one, t12 * t12) + cf_rounded(single, one, t13 * t13);
-    const real_t aside_3 = cf_sqrt(t14);
-    const int t15 = t11 & (-t4 <= l + aside_2) & (-t4 <= l - aside_3);
+    const real_t t5 = x - f + e;
+    const real_t t6 = cf_rounded(single, one, y * y) + cf_rounded(single, one, t5 * t5);
+    const real_t aside_1 = cf_sqrt(t6);
+    const real_t t7 = x - e * CLOSEDFORM_C(0.5) + f * CLOSEDFORM_C(0.5);
+    const real_t t8 = cf_rounded(single, one, t7 * t7);
+    const real_t t9 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t10 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t11 = t9 - t10;
+    const real_t t12 = y + t11;
+    const real_t aside_2 = cf_sqrt(t8 + cf_rounded(single, one, t12 * t12));
+    const int t13 = (-t4 <= l - aside_1) & (-t4 <= l + aside_1) & (-t4 <= l - aside_2);
+    const real_t t14 = y - t11;
+    const real_t aside_3 = cf_sqrt(t8 + cf_rounded(single, one, t14 * t14));
+    const int t15 = t13 & (-t4 <= l + aside_2) & (-t4 <= l - aside_3);
     const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | (!(t15 & (-t4 <= l + aside_3)));
     inside[0] = (!failed) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
@@ -2151,11 +1857,8 @@ void linear_delta_workspace_contains(const linear_delta_params *params,
         p = p_scaled;
     }
     const real_t one = cf_one();
-    real_t sines[4], cosines[4];
-    const real_t lanes[4] = { params->alpha1, params->alpha2, params->alpha3 };
-    cf_sincos_lanes_rounded(4, one, lanes, sines, cosines);
     real_t inside_real[1];
-    linear_delta_workspace_contains_kernel(1, one, params, p, sines, cosines, inside_real);
+    linear_delta_workspace_contains_kernel(1, one, params, p, inside_real);
     for (size_t i = 0; i < 1; ++i)
         inside[i] = (uint8_t)inside_real[i];
 }
@@ -2194,27 +1897,12 @@ void linear_delta_workspace_contains_batch(size_t n, const linear_delta_params *
     const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
     for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
         const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
-        real_t sines[3][CLOSEDFORM_BLOCK], cosines[3][CLOSEDFORM_BLOCK];
-        real_t angle_0[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_0[i] = params->alpha1;
-        cf_sincos_block_rounded(length, one, angle_0, sines[0], cosines[0]);
-        real_t angle_1[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_1[i] = params->alpha2;
-        cf_sincos_block_rounded(length, one, angle_1, sines[1], cosines[1]);
-        real_t angle_2[CLOSEDFORM_BLOCK];
-        for (size_t i = 0; i < length; ++i)
-            angle_2[i] = params->alpha3;
-        cf_sincos_block_rounded(length, one, angle_2, sines[2], cosines[2]);
         real_t inside_real[1][CLOSEDFORM_BLOCK];
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t p_i[3] = { p[start + i], p[p_stride + start + i], p[2 * p_stride + start + i] };
-            const real_t sines_i[3] = { sines[0][i], sines[1][i], sines[2][i] };
-            const real_t cosines_i[3] = { cosines[0][i], cosines[1][i], cosines[2][i] };
             real_t inside_i[1];
-            linear_delta_workspace_contains_kernel(0, one, &local, p_i, sines_i, cosines_i, inside_i);
+            linear_delta_workspace_contains_kernel(0, one, &local, p_i, inside_i);
             inside_real[0][i] = inside_i[0];
         }
         CF_INDEPENDENT

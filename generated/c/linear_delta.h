@@ -3,16 +3,16 @@
  * derivations/linear_delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, solved by lemmas.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 42 compare and select, 65 add, 5 divide, 71 multiply, 3 sincos, 5 sqrt
- *   skeleton: 41 compare and select, 102 add, 10 divide, 63 multiply, 3 sincos, 5 sqrt
- *   jacobian_parallel: 41 compare and select, 86 add, 10 divide, 63 multiply, 3 sincos, 5 sqrt
- *   jacobian_serial: 41 compare and select, 58 add, 10 divide, 53 multiply, 3 sincos, 5 sqrt
- *   jacobian: 41 compare and select, 104 add, 28 divide, 119 multiply, 3 sincos, 5 sqrt
- *   determinant: 41 compare and select, 54 add, 12 divide, 59 multiply, 3 sincos, 5 sqrt
- *   singularities: 41 compare and select, 60 add, 10 divide, 55 multiply, 3 sincos, 5 sqrt
- *   condition_number: 41 compare and select, 120 add, 12 divide, 140 multiply, 3 sincos, 7 sqrt
- *   ik: 57 compare and select, 74 add, 1 divide, 51 multiply, 3 sincos, 6 sqrt
- *   workspace_contains: 27 compare and select, 26 add, 1 divide, 19 multiply, 3 sincos, 3 sqrt
+ *   fk: 40 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
+ *   skeleton: 39 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
+ *   jacobian_parallel: 39 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
+ *   jacobian_serial: 39 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
+ *   jacobian: 39 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
+ *   determinant: 39 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
+ *   singularities: 39 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
+ *   condition_number: 39 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
+ *   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
+ *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
  * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
@@ -33,14 +33,11 @@ typedef struct {
     real_t f; /* distance of the columns from the z axis, in m (round numbers) */
     real_t e; /* distance of the parallelograms from the centre of the platform, in m (round numbers) */
     real_t l; /* length of the parallelograms, in m (round numbers) */
-    real_t alpha1; /* direction of leg 1, in rad (a third of a turn apart) */
-    real_t alpha2; /* direction of leg 2, in rad (a third of a turn apart) */
-    real_t alpha3; /* direction of leg 3, in rad (a third of a turn apart) */
 } linear_delta_params;
 
 /* The example dimensions: linear_delta_params p = LINEAR_DELTA_DEFAULTS; */
 #define LINEAR_DELTA_DEFAULTS \
-    { CLOSEDFORM_C(0.2), CLOSEDFORM_C(0.03), CLOSEDFORM_C(0.3), CLOSEDFORM_C(0.0), CLOSEDFORM_C(2.0943951023931953), CLOSEDFORM_C(4.1887902047863905) }
+    { CLOSEDFORM_C(0.2), CLOSEDFORM_C(0.03), CLOSEDFORM_C(0.3) }
 
 /*
  * Position of the hand in both assembly modes.

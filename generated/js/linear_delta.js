@@ -2,23 +2,23 @@
 // derivations/linear_delta.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Arms of common structure, solved by lemmas.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 42 compare and select, 65 add, 5 divide, 71 multiply, 3 sincos, 5 sqrt
-//   skeleton: 41 compare and select, 102 add, 10 divide, 63 multiply, 3 sincos, 5 sqrt
-//   jacobian_parallel: 41 compare and select, 86 add, 10 divide, 63 multiply, 3 sincos, 5 sqrt
-//   jacobian_serial: 41 compare and select, 58 add, 10 divide, 53 multiply, 3 sincos, 5 sqrt
-//   jacobian: 41 compare and select, 104 add, 28 divide, 119 multiply, 3 sincos, 5 sqrt
-//   determinant: 41 compare and select, 54 add, 12 divide, 59 multiply, 3 sincos, 5 sqrt
-//   singularities: 41 compare and select, 60 add, 10 divide, 55 multiply, 3 sincos, 5 sqrt
-//   condition_number: 41 compare and select, 120 add, 12 divide, 140 multiply, 3 sincos, 7 sqrt
-//   ik: 57 compare and select, 74 add, 1 divide, 51 multiply, 3 sincos, 6 sqrt
-//   workspace_contains: 27 compare and select, 26 add, 1 divide, 19 multiply, 3 sincos, 3 sqrt
+//   fk: 40 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
+//   skeleton: 39 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
+//   jacobian_parallel: 39 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
+//   jacobian_serial: 39 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
+//   jacobian: 39 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
+//   determinant: 39 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
+//   singularities: 39 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
+//   condition_number: 39 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
+//   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
+//   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 
 /**
  * Delta robot with linear drives.
  *
- * Three sliders move up columns at the distance f from the z axis, in the directions alpha1,
- * alpha2 and alpha3.  Parallelograms of length l lead from them to the platform, at the distance e
- * from its centre P, and keep it from turning.
+ * Three sliders move up columns at the distance f from the z axis, a third of a turn apart; the
+ * first is on the x axis.  Parallelograms of length l lead from them to the platform, at the
+ * distance e from its centre P, and keep it from turning.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from The closedform authors: Arms of common structure, solved by lemmas.
@@ -75,9 +75,6 @@ export const SKELETON = Object.freeze(/** @type {const} */ ({
  * @property {number} [f] distance of the columns from the z axis, in m; default 0.2 (round numbers)
  * @property {number} [e] distance of the parallelograms from the centre of the platform, in m; default 0.03 (round numbers)
  * @property {number} [l] length of the parallelograms, in m; default 0.3 (round numbers)
- * @property {number} [alpha1] direction of leg 1, in rad; default 0.0 (a third of a turn apart)
- * @property {number} [alpha2] direction of leg 2, in rad; default 2.0943951023931953 (a third of a turn apart)
- * @property {number} [alpha3] direction of leg 3, in rad; default 4.1887902047863905 (a third of a turn apart)
  */
 
 /** The example dimensions. */
@@ -85,9 +82,6 @@ export const DEFAULTS = Object.freeze({
     f: 0.2,
     e: 0.03,
     l: 0.3,
-    alpha1: 0.0,
-    alpha2: 2.0943951023931953,
-    alpha3: 4.1887902047863905,
 });
 
 /** @type {_runtime.Compute} */
@@ -98,89 +92,72 @@ function _fk(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
-    const alpha1 = v[6];
-    const alpha2 = v[7];
-    const alpha3 = v[8];
-    _runtime.sincos(alpha1);
-    const s_alpha1 = _runtime.found[0];
-    const c_alpha1 = _runtime.found[1];
-    _runtime.sincos(alpha2);
-    const s_alpha2 = _runtime.found[0];
-    const c_alpha2 = _runtime.found[1];
-    _runtime.sincos(alpha3);
-    const s_alpha3 = _runtime.found[0];
-    const c_alpha3 = _runtime.found[1];
-    const t1 = e * c_alpha1 - f * c_alpha1;
-    const u_x = t1 - (e * c_alpha2 - f * c_alpha2);
-    const t2 = e * s_alpha1 - f * s_alpha1;
-    const u_y = t2 - (e * s_alpha2 - f * s_alpha2);
-    const t3 = rho1 - rho2;
-    const size_u = Math.sqrt(u_x * u_x + u_y * u_y + t3 * t3);
-    const v_x = t1 - (e * c_alpha3 - f * c_alpha3);
-    const v_y = t2 - (e * s_alpha3 - f * s_alpha3);
+    const c1_x = f - e;
+    const t1 = c1_x - (e * 0.5 - f * 0.5);
+    const t2 = rho1 - rho2;
+    const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t3 = t1 * t1 + c3_y * c3_y;
+    const size_u = Math.sqrt(t2 * t2 + t3);
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(v_x * v_x + v_y * v_y + t4 * t4);
+    const size_v = Math.sqrt(t4 * t4 + t3);
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t5 = size * _runtime.VANISHING;
     const all_same = size_u + size_v <= t5;
     const same = size_u <= t5;
     const D = same ? size_v : size_u;
-    const X = all_same ? 0.0 : D * 0.5;
-    const t6 = same ? u_x : v_x;
-    const t7 = same ? v_x : u_x;
-    const t8 = 1.0 / D;
-    const E_11 = all_same ? 1.0 : t7 * t8;
-    const t9 = same ? u_y : v_y;
-    const t10 = same ? v_y : u_y;
-    const E_12 = all_same ? 0.0 : t10 * t8;
-    const t11 = same ? t3 : t4;
-    const t12 = same ? t4 : t3;
-    const t13 = all_same ? 0.0 : t12 * t8;
-    const k_0 = t6 * E_11 + t9 * E_12 + t11 * t13;
-    const m_x = t6 - E_11 * k_0;
-    const m_y = t9 - E_12 * k_0;
-    const t14 = t11 - t13 * k_0;
-    const k_1 = E_11 * m_x + E_12 * m_y + t13 * t14;
-    const n_x = m_x - E_11 * k_1;
-    const n_y = m_y - E_12 * k_1;
-    const t15 = t14 - t13 * k_1;
-    const j = Math.sqrt(n_x * n_x + n_y * n_y + t15 * t15);
+    const t6 = 1.0 / D;
+    const E_11 = all_same ? 1.0 : -(t1 * t6);
+    const t7 = same ? -c3_y : c3_y;
+    const t8 = same ? c3_y : -c3_y;
+    const E_12 = all_same ? 0.0 : t6 * t8;
+    const t9 = same ? t2 : t4;
+    const t10 = same ? t4 : t2;
+    const t11 = all_same ? 0.0 : t6 * t10;
+    const t12 = t1 * E_11 - t7 * E_12 - t9 * t11;
+    const t13 = t1 - E_11 * t12;
+    const m_y = t7 + E_12 * t12;
+    const t14 = t9 + t11 * t12;
+    const t15 = E_11 * t13 - E_12 * m_y - t11 * t14;
+    const t16 = t13 - E_11 * t15;
+    const n_y = m_y + E_12 * t15;
+    const t17 = t14 + t11 * t15;
+    const j = Math.sqrt(t16 * t16 + n_y * n_y + t17 * t17);
     const in_line = j <= t5;
-    const t16 = t6 * (t7 - t6) + t9 * (t10 - t9) + t11 * (t12 - t11);
-    const t17 = in_line ? 0.0 : t16 / (2.0 * j);
-    const rho = Math.sqrt(X * X + t17 * t17);
-    const t18 = l - rho;
-    const h = Math.sqrt(Math.max(t18, 0.0) * (l + rho));
-    const t19 = -t13 < 0 ? -1 : 1;
-    const t20 = E_11 * t19;
-    const t21 = 1.0 / j;
-    const t22 = in_line ? t20 : t15 * t21;
-    const t23 = 1.0 / (t13 - t19);
-    const E_22 = in_line ? t23 * (E_12 * t20) : n_y * t21;
-    const t24 = h * (E_12 * t22 - t13 * E_22);
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t19 * t23 : n_x * t21;
-    const t25 = E_21 * t17 + (t1 - X * E_11);
-    const t26 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l) &&
-        Number.isFinite(alpha1) && Number.isFinite(alpha2) && Number.isFinite(alpha3);
-    const t27 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t28 = t26 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t27;
-    const invalid = !t28;
-    const t29 = Math.abs(in_line ? -t16 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t29 && -(size * _runtime.FEASIBILITY) <= t18);
-    const t30 = invalid || unreachable ? NaN : 0;
-    const t31 = h * (E_11 * t22 - t13 * E_21);
-    const t32 = t17 * E_22 + (t2 - X * E_12);
-    const t33 = t17 * t22 + (rho1 - X * t13);
-    const t34 = h * (E_12 * E_21 - E_11 * E_22);
-    const t35 = invalid ? 3 : unreachable ? 1 : in_line ? 2 : 0;
-    o[0] = -(t24 + t25) + t30;
-    o[1] = t31 - t32 + t30;
-    o[2] = t33 - t34 + t30;
-    o[3] = t24 - t25 + t30;
-    o[4] = -(t31 + t32) + t30;
-    o[5] = t34 + t33 + t30;
-    o[6] = t35;
-    o[7] = t35;
+    const t18 = -t11 < 0 ? -1 : 1;
+    const t19 = 1.0 / (t11 - t18);
+    const t20 = 1.0 / j;
+    const E_21 = in_line ? 1.0 + E_11 * E_11 * t18 * t19 : -(t16 * t20);
+    const left = t7 * (t7 - t8) + t9 * (t9 - t10);
+    const t21 = in_line ? 0.0 : left / (2.0 * j);
+    const X = all_same ? 0.0 : D * 0.5;
+    const t22 = E_21 * t21 + (c1_x + E_11 * X);
+    const rho = Math.sqrt(X * X + t21 * t21);
+    const t23 = l - rho;
+    const h = Math.sqrt(Math.max(t23, 0.0) * (l + rho));
+    const t24 = E_11 * t18;
+    const t25 = in_line ? t24 : t17 * t20;
+    const E_22 = in_line ? t19 * (E_12 * t24) : n_y * t20;
+    const t26 = h * (E_12 * t25 - t11 * E_22);
+    const t27 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t28 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t29 = t27 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t28;
+    const invalid = !t29;
+    const t30 = Math.abs(in_line ? left : 0.0) <= _runtime.FEASIBILITY * (size * size);
+    const unreachable = !(t30 && -(size * _runtime.FEASIBILITY) <= t23);
+    const t31 = invalid || unreachable ? NaN : 0;
+    const t32 = E_12 * X + t21 * E_22;
+    const t33 = h * (E_11 * t25 - t11 * E_21);
+    const t34 = t21 * t25 - (rho1 - t11 * X);
+    const t35 = h * (E_12 * E_21 - E_11 * E_22);
+    const t36 = invalid ? 3 : unreachable ? 1 : in_line ? 2 : 0;
+    o[0] = t22 - t26 + t31;
+    o[1] = t32 + t33 + t31;
+    o[2] = -(t34 + t35) + t31;
+    o[3] = t22 + t26 + t31;
+    o[4] = t32 - t33 + t31;
+    o[5] = t35 - t34 + t31;
+    o[6] = t36;
+    o[7] = t36;
 }
 
 const _FK = _runtime.kernel({
@@ -194,7 +171,7 @@ const _FK = _runtime.kernel({
         { name: "p", shape: [3], branches: 2, kind: "real" },
         { name: "status", shape: [], branches: 2, kind: "status" },
     ],
-    used: ["f", "e", "l", "alpha1", "alpha2", "alpha3"],
+    used: ["f", "e", "l"],
     defaults: DEFAULTS,
     size: {
         lengths: [0, 1, 2, 3, 4, 5],
@@ -249,165 +226,142 @@ function _skeleton(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
-    const alpha1 = v[6];
-    const alpha2 = v[7];
-    const alpha3 = v[8];
-    _runtime.sincos(alpha1);
-    const s_alpha1 = _runtime.found[0];
-    const c_alpha1 = _runtime.found[1];
-    _runtime.sincos(alpha2);
-    const s_alpha2 = _runtime.found[0];
-    const c_alpha2 = _runtime.found[1];
-    _runtime.sincos(alpha3);
-    const s_alpha3 = _runtime.found[0];
-    const c_alpha3 = _runtime.found[1];
-    const t1 = f * c_alpha1;
-    const t2 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l) &&
-        Number.isFinite(alpha1) && Number.isFinite(alpha2) && Number.isFinite(alpha3);
-    const t3 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const invalid = !(t2 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t3);
-    const t4 = e * c_alpha1;
-    const t5 = t4 - t1;
-    const t6 = e * c_alpha2;
-    const t7 = f * c_alpha2;
-    const u_x = t5 - (t6 - t7);
-    const t8 = e * s_alpha1;
-    const t9 = f * s_alpha1;
-    const t10 = t8 - t9;
-    const t11 = e * s_alpha2;
-    const t12 = f * s_alpha2;
-    const u_y = t10 - (t11 - t12);
-    const t13 = rho1 - rho2;
-    const size_u = Math.sqrt(u_x * u_x + u_y * u_y + t13 * t13);
+    const t1 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t2 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const invalid = !(t1 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t2);
+    const c1_x = f - e;
+    const t3 = e * 0.5;
+    const t4 = f * 0.5;
+    const t5 = c1_x - (t3 - t4);
+    const t6 = rho1 - rho2;
+    const t7 = e * 1.7320508075688772 * 0.5;
+    const t8 = f * 1.7320508075688772 * 0.5;
+    const c3_y = t7 - t8;
+    const t9 = t5 * t5 + c3_y * c3_y;
+    const size_u = Math.sqrt(t6 * t6 + t9);
+    const t10 = rho1 - rho3;
+    const size_v = Math.sqrt(t10 * t10 + t9);
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
-    const t14 = size * _runtime.VANISHING;
-    const same = size_u <= t14;
-    const t15 = e * c_alpha3;
-    const t16 = f * c_alpha3;
-    const v_x = t5 - (t15 - t16);
-    const t17 = same ? u_x : v_x;
-    const t18 = e * s_alpha3;
-    const t19 = f * s_alpha3;
-    const v_y = t10 - (t18 - t19);
-    const t20 = rho1 - rho3;
-    const size_v = Math.sqrt(v_x * v_x + v_y * v_y + t20 * t20);
-    const all_same = size_u + size_v <= t14;
-    const t21 = same ? v_x : u_x;
+    const t11 = size * _runtime.VANISHING;
+    const all_same = size_u + size_v <= t11;
+    const same = size_u <= t11;
     const D = same ? size_v : size_u;
-    const E_11 = all_same ? 1.0 : t21 / D;
-    const t22 = same ? v_y : u_y;
-    const E_12 = all_same ? 0.0 : t22 / D;
-    const t23 = same ? u_y : v_y;
-    const t24 = same ? t20 : t13;
-    const t25 = all_same ? 0.0 : t24 / D;
-    const t26 = same ? t13 : t20;
-    const k_0 = E_11 * t17 + E_12 * t23 + t25 * t26;
-    const m_x = t17 - E_11 * k_0;
-    const m_y = t23 - E_12 * k_0;
-    const t27 = t26 - t25 * k_0;
-    const k_1 = E_11 * m_x + E_12 * m_y + t25 * t27;
-    const n_x = m_x - E_11 * k_1;
-    const n_y = m_y - E_12 * k_1;
-    const t28 = t27 - t25 * k_1;
-    const j = Math.sqrt(n_x * n_x + n_y * n_y + t28 * t28);
-    const in_line = j <= t14;
-    const t29 = t17 * (t21 - t17) + t23 * (t22 - t23) + t26 * (t24 - t26);
-    const t30 = Math.abs(in_line ? -t29 : 0.0) <= _runtime.FEASIBILITY * (size * size);
+    const E_11 = all_same ? 1.0 : -(t5 / D);
+    const t12 = same ? c3_y : -c3_y;
+    const E_12 = all_same ? 0.0 : t12 / D;
+    const t13 = same ? -c3_y : c3_y;
+    const t14 = same ? t10 : t6;
+    const t15 = all_same ? 0.0 : t14 / D;
+    const t16 = same ? t6 : t10;
+    const t17 = t5 * E_11 - E_12 * t13 - t15 * t16;
+    const t18 = t5 - E_11 * t17;
+    const m_y = t13 + E_12 * t17;
+    const t19 = t16 + t15 * t17;
+    const t20 = E_11 * t18 - E_12 * m_y - t15 * t19;
+    const t21 = t18 - E_11 * t20;
+    const n_y = m_y + E_12 * t20;
+    const t22 = t19 + t15 * t20;
+    const j = Math.sqrt(t21 * t21 + n_y * n_y + t22 * t22);
+    const in_line = j <= t11;
+    const t23 = t13 * (t12 - t13) + t16 * (t14 - t16);
+    const t24 = Math.abs(in_line ? -t23 : 0.0) <= _runtime.FEASIBILITY * (size * size);
     const X = all_same ? 0.0 : D * 0.5;
-    const t31 = in_line ? 0.0 : t29 / (j * 2.0);
-    const rho = Math.sqrt(X * X + t31 * t31);
-    const t32 = l - rho;
-    const unreachable = !(t30 && -(size * _runtime.FEASIBILITY) <= t32);
-    const t33 = invalid || unreachable ? NaN : 0;
-    const t34 = t1 + t33;
-    const t35 = t9 + t33;
-    const t36 = 0.0 + t33;
-    const t37 = rho1 + t33;
-    const h = Math.sqrt(Math.max(t32, 0.0) * (l + rho));
-    const t38 = -t25 < 0 ? -1 : 1;
-    const t39 = E_11 * t38;
-    const t40 = in_line ? t39 : t28 / j;
-    const t41 = t25 - t38;
-    const E_22 = in_line ? E_12 * t39 / t41 : n_y / j;
-    const t42 = h * (E_12 * t40 - t25 * E_22);
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t38 / t41 : n_x / j;
-    const t43 = E_11 * X - E_21 * t31;
-    const t44 = t5 + (t42 - t43);
-    const t45 = (E_11 * t40 - t25 * E_21) * h;
-    const t46 = E_12 * X - t31 * E_22;
-    const t47 = t10 - (t45 + t46);
-    const t48 = h * (E_12 * E_21 - E_11 * E_22);
-    const t49 = t25 * X - t40 * t31;
-    const t50 = rho1 - (t48 + t49) + t33;
-    const t51 = t7 + t33;
-    const t52 = t12 + t33;
-    const t53 = rho2 + t33;
-    const t54 = t16 + t33;
-    const t55 = t19 + t33;
-    const t56 = rho3 + t33;
-    const t57 = t5 - (t42 + t43);
-    const t58 = t10 + (t45 - t46);
-    const t59 = rho1 + (t48 - t49) + t33;
-    o[0] = t34;
-    o[1] = t35;
-    o[2] = t36;
-    o[3] = t34;
-    o[4] = t35;
-    o[5] = t37;
-    o[6] = t4 - t44 + t33;
-    o[7] = t8 - t47 + t33;
-    o[8] = t50;
-    o[9] = t51;
-    o[10] = t52;
-    o[11] = t36;
-    o[12] = t51;
-    o[13] = t52;
-    o[14] = t53;
-    o[15] = t6 - t44 + t33;
-    o[16] = t11 - t47 + t33;
-    o[17] = t50;
-    o[18] = t54;
-    o[19] = t55;
-    o[20] = t36;
-    o[21] = t54;
-    o[22] = t55;
-    o[23] = t56;
-    o[24] = t15 - t44 + t33;
-    o[25] = t18 - t47 + t33;
-    o[26] = t50;
-    o[27] = -t44 + t33;
-    o[28] = -t47 + t33;
-    o[29] = t50;
-    o[30] = t34;
-    o[31] = t35;
-    o[32] = t36;
-    o[33] = t34;
-    o[34] = t35;
-    o[35] = t37;
-    o[36] = t4 - t57 + t33;
-    o[37] = t8 - t58 + t33;
-    o[38] = t59;
-    o[39] = t51;
-    o[40] = t52;
-    o[41] = t36;
-    o[42] = t51;
-    o[43] = t52;
-    o[44] = t53;
-    o[45] = t6 - t57 + t33;
-    o[46] = t11 - t58 + t33;
-    o[47] = t59;
-    o[48] = t54;
-    o[49] = t55;
-    o[50] = t36;
-    o[51] = t54;
-    o[52] = t55;
-    o[53] = t56;
-    o[54] = t15 - t57 + t33;
-    o[55] = t18 - t58 + t33;
-    o[56] = t59;
-    o[57] = -t57 + t33;
-    o[58] = -t58 + t33;
-    o[59] = t59;
+    const t25 = in_line ? 0.0 : t23 / (2.0 * j);
+    const rho = Math.sqrt(X * X + t25 * t25);
+    const t26 = l - rho;
+    const unreachable = !(t24 && -(size * _runtime.FEASIBILITY) <= t26);
+    const t27 = invalid || unreachable ? NaN : 0;
+    const t28 = f + t27;
+    const t29 = 0.0 + t27;
+    const t30 = rho1 + t27;
+    const t31 = -t15 < 0 ? -1 : 1;
+    const t32 = t15 - t31;
+    const E_21 = in_line ? 1.0 + E_11 * E_11 * t31 / t32 : -(t21 / j);
+    const t33 = E_11 * X - t25 * E_21;
+    const h = Math.sqrt(Math.max(t26, 0.0) * (l + rho));
+    const t34 = E_11 * t31;
+    const t35 = in_line ? t34 : t22 / j;
+    const E_22 = in_line ? E_12 * t34 / t32 : n_y / j;
+    const t36 = h * (E_12 * t35 - t15 * E_22);
+    const t37 = c1_x + (t33 - t36);
+    const t38 = E_12 * X - t25 * E_22;
+    const t39 = h * (E_11 * t35 - t15 * E_21);
+    const A_12 = t38 + t39;
+    const t40 = A_12 + t27;
+    const t41 = t15 * X - t25 * t35;
+    const t42 = h * (E_12 * E_21 - E_11 * E_22);
+    const t43 = rho1 - (t41 + t42) + t27;
+    const t44 = -t4 + t27;
+    const t45 = t8 + t27;
+    const t46 = rho2 + t27;
+    const t47 = t37 - t3 + t27;
+    const t48 = -t8 + t27;
+    const t49 = rho3 + t27;
+    const t50 = c1_x + (t33 + t36);
+    const A_12_above = t38 - t39;
+    const t51 = A_12_above + t27;
+    const t52 = rho1 - (t41 - t42) + t27;
+    const t53 = t50 - t3 + t27;
+    o[0] = t28;
+    o[1] = t29;
+    o[2] = t29;
+    o[3] = t28;
+    o[4] = t29;
+    o[5] = t30;
+    o[6] = e + t37 + t27;
+    o[7] = t40;
+    o[8] = t43;
+    o[9] = t44;
+    o[10] = t45;
+    o[11] = t29;
+    o[12] = t44;
+    o[13] = t45;
+    o[14] = t46;
+    o[15] = t47;
+    o[16] = t7 + A_12 + t27;
+    o[17] = t43;
+    o[18] = t44;
+    o[19] = t48;
+    o[20] = t29;
+    o[21] = t44;
+    o[22] = t48;
+    o[23] = t49;
+    o[24] = t47;
+    o[25] = A_12 - t7 + t27;
+    o[26] = t43;
+    o[27] = t37 + t27;
+    o[28] = t40;
+    o[29] = t43;
+    o[30] = t28;
+    o[31] = t29;
+    o[32] = t29;
+    o[33] = t28;
+    o[34] = t29;
+    o[35] = t30;
+    o[36] = e + t50 + t27;
+    o[37] = t51;
+    o[38] = t52;
+    o[39] = t44;
+    o[40] = t45;
+    o[41] = t29;
+    o[42] = t44;
+    o[43] = t45;
+    o[44] = t46;
+    o[45] = t53;
+    o[46] = t7 + A_12_above + t27;
+    o[47] = t52;
+    o[48] = t44;
+    o[49] = t48;
+    o[50] = t29;
+    o[51] = t44;
+    o[52] = t48;
+    o[53] = t49;
+    o[54] = t53;
+    o[55] = A_12_above - t7 + t27;
+    o[56] = t52;
+    o[57] = t50 + t27;
+    o[58] = t51;
+    o[59] = t52;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -420,11 +374,11 @@ const _SKELETON = _runtime.kernel({
     outputs: [
         { name: "points", shape: [10, 3], branches: 2, kind: "real" },
     ],
-    used: ["f", "e", "l", "alpha1", "alpha2", "alpha3"],
+    used: ["f", "e", "l"],
     defaults: DEFAULTS,
     size: {
         lengths: [0, 1, 2, 3, 4, 5],
-        degrees: [[0, 1], [1, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [21, 1], [22, 1], [23, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [29, 1], [30, 1], [31, 1], [33, 1], [34, 1], [35, 1], [36, 1], [37, 1], [38, 1], [39, 1], [40, 1], [42, 1], [43, 1], [44, 1], [45, 1], [46, 1], [47, 1], [48, 1], [49, 1], [51, 1], [52, 1], [53, 1], [54, 1], [55, 1], [56, 1], [57, 1], [58, 1], [59, 1]],
+        degrees: [[0, 1], [3, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [21, 1], [22, 1], [23, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [29, 1], [30, 1], [33, 1], [35, 1], [36, 1], [37, 1], [38, 1], [39, 1], [40, 1], [42, 1], [43, 1], [44, 1], [45, 1], [46, 1], [47, 1], [48, 1], [49, 1], [51, 1], [52, 1], [53, 1], [54, 1], [55, 1], [56, 1], [57, 1], [58, 1], [59, 1]],
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
@@ -468,101 +422,85 @@ function _jacobian_parallel(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
-    const alpha1 = v[6];
-    const alpha2 = v[7];
-    const alpha3 = v[8];
-    _runtime.sincos(alpha1);
-    const s_alpha1 = _runtime.found[0];
-    const c_alpha1 = _runtime.found[1];
-    _runtime.sincos(alpha2);
-    const s_alpha2 = _runtime.found[0];
-    const c_alpha2 = _runtime.found[1];
-    _runtime.sincos(alpha3);
-    const s_alpha3 = _runtime.found[0];
-    const c_alpha3 = _runtime.found[1];
-    const t1 = e * c_alpha1 - f * c_alpha1;
-    const u_x = t1 - (e * c_alpha2 - f * c_alpha2);
-    const t2 = e * s_alpha1 - f * s_alpha1;
-    const u_y = t2 - (e * s_alpha2 - f * s_alpha2);
-    const t3 = rho1 - rho2;
-    const size_u = Math.sqrt(u_x * u_x + u_y * u_y + t3 * t3);
-    const v_x = t1 - (e * c_alpha3 - f * c_alpha3);
-    const v_y = t2 - (e * s_alpha3 - f * s_alpha3);
+    const t1 = rho1 - rho2;
+    const t2 = f - e - (e * 0.5 - f * 0.5);
+    const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t3 = t2 * t2 + c3_y * c3_y;
+    const size_u = Math.sqrt(t1 * t1 + t3);
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(v_x * v_x + v_y * v_y + t4 * t4);
+    const size_v = Math.sqrt(t4 * t4 + t3);
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t5 = size * _runtime.VANISHING;
     const all_same = size_u + size_v <= t5;
     const same = size_u <= t5;
     const D = same ? size_v : size_u;
+    const E_11 = all_same ? 1.0 : -(t2 / D);
     const X = all_same ? 0.0 : D * 0.5;
-    const t6 = same ? u_x : v_x;
-    const t7 = same ? v_x : u_x;
-    const E_11 = all_same ? 1.0 : t7 / D;
-    const t8 = same ? v_y : u_y;
-    const E_12 = all_same ? 0.0 : t8 / D;
-    const t9 = same ? u_y : v_y;
-    const t10 = same ? t4 : t3;
-    const t11 = all_same ? 0.0 : t10 / D;
-    const t12 = same ? t3 : t4;
-    const k_0 = E_11 * t6 + E_12 * t9 + t11 * t12;
-    const m_x = t6 - E_11 * k_0;
-    const m_y = t9 - E_12 * k_0;
-    const t13 = t12 - t11 * k_0;
-    const k_1 = E_11 * m_x + E_12 * m_y + t11 * t13;
-    const n_x = m_x - E_11 * k_1;
-    const n_y = m_y - E_12 * k_1;
-    const t14 = t13 - t11 * k_1;
-    const j = Math.sqrt(n_x * n_x + n_y * n_y + t14 * t14);
+    const t6 = same ? c3_y : -c3_y;
+    const E_12 = all_same ? 0.0 : t6 / D;
+    const t7 = same ? -c3_y : c3_y;
+    const t8 = same ? t4 : t1;
+    const t9 = all_same ? 0.0 : t8 / D;
+    const t10 = same ? t1 : t4;
+    const t11 = t2 * E_11 - E_12 * t7 - t9 * t10;
+    const t12 = t2 - E_11 * t11;
+    const m_y = t7 + E_12 * t11;
+    const t13 = t10 + t9 * t11;
+    const t14 = E_11 * t12 - E_12 * m_y - t9 * t13;
+    const t15 = t12 - E_11 * t14;
+    const n_y = m_y + E_12 * t14;
+    const t16 = t13 + t9 * t14;
+    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
     const in_line = j <= t5;
-    const t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12);
-    const t16 = in_line ? 0.0 : t15 / (j * 2.0);
-    const rho = Math.sqrt(X * X + t16 * t16);
-    const t17 = l - rho;
-    const h = Math.sqrt(Math.max(t17, 0.0) * (l + rho));
-    const t18 = -t11 < 0 ? -1 : 1;
-    const t19 = E_11 * t18;
-    const t20 = in_line ? t19 : t14 / j;
-    const t21 = t11 - t18;
-    const E_22 = in_line ? E_12 * t19 / t21 : n_y / j;
-    const t22 = h * (E_12 * t20 - t11 * E_22);
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t18 / t21 : n_x / j;
-    const t23 = E_11 * X - E_21 * t16;
-    const t24 = t22 - t23;
-    const t25 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l) &&
-        Number.isFinite(alpha1) && Number.isFinite(alpha2) && Number.isFinite(alpha3);
-    const t26 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t27 = t25 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t26;
-    const t28 = Math.abs(in_line ? -t15 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t28 && -(size * _runtime.FEASIBILITY) <= t17);
-    const t29 = !t27 || unreachable ? NaN : 0;
-    const t30 = (E_11 * t20 - t11 * E_21) * h;
-    const t31 = E_12 * X - t16 * E_22;
-    const A_12 = t30 + t31;
-    const t32 = h * (E_12 * E_21 - E_11 * E_22);
-    const t33 = t11 * X - t20 * t16;
-    const t34 = t32 + t33;
-    const A_11_above = t22 + t23;
-    const t35 = t30 - t31;
-    const A_13_above = t32 - t33;
-    o[0] = -t24 + t29;
-    o[1] = A_12 + t29;
-    o[2] = -t34 + t29;
-    o[3] = -(u_x + t24) + t29;
-    o[4] = A_12 - u_y + t29;
-    o[5] = t3 - t34 + t29;
-    o[6] = -(v_x + t24) + t29;
-    o[7] = A_12 - v_y + t29;
-    o[8] = t4 - t34 + t29;
-    o[9] = A_11_above + t29;
-    o[10] = -t35 + t29;
-    o[11] = A_13_above + t29;
-    o[12] = A_11_above - u_x + t29;
-    o[13] = -(u_y + t35) + t29;
-    o[14] = t3 + A_13_above + t29;
-    o[15] = A_11_above - v_x + t29;
-    o[16] = -(v_y + t35) + t29;
-    o[17] = t4 + A_13_above + t29;
+    const t17 = -t9 < 0 ? -1 : 1;
+    const t18 = t9 - t17;
+    const E_21 = in_line ? 1.0 + E_11 * E_11 * t17 / t18 : -(t15 / j);
+    const t19 = t7 * (t6 - t7) + t10 * (t8 - t10);
+    const t20 = in_line ? 0.0 : t19 / (2.0 * j);
+    const t21 = E_11 * X - E_21 * t20;
+    const rho = Math.sqrt(X * X + t20 * t20);
+    const t22 = l - rho;
+    const h = Math.sqrt(Math.max(t22, 0.0) * (l + rho));
+    const t23 = E_11 * t17;
+    const t24 = in_line ? t23 : t16 / j;
+    const E_22 = in_line ? E_12 * t23 / t18 : n_y / j;
+    const t25 = h * (E_12 * t24 - t9 * E_22);
+    const A_11 = t21 - t25;
+    const t26 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t27 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t28 = t26 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t27;
+    const t29 = Math.abs(in_line ? -t19 : 0.0) <= _runtime.FEASIBILITY * (size * size);
+    const unreachable = !(t29 && -(size * _runtime.FEASIBILITY) <= t22);
+    const t30 = !t28 || unreachable ? NaN : 0;
+    const t31 = X * E_12 - t20 * E_22;
+    const t32 = h * (E_11 * t24 - t9 * E_21);
+    const A_12 = t31 + t32;
+    const t33 = X * t9 - t20 * t24;
+    const t34 = h * (E_12 * E_21 - E_11 * E_22);
+    const t35 = t33 + t34;
+    const t36 = t2 + A_11 + t30;
+    const A_11_above = t21 + t25;
+    const A_12_above = t31 - t32;
+    const t37 = t33 - t34;
+    const t38 = t2 + A_11_above + t30;
+    o[0] = A_11 + t30;
+    o[1] = A_12 + t30;
+    o[2] = -t35 + t30;
+    o[3] = t36;
+    o[4] = c3_y + A_12 + t30;
+    o[5] = t1 - t35 + t30;
+    o[6] = t36;
+    o[7] = A_12 - c3_y + t30;
+    o[8] = t4 - t35 + t30;
+    o[9] = A_11_above + t30;
+    o[10] = A_12_above + t30;
+    o[11] = -t37 + t30;
+    o[12] = t38;
+    o[13] = c3_y + A_12_above + t30;
+    o[14] = t1 - t37 + t30;
+    o[15] = t38;
+    o[16] = A_12_above - c3_y + t30;
+    o[17] = t4 - t37 + t30;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -575,7 +513,7 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
     outputs: [
         { name: "A", shape: [3, 3], branches: 2, kind: "real" },
     ],
-    used: ["f", "e", "l", "alpha1", "alpha2", "alpha3"],
+    used: ["f", "e", "l"],
     defaults: DEFAULTS,
     size: {
         lengths: [0, 1, 2, 3, 4, 5],
@@ -623,79 +561,61 @@ function _jacobian_serial(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
-    const alpha1 = v[6];
-    const alpha2 = v[7];
-    const alpha3 = v[8];
-    _runtime.sincos(alpha1);
-    const s_alpha1 = _runtime.found[0];
-    const c_alpha1 = _runtime.found[1];
-    _runtime.sincos(alpha2);
-    const s_alpha2 = _runtime.found[0];
-    const c_alpha2 = _runtime.found[1];
-    _runtime.sincos(alpha3);
-    const s_alpha3 = _runtime.found[0];
-    const c_alpha3 = _runtime.found[1];
-    const t1 = e * c_alpha1 - f * c_alpha1;
-    const u_x = t1 - (e * c_alpha2 - f * c_alpha2);
-    const t2 = e * s_alpha1 - f * s_alpha1;
-    const u_y = t2 - (e * s_alpha2 - f * s_alpha2);
-    const t3 = rho1 - rho2;
-    const size_u = Math.sqrt(u_x * u_x + u_y * u_y + t3 * t3);
-    const v_x = t1 - (e * c_alpha3 - f * c_alpha3);
-    const v_y = t2 - (e * s_alpha3 - f * s_alpha3);
+    const t1 = rho1 - rho2;
+    const t2 = f - e - (e * 0.5 - f * 0.5);
+    const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t3 = t2 * t2 + c3_y * c3_y;
+    const size_u = Math.sqrt(t1 * t1 + t3);
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(v_x * v_x + v_y * v_y + t4 * t4);
+    const size_v = Math.sqrt(t4 * t4 + t3);
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t5 = size * _runtime.VANISHING;
     const all_same = size_u + size_v <= t5;
     const same = size_u <= t5;
+    const t6 = same ? t4 : t1;
     const D = same ? size_v : size_u;
+    const t7 = all_same ? 0.0 : t6 / D;
     const X = all_same ? 0.0 : D * 0.5;
-    const t6 = same ? u_x : v_x;
-    const t7 = same ? v_x : u_x;
-    const E_11 = all_same ? 1.0 : t7 / D;
-    const t8 = same ? v_y : u_y;
+    const E_11 = all_same ? 1.0 : -(t2 / D);
+    const t8 = same ? c3_y : -c3_y;
     const E_12 = all_same ? 0.0 : t8 / D;
-    const t9 = same ? u_y : v_y;
-    const t10 = same ? t4 : t3;
-    const t11 = all_same ? 0.0 : t10 / D;
-    const t12 = same ? t3 : t4;
-    const k_0 = E_11 * t6 + E_12 * t9 + t11 * t12;
-    const m_x = t6 - E_11 * k_0;
-    const m_y = t9 - E_12 * k_0;
-    const t13 = t12 - t11 * k_0;
-    const k_1 = E_11 * m_x + E_12 * m_y + t11 * t13;
-    const n_x = m_x - E_11 * k_1;
-    const n_y = m_y - E_12 * k_1;
-    const t14 = t13 - t11 * k_1;
-    const j = Math.sqrt(n_x * n_x + n_y * n_y + t14 * t14);
+    const t9 = same ? -c3_y : c3_y;
+    const t10 = same ? t1 : t4;
+    const t11 = t2 * E_11 - E_12 * t9 - t7 * t10;
+    const t12 = t2 - E_11 * t11;
+    const m_y = t9 + E_12 * t11;
+    const t13 = t10 + t7 * t11;
+    const t14 = E_11 * t12 - E_12 * m_y - t7 * t13;
+    const t15 = t12 - E_11 * t14;
+    const n_y = m_y + E_12 * t14;
+    const t16 = t13 + t7 * t14;
+    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
     const in_line = j <= t5;
-    const t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12);
-    const t16 = in_line ? 0.0 : t15 / (j * 2.0);
-    const rho = Math.sqrt(X * X + t16 * t16);
-    const t17 = l - rho;
-    const t18 = -t11 < 0 ? -1 : 1;
-    const t19 = t11 - t18;
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t18 / t19 : n_x / j;
-    const t20 = E_11 * t18;
-    const t21 = E_11 * (in_line ? E_12 * t20 / t19 : n_y / j);
-    const t22 = Math.sqrt(Math.max(t17, 0.0) * (l + rho)) * (E_12 * E_21 - t21);
-    const t23 = t11 * X - (in_line ? t20 : t14 / j) * t16;
-    const t24 = t22 + t23;
-    const t25 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l) &&
-        Number.isFinite(alpha1) && Number.isFinite(alpha2) && Number.isFinite(alpha3);
-    const t26 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t27 = t25 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t26;
-    const t28 = Math.abs(in_line ? -t15 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t28 && -(size * _runtime.FEASIBILITY) <= t17);
-    const t29 = !t27 || unreachable ? NaN : 0;
-    const A_13_above = t22 - t23;
-    o[0] = -t24 + t29;
-    o[1] = t3 - t24 + t29;
-    o[2] = t4 - t24 + t29;
-    o[3] = A_13_above + t29;
-    o[4] = t3 + A_13_above + t29;
-    o[5] = t4 + A_13_above + t29;
+    const t17 = -t7 < 0 ? -1 : 1;
+    const t18 = E_11 * t17;
+    const t19 = t9 * (t8 - t9) + t10 * (t6 - t10);
+    const t20 = in_line ? 0.0 : t19 / (2.0 * j);
+    const t21 = t7 * X - (in_line ? t18 : t16 / j) * t20;
+    const rho = Math.sqrt(X * X + t20 * t20);
+    const t22 = l - rho;
+    const t23 = t7 - t17;
+    const E_21 = in_line ? 1.0 + t17 * (E_11 * E_11) / t23 : -(t15 / j);
+    const t24 = E_11 * (in_line ? E_12 * t18 / t23 : n_y / j);
+    const t25 = Math.sqrt(Math.max(t22, 0.0) * (l + rho)) * (E_12 * E_21 - t24);
+    const t26 = t21 + t25;
+    const t27 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t28 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t29 = t27 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t28;
+    const t30 = Math.abs(in_line ? -t19 : 0.0) <= _runtime.FEASIBILITY * (size * size);
+    const unreachable = !(t30 && -(size * _runtime.FEASIBILITY) <= t22);
+    const t31 = !t29 || unreachable ? NaN : 0;
+    const t32 = t21 - t25;
+    o[0] = -t26 + t31;
+    o[1] = t1 - t26 + t31;
+    o[2] = t4 - t26 + t31;
+    o[3] = -t32 + t31;
+    o[4] = t1 - t32 + t31;
+    o[5] = t4 - t32 + t31;
 }
 
 const _JACOBIAN_SERIAL = _runtime.kernel({
@@ -708,7 +628,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
     outputs: [
         { name: "B", shape: [3], branches: 2, kind: "real" },
     ],
-    used: ["f", "e", "l", "alpha1", "alpha2", "alpha3"],
+    used: ["f", "e", "l"],
     defaults: DEFAULTS,
     size: {
         lengths: [0, 1, 2, 3, 4, 5],
@@ -756,132 +676,112 @@ function _jacobian(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
-    const alpha1 = v[6];
-    const alpha2 = v[7];
-    const alpha3 = v[8];
-    _runtime.sincos(alpha1);
-    const s_alpha1 = _runtime.found[0];
-    const c_alpha1 = _runtime.found[1];
-    _runtime.sincos(alpha2);
-    const s_alpha2 = _runtime.found[0];
-    const c_alpha2 = _runtime.found[1];
-    _runtime.sincos(alpha3);
-    const s_alpha3 = _runtime.found[0];
-    const c_alpha3 = _runtime.found[1];
-    const t1 = e * c_alpha1 - f * c_alpha1;
-    const u_x = t1 - (e * c_alpha2 - f * c_alpha2);
-    const t2 = e * s_alpha1 - f * s_alpha1;
-    const u_y = t2 - (e * s_alpha2 - f * s_alpha2);
-    const t3 = rho1 - rho2;
-    const size_u = Math.sqrt(u_x * u_x + u_y * u_y + t3 * t3);
-    const v_x = t1 - (e * c_alpha3 - f * c_alpha3);
-    const v_y = t2 - (e * s_alpha3 - f * s_alpha3);
+    const t1 = rho1 - rho2;
+    const t2 = f - e - (e * 0.5 - f * 0.5);
+    const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t3 = t2 * t2 + c3_y * c3_y;
+    const size_u = Math.sqrt(t1 * t1 + t3);
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(v_x * v_x + v_y * v_y + t4 * t4);
+    const size_v = Math.sqrt(t4 * t4 + t3);
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t5 = size * _runtime.VANISHING;
     const all_same = size_u + size_v <= t5;
     const same = size_u <= t5;
+    const t6 = same ? t4 : t1;
     const D = same ? size_v : size_u;
+    const t7 = all_same ? 0.0 : t6 / D;
     const X = all_same ? 0.0 : D * 0.5;
-    const t6 = same ? u_x : v_x;
-    const t7 = same ? v_x : u_x;
-    const E_11 = all_same ? 1.0 : t7 / D;
-    const t8 = same ? v_y : u_y;
+    const E_11 = all_same ? 1.0 : -(t2 / D);
+    const t8 = same ? c3_y : -c3_y;
     const E_12 = all_same ? 0.0 : t8 / D;
-    const t9 = same ? u_y : v_y;
-    const t10 = same ? t4 : t3;
-    const t11 = all_same ? 0.0 : t10 / D;
-    const t12 = same ? t3 : t4;
-    const k_0 = E_11 * t6 + E_12 * t9 + t11 * t12;
-    const m_x = t6 - E_11 * k_0;
-    const m_y = t9 - E_12 * k_0;
-    const t13 = t12 - t11 * k_0;
-    const k_1 = E_11 * m_x + E_12 * m_y + t11 * t13;
-    const n_x = m_x - E_11 * k_1;
-    const n_y = m_y - E_12 * k_1;
-    const t14 = t13 - t11 * k_1;
-    const j = Math.sqrt(n_x * n_x + n_y * n_y + t14 * t14);
+    const t9 = same ? -c3_y : c3_y;
+    const t10 = same ? t1 : t4;
+    const t11 = t2 * E_11 - E_12 * t9 - t7 * t10;
+    const t12 = t2 - E_11 * t11;
+    const m_y = t9 + E_12 * t11;
+    const t13 = t10 + t7 * t11;
+    const t14 = E_11 * t12 - E_12 * m_y - t7 * t13;
+    const t15 = t12 - E_11 * t14;
+    const n_y = m_y + E_12 * t14;
+    const t16 = t13 + t7 * t14;
+    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
     const in_line = j <= t5;
-    const t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12);
-    const t16 = in_line ? 0.0 : t15 / (j * 2.0);
-    const rho = Math.sqrt(X * X + t16 * t16);
-    const t17 = l - rho;
-    const h = Math.sqrt(Math.max(t17, 0.0) * (l + rho));
-    const t18 = -t11 < 0 ? -1 : 1;
-    const t19 = t11 - t18;
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t18 / t19 : n_x / j;
-    const t20 = E_11 * t18;
-    const E_22 = in_line ? E_12 * t20 / t19 : n_y / j;
-    const t21 = h * (E_12 * E_21 - E_11 * E_22);
-    const t22 = in_line ? t20 : t14 / j;
-    const t23 = t11 * X - t22 * t16;
-    const t24 = t21 + t23;
-    const t25 = (E_11 * t22 - t11 * E_21) * h;
-    const t26 = E_12 * X - t16 * E_22;
-    const A_12 = t25 + t26;
-    const t27 = u_y - A_12;
-    const A_33 = t4 - t24;
-    const A_23 = t3 - t24;
-    const t28 = v_y - A_12;
+    const t17 = -t7 < 0 ? -1 : 1;
+    const t18 = E_11 * t17;
+    const t19 = in_line ? t18 : t16 / j;
+    const t20 = t9 * (t8 - t9) + t10 * (t6 - t10);
+    const t21 = in_line ? 0.0 : t20 / (2.0 * j);
+    const t22 = t7 * X - t19 * t21;
+    const rho = Math.sqrt(X * X + t21 * t21);
+    const t23 = l - rho;
+    const h = Math.sqrt(Math.max(t23, 0.0) * (l + rho));
+    const t24 = t7 - t17;
+    const E_21 = in_line ? 1.0 + t17 * (E_11 * E_11) / t24 : -(t15 / j);
+    const E_22 = in_line ? E_12 * t18 / t24 : n_y / j;
+    const t25 = h * (E_12 * E_21 - E_11 * E_22);
+    const t26 = t22 + t25;
+    const t27 = X * E_12 - t21 * E_22;
+    const t28 = h * (E_11 * t19 - t7 * E_21);
+    const A_12 = t27 + t28;
+    const A_22 = c3_y + A_12;
+    const A_33 = t4 - t26;
+    const A_23 = t1 - t26;
+    const t29 = c3_y - A_12;
     const Delta = D * j * h;
-    const t29 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l) &&
-        Number.isFinite(alpha1) && Number.isFinite(alpha2) && Number.isFinite(alpha3);
-    const t30 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t31 = t29 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t30;
-    const t32 = Math.abs(in_line ? -t15 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t32 && -(size * _runtime.FEASIBILITY) <= t17);
-    const t33 = !t31 || unreachable ? NaN : 0;
-    const t34 = t24 * (t27 * A_33 - A_23 * t28) / Delta + t33;
-    const t35 = -(A_23 * (A_12 * A_33 - t24 * t28) / Delta) + t33;
-    const t36 = A_33 * (A_12 * A_23 - t24 * t27) / Delta + t33;
-    const t37 = h * (E_12 * t22 - t11 * E_22);
-    const t38 = E_11 * X - E_21 * t16;
-    const t39 = t37 - t38;
-    const t40 = u_x + t39;
-    const t41 = v_x + t39;
-    const t42 = -(t24 * (A_33 * t40 - A_23 * t41) / Delta) + t33;
-    const t43 = -(A_23 * (A_33 * t39 + t24 * t41) / Delta) + t33;
-    const t44 = A_33 * (A_23 * t39 + t24 * t40) / Delta + t33;
-    const t45 = -(t24 * (t28 * t40 - t27 * t41) / Delta) + t33;
-    const t46 = -(A_23 * (t28 * t39 + A_12 * t41) / Delta) + t33;
-    const t47 = A_33 * (t27 * t39 + A_12 * t40) / Delta + t33;
-    const A_13_above = t21 - t23;
-    const t48 = t25 - t26;
-    const t49 = u_y + t48;
-    const A_33_above = t4 + A_13_above;
-    const A_23_above = t3 + A_13_above;
-    const t50 = v_y + t48;
-    const t51 = A_13_above * (t49 * A_33_above - A_23_above * t50);
-    const t52 = A_23_above * (t48 * A_33_above - A_13_above * t50);
-    const t53 = A_33_above * (t48 * A_23_above - A_13_above * t49);
-    const A_11_above = t37 + t38;
-    const t54 = u_x - A_11_above;
-    const t55 = v_x - A_11_above;
-    const t56 = A_13_above * (A_33_above * t54 - A_23_above * t55);
-    const t57 = A_23_above * (A_33_above * A_11_above + A_13_above * t55);
-    const t58 = A_33_above * (A_23_above * A_11_above + A_13_above * t54);
-    const t59 = -(A_13_above * (t50 * t54 - t49 * t55) / Delta);
-    const t60 = A_23_above * (t50 * A_11_above + t48 * t55) / Delta;
-    const t61 = A_33_above * (t49 * A_11_above + t48 * t54) / Delta;
-    o[0] = t34;
-    o[1] = t35;
-    o[2] = t36;
-    o[3] = t42;
-    o[4] = t43;
-    o[5] = t44;
-    o[6] = t45;
-    o[7] = t46;
-    o[8] = t47;
-    o[9] = t51 / Delta + t33;
-    o[10] = -(t52 / Delta) + t33;
-    o[11] = t53 / Delta + t33;
-    o[12] = -(t56 / Delta) + t33;
-    o[13] = -(t57 / Delta) + t33;
-    o[14] = t58 / Delta + t33;
-    o[15] = t59 + t33;
-    o[16] = -t60 + t33;
-    o[17] = t61 + t33;
+    const t30 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t31 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t32 = t30 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t31;
+    const t33 = Math.abs(in_line ? -t20 : 0.0) <= _runtime.FEASIBILITY * (size * size);
+    const unreachable = !(t33 && -(size * _runtime.FEASIBILITY) <= t23);
+    const t34 = !t32 || unreachable ? NaN : 0;
+    const t35 = -(t26 * (A_22 * A_33 + A_23 * t29) / Delta) + t34;
+    const t36 = -(A_23 * (A_12 * A_33 - t26 * t29) / Delta) + t34;
+    const t37 = A_33 * (A_12 * A_23 + t26 * A_22) / Delta + t34;
+    const t38 = X * E_11 - t21 * E_21;
+    const t39 = h * (E_12 * t19 - t7 * E_22);
+    const A_11 = t38 - t39;
+    const A_21 = t2 + A_11;
+    const t40 = t26 * (A_33 * A_21 - A_23 * A_21) / Delta + t34;
+    const t41 = t26 * A_21;
+    const t42 = t26 * (t29 * A_21 + A_22 * A_21) / Delta + t34;
+    const t43 = A_12 * A_21;
+    const t44 = t22 - t25;
+    const A_12_above = t27 - t28;
+    const A_22_above = c3_y + A_12_above;
+    const A_33_above = t4 - t44;
+    const A_23_above = t1 - t44;
+    const t45 = c3_y - A_12_above;
+    const t46 = t44 * (A_22_above * A_33_above + A_23_above * t45);
+    const t47 = A_23_above * (A_12_above * A_33_above - t44 * t45);
+    const t48 = A_33_above * (A_12_above * A_23_above + t44 * A_22_above);
+    const A_11_above = t38 + t39;
+    const A_21_above = t2 + A_11_above;
+    const t49 = A_33_above * A_21_above - A_23_above * A_21_above;
+    const t50 = t44 * A_21_above;
+    const t51 = A_23_above * (A_33_above * A_11_above + t50) / Delta;
+    const t52 = A_33_above * (t50 + A_23_above * A_11_above) / Delta;
+    const t53 = t44 * (t45 * A_21_above + A_22_above * A_21_above);
+    const t54 = A_12_above * A_21_above;
+    const t55 = A_23_above * (t45 * A_11_above + t54) / Delta;
+    const t56 = A_33_above * (t54 - A_22_above * A_11_above) / Delta;
+    o[0] = t35;
+    o[1] = t36;
+    o[2] = t37;
+    o[3] = t40;
+    o[4] = A_23 * (A_33 * A_11 + t41) / Delta + t34;
+    o[5] = -(A_33 * (t41 + A_23 * A_11) / Delta) + t34;
+    o[6] = t42;
+    o[7] = A_23 * (t29 * A_11 + t43) / Delta + t34;
+    o[8] = -(A_33 * (t43 - A_22 * A_11) / Delta) + t34;
+    o[9] = t46 / Delta + t34;
+    o[10] = t47 / Delta + t34;
+    o[11] = -(t48 / Delta) + t34;
+    o[12] = -(t44 * t49 / Delta) + t34;
+    o[13] = -t51 + t34;
+    o[14] = t52 + t34;
+    o[15] = -(t53 / Delta) + t34;
+    o[16] = -t55 + t34;
+    o[17] = t56 + t34;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -894,7 +794,7 @@ const _JACOBIAN = _runtime.kernel({
     outputs: [
         { name: "J", shape: [3, 3], branches: 2, kind: "real" },
     ],
-    used: ["f", "e", "l", "alpha1", "alpha2", "alpha3"],
+    used: ["f", "e", "l"],
     defaults: DEFAULTS,
     size: {
         lengths: [0, 1, 2, 3, 4, 5],
@@ -943,79 +843,60 @@ function _determinant(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
-    const alpha1 = v[6];
-    const alpha2 = v[7];
-    const alpha3 = v[8];
-    _runtime.sincos(alpha1);
-    const s_alpha1 = _runtime.found[0];
-    const c_alpha1 = _runtime.found[1];
-    _runtime.sincos(alpha2);
-    const s_alpha2 = _runtime.found[0];
-    const c_alpha2 = _runtime.found[1];
-    _runtime.sincos(alpha3);
-    const s_alpha3 = _runtime.found[0];
-    const c_alpha3 = _runtime.found[1];
-    const t1 = e * c_alpha1 - f * c_alpha1;
-    const u_x = t1 - (e * c_alpha2 - f * c_alpha2);
-    const t2 = e * s_alpha1 - f * s_alpha1;
-    const u_y = t2 - (e * s_alpha2 - f * s_alpha2);
-    const t3 = rho1 - rho2;
-    const size_u = Math.sqrt(u_x * u_x + u_y * u_y + t3 * t3);
-    const v_x = t1 - (e * c_alpha3 - f * c_alpha3);
-    const v_y = t2 - (e * s_alpha3 - f * s_alpha3);
+    const t1 = rho1 - rho2;
+    const t2 = f - e - (e * 0.5 - f * 0.5);
+    const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t3 = t2 * t2 + c3_y * c3_y;
+    const size_u = Math.sqrt(t1 * t1 + t3);
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(v_x * v_x + v_y * v_y + t4 * t4);
+    const size_v = Math.sqrt(t4 * t4 + t3);
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t5 = size * _runtime.VANISHING;
     const all_same = size_u + size_v <= t5;
     const same = size_u <= t5;
+    const t6 = same ? t4 : t1;
     const D = same ? size_v : size_u;
+    const t7 = all_same ? 0.0 : t6 / D;
     const X = all_same ? 0.0 : D * 0.5;
-    const t6 = same ? u_x : v_x;
-    const t7 = same ? v_x : u_x;
-    const E_11 = all_same ? 1.0 : t7 / D;
-    const t8 = same ? v_y : u_y;
+    const E_11 = all_same ? 1.0 : -(t2 / D);
+    const t8 = same ? c3_y : -c3_y;
     const E_12 = all_same ? 0.0 : t8 / D;
-    const t9 = same ? u_y : v_y;
-    const t10 = same ? t4 : t3;
-    const t11 = all_same ? 0.0 : t10 / D;
-    const t12 = same ? t3 : t4;
-    const k_0 = E_11 * t6 + E_12 * t9 + t11 * t12;
-    const m_x = t6 - E_11 * k_0;
-    const m_y = t9 - E_12 * k_0;
-    const t13 = t12 - t11 * k_0;
-    const k_1 = E_11 * m_x + E_12 * m_y + t11 * t13;
-    const n_x = m_x - E_11 * k_1;
-    const n_y = m_y - E_12 * k_1;
-    const t14 = t13 - t11 * k_1;
-    const j = Math.sqrt(n_x * n_x + n_y * n_y + t14 * t14);
+    const t9 = same ? -c3_y : c3_y;
+    const t10 = same ? t1 : t4;
+    const t11 = t2 * E_11 - E_12 * t9 - t7 * t10;
+    const t12 = t2 - E_11 * t11;
+    const m_y = t9 + E_12 * t11;
+    const t13 = t10 + t7 * t11;
+    const t14 = E_11 * t12 - E_12 * m_y - t7 * t13;
+    const t15 = t12 - E_11 * t14;
+    const n_y = m_y + E_12 * t14;
+    const t16 = t13 + t7 * t14;
+    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
     const in_line = j <= t5;
-    const t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12);
-    const t16 = in_line ? 0.0 : t15 / (j * 2.0);
-    const rho = Math.sqrt(X * X + t16 * t16);
-    const t17 = l - rho;
-    const h = Math.sqrt(Math.max(t17, 0.0) * (l + rho));
-    const t18 = -t11 < 0 ? -1 : 1;
-    const t19 = t11 - t18;
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t18 / t19 : n_x / j;
-    const t20 = E_11 * t18;
-    const t21 = E_11 * (in_line ? E_12 * t20 / t19 : n_y / j);
-    const t22 = h * (E_12 * E_21 - t21);
-    const t23 = t11 * X - (in_line ? t20 : t14 / j) * t16;
-    const t24 = t22 + t23;
+    const t17 = -t7 < 0 ? -1 : 1;
+    const t18 = E_11 * t17;
+    const t19 = t9 * (t8 - t9) + t10 * (t6 - t10);
+    const t20 = in_line ? 0.0 : t19 / (2.0 * j);
+    const t21 = t7 * X - (in_line ? t18 : t16 / j) * t20;
+    const rho = Math.sqrt(X * X + t20 * t20);
+    const t22 = l - rho;
+    const h = Math.sqrt(Math.max(t22, 0.0) * (l + rho));
+    const t23 = t7 - t17;
+    const E_21 = in_line ? 1.0 + t17 * (E_11 * E_11) / t23 : -(t15 / j);
+    const t24 = E_11 * (in_line ? E_12 * t18 / t23 : n_y / j);
+    const t25 = h * (E_12 * E_21 - t24);
+    const t26 = t21 + t25;
     const Delta = D * j * h;
-    const t25 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l) &&
-        Number.isFinite(alpha1) && Number.isFinite(alpha2) && Number.isFinite(alpha3);
-    const t26 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t27 = t25 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t26;
-    const t28 = Math.abs(in_line ? -t15 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t28 && -(size * _runtime.FEASIBILITY) <= t17);
-    const t29 = !t27 || unreachable ? NaN : 0;
-    const t30 = -(t24 * (t3 - t24) * (t4 - t24) / Delta) + t29;
-    const A_13_above = t22 - t23;
-    const t31 = A_13_above * (t3 + A_13_above) * (t4 + A_13_above);
-    o[0] = t30;
-    o[1] = -(t31 / Delta) + t29;
+    const t27 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t28 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t29 = t27 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t28;
+    const t30 = Math.abs(in_line ? -t19 : 0.0) <= _runtime.FEASIBILITY * (size * size);
+    const unreachable = !(t30 && -(size * _runtime.FEASIBILITY) <= t22);
+    const t31 = !t29 || unreachable ? NaN : 0;
+    const t32 = -(t26 * (t1 - t26) * (t4 - t26) / Delta) + t31;
+    const t33 = t21 - t25;
+    o[0] = t32;
+    o[1] = t33 * (t1 - t33) * (t4 - t33) / Delta + t31;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -1028,7 +909,7 @@ const _DETERMINANT = _runtime.kernel({
     outputs: [
         { name: "det", shape: [], branches: 2, kind: "real" },
     ],
-    used: ["f", "e", "l", "alpha1", "alpha2", "alpha3"],
+    used: ["f", "e", "l"],
     defaults: DEFAULTS,
     size: {
         lengths: [0, 1, 2, 3, 4, 5],
@@ -1076,83 +957,65 @@ function _singularities(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
-    const alpha1 = v[6];
-    const alpha2 = v[7];
-    const alpha3 = v[8];
-    _runtime.sincos(alpha1);
-    const s_alpha1 = _runtime.found[0];
-    const c_alpha1 = _runtime.found[1];
-    _runtime.sincos(alpha2);
-    const s_alpha2 = _runtime.found[0];
-    const c_alpha2 = _runtime.found[1];
-    _runtime.sincos(alpha3);
-    const s_alpha3 = _runtime.found[0];
-    const c_alpha3 = _runtime.found[1];
-    const t1 = e * c_alpha1 - f * c_alpha1;
-    const u_x = t1 - (e * c_alpha2 - f * c_alpha2);
-    const t2 = e * s_alpha1 - f * s_alpha1;
-    const u_y = t2 - (e * s_alpha2 - f * s_alpha2);
-    const t3 = rho1 - rho2;
-    const size_u = Math.sqrt(u_x * u_x + u_y * u_y + t3 * t3);
-    const v_x = t1 - (e * c_alpha3 - f * c_alpha3);
-    const v_y = t2 - (e * s_alpha3 - f * s_alpha3);
+    const t1 = rho1 - rho2;
+    const t2 = f - e - (e * 0.5 - f * 0.5);
+    const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t3 = t2 * t2 + c3_y * c3_y;
+    const size_u = Math.sqrt(t1 * t1 + t3);
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(v_x * v_x + v_y * v_y + t4 * t4);
+    const size_v = Math.sqrt(t4 * t4 + t3);
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t5 = size * _runtime.VANISHING;
     const all_same = size_u + size_v <= t5;
     const same = size_u <= t5;
+    const t6 = same ? t4 : t1;
     const D = same ? size_v : size_u;
+    const t7 = all_same ? 0.0 : t6 / D;
     const X = all_same ? 0.0 : D * 0.5;
-    const t6 = same ? u_x : v_x;
-    const t7 = same ? v_x : u_x;
-    const E_11 = all_same ? 1.0 : t7 / D;
-    const t8 = same ? v_y : u_y;
+    const E_11 = all_same ? 1.0 : -(t2 / D);
+    const t8 = same ? c3_y : -c3_y;
     const E_12 = all_same ? 0.0 : t8 / D;
-    const t9 = same ? u_y : v_y;
-    const t10 = same ? t4 : t3;
-    const t11 = all_same ? 0.0 : t10 / D;
-    const t12 = same ? t3 : t4;
-    const k_0 = E_11 * t6 + E_12 * t9 + t11 * t12;
-    const m_x = t6 - E_11 * k_0;
-    const m_y = t9 - E_12 * k_0;
-    const t13 = t12 - t11 * k_0;
-    const k_1 = E_11 * m_x + E_12 * m_y + t11 * t13;
-    const n_x = m_x - E_11 * k_1;
-    const n_y = m_y - E_12 * k_1;
-    const t14 = t13 - t11 * k_1;
-    const j = Math.sqrt(n_x * n_x + n_y * n_y + t14 * t14);
+    const t9 = same ? -c3_y : c3_y;
+    const t10 = same ? t1 : t4;
+    const t11 = t2 * E_11 - E_12 * t9 - t7 * t10;
+    const t12 = t2 - E_11 * t11;
+    const m_y = t9 + E_12 * t11;
+    const t13 = t10 + t7 * t11;
+    const t14 = E_11 * t12 - E_12 * m_y - t7 * t13;
+    const t15 = t12 - E_11 * t14;
+    const n_y = m_y + E_12 * t14;
+    const t16 = t13 + t7 * t14;
+    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
     const in_line = j <= t5;
-    const t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12);
-    const t16 = in_line ? 0.0 : t15 / (j * 2.0);
-    const rho = Math.sqrt(X * X + t16 * t16);
-    const t17 = l - rho;
-    const h = Math.sqrt(Math.max(t17, 0.0) * (l + rho));
-    const t18 = -t11 < 0 ? -1 : 1;
-    const t19 = t11 - t18;
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t18 / t19 : n_x / j;
-    const t20 = E_11 * t18;
-    const t21 = E_11 * (in_line ? E_12 * t20 / t19 : n_y / j);
-    const t22 = h * (E_12 * E_21 - t21);
-    const t23 = t11 * X - (in_line ? t20 : t14 / j) * t16;
-    const t24 = t22 + t23;
-    const t25 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l) &&
-        Number.isFinite(alpha1) && Number.isFinite(alpha2) && Number.isFinite(alpha3);
-    const t26 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t27 = t25 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t26;
-    const t28 = Math.abs(in_line ? -t15 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t28 && -(size * _runtime.FEASIBILITY) <= t17);
-    const t29 = !t27 || unreachable ? NaN : 0;
+    const t17 = -t7 < 0 ? -1 : 1;
+    const t18 = E_11 * t17;
+    const t19 = t9 * (t8 - t9) + t10 * (t6 - t10);
+    const t20 = in_line ? 0.0 : t19 / (2.0 * j);
+    const t21 = t7 * X - (in_line ? t18 : t16 / j) * t20;
+    const rho = Math.sqrt(X * X + t20 * t20);
+    const t22 = l - rho;
+    const h = Math.sqrt(Math.max(t22, 0.0) * (l + rho));
+    const t23 = t7 - t17;
+    const E_21 = in_line ? 1.0 + t17 * (E_11 * E_11) / t23 : -(t15 / j);
+    const t24 = E_11 * (in_line ? E_12 * t18 / t23 : n_y / j);
+    const t25 = h * (E_12 * E_21 - t24);
+    const t26 = t21 + t25;
+    const t27 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t28 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t29 = t27 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t28;
+    const t30 = Math.abs(in_line ? -t19 : 0.0) <= _runtime.FEASIBILITY * (size * size);
+    const unreachable = !(t30 && -(size * _runtime.FEASIBILITY) <= t22);
+    const t31 = !t29 || unreachable ? NaN : 0;
     const Delta = D * j * h;
-    const A_13_above = t22 - t23;
-    o[0] = -t24 + t29;
-    o[1] = t3 - t24 + t29;
-    o[2] = t4 - t24 + t29;
-    o[3] = Delta + t29;
-    o[4] = A_13_above + t29;
-    o[5] = t3 + A_13_above + t29;
-    o[6] = t4 + A_13_above + t29;
-    o[7] = -Delta + t29;
+    const t32 = t21 - t25;
+    o[0] = -t26 + t31;
+    o[1] = t1 - t26 + t31;
+    o[2] = t4 - t26 + t31;
+    o[3] = Delta + t31;
+    o[4] = -t32 + t31;
+    o[5] = t1 - t32 + t31;
+    o[6] = t4 - t32 + t31;
+    o[7] = -Delta + t31;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -1165,7 +1028,7 @@ const _SINGULARITIES = _runtime.kernel({
     outputs: [
         { name: "factors", shape: [4], branches: 2, kind: "real" },
     ],
-    used: ["f", "e", "l", "alpha1", "alpha2", "alpha3"],
+    used: ["f", "e", "l"],
     defaults: DEFAULTS,
     size: {
         lengths: [0, 1, 2, 3, 4, 5],
@@ -1213,127 +1076,112 @@ function _condition_number(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
-    const alpha1 = v[6];
-    const alpha2 = v[7];
-    const alpha3 = v[8];
-    _runtime.sincos(alpha1);
-    const s_alpha1 = _runtime.found[0];
-    const c_alpha1 = _runtime.found[1];
-    _runtime.sincos(alpha2);
-    const s_alpha2 = _runtime.found[0];
-    const c_alpha2 = _runtime.found[1];
-    _runtime.sincos(alpha3);
-    const s_alpha3 = _runtime.found[0];
-    const c_alpha3 = _runtime.found[1];
-    const t1 = e * c_alpha1 - f * c_alpha1;
-    const u_x = t1 - (e * c_alpha2 - f * c_alpha2);
-    const t2 = e * s_alpha1 - f * s_alpha1;
-    const u_y = t2 - (e * s_alpha2 - f * s_alpha2);
-    const t3 = rho1 - rho2;
-    const size_u = Math.sqrt(u_x * u_x + u_y * u_y + t3 * t3);
-    const v_x = t1 - (e * c_alpha3 - f * c_alpha3);
-    const v_y = t2 - (e * s_alpha3 - f * s_alpha3);
+    const t1 = rho1 - rho2;
+    const t2 = f - e - (e * 0.5 - f * 0.5);
+    const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t3 = t2 * t2 + c3_y * c3_y;
+    const size_u = Math.sqrt(t1 * t1 + t3);
     const t4 = rho1 - rho3;
-    const size_v = Math.sqrt(v_x * v_x + v_y * v_y + t4 * t4);
+    const size_v = Math.sqrt(t4 * t4 + t3);
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
     const t5 = size * _runtime.VANISHING;
     const all_same = size_u + size_v <= t5;
     const same = size_u <= t5;
     const D = same ? size_v : size_u;
+    const E_11 = all_same ? 1.0 : -(t2 / D);
     const X = all_same ? 0.0 : D * 0.5;
-    const t6 = same ? u_x : v_x;
-    const t7 = same ? v_x : u_x;
-    const E_11 = all_same ? 1.0 : t7 / D;
-    const t8 = same ? v_y : u_y;
-    const E_12 = all_same ? 0.0 : t8 / D;
-    const t9 = same ? u_y : v_y;
-    const t10 = same ? t4 : t3;
-    const t11 = all_same ? 0.0 : t10 / D;
-    const t12 = same ? t3 : t4;
-    const k_0 = E_11 * t6 + E_12 * t9 + t11 * t12;
-    const m_x = t6 - E_11 * k_0;
-    const m_y = t9 - E_12 * k_0;
-    const t13 = t12 - t11 * k_0;
-    const k_1 = E_11 * m_x + E_12 * m_y + t11 * t13;
-    const n_x = m_x - E_11 * k_1;
-    const n_y = m_y - E_12 * k_1;
-    const t14 = t13 - t11 * k_1;
-    const j = Math.sqrt(n_x * n_x + n_y * n_y + t14 * t14);
+    const t6 = same ? c3_y : -c3_y;
+    const E_12 = all_same ? 0.0 : t6 / D;
+    const t7 = same ? -c3_y : c3_y;
+    const t8 = same ? t4 : t1;
+    const t9 = all_same ? 0.0 : t8 / D;
+    const t10 = same ? t1 : t4;
+    const t11 = t2 * E_11 - E_12 * t7 - t9 * t10;
+    const t12 = t2 - E_11 * t11;
+    const m_y = t7 + E_12 * t11;
+    const t13 = t10 + t9 * t11;
+    const t14 = E_11 * t12 - E_12 * m_y - t9 * t13;
+    const t15 = t12 - E_11 * t14;
+    const n_y = m_y + E_12 * t14;
+    const t16 = t13 + t9 * t14;
+    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
     const in_line = j <= t5;
-    const t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12);
-    const t16 = in_line ? 0.0 : t15 / (j * 2.0);
-    const rho = Math.sqrt(X * X + t16 * t16);
-    const t17 = l - rho;
-    const h = Math.sqrt(Math.max(t17, 0.0) * (l + rho));
-    const t18 = -t11 < 0 ? -1 : 1;
-    const t19 = E_11 * t18;
-    const t20 = in_line ? t19 : t14 / j;
-    const t21 = t11 - t18;
-    const E_22 = in_line ? E_12 * t19 / t21 : n_y / j;
-    const t22 = h * (E_12 * t20 - t11 * E_22);
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t18 / t21 : n_x / j;
-    const t23 = E_11 * X - E_21 * t16;
-    const t24 = t22 - t23;
-    const t25 = (E_11 * t20 - t11 * E_21) * h;
-    const t26 = E_12 * X - t16 * E_22;
-    const A_12 = t25 + t26;
-    const t27 = h * (E_12 * E_21 - E_11 * E_22);
-    const t28 = t11 * X - t20 * t16;
-    const t29 = t27 + t28;
-    const t30 = u_x + t24;
-    const t31 = u_y - A_12;
-    const A_23 = t3 - t29;
-    const t32 = t24 * t24 + A_12 * A_12 + t29 * t29 + (t30 * t30 + t31 * t31 + A_23 * A_23);
-    const t33 = v_x + t24;
-    const t34 = v_y - A_12;
-    const A_33 = t4 - t29;
-    const t35 = t24 * t31 + A_12 * t30;
-    const t36 = t24 * A_23 + t29 * t30;
-    const t37 = t24 * t34 + A_12 * t33;
-    const t38 = t24 * A_33 + t29 * t33;
-    const t39 = t35 * t35 + t36 * t36 + t37 * t37 + t38 * t38;
-    const t40 = A_12 * A_23 - t29 * t31;
-    const t41 = A_12 * A_33 - t29 * t34;
-    const t42 = t30 * t34 - t31 * t33;
-    const t43 = t30 * A_33 - A_23 * t33;
-    const t44 = t39 + t40 * t40 + t41 * t41 + t42 * t42 + t43 * t43;
-    const t45 = t31 * A_33 - A_23 * t34;
-    const t46 = (t32 + (t33 * t33 + t34 * t34 + A_33 * A_33)) * (t44 + t45 * t45);
-    const t47 = 3.0 * (D * j * h);
-    const t48 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l) &&
-        Number.isFinite(alpha1) && Number.isFinite(alpha2) && Number.isFinite(alpha3);
-    const t49 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
-    const t50 = t48 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t49;
-    const t51 = Math.abs(in_line ? -t15 : 0.0) <= _runtime.FEASIBILITY * (size * size);
-    const unreachable = !(t51 && -(size * _runtime.FEASIBILITY) <= t17);
-    const t52 = !t50 || unreachable ? NaN : 0;
-    const A_11_above = t22 + t23;
-    const t53 = t25 - t26;
-    const A_13_above = t27 - t28;
-    const square1_above = A_11_above * A_11_above + t53 * t53 + A_13_above * A_13_above;
-    const t54 = u_x - A_11_above;
-    const t55 = u_y + t53;
-    const A_23_above = t3 + A_13_above;
-    const square2_above = t54 * t54 + t55 * t55 + A_23_above * A_23_above;
-    const t56 = v_x - A_11_above;
-    const t57 = v_y + t53;
-    const A_33_above = t4 + A_13_above;
-    const square3_above = t56 * t56 + t57 * t57 + A_33_above * A_33_above;
-    const t58 = square1_above + square2_above + square3_above;
-    const t59 = A_11_above * t55 + t53 * t54;
-    const t60 = A_11_above * A_23_above + A_13_above * t54;
-    const t61 = A_11_above * t57 + t53 * t56;
-    const t62 = A_11_above * A_33_above + A_13_above * t56;
-    const t63 = t59 * t59 + t60 * t60 + t61 * t61 + t62 * t62;
-    const t64 = t53 * A_23_above - A_13_above * t55;
-    const t65 = t53 * A_33_above - A_13_above * t57;
-    const t66 = t54 * t57 - t55 * t56;
-    const t67 = t54 * A_33_above - A_23_above * t56;
-    const t68 = t63 + t64 * t64 + t65 * t65 + t66 * t66 + t67 * t67;
-    const t69 = t55 * A_33_above - A_23_above * t57;
-    const t70 = Math.sqrt(t58 * (t68 + t69 * t69)) / t47 + t52;
-    o[0] = Math.sqrt(t46) / t47 + t52;
-    o[1] = t70;
+    const t17 = -t9 < 0 ? -1 : 1;
+    const t18 = t9 - t17;
+    const E_21 = in_line ? 1.0 + E_11 * E_11 * t17 / t18 : -(t15 / j);
+    const t19 = t7 * (t6 - t7) + t10 * (t8 - t10);
+    const t20 = in_line ? 0.0 : t19 / (2.0 * j);
+    const t21 = E_11 * X - E_21 * t20;
+    const rho = Math.sqrt(X * X + t20 * t20);
+    const t22 = l - rho;
+    const h = Math.sqrt(Math.max(t22, 0.0) * (l + rho));
+    const t23 = E_11 * t17;
+    const t24 = in_line ? t23 : t16 / j;
+    const E_22 = in_line ? E_12 * t23 / t18 : n_y / j;
+    const t25 = h * (E_12 * t24 - t9 * E_22);
+    const A_11 = t21 - t25;
+    const t26 = X * E_12 - t20 * E_22;
+    const t27 = h * (E_11 * t24 - t9 * E_21);
+    const A_12 = t26 + t27;
+    const t28 = X * t9 - t20 * t24;
+    const t29 = h * (E_12 * E_21 - E_11 * E_22);
+    const t30 = t28 + t29;
+    const A_21 = t2 + A_11;
+    const t31 = A_21 * A_21;
+    const A_22 = c3_y + A_12;
+    const A_23 = t1 - t30;
+    const t32 = A_11 * A_11 + A_12 * A_12 + t30 * t30 + (t31 + A_22 * A_22 + A_23 * A_23);
+    const t33 = c3_y - A_12;
+    const A_33 = t4 - t30;
+    const t34 = A_12 * A_21;
+    const t35 = A_11 * A_22 - t34;
+    const t36 = t30 * A_21;
+    const t37 = A_11 * A_23 + t36;
+    const t38 = t34 + A_11 * t33;
+    const t39 = t36 + A_11 * A_33;
+    const t40 = t35 * t35 + t37 * t37 + t38 * t38 + t39 * t39;
+    const t41 = A_12 * A_23 + t30 * A_22;
+    const t42 = A_12 * A_33 - t30 * t33;
+    const t43 = A_21 * t33 + A_21 * A_22;
+    const t44 = A_21 * A_33 - A_21 * A_23;
+    const t45 = t40 + t41 * t41 + t42 * t42 + t43 * t43 + t44 * t44;
+    const t46 = A_22 * A_33 + A_23 * t33;
+    const t47 = (t32 + (t31 + t33 * t33 + A_33 * A_33)) * (t45 + t46 * t46);
+    const t48 = 3.0 * (D * j * h);
+    const t49 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t50 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t51 = t49 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t50;
+    const t52 = Math.abs(in_line ? -t19 : 0.0) <= _runtime.FEASIBILITY * (size * size);
+    const unreachable = !(t52 && -(size * _runtime.FEASIBILITY) <= t22);
+    const t53 = !t51 || unreachable ? NaN : 0;
+    const A_11_above = t21 + t25;
+    const A_12_above = t26 - t27;
+    const t54 = A_11_above * A_11_above + A_12_above * A_12_above;
+    const t55 = t28 - t29;
+    const A_21_above = t2 + A_11_above;
+    const t56 = A_21_above * A_21_above;
+    const A_22_above = c3_y + A_12_above;
+    const A_23_above = t1 - t55;
+    const square2_above = t56 + A_22_above * A_22_above + A_23_above * A_23_above;
+    const t57 = c3_y - A_12_above;
+    const A_33_above = t4 - t55;
+    const t58 = t54 + t55 * t55 + square2_above + (t56 + t57 * t57 + A_33_above * A_33_above);
+    const t59 = A_12_above * A_21_above;
+    const t60 = A_11_above * A_22_above - t59;
+    const t61 = t55 * A_21_above;
+    const t62 = A_11_above * A_23_above + t61;
+    const t63 = t59 + A_11_above * t57;
+    const t64 = t61 + A_11_above * A_33_above;
+    const t65 = t60 * t60 + t62 * t62 + t63 * t63 + t64 * t64;
+    const t66 = A_12_above * A_23_above + t55 * A_22_above;
+    const t67 = A_12_above * A_33_above - t55 * t57;
+    const t68 = A_21_above * t57 + A_21_above * A_22_above;
+    const t69 = A_21_above * A_33_above - A_21_above * A_23_above;
+    const t70 = t65 + t66 * t66 + t67 * t67 + t68 * t68 + t69 * t69;
+    const t71 = A_22_above * A_33_above + A_23_above * t57;
+    const t72 = Math.sqrt(t58 * (t70 + t71 * t71)) / t48 + t53;
+    o[0] = Math.sqrt(t47) / t48 + t53;
+    o[1] = t72;
 }
 
 const _CONDITION_NUMBER = _runtime.kernel({
@@ -1346,7 +1194,7 @@ const _CONDITION_NUMBER = _runtime.kernel({
     outputs: [
         { name: "kappa", shape: [], branches: 2, kind: "real" },
     ],
-    used: ["f", "e", "l", "alpha1", "alpha2", "alpha3"],
+    used: ["f", "e", "l"],
     defaults: DEFAULTS,
     size: {
         lengths: [0, 1, 2, 3, 4, 5],
@@ -1395,135 +1243,110 @@ function _ik(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
-    const alpha1 = v[6];
-    const alpha2 = v[7];
-    const alpha3 = v[8];
-    _runtime.sincos(alpha1);
-    const s_alpha1 = _runtime.found[0];
-    const c_alpha1 = _runtime.found[1];
-    _runtime.sincos(alpha2);
-    const s_alpha2 = _runtime.found[0];
-    const c_alpha2 = _runtime.found[1];
-    _runtime.sincos(alpha3);
-    const s_alpha3 = _runtime.found[0];
-    const c_alpha3 = _runtime.found[1];
-    const t1 = e * s_alpha1 - f * s_alpha1;
-    const A_12 = y + t1;
-    const t2 = e * c_alpha1 - f * c_alpha1;
-    const A_11 = x + t2;
-    const aside_1 = Math.sqrt(A_12 * A_12 + A_11 * A_11);
-    const t3 = l - aside_1;
-    const t4 = l + aside_1;
-    const root_1 = Math.sqrt(Math.max(t3, 0.0) * Math.max(t4, 0.0));
+    const A_11 = x - f + e;
+    const aside_1 = Math.sqrt(y * y + A_11 * A_11);
+    const t1 = l - aside_1;
+    const t2 = l + aside_1;
+    const root_1 = Math.sqrt(Math.max(t1, 0.0) * Math.max(t2, 0.0));
     const slide_1 = z - root_1;
-    const t5 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l) &&
-        Number.isFinite(alpha1) && Number.isFinite(alpha2) && Number.isFinite(alpha3);
-    const t6 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z);
-    const invalid = !(t5 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t6);
+    const t3 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t4 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z);
+    const invalid = !(t3 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t4);
     const size = f + e + l + Math.abs(x) + Math.abs(y) + Math.abs(z);
-    const t7 = -(_runtime.FEASIBILITY * (size * 0.5));
-    const t8 = e * s_alpha2 - f * s_alpha2;
-    const t9 = y + t8;
-    const t10 = e * c_alpha2 - f * c_alpha2;
-    const t11 = x + t10;
-    const aside_2 = Math.sqrt(t9 * t9 + t11 * t11);
-    const t12 = l - aside_2;
-    const t13 = l + aside_2;
-    const t14 = t7 <= t3 && t7 <= t4 && t7 <= t12 && t7 <= t13;
-    const t15 = e * s_alpha3 - f * s_alpha3;
-    const t16 = y + t15;
-    const t17 = e * c_alpha3 - f * c_alpha3;
-    const t18 = x + t17;
-    const aside_3 = Math.sqrt(t16 * t16 + t18 * t18);
-    const t19 = l - aside_3;
-    const t20 = l + aside_3;
-    const unreachable = !(t14 && t7 <= t19 && t7 <= t20);
-    const t21 = invalid || unreachable ? NaN : 0;
-    const t22 = slide_1 + t21;
-    const root_2 = Math.sqrt(Math.max(t12, 0.0) * Math.max(t13, 0.0));
+    const t5 = -(_runtime.FEASIBILITY * (size * 0.5));
+    const t6 = x - e * 0.5 + f * 0.5;
+    const t7 = t6 * t6;
+    const A_22 = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t8 = y + A_22;
+    const aside_2 = Math.sqrt(t7 + t8 * t8);
+    const t9 = l - aside_2;
+    const t10 = l + aside_2;
+    const t11 = t5 <= t1 && t5 <= t2 && t5 <= t9 && t5 <= t10;
+    const t12 = y - A_22;
+    const aside_3 = Math.sqrt(t7 + t12 * t12);
+    const t13 = l - aside_3;
+    const t14 = l + aside_3;
+    const unreachable = !(t11 && t5 <= t13 && t5 <= t14);
+    const t15 = invalid || unreachable ? NaN : 0;
+    const t16 = slide_1 + t15;
+    const root_2 = Math.sqrt(Math.max(t9, 0.0) * Math.max(t10, 0.0));
     const slide_2 = z - root_2;
-    const t23 = slide_2 + t21;
-    const root_3 = Math.sqrt(Math.max(t19, 0.0) * Math.max(t20, 0.0));
+    const t17 = slide_2 + t15;
+    const root_3 = Math.sqrt(Math.max(t13, 0.0) * Math.max(t14, 0.0));
     const slide_3 = z - root_3;
-    const t24 = slide_3 + t21;
+    const t18 = slide_3 + t15;
     const slide_3_plus_plus_minus = z + root_3;
-    const t25 = slide_3_plus_plus_minus + t21;
+    const t19 = slide_3_plus_plus_minus + t15;
     const slide_2_plus_minus_plus = z + root_2;
-    const t26 = slide_2_plus_minus_plus + t21;
+    const t20 = slide_2_plus_minus_plus + t15;
     const slide_1_minus_plus_plus = z + root_1;
-    const t27 = slide_1_minus_plus_plus + t21;
-    const A_13 = z - slide_1;
-    const t28 = t2 - t10;
-    const t29 = t1 - t15;
-    const t30 = t28 * t29;
-    const t31 = t1 - t8;
-    const t32 = t2 - t17;
-    const t33 = t31 * t32;
-    const t34 = A_13 * t30 - A_13 * t33;
+    const t21 = slide_1_minus_plus_plus + t15;
+    const t22 = e * 1.5 - f * 1.5;
+    const t23 = t22 * A_22;
+    const t24 = (z - slide_1) * t23;
+    const t25 = t24 + t24;
+    const t26 = A_11 * A_22;
     const A_33 = slide_1 - slide_3;
-    const t35 = A_11 * t31;
-    const t36 = A_12 * t28;
-    const t37 = t34 - (A_33 * t35 - A_33 * t36);
+    const t27 = y * t22;
+    const t28 = t25 + (t26 * A_33 + t27 * A_33);
     const A_23 = slide_1 - slide_2;
-    const t38 = A_11 * t29;
-    const t39 = A_12 * t32;
-    const t40 = A_23 * t38 - A_23 * t39;
-    const t41 = _runtime.DETERMINED * (l * l * l);
-    const t42 = invalid ? 3 : unreachable ? 1 : Math.abs(-(t37 + t40)) <= t41 ? 2 : 0;
+    const t29 = t26 * A_23 - t27 * A_23;
+    const t30 = _runtime.DETERMINED * (l * l * l);
+    const t31 = invalid ? 3 : unreachable ? 1 : Math.abs(t28 + t29) <= t30 ? 2 : 0;
     const A_33_plus_plus_minus = slide_1 - slide_3_plus_plus_minus;
-    const t43 = t35 * A_33_plus_plus_minus - t36 * A_33_plus_plus_minus;
-    const t44 = t34 - t43;
-    const t45 = invalid ? 3 : unreachable ? 1 : Math.abs(t40 + t44) <= t41 ? 2 : 0;
+    const t32 = t26 * A_33_plus_plus_minus + t27 * A_33_plus_plus_minus;
+    const t33 = t25 + t32;
+    const t34 = invalid ? 3 : unreachable ? 1 : Math.abs(t29 + t33) <= t30 ? 2 : 0;
     const A_23_plus_minus_plus = slide_1 - slide_2_plus_minus_plus;
-    const t46 = t38 * A_23_plus_minus_plus - t39 * A_23_plus_minus_plus;
-    const t47 = invalid ? 3 : unreachable ? 1 : Math.abs(-(t37 + t46)) <= t41 ? 2 : 0;
-    const t48 = invalid ? 3 : unreachable ? 1 : Math.abs(t44 + t46) <= t41 ? 2 : 0;
-    const A_13_minus_plus_plus = z - slide_1_minus_plus_plus;
-    const t49 = t30 * A_13_minus_plus_plus - t33 * A_13_minus_plus_plus;
-    const t50 = slide_3 - slide_1_minus_plus_plus;
-    const t51 = t49 + (t35 * t50 - t36 * t50);
-    const t52 = slide_2 - slide_1_minus_plus_plus;
-    const t53 = t38 * t52 - t39 * t52;
-    const t54 = invalid ? 3 : unreachable ? 1 : Math.abs(t51 - t53) <= t41 ? 2 : 0;
-    const t55 = slide_3_plus_plus_minus - slide_1_minus_plus_plus;
-    const t56 = t49 + (t35 * t55 - t36 * t55);
-    const t57 = invalid ? 3 : unreachable ? 1 : Math.abs(t53 - t56) <= t41 ? 2 : 0;
-    const t58 = slide_2_plus_minus_plus - slide_1_minus_plus_plus;
-    const t59 = t38 * t58 - t39 * t58;
-    const t60 = invalid ? 3 : unreachable ? 1 : Math.abs(t51 - t59) <= t41 ? 2 : 0;
-    const t61 = invalid ? 3 : unreachable ? 1 : Math.abs(t56 - t59) <= t41 ? 2 : 0;
-    o[0] = t22;
-    o[1] = t23;
-    o[2] = t24;
-    o[3] = t22;
-    o[4] = t23;
-    o[5] = t25;
-    o[6] = t22;
-    o[7] = t26;
-    o[8] = t24;
-    o[9] = t22;
-    o[10] = t26;
-    o[11] = t25;
-    o[12] = t27;
-    o[13] = t23;
-    o[14] = t24;
-    o[15] = t27;
-    o[16] = t23;
-    o[17] = t25;
-    o[18] = t27;
-    o[19] = t26;
-    o[20] = t24;
-    o[21] = t27;
-    o[22] = t26;
-    o[23] = t25;
-    o[24] = t42;
-    o[25] = t45;
-    o[26] = t47;
-    o[27] = t48;
-    o[28] = t54;
-    o[29] = t57;
-    o[30] = t60;
-    o[31] = t61;
+    const t35 = t26 * A_23_plus_minus_plus - t27 * A_23_plus_minus_plus;
+    const t36 = invalid ? 3 : unreachable ? 1 : Math.abs(t28 + t35) <= t30 ? 2 : 0;
+    const t37 = invalid ? 3 : unreachable ? 1 : Math.abs(t33 + t35) <= t30 ? 2 : 0;
+    const t38 = (z - slide_1_minus_plus_plus) * t23;
+    const t39 = t38 + t38;
+    const t40 = slide_1_minus_plus_plus - slide_3;
+    const t41 = t39 + (t26 * t40 + t27 * t40);
+    const t42 = slide_1_minus_plus_plus - slide_2;
+    const t43 = t26 * t42 - t27 * t42;
+    const t44 = invalid ? 3 : unreachable ? 1 : Math.abs(-(t41 + t43)) <= t30 ? 2 : 0;
+    const t45 = slide_1_minus_plus_plus - slide_3_plus_plus_minus;
+    const t46 = t39 + (t26 * t45 + t27 * t45);
+    const t47 = invalid ? 3 : unreachable ? 1 : Math.abs(-(t43 + t46)) <= t30 ? 2 : 0;
+    const t48 = slide_1_minus_plus_plus - slide_2_plus_minus_plus;
+    const t49 = t26 * t48 - t27 * t48;
+    const t50 = invalid ? 3 : unreachable ? 1 : Math.abs(-(t41 + t49)) <= t30 ? 2 : 0;
+    const t51 = invalid ? 3 : unreachable ? 1 : Math.abs(t46 + t49) <= t30 ? 2 : 0;
+    o[0] = t16;
+    o[1] = t17;
+    o[2] = t18;
+    o[3] = t16;
+    o[4] = t17;
+    o[5] = t19;
+    o[6] = t16;
+    o[7] = t20;
+    o[8] = t18;
+    o[9] = t16;
+    o[10] = t20;
+    o[11] = t19;
+    o[12] = t21;
+    o[13] = t17;
+    o[14] = t18;
+    o[15] = t21;
+    o[16] = t17;
+    o[17] = t19;
+    o[18] = t21;
+    o[19] = t20;
+    o[20] = t18;
+    o[21] = t21;
+    o[22] = t20;
+    o[23] = t19;
+    o[24] = t31;
+    o[25] = t34;
+    o[26] = t36;
+    o[27] = t37;
+    o[28] = t44;
+    o[29] = t47;
+    o[30] = t50;
+    o[31] = t51;
 }
 
 const _IK = _runtime.kernel({
@@ -1537,7 +1360,7 @@ const _IK = _runtime.kernel({
         { name: "q", shape: [3], branches: 8, kind: "real" },
         { name: "status", shape: [], branches: 8, kind: "status" },
     ],
-    used: ["f", "e", "l", "alpha1", "alpha2", "alpha3"],
+    used: ["f", "e", "l"],
     defaults: DEFAULTS,
     size: {
         lengths: [0, 1, 2, 3, 4, 5],
@@ -1592,35 +1415,22 @@ function _workspace_contains(v, o) {
     const f = v[3];
     const e = v[4];
     const l = v[5];
-    const alpha1 = v[6];
-    const alpha2 = v[7];
-    const alpha3 = v[8];
-    _runtime.sincos(alpha1);
-    const s_alpha1 = _runtime.found[0];
-    const c_alpha1 = _runtime.found[1];
-    _runtime.sincos(alpha2);
-    const s_alpha2 = _runtime.found[0];
-    const c_alpha2 = _runtime.found[1];
-    _runtime.sincos(alpha3);
-    const s_alpha3 = _runtime.found[0];
-    const c_alpha3 = _runtime.found[1];
-    const t1 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l) &&
-        Number.isFinite(alpha1) && Number.isFinite(alpha2) && Number.isFinite(alpha3);
+    const t1 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
     const t2 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z);
     const invalid = !(t1 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t2);
     const size = f + e + l + Math.abs(x) + Math.abs(y) + Math.abs(z);
     const t3 = -(_runtime.FEASIBILITY * (size * 0.5));
-    const t4 = y + e * s_alpha1 - f * s_alpha1;
-    const t5 = x + e * c_alpha1 - f * c_alpha1;
-    const aside_1 = Math.sqrt(t4 * t4 + t5 * t5);
-    const t6 = y + e * s_alpha2 - f * s_alpha2;
-    const t7 = x + e * c_alpha2 - f * c_alpha2;
-    const aside_2 = Math.sqrt(t6 * t6 + t7 * t7);
-    const t8 = t3 <= l - aside_1 && t3 <= l + aside_1 && t3 <= l - aside_2;
-    const t9 = y + e * s_alpha3 - f * s_alpha3;
-    const t10 = x + e * c_alpha3 - f * c_alpha3;
-    const aside_3 = Math.sqrt(t9 * t9 + t10 * t10);
-    const t11 = t8 && t3 <= l + aside_2 && t3 <= l - aside_3 && t3 <= l + aside_3;
+    const t4 = x - f + e;
+    const aside_1 = Math.sqrt(y * y + t4 * t4);
+    const t5 = x - e * 0.5 + f * 0.5;
+    const t6 = t5 * t5;
+    const t7 = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t8 = y + t7;
+    const aside_2 = Math.sqrt(t6 + t8 * t8);
+    const t9 = t3 <= l - aside_1 && t3 <= l + aside_1 && t3 <= l - aside_2;
+    const t10 = y - t7;
+    const aside_3 = Math.sqrt(t6 + t10 * t10);
+    const t11 = t9 && t3 <= l + aside_2 && t3 <= l - aside_3 && t3 <= l + aside_3;
     o[0] = (!(invalid || !t11)) ? 1 : 0;
 }
 
@@ -1634,7 +1444,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
     outputs: [
         { name: "inside", shape: [], branches: 0, kind: "bool" },
     ],
-    used: ["f", "e", "l", "alpha1", "alpha2", "alpha3"],
+    used: ["f", "e", "l"],
     defaults: DEFAULTS,
     size: {
         lengths: [0, 1, 2, 3, 4, 5],

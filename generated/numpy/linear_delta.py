@@ -2,21 +2,21 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Arms of common structure, solved by lemmas.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 42 compare and select, 65 add, 5 divide, 71 multiply, 3 sincos, 5 sqrt
-#   skeleton: 41 compare and select, 102 add, 10 divide, 63 multiply, 3 sincos, 5 sqrt
-#   jacobian_parallel: 41 compare and select, 86 add, 10 divide, 63 multiply, 3 sincos, 5 sqrt
-#   jacobian_serial: 41 compare and select, 58 add, 10 divide, 53 multiply, 3 sincos, 5 sqrt
-#   jacobian: 41 compare and select, 104 add, 28 divide, 119 multiply, 3 sincos, 5 sqrt
-#   determinant: 41 compare and select, 54 add, 12 divide, 59 multiply, 3 sincos, 5 sqrt
-#   singularities: 41 compare and select, 60 add, 10 divide, 55 multiply, 3 sincos, 5 sqrt
-#   condition_number: 41 compare and select, 120 add, 12 divide, 140 multiply, 3 sincos, 7 sqrt
-#   ik: 57 compare and select, 74 add, 1 divide, 51 multiply, 3 sincos, 6 sqrt
-#   workspace_contains: 27 compare and select, 26 add, 1 divide, 19 multiply, 3 sincos, 3 sqrt
+#   fk: 40 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
+#   skeleton: 39 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
+#   jacobian_parallel: 39 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
+#   jacobian_serial: 39 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
+#   jacobian: 39 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
+#   determinant: 39 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
+#   singularities: 39 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
+#   condition_number: 39 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
+#   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
+#   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
 
-Three sliders move up columns at the distance f from the z axis, in the directions alpha1,
-alpha2 and alpha3.  Parallelograms of length l lead from them to the platform, at the distance e
-from its centre P, and keep it from turning.
+Three sliders move up columns at the distance f from the z axis, a third of a turn apart; the
+first is on the x axis.  Parallelograms of length l lead from them to the platform, at the
+distance e from its centre P, and keep it from turning.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from The closedform authors: Arms of common structure, solved by lemmas.
@@ -102,130 +102,112 @@ class Parameters(NamedTuple):
     f: Any = 0.2
     e: Any = 0.03
     l: Any = 0.3
-    alpha1: Any = 0.0
-    alpha2: Any = 2.0943951023931953
-    alpha3: Any = 4.1887902047863905
 
 
 Parameters.f.__doc__ = 'distance of the columns from the z axis, in m; default 0.2 (round numbers)'
 Parameters.e.__doc__ = 'distance of the parallelograms from the centre of the platform, in m; default 0.03 (round numbers)'
 Parameters.l.__doc__ = 'length of the parallelograms, in m; default 0.3 (round numbers)'
-Parameters.alpha1.__doc__ = 'direction of leg 1, in rad; default 0.0 (a third of a turn apart)'
-Parameters.alpha2.__doc__ = 'direction of leg 2, in rad; default 2.0943951023931953 (a third of a turn apart)'
-Parameters.alpha3.__doc__ = 'direction of leg 3, in rad; default 4.1887902047863905 (a third of a turn apart)'
 
 _DEFAULT = Parameters()
 
 
-def _fk(rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
-    t1 = e * c_alpha1 - f * c_alpha1
-    del c_alpha1
-    u_x = t1 - (e * c_alpha2 - f * c_alpha2)
-    del c_alpha2
-    t2 = e * s_alpha1 - f * s_alpha1
-    del s_alpha1
-    u_y = t2 - (e * s_alpha2 - f * s_alpha2)
-    del s_alpha2
-    t3 = rho1 - rho2
-    size_u = np.sqrt(u_x * u_x + u_y * u_y + t3 * t3)
-    v_x = t1 - (e * c_alpha3 - f * c_alpha3)
-    del c_alpha3
-    v_y = t2 - (e * s_alpha3 - f * s_alpha3)
-    del s_alpha3
+def _fk(rho1, rho2, rho3, f, e, l):
+    c1_x = f - e
+    t1 = c1_x - (e * 0.5 - f * 0.5)
+    t2 = rho1 - rho2
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t3 = t1 * t1 + c3_y * c3_y
+    size_u = np.sqrt(t2 * t2 + t3)
     t4 = rho1 - rho3
-    size_v = np.sqrt(v_x * v_x + v_y * v_y + t4 * t4)
+    size_v = np.sqrt(t4 * t4 + t3)
+    del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t5 = size * _runtime.VANISHING
     all_same = size_u + size_v <= t5
     same = size_u <= t5
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
-    X = _runtime.select(all_same, 0.0, D * 0.5)
-    t6 = _runtime.select(same, u_x, v_x)
-    t7 = _runtime.select(same, v_x, u_x)
-    del u_x, v_x
-    t8 = 1.0 / D
-    del D
-    E_11 = _runtime.select(all_same, 1.0, t7 * t8)
-    t9 = _runtime.select(same, u_y, v_y)
-    t10 = _runtime.select(same, v_y, u_y)
-    del u_y, v_y
-    E_12 = _runtime.select(all_same, 0.0, t10 * t8)
-    t11 = _runtime.select(same, t3, t4)
-    t12 = _runtime.select(same, t4, t3)
-    del same, t3, t4
-    t13 = _runtime.select(all_same, 0.0, t12 * t8)
-    del all_same, t8
-    k_0 = t6 * E_11 + t9 * E_12 + t11 * t13
-    m_x = t6 - E_11 * k_0
-    m_y = t9 - E_12 * k_0
-    t14 = t11 - t13 * k_0
-    del k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t13 * t14
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
+    t6 = 1.0 / D
+    E_11 = _runtime.select(all_same, 1.0, -(t1 * t6))
+    t7 = _runtime.select(same, -c3_y, c3_y)
+    t8 = _runtime.select(same, c3_y, -c3_y)
+    del c3_y
+    E_12 = _runtime.select(all_same, 0.0, t6 * t8)
+    t9 = _runtime.select(same, t2, t4)
+    t10 = _runtime.select(same, t4, t2)
+    del same, t2, t4
+    t11 = _runtime.select(all_same, 0.0, t6 * t10)
+    del t6
+    t12 = t1 * E_11 - t7 * E_12 - t9 * t11
+    t13 = t1 - E_11 * t12
+    del t1
+    m_y = t7 + E_12 * t12
+    t14 = t9 + t11 * t12
+    del t12
+    t15 = E_11 * t13 - E_12 * m_y - t11 * t14
+    t16 = t13 - E_11 * t15
+    del t13
+    n_y = m_y + E_12 * t15
     del m_y
-    t15 = t14 - t13 * k_1
-    del k_1, t14
-    j = np.sqrt(n_x * n_x + n_y * n_y + t15 * t15)
+    t17 = t14 + t11 * t15
+    del t14, t15
+    j = np.sqrt(t16 * t16 + n_y * n_y + t17 * t17)
     in_line = j <= t5
     del t5
-    t16 = t6 * (t7 - t6) + t9 * (t10 - t9) + t11 * (t12 - t11)
-    del t10, t11, t12, t6, t7, t9
-    t17 = _runtime.select(in_line, 0.0, t16 / (2.0 * j))
-    rho = np.sqrt(X * X + t17 * t17)
-    t18 = l - rho
-    h = np.sqrt(np.maximum(t18, 0.0) * (l + rho))
-    del rho
-    t19 = _runtime.sign(-t13)
-    t20 = E_11 * t19
-    t21 = 1.0 / j
-    del j
-    t22 = _runtime.select(in_line, t20, t15 * t21)
-    del t15
-    t23 = 1.0 / (t13 - t19)
-    E_22 = _runtime.select(in_line, t23 * (E_12 * t20), n_y * t21)
-    del n_y, t20
-    t24 = h * (E_12 * t22 - t13 * E_22)
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t19 * t23, n_x * t21)
-    del n_x, t19, t21, t23
-    t25 = E_21 * t17 + (t1 - X * E_11)
-    del t1
-    t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
-    del t26, t27
-    invalid = np.logical_not(t28)
-    del t28
-    t29 = np.abs(_runtime.select(in_line, -t16, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    t18 = _runtime.sign(-t11)
+    t19 = 1.0 / (t11 - t18)
+    t20 = 1.0 / j
+    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t18 * t19, -(t16 * t20))
     del t16
-    t30 = t29 & (-(size * _runtime.FEASIBILITY) <= t18)
-    del size, t18, t29
-    unreachable = np.logical_not(t30)
-    del t30
-    t31 = _runtime.poison(invalid | unreachable)
-    t32 = h * (E_11 * t22 - t13 * E_21)
-    t33 = t17 * E_22 + (t2 - X * E_12)
-    del t2
-    t34 = t17 * t22 + (rho1 - X * t13)
-    del X, t13, t17, t22
-    t35 = h * (E_12 * E_21 - E_11 * E_22)
+    left = t7 * (t7 - t8) + t9 * (t9 - t10)
+    del t10, t7, t8, t9
+    t21 = _runtime.select(in_line, 0.0, left / (2.0 * j))
+    del j
+    X = _runtime.select(all_same, 0.0, D * 0.5)
+    del D, all_same
+    t22 = E_21 * t21 + (c1_x + E_11 * X)
+    del c1_x
+    rho = np.sqrt(X * X + t21 * t21)
+    t23 = l - rho
+    h = np.sqrt(np.maximum(t23, 0.0) * (l + rho))
+    del rho
+    t24 = E_11 * t18
+    del t18
+    t25 = _runtime.select(in_line, t24, t17 * t20)
+    del t17
+    E_22 = _runtime.select(in_line, t19 * (E_12 * t24), n_y * t20)
+    del n_y, t19, t20, t24
+    t26 = h * (E_12 * t25 - t11 * E_22)
+    t27 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t28 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t29 = t27 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t28
+    del t27, t28
+    invalid = np.logical_not(t29)
+    del t29
+    t30 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    del left
+    t31 = t30 & (-(size * _runtime.FEASIBILITY) <= t23)
+    del size, t23, t30
+    unreachable = np.logical_not(t31)
+    del t31
+    t32 = _runtime.poison(invalid | unreachable)
+    t33 = E_12 * X + t21 * E_22
+    t34 = h * (E_11 * t25 - t11 * E_21)
+    t35 = t21 * t25 - (rho1 - t11 * X)
+    del X, t11, t21, t25
+    t36 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22, h
-    t36 = _runtime.status(invalid, unreachable, in_line)
+    t37 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        -(t24 + t25) + t31,
-        t32 - t33 + t31,
-        t34 - t35 + t31,
-        t24 - t25 + t31,
-        -(t32 + t33) + t31,
-        t35 + t34 + t31,
-        t36,
-        t36,
+        t22 - t26 + t32,
+        t33 + t34 + t32,
+        -(t35 + t36) + t32,
+        t22 + t26 + t32,
+        t33 - t34 + t32,
+        t36 - t35 + t32,
+        t37,
+        t37,
     )
 
 
@@ -235,7 +217,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("q", (3,)),),
     (_runtime.Array("p", (2, 3)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
@@ -281,193 +263,173 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     return Positions(*result)
 
 
-def _skeleton(rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
-    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
-    t1 = f * c_alpha1
-    t2 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t3 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t4 = t2 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t3
-    del t2, t3
-    t5 = e * c_alpha1
-    del c_alpha1
-    t6 = t5 - t1
-    t7 = e * c_alpha2
-    t8 = f * c_alpha2
-    del c_alpha2
-    u_x = t6 - (t7 - t8)
-    t9 = e * s_alpha1
-    t10 = f * s_alpha1
-    del s_alpha1
-    t11 = t9 - t10
-    t12 = e * s_alpha2
-    t13 = f * s_alpha2
-    del s_alpha2
-    u_y = t11 - (t12 - t13)
-    t14 = rho1 - rho2
-    size_u = np.sqrt(u_x * u_x + u_y * u_y + t14 * t14)
+def _skeleton(rho1, rho2, rho3, f, e, l):
+    t1 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t2 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t3 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t2
+    del t1, t2
+    c1_x = f - e
+    t4 = e * 0.5
+    t5 = f * 0.5
+    t6 = c1_x - (t4 - t5)
+    t7 = rho1 - rho2
+    t8 = e * 1.7320508075688772 * 0.5
+    t9 = f * 1.7320508075688772 * 0.5
+    c3_y = t8 - t9
+    t10 = t6 * t6 + c3_y * c3_y
+    size_u = np.sqrt(t7 * t7 + t10)
+    t11 = rho1 - rho3
+    size_v = np.sqrt(t11 * t11 + t10)
+    del t10
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t15 = size * _runtime.VANISHING
-    same = size_u <= t15
-    t16 = e * c_alpha3
-    t17 = f * c_alpha3
-    del c_alpha3
-    v_x = t6 - (t16 - t17)
-    t18 = _runtime.select(same, u_x, v_x)
-    t19 = e * s_alpha3
-    t20 = f * s_alpha3
-    del s_alpha3
-    v_y = t11 - (t19 - t20)
-    t21 = rho1 - rho3
-    size_v = np.sqrt(v_x * v_x + v_y * v_y + t21 * t21)
-    all_same = size_u + size_v <= t15
-    t22 = _runtime.select(same, v_x, u_x)
-    del u_x, v_x
+    t12 = size * _runtime.VANISHING
+    all_same = size_u + size_v <= t12
+    same = size_u <= t12
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, t22 / D)
-    t23 = _runtime.select(same, v_y, u_y)
-    E_12 = _runtime.select(all_same, 0.0, t23 / D)
-    t24 = _runtime.select(same, u_y, v_y)
-    del u_y, v_y
-    t25 = _runtime.select(same, t21, t14)
-    t26 = _runtime.select(all_same, 0.0, t25 / D)
-    t27 = _runtime.select(same, t14, t21)
-    del same, t14, t21
-    k_0 = E_11 * t18 + E_12 * t24 + t26 * t27
-    m_x = t18 - E_11 * k_0
-    m_y = t24 - E_12 * k_0
-    t28 = t27 - t26 * k_0
-    del k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t26 * t28
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
+    E_11 = _runtime.select(all_same, 1.0, -(t6 / D))
+    t13 = _runtime.select(same, c3_y, -c3_y)
+    E_12 = _runtime.select(all_same, 0.0, t13 / D)
+    t14 = _runtime.select(same, -c3_y, c3_y)
+    del c3_y
+    t15 = _runtime.select(same, t11, t7)
+    t16 = _runtime.select(all_same, 0.0, t15 / D)
+    t17 = _runtime.select(same, t7, t11)
+    del same, t11, t7
+    t18 = t6 * E_11 - E_12 * t14 - t16 * t17
+    t19 = t6 - E_11 * t18
+    del t6
+    m_y = t14 + E_12 * t18
+    t20 = t17 + t16 * t18
+    del t18
+    t21 = E_11 * t19 - E_12 * m_y - t16 * t20
+    t22 = t19 - E_11 * t21
+    del t19
+    n_y = m_y + E_12 * t21
     del m_y
-    t29 = t28 - t26 * k_1
-    del k_1, t28
-    j = np.sqrt(n_x * n_x + n_y * n_y + t29 * t29)
-    in_line = j <= t15
-    del t15
-    t30 = t18 * (t22 - t18) + t24 * (t23 - t24) + t27 * (t25 - t27)
-    del t18, t22, t23, t24, t25, t27
-    t31 = np.abs(_runtime.select(in_line, -t30, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    t23 = t20 + t16 * t21
+    del t20, t21
+    j = np.sqrt(t22 * t22 + n_y * n_y + t23 * t23)
+    in_line = j <= t12
+    del t12
+    t24 = t14 * (t13 - t14) + t17 * (t15 - t17)
+    del t13, t14, t15, t17
+    t25 = np.abs(_runtime.select(in_line, -t24, 0.0)) <= _runtime.FEASIBILITY * (size * size)
     X = _runtime.select(all_same, 0.0, D * 0.5)
     del D, all_same
-    t32 = _runtime.select(in_line, 0.0, t30 / (j * 2.0))
-    del t30
-    rho = np.sqrt(X * X + t32 * t32)
-    t33 = l - rho
-    t34 = t31 & (-(size * _runtime.FEASIBILITY) <= t33)
-    del size, t31
-    t35 = _runtime.poison(np.logical_not(t4) | np.logical_not(t34))
-    del t34, t4
-    t36 = t1 + t35
-    del t1
-    t37 = t10 + t35
-    del t10
-    t38 = 0.0 + t35
-    t39 = rho1 + t35
-    h = np.sqrt(np.maximum(t33, 0.0) * (l + rho))
-    del rho, t33
-    t40 = _runtime.sign(-t26)
-    t41 = E_11 * t40
-    t42 = _runtime.select(in_line, t41, t29 / j)
-    del t29
-    t43 = t26 - t40
-    E_22 = _runtime.select(in_line, E_12 * t41 / t43, n_y / j)
-    del n_y, t41
-    t44 = h * (E_12 * t42 - t26 * E_22)
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t40 / t43, n_x / j)
-    del in_line, j, n_x, t40, t43
-    t45 = E_11 * X - E_21 * t32
-    t46 = t6 + (t44 - t45)
-    t47 = (E_11 * t42 - t26 * E_21) * h
-    t48 = E_12 * X - t32 * E_22
-    t49 = t11 - (t47 + t48)
-    t50 = h * (E_12 * E_21 - E_11 * E_22)
+    t26 = _runtime.select(in_line, 0.0, t24 / (2.0 * j))
+    del t24
+    rho = np.sqrt(X * X + t26 * t26)
+    t27 = l - rho
+    t28 = t25 & (-(size * _runtime.FEASIBILITY) <= t27)
+    del size, t25
+    t29 = _runtime.poison(np.logical_not(t3) | np.logical_not(t28))
+    del t28, t3
+    t30 = f + t29
+    t31 = 0.0 + t29
+    t32 = rho1 + t29
+    t33 = _runtime.sign(-t16)
+    t34 = t16 - t33
+    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t33 / t34, -(t22 / j))
+    del t22
+    t35 = E_11 * X - t26 * E_21
+    h = np.sqrt(np.maximum(t27, 0.0) * (l + rho))
+    del rho, t27
+    t36 = E_11 * t33
+    del t33
+    t37 = _runtime.select(in_line, t36, t23 / j)
+    del t23
+    E_22 = _runtime.select(in_line, E_12 * t36 / t34, n_y / j)
+    del in_line, j, n_y, t34, t36
+    t38 = h * (E_12 * t37 - t16 * E_22)
+    t39 = c1_x + (t35 - t38)
+    t40 = E_12 * X - t26 * E_22
+    t41 = h * (E_11 * t37 - t16 * E_21)
+    A_12 = t40 + t41
+    t42 = A_12 + t29
+    t43 = t16 * X - t26 * t37
+    del X, t16, t26, t37
+    t44 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22, h
-    t51 = t26 * X - t42 * t32
-    del X, t26, t32, t42
-    t52 = rho1 - (t50 + t51) + t35
-    t53 = t8 + t35
-    del t8
-    t54 = t13 + t35
-    del t13
-    t55 = rho2 + t35
-    t56 = t17 + t35
-    del t17
-    t57 = t20 + t35
-    del t20
-    t58 = rho3 + t35
-    t59 = t6 - (t44 + t45)
-    del t44, t45, t6
-    t60 = t11 + (t47 - t48)
-    del t11, t47, t48
-    t61 = rho1 + (t50 - t51) + t35
-    del t50, t51
+    t45 = rho1 - (t43 + t44) + t29
+    t46 = -t5 + t29
+    del t5
+    t47 = t9 + t29
+    t48 = rho2 + t29
+    t49 = t39 - t4 + t29
+    t50 = -t9 + t29
+    del t9
+    t51 = rho3 + t29
+    t52 = c1_x + (t35 + t38)
+    del c1_x, t35, t38
+    A_12_above = t40 - t41
+    del t40, t41
+    t53 = A_12_above + t29
+    t54 = rho1 - (t43 - t44) + t29
+    del t43, t44
+    t55 = t52 - t4 + t29
+    del t4
     return (
-        t36,
-        t37,
-        t38,
-        t36,
-        t37,
-        t39,
-        t5 - t46 + t35,
-        t9 - t49 + t35,
-        t52,
+        t30,
+        t31,
+        t31,
+        t30,
+        t31,
+        t32,
+        e + t39 + t29,
+        t42,
+        t45,
+        t46,
+        t47,
+        t31,
+        t46,
+        t47,
+        t48,
+        t49,
+        t8 + A_12 + t29,
+        t45,
+        t46,
+        t50,
+        t31,
+        t46,
+        t50,
+        t51,
+        t49,
+        A_12 - t8 + t29,
+        t45,
+        t39 + t29,
+        t42,
+        t45,
+        t30,
+        t31,
+        t31,
+        t30,
+        t31,
+        t32,
+        e + t52 + t29,
         t53,
         t54,
-        t38,
-        t53,
-        t54,
+        t46,
+        t47,
+        t31,
+        t46,
+        t47,
+        t48,
         t55,
-        t7 - t46 + t35,
-        t12 - t49 + t35,
-        t52,
-        t56,
-        t57,
-        t38,
-        t56,
-        t57,
-        t58,
-        t16 - t46 + t35,
-        t19 - t49 + t35,
-        t52,
-        -t46 + t35,
-        -t49 + t35,
-        t52,
-        t36,
-        t37,
-        t38,
-        t36,
-        t37,
-        t39,
-        t5 - t59 + t35,
-        t9 - t60 + t35,
-        t61,
-        t53,
+        t8 + A_12_above + t29,
         t54,
-        t38,
-        t53,
-        t54,
+        t46,
+        t50,
+        t31,
+        t46,
+        t50,
+        t51,
         t55,
-        t7 - t59 + t35,
-        t12 - t60 + t35,
-        t61,
-        t56,
-        t57,
-        t38,
-        t56,
-        t57,
-        t58,
-        t16 - t59 + t35,
-        t19 - t60 + t35,
-        t61,
-        -t59 + t35,
-        -t60 + t35,
-        t61,
+        A_12_above - t8 + t29,
+        t54,
+        t52 + t29,
+        t53,
+        t54,
     )
 
 
@@ -477,8 +439,8 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("q", (3,)),),
     (_runtime.Array("points", (2, 10, 3)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
+    ('f', 'e', 'l'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (33, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -515,121 +477,112 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     return result
 
 
-def _jacobian_parallel(rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
-    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
-    t1 = e * c_alpha1 - f * c_alpha1
-    del c_alpha1
-    u_x = t1 - (e * c_alpha2 - f * c_alpha2)
-    del c_alpha2
-    t2 = e * s_alpha1 - f * s_alpha1
-    del s_alpha1
-    u_y = t2 - (e * s_alpha2 - f * s_alpha2)
-    del s_alpha2
-    t3 = rho1 - rho2
-    size_u = np.sqrt(u_x * u_x + u_y * u_y + t3 * t3)
-    v_x = t1 - (e * c_alpha3 - f * c_alpha3)
-    del c_alpha3, t1
-    v_y = t2 - (e * s_alpha3 - f * s_alpha3)
-    del s_alpha3, t2
+def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
+    t1 = rho1 - rho2
+    t2 = f - e - (e * 0.5 - f * 0.5)
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t3 = t2 * t2 + c3_y * c3_y
+    size_u = np.sqrt(t1 * t1 + t3)
     t4 = rho1 - rho3
-    size_v = np.sqrt(v_x * v_x + v_y * v_y + t4 * t4)
+    size_v = np.sqrt(t4 * t4 + t3)
+    del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t5 = size * _runtime.VANISHING
     all_same = size_u + size_v <= t5
     same = size_u <= t5
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
+    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
     X = _runtime.select(all_same, 0.0, D * 0.5)
-    t6 = _runtime.select(same, u_x, v_x)
-    t7 = _runtime.select(same, v_x, u_x)
-    E_11 = _runtime.select(all_same, 1.0, t7 / D)
-    t8 = _runtime.select(same, v_y, u_y)
-    E_12 = _runtime.select(all_same, 0.0, t8 / D)
-    t9 = _runtime.select(same, u_y, v_y)
-    t10 = _runtime.select(same, t4, t3)
-    t11 = _runtime.select(all_same, 0.0, t10 / D)
+    t6 = _runtime.select(same, c3_y, -c3_y)
+    E_12 = _runtime.select(all_same, 0.0, t6 / D)
+    t7 = _runtime.select(same, -c3_y, c3_y)
+    t8 = _runtime.select(same, t4, t1)
+    t9 = _runtime.select(all_same, 0.0, t8 / D)
     del D, all_same
-    t12 = _runtime.select(same, t3, t4)
+    t10 = _runtime.select(same, t1, t4)
     del same
-    k_0 = E_11 * t6 + E_12 * t9 + t11 * t12
-    m_x = t6 - E_11 * k_0
-    m_y = t9 - E_12 * k_0
-    t13 = t12 - t11 * k_0
-    del k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t11 * t13
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
+    t11 = t2 * E_11 - E_12 * t7 - t9 * t10
+    t12 = t2 - E_11 * t11
+    m_y = t7 + E_12 * t11
+    t13 = t10 + t9 * t11
+    del t11
+    t14 = E_11 * t12 - E_12 * m_y - t9 * t13
+    t15 = t12 - E_11 * t14
+    del t12
+    n_y = m_y + E_12 * t14
     del m_y
-    t14 = t13 - t11 * k_1
-    del k_1, t13
-    j = np.sqrt(n_x * n_x + n_y * n_y + t14 * t14)
+    t16 = t13 + t9 * t14
+    del t13, t14
+    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
     in_line = j <= t5
     del t5
-    t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12)
-    del t10, t12, t6, t7, t8, t9
-    t16 = _runtime.select(in_line, 0.0, t15 / (j * 2.0))
-    rho = np.sqrt(X * X + t16 * t16)
-    t17 = l - rho
-    h = np.sqrt(np.maximum(t17, 0.0) * (l + rho))
+    t17 = _runtime.sign(-t9)
+    t18 = t9 - t17
+    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t17 / t18, -(t15 / j))
+    del t15
+    t19 = t7 * (t6 - t7) + t10 * (t8 - t10)
+    del t10, t6, t7, t8
+    t20 = _runtime.select(in_line, 0.0, t19 / (2.0 * j))
+    t21 = E_11 * X - E_21 * t20
+    rho = np.sqrt(X * X + t20 * t20)
+    t22 = l - rho
+    h = np.sqrt(np.maximum(t22, 0.0) * (l + rho))
     del rho
-    t18 = _runtime.sign(-t11)
-    t19 = E_11 * t18
-    t20 = _runtime.select(in_line, t19, t14 / j)
-    del t14
-    t21 = t11 - t18
-    E_22 = _runtime.select(in_line, E_12 * t19 / t21, n_y / j)
-    del n_y, t19
-    t22 = h * (E_12 * t20 - t11 * E_22)
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t18 / t21, n_x / j)
-    del j, n_x, t18, t21
-    t23 = E_11 * X - E_21 * t16
-    t24 = t22 - t23
-    t25 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t26 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t27 = t25 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t26
-    del t25, t26
-    t28 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t15
-    t29 = t28 & (-(size * _runtime.FEASIBILITY) <= t17)
-    del size, t17, t28
-    t30 = _runtime.poison(np.logical_not(t27) | np.logical_not(t29))
-    del t27, t29
-    t31 = (E_11 * t20 - t11 * E_21) * h
-    t32 = E_12 * X - t16 * E_22
-    A_12 = t31 + t32
-    t33 = h * (E_12 * E_21 - E_11 * E_22)
+    t23 = E_11 * t17
+    del t17
+    t24 = _runtime.select(in_line, t23, t16 / j)
+    del t16
+    E_22 = _runtime.select(in_line, E_12 * t23 / t18, n_y / j)
+    del j, n_y, t18, t23
+    t25 = h * (E_12 * t24 - t9 * E_22)
+    A_11 = t21 - t25
+    t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
+    del t26, t27
+    t29 = np.abs(_runtime.select(in_line, -t19, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    del in_line, t19
+    t30 = t29 & (-(size * _runtime.FEASIBILITY) <= t22)
+    del size, t22, t29
+    t31 = _runtime.poison(np.logical_not(t28) | np.logical_not(t30))
+    del t28, t30
+    t32 = X * E_12 - t20 * E_22
+    t33 = h * (E_11 * t24 - t9 * E_21)
+    A_12 = t32 + t33
+    t34 = X * t9 - t20 * t24
+    del X, t20, t24, t9
+    t35 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22, h
-    t34 = t11 * X - t20 * t16
-    del X, t11, t16, t20
-    t35 = t33 + t34
-    A_11_above = t22 + t23
-    del t22, t23
-    t36 = t31 - t32
-    del t31, t32
-    A_13_above = t33 - t34
-    del t33, t34
+    t36 = t34 + t35
+    t37 = t2 + A_11 + t31
+    A_11_above = t21 + t25
+    del t21, t25
+    A_12_above = t32 - t33
+    del t32, t33
+    t38 = t34 - t35
+    del t34, t35
+    t39 = t2 + A_11_above + t31
+    del t2
     return (
-        -t24 + t30,
-        A_12 + t30,
-        -t35 + t30,
-        -(u_x + t24) + t30,
-        A_12 - u_y + t30,
-        t3 - t35 + t30,
-        -(v_x + t24) + t30,
-        A_12 - v_y + t30,
-        t4 - t35 + t30,
-        A_11_above + t30,
-        -t36 + t30,
-        A_13_above + t30,
-        A_11_above - u_x + t30,
-        -(u_y + t36) + t30,
-        t3 + A_13_above + t30,
-        A_11_above - v_x + t30,
-        -(v_y + t36) + t30,
-        t4 + A_13_above + t30,
+        A_11 + t31,
+        A_12 + t31,
+        -t36 + t31,
+        t37,
+        c3_y + A_12 + t31,
+        t1 - t36 + t31,
+        t37,
+        A_12 - c3_y + t31,
+        t4 - t36 + t31,
+        A_11_above + t31,
+        A_12_above + t31,
+        -t38 + t31,
+        t39,
+        c3_y + A_12_above + t31,
+        t1 - t38 + t31,
+        t39,
+        A_12_above - c3_y + t31,
+        t4 - t38 + t31,
     )
 
 
@@ -639,7 +592,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("q", (3,)),),
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
@@ -677,98 +630,86 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
     return result
 
 
-def _jacobian_serial(rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
-    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
-    t1 = e * c_alpha1 - f * c_alpha1
-    del c_alpha1
-    u_x = t1 - (e * c_alpha2 - f * c_alpha2)
-    del c_alpha2
-    t2 = e * s_alpha1 - f * s_alpha1
-    del s_alpha1
-    u_y = t2 - (e * s_alpha2 - f * s_alpha2)
-    del s_alpha2
-    t3 = rho1 - rho2
-    size_u = np.sqrt(u_x * u_x + u_y * u_y + t3 * t3)
-    v_x = t1 - (e * c_alpha3 - f * c_alpha3)
-    del c_alpha3, t1
-    v_y = t2 - (e * s_alpha3 - f * s_alpha3)
-    del s_alpha3, t2
+def _jacobian_serial(rho1, rho2, rho3, f, e, l):
+    t1 = rho1 - rho2
+    t2 = f - e - (e * 0.5 - f * 0.5)
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t3 = t2 * t2 + c3_y * c3_y
+    size_u = np.sqrt(t1 * t1 + t3)
     t4 = rho1 - rho3
-    size_v = np.sqrt(v_x * v_x + v_y * v_y + t4 * t4)
+    size_v = np.sqrt(t4 * t4 + t3)
+    del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t5 = size * _runtime.VANISHING
     all_same = size_u + size_v <= t5
     same = size_u <= t5
+    t6 = _runtime.select(same, t4, t1)
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
+    t7 = _runtime.select(all_same, 0.0, t6 / D)
     X = _runtime.select(all_same, 0.0, D * 0.5)
-    t6 = _runtime.select(same, u_x, v_x)
-    t7 = _runtime.select(same, v_x, u_x)
-    del u_x, v_x
-    E_11 = _runtime.select(all_same, 1.0, t7 / D)
-    t8 = _runtime.select(same, v_y, u_y)
+    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
+    t8 = _runtime.select(same, c3_y, -c3_y)
     E_12 = _runtime.select(all_same, 0.0, t8 / D)
-    t9 = _runtime.select(same, u_y, v_y)
-    del u_y, v_y
-    t10 = _runtime.select(same, t4, t3)
-    t11 = _runtime.select(all_same, 0.0, t10 / D)
     del D, all_same
-    t12 = _runtime.select(same, t3, t4)
+    t9 = _runtime.select(same, -c3_y, c3_y)
+    del c3_y
+    t10 = _runtime.select(same, t1, t4)
     del same
-    k_0 = E_11 * t6 + E_12 * t9 + t11 * t12
-    m_x = t6 - E_11 * k_0
-    m_y = t9 - E_12 * k_0
-    t13 = t12 - t11 * k_0
-    del k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t11 * t13
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
+    t11 = t2 * E_11 - E_12 * t9 - t7 * t10
+    t12 = t2 - E_11 * t11
+    del t2
+    m_y = t9 + E_12 * t11
+    t13 = t10 + t7 * t11
+    del t11
+    t14 = E_11 * t12 - E_12 * m_y - t7 * t13
+    t15 = t12 - E_11 * t14
+    del t12
+    n_y = m_y + E_12 * t14
     del m_y
-    t14 = t13 - t11 * k_1
-    del k_1, t13
-    j = np.sqrt(n_x * n_x + n_y * n_y + t14 * t14)
+    t16 = t13 + t7 * t14
+    del t13, t14
+    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
     in_line = j <= t5
     del t5
-    t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12)
-    del t10, t12, t6, t7, t8, t9
-    t16 = _runtime.select(in_line, 0.0, t15 / (j * 2.0))
-    rho = np.sqrt(X * X + t16 * t16)
-    t17 = l - rho
-    t18 = _runtime.sign(-t11)
-    t19 = t11 - t18
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t18 / t19, n_x / j)
-    del n_x
-    t20 = E_11 * t18
-    del t18
-    E_22 = _runtime.select(in_line, E_12 * t20 / t19, n_y / j)
-    del n_y, t19
-    t21 = np.sqrt(np.maximum(t17, 0.0) * (l + rho)) * (E_12 * E_21 - E_11 * E_22)
+    t17 = _runtime.sign(-t7)
+    t18 = E_11 * t17
+    t19 = t9 * (t8 - t9) + t10 * (t6 - t10)
+    del t10, t6, t8, t9
+    t20 = _runtime.select(in_line, 0.0, t19 / (2.0 * j))
+    t21 = t7 * X - _runtime.select(in_line, t18, t16 / j) * t20
+    del t16
+    rho = np.sqrt(X * X + t20 * t20)
+    del X, t20
+    t22 = l - rho
+    t23 = t7 - t17
+    del t7
+    E_21 = _runtime.select(in_line, 1.0 + t17 * (E_11 * E_11) / t23, -(t15 / j))
+    del t15, t17
+    E_22 = _runtime.select(in_line, E_12 * t18 / t23, n_y / j)
+    del j, n_y, t18, t23
+    t24 = np.sqrt(np.maximum(t22, 0.0) * (l + rho)) * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22, rho
-    t22 = t11 * X - _runtime.select(in_line, t20, t14 / j) * t16
-    del X, j, t11, t14, t16, t20
-    t23 = t21 + t22
-    t24 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t26 = t24 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t25
-    del t24, t25
-    t27 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t15
-    t28 = t27 & (-(size * _runtime.FEASIBILITY) <= t17)
-    del size, t17, t27
-    t29 = _runtime.poison(np.logical_not(t26) | np.logical_not(t28))
-    del t26, t28
-    A_13_above = t21 - t22
-    del t21, t22
+    t25 = t21 + t24
+    t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
+    del t26, t27
+    t29 = np.abs(_runtime.select(in_line, -t19, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    del in_line, t19
+    t30 = t29 & (-(size * _runtime.FEASIBILITY) <= t22)
+    del size, t22, t29
+    t31 = _runtime.poison(np.logical_not(t28) | np.logical_not(t30))
+    del t28, t30
+    t32 = t21 - t24
+    del t21, t24
     return (
-        -t23 + t29,
-        t3 - t23 + t29,
-        t4 - t23 + t29,
-        A_13_above + t29,
-        t3 + A_13_above + t29,
-        t4 + A_13_above + t29,
+        -t25 + t31,
+        t1 - t25 + t31,
+        t4 - t25 + t31,
+        -t32 + t31,
+        t1 - t32 + t31,
+        t4 - t32 + t31,
     )
 
 
@@ -778,7 +719,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("q", (3,)),),
     (_runtime.Array("B", (2, 3)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
@@ -816,166 +757,148 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
     return result
 
 
-def _jacobian(rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
-    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
-    t1 = e * c_alpha1 - f * c_alpha1
-    del c_alpha1
-    u_x = t1 - (e * c_alpha2 - f * c_alpha2)
-    del c_alpha2
-    t2 = e * s_alpha1 - f * s_alpha1
-    del s_alpha1
-    u_y = t2 - (e * s_alpha2 - f * s_alpha2)
-    del s_alpha2
-    t3 = rho1 - rho2
-    size_u = np.sqrt(u_x * u_x + u_y * u_y + t3 * t3)
-    v_x = t1 - (e * c_alpha3 - f * c_alpha3)
-    del c_alpha3, t1
-    v_y = t2 - (e * s_alpha3 - f * s_alpha3)
-    del s_alpha3, t2
+def _jacobian(rho1, rho2, rho3, f, e, l):
+    t1 = rho1 - rho2
+    t2 = f - e - (e * 0.5 - f * 0.5)
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t3 = t2 * t2 + c3_y * c3_y
+    size_u = np.sqrt(t1 * t1 + t3)
     t4 = rho1 - rho3
-    size_v = np.sqrt(v_x * v_x + v_y * v_y + t4 * t4)
+    size_v = np.sqrt(t4 * t4 + t3)
+    del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t5 = size * _runtime.VANISHING
     all_same = size_u + size_v <= t5
     same = size_u <= t5
+    t6 = _runtime.select(same, t4, t1)
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
+    t7 = _runtime.select(all_same, 0.0, t6 / D)
     X = _runtime.select(all_same, 0.0, D * 0.5)
-    t6 = _runtime.select(same, u_x, v_x)
-    t7 = _runtime.select(same, v_x, u_x)
-    E_11 = _runtime.select(all_same, 1.0, t7 / D)
-    t8 = _runtime.select(same, v_y, u_y)
+    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
+    t8 = _runtime.select(same, c3_y, -c3_y)
     E_12 = _runtime.select(all_same, 0.0, t8 / D)
-    t9 = _runtime.select(same, u_y, v_y)
-    t10 = _runtime.select(same, t4, t3)
-    t11 = _runtime.select(all_same, 0.0, t10 / D)
     del all_same
-    t12 = _runtime.select(same, t3, t4)
+    t9 = _runtime.select(same, -c3_y, c3_y)
+    t10 = _runtime.select(same, t1, t4)
     del same
-    k_0 = E_11 * t6 + E_12 * t9 + t11 * t12
-    m_x = t6 - E_11 * k_0
-    m_y = t9 - E_12 * k_0
-    t13 = t12 - t11 * k_0
-    del k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t11 * t13
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
+    t11 = t2 * E_11 - E_12 * t9 - t7 * t10
+    t12 = t2 - E_11 * t11
+    m_y = t9 + E_12 * t11
+    t13 = t10 + t7 * t11
+    del t11
+    t14 = E_11 * t12 - E_12 * m_y - t7 * t13
+    t15 = t12 - E_11 * t14
+    del t12
+    n_y = m_y + E_12 * t14
     del m_y
-    t14 = t13 - t11 * k_1
-    del k_1, t13
-    j = np.sqrt(n_x * n_x + n_y * n_y + t14 * t14)
+    t16 = t13 + t7 * t14
+    del t13, t14
+    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
     in_line = j <= t5
     del t5
-    t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12)
-    del t10, t12, t6, t7, t8, t9
-    t16 = _runtime.select(in_line, 0.0, t15 / (j * 2.0))
-    rho = np.sqrt(X * X + t16 * t16)
-    t17 = l - rho
-    h = np.sqrt(np.maximum(t17, 0.0) * (l + rho))
+    t17 = _runtime.sign(-t7)
+    t18 = E_11 * t17
+    t19 = _runtime.select(in_line, t18, t16 / j)
+    del t16
+    t20 = t9 * (t8 - t9) + t10 * (t6 - t10)
+    del t10, t6, t8, t9
+    t21 = _runtime.select(in_line, 0.0, t20 / (2.0 * j))
+    t22 = t7 * X - t19 * t21
+    rho = np.sqrt(X * X + t21 * t21)
+    t23 = l - rho
+    h = np.sqrt(np.maximum(t23, 0.0) * (l + rho))
     del rho
-    t18 = _runtime.sign(-t11)
-    t19 = t11 - t18
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t18 / t19, n_x / j)
-    del n_x
-    t20 = E_11 * t18
-    del t18
-    E_22 = _runtime.select(in_line, E_12 * t20 / t19, n_y / j)
-    del n_y, t19
-    t21 = h * (E_12 * E_21 - E_11 * E_22)
-    t22 = _runtime.select(in_line, t20, t14 / j)
-    del t14, t20
-    t23 = t11 * X - t22 * t16
-    t24 = t21 + t23
-    t25 = (E_11 * t22 - t11 * E_21) * h
-    t26 = E_12 * X - t16 * E_22
-    A_12 = t25 + t26
-    t27 = u_y - A_12
-    A_33 = t4 - t24
-    A_23 = t3 - t24
-    t28 = v_y - A_12
+    t24 = t7 - t17
+    E_21 = _runtime.select(in_line, 1.0 + t17 * (E_11 * E_11) / t24, -(t15 / j))
+    del t15, t17
+    E_22 = _runtime.select(in_line, E_12 * t18 / t24, n_y / j)
+    del n_y, t18, t24
+    t25 = h * (E_12 * E_21 - E_11 * E_22)
+    t26 = t22 + t25
+    t27 = X * E_12 - t21 * E_22
+    t28 = h * (E_11 * t19 - t7 * E_21)
+    A_12 = t27 + t28
+    A_22 = c3_y + A_12
+    A_33 = t4 - t26
+    A_23 = t1 - t26
+    t29 = c3_y - A_12
     Delta = D * j * h
     del D, j
-    t29 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t30 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t31 = t29 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t30
-    del t29, t30
-    t32 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t15
-    t33 = t32 & (-(size * _runtime.FEASIBILITY) <= t17)
-    del size, t17, t32
-    t34 = _runtime.poison(np.logical_not(t31) | np.logical_not(t33))
-    del t31, t33
-    t35 = t24 * (t27 * A_33 - A_23 * t28) / Delta + t34
-    t36 = -(A_23 * (A_12 * A_33 - t24 * t28) / Delta) + t34
-    t37 = A_33 * (A_12 * A_23 - t24 * t27) / Delta + t34
-    t38 = h * (E_12 * t22 - t11 * E_22)
-    del E_12, E_22, h, t11, t22
-    t39 = E_11 * X - E_21 * t16
-    del E_11, E_21, X, t16
-    t40 = t38 - t39
-    t41 = u_x + t40
-    t42 = v_x + t40
-    t43 = -(t24 * (A_33 * t41 - A_23 * t42) / Delta) + t34
-    t44 = -(A_23 * (A_33 * t40 + t24 * t42) / Delta) + t34
-    t45 = A_33 * (A_23 * t40 + t24 * t41) / Delta + t34
-    t46 = -(t24 * (t28 * t41 - t27 * t42) / Delta) + t34
-    del t24
-    t47 = -(A_23 * (t28 * t40 + A_12 * t42) / Delta) + t34
-    del A_23, t28, t42
-    t48 = A_33 * (t27 * t40 + A_12 * t41) / Delta + t34
-    del A_12, A_33, t27, t40, t41
-    A_13_above = t21 - t23
-    del t21, t23
-    t49 = t25 - t26
-    del t25, t26
-    t50 = u_y + t49
-    del u_y
-    A_33_above = t4 + A_13_above
+    t30 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t31 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t32 = t30 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t31
+    del t30, t31
+    t33 = np.abs(_runtime.select(in_line, -t20, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    del in_line, t20
+    t34 = t33 & (-(size * _runtime.FEASIBILITY) <= t23)
+    del size, t23, t33
+    t35 = _runtime.poison(np.logical_not(t32) | np.logical_not(t34))
+    del t32, t34
+    t36 = -(t26 * (A_22 * A_33 + A_23 * t29) / Delta) + t35
+    t37 = -(A_23 * (A_12 * A_33 - t26 * t29) / Delta) + t35
+    t38 = A_33 * (A_12 * A_23 + t26 * A_22) / Delta + t35
+    t39 = X * E_11 - t21 * E_21
+    del E_11, E_21, X, t21
+    t40 = h * (E_12 * t19 - t7 * E_22)
+    del E_12, E_22, h, t19, t7
+    A_11 = t39 - t40
+    A_21 = t2 + A_11
+    t41 = t26 * (A_33 * A_21 - A_23 * A_21) / Delta + t35
+    t42 = t26 * A_21
+    t43 = t26 * (t29 * A_21 + A_22 * A_21) / Delta + t35
+    del t26
+    t44 = A_12 * A_21
+    del A_12, A_21
+    t45 = t22 - t25
+    del t22, t25
+    A_12_above = t27 - t28
+    del t27, t28
+    A_22_above = c3_y + A_12_above
+    A_33_above = t4 - t45
     del t4
-    A_23_above = t3 + A_13_above
-    del t3
-    t51 = v_y + t49
-    del v_y
-    t52 = A_13_above * (t50 * A_33_above - A_23_above * t51)
-    t53 = A_23_above * (t49 * A_33_above - A_13_above * t51)
-    t54 = A_33_above * (t49 * A_23_above - A_13_above * t50)
-    A_11_above = t38 + t39
-    del t38, t39
-    t55 = u_x - A_11_above
-    del u_x
-    t56 = v_x - A_11_above
-    del v_x
-    t57 = A_13_above * (A_33_above * t55 - A_23_above * t56)
-    t58 = A_23_above * (A_33_above * A_11_above + A_13_above * t56)
-    t59 = A_33_above * (A_23_above * A_11_above + A_13_above * t55)
-    t60 = -(A_13_above * (t51 * t55 - t50 * t56) / Delta)
-    del A_13_above
-    t61 = A_23_above * (t51 * A_11_above + t49 * t56) / Delta
-    del A_23_above, t51, t56
-    t62 = A_33_above * (t50 * A_11_above + t49 * t55) / Delta
-    del A_11_above, A_33_above, t49, t50, t55
+    A_23_above = t1 - t45
+    del t1
+    t46 = c3_y - A_12_above
+    del c3_y
+    t47 = t45 * (A_22_above * A_33_above + A_23_above * t46)
+    t48 = A_23_above * (A_12_above * A_33_above - t45 * t46)
+    t49 = A_33_above * (A_12_above * A_23_above + t45 * A_22_above)
+    A_11_above = t39 + t40
+    del t39, t40
+    A_21_above = t2 + A_11_above
+    del t2
+    t50 = A_33_above * A_21_above - A_23_above * A_21_above
+    t51 = t45 * A_21_above
+    t52 = A_23_above * (A_33_above * A_11_above + t51) / Delta
+    t53 = A_33_above * (t51 + A_23_above * A_11_above) / Delta
+    del t51
+    t54 = t45 * (t46 * A_21_above + A_22_above * A_21_above)
+    t55 = A_12_above * A_21_above
+    del A_12_above, A_21_above
+    t56 = A_23_above * (t46 * A_11_above + t55) / Delta
+    del A_23_above, t46
+    t57 = A_33_above * (t55 - A_22_above * A_11_above) / Delta
+    del A_11_above, A_22_above, A_33_above, t55
     return (
-        t35,
         t36,
         t37,
+        t38,
+        t41,
+        A_23 * (A_33 * A_11 + t42) / Delta + t35,
+        -(A_33 * (t42 + A_23 * A_11) / Delta) + t35,
         t43,
-        t44,
-        t45,
-        t46,
-        t47,
-        t48,
-        t52 / Delta + t34,
-        -(t53 / Delta) + t34,
-        t54 / Delta + t34,
-        -(t57 / Delta) + t34,
-        -(t58 / Delta) + t34,
-        t59 / Delta + t34,
-        t60 + t34,
-        -t61 + t34,
-        t62 + t34,
+        A_23 * (t29 * A_11 + t44) / Delta + t35,
+        -(A_33 * (t44 - A_22 * A_11) / Delta) + t35,
+        t47 / Delta + t35,
+        t48 / Delta + t35,
+        -(t49 / Delta) + t35,
+        -(t45 * t50 / Delta) + t35,
+        -t52 + t35,
+        t53 + t35,
+        -(t54 / Delta) + t35,
+        -t56 + t35,
+        t57 + t35,
     )
 
 
@@ -985,7 +908,7 @@ _JACOBIAN = _runtime.Kernel(
     (_runtime.Array("q", (3,)),),
     (_runtime.Array("J", (2, 3, 3)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
@@ -1024,102 +947,88 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     return result
 
 
-def _determinant(rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
-    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
-    t1 = e * c_alpha1 - f * c_alpha1
-    del c_alpha1
-    u_x = t1 - (e * c_alpha2 - f * c_alpha2)
-    del c_alpha2
-    t2 = e * s_alpha1 - f * s_alpha1
-    del s_alpha1
-    u_y = t2 - (e * s_alpha2 - f * s_alpha2)
-    del s_alpha2
-    t3 = rho1 - rho2
-    size_u = np.sqrt(u_x * u_x + u_y * u_y + t3 * t3)
-    v_x = t1 - (e * c_alpha3 - f * c_alpha3)
-    del c_alpha3, t1
-    v_y = t2 - (e * s_alpha3 - f * s_alpha3)
-    del s_alpha3, t2
+def _determinant(rho1, rho2, rho3, f, e, l):
+    t1 = rho1 - rho2
+    t2 = f - e - (e * 0.5 - f * 0.5)
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t3 = t2 * t2 + c3_y * c3_y
+    size_u = np.sqrt(t1 * t1 + t3)
     t4 = rho1 - rho3
-    size_v = np.sqrt(v_x * v_x + v_y * v_y + t4 * t4)
+    size_v = np.sqrt(t4 * t4 + t3)
+    del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t5 = size * _runtime.VANISHING
     all_same = size_u + size_v <= t5
     same = size_u <= t5
+    t6 = _runtime.select(same, t4, t1)
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
+    t7 = _runtime.select(all_same, 0.0, t6 / D)
     X = _runtime.select(all_same, 0.0, D * 0.5)
-    t6 = _runtime.select(same, u_x, v_x)
-    t7 = _runtime.select(same, v_x, u_x)
-    del u_x, v_x
-    E_11 = _runtime.select(all_same, 1.0, t7 / D)
-    t8 = _runtime.select(same, v_y, u_y)
+    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
+    t8 = _runtime.select(same, c3_y, -c3_y)
     E_12 = _runtime.select(all_same, 0.0, t8 / D)
-    t9 = _runtime.select(same, u_y, v_y)
-    del u_y, v_y
-    t10 = _runtime.select(same, t4, t3)
-    t11 = _runtime.select(all_same, 0.0, t10 / D)
     del all_same
-    t12 = _runtime.select(same, t3, t4)
+    t9 = _runtime.select(same, -c3_y, c3_y)
+    del c3_y
+    t10 = _runtime.select(same, t1, t4)
     del same
-    k_0 = E_11 * t6 + E_12 * t9 + t11 * t12
-    m_x = t6 - E_11 * k_0
-    m_y = t9 - E_12 * k_0
-    t13 = t12 - t11 * k_0
-    del k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t11 * t13
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
+    t11 = t2 * E_11 - E_12 * t9 - t7 * t10
+    t12 = t2 - E_11 * t11
+    del t2
+    m_y = t9 + E_12 * t11
+    t13 = t10 + t7 * t11
+    del t11
+    t14 = E_11 * t12 - E_12 * m_y - t7 * t13
+    t15 = t12 - E_11 * t14
+    del t12
+    n_y = m_y + E_12 * t14
     del m_y
-    t14 = t13 - t11 * k_1
-    del k_1, t13
-    j = np.sqrt(n_x * n_x + n_y * n_y + t14 * t14)
+    t16 = t13 + t7 * t14
+    del t13, t14
+    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
     in_line = j <= t5
     del t5
-    t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12)
-    del t10, t12, t6, t7, t8, t9
-    t16 = _runtime.select(in_line, 0.0, t15 / (j * 2.0))
-    rho = np.sqrt(X * X + t16 * t16)
-    t17 = l - rho
-    h = np.sqrt(np.maximum(t17, 0.0) * (l + rho))
+    t17 = _runtime.sign(-t7)
+    t18 = E_11 * t17
+    t19 = t9 * (t8 - t9) + t10 * (t6 - t10)
+    del t10, t6, t8, t9
+    t20 = _runtime.select(in_line, 0.0, t19 / (2.0 * j))
+    t21 = t7 * X - _runtime.select(in_line, t18, t16 / j) * t20
+    del t16
+    rho = np.sqrt(X * X + t20 * t20)
+    del X, t20
+    t22 = l - rho
+    h = np.sqrt(np.maximum(t22, 0.0) * (l + rho))
     del rho
-    t18 = _runtime.sign(-t11)
-    t19 = t11 - t18
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t18 / t19, n_x / j)
-    del n_x
-    t20 = E_11 * t18
-    del t18
-    E_22 = _runtime.select(in_line, E_12 * t20 / t19, n_y / j)
-    del n_y, t19
-    t21 = h * (E_12 * E_21 - E_11 * E_22)
+    t23 = t7 - t17
+    del t7
+    E_21 = _runtime.select(in_line, 1.0 + t17 * (E_11 * E_11) / t23, -(t15 / j))
+    del t15, t17
+    E_22 = _runtime.select(in_line, E_12 * t18 / t23, n_y / j)
+    del n_y, t18, t23
+    t24 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22
-    t22 = t11 * X - _runtime.select(in_line, t20, t14 / j) * t16
-    del X, t11, t14, t16, t20
-    t23 = t21 + t22
+    t25 = t21 + t24
     Delta = D * j * h
     del D, h, j
-    t24 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t26 = t24 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t25
-    del t24, t25
-    t27 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t15
-    t28 = t27 & (-(size * _runtime.FEASIBILITY) <= t17)
-    del size, t17, t27
-    t29 = _runtime.poison(np.logical_not(t26) | np.logical_not(t28))
-    del t26, t28
-    t30 = -(t23 * (t3 - t23) * (t4 - t23) / Delta) + t29
-    del t23
-    A_13_above = t21 - t22
-    del t21, t22
-    t31 = A_13_above * (t3 + A_13_above) * (t4 + A_13_above)
-    del A_13_above, t3, t4
+    t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
+    del t26, t27
+    t29 = np.abs(_runtime.select(in_line, -t19, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    del in_line, t19
+    t30 = t29 & (-(size * _runtime.FEASIBILITY) <= t22)
+    del size, t22, t29
+    t31 = _runtime.poison(np.logical_not(t28) | np.logical_not(t30))
+    del t28, t30
+    t32 = -(t25 * (t1 - t25) * (t4 - t25) / Delta) + t31
+    del t25
+    t33 = t21 - t24
+    del t21, t24
     return (
-        t30,
-        -(t31 / Delta) + t29,
+        t32,
+        t33 * (t1 - t33) * (t4 - t33) / Delta + t31,
     )
 
 
@@ -1129,7 +1038,7 @@ _DETERMINANT = _runtime.Kernel(
     (_runtime.Array("q", (3,)),),
     (_runtime.Array("det", (2,)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
@@ -1167,104 +1076,92 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
     return result
 
 
-def _singularities(rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
-    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
-    t1 = e * c_alpha1 - f * c_alpha1
-    del c_alpha1
-    u_x = t1 - (e * c_alpha2 - f * c_alpha2)
-    del c_alpha2
-    t2 = e * s_alpha1 - f * s_alpha1
-    del s_alpha1
-    u_y = t2 - (e * s_alpha2 - f * s_alpha2)
-    del s_alpha2
-    t3 = rho1 - rho2
-    size_u = np.sqrt(u_x * u_x + u_y * u_y + t3 * t3)
-    v_x = t1 - (e * c_alpha3 - f * c_alpha3)
-    del c_alpha3, t1
-    v_y = t2 - (e * s_alpha3 - f * s_alpha3)
-    del s_alpha3, t2
+def _singularities(rho1, rho2, rho3, f, e, l):
+    t1 = rho1 - rho2
+    t2 = f - e - (e * 0.5 - f * 0.5)
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t3 = t2 * t2 + c3_y * c3_y
+    size_u = np.sqrt(t1 * t1 + t3)
     t4 = rho1 - rho3
-    size_v = np.sqrt(v_x * v_x + v_y * v_y + t4 * t4)
+    size_v = np.sqrt(t4 * t4 + t3)
+    del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t5 = size * _runtime.VANISHING
     all_same = size_u + size_v <= t5
     same = size_u <= t5
+    t6 = _runtime.select(same, t4, t1)
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
+    t7 = _runtime.select(all_same, 0.0, t6 / D)
     X = _runtime.select(all_same, 0.0, D * 0.5)
-    t6 = _runtime.select(same, u_x, v_x)
-    t7 = _runtime.select(same, v_x, u_x)
-    del u_x, v_x
-    E_11 = _runtime.select(all_same, 1.0, t7 / D)
-    t8 = _runtime.select(same, v_y, u_y)
+    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
+    t8 = _runtime.select(same, c3_y, -c3_y)
     E_12 = _runtime.select(all_same, 0.0, t8 / D)
-    t9 = _runtime.select(same, u_y, v_y)
-    del u_y, v_y
-    t10 = _runtime.select(same, t4, t3)
-    t11 = _runtime.select(all_same, 0.0, t10 / D)
     del all_same
-    t12 = _runtime.select(same, t3, t4)
+    t9 = _runtime.select(same, -c3_y, c3_y)
+    del c3_y
+    t10 = _runtime.select(same, t1, t4)
     del same
-    k_0 = E_11 * t6 + E_12 * t9 + t11 * t12
-    m_x = t6 - E_11 * k_0
-    m_y = t9 - E_12 * k_0
-    t13 = t12 - t11 * k_0
-    del k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t11 * t13
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
+    t11 = t2 * E_11 - E_12 * t9 - t7 * t10
+    t12 = t2 - E_11 * t11
+    del t2
+    m_y = t9 + E_12 * t11
+    t13 = t10 + t7 * t11
+    del t11
+    t14 = E_11 * t12 - E_12 * m_y - t7 * t13
+    t15 = t12 - E_11 * t14
+    del t12
+    n_y = m_y + E_12 * t14
     del m_y
-    t14 = t13 - t11 * k_1
-    del k_1, t13
-    j = np.sqrt(n_x * n_x + n_y * n_y + t14 * t14)
+    t16 = t13 + t7 * t14
+    del t13, t14
+    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
     in_line = j <= t5
     del t5
-    t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12)
-    del t10, t12, t6, t7, t8, t9
-    t16 = _runtime.select(in_line, 0.0, t15 / (j * 2.0))
-    rho = np.sqrt(X * X + t16 * t16)
-    t17 = l - rho
-    h = np.sqrt(np.maximum(t17, 0.0) * (l + rho))
+    t17 = _runtime.sign(-t7)
+    t18 = E_11 * t17
+    t19 = t9 * (t8 - t9) + t10 * (t6 - t10)
+    del t10, t6, t8, t9
+    t20 = _runtime.select(in_line, 0.0, t19 / (2.0 * j))
+    t21 = t7 * X - _runtime.select(in_line, t18, t16 / j) * t20
+    del t16
+    rho = np.sqrt(X * X + t20 * t20)
+    del X, t20
+    t22 = l - rho
+    h = np.sqrt(np.maximum(t22, 0.0) * (l + rho))
     del rho
-    t18 = _runtime.sign(-t11)
-    t19 = t11 - t18
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t18 / t19, n_x / j)
-    del n_x
-    t20 = E_11 * t18
-    del t18
-    E_22 = _runtime.select(in_line, E_12 * t20 / t19, n_y / j)
-    del n_y, t19
-    t21 = h * (E_12 * E_21 - E_11 * E_22)
+    t23 = t7 - t17
+    del t7
+    E_21 = _runtime.select(in_line, 1.0 + t17 * (E_11 * E_11) / t23, -(t15 / j))
+    del t15, t17
+    E_22 = _runtime.select(in_line, E_12 * t18 / t23, n_y / j)
+    del n_y, t18, t23
+    t24 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22
-    t22 = t11 * X - _runtime.select(in_line, t20, t14 / j) * t16
-    del X, t11, t14, t16, t20
-    t23 = t21 + t22
-    t24 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t25 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t26 = t24 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t25
-    del t24, t25
-    t27 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t15
-    t28 = t27 & (-(size * _runtime.FEASIBILITY) <= t17)
-    del size, t17, t27
-    t29 = _runtime.poison(np.logical_not(t26) | np.logical_not(t28))
-    del t26, t28
+    t25 = t21 + t24
+    t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
+    del t26, t27
+    t29 = np.abs(_runtime.select(in_line, -t19, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    del in_line, t19
+    t30 = t29 & (-(size * _runtime.FEASIBILITY) <= t22)
+    del size, t22, t29
+    t31 = _runtime.poison(np.logical_not(t28) | np.logical_not(t30))
+    del t28, t30
     Delta = D * j * h
     del D, h, j
-    A_13_above = t21 - t22
-    del t21, t22
+    t32 = t21 - t24
+    del t21, t24
     return (
-        -t23 + t29,
-        t3 - t23 + t29,
-        t4 - t23 + t29,
-        Delta + t29,
-        A_13_above + t29,
-        t3 + A_13_above + t29,
-        t4 + A_13_above + t29,
-        -Delta + t29,
+        -t25 + t31,
+        t1 - t25 + t31,
+        t4 - t25 + t31,
+        Delta + t31,
+        -t32 + t31,
+        t1 - t32 + t31,
+        t4 - t32 + t31,
+        -Delta + t31,
     )
 
 
@@ -1274,7 +1171,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("q", (3,)),),
     (_runtime.Array("factors", (2, 4)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 3), (4, 1), (5, 1), (6, 1), (7, 3)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
@@ -1312,167 +1209,158 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     return result
 
 
-def _condition_number(rho1, rho2, rho3, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
-    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
-    t1 = e * c_alpha1 - f * c_alpha1
-    del c_alpha1
-    u_x = t1 - (e * c_alpha2 - f * c_alpha2)
-    del c_alpha2
-    t2 = e * s_alpha1 - f * s_alpha1
-    del s_alpha1
-    u_y = t2 - (e * s_alpha2 - f * s_alpha2)
-    del s_alpha2
-    t3 = rho1 - rho2
-    size_u = np.sqrt(u_x * u_x + u_y * u_y + t3 * t3)
-    v_x = t1 - (e * c_alpha3 - f * c_alpha3)
-    del c_alpha3, t1
-    v_y = t2 - (e * s_alpha3 - f * s_alpha3)
-    del s_alpha3, t2
+def _condition_number(rho1, rho2, rho3, f, e, l):
+    t1 = rho1 - rho2
+    t2 = f - e - (e * 0.5 - f * 0.5)
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t3 = t2 * t2 + c3_y * c3_y
+    size_u = np.sqrt(t1 * t1 + t3)
     t4 = rho1 - rho3
-    size_v = np.sqrt(v_x * v_x + v_y * v_y + t4 * t4)
+    size_v = np.sqrt(t4 * t4 + t3)
+    del t3
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
     t5 = size * _runtime.VANISHING
     all_same = size_u + size_v <= t5
     same = size_u <= t5
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
+    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
     X = _runtime.select(all_same, 0.0, D * 0.5)
-    t6 = _runtime.select(same, u_x, v_x)
-    t7 = _runtime.select(same, v_x, u_x)
-    E_11 = _runtime.select(all_same, 1.0, t7 / D)
-    t8 = _runtime.select(same, v_y, u_y)
-    E_12 = _runtime.select(all_same, 0.0, t8 / D)
-    t9 = _runtime.select(same, u_y, v_y)
-    t10 = _runtime.select(same, t4, t3)
-    t11 = _runtime.select(all_same, 0.0, t10 / D)
+    t6 = _runtime.select(same, c3_y, -c3_y)
+    E_12 = _runtime.select(all_same, 0.0, t6 / D)
+    t7 = _runtime.select(same, -c3_y, c3_y)
+    t8 = _runtime.select(same, t4, t1)
+    t9 = _runtime.select(all_same, 0.0, t8 / D)
     del all_same
-    t12 = _runtime.select(same, t3, t4)
+    t10 = _runtime.select(same, t1, t4)
     del same
-    k_0 = E_11 * t6 + E_12 * t9 + t11 * t12
-    m_x = t6 - E_11 * k_0
-    m_y = t9 - E_12 * k_0
-    t13 = t12 - t11 * k_0
-    del k_0
-    k_1 = E_11 * m_x + E_12 * m_y + t11 * t13
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
+    t11 = t2 * E_11 - E_12 * t7 - t9 * t10
+    t12 = t2 - E_11 * t11
+    m_y = t7 + E_12 * t11
+    t13 = t10 + t9 * t11
+    del t11
+    t14 = E_11 * t12 - E_12 * m_y - t9 * t13
+    t15 = t12 - E_11 * t14
+    del t12
+    n_y = m_y + E_12 * t14
     del m_y
-    t14 = t13 - t11 * k_1
-    del k_1, t13
-    j = np.sqrt(n_x * n_x + n_y * n_y + t14 * t14)
+    t16 = t13 + t9 * t14
+    del t13, t14
+    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
     in_line = j <= t5
     del t5
-    t15 = t6 * (t7 - t6) + t9 * (t8 - t9) + t12 * (t10 - t12)
-    del t10, t12, t6, t7, t8, t9
-    t16 = _runtime.select(in_line, 0.0, t15 / (j * 2.0))
-    rho = np.sqrt(X * X + t16 * t16)
-    t17 = l - rho
-    h = np.sqrt(np.maximum(t17, 0.0) * (l + rho))
+    t17 = _runtime.sign(-t9)
+    t18 = t9 - t17
+    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t17 / t18, -(t15 / j))
+    del t15
+    t19 = t7 * (t6 - t7) + t10 * (t8 - t10)
+    del t10, t6, t7, t8
+    t20 = _runtime.select(in_line, 0.0, t19 / (2.0 * j))
+    t21 = E_11 * X - E_21 * t20
+    rho = np.sqrt(X * X + t20 * t20)
+    t22 = l - rho
+    h = np.sqrt(np.maximum(t22, 0.0) * (l + rho))
     del rho
-    t18 = _runtime.sign(-t11)
-    t19 = E_11 * t18
-    t20 = _runtime.select(in_line, t19, t14 / j)
-    del t14
-    t21 = t11 - t18
-    E_22 = _runtime.select(in_line, E_12 * t19 / t21, n_y / j)
-    del n_y, t19
-    t22 = h * (E_12 * t20 - t11 * E_22)
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t18 / t21, n_x / j)
-    del n_x, t18, t21
-    t23 = E_11 * X - E_21 * t16
-    t24 = t22 - t23
-    t25 = (E_11 * t20 - t11 * E_21) * h
-    t26 = E_12 * X - t16 * E_22
-    A_12 = t25 + t26
-    t27 = h * (E_12 * E_21 - E_11 * E_22)
+    t23 = E_11 * t17
+    del t17
+    t24 = _runtime.select(in_line, t23, t16 / j)
+    del t16
+    E_22 = _runtime.select(in_line, E_12 * t23 / t18, n_y / j)
+    del n_y, t18, t23
+    t25 = h * (E_12 * t24 - t9 * E_22)
+    A_11 = t21 - t25
+    t26 = X * E_12 - t20 * E_22
+    t27 = h * (E_11 * t24 - t9 * E_21)
+    A_12 = t26 + t27
+    t28 = X * t9 - t20 * t24
+    del X, t20, t24, t9
+    t29 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22
-    t28 = t11 * X - t20 * t16
-    del X, t11, t16, t20
-    t29 = t27 + t28
-    t30 = u_x + t24
-    t31 = u_y - A_12
-    A_23 = t3 - t29
-    t32 = t24 * t24 + A_12 * A_12 + t29 * t29 + (t30 * t30 + t31 * t31 + A_23 * A_23)
-    t33 = v_x + t24
-    t34 = v_y - A_12
-    A_33 = t4 - t29
-    t35 = t24 * t31 + A_12 * t30
-    t36 = t24 * A_23 + t29 * t30
-    t37 = t24 * t34 + A_12 * t33
-    t38 = t24 * A_33 + t29 * t33
-    del t24
-    t39 = t35 * t35 + t36 * t36 + t37 * t37 + t38 * t38
-    del t35, t36, t37, t38
-    t40 = A_12 * A_23 - t29 * t31
-    t41 = A_12 * A_33 - t29 * t34
-    del A_12, t29
-    t42 = t30 * t34 - t31 * t33
-    t43 = t30 * A_33 - A_23 * t33
-    del t30
-    t44 = t39 + t40 * t40 + t41 * t41 + t42 * t42 + t43 * t43
-    del t39, t40, t41, t42, t43
-    t45 = t31 * A_33 - A_23 * t34
-    del A_23, t31
-    t46 = (t32 + (t33 * t33 + t34 * t34 + A_33 * A_33)) * (t44 + t45 * t45)
-    del A_33, t32, t33, t34, t44, t45
-    t47 = 3.0 * (D * j * h)
+    t30 = t28 + t29
+    A_21 = t2 + A_11
+    t31 = A_21 * A_21
+    A_22 = c3_y + A_12
+    A_23 = t1 - t30
+    t32 = A_11 * A_11 + A_12 * A_12 + t30 * t30 + (t31 + A_22 * A_22 + A_23 * A_23)
+    t33 = c3_y - A_12
+    A_33 = t4 - t30
+    t34 = A_12 * A_21
+    t35 = A_11 * A_22 - t34
+    t36 = t30 * A_21
+    t37 = A_11 * A_23 + t36
+    t38 = t34 + A_11 * t33
+    del t34
+    t39 = t36 + A_11 * A_33
+    del A_11, t36
+    t40 = t35 * t35 + t37 * t37 + t38 * t38 + t39 * t39
+    del t35, t37, t38, t39
+    t41 = A_12 * A_23 + t30 * A_22
+    t42 = A_12 * A_33 - t30 * t33
+    del A_12, t30
+    t43 = A_21 * t33 + A_21 * A_22
+    t44 = A_21 * A_33 - A_21 * A_23
+    del A_21
+    t45 = t40 + t41 * t41 + t42 * t42 + t43 * t43 + t44 * t44
+    del t40, t41, t42, t43, t44
+    t46 = A_22 * A_33 + A_23 * t33
+    del A_22, A_23
+    t47 = (t32 + (t31 + t33 * t33 + A_33 * A_33)) * (t45 + t46 * t46)
+    del A_33, t31, t32, t33, t45, t46
+    t48 = 3.0 * (D * j * h)
     del D, h, j
-    t48 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t49 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
-    t50 = t48 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t49
-    del t48, t49
-    t51 = np.abs(_runtime.select(in_line, -t15, 0.0)) <= _runtime.FEASIBILITY * (size * size)
-    del in_line, t15
-    t52 = t51 & (-(size * _runtime.FEASIBILITY) <= t17)
-    del size, t17, t51
-    t53 = _runtime.poison(np.logical_not(t50) | np.logical_not(t52))
-    del t50, t52
-    A_11_above = t22 + t23
-    del t22, t23
-    t54 = t25 - t26
-    del t25, t26
-    A_13_above = t27 - t28
-    del t27, t28
-    square1_above = A_11_above * A_11_above + t54 * t54 + A_13_above * A_13_above
-    t55 = u_x - A_11_above
-    del u_x
-    t56 = u_y + t54
-    del u_y
-    A_23_above = t3 + A_13_above
-    del t3
-    square2_above = t55 * t55 + t56 * t56 + A_23_above * A_23_above
-    t57 = v_x - A_11_above
-    del v_x
-    t58 = v_y + t54
-    del v_y
-    A_33_above = t4 + A_13_above
+    t49 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t50 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t51 = t49 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t50
+    del t49, t50
+    t52 = np.abs(_runtime.select(in_line, -t19, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    del in_line, t19
+    t53 = t52 & (-(size * _runtime.FEASIBILITY) <= t22)
+    del size, t22, t52
+    t54 = _runtime.poison(np.logical_not(t51) | np.logical_not(t53))
+    del t51, t53
+    A_11_above = t21 + t25
+    del t21, t25
+    A_12_above = t26 - t27
+    del t26, t27
+    t55 = A_11_above * A_11_above + A_12_above * A_12_above
+    t56 = t28 - t29
+    del t28, t29
+    A_21_above = t2 + A_11_above
+    del t2
+    t57 = A_21_above * A_21_above
+    A_22_above = c3_y + A_12_above
+    A_23_above = t1 - t56
+    del t1
+    square2_above = t57 + A_22_above * A_22_above + A_23_above * A_23_above
+    t58 = c3_y - A_12_above
+    del c3_y
+    A_33_above = t4 - t56
     del t4
-    square3_above = t57 * t57 + t58 * t58 + A_33_above * A_33_above
-    t59 = square1_above + square2_above + square3_above
-    del square1_above, square2_above, square3_above
-    t60 = A_11_above * t56 + t54 * t55
-    t61 = A_11_above * A_23_above + A_13_above * t55
-    t62 = A_11_above * t58 + t54 * t57
-    t63 = A_11_above * A_33_above + A_13_above * t57
-    del A_11_above
-    t64 = t60 * t60 + t61 * t61 + t62 * t62 + t63 * t63
-    del t60, t61, t62, t63
-    t65 = t54 * A_23_above - A_13_above * t56
-    t66 = t54 * A_33_above - A_13_above * t58
-    del A_13_above, t54
-    t67 = t55 * t58 - t56 * t57
-    t68 = t55 * A_33_above - A_23_above * t57
-    del t55, t57
-    t69 = t64 + t65 * t65 + t66 * t66 + t67 * t67 + t68 * t68
-    del t64, t65, t66, t67, t68
-    t70 = t56 * A_33_above - A_23_above * t58
-    del A_23_above, A_33_above, t56, t58
+    t59 = t55 + t56 * t56 + square2_above + (t57 + t58 * t58 + A_33_above * A_33_above)
+    del square2_above, t55, t57
+    t60 = A_12_above * A_21_above
+    t61 = A_11_above * A_22_above - t60
+    t62 = t56 * A_21_above
+    t63 = A_11_above * A_23_above + t62
+    t64 = t60 + A_11_above * t58
+    del t60
+    t65 = t62 + A_11_above * A_33_above
+    del A_11_above, t62
+    t66 = t61 * t61 + t63 * t63 + t64 * t64 + t65 * t65
+    del t61, t63, t64, t65
+    t67 = A_12_above * A_23_above + t56 * A_22_above
+    t68 = A_12_above * A_33_above - t56 * t58
+    del A_12_above, t56
+    t69 = A_21_above * t58 + A_21_above * A_22_above
+    t70 = A_21_above * A_33_above - A_21_above * A_23_above
+    del A_21_above
+    t71 = t66 + t67 * t67 + t68 * t68 + t69 * t69 + t70 * t70
+    del t66, t67, t68, t69, t70
+    t72 = A_22_above * A_33_above + A_23_above * t58
+    del A_22_above, A_23_above, A_33_above, t58
     return (
-        np.sqrt(t46) / t47 + t53,
-        np.sqrt(t59 * (t69 + t70 * t70)) / t47 + t53,
+        np.sqrt(t47) / t48 + t54,
+        np.sqrt(t59 * (t71 + t72 * t72)) / t48 + t54,
     )
 
 
@@ -1482,7 +1370,7 @@ _CONDITION_NUMBER = _runtime.Kernel(
     (_runtime.Array("q", (3,)),),
     (_runtime.Array("kappa", (2,)),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 2.5849394142282115e-26, 9.353610478917779e+49),
 )
 
@@ -1521,180 +1409,155 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
     return result
 
 
-def _ik(x, y, z, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
-    t1 = e * s_alpha1 - f * s_alpha1
-    del s_alpha1
-    A_12 = y + t1
-    t2 = e * c_alpha1 - f * c_alpha1
-    del c_alpha1
-    A_11 = x + t2
-    aside_1 = np.sqrt(A_12 * A_12 + A_11 * A_11)
-    t3 = l - aside_1
-    t4 = l + aside_1
+def _ik(x, y, z, f, e, l):
+    A_11 = x - f + e
+    aside_1 = np.sqrt(y * y + A_11 * A_11)
+    t1 = l - aside_1
+    t2 = l + aside_1
     del aside_1
-    root_1 = np.sqrt(np.maximum(t3, 0.0) * np.maximum(t4, 0.0))
+    root_1 = np.sqrt(np.maximum(t1, 0.0) * np.maximum(t2, 0.0))
     slide_1 = z - root_1
-    t5 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t6 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t7 = t5 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t6
-    del t5, t6
-    invalid = np.logical_not(t7)
-    del t7
-    size = f + e + l + np.abs(x) + np.abs(y) + np.abs(z)
-    t8 = -(_runtime.FEASIBILITY * (size * 0.5))
-    del size
-    t9 = e * s_alpha2 - f * s_alpha2
-    del s_alpha2
-    t10 = y + t9
-    t11 = e * c_alpha2 - f * c_alpha2
-    del c_alpha2
-    t12 = x + t11
-    aside_2 = np.sqrt(t10 * t10 + t12 * t12)
-    del t10, t12
-    t13 = l - aside_2
-    t14 = l + aside_2
-    del aside_2
-    t15 = (t8 <= t3) & (t8 <= t4) & (t8 <= t13) & (t8 <= t14)
+    t3 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t4 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
+    t5 = t3 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t4
     del t3, t4
-    t16 = e * s_alpha3 - f * s_alpha3
-    del s_alpha3
-    t17 = y + t16
-    t18 = e * c_alpha3 - f * c_alpha3
-    del c_alpha3
-    t19 = x + t18
-    aside_3 = np.sqrt(t17 * t17 + t19 * t19)
-    del t17, t19
-    t20 = l - aside_3
-    t21 = l + aside_3
+    invalid = np.logical_not(t5)
+    del t5
+    size = f + e + l + np.abs(x) + np.abs(y) + np.abs(z)
+    t6 = -(_runtime.FEASIBILITY * (size * 0.5))
+    del size
+    t7 = x - e * 0.5 + f * 0.5
+    t8 = t7 * t7
+    del t7
+    A_22 = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t9 = y + A_22
+    aside_2 = np.sqrt(t8 + t9 * t9)
+    del t9
+    t10 = l - aside_2
+    t11 = l + aside_2
+    del aside_2
+    t12 = (t6 <= t1) & (t6 <= t2) & (t6 <= t10) & (t6 <= t11)
+    del t1, t2
+    t13 = y - A_22
+    aside_3 = np.sqrt(t8 + t13 * t13)
+    del t13, t8
+    t14 = l - aside_3
+    t15 = l + aside_3
     del aside_3
-    unreachable = np.logical_not(t15 & (t8 <= t20) & (t8 <= t21))
-    del t15, t8
-    t22 = _runtime.poison(invalid | unreachable)
-    t23 = slide_1 + t22
-    root_2 = np.sqrt(np.maximum(t13, 0.0) * np.maximum(t14, 0.0))
-    del t13, t14
+    unreachable = np.logical_not(t12 & (t6 <= t14) & (t6 <= t15))
+    del t12, t6
+    t16 = _runtime.poison(invalid | unreachable)
+    t17 = slide_1 + t16
+    root_2 = np.sqrt(np.maximum(t10, 0.0) * np.maximum(t11, 0.0))
+    del t10, t11
     slide_2 = z - root_2
-    t24 = slide_2 + t22
-    root_3 = np.sqrt(np.maximum(t20, 0.0) * np.maximum(t21, 0.0))
-    del t20, t21
+    t18 = slide_2 + t16
+    root_3 = np.sqrt(np.maximum(t14, 0.0) * np.maximum(t15, 0.0))
+    del t14, t15
     slide_3 = z - root_3
-    t25 = slide_3 + t22
+    t19 = slide_3 + t16
     slide_3_plus_plus_minus = z + root_3
     del root_3
-    t26 = slide_3_plus_plus_minus + t22
+    t20 = slide_3_plus_plus_minus + t16
     slide_2_plus_minus_plus = z + root_2
     del root_2
-    t27 = slide_2_plus_minus_plus + t22
+    t21 = slide_2_plus_minus_plus + t16
     slide_1_minus_plus_plus = z + root_1
     del root_1
-    t28 = slide_1_minus_plus_plus + t22
-    del t22
-    A_13 = z - slide_1
-    t29 = t2 - t11
-    del t11
-    t30 = t1 - t16
+    t22 = slide_1_minus_plus_plus + t16
     del t16
-    t31 = t29 * t30
-    t32 = t1 - t9
-    del t1, t9
-    t33 = t2 - t18
-    del t18, t2
-    t34 = t32 * t33
-    t35 = A_13 * t31 - A_13 * t34
-    del A_13
+    t23 = e * 1.5 - f * 1.5
+    t24 = t23 * A_22
+    t25 = (z - slide_1) * t24
+    t26 = t25 + t25
+    del t25
+    t27 = A_11 * A_22
+    del A_11, A_22
     A_33 = slide_1 - slide_3
-    t36 = A_11 * t32
-    del t32
-    t37 = A_12 * t29
-    del t29
-    t38 = t35 - (A_33 * t36 - A_33 * t37)
+    t28 = y * t23
+    del t23
+    t29 = t26 + (t27 * A_33 + t28 * A_33)
     del A_33
     A_23 = slide_1 - slide_2
-    t39 = A_11 * t30
-    del A_11, t30
-    t40 = A_12 * t33
-    del A_12, t33
-    t41 = A_23 * t39 - A_23 * t40
+    t30 = t27 * A_23 - t28 * A_23
     del A_23
-    t42 = _runtime.DETERMINED * (l * l * l)
-    t43 = _runtime.status(invalid, unreachable, np.abs(-(t38 + t41)) <= t42)
+    t31 = _runtime.DETERMINED * (l * l * l)
+    t32 = _runtime.status(invalid, unreachable, np.abs(t29 + t30) <= t31)
     A_33_plus_plus_minus = slide_1 - slide_3_plus_plus_minus
-    t44 = t36 * A_33_plus_plus_minus - t37 * A_33_plus_plus_minus
+    t33 = t27 * A_33_plus_plus_minus + t28 * A_33_plus_plus_minus
     del A_33_plus_plus_minus
-    t45 = t35 - t44
-    del t35, t44
-    t46 = _runtime.status(invalid, unreachable, np.abs(t41 + t45) <= t42)
-    del t41
+    t34 = t26 + t33
+    del t26, t33
+    t35 = _runtime.status(invalid, unreachable, np.abs(t30 + t34) <= t31)
+    del t30
     A_23_plus_minus_plus = slide_1 - slide_2_plus_minus_plus
     del slide_1
-    t47 = t39 * A_23_plus_minus_plus - t40 * A_23_plus_minus_plus
+    t36 = t27 * A_23_plus_minus_plus - t28 * A_23_plus_minus_plus
     del A_23_plus_minus_plus
-    t48 = _runtime.status(invalid, unreachable, np.abs(-(t38 + t47)) <= t42)
-    del t38
-    t49 = _runtime.status(invalid, unreachable, np.abs(t45 + t47) <= t42)
-    del t45, t47
-    A_13_minus_plus_plus = z - slide_1_minus_plus_plus
-    t50 = t31 * A_13_minus_plus_plus - t34 * A_13_minus_plus_plus
-    del A_13_minus_plus_plus, t31, t34
-    t51 = slide_3 - slide_1_minus_plus_plus
+    t37 = _runtime.status(invalid, unreachable, np.abs(t29 + t36) <= t31)
+    del t29
+    t38 = _runtime.status(invalid, unreachable, np.abs(t34 + t36) <= t31)
+    del t34, t36
+    t39 = (z - slide_1_minus_plus_plus) * t24
+    del t24
+    t40 = t39 + t39
+    del t39
+    t41 = slide_1_minus_plus_plus - slide_3
     del slide_3
-    t52 = t50 + (t36 * t51 - t37 * t51)
-    del t51
-    t53 = slide_2 - slide_1_minus_plus_plus
+    t42 = t40 + (t27 * t41 + t28 * t41)
+    del t41
+    t43 = slide_1_minus_plus_plus - slide_2
     del slide_2
-    t54 = t39 * t53 - t40 * t53
-    del t53
-    t55 = _runtime.status(invalid, unreachable, np.abs(t52 - t54) <= t42)
-    t56 = slide_3_plus_plus_minus - slide_1_minus_plus_plus
+    t44 = t27 * t43 - t28 * t43
+    del t43
+    t45 = _runtime.status(invalid, unreachable, np.abs(-(t42 + t44)) <= t31)
+    t46 = slide_1_minus_plus_plus - slide_3_plus_plus_minus
     del slide_3_plus_plus_minus
-    t57 = t50 + (t36 * t56 - t37 * t56)
-    del t36, t37, t50, t56
-    t58 = _runtime.status(invalid, unreachable, np.abs(t54 - t57) <= t42)
-    del t54
-    t59 = slide_2_plus_minus_plus - slide_1_minus_plus_plus
+    t47 = t40 + (t27 * t46 + t28 * t46)
+    del t40, t46
+    t48 = _runtime.status(invalid, unreachable, np.abs(-(t44 + t47)) <= t31)
+    del t44
+    t49 = slide_1_minus_plus_plus - slide_2_plus_minus_plus
     del slide_1_minus_plus_plus, slide_2_plus_minus_plus
-    t60 = t39 * t59 - t40 * t59
-    del t39, t40, t59
-    t61 = _runtime.status(invalid, unreachable, np.abs(t52 - t60) <= t42)
-    del t52
-    t62 = _runtime.status(invalid, unreachable, np.abs(t57 - t60) <= t42)
-    del invalid, t42, t57, t60, unreachable
+    t50 = t27 * t49 - t28 * t49
+    del t27, t28, t49
+    t51 = _runtime.status(invalid, unreachable, np.abs(-(t42 + t50)) <= t31)
+    del t42
+    t52 = _runtime.status(invalid, unreachable, np.abs(t47 + t50) <= t31)
+    del invalid, t31, t47, t50, unreachable
     return (
-        t23,
-        t24,
-        t25,
-        t23,
-        t24,
-        t26,
-        t23,
-        t27,
-        t25,
-        t23,
-        t27,
-        t26,
-        t28,
-        t24,
-        t25,
-        t28,
-        t24,
-        t26,
-        t28,
-        t27,
-        t25,
-        t28,
-        t27,
-        t26,
-        t43,
-        t46,
+        t17,
+        t18,
+        t19,
+        t17,
+        t18,
+        t20,
+        t17,
+        t21,
+        t19,
+        t17,
+        t21,
+        t20,
+        t22,
+        t18,
+        t19,
+        t22,
+        t18,
+        t20,
+        t22,
+        t21,
+        t19,
+        t22,
+        t21,
+        t20,
+        t32,
+        t35,
+        t37,
+        t38,
+        t45,
         t48,
-        t49,
-        t55,
-        t58,
-        t61,
-        t62,
+        t51,
+        t52,
     )
 
 
@@ -1704,7 +1567,7 @@ _IK = _runtime.Kernel(
     (_runtime.Array("x", (3,)),),
     (_runtime.Array("q", (8, 3)), _runtime.Array("status", (8,), np.uint8)),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (23, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
 )
 
@@ -1750,39 +1613,32 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     return Solutions(*result)
 
 
-def _workspace_contains(x, y, z, f, e, l, alpha1, alpha2, alpha3):
-    s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
-    t1 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+def _workspace_contains(x, y, z, f, e, l):
+    t1 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
     t2 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
     t3 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t2
     del t1, t2
     size = f + e + l + np.abs(x) + np.abs(y) + np.abs(z)
     t4 = -(_runtime.FEASIBILITY * (size * 0.5))
     del size
-    t5 = y + e * s_alpha1 - f * s_alpha1
-    del s_alpha1
-    t6 = x + e * c_alpha1 - f * c_alpha1
-    del c_alpha1
-    aside_1 = np.sqrt(t5 * t5 + t6 * t6)
-    del t5, t6
-    t7 = y + e * s_alpha2 - f * s_alpha2
-    del s_alpha2
-    t8 = x + e * c_alpha2 - f * c_alpha2
-    del c_alpha2
-    aside_2 = np.sqrt(t7 * t7 + t8 * t8)
-    del t7, t8
-    t9 = (t4 <= l - aside_1) & (t4 <= l + aside_1) & (t4 <= l - aside_2)
+    t5 = x - f + e
+    aside_1 = np.sqrt(y * y + t5 * t5)
+    del t5
+    t6 = x - e * 0.5 + f * 0.5
+    t7 = t6 * t6
+    del t6
+    t8 = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t9 = y + t8
+    aside_2 = np.sqrt(t7 + t9 * t9)
+    del t9
+    t10 = (t4 <= l - aside_1) & (t4 <= l + aside_1) & (t4 <= l - aside_2)
     del aside_1
-    t10 = y + e * s_alpha3 - f * s_alpha3
-    del s_alpha3
-    t11 = x + e * c_alpha3 - f * c_alpha3
-    del c_alpha3
-    aside_3 = np.sqrt(t10 * t10 + t11 * t11)
-    del t10, t11
-    t12 = t9 & (t4 <= l + aside_2) & (t4 <= l - aside_3)
-    del aside_2, t9
+    t11 = y - t8
+    del t8
+    aside_3 = np.sqrt(t7 + t11 * t11)
+    del t11, t7
+    t12 = t10 & (t4 <= l + aside_2) & (t4 <= l - aside_3)
+    del aside_2, t10
     failed = np.logical_not(t3) | np.logical_not(t12 & (t4 <= l + aside_3))
     del aside_3, t12, t3, t4
     return (
@@ -1796,7 +1652,7 @@ _WORKSPACE_CONTAINS = _runtime.Kernel(
     (_runtime.Array("p", (3,)),),
     (_runtime.Array("inside", (), np.bool_),),
     Parameters._fields,
-    ('f', 'e', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    ('f', 'e', 'l'),
     size=_runtime.Size((0, 1, 2, 3, 4, 5), (), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 

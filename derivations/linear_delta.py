@@ -29,4 +29,4 @@ for k, (x, y) in enumerate([(1, 0), (-half, sqrt(3) / 2), (-half, -sqrt(3) / 2)]
     start, corner = ([size * x, size * y, 0] for size in (f, e))
     slider = d.joint(f"rho{k}", "prismatic")
     legs.append(Slide(slider, l, start, (0, 0, 1), on_hand=corner))
-parallel(d, (real("x"), real("y"), real("z")), legs, {+1: "below", -1: "above"})
+parallel(d, (real("x"), real("y"), real("z")), legs, {-1: "below", +1: "above"})

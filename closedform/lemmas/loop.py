@@ -166,15 +166,14 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
         f"The hand is where {m.count} {shape} about the points b meet, whose radii are the "
         f"lengths of the rods.  They meet twice, on both sides of the "
         f"{'line' if n == 2 else 'plane'} of their centres: these are the two assembly modes.  The "
-        f"{'distance' if n == 2 else 'volume'} tells how far the rods are from a parallel "
-        f"singularity.",
+        f"determinant of the vectors along the rods has the sign of the mode.",
         {
             rf"\mathbf b_{k} - \mathbf b_1": (c - m.centres[0]).applyfunc(merge_angles)
             for k, c in enumerate(m.centres[1:], 2)
         },
         proves=(
-            "The determinant of the vectors along the rods, in the frame of the lemma, is as "
-            "stated there."
+            "The determinant of the vectors along the rods, in the frame of the lemma, is the sign "
+            "of the mode times a product of lengths."
         ),
         equal=[(found.rows.det(), found.volume)],
         uses=[loop],
@@ -234,7 +233,7 @@ def _draw(m: _Mechanism, at: _Posture) -> None:
         lengths[near, far], closing[near, far] = sp.sympify(leg.rod), equation
         if far != "P":
             links[f"hand{k}"] = ("P", far)
-            lengths["P", far] = sp.sqrt(sp.factor(square(place)))
+            lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
         if not isinstance(leg, Stretch):
             links[f"rod{k}"] = (end, far)
             joints[leg.joint] = (base, end)

@@ -16,7 +16,7 @@ from closedform.algebra.shapes import ShapeError, require_shape
 from closedform.algebra.solutions import SolutionCount
 from closedform.model.derivation import Derivation
 from closedform.model.functions import substitute
-from closedform.model.inverse import Combination, Inverse
+from closedform.model.inverse import Combination, Inverse, Rank
 from closedform.proof.glue import prove_glue
 from closedform.proof.links import count_system, prove_lemma, prove_system
 from closedform.proof.require import ProofError, require
@@ -33,7 +33,7 @@ class InverseResult:
     solutions: int
     method: str
     assumptions: tuple[str, ...]
-    """Bounds in inputs and parameters; none of a combination, whose lemmas have theirs in names."""
+    """Bounds in inputs and parameters; none where lemmas have theirs in names."""
     lemmas: tuple[str, ...]
 
 
@@ -51,7 +51,7 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
     for link in inverse.chained:
         if link.lemma:
             found, counted = prove_lemma(link, function.signs, f"{where}: ")
-            if not isinstance(inverse.glue, Combination):
+            if isinstance(inverse.glue, Rank):
                 assumptions += found
             counts.append((counted, link.lemma.excluded))
     if not by_lemmas:

@@ -298,11 +298,10 @@ class Algorithm:
             if isinstance(statement, Bound):
                 yield "bound", symbol, self.page.prose(statement.meaning)
         elif isinstance(statement, Match):
-            yield (
-                "unless",
-                f"${self.page.math(self.full(statement.value))} = 0$",
-                self.page.prose(statement.meaning),
-            )
+            value = self.full(statement.value)
+            if value != 0:  # what is compared only in a special case
+                meaning = self.page.prose(statement.meaning)
+                yield "unless", f"${self.page.math(value)} = 0$", meaning
         elif isinstance(statement, Require):
             yield "invalid", self._requirement(statement), ""
 

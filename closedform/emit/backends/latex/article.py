@@ -228,8 +228,8 @@ def indexed(title: str) -> str:
 
 
 def decimal(value: sp.Rational) -> str:
-    """A rational as a decimal if that is exact and short, else as a fraction."""
-    digits = next((k for k in range(7) if (value * 10**k).is_Integer), None)
+    """A rational as a decimal if a double's digits give it exactly, else as a fraction."""
+    digits = next((k for k in range(17) if (value * 10**k).is_Integer), None)
     return str(value) if digits is None else f"{float(value):.{digits}f}"
 
 

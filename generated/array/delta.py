@@ -228,12 +228,12 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t58 = t51 * E_23 + (t3 - X_2 * E_13_2)
     t59 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t53 - t54),
-        ops.select(failed, ops.nan, -(t55 + t56)),
-        ops.select(failed, ops.nan, t57 - t58),
         ops.select(failed, ops.nan, -(t53 + t54)),
         ops.select(failed, ops.nan, t55 - t56),
         ops.select(failed, ops.nan, -(t57 + t58)),
+        ops.select(failed, ops.nan, t53 - t54),
+        ops.select(failed, ops.nan, -(t55 + t56)),
+        ops.select(failed, ops.nan, t57 - t58),
         t59,
         t59,
     )
@@ -410,13 +410,13 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t77 = ops.select(t58, ops.max(l - rho, 0.0) * (l + rho), 1.0)
     h = ops.sqrt(t77)
     t78 = (t63 * E_23 - E_13_2 * E_22) * h
-    t79 = t9 - (t75 + t78)
+    t79 = t9 - (t75 - t78)
     t80 = t63 * X_2 + t71 * E_22
     t81 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t82 = t18 - (t80 - t81)
+    t82 = t18 - (t80 + t81)
     t83 = E_13_2 * X_2 + t71 * E_23
     t84 = h * (E_11_2 * E_22 - t63 * E_21)
-    t85 = ops.select(failed, ops.nan, t83 + t84 - t3)
+    t85 = ops.select(failed, ops.nan, t83 - t84 - t3)
     t86 = ops.select(failed, ops.nan, t11)
     t87 = ops.select(failed, ops.nan, t20)
     t88 = ops.select(failed, ops.nan, t13)
@@ -427,9 +427,9 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t93 = ops.select(failed, ops.nan, t28)
     t94 = ops.select(failed, ops.nan, t34)
     t95 = ops.select(failed, ops.nan, -t31)
-    t96 = t9 - (t75 - t78)
-    t97 = t18 - (t80 + t81)
-    t98 = ops.select(failed, ops.nan, t83 - t84 - t3)
+    t96 = t9 - (t75 + t78)
+    t97 = t18 - (t80 - t81)
+    t98 = ops.select(failed, ops.nan, t83 + t84 - t3)
     return (
         t52,
         t53,
@@ -631,36 +631,38 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t52 = (t37 * E_23 - E_13_2 * E_22) * h
     E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t38 / t49, t45 / t48)
     t53 = E_11_2 * X_2 - E_21 * t50
-    A_11 = t52 + t53
-    t54 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t55 = X_2 * t37 - t50 * E_22
-    t56 = t54 - t55
+    t54 = t52 - t53
+    t55 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t56 = X_2 * t37 - t50 * E_22
+    A_12 = t55 + t56
     t57 = h * (E_11_2 * E_22 - t37 * E_21)
     t58 = X_2 * E_13_2 - t50 * E_23
-    A_13 = t57 + t58
-    t59 = t52 - t53
-    A_12_above = t54 + t55
-    t60 = t57 - t58
-    t61 = ops.select(failed, ops.nan, A_12_above - t15)
+    t59 = t57 - t58
+    A_11_above = t52 + t53
+    t60 = t55 - t56
+    A_13_above = t57 + t58
+    t61 = ops.select(failed, ops.nan, A_13_above - u_z)
+    t62 = ops.select(failed, ops.nan, A_11_above - t13)
+    t63 = ops.select(failed, ops.nan, A_13_above - v_z)
     return (
-        ops.select(failed, ops.nan, A_11),
-        ops.select(failed, ops.nan, -t56),
-        ops.select(failed, ops.nan, A_13),
-        ops.select(failed, ops.nan, A_11 - t7),
-        ops.select(failed, ops.nan, -(t9 + t56)),
-        ops.select(failed, ops.nan, A_13 - u_z),
-        ops.select(failed, ops.nan, A_11 - t13),
-        ops.select(failed, ops.nan, -(t15 + t56)),
-        ops.select(failed, ops.nan, A_13 - v_z),
+        ops.select(failed, ops.nan, -t54),
+        ops.select(failed, ops.nan, A_12),
         ops.select(failed, ops.nan, -t59),
-        ops.select(failed, ops.nan, A_12_above),
+        ops.select(failed, ops.nan, -(t7 + t54)),
+        ops.select(failed, ops.nan, A_12 - t9),
+        ops.select(failed, ops.nan, -(u_z + t59)),
+        ops.select(failed, ops.nan, -(t13 + t54)),
+        ops.select(failed, ops.nan, A_12 - t15),
+        ops.select(failed, ops.nan, -(v_z + t59)),
+        ops.select(failed, ops.nan, A_11_above),
         ops.select(failed, ops.nan, -t60),
-        ops.select(failed, ops.nan, -(t7 + t59)),
-        ops.select(failed, ops.nan, A_12_above - t9),
-        ops.select(failed, ops.nan, -(u_z + t60)),
-        ops.select(failed, ops.nan, -(t13 + t59)),
+        ops.select(failed, ops.nan, A_13_above),
+        ops.select(failed, ops.nan, A_11_above - t7),
+        ops.select(failed, ops.nan, -(t9 + t60)),
         t61,
-        ops.select(failed, ops.nan, -(v_z + t60)),
+        t62,
+        ops.select(failed, ops.nan, -(t15 + t60)),
+        t63,
     )
 
 
@@ -804,32 +806,32 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t55 = (t40 * E_23 - E_13_2 * E_22) * h
     E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t41 / t52, t48 / t51)
     t56 = E_11_2 * X_2 - E_21 * t53
-    A_11 = t55 + t56
-    t57 = s_alpha1 * t3
-    t58 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t59 = X_2 * t40 - t53 * E_22
-    t60 = t58 - t59
+    t57 = t55 - t56
+    t58 = s_alpha1 * t3
+    t59 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t60 = X_2 * t40 - t53 * E_22
+    A_12 = t59 + t60
     t61 = h * (E_11_2 * E_22 - t40 * E_21)
     t62 = X_2 * E_13_2 - t53 * E_23
-    A_13 = t61 + t62
-    t63 = ops.select(failed, ops.nan, -(t35 * A_11 - t57 * t60 + t5 * A_13))
-    t64 = c_alpha2 * t4
-    t65 = s_alpha2 * t4
-    B_22 = t64 * (t8 - A_11) + t65 * (t10 + t60) + t7 * (u_z - A_13)
-    t66 = c_alpha3 * t16
-    t67 = s_alpha3 * t16
-    B_33 = t66 * (t14 - A_11) + t67 * (t17 + t60) + t13 * (v_z - A_13)
-    t68 = t55 - t56
-    A_12_above = t58 + t59
-    t69 = t61 - t62
-    t70 = ops.select(failed, ops.nan, t35 * t68 - t57 * A_12_above + t5 * t69)
-    B_22_above = t64 * (t8 + t68) + t65 * (t10 - A_12_above) + t7 * (u_z + t69)
-    B_33_above = t66 * (t14 + t68) + t67 * (t17 - A_12_above) + t13 * (v_z + t69)
+    t63 = t61 - t62
+    t64 = ops.select(failed, ops.nan, t35 * t57 - t58 * A_12 + t5 * t63)
+    t65 = c_alpha2 * t4
+    t66 = s_alpha2 * t4
+    B_22 = t65 * (t8 + t57) + t66 * (t10 - A_12) + t7 * (u_z + t63)
+    t67 = c_alpha3 * t16
+    t68 = s_alpha3 * t16
+    B_33 = t67 * (t14 + t57) + t68 * (t17 - A_12) + t13 * (v_z + t63)
+    A_11_above = t55 + t56
+    t69 = t59 - t60
+    A_13_above = t61 + t62
+    t70 = t35 * A_11_above - t58 * t69 + t5 * A_13_above
+    B_22_above = t65 * (t8 - A_11_above) + t66 * (t10 + t69) + t7 * (u_z - A_13_above)
+    B_33_above = t67 * (t14 - A_11_above) + t68 * (t17 + t69) + t13 * (v_z - A_13_above)
     return (
-        t63,
+        t64,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, B_33),
-        t70,
+        ops.select(failed, ops.nan, -t70),
         ops.select(failed, ops.nan, B_22_above),
         ops.select(failed, ops.nan, B_33_above),
     )
@@ -974,74 +976,74 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t54 = (t39 * E_23 - E_13_2 * E_22) * h
     E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t40 / t51, t47 / t50)
     t55 = E_11_2 * X_2 - E_21 * t52
-    A_11 = t54 + t55
-    t56 = s_alpha1 * t3
-    t57 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t58 = X_2 * t39 - t52 * E_22
-    t59 = t57 - t58
+    t56 = t54 - t55
+    t57 = s_alpha1 * t3
+    t58 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t59 = X_2 * t39 - t52 * E_22
+    A_12 = t58 + t59
     t60 = h * (E_11_2 * E_22 - t39 * E_21)
     t61 = X_2 * E_13_2 - t52 * E_23
-    A_13 = t60 + t61
-    t62 = t35 * A_11 - t56 * t59 + t5 * A_13
-    t63 = t10 + t59
-    t64 = v_z - A_13
-    t65 = u_z - A_13
-    t66 = t17 + t59
-    t67 = ops.select(t36, D_2 * j_2 * h, 1.0)
-    t68 = ops.select(failed, ops.nan, -(t62 * (t63 * t64 - t65 * t66) / t67))
-    t69 = c_alpha2 * t4
-    t70 = t8 - A_11
-    t71 = s_alpha2 * t4
-    t72 = t69 * t70 + t71 * t63 + t7 * t65
-    t73 = ops.select(failed, ops.nan, -(t72 * (t59 * t64 + A_13 * t66) / t67))
-    t74 = c_alpha3 * t16
-    t75 = t14 - A_11
-    t76 = s_alpha3 * t16
-    t77 = t74 * t75 + t76 * t66 + t13 * t64
-    t78 = ops.select(failed, ops.nan, t77 * (t59 * t65 + A_13 * t63) / t67)
-    t79 = ops.select(failed, ops.nan, t62 * (t64 * t70 - t65 * t75) / t67)
-    t80 = ops.select(failed, ops.nan, -(t72 * (A_11 * t64 - A_13 * t75) / t67))
-    t81 = ops.select(failed, ops.nan, t77 * (A_11 * t65 - A_13 * t70) / t67)
-    t82 = ops.select(failed, ops.nan, -(t62 * (t66 * t70 - t63 * t75) / t67))
-    t83 = ops.select(failed, ops.nan, t72 * (A_11 * t66 + t59 * t75) / t67)
-    t84 = ops.select(failed, ops.nan, -(t77 * (A_11 * t63 + t59 * t70) / t67))
-    t85 = t54 - t55
-    A_12_above = t57 + t58
-    t86 = t60 - t61
-    t87 = t35 * t85 - t56 * A_12_above + t5 * t86
-    t88 = t10 - A_12_above
-    t89 = v_z + t86
-    t90 = u_z + t86
-    t91 = t17 - A_12_above
-    t92 = ops.select(failed, ops.nan, -(t87 * (t88 * t89 - t90 * t91) / t67))
-    t93 = t8 + t85
-    t94 = t69 * t93 + t71 * t88 + t7 * t90
-    t95 = -(t94 * (A_12_above * t89 + t86 * t91) / t67)
-    t96 = t14 + t85
-    t97 = t74 * t96 + t76 * t91 + t13 * t89
-    t98 = ops.select(failed, ops.nan, t97 * (A_12_above * t90 + t86 * t88) / t67)
-    t99 = ops.select(failed, ops.nan, t87 * (t89 * t93 - t90 * t96) / t67)
-    t100 = ops.select(failed, ops.nan, -(t94 * (t85 * t89 - t86 * t96) / t67))
-    t101 = ops.select(failed, ops.nan, t97 * (t85 * t90 - t86 * t93) / t67)
-    t102 = ops.select(failed, ops.nan, -(t87 * (t91 * t93 - t88 * t96) / t67))
-    t103 = ops.select(failed, ops.nan, t94 * (t85 * t91 + A_12_above * t96) / t67)
-    t104 = -(t97 * (t85 * t88 + A_12_above * t93) / t67)
+    t62 = t60 - t61
+    t63 = t35 * t56 - t57 * A_12 + t5 * t62
+    t64 = t10 - A_12
+    t65 = v_z + t62
+    t66 = u_z + t62
+    t67 = t17 - A_12
+    t68 = ops.select(t36, D_2 * j_2 * h, 1.0)
+    t69 = ops.select(failed, ops.nan, -(t63 * (t64 * t65 - t66 * t67) / t68))
+    t70 = c_alpha2 * t4
+    t71 = t8 + t56
+    t72 = s_alpha2 * t4
+    t73 = t70 * t71 + t72 * t64 + t7 * t66
+    t74 = ops.select(failed, ops.nan, -(t73 * (A_12 * t65 + t62 * t67) / t68))
+    t75 = c_alpha3 * t16
+    t76 = t14 + t56
+    t77 = s_alpha3 * t16
+    t78 = t75 * t76 + t77 * t67 + t13 * t65
+    t79 = ops.select(failed, ops.nan, t78 * (A_12 * t66 + t62 * t64) / t68)
+    t80 = ops.select(failed, ops.nan, t63 * (t65 * t71 - t66 * t76) / t68)
+    t81 = ops.select(failed, ops.nan, -(t73 * (t56 * t65 - t62 * t76) / t68))
+    t82 = ops.select(failed, ops.nan, t78 * (t56 * t66 - t62 * t71) / t68)
+    t83 = ops.select(failed, ops.nan, -(t63 * (t67 * t71 - t64 * t76) / t68))
+    t84 = ops.select(failed, ops.nan, t73 * (t56 * t67 + A_12 * t76) / t68)
+    t85 = ops.select(failed, ops.nan, -(t78 * (t56 * t64 + A_12 * t71) / t68))
+    A_11_above = t54 + t55
+    t86 = t58 - t59
+    A_13_above = t60 + t61
+    t87 = t35 * A_11_above - t57 * t86 + t5 * A_13_above
+    t88 = t10 + t86
+    t89 = v_z - A_13_above
+    t90 = u_z - A_13_above
+    t91 = t17 + t86
+    t92 = ops.select(failed, ops.nan, -(t87 * (t88 * t89 - t90 * t91) / t68))
+    t93 = t8 - A_11_above
+    t94 = t70 * t93 + t72 * t88 + t7 * t90
+    t95 = -(t94 * (t86 * t89 + A_13_above * t91) / t68)
+    t96 = t14 - A_11_above
+    t97 = t75 * t96 + t77 * t91 + t13 * t89
+    t98 = ops.select(failed, ops.nan, t97 * (t86 * t90 + A_13_above * t88) / t68)
+    t99 = ops.select(failed, ops.nan, t87 * (t89 * t93 - t90 * t96) / t68)
+    t100 = t94 * (A_11_above * t89 - A_13_above * t96) / t68
+    t101 = t97 * (A_11_above * t90 - A_13_above * t93) / t68
+    t102 = ops.select(failed, ops.nan, -(t87 * (t91 * t93 - t88 * t96) / t68))
+    t103 = ops.select(failed, ops.nan, t94 * (A_11_above * t91 + t86 * t96) / t68)
+    t104 = -(t97 * (A_11_above * t88 + t86 * t93) / t68)
     return (
-        t68,
-        t73,
-        t78,
+        t69,
+        t74,
         t79,
         t80,
         t81,
         t82,
         t83,
         t84,
+        t85,
         t92,
         ops.select(failed, ops.nan, t95),
         t98,
         t99,
-        t100,
-        t101,
+        ops.select(failed, ops.nan, -t100),
+        ops.select(failed, ops.nan, t101),
         t102,
         t103,
         ops.select(failed, ops.nan, t104),
@@ -1188,31 +1190,31 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t54 = (t39 * E_23 - E_13_2 * E_22) * h
     E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t40 / t51, t47 / t50)
     t55 = E_11_2 * X_2 - E_21 * t52
-    A_11 = t54 + t55
-    t56 = s_alpha1 * t3
-    t57 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t58 = X_2 * t39 - t52 * E_22
-    t59 = t57 - t58
+    t56 = t54 - t55
+    t57 = s_alpha1 * t3
+    t58 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t59 = X_2 * t39 - t52 * E_22
+    A_12 = t58 + t59
     t60 = h * (E_11_2 * E_22 - t39 * E_21)
     t61 = X_2 * E_13_2 - t52 * E_23
-    A_13 = t60 + t61
-    t62 = c_alpha2 * t4
-    t63 = s_alpha2 * t4
-    t64 = t62 * (t8 - A_11) + t63 * (t10 + t59) + t7 * (u_z - A_13)
-    t65 = c_alpha3 * t16
-    t66 = s_alpha3 * t16
-    t67 = t65 * (t14 - A_11) + t66 * (t17 + t59) + t13 * (v_z - A_13)
-    t68 = (t35 * A_11 - t56 * t59 + t5 * A_13) * t64 * t67
-    t69 = ops.select(t36, D_2 * j_2 * h, 1.0)
-    t70 = t54 - t55
-    A_12_above = t57 + t58
-    t71 = t60 - t61
-    t72 = t62 * (t8 + t70) + t63 * (t10 - A_12_above) + t7 * (u_z + t71)
-    t73 = (t35 * t70 - t56 * A_12_above + t5 * t71) * t72
-    t74 = t65 * (t14 + t70) + t66 * (t17 - A_12_above) + t13 * (v_z + t71)
-    t75 = ops.select(failed, ops.nan, -(t73 * t74 / t69))
+    t62 = t60 - t61
+    t63 = c_alpha2 * t4
+    t64 = s_alpha2 * t4
+    t65 = t63 * (t8 + t56) + t64 * (t10 - A_12) + t7 * (u_z + t62)
+    t66 = c_alpha3 * t16
+    t67 = s_alpha3 * t16
+    t68 = t66 * (t14 + t56) + t67 * (t17 - A_12) + t13 * (v_z + t62)
+    t69 = (t35 * t56 - t57 * A_12 + t5 * t62) * t65 * t68
+    t70 = ops.select(t36, D_2 * j_2 * h, 1.0)
+    A_11_above = t54 + t55
+    t71 = t58 - t59
+    A_13_above = t60 + t61
+    t72 = t35 * A_11_above - t57 * t71 + t5 * A_13_above
+    t73 = t63 * (t8 - A_11_above) + t64 * (t10 + t71) + t7 * (u_z - A_13_above)
+    t74 = t66 * (t14 - A_11_above) + t67 * (t17 + t71) + t13 * (v_z - A_13_above)
+    t75 = ops.select(failed, ops.nan, -(t72 * t73 * t74 / t70))
     return (
-        ops.select(failed, ops.nan, -(t68 / t69)),
+        ops.select(failed, ops.nan, -(t69 / t70)),
         t75,
     )
 
@@ -1356,37 +1358,37 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t54 = (t39 * E_23 - E_13_2 * E_22) * h
     E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t40 / t51, t47 / t50)
     t55 = E_11_2 * X_2 - E_21 * t52
-    A_11 = t54 + t55
-    t56 = s_alpha1 * t3
-    t57 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t58 = X_2 * t39 - t52 * E_22
-    t59 = t57 - t58
+    t56 = t54 - t55
+    t57 = s_alpha1 * t3
+    t58 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t59 = X_2 * t39 - t52 * E_22
+    A_12 = t58 + t59
     t60 = h * (E_11_2 * E_22 - t39 * E_21)
     t61 = X_2 * E_13_2 - t52 * E_23
-    A_13 = t60 + t61
-    t62 = ops.select(failed, ops.nan, -(t35 * A_11 - t56 * t59 + t5 * A_13))
-    t63 = c_alpha2 * t4
-    t64 = s_alpha2 * t4
-    B_22 = t63 * (t8 - A_11) + t64 * (t10 + t59) + t7 * (u_z - A_13)
-    t65 = c_alpha3 * t16
-    t66 = s_alpha3 * t16
-    B_33 = t65 * (t14 - A_11) + t66 * (t17 + t59) + t13 * (v_z - A_13)
+    t62 = t60 - t61
+    t63 = ops.select(failed, ops.nan, t35 * t56 - t57 * A_12 + t5 * t62)
+    t64 = c_alpha2 * t4
+    t65 = s_alpha2 * t4
+    B_22 = t64 * (t8 + t56) + t65 * (t10 - A_12) + t7 * (u_z + t62)
+    t66 = c_alpha3 * t16
+    t67 = s_alpha3 * t16
+    B_33 = t66 * (t14 + t56) + t67 * (t17 - A_12) + t13 * (v_z + t62)
     Delta = D_2 * j_2 * h
-    t67 = t54 - t55
-    A_12_above = t57 + t58
-    t68 = t60 - t61
-    t69 = ops.select(failed, ops.nan, t35 * t67 - t56 * A_12_above + t5 * t68)
-    B_22_above = t63 * (t8 + t67) + t64 * (t10 - A_12_above) + t7 * (u_z + t68)
-    B_33_above = t65 * (t14 + t67) + t66 * (t17 - A_12_above) + t13 * (v_z + t68)
+    A_11_above = t54 + t55
+    t68 = t58 - t59
+    A_13_above = t60 + t61
+    t69 = t35 * A_11_above - t57 * t68 + t5 * A_13_above
+    B_22_above = t64 * (t8 - A_11_above) + t65 * (t10 + t68) + t7 * (u_z - A_13_above)
+    B_33_above = t66 * (t14 - A_11_above) + t67 * (t17 + t68) + t13 * (v_z - A_13_above)
     return (
-        t62,
+        t63,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, B_33),
-        ops.select(failed, ops.nan, Delta),
-        t69,
+        ops.select(failed, ops.nan, -Delta),
+        ops.select(failed, ops.nan, -t69),
         ops.select(failed, ops.nan, B_22_above),
         ops.select(failed, ops.nan, B_33_above),
-        ops.select(failed, ops.nan, -Delta),
+        ops.select(failed, ops.nan, Delta),
     )
 
 
@@ -1526,60 +1528,60 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     t51 = (t36 * E_23 - E_13_2 * E_22) * h
     E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t37 / t48, t44 / t47)
     t52 = E_11_2 * X_2 - E_21 * t49
-    A_11 = t51 + t52
-    t53 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t54 = X_2 * t36 - t49 * E_22
-    t55 = t53 - t54
+    t53 = t51 - t52
+    t54 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t55 = X_2 * t36 - t49 * E_22
+    A_12 = t54 + t55
     t56 = h * (E_11_2 * E_22 - t36 * E_21)
     t57 = X_2 * E_13_2 - t49 * E_23
-    A_13 = t56 + t57
-    t58 = t7 - A_11
-    t59 = t9 + t55
-    t60 = u_z - A_13
-    t61 = A_11 * A_11 + t55 * t55 + A_13 * A_13 + (t58 * t58 + t59 * t59 + t60 * t60)
-    t62 = t13 - A_11
-    t63 = t15 + t55
-    t64 = v_z - A_13
-    t65 = A_11 * t59 + t55 * t58
-    t66 = A_11 * t60 - A_13 * t58
-    t67 = A_11 * t63 + t55 * t62
-    t68 = A_11 * t64 - A_13 * t62
-    t69 = t65 * t65 + t66 * t66 + t67 * t67 + t68 * t68
-    t70 = t55 * t60 + A_13 * t59
-    t71 = t55 * t64 + A_13 * t63
-    t72 = t58 * t63 - t59 * t62
-    t73 = t58 * t64 - t60 * t62
-    t74 = t69 + t70 * t70 + t71 * t71 + t72 * t72 + t73 * t73
-    t75 = t59 * t64 - t60 * t63
-    t76 = (t61 + (t62 * t62 + t63 * t63 + t64 * t64)) * (t74 + t75 * t75)
-    t77 = ops.select(t33, 3.0 * (D_2 * j_2 * h), 1.0)
-    t78 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t33, t76, 1.0)) / t77)
-    t79 = t51 - t52
-    A_12_above = t53 + t54
-    t80 = t56 - t57
-    square1_above = t79 * t79 + A_12_above * A_12_above + t80 * t80
-    t81 = t7 + t79
-    t82 = t9 - A_12_above
-    t83 = u_z + t80
+    t58 = t56 - t57
+    t59 = t7 + t53
+    t60 = t9 - A_12
+    t61 = u_z + t58
+    t62 = t53 * t53 + A_12 * A_12 + t58 * t58 + (t59 * t59 + t60 * t60 + t61 * t61)
+    t63 = t13 + t53
+    t64 = t15 - A_12
+    t65 = v_z + t58
+    t66 = t53 * t60 + A_12 * t59
+    t67 = t53 * t61 - t58 * t59
+    t68 = t53 * t64 + A_12 * t63
+    t69 = t53 * t65 - t58 * t63
+    t70 = t66 * t66 + t67 * t67 + t68 * t68 + t69 * t69
+    t71 = A_12 * t61 + t58 * t60
+    t72 = A_12 * t65 + t58 * t64
+    t73 = t59 * t64 - t60 * t63
+    t74 = t59 * t65 - t61 * t63
+    t75 = t70 + t71 * t71 + t72 * t72 + t73 * t73 + t74 * t74
+    t76 = t60 * t65 - t61 * t64
+    t77 = (t62 + (t63 * t63 + t64 * t64 + t65 * t65)) * (t75 + t76 * t76)
+    t78 = ops.select(t33, 3.0 * (D_2 * j_2 * h), 1.0)
+    t79 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t33, t77, 1.0)) / t78)
+    A_11_above = t51 + t52
+    t80 = t54 - t55
+    A_13_above = t56 + t57
+    square1_above = A_11_above * A_11_above + t80 * t80 + A_13_above * A_13_above
+    t81 = t7 - A_11_above
+    t82 = t9 + t80
+    t83 = u_z - A_13_above
     t84 = square1_above + (t81 * t81 + t82 * t82 + t83 * t83)
-    t85 = t13 + t79
-    t86 = t15 - A_12_above
-    t87 = v_z + t80
-    t88 = t79 * t82 + A_12_above * t81
-    t89 = t79 * t83 - t80 * t81
-    t90 = t79 * t86 + A_12_above * t85
-    t91 = t79 * t87 - t80 * t85
+    t85 = t13 - A_11_above
+    t86 = t15 + t80
+    t87 = v_z - A_13_above
+    t88 = A_11_above * t82 + t80 * t81
+    t89 = A_11_above * t83 - A_13_above * t81
+    t90 = A_11_above * t86 + t80 * t85
+    t91 = A_11_above * t87 - A_13_above * t85
     t92 = t88 * t88 + t89 * t89 + t90 * t90 + t91 * t91
-    t93 = A_12_above * t83 + t80 * t82
-    t94 = A_12_above * t87 + t80 * t86
+    t93 = t80 * t83 + A_13_above * t82
+    t94 = t80 * t87 + A_13_above * t86
     t95 = t81 * t86 - t82 * t85
     t96 = t81 * t87 - t83 * t85
     t97 = t92 + t93 * t93 + t94 * t94 + t95 * t95 + t96 * t96
     t98 = t82 * t87 - t83 * t86
     t99 = (t84 + (t85 * t85 + t86 * t86 + t87 * t87)) * (t97 + t98 * t98)
-    t100 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t33, t99, 1.0)) / t77)
+    t100 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t33, t99, 1.0)) / t78)
     return (
-        t78,
+        t79,
         t100,
     )
 

@@ -192,16 +192,16 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     t46 = h * (E_12_2 * t45 - t30 * E_22)
     t47 = E_12_2 * X_2 + t41 * E_22
     t48 = h * (E_11_2 * t45 - t30 * E_21)
-    t49 = t41 * t45 - (rho1 - t30 * X_2)
-    t50 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t49 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t50 = t41 * t45 - (rho1 - t30 * X_2)
     t51 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t42 - t46),
-        ops.select(failed, ops.nan, t47 + t48),
-        ops.select(failed, ops.nan, -(t49 + t50)),
         ops.select(failed, ops.nan, t42 + t46),
         ops.select(failed, ops.nan, t47 - t48),
-        ops.select(failed, ops.nan, t50 - t49),
+        ops.select(failed, ops.nan, t49 - t50),
+        ops.select(failed, ops.nan, t42 - t46),
+        ops.select(failed, ops.nan, t47 + t48),
+        ops.select(failed, ops.nan, -(t50 + t49)),
         t51,
         t51,
     )
@@ -338,24 +338,24 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t52 = ops.select(in_line, t51, t43 / t48)
     E_22 = ops.select(in_line, E_12_2 * t51 / t47, n_y_2 / t48)
     t53 = h * (E_12_2 * t52 - t37 * E_22)
-    t54 = c1_x + (t49 - t53)
+    t54 = c1_x + (t49 + t53)
     t55 = E_12_2 * X_2 - t45 * E_22
     t56 = h * (E_11_2 * t52 - t37 * E_21)
-    A_12 = t55 + t56
+    A_12 = t55 - t56
     t57 = ops.select(failed, ops.nan, A_12)
     t58 = t37 * X_2 - t45 * t52
     t59 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t60 = ops.select(failed, ops.nan, rho1 - (t58 + t59))
+    t60 = ops.select(failed, ops.nan, rho1 - (t58 - t59))
     t61 = ops.select(failed, ops.nan, -t4)
     t62 = ops.select(failed, ops.nan, t8)
     t63 = ops.select(failed, ops.nan, rho2)
     t64 = ops.select(failed, ops.nan, t54 - t3)
     t65 = ops.select(failed, ops.nan, -t8)
     t66 = ops.select(failed, ops.nan, rho3)
-    t67 = c1_x + (t49 + t53)
-    A_12_above = t55 - t56
+    t67 = c1_x + (t49 - t53)
+    A_12_above = t55 + t56
     t68 = ops.select(failed, ops.nan, A_12_above)
-    t69 = ops.select(failed, ops.nan, rho1 - (t58 - t59))
+    t69 = ops.select(failed, ops.nan, rho1 - (t58 + t59))
     t70 = ops.select(failed, ops.nan, t67 - t3)
     return (
         t29,
@@ -536,17 +536,17 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     t45 = ops.select(in_line, t44, t38 / t40)
     E_22 = ops.select(in_line, E_12_2 * t44 / t31, n_y_2 / t40)
     t46 = h * (E_12_2 * t45 - t30 * E_22)
-    A_11 = t42 - t46
+    A_11 = t42 + t46
     t47 = X_2 * E_12_2 - t41 * E_22
     t48 = h * (E_11_2 * t45 - t30 * E_21)
-    A_12 = t47 + t48
+    A_12 = t47 - t48
     t49 = X_2 * t30 - t41 * t45
     t50 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t51 = t49 + t50
+    t51 = t49 - t50
     t52 = ops.select(failed, ops.nan, t3 + A_11)
-    A_11_above = t42 + t46
-    A_12_above = t47 - t48
-    t53 = t49 - t50
+    A_11_above = t42 - t46
+    A_12_above = t47 + t48
+    t53 = t49 + t50
     t54 = ops.select(failed, ops.nan, t3 + A_11_above)
     t55 = ops.select(failed, ops.nan, c3_y + A_12_above)
     t56 = ops.select(failed, ops.nan, A_12_above - c3_y)
@@ -685,8 +685,8 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     E_21 = ops.select(in_line, 1.0 + t30 * (E_11_2 * E_11_2) / t44, -(t38 / t40))
     E_22 = ops.select(in_line, E_12_2 * t31 / t44, n_y_2 / t40)
     t45 = ops.sqrt(t43) * (E_12_2 * E_21 - E_11_2 * E_22)
-    t46 = t42 + t45
-    t47 = t42 - t45
+    t46 = t42 - t45
+    t47 = t42 + t45
     return (
         ops.select(failed, ops.nan, -t46),
         ops.select(failed, ops.nan, t4 - t46),
@@ -811,32 +811,32 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t44, -(t37 / t39))
     E_22 = ops.select(in_line, E_12_2 * t30 / t44, n_y_2 / t39)
     t45 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t46 = t42 + t45
+    t46 = t42 - t45
     t47 = X_2 * E_12_2 - t41 * E_22
     t48 = h * (E_11_2 * t40 - t28 * E_21)
-    A_12 = t47 + t48
+    A_12 = t47 - t48
     A_22 = c3_y + A_12
     A_33 = t7 - t46
     A_23 = t4 - t46
     t49 = c3_y - A_12
     t50 = ops.select(t25, D_2 * j_2 * h, 1.0)
-    t51 = ops.select(failed, ops.nan, -(t46 * (A_22 * A_33 + A_23 * t49) / t50))
-    t52 = ops.select(failed, ops.nan, -(A_23 * (A_12 * A_33 - t46 * t49) / t50))
-    t53 = ops.select(failed, ops.nan, A_33 * (A_12 * A_23 + t46 * A_22) / t50)
+    t51 = ops.select(failed, ops.nan, t46 * (A_22 * A_33 + A_23 * t49) / t50)
+    t52 = ops.select(failed, ops.nan, A_23 * (A_12 * A_33 - t46 * t49) / t50)
+    t53 = ops.select(failed, ops.nan, -(A_33 * (A_12 * A_23 + t46 * A_22) / t50))
     t54 = X_2 * E_11_2 - t41 * E_21
     t55 = h * (E_12_2 * t40 - t28 * E_22)
-    A_11 = t54 - t55
+    A_11 = t54 + t55
     A_21 = t3 + A_11
-    t56 = ops.select(failed, ops.nan, t46 * (A_33 * A_21 - A_23 * A_21) / t50)
+    t56 = ops.select(failed, ops.nan, -(t46 * (A_33 * A_21 - A_23 * A_21) / t50))
     t57 = t46 * A_21
-    t58 = ops.select(failed, ops.nan, A_23 * (A_33 * A_11 + t57) / t50)
-    t59 = ops.select(failed, ops.nan, -(A_33 * (t57 + A_23 * A_11) / t50))
-    t60 = ops.select(failed, ops.nan, t46 * (t49 * A_21 + A_22 * A_21) / t50)
+    t58 = ops.select(failed, ops.nan, -(A_23 * (A_33 * A_11 + t57) / t50))
+    t59 = ops.select(failed, ops.nan, A_33 * (t57 + A_23 * A_11) / t50)
+    t60 = ops.select(failed, ops.nan, -(t46 * (t49 * A_21 + A_22 * A_21) / t50))
     t61 = A_12 * A_21
-    t62 = ops.select(failed, ops.nan, A_23 * (t49 * A_11 + t61) / t50)
-    t63 = ops.select(failed, ops.nan, -(A_33 * (t61 - A_22 * A_11) / t50))
-    t64 = t42 - t45
-    A_12_above = t47 - t48
+    t62 = ops.select(failed, ops.nan, -(A_23 * (t49 * A_11 + t61) / t50))
+    t63 = ops.select(failed, ops.nan, A_33 * (t61 - A_22 * A_11) / t50)
+    t64 = t42 + t45
+    A_12_above = t47 + t48
     A_22_above = c3_y + A_12_above
     A_33_above = t7 - t64
     A_23_above = t4 - t64
@@ -844,17 +844,16 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t66 = t64 * (A_22_above * A_33_above + A_23_above * t65)
     t67 = A_23_above * (A_12_above * A_33_above - t64 * t65)
     t68 = A_33_above * (A_12_above * A_23_above + t64 * A_22_above)
-    A_11_above = t54 + t55
+    A_11_above = t54 - t55
     A_21_above = t3 + A_11_above
     t69 = A_33_above * A_21_above - A_23_above * A_21_above
-    t70 = ops.select(failed, ops.nan, -(t64 * t69 / t50))
-    t71 = t64 * A_21_above
-    t72 = A_23_above * (A_33_above * A_11_above + t71) / t50
-    t73 = A_33_above * (t71 + A_23_above * A_11_above) / t50
-    t74 = t64 * (t65 * A_21_above + A_22_above * A_21_above)
-    t75 = A_12_above * A_21_above
-    t76 = -(A_23_above * (t65 * A_11_above + t75) / t50)
-    t77 = A_33_above * (t75 - A_22_above * A_11_above) / t50
+    t70 = t64 * A_21_above
+    t71 = A_23_above * (A_33_above * A_11_above + t70) / t50
+    t72 = A_33_above * (t70 + A_23_above * A_11_above) / t50
+    t73 = t64 * (t65 * A_21_above + A_22_above * A_21_above)
+    t74 = A_12_above * A_21_above
+    t75 = ops.select(failed, ops.nan, A_23_above * (t65 * A_11_above + t74) / t50)
+    t76 = A_33_above * (t74 - A_22_above * A_11_above) / t50
     return (
         t51,
         t52,
@@ -865,15 +864,15 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
         t60,
         t62,
         t63,
-        ops.select(failed, ops.nan, t66 / t50),
-        ops.select(failed, ops.nan, t67 / t50),
-        ops.select(failed, ops.nan, -(t68 / t50)),
-        t70,
+        ops.select(failed, ops.nan, -(t66 / t50)),
+        ops.select(failed, ops.nan, -(t67 / t50)),
+        ops.select(failed, ops.nan, t68 / t50),
+        ops.select(failed, ops.nan, t64 * t69 / t50),
+        ops.select(failed, ops.nan, t71),
         ops.select(failed, ops.nan, -t72),
-        ops.select(failed, ops.nan, t73),
-        ops.select(failed, ops.nan, -(t74 / t50)),
-        ops.select(failed, ops.nan, t76),
-        ops.select(failed, ops.nan, t77),
+        ops.select(failed, ops.nan, t73 / t50),
+        t75,
+        ops.select(failed, ops.nan, -t76),
     )
 
 
@@ -991,11 +990,11 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t43, -(t37 / t39))
     E_22 = ops.select(in_line, E_12_2 * t30 / t43, n_y_2 / t39)
     t44 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t45 = t41 + t44
+    t45 = t41 - t44
     t46 = ops.select(t25, D_2 * j_2 * h, 1.0)
-    t47 = ops.select(failed, ops.nan, -(t45 * (t4 - t45) * (t7 - t45) / t46))
-    t48 = t41 - t44
-    t49 = ops.select(failed, ops.nan, t48 * (t4 - t48) * (t7 - t48) / t46)
+    t47 = ops.select(failed, ops.nan, t45 * (t4 - t45) * (t7 - t45) / t46)
+    t48 = t41 + t44
+    t49 = ops.select(failed, ops.nan, -(t48 * (t4 - t48) * (t7 - t48) / t46))
     return (
         t47,
         t49,
@@ -1115,18 +1114,18 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t43, -(t37 / t39))
     E_22 = ops.select(in_line, E_12_2 * t30 / t43, n_y_2 / t39)
     t44 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t45 = t41 + t44
+    t45 = t41 - t44
     Delta = D_2 * j_2 * h
-    t46 = t41 - t44
+    t46 = t41 + t44
     return (
         ops.select(failed, ops.nan, -t45),
         ops.select(failed, ops.nan, t4 - t45),
         ops.select(failed, ops.nan, t7 - t45),
-        ops.select(failed, ops.nan, Delta),
+        ops.select(failed, ops.nan, -Delta),
         ops.select(failed, ops.nan, -t46),
         ops.select(failed, ops.nan, t4 - t46),
         ops.select(failed, ops.nan, t7 - t46),
-        ops.select(failed, ops.nan, -Delta),
+        ops.select(failed, ops.nan, Delta),
     )
 
 
@@ -1244,13 +1243,13 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t44 = ops.select(in_line, t43, t37 / t39)
     E_22 = ops.select(in_line, E_12_2 * t43 / t30, n_y_2 / t39)
     t45 = h * (E_12_2 * t44 - t29 * E_22)
-    A_11 = t41 - t45
+    A_11 = t41 + t45
     t46 = X_2 * E_12_2 - t40 * E_22
     t47 = h * (E_11_2 * t44 - t29 * E_21)
-    A_12 = t46 + t47
+    A_12 = t46 - t47
     t48 = X_2 * t29 - t40 * t44
     t49 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t50 = t48 + t49
+    t50 = t48 - t49
     A_21 = t3 + A_11
     t51 = A_21 * A_21
     A_22 = c3_y + A_12
@@ -1274,10 +1273,10 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t67 = (t52 + (t51 + t53 * t53 + A_33 * A_33)) * (t65 + t66 * t66)
     t68 = ops.select(t25, 3.0 * (D_2 * j_2 * h), 1.0)
     t69 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t25, t67, 1.0)) / t68)
-    A_11_above = t41 + t45
-    A_12_above = t46 - t47
+    A_11_above = t41 - t45
+    A_12_above = t46 + t47
     t70 = A_11_above * A_11_above + A_12_above * A_12_above
-    t71 = t48 - t49
+    t71 = t48 + t49
     A_21_above = t3 + A_11_above
     t72 = A_21_above * A_21_above
     A_22_above = c3_y + A_12_above

@@ -237,12 +237,12 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t45 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t33 - t34 + t40,
-        -(t41 + t42) + t40,
-        t43 - t44 + t40,
         -(t33 + t34) + t40,
         t41 - t42 + t40,
         -(t43 + t44) + t40,
+        t33 - t34 + t40,
+        -(t41 + t42) + t40,
+        t43 - t44 + t40,
         t45,
         t45,
     )
@@ -429,15 +429,15 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     h = np.sqrt(np.maximum(t50, 0.0) * (l + rho))
     del rho, t50
     t63 = (t38 * E_23 - E_13 * E_22) * h
-    t64 = t10 - (t61 + t63)
+    t64 = t10 - (t61 - t63)
     t65 = t38 * X + t49 * E_22
     t66 = h * (E_11 * E_23 - E_13 * E_21)
-    t67 = t19 - (t65 - t66)
+    t67 = t19 - (t65 + t66)
     t68 = E_13 * X + t49 * E_23
     del E_13, E_23, X, t49
     t69 = h * (E_11 * E_22 - t38 * E_21)
     del E_11, E_21, E_22, h, t38
-    t70 = t68 + t69 - t5 + t52
+    t70 = t68 - t69 - t5 + t52
     t71 = t12 + t52
     del t12
     t72 = t21 + t52
@@ -458,11 +458,11 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del t34
     t80 = -t31 + t52
     del t31
-    t81 = t10 - (t61 - t63)
+    t81 = t10 - (t61 + t63)
     del t10, t61, t63
-    t82 = t19 - (t65 + t66)
+    t82 = t19 - (t65 - t66)
     del t19, t65, t66
-    t83 = t68 - t69 - t5 + t52
+    t83 = t68 + t69 - t5 + t52
     del t5, t68, t69
     return (
         t53,
@@ -656,52 +656,52 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t25 / t27, t23 / j)
     del j, t23, t25, t27
     t32 = E_11 * X - E_21 * t29
-    A_11 = t31 + t32
-    t33 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t34 = t33 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t33
-    t35 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t36 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    t33 = t31 - t32
+    t34 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t35 = t34 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t34
+    t36 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t37 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= _runtime.FEASIBILITY * (size * size)
     del in_line, t28
-    t37 = t36 & (-(size * _runtime.FEASIBILITY) <= t30)
-    del size, t30, t36
-    failed = np.logical_not(t34 & t35) | np.logical_not(t37)
-    del t34, t35, t37
-    t38 = _runtime.poison(failed)
+    t38 = t37 & (-(size * _runtime.FEASIBILITY) <= t30)
+    del size, t30, t37
+    failed = np.logical_not(t35 & t36) | np.logical_not(t38)
+    del t35, t36, t38
+    t39 = _runtime.poison(failed)
     del failed
-    t39 = h * (E_11 * E_23 - E_13 * E_21)
-    t40 = X * t13 - t29 * E_22
-    t41 = t39 - t40
+    t40 = h * (E_11 * E_23 - E_13 * E_21)
+    t41 = X * t13 - t29 * E_22
+    A_12 = t40 + t41
     t42 = h * (E_11 * E_22 - t13 * E_21)
     del E_11, E_21, E_22, h, t13
     t43 = X * E_13 - t29 * E_23
     del E_13, E_23, X, t29
-    A_13 = t42 + t43
-    t44 = t31 - t32
+    t44 = t42 - t43
+    A_11_above = t31 + t32
     del t31, t32
-    A_12_above = t39 + t40
-    del t39, t40
-    t45 = t42 - t43
+    t45 = t40 - t41
+    del t40, t41
+    A_13_above = t42 + t43
     del t42, t43
     return (
-        A_11 + t38,
-        -t41 + t38,
-        A_13 + t38,
-        A_11 - t5 + t38,
-        -(t7 + t41) + t38,
-        A_13 - u_z + t38,
-        A_11 - t9 + t38,
-        -(t10 + t41) + t38,
-        A_13 - v_z + t38,
-        -t44 + t38,
-        A_12_above + t38,
-        -t45 + t38,
-        -(t5 + t44) + t38,
-        A_12_above - t7 + t38,
-        -(u_z + t45) + t38,
-        -(t9 + t44) + t38,
-        A_12_above - t10 + t38,
-        -(v_z + t45) + t38,
+        -t33 + t39,
+        A_12 + t39,
+        -t44 + t39,
+        -(t5 + t33) + t39,
+        A_12 - t7 + t39,
+        -(u_z + t44) + t39,
+        -(t9 + t33) + t39,
+        A_12 - t10 + t39,
+        -(v_z + t44) + t39,
+        A_11_above + t39,
+        -t45 + t39,
+        A_13_above + t39,
+        A_11_above - t5 + t39,
+        -(t7 + t45) + t39,
+        A_13_above - u_z + t39,
+        A_11_above - t9 + t39,
+        -(t10 + t45) + t39,
+        A_13_above - v_z + t39,
     )
 
 
@@ -833,56 +833,57 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t28 / t30, t26 / j)
     del j, t26, t28, t30
     t35 = E_11 * X - E_21 * t32
-    A_11 = t34 + t35
-    t36 = s_alpha1 * t1
+    t36 = t34 - t35
+    t37 = s_alpha1 * t1
     del s_alpha1, t1
-    t37 = h * (E_11 * E_23 - E_13 * E_21)
-    t38 = X * t16 - t32 * E_22
-    t39 = t37 - t38
+    t38 = h * (E_11 * E_23 - E_13 * E_21)
+    t39 = X * t16 - t32 * E_22
+    A_12 = t38 + t39
     t40 = h * (E_11 * E_22 - t16 * E_21)
     del E_11, E_21, E_22, h, t16
     t41 = X * E_13 - t32 * E_23
     del E_13, E_23, X, t32
-    A_13 = t40 + t41
-    t42 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t43 = t42 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t42
-    t44 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t45 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    t42 = t40 - t41
+    t43 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t44 = t43 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t43
+    t45 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t46 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= _runtime.FEASIBILITY * (size * size)
     del in_line, t31
-    t46 = t45 & (-(size * _runtime.FEASIBILITY) <= t33)
-    del size, t33, t45
-    failed = np.logical_not(t43 & t44) | np.logical_not(t46)
-    del t43, t44, t46
-    t47 = _runtime.poison(failed)
+    t47 = t46 & (-(size * _runtime.FEASIBILITY) <= t33)
+    del size, t33, t46
+    failed = np.logical_not(t44 & t45) | np.logical_not(t47)
+    del t44, t45, t47
+    t48 = _runtime.poison(failed)
     del failed
-    t48 = c_alpha2 * t3
+    t49 = c_alpha2 * t3
     del c_alpha2
-    t49 = s_alpha2 * t3
+    t50 = s_alpha2 * t3
     del s_alpha2, t3
-    B_22 = t48 * (t7 - A_11) + t49 * (t9 + t39) + t6 * (u_z - A_13)
-    t50 = c_alpha3 * t10
+    B_22 = t49 * (t7 + t36) + t50 * (t9 - A_12) + t6 * (u_z + t42)
+    t51 = c_alpha3 * t10
     del c_alpha3
-    t51 = s_alpha3 * t10
+    t52 = s_alpha3 * t10
     del s_alpha3, t10
-    B_33 = t50 * (t12 - A_11) + t51 * (t13 + t39) + t11 * (v_z - A_13)
-    t52 = t34 - t35
+    B_33 = t51 * (t12 + t36) + t52 * (t13 - A_12) + t11 * (v_z + t42)
+    A_11_above = t34 + t35
     del t34, t35
-    A_12_above = t37 + t38
-    del t37, t38
-    t53 = t40 - t41
+    t53 = t38 - t39
+    del t38, t39
+    A_13_above = t40 + t41
     del t40, t41
-    B_22_above = t48 * (t7 + t52) + t49 * (t9 - A_12_above) + t6 * (u_z + t53)
-    del t48, t49, t6, t7, t9, u_z
-    B_33_above = t50 * (t12 + t52) + t51 * (t13 - A_12_above) + t11 * (v_z + t53)
-    del t11, t12, t13, t50, t51, v_z
+    t54 = t2 * A_11_above - t37 * t53 + t4 * A_13_above
+    B_22_above = t49 * (t7 - A_11_above) + t50 * (t9 + t53) + t6 * (u_z - A_13_above)
+    del t49, t50, t6, t7, t9, u_z
+    B_33_above = t51 * (t12 - A_11_above) + t52 * (t13 + t53) + t11 * (v_z - A_13_above)
+    del A_11_above, A_13_above, t11, t12, t13, t51, t52, t53, v_z
     return (
-        -(t2 * A_11 - t36 * t39 + t4 * A_13) + t47,
-        B_22 + t47,
-        B_33 + t47,
-        t2 * t52 - t36 * A_12_above + t4 * t53 + t47,
-        B_22_above + t47,
-        B_33_above + t47,
+        t2 * t36 - t37 * A_12 + t4 * t42 + t48,
+        B_22 + t48,
+        B_33 + t48,
+        -t54 + t48,
+        B_22_above + t48,
+        B_33_above + t48,
     )
 
 
@@ -1014,106 +1015,107 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t28 / t30, t26 / j)
     del t26, t28, t30
     t35 = E_11 * X - E_21 * t32
-    A_11 = t34 + t35
-    t36 = s_alpha1 * t1
+    t36 = t34 - t35
+    t37 = s_alpha1 * t1
     del s_alpha1, t1
-    t37 = h * (E_11 * E_23 - E_13 * E_21)
-    t38 = X * t16 - t32 * E_22
-    t39 = t37 - t38
+    t38 = h * (E_11 * E_23 - E_13 * E_21)
+    t39 = X * t16 - t32 * E_22
+    A_12 = t38 + t39
     t40 = h * (E_11 * E_22 - t16 * E_21)
     del E_11, E_21, E_22, t16
     t41 = X * E_13 - t32 * E_23
     del E_13, E_23, X, t32
-    A_13 = t40 + t41
-    t42 = t2 * A_11 - t36 * t39 + t4 * A_13
-    t43 = t9 + t39
-    t44 = v_z - A_13
-    t45 = u_z - A_13
-    t46 = t13 + t39
+    t42 = t40 - t41
+    t43 = t2 * t36 - t37 * A_12 + t4 * t42
+    t44 = t9 - A_12
+    t45 = v_z + t42
+    t46 = u_z + t42
+    t47 = t13 - A_12
     Delta = D * j * h
     del D, h, j
-    t47 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t48 = t47 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t47
-    t49 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t50 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    t48 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t49 = t48 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t48
+    t50 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t51 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= _runtime.FEASIBILITY * (size * size)
     del in_line, t31
-    t51 = t50 & (-(size * _runtime.FEASIBILITY) <= t33)
-    del size, t33, t50
-    failed = np.logical_not(t48 & t49) | np.logical_not(t51)
-    del t48, t49, t51
-    t52 = _runtime.poison(failed)
+    t52 = t51 & (-(size * _runtime.FEASIBILITY) <= t33)
+    del size, t33, t51
+    failed = np.logical_not(t49 & t50) | np.logical_not(t52)
+    del t49, t50, t52
+    t53 = _runtime.poison(failed)
     del failed
-    t53 = -(t42 * (t43 * t44 - t45 * t46) / Delta) + t52
-    t54 = c_alpha2 * t3
+    t54 = -(t43 * (t44 * t45 - t46 * t47) / Delta) + t53
+    t55 = c_alpha2 * t3
     del c_alpha2
-    t55 = t7 - A_11
-    t56 = s_alpha2 * t3
+    t56 = t7 + t36
+    t57 = s_alpha2 * t3
     del s_alpha2, t3
-    t57 = t54 * t55 + t56 * t43 + t6 * t45
-    t58 = -(t57 * (t39 * t44 + A_13 * t46) / Delta) + t52
-    t59 = c_alpha3 * t10
+    t58 = t55 * t56 + t57 * t44 + t6 * t46
+    t59 = -(t58 * (A_12 * t45 + t42 * t47) / Delta) + t53
+    t60 = c_alpha3 * t10
     del c_alpha3
-    t60 = t12 - A_11
-    t61 = s_alpha3 * t10
+    t61 = t12 + t36
+    t62 = s_alpha3 * t10
     del s_alpha3, t10
-    t62 = t59 * t60 + t61 * t46 + t11 * t44
-    t63 = -(t57 * (A_11 * t44 - A_13 * t60) / Delta) + t52
-    t64 = t62 * (A_11 * t45 - A_13 * t55) / Delta + t52
-    t65 = -(t42 * (t46 * t55 - t43 * t60) / Delta) + t52
-    t66 = -(t62 * (A_11 * t43 + t39 * t55) / Delta) + t52
-    t67 = t34 - t35
+    t63 = t60 * t61 + t62 * t47 + t11 * t45
+    t64 = -(t58 * (t36 * t45 - t42 * t61) / Delta) + t53
+    t65 = -(t43 * (t47 * t56 - t44 * t61) / Delta) + t53
+    t66 = -(t63 * (t36 * t44 + A_12 * t56) / Delta) + t53
+    A_11_above = t34 + t35
     del t34, t35
-    A_12_above = t37 + t38
-    del t37, t38
-    t68 = t40 - t41
+    t67 = t38 - t39
+    del t38, t39
+    A_13_above = t40 + t41
     del t40, t41
-    t69 = t2 * t67 - t36 * A_12_above + t4 * t68
-    del t2, t36, t4
-    t70 = t9 - A_12_above
+    t68 = t2 * A_11_above - t37 * t67 + t4 * A_13_above
+    del t2, t37, t4
+    t69 = t9 + t67
     del t9
-    t71 = v_z + t68
+    t70 = v_z - A_13_above
     del v_z
-    t72 = u_z + t68
+    t71 = u_z - A_13_above
     del u_z
-    t73 = t13 - A_12_above
+    t72 = t13 + t67
     del t13
-    t74 = -(t69 * (t70 * t71 - t72 * t73) / Delta) + t52
-    t75 = t7 + t67
+    t73 = -(t68 * (t69 * t70 - t71 * t72) / Delta) + t53
+    t74 = t7 - A_11_above
     del t7
-    t76 = t54 * t75 + t56 * t70 + t6 * t72
-    del t54, t56, t6
-    t77 = -(t76 * (A_12_above * t71 + t68 * t73) / Delta)
-    t78 = t12 + t67
+    t75 = t55 * t74 + t57 * t69 + t6 * t71
+    del t55, t57, t6
+    t76 = -(t75 * (t67 * t70 + A_13_above * t72) / Delta)
+    t77 = t12 - A_11_above
     del t12
-    t79 = t59 * t78 + t61 * t73 + t11 * t71
-    del t11, t59, t61
-    t80 = t79 * (A_12_above * t72 + t68 * t70) / Delta + t52
-    t81 = -(t76 * (t67 * t71 - t68 * t78) / Delta) + t52
-    t82 = -(t69 * (t73 * t75 - t70 * t78) / Delta) + t52
-    t83 = t76 * (t67 * t73 + A_12_above * t78) / Delta + t52
-    del t73, t76
-    t84 = -(t79 * (t67 * t70 + A_12_above * t75) / Delta)
-    del A_12_above, t70
+    t78 = t60 * t77 + t62 * t72 + t11 * t70
+    del t11, t60, t62
+    t79 = t78 * (t67 * t71 + A_13_above * t69) / Delta + t53
+    t80 = t75 * (A_11_above * t70 - A_13_above * t77) / Delta
+    t81 = t78 * (A_11_above * t71 - A_13_above * t74) / Delta
+    del A_13_above
+    t82 = -(t68 * (t72 * t74 - t69 * t77) / Delta) + t53
+    t83 = t75 * (A_11_above * t72 + t67 * t77) / Delta + t53
+    del t72, t75
+    t84 = -(t78 * (A_11_above * t69 + t67 * t74) / Delta)
+    del A_11_above, t67, t69, t78
     return (
-        t53,
-        t58,
-        t62 * (t39 * t45 + A_13 * t43) / Delta + t52,
-        t42 * (t44 * t55 - t45 * t60) / Delta + t52,
-        t63,
+        t54,
+        t59,
+        t63 * (A_12 * t46 + t42 * t44) / Delta + t53,
+        t43 * (t45 * t56 - t46 * t61) / Delta + t53,
         t64,
+        t63 * (t36 * t46 - t42 * t56) / Delta + t53,
         t65,
-        t57 * (A_11 * t46 + t39 * t60) / Delta + t52,
+        t58 * (t36 * t47 + A_12 * t61) / Delta + t53,
         t66,
-        t74,
-        t77 + t52,
-        t80,
-        t69 * (t71 * t75 - t72 * t78) / Delta + t52,
-        t81,
-        t79 * (t67 * t72 - t68 * t75) / Delta + t52,
+        t73,
+        t76 + t53,
+        t79,
+        t68 * (t70 * t74 - t71 * t77) / Delta + t53,
+        -t80 + t53,
+        t81 + t53,
         t82,
         t83,
-        t84 + t52,
+        t84 + t53,
     )
 
 
@@ -1246,58 +1248,58 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t28 / t30, t26 / j)
     del t26, t28, t30
     t35 = E_11 * X - E_21 * t32
-    A_11 = t34 + t35
-    t36 = s_alpha1 * t1
+    t36 = t34 - t35
+    t37 = s_alpha1 * t1
     del s_alpha1, t1
-    t37 = h * (E_11 * E_23 - E_13 * E_21)
-    t38 = X * t16 - t32 * E_22
-    t39 = t37 - t38
+    t38 = h * (E_11 * E_23 - E_13 * E_21)
+    t39 = X * t16 - t32 * E_22
+    A_12 = t38 + t39
     t40 = h * (E_11 * E_22 - t16 * E_21)
     del E_11, E_21, E_22, t16
     t41 = X * E_13 - t32 * E_23
     del E_13, E_23, X, t32
-    A_13 = t40 + t41
-    t42 = c_alpha2 * t3
+    t42 = t40 - t41
+    t43 = c_alpha2 * t3
     del c_alpha2
-    t43 = s_alpha2 * t3
+    t44 = s_alpha2 * t3
     del s_alpha2, t3
-    t44 = t42 * (t7 - A_11) + t43 * (t9 + t39) + t6 * (u_z - A_13)
-    t45 = c_alpha3 * t10
+    t45 = t43 * (t7 + t36) + t44 * (t9 - A_12) + t6 * (u_z + t42)
+    t46 = c_alpha3 * t10
     del c_alpha3
-    t46 = s_alpha3 * t10
+    t47 = s_alpha3 * t10
     del s_alpha3, t10
-    t47 = t45 * (t12 - A_11) + t46 * (t13 + t39) + t11 * (v_z - A_13)
-    t48 = (t2 * A_11 - t36 * t39 + t4 * A_13) * t44 * t47
-    del A_11, A_13, t39, t44, t47
+    t48 = t46 * (t12 + t36) + t47 * (t13 - A_12) + t11 * (v_z + t42)
+    t49 = (t2 * t36 - t37 * A_12 + t4 * t42) * t45 * t48
+    del A_12, t36, t42, t45, t48
     Delta = D * j * h
     del D, h, j
-    t49 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t50 = t49 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t49
-    t51 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t52 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    t50 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t51 = t50 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t50
+    t52 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t53 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= _runtime.FEASIBILITY * (size * size)
     del in_line, t31
-    t53 = t52 & (-(size * _runtime.FEASIBILITY) <= t33)
-    del size, t33, t52
-    failed = np.logical_not(t50 & t51) | np.logical_not(t53)
-    del t50, t51, t53
-    t54 = _runtime.poison(failed)
+    t54 = t53 & (-(size * _runtime.FEASIBILITY) <= t33)
+    del size, t33, t53
+    failed = np.logical_not(t51 & t52) | np.logical_not(t54)
+    del t51, t52, t54
+    t55 = _runtime.poison(failed)
     del failed
-    t55 = t34 - t35
+    A_11_above = t34 + t35
     del t34, t35
-    A_12_above = t37 + t38
-    del t37, t38
-    t56 = t40 - t41
+    t56 = t38 - t39
+    del t38, t39
+    A_13_above = t40 + t41
     del t40, t41
-    t57 = t42 * (t7 + t55) + t43 * (t9 - A_12_above) + t6 * (u_z + t56)
-    del t42, t43, t6, t7, t9, u_z
-    t58 = (t2 * t55 - t36 * A_12_above + t4 * t56) * t57
-    del t2, t36, t4, t57
-    t59 = t45 * (t12 + t55) + t46 * (t13 - A_12_above) + t11 * (v_z + t56)
-    del A_12_above, t11, t12, t13, t45, t46, t55, t56, v_z
+    t57 = t2 * A_11_above - t37 * t56 + t4 * A_13_above
+    del t2, t37, t4
+    t58 = t43 * (t7 - A_11_above) + t44 * (t9 + t56) + t6 * (u_z - A_13_above)
+    del t43, t44, t6, t7, t9, u_z
+    t59 = t46 * (t12 - A_11_above) + t47 * (t13 + t56) + t11 * (v_z - A_13_above)
+    del A_11_above, A_13_above, t11, t12, t13, t46, t47, t56, v_z
     return (
-        -(t48 / Delta) + t54,
-        -(t58 * t59 / Delta) + t54,
+        -(t49 / Delta) + t55,
+        -(t57 * t58 * t59 / Delta) + t55,
     )
 
 
@@ -1429,60 +1431,61 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t28 / t30, t26 / j)
     del t26, t28, t30
     t35 = E_11 * X - E_21 * t32
-    A_11 = t34 + t35
-    t36 = s_alpha1 * t1
+    t36 = t34 - t35
+    t37 = s_alpha1 * t1
     del s_alpha1, t1
-    t37 = h * (E_11 * E_23 - E_13 * E_21)
-    t38 = X * t16 - t32 * E_22
-    t39 = t37 - t38
+    t38 = h * (E_11 * E_23 - E_13 * E_21)
+    t39 = X * t16 - t32 * E_22
+    A_12 = t38 + t39
     t40 = h * (E_11 * E_22 - t16 * E_21)
     del E_11, E_21, E_22, t16
     t41 = X * E_13 - t32 * E_23
     del E_13, E_23, X, t32
-    A_13 = t40 + t41
-    t42 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t43 = t42 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t42
-    t44 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t45 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    t42 = t40 - t41
+    t43 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t44 = t43 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t43
+    t45 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t46 = np.abs(_runtime.select(in_line, -t31, 0.0)) <= _runtime.FEASIBILITY * (size * size)
     del in_line, t31
-    t46 = t45 & (-(size * _runtime.FEASIBILITY) <= t33)
-    del size, t33, t45
-    failed = np.logical_not(t43 & t44) | np.logical_not(t46)
-    del t43, t44, t46
-    t47 = _runtime.poison(failed)
+    t47 = t46 & (-(size * _runtime.FEASIBILITY) <= t33)
+    del size, t33, t46
+    failed = np.logical_not(t44 & t45) | np.logical_not(t47)
+    del t44, t45, t47
+    t48 = _runtime.poison(failed)
     del failed
-    t48 = c_alpha2 * t3
+    t49 = c_alpha2 * t3
     del c_alpha2
-    t49 = s_alpha2 * t3
+    t50 = s_alpha2 * t3
     del s_alpha2, t3
-    B_22 = t48 * (t7 - A_11) + t49 * (t9 + t39) + t6 * (u_z - A_13)
-    t50 = c_alpha3 * t10
+    B_22 = t49 * (t7 + t36) + t50 * (t9 - A_12) + t6 * (u_z + t42)
+    t51 = c_alpha3 * t10
     del c_alpha3
-    t51 = s_alpha3 * t10
+    t52 = s_alpha3 * t10
     del s_alpha3, t10
-    B_33 = t50 * (t12 - A_11) + t51 * (t13 + t39) + t11 * (v_z - A_13)
+    B_33 = t51 * (t12 + t36) + t52 * (t13 - A_12) + t11 * (v_z + t42)
     Delta = D * j * h
     del D, h, j
-    t52 = t34 - t35
+    A_11_above = t34 + t35
     del t34, t35
-    A_12_above = t37 + t38
-    del t37, t38
-    t53 = t40 - t41
+    t53 = t38 - t39
+    del t38, t39
+    A_13_above = t40 + t41
     del t40, t41
-    B_22_above = t48 * (t7 + t52) + t49 * (t9 - A_12_above) + t6 * (u_z + t53)
-    del t48, t49, t6, t7, t9, u_z
-    B_33_above = t50 * (t12 + t52) + t51 * (t13 - A_12_above) + t11 * (v_z + t53)
-    del t11, t12, t13, t50, t51, v_z
+    t54 = t2 * A_11_above - t37 * t53 + t4 * A_13_above
+    B_22_above = t49 * (t7 - A_11_above) + t50 * (t9 + t53) + t6 * (u_z - A_13_above)
+    del t49, t50, t6, t7, t9, u_z
+    B_33_above = t51 * (t12 - A_11_above) + t52 * (t13 + t53) + t11 * (v_z - A_13_above)
+    del A_11_above, A_13_above, t11, t12, t13, t51, t52, t53, v_z
     return (
-        -(t2 * A_11 - t36 * t39 + t4 * A_13) + t47,
-        B_22 + t47,
-        B_33 + t47,
-        Delta + t47,
-        t2 * t52 - t36 * A_12_above + t4 * t53 + t47,
-        B_22_above + t47,
-        B_33_above + t47,
-        -Delta + t47,
+        t2 * t36 - t37 * A_12 + t4 * t42 + t48,
+        B_22 + t48,
+        B_33 + t48,
+        -Delta + t48,
+        -t54 + t48,
+        B_22_above + t48,
+        B_33_above + t48,
+        Delta + t48,
     )
 
 
@@ -1614,86 +1617,86 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t25 / t27, t23 / j)
     del t23, t25, t27
     t32 = E_11 * X - E_21 * t29
-    A_11 = t31 + t32
-    t33 = h * (E_11 * E_23 - E_13 * E_21)
-    t34 = X * t13 - t29 * E_22
-    t35 = t33 - t34
+    t33 = t31 - t32
+    t34 = h * (E_11 * E_23 - E_13 * E_21)
+    t35 = X * t13 - t29 * E_22
+    A_12 = t34 + t35
     t36 = h * (E_11 * E_22 - t13 * E_21)
     del E_11, E_21, E_22, t13
     t37 = X * E_13 - t29 * E_23
     del E_13, E_23, X, t29
-    A_13 = t36 + t37
-    t38 = t5 - A_11
-    t39 = t7 + t35
-    t40 = u_z - A_13
-    t41 = A_11 * A_11 + t35 * t35 + A_13 * A_13 + (t38 * t38 + t39 * t39 + t40 * t40)
-    t42 = t9 - A_11
-    t43 = t10 + t35
-    t44 = v_z - A_13
-    t45 = A_11 * t39 + t35 * t38
-    t46 = A_11 * t40 - A_13 * t38
-    t47 = A_11 * t43 + t35 * t42
-    t48 = A_11 * t44 - A_13 * t42
-    del A_11
-    t49 = t45 * t45 + t46 * t46 + t47 * t47 + t48 * t48
-    del t45, t46, t47, t48
-    t50 = t35 * t40 + A_13 * t39
-    t51 = t35 * t44 + A_13 * t43
-    del A_13, t35
-    t52 = t38 * t43 - t39 * t42
-    t53 = t38 * t44 - t40 * t42
-    del t38
-    t54 = t49 + t50 * t50 + t51 * t51 + t52 * t52 + t53 * t53
-    del t49, t50, t51, t52, t53
-    t55 = t39 * t44 - t40 * t43
-    del t39, t40
-    t56 = (t41 + (t42 * t42 + t43 * t43 + t44 * t44)) * (t54 + t55 * t55)
-    del t41, t42, t43, t44, t54, t55
-    t57 = 3.0 * (D * j * h)
+    t38 = t36 - t37
+    t39 = t5 + t33
+    t40 = t7 - A_12
+    t41 = u_z + t38
+    t42 = t33 * t33 + A_12 * A_12 + t38 * t38 + (t39 * t39 + t40 * t40 + t41 * t41)
+    t43 = t9 + t33
+    t44 = t10 - A_12
+    t45 = v_z + t38
+    t46 = t33 * t40 + A_12 * t39
+    t47 = t33 * t41 - t38 * t39
+    t48 = t33 * t44 + A_12 * t43
+    t49 = t33 * t45 - t38 * t43
+    del t33
+    t50 = t46 * t46 + t47 * t47 + t48 * t48 + t49 * t49
+    del t46, t47, t48, t49
+    t51 = A_12 * t41 + t38 * t40
+    t52 = A_12 * t45 + t38 * t44
+    del A_12, t38
+    t53 = t39 * t44 - t40 * t43
+    t54 = t39 * t45 - t41 * t43
+    del t39
+    t55 = t50 + t51 * t51 + t52 * t52 + t53 * t53 + t54 * t54
+    del t50, t51, t52, t53, t54
+    t56 = t40 * t45 - t41 * t44
+    del t40, t41
+    t57 = (t42 + (t43 * t43 + t44 * t44 + t45 * t45)) * (t55 + t56 * t56)
+    del t42, t43, t44, t45, t55, t56
+    t58 = 3.0 * (D * j * h)
     del D, h, j
-    t58 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
-    t59 = t58 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    del t58
-    t60 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
-    t61 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    t59 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t60 = t59 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t59
+    t61 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t62 = np.abs(_runtime.select(in_line, -t28, 0.0)) <= _runtime.FEASIBILITY * (size * size)
     del in_line, t28
-    t62 = t61 & (-(size * _runtime.FEASIBILITY) <= t30)
-    del size, t30, t61
-    failed = np.logical_not(t59 & t60) | np.logical_not(t62)
-    del t59, t60, t62
-    t63 = _runtime.poison(failed)
+    t63 = t62 & (-(size * _runtime.FEASIBILITY) <= t30)
+    del size, t30, t62
+    failed = np.logical_not(t60 & t61) | np.logical_not(t63)
+    del t60, t61, t63
+    t64 = _runtime.poison(failed)
     del failed
-    t64 = t31 - t32
+    A_11_above = t31 + t32
     del t31, t32
-    A_12_above = t33 + t34
-    del t33, t34
-    t65 = t36 - t37
+    t65 = t34 - t35
+    del t34, t35
+    A_13_above = t36 + t37
     del t36, t37
-    square1_above = t64 * t64 + A_12_above * A_12_above + t65 * t65
-    t66 = t5 + t64
+    square1_above = A_11_above * A_11_above + t65 * t65 + A_13_above * A_13_above
+    t66 = t5 - A_11_above
     del t5
-    t67 = t7 - A_12_above
+    t67 = t7 + t65
     del t7
-    t68 = u_z + t65
+    t68 = u_z - A_13_above
     del u_z
     t69 = square1_above + (t66 * t66 + t67 * t67 + t68 * t68)
     del square1_above
-    t70 = t9 + t64
+    t70 = t9 - A_11_above
     del t9
-    t71 = t10 - A_12_above
+    t71 = t10 + t65
     del t10
-    t72 = v_z + t65
+    t72 = v_z - A_13_above
     del v_z
-    t73 = t64 * t67 + A_12_above * t66
-    t74 = t64 * t68 - t65 * t66
-    t75 = t64 * t71 + A_12_above * t70
-    t76 = t64 * t72 - t65 * t70
-    del t64
+    t73 = A_11_above * t67 + t65 * t66
+    t74 = A_11_above * t68 - A_13_above * t66
+    t75 = A_11_above * t71 + t65 * t70
+    t76 = A_11_above * t72 - A_13_above * t70
+    del A_11_above
     t77 = t73 * t73 + t74 * t74 + t75 * t75 + t76 * t76
     del t73, t74, t75, t76
-    t78 = A_12_above * t68 + t65 * t67
-    t79 = A_12_above * t72 + t65 * t71
-    del A_12_above, t65
+    t78 = t65 * t68 + A_13_above * t67
+    t79 = t65 * t72 + A_13_above * t71
+    del A_13_above, t65
     t80 = t66 * t71 - t67 * t70
     t81 = t66 * t72 - t68 * t70
     del t66
@@ -1704,8 +1707,8 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t84 = (t69 + (t70 * t70 + t71 * t71 + t72 * t72)) * (t82 + t83 * t83)
     del t69, t70, t71, t72, t82, t83
     return (
-        np.sqrt(t56) / t57 + t63,
-        np.sqrt(t84) / t57 + t63,
+        np.sqrt(t57) / t58 + t64,
+        np.sqrt(t84) / t58 + t64,
     )
 
 

@@ -193,19 +193,19 @@ def _fk(rho1, rho2, rho3, f, e, l):
     t32 = _runtime.poison(invalid | unreachable)
     t33 = E_12 * X + t21 * E_22
     t34 = h * (E_11 * t25 - t11 * E_21)
-    t35 = t21 * t25 - (rho1 - t11 * X)
-    del X, t11, t21, t25
-    t36 = h * (E_12 * E_21 - E_11 * E_22)
+    t35 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22, h
+    t36 = t21 * t25 - (rho1 - t11 * X)
+    del X, t11, t21, t25
     t37 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t22 - t26 + t32,
-        t33 + t34 + t32,
-        -(t35 + t36) + t32,
         t22 + t26 + t32,
         t33 - t34 + t32,
-        t36 - t35 + t32,
+        t35 - t36 + t32,
+        t22 - t26 + t32,
+        t33 + t34 + t32,
+        -(t36 + t35) + t32,
         t37,
         t37,
     )
@@ -342,16 +342,16 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     E_22 = _runtime.select(in_line, E_12 * t36 / t34, n_y / j)
     del in_line, j, n_y, t34, t36
     t38 = h * (E_12 * t37 - t16 * E_22)
-    t39 = c1_x + (t35 - t38)
+    t39 = c1_x + (t35 + t38)
     t40 = E_12 * X - t26 * E_22
     t41 = h * (E_11 * t37 - t16 * E_21)
-    A_12 = t40 + t41
+    A_12 = t40 - t41
     t42 = A_12 + t29
     t43 = t16 * X - t26 * t37
     del X, t16, t26, t37
     t44 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22, h
-    t45 = rho1 - (t43 + t44) + t29
+    t45 = rho1 - (t43 - t44) + t29
     t46 = -t5 + t29
     del t5
     t47 = t9 + t29
@@ -360,12 +360,12 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     t50 = -t9 + t29
     del t9
     t51 = rho3 + t29
-    t52 = c1_x + (t35 + t38)
+    t52 = c1_x + (t35 - t38)
     del c1_x, t35, t38
-    A_12_above = t40 - t41
+    A_12_above = t40 + t41
     del t40, t41
     t53 = A_12_above + t29
-    t54 = rho1 - (t43 - t44) + t29
+    t54 = rho1 - (t43 + t44) + t29
     del t43, t44
     t55 = t52 - t4 + t29
     del t4
@@ -536,7 +536,7 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     E_22 = _runtime.select(in_line, E_12 * t23 / t18, n_y / j)
     del j, n_y, t18, t23
     t25 = h * (E_12 * t24 - t9 * E_22)
-    A_11 = t21 - t25
+    A_11 = t21 + t25
     t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
     t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
@@ -549,18 +549,18 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     del t28, t30
     t32 = X * E_12 - t20 * E_22
     t33 = h * (E_11 * t24 - t9 * E_21)
-    A_12 = t32 + t33
+    A_12 = t32 - t33
     t34 = X * t9 - t20 * t24
     del X, t20, t24, t9
     t35 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22, h
-    t36 = t34 + t35
+    t36 = t34 - t35
     t37 = t2 + A_11 + t31
-    A_11_above = t21 + t25
+    A_11_above = t21 - t25
     del t21, t25
-    A_12_above = t32 - t33
+    A_12_above = t32 + t33
     del t32, t33
-    t38 = t34 - t35
+    t38 = t34 + t35
     del t34, t35
     t39 = t2 + A_11_above + t31
     del t2
@@ -690,7 +690,7 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     del j, n_y, t18, t23
     t24 = np.sqrt(np.maximum(t22, 0.0) * (l + rho)) * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22, rho
-    t25 = t21 + t24
+    t25 = t21 - t24
     t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
     t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
@@ -701,7 +701,7 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     del size, t22, t29
     t31 = _runtime.poison(np.logical_not(t28) | np.logical_not(t30))
     del t28, t30
-    t32 = t21 - t24
+    t32 = t21 + t24
     del t21, t24
     return (
         -t25 + t31,
@@ -815,10 +815,10 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     E_22 = _runtime.select(in_line, E_12 * t18 / t24, n_y / j)
     del n_y, t18, t24
     t25 = h * (E_12 * E_21 - E_11 * E_22)
-    t26 = t22 + t25
+    t26 = t22 - t25
     t27 = X * E_12 - t21 * E_22
     t28 = h * (E_11 * t19 - t7 * E_21)
-    A_12 = t27 + t28
+    A_12 = t27 - t28
     A_22 = c3_y + A_12
     A_33 = t4 - t26
     A_23 = t1 - t26
@@ -835,24 +835,24 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     del size, t23, t33
     t35 = _runtime.poison(np.logical_not(t32) | np.logical_not(t34))
     del t32, t34
-    t36 = -(t26 * (A_22 * A_33 + A_23 * t29) / Delta) + t35
-    t37 = -(A_23 * (A_12 * A_33 - t26 * t29) / Delta) + t35
-    t38 = A_33 * (A_12 * A_23 + t26 * A_22) / Delta + t35
+    t36 = t26 * (A_22 * A_33 + A_23 * t29) / Delta + t35
+    t37 = A_23 * (A_12 * A_33 - t26 * t29) / Delta + t35
+    t38 = -(A_33 * (A_12 * A_23 + t26 * A_22) / Delta) + t35
     t39 = X * E_11 - t21 * E_21
     del E_11, E_21, X, t21
     t40 = h * (E_12 * t19 - t7 * E_22)
     del E_12, E_22, h, t19, t7
-    A_11 = t39 - t40
+    A_11 = t39 + t40
     A_21 = t2 + A_11
-    t41 = t26 * (A_33 * A_21 - A_23 * A_21) / Delta + t35
+    t41 = -(t26 * (A_33 * A_21 - A_23 * A_21) / Delta) + t35
     t42 = t26 * A_21
-    t43 = t26 * (t29 * A_21 + A_22 * A_21) / Delta + t35
+    t43 = -(t26 * (t29 * A_21 + A_22 * A_21) / Delta) + t35
     del t26
     t44 = A_12 * A_21
     del A_12, A_21
-    t45 = t22 - t25
+    t45 = t22 + t25
     del t22, t25
-    A_12_above = t27 - t28
+    A_12_above = t27 + t28
     del t27, t28
     A_22_above = c3_y + A_12_above
     A_33_above = t4 - t45
@@ -864,7 +864,7 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     t47 = t45 * (A_22_above * A_33_above + A_23_above * t46)
     t48 = A_23_above * (A_12_above * A_33_above - t45 * t46)
     t49 = A_33_above * (A_12_above * A_23_above + t45 * A_22_above)
-    A_11_above = t39 + t40
+    A_11_above = t39 - t40
     del t39, t40
     A_21_above = t2 + A_11_above
     del t2
@@ -885,20 +885,20 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
         t37,
         t38,
         t41,
-        A_23 * (A_33 * A_11 + t42) / Delta + t35,
-        -(A_33 * (t42 + A_23 * A_11) / Delta) + t35,
+        -(A_23 * (A_33 * A_11 + t42) / Delta) + t35,
+        A_33 * (t42 + A_23 * A_11) / Delta + t35,
         t43,
-        A_23 * (t29 * A_11 + t44) / Delta + t35,
-        -(A_33 * (t44 - A_22 * A_11) / Delta) + t35,
-        t47 / Delta + t35,
-        t48 / Delta + t35,
-        -(t49 / Delta) + t35,
-        -(t45 * t50 / Delta) + t35,
-        -t52 + t35,
-        t53 + t35,
-        -(t54 / Delta) + t35,
-        -t56 + t35,
-        t57 + t35,
+        -(A_23 * (t29 * A_11 + t44) / Delta) + t35,
+        A_33 * (t44 - A_22 * A_11) / Delta + t35,
+        -(t47 / Delta) + t35,
+        -(t48 / Delta) + t35,
+        t49 / Delta + t35,
+        t45 * t50 / Delta + t35,
+        t52 + t35,
+        -t53 + t35,
+        t54 / Delta + t35,
+        t56 + t35,
+        -t57 + t35,
     )
 
 
@@ -1009,7 +1009,7 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     del n_y, t18, t23
     t24 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22
-    t25 = t21 + t24
+    t25 = t21 - t24
     Delta = D * j * h
     del D, h, j
     t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
@@ -1022,13 +1022,13 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     del size, t22, t29
     t31 = _runtime.poison(np.logical_not(t28) | np.logical_not(t30))
     del t28, t30
-    t32 = -(t25 * (t1 - t25) * (t4 - t25) / Delta) + t31
-    del t25
-    t33 = t21 - t24
+    t32 = t21 + t24
     del t21, t24
+    t33 = -(t32 * (t1 - t32) * (t4 - t32) / Delta) + t31
+    del t32
     return (
-        t32,
-        t33 * (t1 - t33) * (t4 - t33) / Delta + t31,
+        t25 * (t1 - t25) * (t4 - t25) / Delta + t31,
+        t33,
     )
 
 
@@ -1138,7 +1138,7 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     del n_y, t18, t23
     t24 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22
-    t25 = t21 + t24
+    t25 = t21 - t24
     t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
     t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
     t28 = t26 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t27
@@ -1151,17 +1151,17 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     del t28, t30
     Delta = D * j * h
     del D, h, j
-    t32 = t21 - t24
+    t32 = t21 + t24
     del t21, t24
     return (
         -t25 + t31,
         t1 - t25 + t31,
         t4 - t25 + t31,
-        Delta + t31,
+        -Delta + t31,
         -t32 + t31,
         t1 - t32 + t31,
         t4 - t32 + t31,
-        -Delta + t31,
+        Delta + t31,
     )
 
 
@@ -1268,15 +1268,15 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     E_22 = _runtime.select(in_line, E_12 * t23 / t18, n_y / j)
     del n_y, t18, t23
     t25 = h * (E_12 * t24 - t9 * E_22)
-    A_11 = t21 - t25
+    A_11 = t21 + t25
     t26 = X * E_12 - t20 * E_22
     t27 = h * (E_11 * t24 - t9 * E_21)
-    A_12 = t26 + t27
+    A_12 = t26 - t27
     t28 = X * t9 - t20 * t24
     del X, t20, t24, t9
     t29 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22
-    t30 = t28 + t29
+    t30 = t28 - t29
     A_21 = t2 + A_11
     t31 = A_21 * A_21
     A_22 = c3_y + A_12
@@ -1318,12 +1318,12 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     del size, t22, t52
     t54 = _runtime.poison(np.logical_not(t51) | np.logical_not(t53))
     del t51, t53
-    A_11_above = t21 + t25
+    A_11_above = t21 - t25
     del t21, t25
-    A_12_above = t26 - t27
+    A_12_above = t26 + t27
     del t26, t27
     t55 = A_11_above * A_11_above + A_12_above * A_12_above
-    t56 = t28 - t29
+    t56 = t28 + t29
     del t28, t29
     A_21_above = t2 + A_11_above
     del t2

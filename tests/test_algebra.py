@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from sympy import Abs, Rational, acos, asin, atan, atan2, cos, pi, sin, sqrt, tan
 from sympy.simplify.fu import TR8
 
+from closedform.algebra.factors import polynomial_factors
 from closedform.algebra.normal_form import Undecided, decide, determinant, equal, is_zero, normal
 from closedform.algebra.tower import InexactNumberError
 
@@ -309,3 +310,15 @@ def test_roots_of_long_numbers_are_not_factored() -> None:
     assert equal(sp.sin(long) ** 2 + sp.cos(long) ** 2, 1)
     three = sp.sqrt(sp.UnevaluatedExpr(9 * number)).doit()
     assert equal(three**2, 9 * number)
+
+
+def test_factors_of_a_polynomial() -> None:
+    """Their product is the polynomial up to a number, and each is irreducible by other means."""
+    x, y, a = sp.symbols("x y a")
+    for factors in ([(x + y, 2), (x - a, 1), (2 * y**2 - x, 1)], [(x**2 + y**2 - a**2, 3)]):
+        product = sp.expand(sp.Rational(-5, 3) * sp.Mul(*(f**n for f, n in factors)))
+        found = polynomial_factors(product)
+        assert sp.cancel(product / sp.Mul(*(f**n for f, n in found))).is_number
+        assert {(sp.Poly(f).monic(), n) for f, n in factors} == {
+            (sp.Poly(f).monic(), n) for f, n in found
+        }

@@ -13,6 +13,8 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.algebra.factors import polynomial_factors
+
 
 def velocity_matrices(
     loop: Sequence[sp.Expr], task: Sequence[sp.Symbol], joints: Sequence[sp.Symbol]
@@ -55,8 +57,7 @@ def eliminate(equations: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol]) -> El
         remaining = [e for e in remaining if not e.has(unknown)]
         remaining += [sp.resultant(pivot, e, unknown) for e in others]
     (left,) = remaining
-    _, factors = sp.factor_list(left)
-    return Eliminated(tuple(factors))
+    return Eliminated(tuple(polynomial_factors(left)))
 
 
 def degree(polynomial: sp.Expr, coordinates: Sequence[sp.Symbol]) -> int:

@@ -177,10 +177,18 @@ def _assigns_d(text: bytes) -> bool:
 # Loading and proving
 
 
+def _same_choices() -> None:
+    """Let SymPy try the same points every time: where it factors, an unlucky one takes minutes."""
+    from sympy.core import random
+
+    random.seed(0)
+
+
 def load(source: Source) -> Derivation:
     """Run a derivation script."""
     from closedform.model.derivation import Derivation
 
+    _same_choices()
     try:
         module = _module(source)
     except Exception as error:
@@ -233,6 +241,7 @@ def _proved(derivation: Derivation, report: Report) -> tuple[Proof, Record]:
     from closedform.algebra.certificates import recording
     from closedform.proof.prove import prove
 
+    _same_choices()
     try:
         with recording() as record:
             proof = prove(derivation, lambda what: report(derivation.name, f"proving {what}"))
@@ -391,6 +400,7 @@ def _printed(
         seconds = time.perf_counter() - start
         store.put(source, digested, proof, record, seconds)
     report(source.name, "generating")
+    _same_choices()
     try:
         printed = pages(derivation, proof, backends)
     except (ValueError, TypeError, KeyError, NotImplementedError) as error:

@@ -56,7 +56,12 @@ def test_a_mechanism_of_any_size(robot: str, language: str) -> None:
             planes.append(known if fits else random.uniform(-1, 1, (a.size, POSTURES)))
 
         def evaluated(exponent: int, single: bool = False) -> list[np.ndarray]:
-            dimensions = module.Parameters(*(np.ldexp(v, exponent) for v in module.Parameters()))
+            dimensions = module.Parameters(
+                *(
+                    v if name.startswith("alpha") else np.ldexp(v, exponent)  # a direction
+                    for name, v in module.Parameters()._asdict().items()
+                )
+            )
             arrays = [
                 scaled(p, lengths(robot, a.name) or translations(a, robot), exponent).T.reshape(
                     -1, *a.shape

@@ -228,9 +228,12 @@ def indexed(title: str) -> str:
 
 
 def decimal(value: sp.Rational) -> str:
-    """A rational as a decimal if a double's digits give it exactly, else as a fraction."""
+    """A rational as a decimal if that is exact and short, or shorter than the fraction."""
     digits = next((k for k in range(17) if (value * 10**k).is_Integer), None)
-    return str(value) if digits is None else f"{float(value):.{digits}f}"
+    if digits is None:
+        return str(value)
+    text = f"{float(value):.{digits}f}"
+    return text if digits < 7 or len(text) < len(str(value)) else str(value)
 
 
 def _key(function: Function) -> str:

@@ -125,13 +125,14 @@ def test_backends_are_chosen(slider: Path, tmp_path: Path) -> None:
     assert main(["derive", str(slider), "-o", str(output), "--backend", "c"]) == 0
     assert sorted(path.name for path in output.iterdir()) == ["c", "slider-crosscheck.md"]
     c = sorted(path.name for path in (output / "c").iterdir())
-    assert c == [
+    own = {f"slider{end}" for end in (".c", ".h", ".hpp", "_nearest.h")}
+    shared = {
         "CMakeLists.txt",
         "closedform-config.cmake.in",
         "closedform.h",
-        "slider.c",
-        "slider.h",
-    ]
+        "closedform_nearest.h",
+    }
+    assert {"slider.c", "slider.h"} | shared - {"closedform_nearest.h"} <= set(c) <= own | shared
 
 
 def test_what_is_printed_elsewhere_is_cross_checked(slider: Path, tmp_path: Path) -> None:

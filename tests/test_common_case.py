@@ -53,7 +53,7 @@ def kernels() -> list[tuple[str, str]]:
         found += [
             (source.name, name)
             for name in vars(module)
-            if getattr(getattr(module, name), "common", None) is not None
+            if name == "_IK" and module._IK.common is not None
         ]
     return found
 

@@ -243,7 +243,10 @@ class Solutions:
         """
         if not self._factors.exprs:
             return float(min([1.0, *self._rates(posture, parameters)]))
-        factors = self._factors.exactly([*map(float, posture), *parameters])
+        try:
+            factors = self._factors.exactly([*map(float, posture), *parameters])
+        except Undetermined:  # where a flag of the forward map leaves the target free
+            return 0.0
         return min([1.0, *(abs(to_float(f)) for f in factors if f.is_finite())])
 
     def undetermined(self, posture: NDArray[Any], parameters: Sequence[float]) -> bool:

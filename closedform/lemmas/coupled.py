@@ -18,12 +18,15 @@ from closedform.model.derivation import Derivation, Solved, Step
 from closedform.model.functions import Branches, Program, branches, real
 from closedform.model.inverse import Inverse
 
+POSITION = {+1: "positive", -1: "negative"}
+"""Names of assembly modes that differ from those of working modes."""
+
 
 def coupled(
     d: Derivation,
     driver: Crank | Slide,
     follower: Crank | Slide,
-    modes: Choice = SIGN,
+    modes: Choice = POSITION,
 ) -> None:
     """Derive and export a loop of a driven leg, a rod and a leg whose joint is the task.
 

@@ -31,7 +31,7 @@ from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
 ArrayLike = Any
 
-ASSEMBLY_MODES = ('plus', 'minus')
+ASSEMBLY_MODES = ('positive', 'negative')
 JOINTS = ('theta',)
 TASK = ('psi',)
 BRANCHES = ('plus', 'minus')
@@ -187,7 +187,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - UNREACHABLE: the rod does not reach, so the loop cannot close.
     - SINGULAR: the rod ends on the axis of psi; psi is free, 0 is returned.
     - SINGULAR: no crank; psi is free, 0 is returned.
@@ -234,8 +234,9 @@ def _skeleton(ops, theta, L1, L2, L3, L4):
     t24 = wv_2 * t21
     t25 = t6 * beyond_2
     t26 = wv_2 + share_2 * ops.select(t16, 0.0, t24 - t25)
-    A_11_minus = t6 + share_2 * ops.select(t16, 1.0, t22 - t23)
-    t27 = wv_2 + share_2 * ops.select(t16, 0.0, t24 + t25)
+    A_11_negative = t6 + share_2 * ops.select(t16, 1.0, t22 - t23)
+    t27 = ops.select(failed, ops.nan, t5 + A_11_negative)
+    t28 = wv_2 + share_2 * ops.select(t16, 0.0, t24 + t25)
     return (
         t10,
         t10,
@@ -258,8 +259,8 @@ def _skeleton(ops, theta, L1, L2, L3, L4):
         t12,
         t13,
         t10,
-        ops.select(failed, ops.nan, t5 + A_11_minus),
-        ops.select(failed, ops.nan, wv_2 - t27),
+        t27,
+        ops.select(failed, ops.nan, wv_2 - t28),
         t10,
     )
 
@@ -298,7 +299,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params)
@@ -339,11 +340,11 @@ def _jacobian_parallel(ops, theta, L1, L2, L3, L4):
     A_11 = t5 + share_2 * ops.select(t11, 1.0, t20 + t21)
     t22 = ops.select(failed, ops.nan, t19 * (t5 - A_11) - A_11 * (wv_2 - t19))
     t23 = wv_2 + share_2 * ops.select(t11, 0.0, t17 + t18)
-    A_11_minus = t5 + share_2 * ops.select(t11, 1.0, t20 - t21)
-    A_minus = t23 * (t5 - A_11_minus) - A_11_minus * (wv_2 - t23)
+    A_11_negative = t5 + share_2 * ops.select(t11, 1.0, t20 - t21)
+    A_negative = t23 * (t5 - A_11_negative) - A_11_negative * (wv_2 - t23)
     return (
         t22,
-        ops.select(failed, ops.nan, A_minus),
+        ops.select(failed, ops.nan, A_negative),
     )
 
 
@@ -382,7 +383,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params)
@@ -423,9 +424,9 @@ def _jacobian_serial(ops, theta, L1, L2, L3, L4):
     t21 = t6 * beyond_2
     t22 = wv_2 + share_2 * ops.select(t12, 0.0, t20 - t21)
     t23 = ops.select(failed, ops.nan, -(wv_2 * A_11 + t5 * t22))
-    A_11_minus = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
+    A_11_negative = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
     t24 = wv_2 + share_2 * ops.select(t12, 0.0, t20 + t21)
-    t25 = ops.select(failed, ops.nan, -(wv_2 * A_11_minus + t5 * t24))
+    t25 = ops.select(failed, ops.nan, -(wv_2 * A_11_negative + t5 * t24))
     return (
         t23,
         t25,
@@ -466,7 +467,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Its sign distinguishes the working modes.
     """
@@ -509,10 +510,10 @@ def _jacobian(ops, theta, L1, L2, L3, L4):
     t22 = wv_2 + share_2 * ops.select(t12, 0.0, t20 - t21)
     t23 = ops.select(t10, A_11 * (wv_2 - t22) - t22 * (t6 - A_11), 1.0)
     t24 = ops.select(failed, ops.nan, (wv_2 * A_11 + t5 * t22) / t23)
-    A_11_minus = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
+    A_11_negative = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
     t25 = wv_2 + share_2 * ops.select(t12, 0.0, t20 + t21)
-    t26 = A_11_minus * (wv_2 - t25) - t25 * (t6 - A_11_minus)
-    t27 = (wv_2 * A_11_minus + t5 * t25) / ops.select(t10, t26, 1.0)
+    t26 = A_11_negative * (wv_2 - t25) - t25 * (t6 - A_11_negative)
+    t27 = (wv_2 * A_11_negative + t5 * t25) / ops.select(t10, t26, 1.0)
     return (
         t24,
         ops.select(failed, ops.nan, t27),
@@ -554,7 +555,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -597,10 +598,10 @@ def _determinant(ops, theta, L1, L2, L3, L4):
     t22 = wv_2 + share_2 * ops.select(t12, 0.0, t20 - t21)
     t23 = ops.select(t10, A_11 * (wv_2 - t22) - t22 * (t6 - A_11), 1.0)
     t24 = ops.select(failed, ops.nan, (wv_2 * A_11 + t5 * t22) / t23)
-    A_11_minus = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
+    A_11_negative = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
     t25 = wv_2 + share_2 * ops.select(t12, 0.0, t20 + t21)
-    t26 = A_11_minus * (wv_2 - t25) - t25 * (t6 - A_11_minus)
-    t27 = (wv_2 * A_11_minus + t5 * t25) / ops.select(t10, t26, 1.0)
+    t26 = A_11_negative * (wv_2 - t25) - t25 * (t6 - A_11_negative)
+    t27 = (wv_2 * A_11_negative + t5 * t25) / ops.select(t10, t26, 1.0)
     return (
         t24,
         ops.select(failed, ops.nan, t27),
@@ -641,7 +642,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -684,15 +685,15 @@ def _singularities(ops, theta, L1, L2, L3, L4):
     t22 = wv_2 + share_2 * ops.select(t12, 0.0, t20 - t21)
     t23 = ops.select(failed, ops.nan, -(wv_2 * A_11 + t5 * t22))
     t24 = ops.select(failed, ops.nan, t22 * (t6 - A_11) - A_11 * (wv_2 - t22))
-    A_11_minus = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
+    A_11_negative = t6 + share_2 * ops.select(t12, 1.0, t18 - t19)
     t25 = wv_2 + share_2 * ops.select(t12, 0.0, t20 + t21)
-    t26 = ops.select(failed, ops.nan, -(wv_2 * A_11_minus + t5 * t25))
-    A_minus = t25 * (t6 - A_11_minus) - A_11_minus * (wv_2 - t25)
+    t26 = ops.select(failed, ops.nan, -(wv_2 * A_11_negative + t5 * t25))
+    A_negative = t25 * (t6 - A_11_negative) - A_11_negative * (wv_2 - t25)
     return (
         t23,
         t24,
         t26,
-        ops.select(failed, ops.nan, A_minus),
+        ops.select(failed, ops.nan, A_negative),
     )
 
 
@@ -731,7 +732,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params)
@@ -841,7 +842,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `BRANCHES`: plus, minus.
     - UNREACHABLE: the rod does not reach.
     - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
     - SINGULAR: no crank; theta is free, 0 is returned.

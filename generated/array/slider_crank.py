@@ -30,7 +30,7 @@ from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
 ArrayLike = Any
 
-ASSEMBLY_MODES = ('plus', 'minus')
+ASSEMBLY_MODES = ('positive', 'negative')
 JOINTS = ('theta',)
 TASK = ('x',)
 BRANCHES = ('plus', 'minus')
@@ -161,7 +161,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - UNREACHABLE: the rod does not reach, so the loop cannot close.
     - Ill-conditioned near the parallel singularity, where both modes meet.
     """
@@ -251,7 +251,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params)
@@ -313,7 +313,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params)
@@ -376,7 +376,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Its sign distinguishes the working modes.
     """
@@ -444,7 +444,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -511,7 +511,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -578,7 +578,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params)
@@ -676,7 +676,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `BRANCHES`: plus, minus.
     - UNREACHABLE: the rod does not reach.
     - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
     - SINGULAR: no crank; theta is free, 0 is returned.

@@ -4236,7 +4236,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- UNREACHABLE: the rod does not reach, so the loop cannot close.\n"
       "- SINGULAR: the rod ends on the axis of psi; psi is free, 0 is returned.\n"
       "- SINGULAR: no crank; psi is free, 0 is returned.\n"
@@ -4270,7 +4270,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- NaN for an assembly mode that does not exist.\n"
       ,
       4, four_bar_values, four_bar_fields,
@@ -4302,7 +4302,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- NaN for an assembly mode that does not exist.\n"
       ,
       4, four_bar_values, four_bar_fields,
@@ -4333,7 +4333,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- NaN for an assembly mode that does not exist.\n"
       "- Its sign distinguishes the working modes.\n"
       ,
@@ -4366,7 +4366,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- NaN for an assembly mode that does not exist.\n"
       "- Not finite at a parallel singularity.\n"
       ,
@@ -4398,7 +4398,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- NaN for an assembly mode that does not exist.\n"
       "- Not finite at a parallel singularity.\n"
       ,
@@ -4431,7 +4431,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- NaN for an assembly mode that does not exist.\n"
       ,
       4, four_bar_values, four_bar_fields,
@@ -4468,7 +4468,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `BRANCHES`: plus, minus.\n"
       "- UNREACHABLE: the rod does not reach.\n"
       "- SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.\n"
       "- SINGULAR: no crank; theta is free, 0 is returned.\n"
@@ -8164,7 +8164,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- UNREACHABLE: the rod does not reach, so the loop cannot close.\n"
       "- Ill-conditioned near the parallel singularity, where both modes meet.\n"
       ,
@@ -8196,7 +8196,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- NaN for an assembly mode that does not exist.\n"
       ,
       3, slider_crank_values, slider_crank_fields,
@@ -8228,7 +8228,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- NaN for an assembly mode that does not exist.\n"
       ,
       3, slider_crank_values, slider_crank_fields,
@@ -8259,7 +8259,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- NaN for an assembly mode that does not exist.\n"
       "- Its sign distinguishes the working modes.\n"
       ,
@@ -8292,7 +8292,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- NaN for an assembly mode that does not exist.\n"
       "- Not finite at a parallel singularity.\n"
       ,
@@ -8324,7 +8324,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- NaN for an assembly mode that does not exist.\n"
       "- Not finite at a parallel singularity.\n"
       ,
@@ -8357,7 +8357,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: positive, negative.\n"
       "- NaN for an assembly mode that does not exist.\n"
       ,
       3, slider_crank_values, slider_crank_fields,
@@ -8394,7 +8394,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `ASSEMBLY_MODES`: plus, minus.\n"
+      "- Branches in this order, `BRANCHES`: plus, minus.\n"
       "- UNREACHABLE: the rod does not reach.\n"
       "- SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.\n"
       "- SINGULAR: no crank; theta is free, 0 is returned.\n"

@@ -367,10 +367,10 @@ CF_INLINE void four_bar_jacobian_parallel_kernel(const int single, const four_ba
     const real_t t26 = share_2 * cf_select(t4, CLOSEDFORM_C(0.0), t12 + t13);
     const real_t t27 = wv_2 + t26;
     const real_t t28 = share_2 * cf_select(t4, CLOSEDFORM_C(1.0), t16 - t17);
-    const real_t A_11_minus = t1 + t28;
-    const real_t A_minus = t27 * (t1 - A_11_minus) - A_11_minus * (wv_2 - t27);
+    const real_t A_11_negative = t1 + t28;
+    const real_t A_negative = t27 * (t1 - A_11_negative) - A_11_negative * (wv_2 - t27);
     A[0] = t25;
-    A[1] = A_minus + t24;
+    A[1] = A_negative + t24;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -607,11 +607,11 @@ CF_INLINE void four_bar_jacobian_kernel(const int single, const four_bar_params 
     const int unreachable = !((-t25 <= t6) & (-t25 <= t10) & (-t25 <= t8));
     const real_t t26 = cf_poison(single, (!(t23 & t24)) | unreachable);
     const real_t t27 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 - t14);
-    const real_t A_11_minus = t2 + t27;
+    const real_t A_11_negative = t2 + t27;
     const real_t t28 = share_2 * cf_select(t5, CLOSEDFORM_C(0.0), t16 + t17);
     const real_t t29 = wv_2 + t28;
-    const real_t t30 = A_11_minus * (wv_2 - t29) - t29 * (t2 - A_11_minus);
-    const real_t t31 = cf_quotient(single, wv_2 * A_11_minus + t1 * t29, t30);
+    const real_t t30 = A_11_negative * (wv_2 - t29) - t29 * (t2 - A_11_negative);
+    const real_t t31 = cf_quotient(single, wv_2 * A_11_negative + t1 * t29, t30);
     J[0] = t20 + t26;
     J[1] = t31 + t26;
 }
@@ -727,11 +727,11 @@ CF_INLINE void four_bar_determinant_kernel(const int single, const four_bar_para
     const int unreachable = !((-t25 <= t6) & (-t25 <= t10) & (-t25 <= t8));
     const real_t t26 = cf_poison(single, (!(t23 & t24)) | unreachable);
     const real_t t27 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 - t14);
-    const real_t A_11_minus = t2 + t27;
+    const real_t A_11_negative = t2 + t27;
     const real_t t28 = share_2 * cf_select(t5, CLOSEDFORM_C(0.0), t16 + t17);
     const real_t t29 = wv_2 + t28;
-    const real_t t30 = A_11_minus * (wv_2 - t29) - t29 * (t2 - A_11_minus);
-    const real_t t31 = cf_quotient(single, wv_2 * A_11_minus + t1 * t29, t30);
+    const real_t t30 = A_11_negative * (wv_2 - t29) - t29 * (t2 - A_11_negative);
+    const real_t t31 = cf_quotient(single, wv_2 * A_11_negative + t1 * t29, t30);
     det[0] = t20 + t26;
     det[1] = t31 + t26;
 }
@@ -847,14 +847,14 @@ CF_INLINE void four_bar_singularities_kernel(const int single, const four_bar_pa
     const real_t t25 = cf_poison(single, (!(t22 & t23)) | unreachable);
     const real_t t26 = t19 * (t2 - A_11) - A_11 * (wv_2 - t19) + t25;
     const real_t t27 = share_2 * cf_select(t5, CLOSEDFORM_C(1.0), t13 - t14);
-    const real_t A_11_minus = t2 + t27;
+    const real_t A_11_negative = t2 + t27;
     const real_t t28 = share_2 * cf_select(t5, CLOSEDFORM_C(0.0), t16 + t17);
     const real_t t29 = wv_2 + t28;
-    const real_t A_minus = t29 * (t2 - A_11_minus) - A_11_minus * (wv_2 - t29);
+    const real_t A_negative = t29 * (t2 - A_11_negative) - A_11_negative * (wv_2 - t29);
     factors[0] = -(wv_2 * A_11 + t1 * t19) + t25;
     factors[1] = t26;
-    factors[2] = -(wv_2 * A_11_minus + t1 * t29) + t25;
-    factors[3] = A_minus + t25;
+    factors[2] = -(wv_2 * A_11_negative + t1 * t29) + t25;
+    factors[3] = A_negative + t25;
 }
 
 CLOSEDFORM_DISPATCHED

@@ -59,7 +59,7 @@ typedef struct {
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - UNREACHABLE: the rod does not reach, so the loop cannot close.
  * - SINGULAR: the rod ends on the axis of psi; psi is free, 0 is returned.
  * - SINGULAR: no crank; psi is free, 0 is returned.
@@ -86,7 +86,7 @@ void four_bar_fk_batch(size_t n, const four_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  */
 void four_bar_skeleton(const four_bar_params *params, const real_t q[1],
@@ -110,7 +110,7 @@ void four_bar_skeleton_batch(size_t n, const four_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  */
 void four_bar_jacobian_parallel(const four_bar_params *params, const real_t q[1],
@@ -133,7 +133,7 @@ void four_bar_jacobian_parallel_batch(size_t n, const four_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Its sign distinguishes the working modes.
  */
@@ -158,7 +158,7 @@ void four_bar_jacobian_serial_batch(size_t n, const four_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -182,7 +182,7 @@ void four_bar_jacobian_batch(size_t n, const four_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -207,7 +207,7 @@ void four_bar_determinant_batch(size_t n, const four_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  */
 void four_bar_singularities(const four_bar_params *params, const real_t q[1],

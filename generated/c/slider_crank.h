@@ -58,7 +58,7 @@ typedef struct {
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - UNREACHABLE: the rod does not reach, so the loop cannot close.
  * - Ill-conditioned near the parallel singularity, where both modes meet.
  */
@@ -83,7 +83,7 @@ void slider_crank_fk_batch(size_t n, const slider_crank_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  */
 void slider_crank_skeleton(const slider_crank_params *params,
@@ -107,7 +107,7 @@ void slider_crank_skeleton_batch(size_t n, const slider_crank_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  */
 void slider_crank_jacobian_parallel(const slider_crank_params *params,
@@ -130,7 +130,7 @@ void slider_crank_jacobian_parallel_batch(size_t n, const slider_crank_params *p
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Its sign distinguishes the working modes.
  */
@@ -155,7 +155,7 @@ void slider_crank_jacobian_serial_batch(size_t n, const slider_crank_params *par
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -179,7 +179,7 @@ void slider_crank_jacobian_batch(size_t n, const slider_crank_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -204,7 +204,7 @@ void slider_crank_determinant_batch(size_t n, const slider_crank_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - Branches in this order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  */
 void slider_crank_singularities(const slider_crank_params *params,

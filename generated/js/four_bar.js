@@ -29,7 +29,7 @@ import * as _runtime from "./_runtime.js";
 
 export { Status } from "./_runtime.js";
 
-export const ASSEMBLY_MODES = Object.freeze(/** @type {const} */ (["plus", "minus"]));
+export const ASSEMBLY_MODES = Object.freeze(/** @type {const} */ (["positive", "negative"]));
 export const JOINTS = Object.freeze(/** @type {const} */ (["theta"]));
 export const TASK = Object.freeze(/** @type {const} */ (["psi"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["plus", "minus"]));
@@ -145,7 +145,7 @@ const _FK = _runtime.kernel({
 /**
  * psi in both assembly modes.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - UNREACHABLE: the rod does not reach, so the loop cannot close.
  * - SINGULAR: the rod ends on the axis of psi; psi is free, 0 is returned.
  * - SINGULAR: no crank; psi is free, 0 is returned.
@@ -273,7 +273,7 @@ const _SKELETON = _runtime.kernel({
 /**
  * Points of the mechanism in the base frame, in the order of SKELETON.points.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 1 number. theta in rad.
@@ -339,10 +339,10 @@ function _jacobian_parallel(v, o) {
     const t20 = failed ? NaN : 0;
     const t21 = t14 * (t1 - A_11) - A_11 * (wv_2 - t14) + t20;
     const t22 = wv_2 + share_2 * (t4 ? 0.0 : t12 + t13);
-    const A_11_minus = t1 + share_2 * (t4 ? 1.0 : t15 - t16);
-    const A_minus = t22 * (t1 - A_11_minus) - A_11_minus * (wv_2 - t22);
+    const A_11_negative = t1 + share_2 * (t4 ? 1.0 : t15 - t16);
+    const A_negative = t22 * (t1 - A_11_negative) - A_11_negative * (wv_2 - t22);
     o[0] = t21;
-    o[1] = A_minus + t20;
+    o[1] = A_negative + t20;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -368,7 +368,7 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
 /**
  * A of A*dx = B*dq.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 1 number. theta in rad.
@@ -463,7 +463,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
 /**
  * B of A*dx = B*dq.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Its sign distinguishes the working modes.
  *
@@ -530,11 +530,12 @@ function _jacobian(v, o) {
     const t21 = -(_runtime.FEASIBILITY * (size * 0.5));
     const failed = !(t20 && Number.isFinite(theta)) || !(t21 <= t6 && t21 <= t10 && t21 <= t8);
     const t22 = failed ? NaN : 0;
-    const A_11_minus = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
+    const A_11_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
     const t23 = wv_2 + share_2 * (t5 ? 0.0 : t15 + t16);
-    const t24 = A_11_minus * (wv_2 - t23) - t23 * (t2 - A_11_minus);
+    const t24 = A_11_negative * (wv_2 - t23) - t23 * (t2 - A_11_negative);
+    const t25 = (wv_2 * A_11_negative + t1 * t23) / t24 + t22;
     o[0] = t18 + t22;
-    o[1] = (wv_2 * A_11_minus + t1 * t23) / t24 + t22;
+    o[1] = t25;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -560,7 +561,7 @@ const _JACOBIAN = _runtime.kernel({
 /**
  * Derivative of x with respect to q: B/A.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -628,11 +629,12 @@ function _determinant(v, o) {
     const t21 = -(_runtime.FEASIBILITY * (size * 0.5));
     const failed = !(t20 && Number.isFinite(theta)) || !(t21 <= t6 && t21 <= t10 && t21 <= t8);
     const t22 = failed ? NaN : 0;
-    const A_11_minus = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
+    const A_11_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
     const t23 = wv_2 + share_2 * (t5 ? 0.0 : t15 + t16);
-    const t24 = A_11_minus * (wv_2 - t23) - t23 * (t2 - A_11_minus);
+    const t24 = A_11_negative * (wv_2 - t23) - t23 * (t2 - A_11_negative);
+    const t25 = (wv_2 * A_11_negative + t1 * t23) / t24 + t22;
     o[0] = t18 + t22;
-    o[1] = (wv_2 * A_11_minus + t1 * t23) / t24 + t22;
+    o[1] = t25;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -658,7 +660,7 @@ const _DETERMINANT = _runtime.kernel({
 /**
  * The same as a number.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -725,13 +727,13 @@ function _singularities(v, o) {
     const failed = !(t19 && Number.isFinite(theta)) || !(t20 <= t6 && t20 <= t10 && t20 <= t8);
     const t21 = failed ? NaN : 0;
     const t22 = t17 * (t2 - A_11) - A_11 * (wv_2 - t17) + t21;
-    const A_11_minus = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
+    const A_11_negative = t2 + share_2 * (t5 ? 1.0 : t13 - t14);
     const t23 = wv_2 + share_2 * (t5 ? 0.0 : t15 + t16);
-    const A_minus = t23 * (t2 - A_11_minus) - A_11_minus * (wv_2 - t23);
+    const A_negative = t23 * (t2 - A_11_negative) - A_11_negative * (wv_2 - t23);
     o[0] = -(wv_2 * A_11 + t1 * t17) + t21;
     o[1] = t22;
-    o[2] = -(wv_2 * A_11_minus + t1 * t23) + t21;
-    o[3] = A_minus + t21;
+    o[2] = -(wv_2 * A_11_negative + t1 * t23) + t21;
+    o[3] = A_negative + t21;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -757,7 +759,7 @@ const _SINGULARITIES = _runtime.kernel({
 /**
  * B (serial) and A (parallel).
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 1 number. theta in rad.
@@ -863,7 +865,7 @@ const _IK = _runtime.kernel({
 /**
  * The driven joint in both working modes.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `BRANCHES`: plus, minus.
  * - UNREACHABLE: the rod does not reach.
  * - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
  * - SINGULAR: no crank; theta is free, 0 is returned.

@@ -28,7 +28,7 @@ import * as _runtime from "./_runtime.js";
 
 export { Status } from "./_runtime.js";
 
-export const ASSEMBLY_MODES = Object.freeze(/** @type {const} */ (["plus", "minus"]));
+export const ASSEMBLY_MODES = Object.freeze(/** @type {const} */ (["positive", "negative"]));
 export const JOINTS = Object.freeze(/** @type {const} */ (["theta"]));
 export const TASK = Object.freeze(/** @type {const} */ (["x"]));
 export const BRANCHES = Object.freeze(/** @type {const} */ (["plus", "minus"]));
@@ -121,7 +121,7 @@ const _FK = _runtime.kernel({
 /**
  * x in both assembly modes.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - UNREACHABLE: the rod does not reach, so the loop cannot close.
  * - Ill-conditioned near the parallel singularity, where both modes meet.
  *
@@ -226,7 +226,7 @@ const _SKELETON = _runtime.kernel({
 /**
  * Points of the mechanism in the base frame, in the order of SKELETON.points.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 1 number. theta in rad.
@@ -297,7 +297,7 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
 /**
  * A of A*dx = B*dq.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 1 number. theta in rad.
@@ -371,7 +371,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
 /**
  * B of A*dx = B*dq.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Its sign distinguishes the working modes.
  *
@@ -447,7 +447,7 @@ const _JACOBIAN = _runtime.kernel({
 /**
  * Derivative of x with respect to q: B/A.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -524,7 +524,7 @@ const _DETERMINANT = _runtime.kernel({
 /**
  * The same as a number.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -602,7 +602,7 @@ const _SINGULARITIES = _runtime.kernel({
 /**
  * B (serial) and A (parallel).
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 1 number. theta in rad.
@@ -698,7 +698,7 @@ const _IK = _runtime.kernel({
 /**
  * The driven joint in both working modes.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+ * - Branches in this order, `BRANCHES`: plus, minus.
  * - UNREACHABLE: the rod does not reach.
  * - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
  * - SINGULAR: no crank; theta is free, 0 is returned.

@@ -29,7 +29,7 @@ from numpy.typing import ArrayLike
 from . import _runtime
 from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
-ASSEMBLY_MODES = ('plus', 'minus')
+ASSEMBLY_MODES = ('positive', 'negative')
 JOINTS = ('theta',)
 TASK = ('psi',)
 BRANCHES = ('plus', 'minus')
@@ -194,7 +194,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - UNREACHABLE: the rod does not reach, so the loop cannot close.
     - SINGULAR: the rod ends on the axis of psi; psi is free, 0 is returned.
     - SINGULAR: no crank; psi is free, 0 is returned.
@@ -322,7 +322,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
@@ -385,13 +385,13 @@ def _jacobian_parallel(theta, L1, L2, L3, L4):
     del t24
     t26 = share_2 * _runtime.select(t4, 1.0, t16 - t17)
     del share_2, t16, t17, t4
-    A_11_minus = t1 + t26
+    A_11_negative = t1 + t26
     del t26
-    A_minus = t25 * (t1 - A_11_minus) - A_11_minus * (wv_2 - t25)
-    del A_11_minus, t1, t25, wv_2
+    A_negative = t25 * (t1 - A_11_negative) - A_11_negative * (wv_2 - t25)
+    del A_11_negative, t1, t25, wv_2
     return (
         t23,
-        A_minus + t22,
+        A_negative + t22,
     )
 
 
@@ -432,7 +432,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params, out)
@@ -534,7 +534,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Its sign distinguishes the working modes.
     """
@@ -595,17 +595,19 @@ def _jacobian(theta, L1, L2, L3, L4):
     del invalid, unreachable
     t25 = share_2 * _runtime.select(t5, 1.0, t13 - t14)
     del t13, t14
-    A_11_minus = t2 + t25
+    A_11_negative = t2 + t25
     del t25
     t26 = share_2 * _runtime.select(t5, 0.0, t16 + t17)
     del share_2, t16, t17, t5
     t27 = wv_2 + t26
     del t26
-    t28 = A_11_minus * (wv_2 - t27) - t27 * (t2 - A_11_minus)
+    t28 = A_11_negative * (wv_2 - t27) - t27 * (t2 - A_11_negative)
     del t2
+    t29 = (wv_2 * A_11_negative + t1 * t27) / t28 + t24
+    del A_11_negative, t1, t27, t28, wv_2
     return (
         t20 + t24,
-        (wv_2 * A_11_minus + t1 * t27) / t28 + t24,
+        t29,
     )
 
 
@@ -646,7 +648,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -707,17 +709,19 @@ def _determinant(theta, L1, L2, L3, L4):
     del invalid, unreachable
     t25 = share_2 * _runtime.select(t5, 1.0, t13 - t14)
     del t13, t14
-    A_11_minus = t2 + t25
+    A_11_negative = t2 + t25
     del t25
     t26 = share_2 * _runtime.select(t5, 0.0, t16 + t17)
     del share_2, t16, t17, t5
     t27 = wv_2 + t26
     del t26
-    t28 = A_11_minus * (wv_2 - t27) - t27 * (t2 - A_11_minus)
+    t28 = A_11_negative * (wv_2 - t27) - t27 * (t2 - A_11_negative)
     del t2
+    t29 = (wv_2 * A_11_negative + t1 * t27) / t28 + t24
+    del A_11_negative, t1, t27, t28, wv_2
     return (
         t20 + t24,
-        (wv_2 * A_11_minus + t1 * t27) / t28 + t24,
+        t29,
     )
 
 
@@ -757,7 +761,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -817,19 +821,19 @@ def _singularities(theta, L1, L2, L3, L4):
     t24 = t19 * (t2 - A_11) - A_11 * (wv_2 - t19) + t23
     t25 = share_2 * _runtime.select(t5, 1.0, t13 - t14)
     del t13, t14
-    A_11_minus = t2 + t25
+    A_11_negative = t2 + t25
     del t25
     t26 = share_2 * _runtime.select(t5, 0.0, t16 + t17)
     del share_2, t16, t17, t5
     t27 = wv_2 + t26
     del t26
-    A_minus = t27 * (t2 - A_11_minus) - A_11_minus * (wv_2 - t27)
+    A_negative = t27 * (t2 - A_11_negative) - A_11_negative * (wv_2 - t27)
     del t2
     return (
         -(wv_2 * A_11 + t1 * t19) + t23,
         t24,
-        -(wv_2 * A_11_minus + t1 * t27) + t23,
-        A_minus + t23,
+        -(wv_2 * A_11_negative + t1 * t27) + t23,
+        A_negative + t23,
     )
 
 
@@ -870,7 +874,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
@@ -985,7 +989,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `BRANCHES`: plus, minus.
     - UNREACHABLE: the rod does not reach.
     - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
     - SINGULAR: no crank; theta is free, 0 is returned.

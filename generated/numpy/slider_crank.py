@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike
 from . import _runtime
 from ._runtime import Positions, Skeleton, SkeletonJoint, Solutions, Status
 
-ASSEMBLY_MODES = ('plus', 'minus')
+ASSEMBLY_MODES = ('positive', 'negative')
 JOINTS = ('theta',)
 TASK = ('x',)
 BRANCHES = ('plus', 'minus')
@@ -167,7 +167,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - UNREACHABLE: the rod does not reach, so the loop cannot close.
     - Ill-conditioned near the parallel singularity, where both modes meet.
     """
@@ -264,7 +264,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
@@ -332,7 +332,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params, out)
@@ -401,7 +401,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Its sign distinguishes the working modes.
     """
@@ -475,7 +475,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -548,7 +548,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -624,7 +624,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
@@ -727,7 +727,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus, minus.
+    - Branches in this order, `BRANCHES`: plus, minus.
     - UNREACHABLE: the rod does not reach.
     - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
     - SINGULAR: no crank; theta is free, 0 is returned.

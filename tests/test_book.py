@@ -240,8 +240,7 @@ def test_the_book_compiles_and_fits(tmp_path: Path) -> None:
     assert "undefined references" not in log
     assert "multiply-defined" not in log
     too_wide = [float(w) for w in re.findall(r"Overfull \\hbox \(([\d.]+)pt", log)]
-    # A known fault: formulas of the loops are up to 7 cm too wide.
-    assert max(too_wide, default=0) < 202
+    assert max(too_wide, default=0) < 5
 
 
 def test_the_book_does_not_depend_on_the_hash_seed() -> None:

@@ -329,7 +329,7 @@ def test_back_ends_agree(robot: str, data: st.DataObject) -> None:
         if [p.name for p in parameters if p.default is p.empty] == ["q"]:
             a, b = getattr(numpy, name)(q), getattr(c, name)(q)
             for u, v in zip(a, b, strict=True) if isinstance(a, tuple) else [(a, b)]:
-                if name in ("jacobian", "determinant"):  # not finite at a parallel singularity
+                if (robot, name) == ("orthoglide", "jacobian"):  # not finite where sliders meet
                     u, v = (np.where(np.isfinite(e), e, np.nan) for e in (u, v))
                 size = 1 + np.abs(q).max(initial=0) + np.nanmax(np.abs(u), initial=0) ** 2
                 np.testing.assert_allclose(u, v, rtol=0, atol=1e-13 * size)

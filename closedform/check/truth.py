@@ -61,7 +61,7 @@ class Values:
         self.lengths = numbers_of_tool(derivation)
         self.operations = sum(lower(function, derivation).operations().values())
         self._bounds = [_margins(function, symbols, s) for s in signs]
-        self._flags = [f for s in signs for f in _margins(function, symbols, s, Vanishes).apart()]
+        self._flags = [_margins(function, symbols, s, Vanishes) for s in signs]
 
     def existence(self, rows: Array, slack: float) -> Array:
         """Of each entry: 1 where it exists, -1 where not, 0 within ``slack`` of the boundary."""
@@ -71,11 +71,16 @@ class Values:
     def flagged(self, rows: Array, limit: float) -> Array:
         """Where a flag is raised, and so the value a convention.
 
-        A flag may be defined only where an earlier one is not raised.
+        A flag may be defined only where an earlier one is not raised: then each is seen alone.
         """
         found = np.zeros(len(rows), bool)
-        for flag in self._flags:
-            found |= (flag.settled(rows, beside(limit), defined=False) < limit)[:, 0]
+        for flags in self._flags:
+            values = flags.settled(rows, beside(limit), defined=False)
+            found |= (values < limit).any(axis=1)
+            unsettled = np.flatnonzero(np.isnan(values).any(axis=1))
+            for flag in flags.apart() if len(unsettled) else ():
+                alone = flag.settled(rows[unsettled], beside(limit), defined=False)
+                found[unsettled] |= alone[:, 0] < limit
         return found
 
 
@@ -194,8 +199,8 @@ class Solutions:
         point = [*map(float, solution), *map(float, parameters)]
         try:
             balls = [forward.exactly(point) for forward in self._maps]
-        except Undetermined:  # the answer leaves the target free, so nothing is missed
-            return 0.0
+        except Undetermined:  # what leaves the target free does not determine it
+            return math.inf
         offsets = [
             [to_float(b - arb(float(g))) for b, g in zip(m, given, strict=True)] for m in balls
         ]
@@ -246,10 +251,7 @@ class Solutions:
         """
         if not self._factors.exprs:
             return float(min([1.0, *self._rates(posture, parameters)]))
-        try:
-            factors = self._factors.exactly([*map(float, posture), *parameters])
-        except Undetermined:  # where a flag of the forward map leaves the target free
-            return 0.0
+        factors = self._factors.exactly([*map(float, posture), *parameters])
         return min([1.0, *(abs(to_float(f)) for f in factors if f.is_finite())])
 
     def undetermined(self, posture: NDArray[Any], parameters: Sequence[float]) -> bool:

@@ -6,15 +6,26 @@ The four-bar linkage (two cranks) and the slider-crank (a crank and a slide) are
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import sympy as sp
 
-from closedform.lemmas.legs import Crank, Naming, Slide, Solution
-from closedform.lemmas.loop import SIGN, Choice, bounds_of, in_space, size_of, square
+from closedform.lemmas.legs import Crank, Naming, Slide
+from closedform.lemmas.loop import (
+    NO_MODE,
+    SIGN,
+    Choice,
+    Exported,
+    bounds_of,
+    export,
+    in_space,
+    size_of,
+    square,
+    tell,
+    where_free,
+)
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
-from closedform.model.derivation import Derivation, Solved, Step
+from closedform.model.derivation import Derivation, Step
 from closedform.model.functions import Branches, Program, branches, real
 from closedform.model.inverse import Inverse
 
@@ -102,29 +113,16 @@ def _forward(
         result="Positions",
         notes=(
             "UNREACHABLE: the rod does not reach, so the loop cannot close.",
-            *_free(found, follower),
+            *where_free(found),
             "Ill-conditioned near the parallel singularity, where both modes meet.",
         ),
     )
     x = follower.joint
     d.inverses.append(Inverse("fk", (x,), (sp.S.Zero,), (loop,), links=(found.link,)))
-    _tell(d, "fk", found)
+    tell(d, "fk", found.link)
     v = Program(list(f.body), f.taken)
     along = sp.Matrix([v.let(f"A_1{i}", -e) for i, e in enumerate(found.rod, 1)])
     return _Rod(v, modes, along)
-
-
-def _free(found: Solution, leg: Crank | Slide) -> list[str]:
-    return [
-        f"SINGULAR: {case.meaning}; {leg.joint} is free, 0 is returned."
-        for case in found.link.degenerate
-    ]
-
-
-def _tell(d: Derivation, function: str, found: Solution) -> None:
-    lemma = found.link.lemma
-    assert lemma is not None
-    d.solved.append(Solved(function, found.link.unknowns[0], lemma, lemma.equations[0]))
 
 
 def _points(driver: Crank | Slide, follower: Crank | Slide) -> dict[str, sp.Matrix]:
@@ -161,7 +159,7 @@ def _draw(
         lengths=lengths,
         program=rod.program,
         branches=rod.modes,
-        notes=("NaN for an assembly mode that does not exist.",),
+        notes=(NO_MODE,),
         at_posture=[posture],
         closing={("B1", "B2"): loop},
     )
@@ -193,9 +191,8 @@ def _velocity(
     v = Program(list(rod.program.body), rod.program.taken)
     placed = follower.rate_at(driver.end() + rod.vector)
     A_at, B_at = v.let("A", rod.vector.dot(placed)), v.let("B", rod.vector.dot(driver.rate))
-    none = "NaN for an assembly mode that does not exist."
     pole = "Not finite at a parallel singularity."
-    functions: list[tuple[str, str, dict[str, Any], tuple[str, ...]]] = [
+    functions: list[Exported] = [
         ("jacobian_parallel", "A of A*dx = B*dq.", {"A": [[A_at]]}, ()),
         (
             "jacobian_serial",
@@ -207,16 +204,7 @@ def _velocity(
         ("determinant", "The same as a number.", {"det": B_at / A_at}, (pole,)),
         ("singularities", "B (serial) and A (parallel).", {"factors": [B_at, A_at]}, ()),
     ]
-    for name, summary, outputs, notes in functions:
-        d.function(
-            name,
-            summary,
-            {"q": d.actuated},
-            outputs,
-            program=v,
-            branches=rod.modes,
-            notes=(none, *notes),
-        )
+    export(d, v, rod.modes, functions)
 
 
 def _inverse(
@@ -250,7 +238,7 @@ def _inverse(
         result="Solutions",
         notes=(
             "UNREACHABLE: the rod does not reach.",
-            *_free(found, driver),
+            *where_free(found),
             "SINGULAR also near the parallel singularity, where the rod is at right angles to the "
             "path of the follower: the loop closes, but one ulp of the driver moves the follower "
             "by more than 1e-12.",
@@ -264,7 +252,7 @@ def _inverse(
         program=inside,
         boolean=True,
     )
-    _tell(d, "ik", found)
+    tell(d, "ik", found.link)
     d.inverses.append(
         Inverse("ik", d.actuated, (sp.S.Zero,), (loop,), images="fk", links=(found.link,))
     )

@@ -24,11 +24,13 @@ from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation, Solved, Step
 from closedform.model.functions import SINGLE, Bound, Branches, Let, Program, branches, real
-from closedform.model.inverse import Inverse
+from closedform.model.inverse import Inverse, Link
 
 Choice = Mapping[int, str]
 SIGN = {+1: "plus", -1: "minus"}
 AXES = "xyz"
+NO_MODE = "NaN for an assembly mode that does not exist."
+Exported = tuple[str, str, dict[str, Any], tuple[str, ...]]
 
 
 def parallel(
@@ -194,7 +196,7 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
         ),
     )
     d.inverses.append(Inverse("fk", tuple(m.hand), (sp.S.Zero,) * n, m.loop, links=(found.link,)))
-    d.solved.append(Solved("fk", m.hand[0], found.lemma, found.lemma.equations[0]))
+    tell(d, "fk", found.link)
     v = Program(list(f.body), f.taken)
     first = sp.Matrix([v.let(f"A_1{i}", e) for i, e in enumerate(found.first, 1)])
     return _Posture(
@@ -216,7 +218,7 @@ def _passive_angles(m: _Mechanism, at: _Posture, passive: Sequence[sp.Symbol]) -
         program=at.program,
         branches=at.modes,
         entries=tuple(passive),
-        notes=("NaN for an assembly mode that does not exist.",),
+        notes=(NO_MODE,),
     )
 
 
@@ -255,7 +257,7 @@ def _draw(m: _Mechanism, at: _Posture) -> None:
         lengths=lengths,
         program=at.program,
         branches=at.modes,
-        notes=("NaN for an assembly mode that does not exist.",),
+        notes=(NO_MODE,),
         at_posture=[_points(m, m.hand)],
         closing=closing,
     )
@@ -314,7 +316,7 @@ def _velocity(m: _Mechanism, at: _Posture, loop: Step) -> None:
     J = adjugate.xreplace(placed) * sp.diag(*driven) / side
     A_at = a.xreplace(placed)
     pole = "Not finite at a parallel singularity."
-    functions: list[tuple[str, str, dict[str, Any], tuple[str, ...]]] = [
+    functions: list[Exported] = [
         (
             "jacobian_parallel",
             "A of A*dp = B*dq; its rows are the vectors along the rods.",
@@ -344,16 +346,35 @@ def _velocity(m: _Mechanism, at: _Posture, loop: Step) -> None:
         ),
         ("condition_number", *_conditioning(v, vectors, size)),
     ]
+    export(d, v, at.modes, functions)
+
+
+def export(d: Derivation, program: Program, modes: Branches, functions: Sequence[Exported]) -> None:
+    """Export functions of the joints in each assembly mode: name, summary, outputs and notes."""
     for name, summary, outputs, notes in functions:
         d.function(
             name,
             summary,
-            {"q": m.joints},
+            {"q": d.actuated},
             outputs,
-            program=v,
-            branches=at.modes,
-            notes=("NaN for an assembly mode that does not exist.", *notes),
+            program=program,
+            branches=modes,
+            notes=(NO_MODE, *notes),
         )
+
+
+def tell(d: Derivation, function: str, link: Link) -> None:
+    """Record the lemma of a link for the article."""
+    assert link.lemma is not None
+    d.solved.append(Solved(function, link.unknowns[0], link.lemma, link.lemma.equations[0]))
+
+
+def where_free(found: Solution) -> list[str]:
+    """Notes on where the joint of a leg is free."""
+    return [
+        f"SINGULAR: {case.meaning}; {case.free} is free, 0 is returned."
+        for case in found.link.degenerate
+    ]
 
 
 def rate_of(leg: Leg, rod: sp.Matrix) -> sp.Expr:
@@ -435,11 +456,7 @@ def _inverse(m: _Mechanism, loop: Step) -> None:
         result="Solutions",
         notes=(
             "UNREACHABLE: a rod does not reach.",
-            *(
-                f"SINGULAR: {case.meaning}; {leg.joint} is free, 0 is returned."
-                for leg, s in zip(m.legs, found, strict=True)
-                for case in s.link.degenerate
-            ),
+            *(note for s in found for note in where_free(s)),
             f"SINGULAR also near a parallel singularity, where the rods are {meet}: the loop "
             "closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.",
         ),
@@ -453,9 +470,8 @@ def _inverse(m: _Mechanism, loop: Step) -> None:
             program=inside,
             boolean=True,
         )
-    for leg, s in zip(m.legs, found, strict=True):
-        assert s.link.lemma is not None
-        d.solved.append(Solved("ik", leg.joint, s.link.lemma, s.link.lemma.equations[0]))
+    for s in found:
+        tell(d, "ik", s.link)
     d.inverses.append(
         Inverse(
             "ik",
@@ -506,4 +522,18 @@ def _listed(symbols: Sequence[sp.Symbol]) -> str:
     return ", ".join(map(str, symbols))
 
 
-__all__ = ["SIGN", "Choice", "bounds_of", "in_space", "parallel", "rate_of", "size_of", "square"]
+__all__ = [
+    "NO_MODE",
+    "SIGN",
+    "Choice",
+    "Exported",
+    "bounds_of",
+    "export",
+    "in_space",
+    "parallel",
+    "rate_of",
+    "size_of",
+    "square",
+    "tell",
+    "where_free",
+]

@@ -125,7 +125,9 @@ def three_spheres(
     Y = p.let("Y", choose(line, 0, left / (2 * j)))
     radius = p.let("rho", sp.sqrt(X**2 + Y**2), nonnegative=True)
     slack = p.bound("slack", r1 - radius, scale, "the spheres meet")
-    h = p.let("h", sp.sqrt(slack) * sp.sqrt(r1 + radius), nonnegative=True)
+    touching = p.vanishes("touching", slack, scale, "the spheres touch")
+    rise = choose(touching, 0, sp.sqrt(slack) * sp.sqrt(r1 + radius))
+    h = p.let("h", rise, nonnegative=True)
     e3 = e1.cross(e2)
     from_first = [X * a + Y * b + sigma * h * c for a, b, c in zip(e1, e2, e3, strict=True)]
     found = [o + x for o, x in zip(origin, from_first, strict=True)]

@@ -247,12 +247,12 @@ class _Legs:
     def direction(self, v: sp.Matrix, length: sp.Expr) -> sp.Matrix:
         return (v / length).applyfunc(sp.simplify)
 
-    def driven_from_ground(self) -> list[Joint]:
+    def driven(self) -> list[Joint]:
         return [j for j in self.loop.joints.values() if j.driven]
 
     def legs(self) -> list[LoopLeg]:
         loop = self.loop
-        driven = self.driven_from_ground()
+        driven = self.driven()
         if not driven:
             raise loop.error("no joint is driven; set driven = true")
         return [self.leg(j) for j in driven]
@@ -342,10 +342,8 @@ class _Legs:
     def place_on_hand(self, rod: str, near: Joint) -> sp.Matrix:
         """Where a rod ends, seen from the point that is the hand."""
         far = [j for j in self.loop.of(rod) if j is not near]
-        if len(far) != 1 and not all(j.at == self.loop.hand for j in far):
+        if not far or (len(far) > 1 and any(j.at != self.loop.hand for j in far)):
             raise self.loop.error(f"the rod {rod} must have two ends")
-        if not far:
-            raise self.loop.error(f"the rod {rod} has one end only")
         return self.place_of(far[0], rod)
 
     def place_of(self, far: Joint, rod: str = "") -> sp.Matrix:
@@ -360,7 +358,7 @@ class _Legs:
         return loop.bodies[body][far.at] - loop.bodies[body][loop.hand]
 
     def refuse_turning(self, body: str) -> None:
-        n = len(self.driven_from_ground())
+        n = len(self.driven())
         known = NO_CLOSED_FORM.get((self.loop.dimensions, n))
         why = f"; {known}, so there is no closed form" if known else ""
         raise self.loop.error(
@@ -406,7 +404,7 @@ def loop_script(name: str, loop: Loop, origin: str) -> str:
 def _coupled(found: _Legs, follower: Joint) -> list[LoopLeg]:
     """The driver and the follower of a single loop."""
     loop = found.loop
-    drivers = found.driven_from_ground()
+    drivers = found.driven()
     if len(drivers) != 1 or GROUND not in follower.between:
         raise loop.error("a loop with one driven joint needs a follower that is on the ground")
     driver, ends = drivers[0], []

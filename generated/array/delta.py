@@ -2,14 +2,14 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Arms of common structure, solved by lemmas.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 70 compare and select, 77 add, 8 divide, 104 multiply, 6 sincos, 9 sqrt
-#   skeleton: 97 compare and select, 92 add, 15 divide, 93 multiply, 6 sincos, 9 sqrt
-#   jacobian_parallel: 81 compare and select, 86 add, 15 divide, 93 multiply, 6 sincos, 9 sqrt
-#   jacobian_serial: 69 compare and select, 98 add, 15 divide, 117 multiply, 6 sincos, 9 sqrt
-#   jacobian: 82 compare and select, 116 add, 33 divide, 173 multiply, 6 sincos, 9 sqrt
-#   determinant: 66 compare and select, 98 add, 17 divide, 123 multiply, 6 sincos, 9 sqrt
-#   singularities: 71 compare and select, 98 add, 15 divide, 119 multiply, 6 sincos, 9 sqrt
-#   condition_number: 68 compare and select, 136 add, 17 divide, 170 multiply, 6 sincos, 11 sqrt
+#   fk: 75 compare and select, 77 add, 8 divide, 104 multiply, 6 sincos, 9 sqrt
+#   skeleton: 102 compare and select, 92 add, 15 divide, 93 multiply, 6 sincos, 9 sqrt
+#   jacobian_parallel: 86 compare and select, 86 add, 15 divide, 93 multiply, 6 sincos, 9 sqrt
+#   jacobian_serial: 74 compare and select, 98 add, 15 divide, 117 multiply, 6 sincos, 9 sqrt
+#   jacobian: 87 compare and select, 116 add, 33 divide, 173 multiply, 6 sincos, 9 sqrt
+#   determinant: 71 compare and select, 98 add, 17 divide, 123 multiply, 6 sincos, 9 sqrt
+#   singularities: 76 compare and select, 98 add, 15 divide, 119 multiply, 6 sincos, 9 sqrt
+#   condition_number: 73 compare and select, 136 add, 17 divide, 170 multiply, 6 sincos, 11 sqrt
 #   ik: 169 compare and select, 181 add, 6 atan2, 4 divide, 183 multiply, 3 sincos, 18 sqrt
 #   workspace_contains: 45 add, 50 compare and select, 1 divide, 32 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -186,8 +186,8 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t31 = ops.abs(ops.select(in_line, -t30, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t32 = ops.select(in_line, 0.0, t30 / (2.0 * j))
-    t33 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t32 * t32)
-    unreachable = ops.opposite(t31 & t33)
+    t33 = l - ops.sqrt(X * X + t32 * t32)
+    unreachable = ops.opposite(t31 & (-(size * ops.feasibility) <= t33))
     failed = invalid | unreachable
     t34 = ops.opposite(failed)
     t35 = t34 & ops.opposite(all_same)
@@ -214,28 +214,30 @@ def _fk(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     E_23 = ops.select(in_line, -t40, n_z_2 * t49)
     t50 = 1.0 / ops.select(t34 & in_line, E_13_2 + t39, 1.0)
     E_22 = ops.select(in_line, -(t50 * (t38 * t40)), t47 * t49)
+    touching = ops.max(t33, 0.0) <= t11
+    t51 = t34 & ops.opposite(touching)
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t51 = ops.select(in_line, 0.0, t30 / ops.select(t45, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t34, X_2 * X_2 + t51 * t51, 1.0))
-    t52 = ops.select(t34, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t52)
-    t53 = (t38 * E_23 - E_13_2 * E_22) * h
+    t52 = ops.select(in_line, 0.0, t30 / ops.select(t45, 2.0 * j_2, 1.0))
+    rho = ops.sqrt(ops.select(t51, X_2 * X_2 + t52 * t52, 1.0))
+    t53 = ops.select(t51, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t53))
+    t54 = (t38 * E_23 - E_13_2 * E_22) * h
     E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t39 * t50, t46 * t49)
-    t54 = E_21 * t51 + (t5 - X_2 * E_11_2)
-    t55 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t56 = t51 * E_22 + (t8 - X_2 * t38)
-    t57 = h * (E_11_2 * E_22 - t38 * E_21)
-    t58 = t51 * E_23 + (t3 - X_2 * E_13_2)
-    t59 = ops.status(invalid, unreachable, in_line)
+    t55 = E_21 * t52 + (t5 - X_2 * E_11_2)
+    t56 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t57 = t52 * E_22 + (t8 - X_2 * t38)
+    t58 = h * (E_11_2 * E_22 - t38 * E_21)
+    t59 = t52 * E_23 + (t3 - X_2 * E_13_2)
+    t60 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, -(t53 + t54)),
-        ops.select(failed, ops.nan, t55 - t56),
-        ops.select(failed, ops.nan, -(t57 + t58)),
-        ops.select(failed, ops.nan, t53 - t54),
-        ops.select(failed, ops.nan, -(t55 + t56)),
-        ops.select(failed, ops.nan, t57 - t58),
-        t59,
-        t59,
+        ops.select(failed, ops.nan, -(t54 + t55)),
+        ops.select(failed, ops.nan, t56 - t57),
+        ops.select(failed, ops.nan, -(t58 + t59)),
+        ops.select(failed, ops.nan, t54 - t55),
+        ops.select(failed, ops.nan, -(t56 + t57)),
+        ops.select(failed, ops.nan, t58 - t59),
+        t60,
+        t60,
     )
 
 
@@ -369,8 +371,9 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t49 = ops.abs(ops.select(in_line, left, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t50 = ops.select(in_line, 0.0, left / (2.0 * j))
-    t51 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t50 * t50)
-    failed = invalid | ops.opposite(t49 & t51)
+    t51 = l - ops.sqrt(X * X + t50 * t50)
+    unreachable = ops.opposite(t49 & (-(size * ops.feasibility) <= t51))
+    failed = invalid | unreachable
     t52 = ops.select(failed, ops.nan, t6)
     t53 = ops.select(failed, ops.nan, t16)
     t54 = ops.select(failed, ops.nan, 0.0)
@@ -406,30 +409,32 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t76 = E_11_2 * t72
     E_23 = ops.select(in_line, -t76, n_z_2 / t74)
     E_22 = ops.select(in_line, -(t63 * t76 / t73), t69 / t74)
-    rho = ops.sqrt(ops.select(t58, X_2 * X_2 + t71 * t71, 1.0))
-    t77 = ops.select(t58, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t77)
-    t78 = (t63 * E_23 - E_13_2 * E_22) * h
-    t79 = t9 - (t75 - t78)
-    t80 = t63 * X_2 + t71 * E_22
-    t81 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t82 = t18 - (t80 + t81)
-    t83 = E_13_2 * X_2 + t71 * E_23
-    t84 = h * (E_11_2 * E_22 - t63 * E_21)
-    t85 = ops.select(failed, ops.nan, t83 - t84 - t3)
-    t86 = ops.select(failed, ops.nan, t11)
-    t87 = ops.select(failed, ops.nan, t20)
-    t88 = ops.select(failed, ops.nan, t13)
-    t89 = ops.select(failed, ops.nan, t21)
-    t90 = ops.select(failed, ops.nan, -t4)
-    t91 = ops.select(failed, ops.nan, t26)
-    t92 = ops.select(failed, ops.nan, t33)
-    t93 = ops.select(failed, ops.nan, t28)
-    t94 = ops.select(failed, ops.nan, t34)
-    t95 = ops.select(failed, ops.nan, -t31)
-    t96 = t9 - (t75 + t78)
-    t97 = t18 - (t80 - t81)
-    t98 = ops.select(failed, ops.nan, t83 + t84 - t3)
+    touching = ops.max(t51, 0.0) <= t24
+    t77 = t58 & ops.opposite(touching)
+    rho = ops.sqrt(ops.select(t77, X_2 * X_2 + t71 * t71, 1.0))
+    t78 = ops.select(t77, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t78))
+    t79 = (t63 * E_23 - E_13_2 * E_22) * h
+    t80 = t9 - (t75 - t79)
+    t81 = t63 * X_2 + t71 * E_22
+    t82 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t83 = t18 - (t81 + t82)
+    t84 = E_13_2 * X_2 + t71 * E_23
+    t85 = h * (E_11_2 * E_22 - t63 * E_21)
+    t86 = ops.select(failed, ops.nan, t84 - t85 - t3)
+    t87 = ops.select(failed, ops.nan, t11)
+    t88 = ops.select(failed, ops.nan, t20)
+    t89 = ops.select(failed, ops.nan, t13)
+    t90 = ops.select(failed, ops.nan, t21)
+    t91 = ops.select(failed, ops.nan, -t4)
+    t92 = ops.select(failed, ops.nan, t26)
+    t93 = ops.select(failed, ops.nan, t33)
+    t94 = ops.select(failed, ops.nan, t28)
+    t95 = ops.select(failed, ops.nan, t34)
+    t96 = ops.select(failed, ops.nan, -t31)
+    t97 = t9 - (t75 + t79)
+    t98 = t18 - (t81 - t82)
+    t99 = ops.select(failed, ops.nan, t84 + t85 - t3)
     return (
         t52,
         t53,
@@ -437,60 +442,60 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
         t55,
         t56,
         t57,
-        ops.select(failed, ops.nan, t5 - t79),
-        ops.select(failed, ops.nan, t15 - t82),
-        t85,
+        ops.select(failed, ops.nan, t5 - t80),
+        ops.select(failed, ops.nan, t15 - t83),
         t86,
         t87,
-        t54,
         t88,
+        t54,
         t89,
         t90,
-        ops.select(failed, ops.nan, t10 - t79),
-        ops.select(failed, ops.nan, t19 - t82),
-        t85,
         t91,
+        ops.select(failed, ops.nan, t10 - t80),
+        ops.select(failed, ops.nan, t19 - t83),
+        t86,
         t92,
-        t54,
         t93,
+        t54,
         t94,
         t95,
-        ops.select(failed, ops.nan, t25 - t79),
-        ops.select(failed, ops.nan, t32 - t82),
-        t85,
-        ops.select(failed, ops.nan, -t79),
-        ops.select(failed, ops.nan, -t82),
-        t85,
+        t96,
+        ops.select(failed, ops.nan, t25 - t80),
+        ops.select(failed, ops.nan, t32 - t83),
+        t86,
+        ops.select(failed, ops.nan, -t80),
+        ops.select(failed, ops.nan, -t83),
+        t86,
         t52,
         t53,
         t54,
         t55,
         t56,
         t57,
-        ops.select(failed, ops.nan, t5 - t96),
-        ops.select(failed, ops.nan, t15 - t97),
-        t98,
-        t86,
+        ops.select(failed, ops.nan, t5 - t97),
+        ops.select(failed, ops.nan, t15 - t98),
+        t99,
         t87,
-        t54,
         t88,
+        t54,
         t89,
         t90,
-        ops.select(failed, ops.nan, t10 - t96),
-        ops.select(failed, ops.nan, t19 - t97),
-        t98,
         t91,
+        ops.select(failed, ops.nan, t10 - t97),
+        ops.select(failed, ops.nan, t19 - t98),
+        t99,
         t92,
-        t54,
         t93,
+        t54,
         t94,
         t95,
-        ops.select(failed, ops.nan, t25 - t96),
-        ops.select(failed, ops.nan, t32 - t97),
-        t98,
-        ops.select(failed, ops.nan, -t96),
+        t96,
+        ops.select(failed, ops.nan, t25 - t97),
+        ops.select(failed, ops.nan, t32 - t98),
+        t99,
         ops.select(failed, ops.nan, -t97),
-        t98,
+        ops.select(failed, ops.nan, -t98),
+        t99,
     )
 
 
@@ -596,8 +601,9 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t31 = ops.select(in_line, 0.0, t29 / (2.0 * j))
-    t32 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t31 * t31)
-    failed = invalid | ops.opposite(t30 & t32)
+    t32 = l - ops.sqrt(X * X + t31 * t31)
+    unreachable = ops.opposite(t30 & (-(size * ops.feasibility) <= t32))
+    failed = invalid | unreachable
     t33 = ops.opposite(failed)
     t34 = t33 & ops.opposite(all_same)
     t35 = ops.select(t34 & ops.opposite(same), t10, 1.0)
@@ -623,46 +629,48 @@ def _jacobian_parallel(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, 
     E_23 = ops.select(in_line, -t39, n_z_2 / t48)
     t49 = ops.select(t33 & in_line, E_13_2 + t38, 1.0)
     E_22 = ops.select(in_line, -(t37 * t39 / t49), t46 / t48)
+    touching = ops.max(t32, 0.0) <= t11
+    t50 = t33 & ops.opposite(touching)
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t50 = ops.select(in_line, 0.0, t29 / ops.select(t44, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t33, X_2 * X_2 + t50 * t50, 1.0))
-    t51 = ops.select(t33, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t51)
-    t52 = (t37 * E_23 - E_13_2 * E_22) * h
+    t51 = ops.select(in_line, 0.0, t29 / ops.select(t44, 2.0 * j_2, 1.0))
+    rho = ops.sqrt(ops.select(t50, X_2 * X_2 + t51 * t51, 1.0))
+    t52 = ops.select(t50, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t52))
+    t53 = (t37 * E_23 - E_13_2 * E_22) * h
     E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t38 / t49, t45 / t48)
-    t53 = E_11_2 * X_2 - E_21 * t50
-    t54 = t52 - t53
-    t55 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t56 = X_2 * t37 - t50 * E_22
-    A_12 = t55 + t56
-    t57 = h * (E_11_2 * E_22 - t37 * E_21)
-    t58 = X_2 * E_13_2 - t50 * E_23
-    t59 = t57 - t58
-    A_11_above = t52 + t53
-    t60 = t55 - t56
-    A_13_above = t57 + t58
-    t61 = ops.select(failed, ops.nan, A_13_above - u_z)
-    t62 = ops.select(failed, ops.nan, A_11_above - t13)
-    t63 = ops.select(failed, ops.nan, A_13_above - v_z)
+    t54 = E_11_2 * X_2 - E_21 * t51
+    t55 = t53 - t54
+    t56 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t57 = X_2 * t37 - t51 * E_22
+    A_12 = t56 + t57
+    t58 = h * (E_11_2 * E_22 - t37 * E_21)
+    t59 = X_2 * E_13_2 - t51 * E_23
+    t60 = t58 - t59
+    A_11_above = t53 + t54
+    t61 = t56 - t57
+    A_13_above = t58 + t59
+    t62 = ops.select(failed, ops.nan, A_13_above - u_z)
+    t63 = ops.select(failed, ops.nan, A_11_above - t13)
+    t64 = ops.select(failed, ops.nan, A_13_above - v_z)
     return (
-        ops.select(failed, ops.nan, -t54),
+        ops.select(failed, ops.nan, -t55),
         ops.select(failed, ops.nan, A_12),
-        ops.select(failed, ops.nan, -t59),
-        ops.select(failed, ops.nan, -(t7 + t54)),
-        ops.select(failed, ops.nan, A_12 - t9),
-        ops.select(failed, ops.nan, -(u_z + t59)),
-        ops.select(failed, ops.nan, -(t13 + t54)),
-        ops.select(failed, ops.nan, A_12 - t15),
-        ops.select(failed, ops.nan, -(v_z + t59)),
-        ops.select(failed, ops.nan, A_11_above),
         ops.select(failed, ops.nan, -t60),
+        ops.select(failed, ops.nan, -(t7 + t55)),
+        ops.select(failed, ops.nan, A_12 - t9),
+        ops.select(failed, ops.nan, -(u_z + t60)),
+        ops.select(failed, ops.nan, -(t13 + t55)),
+        ops.select(failed, ops.nan, A_12 - t15),
+        ops.select(failed, ops.nan, -(v_z + t60)),
+        ops.select(failed, ops.nan, A_11_above),
+        ops.select(failed, ops.nan, -t61),
         ops.select(failed, ops.nan, A_13_above),
         ops.select(failed, ops.nan, A_11_above - t7),
-        ops.select(failed, ops.nan, -(t9 + t60)),
-        t61,
+        ops.select(failed, ops.nan, -(t9 + t61)),
         t62,
-        ops.select(failed, ops.nan, -(t15 + t60)),
         t63,
+        ops.select(failed, ops.nan, -(t15 + t61)),
+        t64,
     )
 
 
@@ -770,8 +778,9 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     t32 = ops.abs(ops.select(in_line, -t31, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t33 = ops.select(in_line, 0.0, t31 / (2.0 * j))
-    t34 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t33 * t33)
-    failed = invalid | ops.opposite(t32 & t34)
+    t34 = l - ops.sqrt(X * X + t33 * t33)
+    unreachable = ops.opposite(t32 & (-(size * ops.feasibility) <= t34))
+    failed = invalid | unreachable
     t35 = c_alpha1 * t3
     t36 = ops.opposite(failed)
     t37 = t36 & ops.opposite(all_same)
@@ -798,40 +807,42 @@ def _jacobian_serial(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, al
     E_23 = ops.select(in_line, -t42, n_z_2 / t51)
     t52 = ops.select(t36 & in_line, E_13_2 + t41, 1.0)
     E_22 = ops.select(in_line, -(t40 * t42 / t52), t49 / t51)
+    touching = ops.max(t34, 0.0) <= t12
+    t53 = t36 & ops.opposite(touching)
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t53 = ops.select(in_line, 0.0, t31 / ops.select(t47, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t36, X_2 * X_2 + t53 * t53, 1.0))
-    t54 = ops.select(t36, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t54)
-    t55 = (t40 * E_23 - E_13_2 * E_22) * h
+    t54 = ops.select(in_line, 0.0, t31 / ops.select(t47, 2.0 * j_2, 1.0))
+    rho = ops.sqrt(ops.select(t53, X_2 * X_2 + t54 * t54, 1.0))
+    t55 = ops.select(t53, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t55))
+    t56 = (t40 * E_23 - E_13_2 * E_22) * h
     E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t41 / t52, t48 / t51)
-    t56 = E_11_2 * X_2 - E_21 * t53
-    t57 = t55 - t56
-    t58 = s_alpha1 * t3
-    t59 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t60 = X_2 * t40 - t53 * E_22
-    A_12 = t59 + t60
-    t61 = h * (E_11_2 * E_22 - t40 * E_21)
-    t62 = X_2 * E_13_2 - t53 * E_23
-    t63 = t61 - t62
-    t64 = ops.select(failed, ops.nan, t35 * t57 - t58 * A_12 + t5 * t63)
-    t65 = c_alpha2 * t4
-    t66 = s_alpha2 * t4
-    B_22 = t65 * (t8 + t57) + t66 * (t10 - A_12) + t7 * (u_z + t63)
-    t67 = c_alpha3 * t16
-    t68 = s_alpha3 * t16
-    B_33 = t67 * (t14 + t57) + t68 * (t17 - A_12) + t13 * (v_z + t63)
-    A_11_above = t55 + t56
-    t69 = t59 - t60
-    A_13_above = t61 + t62
-    t70 = t35 * A_11_above - t58 * t69 + t5 * A_13_above
-    B_22_above = t65 * (t8 - A_11_above) + t66 * (t10 + t69) + t7 * (u_z - A_13_above)
-    B_33_above = t67 * (t14 - A_11_above) + t68 * (t17 + t69) + t13 * (v_z - A_13_above)
+    t57 = E_11_2 * X_2 - E_21 * t54
+    t58 = t56 - t57
+    t59 = s_alpha1 * t3
+    t60 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t61 = X_2 * t40 - t54 * E_22
+    A_12 = t60 + t61
+    t62 = h * (E_11_2 * E_22 - t40 * E_21)
+    t63 = X_2 * E_13_2 - t54 * E_23
+    t64 = t62 - t63
+    t65 = ops.select(failed, ops.nan, t35 * t58 - t59 * A_12 + t5 * t64)
+    t66 = c_alpha2 * t4
+    t67 = s_alpha2 * t4
+    B_22 = t66 * (t8 + t58) + t67 * (t10 - A_12) + t7 * (u_z + t64)
+    t68 = c_alpha3 * t16
+    t69 = s_alpha3 * t16
+    B_33 = t68 * (t14 + t58) + t69 * (t17 - A_12) + t13 * (v_z + t64)
+    A_11_above = t56 + t57
+    t70 = t60 - t61
+    A_13_above = t62 + t63
+    t71 = t35 * A_11_above - t59 * t70 + t5 * A_13_above
+    B_22_above = t66 * (t8 - A_11_above) + t67 * (t10 + t70) + t7 * (u_z - A_13_above)
+    B_33_above = t68 * (t14 - A_11_above) + t69 * (t17 + t70) + t13 * (v_z - A_13_above)
     return (
-        t64,
+        t65,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, B_33),
-        ops.select(failed, ops.nan, -t70),
+        ops.select(failed, ops.nan, -t71),
         ops.select(failed, ops.nan, B_22_above),
         ops.select(failed, ops.nan, B_33_above),
     )
@@ -941,8 +952,9 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t32 = ops.abs(ops.select(in_line, -t31, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t33 = ops.select(in_line, 0.0, t31 / (2.0 * j))
-    t34 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t33 * t33)
-    failed = invalid | ops.opposite(t32 & t34)
+    t34 = l - ops.sqrt(X * X + t33 * t33)
+    unreachable = ops.opposite(t32 & (-(size * ops.feasibility) <= t34))
+    failed = invalid | unreachable
     t35 = c_alpha1 * t3
     t36 = ops.opposite(failed)
     t37 = ops.select(t36 & ops.opposite(same), t11, 1.0)
@@ -968,85 +980,87 @@ def _jacobian(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     E_23 = ops.select(in_line, -t41, n_z_2 / t50)
     t51 = ops.select(t36 & in_line, E_13_2 + t40, 1.0)
     E_22 = ops.select(in_line, -(t39 * t41 / t51), t48 / t50)
+    touching = ops.max(t34, 0.0) <= t12
+    t52 = t36 & ops.opposite(touching)
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t52 = ops.select(in_line, 0.0, t31 / ops.select(t46, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t36, X_2 * X_2 + t52 * t52, 1.0))
-    t53 = ops.select(t36, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t53)
-    t54 = (t39 * E_23 - E_13_2 * E_22) * h
+    t53 = ops.select(in_line, 0.0, t31 / ops.select(t46, 2.0 * j_2, 1.0))
+    rho = ops.sqrt(ops.select(t52, X_2 * X_2 + t53 * t53, 1.0))
+    t54 = ops.select(t52, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t54))
+    t55 = (t39 * E_23 - E_13_2 * E_22) * h
     E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t40 / t51, t47 / t50)
-    t55 = E_11_2 * X_2 - E_21 * t52
-    t56 = t54 - t55
-    t57 = s_alpha1 * t3
-    t58 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t59 = X_2 * t39 - t52 * E_22
-    A_12 = t58 + t59
-    t60 = h * (E_11_2 * E_22 - t39 * E_21)
-    t61 = X_2 * E_13_2 - t52 * E_23
-    t62 = t60 - t61
-    t63 = t35 * t56 - t57 * A_12 + t5 * t62
-    t64 = t10 - A_12
-    t65 = v_z + t62
-    t66 = u_z + t62
-    t67 = t17 - A_12
-    t68 = ops.select(t36, D_2 * j_2 * h, 1.0)
-    t69 = ops.select(failed, ops.nan, -(t63 * (t64 * t65 - t66 * t67) / t68))
-    t70 = c_alpha2 * t4
-    t71 = t8 + t56
-    t72 = s_alpha2 * t4
-    t73 = t70 * t71 + t72 * t64 + t7 * t66
-    t74 = ops.select(failed, ops.nan, -(t73 * (A_12 * t65 + t62 * t67) / t68))
-    t75 = c_alpha3 * t16
-    t76 = t14 + t56
-    t77 = s_alpha3 * t16
-    t78 = t75 * t76 + t77 * t67 + t13 * t65
-    t79 = ops.select(failed, ops.nan, t78 * (A_12 * t66 + t62 * t64) / t68)
-    t80 = ops.select(failed, ops.nan, t63 * (t65 * t71 - t66 * t76) / t68)
-    t81 = ops.select(failed, ops.nan, -(t73 * (t56 * t65 - t62 * t76) / t68))
-    t82 = ops.select(failed, ops.nan, t78 * (t56 * t66 - t62 * t71) / t68)
-    t83 = ops.select(failed, ops.nan, -(t63 * (t67 * t71 - t64 * t76) / t68))
-    t84 = ops.select(failed, ops.nan, t73 * (t56 * t67 + A_12 * t76) / t68)
-    t85 = ops.select(failed, ops.nan, -(t78 * (t56 * t64 + A_12 * t71) / t68))
-    A_11_above = t54 + t55
-    t86 = t58 - t59
-    A_13_above = t60 + t61
-    t87 = t35 * A_11_above - t57 * t86 + t5 * A_13_above
-    t88 = t10 + t86
-    t89 = v_z - A_13_above
-    t90 = u_z - A_13_above
-    t91 = t17 + t86
-    t92 = ops.select(failed, ops.nan, -(t87 * (t88 * t89 - t90 * t91) / t68))
-    t93 = t8 - A_11_above
-    t94 = t70 * t93 + t72 * t88 + t7 * t90
-    t95 = -(t94 * (t86 * t89 + A_13_above * t91) / t68)
-    t96 = t14 - A_11_above
-    t97 = t75 * t96 + t77 * t91 + t13 * t89
-    t98 = ops.select(failed, ops.nan, t97 * (t86 * t90 + A_13_above * t88) / t68)
-    t99 = ops.select(failed, ops.nan, t87 * (t89 * t93 - t90 * t96) / t68)
-    t100 = t94 * (A_11_above * t89 - A_13_above * t96) / t68
-    t101 = t97 * (A_11_above * t90 - A_13_above * t93) / t68
-    t102 = ops.select(failed, ops.nan, -(t87 * (t91 * t93 - t88 * t96) / t68))
-    t103 = ops.select(failed, ops.nan, t94 * (A_11_above * t91 + t86 * t96) / t68)
-    t104 = -(t97 * (A_11_above * t88 + t86 * t93) / t68)
+    t56 = E_11_2 * X_2 - E_21 * t53
+    t57 = t55 - t56
+    t58 = s_alpha1 * t3
+    t59 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t60 = X_2 * t39 - t53 * E_22
+    A_12 = t59 + t60
+    t61 = h * (E_11_2 * E_22 - t39 * E_21)
+    t62 = X_2 * E_13_2 - t53 * E_23
+    t63 = t61 - t62
+    t64 = t35 * t57 - t58 * A_12 + t5 * t63
+    t65 = t10 - A_12
+    t66 = v_z + t63
+    t67 = u_z + t63
+    t68 = t17 - A_12
+    t69 = ops.select(t36, D_2 * j_2 * h, 1.0)
+    t70 = ops.select(failed, ops.nan, -(t64 * (t65 * t66 - t67 * t68) / t69))
+    t71 = c_alpha2 * t4
+    t72 = t8 + t57
+    t73 = s_alpha2 * t4
+    t74 = t71 * t72 + t73 * t65 + t7 * t67
+    t75 = ops.select(failed, ops.nan, -(t74 * (A_12 * t66 + t63 * t68) / t69))
+    t76 = c_alpha3 * t16
+    t77 = t14 + t57
+    t78 = s_alpha3 * t16
+    t79 = t76 * t77 + t78 * t68 + t13 * t66
+    t80 = ops.select(failed, ops.nan, t79 * (A_12 * t67 + t63 * t65) / t69)
+    t81 = ops.select(failed, ops.nan, t64 * (t66 * t72 - t67 * t77) / t69)
+    t82 = ops.select(failed, ops.nan, -(t74 * (t57 * t66 - t63 * t77) / t69))
+    t83 = ops.select(failed, ops.nan, t79 * (t57 * t67 - t63 * t72) / t69)
+    t84 = ops.select(failed, ops.nan, -(t64 * (t68 * t72 - t65 * t77) / t69))
+    t85 = ops.select(failed, ops.nan, t74 * (t57 * t68 + A_12 * t77) / t69)
+    t86 = ops.select(failed, ops.nan, -(t79 * (t57 * t65 + A_12 * t72) / t69))
+    A_11_above = t55 + t56
+    t87 = t59 - t60
+    A_13_above = t61 + t62
+    t88 = t35 * A_11_above - t58 * t87 + t5 * A_13_above
+    t89 = t10 + t87
+    t90 = v_z - A_13_above
+    t91 = u_z - A_13_above
+    t92 = t17 + t87
+    t93 = ops.select(failed, ops.nan, -(t88 * (t89 * t90 - t91 * t92) / t69))
+    t94 = t8 - A_11_above
+    t95 = t71 * t94 + t73 * t89 + t7 * t91
+    t96 = -(t95 * (t87 * t90 + A_13_above * t92) / t69)
+    t97 = t14 - A_11_above
+    t98 = t76 * t97 + t78 * t92 + t13 * t90
+    t99 = ops.select(failed, ops.nan, t98 * (t87 * t91 + A_13_above * t89) / t69)
+    t100 = ops.select(failed, ops.nan, t88 * (t90 * t94 - t91 * t97) / t69)
+    t101 = t95 * (A_11_above * t90 - A_13_above * t97) / t69
+    t102 = t98 * (A_11_above * t91 - A_13_above * t94) / t69
+    t103 = ops.select(failed, ops.nan, -(t88 * (t92 * t94 - t89 * t97) / t69))
+    t104 = ops.select(failed, ops.nan, t95 * (A_11_above * t92 + t87 * t97) / t69)
+    t105 = -(t98 * (A_11_above * t89 + t87 * t94) / t69)
     return (
-        t69,
-        t74,
-        t79,
+        t70,
+        t75,
         t80,
         t81,
         t82,
         t83,
         t84,
         t85,
-        t92,
-        ops.select(failed, ops.nan, t95),
-        t98,
+        t86,
+        t93,
+        ops.select(failed, ops.nan, t96),
         t99,
-        ops.select(failed, ops.nan, -t100),
-        ops.select(failed, ops.nan, t101),
-        t102,
+        t100,
+        ops.select(failed, ops.nan, -t101),
+        ops.select(failed, ops.nan, t102),
         t103,
-        ops.select(failed, ops.nan, t104),
+        t104,
+        ops.select(failed, ops.nan, t105),
     )
 
 
@@ -1155,8 +1169,9 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t32 = ops.abs(ops.select(in_line, -t31, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t33 = ops.select(in_line, 0.0, t31 / (2.0 * j))
-    t34 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t33 * t33)
-    failed = invalid | ops.opposite(t32 & t34)
+    t34 = l - ops.sqrt(X * X + t33 * t33)
+    unreachable = ops.opposite(t32 & (-(size * ops.feasibility) <= t34))
+    failed = invalid | unreachable
     t35 = c_alpha1 * t3
     t36 = ops.opposite(failed)
     t37 = ops.select(t36 & ops.opposite(same), t11, 1.0)
@@ -1182,40 +1197,42 @@ def _determinant(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     E_23 = ops.select(in_line, -t41, n_z_2 / t50)
     t51 = ops.select(t36 & in_line, E_13_2 + t40, 1.0)
     E_22 = ops.select(in_line, -(t39 * t41 / t51), t48 / t50)
+    touching = ops.max(t34, 0.0) <= t12
+    t52 = t36 & ops.opposite(touching)
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t52 = ops.select(in_line, 0.0, t31 / ops.select(t46, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t36, X_2 * X_2 + t52 * t52, 1.0))
-    t53 = ops.select(t36, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t53)
-    t54 = (t39 * E_23 - E_13_2 * E_22) * h
+    t53 = ops.select(in_line, 0.0, t31 / ops.select(t46, 2.0 * j_2, 1.0))
+    rho = ops.sqrt(ops.select(t52, X_2 * X_2 + t53 * t53, 1.0))
+    t54 = ops.select(t52, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t54))
+    t55 = (t39 * E_23 - E_13_2 * E_22) * h
     E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t40 / t51, t47 / t50)
-    t55 = E_11_2 * X_2 - E_21 * t52
-    t56 = t54 - t55
-    t57 = s_alpha1 * t3
-    t58 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t59 = X_2 * t39 - t52 * E_22
-    A_12 = t58 + t59
-    t60 = h * (E_11_2 * E_22 - t39 * E_21)
-    t61 = X_2 * E_13_2 - t52 * E_23
-    t62 = t60 - t61
-    t63 = c_alpha2 * t4
-    t64 = s_alpha2 * t4
-    t65 = t63 * (t8 + t56) + t64 * (t10 - A_12) + t7 * (u_z + t62)
-    t66 = c_alpha3 * t16
-    t67 = s_alpha3 * t16
-    t68 = t66 * (t14 + t56) + t67 * (t17 - A_12) + t13 * (v_z + t62)
-    t69 = (t35 * t56 - t57 * A_12 + t5 * t62) * t65 * t68
-    t70 = ops.select(t36, D_2 * j_2 * h, 1.0)
-    A_11_above = t54 + t55
-    t71 = t58 - t59
-    A_13_above = t60 + t61
-    t72 = t35 * A_11_above - t57 * t71 + t5 * A_13_above
-    t73 = t63 * (t8 - A_11_above) + t64 * (t10 + t71) + t7 * (u_z - A_13_above)
-    t74 = t66 * (t14 - A_11_above) + t67 * (t17 + t71) + t13 * (v_z - A_13_above)
-    t75 = ops.select(failed, ops.nan, -(t72 * t73 * t74 / t70))
+    t56 = E_11_2 * X_2 - E_21 * t53
+    t57 = t55 - t56
+    t58 = s_alpha1 * t3
+    t59 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t60 = X_2 * t39 - t53 * E_22
+    A_12 = t59 + t60
+    t61 = h * (E_11_2 * E_22 - t39 * E_21)
+    t62 = X_2 * E_13_2 - t53 * E_23
+    t63 = t61 - t62
+    t64 = c_alpha2 * t4
+    t65 = s_alpha2 * t4
+    t66 = t64 * (t8 + t57) + t65 * (t10 - A_12) + t7 * (u_z + t63)
+    t67 = c_alpha3 * t16
+    t68 = s_alpha3 * t16
+    t69 = t67 * (t14 + t57) + t68 * (t17 - A_12) + t13 * (v_z + t63)
+    t70 = (t35 * t57 - t58 * A_12 + t5 * t63) * t66 * t69
+    t71 = ops.select(t36, D_2 * j_2 * h, 1.0)
+    A_11_above = t55 + t56
+    t72 = t59 - t60
+    A_13_above = t61 + t62
+    t73 = t35 * A_11_above - t58 * t72 + t5 * A_13_above
+    t74 = t64 * (t8 - A_11_above) + t65 * (t10 + t72) + t7 * (u_z - A_13_above)
+    t75 = t67 * (t14 - A_11_above) + t68 * (t17 + t72) + t13 * (v_z - A_13_above)
+    t76 = ops.select(failed, ops.nan, -(t73 * t74 * t75 / t71))
     return (
-        ops.select(failed, ops.nan, -(t69 / t70)),
-        t75,
+        ops.select(failed, ops.nan, -(t70 / t71)),
+        t76,
     )
 
 
@@ -1323,8 +1340,9 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     t32 = ops.abs(ops.select(in_line, -t31, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t33 = ops.select(in_line, 0.0, t31 / (2.0 * j))
-    t34 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t33 * t33)
-    failed = invalid | ops.opposite(t32 & t34)
+    t34 = l - ops.sqrt(X * X + t33 * t33)
+    unreachable = ops.opposite(t32 & (-(size * ops.feasibility) <= t34))
+    failed = invalid | unreachable
     t35 = c_alpha1 * t3
     t36 = ops.opposite(failed)
     t37 = ops.select(t36 & ops.opposite(same), t11, 1.0)
@@ -1350,42 +1368,44 @@ def _singularities(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alph
     E_23 = ops.select(in_line, -t41, n_z_2 / t50)
     t51 = ops.select(t36 & in_line, E_13_2 + t40, 1.0)
     E_22 = ops.select(in_line, -(t39 * t41 / t51), t48 / t50)
+    touching = ops.max(t34, 0.0) <= t12
+    t52 = t36 & ops.opposite(touching)
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t52 = ops.select(in_line, 0.0, t31 / ops.select(t46, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t36, X_2 * X_2 + t52 * t52, 1.0))
-    t53 = ops.select(t36, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t53)
-    t54 = (t39 * E_23 - E_13_2 * E_22) * h
+    t53 = ops.select(in_line, 0.0, t31 / ops.select(t46, 2.0 * j_2, 1.0))
+    rho = ops.sqrt(ops.select(t52, X_2 * X_2 + t53 * t53, 1.0))
+    t54 = ops.select(t52, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t54))
+    t55 = (t39 * E_23 - E_13_2 * E_22) * h
     E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t40 / t51, t47 / t50)
-    t55 = E_11_2 * X_2 - E_21 * t52
-    t56 = t54 - t55
-    t57 = s_alpha1 * t3
-    t58 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t59 = X_2 * t39 - t52 * E_22
-    A_12 = t58 + t59
-    t60 = h * (E_11_2 * E_22 - t39 * E_21)
-    t61 = X_2 * E_13_2 - t52 * E_23
-    t62 = t60 - t61
-    t63 = ops.select(failed, ops.nan, t35 * t56 - t57 * A_12 + t5 * t62)
-    t64 = c_alpha2 * t4
-    t65 = s_alpha2 * t4
-    B_22 = t64 * (t8 + t56) + t65 * (t10 - A_12) + t7 * (u_z + t62)
-    t66 = c_alpha3 * t16
-    t67 = s_alpha3 * t16
-    B_33 = t66 * (t14 + t56) + t67 * (t17 - A_12) + t13 * (v_z + t62)
+    t56 = E_11_2 * X_2 - E_21 * t53
+    t57 = t55 - t56
+    t58 = s_alpha1 * t3
+    t59 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t60 = X_2 * t39 - t53 * E_22
+    A_12 = t59 + t60
+    t61 = h * (E_11_2 * E_22 - t39 * E_21)
+    t62 = X_2 * E_13_2 - t53 * E_23
+    t63 = t61 - t62
+    t64 = ops.select(failed, ops.nan, t35 * t57 - t58 * A_12 + t5 * t63)
+    t65 = c_alpha2 * t4
+    t66 = s_alpha2 * t4
+    B_22 = t65 * (t8 + t57) + t66 * (t10 - A_12) + t7 * (u_z + t63)
+    t67 = c_alpha3 * t16
+    t68 = s_alpha3 * t16
+    B_33 = t67 * (t14 + t57) + t68 * (t17 - A_12) + t13 * (v_z + t63)
     Delta = D_2 * j_2 * h
-    A_11_above = t54 + t55
-    t68 = t58 - t59
-    A_13_above = t60 + t61
-    t69 = t35 * A_11_above - t57 * t68 + t5 * A_13_above
-    B_22_above = t64 * (t8 - A_11_above) + t65 * (t10 + t68) + t7 * (u_z - A_13_above)
-    B_33_above = t66 * (t14 - A_11_above) + t67 * (t17 + t68) + t13 * (v_z - A_13_above)
+    A_11_above = t55 + t56
+    t69 = t59 - t60
+    A_13_above = t61 + t62
+    t70 = t35 * A_11_above - t58 * t69 + t5 * A_13_above
+    B_22_above = t65 * (t8 - A_11_above) + t66 * (t10 + t69) + t7 * (u_z - A_13_above)
+    B_33_above = t67 * (t14 - A_11_above) + t68 * (t17 + t69) + t13 * (v_z - A_13_above)
     return (
-        t63,
+        t64,
         ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, B_33),
         ops.select(failed, ops.nan, -Delta),
-        ops.select(failed, ops.nan, -t69),
+        ops.select(failed, ops.nan, -t70),
         ops.select(failed, ops.nan, B_22_above),
         ops.select(failed, ops.nan, B_33_above),
         ops.select(failed, ops.nan, Delta),
@@ -1494,8 +1514,9 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t31 = ops.select(in_line, 0.0, t29 / (2.0 * j))
-    t32 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t31 * t31)
-    failed = invalid | ops.opposite(t30 & t32)
+    t32 = l - ops.sqrt(X * X + t31 * t31)
+    unreachable = ops.opposite(t30 & (-(size * ops.feasibility) <= t32))
+    failed = invalid | unreachable
     t33 = ops.opposite(failed)
     t34 = ops.select(t33 & ops.opposite(same), t10, 1.0)
     D_2 = ops.select(same, ops.sqrt(ops.select(t33 & same, t16, 1.0)), ops.sqrt(t34))
@@ -1520,69 +1541,71 @@ def _condition_number(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, a
     E_23 = ops.select(in_line, -t38, n_z_2 / t47)
     t48 = ops.select(t33 & in_line, E_13_2 + t37, 1.0)
     E_22 = ops.select(in_line, -(t36 * t38 / t48), t45 / t47)
+    touching = ops.max(t32, 0.0) <= t11
+    t49 = t33 & ops.opposite(touching)
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t49 = ops.select(in_line, 0.0, t29 / ops.select(t43, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t33, X_2 * X_2 + t49 * t49, 1.0))
-    t50 = ops.select(t33, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t50)
-    t51 = (t36 * E_23 - E_13_2 * E_22) * h
+    t50 = ops.select(in_line, 0.0, t29 / ops.select(t43, 2.0 * j_2, 1.0))
+    rho = ops.sqrt(ops.select(t49, X_2 * X_2 + t50 * t50, 1.0))
+    t51 = ops.select(t49, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t51))
+    t52 = (t36 * E_23 - E_13_2 * E_22) * h
     E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t37 / t48, t44 / t47)
-    t52 = E_11_2 * X_2 - E_21 * t49
-    t53 = t51 - t52
-    t54 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t55 = X_2 * t36 - t49 * E_22
-    A_12 = t54 + t55
-    t56 = h * (E_11_2 * E_22 - t36 * E_21)
-    t57 = X_2 * E_13_2 - t49 * E_23
-    t58 = t56 - t57
-    t59 = t7 + t53
-    t60 = t9 - A_12
-    t61 = u_z + t58
-    t62 = t53 * t53 + A_12 * A_12 + t58 * t58 + (t59 * t59 + t60 * t60 + t61 * t61)
-    t63 = t13 + t53
-    t64 = t15 - A_12
-    t65 = v_z + t58
-    t66 = t53 * t60 + A_12 * t59
-    t67 = t53 * t61 - t58 * t59
-    t68 = t53 * t64 + A_12 * t63
-    t69 = t53 * t65 - t58 * t63
-    t70 = t66 * t66 + t67 * t67 + t68 * t68 + t69 * t69
-    t71 = A_12 * t61 + t58 * t60
-    t72 = A_12 * t65 + t58 * t64
-    t73 = t59 * t64 - t60 * t63
-    t74 = t59 * t65 - t61 * t63
-    t75 = t70 + t71 * t71 + t72 * t72 + t73 * t73 + t74 * t74
-    t76 = t60 * t65 - t61 * t64
-    t77 = (t62 + (t63 * t63 + t64 * t64 + t65 * t65)) * (t75 + t76 * t76)
-    t78 = ops.select(t33, 3.0 * (D_2 * j_2 * h), 1.0)
-    t79 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t33, t77, 1.0)) / t78)
-    A_11_above = t51 + t52
-    t80 = t54 - t55
-    A_13_above = t56 + t57
-    square1_above = A_11_above * A_11_above + t80 * t80 + A_13_above * A_13_above
-    t81 = t7 - A_11_above
-    t82 = t9 + t80
-    t83 = u_z - A_13_above
-    t84 = square1_above + (t81 * t81 + t82 * t82 + t83 * t83)
-    t85 = t13 - A_11_above
-    t86 = t15 + t80
-    t87 = v_z - A_13_above
-    t88 = A_11_above * t82 + t80 * t81
-    t89 = A_11_above * t83 - A_13_above * t81
-    t90 = A_11_above * t86 + t80 * t85
-    t91 = A_11_above * t87 - A_13_above * t85
-    t92 = t88 * t88 + t89 * t89 + t90 * t90 + t91 * t91
-    t93 = t80 * t83 + A_13_above * t82
-    t94 = t80 * t87 + A_13_above * t86
-    t95 = t81 * t86 - t82 * t85
-    t96 = t81 * t87 - t83 * t85
-    t97 = t92 + t93 * t93 + t94 * t94 + t95 * t95 + t96 * t96
-    t98 = t82 * t87 - t83 * t86
-    t99 = (t84 + (t85 * t85 + t86 * t86 + t87 * t87)) * (t97 + t98 * t98)
-    t100 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t33, t99, 1.0)) / t78)
+    t53 = E_11_2 * X_2 - E_21 * t50
+    t54 = t52 - t53
+    t55 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t56 = X_2 * t36 - t50 * E_22
+    A_12 = t55 + t56
+    t57 = h * (E_11_2 * E_22 - t36 * E_21)
+    t58 = X_2 * E_13_2 - t50 * E_23
+    t59 = t57 - t58
+    t60 = t7 + t54
+    t61 = t9 - A_12
+    t62 = u_z + t59
+    t63 = t54 * t54 + A_12 * A_12 + t59 * t59 + (t60 * t60 + t61 * t61 + t62 * t62)
+    t64 = t13 + t54
+    t65 = t15 - A_12
+    t66 = v_z + t59
+    t67 = t54 * t61 + A_12 * t60
+    t68 = t54 * t62 - t59 * t60
+    t69 = t54 * t65 + A_12 * t64
+    t70 = t54 * t66 - t59 * t64
+    t71 = t67 * t67 + t68 * t68 + t69 * t69 + t70 * t70
+    t72 = A_12 * t62 + t59 * t61
+    t73 = A_12 * t66 + t59 * t65
+    t74 = t60 * t65 - t61 * t64
+    t75 = t60 * t66 - t62 * t64
+    t76 = t71 + t72 * t72 + t73 * t73 + t74 * t74 + t75 * t75
+    t77 = t61 * t66 - t62 * t65
+    t78 = (t63 + (t64 * t64 + t65 * t65 + t66 * t66)) * (t76 + t77 * t77)
+    t79 = ops.select(t33, 3.0 * (D_2 * j_2 * h), 1.0)
+    t80 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t33, t78, 1.0)) / t79)
+    A_11_above = t52 + t53
+    t81 = t55 - t56
+    A_13_above = t57 + t58
+    square1_above = A_11_above * A_11_above + t81 * t81 + A_13_above * A_13_above
+    t82 = t7 - A_11_above
+    t83 = t9 + t81
+    t84 = u_z - A_13_above
+    t85 = square1_above + (t82 * t82 + t83 * t83 + t84 * t84)
+    t86 = t13 - A_11_above
+    t87 = t15 + t81
+    t88 = v_z - A_13_above
+    t89 = A_11_above * t83 + t81 * t82
+    t90 = A_11_above * t84 - A_13_above * t82
+    t91 = A_11_above * t87 + t81 * t86
+    t92 = A_11_above * t88 - A_13_above * t86
+    t93 = t89 * t89 + t90 * t90 + t91 * t91 + t92 * t92
+    t94 = t81 * t84 + A_13_above * t83
+    t95 = t81 * t88 + A_13_above * t87
+    t96 = t82 * t87 - t83 * t86
+    t97 = t82 * t88 - t84 * t86
+    t98 = t93 + t94 * t94 + t95 * t95 + t96 * t96 + t97 * t97
+    t99 = t83 * t88 - t84 * t87
+    t100 = (t85 + (t86 * t86 + t87 * t87 + t88 * t88)) * (t98 + t99 * t99)
+    t101 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t33, t100, 1.0)) / t79)
     return (
-        t79,
-        t100,
+        t80,
+        t101,
     )
 
 

@@ -2,14 +2,14 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Arms of common structure, solved by lemmas.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 69 compare and select, 63 add, 12 divide, 79 multiply, 9 sqrt
-#   skeleton: 84 compare and select, 73 add, 19 divide, 68 multiply, 9 sqrt
-#   jacobian_parallel: 78 compare and select, 71 add, 19 divide, 68 multiply, 9 sqrt
-#   jacobian_serial: 68 compare and select, 57 add, 19 divide, 58 multiply, 9 sqrt
-#   jacobian: 81 compare and select, 89 add, 37 divide, 120 multiply, 9 sqrt
-#   determinant: 65 compare and select, 57 add, 21 divide, 64 multiply, 9 sqrt
-#   singularities: 70 compare and select, 57 add, 19 divide, 60 multiply, 9 sqrt
-#   condition_number: 67 compare and select, 121 add, 21 divide, 139 multiply, 11 sqrt
+#   fk: 74 compare and select, 63 add, 12 divide, 79 multiply, 9 sqrt
+#   skeleton: 89 compare and select, 73 add, 19 divide, 68 multiply, 9 sqrt
+#   jacobian_parallel: 83 compare and select, 71 add, 19 divide, 68 multiply, 9 sqrt
+#   jacobian_serial: 73 compare and select, 57 add, 19 divide, 58 multiply, 9 sqrt
+#   jacobian: 86 compare and select, 89 add, 37 divide, 120 multiply, 9 sqrt
+#   determinant: 70 compare and select, 57 add, 21 divide, 64 multiply, 9 sqrt
+#   singularities: 75 compare and select, 57 add, 19 divide, 60 multiply, 9 sqrt
+#   condition_number: 72 compare and select, 121 add, 21 divide, 139 multiply, 11 sqrt
 #   ik: 75 compare and select, 72 add, 5 divide, 40 multiply, 12 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -154,8 +154,8 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     t22 = ops.abs(ops.select(in_line, left, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t23 = ops.select(in_line, 0.0, left / (2.0 * j))
-    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
-    unreachable = ops.opposite(t22 & t24)
+    t24 = l - ops.sqrt(X * X + t23 * t23)
+    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
     failed = invalid | unreachable
     t25 = ops.opposite(failed)
     t26 = t25 & ops.opposite(all_same)
@@ -183,27 +183,29 @@ def _fk(ops, rho1, rho2, rho3, f, e, l):
     t41 = ops.select(in_line, 0.0, left / ops.select(t37, 2.0 * j_2, 1.0))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
     t42 = E_21 * t41 + (c1_x + E_11_2 * X_2)
-    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t41 * t41, 1.0))
-    t43 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t43)
-    t44 = E_11_2 * t29
-    t45 = ops.select(in_line, t44, t38 * t40)
-    E_22 = ops.select(in_line, t31 * (E_12_2 * t44), n_y_2 * t40)
-    t46 = h * (E_12_2 * t45 - t30 * E_22)
-    t47 = E_12_2 * X_2 + t41 * E_22
-    t48 = h * (E_11_2 * t45 - t30 * E_21)
-    t49 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t50 = t41 * t45 - (rho1 - t30 * X_2)
-    t51 = ops.status(invalid, unreachable, in_line)
+    touching = ops.max(t24, 0.0) <= t9
+    t43 = t25 & ops.opposite(touching)
+    rho = ops.sqrt(ops.select(t43, X_2 * X_2 + t41 * t41, 1.0))
+    t44 = ops.select(t43, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t44))
+    t45 = E_11_2 * t29
+    t46 = ops.select(in_line, t45, t38 * t40)
+    E_22 = ops.select(in_line, t31 * (E_12_2 * t45), n_y_2 * t40)
+    t47 = h * (E_12_2 * t46 - t30 * E_22)
+    t48 = E_12_2 * X_2 + t41 * E_22
+    t49 = h * (E_11_2 * t46 - t30 * E_21)
+    t50 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t51 = t41 * t46 - (rho1 - t30 * X_2)
+    t52 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t42 + t46),
-        ops.select(failed, ops.nan, t47 - t48),
-        ops.select(failed, ops.nan, t49 - t50),
-        ops.select(failed, ops.nan, t42 - t46),
-        ops.select(failed, ops.nan, t47 + t48),
-        ops.select(failed, ops.nan, -(t50 + t49)),
-        t51,
-        t51,
+        ops.select(failed, ops.nan, t42 + t47),
+        ops.select(failed, ops.nan, t48 - t49),
+        ops.select(failed, ops.nan, t50 - t51),
+        ops.select(failed, ops.nan, t42 - t47),
+        ops.select(failed, ops.nan, t48 + t49),
+        ops.select(failed, ops.nan, -(t51 + t50)),
+        t52,
+        t52,
     )
 
 
@@ -300,8 +302,9 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t26 = ops.abs(ops.select(in_line, -t25, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t27 = ops.select(in_line, 0.0, t25 / (2.0 * j))
-    t28 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t27 * t27)
-    failed = ops.opposite(t2) | ops.opposite(t26 & t28)
+    t28 = l - ops.sqrt(X * X + t27 * t27)
+    unreachable = ops.opposite(t26 & (-(size * ops.feasibility) <= t28))
+    failed = ops.opposite(t2) | unreachable
     t29 = ops.select(failed, ops.nan, f)
     t30 = ops.select(failed, ops.nan, 0.0)
     t31 = ops.select(failed, ops.nan, rho1)
@@ -331,32 +334,34 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t48 = ops.select(t36, j_2, 1.0)
     E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t46 / t47, -(t42 / t48))
     t49 = E_11_2 * X_2 - t45 * E_21
-    rho = ops.sqrt(ops.select(t32, X_2 * X_2 + t45 * t45, 1.0))
-    t50 = ops.select(t32, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t50)
-    t51 = E_11_2 * t46
-    t52 = ops.select(in_line, t51, t43 / t48)
-    E_22 = ops.select(in_line, E_12_2 * t51 / t47, n_y_2 / t48)
-    t53 = h * (E_12_2 * t52 - t37 * E_22)
-    t54 = c1_x + (t49 + t53)
-    t55 = E_12_2 * X_2 - t45 * E_22
-    t56 = h * (E_11_2 * t52 - t37 * E_21)
-    A_12 = t55 - t56
-    t57 = ops.select(failed, ops.nan, A_12)
-    t58 = t37 * X_2 - t45 * t52
-    t59 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t60 = ops.select(failed, ops.nan, rho1 - (t58 - t59))
-    t61 = ops.select(failed, ops.nan, -t4)
-    t62 = ops.select(failed, ops.nan, t8)
-    t63 = ops.select(failed, ops.nan, rho2)
-    t64 = ops.select(failed, ops.nan, t54 - t3)
-    t65 = ops.select(failed, ops.nan, -t8)
-    t66 = ops.select(failed, ops.nan, rho3)
-    t67 = c1_x + (t49 - t53)
-    A_12_above = t55 + t56
-    t68 = ops.select(failed, ops.nan, A_12_above)
-    t69 = ops.select(failed, ops.nan, rho1 - (t58 + t59))
-    t70 = ops.select(failed, ops.nan, t67 - t3)
+    touching = ops.max(t28, 0.0) <= t13
+    t50 = t32 & ops.opposite(touching)
+    rho = ops.sqrt(ops.select(t50, X_2 * X_2 + t45 * t45, 1.0))
+    t51 = ops.select(t50, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t51))
+    t52 = E_11_2 * t46
+    t53 = ops.select(in_line, t52, t43 / t48)
+    E_22 = ops.select(in_line, E_12_2 * t52 / t47, n_y_2 / t48)
+    t54 = h * (E_12_2 * t53 - t37 * E_22)
+    t55 = c1_x + (t49 + t54)
+    t56 = E_12_2 * X_2 - t45 * E_22
+    t57 = h * (E_11_2 * t53 - t37 * E_21)
+    A_12 = t56 - t57
+    t58 = ops.select(failed, ops.nan, A_12)
+    t59 = t37 * X_2 - t45 * t53
+    t60 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t61 = ops.select(failed, ops.nan, rho1 - (t59 - t60))
+    t62 = ops.select(failed, ops.nan, -t4)
+    t63 = ops.select(failed, ops.nan, t8)
+    t64 = ops.select(failed, ops.nan, rho2)
+    t65 = ops.select(failed, ops.nan, t55 - t3)
+    t66 = ops.select(failed, ops.nan, -t8)
+    t67 = ops.select(failed, ops.nan, rho3)
+    t68 = c1_x + (t49 - t54)
+    A_12_above = t56 + t57
+    t69 = ops.select(failed, ops.nan, A_12_above)
+    t70 = ops.select(failed, ops.nan, rho1 - (t59 + t60))
+    t71 = ops.select(failed, ops.nan, t68 - t3)
     return (
         t29,
         t30,
@@ -364,60 +369,60 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
         t29,
         t30,
         t31,
-        ops.select(failed, ops.nan, e + t54),
-        t57,
-        t60,
-        t61,
-        t62,
-        t30,
+        ops.select(failed, ops.nan, e + t55),
+        t58,
         t61,
         t62,
         t63,
-        t64,
-        ops.select(failed, ops.nan, t7 + A_12),
-        t60,
-        t61,
-        t65,
         t30,
-        t61,
-        t65,
-        t66,
+        t62,
+        t63,
         t64,
+        t65,
+        ops.select(failed, ops.nan, t7 + A_12),
+        t61,
+        t62,
+        t66,
+        t30,
+        t62,
+        t66,
+        t67,
+        t65,
         ops.select(failed, ops.nan, A_12 - t7),
-        t60,
-        ops.select(failed, ops.nan, t54),
-        t57,
-        t60,
+        t61,
+        ops.select(failed, ops.nan, t55),
+        t58,
+        t61,
         t29,
         t30,
         t30,
         t29,
         t30,
         t31,
-        ops.select(failed, ops.nan, e + t67),
-        t68,
+        ops.select(failed, ops.nan, e + t68),
         t69,
-        t61,
-        t62,
-        t30,
-        t61,
+        t70,
         t62,
         t63,
-        t70,
-        ops.select(failed, ops.nan, t7 + A_12_above),
-        t69,
-        t61,
-        t65,
         t30,
-        t61,
-        t65,
-        t66,
+        t62,
+        t63,
+        t64,
+        t71,
+        ops.select(failed, ops.nan, t7 + A_12_above),
         t70,
+        t62,
+        t66,
+        t30,
+        t62,
+        t66,
+        t67,
+        t71,
         ops.select(failed, ops.nan, A_12_above - t7),
+        t70,
+        ops.select(failed, ops.nan, t68),
         t69,
-        ops.select(failed, ops.nan, t67),
-        t68,
-        t69,
+        t70,
     )
 
 
@@ -501,8 +506,9 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
-    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
-    failed = ops.opposite(t2) | ops.opposite(t22 & t24)
+    t24 = l - ops.sqrt(X * X + t23 * t23)
+    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    failed = ops.opposite(t2) | unreachable
     t25 = ops.opposite(failed)
     t26 = t25 & ops.opposite(all_same)
     t27 = ops.select(t26 & ops.opposite(same), t6, 1.0)
@@ -529,46 +535,48 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, f, e, l):
     E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t29 / t31, -(t36 / t40))
     t41 = ops.select(in_line, 0.0, t21 / ops.select(t37, 2.0 * j_2, 1.0))
     t42 = E_11_2 * X_2 - E_21 * t41
-    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t41 * t41, 1.0))
-    t43 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t43)
-    t44 = E_11_2 * t29
-    t45 = ops.select(in_line, t44, t38 / t40)
-    E_22 = ops.select(in_line, E_12_2 * t44 / t31, n_y_2 / t40)
-    t46 = h * (E_12_2 * t45 - t30 * E_22)
-    A_11 = t42 + t46
-    t47 = X_2 * E_12_2 - t41 * E_22
-    t48 = h * (E_11_2 * t45 - t30 * E_21)
-    A_12 = t47 - t48
-    t49 = X_2 * t30 - t41 * t45
-    t50 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t51 = t49 - t50
-    t52 = ops.select(failed, ops.nan, t3 + A_11)
-    A_11_above = t42 - t46
-    A_12_above = t47 + t48
-    t53 = t49 + t50
-    t54 = ops.select(failed, ops.nan, t3 + A_11_above)
-    t55 = ops.select(failed, ops.nan, c3_y + A_12_above)
-    t56 = ops.select(failed, ops.nan, A_12_above - c3_y)
+    touching = ops.max(t24, 0.0) <= t9
+    t43 = t25 & ops.opposite(touching)
+    rho = ops.sqrt(ops.select(t43, X_2 * X_2 + t41 * t41, 1.0))
+    t44 = ops.select(t43, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t44))
+    t45 = E_11_2 * t29
+    t46 = ops.select(in_line, t45, t38 / t40)
+    E_22 = ops.select(in_line, E_12_2 * t45 / t31, n_y_2 / t40)
+    t47 = h * (E_12_2 * t46 - t30 * E_22)
+    A_11 = t42 + t47
+    t48 = X_2 * E_12_2 - t41 * E_22
+    t49 = h * (E_11_2 * t46 - t30 * E_21)
+    A_12 = t48 - t49
+    t50 = X_2 * t30 - t41 * t46
+    t51 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t52 = t50 - t51
+    t53 = ops.select(failed, ops.nan, t3 + A_11)
+    A_11_above = t42 - t47
+    A_12_above = t48 + t49
+    t54 = t50 + t51
+    t55 = ops.select(failed, ops.nan, t3 + A_11_above)
+    t56 = ops.select(failed, ops.nan, c3_y + A_12_above)
+    t57 = ops.select(failed, ops.nan, A_12_above - c3_y)
     return (
         ops.select(failed, ops.nan, A_11),
         ops.select(failed, ops.nan, A_12),
-        ops.select(failed, ops.nan, -t51),
-        t52,
+        ops.select(failed, ops.nan, -t52),
+        t53,
         ops.select(failed, ops.nan, c3_y + A_12),
-        ops.select(failed, ops.nan, t4 - t51),
-        t52,
+        ops.select(failed, ops.nan, t4 - t52),
+        t53,
         ops.select(failed, ops.nan, A_12 - c3_y),
-        ops.select(failed, ops.nan, t7 - t51),
+        ops.select(failed, ops.nan, t7 - t52),
         ops.select(failed, ops.nan, A_11_above),
         ops.select(failed, ops.nan, A_12_above),
-        ops.select(failed, ops.nan, -t53),
-        t54,
+        ops.select(failed, ops.nan, -t54),
         t55,
-        ops.select(failed, ops.nan, t4 - t53),
-        t54,
         t56,
-        ops.select(failed, ops.nan, t7 - t53),
+        ops.select(failed, ops.nan, t4 - t54),
+        t55,
+        t57,
+        ops.select(failed, ops.nan, t7 - t54),
     )
 
 
@@ -652,8 +660,9 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
-    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
-    failed = ops.opposite(t2) | ops.opposite(t22 & t24)
+    t24 = l - ops.sqrt(X * X + t23 * t23)
+    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    failed = ops.opposite(t2) | unreachable
     t25 = ops.opposite(failed)
     t26 = t25 & ops.opposite(all_same)
     t27 = ops.select(t26 & ops.opposite(same), t6, 1.0)
@@ -679,21 +688,23 @@ def _jacobian_serial(ops, rho1, rho2, rho3, f, e, l):
     t40 = ops.select(t37, j_2, 1.0)
     t41 = ops.select(in_line, 0.0, t21 / ops.select(t37, 2.0 * j_2, 1.0))
     t42 = t29 * X_2 - ops.select(in_line, t31, t36 / t40) * t41
-    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t41 * t41, 1.0))
-    t43 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    t44 = ops.select(t25 & in_line, t29 - t30, 1.0)
-    E_21 = ops.select(in_line, 1.0 + t30 * (E_11_2 * E_11_2) / t44, -(t38 / t40))
-    E_22 = ops.select(in_line, E_12_2 * t31 / t44, n_y_2 / t40)
-    t45 = ops.sqrt(t43) * (E_12_2 * E_21 - E_11_2 * E_22)
-    t46 = t42 - t45
-    t47 = t42 + t45
+    touching = ops.max(t24, 0.0) <= t9
+    t43 = t25 & ops.opposite(touching)
+    rho = ops.sqrt(ops.select(t43, X_2 * X_2 + t41 * t41, 1.0))
+    t44 = ops.select(t43, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    t45 = ops.select(t25 & in_line, t29 - t30, 1.0)
+    E_21 = ops.select(in_line, 1.0 + t30 * (E_11_2 * E_11_2) / t45, -(t38 / t40))
+    E_22 = ops.select(in_line, E_12_2 * t31 / t45, n_y_2 / t40)
+    t46 = ops.select(touching, 0.0, ops.sqrt(t44)) * (E_12_2 * E_21 - E_11_2 * E_22)
+    t47 = t42 - t46
+    t48 = t42 + t46
     return (
-        ops.select(failed, ops.nan, -t46),
-        ops.select(failed, ops.nan, t4 - t46),
-        ops.select(failed, ops.nan, t7 - t46),
         ops.select(failed, ops.nan, -t47),
         ops.select(failed, ops.nan, t4 - t47),
         ops.select(failed, ops.nan, t7 - t47),
+        ops.select(failed, ops.nan, -t48),
+        ops.select(failed, ops.nan, t4 - t48),
+        ops.select(failed, ops.nan, t7 - t48),
     )
 
 
@@ -777,8 +788,9 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
-    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
-    failed = ops.opposite(t2) | ops.opposite(t22 & t24)
+    t24 = l - ops.sqrt(X * X + t23 * t23)
+    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    failed = ops.opposite(t2) | unreachable
     t25 = ops.opposite(failed)
     t26 = ops.select(t25 & ops.opposite(same), t6, 1.0)
     D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t8, 1.0)), ops.sqrt(t26))
@@ -804,75 +816,77 @@ def _jacobian(ops, rho1, rho2, rho3, f, e, l):
     t40 = ops.select(in_line, t30, t35 / t39)
     t41 = ops.select(in_line, 0.0, t21 / ops.select(t36, 2.0 * j_2, 1.0))
     t42 = t28 * X_2 - t40 * t41
-    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t41 * t41, 1.0))
-    t43 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t43)
-    t44 = ops.select(t25 & in_line, t28 - t29, 1.0)
-    E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t44, -(t37 / t39))
-    E_22 = ops.select(in_line, E_12_2 * t30 / t44, n_y_2 / t39)
-    t45 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t46 = t42 - t45
-    t47 = X_2 * E_12_2 - t41 * E_22
-    t48 = h * (E_11_2 * t40 - t28 * E_21)
-    A_12 = t47 - t48
+    touching = ops.max(t24, 0.0) <= t9
+    t43 = t25 & ops.opposite(touching)
+    rho = ops.sqrt(ops.select(t43, X_2 * X_2 + t41 * t41, 1.0))
+    t44 = ops.select(t43, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t44))
+    t45 = ops.select(t25 & in_line, t28 - t29, 1.0)
+    E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t45, -(t37 / t39))
+    E_22 = ops.select(in_line, E_12_2 * t30 / t45, n_y_2 / t39)
+    t46 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t47 = t42 - t46
+    t48 = X_2 * E_12_2 - t41 * E_22
+    t49 = h * (E_11_2 * t40 - t28 * E_21)
+    A_12 = t48 - t49
     A_22 = c3_y + A_12
-    A_33 = t7 - t46
-    A_23 = t4 - t46
-    t49 = c3_y - A_12
-    t50 = ops.select(t25, D_2 * j_2 * h, 1.0)
-    t51 = ops.select(failed, ops.nan, t46 * (A_22 * A_33 + A_23 * t49) / t50)
-    t52 = ops.select(failed, ops.nan, A_23 * (A_12 * A_33 - t46 * t49) / t50)
-    t53 = ops.select(failed, ops.nan, -(A_33 * (A_12 * A_23 + t46 * A_22) / t50))
-    t54 = X_2 * E_11_2 - t41 * E_21
-    t55 = h * (E_12_2 * t40 - t28 * E_22)
-    A_11 = t54 + t55
+    A_33 = t7 - t47
+    A_23 = t4 - t47
+    t50 = c3_y - A_12
+    t51 = ops.select(t25, D_2 * j_2 * h, 1.0)
+    t52 = ops.select(failed, ops.nan, t47 * (A_22 * A_33 + A_23 * t50) / t51)
+    t53 = ops.select(failed, ops.nan, A_23 * (A_12 * A_33 - t47 * t50) / t51)
+    t54 = ops.select(failed, ops.nan, -(A_33 * (A_12 * A_23 + t47 * A_22) / t51))
+    t55 = X_2 * E_11_2 - t41 * E_21
+    t56 = h * (E_12_2 * t40 - t28 * E_22)
+    A_11 = t55 + t56
     A_21 = t3 + A_11
-    t56 = ops.select(failed, ops.nan, -(t46 * (A_33 * A_21 - A_23 * A_21) / t50))
-    t57 = t46 * A_21
-    t58 = ops.select(failed, ops.nan, -(A_23 * (A_33 * A_11 + t57) / t50))
-    t59 = ops.select(failed, ops.nan, A_33 * (t57 + A_23 * A_11) / t50)
-    t60 = ops.select(failed, ops.nan, -(t46 * (t49 * A_21 + A_22 * A_21) / t50))
-    t61 = A_12 * A_21
-    t62 = ops.select(failed, ops.nan, -(A_23 * (t49 * A_11 + t61) / t50))
-    t63 = ops.select(failed, ops.nan, A_33 * (t61 - A_22 * A_11) / t50)
-    t64 = t42 + t45
-    A_12_above = t47 + t48
+    t57 = ops.select(failed, ops.nan, -(t47 * (A_33 * A_21 - A_23 * A_21) / t51))
+    t58 = t47 * A_21
+    t59 = ops.select(failed, ops.nan, -(A_23 * (A_33 * A_11 + t58) / t51))
+    t60 = ops.select(failed, ops.nan, A_33 * (t58 + A_23 * A_11) / t51)
+    t61 = ops.select(failed, ops.nan, -(t47 * (t50 * A_21 + A_22 * A_21) / t51))
+    t62 = A_12 * A_21
+    t63 = ops.select(failed, ops.nan, -(A_23 * (t50 * A_11 + t62) / t51))
+    t64 = ops.select(failed, ops.nan, A_33 * (t62 - A_22 * A_11) / t51)
+    t65 = t42 + t46
+    A_12_above = t48 + t49
     A_22_above = c3_y + A_12_above
-    A_33_above = t7 - t64
-    A_23_above = t4 - t64
-    t65 = c3_y - A_12_above
-    t66 = t64 * (A_22_above * A_33_above + A_23_above * t65)
-    t67 = A_23_above * (A_12_above * A_33_above - t64 * t65)
-    t68 = A_33_above * (A_12_above * A_23_above + t64 * A_22_above)
-    A_11_above = t54 - t55
+    A_33_above = t7 - t65
+    A_23_above = t4 - t65
+    t66 = c3_y - A_12_above
+    t67 = t65 * (A_22_above * A_33_above + A_23_above * t66)
+    t68 = A_23_above * (A_12_above * A_33_above - t65 * t66)
+    t69 = A_33_above * (A_12_above * A_23_above + t65 * A_22_above)
+    A_11_above = t55 - t56
     A_21_above = t3 + A_11_above
-    t69 = A_33_above * A_21_above - A_23_above * A_21_above
-    t70 = t64 * A_21_above
-    t71 = A_23_above * (A_33_above * A_11_above + t70) / t50
-    t72 = A_33_above * (t70 + A_23_above * A_11_above) / t50
-    t73 = t64 * (t65 * A_21_above + A_22_above * A_21_above)
-    t74 = A_12_above * A_21_above
-    t75 = ops.select(failed, ops.nan, A_23_above * (t65 * A_11_above + t74) / t50)
-    t76 = A_33_above * (t74 - A_22_above * A_11_above) / t50
+    t70 = A_33_above * A_21_above - A_23_above * A_21_above
+    t71 = t65 * A_21_above
+    t72 = A_23_above * (A_33_above * A_11_above + t71) / t51
+    t73 = A_33_above * (t71 + A_23_above * A_11_above) / t51
+    t74 = t65 * (t66 * A_21_above + A_22_above * A_21_above)
+    t75 = A_12_above * A_21_above
+    t76 = ops.select(failed, ops.nan, A_23_above * (t66 * A_11_above + t75) / t51)
+    t77 = A_33_above * (t75 - A_22_above * A_11_above) / t51
     return (
-        t51,
         t52,
         t53,
-        t56,
-        t58,
+        t54,
+        t57,
         t59,
         t60,
-        t62,
+        t61,
         t63,
-        ops.select(failed, ops.nan, -(t66 / t50)),
-        ops.select(failed, ops.nan, -(t67 / t50)),
-        ops.select(failed, ops.nan, t68 / t50),
-        ops.select(failed, ops.nan, t64 * t69 / t50),
-        ops.select(failed, ops.nan, t71),
-        ops.select(failed, ops.nan, -t72),
-        ops.select(failed, ops.nan, t73 / t50),
-        t75,
-        ops.select(failed, ops.nan, -t76),
+        t64,
+        ops.select(failed, ops.nan, -(t67 / t51)),
+        ops.select(failed, ops.nan, -(t68 / t51)),
+        ops.select(failed, ops.nan, t69 / t51),
+        ops.select(failed, ops.nan, t65 * t70 / t51),
+        ops.select(failed, ops.nan, t72),
+        ops.select(failed, ops.nan, -t73),
+        ops.select(failed, ops.nan, t74 / t51),
+        t76,
+        ops.select(failed, ops.nan, -t77),
     )
 
 
@@ -957,8 +971,9 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
-    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
-    failed = ops.opposite(t2) | ops.opposite(t22 & t24)
+    t24 = l - ops.sqrt(X * X + t23 * t23)
+    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    failed = ops.opposite(t2) | unreachable
     t25 = ops.opposite(failed)
     t26 = ops.select(t25 & ops.opposite(same), t6, 1.0)
     D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t8, 1.0)), ops.sqrt(t26))
@@ -983,21 +998,23 @@ def _determinant(ops, rho1, rho2, rho3, f, e, l):
     t39 = ops.select(t36, j_2, 1.0)
     t40 = ops.select(in_line, 0.0, t21 / ops.select(t36, 2.0 * j_2, 1.0))
     t41 = t28 * X_2 - ops.select(in_line, t30, t35 / t39) * t40
-    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t40 * t40, 1.0))
-    t42 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t42)
-    t43 = ops.select(t25 & in_line, t28 - t29, 1.0)
-    E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t43, -(t37 / t39))
-    E_22 = ops.select(in_line, E_12_2 * t30 / t43, n_y_2 / t39)
-    t44 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t45 = t41 - t44
-    t46 = ops.select(t25, D_2 * j_2 * h, 1.0)
-    t47 = ops.select(failed, ops.nan, t45 * (t4 - t45) * (t7 - t45) / t46)
-    t48 = t41 + t44
-    t49 = ops.select(failed, ops.nan, -(t48 * (t4 - t48) * (t7 - t48) / t46))
+    touching = ops.max(t24, 0.0) <= t9
+    t42 = t25 & ops.opposite(touching)
+    rho = ops.sqrt(ops.select(t42, X_2 * X_2 + t40 * t40, 1.0))
+    t43 = ops.select(t42, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t43))
+    t44 = ops.select(t25 & in_line, t28 - t29, 1.0)
+    E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t44, -(t37 / t39))
+    E_22 = ops.select(in_line, E_12_2 * t30 / t44, n_y_2 / t39)
+    t45 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t46 = t41 - t45
+    t47 = ops.select(t25, D_2 * j_2 * h, 1.0)
+    t48 = ops.select(failed, ops.nan, t46 * (t4 - t46) * (t7 - t46) / t47)
+    t49 = t41 + t45
+    t50 = ops.select(failed, ops.nan, -(t49 * (t4 - t49) * (t7 - t49) / t47))
     return (
-        t47,
-        t49,
+        t48,
+        t50,
     )
 
 
@@ -1081,8 +1098,9 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
-    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
-    failed = ops.opposite(t2) | ops.opposite(t22 & t24)
+    t24 = l - ops.sqrt(X * X + t23 * t23)
+    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    failed = ops.opposite(t2) | unreachable
     t25 = ops.opposite(failed)
     t26 = ops.select(t25 & ops.opposite(same), t6, 1.0)
     D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t8, 1.0)), ops.sqrt(t26))
@@ -1107,24 +1125,26 @@ def _singularities(ops, rho1, rho2, rho3, f, e, l):
     t39 = ops.select(t36, j_2, 1.0)
     t40 = ops.select(in_line, 0.0, t21 / ops.select(t36, 2.0 * j_2, 1.0))
     t41 = t28 * X_2 - ops.select(in_line, t30, t35 / t39) * t40
-    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t40 * t40, 1.0))
-    t42 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t42)
-    t43 = ops.select(t25 & in_line, t28 - t29, 1.0)
-    E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t43, -(t37 / t39))
-    E_22 = ops.select(in_line, E_12_2 * t30 / t43, n_y_2 / t39)
-    t44 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t45 = t41 - t44
+    touching = ops.max(t24, 0.0) <= t9
+    t42 = t25 & ops.opposite(touching)
+    rho = ops.sqrt(ops.select(t42, X_2 * X_2 + t40 * t40, 1.0))
+    t43 = ops.select(t42, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t43))
+    t44 = ops.select(t25 & in_line, t28 - t29, 1.0)
+    E_21 = ops.select(in_line, 1.0 + t29 * (E_11_2 * E_11_2) / t44, -(t37 / t39))
+    E_22 = ops.select(in_line, E_12_2 * t30 / t44, n_y_2 / t39)
+    t45 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t46 = t41 - t45
     Delta = D_2 * j_2 * h
-    t46 = t41 + t44
+    t47 = t41 + t45
     return (
-        ops.select(failed, ops.nan, -t45),
-        ops.select(failed, ops.nan, t4 - t45),
-        ops.select(failed, ops.nan, t7 - t45),
-        ops.select(failed, ops.nan, -Delta),
         ops.select(failed, ops.nan, -t46),
         ops.select(failed, ops.nan, t4 - t46),
         ops.select(failed, ops.nan, t7 - t46),
+        ops.select(failed, ops.nan, -Delta),
+        ops.select(failed, ops.nan, -t47),
+        ops.select(failed, ops.nan, t4 - t47),
+        ops.select(failed, ops.nan, t7 - t47),
         ops.select(failed, ops.nan, Delta),
     )
 
@@ -1209,8 +1229,9 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
-    t24 = -(size * ops.feasibility) <= l - ops.sqrt(X * X + t23 * t23)
-    failed = ops.opposite(t2) | ops.opposite(t22 & t24)
+    t24 = l - ops.sqrt(X * X + t23 * t23)
+    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    failed = ops.opposite(t2) | unreachable
     t25 = ops.opposite(failed)
     t26 = ops.select(t25 & ops.opposite(same), t6, 1.0)
     D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t8, 1.0)), ops.sqrt(t26))
@@ -1236,73 +1257,75 @@ def _condition_number(ops, rho1, rho2, rho3, f, e, l):
     E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t28 / t30, -(t35 / t39))
     t40 = ops.select(in_line, 0.0, t21 / ops.select(t36, 2.0 * j_2, 1.0))
     t41 = E_11_2 * X_2 - E_21 * t40
-    rho = ops.sqrt(ops.select(t25, X_2 * X_2 + t40 * t40, 1.0))
-    t42 = ops.select(t25, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.sqrt(t42)
-    t43 = E_11_2 * t28
-    t44 = ops.select(in_line, t43, t37 / t39)
-    E_22 = ops.select(in_line, E_12_2 * t43 / t30, n_y_2 / t39)
-    t45 = h * (E_12_2 * t44 - t29 * E_22)
-    A_11 = t41 + t45
-    t46 = X_2 * E_12_2 - t40 * E_22
-    t47 = h * (E_11_2 * t44 - t29 * E_21)
-    A_12 = t46 - t47
-    t48 = X_2 * t29 - t40 * t44
-    t49 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t50 = t48 - t49
+    touching = ops.max(t24, 0.0) <= t9
+    t42 = t25 & ops.opposite(touching)
+    rho = ops.sqrt(ops.select(t42, X_2 * X_2 + t40 * t40, 1.0))
+    t43 = ops.select(t42, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t43))
+    t44 = E_11_2 * t28
+    t45 = ops.select(in_line, t44, t37 / t39)
+    E_22 = ops.select(in_line, E_12_2 * t44 / t30, n_y_2 / t39)
+    t46 = h * (E_12_2 * t45 - t29 * E_22)
+    A_11 = t41 + t46
+    t47 = X_2 * E_12_2 - t40 * E_22
+    t48 = h * (E_11_2 * t45 - t29 * E_21)
+    A_12 = t47 - t48
+    t49 = X_2 * t29 - t40 * t45
+    t50 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t51 = t49 - t50
     A_21 = t3 + A_11
-    t51 = A_21 * A_21
+    t52 = A_21 * A_21
     A_22 = c3_y + A_12
-    A_23 = t4 - t50
-    t52 = A_11 * A_11 + A_12 * A_12 + t50 * t50 + (t51 + A_22 * A_22 + A_23 * A_23)
-    t53 = c3_y - A_12
-    A_33 = t7 - t50
-    t54 = A_12 * A_21
-    t55 = A_11 * A_22 - t54
-    t56 = t50 * A_21
-    t57 = A_11 * A_23 + t56
-    t58 = t54 + A_11 * t53
-    t59 = t56 + A_11 * A_33
-    t60 = t55 * t55 + t57 * t57 + t58 * t58 + t59 * t59
-    t61 = A_12 * A_23 + t50 * A_22
-    t62 = A_12 * A_33 - t50 * t53
-    t63 = A_21 * t53 + A_21 * A_22
-    t64 = A_21 * A_33 - A_21 * A_23
-    t65 = t60 + t61 * t61 + t62 * t62 + t63 * t63 + t64 * t64
-    t66 = A_22 * A_33 + A_23 * t53
-    t67 = (t52 + (t51 + t53 * t53 + A_33 * A_33)) * (t65 + t66 * t66)
-    t68 = ops.select(t25, 3.0 * (D_2 * j_2 * h), 1.0)
-    t69 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t25, t67, 1.0)) / t68)
-    A_11_above = t41 - t45
-    A_12_above = t46 + t47
-    t70 = A_11_above * A_11_above + A_12_above * A_12_above
-    t71 = t48 + t49
+    A_23 = t4 - t51
+    t53 = A_11 * A_11 + A_12 * A_12 + t51 * t51 + (t52 + A_22 * A_22 + A_23 * A_23)
+    t54 = c3_y - A_12
+    A_33 = t7 - t51
+    t55 = A_12 * A_21
+    t56 = A_11 * A_22 - t55
+    t57 = t51 * A_21
+    t58 = A_11 * A_23 + t57
+    t59 = t55 + A_11 * t54
+    t60 = t57 + A_11 * A_33
+    t61 = t56 * t56 + t58 * t58 + t59 * t59 + t60 * t60
+    t62 = A_12 * A_23 + t51 * A_22
+    t63 = A_12 * A_33 - t51 * t54
+    t64 = A_21 * t54 + A_21 * A_22
+    t65 = A_21 * A_33 - A_21 * A_23
+    t66 = t61 + t62 * t62 + t63 * t63 + t64 * t64 + t65 * t65
+    t67 = A_22 * A_33 + A_23 * t54
+    t68 = (t53 + (t52 + t54 * t54 + A_33 * A_33)) * (t66 + t67 * t67)
+    t69 = ops.select(t25, 3.0 * (D_2 * j_2 * h), 1.0)
+    t70 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t25, t68, 1.0)) / t69)
+    A_11_above = t41 - t46
+    A_12_above = t47 + t48
+    t71 = A_11_above * A_11_above + A_12_above * A_12_above
+    t72 = t49 + t50
     A_21_above = t3 + A_11_above
-    t72 = A_21_above * A_21_above
+    t73 = A_21_above * A_21_above
     A_22_above = c3_y + A_12_above
-    A_23_above = t4 - t71
-    square2_above = t72 + A_22_above * A_22_above + A_23_above * A_23_above
-    t73 = c3_y - A_12_above
-    A_33_above = t7 - t71
-    t74 = t70 + t71 * t71 + square2_above + (t72 + t73 * t73 + A_33_above * A_33_above)
-    t75 = A_12_above * A_21_above
-    t76 = A_11_above * A_22_above - t75
-    t77 = t71 * A_21_above
-    t78 = A_11_above * A_23_above + t77
-    t79 = t75 + A_11_above * t73
-    t80 = t77 + A_11_above * A_33_above
-    t81 = t76 * t76 + t78 * t78 + t79 * t79 + t80 * t80
-    t82 = A_12_above * A_23_above + t71 * A_22_above
-    t83 = A_12_above * A_33_above - t71 * t73
-    t84 = A_21_above * t73 + A_21_above * A_22_above
-    t85 = A_21_above * A_33_above - A_21_above * A_23_above
-    t86 = t81 + t82 * t82 + t83 * t83 + t84 * t84 + t85 * t85
-    t87 = A_22_above * A_33_above + A_23_above * t73
-    t88 = ops.select(t25, t74 * (t86 + t87 * t87), 1.0)
-    t89 = ops.select(failed, ops.nan, ops.sqrt(t88) / t68)
+    A_23_above = t4 - t72
+    square2_above = t73 + A_22_above * A_22_above + A_23_above * A_23_above
+    t74 = c3_y - A_12_above
+    A_33_above = t7 - t72
+    t75 = t71 + t72 * t72 + square2_above + (t73 + t74 * t74 + A_33_above * A_33_above)
+    t76 = A_12_above * A_21_above
+    t77 = A_11_above * A_22_above - t76
+    t78 = t72 * A_21_above
+    t79 = A_11_above * A_23_above + t78
+    t80 = t76 + A_11_above * t74
+    t81 = t78 + A_11_above * A_33_above
+    t82 = t77 * t77 + t79 * t79 + t80 * t80 + t81 * t81
+    t83 = A_12_above * A_23_above + t72 * A_22_above
+    t84 = A_12_above * A_33_above - t72 * t74
+    t85 = A_21_above * t74 + A_21_above * A_22_above
+    t86 = A_21_above * A_33_above - A_21_above * A_23_above
+    t87 = t82 + t83 * t83 + t84 * t84 + t85 * t85 + t86 * t86
+    t88 = A_22_above * A_33_above + A_23_above * t74
+    t89 = ops.select(t25, t75 * (t87 + t88 * t88), 1.0)
+    t90 = ops.select(failed, ops.nan, ops.sqrt(t89) / t69)
     return (
-        t69,
-        t89,
+        t70,
+        t90,
     )
 
 

@@ -2,14 +2,14 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Arms of common structure, solved by lemmas.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 65 compare and select, 53 add, 8 divide, 76 multiply, 9 sqrt
-#   skeleton: 68 compare and select, 54 add, 15 divide, 65 multiply, 9 sqrt
-#   jacobian_parallel: 70 compare and select, 58 add, 15 divide, 65 multiply, 9 sqrt
-#   jacobian_serial: 64 compare and select, 56 add, 15 divide, 65 multiply, 9 sqrt
-#   jacobian: 77 compare and select, 76 add, 33 divide, 109 multiply, 9 sqrt
-#   determinant: 61 compare and select, 56 add, 17 divide, 71 multiply, 9 sqrt
-#   singularities: 66 compare and select, 56 add, 15 divide, 67 multiply, 9 sqrt
-#   condition_number: 63 compare and select, 108 add, 17 divide, 124 multiply, 11 sqrt
+#   fk: 70 compare and select, 53 add, 8 divide, 76 multiply, 9 sqrt
+#   skeleton: 73 compare and select, 54 add, 15 divide, 65 multiply, 9 sqrt
+#   jacobian_parallel: 75 compare and select, 58 add, 15 divide, 65 multiply, 9 sqrt
+#   jacobian_serial: 69 compare and select, 56 add, 15 divide, 65 multiply, 9 sqrt
+#   jacobian: 82 compare and select, 76 add, 33 divide, 109 multiply, 9 sqrt
+#   determinant: 66 compare and select, 56 add, 17 divide, 71 multiply, 9 sqrt
+#   singularities: 71 compare and select, 56 add, 15 divide, 67 multiply, 9 sqrt
+#   condition_number: 68 compare and select, 108 add, 17 divide, 124 multiply, 11 sqrt
 #   ik: 71 compare and select, 48 add, 1 divide, 37 multiply, 12 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 """Orthoglide.
@@ -138,56 +138,58 @@ def _fk(ops, rho1, rho2, rho3, L):
     t16 = ops.abs(ops.select(in_line, -t15, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t17 = ops.select(in_line, 0.0, t15 / (2.0 * j))
-    t18 = -(size * ops.feasibility) <= L - ops.sqrt(X * X + t17 * t17)
-    unreachable = ops.opposite(t16 & t18)
+    t18 = L - ops.sqrt(X * X + t17 * t17)
+    unreachable = ops.opposite(t16 & (-(size * ops.feasibility) <= t18))
     failed = invalid | unreachable
+    touching = ops.max(t18, 0.0) <= t5
     t19 = ops.opposite(failed)
-    t20 = t19 & ops.opposite(all_same)
-    t21 = ops.select(t20 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t20 & same, t4, 1.0)), ops.sqrt(t21))
+    t20 = t19 & ops.opposite(touching)
+    t21 = t19 & ops.opposite(all_same)
+    t22 = ops.select(t21 & ops.opposite(same), t3, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t21 & same, t4, 1.0)), ops.sqrt(t22))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t22 = t19 & ops.opposite(in_line)
-    t23 = 1.0 / ops.select(t20, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 * t23))
-    E_12_2 = ops.select(all_same, 0.0, t8 * t23)
-    E_13_2 = ops.select(all_same, 0.0, t10 * t23)
-    t24 = rho1 * E_11_2 - t7 * E_12_2 - t9 * E_13_2
-    t25 = rho1 - E_11_2 * t24
-    m_y_2 = t7 + E_12_2 * t24
-    m_z_2 = t9 + E_13_2 * t24
-    t26 = E_11_2 * t25 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t27 = t25 - E_11_2 * t26
-    n_y_2 = m_y_2 + E_12_2 * t26
-    n_z_2 = m_z_2 + E_13_2 * t26
-    t28 = ops.select(t22, t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t28)
-    t29 = ops.select(in_line, 0.0, t15 / ops.select(t22, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t19, X_2 * X_2 + t29 * t29, 1.0))
-    t30 = ops.select(t19, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.sqrt(t30)
-    t31 = ops.sign(E_13)
-    t32 = E_11_2 * t31
-    t33 = 1.0 / ops.select(t22, j_2, 1.0)
-    E_23 = ops.select(in_line, -t32, n_z_2 * t33)
-    t34 = 1.0 / ops.select(t19 & in_line, E_13_2 + t31, 1.0)
-    E_22 = ops.select(in_line, -(t34 * (E_12_2 * t32)), n_y_2 * t33)
-    t35 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t31 * t34, -(t27 * t33))
-    t36 = E_21 * t29 - (rho1 + X_2 * E_11_2)
-    t37 = X_2 * E_12_2 - t29 * E_22
-    t38 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t39 = X_2 * E_13_2 - t29 * E_23
-    t40 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t41 = ops.status(invalid, unreachable, in_line)
+    t23 = t19 & ops.opposite(in_line)
+    t24 = 1.0 / ops.select(t21, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(rho1 * t24))
+    E_12_2 = ops.select(all_same, 0.0, t8 * t24)
+    E_13_2 = ops.select(all_same, 0.0, t10 * t24)
+    t25 = rho1 * E_11_2 - t7 * E_12_2 - t9 * E_13_2
+    t26 = rho1 - E_11_2 * t25
+    m_y_2 = t7 + E_12_2 * t25
+    m_z_2 = t9 + E_13_2 * t25
+    t27 = E_11_2 * t26 - E_12_2 * m_y_2 - E_13_2 * m_z_2
+    t28 = t26 - E_11_2 * t27
+    n_y_2 = m_y_2 + E_12_2 * t27
+    n_z_2 = m_z_2 + E_13_2 * t27
+    t29 = ops.select(t23, t28 * t28 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
+    j_2 = ops.sqrt(t29)
+    t30 = ops.select(in_line, 0.0, t15 / ops.select(t23, 2.0 * j_2, 1.0))
+    rho = ops.sqrt(ops.select(t20, X_2 * X_2 + t30 * t30, 1.0))
+    t31 = ops.select(t20, ops.max(L - rho, 0.0) * (L + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t31))
+    t32 = ops.sign(E_13)
+    t33 = E_11_2 * t32
+    t34 = 1.0 / ops.select(t23, j_2, 1.0)
+    E_23 = ops.select(in_line, -t33, n_z_2 * t34)
+    t35 = 1.0 / ops.select(t19 & in_line, E_13_2 + t32, 1.0)
+    E_22 = ops.select(in_line, -(t35 * (E_12_2 * t33)), n_y_2 * t34)
+    t36 = h * (E_12_2 * E_23 - E_13_2 * E_22)
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t32 * t35, -(t28 * t34))
+    t37 = E_21 * t30 - (rho1 + X_2 * E_11_2)
+    t38 = X_2 * E_12_2 - t30 * E_22
+    t39 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t40 = X_2 * E_13_2 - t30 * E_23
+    t41 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t42 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t35 - t36),
-        ops.select(failed, ops.nan, t37 - t38),
-        ops.select(failed, ops.nan, t39 - t40),
-        ops.select(failed, ops.nan, -(t35 + t36)),
-        ops.select(failed, ops.nan, t38 + t37),
-        ops.select(failed, ops.nan, t40 + t39),
-        t41,
-        t41,
+        ops.select(failed, ops.nan, t36 - t37),
+        ops.select(failed, ops.nan, t38 - t39),
+        ops.select(failed, ops.nan, t40 - t41),
+        ops.select(failed, ops.nan, -(t36 + t37)),
+        ops.select(failed, ops.nan, t39 + t38),
+        ops.select(failed, ops.nan, t41 + t40),
+        t42,
+        t42,
     )
 
 
@@ -274,51 +276,54 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = -(size * ops.feasibility) <= L - ops.sqrt(X * X + t16 * t16)
-    failed = ops.opposite(t1) | ops.opposite(t15 & t17)
+    t17 = L - ops.sqrt(X * X + t16 * t16)
+    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    failed = ops.opposite(t1) | unreachable
     t18 = ops.select(failed, ops.nan, 0.0)
     t19 = ops.select(failed, ops.nan, rho1)
     t20 = ops.select(failed, ops.nan, rho2)
     t21 = ops.select(failed, ops.nan, rho3)
+    touching = ops.max(t17, 0.0) <= t5
     t22 = ops.opposite(failed)
-    t23 = t22 & ops.opposite(all_same)
-    t24 = ops.select(t23 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t23 & same, t4, 1.0)), ops.sqrt(t24))
+    t23 = t22 & ops.opposite(touching)
+    t24 = t22 & ops.opposite(all_same)
+    t25 = ops.select(t24 & ops.opposite(same), t3, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t24 & same, t4, 1.0)), ops.sqrt(t25))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t25 = t22 & ops.opposite(in_line)
-    t26 = ops.select(t23, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t26))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t26)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t26)
-    t27 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t28 = rho1 - E_11_2 * t27
-    m_y_2 = t7 + E_12_2 * t27
-    m_z_2 = t9 + E_13_2 * t27
-    t29 = E_11_2 * t28 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t30 = t28 - E_11_2 * t29
-    n_y_2 = m_y_2 + E_12_2 * t29
-    n_z_2 = m_z_2 + E_13_2 * t29
-    t31 = ops.select(t25, t30 * t30 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t31)
-    t32 = ops.select(in_line, 0.0, t14 / ops.select(t25, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t22, X_2 * X_2 + t32 * t32, 1.0))
-    t33 = ops.select(t22, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.sqrt(t33)
-    t34 = ops.sign(E_13)
-    t35 = E_11_2 * t34
-    t36 = ops.select(t25, j_2, 1.0)
-    E_23 = ops.select(in_line, -t35, n_z_2 / t36)
-    t37 = ops.select(t22 & in_line, E_13_2 + t34, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t35 / t37), n_y_2 / t36)
-    t38 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t34 / t37, -(t30 / t36))
-    t39 = E_11_2 * X_2 - E_21 * t32
-    t40 = ops.select(failed, ops.nan, rho1 + (t38 + t39))
-    t41 = E_12_2 * X_2 - t32 * E_22
-    t42 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t43 = E_13_2 * X_2 - E_23 * t32
-    t44 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t45 = ops.select(failed, ops.nan, rho1 - (t38 - t39))
+    t26 = t22 & ops.opposite(in_line)
+    t27 = ops.select(t24, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t27))
+    E_12_2 = ops.select(all_same, 0.0, t6 / t27)
+    E_13_2 = ops.select(all_same, 0.0, t8 / t27)
+    t28 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
+    t29 = rho1 - E_11_2 * t28
+    m_y_2 = t7 + E_12_2 * t28
+    m_z_2 = t9 + E_13_2 * t28
+    t30 = E_11_2 * t29 - E_12_2 * m_y_2 - E_13_2 * m_z_2
+    t31 = t29 - E_11_2 * t30
+    n_y_2 = m_y_2 + E_12_2 * t30
+    n_z_2 = m_z_2 + E_13_2 * t30
+    t32 = ops.select(t26, t31 * t31 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
+    j_2 = ops.sqrt(t32)
+    t33 = ops.select(in_line, 0.0, t14 / ops.select(t26, j_2 * 2.0, 1.0))
+    rho = ops.sqrt(ops.select(t23, X_2 * X_2 + t33 * t33, 1.0))
+    t34 = ops.select(t23, ops.max(L - rho, 0.0) * (L + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t34))
+    t35 = ops.sign(E_13)
+    t36 = E_11_2 * t35
+    t37 = ops.select(t26, j_2, 1.0)
+    E_23 = ops.select(in_line, -t36, n_z_2 / t37)
+    t38 = ops.select(t22 & in_line, E_13_2 + t35, 1.0)
+    E_22 = ops.select(in_line, -(E_12_2 * t36 / t38), n_y_2 / t37)
+    t39 = h * (E_12_2 * E_23 - E_13_2 * E_22)
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t35 / t38, -(t31 / t37))
+    t40 = E_11_2 * X_2 - E_21 * t33
+    t41 = ops.select(failed, ops.nan, rho1 + (t39 + t40))
+    t42 = E_12_2 * X_2 - t33 * E_22
+    t43 = (E_11_2 * E_23 - E_13_2 * E_21) * h
+    t44 = E_13_2 * X_2 - E_23 * t33
+    t45 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t46 = ops.select(failed, ops.nan, rho1 - (t39 - t40))
     return (
         t18,
         t18,
@@ -338,9 +343,9 @@ def _skeleton(ops, rho1, rho2, rho3, L):
         t18,
         t18,
         t21,
-        t40,
-        ops.select(failed, ops.nan, t41 - t42),
-        ops.select(failed, ops.nan, t43 - t44),
+        t41,
+        ops.select(failed, ops.nan, t42 - t43),
+        ops.select(failed, ops.nan, t44 - t45),
         t18,
         t18,
         t18,
@@ -359,9 +364,9 @@ def _skeleton(ops, rho1, rho2, rho3, L):
         t18,
         t18,
         t21,
-        t45,
-        ops.select(failed, ops.nan, t42 + t41),
-        ops.select(failed, ops.nan, t44 + t43),
+        t46,
+        ops.select(failed, ops.nan, t43 + t42),
+        ops.select(failed, ops.nan, t45 + t44),
     )
 
 
@@ -440,78 +445,81 @@ def _jacobian_parallel(ops, rho1, rho2, rho3, L):
     t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = -(size * ops.feasibility) <= L - ops.sqrt(X * X + t16 * t16)
-    failed = ops.opposite(t1) | ops.opposite(t15 & t17)
+    t17 = L - ops.sqrt(X * X + t16 * t16)
+    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    failed = ops.opposite(t1) | unreachable
+    touching = ops.max(t17, 0.0) <= t5
     t18 = ops.opposite(failed)
-    t19 = t18 & ops.opposite(all_same)
-    t20 = ops.select(t19 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t19 & same, t4, 1.0)), ops.sqrt(t20))
+    t19 = t18 & ops.opposite(touching)
+    t20 = t18 & ops.opposite(all_same)
+    t21 = ops.select(t20 & ops.opposite(same), t3, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t20 & same, t4, 1.0)), ops.sqrt(t21))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t21 = t18 & ops.opposite(in_line)
-    t22 = ops.select(t19, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t22))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t22)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t22)
-    t23 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t24 = rho1 - E_11_2 * t23
-    m_y_2 = t7 + E_12_2 * t23
-    m_z_2 = t9 + E_13_2 * t23
-    t25 = E_11_2 * t24 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t26 = t24 - E_11_2 * t25
-    n_y_2 = m_y_2 + E_12_2 * t25
-    n_z_2 = m_z_2 + E_13_2 * t25
-    t27 = ops.select(t21, t26 * t26 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t27)
-    t28 = ops.select(in_line, 0.0, t14 / ops.select(t21, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t18, X_2 * X_2 + t28 * t28, 1.0))
-    t29 = ops.select(t18, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.sqrt(t29)
-    t30 = ops.sign(E_13)
-    t31 = E_11_2 * t30
-    t32 = ops.select(t21, j_2, 1.0)
-    E_23 = ops.select(in_line, -t31, n_z_2 / t32)
-    t33 = ops.select(t18 & in_line, E_13_2 + t30, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t31 / t33), n_y_2 / t32)
-    t34 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t30 / t33, -(t26 / t32))
-    t35 = E_11_2 * X_2 - E_21 * t28
-    A_11 = t34 + t35
-    t36 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t37 = E_12_2 * X_2 - t28 * E_22
-    t38 = t36 - t37
-    t39 = ops.select(failed, ops.nan, -t38)
-    t40 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t41 = E_13_2 * X_2 - E_23 * t28
-    t42 = t40 - t41
-    t43 = ops.select(failed, ops.nan, -t42)
-    t44 = ops.select(failed, ops.nan, rho1 + A_11)
-    t45 = t34 - t35
-    A_12_inner = t36 + t37
-    t46 = ops.select(failed, ops.nan, A_12_inner)
-    A_13_inner = t40 + t41
-    t47 = ops.select(failed, ops.nan, A_13_inner)
-    t48 = ops.select(failed, ops.nan, rho1 - t45)
-    t49 = ops.select(failed, ops.nan, A_12_inner - rho2)
-    t50 = ops.select(failed, ops.nan, A_13_inner - rho3)
+    t22 = t18 & ops.opposite(in_line)
+    t23 = ops.select(t20, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t23))
+    E_12_2 = ops.select(all_same, 0.0, t6 / t23)
+    E_13_2 = ops.select(all_same, 0.0, t8 / t23)
+    t24 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
+    t25 = rho1 - E_11_2 * t24
+    m_y_2 = t7 + E_12_2 * t24
+    m_z_2 = t9 + E_13_2 * t24
+    t26 = E_11_2 * t25 - E_12_2 * m_y_2 - E_13_2 * m_z_2
+    t27 = t25 - E_11_2 * t26
+    n_y_2 = m_y_2 + E_12_2 * t26
+    n_z_2 = m_z_2 + E_13_2 * t26
+    t28 = ops.select(t22, t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
+    j_2 = ops.sqrt(t28)
+    t29 = ops.select(in_line, 0.0, t14 / ops.select(t22, j_2 * 2.0, 1.0))
+    rho = ops.sqrt(ops.select(t19, X_2 * X_2 + t29 * t29, 1.0))
+    t30 = ops.select(t19, ops.max(L - rho, 0.0) * (L + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t30))
+    t31 = ops.sign(E_13)
+    t32 = E_11_2 * t31
+    t33 = ops.select(t22, j_2, 1.0)
+    E_23 = ops.select(in_line, -t32, n_z_2 / t33)
+    t34 = ops.select(t18 & in_line, E_13_2 + t31, 1.0)
+    E_22 = ops.select(in_line, -(E_12_2 * t32 / t34), n_y_2 / t33)
+    t35 = h * (E_12_2 * E_23 - E_13_2 * E_22)
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t31 / t34, -(t27 / t33))
+    t36 = E_11_2 * X_2 - E_21 * t29
+    A_11 = t35 + t36
+    t37 = (E_11_2 * E_23 - E_13_2 * E_21) * h
+    t38 = E_12_2 * X_2 - t29 * E_22
+    t39 = t37 - t38
+    t40 = ops.select(failed, ops.nan, -t39)
+    t41 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t42 = E_13_2 * X_2 - E_23 * t29
+    t43 = t41 - t42
+    t44 = ops.select(failed, ops.nan, -t43)
+    t45 = ops.select(failed, ops.nan, rho1 + A_11)
+    t46 = t35 - t36
+    A_12_inner = t37 + t38
+    t47 = ops.select(failed, ops.nan, A_12_inner)
+    A_13_inner = t41 + t42
+    t48 = ops.select(failed, ops.nan, A_13_inner)
+    t49 = ops.select(failed, ops.nan, rho1 - t46)
+    t50 = ops.select(failed, ops.nan, A_12_inner - rho2)
+    t51 = ops.select(failed, ops.nan, A_13_inner - rho3)
     return (
         ops.select(failed, ops.nan, A_11),
-        t39,
-        t43,
+        t40,
         t44,
-        ops.select(failed, ops.nan, -(rho2 + t38)),
-        t43,
+        t45,
+        ops.select(failed, ops.nan, -(rho2 + t39)),
         t44,
-        t39,
-        ops.select(failed, ops.nan, -(rho3 + t42)),
-        ops.select(failed, ops.nan, -t45),
-        t46,
+        t45,
+        t40,
+        ops.select(failed, ops.nan, -(rho3 + t43)),
+        ops.select(failed, ops.nan, -t46),
         t47,
         t48,
         t49,
-        t47,
-        t48,
-        t46,
         t50,
+        t48,
+        t49,
+        t47,
+        t51,
     )
 
 
@@ -590,56 +598,59 @@ def _jacobian_serial(ops, rho1, rho2, rho3, L):
     t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = -(size * ops.feasibility) <= L - ops.sqrt(X * X + t16 * t16)
-    failed = ops.opposite(t1) | ops.opposite(t15 & t17)
+    t17 = L - ops.sqrt(X * X + t16 * t16)
+    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    failed = ops.opposite(t1) | unreachable
+    touching = ops.max(t17, 0.0) <= t5
     t18 = ops.opposite(failed)
-    t19 = t18 & ops.opposite(all_same)
-    t20 = ops.select(t19 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t19 & same, t4, 1.0)), ops.sqrt(t20))
+    t19 = t18 & ops.opposite(touching)
+    t20 = t18 & ops.opposite(all_same)
+    t21 = ops.select(t20 & ops.opposite(same), t3, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t20 & same, t4, 1.0)), ops.sqrt(t21))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t21 = t18 & ops.opposite(in_line)
-    t22 = ops.select(t19, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t22))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t22)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t22)
-    t23 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t24 = rho1 - E_11_2 * t23
-    m_y_2 = t7 + E_12_2 * t23
-    m_z_2 = t9 + E_13_2 * t23
-    t25 = E_11_2 * t24 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t26 = t24 - E_11_2 * t25
-    n_y_2 = m_y_2 + E_12_2 * t25
-    n_z_2 = m_z_2 + E_13_2 * t25
-    t27 = ops.select(t21, t26 * t26 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t27)
-    t28 = ops.select(in_line, 0.0, t14 / ops.select(t21, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t18, X_2 * X_2 + t28 * t28, 1.0))
-    t29 = ops.select(t18, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.sqrt(t29)
-    t30 = ops.sign(E_13)
-    t31 = E_11_2 * t30
-    t32 = ops.select(t21, j_2, 1.0)
-    E_23 = ops.select(in_line, -t31, n_z_2 / t32)
-    t33 = ops.select(t18 & in_line, E_13_2 + t30, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t31 / t33), n_y_2 / t32)
-    t34 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t30 / t33, -(t26 / t32))
-    t35 = E_11_2 * X_2 - E_21 * t28
-    t36 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t37 = E_12_2 * X_2 - t28 * E_22
-    t38 = ops.select(failed, ops.nan, -(rho2 + (t36 - t37)))
-    t39 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t40 = E_13_2 * X_2 - E_23 * t28
-    t41 = ops.select(failed, ops.nan, -(rho3 + (t39 - t40)))
-    t42 = ops.select(failed, ops.nan, t36 + t37 - rho2)
-    t43 = ops.select(failed, ops.nan, t39 + t40 - rho3)
+    t22 = t18 & ops.opposite(in_line)
+    t23 = ops.select(t20, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t23))
+    E_12_2 = ops.select(all_same, 0.0, t6 / t23)
+    E_13_2 = ops.select(all_same, 0.0, t8 / t23)
+    t24 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
+    t25 = rho1 - E_11_2 * t24
+    m_y_2 = t7 + E_12_2 * t24
+    m_z_2 = t9 + E_13_2 * t24
+    t26 = E_11_2 * t25 - E_12_2 * m_y_2 - E_13_2 * m_z_2
+    t27 = t25 - E_11_2 * t26
+    n_y_2 = m_y_2 + E_12_2 * t26
+    n_z_2 = m_z_2 + E_13_2 * t26
+    t28 = ops.select(t22, t27 * t27 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
+    j_2 = ops.sqrt(t28)
+    t29 = ops.select(in_line, 0.0, t14 / ops.select(t22, j_2 * 2.0, 1.0))
+    rho = ops.sqrt(ops.select(t19, X_2 * X_2 + t29 * t29, 1.0))
+    t30 = ops.select(t19, ops.max(L - rho, 0.0) * (L + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t30))
+    t31 = ops.sign(E_13)
+    t32 = E_11_2 * t31
+    t33 = ops.select(t22, j_2, 1.0)
+    E_23 = ops.select(in_line, -t32, n_z_2 / t33)
+    t34 = ops.select(t18 & in_line, E_13_2 + t31, 1.0)
+    E_22 = ops.select(in_line, -(E_12_2 * t32 / t34), n_y_2 / t33)
+    t35 = h * (E_12_2 * E_23 - E_13_2 * E_22)
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t31 / t34, -(t27 / t33))
+    t36 = E_11_2 * X_2 - E_21 * t29
+    t37 = (E_11_2 * E_23 - E_13_2 * E_21) * h
+    t38 = E_12_2 * X_2 - t29 * E_22
+    t39 = ops.select(failed, ops.nan, -(rho2 + (t37 - t38)))
+    t40 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t41 = E_13_2 * X_2 - E_23 * t29
+    t42 = ops.select(failed, ops.nan, -(rho3 + (t40 - t41)))
+    t43 = ops.select(failed, ops.nan, t37 + t38 - rho2)
+    t44 = ops.select(failed, ops.nan, t40 + t41 - rho3)
     return (
-        ops.select(failed, ops.nan, t34 + t35),
-        t38,
-        t41,
-        ops.select(failed, ops.nan, t35 - t34),
+        ops.select(failed, ops.nan, t35 + t36),
+        t39,
         t42,
+        ops.select(failed, ops.nan, t36 - t35),
         t43,
+        t44,
     )
 
 
@@ -718,100 +729,103 @@ def _jacobian(ops, rho1, rho2, rho3, L):
     t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = -(size * ops.feasibility) <= L - ops.sqrt(X * X + t16 * t16)
-    failed = ops.opposite(t1) | ops.opposite(t15 & t17)
+    t17 = L - ops.sqrt(X * X + t16 * t16)
+    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    failed = ops.opposite(t1) | unreachable
+    touching = ops.max(t17, 0.0) <= t5
     t18 = ops.opposite(failed)
-    t19 = ops.select(t18 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t18 & same, t4, 1.0)), ops.sqrt(t19))
+    t19 = t18 & ops.opposite(touching)
+    t20 = ops.select(t18 & ops.opposite(same), t3, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t18 & same, t4, 1.0)), ops.sqrt(t20))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t20 = t18 & ops.opposite(in_line)
-    t21 = ops.select(t18 & ops.opposite(all_same), D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t21))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t21)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t21)
-    t22 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t23 = rho1 - E_11_2 * t22
-    m_y_2 = t7 + E_12_2 * t22
-    m_z_2 = t9 + E_13_2 * t22
-    t24 = E_11_2 * t23 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t25 = t23 - E_11_2 * t24
-    n_y_2 = m_y_2 + E_12_2 * t24
-    n_z_2 = m_z_2 + E_13_2 * t24
-    t26 = ops.select(t18, t25 * t25 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t26)
-    t27 = ops.select(in_line, 0.0, t14 / ops.select(t20, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t18, X_2 * X_2 + t27 * t27, 1.0))
-    t28 = ops.select(t18, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.sqrt(t28)
-    t29 = ops.sign(E_13)
-    t30 = E_11_2 * t29
-    t31 = ops.select(t20, j_2, 1.0)
-    E_23 = ops.select(in_line, -t30, n_z_2 / t31)
-    t32 = ops.select(t18 & in_line, E_13_2 + t29, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t30 / t32), n_y_2 / t31)
-    t33 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t29 / t32, -(t25 / t31))
-    t34 = E_11_2 * X_2 - E_21 * t27
-    A_11 = t33 + t34
-    t35 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t36 = E_12_2 * X_2 - t27 * E_22
-    t37 = t35 - t36
-    t38 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t39 = E_13_2 * X_2 - E_23 * t27
-    t40 = t38 - t39
-    t41 = t37 * t40
-    t42 = rho2 + t37
-    t43 = rho3 + t40
-    t44 = ops.select(t18, D_2 * j_2 * h, 1.0)
-    t45 = ops.select(failed, ops.nan, -(A_11 * (t41 - t42 * t43) / t44))
-    t46 = ops.select(failed, ops.nan, -(t42 * (t41 - t37 * t43) / t44))
-    t47 = ops.select(failed, ops.nan, -(t43 * (t41 - t40 * t42) / t44))
+    t21 = t18 & ops.opposite(in_line)
+    t22 = ops.select(t18 & ops.opposite(all_same), D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t22))
+    E_12_2 = ops.select(all_same, 0.0, t6 / t22)
+    E_13_2 = ops.select(all_same, 0.0, t8 / t22)
+    t23 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
+    t24 = rho1 - E_11_2 * t23
+    m_y_2 = t7 + E_12_2 * t23
+    m_z_2 = t9 + E_13_2 * t23
+    t25 = E_11_2 * t24 - E_12_2 * m_y_2 - E_13_2 * m_z_2
+    t26 = t24 - E_11_2 * t25
+    n_y_2 = m_y_2 + E_12_2 * t25
+    n_z_2 = m_z_2 + E_13_2 * t25
+    t27 = ops.select(t18, t26 * t26 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
+    j_2 = ops.sqrt(t27)
+    t28 = ops.select(in_line, 0.0, t14 / ops.select(t21, j_2 * 2.0, 1.0))
+    rho = ops.sqrt(ops.select(t19, X_2 * X_2 + t28 * t28, 1.0))
+    t29 = ops.select(t19, ops.max(L - rho, 0.0) * (L + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t29))
+    t30 = ops.sign(E_13)
+    t31 = E_11_2 * t30
+    t32 = ops.select(t21, j_2, 1.0)
+    E_23 = ops.select(in_line, -t31, n_z_2 / t32)
+    t33 = ops.select(t18 & in_line, E_13_2 + t30, 1.0)
+    E_22 = ops.select(in_line, -(E_12_2 * t31 / t33), n_y_2 / t32)
+    t34 = h * (E_12_2 * E_23 - E_13_2 * E_22)
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t30 / t33, -(t26 / t32))
+    t35 = E_11_2 * X_2 - E_21 * t28
+    A_11 = t34 + t35
+    t36 = (E_11_2 * E_23 - E_13_2 * E_21) * h
+    t37 = E_12_2 * X_2 - t28 * E_22
+    t38 = t36 - t37
+    t39 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t40 = E_13_2 * X_2 - E_23 * t28
+    t41 = t39 - t40
+    t42 = t38 * t41
+    t43 = rho2 + t38
+    t44 = rho3 + t41
+    t45 = ops.select(t18, D_2 * j_2 * h, 1.0)
+    t46 = ops.select(failed, ops.nan, -(A_11 * (t42 - t43 * t44) / t45))
+    t47 = ops.select(failed, ops.nan, -(t43 * (t42 - t38 * t44) / t45))
+    t48 = ops.select(failed, ops.nan, -(t44 * (t42 - t41 * t43) / t45))
     A_21 = rho1 + A_11
-    t48 = t40 * A_21
-    t49 = ops.select(failed, ops.nan, -(A_11 * (t48 - t43 * A_21) / t44))
-    t50 = ops.select(failed, ops.nan, -(t42 * (t48 - A_11 * t43) / t44))
-    t51 = ops.select(failed, ops.nan, t43 * (t48 - A_11 * t40) / t44)
-    t52 = t37 * A_21
-    t53 = ops.select(failed, ops.nan, -(A_11 * (t52 - t42 * A_21) / t44))
-    t54 = ops.select(failed, ops.nan, t42 * (t52 - A_11 * t37) / t44)
-    t55 = ops.select(failed, ops.nan, -(t43 * (t52 - A_11 * t42) / t44))
-    t56 = t33 - t34
-    A_12_inner = t35 + t36
-    A_13_inner = t38 + t39
-    t57 = A_12_inner * A_13_inner
-    t58 = rho2 - A_12_inner
-    t59 = rho3 - A_13_inner
-    t60 = ops.select(failed, ops.nan, -(t56 * (t57 - t58 * t59) / t44))
-    t61 = ops.select(failed, ops.nan, t58 * (t57 + A_12_inner * t59) / t44)
-    t62 = ops.select(failed, ops.nan, t59 * (t57 + A_13_inner * t58) / t44)
-    A_21_inner = rho1 - t56
-    t63 = A_13_inner * A_21_inner
-    t64 = ops.select(failed, ops.nan, t56 * (t63 + t59 * A_21_inner) / t44)
-    t65 = ops.select(failed, ops.nan, -(t58 * (t63 - t56 * t59) / t44))
-    t66 = ops.select(failed, ops.nan, t59 * (t63 + t56 * A_13_inner) / t44)
-    t67 = A_12_inner * A_21_inner
-    t68 = ops.select(failed, ops.nan, t56 * (t67 + t58 * A_21_inner) / t44)
-    t69 = ops.select(failed, ops.nan, t58 * (t67 + t56 * A_12_inner) / t44)
-    t70 = ops.select(failed, ops.nan, -(t59 * (t67 - t56 * t58) / t44))
+    t49 = t41 * A_21
+    t50 = ops.select(failed, ops.nan, -(A_11 * (t49 - t44 * A_21) / t45))
+    t51 = ops.select(failed, ops.nan, -(t43 * (t49 - A_11 * t44) / t45))
+    t52 = ops.select(failed, ops.nan, t44 * (t49 - A_11 * t41) / t45)
+    t53 = t38 * A_21
+    t54 = ops.select(failed, ops.nan, -(A_11 * (t53 - t43 * A_21) / t45))
+    t55 = ops.select(failed, ops.nan, t43 * (t53 - A_11 * t38) / t45)
+    t56 = ops.select(failed, ops.nan, -(t44 * (t53 - A_11 * t43) / t45))
+    t57 = t34 - t35
+    A_12_inner = t36 + t37
+    A_13_inner = t39 + t40
+    t58 = A_12_inner * A_13_inner
+    t59 = rho2 - A_12_inner
+    t60 = rho3 - A_13_inner
+    t61 = ops.select(failed, ops.nan, -(t57 * (t58 - t59 * t60) / t45))
+    t62 = ops.select(failed, ops.nan, t59 * (t58 + A_12_inner * t60) / t45)
+    t63 = ops.select(failed, ops.nan, t60 * (t58 + A_13_inner * t59) / t45)
+    A_21_inner = rho1 - t57
+    t64 = A_13_inner * A_21_inner
+    t65 = ops.select(failed, ops.nan, t57 * (t64 + t60 * A_21_inner) / t45)
+    t66 = ops.select(failed, ops.nan, -(t59 * (t64 - t57 * t60) / t45))
+    t67 = ops.select(failed, ops.nan, t60 * (t64 + t57 * A_13_inner) / t45)
+    t68 = A_12_inner * A_21_inner
+    t69 = ops.select(failed, ops.nan, t57 * (t68 + t59 * A_21_inner) / t45)
+    t70 = ops.select(failed, ops.nan, t59 * (t68 + t57 * A_12_inner) / t45)
+    t71 = ops.select(failed, ops.nan, -(t60 * (t68 - t57 * t59) / t45))
     return (
-        t45,
         t46,
         t47,
-        t49,
+        t48,
         t50,
         t51,
-        t53,
+        t52,
         t54,
         t55,
-        t60,
+        t56,
         t61,
         t62,
-        t64,
+        t63,
         t65,
         t66,
-        t68,
+        t67,
         t69,
         t70,
+        t71,
     )
 
 
@@ -891,50 +905,53 @@ def _determinant(ops, rho1, rho2, rho3, L):
     t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = -(size * ops.feasibility) <= L - ops.sqrt(X * X + t16 * t16)
-    failed = ops.opposite(t1) | ops.opposite(t15 & t17)
+    t17 = L - ops.sqrt(X * X + t16 * t16)
+    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    failed = ops.opposite(t1) | unreachable
+    touching = ops.max(t17, 0.0) <= t5
     t18 = ops.opposite(failed)
-    t19 = ops.select(t18 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t18 & same, t4, 1.0)), ops.sqrt(t19))
+    t19 = t18 & ops.opposite(touching)
+    t20 = ops.select(t18 & ops.opposite(same), t3, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t18 & same, t4, 1.0)), ops.sqrt(t20))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t20 = t18 & ops.opposite(in_line)
-    t21 = ops.select(t18 & ops.opposite(all_same), D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t21))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t21)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t21)
-    t22 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t23 = rho1 - E_11_2 * t22
-    m_y_2 = t7 + E_12_2 * t22
-    m_z_2 = t9 + E_13_2 * t22
-    t24 = E_11_2 * t23 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t25 = t23 - E_11_2 * t24
-    n_y_2 = m_y_2 + E_12_2 * t24
-    n_z_2 = m_z_2 + E_13_2 * t24
-    t26 = ops.select(t18, t25 * t25 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t26)
-    t27 = ops.select(in_line, 0.0, t14 / ops.select(t20, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t18, X_2 * X_2 + t27 * t27, 1.0))
-    t28 = ops.select(t18, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.sqrt(t28)
-    t29 = ops.sign(E_13)
-    t30 = E_11_2 * t29
-    t31 = ops.select(t20, j_2, 1.0)
-    E_23 = ops.select(in_line, -t30, n_z_2 / t31)
-    t32 = ops.select(t18 & in_line, E_13_2 + t29, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t30 / t32), n_y_2 / t31)
-    t33 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t29 / t32, -(t25 / t31))
-    t34 = E_11_2 * X_2 - E_21 * t27
-    t35 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t36 = E_12_2 * X_2 - t27 * E_22
-    t37 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t38 = E_13_2 * X_2 - E_23 * t27
-    t39 = (t33 + t34) * (rho2 + (t35 - t36)) * (rho3 + (t37 - t38))
-    t40 = ops.select(t18, D_2 * j_2 * h, 1.0)
-    t41 = (t33 - t34) * (rho2 - (t35 + t36)) * (rho3 - (t37 + t38))
+    t21 = t18 & ops.opposite(in_line)
+    t22 = ops.select(t18 & ops.opposite(all_same), D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t22))
+    E_12_2 = ops.select(all_same, 0.0, t6 / t22)
+    E_13_2 = ops.select(all_same, 0.0, t8 / t22)
+    t23 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
+    t24 = rho1 - E_11_2 * t23
+    m_y_2 = t7 + E_12_2 * t23
+    m_z_2 = t9 + E_13_2 * t23
+    t25 = E_11_2 * t24 - E_12_2 * m_y_2 - E_13_2 * m_z_2
+    t26 = t24 - E_11_2 * t25
+    n_y_2 = m_y_2 + E_12_2 * t25
+    n_z_2 = m_z_2 + E_13_2 * t25
+    t27 = ops.select(t18, t26 * t26 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
+    j_2 = ops.sqrt(t27)
+    t28 = ops.select(in_line, 0.0, t14 / ops.select(t21, j_2 * 2.0, 1.0))
+    rho = ops.sqrt(ops.select(t19, X_2 * X_2 + t28 * t28, 1.0))
+    t29 = ops.select(t19, ops.max(L - rho, 0.0) * (L + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t29))
+    t30 = ops.sign(E_13)
+    t31 = E_11_2 * t30
+    t32 = ops.select(t21, j_2, 1.0)
+    E_23 = ops.select(in_line, -t31, n_z_2 / t32)
+    t33 = ops.select(t18 & in_line, E_13_2 + t30, 1.0)
+    E_22 = ops.select(in_line, -(E_12_2 * t31 / t33), n_y_2 / t32)
+    t34 = h * (E_12_2 * E_23 - E_13_2 * E_22)
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t30 / t33, -(t26 / t32))
+    t35 = E_11_2 * X_2 - E_21 * t28
+    t36 = (E_11_2 * E_23 - E_13_2 * E_21) * h
+    t37 = E_12_2 * X_2 - t28 * E_22
+    t38 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t39 = E_13_2 * X_2 - E_23 * t28
+    t40 = (t34 + t35) * (rho2 + (t36 - t37)) * (rho3 + (t38 - t39))
+    t41 = ops.select(t18, D_2 * j_2 * h, 1.0)
+    t42 = (t34 - t35) * (rho2 - (t36 + t37)) * (rho3 - (t38 + t39))
     return (
-        ops.select(failed, ops.nan, t39 / t40),
-        ops.select(failed, ops.nan, t41 / t40),
+        ops.select(failed, ops.nan, t40 / t41),
+        ops.select(failed, ops.nan, t42 / t41),
     )
 
 
@@ -1013,57 +1030,60 @@ def _singularities(ops, rho1, rho2, rho3, L):
     t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = -(size * ops.feasibility) <= L - ops.sqrt(X * X + t16 * t16)
-    failed = ops.opposite(t1) | ops.opposite(t15 & t17)
+    t17 = L - ops.sqrt(X * X + t16 * t16)
+    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    failed = ops.opposite(t1) | unreachable
+    touching = ops.max(t17, 0.0) <= t5
     t18 = ops.opposite(failed)
-    t19 = ops.select(t18 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t18 & same, t4, 1.0)), ops.sqrt(t19))
+    t19 = t18 & ops.opposite(touching)
+    t20 = ops.select(t18 & ops.opposite(same), t3, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t18 & same, t4, 1.0)), ops.sqrt(t20))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t20 = t18 & ops.opposite(in_line)
-    t21 = ops.select(t18 & ops.opposite(all_same), D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t21))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t21)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t21)
-    t22 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t23 = rho1 - E_11_2 * t22
-    m_y_2 = t7 + E_12_2 * t22
-    m_z_2 = t9 + E_13_2 * t22
-    t24 = E_11_2 * t23 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t25 = t23 - E_11_2 * t24
-    n_y_2 = m_y_2 + E_12_2 * t24
-    n_z_2 = m_z_2 + E_13_2 * t24
-    t26 = ops.select(t18, t25 * t25 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t26)
-    t27 = ops.select(in_line, 0.0, t14 / ops.select(t20, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t18, X_2 * X_2 + t27 * t27, 1.0))
-    t28 = ops.select(t18, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.sqrt(t28)
-    t29 = ops.sign(E_13)
-    t30 = E_11_2 * t29
-    t31 = ops.select(t20, j_2, 1.0)
-    E_23 = ops.select(in_line, -t30, n_z_2 / t31)
-    t32 = ops.select(t18 & in_line, E_13_2 + t29, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t30 / t32), n_y_2 / t31)
-    t33 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t29 / t32, -(t25 / t31))
-    t34 = E_11_2 * X_2 - E_21 * t27
-    t35 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t36 = E_12_2 * X_2 - t27 * E_22
-    t37 = ops.select(failed, ops.nan, -(rho2 + (t35 - t36)))
-    t38 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t39 = E_13_2 * X_2 - E_23 * t27
-    t40 = ops.select(failed, ops.nan, -(rho3 + (t38 - t39)))
+    t21 = t18 & ops.opposite(in_line)
+    t22 = ops.select(t18 & ops.opposite(all_same), D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t22))
+    E_12_2 = ops.select(all_same, 0.0, t6 / t22)
+    E_13_2 = ops.select(all_same, 0.0, t8 / t22)
+    t23 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
+    t24 = rho1 - E_11_2 * t23
+    m_y_2 = t7 + E_12_2 * t23
+    m_z_2 = t9 + E_13_2 * t23
+    t25 = E_11_2 * t24 - E_12_2 * m_y_2 - E_13_2 * m_z_2
+    t26 = t24 - E_11_2 * t25
+    n_y_2 = m_y_2 + E_12_2 * t25
+    n_z_2 = m_z_2 + E_13_2 * t25
+    t27 = ops.select(t18, t26 * t26 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
+    j_2 = ops.sqrt(t27)
+    t28 = ops.select(in_line, 0.0, t14 / ops.select(t21, j_2 * 2.0, 1.0))
+    rho = ops.sqrt(ops.select(t19, X_2 * X_2 + t28 * t28, 1.0))
+    t29 = ops.select(t19, ops.max(L - rho, 0.0) * (L + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t29))
+    t30 = ops.sign(E_13)
+    t31 = E_11_2 * t30
+    t32 = ops.select(t21, j_2, 1.0)
+    E_23 = ops.select(in_line, -t31, n_z_2 / t32)
+    t33 = ops.select(t18 & in_line, E_13_2 + t30, 1.0)
+    E_22 = ops.select(in_line, -(E_12_2 * t31 / t33), n_y_2 / t32)
+    t34 = h * (E_12_2 * E_23 - E_13_2 * E_22)
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t30 / t33, -(t26 / t32))
+    t35 = E_11_2 * X_2 - E_21 * t28
+    t36 = (E_11_2 * E_23 - E_13_2 * E_21) * h
+    t37 = E_12_2 * X_2 - t28 * E_22
+    t38 = ops.select(failed, ops.nan, -(rho2 + (t36 - t37)))
+    t39 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t40 = E_13_2 * X_2 - E_23 * t28
+    t41 = ops.select(failed, ops.nan, -(rho3 + (t39 - t40)))
     Delta = D_2 * j_2 * h
-    t41 = ops.select(failed, ops.nan, t35 + t36 - rho2)
-    t42 = ops.select(failed, ops.nan, t38 + t39 - rho3)
+    t42 = ops.select(failed, ops.nan, t36 + t37 - rho2)
+    t43 = ops.select(failed, ops.nan, t39 + t40 - rho3)
     return (
-        ops.select(failed, ops.nan, t33 + t34),
-        t37,
-        t40,
-        ops.select(failed, ops.nan, Delta),
-        ops.select(failed, ops.nan, t34 - t33),
+        ops.select(failed, ops.nan, t34 + t35),
+        t38,
         t41,
+        ops.select(failed, ops.nan, Delta),
+        ops.select(failed, ops.nan, t35 - t34),
         t42,
+        t43,
         ops.select(failed, ops.nan, -Delta),
     )
 
@@ -1143,100 +1163,103 @@ def _condition_number(ops, rho1, rho2, rho3, L):
     t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
     t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
-    t17 = -(size * ops.feasibility) <= L - ops.sqrt(X * X + t16 * t16)
-    failed = ops.opposite(t1) | ops.opposite(t15 & t17)
+    t17 = L - ops.sqrt(X * X + t16 * t16)
+    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    failed = ops.opposite(t1) | unreachable
     t18 = ops.opposite(failed)
-    t19 = ops.select(t18 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t18 & same, t4, 1.0)), ops.sqrt(t19))
+    touching = ops.max(t17, 0.0) <= t5
+    t19 = t18 & ops.opposite(touching)
+    t20 = ops.select(t18 & ops.opposite(same), t3, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t18 & same, t4, 1.0)), ops.sqrt(t20))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t20 = t18 & ops.opposite(in_line)
-    t21 = ops.select(t18 & ops.opposite(all_same), D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t21))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t21)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t21)
-    t22 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t23 = rho1 - E_11_2 * t22
-    m_y_2 = t7 + E_12_2 * t22
-    m_z_2 = t9 + E_13_2 * t22
-    t24 = E_11_2 * t23 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t25 = t23 - E_11_2 * t24
-    n_y_2 = m_y_2 + E_12_2 * t24
-    n_z_2 = m_z_2 + E_13_2 * t24
-    t26 = ops.select(t18, t25 * t25 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t26)
-    t27 = ops.select(in_line, 0.0, t14 / ops.select(t20, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t18, X_2 * X_2 + t27 * t27, 1.0))
-    t28 = ops.select(t18, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.sqrt(t28)
-    t29 = ops.sign(E_13)
-    t30 = E_11_2 * t29
-    t31 = ops.select(t20, j_2, 1.0)
-    E_23 = ops.select(in_line, -t30, n_z_2 / t31)
-    t32 = ops.select(t18 & in_line, E_13_2 + t29, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t30 / t32), n_y_2 / t31)
-    t33 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t29 / t32, -(t25 / t31))
-    t34 = E_11_2 * X_2 - E_21 * t27
-    A_11 = t33 + t34
-    t35 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t36 = E_12_2 * X_2 - t27 * E_22
-    t37 = t35 - t36
-    t38 = t37 * t37
-    t39 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t40 = E_13_2 * X_2 - E_23 * t27
-    t41 = t39 - t40
-    t42 = t41 * t41
+    t21 = t18 & ops.opposite(in_line)
+    t22 = ops.select(t18 & ops.opposite(all_same), D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t22))
+    E_12_2 = ops.select(all_same, 0.0, t6 / t22)
+    E_13_2 = ops.select(all_same, 0.0, t8 / t22)
+    t23 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
+    t24 = rho1 - E_11_2 * t23
+    m_y_2 = t7 + E_12_2 * t23
+    m_z_2 = t9 + E_13_2 * t23
+    t25 = E_11_2 * t24 - E_12_2 * m_y_2 - E_13_2 * m_z_2
+    t26 = t24 - E_11_2 * t25
+    n_y_2 = m_y_2 + E_12_2 * t25
+    n_z_2 = m_z_2 + E_13_2 * t25
+    t27 = ops.select(t18, t26 * t26 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
+    j_2 = ops.sqrt(t27)
+    t28 = ops.select(in_line, 0.0, t14 / ops.select(t21, j_2 * 2.0, 1.0))
+    rho = ops.sqrt(ops.select(t19, X_2 * X_2 + t28 * t28, 1.0))
+    t29 = ops.select(t19, ops.max(L - rho, 0.0) * (L + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t29))
+    t30 = ops.sign(E_13)
+    t31 = E_11_2 * t30
+    t32 = ops.select(t21, j_2, 1.0)
+    E_23 = ops.select(in_line, -t31, n_z_2 / t32)
+    t33 = ops.select(t18 & in_line, E_13_2 + t30, 1.0)
+    E_22 = ops.select(in_line, -(E_12_2 * t31 / t33), n_y_2 / t32)
+    t34 = h * (E_12_2 * E_23 - E_13_2 * E_22)
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t30 / t33, -(t26 / t32))
+    t35 = E_11_2 * X_2 - E_21 * t28
+    A_11 = t34 + t35
+    t36 = (E_11_2 * E_23 - E_13_2 * E_21) * h
+    t37 = E_12_2 * X_2 - t28 * E_22
+    t38 = t36 - t37
+    t39 = t38 * t38
+    t40 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t41 = E_13_2 * X_2 - E_23 * t28
+    t42 = t40 - t41
+    t43 = t42 * t42
     A_21 = rho1 + A_11
-    t43 = A_21 * A_21
-    t44 = rho2 + t37
-    t45 = A_11 * A_11 + t38 + t42 + (t42 + t43 + t44 * t44)
-    t46 = rho3 + t41
-    t47 = t37 * A_21
-    t48 = A_11 * t37 - t47
-    t49 = t41 * A_21
-    t50 = A_11 * t41 - t49
-    t51 = t47 - A_11 * t44
-    t52 = t49 - A_11 * t46
-    t53 = t48 * t48 + t50 * t50 + t51 * t51 + t52 * t52
-    t54 = t37 * t41
-    t55 = t54 - t44 * t46
-    t56 = t54 - t37 * t46
-    t57 = t54 - t41 * t44
-    t58 = t47 - A_21 * t44
-    t59 = t53 + t55 * t55 + t56 * t56 + t57 * t57 + t58 * t58
-    t60 = t49 - A_21 * t46
-    t61 = (t45 + (t38 + t43 + t46 * t46)) * (t59 + t60 * t60)
-    t62 = ops.select(t18, 3.0 * (D_2 * j_2 * h), 1.0)
-    t63 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t18, t61, 1.0)) / t62)
-    t64 = t33 - t34
-    A_12_inner = t35 + t36
-    t65 = A_12_inner * A_12_inner
-    A_13_inner = t39 + t40
-    t66 = A_13_inner * A_13_inner
-    A_21_inner = rho1 - t64
-    t67 = A_21_inner * A_21_inner
-    t68 = rho2 - A_12_inner
-    t69 = t64 * t64 + t65 + t66 + (t66 + t67 + t68 * t68)
-    t70 = rho3 - A_13_inner
-    t71 = A_12_inner * A_21_inner
-    t72 = t64 * A_12_inner + t71
-    t73 = A_13_inner * A_21_inner
-    t74 = t64 * A_13_inner + t73
-    t75 = t71 - t64 * t68
-    t76 = t73 - t64 * t70
-    t77 = t72 * t72 + t74 * t74 + t75 * t75 + t76 * t76
-    t78 = A_12_inner * A_13_inner
-    t79 = t78 - t68 * t70
-    t80 = t78 + A_12_inner * t70
-    t81 = t78 + A_13_inner * t68
-    t82 = t71 + A_21_inner * t68
-    t83 = t77 + t79 * t79 + t80 * t80 + t81 * t81 + t82 * t82
-    t84 = t73 + A_21_inner * t70
-    t85 = (t69 + (t65 + t67 + t70 * t70)) * (t83 + t84 * t84)
-    t86 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t18, t85, 1.0)) / t62)
+    t44 = A_21 * A_21
+    t45 = rho2 + t38
+    t46 = A_11 * A_11 + t39 + t43 + (t43 + t44 + t45 * t45)
+    t47 = rho3 + t42
+    t48 = t38 * A_21
+    t49 = A_11 * t38 - t48
+    t50 = t42 * A_21
+    t51 = A_11 * t42 - t50
+    t52 = t48 - A_11 * t45
+    t53 = t50 - A_11 * t47
+    t54 = t49 * t49 + t51 * t51 + t52 * t52 + t53 * t53
+    t55 = t38 * t42
+    t56 = t55 - t45 * t47
+    t57 = t55 - t38 * t47
+    t58 = t55 - t42 * t45
+    t59 = t48 - A_21 * t45
+    t60 = t54 + t56 * t56 + t57 * t57 + t58 * t58 + t59 * t59
+    t61 = t50 - A_21 * t47
+    t62 = (t46 + (t39 + t44 + t47 * t47)) * (t60 + t61 * t61)
+    t63 = ops.select(t18, 3.0 * (D_2 * j_2 * h), 1.0)
+    t64 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t18, t62, 1.0)) / t63)
+    t65 = t34 - t35
+    A_12_inner = t36 + t37
+    t66 = A_12_inner * A_12_inner
+    A_13_inner = t40 + t41
+    t67 = A_13_inner * A_13_inner
+    A_21_inner = rho1 - t65
+    t68 = A_21_inner * A_21_inner
+    t69 = rho2 - A_12_inner
+    t70 = t65 * t65 + t66 + t67 + (t67 + t68 + t69 * t69)
+    t71 = rho3 - A_13_inner
+    t72 = A_12_inner * A_21_inner
+    t73 = t65 * A_12_inner + t72
+    t74 = A_13_inner * A_21_inner
+    t75 = t65 * A_13_inner + t74
+    t76 = t72 - t65 * t69
+    t77 = t74 - t65 * t71
+    t78 = t73 * t73 + t75 * t75 + t76 * t76 + t77 * t77
+    t79 = A_12_inner * A_13_inner
+    t80 = t79 - t69 * t71
+    t81 = t79 + A_12_inner * t71
+    t82 = t79 + A_13_inner * t69
+    t83 = t72 + A_21_inner * t69
+    t84 = t78 + t80 * t80 + t81 * t81 + t82 * t82 + t83 * t83
+    t85 = t74 + A_21_inner * t71
+    t86 = (t70 + (t66 + t68 + t71 * t71)) * (t84 + t85 * t85)
+    t87 = ops.select(failed, ops.nan, ops.sqrt(ops.select(t18, t86, 1.0)) / t63)
     return (
-        t63,
-        t86,
+        t64,
+        t87,
     )
 
 

@@ -3,14 +3,14 @@
  * derivations/delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, solved by lemmas.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 41 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
- *   skeleton: 40 compare and select, 112 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
- *   jacobian_parallel: 40 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
- *   jacobian_serial: 40 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
- *   jacobian: 40 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
- *   determinant: 40 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
- *   singularities: 40 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
- *   condition_number: 40 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
+ *   fk: 43 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
+ *   skeleton: 42 compare and select, 112 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
+ *   jacobian_parallel: 42 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
+ *   jacobian_serial: 42 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
+ *   jacobian: 42 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
+ *   determinant: 42 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
+ *   singularities: 42 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
+ *   condition_number: 42 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
  *   ik: 121 compare and select, 154 add, 6 atan2, 4 divide, 159 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 45 add, 50 compare and select, 1 divide, 32 multiply, 3 sincos, 6 sqrt
  */
@@ -109,7 +109,8 @@ CF_INLINE void delta_fk_kernel(const int single, const real_t one,
     const real_t t47 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t46 * t46);
     const real_t rho = cf_sqrt(t47);
     const real_t t48 = l - rho;
-    const real_t h = cf_root(single, cf_max(t48, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t48, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t21, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t49 = (t24 * E_23 - E_13 * E_22) * h;
     const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t39 * t42, t36 * t41);
     const real_t t50 = E_21 * t46 + (t4 - X * E_11);
@@ -355,7 +356,8 @@ CF_INLINE void delta_skeleton_kernel(const int single, const delta_params *param
     const real_t t66 = E_11 * t62;
     const real_t E_23 = cf_rarely(single, in_line, -t66, n_z / cf_divisor(single, in_line, j));
     const real_t E_22 = cf_rarely(single, in_line, -(t39 * t66 / t64), t48 / cf_divisor(single, in_line, j));
-    const real_t h = cf_root(single, cf_max(t53, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t53, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t25, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t67 = (t39 * E_23 - E_13 * E_22) * h;
     const real_t t68 = t11 - (t65 - t67);
     const real_t t69 = t39 * X + t52 * E_22;
@@ -655,7 +657,8 @@ CF_INLINE void delta_jacobian_parallel_kernel(const int single, const delta_para
     const real_t t31 = cf_select(in_line, CLOSEDFORM_C(0.0), t30);
     const real_t rho = cf_sqrt(X * X + t31 * t31);
     const real_t t32 = l - rho;
-    const real_t h = cf_root(single, cf_max(t32, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t11, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t33 = (t13 * E_23 - E_13 * E_22) * h;
     const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t25 / t28, t23 / cf_divisor(single, in_line, j));
     const real_t t34 = E_11 * X - E_21 * t31;
@@ -874,7 +877,8 @@ CF_INLINE void delta_jacobian_serial_kernel(const int single, const delta_params
     const real_t t34 = cf_select(in_line, CLOSEDFORM_C(0.0), t33);
     const real_t rho = cf_sqrt(X * X + t34 * t34);
     const real_t t35 = l - rho;
-    const real_t h = cf_root(single, cf_max(t35, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t35, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t14, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t36 = (t16 * E_23 - E_13 * E_22) * h;
     const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t28 / t31, t26 / cf_divisor(single, in_line, j));
     const real_t t37 = E_11 * X - E_21 * t34;
@@ -1079,7 +1083,8 @@ CF_INLINE void delta_jacobian_kernel(const int single, const delta_params *param
     const real_t t34 = cf_select(in_line, CLOSEDFORM_C(0.0), t33);
     const real_t rho = cf_sqrt(X * X + t34 * t34);
     const real_t t35 = l - rho;
-    const real_t h = cf_root(single, cf_max(t35, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t35, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t14, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t36 = (t16 * E_23 - E_13 * E_22) * h;
     const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t28 / t31, t26 / cf_divisor(single, in_line, j));
     const real_t t37 = E_11 * X - E_21 * t34;
@@ -1331,7 +1336,8 @@ CF_INLINE void delta_determinant_kernel(const int single, const delta_params *pa
     const real_t t34 = cf_select(in_line, CLOSEDFORM_C(0.0), t33);
     const real_t rho = cf_sqrt(X * X + t34 * t34);
     const real_t t35 = l - rho;
-    const real_t h = cf_root(single, cf_max(t35, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t35, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t14, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t36 = (t16 * E_23 - E_13 * E_22) * h;
     const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t28 / t31, t26 / cf_divisor(single, in_line, j));
     const real_t t37 = E_11 * X - E_21 * t34;
@@ -1531,7 +1537,8 @@ CF_INLINE void delta_singularities_kernel(const int single, const delta_params *
     const real_t t34 = cf_select(in_line, CLOSEDFORM_C(0.0), t33);
     const real_t rho = cf_sqrt(X * X + t34 * t34);
     const real_t t35 = l - rho;
-    const real_t h = cf_root(single, cf_max(t35, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t35, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t14, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t36 = (t16 * E_23 - E_13 * E_22) * h;
     const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t28 / t31, t26 / cf_divisor(single, in_line, j));
     const real_t t37 = E_11 * X - E_21 * t34;
@@ -1738,7 +1745,8 @@ CF_INLINE void delta_condition_number_kernel(const int single, const delta_param
     const real_t t31 = cf_select(in_line, CLOSEDFORM_C(0.0), t30);
     const real_t rho = cf_sqrt(X * X + t31 * t31);
     const real_t t32 = l - rho;
-    const real_t h = cf_root(single, cf_max(t32, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t32, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t11, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t33 = (t13 * E_23 - E_13 * E_22) * h;
     const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t25 / t28, t23 / cf_divisor(single, in_line, j));
     const real_t t34 = E_11 * X - E_21 * t31;

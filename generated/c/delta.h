@@ -3,14 +3,14 @@
  * derivations/delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, solved by lemmas.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 41 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
- *   skeleton: 40 compare and select, 112 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
- *   jacobian_parallel: 40 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
- *   jacobian_serial: 40 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
- *   jacobian: 40 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
- *   determinant: 40 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
- *   singularities: 40 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
- *   condition_number: 40 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
+ *   fk: 43 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
+ *   skeleton: 42 compare and select, 112 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
+ *   jacobian_parallel: 42 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
+ *   jacobian_serial: 42 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
+ *   jacobian: 42 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
+ *   determinant: 42 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
+ *   singularities: 42 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
+ *   condition_number: 42 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
  *   ik: 121 compare and select, 154 add, 6 atan2, 4 divide, 159 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 45 add, 50 compare and select, 1 divide, 32 multiply, 3 sincos, 6 sqrt
  *

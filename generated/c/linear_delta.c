@@ -3,14 +3,14 @@
  * derivations/linear_delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, solved by lemmas.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 40 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
- *   skeleton: 39 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
- *   jacobian_parallel: 39 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
- *   jacobian_serial: 39 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
- *   jacobian: 39 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
- *   determinant: 39 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
- *   singularities: 39 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
- *   condition_number: 39 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
+ *   fk: 42 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
+ *   skeleton: 41 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
+ *   jacobian_parallel: 41 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
+ *   jacobian_serial: 41 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
+ *   jacobian: 41 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
+ *   determinant: 41 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
+ *   singularities: 41 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
+ *   condition_number: 41 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
  *   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  */
@@ -75,7 +75,8 @@ CF_INLINE void linear_delta_fk_kernel(const int single, const real_t one,
     const real_t t29 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t27 * t27);
     const real_t rho = cf_sqrt(t29);
     const real_t t30 = l - rho;
-    const real_t h = cf_root(single, cf_max(t30, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t7, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t31 = E_11 * t23;
     const real_t t32 = cf_rarely(single, in_line, t31, t22 * t25);
     const real_t E_22 = cf_rarely(single, in_line, t24 * (E_12 * t31), n_y * t25);
@@ -266,7 +267,8 @@ CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta
     const real_t t37 = cf_nonzero(single, t36);
     const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t35 / t37, -(t22 / cf_divisor(single, in_line, j)));
     const real_t t38 = E_11 * X - t28 * E_21;
-    const real_t h = cf_root(single, cf_max(t29, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t12, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t39 = E_11 * t35;
     const real_t t40 = cf_rarely(single, in_line, t39, t23 / cf_divisor(single, in_line, j));
     const real_t E_22 = cf_rarely(single, in_line, E_12 * t39 / t37, n_y / cf_divisor(single, in_line, j));
@@ -536,7 +538,8 @@ CF_INLINE void linear_delta_jacobian_parallel_kernel(const int single, const lin
     const real_t t25 = E_11 * X - E_21 * t24;
     const real_t rho = cf_sqrt(X * X + t24 * t24);
     const real_t t26 = l - rho;
-    const real_t h = cf_root(single, cf_max(t26, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t7, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t27 = E_11 * t19;
     const real_t t28 = cf_rarely(single, in_line, t27, t18 / cf_divisor(single, in_line, j));
     const real_t E_22 = cf_rarely(single, in_line, E_12 * t27 / t21, n_y / cf_divisor(single, in_line, j));
@@ -722,7 +725,8 @@ CF_INLINE void linear_delta_jacobian_serial_kernel(const int single, const linea
     const real_t t25 = t9 * X - t21 * t24;
     const real_t rho = cf_sqrt(X * X + t24 * t24);
     const real_t t26 = l - rho;
-    const real_t h = cf_root(single, cf_max(t26, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t7, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t27 = t9 - t19;
     const real_t t28 = cf_nonzero(single, t27);
     const real_t t29 = CLOSEDFORM_C(1.0) + t19 * (E_11 * E_11) / t28;
@@ -876,7 +880,8 @@ CF_INLINE void linear_delta_jacobian_kernel(const int single, const linear_delta
     const real_t t25 = t9 * X - t21 * t24;
     const real_t rho = cf_sqrt(X * X + t24 * t24);
     const real_t t26 = l - rho;
-    const real_t h = cf_root(single, cf_max(t26, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t7, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t27 = t9 - t19;
     const real_t t28 = cf_nonzero(single, t27);
     const real_t t29 = CLOSEDFORM_C(1.0) + t19 * (E_11 * E_11) / t28;
@@ -1086,7 +1091,8 @@ CF_INLINE void linear_delta_determinant_kernel(const int single, const linear_de
     const real_t t25 = t9 * X - t21 * t24;
     const real_t rho = cf_sqrt(X * X + t24 * t24);
     const real_t t26 = l - rho;
-    const real_t h = cf_root(single, cf_max(t26, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t7, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t27 = t9 - t19;
     const real_t t28 = cf_nonzero(single, t27);
     const real_t t29 = CLOSEDFORM_C(1.0) + t19 * (E_11 * E_11) / t28;
@@ -1231,7 +1237,8 @@ CF_INLINE void linear_delta_singularities_kernel(const int single, const linear_
     const real_t t25 = t9 * X - t21 * t24;
     const real_t rho = cf_sqrt(X * X + t24 * t24);
     const real_t t26 = l - rho;
-    const real_t h = cf_root(single, cf_max(t26, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t7, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t27 = t9 - t19;
     const real_t t28 = cf_nonzero(single, t27);
     const real_t t29 = CLOSEDFORM_C(1.0) + t19 * (E_11 * E_11) / t28;
@@ -1391,7 +1398,8 @@ CF_INLINE void linear_delta_condition_number_kernel(const int single, const line
     const real_t t25 = E_11 * X - E_21 * t24;
     const real_t rho = cf_sqrt(X * X + t24 * t24);
     const real_t t26 = l - rho;
-    const real_t h = cf_root(single, cf_max(t26, CLOSEDFORM_C(0.0)) * (l + rho));
+    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t7, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t27 = E_11 * t19;
     const real_t t28 = cf_rarely(single, in_line, t27, t18 / cf_divisor(single, in_line, j));
     const real_t E_22 = cf_rarely(single, in_line, E_12 * t27 / t21, n_y / cf_divisor(single, in_line, j));

@@ -3,14 +3,14 @@
  * derivations/linear_delta.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, solved by lemmas.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 40 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
- *   skeleton: 39 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
- *   jacobian_parallel: 39 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
- *   jacobian_serial: 39 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
- *   jacobian: 39 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
- *   determinant: 39 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
- *   singularities: 39 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
- *   condition_number: 39 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
+ *   fk: 42 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
+ *   skeleton: 41 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
+ *   jacobian_parallel: 41 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
+ *   jacobian_serial: 41 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
+ *   jacobian: 41 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
+ *   determinant: 41 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
+ *   singularities: 41 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
+ *   condition_number: 41 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
  *   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  *

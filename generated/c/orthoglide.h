@@ -3,26 +3,26 @@
  * derivations/orthoglide.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Arms of common structure, solved by lemmas.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 36 compare and select, 45 add, 5 divide, 55 multiply, 5 sqrt
- *   fk where nothing vanishes: 23 compare and select, 31 add, 4 divide, 37 multiply, 5 sqrt
- *   skeleton: 35 compare and select, 50 add, 10 divide, 47 multiply, 5 sqrt
- *   skeleton where nothing vanishes: 22 compare and select, 36 add, 7 divide, 32 multiply, 5 sqrt
- *   jacobian_parallel: 35 compare and select, 56 add, 10 divide, 47 multiply, 5 sqrt
- *   jacobian_parallel where nothing vanishes: 22 compare and select, 42 add, 7 divide, 32
+ *   fk: 38 compare and select, 45 add, 5 divide, 55 multiply, 5 sqrt
+ *   fk where nothing vanishes: 25 compare and select, 31 add, 4 divide, 37 multiply, 5 sqrt
+ *   skeleton: 37 compare and select, 50 add, 10 divide, 47 multiply, 5 sqrt
+ *   skeleton where nothing vanishes: 24 compare and select, 36 add, 7 divide, 32 multiply, 5 sqrt
+ *   jacobian_parallel: 37 compare and select, 56 add, 10 divide, 47 multiply, 5 sqrt
+ *   jacobian_parallel where nothing vanishes: 24 compare and select, 42 add, 7 divide, 32
  *     multiply, 5 sqrt
- *   jacobian_serial: 35 compare and select, 48 add, 10 divide, 47 multiply, 5 sqrt
- *   jacobian_serial where nothing vanishes: 22 compare and select, 34 add, 7 divide, 32 multiply,
+ *   jacobian_serial: 37 compare and select, 48 add, 10 divide, 47 multiply, 5 sqrt
+ *   jacobian_serial where nothing vanishes: 24 compare and select, 34 add, 7 divide, 32 multiply,
  *     5 sqrt
- *   jacobian: 35 compare and select, 80 add, 28 divide, 91 multiply, 5 sqrt
- *   jacobian where nothing vanishes: 22 compare and select, 66 add, 25 divide, 76 multiply, 5 sqrt
- *   determinant: 35 compare and select, 44 add, 12 divide, 53 multiply, 5 sqrt
- *   determinant where nothing vanishes: 22 compare and select, 30 add, 9 divide, 38 multiply, 5
+ *   jacobian: 37 compare and select, 80 add, 28 divide, 91 multiply, 5 sqrt
+ *   jacobian where nothing vanishes: 24 compare and select, 66 add, 25 divide, 76 multiply, 5 sqrt
+ *   determinant: 37 compare and select, 44 add, 12 divide, 53 multiply, 5 sqrt
+ *   determinant where nothing vanishes: 24 compare and select, 30 add, 9 divide, 38 multiply, 5
  *     sqrt
- *   singularities: 35 compare and select, 50 add, 10 divide, 49 multiply, 5 sqrt
- *   singularities where nothing vanishes: 22 compare and select, 36 add, 7 divide, 34 multiply, 5
+ *   singularities: 37 compare and select, 50 add, 10 divide, 49 multiply, 5 sqrt
+ *   singularities where nothing vanishes: 24 compare and select, 36 add, 7 divide, 34 multiply, 5
  *     sqrt
- *   condition_number: 35 compare and select, 96 add, 12 divide, 106 multiply, 7 sqrt
- *   condition_number where nothing vanishes: 22 compare and select, 82 add, 9 divide, 91 multiply,
+ *   condition_number: 37 compare and select, 96 add, 12 divide, 106 multiply, 7 sqrt
+ *   condition_number where nothing vanishes: 24 compare and select, 82 add, 9 divide, 91 multiply,
  *     7 sqrt
  *   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
  *   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt

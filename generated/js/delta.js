@@ -2,14 +2,14 @@
 // derivations/delta.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Arms of common structure, solved by lemmas.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 41 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
-//   skeleton: 40 compare and select, 112 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
-//   jacobian_parallel: 40 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
-//   jacobian_serial: 40 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
-//   jacobian: 40 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
-//   determinant: 40 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
-//   singularities: 40 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
-//   condition_number: 40 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
+//   fk: 43 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
+//   skeleton: 42 compare and select, 112 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
+//   jacobian_parallel: 42 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
+//   jacobian_serial: 42 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
+//   jacobian: 42 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
+//   determinant: 42 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
+//   singularities: 42 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
+//   condition_number: 42 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
 //   ik: 121 compare and select, 154 add, 6 atan2, 4 divide, 159 multiply, 3 sincos, 9 sqrt
 //   workspace_contains: 45 add, 50 compare and select, 1 divide, 32 multiply, 3 sincos, 6 sqrt
 
@@ -176,7 +176,8 @@ function _fk(v, o) {
     const t31 = in_line ? 0.0 : t30 / (2.0 * j);
     const rho = Math.sqrt(X * X + t31 * t31);
     const t32 = l - rho;
-    const h = Math.sqrt(Math.max(t32, 0.0) * (l + rho));
+    const slack = Math.max(t32, 0.0);
+    const h = slack <= t11 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t33 = (t14 * E_23 - E_13 * E_22) * h;
     const E_21 = in_line ? 1.0 - E_11 * E_11 * t26 * t29 : t24 * t28;
     const t34 = E_21 * t31 + (t3 - X * E_11);
@@ -376,7 +377,8 @@ function _skeleton(v, o) {
     const t61 = E_11 * t58;
     const E_23 = in_line ? -t61 : n_z / j;
     const E_22 = in_line ? -(t38 * t61 / t59) : t47 / j;
-    const h = Math.sqrt(Math.max(t50, 0.0) * (l + rho));
+    const slack = Math.max(t50, 0.0);
+    const h = slack <= t24 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t62 = (t38 * E_23 - E_13 * E_22) * h;
     const t63 = t10 - (t60 - t62);
     const t64 = t38 * X + t49 * E_22;
@@ -588,7 +590,8 @@ function _jacobian_parallel(v, o) {
     const t29 = in_line ? 0.0 : t28 / (2.0 * j);
     const rho = Math.sqrt(X * X + t29 * t29);
     const t30 = l - rho;
-    const h = Math.sqrt(Math.max(t30, 0.0) * (l + rho));
+    const slack = Math.max(t30, 0.0);
+    const h = slack <= t11 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t31 = (t13 * E_23 - E_13 * E_22) * h;
     const E_21 = in_line ? 1.0 - E_11 * E_11 * t25 / t27 : t23 / j;
     const t32 = E_11 * X - E_21 * t29;
@@ -761,7 +764,8 @@ function _jacobian_serial(v, o) {
     const t32 = in_line ? 0.0 : t31 / (2.0 * j);
     const rho = Math.sqrt(X * X + t32 * t32);
     const t33 = l - rho;
-    const h = Math.sqrt(Math.max(t33, 0.0) * (l + rho));
+    const slack = Math.max(t33, 0.0);
+    const h = slack <= t14 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t34 = (t16 * E_23 - E_13 * E_22) * h;
     const E_21 = in_line ? 1.0 - E_11 * E_11 * t28 / t30 : t26 / j;
     const t35 = E_11 * X - E_21 * t32;
@@ -932,7 +936,8 @@ function _jacobian(v, o) {
     const t32 = in_line ? 0.0 : t31 / (2.0 * j);
     const rho = Math.sqrt(X * X + t32 * t32);
     const t33 = l - rho;
-    const h = Math.sqrt(Math.max(t33, 0.0) * (l + rho));
+    const slack = Math.max(t33, 0.0);
+    const h = slack <= t14 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t34 = (t16 * E_23 - E_13 * E_22) * h;
     const E_21 = in_line ? 1.0 - E_11 * E_11 * t28 / t30 : t26 / j;
     const t35 = E_11 * X - E_21 * t32;
@@ -1143,7 +1148,8 @@ function _determinant(v, o) {
     const t32 = in_line ? 0.0 : t31 / (2.0 * j);
     const rho = Math.sqrt(X * X + t32 * t32);
     const t33 = l - rho;
-    const h = Math.sqrt(Math.max(t33, 0.0) * (l + rho));
+    const slack = Math.max(t33, 0.0);
+    const h = slack <= t14 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t34 = (t16 * E_23 - E_13 * E_22) * h;
     const E_21 = in_line ? 1.0 - E_11 * E_11 * t28 / t30 : t26 / j;
     const t35 = E_11 * X - E_21 * t32;
@@ -1312,7 +1318,8 @@ function _singularities(v, o) {
     const t32 = in_line ? 0.0 : t31 / (2.0 * j);
     const rho = Math.sqrt(X * X + t32 * t32);
     const t33 = l - rho;
-    const h = Math.sqrt(Math.max(t33, 0.0) * (l + rho));
+    const slack = Math.max(t33, 0.0);
+    const h = slack <= t14 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t34 = (t16 * E_23 - E_13 * E_22) * h;
     const E_21 = in_line ? 1.0 - E_11 * E_11 * t28 / t30 : t26 / j;
     const t35 = E_11 * X - E_21 * t32;
@@ -1483,7 +1490,8 @@ function _condition_number(v, o) {
     const t29 = in_line ? 0.0 : t28 / (2.0 * j);
     const rho = Math.sqrt(X * X + t29 * t29);
     const t30 = l - rho;
-    const h = Math.sqrt(Math.max(t30, 0.0) * (l + rho));
+    const slack = Math.max(t30, 0.0);
+    const h = slack <= t11 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t31 = (t13 * E_23 - E_13 * E_22) * h;
     const E_21 = in_line ? 1.0 - E_11 * E_11 * t25 / t27 : t23 / j;
     const t32 = E_11 * X - E_21 * t29;

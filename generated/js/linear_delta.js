@@ -2,14 +2,14 @@
 // derivations/linear_delta.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Arms of common structure, solved by lemmas.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 40 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
-//   skeleton: 39 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
-//   jacobian_parallel: 39 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
-//   jacobian_serial: 39 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
-//   jacobian: 39 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
-//   determinant: 39 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
-//   singularities: 39 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
-//   condition_number: 39 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
+//   fk: 42 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
+//   skeleton: 41 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
+//   jacobian_parallel: 41 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
+//   jacobian_serial: 41 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
+//   jacobian: 41 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
+//   determinant: 41 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
+//   singularities: 41 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
+//   condition_number: 41 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
 //   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
 //   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 
@@ -133,7 +133,8 @@ function _fk(v, o) {
     const t22 = E_21 * t21 + (c1_x + E_11 * X);
     const rho = Math.sqrt(X * X + t21 * t21);
     const t23 = l - rho;
-    const h = Math.sqrt(Math.max(t23, 0.0) * (l + rho));
+    const slack = Math.max(t23, 0.0);
+    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t24 = E_11 * t18;
     const t25 = in_line ? t24 : t17 * t20;
     const E_22 = in_line ? t19 * (E_12 * t24) : n_y * t20;
@@ -278,7 +279,8 @@ function _skeleton(v, o) {
     const t32 = t15 - t31;
     const E_21 = in_line ? 1.0 + E_11 * E_11 * t31 / t32 : -(t21 / j);
     const t33 = E_11 * X - t25 * E_21;
-    const h = Math.sqrt(Math.max(t26, 0.0) * (l + rho));
+    const slack = Math.max(t26, 0.0);
+    const h = slack <= t11 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t34 = E_11 * t31;
     const t35 = in_line ? t34 : t22 / j;
     const E_22 = in_line ? E_12 * t34 / t32 : n_y / j;
@@ -460,7 +462,8 @@ function _jacobian_parallel(v, o) {
     const t21 = E_11 * X - E_21 * t20;
     const rho = Math.sqrt(X * X + t20 * t20);
     const t22 = l - rho;
-    const h = Math.sqrt(Math.max(t22, 0.0) * (l + rho));
+    const slack = Math.max(t22, 0.0);
+    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t23 = E_11 * t17;
     const t24 = in_line ? t23 : t16 / j;
     const E_22 = in_line ? E_12 * t23 / t18 : n_y / j;
@@ -598,10 +601,12 @@ function _jacobian_serial(v, o) {
     const t21 = t7 * X - (in_line ? t18 : t16 / j) * t20;
     const rho = Math.sqrt(X * X + t20 * t20);
     const t22 = l - rho;
+    const slack = Math.max(t22, 0.0);
+    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t23 = t7 - t17;
     const E_21 = in_line ? 1.0 + t17 * (E_11 * E_11) / t23 : -(t15 / j);
     const t24 = E_11 * (in_line ? E_12 * t18 / t23 : n_y / j);
-    const t25 = Math.sqrt(Math.max(t22, 0.0) * (l + rho)) * (E_12 * E_21 - t24);
+    const t25 = h * (E_12 * E_21 - t24);
     const t26 = t21 - t25;
     const t27 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
     const t28 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
@@ -714,7 +719,8 @@ function _jacobian(v, o) {
     const t22 = t7 * X - t19 * t21;
     const rho = Math.sqrt(X * X + t21 * t21);
     const t23 = l - rho;
-    const h = Math.sqrt(Math.max(t23, 0.0) * (l + rho));
+    const slack = Math.max(t23, 0.0);
+    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t24 = t7 - t17;
     const E_21 = in_line ? 1.0 + t17 * (E_11 * E_11) / t24 : -(t15 / j);
     const E_22 = in_line ? E_12 * t18 / t24 : n_y / j;
@@ -880,7 +886,8 @@ function _determinant(v, o) {
     const t21 = t7 * X - (in_line ? t18 : t16 / j) * t20;
     const rho = Math.sqrt(X * X + t20 * t20);
     const t22 = l - rho;
-    const h = Math.sqrt(Math.max(t22, 0.0) * (l + rho));
+    const slack = Math.max(t22, 0.0);
+    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t23 = t7 - t17;
     const E_21 = in_line ? 1.0 + t17 * (E_11 * E_11) / t23 : -(t15 / j);
     const t24 = E_11 * (in_line ? E_12 * t18 / t23 : n_y / j);
@@ -994,7 +1001,8 @@ function _singularities(v, o) {
     const t21 = t7 * X - (in_line ? t18 : t16 / j) * t20;
     const rho = Math.sqrt(X * X + t20 * t20);
     const t22 = l - rho;
-    const h = Math.sqrt(Math.max(t22, 0.0) * (l + rho));
+    const slack = Math.max(t22, 0.0);
+    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t23 = t7 - t17;
     const E_21 = in_line ? 1.0 + t17 * (E_11 * E_11) / t23 : -(t15 / j);
     const t24 = E_11 * (in_line ? E_12 * t18 / t23 : n_y / j);
@@ -1114,7 +1122,8 @@ function _condition_number(v, o) {
     const t21 = E_11 * X - E_21 * t20;
     const rho = Math.sqrt(X * X + t20 * t20);
     const t22 = l - rho;
-    const h = Math.sqrt(Math.max(t22, 0.0) * (l + rho));
+    const slack = Math.max(t22, 0.0);
+    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t23 = E_11 * t17;
     const t24 = in_line ? t23 : t16 / j;
     const E_22 = in_line ? E_12 * t23 / t18 : n_y / j;

@@ -2,26 +2,26 @@
 // derivations/orthoglide.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Arms of common structure, solved by lemmas.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 36 compare and select, 45 add, 5 divide, 55 multiply, 5 sqrt
-//   fk where nothing vanishes: 23 compare and select, 31 add, 4 divide, 37 multiply, 5 sqrt
-//   skeleton: 35 compare and select, 50 add, 10 divide, 47 multiply, 5 sqrt
-//   skeleton where nothing vanishes: 22 compare and select, 36 add, 7 divide, 32 multiply, 5 sqrt
-//   jacobian_parallel: 35 compare and select, 56 add, 10 divide, 47 multiply, 5 sqrt
-//   jacobian_parallel where nothing vanishes: 22 compare and select, 42 add, 7 divide, 32
+//   fk: 38 compare and select, 45 add, 5 divide, 55 multiply, 5 sqrt
+//   fk where nothing vanishes: 25 compare and select, 31 add, 4 divide, 37 multiply, 5 sqrt
+//   skeleton: 37 compare and select, 50 add, 10 divide, 47 multiply, 5 sqrt
+//   skeleton where nothing vanishes: 24 compare and select, 36 add, 7 divide, 32 multiply, 5 sqrt
+//   jacobian_parallel: 37 compare and select, 56 add, 10 divide, 47 multiply, 5 sqrt
+//   jacobian_parallel where nothing vanishes: 24 compare and select, 42 add, 7 divide, 32
 //     multiply, 5 sqrt
-//   jacobian_serial: 35 compare and select, 48 add, 10 divide, 47 multiply, 5 sqrt
-//   jacobian_serial where nothing vanishes: 22 compare and select, 34 add, 7 divide, 32 multiply,
+//   jacobian_serial: 37 compare and select, 48 add, 10 divide, 47 multiply, 5 sqrt
+//   jacobian_serial where nothing vanishes: 24 compare and select, 34 add, 7 divide, 32 multiply,
 //     5 sqrt
-//   jacobian: 35 compare and select, 80 add, 28 divide, 91 multiply, 5 sqrt
-//   jacobian where nothing vanishes: 22 compare and select, 66 add, 25 divide, 76 multiply, 5 sqrt
-//   determinant: 35 compare and select, 44 add, 12 divide, 53 multiply, 5 sqrt
-//   determinant where nothing vanishes: 22 compare and select, 30 add, 9 divide, 38 multiply, 5
+//   jacobian: 37 compare and select, 80 add, 28 divide, 91 multiply, 5 sqrt
+//   jacobian where nothing vanishes: 24 compare and select, 66 add, 25 divide, 76 multiply, 5 sqrt
+//   determinant: 37 compare and select, 44 add, 12 divide, 53 multiply, 5 sqrt
+//   determinant where nothing vanishes: 24 compare and select, 30 add, 9 divide, 38 multiply, 5
 //     sqrt
-//   singularities: 35 compare and select, 50 add, 10 divide, 49 multiply, 5 sqrt
-//   singularities where nothing vanishes: 22 compare and select, 36 add, 7 divide, 34 multiply, 5
+//   singularities: 37 compare and select, 50 add, 10 divide, 49 multiply, 5 sqrt
+//   singularities where nothing vanishes: 24 compare and select, 36 add, 7 divide, 34 multiply, 5
 //     sqrt
-//   condition_number: 35 compare and select, 96 add, 12 divide, 106 multiply, 7 sqrt
-//   condition_number where nothing vanishes: 22 compare and select, 82 add, 9 divide, 91 multiply,
+//   condition_number: 37 compare and select, 96 add, 12 divide, 106 multiply, 7 sqrt
+//   condition_number where nothing vanishes: 24 compare and select, 82 add, 9 divide, 91 multiply,
 //     7 sqrt
 //   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
 //   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
@@ -124,7 +124,8 @@ function _fk(v, o) {
     const t13 = in_line ? 0.0 : t12 / (2.0 * j);
     const rho = Math.sqrt(X * X + t13 * t13);
     const t14 = L - rho;
-    const h = Math.sqrt(Math.max(t14, 0.0) * (L + rho));
+    const slack = Math.max(t14, 0.0);
+    const h = slack <= t2 ? 0.0 : Math.sqrt(slack * (L + rho));
     const t15 = E_13 < 0 ? -1 : 1;
     const t16 = E_11 * t15;
     const t17 = 1.0 / j;
@@ -179,7 +180,8 @@ function _fk_common(v, o) {
     const t12 = t3 / (2.0 * j);
     const rho = Math.sqrt(X * X + t12 * t12);
     const t13 = L - rho;
-    const h = Math.sqrt(Math.max(t13, 0.0) * (L + rho));
+    const slack = Math.max(t13, 0.0);
+    const h = Math.sqrt(slack * (L + rho));
     const t14 = E_12 * E_23 * h;
     const t15 = t9 * t11;
     const t16 = t15 * t12 - (rho1 - X * t4);
@@ -205,7 +207,7 @@ function _fk_common(v, o) {
     o[5] = t23 - t24 + t19;
     o[6] = t25;
     o[7] = t25;
-    o[8] = (t27 || j <= t26) ? 1 : 0;
+    o[8] = (t27 || j <= t26 || slack <= t26) ? 1 : 0;
 }
 
 const _FK = _runtime.kernel({
@@ -311,7 +313,8 @@ function _skeleton(v, o) {
     const t18 = rho1 + t16;
     const t19 = rho2 + t16;
     const t20 = rho3 + t16;
-    const h = Math.sqrt(Math.max(t15, 0.0) * (L + rho));
+    const slack = Math.max(t15, 0.0);
+    const h = slack <= t3 ? 0.0 : Math.sqrt(slack * (L + rho));
     const t21 = E_13 < 0 ? -1 : 1;
     const t22 = E_11 * t21;
     const E_23 = in_line ? -t22 : n_z / j;
@@ -401,7 +404,8 @@ function _skeleton_common(v, o) {
     const t17 = rho2 + t14;
     const t18 = rho3 + t14;
     const E_23 = rho3 / j;
-    const h = Math.sqrt(Math.max(t13, 0.0) * (L + rho));
+    const slack = Math.max(t13, 0.0);
+    const h = Math.sqrt(slack * (L + rho));
     const t19 = E_12 * E_23 * h;
     const t20 = t10 / j;
     const t21 = t5 * X + t12 * t20;
@@ -454,7 +458,7 @@ function _skeleton_common(v, o) {
     o[39] = rho1 - (t19 + t21) + t14;
     o[40] = t24 - t22 + t14;
     o[41] = t25 - t26 + t14;
-    o[42] = (t28 || j <= t27) ? 1 : 0;
+    o[42] = (t28 || j <= t27 || slack <= t27) ? 1 : 0;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -543,7 +547,8 @@ function _jacobian_parallel(v, o) {
     const t12 = in_line ? 0.0 : t11 / (j * 2.0);
     const rho = Math.sqrt(X * X + t12 * t12);
     const t13 = L - rho;
-    const h = Math.sqrt(Math.max(t13, 0.0) * (L + rho));
+    const slack = Math.max(t13, 0.0);
+    const h = slack <= t2 ? 0.0 : Math.sqrt(slack * (L + rho));
     const t14 = E_13 < 0 ? -1 : 1;
     const t15 = E_11 * t14;
     const E_23 = in_line ? -t15 : n_z / j;
@@ -616,7 +621,8 @@ function _jacobian_parallel_common(v, o) {
     const t10 = t2 / (2.0 * j);
     const rho = Math.sqrt(X * X + t10 * t10);
     const t11 = L - rho;
-    const h = Math.sqrt(Math.max(t11, 0.0) * (L + rho));
+    const slack = Math.max(t11, 0.0);
+    const h = Math.sqrt(slack * (L + rho));
     const t12 = E_12 * E_23 * h;
     const t13 = t8 / j;
     const t14 = t3 * X + t13 * t10;
@@ -663,7 +669,7 @@ function _jacobian_parallel_common(v, o) {
     o[15] = t30;
     o[16] = t28;
     o[17] = A_13_inner - rho3 + t17;
-    o[18] = (t32 || j <= t31) ? 1 : 0;
+    o[18] = (t32 || j <= t31 || slack <= t31) ? 1 : 0;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -752,7 +758,8 @@ function _jacobian_serial(v, o) {
     const t12 = in_line ? 0.0 : t11 / (j * 2.0);
     const rho = Math.sqrt(X * X + t12 * t12);
     const t13 = L - rho;
-    const h = Math.sqrt(Math.max(t13, 0.0) * (L + rho));
+    const slack = Math.max(t13, 0.0);
+    const h = slack <= t2 ? 0.0 : Math.sqrt(slack * (L + rho));
     const t14 = E_13 < 0 ? -1 : 1;
     const t15 = E_11 * t14;
     const E_23 = in_line ? -t15 : n_z / j;
@@ -801,7 +808,8 @@ function _jacobian_serial_common(v, o) {
     const t10 = t2 / (2.0 * j);
     const rho = Math.sqrt(X * X + t10 * t10);
     const t11 = L - rho;
-    const h = Math.sqrt(Math.max(t11, 0.0) * (L + rho));
+    const slack = Math.max(t11, 0.0);
+    const h = Math.sqrt(slack * (L + rho));
     const t12 = E_12 * E_23 * h;
     const t13 = t8 / j;
     const t14 = t3 * X + t13 * t10;
@@ -824,7 +832,7 @@ function _jacobian_serial_common(v, o) {
     o[3] = -(t12 + t14) + t17;
     o[4] = -(rho2 + (t18 - t20)) + t17;
     o[5] = t21 - t22 - rho3 + t17;
-    o[6] = (t24 || j <= t23) ? 1 : 0;
+    o[6] = (t24 || j <= t23 || slack <= t23) ? 1 : 0;
 }
 
 const _JACOBIAN_SERIAL = _runtime.kernel({
@@ -913,7 +921,8 @@ function _jacobian(v, o) {
     const t12 = in_line ? 0.0 : t11 / (j * 2.0);
     const rho = Math.sqrt(X * X + t12 * t12);
     const t13 = L - rho;
-    const h = Math.sqrt(Math.max(t13, 0.0) * (L + rho));
+    const slack = Math.max(t13, 0.0);
+    const h = slack <= t2 ? 0.0 : Math.sqrt(slack * (L + rho));
     const t14 = E_13 < 0 ? -1 : 1;
     const t15 = E_11 * t14;
     const E_23 = in_line ? -t15 : n_z / j;
@@ -993,7 +1002,8 @@ function _jacobian_common(v, o) {
     const t10 = t2 / (2.0 * j);
     const rho = Math.sqrt(X * X + t10 * t10);
     const t11 = L - rho;
-    const h = Math.sqrt(Math.max(t11, 0.0) * (L + rho));
+    const slack = Math.max(t11, 0.0);
+    const h = Math.sqrt(slack * (L + rho));
     const t12 = E_12 * E_23 * h;
     const t13 = t8 / j;
     const t14 = t3 * X + t13 * t10;
@@ -1049,7 +1059,7 @@ function _jacobian_common(v, o) {
     o[15] = t36;
     o[16] = -(t32 * (t35 + t28 * t29) / Delta) + t25;
     o[17] = t31 * (t35 + t28 * t32) / Delta + t25;
-    o[18] = (t38 || j <= t37) ? 1 : 0;
+    o[18] = (t38 || j <= t37 || slack <= t37) ? 1 : 0;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -1139,7 +1149,8 @@ function _determinant(v, o) {
     const t12 = in_line ? 0.0 : t11 / (j * 2.0);
     const rho = Math.sqrt(X * X + t12 * t12);
     const t13 = L - rho;
-    const h = Math.sqrt(Math.max(t13, 0.0) * (L + rho));
+    const slack = Math.max(t13, 0.0);
+    const h = slack <= t2 ? 0.0 : Math.sqrt(slack * (L + rho));
     const t14 = E_13 < 0 ? -1 : 1;
     const t15 = E_11 * t14;
     const E_23 = in_line ? -t15 : n_z / j;
@@ -1190,7 +1201,8 @@ function _determinant_common(v, o) {
     const X = size_u * 0.5;
     const rho = Math.sqrt(X * X + t10 * t10);
     const t14 = L - rho;
-    const h = Math.sqrt(Math.max(t14, 0.0) * (L + rho));
+    const slack = Math.max(t14, 0.0);
+    const h = Math.sqrt(slack * (L + rho));
     const t15 = (t3 * t12 + E_12 * t13) * h;
     const t16 = E_12 * E_23 * h;
     const t17 = t3 * X + t13 * t10;
@@ -1209,7 +1221,7 @@ function _determinant_common(v, o) {
     const t26 = size_u <= t25 || size_u + Math.sqrt(t2 + t1) <= t25;
     o[0] = t20 / Delta + t23;
     o[1] = t24 / Delta + t23;
-    o[2] = (t26 || j <= t25) ? 1 : 0;
+    o[2] = (t26 || j <= t25 || slack <= t25) ? 1 : 0;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -1298,7 +1310,8 @@ function _singularities(v, o) {
     const t12 = in_line ? 0.0 : t11 / (j * 2.0);
     const rho = Math.sqrt(X * X + t12 * t12);
     const t13 = L - rho;
-    const h = Math.sqrt(Math.max(t13, 0.0) * (L + rho));
+    const slack = Math.max(t13, 0.0);
+    const h = slack <= t2 ? 0.0 : Math.sqrt(slack * (L + rho));
     const t14 = E_13 < 0 ? -1 : 1;
     const t15 = E_11 * t14;
     const E_23 = in_line ? -t15 : n_z / j;
@@ -1350,7 +1363,8 @@ function _singularities_common(v, o) {
     const t10 = t2 / (2.0 * j);
     const rho = Math.sqrt(X * X + t10 * t10);
     const t11 = L - rho;
-    const h = Math.sqrt(Math.max(t11, 0.0) * (L + rho));
+    const slack = Math.max(t11, 0.0);
+    const h = Math.sqrt(slack * (L + rho));
     const t12 = E_12 * E_23 * h;
     const t13 = t8 / j;
     const t14 = t3 * X + t13 * t10;
@@ -1376,7 +1390,7 @@ function _singularities_common(v, o) {
     o[5] = -(rho2 + (t18 - t20)) + t17;
     o[6] = t21 - t22 - rho3 + t17;
     o[7] = -Delta + t17;
-    o[8] = (t24 || j <= t23) ? 1 : 0;
+    o[8] = (t24 || j <= t23 || slack <= t23) ? 1 : 0;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -1465,7 +1479,8 @@ function _condition_number(v, o) {
     const t12 = in_line ? 0.0 : t11 / (j * 2.0);
     const rho = Math.sqrt(X * X + t12 * t12);
     const t13 = L - rho;
-    const h = Math.sqrt(Math.max(t13, 0.0) * (L + rho));
+    const slack = Math.max(t13, 0.0);
+    const h = slack <= t2 ? 0.0 : Math.sqrt(slack * (L + rho));
     const t14 = E_13 < 0 ? -1 : 1;
     const t15 = E_11 * t14;
     const E_23 = in_line ? -t15 : n_z / j;
@@ -1564,7 +1579,8 @@ function _condition_number_common(v, o) {
     const X = size_u * 0.5;
     const rho = Math.sqrt(X * X + t10 * t10);
     const t14 = L - rho;
-    const h = Math.sqrt(Math.max(t14, 0.0) * (L + rho));
+    const slack = Math.max(t14, 0.0);
+    const h = Math.sqrt(slack * (L + rho));
     const t15 = (t3 * t12 + E_12 * t13) * h;
     const A_13 = t11 + t15;
     const t16 = A_13 * A_13;
@@ -1631,7 +1647,7 @@ function _condition_number_common(v, o) {
     const t69 = size_u <= t68 || size_u + Math.sqrt(t2 + t1) <= t68;
     o[0] = Math.sqrt(t40) / t41 + t44;
     o[1] = Math.sqrt(t67) / t41 + t44;
-    o[2] = (t69 || j <= t68) ? 1 : 0;
+    o[2] = (t69 || j <= t68 || slack <= t68) ? 1 : 0;
 }
 
 const _CONDITION_NUMBER = _runtime.kernel({

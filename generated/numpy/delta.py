@@ -2,14 +2,14 @@
 # derivations/delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Arms of common structure, solved by lemmas.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 41 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
-#   skeleton: 40 compare and select, 112 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
-#   jacobian_parallel: 40 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
-#   jacobian_serial: 40 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
-#   jacobian: 40 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
-#   determinant: 40 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
-#   singularities: 40 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
-#   condition_number: 40 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
+#   fk: 43 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
+#   skeleton: 42 compare and select, 112 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
+#   jacobian_parallel: 42 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
+#   jacobian_serial: 42 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
+#   jacobian: 42 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
+#   determinant: 42 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
+#   singularities: 42 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
+#   condition_number: 42 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
 #   ik: 121 compare and select, 154 add, 6 atan2, 4 divide, 159 multiply, 3 sincos, 9 sqrt
 #   workspace_contains: 45 add, 50 compare and select, 1 divide, 32 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -190,7 +190,6 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del m_z, t23
     j = np.sqrt(t24 * t24 + t25 * t25 + n_z * n_z)
     in_line = j <= t11
-    del t11
     t26 = _runtime.sign(E_13)
     t27 = E_11 * t26
     t28 = 1.0 / j
@@ -207,8 +206,9 @@ def _fk(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del j
     rho = np.sqrt(X * X + t31 * t31)
     t32 = l - rho
-    h = np.sqrt(np.maximum(t32, 0.0) * (l + rho))
-    del rho
+    slack = np.maximum(t32, 0.0)
+    h = _runtime.select(slack <= t11, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t11
     t33 = (t14 * E_23 - E_13 * E_22) * h
     E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t26 * t29, t24 * t28)
     del t24, t26, t28, t29
@@ -389,7 +389,6 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del m_z, t45
     j = np.sqrt(t46 * t46 + t47 * t47 + n_z * n_z)
     in_line = j <= t24
-    del t24
     left = t30 * (t30 - t36) - t39 * (t37 - t39) - t41 * (t40 - t41)
     del t30, t36, t37, t39, t40, t41
     t48 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (size * size)
@@ -426,8 +425,10 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del n_z
     E_22 = _runtime.select(in_line, -(t38 * t62 / t60), t47 / j)
     del in_line, j, t47, t60, t62
-    h = np.sqrt(np.maximum(t50, 0.0) * (l + rho))
-    del rho, t50
+    slack = np.maximum(t50, 0.0)
+    del t50
+    h = _runtime.select(slack <= t24, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t24
     t63 = (t38 * E_23 - E_13 * E_22) * h
     t64 = t10 - (t61 - t63)
     t65 = t38 * X + t49 * E_22
@@ -635,7 +636,6 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     del m_z, t22
     j = np.sqrt(t23 * t23 + t24 * t24 + n_z * n_z)
     in_line = j <= t11
-    del t11
     t25 = _runtime.sign(E_13)
     t26 = E_11 * t25
     E_23 = _runtime.select(in_line, -t26, n_z / j)
@@ -650,8 +650,9 @@ def _jacobian_parallel(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha
     t29 = _runtime.select(in_line, 0.0, t28 / (2.0 * j))
     rho = np.sqrt(X * X + t29 * t29)
     t30 = l - rho
-    h = np.sqrt(np.maximum(t30, 0.0) * (l + rho))
-    del rho
+    slack = np.maximum(t30, 0.0)
+    h = _runtime.select(slack <= t11, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t11
     t31 = (t13 * E_23 - E_13 * E_22) * h
     E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t25 / t27, t23 / j)
     del j, t23, t25, t27
@@ -812,7 +813,6 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     del m_z, t25
     j = np.sqrt(t26 * t26 + t27 * t27 + n_z * n_z)
     in_line = j <= t14
-    del t14
     t28 = _runtime.sign(E_13)
     t29 = E_11 * t28
     E_23 = _runtime.select(in_line, -t29, n_z / j)
@@ -827,8 +827,9 @@ def _jacobian_serial(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3)
     t32 = _runtime.select(in_line, 0.0, t31 / (2.0 * j))
     rho = np.sqrt(X * X + t32 * t32)
     t33 = l - rho
-    h = np.sqrt(np.maximum(t33, 0.0) * (l + rho))
-    del rho
+    slack = np.maximum(t33, 0.0)
+    h = _runtime.select(slack <= t14, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t14
     t34 = (t16 * E_23 - E_13 * E_22) * h
     E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t28 / t30, t26 / j)
     del j, t26, t28, t30
@@ -994,7 +995,6 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del m_z, t25
     j = np.sqrt(t26 * t26 + t27 * t27 + n_z * n_z)
     in_line = j <= t14
-    del t14
     t28 = _runtime.sign(E_13)
     t29 = E_11 * t28
     E_23 = _runtime.select(in_line, -t29, n_z / j)
@@ -1009,8 +1009,9 @@ def _jacobian(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t32 = _runtime.select(in_line, 0.0, t31 / (2.0 * j))
     rho = np.sqrt(X * X + t32 * t32)
     t33 = l - rho
-    h = np.sqrt(np.maximum(t33, 0.0) * (l + rho))
-    del rho
+    slack = np.maximum(t33, 0.0)
+    h = _runtime.select(slack <= t14, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t14
     t34 = (t16 * E_23 - E_13 * E_22) * h
     E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t28 / t30, t26 / j)
     del t26, t28, t30
@@ -1227,7 +1228,6 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del m_z, t25
     j = np.sqrt(t26 * t26 + t27 * t27 + n_z * n_z)
     in_line = j <= t14
-    del t14
     t28 = _runtime.sign(E_13)
     t29 = E_11 * t28
     E_23 = _runtime.select(in_line, -t29, n_z / j)
@@ -1242,8 +1242,9 @@ def _determinant(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t32 = _runtime.select(in_line, 0.0, t31 / (2.0 * j))
     rho = np.sqrt(X * X + t32 * t32)
     t33 = l - rho
-    h = np.sqrt(np.maximum(t33, 0.0) * (l + rho))
-    del rho
+    slack = np.maximum(t33, 0.0)
+    h = _runtime.select(slack <= t14, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t14
     t34 = (t16 * E_23 - E_13 * E_22) * h
     E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t28 / t30, t26 / j)
     del t26, t28, t30
@@ -1410,7 +1411,6 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del m_z, t25
     j = np.sqrt(t26 * t26 + t27 * t27 + n_z * n_z)
     in_line = j <= t14
-    del t14
     t28 = _runtime.sign(E_13)
     t29 = E_11 * t28
     E_23 = _runtime.select(in_line, -t29, n_z / j)
@@ -1425,8 +1425,9 @@ def _singularities(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     t32 = _runtime.select(in_line, 0.0, t31 / (2.0 * j))
     rho = np.sqrt(X * X + t32 * t32)
     t33 = l - rho
-    h = np.sqrt(np.maximum(t33, 0.0) * (l + rho))
-    del rho
+    slack = np.maximum(t33, 0.0)
+    h = _runtime.select(slack <= t14, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t14
     t34 = (t16 * E_23 - E_13 * E_22) * h
     E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t28 / t30, t26 / j)
     del t26, t28, t30
@@ -1596,7 +1597,6 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     del m_z, t22
     j = np.sqrt(t23 * t23 + t24 * t24 + n_z * n_z)
     in_line = j <= t11
-    del t11
     t25 = _runtime.sign(E_13)
     t26 = E_11 * t25
     E_23 = _runtime.select(in_line, -t26, n_z / j)
@@ -1611,8 +1611,9 @@ def _condition_number(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3
     t29 = _runtime.select(in_line, 0.0, t28 / (2.0 * j))
     rho = np.sqrt(X * X + t29 * t29)
     t30 = l - rho
-    h = np.sqrt(np.maximum(t30, 0.0) * (l + rho))
-    del rho
+    slack = np.maximum(t30, 0.0)
+    h = _runtime.select(slack <= t11, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t11
     t31 = (t13 * E_23 - E_13 * E_22) * h
     E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t25 / t27, t23 / j)
     del t23, t25, t27

@@ -2,14 +2,14 @@
 # derivations/linear_delta.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Arms of common structure, solved by lemmas.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 40 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
-#   skeleton: 39 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
-#   jacobian_parallel: 39 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
-#   jacobian_serial: 39 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
-#   jacobian: 39 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
-#   determinant: 39 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
-#   singularities: 39 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
-#   condition_number: 39 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
+#   fk: 42 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
+#   skeleton: 41 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
+#   jacobian_parallel: 41 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
+#   jacobian_serial: 41 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
+#   jacobian: 41 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
+#   determinant: 41 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
+#   singularities: 41 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
+#   condition_number: 41 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
 #   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -153,7 +153,6 @@ def _fk(rho1, rho2, rho3, f, e, l):
     del t14, t15
     j = np.sqrt(t16 * t16 + n_y * n_y + t17 * t17)
     in_line = j <= t5
-    del t5
     t18 = _runtime.sign(-t11)
     t19 = 1.0 / (t11 - t18)
     t20 = 1.0 / j
@@ -169,8 +168,9 @@ def _fk(rho1, rho2, rho3, f, e, l):
     del c1_x
     rho = np.sqrt(X * X + t21 * t21)
     t23 = l - rho
-    h = np.sqrt(np.maximum(t23, 0.0) * (l + rho))
-    del rho
+    slack = np.maximum(t23, 0.0)
+    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t5
     t24 = E_11 * t18
     del t18
     t25 = _runtime.select(in_line, t24, t17 * t20)
@@ -311,7 +311,6 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     del t20, t21
     j = np.sqrt(t22 * t22 + n_y * n_y + t23 * t23)
     in_line = j <= t12
-    del t12
     t24 = t14 * (t13 - t14) + t17 * (t15 - t17)
     del t13, t14, t15, t17
     t25 = np.abs(_runtime.select(in_line, -t24, 0.0)) <= _runtime.FEASIBILITY * (size * size)
@@ -333,8 +332,10 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t33 / t34, -(t22 / j))
     del t22
     t35 = E_11 * X - t26 * E_21
-    h = np.sqrt(np.maximum(t27, 0.0) * (l + rho))
-    del rho, t27
+    slack = np.maximum(t27, 0.0)
+    del t27
+    h = _runtime.select(slack <= t12, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t12
     t36 = E_11 * t33
     del t33
     t37 = _runtime.select(in_line, t36, t23 / j)
@@ -516,7 +517,6 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     del t13, t14
     j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
     in_line = j <= t5
-    del t5
     t17 = _runtime.sign(-t9)
     t18 = t9 - t17
     E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t17 / t18, -(t15 / j))
@@ -527,8 +527,9 @@ def _jacobian_parallel(rho1, rho2, rho3, f, e, l):
     t21 = E_11 * X - E_21 * t20
     rho = np.sqrt(X * X + t20 * t20)
     t22 = l - rho
-    h = np.sqrt(np.maximum(t22, 0.0) * (l + rho))
-    del rho
+    slack = np.maximum(t22, 0.0)
+    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t5
     t23 = E_11 * t17
     del t17
     t24 = _runtime.select(in_line, t23, t16 / j)
@@ -671,7 +672,6 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     del t13, t14
     j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
     in_line = j <= t5
-    del t5
     t17 = _runtime.sign(-t7)
     t18 = E_11 * t17
     t19 = t9 * (t8 - t9) + t10 * (t6 - t10)
@@ -682,14 +682,17 @@ def _jacobian_serial(rho1, rho2, rho3, f, e, l):
     rho = np.sqrt(X * X + t20 * t20)
     del X, t20
     t22 = l - rho
+    slack = np.maximum(t22, 0.0)
+    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t5
     t23 = t7 - t17
     del t7
     E_21 = _runtime.select(in_line, 1.0 + t17 * (E_11 * E_11) / t23, -(t15 / j))
     del t15, t17
     E_22 = _runtime.select(in_line, E_12 * t18 / t23, n_y / j)
     del j, n_y, t18, t23
-    t24 = np.sqrt(np.maximum(t22, 0.0) * (l + rho)) * (E_12 * E_21 - E_11 * E_22)
-    del E_11, E_12, E_21, E_22, rho
+    t24 = h * (E_12 * E_21 - E_11 * E_22)
+    del E_11, E_12, E_21, E_22, h
     t25 = t21 - t24
     t26 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
     t27 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
@@ -796,7 +799,6 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     del t13, t14
     j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
     in_line = j <= t5
-    del t5
     t17 = _runtime.sign(-t7)
     t18 = E_11 * t17
     t19 = _runtime.select(in_line, t18, t16 / j)
@@ -807,8 +809,9 @@ def _jacobian(rho1, rho2, rho3, f, e, l):
     t22 = t7 * X - t19 * t21
     rho = np.sqrt(X * X + t21 * t21)
     t23 = l - rho
-    h = np.sqrt(np.maximum(t23, 0.0) * (l + rho))
-    del rho
+    slack = np.maximum(t23, 0.0)
+    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t5
     t24 = t7 - t17
     E_21 = _runtime.select(in_line, 1.0 + t17 * (E_11 * E_11) / t24, -(t15 / j))
     del t15, t17
@@ -988,7 +991,6 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     del t13, t14
     j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
     in_line = j <= t5
-    del t5
     t17 = _runtime.sign(-t7)
     t18 = E_11 * t17
     t19 = t9 * (t8 - t9) + t10 * (t6 - t10)
@@ -999,8 +1001,9 @@ def _determinant(rho1, rho2, rho3, f, e, l):
     rho = np.sqrt(X * X + t20 * t20)
     del X, t20
     t22 = l - rho
-    h = np.sqrt(np.maximum(t22, 0.0) * (l + rho))
-    del rho
+    slack = np.maximum(t22, 0.0)
+    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t5
     t23 = t7 - t17
     del t7
     E_21 = _runtime.select(in_line, 1.0 + t17 * (E_11 * E_11) / t23, -(t15 / j))
@@ -1117,7 +1120,6 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     del t13, t14
     j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
     in_line = j <= t5
-    del t5
     t17 = _runtime.sign(-t7)
     t18 = E_11 * t17
     t19 = t9 * (t8 - t9) + t10 * (t6 - t10)
@@ -1128,8 +1130,9 @@ def _singularities(rho1, rho2, rho3, f, e, l):
     rho = np.sqrt(X * X + t20 * t20)
     del X, t20
     t22 = l - rho
-    h = np.sqrt(np.maximum(t22, 0.0) * (l + rho))
-    del rho
+    slack = np.maximum(t22, 0.0)
+    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t5
     t23 = t7 - t17
     del t7
     E_21 = _runtime.select(in_line, 1.0 + t17 * (E_11 * E_11) / t23, -(t15 / j))
@@ -1248,7 +1251,6 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     del t13, t14
     j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
     in_line = j <= t5
-    del t5
     t17 = _runtime.sign(-t9)
     t18 = t9 - t17
     E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t17 / t18, -(t15 / j))
@@ -1259,8 +1261,9 @@ def _condition_number(rho1, rho2, rho3, f, e, l):
     t21 = E_11 * X - E_21 * t20
     rho = np.sqrt(X * X + t20 * t20)
     t22 = l - rho
-    h = np.sqrt(np.maximum(t22, 0.0) * (l + rho))
-    del rho
+    slack = np.maximum(t22, 0.0)
+    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t5
     t23 = E_11 * t17
     del t17
     t24 = _runtime.select(in_line, t23, t16 / j)

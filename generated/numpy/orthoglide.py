@@ -2,26 +2,26 @@
 # derivations/orthoglide.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Arms of common structure, solved by lemmas.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 36 compare and select, 45 add, 5 divide, 55 multiply, 5 sqrt
-#   fk where nothing vanishes: 23 compare and select, 31 add, 4 divide, 37 multiply, 5 sqrt
-#   skeleton: 35 compare and select, 50 add, 10 divide, 47 multiply, 5 sqrt
-#   skeleton where nothing vanishes: 22 compare and select, 36 add, 7 divide, 32 multiply, 5 sqrt
-#   jacobian_parallel: 35 compare and select, 56 add, 10 divide, 47 multiply, 5 sqrt
-#   jacobian_parallel where nothing vanishes: 22 compare and select, 42 add, 7 divide, 32
+#   fk: 38 compare and select, 45 add, 5 divide, 55 multiply, 5 sqrt
+#   fk where nothing vanishes: 25 compare and select, 31 add, 4 divide, 37 multiply, 5 sqrt
+#   skeleton: 37 compare and select, 50 add, 10 divide, 47 multiply, 5 sqrt
+#   skeleton where nothing vanishes: 24 compare and select, 36 add, 7 divide, 32 multiply, 5 sqrt
+#   jacobian_parallel: 37 compare and select, 56 add, 10 divide, 47 multiply, 5 sqrt
+#   jacobian_parallel where nothing vanishes: 24 compare and select, 42 add, 7 divide, 32
 #     multiply, 5 sqrt
-#   jacobian_serial: 35 compare and select, 48 add, 10 divide, 47 multiply, 5 sqrt
-#   jacobian_serial where nothing vanishes: 22 compare and select, 34 add, 7 divide, 32 multiply,
+#   jacobian_serial: 37 compare and select, 48 add, 10 divide, 47 multiply, 5 sqrt
+#   jacobian_serial where nothing vanishes: 24 compare and select, 34 add, 7 divide, 32 multiply,
 #     5 sqrt
-#   jacobian: 35 compare and select, 80 add, 28 divide, 91 multiply, 5 sqrt
-#   jacobian where nothing vanishes: 22 compare and select, 66 add, 25 divide, 76 multiply, 5 sqrt
-#   determinant: 35 compare and select, 44 add, 12 divide, 53 multiply, 5 sqrt
-#   determinant where nothing vanishes: 22 compare and select, 30 add, 9 divide, 38 multiply, 5
+#   jacobian: 37 compare and select, 80 add, 28 divide, 91 multiply, 5 sqrt
+#   jacobian where nothing vanishes: 24 compare and select, 66 add, 25 divide, 76 multiply, 5 sqrt
+#   determinant: 37 compare and select, 44 add, 12 divide, 53 multiply, 5 sqrt
+#   determinant where nothing vanishes: 24 compare and select, 30 add, 9 divide, 38 multiply, 5
 #     sqrt
-#   singularities: 35 compare and select, 50 add, 10 divide, 49 multiply, 5 sqrt
-#   singularities where nothing vanishes: 22 compare and select, 36 add, 7 divide, 34 multiply, 5
+#   singularities: 37 compare and select, 50 add, 10 divide, 49 multiply, 5 sqrt
+#   singularities where nothing vanishes: 24 compare and select, 36 add, 7 divide, 34 multiply, 5
 #     sqrt
-#   condition_number: 35 compare and select, 96 add, 12 divide, 106 multiply, 7 sqrt
-#   condition_number where nothing vanishes: 22 compare and select, 82 add, 9 divide, 91 multiply,
+#   condition_number: 37 compare and select, 96 add, 12 divide, 106 multiply, 7 sqrt
+#   condition_number where nothing vanishes: 24 compare and select, 82 add, 9 divide, 91 multiply,
 #     7 sqrt
 #   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
@@ -151,14 +151,14 @@ def _fk(rho1, rho2, rho3, L):
     del m_z, t10
     j = np.sqrt(t11 * t11 + n_y * n_y + n_z * n_z)
     in_line = j <= t2
-    del t2
     t12 = t4 * (t5 - t4) + t6 * (t7 - t6)
     del t4, t5, t6, t7
     t13 = _runtime.select(in_line, 0.0, t12 / (2.0 * j))
     rho = np.sqrt(X * X + t13 * t13)
     t14 = L - rho
-    h = np.sqrt(np.maximum(t14, 0.0) * (L + rho))
-    del rho
+    slack = np.maximum(t14, 0.0)
+    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
+    del rho, slack, t2
     t15 = _runtime.sign(E_13)
     t16 = E_11 * t15
     t17 = 1.0 / j
@@ -227,7 +227,8 @@ def _fk_common(rho1, rho2, rho3, L):
     t12 = t3 / (2.0 * j)
     rho = np.sqrt(X * X + t12 * t12)
     t13 = L - rho
-    h = np.sqrt(np.maximum(t13, 0.0) * (L + rho))
+    slack = np.maximum(t13, 0.0)
+    h = np.sqrt(slack * (L + rho))
     del rho
     t14 = E_12 * E_23 * h
     t15 = t9 * t11
@@ -267,7 +268,7 @@ def _fk_common(rho1, rho2, rho3, L):
         t24 - t25 + t20,
         t26,
         t26,
-        t28 | (j <= t27),
+        t28 | (j <= t27) | (slack <= t27),
     )
 
 
@@ -360,7 +361,6 @@ def _skeleton(rho1, rho2, rho3, L):
     del m_z, t10
     j = np.sqrt(t11 * t11 + n_y * n_y + n_z * n_z)
     in_line = j <= t3
-    del t3
     t12 = t5 * (t4 - t5) + t7 * (t6 - t7)
     del t4, t5, t6, t7
     t13 = np.abs(_runtime.select(in_line, -t12, 0.0)) <= _runtime.FEASIBILITY * (size * size)
@@ -378,8 +378,10 @@ def _skeleton(rho1, rho2, rho3, L):
     t19 = rho1 + t17
     t20 = rho2 + t17
     t21 = rho3 + t17
-    h = np.sqrt(np.maximum(t15, 0.0) * (L + rho))
-    del rho, t15
+    slack = np.maximum(t15, 0.0)
+    del t15
+    h = _runtime.select(slack <= t3, 0.0, np.sqrt(slack * (L + rho)))
+    del rho, slack, t3
     t22 = _runtime.sign(E_13)
     t23 = E_11 * t22
     E_23 = _runtime.select(in_line, -t23, n_z / j)
@@ -478,8 +480,10 @@ def _skeleton_common(rho1, rho2, rho3, L):
     t17 = rho2 + t14
     t18 = rho3 + t14
     E_23 = rho3 / j
-    h = np.sqrt(np.maximum(t13, 0.0) * (L + rho))
-    del rho, t13
+    slack = np.maximum(t13, 0.0)
+    del t13
+    h = np.sqrt(slack * (L + rho))
+    del rho
     t19 = E_12 * E_23 * h
     t20 = t10 / j
     del t10
@@ -540,7 +544,7 @@ def _skeleton_common(rho1, rho2, rho3, L):
         rho1 - (t19 + t21) + t14,
         t24 - t22 + t14,
         t25 - t26 + t14,
-        t28 | (j <= t27),
+        t28 | (j <= t27) | (slack <= t27),
     )
 
 
@@ -624,14 +628,14 @@ def _jacobian_parallel(rho1, rho2, rho3, L):
     del m_z, t9
     j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
     in_line = j <= t2
-    del t2
     t11 = t4 * (t3 - t4) + t6 * (t5 - t6)
     del t3, t4, t5, t6
     t12 = _runtime.select(in_line, 0.0, t11 / (j * 2.0))
     rho = np.sqrt(X * X + t12 * t12)
     t13 = L - rho
-    h = np.sqrt(np.maximum(t13, 0.0) * (L + rho))
-    del rho
+    slack = np.maximum(t13, 0.0)
+    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
+    del rho, slack, t2
     t14 = _runtime.sign(E_13)
     t15 = E_11 * t14
     E_23 = _runtime.select(in_line, -t15, n_z / j)
@@ -717,7 +721,8 @@ def _jacobian_parallel_common(rho1, rho2, rho3, L):
     t10 = t2 / (2.0 * j)
     rho = np.sqrt(X * X + t10 * t10)
     t11 = L - rho
-    h = np.sqrt(np.maximum(t11, 0.0) * (L + rho))
+    slack = np.maximum(t11, 0.0)
+    h = np.sqrt(slack * (L + rho))
     del rho
     t12 = E_12 * E_23 * h
     t13 = t8 / j
@@ -779,7 +784,7 @@ def _jacobian_parallel_common(rho1, rho2, rho3, L):
         t31,
         t29,
         A_13_inner - rho3 + t18,
-        t33 | (j <= t32),
+        t33 | (j <= t32) | (slack <= t32),
     )
 
 
@@ -863,14 +868,14 @@ def _jacobian_serial(rho1, rho2, rho3, L):
     del m_z, t9
     j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
     in_line = j <= t2
-    del t2
     t11 = t4 * (t3 - t4) + t6 * (t5 - t6)
     del t3, t4, t5, t6
     t12 = _runtime.select(in_line, 0.0, t11 / (j * 2.0))
     rho = np.sqrt(X * X + t12 * t12)
     t13 = L - rho
-    h = np.sqrt(np.maximum(t13, 0.0) * (L + rho))
-    del rho
+    slack = np.maximum(t13, 0.0)
+    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
+    del rho, slack, t2
     t14 = _runtime.sign(E_13)
     t15 = E_11 * t14
     E_23 = _runtime.select(in_line, -t15, n_z / j)
@@ -929,7 +934,8 @@ def _jacobian_serial_common(rho1, rho2, rho3, L):
     t10 = t2 / (2.0 * j)
     rho = np.sqrt(X * X + t10 * t10)
     t11 = L - rho
-    h = np.sqrt(np.maximum(t11, 0.0) * (L + rho))
+    slack = np.maximum(t11, 0.0)
+    h = np.sqrt(slack * (L + rho))
     del rho
     t12 = E_12 * E_23 * h
     t13 = t8 / j
@@ -964,7 +970,7 @@ def _jacobian_serial_common(rho1, rho2, rho3, L):
         -(t12 + t14) + t18,
         -(rho2 + (t19 - t21)) + t18,
         t22 - t23 - rho3 + t18,
-        t25 | (j <= t24),
+        t25 | (j <= t24) | (slack <= t24),
     )
 
 
@@ -1048,14 +1054,14 @@ def _jacobian(rho1, rho2, rho3, L):
     del m_z, t9
     j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
     in_line = j <= t2
-    del t2
     t11 = t4 * (t3 - t4) + t6 * (t5 - t6)
     del t3, t4, t5, t6
     t12 = _runtime.select(in_line, 0.0, t11 / (j * 2.0))
     rho = np.sqrt(X * X + t12 * t12)
     t13 = L - rho
-    h = np.sqrt(np.maximum(t13, 0.0) * (L + rho))
-    del rho
+    slack = np.maximum(t13, 0.0)
+    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
+    del rho, slack, t2
     t14 = _runtime.sign(E_13)
     t15 = E_11 * t14
     E_23 = _runtime.select(in_line, -t15, n_z / j)
@@ -1149,7 +1155,8 @@ def _jacobian_common(rho1, rho2, rho3, L):
     t10 = t2 / (2.0 * j)
     rho = np.sqrt(X * X + t10 * t10)
     t11 = L - rho
-    h = np.sqrt(np.maximum(t11, 0.0) * (L + rho))
+    slack = np.maximum(t11, 0.0)
+    h = np.sqrt(slack * (L + rho))
     del rho
     t12 = E_12 * E_23 * h
     t13 = t8 / j
@@ -1221,7 +1228,7 @@ def _jacobian_common(rho1, rho2, rho3, L):
         t37,
         -(t33 * (t36 + t29 * t30) / Delta) + t26,
         t32 * (t36 + t29 * t33) / Delta + t26,
-        t39 | (j <= t38),
+        t39 | (j <= t38) | (slack <= t38),
     )
 
 
@@ -1306,14 +1313,14 @@ def _determinant(rho1, rho2, rho3, L):
     del m_z, t9
     j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
     in_line = j <= t2
-    del t2
     t11 = t4 * (t3 - t4) + t6 * (t5 - t6)
     del t3, t4, t5, t6
     t12 = _runtime.select(in_line, 0.0, t11 / (j * 2.0))
     rho = np.sqrt(X * X + t12 * t12)
     t13 = L - rho
-    h = np.sqrt(np.maximum(t13, 0.0) * (L + rho))
-    del rho
+    slack = np.maximum(t13, 0.0)
+    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
+    del rho, slack, t2
     t14 = _runtime.sign(E_13)
     t15 = E_11 * t14
     E_23 = _runtime.select(in_line, -t15, n_z / j)
@@ -1378,7 +1385,8 @@ def _determinant_common(rho1, rho2, rho3, L):
     X = size_u * 0.5
     rho = np.sqrt(X * X + t10 * t10)
     t14 = L - rho
-    h = np.sqrt(np.maximum(t14, 0.0) * (L + rho))
+    slack = np.maximum(t14, 0.0)
+    h = np.sqrt(slack * (L + rho))
     del rho
     t15 = (t3 * t12 + E_12 * t13) * h
     t16 = E_12 * E_23 * h
@@ -1409,7 +1417,7 @@ def _determinant_common(rho1, rho2, rho3, L):
     return (
         t20 / Delta + t24,
         t25 / Delta + t24,
-        t27 | (j <= t26),
+        t27 | (j <= t26) | (slack <= t26),
     )
 
 
@@ -1493,14 +1501,14 @@ def _singularities(rho1, rho2, rho3, L):
     del m_z, t9
     j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
     in_line = j <= t2
-    del t2
     t11 = t4 * (t3 - t4) + t6 * (t5 - t6)
     del t3, t4, t5, t6
     t12 = _runtime.select(in_line, 0.0, t11 / (j * 2.0))
     rho = np.sqrt(X * X + t12 * t12)
     t13 = L - rho
-    h = np.sqrt(np.maximum(t13, 0.0) * (L + rho))
-    del rho
+    slack = np.maximum(t13, 0.0)
+    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
+    del rho, slack, t2
     t14 = _runtime.sign(E_13)
     t15 = E_11 * t14
     E_23 = _runtime.select(in_line, -t15, n_z / j)
@@ -1563,7 +1571,8 @@ def _singularities_common(rho1, rho2, rho3, L):
     t10 = t2 / (2.0 * j)
     rho = np.sqrt(X * X + t10 * t10)
     t11 = L - rho
-    h = np.sqrt(np.maximum(t11, 0.0) * (L + rho))
+    slack = np.maximum(t11, 0.0)
+    h = np.sqrt(slack * (L + rho))
     del rho
     t12 = E_12 * E_23 * h
     t13 = t8 / j
@@ -1602,7 +1611,7 @@ def _singularities_common(rho1, rho2, rho3, L):
         -(rho2 + (t19 - t21)) + t18,
         t22 - t23 - rho3 + t18,
         -Delta + t18,
-        t25 | (j <= t24),
+        t25 | (j <= t24) | (slack <= t24),
     )
 
 
@@ -1686,14 +1695,14 @@ def _condition_number(rho1, rho2, rho3, L):
     del m_z, t9
     j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
     in_line = j <= t2
-    del t2
     t11 = t4 * (t3 - t4) + t6 * (t5 - t6)
     del t3, t4, t5, t6
     t12 = _runtime.select(in_line, 0.0, t11 / (j * 2.0))
     rho = np.sqrt(X * X + t12 * t12)
     t13 = L - rho
-    h = np.sqrt(np.maximum(t13, 0.0) * (L + rho))
-    del rho
+    slack = np.maximum(t13, 0.0)
+    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
+    del rho, slack, t2
     t14 = _runtime.sign(E_13)
     t15 = E_11 * t14
     E_23 = _runtime.select(in_line, -t15, n_z / j)
@@ -1826,7 +1835,8 @@ def _condition_number_common(rho1, rho2, rho3, L):
     X = size_u * 0.5
     rho = np.sqrt(X * X + t10 * t10)
     t14 = L - rho
-    h = np.sqrt(np.maximum(t14, 0.0) * (L + rho))
+    slack = np.maximum(t14, 0.0)
+    h = np.sqrt(slack * (L + rho))
     del rho
     t15 = (t3 * t12 + E_12 * t13) * h
     A_13 = t11 + t15
@@ -1925,7 +1935,7 @@ def _condition_number_common(rho1, rho2, rho3, L):
     return (
         np.sqrt(t40) / t41 + t45,
         np.sqrt(t68) / t41 + t45,
-        t70 | (j <= t69),
+        t70 | (j <= t69) | (slack <= t69),
     )
 
 

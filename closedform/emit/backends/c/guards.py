@@ -32,10 +32,10 @@ def unused_where(schedule: Sequence[Node], roots: Sequence[Node]) -> dict[int, t
 
 
 def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
-    """For quotients of a common case, the condition that their divisor counts as zero.
+    """For quotients of a common case, the conditions that a factor of their divisor counts as zero.
 
-    If it holds, the whole program is evaluated instead.  Of the conditions that are already known,
-    it is the one whose value is nearest to the divisor.
+    If one holds, the whole program is evaluated instead.  Of the conditions that are already known,
+    it is for each factor the one whose value is nearest to it.
     """
     if lowered.results[-1].name != "rare":
         return
@@ -46,10 +46,25 @@ def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
         if node.op != "div" or node.args[1].op == "const":
             continue
         below = {n.id for n in reachable(node.args)}
-        near = {n.id for n in reachable(node.args[1:])}
-        known = [c for c in conditions if c.args[0].id in near and needs[c.id] <= below]
-        if known:
-            yield node.id, (max(known, key=lambda c: place[c.args[0].id]),)
+        known = [c for c in conditions if needs[c.id] <= below]
+        nearest: dict[int, Node] = {}
+        for factor in _factors(node.args[1]):
+            near = {n.id for n in reachable([factor])}
+            vanish = [c for c in known if c.args[0].id in near]
+            if vanish:
+                found = max(vanish, key=lambda c: place[c.args[0].id])
+                nearest[found.id] = found
+        if nearest:
+            yield node.id, tuple(nearest.values())
+
+
+def _factors(node: Node) -> Iterator[Node]:
+    """The factors of a product, or the node itself."""
+    if node.op != "mul":
+        yield node
+        return
+    for arg in node.args:
+        yield from _factors(arg)
 
 
 def final_values(lowered: Lowered) -> frozenset[int]:

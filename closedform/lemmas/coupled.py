@@ -216,7 +216,8 @@ def _inverse(
     inside = bounds_of(g)
     A = g.let("A", found.rod.dot(follower.rate))
     lever = follower.length if isinstance(follower, Crank) else sp.S.One
-    g.determined(sp.Abs(A), driver.rod * lever, "the rod is at right angles to the follower")
+    across = "the rod is at right angles to the follower"
+    g.determined(sp.Abs(A), driver.rod * lever, across, name="|A|")
     working = branches((sigma, SIGN))
     d.branches = working.labels
     d.step(

@@ -431,7 +431,7 @@ def _inverse(m: _Mechanism, loop: Step) -> None:
     ]
     meet = "in line" if n == 2 else "in one plane"
     volume = g.let("Delta", sp.Matrix.hstack(*apart).det())
-    g.determined(sp.Abs(volume), sp.Mul(*lengths), f"the rods are {meet}")
+    g.determined(sp.Abs(volume), sp.Mul(*lengths), f"the rods are {meet}", name=r"|\det A|")
     working = branches(*choices) if choices else SINGLE
     d.branches = working.labels
     signs = "The signs of its two solutions are those of the diagonal of B.  "

@@ -111,13 +111,15 @@ class Determined:
 
     Both are nonnegative, and the forward map amplifies rounding errors by up to ``scale / value``;
     with ``squares`` they are squares of such quantities.  If this amplification is too large for
-    the round trip, the status is SINGULAR; the answer does not change.
+    the round trip, the status is SINGULAR; the answer does not change.  The article prints the
+    value as ``name``, which is LaTeX, if it has one.
     """
 
     value: sp.Expr
     scale: sp.Expr
     meaning: str
     squares: bool = False
+    name: str = ""
 
 
 @dataclass(frozen=True)
@@ -405,9 +407,15 @@ class Program:
         return symbol
 
     def determined(
-        self, value: sp.Expr, scale: Number, meaning: str, *, squares: bool = False
+        self,
+        value: sp.Expr,
+        scale: Number,
+        meaning: str,
+        *,
+        squares: bool = False,
+        name: str = "",
     ) -> None:
-        self.body.append(Determined(value, sp.sympify(scale), meaning, squares))
+        self.body.append(Determined(value, sp.sympify(scale), meaning, squares, name))
 
     def require(self, values: Sequence[sp.Expr], scale: Number, meaning: str) -> None:
         self.body.append(Require(tuple(values), sp.sympify(scale, strict=True), meaning))

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path[:0] = [str(Path(__file__).parents[k]) for k in (1, 2)]  # tests and the project
 
 import numpy as np
 from extension_toy.build import compile_toy, function, loaded

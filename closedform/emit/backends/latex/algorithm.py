@@ -500,11 +500,14 @@ class Algorithm:
         return f"${self.page.math(value)} = 0$"
 
     def _determined(self, statement: Determined) -> Case:
-        value, scale = self.full(statement.value), self.full(statement.scale)
-        if sp.count_ops(value) > LONGEST:
-            value = self.shown(statement.value)
-        rows = self.page.equations("", value)
-        first, rest = rows[0][1], [f"${a} = {b}$" for a, b in rows[1:]]
+        rest: list[str] = []
+        first, scale = statement.name, self.full(statement.scale)
+        if not first:
+            value = self.full(statement.value)
+            if sp.count_ops(value) > LONGEST:
+                value = self.shown(statement.value)
+            rows = self.page.equations("", value)
+            first, rest = rows[0][1], [f"${a} = {b}$" for a, b in rows[1:]]
         where = rf"${first} \ll {self.page.math(scale)}$"
         if rest:
             where += f", with {', '.join(rest)}"

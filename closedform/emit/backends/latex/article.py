@@ -45,6 +45,8 @@ BARE: Mapping[str, Any] = {"blocks": [], "lines": [], "cases": [], "roundings": 
 """A function without a listing."""
 LISTED = 3
 """More equations than this that only name a symbol, such as lengths, are a list without numbers."""
+PARTS = 12
+"""The smallest part of half a turn that a default is recognised as."""
 
 
 class Page(Sheet):
@@ -227,6 +229,14 @@ def indexed(title: str) -> str:
     return "!".join(part.strip()[:1].lower() + part.strip()[1:] for part in escaped.split(":"))
 
 
+def default(value: sp.Rational) -> str:
+    """The value of a parameter: a part of a turn if it is the double of one, or a decimal."""
+    part = sp.Rational(float(value / sp.pi)).limit_denominator(PARTS)
+    if part and float(value) == float(part * sp.pi):
+        return f"${sp.latex(part * sp.pi)}$"
+    return decimal(value)
+
+
 def decimal(value: sp.Rational) -> str:
     """A rational as a decimal if that is exact and short, or shorter than the fraction."""
     digits = next((k for k in range(17) if (value * 10**k).is_Integer), None)
@@ -257,7 +267,7 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
         "works": bibliography.entries([derivation.paper]),
         "mechanism": text(derivation.mechanism),
         "parameters": [
-            (page.math(p.symbol), escape(p.name), escape(p.unit), decimal(p.value),
+            (page.math(p.symbol), escape(p.name), escape(p.unit), default(p.value),
              text(p.meaning), text(p.source)) for p in derivation.parameters
         ],
         "joints": [page.joint(j) for j in derivation.joints],

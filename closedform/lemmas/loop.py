@@ -443,7 +443,7 @@ def _inverse(m: _Mechanism, loop: Step) -> None:
         "the determinant of A.  So near a parallel singularity the joints do not determine the "
         "hand, however they are computed.  The status is SINGULAR if the determinant is less than "
         "2^-10 of the product.",
-        {r"|\det A|": sp.Abs(real("Delta"))},
+        {},
         uses=[loop],
     )
     d.function(

@@ -13,7 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-sys.path[:0] = [str(Path(__file__).parents[k]) for k in (1, 2)]  # tests and the project
+sys.path.insert(0, str(Path(__file__).parents[2]))  # the project, which is not installed
+sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np
 from extension_toy.build import compile_toy, function, loaded

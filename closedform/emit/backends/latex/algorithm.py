@@ -389,12 +389,13 @@ class Algorithm:
         return self.parts_first(whole(self.page.equations(left, value)))
 
     def parts_first(self, texts: Sequence[str]) -> list[str]:
-        """The names of parts before they are used; the part of a part comes first."""
+        """What has a name before what it is used in: the part of a part first, a matrix last."""
         names = tuple(
             rf"$\displaystyle {self.page.math(s)} =" for s in self.page.lines.parts.values()
         )
         parts = [t for t in texts if names and t.startswith(names)]
-        return [*reversed(parts), *(t for t in texts if t not in parts)]
+        rest = (t for t in texts if t not in parts)
+        return [*reversed(parts), *sorted(rest, key=lambda t: r"\begin{bmatrix}" in t)]
 
     def _answers(self) -> list[str]:
         entries = iter(self.outputs)
@@ -428,15 +429,30 @@ class Algorithm:
     # Special cases
 
     def cases(self) -> list[Case]:
-        """Where the lines above do not apply, and what holds there."""
+        """Where the lines above do not apply, and what holds there that the model does not say."""
         found = []
         for flag in self.flags.values():
-            if not self.is_rounding(flag) and (flag.free or self._effect(flag)):
-                found.append(self._case(flag))
+            told = self._told(flag)
+            effect = [e for e in self._effect(flag) if told is None or e not in told]
+            free = flag.free if told is None else ()
+            if not self.is_rounding(flag) and (effect or free):
+                found.append(self._case(flag, effect, free))
         for statement in self.function.body:
             if isinstance(statement, Determined):
                 found.append(self._determined(statement))
         return found
+
+    def _told(self, flag: Vanishes) -> list[str] | None:
+        """What the algorithms before this one say of a flag that they have."""
+        if self.model is None or flag not in self.model.flags.values():
+            return None
+        return [*(self.model._told(flag) or ()), *self.model._effect(flag)]
+
+    @property
+    def has_cases_of_model(self) -> bool:
+        """Whether special cases of the algorithms before this one hold here too."""
+        flags = [f for f in self.flags.values() if not self.is_rounding(f)]
+        return any(told is not None and (f.free or told) for f in flags for told in [self._told(f)])
 
     def roundings(self) -> list[str]:
         """What is said of the flags that only serve the rounding of a usual posture."""
@@ -465,7 +481,23 @@ class Algorithm:
                 other = self.short(other)
                 if self.page.lines.width(other) <= ONCE:
                     changed[self.known.get(name, name)] = other
-        return [f"${self.page.math(n)} = {self.page.math(e)}$" for n, e in changed.items()]
+        made: dict[sp.Basic, sp.Expr] = {}
+        for name, value in list(changed.items()):
+            if (needs := self._made_for(value)) is None:
+                del changed[name]
+            else:
+                made |= needs
+        rows = [*made.items(), *changed.items()]
+        return [f"${self.page.math(n)} = {self.page.math(e)}$" for n, e in rows]
+
+    def _made_for(self, value: sp.Expr) -> dict[sp.Basic, sp.Expr] | None:
+        """The names in a value that no line defines, with their values; None if they are long."""
+        hidden = [s for s in self.values if s in value.free_symbols]
+        hidden = [s for s in hidden if s not in self.needed | self.printed]
+        made: dict[sp.Basic, sp.Expr] = {s: self.shown(self.values[s]) for s in hidden}
+        rest = {s for e in made.values() for s in e.free_symbols & self.values.keys()}
+        is_long = any(self.page.lines.width(e) > ONCE for e in made.values())
+        return None if is_long or rest - self.needed - self.printed else made
 
     @property
     def entries(self) -> list[sp.Expr]:
@@ -476,19 +508,19 @@ class Algorithm:
             s.value for s in self.function.body if isinstance(s, Let | Bound) and s.symbol == symbol
         )
 
-    def _case(self, flag: Vanishes) -> Case:
-        free = " and ".join(f"${self.page.math(s)}$" for s in flag.free)
-        returned = ", ".join(self._effect(flag))
+    def _case(self, flag: Vanishes, effect: Sequence[str], free: Sequence[sp.Symbol]) -> Case:
+        returned = ", ".join(effect)
         if free:
-            verb = "are" if len(flag.free) > 1 else "is"
-            returned = f"{free} {verb} free" + (f"; {returned}" if returned else "")
+            names = " and ".join(f"${self.page.math(s)}$" for s in free)
+            verb = "are" if len(free) > 1 else "is"
+            returned = f"{names} {verb} free" + (f"; {returned}" if returned else "")
         value = self.full(flag.value)
         value = self.quantities.get(value, value)
         return Case(
             self.vanishing(value),
             self.page.prose(flag.meaning),
             returned,
-            "singular" if flag.free else "",
+            "singular" if free else "",
         )
 
     def vanishing(self, value: sp.Expr) -> str:

@@ -8,6 +8,7 @@ a line are aligned; what does not fit is taken apart in
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -33,7 +34,7 @@ from closedform.emit.backends.latex.prose import (
     symbols_of,
     upright,
 )
-from closedform.emit.backends.latex.sheet import Sheet, blocks
+from closedform.emit.backends.latex.sheet import UNPRINTED, Sheet, blocks
 from closedform.emit.backends.latex.wide import Equation
 from closedform.model.derivation import Derivation, Joint, Step
 from closedform.model.functions import Function
@@ -172,25 +173,27 @@ class Page(Sheet):
         """The lines of a function."""
         algorithm = self.algorithm(function)
         return {
-            "after": self.after(function),
+            "after": self.after(function, algorithm),
             "roundings": algorithm.roundings(),
             "blocks": [],
             "lines": algorithm.lines(),
             "cases": algorithm.cases(),
         }
 
-    def after(self, function: Function) -> str:
-        """The function with whose statements this one starts."""
+    def after(self, function: Function, algorithm: Algorithm) -> str:
+        """The function with whose statements this one starts, and whether their cases matter."""
         model = self.model(function)
         if model is None:
             return ""
         label = f"inverse:{self.derivation.name}:{_key(model)}"
         place = rf", Section~\ref{{{label}}}" if model.has_status else ""
-        return rf"\texttt{{{escape(model.name)}}}{place}"
+        cases = ", with its special cases" if algorithm.has_cases_of_model else ""
+        return rf"\texttt{{{escape(model.name)}}}{place}{cases}"
 
     def inverse(self, function: Function) -> dict[str, Any]:
         """A function with a status for each branch."""
-        told = Told(self, function, self.algorithm(function), self.after(function))
+        algorithm = self.algorithm(function)
+        told = Told(self, function, algorithm, self.after(function, algorithm))
         results = [r for r in self.proof.inverses if r.function == function.name]
         proved = [told.proved(r) for r in results]
         return {**self.function(function), **told.context(), "proved": proved}
@@ -230,9 +233,9 @@ def indexed(title: str) -> str:
 
 
 def default(value: sp.Rational) -> str:
-    """The value of a parameter: a part of a turn if it is the double of one, or a decimal."""
+    """The value of a parameter: a part of a turn if it is one to all digits, or a decimal."""
     part = sp.Rational(float(value / sp.pi)).limit_denominator(PARTS)
-    if part and float(value) == float(part * sp.pi):
+    if part and abs(float(value / (part * sp.pi)) - 1) <= 2 * sys.float_info.epsilon:
         return f"${sp.latex(part * sp.pi)}$"
     return decimal(value)
 
@@ -274,8 +277,7 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
         "steps": [{**page.step(s), "number": k} for k, s in enumerate(derivation.steps, 1)],
         "modes": derivation.assembly_modes,
         "inverses": [page.inverse(f) for f in derivation.functions if f.has_status],
-        # the points of the skeleton are too many to print; a step says what is proved of them
-        "functions": [page.function(f) for f in derivation.functions if f.name != "skeleton"],
+        "functions": [page.function(f) for f in derivation.functions if f.name != UNPRINTED],
         "singular": page.singular_set(),
         "verdicts": ", ".join(f"{n} {kind}" for kind, n in proof.verdicts().items()),
         "errata": page.claims.errata(),

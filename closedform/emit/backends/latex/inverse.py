@@ -340,6 +340,7 @@ class Told:
             row
             for s in algorithm.values
             if s in found and not MATRIX_ENTRY.fullmatch(str(s.name))
+            if algorithm.known.get(s) != algorithm.value(s)
             for row in self.page.equations(algorithm.known.get(s, s), algorithm.value(s))
         ]
 

@@ -15,6 +15,9 @@ from closedform.emit.backends.latex.wide import Equation, Lines
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Array, Function
 
+UNPRINTED = "skeleton"
+"""Its points are too many to print; a step says what is proved of them."""
+
 
 class Sheet:
     """Prints symbols, expressions, sentences and equations of a mechanism."""
@@ -36,9 +39,9 @@ class Sheet:
         return written_name(self.derivation, name)
 
     def model(self, function: Function) -> Function | None:
-        """The earlier function whose statements this one starts with, if there is one."""
+        """The earlier printed function whose statements this one starts with, if there is one."""
         functions = self.derivation.functions
-        earlier = functions[: functions.index(function)]
+        earlier = [f for f in functions[: functions.index(function)] if f.name != UNPRINTED]
         shared = [f for f in earlier if f.body and function.body[: len(f.body)] == f.body]
         return max(shared, key=lambda f: len(f.body), default=None)
 

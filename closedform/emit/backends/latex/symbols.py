@@ -29,6 +29,7 @@ from closedform.emit.backends.latex.prose import (
     upright,
     written_name,
 )
+from closedform.emit.backends.latex.sheet import UNPRINTED
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Bound, Let
 
@@ -88,7 +89,7 @@ def forms_of(
         for symbol in symbols_of(step):
             add(symbol)
     for function in derivation.functions:
-        if function.name != "skeleton":
+        if function.name != UNPRINTED:
             for statement in function.body:
                 if isinstance(statement, Let | Bound) and statement.symbol not in local:
                     add(statement.symbol)

@@ -9,7 +9,7 @@ the same on every machine.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import count
 from typing import Any
 
@@ -225,14 +225,21 @@ class Lines:
     # Matrices
 
     def _matrix(self, left: str, matrix: sp.MatrixBase) -> list[Equation]:
-        """The equations of a matrix; the widest entries get names until the rest fits on a line."""
+        """The equations of a matrix that fit on a line.
+
+        What divides all entries of a matrix that is too wide stands before it, if it fits then.
+        Otherwise the widest entries get names.
+        """
         matrix = matrix.applyfunc(lambda e: self.tidy(e) if isinstance(e, sp.Expr) else e)
-        cells = [[self.printer.math(e) for e in matrix.row(i)] for i in range(matrix.rows)]
+        cells = self._cells(matrix)
+        room = self.room - measure(left)
+        if _width(cells) > room and (factor := _common(matrix)) != 1:
+            before = self.printer.math(factor)
+            inner = self._cells(matrix.applyfunc(lambda e: e / factor))
+            if _width(inner) + measure(before) <= room:
+                return [(left, f"{before} {_bracketed(inner)}")]
         base, named = left.partition("=")[0].strip(), []
-        while (
-            measure(left) + sum(max(map(measure, c)) + 2 for c in zip(*cells, strict=True))
-            > self.room
-        ):
+        while _width(cells) > room:
             widest, i, j = max(
                 (measure(c), -i, -j) for i, row in enumerate(cells) for j, c in enumerate(row)
             )
@@ -241,10 +248,29 @@ class Lines:
                 break
             named.append((-i, -j, name))
             cells[-i][-j] = name
-        rows = [" & ".join(row) for row in cells]
-        whole = (left, rf"\begin{{bmatrix}} {stacked(rows)} \end{{bmatrix}}")
         entries = (self.equations(name, matrix[i, j]) for i, j, name in sorted(named))
-        return [whole, *(equation for entry in entries for equation in entry)]
+        return [(left, _bracketed(cells)), *(row for entry in entries for row in entry)]
+
+    def _cells(self, matrix: sp.MatrixBase) -> list[list[str]]:
+        return [[self.printer.math(e) for e in matrix.row(i)] for i in range(matrix.rows)]
+
+
+def _width(cells: Sequence[Sequence[str]]) -> float:
+    return sum(max(map(measure, column)) + 2 for column in zip(*cells, strict=True))
+
+
+def _bracketed(cells: Sequence[Sequence[str]]) -> str:
+    rows = stacked([" & ".join(row) for row in cells])
+    return rf"\begin{{bmatrix}} {rows} \end{{bmatrix}}"
+
+
+def _common(matrix: sp.MatrixBase) -> sp.Expr:
+    """The factors of all entries that are not zero, if one of them divides."""
+    entries = [{*sp.Mul.make_args(e)} for e in matrix if e != 0]
+    shared = set.intersection(*entries) if len(entries) > 1 else set()
+    if not any(f.is_Pow and f.exp.is_negative for f in shared):
+        return sp.S.One
+    return sp.Mul(*sorted(shared, key=str))
 
 
 __all__ = ["Equation", "Lines"]

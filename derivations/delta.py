@@ -1,6 +1,6 @@
 """The Delta robot with rotary drives (Clavel): three cranks carry a platform that does not turn."""
 
-from closedform.derivations.papers.textbook import TEXTBOOK
+from closedform.derivations.papers.textbook_loops import TEXTBOOK_LOOPS
 from sympy import Rational, cos, sin
 
 from closedform import Crank, Derivation, parallel, real
@@ -8,7 +8,7 @@ from closedform import Crank, Derivation, parallel, real
 d = Derivation(
     "delta",
     "Delta robot with rotary drives",
-    TEXTBOOK,
+    TEXTBOOK_LOOPS,
     "Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the "
     "centre of the base and in the directions alpha1, alpha2 and alpha3.  A crank points outwards "
     "at 0 and down at 90 degrees.  Three parallelograms of length l carry the platform, at the "

@@ -1,13 +1,13 @@
 """The planar five-bar linkage with five lengths: two cranks and two rods carry a point."""
 
-from closedform.derivations.papers.textbook import TEXTBOOK
+from closedform.derivations.papers.textbook_loops import TEXTBOOK_LOOPS
 
 from closedform import Crank, Derivation, parallel, real
 
 d = Derivation(
     "five_bar",
     "Planar five-bar linkage",
-    TEXTBOOK,
+    TEXTBOOK_LOOPS,
     "The cranks of lengths L1 and L2 turn about A1, the origin, and A2, at L0 on the x axis.  The "
     "rods of lengths L3 and L4 lead from their ends to the point P.  All angles are measured from "
     "the x axis.",

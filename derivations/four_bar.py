@@ -1,13 +1,13 @@
 """The planar four-bar linkage: a crank drives a rocker by a coupler."""
 
-from closedform.derivations.papers.textbook import TEXTBOOK
+from closedform.derivations.papers.textbook_loops import TEXTBOOK_LOOPS
 
 from closedform import Crank, Derivation, coupled, real
 
 d = Derivation(
     "four_bar",
     "Planar four-bar linkage",
-    TEXTBOOK,
+    TEXTBOOK_LOOPS,
     "The crank of length L2 turns about A1, the origin, and the rocker of length L4 about A2, at "
     "L1 on the x axis.  The coupler of length L3 joins their ends.  Both angles are measured from "
     "the x axis.",

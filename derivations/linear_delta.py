@@ -1,6 +1,6 @@
 """The Delta robot with linear drives: three sliders on vertical columns carry a platform."""
 
-from closedform.derivations.papers.textbook import TEXTBOOK
+from closedform.derivations.papers.textbook_loops import TEXTBOOK_LOOPS
 from sympy import Rational, sqrt
 
 from closedform import Derivation, Slide, parallel, real
@@ -8,7 +8,7 @@ from closedform import Derivation, Slide, parallel, real
 d = Derivation(
     "linear_delta",
     "Delta robot with linear drives",
-    TEXTBOOK,
+    TEXTBOOK_LOOPS,
     "Three sliders move up columns at the distance f from the z axis, a third of a turn apart; the "
     "first is on the x axis.  Parallelograms of length l lead from them to the platform, at the "
     "distance e from its centre P, and keep it from turning.",

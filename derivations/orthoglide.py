@@ -1,13 +1,13 @@
 """The Orthoglide (Wenger and Chablat): three sliders at right angles carry a point."""
 
-from closedform.derivations.papers.textbook import TEXTBOOK
+from closedform.derivations.papers.textbook_loops import TEXTBOOK_LOOPS
 
 from closedform import Derivation, Slide, parallel, real
 
 d = Derivation(
     "orthoglide",
     "Orthoglide",
-    TEXTBOOK,
+    TEXTBOOK_LOOPS,
     "Three sliders move along the axes x, y and z.  Parallelograms of length L lead from them to "
     "the hand P, which they keep from turning.  Where all sliders are at L, P is at the origin and "
     "the legs are at right angles: there the mechanism is isotropic.",

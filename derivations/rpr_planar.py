@@ -1,13 +1,13 @@
 """A planar parallel mechanism of two RPR legs: two sliding legs carry a point."""
 
-from closedform.derivations.papers.textbook import TEXTBOOK
+from closedform.derivations.papers.textbook_loops import TEXTBOOK_LOOPS
 
 from closedform import Derivation, Stretch, parallel, real
 
 d = Derivation(
     "rpr_planar",
     "Planar parallel mechanism (two RPR legs)",
-    TEXTBOOK,
+    TEXTBOOK_LOOPS,
     "Two legs turn freely about A1 at the origin and A2 at b on the x axis.  They slide out by "
     "rho1 and rho2, and both carry the point P.  The slides are driven; the angles theta1 and "
     "theta2 of the legs follow.",

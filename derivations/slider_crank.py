@@ -1,13 +1,13 @@
 """The slider-crank: a crank drives a slider by a connecting rod."""
 
-from closedform.derivations.papers.textbook import TEXTBOOK
+from closedform.derivations.papers.textbook_loops import TEXTBOOK_LOOPS
 
 from closedform import Crank, Derivation, Slide, coupled, real
 
 d = Derivation(
     "slider_crank",
     "Slider-crank",
-    TEXTBOOK,
+    TEXTBOOK_LOOPS,
     "The crank of length r turns about the origin.  The slider moves along a line parallel to the "
     "x axis, at the height e.  The connecting rod of length l joins the end of the crank to it.",
     task=["x"],

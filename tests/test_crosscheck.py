@@ -32,6 +32,7 @@ ROBOTS = (
     "h6ar",
     "h6ar_loop_closed",
     "hybrid_five_bar",
+    "irb2400",
     "irb260",
     "linear_delta",
     "orthoglide",

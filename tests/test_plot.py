@@ -16,7 +16,7 @@ from matplotlib import pyplot as plt
 import closedform
 from closedform import plot
 from closedform.cli.commands import main
-from closedform.plot.postures import spoken
+from closedform.plot.postures import OK, spoken
 
 SMALL = 40
 
@@ -105,6 +105,26 @@ def test_field_has_the_values_of_the_function() -> None:
     values = np.asarray(ax.collections[0].get_array()).reshape(SMALL, SMALL)
     theta2 = np.linspace(-np.pi, np.pi, SMALL)
     np.testing.assert_allclose(values, np.tile(80 * np.sin(theta2)[:, None], SMALL), atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["delta", "five_bar", "hybrid_five_bar", "orthoglide"])
+def test_conditioning_over_the_task_is_that_of_the_mode_that_reaches_it(name: str) -> None:
+    robot = import_module(f"closedform.generated.numpy.{name}")
+    r = plot.robot.Robot.of(robot)
+    grid = plot.maps._plane(r, None, None, 12, None)
+    drawn = np.asarray(plot.field(robot, "condition", resolution=12).collections[0].get_array())
+    h, size = 1e-6, r.size
+    compared = 0
+    for x, value in zip(grid.targets.reshape(-1, grid.targets.shape[-1]), drawn.flat, strict=True):
+        steps = [r.branches(x + s * h * size * e) for e in np.eye(len(x)) for s in (1, -1)]
+        if any(status[0] != OK for _, status in steps) or not value > 0.01:
+            continue
+        ends = np.array([q[0] for q, _ in steps])
+        change = np.angle(np.exp(1j * (ends[::2] - ends[1::2])))
+        sizes = np.linalg.svd(change, compute_uv=False)
+        assert value == pytest.approx(sizes[-1] / sizes[0], rel=1e-3)
+        compared += 1
+    assert compared > 5
 
 
 def test_singularities_of_the_elbow_are_lines_over_the_joints() -> None:

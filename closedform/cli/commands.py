@@ -151,7 +151,7 @@ def parser() -> argparse.ArgumentParser:
         nargs=2,
         required=True,
         metavar=("KIND", "FILE"),
-        help="dh TABLE.csv, screws FILE.toml or urdf FILE.urdf",
+        help="dh TABLE.csv, screws FILE.toml, urdf FILE.urdf or loop FILE.toml",
     )
     new.add_argument("--base", metavar="LINK", default="", help="of a URDF file; default: the root")
     new.add_argument("--tool", metavar="LINK", default="", help="of a URDF file; default: the end")

@@ -145,9 +145,7 @@ def _of_branches(r: Robot, targets: Array, q: Array) -> Array:
     factors = np.asarray(r.call("singularities", q))
     if not r.modes:
         return factors
-    x = r.task(q)
-    gap = np.abs(x - targets[..., None, None, :]).max(-1)
-    mode = np.argmin(np.where(np.isfinite(gap), gap, np.inf), axis=-1)
+    mode = r.mode_that_reaches(q, targets[..., None, :])
     return np.take_along_axis(factors, mode[..., None, None], axis=-2)[..., 0, :]
 
 
@@ -198,14 +196,18 @@ def field(
     plane
         two task coordinates, or two joints
     branch
-        over the task: the branch whose postures are measured
+        over the task: the branch whose postures are measured, each in the assembly mode that
+        reaches the target; over two joints, the first assembly mode is
     at, limits, resolution, params, ax
         as in :func:`workspace`; over two joints, ``at`` gives the other joints
     """
     r = Robot.of(robot, params)
     grid = _plane(r, plane, at, resolution, limits)
     q = grid.targets if grid.joints else _answers(r, grid.targets, branch)
-    values, label = _quantity(r, q, function)
+    mode = np.zeros(q.shape[:-1], dtype=np.intp)
+    if not grid.joints:
+        mode = r.mode_that_reaches(q, grid.targets)
+    values, label = _quantity(r, q, mode, function)
     ax = new_axes(False) if ax is None else ax
     with np.errstate(invalid="ignore"):
         high = float(np.nanquantile(values, 0.995)) if np.isfinite(values).any() else 1.0
@@ -340,20 +342,27 @@ def _task_plane(
 def _answers(r: Robot, targets: Array, branch: int | str) -> Array:
     k = list(r.module.BRANCHES).index(branch) if isinstance(branch, str) else branch
     q, status = r.branches(targets)
-    answered = np.where((status == OK)[..., None], q, np.nan)
-    return np.asarray(answered[..., k, :])
+    return np.where(answered(status)[..., None], q, np.nan)[..., k, :]
 
 
 def _branch_name(r: Robot, branch: int | str) -> str:
     return branch if isinstance(branch, str) else str(r.module.BRANCHES[branch])
 
 
-def _quantity(r: Robot, q: Array, function: str | Callable[[Array], Array]) -> tuple[Array, str]:
+def _quantity(
+    r: Robot, q: Array, mode: NDArray[np.intp], function: str | Callable[[Array], Array]
+) -> tuple[Array, str]:
+    """The values of a function for each posture, in its assembly mode, and what they are."""
+
+    def in_mode(values: Array) -> Array:
+        axes = tuple(range(mode.ndim, values.ndim))
+        return np.take_along_axis(values, np.expand_dims(mode, axes), mode.ndim).squeeze(mode.ndim)
+
     if callable(function):
         return np.asarray(function(q)), getattr(function, "__name__", "")
     if r.has(function):
         values = np.asarray(r.call(function, q))
-        return (values[..., 0] if values.ndim > q.ndim - 1 else values), function
+        return (in_mode(values) if values.ndim >= q.ndim else values), function
     if function not in ("manipulability", "condition"):
         raise ValueError(
             f"{r.name} has no function {function}; there are manipulability, condition and "
@@ -361,7 +370,7 @@ def _quantity(r: Robot, q: Array, function: str | Callable[[Array], Array]) -> t
         )
     name = next((n for n in ("jacobian", "jacobian_space") if r.has(n)), "jacobian")
     J = np.asarray(r.call(name, q))
-    J = J[..., 0, :, :] if r.modes else J
+    J = in_mode(J) if r.modes else J
     sizes = singular_values(J[..., : J.shape[-1], :])
     if function == "condition":
         with np.errstate(invalid="ignore", divide="ignore"):

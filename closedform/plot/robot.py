@@ -127,12 +127,12 @@ class Robot:
         found = self.call("ik", np.asarray(x, dtype=float))
         return np.asarray(found.q), np.asarray(found.status)
 
-    def mode_that_reaches(self, q: Array, x: ArrayLike) -> int:
-        """The assembly mode of a posture that is nearest to a target."""
+    def mode_that_reaches(self, q: Array, x: ArrayLike) -> NDArray[np.intp]:
+        """The assembly mode of each posture that is nearest to its target."""
         if not self.modes:
-            return 0
-        gap = np.abs(self.task(q) - np.asarray(x)).reshape(len(self.modes), -1).max(-1)
-        return int(np.nanargmin(gap))
+            return np.zeros(q.shape[:-1], dtype=np.intp)
+        gap = np.abs(self.task(q) - np.asarray(x)[..., None, :]).max(-1)
+        return np.asarray(np.argmin(np.where(np.isfinite(gap), gap, np.inf), axis=-1))
 
 
 def singular_values(J: Array) -> Array:

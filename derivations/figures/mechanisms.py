@@ -35,11 +35,16 @@ VIEWS = {
     "scara": View(
         home=(0, 0, 0.2, 0), general=(*degrees(-20, 60), 0.2, *degrees(40)), plane=("x", "y")
     ),
+    "irb2400": View(
+        general=degrees(-30, 25, -20, 30, 40, 20), limits=((-1.8, 1.8), (-0.9, 2.4))
+    ),
     "ur_arm": View(),
     "five_bar": View(home=degrees(110, 70), general=degrees(140, 65)),
     "delta": View(home=degrees(30, 30, 30), general=degrees(20, 35, 50), plane=("x", "z")),
     "linear_delta": View(home=(0.4, 0.4, 0.4), general=(0.4, 0.45, 0.36), plane=("x", "y")),
-    "orthoglide": View(home=(1, 1, 1), general=(1.15, 0.9, 0.8), plane=("x", "y"), mode=1),
+    "orthoglide": View(
+        home=(1, 1, 1), general=(1.15, 0.9, 0.8), plane=("x", "y"), at=(0, 0, 0), mode=1
+    ),
     "four_bar": View(home=degrees(90), general=degrees(50)),
     "slider_crank": View(home=degrees(90), general=degrees(50)),
     "rpr_planar": View(home=(0.8, 0.8), general=(0.9, 0.6), limits=((-0.7, 1.7), (-1.1, 1.1))),

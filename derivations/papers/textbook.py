@@ -1,6 +1,6 @@
-"""Arms that no paper publishes."""
+"""Arms of common structure, which no single paper publishes."""
 
-from closedform.derivations.papers.textbooks import LYNCH_PARK, MERLET, MURRAY_LI_SASTRY
+from closedform.derivations.papers.textbooks import LYNCH_PARK, MURRAY_LI_SASTRY
 
 from closedform import Paper
 
@@ -8,5 +8,5 @@ TEXTBOOK = Paper(
     "textbook",
     "Arms of common structure, solved by lemmas",
     ("The closedform authors",),
-    works=(LYNCH_PARK, MERLET, MURRAY_LI_SASTRY),
+    works=(LYNCH_PARK, MURRAY_LI_SASTRY),
 )

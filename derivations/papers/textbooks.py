@@ -1,7 +1,14 @@
-"""Textbooks and papers on arms of common structure."""
+"""Textbooks and papers on mechanisms of common structure."""
 
 from closedform import Work
 
+CLAVEL = Work(
+    "clavel",
+    ("Reymond Clavel",),
+    "Delta, a Fast Robot with Parallel Geometry",
+    "18th International Symposium on Industrial Robots, Lausanne, 91–100",
+    "1988",
+)
 CORKE = Work(
     "corke",
     ("Peter Corke",),
@@ -51,4 +58,11 @@ SPONG_HUTCHINSON_VIDYASAGAR = Work(
     "Robot Modeling and Control",
     "Wiley",
     "2006",
+)
+WENGER_CHABLAT = Work(
+    "wenger-chablat",
+    ("Philippe Wenger", "Damien Chablat"),
+    "Kinematic Analysis of a New Parallel Machine Tool: the Orthoglide",
+    "Advances in Robot Kinematics, Kluwer, 305–314",
+    "2000",
 )

@@ -8,6 +8,7 @@
 #include "h6ar.h"
 #include "h6ar_loop_closed.h"
 #include "hybrid_five_bar.h"
+#include "irb2400.h"
 #include "irb260.h"
 #include "linear_delta.h"
 #include "orthoglide.h"
@@ -1344,6 +1345,219 @@ static void hybrid_five_bar_workspace_volume_many(size_t n, const double *params
 
 static const cf_array hybrid_five_bar_workspace_volume_out[] = {
     { "volume", 0, { 0 }, 1, CF_REAL },
+};
+
+static const char *const irb2400_fields[] = { "a1", "d1", "a2", "a3", "d4", "d6" };
+static const double irb2400_values[] = IRB2400_DEFAULTS;
+
+static void irb2400_pose_one(const double *params, const double *const *in, void *const *out)
+{
+    irb2400_pose((const irb2400_params *)params, in[0], out[0]);
+}
+
+static void irb2400_pose_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb2400_pose_batch(n, (const irb2400_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb2400_pose_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array irb2400_pose_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void irb2400_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    irb2400_skeleton((const irb2400_params *)params, in[0], out[0]);
+}
+
+static void irb2400_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb2400_skeleton_batch(n, (const irb2400_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb2400_skeleton_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array irb2400_skeleton_out[] = {
+    { "points", 2, { 7, 3 }, 21, CF_REAL },
+};
+
+static void irb2400_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    irb2400_fk((const irb2400_params *)params, in[0], out[0]);
+}
+
+static void irb2400_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb2400_fk_batch(n, (const irb2400_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb2400_fk_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array irb2400_fk_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void irb2400_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    irb2400_jacobian((const irb2400_params *)params, in[0], out[0]);
+}
+
+static void irb2400_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb2400_jacobian_batch(n, (const irb2400_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb2400_jacobian_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array irb2400_jacobian_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void irb2400_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    irb2400_determinant((const irb2400_params *)params, in[0], out[0]);
+}
+
+static void irb2400_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb2400_determinant_batch(n, (const irb2400_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb2400_determinant_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array irb2400_determinant_out[] = {
+    { "det", 0, { 0 }, 1, CF_REAL },
+};
+
+static void irb2400_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    irb2400_singularities((const irb2400_params *)params, in[0], out[0]);
+}
+
+static void irb2400_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb2400_singularities_batch(n, (const irb2400_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb2400_singularities_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array irb2400_singularities_out[] = {
+    { "factors", 1, { 3 }, 3, CF_REAL },
+};
+
+static void irb2400_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    irb2400_jacobian_space((const irb2400_params *)params, in[0], out[0]);
+}
+
+static void irb2400_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb2400_jacobian_space_batch(n, (const irb2400_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb2400_jacobian_space_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array irb2400_jacobian_space_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void irb2400_jacobian_body_one(const double *params, const double *const *in, void *const *out)
+{
+    irb2400_jacobian_body((const irb2400_params *)params, in[0], out[0]);
+}
+
+static void irb2400_jacobian_body_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb2400_jacobian_body_batch(n, (const irb2400_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb2400_jacobian_body_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array irb2400_jacobian_body_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void irb2400_joints_from_motors_one(const double *params, const double *const *in, void *const *out)
+{
+    irb2400_joints_from_motors((const irb2400_params *)params, in[0], out[0]);
+}
+
+static void irb2400_joints_from_motors_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb2400_joints_from_motors_batch(n, (const irb2400_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb2400_joints_from_motors_in[] = {
+    { "motors", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array irb2400_joints_from_motors_out[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static void irb2400_motors_from_joints_one(const double *params, const double *const *in, void *const *out)
+{
+    irb2400_motors_from_joints((const irb2400_params *)params, in[0], out[0]);
+}
+
+static void irb2400_motors_from_joints_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb2400_motors_from_joints_batch(n, (const irb2400_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array irb2400_motors_from_joints_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array irb2400_motors_from_joints_out[] = {
+    { "motors", 1, { 6 }, 6, CF_REAL },
+};
+
+static void irb2400_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    irb2400_ik((const irb2400_params *)params, in[0], out[0], out[1]);
+}
+
+static void irb2400_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    irb2400_ik_batch(n, (const irb2400_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array irb2400_ik_in[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static const cf_array irb2400_ik_out[] = {
+    { "q", 2, { 8, 6 }, 48, CF_REAL },
+    { "status", 1, { 8 }, 8, CF_STATUS },
 };
 
 static const char *const irb260_fields[] = { "l1", "l2", "l3", "l4", "l5", "l6" };
@@ -5780,6 +5994,322 @@ const cf_function cf_functions[] = {
       3, hybrid_five_bar_values, hybrid_five_bar_fields,
       0, NULL, 1, hybrid_five_bar_workspace_volume_out,
       hybrid_five_bar_workspace_volume_one, hybrid_five_bar_workspace_volume_many },
+    { "irb2400.pose",
+      "Pose of the tool in the base frame.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "T : ndarray of float64, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      6, irb2400_values, irb2400_fields,
+      1, irb2400_pose_in, 1, irb2400_pose_out,
+      irb2400_pose_one, irb2400_pose_many },
+    { "irb2400.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 7, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      6, irb2400_values, irb2400_fields,
+      1, irb2400_skeleton_in, 1, irb2400_skeleton_out,
+      irb2400_skeleton_one, irb2400_skeleton_many },
+    { "irb2400.fk",
+      "Pose of the tool in the base frame.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "T : ndarray of float64, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      6, irb2400_values, irb2400_fields,
+      1, irb2400_fk_in, 1, irb2400_fk_out,
+      irb2400_fk_one, irb2400_fk_many },
+    { "irb2400.jacobian",
+      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 6)\n"
+      "    One column for each of theta1 to theta6.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The geometric Jacobian: rows (v; omega), v of the origin of the tool.\n"
+      ,
+      6, irb2400_values, irb2400_fields,
+      1, irb2400_jacobian_in, 1, irb2400_jacobian_out,
+      irb2400_jacobian_one, irb2400_jacobian_many },
+    { "irb2400.determinant",
+      "Determinant of the Jacobian.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "det : ndarray of float64, shape (...)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      6, irb2400_values, irb2400_fields,
+      1, irb2400_determinant_in, 1, irb2400_determinant_out,
+      irb2400_determinant_one, irb2400_determinant_many },
+    { "irb2400.singularities",
+      "The factors of the determinant that hold a joint.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "factors : ndarray of float64, shape (..., 3)\n"
+      "    One factor for each singular set: shoulder; elbow; wrist.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      6, irb2400_values, irb2400_fields,
+      1, irb2400_singularities_in, 1, irb2400_singularities_out,
+      irb2400_singularities_one, irb2400_singularities_many },
+    { "irb2400.jacobian_space",
+      "Twist (v; omega) of the tool in the base frame per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 6)\n"
+      "    One column for each of theta1 to theta6.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      6, irb2400_values, irb2400_fields,
+      1, irb2400_jacobian_space_in, 1, irb2400_jacobian_space_out,
+      irb2400_jacobian_space_one, irb2400_jacobian_space_many },
+    { "irb2400.jacobian_body",
+      "Twist (v; omega) of the tool in its own frame per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 6)\n"
+      "    One column for each of theta1 to theta6.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      6, irb2400_values, irb2400_fields,
+      1, irb2400_jacobian_body_in, 1, irb2400_jacobian_body_out,
+      irb2400_jacobian_body_one, irb2400_jacobian_body_many },
+    { "irb2400.joints_from_motors",
+      "Joint angles of motor angles.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "motors : array_like, shape (..., 6)\n"
+      "    m1 to m6.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "q : ndarray of float64, shape (..., 6)\n"
+      "    theta1 to theta6 in rad, in (-pi, pi].\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      6, irb2400_values, irb2400_fields,
+      1, irb2400_joints_from_motors_in, 1, irb2400_joints_from_motors_out,
+      irb2400_joints_from_motors_one, irb2400_joints_from_motors_many },
+    { "irb2400.motors_from_joints",
+      "Motor angles of joint angles.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "motors : ndarray of float64, shape (..., 6)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      6, irb2400_values, irb2400_fields,
+      1, irb2400_motors_from_joints_in, 1, irb2400_motors_from_joints_out,
+      irb2400_motors_from_joints_one, irb2400_motors_from_joints_many },
+    { "irb2400.ik",
+      "All eight postures of a pose, as angles of the joints.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "T : array_like, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : tuple of ndarray, optional\n"
+      "    Arrays to write the results to; they are returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "q : ndarray of float64, shape (..., 8, 6)\n"
+      "    theta1 to theta6 in rad, in (-pi, pi].\n"
+      "status : ndarray of uint8, shape (..., 8)\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `BRANCHES`: facing_up_noflip, facing_up_flip, facing_down_noflip,\n"
+      "  facing_down_flip, backward_up_noflip, backward_up_flip, backward_down_noflip,\n"
+      "  backward_down_flip.\n"
+      "- motors_from_joints takes them to the motors.\n"
+      "- facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the\n"
+      "  wrist; down: below; the other way round where X is between 0 and a1.\n"
+      "- noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
+      "- SINGULAR: the centre of the wrist on the base axis, theta1 = 0 is returned; equal links\n"
+      "  folded with the wrist on the shoulder, or a link without length.\n"
+      "- SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.\n"
+      ,
+      6, irb2400_values, irb2400_fields,
+      1, irb2400_ik_in, 2, irb2400_ik_out,
+      irb2400_ik_one, irb2400_ik_many },
     { "irb260.joint4",
       "Angle theta4 of the virtual joint, which keeps the wrist bracket level.\n"
       "\n"

@@ -7,6 +7,7 @@ export * as four_bar from "./four_bar.js";
 export * as h6ar from "./h6ar.js";
 export * as h6ar_loop_closed from "./h6ar_loop_closed.js";
 export * as hybrid_five_bar from "./hybrid_five_bar.js";
+export * as irb2400 from "./irb2400.js";
 export * as irb260 from "./irb260.js";
 export * as linear_delta from "./linear_delta.js";
 export * as orthoglide from "./orthoglide.js";

@@ -19,6 +19,7 @@ COURSE = (
     "scara",
     "puma560",
     "stanford_arm",
+    "irb2400",
     "ur_arm",
     "slider_crank",
     "four_bar",

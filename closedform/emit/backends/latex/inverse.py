@@ -236,6 +236,8 @@ class Told:
         where = self.parts(parts)
         several = len(equations) > 1
         source = f"From {where} of the forward map" if where else "From the forward map"
+        if page.derivation.assembly_modes:
+            source = "From the equations of the loop"
         verb = "follow equations" if several else "follows an equation"
         unknowns = enumeration([f"${page.math(u)}$" for u in solving.unknowns])
         if before:

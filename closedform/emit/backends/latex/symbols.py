@@ -138,7 +138,7 @@ def undefined(derivation: Derivation, numbers: Numbers, math: Printed) -> list[s
 
 
 def table(derivation: Derivation, numbers: Numbers, prose: Prose) -> list[tuple[str, str]]:
-    """Symbols other than parameters and joints, with their meaning."""
+    """Symbols other than parameters and joints, with their meaning; not the entries of a matrix."""
     declared = {s.name for s in symbols_declared(derivation)}
     rows: dict[str, list[str]] = {}
     for name, written in derivation.written.items():
@@ -150,11 +150,19 @@ def table(derivation: Derivation, numbers: Numbers, prose: Prose) -> list[tuple[
     taken = {_form(derivation, name) for name in declared}
     said = dict(_summaries(derivation))
     for form, label in numbers.defined.items():
-        if form not in taken:
+        if form not in taken and not (form not in rows and _matrix_of(form) in numbers.defined):
             told = rows.setdefault(form, [prose(said[form])] if form in said else [])
             told.append(f"see {reference([label])}")
     cells = ((form, ", ".join(filter(None, texts))) for form, texts in rows.items())
     return sorted(((f, t) for f, t in cells if t), key=lambda row: (skeleton(row[0]).lower(), row))
+
+
+def _matrix_of(form: str) -> str:
+    """``J_{s}`` of ``J_{s,12}`` and ``J`` of ``J_{12}``."""
+    entry = re.fullmatch(r"(.+)_\{(?:(.+),)?\d\d\}", form)
+    if entry is None:
+        return ""
+    return f"{entry[1]}_{{{entry[2]}}}" if entry[2] else entry[1]
 
 
 def _form(derivation: Derivation, name: str) -> str:

@@ -1,0 +1,189 @@
+"""A six-axis arm whose forearm is driven through a parallelogram, as that of the IRB 2400."""
+
+import sympy as sp
+from closedform.derivations.papers.textbook import TEXTBOOK
+from closedform.derivations.wrist_of_an_arm import aligned_wrist, wrist_step
+from sympy import atan2, cos, pi, sin, sqrt
+
+from closedform import (
+    Chain,
+    Derivation,
+    from_dh,
+    parallelogram,
+    real,
+    rotation,
+    turn,
+    turned,
+    two_links,
+    zyz,
+)
+
+d = Derivation(
+    "irb2400",
+    "Six-axis arm on a parallelogram (IRB 2400)",
+    TEXTBOOK,
+    "theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal and parallel, "
+    "and a spherical wrist (theta4, theta5, theta6) carries the tool.  At zero angles the upper "
+    "arm is upright, the forearm level along x, and the tool points along x.  Motor 3 stands on "
+    "the turret beside motor 2; a parallelogram takes its turn to the forearm.",
+)
+
+
+def length(name: str, millimetres: int, meaning: str, *, nonnegative: bool = True) -> sp.Symbol:
+    value, source = sp.Rational(millimetres, 1000), "the maker's data of the IRB 2400/10"
+    return d.parameter(
+        name, value=value, unit="m", meaning=meaning, source=source, nonnegative=nonnegative
+    )
+
+
+a1 = length("a1", 100, "from the first axis forward to the shoulder", nonnegative=False)
+d1 = length("d1", 615, "from the base up to the shoulder", nonnegative=False)
+a2 = length("a2", 705, "length of the upper arm")
+a3 = length("a3", 135, "from the elbow up to the axis of the forearm", nonnegative=False)
+d4 = length("d4", 755, "along the forearm to the centre of the wrist")
+d6 = length("d6", 85, "from the centre of the wrist to the tool", nonnegative=False)
+q = theta1, theta2, theta3, theta4, theta5, theta6 = [d.joint(f"theta{i}") for i in range(1, 7)]
+
+# Forward kinematics and velocity
+
+rows = [
+    (a1, -pi / 2, d1, theta1),
+    (a2, 0, 0, theta2 - pi / 2),
+    (a3, -pi / 2, 0, theta3),
+    (0, pi / 2, d4, theta4),
+    (0, -pi / 2, 0, theta5),
+    (0, 0, d6, theta6),
+]
+d.write("alpha", meaning="angle at the shoulder, of the triangle of the arm")
+d.write("elbow", r"\eta", "angle at the elbow, of the triangle of the arm")
+for axis in "xyz":
+    d.write(f"w_{axis}", meaning=f"component {axis} of the centre of the wrist")
+d.step(
+    "Denavit-Hartenberg table",
+    "Standard (distal) frames.  The axes 2 and 3 are parallel, so their angles add.",
+    {r"(a_i, \alpha_i, d_i, \theta_i)": sp.Matrix(rows)},
+)
+arm = from_dh(d, rows)
+forearm_turn = theta2 + theta3
+X = a1 + a2 * sin(theta2) + a3 * sin(forearm_turn) + d4 * cos(forearm_turn)
+Z = d1 + a2 * cos(theta2) + a3 * cos(forearm_turn) - d4 * sin(forearm_turn)
+elbow = a3 * sin(theta3) + d4 * cos(theta3)
+centre = sp.Matrix([X * cos(theta1), X * sin(theta1), Z])
+forward = arm.export(d, {"shoulder": X, "elbow": elbow, "wrist": sin(theta5)})
+d.step(
+    "Centre of the wrist",
+    "In the plane of the arm it is at X forward and Z up; the wrist does not move it.",
+    {"X": X, "Z": Z, "w": centre},
+    proves="The position of the tool is d6 before this point, along the last axis.",
+    equal=[(arm.position, centre + d6 * arm.pose[:3, 2])],
+)
+at_wrist = centre.jacobian(q[:3])
+det = a2 * X * elbow * sin(theta5)
+d.step(
+    "Factors",
+    "The velocity of the centre of the wrist depends on the first three joints alone, so the "
+    "determinant is that of the arm times that of the wrist.  It vanishes, for an upper arm that "
+    "has a length, where X = 0 (shoulder: the centre of the wrist is on the base axis), where the "
+    "arm is stretched or folded (elbow), and where the axes 4 and 6 coincide (wrist).",
+    {r"|\det J|": sp.Abs(det)},
+    proves="The product of both determinants is that of J, but for its sign.",
+    equal=[((at_wrist.det() * arm.geometric[3:, 3:].det()) ** 2, det**2)],
+)
+
+# The parallelogram and the motors
+
+m = m1, m2, m3, m4, m5, m6 = [real(f"m{i}") for i in range(1, 7)]
+crank, direction, phi, beta = real("r", positive=True), real("gamma"), real("phi"), real("beta")
+sigma = real("sigma")
+loop = parallelogram((a2, crank), (theta2, direction + m3), (phi, beta), sigma)
+M = sp.Matrix([m1, m2, loop[phi].subs(sigma, 1) + m3 - m2, m4, m5, m6]).jacobian(m)
+d.step(
+    "The parallelogram and the motors",
+    "Motor 3 turns a crank of length r on the turret.  A rod as long as the upper arm leads from "
+    "it to the forearm, r from the elbow.  In the parallelogram the forearm does not turn against "
+    "the crank, phi = 0, so motor 3 gives theta2 + theta3, the turn of the forearm against the "
+    "turret.  The crossed assembly is left out: the two meet only where crank and upper arm are "
+    "in line, which the stops of the machine do not let them reach.  The wrist has motors of its "
+    "own.",
+    {
+        "0": sp.Matrix(loop.equations),
+        r"\theta_2 + \theta_3 - m_3": loop[phi].subs(sigma, 1),
+        r"M = \partial(\theta_1, \ldots, \theta_6) / \partial m": M,
+    },
+    proves="Both assemblies close the loop, and M takes the motors to the joints.",
+    equal=[
+        *(
+            (sp.Matrix(loop.equations).subs(loop.solution).subs(sigma, sign), sp.zeros(2, 1))
+            for sign in (1, -1)
+        ),
+        (M * sp.Matrix(m), sp.Matrix([m1, m2, m3 - m2, m4, m5, m6])),
+    ],
+)
+d.function(
+    "joints_from_motors",
+    "Joint angles of motor angles.",
+    {"motors": sp.Matrix(m)},
+    {"q": M * sp.Matrix(m)},
+)
+d.function(
+    "motors_from_joints",
+    "Motor angles of joint angles.",
+    {"q": sp.Matrix(q)},
+    {"motors": M.inv() * sp.Matrix(q)},
+)
+
+# Inverse kinematics
+
+ik = Chain(d, forward)
+wx, wy, wz = ik.vector("w", ik.p - d6 * ik.R[:, 2])
+f = ik.program.let("f", sqrt(a3**2 + d4**2), nonnegative=True)
+up = ik.let("up", wz - d1)
+ik.size = a2 + f + sp.Abs(a1)
+facing = {-1: "facing", +1: "backward"}
+shoulder = ik.solve(turn, theta1, wx, -wy, 0, facing)
+d.step(
+    "Inverse: the turret",
+    "The centre of the wrist, which is d6 behind the tool, is in the plane of the arm.  Two turns "
+    "of the turret put it there: facing (X >= 0) and backward (X <= 0).  On the base axis theta1 "
+    "is free and we return 0.",
+    {"w": centre, r"w_x \sin\theta_1 - w_y \cos\theta_1": sp.S.Zero},
+)
+angle = ik.angle("elbow", theta3 + atan2(d4, a3))
+lower = ik.angle("lower", theta2 - pi / 2)
+forearm = ik.direction("forearm", a3, d4)
+out = ik.let("out", shoulder.ahead - a1)
+lift, bend = ik.solve(
+    two_links, lower, angle, out, -up, a2, f, {-1: "up", +1: "down"}, mirrored=shoulder.side
+)
+d.step(
+    "Inverse: the elbow",
+    "The upper arm a2, the forearm f and the line from the shoulder to the wrist are a triangle, "
+    "whose angle at the elbow is theta3 plus that of the forearm against its frame.",
+    {"f": sqrt(a3**2 + d4**2), r"\theta_3": angle - atan2(d4, a3)},
+)
+in_plane = ik.matrix("R1", rotation("x", pi / 2) * turned(shoulder).T * ik.R)
+both = turned(lift + (bend - forearm).known_as(ik.program, "3"))
+left = ik.matrix("R2", rotation("x", pi / 2) * both.T * in_plane)
+ik.solve(zyz, left, theta4, ik.angle("beta", -theta5), theta6, {-1: "noflip", +1: "flip"})
+R03 = rotation("z", theta1) * rotation("x", -pi / 2) * rotation("z", forearm_turn - pi / 2)
+R03 = R03 * rotation("x", -pi / 2)
+R36 = rotation("z", theta4) * rotation("y", -theta5) * rotation("z", theta6)
+wrist_step(d, arm.pose, R03, R36, (theta4, theta5, theta6))
+px, py, pz = ik.p
+R06 = r"R_{36} = R_{03}^T R"
+ik.continuum(theta1, {px: d6 * ik.R[0, 2], py: d6 * ik.R[1, 2]}, R06)
+aligned_wrist(ik, R03, theta4)
+ik.finish(
+    "All eight postures of a pose, as angles of the joints.",
+    notes=(
+        "motors_from_joints takes them to the motors.",
+        "facing: X >= 0; backward: X <= 0.  up: the elbow is above the line from the shoulder to "
+        "the wrist; down: below; the other way round where X is between 0 and a1.",
+        "noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.",
+    ),
+    singular=(
+        "the centre of the wrist on the base axis, theta1 = 0 is returned; equal links folded "
+        "with the wrist on the shoulder, or a link without length.",
+        "the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.",
+    ),
+)

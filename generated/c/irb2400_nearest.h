@@ -1,0 +1,50 @@
+/*
+ * Six-axis arm on a parallelogram (IRB 2400): the posture nearest to a seed, printed by closedform.
+ * Do not edit: change the template and run make.
+ */
+#ifndef CLOSEDFORM_IRB2400_NEAREST_H
+#define CLOSEDFORM_IRB2400_NEAREST_H
+
+#include "closedform_nearest.h"
+#include "irb2400.h"
+
+#define IRB2400_JOINTS 6
+#define IRB2400_BRANCHES 8
+
+static inline void irb2400_nearest_ik(const void *params, const real_t *x, real_t *q, uint8_t *status)
+{
+    irb2400_ik((const irb2400_params *)params, x, q, status);
+}
+
+static inline void irb2400_nearest_fk(const void *params, const real_t *q, real_t *x)
+{
+    irb2400_fk((const irb2400_params *)params, q, x);
+}
+
+static inline void irb2400_nearest_jacobian(const void *params, const real_t *q, real_t *J)
+{
+    irb2400_jacobian_space((const irb2400_params *)params, q, J);
+}
+
+/*
+ * Of all branches of irb2400_ik, and all turns of each joint, the posture that is nearest to a seed.
+ *
+ * limits: the lower limits of all joints (theta1, theta2, theta3, theta4, theta5, theta6), then the upper ones; NULL: none.
+ * weights: of the squares of the joints in the distance; NULL: all 1.
+ * q, status: the posture and the status of its branch; NaN and CLOSEDFORM_UNREACHABLE or
+ *     CLOSEDFORM_INVALID if there is none within the limits. Where a joint is free
+ *     (CLOSEDFORM_SINGULAR), it keeps the value of the seed, and the others follow.
+ * outside: for each branch, a bit for each joint that has no turn within its limits; may be NULL.
+ * Returns the index of the branch, or -1. Of equal distances the first branch and the lower turn win.
+ */
+static inline int irb2400_nearest(const irb2400_params *params, const real_t T[16],
+    const real_t q_seed[6], const real_t *limits, const real_t *weights, real_t q[6], uint8_t *status,
+    uint32_t *outside)
+{
+    static const cf_robot robot = { 6, 8, 16, 1, 6, 6, 6, 0x3fu,
+        0x0u, irb2400_nearest_ik, irb2400_nearest_fk, irb2400_nearest_jacobian };
+    return cf_nearest_posture(
+        &robot, params, T, q_seed, limits, weights, q, status, outside);
+}
+
+#endif

@@ -19,9 +19,11 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from closedform import Crank, parallel
 from closedform.check.clibrary import compiler
 from closedform.check.report import _page
 from closedform.emit.pages import pages, shared_files
+from closedform.mechanics.frames import merge_angles
 from closedform.model.claims import Gravity
 from closedform.model.derivation import Derivation, Paper, Table
 from closedform.model.functions import Branches, Program, branches, choose, real
@@ -34,7 +36,8 @@ from closedform.proof.prove import Proof
 pytestmark = pytest.mark.usefixtures("compiled_quickly")
 
 Strings = Callable[[str], str]
-HEADER = Path(__file__).parents[1] / "closedform" / "runtime" / "c" / "closedform.h"
+PACKAGE = Path(__file__).parents[1] / "closedform"
+HEADER = PACKAGE / "runtime" / "c" / "closedform.h"
 
 
 needs_node = pytest.mark.skipif(
@@ -498,3 +501,41 @@ def test_the_module_uses_no_name_of_python_that_a_function_may_have() -> None:
     tree = ast.parse(printed(slider())[Path("numpy", "robot.py")])
     used = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name)}
     assert used & set(dir(builtins)) <= {"list", "str"}
+
+
+def test_no_text_is_evaluated_anywhere_in_the_toolkit() -> None:
+    """``sympify`` turns text into code unless it is strict."""
+    found = []
+    for path in sorted(PACKAGE.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.Call):
+                name = node.func.attr if isinstance(node.func, ast.Attribute) else ""
+                name = node.func.id if isinstance(node.func, ast.Name) else name
+                strict = any(
+                    k.arg == "strict" and isinstance(k.value, ast.Constant) and k.value.value
+                    for k in node.keywords
+                )
+                if name in ("parse_expr", "eval") or (name == "sympify" and not strict):
+                    found.append(f"{path.relative_to(PACKAGE)}:{node.lineno}")
+    assert not found
+
+
+@pytest.mark.parametrize(
+    "evaluate",
+    [
+        lambda text: Program().determined(real("x"), text, "small"),
+        lambda text: merge_angles(text),
+        lambda text: Crank(real("q"), 1, text, (0, 0), (1, 0), (0, 1)) and _two_legs(text),
+    ],
+)
+def test_a_text_in_place_of_an_expression_is_refused(evaluate: Any, tmp_path: Path) -> None:
+    trace = tmp_path / "trace"
+    with pytest.raises((sp.SympifyError, TypeError, ValueError)):
+        evaluate(f"__import__('pathlib').Path({str(trace)!r}).touch()")
+    assert not trace.exists()
+
+
+def _two_legs(rod: Any) -> None:
+    d = Derivation("arm", "Arm", Paper("arm", "Arm", ("nobody",)), "Two legs.", task=["x", "y"])
+    legs = [Crank(d.joint(f"q{k}"), 1, rod, (0, k), (1, 0), (0, 1)) for k in (1, 2)]
+    parallel(d, (real("x"), real("y")), legs, {+1: "a", -1: "b"})

@@ -391,9 +391,9 @@ def test_a_table_of_a_step() -> None:
 def test_statements_that_functions_share_are_printed_once() -> None:
     d = __import__("closedform.derivations.hybrid_five_bar", fromlist=["d"]).d
     tex = render("latex/robot.tex.jinja", document(d, Proof(d.name, d.paper.key, (), 0, ())))
-    place = r"Section~\ref{inverse:hybrid_five_bar:fk}"
-    assert rf"Continue after the lines of \texttt{{fk}}, {place}." in tex
-    assert r"Continue after the lines of \texttt{jacobian\_parallel}." in tex
+    place, cases = r"Section~\ref{inverse:hybrid_five_bar:fk}", "with its special cases"
+    assert rf"Continue after the lines of \texttt{{fk}}, {place}, {cases}." in tex
+    assert rf"Continue after the lines of \texttt{{jacobian\_parallel}}, {cases}." in tex
 
 
 def test_special_characters() -> None:

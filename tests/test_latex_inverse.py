@@ -35,7 +35,8 @@ def page(name: str) -> Page:
 def told(name: str) -> tuple[Told, dict]:
     found = page(name)
     function = found.derivation["ik"]
-    text = Told(found, function, found.algorithm(function), found.after(function))
+    algorithm = found.algorithm(function)
+    text = Told(found, function, algorithm, found.after(function, algorithm))
     return text, text.context()
 
 

@@ -1,5 +1,6 @@
 """Closed loops: a hand on legs, and a single loop; against numbers found by other means."""
 
+import ast
 import importlib
 from dataclasses import replace
 from pathlib import Path
@@ -16,6 +17,7 @@ from closedform.model.functions import Program
 from closedform.proof.links import prove_lemma
 from closedform.proof.require import ProofError
 from closedform.scaffold.loops import loop_script, read_loop
+from closedform.scaffold.new import new
 from closedform.scaffold.tables import TableError
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
@@ -425,7 +427,7 @@ def test_three_sliders_from_a_file_are_proved(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
+    ("old", "other", "message"),
     [
         ('hand = "P"', 'hand = "Q"', "neither a point nor a joint"),
         ("driven = true", "driven = false", "no joint is driven"),
@@ -438,13 +440,41 @@ def test_three_sliders_from_a_file_are_proved(tmp_path: Path) -> None:
         ('length = "L"', 'length = "().__class__"', "loop.toml"),
         ("O = [0, 0, 0]", "O = [0, 0]", "2 coordinates"),
         ("driven = true", 'driven = "yes"', "true or false"),
+        ('between = ["z", "rod3"]', 'between = ["z\\u202e", "rod3"]', r"not 'z\\u202e'"),
+        ('at = "C"', 'at = ""', "letters, digits"),
+        ('hand = "P"', 'hand = "P\\n"', "letters, digits"),
+        ('at = "O"', 'at = "U"', "x has no point U, where b1 is"),
     ],
 )
 def test_a_file_that_cannot_be_read_says_why(
-    old: str, new: str, message: str, tmp_path: Path
+    old: str, other: str, message: str, tmp_path: Path
 ) -> None:
     with pytest.raises(TableError, match=message):
-        written(SLIDERS.replace(old, new), tmp_path)
+        written(SLIDERS.replace(old, other), tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("L0; import os", "is not a name"),
+        ("Crank", "uses the name Crank itself"),
+        ("lambda", "lambda"),
+        ("theta1", "is a joint and a parameter"),
+        ("x", "is a coordinate of the hand"),
+    ],
+)
+def test_names_that_would_enter_the_script_are_refused(
+    name: str, message: str, tmp_path: Path
+) -> None:
+    with pytest.raises(TableError, match=message):
+        written(FIVE_BAR.replace("L0 = {", f'"{name}" = {{'), tmp_path)
+
+
+def test_the_name_of_a_file_stays_a_text(tmp_path: Path) -> None:
+    path = tmp_path / 'loop"""; raise SystemExit; """.toml'
+    path.write_text(FIVE_BAR, "utf-8")
+    script = new("arm", "loop", path).text
+    assert not [n for n in ast.walk(ast.parse(script)) if isinstance(n, ast.Raise)]
 
 
 def test_three_legs_of_a_body_that_turns_have_no_closed_form(tmp_path: Path) -> None:

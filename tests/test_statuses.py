@@ -43,6 +43,7 @@ THRESHOLDS = {
     "stanford_arm": [near(2, (0.0,)), near(4, (0.0, np.pi))],
     "ur_arm": [near(4, (0.0, np.pi)), near_edges],
     "hybrid_five_bar": [near(1, (0.0, np.pi)), near(2, (0.0, np.pi))],
+    "irb2400": [near(4, (0.0, np.pi)), near(2, (np.arctan2(0.755, 0.135) - np.pi,))],
 }
 
 
@@ -68,6 +69,16 @@ LIMITS = {
     ("hybrid_five_bar", "fk"): ((3, 3, 3), (-3, -3, -3)),
     ("hybrid_five_bar", "ik"): ((3, 3, 3), (-3, -3, -3)),
     ("rpr_planar", "fk"): ((3, 3), (0, 0)),
+    ("five_bar", "fk"): ((3, 3), (-3, -3)),
+    ("five_bar", "ik"): ((20, 20), (-15, -15)),
+    ("delta", "fk"): ((3, 3, 3), (-3, -3, -3)),
+    ("delta", "ik"): ((0.4, 0.4, 0.5), (-0.4, -0.4, -0.5)),
+    ("linear_delta", "fk"): ((1, 1, 1), (-1, -1, -1)),
+    ("linear_delta", "ik"): ((0.5, 0.5, 0.5), (-0.5, -0.5, -0.5)),
+    ("orthoglide", "fk"): ((2, 2, 2), (-2, -2, -2)),
+    ("orthoglide", "ik"): ((1, 1, 1), (-1, -1, -1)),
+    ("four_bar", "ik"): ((3,), (-3,)),
+    ("slider_crank", "ik"): ((6,), (-6,)),
 }
 """Functions, and the values between which an argument crosses a limit of their reach."""
 

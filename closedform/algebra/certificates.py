@@ -178,14 +178,14 @@ class Record:
         The result says whether that is so and can be certified.
         """
         self.proofs += 1
-        parts = [_apart(sp.sympify(e)) for row in rows for e in row]
+        parts = [_apart(sp.sympify(e, strict=True)) for row in rows for e in row]
         plain = {s for outside, _ in parts for s in outside}
         turning = {s for _, inside in parts for s in inside}
         try:
             content: dict[str, Any] = {
                 "names": [[self.node(s), str(v)] for s, v in point.items() if s in plain],
                 "angles": [[self.node(s), str(v)] for s, v in point.items() if s in turning],
-                "matrix": [[self.node(sp.sympify(e)) for e in row] for row in rows],
+                "matrix": [[self.node(sp.sympify(e, strict=True)) for e in row] for row in rows],
             }
             values = fmpq_mat(matrix_of(self.nodes, content))
         except (_Unwritable, Refused, LookupError):
@@ -202,7 +202,7 @@ class Record:
         """The equations of a system, their unknowns and their parameters."""
         given = [[self.node(x), self.node(e)] for x, e in system.given.items()]
         everything = [*system.equations, *system.nonzero, *system.given.values()]
-        apart = [_apart(sp.sympify(e)) for e in everything]
+        apart = [_apart(sp.sympify(e, strict=True)) for e in everything]
         plain = {s for outside, _ in apart for s in outside}
         turning = {s for _, inside in apart for s in inside}
         unknown = {*system.unknowns, *system.angles, *system.given}

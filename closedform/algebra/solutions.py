@@ -78,7 +78,9 @@ def count_solutions(
     record, written = open_record(), None
     if method == "generic":
         if record:
-            stated = {s for e in [*equations, *saturate] for s in sp.sympify(e).free_symbols}
+            stated = {
+                s for e in [*equations, *saturate] for s in sp.sympify(e, strict=True).free_symbols
+            }
             given = {**given, **system.merged(stated - {*given, *unknowns})}
             problem = System(equations, saturate, given, system.angles, system.plain)
             written = record.count(problem)

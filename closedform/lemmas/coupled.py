@@ -54,7 +54,7 @@ def coupled(
     if driver.rod != follower.rod:
         raise ValueError(f"{d.name}: the driver and the follower must have the same rod")
     d.singularities, d.poles = ("driver", "follower"), ("follower",)
-    loop = square(follower.end() - driver.end()) - sp.sympify(driver.rod) ** 2
+    loop = square(follower.end() - driver.end()) - sp.sympify(driver.rod, strict=True) ** 2
     stated = d.step(
         "The loop",
         "The driver determines the point b at one end of the rod, and the follower the point c at "
@@ -62,7 +62,7 @@ def coupled(
         {
             r"\mathbf b": driver.end(),
             r"\mathbf c": follower.end(),
-            r"|\mathbf c - \mathbf b|": sp.sympify(driver.rod),
+            r"|\mathbf c - \mathbf b|": sp.sympify(driver.rod, strict=True),
         },
     )
     rod = _forward(d, driver, follower, loop, modes, stated)
@@ -137,13 +137,15 @@ def _draw(
 ) -> None:
     posture = {name: in_space(at) for name, at in _points(driver, follower).items()}
     end = driver.end() + rod.vector
-    lengths = {("B1", "B2"): sp.sympify(driver.rod)}
+    lengths = {("B1", "B2"): sp.sympify(driver.rod, strict=True)}
     links = {"ground": ("A1", "A2"), "rod": ("B1", "B2")}
     joints: dict[sp.Symbol, tuple[str, ...]] = {}
     for k, leg in enumerate((driver, follower), 1):
         base, near = f"A{k}", f"B{k}"
         crank = isinstance(leg, Crank)
-        lengths[base, near] = sp.sympify(leg.length) if isinstance(leg, Crank) else leg.joint
+        lengths[base, near] = (
+            sp.sympify(leg.length, strict=True) if isinstance(leg, Crank) else leg.joint
+        )
         if crank:
             links[f"crank{k}"] = (base, near)
         if leg.joint in d.actuated:

@@ -60,7 +60,10 @@ def differs_from_zero(chain: Chain, value: sp.Expr, scale: sp.Expr) -> bool:
     numbers = {
         s.symbol: s.value for s in chain.program.body if isinstance(s, Let) and s.value.is_number
     }
-    value, scale = sp.sympify(value).xreplace(numbers), sp.sympify(scale).xreplace(numbers)
+    value, scale = (
+        sp.sympify(value, strict=True).xreplace(numbers),
+        sp.sympify(scale, strict=True).xreplace(numbers),
+    )
     if not (value.is_number and scale.is_number):
         return False
     return bool(abs(value) > 2 * sp.Rational(FLOAT.feasibility) * scale)

@@ -115,12 +115,14 @@ class _Mechanism:
     def loop(self) -> tuple[sp.Expr, ...]:
         """The equations of the loop: each rod keeps its length."""
         ends = zip(self.legs, self.centres, strict=True)
-        return tuple(square(self.hand - c) - sp.sympify(leg.rod) ** 2 for leg, c in ends)
+        return tuple(
+            square(self.hand - c) - sp.sympify(leg.rod, strict=True) ** 2 for leg, c in ends
+        )
 
     def state_loop(self) -> Step:
         shown = {rf"\mathbf b_{k}": c for k, c in enumerate(self.centres, 1)}
         shown |= {
-            rf"|\mathbf p - \mathbf b_{k}|": sp.sympify(leg.rod)
+            rf"|\mathbf p - \mathbf b_{k}|": sp.sympify(leg.rod, strict=True)
             for k, leg in enumerate(self.legs, 1)
         }
         carried = any(leg.on_hand for leg in self.legs)
@@ -159,7 +161,9 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
         sp.Matrix([named_in(f, f"c{k}_{i}", e) for i, e in zip(AXES, c, strict=False)])
         for k, c in enumerate(m.centres, 1)
     ]
-    radii = [named_in(f, f"r{k}", sp.sympify(leg.rod)) for k, leg in enumerate(m.legs, 1)]
+    radii = [
+        named_in(f, f"r{k}", sp.sympify(leg.rod, strict=True)) for k, leg in enumerate(m.legs, 1)
+    ]
     meet = two_circles if n == 2 else three_spheres
     found = meet(f, ends, radii, tuple(m.hand), sigma, scale=size, free=tuple(m.hand))
     shape = "circles" if n == 2 else "spheres"
@@ -232,7 +236,7 @@ def _draw(m: _Mechanism, at: _Posture) -> None:
         far = "P" if place.is_zero_matrix else f"C{k}"
         near = base if isinstance(leg, Stretch) else end
         joints[leg.joint] = (base, far)
-        lengths[near, far], closing[near, far] = sp.sympify(leg.rod), equation
+        lengths[near, far], closing[near, far] = sp.sympify(leg.rod, strict=True), equation
         if far != "P":
             links[f"hand{k}"] = ("P", far)
             lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
@@ -241,7 +245,7 @@ def _draw(m: _Mechanism, at: _Posture) -> None:
             joints[leg.joint] = (base, end)
         if isinstance(leg, Crank):
             links[f"crank{k}"] = (base, end)
-            lengths[base, end] = sp.sympify(leg.length)
+            lengths[base, end] = sp.sympify(leg.length, strict=True)
             joints[leg.joint] = (base,)
         elif isinstance(leg, Slide):
             lengths[base, end] = leg.joint
@@ -426,7 +430,7 @@ def _inverse(m: _Mechanism, loop: Step) -> None:
         for k, row in enumerate(rows, 1)
     ]
     lengths = [
-        s.value if isinstance(leg, Stretch) else sp.sympify(leg.rod)
+        s.value if isinstance(leg, Stretch) else sp.sympify(leg.rod, strict=True)
         for leg, s in zip(m.legs, found, strict=True)
     ]
     meet = "in line" if n == 2 else "in one plane"

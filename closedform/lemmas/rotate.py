@@ -52,7 +52,7 @@ def rotate(
     """
     p, tag = chain.program, name or label(x)
     size = chain.size if scale is None else scale
-    w, v = ([sp.sympify(e) for e in vector[:2]] for vector in (w, v))
+    w, v = ([sp.sympify(e, strict=True) for e in vector[:2]] for vector in (w, v))
     relation = w[0] ** 2 + w[1] ** 2 - v[0] ** 2 - v[1] ** 2
     w1, w2 = (chain.coefficient(f"w{i}_{tag}", e) for i, e in enumerate(w, 1))
     v1, v2 = (chain.named(f"v{i}_{tag}", e) for i, e in enumerate(v, 1))

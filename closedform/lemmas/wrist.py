@@ -75,7 +75,7 @@ def tilt(
     meaning = f"all axes of the wrist are parallel; {x} is free, 0 is returned."
     locus = vanishing(k, v1, v2)
     cases = degenerate(
-        flag, [None if locus is None else locus | {v3: sp.sympify(sense)}], x, meaning
+        flag, [None if locus is None else locus | {v3: sp.sympify(sense, strict=True)}], x, meaning
     )
     return Applied(lemma, pair, means, dict(zip((v1, v2, v3), _unit(), strict=True)), cases)
 

@@ -177,7 +177,7 @@ def merge_angles(value: sp.Matrix | sp.Expr) -> sp.Matrix | sp.Expr:
     """
     if isinstance(value, sp.MatrixBase):
         return value.applyfunc(merge_angles)
-    return _merged(sp.sympify(value))
+    return _merged(sp.sympify(value, strict=True))
 
 
 @cache

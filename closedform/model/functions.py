@@ -415,7 +415,7 @@ class Program:
         squares: bool = False,
         name: str = "",
     ) -> None:
-        self.body.append(Determined(value, sp.sympify(scale), meaning, squares, name))
+        self.body.append(Determined(value, sp.sympify(scale, strict=True), meaning, squares, name))
 
     def require(self, values: Sequence[sp.Expr], scale: Number, meaning: str) -> None:
         self.body.append(Require(tuple(values), sp.sympify(scale, strict=True), meaning))

@@ -146,5 +146,5 @@ def _text(evidence: Sequence[Any], notation: Notation) -> str:
             pairs = (f"${notation.write(s)} = {notation.write(v)}$" for s, v in piece.items())
             parts.append(", ".join(pairs))
         else:
-            parts.append(f"${notation.write(sp.sympify(piece))}$")
+            parts.append(f"${notation.write(sp.sympify(piece, strict=True))}$")
     return "".join(parts).strip()

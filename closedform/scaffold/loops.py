@@ -39,8 +39,8 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.formulas import number
-from closedform.model.names import check_symbol
-from closedform.scaffold.source import literal, source
+from closedform.model.names import check_symbol, check_text
+from closedform.scaffold.source import file_name, literal, source
 from closedform.scaffold.tables import (
     Table,
     TableError,
@@ -53,8 +53,11 @@ from closedform.scaffold.tables import (
 
 GROUND = "ground"
 KINDS = ("revolute", "prismatic", "spherical", "universal")
-NAMES = {"d", "pi", "real", "coupled", "parallel"}
+USED = {"d", "pi", "real", "coupled", "parallel", "Crank", "Slide", "Stretch"}
+USED |= {"Derivation", "Paper", "Rational", "cos", "sin", "sqrt"}
 """Names that the written script uses itself."""
+NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
+"""Bodies and points."""
 AXES = "xyz"
 UNSAID = "say what it measures"
 NO_CLOSED_FORM = {
@@ -94,6 +97,14 @@ class Loop:
     def of(self, body: str) -> list[Joint]:
         return [j for j in self.joints.values() if body in j.between]
 
+    @property
+    def symbols(self) -> set[str]:
+        """The names in the expressions."""
+        entries = [e for body in self.bodies.values() for at in body.values() for e in at]
+        entries += self.rods.values()
+        entries += [e for j in self.joints.values() if j.axis is not None for e in j.axis]
+        return {s.name for e in entries for s in e.free_symbols}
+
     def error(self, text: str) -> TableError:
         return TableError(f"{self.file}: {text}")
 
@@ -119,14 +130,27 @@ def read_loop(path: Path) -> Loop:
     for key in ("hand", "bodies", "joints"):
         if key not in data:
             raise TableError(f"{path.name}: {key} is missing")
-    if not isinstance(data["hand"], str):
-        raise TableError(f"{path.name}: hand must be the name of a point or of a joint")
-    loop = Loop(path.name, _dimensions(data["bodies"], path.name), data["hand"])
+    hand = _named(data["hand"], f"{path.name}: hand")
+    loop = Loop(path.name, _dimensions(data["bodies"], path.name), hand)
     for name, entry in data.get("parameters", {}).items():
         loop.parameters[name] = parameter(name, entry, f"{path.name}, [parameters]")
     _read_bodies(loop, data["bodies"])
     _read_joints(loop, data["joints"])
+    _check_names(loop)
     return loop
+
+
+def _check_names(loop: Loop) -> None:
+    """Refuse names that clash, because joints and parameters become variables of the script."""
+    for name in sorted(loop.symbols - set(loop.parameters)):
+        loop.parameters[name] = {}
+    for name, given in loop.parameters.items():
+        _check_name(name, f"{loop.file}, [parameters]")
+        check_text(f"{loop.file}: {name}", given.get("meaning", ""), given.get("unit", ""))
+        if name in loop.joints:
+            raise loop.error(f"{name} is a joint and a parameter; rename one of them")
+        if name in AXES and loop.hand not in loop.joints:
+            raise loop.error(f"{name} is a coordinate of the hand; give the parameter another name")
 
 
 def _dimensions(bodies: Any, file: str) -> int:
@@ -149,6 +173,7 @@ def _dimensions(bodies: Any, file: str) -> int:
 def _read_bodies(loop: Loop, bodies: Mapping[str, Any]) -> None:
     for name, body in bodies.items():
         where = f"{loop.file}, [bodies.{name}]"
+        _named(name, f"{loop.file}, [bodies]: a body")
         check_keys(body, None, where)
         points: dict[str, sp.Matrix] = {}
         for key, given in body.items():
@@ -159,7 +184,9 @@ def _read_bodies(loop: Loop, bodies: Mapping[str, Any]) -> None:
                     raise TableError(f"{where}: parallelogram must be true, or be left out")
                 loop.parallelograms.add(name)
             elif isinstance(given, list):
-                points[key] = sp.Matrix([expression(e, f"{where}, {key}") for e in given])
+                points[_named(key, f"{where}: a point")] = sp.Matrix(
+                    [expression(e, f"{where}, {key}") for e in given]
+                )
             else:
                 raise TableError(f"{where}: {key} must be a point, such as [0, 0]")
         loop.bodies[name] = points
@@ -171,13 +198,14 @@ def _read_joints(loop: Loop, joints: Any) -> None:
     check_keys(joints, None, f"{loop.file}, [joints]")
     for name, given in joints.items():
         where = f"{loop.file}, [joints.{name}]"
-        _check_joint(name, where)
+        _check_name(name, where)
         check_keys(given, ("between", "kind", "at", "axis", "driven"), where)
         kind, between = given.get("kind", "revolute"), given.get("between")
         if kind not in KINDS:
             raise TableError(f"{where}: kind must be one of {', '.join(KINDS)}")
         if not (isinstance(between, list) and len(between) == 2):
             raise TableError(f'{where}: between must be two bodies, such as ["ground", "crank1"]')
+        between = [_named(b, f"{where}: between") for b in between]
         missing = [b for b in between if b not in loop.bodies]
         if missing:
             raise TableError(f"{where}: there is no body {missing[0]}")
@@ -189,16 +217,23 @@ def _read_joints(loop: Loop, joints: Any) -> None:
         driven = given.get("driven", False)
         if not isinstance(driven, bool):
             raise TableError(f"{where}: driven must be true or false")
-        at = given.get("at") or _shared(loop, between, where)
+        at = _named(given["at"], f"{where}: at") if "at" in given else _shared(loop, between, where)
         loop.joints[name] = Joint(name, kind, (between[0], between[1]), at, axis, driven)
 
 
-def _check_joint(name: str, where: str) -> None:
+def _named(name: Any, what: str) -> str:
+    """A name of a body or a point, which messages and the script may hold."""
+    if isinstance(name, str) and NAME.fullmatch(name):
+        return name
+    raise TableError(f"{what} needs a name of letters, digits, _ and -, not {name!a}")
+
+
+def _check_name(name: str, where: str) -> None:
     try:
         check_symbol(name, where)
     except ValueError as error:
         raise TableError(str(error)) from error
-    if name in NAMES:
+    if name in USED:
         raise TableError(f"{where}: the written script uses the name {name} itself")
 
 
@@ -224,19 +259,10 @@ class _Legs:
 
     def __init__(self, loop: Loop):
         self.loop = loop
-        names = {s.name for e in self._expressions() for s in e.free_symbols}
-        for name in sorted(names - set(loop.parameters)):
-            loop.parameters[name] = {}
         angles = [n for n, given in loop.parameters.items() if given.get("unit") == "rad"]
         self.positive = {
-            sp.Symbol(n, real=True): sp.Symbol(n, positive=True) for n in names - set(angles)
+            sp.Symbol(n, real=True): sp.Symbol(n, positive=True) for n in loop.symbols - set(angles)
         }
-
-    def _expressions(self) -> list[sp.Expr]:
-        loop = self.loop
-        entries = [e for body in loop.bodies.values() for at in body.values() for e in at]
-        entries += loop.rods.values()
-        return entries + [e for j in loop.joints.values() if j.axis is not None for e in j.axis]
 
     def length(self, v: sp.Matrix) -> sp.Expr:
         """The length of a vector, for positive parameters."""
@@ -274,10 +300,7 @@ class _Legs:
             )
         (near, rod) = rods[0]
         place = self.place_on_hand(rod, near)
-        start = loop.bodies[GROUND][joint.at]
-        end = loop.bodies[body].get(near.at)
-        if end is None:
-            raise loop.error(f"{body} has no point {near.at}, where {rod} is joined to it")
+        end = self.point(body, near)
         length = source(loop.rods[rod])
         tail = f", on_hand={_tuple(place)}" if any(place) else ""
         name = joint.name
@@ -291,6 +314,7 @@ class _Legs:
             )
         if joint.kind != "revolute":
             raise loop.error(f"{name} is driven, so it must be revolute or prismatic")
+        start = self.point(GROUND, joint)
         arm = end - start
         if loop.dimensions == 3:
             if joint.axis is None:
@@ -314,6 +338,13 @@ class _Legs:
             f"joins to the hand",
         )
 
+    def point(self, body: str, joint: Joint) -> sp.Matrix:
+        """Where a joint is on a body."""
+        points = self.loop.bodies[body]
+        if joint.at not in points:
+            raise self.loop.error(f"{body} has no point {joint.at}, where {joint.name} is")
+        return points[joint.at]
+
     def stretch(self, joint: Joint) -> LoopLeg:
         """A leg of two bodies that slide along each other."""
         loop = self.loop
@@ -330,7 +361,7 @@ class _Legs:
             ends[GROUND in others[0].between] = others[0]
         if len(ends) != 2:
             raise loop.error(f"one half of the leg of {joint.name} must be joined to the ground")
-        base = loop.bodies[GROUND][ends[True].at]
+        base = self.point(GROUND, ends[True])
         place = self.place_of(ends[False])
         tail = f", on_hand={_tuple(place)}" if any(place) else ""
         return LoopLeg(
@@ -376,6 +407,7 @@ def _tuple(v: sp.Matrix) -> str:
 
 def loop_script(name: str, loop: Loop, origin: str) -> str:
     """The derivation of a loop, as Python."""
+    origin = file_name(origin)
     found = _Legs(loop)
     follower = loop.joints.get(loop.hand)
     if follower and not follower.driven:

@@ -24,7 +24,7 @@ from closedform.scaffold.limit import LimitError, bounded
 from closedform.scaffold.loops import loop_script, read_loop
 from closedform.scaffold.propose import NoChainError, propose
 from closedform.scaffold.recognise import recognised
-from closedform.scaffold.source import literal, source
+from closedform.scaffold.source import file_name, literal, source
 from closedform.scaffold.tables import (
     AUTHOR,
     CHAIN,
@@ -136,7 +136,7 @@ def _comment(text: str) -> str:
 
 def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
     """The script, with the proposed inverse or a place for one."""
-    origin = re.sub(r"[^\w .()-]", "_", origin)
+    origin = file_name(origin)
     d = Derivation(name, name, Paper("own", "own", ()), "")
     negative = [
         n

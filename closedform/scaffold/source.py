@@ -43,6 +43,11 @@ def literal(text: str) -> str:
     return repr(text) if '"' in text else f'"{repr(chr(39) + text)[2:]}'
 
 
+def file_name(name: str) -> str:
+    """The name of a file as it may stand in a text of the script."""
+    return re.sub(r"[^\w .()-]", "_", name)
+
+
 def source(e: Any) -> str:
     """An exact expression or a matrix as Python code, with the names of ``sympy``."""
     exact = sp.sympify(e, strict=True)

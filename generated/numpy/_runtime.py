@@ -319,16 +319,17 @@ def _parameters(kernel: Kernel, params: Sequence[ArrayLike]) -> list[NDArray[np.
             f"{kernel.name}: params must be Parameters or a sequence of its {len(kernel.fields)} "
             f"fields, not {type(params).__name__}{advice}"
         )
-    if len(params) != len(kernel.fields):
+    values = tuple(params)  # converting one of them may change the list
+    if len(values) != len(kernel.fields):
         raise ValueError(
-            f"{kernel.name}: params has {len(params)} fields, expected {len(kernel.fields)} "
+            f"{kernel.name}: params has {len(values)} fields, expected {len(kernel.fields)} "
             f"({', '.join(kernel.fields)})"
         )
     return [
         np.asarray(value)
         if type(value) is float or _is_plain(value)
         else _converted(kernel, f"params.{name}", value)
-        for name, value in zip(kernel.fields, params)
+        for name, value in zip(kernel.fields, values)
     ]
 
 

@@ -1,7 +1,7 @@
-"""Tables of joints with mistakes and attacks in them: refused with a reason, or read as data.
+"""Tables of joints and files of loops with mistakes and attacks in them.
 
-Each table is read under guard.  Any effect on the machine is a finding, and so are an exception
-other than the documented one and a long silence.
+Each is refused with a reason, or read as data.  It is read under guard.  Any effect on the machine
+is a finding, and so are an exception other than the documented one and a long silence.
 """
 
 from __future__ import annotations
@@ -55,7 +55,64 @@ point = ["L", 0, 0]
 [home]
 position = ["2*L", 0, 0]
 """
-BASES = (("dh", DH), ("dh", SCARA), ("screws", SCREWS))
+LOOP = """hand = "P"
+[parameters]
+L0 = {value = "0.5", meaning = "distance of the pivots"}
+[bodies.ground]
+A1 = [0, 0]
+A2 = ["L0", 0]
+[bodies.crank1]
+B1 = ["L1", 0]
+[bodies.crank2]
+B2 = ["L0 + L2", 0]
+[bodies.rod1]
+length = "L3"
+[bodies.rod2]
+length = "L4"
+[joints.theta1]
+between = ["ground", "crank1"]
+at = "A1"
+driven = true
+[joints.theta2]
+between = ["ground", "crank2"]
+at = "A2"
+driven = true
+[joints.b1]
+between = ["crank1", "rod1"]
+at = "B1"
+[joints.b2]
+between = ["crank2", "rod2"]
+at = "B2"
+[joints.p]
+between = ["rod1", "rod2"]
+at = "P"
+"""
+SLIDER = """hand = "x"
+[bodies.ground]
+A = [0, 0]
+C = [0, "e"]
+[bodies.crank]
+B = ["r", 0]
+[bodies.rod]
+length = "l"
+[bodies.piston]
+C = [0, "e"]
+[joints.theta]
+between = ["ground", "crank"]
+at = "A"
+driven = true
+[joints.b]
+between = ["crank", "rod"]
+at = "B"
+[joints.c]
+between = ["rod", "piston"]
+at = "C"
+[joints.x]
+kind = "prismatic"
+between = ["ground", "piston"]
+axis = [1, 0]
+"""
+BASES = (("dh", DH), ("dh", SCARA), ("screws", SCREWS), ("loop", LOOP), ("loop", SLIDER))
 
 FRAGMENTS = (
     "(x.attr)()", "().__class__.__bases__[0].__subclasses__()", "__import__('os').system('true')",

@@ -62,7 +62,9 @@ class Replaces(Check):
     given: Mapping[sp.Symbol, Expr] | None = None
 
     def judge(self) -> Verdict:
-        at_posture = [sp.sympify(e).subs(self.posture, simultaneous=True) for e in self.equations]
+        at_posture = [
+            sp.sympify(e, strict=True).subs(self.posture, simultaneous=True) for e in self.equations
+        ]
         decision = decide(sp.Matrix(at_posture))
         if not decision.holds:
             assert decision.counterexample is not None

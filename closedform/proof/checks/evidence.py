@@ -55,7 +55,7 @@ def difference(a: Exact, b: Exact) -> Exact:
 
 def shown(e: Expr, point: Point) -> Expr | str:
     """The value at a point: exact if that is short, else six digits."""
-    exact = sp.sympify(e).subs(point)
+    exact = sp.sympify(e, strict=True).subs(point)
     if not exact.free_symbols and exact.is_finite and len(str(exact)) <= _READABLE:
         return exact
     return f"${evaluate([e], point)[0].str(6, radius=False)}$"

@@ -189,7 +189,8 @@ class Solves(Check):
         branches = self._branches()
         for branch, conditions in branches:
             left = [
-                sp.sympify(e).subs(branch, simultaneous=True).subs(given) for e in self.equations
+                sp.sympify(e, strict=True).subs(branch, simultaneous=True).subs(given)
+                for e in self.equations
             ]
             if any(e.has(sp.nan, sp.zoo) for e in left):
                 return Verdict(REFUTED, ("the formula has no value", *self._share()))
@@ -336,7 +337,7 @@ def share(
     groups = [
         f"{name}: {_percent(missed[part])}"
         for name, condition in postures.groups.items()
-        if (part := values(sp.sympify(condition), sampled).astype(bool)).any()
+        if (part := values(sp.sympify(condition, strict=True), sampled).astype(bool)).any()
     ]
     return (*pieces, f" ({', '.join(groups)})") if groups else tuple(pieces)
 

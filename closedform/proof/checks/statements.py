@@ -128,7 +128,7 @@ class ForAll(Check):
     among: Sequence[Point] = ()
 
     def judge(self) -> Verdict:
-        relation = _placed(sp.sympify(self.relation), self.on)
+        relation = _placed(sp.sympify(self.relation, strict=True), self.on)
         if relation in (sp.true, sp.false):
             return Verdict(PROVED if relation == sp.true else REFUTED)
         where = [_placed(c, self.on) for c in self.where]
@@ -217,7 +217,7 @@ def _negated(relation: Expr) -> Expr:
 def _first(relations: Sequence[Expr], among: Iterable[Point]) -> Point | None:
     """The first of some points at which all relations between constants hold."""
     for point in among:
-        if all(holds(sp.sympify(r).subs(point)) for r in relations):
+        if all(holds(sp.sympify(r, strict=True).subs(point)) for r in relations):
             return point
     return None
 

@@ -138,7 +138,6 @@ ik = Chain(d, forward)
 wx, wy, wz = ik.vector("w", ik.p - d6 * ik.R[:, 2])
 f = ik.program.let("f", sqrt(a3**2 + d4**2), nonnegative=True)
 up = ik.let("up", wz - d1)
-ik.size = a2 + f + sp.Abs(a1)
 facing = {-1: "facing", +1: "backward"}
 shoulder = ik.solve(turn, theta1, wx, -wy, 0, facing)
 d.step(

@@ -57,12 +57,12 @@ def coupled(
     loop = square(follower.end() - driver.end()) - sp.sympify(driver.rod, strict=True) ** 2
     stated = d.step(
         "The loop",
-        "The driver determines the point b at one end of the rod, and the follower the point c at "
-        "the other end.  The rod keeps its length.",
+        "The driver determines the point B1 at one end of the rod, and the follower the point B2 "
+        "at the other end.  The rod keeps its length.",
         {
-            r"\mathbf b": driver.end(),
-            r"\mathbf c": follower.end(),
-            r"|\mathbf c - \mathbf b|": sp.sympify(driver.rod, strict=True),
+            r"\mathbf B_1": driver.end(),
+            r"\mathbf B_2": follower.end(),
+            r"|\mathbf B_2 - \mathbf B_1|": sp.sympify(driver.rod, strict=True),
         },
     )
     rod = _forward(d, driver, follower, loop, modes, stated)
@@ -99,7 +99,7 @@ def _forward(
     found = follower.solve(Naming(f, size, "_2"), driver.end() - follower.base, sigma)
     d.step(
         "Forward: the follower",
-        "The follower has to reach the point b with the rod.  Both solutions are assembly modes.",
+        "The follower has to reach the point B1 with the rod.  Both solutions are assembly modes.",
         {},
         uses=[stated],
     )
@@ -182,8 +182,8 @@ def _velocity(
     d.step(
         "Velocity and singular sets",
         "The derivative of the loop equation, halved, gives A dx = B dq.  B vanishes if the driver "
-        "moves b at right angles to the rod (serial: the driver moves and the follower stands "
-        "still).  A vanishes if the follower moves c at right angles to the rod (parallel: the "
+        "moves B1 at right angles to the rod (serial: the driver moves and the follower stands "
+        "still).  A vanishes if the follower moves B2 at right angles to the rod (parallel: the "
         "driver stands still and cannot hold the follower).",
         {"A": a, "B": b},
         proves="A and B are half of the derivatives.",
@@ -224,7 +224,7 @@ def _inverse(
     d.branches = working.labels
     d.step(
         "Inverse: the driver",
-        "The driver has to reach the point c with the rod, just as the follower reaches b.  Its "
+        "The driver has to reach the point B2 with the rod, just as the follower reaches B1.  Its "
         "two solutions are told apart by the sign of B.  Near a parallel singularity rounded "
         "joints do not determine the follower, however they are computed.  The status is SINGULAR "
         "if A is less than 2^-10 of its largest value.",
@@ -257,7 +257,15 @@ def _inverse(
     )
     tell(d, "ik", found.link)
     d.inverses.append(
-        Inverse("ik", d.actuated, (sp.S.Zero,), (loop,), images="fk", links=(found.link,))
+        Inverse(
+            "ik",
+            d.actuated,
+            (sp.S.Zero,),
+            (loop,),
+            images="fk",
+            links=(found.link,),
+            angles=(x,) if isinstance(follower, Crank) else (),
+        )
     )
 
 

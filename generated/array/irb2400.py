@@ -12,7 +12,7 @@
 #   jacobian_body: 29 add, 64 multiply, 5 sincos
 #   joints_from_motors: 1 add
 #   motors_from_joints: 1 add
-#   ik: 298 compare and select, 180 add, 22 atan2, 21 divide, 271 multiply, 22 sqrt
+#   ik: 301 compare and select, 184 add, 22 atan2, 21 divide, 271 multiply, 22 sqrt
 """Six-axis arm on a parallelogram (IRB 2400).
 
 theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal and parallel, and
@@ -939,475 +939,476 @@ def _ik(
     t10 = t8 & t9 & (ops.abs(T41) <= ops.rotation) & (ops.abs(T42) <= ops.rotation)
     t11 = t10 & (ops.abs(T43) <= ops.rotation) & (ops.abs(T44 - 1.0) <= ops.rotation)
     invalid = ops.opposite(t11)
-    t12 = a3 * a3 + d4 * d4
-    f = ops.sqrt(t12)
-    t13 = a2 + f
-    size = ops.abs(a1) + t13
-    t14 = -(ops.feasibility * (size * 0.5))
+    t12 = a2 + d4 + ops.abs(a1) + ops.abs(a3) + ops.abs(d1)
+    size = t12 + ops.abs(d6)
+    t13 = -(ops.feasibility * (size * 0.5))
     w_x = T14 - T13 * d6
     w_y = T24 - T23 * d6
-    t15 = w_x * w_x + w_y * w_y
-    h1 = ops.sqrt(t15)
-    t16 = t14 <= h1
+    t14 = w_x * w_x + w_y * w_y
+    h1 = ops.sqrt(t14)
+    t15 = t13 <= h1
+    t16 = a3 * a3 + d4 * d4
+    f = ops.sqrt(t16)
+    t17 = a2 + f
     y_elbow = d1 - (T34 - T33 * d6)
-    t17 = y_elbow * y_elbow
+    t18 = y_elbow * y_elbow
     below1 = ops.max(h1, 0.0)
     root1 = ops.sqrt(below1 * below1)
-    t18 = a1 - root1
-    r_elbow = ops.sqrt(t17 + t18 * t18)
-    t19 = t13 - r_elbow
-    t20 = a2 - f
-    t21 = r_elbow + t20
-    t22 = r_elbow - t20
-    t23 = t16 & (t14 <= t19) & (t14 <= t21) & (t14 <= t22)
-    unreachable = ops.opposite(t23)
+    t19 = a1 - root1
+    r_elbow = ops.sqrt(t18 + t19 * t19)
+    t20 = t17 - r_elbow
+    t21 = a2 - f
+    t22 = r_elbow + t21
+    t23 = r_elbow - t21
+    t24 = t15 & (t13 <= t20) & (t13 <= t22) & (t13 <= t23)
+    unreachable = ops.opposite(t24)
     failed = invalid | unreachable
-    t24 = ops.vanishing * size
-    free1 = h1 <= t24
-    t25 = a1 + root1
-    r_elbow_backward_up_noflip = ops.sqrt(t17 + t25 * t25)
-    t26 = t13 - r_elbow_backward_up_noflip
-    t27 = r_elbow_backward_up_noflip + t20
-    t28 = r_elbow_backward_up_noflip - t20
-    t29 = t16 & (t14 <= t26) & (t14 <= t27) & (t14 <= t28)
-    unreachable_2 = ops.opposite(t29)
+    t25 = size * ops.vanishing
+    free1 = h1 <= t25
+    t26 = a1 + root1
+    r_elbow_backward_up_noflip = ops.sqrt(t18 + t26 * t26)
+    t27 = t17 - r_elbow_backward_up_noflip
+    t28 = r_elbow_backward_up_noflip + t21
+    t29 = r_elbow_backward_up_noflip - t21
+    t30 = t15 & (t13 <= t27) & (t13 <= t28) & (t13 <= t29)
+    unreachable_2 = ops.opposite(t30)
     failed_2 = invalid | unreachable_2
-    t30 = ops.opposite(failed_2)
-    t31 = ops.opposite(free1)
-    t32 = t30 & t31
-    t33 = ops.opposite(failed)
-    t34 = t33 & t31
-    t35 = t33 | t30
-    t36 = t35 & t31
-    no_link_elbow = a2 * f <= ops.vanishing * (t13 * t13)
-    t37 = ops.opposite(no_link_elbow)
-    t38 = t30 & t37
-    folded_elbow_backward_up_noflip = r_elbow_backward_up_noflip <= t24
-    t39 = ops.opposite(folded_elbow_backward_up_noflip)
-    t40 = t30 & t39
-    t41 = folded_elbow_backward_up_noflip | no_link_elbow
-    t42 = t30 & ops.opposite(t41)
-    folded_elbow = r_elbow <= t24
-    t43 = t33 & ops.opposite(folded_elbow)
-    t44 = t33 & t37
-    t45 = folded_elbow | no_link_elbow
-    t46 = t33 & ops.opposite(t45)
-    t47 = t32 | t38 | t40 | t42 | t34 | t43 | t44 | t46
-    t48 = t47 | t36
-    h1_2 = ops.sqrt(ops.select(t48, t15, 1.0))
+    t31 = ops.opposite(failed_2)
+    t32 = ops.opposite(free1)
+    t33 = t31 & t32
+    t34 = ops.opposite(failed)
+    t35 = t34 & t32
+    t36 = t34 | t31
+    t37 = t36 & t32
+    no_link_elbow = a2 * f <= ops.vanishing * (t17 * t17)
+    t38 = ops.opposite(no_link_elbow)
+    t39 = t31 & t38
+    folded_elbow_backward_up_noflip = r_elbow_backward_up_noflip <= t25
+    t40 = ops.opposite(folded_elbow_backward_up_noflip)
+    t41 = t31 & t40
+    t42 = folded_elbow_backward_up_noflip | no_link_elbow
+    t43 = t31 & ops.opposite(t42)
+    folded_elbow = r_elbow <= t25
+    t44 = t34 & ops.opposite(folded_elbow)
+    t45 = t34 & t38
+    t46 = folded_elbow | no_link_elbow
+    t47 = t34 & ops.opposite(t46)
+    t48 = t33 | t39 | t41 | t43 | t35 | t44 | t45 | t47
+    t49 = t48 | t37
+    h1_2 = ops.sqrt(ops.select(t49, t14, 1.0))
     below1_2 = ops.max(h1_2, 0.0)
-    t49 = ops.select(t32 | t34 | t36, h1_2 * (below1_2 + below1_2), 1.0)
-    t50 = 1.0 / t49
-    root1_2 = ops.sqrt(ops.select(t48, below1_2 * below1_2, 1.0))
-    t51 = 2.0 * root1_2
-    s1 = ops.select(free1, 0.0, t50 * (w_y * t51))
-    t52 = t50 * (w_x * t51)
-    c1 = ops.select(free1, 1.0, t52)
-    t53 = ops.wrap_cut(ops.atan2(s1, ops.select(t33, c1, 1.0)))
-    t54 = ops.select(failed, ops.nan, t53)
-    t55 = t38 | t42
+    t50 = ops.select(t33 | t35 | t37, h1_2 * (below1_2 + below1_2), 1.0)
+    t51 = 1.0 / t50
+    root1_2 = ops.sqrt(ops.select(t49, below1_2 * below1_2, 1.0))
+    t52 = 2.0 * root1_2
+    s1 = ops.select(free1, 0.0, t51 * (w_y * t52))
+    t53 = t51 * (w_x * t52)
+    c1 = ops.select(free1, 1.0, t53)
+    t54 = ops.wrap_cut(ops.atan2(s1, ops.select(t34, c1, 1.0)))
+    t55 = ops.select(failed, ops.nan, t54)
+    t56 = a1 - root1_2
+    t57 = ops.select(t44 | t45 | t47, t18 + t56 * t56, 1.0)
+    r_elbow_2 = ops.sqrt(t57)
+    t58 = 1.0 / ops.select(t44, r_elbow_2, 1.0)
+    t59 = ops.select(folded_elbow, 1.0, -(t56 * t58))
+    t60 = t39 | t43
     no_forearm = f <= 0.0
-    t56 = t35 & ops.opposite(no_forearm)
-    f_2 = ops.sqrt(ops.select(t55 | t44 | t46 | t56, t12, 1.0))
-    t57 = a2 + f_2
-    t58 = a1 - root1_2
-    t59 = ops.select(t43 | t44 | t46, t17 + t58 * t58, 1.0)
-    r_elbow_2 = ops.sqrt(t59)
-    A_elbow = ops.max(t57 - r_elbow_2, 0.0)
-    t60 = a2 - f_2
-    C_elbow = ops.max(r_elbow_2 - t60, 0.0)
-    t61 = A_elbow * C_elbow
-    S_elbow = t57 + r_elbow_2
-    B_elbow = ops.max(r_elbow_2 + t60, 0.0)
-    t62 = S_elbow * B_elbow
-    t63 = 1.0 / ops.select(t46, t61 + t62, 1.0)
-    c_base_elbow = ops.select(t45, 1.0, -((t61 - t62) * t63))
-    t64 = 1.0 / ops.select(t43, r_elbow_2, 1.0)
-    t65 = ops.select(folded_elbow, 1.0, -(t58 * t64))
-    t66 = c_base_elbow * t65
-    t67 = ops.select(folded_elbow, 0.0, y_elbow * t64)
-    t68 = ops.sqrt(ops.select(t44 | t46, t61 * t62, 1.0))
-    area_elbow = 2.0 * t68
-    s_base_elbow = ops.select(t45, 0.0, t63 * area_elbow)
-    t69 = t67 * s_base_elbow
-    clower = t66 + t69
-    t70 = c_base_elbow * t67
-    t71 = t65 * s_base_elbow
-    slower = t70 - t71
-    t72 = ops.atan2(clower, ops.select(t33, -slower, 1.0))
-    t73 = ops.select(failed, ops.nan, ops.wrap_cut(t72))
-    t74 = 1.0 / ops.select(t56, f_2, 1.0)
-    s_forearm = ops.select(no_forearm, 0.0, d4 * t74)
-    t75 = A_elbow * S_elbow
-    t76 = C_elbow * B_elbow
-    t77 = 1.0 / ops.select(t44, t75 + t76, 1.0)
-    celbow = ops.select(no_link_elbow, 1.0, -((t75 - t76) * t77))
-    t78 = s_forearm * celbow
-    c_forearm = ops.select(no_forearm, 1.0, a3 * t74)
-    selbow = ops.select(no_link_elbow, 0.0, area_elbow * t77)
-    t79 = c_forearm * selbow
-    t80 = t78 - t79
-    t81 = c_forearm * celbow
-    t82 = s_forearm * selbow
-    c3 = t81 + t82
-    t83 = ops.wrap_cut(ops.atan2(-t80, ops.select(t33, c3, 1.0)))
-    t84 = ops.select(failed, ops.nan, t83)
-    t85 = 1.0 / (h1 * (below1 + below1))
-    t86 = 2.0 * root1
-    t87 = t85 * (w_x * t86)
-    c1_2 = ops.select(free1, 1.0, t87)
-    s1_2 = ops.select(free1, 0.0, t85 * (w_y * t86))
-    t88 = T23 * s1_2
-    R1_13 = T13 * c1_2 + t88
-    A_elbow_2 = ops.max(t19, 0.0)
-    C_elbow_2 = ops.max(t22, 0.0)
-    t89 = A_elbow_2 * C_elbow_2
-    S_elbow_2 = t13 + r_elbow
-    B_elbow_2 = ops.max(t21, 0.0)
-    t90 = S_elbow_2 * B_elbow_2
-    t91 = 1.0 / (t89 + t90)
-    c_base_elbow_2 = ops.select(t45, 1.0, -((t89 - t90) * t91))
+    t61 = t36 & ops.opposite(no_forearm)
+    f_2 = ops.sqrt(ops.select(t60 | t45 | t47 | t61, t16, 1.0))
+    t62 = a2 + f_2
+    A_elbow = ops.max(t62 - r_elbow_2, 0.0)
+    t63 = a2 - f_2
+    C_elbow = ops.max(r_elbow_2 - t63, 0.0)
+    t64 = A_elbow * C_elbow
+    S_elbow = t62 + r_elbow_2
+    B_elbow = ops.max(r_elbow_2 + t63, 0.0)
+    t65 = S_elbow * B_elbow
+    t66 = 1.0 / ops.select(t47, t64 + t65, 1.0)
+    c_base_elbow = ops.select(t46, 1.0, -((t64 - t65) * t66))
+    t67 = t59 * c_base_elbow
+    t68 = ops.select(folded_elbow, 0.0, y_elbow * t58)
+    t69 = ops.sqrt(ops.select(t45 | t47, t64 * t65, 1.0))
+    area_elbow = 2.0 * t69
+    s_base_elbow = ops.select(t46, 0.0, t66 * area_elbow)
+    t70 = t68 * s_base_elbow
+    clower = t67 + t70
+    t71 = t68 * c_base_elbow
+    t72 = t59 * s_base_elbow
+    slower = t71 - t72
+    t73 = ops.atan2(clower, ops.select(t34, -slower, 1.0))
+    t74 = ops.select(failed, ops.nan, ops.wrap_cut(t73))
+    t75 = 1.0 / ops.select(t61, f_2, 1.0)
+    s_forearm = ops.select(no_forearm, 0.0, d4 * t75)
+    t76 = A_elbow * S_elbow
+    t77 = C_elbow * B_elbow
+    t78 = 1.0 / ops.select(t45, t76 + t77, 1.0)
+    celbow = ops.select(no_link_elbow, 1.0, -((t76 - t77) * t78))
+    t79 = s_forearm * celbow
+    c_forearm = ops.select(no_forearm, 1.0, a3 * t75)
+    selbow = ops.select(no_link_elbow, 0.0, area_elbow * t78)
+    t80 = c_forearm * selbow
+    t81 = t79 - t80
+    t82 = c_forearm * celbow
+    t83 = s_forearm * selbow
+    c3 = t82 + t83
+    t84 = ops.wrap_cut(ops.atan2(-t81, ops.select(t34, c3, 1.0)))
+    t85 = ops.select(failed, ops.nan, t84)
+    t86 = 1.0 / (h1 * (below1 + below1))
+    t87 = 2.0 * root1
+    s1_2 = ops.select(free1, 0.0, t86 * (w_y * t87))
+    t88 = T13 * s1_2
+    t89 = t86 * (w_x * t87)
+    c1_2 = ops.select(free1, 1.0, t89)
+    R2_23 = t88 - T23 * c1_2
+    t90 = R2_23 * R2_23
+    t91 = T23 * s1_2
+    R1_13 = T13 * c1_2 + t91
     t92 = 1.0 / r_elbow
-    t93 = ops.select(folded_elbow, 1.0, -(t18 * t92))
-    t94 = c_base_elbow_2 * t93
-    t95 = ops.select(folded_elbow, 0.0, y_elbow * t92)
-    area_elbow_2 = 2.0 * ops.sqrt(t89 * t90)
-    s_base_elbow_2 = ops.select(t45, 0.0, t91 * area_elbow_2)
-    t96 = t95 * s_base_elbow_2
-    clower_2 = t94 + t96
-    t97 = 1.0 / f
-    c_forearm_2 = ops.select(no_forearm, 1.0, a3 * t97)
-    t98 = A_elbow_2 * S_elbow_2
-    t99 = C_elbow_2 * B_elbow_2
-    t100 = 1.0 / (t98 + t99)
-    celbow_2 = ops.select(no_link_elbow, 1.0, -((t98 - t99) * t100))
-    t101 = c_forearm_2 * celbow_2
-    s_forearm_2 = ops.select(no_forearm, 0.0, d4 * t97)
-    selbow_2 = ops.select(no_link_elbow, 0.0, area_elbow_2 * t100)
-    t102 = s_forearm_2 * selbow_2
-    c3_2 = t101 + t102
-    t103 = c_base_elbow_2 * t95
-    t104 = t93 * s_base_elbow_2
-    slower_2 = t103 - t104
-    t105 = s_forearm_2 * celbow_2
-    t106 = c_forearm_2 * selbow_2
-    t107 = t105 - t106
-    R2_13 = R1_13 * (clower_2 * c3_2 + slower_2 * t107) - T33 * (slower_2 * c3_2 - clower_2 * t107)
-    t108 = T13 * s1_2
-    R2_23 = t108 - T23 * c1_2
-    t109 = R2_23 * R2_23
-    t110 = ops.vanishing * 16.0
-    aligned_wrist = ops.sqrt(R2_13 * R2_13 + t109) <= t110
+    t93 = ops.select(folded_elbow, 1.0, -(t19 * t92))
+    A_elbow_2 = ops.max(t20, 0.0)
+    C_elbow_2 = ops.max(t23, 0.0)
+    t94 = A_elbow_2 * C_elbow_2
+    S_elbow_2 = t17 + r_elbow
+    B_elbow_2 = ops.max(t22, 0.0)
+    t95 = S_elbow_2 * B_elbow_2
+    t96 = 1.0 / (t94 + t95)
+    c_base_elbow_2 = ops.select(t46, 1.0, -((t94 - t95) * t96))
+    t97 = t93 * c_base_elbow_2
+    t98 = ops.select(folded_elbow, 0.0, y_elbow * t92)
+    area_elbow_2 = 2.0 * ops.sqrt(t94 * t95)
+    s_base_elbow_2 = ops.select(t46, 0.0, t96 * area_elbow_2)
+    t99 = t98 * s_base_elbow_2
+    clower_2 = t97 + t99
+    t100 = 1.0 / f
+    c_forearm_2 = ops.select(no_forearm, 1.0, a3 * t100)
+    t101 = A_elbow_2 * S_elbow_2
+    t102 = C_elbow_2 * B_elbow_2
+    t103 = 1.0 / (t101 + t102)
+    celbow_2 = ops.select(no_link_elbow, 1.0, -((t101 - t102) * t103))
+    t104 = c_forearm_2 * celbow_2
+    s_forearm_2 = ops.select(no_forearm, 0.0, d4 * t100)
+    selbow_2 = ops.select(no_link_elbow, 0.0, area_elbow_2 * t103)
+    t105 = s_forearm_2 * selbow_2
+    c3_2 = t104 + t105
+    t106 = t98 * c_base_elbow_2
+    t107 = t93 * s_base_elbow_2
+    slower_2 = t106 - t107
+    t108 = s_forearm_2 * celbow_2
+    t109 = c_forearm_2 * selbow_2
+    t110 = t108 - t109
+    R2_13 = R1_13 * (clower_2 * c3_2 + slower_2 * t110) - T33 * (slower_2 * c3_2 - clower_2 * t110)
+    t111 = ops.vanishing * 16.0
+    aligned_wrist = ops.sqrt(t90 + R2_13 * R2_13) <= t111
     flip_wrist = ops.select(aligned_wrist, 0.0, 3.141592653589793)
-    t111 = T13 * s1
-    R2_23_2 = t111 - T23 * c1
-    t112 = t33 & ops.opposite(aligned_wrist)
-    t113 = T23 * s1
-    R1_13_2 = T13 * c1 + t113
-    t114 = clower * c3 + slower * t80
-    t115 = slower * c3 - clower * t80
-    R2_13_2 = R1_13_2 * t114 - T33 * t115
-    t116 = R2_23_2 * R2_23_2
-    t117 = ops.select(t112, R2_13_2 * R2_13_2 + t116, 1.0)
-    t118 = 1.0 / ops.select(t112, ops.sqrt(t117), 1.0)
-    s_wrist = ops.select(aligned_wrist, 0.0, R2_23_2 * t118)
-    c_wrist = ops.select(aligned_wrist, 1.0, R2_13_2 * t118)
-    t119 = ops.atan2(s_wrist, ops.select(t33, c_wrist, 1.0))
-    t120 = ops.select(failed, ops.nan, ops.wrap(flip_wrist + t119))
-    t121 = ops.select(t33, -(R1_13_2 * t115 + T33 * t114), 1.0)
-    t122 = ops.atan2(R2_13_2 * c_wrist + R2_23_2 * s_wrist, t121)
-    t123 = ops.select(failed, ops.nan, ops.wrap_cut(t122))
-    t124 = T21 * s1
-    R1_11 = T11 * c1 + t124
-    t125 = T11 * s1
-    R2_21 = t125 - T21 * c1
-    t126 = s_wrist * (t114 * R1_11 - T31 * t115) - c_wrist * R2_21
-    t127 = T12 * s1
-    R2_22 = t127 - T22 * c1
-    t128 = T22 * s1
-    R1_12 = T12 * c1 + t128
-    t129 = c_wrist * R2_22 - s_wrist * (t114 * R1_12 - T32 * t115)
-    t130 = ops.atan2(t126, ops.select(t33, t129, 1.0))
-    t131 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t130))
-    t132 = ops.select(failed, ops.nan, ops.wrap_cut(t119))
-    t133 = ops.select(failed, ops.nan, ops.wrap_cut(-t122))
-    t134 = ops.select(failed, ops.nan, ops.wrap_cut(-t130))
-    clower_facing_down_noflip = t66 - t69
-    slower_facing_down_noflip = t70 + t71
-    t135 = ops.select(t33, -slower_facing_down_noflip, 1.0)
-    t136 = ops.wrap_cut(ops.atan2(clower_facing_down_noflip, t135))
-    t137 = ops.select(failed, ops.nan, t136)
-    t138 = t78 + t79
-    c3_facing_down_noflip = t81 - t82
-    t139 = ops.atan2(t138, ops.select(t33, c3_facing_down_noflip, 1.0))
-    t140 = ops.select(failed, ops.nan, ops.wrap_cut(-t139))
-    clower_facing_down_noflip_2 = t94 - t96
-    c3_facing_down_noflip_2 = t101 - t102
-    t141 = clower_facing_down_noflip_2 * c3_facing_down_noflip_2
-    slower_facing_down_noflip_2 = t103 + t104
-    t142 = t105 + t106
-    t143 = R1_13 * (t141 + slower_facing_down_noflip_2 * t142)
-    t144 = slower_facing_down_noflip_2 * c3_facing_down_noflip_2
-    t145 = T33 * (t144 - clower_facing_down_noflip_2 * t142)
-    R2_13_facing_down_noflip = t143 - t145
-    t146 = R2_13_facing_down_noflip * R2_13_facing_down_noflip
-    aligned_wrist_facing_down_noflip = ops.sqrt(t109 + t146) <= t110
+    t112 = T13 * s1
+    R2_23_2 = t112 - T23 * c1
+    t113 = t34 & ops.opposite(aligned_wrist)
+    t114 = R2_23_2 * R2_23_2
+    t115 = T23 * s1
+    R1_13_2 = T13 * c1 + t115
+    t116 = clower * c3 + slower * t81
+    t117 = slower * c3 - clower * t81
+    R2_13_2 = R1_13_2 * t116 - T33 * t117
+    t118 = ops.select(t113, t114 + R2_13_2 * R2_13_2, 1.0)
+    t119 = 1.0 / ops.select(t113, ops.sqrt(t118), 1.0)
+    s_wrist = ops.select(aligned_wrist, 0.0, R2_23_2 * t119)
+    c_wrist = ops.select(aligned_wrist, 1.0, R2_13_2 * t119)
+    t120 = ops.atan2(s_wrist, ops.select(t34, c_wrist, 1.0))
+    t121 = ops.select(failed, ops.nan, ops.wrap(flip_wrist + t120))
+    t122 = ops.select(t34, -(R1_13_2 * t117 + T33 * t116), 1.0)
+    t123 = ops.atan2(R2_13_2 * c_wrist + R2_23_2 * s_wrist, t122)
+    t124 = ops.select(failed, ops.nan, ops.wrap_cut(t123))
+    t125 = T21 * s1
+    R1_11 = T11 * c1 + t125
+    t126 = T11 * s1
+    R2_21 = t126 - T21 * c1
+    t127 = s_wrist * (R1_11 * t116 - T31 * t117) - R2_21 * c_wrist
+    t128 = T12 * s1
+    R2_22 = t128 - T22 * c1
+    t129 = T22 * s1
+    R1_12 = T12 * c1 + t129
+    t130 = R2_22 * c_wrist - s_wrist * (R1_12 * t116 - T32 * t117)
+    t131 = ops.atan2(t127, ops.select(t34, t130, 1.0))
+    t132 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t131))
+    t133 = ops.select(failed, ops.nan, ops.wrap_cut(t120))
+    t134 = ops.select(failed, ops.nan, ops.wrap_cut(-t123))
+    t135 = ops.select(failed, ops.nan, ops.wrap_cut(-t131))
+    clower_facing_down_noflip = t67 - t70
+    slower_facing_down_noflip = t71 + t72
+    t136 = ops.select(t34, -slower_facing_down_noflip, 1.0)
+    t137 = ops.wrap_cut(ops.atan2(clower_facing_down_noflip, t136))
+    t138 = ops.select(failed, ops.nan, t137)
+    t139 = t79 + t80
+    c3_facing_down_noflip = t82 - t83
+    t140 = ops.atan2(t139, ops.select(t34, c3_facing_down_noflip, 1.0))
+    t141 = ops.select(failed, ops.nan, ops.wrap_cut(-t140))
+    clower_facing_down_noflip_2 = t97 - t99
+    c3_facing_down_noflip_2 = t104 - t105
+    t142 = clower_facing_down_noflip_2 * c3_facing_down_noflip_2
+    slower_facing_down_noflip_2 = t106 + t107
+    t143 = t108 + t109
+    t144 = R1_13 * (t142 + slower_facing_down_noflip_2 * t143)
+    t145 = slower_facing_down_noflip_2 * c3_facing_down_noflip_2
+    t146 = T33 * (t145 - clower_facing_down_noflip_2 * t143)
+    R2_13_facing_down_noflip = t144 - t146
+    t147 = R2_13_facing_down_noflip * R2_13_facing_down_noflip
+    aligned_wrist_facing_down_noflip = ops.sqrt(t90 + t147) <= t111
     flip_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 0.0, 3.141592653589793)
-    t147 = ops.opposite(aligned_wrist_facing_down_noflip)
-    t148 = t33 & t147
-    t149 = clower_facing_down_noflip * c3_facing_down_noflip
-    t150 = t149 + slower_facing_down_noflip * t138
-    t151 = slower_facing_down_noflip * c3_facing_down_noflip
-    t152 = t151 - clower_facing_down_noflip * t138
-    R2_13_facing_down_noflip_2 = R1_13_2 * t150 - T33 * t152
-    t153 = R2_13_facing_down_noflip_2 * R2_13_facing_down_noflip_2
-    t154 = ops.select(t148, ops.sqrt(ops.select(t148, t116 + t153, 1.0)), 1.0)
-    t155 = 1.0 / t154
-    s_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 0.0, R2_23_2 * t155)
-    c_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 1.0, R2_13_facing_down_noflip_2 * t155)
-    t156 = ops.select(t33, c_wrist_facing_down_noflip, 1.0)
-    t157 = ops.atan2(s_wrist_facing_down_noflip, t156)
-    t158 = ops.wrap(flip_wrist_facing_down_noflip + t157)
-    t159 = R2_13_facing_down_noflip_2 * c_wrist_facing_down_noflip
-    t160 = ops.select(t33, -(R1_13_2 * t152 + T33 * t150), 1.0)
-    t161 = ops.atan2(t159 + R2_23_2 * s_wrist_facing_down_noflip, t160)
-    t162 = ops.select(failed, ops.nan, ops.wrap_cut(t161))
-    t163 = s_wrist_facing_down_noflip * (R1_11 * t150 - T31 * t152)
-    t164 = s_wrist_facing_down_noflip * (R1_12 * t150 - T32 * t152)
-    t165 = ops.select(t33, R2_22 * c_wrist_facing_down_noflip - t164, 1.0)
-    t166 = ops.atan2(t163 - R2_21 * c_wrist_facing_down_noflip, t165)
-    t167 = ops.wrap(flip_wrist_facing_down_noflip - t166)
-    t168 = ops.select(failed, ops.nan, ops.wrap_cut(t157))
-    t169 = ops.select(failed, ops.nan, ops.wrap_cut(-t161))
-    t170 = ops.select(failed, ops.nan, ops.wrap_cut(-t166))
-    c1_backward_up_noflip = ops.select(free1, 1.0, -t52)
-    t171 = ops.atan2(s1, ops.select(t30, c1_backward_up_noflip, 1.0))
-    t172 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t171))
-    t173 = a1 + root1_2
-    t174 = ops.select(t38 | t40 | t42, t17 + t173 * t173, 1.0)
-    r_elbow_backward_up_noflip_2 = ops.sqrt(t174)
-    A_elbow_backward_up_noflip = ops.max(t57 - r_elbow_backward_up_noflip_2, 0.0)
-    C_elbow_backward_up_noflip = ops.max(r_elbow_backward_up_noflip_2 - t60, 0.0)
-    t175 = A_elbow_backward_up_noflip * C_elbow_backward_up_noflip
-    S_elbow_backward_up_noflip = t57 + r_elbow_backward_up_noflip_2
-    B_elbow_backward_up_noflip = ops.max(r_elbow_backward_up_noflip_2 + t60, 0.0)
-    t176 = S_elbow_backward_up_noflip * B_elbow_backward_up_noflip
-    t177 = 1.0 / ops.select(t42, t175 + t176, 1.0)
-    c_base_elbow_backward_up_noflip = ops.select(t41, 1.0, -((t175 - t176) * t177))
-    t178 = ops.select(t40, r_elbow_backward_up_noflip_2, 1.0)
-    t179 = 1.0 / t178
-    t180 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t173 * t179))
-    t181 = c_base_elbow_backward_up_noflip * t180
-    t182 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t179)
-    area_elbow_backward_up_noflip = 2.0 * ops.sqrt(ops.select(t55, t175 * t176, 1.0))
-    s_base_elbow_backward_down_noflip = ops.select(t41, 0.0, t177 * area_elbow_backward_up_noflip)
-    t183 = t182 * s_base_elbow_backward_down_noflip
-    clower_backward_up_noflip = t181 - t183
-    t184 = c_base_elbow_backward_up_noflip * t182
-    t185 = t180 * s_base_elbow_backward_down_noflip
-    slower_backward_up_noflip = t184 + t185
-    t186 = ops.select(t30, -slower_backward_up_noflip, 1.0)
-    t187 = ops.wrap_cut(ops.atan2(clower_backward_up_noflip, t186))
-    t188 = ops.select(failed_2, ops.nan, t187)
-    t189 = A_elbow_backward_up_noflip * S_elbow_backward_up_noflip
-    t190 = C_elbow_backward_up_noflip * B_elbow_backward_up_noflip
-    t191 = 1.0 / ops.select(t38, t189 + t190, 1.0)
-    celbow_backward_up_noflip = ops.select(no_link_elbow, 1.0, -((t189 - t190) * t191))
-    t192 = s_forearm * celbow_backward_up_noflip
-    selbow_backward_down_noflip = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip * t191)
-    t193 = c_forearm * selbow_backward_down_noflip
-    t194 = t192 + t193
-    t195 = c_forearm * celbow_backward_up_noflip
-    t196 = s_forearm * selbow_backward_down_noflip
-    c3_backward_up_noflip = t195 - t196
-    t197 = ops.atan2(t194, ops.select(t30, c3_backward_up_noflip, 1.0))
-    t198 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t197))
-    c1_backward_up_noflip_2 = ops.select(free1, 1.0, -t87)
-    t199 = t88 - T13 * c1_backward_up_noflip_2
-    A_elbow_backward_up_noflip_2 = ops.max(t26, 0.0)
-    C_elbow_backward_up_noflip_2 = ops.max(t28, 0.0)
-    t200 = A_elbow_backward_up_noflip_2 * C_elbow_backward_up_noflip_2
-    S_elbow_backward_up_noflip_2 = t13 + r_elbow_backward_up_noflip
-    B_elbow_backward_up_noflip_2 = ops.max(t27, 0.0)
-    t201 = S_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
-    t202 = 1.0 / (t200 + t201)
-    c_base_elbow_backward_up_noflip_2 = ops.select(t41, 1.0, -((t200 - t201) * t202))
-    t203 = 1.0 / r_elbow_backward_up_noflip
-    t204 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t25 * t203))
-    t205 = c_base_elbow_backward_up_noflip_2 * t204
-    t206 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t203)
-    area_elbow_backward_up_noflip_2 = 2.0 * ops.sqrt(t200 * t201)
-    s_base_elbow_backward_down_noflip_2 = ops.select(t41, 0.0, t202 * area_elbow_backward_up_noflip_2)
-    t207 = t206 * s_base_elbow_backward_down_noflip_2
-    clower_backward_up_noflip_2 = t205 - t207
-    t208 = A_elbow_backward_up_noflip_2 * S_elbow_backward_up_noflip_2
-    t209 = C_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
-    t210 = 1.0 / (t208 + t209)
-    celbow_backward_up_noflip_2 = ops.select(no_link_elbow, 1.0, -((t208 - t209) * t210))
-    t211 = c_forearm_2 * celbow_backward_up_noflip_2
-    selbow_backward_down_noflip_2 = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip_2 * t210)
-    t212 = s_forearm_2 * selbow_backward_down_noflip_2
-    c3_backward_up_noflip_2 = t211 - t212
-    t213 = clower_backward_up_noflip_2 * c3_backward_up_noflip_2
-    t214 = c_base_elbow_backward_up_noflip_2 * t206
-    t215 = t204 * s_base_elbow_backward_down_noflip_2
-    slower_backward_up_noflip_2 = t214 + t215
-    t216 = s_forearm_2 * celbow_backward_up_noflip_2
-    t217 = c_forearm_2 * selbow_backward_down_noflip_2
-    t218 = t216 + t217
-    t219 = t199 * (t213 + slower_backward_up_noflip_2 * t218)
-    t220 = slower_backward_up_noflip_2 * c3_backward_up_noflip_2
-    t221 = T33 * (t220 - clower_backward_up_noflip_2 * t218)
-    t222 = t219 + t221
-    R1_33_backward_up_noflip = t108 + T23 * c1_backward_up_noflip_2
-    t223 = R1_33_backward_up_noflip * R1_33_backward_up_noflip
-    aligned_wrist_backward_up_noflip = ops.sqrt(t222 * t222 + t223) <= t110
+    t148 = ops.opposite(aligned_wrist_facing_down_noflip)
+    t149 = t34 & t148
+    t150 = clower_facing_down_noflip * c3_facing_down_noflip
+    t151 = t150 + slower_facing_down_noflip * t139
+    t152 = slower_facing_down_noflip * c3_facing_down_noflip
+    t153 = t152 - clower_facing_down_noflip * t139
+    R2_13_facing_down_noflip_2 = R1_13_2 * t151 - T33 * t153
+    t154 = R2_13_facing_down_noflip_2 * R2_13_facing_down_noflip_2
+    t155 = ops.select(t149, ops.sqrt(ops.select(t149, t114 + t154, 1.0)), 1.0)
+    t156 = 1.0 / t155
+    s_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 0.0, R2_23_2 * t156)
+    c_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 1.0, R2_13_facing_down_noflip_2 * t156)
+    t157 = ops.select(t34, c_wrist_facing_down_noflip, 1.0)
+    t158 = ops.atan2(s_wrist_facing_down_noflip, t157)
+    t159 = ops.wrap(flip_wrist_facing_down_noflip + t158)
+    t160 = R2_13_facing_down_noflip_2 * c_wrist_facing_down_noflip
+    t161 = ops.select(t34, -(R1_13_2 * t153 + T33 * t151), 1.0)
+    t162 = ops.atan2(t160 + R2_23_2 * s_wrist_facing_down_noflip, t161)
+    t163 = ops.select(failed, ops.nan, ops.wrap_cut(t162))
+    t164 = s_wrist_facing_down_noflip * (R1_11 * t151 - T31 * t153)
+    t165 = s_wrist_facing_down_noflip * (R1_12 * t151 - T32 * t153)
+    t166 = ops.select(t34, R2_22 * c_wrist_facing_down_noflip - t165, 1.0)
+    t167 = ops.atan2(t164 - R2_21 * c_wrist_facing_down_noflip, t166)
+    t168 = ops.wrap(flip_wrist_facing_down_noflip - t167)
+    t169 = ops.select(failed, ops.nan, ops.wrap_cut(t158))
+    t170 = ops.select(failed, ops.nan, ops.wrap_cut(-t162))
+    t171 = ops.select(failed, ops.nan, ops.wrap_cut(-t167))
+    c1_backward_up_noflip = ops.select(free1, 1.0, -t53)
+    t172 = ops.atan2(s1, ops.select(t31, c1_backward_up_noflip, 1.0))
+    t173 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t172))
+    t174 = a1 + root1_2
+    t175 = ops.select(t39 | t41 | t43, t18 + t174 * t174, 1.0)
+    r_elbow_backward_up_noflip_2 = ops.sqrt(t175)
+    t176 = ops.select(t41, r_elbow_backward_up_noflip_2, 1.0)
+    t177 = 1.0 / t176
+    t178 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t174 * t177))
+    A_elbow_backward_up_noflip = ops.max(t62 - r_elbow_backward_up_noflip_2, 0.0)
+    C_elbow_backward_up_noflip = ops.max(r_elbow_backward_up_noflip_2 - t63, 0.0)
+    t179 = A_elbow_backward_up_noflip * C_elbow_backward_up_noflip
+    S_elbow_backward_up_noflip = t62 + r_elbow_backward_up_noflip_2
+    B_elbow_backward_up_noflip = ops.max(r_elbow_backward_up_noflip_2 + t63, 0.0)
+    t180 = S_elbow_backward_up_noflip * B_elbow_backward_up_noflip
+    t181 = 1.0 / ops.select(t43, t179 + t180, 1.0)
+    c_base_elbow_backward_up_noflip = ops.select(t42, 1.0, -((t179 - t180) * t181))
+    t182 = t178 * c_base_elbow_backward_up_noflip
+    t183 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t177)
+    area_elbow_backward_up_noflip = 2.0 * ops.sqrt(ops.select(t60, t179 * t180, 1.0))
+    s_base_elbow_backward_down_noflip = ops.select(t42, 0.0, t181 * area_elbow_backward_up_noflip)
+    t184 = t183 * s_base_elbow_backward_down_noflip
+    clower_backward_up_noflip = t182 - t184
+    t185 = t183 * c_base_elbow_backward_up_noflip
+    t186 = t178 * s_base_elbow_backward_down_noflip
+    slower_backward_up_noflip = t185 + t186
+    t187 = ops.select(t31, -slower_backward_up_noflip, 1.0)
+    t188 = ops.wrap_cut(ops.atan2(clower_backward_up_noflip, t187))
+    t189 = ops.select(failed_2, ops.nan, t188)
+    t190 = A_elbow_backward_up_noflip * S_elbow_backward_up_noflip
+    t191 = C_elbow_backward_up_noflip * B_elbow_backward_up_noflip
+    t192 = 1.0 / ops.select(t39, t190 + t191, 1.0)
+    celbow_backward_up_noflip = ops.select(no_link_elbow, 1.0, -((t190 - t191) * t192))
+    t193 = s_forearm * celbow_backward_up_noflip
+    selbow_backward_down_noflip = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip * t192)
+    t194 = c_forearm * selbow_backward_down_noflip
+    t195 = t193 + t194
+    t196 = c_forearm * celbow_backward_up_noflip
+    t197 = s_forearm * selbow_backward_down_noflip
+    c3_backward_up_noflip = t196 - t197
+    t198 = ops.atan2(t195, ops.select(t31, c3_backward_up_noflip, 1.0))
+    t199 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t198))
+    c1_backward_up_noflip_2 = ops.select(free1, 1.0, -t89)
+    R1_33_backward_up_noflip = t88 + T23 * c1_backward_up_noflip_2
+    t200 = R1_33_backward_up_noflip * R1_33_backward_up_noflip
+    t201 = t91 - T13 * c1_backward_up_noflip_2
+    t202 = 1.0 / r_elbow_backward_up_noflip
+    t203 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t26 * t202))
+    A_elbow_backward_up_noflip_2 = ops.max(t27, 0.0)
+    C_elbow_backward_up_noflip_2 = ops.max(t29, 0.0)
+    t204 = A_elbow_backward_up_noflip_2 * C_elbow_backward_up_noflip_2
+    S_elbow_backward_up_noflip_2 = t17 + r_elbow_backward_up_noflip
+    B_elbow_backward_up_noflip_2 = ops.max(t28, 0.0)
+    t205 = S_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
+    t206 = 1.0 / (t204 + t205)
+    c_base_elbow_backward_up_noflip_2 = ops.select(t42, 1.0, -((t204 - t205) * t206))
+    t207 = t203 * c_base_elbow_backward_up_noflip_2
+    t208 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t202)
+    area_elbow_backward_up_noflip_2 = 2.0 * ops.sqrt(t204 * t205)
+    s_base_elbow_backward_down_noflip_2 = ops.select(t42, 0.0, t206 * area_elbow_backward_up_noflip_2)
+    t209 = t208 * s_base_elbow_backward_down_noflip_2
+    clower_backward_up_noflip_2 = t207 - t209
+    t210 = A_elbow_backward_up_noflip_2 * S_elbow_backward_up_noflip_2
+    t211 = C_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
+    t212 = 1.0 / (t210 + t211)
+    celbow_backward_up_noflip_2 = ops.select(no_link_elbow, 1.0, -((t210 - t211) * t212))
+    t213 = c_forearm_2 * celbow_backward_up_noflip_2
+    selbow_backward_down_noflip_2 = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip_2 * t212)
+    t214 = s_forearm_2 * selbow_backward_down_noflip_2
+    c3_backward_up_noflip_2 = t213 - t214
+    t215 = clower_backward_up_noflip_2 * c3_backward_up_noflip_2
+    t216 = t208 * c_base_elbow_backward_up_noflip_2
+    t217 = t203 * s_base_elbow_backward_down_noflip_2
+    slower_backward_up_noflip_2 = t216 + t217
+    t218 = s_forearm_2 * celbow_backward_up_noflip_2
+    t219 = c_forearm_2 * selbow_backward_down_noflip_2
+    t220 = t218 + t219
+    t221 = t201 * (t215 + slower_backward_up_noflip_2 * t220)
+    t222 = slower_backward_up_noflip_2 * c3_backward_up_noflip_2
+    t223 = T33 * (t222 - clower_backward_up_noflip_2 * t220)
+    t224 = t221 + t223
+    aligned_wrist_backward_up_noflip = ops.sqrt(t200 + t224 * t224) <= t111
     flip_wrist_backward_up_noflip = ops.select(aligned_wrist_backward_up_noflip, 0.0, 3.141592653589793)
-    R1_33_backward_up_noflip_2 = t111 + T23 * c1_backward_up_noflip
-    t224 = ops.opposite(aligned_wrist_backward_up_noflip)
-    t225 = t30 & t224
-    t226 = t113 - T13 * c1_backward_up_noflip
-    t227 = clower_backward_up_noflip * c3_backward_up_noflip
-    t228 = t227 + slower_backward_up_noflip * t194
-    t229 = slower_backward_up_noflip * c3_backward_up_noflip
-    t230 = t229 - clower_backward_up_noflip * t194
-    t231 = t226 * t228 + T33 * t230
-    t232 = R1_33_backward_up_noflip_2 * R1_33_backward_up_noflip_2
-    h_wrist_backward_up_noflip = ops.sqrt(ops.select(t225, t231 * t231 + t232, 1.0))
-    t233 = ops.select(t225, h_wrist_backward_up_noflip, 1.0)
-    t234 = 1.0 / t233
-    t235 = ops.select(aligned_wrist_backward_up_noflip, 0.0, R1_33_backward_up_noflip_2 * t234)
-    c_wrist_backward_up_noflip = ops.select(aligned_wrist_backward_up_noflip, 1.0, -(t231 * t234))
-    t236 = ops.select(t30, c_wrist_backward_up_noflip, 1.0)
-    t237 = ops.atan2(t235, t236)
-    t238 = ops.wrap(flip_wrist_backward_up_noflip - t237)
-    t239 = t231 * c_wrist_backward_up_noflip - R1_33_backward_up_noflip_2 * t235
-    t240 = ops.select(t30, t226 * t230 - T33 * t228, 1.0)
-    t241 = ops.atan2(t239, t240)
-    t242 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t241))
-    t243 = t124 - T11 * c1_backward_up_noflip
-    R1_31_backward_up_noflip = t125 + T21 * c1_backward_up_noflip
-    t244 = c_wrist_backward_up_noflip * R1_31_backward_up_noflip
-    t245 = t128 - T12 * c1_backward_up_noflip
-    R1_32_backward_up_noflip = t127 + T22 * c1_backward_up_noflip
-    t246 = c_wrist_backward_up_noflip * R1_32_backward_up_noflip
-    t247 = ops.select(t30, -(t235 * (t228 * t245 + T32 * t230) + t246), 1.0)
-    t248 = ops.atan2(t235 * (t228 * t243 + T31 * t230) + t244, t247)
-    t249 = ops.wrap(flip_wrist_backward_up_noflip - t248)
-    t250 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t237))
-    t251 = ops.select(failed_2, ops.nan, ops.wrap_cut(t241))
-    t252 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t248))
-    clower_backward_down_noflip = t181 + t183
-    slower_backward_down_noflip = t184 - t185
-    t253 = ops.select(t30, -slower_backward_down_noflip, 1.0)
-    t254 = ops.wrap_cut(ops.atan2(clower_backward_down_noflip, t253))
-    t255 = ops.select(failed_2, ops.nan, t254)
-    t256 = t192 - t193
-    c3_backward_down_noflip = t195 + t196
-    t257 = ops.select(t30, c3_backward_down_noflip, 1.0)
-    t258 = ops.select(failed_2, ops.nan, ops.wrap_cut(ops.atan2(-t256, t257)))
-    clower_backward_down_noflip_2 = t205 + t207
-    c3_backward_down_noflip_2 = t211 + t212
-    t259 = clower_backward_down_noflip_2 * c3_backward_down_noflip_2
-    slower_backward_down_noflip_2 = t214 - t215
-    t260 = t216 - t217
-    t261 = t199 * (t259 + slower_backward_down_noflip_2 * t260)
-    t262 = slower_backward_down_noflip_2 * c3_backward_down_noflip_2
-    t263 = T33 * (t262 - clower_backward_down_noflip_2 * t260)
-    t264 = t261 + t263
-    aligned_wrist_backward_down_noflip = ops.sqrt(t223 + t264 * t264) <= t110
+    R1_33_backward_up_noflip_2 = t112 + T23 * c1_backward_up_noflip
+    t225 = ops.opposite(aligned_wrist_backward_up_noflip)
+    t226 = t31 & t225
+    t227 = R1_33_backward_up_noflip_2 * R1_33_backward_up_noflip_2
+    t228 = t115 - T13 * c1_backward_up_noflip
+    t229 = clower_backward_up_noflip * c3_backward_up_noflip
+    t230 = t229 + slower_backward_up_noflip * t195
+    t231 = slower_backward_up_noflip * c3_backward_up_noflip
+    t232 = t231 - clower_backward_up_noflip * t195
+    t233 = t228 * t230 + T33 * t232
+    h_wrist_backward_up_noflip = ops.sqrt(ops.select(t226, t227 + t233 * t233, 1.0))
+    t234 = ops.select(t226, h_wrist_backward_up_noflip, 1.0)
+    t235 = 1.0 / t234
+    t236 = ops.select(aligned_wrist_backward_up_noflip, 0.0, R1_33_backward_up_noflip_2 * t235)
+    c_wrist_backward_up_noflip = ops.select(aligned_wrist_backward_up_noflip, 1.0, -(t233 * t235))
+    t237 = ops.select(t31, c_wrist_backward_up_noflip, 1.0)
+    t238 = ops.atan2(t236, t237)
+    t239 = ops.wrap(flip_wrist_backward_up_noflip - t238)
+    t240 = t233 * c_wrist_backward_up_noflip - R1_33_backward_up_noflip_2 * t236
+    t241 = ops.select(t31, t228 * t232 - T33 * t230, 1.0)
+    t242 = ops.atan2(t240, t241)
+    t243 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t242))
+    t244 = t125 - T11 * c1_backward_up_noflip
+    R1_31_backward_up_noflip = t126 + T21 * c1_backward_up_noflip
+    t245 = R1_31_backward_up_noflip * c_wrist_backward_up_noflip
+    t246 = t129 - T12 * c1_backward_up_noflip
+    R1_32_backward_up_noflip = t128 + T22 * c1_backward_up_noflip
+    t247 = R1_32_backward_up_noflip * c_wrist_backward_up_noflip
+    t248 = ops.select(t31, -(t236 * (t246 * t230 + T32 * t232) + t247), 1.0)
+    t249 = ops.atan2(t236 * (t244 * t230 + T31 * t232) + t245, t248)
+    t250 = ops.wrap(flip_wrist_backward_up_noflip - t249)
+    t251 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t238))
+    t252 = ops.select(failed_2, ops.nan, ops.wrap_cut(t242))
+    t253 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t249))
+    clower_backward_down_noflip = t182 + t184
+    slower_backward_down_noflip = t185 - t186
+    t254 = ops.select(t31, -slower_backward_down_noflip, 1.0)
+    t255 = ops.wrap_cut(ops.atan2(clower_backward_down_noflip, t254))
+    t256 = ops.select(failed_2, ops.nan, t255)
+    t257 = t193 - t194
+    c3_backward_down_noflip = t196 + t197
+    t258 = ops.select(t31, c3_backward_down_noflip, 1.0)
+    t259 = ops.select(failed_2, ops.nan, ops.wrap_cut(ops.atan2(-t257, t258)))
+    clower_backward_down_noflip_2 = t207 + t209
+    c3_backward_down_noflip_2 = t213 + t214
+    t260 = clower_backward_down_noflip_2 * c3_backward_down_noflip_2
+    slower_backward_down_noflip_2 = t216 - t217
+    t261 = t218 - t219
+    t262 = t201 * (t260 + slower_backward_down_noflip_2 * t261)
+    t263 = slower_backward_down_noflip_2 * c3_backward_down_noflip_2
+    t264 = T33 * (t263 - clower_backward_down_noflip_2 * t261)
+    t265 = t262 + t264
+    aligned_wrist_backward_down_noflip = ops.sqrt(t200 + t265 * t265) <= t111
     flip_wrist_backward_down_noflip = ops.select(aligned_wrist_backward_down_noflip, 0.0, 3.141592653589793)
-    t265 = ops.opposite(aligned_wrist_backward_down_noflip)
-    t266 = t30 & t265
-    t267 = clower_backward_down_noflip * c3_backward_down_noflip
-    t268 = t267 + slower_backward_down_noflip * t256
-    t269 = slower_backward_down_noflip * c3_backward_down_noflip
-    t270 = t269 - clower_backward_down_noflip * t256
-    t271 = t226 * t268 + T33 * t270
-    h_wrist_backward_down_noflip = ops.sqrt(ops.select(t266, t232 + t271 * t271, 1.0))
-    t272 = ops.select(t266, h_wrist_backward_down_noflip, 1.0)
-    t273 = 1.0 / t272
-    t274 = ops.select(aligned_wrist_backward_down_noflip, 0.0, R1_33_backward_up_noflip_2 * t273)
-    c_wrist_backward_down_noflip = ops.select(aligned_wrist_backward_down_noflip, 1.0, -(t271 * t273))
-    t275 = ops.select(t30, c_wrist_backward_down_noflip, 1.0)
-    t276 = ops.atan2(t274, t275)
-    t277 = ops.wrap(flip_wrist_backward_down_noflip - t276)
-    t278 = t271 * c_wrist_backward_down_noflip - R1_33_backward_up_noflip_2 * t274
-    t279 = ops.select(t30, t226 * t270 - T33 * t268, 1.0)
-    t280 = ops.atan2(t278, t279)
-    t281 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t280))
-    t282 = R1_31_backward_up_noflip * c_wrist_backward_down_noflip
-    t283 = R1_32_backward_up_noflip * c_wrist_backward_down_noflip
-    t284 = ops.select(t30, -(t274 * (t245 * t268 + T32 * t270) + t283), 1.0)
-    t285 = ops.atan2(t274 * (t243 * t268 + T31 * t270) + t282, t284)
-    t286 = ops.wrap(flip_wrist_backward_down_noflip - t285)
-    t287 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t276))
-    t288 = ops.select(failed_2, ops.nan, ops.wrap_cut(t280))
-    t289 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t285))
-    t290 = free1 | no_link_elbow
-    t291 = t290 | folded_elbow
-    t292 = ops.status(invalid, unreachable, t291 | aligned_wrist)
-    t293 = ops.status(invalid, unreachable, t291 | aligned_wrist_facing_down_noflip)
-    t294 = t290 | folded_elbow_backward_up_noflip
-    t295 = ops.status(invalid, unreachable_2, t294 | aligned_wrist_backward_up_noflip)
-    t296 = ops.status(invalid, unreachable_2, t294 | aligned_wrist_backward_down_noflip)
+    t266 = ops.opposite(aligned_wrist_backward_down_noflip)
+    t267 = t31 & t266
+    t268 = clower_backward_down_noflip * c3_backward_down_noflip
+    t269 = t268 + slower_backward_down_noflip * t257
+    t270 = slower_backward_down_noflip * c3_backward_down_noflip
+    t271 = t270 - clower_backward_down_noflip * t257
+    t272 = t228 * t269 + T33 * t271
+    h_wrist_backward_down_noflip = ops.sqrt(ops.select(t267, t227 + t272 * t272, 1.0))
+    t273 = ops.select(t267, h_wrist_backward_down_noflip, 1.0)
+    t274 = 1.0 / t273
+    t275 = ops.select(aligned_wrist_backward_down_noflip, 0.0, R1_33_backward_up_noflip_2 * t274)
+    c_wrist_backward_down_noflip = ops.select(aligned_wrist_backward_down_noflip, 1.0, -(t272 * t274))
+    t276 = ops.select(t31, c_wrist_backward_down_noflip, 1.0)
+    t277 = ops.atan2(t275, t276)
+    t278 = ops.wrap(flip_wrist_backward_down_noflip - t277)
+    t279 = t272 * c_wrist_backward_down_noflip - R1_33_backward_up_noflip_2 * t275
+    t280 = ops.select(t31, t228 * t271 - T33 * t269, 1.0)
+    t281 = ops.atan2(t279, t280)
+    t282 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t281))
+    t283 = R1_31_backward_up_noflip * c_wrist_backward_down_noflip
+    t284 = R1_32_backward_up_noflip * c_wrist_backward_down_noflip
+    t285 = ops.select(t31, -(t275 * (t246 * t269 + T32 * t271) + t284), 1.0)
+    t286 = ops.atan2(t275 * (t244 * t269 + T31 * t271) + t283, t285)
+    t287 = ops.wrap(flip_wrist_backward_down_noflip - t286)
+    t288 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t277))
+    t289 = ops.select(failed_2, ops.nan, ops.wrap_cut(t281))
+    t290 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t286))
+    t291 = free1 | no_link_elbow
+    t292 = t291 | folded_elbow
+    t293 = ops.status(invalid, unreachable, t292 | aligned_wrist)
+    t294 = ops.status(invalid, unreachable, t292 | aligned_wrist_facing_down_noflip)
+    t295 = t291 | folded_elbow_backward_up_noflip
+    t296 = ops.status(invalid, unreachable_2, t295 | aligned_wrist_backward_up_noflip)
+    t297 = ops.status(invalid, unreachable_2, t295 | aligned_wrist_backward_down_noflip)
     return (
-        t54,
-        t73,
-        t84,
-        t120,
-        t123,
-        t131,
-        t54,
-        t73,
-        t84,
+        t55,
+        t74,
+        t85,
+        t121,
+        t124,
         t132,
+        t55,
+        t74,
+        t85,
         t133,
         t134,
-        t54,
-        t137,
-        t140,
-        ops.select(failed, ops.nan, t158),
-        t162,
-        ops.select(failed, ops.nan, t167),
-        t54,
-        t137,
-        t140,
-        t168,
+        t135,
+        t55,
+        t138,
+        t141,
+        ops.select(failed, ops.nan, t159),
+        t163,
+        ops.select(failed, ops.nan, t168),
+        t55,
+        t138,
+        t141,
         t169,
         t170,
-        t172,
-        t188,
-        t198,
-        ops.select(failed_2, ops.nan, t238),
-        t242,
-        ops.select(failed_2, ops.nan, t249),
-        t172,
-        t188,
-        t198,
-        t250,
+        t171,
+        t173,
+        t189,
+        t199,
+        ops.select(failed_2, ops.nan, t239),
+        t243,
+        ops.select(failed_2, ops.nan, t250),
+        t173,
+        t189,
+        t199,
         t251,
         t252,
-        t172,
-        t255,
-        t258,
-        ops.select(failed_2, ops.nan, t277),
-        t281,
-        ops.select(failed_2, ops.nan, t286),
-        t172,
-        t255,
-        t258,
-        t287,
+        t253,
+        t173,
+        t256,
+        t259,
+        ops.select(failed_2, ops.nan, t278),
+        t282,
+        ops.select(failed_2, ops.nan, t287),
+        t173,
+        t256,
+        t259,
         t288,
         t289,
-        t292,
-        t292,
+        t290,
         t293,
         t293,
-        t295,
-        t295,
+        t294,
+        t294,
         t296,
         t296,
+        t297,
+        t297,
     )
 
 

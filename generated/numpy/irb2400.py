@@ -12,7 +12,7 @@
 #   jacobian_body: 29 add, 64 multiply, 5 sincos
 #   joints_from_motors: 1 add
 #   motors_from_joints: 1 add
-#   ik: 150 compare and select, 155 add, 22 atan2, 13 divide, 184 multiply, 11 sqrt
+#   ik: 153 compare and select, 159 add, 22 atan2, 13 divide, 184 multiply, 11 sqrt
 """Six-axis arm on a parallelogram (IRB 2400).
 
 theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal and parallel, and
@@ -964,10 +964,10 @@ def _ik(
     w_x = T14 - T13 * d6
     w_y = T24 - T23 * d6
     h1 = np.sqrt(w_x * w_x + w_y * w_y)
-    f = np.sqrt(a3 * a3 + d4 * d4)
-    t1 = a2 + f
-    size = np.abs(a1) + t1
-    t2 = _runtime.VANISHING * size
+    t1 = a2 + d4 + np.abs(a1) + np.abs(a3) + np.abs(d1)
+    size = t1 + np.abs(d6)
+    del t1
+    t2 = size * _runtime.VANISHING
     free1 = h1 <= t2
     below1 = np.maximum(h1, 0.0)
     t3 = 1.0 / (h1 * (below1 + below1))
@@ -1003,393 +1003,394 @@ def _ik(
     del size
     t20 = t19 <= h1
     del h1
+    f = np.sqrt(a3 * a3 + d4 * d4)
+    t21 = a2 + f
     y_elbow = d1 - (T34 - T33 * d6)
-    t21 = y_elbow * y_elbow
-    t22 = a1 - root1
-    r_elbow = np.sqrt(t21 + t22 * t22)
-    t23 = t1 - r_elbow
-    t24 = a2 - f
-    t25 = r_elbow + t24
-    t26 = r_elbow - t24
-    t27 = t20 & (t19 <= t23) & (t19 <= t25) & (t19 <= t26)
-    unreachable = np.logical_not(t27)
-    del t27
-    t28 = _runtime.poison(invalid | unreachable)
-    t29 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t28
+    t22 = y_elbow * y_elbow
+    t23 = a1 - root1
+    r_elbow = np.sqrt(t22 + t23 * t23)
+    t24 = t21 - r_elbow
+    t25 = a2 - f
+    t26 = r_elbow + t25
+    t27 = r_elbow - t25
+    t28 = t20 & (t19 <= t24) & (t19 <= t26) & (t19 <= t27)
+    unreachable = np.logical_not(t28)
+    del t28
+    t29 = _runtime.poison(invalid | unreachable)
+    t30 = _runtime.wrap_cut(np.arctan2(s1, c1)) + t29
     folded_elbow = r_elbow <= t2
-    no_link_elbow = a2 * f <= _runtime.VANISHING * (t1 * t1)
-    t30 = folded_elbow | no_link_elbow
-    A_elbow = np.maximum(t23, 0.0)
+    t31 = 1.0 / r_elbow
+    t32 = _runtime.select(folded_elbow, 1.0, -(t23 * t31))
     del t23
-    C_elbow = np.maximum(t26, 0.0)
-    del t26
-    t31 = A_elbow * C_elbow
-    S_elbow = t1 + r_elbow
-    B_elbow = np.maximum(t25, 0.0)
-    del t25
-    t32 = S_elbow * B_elbow
-    t33 = 1.0 / (t31 + t32)
-    c_base_elbow = _runtime.select(t30, 1.0, -((t31 - t32) * t33))
-    t34 = 1.0 / r_elbow
+    no_link_elbow = a2 * f <= _runtime.VANISHING * (t21 * t21)
+    t33 = folded_elbow | no_link_elbow
+    A_elbow = np.maximum(t24, 0.0)
+    del t24
+    C_elbow = np.maximum(t27, 0.0)
+    del t27
+    t34 = A_elbow * C_elbow
+    S_elbow = t21 + r_elbow
     del r_elbow
-    t35 = _runtime.select(folded_elbow, 1.0, -(t22 * t34))
-    del t22
-    t36 = c_base_elbow * t35
-    t37 = _runtime.select(folded_elbow, 0.0, y_elbow * t34)
-    del t34
-    area_elbow = 2.0 * np.sqrt(t31 * t32)
-    del t31, t32
-    s_base_elbow = _runtime.select(t30, 0.0, t33 * area_elbow)
-    del t30, t33
-    t38 = t37 * s_base_elbow
-    clower = t36 + t38
-    t39 = c_base_elbow * t37
-    del c_base_elbow, t37
-    t40 = t35 * s_base_elbow
-    del s_base_elbow, t35
-    slower = t39 - t40
-    t41 = _runtime.wrap_cut(np.arctan2(clower, -slower))
-    t42 = t41 + t28
-    del t41
+    B_elbow = np.maximum(t26, 0.0)
+    del t26
+    t35 = S_elbow * B_elbow
+    t36 = 1.0 / (t34 + t35)
+    c_base_elbow = _runtime.select(t33, 1.0, -((t34 - t35) * t36))
+    t37 = t32 * c_base_elbow
+    t38 = _runtime.select(folded_elbow, 0.0, y_elbow * t31)
+    del t31
+    area_elbow = 2.0 * np.sqrt(t34 * t35)
+    del t34, t35
+    s_base_elbow = _runtime.select(t33, 0.0, t36 * area_elbow)
+    del t33, t36
+    t39 = t38 * s_base_elbow
+    clower = t37 + t39
+    t40 = t38 * c_base_elbow
+    del c_base_elbow, t38
+    t41 = t32 * s_base_elbow
+    del s_base_elbow, t32
+    slower = t40 - t41
+    t42 = _runtime.wrap_cut(np.arctan2(clower, -slower))
+    t43 = t42 + t29
+    del t42
     no_forearm = f <= 0.0
-    t43 = 1.0 / f
+    t44 = 1.0 / f
     del f
-    s_forearm = _runtime.select(no_forearm, 0.0, d4 * t43)
-    t44 = A_elbow * S_elbow
+    s_forearm = _runtime.select(no_forearm, 0.0, d4 * t44)
+    t45 = A_elbow * S_elbow
     del A_elbow, S_elbow
-    t45 = C_elbow * B_elbow
+    t46 = C_elbow * B_elbow
     del B_elbow, C_elbow
-    t46 = 1.0 / (t44 + t45)
-    celbow = _runtime.select(no_link_elbow, 1.0, -((t44 - t45) * t46))
-    del t44, t45
-    t47 = s_forearm * celbow
-    c_forearm = _runtime.select(no_forearm, 1.0, a3 * t43)
-    del no_forearm, t43
-    selbow = _runtime.select(no_link_elbow, 0.0, area_elbow * t46)
-    del area_elbow, t46
-    t48 = c_forearm * selbow
-    t49 = t47 - t48
-    t50 = c_forearm * celbow
+    t47 = 1.0 / (t45 + t46)
+    celbow = _runtime.select(no_link_elbow, 1.0, -((t45 - t46) * t47))
+    del t45, t46
+    t48 = s_forearm * celbow
+    c_forearm = _runtime.select(no_forearm, 1.0, a3 * t44)
+    del no_forearm, t44
+    selbow = _runtime.select(no_link_elbow, 0.0, area_elbow * t47)
+    del area_elbow, t47
+    t49 = c_forearm * selbow
+    t50 = t48 - t49
+    t51 = c_forearm * celbow
     del celbow
-    t51 = s_forearm * selbow
+    t52 = s_forearm * selbow
     del selbow
-    c3 = t50 + t51
-    t52 = _runtime.wrap_cut(np.arctan2(-t49, c3)) + t28
-    t53 = T23 * s1
-    R1_13 = T13 * c1 + t53
-    t54 = clower * c3 + slower * t49
-    t55 = slower * c3 - clower * t49
-    del c3, clower, slower, t49
-    R2_13 = R1_13 * t54 - T33 * t55
-    t56 = T13 * s1
-    R2_23 = t56 - T23 * c1
-    t57 = R2_23 * R2_23
-    h_wrist = np.sqrt(R2_13 * R2_13 + t57)
-    t58 = _runtime.VANISHING * 16.0
-    aligned_wrist = h_wrist <= t58
+    c3 = t51 + t52
+    t53 = _runtime.wrap_cut(np.arctan2(-t50, c3)) + t29
+    t54 = T13 * s1
+    R2_23 = t54 - T23 * c1
+    t55 = R2_23 * R2_23
+    t56 = T23 * s1
+    R1_13 = T13 * c1 + t56
+    t57 = clower * c3 + slower * t50
+    t58 = slower * c3 - clower * t50
+    del c3, clower, slower, t50
+    R2_13 = R1_13 * t57 - T33 * t58
+    h_wrist = np.sqrt(t55 + R2_13 * R2_13)
+    t59 = _runtime.VANISHING * 16.0
+    aligned_wrist = h_wrist <= t59
     flip_wrist = _runtime.select(aligned_wrist, 0.0, 3.141592653589793)
-    t59 = 1.0 / h_wrist
+    t60 = 1.0 / h_wrist
     del h_wrist
-    s_wrist = _runtime.select(aligned_wrist, 0.0, R2_23 * t59)
-    c_wrist = _runtime.select(aligned_wrist, 1.0, R2_13 * t59)
-    del t59
-    t60 = np.arctan2(s_wrist, c_wrist)
-    t61 = np.arctan2(R2_13 * c_wrist + R2_23 * s_wrist, -(R1_13 * t55 + T33 * t54))
+    s_wrist = _runtime.select(aligned_wrist, 0.0, R2_23 * t60)
+    c_wrist = _runtime.select(aligned_wrist, 1.0, R2_13 * t60)
+    del t60
+    t61 = np.arctan2(s_wrist, c_wrist)
+    t62 = np.arctan2(R2_13 * c_wrist + R2_23 * s_wrist, -(R1_13 * t58 + T33 * t57))
     del R2_13
-    t62 = T21 * s1
-    R1_11 = T11 * c1 + t62
-    t63 = T11 * s1
-    R2_21 = t63 - T21 * c1
-    t64 = s_wrist * (t54 * R1_11 - T31 * t55) - c_wrist * R2_21
-    t65 = T12 * s1
-    R2_22 = t65 - T22 * c1
-    t66 = T22 * s1
-    R1_12 = T12 * c1 + t66
+    t63 = T21 * s1
+    R1_11 = T11 * c1 + t63
+    t64 = T11 * s1
+    R2_21 = t64 - T21 * c1
+    t65 = s_wrist * (R1_11 * t57 - T31 * t58) - R2_21 * c_wrist
+    t66 = T12 * s1
+    R2_22 = t66 - T22 * c1
+    t67 = T22 * s1
+    R1_12 = T12 * c1 + t67
     del c1
-    t67 = c_wrist * R2_22 - s_wrist * (t54 * R1_12 - T32 * t55)
-    del c_wrist, s_wrist, t54, t55
-    t68 = np.arctan2(t64, t67)
-    del t64, t67
-    clower_facing_down_noflip = t36 - t38
-    del t36, t38
-    slower_facing_down_noflip = t39 + t40
-    del t39, t40
-    t69 = np.arctan2(clower_facing_down_noflip, -slower_facing_down_noflip)
-    t70 = _runtime.wrap_cut(t69) + t28
-    del t69
-    t71 = t47 + t48
-    del t47, t48
-    c3_facing_down_noflip = t50 - t51
-    del t50, t51
-    t72 = _runtime.wrap_cut(-np.arctan2(t71, c3_facing_down_noflip))
-    t73 = t72 + t28
-    del t72
-    t74 = clower_facing_down_noflip * c3_facing_down_noflip
-    t75 = t74 + slower_facing_down_noflip * t71
-    del t74
-    t76 = slower_facing_down_noflip * c3_facing_down_noflip
+    t68 = R2_22 * c_wrist - s_wrist * (R1_12 * t57 - T32 * t58)
+    del c_wrist, s_wrist, t57, t58
+    t69 = np.arctan2(t65, t68)
+    del t65, t68
+    clower_facing_down_noflip = t37 - t39
+    del t37, t39
+    slower_facing_down_noflip = t40 + t41
+    del t40, t41
+    t70 = np.arctan2(clower_facing_down_noflip, -slower_facing_down_noflip)
+    t71 = _runtime.wrap_cut(t70) + t29
+    del t70
+    t72 = t48 + t49
+    del t48, t49
+    c3_facing_down_noflip = t51 - t52
+    del t51, t52
+    t73 = _runtime.wrap_cut(-np.arctan2(t72, c3_facing_down_noflip))
+    t74 = t73 + t29
+    del t73
+    t75 = clower_facing_down_noflip * c3_facing_down_noflip
+    t76 = t75 + slower_facing_down_noflip * t72
+    del t75
+    t77 = slower_facing_down_noflip * c3_facing_down_noflip
     del c3_facing_down_noflip, slower_facing_down_noflip
-    t77 = t76 - clower_facing_down_noflip * t71
-    del clower_facing_down_noflip, t71, t76
-    R2_13_facing_down_noflip = R1_13 * t75 - T33 * t77
-    t78 = R2_13_facing_down_noflip * R2_13_facing_down_noflip
-    h_wrist_facing_down_noflip = np.sqrt(t57 + t78)
-    del t57, t78
-    aligned_wrist_facing_down_noflip = h_wrist_facing_down_noflip <= t58
+    t78 = t77 - clower_facing_down_noflip * t72
+    del clower_facing_down_noflip, t72, t77
+    R2_13_facing_down_noflip = R1_13 * t76 - T33 * t78
+    t79 = R2_13_facing_down_noflip * R2_13_facing_down_noflip
+    h_wrist_facing_down_noflip = np.sqrt(t55 + t79)
+    del t55, t79
+    aligned_wrist_facing_down_noflip = h_wrist_facing_down_noflip <= t59
     flip_wrist_facing_down_noflip = _runtime.select(aligned_wrist_facing_down_noflip, 0.0, 3.141592653589793)
-    t79 = 1.0 / h_wrist_facing_down_noflip
+    t80 = 1.0 / h_wrist_facing_down_noflip
     del h_wrist_facing_down_noflip
-    s_wrist_facing_down_noflip = _runtime.select(aligned_wrist_facing_down_noflip, 0.0, R2_23 * t79)
-    c_wrist_facing_down_noflip = _runtime.select(aligned_wrist_facing_down_noflip, 1.0, R2_13_facing_down_noflip * t79)
-    del t79
-    t80 = np.arctan2(s_wrist_facing_down_noflip, c_wrist_facing_down_noflip)
-    t81 = _runtime.wrap(flip_wrist_facing_down_noflip + t80)
-    t82 = R2_13_facing_down_noflip * c_wrist_facing_down_noflip
+    s_wrist_facing_down_noflip = _runtime.select(aligned_wrist_facing_down_noflip, 0.0, R2_23 * t80)
+    c_wrist_facing_down_noflip = _runtime.select(aligned_wrist_facing_down_noflip, 1.0, R2_13_facing_down_noflip * t80)
+    del t80
+    t81 = np.arctan2(s_wrist_facing_down_noflip, c_wrist_facing_down_noflip)
+    t82 = _runtime.wrap(flip_wrist_facing_down_noflip + t81)
+    t83 = R2_13_facing_down_noflip * c_wrist_facing_down_noflip
     del R2_13_facing_down_noflip
-    t83 = np.arctan2(t82 + R2_23 * s_wrist_facing_down_noflip, -(R1_13 * t77 + T33 * t75))
-    del R1_13, R2_23, t82
-    t84 = s_wrist_facing_down_noflip * (R1_11 * t75 - T31 * t77)
+    t84 = np.arctan2(t83 + R2_23 * s_wrist_facing_down_noflip, -(R1_13 * t78 + T33 * t76))
+    del R1_13, R2_23, t83
+    t85 = s_wrist_facing_down_noflip * (R1_11 * t76 - T31 * t78)
     del R1_11
-    t85 = s_wrist_facing_down_noflip * (R1_12 * t75 - T32 * t77)
-    del R1_12, s_wrist_facing_down_noflip, t75, t77
-    t86 = np.arctan2(t84 - R2_21 * c_wrist_facing_down_noflip, R2_22 * c_wrist_facing_down_noflip - t85)
-    del R2_21, R2_22, c_wrist_facing_down_noflip, t84, t85
-    t87 = _runtime.wrap(flip_wrist_facing_down_noflip - t86)
+    t86 = s_wrist_facing_down_noflip * (R1_12 * t76 - T32 * t78)
+    del R1_12, s_wrist_facing_down_noflip, t76, t78
+    t87 = np.arctan2(t85 - R2_21 * c_wrist_facing_down_noflip, R2_22 * c_wrist_facing_down_noflip - t86)
+    del R2_21, R2_22, c_wrist_facing_down_noflip, t85, t86
+    t88 = _runtime.wrap(flip_wrist_facing_down_noflip - t87)
     del flip_wrist_facing_down_noflip
     c1_backward_up_noflip = _runtime.select(free1, 1.0, -t5)
     del t5
-    t88 = _runtime.wrap_cut(-np.arctan2(s1, c1_backward_up_noflip))
+    t89 = _runtime.wrap_cut(-np.arctan2(s1, c1_backward_up_noflip))
     del s1
-    t89 = a1 + root1
+    t90 = a1 + root1
     del root1
-    r_elbow_backward_up_noflip = np.sqrt(t21 + t89 * t89)
-    del t21
-    t90 = t1 - r_elbow_backward_up_noflip
-    t91 = r_elbow_backward_up_noflip + t24
-    t92 = r_elbow_backward_up_noflip - t24
-    del t24
-    t93 = t20 & (t19 <= t90) & (t19 <= t91) & (t19 <= t92)
+    r_elbow_backward_up_noflip = np.sqrt(t22 + t90 * t90)
+    del t22
+    t91 = t21 - r_elbow_backward_up_noflip
+    t92 = r_elbow_backward_up_noflip + t25
+    t93 = r_elbow_backward_up_noflip - t25
+    del t25
+    t94 = t20 & (t19 <= t91) & (t19 <= t92) & (t19 <= t93)
     del t19, t20
-    unreachable_2 = np.logical_not(t93)
-    del t93
-    t94 = _runtime.poison(invalid | unreachable_2)
-    t95 = t88 + t94
-    del t88
+    unreachable_2 = np.logical_not(t94)
+    del t94
+    t95 = _runtime.poison(invalid | unreachable_2)
+    t96 = t89 + t95
+    del t89
     folded_elbow_backward_up_noflip = r_elbow_backward_up_noflip <= t2
     del t2
-    t96 = folded_elbow_backward_up_noflip | no_link_elbow
-    A_elbow_backward_up_noflip = np.maximum(t90, 0.0)
+    t97 = 1.0 / r_elbow_backward_up_noflip
+    t98 = _runtime.select(folded_elbow_backward_up_noflip, 1.0, -(t90 * t97))
     del t90
-    C_elbow_backward_up_noflip = np.maximum(t92, 0.0)
-    del t92
-    t97 = A_elbow_backward_up_noflip * C_elbow_backward_up_noflip
-    S_elbow_backward_up_noflip = t1 + r_elbow_backward_up_noflip
-    del t1
-    B_elbow_backward_up_noflip = np.maximum(t91, 0.0)
+    t99 = folded_elbow_backward_up_noflip | no_link_elbow
+    A_elbow_backward_up_noflip = np.maximum(t91, 0.0)
     del t91
-    t98 = S_elbow_backward_up_noflip * B_elbow_backward_up_noflip
-    t99 = 1.0 / (t97 + t98)
-    c_base_elbow_backward_up_noflip = _runtime.select(t96, 1.0, -((t97 - t98) * t99))
-    t100 = 1.0 / r_elbow_backward_up_noflip
-    del r_elbow_backward_up_noflip
-    t101 = _runtime.select(folded_elbow_backward_up_noflip, 1.0, -(t89 * t100))
-    del t89
-    t102 = c_base_elbow_backward_up_noflip * t101
-    t103 = _runtime.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t100)
-    del t100, y_elbow
-    area_elbow_backward_up_noflip = 2.0 * np.sqrt(t97 * t98)
-    del t97, t98
-    s_base_elbow_backward_down_noflip = _runtime.select(t96, 0.0, t99 * area_elbow_backward_up_noflip)
-    del t96, t99
-    t104 = t103 * s_base_elbow_backward_down_noflip
-    clower_backward_up_noflip = t102 - t104
-    t105 = c_base_elbow_backward_up_noflip * t103
-    del c_base_elbow_backward_up_noflip, t103
-    t106 = t101 * s_base_elbow_backward_down_noflip
-    del s_base_elbow_backward_down_noflip, t101
-    slower_backward_up_noflip = t105 + t106
-    t107 = np.arctan2(clower_backward_up_noflip, -slower_backward_up_noflip)
-    t108 = _runtime.wrap_cut(t107) + t94
-    del t107
-    t109 = A_elbow_backward_up_noflip * S_elbow_backward_up_noflip
+    C_elbow_backward_up_noflip = np.maximum(t93, 0.0)
+    del t93
+    t100 = A_elbow_backward_up_noflip * C_elbow_backward_up_noflip
+    S_elbow_backward_up_noflip = t21 + r_elbow_backward_up_noflip
+    del r_elbow_backward_up_noflip, t21
+    B_elbow_backward_up_noflip = np.maximum(t92, 0.0)
+    del t92
+    t101 = S_elbow_backward_up_noflip * B_elbow_backward_up_noflip
+    t102 = 1.0 / (t100 + t101)
+    c_base_elbow_backward_up_noflip = _runtime.select(t99, 1.0, -((t100 - t101) * t102))
+    t103 = t98 * c_base_elbow_backward_up_noflip
+    t104 = _runtime.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t97)
+    del t97, y_elbow
+    area_elbow_backward_up_noflip = 2.0 * np.sqrt(t100 * t101)
+    del t100, t101
+    s_base_elbow_backward_down_noflip = _runtime.select(t99, 0.0, t102 * area_elbow_backward_up_noflip)
+    del t102, t99
+    t105 = t104 * s_base_elbow_backward_down_noflip
+    clower_backward_up_noflip = t103 - t105
+    t106 = t104 * c_base_elbow_backward_up_noflip
+    del c_base_elbow_backward_up_noflip, t104
+    t107 = t98 * s_base_elbow_backward_down_noflip
+    del s_base_elbow_backward_down_noflip, t98
+    slower_backward_up_noflip = t106 + t107
+    t108 = np.arctan2(clower_backward_up_noflip, -slower_backward_up_noflip)
+    t109 = _runtime.wrap_cut(t108) + t95
+    del t108
+    t110 = A_elbow_backward_up_noflip * S_elbow_backward_up_noflip
     del A_elbow_backward_up_noflip, S_elbow_backward_up_noflip
-    t110 = C_elbow_backward_up_noflip * B_elbow_backward_up_noflip
+    t111 = C_elbow_backward_up_noflip * B_elbow_backward_up_noflip
     del B_elbow_backward_up_noflip, C_elbow_backward_up_noflip
-    t111 = 1.0 / (t109 + t110)
-    celbow_backward_up_noflip = _runtime.select(no_link_elbow, 1.0, -((t109 - t110) * t111))
-    del t109, t110
-    t112 = s_forearm * celbow_backward_up_noflip
-    selbow_backward_down_noflip = _runtime.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip * t111)
-    del area_elbow_backward_up_noflip, t111
-    t113 = c_forearm * selbow_backward_down_noflip
-    t114 = t112 + t113
-    t115 = c_forearm * celbow_backward_up_noflip
+    t112 = 1.0 / (t110 + t111)
+    celbow_backward_up_noflip = _runtime.select(no_link_elbow, 1.0, -((t110 - t111) * t112))
+    del t110, t111
+    t113 = s_forearm * celbow_backward_up_noflip
+    selbow_backward_down_noflip = _runtime.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip * t112)
+    del area_elbow_backward_up_noflip, t112
+    t114 = c_forearm * selbow_backward_down_noflip
+    t115 = t113 + t114
+    t116 = c_forearm * celbow_backward_up_noflip
     del c_forearm, celbow_backward_up_noflip
-    t116 = s_forearm * selbow_backward_down_noflip
+    t117 = s_forearm * selbow_backward_down_noflip
     del s_forearm, selbow_backward_down_noflip
-    c3_backward_up_noflip = t115 - t116
-    t117 = _runtime.wrap_cut(-np.arctan2(t114, c3_backward_up_noflip))
-    t118 = t117 + t94
-    del t117
-    t119 = t53 - T13 * c1_backward_up_noflip
-    del t53
-    t120 = clower_backward_up_noflip * c3_backward_up_noflip
-    t121 = t120 + slower_backward_up_noflip * t114
-    del t120
-    t122 = slower_backward_up_noflip * c3_backward_up_noflip
-    del c3_backward_up_noflip, slower_backward_up_noflip
-    t123 = t122 - clower_backward_up_noflip * t114
-    del clower_backward_up_noflip, t114, t122
-    t124 = t119 * t121 + T33 * t123
-    R1_33_backward_up_noflip = t56 + T23 * c1_backward_up_noflip
+    c3_backward_up_noflip = t116 - t117
+    t118 = _runtime.wrap_cut(-np.arctan2(t115, c3_backward_up_noflip))
+    t119 = t118 + t95
+    del t118
+    R1_33_backward_up_noflip = t54 + T23 * c1_backward_up_noflip
+    del t54
+    t120 = R1_33_backward_up_noflip * R1_33_backward_up_noflip
+    t121 = t56 - T13 * c1_backward_up_noflip
     del t56
-    t125 = R1_33_backward_up_noflip * R1_33_backward_up_noflip
-    h_wrist_backward_up_noflip = np.sqrt(t124 * t124 + t125)
-    aligned_wrist_backward_up_noflip = h_wrist_backward_up_noflip <= t58
+    t122 = clower_backward_up_noflip * c3_backward_up_noflip
+    t123 = t122 + slower_backward_up_noflip * t115
+    del t122
+    t124 = slower_backward_up_noflip * c3_backward_up_noflip
+    del c3_backward_up_noflip, slower_backward_up_noflip
+    t125 = t124 - clower_backward_up_noflip * t115
+    del clower_backward_up_noflip, t115, t124
+    t126 = t121 * t123 + T33 * t125
+    h_wrist_backward_up_noflip = np.sqrt(t120 + t126 * t126)
+    aligned_wrist_backward_up_noflip = h_wrist_backward_up_noflip <= t59
     flip_wrist_backward_up_noflip = _runtime.select(aligned_wrist_backward_up_noflip, 0.0, 3.141592653589793)
-    t126 = 1.0 / h_wrist_backward_up_noflip
+    t127 = 1.0 / h_wrist_backward_up_noflip
     del h_wrist_backward_up_noflip
-    t127 = _runtime.select(aligned_wrist_backward_up_noflip, 0.0, R1_33_backward_up_noflip * t126)
-    c_wrist_backward_up_noflip = _runtime.select(aligned_wrist_backward_up_noflip, 1.0, -(t124 * t126))
+    t128 = _runtime.select(aligned_wrist_backward_up_noflip, 0.0, R1_33_backward_up_noflip * t127)
+    c_wrist_backward_up_noflip = _runtime.select(aligned_wrist_backward_up_noflip, 1.0, -(t126 * t127))
+    del t127
+    t129 = np.arctan2(t128, c_wrist_backward_up_noflip)
+    t130 = _runtime.wrap(flip_wrist_backward_up_noflip - t129)
+    t131 = t126 * c_wrist_backward_up_noflip - R1_33_backward_up_noflip * t128
     del t126
-    t128 = np.arctan2(t127, c_wrist_backward_up_noflip)
-    t129 = _runtime.wrap(flip_wrist_backward_up_noflip - t128)
-    t130 = t124 * c_wrist_backward_up_noflip - R1_33_backward_up_noflip * t127
-    del t124
-    t131 = np.arctan2(t130, t119 * t123 - T33 * t121)
-    del t130
-    t132 = t62 - T11 * c1_backward_up_noflip
-    del t62
-    R1_31_backward_up_noflip = t63 + T21 * c1_backward_up_noflip
+    t132 = np.arctan2(t131, t121 * t125 - T33 * t123)
+    del t131
+    t133 = t63 - T11 * c1_backward_up_noflip
     del t63
-    t133 = c_wrist_backward_up_noflip * R1_31_backward_up_noflip
-    t134 = t66 - T12 * c1_backward_up_noflip
-    del t66
-    R1_32_backward_up_noflip = t65 + T22 * c1_backward_up_noflip
-    del c1_backward_up_noflip, t65
-    t135 = c_wrist_backward_up_noflip * R1_32_backward_up_noflip
+    R1_31_backward_up_noflip = t64 + T21 * c1_backward_up_noflip
+    del t64
+    t134 = R1_31_backward_up_noflip * c_wrist_backward_up_noflip
+    t135 = t67 - T12 * c1_backward_up_noflip
+    del t67
+    R1_32_backward_up_noflip = t66 + T22 * c1_backward_up_noflip
+    del c1_backward_up_noflip, t66
+    t136 = R1_32_backward_up_noflip * c_wrist_backward_up_noflip
     del c_wrist_backward_up_noflip
-    t136 = np.arctan2(t127 * (t121 * t132 + T31 * t123) + t133, -(t127 * (t121 * t134 + T32 * t123) + t135))
-    del t121, t123, t127, t133, t135
-    t137 = _runtime.wrap(flip_wrist_backward_up_noflip - t136)
+    t137 = np.arctan2(t128 * (t133 * t123 + T31 * t125) + t134, -(t128 * (t135 * t123 + T32 * t125) + t136))
+    del t123, t125, t128, t134, t136
+    t138 = _runtime.wrap(flip_wrist_backward_up_noflip - t137)
     del flip_wrist_backward_up_noflip
-    clower_backward_down_noflip = t102 + t104
-    del t102, t104
-    slower_backward_down_noflip = t105 - t106
-    del t105, t106
-    t138 = np.arctan2(clower_backward_down_noflip, -slower_backward_down_noflip)
-    t139 = _runtime.wrap_cut(t138) + t94
-    del t138
-    t140 = t112 - t113
-    del t112, t113
-    c3_backward_down_noflip = t115 + t116
-    del t115, t116
-    t141 = _runtime.wrap_cut(np.arctan2(-t140, c3_backward_down_noflip))
-    t142 = t141 + t94
-    del t141
-    t143 = clower_backward_down_noflip * c3_backward_down_noflip
-    t144 = t143 + slower_backward_down_noflip * t140
-    del t143
-    t145 = slower_backward_down_noflip * c3_backward_down_noflip
+    clower_backward_down_noflip = t103 + t105
+    del t103, t105
+    slower_backward_down_noflip = t106 - t107
+    del t106, t107
+    t139 = np.arctan2(clower_backward_down_noflip, -slower_backward_down_noflip)
+    t140 = _runtime.wrap_cut(t139) + t95
+    del t139
+    t141 = t113 - t114
+    del t113, t114
+    c3_backward_down_noflip = t116 + t117
+    del t116, t117
+    t142 = _runtime.wrap_cut(np.arctan2(-t141, c3_backward_down_noflip))
+    t143 = t142 + t95
+    del t142
+    t144 = clower_backward_down_noflip * c3_backward_down_noflip
+    t145 = t144 + slower_backward_down_noflip * t141
+    del t144
+    t146 = slower_backward_down_noflip * c3_backward_down_noflip
     del c3_backward_down_noflip, slower_backward_down_noflip
-    t146 = t145 - clower_backward_down_noflip * t140
-    del clower_backward_down_noflip, t140, t145
-    t147 = t119 * t144 + T33 * t146
-    h_wrist_backward_down_noflip = np.sqrt(t125 + t147 * t147)
-    del t125
-    aligned_wrist_backward_down_noflip = h_wrist_backward_down_noflip <= t58
-    del t58
+    t147 = t146 - clower_backward_down_noflip * t141
+    del clower_backward_down_noflip, t141, t146
+    t148 = t121 * t145 + T33 * t147
+    h_wrist_backward_down_noflip = np.sqrt(t120 + t148 * t148)
+    del t120
+    aligned_wrist_backward_down_noflip = h_wrist_backward_down_noflip <= t59
+    del t59
     flip_wrist_backward_down_noflip = _runtime.select(aligned_wrist_backward_down_noflip, 0.0, 3.141592653589793)
-    t148 = 1.0 / h_wrist_backward_down_noflip
+    t149 = 1.0 / h_wrist_backward_down_noflip
     del h_wrist_backward_down_noflip
-    t149 = _runtime.select(aligned_wrist_backward_down_noflip, 0.0, R1_33_backward_up_noflip * t148)
-    c_wrist_backward_down_noflip = _runtime.select(aligned_wrist_backward_down_noflip, 1.0, -(t147 * t148))
-    del t148
-    t150 = np.arctan2(t149, c_wrist_backward_down_noflip)
-    t151 = _runtime.wrap(flip_wrist_backward_down_noflip - t150)
-    t152 = t147 * c_wrist_backward_down_noflip - R1_33_backward_up_noflip * t149
-    del R1_33_backward_up_noflip, t147
-    t153 = np.arctan2(t152, t119 * t146 - T33 * t144)
-    del t119, t152
-    t154 = R1_31_backward_up_noflip * c_wrist_backward_down_noflip
+    t150 = _runtime.select(aligned_wrist_backward_down_noflip, 0.0, R1_33_backward_up_noflip * t149)
+    c_wrist_backward_down_noflip = _runtime.select(aligned_wrist_backward_down_noflip, 1.0, -(t148 * t149))
+    del t149
+    t151 = np.arctan2(t150, c_wrist_backward_down_noflip)
+    t152 = _runtime.wrap(flip_wrist_backward_down_noflip - t151)
+    t153 = t148 * c_wrist_backward_down_noflip - R1_33_backward_up_noflip * t150
+    del R1_33_backward_up_noflip, t148
+    t154 = np.arctan2(t153, t121 * t147 - T33 * t145)
+    del t121, t153
+    t155 = R1_31_backward_up_noflip * c_wrist_backward_down_noflip
     del R1_31_backward_up_noflip
-    t155 = R1_32_backward_up_noflip * c_wrist_backward_down_noflip
+    t156 = R1_32_backward_up_noflip * c_wrist_backward_down_noflip
     del R1_32_backward_up_noflip, c_wrist_backward_down_noflip
-    t156 = np.arctan2(t149 * (t132 * t144 + T31 * t146) + t154, -(t149 * (t134 * t144 + T32 * t146) + t155))
-    del t132, t134, t144, t146, t149, t154, t155
-    t157 = _runtime.wrap(flip_wrist_backward_down_noflip - t156)
+    t157 = np.arctan2(t150 * (t133 * t145 + T31 * t147) + t155, -(t150 * (t135 * t145 + T32 * t147) + t156))
+    del t133, t135, t145, t147, t150, t155, t156
+    t158 = _runtime.wrap(flip_wrist_backward_down_noflip - t157)
     del flip_wrist_backward_down_noflip
-    t158 = free1 | no_link_elbow
+    t159 = free1 | no_link_elbow
     del free1, no_link_elbow
-    t159 = t158 | folded_elbow
+    t160 = t159 | folded_elbow
     del folded_elbow
-    t160 = _runtime.status(invalid, unreachable, t159 | aligned_wrist)
+    t161 = _runtime.status(invalid, unreachable, t160 | aligned_wrist)
     del aligned_wrist
-    t161 = _runtime.status(invalid, unreachable, t159 | aligned_wrist_facing_down_noflip)
-    del aligned_wrist_facing_down_noflip, t159, unreachable
-    t162 = t158 | folded_elbow_backward_up_noflip
-    del folded_elbow_backward_up_noflip, t158
-    t163 = _runtime.status(invalid, unreachable_2, t162 | aligned_wrist_backward_up_noflip)
+    t162 = _runtime.status(invalid, unreachable, t160 | aligned_wrist_facing_down_noflip)
+    del aligned_wrist_facing_down_noflip, t160, unreachable
+    t163 = t159 | folded_elbow_backward_up_noflip
+    del folded_elbow_backward_up_noflip, t159
+    t164 = _runtime.status(invalid, unreachable_2, t163 | aligned_wrist_backward_up_noflip)
     del aligned_wrist_backward_up_noflip
-    t164 = _runtime.status(invalid, unreachable_2, t162 | aligned_wrist_backward_down_noflip)
-    del aligned_wrist_backward_down_noflip, invalid, t162, unreachable_2
+    t165 = _runtime.status(invalid, unreachable_2, t163 | aligned_wrist_backward_down_noflip)
+    del aligned_wrist_backward_down_noflip, invalid, t163, unreachable_2
     return (
-        t29,
-        t42,
-        t52,
-        _runtime.wrap(flip_wrist + t60) + t28,
-        _runtime.wrap_cut(t61) + t28,
-        _runtime.wrap(flip_wrist - t68) + t28,
-        t29,
-        t42,
-        t52,
-        _runtime.wrap_cut(t60) + t28,
-        _runtime.wrap_cut(-t61) + t28,
-        _runtime.wrap_cut(-t68) + t28,
-        t29,
-        t70,
-        t73,
-        t81 + t28,
-        _runtime.wrap_cut(t83) + t28,
-        t87 + t28,
-        t29,
-        t70,
-        t73,
-        _runtime.wrap_cut(t80) + t28,
-        _runtime.wrap_cut(-t83) + t28,
-        _runtime.wrap_cut(-t86) + t28,
-        t95,
-        t108,
-        t118,
-        t129 + t94,
-        _runtime.wrap_cut(-t131) + t94,
-        t137 + t94,
-        t95,
-        t108,
-        t118,
-        _runtime.wrap_cut(-t128) + t94,
-        _runtime.wrap_cut(t131) + t94,
-        _runtime.wrap_cut(-t136) + t94,
-        t95,
-        t139,
-        t142,
-        t151 + t94,
-        _runtime.wrap_cut(-t153) + t94,
-        t157 + t94,
-        t95,
-        t139,
-        t142,
-        _runtime.wrap_cut(-t150) + t94,
-        _runtime.wrap_cut(t153) + t94,
-        _runtime.wrap_cut(-t156) + t94,
-        t160,
-        t160,
+        t30,
+        t43,
+        t53,
+        _runtime.wrap(flip_wrist + t61) + t29,
+        _runtime.wrap_cut(t62) + t29,
+        _runtime.wrap(flip_wrist - t69) + t29,
+        t30,
+        t43,
+        t53,
+        _runtime.wrap_cut(t61) + t29,
+        _runtime.wrap_cut(-t62) + t29,
+        _runtime.wrap_cut(-t69) + t29,
+        t30,
+        t71,
+        t74,
+        t82 + t29,
+        _runtime.wrap_cut(t84) + t29,
+        t88 + t29,
+        t30,
+        t71,
+        t74,
+        _runtime.wrap_cut(t81) + t29,
+        _runtime.wrap_cut(-t84) + t29,
+        _runtime.wrap_cut(-t87) + t29,
+        t96,
+        t109,
+        t119,
+        t130 + t95,
+        _runtime.wrap_cut(-t132) + t95,
+        t138 + t95,
+        t96,
+        t109,
+        t119,
+        _runtime.wrap_cut(-t129) + t95,
+        _runtime.wrap_cut(t132) + t95,
+        _runtime.wrap_cut(-t137) + t95,
+        t96,
+        t140,
+        t143,
+        t152 + t95,
+        _runtime.wrap_cut(-t154) + t95,
+        t158 + t95,
+        t96,
+        t140,
+        t143,
+        _runtime.wrap_cut(-t151) + t95,
+        _runtime.wrap_cut(t154) + t95,
+        _runtime.wrap_cut(-t157) + t95,
         t161,
         t161,
-        t163,
-        t163,
+        t162,
+        t162,
         t164,
         t164,
+        t165,
+        t165,
     )
 
 

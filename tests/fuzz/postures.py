@@ -125,7 +125,9 @@ def _again(subject: Robot, module: Any, lengths: Array, q: Array, reached: Array
     size = np.abs(np.repeat(lengths, branches, axis=0)).sum(axis=1) + np.nan_to_num(slides)
     size = np.where(size > 0, size, 1.0)
     if subject.modes:
-        miss = np.abs(image.p - target[:, None, :]).max(axis=2) / size[:, None]
+        error = np.abs(image.p - target[:, None, :])
+        turned = np.abs(np.remainder(error + np.pi, 2 * np.pi) - np.pi)
+        miss = np.where(subject.angles, turned, error / size[:, None, None]).max(axis=2)
         return np.asarray(np.where(np.isnan(miss), np.inf, miss).min(axis=1).reshape(n, branches))
     error = np.abs(image - target)
     if target.ndim == 2:

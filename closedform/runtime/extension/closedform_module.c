@@ -369,7 +369,8 @@ find_function(const char *name)
             return &cf_functions[k];
         }
     }
-    PyErr_Format(PyExc_KeyError, "no compiled function is called %s", name);
+    PyErr_Format(PyExc_KeyError, "no compiled function is called %s; after a new derivation, run make",
+        name);
     return NULL;
 }
 

@@ -217,17 +217,20 @@ def _inverse(
     found = driver.solve(Naming(g, size, "_1"), follower.end() - driver.base, sigma)
     inside = bounds_of(g)
     A = g.let("A", found.rod.dot(follower.rate))
-    lever = follower.length if isinstance(follower, Crank) else sp.S.One
+    scale, least = driver.rod, "the length of the rod"
+    if isinstance(follower, Crank):
+        scale, least = driver.rod * size, f"{least} times the sum of all lengths"
     across = "the rod is at right angles to the follower"
-    g.determined(sp.Abs(A), driver.rod * lever, across, name="|A|")
+    g.determined(sp.Abs(A), scale, across, name="|A|")
     working = branches((sigma, SIGN))
     d.branches = working.labels
     d.step(
         "Inverse: the driver",
         "The driver has to reach the point B2 with the rod, just as the follower reaches B1.  Its "
         "two solutions are told apart by the sign of B.  Near a parallel singularity rounded "
-        "joints do not determine the follower, however they are computed.  The status is SINGULAR "
-        "if A is less than 2^-10 of its largest value.",
+        "joints do not determine the follower, however they are computed.  It moves by the "
+        "rounding of the lengths times the length of the rod over A.  The status is SINGULAR if A "
+        f"is less than 2^-10 of {least}.",
         {},
         uses=[stated],
     )

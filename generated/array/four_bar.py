@@ -789,7 +789,7 @@ def _ik(ops, psi, L1, L2, L3, L4):
     t34 = wv_1 * beyond_1_2
     t35 = wu_1 * t30
     t36 = wu_1 - ops.select(t12, 1.0, t34 - t35) * share_1
-    t37 = ops.determined * (L3 * L4)
+    t37 = ops.determined * (L3 * size)
     t38 = t12 | (ops.abs(t5 * t33 - wv_1 * t36) <= t37)
     t39 = wv_1 + ops.select(t12, 0.0, t31 - t32) * share_1
     t40 = wu_1 - ops.select(t12, 1.0, -(t35 + t34)) * share_1

@@ -978,7 +978,7 @@ CF_INLINE void four_bar_ik_kernel(const int single, const real_t one,
     const real_t t25 = wv_1 + cf_rounded(single, one, t15 * share_1);
     const real_t t26 = wu_1 - cf_rounded(single, one, cosine_1 * share_1);
     const real_t A = cf_rounded(single, one, t1 * t25) - cf_rounded(single, one, wv_1 * t26);
-    const real_t t27 = CLOSEDFORM_DETERMINED * (L3 * L4);
+    const real_t t27 = CLOSEDFORM_DETERMINED * (L3 * size);
     const int t28 = cf_abs(A) <= t27;
     const real_t t29 = cf_status(single, invalid, unreachable, t5 | t28);
     const real_t t30 = wv_1 + cf_rounded(single, one, t24 * share_1);

@@ -831,7 +831,7 @@ function _ik(v, o) {
     const t23 = -Math.atan2(t22, cosine_1_minus);
     const share_1 = L2 / (t4 ? 1.0 : R_1 * (t8 + t10));
     const A = t1 * (wv_1 + t14 * share_1) - wv_1 * (wu_1 - cosine_1 * share_1);
-    const t24 = _runtime.DETERMINED * (L3 * L4);
+    const t24 = _runtime.DETERMINED * (L3 * size);
     const t25 = invalid ? 3 : unreachable ? 1 : t4 || Math.abs(A) <= t24 ? 2 : 0;
     const A_minus = t1 * (wv_1 + t22 * share_1) - wv_1 * (wu_1 - cosine_1_minus * share_1);
     const t26 = invalid ? 3 : unreachable ? 1 : t4 || Math.abs(A_minus) <= t24 ? 2 : 0;

@@ -919,7 +919,6 @@ def _ik(psi, L1, L2, L3, L4):
     invalid = np.logical_not(t19 & (0.0 <= L4) & np.isfinite(psi))
     del t19
     t20 = -(_runtime.FEASIBILITY * (size * 0.5))
-    del size
     unreachable = np.logical_not((t20 <= t5) & (t20 <= t9) & (t20 <= t7))
     del t20, t5, t7, t9
     t21 = _runtime.poison(invalid | unreachable)
@@ -932,7 +931,8 @@ def _ik(psi, L1, L2, L3, L4):
     del R_1, t10, t8
     A = t1 * (wv_1 + t14 * share_1) - wv_1 * (wu_1 - cosine_1 * share_1)
     del cosine_1, t14
-    t24 = _runtime.DETERMINED * (L3 * L4)
+    t24 = _runtime.DETERMINED * (L3 * size)
+    del size
     t25 = _runtime.status(invalid, unreachable, t4 | (np.abs(A) <= t24))
     del A
     A_minus = t1 * (wv_1 + t22 * share_1) - wv_1 * (wu_1 - cosine_1_minus * share_1)

@@ -204,9 +204,8 @@ def field(
     r = Robot.of(robot, params)
     grid = _plane(r, plane, at, resolution, limits)
     q = grid.targets if grid.joints else _answers(r, grid.targets, branch)
-    mode = np.zeros(q.shape[:-1], dtype=np.intp)
-    if not grid.joints:
-        mode = r.mode_that_reaches(q, grid.targets)
+    first = np.zeros(q.shape[:-1], dtype=np.intp)
+    mode = first if grid.joints else r.mode_that_reaches(q, grid.targets)
     values, label = _quantity(r, q, mode, function)
     ax = new_axes(False) if ax is None else ax
     with np.errstate(invalid="ignore"):

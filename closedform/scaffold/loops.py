@@ -39,13 +39,14 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.formulas import number
-from closedform.model.names import check_symbol, check_text
+from closedform.model.names import check_text
 from closedform.scaffold.source import file_name, literal, source
 from closedform.scaffold.tables import (
     Table,
     TableError,
     add_joint,
     check_keys,
+    check_variable,
     expression,
     parameter,
     text_of,
@@ -145,7 +146,7 @@ def _check_names(loop: Loop) -> None:
     for name in sorted(loop.symbols - set(loop.parameters)):
         loop.parameters[name] = {}
     for name, given in loop.parameters.items():
-        _check_name(name, f"{loop.file}, [parameters]")
+        check_variable(name, f"{loop.file}, [parameters]", taken=name in USED)
         check_text(f"{loop.file}: {name}", given.get("meaning", ""), given.get("unit", ""))
         if name in loop.joints:
             raise loop.error(f"{name} is a joint and a parameter; rename one of them")
@@ -198,7 +199,7 @@ def _read_joints(loop: Loop, joints: Any) -> None:
     check_keys(joints, None, f"{loop.file}, [joints]")
     for name, given in joints.items():
         where = f"{loop.file}, [joints.{name}]"
-        _check_name(name, where)
+        check_variable(name, where, taken=name in USED)
         check_keys(given, ("between", "kind", "at", "axis", "driven"), where)
         kind, between = given.get("kind", "revolute"), given.get("between")
         if kind not in KINDS:
@@ -226,15 +227,6 @@ def _named(name: Any, what: str) -> str:
     if isinstance(name, str) and NAME.fullmatch(name):
         return name
     raise TableError(f"{what} needs a name of letters, digits, _ and -, not {name!a}")
-
-
-def _check_name(name: str, where: str) -> None:
-    try:
-        check_symbol(name, where)
-    except ValueError as error:
-        raise TableError(str(error)) from error
-    if name in USED:
-        raise TableError(f"{where}: the written script uses the name {name} itself")
 
 
 def _shared(loop: Loop, between: Sequence[str], where: str) -> str:

@@ -87,7 +87,12 @@ def check_names(table: Table, where: str) -> None:
 
 
 def check_table_name(name: str, where: str) -> None:
-    if name in TAKEN or NUMBERED.fullmatch(name):
+    check_variable(name, where, taken=name in TAKEN or NUMBERED.fullmatch(name) is not None)
+
+
+def check_variable(name: str, where: str, *, taken: bool) -> None:
+    """Refuse a name that cannot be a variable of the script, or is ``taken`` there."""
+    if taken:
         raise TableError(
             f"{where}: the written script uses the name {name} itself; "
             f"choose another, such as {name}_0"

@@ -126,17 +126,21 @@ def _again(subject: Robot, module: Any, lengths: Array, q: Array, reached: Array
     size = np.where(size > 0, size, 1.0)
     if subject.modes:
         error = np.abs(image.p - target[:, None, :])
-        turned = np.abs(np.remainder(error + np.pi, 2 * np.pi) - np.pi)
-        miss = np.where(subject.angles, turned, error / size[:, None, None]).max(axis=2)
+        miss = _relative(subject, error, size[:, None, None]).max(axis=2)
         return np.asarray(np.where(np.isnan(miss), np.inf, miss).min(axis=1).reshape(n, branches))
     error = np.abs(image - target)
     if target.ndim == 2:
-        turned = np.abs(np.remainder(error + np.pi, 2 * np.pi) - np.pi)
-        error = np.where(subject.angles, turned, error / size[:, None])
+        error = _relative(subject, error, size[:, None])
     elif target.shape[1:] == (4, 4):
         error[:, :3, 3] /= size[:, None]
     worst = error.reshape(n, branches, -1).max(axis=2)
     return np.asarray(np.where(np.isnan(worst), np.inf, worst))
+
+
+def _relative(subject: Robot, error: Array, size: Array) -> Array:
+    """Errors of coordinates: angles modulo a turn, lengths in units of the size."""
+    turned = np.abs(np.remainder(error + np.pi, 2 * np.pi) - np.pi)
+    return np.where(subject.angles, turned, error / size)
 
 
 def _judged(

@@ -452,7 +452,7 @@ class Algorithm:
     def has_cases_of_model(self) -> bool:
         """Whether special cases of the algorithms before this one hold here too."""
         flags = [f for f in self.flags.values() if not self.is_rounding(f)]
-        return any(told is not None and (f.free or told) for f in flags for told in [self._told(f)])
+        return any((told := self._told(f)) is not None and (f.free or told) for f in flags)
 
     def roundings(self) -> list[str]:
         """What is said of the flags that only serve the rounding of a usual posture."""

@@ -150,7 +150,8 @@ def table(derivation: Derivation, numbers: Numbers, prose: Prose) -> list[tuple[
     taken = {_form(derivation, name) for name in declared}
     said = dict(_summaries(derivation))
     for form, label in numbers.defined.items():
-        if form not in taken and not (form not in rows and _matrix_of(form) in numbers.defined):
+        of_a_listed_matrix = form not in rows and _matrix_of(form) in numbers.defined
+        if form not in taken and not of_a_listed_matrix:
             told = rows.setdefault(form, [prose(said[form])] if form in said else [])
             told.append(f"see {reference([label])}")
     cells = ((form, ", ".join(filter(None, texts))) for form, texts in rows.items())

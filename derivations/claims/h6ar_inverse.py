@@ -197,6 +197,7 @@ def sampled(r: Robot, given: dict[str, sp.Symbol], lengths: dict[str, sp.Symbol]
         (q.theta1, r.A2, r.A3, r.psi, r.phi, q.theta),
         r.example,
         {r.psi: (-third, third), r.phi: (-third, third), q.theta: (-quarter, quarter)},
+        virtual={r.A2: (q.theta2R + q.theta2L) / 2, r.A3: (q.theta3R + q.theta3L) / 2},
     )
 
 

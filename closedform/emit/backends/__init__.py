@@ -20,6 +20,6 @@ def names() -> tuple[str, ...]:
 
 
 def load(name: str) -> Backend:
-    """The back end of this name."""
-    backend: Backend = import_module(f"{__name__}.{name}").BACKEND
+    """The back end of this name, or of this module, if it is somewhere else."""
+    backend: Backend = import_module(name if "." in name else f"{__name__}.{name}").BACKEND
     return backend

@@ -97,7 +97,8 @@ class Postures:
     """Sampled postures: joints, in ranges, and the dimensions at which they are sampled.
 
     ``inputs`` gives what a formula takes as functions of the joints.  ``groups`` names parts of the
-    postures, of which the share is given too.
+    postures, of which the share is given too.  ``virtual`` gives joints that the mechanism does not
+    have, in those that it has, for a picture of what the formulas lead to.
     """
 
     inputs: Mapping[sp.Symbol, Expr]
@@ -105,6 +106,7 @@ class Postures:
     dimensions: Mapping[sp.Symbol, Expr] = field(default_factory=dict)
     ranges: Mapping[sp.Symbol, tuple[float, float]] = field(default_factory=dict)
     groups: Mapping[str, Expr] = field(default_factory=dict)
+    virtual: Mapping[sp.Symbol, Expr] = field(default_factory=dict)
 
     def arrays(self) -> dict[sp.Symbol, np.ndarray]:
         """The joints and the inputs at the sampled postures, the same on every run."""

@@ -115,7 +115,7 @@ class Page(Sheet):
             "again": reference(again),
             "blocks": blocks(new),
             "columns": "l" * len(step.rows[0]) if step.rows else "",
-            "rows": [" & ".join(map(self.cell, row)) for row in step.rows],
+            "rows": [[self.cell(cell) for cell in row] for row in step.rows],
             "published": [(escape(n), self.claims.judged(n)) for n in step.published],
             "mark": mark,
             "proves": self.prose(step.proves) if mark else "",

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
@@ -90,23 +91,42 @@ class Sheet:
         return self.lines.equations(lhs if isinstance(lhs, str) else self.math(lhs), value)
 
 
-def blocks(equations: Sequence[Numbered | Equation]) -> list[str]:
+@dataclass(frozen=True)
+class Block:
+    """A display: equations below each other, or one that is too wide and is a paragraph."""
+
+    rows: tuple[Numbered, ...]
+    wide: bool = False
+
+    def __str__(self) -> str:
+        """The block as LaTeX."""
+        if self.wide:
+            [row] = self.rows
+            command = rf"\longequation{{{row.label}}}" if row.label else r"\longformula"
+            return rf"{command}{{{row.text}}}"
+        return f"\\display\n{self.aligned(labelled)}"
+
+    def aligned(self, mark: Callable[[str], str]) -> str:
+        """The rows as an environment of LaTeX; ``mark`` writes their labels."""
+        rows = " \\\\\n".join(aligned(row, mark) for row in self.rows)
+        kind = "align" if self.rows[0].numbered else "align*"
+        return f"\\begin{{{kind}}}\n{rows}\n\\end{{{kind}}}"
+
+
+def blocks(equations: Sequence[Numbered | Equation]) -> list[Block]:
     """Neighbours that fit beside each other as one aligned block, longer ones as paragraphs."""
-    done: list[str] = []
+    done: list[Block] = []
     group: list[Numbered] = []
 
     def flush() -> None:
         if group:
-            rows = " \\\\\n".join(map(aligned, group))
-            kind = "align" if group[0].numbered else "align*"
-            done.append(f"\\display\n\\begin{{{kind}}}\n{rows}\n\\end{{{kind}}}")
+            done.append(Block(tuple(group)))
         group.clear()
 
     for e in (e if isinstance(e, Numbered) else Numbered(*e) for e in equations):
         if not fitting(e):
             flush()
-            label = rf"\longequation{{{e.label}}}" if e.label else r"\longformula"
-            done.append(rf"{label}{{{e.text}}}")
+            done.append(Block((e,), wide=True))
             continue
         if group and (e.numbered != group[0].numbered or (e.left and not beside([*group, e]))):
             flush()
@@ -121,12 +141,16 @@ def beside(group: Sequence[Numbered]) -> bool:
     return width <= FITS - 6 * any(e.label for e in group)
 
 
-def aligned(equation: Numbered) -> str:
+def labelled(label: str) -> str:
+    return rf"\label{{{label}}}"
+
+
+def aligned(equation: Numbered, mark: Callable[[str], str]) -> str:
     """A line of an aligned block; what goes on from the line before has nothing on the left."""
     left, right = equation.left, equation.right
     text = f"{left} &= {right}" if left else rf"&\quad {right}"
     if equation.label:
-        return rf"{text} \label{{{equation.label}}}"
+        return f"{text} {mark(equation.label)}"
     return rf"{text} \notag" if equation.numbered else text
 
 

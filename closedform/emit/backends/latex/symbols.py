@@ -186,9 +186,10 @@ def _inputs(derivation: Derivation) -> Iterator[tuple[str, str]]:
             if len(array.shape) > 1:
                 yield f"{whole}_{{ij}}", f"entry of ${whole}$ in row $i$, column $j$"
                 continue
+            of = "the target" if function.has_status else f"${whole}$"
             for entry in array.entries:
                 form = _form(derivation, str(entry))
-                yield form, f"coordinate of ${whole}$" if form != whole else "argument"
+                yield form, f"coordinate of {of}" if form != whole else "argument"
 
 
 def _summaries(derivation: Derivation) -> Iterator[tuple[str, str]]:

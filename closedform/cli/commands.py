@@ -18,7 +18,7 @@ from pathlib import Path
 
 from closedform import robots
 from closedform._version import __version__
-from closedform.cli import claims, console, figures, plot
+from closedform.cli import claims, console, figures, plot, site
 from closedform.cli.console import Progress
 from closedform.pipeline import run as pipeline
 from closedform.pipeline import versions
@@ -139,7 +139,9 @@ def parser() -> argparse.ArgumentParser:
     check = command("check", check_command)
     verify = command("verify", verify_command)
     verify.add_argument("names", metavar="NAME", nargs="*", help="default: all derivations")
-    for added in (derive, check, verify):
+    built = command("site", site_command)
+    site.add_options(built)
+    for added in (derive, check, verify, built):
         added.add_argument("-j", "--jobs", type=_positive, metavar="N", help="number of processes")
     for added in (derive, check):
         added.add_argument("--fresh", action="store_true", help="ignore stored proofs")
@@ -424,6 +426,32 @@ def figures_command(options: argparse.Namespace) -> None:
                 console.write(line)
     except (ModuleNotFoundError, ValueError) as error:
         raise CommandError(str(error)) from error
+
+
+def site_command(options: argparse.Namespace) -> None:
+    """Build the site: a page for each mechanism, the documents, the explorer."""
+    _require_extra()
+    from closedform.site.node import NodeError
+
+    root = pipeline.checkout()
+    if root is None:
+        raise CommandError("the site is built in a checkout of the project")
+    sources = pipeline.sources()
+    printed = _run(options, sources, (site.BACKEND,), sources).files
+    try:
+        warnings = site.write(options, printed, sources, root, _line)
+    except ModuleNotFoundError as error:
+        message = f"the site needs {error.name}; run: pip install 'closedform[site]'"
+        raise CommandError(message) from error
+    except NodeError as error:
+        raise CommandError(str(error)) from error
+    if warnings:
+        raise CommandError(f"{warnings} warnings; the site in {options.output} is not complete")
+    console.write(f"{options.output / 'index.html'}\n")
+
+
+def _line(text: str) -> None:
+    console.write(f"{text}\n")
 
 
 def errata_command(options: argparse.Namespace) -> None:

@@ -21,8 +21,8 @@ def names() -> list[str]:
     return [source.name for source in pipeline.sources()]
 
 
-def draw_all(folder: Path, chosen: list[str]) -> Iterator[str]:
-    """Draw all figures of mechanisms as pdf, with their captions; a line for each mechanism."""
+def draw_all(folder: Path, chosen: list[str], suffix: str = ".pdf") -> Iterator[str]:
+    """Draw all figures of mechanisms, with their captions; a line for each mechanism."""
     folder.mkdir(parents=True, exist_ok=True)
     target = folder / CAPTIONS
     captions: dict[str, str] = json.loads(target.read_text("utf-8")) if target.exists() else {}
@@ -31,7 +31,7 @@ def draw_all(folder: Path, chosen: list[str]) -> Iterator[str]:
         captions = {k: c for k, c in captions.items() if not k.startswith(f"{name}-")}
         drawn = catalogue(name)
         for figure in drawn:
-            write(partial(figure.draw, robot), folder / f"{name}-{figure.name}.pdf")
+            write(partial(figure.draw, robot), folder / f"{name}-{figure.name}{suffix}")
             captions[f"{name}-{figure.name}"] = figure.caption
         text = json.dumps(dict(sorted(captions.items())), indent=2, ensure_ascii=False)
         target.write_text(text + "\n", "utf-8")

@@ -1,0 +1,74 @@
+/** What the explorer says: postures in words, and the lines that compute them. */
+
+export const spoken = (name) => name.replaceAll("_", " ");
+
+/** A number as people read it. */
+export function short(value) {
+    return Number.isFinite(value) ? String(Number(value.toPrecision(6))) : "none";
+}
+
+/** The status of a branch in words. */
+export function status(posture, free) {
+    if (posture.status === 0) return "OK";
+    if (posture.status === 1) return "out of reach";
+    if (posture.status === 2) return free ? `singular: ${free} is free` : "singular: not determined";
+    return "invalid input";
+}
+
+/** Lines that compute what is seen, in one language. */
+export function lines(language, mechanism, x, q) {
+    const { robot, info, parameters } = mechanism;
+    const changed = Object.entries(parameters).filter(([name, v]) => v !== robot.DEFAULTS[name]);
+    const list = (values) => Array.from(values).map(String).join(", ");
+    return writers[language]({ ...info, robot, changed, x: list(x), q: list(q), sizes: [x.length, q.length] });
+}
+
+const writers = {
+    Python({ name, changed, x, q, robot }) {
+        const given = changed.map(([n, v]) => `${n}=${v}`).join(", ");
+        const target = { 16: ".reshape(4, 4)", 9: ".reshape(3, 3)" }[robot.TASK.length] ?? "";
+        return [
+            "import numpy as np",
+            `from closedform.generated.numpy import ${name}`,
+            "",
+            `params = ${name}.Parameters(${given})`,
+            `x = np.array([${x}])${target}`,
+            `q, status = ${name}.ik(x, params)  # a row for each of ${name}.BRANCHES`,
+            `print(${name}.fk([${q}], params))  # the posture that is seen`,
+            "",
+        ].join("\n");
+    },
+    C({ name, changed, x, q, robot, sizes: [n, m] }) {
+        const b = robot.BRANCHES.length;
+        return [
+            `#include "${name}.h"`,
+            "#include <stdio.h>",
+            "",
+            "int main(void)",
+            "{",
+            `    ${name}_params params = ${name.toUpperCase()}_DEFAULTS;`,
+            `    const real_t x[${n}] = { ${x} };`,
+            `    real_t q[${b * m}]; /* ${b} branches of ${m} joints; seen is ${q} */`,
+            `    uint8_t status[${b}];`,
+            "",
+            ...changed.map(([p, v]) => `    params.${p} = ${v};`),
+            `    ${name}_ik(&params, x, q, status);`,
+            `    for (int i = 0; i < ${b * m}; ++i)`,
+            `        printf("%.15g%c", q[i], i % ${m} == ${m - 1} ? '\\n' : ' ');`,
+            "    return 0;",
+            "}",
+            "",
+        ].join("\n");
+    },
+    JavaScript({ name, changed, x, q }) {
+        const given = changed.map(([n, v]) => `${n}: ${v}`).join(", ");
+        return [
+            `import * as ${name} from "closedform/${name}";`,
+            "",
+            `const parameters = {${given ? ` ${given} ` : ""}};`,
+            `const { q, status } = ${name}.ik([${x}], parameters); // for each of BRANCHES`,
+            `console.log(q, status, ${name}.fk([${q}], parameters)); // and the posture that is seen`,
+            "",
+        ].join("\n");
+    },
+};

@@ -1,0 +1,198 @@
+"""The site as it is built: its links, its formulas, and that it needs nothing from elsewhere."""
+
+import importlib.util
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections import Counter
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from sharing import shared
+
+from closedform.pipeline import run as pipeline
+from closedform.site.labels import label
+from closedform.site.markup import Markdown, MarkupError, Place
+
+ROOT = Path(__file__).parents[1]
+SEPARATE = re.compile(r"\\[A-Za-z]+")
+LATEX = ROOT / "generated" / "latex"
+
+md = Markdown({"step:arm:2": Place("#step-arm-2", "The elbow")})
+
+
+# Sentences
+
+
+@pytest.mark.parametrize(
+    ("latex", "markdown"),
+    [
+        (r"the angle $\theta_{1}$ of", r"the angle {math}`\theta_{1}` of"),
+        (r"by \texttt{ik\_pose}", "by `ik_pose`"),
+        (r"\emph{only} \textbf{one}", "*only* **one**"),
+        (r"``so''---it is", "“so”—it is"),
+        (r"see \eqref{eq:arm:7}", 'see <a class="reference internal" href="#eq-arm-7">(7)</a>'),
+        (
+            r"Section~\ref{step:arm:2}",
+            '<a class="reference internal" href="#step-arm-2">The elbow</a>',
+        ),
+        (r"a \textsc{singular} one", 'a <span class="status">SINGULAR</span> one'),
+        (r"50\,\% of \{1, 2\}", "50\N{THIN SPACE}% of {1, 2}"),
+        (r"2 * 3 < 4 [a](b)", r"2 \* 3 \< 4 \[a\](b)"),
+        (
+            r"$x = \begin{cases} 1 & \text{if $a > 0$} \end{cases}$ holds",
+            r"{math}`x = \begin{cases} 1 & \text{if $a > 0$} \end{cases}` holds",
+        ),
+    ],
+)
+def test_a_sentence_of_an_article_becomes_markdown(latex, markdown):
+    assert md(latex) == markdown
+
+
+def test_a_command_that_the_site_does_not_know_is_an_error():
+    with pytest.raises(MarkupError, match="unheard"):
+        md(r"an \unheard{command}")
+    with pytest.raises(MarkupError, match="nothing has the label"):
+        md(r"\ref{step:arm:3}")
+
+
+def test_markup_in_a_text_stays_text():
+    assert "<script>" not in md("<script>alert(1)</script>")
+
+
+def test_names_have_their_signs():
+    assert [label(n) for n in ("theta2R", "l1", "d3", "L0", "rho1")] == [
+        "θ₂R",
+        "l₁",
+        "d₃",
+        "L₀",
+        "ρ₁",
+    ]
+
+
+# The built site
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory):
+    """The folder of the site, built once for all tests, without the figures.
+
+    ``CLOSEDFORM_SITE=build/site`` takes one that is there.
+    """
+    if there := os.environ.get("CLOSEDFORM_SITE"):
+        return Path(there).absolute()
+    if not (shutil.which("node") and shutil.which("npm")):
+        pytest.skip("Node or npm is not installed")
+    if importlib.util.find_spec("sphinx") is None:
+        pytest.skip("Sphinx is not installed")
+
+    def build(target):
+        command = [sys.executable, "-m", "closedform", "site", "--no-figures", "-j", "2"]
+        done = subprocess.run(
+            [*command, "-o", str(target / "site"), "--work", str(target / "work")],
+            capture_output=True,
+            text=True,
+            cwd=ROOT,
+        )
+        assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+
+    return shared(tmp_path_factory, "site", build) / "site"
+
+
+class Links(HTMLParser):
+    """The marks of a page, and where it leads."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.marks, self.links, self.loaded = set(), [], []
+        self.text, self.skipped = [], 0
+        self.feed(page.read_text("utf-8"))
+
+    def handle_starttag(self, tag, attrs):
+        found = dict(attrs)
+        self.marks.add(found.get("id"))
+        if tag == "a" and found.get("href"):
+            self.links.append(found["href"])
+        loads = {"script": "src", "img": "src", "link": "href", "iframe": "src", "source": "src"}
+        if tag in loads and found.get(loads[tag]):
+            self.loaded.append(found[loads[tag]])
+        if tag in ("script", "style", "code", "pre", "svg"):
+            self.skipped += 1
+
+    def handle_endtag(self, tag):
+        if tag in ("script", "style", "code", "pre", "svg"):
+            self.skipped -= 1
+
+    def handle_data(self, data):
+        if not self.skipped:
+            self.text.append(data)
+
+
+@pytest.fixture(scope="session")
+def pages(site):
+    return {page: Links(page) for page in sorted(site.rglob("*.html"))}
+
+
+def test_there_is_a_page_for_each_mechanism(site):
+    for source in pipeline.sources():
+        page = (site / "mechanisms" / f"{source.name}.html").read_text("utf-8")
+        assert f'data-robot="{source.name}"' in page
+        assert (site / "reference" / f"{source.name}.html").is_file()
+
+
+def test_every_link_leads_somewhere(site, pages):
+    lost = []
+    for page, found in pages.items():
+        for link in found.links:
+            path, _, mark = link.partition("#")
+            if re.match(r"[a-z]+:", path):
+                continue
+            target = (page.parent / path).resolve() if path else page
+            if not (target.exists() and (not mark or mark in pages[target].marks)):
+                lost.append((page.relative_to(site), link))
+    assert not lost
+
+
+def test_nothing_is_loaded_from_elsewhere(site, pages):
+    for page, found in pages.items():
+        for address in found.loaded:
+            assert not re.match(r"(https?:)?//", address), (page, address)
+            path = (page.parent / re.split(r"[?#]", address)[0]).resolve()
+            assert path.exists(), (page.relative_to(site), address)
+    for sheet in site.rglob("*.css"):
+        assert not re.search(r"url\(['\"]?(https?:)?//", sheet.read_text("utf-8")), sheet
+        assert "@import" not in sheet.read_text("utf-8"), sheet
+
+
+def test_no_command_of_latex_is_left_in_the_text(site, pages):
+    for page, found in pages.items():
+        if page.parent.name == "mechanisms" or page.name == "lemmas.html":
+            assert not SEPARATE.search("".join(found.text)), page
+
+
+@pytest.mark.parametrize("name", [s.name for s in pipeline.sources()])
+def test_a_page_has_the_equations_of_the_article(site, name):
+    article = (LATEX / f"{name}.tex").read_text("utf-8")
+    page = (site / "mechanisms" / f"{name}.html").read_text("utf-8")
+    labels = re.findall(rf"\\(?:label|longequation)\{{(eq:{name}:\d+)\}}", article)
+    marks = [label.replace(":", "-") for label in labels]
+    assert re.findall(rf'id="(eq-{name}-\d+)"', page) == marks
+    for number in range(1, len(marks) + 1):
+        assert f">({number})<" in page
+
+
+@pytest.mark.parametrize("name", [s.name for s in pipeline.sources()])
+def test_a_page_has_the_verdicts_of_the_article(site, name):
+    article = (LATEX / f"{name}.tex").read_text("utf-8")
+    page = (site / "mechanisms" / f"{name}.html").read_text("utf-8")
+    told = re.search(r"judged by computation: (.*?)\.\n", article)
+    expected = Counter()
+    for part in told[1].split(", ") if told else []:
+        number, _, kind = part.partition(" ")
+        expected[kind] = int(number)
+    claims = page[page.find('id="claims-of-the-paper"') :] if told else ""
+    shown = Counter(re.findall(r'<span class="verdict [a-z -]+">([a-z ]+)</span>', claims))
+    assert shown == +expected

@@ -1,0 +1,310 @@
+"""The site in a browser: no fault in the console, no request elsewhere, and true explorers."""
+
+import importlib
+import json
+import math
+import re
+import shutil
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_site import site  # noqa: F401  (a fixture)
+
+from closedform.pipeline import run as pipeline
+
+playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+
+CHROMIUM = (
+    shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+)
+ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
+NAMES = [s.name for s in pipeline.sources()]
+HEAVIEST = 1_000_000
+"""Bytes of a page with all that it loads, but the figures."""
+STEPS = 6
+"""Of the pointer along each part of a path."""
+
+STATE = """() => {
+    const explorer = document.querySelector(".explorer").explorer;
+    const { mechanism: m } = explorer;
+    return {
+        x: explorer.x,
+        q: explorer.q,
+        mode: explorer.mode,
+        branch: explorer.branch,
+        reached: explorer.reached,
+        parameters: m.parameters,
+        postures: explorer.postures(),
+    };
+}"""
+POINT = """(name) => {
+    const explorer = document.querySelector(".explorer").explorer;
+    const { mechanism: m, view, canvas } = explorer;
+    const points = m.points(explorer.q)[explorer.mode];
+    const [x, y] = view.project(points[m.names.indexOf(name ?? m.skeleton.hand)]);
+    const box = canvas.getBoundingClientRect();
+    return [box.left + x, box.top + y];
+}"""
+
+
+@pytest.fixture(scope="module")
+def browser():
+    if CHROMIUM is None:
+        pytest.skip("there is no Chromium")
+    with playwright.sync_playwright() as started:
+        opened = started.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def tab(browser):
+    """An empty page that collects faults and what it asks for."""
+    context = browser.new_context(viewport={"width": 1280, "height": 1000})
+    page = context.new_page()
+    page.faults, page.asked = [], []
+    page.on("console", lambda m: page.faults.append(m.text) if m.type == "error" else None)
+    page.on("pageerror", lambda e: page.faults.append(str(e)))
+    page.on("request", lambda r: page.asked.append(r.url))
+    yield page
+    context.close()
+
+
+def address(site, path):  # noqa: F811
+    return (site / path).as_uri()
+
+
+def explorer(tab, site, name, mark=""):  # noqa: F811
+    tab.goto(address(site, f"mechanisms/{name}.html") + mark)
+    tab.wait_for_function("document.querySelector('.explorer')?.explorer?.found")
+    tab.locator(".explorer canvas").first.scroll_into_view_if_needed()
+    return tab
+
+
+def agrees(name, state):
+    """What the explorer has computed is what the NumPy module computes."""
+    robot = importlib.import_module(f"closedform.generated.numpy.{name}")
+    params = robot.Parameters(**state["parameters"])
+    size = sum(map(abs, params))
+    x = np.array(state["x"], dtype=float)
+    x = x.reshape({16: (4, 4), 9: (3, 3)}.get(len(x), (len(x),)))
+    q, status = robot.ik(x, params)
+    assert [p["status"] for p in state["postures"]] == status.tolist()
+    for k, posture in enumerate(state["postures"]):
+        if status[k] not in (0, 2):
+            continue
+        np.testing.assert_allclose(
+            np.exp(1j * np.array(posture["q"])), np.exp(1j * q[k]), atol=1e-12, rtol=0
+        )
+        points = robot.skeleton(np.array(posture["q"]), params)
+        points = points[posture["mode"]] if robot.ASSEMBLY_MODES else points
+        np.testing.assert_allclose(posture["points"], points, atol=1e-12 * size, rtol=0)
+        if status[k] == 0:
+            hand = points[robot.SKELETON.points.index(robot.SKELETON.hand)]
+            drawn = np.array(posture["points"])[robot.SKELETON.points.index(robot.SKELETON.hand)]
+            assert np.linalg.norm(hand - drawn) <= 1e-12 * size
+
+
+def test_every_page_loads_without_a_fault(tab, site):  # noqa: F811
+    for path in sorted(site.rglob("*.html")):
+        tab.goto(path.as_uri())
+        assert not tab.faults, path
+    assert all(url.startswith(("file:", "data:", "blob:")) for url in tab.asked)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_hand_can_be_dragged_through_a_singularity(tab, site, name):  # noqa: F811
+    """Away from the base until it is out of reach, and back across the base."""
+    explorer(tab, site, name)
+    agrees(name, tab.evaluate(STATE))
+    start = tab.evaluate(POINT)
+    ground = importlib.import_module(f"closedform.generated.numpy.{name}").SKELETON.ground
+    base = tab.evaluate(POINT, ground[0]) if ground else start
+    toward = [a + 0.15 * (b - a) for a, b in zip(start, base, strict=True)]
+    away = [a + 1.5 * (a - b) for a, b in zip(start, base, strict=True)]
+    across = [b - 0.5 * (a - b) for a, b in zip(start, base, strict=True)]
+    tab.mouse.move(*start)
+    tab.mouse.down()
+    seen = set()
+    for begin, end in pairwise((start, toward, away, across)):
+        for k in range(1, STEPS + 1):
+            tab.mouse.move(*(a + k / STEPS * (b - a) for a, b in zip(begin, end, strict=True)))
+            state = tab.evaluate(STATE)
+            seen.add(tuple(state["q"]))
+            agrees(name, state)
+    tab.mouse.up()
+    assert len(seen) > 4
+    assert not tab.faults
+
+
+@pytest.mark.parametrize("name", ["planar_2r", "five_bar", "puma560"])
+def test_a_link_holds_what_is_seen(tab, site, browser, name):  # noqa: F811
+    explorer(tab, site, name)
+    tab.locator(".explorer canvas").first.focus()
+    for key in ("ArrowRight", "ArrowUp", "]"):
+        tab.keyboard.press(key)
+    tab.wait_for_function("location.hash.includes('explore')")
+    tab.wait_for_timeout(400)
+    before = tab.evaluate(STATE)
+    other = browser.new_page()
+    explorer(other, site, name, tab.evaluate("location.hash"))
+    after = other.evaluate(STATE)
+    other.close()
+    np.testing.assert_allclose(after["q"], before["q"], rtol=0, atol=1e-12)
+    assert (after["branch"], after["mode"]) == (before["branch"], before["mode"])
+
+
+@pytest.mark.parametrize(
+    "mark",
+    ["#explore=planar_2r&q=1", "#explore=planar_2r&q=a,b&branch=9&p=__proto__:1,l1:x", "#%E0%A4%A"],
+)
+def test_a_link_that_does_not_fit_is_ignored(tab, site, mark):  # noqa: F811
+    state = explorer(tab, site, "planar_2r", mark).evaluate(STATE)
+    assert state["parameters"] == {"l1": 10, "l2": 8}
+    assert state["reached"]
+    assert not tab.faults
+
+
+def test_a_free_joint_moves_while_the_hand_stays(tab, site):  # noqa: F811
+    explorer(tab, site, "planar_2r")
+    tab.evaluate(
+        """() => {
+            const explorer = document.querySelector(".explorer").explorer;
+            explorer.resizeTo({ l1: 8, l2: 8 });
+            explorer.takeTarget([0, 0]);
+        }"""
+    )
+    slider = tab.get_by_label("θ₁, free", exact=True)
+    slider.wait_for()
+    slider.fill("1.25")
+    state = tab.evaluate(STATE)
+    assert math.isclose(state["q"][0], 1.25, abs_tol=1e-9)
+    hand = state["postures"][state["branch"]]["points"][2]
+    assert np.linalg.norm(hand) < 1e-9
+    assert "θ₁ is free" in tab.locator(".explorer").inner_text()
+
+
+def test_where_a_branch_meets_another_is_said(tab, site):  # noqa: F811
+    explorer(tab, site, "planar_2r")
+    tab.evaluate(
+        """() => {
+            const explorer = document.querySelector(".explorer").explorer;
+            explorer.takeJoints([0, 0.6]);
+            explorer.held = true;
+            for (const x of [17, 17.6, 19]) explorer.takeTarget([x, 0]);
+        }"""
+    )
+    tab.get_by_text("elbow down meets elbow up, singular: elbow").wait_for()
+
+
+def test_published_joints_stand_beside_the_right_ones(tab, site):  # noqa: F811
+    """The arctangent of a quotient turns the arm of a target on the left by half a turn."""
+    explorer(tab, site, "planar_2r")
+    tab.evaluate("document.querySelector('.explorer').explorer.takeJoints([2.2, 1.1])")
+    tab.get_by_label("show").select_option(label="published: use of eqs. (3) and (4)")
+    hand = np.linalg.norm(
+        [10 * math.cos(2.2) + 8 * math.cos(3.3), 10 * math.sin(2.2) + 8 * math.sin(3.3)]
+    )
+    tab.get_by_text(f"The hand is {2 * hand:.6g} cm from the target.").wait_for()
+
+
+def test_the_published_waist_of_the_h6ar_turns_to_the_rear(tab, site):  # noqa: F811
+    """It is right for the branches behind, and misses by about twice the reach in front."""
+    explorer(tab, site, "h6ar")
+    tab.get_by_label("show").select_option(label="published: waist angle")
+    note = tab.locator(".explorer .note", has_text="Verdict: incomplete")
+    note.wait_for()
+    x, y, *_ = tab.evaluate(STATE)["x"]
+    front = float(re.search(r"The hand is (\S+)", note.inner_text())[1])
+    assert front == pytest.approx(2 * math.hypot(x, y), rel=0.02)
+    tab.get_by_role("button", name="rear elbow up").click()
+    tab.wait_for_timeout(100)
+    assert float(re.search(r"The hand is (\S+)", note.inner_text())[1]) < 1e-9
+
+
+def test_maps_are_drawn(tab, site):  # noqa: F811
+    explorer(tab, site, "five_bar")
+    tab.locator("summary", has_text="Layers").click()
+    for label in ("workspace and singular curves", "map: conditioning (1/κ)", "joint space"):
+        tab.get_by_label(label).check()
+    tab.get_by_text("300×300 postures in").wait_for()
+    found = tab.evaluate(
+        """() => {
+            const { section } = document.querySelector(".explorer").explorer;
+            const { low, width, size, value } = section;
+            const at = (v, k) => Math.floor(((v - low[k]) / width) * size);
+            const found = ([u, v]) => value[at(v, 1) * size + at(u, 0)];
+            return [[3, 10], [3, 40], [1, 9]].map(found);
+        }"""
+    )
+    assert np.isnan(found[1] if found[1] is not None else np.nan)
+    robot = importlib.import_module("closedform.generated.numpy.five_bar")
+    branch = tab.evaluate(STATE)["branch"]
+    for value, x in ((found[0], [3, 10]), (found[2], [1, 9])):
+        q = robot.ik(x).q[branch]
+        mode = int(np.argmin(np.linalg.norm(robot.fk(q).p - x, axis=-1)))
+        assert value == pytest.approx(1 / robot.condition_number(q)[mode], abs=0.03)
+
+
+@pytest.mark.parametrize("name", ["five_bar", "puma560"])
+def test_the_lines_that_are_copied_compute_what_is_seen(tab, site, name, tmp_path):  # noqa: F811
+    explorer(tab, site, name)
+    tab.evaluate("document.querySelector('.explorer').explorer.resizeTo({})")
+    tab.locator("summary", has_text="Copy").click()
+    state = tab.evaluate(STATE)
+    expected = state["postures"][state["branch"]]["q"]
+
+    def copied(language):
+        tab.get_by_role("button", name=language, exact=True).click()
+        return tab.locator(".explorer pre").inner_text()
+
+    script = copied("Python") + "print('q', q.tolist())\n"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    found = json.loads(done.stdout.rpartition("q ")[2].replace("nan", "NaN"))
+    np.testing.assert_allclose(found[state["branch"]], expected, atol=1e-9)
+    if shutil.which("cc"):
+        (tmp_path / "main.c").write_text(copied("C"))
+        code = Path(__file__).parents[1] / "generated" / "c"
+        command = ["cc", "-std=c99", f"-I{code}", tmp_path / "main.c", code / f"{name}.c"]
+        subprocess.run([*command, "-lm", "-o", tmp_path / "main"], check=True)
+        printed = subprocess.run([tmp_path / "main"], capture_output=True, text=True).stdout
+        row = printed.splitlines()[state["branch"]].split()
+        np.testing.assert_allclose([float(v) for v in row], expected, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["index.html", "mechanisms/index.html", "mechanisms/planar_2r.html", "mechanisms/delta.html"],
+)
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_a_page_can_be_used_by_everybody(browser, site, path, theme):  # noqa: F811
+    axe = next(site.parent.glob("*work/node/node_modules/axe-core/axe.min.js"))
+    page = browser.new_page(color_scheme=theme, viewport={"width": 1280, "height": 1000})
+    page.goto(address(site, path))
+    page.add_script_tag(path=axe)
+    found = page.evaluate("axe.run({ exclude: [['math']] }, { resultTypes: ['violations'] })")[
+        "violations"
+    ]
+    page.close()
+    assert not [(v["id"], v["help"], [n["html"][:200] for n in v["nodes"][:3]]) for v in found]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_page_is_light(tab, site, name):  # noqa: F811
+    explorer(tab, site, name)
+    loaded = {url.partition("?")[0] for url in tab.asked if url.startswith("file:")}
+    files = [Path(url.removeprefix("file://")) for url in loaded]
+    pictures = (".svg", ".png")
+    assert sum(f.stat().st_size for f in files if f.suffix not in pictures) < HEAVIEST
+
+
+def test_a_narrow_page_has_no_sideways_scroll(browser, site):  # noqa: F811
+    page = browser.new_page(viewport={"width": 360, "height": 740})
+    for path in ("index.html", "mechanisms/h6ar.html", "lemmas.html"):
+        page.goto(address(site, path))
+        assert page.evaluate("document.documentElement.scrollWidth") <= 360, path
+    page.close()

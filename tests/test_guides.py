@@ -76,3 +76,31 @@ def test_every_snippet(tmp_path: Path, guide: str) -> None:
         assert "Nothing exceeds its tolerance." in report
         assert (tmp_path / "printed" / "c" / "lift.c").exists()
         assert shutil.which("cc") is None or "| c |" in report
+
+
+def test_the_control_loop_of_the_page_is_the_one_that_is_run():
+    page = (DOCS / "in-a-controller.md").read_text("utf-8")
+    [code] = re.findall(r"```c\n(.*?)```", page, re.DOTALL)
+    assert code == (DOCS.parent / "tests" / "c" / "control_loop.c").read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("page", "kind", "printed"),
+    [
+        (
+            "first-posture",
+            "python",
+            ["[ 0.591 -0.097]", "elbow_up [ 0.3 -1.1] OK", "[1 1]", "[2 2]"],
+        ),
+        ("designing-a-five-bar", "python", ["pivots 0.00: at least 0.955"]),
+        ("designing-a-five-bar", "python jax", ["from 0.811 to 0.947"]),
+    ],
+)
+def test_the_lines_of_a_page_print_what_it_says(page, kind, printed):
+    if kind.endswith("jax"):
+        pytest.importorskip("jax", reason="JAX is not installed")
+    text = (DOCS / f"{page}.md").read_text("utf-8")
+    code = "\n".join(re.findall(rf"```{kind}\n(.*?)```", text, re.DOTALL))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert all(line in done.stdout for line in printed), done.stdout

@@ -170,13 +170,16 @@ class Crank:
         aside = chain.let("aside", w.dot(u.cross(v))) if len(w) == 3 else sp.S.Zero
         start = len(p.body)
         s: sp.Expr = r
+        scale = chain.size / 2
         if aside != 0:
             meaning = "the rod reaches the plane of the crank"
             over = chain.bound("over", r - aside, meaning)
             under = chain.bound("under", r + aside, meaning)
             s = chain.let("fore", sp.sqrt(over) * sp.sqrt(under), nonnegative=True)
+            # where the rod is nearly at right angles to the plane, s has lost digits that r has
+            scale = chain.let("slack", scale + scale * r / (s + chain.size / 2**22))
         R = chain.let("R", sp.sqrt(a**2 + b**2), nonnegative=True)
-        triangle = Triangle.from_reach(p, (l, s), R, sigma, scale=chain.size / 2, suffix=chain.tag)
+        triangle = Triangle.from_reach(p, (l, s), R, sigma, scale=scale, suffix=chain.tag)
         met = chain.vanishes("met", R, "the rod ends on the axis of the crank", q)
         none = chain.vanishes("no_crank", l, "the crank has no length", q)
         S, A, B, C = triangle.factors

@@ -10,8 +10,8 @@
 #   determinant: 71 compare and select, 98 add, 17 divide, 123 multiply, 6 sincos, 9 sqrt
 #   singularities: 76 compare and select, 98 add, 15 divide, 119 multiply, 6 sincos, 9 sqrt
 #   condition_number: 73 compare and select, 136 add, 17 divide, 170 multiply, 6 sincos, 11 sqrt
-#   ik: 169 compare and select, 181 add, 6 atan2, 4 divide, 183 multiply, 3 sincos, 18 sqrt
-#   workspace_contains: 45 add, 50 compare and select, 1 divide, 32 multiply, 3 sincos, 6 sqrt
+#   ik: 169 compare and select, 187 add, 6 atan2, 8 divide, 190 multiply, 3 sincos, 18 sqrt
+#   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
 
 Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the
@@ -1663,300 +1663,306 @@ def _ik(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     invalid = ops.opposite(t2 & ops.finite(x, y, z))
     size = f + e + L + l
-    t3 = -(ops.feasibility * (size * 0.5))
-    t4 = e * s_alpha1 - f * s_alpha1
-    t5 = y + t4
-    t6 = e * c_alpha1 - f * c_alpha1
-    t7 = x + t6
-    aside_1 = c_alpha1 * t5 - s_alpha1 * t7
-    t8 = l - aside_1
-    t9 = l + aside_1
-    t10 = z * z
-    wu_1 = s_alpha1 * t5 + c_alpha1 * t7
-    t11 = t10 + wu_1 * wu_1
-    R_1 = ops.sqrt(t11)
-    t12 = L - R_1
-    t13 = ops.max(t8, 0.0) * ops.max(t9, 0.0)
+    t3 = size * 0.5
+    t4 = -(ops.feasibility * t3)
+    t5 = e * s_alpha1 - f * s_alpha1
+    t6 = y + t5
+    t7 = e * c_alpha1 - f * c_alpha1
+    t8 = x + t7
+    aside_1 = c_alpha1 * t6 - s_alpha1 * t8
+    t9 = l - aside_1
+    t10 = l + aside_1
+    t11 = l * size
+    t12 = size * 2.384185791015625e-07
+    t13 = ops.max(t9, 0.0) * ops.max(t10, 0.0)
     fore_1 = ops.sqrt(t13)
-    t14 = t12 + fore_1
-    t15 = L + R_1
-    t16 = t15 - fore_1
-    t17 = (t3 <= t8) & (t3 <= t9) & (t3 <= t14) & (t3 <= t16)
-    t18 = fore_1 - t12
-    t19 = e * s_alpha2 - f * s_alpha2
-    t20 = y + t19
-    t21 = e * c_alpha2 - f * c_alpha2
-    t22 = x + t21
-    aside_2 = c_alpha2 * t20 - s_alpha2 * t22
-    t23 = l - aside_2
-    t24 = l + aside_2
-    t25 = t17 & (t3 <= t18) & (t3 <= t23) & (t3 <= t24)
-    wu_2 = s_alpha2 * t20 + c_alpha2 * t22
-    t26 = t10 + wu_2 * wu_2
-    R_2 = ops.sqrt(t26)
-    t27 = L - R_2
-    t28 = ops.max(t23, 0.0) * ops.max(t24, 0.0)
-    fore_2 = ops.sqrt(t28)
-    t29 = t27 + fore_2
-    t30 = L + R_2
-    t31 = t30 - fore_2
-    t32 = fore_2 - t27
-    t33 = t25 & (t3 <= t29) & (t3 <= t31) & (t3 <= t32)
-    t34 = e * s_alpha3 - f * s_alpha3
-    t35 = y + t34
-    t36 = e * c_alpha3 - f * c_alpha3
-    t37 = x + t36
-    aside_3 = c_alpha3 * t35 - s_alpha3 * t37
-    t38 = l - aside_3
-    t39 = l + aside_3
-    wu_3 = s_alpha3 * t35 + c_alpha3 * t37
-    t40 = t10 + wu_3 * wu_3
-    R_3 = ops.sqrt(t40)
-    t41 = L - R_3
-    t42 = ops.max(t38, 0.0) * ops.max(t39, 0.0)
-    fore_3 = ops.sqrt(t42)
-    t43 = t41 + fore_3
-    t44 = t33 & (t3 <= t38) & (t3 <= t39) & (t3 <= t43)
-    t45 = L + R_3
-    t46 = t45 - fore_3
-    t47 = fore_3 - t41
-    unreachable = ops.opposite(t44 & (t3 <= t46) & (t3 <= t47))
+    t14 = ops.feasibility * (t3 + t11 / (2.0 * (t12 + fore_1)))
+    t15 = z * z
+    wu_1 = s_alpha1 * t6 + c_alpha1 * t8
+    t16 = t15 + wu_1 * wu_1
+    R_1 = ops.sqrt(t16)
+    t17 = L - R_1
+    t18 = t17 + fore_1
+    t19 = L + R_1
+    t20 = t19 - fore_1
+    t21 = (t4 <= t9) & (t4 <= t10) & (-t14 <= t18) & (-t14 <= t20)
+    t22 = fore_1 - t17
+    t23 = e * s_alpha2 - f * s_alpha2
+    t24 = y + t23
+    t25 = e * c_alpha2 - f * c_alpha2
+    t26 = x + t25
+    aside_2 = c_alpha2 * t24 - s_alpha2 * t26
+    t27 = l - aside_2
+    t28 = l + aside_2
+    t29 = t21 & (-t14 <= t22) & (t4 <= t27) & (t4 <= t28)
+    t30 = ops.max(t27, 0.0) * ops.max(t28, 0.0)
+    fore_2 = ops.sqrt(t30)
+    t31 = ops.feasibility * (t3 + t11 / (2.0 * (t12 + fore_2)))
+    wu_2 = s_alpha2 * t24 + c_alpha2 * t26
+    t32 = t15 + wu_2 * wu_2
+    R_2 = ops.sqrt(t32)
+    t33 = L - R_2
+    t34 = fore_2 + t33
+    t35 = L + R_2
+    t36 = t35 - fore_2
+    t37 = fore_2 - t33
+    t38 = t29 & (-t31 <= t34) & (-t31 <= t36) & (-t31 <= t37)
+    t39 = e * s_alpha3 - f * s_alpha3
+    t40 = y + t39
+    t41 = e * c_alpha3 - f * c_alpha3
+    t42 = x + t41
+    aside_3 = c_alpha3 * t40 - s_alpha3 * t42
+    t43 = l - aside_3
+    t44 = l + aside_3
+    t45 = ops.max(t43, 0.0) * ops.max(t44, 0.0)
+    fore_3 = ops.sqrt(t45)
+    t46 = ops.feasibility * (t3 + t11 / (2.0 * (t12 + fore_3)))
+    wu_3 = s_alpha3 * t40 + c_alpha3 * t42
+    t47 = t15 + wu_3 * wu_3
+    R_3 = ops.sqrt(t47)
+    t48 = L - R_3
+    t49 = fore_3 + t48
+    t50 = t38 & (t4 <= t43) & (t4 <= t44) & (-t46 <= t49)
+    t51 = L + R_3
+    t52 = t51 - fore_3
+    t53 = fore_3 - t48
+    unreachable = ops.opposite(t50 & (-t46 <= t52) & (-t46 <= t53))
     failed = invalid | unreachable
-    t48 = size * ops.vanishing
-    no_crank_1 = L <= t48
-    t49 = (R_1 <= t48) | no_crank_1
-    t50 = ops.opposite(failed)
-    t51 = t50 & ops.opposite(t49)
-    R_1_2 = ops.sqrt(ops.select(t51, t11, 1.0))
-    t52 = L - R_1_2
-    fore_1_2 = ops.sqrt(ops.select(t51, t13, 1.0))
-    t53 = ops.max(t52 + fore_1_2, 0.0) * ops.max(fore_1_2 - t52, 0.0)
-    t54 = L + R_1_2
-    t55 = (fore_1_2 + t54) * ops.max(t54 - fore_1_2, 0.0)
-    t56 = t53 - t55
-    t57 = z * t56
-    beyond_1 = 2.0 * ops.sqrt(ops.select(t51, t53 * t55, 1.0))
-    t58 = wu_1 * beyond_1
-    t59 = wu_1 * t56
-    t60 = z * beyond_1
-    t61 = ops.select(t50, ops.select(t49, 1.0, -(t59 + t60)), 1.0)
-    t62 = ops.atan2(ops.select(t49, 0.0, t57 - t58), t61)
-    t63 = ops.select(failed, ops.nan, ops.wrap_cut(t62))
-    met_2 = R_2 <= t48
-    t64 = met_2 | no_crank_1
-    t65 = t50 & ops.opposite(t64)
-    R_2_2 = ops.sqrt(ops.select(t65, t26, 1.0))
-    t66 = L - R_2_2
-    fore_2_2 = ops.sqrt(ops.select(t65, t28, 1.0))
-    t67 = ops.max(t66 + fore_2_2, 0.0) * ops.max(fore_2_2 - t66, 0.0)
-    t68 = L + R_2_2
-    t69 = (fore_2_2 + t68) * ops.max(t68 - fore_2_2, 0.0)
-    t70 = t67 - t69
-    t71 = z * t70
-    beyond_2 = 2.0 * ops.sqrt(ops.select(t65, t67 * t69, 1.0))
-    t72 = wu_2 * beyond_2
-    t73 = wu_2 * t70
-    t74 = z * beyond_2
-    t75 = ops.select(t50, ops.select(t64, 1.0, -(t73 + t74)), 1.0)
-    t76 = ops.atan2(ops.select(t64, 0.0, t71 - t72), t75)
-    t77 = ops.select(failed, ops.nan, ops.wrap_cut(t76))
-    met_3 = R_3 <= t48
-    t78 = met_3 | no_crank_1
-    t79 = t50 & ops.opposite(t78)
-    R_3_2 = ops.sqrt(ops.select(t79, t40, 1.0))
-    t80 = L - R_3_2
-    fore_3_2 = ops.sqrt(ops.select(t79, t42, 1.0))
-    t81 = ops.max(t80 + fore_3_2, 0.0) * ops.max(fore_3_2 - t80, 0.0)
-    t82 = L + R_3_2
-    t83 = (fore_3_2 + t82) * ops.max(t82 - fore_3_2, 0.0)
-    t84 = t81 - t83
-    t85 = z * t84
-    beyond_3 = 2.0 * ops.sqrt(ops.select(t79, t81 * t83, 1.0))
-    t86 = wu_3 * beyond_3
-    t87 = wu_3 * t84
-    t88 = z * beyond_3
-    t89 = ops.select(t50, ops.select(t78, 1.0, -(t87 + t88)), 1.0)
-    t90 = ops.atan2(ops.select(t78, 0.0, t85 - t86), t89)
-    t91 = ops.select(failed, ops.nan, ops.wrap_cut(t90))
-    t92 = ops.select(t50, ops.select(t78, 1.0, t88 - t87), 1.0)
-    t93 = ops.atan2(ops.select(t78, 0.0, t85 + t86), t92)
-    t94 = ops.select(failed, ops.nan, ops.wrap_cut(t93))
-    t95 = ops.select(t50, ops.select(t64, 1.0, t74 - t73), 1.0)
-    t96 = ops.atan2(ops.select(t64, 0.0, t71 + t72), t95)
+    t54 = size * ops.vanishing
+    no_crank_1 = L <= t54
+    t55 = (R_1 <= t54) | no_crank_1
+    t56 = ops.opposite(failed)
+    t57 = t56 & ops.opposite(t55)
+    R_1_2 = ops.sqrt(ops.select(t57, t16, 1.0))
+    t58 = L - R_1_2
+    fore_1_2 = ops.sqrt(ops.select(t57, t13, 1.0))
+    t59 = ops.max(t58 + fore_1_2, 0.0) * ops.max(fore_1_2 - t58, 0.0)
+    t60 = L + R_1_2
+    t61 = (fore_1_2 + t60) * ops.max(t60 - fore_1_2, 0.0)
+    t62 = t59 - t61
+    t63 = z * t62
+    beyond_1 = 2.0 * ops.sqrt(ops.select(t57, t59 * t61, 1.0))
+    t64 = wu_1 * beyond_1
+    t65 = wu_1 * t62
+    t66 = z * beyond_1
+    t67 = ops.select(t56, ops.select(t55, 1.0, -(t65 + t66)), 1.0)
+    t68 = ops.atan2(ops.select(t55, 0.0, t63 - t64), t67)
+    t69 = ops.select(failed, ops.nan, ops.wrap_cut(t68))
+    met_2 = R_2 <= t54
+    t70 = met_2 | no_crank_1
+    t71 = t56 & ops.opposite(t70)
+    fore_2_2 = ops.sqrt(ops.select(t71, t30, 1.0))
+    R_2_2 = ops.sqrt(ops.select(t71, t32, 1.0))
+    t72 = L - R_2_2
+    t73 = ops.max(fore_2_2 + t72, 0.0) * ops.max(fore_2_2 - t72, 0.0)
+    t74 = L + R_2_2
+    t75 = (fore_2_2 + t74) * ops.max(t74 - fore_2_2, 0.0)
+    t76 = t73 - t75
+    t77 = z * t76
+    beyond_2 = 2.0 * ops.sqrt(ops.select(t71, t73 * t75, 1.0))
+    t78 = wu_2 * beyond_2
+    t79 = wu_2 * t76
+    t80 = z * beyond_2
+    t81 = ops.select(t56, ops.select(t70, 1.0, -(t79 + t80)), 1.0)
+    t82 = ops.atan2(ops.select(t70, 0.0, t77 - t78), t81)
+    t83 = ops.select(failed, ops.nan, ops.wrap_cut(t82))
+    met_3 = R_3 <= t54
+    t84 = met_3 | no_crank_1
+    t85 = t56 & ops.opposite(t84)
+    fore_3_2 = ops.sqrt(ops.select(t85, t45, 1.0))
+    R_3_2 = ops.sqrt(ops.select(t85, t47, 1.0))
+    t86 = L - R_3_2
+    t87 = ops.max(fore_3_2 + t86, 0.0) * ops.max(fore_3_2 - t86, 0.0)
+    t88 = L + R_3_2
+    t89 = (fore_3_2 + t88) * ops.max(t88 - fore_3_2, 0.0)
+    t90 = t87 - t89
+    t91 = z * t90
+    beyond_3 = 2.0 * ops.sqrt(ops.select(t85, t87 * t89, 1.0))
+    t92 = wu_3 * beyond_3
+    t93 = wu_3 * t90
+    t94 = z * beyond_3
+    t95 = ops.select(t56, ops.select(t84, 1.0, -(t93 + t94)), 1.0)
+    t96 = ops.atan2(ops.select(t84, 0.0, t91 - t92), t95)
     t97 = ops.select(failed, ops.nan, ops.wrap_cut(t96))
-    t98 = ops.select(t50, ops.select(t49, 1.0, t60 - t59), 1.0)
-    t99 = ops.atan2(ops.select(t49, 0.0, t57 + t58), t98)
+    t98 = ops.select(t56, ops.select(t84, 1.0, t94 - t93), 1.0)
+    t99 = ops.atan2(ops.select(t84, 0.0, t91 + t92), t98)
     t100 = ops.select(failed, ops.nan, ops.wrap_cut(t99))
-    t101 = t49 | met_2 | met_3
-    t102 = ops.max(t14, 0.0) * ops.max(t18, 0.0)
-    t103 = (fore_1 + t15) * ops.max(t16, 0.0)
-    t104 = t102 - t103
-    t105 = wu_1 * t104
-    beyond_1_2 = 2.0 * ops.sqrt(t102 * t103)
-    t106 = z * beyond_1_2
-    cosine_1 = ops.select(t49, 1.0, -(t105 + t106))
-    share_1 = L / ops.select(t49, 1.0, R_1 * (t102 + t103))
-    t107 = c_alpha1 * share_1
-    t108 = t6 - cosine_1 * t107
-    t109 = ops.max(t43, 0.0) * ops.max(t47, 0.0)
-    t110 = (fore_3 + t45) * ops.max(t46, 0.0)
-    t111 = t109 - t110
-    t112 = wu_3 * t111
-    beyond_3_2 = 2.0 * ops.sqrt(t109 * t110)
-    t113 = z * beyond_3_2
-    cosine_3 = ops.select(t78, 1.0, -(t112 + t113))
-    share_3 = L / ops.select(t78, 1.0, R_3 * (t109 + t110))
-    t114 = c_alpha3 * share_3
-    t115 = t36 - cosine_3 * t114
-    t116 = t108 - t115
-    t117 = ops.max(t29, 0.0) * ops.max(t32, 0.0)
-    t118 = (fore_2 + t30) * ops.max(t31, 0.0)
-    t119 = t117 - t118
-    t120 = wu_2 * t119
-    beyond_2_2 = 2.0 * ops.sqrt(t117 * t118)
-    t121 = z * beyond_2_2
-    cosine_2 = ops.select(t64, 1.0, -(t120 + t121))
-    share_2 = L / ops.select(t64, 1.0, R_2 * (t117 + t118))
-    t122 = s_alpha2 * share_2
-    t123 = t19 - cosine_2 * t122
-    t124 = s_alpha1 * share_1
-    t125 = t4 - cosine_1 * t124
-    t126 = t123 - t125
-    t127 = z * t104
-    t128 = wu_1 * beyond_1_2
-    t129 = ops.select(t49, 0.0, t127 - t128) * share_1
-    A_13 = z + t129
-    t130 = t126 * A_13
-    A_11 = x + t108
-    t131 = A_11 * t126
-    t132 = z * t111
-    t133 = wu_3 * beyond_3_2
-    t134 = ops.select(t78, 0.0, t132 - t133) * share_3
-    t135 = t129 - t134
-    t136 = z * t119
-    t137 = wu_2 * beyond_2_2
-    t138 = ops.select(t64, 0.0, t136 - t137) * share_2
-    t139 = t129 - t138
-    t140 = A_11 * t139
-    t141 = s_alpha3 * share_3
-    t142 = t34 - cosine_3 * t141
-    t143 = t125 - t142
-    A_12 = y + t125
-    t144 = t135 * A_12
-    t145 = c_alpha2 * share_2
-    t146 = t21 - cosine_2 * t145
-    t147 = t108 - t146
-    t148 = t139 * A_12
-    t149 = t131 * t135 + t140 * t143 + t144 * t147 - t148 * t116
-    t150 = t143 * A_13
-    t151 = ops.determined * (l * l * l)
-    t152 = ops.abs(t116 * t130 - (t149 - t147 * t150)) <= t151
-    t153 = ops.status(invalid, unreachable, t101 | t152)
-    cosine_3_plus_plus_minus = ops.select(t78, 1.0, t113 - t112)
-    t154 = t36 - cosine_3_plus_plus_minus * t114
-    t155 = t108 - t154
-    t156 = ops.select(t78, 0.0, t132 + t133) * share_3
-    t157 = t129 - t156
-    t158 = t34 - cosine_3_plus_plus_minus * t141
-    t159 = t125 - t158
-    t160 = A_12 * t157
-    t161 = t131 * t157 + t140 * t159 + t147 * t160 - t148 * t155
-    t162 = A_13 * t159
-    t163 = ops.abs(t130 * t155 - (t161 - t147 * t162)) <= t151
-    t164 = ops.status(invalid, unreachable, t101 | t163)
-    cosine_2_plus_minus_plus = ops.select(t64, 1.0, t121 - t120)
-    t165 = t19 - cosine_2_plus_minus_plus * t122
-    t166 = t125 - t165
-    t167 = A_11 * t166
-    t168 = ops.select(t64, 0.0, t136 + t137) * share_2
-    t169 = t129 - t168
-    t170 = A_11 * t169
-    t171 = t21 - cosine_2_plus_minus_plus * t145
-    t172 = t108 - t171
-    t173 = A_12 * t169
-    t174 = t135 * t167 - t143 * t170 - t144 * t172 + t116 * t173
-    t175 = A_13 * t166
-    t176 = ops.abs(t174 + t150 * t172 - t116 * t175) <= t151
-    t177 = ops.status(invalid, unreachable, t101 | t176)
-    t178 = t157 * t167 - t159 * t170 - t160 * t172 + t155 * t173
-    t179 = ops.abs(t178 + t162 * t172 - t155 * t175) <= t151
-    t180 = ops.status(invalid, unreachable, t101 | t179)
-    cosine_1_minus_plus_plus = ops.select(t49, 1.0, t106 - t105)
-    t181 = t6 - cosine_1_minus_plus_plus * t107
-    t182 = t115 - t181
-    t183 = t4 - cosine_1_minus_plus_plus * t124
-    t184 = t123 - t183
-    t185 = ops.select(t49, 0.0, t127 + t128) * share_1
-    A_13_minus_plus_plus = z + t185
-    t186 = t184 * A_13_minus_plus_plus
-    A_11_minus_plus_plus = x + t181
-    t187 = A_11_minus_plus_plus * t184
-    A_33_minus_plus_plus = t134 - t185
-    A_23_minus_plus_plus = t138 - t185
-    t188 = A_11_minus_plus_plus * A_23_minus_plus_plus
-    t189 = t142 - t183
-    A_12_minus_plus_plus = y + t183
-    t190 = A_33_minus_plus_plus * A_12_minus_plus_plus
-    t191 = t146 - t181
-    t192 = t187 * A_33_minus_plus_plus - t188 * t189 - t190 * t191
-    t193 = A_23_minus_plus_plus * A_12_minus_plus_plus
-    t194 = t189 * A_13_minus_plus_plus
-    t195 = t182 * t186 - (t192 + t193 * t182 + t191 * t194)
-    t196 = ops.status(invalid, unreachable, t101 | (ops.abs(t195) <= t151))
-    t197 = t154 - t181
-    A_33_minus_plus_minus = t156 - t185
-    t198 = t158 - t183
-    t199 = A_12_minus_plus_plus * A_33_minus_plus_minus
-    t200 = t187 * A_33_minus_plus_minus - t188 * t198 - t191 * t199
-    t201 = A_13_minus_plus_plus * t198
-    t202 = t186 * t197 - (t200 + t193 * t197 + t191 * t201)
-    t203 = ops.status(invalid, unreachable, t101 | (ops.abs(t202) <= t151))
-    t204 = t165 - t183
-    t205 = A_13_minus_plus_plus * t204
-    t206 = A_11_minus_plus_plus * t204
-    A_23_minus_minus_plus = t168 - t185
-    t207 = A_11_minus_plus_plus * A_23_minus_minus_plus
-    t208 = t171 - t181
-    t209 = A_33_minus_plus_plus * t206 - t189 * t207 - t190 * t208
-    t210 = A_12_minus_plus_plus * A_23_minus_minus_plus
-    t211 = t182 * t205 - (t209 + t182 * t210 + t194 * t208)
-    t212 = ops.status(invalid, unreachable, t101 | (ops.abs(t211) <= t151))
-    t213 = A_33_minus_plus_minus * t206 - t198 * t207 - t199 * t208
-    t214 = t197 * t205 - (t213 + t197 * t210 + t201 * t208)
-    t215 = ops.status(invalid, unreachable, t101 | (ops.abs(t214) <= t151))
+    t101 = ops.select(t56, ops.select(t70, 1.0, t80 - t79), 1.0)
+    t102 = ops.atan2(ops.select(t70, 0.0, t77 + t78), t101)
+    t103 = ops.select(failed, ops.nan, ops.wrap_cut(t102))
+    t104 = ops.select(t56, ops.select(t55, 1.0, t66 - t65), 1.0)
+    t105 = ops.atan2(ops.select(t55, 0.0, t63 + t64), t104)
+    t106 = ops.select(failed, ops.nan, ops.wrap_cut(t105))
+    t107 = t55 | met_2 | met_3
+    t108 = ops.max(t18, 0.0) * ops.max(t22, 0.0)
+    t109 = (fore_1 + t19) * ops.max(t20, 0.0)
+    t110 = t108 - t109
+    t111 = wu_1 * t110
+    beyond_1_2 = 2.0 * ops.sqrt(t108 * t109)
+    t112 = z * beyond_1_2
+    cosine_1 = ops.select(t55, 1.0, -(t111 + t112))
+    share_1 = L / ops.select(t55, 1.0, R_1 * (t108 + t109))
+    t113 = c_alpha1 * share_1
+    t114 = t7 - cosine_1 * t113
+    t115 = ops.max(t49, 0.0) * ops.max(t53, 0.0)
+    t116 = (fore_3 + t51) * ops.max(t52, 0.0)
+    t117 = t115 - t116
+    t118 = wu_3 * t117
+    beyond_3_2 = 2.0 * ops.sqrt(t115 * t116)
+    t119 = z * beyond_3_2
+    cosine_3 = ops.select(t84, 1.0, -(t118 + t119))
+    share_3 = L / ops.select(t84, 1.0, R_3 * (t115 + t116))
+    t120 = c_alpha3 * share_3
+    t121 = t41 - cosine_3 * t120
+    t122 = t114 - t121
+    t123 = ops.max(t34, 0.0) * ops.max(t37, 0.0)
+    t124 = (fore_2 + t35) * ops.max(t36, 0.0)
+    t125 = t123 - t124
+    t126 = wu_2 * t125
+    beyond_2_2 = 2.0 * ops.sqrt(t123 * t124)
+    t127 = z * beyond_2_2
+    cosine_2 = ops.select(t70, 1.0, -(t126 + t127))
+    share_2 = L / ops.select(t70, 1.0, R_2 * (t123 + t124))
+    t128 = s_alpha2 * share_2
+    t129 = t23 - cosine_2 * t128
+    t130 = s_alpha1 * share_1
+    t131 = t5 - cosine_1 * t130
+    t132 = t129 - t131
+    t133 = z * t110
+    t134 = wu_1 * beyond_1_2
+    t135 = ops.select(t55, 0.0, t133 - t134) * share_1
+    A_13 = z + t135
+    t136 = t132 * A_13
+    A_11 = x + t114
+    t137 = A_11 * t132
+    t138 = z * t117
+    t139 = wu_3 * beyond_3_2
+    t140 = ops.select(t84, 0.0, t138 - t139) * share_3
+    t141 = t135 - t140
+    t142 = z * t125
+    t143 = wu_2 * beyond_2_2
+    t144 = ops.select(t70, 0.0, t142 - t143) * share_2
+    t145 = t135 - t144
+    t146 = A_11 * t145
+    t147 = s_alpha3 * share_3
+    t148 = t39 - cosine_3 * t147
+    t149 = t131 - t148
+    A_12 = y + t131
+    t150 = t141 * A_12
+    t151 = c_alpha2 * share_2
+    t152 = t25 - cosine_2 * t151
+    t153 = t114 - t152
+    t154 = t145 * A_12
+    t155 = t137 * t141 + t146 * t149 + t150 * t153 - t154 * t122
+    t156 = t149 * A_13
+    t157 = ops.determined * (l * l * l)
+    t158 = ops.abs(t122 * t136 - (t155 - t153 * t156)) <= t157
+    t159 = ops.status(invalid, unreachable, t107 | t158)
+    cosine_3_plus_plus_minus = ops.select(t84, 1.0, t119 - t118)
+    t160 = t41 - cosine_3_plus_plus_minus * t120
+    t161 = t114 - t160
+    t162 = ops.select(t84, 0.0, t138 + t139) * share_3
+    t163 = t135 - t162
+    t164 = t39 - cosine_3_plus_plus_minus * t147
+    t165 = t131 - t164
+    t166 = A_12 * t163
+    t167 = t137 * t163 + t146 * t165 + t153 * t166 - t154 * t161
+    t168 = A_13 * t165
+    t169 = ops.abs(t136 * t161 - (t167 - t153 * t168)) <= t157
+    t170 = ops.status(invalid, unreachable, t107 | t169)
+    cosine_2_plus_minus_plus = ops.select(t70, 1.0, t127 - t126)
+    t171 = t23 - cosine_2_plus_minus_plus * t128
+    t172 = t131 - t171
+    t173 = A_11 * t172
+    t174 = ops.select(t70, 0.0, t142 + t143) * share_2
+    t175 = t135 - t174
+    t176 = A_11 * t175
+    t177 = t25 - cosine_2_plus_minus_plus * t151
+    t178 = t114 - t177
+    t179 = A_12 * t175
+    t180 = t141 * t173 - t149 * t176 - t150 * t178 + t122 * t179
+    t181 = A_13 * t172
+    t182 = ops.abs(t180 + t156 * t178 - t122 * t181) <= t157
+    t183 = ops.status(invalid, unreachable, t107 | t182)
+    t184 = t163 * t173 - t165 * t176 - t166 * t178 + t161 * t179
+    t185 = ops.abs(t184 + t168 * t178 - t161 * t181) <= t157
+    t186 = ops.status(invalid, unreachable, t107 | t185)
+    cosine_1_minus_plus_plus = ops.select(t55, 1.0, t112 - t111)
+    t187 = t7 - cosine_1_minus_plus_plus * t113
+    t188 = t121 - t187
+    t189 = t5 - cosine_1_minus_plus_plus * t130
+    t190 = t129 - t189
+    t191 = ops.select(t55, 0.0, t133 + t134) * share_1
+    A_13_minus_plus_plus = z + t191
+    t192 = t190 * A_13_minus_plus_plus
+    A_11_minus_plus_plus = x + t187
+    t193 = A_11_minus_plus_plus * t190
+    A_33_minus_plus_plus = t140 - t191
+    A_23_minus_plus_plus = t144 - t191
+    t194 = A_11_minus_plus_plus * A_23_minus_plus_plus
+    t195 = t148 - t189
+    A_12_minus_plus_plus = y + t189
+    t196 = A_33_minus_plus_plus * A_12_minus_plus_plus
+    t197 = t152 - t187
+    t198 = t193 * A_33_minus_plus_plus - t194 * t195 - t196 * t197
+    t199 = A_23_minus_plus_plus * A_12_minus_plus_plus
+    t200 = t195 * A_13_minus_plus_plus
+    t201 = t188 * t192 - (t198 + t199 * t188 + t197 * t200)
+    t202 = ops.status(invalid, unreachable, t107 | (ops.abs(t201) <= t157))
+    t203 = t160 - t187
+    A_33_minus_plus_minus = t162 - t191
+    t204 = t164 - t189
+    t205 = A_12_minus_plus_plus * A_33_minus_plus_minus
+    t206 = t193 * A_33_minus_plus_minus - t194 * t204 - t197 * t205
+    t207 = A_13_minus_plus_plus * t204
+    t208 = t192 * t203 - (t206 + t199 * t203 + t197 * t207)
+    t209 = ops.status(invalid, unreachable, t107 | (ops.abs(t208) <= t157))
+    t210 = t171 - t189
+    t211 = A_13_minus_plus_plus * t210
+    t212 = A_11_minus_plus_plus * t210
+    A_23_minus_minus_plus = t174 - t191
+    t213 = A_11_minus_plus_plus * A_23_minus_minus_plus
+    t214 = t177 - t187
+    t215 = A_33_minus_plus_plus * t212 - t195 * t213 - t196 * t214
+    t216 = A_12_minus_plus_plus * A_23_minus_minus_plus
+    t217 = t188 * t211 - (t215 + t188 * t216 + t200 * t214)
+    t218 = ops.status(invalid, unreachable, t107 | (ops.abs(t217) <= t157))
+    t219 = A_33_minus_plus_minus * t212 - t204 * t213 - t205 * t214
+    t220 = t203 * t211 - (t219 + t203 * t216 + t207 * t214)
+    t221 = ops.status(invalid, unreachable, t107 | (ops.abs(t220) <= t157))
     return (
-        t63,
-        t77,
-        t91,
-        t63,
-        t77,
-        t94,
-        t63,
+        t69,
+        t83,
         t97,
-        t91,
-        t63,
+        t69,
+        t83,
+        t100,
+        t69,
+        t103,
         t97,
-        t94,
+        t69,
+        t103,
         t100,
-        t77,
-        t91,
-        t100,
-        t77,
-        t94,
-        t100,
+        t106,
+        t83,
         t97,
-        t91,
+        t106,
+        t83,
         t100,
+        t106,
+        t103,
         t97,
-        t94,
-        t153,
-        t164,
-        t177,
-        t180,
-        t196,
-        t203,
-        t212,
-        t215,
+        t106,
+        t103,
+        t100,
+        t159,
+        t170,
+        t183,
+        t186,
+        t202,
+        t209,
+        t218,
+        t221,
     )
 
 
@@ -2025,42 +2031,49 @@ def _workspace_contains(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     c_alpha3 = ops.cos(alpha3)
     t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
-    t3 = -(ops.feasibility * ((f + e + L + l) * 0.5))
-    t4 = y + e * s_alpha1 - f * s_alpha1
-    t5 = x + e * c_alpha1 - f * c_alpha1
-    aside_1 = c_alpha1 * t4 - s_alpha1 * t5
-    t6 = l - aside_1
-    t7 = l + aside_1
-    fore_1 = ops.sqrt(ops.max(t6, 0.0) * ops.max(t7, 0.0))
-    wu_1 = s_alpha1 * t4 + c_alpha1 * t5
-    t8 = z * z
-    R_1 = ops.sqrt(wu_1 * wu_1 + t8)
-    t9 = L - R_1
-    t10 = (t3 <= t6) & (t3 <= t7) & (t3 <= fore_1 + t9)
-    t11 = t10 & (t3 <= L + R_1 - fore_1) & (t3 <= fore_1 - t9)
-    t12 = y + e * s_alpha2 - f * s_alpha2
-    t13 = x + e * c_alpha2 - f * c_alpha2
-    aside_2 = c_alpha2 * t12 - s_alpha2 * t13
-    t14 = l - aside_2
-    t15 = l + aside_2
-    fore_2 = ops.sqrt(ops.max(t14, 0.0) * ops.max(t15, 0.0))
-    wu_2 = s_alpha2 * t12 + c_alpha2 * t13
-    R_2 = ops.sqrt(t8 + wu_2 * wu_2)
-    t16 = L - R_2
-    t17 = t11 & (t3 <= t14) & (t3 <= t15) & (t3 <= fore_2 + t16)
-    t18 = t17 & (t3 <= L + R_2 - fore_2) & (t3 <= fore_2 - t16)
-    t19 = y + e * s_alpha3 - f * s_alpha3
-    t20 = x + e * c_alpha3 - f * c_alpha3
-    aside_3 = c_alpha3 * t19 - s_alpha3 * t20
-    t21 = l - aside_3
-    t22 = l + aside_3
-    fore_3 = ops.sqrt(ops.max(t21, 0.0) * ops.max(t22, 0.0))
-    wu_3 = s_alpha3 * t19 + c_alpha3 * t20
-    R_3 = ops.sqrt(t8 + wu_3 * wu_3)
-    t23 = L - R_3
-    t24 = t18 & (t3 <= t21) & (t3 <= t22) & (t3 <= fore_3 + t23)
-    t25 = t24 & (t3 <= L + R_3 - fore_3) & (t3 <= fore_3 - t23)
-    failed = ops.opposite(t2 & ops.finite(x, y, z)) | ops.opposite(t25)
+    size = f + e + L + l
+    t3 = size * 0.5
+    t4 = -(ops.feasibility * t3)
+    t5 = y + e * s_alpha1 - f * s_alpha1
+    t6 = x + e * c_alpha1 - f * c_alpha1
+    aside_1 = c_alpha1 * t5 - s_alpha1 * t6
+    t7 = l - aside_1
+    t8 = l + aside_1
+    t9 = l * size
+    t10 = size * 2.384185791015625e-07
+    fore_1 = ops.sqrt(ops.max(t7, 0.0) * ops.max(t8, 0.0))
+    t11 = ops.feasibility * (t3 + t9 / (2.0 * (t10 + fore_1)))
+    wu_1 = s_alpha1 * t5 + c_alpha1 * t6
+    t12 = z * z
+    R_1 = ops.sqrt(wu_1 * wu_1 + t12)
+    t13 = L - R_1
+    t14 = (t4 <= t7) & (t4 <= t8) & (-t11 <= fore_1 + t13)
+    t15 = t14 & (-t11 <= L + R_1 - fore_1) & (-t11 <= fore_1 - t13)
+    t16 = y + e * s_alpha2 - f * s_alpha2
+    t17 = x + e * c_alpha2 - f * c_alpha2
+    aside_2 = c_alpha2 * t16 - s_alpha2 * t17
+    t18 = l - aside_2
+    t19 = l + aside_2
+    fore_2 = ops.sqrt(ops.max(t18, 0.0) * ops.max(t19, 0.0))
+    t20 = ops.feasibility * (t3 + t9 / (2.0 * (t10 + fore_2)))
+    wu_2 = s_alpha2 * t16 + c_alpha2 * t17
+    R_2 = ops.sqrt(t12 + wu_2 * wu_2)
+    t21 = L - R_2
+    t22 = t15 & (t4 <= t18) & (t4 <= t19) & (-t20 <= fore_2 + t21)
+    t23 = t22 & (-t20 <= L + R_2 - fore_2) & (-t20 <= fore_2 - t21)
+    t24 = y + e * s_alpha3 - f * s_alpha3
+    t25 = x + e * c_alpha3 - f * c_alpha3
+    aside_3 = c_alpha3 * t24 - s_alpha3 * t25
+    t26 = l - aside_3
+    t27 = l + aside_3
+    fore_3 = ops.sqrt(ops.max(t26, 0.0) * ops.max(t27, 0.0))
+    t28 = ops.feasibility * (t3 + t9 / (2.0 * (t10 + fore_3)))
+    wu_3 = s_alpha3 * t24 + c_alpha3 * t25
+    R_3 = ops.sqrt(t12 + wu_3 * wu_3)
+    t29 = L - R_3
+    t30 = t23 & (t4 <= t26) & (t4 <= t27) & (-t28 <= fore_3 + t29)
+    t31 = t30 & (-t28 <= L + R_3 - fore_3) & (-t28 <= fore_3 - t29)
+    failed = ops.opposite(t2 & ops.finite(x, y, z)) | ops.opposite(t31)
     return (
         ops.opposite(failed),
     )

@@ -10,8 +10,8 @@
 #   determinant: 42 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
 #   singularities: 42 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
 #   condition_number: 42 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
-#   ik: 121 compare and select, 154 add, 6 atan2, 4 divide, 159 multiply, 3 sincos, 9 sqrt
-#   workspace_contains: 45 add, 50 compare and select, 1 divide, 32 multiply, 3 sincos, 6 sqrt
+#   ik: 121 compare and select, 160 add, 6 atan2, 8 divide, 166 multiply, 3 sincos, 9 sqrt
+#   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
 
 Three cranks of length L turn about axes in the base plane z = 0, at the distance f from the
@@ -1787,7 +1787,7 @@ def _ik(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t14 = L + R_1
     t15 = t14 - fore_1
     t16 = (fore_1 + t14) * np.maximum(t15, 0.0)
-    del fore_1, t14
+    del t14
     t17 = t13 - t16
     t18 = z * t17
     beyond_1 = 2.0 * np.sqrt(t13 * t16)
@@ -1805,333 +1805,341 @@ def _ik(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t25 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
     invalid = np.logical_not(t24 & t25)
     del t24, t25
-    t26 = -(_runtime.FEASIBILITY * (size * 0.5))
+    t26 = size * 0.5
+    t27 = -(_runtime.FEASIBILITY * t26)
+    t28 = l * size
+    t29 = size * 2.384185791015625e-07
     del size
-    t27 = (t26 <= t9) & (t26 <= t10) & (t26 <= t11) & (t26 <= t15)
+    t30 = _runtime.FEASIBILITY * (t26 + t28 / (2.0 * (t29 + fore_1)))
+    del fore_1
+    t31 = (t27 <= t9) & (t27 <= t10) & (-t30 <= t11) & (-t30 <= t15)
     del t10, t11, t15, t9
-    t28 = e * s_alpha2 - f * s_alpha2
-    t29 = y + t28
-    t30 = e * c_alpha2 - f * c_alpha2
-    t31 = x + t30
-    aside_2 = c_alpha2 * t29 - s_alpha2 * t31
-    t32 = l - aside_2
-    t33 = l + aside_2
+    t32 = e * s_alpha2 - f * s_alpha2
+    t33 = y + t32
+    t34 = e * c_alpha2 - f * c_alpha2
+    t35 = x + t34
+    aside_2 = c_alpha2 * t33 - s_alpha2 * t35
+    t36 = l - aside_2
+    t37 = l + aside_2
     del aside_2
-    t34 = t27 & (t26 <= t12) & (t26 <= t32) & (t26 <= t33)
-    del t12, t27
-    wu_2 = s_alpha2 * t29 + c_alpha2 * t31
-    del t29, t31
+    t38 = t31 & (-t30 <= t12) & (t27 <= t36) & (t27 <= t37)
+    del t12, t30, t31
+    fore_2 = np.sqrt(np.maximum(t36, 0.0) * np.maximum(t37, 0.0))
+    del t36, t37
+    t39 = _runtime.FEASIBILITY * (t26 + t28 / (2.0 * (t29 + fore_2)))
+    wu_2 = s_alpha2 * t33 + c_alpha2 * t35
+    del t33, t35
     R_2 = np.sqrt(t1 + wu_2 * wu_2)
-    t35 = L - R_2
-    fore_2 = np.sqrt(np.maximum(t32, 0.0) * np.maximum(t33, 0.0))
-    del t32, t33
-    t36 = t35 + fore_2
-    t37 = L + R_2
-    t38 = t37 - fore_2
-    t39 = fore_2 - t35
-    del t35
-    t40 = t34 & (t26 <= t36) & (t26 <= t38) & (t26 <= t39)
-    del t34
-    t41 = e * s_alpha3 - f * s_alpha3
-    t42 = y + t41
-    t43 = e * c_alpha3 - f * c_alpha3
-    t44 = x + t43
-    aside_3 = c_alpha3 * t42 - s_alpha3 * t44
-    t45 = l - aside_3
-    t46 = l + aside_3
+    t40 = L - R_2
+    t41 = fore_2 + t40
+    t42 = L + R_2
+    t43 = t42 - fore_2
+    t44 = fore_2 - t40
+    del t40
+    t45 = t38 & (-t39 <= t41) & (-t39 <= t43) & (-t39 <= t44)
+    del t38, t39
+    t46 = e * s_alpha3 - f * s_alpha3
+    t47 = y + t46
+    t48 = e * c_alpha3 - f * c_alpha3
+    t49 = x + t48
+    aside_3 = c_alpha3 * t47 - s_alpha3 * t49
+    t50 = l - aside_3
+    t51 = l + aside_3
     del aside_3
-    wu_3 = s_alpha3 * t42 + c_alpha3 * t44
-    del t42, t44
+    fore_3 = np.sqrt(np.maximum(t50, 0.0) * np.maximum(t51, 0.0))
+    t52 = _runtime.FEASIBILITY * (t26 + t28 / (2.0 * (t29 + fore_3)))
+    del t26, t28, t29
+    wu_3 = s_alpha3 * t47 + c_alpha3 * t49
+    del t47, t49
     R_3 = np.sqrt(t1 + wu_3 * wu_3)
     del t1
-    t47 = L - R_3
-    fore_3 = np.sqrt(np.maximum(t45, 0.0) * np.maximum(t46, 0.0))
-    t48 = t47 + fore_3
-    t49 = t40 & (t26 <= t45) & (t26 <= t46) & (t26 <= t48)
-    del t40, t45, t46
-    t50 = L + R_3
-    t51 = t50 - fore_3
-    t52 = fore_3 - t47
-    del t47
-    unreachable = np.logical_not(t49 & (t26 <= t51) & (t26 <= t52))
-    del t26, t49
-    t53 = _runtime.poison(invalid | unreachable)
-    t54 = t22 + t53
+    t53 = L - R_3
+    t54 = fore_3 + t53
+    t55 = t45 & (t27 <= t50) & (t27 <= t51) & (-t52 <= t54)
+    del t27, t45, t50, t51
+    t56 = L + R_3
+    t57 = t56 - fore_3
+    t58 = fore_3 - t53
+    del t53
+    unreachable = np.logical_not(t55 & (-t52 <= t57) & (-t52 <= t58))
+    del t52, t55
+    t59 = _runtime.poison(invalid | unreachable)
+    t60 = t22 + t59
     del t22
     met_2 = R_2 <= t6
-    t55 = met_2 | no_crank_1
-    t56 = np.maximum(t36, 0.0) * np.maximum(t39, 0.0)
-    del t36, t39
-    t57 = (fore_2 + t37) * np.maximum(t38, 0.0)
-    del fore_2, t37, t38
-    t58 = t56 - t57
-    t59 = z * t58
-    beyond_2 = 2.0 * np.sqrt(t56 * t57)
-    t60 = wu_2 * beyond_2
-    sine_2 = _runtime.select(t55, 0.0, t59 - t60)
-    t61 = wu_2 * t58
-    del t58, wu_2
-    t62 = z * beyond_2
+    t61 = met_2 | no_crank_1
+    t62 = np.maximum(t41, 0.0) * np.maximum(t44, 0.0)
+    del t41, t44
+    t63 = (fore_2 + t42) * np.maximum(t43, 0.0)
+    del fore_2, t42, t43
+    t64 = t62 - t63
+    t65 = z * t64
+    beyond_2 = 2.0 * np.sqrt(t62 * t63)
+    t66 = wu_2 * beyond_2
+    sine_2 = _runtime.select(t61, 0.0, t65 - t66)
+    t67 = wu_2 * t64
+    del t64, wu_2
+    t68 = z * beyond_2
     del beyond_2
-    cosine_2 = _runtime.select(t55, 1.0, -(t61 + t62))
-    t63 = _runtime.wrap_cut(np.arctan2(sine_2, cosine_2))
-    t64 = t63 + t53
-    del t63
+    cosine_2 = _runtime.select(t61, 1.0, -(t67 + t68))
+    t69 = _runtime.wrap_cut(np.arctan2(sine_2, cosine_2))
+    t70 = t69 + t59
+    del t69
     met_3 = R_3 <= t6
     del t6
-    t65 = met_3 | no_crank_1
+    t71 = met_3 | no_crank_1
     del no_crank_1
-    t66 = np.maximum(t48, 0.0) * np.maximum(t52, 0.0)
-    del t48, t52
-    t67 = (fore_3 + t50) * np.maximum(t51, 0.0)
-    del fore_3, t50, t51
-    t68 = t66 - t67
-    t69 = z * t68
-    beyond_3 = 2.0 * np.sqrt(t66 * t67)
-    t70 = wu_3 * beyond_3
-    sine_3 = _runtime.select(t65, 0.0, t69 - t70)
-    t71 = wu_3 * t68
-    del t68, wu_3
-    t72 = z * beyond_3
+    t72 = np.maximum(t54, 0.0) * np.maximum(t58, 0.0)
+    del t54, t58
+    t73 = (fore_3 + t56) * np.maximum(t57, 0.0)
+    del fore_3, t56, t57
+    t74 = t72 - t73
+    t75 = z * t74
+    beyond_3 = 2.0 * np.sqrt(t72 * t73)
+    t76 = wu_3 * beyond_3
+    sine_3 = _runtime.select(t71, 0.0, t75 - t76)
+    t77 = wu_3 * t74
+    del t74, wu_3
+    t78 = z * beyond_3
     del beyond_3
-    cosine_3 = _runtime.select(t65, 1.0, -(t71 + t72))
-    t73 = _runtime.wrap_cut(np.arctan2(sine_3, cosine_3))
-    t74 = t73 + t53
-    del t73
-    sine_3_plus_plus_minus = _runtime.select(t65, 0.0, t69 + t70)
-    del t69, t70
-    cosine_3_plus_plus_minus = _runtime.select(t65, 1.0, t72 - t71)
-    del t71, t72
-    t75 = np.arctan2(sine_3_plus_plus_minus, cosine_3_plus_plus_minus)
-    t76 = _runtime.wrap_cut(t75) + t53
-    del t75
-    sine_2_plus_minus_plus = _runtime.select(t55, 0.0, t59 + t60)
-    del t59, t60
-    cosine_2_plus_minus_plus = _runtime.select(t55, 1.0, t62 - t61)
-    del t61, t62
-    t77 = np.arctan2(sine_2_plus_minus_plus, cosine_2_plus_minus_plus)
-    t78 = _runtime.wrap_cut(t77) + t53
-    del t77
+    cosine_3 = _runtime.select(t71, 1.0, -(t77 + t78))
+    t79 = _runtime.wrap_cut(np.arctan2(sine_3, cosine_3))
+    t80 = t79 + t59
+    del t79
+    sine_3_plus_plus_minus = _runtime.select(t71, 0.0, t75 + t76)
+    del t75, t76
+    cosine_3_plus_plus_minus = _runtime.select(t71, 1.0, t78 - t77)
+    del t77, t78
+    t81 = np.arctan2(sine_3_plus_plus_minus, cosine_3_plus_plus_minus)
+    t82 = _runtime.wrap_cut(t81) + t59
+    del t81
+    sine_2_plus_minus_plus = _runtime.select(t61, 0.0, t65 + t66)
+    del t65, t66
+    cosine_2_plus_minus_plus = _runtime.select(t61, 1.0, t68 - t67)
+    del t67, t68
+    t83 = np.arctan2(sine_2_plus_minus_plus, cosine_2_plus_minus_plus)
+    t84 = _runtime.wrap_cut(t83) + t59
+    del t83
     sine_1_minus_plus_plus = _runtime.select(t7, 0.0, t18 + t19)
     del t18, t19
     cosine_1_minus_plus_plus = _runtime.select(t7, 1.0, t21 - t20)
     del t20, t21
-    t79 = np.arctan2(sine_1_minus_plus_plus, cosine_1_minus_plus_plus)
-    t80 = _runtime.wrap_cut(t79) + t53
-    del t53, t79
-    t81 = t7 | met_2 | met_3
+    t85 = np.arctan2(sine_1_minus_plus_plus, cosine_1_minus_plus_plus)
+    t86 = _runtime.wrap_cut(t85) + t59
+    del t59, t85
+    t87 = t7 | met_2 | met_3
     del met_2, met_3
     share_1 = L / _runtime.select(t7, 1.0, R_1 * (t13 + t16))
     del R_1, t13, t16, t7
-    t82 = c_alpha1 * share_1
+    t88 = c_alpha1 * share_1
     del c_alpha1
-    t83 = t4 - cosine_1 * t82
-    share_3 = L / _runtime.select(t65, 1.0, R_3 * (t66 + t67))
-    del R_3, t65, t66, t67
-    t84 = c_alpha3 * share_3
+    t89 = t4 - cosine_1 * t88
+    share_3 = L / _runtime.select(t71, 1.0, R_3 * (t72 + t73))
+    del R_3, t71, t72, t73
+    t90 = c_alpha3 * share_3
     del c_alpha3
-    t85 = t43 - cosine_3 * t84
-    t86 = t83 - t85
-    share_2 = L / _runtime.select(t55, 1.0, R_2 * (t56 + t57))
-    del R_2, t55, t56, t57
-    t87 = s_alpha2 * share_2
+    t91 = t48 - cosine_3 * t90
+    t92 = t89 - t91
+    share_2 = L / _runtime.select(t61, 1.0, R_2 * (t62 + t63))
+    del R_2, t61, t62, t63
+    t93 = s_alpha2 * share_2
     del s_alpha2
-    t88 = t28 - cosine_2 * t87
-    t89 = s_alpha1 * share_1
+    t94 = t32 - cosine_2 * t93
+    t95 = s_alpha1 * share_1
     del s_alpha1
-    t90 = t2 - cosine_1 * t89
+    t96 = t2 - cosine_1 * t95
     del cosine_1
-    t91 = t88 - t90
-    t92 = sine_1 * share_1
+    t97 = t94 - t96
+    t98 = sine_1 * share_1
     del sine_1
-    A_13 = z + t92
-    t93 = t91 * A_13
-    A_11 = x + t83
-    t94 = A_11 * t91
-    del t91
-    t95 = sine_3 * share_3
-    del sine_3
-    t96 = t92 - t95
-    t97 = sine_2 * share_2
-    del sine_2
-    t98 = t92 - t97
-    t99 = A_11 * t98
-    t100 = s_alpha3 * share_3
-    del s_alpha3
-    t101 = t41 - cosine_3 * t100
-    del cosine_3
-    t102 = t90 - t101
-    A_12 = y + t90
-    t103 = t96 * A_12
-    t104 = c_alpha2 * share_2
-    del c_alpha2
-    t105 = t30 - cosine_2 * t104
-    del cosine_2
-    t106 = t83 - t105
-    t107 = t98 * A_12
-    del t98
-    t108 = t94 * t96 + t99 * t102 + t103 * t106 - t107 * t86
-    t109 = t102 * A_13
-    t110 = _runtime.DETERMINED * (l * l * l)
-    t111 = np.abs(t86 * t93 - (t108 - t106 * t109)) <= t110
-    del t108
-    t112 = _runtime.status(invalid, unreachable, t81 | t111)
-    del t111
-    t113 = t43 - cosine_3_plus_plus_minus * t84
-    del t43, t84
-    t114 = t83 - t113
-    t115 = sine_3_plus_plus_minus * share_3
-    del share_3, sine_3_plus_plus_minus
-    t116 = t92 - t115
-    t117 = t41 - cosine_3_plus_plus_minus * t100
-    del cosine_3_plus_plus_minus, t100, t41
-    t118 = t90 - t117
-    t119 = A_12 * t116
-    t120 = t94 * t116 + t99 * t118 + t106 * t119 - t107 * t114
-    del t107, t94, t99
-    t121 = A_13 * t118
-    t122 = np.abs(t93 * t114 - (t120 - t106 * t121)) <= t110
-    del t106, t120, t93
-    t123 = _runtime.status(invalid, unreachable, t81 | t122)
-    del t122
-    t124 = t28 - cosine_2_plus_minus_plus * t87
-    del t28, t87
-    t125 = t90 - t124
-    del t90
-    t126 = A_11 * t125
-    t127 = sine_2_plus_minus_plus * share_2
-    del share_2, sine_2_plus_minus_plus
-    t128 = t92 - t127
-    del t92
-    t129 = A_11 * t128
-    del A_11
-    t130 = t30 - cosine_2_plus_minus_plus * t104
-    del cosine_2_plus_minus_plus, t104, t30
-    t131 = t83 - t130
-    del t83
-    t132 = A_12 * t128
-    del A_12, t128
-    t133 = t96 * t126 - t102 * t129 - t103 * t131 + t86 * t132
-    del t102, t103, t96
-    t134 = A_13 * t125
-    del A_13, t125
-    t135 = np.abs(t133 + t109 * t131 - t86 * t134) <= t110
-    del t109, t133, t86
-    t136 = _runtime.status(invalid, unreachable, t81 | t135)
-    del t135
-    t137 = t116 * t126 - t118 * t129 - t119 * t131 + t114 * t132
-    del t116, t118, t119, t126, t129, t132
-    t138 = np.abs(t137 + t121 * t131 - t114 * t134) <= t110
-    del t114, t121, t131, t134, t137
-    t139 = _runtime.status(invalid, unreachable, t81 | t138)
-    del t138
-    t140 = t4 - cosine_1_minus_plus_plus * t82
-    del t4, t82
-    t141 = t85 - t140
-    del t85
-    t142 = t2 - cosine_1_minus_plus_plus * t89
-    del cosine_1_minus_plus_plus, t2, t89
-    t143 = t88 - t142
-    del t88
-    t144 = sine_1_minus_plus_plus * share_1
-    del share_1, sine_1_minus_plus_plus
-    A_13_minus_plus_plus = z + t144
-    t145 = t143 * A_13_minus_plus_plus
-    A_11_minus_plus_plus = x + t140
-    t146 = A_11_minus_plus_plus * t143
-    del t143
-    A_33_minus_plus_plus = t95 - t144
-    del t95
-    A_23_minus_plus_plus = t97 - t144
+    A_13 = z + t98
+    t99 = t97 * A_13
+    A_11 = x + t89
+    t100 = A_11 * t97
     del t97
-    t147 = A_11_minus_plus_plus * A_23_minus_plus_plus
-    t148 = t101 - t142
-    del t101
-    A_12_minus_plus_plus = y + t142
-    t149 = A_33_minus_plus_plus * A_12_minus_plus_plus
-    t150 = t105 - t140
-    del t105
-    t151 = t146 * A_33_minus_plus_plus - t147 * t148 - t149 * t150
-    t152 = A_23_minus_plus_plus * A_12_minus_plus_plus
-    del A_23_minus_plus_plus
-    t153 = t148 * A_13_minus_plus_plus
-    t154 = t141 * t145 - (t151 + t152 * t141 + t150 * t153)
-    del t151
-    t155 = _runtime.status(invalid, unreachable, t81 | (np.abs(t154) <= t110))
-    del t154
-    t156 = t113 - t140
-    del t113
-    A_33_minus_plus_minus = t115 - t144
-    del t115
-    t157 = t117 - t142
+    t101 = sine_3 * share_3
+    del sine_3
+    t102 = t98 - t101
+    t103 = sine_2 * share_2
+    del sine_2
+    t104 = t98 - t103
+    t105 = A_11 * t104
+    t106 = s_alpha3 * share_3
+    del s_alpha3
+    t107 = t46 - cosine_3 * t106
+    del cosine_3
+    t108 = t96 - t107
+    A_12 = y + t96
+    t109 = t102 * A_12
+    t110 = c_alpha2 * share_2
+    del c_alpha2
+    t111 = t34 - cosine_2 * t110
+    del cosine_2
+    t112 = t89 - t111
+    t113 = t104 * A_12
+    del t104
+    t114 = t100 * t102 + t105 * t108 + t109 * t112 - t113 * t92
+    t115 = t108 * A_13
+    t116 = _runtime.DETERMINED * (l * l * l)
+    t117 = np.abs(t92 * t99 - (t114 - t112 * t115)) <= t116
+    del t114
+    t118 = _runtime.status(invalid, unreachable, t87 | t117)
     del t117
-    t158 = A_12_minus_plus_plus * A_33_minus_plus_minus
-    t159 = t146 * A_33_minus_plus_minus - t147 * t157 - t150 * t158
-    del t146, t147
-    t160 = A_13_minus_plus_plus * t157
-    t161 = t145 * t156 - (t159 + t152 * t156 + t150 * t160)
-    del t145, t150, t152, t159
-    t162 = _runtime.status(invalid, unreachable, t81 | (np.abs(t161) <= t110))
-    del t161
-    t163 = t124 - t142
-    del t124, t142
-    t164 = A_13_minus_plus_plus * t163
+    t119 = t48 - cosine_3_plus_plus_minus * t90
+    del t48, t90
+    t120 = t89 - t119
+    t121 = sine_3_plus_plus_minus * share_3
+    del share_3, sine_3_plus_plus_minus
+    t122 = t98 - t121
+    t123 = t46 - cosine_3_plus_plus_minus * t106
+    del cosine_3_plus_plus_minus, t106, t46
+    t124 = t96 - t123
+    t125 = A_12 * t122
+    t126 = t100 * t122 + t105 * t124 + t112 * t125 - t113 * t120
+    del t100, t105, t113
+    t127 = A_13 * t124
+    t128 = np.abs(t99 * t120 - (t126 - t112 * t127)) <= t116
+    del t112, t126, t99
+    t129 = _runtime.status(invalid, unreachable, t87 | t128)
+    del t128
+    t130 = t32 - cosine_2_plus_minus_plus * t93
+    del t32, t93
+    t131 = t96 - t130
+    del t96
+    t132 = A_11 * t131
+    t133 = sine_2_plus_minus_plus * share_2
+    del share_2, sine_2_plus_minus_plus
+    t134 = t98 - t133
+    del t98
+    t135 = A_11 * t134
+    del A_11
+    t136 = t34 - cosine_2_plus_minus_plus * t110
+    del cosine_2_plus_minus_plus, t110, t34
+    t137 = t89 - t136
+    del t89
+    t138 = A_12 * t134
+    del A_12, t134
+    t139 = t102 * t132 - t108 * t135 - t109 * t137 + t92 * t138
+    del t102, t108, t109
+    t140 = A_13 * t131
+    del A_13, t131
+    t141 = np.abs(t139 + t115 * t137 - t92 * t140) <= t116
+    del t115, t139, t92
+    t142 = _runtime.status(invalid, unreachable, t87 | t141)
+    del t141
+    t143 = t122 * t132 - t124 * t135 - t125 * t137 + t120 * t138
+    del t122, t124, t125, t132, t135, t138
+    t144 = np.abs(t143 + t127 * t137 - t120 * t140) <= t116
+    del t120, t127, t137, t140, t143
+    t145 = _runtime.status(invalid, unreachable, t87 | t144)
+    del t144
+    t146 = t4 - cosine_1_minus_plus_plus * t88
+    del t4, t88
+    t147 = t91 - t146
+    del t91
+    t148 = t2 - cosine_1_minus_plus_plus * t95
+    del cosine_1_minus_plus_plus, t2, t95
+    t149 = t94 - t148
+    del t94
+    t150 = sine_1_minus_plus_plus * share_1
+    del share_1, sine_1_minus_plus_plus
+    A_13_minus_plus_plus = z + t150
+    t151 = t149 * A_13_minus_plus_plus
+    A_11_minus_plus_plus = x + t146
+    t152 = A_11_minus_plus_plus * t149
+    del t149
+    A_33_minus_plus_plus = t101 - t150
+    del t101
+    A_23_minus_plus_plus = t103 - t150
+    del t103
+    t153 = A_11_minus_plus_plus * A_23_minus_plus_plus
+    t154 = t107 - t148
+    del t107
+    A_12_minus_plus_plus = y + t148
+    t155 = A_33_minus_plus_plus * A_12_minus_plus_plus
+    t156 = t111 - t146
+    del t111
+    t157 = t152 * A_33_minus_plus_plus - t153 * t154 - t155 * t156
+    t158 = A_23_minus_plus_plus * A_12_minus_plus_plus
+    del A_23_minus_plus_plus
+    t159 = t154 * A_13_minus_plus_plus
+    t160 = t147 * t151 - (t157 + t158 * t147 + t156 * t159)
+    del t157
+    t161 = _runtime.status(invalid, unreachable, t87 | (np.abs(t160) <= t116))
+    del t160
+    t162 = t119 - t146
+    del t119
+    A_33_minus_plus_minus = t121 - t150
+    del t121
+    t163 = t123 - t148
+    del t123
+    t164 = A_12_minus_plus_plus * A_33_minus_plus_minus
+    t165 = t152 * A_33_minus_plus_minus - t153 * t163 - t156 * t164
+    del t152, t153
+    t166 = A_13_minus_plus_plus * t163
+    t167 = t151 * t162 - (t165 + t158 * t162 + t156 * t166)
+    del t151, t156, t158, t165
+    t168 = _runtime.status(invalid, unreachable, t87 | (np.abs(t167) <= t116))
+    del t167
+    t169 = t130 - t148
+    del t130, t148
+    t170 = A_13_minus_plus_plus * t169
     del A_13_minus_plus_plus
-    t165 = A_11_minus_plus_plus * t163
-    del t163
-    A_23_minus_minus_plus = t127 - t144
-    del t127, t144
-    t166 = A_11_minus_plus_plus * A_23_minus_minus_plus
+    t171 = A_11_minus_plus_plus * t169
+    del t169
+    A_23_minus_minus_plus = t133 - t150
+    del t133, t150
+    t172 = A_11_minus_plus_plus * A_23_minus_minus_plus
     del A_11_minus_plus_plus
-    t167 = t130 - t140
-    del t130, t140
-    t168 = A_33_minus_plus_plus * t165 - t148 * t166 - t149 * t167
-    del A_33_minus_plus_plus, t148, t149
-    t169 = A_12_minus_plus_plus * A_23_minus_minus_plus
+    t173 = t136 - t146
+    del t136, t146
+    t174 = A_33_minus_plus_plus * t171 - t154 * t172 - t155 * t173
+    del A_33_minus_plus_plus, t154, t155
+    t175 = A_12_minus_plus_plus * A_23_minus_minus_plus
     del A_12_minus_plus_plus, A_23_minus_minus_plus
-    t170 = t141 * t164 - (t168 + t141 * t169 + t153 * t167)
-    del t141, t153, t168
-    t171 = _runtime.status(invalid, unreachable, t81 | (np.abs(t170) <= t110))
-    del t170
-    t172 = A_33_minus_plus_minus * t165 - t157 * t166 - t158 * t167
-    del A_33_minus_plus_minus, t157, t158, t165, t166
-    t173 = t156 * t164 - (t172 + t156 * t169 + t160 * t167)
-    del t156, t160, t164, t167, t169, t172
-    t174 = _runtime.status(invalid, unreachable, t81 | (np.abs(t173) <= t110))
-    del invalid, t110, t173, t81, unreachable
+    t176 = t147 * t170 - (t174 + t147 * t175 + t159 * t173)
+    del t147, t159, t174
+    t177 = _runtime.status(invalid, unreachable, t87 | (np.abs(t176) <= t116))
+    del t176
+    t178 = A_33_minus_plus_minus * t171 - t163 * t172 - t164 * t173
+    del A_33_minus_plus_minus, t163, t164, t171, t172
+    t179 = t162 * t170 - (t178 + t162 * t175 + t166 * t173)
+    del t162, t166, t170, t173, t175, t178
+    t180 = _runtime.status(invalid, unreachable, t87 | (np.abs(t179) <= t116))
+    del invalid, t116, t179, t87, unreachable
     return (
-        t54,
-        t64,
-        t74,
-        t54,
-        t64,
-        t76,
-        t54,
-        t78,
-        t74,
-        t54,
-        t78,
-        t76,
+        t60,
+        t70,
         t80,
-        t64,
-        t74,
+        t60,
+        t70,
+        t82,
+        t60,
+        t84,
         t80,
-        t64,
-        t76,
+        t60,
+        t84,
+        t82,
+        t86,
+        t70,
         t80,
-        t78,
-        t74,
+        t86,
+        t70,
+        t82,
+        t86,
+        t84,
         t80,
-        t78,
-        t76,
-        t112,
-        t123,
-        t136,
-        t139,
-        t155,
-        t162,
-        t171,
-        t174,
+        t86,
+        t84,
+        t82,
+        t118,
+        t129,
+        t142,
+        t145,
+        t161,
+        t168,
+        t177,
+        t180,
     )
 
 
@@ -2201,58 +2209,67 @@ def _workspace_contains(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
     del t1
     t3 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z)
-    t4 = _runtime.FEASIBILITY * ((f + e + L + l) * 0.5)
-    t5 = y + e * s_alpha1 - f * s_alpha1
-    t6 = x + e * c_alpha1 - f * c_alpha1
-    aside_1 = c_alpha1 * t5 - s_alpha1 * t6
-    t7 = l - aside_1
-    t8 = l + aside_1
+    size = f + e + L + l
+    t4 = size * 0.5
+    t5 = -(_runtime.FEASIBILITY * t4)
+    t6 = y + e * s_alpha1 - f * s_alpha1
+    t7 = x + e * c_alpha1 - f * c_alpha1
+    aside_1 = c_alpha1 * t6 - s_alpha1 * t7
+    t8 = l - aside_1
+    t9 = l + aside_1
     del aside_1
-    fore_1 = np.sqrt(np.maximum(t7, 0.0) * np.maximum(t8, 0.0))
-    wu_1 = s_alpha1 * t5 + c_alpha1 * t6
-    del c_alpha1, s_alpha1, t5, t6
-    t9 = z * z
-    R_1 = np.sqrt(wu_1 * wu_1 + t9)
+    t10 = l * size
+    t11 = size * 2.384185791015625e-07
+    del size
+    fore_1 = np.sqrt(np.maximum(t8, 0.0) * np.maximum(t9, 0.0))
+    t12 = _runtime.FEASIBILITY * (t4 + t10 / (2.0 * (t11 + fore_1)))
+    wu_1 = s_alpha1 * t6 + c_alpha1 * t7
+    del c_alpha1, s_alpha1, t6, t7
+    t13 = z * z
+    R_1 = np.sqrt(wu_1 * wu_1 + t13)
     del wu_1
-    t10 = L - R_1
-    t11 = (-t4 <= t7) & (-t4 <= t8) & (-t4 <= fore_1 + t10)
-    del t7, t8
-    t12 = t11 & (-t4 <= L + R_1 - fore_1) & (-t4 <= fore_1 - t10)
-    del R_1, fore_1, t10, t11
-    t13 = y + e * s_alpha2 - f * s_alpha2
-    t14 = x + e * c_alpha2 - f * c_alpha2
-    aside_2 = c_alpha2 * t13 - s_alpha2 * t14
-    t15 = l - aside_2
-    t16 = l + aside_2
+    t14 = L - R_1
+    t15 = (t5 <= t8) & (t5 <= t9) & (-t12 <= fore_1 + t14)
+    del t8, t9
+    t16 = t15 & (-t12 <= L + R_1 - fore_1) & (-t12 <= fore_1 - t14)
+    del R_1, fore_1, t12, t14, t15
+    t17 = y + e * s_alpha2 - f * s_alpha2
+    t18 = x + e * c_alpha2 - f * c_alpha2
+    aside_2 = c_alpha2 * t17 - s_alpha2 * t18
+    t19 = l - aside_2
+    t20 = l + aside_2
     del aside_2
-    fore_2 = np.sqrt(np.maximum(t15, 0.0) * np.maximum(t16, 0.0))
-    wu_2 = s_alpha2 * t13 + c_alpha2 * t14
-    del c_alpha2, s_alpha2, t13, t14
-    R_2 = np.sqrt(t9 + wu_2 * wu_2)
+    fore_2 = np.sqrt(np.maximum(t19, 0.0) * np.maximum(t20, 0.0))
+    t21 = _runtime.FEASIBILITY * (t4 + t10 / (2.0 * (t11 + fore_2)))
+    wu_2 = s_alpha2 * t17 + c_alpha2 * t18
+    del c_alpha2, s_alpha2, t17, t18
+    R_2 = np.sqrt(t13 + wu_2 * wu_2)
     del wu_2
-    t17 = L - R_2
-    t18 = t12 & (-t4 <= t15) & (-t4 <= t16) & (-t4 <= fore_2 + t17)
-    del t12, t15, t16
-    t19 = t18 & (-t4 <= L + R_2 - fore_2) & (-t4 <= fore_2 - t17)
-    del R_2, fore_2, t17, t18
-    t20 = y + e * s_alpha3 - f * s_alpha3
-    t21 = x + e * c_alpha3 - f * c_alpha3
-    aside_3 = c_alpha3 * t20 - s_alpha3 * t21
-    t22 = l - aside_3
-    t23 = l + aside_3
+    t22 = L - R_2
+    t23 = t16 & (t5 <= t19) & (t5 <= t20) & (-t21 <= fore_2 + t22)
+    del t16, t19, t20
+    t24 = t23 & (-t21 <= L + R_2 - fore_2) & (-t21 <= fore_2 - t22)
+    del R_2, fore_2, t21, t22, t23
+    t25 = y + e * s_alpha3 - f * s_alpha3
+    t26 = x + e * c_alpha3 - f * c_alpha3
+    aside_3 = c_alpha3 * t25 - s_alpha3 * t26
+    t27 = l - aside_3
+    t28 = l + aside_3
     del aside_3
-    fore_3 = np.sqrt(np.maximum(t22, 0.0) * np.maximum(t23, 0.0))
-    wu_3 = s_alpha3 * t20 + c_alpha3 * t21
-    del c_alpha3, s_alpha3, t20, t21
-    R_3 = np.sqrt(t9 + wu_3 * wu_3)
-    del t9, wu_3
-    t24 = L - R_3
-    t25 = t19 & (-t4 <= t22) & (-t4 <= t23) & (-t4 <= fore_3 + t24)
-    del t19, t22, t23
-    t26 = t25 & (-t4 <= L + R_3 - fore_3) & (-t4 <= fore_3 - t24)
-    del R_3, fore_3, t24, t25, t4
-    failed = np.logical_not(t2 & t3) | np.logical_not(t26)
-    del t2, t26, t3
+    fore_3 = np.sqrt(np.maximum(t27, 0.0) * np.maximum(t28, 0.0))
+    t29 = _runtime.FEASIBILITY * (t4 + t10 / (2.0 * (t11 + fore_3)))
+    del t10, t11, t4
+    wu_3 = s_alpha3 * t25 + c_alpha3 * t26
+    del c_alpha3, s_alpha3, t25, t26
+    R_3 = np.sqrt(t13 + wu_3 * wu_3)
+    del t13, wu_3
+    t30 = L - R_3
+    t31 = t24 & (t5 <= t27) & (t5 <= t28) & (-t29 <= fore_3 + t30)
+    del t24, t27, t28, t5
+    t32 = t31 & (-t29 <= L + R_3 - fore_3) & (-t29 <= fore_3 - t30)
+    del R_3, fore_3, t29, t30, t31
+    failed = np.logical_not(t2 & t3) | np.logical_not(t32)
+    del t2, t3, t32
     return (
         np.logical_not(failed),
     )

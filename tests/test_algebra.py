@@ -312,6 +312,19 @@ def test_roots_of_long_numbers_are_not_factored() -> None:
     assert equal(three**2, 9 * number)
 
 
+@pytest.mark.parametrize("first", [0, 1])
+def test_roots_of_numbers_with_long_factors_are_recognised(first: int) -> None:
+    """The hypotenuse of an offset, and the sine of its angle, in whichever order they come."""
+    a, b = 3020000000000000, 700000000000001
+    turned = x - sp.atan(sp.Rational(a, b))
+    entries = [
+        sp.sqrt(a**2 + b**2) * y,
+        sp.sqrt(a**2 + b**2) * sin(turned) - b * sin(x) + a * cos(x),
+    ]
+    problem = sp.Matrix([entries[first], entries[1 - first]])
+    assert equal(sp.Add(*problem), entries[0])
+
+
 def test_factors_of_a_polynomial() -> None:
     """Their product is the polynomial up to a number, and each is irreducible by other means."""
     x, y, a = sp.symbols("x y a")

@@ -124,6 +124,29 @@ def test_joints_in_any_direction_and_slides(tmp_path: Path) -> None:
         np.testing.assert_allclose(pose(*q), forward(unit, q), atol=1e-12)
 
 
+def test_what_an_exporter_added_to_lengths_and_axes_is_dropped(ur5: Path) -> None:
+    """Sums in binary, and a frame that was turned by 1.5708 instead of pi/2."""
+    exact = arm_of(ur5)
+    noisy = UR5.replace("0.13585", "0.13585000000000003").replace("0.093 ", "0.0930000000004 ")
+    noisy = noisy.replace('"0 0 0.39225"', '"1.568e-06 0 0.39225"')
+    noisy = noisy.replace('xyz="0 0 1"', 'xyz="0 -3.673e-06 0.99999999999325"')
+    ur5.write_text(noisy, "utf-8")
+    assert arm_of(ur5).pose == exact.pose
+    notes = "\n".join(new("noisy", "urdf", ur5).notes)
+    for part in (
+        "xyz 0.13585000000000003 is taken for 0.13585",
+        "xyz 1.568e-06 is taken for 0",
+        "the axis (0, -3.673e-06, 0.999999999993) is taken for (0, 0, 1)",
+    ):
+        assert part in notes
+
+
+@pytest.mark.parametrize("length", ["0.089159", "0.089159001", "0.00002", "-0.1234567"])
+def test_a_length_that_may_be_meant_is_kept(ur5: Path, length: str) -> None:
+    ur5.write_text(UR5.replace("0.089159", length), "utf-8")
+    assert read_urdf(ur5).axes[1][2][2] == sp.Rational(length)
+
+
 def test_what_was_not_taken_literally_is_said(ur5: Path) -> None:
     script = new("my_ur5", "urdf", ur5)
     notes = "\n".join(script.notes)

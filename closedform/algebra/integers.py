@@ -10,20 +10,20 @@ SHORT = 90
 """Numbers of at most this many bits are factored, which takes milliseconds."""
 
 
-def quick_factors(number: fmpz) -> tuple[list[tuple[fmpz, int]], fmpz]:
-    """Factors with their powers, primes or one square, and what is left: 1 or a long number.
-
-    To factor a number of a hundred digits may take any time; lengths in decimals lead to such.
-    """
+def smooth_factors(number: fmpz) -> tuple[list[tuple[fmpz, int]], fmpz]:
+    """Short prime factors with their powers, and what is left of the number."""
     found = [(p, k) for p, k in number.factor_smooth(SMOOTH) if p.bit_length() <= SMOOTH]
     for prime, power in found:
         number //= prime**power
-    if number.is_square():
-        root = number.isqrt()
-        return ([*found, (root, 2)] if root != 1 else found), fmpz(1)
-    if number.bit_length() > SHORT:
-        return found, number
-    return [*found, *number.factor()], fmpz(1)
+    return found, number
 
 
-__all__ = ["quick_factors"]
+def long_factors(number: fmpz) -> list[tuple[fmpz, int]]:
+    """Factors of a number without short ones, with their powers; a long number is one factor.
+
+    To factor a number of a hundred digits may take any time; lengths in decimals lead to such.
+    """
+    return number.factor() if number.bit_length() <= SHORT else [(number, 1)]
+
+
+__all__ = ["long_factors", "smooth_factors"]

@@ -31,7 +31,7 @@ from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
 from sympy import Rational
 from sympy.core.function import AppliedUndef
 
-from closedform.algebra.integers import quick_factors
+from closedform.algebra.integers import long_factors, smooth_factors
 from closedform.algebra.trace import Trace
 
 Expr: TypeAlias = Any  # SymPy's annotations are partial
@@ -87,7 +87,7 @@ class Tower:
         self._pairs: dict[int, int] = {}  # slot of the sine -> slot of the cosine
         self._memo: dict[Expr, Fraction] = {}
         self._rotations: dict[Expr, Rotation] = {}
-        self._large: list[fmpz] = []
+        self._long: list[fmpz] = []
         self._licences: dict[frozenset[str], tuple[int, Expr]] = {}
         self._denominators: dict[str, fmpq_mpoly] = {}
         self.assumptions: dict[Expr, None] = {}
@@ -336,20 +336,34 @@ class Tower:
 
     def _rational_root(self, value: fmpq) -> Iterator[tuple[Fraction, int]]:
         yield self._constant(fmpq(1, value.q)), 1
-        small, number = quick_factors(value.p * value.q)
+        small, number = smooth_factors(value.p * value.q)
         for prime, power in small:
-            yield self._constant(int(prime) ** (power // 2)), 1
-            if power % 2:
-                yield self._root(self._ctx.constant(prime)), 1
-        if number != 1:
-            yield from self._large_root(number)
+            yield from self._number_root(prime, power)
+        for known in self._long:
+            power = 0
+            while number % known == 0:
+                number, power = number // known, power + 1
+            yield from self._number_root(known, power)
+        if number.is_square():
+            yield self._constant(int(number.isqrt())), 1
+        else:
+            yield from self._long_root(number)
 
-    def _large_root(self, number: fmpz) -> Iterator[tuple[Fraction, int]]:
-        """The root of a number; it is a multiple of another if their product is a square."""
-        known = next((n for n in self._large if (n * number).is_square()), number)
-        self._large.append(known)
-        yield self._constant(fmpq((known * number).isqrt(), known)), 1
-        yield self._root(self._ctx.constant(known)), 1
+    def _number_root(self, number: fmpz, power: int) -> Iterator[tuple[Fraction, int]]:
+        yield self._constant(int(number) ** (power // 2)), 1
+        if power % 2:
+            yield self._root(self._ctx.constant(number)), 1
+
+    def _long_root(self, number: fmpz) -> Iterator[tuple[Fraction, int]]:
+        """The root of a number without known factors: no root is a multiple of another one."""
+        known = next((n for n in self._long if (n * number).is_square()), None)
+        if known is not None:
+            yield self._constant(fmpq((known * number).isqrt(), known)), 1
+            yield self._root(self._ctx.constant(known)), 1
+            return
+        for factor, power in long_factors(number):
+            self._long.append(factor)
+            yield from self._number_root(factor, power)
 
     def _root(self, radicand: fmpq_mpoly) -> Fraction:
         meaning = sp.sqrt(self.expression(radicand))

@@ -1,14 +1,14 @@
 """Reads a serial arm from a URDF file: the axes of its joints at home, and the pose of a link.
 
 A URDF file is data: entities and other declarations are refused, and every number is read exactly.
-Angles that were rounded, such as 1.5708, become the fraction of pi that they stand for, and numbers
-below the noise of an exporter become zero; the script says so.
+Angles that were rounded, such as 1.5708, become the fraction of pi that they stand for, and lengths
+and axes lose what the arithmetic of an exporter added to them; the script says so.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
@@ -31,7 +31,11 @@ from closedform.scaffold.tables import (
 LARGEST = 2_000_000
 """Maximum size of a file in bytes; meshes are files of their own."""
 NOISE = sp.Rational(1, 10**9)
-"""Lengths and coordinates of axes below this are the rounding of an exporter, not meant."""
+"""Angles and coordinates of axes below this are the rounding of an exporter, not meant."""
+MEANT = ((0, sp.Rational(1, 10**5)), (4, sp.Rational(1, 10**6)), (9, sp.Rational(1, 10**9)))
+"""A length this close to one with so few decimals stands for it; at last, to the nanometre."""
+ALONG = 2e-5
+"""A direction this close to an axis of coordinates, in radians, stands for it."""
 NEAR = sp.Rational(1, 2000)
 """An angle this close to a multiple of pi/12 stands for it."""
 MOVING = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic"}
@@ -127,16 +131,15 @@ def _joint(element: ElementTree.Element, file: str, notes: list[str]) -> Joint:
             raise TableError(f"{where}: it has no {end} link")
         links.append(found.get("link", ""))
     origin, axis = element.find("origin"), element.find("axis")
-    xyz = _numbers(origin, "xyz", (0, 0, 0), where, notes)
+    xyz = _numbers(origin, "xyz", (0, 0, 0), where, notes, _length)
     rpy = _numbers(origin, "rpy", (0, 0, 0), where, notes)
     turned = [_angle(e, where, notes) for e in rpy]
     turn = rotation("z", turned[2]) * rotation("y", turned[1]) * rotation("x", turned[0])
     direction = sp.Matrix(_numbers(axis, "xyz", (1, 0, 0), where, notes))
     if kind in MOVING and direction.is_zero_matrix:
         raise TableError(f"{where}: its axis is zero")
-    length = sp.sqrt(direction.dot(direction)) if kind in MOVING else sp.S.One
-    if length.is_Rational and length != 1:
-        direction = direction / length
+    if kind in MOVING:
+        direction = _direction(direction, where, notes)
     mimic, limit = element.find("mimic"), element.find("limit")
     limits = ""
     if limit is not None and kind != "continuous":
@@ -159,8 +162,9 @@ def _numbers(
     default: Sequence[int],
     where: str,
     notes: list[str],
+    meant: Callable[[sp.Rational], sp.Rational] = lambda v: v if abs(v) >= NOISE else sp.S.Zero,
 ) -> list[sp.Rational]:
-    """Three exact numbers; what is below the noise of an exporter is zero."""
+    """Three exact numbers; ``meant`` takes the noise of an exporter from each."""
     text = None if element is None else element.get(key)
     if text is None:
         return [sp.Integer(e) for e in default]
@@ -174,11 +178,35 @@ def _numbers(
         except FormulaError as error:
             raise TableError(f"{where}: {key}: {error}") from error
         value = sp.Rational(fraction.numerator, fraction.denominator)
-        if value != 0 and abs(value) < NOISE:
-            notes.append(f"{where}: {key} {word} is taken for 0")
-            value = sp.S.Zero
-        found.append(value)
+        found.append(meant(value))
+        if found[-1] != value:
+            notes.append(f"{where}: {key} {word} is taken for {float(found[-1]):.12g}")
     return found
+
+
+def _length(value: sp.Rational) -> sp.Rational:
+    """A length without what the arithmetic of an exporter added to it."""
+    for decimals, near in MEANT:
+        short = sp.Rational(round(value * 10**decimals), 10**decimals)
+        if abs(value - short) < near and (decimals or short == 0):
+            return short
+    return value
+
+
+def _direction(given: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:
+    """An axis: along the coordinates if it nearly is, a unit vector if its length is rational."""
+    size = max(map(abs, given))
+    others = sp.sqrt(given.dot(given) - size**2)
+    if 0 < others < ALONG * size:
+        found = given.applyfunc(lambda e: sp.sign(e) if abs(e) == size else sp.S.Zero)
+        notes.append(f"{where}: the axis {_listed(given)} is taken for {_listed(found)}")
+        return found
+    length = sp.sqrt(given.dot(given))
+    return given / length if length.is_Rational and length != 1 else given
+
+
+def _listed(vector: sp.Matrix) -> str:
+    return "(" + ", ".join(f"{float(e):.12g}" for e in vector) + ")"
 
 
 def _angle(value: sp.Rational, where: str, notes: list[str]) -> sp.Expr:

@@ -155,10 +155,11 @@ def test_what_was_not_taken_literally_is_said(ur5: Path) -> None:
         "1e-17 is taken for 0",
         "joint 'wrist-1': it is called wrist_1",
         "from base to tool0",
-        "limits: pan -6.28 to 6.28",
     ):
         assert part in notes
         assert part in " ".join(script.text.split()).replace("# ", "")
+    assert 'pan = d.joint("pan", limits=(Rational("-6.28"), Rational("6.28")))' in script.text
+    assert 'lift = d.joint("lift")' in script.text
     assert "an inverse with 8 branches is proposed" in script.inverse
     assert max(len(line) for line in script.text.splitlines() if line.startswith("#")) <= 100
 

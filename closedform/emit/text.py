@@ -45,6 +45,8 @@ class Interface:
     singularities: str
     functions: tuple[str, ...]
     skeleton: Skeleton | None
+    limits: str
+    """Python for a pair, or empty if no joint has limits."""
 
 
 def interface(derivation: Derivation) -> Interface:
@@ -70,6 +72,7 @@ def interface(derivation: Derivation) -> Interface:
         repr(tuple(derivation.singularities)),
         tuple(f.name for f in derivation.functions),
         derivation.skeleton,
+        repr(derivation.limits).replace("inf", "float('inf')") if derivation.limits else "",
     )
 
 

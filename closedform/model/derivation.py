@@ -7,6 +7,7 @@ the paper.  All later stages (proof, lowering, emission, LaTeX, reference) read 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -71,6 +72,8 @@ class Joint:
     coupling: sp.Expr | None = None
     beside: sp.Symbol | None = None
     """A joint that this one stays close to, as in a twin arm; samples respect this."""
+    limits: tuple[float, float] | None = None
+    """The least and the largest value; nothing in a derivation depends on them."""
 
     @property
     def name(self) -> str:
@@ -204,18 +207,31 @@ class Derivation(Shown):
         passive: bool = False,
         coupling: sp.Expr | None = None,
         beside: sp.Symbol | None = None,
+        limits: tuple[Any, Any] | None = None,
     ) -> sp.Symbol:
         """Declare a joint variable.
 
         ``coupling`` gives the joint as a function of earlier ones, as in
         ``joint("theta4", coupling=-(theta2 + theta3))``; :meth:`couple` substitutes it.
+        ``limits`` are its least and its largest value, which the modules export as ``LIMITS``; the
+        inverse answers beyond them too.
         """
         self._check_new(name)
         if kind not in ("revolute", "prismatic"):
             raise ValueError(f"{self.name}: {name} must be revolute or prismatic, not {kind!r}")
         symbol = real(name)
-        self.joints.append(Joint(symbol, kind, passive, coupling, beside))
+        between = None if limits is None else self._limits(name, limits)
+        self.joints.append(Joint(symbol, kind, passive, coupling, beside, between))
         return symbol
+
+    def _limits(self, name: str, given: tuple[Any, Any]) -> tuple[float, float]:
+        try:
+            least, most = (float(sp.sympify(e, strict=True)) for e in given)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"{self.name}: {name} needs two numbers as limits") from error
+        if not least <= most:
+            raise ValueError(f"{self.name}: the limits of {name} are in the wrong order")
+        return least, most
 
     def write(self, symbol: sp.Symbol | str, latex: str = "", meaning: str = "") -> None:
         """Say how formulas write a symbol, as in ``write("rS", r"\\varrho_S")``, and what it is."""
@@ -229,6 +245,16 @@ class Derivation(Shown):
         """``expr`` with every coupled joint replaced by its coupling."""
         couplings = {j.symbol: j.coupling for j in self.joints if j.coupling is not None}
         return expr.xreplace(couplings)
+
+    @property
+    def limits(self) -> tuple[tuple[float, ...], tuple[float, ...]] | None:
+        """The least and the largest values of the actuated joints; None if no joint has limits."""
+        given = {j.symbol: j.limits for j in self.joints}
+        if not any(given[s] for s in self.actuated):
+            return None
+        pairs = [given[s] or (-math.inf, math.inf) for s in self.actuated]
+        least, most = zip(*pairs, strict=True)
+        return tuple(least), tuple(most)
 
     @property
     def actuated(self) -> tuple[sp.Symbol, ...]:

@@ -50,8 +50,8 @@ C_SUFFIXES = ("_i", "_stride", "_real", "_lanes")
 """Suffixes that the C functions append to the names of arrays."""
 PYTHON_LOCALS = frozenset({
     "np", "params", "out", "Any", "ArrayLike", "NamedTuple", "Parameters", "Positions",
-    "Solutions", "Status", "ASSEMBLY_MODES", "BRANCHES", "JOINTS", "SINGULARITIES", "SKELETON",
-    "Skeleton", "SkeletonJoint", "TASK",
+    "Solutions", "Status", "ASSEMBLY_MODES", "BRANCHES", "JOINTS", "LIMITS", "SINGULARITIES",
+    "SKELETON", "Skeleton", "SkeletonJoint", "TASK",
 })  # fmt: skip
 """Names that the NumPy modules define or import themselves."""
 JAVASCRIPT_WORDS = frozenset({

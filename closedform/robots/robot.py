@@ -25,7 +25,8 @@ class Robot(Mechanism):
     ----------
     module : a generated module, such as ``closedform.ur_arm`` or its compiled form
     parameters : the dimensions, as ``module.Parameters`` or a dictionary; default: the module's
-    limits : (lower, upper), each of all joints; default: none
+    limits : (lower, upper), each of all joints, or None; default: ``LIMITS`` of the module, if it
+        has any and the joints are those of the model
     base : the pose of the mechanism in the world, 4x4 (or 3x3, or a position)
     tool : the pose of the tool in the frame of the hand
     signs, offsets : joints of the model are ``signs * q + offsets``, with the maker's ``q``
@@ -41,7 +42,7 @@ class Robot(Mechanism):
         module: ModuleType,
         parameters: Any = None,
         *,
-        limits: Any = None,
+        limits: Any = _STORED,
         base: ArrayLike | None = None,
         tool: ArrayLike | None = None,
         signs: ArrayLike | None = None,
@@ -58,6 +59,8 @@ class Robot(Mechanism):
             offsets=offsets,
             coupling=coupling,
         )
+        if limits is _STORED:
+            limits = getattr(module, "LIMITS", None) if self._zero is None else None
         self.limits = Limits.of(self, limits)
         self.label = label or self.name
         self._options = {"signs": signs, "offsets": offsets, "coupling": coupling, "label": label}

@@ -192,6 +192,9 @@ def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
         )
     for joint, kind in table.joints.items():
         argument = ', "prismatic"' if kind == "prismatic" else ""
+        if joint in table.limits:
+            least, most = (f'Rational("{value}")' for value in table.limits[joint])
+            argument += f", limits=({least}, {most})"
         lines.append(f'{joint} = d.joint("{joint}"{argument})')
     lines += ["", *_table_lines(table), "forward = arm.export(d)", *_motor_lines(table, origin), ""]
     text = "\n".join([*lines, *inverse.lines]) + "\n"

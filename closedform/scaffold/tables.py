@@ -72,6 +72,8 @@ class Table:
     axes: list[tuple[Any, Any, Any]] = field(default_factory=list)
     home: Any = None
     modified: bool = False
+    limits: dict[str, tuple[str, str]] = field(default_factory=dict)
+    """The least and the largest value of a joint, as decimals."""
     couplings: dict[str, Any] = field(default_factory=dict)
     """Joints that several motors drive: each as a sum of motors with integer coefficients."""
     notes: list[str] = field(default_factory=list)

@@ -52,7 +52,7 @@ class Joint:
     origin: sp.Matrix
     axis: sp.Matrix
     mimics: str
-    limits: str
+    limits: tuple[str, str] | None
 
 
 def read_urdf(path: Path, *, base: str = "", tool: str = "") -> Table:
@@ -67,7 +67,6 @@ def read_urdf(path: Path, *, base: str = "", tool: str = "") -> Table:
     chain = _chain(joints, base, tool, path.name)
     table = Table()
     place = sp.eye(4)
-    limits = []
     for joint in chain:
         where = f"{path.name}, joint {shown_name(joint.name)}"
         place = _product(place, joint.origin)
@@ -85,7 +84,7 @@ def read_urdf(path: Path, *, base: str = "", tool: str = "") -> Table:
         if name != joint.name:
             notes.append(f"{where}: it is called {name}")
         if joint.limits:
-            limits.append(f"{name} {joint.limits}")
+            table.limits[name] = joint.limits
     if not table.axes:
         raise TableError(
             f"{path.name}: no joint between {chain[0].parent} and {chain[-1].child} moves"
@@ -96,8 +95,6 @@ def read_urdf(path: Path, *, base: str = "", tool: str = "") -> Table:
         f"{path.name}: the chain leads from {shown_name(chain[0].parent)} to "
         f"{shown_name(chain[-1].child)}"
     )
-    if limits:
-        table.notes.append(f"{path.name}: limits: {'; '.join(limits)}")
     use_exact(table, path.name)
     return table
 
@@ -140,10 +137,7 @@ def _joint(element: ElementTree.Element, file: str, notes: list[str]) -> Joint:
         raise TableError(f"{where}: its axis is zero")
     if kind in MOVING:
         direction = _direction(direction, where, notes)
-    mimic, limit = element.find("mimic"), element.find("limit")
-    limits = ""
-    if limit is not None and kind != "continuous":
-        limits = f"{limit.get('lower', '0')} to {limit.get('upper', '0')}"
+    mimic = element.find("mimic")
     return Joint(
         name,
         kind,
@@ -152,8 +146,25 @@ def _joint(element: ElementTree.Element, file: str, notes: list[str]) -> Joint:
         homogeneous(turn, tuple(xyz)),
         direction,
         "" if mimic is None else mimic.get("joint", "another joint"),
-        " ".join(limits.split()),
+        None if kind == "continuous" else _limits(element.find("limit"), where, notes),
     )
+
+
+def _limits(
+    limit: ElementTree.Element | None, where: str, notes: list[str]
+) -> tuple[str, str] | None:
+    """The least and the largest value, as they are written; None if the file has none."""
+    if limit is None or not ("lower" in limit.attrib or "upper" in limit.attrib):
+        return None
+    least, most = (limit.get(side, "0").strip() for side in ("lower", "upper"))
+    try:
+        if number(least) <= number(most):
+            return least, most
+        fault = f"{least} is larger than {most}"
+    except FormulaError as error:
+        fault = str(error)
+    notes.append(f"{where}: its limits are left out: {fault}")
+    return None
 
 
 def _numbers(

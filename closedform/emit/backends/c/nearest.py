@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -29,6 +30,8 @@ class CNearest:
     angles: str
     fk_status: int
     joint_names: str
+    limits: str
+    """The numbers of an array; empty if no joint has limits."""
 
 
 def nearest(derivation: Derivation, functions: Sequence[CFunction]) -> CNearest | None:
@@ -61,4 +64,11 @@ def nearest(derivation: Derivation, functions: Sequence[CFunction]) -> CNearest 
         angles=f"0x{named if task not in (9, 16) else 0:x}u",
         fk_status=modes if len(fk.outputs) > 1 else 0,
         joint_names=", ".join(j.name for j in joints),
+        limits=", ".join(_number(v) for side in derivation.limits or () for v in side),
     )
+
+
+def _number(value: float) -> str:
+    if math.isinf(value):
+        return "INFINITY" if value > 0 else "-INFINITY"
+    return f"CLOSEDFORM_C({value!r})"

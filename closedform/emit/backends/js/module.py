@@ -57,11 +57,13 @@ def module(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, 
         "BRANCHES": derivation.branches,
         "SINGULARITIES": derivation.singularities,
     }
+    limits = derivation.limits or ()
     return {
         "banner": banner(derivation, lowered, "//"),
         "interface": described,
         "mechanism": described.mechanism.split("\n"),
         "labels": [(name, _strings(values)) for name, values in labels.items()],
+        "limits": [[repr(v).replace("inf", "Infinity") for v in side] for side in limits],
         "functions": [_function(derivation, f, lowered[f.name]) for f in derivation.functions],
     }
 

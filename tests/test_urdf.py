@@ -1,5 +1,6 @@
 """URDF files: the axes that are read, the choices of a chain, and what is refused."""
 
+from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -8,10 +9,10 @@ import pytest
 import sympy as sp
 
 from closedform.cli.commands import main
-from closedform.mechanics.arm import from_screws
+from closedform.mechanics.arm import Serial, from_screws
 from closedform.model.derivation import Derivation, Paper
 from closedform.scaffold.new import new
-from closedform.scaffold.tables import TableError
+from closedform.scaffold.tables import Table, TableError
 from closedform.scaffold.urdf import read_urdf
 
 UR5 = """
@@ -92,8 +93,8 @@ def forward(text: str, q: np.ndarray) -> np.ndarray:
     return T
 
 
-def arm_of(path: Path) -> object:
-    table = read_urdf(path)
+def arm_of(path: Path, read: Callable[..., Table] = read_urdf, **options: str) -> Serial:
+    table = read(path, **options)
     d = Derivation("arm", "Arm", Paper("p", "P", ("A",)), "An arm.")
     for name, kind in table.joints.items():
         d.joint(name, kind)  # type: ignore[arg-type]
@@ -176,7 +177,7 @@ def test_the_command(ur5: Path, tmp_path: Path, capsys: pytest.CaptureFixture[st
     found = capsys.readouterr()
     assert "8 branches" in found.out and "taken for pi/2" in found.err
     assert main(["new", "b", "--from", "dh", str(ur5), "--tool", "w1"]) == 2
-    assert "--base and --tool name links of a URDF file" in capsys.readouterr().err
+    assert "--base and --tool name links of a URDF or MJCF file" in capsys.readouterr().err
 
 
 def edited(old: str, new: str) -> str:

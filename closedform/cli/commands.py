@@ -30,6 +30,8 @@ PATIENCE = 120.0
 """Seconds to wait for another process that writes to the generated package, which takes one."""
 NAMED = 4
 """At most this many changed files are named."""
+FILES = ("dh TABLE.csv", "screws FILE.toml", "urdf FILE.urdf", "mjcf FILE.xml", "loop FILE.toml")
+"""What `new` reads: kinds and files."""
 PRETTY = "─│⎡⎣√θ₁"
 """Characters that draw a formula in two dimensions; a terminal without them gets ASCII."""
 
@@ -153,10 +155,14 @@ def parser() -> argparse.ArgumentParser:
         nargs=2,
         required=True,
         metavar=("KIND", "FILE"),
-        help="dh TABLE.csv, screws FILE.toml, urdf FILE.urdf or loop FILE.toml",
+        help=f"{', '.join(FILES[:-1])} or {FILES[-1]}",
     )
-    new.add_argument("--base", metavar="LINK", default="", help="of a URDF file; default: the root")
-    new.add_argument("--tool", metavar="LINK", default="", help="of a URDF file; default: the end")
+    new.add_argument(
+        "--base", metavar="LINK", default="", help="of a URDF or MJCF file; default: root"
+    )
+    new.add_argument(
+        "--tool", metavar="LINK", default="", help="of such a file; default: the only end"
+    )
     new.add_argument(
         "--modified", action="store_true", help="the dh table is in Craig's (proximal) convention"
     )
@@ -355,16 +361,15 @@ def verify_command(options: argparse.Namespace) -> None:
 def new_command(options: argparse.Namespace) -> None:
     """Write the skeleton of a derivation, with pose, Jacobians and a proposed inverse."""
     kind, path = options.table[0], Path(options.table[1])
-    if kind not in ("dh", "screws", "urdf", "loop"):
-        kinds = "dh TABLE.csv, screws FILE.toml, urdf FILE.urdf or loop FILE.toml"
-        raise CommandError(f"--from takes {kinds}, not {kind}", 2)
+    if kind not in {given.split()[0] for given in FILES}:
+        raise CommandError(f"--from takes {', '.join(FILES[:-1])} or {FILES[-1]}, not {kind}", 2)
     if not path.is_file():
         problem = f"{path} is not a file" if path.exists() else f"there is no file {path}"
         raise CommandError(problem, 2)
     if options.modified and kind != "dh":
         raise CommandError("--modified needs --from dh; axes have no convention", 2)
-    if (options.base or options.tool) and kind != "urdf":
-        raise CommandError("--base and --tool name links of a URDF file", 2)
+    if (options.base or options.tool) and kind not in ("urdf", "mjcf"):
+        raise CommandError("--base and --tool name links of a URDF or MJCF file", 2)
     _require_extra()
     from closedform.scaffold.new import Search, check_name, new
 

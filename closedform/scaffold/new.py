@@ -22,6 +22,7 @@ from closedform.model.names import check_robot, check_text
 from closedform.model.paper import Paper
 from closedform.scaffold.limit import LimitError, bounded
 from closedform.scaffold.loops import loop_script, read_loop
+from closedform.scaffold.mjcf import read_mjcf
 from closedform.scaffold.propose import NoChainError, propose
 from closedform.scaffold.recognise import recognised
 from closedform.scaffold.source import file_name, literal, source
@@ -103,9 +104,10 @@ def new(
 ) -> Script:
     """A derivation called ``name``, from a table of the given kind.
 
-    ``kind`` is ``"dh"`` (with ``modified``, in Craig's convention), ``"screws"``, ``"urdf"`` (with
-    the links between which the chain is read) or ``"loop"`` (bodies and joints).  Raises
-    ``ValueError`` if the name or the table cannot be used; it says where and how to correct it.
+    ``kind`` is ``"dh"`` (with ``modified``, in Craig's convention), ``"screws"``, ``"urdf"`` or
+    ``"mjcf"`` (with the links between which the chain is read) or ``"loop"`` (bodies and joints).
+    Raises ``ValueError`` if the name or the table cannot be used; it says where and how to correct
+    it.
     """
     search = search or Search()
     search.progress("reading the table")
@@ -115,8 +117,8 @@ def new(
         return Script(loop_script(name, loop, path.name), f"{len(loop.joints)} joints read")
     if kind == "dh":
         table = read_dh(path, modified=modified)
-    elif kind == "urdf":
-        table = read_urdf(path, base=base, tool=tool)
+    elif kind in ("urdf", "mjcf"):
+        table = (read_urdf if kind == "urdf" else read_mjcf)(path, base=base, tool=tool)
     else:
         table = read_screws(path)
     check_names(table, path.name)

@@ -1,0 +1,135 @@
+"""Reads a serial arm from an MJCF file, with MuJoCo: defaults, frames and units are resolved by it.
+
+Only bodies, joints and sites are used, so the meshes of the model need not be there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from closedform.mechanics.frames import homogeneous, rotation
+from closedform.scaffold.tables import Table, TableError, content_of, shown_name
+from closedform.scaffold.tree import (
+    Joint,
+    meant_angle,
+    meant_axis,
+    meant_length,
+    table_of,
+)
+
+LARGEST = 2_000_000
+"""Maximum size of a file in bytes; meshes are files of their own."""
+ROUNDED = 1e-6
+"""Angles from quaternions are never exact: less than this is not worth a note."""
+KINDS = ("floating", "ball", "prismatic", "revolute")
+"""What MuJoCo's numbers of joint types mean."""
+UNUSED = (
+    *("keys", "sensors", "actuators", "tendons", "pairs", "excludes", "equalities", "skins"),
+    *("flexes", "texts", "numerics", "tuples", "plugins", "geoms", "cameras", "lights"),
+    *("meshes", "hfields", "materials", "textures"),
+)
+"""What a model has besides bodies, joints and sites."""
+
+
+def read_mjcf(path: Path, *, base: str = "", tool: str = "") -> Table:
+    """The chain from the body ``base`` to the body or site ``tool``; by default to the end."""
+    if b"<mujoco" not in content_of(path, LARGEST, "an MJCF file"):
+        raise TableError(f"{path.name}: the file is not MJCF, which begins with <mujoco>")
+    model = _model(path)
+    notes: list[str] = []
+    joints = [j for k in range(1, model.nbody) for j in _body(model, k, path.name, notes)]
+    if tool and tool not in {j.child for j in joints}:
+        joints += [j for k in range(model.nsite) if (j := _site(model, k, path.name, notes))]
+    return table_of(joints, path.name, notes, base=base, tool=tool)
+
+
+def _model(path: Path) -> Any:
+    """The compiled model, without anything that has to be loaded or may fail."""
+    try:
+        import mujoco
+    except ModuleNotFoundError as error:
+        raise TableError("MJCF is read with MuJoCo; run: pip install 'closedform[mjcf]'") from error
+    try:
+        spec = mujoco.MjSpec.from_file(str(path))
+        for kind in UNUSED:
+            for element in [*getattr(spec, kind, ())]:
+                spec.delete(element)
+        for body in spec.bodies:
+            body.explicitinertial, body.mass, body.inertia = True, 1.0, [1.0, 1.0, 1.0]
+        return spec.compile()
+    except (ValueError, RuntimeError) as error:
+        reason = " ".join(str(error).split())
+        raise TableError(f"{path.name} is not a model that MuJoCo reads: {reason}") from error
+
+
+def _body(model: Any, k: int, file: str, notes: list[str]) -> Iterator[Joint]:
+    """The joints between a body and its parent, one after the other."""
+    body = model.body(k)
+    where = f"{file}, body {shown_name(body.name or str(k))}"
+    place = _pose(body.pos, body.quat, where, notes)
+    at, end = _name(model.body(int(body.parentid[0]))), _name(body)
+    first, count = int(body.jntadr[0]), int(body.jntnum[0])
+    back = sp.eye(4)
+    for i in range(first, first + count):
+        joint = model.joint(i)
+        of = f"{file}, joint {shown_name(joint.name or str(i))}"
+        kind = KINDS[int(joint.type[0])]
+        through = [meant_length(e) for e in _exact(joint.pos)]
+        axis = sp.Matrix([0, 0, 1])
+        if kind in ("prismatic", "revolute"):
+            axis = meant_axis(sp.Matrix(_exact(joint.axis)), of, notes)
+        if model.qpos0[joint.qposadr[0]] and kind != "floating":
+            notes.append(f"{of}: it is 0 in the pose of the file, not at the value of ref")
+        least, most = (repr(float(v)) for v in joint.range)
+        limits = (least, most) if model.jnt_limited[i] else None
+        place = (place * back * homogeneous(sp.eye(3), tuple(through))).applyfunc(sp.expand)
+        link = f"{end} after {joint.name or i}"
+        yield Joint(joint.name or f"q{i + 1}", kind, at, link, place, axis, "", limits)
+        at, place = link, sp.eye(4)
+        back = homogeneous(sp.eye(3), tuple(-e for e in through))
+    yield Joint(f"{end} on {at}", "fixed", at, end, place * back, sp.Matrix([0, 0, 1]), "", None)
+
+
+def _site(model: Any, k: int, file: str, notes: list[str]) -> Joint | None:
+    site = model.site(k)
+    where = f"{file}, site {shown_name(site.name)}"
+    place = _pose(site.pos, site.quat, where, notes)
+    body = _name(model.body(int(site.bodyid[0])))
+    fixed = Joint(site.name, "fixed", body, site.name, place, sp.Matrix([0, 0, 1]), "", None)
+    return fixed if site.name else None
+
+
+def _name(body: Any) -> str:
+    return str(body.name) or f"body {body.id}"
+
+
+def _exact(values: NDArray[Any]) -> list[sp.Rational]:
+    """The decimals that were written, from the doubles next to them."""
+    return [sp.Rational(f"{float(v):.15g}") for v in values]
+
+
+def _pose(pos: NDArray[Any], quat: NDArray[Any], where: str, notes: list[str]) -> sp.Matrix:
+    w, x, y, z = quat
+    sine = 2 * (w * y - z * x)
+    if abs(sine) > 1 - 1e-9:  # the first turn and the last have the same axis
+        angles = (0.0, np.copysign(np.pi / 2, sine), 2 * np.arctan2(z, w))
+    else:
+        angles = (
+            np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)),
+            np.arcsin(sine),
+            np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)),
+        )
+    turns = []
+    for angle in _exact(np.array(angles)):
+        said: list[str] = []
+        turns.append(meant_angle(angle, where, said))
+        if abs(float(turns[-1] - angle)) > ROUNDED:
+            notes += said
+    exact = rotation("z", turns[2]) * rotation("y", turns[1]) * rotation("x", turns[0])
+    return homogeneous(exact, tuple(meant_length(e) for e in _exact(pos)))

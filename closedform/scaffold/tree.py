@@ -1,0 +1,196 @@
+"""A tree of links, as files that describe robots have it: the chain from a base to a tool.
+
+Such files hold rounded numbers.  Angles that were rounded, such as 1.5708, become the fraction of
+pi that they stand for, and lengths and axes lose what the arithmetic of an exporter added to them;
+the notes say so.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from closedform.model.functions import real
+from closedform.scaffold.tables import (
+    JOINTS,
+    Table,
+    TableError,
+    add_joint,
+    shown_name,
+    use_exact,
+)
+
+NOISE = sp.Rational(1, 10**9)
+"""Angles and coordinates of axes below this are the rounding of an exporter, not meant."""
+MEANT = ((0, sp.Rational(1, 10**5)), (4, sp.Rational(1, 10**6)), (9, sp.Rational(1, 10**9)))
+"""A length this close to one with so few decimals stands for it; at last, to the nanometre."""
+ALONG = 2e-5
+"""A direction this close to an axis of coordinates, in radians, stands for it."""
+NEAR = sp.Rational(1, 2000)
+"""An angle this close to a multiple of pi/12 stands for it."""
+MOVING = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic"}
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint of the file, with its place on the parent link and its axis, as they are written."""
+
+    name: str
+    kind: str
+    parent: str
+    child: str
+    origin: sp.Matrix
+    axis: sp.Matrix
+    mimics: str
+    limits: tuple[str, str] | None
+
+
+def table_of(
+    joints: Sequence[Joint], file: str, notes: Sequence[str], *, base: str = "", tool: str = ""
+) -> Table:
+    """The chain from the link ``base`` to the link ``tool``, as axes at home.
+
+    By default this is the chain from the root to the only end that has joints before it.
+    """
+    if not joints:
+        raise TableError(f"{file}: there are no joints")
+    chain = _chain(joints, base, tool, file)
+    table = Table(notes=[*notes])
+    place = sp.eye(4)
+    for joint in chain:
+        where = f"{file}, joint {shown_name(joint.name)}"
+        place = _product(place, joint.origin)
+        if joint.kind == "fixed":
+            continue
+        if joint.mimics:
+            raise TableError(
+                f"{where}: it mimics {shown_name(joint.mimics)}; write the arm as a table of "
+                f"joints and couple the two with d.joint(..., coupling=...)"
+            )
+        name = _symbol(joint.name)
+        add_joint(table, name, MOVING[joint.kind], where)
+        direction = (place[:3, :3] * joint.axis).applyfunc(sp.expand)
+        table.axes.append((real(name), list(direction), list(place[:3, 3])))
+        if name != joint.name:
+            table.notes.append(f"{where}: it is called {name}")
+        if joint.limits:
+            table.limits[name] = joint.limits
+    if not table.axes:
+        raise TableError(f"{file}: no joint between {chain[0].parent} and {chain[-1].child} moves")
+    table.home = place
+    table.notes.append(
+        f"{file}: the chain leads from {shown_name(chain[0].parent)} to "
+        f"{shown_name(chain[-1].child)}"
+    )
+    use_exact(table, file)
+    return table
+
+
+def meant_length(value: sp.Rational) -> sp.Rational:
+    """A length without what the arithmetic of an exporter added to it."""
+    for decimals, near in MEANT:
+        short = sp.Rational(round(value * 10**decimals), 10**decimals)
+        if abs(value - short) < near and (decimals or short == 0):
+            return short
+    return value
+
+
+def meant_axis(given: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:
+    """An axis: along the coordinates if it nearly is, a unit vector if its length is rational."""
+    size = max(map(abs, given))
+    others = sp.sqrt(given.dot(given) - size**2)
+    if 0 < others < ALONG * size:
+        found = given.applyfunc(lambda e: sp.sign(e) if abs(e) == size else sp.S.Zero)
+        notes.append(f"{where}: the axis {_listed(given)} is taken for {_listed(found)}")
+        return found
+    length = sp.sqrt(given.dot(given))
+    return given / length if length.is_Rational and length != 1 else given
+
+
+def _listed(vector: sp.Matrix) -> str:
+    return "(" + ", ".join(f"{float(e):.12g}" for e in vector) + ")"
+
+
+def meant_angle(value: sp.Rational, where: str, notes: list[str]) -> sp.Expr:
+    """The multiple of pi/12 that was rounded to a number, or the number."""
+    steps = sp.Integer(round(float(value) * 12 / 3.141592653589793))
+    exact = steps * sp.pi / 12
+    if value == 0 or abs(sp.N(exact - value, 30)) > NEAR:
+        return value
+    notes.append(f"{where}: the angle {sp.N(value, 8)} is taken for {exact}")
+    return exact
+
+
+def _chain(joints: Sequence[Joint], base: str, tool: str, file: str) -> list[Joint]:
+    """The joints from the base to the tool."""
+    above: dict[str, Joint] = {}
+    for joint in joints:
+        if joint.child in above:
+            raise TableError(
+                f"{file}: the link {shown_name(joint.child)} has two parents; closed loops are "
+                f"written with --from loop"
+            )
+        above[joint.child] = joint
+    links = {j.parent for j in joints} | set(above)
+    for given, what in ((base, "base"), (tool, "tool")):
+        if given and given not in links:
+            raise TableError(
+                f"{file}: there is no link {shown_name(given)} for the {what}; the links are "
+                f"{', '.join(sorted(map(shown_name, links)))}"
+            )
+    if not tool:
+        tool = _only_end(above, {j.parent for j in joints}, file)
+    found: list[Joint] = []
+    link = tool
+    while link != base and link in above:
+        joint = above[link]
+        if joint.kind in ("ball", "floating", "planar"):
+            raise TableError(
+                f"{file}, joint {shown_name(joint.name)}: a {joint.kind} joint has no closed "
+                f"form here; choose a base after it with --base"
+            )
+        if len(found) > 20 * JOINTS:
+            raise TableError(f"{file}: the links form a circle")
+        found.insert(0, joint)
+        link = joint.parent
+    if base and link != base:
+        raise TableError(
+            f"{file}: {shown_name(tool)} is not carried by {shown_name(base)}; its root is "
+            f"{shown_name(link)}"
+        )
+    return found
+
+
+def _only_end(above: Mapping[str, Joint], parents: set[str], file: str) -> str:
+    """The end of the only chain that moves, with the fixed links at its end."""
+    ends: dict[tuple[str, ...], list[str]] = {}
+    for link in sorted(set(above) - parents):
+        moving: list[str] = []
+        at = link
+        while at in above and len(moving) <= JOINTS:
+            if above[at].kind in MOVING:
+                moving.insert(0, above[at].name)
+            at = above[at].parent
+        ends.setdefault(tuple(moving), []).append(link)
+    longest = [m for m in ends if m and not any(m != o and m == o[: len(m)] for o in ends)]
+    if not longest:
+        raise TableError(f"{file}: no joint moves")
+    if len(longest) > 1 or len(ends[longest[0]]) > 1:
+        choices = sorted(shown_name(link) for m in longest for link in ends[m])
+        raise TableError(
+            f"{file}: there are several ends; choose one with --tool: {', '.join(choices)}"
+        )
+    return ends[longest[0]][0]
+
+
+def _product(a: sp.Matrix, b: sp.Matrix) -> sp.Matrix:
+    return (a * b).applyfunc(sp.expand)
+
+
+def _symbol(name: str) -> str:
+    """The name of a joint as an identifier."""
+    plain = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_")
+    return plain if plain[:1].isalpha() else f"q_{plain}"

@@ -51,7 +51,7 @@ export LOCK INSTALL
 LOCKED = mkdir -p build && $(PYTHON) -c "$$LOCK" build/make.lock
 
 .PHONY: all native test check verify lint types regenerated warnings analysed \
-	portability $(COMPILERS) format figures mutations pdf book site bench fuzz accuracy clean distclean help
+	portability $(COMPILERS) format figures mutations pdf book notebooks site bench fuzz accuracy clean distclean help
 .DELETE_ON_ERROR:
 
 all: native  ## derive, prove, generate and build; prints a line for each robot (the default)
@@ -163,6 +163,9 @@ book: figures build/derived.txt  ## compile the book of all mechanisms, build/bo
 	@for pass in 1 2; do $(call PDFLATEX,generated/latex/closedform.tex,closedform); done
 	@mkdir -p build/book && mv build/pdf/unfinished/closedform.pdf build/book/closedform.pdf
 	@echo build/book/closedform.pdf
+
+notebooks: native  ## write the guides in Python as notebooks, with their output, to build/notebooks
+	@$(BIN)/python -m closedform.site.notebooks $(ARGS)
 
 site: native  ## build the site, build/site/index.html: derivations, explorers, guides; needs Node
 	@$(BIN)/closedform site -o build/site $(ARGS)

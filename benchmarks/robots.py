@@ -1,129 +1,186 @@
 """``python -m benchmarks.robots`` writes ``docs/robots.md``: the inverses of real robots.
 
-Each robot is a table of joints in ``benchmarks/arms``, with its source.  The inverse is proposed
-and proved as ``closedform new`` and ``closedform derive`` do it; the time is that of one core.
+Each robot is a file of joints in ``benchmarks/arms``, with its source.  Its inverse is proposed and
+proved as ``closedform new`` and ``closedform derive`` do; the seconds are those of one core.  The
+nanoseconds are those of one call of the printed C, with all branches, at random postures.
 """
 
 from __future__ import annotations
 
 import argparse
+import subprocess
+import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
 import sympy as sp
 
-import closedform
-from closedform.lazy import homes
-from closedform.lemmas.chain import Chain
-from closedform.mechanics.arm import Serial, from_dh
-from closedform.model.derivation import Derivation, Paper
+from closedform.emit.pages import pages, shared_files
+from closedform.model.derivation import Derivation
+from closedform.pipeline import run as pipeline
 from closedform.proof.prove import prove
-from closedform.scaffold.proposal import Proposal
-from closedform.scaffold.propose import NoChainError, propose
-from closedform.scaffold.tables import Table, read_dh
+from closedform.scaffold.new import Script, new
+
+from .native import FLAGS
 
 FOLDER = Path(__file__).parent / "arms"
 PAGE = Path(__file__).parents[1] / "docs" / "robots.md"
 HEAD = """\
 # Real robots
 
-The inverses that `closedform new` proposes for the tables in `benchmarks/arms`, and that the prover
-accepts.
+The inverses that `closedform new` proposes for the files in `benchmarks/arms`, tables of joints and
+URDF, and that the prover accepts.
 
 The lengths are nominal; compare them with the linked source before you rely on one. They are
 numbers here, so what is proved is proved for these numbers; the derivations `puma560`, `ur_arm`,
 `stanford_arm` and `scara` have the lengths as parameters, and their proofs hold for any lengths. A
 robot that was calibrated has other lengths, and its axes are not exactly parallel. A joint that is
-given is an input of the inverse. The seconds are those of one core for reading the table, proposing
-the chain and proving the inverse, without printing. This page is written by `python -m
-benchmarks.robots`.
+given is an input of the inverse.
 
-| robot | structure | branches | lemmas | seconds |
-|---|---|---:|---|---:|
+The seconds are those of one core for reading the file, proposing the chain and proving the inverse,
+without printing. The nanoseconds are those of one call of the printed C with all branches, on one
+core of {machine}. This page is written by `python -m benchmarks.robots`.
+
+| robot | structure | branches | lemmas | s | ns |
+|---|---|---:|---|---:|---:|
+"""
+DRIVER = """
+#include "{name}.c"
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+enum {{ N = 512, ROUNDS = 31 }};
+static real_t q[N][{joints}], found[{answers}], targets[N][{entries}];
+static uint8_t status[{branches}];
+static int by_size(const void *a, const void *b)
+{{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}}
+int main(void)
+{{
+    const {name}_params params = {upper}_DEFAULTS;
+    double times[ROUNDS], sum = 0.0;
+    srand(1);
+    for (int i = 0; i < N; ++i) {{
+        for (int j = 0; j < {joints}; ++j)
+            q[i][j] = (real_t)(6.0 * rand() / RAND_MAX - 3.0);
+        {name}_fk(&params, q[i], targets[i]);
+    }}
+    for (int k = 0; k < ROUNDS; ++k) {{
+        struct timespec a, b;
+        clock_gettime(CLOCK_MONOTONIC, &a);
+        for (int i = 0; i < N; ++i) {{
+            {name}_ik(&params, {arguments}, found, status);
+            sum += (double)found[0];
+        }}
+        clock_gettime(CLOCK_MONOTONIC, &b);
+        times[k] = 1e9 * (double)(b.tv_sec - a.tv_sec) + (double)(b.tv_nsec - a.tv_nsec);
+    }}
+    qsort(times, ROUNDS, sizeof *times, by_size);
+    printf("%.0f", times[ROUNDS / 2] / N);
+    return sum == 0.5;
+}}
 """
 
 
 @dataclass(frozen=True)
 class Robot:
-    """A table with its name and its source."""
+    """A file of joints, and what its head says."""
 
+    path: Path
     title: str
     source: str
-    table: Table
+    modified: bool
 
     @classmethod
     def read(cls, path: Path) -> Robot:
-        text = path.read_text("utf-8")
         said = {}
-        for line in text.splitlines():
-            key, colon, value = line.removeprefix("# ").partition(": ")
-            if line.startswith("# ") and colon:
+        for line in path.read_text("utf-8").splitlines():
+            head = line.removeprefix("<!-- ").removesuffix(" -->").removeprefix("# ")
+            key, colon, value = head.partition(": ")
+            if head != line and colon:
                 said[key] = value
-        modified = said.get("convention") == "modified"
-        return cls(said["robot"], said["source"], read_dh(path, modified=modified))
+        return cls(path, said["robot"], said["source"], said.get("convention") == "modified")
 
-    def arm(self) -> tuple[Derivation, Serial]:
-        d = Derivation("robot", self.title, Paper("own", "own", ("the maker",)), "A robot.")
-        for name in self.table.parameters:
-            d.parameter(name, value=1, unit="m", meaning=name)
-        joints = {n: d.joint(n, k) for n, k in self.table.joints.items()}  # type: ignore[arg-type]
-        known = {**joints, **{p.symbol.name: p.symbol for p in d.parameters}}
-        rows = [
-            tuple(e.xreplace({s: known[s.name] for s in e.free_symbols}) for e in row)
-            for row in self.table.rows
-        ]
-        return d, from_dh(d, rows, modified=self.table.modified)
-
-
-def proved(d: Derivation, arm: Serial, found: Proposal) -> int:
-    """The number of proved branches."""
-    task = arm.coordinates()
-    if task is not None:
-        d.task = list(task.names)
-    angles = ["yaw"] if task is not None and "yaw" in task.names else []
-    ik = Chain(d, arm.pose if task is None else task.values, angles=angles)
-    names: dict[str, object] = {}
-    exec("from sympy import *", names)
-    names |= {name: getattr(closedform, name) for name in homes(closedform.__path__)}
-    names |= {s.name: s for s in (*ik.joints, *(p.symbol for p in d.parameters))}
-    exec(found.source, names | {"ik": ik})
-    ik.finish("All.")
-    (inverse,) = prove(d).inverses
-    return inverse.branches
+    def script(self) -> Script:
+        kind = "urdf" if self.path.suffix == ".urdf" else "dh"
+        return new(self.path.stem, kind, self.path, modified=self.modified)
 
 
 def row(robot: Robot) -> str:
     """A line of the table."""
     name = f"[{robot.title}]({robot.source})"
     start = time.process_time()
-    d, arm = robot.arm()
-    try:
-        found = propose(arm)
-    except NoChainError as error:
-        return f"| {name} | no inverse, because {error.found} | | | |"
-    count = proved(d, arm, found)
-    lemmas = ", ".join(f"`{lemma}`" for lemma in found.lemmas)
-    seconds = time.process_time() - start
-    return f"| {name} | {found.structure} | {count} | {lemmas} | {seconds:.1f} |"
+    script = robot.script()
+    if not script.structure:
+        return f"| {name} | {script.inverse} | | | | |"
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, f"{robot.path.stem}.py")
+        path.write_text(script.text, "utf-8")
+        (source,) = pipeline.find([str(path)])
+        d = pipeline.load(source)
+        proof = prove(d)
+        seconds = time.process_time() - start
+        done = pages(d, proof, ["c"])
+        pipeline.write(Path(folder), {**done.files, **shared_files([done.share], ["c"])})
+        taken = nanoseconds(d, Path(folder, "c"))
+    (inverse,) = proof.inverses
+    lemmas = ", ".join(f"`{lemma}`" for lemma in script.lemmas)
+    cells = (name, script.structure, inverse.branches, lemmas, f"{seconds:.1f}", taken)
+    return f"| {' | '.join(map(str, cells))} |"
+
+
+def nanoseconds(d: Derivation, folder: Path) -> str:
+    """The time of one call of the inverse."""
+    inverse, joints = d["ik"], [s.name for s in d.actuated]
+    arguments = [
+        f"&q[i][{joints.index(a.name)}]" if a.name in joints else "targets[i]"
+        for a in inverse.inputs
+    ]
+    branches = len(list(inverse.cases()))
+    code = DRIVER.format(
+        name=d.name,
+        upper=d.name.upper(),
+        joints=len(joints),
+        entries=inverse.inputs[0].size,
+        branches=branches,
+        answers=branches * len(joints),
+        arguments=", ".join(arguments),
+    )
+    (folder / "main.c").write_text(code, "utf-8")
+    build = ["cc", *FLAGS, "-march=native", "main.c", "-o", "main", "-lm"]
+    subprocess.run(build, cwd=folder, check=True)
+    done = subprocess.run([folder / "main"], capture_output=True, text=True, check=True)
+    return done.stdout
+
+
+def machine() -> str:
+    """The processor, as the system names it."""
+    lines = Path("/proc/cpuinfo").read_text("utf-8").splitlines()
+    names = (line.partition(": ")[2] for line in lines if line.startswith("model name"))
+    return next(names, "this machine")
 
 
 def page(paths: list[Path]) -> str:
     rows = []
-    for path in paths:
+    for robot in sorted(map(Robot.read, paths), key=lambda r: r.title.lower()):
         sp.core.cache.clear_cache()
-        rows.append(row(Robot.read(path)))
-    return HEAD + "\n".join(rows) + "\n"
+        rows.append(row(robot))
+        print(rows[-1], flush=True)
+    return HEAD.format(machine=machine()) + "\n".join(rows) + "\n"
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("names", nargs="*", help="print the rows of these tables only")
+    parser.add_argument("names", nargs="*", help="print the rows of these robots only")
     names = parser.parse_args().names
+    files = sorted([*FOLDER.glob("*.csv"), *FOLDER.glob("*.urdf")])
     if names:
-        print(page([FOLDER / f"{name}.csv" for name in names]))
+        page([path for path in files if path.stem in names])
     else:
-        PAGE.write_text(page(sorted(FOLDER.glob("*.csv"))), "utf-8")
+        PAGE.write_text(page(files), "utf-8")
 
 
 if __name__ == "__main__":

@@ -92,6 +92,11 @@ def test_the_control_loop_of_the_page_is_the_one_that_is_run():
             "python",
             ["[ 0.591 -0.097]", "elbow_up [ 0.3 -1.1] OK", "[1 1]", "[2 2]"],
         ),
+        (
+            "reading-a-derivation",
+            "python",
+            ["4 Jacobian and its determinant", "(1 difference)", "refuted at $l_1 = 1$", "proved"],
+        ),
         ("designing-a-five-bar", "python", ["pivots 0.00: at least 0.955"]),
         ("designing-a-five-bar", "python jax", ["from 0.811 to 0.947"]),
     ],

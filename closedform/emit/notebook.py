@@ -8,12 +8,17 @@ Importing this module registers its printers with :mod:`closedform.model.display
 
 from __future__ import annotations
 
+from typing import Any
+
+import sympy as sp
+
 from closedform.emit.backends.latex.article import Page
 from closedform.emit.backends.latex.prose import escape, mixed
 from closedform.model.claims import Claim, Erratum
-from closedform.model.derivation import Derivation
+from closedform.model.derivation import Derivation, Step
 from closedform.model.display import prints
 from closedform.model.functions import Bound, Let
+from closedform.model.lemma import Lemma, Theorem
 from closedform.proof.prove import Proof
 
 
@@ -48,3 +53,46 @@ def claim(claim: Claim) -> str:
 def erratum(erratum: Erratum) -> str:
     """What is wrong, and why."""
     return rf"$\textbf{{{mixed(erratum.title)}}}\text{{: {mixed(erratum.why)}}}$"
+
+
+@prints(Step, "markdown")
+def step(step: Step) -> str:
+    """A step: its reason, its equations, and what of them is proved."""
+    rows = [(left, _math(value)) for left, value in step.shown]
+    parts = [f"**{step.title}.** {step.reason}", _aligned(rows)]
+    if step.proves:
+        parts.append(f"*Proved:* {step.proves}")
+    return "\n\n".join(filter(None, parts))
+
+
+@prints(Lemma, "markdown")
+def lemma(lemma: Lemma) -> str:
+    """What a lemma was applied to, and the closed forms that it gave."""
+    count = "one solution" if lemma.branches == 1 else f"{lemma.branches} solutions"
+    return "\n\n".join(
+        (
+            f"**Lemma ({lemma.name}).** These equations have {count}:",
+            _aligned([("0", sp.latex(e)) for e in lemma.equations]),
+            _aligned([(sp.latex(x), sp.latex(e)) for x, e in lemma.solution.items()]),
+        )
+    )
+
+
+@prints(Theorem, "markdown")
+def theorem(theorem: Theorem) -> str:
+    """A lemma as the book states and proves it."""
+    parts = [f"**Lemma ({theorem.title or theorem.name}).** {theorem.statement}"]
+    parts += [f"*Exception.* {theorem.exception}"] if theorem.exception else []
+    return "\n\n".join([*parts, f"*Proof.* {theorem.proof}"])
+
+
+def _aligned(rows: list[tuple[str, str]]) -> str:
+    lines = " \\\\\n".join(f"{left} &= {right}" for left, right in rows)
+    return f"$$\\begin{{aligned}}\n{lines}\n\\end{{aligned}}$$" if rows else ""
+
+
+def _math(value: Any) -> str:
+    """An expression, a chain of them, or LaTeX as it is."""
+    if isinstance(value, (tuple, list)):
+        return r",\quad ".join(map(_math, value))
+    return value if isinstance(value, str) else str(sp.latex(value))

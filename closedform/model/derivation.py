@@ -81,7 +81,7 @@ class Joint:
 
 
 @dataclass(frozen=True)
-class Step:
+class Step(Shown):
     """One step: its reason, the derived expressions, and the differences that must vanish.
 
     The left-hand sides in ``shown`` are LaTeX; the other texts are plain.

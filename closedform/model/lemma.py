@@ -8,6 +8,7 @@ from enum import Enum
 
 import sympy as sp
 
+from closedform.model.display import Shown
 from closedform.model.functions import Statement
 from closedform.model.names import check_formulas, check_text
 from closedform.model.pair import Pair
@@ -22,7 +23,7 @@ class Shape(Enum):
 
 
 @dataclass(frozen=True)
-class Lemma:
+class Lemma(Shown):
     """One application of a lemma: ``equations`` vanish at ``solution`` (unknown -> closed form).
 
     ``signs`` are the symbols that stand for 1 or -1: those of the branches, and others that it is
@@ -63,7 +64,7 @@ class Lemma:
 
 
 @dataclass(frozen=True)
-class Theorem:
+class Theorem(Shown):
     """A lemma as a book prints it; texts, with formulas between dollar signs.
 
     ``exception`` says what happens where the assumptions of the statement fail, and ``rests_on``

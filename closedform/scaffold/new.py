@@ -65,6 +65,9 @@ class Script:
     """What was recognised of the axes, and which chains were tried."""
     advice: str = ""
     """What to do if no inverse is proposed."""
+    structure: str = ""
+    lemmas: tuple[str, ...] = ()
+    """The structure that was recognised and the lemmas that solve it, if an inverse is proposed."""
 
 
 @dataclass
@@ -206,6 +209,8 @@ def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
         tuple(table.notes),
         tuple(inverse.explained),
         inverse.advice,
+        inverse.structure,
+        inverse.lemmas,
     )
 
 
@@ -276,6 +281,8 @@ class _Inverse:
     outcome: str
     explained: list[str] = field(default_factory=list)
     advice: str = ""
+    structure: str = ""
+    lemmas: tuple[str, ...] = ()
 
 
 def _inverse_lines(arm: Serial, search: Search) -> _Inverse:
@@ -299,7 +306,7 @@ def _inverse_lines(arm: Serial, search: Search) -> _Inverse:
         'ik.finish("All solutions of the inverse kinematics.")',
     ]
     outcome = f"an inverse with {count} is proposed ({found.structure})"
-    return _Inverse(lines, outcome, explained)
+    return _Inverse(lines, outcome, explained, "", found.structure, found.lemmas)
 
 
 def _without_inverse(

@@ -37,12 +37,26 @@ class Solutions(NamedTuple):
     q: NDArray[np.float64]
     status: NDArray[np.uint8]
 
+    def __repr__(self) -> str:
+        return _listed("Solutions", "q", self.q, self.status)
+
 
 class Positions(NamedTuple):
     """Task values ``p`` of shape (..., assembly modes, coordinates) and their ``status``."""
 
     p: NDArray[np.float64]
     status: NDArray[np.uint8]
+
+    def __repr__(self) -> str:
+        return _listed("Positions", "p", self.p, self.status)
+
+
+def _listed(kind: str, name: str, values: NDArray[np.float64], status: NDArray[np.uint8]) -> str:
+    """A line for each branch of one posture; the arrays of several."""
+    if np.ndim(values) != 2 or np.ndim(status) != 1:
+        return f"{kind}({name}={values!r}, status={status!r})"
+    rows = (f"\n    {v.tolist()} {Status(s).name}" for v, s in zip(values, status, strict=True))
+    return f"{kind}({''.join(rows)}\n)"
 
 
 class SkeletonJoint(NamedTuple):

@@ -1,0 +1,29 @@
+"""The guides as notebooks: every cell runs, and records show themselves."""
+
+from typing import Any
+
+import pytest
+
+from closedform.site.notebooks import GUIDES, notebook
+
+for needed in ("jupytext", "nbclient", "ipykernel"):
+    pytest.importorskip(needed, reason=f"{needed} is not installed")
+
+
+def shown(cell: Any, form: str) -> list[str]:
+    """What the outputs of a cell show in a form, such as ``text/latex``."""
+    return [o.data[form] for o in cell.get("outputs", ()) if form in o.get("data", {})]
+
+
+@pytest.mark.parametrize("guide", GUIDES)
+def test_every_cell_runs(guide: str) -> None:
+    cells = notebook(guide).cells
+    assert [c for c in cells if c.cell_type == "code" and c.outputs]
+    assert cells[0].cell_type == "markdown" and cells[0].source.startswith("# ")
+    if guide == "reading-a-derivation":
+        text = "\n".join(t for c in cells for t in shown(c, "text/markdown"))
+        assert "**Jacobian and its determinant.**" in text
+        assert r"\det J_{xy} &= l_{1} l_{2} \sin{\left(\theta_{2} \right)}" in text
+        assert "**Lemma (two-link triangle).** These equations have 2 solutions:" in text
+        (erratum,) = [t for c in cells for t in shown(c, "text/latex")]
+        assert "has a cosine instead of a sine" in erratum

@@ -122,14 +122,28 @@ class Lowered:
 def lower(function: Function, derivation: Derivation) -> Lowered:
     """Lower one function of a derivation."""
     entries = Turns.of(function, derivation).entries()
-    whole, common = _lower(function, derivation, entries, list(function.cases()))
-    if common.length > (1 - SPARED) * whole.length:
-        return _with_degrees(whole, derivation)
-    common = replace(common, parameters=whole.parameters)
-    branch = _one_branch(function, derivation, entries) if function.branches else None
-    short = branch is not None and branch.length < ALONE * common.length
-    whole = replace(whole, common=common, branch=branch if short else None)
+    whole = _with_common(*_lower(function, derivation, entries, list(function.cases())))
+    if whole.common is not None and function.branches:
+        branch = _one_branch(function, derivation, entries)
+        short = branch is not None and branch.length < ALONE * whole.common.length
+        whole = replace(whole, branch=branch if short else None)
     return _with_degrees(whole, derivation)
+
+
+def lower_branch(function: Function, derivation: Derivation, branch: int) -> Lowered:
+    """Lower one branch of a function alone."""
+    entries = Turns.of(function, derivation).entries()
+    case = list(function.cases())[branch]
+    alone = replace(function, branches=None)
+    whole = _with_common(*_lower(alone, derivation, entries, [case]))
+    return _with_degrees(whole, derivation)
+
+
+def _with_common(whole: Lowered, common: Lowered) -> Lowered:
+    """The whole program with its common case, if that is much shorter."""
+    if common.length > (1 - SPARED) * whole.length:
+        return whole
+    return replace(whole, common=replace(common, parameters=whole.parameters))
 
 
 def _with_degrees(program: Lowered, derivation: Derivation) -> Lowered:

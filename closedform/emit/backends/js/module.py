@@ -18,11 +18,26 @@ from closedform.model.functions import Function
 
 
 @dataclass(frozen=True)
-class Kernel:
+class Compute:
     """The plain strings of one program."""
 
     name: str
     lines: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """The plain strings of a program with its common case, and what the runtime knows of it."""
+
+    name: str
+    constant: str
+    programs: tuple[Compute, ...]
+    compute: str
+    common: str
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    used: str
+    size: str
 
 
 @dataclass(frozen=True)
@@ -34,13 +49,7 @@ class ModuleFunction:
     """
 
     name: str
-    constant: str
-    kernels: tuple[Kernel, ...]
-    common: str
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
-    used: str
-    size: str
+    kernel: Kernel
     doc: tuple[str, ...]
     batch_doc: tuple[str, ...]
     arguments: str
@@ -69,29 +78,37 @@ def module(derivation: Derivation, lowered: Mapping[str, Lowered]) -> dict[str, 
 
 
 def _function(derivation: Derivation, function: Function, program: Lowered) -> ModuleFunction:
-    kernels = [_kernel(f"_{function.name}", program)]
-    if program.common is not None:
-        kernels.append(_kernel(f"_{function.name}_common", program.common))
     branches = len(function.branches) if function.branches else 0
-    results = [(r.name, r.shape[1:] if branches else r.shape, r.kind) for r in program.results]
-    names = [a.name for a in function.inputs]
     return ModuleFunction(
         function.name,
-        f"_{function.name.upper()}",
-        tuple(kernels),
-        kernels[-1].name if program.common else "null",
-        tuple(_spec(a.name, a.shape, 0, "real") for a in function.inputs),
-        tuple(_spec(name, shape, branches, kind) for name, shape, kind in results),
-        _strings(program.parameters),
-        _size(program),
+        kernel(function.name, program, branches),
         tuple(single_doc(derivation, function, WIDTH - 3)),
         tuple(batch_doc(function, program, WIDTH - 3)),
-        ", ".join(names),
-        ", ".join(name for name, _, _ in results),
+        ", ".join(a.name for a in function.inputs),
+        ", ".join(r.name for r in program.results),
     )
 
 
-def _kernel(name: str, program: Lowered) -> Kernel:
+def kernel(name: str, program: Lowered, branches: int = 0) -> Kernel:
+    """What ``js/kernel.js.jinja`` prints of a program whose results have so many branches."""
+    programs = [_compute(f"_{name}", program)]
+    if program.common is not None:
+        programs.append(_compute(f"_{name}_common", program.common))
+    results = [(r.name, r.shape[1:] if branches else r.shape, r.kind) for r in program.results]
+    return Kernel(
+        name,
+        f"_{name.upper()}",
+        tuple(programs),
+        programs[0].name,
+        programs[-1].name if program.common else "null",
+        tuple(_spec(a.name, a.shape, 0, "real") for a in program.inputs),
+        tuple(_spec(result, shape, branches, kind) for result, shape, kind in results),
+        _strings(program.parameters),
+        _size(program),
+    )
+
+
+def _compute(name: str, program: Lowered) -> Compute:
     printer = JavaScriptPrinter(program, reserved=["v", "o"])
     results = printer.run()
     used = program.used_inputs()
@@ -117,7 +134,7 @@ def _kernel(name: str, program: Lowered) -> Kernel:
         for value in entries
     ]
     lines += [f"o[{k}] = {value};" for k, value in enumerate(values)]
-    return Kernel(name, tuple(_wrapped(lines)))
+    return Compute(name, tuple(_wrapped(lines)))
 
 
 def _wrapped(lines: Iterable[str]) -> Iterator[str]:

@@ -56,6 +56,8 @@ class View:
     limits: Limits | None = None
     measured: tuple[str, str] | None = None
     """The plane of the map of conditioning, if it is another one."""
+    published: str = ""
+    """The mechanism that models this one as its paper does, to be compared with it."""
 
 
 def standard(view: View) -> list[Figure]:

@@ -12,7 +12,7 @@ from typing import IO, Any, cast
 
 import closedform
 from closedform.lazy import homes
-from closedform.pipeline.run import Files, generated, write
+from closedform.pipeline.run import Files, generated, sources, write
 from closedform.site.bars import with_bars
 from closedform.site.node import MODULES, bundle, install
 
@@ -141,7 +141,7 @@ def build(source: Path, target: Path, node: Path, report: Callable[[str], None])
     [font] = (package / "files").glob("*-400-normal.woff2")
     subset_font(font, static / "STIXTwoMath.woff2")
     shutil.copyfile(package / "LICENSE", static / "STIXTwoMath-LICENSE.txt")
-    bundle(node, Path(__file__).parent / "explorer", generated() / "js", static)
+    bundle(node, Path(__file__).parent / "explorer", generated() / "js", static, compared())
     with patch_docutils(), docutils_namespace():
         app = Sphinx(
             srcdir=source,
@@ -161,6 +161,13 @@ def build(source: Path, target: Path, node: Path, report: Callable[[str], None])
     for page in target.rglob("*.html"):
         name_landmarks(page)
     return warnings.count
+
+
+def compared() -> dict[str, str]:
+    """Each mechanism, with the one that models it as its paper does, or nothing."""
+    from closedform.derivations.figures import view
+
+    return {source.name: view(source.name).published for source in sources()}
 
 
 def _digest(paths: Iterable[Path]) -> str:

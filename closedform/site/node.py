@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
+from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -37,12 +38,22 @@ def install(folder: Path) -> None:
         raise NodeError(f"npm install failed: {(done.stderr or done.stdout).strip()[-500:]}")
 
 
-def bundle(folder: Path, explorer: Path, printed: Path, static: Path) -> None:
-    """Write a script for each mechanism: the explorer with the printed code that it runs."""
-    names = [p.stem for p in sorted(printed.glob("*.js")) if not p.stem.startswith(("_", "index"))]
-    target = static / "explorer"
-    folders = map(str, (explorer, printed, static / "published", target))
-    command = ["node", "bundle.mjs", *folders, *names]
+def bundle(
+    folder: Path, explorer: Path, printed: Path, static: Path, robots: Mapping[str, str]
+) -> None:
+    """Write a script for each mechanism: the explorer with the printed code that it runs.
+
+    ``robots`` are the names, each with the mechanism that it is compared with, or nothing.
+    """
+    request = {
+        "explorer": str(explorer),
+        "printed": str(printed),
+        "cases": str(static / "published"),
+        "maps": str(static / "maps"),
+        "target": str(static / "explorer"),
+        "robots": robots,
+    }
+    command = ["node", "bundle.mjs", json.dumps(request)]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     if done.returncode:
         raise NodeError(f"the explorer cannot be bundled: {done.stderr.strip()[-2000:]}")

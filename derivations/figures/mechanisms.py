@@ -24,7 +24,10 @@ VIEWS = {
     ),
     "h6ar": View(home=degrees(0, 60, 30, 60, 30, 0), general=degrees(*TWIN), faint=VIRTUAL),
     "h6ar_loop_closed": View(
-        home=degrees(0, 60, 30, 60, 30, 0), general=degrees(*TWIN), faint=VIRTUAL
+        home=degrees(0, 60, 30, 60, 30, 0),
+        general=degrees(*TWIN),
+        faint=VIRTUAL,
+        published="h6ar",
     ),
     "puma560": View(),
     "stanford_arm": View(

@@ -26,12 +26,12 @@ export function mountAll(name, modules) {
 
 export class Explorer {
     /** @param {HTMLElement} place */
-    constructor(place, info, { robot, nearest, cases = [], compared = null }) {
+    constructor(place, info, { robot, nearest, maps, other = null, cases = [] }) {
         this.place = place;
         this.mechanism = new Mechanism(robot, nearest, info);
         this.cases = cases;
-        this.compared = compared && new Mechanism(compared.robot, nearest, info);
-        this.says = compared?.says;
+        this.compared = other && new Mechanism(other, nearest, info);
+        this.maps = maps;
         this.layers = { workspace: false, map: false, joints: false, trail: true, names: false };
         this.case = -1;
         this.trail = [];
@@ -301,7 +301,7 @@ export class Explorer {
         };
         if (m.places.length > 1) {
             this.plane = m.info.view?.plane ?? (m.flat ? ["x", "y"] : ["x", "z"]);
-            this.section = new Section(m, this.view, this.plane);
+            this.section = new Section(m, this.maps, this.view, this.plane);
             add("workspace", "workspace and singular curves");
             const measures = { conditioning: "conditioning (1/κ)", determinant: "determinant of the Jacobian" };
             if (this.section.measure) add("map", `map: ${measures[this.section.measure]}`);
@@ -330,7 +330,7 @@ export class Explorer {
 
     buildPublished() {
         const labels = this.cases.map((c) => c.label);
-        if (this.compared) labels.push(this.says);
+        if (this.compared) labels.push("the mechanism as published");
         if (!labels.length) return [];
         const names = ["corrected", ...labels.map((label) => `published: ${label}`)];
         this.caseChoice = choice("show", names, 0, (k) => {

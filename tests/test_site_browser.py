@@ -25,6 +25,8 @@ ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
 NAMES = [s.name for s in pipeline.sources()]
 HEAVIEST = 1_000_000
 """Bytes of a page with all that it loads, but the figures."""
+WITHOUT_SECTION = ("four_bar", "slider_crank", "spherical_wrist")
+"""Their hand does not move in a plane or in space."""
 STEPS = 6
 """Of the pointer along each part of a path."""
 
@@ -248,6 +250,59 @@ def test_maps_are_drawn(tab, site):  # noqa: F811
         q = robot.ik(x).q[branch]
         mode = int(np.argmin(np.linalg.norm(robot.fk(q).p - x, axis=-1)))
         assert value == pytest.approx(1 / robot.condition_number(q)[mode], abs=0.03)
+
+
+MAP = """(branch) => {
+    const { section, x } = document.querySelector(".explorer").explorer;
+    section.start(x, branch, 24, { map: true, workspace: true });
+    while (!section.done) section.step(1000);
+    const { size, axes, low, width } = section;
+    const plain = (values) => Array.from(values, (v) => (Number.isNaN(v) ? null : v));
+    const [value, factor] = [plain(section.value), plain(section.factor)];
+    return { x, size, axes, low, width, value, factor };
+}"""
+
+
+@pytest.mark.parametrize("name", [n for n in NAMES if n not in WITHOUT_SECTION])
+def test_a_map_shows_what_the_module_computes(tab, site, name):  # noqa: F811
+    """Where a branch has a posture, and in it the measure and the factors of the own mode."""
+    explorer(tab, site, name)
+    robot = importlib.import_module(f"closedform.generated.numpy.{name}")
+    for branch in {0, len(robot.BRANCHES) // 2, len(robot.BRANCHES) - 1}:
+        found = tab.evaluate(MAP, branch)
+        n = found["size"]
+        cells = (np.arange(n) + 0.5) / n * found["width"]
+        x = np.tile(np.array(found["x"], dtype=float), (n, n, 1))
+        x[..., found["axes"][0]] = found["low"][0] + cells
+        x[..., found["axes"][1]] = (found["low"][1] + cells)[:, None]
+        pose = x.reshape(n, n, 4, 4) if x.shape[-1] == 16 else x
+        q, status = (a[:, :, branch] for a in robot.ik(pose))
+        value = np.array(found["value"], dtype=float).reshape(n, n)
+        factor = np.array(found["factor"], dtype=float).reshape(-1, n, n)
+        reached = (status == 0) | (status == 2)
+        np.testing.assert_array_equal(~np.isnan(value), reached)
+        assert reached.any()
+        expected = (
+            1 / robot.condition_number(q)
+            if hasattr(robot, "condition_number")
+            else np.abs(robot.determinant(q))
+        )
+        factors = robot.singularities(q)
+        if robot.ASSEMBLY_MODES:
+            hand = robot.fk(q).p
+            mode = np.nanargmin(np.where(reached[..., None], gaps(hand, x), 0), axis=-1)
+            expected = np.take_along_axis(expected, mode[..., None], -1)[..., 0]
+            factors = np.take_along_axis(factors, mode[..., None, None], -2)[..., 0, :]
+        largest = np.nanmax(np.abs(expected), initial=0)
+        ours = reached & (status == 0)
+        np.testing.assert_allclose(value[ours], expected[ours], rtol=1e-5, atol=1e-6 * largest)
+        np.testing.assert_allclose(
+            np.moveaxis(factor, 0, -1)[ours], factors[ours], rtol=1e-5, atol=1e-6
+        )
+
+
+def gaps(hand, x):
+    return np.linalg.norm(hand - x[..., None, :], axis=-1)
 
 
 @pytest.mark.parametrize("name", ["five_bar", "puma560"])

@@ -25,7 +25,7 @@ from closedform.emit.render import render
 from closedform.emit.text import describe_operations
 from closedform.model.claims import HOLDS
 from closedform.model.derivation import Derivation, Step
-from closedform.site import published
+from closedform.site import maps, published
 from closedform.site.graph import rests_on
 from closedform.site.labels import label
 from closedform.site.markup import Markdown, Place, anchor, displayed, fenced, plain
@@ -78,6 +78,9 @@ class Site(Backend):
         if found:
             path = Path("_static", "published", f"{derivation.name}.js")
             files[path] = published.module(derivation, found)
+        if maps.has_section(derivation):
+            path = Path("_static", "maps", f"{derivation.name}.js")
+            files[path] = maps.module(derivation)
         return Pages(files, card)
 
     def shared(self, shares: Sequence[Card]) -> Files:

@@ -1,6 +1,10 @@
 /** Maps that are computed by batches: a section of the workspace, and the space of two joints. */
 
+import { batch } from "closedform/_runtime.js";
 import { OK, SINGULAR } from "./mechanism.js";
+
+const BATCH = 1500; // postures at once, so that their numbers stay in the cache
+const MET = 1e-9; // of the size: so near to a target the hand is at it
 
 /** A scale of colours that is even to the eye, from dark (singular) to bright. */
 const SCALE = [
@@ -16,10 +20,13 @@ const SCALE = [
     [253, 231, 37],
 ];
 
-export function shade(value) {
+/** Put the colour of a value into the pixels of a picture, from a place on. */
+function shade(value, pixels, place) {
     const at = Math.min(Math.max(value, 0), 1) * (SCALE.length - 1);
     const k = Math.min(Math.floor(at), SCALE.length - 2);
-    return SCALE[k].map((v, i) => Math.round(v + (at - k) * (SCALE[k + 1][i] - v)));
+    const [from, to] = [SCALE[k], SCALE[k + 1]];
+    for (let i = 0; i < 3; i++) pixels[place + i] = Math.round(from[i] + (at - k) * (to[i] - from[i]));
+    pixels[place + 3] = 255;
 }
 
 /**
@@ -54,13 +61,23 @@ function picture(size) {
     return canvas;
 }
 
+/** The planes of some postures out of those of n. */
+function taken(planes, n, list) {
+    const m = list.length;
+    const found = new Float64Array((planes.length / n) * m);
+    for (let start = 0, to = 0; start < planes.length; start += n) {
+        for (let j = 0; j < m; j++) found[to++] = planes[start + list[j]];
+    }
+    return found;
+}
+
 /**
  * A section of the workspace through the hand, for one branch: where it has a posture, where a factor
  * of the singular set changes its sign, and how far the postures are from singular.
  */
 export class Section {
     /** @param {import("./mechanism.js").Mechanism} mechanism */
-    constructor(mechanism, { middle, radius }, plane) {
+    constructor(mechanism, maps, { middle, radius }, plane) {
         this.mechanism = mechanism;
         const { TASK } = mechanism.robot;
         const axis = (name) => (TASK.length === 16 ? { x: 3, y: 7, z: 11 }[name] : TASK.indexOf(name));
@@ -71,8 +88,10 @@ export class Section {
         this.image = picture(1);
         this.done = true;
         this.milliseconds = 0;
-        const { robot } = mechanism;
-        this.measure = robot.condition_number_batch ? "conditioning" : robot.determinant_batch ? "determinant" : "";
+        this.measure = maps.CONDITION_NUMBER.length ? "conditioning" : maps.DETERMINANT.length ? "determinant" : "";
+        const measure = this.measure === "conditioning" ? maps.CONDITION_NUMBER : maps.DETERMINANT;
+        this.kernels = { ik: maps.IK, fk: maps.FK, measure, factors: maps.SINGULARITIES };
+        this.usual = 0;
     }
 
     /** Begin a map of so many rows for a target and a branch: of what is to be seen. */
@@ -90,7 +109,7 @@ export class Section {
         if (this.done) return false;
         const begin = performance.now();
         while (this.row < this.size && performance.now() - begin < budget) {
-            this.rows(Math.max(1, Math.min(this.size - this.row, Math.ceil(4000 / this.size))));
+            this.rows(Math.max(1, Math.min(this.size - this.row, Math.ceil(BATCH / this.size))));
         }
         this.milliseconds += performance.now() - begin;
         if (this.row < this.size) return false;
@@ -100,53 +119,93 @@ export class Section {
     }
 
     rows(count) {
-        const { robot, parameters, joints, modes } = this.mechanism;
         const n = count * this.size;
-        const x = new Float64Array(n * this.x.length);
-        this.x.forEach((value, k) => x.fill(value, k * n, (k + 1) * n));
-        const step = this.width / this.size;
-        for (let i = 0; i < n; i++) {
-            const [column, row] = [i % this.size, this.row + Math.floor(i / this.size)];
-            x[this.axes[0] * n + i] = this.low[0] + (column + 0.5) * step;
-            x[this.axes[1] * n + i] = this.low[1] + (row + 0.5) * step;
-        }
-        const found = robot.ik_batch(n, x, undefined, undefined, parameters);
-        const width = joints.length * n;
-        const q = found.q.slice(this.branch * width, (this.branch + 1) * width);
-        const status = found.status.subarray(this.branch * n, (this.branch + 1) * n);
-        const mode = modes > 1 ? this.modesOf(n, q, x) : null;
-        const own = (planes, k, count, i) => planes[((mode ? mode[i] : 0) * count + k) * n + i];
-        const factors = this.workspace && robot.singularities_batch(n, q, undefined, parameters);
-        const name = this.measure === "conditioning" ? "condition_number_batch" : "determinant_batch";
-        const measured = this.map && robot[name]?.(n, q, undefined, parameters);
-        for (let i = 0; i < n; i++) {
-            if (status[i] !== OK && status[i] !== SINGULAR) continue;
-            const cell = this.row * this.size + i;
-            const value = measured ? Math.abs(own(measured, 0, 1, i)) : 0;
-            this.value[cell] = this.measure === "conditioning" ? 1 / value : value;
-            for (let k = 0; factors && k < this.factors; k++) {
-                this.factor[k * this.size ** 2 + cell] = own(factors, k, this.factors, i);
+        const found = this.oneBranch(n);
+        const { reached, q } = found;
+        this.row += count;
+        if (!reached.length) return;
+        const first = (this.row - count) * this.size;
+        const { measure, factors } = this.kernels;
+        for (const [mode, list] of this.byMode(found)) {
+            const own = list ? taken(q, reached.length, list) : q;
+            const m = list ? list.length : reached.length;
+            const cell = (j) => first + reached[list ? list[j] : j];
+            const values = this.map && measure.length ? this.run(measure[mode], m, [own]) : null;
+            for (let j = 0; j < m; j++) {
+                const value = values ? Math.abs(values[j]) : 0;
+                this.value[cell(j)] = this.measure === "conditioning" ? 1 / value : value;
+            }
+            if (!this.workspace) continue;
+            const planes = this.run(factors[mode], m, [own]);
+            for (let k = 0; k < this.factors; k++) {
+                const start = k * this.size ** 2;
+                for (let j = 0; j < m; j++) this.factor[start + cell(j)] = planes[k * m + j];
             }
         }
-        this.row += count;
     }
 
-    /** For each posture the assembly mode that reaches its target. */
-    modesOf(n, q, x) {
-        const { robot, parameters, modes, places } = this.mechanism;
-        const { p } = robot.fk_batch(n, q, undefined, undefined, parameters);
-        const best = new Uint8Array(n);
-        const least = new Float64Array(n).fill(Infinity);
-        for (let mode = 0; mode < modes; mode++) {
-            for (let i = 0; i < n; i++) {
-                let gap = 0;
-                for (const k of places) {
-                    gap += (p[(mode * this.x.length + k) * n + i] - x[k * n + i]) ** 2;
-                }
-                if (gap < least[i]) [least[i], best[i]] = [gap, mode];
-            }
+    /** The next n targets that the branch reaches: which they are, and the joints. */
+    oneBranch(n) {
+        const { x } = this;
+        const width = x.length;
+        if (this.targets?.length !== n * width) {
+            this.targets = new Float64Array(n * width);
+            x.forEach((value, k) => this.targets.fill(value, k * n, (k + 1) * n));
         }
-        return best;
+        const step = this.width / this.size;
+        const [across, up] = this.axes.map((k) => this.targets.subarray(k * n, (k + 1) * n));
+        for (let i = 0; i < n; i++) {
+            const row = Math.floor(i / this.size);
+            across[i] = this.low[0] + (i - row * this.size + 0.5) * step;
+            up[i] = this.low[1] + (this.row + row + 0.5) * step;
+        }
+        const { q, status } = this.run(this.kernels.ik[this.branch], n, [this.targets]);
+        const reached = [];
+        for (let i = 0; i < n; i++) if (status[i] === OK || status[i] === SINGULAR) reached.push(i);
+        return { reached, q: reached.length === n ? q : taken(q, n, reached), n };
+    }
+
+    run(kernel, n, args) {
+        return batch(kernel, n, args, kernel.outputs.map(() => undefined), this.mechanism.parameters);
+    }
+
+    /**
+     * The postures by the assembly mode that reaches the target: a list for each mode, or all in one.
+     *
+     * A mode that reaches the target is that of the posture; the others are asked only where it does not.
+     */
+    *byMode({ reached, q, n }) {
+        const { places, modes, size } = this.mechanism;
+        if (modes === 1) return yield [0, null];
+        const m = reached.length;
+        const best = new Uint8Array(m);
+        const least = new Float64Array(m).fill(Infinity);
+        let open = null;
+        for (let k = 0; k < modes; k++) {
+            const mode = (this.usual + k) % modes;
+            const own = open ? taken(q, m, open) : q;
+            const count = open ? open.length : m;
+            const { p } = this.run(this.kernels.fk[mode], count, [own]);
+            const rest = [];
+            for (let j = 0; j < count; j++) {
+                const posture = open ? open[j] : j;
+                let gap = 0;
+                for (const place of places) {
+                    gap += (p[place * count + j] - this.targets[place * n + reached[posture]]) ** 2;
+                }
+                if (gap < least[posture]) [least[posture], best[posture]] = [gap, mode];
+                if (!(gap < (MET * size) ** 2)) rest.push(posture);
+            }
+            if (!rest.length && !open) return yield [mode, null];
+            open = rest;
+            if (!rest.length) break;
+        }
+        for (let mode = 0; mode < modes; mode++) {
+            const list = [];
+            for (let j = 0; j < m; j++) if (best[j] === mode) list.push(j);
+            if (list.length > m / 2) this.usual = mode;
+            if (list.length) yield [mode, list];
+        }
     }
 
     /** The picture: transparent where the branch has no posture; the border, and the singular curves. */
@@ -159,7 +218,7 @@ export class Section {
         const data = context.createImageData(size, size);
         for (let cell = 0; cell < size * size; cell++) {
             if (Number.isNaN(value[cell])) continue;
-            data.data.set([...shade(most ? value[cell] / most : 0), 255], 4 * cell);
+            shade(most ? value[cell] / most : 0, data.data, 4 * cell);
         }
         context.putImageData(data, 0, 0);
         this.cells = size;

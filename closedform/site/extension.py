@@ -132,8 +132,8 @@ def shown(name: str) -> dict[str, Any]:
         "faint": list(found.faint),
         "mode": found.mode,
     }
-    view_of = {"plane": found.plane and list(found.plane), "at": found.at and list(found.at)}
-    answer["view"] = {k: v for k, v in view_of.items() if v}
+    if found.plane:
+        answer["plane"] = list(found.plane)
     return answer
 
 

@@ -3,6 +3,10 @@
 export const OK = 0;
 export const UNREACHABLE = 1;
 export const SINGULAR = 2;
+export const INVALID = 3;
+
+/** Whether a branch of this status has a posture. */
+export const reaches = (status) => status === OK || status === SINGULAR;
 
 const TRIALS = 240;
 const STEP = 1e-6;
@@ -36,7 +40,9 @@ export class Mechanism {
         this.names = robot.SKELETON.points;
         this.hand = this.names.indexOf(robot.SKELETON.hand);
         this.slides = this.joints.map((n) => robot.SKELETON.joints[n]?.kind === "prismatic");
-        this.places = places(robot.TASK);
+        const position = positionIn(robot.TASK);
+        this.places = position.map(([place]) => place);
+        this.axes = position.map(([, axis]) => axis);
         this.others = others(robot.TASK, this.places);
         this.flat = this.isFlat();
         this.scales = this.typicalFactors();
@@ -45,6 +51,19 @@ export class Mechanism {
     get size() {
         const lengths = Object.values(this.parameters).map(Math.abs);
         return lengths.reduce((a, b) => a + b, 0) || 1;
+    }
+
+    /** A joint as people write it. */
+    label(k) {
+        const name = this.joints[k];
+        return this.info.joints?.[name]?.label ?? name;
+    }
+
+    /** The position of a target in space; 0 along an axis that the task does not have. */
+    position(x) {
+        const p = [0, 0, 0];
+        this.axes.forEach((axis, k) => (p[axis] = x[this.places[k]]));
+        return p;
     }
 
     /** Where the hand is in the coordinates of the task, for each assembly mode; NaN if it is not. */
@@ -59,8 +78,7 @@ export class Mechanism {
         const { q, status } = this.robot.ik(x, this.parameters);
         return this.branches.map((name, index) => {
             const joints = Array.from(q[index]);
-            const found = status[index] === OK || status[index] === SINGULAR;
-            const mode = found ? this.modeOf(joints, x) : 0;
+            const mode = reaches(status[index]) ? this.modeOf(joints, x) : 0;
             return { name, index, status: status[index], q: joints, mode };
         });
     }
@@ -132,6 +150,18 @@ export class Mechanism {
         });
     }
 
+    /** The joint that moves a point and is nearest to it in the mechanism, or -1. */
+    jointOf(q, mode, point) {
+        const far = this.rates(q, mode, point).map((r) => Math.hypot(...r));
+        const most = Math.max(...far);
+        return far.findLastIndex((v) => v > 0.05 * most && v > 1e-6 * this.size);
+    }
+
+    /** The distance of the hands of two postures, given by their points. */
+    between(a, b) {
+        return Math.hypot(...a[this.hand].map((v, k) => v - b[this.hand][k]));
+    }
+
     /** The distance of two postures in the joints, angles across the turn. */
     apart(a, b) {
         const gaps = a.map((v, k) => (this.slides[k] ? (v - b[k]) / this.size : wrapped(v - b[k])));
@@ -173,10 +203,10 @@ export class Mechanism {
     }
 }
 
-/** Where x, y and z are among the coordinates of the task. */
-function places(task) {
-    if (task.length === 16) return [3, 7, 11];
-    return ["x", "y", "z"].map((n) => task.indexOf(n)).filter((k) => k >= 0);
+/** The coordinates of the task that are a position: the place of each, and its axis of space. */
+function positionIn(task) {
+    if (task.length === 16) return [[3, 0], [7, 1], [11, 2]];
+    return ["x", "y", "z"].map((name, axis) => [task.indexOf(name), axis]).filter(([place]) => place >= 0);
 }
 
 /** The coordinates that are not a position: angles of their own, or those of a rotation. */

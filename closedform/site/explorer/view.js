@@ -2,7 +2,7 @@
 
 export class View {
     /** @param {HTMLCanvasElement} canvas */
-    constructor(canvas, { middle, radius, flat }) {
+    constructor(canvas, { middle, radius }, flat) {
         this.canvas = canvas;
         this.context = canvas.getContext("2d");
         this.flat = flat;
@@ -10,18 +10,16 @@ export class View {
         this.radius = radius;
     }
 
-    /** Fit the canvas to its element; true if that changed anything. */
+    /** Fit the canvas to its element. */
     resize() {
         const ratio = window.devicePixelRatio || 1;
         const { clientWidth: width, clientHeight: height } = this.canvas;
-        const changed = this.canvas.width !== Math.round(width * ratio) || this.height !== height;
-        if (changed) {
+        if (this.canvas.width !== Math.round(width * ratio) || this.height !== height) {
             this.canvas.width = Math.round(width * ratio);
             this.canvas.height = Math.round(height * ratio);
         }
         Object.assign(this, { ratio, width, height });
         if (this.zoom) this.aim();
-        return changed;
     }
 
     /** Come as near as these points allow, and look from the first direction. */

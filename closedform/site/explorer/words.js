@@ -1,5 +1,7 @@
 /** What the explorer says: postures in words, and the lines that compute them. */
 
+import { INVALID, OK, SINGULAR, UNREACHABLE } from "./mechanism.js";
+
 export const spoken = (name) => name.replaceAll("_", " ");
 
 /** A number as people read it. */
@@ -9,10 +11,28 @@ export function short(value) {
 
 /** The status of a branch in words. */
 export function status(posture, free) {
-    if (posture.status === 0) return "OK";
-    if (posture.status === 1) return "out of reach";
-    if (posture.status === 2) return free ? `singular: ${free} is free` : "singular: not determined";
+    if (posture.status === OK) return "OK";
+    if (posture.status === UNREACHABLE) return "out of reach";
+    if (posture.status === SINGULAR) return free ? `singular: ${free} is free` : "singular: not determined";
     return "invalid input";
+}
+
+/** What is seen, in a sentence or two. */
+export function sentence({ mechanism: m, x, found, branch, free, reached, meetings }) {
+    const met = meetings.last ? ` ${meetings.last}.` : "";
+    if (found?.every((p) => p.status === INVALID)) return "These dimensions are impossible.";
+    if (!reached) return `Out of reach.${met}`;
+    const hand = m.places.map((k) => short(x[k])).join(", ");
+    const where = m.places.length ? `Hand at (${hand}). ` : "";
+    const own = found[branch];
+    return `${where}${spoken(own.name)}: ${status(own, free < 0 ? "" : m.label(free))}.${met}`;
+}
+
+/** All numbers of what is seen, as JSON. */
+export function numbers({ mechanism: m, x, q, found }) {
+    const branches = found.map((p) => ({ name: p.name, status: p.status, q: p.q }));
+    const all = { robot: m.info.name, parameters: m.parameters, target: x, joints: q, branches };
+    return JSON.stringify(all, (_, v) => (Number.isNaN(v) ? null : v), 1);
 }
 
 /** Lines that compute what is seen, in one language. */

@@ -1,7 +1,8 @@
-/** Maps that are computed by batches: a section of the workspace, and the space of two joints. */
+/** A section of the workspace, computed by batches of postures. */
 
 import { batch } from "closedform/_runtime.js";
-import { OK, SINGULAR } from "./mechanism.js";
+import { contours, picture } from "./grid.js";
+import { reaches } from "./mechanism.js";
 
 const BATCH = 1500; // postures at once, so that their numbers stay in the cache
 const MET = 1e-9; // of the size: so near to a target the hand is at it
@@ -29,38 +30,6 @@ function shade(value, pixels, place) {
     pixels[place + 3] = 255;
 }
 
-/**
- * Where values on a square grid change their sign: lines in units of the grid.
- *
- * @param {(cell: number) => number} value NaN where there is none
- */
-function contours(size, value) {
-    const found = [];
-    const corners = [[0, 0], [1, 0], [1, 1], [0, 1]];
-    for (let row = 0; row + 1 < size; row++) {
-        for (let column = 0; column + 1 < size; column++) {
-            const cell = row * size + column;
-            const around = [value(cell), value(cell + 1), value(cell + size + 1), value(cell + size)];
-            const crossed = [];
-            for (let k = 0; k < 4; k++) {
-                const [f, g] = [around[k], around[(k + 1) % 4]];
-                if (!(f * g < 0)) continue;
-                const share = f / (f - g);
-                const [a, b] = [corners[k], corners[(k + 1) % 4]];
-                crossed.push(column + 0.5 + a[0] + share * (b[0] - a[0]), row + 0.5 + a[1] + share * (b[1] - a[1]));
-            }
-            if (crossed.length === 4) found.push(crossed);
-        }
-    }
-    return found;
-}
-
-function picture(size) {
-    const canvas = document.createElement("canvas");
-    canvas.width = canvas.height = size;
-    return canvas;
-}
-
 /** The planes of some postures out of those of n. */
 function taken(planes, n, list) {
     const m = list.length;
@@ -79,10 +48,8 @@ export class Section {
     /** @param {import("./mechanism.js").Mechanism} mechanism */
     constructor(mechanism, maps, { middle, radius }, plane) {
         this.mechanism = mechanism;
-        const { TASK } = mechanism.robot;
-        const axis = (name) => (TASK.length === 16 ? { x: 3, y: 7, z: 11 }[name] : TASK.indexOf(name));
-        this.axes = plane.map(axis);
         this.directions = plane.map((name) => "xyz".indexOf(name));
+        this.axes = this.directions.map((k) => mechanism.places[mechanism.axes.indexOf(k)]);
         this.low = this.directions.map((k) => middle[k] - 1.05 * radius);
         this.width = 2.1 * radius;
         this.image = picture(1);
@@ -104,18 +71,17 @@ export class Section {
         this.factor = new Float32Array(cells * this.factors).fill(NaN);
     }
 
-    /** Compute rows for so many milliseconds; true once the picture is new. */
+    /** Compute rows for so many milliseconds. */
     step(budget) {
-        if (this.done) return false;
+        if (this.done) return;
         const begin = performance.now();
         while (this.row < this.size && performance.now() - begin < budget) {
             this.rows(Math.max(1, Math.min(this.size - this.row, Math.ceil(BATCH / this.size))));
         }
         this.milliseconds += performance.now() - begin;
-        if (this.row < this.size) return false;
+        if (this.row < this.size) return;
         this.paint();
         this.done = true;
-        return true;
     }
 
     rows(count) {
@@ -161,7 +127,7 @@ export class Section {
         }
         const { q, status } = this.run(this.kernels.ik[this.branch], n, [this.targets]);
         const reached = [];
-        for (let i = 0; i < n; i++) if (status[i] === OK || status[i] === SINGULAR) reached.push(i);
+        for (let i = 0; i < n; i++) if (reaches(status[i])) reached.push(i);
         return { reached, q: reached.length === n ? q : taken(q, n, reached), n };
     }
 
@@ -232,9 +198,7 @@ export class Section {
     /** Draw the map and the curves where they lie. */
     draw(view, { map, workspace }, colours) {
         if (this.image.width === 1) return;
-        const corner = [0, 0, 0];
-        const position = this.mechanism.places.map((k) => this.x[k]);
-        position.forEach((v, k) => (corner[k] = v));
+        const corner = this.mechanism.position(this.x);
         this.directions.forEach((k, i) => (corner[k] = this.low[i]));
         const sides = this.directions.map((k) => [0, 1, 2].map((i) => (i === k ? this.width : 0)));
         if (map) {
@@ -247,47 +211,5 @@ export class Section {
         const seen = (parts) => parts.map(([a, b, c, d]) => [at(a, b), at(c, d)]);
         view.segments(seen(this.border), { colour: colours.border, width: 1.2 });
         view.segments(seen(this.curves), { colour: colours.curve, width: 1.8 });
-    }
-}
-
-/** Two joints as a plane: where the mechanism can be assembled, and its singular curves. */
-export class JointPlane {
-    /** @param {import("./mechanism.js").Mechanism} mechanism */
-    constructor(mechanism) {
-        this.mechanism = mechanism;
-        this.image = picture(1);
-    }
-
-    /** The range of a joint in the picture. */
-    range(k) {
-        const { slides, info } = this.mechanism;
-        return slides[k] ? [0, 2 * Math.max(info.general[k], info.home[k], 0.2)] : [-Math.PI, Math.PI];
-    }
-
-    compute(q, mode, [a, b], size = 120) {
-        const { robot, parameters, joints, modes } = this.mechanism;
-        const n = size * size;
-        const planes = new Float64Array(n * joints.length);
-        joints.forEach((_, k) => planes.fill(q[k], k * n, (k + 1) * n));
-        const [ra, rb] = [this.range(a), this.range(b)];
-        for (let i = 0; i < n; i++) {
-            planes[a * n + i] = ra[0] + (((i % size) + 0.5) / size) * (ra[1] - ra[0]);
-            planes[b * n + i] = rb[0] + ((Math.floor(i / size) + 0.5) / size) * (rb[1] - rb[0]);
-        }
-        const count = robot.SINGULARITIES.length;
-        const factors = robot.singularities_batch(n, planes, undefined, parameters);
-        const offset = modes > 1 ? mode * count * n : 0;
-        this.size = size;
-        this.image = picture(size);
-        const context = this.image.getContext("2d");
-        const data = context.createImageData(size, size);
-        for (let i = 0; i < n; i++) {
-            if (Number.isNaN(factors[offset + i])) data.data.set([128, 128, 128, 70], 4 * i);
-        }
-        context.putImageData(data, 0, 0);
-        this.curves = [];
-        for (let k = 0; k < count; k++) {
-            this.curves.push(...contours(size, (cell) => factors[offset + k * n + cell]));
-        }
     }
 }

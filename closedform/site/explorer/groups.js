@@ -1,0 +1,179 @@
+/**
+ * The groups of controls: each makes its element once, and `show` brings it up to the explorer.
+ *
+ * @typedef {{ element: HTMLElement, show(): void }} Group
+ * @typedef {import("./explorer.js").Explorer} Explorer
+ */
+
+import { COLOURS } from "./colours.js";
+import { button, checkbox, choice, element, group, slider } from "./controls.js";
+import { JointPlot } from "./joint-space.js";
+import { UNREACHABLE } from "./mechanism.js";
+import { lines, numbers, spoken, status } from "./words.js";
+
+const MEASURES = { conditioning: "conditioning (1/κ)", determinant: "determinant of the Jacobian" };
+
+/** @param {Explorer} explorer @returns {Group} */
+export function branches(explorer) {
+    const m = explorer.mechanism;
+    const legend = m.branches.map((name, k) => {
+        const note = element("small");
+        const swatch = element("span", { class: "swatch" });
+        swatch.style.background = COLOURS[k % COLOURS.length];
+        const choose = button("", () => explorer.choose(k), { class: "branch" });
+        choose.append(swatch, spoken(name), " ", note);
+        return { choose, note };
+    });
+    const free = slider({
+        label: "free joint",
+        min: -Math.PI,
+        max: Math.PI,
+        changed: (value) => explorer.moveFree(value),
+    });
+    const made = group("Branches", true, ...legend.map((e) => e.choose), free.row);
+    const names = m.modes > 1 && m.robot.ASSEMBLY_MODES.map(spoken);
+    const mode = names && choice("assembly mode", names, explorer.mode, (k) => explorer.chooseMode(k));
+    if (mode) made.append(mode.row);
+    const show = () => {
+        if (mode) mode.select.selectedIndex = explorer.mode;
+        free.row.hidden = explorer.free < 0;
+        const name = explorer.free < 0 ? "" : m.label(explorer.free);
+        if (name) {
+            free.row.querySelector("label").textContent = `${name}, free`;
+            free.show(explorer.q[explorer.free]);
+        }
+        legend.forEach(({ choose, note }, k) => {
+            const p = explorer.found?.[k];
+            note.textContent = p ? status(p, k === explorer.branch ? name : "") : "";
+            choose.setAttribute("aria-pressed", String(k === explorer.branch));
+            choose.classList.toggle("lost", p?.status === UNREACHABLE);
+        });
+    };
+    return { element: made, show };
+}
+
+/** @param {Explorer} explorer @returns {Group} */
+export function joints(explorer) {
+    const m = explorer.mechanism;
+    const sliders = m.joints.map((name, k) => {
+        const slide = m.slides[k];
+        const most = 2.5 * Math.max(Math.abs(m.info.general[k]), Math.abs(m.info.home[k]), 0.2);
+        return slider({
+            label: m.label(k),
+            title: name,
+            unit: slide ? "" : "rad",
+            min: slide ? 0 : -Math.PI,
+            max: slide ? most : Math.PI,
+            changed: (value) => explorer.takeJoints(explorer.q.with(k, value)),
+        });
+    });
+    const home = button("home", () => explorer.takeJoints(m.info.home));
+    const general = button("general", () => explorer.takeJoints(m.info.general));
+    const playing = button("play", () => explorer.play());
+    const buttons = element("div", { class: "buttons" }, home, general, playing);
+    const show = () => {
+        sliders.forEach((s, k) => s.show(explorer.q[k]));
+        playing.textContent = explorer.running ? "stop" : "play";
+    };
+    return { element: group("Joints", true, ...sliders.map((s) => s.row), buttons), show };
+}
+
+/** @param {Explorer} explorer @returns {Group} */
+export function target(explorer) {
+    const { mechanism: m, view } = explorer;
+    const position = m.places.map((place, k) => ({
+        name: "xyz"[m.axes[k]],
+        min: view.middle[m.axes[k]] - view.radius,
+        max: view.middle[m.axes[k]] + view.radius,
+        get: (x) => x[place],
+        set: (x, v) => x.with(place, v),
+    }));
+    const rest = m.others.map((o) => ({ ...o, min: -Math.PI, max: Math.PI, unit: "rad" }));
+    const sliders = [...position, ...rest].map(({ name, unit, min, max, get, set }) => {
+        const changed = (value) => explorer.takeTarget(set(explorer.x, value));
+        return { get, ...slider({ label: name, unit, min, max, changed }) };
+    });
+    const show = () => {
+        if (explorer.x) sliders.forEach((s) => s.show(s.get(explorer.x)));
+    };
+    return { element: group("Target", false, ...sliders.map((s) => s.row)), show };
+}
+
+/** @param {Explorer} explorer @returns {Group} */
+export function dimensions(explorer) {
+    const m = explorer.mechanism;
+    const sliders = Object.keys(m.parameters).map((name) => {
+        const told = m.info.parameters?.[name] ?? {};
+        const value = m.robot.DEFAULTS[name];
+        const most = value ? 2 * Math.abs(value) : m.size / 4;
+        return slider({
+            label: told.label ?? name,
+            title: told.meaning,
+            unit: told.unit,
+            min: value < 0 ? -most : 0,
+            max: most,
+            changed: (v) => explorer.resizeTo({ [name]: v }),
+        });
+    });
+    const reset = button("reset", () => explorer.resizeTo(m.robot.DEFAULTS));
+    const buttons = element("div", { class: "buttons" }, reset);
+    const show = () => sliders.forEach((s, k) => s.show(Object.values(m.parameters)[k]));
+    return { element: group("Dimensions", false, ...sliders.map((s) => s.row), buttons), show };
+}
+
+/** @param {Explorer} explorer @returns {Group} */
+export function layers(explorer) {
+    const { section } = explorer;
+    const boxes = new Map();
+    const box = (key, label) => {
+        const made = checkbox(label, explorer.layers[key], (on) => {
+            explorer.layers[key] = on;
+            explorer.changed();
+        });
+        boxes.set(key, made.box);
+        return made.row;
+    };
+    const rows = [];
+    if (section) rows.push(box("workspace", "workspace and singular curves"));
+    if (section?.measure) rows.push(box("map", `map: ${MEASURES[section.measure]}`));
+    const plot = explorer.pair && new JointPlot(explorer);
+    if (plot) rows.push(box("joints", "joint space"), plot.element);
+    rows.push(box("trail", "path of the hand"), box("names", "names of the points"));
+    const note = element("p", { class: "note" });
+    const show = () => {
+        for (const [key, made] of boxes) made.checked = explorer.layers[key];
+        plot?.show();
+        const on = section && (explorer.layers.workspace || explorer.layers.map);
+        note.textContent = on ? ofSection(explorer) : "";
+    };
+    return { element: group("Layers", false, ...rows, note), show };
+}
+
+function ofSection({ section, plane }) {
+    const { size, milliseconds, done } = section;
+    const text = `Section through the hand: ${plane.join(" and ")}. Curves in red: singular; grey: the border.`;
+    return done ? `${text} ${size}×${size} postures in ${Math.round(milliseconds)} ms.` : text;
+}
+
+/** @param {Explorer} explorer @returns {Group} */
+export function copies(explorer) {
+    const m = explorer.mechanism;
+    const said = element("span", { role: "status" });
+    const shown = element("pre", { tabindex: 0, hidden: true });
+    const copy = (text) => async () => {
+        shown.textContent = text();
+        shown.hidden = false;
+        try {
+            await navigator.clipboard.writeText(text());
+            said.textContent = "copied";
+        } catch {
+            said.textContent = "select the text to copy it";
+        }
+    };
+    const languages = ["Python", "C", "JavaScript"].map((language) =>
+        button(language, copy(() => lines(language, m, explorer.x, explorer.q))),
+    );
+    const first = button("numbers", copy(() => numbers(explorer)));
+    const buttons = element("div", { class: "buttons" }, first, ...languages, said);
+    return { element: group("Copy", false, buttons, shown), show: () => {} };
+}

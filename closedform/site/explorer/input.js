@@ -1,0 +1,137 @@
+/** What a visitor does in the picture: by the pointer, by fingers and by keys. */
+
+const GRAB = 16; // pixels
+const NOTHING = { hand: false, point: -1 };
+
+/**
+ * Let an explorer follow what happens on its canvas.
+ *
+ * @param {import("./explorer.js").Explorer} explorer
+ */
+export function listen(explorer) {
+    const { canvas } = explorer;
+    new Pointers(explorer);
+    canvas.addEventListener("dblclick", () => {
+        explorer.fit();
+        explorer.changed();
+    });
+    const wheel = (event) => {
+        if (!event.ctrlKey && document.activeElement !== canvas) return;
+        event.preventDefault();
+        const { view } = explorer;
+        view.zoom = Math.min(Math.max(view.zoom * Math.exp(-event.deltaY / 600), 0.2), 20);
+        explorer.changed();
+    };
+    canvas.addEventListener("wheel", wheel, { passive: false });
+    canvas.addEventListener("keydown", (event) => press(explorer, event));
+}
+
+/** The pointer, or the fingers, that are on the canvas. */
+class Pointers {
+    constructor(explorer) {
+        this.explorer = explorer;
+        this.fingers = new Map();
+        this.grabbed = null;
+        const { canvas } = explorer;
+        canvas.addEventListener("pointerdown", (event) => this.down(event));
+        canvas.addEventListener("pointermove", (event) => this.move(event));
+        canvas.addEventListener("pointerup", (event) => this.release(event));
+        canvas.addEventListener("pointercancel", (event) => this.release(event));
+    }
+
+    /** Where an event is on the canvas. */
+    at(event) {
+        const box = this.explorer.canvas.getBoundingClientRect();
+        return [event.clientX - box.left, event.clientY - box.top];
+    }
+
+    down(event) {
+        const { explorer, fingers } = this;
+        explorer.canvas.setPointerCapture(event.pointerId);
+        const place = this.at(event);
+        fingers.set(event.pointerId, place);
+        if (fingers.size === 1) this.grabbed = grab(explorer, place);
+        explorer.held = this.grabbed?.hand;
+        explorer.wanted = null;
+        explorer.stop();
+    }
+
+    move(event) {
+        const { explorer, fingers } = this;
+        const { view, canvas } = explorer;
+        const place = this.at(event);
+        const last = fingers.get(event.pointerId);
+        if (!last) {
+            const over = grab(explorer, place);
+            canvas.style.cursor = over.point >= 0 ? "grab" : view.flat ? "default" : "move";
+            return;
+        }
+        fingers.set(event.pointerId, place);
+        if (fingers.size === 2) {
+            const [[, other]] = [...fingers].filter(([id]) => id !== event.pointerId);
+            const apart = ([x, y]) => Math.hypot(x - other[0], y - other[1]);
+            view.zoom *= apart(place) / Math.max(apart(last), 1);
+            explorer.changed();
+        } else drag(explorer, this.grabbed, place[0] - last[0], place[1] - last[1]);
+    }
+
+    release(event) {
+        this.fingers.delete(event.pointerId);
+        if (!this.fingers.size) this.explorer.release();
+    }
+}
+
+/** What is below the pointer: the hand, another point with the joint that moves it, or nothing. */
+function grab({ mechanism: m, view, q, mode }, [px, py]) {
+    const points = m.points(q)[mode];
+    if (!points) return NOTHING;
+    const far = points.map((p) => {
+        const [x, y] = view.project(p);
+        return Math.hypot(x - px, y - py);
+    });
+    if (far[m.hand] < 1.3 * GRAB) return { hand: true, point: m.hand };
+    const point = far.indexOf(Math.min(...far));
+    if (far[point] > GRAB) return NOTHING;
+    const joint = m.jointOf(q, mode, point);
+    return joint < 0 ? NOTHING : { hand: false, point, joint };
+}
+
+/** Move what is grabbed, or turn the view. */
+function drag(explorer, grabbed, dx, dy) {
+    if (!grabbed) return;
+    const { view } = explorer;
+    const step = view.unproject(dx, dy);
+    if (grabbed.hand) explorer.moveHand(step);
+    else if (grabbed.point >= 0) explorer.movePoint(grabbed.point, [grabbed.joint], step);
+    else if (!view.flat) {
+        view.azimuth -= 0.008 * dx;
+        view.elevation = Math.min(Math.max(view.elevation + 0.008 * dy, -1.57), 1.57);
+        explorer.changed();
+    }
+}
+
+/** The directions of the page in which keys move the hand, and the sign. */
+const MOVES = {
+    ArrowRight: [0, 1],
+    ArrowLeft: [0, -1],
+    ArrowUp: [1, 1],
+    ArrowDown: [1, -1],
+    PageUp: [2, -1],
+    PageDown: [2, 1],
+};
+
+function press(explorer, event) {
+    const { axes, radius } = explorer.view;
+    const count = explorer.mechanism.branches.length;
+    if (event.key in MOVES) {
+        const [axis, sign] = MOVES[event.key];
+        const size = sign * (event.shiftKey ? 0.002 : 0.02) * radius;
+        explorer.held = true;
+        explorer.moveHand(axes[axis].map((v) => size * v));
+        explorer.release();
+    } else if (event.key === "[" || event.key === "]") {
+        explorer.choose((explorer.branch + (event.key === "]" ? 1 : count - 1)) % count);
+    } else return;
+    event.preventDefault();
+    event.stopPropagation();
+}

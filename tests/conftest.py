@@ -1,8 +1,12 @@
-"""Shared by the tests: repeatable examples, the toy extension, the table of the worst errors."""
+"""Shared by the tests: repeatable examples, the toy extension, the site, the worst errors."""
 
+import importlib.util
 import os
 import pickle
 import shutil
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,6 +20,7 @@ from closedform.check.crosscheck import Finding, table
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile("repeatable")
 
+ROOT = Path(__file__).parents[1]
 FINDINGS = pytest.StashKey[list[Finding]]()
 
 
@@ -29,6 +34,32 @@ def findings(pytestconfig: pytest.Config) -> list[Finding]:
 def native(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The toy extension, for the tests of the runtime."""
     return loaded(shared(tmp_path_factory, "toy", compile_toy))
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the site, built once for all tests, without the figures.
+
+    ``CLOSEDFORM_SITE=build/site`` takes one that is there.
+    """
+    if there := os.environ.get("CLOSEDFORM_SITE"):
+        return Path(there).absolute()
+    if not (shutil.which("node") and shutil.which("npm")):
+        pytest.skip("Node or npm is not installed")
+    if importlib.util.find_spec("sphinx") is None:
+        pytest.skip("Sphinx is not installed")
+
+    def build(target: Path) -> None:
+        command = [sys.executable, "-m", "closedform", "site", "--no-figures", "-j", "2"]
+        done = subprocess.run(
+            [*command, "-o", str(target / "site"), "--work", str(target / "work")],
+            capture_output=True,
+            text=True,
+            cwd=ROOT,
+        )
+        assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+
+    return shared(tmp_path_factory, "site", build) / "site"
 
 
 @pytest.fixture

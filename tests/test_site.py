@@ -1,17 +1,11 @@
 """The site as it is built: its links, its formulas, and that it needs nothing from elsewhere."""
 
-import importlib.util
-import os
 import re
-import shutil
-import subprocess
-import sys
 from collections import Counter
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from sharing import shared
 
 from closedform.pipeline import run as pipeline
 from closedform.site.labels import label
@@ -74,32 +68,6 @@ def test_names_have_their_signs():
 
 
 # The built site
-
-
-@pytest.fixture(scope="session")
-def site(tmp_path_factory):
-    """The folder of the site, built once for all tests, without the figures.
-
-    ``CLOSEDFORM_SITE=build/site`` takes one that is there.
-    """
-    if there := os.environ.get("CLOSEDFORM_SITE"):
-        return Path(there).absolute()
-    if not (shutil.which("node") and shutil.which("npm")):
-        pytest.skip("Node or npm is not installed")
-    if importlib.util.find_spec("sphinx") is None:
-        pytest.skip("Sphinx is not installed")
-
-    def build(target):
-        command = [sys.executable, "-m", "closedform", "site", "--no-figures", "-j", "2"]
-        done = subprocess.run(
-            [*command, "-o", str(target / "site"), "--work", str(target / "work")],
-            capture_output=True,
-            text=True,
-            cwd=ROOT,
-        )
-        assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
-
-    return shared(tmp_path_factory, "site", build) / "site"
 
 
 class Links(HTMLParser):

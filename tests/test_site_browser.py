@@ -12,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_site import site  # noqa: F401  (a fixture)
 
 from closedform.pipeline import run as pipeline
 
@@ -76,11 +75,11 @@ def tab(browser):
     context.close()
 
 
-def address(site, path):  # noqa: F811
+def address(site, path):
     return (site / path).as_uri()
 
 
-def explorer(tab, site, name, mark=""):  # noqa: F811
+def explorer(tab, site, name, mark=""):
     tab.goto(address(site, f"mechanisms/{name}.html") + mark)
     tab.wait_for_function("document.querySelector('.explorer')?.explorer?.found")
     tab.locator(".explorer canvas").first.scroll_into_view_if_needed()
@@ -111,7 +110,7 @@ def agrees(name, state):
             assert np.linalg.norm(hand - drawn) <= 1e-12 * size
 
 
-def test_every_page_loads_without_a_fault(tab, site):  # noqa: F811
+def test_every_page_loads_without_a_fault(tab, site):
     for path in sorted(site.rglob("*.html")):
         tab.goto(path.as_uri())
         assert not tab.faults, path
@@ -119,7 +118,7 @@ def test_every_page_loads_without_a_fault(tab, site):  # noqa: F811
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_the_hand_can_be_dragged_through_a_singularity(tab, site, name):  # noqa: F811
+def test_the_hand_can_be_dragged_through_a_singularity(tab, site, name):
     """Away from the base until it is out of reach, and back across the base."""
     explorer(tab, site, name)
     agrees(name, tab.evaluate(STATE))
@@ -144,7 +143,7 @@ def test_the_hand_can_be_dragged_through_a_singularity(tab, site, name):  # noqa
 
 
 @pytest.mark.parametrize("name", ["planar_2r", "five_bar", "puma560"])
-def test_a_link_holds_what_is_seen(tab, site, browser, name):  # noqa: F811
+def test_a_link_holds_what_is_seen(tab, site, browser, name):
     explorer(tab, site, name)
     tab.locator(".explorer canvas").first.focus()
     for key in ("ArrowRight", "ArrowUp", "]"):
@@ -164,14 +163,14 @@ def test_a_link_holds_what_is_seen(tab, site, browser, name):  # noqa: F811
     "mark",
     ["#explore=planar_2r&q=1", "#explore=planar_2r&q=a,b&branch=9&p=__proto__:1,l1:x", "#%E0%A4%A"],
 )
-def test_a_link_that_does_not_fit_is_ignored(tab, site, mark):  # noqa: F811
+def test_a_link_that_does_not_fit_is_ignored(tab, site, mark):
     state = explorer(tab, site, "planar_2r", mark).evaluate(STATE)
     assert state["parameters"] == {"l1": 10, "l2": 8}
     assert state["reached"]
     assert not tab.faults
 
 
-def test_a_free_joint_moves_while_the_hand_stays(tab, site):  # noqa: F811
+def test_a_free_joint_moves_while_the_hand_stays(tab, site):
     explorer(tab, site, "planar_2r")
     tab.evaluate(
         """() => {
@@ -190,7 +189,7 @@ def test_a_free_joint_moves_while_the_hand_stays(tab, site):  # noqa: F811
     assert "θ₁ is free" in tab.locator(".explorer").inner_text()
 
 
-def test_where_a_branch_meets_another_is_said(tab, site):  # noqa: F811
+def test_where_a_branch_meets_another_is_said(tab, site):
     explorer(tab, site, "planar_2r")
     tab.evaluate(
         """() => {
@@ -203,7 +202,7 @@ def test_where_a_branch_meets_another_is_said(tab, site):  # noqa: F811
     tab.get_by_text("elbow down meets elbow up, singular: elbow").wait_for()
 
 
-def test_published_joints_stand_beside_the_right_ones(tab, site):  # noqa: F811
+def test_published_joints_stand_beside_the_right_ones(tab, site):
     """The arctangent of a quotient turns the arm of a target on the left by half a turn."""
     explorer(tab, site, "planar_2r")
     tab.evaluate("document.querySelector('.explorer').explorer.takeJoints([2.2, 1.1])")
@@ -214,7 +213,7 @@ def test_published_joints_stand_beside_the_right_ones(tab, site):  # noqa: F811
     tab.get_by_text(f"The hand is {2 * hand:.6g} cm from the target.").wait_for()
 
 
-def test_the_published_waist_of_the_h6ar_turns_to_the_rear(tab, site):  # noqa: F811
+def test_the_published_waist_of_the_h6ar_turns_to_the_rear(tab, site):
     """It is right for the branches behind, and misses by about twice the reach in front."""
     explorer(tab, site, "h6ar")
     tab.get_by_label("show").select_option(label="published: waist angle")
@@ -228,7 +227,7 @@ def test_the_published_waist_of_the_h6ar_turns_to_the_rear(tab, site):  # noqa: 
     assert float(re.search(r"The hand is (\S+)", note.inner_text())[1]) < 1e-9
 
 
-def test_maps_are_drawn(tab, site):  # noqa: F811
+def test_maps_are_drawn(tab, site):
     explorer(tab, site, "five_bar")
     tab.locator("summary", has_text="Layers").click()
     for label in ("workspace and singular curves", "map: conditioning (1/κ)", "joint space"):
@@ -264,7 +263,7 @@ MAP = """(branch) => {
 
 
 @pytest.mark.parametrize("name", [n for n in NAMES if n not in WITHOUT_SECTION])
-def test_a_map_shows_what_the_module_computes(tab, site, name):  # noqa: F811
+def test_a_map_shows_what_the_module_computes(tab, site, name):
     """Where a branch has a posture, and in it the measure and the factors of the own mode."""
     explorer(tab, site, name)
     robot = importlib.import_module(f"closedform.generated.numpy.{name}")
@@ -306,7 +305,7 @@ def gaps(hand, x):
 
 
 @pytest.mark.parametrize("name", ["five_bar", "puma560"])
-def test_the_lines_that_are_copied_compute_what_is_seen(tab, site, name, tmp_path):  # noqa: F811
+def test_the_lines_that_are_copied_compute_what_is_seen(tab, site, name, tmp_path):
     explorer(tab, site, name)
     tab.evaluate("document.querySelector('.explorer').explorer.resizeTo({})")
     tab.locator("summary", has_text="Copy").click()
@@ -336,7 +335,7 @@ def test_the_lines_that_are_copied_compute_what_is_seen(tab, site, name, tmp_pat
     ["index.html", "mechanisms/index.html", "mechanisms/planar_2r.html", "mechanisms/delta.html"],
 )
 @pytest.mark.parametrize("theme", ["light", "dark"])
-def test_a_page_can_be_used_by_everybody(browser, site, path, theme):  # noqa: F811
+def test_a_page_can_be_used_by_everybody(browser, site, path, theme):
     axe = next(site.parent.glob("*work/node/node_modules/axe-core/axe.min.js"))
     page = browser.new_page(color_scheme=theme, viewport={"width": 1280, "height": 1000})
     page.goto(address(site, path))
@@ -349,7 +348,7 @@ def test_a_page_can_be_used_by_everybody(browser, site, path, theme):  # noqa: F
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_page_is_light(tab, site, name):  # noqa: F811
+def test_a_page_is_light(tab, site, name):
     explorer(tab, site, name)
     loaded = {url.partition("?")[0] for url in tab.asked if url.startswith("file:")}
     files = [Path(url.removeprefix("file://")) for url in loaded]
@@ -357,7 +356,7 @@ def test_a_page_is_light(tab, site, name):  # noqa: F811
     assert sum(f.stat().st_size for f in files if f.suffix not in pictures) < HEAVIEST
 
 
-def test_a_narrow_page_has_no_sideways_scroll(browser, site):  # noqa: F811
+def test_a_narrow_page_has_no_sideways_scroll(browser, site):
     page = browser.new_page(viewport={"width": 360, "height": 740})
     for path in ("index.html", "mechanisms/h6ar.html", "lemmas.html"):
         page.goto(address(site, path))

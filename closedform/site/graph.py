@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
+from closedform.emit.backends.latex.article import key
 from closedform.emit.backends.latex.claims import derives
-from closedform.emit.backends.latex.lemmas import key, lemmas_of
 from closedform.emit.backends.latex.lemmas import label as lemma_label
+from closedform.emit.backends.latex.lemmas import lemmas_of
 from closedform.model.claims import HOLDS
 from closedform.model.derivation import Derivation
 from closedform.proof.prove import Proof
+from closedform.site.markup import anchor
 
 WIDTH = 22
 """Characters in a line of a node."""
@@ -25,7 +27,7 @@ def _lines(derivation: Derivation, proof: Proof) -> Iterator[str]:
     name, steps = derivation.name, derivation.steps
     for k, step in enumerate(steps, 1):
         state = "proved" if step.vanishes and step.title in proof.steps else "definition"
-        yield _node(f"s{k}", step.title, state, f"#step-{name}-{k}", "box")
+        yield _node(f"s{k}", step.title, state, f"#{anchor(f'step:{name}:{k}')}", "box")
         for earlier in step.uses:
             yield f"s{steps.index(earlier) + 1} -> s{k}"
         verdicts = Counter(
@@ -38,18 +40,16 @@ def _lines(derivation: Derivation, proof: Proof) -> Iterator[str]:
             yield f"s{k} -> {node}"
     lemmas = {n: f"l{k}" for k, n in enumerate(lemmas_of(derivation))}
     for lemma, node in lemmas.items():
-        address = f"../lemmas.html#lemma-{key(lemma)}" if lemma_label(lemma) else ""
+        mark = lemma_label(lemma)
+        address = f"../lemmas.html#{anchor(mark)}" if mark else ""
         yield _node(node, f"Lemma: {lemma}", "proved", address, "ellipse")
     for k, inverse in enumerate(derivation.inverses):
-        address = f"#inverse-{name}-{inverse.function.replace('_', '-')}"
+        address = f"#{anchor(f'inverse:{name}:{key(inverse.function)}')}"
         proved = any(r.function == inverse.function for r in proof.inverses)
         text = f"Inverse: {inverse.function}"
         yield _node(f"i{k}", text, "proved" if proved else "definition", address, "box")
-        for lemma, node in lemmas.items():
-            applied = [s.lemma.name for s in derivation.solved if s.function == inverse.function]
-            applied += [link.lemma.name for link in inverse.links if link.lemma]
-            if lemma in applied:
-                yield f"{node} -> i{k}"
+        for lemma in lemmas_of(derivation, inverse.function):
+            yield f"{lemmas[lemma]} -> i{k}"
 
 
 def _node(node: str, text: str, state: str, address: str, shape: str) -> str:

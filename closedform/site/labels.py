@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 
-GREEK = {
-    "alpha": "α",
-    "beta": "β",
-    "gamma": "γ",
-    "theta": "θ",
-    "rho": "ρ",
-    "phi": "φ",
-    "psi": "ψ",
-    "sigma": "σ",
-}
+from closedform.emit.backends.latex.prose import GREEK
+
 DIGITS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+LETTERS = re.compile(r"[A-Za-z]+")
 
 
 def label(name: str) -> str:
     """A name as people write it."""
-    letter = next((g for g in GREEK if name.startswith(g)), "")
-    rest = re.sub(r"\d+", lambda m: m[0].translate(DIGITS), name[len(letter) :])
-    return f"{GREEK.get(letter, '')}{rest}"
+    return re.sub(r"\d+", lambda m: m[0].translate(DIGITS), LETTERS.sub(_letter, name, count=1))
+
+
+def _letter(found: re.Match[str]) -> str:
+    """The Greek letter that is spelled out, or the letters as they are."""
+    name = found[0]
+    if name not in GREEK:
+        return name
+    case = "CAPITAL" if name[0].isupper() else "SMALL"
+    spelled = name.lower().removeprefix("var").replace("lambda", "lamda")  # as Unicode has it
+    return unicodedata.lookup(f"GREEK {case} LETTER {spelled}")

@@ -151,7 +151,7 @@ class Page(Sheet):
             "summary": self.prose(function.summary),
             "source": self.prose(function.source),
             **self.computed(function),
-            "key": _key(function) if function.has_status else "",
+            "key": key(function.name) if function.has_status else "",
             "notes": [self.prose(n) for n in function.notes],
         }
 
@@ -185,7 +185,7 @@ class Page(Sheet):
         model = self.model(function)
         if model is None:
             return ""
-        label = f"inverse:{self.derivation.name}:{_key(model)}"
+        label = f"inverse:{self.derivation.name}:{key(model.name)}"
         place = rf", Section~\ref{{{label}}}" if model.has_status else ""
         cases = ", with its special cases" if algorithm.has_cases_of_model else ""
         return rf"\texttt{{{escape(model.name)}}}{place}{cases}"
@@ -249,8 +249,9 @@ def decimal(value: sp.Rational) -> str:
     return text if digits < 7 or len(text) < len(str(value)) else str(value)
 
 
-def _key(function: Function) -> str:
-    return function.name.replace("_", "-")
+def key(function: str) -> str:
+    """The name of a function in labels."""
+    return function.replace("_", "-")
 
 
 def formulas(texts: Sequence[str]) -> str:

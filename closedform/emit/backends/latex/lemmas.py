@@ -12,11 +12,12 @@ from closedform.model.derivation import Derivation
 from closedform.model.lemma import Theorem
 
 
-def lemmas_of(derivation: Derivation) -> list[str]:
-    """The names of the lemmas that the inverses of a derivation apply."""
-    found = [s.lemma.name for s in derivation.solved]
+def lemmas_of(derivation: Derivation, function: str = "") -> list[str]:
+    """The names of the lemmas that the inverses of a derivation apply, or one of its functions."""
+    found = [s.lemma.name for s in derivation.solved if function in ("", s.function)]
     for inverse in derivation.inverses:
-        found += [link.lemma.name for link in inverse.links if link.lemma]
+        if function in ("", inverse.function):
+            found += [link.lemma.name for link in inverse.links if link.lemma]
     return list(dict.fromkeys(found))
 
 

@@ -75,6 +75,39 @@ def tab(browser):
     context.close()
 
 
+class Phone:
+    """A page on a touch screen, and fingers on it."""
+
+    def __init__(self, context):
+        self.page = context.new_page()
+        self.session = context.new_cdp_session(self.page)
+
+    def fingers(self, *paths):
+        """Put fingers down one after another, move them together, and lift them."""
+        down = [path[0] for path in paths]
+        for k in range(1, len(down) + 1):
+            self._send("touchStart", down[:k])
+        for k in range(1, STEPS + 1):
+            self._send(
+                "touchMove",
+                [[a + k / STEPS * (b - a) for a, b in zip(*path, strict=True)] for path in paths],
+            )
+        self._send("touchEnd", [])
+
+    def _send(self, kind, places):
+        points = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(places)]
+        self.session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+
+@pytest.fixture
+def phone(browser):
+    context = browser.new_context(
+        viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True
+    )
+    yield Phone(context)
+    context.close()
+
+
 def address(site, path):
     return (site / path).as_uri()
 
@@ -225,6 +258,61 @@ def test_the_published_waist_of_the_h6ar_turns_to_the_rear(tab, site):
     tab.get_by_role("button", name="rear elbow up").click()
     tab.wait_for_timeout(100)
     assert float(re.search(r"The hand is (\S+)", note.inner_text())[1]) < 1e-9
+
+
+LOOK = """() => {
+    const { view, canvas } = document.querySelector(".explorer").explorer;
+    const box = canvas.getBoundingClientRect();
+    return {
+        scrolled: scrollY,
+        scale: view.scale,
+        middle: [box.left + box.width / 2, box.top + box.height / 2],
+        corner: [box.right - 12, box.bottom - 12],
+    };
+}"""
+
+
+@pytest.mark.parametrize("name", ["five_bar", "puma560"])
+def test_a_finger_drags_the_hand(phone, site, name):
+    """Also up and down, where a finger beside the mechanism scrolls the page."""
+    page = explorer(phone.page, site, name)
+    before, scrolled = page.evaluate(POINT), page.evaluate(LOOK)["scrolled"]
+    base = page.evaluate(
+        POINT, importlib.import_module(f"closedform.generated.numpy.{name}").SKELETON.ground[0]
+    )
+    wanted = [a + math.copysign(d, b - a) for a, b, d in zip(before, base, (8, 40), strict=True)]
+    phone.fingers((before, wanted))
+    page.wait_for_timeout(100)
+    np.testing.assert_allclose(page.evaluate(POINT), wanted, atol=0.5)
+    assert page.evaluate(LOOK)["scrolled"] == scrolled
+    agrees(name, page.evaluate(STATE))
+
+
+@pytest.mark.parametrize("name", ["five_bar", "puma560"])
+def test_two_fingers_zoom_and_move_the_picture(phone, site, name):
+    page = explorer(phone.page, site, name)
+    state, look, hand = page.evaluate(STATE), page.evaluate(LOOK), page.evaluate(POINT)
+    x, y = look["middle"]
+    first, second = [x - 30, y + 20], [x + 30, y + 20]
+    phone.fingers((first, [x - 60, y + 50]), (second, [x + 60, y + 50]))
+    page.wait_for_timeout(100)
+    after = page.evaluate(LOOK)
+    assert after["scale"] == pytest.approx(2 * look["scale"], rel=1e-3)
+    middle, moved = np.array([x, y + 20]), np.array([x, y + 50])
+    expected = moved + 2 * (np.array(hand) - middle)
+    np.testing.assert_allclose(page.evaluate(POINT), expected, atol=0.5)
+    assert page.evaluate(STATE)["x"] == state["x"]
+    assert after["scrolled"] == look["scrolled"]
+
+
+@pytest.mark.parametrize("name", ["five_bar", "puma560"])
+def test_a_finger_beside_the_mechanism_scrolls_the_page(phone, site, name):
+    page = explorer(phone.page, site, name)
+    state, look = page.evaluate(STATE), page.evaluate(LOOK)
+    x, y = look["corner"]
+    phone.fingers(([x, y], [x, y - 200]))
+    page.wait_for_function(f"scrollY > {look['scrolled'] + 100}")
+    assert page.evaluate(STATE)["q"] == state["q"]
 
 
 def test_maps_are_drawn(tab, site):

@@ -18,15 +18,25 @@ export function listen(explorer) {
     const wheel = (event) => {
         if (!event.ctrlKey && document.activeElement !== canvas) return;
         event.preventDefault();
-        const { view } = explorer;
-        view.zoom = Math.min(Math.max(view.zoom * Math.exp(-event.deltaY / 600), 0.2), 20);
+        explorer.view.zoomAt(Math.exp(-event.deltaY / 600), placeOn(canvas, event));
         explorer.changed();
     };
     canvas.addEventListener("wheel", wheel, { passive: false });
     canvas.addEventListener("keydown", (event) => press(explorer, event));
 }
 
-/** The pointer, or the fingers, that are on the canvas. */
+/** Where an event is on the canvas. */
+function placeOn(canvas, event) {
+    const box = canvas.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+}
+
+/**
+ * The pointer, or the fingers, that are on the canvas.
+ *
+ * One finger moves what it touches. Beside the mechanism it turns the view, or scrolls the page if it
+ * moves up or down first. Two fingers zoom and move the picture.
+ */
 class Pointers {
     constructor(explorer) {
         this.explorer = explorer;
@@ -37,12 +47,18 @@ class Pointers {
         canvas.addEventListener("pointermove", (event) => this.move(event));
         canvas.addEventListener("pointerup", (event) => this.release(event));
         canvas.addEventListener("pointercancel", (event) => this.release(event));
+        canvas.addEventListener("touchstart", (event) => this.touch(event), { passive: false });
     }
 
-    /** Where an event is on the canvas. */
     at(event) {
-        const box = this.explorer.canvas.getBoundingClientRect();
-        return [event.clientX - box.left, event.clientY - box.top];
+        return placeOn(this.explorer.canvas, event);
+    }
+
+    /** The page must not scroll while something is moved. */
+    touch(event) {
+        const [first] = event.targetTouches;
+        const held = grab(this.explorer, this.at(first)).point >= 0;
+        if (held || event.targetTouches.length > 1) event.preventDefault();
     }
 
     down(event) {
@@ -50,10 +66,15 @@ class Pointers {
         explorer.canvas.setPointerCapture(event.pointerId);
         const place = this.at(event);
         fingers.set(event.pointerId, place);
-        if (fingers.size === 1) this.grabbed = grab(explorer, place);
-        explorer.held = this.grabbed?.hand;
-        explorer.wanted = null;
         explorer.stop();
+        if (fingers.size > 1) {
+            this.grabbed = null;
+            explorer.release();
+            return;
+        }
+        this.grabbed = { ...grab(explorer, place), finger: event.pointerType === "touch" };
+        explorer.held = this.grabbed.hand;
+        explorer.wanted = null;
     }
 
     move(event) {
@@ -63,16 +84,17 @@ class Pointers {
         const last = fingers.get(event.pointerId);
         if (!last) {
             const over = grab(explorer, place);
-            canvas.style.cursor = over.point >= 0 ? "grab" : view.flat ? "default" : "move";
+            canvas.style.cursor = over.point >= 0 ? "grab" : "move";
             return;
         }
         fingers.set(event.pointerId, place);
         if (fingers.size === 2) {
             const [[, other]] = [...fingers].filter(([id]) => id !== event.pointerId);
-            const apart = ([x, y]) => Math.hypot(x - other[0], y - other[1]);
-            view.zoom *= apart(place) / Math.max(apart(last), 1);
+            const apart = ([x, y]) => Math.max(Math.hypot(x - other[0], y - other[1]), 1);
+            const middle = ([x, y]) => [(x + other[0]) / 2, (y + other[1]) / 2];
+            view.zoomAt(apart(place) / apart(last), middle(last), middle(place));
             explorer.changed();
-        } else drag(explorer, this.grabbed, place[0] - last[0], place[1] - last[1]);
+        } else if (this.grabbed) drag(explorer, this.grabbed, last, place);
     }
 
     release(event) {
@@ -96,14 +118,18 @@ function grab({ mechanism: m, view, q, mode }, [px, py]) {
     return joint < 0 ? NOTHING : { hand: false, point, joint };
 }
 
-/** Move what is grabbed, or turn the view. */
-function drag(explorer, grabbed, dx, dy) {
-    if (!grabbed) return;
+/** Move what is grabbed; beside the mechanism, turn the view or, but for a finger, move a flat picture. */
+function drag(explorer, grabbed, from, to) {
     const { view } = explorer;
+    const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     const step = view.unproject(dx, dy);
     if (grabbed.hand) explorer.moveHand(step);
     else if (grabbed.point >= 0) explorer.movePoint(grabbed.point, [grabbed.joint], step);
-    else if (!view.flat) {
+    else if (view.flat) {
+        if (grabbed.finger) return;
+        view.zoomAt(1, from, to);
+        explorer.changed();
+    } else {
         view.azimuth -= 0.008 * dx;
         view.elevation = Math.min(Math.max(view.elevation + 0.008 * dy, -1.57), 1.57);
         explorer.changed();

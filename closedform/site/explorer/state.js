@@ -29,8 +29,9 @@ export function read(hash, name) {
         }
     }
     const camera = numbers("camera");
-    if (camera?.length === 3 && camera[2] > 0) {
-        [state.camera.azimuth, state.camera.elevation, state.camera.zoom] = camera;
+    if ((camera?.length === 3 || camera?.length === 5) && camera[2] > 0) {
+        const [azimuth, elevation, zoom, across = 0, down = 0] = camera;
+        state.camera = { azimuth, elevation, zoom, pan: [across, down] };
     }
     return state;
 }
@@ -48,7 +49,8 @@ export function write(explorer) {
     if (explorer.pair) state.set("pair", explorer.pair.join(","));
     if (explorer.case >= 0) state.set("case", explorer.case);
     if (!view.flat) {
-        state.set("camera", [view.azimuth, view.elevation, view.zoom].map((v) => v.toFixed(3)).join(","));
+        const camera = [view.azimuth, view.elevation, view.zoom, ...view.pan];
+        state.set("camera", camera.map((v) => v.toFixed(3)).join(","));
     }
     history.replaceState(null, "", `#${state.toString().replaceAll("%2C", ",").replaceAll("%3A", ":")}`);
 }

@@ -1,5 +1,7 @@
 /** Draws postures on a canvas, in the plane or from a direction in space. */
 
+const [LEAST, MOST] = [0.2, 20]; // of the zoom
+
 export class View {
     /** @param {HTMLCanvasElement} canvas */
     constructor(canvas, { middle, radius }, flat) {
@@ -8,6 +10,8 @@ export class View {
         this.flat = flat;
         this.middle = middle;
         this.radius = radius;
+        /** How far the picture is moved on the page, in shares of its shorter side. */
+        this.pan = [0, 0];
     }
 
     /** Fit the canvas to its element. */
@@ -24,7 +28,7 @@ export class View {
 
     /** Come as near as these points allow, and look from the first direction. */
     fit(points) {
-        Object.assign(this, { azimuth: -1.0, elevation: 0.38, zoom: 1 });
+        Object.assign(this, { azimuth: -1.0, elevation: 0.38, zoom: 1, pan: [0, 0] });
         this.aim();
         const shares = points.map((p) => {
             const [x, y] = this.project(p);
@@ -34,9 +38,24 @@ export class View {
         this.aim();
     }
 
+    /** Zoom, and take what was under the first place of the canvas to the second. */
+    zoomAt(factor, from, to = from) {
+        const zoom = Math.min(Math.max(this.zoom * factor, LEAST), MOST);
+        const share = zoom / this.zoom;
+        const side = Math.min(this.width, this.height);
+        this.zoom = zoom;
+        this.pan = this.pan.map((v, k) => {
+            const middle = (k ? this.height : this.width) / 2;
+            return (to[k] - middle - share * (from[k] - middle - v * side)) / side;
+        });
+        this.aim();
+    }
+
     /** The directions of the page: to the right, upwards, and towards the visitor. */
     aim() {
-        this.scale = (0.47 * Math.min(this.width, this.height) * this.zoom) / this.radius;
+        const side = Math.min(this.width, this.height);
+        this.scale = (0.47 * side * this.zoom) / this.radius;
+        this.centre = [this.width / 2 + this.pan[0] * side, this.height / 2 + this.pan[1] * side];
         if (this.flat) {
             this.axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
             return;
@@ -50,7 +69,7 @@ export class View {
     project(p) {
         const d = p.map((v, k) => v - this.middle[k]);
         const [right, up, depth] = this.axes.map((a) => a[0] * d[0] + a[1] * d[1] + a[2] * d[2]);
-        return [this.width / 2 + right * this.scale, this.height / 2 - up * this.scale, depth];
+        return [this.centre[0] + right * this.scale, this.centre[1] - up * this.scale, depth];
     }
 
     /** A step on the canvas as one in space, parallel to the canvas. */

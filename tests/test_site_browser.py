@@ -392,6 +392,37 @@ def gaps(hand, x):
     return np.linalg.norm(hand - x[..., None, :], axis=-1)
 
 
+@pytest.mark.parametrize("name", WITHOUT_SECTION)
+def test_a_page_says_why_there_is_no_section(tab, site, name):
+    explorer(tab, site, name)
+    tab.locator("summary", has_text="Layers").click()
+    tab.get_by_text("There is no section of the workspace, because a target is").wait_for()
+
+
+@pytest.mark.parametrize("name", ["four_bar", "slider_crank"])
+def test_a_crank_turns_in_the_plot_of_its_coordinate(tab, site, name):
+    explorer(tab, site, name)
+    tab.locator("summary", has_text="Layers").click()
+    tab.get_by_label("over θ").check()
+    plot = tab.locator(".explorer .joint-space")
+    plot.scroll_into_view_if_needed()
+    box = plot.bounding_box()
+    tab.mouse.click(box["x"] + 0.75 * box["width"], box["y"] + 0.5 * box["height"])
+    state = tab.evaluate(STATE)
+    assert state["q"][0] == pytest.approx(math.pi / 2, abs=0.05)
+    agrees(name, state)
+    values = tab.evaluate(
+        "document.querySelector('.explorer').explorer.panel.groups.find((g) => g.plot).plot.values"
+    )
+    robot = importlib.import_module(f"closedform.generated.numpy.{name}")
+    turn = np.linspace(-math.pi, math.pi, len(values[0]))[:, None]
+    answer = robot.fk(turn)[0].reshape(len(turn), -1)
+    expected = np.exp(1j * answer.T) if name == "four_bar" else answer.T
+    found = np.array(values, dtype=float)
+    found = np.exp(1j * found) if name == "four_bar" else found
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
 @pytest.mark.parametrize("name", ["five_bar", "puma560"])
 def test_the_lines_that_are_copied_compute_what_is_seen(tab, site, name, tmp_path):
     explorer(tab, site, name)

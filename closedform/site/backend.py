@@ -195,6 +195,7 @@ def info(derivation: Derivation) -> dict[str, Any]:
             for p in derivation.parameters
         },
         "joints": {j.name: {"label": label(j.name)} for j in derivation.joints},
+        "task": [label(name) for name in derivation.task],
     }
 
 

@@ -9,6 +9,7 @@ import { COLOURS } from "./colours.js";
 import { button, checkbox, choice, element, group, slider } from "./controls.js";
 import { JointPlot } from "./joint-space.js";
 import { UNREACHABLE } from "./mechanism.js";
+import { TransferPlot } from "./transfer.js";
 import { lines, numbers, spoken, status } from "./words.js";
 
 const MEASURES = { conditioning: "conditioning (1/κ)", determinant: "determinant of the Jacobian" };
@@ -121,9 +122,9 @@ export function dimensions(explorer) {
     return { element: group("Dimensions", false, ...sliders.map((s) => s.row), buttons), show };
 }
 
-/** @param {Explorer} explorer @returns {Group} */
+/** @param {Explorer} explorer @returns {Group & { plot: import("./plot.js").Plot }} */
 export function layers(explorer) {
-    const { section } = explorer;
+    const { section, mechanism: m } = explorer;
     const boxes = new Map();
     const box = (key, label) => {
         const made = checkbox(label, explorer.layers[key], (on) => {
@@ -134,19 +135,32 @@ export function layers(explorer) {
         return made.row;
     };
     const rows = [];
-    if (section) rows.push(box("workspace", "workspace and singular curves"));
-    if (section?.measure) rows.push(box("map", `map: ${MEASURES[section.measure]}`));
-    const plot = explorer.pair && new JointPlot(explorer);
-    if (plot) rows.push(box("joints", "joint space"), plot.element);
+    if (section) {
+        rows.push(box("workspace", "workspace and singular curves"));
+        if (section.measure) rows.push(box("map", `map: ${MEASURES[section.measure]}`));
+    } else rows.push(element("p", { class: "note" }, withoutSection(m)));
+    const plot = explorer.pair ? new JointPlot(explorer) : new TransferPlot(explorer);
+    const shown = explorer.pair ? "joint space" : `${m.coordinate(0)} over ${m.label(0)}`;
+    rows.push(box("joints", shown), plot.element);
     rows.push(box("trail", "path of the hand"), box("names", "names of the points"));
     const note = element("p", { class: "note" });
     const show = () => {
         for (const [key, made] of boxes) made.checked = explorer.layers[key];
-        plot?.show();
+        plot.show();
         const on = section && (explorer.layers.workspace || explorer.layers.map);
         note.textContent = on ? ofSection(explorer) : "";
     };
-    return { element: group("Layers", false, ...rows, note), show };
+    return { element: group("Layers", false, ...rows, note), show, plot };
+}
+
+/** Why there is no section of the workspace, and where else to look. */
+function withoutSection(m) {
+    const { TASK } = m.robot;
+    const [target, instead] =
+        TASK.length === 9
+            ? ["an orientation", "The joint space shows where the mechanism is singular."]
+            : [`one number (${m.coordinate(0)})`, `It is drawn over ${m.label(0)} instead.`];
+    return `There is no section of the workspace, because a target is ${target} and not a place. ${instead}`;
 }
 
 function ofSection({ section, plane }) {

@@ -1,9 +1,9 @@
 /** The space of two joints: a plot that a visitor can drag in. */
 
-import { COLOURS, WARNING, colourOf } from "./colours.js";
-import { choice, element } from "./controls.js";
+import { WARNING } from "./colours.js";
+import { choice } from "./controls.js";
 import { contours, picture } from "./grid.js";
-import { OK } from "./mechanism.js";
+import { Plot } from "./plot.js";
 
 const CELLS = 120; // along a side
 
@@ -50,13 +50,12 @@ export class JointPlane {
 }
 
 /** The plot, and the choice of its two joints. */
-export class JointPlot {
+export class JointPlot extends Plot {
     /** @param {import("./explorer.js").Explorer} explorer */
     constructor(explorer) {
-        this.explorer = explorer;
+        super(explorer);
         const m = explorer.mechanism;
         this.plane = new JointPlane(m);
-        this.canvas = element("canvas", { class: "joint-space", tabindex: 0, role: "img" });
         const names = m.joints.map((_, k) => m.label(k));
         this.picks = ["across", "up"].map((way, k) =>
             choice(way, names, explorer.pair[k], (joint) => {
@@ -64,36 +63,34 @@ export class JointPlot {
                 explorer.changed();
             }),
         );
-        this.element = element("div", {}, this.canvas, ...this.picks.map((p) => p.row));
-        this.canvas.addEventListener("pointerdown", (event) => {
-            this.canvas.setPointerCapture(event.pointerId);
-            this.take(event);
-        });
-        this.canvas.addEventListener("pointermove", (event) => this.take(event));
+        this.element.append(...this.picks.map((p) => p.row));
     }
 
-    /** Move the two joints to where the pointer is. */
-    take(event) {
-        if (!event.buttons) return;
-        const box = this.canvas.getBoundingClientRect();
-        const share = [(event.clientX - box.left) / box.width, 1 - (event.clientY - box.top) / box.height];
+    /** Move the two joints. */
+    take(shares) {
         const q = [...this.explorer.q];
         this.explorer.pair.forEach((joint, k) => {
             const [low, high] = this.plane.range(joint);
-            q[joint] = low + share[k] * (high - low);
+            q[joint] = low + shares[k] * (high - low);
         });
         this.explorer.takeJoints(q);
     }
 
+    placeOf(q) {
+        return this.explorer.pair.map((joint) => {
+            const [low, high] = this.plane.range(joint);
+            return (q[joint] - low) / (high - low);
+        });
+    }
+
+    label() {
+        const [across, up] = this.explorer.pair.map((k) => this.explorer.mechanism.label(k));
+        return `Joint space: ${across} across, ${up} up; singular curves in red.`;
+    }
+
     show() {
-        const { layers, pair, mechanism: m } = this.explorer;
-        this.picks.forEach((p, k) => (p.select.selectedIndex = pair[k]));
-        this.element.hidden = !layers.joints;
-        if (!layers.joints) return;
-        this.compute();
-        this.draw();
-        const [across, up] = pair.map((k) => m.label(k));
-        this.canvas.setAttribute("aria-label", `Joint space: ${across} across, ${up} up; singular curves in red.`);
+        this.picks.forEach((p, k) => (p.select.selectedIndex = this.explorer.pair[k]));
+        super.show();
     }
 
     /** Compute the curves anew if anything but the two joints has changed. */
@@ -106,46 +103,23 @@ export class JointPlot {
         this.plane.compute(q, mode, pair);
     }
 
-    draw() {
-        const { canvas, plane, explorer } = this;
-        const ratio = window.devicePixelRatio || 1;
-        const side = Math.round((canvas.clientWidth || 240) * ratio);
-        if (canvas.width !== side) canvas.width = canvas.height = side;
-        const c = canvas.getContext("2d");
-        c.setTransform(1, 0, 0, 1, 0, 0);
-        c.fillStyle = colourOf(explorer.place, "paper");
-        c.fillRect(0, 0, side, side);
-        const scale = side / plane.image.width;
+    paint(c, side) {
+        this.compute();
+        const { image, curves } = this.plane;
+        const scale = side / image.width;
         c.save();
         c.translate(0, side);
         c.scale(scale, -scale);
         c.imageSmoothingEnabled = false;
-        c.drawImage(plane.image, 0, 0);
+        c.drawImage(image, 0, 0);
         c.restore();
         c.strokeStyle = WARNING;
-        c.lineWidth = 1.5 * ratio;
+        c.lineWidth = 1.5 * this.ratio;
         c.beginPath();
-        for (const [x, y, u, v] of plane.curves) {
+        for (const [x, y, u, v] of curves) {
             c.moveTo(x * scale, side - y * scale);
             c.lineTo(u * scale, side - v * scale);
         }
         c.stroke();
-        for (const p of explorer.found) {
-            if (p.status === OK) this.mark(p.q, COLOURS[p.index % COLOURS.length], 3 * ratio);
-        }
-        this.mark(explorer.q, COLOURS[explorer.branch % COLOURS.length], 6 * ratio);
-    }
-
-    mark(q, colour, radius) {
-        const { canvas, plane, explorer } = this;
-        const [x, y] = explorer.pair.map((joint) => {
-            const [low, high] = plane.range(joint);
-            return (q[joint] - low) / (high - low);
-        });
-        const c = canvas.getContext("2d");
-        c.beginPath();
-        c.arc(x * canvas.width, (1 - y) * canvas.height, radius, 0, 2 * Math.PI);
-        c.fillStyle = colour;
-        c.fill();
     }
 }

@@ -43,7 +43,7 @@ export class Mechanism {
         const position = positionIn(robot.TASK);
         this.places = position.map(([place]) => place);
         this.axes = position.map(([, axis]) => axis);
-        this.others = others(robot.TASK, this.places);
+        this.others = others(robot.TASK.map((_, k) => this.coordinate(k)), this.places);
         this.flat = this.isFlat();
         this.scales = this.typicalFactors();
     }
@@ -57,6 +57,11 @@ export class Mechanism {
     label(k) {
         const name = this.joints[k];
         return this.info.joints?.[name]?.label ?? name;
+    }
+
+    /** A coordinate of the task as people write it. */
+    coordinate(k) {
+        return this.info.task?.[k] ?? this.robot.TASK[k];
     }
 
     /** The position of a target in space; 0 along an axis that the task does not have. */

@@ -42,6 +42,11 @@ STATE = """() => {
         postures: explorer.postures(),
     };
 }"""
+LAYERS = "document.querySelector('.explorer').explorer.layers"
+CAMERA = """() => {
+    const { view } = document.querySelector(".explorer").explorer;
+    return view.flat ? null : [view.azimuth, view.elevation, view.zoom, ...view.pan];
+}"""
 POINT = """(name) => {
     const explorer = document.querySelector(".explorer").explorer;
     const { mechanism: m, view, canvas } = explorer;
@@ -141,6 +146,13 @@ def agrees(name, state):
             hand = points[robot.SKELETON.points.index(robot.SKELETON.hand)]
             drawn = np.array(posture["points"])[robot.SKELETON.points.index(robot.SKELETON.hand)]
             assert np.linalg.norm(hand - drawn) <= 1e-12 * size
+    if state["reached"]:
+        hand = robot.fk(np.array(state["q"]), params)
+        hand = hand.p[state["mode"]] if robot.ASSEMBLY_MODES else hand
+        gap = (hand - x).ravel()
+        angles = [len(gap) < 9 and name not in ("x", "y", "z") for name in robot.TASK]
+        gap[angles] = np.angle(np.exp(1j * gap[angles]))
+        assert np.max(np.abs(gap)) <= 1e-9 * max(size, 1)
 
 
 def test_every_page_loads_without_a_fault(tab, site):
@@ -156,7 +168,8 @@ def test_the_hand_can_be_dragged_through_a_singularity(tab, site, name):
     explorer(tab, site, name)
     agrees(name, tab.evaluate(STATE))
     start = tab.evaluate(POINT)
-    ground = importlib.import_module(f"closedform.generated.numpy.{name}").SKELETON.ground
+    robot = importlib.import_module(f"closedform.generated.numpy.{name}")
+    ground = robot.SKELETON.ground
     base = tab.evaluate(POINT, ground[0]) if ground else start
     toward = [a + 0.15 * (b - a) for a, b in zip(start, base, strict=True)]
     away = [a + 1.5 * (a - b) for a, b in zip(start, base, strict=True)]
@@ -166,10 +179,13 @@ def test_the_hand_can_be_dragged_through_a_singularity(tab, site, name):
     seen = set()
     for begin, end in pairwise((start, toward, away, across)):
         for k in range(1, STEPS + 1):
-            tab.mouse.move(*(a + k / STEPS * (b - a) for a, b in zip(begin, end, strict=True)))
+            pointer = [a + k / STEPS * (b - a) for a, b in zip(begin, end, strict=True)]
+            tab.mouse.move(*pointer)
             state = tab.evaluate(STATE)
             seen.add(tuple(state["q"]))
             agrees(name, state)
+            if state["reached"] and name not in WITHOUT_SECTION:
+                np.testing.assert_allclose(tab.evaluate(POINT), pointer, atol=0.5)
     tab.mouse.up()
     assert len(seen) > 4
     assert not tab.faults
@@ -181,13 +197,24 @@ def test_a_link_holds_what_is_seen(tab, site, browser, name):
     tab.locator(".explorer canvas").first.focus()
     for key in ("ArrowRight", "ArrowUp", "]"):
         tab.keyboard.press(key)
-    tab.wait_for_function("location.hash.includes('explore')")
-    tab.wait_for_timeout(400)
-    before = tab.evaluate(STATE)
+    tab.evaluate(
+        """() => {
+            const explorer = document.querySelector(".explorer").explorer;
+            const [[name, value]] = Object.entries(explorer.mechanism.parameters);
+            explorer.resizeTo({ [name]: 1.01 * value });
+            explorer.layers.names = true;
+            explorer.view.azimuth = 0.5;
+        }"""
+    )
+    tab.wait_for_function("location.hash.includes('names')")
+    before, layers, camera = tab.evaluate(STATE), tab.evaluate(LAYERS), tab.evaluate(CAMERA)
     other = browser.new_page()
     explorer(other, site, name, tab.evaluate("location.hash"))
     after = other.evaluate(STATE)
+    assert other.evaluate(LAYERS) == layers
+    assert camera is None or other.evaluate(CAMERA) == pytest.approx(camera, abs=1e-3)
     other.close()
+    assert after["parameters"] == before["parameters"]
     np.testing.assert_allclose(after["q"], before["q"], rtol=0, atol=1e-12)
     assert (after["branch"], after["mode"]) == (before["branch"], before["mode"])
 

@@ -219,9 +219,32 @@ def test_a_link_holds_what_is_seen(tab, site, browser, name):
     assert (after["branch"], after["mode"]) == (before["branch"], before["mode"])
 
 
+def test_a_link_holds_the_branch_where_two_meet(tab, site, browser):
+    """The joints alone do not tell which branch it is."""
+    explorer(tab, site, "planar_2r")
+    tab.evaluate(
+        """() => {
+            const explorer = document.querySelector(".explorer").explorer;
+            explorer.takeTarget([18, 0]);
+            explorer.choose(1);
+        }"""
+    )
+    tab.wait_for_function("location.hash.includes('branch=1')")
+    other = browser.new_page()
+    assert (
+        explorer(other, site, "planar_2r", tab.evaluate("location.hash")).evaluate(STATE)["branch"]
+        == 1
+    )
+    other.close()
+
+
 @pytest.mark.parametrize(
     "mark",
-    ["#explore=planar_2r&q=1", "#explore=planar_2r&q=a,b&branch=9&p=__proto__:1,l1:x", "#%E0%A4%A"],
+    [
+        "#explore=planar_2r&q=1",
+        "#explore=planar_2r&q=a,b&branch=9&p=__proto__:1,l3:1,l1:x",
+        "#%E0%A4%A",
+    ],
 )
 def test_a_link_that_does_not_fit_is_ignored(tab, site, mark):
     state = explorer(tab, site, "planar_2r", mark).evaluate(STATE)
@@ -366,9 +389,9 @@ def test_maps_are_drawn(tab, site):
         assert value == pytest.approx(1 / robot.condition_number(q)[mode], abs=0.03)
 
 
-MAP = """(branch) => {
+MAP = """([branch, map]) => {
     const { section, x } = document.querySelector(".explorer").explorer;
-    section.start(x, branch, 24, { map: true, workspace: true });
+    section.start(x, branch, 24, { map, workspace: true });
     while (!section.done) section.step(1000);
     const { size, axes, low, width } = section;
     const plain = (values) => Array.from(values, (v) => (Number.isNaN(v) ? null : v));
@@ -383,7 +406,7 @@ def test_a_map_shows_what_the_module_computes(tab, site, name):
     explorer(tab, site, name)
     robot = importlib.import_module(f"closedform.generated.numpy.{name}")
     for branch in {0, len(robot.BRANCHES) // 2, len(robot.BRANCHES) - 1}:
-        found = tab.evaluate(MAP, branch)
+        found = tab.evaluate(MAP, [branch, True])
         n = found["size"]
         cells = (np.arange(n) + 0.5) / n * found["width"]
         x = np.tile(np.array(found["x"], dtype=float), (n, n, 1))
@@ -395,6 +418,8 @@ def test_a_map_shows_what_the_module_computes(tab, site, name):
         factor = np.array(found["factor"], dtype=float).reshape(-1, n, n)
         reached = (status == 0) | (status == 2)
         np.testing.assert_array_equal(~np.isnan(value), reached)
+        border = np.array(tab.evaluate(MAP, [branch, False])["value"], dtype=float)
+        np.testing.assert_array_equal(~np.isnan(border), reached.ravel())
         assert reached.any()
         expected = (
             1 / robot.condition_number(q)
@@ -453,7 +478,13 @@ def test_a_crank_turns_in_the_plot_of_its_coordinate(tab, site, name):
 @pytest.mark.parametrize("name", ["five_bar", "puma560"])
 def test_the_lines_that_are_copied_compute_what_is_seen(tab, site, name, tmp_path):
     explorer(tab, site, name)
-    tab.evaluate("document.querySelector('.explorer').explorer.resizeTo({})")
+    tab.evaluate(
+        """() => {
+            const explorer = document.querySelector(".explorer").explorer;
+            const [[name, value]] = Object.entries(explorer.mechanism.parameters);
+            explorer.resizeTo({ [name]: 1.01 * value });
+        }"""
+    )
     tab.locator("summary", has_text="Copy").click()
     state = tab.evaluate(STATE)
     expected = state["postures"][state["branch"]]["q"]

@@ -535,7 +535,8 @@ def test_a_page_is_light(tab, site, name):
 
 def test_a_narrow_page_has_no_sideways_scroll(browser, site):
     page = browser.new_page(viewport={"width": 360, "height": 740})
-    for path in ("index.html", "mechanisms/h6ar.html", "lemmas.html"):
+    for path in ("index.html", "mechanisms/h6ar.html", "mechanisms/puma560.html", "lemmas.html"):
         page.goto(address(site, path))
-        assert page.evaluate("document.documentElement.scrollWidth") <= 360, path
+        for part in ("html", ".content"):
+            assert page.evaluate(f"document.querySelector('{part}').scrollWidth") <= 360, path
     page.close()

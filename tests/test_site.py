@@ -1,12 +1,16 @@
 """The site as it is built: its links, its formulas, and that it needs nothing from elsewhere."""
 
 import re
+import shutil
+import subprocess
+import sys
 from collections import Counter
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 
+from closedform import five_bar
 from closedform.pipeline import run as pipeline
 from closedform.site.labels import label
 from closedform.site.markup import Markdown, MarkupError, Place
@@ -16,6 +20,35 @@ SEPARATE = re.compile(r"\\[A-Za-z]+")
 LATEX = ROOT / "generated" / "latex"
 
 md = Markdown({"step:arm:2": Place("#step-arm-2", "The elbow")})
+
+
+# The home page
+
+
+def test_the_examples_of_the_home_page_run(tmp_path: Path) -> None:
+    """In all three languages, with the same joints for the same target."""
+    home = (ROOT / "templates" / "site" / "home.md.jinja").read_text("utf-8")
+    code = {
+        n: re.search(rf"```{n}\n(.*?)```", home, re.DOTALL).group(1) for n in ("python", "c", "js")
+    }
+
+    def output(*command: str | Path) -> str:
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+    joints = [f"{a:.6f} {b:.6f}" for a, b in five_bar.ik([3.0, 10.0]).q]
+    assert five_bar.BRANCHES[0] in output(sys.executable, "-c", code["python"])
+    if shutil.which("cc"):
+        c = ROOT / "generated" / "c"
+        (tmp_path / "main.c").write_text(code["c"], "utf-8")
+        program = tmp_path / "main"
+        output("cc", tmp_path / "main.c", c / "five_bar.c", f"-I{c}", "-o", program, "-lm")
+        assert output(program).splitlines() == joints
+    if shutil.which("node"):
+        shutil.copytree(ROOT / "generated" / "js", tmp_path / "node_modules" / "closedform")
+        (tmp_path / "main.mjs").write_text(code["js"], "utf-8")
+        lines = output("node", tmp_path / "main.mjs").splitlines()
+        numbers = [re.findall(r"-?\d+\.\d+", line) for line in lines]
+        assert [" ".join(f"{float(v):.6f}" for v in found) for found in numbers] == joints
 
 
 # Sentences

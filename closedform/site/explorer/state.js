@@ -48,9 +48,7 @@ export function write(explorer) {
     state.set("show", Object.keys(layers).filter((k) => layers[k]).join(","));
     if (explorer.pair) state.set("pair", explorer.pair.join(","));
     if (explorer.case >= 0) state.set("case", explorer.case);
-    if (!view.flat) {
-        const camera = [view.azimuth, view.elevation, view.zoom, ...view.pan];
-        state.set("camera", camera.map((v) => v.toFixed(3)).join(","));
-    }
+    const camera = [view.azimuth, view.elevation, view.zoom, ...view.pan];
+    state.set("camera", camera.map((v) => v.toFixed(3)).join(","));
     history.replaceState(null, "", `#${state.toString().replaceAll("%2C", ",").replaceAll("%3A", ":")}`);
 }

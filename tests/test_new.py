@@ -175,7 +175,7 @@ def test_new_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[st
     (tmp_path / "arm.py").write_text("mine", "utf-8")
     assert main(["new", "arm", "--from", "dh", str(table), "-o", str(tmp_path)]) == 1
     assert "already exists" in capsys.readouterr().err
-    assert main(["new", "arm2", "--from", "mjcf", str(table)]) == 2
+    assert main(["new", "arm2", "--from", "usd", str(table)]) == 2
     assert main(["new", "arm2", "--from", "dh", "nowhere.csv"]) == 2
     assert (tmp_path / "arm.py").read_text("utf-8") == "mine"
     assert "arm" not in sys.modules

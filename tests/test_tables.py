@@ -174,7 +174,7 @@ def test_files_and_options(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     for arguments, message in (
         (["screws", "nowhere.toml"], "there is no file nowhere.toml"),
         (["screws", str(tmp_path)], "is not a file"),
-        (["mjcf", str(table)], "screws FILE.toml, urdf FILE.urdf or loop FILE.toml, not mjcf"),
+        (["usd", str(table)], "urdf FILE.urdf, mjcf FILE.xml or loop FILE.toml, not usd"),
         (["screws", str(table), "--modified"], "--modified needs --from dh"),
     ):
         assert main(["new", "arm", "-o", str(tmp_path), "--from", *arguments]) == 2

@@ -80,7 +80,7 @@ def _body(model: Any, k: int, file: str, notes: list[str]) -> Iterator[Joint]:
         joint = model.joint(i)
         of = f"{file}, joint {shown_name(joint.name or str(i))}"
         kind = KINDS[int(joint.type[0])]
-        through = [meant_length(e) for e in _exact(joint.pos)]
+        through = _place(joint.pos, of, notes)
         axis = sp.Matrix([0, 0, 1])
         if kind in ("prismatic", "revolute"):
             axis = meant_axis(sp.Matrix(_exact(joint.axis)), of, notes)
@@ -114,6 +114,17 @@ def _exact(values: NDArray[Any]) -> list[sp.Rational]:
     return [sp.Rational(f"{float(v):.15g}") for v in values]
 
 
+def _place(pos: NDArray[Any], where: str, notes: list[str]) -> tuple[sp.Rational, ...]:
+    given = _exact(pos)
+    meant = tuple(map(meant_length, given))
+    notes += [
+        f"{where}: pos {float(a):.12g} is taken for {float(b):.12g}"
+        for a, b in zip(given, meant, strict=True)
+        if a != b
+    ]
+    return meant
+
+
 def _pose(pos: NDArray[Any], quat: NDArray[Any], where: str, notes: list[str]) -> sp.Matrix:
     w, x, y, z = quat
     sine = 2 * (w * y - z * x)
@@ -132,4 +143,4 @@ def _pose(pos: NDArray[Any], quat: NDArray[Any], where: str, notes: list[str]) -
         if abs(float(turns[-1] - angle)) > ROUNDED:
             notes += said
     exact = rotation("z", turns[2]) * rotation("y", turns[1]) * rotation("x", turns[0])
-    return homogeneous(exact, tuple(meant_length(e) for e in _exact(pos)))
+    return homogeneous(exact, _place(pos, where, notes))

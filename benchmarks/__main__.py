@@ -155,15 +155,8 @@ def versions() -> str:
 
 
 def machine() -> str:
-    info = Path("/proc/cpuinfo")
-    cpu = platform.processor() or platform.machine()
-    if info.exists():
-        cpu = next(
-            (s.split(":")[1].strip() for s in info.read_text().splitlines() if "model name" in s),
-            cpu,
-        )
     gcc = subprocess.run(["gcc", "-dumpfullversion"], capture_output=True, text=True, check=False)
-    return f"{cpu}, gcc {gcc.stdout.strip()}, Python {platform.python_version()}"
+    return f"{native.processor()}, gcc {gcc.stdout.strip()}, Python {platform.python_version()}"
 
 
 def main() -> int:

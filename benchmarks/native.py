@@ -6,6 +6,7 @@ import ctypes
 import importlib
 import inspect
 import logging
+import platform
 import subprocess
 import tempfile
 from collections.abc import Callable
@@ -29,6 +30,14 @@ def widest() -> str:
     info = Path("/proc/cpuinfo")
     wide = info.exists() and " avx512vl " in info.read_text()
     return TARGETS["AVX-512" if wide else "AVX2"]
+
+
+def processor() -> str:
+    """The name of the processor."""
+    info = Path("/proc/cpuinfo")
+    lines = info.read_text().splitlines() if info.exists() else []
+    names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    return next(names, platform.processor() or platform.machine())
 
 
 LOOP = """
@@ -288,15 +297,20 @@ def compiled(
     return ctypes.CDLL(str(library))
 
 
-def timer(
-    name: str, case: Case, target: str, folder: Path, inputs: np.ndarray
-) -> tuple[Callable[[], float], np.ndarray]:
-    """A function that returns nanoseconds per call, and the values of one pass."""
-    library = build(name, case, target, folder)
+def running(library: ctypes.CDLL) -> Callable[..., float]:
+    """The loop of a library, which returns nanoseconds per call."""
     run = library.run
     run.restype = ctypes.c_double
     pointer = np.ctypeslib.ndpointer(np.float64, flags="C")
     run.argtypes = [pointer, pointer, *[ctypes.c_int] * 4]
+    return run
+
+
+def timer(
+    name: str, case: Case, target: str, folder: Path, inputs: np.ndarray
+) -> tuple[Callable[[], float], np.ndarray]:
+    """A function that returns nanoseconds per call, and the values of one pass."""
+    run = running(build(name, case, target, folder))
     rows = np.hstack([inputs, np.tile(list(case.parameters.values()), (len(inputs), 1))])
     width = case.width
     out = np.full((len(inputs), width + 8), np.nan)

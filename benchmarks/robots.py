@@ -8,12 +8,13 @@ nanoseconds are those of one call of the printed C, with all branches, at random
 from __future__ import annotations
 
 import argparse
-import subprocess
 import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import median
 
+import numpy as np
 import sympy as sp
 
 from closedform.emit.pages import pages, shared_files
@@ -22,7 +23,7 @@ from closedform.pipeline import run as pipeline
 from closedform.proof.prove import prove
 from closedform.scaffold.new import Script, new
 
-from .native import FLAGS
+from .native import LOOP, compiled, processor, running
 
 FOLDER = Path(__file__).parent / "arms"
 PAGE = Path(__file__).parents[1] / "docs" / "robots.md"
@@ -45,44 +46,16 @@ core of {machine}. This page is written by `python -m benchmarks.robots`.
 | robot | structure | branches | lemmas | s | ns |
 |---|---|---:|---|---:|---:|
 """
-DRIVER = """
+CALLS = """
 #include "{name}.c"
-#include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
-enum {{ N = 512, ROUNDS = 31 }};
-static real_t q[N][{joints}], found[{answers}], targets[N][{entries}];
-static uint8_t status[{branches}];
-static int by_size(const void *a, const void *b)
+static const {name}_params params = {upper}_DEFAULTS;
+void reach(const double *q, double *x) {{ {name}_fk(&params, q, x); }}
+void evaluate(const double *in, double *out)
 {{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}}
-int main(void)
-{{
-    const {name}_params params = {upper}_DEFAULTS;
-    double times[ROUNDS], sum = 0.0;
-    srand(1);
-    for (int i = 0; i < N; ++i) {{
-        for (int j = 0; j < {joints}; ++j)
-            q[i][j] = (real_t)(6.0 * rand() / RAND_MAX - 3.0);
-        {name}_fk(&params, q[i], targets[i]);
-    }}
-    for (int k = 0; k < ROUNDS; ++k) {{
-        struct timespec a, b;
-        clock_gettime(CLOCK_MONOTONIC, &a);
-        for (int i = 0; i < N; ++i) {{
-            {name}_ik(&params, {arguments}, found, status);
-            sum += (double)found[0];
-        }}
-        clock_gettime(CLOCK_MONOTONIC, &b);
-        times[k] = 1e9 * (double)(b.tv_sec - a.tv_sec) + (double)(b.tv_nsec - a.tv_nsec);
-    }}
-    qsort(times, ROUNDS, sizeof *times, by_size);
-    printf("%.0f", times[ROUNDS / 2] / N);
-    return sum == 0.5;
+    {name}_ik(&params, {arguments}, out, (unsigned char *)(out + {answers}));
 }}
 """
+POSTURES, ROUNDS = 512, 31
 
 
 @dataclass(frozen=True)
@@ -136,31 +109,25 @@ def nanoseconds(d: Derivation, folder: Path) -> str:
     """The time of one call of the inverse."""
     inverse, joints = d["ik"], [s.name for s in d.actuated]
     arguments = [
-        f"&q[i][{joints.index(a.name)}]" if a.name in joints else "targets[i]"
+        f"in + {inverse.inputs[0].size + joints.index(a.name)}" if a.name in joints else "in"
         for a in inverse.inputs
     ]
     branches = len(list(inverse.cases()))
-    code = DRIVER.format(
-        name=d.name,
-        upper=d.name.upper(),
-        joints=len(joints),
-        entries=inverse.inputs[0].size,
-        branches=branches,
-        answers=branches * len(joints),
-        arguments=", ".join(arguments),
+    answers, entries = branches * len(joints), inverse.inputs[0].size
+    code = CALLS.format(
+        name=d.name, upper=d.name.upper(), arguments=", ".join(arguments), answers=answers
     )
-    (folder / "main.c").write_text(code, "utf-8")
-    build = ["cc", *FLAGS, "-march=native", "main.c", "-o", "main", "-lm"]
-    subprocess.run(build, cwd=folder, check=True)
-    done = subprocess.run([folder / "main"], capture_output=True, text=True, check=True)
-    return done.stdout
-
-
-def machine() -> str:
-    """The processor, as the system names it."""
-    lines = Path("/proc/cpuinfo").read_text("utf-8").splitlines()
-    names = (line.partition(": ")[2] for line in lines if line.startswith("model name"))
-    return next(names, "this machine")
+    loop = folder / "loop.c"
+    loop.write_text(LOOP, "utf-8")
+    library = compiled(["gcc", "-std=gnu99"], folder / "calls.c", code, "native", loop)
+    run = running(library)
+    rows = np.zeros((POSTURES, entries + len(joints)))
+    rows[:, entries:] = np.random.default_rng(1).uniform(-3, 3, (POSTURES, len(joints)))
+    for row in rows:
+        library.reach(np.ctypeslib.as_ctypes(row[entries:]), np.ctypeslib.as_ctypes(row))
+    out = np.empty((POSTURES, answers + branches))
+    sizes = (rows.shape[1], out.shape[1], POSTURES, 1)
+    return f"{median(run(rows, out, *sizes) for _ in range(ROUNDS)):.0f}"
 
 
 def page(paths: list[Path]) -> str:
@@ -169,7 +136,7 @@ def page(paths: list[Path]) -> str:
         sp.core.cache.clear_cache()
         rows.append(row(robot))
         print(rows[-1], flush=True)
-    return HEAD.format(machine=machine()) + "\n".join(rows) + "\n"
+    return HEAD.format(machine=processor()) + "\n".join(rows) + "\n"
 
 
 def main() -> None:

@@ -32,6 +32,7 @@ NAMED = 4
 """At most this many changed files are named."""
 FILES = ("dh TABLE.csv", "screws FILE.toml", "urdf FILE.urdf", "mjcf FILE.xml", "loop FILE.toml")
 """What `new` reads: kinds and files."""
+READ = f"{', '.join(FILES[:-1])} or {FILES[-1]}"
 PRETTY = "─│⎡⎣√θ₁"
 """Characters that draw a formula in two dimensions; a terminal without them gets ASCII."""
 
@@ -155,7 +156,7 @@ def parser() -> argparse.ArgumentParser:
         nargs=2,
         required=True,
         metavar=("KIND", "FILE"),
-        help=f"{', '.join(FILES[:-1])} or {FILES[-1]}",
+        help=READ,
     )
     new.add_argument(
         "--base", metavar="LINK", default="", help="of a URDF or MJCF file; default: root"
@@ -362,7 +363,7 @@ def new_command(options: argparse.Namespace) -> None:
     """Write the skeleton of a derivation, with pose, Jacobians and a proposed inverse."""
     kind, path = options.table[0], Path(options.table[1])
     if kind not in {given.split()[0] for given in FILES}:
-        raise CommandError(f"--from takes {', '.join(FILES[:-1])} or {FILES[-1]}, not {kind}", 2)
+        raise CommandError(f"--from takes {READ}, not {kind}", 2)
     if not path.is_file():
         problem = f"{path} is not a file" if path.exists() else f"there is no file {path}"
         raise CommandError(problem, 2)

@@ -1,4 +1,4 @@
-"""Prints records as the LaTeX that a notebook shows.
+"""Prints records as the LaTeX or the Markdown that a notebook shows.
 
 Importing this module registers its printers with :mod:`closedform.model.display`.
 """

@@ -13,18 +13,17 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from closedform.mechanics.frames import homogeneous, rotation
 from closedform.scaffold.tables import Table, TableError, content_of, shown_name
 from closedform.scaffold.tree import (
+    LARGEST,
     Joint,
     meant_angle,
     meant_axis,
     meant_length,
+    placed,
     table_of,
 )
 
-LARGEST = 2_000_000
-"""Maximum size of a file in bytes; meshes are files of their own."""
 ROUNDED = 1e-6
 """Angles from quaternions are never exact: less than this is not worth a note."""
 KINDS = ("floating", "ball", "prismatic", "revolute")
@@ -75,6 +74,7 @@ def _body(model: Any, k: int, file: str, notes: list[str]) -> Iterator[Joint]:
     place = _pose(body.pos, body.quat, where, notes)
     at, end = _name(model.body(int(body.parentid[0]))), _name(body)
     first, count = int(body.jntadr[0]), int(body.jntnum[0])
+    level = (0, 0, 0)
     back = sp.eye(4)
     for i in range(first, first + count):
         joint = model.joint(i)
@@ -88,12 +88,12 @@ def _body(model: Any, k: int, file: str, notes: list[str]) -> Iterator[Joint]:
             notes.append(f"{of}: it is 0 in the pose of the file, not at the value of ref")
         least, most = (repr(float(v)) for v in joint.range)
         limits = (least, most) if model.jnt_limited[i] else None
-        place = (place * back * homogeneous(sp.eye(3), tuple(through))).applyfunc(sp.expand)
+        place = (place * back * placed(through, level)).applyfunc(sp.expand)
         link = f"{end} after {joint.name or i}"
-        yield Joint(joint.name or f"q{i + 1}", kind, at, link, place, axis, "", limits)
+        yield Joint(joint.name or f"q{i + 1}", kind, at, link, place, axis, limits)
         at, place = link, sp.eye(4)
-        back = homogeneous(sp.eye(3), tuple(-e for e in through))
-    yield Joint(f"{end} on {at}", "fixed", at, end, place * back, sp.Matrix([0, 0, 1]), "", None)
+        back = placed([-e for e in through], level)
+    yield Joint(f"{end} on {at}", "fixed", at, end, place * back, sp.Matrix([0, 0, 1]))
 
 
 def _site(model: Any, k: int, file: str, notes: list[str]) -> Joint | None:
@@ -101,7 +101,7 @@ def _site(model: Any, k: int, file: str, notes: list[str]) -> Joint | None:
     where = f"{file}, site {shown_name(site.name)}"
     place = _pose(site.pos, site.quat, where, notes)
     body = _name(model.body(int(site.bodyid[0])))
-    fixed = Joint(site.name, "fixed", body, site.name, place, sp.Matrix([0, 0, 1]), "", None)
+    fixed = Joint(site.name, "fixed", body, site.name, place, sp.Matrix([0, 0, 1]))
     return fixed if site.name else None
 
 
@@ -114,15 +114,8 @@ def _exact(values: NDArray[Any]) -> list[sp.Rational]:
     return [sp.Rational(f"{float(v):.15g}") for v in values]
 
 
-def _place(pos: NDArray[Any], where: str, notes: list[str]) -> tuple[sp.Rational, ...]:
-    given = _exact(pos)
-    meant = tuple(map(meant_length, given))
-    notes += [
-        f"{where}: pos {float(a):.12g} is taken for {float(b):.12g}"
-        for a, b in zip(given, meant, strict=True)
-        if a != b
-    ]
-    return meant
+def _place(pos: NDArray[Any], where: str, notes: list[str]) -> list[sp.Rational]:
+    return [meant_length(e, f"{where}: pos", notes) for e in _exact(pos)]
 
 
 def _pose(pos: NDArray[Any], quat: NDArray[Any], where: str, notes: list[str]) -> sp.Matrix:
@@ -142,5 +135,4 @@ def _pose(pos: NDArray[Any], quat: NDArray[Any], where: str, notes: list[str]) -
         turns.append(meant_angle(angle, where, said))
         if abs(float(turns[-1] - angle)) > ROUNDED:
             notes += said
-    exact = rotation("z", turns[2]) * rotation("y", turns[1]) * rotation("x", turns[0])
-    return homogeneous(exact, _place(pos, where, notes))
+    return placed(_place(pos, where, notes), turns)

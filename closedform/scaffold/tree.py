@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from closedform.mechanics.frames import homogeneous, rotation
 from closedform.model.functions import real
 from closedform.scaffold.tables import (
     JOINTS,
@@ -23,6 +24,8 @@ from closedform.scaffold.tables import (
     use_exact,
 )
 
+LARGEST = 2_000_000
+"""Maximum size of a file in bytes; meshes are files of their own."""
 NOISE = sp.Rational(1, 10**9)
 """Angles and coordinates of axes below this are the rounding of an exporter, not meant."""
 MEANT = ((0, sp.Rational(1, 10**5)), (4, sp.Rational(1, 10**6)), (9, sp.Rational(1, 10**9)))
@@ -44,8 +47,8 @@ class Joint:
     child: str
     origin: sp.Matrix
     axis: sp.Matrix
-    mimics: str
-    limits: tuple[str, str] | None
+    limits: tuple[str, str] | None = None
+    mimics: str = ""
 
 
 def table_of(
@@ -89,13 +92,30 @@ def table_of(
     return table
 
 
-def meant_length(value: sp.Rational) -> sp.Rational:
+def placed(xyz: Sequence[sp.Expr], rpy: Sequence[sp.Expr]) -> sp.Matrix:
+    """A pose from its position and from turns about the fixed axes x, y and z, in this order."""
+    x, y, z = rpy
+    return homogeneous(rotation("z", z) * rotation("y", y) * rotation("x", x), tuple(xyz))
+
+
+def meant_number(value: sp.Rational, what: str, notes: list[str]) -> sp.Rational:
+    """A number, or 0 if it is noise."""
+    return value if abs(value) >= NOISE else _taken(value, sp.S.Zero, what, notes)
+
+
+def meant_length(value: sp.Rational, what: str, notes: list[str]) -> sp.Rational:
     """A length without what the arithmetic of an exporter added to it."""
     for decimals, near in MEANT:
         short = sp.Rational(round(value * 10**decimals), 10**decimals)
         if abs(value - short) < near and (decimals or short == 0):
-            return short
+            return _taken(value, short, what, notes)
     return value
+
+
+def _taken(value: sp.Rational, meant: sp.Rational, what: str, notes: list[str]) -> sp.Rational:
+    if value != meant:
+        notes.append(f"{what} {float(value)!r} is taken for {float(meant):.12g}")
+    return meant
 
 
 def meant_axis(given: sp.Matrix, where: str, notes: list[str]) -> sp.Matrix:

@@ -5,27 +5,25 @@ A URDF file is data: entities and other declarations are refused, and every numb
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
 import sympy as sp
 
 from closedform.algebra.formulas import FormulaError, number, shown
-from closedform.mechanics.frames import homogeneous, rotation
 from closedform.scaffold.tables import Table, TableError, content_of, shown_name
 from closedform.scaffold.tree import (
+    LARGEST,
     MOVING,
-    NOISE,
     Joint,
     meant_angle,
     meant_axis,
     meant_length,
+    meant_number,
+    placed,
     table_of,
 )
-
-LARGEST = 2_000_000
-"""Maximum size of a file in bytes; meshes are files of their own."""
 
 
 def read_urdf(path: Path, *, base: str = "", tool: str = "") -> Table:
@@ -64,11 +62,18 @@ def _joint(element: ElementTree.Element, file: str, notes: list[str]) -> Joint:
             raise TableError(f"{where}: it has no {end} link")
         links.append(found.get("link", ""))
     origin, axis = element.find("origin"), element.find("axis")
-    xyz = _numbers(origin, "xyz", (0, 0, 0), where, notes, meant_length)
-    rpy = _numbers(origin, "rpy", (0, 0, 0), where, notes)
-    turned = [meant_angle(e, where, notes) for e in rpy]
-    turn = rotation("z", turned[2]) * rotation("y", turned[1]) * rotation("x", turned[0])
-    direction = sp.Matrix(_numbers(axis, "xyz", (1, 0, 0), where, notes))
+    xyz, rpy, direction = (
+        _numbers(element, key, default, where)
+        for element, key, default in (
+            (origin, "xyz", (0, 0, 0)),
+            (origin, "rpy", (0, 0, 0)),
+            (axis, "xyz", (1, 0, 0)),
+        )
+    )
+    xyz = [meant_length(e, f"{where}: xyz", notes) for e in xyz]
+    rpy = [meant_number(e, f"{where}: rpy", notes) for e in rpy]
+    direction = sp.Matrix([meant_number(e, f"{where}: xyz", notes) for e in direction])
+    rpy = [meant_angle(e, where, notes) for e in rpy]
     if kind in MOVING and direction.is_zero_matrix:
         raise TableError(f"{where}: its axis is zero")
     if kind in MOVING:
@@ -79,10 +84,10 @@ def _joint(element: ElementTree.Element, file: str, notes: list[str]) -> Joint:
         kind,
         links[0],
         links[1],
-        homogeneous(turn, tuple(xyz)),
+        placed(xyz, rpy),
         direction,
-        "" if mimic is None else mimic.get("joint", "another joint"),
         None if kind == "continuous" else _limits(element.find("limit"), where, notes),
+        "" if mimic is None else mimic.get("joint", "another joint"),
     )
 
 
@@ -104,14 +109,9 @@ def _limits(
 
 
 def _numbers(
-    element: ElementTree.Element | None,
-    key: str,
-    default: Sequence[int],
-    where: str,
-    notes: list[str],
-    meant: Callable[[sp.Rational], sp.Rational] = lambda v: v if abs(v) >= NOISE else sp.S.Zero,
+    element: ElementTree.Element | None, key: str, default: Sequence[int], where: str
 ) -> list[sp.Rational]:
-    """Three exact numbers; ``meant`` takes the noise of an exporter from each."""
+    """Three exact numbers."""
     text = None if element is None else element.get(key)
     if text is None:
         return [sp.Integer(e) for e in default]
@@ -124,8 +124,5 @@ def _numbers(
             fraction = number(word)
         except FormulaError as error:
             raise TableError(f"{where}: {key}: {error}") from error
-        value = sp.Rational(fraction.numerator, fraction.denominator)
-        found.append(meant(value))
-        if found[-1] != value:
-            notes.append(f"{where}: {key} {word} is taken for {float(found[-1]):.12g}")
+        found.append(sp.Rational(fraction.numerator, fraction.denominator))
     return found

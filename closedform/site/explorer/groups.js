@@ -5,7 +5,7 @@
  * @typedef {import("./explorer.js").Explorer} Explorer
  */
 
-import { COLOURS } from "./colours.js";
+import { branchColour } from "./colours.js";
 import { button, checkbox, choice, element, group, slider } from "./controls.js";
 import { JointPlot } from "./joint-space.js";
 import { UNREACHABLE } from "./mechanism.js";
@@ -20,7 +20,7 @@ export function branches(explorer) {
     const legend = m.branches.map((name, k) => {
         const note = element("small");
         const swatch = element("span", { class: "swatch" });
-        swatch.style.background = COLOURS[k % COLOURS.length];
+        swatch.style.background = branchColour(k);
         const choose = button("", () => explorer.choose(k), { class: "branch" });
         choose.append(swatch, spoken(name), " ", note);
         return { choose, note };

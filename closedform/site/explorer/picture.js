@@ -1,6 +1,6 @@
 /** The picture: all postures, the map below them, and what is marked. */
 
-import { COLOURS, WARNING, colourOf } from "./colours.js";
+import { WARNING, branchColour, colourOf } from "./colours.js";
 import { reaches } from "./mechanism.js";
 import { drawPosture } from "./view.js";
 
@@ -34,7 +34,7 @@ function drawBranches({ view, mechanism: m, found, branch }, common) {
     for (const p of found ?? []) {
         if (p.index === branch || !reaches(p.status)) continue;
         const points = m.points(p.q)[p.mode];
-        const style = { ...common, colour: COLOURS[p.index % COLOURS.length], width: 2, alpha: 0.45, bare: true };
+        const style = { ...common, colour: branchColour(p.index), width: 2, alpha: 0.45, bare: true };
         if (points) drawPosture(view, m.skeleton, points, style);
     }
 }
@@ -47,7 +47,7 @@ function drawModes({ view, mechanism: m, q, mode, branch }, common) {
         if (points && k !== mode) drawPosture(view, m.skeleton, points, other);
     });
     const own = modes[mode];
-    if (own) drawPosture(view, m.skeleton, own, { ...common, colour: COLOURS[branch % COLOURS.length] });
+    if (own) drawPosture(view, m.skeleton, own, { ...common, colour: branchColour(branch) });
     return own;
 }
 

@@ -1,6 +1,6 @@
 /** A square plot beside the picture, in which a visitor can drag. */
 
-import { COLOURS, colourOf } from "./colours.js";
+import { branchColour, colourOf } from "./colours.js";
 import { element } from "./controls.js";
 import { OK } from "./mechanism.js";
 
@@ -42,9 +42,9 @@ export class Plot {
         c.fillRect(0, 0, side, side);
         this.paint(c, side);
         for (const p of found) {
-            if (p.status === OK) this.mark(this.placeOf(p.q, x), COLOURS[p.index % COLOURS.length], 3);
+            if (p.status === OK) this.mark(this.placeOf(p.q, x), branchColour(p.index), 3);
         }
-        this.mark(this.placeOf(q, x), COLOURS[branch % COLOURS.length], 6);
+        this.mark(this.placeOf(q, x), branchColour(branch), 6);
     }
 
     /** A dot at a place, in shares of the sides. */

@@ -1,6 +1,6 @@
 /** A mechanism with one joint and one coordinate: the coordinate over a turn of the joint. */
 
-import { COLOURS, colourOf } from "./colours.js";
+import { branchColour, colourOf } from "./colours.js";
 import { Plot } from "./plot.js";
 
 const STEPS = 720;
@@ -45,7 +45,7 @@ export class TransferPlot extends Plot {
         const ground = colourOf(place, "ground");
         this.axes(c, side, ground);
         this.values.forEach((values, k) => {
-            c.strokeStyle = k === mode ? COLOURS[branch % COLOURS.length] : ground;
+            c.strokeStyle = k === mode ? branchColour(branch) : ground;
             c.lineWidth = (k === mode ? 2.2 : 1.4) * this.ratio;
             c.beginPath();
             let last = NaN;

@@ -297,8 +297,10 @@ class _Batch:
         """
         truth, sample, eps = self.truth, self.sample, self.backend.eps
         solutions, status = _call(self.backend, truth.function, sample)
-        slack = 2 * self.backend.tolerances.feasibility
-        margins = truth.margins(sample.values, sample.parameters, slack, -slack, -16 * eps)
+        feasibility = self.backend.tolerances.feasibility
+        slack, matched = 2 * feasibility, min(16 * eps, feasibility / 8)
+        limits = (slack, -slack, -16 * eps)
+        margins = truth.margins(sample.values, sample.parameters, *limits, matched=matched)
         feasible = np.where(abs(margins) > slack, np.sign(margins), 0)
         wrong = self._suspicious(solutions, status, feasible)
         for row, branch in np.argwhere(wrong):
@@ -458,7 +460,8 @@ def _leaves_the_workspace(truth: Solutions, backend: Backend, sample: Sample) ->
     If a large offset is subtracted from a large distance, an ulp of the target moves far inside.
     """
     slack = backend.tolerances.feasibility
-    margins = truth.margins(_nearby(backend, sample).values, sample.parameters, -slack)
+    nearby = _nearby(backend, sample).values
+    margins = truth.margins(nearby, sample.parameters, -slack, matched=slack)
     return bool((margins < -slack).all(axis=1).any())
 
 

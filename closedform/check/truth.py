@@ -20,7 +20,7 @@ from closedform.check.samples import Magnitudes, Sample, with_parameters
 from closedform.lemmas.chain import numbers_of_tool
 from closedform.lower import lower
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Bound, Function, Let, Require, Vanishes, substitute
+from closedform.model.functions import Bound, Function, Let, Match, Require, Vanishes, substitute
 from closedform.model.inverse import Combination, Inverse
 
 Array = NDArray[Any]
@@ -138,6 +138,7 @@ class Solutions:
         self._in_numbers = max(numbers_of_tool(derivation), default=0.0)
         given = (*function.symbols, *parameters)
         self._bounds = [_margins(function, given, signs) for _, signs in function.cases()]
+        self._matches = [_margins(function, given, signs, Match) for _, signs in function.cases()]
         required = [e for s in function.body if isinstance(s, Require) for e in s.values]
         self._required = RowEvaluator(given, function.explicit(required, {})[0])
         factors = next((f for f in derivation.functions if f.name == "singularities"), None)
@@ -231,13 +232,20 @@ class Solutions:
             errors = (abs(middle) + radius) / np.where(self._is_turn, 1.0, scale[:, None])
         return np.asarray(np.where(np.isfinite(errors), errors, np.inf).max(axis=1))
 
-    def margins(self, given: Array, parameters: Sequence[float], *limits: float) -> Array:
+    def margins(
+        self, given: Array, parameters: Sequence[float], *limits: float, matched: float
+    ) -> Array:
         """The smallest bound of each branch over its scale, negative where the branch is none.
 
-        It is decided on which side of each of the ``limits`` it is.
+        It is decided on which side of each of the ``limits`` it is.  What must match, and misses by
+        no more than ``matched``, does not count.
         """
         rows = with_parameters(given, parameters)
-        return np.stack([_least(b, rows, *limits) for b in self._bounds], axis=1)
+        least, missed = (
+            np.stack([_least(b, rows, *limits, -matched) for b in evaluators], axis=1)
+            for evaluators in (self._bounds, self._matches)
+        )
+        return np.where(missed >= -matched, least, np.fmin(least, missed))
 
     def unfit(self, given: NDArray[Any], parameters: Sequence[float]) -> float:
         """How far an input misses what is required of it, as that its matrix is a rotation."""
@@ -302,7 +310,8 @@ def _margins(
     signs: Mapping[sp.Symbol, int],
     kind: type = Bound,
 ) -> RowEvaluator:
-    """The bounds (or what the flags look at) of a branch, over their natural scales.
+    """The bounds of a branch over their natural scales, or of flags what they look at, or of what
+    must match the negative by which it misses.
 
     No flag holds, and what is chosen only where one does is left out.
     """
@@ -314,8 +323,9 @@ def _margins(
             named[statement.symbol] = substitute(statement.value, lowered)
         elif isinstance(statement, Vanishes):
             lowered[statement.symbol] = sp.false
-        if isinstance(statement, kind) and isinstance(statement, (Bound, Vanishes)):
-            margins.append(substitute(statement.value / statement.scale, lowered))
+        if isinstance(statement, kind) and isinstance(statement, (Bound, Vanishes, Match)):
+            share = statement.value / statement.scale
+            margins.append(substitute(-sp.Abs(share) if kind is Match else share, lowered))
     used: set[sp.Basic] = set()
     pending = {s for e in margins for s in e.free_symbols}
     while pending:

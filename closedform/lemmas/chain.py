@@ -506,7 +506,7 @@ def lengths_in_numbers(place: sp.Expr) -> sp.Expr:
 
 def numbers_of_tool(derivation: Derivation) -> list[float]:
     """Of each coordinate of the tool: a number in the place of a parameter is as large as one."""
-    poses = [f.outputs[0].entries for f in derivation.functions if f.name == "pose"]
+    poses = [f.values({}) for f in derivation.functions if f.name == "pose"]
     return [float(lengths_in_numbers(place)) for entries in poses for place in entries[3:12:4]]
 
 

@@ -99,7 +99,8 @@ class _Chain:
             f"{self.where}: the equation solved for {_names(link)} by {_title(link)} does not "
             f"follow from the forward map"
         )
-        require(sp.Matrix([self.posture(e) for e in link.equations]), (), place)
+        for missed in outcomes(sp.ImmutableMatrix([self.posture(e) for e in link.equations])):
+            require(missed, (), place)
 
     def _not_degenerate(self, link: Link) -> None:
         """Prove that the flags of a lemma are false at some posture."""

@@ -34,6 +34,10 @@ class SubproblemMaker(Maker):
     """The pair of the first joint of a wrist."""
     more: str = ""
     """What the lemma of a wrist is told beside its angles."""
+    tool: str = ""
+    """The direction of the last axis, if it tells of the first joint."""
+    along: sp.Expr = sp.S.Zero
+    """Its component along the parallel axes in between."""
 
     def vector(self, name: str, value: str, label: str = "") -> None:
         """Name a vector, by default by the name of the variable."""
@@ -51,6 +55,7 @@ class SubproblemMaker(Maker):
         n = len(arm.joints)
         before, ends = arm.joints[: n - wrist], arm.joints[n - wrist :]
         R = self._centre(arm)
+        self._see_the_last_axis(arm, R)
         solved = self.position(before)
         M = times(arm.lead[:3, :3].T, R)
         for k, (pair, end) in enumerate(solved.turned, 1):
@@ -107,6 +112,7 @@ class SubproblemMaker(Maker):
             "Known are five joints of which the middle three are parallel.",
         )
         R = self._centre(arm)
+        self._see_the_last_axis(arm, R)
         w = four.shift
         q, pair = self._seen_in_plane(one, two.shift[2] + three.shift[2] + w[2])
         M = f"{times(one.end.T, f'(turned({pair}).T * {times(arm.lead[:3, :3].T, R)})')}"
@@ -145,6 +151,18 @@ class SubproblemMaker(Maker):
             moved = times(lead.T, f"(p - {source(arm.lead[:3, 3])})")
             self.vector("p", moved, "p0")
         return R
+
+    def _see_the_last_axis(self, arm: Singles, R: str) -> None:
+        """Keep the direction of the last axis if the joints between it and the first are parallel.
+
+        Six joints reach every direction, so it says nothing of the first one.
+        """
+        middle = arm.joints[1:-1]
+        few = len(arm.joints) <= 5 and not any(j.slides for j in arm.joints)
+        if few and middle and all(parallel(j) for j in middle[:-1]):
+            axis = (arm.tool[:3, :3].T * Z).applyfunc(sp.simplify)
+            self.tool = times(arm.lead[:3, :3].T, f"{R} * {source(axis)}")
+            self.along = sp.simplify(sp.prod([j.end[2, 2] for j in middle]))
 
     # The joints that carry a point
 
@@ -189,10 +207,28 @@ class SubproblemMaker(Maker):
         """Solve a joint by how far ``p`` is along the next axis; name the point in that frame."""
         g, p = one.end * Z, point("p")
         c = beside + g.dot(one.shift) - g[2] * p[2]
-        pair = self._turn(one, (*turning(g, p), c), toward)
+        if self.tool:
+            pair = self._by_point_and_axis(one, g, c, toward)
+        else:
+            pair = self._turn(one, (*turning(g, p), c), toward)
         q = times(one.end.T, f"(turned({pair}).T * p - {source(one.shift)})")
         self.vector("q", q)
         return "q", pair
+
+    def _by_point_and_axis(self, one: Single, g: sp.Matrix, c: sp.Expr, toward: str) -> str:
+        """Solve a joint by the components of the point ``p`` and of the last axis along ``g``.
+
+        Where one of them is near the axis of the joint, the other decides.
+        """
+        self.vector("tool", self.tool)
+        tool = point("tool")
+        if self.along in (1, -1):
+            return self._rotate(one, source(g[:2, 0] * self.along), "tool", scale="1")
+        self.add("side = ik.let('side', ik.size*sign_of(p[0]*tool[0] + p[1]*tool[1]))")
+        self.vector("both", "p + side*tool")
+        both, side = point("both"), sp.Symbol("side")
+        sides = (*turning(g, both), c + side * (self.along - g[2] * tool[2]))
+        return self._turn(one, sides, toward)
 
     def _three(self, one: Single, two: Single, three: Single) -> Solved:
         if not parallel(one) and two.end == sp.eye(3):
@@ -212,6 +248,8 @@ class SubproblemMaker(Maker):
 
     def _parallel_last(self, one: Single, two: Single, three: Single) -> Solved:
         u, v = two.shift, three.shift
+        if self.tool and len(self.arm.joints) == 4 and not parallel(three):
+            return self._pointing(one, two, three)
         reached = times(one.end.T, f"(turned(pair).T * p - {source(one.shift)})")
         lengths = ", ".join(source(norm(w[:2, 0])) for w in (u, v))
         self.add(f"links = Links(lambda pair: {reached}, {lengths})")
@@ -221,6 +259,26 @@ class SubproblemMaker(Maker):
         return Solved(
             f"axes {two.number} and {three.number} parallel",
             [(pair, one.end), (f"({self.pairs[0]} + {bend})", three.end)],
+        )
+
+    def _pointing(self, one: Single, two: Single, three: Single) -> Solved:
+        """Two parallel joints that point the last axis: it says more of their sum than a point."""
+        u, v = two.shift, three.shift
+        self.require(
+            not u[:2, 0].is_zero_matrix,
+            f"axes {two.number} and {three.number} are one",
+            "Two parallel axes need a link between them.",
+        )
+        q, first = self._seen_in_plane(one, u[2] + v[2])
+        both = self.angle(two.turn + three.turn)
+        pointed = times(one.end.T, f"(turned({first}).T * tool)")
+        axis = source((three.end * Z)[:2, 0])
+        self.solve("rotate", f"{both}, {axis}, {pointed}, scale=1", "pointed")
+        self.vector("beyond", f"{q} - turned(pointed) * {source(v)}")
+        self._rotate(two, source(u[:2, 0]), "beyond")
+        return Solved(
+            f"axes {two.number} and {three.number} parallel, which point the last",
+            [(first, one.end), ("pointed", three.end)],
         )
 
     def _meeting_first(self, one: Single, two: Single, three: Single) -> Solved:

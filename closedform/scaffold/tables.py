@@ -41,7 +41,7 @@ JOINTS = 16
 ROWS = 32
 DIGITS = re.compile(r"[-+0-9./eE]+")
 IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "atan2")
-CHAIN = ("Reaching", "turned", *chain_lemmas())
+CHAIN = ("Reaching", "sign_of", "turned", *chain_lemmas())
 AUTHOR = (
     "Chain", "Derivation", "Links", "LinksAndWrist", "LinksAtHeight", "Pair", "Paper", "from_dh",
     "from_screws", "real",
@@ -51,6 +51,7 @@ LINES = {
     "M", "ahead", "ik", "p", "q", "reaching", "turn1", "turn2", "wx", "wy", "x", "y", "yaw", "z",
     "rho", "given", "back", "far", "carried", "seen", "beyond", "left", "onward",
     "onto", "over", "axis", "before", "end",
+    "tool", "side", "both", "pointed",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

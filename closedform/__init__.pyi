@@ -19,6 +19,7 @@ from closedform.lemmas.coupled import coupled as coupled
 from closedform.lemmas.legs import Crank as Crank
 from closedform.lemmas.legs import Slide as Slide
 from closedform.lemmas.legs import Stretch as Stretch
+from closedform.lemmas.legs import Strut as Strut
 from closedform.lemmas.links import Reaching as Reaching
 from closedform.lemmas.links import named as named
 from closedform.lemmas.links import polar as polar

@@ -9,6 +9,7 @@ LENGTHS = {
     "delta": {"x": [0, 1, 2], "p": [0, 1, 2]},
     "linear_delta": {"x": [0, 1, 2], "q": [0, 1, 2], "p": [0, 1, 2]},
     "orthoglide": {"x": [0, 1, 2], "q": [0, 1, 2], "p": [0, 1, 2]},
+    "spherical_five_bar": {"x": [0, 1, 2], "p": [0, 1, 2]},
     "slider_crank": {"x": [0], "p": [0]},
     "scara": {"x": [0, 1, 2], "q": [2]},
     "stanford_arm": {"q": [2]},

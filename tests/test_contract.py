@@ -212,6 +212,20 @@ ROBOTS = {
         "branches": 8,
         "assembly_modes": 2,
     },
+    "spherical_five_bar": {
+        "fields": ("r", "gamma", "alpha1", "alpha2", "beta1", "beta2"),
+        "joints": ("theta1", "theta2"),
+        "task": ("x", "y", "z"),
+        "shapes": {
+            "jacobian_parallel": (2, 3, 3),
+            "jacobian_serial": (2, 2),
+            "jacobian": (2, 3, 2),
+            "condition_number": (2,),
+            "singularities": (2, 3),
+        },
+        "branches": 4,
+        "assembly_modes": 2,
+    },
     "four_bar": {
         "fields": ("L1", "L2", "L3", "L4"),
         "joints": ("theta",),

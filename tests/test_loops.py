@@ -9,7 +9,18 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from closedform import Crank, Derivation, Paper, Slide, Stretch, coupled, parallel, prove, real
+from closedform import (
+    Crank,
+    Derivation,
+    Paper,
+    Slide,
+    Stretch,
+    Strut,
+    coupled,
+    parallel,
+    prove,
+    real,
+)
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import Naming
 from closedform.lemmas.spheres import three_spheres
@@ -21,7 +32,7 @@ from closedform.scaffold.new import new
 from closedform.scaffold.tables import TableError
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
-HANDS = ("five_bar", "delta", "linear_delta", "orthoglide", "rpr_planar")
+HANDS = ("five_bar", "delta", "linear_delta", "orthoglide", "spherical_five_bar", "rpr_planar")
 SINGLE = ("four_bar", "slider_crank")
 STARTS = 40
 LENGTH, ROD = real("l", nonnegative=True), real("r", nonnegative=True)
@@ -49,6 +60,9 @@ def rods(name: str, q: np.ndarray, p: np.ndarray) -> np.ndarray:
         L0, L1, L2, L3, L4 = values
         ends = [(L1 * np.cos(q[0]), L1 * np.sin(q[0])), (L0 + L2 * np.cos(q[1]), L2 * np.sin(q[1]))]
         lengths = [L3, L4]
+    elif name == "spherical_five_bar":
+        angles = [np.arccos(np.clip(p @ b / np.linalg.norm(p), -1, 1)) for b in crank_ends(q)]
+        return np.array([np.linalg.norm(p) - values.r, *angles]) - (0, values.beta1, values.beta2)
     elif name == "rpr_planar":
         ends, lengths = [(0.0, 0.0), (values.b, 0.0)], list(q)
     elif name == "orthoglide":
@@ -67,6 +81,24 @@ def rods(name: str, q: np.ndarray, p: np.ndarray) -> np.ndarray:
     return np.array([np.linalg.norm(p - e) - r for e, r in zip(ends, lengths, strict=True)])
 
 
+def crank_ends(q: np.ndarray) -> list[np.ndarray]:
+    """Directions of the ends of the spherical cranks: the z axis, turned by three angles each."""
+    _, gamma, alpha1, alpha2, *_ = robot("spherical_five_bar").Parameters()
+    # in the frame of an axis x, the crank at 0 points in y: a turn about z, then one about x
+    return [
+        turn("z", place) @ turn("x", angle) @ turn("z", arc) @ (1, 0, 0)
+        for place, angle, arc in ((0, q[0], alpha1), (gamma, q[1], alpha2))
+    ]
+
+
+def turn(axis: str, angle: float) -> np.ndarray:
+    i, j = {"x": (1, 2), "z": (0, 1)}[axis]
+    R = np.eye(3)
+    R[[i, j], [i, j]] = np.cos(angle)
+    R[j, i], R[i, j] = np.sin(angle), -np.sin(angle)
+    return R
+
+
 def newton(f, x: np.ndarray) -> np.ndarray | None:
     for _ in range(60):
         here = f(x)
@@ -74,10 +106,7 @@ def newton(f, x: np.ndarray) -> np.ndarray | None:
             return x
         steps = 1e-7 * np.eye(len(x))
         rates = np.array([(f(x + s) - f(x - s)) / 2e-7 for s in steps]).T
-        try:
-            step = np.linalg.solve(rates, here)
-        except np.linalg.LinAlgError:
-            return None
+        step = np.linalg.lstsq(rates, here)[0]
         x = x - step / max(1.0, np.abs(step).max())
     return None
 
@@ -150,10 +179,14 @@ def test_the_jacobian_is_the_derivative(name: str) -> None:
     assert kept.sum() > 100
     np.testing.assert_allclose(J[kept], expected[kept], atol=1e-6)
     A, B = module.jacobian_parallel(q), module.jacobian_serial(q)
-    np.testing.assert_allclose((A @ J)[kept], (B[..., None] * np.eye(B.shape[-1]))[kept], atol=1e-9)
+    legs = B.shape[-1]
+    rest = (A @ J)[kept][:, : A.shape[-1] - legs]  # what has no joint does not change
+    np.testing.assert_allclose(rest, np.zeros_like(rest), atol=1e-9)
+    driven = (A @ J)[..., A.shape[-1] - legs :, :]
+    np.testing.assert_allclose(driven[kept], (B[..., None] * np.eye(legs))[kept], atol=1e-9)
 
 
-@pytest.mark.parametrize("name", HANDS[:4])
+@pytest.mark.parametrize("name", HANDS[:5])
 def test_the_sign_of_each_leg_names_its_working_mode(name: str) -> None:
     module, rng = robot(name), np.random.default_rng(8)
     p, status = module.fk(joints(module, rng, 300))
@@ -206,6 +239,52 @@ def test_orthoglide_is_isotropic_at_home() -> None:
     np.testing.assert_allclose(np.abs(module.jacobian(q)[mode]), np.eye(3), atol=1e-12)
 
 
+def test_a_small_spherical_five_bar_is_a_planar_one() -> None:
+    """On a sphere of ten thousand times its size, mode by mode and branch by branch."""
+    planar, sphere, rng = robot("five_bar"), robot("spherical_five_bar"), np.random.default_rng(11)
+    lengths, r = np.array(planar.Parameters()), 1e5
+    L0, L1, L2, L3, L4 = lengths / r
+    parameters = sphere.Parameters(r, L0, L1, L2, L3, L4)
+    q = rng.uniform(-np.pi, np.pi, (2000, 2))
+    expected, found = planar.fk(q), sphere.fk(q, parameters)
+    assert planar.BRANCHES == sphere.BRANCHES
+    assert planar.ASSEMBLY_MODES == sphere.ASSEMBLY_MODES
+    good = (expected.status == OK) & (np.abs(planar.singularities(q)[..., -1]) > 5)
+    assert good.sum() > 1000
+    np.testing.assert_allclose(found.p[good][:, 1:], expected.p[good], atol=1e-4)
+    p = found.p[good]
+    good = planar.ik(p[:, 1:]).status == OK
+    answers = planar.ik(p[:, 1:]).q, sphere.ik(p, parameters).q
+    B = np.abs(planar.jacobian_serial(answers[0])).min(axis=(-1, -2)) > 5
+    gap = apart(*answers, np.array([True]))[good & B]
+    assert len(gap) > 1000
+    assert gap.max() < 1e-4
+
+
+def test_spherical_five_bar_at_right_angles_is_isotropic() -> None:
+    module = robot("spherical_five_bar")
+    right = module.Parameters(1, *[np.pi / 2] * 5)
+    q = np.array([0, np.pi])
+    np.testing.assert_allclose(np.abs(module.fk(q, right).p), [[0, 0, 1]] * 2, atol=1e-15)
+    np.testing.assert_allclose(module.condition_number(q, right), 1)
+    rng = np.random.default_rng(12)
+    q = joints(module, rng, 200)
+    p, A = module.fk(q).p, module.jacobian_parallel(q)
+    there = np.isfinite(p).all(axis=-1) & (module.condition_number(q) < 1e3)
+    along = p[there][:, :, None] * p[there][:, None] / module.Parameters().r ** 2
+    singular = np.linalg.svd(A[there][:, 1:] @ (np.eye(3) - along), compute_uv=False)
+    np.testing.assert_allclose(module.condition_number(q)[there], singular[:, 0] / singular[:, 1])
+
+
+def test_a_target_off_the_sphere_is_unreachable() -> None:
+    module = robot("spherical_five_bar")
+    p = module.fk(np.array([1.9, 1.2])).p[0]
+    size = np.array([1, 1 + 1e-13, 1 + 1e-11, 1 - 1e-11, 0.5, 0])[:, None]
+    statuses = module.ik(size * p).status
+    np.testing.assert_array_equal(statuses, np.repeat([[OK, OK, *[UNREACHABLE] * 4]], 4, 0).T)
+    np.testing.assert_array_equal(module.workspace_contains(size * p), (statuses == OK)[:, 0])
+
+
 def test_four_bar_satisfies_freudensteins_equation() -> None:
     module = robot("four_bar")
     L1, L2, L3, L4 = module.Parameters()
@@ -216,7 +295,7 @@ def test_four_bar_satisfies_freudensteins_equation() -> None:
     np.testing.assert_allclose(left, 2 * L2 * L4 * np.cos(theta - psi), atol=1e-12)
 
 
-@pytest.mark.parametrize("name", ["delta", "orthoglide", "five_bar"])
+@pytest.mark.parametrize("name", ["delta", "orthoglide", "five_bar", "spherical_five_bar"])
 def test_where_the_centres_coincide_the_hand_is_free(name: str) -> None:
     """Two legs with the same end: the status says so, and the answer satisfies the loop."""
     module = robot(name)
@@ -224,6 +303,7 @@ def test_where_the_centres_coincide_the_hand_is_free(name: str) -> None:
         "delta": ([0.3, 0.3, 0.5], (0.1, 0.04, 0.15, 0.35, 1.0, 1.0, 2.0)),
         "orthoglide": ([0.0, 0.0, 0.3], (1.0,)),
         "five_bar": ([0.4, 0.4], (0.0, 2.0, 2.0, 1.0, 1.0)),
+        "spherical_five_bar": ([0.4, 0.4], (1.0, 0.0, 0.9, 0.9, np.pi / 3, np.pi / 3)),
     }[name]
     p, status = module.fk(np.array(q), parameters)
     assert (status == SINGULAR).all()
@@ -298,6 +378,9 @@ def test_legs_and_joints_must_agree() -> None:
         parallel(d, (real("x"), real("y")), [Stretch(real("q1"), (0, 0))])
     with pytest.raises(ShapeError, match="give the legs in this order"):
         parallel(d, (real("x"), real("y")), [Stretch(q, (0, 0)) for q in (real("q2"), real("q1"))])
+    for legs in ([Strut(1, (0, 0)), Stretch(real("q1"), (0, 0))], [Strut(1, (0, 0))] * 2):
+        with pytest.raises(ShapeError, match="must be the first of three legs in space"):
+            parallel(d, (real("x"), real("y")), legs)
     with pytest.raises(ValueError, match="same rod"):
         coupled(
             d,

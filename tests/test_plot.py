@@ -16,6 +16,7 @@ from matplotlib import pyplot as plt
 import closedform
 from closedform import plot
 from closedform.cli.commands import main
+from closedform.plot.catalogue import fits
 from closedform.plot.postures import OK, spoken
 
 SMALL = 40
@@ -190,3 +191,11 @@ def test_wrong_postures_are_explained() -> None:
         plot.branches(closedform.planar_2r, [100.0, 0.0])
     with pytest.raises(TypeError, match="is not a generated module"):
         plot.mechanism(np)
+
+
+def test_a_hand_on_a_surface_has_no_section() -> None:
+    robot = import_module("closedform.generated.numpy.spherical_five_bar")
+    assert fits(robot, "conditioning")
+    assert not fits(robot, "workspace")
+    with pytest.raises(ValueError, match="moves on a surface"):
+        plot.workspace(robot)

@@ -11,6 +11,8 @@ from closedform.lower.graph import Graph
 from closedform.model.tolerances import DOUBLE, FLOAT, HIGHEST_DEGREE
 
 ROBOTS = [*LENGTHS, "four_bar", "irb2400", "puma560", "ur_arm", "spherical_wrist"]
+ANGLES = ("alpha", "beta", "gamma")
+"""How the names of parameters begin that are angles."""
 EXPONENTS = (-900, -700, -300, -100, 8, 100, 300, 700, 1000)
 POSTURES = 60
 
@@ -58,7 +60,7 @@ def test_a_mechanism_of_any_size(robot: str, language: str) -> None:
         def evaluated(exponent: int, single: bool = False) -> list[np.ndarray]:
             dimensions = module.Parameters(
                 *(
-                    v if name.startswith("alpha") else np.ldexp(v, exponent)  # a direction
+                    v if name.startswith(ANGLES) else np.ldexp(v, exponent)
                     for name, v in module.Parameters()._asdict().items()
                 )
             )

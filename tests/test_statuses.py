@@ -77,6 +77,7 @@ LIMITS = {
     ("linear_delta", "ik"): ((0.5, 0.5, 0.5), (-0.5, -0.5, -0.5)),
     ("orthoglide", "fk"): ((2, 2, 2), (-2, -2, -2)),
     ("orthoglide", "ik"): ((1, 1, 1), (-1, -1, -1)),
+    ("spherical_five_bar", "fk"): ((3, 3), (-3, -3)),
     ("four_bar", "ik"): ((3,), (-3,)),
     ("slider_crank", "ik"): ((6,), (-6,)),
 }

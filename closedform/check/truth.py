@@ -90,7 +90,7 @@ class Condition:
     def __init__(self, derivation: Derivation, function: Function):
         symbols = symbols_of(derivation, function)
         (entry,) = (e for a in function.outputs for e in a.entries)
-        self._bounds = _margins(function, symbols, {})
+        self._bounds = _margins(function, symbols, {}, (Bound, Match))
         self._holds = RowEvaluator(symbols, [sp.Piecewise((1, entry), (0, True))])
 
     def __call__(self, rows: Array, slack: float) -> tuple[Array, Array]:
@@ -308,10 +308,11 @@ def _margins(
     function: Function,
     symbols: Sequence[sp.Symbol],
     signs: Mapping[sp.Symbol, int],
-    kind: type = Bound,
+    kind: type | tuple[type, ...] = Bound,
 ) -> RowEvaluator:
-    """The bounds of a branch over their natural scales, or of flags what they look at, or of what
-    must match the negative by which it misses.
+    """The bounds of a branch (or what flags look at, or what must match) over their scales.
+
+    Of what must match it is the opposite of the size, which is never positive.
 
     No flag holds, and what is chosen only where one does is left out.
     """
@@ -323,9 +324,9 @@ def _margins(
             named[statement.symbol] = substitute(statement.value, lowered)
         elif isinstance(statement, Vanishes):
             lowered[statement.symbol] = sp.false
-        if isinstance(statement, kind) and isinstance(statement, (Bound, Vanishes, Match)):
-            share = statement.value / statement.scale
-            margins.append(substitute(-sp.Abs(share) if kind is Match else share, lowered))
+        if isinstance(statement, kind) and isinstance(statement, (Bound, Match, Vanishes)):
+            value = -sp.Abs(statement.value) if isinstance(statement, Match) else statement.value
+            margins.append(substitute(value / statement.scale, lowered))
     used: set[sp.Basic] = set()
     pending = {s for e in margins for s in e.free_symbols}
     while pending:

@@ -9,6 +9,8 @@ bring this end to the distance of the rod from a given point:
     the end moves along a line; two solutions, where the line meets a sphere;
 :class:`Stretch`
     the end stays, and the joint is the length of the rod; one solution.
+
+A :class:`Strut` has no joint: its rod leads from a point of the ground, so the hand is on a sphere.
 """
 
 from __future__ import annotations
@@ -304,4 +306,35 @@ class Stretch:
         return Solution(Link((q,), lemma.equations, {}, lemma, body), value, w)
 
 
-__all__ = ["Crank", "Leg", "Naming", "Slide", "Solution", "Stretch", "vector"]
+@dataclass(frozen=True)
+class Strut:
+    """A ``rod`` of constant length from the point ``pivot`` of the ground; it has no joint.
+
+    It leads to the point ``on_hand``, as seen from the point that is the hand.
+    """
+
+    rod: Any
+    pivot: Sequence[Any]
+    on_hand: Sequence[Any] = ()
+
+    @property
+    def base(self) -> sp.Matrix:
+        return vector(self.pivot)
+
+    def end(self) -> sp.Matrix:
+        return self.base
+
+    def onto(self, chain: Naming, w: sp.Matrix) -> sp.Matrix:
+        """The rod in the direction of ``w``, after a check that ``w`` is as long as the rod.
+
+        So what the check tolerates does not add to what the rods of other legs miss.
+        """
+        p = chain.program
+        length = chain.let("strut", sp.sqrt(sum(e**2 for e in w)), nonnegative=True)
+        none = chain.program.vanishes(f"none{chain.tag}", length, chain.size, "no direction")
+        p.match(length - self.rod, chain.size / 2, "the hand is on the sphere of the strut")
+        share = chain.let("share", choose(none, 1, self.rod / length), nonnegative=True)
+        return sp.Matrix([chain.let(f"p{i}", share * e) for i, e in zip("xyz", w, strict=True)])
+
+
+__all__ = ["Crank", "Leg", "Naming", "Slide", "Solution", "Stretch", "Strut", "vector"]

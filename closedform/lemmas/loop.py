@@ -17,13 +17,25 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.circles import two_circles
-from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, vector
+from closedform.lemmas.conditioning import conditioning
+from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, Strut, vector
 from closedform.lemmas.spheres import three_spheres
 from closedform.mechanics.frames import merge_angles
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation, Solved, Step
-from closedform.model.functions import SINGLE, Bound, Branches, Let, Program, branches, real
+from closedform.model.functions import (
+    SINGLE,
+    Bound,
+    Branches,
+    Let,
+    Match,
+    Program,
+    Statement,
+    Vanishes,
+    branches,
+    real,
+)
 from closedform.model.inverse import Inverse, Link
 
 Choice = Mapping[int, str]
@@ -51,7 +63,8 @@ def parallel(
     hand
         the coordinates of the hand, the symbols of the task: two in a plane, three in space
     legs
-        as many as there are coordinates, see :mod:`closedform.lemmas.legs`
+        as many as there are coordinates, see :mod:`closedform.lemmas.legs`.  In space the first may
+        be a :class:`~closedform.lemmas.legs.Strut`; then the hand moves on a sphere
     modes
         the names of the assembly modes, by the sign of the determinant of ``jacobian_parallel``
     passive
@@ -61,7 +74,7 @@ def parallel(
     mechanism = _Mechanism(d, sp.Matrix(hand), tuple(legs))
     meet = "rods in line" if len(legs) == 2 else "rods in one plane"
     if not d.singularities:
-        d.singularities = (*(f"leg {k}" for k in range(1, len(legs) + 1)), meet)
+        d.singularities = (*(f"leg {k}" for k, _ in mechanism.driven), meet)
         d.poles = (meet,)
     loop = mechanism.state_loop()
     posture = _forward(mechanism, modes, loop)
@@ -87,7 +100,12 @@ class _Mechanism:
                 f"{self.d.name}: {len(self.legs)} legs for {n} coordinates; a hand that does not "
                 f"turn has two legs in a plane or three in space"
             )
-        joints = tuple(leg.joint for leg in self.legs)
+        if any(isinstance(leg, Strut) for leg in self.legs[0 if n == 2 else 1 :]):
+            raise ShapeError(
+                f"{self.d.name}: a strut must be the first of three legs in space; then two driven "
+                f"legs move the hand on a sphere"
+            )
+        joints = tuple(leg.joint for _, leg in self.driven)
         if joints != self.d.actuated:
             raise ShapeError(
                 f"{self.d.name}: the legs are driven by {_listed(joints)}, but the joints of the "
@@ -98,6 +116,15 @@ class _Mechanism:
     def joints(self) -> tuple[sp.Symbol, ...]:
         return self.d.actuated
 
+    @cached_property
+    def numbered(self) -> list[tuple[int, Leg]]:
+        """The legs, driven ones from 1 on; a strut, which is the first, is 0."""
+        return [*enumerate(self.legs, 0 if isinstance(self.legs[0], Strut) else 1)]
+
+    @cached_property
+    def driven(self) -> list[tuple[int, Leg]]:
+        return [(k, leg) for k, leg in self.numbered if not isinstance(leg, Strut)]
+
     @property
     def count(self) -> str:
         return {2: "two", 3: "three"}[len(self.legs)]
@@ -105,6 +132,20 @@ class _Mechanism:
     def place(self, leg: Leg) -> sp.Matrix:
         """Where the rod of a leg ends on the hand."""
         return vector(leg.on_hand or [0] * len(self.hand))
+
+    def rates(self, rods: Sequence[sp.Matrix]) -> list[sp.Expr]:
+        """The diagonal of B, from the vectors along all rods."""
+        legs = zip(self.legs, rods, strict=True)
+        return [rate_of(leg, rod) for leg, rod in legs if not isinstance(leg, Strut)]
+
+    def onto_struts(self) -> sp.Matrix:
+        """The hand, moved towards the near end of a strut or away from it to the strut's length."""
+        hand = self.hand
+        for leg in self.legs:
+            if isinstance(leg, Strut):
+                w = hand + self.place(leg) - leg.base
+                hand = leg.rod / sp.sqrt(square(w)) * w - self.place(leg) + leg.base
+        return hand
 
     @cached_property
     def centres(self) -> list[sp.Matrix]:
@@ -120,17 +161,20 @@ class _Mechanism:
         )
 
     def state_loop(self) -> Step:
-        shown = {rf"\mathbf b_{k}": c for k, c in enumerate(self.centres, 1)}
+        placed = list(zip(self.numbered, self.centres, strict=True))
+        shown = {rf"\mathbf b_{k}": c for (k, _), c in placed}
         shown |= {
             rf"|\mathbf p - \mathbf b_{k}|": sp.sympify(leg.rod, strict=True)
-            for k, leg in enumerate(self.legs, 1)
+            for k, leg in self.numbered
         }
         carried = any(leg.on_hand for leg in self.legs)
         less = ", less the place of its far end on the hand," if carried else ""
+        strut = "  The near end of the strut stands still." * (len(self.driven) < len(self.legs))
         return self.d.step(
             "The loop",
             f"The hand p hangs on {self.count} rods.  The near end of each rod{less} is b, which "
-            f"the joint of its leg determines.  The hand is at the length of the rod from it.",
+            f"the joint of its leg determines.  The hand is at the length of the rod from it."
+            f"{strut}",
             shown,
         )
 
@@ -159,11 +203,9 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
     size = f.let("size", size_of(d, slid) + sp.Add(*stretched))
     ends = [
         sp.Matrix([named_in(f, f"c{k}_{i}", e) for i, e in zip(AXES, c, strict=False)])
-        for k, c in enumerate(m.centres, 1)
+        for (k, _), c in zip(m.numbered, m.centres, strict=True)
     ]
-    radii = [
-        named_in(f, f"r{k}", sp.sympify(leg.rod, strict=True)) for k, leg in enumerate(m.legs, 1)
-    ]
+    radii = [named_in(f, f"r_{k}", sp.sympify(leg.rod, strict=True)) for k, leg in m.numbered]
     meet = two_circles if n == 2 else three_spheres
     found = meet(f, ends, radii, tuple(m.hand), sigma, scale=size, free=tuple(m.hand))
     shape = "circles" if n == 2 else "spheres"
@@ -174,8 +216,10 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
         f"{'line' if n == 2 else 'plane'} of their centres: these are the two assembly modes.  The "
         f"determinant of the vectors along the rods has the sign of the mode.",
         {
-            rf"\mathbf b_{k} - \mathbf b_1": (c - m.centres[0]).applyfunc(merge_angles)
-            for k, c in enumerate(m.centres[1:], 2)
+            rf"\mathbf b_{k} - \mathbf b_{m.numbered[0][0]}": (c - m.centres[0]).applyfunc(
+                merge_angles
+            )
+            for (k, _), c in zip(m.numbered[1:], m.centres[1:], strict=True)
         },
         proves=(
             "The determinant of the vectors along the rods, in the frame of the lemma, is the sign "
@@ -202,7 +246,7 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
     d.inverses.append(Inverse("fk", tuple(m.hand), (sp.S.Zero,) * n, m.loop, links=(found.link,)))
     tell(d, "fk", found.link)
     v = Program(list(f.body), f.taken)
-    first = sp.Matrix([v.let(f"A_1{i}", e) for i, e in enumerate(found.first, 1)])
+    first = sp.Matrix([v.let(f"A_{m.numbered[0][0]}{i}", e) for i, e in enumerate(found.first, 1)])
     return _Posture(
         v,
         modes,
@@ -231,25 +275,26 @@ def _draw(m: _Mechanism, at: _Posture) -> None:
     lengths: dict[tuple[str, str], sp.Expr] = {}
     closing: dict[tuple[str, str], sp.Expr] = {}
     joints: dict[sp.Symbol, tuple[str, ...]] = {}
-    for k, (leg, equation) in enumerate(zip(m.legs, m.loop, strict=True), 1):
+    for (k, leg), equation in zip(m.numbered, m.loop, strict=True):
         base, end, place = f"A{k}", f"B{k}", m.place(leg)
         far = "P" if place.is_zero_matrix else f"C{k}"
-        near = base if isinstance(leg, Stretch) else end
-        joints[leg.joint] = (base, far)
+        near = base if isinstance(leg, Stretch | Strut) else end
         lengths[near, far], closing[near, far] = sp.sympify(leg.rod, strict=True), equation
         if far != "P":
             links[f"hand{k}"] = ("P", far)
             lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
-        if not isinstance(leg, Stretch):
-            links[f"rod{k}"] = (end, far)
-            joints[leg.joint] = (base, end)
+        if isinstance(leg, Stretch):
+            joints[leg.joint] = (base, far)
+        else:
+            links[f"rod{k}"] = (near, far)
         if isinstance(leg, Crank):
             links[f"crank{k}"] = (base, end)
             lengths[base, end] = sp.sympify(leg.length, strict=True)
             joints[leg.joint] = (base,)
         elif isinstance(leg, Slide):
             lengths[base, end] = leg.joint
-    ground = tuple(f"A{k}" for k in range(1, len(m.legs) + 1))
+            joints[leg.joint] = (base, end)
+    ground = tuple(f"A{k}" for k, _ in m.numbered)
     skeleton(
         m.d,
         _points(m, at.hand),
@@ -270,9 +315,9 @@ def _draw(m: _Mechanism, at: _Posture) -> None:
 def _points(m: _Mechanism, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
     """The points of the skeleton: the base A, the near end B and the far end C of each leg."""
     points: dict[str, Sequence[sp.Expr]] = {}
-    for k, leg in enumerate(m.legs, 1):
+    for k, leg in m.numbered:
         points[f"A{k}"] = in_space(leg.base)
-        if not isinstance(leg, Stretch):
+        if not isinstance(leg, Stretch | Strut):
             points[f"B{k}"] = in_space(leg.end())
         if not m.place(leg).is_zero_matrix:
             points[f"C{k}"] = in_space(hand + m.place(leg))
@@ -283,7 +328,10 @@ def _velocity(m: _Mechanism, at: _Posture, loop: Step) -> None:
     d, n = m.d, len(m.legs)
     A, B = velocity_matrices(m.loop, tuple(m.hand), m.joints)
     rods = [m.hand - c for c in m.centres]
-    rates = [rate_of(leg, rod) for leg, rod in zip(m.legs, rods, strict=True)]
+    rates = m.rates(rods)
+    labels = [k for k, _ in m.driven]
+    still = sp.zeros(n - len(rates), len(rates))
+    strut = "  A strut has no joint, so its row of B is zero." * still.rows
     a = sp.Matrix(n, n, lambda i, j: real(f"a{i + 1}{j + 1}"))
     adjugate = a.adjugate()
     d.step(
@@ -293,15 +341,15 @@ def _velocity(m: _Mechanism, at: _Posture, loop: Step) -> None:
         "B is singular if the joint moves the near end of a rod at right angles to it (serial: "
         "the joint moves and the hand stands still).  A is singular if the rods are "
         f"{'in line' if n == 2 else 'in one plane'} (parallel: the hand can move while the joints "
-        "stand still).",
+        f"stand still).{strut}",
         {
             "A": sp.Matrix.vstack(*(r.T for r in rods)),
-            **{f"B_{{{k}{k}}}": e for k, e in enumerate(rates, 1)},
+            **{f"B_{{{k}{k}}}": e for k, e in zip(labels, rates, strict=True)},
         },
         proves="A and B are half of the derivatives, and the adjugate of A gives J with A*J = B.",
         equal=[
             (A / 2, sp.Matrix.vstack(*(r.T for r in rods))),
-            (B / 2, sp.diag(*rates)),
+            (B / 2, still.col_join(sp.diag(*rates))),
             (a * adjugate, a.det() * sp.eye(n)),
         ],
         uses=[loop],
@@ -309,15 +357,15 @@ def _velocity(m: _Mechanism, at: _Posture, loop: Step) -> None:
     v = Program(list(at.program.body), at.program.taken)
     placed = {
         e: named_in(v, f"A_{k}{i}", value)
-        for k, (row, rod) in enumerate(zip(a.tolist(), at.rods, strict=True), 1)
+        for (k, _), row, rod in zip(m.numbered, a.tolist(), at.rods, strict=True)
         for i, (e, value) in enumerate(zip(row, rod, strict=True), 1)
     }
     vectors = [sp.Matrix([placed[e] for e in row]) for row in a.tolist()]
-    turned = [rate_of(leg, rod) for leg, rod in zip(m.legs, vectors, strict=True)]
-    driven = [v.let(f"B_{k}{k}", e) for k, e in enumerate(turned, 1)]
+    turned = m.rates(vectors)
+    driven = [v.let(f"B_{k}{k}", e) for k, e in zip(labels, turned, strict=True)]
     size = v.let("Delta", at.size, nonnegative=True)
     side = at.side * size
-    J = adjugate.xreplace(placed) * sp.diag(*driven) / side
+    J = adjugate.xreplace(placed) * still.col_join(sp.diag(*driven)) / side
     A_at = a.xreplace(placed)
     pole = "Not finite at a parallel singularity."
     functions: list[Exported] = [
@@ -332,23 +380,22 @@ def _velocity(m: _Mechanism, at: _Posture, loop: Step) -> None:
             "The diagonal of B of A*dp = B*dq.",
             {"B": driven},
             ("Its signs distinguish the working modes; BRANCHES lists them in the same order.",)
-            if all(leg.signs == 2 for leg in m.legs)
+            if all(leg.signs == 2 for _, leg in m.driven)
             else (),
         ),
         ("jacobian", "Derivative of p with respect to q: A^-1*B.", {"J": J}, (pole,)),
-        (
-            "determinant",
-            "Determinant of the Jacobian.",
-            {"det": sp.Mul(*driven) / side},
-            (pole,),
-        ),
+    ]
+    if not still:
+        det = sp.Mul(*driven) / side
+        functions.append(("determinant", "Determinant of the Jacobian.", {"det": det}, (pole,)))
+    functions += [
         (
             "singularities",
             "The diagonal of B (serial) and the determinant of A (parallel).",
             {"factors": [*driven, side]},
             (),
         ),
-        ("condition_number", *_conditioning(v, vectors, size)),
+        ("condition_number", *conditioning(v, vectors, size, on_sphere=bool(still))),
     ]
     export(d, v, at.modes, functions)
 
@@ -386,56 +433,44 @@ def rate_of(leg: Leg, rod: sp.Matrix) -> sp.Expr:
     return leg.joint if isinstance(leg, Stretch) else rod.dot(leg.rate)
 
 
-def _conditioning(
-    v: Program, rods: Sequence[sp.Matrix], size: sp.Expr
-) -> tuple[str, dict[str, Any], tuple[str, ...]]:
-    note = "Infinite at a parallel singularity."
-    squares = [v.let(f"square{k}", square(r)) for k, r in enumerate(rods, 1)]
-    if len(rods) == 2:
-        apart = sp.sqrt((squares[0] - squares[1]) ** 2 + 4 * rods[0].dot(rods[1]) ** 2)
-        value = (sp.Add(*squares) + apart) / (2 * size)
-        return (
-            "Ratio of the largest to the smallest singular value of A.",
-            {"kappa": value},
-            (note,),
-        )
-    rows = [rods[1].cross(rods[2]), rods[2].cross(rods[0]), rods[0].cross(rods[1])]
-    inverse = sp.Add(*map(square, rows))
-    value = sp.sqrt(sp.Add(*squares)) * sp.sqrt(inverse) / (3 * size)
-    return (
-        "Condition number of A in the Frobenius norm, divided by 3: 1 if the rods are equally long "
-        "and at right angles.",
-        {"kappa": value},
-        (note,),
-    )
-
-
 def _inverse(m: _Mechanism, loop: Step) -> None:
     d, n, g = m.d, len(m.legs), m.d.program()
     choices: list[tuple[sp.Symbol, Choice]] = []
     slides = any(isinstance(leg, Slide) for leg in m.legs)
     size = g.let("size", size_of(d, tuple(m.hand) if slides else ()))
     found: list[Solution] = []
-    for k, leg in enumerate(m.legs, 1):
+    straight: list[sp.Matrix] = []
+    hand = m.hand
+    for k, leg in m.numbered:
+        w = hand + m.place(leg) - leg.base
+        if isinstance(leg, Strut):
+            straight.append(leg.onto(Naming(g, size, f"_{k}"), w))
+            hand = straight[0] - m.place(leg) + leg.base
+            continue
         sigma = real(f"sigma_leg{k}")
         if leg.signs == 2:
             choices.append((sigma, SIGN))
-        w = m.hand + m.place(leg) - leg.base
         found.append(leg.solve(Naming(g, size, f"_{k}"), w, sigma))
     inside = bounds_of(g)
     # a determinant does not change if a row is subtracted from the others; the hand cancels there
-    rows = [found[0].rod, *(sp.expand(s.rod - found[0].rod) for s in found[1:])]
+    first, *others = [*straight, *(s.rod for s in found)]
+    rows = [first, *(sp.expand(rod - first) for rod in others)]
     apart = [
         sp.Matrix([named_in(g, f"A_{k}{i}", e) for i, e in enumerate(row, 1)])
-        for k, row in enumerate(rows, 1)
+        for (k, _), row in zip(m.numbered, rows, strict=True)
     ]
+    stretched = {s.link.unknowns[0]: s.value for s in found}
     lengths = [
-        s.value if isinstance(leg, Stretch) else sp.sympify(leg.rod, strict=True)
-        for leg, s in zip(m.legs, found, strict=True)
+        stretched[leg.joint] if isinstance(leg, Stretch) else sp.sympify(leg.rod, strict=True)
+        for leg in m.legs
     ]
     meet = "in line" if n == 2 else "in one plane"
     volume = g.let("Delta", sp.Matrix.hstack(*apart).det())
-    g.determined(sp.Abs(volume), sp.Mul(*lengths), f"the rods are {meet}", name=r"|\det A|")
+    # lengths that the sum of all lengths does not contain, such as those of an arc, round as well
+    links = [e for leg in m.legs for e in (leg.rod, getattr(leg, "length", sp.S.Zero))]
+    beyond = sp.Add(*(e for e in links if not sp.sympify(e, strict=True).is_Atom)) / size
+    scale = sp.Mul(*lengths) * (1 + beyond)
+    g.determined(sp.Abs(volume), scale, f"the rods are {meet}", name=r"|\det A|")
     working = branches(*choices) if choices else SINGLE
     d.branches = working.labels
     signs = "The signs of its two solutions are those of the diagonal of B.  "
@@ -450,6 +485,7 @@ def _inverse(m: _Mechanism, loop: Step) -> None:
         {},
         uses=[loop],
     )
+    off_sphere = ", or the target is not on the sphere" * bool(straight)
     d.function(
         "ik",
         f"The driven joints of {'all working modes' if choices else 'the only working mode'}.",
@@ -459,7 +495,7 @@ def _inverse(m: _Mechanism, loop: Step) -> None:
         branches=working,
         result="Solutions",
         notes=(
-            "UNREACHABLE: a rod does not reach.",
+            f"UNREACHABLE: a rod does not reach{off_sphere}.",
             *(note for s in found for note in where_free(s)),
             f"SINGULAR also near a parallel singularity, where the rods are {meet}: the loop "
             "closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.",
@@ -476,12 +512,15 @@ def _inverse(m: _Mechanism, loop: Step) -> None:
         )
     for s in found:
         tell(d, "ik", s.link)
+    at = dict(zip(m.hand, m.onto_struts(), strict=True))
+    ends = zip(m.legs, m.loop, strict=True)
+    turning = [e.xreplace(at) for leg, e in ends if not isinstance(leg, Strut)]
     d.inverses.append(
         Inverse(
             "ik",
             m.joints,
-            (sp.S.Zero,) * n,
-            m.loop,
+            (sp.S.Zero,) * len(turning),
+            tuple(turning),
             images="fk",
             links=tuple(s.link for s in found),
         )
@@ -497,14 +536,14 @@ def size_of(d: Derivation, moved: Sequence[sp.Expr] = ()) -> sp.Expr:
 
 def bounds_of(g: Program) -> Program:
     """What decides whether there is a solution."""
-    kept: list[Bound | Let] = []
+    kept: list[Statement] = []
     needed: set[sp.Basic] = set()
     for statement in reversed(g.body):
-        if isinstance(statement, Bound) or (
-            isinstance(statement, Let) and statement.symbol in needed
+        if isinstance(statement, Bound | Match) or (
+            isinstance(statement, Let | Vanishes) and statement.symbol in needed
         ):
             needed |= statement.value.free_symbols
-            if isinstance(statement, Bound):
+            if not isinstance(statement, Let):
                 needed |= statement.scale.free_symbols
             kept.insert(0, statement)
     return Program([*kept], g.taken)

@@ -95,7 +95,7 @@ def standard(view: View) -> list[Figure]:
 def fits(robot: ModuleType, figure: str) -> bool:
     """Whether a figure makes sense for a mechanism.
 
-    A map needs two joints, and a workspace a position in the task.
+    A map needs two joints, and a workspace a position in the task that no surface holds.
     """
     if figure in ("workspace", "conditioning") and len(robot.JOINTS) < 2:
         return False
@@ -103,7 +103,7 @@ def fits(robot: ModuleType, figure: str) -> bool:
         return True
     r = Robot.of(robot)
     image = r.task(r.posture())
-    return bool(positions(r, image[0] if r.modes else image))
+    return 0 < len(positions(r, image[0] if r.modes else image)) <= len(robot.JOINTS)
 
 
 @styled

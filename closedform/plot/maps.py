@@ -313,6 +313,8 @@ def _task_plane(
     image = r.task(posture)
     target = (image[0] if r.modes else image) if at is None else np.asarray(at, dtype=float)
     places = positions(r, target)
+    if len(places) > len(r.module.JOINTS):
+        raise ValueError(f"the hand of {r.name} moves on a surface, of which there is no section")
     chosen = list(plane or list(places)[:2]) if r.flat else list(plane or ("x", "z"))
     if len(chosen) != 2 or not all(n in places for n in chosen):
         known = ", ".join([*places, *r.module.JOINTS])

@@ -24,9 +24,12 @@ def module(derivation: Derivation) -> str:
 
 
 def has_section(derivation: Derivation) -> bool:
-    """Whether the hand moves in a plane or in space: then there is a section of its workspace."""
+    """Whether the hand fills a part of a plane or of space: then its workspace has a section.
+
+    A hand that fewer joints than coordinates move stays on a surface.
+    """
     task = derivation.task
-    return len(task) == POSE or sum(axis in task for axis in "xyz") > 1
+    return len(task) == POSE or 1 < sum(axis in task for axis in "xyz") <= len(derivation.actuated)
 
 
 def _kernels(derivation: Derivation, name: str) -> Iterator[Kernel]:

@@ -46,6 +46,9 @@ VIEWS = {
     "orthoglide": View(
         home=(1, 1, 1), general=(1.15, 0.9, 0.8), plane=("x", "y"), at=(0, 0, 0), mode=1
     ),
+    "spherical_five_bar": View(
+        home=degrees(110, 70), general=degrees(130, 60), measured=("theta1", "theta2")
+    ),
     "four_bar": View(home=degrees(90), general=degrees(50)),
     "slider_crank": View(home=degrees(90), general=degrees(50)),
     "rpr_planar": View(home=(0.8, 0.8), general=(0.9, 0.6), limits=((-0.7, 1.7), (-1.1, 1.1))),

@@ -1,6 +1,6 @@
 """Loops of common structure, which no single paper publishes."""
 
-from closedform.derivations.papers.textbooks import CLAVEL, MERLET, WENGER_CHABLAT
+from closedform.derivations.papers.textbooks import CLAVEL, MERLET, OUERFELLI_KUMAR, WENGER_CHABLAT
 
 from closedform import Paper
 
@@ -9,4 +9,10 @@ TEXTBOOK_LOOPS = Paper(
     "Loops of common structure, solved leg by leg",
     ("The closedform authors",),
     works=(MERLET, CLAVEL, WENGER_CHABLAT),
+)
+SPHERICAL_LOOPS = Paper(
+    "spherical-loops",
+    "Loops on a sphere, solved leg by leg",
+    ("The closedform authors",),
+    works=(MERLET, OUERFELLI_KUMAR),
 )

@@ -45,6 +45,13 @@ MURRAY_LI_SASTRY = Work(
     "CRC Press",
     "1994",
 )
+OUERFELLI_KUMAR = Work(
+    "ouerfelli-kumar",
+    ("Mohamed Ouerfelli", "Vijay Kumar"),
+    "Optimization of a Spherical Five-Bar Parallel Drive Linkage",
+    "Journal of Mechanical Design, 116(1), 166–173",
+    "1994",
+)
 PAUL = Work(
     "paul",
     ("Richard P. Paul",),

@@ -17,6 +17,7 @@
 #include "rpr_planar.h"
 #include "scara.h"
 #include "slider_crank.h"
+#include "spherical_five_bar.h"
 #include "spherical_wrist.h"
 #include "stanford_arm.h"
 #include "ur_arm.h"
@@ -3206,6 +3207,182 @@ static const cf_array slider_crank_workspace_contains_in[] = {
 };
 
 static const cf_array slider_crank_workspace_contains_out[] = {
+    { "inside", 0, { 0 }, 1, CF_BOOL },
+};
+
+static const char *const spherical_five_bar_fields[] = { "r", "gamma", "alpha1", "alpha2", "beta1", "beta2" };
+static const double spherical_five_bar_values[] = SPHERICAL_FIVE_BAR_DEFAULTS;
+
+static void spherical_five_bar_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_five_bar_fk((const spherical_five_bar_params *)params, in[0], out[0], out[1]);
+}
+
+static void spherical_five_bar_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_five_bar_fk_batch(n, (const spherical_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array spherical_five_bar_fk_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array spherical_five_bar_fk_out[] = {
+    { "p", 2, { 2, 3 }, 6, CF_REAL },
+    { "status", 1, { 2 }, 2, CF_STATUS },
+};
+
+static void spherical_five_bar_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_five_bar_skeleton((const spherical_five_bar_params *)params, in[0], out[0]);
+}
+
+static void spherical_five_bar_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_five_bar_skeleton_batch(n, (const spherical_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_five_bar_skeleton_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array spherical_five_bar_skeleton_out[] = {
+    { "points", 3, { 2, 6, 3 }, 36, CF_REAL },
+};
+
+static void spherical_five_bar_jacobian_parallel_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_five_bar_jacobian_parallel((const spherical_five_bar_params *)params, in[0], out[0]);
+}
+
+static void spherical_five_bar_jacobian_parallel_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_five_bar_jacobian_parallel_batch(n, (const spherical_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_five_bar_jacobian_parallel_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array spherical_five_bar_jacobian_parallel_out[] = {
+    { "A", 3, { 2, 3, 3 }, 18, CF_REAL },
+};
+
+static void spherical_five_bar_jacobian_serial_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_five_bar_jacobian_serial((const spherical_five_bar_params *)params, in[0], out[0]);
+}
+
+static void spherical_five_bar_jacobian_serial_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_five_bar_jacobian_serial_batch(n, (const spherical_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_five_bar_jacobian_serial_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array spherical_five_bar_jacobian_serial_out[] = {
+    { "B", 2, { 2, 2 }, 4, CF_REAL },
+};
+
+static void spherical_five_bar_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_five_bar_jacobian((const spherical_five_bar_params *)params, in[0], out[0]);
+}
+
+static void spherical_five_bar_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_five_bar_jacobian_batch(n, (const spherical_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_five_bar_jacobian_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array spherical_five_bar_jacobian_out[] = {
+    { "J", 3, { 2, 3, 2 }, 12, CF_REAL },
+};
+
+static void spherical_five_bar_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_five_bar_singularities((const spherical_five_bar_params *)params, in[0], out[0]);
+}
+
+static void spherical_five_bar_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_five_bar_singularities_batch(n, (const spherical_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_five_bar_singularities_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array spherical_five_bar_singularities_out[] = {
+    { "factors", 2, { 2, 3 }, 6, CF_REAL },
+};
+
+static void spherical_five_bar_condition_number_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_five_bar_condition_number((const spherical_five_bar_params *)params, in[0], out[0]);
+}
+
+static void spherical_five_bar_condition_number_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_five_bar_condition_number_batch(n, (const spherical_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_five_bar_condition_number_in[] = {
+    { "q", 1, { 2 }, 2, CF_REAL },
+};
+
+static const cf_array spherical_five_bar_condition_number_out[] = {
+    { "kappa", 1, { 2 }, 2, CF_REAL },
+};
+
+static void spherical_five_bar_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_five_bar_ik((const spherical_five_bar_params *)params, in[0], out[0], out[1]);
+}
+
+static void spherical_five_bar_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_five_bar_ik_batch(n, (const spherical_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array spherical_five_bar_ik_in[] = {
+    { "x", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array spherical_five_bar_ik_out[] = {
+    { "q", 2, { 4, 2 }, 8, CF_REAL },
+    { "status", 1, { 4 }, 4, CF_STATUS },
+};
+
+static void spherical_five_bar_workspace_contains_one(const double *params, const double *const *in, void *const *out)
+{
+    spherical_five_bar_workspace_contains((const spherical_five_bar_params *)params, in[0], out[0]);
+}
+
+static void spherical_five_bar_workspace_contains_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    spherical_five_bar_workspace_contains_batch(n, (const spherical_five_bar_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array spherical_five_bar_workspace_contains_in[] = {
+    { "p", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array spherical_five_bar_workspace_contains_out[] = {
     { "inside", 0, { 0 }, 1, CF_BOOL },
 };
 
@@ -8961,6 +9138,307 @@ const cf_function cf_functions[] = {
       3, slider_crank_values, slider_crank_fields,
       1, slider_crank_workspace_contains_in, 1, slider_crank_workspace_contains_out,
       slider_crank_workspace_contains_one, slider_crank_workspace_contains_many },
+    { "spherical_five_bar.fk",
+      "Position of the hand in both assembly modes.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 2)\n"
+      "    theta1, theta2 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : tuple of ndarray, optional\n"
+      "    Arrays to write the results to; they are returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "p : ndarray of float64, shape (..., 2, 3)\n"
+      "    x, y, z in the unit of the parameters.\n"
+      "status : ndarray of uint8, shape (..., 2)\n"
+      "    A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: above, below.\n"
+      "- UNREACHABLE: the rods do not meet.\n"
+      "- SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its\n"
+      "  points is returned.\n"
+      "- Ill-conditioned near the parallel singularities, where both modes meet.\n"
+      ,
+      6, spherical_five_bar_values, spherical_five_bar_fields,
+      1, spherical_five_bar_fk_in, 2, spherical_five_bar_fk_out,
+      spherical_five_bar_fk_one, spherical_five_bar_fk_many },
+    { "spherical_five_bar.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 2)\n"
+      "    theta1, theta2 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 2, 6, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: above, below.\n"
+      "- NaN for an assembly mode that does not exist.\n"
+      ,
+      6, spherical_five_bar_values, spherical_five_bar_fields,
+      1, spherical_five_bar_skeleton_in, 1, spherical_five_bar_skeleton_out,
+      spherical_five_bar_skeleton_one, spherical_five_bar_skeleton_many },
+    { "spherical_five_bar.jacobian_parallel",
+      "A of A*dp = B*dq; its rows are the vectors along the rods.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 2)\n"
+      "    theta1, theta2 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "A : ndarray of float64, shape (..., 2, 3, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: above, below.\n"
+      "- NaN for an assembly mode that does not exist.\n"
+      ,
+      6, spherical_five_bar_values, spherical_five_bar_fields,
+      1, spherical_five_bar_jacobian_parallel_in, 1, spherical_five_bar_jacobian_parallel_out,
+      spherical_five_bar_jacobian_parallel_one, spherical_five_bar_jacobian_parallel_many },
+    { "spherical_five_bar.jacobian_serial",
+      "The diagonal of B of A*dp = B*dq.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 2)\n"
+      "    theta1, theta2 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "B : ndarray of float64, shape (..., 2, 2)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: above, below.\n"
+      "- NaN for an assembly mode that does not exist.\n"
+      "- Its signs distinguish the working modes; BRANCHES lists them in the same order.\n"
+      ,
+      6, spherical_five_bar_values, spherical_five_bar_fields,
+      1, spherical_five_bar_jacobian_serial_in, 1, spherical_five_bar_jacobian_serial_out,
+      spherical_five_bar_jacobian_serial_one, spherical_five_bar_jacobian_serial_many },
+    { "spherical_five_bar.jacobian",
+      "Derivative of p with respect to q: A^-1*B.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 2)\n"
+      "    theta1, theta2 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 2, 3, 2)\n"
+      "    One column for each of theta1, theta2.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: above, below.\n"
+      "- NaN for an assembly mode that does not exist.\n"
+      "- Not finite at a parallel singularity.\n"
+      ,
+      6, spherical_five_bar_values, spherical_five_bar_fields,
+      1, spherical_five_bar_jacobian_in, 1, spherical_five_bar_jacobian_out,
+      spherical_five_bar_jacobian_one, spherical_five_bar_jacobian_many },
+    { "spherical_five_bar.singularities",
+      "The diagonal of B (serial) and the determinant of A (parallel).\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 2)\n"
+      "    theta1, theta2 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "factors : ndarray of float64, shape (..., 2, 3)\n"
+      "    One factor for each singular set: leg 1; leg 2; rods in one plane.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: above, below.\n"
+      "- NaN for an assembly mode that does not exist.\n"
+      ,
+      6, spherical_five_bar_values, spherical_five_bar_fields,
+      1, spherical_five_bar_singularities_in, 1, spherical_five_bar_singularities_out,
+      spherical_five_bar_singularities_one, spherical_five_bar_singularities_many },
+    { "spherical_five_bar.condition_number",
+      "Ratio of the largest to the smallest singular value of the rods of the driven legs, as they\n"
+      "are seen along the strut.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 2)\n"
+      "    theta1, theta2 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "kappa : ndarray of float64, shape (..., 2)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: above, below.\n"
+      "- NaN for an assembly mode that does not exist.\n"
+      "- Infinite at a parallel singularity.\n"
+      ,
+      6, spherical_five_bar_values, spherical_five_bar_fields,
+      1, spherical_five_bar_condition_number_in, 1, spherical_five_bar_condition_number_out,
+      spherical_five_bar_condition_number_one, spherical_five_bar_condition_number_many },
+    { "spherical_five_bar.ik",
+      "The driven joints of all working modes.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "x : array_like, shape (..., 3)\n"
+      "    x, y, z in the unit of the parameters.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : tuple of ndarray, optional\n"
+      "    Arrays to write the results to; they are returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "q : ndarray of float64, shape (..., 4, 2)\n"
+      "    theta1, theta2 in rad, in (-pi, pi].\n"
+      "status : ndarray of uint8, shape (..., 4)\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `BRANCHES`: plus_plus, plus_minus, minus_plus, minus_minus.\n"
+      "- UNREACHABLE: a rod does not reach, or the target is not on the sphere.\n"
+      "- SINGULAR: the rod ends on the axis of theta1; theta1 is free, 0 is returned.\n"
+      "- SINGULAR: no crank; theta1 is free, 0 is returned.\n"
+      "- SINGULAR: the rod ends on the axis of theta2; theta2 is free, 0 is returned.\n"
+      "- SINGULAR: no crank; theta2 is free, 0 is returned.\n"
+      "- SINGULAR also near a parallel singularity, where the rods are in one plane: the loop\n"
+      "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.\n"
+      ,
+      6, spherical_five_bar_values, spherical_five_bar_fields,
+      1, spherical_five_bar_ik_in, 2, spherical_five_bar_ik_out,
+      spherical_five_bar_ik_one, spherical_five_bar_ik_many },
+    { "spherical_five_bar.workspace_contains",
+      "Whether the hand can be reached.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "p : array_like, shape (..., 3)\n"
+      "    x, y, z in the unit of the parameters.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "inside : ndarray of bool, shape (...)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      6, spherical_five_bar_values, spherical_five_bar_fields,
+      1, spherical_five_bar_workspace_contains_in, 1, spherical_five_bar_workspace_contains_out,
+      spherical_five_bar_workspace_contains_one, spherical_five_bar_workspace_contains_many },
     { "spherical_wrist.fk",
       "Rotation of the hand.\n"
       "\n"

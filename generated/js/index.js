@@ -16,6 +16,7 @@ export * as puma560 from "./puma560.js";
 export * as rpr_planar from "./rpr_planar.js";
 export * as scara from "./scara.js";
 export * as slider_crank from "./slider_crank.js";
+export * as spherical_five_bar from "./spherical_five_bar.js";
 export * as spherical_wrist from "./spherical_wrist.js";
 export * as stanford_arm from "./stanford_arm.js";
 export * as ur_arm from "./ur_arm.js";

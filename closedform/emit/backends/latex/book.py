@@ -28,6 +28,7 @@ COURSE = (
     "linear_delta",
     "delta",
     "orthoglide",
+    "spherical_five_bar",
     "hybrid_five_bar",
     "irb260",
     "h6ar",

@@ -1,0 +1,53 @@
+"""How well the driven legs of a closed loop move its hand: the condition number of A."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import sympy as sp
+
+from closedform.model.functions import Program
+
+
+def conditioning(
+    v: Program, rods: Sequence[sp.Matrix], size: sp.Expr, *, on_sphere: bool = False
+) -> tuple[str, dict[str, Any], tuple[str, ...]]:
+    """The condition number of A: what the function returns, its outputs and its notes.
+
+    ``size`` is that of the determinant of the ``rods``.  If the hand is ``on_sphere``, the first of
+    them is the strut, and the others count as far as they move the hand on the sphere.
+    """
+    note = "Infinite at a parallel singularity."
+    seen = "of A"
+    if on_sphere:
+        strut, *others = rods
+        length = v.let("strut", sp.sqrt(strut.dot(strut)), nonnegative=True)
+        n = sp.Matrix([v.let(f"radial_{i}", e / length) for i, e in zip("xyz", strut, strict=True)])
+        rods, size = [], size / length
+        for k, rod in enumerate(others, 1):
+            off = v.let(f"off{k}", rod.dot(n))
+            across = zip("xyz", rod - off * n, strict=True)
+            rods.append(sp.Matrix([v.let(f"t{k}_{i}", e) for i, e in across]))
+        seen = "of the rods of the driven legs, as they are seen along the strut"
+    squares = [v.let(f"square{k}", r.dot(r)) for k, r in enumerate(rods, 1)]
+    if len(rods) == 2:
+        apart = sp.sqrt((squares[0] - squares[1]) ** 2 + 4 * rods[0].dot(rods[1]) ** 2)
+        value = (sp.Add(*squares) + apart) / (2 * size)
+        return (
+            f"Ratio of the largest to the smallest singular value {seen}.",
+            {"kappa": value},
+            (note,),
+        )
+    rows = [rods[1].cross(rods[2]), rods[2].cross(rods[0]), rods[0].cross(rods[1])]
+    inverse = sp.Add(*(row.dot(row) for row in rows))
+    value = sp.sqrt(sp.Add(*squares)) * sp.sqrt(inverse) / (3 * size)
+    return (
+        "Condition number of A in the Frobenius norm, divided by 3: 1 if the rods are equally long "
+        "and at right angles.",
+        {"kappa": value},
+        (note,),
+    )
+
+
+__all__ = ["conditioning"]

@@ -1,0 +1,122 @@
+/*
+ * Spherical five-bar linkage: the C of spherical_five_bar.h for C++20, printed by closedform. Header only; every
+ * function is one call of the C, with std::span for what it reads and std::array for what it returns.
+ * Do not edit: change the template and run make.
+ */
+#ifndef CLOSEDFORM_SPHERICAL_FIVE_BAR_HPP
+#define CLOSEDFORM_SPHERICAL_FIVE_BAR_HPP
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "spherical_five_bar_nearest.h"
+
+namespace closedform::spherical_five_bar {
+
+using Parameters = spherical_five_bar_params;
+
+inline constexpr Parameters defaults = SPHERICAL_FIVE_BAR_DEFAULTS;
+
+struct FkResult {
+    std::array<real_t, 6> p;
+    std::array<uint8_t, 2> status;
+};
+
+[[nodiscard]] inline auto fk(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    FkResult result;
+    spherical_five_bar_fk(&parameters, q.data(), result.p.data(), result.status.data());
+    return result;
+}
+
+[[nodiscard]] inline auto skeleton(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 36> result;
+    spherical_five_bar_skeleton(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto jacobian_parallel(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 18> result;
+    spherical_five_bar_jacobian_parallel(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto jacobian_serial(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 4> result;
+    spherical_five_bar_jacobian_serial(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto jacobian(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 12> result;
+    spherical_five_bar_jacobian(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto singularities(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 6> result;
+    spherical_five_bar_singularities(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto condition_number(std::span<const real_t, 2> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 2> result;
+    spherical_five_bar_condition_number(&parameters, q.data(), result.data());
+    return result;
+}
+
+struct IkResult {
+    std::array<real_t, 8> q;
+    std::array<uint8_t, 4> status;
+};
+
+[[nodiscard]] inline auto ik(std::span<const real_t, 3> x, const Parameters &parameters = defaults) noexcept
+{
+    IkResult result;
+    spherical_five_bar_ik(&parameters, x.data(), result.q.data(), result.status.data());
+    return result;
+}
+
+[[nodiscard]] inline auto workspace_contains(std::span<const real_t, 3> p, const Parameters &parameters = defaults) noexcept
+{
+    std::array<uint8_t, 1> result;
+    spherical_five_bar_workspace_contains(&parameters, p.data(), result.data());
+    return result;
+}
+
+/* The lower and the upper limits of all joints; without limits they are infinite. */
+struct Limits {
+    std::array<real_t, 2> lower, upper;
+};
+
+struct Nearest {
+    std::array<real_t, 2> q;
+    std::array<std::uint32_t, 4> outside; /* bits of joints, by branch */
+    int branch;                                /* -1 if there is none */
+    std::uint8_t status;
+};
+
+/* See spherical_five_bar_nearest. */
+[[nodiscard]] inline Nearest nearest(std::span<const real_t, 3> x, std::span<const real_t, 2> q_seed,
+    const Limits *limits = nullptr, const std::array<real_t, 2> *weights = nullptr,
+    const Parameters &parameters = defaults) noexcept
+{
+    static_assert(sizeof(Limits) == 2 * 2 * sizeof(real_t));
+    Nearest found;
+    found.branch = spherical_five_bar_nearest(&parameters, x.data(), q_seed.data(),
+        limits != nullptr ? limits->lower.data() : nullptr,
+        weights != nullptr ? weights->data() : nullptr, found.q.data(), &found.status,
+        found.outside.data());
+    return found;
+}
+
+}  // namespace closedform::spherical_five_bar
+
+#endif

@@ -242,20 +242,20 @@ def test_orthoglide_is_isotropic_at_home() -> None:
 def test_a_small_spherical_five_bar_is_a_planar_one() -> None:
     """On a sphere of ten thousand times its size, mode by mode and branch by branch."""
     planar, sphere, rng = robot("five_bar"), robot("spherical_five_bar"), np.random.default_rng(11)
-    lengths, r = np.array(planar.Parameters()), 1e5
+    lengths, r = np.array([6.0, 7.0, 5.0, 9.0, 8.0]), 1e5
     L0, L1, L2, L3, L4 = lengths / r
     parameters = sphere.Parameters(r, L0, L1, L2, L3, L4)
     q = rng.uniform(-np.pi, np.pi, (2000, 2))
-    expected, found = planar.fk(q), sphere.fk(q, parameters)
+    expected, found = planar.fk(q, lengths), sphere.fk(q, parameters)
     assert planar.BRANCHES == sphere.BRANCHES
     assert planar.ASSEMBLY_MODES == sphere.ASSEMBLY_MODES
-    good = (expected.status == OK) & (np.abs(planar.singularities(q)[..., -1]) > 5)
+    good = (expected.status == OK) & (np.abs(planar.singularities(q, lengths)[..., -1]) > 5)
     assert good.sum() > 1000
     np.testing.assert_allclose(found.p[good][:, 1:], expected.p[good], atol=1e-4)
     p = found.p[good]
-    good = planar.ik(p[:, 1:]).status == OK
-    answers = planar.ik(p[:, 1:]).q, sphere.ik(p, parameters).q
-    B = np.abs(planar.jacobian_serial(answers[0])).min(axis=(-1, -2)) > 5
+    good = planar.ik(p[:, 1:], lengths).status == OK
+    answers = planar.ik(p[:, 1:], lengths).q, sphere.ik(p, parameters).q
+    B = np.abs(planar.jacobian_serial(answers[0], lengths)).min(axis=(-1, -2)) > 5
     gap = apart(*answers, np.array([True]))[good & B]
     assert len(gap) > 1000
     assert gap.max() < 1e-4

@@ -1,8 +1,9 @@
 """The planar four-bar linkage: a crank drives a rocker by a coupler."""
 
 from closedform.derivations.papers.textbook_loops import TEXTBOOK_LOOPS
+from sympy import sqrt
 
-from closedform import Crank, Derivation, coupled, real
+from closedform import Crank, Derivation, Equal, Notation, coupled, real
 
 d = Derivation(
     "four_bar",
@@ -23,8 +24,19 @@ L1, L2, L3, L4 = (
     d.parameter(name, value=value, unit="any unit", meaning=meaning, source="round numbers")
     for name, (value, meaning) in MEANINGS.items()
 )
-coupled(
-    d,
-    Crank(d.joint("theta"), L2, L3, (0, 0), (1, 0), (0, 1)),
-    Crank(real("psi"), L4, L3, (L1, 0), (1, 0), (0, 1)),
+theta, psi = d.joint("theta"), real("psi")
+crank = Crank(theta, L2, L3, (0, 0), (1, 0), (0, 1))
+rocker = Crank(psi, L4, L3, (L1, 0), (1, 0), (0, 1))
+coupled(d, crank, rocker)
+
+coupler = rocker.end() - crank.end()
+names = {"d": L1, "a": L2, "b": L3, "c": L4, r"\theta": theta, r"\psi": psi}
+d.claim(
+    "Freudenstein's equation",
+    r"$\frac{d}{a} \cos\psi - \frac{d}{c} \cos\theta + \frac{a^2 - b^2 + c^2 + d^2}{2 a c} = "
+    r"\cos(\theta - \psi)$",
+    lambda relation: Equal(relation, on={L3: sqrt(coupler.dot(coupler))}),
+    where="Freudenstein; a is the crank, b the coupler, c the rocker, d the ground",
+    notation=Notation(names),
+    paraphrase=True,
 )

@@ -1,6 +1,12 @@
 """Loops of common structure, which no single paper publishes."""
 
-from closedform.derivations.papers.textbooks import CLAVEL, MERLET, OUERFELLI_KUMAR, WENGER_CHABLAT
+from closedform.derivations.papers.textbooks import (
+    CLAVEL,
+    FREUDENSTEIN,
+    MERLET,
+    OUERFELLI_KUMAR,
+    WENGER_CHABLAT,
+)
 
 from closedform import Paper
 
@@ -8,7 +14,7 @@ TEXTBOOK_LOOPS = Paper(
     "textbook-loops",
     "Loops of common structure, solved leg by leg",
     ("The closedform authors",),
-    works=(MERLET, CLAVEL, WENGER_CHABLAT),
+    works=(MERLET, CLAVEL, WENGER_CHABLAT, FREUDENSTEIN),
 )
 SPHERICAL_LOOPS = Paper(
     "spherical-loops",

@@ -23,6 +23,13 @@ CRAIG = Work(
     "3rd edition, Pearson Prentice Hall",
     "2005",
 )
+FREUDENSTEIN = Work(
+    "freudenstein",
+    ("Ferdinand Freudenstein",),
+    "Approximate Synthesis of Four-Bar Linkages",
+    "Transactions of the ASME, 77(6), 853–861",
+    "1955",
+)
 LEE_ZIEGLER = Work(
     "lee-ziegler",
     ("C. S. George Lee", "M. Ziegler"),

@@ -312,7 +312,8 @@ def test_both_back_ends_export_the_same(robot: str) -> None:
         assert getattr(numpy, name) == getattr(c, name)
     for name in numpy.__all__:
         if name.islower():
-            assert [*inspect.signature(getattr(numpy, name)).parameters] == [
+            # Only the compiled functions run on several cores.
+            assert [*inspect.signature(getattr(numpy, name)).parameters, "threads"] == [
                 *inspect.signature(getattr(c, name)).parameters
             ]
 

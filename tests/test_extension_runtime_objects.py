@@ -276,8 +276,8 @@ def test_functions_look_like_functions(native: Any) -> None:
     assert (f.__name__, f.__qualname__) == ("polar", "polar")
     assert f.__module__ == "toy"
     assert f.__doc__ == "A point from an angle and a length."
-    assert str(inspect.signature(f)) == "(q, params=(1.0, 0.5), *, out=None)"
-    assert str(inspect.signature(function(native, "two"))) == "(q, u, *, out=None)"
+    assert str(inspect.signature(f)) == "(q, params=(1.0, 0.5), *, out=None, threads=None)"
+    assert str(inspect.signature(function(native, "two"))) == "(q, u, *, out=None, threads=None)"
     assert repr(f) == "<compiled function toy.polar>"
     assert inspect.isroutine(f)
     assert weakref.ref(f)() is f

@@ -7,8 +7,16 @@
 #error "CF_MAX_AXES is too small for this NumPy"
 #endif
 
-/* Releasing and taking the GIL takes about as long as this many postures. */
-enum { RELEASE_GIL_MIN = 64 };
+#if defined(__linux__)
+#include <sched.h>
+#elif !defined(_WIN32)
+#include <unistd.h>
+#endif
+
+enum {
+    RELEASE_GIL_MIN = 64, /* releasing and taking the GIL takes about as long as these postures */
+    THREADS_PAY = 131072  /* so many postures repay the start of threads */
+};
 
 typedef struct {
     const cf_call *call;
@@ -18,6 +26,7 @@ typedef struct {
     PyArrayObject *out[CF_MAX_OUT];
     int n_axes; /* leading axes after broadcasting */
     npy_intp length[NPY_MAXDIMS];
+    size_t threads; /* 0: as many as pay */
 } operands;
 
 static PyObject *
@@ -66,6 +75,47 @@ raise_core(const cf_function *f, const cf_array *spec, PyArrayObject *array)
     }
     Py_XDECREF(shape);
     Py_XDECREF(expected);
+}
+
+/* The number of cores on which this process may run. */
+static size_t
+available_cores(void)
+{
+    long n = 1;
+#if defined(__linux__)
+    cpu_set_t cores;
+    if (sched_getaffinity(0, sizeof cores, &cores) == 0) {
+        n = CPU_COUNT(&cores);
+    }
+#elif !defined(_WIN32)
+    n = sysconf(_SC_NPROCESSORS_ONLN);
+#endif
+    return n > 1 ? (size_t)n : 1;
+}
+
+static int
+take_threads(operands *o)
+{
+    const cf_function *f = o->call->function;
+    PyObject *given = o->call->threads;
+    if (given == NULL) {
+        return 0;
+    }
+    if (PyBool_Check(given) || !PyIndex_Check(given)) {
+        cf_raise_type(f, "threads must be an integer or None, not", given, "");
+        return -1;
+    }
+    /* Clipped if it is too large: there are never more threads than blocks. */
+    Py_ssize_t n = PyNumber_AsSsize_t(given, NULL);
+    if (n == -1 && PyErr_Occurred()) {
+        return -1;
+    }
+    if (n < 1) {
+        PyErr_Format(PyExc_ValueError, "%s: threads is %R, expected at least 1", f->name, given);
+        return -1;
+    }
+    o->threads = (size_t)n;
+    return 0;
 }
 
 static int
@@ -461,8 +511,10 @@ sweep(const operands *o)
         view_array(o, o->out[k], f->out[k].ndim, &s.out[k]);
     }
 
+    npy_intp postures = PyArray_MultiplyList(o->length, o->n_axes);
+    s.threads = o->threads > 0 ? o->threads : postures >= THREADS_PAY ? available_cores() : 1;
     PyThreadState *thread = NULL;
-    if (PyArray_MultiplyList(o->length, o->n_axes) >= RELEASE_GIL_MIN) {
+    if (postures >= RELEASE_GIL_MIN) {
         thread = PyEval_SaveThread();
     }
     int status = cf_sweep_run(&s);
@@ -479,7 +531,7 @@ static int
 evaluate(operands *o)
 {
     const cf_function *f = o->call->function;
-    if (take_inputs(o) < 0 || take_params(o) < 0 || check_arrays(o) < 0 || broadcast_all(o) < 0) {
+    if (take_threads(o) < 0 || take_inputs(o) < 0 || take_params(o) < 0 || check_arrays(o) < 0 || broadcast_all(o) < 0) {
         return -1;
     }
     for (size_t k = 0; k < f->n_out; k++) {

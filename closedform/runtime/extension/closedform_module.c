@@ -28,7 +28,7 @@ typedef struct {
     vectorcallfunc vectorcall;
     const cf_function *function;
     PyTypeObject *results;
-    PyObject *names; /* of the arguments in order, interned; `out` is the last */
+    PyObject *names; /* of the arguments in order, interned; `out` and `threads` are the last */
     PyObject *dict;
     PyObject *weakrefs;
 } Function;
@@ -42,7 +42,11 @@ argument(cf_call *call, size_t k)
     if (k < f->n_in) {
         return &call->in[k];
     }
-    return k == f->n_in && f->n_params > 0 ? &call->params : &call->out;
+    k -= f->n_in;
+    if (f->n_params > 0 && k-- == 0) {
+        return &call->params;
+    }
+    return k == 0 ? &call->out : &call->threads;
 }
 
 /* The index of a keyword among the argument names, or their number if it is not one of them.
@@ -115,6 +119,9 @@ bind(const Function *self, cf_call *call, PyObject *const *args, size_t n_args,
     if (call->out == Py_None) {
         call->out = NULL;
     }
+    if (call->threads == Py_None) {
+        call->threads = NULL;
+    }
     return 0;
 }
 
@@ -127,7 +134,10 @@ function_call(PyObject *object, PyObject *const *args, size_t n_args, PyObject *
         return NULL;
     }
     PyObject *result;
-    return cf_call_single(&call, &result) ? result : cf_call_any(&call);
+    if (call.threads == NULL && cf_call_single(&call, &result)) {
+        return result;
+    }
+    return cf_call_any(&call);
 }
 
 /* The type */
@@ -233,7 +243,14 @@ static PyType_Spec function_spec = {
 static const char *
 argument_name(const cf_function *f, size_t k)
 {
-    return k < f->n_in ? f->in[k].name : k == f->n_in && f->n_params > 0 ? "params" : "out";
+    if (k < f->n_in) {
+        return f->in[k].name;
+    }
+    k -= f->n_in;
+    if (f->n_params > 0 && k-- == 0) {
+        return "params";
+    }
+    return k == 0 ? "out" : "threads";
 }
 
 static const char *
@@ -264,7 +281,7 @@ names_tuple(const char *name(const cf_function *, size_t), const cf_function *f,
     return names;
 }
 
-/* "(q, params=(1.0, 0.5), *, out=None)" */
+/* "(q, params=(1.0, 0.5), *, out=None, threads=None)" */
 static PyObject *
 text_signature(const cf_function *f)
 {
@@ -286,7 +303,7 @@ text_signature(const cf_function *f)
         Py_XDECREF(defaults);
     }
     if (text != NULL) {
-        Py_SETREF(text, PyUnicode_FromFormat("%U*, out=None)", text));
+        Py_SETREF(text, PyUnicode_FromFormat("%U*, out=None, threads=None)", text));
     }
     return text;
 }
@@ -400,7 +417,7 @@ module_function(PyObject *module, PyObject *args)
     self->function = f;
     self->results = (PyTypeObject *)Py_NewRef(results);
     self->weakrefs = NULL;
-    self->names = names_tuple(argument_name, f, f->n_in + (f->n_params > 0) + 1);
+    self->names = names_tuple(argument_name, f, f->n_in + (f->n_params > 0) + 2);
     self->dict = function_dict(module, f);
     PyObject_GC_Track(self);
     if (self->names == NULL || self->dict == NULL) {

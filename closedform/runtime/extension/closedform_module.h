@@ -4,7 +4,7 @@
  * `cf_function_count`. closedform_module.c and its companions turn every row into a Python
  * callable with the signature
  *
- *     f(in[0], ..., in[n_in - 1], params=defaults, *, out=None)
+ *     f(in[0], ..., in[n_in - 1], params=defaults, *, out=None, threads=None)
  *
  * All leading axes of inputs and of parameter fields broadcast. This header does not need Python.h,
  * so the table can be compiled and tested without it.

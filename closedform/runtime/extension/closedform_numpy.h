@@ -22,6 +22,7 @@ typedef struct {
     PyObject *in[CF_MAX_IN];
     PyObject *params;        /* NULL: the defaults */
     PyObject *out;           /* NULL: allocate */
+    PyObject *threads;       /* NULL: as many as pay */
 } cf_call;
 
 /* Answers a call for one posture in plain form; *result is NULL if an exception is set.

@@ -3,6 +3,11 @@
  * blocks. Operands that are already in planes are passed unchanged; the others are gathered into
  * scratch planes and scattered from them. If too few postures share their parameters, all axes are
  * outer, a block is one posture, and the single kernel is called. */
+#if !defined(_WIN32)
+#define CF_THREADS 1
+#define _POSIX_C_SOURCE 200809L /* for pthread.h in strict C99 */
+#endif
+
 #include "closedform_sweep.h"
 #include "closedform_rows.h"
 
@@ -10,6 +15,9 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef CF_THREADS
+#include <pthread.h>
+#endif
 
 enum {
     BATCH_MIN = 4,          /* fewer postures than this are cheaper one at a time */
@@ -21,6 +29,7 @@ enum {
     LINE = 64,              /* bytes in a cache line */
     ALIAS = 4096,           /* planes at a multiple of this distance use the same cache lines */
     ALIAS_WAYS = 4,         /* this many of such planes do no harm */
+    THREADS_MAX = 256,      /* a limit to the memory of a call */
     CROWD = 16              /* more planes than this, written together, miss the address cache */
 };
 
@@ -29,6 +38,7 @@ typedef struct {
     size_t n_outer; /* this many of the first axes of the sweep are outer */
     size_t n_inner; /* postures along the inner axes */
     size_t block;   /* postures in a kernel call */
+    size_t scratch; /* bytes in scratch planes for each posture */
     bool single;
     cf_operand in[CF_MAX_IN];
     cf_operand out[CF_MAX_OUT];
@@ -299,13 +309,21 @@ operand_count(const plan *p)
 }
 
 static size_t
+whole_lines(size_t bytes)
+{
+    return (bytes + LINE - 1) / LINE * LINE;
+}
+
+static size_t
 block_length(const plan *p, size_t scratch_per_posture)
 {
     if (p->single) {
         return 1;
     }
     if (scratch_per_posture == 0) {
-        return p->n_inner;
+        /* One block a thread, of whole cache lines, so that vectors are divided as in one block. */
+        size_t share = whole_lines(p->n_inner / p->sweep->threads + 1);
+        return share < p->n_inner && p->sweep->threads > 1 ? share : p->n_inner;
     }
     size_t block = SCRATCH_BYTES / scratch_per_posture / 8 * 8;
     block = block < BLOCK_MIN ? BLOCK_MIN : block > BLOCK_MAX ? BLOCK_MAX : block;
@@ -320,22 +338,10 @@ scratch_plane(const plan *p)
     return p->single ? 1 : ((p->block + line - 1) / line | 1) * line;
 }
 
-static size_t
-whole_lines(size_t bytes)
-{
-    return (bytes + LINE - 1) / LINE * LINE;
-}
-
-/* Chooses the block and divides one allocation into the scratch planes. */
+/* Divides one allocation into the scratch planes. */
 static int
 allocate(plan *p)
 {
-    size_t per_posture = 0;
-    for (size_t k = 0; k < operand_count(p); k++) {
-        const cf_operand *o = operand_at(p, k);
-        per_posture += o->in_place ? 0 : o->itemsize * o->spec->size;
-    }
-    p->block = block_length(p, per_posture);
     size_t plane = scratch_plane(p);
 
     size_t bytes = LINE;
@@ -345,7 +351,7 @@ allocate(plan *p)
         bytes += whole_lines(sizeof(ptrdiff_t) * o->spec->size);
     }
     p->memory = NULL;
-    if (per_posture == 0) {
+    if (p->scratch == 0) {
         return 0;
     }
     p->memory = malloc(bytes);
@@ -367,7 +373,7 @@ allocate(plan *p)
     return 0;
 }
 
-static int
+static void
 make_plan(plan *p, cf_sweep *sweep)
 {
     const cf_function *f = sweep->function;
@@ -388,7 +394,12 @@ make_plan(plan *p, cf_sweep *sweep)
     for (size_t k = 0; k < f->n_out; k++) {
         describe(p, &p->out[k], &f->out[k], &sweep->out[k]);
     }
-    return allocate(p);
+    p->scratch = 0;
+    for (size_t k = 0; k < operand_count(p); k++) {
+        cf_operand *o = operand_at(p, k);
+        p->scratch += o->in_place ? 0 : o->itemsize * o->spec->size;
+    }
+    p->block = block_length(p, p->scratch);
 }
 
 /* Moves `count` postures, starting at inner index `start`, run by run along the last axis. */
@@ -449,53 +460,120 @@ run_block(const plan *p, const double *params, char *const *base, const size_t *
     }
 }
 
+/* Computes the inner postures from `first`, which starts a block, to before `end`. */
 static void
-run_inner(const plan *p, const double *params, char *const *base)
+run_inner(const plan *p, const double *params, char *const *base, size_t first, size_t end)
 {
     size_t n = p->sweep->n_axes - p->n_outer;
     const size_t *length = p->sweep->length + p->n_outer;
     size_t start[CF_MAX_AXES];
     memset(start, 0, n * sizeof start[0]);
-    for (size_t first = 0; first < p->n_inner; first += p->block) {
-        size_t left = p->n_inner - first;
-        size_t count = left < p->block ? left : p->block;
+    advance(start, length, n, first);
+    while (first < end) {
+        size_t count = end - first < p->block ? end - first : p->block;
         run_block(p, params, base, start, first, count);
         advance(start, length, n, count);
+        first += count;
     }
 }
 
-static double
-load(const char *from)
+static size_t
+blocks_inside(const plan *p)
 {
-    double value;
-    memcpy(&value, from, sizeof value);
-    return value;
+    return (p->n_inner + p->block - 1) / p->block;
 }
 
+/* Computes the blocks `first` to before `end`, counted through all outer indices. */
 static void
-run_outer(plan *p)
+run_blocks(const plan *p, size_t first, size_t end)
 {
     const cf_sweep *sweep = p->sweep;
     const cf_function *f = sweep->function;
-    size_t n_outer = product(sweep->length, p->n_outer);
+    size_t inside = blocks_inside(p);
     size_t index[CF_MAX_AXES];
     double params[CF_MAX_PARAMS];
     char *base[CF_MAX_IN + CF_MAX_OUT];
-
     memset(index, 0, p->n_outer * sizeof index[0]);
-    for (size_t i = 0; i < n_outer; i++) {
+    advance(index, sweep->length, p->n_outer, first / inside);
+    while (first < end) {
         for (size_t k = 0; k < f->n_params; k++) {
             const cf_view *view = &sweep->param[k];
-            params[k] = load(view->data + position(view->lead, index, p->n_outer));
+            const char *from = view->data + position(view->lead, index, p->n_outer);
+            memcpy(&params[k], from, sizeof params[k]);
         }
         for (size_t k = 0; k < operand_count(p); k++) {
-            const cf_view *view = operand_at(p, k)->view;
+            const cf_view *view = k < f->n_in ? p->in[k].view : p->out[k - f->n_in].view;
             base[k] = view->data + position(view->lead, index, p->n_outer);
         }
-        run_inner(p, params, base);
+        size_t own = first % inside;
+        size_t some = inside - own < end - first ? inside - own : end - first;
+        size_t last = (own + some) * p->block;
+        run_inner(p, params, base, own * p->block, last < p->n_inner ? last : p->n_inner);
         advance(index, sweep->length, p->n_outer, 1);
+        first += some;
     }
 }
+
+#ifdef CF_THREADS
+
+/* A share of the blocks, with scratch planes of its own. */
+typedef struct {
+    plan plan;
+    size_t first, end;
+    pthread_t thread;
+    bool started;
+} share;
+
+static void *
+run_share(void *argument)
+{
+    const share *s = argument;
+    run_blocks(&s->plan, s->first, s->end);
+    return NULL;
+}
+
+/* The calling thread takes the first share, and every share for which no thread can be had. */
+static void
+run_shares(share *shares, size_t n)
+{
+    for (size_t i = 1; i < n; i++) {
+        shares[i].started = pthread_create(&shares[i].thread, NULL, run_share, &shares[i]) == 0;
+    }
+    run_share(&shares[0]);
+    for (size_t i = 1; i < n; i++) {
+        if (shares[i].started) {
+            pthread_join(shares[i].thread, NULL);
+        } else {
+            run_share(&shares[i]);
+        }
+    }
+}
+
+static int
+run_side_by_side(const plan *p, size_t blocks, size_t n)
+{
+    share *shares = calloc(n, sizeof *shares);
+    if (shares == NULL) {
+        return -1;
+    }
+    int status = 0;
+    for (size_t i = 0; i < n && status == 0; i++) {
+        shares[i].plan = *p;
+        shares[i].first = blocks / n * i + (i < blocks % n ? i : blocks % n);
+        shares[i].end = shares[i].first + blocks / n + (i < blocks % n);
+        status = allocate(&shares[i].plan);
+    }
+    if (status == 0) {
+        run_shares(shares, n);
+    }
+    for (size_t i = 0; i < n; i++) {
+        free(shares[i].plan.memory);
+    }
+    free(shares);
+    return status;
+}
+
+#endif
 
 int
 cf_sweep_run(cf_sweep *sweep)
@@ -504,10 +582,18 @@ cf_sweep_run(cf_sweep *sweep)
     if (product(sweep->length, sweep->n_axes) == 0) {
         return 0;
     }
-    if (make_plan(&p, sweep) < 0) {
+    make_plan(&p, sweep);
+    size_t blocks = product(sweep->length, p.n_outer) * blocks_inside(&p);
+#ifdef CF_THREADS
+    size_t n = sweep->threads < blocks ? sweep->threads : blocks;
+    if (n > 1) {
+        return run_side_by_side(&p, blocks, n < THREADS_MAX ? n : THREADS_MAX);
+    }
+#endif
+    if (allocate(&p) < 0) {
         return -1;
     }
-    run_outer(&p);
+    run_blocks(&p, 0, blocks);
     free(p.memory);
     return 0;
 }

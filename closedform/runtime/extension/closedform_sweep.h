@@ -15,6 +15,7 @@ typedef struct {
 
 typedef struct {
     const cf_function *function;
+    size_t threads; /* at least 1: how many may work on the sweep; the results do not depend on it */
     size_t n_axes;
     size_t length[CF_MAX_AXES];
     cf_view param[CF_MAX_PARAMS]; /* scalars: no core */

@@ -190,6 +190,16 @@ def _bars(
     lines[:] = [BAR.sub(r"\|", line) for line in lines]
 
 
+def _without_design(
+    _app: Sphinx, _page: str, _template: str, context: dict[str, Any], _tree: Any
+) -> None:
+    """Leave out styles and scripts of cards and tabs where a page has none."""
+    if 'class="sd-' not in context.get("body", ""):
+        for kind in ("css_files", "script_files"):
+            files = context[kind]
+            context[kind] = [f for f in files if "design" not in str(getattr(f, "filename", f))]
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     app.add_config_value("closedform_node", "", "")
     app.add_config_value("closedform_code", "", "env")
@@ -198,5 +208,6 @@ def setup(app: Sphinx) -> dict[str, Any]:
     for directive in (Display, Paragraph, Details, Explorer, Graph, Figures):
         app.add_directive(directive.__name__.lower(), directive)
     app.connect("autodoc-process-docstring", _bars)
+    app.connect("html-page-context", _without_design)
     app.connect("build-finished", lambda app, _error: renderer(app).close())
     return {"parallel_read_safe": False, "parallel_write_safe": False}

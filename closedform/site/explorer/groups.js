@@ -155,12 +155,11 @@ export function layers(explorer) {
 
 /** Why there is no section of the workspace, and where else to look. */
 function withoutSection(m) {
-    const { TASK } = m.robot;
-    const [target, instead] =
-        TASK.length === 9
-            ? ["an orientation", "The joint space shows where the mechanism is singular."]
-            : [`one number (${m.coordinate(0)})`, `It is drawn over ${m.label(0)} instead.`];
-    return `There is no section of the workspace, because a target is ${target} and not a place. ${instead}`;
+    const because = "There is no section of the workspace, because a target is";
+    const instead = "The joint space shows where the mechanism is singular.";
+    if (m.onSurface) return `${because} a place on a surface. ${instead}`;
+    if (m.robot.TASK.length === 9) return `${because} an orientation and not a place. ${instead}`;
+    return `${because} one number (${m.coordinate(0)}) and not a place. It is drawn over ${m.label(0)} instead.`;
 }
 
 function ofSection({ section, plane }) {

@@ -5,13 +5,21 @@ import temml from "temml";
 
 const viz = await instance();
 
+// Temml 0.13 loses the delimiter of \bigl after a plain parenthesis, but not in a group of its own.
+const grouped = (text) =>
+    text
+        .replaceAll(/\\bigl([([])/g, "\\mathopen{\\big$1}")
+        .replaceAll(/\\bigr([)\]])/g, "\\mathclose{\\big$1}");
+
 const answers = {
-    formula: ({ text, display, wrap }) =>
-        temml.renderToString(text, {
-            displayMode: display,
-            wrap: wrap ? "tex" : "none",
-            throwOnError: true,
-        }),
+    formula: ({ text, display, wrap }) => {
+        const options = { displayMode: display, wrap: wrap ? "tex" : "none", throwOnError: true };
+        try {
+            return temml.renderToString(text, options);
+        } catch {
+            return temml.renderToString(grouped(text), options);
+        }
+    },
     graph: ({ text }) => viz.renderString(text, { format: "svg" }),
 };
 

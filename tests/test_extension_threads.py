@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import os
 import threading
+import time
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -93,7 +94,11 @@ def test_several_callers(native: Any) -> None:
 def test_no_thread_stays(native: Any) -> None:
     before = len(os.listdir("/proc/self/task"))
     function(native, "chain")(np.zeros((100_000, 6)), threads=7)
-    assert len(os.listdir("/proc/self/task")) <= before
+    for _ in range(500):  # the list still holds a thread for a moment after it has been joined
+        if len(os.listdir("/proc/self/task")) <= before:
+            return
+        time.sleep(0.01)
+    pytest.fail("threads are left")
 
 
 @pytest.mark.skipif(SANITIZED, reason="the toy is what is sanitized")

@@ -107,12 +107,12 @@ def part(derivation: Derivation, proof: Proof) -> Part | None:
 
 
 def gathered(parts: Iterable[Part | None]) -> list[PaperErrata]:
-    """The errata of each paper, from all its mechanisms."""
+    """The errata of each paper, from all its mechanisms; papers without any come last."""
     papers: dict[str, list[Part]] = {}
     for found in parts:
         if found is not None:
             papers.setdefault(found.paper.key, []).append(found)
-    return [_of_paper(found) for found in papers.values()]
+    return sorted(map(_of_paper, papers.values()), key=lambda paper: not paper.entries)
 
 
 def _of_paper(parts: Sequence[Part]) -> PaperErrata:

@@ -540,7 +540,9 @@ class Algorithm:
                 value = self.shown(statement.value)
             rows = self.page.equations("", value)
             first, rest = rows[0][1], [f"${a} = {b}$" for a, b in rows[1:]]
-        where = rf"${first} \ll {self.page.math(scale)}$"
+        # TeX breaks no line between two factors by itself
+        product = self.page.math(scale).replace(r" \bigl(", r" \allowbreak \bigl(")
+        where = rf"${first} \ll {product}$"
         if rest:
             where += f", with {', '.join(rest)}"
         return Case(

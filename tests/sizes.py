@@ -1,7 +1,11 @@
 """Which coordinates of a mechanism are lengths, for the tests that scale all of them."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
+ANGLES = ("alpha", "beta", "gamma")
+"""How the names of parameters begin that are angles."""
 LENGTHS = {
     "planar_2r": {"x": [0, 1]},
     "rpr_planar": {"x": [0, 1], "q": [0, 1], "p": [0, 1]},
@@ -30,6 +34,12 @@ def scaled(planes: np.ndarray, places: list[int], exponent: int) -> np.ndarray:
     result = planes.copy()
     result[places] = np.ldexp(planes[places], exponent)
     return result
+
+
+def resized(names: Sequence[str], values: np.ndarray, exponent: int) -> np.ndarray:
+    """Parameters of these names; those that are lengths are multiplied by a power of two."""
+    angles = np.array([name.startswith(ANGLES) for name in names], bool)
+    return np.where(angles, values, np.ldexp(values, exponent))
 
 
 def powers(larger: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -2,11 +2,12 @@
 
 import ctypes
 import re
+from importlib import import_module
 
 import numpy as np
 import pytest
 from libraries import ROBOTS, C, compiles, library, runs
-from sizes import lengths, powers, scaled
+from sizes import ANGLES, lengths, powers, resized, scaled
 
 TYPES = (np.float64, np.float32)
 POSTURES = 300  # more than a block, and a remainder that is no whole vector
@@ -71,21 +72,29 @@ def planes_of(arguments: str, real: type, known: dict[str, np.ndarray]) -> list[
     return arrays
 
 
+def dimensions_of(robot: str, header: str, real: type) -> tuple[list[str], np.ndarray]:
+    """The names of the parameters, and values: lengths between 3 and 2, angles of the example."""
+    fields = re.findall(r"real_t (\w+); /\*", header)
+    example = import_module(f"closedform.generated.numpy.{robot}").Parameters()
+    values = np.linspace(3, 2, len(fields))
+    for k, name in enumerate(fields):
+        if name.startswith(ANGLES):
+            values[k] = example[k]
+    return fields, values.astype(real)
+
+
 def pointer(array: np.ndarray) -> ctypes.c_void_p:
     return ctypes.c_void_p(array.ctypes.data)
 
 
 @pytest.mark.skipif(not runs(), reason="a processor without AVX2")
 def test_batch_and_single_call_agree(robot, real, build):
-    if robot == "spherical_five_bar":
-        pytest.skip("the arcs drawn here are seldom those of a loop")
     loaded = ctypes.CDLL(str(build(robot, real)[0]))
     header = " ".join((C / f"{robot}.h").read_text().split())
-    fields = len(re.findall(r"real_t \w+; /\*", header))
-    params = np.linspace(3, 2, fields).astype(real)
+    params = dimensions_of(robot, header, real)[1]
     # A long chain of steps enlarges what a fused multiplication rounds differently, without bound
     # where the virtual arm of the H6AR is folded, or where the assembly modes of a loop meet.
-    long_chain = robot.startswith("h6ar") or robot in ("delta", "four_bar")
+    long_chain = robot.startswith("h6ar") or robot in ("delta", "four_bar", "spherical_five_bar")
     few_ulps = (128 if long_chain else 16) * np.finfo(real).eps
 
     functions = re.findall(rf"void ({robot}_\w+)\(([^()]*)\);", header)
@@ -119,12 +128,9 @@ def test_batch_and_single_call_agree(robot, real, build):
 def test_a_mechanism_of_any_size(robot, real, build):
     """Of one that is much larger or smaller, a call gives the same to the last bit; a batch gives
     what a call does."""
-    if robot == "spherical_five_bar":
-        pytest.skip("the arcs drawn here are seldom those of a loop")
     loaded = ctypes.CDLL(str(build(robot, real)[0]))
     header = " ".join((C / f"{robot}.h").read_text().split())
-    fields = len(re.findall(r"real_t \w+; /\*", header))
-    dimensions = np.linspace(3, 2, fields).astype(real)
+    fields, dimensions = dimensions_of(robot, header, real)
     ends = (-900, -300, 300, 1000) if real == np.float64 else (-68, -40, 40, 120)
     known: dict[str, np.ndarray] = {}
     for name, arguments in re.findall(rf"void ({robot}_\w+)\(([^()]*)\);", header):
@@ -136,9 +142,7 @@ def test_a_mechanism_of_any_size(robot, real, build):
         n = plain[-1].shape[1]
 
         def evaluated(exponent: int, batch: bool = False) -> list[np.ndarray]:
-            params = np.ldexp(dimensions, exponent)
-            if robot == "delta":  # its last three parameters are directions
-                params[-3:] = dimensions[-3:]
+            params = resized(fields, dimensions, exponent)  # noqa: B023
             arrays = [
                 scaled(a, lengths(robot, label), exponent) if k < n_in else np.zeros_like(a)  # noqa: B023
                 for k, (a, label) in enumerate(zip(plain, names, strict=True))  # noqa: B023

@@ -4,7 +4,7 @@ import importlib
 
 import numpy as np
 import pytest
-from sizes import LENGTHS, lengths, powers, scaled
+from sizes import LENGTHS, lengths, powers, resized, scaled
 
 from closedform.lower.degrees import degrees
 from closedform.lower.graph import Graph
@@ -58,12 +58,8 @@ def test_a_mechanism_of_any_size(robot: str, language: str) -> None:
             planes.append(known if fits else random.uniform(-1, 1, (a.size, POSTURES)))
 
         def evaluated(exponent: int, single: bool = False) -> list[np.ndarray]:
-            dimensions = module.Parameters(
-                *(
-                    v if name.startswith(ANGLES) else np.ldexp(v, exponent)
-                    for name, v in module.Parameters()._asdict().items()
-                )
-            )
+            fields, example = module.Parameters._fields, np.array(module.Parameters())
+            dimensions = module.Parameters(*resized(fields, example, exponent).tolist())
             arrays = [
                 scaled(p, lengths(robot, a.name) or translations(a, robot), exponent).T.reshape(
                     -1, *a.shape

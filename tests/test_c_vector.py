@@ -142,7 +142,7 @@ def test_a_mechanism_of_any_size(robot, real, build):
         n = plain[-1].shape[1]
 
         def evaluated(exponent: int, batch: bool = False) -> list[np.ndarray]:
-            params = resized(fields, dimensions, exponent)  # noqa: B023
+            params = resized(fields, dimensions, exponent)
             arrays = [
                 scaled(a, lengths(robot, label), exponent) if k < n_in else np.zeros_like(a)  # noqa: B023
                 for k, (a, label) in enumerate(zip(plain, names, strict=True))  # noqa: B023

@@ -66,7 +66,7 @@ def test_a_mechanism_of_any_size(robot: str, language: str) -> None:
                 )
                 for p, a in zip(planes, kernel.inputs, strict=True)  # noqa: B023
             ]
-            function = getattr(module, name)
+            function = getattr(module, name)  # noqa: B023
             if not single or not arrays:
                 return entries(function(*arrays, params=dimensions))
             rows = [entries(function(*row, params=dimensions)) for row in zip(*arrays, strict=True)]

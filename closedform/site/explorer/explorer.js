@@ -68,7 +68,7 @@ export class Explorer {
                 "move it in depth; square brackets change the branch.",
         });
         this.view = new View(this.canvas, m.extent(), m.flat);
-        if (m.places.length > 1 && !m.onSurface) {
+        if (maps) {
             this.plane = m.info.plane ?? (m.flat ? ["x", "y"] : ["x", "z"]);
             this.section = new Section(m, maps, this.view, this.plane);
         }
@@ -101,7 +101,7 @@ export class Explorer {
     /** Take a target: the current branch follows, or the hand stays where it was. */
     takeTarget(x) {
         const before = { x: this.x, q: this.q, mode: this.mode, reached: this.reached };
-        this.aim(this.mechanism.onSurface ? this.mechanism.onto(x, this.q, this.mode) : x);
+        this.aim(x);
         this.findFree();
         const own = this.found[this.branch];
         this.reached = reaches(own.status);
@@ -202,7 +202,7 @@ export class Explorer {
     /** Move the hand by a step of space. */
     moveHand(step) {
         const m = this.mechanism;
-        if (m.places.length > 1 && !m.onSurface) {
+        if (this.section) {
             const x = [...(this.wanted ?? this.x)];
             m.places.forEach((place, k) => (x[place] += step[m.axes[k]]));
             this.wanted = x;

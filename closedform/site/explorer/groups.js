@@ -82,6 +82,11 @@ export function joints(explorer) {
 /** @param {Explorer} explorer @returns {Group} */
 export function target(explorer) {
     const { mechanism: m, view } = explorer;
+    const take = (x) => {
+        const [there, here] = [x, explorer.x].map((v) => m.position(v));
+        if (m.onSurface) explorer.moveHand(there.map((v, k) => v - here[k]));
+        else explorer.takeTarget(x);
+    };
     const position = m.places.map((place, k) => ({
         name: "xyz"[m.axes[k]],
         min: view.middle[m.axes[k]] - view.radius,
@@ -91,7 +96,7 @@ export function target(explorer) {
     }));
     const rest = m.others.map((o) => ({ ...o, min: -Math.PI, max: Math.PI, unit: "rad" }));
     const sliders = [...position, ...rest].map(({ name, unit, min, max, get, set }) => {
-        const changed = (value) => explorer.takeTarget(set(explorer.x, value));
+        const changed = (value) => take(set(explorer.x, value));
         return { get, ...slider({ label: name, unit, min, max, changed }) };
     });
     const show = () => {

@@ -10,9 +10,6 @@ export const reaches = (status) => status === OK || status === SINGULAR;
 
 const TRIALS = 240;
 const STEP = 1e-6;
-const TURNS = 12; // steps to the nearest place on a surface
-const LARGEST_TURN = 0.2;
-const DAMPING = 1e-6; // of the rates, where the mechanism is singular
 
 /** A number between 0 and 1, the same sequence on every visit. */
 function random(seed) {
@@ -24,16 +21,6 @@ function random(seed) {
 }
 
 export const wrapped = (angle) => Math.atan2(Math.sin(angle), Math.cos(angle));
-
-/** The turns of two joints, no large ones, that bring the hand by its rates nearest to a step. */
-function leastSquares([u, v], step) {
-    const dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
-    const damping = DAMPING * (dot(u, u) + dot(v, v));
-    const [a, b, c] = [dot(u, u) + damping, dot(u, v), dot(v, v) + damping];
-    const [r, s] = [dot(u, step), dot(v, step)];
-    const turns = [c * r - b * s, a * s - b * r].map((value) => value / (a * c - b * b));
-    return turns.map((value) => Math.max(-LARGEST_TURN, Math.min(LARGEST_TURN, value)));
-}
 
 export class Mechanism {
     /**
@@ -94,23 +81,6 @@ export class Mechanism {
     /** Whether fewer joints than coordinates move the hand, so that it stays on a surface. */
     get onSurface() {
         return this.places.length > this.joints.length;
-    }
-
-    /** The place on the surface of the hand that is nearest to a target, by steps from joints q. */
-    onto(x, q, mode) {
-        let here = this.fk(q)[mode];
-        for (let k = 0; k < TURNS; k++) {
-            const rates = q.map((_, j) => {
-                const [above, below] = [STEP, -STEP].map((s) => this.fk(q.with(j, q[j] + s))[mode]);
-                return above.map((value, i) => (value - below[i]) / (2 * STEP));
-            });
-            const turn = leastSquares(rates, x.map((value, i) => value - here[i]));
-            const next = q.map((value, j) => value + turn[j]);
-            const there = this.fk(next)[mode];
-            if (!there.every(Number.isFinite)) break;
-            [q, here] = [next, there];
-        }
-        return here;
     }
 
     /** All branches of the inverse: `mode` is the assembly mode that reaches the target. */

@@ -490,24 +490,32 @@ def _exact(argument: Any) -> Any:
     return sp.Integer(argument) if type(argument) is int else argument
 
 
-def lengths_in_numbers(place: sp.Expr) -> sp.Expr:
-    """The lengths in a coordinate that are numbers, not parameters: 3 of 3 cos(theta)."""
+def lengths_in_numbers(place: sp.Expr, names: Mapping[sp.Basic, sp.Expr] | None = None) -> sp.Expr:
+    """The lengths in a coordinate that are numbers, not parameters: 3 of 3 cos(theta).
+
+    ``names`` are those of values of which the same is known.
+    """
+    names = names or {}
     total = sp.S.Zero
     for term in sp.Add.make_args(sp.expand(place)):
-        number, rest = term.as_independent(*term.free_symbols, as_Add=False)
-        if all(
-            isinstance(f.as_base_exp()[0], sp.sin | sp.cos)
-            for f in sp.Mul.make_args(rest)
-            if f != 1
-        ):
-            total += abs(number)
+        size, rest = term.as_independent(*term.free_symbols, as_Add=False)
+        for base, _ in (f.as_base_exp() for f in sp.Mul.make_args(rest) if f != 1):
+            size *= 1 if isinstance(base, sp.sin | sp.cos) else names.get(base, 0)
+        total += abs(size)
     return total
 
 
 def numbers_of_tool(derivation: Derivation) -> list[float]:
     """Of each coordinate of the tool: a number in the place of a parameter is as large as one."""
-    poses = [f.values({}) for f in derivation.functions if f.name == "pose"]
-    return [float(lengths_in_numbers(place)) for entries in poses for place in entries[3:12:4]]
+    found = []
+    for pose in (f for f in derivation.functions if f.name == "pose"):
+        names: dict[sp.Basic, sp.Expr] = {}
+        for statement in pose.body:
+            if isinstance(statement, (Let, Bound)):
+                names[statement.symbol] = lengths_in_numbers(statement.value, names)
+        places = pose.outputs[0].entries[3:12:4]
+        found += [float(lengths_in_numbers(place, names)) for place in places]
+    return found
 
 
 __all__ = ["Chain", "Choice", "lengths_in_numbers", "numbers_of_tool"]

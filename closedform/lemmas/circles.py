@@ -74,7 +74,9 @@ def circle_intersection(
         f"apart{suffix}", sp.sqrt(centres[0] ** 2 + centres[1] ** 2), nonnegative=True
     )
     S = first + second + distance
-    A = program.bound(f"slack{suffix}", first + second - distance, scale, "the bars meet")
+    # With three quarters of the tolerance, the legs accept the target of what is accepted here.
+    tolerated = scale if first == second else 3 * scale / 4
+    A = program.bound(f"slack{suffix}", first + second - distance, tolerated, "the bars meet")
     touching = program.vanishes(f"touching{suffix}", A, scale, "the bars are in line")
     flag = program.vanishes(f"coincide{suffix}", distance, scale, "the centres coincide", free)
     n: tuple[sp.Expr, sp.Expr] = (
@@ -86,10 +88,14 @@ def circle_intersection(
         along, height = d / 2, sp.sqrt(S) * sp.sqrt(A) / 2
     else:
         d = distance
-        B = program.bound(f"outer{suffix}", distance + first - second, scale, "the bars meet")
-        C = program.bound(f"inner{suffix}", distance - first + second, scale, "the bars meet")
-        along = choose(flag, first, (distance + (first - second) * (first + second) / distance) / 2)
-        rise = sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) / (2 * distance)
+        B = program.bound(f"outer{suffix}", distance + first - second, tolerated, "the bars meet")
+        C = program.bound(f"inner{suffix}", distance - first + second, tolerated, "the bars meet")
+        # B + C is twice the distance and B - C twice the difference of the radii, also of circles
+        # that miss each other by a rounding error.  Then one slack was a little negative and is now
+        # zero, and the point misses both circles by half of it, however close the centres are.
+        share = program.let(f"share{suffix}", 1 / (B + C), nonnegative=True)
+        along = choose(flag, first, (distance + (B - C) * (A + distance) * share) / 2)
+        rise = sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) * share
         height = choose(flag, 0, rise)
     n = (program.let(f"n_1{suffix}", n[0]), program.let(f"n_2{suffix}", n[1]))
     height = program.let(f"height{suffix}", choose(touching, 0, height), nonnegative=True)

@@ -2,16 +2,16 @@
 # derivations/five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 23 add, 48 compare and select, 3 divide, 21 multiply, 2 sincos, 3 sqrt
-#   passive_angles: 25 add, 56 compare and select, 4 atan2, 5 divide, 17 multiply, 2 sincos, 3
+#   fk: 26 add, 48 compare and select, 4 divide, 21 multiply, 2 sincos, 3 sqrt
+#   passive_angles: 28 add, 55 compare and select, 4 atan2, 5 divide, 19 multiply, 2 sincos, 3
 #     sqrt
-#   skeleton: 25 add, 54 compare and select, 5 divide, 17 multiply, 2 sincos, 3 sqrt
-#   jacobian_parallel: 25 add, 52 compare and select, 5 divide, 17 multiply, 2 sincos, 3 sqrt
-#   jacobian_serial: 29 add, 48 compare and select, 5 divide, 25 multiply, 2 sincos, 3 sqrt
-#   jacobian: 29 add, 53 compare and select, 13 divide, 34 multiply, 2 sincos, 3 sqrt
-#   determinant: 29 add, 47 compare and select, 7 divide, 28 multiply, 2 sincos, 3 sqrt
-#   singularities: 29 add, 50 compare and select, 5 divide, 26 multiply, 2 sincos, 3 sqrt
-#   condition_number: 39 add, 49 compare and select, 7 divide, 37 multiply, 2 sincos, 5 sqrt
+#   skeleton: 28 add, 53 compare and select, 5 divide, 19 multiply, 2 sincos, 3 sqrt
+#   jacobian_parallel: 28 add, 51 compare and select, 5 divide, 19 multiply, 2 sincos, 3 sqrt
+#   jacobian_serial: 32 add, 47 compare and select, 5 divide, 27 multiply, 2 sincos, 3 sqrt
+#   jacobian: 32 add, 53 compare and select, 13 divide, 36 multiply, 2 sincos, 3 sqrt
+#   determinant: 32 add, 47 compare and select, 7 divide, 30 multiply, 2 sincos, 3 sqrt
+#   singularities: 32 add, 50 compare and select, 5 divide, 28 multiply, 2 sincos, 3 sqrt
+#   condition_number: 42 add, 49 compare and select, 7 divide, 39 multiply, 2 sincos, 5 sqrt
 #   ik: 102 compare and select, 65 add, 4 atan2, 3 divide, 57 multiply, 8 sqrt
 #   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
 """Planar five-bar linkage.
@@ -122,7 +122,7 @@ def _fk(ops, theta1, theta2, L0, L1, L2, L3, L4):
     invalid = ops.opposite(t2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * size)
+    t4 = -(ops.feasibility * (0.75 * size))
     c1_x = L1 * c1
     t5 = c1_x - (L0 + L2 * c2)
     c1_y = L1 * s1
@@ -143,27 +143,30 @@ def _fk(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t15 = t12 & ops.opposite(touching) & t13
     t16 = t14 | t15
     apart_2 = ops.sqrt(ops.select(t16, t7, 1.0))
-    t17 = 1.0 / ops.select(t14, apart_2, 1.0)
-    n_1 = ops.select(coincide, 1.0, -(t5 * t17))
-    t18 = 1.0 / ops.select(t16, apart_2 * 2.0, 1.0)
-    t19 = ops.select(coincide, L3, apart_2 * 0.5 + t9 * t3 * t18)
-    t20 = c1_x + n_1 * t19
-    t21 = ops.select(coincide, 0.0, t6 * t17)
-    t22 = ops.max(t3 - apart_2, 0.0) * ops.max(apart_2 + t9, 0.0)
-    t23 = t22 * ops.max(apart_2 - t9, 0.0) * (apart_2 + t3)
-    t24 = ops.select(coincide, 0.0, t18 * ops.sqrt(ops.select(t15, t23, 1.0)))
-    height = ops.select(touching, 0.0, t24)
-    t25 = t21 * height
-    t26 = c1_y - t19 * t21
-    t27 = n_1 * height
-    t28 = ops.status(invalid, unreachable, coincide)
+    outer = ops.max(apart_2 + t9, 0.0)
+    inner = ops.max(apart_2 - t9, 0.0)
+    share = 1.0 / ops.select(t16, outer + inner, 1.0)
+    slack = ops.max(t3 - apart_2, 0.0)
+    t17 = share * (apart_2 + slack) * (outer - inner) * 0.5
+    t18 = ops.select(coincide, L3, apart_2 * 0.5 + t17)
+    t19 = 1.0 / ops.select(t14, apart_2, 1.0)
+    n_1 = ops.select(coincide, 1.0, -(t5 * t19))
+    t20 = c1_x + t18 * n_1
+    t21 = ops.select(t15, outer * inner * slack * (apart_2 + t3), 1.0)
+    t22 = ops.select(coincide, 0.0, share * ops.sqrt(t21))
+    height = ops.select(touching, 0.0, t22)
+    t23 = ops.select(coincide, 0.0, t6 * t19)
+    t24 = height * t23
+    t25 = c1_y - t18 * t23
+    t26 = n_1 * height
+    t27 = ops.status(invalid, unreachable, coincide)
     return (
-        ops.select(failed, ops.nan, t20 + t25),
-        ops.select(failed, ops.nan, t26 + t27),
-        ops.select(failed, ops.nan, t20 - t25),
-        ops.select(failed, ops.nan, t26 - t27),
-        t28,
-        t28,
+        ops.select(failed, ops.nan, t20 + t24),
+        ops.select(failed, ops.nan, t25 + t26),
+        ops.select(failed, ops.nan, t20 - t24),
+        ops.select(failed, ops.nan, t25 - t26),
+        t27,
+        t27,
     )
 
 
@@ -226,7 +229,7 @@ def _passive_angles(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * size)
+    t4 = -(ops.feasibility * (0.75 * size))
     t5 = L1 * c1 - (L0 + L2 * c2)
     t6 = L1 * s1 - L2 * s2
     t7 = t5 * t5 + t6 * t6
@@ -242,37 +245,40 @@ def _passive_angles(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t14 = t12 & t13
     touching = ops.max(t8, 0.0) <= t11
     t15 = t12 & ops.opposite(touching) & t13
-    apart_2 = ops.sqrt(ops.select(t14 | t15, t7, 1.0))
-    t16 = ops.select(t14, apart_2, 1.0)
-    t17 = ops.select(coincide, 0.0, t6 / t16)
-    t18 = apart_2 * 2.0
-    t19 = apart_2 * 0.5 + t9 * t3 / ops.select(t14, t18, 1.0)
-    t20 = ops.select(coincide, L3, t19)
-    t21 = t17 * t20
-    n_1 = ops.select(coincide, 1.0, -(t5 / t16))
-    t22 = ops.max(t3 - apart_2, 0.0) * ops.max(apart_2 + t9, 0.0)
-    t23 = t22 * ops.max(apart_2 - t9, 0.0) * (apart_2 + t3)
-    t24 = ops.sqrt(ops.select(t15, t23, 1.0)) / ops.select(t15, t18, 1.0)
-    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t24))
-    t25 = n_1 * height
-    t26 = t21 - t25
-    t27 = t20 * n_1
-    t28 = t17 * height
-    A_11 = t27 + t28
-    t29 = ops.wrap_cut(ops.atan2(-t26, ops.select(t12, A_11, 1.0)))
-    t30 = ops.atan2(t6 - t26, ops.select(t12, t5 + A_11, 1.0))
-    t31 = ops.select(failed, ops.nan, ops.wrap_cut(t30))
-    t32 = t21 + t25
-    A_11_below = t27 - t28
-    t33 = ops.atan2(t32, ops.select(t12, A_11_below, 1.0))
-    t34 = ops.select(failed, ops.nan, ops.wrap_cut(-t33))
-    t35 = ops.atan2(t6 - t32, ops.select(t12, t5 + A_11_below, 1.0))
-    t36 = ops.select(failed, ops.nan, ops.wrap_cut(t35))
+    t16 = t14 | t15
+    apart_2 = ops.sqrt(ops.select(t16, t7, 1.0))
+    t17 = ops.select(t14, apart_2, 1.0)
+    t18 = ops.select(coincide, 0.0, t6 / t17)
+    outer = ops.max(apart_2 + t9, 0.0)
+    inner = ops.max(apart_2 - t9, 0.0)
+    share = 1.0 / ops.select(t16, outer + inner, 1.0)
+    slack = ops.max(t3 - apart_2, 0.0)
+    t19 = share * (apart_2 + slack) * (outer - inner) * 0.5
+    t20 = ops.select(coincide, L3, apart_2 * 0.5 + t19)
+    t21 = t18 * t20
+    n_1 = ops.select(coincide, 1.0, -(t5 / t17))
+    t22 = ops.select(t15, outer * inner * slack * (apart_2 + t3), 1.0)
+    t23 = ops.select(coincide, 0.0, share * ops.sqrt(t22))
+    height = ops.select(touching, 0.0, t23)
+    t24 = n_1 * height
+    t25 = t21 - t24
+    t26 = t20 * n_1
+    t27 = t18 * height
+    A_11 = t26 + t27
+    t28 = ops.wrap_cut(ops.atan2(-t25, ops.select(t12, A_11, 1.0)))
+    t29 = ops.atan2(t6 - t25, ops.select(t12, t5 + A_11, 1.0))
+    t30 = ops.select(failed, ops.nan, ops.wrap_cut(t29))
+    t31 = t21 + t24
+    A_11_below = t26 - t27
+    t32 = ops.atan2(t31, ops.select(t12, A_11_below, 1.0))
+    t33 = ops.select(failed, ops.nan, ops.wrap_cut(-t32))
+    t34 = ops.atan2(t6 - t31, ops.select(t12, t5 + A_11_below, 1.0))
+    t35 = ops.select(failed, ops.nan, ops.wrap_cut(t34))
     return (
-        ops.select(failed, ops.nan, t29),
-        t31,
-        t34,
-        t36,
+        ops.select(failed, ops.nan, t28),
+        t30,
+        t33,
+        t35,
     )
 
 
@@ -327,7 +333,7 @@ def _skeleton(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * size)
+    t4 = -(ops.feasibility * (0.75 * size))
     c1_x = L1 * c1
     c2_x = L0 + L2 * c2
     t5 = c1_x - c2_x
@@ -353,25 +359,28 @@ def _skeleton(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t20 = t18 & t19
     touching = ops.max(t8, 0.0) <= t17
     t21 = t18 & ops.opposite(touching) & t19
-    apart_2 = ops.sqrt(ops.select(t20 | t21, t7, 1.0))
-    t22 = ops.select(t20, apart_2, 1.0)
-    n_1 = ops.select(coincide, 1.0, -(t5 / t22))
-    t23 = apart_2 * 2.0
-    t24 = apart_2 * 0.5 + t9 * t3 / ops.select(t20, t23, 1.0)
-    t25 = ops.select(coincide, L3, t24)
+    t22 = t20 | t21
+    apart_2 = ops.sqrt(ops.select(t22, t7, 1.0))
+    t23 = ops.select(t20, apart_2, 1.0)
+    n_1 = ops.select(coincide, 1.0, -(t5 / t23))
+    outer = ops.max(apart_2 + t9, 0.0)
+    inner = ops.max(apart_2 - t9, 0.0)
+    share = 1.0 / ops.select(t22, outer + inner, 1.0)
+    slack = ops.max(t3 - apart_2, 0.0)
+    t24 = share * (apart_2 + slack) * (outer - inner) * 0.5
+    t25 = ops.select(coincide, L3, apart_2 * 0.5 + t24)
     t26 = n_1 * t25
-    t27 = ops.select(coincide, 0.0, t6 / t22)
-    t28 = ops.max(t3 - apart_2, 0.0) * ops.max(apart_2 + t9, 0.0)
-    t29 = t28 * ops.max(apart_2 - t9, 0.0) * (apart_2 + t3)
-    t30 = ops.sqrt(ops.select(t21, t29, 1.0)) / ops.select(t21, t23, 1.0)
-    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t30))
-    t31 = t27 * height
-    t32 = ops.select(failed, ops.nan, c1_x + (t26 + t31))
-    t33 = t25 * t27
-    t34 = n_1 * height
-    t35 = ops.select(failed, ops.nan, c1_y - (t33 - t34))
-    t36 = ops.select(failed, ops.nan, c1_x + (t26 - t31))
-    t37 = ops.select(failed, ops.nan, c1_y - (t33 + t34))
+    t27 = ops.select(coincide, 0.0, t6 / t23)
+    t28 = ops.select(t21, outer * inner * slack * (apart_2 + t3), 1.0)
+    t29 = ops.select(coincide, 0.0, share * ops.sqrt(t28))
+    height = ops.select(touching, 0.0, t29)
+    t30 = t27 * height
+    t31 = ops.select(failed, ops.nan, c1_x + (t26 + t30))
+    t32 = t25 * t27
+    t33 = n_1 * height
+    t34 = ops.select(failed, ops.nan, c1_y - (t32 - t33))
+    t35 = ops.select(failed, ops.nan, c1_x + (t26 - t30))
+    t36 = ops.select(failed, ops.nan, c1_y - (t32 + t33))
     return (
         t11,
         t11,
@@ -385,8 +394,8 @@ def _skeleton(ops, theta1, theta2, L0, L1, L2, L3, L4):
         t15,
         t16,
         t11,
-        t32,
-        t35,
+        t31,
+        t34,
         t11,
         t11,
         t11,
@@ -400,8 +409,8 @@ def _skeleton(ops, theta1, theta2, L0, L1, L2, L3, L4):
         t15,
         t16,
         t11,
+        t35,
         t36,
-        t37,
         t11,
     )
 
@@ -456,7 +465,7 @@ def _jacobian_parallel(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * size)
+    t4 = -(ops.feasibility * (0.75 * size))
     t5 = L1 * c1 - (L0 + L2 * c2)
     t6 = L1 * s1 - L2 * s2
     t7 = t5 * t5 + t6 * t6
@@ -472,34 +481,37 @@ def _jacobian_parallel(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t14 = t12 & t13
     touching = ops.max(t8, 0.0) <= t11
     t15 = t12 & ops.opposite(touching) & t13
-    apart_2 = ops.sqrt(ops.select(t14 | t15, t7, 1.0))
-    t16 = ops.select(t14, apart_2, 1.0)
-    n_1 = ops.select(coincide, 1.0, -(t5 / t16))
-    t17 = apart_2 * 2.0
-    t18 = apart_2 * 0.5 + t9 * t3 / ops.select(t14, t17, 1.0)
-    t19 = ops.select(coincide, L3, t18)
+    t16 = t14 | t15
+    apart_2 = ops.sqrt(ops.select(t16, t7, 1.0))
+    t17 = ops.select(t14, apart_2, 1.0)
+    n_1 = ops.select(coincide, 1.0, -(t5 / t17))
+    outer = ops.max(apart_2 + t9, 0.0)
+    inner = ops.max(apart_2 - t9, 0.0)
+    share = 1.0 / ops.select(t16, outer + inner, 1.0)
+    slack = ops.max(t3 - apart_2, 0.0)
+    t18 = share * (apart_2 + slack) * (outer - inner) * 0.5
+    t19 = ops.select(coincide, L3, apart_2 * 0.5 + t18)
     t20 = n_1 * t19
-    t21 = ops.select(coincide, 0.0, t6 / t16)
-    t22 = ops.max(t3 - apart_2, 0.0) * ops.max(apart_2 + t9, 0.0)
-    t23 = t22 * ops.max(apart_2 - t9, 0.0) * (apart_2 + t3)
-    t24 = ops.sqrt(ops.select(t15, t23, 1.0)) / ops.select(t15, t17, 1.0)
-    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t24))
-    t25 = t21 * height
-    A_11 = t20 + t25
-    t26 = t19 * t21
-    t27 = n_1 * height
-    t28 = t26 - t27
-    A_11_below = t20 - t25
-    t29 = t26 + t27
+    t21 = ops.select(coincide, 0.0, t6 / t17)
+    t22 = ops.select(t15, outer * inner * slack * (apart_2 + t3), 1.0)
+    t23 = ops.select(coincide, 0.0, share * ops.sqrt(t22))
+    height = ops.select(touching, 0.0, t23)
+    t24 = t21 * height
+    A_11 = t20 + t24
+    t25 = t19 * t21
+    t26 = n_1 * height
+    t27 = t25 - t26
+    A_11_below = t20 - t24
+    t28 = t25 + t26
     return (
         ops.select(failed, ops.nan, A_11),
-        ops.select(failed, ops.nan, -t28),
+        ops.select(failed, ops.nan, -t27),
         ops.select(failed, ops.nan, t5 + A_11),
-        ops.select(failed, ops.nan, t6 - t28),
+        ops.select(failed, ops.nan, t6 - t27),
         ops.select(failed, ops.nan, A_11_below),
-        ops.select(failed, ops.nan, -t29),
+        ops.select(failed, ops.nan, -t28),
         ops.select(failed, ops.nan, t5 + A_11_below),
-        ops.select(failed, ops.nan, t6 - t29),
+        ops.select(failed, ops.nan, t6 - t28),
     )
 
 
@@ -554,7 +566,7 @@ def _jacobian_serial(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * size)
+    t4 = -(ops.feasibility * (0.75 * size))
     c1_x = L1 * c1
     t5 = L2 * c2
     t6 = c1_x - (L0 + t5)
@@ -574,34 +586,37 @@ def _jacobian_serial(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t15 = t13 & t14
     touching = ops.max(t9, 0.0) <= t12
     t16 = t13 & ops.opposite(touching) & t14
-    apart_2 = ops.sqrt(ops.select(t15 | t16, t8, 1.0))
-    t17 = ops.select(t15, apart_2, 1.0)
-    n_1 = ops.select(coincide, 1.0, -(t6 / t17))
-    t18 = apart_2 * 2.0
-    t19 = apart_2 * 0.5 + t10 * t3 / ops.select(t15, t18, 1.0)
-    t20 = ops.select(coincide, L3, t19)
+    t17 = t15 | t16
+    apart_2 = ops.sqrt(ops.select(t17, t8, 1.0))
+    t18 = ops.select(t15, apart_2, 1.0)
+    n_1 = ops.select(coincide, 1.0, -(t6 / t18))
+    outer = ops.max(apart_2 + t10, 0.0)
+    inner = ops.max(apart_2 - t10, 0.0)
+    share = 1.0 / ops.select(t17, outer + inner, 1.0)
+    slack = ops.max(t3 - apart_2, 0.0)
+    t19 = share * (apart_2 + slack) * (outer - inner) * 0.5
+    t20 = ops.select(coincide, L3, apart_2 * 0.5 + t19)
     t21 = n_1 * t20
-    t22 = ops.select(coincide, 0.0, t7 / t17)
-    t23 = ops.max(t3 - apart_2, 0.0) * ops.max(apart_2 + t10, 0.0)
-    t24 = t23 * ops.max(apart_2 - t10, 0.0) * (apart_2 + t3)
-    t25 = ops.sqrt(ops.select(t16, t24, 1.0)) / ops.select(t16, t18, 1.0)
-    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t25))
-    t26 = t22 * height
-    A_11 = t21 + t26
-    t27 = t20 * t22
-    t28 = n_1 * height
-    t29 = t27 - t28
-    t30 = ops.select(failed, ops.nan, -(c1_y * A_11 + c1_x * t29))
-    t31 = ops.select(failed, ops.nan, t5 * (t7 - t29) - c2_y * (t6 + A_11))
-    A_11_below = t21 - t26
-    t32 = t27 + t28
-    t33 = ops.select(failed, ops.nan, -(c1_y * A_11_below + c1_x * t32))
-    t34 = ops.select(failed, ops.nan, t5 * (t7 - t32) - c2_y * (t6 + A_11_below))
+    t22 = ops.select(coincide, 0.0, t7 / t18)
+    t23 = ops.select(t16, outer * inner * slack * (apart_2 + t3), 1.0)
+    t24 = ops.select(coincide, 0.0, share * ops.sqrt(t23))
+    height = ops.select(touching, 0.0, t24)
+    t25 = t22 * height
+    A_11 = t21 + t25
+    t26 = t20 * t22
+    t27 = n_1 * height
+    t28 = t26 - t27
+    t29 = ops.select(failed, ops.nan, -(c1_y * A_11 + c1_x * t28))
+    t30 = ops.select(failed, ops.nan, t5 * (t7 - t28) - c2_y * (t6 + A_11))
+    A_11_below = t21 - t25
+    t31 = t26 + t27
+    t32 = ops.select(failed, ops.nan, -(c1_y * A_11_below + c1_x * t31))
+    t33 = ops.select(failed, ops.nan, t5 * (t7 - t31) - c2_y * (t6 + A_11_below))
     return (
+        t29,
         t30,
-        t31,
+        t32,
         t33,
-        t34,
     )
 
 
@@ -656,7 +671,7 @@ def _jacobian(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * size)
+    t4 = -(ops.feasibility * (0.75 * size))
     c1_x = L1 * c1
     t5 = L2 * c2
     t6 = c1_x - (L0 + t5)
@@ -679,47 +694,49 @@ def _jacobian(ops, theta1, theta2, L0, L1, L2, L3, L4):
     apart_2 = ops.sqrt(ops.select(t13 | t16, t8, 1.0))
     t17 = ops.select(t15, apart_2, 1.0)
     t18 = ops.select(coincide, 0.0, t7 / t17)
-    t19 = apart_2 * 2.0
-    t20 = apart_2 * 0.5 + t10 * t3 / ops.select(t15, t19, 1.0)
-    t21 = ops.select(coincide, L3, t20)
-    t22 = t18 * t21
+    outer = ops.max(apart_2 + t10, 0.0)
+    inner = ops.max(apart_2 - t10, 0.0)
+    share = 1.0 / ops.select(t15 | t16, outer + inner, 1.0)
+    slack = ops.max(t3 - apart_2, 0.0)
+    t19 = share * (apart_2 + slack) * (outer - inner) * 0.5
+    t20 = ops.select(coincide, L3, apart_2 * 0.5 + t19)
+    t21 = t18 * t20
     n_1 = ops.select(coincide, 1.0, -(t6 / t17))
-    t23 = ops.max(t3 - apart_2, 0.0) * ops.max(apart_2 + t10, 0.0)
-    t24 = t23 * ops.max(apart_2 - t10, 0.0) * (apart_2 + t3)
-    t25 = ops.sqrt(ops.select(t16, t24, 1.0)) / ops.select(t16, t19, 1.0)
-    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t25))
-    t26 = n_1 * height
-    t27 = t22 - t26
-    A_22 = t7 - t27
-    t28 = t21 * n_1
-    t29 = t18 * height
-    A_11 = t28 + t29
-    t30 = c1_y * A_11 + c1_x * t27
-    t31 = ops.select(t13, apart_2 * height, 1.0)
-    t32 = ops.select(failed, ops.nan, -(A_22 * t30 / t31))
+    t22 = ops.select(t16, outer * inner * slack * (apart_2 + t3), 1.0)
+    t23 = ops.select(coincide, 0.0, share * ops.sqrt(t22))
+    height = ops.select(touching, 0.0, t23)
+    t24 = n_1 * height
+    t25 = t21 - t24
+    A_22 = t7 - t25
+    t26 = t20 * n_1
+    t27 = t18 * height
+    A_11 = t26 + t27
+    t28 = c1_y * A_11 + c1_x * t25
+    t29 = ops.select(t13, apart_2 * height, 1.0)
+    t30 = ops.select(failed, ops.nan, -(A_22 * t28 / t29))
     A_21 = t6 + A_11
-    t33 = c2_y * A_21 - t5 * A_22
-    t34 = ops.select(failed, ops.nan, -(t27 * t33 / t31))
-    t35 = ops.select(failed, ops.nan, t30 * A_21 / t31)
-    t36 = ops.select(failed, ops.nan, -(A_11 * t33 / t31))
-    t37 = t22 + t26
-    A_22_below = t7 - t37
-    A_11_below = t28 - t29
-    t38 = c1_y * A_11_below + c1_x * t37
-    t39 = ops.select(failed, ops.nan, A_22_below * t38 / t31)
+    t31 = c2_y * A_21 - t5 * A_22
+    t32 = ops.select(failed, ops.nan, -(t25 * t31 / t29))
+    t33 = ops.select(failed, ops.nan, t28 * A_21 / t29)
+    t34 = ops.select(failed, ops.nan, -(A_11 * t31 / t29))
+    t35 = t21 + t24
+    A_22_below = t7 - t35
+    A_11_below = t26 - t27
+    t36 = c1_y * A_11_below + c1_x * t35
+    t37 = ops.select(failed, ops.nan, A_22_below * t36 / t29)
     A_21_below = t6 + A_11_below
-    t40 = c2_y * A_21_below - t5 * A_22_below
-    t41 = ops.select(failed, ops.nan, -(t38 * A_21_below / t31))
-    t42 = ops.select(failed, ops.nan, A_11_below * t40 / t31)
+    t38 = c2_y * A_21_below - t5 * A_22_below
+    t39 = ops.select(failed, ops.nan, -(t36 * A_21_below / t29))
+    t40 = ops.select(failed, ops.nan, A_11_below * t38 / t29)
     return (
+        t30,
         t32,
+        t33,
         t34,
-        t35,
-        t36,
+        t37,
+        ops.select(failed, ops.nan, t35 * t38 / t29),
         t39,
-        ops.select(failed, ops.nan, t37 * t40 / t31),
-        t41,
-        t42,
+        t40,
     )
 
 
@@ -775,7 +792,7 @@ def _determinant(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * size)
+    t4 = -(ops.feasibility * (0.75 * size))
     c1_x = L1 * c1
     t5 = L2 * c2
     t6 = c1_x - (L0 + t5)
@@ -798,28 +815,30 @@ def _determinant(ops, theta1, theta2, L0, L1, L2, L3, L4):
     apart_2 = ops.sqrt(ops.select(t13 | t16, t8, 1.0))
     t17 = ops.select(t15, apart_2, 1.0)
     n_1 = ops.select(coincide, 1.0, -(t6 / t17))
-    t18 = apart_2 * 2.0
-    t19 = apart_2 * 0.5 + t10 * t3 / ops.select(t15, t18, 1.0)
-    t20 = ops.select(coincide, L3, t19)
-    t21 = n_1 * t20
-    t22 = ops.select(coincide, 0.0, t7 / t17)
-    t23 = ops.max(t3 - apart_2, 0.0) * ops.max(apart_2 + t10, 0.0)
-    t24 = t23 * ops.max(apart_2 - t10, 0.0) * (apart_2 + t3)
-    t25 = ops.sqrt(ops.select(t16, t24, 1.0)) / ops.select(t16, t18, 1.0)
-    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t25))
-    t26 = t22 * height
-    A_11 = t21 + t26
-    t27 = t20 * t22
-    t28 = n_1 * height
-    t29 = t27 - t28
-    t30 = (c1_y * A_11 + c1_x * t29) * (c2_y * (t6 + A_11) - t5 * (t7 - t29))
-    t31 = ops.select(t13, apart_2 * height, 1.0)
-    A_11_below = t21 - t26
-    t32 = t27 + t28
-    t33 = (c1_y * A_11_below + c1_x * t32) * (c2_y * (t6 + A_11_below) - t5 * (t7 - t32))
+    outer = ops.max(apart_2 + t10, 0.0)
+    inner = ops.max(apart_2 - t10, 0.0)
+    share = 1.0 / ops.select(t15 | t16, outer + inner, 1.0)
+    slack = ops.max(t3 - apart_2, 0.0)
+    t18 = share * (apart_2 + slack) * (outer - inner) * 0.5
+    t19 = ops.select(coincide, L3, apart_2 * 0.5 + t18)
+    t20 = n_1 * t19
+    t21 = ops.select(coincide, 0.0, t7 / t17)
+    t22 = ops.select(t16, outer * inner * slack * (apart_2 + t3), 1.0)
+    t23 = ops.select(coincide, 0.0, share * ops.sqrt(t22))
+    height = ops.select(touching, 0.0, t23)
+    t24 = t21 * height
+    A_11 = t20 + t24
+    t25 = t19 * t21
+    t26 = n_1 * height
+    t27 = t25 - t26
+    t28 = (c1_y * A_11 + c1_x * t27) * (c2_y * (t6 + A_11) - t5 * (t7 - t27))
+    t29 = ops.select(t13, apart_2 * height, 1.0)
+    A_11_below = t20 - t24
+    t30 = t25 + t26
+    t31 = (c1_y * A_11_below + c1_x * t30) * (c2_y * (t6 + A_11_below) - t5 * (t7 - t30))
     return (
-        ops.select(failed, ops.nan, t30 / t31),
-        ops.select(failed, ops.nan, -(t33 / t31)),
+        ops.select(failed, ops.nan, t28 / t29),
+        ops.select(failed, ops.nan, -(t31 / t29)),
     )
 
 
@@ -874,7 +893,7 @@ def _singularities(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * size)
+    t4 = -(ops.feasibility * (0.75 * size))
     c1_x = L1 * c1
     t5 = L2 * c2
     t6 = c1_x - (L0 + t5)
@@ -897,33 +916,35 @@ def _singularities(ops, theta1, theta2, L0, L1, L2, L3, L4):
     apart_2 = ops.sqrt(ops.select(t13 | t16, t8, 1.0))
     t17 = ops.select(t15, apart_2, 1.0)
     n_1 = ops.select(coincide, 1.0, -(t6 / t17))
-    t18 = apart_2 * 2.0
-    t19 = apart_2 * 0.5 + t10 * t3 / ops.select(t15, t18, 1.0)
-    t20 = ops.select(coincide, L3, t19)
-    t21 = n_1 * t20
-    t22 = ops.select(coincide, 0.0, t7 / t17)
-    t23 = ops.max(t3 - apart_2, 0.0) * ops.max(apart_2 + t10, 0.0)
-    t24 = t23 * ops.max(apart_2 - t10, 0.0) * (apart_2 + t3)
-    t25 = ops.sqrt(ops.select(t16, t24, 1.0)) / ops.select(t16, t18, 1.0)
-    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t25))
-    t26 = t22 * height
-    A_11 = t21 + t26
-    t27 = t20 * t22
-    t28 = n_1 * height
-    t29 = t27 - t28
-    t30 = ops.select(failed, ops.nan, -(c1_y * A_11 + c1_x * t29))
-    t31 = ops.select(failed, ops.nan, t5 * (t7 - t29) - c2_y * (t6 + A_11))
+    outer = ops.max(apart_2 + t10, 0.0)
+    inner = ops.max(apart_2 - t10, 0.0)
+    share = 1.0 / ops.select(t15 | t16, outer + inner, 1.0)
+    slack = ops.max(t3 - apart_2, 0.0)
+    t18 = share * (apart_2 + slack) * (outer - inner) * 0.5
+    t19 = ops.select(coincide, L3, apart_2 * 0.5 + t18)
+    t20 = n_1 * t19
+    t21 = ops.select(coincide, 0.0, t7 / t17)
+    t22 = ops.select(t16, outer * inner * slack * (apart_2 + t3), 1.0)
+    t23 = ops.select(coincide, 0.0, share * ops.sqrt(t22))
+    height = ops.select(touching, 0.0, t23)
+    t24 = t21 * height
+    A_11 = t20 + t24
+    t25 = t19 * t21
+    t26 = n_1 * height
+    t27 = t25 - t26
+    t28 = ops.select(failed, ops.nan, -(c1_y * A_11 + c1_x * t27))
+    t29 = ops.select(failed, ops.nan, t5 * (t7 - t27) - c2_y * (t6 + A_11))
     Delta = apart_2 * height
-    A_11_below = t21 - t26
-    t32 = t27 + t28
-    t33 = ops.select(failed, ops.nan, -(c1_y * A_11_below + c1_x * t32))
-    t34 = ops.select(failed, ops.nan, t5 * (t7 - t32) - c2_y * (t6 + A_11_below))
+    A_11_below = t20 - t24
+    t30 = t25 + t26
+    t31 = ops.select(failed, ops.nan, -(c1_y * A_11_below + c1_x * t30))
+    t32 = ops.select(failed, ops.nan, t5 * (t7 - t30) - c2_y * (t6 + A_11_below))
     return (
-        t30,
-        t31,
+        t28,
+        t29,
         ops.select(failed, ops.nan, Delta),
-        t33,
-        t34,
+        t31,
+        t32,
         ops.select(failed, ops.nan, -Delta),
     )
 
@@ -979,7 +1000,7 @@ def _condition_number(ops, theta1, theta2, L0, L1, L2, L3, L4):
     t2 = t1 & (0.0 <= L2) & (0.0 <= L3) & (0.0 <= L4) & ops.finite(theta1, theta2)
     t3 = L3 + L4
     size = L0 + L1 + L2 + t3
-    t4 = -(ops.feasibility * size)
+    t4 = -(ops.feasibility * (0.75 * size))
     t5 = L1 * c1 - (L0 + L2 * c2)
     t6 = L1 * s1 - L2 * s2
     t7 = t5 * t5 + t6 * t6
@@ -998,42 +1019,44 @@ def _condition_number(ops, theta1, theta2, L0, L1, L2, L3, L4):
     apart_2 = ops.sqrt(ops.select(t12 | t15, t7, 1.0))
     t16 = ops.select(t14, apart_2, 1.0)
     n_1 = ops.select(coincide, 1.0, -(t5 / t16))
-    t17 = apart_2 * 2.0
-    t18 = apart_2 * 0.5 + t9 * t3 / ops.select(t14, t17, 1.0)
-    t19 = ops.select(coincide, L3, t18)
-    t20 = n_1 * t19
-    t21 = ops.select(coincide, 0.0, t6 / t16)
-    t22 = ops.max(t3 - apart_2, 0.0) * ops.max(apart_2 + t9, 0.0)
-    t23 = t22 * ops.max(apart_2 - t9, 0.0) * (apart_2 + t3)
-    t24 = ops.sqrt(ops.select(t15, t23, 1.0)) / ops.select(t15, t17, 1.0)
-    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t24))
-    t25 = t21 * height
-    A_11 = t20 + t25
-    t26 = t19 * t21
-    t27 = n_1 * height
-    t28 = t26 - t27
-    square1 = A_11 * A_11 + t28 * t28
+    outer = ops.max(apart_2 + t9, 0.0)
+    inner = ops.max(apart_2 - t9, 0.0)
+    share = 1.0 / ops.select(t14 | t15, outer + inner, 1.0)
+    slack = ops.max(t3 - apart_2, 0.0)
+    t17 = share * (apart_2 + slack) * (outer - inner) * 0.5
+    t18 = ops.select(coincide, L3, apart_2 * 0.5 + t17)
+    t19 = n_1 * t18
+    t20 = ops.select(coincide, 0.0, t6 / t16)
+    t21 = ops.select(t15, outer * inner * slack * (apart_2 + t3), 1.0)
+    t22 = ops.select(coincide, 0.0, share * ops.sqrt(t21))
+    height = ops.select(touching, 0.0, t22)
+    t23 = t20 * height
+    A_11 = t19 + t23
+    t24 = t18 * t20
+    t25 = n_1 * height
+    t26 = t24 - t25
+    square1 = A_11 * A_11 + t26 * t26
     A_21 = t5 + A_11
-    A_22 = t6 - t28
+    A_22 = t6 - t26
     square2 = A_21 * A_21 + A_22 * A_22
-    t29 = square1 - square2
-    t30 = A_11 * A_21 - t28 * A_22
-    t31 = ops.select(t12, t29 * t29 + 4.0 * (t30 * t30), 1.0)
-    t32 = ops.select(t12, 2.0 * (apart_2 * height), 1.0)
-    t33 = ops.select(failed, ops.nan, (square1 + square2 + ops.sqrt(t31)) / t32)
-    A_11_below = t20 - t25
-    t34 = t26 + t27
-    square1_below = A_11_below * A_11_below + t34 * t34
+    t27 = square1 - square2
+    t28 = A_11 * A_21 - t26 * A_22
+    t29 = ops.select(t12, t27 * t27 + 4.0 * (t28 * t28), 1.0)
+    t30 = ops.select(t12, 2.0 * (apart_2 * height), 1.0)
+    t31 = ops.select(failed, ops.nan, (square1 + square2 + ops.sqrt(t29)) / t30)
+    A_11_below = t19 - t23
+    t32 = t24 + t25
+    square1_below = A_11_below * A_11_below + t32 * t32
     A_21_below = t5 + A_11_below
-    A_22_below = t6 - t34
+    A_22_below = t6 - t32
     square2_below = A_21_below * A_21_below + A_22_below * A_22_below
-    t35 = square1_below - square2_below
-    t36 = A_11_below * A_21_below - t34 * A_22_below
-    t37 = ops.select(t12, t35 * t35 + 4.0 * (t36 * t36), 1.0)
-    t38 = square1_below + square2_below + ops.sqrt(t37)
+    t33 = square1_below - square2_below
+    t34 = A_11_below * A_21_below - t32 * A_22_below
+    t35 = ops.select(t12, t33 * t33 + 4.0 * (t34 * t34), 1.0)
+    t36 = square1_below + square2_below + ops.sqrt(t35)
     return (
-        t33,
-        ops.select(failed, ops.nan, t38 / t32),
+        t31,
+        ops.select(failed, ops.nan, t36 / t30),
     )
 
 

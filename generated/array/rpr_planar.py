@@ -2,15 +2,15 @@
 # derivations/rpr_planar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 7 add, 37 compare and select, 3 divide, 11 multiply, 2 sqrt
-#   passive_angles: 8 add, 43 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
-#   skeleton: 7 add, 38 compare and select, 4 divide, 9 multiply, 2 sqrt
-#   jacobian_parallel: 8 add, 37 compare and select, 4 divide, 9 multiply, 2 sqrt
-#   jacobian_serial: 6 add, 15 compare and select, 1 multiply
-#   jacobian: 8 add, 40 compare and select, 8 divide, 14 multiply, 2 sqrt
-#   determinant: 6 add, 31 compare and select, 2 divide, 8 multiply, 2 sqrt
-#   singularities: 6 add, 32 compare and select, 1 divide, 7 multiply, 2 sqrt
-#   condition_number: 15 add, 36 compare and select, 5 divide, 18 multiply, 3 sqrt
+#   fk: 10 add, 37 compare and select, 4 divide, 11 multiply, 2 sqrt
+#   passive_angles: 11 add, 43 compare and select, 2 atan2, 4 divide, 11 multiply, 2 sqrt
+#   skeleton: 10 add, 38 compare and select, 4 divide, 11 multiply, 2 sqrt
+#   jacobian_parallel: 11 add, 37 compare and select, 4 divide, 11 multiply, 2 sqrt
+#   jacobian_serial: 6 add, 15 compare and select, 2 multiply
+#   jacobian: 11 add, 40 compare and select, 8 divide, 16 multiply, 2 sqrt
+#   determinant: 7 add, 31 compare and select, 2 divide, 9 multiply, 2 sqrt
+#   singularities: 7 add, 32 compare and select, 1 divide, 8 multiply, 2 sqrt
+#   condition_number: 18 add, 36 compare and select, 5 divide, 20 multiply, 3 sqrt
 #   ik: 13 compare and select, 3 add, 6 multiply, 4 sqrt
 """Planar parallel mechanism (two RPR legs).
 
@@ -100,7 +100,7 @@ def _fk(ops, rho1, rho2, b):
     invalid = ops.opposite(t1)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * size)
+    t3 = -(ops.feasibility * (0.75 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -116,21 +116,23 @@ def _fk(ops, rho1, rho2, b):
     slack = ops.max(t4, 0.0)
     touching = slack <= t8
     t12 = t9 & ops.opposite(touching) & t10
-    t13 = 1.0 / ops.select(t11 | t12, b * 2.0, 1.0)
-    t14 = ops.select(coincide, rho1, b * 0.5 + t5 * t2 * t13)
-    t15 = ops.select(failed, ops.nan, n_1 * t14)
-    t16 = ops.select(t12, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
-    t17 = ops.sqrt(ops.select(t12, size, 1.0)) * ops.sqrt(t16)
-    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t13 * t17))
-    t18 = n_1 * height
-    t19 = ops.status(invalid, unreachable, coincide)
+    outer = ops.max(t6, 0.0)
+    inner = ops.max(t7, 0.0)
+    share = 1.0 / ops.select(t11 | t12, outer + inner, 1.0)
+    t13 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5
+    t14 = ops.select(failed, ops.nan, n_1 * ops.select(coincide, rho1, t13))
+    t15 = ops.sqrt(ops.select(t12, outer * inner * slack, 1.0))
+    t16 = share * ops.sqrt(ops.select(t12, size, 1.0)) * t15
+    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t16))
+    t17 = n_1 * height
+    t18 = ops.status(invalid, unreachable, coincide)
     return (
-        t15,
-        ops.select(failed, ops.nan, t18),
-        t15,
-        ops.select(failed, ops.nan, -t18),
-        t19,
-        t19,
+        t14,
+        ops.select(failed, ops.nan, t17),
+        t14,
+        ops.select(failed, ops.nan, -t17),
+        t18,
+        t18,
     )
 
 
@@ -188,7 +190,7 @@ def _passive_angles(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * size)
+    t3 = -(ops.feasibility * (0.75 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -204,24 +206,26 @@ def _passive_angles(ops, rho1, rho2, b):
     slack = ops.max(t4, 0.0)
     touching = slack <= t8
     t12 = t9 & ops.opposite(touching) & t10
-    t13 = ops.select(t12, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
-    t14 = ops.sqrt(ops.select(t12, size, 1.0)) * ops.sqrt(t13)
-    t15 = b * 2.0
-    t16 = ops.select(coincide, 0.0, t14 / ops.select(t12, t15, 1.0))
-    A_12 = n_1 * ops.select(touching, 0.0, t16)
-    t17 = b * 0.5 + t5 * t2 / ops.select(t11, t15, 1.0)
-    A_11 = n_1 * ops.select(coincide, rho1, t17)
-    t18 = ops.atan2(A_12, ops.select(t9, A_11, 1.0))
+    outer = ops.max(t6, 0.0)
+    inner = ops.max(t7, 0.0)
+    share = 1.0 / ops.select(t11 | t12, outer + inner, 1.0)
+    t13 = ops.sqrt(ops.select(t12, slack * outer * inner, 1.0))
+    t14 = share * ops.sqrt(ops.select(t12, size, 1.0)) * t13
+    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t14))
+    A_12 = n_1 * height
+    t15 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5
+    A_11 = n_1 * ops.select(coincide, rho1, t15)
+    t16 = ops.atan2(A_12, ops.select(t9, A_11, 1.0))
+    t17 = ops.select(failed, ops.nan, ops.wrap_cut(t16))
+    t18 = ops.atan2(A_12, ops.select(t9, A_11 - b, 1.0))
     t19 = ops.select(failed, ops.nan, ops.wrap_cut(t18))
-    t20 = ops.atan2(A_12, ops.select(t9, A_11 - b, 1.0))
-    t21 = ops.select(failed, ops.nan, ops.wrap_cut(t20))
-    t22 = ops.select(failed, ops.nan, ops.wrap_cut(-t18))
-    t23 = ops.select(failed, ops.nan, ops.wrap_cut(-t20))
+    t20 = ops.select(failed, ops.nan, ops.wrap_cut(-t16))
+    t21 = ops.select(failed, ops.nan, ops.wrap_cut(-t18))
     return (
+        t17,
         t19,
+        t20,
         t21,
-        t22,
-        t23,
     )
 
 
@@ -271,7 +275,7 @@ def _skeleton(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * size)
+    t3 = -(ops.feasibility * (0.75 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -286,16 +290,18 @@ def _skeleton(ops, rho1, rho2, b):
     t12 = ops.opposite(coincide)
     t13 = t11 & t12
     n_1 = ops.select(coincide, 1.0, b / ops.select(t13, b, 1.0))
-    t14 = b * 2.0
-    t15 = b * 0.5 + t5 * t2 / ops.select(t13, t14, 1.0)
-    t16 = ops.select(failed, ops.nan, n_1 * ops.select(coincide, rho1, t15))
     slack = ops.max(t4, 0.0)
     touching = slack <= t10
-    t17 = t11 & ops.opposite(touching) & t12
-    t18 = ops.select(t17, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
-    t19 = ops.sqrt(ops.select(t17, size, 1.0)) * ops.sqrt(t18)
-    t20 = ops.select(coincide, 0.0, t19 / ops.select(t17, t14, 1.0))
-    A_12 = n_1 * ops.select(touching, 0.0, t20)
+    t14 = t11 & ops.opposite(touching) & t12
+    outer = ops.max(t6, 0.0)
+    inner = ops.max(t7, 0.0)
+    share = 1.0 / ops.select(t13 | t14, outer + inner, 1.0)
+    t15 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5
+    t16 = ops.select(failed, ops.nan, n_1 * ops.select(coincide, rho1, t15))
+    t17 = ops.sqrt(ops.select(t14, outer * inner * slack, 1.0))
+    t18 = share * ops.sqrt(ops.select(t14, size, 1.0)) * t17
+    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t18))
+    A_12 = n_1 * height
     return (
         t8,
         t8,
@@ -363,7 +369,7 @@ def _jacobian_parallel(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * size)
+    t3 = -(ops.feasibility * (0.75 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -376,29 +382,31 @@ def _jacobian_parallel(ops, rho1, rho2, b):
     t10 = ops.opposite(coincide)
     t11 = t9 & t10
     n_1 = ops.select(coincide, 1.0, b / ops.select(t11, b, 1.0))
-    t12 = b * 2.0
-    t13 = b * 0.5 + t5 * t2 / ops.select(t11, t12, 1.0)
-    A_11 = n_1 * ops.select(coincide, rho1, t13)
-    t14 = ops.select(failed, ops.nan, A_11)
     slack = ops.max(t4, 0.0)
     touching = slack <= t8
-    t15 = t9 & ops.opposite(touching) & t10
-    t16 = ops.select(t15, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
-    t17 = ops.sqrt(ops.select(t15, size, 1.0)) * ops.sqrt(t16)
-    t18 = ops.select(coincide, 0.0, t17 / ops.select(t15, t12, 1.0))
-    A_12 = n_1 * ops.select(touching, 0.0, t18)
-    t19 = ops.select(failed, ops.nan, A_12)
-    t20 = ops.select(failed, ops.nan, A_11 - b)
-    t21 = ops.select(failed, ops.nan, -A_12)
+    t12 = t9 & ops.opposite(touching) & t10
+    outer = ops.max(t6, 0.0)
+    inner = ops.max(t7, 0.0)
+    share = 1.0 / ops.select(t11 | t12, outer + inner, 1.0)
+    t13 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5
+    A_11 = n_1 * ops.select(coincide, rho1, t13)
+    t14 = ops.select(failed, ops.nan, A_11)
+    t15 = ops.sqrt(ops.select(t12, outer * inner * slack, 1.0))
+    t16 = share * ops.sqrt(ops.select(t12, size, 1.0)) * t15
+    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t16))
+    A_12 = n_1 * height
+    t17 = ops.select(failed, ops.nan, A_12)
+    t18 = ops.select(failed, ops.nan, A_11 - b)
+    t19 = ops.select(failed, ops.nan, -A_12)
     return (
         t14,
-        t19,
-        t20,
-        t19,
+        t17,
+        t18,
+        t17,
         t14,
-        t21,
-        t20,
-        t21,
+        t19,
+        t18,
+        t19,
     )
 
 
@@ -447,7 +455,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _jacobian_serial(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
-    t3 = -(ops.feasibility * (b + t2))
+    t3 = -(ops.feasibility * (0.75 * (b + t2)))
     t4 = rho1 - rho2
     t5 = (t3 <= t2 - b) & (t3 <= b + t4) & (t3 <= b - t4)
     failed = ops.opposite(t1) | ops.opposite(t5)
@@ -505,7 +513,7 @@ def _jacobian(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * size)
+    t3 = -(ops.feasibility * (0.75 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -521,28 +529,29 @@ def _jacobian(ops, rho1, rho2, b):
     slack = ops.max(t4, 0.0)
     touching = slack <= t8
     t12 = t9 & ops.opposite(touching) & t10
-    t13 = ops.select(t12, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
-    t14 = ops.sqrt(ops.select(t12, size, 1.0)) * ops.sqrt(t13)
-    t15 = b * 2.0
-    t16 = ops.select(coincide, 0.0, t14 / ops.select(t12, t15, 1.0))
-    height = ops.select(touching, 0.0, t16)
+    outer = ops.max(t6, 0.0)
+    inner = ops.max(t7, 0.0)
+    share = 1.0 / ops.select(t11 | t12, outer + inner, 1.0)
+    t13 = ops.sqrt(ops.select(t12, slack * outer * inner, 1.0))
+    t14 = share * ops.sqrt(ops.select(t12, size, 1.0)) * t13
+    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t14))
     A_12 = n_1 * height
-    t17 = ops.select(t9, b * height, 1.0)
-    t18 = ops.select(failed, ops.nan, rho1 * A_12 / t17)
-    t19 = ops.select(failed, ops.nan, -(rho2 * A_12 / t17))
-    t20 = b * 0.5 + t5 * t2 / ops.select(t11, t15, 1.0)
-    A_11 = n_1 * ops.select(coincide, rho1, t20)
-    t21 = rho1 * (b - A_11) / t17
-    t22 = rho2 * A_11 / t17
+    t15 = ops.select(t9, b * height, 1.0)
+    t16 = ops.select(failed, ops.nan, rho1 * A_12 / t15)
+    t17 = ops.select(failed, ops.nan, -(rho2 * A_12 / t15))
+    t18 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5
+    A_11 = n_1 * ops.select(coincide, rho1, t18)
+    t19 = rho1 * (b - A_11) / t15
+    t20 = rho2 * A_11 / t15
     return (
-        t18,
-        t19,
-        ops.select(failed, ops.nan, t21),
-        ops.select(failed, ops.nan, t22),
-        t18,
-        t19,
-        ops.select(failed, ops.nan, -t21),
-        ops.select(failed, ops.nan, -t22),
+        t16,
+        t17,
+        ops.select(failed, ops.nan, t19),
+        ops.select(failed, ops.nan, t20),
+        t16,
+        t17,
+        ops.select(failed, ops.nan, -t19),
+        ops.select(failed, ops.nan, -t20),
     )
 
 
@@ -593,7 +602,7 @@ def _determinant(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * size)
+    t3 = -(ops.feasibility * (0.75 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -606,14 +615,15 @@ def _determinant(ops, rho1, rho2, b):
     touching = slack <= t9
     coincide = b <= t9
     t10 = t8 & ops.opposite(touching) & ops.opposite(coincide)
-    t11 = ops.select(t10, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
-    t12 = ops.sqrt(ops.select(t10, size, 1.0)) * ops.sqrt(t11)
-    t13 = ops.select(coincide, 0.0, t12 / ops.select(t10, b * 2.0, 1.0))
-    t14 = ops.select(t8, b * ops.select(touching, 0.0, t13), 1.0)
-    t15 = rho1 * rho2 / t14
+    outer = ops.max(t6, 0.0)
+    inner = ops.max(t7, 0.0)
+    t11 = 1.0 / ops.select(t10, outer + inner, 1.0) * ops.sqrt(ops.select(t10, size, 1.0))
+    t12 = ops.sqrt(ops.select(t10, slack * outer * inner, 1.0))
+    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t11 * t12))
+    t13 = rho1 * rho2 / ops.select(t8, b * height, 1.0)
     return (
-        ops.select(failed, ops.nan, t15),
-        ops.select(failed, ops.nan, -t15),
+        ops.select(failed, ops.nan, t13),
+        ops.select(failed, ops.nan, -t13),
     )
 
 
@@ -663,7 +673,7 @@ def _singularities(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * size)
+    t3 = -(ops.feasibility * (0.75 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -678,10 +688,12 @@ def _singularities(ops, rho1, rho2, b):
     coincide = b <= t10
     t11 = ops.opposite(failed) & ops.opposite(touching)
     t12 = t11 & ops.opposite(coincide)
-    t13 = ops.select(t12, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
-    t14 = ops.sqrt(ops.select(t12, size, 1.0)) * ops.sqrt(t13)
-    t15 = ops.select(coincide, 0.0, t14 / ops.select(t12, b * 2.0, 1.0))
-    Delta = b * ops.select(touching, 0.0, t15)
+    outer = ops.max(t6, 0.0)
+    inner = ops.max(t7, 0.0)
+    t13 = 1.0 / ops.select(t12, outer + inner, 1.0) * ops.sqrt(ops.select(t12, size, 1.0))
+    t14 = ops.sqrt(ops.select(t12, slack * outer * inner, 1.0))
+    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t13 * t14))
+    Delta = b * height
     return (
         t8,
         t9,
@@ -738,7 +750,7 @@ def _condition_number(ops, rho1, rho2, b):
     t1 = ops.finite(b) & (0.0 <= b) & ops.finite(rho1, rho2)
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(ops.feasibility * size)
+    t3 = -(ops.feasibility * (0.75 * size))
     t4 = t2 - b
     t5 = rho1 - rho2
     t6 = b + t5
@@ -751,29 +763,30 @@ def _condition_number(ops, rho1, rho2, b):
     t10 = ops.opposite(coincide)
     t11 = t9 & t10
     n_1 = ops.select(coincide, 1.0, b / ops.select(t11, b, 1.0))
-    t12 = b * 2.0
-    t13 = b * 0.5 + t5 * t2 / ops.select(t11, t12, 1.0)
-    A_11 = n_1 * ops.select(coincide, rho1, t13)
     slack = ops.max(t4, 0.0)
     touching = slack <= t8
-    t14 = t9 & ops.opposite(touching) & t10
-    t15 = ops.select(t14, slack * ops.max(t6, 0.0) * ops.max(t7, 0.0), 1.0)
-    t16 = ops.sqrt(ops.select(t14, size, 1.0)) * ops.sqrt(t15)
-    t17 = ops.select(coincide, 0.0, t16 / ops.select(t14, t12, 1.0))
-    height = ops.select(touching, 0.0, t17)
+    t12 = t9 & ops.opposite(touching) & t10
+    outer = ops.max(t6, 0.0)
+    inner = ops.max(t7, 0.0)
+    share = 1.0 / ops.select(t11 | t12, outer + inner, 1.0)
+    t13 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5
+    A_11 = n_1 * ops.select(coincide, rho1, t13)
+    t14 = ops.sqrt(ops.select(t12, outer * inner * slack, 1.0))
+    t15 = share * ops.sqrt(ops.select(t12, size, 1.0)) * t14
+    height = ops.select(touching, 0.0, ops.select(coincide, 0.0, t15))
     A_12 = n_1 * height
-    t18 = A_12 * A_12
-    square1 = A_11 * A_11 + t18
-    t19 = b - A_11
-    square2 = t18 + t19 * t19
-    t20 = square1 - square2
-    t21 = t18 - A_11 * t19
-    t22 = ops.select(t9, t20 * t20 + 4.0 * (t21 * t21), 1.0)
-    t23 = (square1 + square2 + ops.sqrt(t22)) / ops.select(t9, 2.0 * (b * height), 1.0)
-    t24 = ops.select(failed, ops.nan, t23)
+    t16 = A_12 * A_12
+    square1 = A_11 * A_11 + t16
+    t17 = b - A_11
+    square2 = t16 + t17 * t17
+    t18 = square1 - square2
+    t19 = t16 - A_11 * t17
+    t20 = ops.select(t9, t18 * t18 + 4.0 * (t19 * t19), 1.0)
+    t21 = (square1 + square2 + ops.sqrt(t20)) / ops.select(t9, 2.0 * (b * height), 1.0)
+    t22 = ops.select(failed, ops.nan, t21)
     return (
-        t24,
-        t24,
+        t22,
+        t22,
     )
 
 

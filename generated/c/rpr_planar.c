@@ -3,15 +3,15 @@
  * derivations/rpr_planar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
- *   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
- *   skeleton: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
- *   jacobian_parallel: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
- *   jacobian_serial: 8 add, 14 compare and select, 1 multiply
- *   jacobian: 14 add, 23 compare and select, 8 divide, 14 multiply, 2 sqrt
- *   determinant: 8 add, 21 compare and select, 2 divide, 8 multiply, 2 sqrt
- *   singularities: 10 add, 21 compare and select, 1 divide, 7 multiply, 2 sqrt
- *   condition_number: 16 add, 23 compare and select, 5 divide, 18 multiply, 3 sqrt
+ *   fk: 13 add, 24 compare and select, 4 divide, 11 multiply, 2 sqrt
+ *   passive_angles: 15 add, 27 compare and select, 2 atan2, 4 divide, 11 multiply, 2 sqrt
+ *   skeleton: 15 add, 23 compare and select, 4 divide, 11 multiply, 2 sqrt
+ *   jacobian_parallel: 15 add, 23 compare and select, 4 divide, 11 multiply, 2 sqrt
+ *   jacobian_serial: 8 add, 14 compare and select, 2 multiply
+ *   jacobian: 17 add, 23 compare and select, 8 divide, 16 multiply, 2 sqrt
+ *   determinant: 9 add, 21 compare and select, 2 divide, 9 multiply, 2 sqrt
+ *   singularities: 11 add, 21 compare and select, 1 divide, 8 multiply, 2 sqrt
+ *   condition_number: 19 add, 23 compare and select, 5 divide, 20 multiply, 3 sqrt
  *   ik: 10 compare and select, 5 add, 6 multiply, 2 sqrt
  */
 #include "rpr_planar.h"
@@ -28,30 +28,32 @@ CF_INLINE void rpr_planar_fk_kernel(const int single, const rpr_planar_params *p
     const int coincide = b <= t2;
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
     const real_t t3 = rho1 - rho2;
-    const real_t t4 = CLOSEDFORM_C(1.0) / cf_divisor(single, coincide, b * CLOSEDFORM_C(2.0));
-    const real_t t5 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t3 * t1 * t4);
-    const int t6 = cf_nought(b) == 0;
-    const int t7 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const int invalid = !(t6 & (CLOSEDFORM_C(0.0) <= b) & t7);
-    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * size);
-    const real_t t9 = t1 - b;
-    const real_t t10 = b + t3;
-    const real_t t11 = b - t3;
-    const int unreachable = !((t8 <= t9) & (t8 <= t10) & (t8 <= t11));
+    const real_t t4 = b + t3;
+    const real_t outer = cf_max(t4, CLOSEDFORM_C(0.0));
+    const real_t t5 = b - t3;
+    const real_t inner = cf_max(t5, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, coincide, outer + inner);
+    const real_t t6 = t1 - b;
+    const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t7 = share * (b + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t t8 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t7);
+    const int t9 = cf_nought(b) == 0;
+    const int t10 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const int invalid = !(t9 & (CLOSEDFORM_C(0.0) <= b) & t10);
+    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const int unreachable = !((-t11 <= t6) & (-t11 <= t4) & (-t11 <= t5));
     const real_t t12 = cf_poison(single, invalid | unreachable);
-    const real_t t13 = n_1 * t5 + t12;
-    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t14 = slack * cf_max(t10, CLOSEDFORM_C(0.0)) * cf_max(t11, CLOSEDFORM_C(0.0));
-    const real_t t15 = cf_select(coincide, CLOSEDFORM_C(0.0), t4 * (cf_root(single, size) * cf_sqrt(t14)));
-    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), t15);
-    const real_t t16 = n_1 * height;
-    const real_t t17 = cf_status(single, invalid, unreachable, coincide);
+    const real_t t13 = n_1 * t8 + t12;
+    const real_t t14 = share * cf_root(single, size) * cf_sqrt(outer * inner * slack);
+    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t14));
+    const real_t t15 = n_1 * height;
+    const real_t t16 = cf_status(single, invalid, unreachable, coincide);
     p[0] = t13;
-    p[1] = t16 + t12;
+    p[1] = t15 + t12;
     p[2] = t13;
-    p[3] = -t16 + t12;
-    status[0] = t17;
-    status[1] = t17;
+    p[3] = -t15 + t12;
+    status[0] = t16;
+    status[1] = t16;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -160,19 +162,22 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const int single, const rpr_plan
     const real_t slack = cf_max(t3, CLOSEDFORM_C(0.0));
     const real_t t4 = rho1 - rho2;
     const real_t t5 = b + t4;
+    const real_t outer = cf_max(t5, CLOSEDFORM_C(0.0));
     const real_t t6 = b - t4;
-    const real_t t7 = slack * cf_max(t5, CLOSEDFORM_C(0.0)) * cf_max(t6, CLOSEDFORM_C(0.0));
-    const real_t t8 = b * CLOSEDFORM_C(2.0);
-    const real_t t9 = cf_root(single, size) * cf_sqrt(t7) / cf_divisor(single, coincide | (slack <= t2), t8);
-    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t9));
+    const real_t inner = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, coincide, outer + inner);
+    const real_t t7 = share * cf_root(single, size) * cf_sqrt(slack * outer * inner);
+    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t7));
     const real_t A_12 = n_1 * height;
-    const real_t t10 = b * CLOSEDFORM_C(0.5) + t4 * t1 / cf_divisor(single, coincide, t8);
-    const real_t A_11 = n_1 * cf_select(coincide, rho1, t10);
-    const int t11 = cf_nought(b) == 0;
-    const int t12 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t13 = -(CLOSEDFORM_FEASIBILITY * size);
-    const int failed = (!(t11 & (CLOSEDFORM_C(0.0) <= b) & t12)) | (!((t13 <= t3) & (t13 <= t5) & (t13 <= t6)));
-    const real_t t14 = cf_poison(single, failed);
+    const real_t t8 = share * (b + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t t9 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t8);
+    const real_t A_11 = n_1 * t9;
+    const int t10 = cf_nought(b) == 0;
+    const int t11 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t12 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const int unreachable = !((-t12 <= t3) & (-t12 <= t5) & (-t12 <= t6));
+    const int failed = (!(t10 & (CLOSEDFORM_C(0.0) <= b) & t11)) | unreachable;
+    const real_t t13 = cf_poison(single, failed);
     const real_t opposite[2] = { A_12, A_12 };
     const real_t adjacent[2] = { A_11, A_11 - b };
     real_t angles[2];
@@ -182,10 +187,10 @@ CF_INLINE void rpr_planar_passive_angles_kernel(const int single, const rpr_plan
         angles[0] = cf_atan2(opposite[0], adjacent[0]);
         angles[1] = cf_atan2(opposite[1], adjacent[1]);
     }
-    theta[0] = cf_wrap_cut(angles[0]) + t14;
-    theta[1] = cf_wrap_cut(angles[1]) + t14;
-    theta[2] = cf_wrap_cut(-angles[0]) + t14;
-    theta[3] = cf_wrap_cut(-angles[1]) + t14;
+    theta[0] = cf_wrap_cut(angles[0]) + t13;
+    theta[1] = cf_wrap_cut(angles[1]) + t13;
+    theta[2] = cf_wrap_cut(-angles[0]) + t13;
+    theta[3] = cf_wrap_cut(-angles[1]) + t13;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -268,25 +273,27 @@ CF_INLINE void rpr_planar_skeleton_kernel(const int single, const rpr_planar_par
     const int t2 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const real_t t3 = rho1 + rho2;
     const real_t size = b + t3;
-    const real_t t4 = -(CLOSEDFORM_FEASIBILITY * size);
+    const real_t t4 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
     const real_t t5 = t3 - b;
     const real_t t6 = rho1 - rho2;
     const real_t t7 = b + t6;
     const real_t t8 = b - t6;
-    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!((t4 <= t5) & (t4 <= t7) & (t4 <= t8)));
+    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!((-t4 <= t5) & (-t4 <= t7) & (-t4 <= t8)));
     const real_t t9 = cf_poison(single, failed);
     const real_t t10 = CLOSEDFORM_C(0.0) + t9;
     const real_t t11 = b + t9;
     const real_t t12 = CLOSEDFORM_VANISHING * size;
     const int coincide = b <= t12;
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
-    const real_t t13 = b * CLOSEDFORM_C(2.0);
-    const real_t t14 = b * CLOSEDFORM_C(0.5) + t6 * t3 / cf_divisor(single, coincide, t13);
-    const real_t t15 = n_1 * cf_select(coincide, rho1, t14) + t9;
+    const real_t outer = cf_max(t7, CLOSEDFORM_C(0.0));
+    const real_t inner = cf_max(t8, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, coincide, outer + inner);
     const real_t slack = cf_max(t5, CLOSEDFORM_C(0.0));
-    const real_t t16 = slack * cf_max(t7, CLOSEDFORM_C(0.0)) * cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t17 = cf_root(single, size) * cf_sqrt(t16) / cf_divisor(single, coincide | (slack <= t12), t13);
-    const real_t height = cf_select(slack <= t12, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t17));
+    const real_t t13 = share * (b + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t t14 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t13);
+    const real_t t15 = n_1 * t14 + t9;
+    const real_t t16 = share * cf_root(single, size) * cf_sqrt(outer * inner * slack);
+    const real_t height = cf_select(slack <= t12, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t16));
     const real_t A_12 = n_1 * height;
     points[0] = t10;
     points[1] = t10;
@@ -408,34 +415,37 @@ CF_INLINE void rpr_planar_jacobian_parallel_kernel(const int single, const rpr_p
     const int coincide = b <= t2;
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
     const real_t t3 = rho1 - rho2;
-    const real_t t4 = b * CLOSEDFORM_C(2.0);
-    const real_t t5 = b * CLOSEDFORM_C(0.5) + t3 * t1 / cf_divisor(single, coincide, t4);
-    const real_t A_11 = n_1 * cf_select(coincide, rho1, t5);
-    const int t6 = cf_nought(b) == 0;
-    const int t7 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t8 = -(CLOSEDFORM_FEASIBILITY * size);
-    const real_t t9 = t1 - b;
-    const real_t t10 = b + t3;
-    const real_t t11 = b - t3;
-    const int failed = (!(t6 & (CLOSEDFORM_C(0.0) <= b) & t7)) | (!((t8 <= t9) & (t8 <= t10) & (t8 <= t11)));
+    const real_t t4 = b + t3;
+    const real_t outer = cf_max(t4, CLOSEDFORM_C(0.0));
+    const real_t t5 = b - t3;
+    const real_t inner = cf_max(t5, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, coincide, outer + inner);
+    const real_t t6 = t1 - b;
+    const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t t7 = share * (b + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t t8 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t7);
+    const real_t A_11 = n_1 * t8;
+    const int t9 = cf_nought(b) == 0;
+    const int t10 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const int unreachable = !((-t11 <= t6) & (-t11 <= t4) & (-t11 <= t5));
+    const int failed = (!(t9 & (CLOSEDFORM_C(0.0) <= b) & t10)) | unreachable;
     const real_t t12 = cf_poison(single, failed);
     const real_t t13 = A_11 + t12;
-    const real_t slack = cf_max(t9, CLOSEDFORM_C(0.0));
-    const real_t t14 = slack * cf_max(t10, CLOSEDFORM_C(0.0)) * cf_max(t11, CLOSEDFORM_C(0.0));
-    const real_t t15 = cf_root(single, size) * cf_sqrt(t14) / cf_divisor(single, coincide | (slack <= t2), t4);
-    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t15));
+    const real_t t14 = share * cf_root(single, size) * cf_sqrt(outer * inner * slack);
+    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t14));
     const real_t A_12 = n_1 * height;
-    const real_t t16 = A_12 + t12;
-    const real_t t17 = A_11 - b + t12;
-    const real_t t18 = -A_12 + t12;
+    const real_t t15 = A_12 + t12;
+    const real_t t16 = A_11 - b + t12;
+    const real_t t17 = -A_12 + t12;
     A[0] = t13;
-    A[1] = t16;
-    A[2] = t17;
-    A[3] = t16;
+    A[1] = t15;
+    A[2] = t16;
+    A[3] = t15;
     A[4] = t13;
-    A[5] = t18;
-    A[6] = t17;
-    A[7] = t18;
+    A[5] = t17;
+    A[6] = t16;
+    A[7] = t17;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -525,9 +535,9 @@ CF_INLINE void rpr_planar_jacobian_serial_kernel(const int single, const rpr_pla
     const int t1 = cf_nought(b) == 0;
     const int t2 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const real_t t3 = rho1 + rho2;
-    const real_t t4 = -(CLOSEDFORM_FEASIBILITY * (b + t3));
+    const real_t t4 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * (b + t3));
     const real_t t5 = rho1 - rho2;
-    const int t6 = (t4 <= t3 - b) & (t4 <= b + t5) & (t4 <= b - t5);
+    const int t6 = (-t4 <= t3 - b) & (-t4 <= b + t5) & (-t4 <= b - t5);
     const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!t6);
     const real_t t7 = cf_poison(single, failed);
     const real_t t8 = rho1 + t7;
@@ -581,33 +591,36 @@ CF_INLINE void rpr_planar_jacobian_kernel(const int single, const rpr_planar_par
     const real_t slack = cf_max(t3, CLOSEDFORM_C(0.0));
     const real_t t4 = rho1 - rho2;
     const real_t t5 = b + t4;
+    const real_t outer = cf_max(t5, CLOSEDFORM_C(0.0));
     const real_t t6 = b - t4;
-    const real_t t7 = slack * cf_max(t5, CLOSEDFORM_C(0.0)) * cf_max(t6, CLOSEDFORM_C(0.0));
-    const real_t t8 = b * CLOSEDFORM_C(2.0);
-    const real_t t9 = cf_root(single, size) * cf_sqrt(t7) / cf_divisor(single, coincide | (slack <= t2), t8);
-    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t9));
+    const real_t inner = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, coincide, outer + inner);
+    const real_t t7 = share * cf_root(single, size) * cf_sqrt(slack * outer * inner);
+    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t7));
     const real_t A_12 = n_1 * height;
     const real_t Delta = b * height;
-    const real_t t10 = cf_nonzero(single, Delta);
-    const int t11 = cf_nought(b) == 0;
-    const int t12 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t13 = -(CLOSEDFORM_FEASIBILITY * size);
-    const int failed = (!(t11 & (CLOSEDFORM_C(0.0) <= b) & t12)) | (!((t13 <= t3) & (t13 <= t5) & (t13 <= t6)));
-    const real_t t14 = cf_poison(single, failed);
-    const real_t t15 = rho1 * A_12 / t10 + t14;
-    const real_t t16 = -(rho2 * A_12 / t10) + t14;
-    const real_t t17 = b * CLOSEDFORM_C(0.5) + t4 * t1 / cf_divisor(single, coincide, t8);
-    const real_t A_11 = n_1 * cf_select(coincide, rho1, t17);
-    const real_t t18 = rho1 * (b - A_11) / t10;
-    const real_t t19 = rho2 * A_11 / t10;
-    J[0] = t15;
-    J[1] = t16;
-    J[2] = t18 + t14;
-    J[3] = t19 + t14;
-    J[4] = t15;
-    J[5] = t16;
-    J[6] = -t18 + t14;
-    J[7] = -t19 + t14;
+    const real_t t8 = cf_nonzero(single, Delta);
+    const int t9 = cf_nought(b) == 0;
+    const int t10 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const int unreachable = !((-t11 <= t3) & (-t11 <= t5) & (-t11 <= t6));
+    const int failed = (!(t9 & (CLOSEDFORM_C(0.0) <= b) & t10)) | unreachable;
+    const real_t t12 = cf_poison(single, failed);
+    const real_t t13 = rho1 * A_12 / t8 + t12;
+    const real_t t14 = -(rho2 * A_12 / t8) + t12;
+    const real_t t15 = share * (b + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t t16 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t15);
+    const real_t A_11 = n_1 * t16;
+    const real_t t17 = rho1 * (b - A_11) / t8;
+    const real_t t18 = rho2 * A_11 / t8;
+    J[0] = t13;
+    J[1] = t14;
+    J[2] = t17 + t12;
+    J[3] = t18 + t12;
+    J[4] = t13;
+    J[5] = t14;
+    J[6] = -t17 + t12;
+    J[7] = -t18 + t12;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -697,18 +710,21 @@ CF_INLINE void rpr_planar_determinant_kernel(const int single, const rpr_planar_
     const real_t t3 = CLOSEDFORM_VANISHING * size;
     const real_t t4 = rho1 - rho2;
     const real_t t5 = b + t4;
+    const real_t outer = cf_max(t5, CLOSEDFORM_C(0.0));
     const real_t t6 = b - t4;
-    const real_t t7 = slack * cf_max(t5, CLOSEDFORM_C(0.0)) * cf_max(t6, CLOSEDFORM_C(0.0));
-    const real_t t8 = cf_root(single, size) * cf_sqrt(t7) / cf_divisor(single, (slack <= t3) | (b <= t3), b * CLOSEDFORM_C(2.0));
-    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(b <= t3, CLOSEDFORM_C(0.0), t8));
-    const real_t t9 = cf_quotient(single, rho1 * rho2, b * height);
-    const int t10 = cf_nought(b) == 0;
-    const int t11 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t12 = -(CLOSEDFORM_FEASIBILITY * size);
-    const int failed = (!(t10 & (CLOSEDFORM_C(0.0) <= b) & t11)) | (!((t12 <= t2) & (t12 <= t5) & (t12 <= t6)));
-    const real_t t13 = cf_poison(single, failed);
-    det[0] = t9 + t13;
-    det[1] = -t9 + t13;
+    const real_t inner = cf_max(t6, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, (slack <= t3) | (b <= t3), outer + inner);
+    const real_t t7 = share * cf_root(single, size) * cf_sqrt(slack * outer * inner);
+    const real_t height = cf_select(slack <= t3, CLOSEDFORM_C(0.0), cf_select(b <= t3, CLOSEDFORM_C(0.0), t7));
+    const real_t t8 = cf_quotient(single, rho1 * rho2, b * height);
+    const int t9 = cf_nought(b) == 0;
+    const int t10 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t11 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const int unreachable = !((-t11 <= t2) & (-t11 <= t5) & (-t11 <= t6));
+    const int failed = (!(t9 & (CLOSEDFORM_C(0.0) <= b) & t10)) | unreachable;
+    const real_t t12 = cf_poison(single, failed);
+    det[0] = t8 + t12;
+    det[1] = -t8 + t12;
 }
 
 CLOSEDFORM_DISPATCHED
@@ -789,20 +805,22 @@ CF_INLINE void rpr_planar_singularities_kernel(const int single, const rpr_plana
     const int t2 = cf_nought(rho1) + cf_nought(rho2) == 0;
     const real_t t3 = rho1 + rho2;
     const real_t size = b + t3;
-    const real_t t4 = -(CLOSEDFORM_FEASIBILITY * size);
+    const real_t t4 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
     const real_t t5 = t3 - b;
     const real_t t6 = rho1 - rho2;
     const real_t t7 = b + t6;
     const real_t t8 = b - t6;
-    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!((t4 <= t5) & (t4 <= t7) & (t4 <= t8)));
+    const int failed = (!(t1 & (CLOSEDFORM_C(0.0) <= b) & t2)) | (!((-t4 <= t5) & (-t4 <= t7) & (-t4 <= t8)));
     const real_t t9 = cf_poison(single, failed);
     const real_t t10 = rho1 + t9;
     const real_t t11 = rho2 + t9;
     const real_t slack = cf_max(t5, CLOSEDFORM_C(0.0));
     const real_t t12 = CLOSEDFORM_VANISHING * size;
-    const real_t t13 = slack * cf_max(t7, CLOSEDFORM_C(0.0)) * cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t14 = cf_root(single, size) * cf_sqrt(t13) / cf_divisor(single, (slack <= t12) | (b <= t12), b * CLOSEDFORM_C(2.0));
-    const real_t height = cf_select(slack <= t12, CLOSEDFORM_C(0.0), cf_select(b <= t12, CLOSEDFORM_C(0.0), t14));
+    const real_t outer = cf_max(t7, CLOSEDFORM_C(0.0));
+    const real_t inner = cf_max(t8, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, (slack <= t12) | (b <= t12), outer + inner);
+    const real_t t13 = share * cf_root(single, size) * cf_sqrt(slack * outer * inner);
+    const real_t height = cf_select(slack <= t12, CLOSEDFORM_C(0.0), cf_select(b <= t12, CLOSEDFORM_C(0.0), t13));
     const real_t Delta = b * height;
     factors[0] = t10;
     factors[1] = t11;
@@ -900,32 +918,35 @@ CF_INLINE void rpr_planar_condition_number_kernel(const int single, const rpr_pl
     const int coincide = b <= t2;
     const real_t n_1 = cf_select(coincide, CLOSEDFORM_C(1.0), b / cf_divisor(single, coincide, b));
     const real_t t3 = rho1 - rho2;
-    const real_t t4 = b * CLOSEDFORM_C(2.0);
-    const real_t t5 = b * CLOSEDFORM_C(0.5) + t3 * t1 / cf_divisor(single, coincide, t4);
-    const real_t A_11 = n_1 * cf_select(coincide, rho1, t5);
+    const real_t t4 = b + t3;
+    const real_t outer = cf_max(t4, CLOSEDFORM_C(0.0));
+    const real_t t5 = b - t3;
+    const real_t inner = cf_max(t5, CLOSEDFORM_C(0.0));
+    const real_t share = CLOSEDFORM_C(1.0) / cf_divisor(single, coincide, outer + inner);
     const real_t t6 = t1 - b;
     const real_t slack = cf_max(t6, CLOSEDFORM_C(0.0));
-    const real_t t7 = b + t3;
-    const real_t t8 = b - t3;
-    const real_t t9 = slack * cf_max(t7, CLOSEDFORM_C(0.0)) * cf_max(t8, CLOSEDFORM_C(0.0));
-    const real_t t10 = cf_root(single, size) * cf_sqrt(t9) / cf_divisor(single, coincide | (slack <= t2), t4);
-    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t10));
+    const real_t t7 = share * (b + slack) * (outer - inner) * CLOSEDFORM_C(0.5);
+    const real_t t8 = cf_select(coincide, rho1, b * CLOSEDFORM_C(0.5) + t7);
+    const real_t A_11 = n_1 * t8;
+    const real_t t9 = share * cf_root(single, size) * cf_sqrt(outer * inner * slack);
+    const real_t height = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_select(coincide, CLOSEDFORM_C(0.0), t9));
     const real_t A_12 = n_1 * height;
-    const real_t t11 = A_12 * A_12;
-    const real_t square1 = A_11 * A_11 + t11;
-    const real_t t12 = b - A_11;
-    const real_t square2 = t11 + t12 * t12;
-    const real_t t13 = square1 - square2;
-    const real_t t14 = t11 - A_11 * t12;
-    const real_t t15 = cf_sqrt(t13 * t13 + CLOSEDFORM_C(4.0) * (t14 * t14));
-    const real_t t16 = cf_quotient(single, square1 + square2 + t15, CLOSEDFORM_C(2.0) * (b * height));
-    const int t17 = cf_nought(b) == 0;
-    const int t18 = cf_nought(rho1) + cf_nought(rho2) == 0;
-    const real_t t19 = -(CLOSEDFORM_FEASIBILITY * size);
-    const int failed = (!(t17 & (CLOSEDFORM_C(0.0) <= b) & t18)) | (!((t19 <= t6) & (t19 <= t7) & (t19 <= t8)));
-    const real_t t20 = t16 + cf_poison(single, failed);
-    kappa[0] = t20;
-    kappa[1] = t20;
+    const real_t t10 = A_12 * A_12;
+    const real_t square1 = A_11 * A_11 + t10;
+    const real_t t11 = b - A_11;
+    const real_t square2 = t10 + t11 * t11;
+    const real_t t12 = square1 - square2;
+    const real_t t13 = t10 - A_11 * t11;
+    const real_t t14 = cf_sqrt(t12 * t12 + CLOSEDFORM_C(4.0) * (t13 * t13));
+    const real_t t15 = cf_quotient(single, square1 + square2 + t14, CLOSEDFORM_C(2.0) * (b * height));
+    const int t16 = cf_nought(b) == 0;
+    const int t17 = cf_nought(rho1) + cf_nought(rho2) == 0;
+    const real_t t18 = CLOSEDFORM_FEASIBILITY * (CLOSEDFORM_C(0.75) * size);
+    const int unreachable = !((-t18 <= t6) & (-t18 <= t4) & (-t18 <= t5));
+    const int failed = (!(t16 & (CLOSEDFORM_C(0.0) <= b) & t17)) | unreachable;
+    const real_t t19 = t15 + cf_poison(single, failed);
+    kappa[0] = t19;
+    kappa[1] = t19;
 }
 
 CLOSEDFORM_DISPATCHED

@@ -2,16 +2,16 @@
 // derivations/five_bar.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 24 add, 33 compare and select, 3 divide, 21 multiply, 2 sincos, 2 sqrt
-//   passive_angles: 26 add, 36 compare and select, 4 atan2, 5 divide, 17 multiply, 2 sincos, 2
+//   fk: 27 add, 33 compare and select, 4 divide, 21 multiply, 2 sincos, 2 sqrt
+//   passive_angles: 29 add, 36 compare and select, 4 atan2, 5 divide, 19 multiply, 2 sincos, 2
 //     sqrt
-//   skeleton: 32 add, 32 compare and select, 5 divide, 17 multiply, 2 sincos, 2 sqrt
-//   jacobian_parallel: 30 add, 32 compare and select, 5 divide, 17 multiply, 2 sincos, 2 sqrt
-//   jacobian_serial: 30 add, 32 compare and select, 5 divide, 25 multiply, 2 sincos, 2 sqrt
-//   jacobian: 34 add, 32 compare and select, 13 divide, 34 multiply, 2 sincos, 2 sqrt
-//   determinant: 28 add, 32 compare and select, 7 divide, 28 multiply, 2 sincos, 2 sqrt
-//   singularities: 32 add, 32 compare and select, 5 divide, 26 multiply, 2 sincos, 2 sqrt
-//   condition_number: 38 add, 32 compare and select, 7 divide, 37 multiply, 2 sincos, 4 sqrt
+//   skeleton: 35 add, 32 compare and select, 5 divide, 19 multiply, 2 sincos, 2 sqrt
+//   jacobian_parallel: 33 add, 32 compare and select, 5 divide, 19 multiply, 2 sincos, 2 sqrt
+//   jacobian_serial: 33 add, 32 compare and select, 5 divide, 27 multiply, 2 sincos, 2 sqrt
+//   jacobian: 37 add, 32 compare and select, 13 divide, 36 multiply, 2 sincos, 2 sqrt
+//   determinant: 31 add, 32 compare and select, 7 divide, 30 multiply, 2 sincos, 2 sqrt
+//   singularities: 35 add, 32 compare and select, 5 divide, 28 multiply, 2 sincos, 2 sqrt
+//   condition_number: 41 add, 32 compare and select, 7 divide, 39 multiply, 2 sincos, 4 sqrt
 //   ik: 72 compare and select, 51 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
 //   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
 
@@ -106,38 +106,40 @@ function _fk(v, o) {
     const size = L0 + L1 + L2 + t3;
     const t4 = _runtime.VANISHING * size;
     const coincide = apart <= t4;
-    const t5 = 1.0 / apart;
-    const n_1 = coincide ? 1.0 : -(t1 * t5);
-    const t6 = L3 - L4;
-    const t7 = 1.0 / (apart * 2.0);
-    const t8 = coincide ? L3 : apart * 0.5 + t6 * t3 * t7;
-    const t9 = c1_x + n_1 * t8;
-    const t10 = coincide ? 0.0 : t2 * t5;
-    const t11 = t3 - apart;
-    const slack = Math.max(t11, 0.0);
-    const t12 = apart + t6;
-    const t13 = apart - t6;
-    const t14 = slack * Math.max(t12, 0.0) * Math.max(t13, 0.0);
-    const t15 = coincide ? 0.0 : t7 * Math.sqrt(t14 * (apart + t3));
-    const height = slack <= t4 ? 0.0 : t15;
-    const t16 = t10 * height;
-    const t17 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
+    const t5 = L3 - L4;
+    const t6 = apart + t5;
+    const outer = Math.max(t6, 0.0);
+    const t7 = apart - t5;
+    const inner = Math.max(t7, 0.0);
+    const share = 1.0 / (outer + inner);
+    const t8 = t3 - apart;
+    const slack = Math.max(t8, 0.0);
+    const t9 = share * (apart + slack) * (outer - inner) * 0.5;
+    const t10 = coincide ? L3 : apart * 0.5 + t9;
+    const t11 = 1.0 / apart;
+    const n_1 = coincide ? 1.0 : -(t1 * t11);
+    const t12 = c1_x + t10 * n_1;
+    const t13 = Math.sqrt(outer * inner * slack * (apart + t3));
+    const height = slack <= t4 ? 0.0 : (coincide ? 0.0 : share * t13);
+    const t14 = coincide ? 0.0 : t2 * t11;
+    const t15 = height * t14;
+    const t16 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
         Number.isFinite(L3) && Number.isFinite(L4);
-    const t18 = t17 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
-    const t19 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const invalid = !(t18 && 0.0 <= L4 && t19);
-    const t20 = -(_runtime.FEASIBILITY * size);
-    const unreachable = !(t20 <= t11 && t20 <= t12 && t20 <= t13);
-    const t21 = invalid || unreachable ? NaN : 0;
-    const t22 = c1_y - t8 * t10;
-    const t23 = n_1 * height;
-    const t24 = invalid ? 3 : unreachable ? 1 : coincide ? 2 : 0;
-    o[0] = t9 + t16 + t21;
-    o[1] = t22 + t23 + t21;
-    o[2] = t9 - t16 + t21;
-    o[3] = t22 - t23 + t21;
-    o[4] = t24;
-    o[5] = t24;
+    const t17 = t16 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
+    const t18 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const invalid = !(t17 && 0.0 <= L4 && t18);
+    const t19 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const unreachable = !(t19 <= t8 && t19 <= t6 && t19 <= t7);
+    const t20 = invalid || unreachable ? NaN : 0;
+    const t21 = c1_y - t10 * t14;
+    const t22 = n_1 * height;
+    const t23 = invalid ? 3 : unreachable ? 1 : coincide ? 2 : 0;
+    o[0] = t12 + t15 + t20;
+    o[1] = t21 + t22 + t20;
+    o[2] = t12 - t15 + t20;
+    o[3] = t21 - t22 + t20;
+    o[4] = t23;
+    o[5] = t23;
 }
 
 const _FK = _runtime.kernel({
@@ -222,39 +224,41 @@ function _passive_angles(v, o) {
     const coincide = apart <= t4;
     const t5 = coincide ? 0.0 : t2 / apart;
     const t6 = L3 - L4;
-    const t7 = apart * 2.0;
-    const t8 = coincide ? L3 : apart * 0.5 + t6 * t3 / t7;
-    const t9 = t5 * t8;
+    const t7 = apart + t6;
+    const outer = Math.max(t7, 0.0);
+    const t8 = apart - t6;
+    const inner = Math.max(t8, 0.0);
+    const share = 1.0 / (outer + inner);
+    const t9 = t3 - apart;
+    const slack = Math.max(t9, 0.0);
+    const t10 = share * (apart + slack) * (outer - inner) * 0.5;
+    const t11 = coincide ? L3 : apart * 0.5 + t10;
+    const t12 = t5 * t11;
     const n_1 = coincide ? 1.0 : -(t1 / apart);
-    const t10 = t3 - apart;
-    const slack = Math.max(t10, 0.0);
-    const t11 = apart + t6;
-    const t12 = apart - t6;
-    const t13 = slack * Math.max(t11, 0.0) * Math.max(t12, 0.0);
-    const t14 = coincide ? 0.0 : Math.sqrt(t13 * (apart + t3)) / t7;
-    const height = slack <= t4 ? 0.0 : t14;
-    const t15 = n_1 * height;
-    const t16 = t9 - t15;
-    const t17 = t8 * n_1;
-    const t18 = t5 * height;
-    const A_11 = t17 + t18;
-    const t19 = Math.atan2(-t16, A_11);
-    const t20 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
+    const t13 = Math.sqrt(outer * inner * slack * (apart + t3));
+    const height = slack <= t4 ? 0.0 : (coincide ? 0.0 : share * t13);
+    const t14 = n_1 * height;
+    const t15 = t12 - t14;
+    const t16 = t11 * n_1;
+    const t17 = t5 * height;
+    const A_11 = t16 + t17;
+    const t18 = Math.atan2(-t15, A_11);
+    const t19 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
         Number.isFinite(L3) && Number.isFinite(L4);
-    const t21 = t20 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
-    const t22 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t23 = -(_runtime.FEASIBILITY * size);
-    const failed = !(t21 && 0.0 <= L4 && t22) || !(t23 <= t10 && t23 <= t11 && t23 <= t12);
-    const t24 = failed ? NaN : 0;
-    const t25 = Math.atan2(t2 - t16, t1 + A_11);
-    const t26 = t9 + t15;
-    const A_11_below = t17 - t18;
-    const t27 = -Math.atan2(t26, A_11_below);
-    const t28 = Math.atan2(t2 - t26, t1 + A_11_below);
-    o[0] = (t19 <= -Math.PI ? Math.PI : t19) + t24;
-    o[1] = (t25 <= -Math.PI ? Math.PI : t25) + t24;
-    o[2] = (t27 <= -Math.PI ? Math.PI : t27) + t24;
-    o[3] = (t28 <= -Math.PI ? Math.PI : t28) + t24;
+    const t20 = t19 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
+    const t21 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const t22 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const failed = !(t20 && 0.0 <= L4 && t21) || !(t22 <= t9 && t22 <= t7 && t22 <= t8);
+    const t23 = failed ? NaN : 0;
+    const t24 = Math.atan2(t2 - t15, t1 + A_11);
+    const t25 = t12 + t14;
+    const A_11_below = t16 - t17;
+    const t26 = -Math.atan2(t25, A_11_below);
+    const t27 = Math.atan2(t2 - t25, t1 + A_11_below);
+    o[0] = (t18 <= -Math.PI ? Math.PI : t18) + t23;
+    o[1] = (t24 <= -Math.PI ? Math.PI : t24) + t23;
+    o[2] = (t26 <= -Math.PI ? Math.PI : t26) + t23;
+    o[3] = (t27 <= -Math.PI ? Math.PI : t27) + t23;
 }
 
 const _PASSIVE_ANGLES = _runtime.kernel({
@@ -327,7 +331,7 @@ function _skeleton(v, o) {
     const t3 = Number.isFinite(theta1) && Number.isFinite(theta2);
     const t4 = L3 + L4;
     const size = L0 + L1 + L2 + t4;
-    const t5 = -(_runtime.FEASIBILITY * size);
+    const t5 = -(_runtime.FEASIBILITY * (0.75 * size));
     const c1_x = L1 * c1;
     const c2_x = L0 + L2 * c2;
     const t6 = c1_x - c2_x;
@@ -350,17 +354,19 @@ function _skeleton(v, o) {
     const t19 = _runtime.VANISHING * size;
     const coincide = apart <= t19;
     const n_1 = coincide ? 1.0 : -(t6 / apart);
-    const t20 = apart * 2.0;
-    const t21 = coincide ? L3 : apart * 0.5 + t9 * t4 / t20;
+    const outer = Math.max(t10, 0.0);
+    const inner = Math.max(t11, 0.0);
+    const share = 1.0 / (outer + inner);
+    const slack = Math.max(t8, 0.0);
+    const t20 = share * (apart + slack) * (outer - inner) * 0.5;
+    const t21 = coincide ? L3 : apart * 0.5 + t20;
     const t22 = n_1 * t21;
     const t23 = coincide ? 0.0 : t7 / apart;
-    const slack = Math.max(t8, 0.0);
-    const t24 = slack * Math.max(t10, 0.0) * Math.max(t11, 0.0);
-    const t25 = coincide ? 0.0 : Math.sqrt(t24 * (apart + t4)) / t20;
-    const height = slack <= t19 ? 0.0 : t25;
-    const t26 = t23 * height;
-    const t27 = t21 * t23;
-    const t28 = n_1 * height;
+    const t24 = Math.sqrt(outer * inner * slack * (apart + t4));
+    const height = slack <= t19 ? 0.0 : (coincide ? 0.0 : share * t24);
+    const t25 = t23 * height;
+    const t26 = t21 * t23;
+    const t27 = n_1 * height;
     o[0] = t13;
     o[1] = t13;
     o[2] = t13;
@@ -373,8 +379,8 @@ function _skeleton(v, o) {
     o[9] = t17;
     o[10] = t18;
     o[11] = t13;
-    o[12] = c1_x + (t22 + t26) + t12;
-    o[13] = c1_y - (t27 - t28) + t12;
+    o[12] = c1_x + (t22 + t25) + t12;
+    o[13] = c1_y - (t26 - t27) + t12;
     o[14] = t13;
     o[15] = t13;
     o[16] = t13;
@@ -388,8 +394,8 @@ function _skeleton(v, o) {
     o[24] = t17;
     o[25] = t18;
     o[26] = t13;
-    o[27] = c1_x + (t22 - t26) + t12;
-    o[28] = c1_y - (t27 + t28) + t12;
+    o[27] = c1_x + (t22 - t25) + t12;
+    o[28] = c1_y - (t26 + t27) + t12;
     o[29] = t13;
 }
 
@@ -466,39 +472,41 @@ function _jacobian_parallel(v, o) {
     const coincide = apart <= t4;
     const n_1 = coincide ? 1.0 : -(t1 / apart);
     const t5 = L3 - L4;
-    const t6 = apart * 2.0;
-    const t7 = coincide ? L3 : apart * 0.5 + t5 * t3 / t6;
-    const t8 = n_1 * t7;
-    const t9 = coincide ? 0.0 : t2 / apart;
-    const t10 = t3 - apart;
-    const slack = Math.max(t10, 0.0);
-    const t11 = apart + t5;
-    const t12 = apart - t5;
-    const t13 = slack * Math.max(t11, 0.0) * Math.max(t12, 0.0);
-    const t14 = coincide ? 0.0 : Math.sqrt(t13 * (apart + t3)) / t6;
-    const height = slack <= t4 ? 0.0 : t14;
-    const t15 = t9 * height;
-    const A_11 = t8 + t15;
-    const t16 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
+    const t6 = apart + t5;
+    const outer = Math.max(t6, 0.0);
+    const t7 = apart - t5;
+    const inner = Math.max(t7, 0.0);
+    const share = 1.0 / (outer + inner);
+    const t8 = t3 - apart;
+    const slack = Math.max(t8, 0.0);
+    const t9 = share * (apart + slack) * (outer - inner) * 0.5;
+    const t10 = coincide ? L3 : apart * 0.5 + t9;
+    const t11 = n_1 * t10;
+    const t12 = coincide ? 0.0 : t2 / apart;
+    const t13 = Math.sqrt(outer * inner * slack * (apart + t3));
+    const height = slack <= t4 ? 0.0 : (coincide ? 0.0 : share * t13);
+    const t14 = t12 * height;
+    const A_11 = t11 + t14;
+    const t15 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
         Number.isFinite(L3) && Number.isFinite(L4);
-    const t17 = t16 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
-    const t18 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t19 = -(_runtime.FEASIBILITY * size);
-    const failed = !(t17 && 0.0 <= L4 && t18) || !(t19 <= t10 && t19 <= t11 && t19 <= t12);
-    const t20 = failed ? NaN : 0;
-    const t21 = t7 * t9;
-    const t22 = n_1 * height;
-    const t23 = t21 - t22;
-    const A_11_below = t8 - t15;
-    const t24 = t21 + t22;
-    o[0] = A_11 + t20;
-    o[1] = -t23 + t20;
-    o[2] = t1 + A_11 + t20;
-    o[3] = t2 - t23 + t20;
-    o[4] = A_11_below + t20;
-    o[5] = -t24 + t20;
-    o[6] = t1 + A_11_below + t20;
-    o[7] = t2 - t24 + t20;
+    const t16 = t15 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
+    const t17 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const t18 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const failed = !(t16 && 0.0 <= L4 && t17) || !(t18 <= t8 && t18 <= t6 && t18 <= t7);
+    const t19 = failed ? NaN : 0;
+    const t20 = t10 * t12;
+    const t21 = n_1 * height;
+    const t22 = t20 - t21;
+    const A_11_below = t11 - t14;
+    const t23 = t20 + t21;
+    o[0] = A_11 + t19;
+    o[1] = -t22 + t19;
+    o[2] = t1 + A_11 + t19;
+    o[3] = t2 - t22 + t19;
+    o[4] = A_11_below + t19;
+    o[5] = -t23 + t19;
+    o[6] = t1 + A_11_below + t19;
+    o[7] = t2 - t23 + t19;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -579,36 +587,38 @@ function _jacobian_serial(v, o) {
     const coincide = apart <= t5;
     const n_1 = coincide ? 1.0 : -(t2 / apart);
     const t6 = L3 - L4;
-    const t7 = apart * 2.0;
-    const t8 = coincide ? L3 : apart * 0.5 + t6 * t4 / t7;
-    const t9 = n_1 * t8;
-    const t10 = coincide ? 0.0 : t3 / apart;
-    const t11 = t4 - apart;
-    const slack = Math.max(t11, 0.0);
-    const t12 = apart + t6;
-    const t13 = apart - t6;
-    const t14 = slack * Math.max(t12, 0.0) * Math.max(t13, 0.0);
-    const t15 = coincide ? 0.0 : Math.sqrt(t14 * (apart + t4)) / t7;
-    const height = slack <= t5 ? 0.0 : t15;
-    const t16 = t10 * height;
-    const A_11 = t9 + t16;
-    const t17 = t8 * t10;
-    const t18 = n_1 * height;
-    const t19 = t17 - t18;
-    const t20 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
+    const t7 = apart + t6;
+    const outer = Math.max(t7, 0.0);
+    const t8 = apart - t6;
+    const inner = Math.max(t8, 0.0);
+    const share = 1.0 / (outer + inner);
+    const t9 = t4 - apart;
+    const slack = Math.max(t9, 0.0);
+    const t10 = share * (apart + slack) * (outer - inner) * 0.5;
+    const t11 = coincide ? L3 : apart * 0.5 + t10;
+    const t12 = n_1 * t11;
+    const t13 = coincide ? 0.0 : t3 / apart;
+    const t14 = Math.sqrt(outer * inner * slack * (apart + t4));
+    const height = slack <= t5 ? 0.0 : (coincide ? 0.0 : share * t14);
+    const t15 = t13 * height;
+    const A_11 = t12 + t15;
+    const t16 = t11 * t13;
+    const t17 = n_1 * height;
+    const t18 = t16 - t17;
+    const t19 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
         Number.isFinite(L3) && Number.isFinite(L4);
-    const t21 = t20 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
-    const t22 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t23 = -(_runtime.FEASIBILITY * size);
-    const failed = !(t21 && 0.0 <= L4 && t22) || !(t23 <= t11 && t23 <= t12 && t23 <= t13);
-    const t24 = failed ? NaN : 0;
-    const A_11_below = t9 - t16;
-    const t25 = t17 + t18;
-    const t26 = t1 * (t3 - t25) - c2_y * (t2 + A_11_below) + t24;
-    o[0] = -(c1_y * A_11 + c1_x * t19) + t24;
-    o[1] = t1 * (t3 - t19) - c2_y * (t2 + A_11) + t24;
-    o[2] = -(c1_y * A_11_below + c1_x * t25) + t24;
-    o[3] = t26;
+    const t20 = t19 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
+    const t21 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const t22 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const failed = !(t20 && 0.0 <= L4 && t21) || !(t22 <= t9 && t22 <= t7 && t22 <= t8);
+    const t23 = failed ? NaN : 0;
+    const A_11_below = t12 - t15;
+    const t24 = t16 + t17;
+    const t25 = t1 * (t3 - t24) - c2_y * (t2 + A_11_below) + t23;
+    o[0] = -(c1_y * A_11 + c1_x * t18) + t23;
+    o[1] = t1 * (t3 - t18) - c2_y * (t2 + A_11) + t23;
+    o[2] = -(c1_y * A_11_below + c1_x * t24) + t23;
+    o[3] = t25;
 }
 
 const _JACOBIAN_SERIAL = _runtime.kernel({
@@ -689,48 +699,50 @@ function _jacobian(v, o) {
     const coincide = apart <= t5;
     const t6 = coincide ? 0.0 : t1 / apart;
     const t7 = L3 - L4;
-    const t8 = apart * 2.0;
-    const t9 = coincide ? L3 : apart * 0.5 + t7 * t4 / t8;
-    const t10 = t6 * t9;
+    const t8 = apart + t7;
+    const outer = Math.max(t8, 0.0);
+    const t9 = apart - t7;
+    const inner = Math.max(t9, 0.0);
+    const share = 1.0 / (outer + inner);
+    const t10 = t4 - apart;
+    const slack = Math.max(t10, 0.0);
+    const t11 = share * (apart + slack) * (outer - inner) * 0.5;
+    const t12 = coincide ? L3 : apart * 0.5 + t11;
+    const t13 = t6 * t12;
     const n_1 = coincide ? 1.0 : -(t3 / apart);
-    const t11 = t4 - apart;
-    const slack = Math.max(t11, 0.0);
-    const t12 = apart + t7;
-    const t13 = apart - t7;
-    const t14 = slack * Math.max(t12, 0.0) * Math.max(t13, 0.0);
-    const t15 = coincide ? 0.0 : Math.sqrt(t14 * (apart + t4)) / t8;
-    const height = slack <= t5 ? 0.0 : t15;
-    const t16 = n_1 * height;
-    const t17 = t10 - t16;
-    const A_22 = t1 - t17;
-    const t18 = t9 * n_1;
-    const t19 = t6 * height;
-    const A_11 = t18 + t19;
-    const t20 = c1_y * A_11 + c1_x * t17;
+    const t14 = Math.sqrt(outer * inner * slack * (apart + t4));
+    const height = slack <= t5 ? 0.0 : (coincide ? 0.0 : share * t14);
+    const t15 = n_1 * height;
+    const t16 = t13 - t15;
+    const A_22 = t1 - t16;
+    const t17 = t12 * n_1;
+    const t18 = t6 * height;
+    const A_11 = t17 + t18;
+    const t19 = c1_y * A_11 + c1_x * t16;
     const Delta = apart * height;
-    const t21 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
+    const t20 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
         Number.isFinite(L3) && Number.isFinite(L4);
-    const t22 = t21 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
-    const t23 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t24 = -(_runtime.FEASIBILITY * size);
-    const failed = !(t22 && 0.0 <= L4 && t23) || !(t24 <= t11 && t24 <= t12 && t24 <= t13);
-    const t25 = failed ? NaN : 0;
+    const t21 = t20 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
+    const t22 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const t23 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const failed = !(t21 && 0.0 <= L4 && t22) || !(t23 <= t10 && t23 <= t8 && t23 <= t9);
+    const t24 = failed ? NaN : 0;
     const A_21 = t3 + A_11;
-    const t26 = c2_y * A_21 - t2 * A_22;
-    const t27 = t10 + t16;
-    const A_22_below = t1 - t27;
-    const A_11_below = t18 - t19;
-    const t28 = c1_y * A_11_below + c1_x * t27;
+    const t25 = c2_y * A_21 - t2 * A_22;
+    const t26 = t13 + t15;
+    const A_22_below = t1 - t26;
+    const A_11_below = t17 - t18;
+    const t27 = c1_y * A_11_below + c1_x * t26;
     const A_21_below = t3 + A_11_below;
-    const t29 = c2_y * A_21_below - t2 * A_22_below;
-    o[0] = -(A_22 * t20 / Delta) + t25;
-    o[1] = -(t17 * t26 / Delta) + t25;
-    o[2] = t20 * A_21 / Delta + t25;
-    o[3] = -(A_11 * t26 / Delta) + t25;
-    o[4] = A_22_below * t28 / Delta + t25;
-    o[5] = t27 * t29 / Delta + t25;
-    o[6] = -(t28 * A_21_below / Delta) + t25;
-    o[7] = A_11_below * t29 / Delta + t25;
+    const t28 = c2_y * A_21_below - t2 * A_22_below;
+    o[0] = -(A_22 * t19 / Delta) + t24;
+    o[1] = -(t16 * t25 / Delta) + t24;
+    o[2] = t19 * A_21 / Delta + t24;
+    o[3] = -(A_11 * t25 / Delta) + t24;
+    o[4] = A_22_below * t27 / Delta + t24;
+    o[5] = t26 * t28 / Delta + t24;
+    o[6] = -(t27 * A_21_below / Delta) + t24;
+    o[7] = A_11_below * t28 / Delta + t24;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -812,36 +824,38 @@ function _determinant(v, o) {
     const coincide = apart <= t5;
     const n_1 = coincide ? 1.0 : -(t2 / apart);
     const t6 = L3 - L4;
-    const t7 = apart * 2.0;
-    const t8 = coincide ? L3 : apart * 0.5 + t6 * t4 / t7;
-    const t9 = n_1 * t8;
-    const t10 = coincide ? 0.0 : t3 / apart;
-    const t11 = t4 - apart;
-    const slack = Math.max(t11, 0.0);
-    const t12 = apart + t6;
-    const t13 = apart - t6;
-    const t14 = slack * Math.max(t12, 0.0) * Math.max(t13, 0.0);
-    const t15 = coincide ? 0.0 : Math.sqrt(t14 * (apart + t4)) / t7;
-    const height = slack <= t5 ? 0.0 : t15;
-    const t16 = t10 * height;
-    const A_11 = t9 + t16;
-    const t17 = t8 * t10;
-    const t18 = n_1 * height;
-    const t19 = t17 - t18;
-    const t20 = (c1_y * A_11 + c1_x * t19) * (c2_y * (t2 + A_11) - t1 * (t3 - t19));
+    const t7 = apart + t6;
+    const outer = Math.max(t7, 0.0);
+    const t8 = apart - t6;
+    const inner = Math.max(t8, 0.0);
+    const share = 1.0 / (outer + inner);
+    const t9 = t4 - apart;
+    const slack = Math.max(t9, 0.0);
+    const t10 = share * (apart + slack) * (outer - inner) * 0.5;
+    const t11 = coincide ? L3 : apart * 0.5 + t10;
+    const t12 = n_1 * t11;
+    const t13 = coincide ? 0.0 : t3 / apart;
+    const t14 = Math.sqrt(outer * inner * slack * (apart + t4));
+    const height = slack <= t5 ? 0.0 : (coincide ? 0.0 : share * t14);
+    const t15 = t13 * height;
+    const A_11 = t12 + t15;
+    const t16 = t11 * t13;
+    const t17 = n_1 * height;
+    const t18 = t16 - t17;
+    const t19 = (c1_y * A_11 + c1_x * t18) * (c2_y * (t2 + A_11) - t1 * (t3 - t18));
     const Delta = apart * height;
-    const t21 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
+    const t20 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
         Number.isFinite(L3) && Number.isFinite(L4);
-    const t22 = t21 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
-    const t23 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t24 = -(_runtime.FEASIBILITY * size);
-    const failed = !(t22 && 0.0 <= L4 && t23) || !(t24 <= t11 && t24 <= t12 && t24 <= t13);
-    const t25 = failed ? NaN : 0;
-    const A_11_below = t9 - t16;
-    const t26 = t17 + t18;
-    const t27 = (c1_y * A_11_below + c1_x * t26) * (c2_y * (t2 + A_11_below) - t1 * (t3 - t26));
-    o[0] = t20 / Delta + t25;
-    o[1] = -(t27 / Delta) + t25;
+    const t21 = t20 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
+    const t22 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const t23 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const failed = !(t21 && 0.0 <= L4 && t22) || !(t23 <= t9 && t23 <= t7 && t23 <= t8);
+    const t24 = failed ? NaN : 0;
+    const A_11_below = t12 - t15;
+    const t25 = t16 + t17;
+    const t26 = (c1_y * A_11_below + c1_x * t25) * (c2_y * (t2 + A_11_below) - t1 * (t3 - t25));
+    o[0] = t19 / Delta + t24;
+    o[1] = -(t26 / Delta) + t24;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -922,39 +936,41 @@ function _singularities(v, o) {
     const coincide = apart <= t5;
     const n_1 = coincide ? 1.0 : -(t2 / apart);
     const t6 = L3 - L4;
-    const t7 = apart * 2.0;
-    const t8 = coincide ? L3 : apart * 0.5 + t6 * t4 / t7;
-    const t9 = n_1 * t8;
-    const t10 = coincide ? 0.0 : t3 / apart;
-    const t11 = t4 - apart;
-    const slack = Math.max(t11, 0.0);
-    const t12 = apart + t6;
-    const t13 = apart - t6;
-    const t14 = slack * Math.max(t12, 0.0) * Math.max(t13, 0.0);
-    const t15 = coincide ? 0.0 : Math.sqrt(t14 * (apart + t4)) / t7;
-    const height = slack <= t5 ? 0.0 : t15;
-    const t16 = t10 * height;
-    const A_11 = t9 + t16;
-    const t17 = t8 * t10;
-    const t18 = n_1 * height;
-    const t19 = t17 - t18;
-    const t20 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
+    const t7 = apart + t6;
+    const outer = Math.max(t7, 0.0);
+    const t8 = apart - t6;
+    const inner = Math.max(t8, 0.0);
+    const share = 1.0 / (outer + inner);
+    const t9 = t4 - apart;
+    const slack = Math.max(t9, 0.0);
+    const t10 = share * (apart + slack) * (outer - inner) * 0.5;
+    const t11 = coincide ? L3 : apart * 0.5 + t10;
+    const t12 = n_1 * t11;
+    const t13 = coincide ? 0.0 : t3 / apart;
+    const t14 = Math.sqrt(outer * inner * slack * (apart + t4));
+    const height = slack <= t5 ? 0.0 : (coincide ? 0.0 : share * t14);
+    const t15 = t13 * height;
+    const A_11 = t12 + t15;
+    const t16 = t11 * t13;
+    const t17 = n_1 * height;
+    const t18 = t16 - t17;
+    const t19 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
         Number.isFinite(L3) && Number.isFinite(L4);
-    const t21 = t20 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
-    const t22 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t23 = -(_runtime.FEASIBILITY * size);
-    const failed = !(t21 && 0.0 <= L4 && t22) || !(t23 <= t11 && t23 <= t12 && t23 <= t13);
-    const t24 = failed ? NaN : 0;
+    const t20 = t19 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
+    const t21 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const t22 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const failed = !(t20 && 0.0 <= L4 && t21) || !(t22 <= t9 && t22 <= t7 && t22 <= t8);
+    const t23 = failed ? NaN : 0;
     const Delta = apart * height;
-    const A_11_below = t9 - t16;
-    const t25 = t17 + t18;
-    const t26 = t1 * (t3 - t25) - c2_y * (t2 + A_11_below) + t24;
-    o[0] = -(c1_y * A_11 + c1_x * t19) + t24;
-    o[1] = t1 * (t3 - t19) - c2_y * (t2 + A_11) + t24;
-    o[2] = Delta + t24;
-    o[3] = -(c1_y * A_11_below + c1_x * t25) + t24;
-    o[4] = t26;
-    o[5] = -Delta + t24;
+    const A_11_below = t12 - t15;
+    const t24 = t16 + t17;
+    const t25 = t1 * (t3 - t24) - c2_y * (t2 + A_11_below) + t23;
+    o[0] = -(c1_y * A_11 + c1_x * t18) + t23;
+    o[1] = t1 * (t3 - t18) - c2_y * (t2 + A_11) + t23;
+    o[2] = Delta + t23;
+    o[3] = -(c1_y * A_11_below + c1_x * t24) + t23;
+    o[4] = t25;
+    o[5] = -Delta + t23;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -1031,48 +1047,50 @@ function _condition_number(v, o) {
     const coincide = apart <= t4;
     const n_1 = coincide ? 1.0 : -(t1 / apart);
     const t5 = L3 - L4;
-    const t6 = apart * 2.0;
-    const t7 = coincide ? L3 : apart * 0.5 + t5 * t3 / t6;
-    const t8 = n_1 * t7;
-    const t9 = coincide ? 0.0 : t2 / apart;
-    const t10 = t3 - apart;
-    const slack = Math.max(t10, 0.0);
-    const t11 = apart + t5;
-    const t12 = apart - t5;
-    const t13 = slack * Math.max(t11, 0.0) * Math.max(t12, 0.0);
-    const t14 = coincide ? 0.0 : Math.sqrt(t13 * (apart + t3)) / t6;
-    const height = slack <= t4 ? 0.0 : t14;
-    const t15 = t9 * height;
-    const A_11 = t8 + t15;
-    const t16 = t7 * t9;
-    const t17 = n_1 * height;
-    const t18 = t16 - t17;
-    const square1 = A_11 * A_11 + t18 * t18;
+    const t6 = apart + t5;
+    const outer = Math.max(t6, 0.0);
+    const t7 = apart - t5;
+    const inner = Math.max(t7, 0.0);
+    const share = 1.0 / (outer + inner);
+    const t8 = t3 - apart;
+    const slack = Math.max(t8, 0.0);
+    const t9 = share * (apart + slack) * (outer - inner) * 0.5;
+    const t10 = coincide ? L3 : apart * 0.5 + t9;
+    const t11 = n_1 * t10;
+    const t12 = coincide ? 0.0 : t2 / apart;
+    const t13 = Math.sqrt(outer * inner * slack * (apart + t3));
+    const height = slack <= t4 ? 0.0 : (coincide ? 0.0 : share * t13);
+    const t14 = t12 * height;
+    const A_11 = t11 + t14;
+    const t15 = t10 * t12;
+    const t16 = n_1 * height;
+    const t17 = t15 - t16;
+    const square1 = A_11 * A_11 + t17 * t17;
     const A_21 = t1 + A_11;
-    const A_22 = t2 - t18;
+    const A_22 = t2 - t17;
     const square2 = A_21 * A_21 + A_22 * A_22;
-    const t19 = square1 - square2;
-    const t20 = A_11 * A_21 - t18 * A_22;
-    const t21 = square1 + square2 + Math.sqrt(t19 * t19 + 4.0 * (t20 * t20));
-    const t22 = 2.0 * (apart * height);
-    const t23 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
+    const t18 = square1 - square2;
+    const t19 = A_11 * A_21 - t17 * A_22;
+    const t20 = square1 + square2 + Math.sqrt(t18 * t18 + 4.0 * (t19 * t19));
+    const t21 = 2.0 * (apart * height);
+    const t22 = Number.isFinite(L0) && Number.isFinite(L1) && Number.isFinite(L2) &&
         Number.isFinite(L3) && Number.isFinite(L4);
-    const t24 = t23 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
-    const t25 = Number.isFinite(theta1) && Number.isFinite(theta2);
-    const t26 = -(_runtime.FEASIBILITY * size);
-    const failed = !(t24 && 0.0 <= L4 && t25) || !(t26 <= t10 && t26 <= t11 && t26 <= t12);
-    const t27 = failed ? NaN : 0;
-    const A_11_below = t8 - t15;
-    const t28 = t16 + t17;
-    const square1_below = A_11_below * A_11_below + t28 * t28;
+    const t23 = t22 && 0.0 <= L0 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= L3;
+    const t24 = Number.isFinite(theta1) && Number.isFinite(theta2);
+    const t25 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const failed = !(t23 && 0.0 <= L4 && t24) || !(t25 <= t8 && t25 <= t6 && t25 <= t7);
+    const t26 = failed ? NaN : 0;
+    const A_11_below = t11 - t14;
+    const t27 = t15 + t16;
+    const square1_below = A_11_below * A_11_below + t27 * t27;
     const A_21_below = t1 + A_11_below;
-    const A_22_below = t2 - t28;
+    const A_22_below = t2 - t27;
     const square2_below = A_21_below * A_21_below + A_22_below * A_22_below;
-    const t29 = square1_below - square2_below;
-    const t30 = A_11_below * A_21_below - t28 * A_22_below;
-    const t31 = square1_below + square2_below + Math.sqrt(t29 * t29 + 4.0 * (t30 * t30));
-    o[0] = t21 / t22 + t27;
-    o[1] = t31 / t22 + t27;
+    const t28 = square1_below - square2_below;
+    const t29 = A_11_below * A_21_below - t27 * A_22_below;
+    const t30 = square1_below + square2_below + Math.sqrt(t28 * t28 + 4.0 * (t29 * t29));
+    o[0] = t20 / t21 + t26;
+    o[1] = t30 / t21 + t26;
 }
 
 const _CONDITION_NUMBER = _runtime.kernel({

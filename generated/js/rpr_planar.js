@@ -2,15 +2,15 @@
 // derivations/rpr_planar.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
-//   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
-//   skeleton: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
-//   jacobian_parallel: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
-//   jacobian_serial: 8 add, 14 compare and select, 1 multiply
-//   jacobian: 14 add, 23 compare and select, 8 divide, 14 multiply, 2 sqrt
-//   determinant: 8 add, 21 compare and select, 2 divide, 8 multiply, 2 sqrt
-//   singularities: 10 add, 21 compare and select, 1 divide, 7 multiply, 2 sqrt
-//   condition_number: 16 add, 23 compare and select, 5 divide, 18 multiply, 3 sqrt
+//   fk: 13 add, 24 compare and select, 4 divide, 11 multiply, 2 sqrt
+//   passive_angles: 15 add, 27 compare and select, 2 atan2, 4 divide, 11 multiply, 2 sqrt
+//   skeleton: 15 add, 23 compare and select, 4 divide, 11 multiply, 2 sqrt
+//   jacobian_parallel: 15 add, 23 compare and select, 4 divide, 11 multiply, 2 sqrt
+//   jacobian_serial: 8 add, 14 compare and select, 2 multiply
+//   jacobian: 17 add, 23 compare and select, 8 divide, 16 multiply, 2 sqrt
+//   determinant: 9 add, 21 compare and select, 2 divide, 9 multiply, 2 sqrt
+//   singularities: 11 add, 21 compare and select, 1 divide, 8 multiply, 2 sqrt
+//   condition_number: 19 add, 23 compare and select, 5 divide, 20 multiply, 3 sqrt
 //   ik: 10 compare and select, 5 add, 6 multiply, 2 sqrt
 
 /**
@@ -77,28 +77,29 @@ function _fk(v, o) {
     const coincide = b <= t2;
     const n_1 = coincide ? 1.0 : b / b;
     const t3 = rho1 - rho2;
-    const t4 = 1.0 / (b * 2.0);
-    const t5 = n_1 * (coincide ? rho1 : b * 0.5 + t3 * t1 * t4);
-    const t6 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const invalid = !(Number.isFinite(b) && 0.0 <= b && t6);
-    const t7 = -(_runtime.FEASIBILITY * size);
-    const t8 = t1 - b;
-    const t9 = b + t3;
-    const t10 = b - t3;
-    const unreachable = !(t7 <= t8 && t7 <= t9 && t7 <= t10);
-    const t11 = invalid || unreachable ? NaN : 0;
-    const t12 = t5 + t11;
-    const slack = Math.max(t8, 0.0);
-    const t13 = slack * Math.max(t9, 0.0) * Math.max(t10, 0.0);
-    const t14 = coincide ? 0.0 : t4 * (Math.sqrt(size) * Math.sqrt(t13));
-    const t15 = n_1 * (slack <= t2 ? 0.0 : t14);
-    const t16 = invalid ? 3 : unreachable ? 1 : coincide ? 2 : 0;
-    o[0] = t12;
-    o[1] = t15 + t11;
-    o[2] = t12;
-    o[3] = -t15 + t11;
-    o[4] = t16;
-    o[5] = t16;
+    const t4 = b + t3;
+    const outer = Math.max(t4, 0.0);
+    const t5 = b - t3;
+    const inner = Math.max(t5, 0.0);
+    const share = 1.0 / (outer + inner);
+    const t6 = t1 - b;
+    const slack = Math.max(t6, 0.0);
+    const t7 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5;
+    const t8 = Number.isFinite(rho1) && Number.isFinite(rho2);
+    const invalid = !(Number.isFinite(b) && 0.0 <= b && t8);
+    const t9 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const unreachable = !(t9 <= t6 && t9 <= t4 && t9 <= t5);
+    const t10 = invalid || unreachable ? NaN : 0;
+    const t11 = n_1 * (coincide ? rho1 : t7) + t10;
+    const t12 = share * Math.sqrt(size) * Math.sqrt(outer * inner * slack);
+    const t13 = n_1 * (slack <= t2 ? 0.0 : (coincide ? 0.0 : t12));
+    const t14 = invalid ? 3 : unreachable ? 1 : coincide ? 2 : 0;
+    o[0] = t11;
+    o[1] = t13 + t10;
+    o[2] = t11;
+    o[3] = -t13 + t10;
+    o[4] = t14;
+    o[5] = t14;
 }
 
 const _FK = _runtime.kernel({
@@ -173,25 +174,27 @@ function _passive_angles(v, o) {
     const slack = Math.max(t3, 0.0);
     const t4 = rho1 - rho2;
     const t5 = b + t4;
+    const outer = Math.max(t5, 0.0);
     const t6 = b - t4;
-    const t7 = slack * Math.max(t5, 0.0) * Math.max(t6, 0.0);
-    const t8 = b * 2.0;
-    const t9 = coincide ? 0.0 : Math.sqrt(size) * Math.sqrt(t7) / t8;
-    const A_12 = n_1 * (slack <= t2 ? 0.0 : t9);
-    const A_11 = n_1 * (coincide ? rho1 : b * 0.5 + t4 * t1 / t8);
-    const t10 = Math.atan2(A_12, A_11);
-    const t11 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const t12 = -(_runtime.FEASIBILITY * size);
-    const failed = !(Number.isFinite(b) && 0.0 <= b && t11) || !(t12 <= t3 && t12 <= t5 && t12
+    const inner = Math.max(t6, 0.0);
+    const share = 1.0 / (outer + inner);
+    const t7 = share * Math.sqrt(size) * Math.sqrt(slack * outer * inner);
+    const A_12 = n_1 * (slack <= t2 ? 0.0 : (coincide ? 0.0 : t7));
+    const t8 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5;
+    const A_11 = n_1 * (coincide ? rho1 : t8);
+    const t9 = Math.atan2(A_12, A_11);
+    const t10 = Number.isFinite(rho1) && Number.isFinite(rho2);
+    const t11 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t10) || !(t11 <= t3 && t11 <= t5 && t11
         <= t6);
-    const t13 = failed ? NaN : 0;
-    const t14 = Math.atan2(A_12, A_11 - b);
-    const t15 = -t10;
-    const t16 = -t14;
-    o[0] = (t10 <= -Math.PI ? Math.PI : t10) + t13;
-    o[1] = (t14 <= -Math.PI ? Math.PI : t14) + t13;
-    o[2] = (t15 <= -Math.PI ? Math.PI : t15) + t13;
-    o[3] = (t16 <= -Math.PI ? Math.PI : t16) + t13;
+    const t12 = failed ? NaN : 0;
+    const t13 = Math.atan2(A_12, A_11 - b);
+    const t14 = -t9;
+    const t15 = -t13;
+    o[0] = (t9 <= -Math.PI ? Math.PI : t9) + t12;
+    o[1] = (t13 <= -Math.PI ? Math.PI : t13) + t12;
+    o[2] = (t14 <= -Math.PI ? Math.PI : t14) + t12;
+    o[3] = (t15 <= -Math.PI ? Math.PI : t15) + t12;
 }
 
 const _PASSIVE_ANGLES = _runtime.kernel({
@@ -251,7 +254,7 @@ function _skeleton(v, o) {
     const t1 = Number.isFinite(rho1) && Number.isFinite(rho2);
     const t2 = rho1 + rho2;
     const size = b + t2;
-    const t3 = -(_runtime.FEASIBILITY * size);
+    const t3 = -(_runtime.FEASIBILITY * (0.75 * size));
     const t4 = t2 - b;
     const t5 = rho1 - rho2;
     const t6 = b + t5;
@@ -264,13 +267,14 @@ function _skeleton(v, o) {
     const t11 = _runtime.VANISHING * size;
     const coincide = b <= t11;
     const n_1 = coincide ? 1.0 : b / b;
-    const t12 = b * 2.0;
-    const A_11 = n_1 * (coincide ? rho1 : b * 0.5 + t5 * t2 / t12);
-    const t13 = A_11 + t8;
+    const outer = Math.max(t6, 0.0);
+    const inner = Math.max(t7, 0.0);
+    const share = 1.0 / (outer + inner);
     const slack = Math.max(t4, 0.0);
-    const t14 = slack * Math.max(t6, 0.0) * Math.max(t7, 0.0);
-    const t15 = coincide ? 0.0 : Math.sqrt(size) * Math.sqrt(t14) / t12;
-    const A_12 = n_1 * (slack <= t11 ? 0.0 : t15);
+    const t12 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5;
+    const t13 = n_1 * (coincide ? rho1 : t12) + t8;
+    const t14 = share * Math.sqrt(size) * Math.sqrt(outer * inner * slack);
+    const A_12 = n_1 * (slack <= t11 ? 0.0 : (coincide ? 0.0 : t14));
     o[0] = t9;
     o[1] = t9;
     o[2] = t9;
@@ -351,32 +355,34 @@ function _jacobian_parallel(v, o) {
     const coincide = b <= t2;
     const n_1 = coincide ? 1.0 : b / b;
     const t3 = rho1 - rho2;
-    const t4 = b * 2.0;
-    const A_11 = n_1 * (coincide ? rho1 : b * 0.5 + t3 * t1 / t4);
-    const t5 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const t6 = -(_runtime.FEASIBILITY * size);
-    const t7 = t1 - b;
-    const t8 = b + t3;
-    const t9 = b - t3;
-    const failed = !(Number.isFinite(b) && 0.0 <= b && t5) || !(t6 <= t7 && t6 <= t8 && t6 <=
-        t9);
+    const t4 = b + t3;
+    const outer = Math.max(t4, 0.0);
+    const t5 = b - t3;
+    const inner = Math.max(t5, 0.0);
+    const share = 1.0 / (outer + inner);
+    const t6 = t1 - b;
+    const slack = Math.max(t6, 0.0);
+    const t7 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5;
+    const A_11 = n_1 * (coincide ? rho1 : t7);
+    const t8 = Number.isFinite(rho1) && Number.isFinite(rho2);
+    const t9 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t8) || !(t9 <= t6 && t9 <= t4 && t9 <=
+        t5);
     const t10 = failed ? NaN : 0;
     const t11 = A_11 + t10;
-    const slack = Math.max(t7, 0.0);
-    const t12 = slack * Math.max(t8, 0.0) * Math.max(t9, 0.0);
-    const t13 = coincide ? 0.0 : Math.sqrt(size) * Math.sqrt(t12) / t4;
-    const A_12 = n_1 * (slack <= t2 ? 0.0 : t13);
-    const t14 = A_12 + t10;
-    const t15 = A_11 - b + t10;
-    const t16 = -A_12 + t10;
+    const t12 = share * Math.sqrt(size) * Math.sqrt(outer * inner * slack);
+    const A_12 = n_1 * (slack <= t2 ? 0.0 : (coincide ? 0.0 : t12));
+    const t13 = A_12 + t10;
+    const t14 = A_11 - b + t10;
+    const t15 = -A_12 + t10;
     o[0] = t11;
-    o[1] = t14;
-    o[2] = t15;
-    o[3] = t14;
+    o[1] = t13;
+    o[2] = t14;
+    o[3] = t13;
     o[4] = t11;
-    o[5] = t16;
-    o[6] = t15;
-    o[7] = t16;
+    o[5] = t15;
+    o[6] = t14;
+    o[7] = t15;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -436,7 +442,7 @@ function _jacobian_serial(v, o) {
     const b = v[2];
     const t1 = Number.isFinite(rho1) && Number.isFinite(rho2);
     const t2 = rho1 + rho2;
-    const t3 = -(_runtime.FEASIBILITY * (b + t2));
+    const t3 = -(_runtime.FEASIBILITY * (0.75 * (b + t2)));
     const t4 = rho1 - rho2;
     const unreachable = !(t3 <= t2 - b && t3 <= b + t4 && t3 <= b - t4);
     const failed = !(Number.isFinite(b) && 0.0 <= b && t1) || unreachable;
@@ -507,31 +513,33 @@ function _jacobian(v, o) {
     const slack = Math.max(t3, 0.0);
     const t4 = rho1 - rho2;
     const t5 = b + t4;
+    const outer = Math.max(t5, 0.0);
     const t6 = b - t4;
-    const t7 = slack * Math.max(t5, 0.0) * Math.max(t6, 0.0);
-    const t8 = b * 2.0;
-    const t9 = coincide ? 0.0 : Math.sqrt(size) * Math.sqrt(t7) / t8;
-    const height = slack <= t2 ? 0.0 : t9;
+    const inner = Math.max(t6, 0.0);
+    const share = 1.0 / (outer + inner);
+    const t7 = share * Math.sqrt(size) * Math.sqrt(slack * outer * inner);
+    const height = slack <= t2 ? 0.0 : (coincide ? 0.0 : t7);
     const A_12 = n_1 * height;
     const Delta = b * height;
-    const t10 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const t11 = -(_runtime.FEASIBILITY * size);
-    const failed = !(Number.isFinite(b) && 0.0 <= b && t10) || !(t11 <= t3 && t11 <= t5 && t11
-        <= t6);
-    const t12 = failed ? NaN : 0;
-    const t13 = rho1 * A_12 / Delta + t12;
-    const t14 = -(rho2 * A_12 / Delta) + t12;
-    const A_11 = n_1 * (coincide ? rho1 : b * 0.5 + t4 * t1 / t8);
-    const t15 = rho1 * (b - A_11) / Delta;
-    const t16 = rho2 * A_11 / Delta;
-    o[0] = t13;
-    o[1] = t14;
-    o[2] = t15 + t12;
-    o[3] = t16 + t12;
-    o[4] = t13;
-    o[5] = t14;
-    o[6] = -t15 + t12;
-    o[7] = -t16 + t12;
+    const t8 = Number.isFinite(rho1) && Number.isFinite(rho2);
+    const t9 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t8) || !(t9 <= t3 && t9 <= t5 && t9 <=
+        t6);
+    const t10 = failed ? NaN : 0;
+    const t11 = rho1 * A_12 / Delta + t10;
+    const t12 = -(rho2 * A_12 / Delta) + t10;
+    const t13 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5;
+    const A_11 = n_1 * (coincide ? rho1 : t13);
+    const t14 = rho1 * (b - A_11) / Delta;
+    const t15 = rho2 * A_11 / Delta;
+    o[0] = t11;
+    o[1] = t12;
+    o[2] = t14 + t10;
+    o[3] = t15 + t10;
+    o[4] = t11;
+    o[5] = t12;
+    o[6] = -t14 + t10;
+    o[7] = -t15 + t10;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -597,17 +605,19 @@ function _determinant(v, o) {
     const t3 = _runtime.VANISHING * size;
     const t4 = rho1 - rho2;
     const t5 = b + t4;
+    const outer = Math.max(t5, 0.0);
     const t6 = b - t4;
-    const t7 = slack * Math.max(t5, 0.0) * Math.max(t6, 0.0);
-    const t8 = b <= t3 ? 0.0 : Math.sqrt(size) * Math.sqrt(t7) / (b * 2.0);
-    const t9 = rho1 * rho2 / (b * (slack <= t3 ? 0.0 : t8));
-    const t10 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const t11 = -(_runtime.FEASIBILITY * size);
-    const failed = !(Number.isFinite(b) && 0.0 <= b && t10) || !(t11 <= t2 && t11 <= t5 && t11
-        <= t6);
-    const t12 = failed ? NaN : 0;
-    o[0] = t9 + t12;
-    o[1] = -t9 + t12;
+    const inner = Math.max(t6, 0.0);
+    const t7 = 1.0 / (outer + inner) * Math.sqrt(size) * Math.sqrt(slack * outer * inner);
+    const Delta = b * (slack <= t3 ? 0.0 : (b <= t3 ? 0.0 : t7));
+    const t8 = rho1 * rho2 / Delta;
+    const t9 = Number.isFinite(rho1) && Number.isFinite(rho2);
+    const t10 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t9) || !(t10 <= t2 && t10 <= t5 && t10 <=
+        t6);
+    const t11 = failed ? NaN : 0;
+    o[0] = t8 + t11;
+    o[1] = -t8 + t11;
 }
 
 const _DETERMINANT = _runtime.kernel({
@@ -668,7 +678,7 @@ function _singularities(v, o) {
     const t1 = Number.isFinite(rho1) && Number.isFinite(rho2);
     const t2 = rho1 + rho2;
     const size = b + t2;
-    const t3 = -(_runtime.FEASIBILITY * size);
+    const t3 = -(_runtime.FEASIBILITY * (0.75 * size));
     const t4 = t2 - b;
     const t5 = rho1 - rho2;
     const t6 = b + t5;
@@ -680,9 +690,10 @@ function _singularities(v, o) {
     const t10 = rho2 + t8;
     const slack = Math.max(t4, 0.0);
     const t11 = _runtime.VANISHING * size;
-    const t12 = slack * Math.max(t6, 0.0) * Math.max(t7, 0.0);
-    const t13 = b <= t11 ? 0.0 : Math.sqrt(size) * Math.sqrt(t12) / (b * 2.0);
-    const Delta = b * (slack <= t11 ? 0.0 : t13);
+    const outer = Math.max(t6, 0.0);
+    const inner = Math.max(t7, 0.0);
+    const t12 = 1.0 / (outer + inner) * Math.sqrt(size) * Math.sqrt(slack * outer * inner);
+    const Delta = b * (slack <= t11 ? 0.0 : (b <= t11 ? 0.0 : t12));
     o[0] = t9;
     o[1] = t10;
     o[2] = Delta + t8;
@@ -752,30 +763,32 @@ function _condition_number(v, o) {
     const coincide = b <= t2;
     const n_1 = coincide ? 1.0 : b / b;
     const t3 = rho1 - rho2;
-    const t4 = b * 2.0;
-    const A_11 = n_1 * (coincide ? rho1 : b * 0.5 + t3 * t1 / t4);
-    const t5 = t1 - b;
-    const slack = Math.max(t5, 0.0);
-    const t6 = b + t3;
-    const t7 = b - t3;
-    const t8 = slack * Math.max(t6, 0.0) * Math.max(t7, 0.0);
-    const t9 = coincide ? 0.0 : Math.sqrt(size) * Math.sqrt(t8) / t4;
-    const height = slack <= t2 ? 0.0 : t9;
+    const t4 = b + t3;
+    const outer = Math.max(t4, 0.0);
+    const t5 = b - t3;
+    const inner = Math.max(t5, 0.0);
+    const share = 1.0 / (outer + inner);
+    const t6 = t1 - b;
+    const slack = Math.max(t6, 0.0);
+    const t7 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5;
+    const A_11 = n_1 * (coincide ? rho1 : t7);
+    const t8 = share * Math.sqrt(size) * Math.sqrt(outer * inner * slack);
+    const height = slack <= t2 ? 0.0 : (coincide ? 0.0 : t8);
     const A_12 = n_1 * height;
-    const t10 = A_12 * A_12;
-    const square1 = A_11 * A_11 + t10;
-    const t11 = b - A_11;
-    const square2 = t10 + t11 * t11;
-    const t12 = square1 - square2;
-    const t13 = t10 - A_11 * t11;
-    const t14 = square1 + square2 + Math.sqrt(t12 * t12 + 4.0 * (t13 * t13));
-    const t15 = Number.isFinite(rho1) && Number.isFinite(rho2);
-    const t16 = -(_runtime.FEASIBILITY * size);
-    const failed = !(Number.isFinite(b) && 0.0 <= b && t15) || !(t16 <= t5 && t16 <= t6 && t16
-        <= t7);
-    const t17 = t14 / (2.0 * (b * height)) + (failed ? NaN : 0);
-    o[0] = t17;
-    o[1] = t17;
+    const t9 = A_12 * A_12;
+    const square1 = A_11 * A_11 + t9;
+    const t10 = b - A_11;
+    const square2 = t9 + t10 * t10;
+    const t11 = square1 - square2;
+    const t12 = t9 - A_11 * t10;
+    const t13 = square1 + square2 + Math.sqrt(t11 * t11 + 4.0 * (t12 * t12));
+    const t14 = Number.isFinite(rho1) && Number.isFinite(rho2);
+    const t15 = -(_runtime.FEASIBILITY * (0.75 * size));
+    const failed = !(Number.isFinite(b) && 0.0 <= b && t14) || !(t15 <= t6 && t15 <= t4 && t15
+        <= t5);
+    const t16 = t13 / (2.0 * (b * height)) + (failed ? NaN : 0);
+    o[0] = t16;
+    o[1] = t16;
 }
 
 const _CONDITION_NUMBER = _runtime.kernel({

@@ -2,16 +2,16 @@
 # derivations/five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 24 add, 33 compare and select, 3 divide, 21 multiply, 2 sincos, 2 sqrt
-#   passive_angles: 26 add, 36 compare and select, 4 atan2, 5 divide, 17 multiply, 2 sincos, 2
+#   fk: 27 add, 33 compare and select, 4 divide, 21 multiply, 2 sincos, 2 sqrt
+#   passive_angles: 29 add, 36 compare and select, 4 atan2, 5 divide, 19 multiply, 2 sincos, 2
 #     sqrt
-#   skeleton: 32 add, 32 compare and select, 5 divide, 17 multiply, 2 sincos, 2 sqrt
-#   jacobian_parallel: 30 add, 32 compare and select, 5 divide, 17 multiply, 2 sincos, 2 sqrt
-#   jacobian_serial: 30 add, 32 compare and select, 5 divide, 25 multiply, 2 sincos, 2 sqrt
-#   jacobian: 34 add, 32 compare and select, 13 divide, 34 multiply, 2 sincos, 2 sqrt
-#   determinant: 28 add, 32 compare and select, 7 divide, 28 multiply, 2 sincos, 2 sqrt
-#   singularities: 32 add, 32 compare and select, 5 divide, 26 multiply, 2 sincos, 2 sqrt
-#   condition_number: 38 add, 32 compare and select, 7 divide, 37 multiply, 2 sincos, 4 sqrt
+#   skeleton: 35 add, 32 compare and select, 5 divide, 19 multiply, 2 sincos, 2 sqrt
+#   jacobian_parallel: 33 add, 32 compare and select, 5 divide, 19 multiply, 2 sincos, 2 sqrt
+#   jacobian_serial: 33 add, 32 compare and select, 5 divide, 27 multiply, 2 sincos, 2 sqrt
+#   jacobian: 37 add, 32 compare and select, 13 divide, 36 multiply, 2 sincos, 2 sqrt
+#   determinant: 31 add, 32 compare and select, 7 divide, 30 multiply, 2 sincos, 2 sqrt
+#   singularities: 35 add, 32 compare and select, 5 divide, 28 multiply, 2 sincos, 2 sqrt
+#   condition_number: 41 add, 32 compare and select, 7 divide, 39 multiply, 2 sincos, 4 sqrt
 #   ik: 72 compare and select, 51 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
 #   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
 """Planar five-bar linkage.
@@ -126,52 +126,55 @@ def _fk(theta1, theta2, L0, L1, L2, L3, L4):
     size = L0 + L1 + L2 + t3
     t4 = _runtime.VANISHING * size
     coincide = apart <= t4
-    t5 = 1.0 / apart
-    n_1 = _runtime.select(coincide, 1.0, -(t1 * t5))
+    t5 = L3 - L4
+    t6 = apart + t5
+    outer = np.maximum(t6, 0.0)
+    t7 = apart - t5
+    del t5
+    inner = np.maximum(t7, 0.0)
+    share = 1.0 / (outer + inner)
+    t8 = t3 - apart
+    slack = np.maximum(t8, 0.0)
+    t9 = share * (apart + slack) * (outer - inner) * 0.5
+    t10 = _runtime.select(coincide, L3, apart * 0.5 + t9)
+    del t9
+    t11 = 1.0 / apart
+    n_1 = _runtime.select(coincide, 1.0, -(t1 * t11))
     del t1
-    t6 = L3 - L4
-    t7 = 1.0 / (apart * 2.0)
-    t8 = _runtime.select(coincide, L3, apart * 0.5 + t6 * t3 * t7)
-    t9 = c1_x + n_1 * t8
+    t12 = c1_x + t10 * n_1
     del c1_x
-    t10 = _runtime.select(coincide, 0.0, t2 * t5)
-    del t2, t5
-    t11 = t3 - apart
-    slack = np.maximum(t11, 0.0)
-    t12 = apart + t6
-    t13 = apart - t6
-    del t6
-    t14 = slack * np.maximum(t12, 0.0) * np.maximum(t13, 0.0)
-    t15 = _runtime.select(coincide, 0.0, t7 * np.sqrt(t14 * (apart + t3)))
-    del apart, t14, t3, t7
-    height = _runtime.select(slack <= t4, 0.0, t15)
-    del slack, t15, t4
-    t16 = t10 * height
-    t17 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
-    t18 = t17 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t13 = np.sqrt(outer * inner * slack * (apart + t3))
+    del apart, inner, outer, t3
+    height = _runtime.select(slack <= t4, 0.0, _runtime.select(coincide, 0.0, share * t13))
+    del share, slack, t13, t4
+    t14 = _runtime.select(coincide, 0.0, t2 * t11)
+    del t11, t2
+    t15 = height * t14
+    t16 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
+    t17 = t16 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t16
+    t18 = t17 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t17
-    t19 = t18 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
+    invalid = np.logical_not(t18)
     del t18
-    invalid = np.logical_not(t19)
-    del t19
-    t20 = -(_runtime.FEASIBILITY * size)
+    t19 = -(_runtime.FEASIBILITY * (0.75 * size))
     del size
-    unreachable = np.logical_not((t20 <= t11) & (t20 <= t12) & (t20 <= t13))
-    del t11, t12, t13, t20
-    t21 = _runtime.poison(invalid | unreachable)
-    t22 = c1_y - t8 * t10
-    del c1_y, t10, t8
-    t23 = n_1 * height
+    unreachable = np.logical_not((t19 <= t8) & (t19 <= t6) & (t19 <= t7))
+    del t19, t6, t7, t8
+    t20 = _runtime.poison(invalid | unreachable)
+    t21 = c1_y - t10 * t14
+    del c1_y, t10, t14
+    t22 = n_1 * height
     del height, n_1
-    t24 = _runtime.status(invalid, unreachable, coincide)
+    t23 = _runtime.status(invalid, unreachable, coincide)
     del coincide, invalid, unreachable
     return (
-        t9 + t16 + t21,
-        t22 + t23 + t21,
-        t9 - t16 + t21,
-        t22 - t23 + t21,
-        t24,
-        t24,
+        t12 + t15 + t20,
+        t21 + t22 + t20,
+        t12 - t15 + t20,
+        t21 - t22 + t20,
+        t23,
+        t23,
     )
 
 
@@ -241,53 +244,56 @@ def _passive_angles(theta1, theta2, L0, L1, L2, L3, L4):
     coincide = apart <= t4
     t5 = _runtime.select(coincide, 0.0, t2 / apart)
     t6 = L3 - L4
-    t7 = apart * 2.0
-    t8 = _runtime.select(coincide, L3, apart * 0.5 + t6 * t3 / t7)
-    t9 = t5 * t8
-    n_1 = _runtime.select(coincide, 1.0, -(t1 / apart))
-    t10 = t3 - apart
-    slack = np.maximum(t10, 0.0)
-    t11 = apart + t6
-    t12 = apart - t6
+    t7 = apart + t6
+    outer = np.maximum(t7, 0.0)
+    t8 = apart - t6
     del t6
-    t13 = slack * np.maximum(t11, 0.0) * np.maximum(t12, 0.0)
-    t14 = _runtime.select(coincide, 0.0, np.sqrt(t13 * (apart + t3)) / t7)
-    del apart, coincide, t13, t3, t7
-    height = _runtime.select(slack <= t4, 0.0, t14)
-    del slack, t14, t4
-    t15 = n_1 * height
-    t16 = t9 - t15
-    t17 = t8 * n_1
-    del n_1, t8
-    t18 = t5 * height
+    inner = np.maximum(t8, 0.0)
+    share = 1.0 / (outer + inner)
+    t9 = t3 - apart
+    slack = np.maximum(t9, 0.0)
+    t10 = share * (apart + slack) * (outer - inner) * 0.5
+    t11 = _runtime.select(coincide, L3, apart * 0.5 + t10)
+    del t10
+    t12 = t5 * t11
+    n_1 = _runtime.select(coincide, 1.0, -(t1 / apart))
+    t13 = np.sqrt(outer * inner * slack * (apart + t3))
+    del apart, inner, outer, t3
+    height = _runtime.select(slack <= t4, 0.0, _runtime.select(coincide, 0.0, share * t13))
+    del coincide, share, slack, t13, t4
+    t14 = n_1 * height
+    t15 = t12 - t14
+    t16 = t11 * n_1
+    del n_1, t11
+    t17 = t5 * height
     del height, t5
-    A_11 = t17 + t18
-    t19 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
-    t20 = t19 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    A_11 = t16 + t17
+    t18 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
+    t19 = t18 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t18
+    t20 = t19 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t19
-    t21 = t20 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t20
-    t22 = -(_runtime.FEASIBILITY * size)
+    t21 = -(_runtime.FEASIBILITY * (0.75 * size))
     del size
-    unreachable = np.logical_not((t22 <= t10) & (t22 <= t11) & (t22 <= t12))
-    del t10, t11, t12, t22
-    t23 = _runtime.poison(np.logical_not(t21) | unreachable)
-    del t21, unreachable
-    t24 = _runtime.wrap_cut(np.arctan2(-t16, A_11)) + t23
-    t25 = _runtime.wrap_cut(np.arctan2(t2 - t16, t1 + A_11))
-    del A_11, t16
-    t26 = t9 + t15
-    del t15, t9
-    A_11_below = t17 - t18
-    del t17, t18
-    t27 = _runtime.wrap_cut(-np.arctan2(t26, A_11_below))
-    t28 = _runtime.wrap_cut(np.arctan2(t2 - t26, t1 + A_11_below))
-    del A_11_below, t1, t2, t26
+    unreachable = np.logical_not((t21 <= t9) & (t21 <= t7) & (t21 <= t8))
+    del t21, t7, t8, t9
+    t22 = _runtime.poison(np.logical_not(t20) | unreachable)
+    del t20, unreachable
+    t23 = _runtime.wrap_cut(np.arctan2(-t15, A_11)) + t22
+    t24 = _runtime.wrap_cut(np.arctan2(t2 - t15, t1 + A_11))
+    del A_11, t15
+    t25 = t12 + t14
+    del t12, t14
+    A_11_below = t16 - t17
+    del t16, t17
+    t26 = _runtime.wrap_cut(-np.arctan2(t25, A_11_below))
+    t27 = _runtime.wrap_cut(np.arctan2(t2 - t25, t1 + A_11_below))
+    del A_11_below, t1, t2, t25
     return (
-        t24,
-        t25 + t23,
-        t27 + t23,
-        t28 + t23,
+        t23,
+        t24 + t22,
+        t26 + t22,
+        t27 + t22,
     )
 
 
@@ -345,7 +351,7 @@ def _skeleton(theta1, theta2, L0, L1, L2, L3, L4):
     del t2
     t4 = L3 + L4
     size = L0 + L1 + L2 + t4
-    t5 = -(_runtime.FEASIBILITY * size)
+    t5 = -(_runtime.FEASIBILITY * (0.75 * size))
     c1_x = L1 * c1
     del c1
     c2_x = L0 + L2 * c2
@@ -361,6 +367,7 @@ def _skeleton(theta1, theta2, L0, L1, L2, L3, L4):
     t9 = L3 - L4
     t10 = apart + t9
     t11 = apart - t9
+    del t9
     unreachable = np.logical_not((t5 <= t8) & (t5 <= t10) & (t5 <= t11))
     del t5
     t12 = _runtime.poison(np.logical_not(t3) | unreachable)
@@ -378,24 +385,27 @@ def _skeleton(theta1, theta2, L0, L1, L2, L3, L4):
     coincide = apart <= t19
     n_1 = _runtime.select(coincide, 1.0, -(t6 / apart))
     del t6
-    t20 = apart * 2.0
-    t21 = _runtime.select(coincide, L3, apart * 0.5 + t9 * t4 / t20)
-    del t9
+    outer = np.maximum(t10, 0.0)
+    del t10
+    inner = np.maximum(t11, 0.0)
+    del t11
+    share = 1.0 / (outer + inner)
+    slack = np.maximum(t8, 0.0)
+    del t8
+    t20 = share * (apart + slack) * (outer - inner) * 0.5
+    t21 = _runtime.select(coincide, L3, apart * 0.5 + t20)
+    del t20
     t22 = n_1 * t21
     t23 = _runtime.select(coincide, 0.0, t7 / apart)
     del t7
-    slack = np.maximum(t8, 0.0)
-    del t8
-    t24 = slack * np.maximum(t10, 0.0) * np.maximum(t11, 0.0)
-    del t10, t11
-    t25 = _runtime.select(coincide, 0.0, np.sqrt(t24 * (apart + t4)) / t20)
-    del apart, coincide, t20, t24, t4
-    height = _runtime.select(slack <= t19, 0.0, t25)
-    del slack, t19, t25
-    t26 = t23 * height
-    t27 = t21 * t23
+    t24 = np.sqrt(outer * inner * slack * (apart + t4))
+    del apart, inner, outer, t4
+    height = _runtime.select(slack <= t19, 0.0, _runtime.select(coincide, 0.0, share * t24))
+    del coincide, share, slack, t19, t24
+    t25 = t23 * height
+    t26 = t21 * t23
     del t21, t23
-    t28 = n_1 * height
+    t27 = n_1 * height
     del height, n_1
     return (
         t13,
@@ -410,8 +420,8 @@ def _skeleton(theta1, theta2, L0, L1, L2, L3, L4):
         t17,
         t18,
         t13,
-        c1_x + (t22 + t26) + t12,
-        c1_y - (t27 - t28) + t12,
+        c1_x + (t22 + t25) + t12,
+        c1_y - (t26 - t27) + t12,
         t13,
         t13,
         t13,
@@ -425,8 +435,8 @@ def _skeleton(theta1, theta2, L0, L1, L2, L3, L4):
         t17,
         t18,
         t13,
-        c1_x + (t22 - t26) + t12,
-        c1_y - (t27 + t28) + t12,
+        c1_x + (t22 - t25) + t12,
+        c1_y - (t26 + t27) + t12,
         t13,
     )
 
@@ -488,51 +498,54 @@ def _jacobian_parallel(theta1, theta2, L0, L1, L2, L3, L4):
     coincide = apart <= t4
     n_1 = _runtime.select(coincide, 1.0, -(t1 / apart))
     t5 = L3 - L4
-    t6 = apart * 2.0
-    t7 = _runtime.select(coincide, L3, apart * 0.5 + t5 * t3 / t6)
-    t8 = n_1 * t7
-    t9 = _runtime.select(coincide, 0.0, t2 / apart)
-    t10 = t3 - apart
-    slack = np.maximum(t10, 0.0)
-    t11 = apart + t5
-    t12 = apart - t5
+    t6 = apart + t5
+    outer = np.maximum(t6, 0.0)
+    t7 = apart - t5
     del t5
-    t13 = slack * np.maximum(t11, 0.0) * np.maximum(t12, 0.0)
-    t14 = _runtime.select(coincide, 0.0, np.sqrt(t13 * (apart + t3)) / t6)
-    del apart, coincide, t13, t3, t6
-    height = _runtime.select(slack <= t4, 0.0, t14)
-    del slack, t14, t4
-    t15 = t9 * height
-    A_11 = t8 + t15
-    t16 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
-    t17 = t16 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    inner = np.maximum(t7, 0.0)
+    share = 1.0 / (outer + inner)
+    t8 = t3 - apart
+    slack = np.maximum(t8, 0.0)
+    t9 = share * (apart + slack) * (outer - inner) * 0.5
+    t10 = _runtime.select(coincide, L3, apart * 0.5 + t9)
+    del t9
+    t11 = n_1 * t10
+    t12 = _runtime.select(coincide, 0.0, t2 / apart)
+    t13 = np.sqrt(outer * inner * slack * (apart + t3))
+    del apart, inner, outer, t3
+    height = _runtime.select(slack <= t4, 0.0, _runtime.select(coincide, 0.0, share * t13))
+    del coincide, share, slack, t13, t4
+    t14 = t12 * height
+    A_11 = t11 + t14
+    t15 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
+    t16 = t15 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t15
+    t17 = t16 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t16
-    t18 = t17 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t17
-    t19 = -(_runtime.FEASIBILITY * size)
+    t18 = -(_runtime.FEASIBILITY * (0.75 * size))
     del size
-    unreachable = np.logical_not((t19 <= t10) & (t19 <= t11) & (t19 <= t12))
-    del t10, t11, t12, t19
-    t20 = _runtime.poison(np.logical_not(t18) | unreachable)
-    del t18, unreachable
-    t21 = t7 * t9
-    del t7, t9
-    t22 = n_1 * height
+    unreachable = np.logical_not((t18 <= t8) & (t18 <= t6) & (t18 <= t7))
+    del t18, t6, t7, t8
+    t19 = _runtime.poison(np.logical_not(t17) | unreachable)
+    del t17, unreachable
+    t20 = t10 * t12
+    del t10, t12
+    t21 = n_1 * height
     del height, n_1
-    t23 = t21 - t22
-    A_11_below = t8 - t15
-    del t15, t8
-    t24 = t21 + t22
-    del t21, t22
+    t22 = t20 - t21
+    A_11_below = t11 - t14
+    del t11, t14
+    t23 = t20 + t21
+    del t20, t21
     return (
-        A_11 + t20,
-        -t23 + t20,
-        t1 + A_11 + t20,
-        t2 - t23 + t20,
-        A_11_below + t20,
-        -t24 + t20,
-        t1 + A_11_below + t20,
-        t2 - t24 + t20,
+        A_11 + t19,
+        -t22 + t19,
+        t1 + A_11 + t19,
+        t2 - t22 + t19,
+        A_11_below + t19,
+        -t23 + t19,
+        t1 + A_11_below + t19,
+        t2 - t23 + t19,
     )
 
 
@@ -600,48 +613,51 @@ def _jacobian_serial(theta1, theta2, L0, L1, L2, L3, L4):
     coincide = apart <= t5
     n_1 = _runtime.select(coincide, 1.0, -(t2 / apart))
     t6 = L3 - L4
-    t7 = apart * 2.0
-    t8 = _runtime.select(coincide, L3, apart * 0.5 + t6 * t4 / t7)
-    t9 = n_1 * t8
-    t10 = _runtime.select(coincide, 0.0, t3 / apart)
-    t11 = t4 - apart
-    slack = np.maximum(t11, 0.0)
-    t12 = apart + t6
-    t13 = apart - t6
+    t7 = apart + t6
+    outer = np.maximum(t7, 0.0)
+    t8 = apart - t6
     del t6
-    t14 = slack * np.maximum(t12, 0.0) * np.maximum(t13, 0.0)
-    t15 = _runtime.select(coincide, 0.0, np.sqrt(t14 * (apart + t4)) / t7)
-    del apart, coincide, t14, t4, t7
-    height = _runtime.select(slack <= t5, 0.0, t15)
-    del slack, t15, t5
-    t16 = t10 * height
-    A_11 = t9 + t16
-    t17 = t8 * t10
-    del t10, t8
-    t18 = n_1 * height
+    inner = np.maximum(t8, 0.0)
+    share = 1.0 / (outer + inner)
+    t9 = t4 - apart
+    slack = np.maximum(t9, 0.0)
+    t10 = share * (apart + slack) * (outer - inner) * 0.5
+    t11 = _runtime.select(coincide, L3, apart * 0.5 + t10)
+    del t10
+    t12 = n_1 * t11
+    t13 = _runtime.select(coincide, 0.0, t3 / apart)
+    t14 = np.sqrt(outer * inner * slack * (apart + t4))
+    del apart, inner, outer, t4
+    height = _runtime.select(slack <= t5, 0.0, _runtime.select(coincide, 0.0, share * t14))
+    del coincide, share, slack, t14, t5
+    t15 = t13 * height
+    A_11 = t12 + t15
+    t16 = t11 * t13
+    del t11, t13
+    t17 = n_1 * height
     del height, n_1
-    t19 = t17 - t18
-    t20 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
-    t21 = t20 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t18 = t16 - t17
+    t19 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
+    t20 = t19 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t19
+    t21 = t20 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t20
-    t22 = t21 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t21
-    t23 = -(_runtime.FEASIBILITY * size)
+    t22 = -(_runtime.FEASIBILITY * (0.75 * size))
     del size
-    unreachable = np.logical_not((t23 <= t11) & (t23 <= t12) & (t23 <= t13))
-    del t11, t12, t13, t23
-    t24 = _runtime.poison(np.logical_not(t22) | unreachable)
-    del t22, unreachable
-    A_11_below = t9 - t16
-    del t16, t9
-    t25 = t17 + t18
-    del t17, t18
-    t26 = t1 * (t3 - t25) - c2_y * (t2 + A_11_below) + t24
+    unreachable = np.logical_not((t22 <= t9) & (t22 <= t7) & (t22 <= t8))
+    del t22, t7, t8, t9
+    t23 = _runtime.poison(np.logical_not(t21) | unreachable)
+    del t21, unreachable
+    A_11_below = t12 - t15
+    del t12, t15
+    t24 = t16 + t17
+    del t16, t17
+    t25 = t1 * (t3 - t24) - c2_y * (t2 + A_11_below) + t23
     return (
-        -(c1_y * A_11 + c1_x * t19) + t24,
-        t1 * (t3 - t19) - c2_y * (t2 + A_11) + t24,
-        -(c1_y * A_11_below + c1_x * t25) + t24,
-        t26,
+        -(c1_y * A_11 + c1_x * t18) + t23,
+        t1 * (t3 - t18) - c2_y * (t2 + A_11) + t23,
+        -(c1_y * A_11_below + c1_x * t24) + t23,
+        t25,
     )
 
 
@@ -709,65 +725,68 @@ def _jacobian(theta1, theta2, L0, L1, L2, L3, L4):
     coincide = apart <= t5
     t6 = _runtime.select(coincide, 0.0, t1 / apart)
     t7 = L3 - L4
-    t8 = apart * 2.0
-    t9 = _runtime.select(coincide, L3, apart * 0.5 + t7 * t4 / t8)
-    t10 = t6 * t9
-    n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
-    t11 = t4 - apart
-    slack = np.maximum(t11, 0.0)
-    t12 = apart + t7
-    t13 = apart - t7
+    t8 = apart + t7
+    outer = np.maximum(t8, 0.0)
+    t9 = apart - t7
     del t7
-    t14 = slack * np.maximum(t12, 0.0) * np.maximum(t13, 0.0)
-    t15 = _runtime.select(coincide, 0.0, np.sqrt(t14 * (apart + t4)) / t8)
-    del coincide, t14, t4, t8
-    height = _runtime.select(slack <= t5, 0.0, t15)
-    del slack, t15, t5
-    t16 = n_1 * height
-    t17 = t10 - t16
-    A_22 = t1 - t17
-    t18 = t9 * n_1
-    del n_1, t9
-    t19 = t6 * height
+    inner = np.maximum(t9, 0.0)
+    share = 1.0 / (outer + inner)
+    t10 = t4 - apart
+    slack = np.maximum(t10, 0.0)
+    t11 = share * (apart + slack) * (outer - inner) * 0.5
+    t12 = _runtime.select(coincide, L3, apart * 0.5 + t11)
+    del t11
+    t13 = t6 * t12
+    n_1 = _runtime.select(coincide, 1.0, -(t3 / apart))
+    t14 = np.sqrt(outer * inner * slack * (apart + t4))
+    del inner, outer, t4
+    height = _runtime.select(slack <= t5, 0.0, _runtime.select(coincide, 0.0, share * t14))
+    del coincide, share, slack, t14, t5
+    t15 = n_1 * height
+    t16 = t13 - t15
+    A_22 = t1 - t16
+    t17 = t12 * n_1
+    del n_1, t12
+    t18 = t6 * height
     del t6
-    A_11 = t18 + t19
-    t20 = c1_y * A_11 + c1_x * t17
+    A_11 = t17 + t18
+    t19 = c1_y * A_11 + c1_x * t16
     Delta = apart * height
     del apart, height
-    t21 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
-    t22 = t21 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t20 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
+    t21 = t20 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t20
+    t22 = t21 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t21
-    t23 = t22 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t22
-    t24 = -(_runtime.FEASIBILITY * size)
+    t23 = -(_runtime.FEASIBILITY * (0.75 * size))
     del size
-    unreachable = np.logical_not((t24 <= t11) & (t24 <= t12) & (t24 <= t13))
-    del t11, t12, t13, t24
-    t25 = _runtime.poison(np.logical_not(t23) | unreachable)
-    del t23, unreachable
+    unreachable = np.logical_not((t23 <= t10) & (t23 <= t8) & (t23 <= t9))
+    del t10, t23, t8, t9
+    t24 = _runtime.poison(np.logical_not(t22) | unreachable)
+    del t22, unreachable
     A_21 = t3 + A_11
-    t26 = c2_y * A_21 - t2 * A_22
-    t27 = t10 + t16
-    del t10, t16
-    A_22_below = t1 - t27
+    t25 = c2_y * A_21 - t2 * A_22
+    t26 = t13 + t15
+    del t13, t15
+    A_22_below = t1 - t26
     del t1
-    A_11_below = t18 - t19
-    del t18, t19
-    t28 = c1_y * A_11_below + c1_x * t27
+    A_11_below = t17 - t18
+    del t17, t18
+    t27 = c1_y * A_11_below + c1_x * t26
     del c1_x, c1_y
     A_21_below = t3 + A_11_below
     del t3
-    t29 = c2_y * A_21_below - t2 * A_22_below
+    t28 = c2_y * A_21_below - t2 * A_22_below
     del c2_y, t2
     return (
-        -(A_22 * t20 / Delta) + t25,
-        -(t17 * t26 / Delta) + t25,
-        t20 * A_21 / Delta + t25,
-        -(A_11 * t26 / Delta) + t25,
-        A_22_below * t28 / Delta + t25,
-        t27 * t29 / Delta + t25,
-        -(t28 * A_21_below / Delta) + t25,
-        A_11_below * t29 / Delta + t25,
+        -(A_22 * t19 / Delta) + t24,
+        -(t16 * t25 / Delta) + t24,
+        t19 * A_21 / Delta + t24,
+        -(A_11 * t25 / Delta) + t24,
+        A_22_below * t27 / Delta + t24,
+        t26 * t28 / Delta + t24,
+        -(t27 * A_21_below / Delta) + t24,
+        A_11_below * t28 / Delta + t24,
     )
 
 
@@ -836,51 +855,54 @@ def _determinant(theta1, theta2, L0, L1, L2, L3, L4):
     coincide = apart <= t5
     n_1 = _runtime.select(coincide, 1.0, -(t2 / apart))
     t6 = L3 - L4
-    t7 = apart * 2.0
-    t8 = _runtime.select(coincide, L3, apart * 0.5 + t6 * t4 / t7)
-    t9 = n_1 * t8
-    t10 = _runtime.select(coincide, 0.0, t3 / apart)
-    t11 = t4 - apart
-    slack = np.maximum(t11, 0.0)
-    t12 = apart + t6
-    t13 = apart - t6
+    t7 = apart + t6
+    outer = np.maximum(t7, 0.0)
+    t8 = apart - t6
     del t6
-    t14 = slack * np.maximum(t12, 0.0) * np.maximum(t13, 0.0)
-    t15 = _runtime.select(coincide, 0.0, np.sqrt(t14 * (apart + t4)) / t7)
-    del coincide, t14, t4, t7
-    height = _runtime.select(slack <= t5, 0.0, t15)
-    del slack, t15, t5
-    t16 = t10 * height
-    A_11 = t9 + t16
-    t17 = t8 * t10
-    del t10, t8
-    t18 = n_1 * height
+    inner = np.maximum(t8, 0.0)
+    share = 1.0 / (outer + inner)
+    t9 = t4 - apart
+    slack = np.maximum(t9, 0.0)
+    t10 = share * (apart + slack) * (outer - inner) * 0.5
+    t11 = _runtime.select(coincide, L3, apart * 0.5 + t10)
+    del t10
+    t12 = n_1 * t11
+    t13 = _runtime.select(coincide, 0.0, t3 / apart)
+    t14 = np.sqrt(outer * inner * slack * (apart + t4))
+    del inner, outer, t4
+    height = _runtime.select(slack <= t5, 0.0, _runtime.select(coincide, 0.0, share * t14))
+    del coincide, share, slack, t14, t5
+    t15 = t13 * height
+    A_11 = t12 + t15
+    t16 = t11 * t13
+    del t11, t13
+    t17 = n_1 * height
     del n_1
-    t19 = t17 - t18
-    t20 = (c1_y * A_11 + c1_x * t19) * (c2_y * (t2 + A_11) - t1 * (t3 - t19))
-    del A_11, t19
+    t18 = t16 - t17
+    t19 = (c1_y * A_11 + c1_x * t18) * (c2_y * (t2 + A_11) - t1 * (t3 - t18))
+    del A_11, t18
     Delta = apart * height
     del apart, height
-    t21 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
-    t22 = t21 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t20 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
+    t21 = t20 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t20
+    t22 = t21 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t21
-    t23 = t22 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t22
-    t24 = -(_runtime.FEASIBILITY * size)
+    t23 = -(_runtime.FEASIBILITY * (0.75 * size))
     del size
-    unreachable = np.logical_not((t24 <= t11) & (t24 <= t12) & (t24 <= t13))
-    del t11, t12, t13, t24
-    t25 = _runtime.poison(np.logical_not(t23) | unreachable)
-    del t23, unreachable
-    A_11_below = t9 - t16
-    del t16, t9
-    t26 = t17 + t18
-    del t17, t18
-    t27 = (c1_y * A_11_below + c1_x * t26) * (c2_y * (t2 + A_11_below) - t1 * (t3 - t26))
-    del A_11_below, c1_x, c1_y, c2_y, t1, t2, t26, t3
+    unreachable = np.logical_not((t23 <= t9) & (t23 <= t7) & (t23 <= t8))
+    del t23, t7, t8, t9
+    t24 = _runtime.poison(np.logical_not(t22) | unreachable)
+    del t22, unreachable
+    A_11_below = t12 - t15
+    del t12, t15
+    t25 = t16 + t17
+    del t16, t17
+    t26 = (c1_y * A_11_below + c1_x * t25) * (c2_y * (t2 + A_11_below) - t1 * (t3 - t25))
+    del A_11_below, c1_x, c1_y, c2_y, t1, t2, t25, t3
     return (
-        t20 / Delta + t25,
-        -(t27 / Delta) + t25,
+        t19 / Delta + t24,
+        -(t26 / Delta) + t24,
     )
 
 
@@ -948,52 +970,55 @@ def _singularities(theta1, theta2, L0, L1, L2, L3, L4):
     coincide = apart <= t5
     n_1 = _runtime.select(coincide, 1.0, -(t2 / apart))
     t6 = L3 - L4
-    t7 = apart * 2.0
-    t8 = _runtime.select(coincide, L3, apart * 0.5 + t6 * t4 / t7)
-    t9 = n_1 * t8
-    t10 = _runtime.select(coincide, 0.0, t3 / apart)
-    t11 = t4 - apart
-    slack = np.maximum(t11, 0.0)
-    t12 = apart + t6
-    t13 = apart - t6
+    t7 = apart + t6
+    outer = np.maximum(t7, 0.0)
+    t8 = apart - t6
     del t6
-    t14 = slack * np.maximum(t12, 0.0) * np.maximum(t13, 0.0)
-    t15 = _runtime.select(coincide, 0.0, np.sqrt(t14 * (apart + t4)) / t7)
-    del coincide, t14, t4, t7
-    height = _runtime.select(slack <= t5, 0.0, t15)
-    del slack, t15, t5
-    t16 = t10 * height
-    A_11 = t9 + t16
-    t17 = t8 * t10
-    del t10, t8
-    t18 = n_1 * height
+    inner = np.maximum(t8, 0.0)
+    share = 1.0 / (outer + inner)
+    t9 = t4 - apart
+    slack = np.maximum(t9, 0.0)
+    t10 = share * (apart + slack) * (outer - inner) * 0.5
+    t11 = _runtime.select(coincide, L3, apart * 0.5 + t10)
+    del t10
+    t12 = n_1 * t11
+    t13 = _runtime.select(coincide, 0.0, t3 / apart)
+    t14 = np.sqrt(outer * inner * slack * (apart + t4))
+    del inner, outer, t4
+    height = _runtime.select(slack <= t5, 0.0, _runtime.select(coincide, 0.0, share * t14))
+    del coincide, share, slack, t14, t5
+    t15 = t13 * height
+    A_11 = t12 + t15
+    t16 = t11 * t13
+    del t11, t13
+    t17 = n_1 * height
     del n_1
-    t19 = t17 - t18
-    t20 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
-    t21 = t20 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t18 = t16 - t17
+    t19 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
+    t20 = t19 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t19
+    t21 = t20 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t20
-    t22 = t21 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t21
-    t23 = -(_runtime.FEASIBILITY * size)
+    t22 = -(_runtime.FEASIBILITY * (0.75 * size))
     del size
-    unreachable = np.logical_not((t23 <= t11) & (t23 <= t12) & (t23 <= t13))
-    del t11, t12, t13, t23
-    t24 = _runtime.poison(np.logical_not(t22) | unreachable)
-    del t22, unreachable
+    unreachable = np.logical_not((t22 <= t9) & (t22 <= t7) & (t22 <= t8))
+    del t22, t7, t8, t9
+    t23 = _runtime.poison(np.logical_not(t21) | unreachable)
+    del t21, unreachable
     Delta = apart * height
     del apart, height
-    A_11_below = t9 - t16
-    del t16, t9
-    t25 = t17 + t18
-    del t17, t18
-    t26 = t1 * (t3 - t25) - c2_y * (t2 + A_11_below) + t24
+    A_11_below = t12 - t15
+    del t12, t15
+    t24 = t16 + t17
+    del t16, t17
+    t25 = t1 * (t3 - t24) - c2_y * (t2 + A_11_below) + t23
     return (
-        -(c1_y * A_11 + c1_x * t19) + t24,
-        t1 * (t3 - t19) - c2_y * (t2 + A_11) + t24,
-        Delta + t24,
-        -(c1_y * A_11_below + c1_x * t25) + t24,
-        t26,
-        -Delta + t24,
+        -(c1_y * A_11 + c1_x * t18) + t23,
+        t1 * (t3 - t18) - c2_y * (t2 + A_11) + t23,
+        Delta + t23,
+        -(c1_y * A_11_below + c1_x * t24) + t23,
+        t25,
+        -Delta + t23,
     )
 
 
@@ -1055,67 +1080,70 @@ def _condition_number(theta1, theta2, L0, L1, L2, L3, L4):
     coincide = apart <= t4
     n_1 = _runtime.select(coincide, 1.0, -(t1 / apart))
     t5 = L3 - L4
-    t6 = apart * 2.0
-    t7 = _runtime.select(coincide, L3, apart * 0.5 + t5 * t3 / t6)
-    t8 = n_1 * t7
-    t9 = _runtime.select(coincide, 0.0, t2 / apart)
-    t10 = t3 - apart
-    slack = np.maximum(t10, 0.0)
-    t11 = apart + t5
-    t12 = apart - t5
+    t6 = apart + t5
+    outer = np.maximum(t6, 0.0)
+    t7 = apart - t5
     del t5
-    t13 = slack * np.maximum(t11, 0.0) * np.maximum(t12, 0.0)
-    t14 = _runtime.select(coincide, 0.0, np.sqrt(t13 * (apart + t3)) / t6)
-    del coincide, t13, t3, t6
-    height = _runtime.select(slack <= t4, 0.0, t14)
-    del slack, t14, t4
-    t15 = t9 * height
-    A_11 = t8 + t15
-    t16 = t7 * t9
-    del t7, t9
-    t17 = n_1 * height
+    inner = np.maximum(t7, 0.0)
+    share = 1.0 / (outer + inner)
+    t8 = t3 - apart
+    slack = np.maximum(t8, 0.0)
+    t9 = share * (apart + slack) * (outer - inner) * 0.5
+    t10 = _runtime.select(coincide, L3, apart * 0.5 + t9)
+    del t9
+    t11 = n_1 * t10
+    t12 = _runtime.select(coincide, 0.0, t2 / apart)
+    t13 = np.sqrt(outer * inner * slack * (apart + t3))
+    del inner, outer, t3
+    height = _runtime.select(slack <= t4, 0.0, _runtime.select(coincide, 0.0, share * t13))
+    del coincide, share, slack, t13, t4
+    t14 = t12 * height
+    A_11 = t11 + t14
+    t15 = t10 * t12
+    del t10, t12
+    t16 = n_1 * height
     del n_1
-    t18 = t16 - t17
-    square1 = A_11 * A_11 + t18 * t18
+    t17 = t15 - t16
+    square1 = A_11 * A_11 + t17 * t17
     A_21 = t1 + A_11
-    A_22 = t2 - t18
+    A_22 = t2 - t17
     square2 = A_21 * A_21 + A_22 * A_22
-    t19 = square1 - square2
-    t20 = A_11 * A_21 - t18 * A_22
-    del A_11, A_21, A_22, t18
-    t21 = square1 + square2 + np.sqrt(t19 * t19 + 4.0 * (t20 * t20))
-    del square1, square2, t19, t20
-    t22 = 2.0 * (apart * height)
+    t18 = square1 - square2
+    t19 = A_11 * A_21 - t17 * A_22
+    del A_11, A_21, A_22, t17
+    t20 = square1 + square2 + np.sqrt(t18 * t18 + 4.0 * (t19 * t19))
+    del square1, square2, t18, t19
+    t21 = 2.0 * (apart * height)
     del apart, height
-    t23 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
-    t24 = t23 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    t22 = np.isfinite(L0) & np.isfinite(L1) & np.isfinite(L2) & np.isfinite(L3) & np.isfinite(L4)
+    t23 = t22 & (0.0 <= L0) & (0.0 <= L1) & (0.0 <= L2)
+    del t22
+    t24 = t23 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
     del t23
-    t25 = t24 & (0.0 <= L3) & (0.0 <= L4) & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t24
-    t26 = -(_runtime.FEASIBILITY * size)
+    t25 = -(_runtime.FEASIBILITY * (0.75 * size))
     del size
-    unreachable = np.logical_not((t26 <= t10) & (t26 <= t11) & (t26 <= t12))
-    del t10, t11, t12, t26
-    t27 = _runtime.poison(np.logical_not(t25) | unreachable)
-    del t25, unreachable
-    A_11_below = t8 - t15
-    del t15, t8
-    t28 = t16 + t17
-    del t16, t17
-    square1_below = A_11_below * A_11_below + t28 * t28
+    unreachable = np.logical_not((t25 <= t8) & (t25 <= t6) & (t25 <= t7))
+    del t25, t6, t7, t8
+    t26 = _runtime.poison(np.logical_not(t24) | unreachable)
+    del t24, unreachable
+    A_11_below = t11 - t14
+    del t11, t14
+    t27 = t15 + t16
+    del t15, t16
+    square1_below = A_11_below * A_11_below + t27 * t27
     A_21_below = t1 + A_11_below
     del t1
-    A_22_below = t2 - t28
+    A_22_below = t2 - t27
     del t2
     square2_below = A_21_below * A_21_below + A_22_below * A_22_below
-    t29 = square1_below - square2_below
-    t30 = A_11_below * A_21_below - t28 * A_22_below
-    del A_11_below, A_21_below, A_22_below, t28
-    t31 = square1_below + square2_below + np.sqrt(t29 * t29 + 4.0 * (t30 * t30))
-    del square1_below, square2_below, t29, t30
+    t28 = square1_below - square2_below
+    t29 = A_11_below * A_21_below - t27 * A_22_below
+    del A_11_below, A_21_below, A_22_below, t27
+    t30 = square1_below + square2_below + np.sqrt(t28 * t28 + 4.0 * (t29 * t29))
+    del square1_below, square2_below, t28, t29
     return (
-        t21 / t22 + t27,
-        t31 / t22 + t27,
+        t20 / t21 + t26,
+        t30 / t21 + t26,
     )
 
 

@@ -2,15 +2,15 @@
 # derivations/rpr_planar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 10 add, 24 compare and select, 3 divide, 11 multiply, 2 sqrt
-#   passive_angles: 12 add, 27 compare and select, 2 atan2, 4 divide, 9 multiply, 2 sqrt
-#   skeleton: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
-#   jacobian_parallel: 12 add, 23 compare and select, 4 divide, 9 multiply, 2 sqrt
-#   jacobian_serial: 8 add, 14 compare and select, 1 multiply
-#   jacobian: 14 add, 23 compare and select, 8 divide, 14 multiply, 2 sqrt
-#   determinant: 8 add, 21 compare and select, 2 divide, 8 multiply, 2 sqrt
-#   singularities: 10 add, 21 compare and select, 1 divide, 7 multiply, 2 sqrt
-#   condition_number: 16 add, 23 compare and select, 5 divide, 18 multiply, 3 sqrt
+#   fk: 13 add, 24 compare and select, 4 divide, 11 multiply, 2 sqrt
+#   passive_angles: 15 add, 27 compare and select, 2 atan2, 4 divide, 11 multiply, 2 sqrt
+#   skeleton: 15 add, 23 compare and select, 4 divide, 11 multiply, 2 sqrt
+#   jacobian_parallel: 15 add, 23 compare and select, 4 divide, 11 multiply, 2 sqrt
+#   jacobian_serial: 8 add, 14 compare and select, 2 multiply
+#   jacobian: 17 add, 23 compare and select, 8 divide, 16 multiply, 2 sqrt
+#   determinant: 9 add, 21 compare and select, 2 divide, 9 multiply, 2 sqrt
+#   singularities: 11 add, 21 compare and select, 1 divide, 8 multiply, 2 sqrt
+#   condition_number: 19 add, 23 compare and select, 5 divide, 20 multiply, 3 sqrt
 #   ik: 10 compare and select, 5 add, 6 multiply, 2 sqrt
 """Planar parallel mechanism (two RPR legs).
 
@@ -100,39 +100,40 @@ def _fk(rho1, rho2, b):
     coincide = b <= t2
     n_1 = _runtime.select(coincide, 1.0, b / b)
     t3 = rho1 - rho2
-    t4 = 1.0 / (b * 2.0)
-    t5 = _runtime.select(coincide, rho1, b * 0.5 + t3 * t1 * t4)
-    t6 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    invalid = np.logical_not(t6)
-    del t6
-    t7 = -(_runtime.FEASIBILITY * size)
-    t8 = t1 - b
-    del t1
-    t9 = b + t3
-    t10 = b - t3
+    t4 = b + t3
+    outer = np.maximum(t4, 0.0)
+    t5 = b - t3
     del t3
-    unreachable = np.logical_not((t7 <= t8) & (t7 <= t9) & (t7 <= t10))
-    del t7
-    t11 = _runtime.poison(invalid | unreachable)
-    t12 = n_1 * t5 + t11
-    del t5
-    slack = np.maximum(t8, 0.0)
+    inner = np.maximum(t5, 0.0)
+    share = 1.0 / (outer + inner)
+    t6 = t1 - b
+    del t1
+    slack = np.maximum(t6, 0.0)
+    t7 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5
+    t8 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    invalid = np.logical_not(t8)
     del t8
-    t13 = slack * np.maximum(t9, 0.0) * np.maximum(t10, 0.0)
-    del t10, t9
-    t14 = _runtime.select(coincide, 0.0, t4 * (np.sqrt(size) * np.sqrt(t13)))
-    del size, t13, t4
-    t15 = n_1 * _runtime.select(slack <= t2, 0.0, t14)
-    del n_1, slack, t14, t2
-    t16 = _runtime.status(invalid, unreachable, coincide)
+    t9 = -(_runtime.FEASIBILITY * (0.75 * size))
+    unreachable = np.logical_not((t9 <= t6) & (t9 <= t4) & (t9 <= t5))
+    del t4, t5, t6, t9
+    t10 = _runtime.poison(invalid | unreachable)
+    t11 = n_1 * _runtime.select(coincide, rho1, t7) + t10
+    del t7
+    t12 = share * np.sqrt(size) * np.sqrt(outer * inner * slack)
+    del inner, outer, share, size
+    height = _runtime.select(slack <= t2, 0.0, _runtime.select(coincide, 0.0, t12))
+    del slack, t12, t2
+    t13 = n_1 * height
+    del height, n_1
+    t14 = _runtime.status(invalid, unreachable, coincide)
     del coincide, invalid, unreachable
     return (
-        t12,
-        t15 + t11,
-        t12,
-        -t15 + t11,
-        t16,
-        t16,
+        t11,
+        t13 + t10,
+        t11,
+        -t13 + t10,
+        t14,
+        t14,
     )
 
 
@@ -195,35 +196,39 @@ def _passive_angles(rho1, rho2, b):
     coincide = b <= t2
     n_1 = _runtime.select(coincide, 1.0, b / b)
     t3 = t1 - b
+    del t1
     slack = np.maximum(t3, 0.0)
     t4 = rho1 - rho2
     t5 = b + t4
+    outer = np.maximum(t5, 0.0)
     t6 = b - t4
-    t7 = slack * np.maximum(t5, 0.0) * np.maximum(t6, 0.0)
-    t8 = b * 2.0
-    t9 = _runtime.select(coincide, 0.0, np.sqrt(size) * np.sqrt(t7) / t8)
-    del t7
-    A_12 = n_1 * _runtime.select(slack <= t2, 0.0, t9)
-    del slack, t2, t9
-    t10 = _runtime.select(coincide, rho1, b * 0.5 + t4 * t1 / t8)
-    del coincide, t1, t4, t8
-    A_11 = n_1 * t10
-    del n_1, t10
-    t11 = np.arctan2(A_12, A_11)
-    t12 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    t13 = -(_runtime.FEASIBILITY * size)
+    del t4
+    inner = np.maximum(t6, 0.0)
+    share = 1.0 / (outer + inner)
+    t7 = share * np.sqrt(size) * np.sqrt(slack * outer * inner)
+    height = _runtime.select(slack <= t2, 0.0, _runtime.select(coincide, 0.0, t7))
+    del t2, t7
+    A_12 = n_1 * height
+    del height
+    t8 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5
+    del inner, outer, share, slack
+    A_11 = n_1 * _runtime.select(coincide, rho1, t8)
+    del coincide, n_1, t8
+    t9 = np.arctan2(A_12, A_11)
+    t10 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    t11 = -(_runtime.FEASIBILITY * (0.75 * size))
     del size
-    unreachable = np.logical_not((t13 <= t3) & (t13 <= t5) & (t13 <= t6))
-    del t13, t3, t5, t6
-    t14 = _runtime.poison(np.logical_not(t12) | unreachable)
-    del t12, unreachable
-    t15 = np.arctan2(A_12, A_11 - b)
+    unreachable = np.logical_not((t11 <= t3) & (t11 <= t5) & (t11 <= t6))
+    del t11, t3, t5, t6
+    t12 = _runtime.poison(np.logical_not(t10) | unreachable)
+    del t10, unreachable
+    t13 = np.arctan2(A_12, A_11 - b)
     del A_11, A_12
     return (
-        _runtime.wrap_cut(t11) + t14,
-        _runtime.wrap_cut(t15) + t14,
-        _runtime.wrap_cut(-t11) + t14,
-        _runtime.wrap_cut(-t15) + t14,
+        _runtime.wrap_cut(t9) + t12,
+        _runtime.wrap_cut(t13) + t12,
+        _runtime.wrap_cut(-t9) + t12,
+        _runtime.wrap_cut(-t13) + t12,
     )
 
 
@@ -275,11 +280,13 @@ def _skeleton(rho1, rho2, b):
     t1 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(_runtime.FEASIBILITY * size)
+    t3 = -(_runtime.FEASIBILITY * (0.75 * size))
     t4 = t2 - b
+    del t2
     t5 = rho1 - rho2
     t6 = b + t5
     t7 = b - t5
+    del t5
     unreachable = np.logical_not((t3 <= t4) & (t3 <= t6) & (t3 <= t7))
     del t3
     t8 = _runtime.poison(np.logical_not(t1) | unreachable)
@@ -289,19 +296,22 @@ def _skeleton(rho1, rho2, b):
     t11 = _runtime.VANISHING * size
     coincide = b <= t11
     n_1 = _runtime.select(coincide, 1.0, b / b)
-    t12 = b * 2.0
-    t13 = _runtime.select(coincide, rho1, b * 0.5 + t5 * t2 / t12)
-    del t2, t5
-    t14 = n_1 * t13 + t8
-    del t13
+    outer = np.maximum(t6, 0.0)
+    del t6
+    inner = np.maximum(t7, 0.0)
+    del t7
+    share = 1.0 / (outer + inner)
     slack = np.maximum(t4, 0.0)
     del t4
-    t15 = slack * np.maximum(t6, 0.0) * np.maximum(t7, 0.0)
-    del t6, t7
-    t16 = _runtime.select(coincide, 0.0, np.sqrt(size) * np.sqrt(t15) / t12)
-    del coincide, size, t12, t15
-    A_12 = n_1 * _runtime.select(slack <= t11, 0.0, t16)
-    del n_1, slack, t11, t16
+    t12 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5
+    t13 = n_1 * _runtime.select(coincide, rho1, t12) + t8
+    del t12
+    t14 = share * np.sqrt(size) * np.sqrt(outer * inner * slack)
+    del inner, outer, share, size
+    height = _runtime.select(slack <= t11, 0.0, _runtime.select(coincide, 0.0, t14))
+    del coincide, slack, t11, t14
+    A_12 = n_1 * height
+    del height, n_1
     return (
         t9,
         t9,
@@ -309,7 +319,7 @@ def _skeleton(rho1, rho2, b):
         t10,
         t9,
         t9,
-        t14,
+        t13,
         A_12 + t8,
         t9,
         t9,
@@ -318,7 +328,7 @@ def _skeleton(rho1, rho2, b):
         t10,
         t9,
         t9,
-        t14,
+        t13,
         -A_12 + t8,
         t9,
     )
@@ -374,44 +384,45 @@ def _jacobian_parallel(rho1, rho2, b):
     coincide = b <= t2
     n_1 = _runtime.select(coincide, 1.0, b / b)
     t3 = rho1 - rho2
-    t4 = b * 2.0
-    t5 = _runtime.select(coincide, rho1, b * 0.5 + t3 * t1 / t4)
-    A_11 = n_1 * t5
-    del t5
-    t6 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    t7 = -(_runtime.FEASIBILITY * size)
-    t8 = t1 - b
-    del t1
-    t9 = b + t3
-    t10 = b - t3
+    t4 = b + t3
+    outer = np.maximum(t4, 0.0)
+    t5 = b - t3
     del t3
-    unreachable = np.logical_not((t7 <= t8) & (t7 <= t9) & (t7 <= t10))
+    inner = np.maximum(t5, 0.0)
+    share = 1.0 / (outer + inner)
+    t6 = t1 - b
+    del t1
+    slack = np.maximum(t6, 0.0)
+    t7 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5
+    A_11 = n_1 * _runtime.select(coincide, rho1, t7)
     del t7
-    t11 = _runtime.poison(np.logical_not(t6) | unreachable)
-    del t6, unreachable
-    t12 = A_11 + t11
-    slack = np.maximum(t8, 0.0)
-    del t8
-    t13 = slack * np.maximum(t9, 0.0) * np.maximum(t10, 0.0)
-    del t10, t9
-    t14 = _runtime.select(coincide, 0.0, np.sqrt(size) * np.sqrt(t13) / t4)
-    del coincide, size, t13, t4
-    A_12 = n_1 * _runtime.select(slack <= t2, 0.0, t14)
-    del n_1, slack, t14, t2
-    t15 = A_12 + t11
-    t16 = A_11 - b + t11
+    t8 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    t9 = -(_runtime.FEASIBILITY * (0.75 * size))
+    unreachable = np.logical_not((t9 <= t6) & (t9 <= t4) & (t9 <= t5))
+    del t4, t5, t6, t9
+    t10 = _runtime.poison(np.logical_not(t8) | unreachable)
+    del t8, unreachable
+    t11 = A_11 + t10
+    t12 = share * np.sqrt(size) * np.sqrt(outer * inner * slack)
+    del inner, outer, share, size
+    height = _runtime.select(slack <= t2, 0.0, _runtime.select(coincide, 0.0, t12))
+    del coincide, slack, t12, t2
+    A_12 = n_1 * height
+    del height, n_1
+    t13 = A_12 + t10
+    t14 = A_11 - b + t10
     del A_11
-    t17 = -A_12 + t11
-    del A_12, t11
+    t15 = -A_12 + t10
+    del A_12, t10
     return (
-        t12,
+        t11,
+        t13,
+        t14,
+        t13,
+        t11,
         t15,
-        t16,
+        t14,
         t15,
-        t12,
-        t17,
-        t16,
-        t17,
     )
 
 
@@ -462,7 +473,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 def _jacobian_serial(rho1, rho2, b):
     t1 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t2 = rho1 + rho2
-    t3 = -(_runtime.FEASIBILITY * (b + t2))
+    t3 = -(_runtime.FEASIBILITY * (0.75 * (b + t2)))
     t4 = rho1 - rho2
     t5 = (t3 <= t2 - b) & (t3 <= b + t4) & (t3 <= b - t4)
     del t2, t3, t4
@@ -528,45 +539,47 @@ def _jacobian(rho1, rho2, b):
     coincide = b <= t2
     n_1 = _runtime.select(coincide, 1.0, b / b)
     t3 = t1 - b
+    del t1
     slack = np.maximum(t3, 0.0)
     t4 = rho1 - rho2
     t5 = b + t4
+    outer = np.maximum(t5, 0.0)
     t6 = b - t4
-    t7 = slack * np.maximum(t5, 0.0) * np.maximum(t6, 0.0)
-    t8 = b * 2.0
-    t9 = _runtime.select(coincide, 0.0, np.sqrt(size) * np.sqrt(t7) / t8)
-    del t7
-    height = _runtime.select(slack <= t2, 0.0, t9)
-    del slack, t2, t9
+    del t4
+    inner = np.maximum(t6, 0.0)
+    share = 1.0 / (outer + inner)
+    t7 = share * np.sqrt(size) * np.sqrt(slack * outer * inner)
+    height = _runtime.select(slack <= t2, 0.0, _runtime.select(coincide, 0.0, t7))
+    del t2, t7
     A_12 = n_1 * height
     Delta = b * height
     del height
-    t10 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    t11 = -(_runtime.FEASIBILITY * size)
+    t8 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    t9 = -(_runtime.FEASIBILITY * (0.75 * size))
     del size
-    unreachable = np.logical_not((t11 <= t3) & (t11 <= t5) & (t11 <= t6))
-    del t11, t3, t5, t6
-    t12 = _runtime.poison(np.logical_not(t10) | unreachable)
-    del t10, unreachable
-    t13 = rho1 * A_12 / Delta + t12
-    t14 = -(rho2 * A_12 / Delta) + t12
+    unreachable = np.logical_not((t9 <= t3) & (t9 <= t5) & (t9 <= t6))
+    del t3, t5, t6, t9
+    t10 = _runtime.poison(np.logical_not(t8) | unreachable)
+    del t8, unreachable
+    t11 = rho1 * A_12 / Delta + t10
+    t12 = -(rho2 * A_12 / Delta) + t10
     del A_12
-    t15 = _runtime.select(coincide, rho1, b * 0.5 + t4 * t1 / t8)
-    del coincide, t1, t4, t8
-    A_11 = n_1 * t15
-    del n_1, t15
-    t16 = rho1 * (b - A_11) / Delta
-    t17 = rho2 * A_11 / Delta
+    t13 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5
+    del inner, outer, share, slack
+    A_11 = n_1 * _runtime.select(coincide, rho1, t13)
+    del coincide, n_1, t13
+    t14 = rho1 * (b - A_11) / Delta
+    t15 = rho2 * A_11 / Delta
     del A_11, Delta
     return (
-        t13,
-        t14,
-        t16 + t12,
-        t17 + t12,
-        t13,
-        t14,
-        -t16 + t12,
-        -t17 + t12,
+        t11,
+        t12,
+        t14 + t10,
+        t15 + t10,
+        t11,
+        t12,
+        -t14 + t10,
+        -t15 + t10,
     )
 
 
@@ -624,23 +637,26 @@ def _determinant(rho1, rho2, b):
     t3 = _runtime.VANISHING * size
     t4 = rho1 - rho2
     t5 = b + t4
+    outer = np.maximum(t5, 0.0)
     t6 = b - t4
     del t4
-    t7 = slack * np.maximum(t5, 0.0) * np.maximum(t6, 0.0)
-    t8 = _runtime.select(b <= t3, 0.0, np.sqrt(size) * np.sqrt(t7) / (b * 2.0))
-    del t7
-    t9 = rho1 * rho2 / (b * _runtime.select(slack <= t3, 0.0, t8))
-    del slack, t3, t8
-    t10 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    t11 = -(_runtime.FEASIBILITY * size)
+    inner = np.maximum(t6, 0.0)
+    t7 = 1.0 / (outer + inner) * np.sqrt(size) * np.sqrt(slack * outer * inner)
+    del inner, outer
+    height = _runtime.select(slack <= t3, 0.0, _runtime.select(b <= t3, 0.0, t7))
+    del slack, t3, t7
+    t8 = rho1 * rho2 / (b * height)
+    del height
+    t9 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    t10 = -(_runtime.FEASIBILITY * (0.75 * size))
     del size
-    unreachable = np.logical_not((t11 <= t2) & (t11 <= t5) & (t11 <= t6))
-    del t11, t2, t5, t6
-    t12 = _runtime.poison(np.logical_not(t10) | unreachable)
-    del t10, unreachable
+    unreachable = np.logical_not((t10 <= t2) & (t10 <= t5) & (t10 <= t6))
+    del t10, t2, t5, t6
+    t11 = _runtime.poison(np.logical_not(t9) | unreachable)
+    del t9, unreachable
     return (
-        t9 + t12,
-        -t9 + t12,
+        t8 + t11,
+        -t8 + t11,
     )
 
 
@@ -692,7 +708,7 @@ def _singularities(rho1, rho2, b):
     t1 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
     t2 = rho1 + rho2
     size = b + t2
-    t3 = -(_runtime.FEASIBILITY * size)
+    t3 = -(_runtime.FEASIBILITY * (0.75 * size))
     t4 = t2 - b
     del t2
     t5 = rho1 - rho2
@@ -708,12 +724,16 @@ def _singularities(rho1, rho2, b):
     slack = np.maximum(t4, 0.0)
     del t4
     t11 = _runtime.VANISHING * size
-    t12 = slack * np.maximum(t6, 0.0) * np.maximum(t7, 0.0)
-    del t6, t7
-    t13 = _runtime.select(b <= t11, 0.0, np.sqrt(size) * np.sqrt(t12) / (b * 2.0))
-    del size, t12
-    Delta = b * _runtime.select(slack <= t11, 0.0, t13)
-    del slack, t11, t13
+    outer = np.maximum(t6, 0.0)
+    del t6
+    inner = np.maximum(t7, 0.0)
+    del t7
+    t12 = 1.0 / (outer + inner) * np.sqrt(size) * np.sqrt(slack * outer * inner)
+    del inner, outer, size
+    height = _runtime.select(slack <= t11, 0.0, _runtime.select(b <= t11, 0.0, t12))
+    del slack, t11, t12
+    Delta = b * height
+    del height
     return (
         t9,
         t10,
@@ -775,45 +795,46 @@ def _condition_number(rho1, rho2, b):
     coincide = b <= t2
     n_1 = _runtime.select(coincide, 1.0, b / b)
     t3 = rho1 - rho2
-    t4 = b * 2.0
-    t5 = _runtime.select(coincide, rho1, b * 0.5 + t3 * t1 / t4)
-    A_11 = n_1 * t5
-    del t5
+    t4 = b + t3
+    outer = np.maximum(t4, 0.0)
+    t5 = b - t3
+    del t3
+    inner = np.maximum(t5, 0.0)
+    share = 1.0 / (outer + inner)
     t6 = t1 - b
     del t1
     slack = np.maximum(t6, 0.0)
-    t7 = b + t3
-    t8 = b - t3
-    del t3
-    t9 = slack * np.maximum(t7, 0.0) * np.maximum(t8, 0.0)
-    t10 = _runtime.select(coincide, 0.0, np.sqrt(size) * np.sqrt(t9) / t4)
-    del coincide, t4, t9
-    height = _runtime.select(slack <= t2, 0.0, t10)
-    del slack, t10, t2
+    t7 = b * 0.5 + share * (b + slack) * (outer - inner) * 0.5
+    A_11 = n_1 * _runtime.select(coincide, rho1, t7)
+    del t7
+    t8 = share * np.sqrt(size) * np.sqrt(outer * inner * slack)
+    del inner, outer, share
+    height = _runtime.select(slack <= t2, 0.0, _runtime.select(coincide, 0.0, t8))
+    del coincide, slack, t2, t8
     A_12 = n_1 * height
     del n_1
-    t11 = A_12 * A_12
+    t9 = A_12 * A_12
     del A_12
-    square1 = A_11 * A_11 + t11
-    t12 = b - A_11
-    square2 = t11 + t12 * t12
-    t13 = square1 - square2
-    t14 = t11 - A_11 * t12
-    del A_11, t11, t12
-    t15 = square1 + square2 + np.sqrt(t13 * t13 + 4.0 * (t14 * t14))
-    del square1, square2, t13, t14
-    t16 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
-    t17 = -(_runtime.FEASIBILITY * size)
+    square1 = A_11 * A_11 + t9
+    t10 = b - A_11
+    square2 = t9 + t10 * t10
+    t11 = square1 - square2
+    t12 = t9 - A_11 * t10
+    del A_11, t10, t9
+    t13 = square1 + square2 + np.sqrt(t11 * t11 + 4.0 * (t12 * t12))
+    del square1, square2, t11, t12
+    t14 = np.isfinite(b) & (0.0 <= b) & (np.isfinite(rho1) & np.isfinite(rho2))
+    t15 = -(_runtime.FEASIBILITY * (0.75 * size))
     del size
-    unreachable = np.logical_not((t17 <= t6) & (t17 <= t7) & (t17 <= t8))
-    del t17, t6, t7, t8
-    t18 = _runtime.poison(np.logical_not(t16) | unreachable)
-    del t16, unreachable
-    t19 = t15 / (2.0 * (b * height)) + t18
-    del height, t15, t18
+    unreachable = np.logical_not((t15 <= t6) & (t15 <= t4) & (t15 <= t5))
+    del t15, t4, t5, t6
+    t16 = _runtime.poison(np.logical_not(t14) | unreachable)
+    del t14, unreachable
+    t17 = t13 / (2.0 * (b * height)) + t16
+    del height, t13, t16
     return (
-        t19,
-        t19,
+        t17,
+        t17,
     )
 
 

@@ -119,7 +119,7 @@ def _again(subject: Robot, module: Any, lengths: Array, q: Array, reached: Array
     """How far the answer of each branch misses its target, in units of the lengths."""
     n, branches = q.shape[:2]
     params = tuple(np.repeat(lengths, branches, axis=0).T)
-    image = module.fk(q.reshape(n * branches, -1), params)
+    image = module.fk(q.reshape(n * branches, q.shape[2]), params)
     target = np.repeat(reached, branches, axis=0)
     slides = np.abs(np.where(subject.slides, q, 0.0)).sum(axis=2).ravel()
     size = np.abs(np.repeat(lengths, branches, axis=0)).sum(axis=1) + np.nan_to_num(slides)

@@ -43,8 +43,9 @@ class RowEvaluator:
         self.exprs = tuple(sp.sympify(e, strict=True) for e in exprs)
         self._named = dict(named or {})
         self._program = _Program(self.symbols, self.exprs, self._named)
-        self._exact: dict[tuple[float, ...], list[Any]] = {}
+        self._exact: dict[tuple[float, ...], list[Any] | Undetermined] = {}
 
+    @cached_property
     def apart(self) -> list[RowEvaluator]:
         """The same for each expression alone."""
         return [RowEvaluator(self.symbols, [e], self._named) for e in self.exprs]
@@ -57,8 +58,14 @@ class RowEvaluator:
         """The balls of Arb at one point."""
         point = tuple(map(float, row))
         if point not in self._exact:
-            self._exact[point] = self._evaluator(point)
-        return self._exact[point]
+            try:
+                self._exact[point] = self._evaluator(point)
+            except Undetermined as error:
+                self._exact[point] = error
+        found = self._exact[point]
+        if isinstance(found, Undetermined):
+            raise found
+        return found
 
     def balls(self, rows: Array) -> tuple[Array, Array]:
         """Midpoints and radii, a row a point; a radius that is not finite leaves all open."""

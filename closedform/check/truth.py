@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from typing import Any, TypeVar
 
 import numpy as np
@@ -78,7 +79,7 @@ class Values:
             values = flags.settled(rows, beside(limit), defined=False)
             found |= (values < limit).any(axis=1)
             unsettled = np.flatnonzero(np.isnan(values).any(axis=1))
-            for flag in flags.apart() if len(unsettled) else ():
+            for flag in flags.apart if len(unsettled) else ():
                 alone = flag.settled(rows[unsettled], beside(limit), defined=False)
                 found[unsettled] |= alone[:, 0] < limit
         return found
@@ -332,7 +333,17 @@ def _margins(
     while pending:
         used |= pending
         pending = {s for n in pending & named.keys() for s in named[n].free_symbols} - used
-    return RowEvaluator(symbols, margins, named={n: e for n, e in named.items() if n in used})
+    return _shared(tuple(symbols), tuple(margins), tuple((n, named[n]) for n in named if n in used))
+
+
+@lru_cache(KEPT)
+def _shared(
+    symbols: tuple[sp.Symbol, ...],
+    exprs: tuple[sp.Expr, ...],
+    named: tuple[tuple[sp.Symbol, sp.Basic], ...],
+) -> RowEvaluator:
+    """One evaluator for all functions with the same expressions: it keeps what Arb has settled."""
+    return RowEvaluator(symbols, exprs, dict(named))
 
 
 def symbols_of(derivation: Derivation, function: Function) -> tuple[sp.Symbol, ...]:

@@ -211,6 +211,30 @@ def test_out_may_overlap_a_matrix_or_a_parameter(native: Any, lead: tuple[int, .
     np.testing.assert_allclose(result, expected, 1e-14, 1e-14)
 
 
+@pytest.mark.parametrize("strides", [(8, 8), (0, 8), (16, 0), (-8, 8), (8, 16)])
+def test_out_must_not_overlap_itself(native: Any, strides: tuple[int, int]) -> None:
+    out = np.lib.stride_tricks.as_strided(np.zeros(16)[8:], (3, 2), strides)
+    with pytest.raises(ValueError, match=r"polar: out for x overlaps itself"):
+        function(native, "polar")(np.ones((3, 2)), out=out)
+
+
+def test_out_may_be_any_view_whose_elements_are_apart(native: Any) -> None:
+    q = values(np.random.default_rng(3), (3, 5, 2))
+    memory = np.empty((7, 12, 9))
+    views = (
+        memory[:3, :5, :2],
+        memory[2::-1, 8:3:-1, 8:5:-2],
+        np.moveaxis(memory[:2, :3, :5], 0, -1),
+        memory.T[:3, ::2, ::5][:, :5],
+    )
+    expected = polar(q.copy(), 1.0, 0.5)
+    for out in views:
+        assert function(native, "polar")(q, out=out) is out
+        np.testing.assert_allclose(out, expected, 1e-14, 1e-14)
+    empty = np.lib.stride_tricks.as_strided(np.zeros(1), (0, 2), (0, 0))
+    assert function(native, "polar")(np.ones((0, 2)), out=empty) is empty
+
+
 # The sources
 
 

@@ -91,7 +91,9 @@ def two_link_arm_beside(
     upper, along, across = lengths
     area, squared = (upper + second) * scale, target[0] ** 2 + target[1] ** 2
     N, M = (
-        program.bound(f"{name}{suffix}", value, area, meaning, positive=sided)
+        program.bound(
+            f"{name}{suffix}", value, area, meaning, above=upper * second if sided else None
+        )
         for name, value, meaning in zip("NM", squares, (NEARER, FARTHER), strict=True)
     )
     start = len(program.body)

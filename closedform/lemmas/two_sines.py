@@ -99,7 +99,7 @@ def _from_sine(
 ) -> tuple[sp.Symbol, sp.Symbol]:
     """Cosine and sine of the angle with ``sin x = part / whole`` and a cosine not negative."""
     below, above = (
-        program.bound(f"{name}_{x}", value, scale, meaning, positive=True)
+        program.bound(f"{name}_{x}", value, scale, meaning, above=scale)
         for name, value, meaning in (
             ("below", whole - part, "a sine is at most 1"),
             ("above", whole + part, "a sine is at least -1"),

@@ -315,9 +315,8 @@ class _Branch:
                 raw = build(statement.value)
                 allowed = graph.neg(limit("feasibility", statement.scale))
                 reachable.append(graph.node("le", allowed, raw))
-                scale = statement.scale
                 least = graph.const(0)
-                if statement.positive:  # the square of an angle of four times the tolerance
+                if (scale := statement.above) is not None:  # of an angle of four times the tolerance
                     least = graph.product([limit("vanishing", 16 * scale), limit("vanishing", 1)])
                 clamped = graph.node("max", raw, least)
                 self._name(names, build, statement.symbol, clamped, label)

@@ -73,16 +73,16 @@ class Let:
 class Bound:
     """``symbol = value``; a negative ``value`` means that the target is out of reach.
 
-    Generated code clamps the value at zero.  With ``positive`` it clamps just above zero, because a
-    zero would lose the side to which an arm is bent; such a value is proportional to the square of
-    the angle.
+    Generated code clamps the value at zero.  With a scale ``above`` it clamps just above zero,
+    because a zero would lose the side to which an arm is bent: the value over this scale is the
+    square of an angle, which stays larger than the rounding of a joint.
     """
 
     symbol: sp.Symbol
     value: sp.Expr
     scale: sp.Expr
     meaning: str
-    positive: bool = False
+    above: sp.Expr | None = None
 
 
 @dataclass(frozen=True)
@@ -382,11 +382,17 @@ class Program:
         return symbol
 
     def bound(
-        self, name: str, value: sp.Expr, scale: sp.Expr, meaning: str, *, positive: bool = False
+        self,
+        name: str,
+        value: sp.Expr,
+        scale: sp.Expr,
+        meaning: str,
+        *,
+        above: sp.Expr | None = None,
     ) -> sp.Symbol:
         symbol = self._symbol(name, real=True, nonnegative=True)
         reject_floats(sp.sympify(value, strict=True), name)
-        self.body.append(Bound(symbol, value, scale, meaning, positive))
+        self.body.append(Bound(symbol, value, scale, meaning, above))
         return symbol
 
     def match(self, value: sp.Expr, scale: sp.Expr, meaning: str) -> None:

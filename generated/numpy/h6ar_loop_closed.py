@@ -2489,7 +2489,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t206 = L1 * fore_arm
     short_right = t206 <= _runtime.VANISHING * t48
     t207 = 2.0 * fore_arm
-    t208 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t47))
+    t208 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t206))
     M_right = np.maximum(t194, t208)
     del t194
     N_right = np.maximum(t193, t208)
@@ -4340,568 +4340,569 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t75 = _runtime.poison(invalid | unreachable)
     t76 = t16 + t75
     t77 = 2.0 * fore_arm
-    t78 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play_right))
-    M_right = np.maximum(farther_right, t78)
+    t78 = L1 * fore_arm
+    t79 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t78))
+    M_right = np.maximum(farther_right, t79)
     del farther_right
-    N_right = np.maximum(nearer_right, t78)
+    N_right = np.maximum(nearer_right, t79)
     del nearer_right
-    t79 = 1.0 / (M_right + N_right)
-    ahead_1_right = t63 + t77 * M_right * t79
+    t80 = 1.0 / (M_right + N_right)
+    ahead_1_right = t63 + t77 * M_right * t80
     sigma_right = _runtime.sign(-t66)
     del t66
-    t80 = 2.0 * sigma_right
-    t81 = np.sqrt(M_right * N_right)
-    t82 = fore_arm * (t79 * (t80 * t81))
-    del t79
-    t83 = np.arctan2(h_right_0 * ahead_1_right + t60 * t82, h_right_0 * t82 - t60 * ahead_1_right)
-    del ahead_1_right, t82
-    t84 = _runtime.wrap_cut(t83) + t75
-    del t83
-    t85 = np.arctan2(L2, a3)
-    t86 = sigma_right * np.arctan2(2.0 * t81, M_right - N_right)
-    del M_right, N_right, t81
-    t87 = _runtime.wrap(t85 + t86) + t75
-    del t86
+    t81 = 2.0 * sigma_right
+    t82 = np.sqrt(M_right * N_right)
+    t83 = fore_arm * (t80 * (t81 * t82))
+    del t80
+    t84 = np.arctan2(h_right_0 * ahead_1_right + t60 * t83, h_right_0 * t83 - t60 * ahead_1_right)
+    del ahead_1_right, t83
+    t85 = _runtime.wrap_cut(t84) + t75
+    del t84
+    t86 = np.arctan2(L2, a3)
+    t87 = sigma_right * np.arctan2(2.0 * t82, M_right - N_right)
+    del M_right, N_right, t82
+    t88 = _runtime.wrap(t86 + t87) + t75
+    del t87
     M_left = np.maximum(farther_left, 0.0)
     del farther_left
     N_left = np.maximum(nearer_left, 0.0)
     del nearer_left
-    t88 = 1.0 / (M_left + N_left)
-    ahead_1_left = t63 + t77 * M_left * t88
-    t89 = h_left_0 * ahead_1_left
-    t90 = np.sqrt(M_left * N_left)
-    t91 = fore_arm * (t88 * (t80 * t90))
-    del t88
-    t92 = t70 * t91
-    t93 = h_left_0 * t91
-    del t91
-    t94 = t70 * ahead_1_left
+    t89 = 1.0 / (M_left + N_left)
+    ahead_1_left = t63 + t77 * M_left * t89
+    t90 = h_left_0 * ahead_1_left
+    t91 = np.sqrt(M_left * N_left)
+    t92 = fore_arm * (t89 * (t81 * t91))
+    del t89
+    t93 = t70 * t92
+    t94 = h_left_0 * t92
+    del t92
+    t95 = t70 * ahead_1_left
     del ahead_1_left
-    t95 = _runtime.wrap_cut(np.arctan2(t89 + t92, t93 - t94))
-    t96 = sigma_right * np.arctan2(2.0 * t90, M_left - N_left)
-    del M_left, N_left, t90
-    t97 = _runtime.wrap(principal_pitch)
+    t96 = _runtime.wrap_cut(np.arctan2(t90 + t93, t94 - t95))
+    t97 = sigma_right * np.arctan2(2.0 * t91, M_left - N_left)
+    del M_left, N_left, t91
+    t98 = _runtime.wrap(principal_pitch)
     del principal_pitch
-    t98 = t97 + t75
-    t99 = _runtime.wrap_cut(np.arctan2(t89 - t92, -(t94 + t93)))
-    del t89, t92, t93, t94
-    t100 = t45 - t46
+    t99 = t98 + t75
+    t100 = _runtime.wrap_cut(np.arctan2(t90 - t93, -(t95 + t94)))
+    del t90, t93, t94, t95
+    t101 = t45 - t46
     del t45, t46
     out_front_elbow_down_alike = t47 + t48
     del t47, t48
-    t101 = out_front_elbow_down_alike * out_front_elbow_down_alike
-    t102 = 1.0 / np.sqrt(t101 + t100 * t100)
+    t102 = out_front_elbow_down_alike * out_front_elbow_down_alike
+    t103 = 1.0 / np.sqrt(t102 + t101 * t101)
+    del t102
+    t104 = t101 * t103
     del t101
-    t103 = t100 * t102
-    del t100
-    t104 = L1 * t103
+    t105 = L1 * t104
     c_relative_front_elbow_down_alike = t52 - t53
     del t52, t53
-    ctheta2A_front_elbow_down_alike = out_front_elbow_down_alike * t102
-    del out_front_elbow_down_alike, t102
-    t105 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    ctheta2A_front_elbow_down_alike = out_front_elbow_down_alike * t103
+    del out_front_elbow_down_alike, t103
+    t106 = c_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
     s_relative_front_elbow_down_alike = t55 + t56
     del t55, t56
-    ctheta23A_front_elbow_down_alike = t105 + s_relative_front_elbow_down_alike * t103
-    del t105
-    t106 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
-    t107 = c_relative_front_elbow_down_alike * t103 - t106
+    ctheta23A_front_elbow_down_alike = t106 + s_relative_front_elbow_down_alike * t104
     del t106
-    t108 = t104 + L2 * ctheta23A_front_elbow_down_alike + a3 * t107
-    t109 = t26 * (t_psi * ctheta23A_front_elbow_down_alike)
-    t110 = d * (t109 - t_phi * t107)
-    del t109
-    t111 = t108 + t110
+    t107 = s_relative_front_elbow_down_alike * ctheta2A_front_elbow_down_alike
+    t108 = c_relative_front_elbow_down_alike * t104 - t107
+    del t107
+    t109 = t105 + L2 * ctheta23A_front_elbow_down_alike + a3 * t108
+    t110 = t26 * (t_psi * ctheta23A_front_elbow_down_alike)
+    t111 = d * (t110 - t_phi * t108)
+    del t110
+    t112 = t109 + t111
     elbow_11_front_elbow_down_alike = L1 * ctheta2A_front_elbow_down_alike
-    point_11_front_elbow_down_alike = elbow_11_front_elbow_down_alike - L2 * t107 + a3 * ctheta23A_front_elbow_down_alike
-    t112 = t_phi * ctheta23A_front_elbow_down_alike + t26 * (t_psi * t107)
-    del ctheta23A_front_elbow_down_alike, t107
-    t113 = d * t112
-    del t112
-    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t113
-    t114 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
-    t115 = t111 * t111 + t114
-    del t114
-    gap_front_elbow_down_alike = t113 * t113 + t110 * t110
-    t116 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
+    point_11_front_elbow_down_alike = elbow_11_front_elbow_down_alike - L2 * t108 + a3 * ctheta23A_front_elbow_down_alike
+    t113 = t_phi * ctheta23A_front_elbow_down_alike + t26 * (t_psi * t108)
+    del ctheta23A_front_elbow_down_alike, t108
+    t114 = d * t113
+    del t113
+    r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t114
+    t115 = r_right_0_front_elbow_down_alike * r_right_0_front_elbow_down_alike
+    t116 = t112 * t112 + t115
+    del t115
+    gap_front_elbow_down_alike = t114 * t114 + t111 * t111
+    t117 = gap_front_elbow_down_alike * gap_front_elbow_down_alike
     straight_mid_front_elbow_down_alike = L2 * s_relative_front_elbow_down_alike + a3 * c_relative_front_elbow_down_alike
-    t117 = 0.0 <= straight_mid_front_elbow_down_alike
+    t118 = 0.0 <= straight_mid_front_elbow_down_alike
     large_mid_front_elbow_down_alike = fore_arm + np.abs(straight_mid_front_elbow_down_alike)
     del straight_mid_front_elbow_down_alike
-    t118 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
-    small_mid_front_elbow_down_alike = t118 * t118 / large_mid_front_elbow_down_alike
-    t119 = _runtime.select(t117, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
-    M_mid_front_elbow_down_alike = t29 * t119
-    del t119
-    t120 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
-    t121 = 2.0 * point_11_front_elbow_down_alike * t113 - 2.0 * t108 * t110
-    farther_right_front_elbow_down_alike = _runtime.select(t42 * t115 < t116, t115 - t64, t120 - t121)
-    del t115
-    t122 = _runtime.select(t117, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
-    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t117
-    N_mid_front_elbow_down_alike = t29 * t122
-    del t122, t29
-    t123 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike
-    nearer_right_front_elbow_down_alike = t121 + t123
+    t119 = L2 * c_relative_front_elbow_down_alike - a3 * s_relative_front_elbow_down_alike
+    small_mid_front_elbow_down_alike = t119 * t119 / large_mid_front_elbow_down_alike
+    t120 = _runtime.select(t118, large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike)
+    M_mid_front_elbow_down_alike = t29 * t120
+    del t120
+    t121 = M_mid_front_elbow_down_alike + gap_front_elbow_down_alike
+    t122 = 2.0 * point_11_front_elbow_down_alike * t114 - 2.0 * t109 * t111
+    farther_right_front_elbow_down_alike = _runtime.select(t42 * t116 < t117, t116 - t64, t121 - t122)
+    del t116
+    t123 = _runtime.select(t118, small_mid_front_elbow_down_alike, large_mid_front_elbow_down_alike)
+    del large_mid_front_elbow_down_alike, small_mid_front_elbow_down_alike, t118
+    N_mid_front_elbow_down_alike = t29 * t123
+    del t123, t29
+    t124 = N_mid_front_elbow_down_alike - gap_front_elbow_down_alike
+    nearer_right_front_elbow_down_alike = t122 + t124
     room_right_front_elbow_down_alike = np.minimum(farther_right_front_elbow_down_alike, nearer_right_front_elbow_down_alike)
-    t124 = t40 & (t41 <= room_right_front_elbow_down_alike)
-    t125 = t108 - t110
-    del t108, t110
-    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t113
-    del point_11_front_elbow_down_alike, t113
-    t126 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
-    t127 = t125 * t125 + t126
-    del t126
-    farther_left_front_elbow_down_alike = _runtime.select(t42 * t127 < t116, t127 - t64, t120 + t121)
-    del t116, t120, t127
-    nearer_left_front_elbow_down_alike = t123 - t121
-    del t121, t123
+    t125 = t40 & (t41 <= room_right_front_elbow_down_alike)
+    t126 = t109 - t111
+    del t109, t111
+    r_left_0_front_elbow_down_alike = point_11_front_elbow_down_alike + t114
+    del point_11_front_elbow_down_alike, t114
+    t127 = r_left_0_front_elbow_down_alike * r_left_0_front_elbow_down_alike
+    t128 = t126 * t126 + t127
+    del t127
+    farther_left_front_elbow_down_alike = _runtime.select(t42 * t128 < t117, t128 - t64, t121 + t122)
+    del t117, t121, t128
+    nearer_left_front_elbow_down_alike = t124 - t122
+    del t122, t124
     room_left_front_elbow_down_alike = np.minimum(farther_left_front_elbow_down_alike, nearer_left_front_elbow_down_alike)
-    t128 = t124 & (t41 <= room_left_front_elbow_down_alike)
-    del t124
-    t129 = t128 & (t41 <= nearer_right_front_elbow_down_alike)
-    del t128
-    t130 = t129 & (t41 <= farther_right_front_elbow_down_alike)
+    t129 = t125 & (t41 <= room_left_front_elbow_down_alike)
+    del t125
+    t130 = t129 & (t41 <= nearer_right_front_elbow_down_alike)
     del t129
-    t131 = t130 & (t41 <= nearer_left_front_elbow_down_alike)
+    t131 = t130 & (t41 <= farther_right_front_elbow_down_alike)
     del t130
-    t132 = t131 & (t41 <= farther_left_front_elbow_down_alike)
+    t132 = t131 & (t41 <= nearer_left_front_elbow_down_alike)
     del t131
-    unreachable_2 = np.logical_not(t132)
+    t133 = t132 & (t41 <= farther_left_front_elbow_down_alike)
     del t132
-    t133 = _runtime.poison(invalid | unreachable_2)
-    t134 = t16 + t133
+    unreachable_2 = np.logical_not(t133)
+    del t133
+    t134 = _runtime.poison(invalid | unreachable_2)
+    t135 = t16 + t134
     del t16
-    M_right_front_elbow_down_alike = np.maximum(farther_right_front_elbow_down_alike, t78)
+    M_right_front_elbow_down_alike = np.maximum(farther_right_front_elbow_down_alike, t79)
     del farther_right_front_elbow_down_alike
-    N_right_front_elbow_down_alike = np.maximum(nearer_right_front_elbow_down_alike, t78)
+    N_right_front_elbow_down_alike = np.maximum(nearer_right_front_elbow_down_alike, t79)
     del nearer_right_front_elbow_down_alike
     whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike + N_right_front_elbow_down_alike
-    t135 = 1.0 / whole_right_front_elbow_down_alike
+    t136 = 1.0 / whole_right_front_elbow_down_alike
     del whole_right_front_elbow_down_alike
-    ahead_1_right_front_elbow_down_alike = t63 + t77 * M_right_front_elbow_down_alike * t135
-    sigma_right_front_elbow_down_alike = _runtime.sign(-t118)
-    del t118
-    t136 = 2.0 * sigma_right_front_elbow_down_alike
-    t137 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
-    t138 = np.sqrt(t137)
-    del t137
-    t139 = fore_arm * (t135 * (t136 * t138))
-    del t135
-    t140 = t111 * ahead_1_right_front_elbow_down_alike + r_right_0_front_elbow_down_alike * t139
-    t141 = r_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
+    ahead_1_right_front_elbow_down_alike = t63 + t77 * M_right_front_elbow_down_alike * t136
+    sigma_right_front_elbow_down_alike = _runtime.sign(-t119)
+    del t119
+    t137 = 2.0 * sigma_right_front_elbow_down_alike
+    t138 = M_right_front_elbow_down_alike * N_right_front_elbow_down_alike
+    t139 = np.sqrt(t138)
+    del t138
+    t140 = fore_arm * (t136 * (t137 * t139))
+    del t136
+    t141 = t112 * ahead_1_right_front_elbow_down_alike + r_right_0_front_elbow_down_alike * t140
+    t142 = r_right_0_front_elbow_down_alike * ahead_1_right_front_elbow_down_alike
     del ahead_1_right_front_elbow_down_alike
-    t142 = _runtime.wrap_cut(np.arctan2(-t140, t141 - t111 * t139))
-    del t139, t140, t141
-    t143 = t142 + t133
-    del t142
-    t144 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
+    t143 = _runtime.wrap_cut(np.arctan2(-t141, t142 - t112 * t140))
+    del t140, t141, t142
+    t144 = t143 + t134
+    del t143
+    t145 = M_right_front_elbow_down_alike - N_right_front_elbow_down_alike
     del M_right_front_elbow_down_alike, N_right_front_elbow_down_alike
-    t145 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t138, t144)
-    del t138, t144
-    t146 = _runtime.wrap(t85 + t145) + t133
-    del t145
+    t146 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t139, t145)
+    del t139, t145
+    t147 = _runtime.wrap(t86 + t146) + t134
+    del t146
     M_left_front_elbow_down_alike = np.maximum(farther_left_front_elbow_down_alike, 0.0)
     del farther_left_front_elbow_down_alike
     N_left_front_elbow_down_alike = np.maximum(nearer_left_front_elbow_down_alike, 0.0)
     del nearer_left_front_elbow_down_alike
     whole_left_front_elbow_down_alike = M_left_front_elbow_down_alike + N_left_front_elbow_down_alike
-    t147 = 1.0 / whole_left_front_elbow_down_alike
+    t148 = 1.0 / whole_left_front_elbow_down_alike
     del whole_left_front_elbow_down_alike
-    ahead_1_left_front_elbow_down_alike = t63 + t77 * M_left_front_elbow_down_alike * t147
-    t148 = t125 * ahead_1_left_front_elbow_down_alike
-    t149 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
-    t150 = np.sqrt(t149)
-    del t149
-    t151 = fore_arm * (t147 * (t136 * t150))
-    del t147
-    t152 = r_left_0_front_elbow_down_alike * t151
-    t153 = r_left_0_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
+    ahead_1_left_front_elbow_down_alike = t63 + t77 * M_left_front_elbow_down_alike * t148
+    t149 = t126 * ahead_1_left_front_elbow_down_alike
+    t150 = M_left_front_elbow_down_alike * N_left_front_elbow_down_alike
+    t151 = np.sqrt(t150)
+    del t150
+    t152 = fore_arm * (t148 * (t137 * t151))
+    del t148
+    t153 = r_left_0_front_elbow_down_alike * t152
+    t154 = r_left_0_front_elbow_down_alike * ahead_1_left_front_elbow_down_alike
     del ahead_1_left_front_elbow_down_alike
-    t154 = t125 * t151
-    del t151
-    t155 = _runtime.wrap_cut(np.arctan2(-(t148 + t152), t153 - t154))
-    t156 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
+    t155 = t126 * t152
+    del t152
+    t156 = _runtime.wrap_cut(np.arctan2(-(t149 + t153), t154 - t155))
+    t157 = M_left_front_elbow_down_alike - N_left_front_elbow_down_alike
     del M_left_front_elbow_down_alike, N_left_front_elbow_down_alike
-    t157 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t150, t156)
-    del t150, t156
-    t158 = t97 + t133
-    t159 = _runtime.wrap_cut(np.arctan2(t152 - t148, t153 + t154))
-    del t148, t152, t153, t154
-    t160 = _runtime.wrap(-(t15 + t14))
+    t158 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t151, t157)
+    del t151, t157
+    t159 = t98 + t134
+    t160 = _runtime.wrap_cut(np.arctan2(t153 - t149, t154 + t155))
+    del t149, t153, t154, t155
+    t161 = _runtime.wrap(-(t15 + t14))
     del t14, t15
-    t161 = c_relative_front_elbow_down_alike * t54 - s_relative_front_elbow_down_alike * stheta2A
+    t162 = c_relative_front_elbow_down_alike * t54 - s_relative_front_elbow_down_alike * stheta2A
     stheta23A_rear_elbow_up_alike = c_relative_front_elbow_down_alike * stheta2A + s_relative_front_elbow_down_alike * t54
     del c_relative_front_elbow_down_alike, s_relative_front_elbow_down_alike, stheta2A, t54
-    point_21_rear_elbow_up_alike = elbow_21 - L2 * t161 + a3 * stheta23A_rear_elbow_up_alike
+    point_21_rear_elbow_up_alike = elbow_21 - L2 * t162 + a3 * stheta23A_rear_elbow_up_alike
     del elbow_21
-    t162 = t26 * (t_psi * t161) + t_phi * stheta23A_rear_elbow_up_alike
-    t163 = d * t162
-    del t162
-    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t163
-    t164 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
-    t165 = t58 + L2 * stheta23A_rear_elbow_up_alike + a3 * t161
+    t163 = t26 * (t_psi * t162) + t_phi * stheta23A_rear_elbow_up_alike
+    t164 = d * t163
+    del t163
+    h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t164
+    t165 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike
+    t166 = t58 + L2 * stheta23A_rear_elbow_up_alike + a3 * t162
     del t58
-    t166 = t26 * (t_psi * stheta23A_rear_elbow_up_alike)
+    t167 = t26 * (t_psi * stheta23A_rear_elbow_up_alike)
     del stheta23A_rear_elbow_up_alike
-    t167 = d * (t_phi * t161 - t166)
-    del t161, t166
-    r_right_0_rear_elbow_up_alike = t165 - t167
-    t168 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
-    t169 = t164 + t168
-    del t164, t168
-    gap_rear_elbow_up_alike = t167 * t167 + t163 * t163
-    t170 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
-    t171 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
-    t172 = 2.0 * t165 * t167 + 2.0 * point_21_rear_elbow_up_alike * t163
-    farther_right_rear_elbow_up_alike = _runtime.select(t42 * t169 < t170, t169 - t64, t171 - t172)
-    del t169
-    t173 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
+    t168 = d * (t_phi * t162 - t167)
+    del t162, t167
+    r_right_0_rear_elbow_up_alike = t166 - t168
+    t169 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike
+    t170 = t165 + t169
+    del t165, t169
+    gap_rear_elbow_up_alike = t168 * t168 + t164 * t164
+    t171 = gap_rear_elbow_up_alike * gap_rear_elbow_up_alike
+    t172 = M_mid_front_elbow_down_alike + gap_rear_elbow_up_alike
+    t173 = 2.0 * t166 * t168 + 2.0 * point_21_rear_elbow_up_alike * t164
+    farther_right_rear_elbow_up_alike = _runtime.select(t42 * t170 < t171, t170 - t64, t172 - t173)
+    del t170
+    t174 = N_mid_front_elbow_down_alike - gap_rear_elbow_up_alike
     del N_mid_front_elbow_down_alike
-    nearer_right_rear_elbow_up_alike = t172 + t173
+    nearer_right_rear_elbow_up_alike = t173 + t174
     room_right_rear_elbow_up_alike = np.minimum(farther_right_rear_elbow_up_alike, nearer_right_rear_elbow_up_alike)
-    t174 = t40 & (t41 <= room_right_rear_elbow_up_alike)
-    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t163
-    del point_21_rear_elbow_up_alike, t163
-    t175 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
-    r_left_0_rear_elbow_up_alike = t165 + t167
-    del t165, t167
-    t176 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
-    t177 = t175 + t176
-    del t175, t176
-    farther_left_rear_elbow_up_alike = _runtime.select(t42 * t177 < t170, t177 - t64, t171 + t172)
-    del t170, t171, t177
-    nearer_left_rear_elbow_up_alike = t173 - t172
-    del t172, t173
+    t175 = t40 & (t41 <= room_right_rear_elbow_up_alike)
+    h_left_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike + t164
+    del point_21_rear_elbow_up_alike, t164
+    t176 = h_left_0_rear_elbow_up_alike * h_left_0_rear_elbow_up_alike
+    r_left_0_rear_elbow_up_alike = t166 + t168
+    del t166, t168
+    t177 = r_left_0_rear_elbow_up_alike * r_left_0_rear_elbow_up_alike
+    t178 = t176 + t177
+    del t176, t177
+    farther_left_rear_elbow_up_alike = _runtime.select(t42 * t178 < t171, t178 - t64, t172 + t173)
+    del t171, t172, t178
+    nearer_left_rear_elbow_up_alike = t174 - t173
+    del t173, t174
     room_left_rear_elbow_up_alike = np.minimum(farther_left_rear_elbow_up_alike, nearer_left_rear_elbow_up_alike)
-    t178 = t174 & (t41 <= room_left_rear_elbow_up_alike)
-    del t174
-    t179 = t178 & (t41 <= nearer_right_rear_elbow_up_alike)
-    del t178
-    t180 = t179 & (t41 <= farther_right_rear_elbow_up_alike)
+    t179 = t175 & (t41 <= room_left_rear_elbow_up_alike)
+    del t175
+    t180 = t179 & (t41 <= nearer_right_rear_elbow_up_alike)
     del t179
-    t181 = t180 & (t41 <= nearer_left_rear_elbow_up_alike)
+    t181 = t180 & (t41 <= farther_right_rear_elbow_up_alike)
     del t180
-    t182 = t181 & (t41 <= farther_left_rear_elbow_up_alike)
+    t182 = t181 & (t41 <= nearer_left_rear_elbow_up_alike)
     del t181
-    unreachable_3 = np.logical_not(t182)
+    t183 = t182 & (t41 <= farther_left_rear_elbow_up_alike)
     del t182
-    t183 = _runtime.poison(invalid | unreachable_3)
-    t184 = t160 + t183
-    M_right_rear_elbow_up_alike = np.maximum(farther_right_rear_elbow_up_alike, t78)
+    unreachable_3 = np.logical_not(t183)
+    del t183
+    t184 = _runtime.poison(invalid | unreachable_3)
+    t185 = t161 + t184
+    M_right_rear_elbow_up_alike = np.maximum(farther_right_rear_elbow_up_alike, t79)
     del farther_right_rear_elbow_up_alike
-    N_right_rear_elbow_up_alike = np.maximum(nearer_right_rear_elbow_up_alike, t78)
+    N_right_rear_elbow_up_alike = np.maximum(nearer_right_rear_elbow_up_alike, t79)
     del nearer_right_rear_elbow_up_alike
     whole_right_rear_elbow_up_alike = M_right_rear_elbow_up_alike + N_right_rear_elbow_up_alike
-    t185 = 1.0 / whole_right_rear_elbow_up_alike
+    t186 = 1.0 / whole_right_rear_elbow_up_alike
     del whole_right_rear_elbow_up_alike
-    ahead_1_right_rear_elbow_up_alike = t63 + t77 * M_right_rear_elbow_up_alike * t185
-    t186 = h_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
-    t187 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
-    t188 = np.sqrt(t187)
-    del t187
-    t189 = fore_arm * (t185 * (t136 * t188))
-    del t185
-    t190 = r_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    ahead_1_right_rear_elbow_up_alike = t63 + t77 * M_right_rear_elbow_up_alike * t186
+    t187 = h_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
+    t188 = M_right_rear_elbow_up_alike * N_right_rear_elbow_up_alike
+    t189 = np.sqrt(t188)
+    del t188
+    t190 = fore_arm * (t186 * (t137 * t189))
+    del t186
+    t191 = r_right_0_rear_elbow_up_alike * ahead_1_right_rear_elbow_up_alike
     del ahead_1_right_rear_elbow_up_alike
-    t191 = np.arctan2(t186 - r_right_0_rear_elbow_up_alike * t189, t190 + h_right_0_rear_elbow_up_alike * t189)
-    del t186, t189, t190
-    t192 = _runtime.wrap_cut(t191) + t183
-    del t191
-    t193 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
+    t192 = np.arctan2(t187 - r_right_0_rear_elbow_up_alike * t190, t191 + h_right_0_rear_elbow_up_alike * t190)
+    del t187, t190, t191
+    t193 = _runtime.wrap_cut(t192) + t184
+    del t192
+    t194 = M_right_rear_elbow_up_alike - N_right_rear_elbow_up_alike
     del M_right_rear_elbow_up_alike, N_right_rear_elbow_up_alike
-    t194 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t188, t193)
-    del t188, t193
-    t195 = _runtime.wrap(t85 + t194) + t183
-    del t194
+    t195 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t189, t194)
+    del t189, t194
+    t196 = _runtime.wrap(t86 + t195) + t184
+    del t195
     M_left_rear_elbow_up_alike = np.maximum(farther_left_rear_elbow_up_alike, 0.0)
     del farther_left_rear_elbow_up_alike
     N_left_rear_elbow_up_alike = np.maximum(nearer_left_rear_elbow_up_alike, 0.0)
     del nearer_left_rear_elbow_up_alike
     whole_left_rear_elbow_up_alike = M_left_rear_elbow_up_alike + N_left_rear_elbow_up_alike
-    t196 = 1.0 / whole_left_rear_elbow_up_alike
+    t197 = 1.0 / whole_left_rear_elbow_up_alike
     del whole_left_rear_elbow_up_alike
-    ahead_1_left_rear_elbow_up_alike = t63 + t77 * M_left_rear_elbow_up_alike * t196
-    t197 = h_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
-    t198 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
-    t199 = np.sqrt(t198)
-    del t198
-    t200 = fore_arm * (t196 * (t136 * t199))
-    del t136, t196
-    t201 = r_left_0_rear_elbow_up_alike * t200
-    t202 = r_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    ahead_1_left_rear_elbow_up_alike = t63 + t77 * M_left_rear_elbow_up_alike * t197
+    t198 = h_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
+    t199 = M_left_rear_elbow_up_alike * N_left_rear_elbow_up_alike
+    t200 = np.sqrt(t199)
+    del t199
+    t201 = fore_arm * (t197 * (t137 * t200))
+    del t137, t197
+    t202 = r_left_0_rear_elbow_up_alike * t201
+    t203 = r_left_0_rear_elbow_up_alike * ahead_1_left_rear_elbow_up_alike
     del ahead_1_left_rear_elbow_up_alike
-    t203 = h_left_0_rear_elbow_up_alike * t200
-    del t200
-    t204 = _runtime.wrap_cut(np.arctan2(t197 - t201, t202 + t203))
-    t205 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
+    t204 = h_left_0_rear_elbow_up_alike * t201
+    del t201
+    t205 = _runtime.wrap_cut(np.arctan2(t198 - t202, t203 + t204))
+    t206 = M_left_rear_elbow_up_alike - N_left_rear_elbow_up_alike
     del M_left_rear_elbow_up_alike, N_left_rear_elbow_up_alike
-    t206 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t199, t205)
-    del sigma_right_front_elbow_down_alike, t199, t205
-    t207 = t97 + t183
-    t208 = _runtime.wrap_cut(np.arctan2(t197 + t201, t202 - t203))
-    del t197, t201, t202, t203
-    t209 = c_relative * ctheta2A_front_elbow_down_alike - s_relative * t103
-    t210 = c_relative * t103 + s_relative * ctheta2A_front_elbow_down_alike
-    del c_relative, ctheta2A_front_elbow_down_alike, s_relative, t103
-    t211 = t104 - L2 * t209 + a3 * t210
-    del t104
-    shift_21_rear_elbow_down_alike = d * (t26 * (t_psi * t209) + t_phi * t210)
-    t212 = t211 - shift_21_rear_elbow_down_alike
-    t213 = elbow_11_front_elbow_down_alike + L2 * t210 + a3 * t209
+    t207 = sigma_right_front_elbow_down_alike * np.arctan2(2.0 * t200, t206)
+    del sigma_right_front_elbow_down_alike, t200, t206
+    t208 = t98 + t184
+    t209 = _runtime.wrap_cut(np.arctan2(t198 + t202, t203 - t204))
+    del t198, t202, t203, t204
+    t210 = c_relative * ctheta2A_front_elbow_down_alike - s_relative * t104
+    t211 = c_relative * t104 + s_relative * ctheta2A_front_elbow_down_alike
+    del c_relative, ctheta2A_front_elbow_down_alike, s_relative, t104
+    t212 = t105 - L2 * t210 + a3 * t211
+    del t105
+    shift_21_rear_elbow_down_alike = d * (t26 * (t_psi * t210) + t_phi * t211)
+    t213 = t212 - shift_21_rear_elbow_down_alike
+    t214 = elbow_11_front_elbow_down_alike + L2 * t211 + a3 * t210
     del elbow_11_front_elbow_down_alike
-    shift_11_rear_elbow_down_alike = d * (t_phi * t209 - t26 * (t_psi * t210))
-    del t209, t210, t26, t_phi, t_psi
-    t214 = t213 - shift_11_rear_elbow_down_alike
-    t215 = t212 * t212 + t214 * t214
-    t216 = shift_11_rear_elbow_down_alike * shift_11_rear_elbow_down_alike
-    t217 = shift_21_rear_elbow_down_alike * shift_21_rear_elbow_down_alike
-    gap_rear_elbow_down_alike = t216 + t217
-    del t216, t217
-    t218 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
-    t219 = M_mid + gap_rear_elbow_down_alike
-    t220 = 2.0 * t213 * shift_11_rear_elbow_down_alike + 2.0 * t211 * shift_21_rear_elbow_down_alike
-    farther_right_rear_elbow_down_alike = _runtime.select(t42 * t215 < t218, t215 - t64, t219 - t220)
-    del t215
-    t221 = N_mid - gap_rear_elbow_down_alike
+    shift_11_rear_elbow_down_alike = d * (t_phi * t210 - t26 * (t_psi * t211))
+    del t210, t211, t26, t_phi, t_psi
+    t215 = t214 - shift_11_rear_elbow_down_alike
+    t216 = t213 * t213 + t215 * t215
+    t217 = shift_11_rear_elbow_down_alike * shift_11_rear_elbow_down_alike
+    t218 = shift_21_rear_elbow_down_alike * shift_21_rear_elbow_down_alike
+    gap_rear_elbow_down_alike = t217 + t218
+    del t217, t218
+    t219 = gap_rear_elbow_down_alike * gap_rear_elbow_down_alike
+    t220 = M_mid + gap_rear_elbow_down_alike
+    t221 = 2.0 * t214 * shift_11_rear_elbow_down_alike + 2.0 * t212 * shift_21_rear_elbow_down_alike
+    farther_right_rear_elbow_down_alike = _runtime.select(t42 * t216 < t219, t216 - t64, t220 - t221)
+    del t216
+    t222 = N_mid - gap_rear_elbow_down_alike
     del N_mid
-    nearer_right_rear_elbow_down_alike = t220 + t221
+    nearer_right_rear_elbow_down_alike = t221 + t222
     room_right_rear_elbow_down_alike = np.minimum(farther_right_rear_elbow_down_alike, nearer_right_rear_elbow_down_alike)
-    t222 = t40 & (t41 <= room_right_rear_elbow_down_alike)
+    t223 = t40 & (t41 <= room_right_rear_elbow_down_alike)
     del t40
-    t223 = t211 + shift_21_rear_elbow_down_alike
-    del shift_21_rear_elbow_down_alike, t211
-    t224 = t213 + shift_11_rear_elbow_down_alike
-    del shift_11_rear_elbow_down_alike, t213
-    t225 = t223 * t223 + t224 * t224
-    farther_left_rear_elbow_down_alike = _runtime.select(t42 * t225 < t218, t225 - t64, t219 + t220)
-    del t218, t219, t225
-    nearer_left_rear_elbow_down_alike = t221 - t220
-    del t220, t221
+    t224 = t212 + shift_21_rear_elbow_down_alike
+    del shift_21_rear_elbow_down_alike, t212
+    t225 = t214 + shift_11_rear_elbow_down_alike
+    del shift_11_rear_elbow_down_alike, t214
+    t226 = t224 * t224 + t225 * t225
+    farther_left_rear_elbow_down_alike = _runtime.select(t42 * t226 < t219, t226 - t64, t220 + t221)
+    del t219, t220, t226
+    nearer_left_rear_elbow_down_alike = t222 - t221
+    del t221, t222
     room_left_rear_elbow_down_alike = np.minimum(farther_left_rear_elbow_down_alike, nearer_left_rear_elbow_down_alike)
-    t226 = t222 & (t41 <= room_left_rear_elbow_down_alike)
-    del t222
-    t227 = t226 & (t41 <= nearer_right_rear_elbow_down_alike)
-    del t226
-    t228 = t227 & (t41 <= farther_right_rear_elbow_down_alike)
+    t227 = t223 & (t41 <= room_left_rear_elbow_down_alike)
+    del t223
+    t228 = t227 & (t41 <= nearer_right_rear_elbow_down_alike)
     del t227
-    t229 = t228 & (t41 <= nearer_left_rear_elbow_down_alike)
+    t229 = t228 & (t41 <= farther_right_rear_elbow_down_alike)
     del t228
-    t230 = t229 & (t41 <= farther_left_rear_elbow_down_alike)
-    del t229, t41
-    unreachable_4 = np.logical_not(t230)
-    del t230
-    t231 = _runtime.poison(invalid | unreachable_4)
-    t232 = t160 + t231
-    del t160
-    M_right_rear_elbow_down_alike = np.maximum(farther_right_rear_elbow_down_alike, t78)
+    t230 = t229 & (t41 <= nearer_left_rear_elbow_down_alike)
+    del t229
+    t231 = t230 & (t41 <= farther_left_rear_elbow_down_alike)
+    del t230, t41
+    unreachable_4 = np.logical_not(t231)
+    del t231
+    t232 = _runtime.poison(invalid | unreachable_4)
+    t233 = t161 + t232
+    del t161
+    M_right_rear_elbow_down_alike = np.maximum(farther_right_rear_elbow_down_alike, t79)
     del farther_right_rear_elbow_down_alike
-    N_right_rear_elbow_down_alike = np.maximum(nearer_right_rear_elbow_down_alike, t78)
-    del nearer_right_rear_elbow_down_alike, t78
+    N_right_rear_elbow_down_alike = np.maximum(nearer_right_rear_elbow_down_alike, t79)
+    del nearer_right_rear_elbow_down_alike, t79
     whole_right_rear_elbow_down_alike = M_right_rear_elbow_down_alike + N_right_rear_elbow_down_alike
-    t233 = 1.0 / whole_right_rear_elbow_down_alike
+    t234 = 1.0 / whole_right_rear_elbow_down_alike
     del whole_right_rear_elbow_down_alike
-    t234 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
-    t235 = np.sqrt(t234)
+    t235 = M_right_rear_elbow_down_alike * N_right_rear_elbow_down_alike
+    t236 = np.sqrt(t235)
+    del t235
+    t237 = fore_arm * (t234 * (t81 * t236))
+    ahead_1_right_rear_elbow_down_alike = t63 + t77 * M_right_rear_elbow_down_alike * t234
     del t234
-    t236 = fore_arm * (t233 * (t80 * t235))
-    ahead_1_right_rear_elbow_down_alike = t63 + t77 * M_right_rear_elbow_down_alike * t233
-    del t233
-    up_right_rear_elbow_down_alike = t214 * t236 - t212 * ahead_1_right_rear_elbow_down_alike
-    t237 = t214 * ahead_1_right_rear_elbow_down_alike + t212 * t236
-    del ahead_1_right_rear_elbow_down_alike, t236
-    t238 = np.arctan2(up_right_rear_elbow_down_alike, -t237)
-    del t237, up_right_rear_elbow_down_alike
-    t239 = _runtime.wrap_cut(t238) + t231
-    del t238
-    t240 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
+    up_right_rear_elbow_down_alike = t215 * t237 - t213 * ahead_1_right_rear_elbow_down_alike
+    t238 = t215 * ahead_1_right_rear_elbow_down_alike + t213 * t237
+    del ahead_1_right_rear_elbow_down_alike, t237
+    t239 = np.arctan2(up_right_rear_elbow_down_alike, -t238)
+    del t238, up_right_rear_elbow_down_alike
+    t240 = _runtime.wrap_cut(t239) + t232
+    del t239
+    t241 = M_right_rear_elbow_down_alike - N_right_rear_elbow_down_alike
     del M_right_rear_elbow_down_alike, N_right_rear_elbow_down_alike
-    t241 = t85 + sigma_right * np.arctan2(2.0 * t235, t240)
-    del t235, t240
-    t242 = _runtime.wrap(t241) + t231
-    del t241
+    t242 = t86 + sigma_right * np.arctan2(2.0 * t236, t241)
+    del t236, t241
+    t243 = _runtime.wrap(t242) + t232
+    del t242
     M_left_rear_elbow_down_alike = np.maximum(farther_left_rear_elbow_down_alike, 0.0)
     del farther_left_rear_elbow_down_alike
     N_left_rear_elbow_down_alike = np.maximum(nearer_left_rear_elbow_down_alike, 0.0)
     del nearer_left_rear_elbow_down_alike
     whole_left_rear_elbow_down_alike = M_left_rear_elbow_down_alike + N_left_rear_elbow_down_alike
-    t243 = 1.0 / whole_left_rear_elbow_down_alike
+    t244 = 1.0 / whole_left_rear_elbow_down_alike
     del whole_left_rear_elbow_down_alike
-    t244 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
-    t245 = np.sqrt(t244)
-    del t244
-    t246 = fore_arm * (t243 * (t80 * t245))
-    del t80
-    t247 = t224 * t246
-    ahead_1_left_rear_elbow_down_alike = t63 + t77 * M_left_rear_elbow_down_alike * t243
-    del t243, t63, t77
-    t248 = t223 * ahead_1_left_rear_elbow_down_alike
+    t245 = M_left_rear_elbow_down_alike * N_left_rear_elbow_down_alike
+    t246 = np.sqrt(t245)
+    del t245
+    t247 = fore_arm * (t244 * (t81 * t246))
+    del t81
+    t248 = t225 * t247
+    ahead_1_left_rear_elbow_down_alike = t63 + t77 * M_left_rear_elbow_down_alike * t244
+    del t244, t63, t77
     t249 = t224 * ahead_1_left_rear_elbow_down_alike
+    t250 = t225 * ahead_1_left_rear_elbow_down_alike
     del ahead_1_left_rear_elbow_down_alike
-    t250 = t223 * t246
-    del t246
-    t251 = _runtime.wrap_cut(np.arctan2(t247 - t248, -(t249 + t250)))
-    t252 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
+    t251 = t224 * t247
+    del t247
+    t252 = _runtime.wrap_cut(np.arctan2(t248 - t249, -(t250 + t251)))
+    t253 = M_left_rear_elbow_down_alike - N_left_rear_elbow_down_alike
     del M_left_rear_elbow_down_alike, N_left_rear_elbow_down_alike
-    t253 = sigma_right * np.arctan2(2.0 * t245, t252)
-    del sigma_right, t245, t252
-    t254 = t97 + t231
-    del t97
-    t255 = _runtime.wrap_cut(np.arctan2(-(t248 + t247), t250 - t249))
-    del t247, t248, t249, t250
+    t254 = sigma_right * np.arctan2(2.0 * t246, t253)
+    del sigma_right, t246, t253
+    t255 = t98 + t232
+    del t98
+    t256 = _runtime.wrap_cut(np.arctan2(-(t249 + t248), t251 - t250))
+    del t248, t249, t250, t251
     square_mid = t64 + M_mid
-    t256 = M_mid * square_mid
+    t257 = M_mid * square_mid
     del M_mid
-    t257 = _runtime.DETERMINED * _runtime.DETERMINED
-    t258 = t42 * t257
-    t259 = square_mid <= t258
+    t258 = _runtime.DETERMINED * _runtime.DETERMINED
+    t259 = t42 * t258
+    t260 = square_mid <= t259
     del square_mid
-    t260 = wrist <= al * _runtime.DETERMINED
+    t261 = wrist <= al * _runtime.DETERMINED
     del wrist
-    t261 = 1.0 <= 0.0
-    t262 = (t256 <= t257 * (t42 * gap)) | t259 | t260 | t261
+    t262 = 1.0 <= 0.0
+    t263 = (t257 <= t258 * (t42 * gap)) | t260 | t261 | t262
     del gap
-    t263 = _runtime.status(invalid, unreachable, t262)
-    del t262, unreachable
+    t264 = _runtime.status(invalid, unreachable, t263)
+    del t263, unreachable
     square_mid_front_elbow_down_alike = t64 + M_mid_front_elbow_down_alike
     del t64
-    t264 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
+    t265 = M_mid_front_elbow_down_alike * square_mid_front_elbow_down_alike
     del M_mid_front_elbow_down_alike
-    t265 = t264 <= t257 * (t42 * gap_front_elbow_down_alike)
+    t266 = t265 <= t258 * (t42 * gap_front_elbow_down_alike)
     del gap_front_elbow_down_alike
-    t266 = square_mid_front_elbow_down_alike <= t258
-    del square_mid_front_elbow_down_alike, t258
-    t267 = _runtime.status(invalid, unreachable_2, t265 | t266 | t260 | t261)
-    del t265, unreachable_2
-    t268 = t264 <= t257 * (t42 * gap_rear_elbow_up_alike)
-    del gap_rear_elbow_up_alike, t264
-    t269 = _runtime.status(invalid, unreachable_3, t268 | t266 | t260 | t261)
-    del t266, t268, unreachable_3
-    t270 = t256 <= t257 * (t42 * gap_rear_elbow_down_alike)
-    del gap_rear_elbow_down_alike, t256, t257
-    t271 = _runtime.status(invalid, unreachable_4, t270 | t259 | t260 | t261)
-    del invalid, t259, t260, t261, t270, unreachable_4
-    t272 = h * slack
+    t267 = square_mid_front_elbow_down_alike <= t259
+    del square_mid_front_elbow_down_alike, t259
+    t268 = _runtime.status(invalid, unreachable_2, t266 | t267 | t261 | t262)
+    del t266, unreachable_2
+    t269 = t265 <= t258 * (t42 * gap_rear_elbow_up_alike)
+    del gap_rear_elbow_up_alike, t265
+    t270 = _runtime.status(invalid, unreachable_3, t269 | t267 | t261 | t262)
+    del t267, t269, unreachable_3
+    t271 = t257 <= t258 * (t42 * gap_rear_elbow_down_alike)
+    del gap_rear_elbow_down_alike, t257, t258
+    t272 = _runtime.status(invalid, unreachable_4, t271 | t260 | t261 | t262)
+    del invalid, t260, t261, t262, t271, unreachable_4
+    t273 = h * slack
     del slack
-    tangent = 4.0 * root * t32 - t272 * 0.00390625 <= _runtime.VANISHING * t272
-    del t272
-    t273 = tangent | (h <= _runtime.VANISHING * lengths)
+    tangent = 4.0 * root * t32 - t273 * 0.00390625 <= _runtime.VANISHING * t273
+    del t273
+    t274 = tangent | (h <= _runtime.VANISHING * lengths)
     del h, lengths, tangent
-    t274 = t273 | (L1 * fore <= _runtime.VANISHING * t33)
-    del t273, t33
-    t275 = _runtime.VANISHING * t32
+    t275 = t274 | (L1 * fore <= _runtime.VANISHING * t33)
+    del t274, t33
+    t276 = _runtime.VANISHING * t32
     del t32
-    t276 = t274 | (np.abs(t34) + np.abs(root) <= t275) | (fore <= t275)
-    del fore, root, t274, t275, t34
-    t277 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
+    t277 = t275 | (np.abs(t34) + np.abs(root) <= t276) | (fore <= t276)
+    del fore, root, t275, t276, t34
+    t278 = np.maximum(-(room_right * 9.094947017729282e-13), room_right)
     del room_right
-    t278 = _runtime.VANISHING * play_right
+    t279 = _runtime.VANISHING * play_right
     del play_right
-    t279 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
+    t280 = np.maximum(-(room_left * 9.094947017729282e-13), room_left)
     del room_left
-    t280 = t276 | (t277 <= t278) | (t279 <= t278) | (L1 * fore_arm <= _runtime.VANISHING * t42)
-    del t276, t277, t279, t42
-    t281 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
-    t282 = t280 | (np.abs(h_right_0) + np.abs(-t60) <= t281)
-    del h_right_0, t280, t60
-    t283 = t282 | (fore_arm <= _runtime.VANISHING * size)
-    del fore_arm, size, t282
-    t284 = t283 | (np.abs(h_left_0) + np.abs(-t70) <= t281)
-    del h_left_0, t283, t70
-    t285 = room_right_front_elbow_down_alike * 9.094947017729282e-13
-    t286 = np.maximum(-t285, room_right_front_elbow_down_alike)
-    del room_right_front_elbow_down_alike, t285
-    t287 = room_left_front_elbow_down_alike * 9.094947017729282e-13
-    t288 = np.maximum(-t287, room_left_front_elbow_down_alike)
-    del room_left_front_elbow_down_alike, t287
-    t289 = np.abs(-t111) + np.abs(r_right_0_front_elbow_down_alike)
-    del r_right_0_front_elbow_down_alike, t111
-    t290 = t284 | (t286 <= t278) | (t288 <= t278) | (t289 <= t281)
-    del t284, t286, t288, t289
-    t291 = np.abs(-t125) + np.abs(r_left_0_front_elbow_down_alike)
-    del r_left_0_front_elbow_down_alike, t125
-    t292 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
-    t293 = np.maximum(-t292, room_right_rear_elbow_up_alike)
-    del room_right_rear_elbow_up_alike, t292
-    t294 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
-    t295 = np.maximum(-t294, room_left_rear_elbow_up_alike)
-    del room_left_rear_elbow_up_alike, t294
-    t296 = t290 | (t291 <= t281) | (t293 <= t278) | (t295 <= t278)
-    del t290, t291, t293, t295
-    t297 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
+    t281 = t277 | (t278 <= t279) | (t280 <= t279) | (t78 <= _runtime.VANISHING * t42)
+    del t277, t278, t280, t42, t78
+    t282 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0)
+    t283 = t281 | (np.abs(h_right_0) + np.abs(-t60) <= t282)
+    del h_right_0, t281, t60
+    t284 = t283 | (fore_arm <= _runtime.VANISHING * size)
+    del fore_arm, size, t283
+    t285 = t284 | (np.abs(h_left_0) + np.abs(-t70) <= t282)
+    del h_left_0, t284, t70
+    t286 = room_right_front_elbow_down_alike * 9.094947017729282e-13
+    t287 = np.maximum(-t286, room_right_front_elbow_down_alike)
+    del room_right_front_elbow_down_alike, t286
+    t288 = room_left_front_elbow_down_alike * 9.094947017729282e-13
+    t289 = np.maximum(-t288, room_left_front_elbow_down_alike)
+    del room_left_front_elbow_down_alike, t288
+    t290 = np.abs(-t112) + np.abs(r_right_0_front_elbow_down_alike)
+    del r_right_0_front_elbow_down_alike, t112
+    t291 = t285 | (t287 <= t279) | (t289 <= t279) | (t290 <= t282)
+    del t285, t287, t289, t290
+    t292 = np.abs(-t126) + np.abs(r_left_0_front_elbow_down_alike)
+    del r_left_0_front_elbow_down_alike, t126
+    t293 = room_right_rear_elbow_up_alike * 9.094947017729282e-13
+    t294 = np.maximum(-t293, room_right_rear_elbow_up_alike)
+    del room_right_rear_elbow_up_alike, t293
+    t295 = room_left_rear_elbow_up_alike * 9.094947017729282e-13
+    t296 = np.maximum(-t295, room_left_rear_elbow_up_alike)
+    del room_left_rear_elbow_up_alike, t295
+    t297 = t291 | (t292 <= t282) | (t294 <= t279) | (t296 <= t279)
+    del t291, t292, t294, t296
+    t298 = np.abs(h_right_0_rear_elbow_up_alike) + np.abs(r_right_0_rear_elbow_up_alike)
     del h_right_0_rear_elbow_up_alike, r_right_0_rear_elbow_up_alike
-    t298 = np.abs(h_left_0_rear_elbow_up_alike) + np.abs(r_left_0_rear_elbow_up_alike)
+    t299 = np.abs(h_left_0_rear_elbow_up_alike) + np.abs(r_left_0_rear_elbow_up_alike)
     del h_left_0_rear_elbow_up_alike, r_left_0_rear_elbow_up_alike
-    t299 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
-    t300 = np.maximum(-t299, room_right_rear_elbow_down_alike)
-    del room_right_rear_elbow_down_alike, t299
-    t301 = t296 | (t297 <= t281) | (t298 <= t281) | (t300 <= t278)
-    del t296, t297, t298, t300
-    t302 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
-    t303 = np.maximum(-t302, room_left_rear_elbow_down_alike)
-    del room_left_rear_elbow_down_alike, t302
-    t304 = t301 | (t303 <= t278) | (np.abs(-t212) + np.abs(-t214) <= t281)
-    del t212, t214, t278, t301, t303
-    t305 = t304 | (np.abs(-t223) + np.abs(-t224) <= t281)
-    del t223, t224, t281, t304
+    t300 = room_right_rear_elbow_down_alike * 9.094947017729282e-13
+    t301 = np.maximum(-t300, room_right_rear_elbow_down_alike)
+    del room_right_rear_elbow_down_alike, t300
+    t302 = t297 | (t298 <= t282) | (t299 <= t282) | (t301 <= t279)
+    del t297, t298, t299, t301
+    t303 = room_left_rear_elbow_down_alike * 9.094947017729282e-13
+    t304 = np.maximum(-t303, room_left_rear_elbow_down_alike)
+    del room_left_rear_elbow_down_alike, t303
+    t305 = t302 | (t304 <= t279) | (np.abs(-t213) + np.abs(-t215) <= t282)
+    del t213, t215, t279, t302, t304
+    t306 = t305 | (np.abs(-t224) + np.abs(-t225) <= t282)
+    del t224, t225, t282, t305
     return (
         t76,
-        t84,
-        t87,
-        t95 + t75,
-        _runtime.wrap(t85 + t96) + t75,
-        t98,
+        t85,
+        t88,
+        t96 + t75,
+        _runtime.wrap(t86 + t97) + t75,
+        t99,
         t76,
-        t84,
-        t87,
-        t99 + t75,
-        _runtime.wrap(t85 - t96) + t75,
-        t98,
-        t134,
-        t143,
-        t146,
-        t155 + t133,
-        _runtime.wrap(t85 + t157) + t133,
-        t158,
-        t134,
-        t143,
-        t146,
-        t159 + t133,
-        _runtime.wrap(t85 - t157) + t133,
-        t158,
-        t184,
-        t192,
-        t195,
-        t204 + t183,
-        _runtime.wrap(t85 + t206) + t183,
-        t207,
-        t184,
-        t192,
-        t195,
-        t208 + t183,
-        _runtime.wrap(t85 - t206) + t183,
-        t207,
-        t232,
-        t239,
-        t242,
-        t251 + t231,
-        _runtime.wrap(t85 + t253) + t231,
-        t254,
-        t232,
-        t239,
-        t242,
-        t255 + t231,
-        _runtime.wrap(t85 - t253) + t231,
-        t254,
-        t263,
-        t263,
-        t267,
-        t267,
-        t269,
-        t269,
-        t271,
-        t271,
-        t305,
+        t85,
+        t88,
+        t100 + t75,
+        _runtime.wrap(t86 - t97) + t75,
+        t99,
+        t135,
+        t144,
+        t147,
+        t156 + t134,
+        _runtime.wrap(t86 + t158) + t134,
+        t159,
+        t135,
+        t144,
+        t147,
+        t160 + t134,
+        _runtime.wrap(t86 - t158) + t134,
+        t159,
+        t185,
+        t193,
+        t196,
+        t205 + t184,
+        _runtime.wrap(t86 + t207) + t184,
+        t208,
+        t185,
+        t193,
+        t196,
+        t209 + t184,
+        _runtime.wrap(t86 - t207) + t184,
+        t208,
+        t233,
+        t240,
+        t243,
+        t252 + t232,
+        _runtime.wrap(t86 + t254) + t232,
+        t255,
+        t233,
+        t240,
+        t243,
+        t256 + t232,
+        _runtime.wrap(t86 - t254) + t232,
+        t255,
+        t264,
+        t264,
+        t268,
+        t268,
+        t270,
+        t270,
+        t272,
+        t272,
+        t306,
     )
 
 

@@ -316,7 +316,8 @@ class _Branch:
                 allowed = graph.neg(limit("feasibility", statement.scale))
                 reachable.append(graph.node("le", allowed, raw))
                 least = graph.const(0)
-                if (scale := statement.above) is not None:  # of an angle of four times the tolerance
+                if (scale := statement.above) is not None:
+                    # the square of an angle of four times the tolerance
                     least = graph.product([limit("vanishing", 16 * scale), limit("vanishing", 1)])
                 clamped = graph.node("max", raw, least)
                 self._name(names, build, statement.symbol, clamped, label)

@@ -346,39 +346,6 @@ given_output(const cf_call *call, size_t k)
     return (PyArrayObject *)array;
 }
 
-/* Whether two elements may share memory. Of the axes in the order of their strides, each steps over
- * all that the shorter ones span; slices, transposes and fields of an array never break this. */
-static int
-overlaps_itself(PyArrayObject *array)
-{
-    npy_intp span = PyArray_ITEMSIZE(array);
-    npy_intp steps[NPY_MAXDIMS + CF_MAX_CORE], reaches[NPY_MAXDIMS + CF_MAX_CORE];
-    int n = 0;
-    for (int a = 0; a < PyArray_NDIM(array); a++) {
-        npy_intp length = PyArray_DIM(array, a), stride = PyArray_STRIDE(array, a);
-        if (length == 0) {
-            return 0;
-        }
-        if (length > 1) {
-            npy_intp step = stride < 0 ? -stride : stride;
-            int b = n++;
-            for (; b > 0 && steps[b - 1] > step; b--) {
-                steps[b] = steps[b - 1];
-                reaches[b] = reaches[b - 1];
-            }
-            steps[b] = step;
-            reaches[b] = step * (length - 1);
-        }
-    }
-    for (int b = 0; b < n; b++) {
-        if (steps[b] < span) {
-            return 1;
-        }
-        span += reaches[b];
-    }
-    return 0;
-}
-
 static int
 check_output(const cf_function *f, const cf_array *spec, PyArrayObject *array, int n_axes,
              const npy_intp *length)
@@ -405,7 +372,7 @@ check_output(const cf_function *f, const cf_array *spec, PyArrayObject *array, i
         PyErr_Format(PyExc_ValueError, "%s: out for %s is read-only", f->name, spec->name);
         return -1;
     }
-    if (overlaps_itself(array)) {
+    if (cf_overlaps_itself(array)) {
         PyErr_Format(PyExc_ValueError, "%s: out for %s overlaps itself", f->name, spec->name);
         return -1;
     }

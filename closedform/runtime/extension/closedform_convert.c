@@ -1,4 +1,5 @@
-/* Converts the arguments of a caller to arrays of doubles; raises if they are not real numbers. */
+/* Converts the arguments of a caller to arrays of doubles; raises if they are not real numbers.
+ * Looks at the memory of the arrays that results are written to. */
 #define NO_IMPORT_ARRAY
 #include "closedform_numpy.h"
 
@@ -123,4 +124,37 @@ cf_real_array(const cf_function *f, const char *prefix, const char *name, PyObje
                                        NPY_ARRAY_FORCECAST);
     Py_DECREF(array);
     return (PyArrayObject *)real;
+}
+
+/* Of the axes in the order of their strides, each must step over all that the shorter ones span;
+ * slices, transposes and fields of an array do. */
+int
+cf_overlaps_itself(PyArrayObject *array)
+{
+    npy_intp span = PyArray_ITEMSIZE(array);
+    npy_intp steps[NPY_MAXDIMS], reaches[NPY_MAXDIMS];
+    int n = 0;
+    for (int a = 0; a < PyArray_NDIM(array); a++) {
+        npy_intp length = PyArray_DIM(array, a), stride = PyArray_STRIDE(array, a);
+        if (length == 0) {
+            return 0;
+        }
+        if (length > 1) {
+            npy_intp step = stride < 0 ? -stride : stride;
+            int b = n++;
+            for (; b > 0 && steps[b - 1] > step; b--) {
+                steps[b] = steps[b - 1];
+                reaches[b] = reaches[b - 1];
+            }
+            steps[b] = step;
+            reaches[b] = step * (length - 1);
+        }
+    }
+    for (int b = 0; b < n; b++) {
+        if (steps[b] < span) {
+            return 1;
+        }
+        span += reaches[b];
+    }
+    return 0;
 }

@@ -46,6 +46,9 @@ CF_INTERNAL int cf_is_masked(PyObject *object);
 CF_INTERNAL PyArrayObject *cf_real_array(const cf_function *f, const char *prefix,
                                          const char *name, PyObject *object);
 
+/* Whether two elements of an array may share memory. */
+CF_INTERNAL int cf_overlaps_itself(PyArrayObject *array);
+
 static inline int
 cf_type_number(cf_kind kind)
 {

@@ -207,10 +207,12 @@ def test_works_are_listed_with_their_years() -> None:
 
 
 def test_figures_that_were_drawn_are_included() -> None:
-    captions = {"toy-path": "A path of $x_1$", "toy-mechanism": "At home", "other-mechanism": "No"}
-    pages = figures.pages(captions, ["toy-path", "toy-mechanism"])
+    captions = {"toy-mechanism": "At home", "other-mechanism": "No", "toy-fig9": "A path of $x_1$"}
+    captions |= {"toy-fig10": "A map", "toy-fig11": "Not drawn"}
+    pages = figures.pages(captions, ["toy-fig10", "toy-fig9", "toy-mechanism"])
     assert list(pages) == ["toy"]
-    assert pages["toy"].index("At home") < pages["toy"].index("A path")
+    found = re.findall(r"\\drawing{(.*?)}", pages["toy"])
+    assert found == ["toy-mechanism", "toy-fig9", "toy-fig10"]
 
 
 def test_figures_are_written_for_tex(tmp_path: Path) -> None:

@@ -33,7 +33,7 @@ def draw_all(folder: Path, chosen: list[str], suffix: str = ".pdf") -> Iterator[
         for figure in drawn:
             write(partial(figure.draw, robot), folder / f"{name}-{figure.name}{suffix}")
             captions[f"{name}-{figure.name}"] = figure.caption
-        text = json.dumps(dict(sorted(captions.items())), indent=2, ensure_ascii=False)
+        text = json.dumps(captions, indent=2, ensure_ascii=False)
         target.write_text(text + "\n", "utf-8")
         yield f"{name}: {', '.join(f.name for f in drawn)}\n"
 

@@ -1,8 +1,8 @@
 """What TeX reads of the figures that ``make figures`` has drawn, for the articles and the book.
 
 ``python -m closedform.emit.backends.latex.figures FOLDER`` reads ``captions.json``, which maps
-``ROBOT-what`` to a caption, and writes ``ROBOT-figures.tex`` for each mechanism that has drawings
-``ROBOT-what.pdf``.  Without them an article has no figures.
+``ROBOT-what`` to a caption in the order of the pages, and writes ``ROBOT-figures.tex`` for each
+mechanism that has drawings ``ROBOT-what.pdf``.  Without them an article has no figures.
 """
 
 from __future__ import annotations
@@ -14,27 +14,16 @@ from pathlib import Path
 
 from closedform.emit.backends.latex.prose import mixed
 
-FIRST = ("mechanism", "branches", "workspace", "conditioning")
-"""The order of the kinds of figures; others follow, by name."""
-
 
 def pages(captions: Mapping[str, str], drawn: Sequence[str]) -> dict[str, str]:
     """The figures of each mechanism that were drawn and have a caption."""
-    order = {what: k for k, what in enumerate(FIRST)}
-    robots: dict[str, list[str]] = {}
-    for name in sorted(set(captions) & set(drawn)):
-        robots.setdefault(name.partition("-")[0], []).append(name)
-    return {
-        robot: "".join(
-            rf"\drawing{{{name}}}{{{mixed(captions[name])}}}" + "\n"
-            for name in sorted(names, key=lambda n: (order.get(_what(n), len(FIRST)), n))
-        )
-        for robot, names in robots.items()
-    }
-
-
-def _what(name: str) -> str:
-    return name.partition("-")[2]
+    found: dict[str, str] = {}
+    for name, caption in captions.items():
+        if name in drawn:
+            robot = name.partition("-")[0]
+            page = rf"\drawing{{{name}}}{{{mixed(caption)}}}" + "\n"
+            found[robot] = found.get(robot, "") + page
+    return found
 
 
 def main(folder: Path) -> None:

@@ -501,7 +501,26 @@ def _scaled(ops: Operations, kernel: Kernel, planes: Sequence[Array]) -> Sequenc
 def _stacked(ops: Operations, spec: Spec, lead: tuple[int, ...], values: Iterator[Any]) -> Array:
     """The next planes as one array."""
     planes = [next(values) for _ in _indices(spec.shape)]
-    shaped = [ops.xp.broadcast_to(ops.number(plane), lead) for plane in planes]
+    parts = [ops.xp.broadcast_to(ops.number(plane), lead) for plane in planes]
+    if compat.is_jax_namespace(ops.xp):
+        for inner, length in enumerate(reversed(spec.shape)):
+            groups = range(0, len(parts), length)
+            parts = [_selected(ops, parts[k : k + length], inner) for k in groups]
+        return parts[0]
     if not spec.shape:
-        return shaped[0]
-    return ops.xp.reshape(ops.xp.stack(shaped, axis=-1), (*lead, *spec.shape))
+        return parts[0]
+    return ops.xp.reshape(ops.xp.stack(parts, axis=-1), (*lead, *spec.shape))
+
+
+def _selected(ops: Operations, parts: Sequence[Array], inner: int) -> Array:
+    """The parts along a new axis, which ``inner`` axes follow, by selections.
+
+    The compiler of JAX would evaluate the planes of a stack once more for each of its entries.
+    """
+    xp = ops.xp
+    place = xp.reshape(xp.arange(len(parts), device=ops.device), (-1, *[1] * inner))
+    spread = [xp.expand_dims(part, axis=part.ndim - inner) for part in parts]
+    total = spread[0]
+    for k, part in enumerate(spread[1:], 1):
+        total = xp.where(place == k, part, total)
+    return total

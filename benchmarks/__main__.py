@@ -26,13 +26,16 @@ import numpy as np
 
 from closedform.pipeline.disk import replace
 
-from . import batches, inverses, native
+from . import batches, inverses, libraries, native
 from .cases import CASES, Case, NotApplicableError, check
 
 MILLION = 1_000_000
 SETTLED = 0.1
 """Seconds to wait before timing a batch, because JAX frees its arrays in the background."""
 PACKAGES = {"sympy.cse": "sympy", "lambdify": "sympy"}
+TABLES = ("c", "batch", "single", "inverse")
+ASIDE = ("array", "threads")
+"""Only if they are asked for; for threads, the other tables of the run have all cores too."""
 Run = Callable[[], float]
 Maker = Callable[[], Run]
 Competitors = dict[str, Run]
@@ -126,19 +129,33 @@ def from_python(
     return clock(call, len(rows), 1 if len(rows) > 1 else 2000)
 
 
-def calls_from_python(report: Report, cases: list[Case], rounds: int, n: int) -> None:
+def calls_from_python(
+    report: Report,
+    cases: list[Case],
+    rounds: int,
+    n: int,
+    peers: Mapping[str, batches.Peer] = batches.PEERS,
+    words: str = "",
+) -> None:
     """Write the tables of batches of ``n`` postures in both layouts, or of single postures."""
-    report.write(f"\n## {'One call' if n == 1 else f'Batch of {n:,}'} from Python")
+    report.write(f"\n## {'One call' if n == 1 else f'Batch of {n:,}'} from Python{words}")
     layouts = {"planes": ", structure of arrays, `out=`", "rows": ", `(N, n)` arrays"}
     for case in cases:
         inputs = case.inputs(n)
         expected = case.values(inputs[:1000])
-        for layout, words in layouts.items() if n > 1 else [("rows", "")]:
+        for layout, said in layouts.items() if n > 1 else [("rows", "")]:
             makers = {
                 name: partial(from_python, peer, case, layout, inputs, expected)
-                for name, peer in batches.PEERS.items()
+                for name, peer in peers.items()
             }
-            compared(report, case.title + words, "ns per posture", makers, rounds)
+            compared(report, case.title + said, "ns per posture", makers, rounds)
+
+
+def with_threads(cores: int) -> dict[str, batches.Peer]:
+    """The compiled functions and numba's parallel loops, on some and on all cores."""
+    counts = sorted({1, 2, cores // 2, cores} - {0})
+    ours = {f"closedform C, {n}": partial(batches.ours, "c", threads=n) for n in counts}
+    return ours | {f"numba, {n}": partial(batches.numba, threads=n) for n in counts}
 
 
 def versions() -> str:
@@ -166,20 +183,22 @@ def main() -> int:
     parser.add_argument("--batch", type=int, default=MILLION, help="postures in a batch")
     parser.add_argument(
         "--only",
-        choices=("c", "batch", "single", "inverse"),
+        choices=(*TABLES, *ASIDE),
         action="append",
-        help="write only this table; can be repeated",
+        help=f"write only this table; can be repeated (default: {', '.join(TABLES)})",
     )
     parser.add_argument(
         "-o", "--output", type=Path, help="file to write; RESULTS.md for a whole run"
     )
     arguments = parser.parse_args()
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+    tables = arguments.only or TABLES
+    cores = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else set()
+    if cores and "threads" not in tables:
+        os.sched_setaffinity(0, {max(cores)})
     chosen = [c for c in CASES if not arguments.cases or any(w in c.title for w in arguments.cases)]
-    tables = arguments.only or ["c", "batch", "single", "inverse"]
     report = Report()
-    report.write("# Benchmarks\n\nWritten by `make bench`; competitors run in turns on one core.\n")
+    where = "on all cores" if "threads" in tables else "on one core"
+    report.write(f"# Benchmarks\n\nWritten by `make bench`; competitors run in turns {where}.\n")
     report.write(f"{machine()}; {versions()}.")
     with tempfile.TemporaryDirectory() as folder:
         if "c" in tables:
@@ -188,6 +207,13 @@ def main() -> int:
         calls_from_python(report, chosen, arguments.rounds, arguments.batch)
     if "single" in tables:
         calls_from_python(report, chosen, arguments.rounds, 1)
+    if "array" in tables:
+        words = ", by array libraries"
+        calls_from_python(report, chosen, arguments.rounds, arguments.batch, libraries.PEERS, words)
+    if "threads" in tables:
+        peers = with_threads(len(cores) or os.cpu_count() or 1)
+        words = ", by the number of threads"
+        calls_from_python(report, chosen, arguments.rounds, arguments.batch, peers, words)
     if "inverse" in tables:
         inverses.compare(report, arguments.rounds)
     whole = not (arguments.cases or arguments.only)

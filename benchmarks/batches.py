@@ -41,8 +41,10 @@ def planes_of(rows: np.ndarray) -> np.ndarray:
     return memory
 
 
-def ours(backend: str, case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values]:
-    function = case.ours(backend)
+def ours(
+    backend: str, case: Case, layout: str, rows: np.ndarray, **options: int
+) -> tuple[timeit.Timer, Values]:
+    function = partial(case.ours(backend), **options) if options else case.ours(backend)
     core = case.source.inputs[0].shape
     if len(rows) == 1:
         x = rows.reshape(core)
@@ -127,7 +129,10 @@ def casadi(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Val
     return statement("trigger()", trigger=trigger, alive=(buffer, x_rows, constants)), values_of
 
 
-def numba(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values]:
+def numba(
+    case: Case, layout: str, rows: np.ndarray, threads: int = 1
+) -> tuple[timeit.Timer, Values]:
+    """A loop over the postures; with several ``threads`` it is a parallel one."""
     import math
 
     import numba as nb
@@ -136,7 +141,7 @@ def numba(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Valu
     temporaries, results = case.program
     at = "x_in[{k}, i]" if layout == "planes" else "x_in[i, {k}]"
     to = "out[{k}, i]" if layout == "planes" else "out[i, {k}]"
-    lines = ["def kernel(x_in, p_in, out):", " for i in range(x_in.shape[AXIS]):"]
+    lines = ["def kernel(x_in, p_in, out):", " for i in nb.prange(x_in.shape[AXIS]):"]
     n = len(case.source.symbols)
     for k, symbol in enumerate(case.symbols):
         place = at.format(k=k) if k < n else f"p_in[{k - n}]"
@@ -144,18 +149,24 @@ def numba(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Valu
     printed = sp.printing.pycode
     lines += [f"  {s} = {printed(e)}" for s, e in temporaries]
     lines += [f"  {to.format(k=k)} = {printed(e)}" for k, e in enumerate(results)]
-    scope: dict[str, Any] = {"math": math}
+    scope: dict[str, Any] = {"math": math, "nb": nb}
     exec("\n".join(lines).replace("AXIS", "1" if layout == "planes" else "0"), scope)
-    kernel = nb.njit(fastmath=False, error_model="numpy")(scope["kernel"])
+    compiled = nb.njit(fastmath=False, error_model="numpy", parallel=threads > 1)
+    kernel = compiled(scope["kernel"])
     x = planes_of(rows) if layout == "planes" else rows
     out = np.empty((case.width, len(rows)) if layout == "planes" else (len(rows), case.width))
     p = np.array(list(case.parameters.values()))
 
-    def values() -> np.ndarray:
+    def run() -> None:
+        nb.set_num_threads(threads)
         kernel(x, p, out)
+
+    def values() -> np.ndarray:
+        run()
         return (out.T if layout == "planes" else out).copy()
 
-    return statement("kernel(x, p, out)", kernel=kernel, x=x, p=p, out=out), values
+    call = "kernel(x, p, out)" if threads == 1 else "run()"
+    return statement(call, kernel=kernel, x=x, p=p, out=out, run=run), values
 
 
 def pytensor(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values]:
@@ -178,12 +189,18 @@ def pytensor(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, V
     return call, lambda: stacked(function(*planes), len(rows))
 
 
-def jax(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values]:
+def jax_library() -> Any:
+    """JAX on the processor, with doubles."""
     os.environ.setdefault("JAX_PLATFORMS", "cpu")
     import jax as library
-    import jax.numpy as jnp
 
     library.config.update("jax_enable_x64", True)
+    return library
+
+
+def jax(case: Case, layout: str, rows: np.ndarray) -> tuple[timeit.Timer, Values]:
+    library = jax_library()
+    jnp = library.numpy
     one = case.translate(numpy_like(jnp))
     parameters = list(case.parameters.values())
     axis = 1 if layout == "planes" else 0

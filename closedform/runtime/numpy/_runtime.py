@@ -426,7 +426,26 @@ def _results(kernel: Kernel, lead: tuple[int, ...], out: Any) -> list[NDArray[An
             )
         if not array.flags.writeable:
             raise ValueError(f"{kernel.name}: out for {spec.name} is read-only")
+        if _overlaps_itself(array):
+            raise ValueError(f"{kernel.name}: out for {spec.name} overlaps itself")
     return given
+
+
+def _overlaps_itself(array: NDArray[Any]) -> bool:
+    """Whether two elements may share memory.
+
+    Of the axes in the order of their strides, each must step over all that the shorter ones span;
+    slices, transposes and fields of an array do.
+    """
+    if not array.size:
+        return False
+    axes = zip(array.strides, array.shape, strict=True)
+    span = array.itemsize
+    for step, length in sorted((abs(stride), n) for stride, n in axes if n > 1):
+        if step < span:
+            return True
+        span += step * (length - 1)
+    return False
 
 
 def _fill(

@@ -124,7 +124,10 @@ def three_spheres(
     p.match(choose(line, left, 0), scale**2, meaning)
     Y = p.let("Y", choose(line, 0, left / (2 * j)))
     radius = p.let("rho", sp.sqrt(X**2 + Y**2), nonnegative=True)
-    slack = p.bound("slack", r1 - radius, scale, "the spheres meet")
+    # A sphere is missed by this slack times the first radius over its own: with a quarter of the
+    # tolerance, the legs accept the target of what is accepted here, unless a rod is very short.
+    tolerated = scale if r1 == r2 == r3 else scale / 4
+    slack = p.bound("slack", r1 - radius, tolerated, "the spheres meet")
     touching = p.vanishes("touching", slack, scale, "the spheres touch")
     rise = choose(touching, 0, sp.sqrt(slack) * sp.sqrt(r1 + radius))
     h = p.let("h", rise, nonnegative=True)

@@ -2,13 +2,13 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 90 compare and select, 66 add, 12 divide, 103 multiply, 7 sincos, 9 sqrt
-#   skeleton: 99 compare and select, 66 add, 21 divide, 90 multiply, 7 sincos, 9 sqrt
-#   jacobian_parallel: 102 compare and select, 78 add, 21 divide, 90 multiply, 7 sincos, 9 sqrt
-#   jacobian_serial: 88 compare and select, 82 add, 21 divide, 102 multiply, 7 sincos, 9 sqrt
-#   jacobian: 98 compare and select, 96 add, 33 divide, 140 multiply, 7 sincos, 9 sqrt
-#   singularities: 91 compare and select, 82 add, 21 divide, 104 multiply, 7 sincos, 9 sqrt
-#   condition_number: 94 compare and select, 122 add, 29 divide, 149 multiply, 7 sincos, 13 sqrt
+#   fk: 90 compare and select, 66 add, 13 divide, 103 multiply, 7 sincos, 9 sqrt
+#   skeleton: 99 compare and select, 66 add, 22 divide, 90 multiply, 7 sincos, 9 sqrt
+#   jacobian_parallel: 102 compare and select, 78 add, 22 divide, 90 multiply, 7 sincos, 9 sqrt
+#   jacobian_serial: 88 compare and select, 82 add, 22 divide, 102 multiply, 7 sincos, 9 sqrt
+#   jacobian: 98 compare and select, 96 add, 34 divide, 140 multiply, 7 sincos, 9 sqrt
+#   singularities: 91 compare and select, 82 add, 22 divide, 104 multiply, 7 sincos, 9 sqrt
+#   condition_number: 94 compare and select, 122 add, 30 divide, 149 multiply, 7 sincos, 13 sqrt
 #   ik: 137 compare and select, 101 add, 4 atan2, 11 divide, 127 multiply, 5 sincos, 14 sqrt
 #   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -181,21 +181,22 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     X = ops.select(all_same, 0.0, D * 0.5 + t24 / (2.0 * D))
     Y = ops.select(in_line, 0.0, left / (2.0 * j))
     t26 = r - ops.sqrt(X * X + Y * Y)
-    unreachable = ops.opposite(t25 & (-(r * ops.feasibility) <= t26))
+    t27 = t25 & (-(ops.feasibility * (r * 0.25)) <= t26)
+    unreachable = ops.opposite(t27)
     failed = invalid | unreachable
-    t27 = ops.opposite(failed)
-    t28 = ops.opposite(all_same)
-    t29 = t27 & t28
-    t30 = t27 & ops.opposite(in_line)
-    t31 = t29 | (t30 & t28)
-    t32 = ops.select(t31 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t31 & same, t12, 1.0)), ops.sqrt(t32))
-    t33 = 1.0 / ops.select(t31, D_2, 1.0)
-    E_12_2 = ops.select(all_same, 0.0, t33 * t16)
-    E_11_2 = ops.select(all_same, 1.0, t13 * t33)
-    t34 = ops.sign(E_13)
-    t35 = E_11_2 * t34
-    E_13_2 = ops.select(all_same, 0.0, t33 * t18)
+    t28 = ops.opposite(failed)
+    t29 = ops.opposite(all_same)
+    t30 = t28 & t29
+    t31 = t28 & ops.opposite(in_line)
+    t32 = t30 | (t31 & t29)
+    t33 = ops.select(t32 & ops.opposite(same), t5, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t32 & same, t12, 1.0)), ops.sqrt(t33))
+    t34 = 1.0 / ops.select(t32, D_2, 1.0)
+    E_12_2 = ops.select(all_same, 0.0, t34 * t16)
+    E_11_2 = ops.select(all_same, 1.0, t13 * t34)
+    t35 = ops.sign(E_13)
+    t36 = E_11_2 * t35
+    E_13_2 = ops.select(all_same, 0.0, t34 * t18)
     k_0_2 = E_11_2 * t11 + t15 * E_12_2 + t17 * E_13_2
     m_z_2 = t17 - E_13_2 * k_0_2
     m_x_2 = t11 - E_11_2 * k_0_2
@@ -204,38 +205,38 @@ def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     n_z_2 = m_z_2 - E_13_2 * k_1_2
     n_x_2 = m_x_2 - E_11_2 * k_1_2
     n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t36 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t30, t36, 1.0))
-    t37 = 1.0 / ops.select(t30, j_2, 1.0)
-    E_23 = ops.select(in_line, -t35, n_z_2 * t37)
-    t38 = 1.0 / ops.select(t27 & in_line, E_13_2 + t34, 1.0)
-    E_22 = ops.select(in_line, -(t38 * (E_12_2 * t35)), n_y_2 * t37)
+    t37 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    j_2 = ops.sqrt(ops.select(t31, t37, 1.0))
+    t38 = 1.0 / ops.select(t31, j_2, 1.0)
+    E_23 = ops.select(in_line, -t36, n_z_2 * t38)
+    t39 = 1.0 / ops.select(t28 & in_line, E_13_2 + t35, 1.0)
+    E_22 = ops.select(in_line, -(t39 * (E_12_2 * t36)), n_y_2 * t38)
     touching = ops.max(t26, 0.0) <= t6
-    t39 = t27 & ops.opposite(touching)
-    t40 = D_2 * 0.5 + t24 / ops.select(t29, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t40)
-    left_2 = ops.select(all_same, 0.0, t22 - t33 * (t24 * (k_0_2 + k_1_2)))
-    Y_2 = ops.select(in_line, 0.0, left_2 / ops.select(t30, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t39, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t41 = ops.select(t39, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t41))
-    t42 = (E_12_2 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t34 * t38, n_x_2 * t37)
-    t43 = X_2 * E_11_2 + E_21 * Y_2
-    t44 = X_2 * E_12_2 + Y_2 * E_22
-    t45 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t46 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t47 = X_2 * E_13_2 + Y_2 * E_23
-    t48 = ops.status(invalid, unreachable, in_line)
+    t40 = t28 & ops.opposite(touching)
+    t41 = D_2 * 0.5 + t24 / ops.select(t30, 2.0 * D_2, 1.0)
+    X_2 = ops.select(all_same, 0.0, t41)
+    left_2 = ops.select(all_same, 0.0, t22 - t34 * (t24 * (k_0_2 + k_1_2)))
+    Y_2 = ops.select(in_line, 0.0, left_2 / ops.select(t31, 2.0 * j_2, 1.0))
+    rho = ops.sqrt(ops.select(t40, X_2 * X_2 + Y_2 * Y_2, 1.0))
+    t42 = ops.select(t40, ops.max(r - rho, 0.0) * (r + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t42))
+    t43 = (E_12_2 * E_23 - E_13_2 * E_22) * h
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t35 * t39, n_x_2 * t38)
+    t44 = X_2 * E_11_2 + E_21 * Y_2
+    t45 = X_2 * E_12_2 + Y_2 * E_22
+    t46 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t47 = h * (E_11_2 * E_22 - E_12_2 * E_21)
+    t48 = X_2 * E_13_2 + Y_2 * E_23
+    t49 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t42 + t43),
-        ops.select(failed, ops.nan, t44 - t45),
-        ops.select(failed, ops.nan, t46 + t47),
-        ops.select(failed, ops.nan, t43 - t42),
-        ops.select(failed, ops.nan, t45 + t44),
-        ops.select(failed, ops.nan, t47 - t46),
-        t48,
-        t48,
+        ops.select(failed, ops.nan, t43 + t44),
+        ops.select(failed, ops.nan, t45 - t46),
+        ops.select(failed, ops.nan, t47 + t48),
+        ops.select(failed, ops.nan, t44 - t43),
+        ops.select(failed, ops.nan, t46 + t45),
+        ops.select(failed, ops.nan, t48 - t47),
+        t49,
+        t49,
     )
 
 
@@ -358,31 +359,31 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     X = ops.select(all_same, 0.0, D * 0.5 + t25 / (2.0 * D))
     Y = ops.select(in_line, 0.0, left / (2.0 * j))
     t27 = r - ops.sqrt(X * X + Y * Y)
-    unreachable = ops.opposite(t26 & (-(r * ops.feasibility) <= t27))
-    failed = invalid | unreachable
-    t28 = ops.select(failed, ops.nan, 0.0)
-    t29 = ops.select(failed, ops.nan, c1_x)
-    t30 = ops.select(failed, ops.nan, c1_y)
-    t31 = ops.select(failed, ops.nan, c1_z)
-    t32 = ops.select(failed, ops.nan, t10)
-    t33 = ops.select(failed, ops.nan, t13)
-    t34 = ops.select(failed, ops.nan, -t11)
-    t35 = ops.select(failed, ops.nan, c2_y)
-    t36 = ops.select(failed, ops.nan, c2_z)
-    t37 = ops.opposite(failed)
-    t38 = ops.opposite(all_same)
-    t39 = t37 & t38
-    t40 = t37 & ops.opposite(in_line)
-    t41 = t40 & t38
-    t42 = t39 | t41
-    t43 = ops.select(t42 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t42 & same, t14, 1.0)), ops.sqrt(t43))
-    t44 = ops.select(t39, D_2, 1.0)
-    E_12_2 = ops.select(all_same, 0.0, t16 / t44)
-    E_11_2 = ops.select(all_same, 1.0, t15 / t44)
-    t45 = ops.sign(E_13)
-    t46 = E_11_2 * t45
-    E_13_2 = ops.select(all_same, 0.0, t18 / t44)
+    t28 = t26 & (-(ops.feasibility * (r * 0.25)) <= t27)
+    failed = invalid | ops.opposite(t28)
+    t29 = ops.select(failed, ops.nan, 0.0)
+    t30 = ops.select(failed, ops.nan, c1_x)
+    t31 = ops.select(failed, ops.nan, c1_y)
+    t32 = ops.select(failed, ops.nan, c1_z)
+    t33 = ops.select(failed, ops.nan, t10)
+    t34 = ops.select(failed, ops.nan, t13)
+    t35 = ops.select(failed, ops.nan, -t11)
+    t36 = ops.select(failed, ops.nan, c2_y)
+    t37 = ops.select(failed, ops.nan, c2_z)
+    t38 = ops.opposite(failed)
+    t39 = ops.opposite(all_same)
+    t40 = t38 & t39
+    t41 = t38 & ops.opposite(in_line)
+    t42 = t41 & t39
+    t43 = t40 | t42
+    t44 = ops.select(t43 & ops.opposite(same), t5, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t43 & same, t14, 1.0)), ops.sqrt(t44))
+    t45 = ops.select(t40, D_2, 1.0)
+    E_12_2 = ops.select(all_same, 0.0, t16 / t45)
+    E_11_2 = ops.select(all_same, 1.0, t15 / t45)
+    t46 = ops.sign(E_13)
+    t47 = E_11_2 * t46
+    E_13_2 = ops.select(all_same, 0.0, t18 / t45)
     k_0_2 = t12 * E_11_2 + E_12_2 * t17 + E_13_2 * t19
     m_z_2 = t19 - E_13_2 * k_0_2
     m_x_2 = t12 - E_11_2 * k_0_2
@@ -391,66 +392,66 @@ def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     n_z_2 = m_z_2 - E_13_2 * k_1_2
     n_x_2 = m_x_2 - E_11_2 * k_1_2
     n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t47 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t40, t47, 1.0))
-    t48 = ops.select(t40, j_2, 1.0)
-    E_23 = ops.select(in_line, -t46, n_z_2 / t48)
-    t49 = ops.select(t37 & in_line, E_13_2 + t45, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t46 / t49), n_y_2 / t48)
+    t48 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    j_2 = ops.sqrt(ops.select(t41, t48, 1.0))
+    t49 = ops.select(t41, j_2, 1.0)
+    E_23 = ops.select(in_line, -t47, n_z_2 / t49)
+    t50 = ops.select(t38 & in_line, E_13_2 + t46, 1.0)
+    E_22 = ops.select(in_line, -(E_12_2 * t47 / t50), n_y_2 / t49)
     touching = ops.max(t27, 0.0) <= t6
-    t50 = t37 & ops.opposite(touching)
-    t51 = D_2 * 0.5 + t25 / ops.select(t39, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t51)
-    t52 = t25 * (k_0_2 + k_1_2) / ops.select(t41, D_2, 1.0)
-    t53 = ops.select(all_same, 0.0, t23 - t52) / ops.select(t40, 2.0 * j_2, 1.0)
-    Y_2 = ops.select(in_line, 0.0, t53)
-    rho = ops.sqrt(ops.select(t50, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t54 = ops.select(t50, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t54))
-    t55 = (E_12_2 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t45 / t49, n_x_2 / t48)
-    t56 = E_11_2 * X_2 + Y_2 * E_21
-    t57 = E_12_2 * X_2 + Y_2 * E_22
-    t58 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t59 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t60 = E_13_2 * X_2 + Y_2 * E_23
+    t51 = t38 & ops.opposite(touching)
+    t52 = D_2 * 0.5 + t25 / ops.select(t40, 2.0 * D_2, 1.0)
+    X_2 = ops.select(all_same, 0.0, t52)
+    t53 = t25 * (k_0_2 + k_1_2) / ops.select(t42, D_2, 1.0)
+    t54 = ops.select(all_same, 0.0, t23 - t53) / ops.select(t41, 2.0 * j_2, 1.0)
+    Y_2 = ops.select(in_line, 0.0, t54)
+    rho = ops.sqrt(ops.select(t51, X_2 * X_2 + Y_2 * Y_2, 1.0))
+    t55 = ops.select(t51, ops.max(r - rho, 0.0) * (r + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t55))
+    t56 = (E_12_2 * E_23 - E_13_2 * E_22) * h
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t46 / t50, n_x_2 / t49)
+    t57 = E_11_2 * X_2 + Y_2 * E_21
+    t58 = E_12_2 * X_2 + Y_2 * E_22
+    t59 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t60 = h * (E_11_2 * E_22 - E_12_2 * E_21)
+    t61 = E_13_2 * X_2 + Y_2 * E_23
     return (
-        t28,
-        t28,
-        t28,
         t29,
-        t28,
-        t28,
+        t29,
+        t29,
+        t30,
+        t29,
         t29,
         t30,
         t31,
         t32,
         t33,
-        t28,
         t34,
+        t29,
         t35,
         t36,
-        ops.select(failed, ops.nan, t55 + t56),
-        ops.select(failed, ops.nan, t57 - t58),
-        ops.select(failed, ops.nan, t59 + t60),
-        t28,
-        t28,
-        t28,
+        t37,
+        ops.select(failed, ops.nan, t56 + t57),
+        ops.select(failed, ops.nan, t58 - t59),
+        ops.select(failed, ops.nan, t60 + t61),
         t29,
-        t28,
-        t28,
+        t29,
+        t29,
+        t30,
+        t29,
         t29,
         t30,
         t31,
         t32,
         t33,
-        t28,
         t34,
+        t29,
         t35,
         t36,
-        ops.select(failed, ops.nan, t56 - t55),
-        ops.select(failed, ops.nan, t58 + t57),
-        ops.select(failed, ops.nan, t60 - t59),
+        t37,
+        ops.select(failed, ops.nan, t57 - t56),
+        ops.select(failed, ops.nan, t59 + t58),
+        ops.select(failed, ops.nan, t61 - t60),
     )
 
 
@@ -562,22 +563,22 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     X = ops.select(all_same, 0.0, D * 0.5 + t23 / (2.0 * D))
     Y = ops.select(in_line, 0.0, left / (2.0 * j))
     t25 = r - ops.sqrt(X * X + Y * Y)
-    unreachable = ops.opposite(t24 & (-(r * ops.feasibility) <= t25))
-    failed = invalid | unreachable
-    t26 = ops.opposite(failed)
-    t27 = ops.opposite(all_same)
-    t28 = t26 & t27
-    t29 = t26 & ops.opposite(in_line)
-    t30 = t29 & t27
-    t31 = t28 | t30
-    t32 = ops.select(t31 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t31 & same, t12, 1.0)), ops.sqrt(t32))
-    t33 = ops.select(t28, D_2, 1.0)
-    E_12_2 = ops.select(all_same, 0.0, t14 / t33)
-    E_11_2 = ops.select(all_same, 1.0, t13 / t33)
-    t34 = ops.sign(E_13)
-    t35 = E_11_2 * t34
-    E_13_2 = ops.select(all_same, 0.0, t16 / t33)
+    t26 = t24 & (-(ops.feasibility * (r * 0.25)) <= t25)
+    failed = invalid | ops.opposite(t26)
+    t27 = ops.opposite(failed)
+    t28 = ops.opposite(all_same)
+    t29 = t27 & t28
+    t30 = t27 & ops.opposite(in_line)
+    t31 = t30 & t28
+    t32 = t29 | t31
+    t33 = ops.select(t32 & ops.opposite(same), t5, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t32 & same, t12, 1.0)), ops.sqrt(t33))
+    t34 = ops.select(t29, D_2, 1.0)
+    E_12_2 = ops.select(all_same, 0.0, t14 / t34)
+    E_11_2 = ops.select(all_same, 1.0, t13 / t34)
+    t35 = ops.sign(E_13)
+    t36 = E_11_2 * t35
+    E_13_2 = ops.select(all_same, 0.0, t16 / t34)
     k_0_2 = E_11_2 * t11 + E_12_2 * t15 + E_13_2 * t17
     m_z_2 = t17 - E_13_2 * k_0_2
     m_x_2 = t11 - E_11_2 * k_0_2
@@ -586,56 +587,56 @@ def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, bet
     n_z_2 = m_z_2 - E_13_2 * k_1_2
     n_x_2 = m_x_2 - E_11_2 * k_1_2
     n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t36 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t29, t36, 1.0))
-    t37 = ops.select(t29, j_2, 1.0)
-    E_23 = ops.select(in_line, -t35, n_z_2 / t37)
-    t38 = ops.select(t26 & in_line, E_13_2 + t34, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t35 / t38), n_y_2 / t37)
+    t37 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    j_2 = ops.sqrt(ops.select(t30, t37, 1.0))
+    t38 = ops.select(t30, j_2, 1.0)
+    E_23 = ops.select(in_line, -t36, n_z_2 / t38)
+    t39 = ops.select(t27 & in_line, E_13_2 + t35, 1.0)
+    E_22 = ops.select(in_line, -(E_12_2 * t36 / t39), n_y_2 / t38)
     touching = ops.max(t25, 0.0) <= t6
-    t39 = t26 & ops.opposite(touching)
-    t40 = D_2 * 0.5 + t23 / ops.select(t28, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t40)
-    t41 = t23 * (k_0_2 + k_1_2) / ops.select(t30, D_2, 1.0)
-    t42 = ops.select(all_same, 0.0, t21 - t41) / ops.select(t29, 2.0 * j_2, 1.0)
-    Y_2 = ops.select(in_line, 0.0, t42)
-    rho = ops.sqrt(ops.select(t39, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t43 = ops.select(t39, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t43))
-    t44 = (E_12_2 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t34 / t38, n_x_2 / t37)
-    t45 = E_11_2 * X_2 + E_21 * Y_2
-    A_01 = t44 + t45
-    t46 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t47 = X_2 * E_12_2 + Y_2 * E_22
-    t48 = t46 - t47
-    t49 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t50 = X_2 * E_13_2 + Y_2 * E_23
-    A_03 = t49 + t50
-    t51 = t44 - t45
-    A_02_below = t46 + t47
-    t52 = t49 - t50
-    t53 = ops.select(failed, ops.nan, A_02_below - c1_y)
-    t54 = ops.select(failed, ops.nan, A_02_below - c2_y)
+    t40 = t27 & ops.opposite(touching)
+    t41 = D_2 * 0.5 + t23 / ops.select(t29, 2.0 * D_2, 1.0)
+    X_2 = ops.select(all_same, 0.0, t41)
+    t42 = t23 * (k_0_2 + k_1_2) / ops.select(t31, D_2, 1.0)
+    t43 = ops.select(all_same, 0.0, t21 - t42) / ops.select(t30, 2.0 * j_2, 1.0)
+    Y_2 = ops.select(in_line, 0.0, t43)
+    rho = ops.sqrt(ops.select(t40, X_2 * X_2 + Y_2 * Y_2, 1.0))
+    t44 = ops.select(t40, ops.max(r - rho, 0.0) * (r + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t44))
+    t45 = (E_12_2 * E_23 - E_13_2 * E_22) * h
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t35 / t39, n_x_2 / t38)
+    t46 = E_11_2 * X_2 + E_21 * Y_2
+    A_01 = t45 + t46
+    t47 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t48 = X_2 * E_12_2 + Y_2 * E_22
+    t49 = t47 - t48
+    t50 = h * (E_11_2 * E_22 - E_12_2 * E_21)
+    t51 = X_2 * E_13_2 + Y_2 * E_23
+    A_03 = t50 + t51
+    t52 = t45 - t46
+    A_02_below = t47 + t48
+    t53 = t50 - t51
+    t54 = ops.select(failed, ops.nan, A_02_below - c1_y)
+    t55 = ops.select(failed, ops.nan, A_02_below - c2_y)
     return (
         ops.select(failed, ops.nan, A_01),
-        ops.select(failed, ops.nan, -t48),
+        ops.select(failed, ops.nan, -t49),
         ops.select(failed, ops.nan, A_03),
         ops.select(failed, ops.nan, A_01 - c1_x),
-        ops.select(failed, ops.nan, -(c1_y + t48)),
+        ops.select(failed, ops.nan, -(c1_y + t49)),
         ops.select(failed, ops.nan, A_03 - c1_z),
         ops.select(failed, ops.nan, t10 + A_01),
-        ops.select(failed, ops.nan, -(c2_y + t48)),
+        ops.select(failed, ops.nan, -(c2_y + t49)),
         ops.select(failed, ops.nan, A_03 - c2_z),
-        ops.select(failed, ops.nan, -t51),
-        ops.select(failed, ops.nan, A_02_below),
         ops.select(failed, ops.nan, -t52),
-        ops.select(failed, ops.nan, -(c1_x + t51)),
-        t53,
-        ops.select(failed, ops.nan, -(c1_z + t52)),
-        ops.select(failed, ops.nan, t10 - t51),
+        ops.select(failed, ops.nan, A_02_below),
+        ops.select(failed, ops.nan, -t53),
+        ops.select(failed, ops.nan, -(c1_x + t52)),
         t54,
-        ops.select(failed, ops.nan, -(c2_z + t52)),
+        ops.select(failed, ops.nan, -(c1_z + t53)),
+        ops.select(failed, ops.nan, t10 - t52),
+        t55,
+        ops.select(failed, ops.nan, -(c2_z + t53)),
     )
 
 
@@ -747,22 +748,22 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     X = ops.select(all_same, 0.0, D * 0.5 + t23 / (2.0 * D))
     Y = ops.select(in_line, 0.0, left / (2.0 * j))
     t25 = r - ops.sqrt(X * X + Y * Y)
-    unreachable = ops.opposite(t24 & (-(r * ops.feasibility) <= t25))
-    failed = invalid | unreachable
-    t26 = ops.opposite(failed)
-    t27 = ops.opposite(all_same)
-    t28 = t26 & t27
-    t29 = t26 & ops.opposite(in_line)
-    t30 = t29 & t27
-    t31 = t28 | t30
-    t32 = ops.select(t31 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t31 & same, t12, 1.0)), ops.sqrt(t32))
-    t33 = ops.select(t28, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t13 / t33)
-    t34 = ops.sign(E_13)
-    t35 = E_11_2 * t34
-    E_13_2 = ops.select(all_same, 0.0, t16 / t33)
-    E_12_2 = ops.select(all_same, 0.0, t14 / t33)
+    t26 = t24 & (-(ops.feasibility * (r * 0.25)) <= t25)
+    failed = invalid | ops.opposite(t26)
+    t27 = ops.opposite(failed)
+    t28 = ops.opposite(all_same)
+    t29 = t27 & t28
+    t30 = t27 & ops.opposite(in_line)
+    t31 = t30 & t28
+    t32 = t29 | t31
+    t33 = ops.select(t32 & ops.opposite(same), t5, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t32 & same, t12, 1.0)), ops.sqrt(t33))
+    t34 = ops.select(t29, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, t13 / t34)
+    t35 = ops.sign(E_13)
+    t36 = E_11_2 * t35
+    E_13_2 = ops.select(all_same, 0.0, t16 / t34)
+    E_12_2 = ops.select(all_same, 0.0, t14 / t34)
     k_0_2 = t11 * E_11_2 + E_12_2 * t15 + E_13_2 * t17
     m_z_2 = t17 - E_13_2 * k_0_2
     m_x_2 = t11 - E_11_2 * k_0_2
@@ -771,46 +772,46 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     n_z_2 = m_z_2 - E_13_2 * k_1_2
     n_x_2 = m_x_2 - E_11_2 * k_1_2
     n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t36 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t29, t36, 1.0))
-    t37 = ops.select(t29, j_2, 1.0)
-    E_23 = ops.select(in_line, -t35, n_z_2 / t37)
-    t38 = ops.select(t26 & in_line, E_13_2 + t34, 1.0)
-    E_21 = ops.select(in_line, 1.0 - t34 * (E_11_2 * E_11_2) / t38, n_x_2 / t37)
+    t37 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    j_2 = ops.sqrt(ops.select(t30, t37, 1.0))
+    t38 = ops.select(t30, j_2, 1.0)
+    E_23 = ops.select(in_line, -t36, n_z_2 / t38)
+    t39 = ops.select(t27 & in_line, E_13_2 + t35, 1.0)
+    E_21 = ops.select(in_line, 1.0 - t35 * (E_11_2 * E_11_2) / t39, n_x_2 / t38)
     touching = ops.max(t25, 0.0) <= t6
-    t39 = t26 & ops.opposite(touching)
-    t40 = D_2 * 0.5 + t23 / ops.select(t28, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t40)
-    t41 = t23 * (k_0_2 + k_1_2) / ops.select(t30, D_2, 1.0)
-    t42 = ops.select(all_same, 0.0, t21 - t41) / ops.select(t29, 2.0 * j_2, 1.0)
-    Y_2 = ops.select(in_line, 0.0, t42)
-    rho = ops.sqrt(ops.select(t39, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t43 = ops.select(t39, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t43))
-    t44 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    E_22 = ops.select(in_line, -(E_12_2 * t35 / t38), n_y_2 / t37)
-    t45 = E_12_2 * X_2 + E_22 * Y_2
-    t46 = t44 - t45
-    t47 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t48 = X_2 * E_13_2 + Y_2 * E_23
-    A_03 = t47 + t48
-    t49 = ops.select(failed, ops.nan, c1_z * (c1_y + t46) - c1_y * (c1_z - A_03))
-    t50 = s_gamma * c2_z
-    t51 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    t52 = X_2 * E_11_2 + Y_2 * E_21
-    t53 = c_gamma * c2_z
-    t54 = t50 * (t10 + (t51 + t52)) + t53 * (c2_y + t46)
-    t55 = ops.select(failed, ops.nan, t54 - t8 * (c2_z - A_03))
-    A_02_below = t44 + t45
-    t56 = t47 - t48
-    B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t56)
-    t57 = t50 * (t10 - (t51 - t52)) + t53 * (c2_y - A_02_below)
-    t58 = ops.select(failed, ops.nan, t57 - t8 * (c2_z + t56))
+    t40 = t27 & ops.opposite(touching)
+    t41 = D_2 * 0.5 + t23 / ops.select(t29, 2.0 * D_2, 1.0)
+    X_2 = ops.select(all_same, 0.0, t41)
+    t42 = t23 * (k_0_2 + k_1_2) / ops.select(t31, D_2, 1.0)
+    t43 = ops.select(all_same, 0.0, t21 - t42) / ops.select(t30, 2.0 * j_2, 1.0)
+    Y_2 = ops.select(in_line, 0.0, t43)
+    rho = ops.sqrt(ops.select(t40, X_2 * X_2 + Y_2 * Y_2, 1.0))
+    t44 = ops.select(t40, ops.max(r - rho, 0.0) * (r + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t44))
+    t45 = (E_11_2 * E_23 - E_13_2 * E_21) * h
+    E_22 = ops.select(in_line, -(E_12_2 * t36 / t39), n_y_2 / t38)
+    t46 = E_12_2 * X_2 + E_22 * Y_2
+    t47 = t45 - t46
+    t48 = h * (E_11_2 * E_22 - E_12_2 * E_21)
+    t49 = X_2 * E_13_2 + Y_2 * E_23
+    A_03 = t48 + t49
+    t50 = ops.select(failed, ops.nan, c1_z * (c1_y + t47) - c1_y * (c1_z - A_03))
+    t51 = s_gamma * c2_z
+    t52 = h * (E_12_2 * E_23 - E_13_2 * E_22)
+    t53 = X_2 * E_11_2 + Y_2 * E_21
+    t54 = c_gamma * c2_z
+    t55 = t51 * (t10 + (t52 + t53)) + t54 * (c2_y + t47)
+    t56 = ops.select(failed, ops.nan, t55 - t8 * (c2_z - A_03))
+    A_02_below = t45 + t46
+    t57 = t48 - t49
+    B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t57)
+    t58 = t51 * (t10 - (t52 - t53)) + t54 * (c2_y - A_02_below)
+    t59 = ops.select(failed, ops.nan, t58 - t8 * (c2_z + t57))
     return (
-        t49,
-        t55,
+        t50,
+        t56,
         ops.select(failed, ops.nan, B_11_below),
-        t58,
+        t59,
     )
 
 
@@ -923,21 +924,21 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     X = ops.select(all_same, 0.0, D * 0.5 + t23 / (2.0 * D))
     Y = ops.select(in_line, 0.0, left / (2.0 * j))
     t25 = r - ops.sqrt(X * X + Y * Y)
-    unreachable = ops.opposite(t24 & (-(r * ops.feasibility) <= t25))
-    failed = invalid | unreachable
-    t26 = ops.opposite(failed)
-    t27 = t26 & ops.opposite(in_line)
-    t28 = ops.opposite(all_same)
-    t29 = t27 & t28
-    t30 = t26 | t29
-    t31 = ops.select(t30 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t30 & same, t12, 1.0)), ops.sqrt(t31))
-    t32 = ops.select(t30 & t28, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t13 / t32)
-    t33 = ops.sign(E_13)
-    t34 = E_11_2 * t33
-    E_13_2 = ops.select(all_same, 0.0, t16 / t32)
-    E_12_2 = ops.select(all_same, 0.0, t14 / t32)
+    t26 = t24 & (-(ops.feasibility * (r * 0.25)) <= t25)
+    failed = invalid | ops.opposite(t26)
+    t27 = ops.opposite(failed)
+    t28 = t27 & ops.opposite(in_line)
+    t29 = ops.opposite(all_same)
+    t30 = t28 & t29
+    t31 = t27 | t30
+    t32 = ops.select(t31 & ops.opposite(same), t5, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t31 & same, t12, 1.0)), ops.sqrt(t32))
+    t33 = ops.select(t31 & t29, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, t13 / t33)
+    t34 = ops.sign(E_13)
+    t35 = E_11_2 * t34
+    E_13_2 = ops.select(all_same, 0.0, t16 / t33)
+    E_12_2 = ops.select(all_same, 0.0, t14 / t33)
     k_0_2 = t11 * E_11_2 + E_12_2 * t15 + E_13_2 * t17
     m_z_2 = t17 - E_13_2 * k_0_2
     m_x_2 = t11 - E_11_2 * k_0_2
@@ -946,79 +947,79 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     n_z_2 = m_z_2 - E_13_2 * k_1_2
     n_x_2 = m_x_2 - E_11_2 * k_1_2
     n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t35 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t26, t35, 1.0))
-    t36 = ops.select(t27, j_2, 1.0)
-    E_23 = ops.select(in_line, -t34, n_z_2 / t36)
-    t37 = ops.select(t26 & in_line, E_13_2 + t33, 1.0)
-    E_21 = ops.select(in_line, 1.0 - t33 * (E_11_2 * E_11_2) / t37, n_x_2 / t36)
+    t36 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    j_2 = ops.sqrt(ops.select(t27, t36, 1.0))
+    t37 = ops.select(t28, j_2, 1.0)
+    E_23 = ops.select(in_line, -t35, n_z_2 / t37)
+    t38 = ops.select(t27 & in_line, E_13_2 + t34, 1.0)
+    E_21 = ops.select(in_line, 1.0 - t34 * (E_11_2 * E_11_2) / t38, n_x_2 / t37)
     touching = ops.max(t25, 0.0) <= t6
-    t38 = t26 & ops.opposite(touching)
-    t39 = D_2 * 0.5 + t23 / ops.select(t26 & t28, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t39)
-    t40 = t23 * (k_0_2 + k_1_2) / ops.select(t29, D_2, 1.0)
-    t41 = ops.select(all_same, 0.0, t21 - t40) / ops.select(t27, 2.0 * j_2, 1.0)
-    Y_2 = ops.select(in_line, 0.0, t41)
-    rho = ops.sqrt(ops.select(t38, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t42 = ops.select(t38, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t42))
-    t43 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    E_22 = ops.select(in_line, -(E_12_2 * t34 / t37), n_y_2 / t36)
-    t44 = E_12_2 * X_2 + E_22 * Y_2
-    t45 = t43 - t44
-    t46 = c1_y + t45
-    t47 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t48 = X_2 * E_13_2 + Y_2 * E_23
-    A_03 = t47 + t48
-    t49 = c1_z - A_03
-    B_11 = c1_z * t46 - c1_y * t49
-    t50 = c2_z - A_03
-    t51 = c2_y + t45
-    t52 = ops.select(t26, D_2 * j_2 * h, 1.0)
-    t53 = ops.select(failed, ops.nan, -(B_11 * (t45 * t50 + A_03 * t51) / t52))
-    t54 = s_gamma * c2_z
-    t55 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    t56 = X_2 * E_11_2 + Y_2 * E_21
-    A_01 = t55 + t56
+    t39 = t27 & ops.opposite(touching)
+    t40 = D_2 * 0.5 + t23 / ops.select(t27 & t29, 2.0 * D_2, 1.0)
+    X_2 = ops.select(all_same, 0.0, t40)
+    t41 = t23 * (k_0_2 + k_1_2) / ops.select(t30, D_2, 1.0)
+    t42 = ops.select(all_same, 0.0, t21 - t41) / ops.select(t28, 2.0 * j_2, 1.0)
+    Y_2 = ops.select(in_line, 0.0, t42)
+    rho = ops.sqrt(ops.select(t39, X_2 * X_2 + Y_2 * Y_2, 1.0))
+    t43 = ops.select(t39, ops.max(r - rho, 0.0) * (r + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t43))
+    t44 = (E_11_2 * E_23 - E_13_2 * E_21) * h
+    E_22 = ops.select(in_line, -(E_12_2 * t35 / t38), n_y_2 / t37)
+    t45 = E_12_2 * X_2 + E_22 * Y_2
+    t46 = t44 - t45
+    t47 = c1_y + t46
+    t48 = h * (E_11_2 * E_22 - E_12_2 * E_21)
+    t49 = X_2 * E_13_2 + Y_2 * E_23
+    A_03 = t48 + t49
+    t50 = c1_z - A_03
+    B_11 = c1_z * t47 - c1_y * t50
+    t51 = c2_z - A_03
+    t52 = c2_y + t46
+    t53 = ops.select(t27, D_2 * j_2 * h, 1.0)
+    t54 = ops.select(failed, ops.nan, -(B_11 * (t46 * t51 + A_03 * t52) / t53))
+    t55 = s_gamma * c2_z
+    t56 = h * (E_12_2 * E_23 - E_13_2 * E_22)
+    t57 = X_2 * E_11_2 + Y_2 * E_21
+    A_01 = t56 + t57
     A_21 = t10 + A_01
-    t57 = c_gamma * c2_z
-    B_22 = t54 * A_21 + t57 * t51 - t8 * t50
-    t58 = ops.select(failed, ops.nan, B_22 * (t45 * t49 + t46 * A_03) / t52)
-    t59 = ops.select(failed, ops.nan, -(B_11 * (t50 * A_01 + A_03 * A_21) / t52))
-    t60 = c1_x - A_01
-    t61 = ops.select(failed, ops.nan, B_22 * (t49 * A_01 - A_03 * t60) / t52)
-    t62 = ops.select(failed, ops.nan, B_11 * (t51 * A_01 - t45 * A_21) / t52)
-    t63 = ops.select(failed, ops.nan, -(B_22 * (t46 * A_01 + t45 * t60) / t52))
-    A_02_below = t43 + t44
-    t64 = c1_y - A_02_below
-    t65 = t47 - t48
-    t66 = c1_z + t65
-    B_11_below = c1_z * t64 - c1_y * t66
-    t67 = c2_z + t65
-    t68 = c2_y - A_02_below
-    t69 = B_11_below * (A_02_below * t67 + t65 * t68) / t52
-    t70 = t55 - t56
-    A_21_below = t10 - t70
-    B_22_below = t54 * A_21_below + t57 * t68 - t8 * t67
-    t71 = B_22_below * (A_02_below * t66 + t64 * t65) / t52
-    t72 = B_11_below * (t67 * t70 + t65 * A_21_below) / t52
-    t73 = c1_x + t70
-    t74 = ops.select(failed, ops.nan, B_22_below * (t66 * t70 - t65 * t73) / t52)
-    t75 = B_11_below * (t68 * t70 - A_02_below * A_21_below)
-    t76 = B_22_below * (t64 * t70 + A_02_below * t73) / t52
+    t58 = c_gamma * c2_z
+    B_22 = t55 * A_21 + t58 * t52 - t8 * t51
+    t59 = ops.select(failed, ops.nan, B_22 * (t46 * t50 + t47 * A_03) / t53)
+    t60 = ops.select(failed, ops.nan, -(B_11 * (t51 * A_01 + A_03 * A_21) / t53))
+    t61 = c1_x - A_01
+    t62 = ops.select(failed, ops.nan, B_22 * (t50 * A_01 - A_03 * t61) / t53)
+    t63 = ops.select(failed, ops.nan, B_11 * (t52 * A_01 - t46 * A_21) / t53)
+    t64 = ops.select(failed, ops.nan, -(B_22 * (t47 * A_01 + t46 * t61) / t53))
+    A_02_below = t44 + t45
+    t65 = c1_y - A_02_below
+    t66 = t48 - t49
+    t67 = c1_z + t66
+    B_11_below = c1_z * t65 - c1_y * t67
+    t68 = c2_z + t66
+    t69 = c2_y - A_02_below
+    t70 = B_11_below * (A_02_below * t68 + t66 * t69) / t53
+    t71 = t56 - t57
+    A_21_below = t10 - t71
+    B_22_below = t55 * A_21_below + t58 * t69 - t8 * t68
+    t72 = B_22_below * (A_02_below * t67 + t65 * t66) / t53
+    t73 = B_11_below * (t68 * t71 + t66 * A_21_below) / t53
+    t74 = c1_x + t71
+    t75 = ops.select(failed, ops.nan, B_22_below * (t67 * t71 - t66 * t74) / t53)
+    t76 = B_11_below * (t69 * t71 - A_02_below * A_21_below)
+    t77 = B_22_below * (t65 * t71 + A_02_below * t74) / t53
     return (
-        t53,
-        t58,
+        t54,
         t59,
-        t61,
+        t60,
         t62,
         t63,
-        ops.select(failed, ops.nan, -t69),
-        ops.select(failed, ops.nan, t71),
-        ops.select(failed, ops.nan, -t72),
-        t74,
-        ops.select(failed, ops.nan, t75 / t52),
-        ops.select(failed, ops.nan, -t76),
+        t64,
+        ops.select(failed, ops.nan, -t70),
+        ops.select(failed, ops.nan, t72),
+        ops.select(failed, ops.nan, -t73),
+        t75,
+        ops.select(failed, ops.nan, t76 / t53),
+        ops.select(failed, ops.nan, -t77),
     )
 
 
@@ -1132,21 +1133,21 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     X = ops.select(all_same, 0.0, D * 0.5 + t23 / (2.0 * D))
     Y = ops.select(in_line, 0.0, left / (2.0 * j))
     t25 = r - ops.sqrt(X * X + Y * Y)
-    unreachable = ops.opposite(t24 & (-(r * ops.feasibility) <= t25))
-    failed = invalid | unreachable
-    t26 = ops.opposite(failed)
-    t27 = t26 & ops.opposite(in_line)
-    t28 = ops.opposite(all_same)
-    t29 = t27 & t28
-    t30 = t26 | t29
-    t31 = ops.select(t30 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t30 & same, t12, 1.0)), ops.sqrt(t31))
-    t32 = ops.select(t30 & t28, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t13 / t32)
-    t33 = ops.sign(E_13)
-    t34 = E_11_2 * t33
-    E_13_2 = ops.select(all_same, 0.0, t16 / t32)
-    E_12_2 = ops.select(all_same, 0.0, t14 / t32)
+    t26 = t24 & (-(ops.feasibility * (r * 0.25)) <= t25)
+    failed = invalid | ops.opposite(t26)
+    t27 = ops.opposite(failed)
+    t28 = t27 & ops.opposite(in_line)
+    t29 = ops.opposite(all_same)
+    t30 = t28 & t29
+    t31 = t27 | t30
+    t32 = ops.select(t31 & ops.opposite(same), t5, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t31 & same, t12, 1.0)), ops.sqrt(t32))
+    t33 = ops.select(t31 & t29, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, t13 / t33)
+    t34 = ops.sign(E_13)
+    t35 = E_11_2 * t34
+    E_13_2 = ops.select(all_same, 0.0, t16 / t33)
+    E_12_2 = ops.select(all_same, 0.0, t14 / t33)
     k_0_2 = t11 * E_11_2 + E_12_2 * t15 + E_13_2 * t17
     m_z_2 = t17 - E_13_2 * k_0_2
     m_x_2 = t11 - E_11_2 * k_0_2
@@ -1155,48 +1156,48 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     n_z_2 = m_z_2 - E_13_2 * k_1_2
     n_x_2 = m_x_2 - E_11_2 * k_1_2
     n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t35 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t26, t35, 1.0))
-    t36 = ops.select(t27, j_2, 1.0)
-    E_23 = ops.select(in_line, -t34, n_z_2 / t36)
-    t37 = ops.select(t26 & in_line, E_13_2 + t33, 1.0)
-    E_21 = ops.select(in_line, 1.0 - t33 * (E_11_2 * E_11_2) / t37, n_x_2 / t36)
+    t36 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    j_2 = ops.sqrt(ops.select(t27, t36, 1.0))
+    t37 = ops.select(t28, j_2, 1.0)
+    E_23 = ops.select(in_line, -t35, n_z_2 / t37)
+    t38 = ops.select(t27 & in_line, E_13_2 + t34, 1.0)
+    E_21 = ops.select(in_line, 1.0 - t34 * (E_11_2 * E_11_2) / t38, n_x_2 / t37)
     touching = ops.max(t25, 0.0) <= t6
-    t38 = t26 & ops.opposite(touching)
-    t39 = D_2 * 0.5 + t23 / ops.select(t26 & t28, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t39)
-    t40 = t23 * (k_0_2 + k_1_2) / ops.select(t29, D_2, 1.0)
-    t41 = ops.select(all_same, 0.0, t21 - t40) / ops.select(t27, 2.0 * j_2, 1.0)
-    Y_2 = ops.select(in_line, 0.0, t41)
-    rho = ops.sqrt(ops.select(t38, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t42 = ops.select(t38, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t42))
-    t43 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    E_22 = ops.select(in_line, -(E_12_2 * t34 / t37), n_y_2 / t36)
-    t44 = E_12_2 * X_2 + E_22 * Y_2
-    t45 = t43 - t44
-    t46 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t47 = X_2 * E_13_2 + Y_2 * E_23
-    A_03 = t46 + t47
-    t48 = ops.select(failed, ops.nan, c1_z * (c1_y + t45) - c1_y * (c1_z - A_03))
-    t49 = s_gamma * c2_z
-    t50 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    t51 = X_2 * E_11_2 + Y_2 * E_21
-    t52 = c_gamma * c2_z
-    t53 = t49 * (t10 + (t50 + t51)) + t52 * (c2_y + t45)
-    t54 = ops.select(failed, ops.nan, t53 - t8 * (c2_z - A_03))
+    t39 = t27 & ops.opposite(touching)
+    t40 = D_2 * 0.5 + t23 / ops.select(t27 & t29, 2.0 * D_2, 1.0)
+    X_2 = ops.select(all_same, 0.0, t40)
+    t41 = t23 * (k_0_2 + k_1_2) / ops.select(t30, D_2, 1.0)
+    t42 = ops.select(all_same, 0.0, t21 - t41) / ops.select(t28, 2.0 * j_2, 1.0)
+    Y_2 = ops.select(in_line, 0.0, t42)
+    rho = ops.sqrt(ops.select(t39, X_2 * X_2 + Y_2 * Y_2, 1.0))
+    t43 = ops.select(t39, ops.max(r - rho, 0.0) * (r + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t43))
+    t44 = (E_11_2 * E_23 - E_13_2 * E_21) * h
+    E_22 = ops.select(in_line, -(E_12_2 * t35 / t38), n_y_2 / t37)
+    t45 = E_12_2 * X_2 + E_22 * Y_2
+    t46 = t44 - t45
+    t47 = h * (E_11_2 * E_22 - E_12_2 * E_21)
+    t48 = X_2 * E_13_2 + Y_2 * E_23
+    A_03 = t47 + t48
+    t49 = ops.select(failed, ops.nan, c1_z * (c1_y + t46) - c1_y * (c1_z - A_03))
+    t50 = s_gamma * c2_z
+    t51 = h * (E_12_2 * E_23 - E_13_2 * E_22)
+    t52 = X_2 * E_11_2 + Y_2 * E_21
+    t53 = c_gamma * c2_z
+    t54 = t50 * (t10 + (t51 + t52)) + t53 * (c2_y + t46)
+    t55 = ops.select(failed, ops.nan, t54 - t8 * (c2_z - A_03))
     Delta = D_2 * j_2 * h
-    A_02_below = t43 + t44
-    t55 = t46 - t47
-    B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t55)
-    t56 = t49 * (t10 - (t50 - t51)) + t52 * (c2_y - A_02_below)
-    t57 = ops.select(failed, ops.nan, t56 - t8 * (c2_z + t55))
+    A_02_below = t44 + t45
+    t56 = t47 - t48
+    B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t56)
+    t57 = t50 * (t10 - (t51 - t52)) + t53 * (c2_y - A_02_below)
+    t58 = ops.select(failed, ops.nan, t57 - t8 * (c2_z + t56))
     return (
-        t48,
-        t54,
+        t49,
+        t55,
         ops.select(failed, ops.nan, Delta),
         ops.select(failed, ops.nan, B_11_below),
-        t57,
+        t58,
         ops.select(failed, ops.nan, -Delta),
     )
 
@@ -1310,21 +1311,21 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     X = ops.select(all_same, 0.0, D * 0.5 + t23 / (2.0 * D))
     Y = ops.select(in_line, 0.0, left / (2.0 * j))
     t25 = r - ops.sqrt(X * X + Y * Y)
-    unreachable = ops.opposite(t24 & (-(r * ops.feasibility) <= t25))
-    failed = invalid | unreachable
-    t26 = ops.opposite(failed)
-    t27 = t26 & ops.opposite(in_line)
-    t28 = ops.opposite(all_same)
-    t29 = t27 & t28
-    t30 = t26 | t29
-    t31 = ops.select(t30 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t30 & same, t12, 1.0)), ops.sqrt(t31))
-    t32 = ops.select(t30 & t28, D_2, 1.0)
-    E_12_2 = ops.select(all_same, 0.0, t14 / t32)
-    E_11_2 = ops.select(all_same, 1.0, t13 / t32)
-    t33 = ops.sign(E_13)
-    t34 = E_11_2 * t33
-    E_13_2 = ops.select(all_same, 0.0, t16 / t32)
+    t26 = t24 & (-(ops.feasibility * (r * 0.25)) <= t25)
+    failed = invalid | ops.opposite(t26)
+    t27 = ops.opposite(failed)
+    t28 = t27 & ops.opposite(in_line)
+    t29 = ops.opposite(all_same)
+    t30 = t28 & t29
+    t31 = t27 | t30
+    t32 = ops.select(t31 & ops.opposite(same), t5, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t31 & same, t12, 1.0)), ops.sqrt(t32))
+    t33 = ops.select(t31 & t29, D_2, 1.0)
+    E_12_2 = ops.select(all_same, 0.0, t14 / t33)
+    E_11_2 = ops.select(all_same, 1.0, t13 / t33)
+    t34 = ops.sign(E_13)
+    t35 = E_11_2 * t34
+    E_13_2 = ops.select(all_same, 0.0, t16 / t33)
     k_0_2 = E_11_2 * t11 + E_12_2 * t15 + E_13_2 * t17
     m_z_2 = t17 - E_13_2 * k_0_2
     m_x_2 = t11 - E_11_2 * k_0_2
@@ -1333,92 +1334,92 @@ def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta
     n_z_2 = m_z_2 - E_13_2 * k_1_2
     n_x_2 = m_x_2 - E_11_2 * k_1_2
     n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t35 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t26, t35, 1.0))
-    t36 = ops.select(t27, j_2, 1.0)
-    E_23 = ops.select(in_line, -t34, n_z_2 / t36)
-    t37 = ops.select(t26 & in_line, E_13_2 + t33, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t34 / t37), n_y_2 / t36)
+    t36 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
+    j_2 = ops.sqrt(ops.select(t27, t36, 1.0))
+    t37 = ops.select(t28, j_2, 1.0)
+    E_23 = ops.select(in_line, -t35, n_z_2 / t37)
+    t38 = ops.select(t27 & in_line, E_13_2 + t34, 1.0)
+    E_22 = ops.select(in_line, -(E_12_2 * t35 / t38), n_y_2 / t37)
     touching = ops.max(t25, 0.0) <= t6
-    t38 = t26 & ops.opposite(touching)
-    t39 = D_2 * 0.5 + t23 / ops.select(t26 & t28, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t39)
-    t40 = t23 * (k_0_2 + k_1_2) / ops.select(t29, D_2, 1.0)
-    t41 = ops.select(all_same, 0.0, t21 - t40) / ops.select(t27, 2.0 * j_2, 1.0)
-    Y_2 = ops.select(in_line, 0.0, t41)
-    rho = ops.sqrt(ops.select(t38, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t42 = ops.select(t38, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t42))
-    t43 = (E_12_2 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t33 / t37, n_x_2 / t36)
-    t44 = E_11_2 * X_2 + E_21 * Y_2
-    A_01 = t43 + t44
-    t45 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t46 = X_2 * E_12_2 + Y_2 * E_22
-    t47 = t45 - t46
-    t48 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t49 = X_2 * E_13_2 + Y_2 * E_23
-    A_03 = t48 + t49
-    t50 = ops.select(t26, A_01 * A_01 + t47 * t47 + A_03 * A_03, 1.0)
-    strut = ops.sqrt(t50)
-    t51 = c1_x - A_01
-    t52 = ops.select(t26, strut, 1.0)
-    radial_x = A_01 / t52
-    t53 = c1_y + t47
-    t54 = t47 / t52
-    t55 = c1_z - A_03
-    radial_z = A_03 / t52
-    t56 = t51 * radial_x - t53 * t54 + t55 * radial_z
-    t57 = t51 - radial_x * t56
-    t58 = t53 + t54 * t56
-    t59 = t55 - radial_z * t56
-    square1 = t57 * t57 + t58 * t58 + t59 * t59
+    t39 = t27 & ops.opposite(touching)
+    t40 = D_2 * 0.5 + t23 / ops.select(t27 & t29, 2.0 * D_2, 1.0)
+    X_2 = ops.select(all_same, 0.0, t40)
+    t41 = t23 * (k_0_2 + k_1_2) / ops.select(t30, D_2, 1.0)
+    t42 = ops.select(all_same, 0.0, t21 - t41) / ops.select(t28, 2.0 * j_2, 1.0)
+    Y_2 = ops.select(in_line, 0.0, t42)
+    rho = ops.sqrt(ops.select(t39, X_2 * X_2 + Y_2 * Y_2, 1.0))
+    t43 = ops.select(t39, ops.max(r - rho, 0.0) * (r + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t43))
+    t44 = (E_12_2 * E_23 - E_13_2 * E_22) * h
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t34 / t38, n_x_2 / t37)
+    t45 = E_11_2 * X_2 + E_21 * Y_2
+    A_01 = t44 + t45
+    t46 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t47 = X_2 * E_12_2 + Y_2 * E_22
+    t48 = t46 - t47
+    t49 = h * (E_11_2 * E_22 - E_12_2 * E_21)
+    t50 = X_2 * E_13_2 + Y_2 * E_23
+    A_03 = t49 + t50
+    t51 = ops.select(t27, A_01 * A_01 + t48 * t48 + A_03 * A_03, 1.0)
+    strut = ops.sqrt(t51)
+    t52 = c1_x - A_01
+    t53 = ops.select(t27, strut, 1.0)
+    radial_x = A_01 / t53
+    t54 = c1_y + t48
+    t55 = t48 / t53
+    t56 = c1_z - A_03
+    radial_z = A_03 / t53
+    t57 = t52 * radial_x - t54 * t55 + t56 * radial_z
+    t58 = t52 - radial_x * t57
+    t59 = t54 + t55 * t57
+    t60 = t56 - radial_z * t57
+    square1 = t58 * t58 + t59 * t59 + t60 * t60
     A_21 = t10 + A_01
-    t60 = c2_y + t47
-    t61 = c2_z - A_03
-    off2 = radial_x * A_21 + t54 * t60 - radial_z * t61
+    t61 = c2_y + t48
+    t62 = c2_z - A_03
+    off2 = radial_x * A_21 + t55 * t61 - radial_z * t62
     t2_x = A_21 - radial_x * off2
-    t62 = t60 - t54 * off2
-    t63 = t61 + radial_z * off2
-    square2 = t2_x * t2_x + t62 * t62 + t63 * t63
-    t64 = square1 - square2
-    t65 = t57 * t2_x - t58 * t62 - t59 * t63
-    t66 = ops.select(t26, t64 * t64 + 4.0 * (t65 * t65), 1.0)
-    t67 = ops.select(t26, 2.0 * (D_2 * j_2 * h), 1.0)
-    t68 = strut * (square1 + square2 + ops.sqrt(t66)) / t67
-    t69 = t43 - t44
-    A_02_below = t45 + t46
-    t70 = t48 - t49
-    t71 = t69 * t69 + A_02_below * A_02_below + t70 * t70
-    strut_below = ops.sqrt(ops.select(t26, t71, 1.0))
-    t72 = c1_x + t69
-    t73 = ops.select(t26, strut_below, 1.0)
-    t74 = t69 / t73
-    t75 = c1_y - A_02_below
-    radial_y_below = A_02_below / t73
-    t76 = c1_z + t70
-    t77 = t70 / t73
-    t78 = t72 * t74 - t75 * radial_y_below + t76 * t77
-    t79 = t72 - t74 * t78
-    t80 = t75 + radial_y_below * t78
-    t81 = t76 - t77 * t78
-    square1_below = t79 * t79 + t80 * t80 + t81 * t81
-    A_21_below = t10 - t69
-    t82 = c2_y - A_02_below
-    t83 = c2_z + t70
-    t84 = t74 * A_21_below + radial_y_below * t82 - t77 * t83
-    t2_x_below = A_21_below - t74 * t84
-    t85 = t82 - radial_y_below * t84
-    t86 = t83 + t77 * t84
-    square2_below = t2_x_below * t2_x_below + t85 * t85 + t86 * t86
-    t87 = square1_below - square2_below
-    t88 = t79 * t2_x_below - t80 * t85 - t81 * t86
-    t89 = ops.select(t26, t87 * t87 + 4.0 * (t88 * t88), 1.0)
-    t90 = square1_below + square2_below + ops.sqrt(t89)
-    t91 = ops.select(failed, ops.nan, strut_below * t90 / t67)
+    t63 = t61 - t55 * off2
+    t64 = t62 + radial_z * off2
+    square2 = t2_x * t2_x + t63 * t63 + t64 * t64
+    t65 = square1 - square2
+    t66 = t58 * t2_x - t59 * t63 - t60 * t64
+    t67 = ops.select(t27, t65 * t65 + 4.0 * (t66 * t66), 1.0)
+    t68 = ops.select(t27, 2.0 * (D_2 * j_2 * h), 1.0)
+    t69 = strut * (square1 + square2 + ops.sqrt(t67)) / t68
+    t70 = t44 - t45
+    A_02_below = t46 + t47
+    t71 = t49 - t50
+    t72 = t70 * t70 + A_02_below * A_02_below + t71 * t71
+    strut_below = ops.sqrt(ops.select(t27, t72, 1.0))
+    t73 = c1_x + t70
+    t74 = ops.select(t27, strut_below, 1.0)
+    t75 = t70 / t74
+    t76 = c1_y - A_02_below
+    radial_y_below = A_02_below / t74
+    t77 = c1_z + t71
+    t78 = t71 / t74
+    t79 = t73 * t75 - t76 * radial_y_below + t77 * t78
+    t80 = t73 - t75 * t79
+    t81 = t76 + radial_y_below * t79
+    t82 = t77 - t78 * t79
+    square1_below = t80 * t80 + t81 * t81 + t82 * t82
+    A_21_below = t10 - t70
+    t83 = c2_y - A_02_below
+    t84 = c2_z + t71
+    t85 = t75 * A_21_below + radial_y_below * t83 - t78 * t84
+    t2_x_below = A_21_below - t75 * t85
+    t86 = t83 - radial_y_below * t85
+    t87 = t84 + t78 * t85
+    square2_below = t2_x_below * t2_x_below + t86 * t86 + t87 * t87
+    t88 = square1_below - square2_below
+    t89 = t80 * t2_x_below - t81 * t86 - t82 * t87
+    t90 = ops.select(t27, t88 * t88 + 4.0 * (t89 * t89), 1.0)
+    t91 = square1_below + square2_below + ops.sqrt(t90)
+    t92 = ops.select(failed, ops.nan, strut_below * t91 / t68)
     return (
-        ops.select(failed, ops.nan, t68),
-        t91,
+        ops.select(failed, ops.nan, t69),
+        t92,
     )
 
 

@@ -3,13 +3,13 @@
  * derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops on a sphere, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 54 compare and select, 55 add, 8 divide, 79 multiply, 7 sincos, 5 sqrt
- *   skeleton: 53 compare and select, 64 add, 14 divide, 70 multiply, 7 sincos, 5 sqrt
- *   jacobian_parallel: 53 compare and select, 79 add, 14 divide, 70 multiply, 7 sincos, 5 sqrt
- *   jacobian_serial: 53 compare and select, 69 add, 14 divide, 82 multiply, 7 sincos, 5 sqrt
- *   jacobian: 53 compare and select, 91 add, 26 divide, 120 multiply, 7 sincos, 5 sqrt
- *   singularities: 53 compare and select, 71 add, 14 divide, 84 multiply, 7 sincos, 5 sqrt
- *   condition_number: 53 compare and select, 107 add, 22 divide, 129 multiply, 7 sincos, 9 sqrt
+ *   fk: 54 compare and select, 55 add, 9 divide, 79 multiply, 7 sincos, 5 sqrt
+ *   skeleton: 53 compare and select, 64 add, 15 divide, 70 multiply, 7 sincos, 5 sqrt
+ *   jacobian_parallel: 53 compare and select, 79 add, 15 divide, 70 multiply, 7 sincos, 5 sqrt
+ *   jacobian_serial: 53 compare and select, 69 add, 15 divide, 82 multiply, 7 sincos, 5 sqrt
+ *   jacobian: 53 compare and select, 91 add, 27 divide, 120 multiply, 7 sincos, 5 sqrt
+ *   singularities: 53 compare and select, 71 add, 15 divide, 84 multiply, 7 sincos, 5 sqrt
+ *   condition_number: 53 compare and select, 107 add, 23 divide, 129 multiply, 7 sincos, 9 sqrt
  *   ik: 95 compare and select, 72 add, 4 atan2, 10 divide, 99 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
  *

@@ -2,13 +2,13 @@
 // derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 // Source: The closedform authors: Loops on a sphere, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-//   fk: 54 compare and select, 55 add, 8 divide, 79 multiply, 7 sincos, 5 sqrt
-//   skeleton: 53 compare and select, 64 add, 14 divide, 70 multiply, 7 sincos, 5 sqrt
-//   jacobian_parallel: 53 compare and select, 79 add, 14 divide, 70 multiply, 7 sincos, 5 sqrt
-//   jacobian_serial: 53 compare and select, 69 add, 14 divide, 82 multiply, 7 sincos, 5 sqrt
-//   jacobian: 53 compare and select, 91 add, 26 divide, 120 multiply, 7 sincos, 5 sqrt
-//   singularities: 53 compare and select, 71 add, 14 divide, 84 multiply, 7 sincos, 5 sqrt
-//   condition_number: 53 compare and select, 107 add, 22 divide, 129 multiply, 7 sincos, 9 sqrt
+//   fk: 54 compare and select, 55 add, 9 divide, 79 multiply, 7 sincos, 5 sqrt
+//   skeleton: 53 compare and select, 64 add, 15 divide, 70 multiply, 7 sincos, 5 sqrt
+//   jacobian_parallel: 53 compare and select, 79 add, 15 divide, 70 multiply, 7 sincos, 5 sqrt
+//   jacobian_serial: 53 compare and select, 69 add, 15 divide, 82 multiply, 7 sincos, 5 sqrt
+//   jacobian: 53 compare and select, 91 add, 27 divide, 120 multiply, 7 sincos, 5 sqrt
+//   singularities: 53 compare and select, 71 add, 15 divide, 84 multiply, 7 sincos, 5 sqrt
+//   condition_number: 53 compare and select, 107 add, 23 divide, 129 multiply, 7 sincos, 9 sqrt
 //   ik: 95 compare and select, 72 add, 4 atan2, 10 divide, 99 multiply, 5 sincos, 7 sqrt
 //   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 
@@ -181,21 +181,22 @@ function _fk(v, o) {
     const t30 = Number.isFinite(theta1) && Number.isFinite(theta2);
     const invalid = !(t29 && t30);
     const t31 = Math.abs(in_line ? left : 0.0) <= _runtime.FEASIBILITY * (r * r);
-    const unreachable = !(t31 && -(r * _runtime.FEASIBILITY) <= t24);
-    const t32 = invalid || unreachable ? NaN : 0;
-    const t33 = X * E_12 + Y * E_22;
-    const t34 = h * (E_11 * E_23 - E_13 * E_21);
-    const t35 = h * (E_11 * E_22 - E_12 * E_21);
-    const t36 = X * E_13 + Y * E_23;
-    const t37 = invalid ? 3 : unreachable ? 1 : in_line ? 2 : 0;
-    o[0] = t25 + t26 + t32;
-    o[1] = t33 - t34 + t32;
-    o[2] = t35 + t36 + t32;
-    o[3] = t26 - t25 + t32;
-    o[4] = t34 + t33 + t32;
-    o[5] = t36 - t35 + t32;
-    o[6] = t37;
-    o[7] = t37;
+    const t32 = t31 && -(_runtime.FEASIBILITY * (r * 0.25)) <= t24;
+    const unreachable = !t32;
+    const t33 = invalid || unreachable ? NaN : 0;
+    const t34 = X * E_12 + Y * E_22;
+    const t35 = h * (E_11 * E_23 - E_13 * E_21);
+    const t36 = h * (E_11 * E_22 - E_12 * E_21);
+    const t37 = X * E_13 + Y * E_23;
+    const t38 = invalid ? 3 : unreachable ? 1 : in_line ? 2 : 0;
+    o[0] = t25 + t26 + t33;
+    o[1] = t34 - t35 + t33;
+    o[2] = t36 + t37 + t33;
+    o[3] = t26 - t25 + t33;
+    o[4] = t35 + t34 + t33;
+    o[5] = t37 - t36 + t33;
+    o[6] = t38;
+    o[7] = t38;
 }
 
 const _FK = _runtime.kernel({
@@ -341,67 +342,67 @@ function _skeleton(v, o) {
     const Y = in_line ? 0.0 : left / (2.0 * j);
     const rho = Math.sqrt(X * X + Y * Y);
     const t26 = r - rho;
-    const failed = !(t3 && t4) || !(t25 && -(r * _runtime.FEASIBILITY) <= t26);
-    const t27 = failed ? NaN : 0;
-    const t28 = 0.0 + t27;
-    const t29 = c1_x + t27;
-    const t30 = c1_y + t27;
-    const t31 = c1_z + t27;
-    const t32 = t10 + t27;
-    const t33 = t13 + t27;
-    const t34 = -t11 + t27;
-    const t35 = c2_y + t27;
-    const t36 = c2_z + t27;
-    const t37 = E_13 < 0 ? -1 : 1;
-    const t38 = E_11 * t37;
-    const E_23 = in_line ? -t38 : n_z / j;
-    const t39 = E_13 + t37;
-    const E_22 = in_line ? -(E_12 * t38 / t39) : n_y / j;
+    const t27 = t25 && -(_runtime.FEASIBILITY * (r * 0.25)) <= t26;
+    const t28 = !(t3 && t4) || !t27 ? NaN : 0;
+    const t29 = 0.0 + t28;
+    const t30 = c1_x + t28;
+    const t31 = c1_y + t28;
+    const t32 = c1_z + t28;
+    const t33 = t10 + t28;
+    const t34 = t13 + t28;
+    const t35 = -t11 + t28;
+    const t36 = c2_y + t28;
+    const t37 = c2_z + t28;
+    const t38 = E_13 < 0 ? -1 : 1;
+    const t39 = E_11 * t38;
+    const E_23 = in_line ? -t39 : n_z / j;
+    const t40 = E_13 + t38;
+    const E_22 = in_line ? -(E_12 * t39 / t40) : n_y / j;
     const slack = Math.max(t26, 0.0);
     const h = slack <= t6 ? 0.0 : Math.sqrt(slack * (r + rho));
-    const t40 = (E_12 * E_23 - E_13 * E_22) * h;
-    const E_21 = in_line ? 1.0 - E_11 * E_11 * t37 / t39 : n_x / j;
-    const t41 = E_11 * X + Y * E_21;
-    const t42 = E_12 * X + Y * E_22;
-    const t43 = h * (E_11 * E_23 - E_13 * E_21);
-    const t44 = h * (E_11 * E_22 - E_12 * E_21);
-    const t45 = E_13 * X + Y * E_23;
-    o[0] = t28;
-    o[1] = t28;
-    o[2] = t28;
-    o[3] = t29;
-    o[4] = t28;
-    o[5] = t28;
-    o[6] = t29;
-    o[7] = t30;
-    o[8] = t31;
-    o[9] = t32;
-    o[10] = t33;
-    o[11] = t28;
-    o[12] = t34;
-    o[13] = t35;
-    o[14] = t36;
-    o[15] = t40 + t41 + t27;
-    o[16] = t42 - t43 + t27;
-    o[17] = t44 + t45 + t27;
-    o[18] = t28;
-    o[19] = t28;
-    o[20] = t28;
-    o[21] = t29;
-    o[22] = t28;
-    o[23] = t28;
-    o[24] = t29;
-    o[25] = t30;
-    o[26] = t31;
-    o[27] = t32;
-    o[28] = t33;
-    o[29] = t28;
-    o[30] = t34;
-    o[31] = t35;
-    o[32] = t36;
-    o[33] = t41 - t40 + t27;
-    o[34] = t43 + t42 + t27;
-    o[35] = t45 - t44 + t27;
+    const t41 = (E_12 * E_23 - E_13 * E_22) * h;
+    const E_21 = in_line ? 1.0 - E_11 * E_11 * t38 / t40 : n_x / j;
+    const t42 = E_11 * X + Y * E_21;
+    const t43 = E_12 * X + Y * E_22;
+    const t44 = h * (E_11 * E_23 - E_13 * E_21);
+    const t45 = h * (E_11 * E_22 - E_12 * E_21);
+    const t46 = E_13 * X + Y * E_23;
+    o[0] = t29;
+    o[1] = t29;
+    o[2] = t29;
+    o[3] = t30;
+    o[4] = t29;
+    o[5] = t29;
+    o[6] = t30;
+    o[7] = t31;
+    o[8] = t32;
+    o[9] = t33;
+    o[10] = t34;
+    o[11] = t29;
+    o[12] = t35;
+    o[13] = t36;
+    o[14] = t37;
+    o[15] = t41 + t42 + t28;
+    o[16] = t43 - t44 + t28;
+    o[17] = t45 + t46 + t28;
+    o[18] = t29;
+    o[19] = t29;
+    o[20] = t29;
+    o[21] = t30;
+    o[22] = t29;
+    o[23] = t29;
+    o[24] = t30;
+    o[25] = t31;
+    o[26] = t32;
+    o[27] = t33;
+    o[28] = t34;
+    o[29] = t29;
+    o[30] = t35;
+    o[31] = t36;
+    o[32] = t37;
+    o[33] = t42 - t41 + t28;
+    o[34] = t44 + t43 + t28;
+    o[35] = t46 - t45 + t28;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -547,35 +548,35 @@ function _jacobian_parallel(v, o) {
     const t27 = t26 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
     const t28 = Number.isFinite(theta1) && Number.isFinite(theta2);
     const t29 = Math.abs(in_line ? left : 0.0) <= _runtime.FEASIBILITY * (r * r);
-    const failed = !(t27 && t28) || !(t29 && -(r * _runtime.FEASIBILITY) <= t22);
-    const t30 = failed ? NaN : 0;
-    const t31 = h * (E_11 * E_23 - E_13 * E_21);
-    const t32 = X * E_12 + Y * E_22;
-    const t33 = t31 - t32;
-    const t34 = h * (E_11 * E_22 - E_12 * E_21);
-    const t35 = X * E_13 + Y * E_23;
-    const A_03 = t34 + t35;
-    const t36 = t23 - t24;
-    const A_02_below = t31 + t32;
-    const t37 = t34 - t35;
-    o[0] = A_01 + t30;
-    o[1] = -t33 + t30;
-    o[2] = A_03 + t30;
-    o[3] = A_01 - c1_x + t30;
-    o[4] = -(c1_y + t33) + t30;
-    o[5] = A_03 - c1_z + t30;
-    o[6] = t5 + A_01 + t30;
-    o[7] = -(c2_y + t33) + t30;
-    o[8] = A_03 - c2_z + t30;
-    o[9] = -t36 + t30;
-    o[10] = A_02_below + t30;
-    o[11] = -t37 + t30;
-    o[12] = -(c1_x + t36) + t30;
-    o[13] = A_02_below - c1_y + t30;
-    o[14] = -(c1_z + t37) + t30;
-    o[15] = t5 - t36 + t30;
-    o[16] = A_02_below - c2_y + t30;
-    o[17] = -(c2_z + t37) + t30;
+    const t30 = t29 && -(_runtime.FEASIBILITY * (r * 0.25)) <= t22;
+    const t31 = !(t27 && t28) || !t30 ? NaN : 0;
+    const t32 = h * (E_11 * E_23 - E_13 * E_21);
+    const t33 = X * E_12 + Y * E_22;
+    const t34 = t32 - t33;
+    const t35 = h * (E_11 * E_22 - E_12 * E_21);
+    const t36 = X * E_13 + Y * E_23;
+    const A_03 = t35 + t36;
+    const t37 = t23 - t24;
+    const A_02_below = t32 + t33;
+    const t38 = t35 - t36;
+    o[0] = A_01 + t31;
+    o[1] = -t34 + t31;
+    o[2] = A_03 + t31;
+    o[3] = A_01 - c1_x + t31;
+    o[4] = -(c1_y + t34) + t31;
+    o[5] = A_03 - c1_z + t31;
+    o[6] = t5 + A_01 + t31;
+    o[7] = -(c2_y + t34) + t31;
+    o[8] = A_03 - c2_z + t31;
+    o[9] = -t37 + t31;
+    o[10] = A_02_below + t31;
+    o[11] = -t38 + t31;
+    o[12] = -(c1_x + t37) + t31;
+    o[13] = A_02_below - c1_y + t31;
+    o[14] = -(c1_z + t38) + t31;
+    o[15] = t5 - t37 + t31;
+    o[16] = A_02_below - c2_y + t31;
+    o[17] = -(c2_z + t38) + t31;
 }
 
 const _JACOBIAN_PARALLEL = _runtime.kernel({
@@ -724,22 +725,22 @@ function _jacobian_serial(v, o) {
     const t30 = t29 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
     const t31 = Number.isFinite(theta1) && Number.isFinite(theta2);
     const t32 = Math.abs(in_line ? left : 0.0) <= _runtime.FEASIBILITY * (r * r);
-    const failed = !(t30 && t31) || !(t32 && -(r * _runtime.FEASIBILITY) <= t22);
-    const t33 = failed ? NaN : 0;
-    const t34 = c1_z * (c1_y + t25) - c1_y * (c1_z - A_03) + t33;
-    const t35 = s_gamma * c2_z;
-    const t36 = h * (E_12 * E_23 - E_13 * E_22);
-    const t37 = X * E_11 + Y * E_21;
-    const t38 = c_gamma * c2_z;
-    const t39 = t35 * (t5 + (t36 + t37)) + t38 * (c2_y + t25);
+    const t33 = t32 && -(_runtime.FEASIBILITY * (r * 0.25)) <= t22;
+    const t34 = !(t30 && t31) || !t33 ? NaN : 0;
+    const t35 = c1_z * (c1_y + t25) - c1_y * (c1_z - A_03) + t34;
+    const t36 = s_gamma * c2_z;
+    const t37 = h * (E_12 * E_23 - E_13 * E_22);
+    const t38 = X * E_11 + Y * E_21;
+    const t39 = c_gamma * c2_z;
+    const t40 = t36 * (t5 + (t37 + t38)) + t39 * (c2_y + t25);
     const A_02_below = t23 + t24;
-    const t40 = t26 - t27;
-    const B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t40);
-    const t41 = t35 * (t5 - (t36 - t37)) + t38 * (c2_y - A_02_below);
-    o[0] = t34;
-    o[1] = t39 - t3 * (c2_z - A_03) + t33;
-    o[2] = B_11_below + t33;
-    o[3] = t41 - t3 * (c2_z + t40) + t33;
+    const t41 = t26 - t27;
+    const B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t41);
+    const t42 = t36 * (t5 - (t37 - t38)) + t39 * (c2_y - A_02_below);
+    o[0] = t35;
+    o[1] = t40 - t3 * (c2_z - A_03) + t34;
+    o[2] = B_11_below + t34;
+    o[3] = t42 - t3 * (c2_z + t41) + t34;
 }
 
 const _JACOBIAN_SERIAL = _runtime.kernel({
@@ -895,51 +896,51 @@ function _jacobian(v, o) {
     const t34 = t33 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
     const t35 = Number.isFinite(theta1) && Number.isFinite(theta2);
     const t36 = Math.abs(in_line ? left : 0.0) <= _runtime.FEASIBILITY * (r * r);
-    const failed = !(t34 && t35) || !(t36 && -(r * _runtime.FEASIBILITY) <= t22);
-    const t37 = failed ? NaN : 0;
-    const t38 = -(B_11 * (t25 * t30 + A_03 * t31) / Delta) + t37;
-    const t39 = s_gamma * c2_z;
-    const t40 = h * (E_12 * E_23 - E_13 * E_22);
-    const t41 = X * E_11 + Y * E_21;
-    const A_01 = t40 + t41;
+    const t37 = t36 && -(_runtime.FEASIBILITY * (r * 0.25)) <= t22;
+    const t38 = !(t34 && t35) || !t37 ? NaN : 0;
+    const t39 = -(B_11 * (t25 * t30 + A_03 * t31) / Delta) + t38;
+    const t40 = s_gamma * c2_z;
+    const t41 = h * (E_12 * E_23 - E_13 * E_22);
+    const t42 = X * E_11 + Y * E_21;
+    const A_01 = t41 + t42;
     const A_21 = t5 + A_01;
-    const t42 = c_gamma * c2_z;
-    const B_22 = t39 * A_21 + t42 * t31 - t3 * t30;
-    const t43 = B_22 * (t25 * t29 + t26 * A_03) / Delta + t37;
-    const t44 = -(B_11 * (t30 * A_01 + A_03 * A_21) / Delta) + t37;
-    const t45 = c1_x - A_01;
-    const t46 = B_22 * (t29 * A_01 - A_03 * t45) / Delta + t37;
-    const t47 = B_11 * (t31 * A_01 - t25 * A_21) / Delta + t37;
-    const t48 = -(B_22 * (t26 * A_01 + t25 * t45) / Delta) + t37;
+    const t43 = c_gamma * c2_z;
+    const B_22 = t40 * A_21 + t43 * t31 - t3 * t30;
+    const t44 = B_22 * (t25 * t29 + t26 * A_03) / Delta + t38;
+    const t45 = -(B_11 * (t30 * A_01 + A_03 * A_21) / Delta) + t38;
+    const t46 = c1_x - A_01;
+    const t47 = B_22 * (t29 * A_01 - A_03 * t46) / Delta + t38;
+    const t48 = B_11 * (t31 * A_01 - t25 * A_21) / Delta + t38;
+    const t49 = -(B_22 * (t26 * A_01 + t25 * t46) / Delta) + t38;
     const A_02_below = t23 + t24;
-    const t49 = c1_y - A_02_below;
-    const t50 = t27 - t28;
-    const t51 = c1_z + t50;
-    const B_11_below = c1_z * t49 - c1_y * t51;
-    const t52 = c2_z + t50;
-    const t53 = c2_y - A_02_below;
-    const t54 = B_11_below * (A_02_below * t52 + t50 * t53) / Delta;
-    const t55 = t40 - t41;
-    const A_21_below = t5 - t55;
-    const B_22_below = t39 * A_21_below + t42 * t53 - t3 * t52;
-    const t56 = B_22_below * (A_02_below * t51 + t49 * t50) / Delta;
-    const t57 = B_11_below * (t52 * t55 + t50 * A_21_below) / Delta;
-    const t58 = c1_x + t55;
-    const t59 = B_22_below * (t51 * t55 - t50 * t58) / Delta + t37;
-    const t60 = B_11_below * (t53 * t55 - A_02_below * A_21_below);
-    const t61 = B_22_below * (t49 * t55 + A_02_below * t58) / Delta;
-    o[0] = t38;
-    o[1] = t43;
-    o[2] = t44;
-    o[3] = t46;
-    o[4] = t47;
-    o[5] = t48;
-    o[6] = -t54 + t37;
-    o[7] = t56 + t37;
-    o[8] = -t57 + t37;
-    o[9] = t59;
-    o[10] = t60 / Delta + t37;
-    o[11] = -t61 + t37;
+    const t50 = c1_y - A_02_below;
+    const t51 = t27 - t28;
+    const t52 = c1_z + t51;
+    const B_11_below = c1_z * t50 - c1_y * t52;
+    const t53 = c2_z + t51;
+    const t54 = c2_y - A_02_below;
+    const t55 = B_11_below * (A_02_below * t53 + t51 * t54) / Delta;
+    const t56 = t41 - t42;
+    const A_21_below = t5 - t56;
+    const B_22_below = t40 * A_21_below + t43 * t54 - t3 * t53;
+    const t57 = B_22_below * (A_02_below * t52 + t50 * t51) / Delta;
+    const t58 = B_11_below * (t53 * t56 + t51 * A_21_below) / Delta;
+    const t59 = c1_x + t56;
+    const t60 = B_22_below * (t52 * t56 - t51 * t59) / Delta + t38;
+    const t61 = B_11_below * (t54 * t56 - A_02_below * A_21_below);
+    const t62 = B_22_below * (t50 * t56 + A_02_below * t59) / Delta;
+    o[0] = t39;
+    o[1] = t44;
+    o[2] = t45;
+    o[3] = t47;
+    o[4] = t48;
+    o[5] = t49;
+    o[6] = -t55 + t38;
+    o[7] = t57 + t38;
+    o[8] = -t58 + t38;
+    o[9] = t60;
+    o[10] = t61 / Delta + t38;
+    o[11] = -t62 + t38;
 }
 
 const _JACOBIAN = _runtime.kernel({
@@ -1090,25 +1091,25 @@ function _singularities(v, o) {
     const t30 = t29 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
     const t31 = Number.isFinite(theta1) && Number.isFinite(theta2);
     const t32 = Math.abs(in_line ? left : 0.0) <= _runtime.FEASIBILITY * (r * r);
-    const failed = !(t30 && t31) || !(t32 && -(r * _runtime.FEASIBILITY) <= t22);
-    const t33 = failed ? NaN : 0;
-    const t34 = c1_z * (c1_y + t25) - c1_y * (c1_z - A_03) + t33;
-    const t35 = s_gamma * c2_z;
-    const t36 = h * (E_12 * E_23 - E_13 * E_22);
-    const t37 = X * E_11 + Y * E_21;
-    const t38 = c_gamma * c2_z;
-    const t39 = t35 * (t5 + (t36 + t37)) + t38 * (c2_y + t25);
+    const t33 = t32 && -(_runtime.FEASIBILITY * (r * 0.25)) <= t22;
+    const t34 = !(t30 && t31) || !t33 ? NaN : 0;
+    const t35 = c1_z * (c1_y + t25) - c1_y * (c1_z - A_03) + t34;
+    const t36 = s_gamma * c2_z;
+    const t37 = h * (E_12 * E_23 - E_13 * E_22);
+    const t38 = X * E_11 + Y * E_21;
+    const t39 = c_gamma * c2_z;
+    const t40 = t36 * (t5 + (t37 + t38)) + t39 * (c2_y + t25);
     const Delta = D * j * h;
     const A_02_below = t23 + t24;
-    const t40 = t26 - t27;
-    const B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t40);
-    const t41 = t35 * (t5 - (t36 - t37)) + t38 * (c2_y - A_02_below);
-    o[0] = t34;
-    o[1] = t39 - t3 * (c2_z - A_03) + t33;
-    o[2] = Delta + t33;
-    o[3] = B_11_below + t33;
-    o[4] = t41 - t3 * (c2_z + t40) + t33;
-    o[5] = -Delta + t33;
+    const t41 = t26 - t27;
+    const B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t41);
+    const t42 = t36 * (t5 - (t37 - t38)) + t39 * (c2_y - A_02_below);
+    o[0] = t35;
+    o[1] = t40 - t3 * (c2_z - A_03) + t34;
+    o[2] = Delta + t34;
+    o[3] = B_11_below + t34;
+    o[4] = t42 - t3 * (c2_z + t41) + t34;
+    o[5] = -Delta + t34;
 }
 
 const _SINGULARITIES = _runtime.kernel({
@@ -1285,37 +1286,37 @@ function _condition_number(v, o) {
     const t48 = t47 && 0.0 <= alpha2 && 0.0 <= beta1 && 0.0 <= beta2;
     const t49 = Number.isFinite(theta1) && Number.isFinite(theta2);
     const t50 = Math.abs(in_line ? left : 0.0) <= _runtime.FEASIBILITY * (r * r);
-    const failed = !(t48 && t49) || !(t50 && -(r * _runtime.FEASIBILITY) <= t22);
-    const t51 = failed ? NaN : 0;
-    const t52 = t23 - t24;
+    const t51 = t50 && -(_runtime.FEASIBILITY * (r * 0.25)) <= t22;
+    const t52 = !(t48 && t49) || !t51 ? NaN : 0;
+    const t53 = t23 - t24;
     const A_02_below = t25 + t26;
-    const t53 = t28 - t29;
-    const t54 = t52 * t52 + A_02_below * A_02_below + t53 * t53;
-    const strut_below = Math.sqrt(t54);
-    const t55 = c1_x + t52;
-    const t56 = t52 / strut_below;
-    const t57 = c1_y - A_02_below;
+    const t54 = t28 - t29;
+    const t55 = t53 * t53 + A_02_below * A_02_below + t54 * t54;
+    const strut_below = Math.sqrt(t55);
+    const t56 = c1_x + t53;
+    const t57 = t53 / strut_below;
+    const t58 = c1_y - A_02_below;
     const radial_y_below = A_02_below / strut_below;
-    const t58 = c1_z + t53;
-    const t59 = t53 / strut_below;
-    const t60 = t55 * t56 - t57 * radial_y_below + t58 * t59;
-    const t61 = t55 - t56 * t60;
-    const t62 = t57 + radial_y_below * t60;
-    const t63 = t58 - t59 * t60;
-    const square1_below = t61 * t61 + t62 * t62 + t63 * t63;
-    const A_21_below = t5 - t52;
-    const t64 = c2_y - A_02_below;
-    const t65 = c2_z + t53;
-    const t66 = t56 * A_21_below + radial_y_below * t64 - t59 * t65;
-    const t2_x_below = A_21_below - t56 * t66;
-    const t67 = t64 - radial_y_below * t66;
-    const t68 = t65 + t59 * t66;
-    const square2_below = t2_x_below * t2_x_below + t67 * t67 + t68 * t68;
-    const t69 = square1_below - square2_below;
-    const t70 = t61 * t2_x_below - t62 * t67 - t63 * t68;
-    const t71 = square1_below + square2_below + Math.sqrt(t69 * t69 + 4.0 * (t70 * t70));
-    o[0] = strut * t44 / t45 + t51;
-    o[1] = strut_below * t71 / t45 + t51;
+    const t59 = c1_z + t54;
+    const t60 = t54 / strut_below;
+    const t61 = t56 * t57 - t58 * radial_y_below + t59 * t60;
+    const t62 = t56 - t57 * t61;
+    const t63 = t58 + radial_y_below * t61;
+    const t64 = t59 - t60 * t61;
+    const square1_below = t62 * t62 + t63 * t63 + t64 * t64;
+    const A_21_below = t5 - t53;
+    const t65 = c2_y - A_02_below;
+    const t66 = c2_z + t54;
+    const t67 = t57 * A_21_below + radial_y_below * t65 - t60 * t66;
+    const t2_x_below = A_21_below - t57 * t67;
+    const t68 = t65 - radial_y_below * t67;
+    const t69 = t66 + t60 * t67;
+    const square2_below = t2_x_below * t2_x_below + t68 * t68 + t69 * t69;
+    const t70 = square1_below - square2_below;
+    const t71 = t62 * t2_x_below - t63 * t68 - t64 * t69;
+    const t72 = square1_below + square2_below + Math.sqrt(t70 * t70 + 4.0 * (t71 * t71));
+    o[0] = strut * t44 / t45 + t52;
+    o[1] = strut_below * t72 / t45 + t52;
 }
 
 const _CONDITION_NUMBER = _runtime.kernel({

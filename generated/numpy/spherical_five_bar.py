@@ -2,13 +2,13 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 54 compare and select, 55 add, 8 divide, 79 multiply, 7 sincos, 5 sqrt
-#   skeleton: 53 compare and select, 64 add, 14 divide, 70 multiply, 7 sincos, 5 sqrt
-#   jacobian_parallel: 53 compare and select, 79 add, 14 divide, 70 multiply, 7 sincos, 5 sqrt
-#   jacobian_serial: 53 compare and select, 69 add, 14 divide, 82 multiply, 7 sincos, 5 sqrt
-#   jacobian: 53 compare and select, 91 add, 26 divide, 120 multiply, 7 sincos, 5 sqrt
-#   singularities: 53 compare and select, 71 add, 14 divide, 84 multiply, 7 sincos, 5 sqrt
-#   condition_number: 53 compare and select, 107 add, 22 divide, 129 multiply, 7 sincos, 9 sqrt
+#   fk: 54 compare and select, 55 add, 9 divide, 79 multiply, 7 sincos, 5 sqrt
+#   skeleton: 53 compare and select, 64 add, 15 divide, 70 multiply, 7 sincos, 5 sqrt
+#   jacobian_parallel: 53 compare and select, 79 add, 15 divide, 70 multiply, 7 sincos, 5 sqrt
+#   jacobian_serial: 53 compare and select, 69 add, 15 divide, 82 multiply, 7 sincos, 5 sqrt
+#   jacobian: 53 compare and select, 91 add, 27 divide, 120 multiply, 7 sincos, 5 sqrt
+#   singularities: 53 compare and select, 71 add, 15 divide, 84 multiply, 7 sincos, 5 sqrt
+#   condition_number: 53 compare and select, 107 add, 23 divide, 129 multiply, 7 sincos, 9 sqrt
 #   ik: 95 compare and select, 72 add, 4 atan2, 10 divide, 99 multiply, 5 sincos, 7 sqrt
 #   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -221,26 +221,28 @@ def _fk(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t30
     t31 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (r * r)
     del left
-    unreachable = np.logical_not(t31 & (-(r * _runtime.FEASIBILITY) <= t24))
+    t32 = t31 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t24)
     del t24, t31
-    t32 = _runtime.poison(invalid | unreachable)
-    t33 = X * E_12 + Y * E_22
-    t34 = h * (E_11 * E_23 - E_13 * E_21)
-    t35 = h * (E_11 * E_22 - E_12 * E_21)
+    unreachable = np.logical_not(t32)
+    del t32
+    t33 = _runtime.poison(invalid | unreachable)
+    t34 = X * E_12 + Y * E_22
+    t35 = h * (E_11 * E_23 - E_13 * E_21)
+    t36 = h * (E_11 * E_22 - E_12 * E_21)
     del E_11, E_12, E_21, E_22, h
-    t36 = X * E_13 + Y * E_23
+    t37 = X * E_13 + Y * E_23
     del E_13, E_23, X, Y
-    t37 = _runtime.status(invalid, unreachable, in_line)
+    t38 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t25 + t26 + t32,
-        t33 - t34 + t32,
-        t35 + t36 + t32,
-        t26 - t25 + t32,
-        t34 + t33 + t32,
-        t36 - t35 + t32,
-        t37,
-        t37,
+        t25 + t26 + t33,
+        t34 - t35 + t33,
+        t36 + t37 + t33,
+        t26 - t25 + t33,
+        t35 + t34 + t33,
+        t37 - t36 + t33,
+        t38,
+        t38,
     )
 
 
@@ -385,85 +387,85 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del left
     rho = np.sqrt(X * X + Y * Y)
     t26 = r - rho
-    unreachable = np.logical_not(t25 & (-(r * _runtime.FEASIBILITY) <= t26))
+    t27 = t25 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t26)
     del t25
-    t27 = _runtime.poison(np.logical_not(t4) | unreachable)
-    del t4, unreachable
-    t28 = 0.0 + t27
-    t29 = c1_x + t27
+    t28 = _runtime.poison(np.logical_not(t4) | np.logical_not(t27))
+    del t27, t4
+    t29 = 0.0 + t28
+    t30 = c1_x + t28
     del c1_x
-    t30 = c1_y + t27
+    t31 = c1_y + t28
     del c1_y
-    t31 = c1_z + t27
+    t32 = c1_z + t28
     del c1_z
-    t32 = t10 + t27
+    t33 = t10 + t28
     del t10
-    t33 = t13 + t27
+    t34 = t13 + t28
     del t13
-    t34 = -t11 + t27
+    t35 = -t11 + t28
     del t11
-    t35 = c2_y + t27
+    t36 = c2_y + t28
     del c2_y
-    t36 = c2_z + t27
+    t37 = c2_z + t28
     del c2_z
-    t37 = _runtime.sign(E_13)
-    t38 = E_11 * t37
-    E_23 = _runtime.select(in_line, -t38, n_z / j)
+    t38 = _runtime.sign(E_13)
+    t39 = E_11 * t38
+    E_23 = _runtime.select(in_line, -t39, n_z / j)
     del n_z
-    t39 = E_13 + t37
-    E_22 = _runtime.select(in_line, -(E_12 * t38 / t39), n_y / j)
-    del n_y, t38
+    t40 = E_13 + t38
+    E_22 = _runtime.select(in_line, -(E_12 * t39 / t40), n_y / j)
+    del n_y, t39
     slack = np.maximum(t26, 0.0)
     del t26
     h = _runtime.select(slack <= t6, 0.0, np.sqrt(slack * (r + rho)))
     del rho, slack, t6
-    t40 = (E_12 * E_23 - E_13 * E_22) * h
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t37 / t39, n_x / j)
-    del in_line, j, n_x, t37, t39
-    t41 = E_11 * X + Y * E_21
-    t42 = E_12 * X + Y * E_22
-    t43 = h * (E_11 * E_23 - E_13 * E_21)
-    t44 = h * (E_11 * E_22 - E_12 * E_21)
+    t41 = (E_12 * E_23 - E_13 * E_22) * h
+    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t38 / t40, n_x / j)
+    del in_line, j, n_x, t38, t40
+    t42 = E_11 * X + Y * E_21
+    t43 = E_12 * X + Y * E_22
+    t44 = h * (E_11 * E_23 - E_13 * E_21)
+    t45 = h * (E_11 * E_22 - E_12 * E_21)
     del E_11, E_12, E_21, E_22, h
-    t45 = E_13 * X + Y * E_23
+    t46 = E_13 * X + Y * E_23
     del E_13, E_23, X, Y
     return (
-        t28,
-        t28,
-        t28,
         t29,
-        t28,
-        t28,
+        t29,
+        t29,
+        t30,
+        t29,
         t29,
         t30,
         t31,
         t32,
         t33,
-        t28,
         t34,
+        t29,
         t35,
         t36,
-        t40 + t41 + t27,
-        t42 - t43 + t27,
-        t44 + t45 + t27,
-        t28,
-        t28,
-        t28,
+        t37,
+        t41 + t42 + t28,
+        t43 - t44 + t28,
+        t45 + t46 + t28,
         t29,
-        t28,
-        t28,
+        t29,
+        t29,
+        t30,
+        t29,
         t29,
         t30,
         t31,
         t32,
         t33,
-        t28,
         t34,
+        t29,
         t35,
         t36,
-        t41 - t40 + t27,
-        t43 + t42 + t27,
-        t45 - t44 + t27,
+        t37,
+        t42 - t41 + t28,
+        t44 + t43 + t28,
+        t46 - t45 + t28,
     )
 
 
@@ -610,43 +612,43 @@ def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t27
     t29 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (r * r)
     del in_line, left
-    unreachable = np.logical_not(t29 & (-(r * _runtime.FEASIBILITY) <= t22))
+    t30 = t29 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t22)
     del t22, t29
-    t30 = _runtime.poison(np.logical_not(t28) | unreachable)
-    del t28, unreachable
-    t31 = h * (E_11 * E_23 - E_13 * E_21)
-    t32 = X * E_12 + Y * E_22
-    t33 = t31 - t32
-    t34 = h * (E_11 * E_22 - E_12 * E_21)
+    t31 = _runtime.poison(np.logical_not(t28) | np.logical_not(t30))
+    del t28, t30
+    t32 = h * (E_11 * E_23 - E_13 * E_21)
+    t33 = X * E_12 + Y * E_22
+    t34 = t32 - t33
+    t35 = h * (E_11 * E_22 - E_12 * E_21)
     del E_11, E_12, E_21, E_22, h
-    t35 = X * E_13 + Y * E_23
+    t36 = X * E_13 + Y * E_23
     del E_13, E_23, X, Y
-    A_03 = t34 + t35
-    t36 = t23 - t24
+    A_03 = t35 + t36
+    t37 = t23 - t24
     del t23, t24
-    A_02_below = t31 + t32
-    del t31, t32
-    t37 = t34 - t35
-    del t34, t35
+    A_02_below = t32 + t33
+    del t32, t33
+    t38 = t35 - t36
+    del t35, t36
     return (
-        A_01 + t30,
-        -t33 + t30,
-        A_03 + t30,
-        A_01 - c1_x + t30,
-        -(c1_y + t33) + t30,
-        A_03 - c1_z + t30,
-        t5 + A_01 + t30,
-        -(c2_y + t33) + t30,
-        A_03 - c2_z + t30,
-        -t36 + t30,
-        A_02_below + t30,
-        -t37 + t30,
-        -(c1_x + t36) + t30,
-        A_02_below - c1_y + t30,
-        -(c1_z + t37) + t30,
-        t5 - t36 + t30,
-        A_02_below - c2_y + t30,
-        -(c2_z + t37) + t30,
+        A_01 + t31,
+        -t34 + t31,
+        A_03 + t31,
+        A_01 - c1_x + t31,
+        -(c1_y + t34) + t31,
+        A_03 - c1_z + t31,
+        t5 + A_01 + t31,
+        -(c2_y + t34) + t31,
+        A_03 - c2_z + t31,
+        -t37 + t31,
+        A_02_below + t31,
+        -t38 + t31,
+        -(c1_x + t37) + t31,
+        A_02_below - c1_y + t31,
+        -(c1_z + t38) + t31,
+        t5 - t37 + t31,
+        A_02_below - c2_y + t31,
+        -(c2_z + t38) + t31,
     )
 
 
@@ -797,34 +799,34 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t30
     t32 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (r * r)
     del in_line, left
-    unreachable = np.logical_not(t32 & (-(r * _runtime.FEASIBILITY) <= t22))
+    t33 = t32 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t22)
     del t22, t32
-    t33 = _runtime.poison(np.logical_not(t31) | unreachable)
-    del t31, unreachable
-    t34 = c1_z * (c1_y + t25) - c1_y * (c1_z - A_03) + t33
-    t35 = s_gamma * c2_z
+    t34 = _runtime.poison(np.logical_not(t31) | np.logical_not(t33))
+    del t31, t33
+    t35 = c1_z * (c1_y + t25) - c1_y * (c1_z - A_03) + t34
+    t36 = s_gamma * c2_z
     del s_gamma
-    t36 = h * (E_12 * E_23 - E_13 * E_22)
+    t37 = h * (E_12 * E_23 - E_13 * E_22)
     del E_12, E_13, E_22, E_23, h
-    t37 = X * E_11 + Y * E_21
+    t38 = X * E_11 + Y * E_21
     del E_11, E_21, X, Y
-    t38 = c_gamma * c2_z
+    t39 = c_gamma * c2_z
     del c_gamma
-    t39 = t35 * (t5 + (t36 + t37)) + t38 * (c2_y + t25)
+    t40 = t36 * (t5 + (t37 + t38)) + t39 * (c2_y + t25)
     del t25
     A_02_below = t23 + t24
     del t23, t24
-    t40 = t26 - t27
+    t41 = t26 - t27
     del t26, t27
-    B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t40)
+    B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t41)
     del c1_y, c1_z
-    t41 = t35 * (t5 - (t36 - t37)) + t38 * (c2_y - A_02_below)
-    del A_02_below, c2_y, t35, t36, t37, t38, t5
+    t42 = t36 * (t5 - (t37 - t38)) + t39 * (c2_y - A_02_below)
+    del A_02_below, c2_y, t36, t37, t38, t39, t5
     return (
-        t34,
-        t39 - t3 * (c2_z - A_03) + t33,
-        B_11_below + t33,
-        t41 - t3 * (c2_z + t40) + t33,
+        t35,
+        t40 - t3 * (c2_z - A_03) + t34,
+        B_11_below + t34,
+        t42 - t3 * (c2_z + t41) + t34,
     )
 
 
@@ -982,75 +984,75 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t34
     t36 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (r * r)
     del in_line, left
-    unreachable = np.logical_not(t36 & (-(r * _runtime.FEASIBILITY) <= t22))
+    t37 = t36 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t22)
     del t22, t36
-    t37 = _runtime.poison(np.logical_not(t35) | unreachable)
-    del t35, unreachable
-    t38 = -(B_11 * (t25 * t30 + A_03 * t31) / Delta) + t37
-    t39 = s_gamma * c2_z
+    t38 = _runtime.poison(np.logical_not(t35) | np.logical_not(t37))
+    del t35, t37
+    t39 = -(B_11 * (t25 * t30 + A_03 * t31) / Delta) + t38
+    t40 = s_gamma * c2_z
     del s_gamma
-    t40 = h * (E_12 * E_23 - E_13 * E_22)
+    t41 = h * (E_12 * E_23 - E_13 * E_22)
     del E_12, E_13, E_22, E_23, h
-    t41 = X * E_11 + Y * E_21
+    t42 = X * E_11 + Y * E_21
     del E_11, E_21, X, Y
-    A_01 = t40 + t41
+    A_01 = t41 + t42
     A_21 = t5 + A_01
-    t42 = c_gamma * c2_z
+    t43 = c_gamma * c2_z
     del c_gamma
-    B_22 = t39 * A_21 + t42 * t31 - t3 * t30
-    t43 = B_22 * (t25 * t29 + t26 * A_03) / Delta + t37
-    t44 = -(B_11 * (t30 * A_01 + A_03 * A_21) / Delta) + t37
+    B_22 = t40 * A_21 + t43 * t31 - t3 * t30
+    t44 = B_22 * (t25 * t29 + t26 * A_03) / Delta + t38
+    t45 = -(B_11 * (t30 * A_01 + A_03 * A_21) / Delta) + t38
     del t30
-    t45 = c1_x - A_01
-    t46 = B_22 * (t29 * A_01 - A_03 * t45) / Delta + t37
+    t46 = c1_x - A_01
+    t47 = B_22 * (t29 * A_01 - A_03 * t46) / Delta + t38
     del A_03, t29
-    t47 = B_11 * (t31 * A_01 - t25 * A_21) / Delta + t37
+    t48 = B_11 * (t31 * A_01 - t25 * A_21) / Delta + t38
     del A_21, B_11, t31
-    t48 = -(B_22 * (t26 * A_01 + t25 * t45) / Delta) + t37
-    del A_01, B_22, t25, t26, t45
+    t49 = -(B_22 * (t26 * A_01 + t25 * t46) / Delta) + t38
+    del A_01, B_22, t25, t26, t46
     A_02_below = t23 + t24
     del t23, t24
-    t49 = c1_y - A_02_below
-    t50 = t27 - t28
+    t50 = c1_y - A_02_below
+    t51 = t27 - t28
     del t27, t28
-    t51 = c1_z + t50
-    B_11_below = c1_z * t49 - c1_y * t51
+    t52 = c1_z + t51
+    B_11_below = c1_z * t50 - c1_y * t52
     del c1_y, c1_z
-    t52 = c2_z + t50
+    t53 = c2_z + t51
     del c2_z
-    t53 = c2_y - A_02_below
+    t54 = c2_y - A_02_below
     del c2_y
-    t54 = B_11_below * (A_02_below * t52 + t50 * t53) / Delta
-    t55 = t40 - t41
-    del t40, t41
-    A_21_below = t5 - t55
+    t55 = B_11_below * (A_02_below * t53 + t51 * t54) / Delta
+    t56 = t41 - t42
+    del t41, t42
+    A_21_below = t5 - t56
     del t5
-    B_22_below = t39 * A_21_below + t42 * t53 - t3 * t52
-    del t3, t39, t42
-    t56 = B_22_below * (A_02_below * t51 + t49 * t50) / Delta
-    t57 = B_11_below * (t52 * t55 + t50 * A_21_below) / Delta
-    del t52
-    t58 = c1_x + t55
+    B_22_below = t40 * A_21_below + t43 * t54 - t3 * t53
+    del t3, t40, t43
+    t57 = B_22_below * (A_02_below * t52 + t50 * t51) / Delta
+    t58 = B_11_below * (t53 * t56 + t51 * A_21_below) / Delta
+    del t53
+    t59 = c1_x + t56
     del c1_x
-    t59 = B_22_below * (t51 * t55 - t50 * t58) / Delta + t37
-    del t50, t51
-    t60 = B_11_below * (t53 * t55 - A_02_below * A_21_below)
-    del A_21_below, B_11_below, t53
-    t61 = B_22_below * (t49 * t55 + A_02_below * t58) / Delta
-    del A_02_below, B_22_below, t49, t55, t58
+    t60 = B_22_below * (t52 * t56 - t51 * t59) / Delta + t38
+    del t51, t52
+    t61 = B_11_below * (t54 * t56 - A_02_below * A_21_below)
+    del A_21_below, B_11_below, t54
+    t62 = B_22_below * (t50 * t56 + A_02_below * t59) / Delta
+    del A_02_below, B_22_below, t50, t56, t59
     return (
-        t38,
-        t43,
+        t39,
         t44,
-        t46,
+        t45,
         t47,
         t48,
-        -t54 + t37,
-        t56 + t37,
-        -t57 + t37,
-        t59,
-        t60 / Delta + t37,
-        -t61 + t37,
+        t49,
+        -t55 + t38,
+        t57 + t38,
+        -t58 + t38,
+        t60,
+        t61 / Delta + t38,
+        -t62 + t38,
     )
 
 
@@ -1203,38 +1205,38 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t30
     t32 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (r * r)
     del in_line, left
-    unreachable = np.logical_not(t32 & (-(r * _runtime.FEASIBILITY) <= t22))
+    t33 = t32 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t22)
     del t22, t32
-    t33 = _runtime.poison(np.logical_not(t31) | unreachable)
-    del t31, unreachable
-    t34 = c1_z * (c1_y + t25) - c1_y * (c1_z - A_03) + t33
-    t35 = s_gamma * c2_z
+    t34 = _runtime.poison(np.logical_not(t31) | np.logical_not(t33))
+    del t31, t33
+    t35 = c1_z * (c1_y + t25) - c1_y * (c1_z - A_03) + t34
+    t36 = s_gamma * c2_z
     del s_gamma
-    t36 = h * (E_12 * E_23 - E_13 * E_22)
+    t37 = h * (E_12 * E_23 - E_13 * E_22)
     del E_12, E_13, E_22, E_23
-    t37 = X * E_11 + Y * E_21
+    t38 = X * E_11 + Y * E_21
     del E_11, E_21, X, Y
-    t38 = c_gamma * c2_z
+    t39 = c_gamma * c2_z
     del c_gamma
-    t39 = t35 * (t5 + (t36 + t37)) + t38 * (c2_y + t25)
+    t40 = t36 * (t5 + (t37 + t38)) + t39 * (c2_y + t25)
     del t25
     Delta = D * j * h
     del D, h, j
     A_02_below = t23 + t24
     del t23, t24
-    t40 = t26 - t27
+    t41 = t26 - t27
     del t26, t27
-    B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t40)
+    B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t41)
     del c1_y, c1_z
-    t41 = t35 * (t5 - (t36 - t37)) + t38 * (c2_y - A_02_below)
-    del A_02_below, c2_y, t35, t36, t37, t38, t5
+    t42 = t36 * (t5 - (t37 - t38)) + t39 * (c2_y - A_02_below)
+    del A_02_below, c2_y, t36, t37, t38, t39, t5
     return (
-        t34,
-        t39 - t3 * (c2_z - A_03) + t33,
-        Delta + t33,
-        B_11_below + t33,
-        t41 - t3 * (c2_z + t40) + t33,
-        -Delta + t33,
+        t35,
+        t40 - t3 * (c2_z - A_03) + t34,
+        Delta + t34,
+        B_11_below + t34,
+        t42 - t3 * (c2_z + t41) + t34,
+        -Delta + t34,
     )
 
 
@@ -1426,58 +1428,58 @@ def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t48
     t50 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (r * r)
     del in_line, left
-    unreachable = np.logical_not(t50 & (-(r * _runtime.FEASIBILITY) <= t22))
+    t51 = t50 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t22)
     del t22, t50
-    t51 = _runtime.poison(np.logical_not(t49) | unreachable)
-    del t49, unreachable
-    t52 = t23 - t24
+    t52 = _runtime.poison(np.logical_not(t49) | np.logical_not(t51))
+    del t49, t51
+    t53 = t23 - t24
     del t23, t24
     A_02_below = t25 + t26
     del t25, t26
-    t53 = t28 - t29
+    t54 = t28 - t29
     del t28, t29
-    t54 = t52 * t52 + A_02_below * A_02_below + t53 * t53
-    strut_below = np.sqrt(t54)
-    del t54
-    t55 = c1_x + t52
+    t55 = t53 * t53 + A_02_below * A_02_below + t54 * t54
+    strut_below = np.sqrt(t55)
+    del t55
+    t56 = c1_x + t53
     del c1_x
-    t56 = t52 / strut_below
-    t57 = c1_y - A_02_below
+    t57 = t53 / strut_below
+    t58 = c1_y - A_02_below
     del c1_y
     radial_y_below = A_02_below / strut_below
-    t58 = c1_z + t53
+    t59 = c1_z + t54
     del c1_z
-    t59 = t53 / strut_below
-    t60 = t55 * t56 - t57 * radial_y_below + t58 * t59
-    t61 = t55 - t56 * t60
-    del t55
-    t62 = t57 + radial_y_below * t60
-    del t57
-    t63 = t58 - t59 * t60
-    del t58, t60
-    square1_below = t61 * t61 + t62 * t62 + t63 * t63
-    A_21_below = t5 - t52
-    del t5, t52
-    t64 = c2_y - A_02_below
+    t60 = t54 / strut_below
+    t61 = t56 * t57 - t58 * radial_y_below + t59 * t60
+    t62 = t56 - t57 * t61
+    del t56
+    t63 = t58 + radial_y_below * t61
+    del t58
+    t64 = t59 - t60 * t61
+    del t59, t61
+    square1_below = t62 * t62 + t63 * t63 + t64 * t64
+    A_21_below = t5 - t53
+    del t5, t53
+    t65 = c2_y - A_02_below
     del A_02_below, c2_y
-    t65 = c2_z + t53
-    del c2_z, t53
-    t66 = t56 * A_21_below + radial_y_below * t64 - t59 * t65
-    t2_x_below = A_21_below - t56 * t66
-    del A_21_below, t56
-    t67 = t64 - radial_y_below * t66
-    del radial_y_below, t64
-    t68 = t65 + t59 * t66
-    del t59, t65, t66
-    square2_below = t2_x_below * t2_x_below + t67 * t67 + t68 * t68
-    t69 = square1_below - square2_below
-    t70 = t61 * t2_x_below - t62 * t67 - t63 * t68
-    del t2_x_below, t61, t62, t63, t67, t68
-    t71 = square1_below + square2_below + np.sqrt(t69 * t69 + 4.0 * (t70 * t70))
-    del square1_below, square2_below, t69, t70
+    t66 = c2_z + t54
+    del c2_z, t54
+    t67 = t57 * A_21_below + radial_y_below * t65 - t60 * t66
+    t2_x_below = A_21_below - t57 * t67
+    del A_21_below, t57
+    t68 = t65 - radial_y_below * t67
+    del radial_y_below, t65
+    t69 = t66 + t60 * t67
+    del t60, t66, t67
+    square2_below = t2_x_below * t2_x_below + t68 * t68 + t69 * t69
+    t70 = square1_below - square2_below
+    t71 = t62 * t2_x_below - t63 * t68 - t64 * t69
+    del t2_x_below, t62, t63, t64, t68, t69
+    t72 = square1_below + square2_below + np.sqrt(t70 * t70 + 4.0 * (t71 * t71))
+    del square1_below, square2_below, t70, t71
     return (
-        strut * t44 / t45 + t51,
-        strut_below * t71 / t45 + t51,
+        strut * t44 / t45 + t52,
+        strut_below * t72 / t45 + t52,
     )
 
 

@@ -286,7 +286,9 @@ def _laid_out(array: Any, layout: str) -> Any:
 def _answer(function: Any, call: Mapping[str, Any]) -> tuple[str, Any]:
     """The type of what was raised, or the arrays."""
     arguments = [_make(a) for a in call["arguments"]]
-    victim = next((a for a in arguments if isinstance(a, np.ndarray) and a.flags.owndata), None)
+    # NumPy itself dies of a read-only array of objects that was resized from no elements
+    owned = [a for a in arguments if isinstance(a, np.ndarray) and a.flags.owndata]
+    victim = next((a for a in owned if not a.dtype.hasobject), None)
     given = call["params"]
     if given is not None:
         made = [_make(p, victim) for p in given] if isinstance(given, list) else _make(given)

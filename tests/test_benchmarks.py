@@ -74,6 +74,16 @@ def test_tables_of_batches_and_calls():
     assert "| writing alone |" in told or not shutil.which("gcc")
 
 
+def test_tables_of_array_libraries_and_threads():
+    command = [sys.executable, "-m", "benchmarks", "--only", "array", "--only", "threads"]
+    command += ["--rounds", "1", "--batch", "2000", "2R"]
+    told = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    assert told.count("| array, NumPy |") == 1 and told.count("| closedform NumPy |") == 2
+    assert told.count("| closedform C, 1 |") == 2
+    for peer in ("array, jax.jit", "numba, 1"):
+        assert f"| {peer} |" in told or f"- {peer}: ModuleNotFoundError" in told
+
+
 def test_what_is_no_pose():
     mirrored = np.diag([1.0, 1, -1, 1])[None]
     assert inverses.verdicts(solvers.ours_single(), mirrored) == "INVALID"

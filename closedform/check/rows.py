@@ -43,7 +43,8 @@ class RowEvaluator:
         self.exprs = tuple(sp.sympify(e, strict=True) for e in exprs)
         self._named = dict(named or {})
         self._program = _Program(self.symbols, self.exprs, self._named)
-        self._exact: dict[tuple[float, ...], list[Any] | Undetermined] = {}
+        self._exact: dict[tuple[float, ...], list[Any] | str] = {}
+        """The balls of Arb at each point that was asked for, or why there are none."""
 
     @cached_property
     def apart(self) -> list[RowEvaluator]:
@@ -61,10 +62,10 @@ class RowEvaluator:
             try:
                 self._exact[point] = self._evaluator(point)
             except Undetermined as error:
-                self._exact[point] = error
+                self._exact[point] = str(error)
         found = self._exact[point]
-        if isinstance(found, Undetermined):
-            raise found
+        if isinstance(found, str):
+            raise Undetermined(found)
         return found
 
     def balls(self, rows: Array) -> tuple[Array, Array]:

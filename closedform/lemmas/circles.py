@@ -75,6 +75,7 @@ def circle_intersection(
     )
     S = first + second + distance
     # With three quarters of the tolerance, the legs accept the target of what is accepted here.
+    # Equal circles can only be too far apart, and no posture was ever lost with the whole of it.
     tolerated = scale if first == second else 3 * scale / 4
     A = program.bound(f"slack{suffix}", first + second - distance, tolerated, "the bars meet")
     touching = program.vanishes(f"touching{suffix}", A, scale, "the bars are in line")

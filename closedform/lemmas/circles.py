@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.lemmas.registry import theorem
-from closedform.lemmas.spheres import Meeting
+from closedform.lemmas.spheres import Meeting, lens
 from closedform.model.functions import Program, choose, real
 from closedform.model.inverse import Degenerate, Link
 from closedform.model.lemma import Lemma
@@ -89,14 +89,8 @@ def circle_intersection(
         along, height = d / 2, sp.sqrt(S) * sp.sqrt(A) / 2
     else:
         d = distance
-        B = program.bound(f"outer{suffix}", distance + first - second, tolerated, "the bars meet")
-        C = program.bound(f"inner{suffix}", distance - first + second, tolerated, "the bars meet")
-        # B + C is twice the distance and B - C twice the difference of the radii, also of circles
-        # that miss each other by a rounding error.  Then one slack was a little negative and is now
-        # zero, and the point misses both circles by half of it, however close the centres are.
-        share = program.let(f"share{suffix}", 1 / (B + C), nonnegative=True)
-        along = choose(flag, first, (distance + (B - C) * (A + distance) * share) / 2)
-        rise = sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) * share
+        along, rise = lens(program, radii, d, A, tolerated, "the bars meet", suffix)
+        along = choose(flag, first, along)
         height = choose(flag, 0, rise)
     n = (program.let(f"n_1{suffix}", n[0]), program.let(f"n_2{suffix}", n[1]))
     height = program.let(f"height{suffix}", choose(touching, 0, height), nonnegative=True)

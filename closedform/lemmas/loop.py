@@ -207,7 +207,17 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
     ]
     radii = [named_in(f, f"r_{k}", sp.sympify(leg.rod, strict=True)) for k, leg in m.numbered]
     meet = two_circles if n == 2 else three_spheres
-    found = meet(f, ends, radii, tuple(m.hand), sigma, scale=size, free=tuple(m.hand))
+    # a strut, the longest of the three, comes last; the turned order keeps the sign of the mode
+    turn = 1 if isinstance(m.legs[0], Strut) else 0
+    found = meet(
+        f,
+        [*ends[turn:], *ends[:turn]],
+        [*radii[turn:], *radii[:turn]],
+        tuple(m.hand),
+        sigma,
+        scale=size,
+        free=tuple(m.hand),
+    )
     shape = "circles" if n == 2 else "spheres"
     d.step(
         f"Forward: {m.count} {shape}",
@@ -243,15 +253,20 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
             "Ill-conditioned near the parallel singularities, where both modes meet.",
         ),
     )
-    d.inverses.append(Inverse("fk", tuple(m.hand), (sp.S.Zero,) * n, m.loop, links=(found.link,)))
+    equations = (*m.loop[turn:], *m.loop[:turn])
+    d.inverses.append(
+        Inverse("fk", tuple(m.hand), (sp.S.Zero,) * n, equations, links=(found.link,))
+    )
     tell(d, "fk", found.link)
     v = Program(list(f.body), f.taken)
-    first = sp.Matrix([v.let(f"A_{m.numbered[0][0]}{i}", e) for i, e in enumerate(found.first, 1)])
+    first = sp.Matrix(
+        [v.let(f"A_{m.numbered[turn][0]}{i}", e) for i, e in enumerate(found.first, 1)]
+    )
     return _Posture(
         v,
         modes,
-        ends[0] + first,
-        tuple(first + ends[0] - end for end in ends),
+        ends[turn] + first,
+        tuple(first + ends[turn] - end for end in ends),
         found.side,
         found.size,
     )

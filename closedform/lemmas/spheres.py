@@ -21,11 +21,14 @@ $\mathbf c_2$ and $r_3$ from $\mathbf c_3$ are $\mathbf x = X\,\mathbf e_1 + Y\,
 h\,\mathbf e_3$ with
 $$X = \frac{D^2 + r_1^2 - r_2^2}{2 D}, \qquad Y = \frac{k^2 + j^2 + r_1^2 - r_3^2 - 2 k X}{2 j},
 \qquad h = \sqrt{r_1^2 - X^2 - Y^2}, \qquad \sigma = \pm 1.$$
-They exist if and only if $X^2 + Y^2 \le r_1^2$, and coincide if and only if these are equal.""",
+They exist if and only if $X^2 + Y^2 \le r_1^2$, and coincide if and only if these are equal.  The
+first two spheres share a circle of the radius $\rho = \sqrt{r_1^2 - X^2}$, and
+$$Y = \frac{j^2 + (k - X)^2 + \rho^2 - r_3^2}{2 j}, \qquad h = \sqrt{\rho^2 - Y^2}.$$""",
     proof=r"""Write $\mathbf x = X\,\mathbf e_1 + Y\,\mathbf e_2 + Z\,\mathbf e_3$.  The first
 distance says $X^2 + Y^2 + Z^2 = r_1^2$.  Each of the others, subtracted from it, is linear: $2 D X
 = D^2 + r_1^2 - r_2^2$ and $2 k X + 2 j Y = k^2 + j^2 + r_1^2 - r_3^2$.  These give $X$ and $Y$, and
-the first equation gives $Z^2$.""",
+the first equation gives $Z^2$.  With $r_1^2 = X^2 + \rho^2$ they become the second form, in which
+short lengths are not the differences of long ones.""",
     exception=r"""If the centres are in line, there is no common point unless the third sphere
 contains the circle in which the first two meet, or two spheres are the same and meet the other;
 then $\mathbf x$ is free on this circle.  If all three are the same, $\mathbf x$ is free on it.""",
@@ -115,22 +118,14 @@ def three_spheres(
             for i, (e, beside) in enumerate(zip(across, _beside(e1), strict=True), 1)
         ]
     )
-    X = p.let("X", choose(point, 0, (D + (r1 - near) * (r1 + near) / D) / 2))
-    # k^2 + j^2 - k D as a product of differences: it is small where the last two centres are close
-    beyond = other.dot(other - sp.Matrix([either(b, a) for a, b in zip(u, v, strict=True)]))
-    unequal = (r1 - far) * (r1 + far) - (r1 - near) * (r1 + near) * k / D
-    left = p.let("left", choose(point, 0, beyond + unequal) if unequal != 0 else beyond)
-    meaning = "the spheres whose centres are in line share a circle"
-    p.match(choose(line, left, 0), scale**2, meaning)
-    Y = p.let("Y", choose(line, 0, left / (2 * j)))
-    radius = p.let("rho", sp.sqrt(X**2 + Y**2), nonnegative=True)
-    # A sphere is missed by this slack times the first radius over its own: with a quarter of the
-    # tolerance, the legs accept the target of what is accepted here, unless a rod is very short.
-    tolerated = scale if r1 == r2 == r3 else scale / 4
-    slack = p.bound("slack", r1 - radius, tolerated, "the spheres meet")
-    touching = p.vanishes("touching", slack, scale, "the spheres touch")
-    rise = choose(touching, 0, sp.sqrt(slack) * sp.sqrt(r1 + radius))
-    h = p.let("h", rise, nonnegative=True)
+    if r1 == r2 == r3:
+        # k^2 + j^2 - k D as a product of differences: small where the last two centres are close
+        left = other.dot(other - sp.Matrix([either(b, a) for a, b in zip(u, v, strict=True)]))
+        X, Y, h = _met_by_equal(p, r1, (D, j), left, (point, line), scale)
+        more: tuple[sp.Symbol, ...] = ()
+    else:
+        X, Y, h, flat = _met_by_unequal(p, (r1, near, far), (D, k, j), point, scale)
+        more = (flat,)
     e3 = e1.cross(e2)
     from_first = [X * a + Y * b + sigma * h * c for a, b, c in zip(e1, e2, e3, strict=True)]
     found = [o + x for o, x in zip(origin, from_first, strict=True)]
@@ -154,13 +149,92 @@ def three_spheres(
             lemma.equations,
             lemma=lemma,
             body=tuple(p.body[start:]),
-            degenerate=_cases((u, v), (r1, r2, r3), (same, point, line), free),
+            degenerate=_cases((u, v), (r1, r2, r3), (same, point, line), more, free),
         ),
         tuple(from_first),
         sigma,
         h * D * j,
         sp.Matrix([[X, Y, rise], [X - D, Y, rise], [X - k, Y - j, rise]]),
     )
+
+
+def _met_by_equal(
+    p: Program,
+    r: sp.Symbol,
+    lengths: tuple[sp.Expr, sp.Expr],
+    left: sp.Expr,
+    flags: tuple[sp.Symbol, sp.Symbol],
+    scale: sp.Expr,
+) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+    """X, Y and h for one radius; ``lengths`` are D and j, and ``left`` is 2 j Y."""
+    (D, j), (point, line) = lengths, flags
+    X = p.let("X", choose(point, 0, D / 2))
+    left = p.let("left", left)
+    p.match(choose(line, left, 0), scale**2, "the spheres whose centres are in line share a circle")
+    Y = p.let("Y", choose(line, 0, left / (2 * j)))
+    radius = p.let("rho", sp.sqrt(X**2 + Y**2), nonnegative=True)
+    slack = p.bound("slack", r - radius, scale, "the spheres meet")
+    touching = p.vanishes("touching", slack, scale, "the spheres touch")
+    rise = choose(touching, 0, sp.sqrt(slack) * sp.sqrt(r + radius))
+    return X, Y, p.let("h", rise, nonnegative=True)
+
+
+def _met_by_unequal(
+    p: Program,
+    radii: tuple[sp.Expr, sp.Expr, sp.Expr],
+    lengths: tuple[sp.Expr, sp.Expr, sp.Expr],
+    point: sp.Symbol,
+    scale: sp.Expr,
+) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol, sp.Symbol]:
+    """X, Y and h from the circle of the first two spheres; ``lengths`` are D, k and j.
+
+    This circle comes from differences of lengths, which stay exact for short rods.  If the third
+    sphere just misses it, the point stays on it.  The last result is a flag that is true if the
+    third sphere contains it.
+    """
+    (r1, near, far), (D, k, j) = radii, lengths
+    # with a quarter of the tolerance, the legs accept the target of what is accepted here
+    tolerated = scale / 4
+    A = p.bound("slack", r1 + near - D, tolerated, "the spheres meet")
+    along, beside = lens(p, (r1, near), D, A, tolerated, "the spheres meet")
+    X = p.let("X", choose(point, 0, along))
+    radius = p.let("rho", choose(point, r1, beside), nonnegative=True)
+    left = p.let("left", j**2 + (k - X) ** 2 + radius**2 - far**2)
+    meaning = "the third sphere meets the circle of the others"
+    # a radius of zero may be missed by as much as the others, and this by its own square
+    missed = 2 * tolerated * (far + scale / 2**42)
+    upper = p.bound("upper", 2 * j * radius + left, missed, meaning)
+    lower = p.bound("lower", 2 * j * radius - left, missed, meaning)
+    both = p.let("both", upper + lower, nonnegative=True)
+    flat = p.vanishes("flat", both, scale * far, "the third sphere contains the circle")
+    Y = p.let("Y", choose(flat, 0, radius * (upper - lower) / both))
+    rise = choose(flat, radius, 2 * radius * sp.sqrt(upper) * sp.sqrt(lower) / both)
+    return X, Y, p.let("h", rise, nonnegative=True), flat
+
+
+def lens(
+    program: Program,
+    radii: tuple[sp.Expr, sp.Expr],
+    distance: sp.Expr,
+    slack: sp.Symbol,
+    tolerated: sp.Expr,
+    meaning: str,
+    suffix: str = "",
+) -> tuple[sp.Expr, sp.Expr]:
+    """Where circles or spheres meet: how far along the line of the centres, and beside it.
+
+    ``slack`` is the sum of the ``radii`` less the ``distance``, bounded by zero.
+    """
+    (first, second), A = radii, slack
+    B = program.bound(f"outer{suffix}", distance + first - second, tolerated, meaning)
+    C = program.bound(f"inner{suffix}", distance - first + second, tolerated, meaning)
+    # B + C is twice the distance and B - C twice the difference of the radii, also of circles
+    # that miss each other by a rounding error.  Then one slack was a little negative and is now
+    # zero, and the point misses both circles by half of it, however close the centres are.
+    share = program.let(f"share{suffix}", 1 / (B + C), nonnegative=True)
+    along = (distance + (B - C) * (A + distance) * share) / 2
+    S = first + second + distance
+    return along, sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) * share
 
 
 def _beside(e: sp.Matrix) -> tuple[sp.Expr, ...]:
@@ -175,16 +249,17 @@ def _cases(
     centres: tuple[sp.Matrix, sp.Matrix],
     radii: Sequence[sp.Expr],
     flags: tuple[sp.Symbol, sp.Symbol, sp.Symbol],
+    more: tuple[sp.Symbol, ...],
     free: Sequence[sp.Symbol],
 ) -> tuple[Degenerate, ...]:
-    """The spheres share a circle, or all of each other."""
+    """The spheres share a circle, or all of each other; then ``more`` flags are true as well."""
     (u, v), (r1, r2, r3), (same, point, line) = centres, radii, flags
     joint = free[0] if free else None
     none = dict.fromkeys(u, sp.S.Zero), dict.fromkeys(v, sp.S.Zero)
     equal = [{b: a} if isinstance(b, sp.Symbol) and a != b else {} for a, b in ((r1, r2), (r1, r3))]
     along = dict(zip(v, u, strict=True))
     return tuple(
-        Degenerate(which, locus, joint, meaning)
+        Degenerate((*which, *more), locus, joint, meaning)
         for which, locus, meaning in (
             ((same, line), {**none[0], **equal[0]}, "the first two spheres are the same"),
             ((line,), {**none[1], **equal[1]}, "the first and the third sphere are the same"),

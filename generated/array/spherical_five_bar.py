@@ -2,13 +2,13 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 90 compare and select, 66 add, 13 divide, 103 multiply, 7 sincos, 9 sqrt
-#   skeleton: 99 compare and select, 66 add, 22 divide, 90 multiply, 7 sincos, 9 sqrt
-#   jacobian_parallel: 102 compare and select, 78 add, 22 divide, 90 multiply, 7 sincos, 9 sqrt
-#   jacobian_serial: 88 compare and select, 82 add, 22 divide, 102 multiply, 7 sincos, 9 sqrt
-#   jacobian: 98 compare and select, 96 add, 34 divide, 140 multiply, 7 sincos, 9 sqrt
-#   singularities: 91 compare and select, 82 add, 22 divide, 104 multiply, 7 sincos, 9 sqrt
-#   condition_number: 94 compare and select, 122 add, 30 divide, 149 multiply, 7 sincos, 13 sqrt
+#   fk: 101 compare and select, 89 add, 16 divide, 116 multiply, 7 sincos, 9 sqrt
+#   skeleton: 109 compare and select, 92 add, 24 divide, 103 multiply, 7 sincos, 9 sqrt
+#   jacobian_parallel: 112 compare and select, 98 add, 24 divide, 103 multiply, 7 sincos, 9 sqrt
+#   jacobian_serial: 98 compare and select, 98 add, 24 divide, 115 multiply, 7 sincos, 9 sqrt
+#   jacobian: 106 compare and select, 116 add, 36 divide, 153 multiply, 7 sincos, 9 sqrt
+#   singularities: 99 compare and select, 98 add, 24 divide, 117 multiply, 7 sincos, 9 sqrt
+#   condition_number: 102 compare and select, 142 add, 32 divide, 162 multiply, 7 sincos, 13 sqrt
 #   ik: 137 compare and select, 101 add, 4 atan2, 11 divide, 127 multiply, 5 sincos, 14 sqrt
 #   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -116,127 +116,150 @@ _DEFAULT = Parameters()
 def _fk(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_alpha1 = ops.sin(alpha1)
     c_alpha1 = ops.cos(alpha1)
-    s1 = ops.sin(theta1)
-    c1 = ops.cos(theta1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_beta2_half = ops.sin(beta2 * 0.5)
+    s1 = ops.sin(theta1)
+    c1 = ops.cos(theta1)
     s_beta1_half = ops.sin(beta1 * 0.5)
+    s_beta2_half = ops.sin(beta2 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
     t2 = t1 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     t3 = t2 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
+    t4 = -(ops.feasibility * (r * 0.25))
     c1_x = r * c_alpha1
-    t4 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t4
-    c1_z = s1 * t4
-    t5 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_u = ops.sqrt(t5)
-    t6 = r * ops.vanishing
-    same = size_u <= t6
-    t7 = r * ops.abs(s_alpha2)
-    t8 = c2 * t7
-    t9 = r * c_alpha2
-    t10 = s_gamma * t8 - c_gamma * t9
-    t11 = ops.select(same, c1_x, -t10)
-    c2_y = s_gamma * t9 + c_gamma * t8
-    c2_z = s2 * t7
-    t12 = t10 * t10 + c2_y * c2_y + c2_z * c2_z
-    size_v = ops.sqrt(t12)
-    all_same = size_u + size_v <= t6
-    t13 = ops.select(same, -t10, c1_x)
+    t5 = r * ops.abs(s_alpha2)
+    t6 = c2 * t5
+    t7 = r * c_alpha2
+    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
+    t9 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t9
+    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
+    c1_z = s1 * t9
+    t11 = c1_z - s2 * t5
+    t12 = t8 * t8 + t10 * t10 + t11 * t11
+    size_u = ops.sqrt(t12)
+    t13 = r * ops.vanishing
+    same = size_u <= t13
+    t14 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t14
+    t15 = ops.select(same, r, r_2)
+    t16 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    size_v = ops.sqrt(t16)
     D = ops.select(same, size_v, size_u)
-    t14 = 1.0 / D
-    E_11 = ops.select(all_same, 1.0, t13 * t14)
-    t15 = ops.select(same, c1_y, c2_y)
-    t16 = ops.select(same, c2_y, c1_y)
-    E_12 = ops.select(all_same, 0.0, t14 * t16)
-    t17 = ops.select(same, c1_z, c2_z)
-    t18 = ops.select(same, c2_z, c1_z)
-    E_13 = ops.select(all_same, 0.0, t14 * t18)
-    k_0 = E_11 * t11 + t15 * E_12 + t17 * E_13
-    m_x = t11 - E_11 * k_0
-    m_y = t15 - E_12 * k_0
-    m_z = t17 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    n_z = m_z - E_13 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t19 = r * 2.0
-    r_1 = ops.abs(s_beta1_half) * t19
-    r_2 = ops.abs(s_beta2_half) * t19
-    t20 = ops.select(same, r_1, r_2)
-    t21 = (r - t20) * (r + t20) - t11 * (t13 - t11) + t15 * (t15 - t16)
-    t22 = t21 + t17 * (t17 - t18)
-    t23 = ops.select(same, r_2, r_1)
-    t24 = (r - t23) * (r + t23)
-    left = ops.select(all_same, 0.0, t22 - t14 * (t24 * (k_0 + k_1)))
-    t25 = ops.abs(ops.select(in_line, left, 0.0)) <= ops.feasibility * (r * r)
-    X = ops.select(all_same, 0.0, D * 0.5 + t24 / (2.0 * D))
-    Y = ops.select(in_line, 0.0, left / (2.0 * j))
-    t26 = r - ops.sqrt(X * X + Y * Y)
-    t27 = t25 & (-(ops.feasibility * (r * 0.25)) <= t26)
-    unreachable = ops.opposite(t27)
+    r_1 = ops.abs(s_beta1_half) * t14
+    t17 = D - r_1
+    t18 = t15 - t17
+    t19 = D + r_1
+    t20 = t19 - t15
+    t21 = t15 + t17
+    t22 = ops.select(same, r_2, r)
+    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
+    t24 = ops.select(same, t8, c1_x)
+    all_same = size_u + size_v <= t13
+    t25 = ops.select(same, c1_x, t8)
+    t26 = 1.0 / D
+    E_11 = ops.select(all_same, 1.0, -(t25 * t26))
+    t27 = ops.select(same, t10, c1_y)
+    t28 = ops.select(same, c1_y, t10)
+    t29 = ops.select(all_same, 0.0, t26 * t28)
+    t30 = ops.select(same, t11, c1_z)
+    t31 = ops.select(same, c1_z, t11)
+    t32 = ops.select(all_same, 0.0, t26 * t31)
+    t33 = E_11 * t24 - t27 * t29 - t30 * t32
+    t34 = t24 - E_11 * t33
+    t35 = t27 + t29 * t33
+    t36 = t30 + t32 * t33
+    t37 = E_11 * t34 - t29 * t35 - t32 * t36
+    t38 = t34 - E_11 * t37
+    t39 = t35 + t29 * t37
+    t40 = t36 + t32 * t37
+    j = ops.sqrt(t38 * t38 + t39 * t39 + t40 * t40)
+    outer = ops.max(t20, 0.0)
+    inner = ops.max(t21, 0.0)
+    share = 1.0 / (outer + inner)
+    slack = ops.max(t18, 0.0)
+    t41 = ops.sqrt(outer * inner * slack * (t15 + t19))
+    rho = ops.select(all_same, r_1, share * t41)
+    t42 = j * (2.0 * rho)
+    t43 = ops.select(same, r_2 * r_2, r * r)
+    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t45 = t33 + t37 + ops.select(all_same, 0.0, t44)
+    t46 = t43 - j * j - rho * rho - t45 * t45
+    t47 = t42 - t46
+    t48 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t47)
+    t49 = t46 + t42
+    unreachable = ops.opposite(t48 & (-t23 <= t49))
     failed = invalid | unreachable
-    t28 = ops.opposite(failed)
-    t29 = ops.opposite(all_same)
-    t30 = t28 & t29
-    t31 = t28 & ops.opposite(in_line)
-    t32 = t30 | (t31 & t29)
-    t33 = ops.select(t32 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t32 & same, t12, 1.0)), ops.sqrt(t33))
-    t34 = 1.0 / ops.select(t32, D_2, 1.0)
-    E_12_2 = ops.select(all_same, 0.0, t34 * t16)
-    E_11_2 = ops.select(all_same, 1.0, t13 * t34)
-    t35 = ops.sign(E_13)
-    t36 = E_11_2 * t35
-    E_13_2 = ops.select(all_same, 0.0, t34 * t18)
-    k_0_2 = E_11_2 * t11 + t15 * E_12_2 + t17 * E_13_2
-    m_z_2 = t17 - E_13_2 * k_0_2
-    m_x_2 = t11 - E_11_2 * k_0_2
-    m_y_2 = t15 - E_12_2 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * k_1_2
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t37 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t31, t37, 1.0))
-    t38 = 1.0 / ops.select(t31, j_2, 1.0)
-    E_23 = ops.select(in_line, -t36, n_z_2 * t38)
-    t39 = 1.0 / ops.select(t28 & in_line, E_13_2 + t35, 1.0)
-    E_22 = ops.select(in_line, -(t39 * (E_12_2 * t36)), n_y_2 * t38)
-    touching = ops.max(t26, 0.0) <= t6
-    t40 = t28 & ops.opposite(touching)
-    t41 = D_2 * 0.5 + t24 / ops.select(t30, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t41)
-    left_2 = ops.select(all_same, 0.0, t22 - t34 * (t24 * (k_0_2 + k_1_2)))
-    Y_2 = ops.select(in_line, 0.0, left_2 / ops.select(t31, 2.0 * j_2, 1.0))
-    rho = ops.sqrt(ops.select(t40, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t42 = ops.select(t40, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t42))
-    t43 = (E_12_2 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t35 * t39, n_x_2 * t38)
-    t44 = X_2 * E_11_2 + E_21 * Y_2
-    t45 = X_2 * E_12_2 + Y_2 * E_22
-    t46 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t47 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t48 = X_2 * E_13_2 + Y_2 * E_23
-    t49 = ops.status(invalid, unreachable, in_line)
+    in_line = j <= t13
+    t50 = ops.opposite(failed)
+    t51 = t50 & ops.opposite(all_same)
+    t52 = ops.select(t51 & ops.opposite(same), t12, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t51 & same, t16, 1.0)), ops.sqrt(t52))
+    t53 = 1.0 / ops.select(t51, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(t25 * t53))
+    t54 = ops.sign(-t32)
+    t55 = ops.select(all_same, 0.0, t53 * t31)
+    t56 = 1.0 / ops.select(t50 & in_line, t55 - t54, 1.0)
+    t57 = ops.select(all_same, 0.0, t53 * t28)
+    t58 = E_11_2 * t24 - t27 * t57 - t30 * t55
+    t59 = t24 - E_11_2 * t58
+    t60 = t27 + t57 * t58
+    t61 = t30 + t55 * t58
+    t62 = E_11_2 * t59 - t57 * t60 - t55 * t61
+    t63 = t59 - E_11_2 * t62
+    t64 = t50 & ops.opposite(in_line)
+    flat = ops.max(t47, 0.0) + ops.max(t49, 0.0) <= ops.vanishing * (r * t22)
+    t65 = t50 & ops.opposite(flat)
+    t66 = t60 + t57 * t62
+    t67 = t61 + t55 * t62
+    t68 = ops.select(t64 | t65, t63 * t63 + t66 * t66 + t67 * t67, 1.0)
+    j_2 = ops.sqrt(t68)
+    t69 = 1.0 / ops.select(t64, j_2, 1.0)
+    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t54 * t56, -(t63 * t69))
+    t70 = D_2 + r_1
+    outer_2 = ops.max(t70 - t15, 0.0)
+    t71 = D_2 - r_1
+    inner_2 = ops.max(t15 + t71, 0.0)
+    share_2 = 1.0 / ops.select(t51, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t71, 0.0)
+    t72 = ops.select(t51, outer_2 * inner_2 * slack_2 * (t15 + t70), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t72))
+    t73 = 2.0 * rho_2
+    t74 = j_2 * t73
+    t75 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    X = ops.select(all_same, 0.0, D_2 * 0.5 + t75 * 0.5)
+    t76 = t58 + t62 + X
+    t77 = t43 - j_2 * j_2 - rho_2 * rho_2 - t76 * t76
+    upper = ops.max(t74 - t77, 0.0)
+    lower = ops.max(t77 + t74, 0.0)
+    t78 = 1.0 / ops.select(t65, upper + lower, 1.0)
+    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) * t78)
+    t79 = E_21 * Y + (c1_x + E_11_2 * X)
+    t80 = E_11_2 * t54
+    t81 = ops.select(in_line, t80, t67 * t69)
+    t82 = ops.select(in_line, t56 * (t57 * t80), t66 * t69)
+    t83 = ops.sqrt(ops.select(t65, upper * lower, 1.0))
+    h = ops.select(flat, rho_2, t78 * (t73 * t83))
+    t84 = (t57 * t81 - t55 * t82) * h
+    t85 = (E_11_2 * t81 - t55 * E_21) * h
+    t86 = t82 * Y - (c1_y - t57 * X)
+    t87 = t81 * Y - (c1_z - t55 * X)
+    t88 = (E_11_2 * t82 - t57 * E_21) * h
+    t89 = ops.status(invalid, unreachable, in_line)
     return (
-        ops.select(failed, ops.nan, t43 + t44),
-        ops.select(failed, ops.nan, t45 - t46),
-        ops.select(failed, ops.nan, t47 + t48),
-        ops.select(failed, ops.nan, t44 - t43),
-        ops.select(failed, ops.nan, t46 + t45),
-        ops.select(failed, ops.nan, t48 - t47),
-        t49,
-        t49,
+        ops.select(failed, ops.nan, t79 + t84),
+        ops.select(failed, ops.nan, t85 - t86),
+        ops.select(failed, ops.nan, -(t87 + t88)),
+        ops.select(failed, ops.nan, t79 - t84),
+        ops.select(failed, ops.nan, -(t86 + t85)),
+        ops.select(failed, ops.nan, t88 - t87),
+        t89,
+        t89,
     )
 
 
@@ -247,7 +270,7 @@ _FK = _runtime.Kernel(
     (_runtime.Spec("p", (2, 3)), _runtime.Spec("status", (2,), "status")),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 3),
+    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 4),
 )
 
 
@@ -293,165 +316,195 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
 def _skeleton(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_alpha1 = ops.sin(alpha1)
     c_alpha1 = ops.cos(alpha1)
-    s1 = ops.sin(theta1)
-    c1 = ops.cos(theta1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_beta1_half = ops.sin(beta1 * 0.5)
+    s1 = ops.sin(theta1)
+    c1 = ops.cos(theta1)
     s_beta2_half = ops.sin(beta2 * 0.5)
+    s_beta1_half = ops.sin(beta1 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
     t2 = t1 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     t3 = t2 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
+    t4 = -(ops.feasibility * (r * 0.25))
     c1_x = r * c_alpha1
-    t4 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t4
-    c1_z = s1 * t4
-    t5 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_u = ops.sqrt(t5)
-    t6 = r * ops.vanishing
-    same = size_u <= t6
-    t7 = r * ops.abs(s_alpha2)
-    t8 = c2 * t7
-    t9 = r * c_alpha2
-    t10 = c_gamma * t9
-    t11 = s_gamma * t8 - t10
-    t12 = ops.select(same, c1_x, -t11)
-    t13 = s_gamma * t9
-    c2_y = t13 + c_gamma * t8
-    c2_z = s2 * t7
-    t14 = t11 * t11 + c2_y * c2_y + c2_z * c2_z
-    size_v = ops.sqrt(t14)
-    all_same = size_u + size_v <= t6
-    t15 = ops.select(same, -t11, c1_x)
+    t5 = r * ops.abs(s_alpha2)
+    t6 = c2 * t5
+    t7 = r * c_alpha2
+    t8 = c_gamma * t7
+    t9 = s_gamma * t6 - t8
+    t10 = c1_x + t9
+    t11 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t11
+    t12 = s_gamma * t7
+    c2_y = t12 + c_gamma * t6
+    t13 = c1_y - c2_y
+    c1_z = s1 * t11
+    c2_z = s2 * t5
+    t14 = c1_z - c2_z
+    t15 = t10 * t10 + t13 * t13 + t14 * t14
+    size_u = ops.sqrt(t15)
+    t16 = r * ops.vanishing
+    same = size_u <= t16
+    t17 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t17
+    t18 = ops.select(same, r, r_2)
+    r_1 = ops.abs(s_beta1_half) * t17
+    t19 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    size_v = ops.sqrt(t19)
     D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t15 / D)
-    t16 = ops.select(same, c2_y, c1_y)
-    E_12 = ops.select(all_same, 0.0, t16 / D)
-    t17 = ops.select(same, c1_y, c2_y)
-    t18 = ops.select(same, c2_z, c1_z)
-    E_13 = ops.select(all_same, 0.0, t18 / D)
-    t19 = ops.select(same, c1_z, c2_z)
-    k_0 = t12 * E_11 + E_12 * t17 + E_13 * t19
-    m_x = t12 - E_11 * k_0
-    m_y = t17 - E_12 * k_0
-    m_z = t19 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    n_z = m_z - E_13 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t20 = r * 2.0
-    r_1 = ops.abs(s_beta1_half) * t20
-    r_2 = ops.abs(s_beta2_half) * t20
-    t21 = ops.select(same, r_1, r_2)
-    t22 = (r - t21) * (r + t21) + t12 * (t12 - t15) - t17 * (t16 - t17)
-    t23 = t22 - t19 * (t18 - t19)
-    t24 = ops.select(same, r_2, r_1)
-    t25 = (r - t24) * (r + t24)
-    left = ops.select(all_same, 0.0, t23 - t25 * (k_0 + k_1) / D)
-    t26 = ops.abs(ops.select(in_line, left, 0.0)) <= ops.feasibility * (r * r)
-    X = ops.select(all_same, 0.0, D * 0.5 + t25 / (2.0 * D))
-    Y = ops.select(in_line, 0.0, left / (2.0 * j))
-    t27 = r - ops.sqrt(X * X + Y * Y)
-    t28 = t26 & (-(ops.feasibility * (r * 0.25)) <= t27)
-    failed = invalid | ops.opposite(t28)
-    t29 = ops.select(failed, ops.nan, 0.0)
-    t30 = ops.select(failed, ops.nan, c1_x)
-    t31 = ops.select(failed, ops.nan, c1_y)
-    t32 = ops.select(failed, ops.nan, c1_z)
-    t33 = ops.select(failed, ops.nan, t10)
-    t34 = ops.select(failed, ops.nan, t13)
-    t35 = ops.select(failed, ops.nan, -t11)
-    t36 = ops.select(failed, ops.nan, c2_y)
-    t37 = ops.select(failed, ops.nan, c2_z)
-    t38 = ops.opposite(failed)
-    t39 = ops.opposite(all_same)
-    t40 = t38 & t39
-    t41 = t38 & ops.opposite(in_line)
-    t42 = t41 & t39
-    t43 = t40 | t42
-    t44 = ops.select(t43 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t43 & same, t14, 1.0)), ops.sqrt(t44))
-    t45 = ops.select(t40, D_2, 1.0)
-    E_12_2 = ops.select(all_same, 0.0, t16 / t45)
-    E_11_2 = ops.select(all_same, 1.0, t15 / t45)
-    t46 = ops.sign(E_13)
-    t47 = E_11_2 * t46
-    E_13_2 = ops.select(all_same, 0.0, t18 / t45)
-    k_0_2 = t12 * E_11_2 + E_12_2 * t17 + E_13_2 * t19
-    m_z_2 = t19 - E_13_2 * k_0_2
-    m_x_2 = t12 - E_11_2 * k_0_2
-    m_y_2 = t17 - E_12_2 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * k_1_2
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t48 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t41, t48, 1.0))
-    t49 = ops.select(t41, j_2, 1.0)
-    E_23 = ops.select(in_line, -t47, n_z_2 / t49)
-    t50 = ops.select(t38 & in_line, E_13_2 + t46, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t47 / t50), n_y_2 / t49)
-    touching = ops.max(t27, 0.0) <= t6
-    t51 = t38 & ops.opposite(touching)
-    t52 = D_2 * 0.5 + t25 / ops.select(t40, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t52)
-    t53 = t25 * (k_0_2 + k_1_2) / ops.select(t42, D_2, 1.0)
-    t54 = ops.select(all_same, 0.0, t23 - t53) / ops.select(t41, 2.0 * j_2, 1.0)
-    Y_2 = ops.select(in_line, 0.0, t54)
-    rho = ops.sqrt(ops.select(t51, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t55 = ops.select(t51, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t55))
-    t56 = (E_12_2 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t46 / t50, n_x_2 / t49)
-    t57 = E_11_2 * X_2 + Y_2 * E_21
-    t58 = E_12_2 * X_2 + Y_2 * E_22
-    t59 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t60 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t61 = E_13_2 * X_2 + Y_2 * E_23
+    t20 = r_1 - D
+    t21 = t18 + t20
+    t22 = r_1 + D
+    t23 = t22 - t18
+    t24 = t18 - t20
+    t25 = ops.select(same, r_2, r)
+    t26 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t25) * 0.5)
+    t27 = ops.select(same, t10, c1_x)
+    all_same = size_u + size_v <= t16
+    t28 = ops.select(same, c1_x, t10)
+    E_11 = ops.select(all_same, 1.0, -(t28 / D))
+    t29 = ops.select(same, c1_y, t13)
+    t30 = ops.select(all_same, 0.0, t29 / D)
+    t31 = ops.select(same, t13, c1_y)
+    t32 = ops.select(same, c1_z, t14)
+    t33 = ops.select(all_same, 0.0, t32 / D)
+    t34 = ops.select(same, t14, c1_z)
+    t35 = t27 * E_11 - t30 * t31 - t33 * t34
+    t36 = t27 - E_11 * t35
+    t37 = t31 + t30 * t35
+    t38 = t34 + t33 * t35
+    t39 = E_11 * t36 - t30 * t37 - t33 * t38
+    t40 = t36 - E_11 * t39
+    t41 = t37 + t30 * t39
+    t42 = t38 + t33 * t39
+    j = ops.sqrt(t40 * t40 + t41 * t41 + t42 * t42)
+    t43 = ops.select(same, r_2 * r_2, r * r)
+    outer = ops.max(t23, 0.0)
+    inner = ops.max(t24, 0.0)
+    share = 1.0 / (outer + inner)
+    slack = ops.max(t21, 0.0)
+    t44 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t45 = t35 + t39 + ops.select(all_same, 0.0, t44)
+    t46 = ops.sqrt(outer * inner * slack * (t18 + t22))
+    rho = ops.select(all_same, r_1, share * t46)
+    left = j * j - t43 + t45 * t45 + rho * rho
+    t47 = j * (2.0 * rho)
+    t48 = left + t47
+    t49 = (t4 <= t21) & (t4 <= t23) & (t4 <= t24) & (-t26 <= t48)
+    t50 = t47 - left
+    failed = invalid | ops.opposite(t49 & (-t26 <= t50))
+    t51 = ops.select(failed, ops.nan, 0.0)
+    t52 = ops.select(failed, ops.nan, c1_x)
+    t53 = ops.select(failed, ops.nan, c1_y)
+    t54 = ops.select(failed, ops.nan, c1_z)
+    t55 = ops.select(failed, ops.nan, t8)
+    t56 = ops.select(failed, ops.nan, t12)
+    t57 = ops.select(failed, ops.nan, -t9)
+    t58 = ops.select(failed, ops.nan, c2_y)
+    t59 = ops.select(failed, ops.nan, c2_z)
+    t60 = ops.opposite(failed)
+    t61 = t60 & ops.opposite(all_same)
+    t62 = ops.select(t61 & ops.opposite(same), t15, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t61 & same, t19, 1.0)), ops.sqrt(t62))
+    t63 = ops.select(t61, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(t28 / t63))
+    t64 = r_1 + D_2
+    outer_2 = ops.max(t64 - t18, 0.0)
+    t65 = r_1 - D_2
+    inner_2 = ops.max(t18 - t65, 0.0)
+    share_2 = 1.0 / ops.select(t61, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t18 + t65, 0.0)
+    t66 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    X = ops.select(all_same, 0.0, D_2 * 0.5 + t66 * 0.5)
+    in_line = j <= t16
+    t67 = ops.sign(-t33)
+    t68 = ops.select(all_same, 0.0, t32 / t63)
+    t69 = ops.select(t60 & in_line, t68 - t67, 1.0)
+    t70 = ops.select(all_same, 0.0, t29 / t63)
+    t71 = t27 * E_11_2 - t70 * t31 - t68 * t34
+    t72 = t27 - E_11_2 * t71
+    t73 = t31 + t70 * t71
+    t74 = t34 + t68 * t71
+    t75 = E_11_2 * t72 - t70 * t73 - t68 * t74
+    t76 = t72 - E_11_2 * t75
+    t77 = t60 & ops.opposite(in_line)
+    flat = ops.max(t48, 0.0) + ops.max(t50, 0.0) <= ops.vanishing * (r * t25)
+    t78 = t60 & ops.opposite(flat)
+    t79 = t73 + t70 * t75
+    t80 = t74 + t68 * t75
+    t81 = ops.select(t77 | t78, t76 * t76 + t79 * t79 + t80 * t80, 1.0)
+    j_2 = ops.sqrt(t81)
+    t82 = ops.select(t77, j_2, 1.0)
+    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t67 / t69, -(t76 / t82))
+    t83 = ops.select(t61, outer_2 * inner_2 * slack_2 * (t18 + t64), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t83))
+    t84 = t71 + t75 + X
+    left_2 = j_2 * j_2 - t43 + t84 * t84 + rho_2 * rho_2
+    t85 = 2.0 * rho_2
+    t86 = j_2 * t85
+    upper = ops.max(left_2 + t86, 0.0)
+    lower = ops.max(t86 - left_2, 0.0)
+    t87 = ops.select(t78, upper + lower, 1.0)
+    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) / t87)
+    t88 = E_11_2 * X + E_21 * Y
+    t89 = E_11_2 * t67
+    t90 = ops.select(in_line, t89, t80 / t82)
+    t91 = ops.select(in_line, t70 * t89 / t69, t79 / t82)
+    t92 = ops.sqrt(ops.select(t78, upper * lower, 1.0))
+    h = ops.select(flat, rho_2, t85 * t92 / t87)
+    t93 = (t70 * t90 - t68 * t91) * h
+    t94 = ops.select(failed, ops.nan, c1_x + (t88 + t93))
+    t95 = t70 * X + t91 * Y
+    t96 = (E_11_2 * t90 - t68 * E_21) * h
+    t97 = ops.select(failed, ops.nan, c1_y - (t95 - t96))
+    t98 = t68 * X + t90 * Y
+    t99 = (E_11_2 * t91 - t70 * E_21) * h
+    t100 = ops.select(failed, ops.nan, c1_z - (t98 + t99))
+    t101 = ops.select(failed, ops.nan, c1_x + (t88 - t93))
+    t102 = ops.select(failed, ops.nan, c1_y - (t95 + t96))
+    t103 = ops.select(failed, ops.nan, c1_z - (t98 - t99))
     return (
-        t29,
-        t29,
-        t29,
-        t30,
-        t29,
-        t29,
-        t30,
-        t31,
-        t32,
-        t33,
-        t34,
-        t29,
-        t35,
-        t36,
-        t37,
-        ops.select(failed, ops.nan, t56 + t57),
-        ops.select(failed, ops.nan, t58 - t59),
-        ops.select(failed, ops.nan, t60 + t61),
-        t29,
-        t29,
-        t29,
-        t30,
-        t29,
-        t29,
-        t30,
-        t31,
-        t32,
-        t33,
-        t34,
-        t29,
-        t35,
-        t36,
-        t37,
-        ops.select(failed, ops.nan, t57 - t56),
-        ops.select(failed, ops.nan, t59 + t58),
-        ops.select(failed, ops.nan, t61 - t60),
+        t51,
+        t51,
+        t51,
+        t52,
+        t51,
+        t51,
+        t52,
+        t53,
+        t54,
+        t55,
+        t56,
+        t51,
+        t57,
+        t58,
+        t59,
+        t94,
+        t97,
+        t100,
+        t51,
+        t51,
+        t51,
+        t52,
+        t51,
+        t51,
+        t52,
+        t53,
+        t54,
+        t55,
+        t56,
+        t51,
+        t57,
+        t58,
+        t59,
+        t101,
+        t102,
+        t103,
     )
 
 
@@ -462,7 +515,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Spec("points", (2, 6, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 3),
+    _runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 4),
 )
 
 
@@ -499,144 +552,164 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _jacobian_parallel(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_alpha1 = ops.sin(alpha1)
     c_alpha1 = ops.cos(alpha1)
-    s1 = ops.sin(theta1)
-    c1 = ops.cos(theta1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_beta2_half = ops.sin(beta2 * 0.5)
+    s1 = ops.sin(theta1)
+    c1 = ops.cos(theta1)
     s_beta1_half = ops.sin(beta1 * 0.5)
+    s_beta2_half = ops.sin(beta2 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
     t2 = t1 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     t3 = t2 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
+    t4 = -(ops.feasibility * (r * 0.25))
     c1_x = r * c_alpha1
-    t4 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t4
-    c1_z = s1 * t4
-    t5 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_u = ops.sqrt(t5)
-    t6 = r * ops.vanishing
-    same = size_u <= t6
-    t7 = r * ops.abs(s_alpha2)
-    t8 = c2 * t7
-    t9 = r * c_alpha2
-    t10 = s_gamma * t8 - c_gamma * t9
-    t11 = ops.select(same, c1_x, -t10)
-    c2_y = s_gamma * t9 + c_gamma * t8
-    c2_z = s2 * t7
-    t12 = t10 * t10 + c2_y * c2_y + c2_z * c2_z
-    size_v = ops.sqrt(t12)
-    all_same = size_u + size_v <= t6
-    t13 = ops.select(same, -t10, c1_x)
+    t5 = r * ops.abs(s_alpha2)
+    t6 = c2 * t5
+    t7 = r * c_alpha2
+    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
+    t9 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t9
+    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
+    c1_z = s1 * t9
+    t11 = c1_z - s2 * t5
+    t12 = t8 * t8 + t10 * t10 + t11 * t11
+    size_u = ops.sqrt(t12)
+    t13 = r * ops.vanishing
+    same = size_u <= t13
+    t14 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t14
+    t15 = ops.select(same, r, r_2)
+    t16 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    size_v = ops.sqrt(t16)
     D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t13 / D)
-    t14 = ops.select(same, c2_y, c1_y)
-    E_12 = ops.select(all_same, 0.0, t14 / D)
-    t15 = ops.select(same, c1_y, c2_y)
-    t16 = ops.select(same, c2_z, c1_z)
-    E_13 = ops.select(all_same, 0.0, t16 / D)
-    t17 = ops.select(same, c1_z, c2_z)
-    k_0 = E_11 * t11 + E_12 * t15 + E_13 * t17
-    m_x = t11 - E_11 * k_0
-    m_y = t15 - E_12 * k_0
-    m_z = t17 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    n_z = m_z - E_13 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t18 = r * 2.0
-    r_1 = ops.abs(s_beta1_half) * t18
-    r_2 = ops.abs(s_beta2_half) * t18
-    t19 = ops.select(same, r_1, r_2)
-    t20 = (r - t19) * (r + t19) - t11 * (t13 - t11) - t15 * (t14 - t15)
-    t21 = t20 - t17 * (t16 - t17)
-    t22 = ops.select(same, r_2, r_1)
-    t23 = (r - t22) * (r + t22)
-    left = ops.select(all_same, 0.0, t21 - t23 * (k_0 + k_1) / D)
-    t24 = ops.abs(ops.select(in_line, left, 0.0)) <= ops.feasibility * (r * r)
-    X = ops.select(all_same, 0.0, D * 0.5 + t23 / (2.0 * D))
-    Y = ops.select(in_line, 0.0, left / (2.0 * j))
-    t25 = r - ops.sqrt(X * X + Y * Y)
-    t26 = t24 & (-(ops.feasibility * (r * 0.25)) <= t25)
-    failed = invalid | ops.opposite(t26)
-    t27 = ops.opposite(failed)
-    t28 = ops.opposite(all_same)
-    t29 = t27 & t28
-    t30 = t27 & ops.opposite(in_line)
-    t31 = t30 & t28
-    t32 = t29 | t31
-    t33 = ops.select(t32 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t32 & same, t12, 1.0)), ops.sqrt(t33))
-    t34 = ops.select(t29, D_2, 1.0)
-    E_12_2 = ops.select(all_same, 0.0, t14 / t34)
-    E_11_2 = ops.select(all_same, 1.0, t13 / t34)
-    t35 = ops.sign(E_13)
-    t36 = E_11_2 * t35
-    E_13_2 = ops.select(all_same, 0.0, t16 / t34)
-    k_0_2 = E_11_2 * t11 + E_12_2 * t15 + E_13_2 * t17
-    m_z_2 = t17 - E_13_2 * k_0_2
-    m_x_2 = t11 - E_11_2 * k_0_2
-    m_y_2 = t15 - E_12_2 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * k_1_2
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t37 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t30, t37, 1.0))
-    t38 = ops.select(t30, j_2, 1.0)
-    E_23 = ops.select(in_line, -t36, n_z_2 / t38)
-    t39 = ops.select(t27 & in_line, E_13_2 + t35, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t36 / t39), n_y_2 / t38)
-    touching = ops.max(t25, 0.0) <= t6
-    t40 = t27 & ops.opposite(touching)
-    t41 = D_2 * 0.5 + t23 / ops.select(t29, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t41)
-    t42 = t23 * (k_0_2 + k_1_2) / ops.select(t31, D_2, 1.0)
-    t43 = ops.select(all_same, 0.0, t21 - t42) / ops.select(t30, 2.0 * j_2, 1.0)
-    Y_2 = ops.select(in_line, 0.0, t43)
-    rho = ops.sqrt(ops.select(t40, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t44 = ops.select(t40, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t44))
-    t45 = (E_12_2 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t35 / t39, n_x_2 / t38)
-    t46 = E_11_2 * X_2 + E_21 * Y_2
-    A_01 = t45 + t46
-    t47 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t48 = X_2 * E_12_2 + Y_2 * E_22
-    t49 = t47 - t48
-    t50 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t51 = X_2 * E_13_2 + Y_2 * E_23
-    A_03 = t50 + t51
-    t52 = t45 - t46
-    A_02_below = t47 + t48
-    t53 = t50 - t51
-    t54 = ops.select(failed, ops.nan, A_02_below - c1_y)
-    t55 = ops.select(failed, ops.nan, A_02_below - c2_y)
+    r_1 = ops.abs(s_beta1_half) * t14
+    t17 = D - r_1
+    t18 = t15 - t17
+    t19 = D + r_1
+    t20 = t19 - t15
+    t21 = t15 + t17
+    t22 = ops.select(same, r_2, r)
+    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
+    t24 = ops.select(same, t8, c1_x)
+    all_same = size_u + size_v <= t13
+    t25 = ops.select(same, c1_x, t8)
+    E_11 = ops.select(all_same, 1.0, -(t25 / D))
+    t26 = ops.select(same, c1_y, t10)
+    t27 = ops.select(all_same, 0.0, t26 / D)
+    t28 = ops.select(same, t10, c1_y)
+    t29 = ops.select(same, c1_z, t11)
+    t30 = ops.select(all_same, 0.0, t29 / D)
+    t31 = ops.select(same, t11, c1_z)
+    t32 = E_11 * t24 - t27 * t28 - t30 * t31
+    t33 = t24 - E_11 * t32
+    t34 = t28 + t27 * t32
+    t35 = t31 + t30 * t32
+    t36 = E_11 * t33 - t27 * t34 - t30 * t35
+    t37 = t33 - E_11 * t36
+    t38 = t34 + t27 * t36
+    t39 = t35 + t30 * t36
+    j = ops.sqrt(t37 * t37 + t38 * t38 + t39 * t39)
+    t40 = ops.select(same, r_2 * r_2, r * r)
+    outer = ops.max(t20, 0.0)
+    inner = ops.max(t21, 0.0)
+    share = 1.0 / (outer + inner)
+    slack = ops.max(t18, 0.0)
+    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t42 = t32 + t36 + ops.select(all_same, 0.0, t41)
+    t43 = ops.sqrt(outer * inner * slack * (t15 + t19))
+    rho = ops.select(all_same, r_1, share * t43)
+    left = j * j - t40 + t42 * t42 + rho * rho
+    t44 = j * (2.0 * rho)
+    t45 = left + t44
+    t46 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t45)
+    t47 = t44 - left
+    failed = invalid | ops.opposite(t46 & (-t23 <= t47))
+    t48 = ops.opposite(failed)
+    t49 = t48 & ops.opposite(all_same)
+    t50 = ops.select(t49 & ops.opposite(same), t12, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t49 & same, t16, 1.0)), ops.sqrt(t50))
+    t51 = ops.select(t49, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(t25 / t51))
+    t52 = D_2 + r_1
+    outer_2 = ops.max(t52 - t15, 0.0)
+    t53 = D_2 - r_1
+    inner_2 = ops.max(t15 + t53, 0.0)
+    share_2 = 1.0 / ops.select(t49, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t53, 0.0)
+    t54 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    X = ops.select(all_same, 0.0, D_2 * 0.5 + t54 * 0.5)
+    in_line = j <= t13
+    t55 = ops.sign(-t30)
+    t56 = ops.select(all_same, 0.0, t29 / t51)
+    t57 = ops.select(t48 & in_line, t56 - t55, 1.0)
+    t58 = ops.select(all_same, 0.0, t26 / t51)
+    t59 = E_11_2 * t24 - t58 * t28 - t56 * t31
+    t60 = t24 - E_11_2 * t59
+    t61 = t28 + t58 * t59
+    t62 = t31 + t56 * t59
+    t63 = E_11_2 * t60 - t58 * t61 - t56 * t62
+    t64 = t60 - E_11_2 * t63
+    t65 = t48 & ops.opposite(in_line)
+    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t22)
+    t66 = t48 & ops.opposite(flat)
+    t67 = t61 + t58 * t63
+    t68 = t62 + t56 * t63
+    t69 = ops.select(t65 | t66, t64 * t64 + t67 * t67 + t68 * t68, 1.0)
+    j_2 = ops.sqrt(t69)
+    t70 = ops.select(t65, j_2, 1.0)
+    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t55 / t57, -(t64 / t70))
+    t71 = ops.select(t49, outer_2 * inner_2 * slack_2 * (t15 + t52), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t71))
+    t72 = t59 + t63 + X
+    left_2 = j_2 * j_2 - t40 + t72 * t72 + rho_2 * rho_2
+    t73 = 2.0 * rho_2
+    t74 = j_2 * t73
+    upper = ops.max(left_2 + t74, 0.0)
+    lower = ops.max(t74 - left_2, 0.0)
+    t75 = ops.select(t66, upper + lower, 1.0)
+    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) / t75)
+    t76 = E_11_2 * X + E_21 * Y
+    t77 = E_11_2 * t55
+    t78 = ops.select(in_line, t77, t68 / t70)
+    t79 = ops.select(in_line, t58 * t77 / t57, t67 / t70)
+    t80 = ops.sqrt(ops.select(t66, upper * lower, 1.0))
+    h = ops.select(flat, rho_2, t73 * t80 / t75)
+    t81 = (t58 * t78 - t56 * t79) * h
+    A_11 = t76 + t81
+    t82 = t58 * X + t79 * Y
+    t83 = (E_11_2 * t78 - t56 * E_21) * h
+    t84 = t82 - t83
+    t85 = t56 * X + t78 * Y
+    t86 = (E_11_2 * t79 - t58 * E_21) * h
+    t87 = t85 + t86
+    A_11_below = t76 - t81
+    t88 = ops.select(failed, ops.nan, c1_x + A_11_below)
+    t89 = t82 + t83
+    t90 = t85 - t86
     return (
-        ops.select(failed, ops.nan, A_01),
-        ops.select(failed, ops.nan, -t49),
-        ops.select(failed, ops.nan, A_03),
-        ops.select(failed, ops.nan, A_01 - c1_x),
-        ops.select(failed, ops.nan, -(c1_y + t49)),
-        ops.select(failed, ops.nan, A_03 - c1_z),
-        ops.select(failed, ops.nan, t10 + A_01),
-        ops.select(failed, ops.nan, -(c2_y + t49)),
-        ops.select(failed, ops.nan, A_03 - c2_z),
-        ops.select(failed, ops.nan, -t52),
-        ops.select(failed, ops.nan, A_02_below),
-        ops.select(failed, ops.nan, -t53),
-        ops.select(failed, ops.nan, -(c1_x + t52)),
-        t54,
-        ops.select(failed, ops.nan, -(c1_z + t53)),
-        ops.select(failed, ops.nan, t10 - t52),
-        t55,
-        ops.select(failed, ops.nan, -(c2_z + t53)),
+        ops.select(failed, ops.nan, c1_x + A_11),
+        ops.select(failed, ops.nan, c1_y - t84),
+        ops.select(failed, ops.nan, c1_z - t87),
+        ops.select(failed, ops.nan, A_11),
+        ops.select(failed, ops.nan, -t84),
+        ops.select(failed, ops.nan, -t87),
+        ops.select(failed, ops.nan, t8 + A_11),
+        ops.select(failed, ops.nan, t10 - t84),
+        ops.select(failed, ops.nan, t11 - t87),
+        t88,
+        ops.select(failed, ops.nan, c1_y - t89),
+        ops.select(failed, ops.nan, c1_z - t90),
+        ops.select(failed, ops.nan, A_11_below),
+        ops.select(failed, ops.nan, -t89),
+        ops.select(failed, ops.nan, -t90),
+        ops.select(failed, ops.nan, t8 + A_11_below),
+        ops.select(failed, ops.nan, t10 - t89),
+        ops.select(failed, ops.nan, t11 - t90),
     )
 
 
@@ -647,7 +720,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Spec("A", (2, 3, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 3),
+    _runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 4),
 )
 
 
@@ -692,126 +765,146 @@ def _jacobian_serial(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_beta2_half = ops.sin(beta2 * 0.5)
     s_beta1_half = ops.sin(beta1 * 0.5)
+    s_beta2_half = ops.sin(beta2 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
     t2 = t1 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     t3 = t2 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
+    t4 = -(ops.feasibility * (r * 0.25))
     c1_x = r * c_alpha1
-    t4 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t4
-    c1_z = s1 * t4
-    t5 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_u = ops.sqrt(t5)
-    t6 = r * ops.vanishing
-    same = size_u <= t6
-    t7 = r * ops.abs(s_alpha2)
-    t8 = c2 * t7
-    t9 = r * c_alpha2
-    t10 = s_gamma * t8 - c_gamma * t9
-    t11 = ops.select(same, c1_x, -t10)
-    c2_y = s_gamma * t9 + c_gamma * t8
-    c2_z = s2 * t7
-    t12 = t10 * t10 + c2_y * c2_y + c2_z * c2_z
-    size_v = ops.sqrt(t12)
-    all_same = size_u + size_v <= t6
-    t13 = ops.select(same, -t10, c1_x)
+    t5 = r * ops.abs(s_alpha2)
+    t6 = c2 * t5
+    t7 = r * c_alpha2
+    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
+    t9 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t9
+    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
+    c2_z = s2 * t5
+    c1_z = s1 * t9
+    t11 = c2_z - c1_z
+    t12 = t8 * t8 + t10 * t10 + t11 * t11
+    size_u = ops.sqrt(t12)
+    t13 = r * ops.vanishing
+    same = size_u <= t13
+    t14 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t14
+    t15 = ops.select(same, r, r_2)
+    t16 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    size_v = ops.sqrt(t16)
     D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t13 / D)
-    t14 = ops.select(same, c2_y, c1_y)
-    E_12 = ops.select(all_same, 0.0, t14 / D)
-    t15 = ops.select(same, c1_y, c2_y)
-    t16 = ops.select(same, c2_z, c1_z)
-    E_13 = ops.select(all_same, 0.0, t16 / D)
-    t17 = ops.select(same, c1_z, c2_z)
-    k_0 = t11 * E_11 + E_12 * t15 + E_13 * t17
-    m_x = t11 - E_11 * k_0
-    m_y = t15 - E_12 * k_0
-    m_z = t17 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    n_z = m_z - E_13 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t18 = r * 2.0
-    r_1 = ops.abs(s_beta1_half) * t18
-    r_2 = ops.abs(s_beta2_half) * t18
-    t19 = ops.select(same, r_1, r_2)
-    t20 = (r - t19) * (r + t19) + t11 * (t11 - t13) - t15 * (t14 - t15)
-    t21 = t20 - t17 * (t16 - t17)
-    t22 = ops.select(same, r_2, r_1)
-    t23 = (r - t22) * (r + t22)
-    left = ops.select(all_same, 0.0, t21 - t23 * (k_0 + k_1) / D)
-    t24 = ops.abs(ops.select(in_line, left, 0.0)) <= ops.feasibility * (r * r)
-    X = ops.select(all_same, 0.0, D * 0.5 + t23 / (2.0 * D))
-    Y = ops.select(in_line, 0.0, left / (2.0 * j))
-    t25 = r - ops.sqrt(X * X + Y * Y)
-    t26 = t24 & (-(ops.feasibility * (r * 0.25)) <= t25)
-    failed = invalid | ops.opposite(t26)
-    t27 = ops.opposite(failed)
-    t28 = ops.opposite(all_same)
-    t29 = t27 & t28
-    t30 = t27 & ops.opposite(in_line)
-    t31 = t30 & t28
-    t32 = t29 | t31
-    t33 = ops.select(t32 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t32 & same, t12, 1.0)), ops.sqrt(t33))
-    t34 = ops.select(t29, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t13 / t34)
-    t35 = ops.sign(E_13)
-    t36 = E_11_2 * t35
-    E_13_2 = ops.select(all_same, 0.0, t16 / t34)
-    E_12_2 = ops.select(all_same, 0.0, t14 / t34)
-    k_0_2 = t11 * E_11_2 + E_12_2 * t15 + E_13_2 * t17
-    m_z_2 = t17 - E_13_2 * k_0_2
-    m_x_2 = t11 - E_11_2 * k_0_2
-    m_y_2 = t15 - E_12_2 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * k_1_2
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t37 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t30, t37, 1.0))
-    t38 = ops.select(t30, j_2, 1.0)
-    E_23 = ops.select(in_line, -t36, n_z_2 / t38)
-    t39 = ops.select(t27 & in_line, E_13_2 + t35, 1.0)
-    E_21 = ops.select(in_line, 1.0 - t35 * (E_11_2 * E_11_2) / t39, n_x_2 / t38)
-    touching = ops.max(t25, 0.0) <= t6
-    t40 = t27 & ops.opposite(touching)
-    t41 = D_2 * 0.5 + t23 / ops.select(t29, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t41)
-    t42 = t23 * (k_0_2 + k_1_2) / ops.select(t31, D_2, 1.0)
-    t43 = ops.select(all_same, 0.0, t21 - t42) / ops.select(t30, 2.0 * j_2, 1.0)
-    Y_2 = ops.select(in_line, 0.0, t43)
-    rho = ops.sqrt(ops.select(t40, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t44 = ops.select(t40, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t44))
-    t45 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    E_22 = ops.select(in_line, -(E_12_2 * t36 / t39), n_y_2 / t38)
-    t46 = E_12_2 * X_2 + E_22 * Y_2
-    t47 = t45 - t46
-    t48 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t49 = X_2 * E_13_2 + Y_2 * E_23
-    A_03 = t48 + t49
-    t50 = ops.select(failed, ops.nan, c1_z * (c1_y + t47) - c1_y * (c1_z - A_03))
-    t51 = s_gamma * c2_z
-    t52 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    t53 = X_2 * E_11_2 + Y_2 * E_21
-    t54 = c_gamma * c2_z
-    t55 = t51 * (t10 + (t52 + t53)) + t54 * (c2_y + t47)
-    t56 = ops.select(failed, ops.nan, t55 - t8 * (c2_z - A_03))
-    A_02_below = t45 + t46
-    t57 = t48 - t49
-    B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t57)
-    t58 = t51 * (t10 - (t52 - t53)) + t54 * (c2_y - A_02_below)
-    t59 = ops.select(failed, ops.nan, t58 - t8 * (c2_z + t57))
+    r_1 = ops.abs(s_beta1_half) * t14
+    t17 = D - r_1
+    t18 = t15 - t17
+    t19 = D + r_1
+    t20 = t19 - t15
+    t21 = t15 + t17
+    t22 = ops.select(same, r_2, r)
+    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
+    t24 = ops.select(same, t8, c1_x)
+    all_same = size_u + size_v <= t13
+    t25 = ops.select(same, c1_x, t8)
+    E_11 = ops.select(all_same, 1.0, -(t25 / D))
+    t26 = ops.select(same, c1_y, t10)
+    t27 = ops.select(all_same, 0.0, t26 / D)
+    t28 = ops.select(same, t10, c1_y)
+    t29 = ops.select(same, c1_z, -t11)
+    t30 = ops.select(all_same, 0.0, t29 / D)
+    t31 = ops.select(same, -t11, c1_z)
+    t32 = t24 * E_11 - t27 * t28 - t30 * t31
+    t33 = t24 - E_11 * t32
+    t34 = t28 + t27 * t32
+    t35 = t31 + t30 * t32
+    t36 = E_11 * t33 - t27 * t34 - t30 * t35
+    t37 = t33 - E_11 * t36
+    t38 = t34 + t27 * t36
+    t39 = t35 + t30 * t36
+    j = ops.sqrt(t37 * t37 + t38 * t38 + t39 * t39)
+    t40 = ops.select(same, r_2 * r_2, r * r)
+    outer = ops.max(t20, 0.0)
+    inner = ops.max(t21, 0.0)
+    share = 1.0 / (outer + inner)
+    slack = ops.max(t18, 0.0)
+    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t42 = t32 + t36 + ops.select(all_same, 0.0, t41)
+    t43 = ops.sqrt(outer * inner * slack * (t15 + t19))
+    rho = ops.select(all_same, r_1, share * t43)
+    left = j * j - t40 + t42 * t42 + rho * rho
+    t44 = j * (2.0 * rho)
+    t45 = left + t44
+    t46 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t45)
+    t47 = t44 - left
+    failed = invalid | ops.opposite(t46 & (-t23 <= t47))
+    t48 = ops.opposite(failed)
+    t49 = t48 & ops.opposite(all_same)
+    t50 = ops.select(t49 & ops.opposite(same), t12, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t49 & same, t16, 1.0)), ops.sqrt(t50))
+    t51 = ops.select(t49, D_2, 1.0)
+    t52 = ops.select(all_same, 0.0, t26 / t51)
+    t53 = D_2 + r_1
+    outer_2 = ops.max(t53 - t15, 0.0)
+    t54 = D_2 - r_1
+    inner_2 = ops.max(t15 + t54, 0.0)
+    share_2 = 1.0 / ops.select(t49, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t54, 0.0)
+    t55 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    X = ops.select(all_same, 0.0, D_2 * 0.5 + t55 * 0.5)
+    in_line = j <= t13
+    E_11_2 = ops.select(all_same, 1.0, -(t25 / t51))
+    t56 = ops.sign(-t30)
+    t57 = E_11_2 * t56
+    t58 = ops.select(all_same, 0.0, t29 / t51)
+    t59 = ops.select(t48 & in_line, t58 - t56, 1.0)
+    t60 = t24 * E_11_2 - t52 * t28 - t58 * t31
+    t61 = t28 + t52 * t60
+    t62 = t24 - E_11_2 * t60
+    t63 = t31 + t58 * t60
+    t64 = E_11_2 * t62 - t52 * t61 - t58 * t63
+    t65 = t61 + t52 * t64
+    t66 = t48 & ops.opposite(in_line)
+    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t22)
+    t67 = t48 & ops.opposite(flat)
+    t68 = t62 - E_11_2 * t64
+    t69 = t63 + t58 * t64
+    t70 = ops.select(t66 | t67, t68 * t68 + t65 * t65 + t69 * t69, 1.0)
+    j_2 = ops.sqrt(t70)
+    t71 = ops.select(t66, j_2, 1.0)
+    t72 = ops.select(in_line, t52 * t57 / t59, t65 / t71)
+    t73 = ops.select(t49, outer_2 * inner_2 * slack_2 * (t15 + t53), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t73))
+    t74 = t60 + t64 + X
+    left_2 = j_2 * j_2 - t40 + t74 * t74 + rho_2 * rho_2
+    t75 = 2.0 * rho_2
+    t76 = j_2 * t75
+    upper = ops.max(left_2 + t76, 0.0)
+    lower = ops.max(t76 - left_2, 0.0)
+    t77 = ops.select(t67, upper + lower, 1.0)
+    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) / t77)
+    t78 = t52 * X + t72 * Y
+    t79 = ops.select(in_line, t57, t69 / t71)
+    E_21 = ops.select(in_line, 1.0 + t56 * (E_11_2 * E_11_2) / t59, -(t68 / t71))
+    t80 = ops.sqrt(ops.select(t67, upper * lower, 1.0))
+    h = ops.select(flat, rho_2, t75 * t80 / t77)
+    t81 = (E_11_2 * t79 - t58 * E_21) * h
+    t82 = t78 - t81
+    t83 = t58 * X + t79 * Y
+    t84 = (E_11_2 * t72 - t52 * E_21) * h
+    t85 = t83 + t84
+    t86 = ops.select(failed, ops.nan, c1_z * t82 - c1_y * t85)
+    t87 = s_gamma * c2_z
+    t88 = E_11_2 * X + E_21 * Y
+    t89 = (t52 * t79 - t58 * t72) * h
+    t90 = c_gamma * c2_z
+    B_22 = t87 * (t8 + (t88 + t89)) - t90 * (t10 - t82) - t6 * (t11 + t85)
+    t91 = t78 + t81
+    t92 = t83 - t84
+    t93 = ops.select(failed, ops.nan, c1_z * t91 - c1_y * t92)
+    B_22_below = t87 * (t8 + (t88 - t89)) - t90 * (t10 - t91) - t6 * (t11 + t92)
     return (
-        t50,
-        t56,
-        ops.select(failed, ops.nan, B_11_below),
-        t59,
+        t86,
+        ops.select(failed, ops.nan, B_22),
+        t93,
+        ops.select(failed, ops.nan, B_22_below),
     )
 
 
@@ -822,7 +915,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Spec("B", (2, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 3),
+    _runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 4),
 )
 
 
@@ -868,158 +961,181 @@ def _jacobian(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_beta2_half = ops.sin(beta2 * 0.5)
     s_beta1_half = ops.sin(beta1 * 0.5)
+    s_beta2_half = ops.sin(beta2 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
     t2 = t1 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     t3 = t2 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
+    t4 = -(ops.feasibility * (r * 0.25))
     c1_x = r * c_alpha1
-    t4 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t4
-    c1_z = s1 * t4
-    t5 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_u = ops.sqrt(t5)
-    t6 = r * ops.vanishing
-    same = size_u <= t6
-    t7 = r * ops.abs(s_alpha2)
-    t8 = c2 * t7
-    t9 = r * c_alpha2
-    t10 = s_gamma * t8 - c_gamma * t9
-    t11 = ops.select(same, c1_x, -t10)
-    c2_y = s_gamma * t9 + c_gamma * t8
-    c2_z = s2 * t7
-    t12 = t10 * t10 + c2_y * c2_y + c2_z * c2_z
-    size_v = ops.sqrt(t12)
-    all_same = size_u + size_v <= t6
-    t13 = ops.select(same, -t10, c1_x)
+    t5 = r * ops.abs(s_alpha2)
+    t6 = c2 * t5
+    t7 = r * c_alpha2
+    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
+    t9 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t9
+    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
+    c2_z = s2 * t5
+    c1_z = s1 * t9
+    t11 = c2_z - c1_z
+    t12 = t8 * t8 + t10 * t10 + t11 * t11
+    size_u = ops.sqrt(t12)
+    t13 = r * ops.vanishing
+    same = size_u <= t13
+    t14 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t14
+    t15 = ops.select(same, r, r_2)
+    t16 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    size_v = ops.sqrt(t16)
     D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t13 / D)
-    t14 = ops.select(same, c2_y, c1_y)
-    E_12 = ops.select(all_same, 0.0, t14 / D)
-    t15 = ops.select(same, c1_y, c2_y)
-    t16 = ops.select(same, c2_z, c1_z)
-    E_13 = ops.select(all_same, 0.0, t16 / D)
-    t17 = ops.select(same, c1_z, c2_z)
-    k_0 = t11 * E_11 + E_12 * t15 + E_13 * t17
-    m_x = t11 - E_11 * k_0
-    m_y = t15 - E_12 * k_0
-    m_z = t17 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    n_z = m_z - E_13 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t18 = r * 2.0
-    r_1 = ops.abs(s_beta1_half) * t18
-    r_2 = ops.abs(s_beta2_half) * t18
-    t19 = ops.select(same, r_1, r_2)
-    t20 = (r - t19) * (r + t19) + t11 * (t11 - t13) - t15 * (t14 - t15)
-    t21 = t20 - t17 * (t16 - t17)
-    t22 = ops.select(same, r_2, r_1)
-    t23 = (r - t22) * (r + t22)
-    left = ops.select(all_same, 0.0, t21 - t23 * (k_0 + k_1) / D)
-    t24 = ops.abs(ops.select(in_line, left, 0.0)) <= ops.feasibility * (r * r)
-    X = ops.select(all_same, 0.0, D * 0.5 + t23 / (2.0 * D))
-    Y = ops.select(in_line, 0.0, left / (2.0 * j))
-    t25 = r - ops.sqrt(X * X + Y * Y)
-    t26 = t24 & (-(ops.feasibility * (r * 0.25)) <= t25)
-    failed = invalid | ops.opposite(t26)
-    t27 = ops.opposite(failed)
-    t28 = t27 & ops.opposite(in_line)
-    t29 = ops.opposite(all_same)
-    t30 = t28 & t29
-    t31 = t27 | t30
-    t32 = ops.select(t31 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t31 & same, t12, 1.0)), ops.sqrt(t32))
-    t33 = ops.select(t31 & t29, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t13 / t33)
-    t34 = ops.sign(E_13)
-    t35 = E_11_2 * t34
-    E_13_2 = ops.select(all_same, 0.0, t16 / t33)
-    E_12_2 = ops.select(all_same, 0.0, t14 / t33)
-    k_0_2 = t11 * E_11_2 + E_12_2 * t15 + E_13_2 * t17
-    m_z_2 = t17 - E_13_2 * k_0_2
-    m_x_2 = t11 - E_11_2 * k_0_2
-    m_y_2 = t15 - E_12_2 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * k_1_2
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t36 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t27, t36, 1.0))
-    t37 = ops.select(t28, j_2, 1.0)
-    E_23 = ops.select(in_line, -t35, n_z_2 / t37)
-    t38 = ops.select(t27 & in_line, E_13_2 + t34, 1.0)
-    E_21 = ops.select(in_line, 1.0 - t34 * (E_11_2 * E_11_2) / t38, n_x_2 / t37)
-    touching = ops.max(t25, 0.0) <= t6
-    t39 = t27 & ops.opposite(touching)
-    t40 = D_2 * 0.5 + t23 / ops.select(t27 & t29, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t40)
-    t41 = t23 * (k_0_2 + k_1_2) / ops.select(t30, D_2, 1.0)
-    t42 = ops.select(all_same, 0.0, t21 - t41) / ops.select(t28, 2.0 * j_2, 1.0)
-    Y_2 = ops.select(in_line, 0.0, t42)
-    rho = ops.sqrt(ops.select(t39, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t43 = ops.select(t39, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t43))
-    t44 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    E_22 = ops.select(in_line, -(E_12_2 * t35 / t38), n_y_2 / t37)
-    t45 = E_12_2 * X_2 + E_22 * Y_2
-    t46 = t44 - t45
-    t47 = c1_y + t46
-    t48 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t49 = X_2 * E_13_2 + Y_2 * E_23
-    A_03 = t48 + t49
-    t50 = c1_z - A_03
-    B_11 = c1_z * t47 - c1_y * t50
-    t51 = c2_z - A_03
-    t52 = c2_y + t46
-    t53 = ops.select(t27, D_2 * j_2 * h, 1.0)
-    t54 = ops.select(failed, ops.nan, -(B_11 * (t46 * t51 + A_03 * t52) / t53))
-    t55 = s_gamma * c2_z
-    t56 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    t57 = X_2 * E_11_2 + Y_2 * E_21
-    A_01 = t56 + t57
-    A_21 = t10 + A_01
-    t58 = c_gamma * c2_z
-    B_22 = t55 * A_21 + t58 * t52 - t8 * t51
-    t59 = ops.select(failed, ops.nan, B_22 * (t46 * t50 + t47 * A_03) / t53)
-    t60 = ops.select(failed, ops.nan, -(B_11 * (t51 * A_01 + A_03 * A_21) / t53))
-    t61 = c1_x - A_01
-    t62 = ops.select(failed, ops.nan, B_22 * (t50 * A_01 - A_03 * t61) / t53)
-    t63 = ops.select(failed, ops.nan, B_11 * (t52 * A_01 - t46 * A_21) / t53)
-    t64 = ops.select(failed, ops.nan, -(B_22 * (t47 * A_01 + t46 * t61) / t53))
-    A_02_below = t44 + t45
-    t65 = c1_y - A_02_below
-    t66 = t48 - t49
-    t67 = c1_z + t66
-    B_11_below = c1_z * t65 - c1_y * t67
-    t68 = c2_z + t66
-    t69 = c2_y - A_02_below
-    t70 = B_11_below * (A_02_below * t68 + t66 * t69) / t53
-    t71 = t56 - t57
-    A_21_below = t10 - t71
-    B_22_below = t55 * A_21_below + t58 * t69 - t8 * t68
-    t72 = B_22_below * (A_02_below * t67 + t65 * t66) / t53
-    t73 = B_11_below * (t68 * t71 + t66 * A_21_below) / t53
-    t74 = c1_x + t71
-    t75 = ops.select(failed, ops.nan, B_22_below * (t67 * t71 - t66 * t74) / t53)
-    t76 = B_11_below * (t69 * t71 - A_02_below * A_21_below)
-    t77 = B_22_below * (t65 * t71 + A_02_below * t74) / t53
+    r_1 = ops.abs(s_beta1_half) * t14
+    t17 = D - r_1
+    t18 = t15 - t17
+    t19 = D + r_1
+    t20 = t19 - t15
+    t21 = t15 + t17
+    t22 = ops.select(same, r_2, r)
+    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
+    t24 = ops.select(same, t8, c1_x)
+    all_same = size_u + size_v <= t13
+    t25 = ops.select(same, c1_x, t8)
+    E_11 = ops.select(all_same, 1.0, -(t25 / D))
+    t26 = ops.select(same, c1_y, t10)
+    t27 = ops.select(all_same, 0.0, t26 / D)
+    t28 = ops.select(same, t10, c1_y)
+    t29 = ops.select(same, c1_z, -t11)
+    t30 = ops.select(all_same, 0.0, t29 / D)
+    t31 = ops.select(same, -t11, c1_z)
+    t32 = t24 * E_11 - t27 * t28 - t30 * t31
+    t33 = t24 - E_11 * t32
+    t34 = t28 + t27 * t32
+    t35 = t31 + t30 * t32
+    t36 = E_11 * t33 - t27 * t34 - t30 * t35
+    t37 = t33 - E_11 * t36
+    t38 = t34 + t27 * t36
+    t39 = t35 + t30 * t36
+    j = ops.sqrt(t37 * t37 + t38 * t38 + t39 * t39)
+    t40 = ops.select(same, r_2 * r_2, r * r)
+    outer = ops.max(t20, 0.0)
+    inner = ops.max(t21, 0.0)
+    share = 1.0 / (outer + inner)
+    slack = ops.max(t18, 0.0)
+    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t42 = t32 + t36 + ops.select(all_same, 0.0, t41)
+    t43 = ops.sqrt(outer * inner * slack * (t15 + t19))
+    rho = ops.select(all_same, r_1, share * t43)
+    left = j * j - t40 + t42 * t42 + rho * rho
+    t44 = j * (2.0 * rho)
+    t45 = left + t44
+    t46 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t45)
+    t47 = t44 - left
+    failed = invalid | ops.opposite(t46 & (-t23 <= t47))
+    t48 = ops.opposite(failed)
+    t49 = t48 & ops.opposite(all_same)
+    t50 = ops.select(t48 & ops.opposite(same), t12, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t48 & same, t16, 1.0)), ops.sqrt(t50))
+    t51 = ops.select(t49, D_2, 1.0)
+    t52 = ops.select(all_same, 0.0, t26 / t51)
+    t53 = D_2 + r_1
+    outer_2 = ops.max(t53 - t15, 0.0)
+    t54 = D_2 - r_1
+    inner_2 = ops.max(t15 + t54, 0.0)
+    share_2 = 1.0 / ops.select(t49, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t54, 0.0)
+    t55 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    X = ops.select(all_same, 0.0, D_2 * 0.5 + t55 * 0.5)
+    in_line = j <= t13
+    E_11_2 = ops.select(all_same, 1.0, -(t25 / t51))
+    t56 = ops.sign(-t30)
+    t57 = E_11_2 * t56
+    t58 = ops.select(all_same, 0.0, t29 / t51)
+    t59 = ops.select(t48 & in_line, t58 - t56, 1.0)
+    t60 = t24 * E_11_2 - t52 * t28 - t58 * t31
+    t61 = t28 + t52 * t60
+    t62 = t24 - E_11_2 * t60
+    t63 = t31 + t58 * t60
+    t64 = E_11_2 * t62 - t52 * t61 - t58 * t63
+    t65 = t61 + t52 * t64
+    t66 = t62 - E_11_2 * t64
+    t67 = t63 + t58 * t64
+    t68 = ops.select(t48, t66 * t66 + t65 * t65 + t67 * t67, 1.0)
+    j_2 = ops.sqrt(t68)
+    t69 = ops.select(t48 & ops.opposite(in_line), j_2, 1.0)
+    t70 = ops.select(in_line, t52 * t57 / t59, t65 / t69)
+    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t22)
+    t71 = ops.select(t49, outer_2 * inner_2 * slack_2 * (t15 + t53), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t71))
+    t72 = t60 + t64 + X
+    left_2 = j_2 * j_2 - t40 + t72 * t72 + rho_2 * rho_2
+    t73 = 2.0 * rho_2
+    t74 = j_2 * t73
+    upper = ops.max(left_2 + t74, 0.0)
+    lower = ops.max(t74 - left_2, 0.0)
+    t75 = t48 & ops.opposite(flat)
+    t76 = ops.select(t75, upper + lower, 1.0)
+    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) / t76)
+    t77 = t52 * X + t70 * Y
+    t78 = ops.select(in_line, t57, t67 / t69)
+    E_21 = ops.select(in_line, 1.0 + t56 * (E_11_2 * E_11_2) / t59, -(t66 / t69))
+    t79 = ops.sqrt(ops.select(t75, upper * lower, 1.0))
+    h = ops.select(flat, rho_2, t73 * t79 / t76)
+    t80 = (E_11_2 * t78 - t58 * E_21) * h
+    t81 = t77 - t80
+    t82 = t58 * X + t78 * Y
+    t83 = (E_11_2 * t70 - t52 * E_21) * h
+    t84 = t82 + t83
+    B_11 = c1_z * t81 - c1_y * t84
+    A_02 = c1_y - t81
+    t85 = t11 + t84
+    A_03 = c1_z - t84
+    A_22 = t10 - t81
+    t86 = ops.select(t48, D_2 * j_2 * h, 1.0)
+    t87 = ops.select(failed, ops.nan, B_11 * (A_02 * t85 + A_03 * A_22) / t86)
+    t88 = s_gamma * c2_z
+    t89 = E_11_2 * X + E_21 * Y
+    t90 = (t52 * t78 - t58 * t70) * h
+    A_11 = t89 + t90
+    A_21 = t8 + A_11
+    t91 = c_gamma * c2_z
+    B_22 = t88 * A_21 - t91 * A_22 - t6 * t85
+    t92 = ops.select(failed, ops.nan, -(B_22 * (t84 * A_02 - t81 * A_03) / t86))
+    A_01 = c1_x + A_11
+    t93 = ops.select(failed, ops.nan, -(B_11 * (t85 * A_01 + A_03 * A_21) / t86))
+    t94 = ops.select(failed, ops.nan, B_22 * (t84 * A_01 + A_03 * A_11) / t86)
+    t95 = ops.select(failed, ops.nan, -(B_11 * (A_22 * A_01 - A_02 * A_21) / t86))
+    t96 = ops.select(failed, ops.nan, -(B_22 * (t81 * A_01 + A_02 * A_11) / t86))
+    t97 = t77 + t80
+    t98 = t82 - t83
+    B_11_below = c1_z * t97 - c1_y * t98
+    A_02_below = c1_y - t97
+    t99 = t11 + t98
+    A_03_below = c1_z - t98
+    A_22_below = t10 - t97
+    t100 = B_11_below * (A_02_below * t99 + A_03_below * A_22_below)
+    A_11_below = t89 - t90
+    A_21_below = t8 + A_11_below
+    B_22_below = t88 * A_21_below - t91 * A_22_below - t6 * t99
+    t101 = B_22_below * (t98 * A_02_below - t97 * A_03_below)
+    A_01_below = c1_x + A_11_below
+    t102 = B_11_below * (t99 * A_01_below + A_03_below * A_21_below)
+    t103 = B_22_below * (t98 * A_01_below + A_03_below * A_11_below)
+    t104 = A_22_below * A_01_below - A_02_below * A_21_below
+    t105 = ops.select(failed, ops.nan, B_11_below * t104 / t86)
+    t106 = B_22_below * (t97 * A_01_below + A_02_below * A_11_below)
     return (
-        t54,
-        t59,
-        t60,
-        t62,
-        t63,
-        t64,
-        ops.select(failed, ops.nan, -t70),
-        ops.select(failed, ops.nan, t72),
-        ops.select(failed, ops.nan, -t73),
-        t75,
-        ops.select(failed, ops.nan, t76 / t53),
-        ops.select(failed, ops.nan, -t77),
+        t87,
+        t92,
+        t93,
+        t94,
+        t95,
+        t96,
+        ops.select(failed, ops.nan, -(t100 / t86)),
+        ops.select(failed, ops.nan, t101 / t86),
+        ops.select(failed, ops.nan, t102 / t86),
+        ops.select(failed, ops.nan, -(t103 / t86)),
+        t105,
+        ops.select(failed, ops.nan, t106 / t86),
     )
 
 
@@ -1077,127 +1193,147 @@ def _singularities(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_beta2_half = ops.sin(beta2 * 0.5)
     s_beta1_half = ops.sin(beta1 * 0.5)
+    s_beta2_half = ops.sin(beta2 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
     t2 = t1 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     t3 = t2 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
+    t4 = -(ops.feasibility * (r * 0.25))
     c1_x = r * c_alpha1
-    t4 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t4
-    c1_z = s1 * t4
-    t5 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_u = ops.sqrt(t5)
-    t6 = r * ops.vanishing
-    same = size_u <= t6
-    t7 = r * ops.abs(s_alpha2)
-    t8 = c2 * t7
-    t9 = r * c_alpha2
-    t10 = s_gamma * t8 - c_gamma * t9
-    t11 = ops.select(same, c1_x, -t10)
-    c2_y = s_gamma * t9 + c_gamma * t8
-    c2_z = s2 * t7
-    t12 = t10 * t10 + c2_y * c2_y + c2_z * c2_z
-    size_v = ops.sqrt(t12)
-    all_same = size_u + size_v <= t6
-    t13 = ops.select(same, -t10, c1_x)
+    t5 = r * ops.abs(s_alpha2)
+    t6 = c2 * t5
+    t7 = r * c_alpha2
+    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
+    t9 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t9
+    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
+    c2_z = s2 * t5
+    c1_z = s1 * t9
+    t11 = c2_z - c1_z
+    t12 = t8 * t8 + t10 * t10 + t11 * t11
+    size_u = ops.sqrt(t12)
+    t13 = r * ops.vanishing
+    same = size_u <= t13
+    t14 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t14
+    t15 = ops.select(same, r, r_2)
+    t16 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    size_v = ops.sqrt(t16)
     D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t13 / D)
-    t14 = ops.select(same, c2_y, c1_y)
-    E_12 = ops.select(all_same, 0.0, t14 / D)
-    t15 = ops.select(same, c1_y, c2_y)
-    t16 = ops.select(same, c2_z, c1_z)
-    E_13 = ops.select(all_same, 0.0, t16 / D)
-    t17 = ops.select(same, c1_z, c2_z)
-    k_0 = t11 * E_11 + E_12 * t15 + E_13 * t17
-    m_x = t11 - E_11 * k_0
-    m_y = t15 - E_12 * k_0
-    m_z = t17 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    n_z = m_z - E_13 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t18 = r * 2.0
-    r_1 = ops.abs(s_beta1_half) * t18
-    r_2 = ops.abs(s_beta2_half) * t18
-    t19 = ops.select(same, r_1, r_2)
-    t20 = (r - t19) * (r + t19) + t11 * (t11 - t13) - t15 * (t14 - t15)
-    t21 = t20 - t17 * (t16 - t17)
-    t22 = ops.select(same, r_2, r_1)
-    t23 = (r - t22) * (r + t22)
-    left = ops.select(all_same, 0.0, t21 - t23 * (k_0 + k_1) / D)
-    t24 = ops.abs(ops.select(in_line, left, 0.0)) <= ops.feasibility * (r * r)
-    X = ops.select(all_same, 0.0, D * 0.5 + t23 / (2.0 * D))
-    Y = ops.select(in_line, 0.0, left / (2.0 * j))
-    t25 = r - ops.sqrt(X * X + Y * Y)
-    t26 = t24 & (-(ops.feasibility * (r * 0.25)) <= t25)
-    failed = invalid | ops.opposite(t26)
-    t27 = ops.opposite(failed)
-    t28 = t27 & ops.opposite(in_line)
-    t29 = ops.opposite(all_same)
-    t30 = t28 & t29
-    t31 = t27 | t30
-    t32 = ops.select(t31 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t31 & same, t12, 1.0)), ops.sqrt(t32))
-    t33 = ops.select(t31 & t29, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, t13 / t33)
-    t34 = ops.sign(E_13)
-    t35 = E_11_2 * t34
-    E_13_2 = ops.select(all_same, 0.0, t16 / t33)
-    E_12_2 = ops.select(all_same, 0.0, t14 / t33)
-    k_0_2 = t11 * E_11_2 + E_12_2 * t15 + E_13_2 * t17
-    m_z_2 = t17 - E_13_2 * k_0_2
-    m_x_2 = t11 - E_11_2 * k_0_2
-    m_y_2 = t15 - E_12_2 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * k_1_2
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t36 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t27, t36, 1.0))
-    t37 = ops.select(t28, j_2, 1.0)
-    E_23 = ops.select(in_line, -t35, n_z_2 / t37)
-    t38 = ops.select(t27 & in_line, E_13_2 + t34, 1.0)
-    E_21 = ops.select(in_line, 1.0 - t34 * (E_11_2 * E_11_2) / t38, n_x_2 / t37)
-    touching = ops.max(t25, 0.0) <= t6
-    t39 = t27 & ops.opposite(touching)
-    t40 = D_2 * 0.5 + t23 / ops.select(t27 & t29, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t40)
-    t41 = t23 * (k_0_2 + k_1_2) / ops.select(t30, D_2, 1.0)
-    t42 = ops.select(all_same, 0.0, t21 - t41) / ops.select(t28, 2.0 * j_2, 1.0)
-    Y_2 = ops.select(in_line, 0.0, t42)
-    rho = ops.sqrt(ops.select(t39, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t43 = ops.select(t39, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t43))
-    t44 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    E_22 = ops.select(in_line, -(E_12_2 * t35 / t38), n_y_2 / t37)
-    t45 = E_12_2 * X_2 + E_22 * Y_2
-    t46 = t44 - t45
-    t47 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t48 = X_2 * E_13_2 + Y_2 * E_23
-    A_03 = t47 + t48
-    t49 = ops.select(failed, ops.nan, c1_z * (c1_y + t46) - c1_y * (c1_z - A_03))
-    t50 = s_gamma * c2_z
-    t51 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    t52 = X_2 * E_11_2 + Y_2 * E_21
-    t53 = c_gamma * c2_z
-    t54 = t50 * (t10 + (t51 + t52)) + t53 * (c2_y + t46)
-    t55 = ops.select(failed, ops.nan, t54 - t8 * (c2_z - A_03))
+    r_1 = ops.abs(s_beta1_half) * t14
+    t17 = D - r_1
+    t18 = t15 - t17
+    t19 = D + r_1
+    t20 = t19 - t15
+    t21 = t15 + t17
+    t22 = ops.select(same, r_2, r)
+    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
+    t24 = ops.select(same, t8, c1_x)
+    all_same = size_u + size_v <= t13
+    t25 = ops.select(same, c1_x, t8)
+    E_11 = ops.select(all_same, 1.0, -(t25 / D))
+    t26 = ops.select(same, c1_y, t10)
+    t27 = ops.select(all_same, 0.0, t26 / D)
+    t28 = ops.select(same, t10, c1_y)
+    t29 = ops.select(same, c1_z, -t11)
+    t30 = ops.select(all_same, 0.0, t29 / D)
+    t31 = ops.select(same, -t11, c1_z)
+    t32 = t24 * E_11 - t27 * t28 - t30 * t31
+    t33 = t24 - E_11 * t32
+    t34 = t28 + t27 * t32
+    t35 = t31 + t30 * t32
+    t36 = E_11 * t33 - t27 * t34 - t30 * t35
+    t37 = t33 - E_11 * t36
+    t38 = t34 + t27 * t36
+    t39 = t35 + t30 * t36
+    j = ops.sqrt(t37 * t37 + t38 * t38 + t39 * t39)
+    t40 = ops.select(same, r_2 * r_2, r * r)
+    outer = ops.max(t20, 0.0)
+    inner = ops.max(t21, 0.0)
+    share = 1.0 / (outer + inner)
+    slack = ops.max(t18, 0.0)
+    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t42 = t32 + t36 + ops.select(all_same, 0.0, t41)
+    t43 = ops.sqrt(outer * inner * slack * (t15 + t19))
+    rho = ops.select(all_same, r_1, share * t43)
+    left = j * j - t40 + t42 * t42 + rho * rho
+    t44 = j * (2.0 * rho)
+    t45 = left + t44
+    t46 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t45)
+    t47 = t44 - left
+    failed = invalid | ops.opposite(t46 & (-t23 <= t47))
+    t48 = ops.opposite(failed)
+    t49 = t48 & ops.opposite(all_same)
+    t50 = ops.select(t48 & ops.opposite(same), t12, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t48 & same, t16, 1.0)), ops.sqrt(t50))
+    t51 = ops.select(t49, D_2, 1.0)
+    t52 = ops.select(all_same, 0.0, t26 / t51)
+    t53 = D_2 + r_1
+    outer_2 = ops.max(t53 - t15, 0.0)
+    t54 = D_2 - r_1
+    inner_2 = ops.max(t15 + t54, 0.0)
+    share_2 = 1.0 / ops.select(t49, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t54, 0.0)
+    t55 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    X = ops.select(all_same, 0.0, D_2 * 0.5 + t55 * 0.5)
+    in_line = j <= t13
+    E_11_2 = ops.select(all_same, 1.0, -(t25 / t51))
+    t56 = ops.sign(-t30)
+    t57 = E_11_2 * t56
+    t58 = ops.select(all_same, 0.0, t29 / t51)
+    t59 = ops.select(t48 & in_line, t58 - t56, 1.0)
+    t60 = t24 * E_11_2 - t52 * t28 - t58 * t31
+    t61 = t28 + t52 * t60
+    t62 = t24 - E_11_2 * t60
+    t63 = t31 + t58 * t60
+    t64 = E_11_2 * t62 - t52 * t61 - t58 * t63
+    t65 = t61 + t52 * t64
+    t66 = t62 - E_11_2 * t64
+    t67 = t63 + t58 * t64
+    t68 = ops.select(t48, t66 * t66 + t65 * t65 + t67 * t67, 1.0)
+    j_2 = ops.sqrt(t68)
+    t69 = ops.select(t48 & ops.opposite(in_line), j_2, 1.0)
+    t70 = ops.select(in_line, t52 * t57 / t59, t65 / t69)
+    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t22)
+    t71 = ops.select(t49, outer_2 * inner_2 * slack_2 * (t15 + t53), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t71))
+    t72 = t60 + t64 + X
+    left_2 = j_2 * j_2 - t40 + t72 * t72 + rho_2 * rho_2
+    t73 = 2.0 * rho_2
+    t74 = j_2 * t73
+    upper = ops.max(left_2 + t74, 0.0)
+    lower = ops.max(t74 - left_2, 0.0)
+    t75 = t48 & ops.opposite(flat)
+    t76 = ops.select(t75, upper + lower, 1.0)
+    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) / t76)
+    t77 = t52 * X + t70 * Y
+    t78 = ops.select(in_line, t57, t67 / t69)
+    E_21 = ops.select(in_line, 1.0 + t56 * (E_11_2 * E_11_2) / t59, -(t66 / t69))
+    t79 = ops.sqrt(ops.select(t75, upper * lower, 1.0))
+    h = ops.select(flat, rho_2, t73 * t79 / t76)
+    t80 = (E_11_2 * t78 - t58 * E_21) * h
+    t81 = t77 - t80
+    t82 = t58 * X + t78 * Y
+    t83 = (E_11_2 * t70 - t52 * E_21) * h
+    t84 = t82 + t83
+    t85 = ops.select(failed, ops.nan, c1_z * t81 - c1_y * t84)
+    t86 = s_gamma * c2_z
+    t87 = E_11_2 * X + E_21 * Y
+    t88 = (t52 * t78 - t58 * t70) * h
+    t89 = c_gamma * c2_z
+    B_22 = t86 * (t8 + (t87 + t88)) - t89 * (t10 - t81) - t6 * (t11 + t84)
     Delta = D_2 * j_2 * h
-    A_02_below = t44 + t45
-    t56 = t47 - t48
-    B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t56)
-    t57 = t50 * (t10 - (t51 - t52)) + t53 * (c2_y - A_02_below)
-    t58 = ops.select(failed, ops.nan, t57 - t8 * (c2_z + t56))
+    t90 = t77 + t80
+    t91 = t82 - t83
+    t92 = ops.select(failed, ops.nan, c1_z * t90 - c1_y * t91)
+    B_22_below = t86 * (t8 + (t87 - t88)) - t89 * (t10 - t90) - t6 * (t11 + t91)
     return (
-        t49,
-        t55,
+        t85,
+        ops.select(failed, ops.nan, B_22),
         ops.select(failed, ops.nan, Delta),
-        ops.select(failed, ops.nan, B_11_below),
-        t58,
+        t92,
+        ops.select(failed, ops.nan, B_22_below),
         ops.select(failed, ops.nan, -Delta),
     )
 
@@ -1209,7 +1345,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Spec("factors", (2, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    _runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 3),
+    _runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 4),
 )
 
 
@@ -1247,179 +1383,204 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 def _condition_number(ops, theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_alpha1 = ops.sin(alpha1)
     c_alpha1 = ops.cos(alpha1)
-    s1 = ops.sin(theta1)
-    c1 = ops.cos(theta1)
     s_gamma = ops.sin(gamma)
     c_gamma = ops.cos(gamma)
     s2 = ops.sin(theta2)
     c2 = ops.cos(theta2)
     s_alpha2 = ops.sin(alpha2)
     c_alpha2 = ops.cos(alpha2)
-    s_beta2_half = ops.sin(beta2 * 0.5)
+    s1 = ops.sin(theta1)
+    c1 = ops.cos(theta1)
     s_beta1_half = ops.sin(beta1 * 0.5)
+    s_beta2_half = ops.sin(beta2 * 0.5)
     t1 = ops.finite(r, gamma, alpha1, alpha2, beta1, beta2)
     t2 = t1 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     t3 = t2 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     invalid = ops.opposite(t3 & ops.finite(theta1, theta2))
+    t4 = -(ops.feasibility * (r * 0.25))
     c1_x = r * c_alpha1
-    t4 = r * ops.abs(s_alpha1)
-    c1_y = c1 * t4
-    c1_z = s1 * t4
-    t5 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
-    size_u = ops.sqrt(t5)
-    t6 = r * ops.vanishing
-    same = size_u <= t6
-    t7 = r * ops.abs(s_alpha2)
-    t8 = c2 * t7
-    t9 = r * c_alpha2
-    t10 = s_gamma * t8 - c_gamma * t9
-    t11 = ops.select(same, c1_x, -t10)
-    c2_y = s_gamma * t9 + c_gamma * t8
-    c2_z = s2 * t7
-    t12 = t10 * t10 + c2_y * c2_y + c2_z * c2_z
-    size_v = ops.sqrt(t12)
-    all_same = size_u + size_v <= t6
-    t13 = ops.select(same, -t10, c1_x)
+    t5 = r * ops.abs(s_alpha2)
+    t6 = c2 * t5
+    t7 = r * c_alpha2
+    t8 = c1_x + (s_gamma * t6 - c_gamma * t7)
+    t9 = r * ops.abs(s_alpha1)
+    c1_y = c1 * t9
+    t10 = c1_y - (s_gamma * t7 + c_gamma * t6)
+    c1_z = s1 * t9
+    t11 = c1_z - s2 * t5
+    t12 = t8 * t8 + t10 * t10 + t11 * t11
+    size_u = ops.sqrt(t12)
+    t13 = r * ops.vanishing
+    same = size_u <= t13
+    t14 = r * 2.0
+    r_2 = ops.abs(s_beta2_half) * t14
+    t15 = ops.select(same, r, r_2)
+    t16 = c1_x * c1_x + c1_y * c1_y + c1_z * c1_z
+    size_v = ops.sqrt(t16)
     D = ops.select(same, size_v, size_u)
-    E_11 = ops.select(all_same, 1.0, t13 / D)
-    t14 = ops.select(same, c2_y, c1_y)
-    E_12 = ops.select(all_same, 0.0, t14 / D)
-    t15 = ops.select(same, c1_y, c2_y)
-    t16 = ops.select(same, c2_z, c1_z)
-    E_13 = ops.select(all_same, 0.0, t16 / D)
-    t17 = ops.select(same, c1_z, c2_z)
-    k_0 = E_11 * t11 + E_12 * t15 + E_13 * t17
-    m_x = t11 - E_11 * k_0
-    m_y = t15 - E_12 * k_0
-    m_z = t17 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    n_y = m_y - E_12 * k_1
-    n_z = m_z - E_13 * k_1
-    j = ops.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t18 = r * 2.0
-    r_1 = ops.abs(s_beta1_half) * t18
-    r_2 = ops.abs(s_beta2_half) * t18
-    t19 = ops.select(same, r_1, r_2)
-    t20 = (r - t19) * (r + t19) - t11 * (t13 - t11) - t15 * (t14 - t15)
-    t21 = t20 - t17 * (t16 - t17)
-    t22 = ops.select(same, r_2, r_1)
-    t23 = (r - t22) * (r + t22)
-    left = ops.select(all_same, 0.0, t21 - t23 * (k_0 + k_1) / D)
-    t24 = ops.abs(ops.select(in_line, left, 0.0)) <= ops.feasibility * (r * r)
-    X = ops.select(all_same, 0.0, D * 0.5 + t23 / (2.0 * D))
-    Y = ops.select(in_line, 0.0, left / (2.0 * j))
-    t25 = r - ops.sqrt(X * X + Y * Y)
-    t26 = t24 & (-(ops.feasibility * (r * 0.25)) <= t25)
-    failed = invalid | ops.opposite(t26)
-    t27 = ops.opposite(failed)
-    t28 = t27 & ops.opposite(in_line)
-    t29 = ops.opposite(all_same)
-    t30 = t28 & t29
-    t31 = t27 | t30
-    t32 = ops.select(t31 & ops.opposite(same), t5, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t31 & same, t12, 1.0)), ops.sqrt(t32))
-    t33 = ops.select(t31 & t29, D_2, 1.0)
-    E_12_2 = ops.select(all_same, 0.0, t14 / t33)
-    E_11_2 = ops.select(all_same, 1.0, t13 / t33)
-    t34 = ops.sign(E_13)
-    t35 = E_11_2 * t34
-    E_13_2 = ops.select(all_same, 0.0, t16 / t33)
-    k_0_2 = E_11_2 * t11 + E_12_2 * t15 + E_13_2 * t17
-    m_z_2 = t17 - E_13_2 * k_0_2
-    m_x_2 = t11 - E_11_2 * k_0_2
-    m_y_2 = t15 - E_12_2 * k_0_2
-    k_1_2 = E_11_2 * m_x_2 + E_12_2 * m_y_2 + E_13_2 * m_z_2
-    n_z_2 = m_z_2 - E_13_2 * k_1_2
-    n_x_2 = m_x_2 - E_11_2 * k_1_2
-    n_y_2 = m_y_2 - E_12_2 * k_1_2
-    t36 = n_x_2 * n_x_2 + n_y_2 * n_y_2 + n_z_2 * n_z_2
-    j_2 = ops.sqrt(ops.select(t27, t36, 1.0))
-    t37 = ops.select(t28, j_2, 1.0)
-    E_23 = ops.select(in_line, -t35, n_z_2 / t37)
-    t38 = ops.select(t27 & in_line, E_13_2 + t34, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t35 / t38), n_y_2 / t37)
-    touching = ops.max(t25, 0.0) <= t6
-    t39 = t27 & ops.opposite(touching)
-    t40 = D_2 * 0.5 + t23 / ops.select(t27 & t29, 2.0 * D_2, 1.0)
-    X_2 = ops.select(all_same, 0.0, t40)
-    t41 = t23 * (k_0_2 + k_1_2) / ops.select(t30, D_2, 1.0)
-    t42 = ops.select(all_same, 0.0, t21 - t41) / ops.select(t28, 2.0 * j_2, 1.0)
-    Y_2 = ops.select(in_line, 0.0, t42)
-    rho = ops.sqrt(ops.select(t39, X_2 * X_2 + Y_2 * Y_2, 1.0))
-    t43 = ops.select(t39, ops.max(r - rho, 0.0) * (r + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t43))
-    t44 = (E_12_2 * E_23 - E_13_2 * E_22) * h
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t34 / t38, n_x_2 / t37)
-    t45 = E_11_2 * X_2 + E_21 * Y_2
-    A_01 = t44 + t45
-    t46 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t47 = X_2 * E_12_2 + Y_2 * E_22
-    t48 = t46 - t47
-    t49 = h * (E_11_2 * E_22 - E_12_2 * E_21)
-    t50 = X_2 * E_13_2 + Y_2 * E_23
-    A_03 = t49 + t50
-    t51 = ops.select(t27, A_01 * A_01 + t48 * t48 + A_03 * A_03, 1.0)
-    strut = ops.sqrt(t51)
-    t52 = c1_x - A_01
-    t53 = ops.select(t27, strut, 1.0)
-    radial_x = A_01 / t53
-    t54 = c1_y + t48
-    t55 = t48 / t53
-    t56 = c1_z - A_03
-    radial_z = A_03 / t53
-    t57 = t52 * radial_x - t54 * t55 + t56 * radial_z
-    t58 = t52 - radial_x * t57
-    t59 = t54 + t55 * t57
-    t60 = t56 - radial_z * t57
-    square1 = t58 * t58 + t59 * t59 + t60 * t60
-    A_21 = t10 + A_01
-    t61 = c2_y + t48
-    t62 = c2_z - A_03
-    off2 = radial_x * A_21 + t55 * t61 - radial_z * t62
+    r_1 = ops.abs(s_beta1_half) * t14
+    t17 = D - r_1
+    t18 = t15 - t17
+    t19 = D + r_1
+    t20 = t19 - t15
+    t21 = t15 + t17
+    t22 = ops.select(same, r_2, r)
+    t23 = ops.feasibility * (r * (r * 2.2737367544323206e-13 + t22) * 0.5)
+    t24 = ops.select(same, t8, c1_x)
+    all_same = size_u + size_v <= t13
+    t25 = ops.select(same, c1_x, t8)
+    E_11 = ops.select(all_same, 1.0, -(t25 / D))
+    t26 = ops.select(same, c1_y, t10)
+    t27 = ops.select(all_same, 0.0, t26 / D)
+    t28 = ops.select(same, t10, c1_y)
+    t29 = ops.select(same, c1_z, t11)
+    t30 = ops.select(all_same, 0.0, t29 / D)
+    t31 = ops.select(same, t11, c1_z)
+    t32 = E_11 * t24 - t27 * t28 - t30 * t31
+    t33 = t24 - E_11 * t32
+    t34 = t28 + t27 * t32
+    t35 = t31 + t30 * t32
+    t36 = E_11 * t33 - t27 * t34 - t30 * t35
+    t37 = t33 - E_11 * t36
+    t38 = t34 + t27 * t36
+    t39 = t35 + t30 * t36
+    j = ops.sqrt(t37 * t37 + t38 * t38 + t39 * t39)
+    t40 = ops.select(same, r_2 * r_2, r * r)
+    outer = ops.max(t20, 0.0)
+    inner = ops.max(t21, 0.0)
+    share = 1.0 / (outer + inner)
+    slack = ops.max(t18, 0.0)
+    t41 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    t42 = t32 + t36 + ops.select(all_same, 0.0, t41)
+    t43 = ops.sqrt(outer * inner * slack * (t15 + t19))
+    rho = ops.select(all_same, r_1, share * t43)
+    left = j * j - t40 + t42 * t42 + rho * rho
+    t44 = j * (2.0 * rho)
+    t45 = left + t44
+    t46 = (t4 <= t18) & (t4 <= t20) & (t4 <= t21) & (-t23 <= t45)
+    t47 = t44 - left
+    failed = invalid | ops.opposite(t46 & (-t23 <= t47))
+    t48 = ops.opposite(failed)
+    t49 = t48 & ops.opposite(all_same)
+    t50 = ops.select(t48 & ops.opposite(same), t12, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t48 & same, t16, 1.0)), ops.sqrt(t50))
+    t51 = ops.select(t49, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(t25 / t51))
+    t52 = D_2 + r_1
+    outer_2 = ops.max(t52 - t15, 0.0)
+    t53 = D_2 - r_1
+    inner_2 = ops.max(t15 + t53, 0.0)
+    share_2 = 1.0 / ops.select(t49, outer_2 + inner_2, 1.0)
+    slack_2 = ops.max(t15 - t53, 0.0)
+    t54 = share_2 * (D_2 + slack_2) * (outer_2 - inner_2)
+    X = ops.select(all_same, 0.0, D_2 * 0.5 + t54 * 0.5)
+    in_line = j <= t13
+    t55 = ops.sign(-t30)
+    t56 = ops.select(all_same, 0.0, t29 / t51)
+    t57 = ops.select(t48 & in_line, t56 - t55, 1.0)
+    t58 = ops.select(all_same, 0.0, t26 / t51)
+    t59 = E_11_2 * t24 - t58 * t28 - t56 * t31
+    t60 = t24 - E_11_2 * t59
+    t61 = t28 + t58 * t59
+    t62 = t31 + t56 * t59
+    t63 = E_11_2 * t60 - t58 * t61 - t56 * t62
+    t64 = t60 - E_11_2 * t63
+    t65 = t61 + t58 * t63
+    t66 = t62 + t56 * t63
+    t67 = ops.select(t48, t64 * t64 + t65 * t65 + t66 * t66, 1.0)
+    j_2 = ops.sqrt(t67)
+    t68 = ops.select(t48 & ops.opposite(in_line), j_2, 1.0)
+    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t55 / t57, -(t64 / t68))
+    flat = ops.max(t45, 0.0) + ops.max(t47, 0.0) <= ops.vanishing * (r * t22)
+    t69 = ops.select(t49, outer_2 * inner_2 * slack_2 * (t15 + t52), 1.0)
+    rho_2 = ops.select(all_same, r_1, share_2 * ops.sqrt(t69))
+    t70 = t59 + t63 + X
+    left_2 = j_2 * j_2 - t40 + t70 * t70 + rho_2 * rho_2
+    t71 = 2.0 * rho_2
+    t72 = j_2 * t71
+    upper = ops.max(left_2 + t72, 0.0)
+    lower = ops.max(t72 - left_2, 0.0)
+    t73 = t48 & ops.opposite(flat)
+    t74 = ops.select(t73, upper + lower, 1.0)
+    Y = ops.select(flat, 0.0, rho_2 * (upper - lower) / t74)
+    t75 = E_11_2 * X + E_21 * Y
+    t76 = E_11_2 * t55
+    t77 = ops.select(in_line, t76, t66 / t68)
+    t78 = ops.select(in_line, t58 * t76 / t57, t65 / t68)
+    t79 = ops.sqrt(ops.select(t73, upper * lower, 1.0))
+    h = ops.select(flat, rho_2, t71 * t79 / t74)
+    t80 = (t58 * t77 - t56 * t78) * h
+    A_11 = t75 + t80
+    A_01 = c1_x + A_11
+    t81 = t58 * X + t78 * Y
+    t82 = (E_11_2 * t77 - t56 * E_21) * h
+    t83 = t81 - t82
+    A_02 = c1_y - t83
+    t84 = t56 * X + t77 * Y
+    t85 = (E_11_2 * t78 - t58 * E_21) * h
+    t86 = t84 + t85
+    A_03 = c1_z - t86
+    t87 = ops.select(t48, A_01 * A_01 + A_02 * A_02 + A_03 * A_03, 1.0)
+    strut = ops.sqrt(t87)
+    t88 = ops.select(t48, strut, 1.0)
+    radial_x = A_01 / t88
+    radial_y = A_02 / t88
+    radial_z = A_03 / t88
+    off1 = A_11 * radial_x - t83 * radial_y - t86 * radial_z
+    t1_x = A_11 - radial_x * off1
+    t89 = t83 + radial_y * off1
+    t90 = t86 + radial_z * off1
+    square1 = t1_x * t1_x + t89 * t89 + t90 * t90
+    A_21 = t8 + A_11
+    A_22 = t10 - t83
+    A_23 = t11 - t86
+    off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
     t2_x = A_21 - radial_x * off2
-    t63 = t61 - t55 * off2
-    t64 = t62 + radial_z * off2
-    square2 = t2_x * t2_x + t63 * t63 + t64 * t64
-    t65 = square1 - square2
-    t66 = t58 * t2_x - t59 * t63 - t60 * t64
-    t67 = ops.select(t27, t65 * t65 + 4.0 * (t66 * t66), 1.0)
-    t68 = ops.select(t27, 2.0 * (D_2 * j_2 * h), 1.0)
-    t69 = strut * (square1 + square2 + ops.sqrt(t67)) / t68
-    t70 = t44 - t45
-    A_02_below = t46 + t47
-    t71 = t49 - t50
-    t72 = t70 * t70 + A_02_below * A_02_below + t71 * t71
-    strut_below = ops.sqrt(ops.select(t27, t72, 1.0))
-    t73 = c1_x + t70
-    t74 = ops.select(t27, strut_below, 1.0)
-    t75 = t70 / t74
-    t76 = c1_y - A_02_below
-    radial_y_below = A_02_below / t74
-    t77 = c1_z + t71
-    t78 = t71 / t74
-    t79 = t73 * t75 - t76 * radial_y_below + t77 * t78
-    t80 = t73 - t75 * t79
-    t81 = t76 + radial_y_below * t79
-    t82 = t77 - t78 * t79
-    square1_below = t80 * t80 + t81 * t81 + t82 * t82
-    A_21_below = t10 - t70
-    t83 = c2_y - A_02_below
-    t84 = c2_z + t71
-    t85 = t75 * A_21_below + radial_y_below * t83 - t78 * t84
-    t2_x_below = A_21_below - t75 * t85
-    t86 = t83 - radial_y_below * t85
-    t87 = t84 + t78 * t85
-    square2_below = t2_x_below * t2_x_below + t86 * t86 + t87 * t87
-    t88 = square1_below - square2_below
-    t89 = t80 * t2_x_below - t81 * t86 - t82 * t87
-    t90 = ops.select(t27, t88 * t88 + 4.0 * (t89 * t89), 1.0)
-    t91 = square1_below + square2_below + ops.sqrt(t90)
-    t92 = ops.select(failed, ops.nan, strut_below * t91 / t68)
+    t2_y = A_22 - radial_y * off2
+    t2_z = A_23 - radial_z * off2
+    square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
+    t91 = square1 - square2
+    t92 = t1_x * t2_x - t89 * t2_y - t90 * t2_z
+    t93 = ops.select(t48, t91 * t91 + 4.0 * (t92 * t92), 1.0)
+    t94 = ops.select(t48, 2.0 * (D_2 * j_2 * h), 1.0)
+    t95 = strut * (square1 + square2 + ops.sqrt(t93)) / t94
+    A_11_below = t75 - t80
+    A_01_below = c1_x + A_11_below
+    t96 = t81 + t82
+    A_02_below = c1_y - t96
+    t97 = A_01_below * A_01_below + A_02_below * A_02_below
+    t98 = t84 - t85
+    A_03_below = c1_z - t98
+    t99 = ops.select(t48, t97 + A_03_below * A_03_below, 1.0)
+    strut_below = ops.sqrt(t99)
+    t100 = ops.select(t48, strut_below, 1.0)
+    radial_x_below = A_01_below / t100
+    radial_y_below = A_02_below / t100
+    t101 = A_11_below * radial_x_below - t96 * radial_y_below
+    radial_z_below = A_03_below / t100
+    off1_below = t101 - t98 * radial_z_below
+    t1_x_below = A_11_below - radial_x_below * off1_below
+    t102 = t96 + radial_y_below * off1_below
+    t103 = t98 + radial_z_below * off1_below
+    square1_below = t1_x_below * t1_x_below + t102 * t102 + t103 * t103
+    A_21_below = t8 + A_11_below
+    A_22_below = t10 - t96
+    t104 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t11 - t98
+    off2_below = t104 + radial_z_below * A_23_below
+    t2_x_below = A_21_below - radial_x_below * off2_below
+    t2_y_below = A_22_below - radial_y_below * off2_below
+    t105 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t2_z_below = A_23_below - radial_z_below * off2_below
+    square2_below = t105 + t2_z_below * t2_z_below
+    t106 = square1_below - square2_below
+    t107 = t1_x_below * t2_x_below - t102 * t2_y_below - t103 * t2_z_below
+    t108 = ops.select(t48, t106 * t106 + 4.0 * (t107 * t107), 1.0)
+    t109 = square1_below + square2_below + ops.sqrt(t108)
+    t110 = ops.select(failed, ops.nan, strut_below * t109 / t94)
     return (
-        ops.select(failed, ops.nan, t69),
-        t92,
+        ops.select(failed, ops.nan, t95),
+        t110,
     )
 
 

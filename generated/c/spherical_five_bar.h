@@ -3,13 +3,13 @@
  * derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
  * Source: The closedform authors: Loops on a sphere, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
- *   fk: 54 compare and select, 55 add, 9 divide, 79 multiply, 7 sincos, 5 sqrt
- *   skeleton: 53 compare and select, 64 add, 15 divide, 70 multiply, 7 sincos, 5 sqrt
- *   jacobian_parallel: 53 compare and select, 79 add, 15 divide, 70 multiply, 7 sincos, 5 sqrt
- *   jacobian_serial: 53 compare and select, 69 add, 15 divide, 82 multiply, 7 sincos, 5 sqrt
- *   jacobian: 53 compare and select, 91 add, 27 divide, 120 multiply, 7 sincos, 5 sqrt
- *   singularities: 53 compare and select, 71 add, 15 divide, 84 multiply, 7 sincos, 5 sqrt
- *   condition_number: 53 compare and select, 107 add, 23 divide, 129 multiply, 7 sincos, 9 sqrt
+ *   fk: 63 compare and select, 65 add, 12 divide, 87 multiply, 7 sincos, 5 sqrt
+ *   skeleton: 62 compare and select, 77 add, 18 divide, 77 multiply, 7 sincos, 5 sqrt
+ *   jacobian_parallel: 62 compare and select, 86 add, 18 divide, 77 multiply, 7 sincos, 5 sqrt
+ *   jacobian_serial: 62 compare and select, 72 add, 18 divide, 89 multiply, 7 sincos, 5 sqrt
+ *   jacobian: 62 compare and select, 98 add, 30 divide, 127 multiply, 7 sincos, 5 sqrt
+ *   singularities: 62 compare and select, 74 add, 18 divide, 91 multiply, 7 sincos, 5 sqrt
+ *   condition_number: 62 compare and select, 114 add, 26 divide, 136 multiply, 7 sincos, 9 sqrt
  *   ik: 95 compare and select, 72 add, 4 atan2, 10 divide, 99 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
  *

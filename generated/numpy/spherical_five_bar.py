@@ -2,13 +2,13 @@
 # derivations/spherical_five_bar.py. Do not edit: change the derivation and run make.
 # Source: The closedform authors: Loops on a sphere, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
-#   fk: 54 compare and select, 55 add, 9 divide, 79 multiply, 7 sincos, 5 sqrt
-#   skeleton: 53 compare and select, 64 add, 15 divide, 70 multiply, 7 sincos, 5 sqrt
-#   jacobian_parallel: 53 compare and select, 79 add, 15 divide, 70 multiply, 7 sincos, 5 sqrt
-#   jacobian_serial: 53 compare and select, 69 add, 15 divide, 82 multiply, 7 sincos, 5 sqrt
-#   jacobian: 53 compare and select, 91 add, 27 divide, 120 multiply, 7 sincos, 5 sqrt
-#   singularities: 53 compare and select, 71 add, 15 divide, 84 multiply, 7 sincos, 5 sqrt
-#   condition_number: 53 compare and select, 107 add, 23 divide, 129 multiply, 7 sincos, 9 sqrt
+#   fk: 63 compare and select, 65 add, 12 divide, 87 multiply, 7 sincos, 5 sqrt
+#   skeleton: 62 compare and select, 77 add, 18 divide, 77 multiply, 7 sincos, 5 sqrt
+#   jacobian_parallel: 62 compare and select, 86 add, 18 divide, 77 multiply, 7 sincos, 5 sqrt
+#   jacobian_serial: 62 compare and select, 72 add, 18 divide, 89 multiply, 7 sincos, 5 sqrt
+#   jacobian: 62 compare and select, 98 add, 30 divide, 127 multiply, 7 sincos, 5 sqrt
+#   singularities: 62 compare and select, 74 add, 18 divide, 91 multiply, 7 sincos, 5 sqrt
+#   condition_number: 62 compare and select, 114 add, 26 divide, 136 multiply, 7 sincos, 9 sqrt
 #   ik: 95 compare and select, 72 add, 4 atan2, 10 divide, 99 multiply, 5 sincos, 7 sqrt
 #   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
@@ -113,136 +113,162 @@ _DEFAULT = Parameters()
 
 def _fk(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
-    s1, c1 = _runtime.sincos_as_in_c(theta1)
     s_gamma, c_gamma = _runtime.sincos_as_in_c(gamma)
     s2, c2 = _runtime.sincos_as_in_c(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
-    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
-    del c_beta2_half
+    s1, c1 = _runtime.sincos_as_in_c(theta1)
     s_beta1_half, c_beta1_half = _runtime.sincos_as_in_c(beta1 * 0.5)
     del c_beta1_half
+    s_beta2_half, c_beta2_half = _runtime.sincos_as_in_c(beta2 * 0.5)
+    del c_beta2_half
     c1_x = r * c_alpha1
     del c_alpha1
-    t1 = r * np.abs(s_alpha1)
-    del s_alpha1
-    c1_y = c1 * t1
-    del c1
-    c1_z = s1 * t1
-    del s1, t1
-    size_u = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
-    t2 = r * np.abs(s_alpha2)
+    t1 = r * np.abs(s_alpha2)
     del s_alpha2
-    t3 = c2 * t2
+    t2 = c2 * t1
     del c2
-    t4 = r * c_alpha2
+    t3 = r * c_alpha2
     del c_alpha2
-    t5 = s_gamma * t3 - c_gamma * t4
-    c2_y = s_gamma * t4 + c_gamma * t3
-    del c_gamma, s_gamma, t3, t4
-    c2_z = s2 * t2
-    del s2, t2
-    size_v = np.sqrt(t5 * t5 + c2_y * c2_y + c2_z * c2_z)
-    t6 = r * _runtime.VANISHING
-    all_same = size_u + size_v <= t6
-    same = size_u <= t6
+    t4 = c1_x + (s_gamma * t2 - c_gamma * t3)
+    t5 = r * np.abs(s_alpha1)
+    del s_alpha1
+    c1_y = c1 * t5
+    del c1
+    t6 = c1_y - (s_gamma * t3 + c_gamma * t2)
+    del c_gamma, s_gamma, t2, t3
+    c1_z = s1 * t5
+    del s1, t5
+    t7 = c1_z - s2 * t1
+    del s2, t1
+    size_u = np.sqrt(t4 * t4 + t6 * t6 + t7 * t7)
+    t8 = r * _runtime.VANISHING
+    same = size_u <= t8
+    t9 = _runtime.select(same, t4, c1_x)
+    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
+    all_same = size_u + size_v <= t8
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
-    t7 = 1.0 / D
-    t8 = _runtime.select(same, c2_y, c1_y)
-    E_12 = _runtime.select(all_same, 0.0, t7 * t8)
-    t9 = _runtime.select(same, c1_x, -t5)
-    t10 = _runtime.select(same, -t5, c1_x)
-    del c1_x, t5
-    E_11 = _runtime.select(all_same, 1.0, t10 * t7)
-    t11 = _runtime.select(same, c1_y, c2_y)
-    del c1_y, c2_y
-    t12 = _runtime.select(same, c1_z, c2_z)
-    t13 = _runtime.select(same, c2_z, c1_z)
-    del c1_z, c2_z
-    E_13 = _runtime.select(all_same, 0.0, t7 * t13)
-    k_0 = E_11 * t9 + t11 * E_12 + t12 * E_13
-    m_x = t9 - E_11 * k_0
-    m_y = t11 - E_12 * k_0
-    m_z = t12 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
-    del m_y
-    n_z = m_z - E_13 * k_1
-    del m_z
-    j = np.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t14 = _runtime.sign(E_13)
-    t15 = E_11 * t14
-    t16 = 1.0 / j
-    E_23 = _runtime.select(in_line, -t15, n_z * t16)
-    del n_z
-    t17 = 1.0 / (E_13 + t14)
-    E_22 = _runtime.select(in_line, -(t17 * (E_12 * t15)), n_y * t16)
-    del n_y, t15
-    t18 = r * 2.0
-    r_2 = np.abs(s_beta2_half) * t18
-    del s_beta2_half
-    r_1 = np.abs(s_beta1_half) * t18
-    del s_beta1_half, t18
-    t19 = _runtime.select(same, r_2, r_1)
-    t20 = (r - t19) * (r + t19)
-    del t19
-    X = _runtime.select(all_same, 0.0, D * 0.5 + t20 / (2.0 * D))
-    del D
-    t21 = _runtime.select(same, r_1, r_2)
-    del r_1, r_2, same
-    t22 = (r - t21) * (r + t21) - t9 * (t10 - t9) + t11 * (t11 - t8)
-    del t10, t11, t21, t8, t9
-    t23 = t22 + t12 * (t12 - t13) - t7 * (t20 * (k_0 + k_1))
-    del k_0, k_1, t12, t13, t20, t22, t7
-    left = _runtime.select(all_same, 0.0, t23)
-    del all_same, t23
-    Y = _runtime.select(in_line, 0.0, left / (2.0 * j))
-    del j
-    rho = np.sqrt(X * X + Y * Y)
-    t24 = r - rho
-    slack = np.maximum(t24, 0.0)
-    h = _runtime.select(slack <= t6, 0.0, np.sqrt(slack * (r + rho)))
-    del rho, slack, t6
-    t25 = (E_12 * E_23 - E_13 * E_22) * h
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t14 * t17, n_x * t16)
-    del n_x, t14, t16, t17
-    t26 = X * E_11 + E_21 * Y
-    t27 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t28 = t27 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t27
-    t29 = t28 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t28
-    t30 = t29 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t29
-    invalid = np.logical_not(t30)
+    t10 = 1.0 / D
+    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t4) * t10))
+    del t4
+    t11 = _runtime.select(same, t6, c1_y)
+    t12 = _runtime.select(all_same, 0.0, t10 * _runtime.select(same, c1_y, t6))
+    del t6
+    t13 = _runtime.select(same, t7, c1_z)
+    t14 = _runtime.select(all_same, 0.0, t10 * _runtime.select(same, c1_z, t7))
+    del t10, t7
+    t15 = E_11 * t9 - t11 * t12 - t13 * t14
+    t16 = t9 - E_11 * t15
+    del t9
+    t17 = t11 + t12 * t15
+    del t11
+    t18 = t13 + t14 * t15
+    del t13
+    t19 = E_11 * t16 - t12 * t17 - t14 * t18
+    t20 = t16 - E_11 * t19
+    del t16
+    t21 = t17 + t12 * t19
+    del t17
+    t22 = t18 + t14 * t19
+    del t18
+    j = np.sqrt(t20 * t20 + t21 * t21 + t22 * t22)
+    in_line = j <= t8
+    del t8
+    t23 = _runtime.sign(-t14)
+    t24 = 1.0 / (t14 - t23)
+    t25 = 1.0 / j
+    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t23 * t24, -(t20 * t25))
+    del t20
+    t26 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t26
+    del s_beta1_half
+    t27 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t26
+    del s_beta2_half, t26
+    t28 = _runtime.select(same, r, r_2)
+    t29 = t27 - t28
+    outer = np.maximum(t29, 0.0)
+    t30 = D - r_1
+    t31 = t28 + t30
+    inner = np.maximum(t31, 0.0)
+    share = 1.0 / (outer + inner)
+    t32 = t28 - t30
     del t30
-    t31 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (r * r)
-    del left
-    t32 = t31 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t24)
-    del t24, t31
-    unreachable = np.logical_not(t32)
-    del t32
-    t33 = _runtime.poison(invalid | unreachable)
-    t34 = X * E_12 + Y * E_22
-    t35 = h * (E_11 * E_23 - E_13 * E_21)
-    t36 = h * (E_11 * E_22 - E_12 * E_21)
-    del E_11, E_12, E_21, E_22, h
-    t37 = X * E_13 + Y * E_23
-    del E_13, E_23, X, Y
-    t38 = _runtime.status(invalid, unreachable, in_line)
+    slack = np.maximum(t32, 0.0)
+    t33 = share * np.sqrt(outer * inner * slack * (t28 + t27))
+    del t27, t28
+    rho = _runtime.select(all_same, r_1, t33)
+    del r_1, t33
+    t34 = 2.0 * rho
+    t35 = j * t34
+    t36 = _runtime.select(same, r_2 * r_2, r * r) - j * j
+    del j
+    t37 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D, inner, outer, share, slack
+    X = _runtime.select(all_same, 0.0, t37)
+    del all_same, t37
+    t38 = t15 + t19 + X
+    del t15, t19
+    t39 = t36 - rho * rho - t38 * t38
+    del t36, t38
+    t40 = t35 - t39
+    upper = np.maximum(t40, 0.0)
+    t41 = t39 + t35
+    del t35, t39
+    lower = np.maximum(t41, 0.0)
+    both = upper + lower
+    t42 = _runtime.select(same, r_2, r)
+    del r_2, same
+    flat = both <= _runtime.VANISHING * (r * t42)
+    t43 = 1.0 / both
+    del both
+    Y = _runtime.select(flat, 0.0, rho * (upper - lower) * t43)
+    t44 = E_21 * Y + (c1_x + E_11 * X)
+    del c1_x
+    t45 = E_11 * t23
+    del t23
+    t46 = _runtime.select(in_line, t45, t22 * t25)
+    del t22
+    t47 = _runtime.select(in_line, t24 * (t12 * t45), t21 * t25)
+    del t21, t24, t25, t45
+    h = _runtime.select(flat, rho, t43 * (t34 * np.sqrt(upper * lower)))
+    del flat, lower, rho, t34, t43, upper
+    t48 = (t12 * t46 - t14 * t47) * h
+    t49 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t50 = t49 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t49
+    t51 = t50 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t50
+    t52 = t51 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t51
+    invalid = np.logical_not(t52)
+    del t52
+    t53 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t54 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t42) * 0.5)
+    del t42
+    t55 = (t53 <= t32) & (t53 <= t29) & (t53 <= t31) & (-t54 <= t40)
+    del t29, t31, t32, t40, t53
+    unreachable = np.logical_not(t55 & (-t54 <= t41))
+    del t41, t54, t55
+    t56 = _runtime.poison(invalid | unreachable)
+    t57 = (E_11 * t46 - t14 * E_21) * h
+    t58 = t47 * Y - (c1_y - t12 * X)
+    del c1_y
+    t59 = t46 * Y - (c1_z - t14 * X)
+    del X, Y, c1_z, t14, t46
+    t60 = (E_11 * t47 - t12 * E_21) * h
+    del E_11, E_21, h, t12, t47
+    t61 = _runtime.status(invalid, unreachable, in_line)
     del in_line, invalid, unreachable
     return (
-        t25 + t26 + t33,
-        t34 - t35 + t33,
-        t36 + t37 + t33,
-        t26 - t25 + t33,
-        t35 + t34 + t33,
-        t37 - t36 + t33,
-        t38,
-        t38,
+        t44 + t48 + t56,
+        t57 - t58 + t56,
+        -(t59 + t60) + t56,
+        t44 - t48 + t56,
+        -(t58 + t57) + t56,
+        t60 - t59 + t56,
+        t61,
+        t61,
     )
 
 
@@ -253,7 +279,7 @@ _FK = _runtime.Kernel(
     (_runtime.Array("p", (2, 3)), _runtime.Array("status", (2,), np.uint8)),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
+    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -300,12 +326,12 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
 def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
-    s1, c1 = _runtime.sincos(theta1)
     s_gamma, c_gamma = _runtime.sincos(gamma)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_beta1_half = np.sin(beta1 * 0.5)
+    s1, c1 = _runtime.sincos(theta1)
     s_beta2_half = np.sin(beta2 * 0.5)
+    s_beta1_half = np.sin(beta1 * 0.5)
     t1 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
     t2 = t1 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
     del t1
@@ -313,159 +339,187 @@ def _skeleton(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     del t2
     t4 = t3 & (np.isfinite(theta1) & np.isfinite(theta2))
     del t3
+    t5 = -(_runtime.FEASIBILITY * (r * 0.25))
     c1_x = r * c_alpha1
     del c_alpha1
-    t5 = r * np.abs(s_alpha1)
-    del s_alpha1
-    c1_y = c1 * t5
-    del c1
-    c1_z = s1 * t5
-    del s1, t5
-    size_u = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
-    t6 = r * _runtime.VANISHING
-    same = size_u <= t6
-    t7 = r * np.abs(s_alpha2)
+    t6 = r * np.abs(s_alpha2)
     del s_alpha2
-    t8 = c2 * t7
+    t7 = c2 * t6
     del c2
-    t9 = r * c_alpha2
+    t8 = r * c_alpha2
     del c_alpha2
-    t10 = c_gamma * t9
-    t11 = s_gamma * t8 - t10
-    t12 = _runtime.select(same, c1_x, -t11)
-    t13 = s_gamma * t9
-    del s_gamma, t9
-    c2_y = t13 + c_gamma * t8
-    del c_gamma, t8
-    c2_z = s2 * t7
-    del s2, t7
-    size_v = np.sqrt(t11 * t11 + c2_y * c2_y + c2_z * c2_z)
-    all_same = size_u + size_v <= t6
-    t14 = _runtime.select(same, -t11, c1_x)
+    t9 = c_gamma * t8
+    t10 = s_gamma * t7 - t9
+    t11 = c1_x + t10
+    t12 = r * np.abs(s_alpha1)
+    del s_alpha1
+    c1_y = c1 * t12
+    del c1
+    t13 = s_gamma * t8
+    del s_gamma, t8
+    c2_y = t13 + c_gamma * t7
+    del c_gamma, t7
+    t14 = c1_y - c2_y
+    c1_z = s1 * t12
+    del s1, t12
+    c2_z = s2 * t6
+    del s2, t6
+    t15 = c1_z - c2_z
+    size_u = np.sqrt(t11 * t11 + t14 * t14 + t15 * t15)
+    t16 = r * _runtime.VANISHING
+    same = size_u <= t16
+    t17 = r * 2.0
+    r_2 = np.abs(s_beta2_half) * t17
+    del s_beta2_half
+    t18 = _runtime.select(same, r, r_2)
+    r_1 = np.abs(s_beta1_half) * t17
+    del s_beta1_half, t17
+    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
     D = _runtime.select(same, size_v, size_u)
+    t19 = r_1 - D
+    t20 = t18 + t19
+    t21 = r_1 + D
+    t22 = t21 - t18
+    t23 = t18 - t19
+    del t19
+    t24 = _runtime.select(same, r_2, r)
+    t25 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t24) * 0.5)
+    t26 = _runtime.select(same, t11, c1_x)
+    all_same = size_u + size_v <= t16
     del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, t14 / D)
-    t15 = _runtime.select(same, c2_y, c1_y)
-    E_12 = _runtime.select(all_same, 0.0, t15 / D)
-    t16 = _runtime.select(same, c1_y, c2_y)
-    t17 = _runtime.select(same, c2_z, c1_z)
-    E_13 = _runtime.select(all_same, 0.0, t17 / D)
-    t18 = _runtime.select(same, c1_z, c2_z)
-    k_0 = t12 * E_11 + E_12 * t16 + E_13 * t18
-    m_x = t12 - E_11 * k_0
-    m_y = t16 - E_12 * k_0
-    m_z = t18 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
-    del m_y
-    n_z = m_z - E_13 * k_1
-    del m_z
-    j = np.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t19 = r * 2.0
-    r_1 = np.abs(s_beta1_half) * t19
-    del s_beta1_half
-    r_2 = np.abs(s_beta2_half) * t19
-    del s_beta2_half, t19
-    t20 = _runtime.select(same, r_1, r_2)
-    t21 = (r - t20) * (r + t20) + t12 * (t12 - t14) - t16 * (t15 - t16)
-    del t12, t14, t15, t16, t20
-    t22 = _runtime.select(same, r_2, r_1)
-    del r_1, r_2, same
-    t23 = (r - t22) * (r + t22)
-    del t22
-    t24 = t21 - t18 * (t17 - t18) - t23 * (k_0 + k_1) / D
-    del k_0, k_1, t17, t18, t21
-    left = _runtime.select(all_same, 0.0, t24)
-    del t24
-    t25 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (r * r)
-    X = _runtime.select(all_same, 0.0, D * 0.5 + t23 / (2.0 * D))
-    del D, all_same, t23
-    Y = _runtime.select(in_line, 0.0, left / (2.0 * j))
-    del left
-    rho = np.sqrt(X * X + Y * Y)
-    t26 = r - rho
-    t27 = t25 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t26)
-    del t25
-    t28 = _runtime.poison(np.logical_not(t4) | np.logical_not(t27))
-    del t27, t4
-    t29 = 0.0 + t28
-    t30 = c1_x + t28
-    del c1_x
-    t31 = c1_y + t28
-    del c1_y
-    t32 = c1_z + t28
-    del c1_z
-    t33 = t10 + t28
-    del t10
-    t34 = t13 + t28
-    del t13
-    t35 = -t11 + t28
+    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t11) / D))
     del t11
-    t36 = c2_y + t28
-    del c2_y
-    t37 = c2_z + t28
-    del c2_z
-    t38 = _runtime.sign(E_13)
-    t39 = E_11 * t38
-    E_23 = _runtime.select(in_line, -t39, n_z / j)
-    del n_z
-    t40 = E_13 + t38
-    E_22 = _runtime.select(in_line, -(E_12 * t39 / t40), n_y / j)
-    del n_y, t39
-    slack = np.maximum(t26, 0.0)
+    t27 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_y, t14) / D)
+    t28 = _runtime.select(same, t14, c1_y)
+    del t14
+    t29 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_z, t15) / D)
+    t30 = _runtime.select(same, t15, c1_z)
+    del t15
+    t31 = t26 * E_11 - t27 * t28 - t29 * t30
+    t32 = t26 - E_11 * t31
     del t26
-    h = _runtime.select(slack <= t6, 0.0, np.sqrt(slack * (r + rho)))
-    del rho, slack, t6
-    t41 = (E_12 * E_23 - E_13 * E_22) * h
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t38 / t40, n_x / j)
-    del in_line, j, n_x, t38, t40
-    t42 = E_11 * X + Y * E_21
-    t43 = E_12 * X + Y * E_22
-    t44 = h * (E_11 * E_23 - E_13 * E_21)
-    t45 = h * (E_11 * E_22 - E_12 * E_21)
-    del E_11, E_12, E_21, E_22, h
-    t46 = E_13 * X + Y * E_23
-    del E_13, E_23, X, Y
+    t33 = t28 + t27 * t31
+    del t28
+    t34 = t30 + t29 * t31
+    del t30
+    t35 = E_11 * t32 - t27 * t33 - t29 * t34
+    t36 = t32 - E_11 * t35
+    del t32
+    t37 = t33 + t27 * t35
+    del t33
+    t38 = t34 + t29 * t35
+    del t34
+    j = np.sqrt(t36 * t36 + t37 * t37 + t38 * t38)
+    t39 = j * j - _runtime.select(same, r_2 * r_2, r * r)
+    del r_2, same
+    outer = np.maximum(t22, 0.0)
+    inner = np.maximum(t23, 0.0)
+    share = 1.0 / (outer + inner)
+    slack = np.maximum(t20, 0.0)
+    t40 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    del D
+    X = _runtime.select(all_same, 0.0, t40)
+    del t40
+    t41 = t31 + t35 + X
+    del t31, t35
+    t42 = share * np.sqrt(outer * inner * slack * (t18 + t21))
+    del inner, outer, share, slack, t18, t21
+    rho = _runtime.select(all_same, r_1, t42)
+    del all_same, r_1, t42
+    left = t39 + t41 * t41 + rho * rho
+    del t39, t41
+    t43 = 2.0 * rho
+    t44 = j * t43
+    t45 = left + t44
+    t46 = (t5 <= t20) & (t5 <= t22) & (t5 <= t23) & (-t25 <= t45)
+    del t20, t22, t23, t5
+    t47 = t44 - left
+    del left, t44
+    failed = np.logical_not(t4) | np.logical_not(t46 & (-t25 <= t47))
+    del t25, t4, t46
+    t48 = _runtime.poison(failed)
+    del failed
+    t49 = 0.0 + t48
+    t50 = c1_x + t48
+    t51 = c1_y + t48
+    t52 = c1_z + t48
+    t53 = t9 + t48
+    del t9
+    t54 = t13 + t48
+    del t13
+    t55 = -t10 + t48
+    del t10
+    t56 = c2_y + t48
+    del c2_y
+    t57 = c2_z + t48
+    del c2_z
+    in_line = j <= t16
+    del t16
+    t58 = _runtime.sign(-t29)
+    t59 = t29 - t58
+    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t58 / t59, -(t36 / j))
+    del t36
+    upper = np.maximum(t45, 0.0)
+    del t45
+    lower = np.maximum(t47, 0.0)
+    del t47
+    both = upper + lower
+    flat = both <= _runtime.VANISHING * (r * t24)
+    del t24
+    Y = _runtime.select(flat, 0.0, rho * (upper - lower) / both)
+    t60 = E_11 * X + E_21 * Y
+    t61 = E_11 * t58
+    del t58
+    t62 = _runtime.select(in_line, t61, t38 / j)
+    del t38
+    t63 = _runtime.select(in_line, t27 * t61 / t59, t37 / j)
+    del in_line, j, t37, t59, t61
+    h = _runtime.select(flat, rho, t43 * np.sqrt(upper * lower) / both)
+    del both, flat, lower, rho, t43, upper
+    t64 = (t27 * t62 - t29 * t63) * h
+    t65 = t27 * X + t63 * Y
+    t66 = (E_11 * t62 - t29 * E_21) * h
+    t67 = t29 * X + t62 * Y
+    del X, Y, t29, t62
+    t68 = (E_11 * t63 - t27 * E_21) * h
+    del E_11, E_21, h, t27, t63
     return (
-        t29,
-        t29,
-        t29,
-        t30,
-        t29,
-        t29,
-        t30,
-        t31,
-        t32,
-        t33,
-        t34,
-        t29,
-        t35,
-        t36,
-        t37,
-        t41 + t42 + t28,
-        t43 - t44 + t28,
-        t45 + t46 + t28,
-        t29,
-        t29,
-        t29,
-        t30,
-        t29,
-        t29,
-        t30,
-        t31,
-        t32,
-        t33,
-        t34,
-        t29,
-        t35,
-        t36,
-        t37,
-        t42 - t41 + t28,
-        t44 + t43 + t28,
-        t46 - t45 + t28,
+        t49,
+        t49,
+        t49,
+        t50,
+        t49,
+        t49,
+        t50,
+        t51,
+        t52,
+        t53,
+        t54,
+        t49,
+        t55,
+        t56,
+        t57,
+        c1_x + (t60 + t64) + t48,
+        c1_y - (t65 - t66) + t48,
+        c1_z - (t67 + t68) + t48,
+        t49,
+        t49,
+        t49,
+        t50,
+        t49,
+        t49,
+        t50,
+        t51,
+        t52,
+        t53,
+        t54,
+        t49,
+        t55,
+        t56,
+        t57,
+        c1_x + (t60 - t64) + t48,
+        c1_y - (t65 + t66) + t48,
+        c1_z - (t67 - t68) + t48,
     )
 
 
@@ -476,7 +530,7 @@ _SKELETON = _runtime.Kernel(
     (_runtime.Array("points", (2, 6, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
+    size=_runtime.Size((2,), ((3, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (21, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -514,141 +568,166 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
 def _jacobian_parallel(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
-    s1, c1 = _runtime.sincos(theta1)
     s_gamma, c_gamma = _runtime.sincos(gamma)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_beta2_half = np.sin(beta2 * 0.5)
+    s1, c1 = _runtime.sincos(theta1)
     s_beta1_half = np.sin(beta1 * 0.5)
+    s_beta2_half = np.sin(beta2 * 0.5)
     c1_x = r * c_alpha1
     del c_alpha1
-    t1 = r * np.abs(s_alpha1)
-    del s_alpha1
-    c1_y = c1 * t1
-    del c1
-    c1_z = s1 * t1
-    del s1, t1
-    size_u = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
-    t2 = r * np.abs(s_alpha2)
+    t1 = r * np.abs(s_alpha2)
     del s_alpha2
-    t3 = c2 * t2
+    t2 = c2 * t1
     del c2
-    t4 = r * c_alpha2
+    t3 = r * c_alpha2
     del c_alpha2
-    t5 = s_gamma * t3 - c_gamma * t4
-    c2_y = s_gamma * t4 + c_gamma * t3
-    del c_gamma, s_gamma, t3, t4
-    c2_z = s2 * t2
-    del s2, t2
-    size_v = np.sqrt(t5 * t5 + c2_y * c2_y + c2_z * c2_z)
-    t6 = r * _runtime.VANISHING
-    all_same = size_u + size_v <= t6
-    same = size_u <= t6
-    t7 = _runtime.select(same, c2_y, c1_y)
+    t4 = c1_x + (s_gamma * t2 - c_gamma * t3)
+    t5 = r * np.abs(s_alpha1)
+    del s_alpha1
+    c1_y = c1 * t5
+    del c1
+    t6 = c1_y - (s_gamma * t3 + c_gamma * t2)
+    del c_gamma, s_gamma, t2, t3
+    c1_z = s1 * t5
+    del s1, t5
+    t7 = c1_z - s2 * t1
+    del s2, t1
+    size_u = np.sqrt(t4 * t4 + t6 * t6 + t7 * t7)
+    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
+    t8 = r * _runtime.VANISHING
+    all_same = size_u + size_v <= t8
+    same = size_u <= t8
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
-    E_12 = _runtime.select(all_same, 0.0, t7 / D)
-    t8 = _runtime.select(same, c1_x, -t5)
-    t9 = _runtime.select(same, -t5, c1_x)
-    E_11 = _runtime.select(all_same, 1.0, t9 / D)
-    t10 = _runtime.select(same, c1_y, c2_y)
-    t11 = _runtime.select(same, c2_z, c1_z)
-    E_13 = _runtime.select(all_same, 0.0, t11 / D)
-    t12 = _runtime.select(same, c1_z, c2_z)
-    k_0 = E_11 * t8 + E_12 * t10 + E_13 * t12
-    m_x = t8 - E_11 * k_0
-    m_y = t10 - E_12 * k_0
-    m_z = t12 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
-    del m_y
-    n_z = m_z - E_13 * k_1
-    del m_z
-    j = np.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t13 = _runtime.sign(E_13)
-    t14 = E_11 * t13
-    E_23 = _runtime.select(in_line, -t14, n_z / j)
-    del n_z
-    t15 = E_13 + t13
-    E_22 = _runtime.select(in_line, -(E_12 * t14 / t15), n_y / j)
-    del n_y, t14
-    t16 = r * 2.0
-    r_2 = np.abs(s_beta2_half) * t16
-    del s_beta2_half
-    r_1 = np.abs(s_beta1_half) * t16
-    del s_beta1_half, t16
-    t17 = _runtime.select(same, r_2, r_1)
-    t18 = (r - t17) * (r + t17)
+    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t4) / D))
+    t9 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t9
+    del s_beta1_half
+    t10 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t9
+    del s_beta2_half, t9
+    t11 = _runtime.select(same, r, r_2)
+    t12 = t10 - t11
+    outer = np.maximum(t12, 0.0)
+    t13 = D - r_1
+    t14 = t11 + t13
+    inner = np.maximum(t14, 0.0)
+    share = 1.0 / (outer + inner)
+    t15 = t11 - t13
+    del t13
+    slack = np.maximum(t15, 0.0)
+    t16 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    X = _runtime.select(all_same, 0.0, t16)
+    del t16
+    t17 = _runtime.select(same, t4, c1_x)
+    t18 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_y, t6) / D)
+    t19 = _runtime.select(same, t6, c1_y)
+    t20 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_z, t7) / D)
+    del D
+    t21 = _runtime.select(same, t7, c1_z)
+    t22 = E_11 * t17 - t18 * t19 - t20 * t21
+    t23 = t17 - E_11 * t22
     del t17
-    X = _runtime.select(all_same, 0.0, D * 0.5 + t18 / (2.0 * D))
-    t19 = _runtime.select(same, r_1, r_2)
-    del r_1, r_2, same
-    t20 = (r - t19) * (r + t19) - t8 * (t9 - t8) - t10 * (t7 - t10)
-    del t10, t19, t7, t8, t9
-    t21 = t20 - t12 * (t11 - t12) - t18 * (k_0 + k_1) / D
-    del D, k_0, k_1, t11, t12, t18, t20
-    left = _runtime.select(all_same, 0.0, t21)
-    del all_same, t21
-    Y = _runtime.select(in_line, 0.0, left / (2.0 * j))
-    rho = np.sqrt(X * X + Y * Y)
-    t22 = r - rho
-    slack = np.maximum(t22, 0.0)
-    h = _runtime.select(slack <= t6, 0.0, np.sqrt(slack * (r + rho)))
-    del rho, slack, t6
-    t23 = (E_12 * E_23 - E_13 * E_22) * h
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t13 / t15, n_x / j)
-    del j, n_x, t13, t15
-    t24 = E_11 * X + E_21 * Y
-    A_01 = t23 + t24
-    t25 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t26 = t25 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    t24 = t19 + t18 * t22
+    del t19
+    t25 = t21 + t20 * t22
+    del t21
+    t26 = E_11 * t23 - t18 * t24 - t20 * t25
+    t27 = t23 - E_11 * t26
+    del t23
+    t28 = t24 + t18 * t26
+    del t24
+    t29 = t25 + t20 * t26
     del t25
-    t27 = t26 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t26
-    t28 = t27 & (np.isfinite(theta1) & np.isfinite(theta2))
+    j = np.sqrt(t27 * t27 + t28 * t28 + t29 * t29)
+    in_line = j <= t8
+    del t8
+    t30 = _runtime.sign(-t20)
+    t31 = t20 - t30
+    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t30 / t31, -(t27 / j))
     del t27
-    t29 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (r * r)
-    del in_line, left
-    t30 = t29 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t22)
-    del t22, t29
-    t31 = _runtime.poison(np.logical_not(t28) | np.logical_not(t30))
-    del t28, t30
-    t32 = h * (E_11 * E_23 - E_13 * E_21)
-    t33 = X * E_12 + Y * E_22
-    t34 = t32 - t33
-    t35 = h * (E_11 * E_22 - E_12 * E_21)
-    del E_11, E_12, E_21, E_22, h
-    t36 = X * E_13 + Y * E_23
-    del E_13, E_23, X, Y
-    A_03 = t35 + t36
-    t37 = t23 - t24
-    del t23, t24
-    A_02_below = t32 + t33
+    t32 = j * j - _runtime.select(same, r_2 * r_2, r * r)
+    t33 = t22 + t26 + X
+    del t22, t26
+    t34 = share * np.sqrt(outer * inner * slack * (t11 + t10))
+    del inner, outer, share, slack, t10, t11
+    rho = _runtime.select(all_same, r_1, t34)
+    del all_same, r_1, t34
+    left = t32 + t33 * t33 + rho * rho
     del t32, t33
-    t38 = t35 - t36
-    del t35, t36
+    t35 = 2.0 * rho
+    t36 = j * t35
+    t37 = left + t36
+    upper = np.maximum(t37, 0.0)
+    t38 = t36 - left
+    del left, t36
+    lower = np.maximum(t38, 0.0)
+    both = upper + lower
+    t39 = _runtime.select(same, r_2, r)
+    del r_2, same
+    flat = both <= _runtime.VANISHING * (r * t39)
+    Y = _runtime.select(flat, 0.0, rho * (upper - lower) / both)
+    t40 = E_11 * X + E_21 * Y
+    t41 = E_11 * t30
+    del t30
+    t42 = _runtime.select(in_line, t41, t29 / j)
+    del t29
+    t43 = _runtime.select(in_line, t18 * t41 / t31, t28 / j)
+    del in_line, j, t28, t31, t41
+    h = _runtime.select(flat, rho, t35 * np.sqrt(upper * lower) / both)
+    del both, flat, lower, rho, t35, upper
+    t44 = (t18 * t42 - t20 * t43) * h
+    A_11 = t40 + t44
+    t45 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t46 = t45 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t45
+    t47 = t46 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t46
+    t48 = t47 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t47
+    t49 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t50 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t39) * 0.5)
+    del t39
+    t51 = (t49 <= t15) & (t49 <= t12) & (t49 <= t14) & (-t50 <= t37)
+    del t12, t14, t15, t37, t49
+    failed = np.logical_not(t48) | np.logical_not(t51 & (-t50 <= t38))
+    del t38, t48, t50, t51
+    t52 = _runtime.poison(failed)
+    del failed
+    t53 = t18 * X + t43 * Y
+    t54 = (E_11 * t42 - t20 * E_21) * h
+    t55 = t53 - t54
+    t56 = t20 * X + t42 * Y
+    del X, Y, t20, t42
+    t57 = (E_11 * t43 - t18 * E_21) * h
+    del E_11, E_21, h, t18, t43
+    t58 = t56 + t57
+    A_11_below = t40 - t44
+    del t40, t44
+    t59 = t53 + t54
+    del t53, t54
+    t60 = t56 - t57
+    del t56, t57
     return (
-        A_01 + t31,
-        -t34 + t31,
-        A_03 + t31,
-        A_01 - c1_x + t31,
-        -(c1_y + t34) + t31,
-        A_03 - c1_z + t31,
-        t5 + A_01 + t31,
-        -(c2_y + t34) + t31,
-        A_03 - c2_z + t31,
-        -t37 + t31,
-        A_02_below + t31,
-        -t38 + t31,
-        -(c1_x + t37) + t31,
-        A_02_below - c1_y + t31,
-        -(c1_z + t38) + t31,
-        t5 - t37 + t31,
-        A_02_below - c2_y + t31,
-        -(c2_z + t38) + t31,
+        c1_x + A_11 + t52,
+        c1_y - t55 + t52,
+        c1_z - t58 + t52,
+        A_11 + t52,
+        -t55 + t52,
+        -t58 + t52,
+        t4 + A_11 + t52,
+        t6 - t55 + t52,
+        t7 - t58 + t52,
+        c1_x + A_11_below + t52,
+        c1_y - t59 + t52,
+        c1_z - t60 + t52,
+        A_11_below + t52,
+        -t59 + t52,
+        -t60 + t52,
+        t4 + A_11_below + t52,
+        t6 - t59 + t52,
+        t7 - t60 + t52,
     )
 
 
@@ -659,7 +738,7 @@ _JACOBIAN_PARALLEL = _runtime.Kernel(
     (_runtime.Array("A", (2, 3, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 6.681911775230489e-52, 1.7498005798264095e+100),
+    size=_runtime.Size((2,), ((0, 1), (1, 1), (2, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -701,132 +780,153 @@ def _jacobian_serial(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_gamma, c_gamma = _runtime.sincos(gamma)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_beta2_half = np.sin(beta2 * 0.5)
     s_beta1_half = np.sin(beta1 * 0.5)
+    s_beta2_half = np.sin(beta2 * 0.5)
     t1 = r * np.abs(s_alpha1)
     del s_alpha1
     c1_z = s1 * t1
     del s1
-    c1_y = c1 * t1
-    del c1, t1
     c1_x = r * c_alpha1
     del c_alpha1
-    size_u = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
     t2 = r * np.abs(s_alpha2)
     del s_alpha2
     t3 = c2 * t2
     del c2
     t4 = r * c_alpha2
     del c_alpha2
-    t5 = s_gamma * t3 - c_gamma * t4
-    c2_y = s_gamma * t4 + c_gamma * t3
+    t5 = c1_x + (s_gamma * t3 - c_gamma * t4)
+    c1_y = c1 * t1
+    del c1, t1
+    t6 = c1_y - (s_gamma * t4 + c_gamma * t3)
     del t4
     c2_z = s2 * t2
     del s2, t2
-    size_v = np.sqrt(t5 * t5 + c2_y * c2_y + c2_z * c2_z)
-    t6 = r * _runtime.VANISHING
-    all_same = size_u + size_v <= t6
-    same = size_u <= t6
-    t7 = _runtime.select(same, -t5, c1_x)
+    t7 = c2_z - c1_z
+    size_u = np.sqrt(t5 * t5 + t6 * t6 + t7 * t7)
+    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
+    t8 = r * _runtime.VANISHING
+    all_same = size_u + size_v <= t8
+    same = size_u <= t8
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, t7 / D)
-    t8 = _runtime.select(same, c1_x, -t5)
-    del c1_x
-    t9 = _runtime.select(same, c2_y, c1_y)
-    E_12 = _runtime.select(all_same, 0.0, t9 / D)
-    t10 = _runtime.select(same, c1_y, c2_y)
-    t11 = _runtime.select(same, c2_z, c1_z)
-    E_13 = _runtime.select(all_same, 0.0, t11 / D)
-    t12 = _runtime.select(same, c1_z, c2_z)
-    k_0 = t8 * E_11 + E_12 * t10 + E_13 * t12
-    m_x = t8 - E_11 * k_0
-    m_y = t10 - E_12 * k_0
-    m_z = t12 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
-    del m_y
-    n_z = m_z - E_13 * k_1
-    del m_z
-    j = np.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t13 = _runtime.sign(E_13)
-    t14 = E_11 * t13
-    E_23 = _runtime.select(in_line, -t14, n_z / j)
-    del n_z
-    t15 = E_13 + t13
-    E_21 = _runtime.select(in_line, 1.0 - t13 * (E_11 * E_11) / t15, n_x / j)
-    del n_x, t13
-    t16 = r * 2.0
-    r_2 = np.abs(s_beta2_half) * t16
-    del s_beta2_half
-    r_1 = np.abs(s_beta1_half) * t16
-    del s_beta1_half, t16
-    t17 = _runtime.select(same, r_2, r_1)
-    t18 = (r - t17) * (r + t17)
+    t9 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_y, t6) / D)
+    t10 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t10
+    del s_beta1_half
+    t11 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t10
+    del s_beta2_half, t10
+    t12 = _runtime.select(same, r, r_2)
+    t13 = t11 - t12
+    outer = np.maximum(t13, 0.0)
+    t14 = D - r_1
+    t15 = t12 + t14
+    inner = np.maximum(t15, 0.0)
+    share = 1.0 / (outer + inner)
+    t16 = t12 - t14
+    del t14
+    slack = np.maximum(t16, 0.0)
+    t17 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    X = _runtime.select(all_same, 0.0, t17)
     del t17
-    X = _runtime.select(all_same, 0.0, D * 0.5 + t18 / (2.0 * D))
-    t19 = _runtime.select(same, r_1, r_2)
-    del r_1, r_2, same
-    t20 = (r - t19) * (r + t19) + t8 * (t8 - t7) - t10 * (t9 - t10)
-    del t10, t19, t7, t8, t9
-    t21 = t20 - t12 * (t11 - t12) - t18 * (k_0 + k_1) / D
-    del D, k_0, k_1, t11, t12, t18, t20
-    left = _runtime.select(all_same, 0.0, t21)
-    del all_same, t21
-    Y = _runtime.select(in_line, 0.0, left / (2.0 * j))
-    rho = np.sqrt(X * X + Y * Y)
-    t22 = r - rho
-    slack = np.maximum(t22, 0.0)
-    h = _runtime.select(slack <= t6, 0.0, np.sqrt(slack * (r + rho)))
-    del rho, slack, t6
-    t23 = (E_11 * E_23 - E_13 * E_21) * h
-    E_22 = _runtime.select(in_line, -(E_12 * t14 / t15), n_y / j)
-    del j, n_y, t14, t15
-    t24 = E_12 * X + E_22 * Y
-    t25 = t23 - t24
-    t26 = h * (E_11 * E_22 - E_12 * E_21)
-    t27 = X * E_13 + Y * E_23
-    A_03 = t26 + t27
-    t28 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t29 = t28 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t28
-    t30 = t29 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t29
-    t31 = t30 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t30
-    t32 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (r * r)
-    del in_line, left
-    t33 = t32 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t22)
-    del t22, t32
-    t34 = _runtime.poison(np.logical_not(t31) | np.logical_not(t33))
-    del t31, t33
-    t35 = c1_z * (c1_y + t25) - c1_y * (c1_z - A_03) + t34
-    t36 = s_gamma * c2_z
-    del s_gamma
-    t37 = h * (E_12 * E_23 - E_13 * E_22)
-    del E_12, E_13, E_22, E_23, h
-    t38 = X * E_11 + Y * E_21
-    del E_11, E_21, X, Y
-    t39 = c_gamma * c2_z
-    del c_gamma
-    t40 = t36 * (t5 + (t37 + t38)) + t39 * (c2_y + t25)
+    t18 = _runtime.select(same, t5, c1_x)
+    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t5) / D))
+    del c1_x
+    t19 = _runtime.select(same, t6, c1_y)
+    t20 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_z, -t7) / D)
+    del D
+    t21 = _runtime.select(same, -t7, c1_z)
+    t22 = t18 * E_11 - t9 * t19 - t20 * t21
+    t23 = t18 - E_11 * t22
+    del t18
+    t24 = t19 + t9 * t22
+    del t19
+    t25 = t21 + t20 * t22
+    del t21
+    t26 = E_11 * t23 - t9 * t24 - t20 * t25
+    t27 = t23 - E_11 * t26
+    del t23
+    t28 = t24 + t9 * t26
+    del t24
+    t29 = t25 + t20 * t26
     del t25
-    A_02_below = t23 + t24
-    del t23, t24
-    t41 = t26 - t27
-    del t26, t27
-    B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t41)
-    del c1_y, c1_z
-    t42 = t36 * (t5 - (t37 - t38)) + t39 * (c2_y - A_02_below)
-    del A_02_below, c2_y, t36, t37, t38, t39, t5
+    j = np.sqrt(t27 * t27 + t28 * t28 + t29 * t29)
+    in_line = j <= t8
+    del t8
+    t30 = _runtime.sign(-t20)
+    t31 = E_11 * t30
+    t32 = t20 - t30
+    t33 = _runtime.select(in_line, t9 * t31 / t32, t28 / j)
+    del t28
+    t34 = j * j - _runtime.select(same, r_2 * r_2, r * r)
+    t35 = t22 + t26 + X
+    del t22, t26
+    t36 = share * np.sqrt(outer * inner * slack * (t12 + t11))
+    del inner, outer, share, slack, t11, t12
+    rho = _runtime.select(all_same, r_1, t36)
+    del all_same, r_1, t36
+    left = t34 + t35 * t35 + rho * rho
+    del t34, t35
+    t37 = 2.0 * rho
+    t38 = j * t37
+    t39 = left + t38
+    upper = np.maximum(t39, 0.0)
+    t40 = t38 - left
+    del left, t38
+    lower = np.maximum(t40, 0.0)
+    both = upper + lower
+    t41 = _runtime.select(same, r_2, r)
+    del r_2, same
+    flat = both <= _runtime.VANISHING * (r * t41)
+    Y = _runtime.select(flat, 0.0, rho * (upper - lower) / both)
+    t42 = t9 * X + t33 * Y
+    t43 = _runtime.select(in_line, t31, t29 / j)
+    del t29, t31
+    E_21 = _runtime.select(in_line, 1.0 + t30 * (E_11 * E_11) / t32, -(t27 / j))
+    del in_line, j, t27, t30, t32
+    h = _runtime.select(flat, rho, t37 * np.sqrt(upper * lower) / both)
+    del both, flat, lower, rho, t37, upper
+    t44 = (E_11 * t43 - t20 * E_21) * h
+    t45 = t42 - t44
+    t46 = t20 * X + t43 * Y
+    t47 = (E_11 * t33 - t9 * E_21) * h
+    t48 = t46 + t47
+    t49 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t50 = t49 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t49
+    t51 = t50 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t50
+    t52 = t51 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t51
+    t53 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t54 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t41) * 0.5)
+    del t41
+    t55 = (t53 <= t16) & (t53 <= t13) & (t53 <= t15) & (-t54 <= t39)
+    del t13, t15, t16, t39, t53
+    failed = np.logical_not(t52) | np.logical_not(t55 & (-t54 <= t40))
+    del t40, t52, t54, t55
+    t56 = _runtime.poison(failed)
+    del failed
+    t57 = s_gamma * c2_z
+    del s_gamma
+    t58 = E_11 * X + E_21 * Y
+    del E_11, E_21, X, Y
+    t59 = (t9 * t43 - t20 * t33) * h
+    del h, t20, t33, t43, t9
+    t60 = c_gamma * c2_z
+    del c2_z, c_gamma
+    B_22 = t57 * (t5 + (t58 + t59)) - t60 * (t6 - t45) - t3 * (t7 + t48)
+    t61 = t42 + t44
+    del t42, t44
+    t62 = t46 - t47
+    del t46, t47
+    B_22_below = t57 * (t5 + (t58 - t59)) - t60 * (t6 - t61) - t3 * (t7 + t62)
+    del t3, t5, t57, t58, t59, t6, t60, t7
     return (
-        t35,
-        t40 - t3 * (c2_z - A_03) + t34,
-        B_11_below + t34,
-        t42 - t3 * (c2_z + t41) + t34,
+        c1_z * t45 - c1_y * t48 + t56,
+        B_22 + t56,
+        c1_z * t61 - c1_y * t62 + t56,
+        B_22_below + t56,
     )
 
 
@@ -837,7 +937,7 @@ _JACOBIAN_SERIAL = _runtime.Kernel(
     (_runtime.Array("B", (2, 2)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 6.681911775230489e-52, 1.7498005798264095e+100),
+    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 2), (3, 2)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -880,179 +980,204 @@ def _jacobian(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_gamma, c_gamma = _runtime.sincos(gamma)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_beta2_half = np.sin(beta2 * 0.5)
     s_beta1_half = np.sin(beta1 * 0.5)
+    s_beta2_half = np.sin(beta2 * 0.5)
     t1 = r * np.abs(s_alpha1)
     del s_alpha1
     c1_z = s1 * t1
     del s1
-    c1_y = c1 * t1
-    del c1, t1
     c1_x = r * c_alpha1
     del c_alpha1
-    size_u = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
     t2 = r * np.abs(s_alpha2)
     del s_alpha2
     t3 = c2 * t2
     del c2
     t4 = r * c_alpha2
     del c_alpha2
-    t5 = s_gamma * t3 - c_gamma * t4
-    c2_y = s_gamma * t4 + c_gamma * t3
+    t5 = c1_x + (s_gamma * t3 - c_gamma * t4)
+    c1_y = c1 * t1
+    del c1, t1
+    t6 = c1_y - (s_gamma * t4 + c_gamma * t3)
     del t4
     c2_z = s2 * t2
     del s2, t2
-    size_v = np.sqrt(t5 * t5 + c2_y * c2_y + c2_z * c2_z)
-    t6 = r * _runtime.VANISHING
-    all_same = size_u + size_v <= t6
-    same = size_u <= t6
-    t7 = _runtime.select(same, -t5, c1_x)
+    t7 = c2_z - c1_z
+    size_u = np.sqrt(t5 * t5 + t6 * t6 + t7 * t7)
+    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
+    t8 = r * _runtime.VANISHING
+    all_same = size_u + size_v <= t8
+    same = size_u <= t8
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, t7 / D)
-    t8 = _runtime.select(same, c1_x, -t5)
-    t9 = _runtime.select(same, c2_y, c1_y)
-    E_12 = _runtime.select(all_same, 0.0, t9 / D)
-    t10 = _runtime.select(same, c1_y, c2_y)
-    t11 = _runtime.select(same, c2_z, c1_z)
-    E_13 = _runtime.select(all_same, 0.0, t11 / D)
-    t12 = _runtime.select(same, c1_z, c2_z)
-    k_0 = t8 * E_11 + E_12 * t10 + E_13 * t12
-    m_x = t8 - E_11 * k_0
-    m_y = t10 - E_12 * k_0
-    m_z = t12 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
-    del m_y
-    n_z = m_z - E_13 * k_1
-    del m_z
-    j = np.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t13 = _runtime.sign(E_13)
-    t14 = E_11 * t13
-    E_23 = _runtime.select(in_line, -t14, n_z / j)
-    del n_z
-    t15 = E_13 + t13
-    E_21 = _runtime.select(in_line, 1.0 - t13 * (E_11 * E_11) / t15, n_x / j)
-    del n_x, t13
-    t16 = r * 2.0
-    r_2 = np.abs(s_beta2_half) * t16
-    del s_beta2_half
-    r_1 = np.abs(s_beta1_half) * t16
-    del s_beta1_half, t16
-    t17 = _runtime.select(same, r_2, r_1)
-    t18 = (r - t17) * (r + t17)
+    t9 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_y, t6) / D)
+    t10 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t10
+    del s_beta1_half
+    t11 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t10
+    del s_beta2_half, t10
+    t12 = _runtime.select(same, r, r_2)
+    t13 = t11 - t12
+    outer = np.maximum(t13, 0.0)
+    t14 = D - r_1
+    t15 = t12 + t14
+    inner = np.maximum(t15, 0.0)
+    share = 1.0 / (outer + inner)
+    t16 = t12 - t14
+    del t14
+    slack = np.maximum(t16, 0.0)
+    t17 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    X = _runtime.select(all_same, 0.0, t17)
     del t17
-    X = _runtime.select(all_same, 0.0, D * 0.5 + t18 / (2.0 * D))
-    t19 = _runtime.select(same, r_1, r_2)
-    del r_1, r_2, same
-    t20 = (r - t19) * (r + t19) + t8 * (t8 - t7) - t10 * (t9 - t10)
-    del t10, t19, t7, t8, t9
-    t21 = t20 - t12 * (t11 - t12) - t18 * (k_0 + k_1) / D
-    del k_0, k_1, t11, t12, t18, t20
-    left = _runtime.select(all_same, 0.0, t21)
-    del all_same, t21
-    Y = _runtime.select(in_line, 0.0, left / (2.0 * j))
-    rho = np.sqrt(X * X + Y * Y)
-    t22 = r - rho
-    slack = np.maximum(t22, 0.0)
-    h = _runtime.select(slack <= t6, 0.0, np.sqrt(slack * (r + rho)))
-    del rho, slack, t6
-    t23 = (E_11 * E_23 - E_13 * E_21) * h
-    E_22 = _runtime.select(in_line, -(E_12 * t14 / t15), n_y / j)
-    del n_y, t14, t15
-    t24 = E_12 * X + E_22 * Y
-    t25 = t23 - t24
-    t26 = c1_y + t25
-    t27 = h * (E_11 * E_22 - E_12 * E_21)
-    t28 = X * E_13 + Y * E_23
-    A_03 = t27 + t28
-    t29 = c1_z - A_03
-    B_11 = c1_z * t26 - c1_y * t29
-    t30 = c2_z - A_03
-    t31 = c2_y + t25
+    t18 = _runtime.select(same, t5, c1_x)
+    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t5) / D))
+    t19 = _runtime.select(same, t6, c1_y)
+    t20 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_z, -t7) / D)
+    t21 = _runtime.select(same, -t7, c1_z)
+    t22 = t18 * E_11 - t9 * t19 - t20 * t21
+    t23 = t18 - E_11 * t22
+    del t18
+    t24 = t19 + t9 * t22
+    del t19
+    t25 = t21 + t20 * t22
+    del t21
+    t26 = E_11 * t23 - t9 * t24 - t20 * t25
+    t27 = t23 - E_11 * t26
+    del t23
+    t28 = t24 + t9 * t26
+    del t24
+    t29 = t25 + t20 * t26
+    del t25
+    j = np.sqrt(t27 * t27 + t28 * t28 + t29 * t29)
+    in_line = j <= t8
+    del t8
+    t30 = _runtime.sign(-t20)
+    t31 = E_11 * t30
+    t32 = t20 - t30
+    t33 = _runtime.select(in_line, t9 * t31 / t32, t28 / j)
+    del t28
+    t34 = j * j - _runtime.select(same, r_2 * r_2, r * r)
+    t35 = t22 + t26 + X
+    del t22, t26
+    t36 = share * np.sqrt(outer * inner * slack * (t12 + t11))
+    del inner, outer, share, slack, t11, t12
+    rho = _runtime.select(all_same, r_1, t36)
+    del all_same, r_1, t36
+    left = t34 + t35 * t35 + rho * rho
+    del t34, t35
+    t37 = 2.0 * rho
+    t38 = j * t37
+    t39 = left + t38
+    upper = np.maximum(t39, 0.0)
+    t40 = t38 - left
+    del left, t38
+    lower = np.maximum(t40, 0.0)
+    both = upper + lower
+    t41 = _runtime.select(same, r_2, r)
+    del r_2, same
+    flat = both <= _runtime.VANISHING * (r * t41)
+    Y = _runtime.select(flat, 0.0, rho * (upper - lower) / both)
+    t42 = t9 * X + t33 * Y
+    t43 = _runtime.select(in_line, t31, t29 / j)
+    del t29, t31
+    E_21 = _runtime.select(in_line, 1.0 + t30 * (E_11 * E_11) / t32, -(t27 / j))
+    del in_line, t27, t30, t32
+    h = _runtime.select(flat, rho, t37 * np.sqrt(upper * lower) / both)
+    del both, flat, lower, rho, t37, upper
+    t44 = (E_11 * t43 - t20 * E_21) * h
+    t45 = t42 - t44
+    t46 = t20 * X + t43 * Y
+    t47 = (E_11 * t33 - t9 * E_21) * h
+    t48 = t46 + t47
+    B_11 = c1_z * t45 - c1_y * t48
+    A_02 = c1_y - t45
+    t49 = t7 + t48
+    A_03 = c1_z - t48
+    A_22 = t6 - t45
     Delta = D * j * h
     del D, j
-    t32 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t33 = t32 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t32
-    t34 = t33 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t33
-    t35 = t34 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t34
-    t36 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (r * r)
-    del in_line, left
-    t37 = t36 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t22)
-    del t22, t36
-    t38 = _runtime.poison(np.logical_not(t35) | np.logical_not(t37))
-    del t35, t37
-    t39 = -(B_11 * (t25 * t30 + A_03 * t31) / Delta) + t38
-    t40 = s_gamma * c2_z
+    t50 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t51 = t50 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t50
+    t52 = t51 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t51
+    t53 = t52 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t52
+    t54 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t55 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t41) * 0.5)
+    del t41
+    t56 = (t54 <= t16) & (t54 <= t13) & (t54 <= t15) & (-t55 <= t39)
+    del t13, t15, t16, t39, t54
+    failed = np.logical_not(t53) | np.logical_not(t56 & (-t55 <= t40))
+    del t40, t53, t55, t56
+    t57 = _runtime.poison(failed)
+    del failed
+    t58 = B_11 * (A_02 * t49 + A_03 * A_22) / Delta + t57
+    t59 = s_gamma * c2_z
     del s_gamma
-    t41 = h * (E_12 * E_23 - E_13 * E_22)
-    del E_12, E_13, E_22, E_23, h
-    t42 = X * E_11 + Y * E_21
+    t60 = E_11 * X + E_21 * Y
     del E_11, E_21, X, Y
-    A_01 = t41 + t42
-    A_21 = t5 + A_01
-    t43 = c_gamma * c2_z
-    del c_gamma
-    B_22 = t40 * A_21 + t43 * t31 - t3 * t30
-    t44 = B_22 * (t25 * t29 + t26 * A_03) / Delta + t38
-    t45 = -(B_11 * (t30 * A_01 + A_03 * A_21) / Delta) + t38
-    del t30
-    t46 = c1_x - A_01
-    t47 = B_22 * (t29 * A_01 - A_03 * t46) / Delta + t38
-    del A_03, t29
-    t48 = B_11 * (t31 * A_01 - t25 * A_21) / Delta + t38
-    del A_21, B_11, t31
-    t49 = -(B_22 * (t26 * A_01 + t25 * t46) / Delta) + t38
-    del A_01, B_22, t25, t26, t46
-    A_02_below = t23 + t24
-    del t23, t24
-    t50 = c1_y - A_02_below
-    t51 = t27 - t28
-    del t27, t28
-    t52 = c1_z + t51
-    B_11_below = c1_z * t50 - c1_y * t52
-    del c1_y, c1_z
-    t53 = c2_z + t51
-    del c2_z
-    t54 = c2_y - A_02_below
-    del c2_y
-    t55 = B_11_below * (A_02_below * t53 + t51 * t54) / Delta
-    t56 = t41 - t42
-    del t41, t42
-    A_21_below = t5 - t56
+    t61 = (t9 * t43 - t20 * t33) * h
+    del h, t20, t33, t43, t9
+    A_11 = t60 + t61
+    A_21 = t5 + A_11
+    t62 = c_gamma * c2_z
+    del c2_z, c_gamma
+    B_22 = t59 * A_21 - t62 * A_22 - t3 * t49
+    t63 = -(B_22 * (t48 * A_02 - t45 * A_03) / Delta) + t57
+    A_01 = c1_x + A_11
+    t64 = -(B_11 * (t49 * A_01 + A_03 * A_21) / Delta) + t57
+    del t49
+    t65 = B_22 * (t48 * A_01 + A_03 * A_11) / Delta + t57
+    del A_03, t48
+    t66 = -(B_11 * (A_22 * A_01 - A_02 * A_21) / Delta)
+    del A_21, A_22, B_11
+    t67 = -(B_22 * (t45 * A_01 + A_02 * A_11) / Delta) + t57
+    del A_01, A_02, A_11, B_22, t45
+    t68 = t42 + t44
+    del t42, t44
+    t69 = t46 - t47
+    del t46, t47
+    B_11_below = c1_z * t68 - c1_y * t69
+    A_02_below = c1_y - t68
+    del c1_y
+    t70 = t7 + t69
+    del t7
+    A_03_below = c1_z - t69
+    del c1_z
+    A_22_below = t6 - t68
+    del t6
+    t71 = B_11_below * (A_02_below * t70 + A_03_below * A_22_below)
+    A_11_below = t60 - t61
+    del t60, t61
+    A_21_below = t5 + A_11_below
     del t5
-    B_22_below = t40 * A_21_below + t43 * t54 - t3 * t53
-    del t3, t40, t43
-    t57 = B_22_below * (A_02_below * t52 + t50 * t51) / Delta
-    t58 = B_11_below * (t53 * t56 + t51 * A_21_below) / Delta
-    del t53
-    t59 = c1_x + t56
+    B_22_below = t59 * A_21_below - t62 * A_22_below - t3 * t70
+    del t3, t59, t62
+    t72 = B_22_below * (t69 * A_02_below - t68 * A_03_below)
+    A_01_below = c1_x + A_11_below
     del c1_x
-    t60 = B_22_below * (t52 * t56 - t51 * t59) / Delta + t38
-    del t51, t52
-    t61 = B_11_below * (t54 * t56 - A_02_below * A_21_below)
-    del A_21_below, B_11_below, t54
-    t62 = B_22_below * (t50 * t56 + A_02_below * t59) / Delta
-    del A_02_below, B_22_below, t50, t56, t59
+    t73 = B_11_below * (t70 * A_01_below + A_03_below * A_21_below)
+    del t70
+    t74 = B_22_below * (t69 * A_01_below + A_03_below * A_11_below)
+    del A_03_below, t69
+    t75 = A_22_below * A_01_below - A_02_below * A_21_below
+    del A_21_below, A_22_below
+    t76 = B_22_below * (t68 * A_01_below + A_02_below * A_11_below)
+    del A_01_below, A_02_below, A_11_below, B_22_below, t68
     return (
-        t39,
-        t44,
-        t45,
-        t47,
-        t48,
-        t49,
-        -t55 + t38,
-        t57 + t38,
-        -t58 + t38,
-        t60,
-        t61 / Delta + t38,
-        -t62 + t38,
+        t58,
+        t63,
+        t64,
+        t65,
+        t66 + t57,
+        t67,
+        -(t71 / Delta) + t57,
+        t72 / Delta + t57,
+        t73 / Delta + t57,
+        -(t74 / Delta) + t57,
+        B_11_below * t75 / Delta + t57,
+        t76 / Delta + t57,
     )
 
 
@@ -1107,136 +1232,156 @@ def _singularities(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_gamma, c_gamma = _runtime.sincos(gamma)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_beta2_half = np.sin(beta2 * 0.5)
     s_beta1_half = np.sin(beta1 * 0.5)
+    s_beta2_half = np.sin(beta2 * 0.5)
     t1 = r * np.abs(s_alpha1)
     del s_alpha1
     c1_z = s1 * t1
     del s1
-    c1_y = c1 * t1
-    del c1, t1
     c1_x = r * c_alpha1
     del c_alpha1
-    size_u = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
     t2 = r * np.abs(s_alpha2)
     del s_alpha2
     t3 = c2 * t2
     del c2
     t4 = r * c_alpha2
     del c_alpha2
-    t5 = s_gamma * t3 - c_gamma * t4
-    c2_y = s_gamma * t4 + c_gamma * t3
+    t5 = c1_x + (s_gamma * t3 - c_gamma * t4)
+    c1_y = c1 * t1
+    del c1, t1
+    t6 = c1_y - (s_gamma * t4 + c_gamma * t3)
     del t4
     c2_z = s2 * t2
     del s2, t2
-    size_v = np.sqrt(t5 * t5 + c2_y * c2_y + c2_z * c2_z)
-    t6 = r * _runtime.VANISHING
-    all_same = size_u + size_v <= t6
-    same = size_u <= t6
-    t7 = _runtime.select(same, -t5, c1_x)
+    t7 = c2_z - c1_z
+    size_u = np.sqrt(t5 * t5 + t6 * t6 + t7 * t7)
+    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
+    t8 = r * _runtime.VANISHING
+    all_same = size_u + size_v <= t8
+    same = size_u <= t8
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
-    E_11 = _runtime.select(all_same, 1.0, t7 / D)
-    t8 = _runtime.select(same, c1_x, -t5)
-    del c1_x
-    t9 = _runtime.select(same, c2_y, c1_y)
-    E_12 = _runtime.select(all_same, 0.0, t9 / D)
-    t10 = _runtime.select(same, c1_y, c2_y)
-    t11 = _runtime.select(same, c2_z, c1_z)
-    E_13 = _runtime.select(all_same, 0.0, t11 / D)
-    t12 = _runtime.select(same, c1_z, c2_z)
-    k_0 = t8 * E_11 + E_12 * t10 + E_13 * t12
-    m_x = t8 - E_11 * k_0
-    m_y = t10 - E_12 * k_0
-    m_z = t12 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
-    del m_y
-    n_z = m_z - E_13 * k_1
-    del m_z
-    j = np.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t13 = _runtime.sign(E_13)
-    t14 = E_11 * t13
-    E_23 = _runtime.select(in_line, -t14, n_z / j)
-    del n_z
-    t15 = E_13 + t13
-    E_21 = _runtime.select(in_line, 1.0 - t13 * (E_11 * E_11) / t15, n_x / j)
-    del n_x, t13
-    t16 = r * 2.0
-    r_2 = np.abs(s_beta2_half) * t16
-    del s_beta2_half
-    r_1 = np.abs(s_beta1_half) * t16
-    del s_beta1_half, t16
-    t17 = _runtime.select(same, r_2, r_1)
-    t18 = (r - t17) * (r + t17)
+    t9 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_y, t6) / D)
+    t10 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t10
+    del s_beta1_half
+    t11 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t10
+    del s_beta2_half, t10
+    t12 = _runtime.select(same, r, r_2)
+    t13 = t11 - t12
+    outer = np.maximum(t13, 0.0)
+    t14 = D - r_1
+    t15 = t12 + t14
+    inner = np.maximum(t15, 0.0)
+    share = 1.0 / (outer + inner)
+    t16 = t12 - t14
+    del t14
+    slack = np.maximum(t16, 0.0)
+    t17 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    X = _runtime.select(all_same, 0.0, t17)
     del t17
-    X = _runtime.select(all_same, 0.0, D * 0.5 + t18 / (2.0 * D))
-    t19 = _runtime.select(same, r_1, r_2)
-    del r_1, r_2, same
-    t20 = (r - t19) * (r + t19) + t8 * (t8 - t7) - t10 * (t9 - t10)
-    del t10, t19, t7, t8, t9
-    t21 = t20 - t12 * (t11 - t12) - t18 * (k_0 + k_1) / D
-    del k_0, k_1, t11, t12, t18, t20
-    left = _runtime.select(all_same, 0.0, t21)
-    del all_same, t21
-    Y = _runtime.select(in_line, 0.0, left / (2.0 * j))
-    rho = np.sqrt(X * X + Y * Y)
-    t22 = r - rho
-    slack = np.maximum(t22, 0.0)
-    h = _runtime.select(slack <= t6, 0.0, np.sqrt(slack * (r + rho)))
-    del rho, slack, t6
-    t23 = (E_11 * E_23 - E_13 * E_21) * h
-    E_22 = _runtime.select(in_line, -(E_12 * t14 / t15), n_y / j)
-    del n_y, t14, t15
-    t24 = E_12 * X + E_22 * Y
-    t25 = t23 - t24
-    t26 = h * (E_11 * E_22 - E_12 * E_21)
-    t27 = X * E_13 + Y * E_23
-    A_03 = t26 + t27
-    t28 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t29 = t28 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t28
-    t30 = t29 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t29
-    t31 = t30 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t30
-    t32 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (r * r)
-    del in_line, left
-    t33 = t32 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t22)
-    del t22, t32
-    t34 = _runtime.poison(np.logical_not(t31) | np.logical_not(t33))
-    del t31, t33
-    t35 = c1_z * (c1_y + t25) - c1_y * (c1_z - A_03) + t34
-    t36 = s_gamma * c2_z
-    del s_gamma
-    t37 = h * (E_12 * E_23 - E_13 * E_22)
-    del E_12, E_13, E_22, E_23
-    t38 = X * E_11 + Y * E_21
-    del E_11, E_21, X, Y
-    t39 = c_gamma * c2_z
-    del c_gamma
-    t40 = t36 * (t5 + (t37 + t38)) + t39 * (c2_y + t25)
+    t18 = _runtime.select(same, t5, c1_x)
+    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t5) / D))
+    del c1_x
+    t19 = _runtime.select(same, t6, c1_y)
+    t20 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_z, -t7) / D)
+    t21 = _runtime.select(same, -t7, c1_z)
+    t22 = t18 * E_11 - t9 * t19 - t20 * t21
+    t23 = t18 - E_11 * t22
+    del t18
+    t24 = t19 + t9 * t22
+    del t19
+    t25 = t21 + t20 * t22
+    del t21
+    t26 = E_11 * t23 - t9 * t24 - t20 * t25
+    t27 = t23 - E_11 * t26
+    del t23
+    t28 = t24 + t9 * t26
+    del t24
+    t29 = t25 + t20 * t26
     del t25
+    j = np.sqrt(t27 * t27 + t28 * t28 + t29 * t29)
+    in_line = j <= t8
+    del t8
+    t30 = _runtime.sign(-t20)
+    t31 = E_11 * t30
+    t32 = t20 - t30
+    t33 = _runtime.select(in_line, t9 * t31 / t32, t28 / j)
+    del t28
+    t34 = j * j - _runtime.select(same, r_2 * r_2, r * r)
+    t35 = t22 + t26 + X
+    del t22, t26
+    t36 = share * np.sqrt(outer * inner * slack * (t12 + t11))
+    del inner, outer, share, slack, t11, t12
+    rho = _runtime.select(all_same, r_1, t36)
+    del all_same, r_1, t36
+    left = t34 + t35 * t35 + rho * rho
+    del t34, t35
+    t37 = 2.0 * rho
+    t38 = j * t37
+    t39 = left + t38
+    upper = np.maximum(t39, 0.0)
+    t40 = t38 - left
+    del left, t38
+    lower = np.maximum(t40, 0.0)
+    both = upper + lower
+    t41 = _runtime.select(same, r_2, r)
+    del r_2, same
+    flat = both <= _runtime.VANISHING * (r * t41)
+    Y = _runtime.select(flat, 0.0, rho * (upper - lower) / both)
+    t42 = t9 * X + t33 * Y
+    t43 = _runtime.select(in_line, t31, t29 / j)
+    del t29, t31
+    E_21 = _runtime.select(in_line, 1.0 + t30 * (E_11 * E_11) / t32, -(t27 / j))
+    del in_line, t27, t30, t32
+    h = _runtime.select(flat, rho, t37 * np.sqrt(upper * lower) / both)
+    del both, flat, lower, rho, t37, upper
+    t44 = (E_11 * t43 - t20 * E_21) * h
+    t45 = t42 - t44
+    t46 = t20 * X + t43 * Y
+    t47 = (E_11 * t33 - t9 * E_21) * h
+    t48 = t46 + t47
+    t49 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t50 = t49 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t49
+    t51 = t50 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
+    del t50
+    t52 = t51 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t51
+    t53 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t54 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t41) * 0.5)
+    del t41
+    t55 = (t53 <= t16) & (t53 <= t13) & (t53 <= t15) & (-t54 <= t39)
+    del t13, t15, t16, t39, t53
+    failed = np.logical_not(t52) | np.logical_not(t55 & (-t54 <= t40))
+    del t40, t52, t54, t55
+    t56 = _runtime.poison(failed)
+    del failed
+    t57 = s_gamma * c2_z
+    del s_gamma
+    t58 = E_11 * X + E_21 * Y
+    del E_11, E_21, X, Y
+    t59 = (t9 * t43 - t20 * t33) * h
+    del t20, t33, t43, t9
+    t60 = c_gamma * c2_z
+    del c2_z, c_gamma
+    B_22 = t57 * (t5 + (t58 + t59)) - t60 * (t6 - t45) - t3 * (t7 + t48)
     Delta = D * j * h
     del D, h, j
-    A_02_below = t23 + t24
-    del t23, t24
-    t41 = t26 - t27
-    del t26, t27
-    B_11_below = c1_z * (c1_y - A_02_below) - c1_y * (c1_z + t41)
-    del c1_y, c1_z
-    t42 = t36 * (t5 - (t37 - t38)) + t39 * (c2_y - A_02_below)
-    del A_02_below, c2_y, t36, t37, t38, t39, t5
+    t61 = t42 + t44
+    del t42, t44
+    t62 = t46 - t47
+    del t46, t47
+    B_22_below = t57 * (t5 + (t58 - t59)) - t60 * (t6 - t61) - t3 * (t7 + t62)
+    del t3, t5, t57, t58, t59, t6, t60, t7
     return (
-        t35,
-        t40 - t3 * (c2_z - A_03) + t34,
-        Delta + t34,
-        B_11_below + t34,
-        t42 - t3 * (c2_z + t41) + t34,
-        -Delta + t34,
+        c1_z * t45 - c1_y * t48 + t56,
+        B_22 + t56,
+        Delta + t56,
+        c1_z * t61 - c1_y * t62 + t56,
+        B_22_below + t56,
+        -Delta + t56,
     )
 
 
@@ -1247,7 +1392,7 @@ _SINGULARITIES = _runtime.Kernel(
     (_runtime.Array("factors", (2, 3)),),
     Parameters._fields,
     ('r', 'gamma', 'alpha1', 'alpha2', 'beta1', 'beta2'),
-    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 6.681911775230489e-52, 1.7498005798264095e+100),
+    size=_runtime.Size((2,), ((0, 2), (1, 2), (2, 3), (3, 2), (4, 2), (5, 3)), 2.938735877055719e-39, 1.8092513943330656e+75),
 )
 
 
@@ -1286,200 +1431,232 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
 def _condition_number(theta1, theta2, r, gamma, alpha1, alpha2, beta1, beta2):
     s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
-    s1, c1 = _runtime.sincos(theta1)
     s_gamma, c_gamma = _runtime.sincos(gamma)
     s2, c2 = _runtime.sincos(theta2)
     s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
-    s_beta2_half = np.sin(beta2 * 0.5)
+    s1, c1 = _runtime.sincos(theta1)
     s_beta1_half = np.sin(beta1 * 0.5)
+    s_beta2_half = np.sin(beta2 * 0.5)
     c1_x = r * c_alpha1
     del c_alpha1
-    t1 = r * np.abs(s_alpha1)
-    del s_alpha1
-    c1_y = c1 * t1
-    del c1
-    c1_z = s1 * t1
-    del s1, t1
-    size_u = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
-    t2 = r * np.abs(s_alpha2)
+    t1 = r * np.abs(s_alpha2)
     del s_alpha2
-    t3 = c2 * t2
+    t2 = c2 * t1
     del c2
-    t4 = r * c_alpha2
+    t3 = r * c_alpha2
     del c_alpha2
-    t5 = s_gamma * t3 - c_gamma * t4
-    c2_y = s_gamma * t4 + c_gamma * t3
-    del c_gamma, s_gamma, t3, t4
-    c2_z = s2 * t2
-    del s2, t2
-    size_v = np.sqrt(t5 * t5 + c2_y * c2_y + c2_z * c2_z)
-    t6 = r * _runtime.VANISHING
-    all_same = size_u + size_v <= t6
-    same = size_u <= t6
-    t7 = _runtime.select(same, c2_y, c1_y)
+    t4 = c1_x + (s_gamma * t2 - c_gamma * t3)
+    t5 = r * np.abs(s_alpha1)
+    del s_alpha1
+    c1_y = c1 * t5
+    del c1
+    t6 = c1_y - (s_gamma * t3 + c_gamma * t2)
+    del c_gamma, s_gamma, t2, t3
+    c1_z = s1 * t5
+    del s1, t5
+    t7 = c1_z - s2 * t1
+    del s2, t1
+    size_u = np.sqrt(t4 * t4 + t6 * t6 + t7 * t7)
+    size_v = np.sqrt(c1_x * c1_x + c1_y * c1_y + c1_z * c1_z)
+    t8 = r * _runtime.VANISHING
+    all_same = size_u + size_v <= t8
+    same = size_u <= t8
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
-    E_12 = _runtime.select(all_same, 0.0, t7 / D)
-    t8 = _runtime.select(same, c1_x, -t5)
-    t9 = _runtime.select(same, -t5, c1_x)
-    E_11 = _runtime.select(all_same, 1.0, t9 / D)
-    t10 = _runtime.select(same, c1_y, c2_y)
-    t11 = _runtime.select(same, c2_z, c1_z)
-    E_13 = _runtime.select(all_same, 0.0, t11 / D)
-    t12 = _runtime.select(same, c1_z, c2_z)
-    k_0 = E_11 * t8 + E_12 * t10 + E_13 * t12
-    m_x = t8 - E_11 * k_0
-    m_y = t10 - E_12 * k_0
-    m_z = t12 - E_13 * k_0
-    k_1 = E_11 * m_x + E_12 * m_y + E_13 * m_z
-    n_x = m_x - E_11 * k_1
-    del m_x
-    n_y = m_y - E_12 * k_1
-    del m_y
-    n_z = m_z - E_13 * k_1
-    del m_z
-    j = np.sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
-    in_line = j <= t6
-    t13 = _runtime.sign(E_13)
-    t14 = E_11 * t13
-    E_23 = _runtime.select(in_line, -t14, n_z / j)
-    del n_z
-    t15 = E_13 + t13
-    E_22 = _runtime.select(in_line, -(E_12 * t14 / t15), n_y / j)
-    del n_y, t14
-    t16 = r * 2.0
-    r_2 = np.abs(s_beta2_half) * t16
-    del s_beta2_half
-    r_1 = np.abs(s_beta1_half) * t16
-    del s_beta1_half, t16
-    t17 = _runtime.select(same, r_2, r_1)
-    t18 = (r - t17) * (r + t17)
+    E_11 = _runtime.select(all_same, 1.0, -(_runtime.select(same, c1_x, t4) / D))
+    t9 = r * 2.0
+    r_1 = np.abs(s_beta1_half) * t9
+    del s_beta1_half
+    t10 = D + r_1
+    r_2 = np.abs(s_beta2_half) * t9
+    del s_beta2_half, t9
+    t11 = _runtime.select(same, r, r_2)
+    t12 = t10 - t11
+    outer = np.maximum(t12, 0.0)
+    t13 = D - r_1
+    t14 = t11 + t13
+    inner = np.maximum(t14, 0.0)
+    share = 1.0 / (outer + inner)
+    t15 = t11 - t13
+    del t13
+    slack = np.maximum(t15, 0.0)
+    t16 = D * 0.5 + share * (D + slack) * (outer - inner) * 0.5
+    X = _runtime.select(all_same, 0.0, t16)
+    del t16
+    t17 = _runtime.select(same, t4, c1_x)
+    t18 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_y, t6) / D)
+    t19 = _runtime.select(same, t6, c1_y)
+    t20 = _runtime.select(all_same, 0.0, _runtime.select(same, c1_z, t7) / D)
+    t21 = _runtime.select(same, t7, c1_z)
+    t22 = E_11 * t17 - t18 * t19 - t20 * t21
+    t23 = t17 - E_11 * t22
     del t17
-    X = _runtime.select(all_same, 0.0, D * 0.5 + t18 / (2.0 * D))
-    t19 = _runtime.select(same, r_1, r_2)
-    del r_1, r_2, same
-    t20 = (r - t19) * (r + t19) - t8 * (t9 - t8) - t10 * (t7 - t10)
-    del t10, t19, t7, t8, t9
-    t21 = t20 - t12 * (t11 - t12) - t18 * (k_0 + k_1) / D
-    del k_0, k_1, t11, t12, t18, t20
-    left = _runtime.select(all_same, 0.0, t21)
-    del all_same, t21
-    Y = _runtime.select(in_line, 0.0, left / (2.0 * j))
-    rho = np.sqrt(X * X + Y * Y)
-    t22 = r - rho
-    slack = np.maximum(t22, 0.0)
-    h = _runtime.select(slack <= t6, 0.0, np.sqrt(slack * (r + rho)))
-    del rho, slack, t6
-    t23 = (E_12 * E_23 - E_13 * E_22) * h
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t13 / t15, n_x / j)
-    del n_x, t13, t15
-    t24 = E_11 * X + E_21 * Y
-    A_01 = t23 + t24
-    t25 = h * (E_11 * E_23 - E_13 * E_21)
-    t26 = X * E_12 + Y * E_22
-    t27 = t25 - t26
-    t28 = h * (E_11 * E_22 - E_12 * E_21)
-    del E_11, E_12, E_21, E_22
-    t29 = X * E_13 + Y * E_23
-    del E_13, E_23, X, Y
-    A_03 = t28 + t29
-    strut = np.sqrt(A_01 * A_01 + t27 * t27 + A_03 * A_03)
-    t30 = c1_x - A_01
-    radial_x = A_01 / strut
-    t31 = c1_y + t27
-    t32 = t27 / strut
-    t33 = c1_z - A_03
-    radial_z = A_03 / strut
-    t34 = t30 * radial_x - t31 * t32 + t33 * radial_z
-    t35 = t30 - radial_x * t34
-    del t30
-    t36 = t31 + t32 * t34
-    del t31
-    t37 = t33 - radial_z * t34
-    del t33, t34
-    square1 = t35 * t35 + t36 * t36 + t37 * t37
-    A_21 = t5 + A_01
-    del A_01
-    t38 = c2_y + t27
+    t24 = t19 + t18 * t22
+    del t19
+    t25 = t21 + t20 * t22
+    del t21
+    t26 = E_11 * t23 - t18 * t24 - t20 * t25
+    t27 = t23 - E_11 * t26
+    del t23
+    t28 = t24 + t18 * t26
+    del t24
+    t29 = t25 + t20 * t26
+    del t25
+    j = np.sqrt(t27 * t27 + t28 * t28 + t29 * t29)
+    in_line = j <= t8
+    del t8
+    t30 = _runtime.sign(-t20)
+    t31 = t20 - t30
+    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t30 / t31, -(t27 / j))
     del t27
-    t39 = c2_z - A_03
+    t32 = j * j - _runtime.select(same, r_2 * r_2, r * r)
+    t33 = t22 + t26 + X
+    del t22, t26
+    t34 = share * np.sqrt(outer * inner * slack * (t11 + t10))
+    del inner, outer, share, slack, t10, t11
+    rho = _runtime.select(all_same, r_1, t34)
+    del all_same, r_1, t34
+    left = t32 + t33 * t33 + rho * rho
+    del t32, t33
+    t35 = 2.0 * rho
+    t36 = j * t35
+    t37 = left + t36
+    upper = np.maximum(t37, 0.0)
+    t38 = t36 - left
+    del left, t36
+    lower = np.maximum(t38, 0.0)
+    both = upper + lower
+    t39 = _runtime.select(same, r_2, r)
+    del r_2, same
+    flat = both <= _runtime.VANISHING * (r * t39)
+    Y = _runtime.select(flat, 0.0, rho * (upper - lower) / both)
+    t40 = E_11 * X + E_21 * Y
+    t41 = E_11 * t30
+    del t30
+    t42 = _runtime.select(in_line, t41, t29 / j)
+    del t29
+    t43 = _runtime.select(in_line, t18 * t41 / t31, t28 / j)
+    del in_line, t28, t31, t41
+    h = _runtime.select(flat, rho, t35 * np.sqrt(upper * lower) / both)
+    del both, flat, lower, rho, t35, upper
+    t44 = (t18 * t42 - t20 * t43) * h
+    A_11 = t40 + t44
+    A_01 = c1_x + A_11
+    t45 = t18 * X + t43 * Y
+    t46 = (E_11 * t42 - t20 * E_21) * h
+    t47 = t45 - t46
+    A_02 = c1_y - t47
+    t48 = t20 * X + t42 * Y
+    del X, Y, t20, t42
+    t49 = (E_11 * t43 - t18 * E_21) * h
+    del E_11, E_21, t18, t43
+    t50 = t48 + t49
+    A_03 = c1_z - t50
+    strut = np.sqrt(A_01 * A_01 + A_02 * A_02 + A_03 * A_03)
+    radial_x = A_01 / strut
+    del A_01
+    radial_y = A_02 / strut
+    del A_02
+    radial_z = A_03 / strut
     del A_03
-    off2 = radial_x * A_21 + t32 * t38 - radial_z * t39
+    off1 = A_11 * radial_x - t47 * radial_y - t50 * radial_z
+    t1_x = A_11 - radial_x * off1
+    t51 = t47 + radial_y * off1
+    t52 = t50 + radial_z * off1
+    del off1
+    square1 = t1_x * t1_x + t51 * t51 + t52 * t52
+    A_21 = t4 + A_11
+    del A_11
+    A_22 = t6 - t47
+    del t47
+    A_23 = t7 - t50
+    del t50
+    off2 = radial_x * A_21 + radial_y * A_22 + radial_z * A_23
     t2_x = A_21 - radial_x * off2
     del A_21, radial_x
-    t40 = t38 - t32 * off2
-    del t32, t38
-    t41 = t39 + radial_z * off2
-    del off2, radial_z, t39
-    square2 = t2_x * t2_x + t40 * t40 + t41 * t41
-    t42 = square1 - square2
-    t43 = t35 * t2_x - t36 * t40 - t37 * t41
-    del t2_x, t35, t36, t37, t40, t41
-    t44 = square1 + square2 + np.sqrt(t42 * t42 + 4.0 * (t43 * t43))
-    del square1, square2, t42, t43
-    t45 = 2.0 * (D * j * h)
+    t2_y = A_22 - radial_y * off2
+    del A_22, radial_y
+    t2_z = A_23 - radial_z * off2
+    del A_23, off2, radial_z
+    square2 = t2_x * t2_x + t2_y * t2_y + t2_z * t2_z
+    t53 = square1 - square2
+    t54 = t1_x * t2_x - t51 * t2_y - t52 * t2_z
+    del t1_x, t2_x, t2_y, t2_z, t51, t52
+    t55 = square1 + square2 + np.sqrt(t53 * t53 + 4.0 * (t54 * t54))
+    del square1, square2, t53, t54
+    t56 = 2.0 * (D * j * h)
     del D, h, j
-    t46 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
-    t47 = t46 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
-    del t46
-    t48 = t47 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
-    del t47
-    t49 = t48 & (np.isfinite(theta1) & np.isfinite(theta2))
-    del t48
-    t50 = np.abs(_runtime.select(in_line, left, 0.0)) <= _runtime.FEASIBILITY * (r * r)
-    del in_line, left
-    t51 = t50 & (-(_runtime.FEASIBILITY * (r * 0.25)) <= t22)
-    del t22, t50
-    t52 = _runtime.poison(np.logical_not(t49) | np.logical_not(t51))
-    del t49, t51
-    t53 = t23 - t24
-    del t23, t24
-    A_02_below = t25 + t26
-    del t25, t26
-    t54 = t28 - t29
-    del t28, t29
-    t55 = t53 * t53 + A_02_below * A_02_below + t54 * t54
-    strut_below = np.sqrt(t55)
-    del t55
-    t56 = c1_x + t53
-    del c1_x
-    t57 = t53 / strut_below
-    t58 = c1_y - A_02_below
-    del c1_y
-    radial_y_below = A_02_below / strut_below
-    t59 = c1_z + t54
-    del c1_z
-    t60 = t54 / strut_below
-    t61 = t56 * t57 - t58 * radial_y_below + t59 * t60
-    t62 = t56 - t57 * t61
-    del t56
-    t63 = t58 + radial_y_below * t61
+    t57 = np.isfinite(r) & np.isfinite(gamma) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(beta1) & np.isfinite(beta2)
+    t58 = t57 & (0.0 <= r) & (0.0 <= gamma) & (0.0 <= alpha1)
+    del t57
+    t59 = t58 & (0.0 <= alpha2) & (0.0 <= beta1) & (0.0 <= beta2)
     del t58
-    t64 = t59 - t60 * t61
-    del t59, t61
-    square1_below = t62 * t62 + t63 * t63 + t64 * t64
-    A_21_below = t5 - t53
-    del t5, t53
-    t65 = c2_y - A_02_below
-    del A_02_below, c2_y
-    t66 = c2_z + t54
-    del c2_z, t54
-    t67 = t57 * A_21_below + radial_y_below * t65 - t60 * t66
-    t2_x_below = A_21_below - t57 * t67
-    del A_21_below, t57
-    t68 = t65 - radial_y_below * t67
-    del radial_y_below, t65
-    t69 = t66 + t60 * t67
-    del t60, t66, t67
-    square2_below = t2_x_below * t2_x_below + t68 * t68 + t69 * t69
-    t70 = square1_below - square2_below
-    t71 = t62 * t2_x_below - t63 * t68 - t64 * t69
-    del t2_x_below, t62, t63, t64, t68, t69
-    t72 = square1_below + square2_below + np.sqrt(t70 * t70 + 4.0 * (t71 * t71))
-    del square1_below, square2_below, t70, t71
+    t60 = t59 & (np.isfinite(theta1) & np.isfinite(theta2))
+    del t59
+    t61 = -(_runtime.FEASIBILITY * (r * 0.25))
+    t62 = _runtime.FEASIBILITY * (r * (r * 2.2737367544323206e-13 + t39) * 0.5)
+    del t39
+    t63 = (t61 <= t15) & (t61 <= t12) & (t61 <= t14) & (-t62 <= t37)
+    del t12, t14, t15, t37, t61
+    failed = np.logical_not(t60) | np.logical_not(t63 & (-t62 <= t38))
+    del t38, t60, t62, t63
+    t64 = _runtime.poison(failed)
+    del failed
+    A_11_below = t40 - t44
+    del t40, t44
+    A_01_below = c1_x + A_11_below
+    del c1_x
+    t65 = t45 + t46
+    del t45, t46
+    A_02_below = c1_y - t65
+    del c1_y
+    t66 = A_01_below * A_01_below + A_02_below * A_02_below
+    t67 = t48 - t49
+    del t48, t49
+    A_03_below = c1_z - t67
+    del c1_z
+    strut_below = np.sqrt(t66 + A_03_below * A_03_below)
+    del t66
+    radial_x_below = A_01_below / strut_below
+    del A_01_below
+    radial_y_below = A_02_below / strut_below
+    del A_02_below
+    t68 = A_11_below * radial_x_below - t65 * radial_y_below
+    radial_z_below = A_03_below / strut_below
+    del A_03_below
+    off1_below = t68 - t67 * radial_z_below
+    del t68
+    t1_x_below = A_11_below - radial_x_below * off1_below
+    t69 = t65 + radial_y_below * off1_below
+    t70 = t67 + radial_z_below * off1_below
+    del off1_below
+    square1_below = t1_x_below * t1_x_below + t69 * t69 + t70 * t70
+    A_21_below = t4 + A_11_below
+    del A_11_below, t4
+    A_22_below = t6 - t65
+    del t6, t65
+    t71 = radial_x_below * A_21_below + radial_y_below * A_22_below
+    A_23_below = t7 - t67
+    del t67, t7
+    off2_below = t71 + radial_z_below * A_23_below
+    del t71
+    t2_x_below = A_21_below - radial_x_below * off2_below
+    del A_21_below, radial_x_below
+    t2_y_below = A_22_below - radial_y_below * off2_below
+    del A_22_below, radial_y_below
+    t72 = t2_x_below * t2_x_below + t2_y_below * t2_y_below
+    t2_z_below = A_23_below - radial_z_below * off2_below
+    del A_23_below, off2_below, radial_z_below
+    square2_below = t72 + t2_z_below * t2_z_below
+    del t72
+    t73 = square1_below - square2_below
+    t74 = t1_x_below * t2_x_below - t69 * t2_y_below - t70 * t2_z_below
+    del t1_x_below, t2_x_below, t2_y_below, t2_z_below, t69, t70
+    t75 = square1_below + square2_below + np.sqrt(t73 * t73 + 4.0 * (t74 * t74))
+    del square1_below, square2_below, t73, t74
     return (
-        strut * t44 / t45 + t52,
-        strut_below * t72 / t45 + t52,
+        strut * t55 / t56 + t64,
+        strut_below * t75 / t56 + t64,
     )
 
 

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from sympy import Abs, Rational, acos, asin, atan, atan2, cos, pi, sin, sqrt, tan
 from sympy.simplify.fu import TR8
 
+from closedform.algebra.expressions import InexactNumberError
 from closedform.algebra.factors import polynomial_factors
 from closedform.algebra.normal_form import Undecided, decide, determinant, equal, is_zero, normal
-from closedform.algebra.tower import InexactNumberError
 
 x, y, theta, phi = sp.symbols("x y theta phi", real=True)
 a, b = sp.symbols("a b", nonnegative=True)

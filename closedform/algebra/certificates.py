@@ -20,7 +20,8 @@ from flint import fmpq_mat
 from sympy.core.function import AppliedUndef
 
 from closedform.algebra.basis import TooLargeError, logged_basis
-from closedform.algebra.tower import Tower, entries_of, sign_of
+from closedform.algebra.expressions import entries_of, sign_of
+from closedform.algebra.tower import Tower
 from closedform.algebra.trace import factors_of, terms_of
 from closedform.verify import FORMAT, ROOTS, Refused, matrix_of, staircase, system_of
 

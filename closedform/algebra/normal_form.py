@@ -14,18 +14,8 @@ import sympy as sp
 
 from closedform.algebra.certificates import lack, open_record
 from closedform.algebra.counterexample import Counterexample, find_counterexample
-from closedform.algebra.tower import (
-    Expr,
-    Fraction,
-    Problem,
-    Tower,
-    Undecided,
-    content,
-    converted,
-    entries_of,
-    guard,
-    shortened,
-)
+from closedform.algebra.expressions import Expr, Problem, entries_of, margin_of, shortened
+from closedform.algebra.tower import Fraction, Tower, Undecided, content, converted
 
 __all__ = [
     "Decision",
@@ -157,7 +147,7 @@ def decide(
     ``sides`` contains, for each entry, the expressions of which it is the difference; the
     counterexample is a point at which they have values too.
     """
-    guards = [guard(g) for g in nonnegative]
+    guards = [margin_of(g) for g in nonnegative]
     try:
         result, obstacle = is_zero(problem, guards), ""
     except Undecided as reason:

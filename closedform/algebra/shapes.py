@@ -6,7 +6,7 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.algebra.tower import shortened
+from closedform.algebra.expressions import shortened
 from closedform.model.lemma import Lemma, Shape
 
 

@@ -21,39 +21,38 @@ of the identity.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import reduce
 from math import gcd, lcm
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import sympy as sp
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
 from sympy import Rational
 from sympy.core.function import AppliedUndef
 
+from closedform.algebra.expressions import (
+    QUOTIENTS,
+    TRIGONOMETRIC,
+    Expr,
+    Problem,
+    angle_divisors,
+    angle_terms,
+    entries_of,
+    margin_of,
+    shortened,
+    sign_of,
+    subexpressions,
+)
 from closedform.algebra.integers import long_factors, smooth_factors
 from closedform.algebra.trace import Trace
 
-Expr: TypeAlias = Any  # SymPy's annotations are partial
-Problem: TypeAlias = "Expr | sp.MatrixBase | Sequence[Expr]"
-
-_QUOTIENTS: dict[type, Callable[[Expr], Expr]] = {
-    sp.tan: lambda angle: sp.sin(angle) / sp.cos(angle),
-    sp.cot: lambda angle: sp.cos(angle) / sp.sin(angle),
-    sp.sec: lambda angle: 1 / sp.cos(angle),
-    sp.csc: lambda angle: 1 / sp.sin(angle),
-}
-_TRIGONOMETRIC = (sp.sin, sp.cos, *_QUOTIENTS)
 _INVERSE = (sp.atan2, sp.acos, sp.asin, sp.atan)
 _OPAQUE = (sp.Symbol, sp.NumberSymbol, AppliedUndef, sp.Derivative, *_INVERSE)
 
 
 class Undecided(ValueError):  # noqa: N818
     """The normal form cannot prove or cannot express the claim; the message says what to do."""
-
-
-class InexactNumberError(TypeError):
-    """An expression that must be exact contains a float."""
 
 
 class Fraction(NamedTuple):
@@ -94,7 +93,7 @@ class Tower:
         self.trace = Trace()
         self.peak = 0
         self.zero, self.one = self._constant(0), self._constant(1)
-        self._divisor = _angle_divisors([*problem, *nonnegative])
+        self._divisor = angle_divisors([*problem, *nonnegative])
         for guard in nonnegative:
             self._license(guard)
 
@@ -117,8 +116,8 @@ class Tower:
         if isinstance(e, sp.sin | sp.cos):
             rotation = self._rotation(e.args[0])
             return rotation.sin if isinstance(e, sp.sin) else rotation.cos
-        if isinstance(e, _TRIGONOMETRIC):
-            return self.convert(_QUOTIENTS[e.func](e.args[0]))
+        if isinstance(e, TRIGONOMETRIC):
+            return self.convert(QUOTIENTS[e.func](e.args[0]))
         if isinstance(e, sp.Abs):
             x = self.convert(e.args[0])
             return self._sqrt(self._mul(x, x))
@@ -224,7 +223,7 @@ class Tower:
     def _rotation(self, angle: Expr) -> Rotation:
         known = self._rotations.get(angle)
         if known is None:
-            terms = (self._multiple(atom, q) for atom, q in _angle_terms(angle).items())
+            terms = (self._multiple(atom, q) for atom, q in angle_terms(angle).items())
             known = reduce(self._compose, terms, Rotation(self.one, self.zero))
             self._rotations[angle] = known
         return known
@@ -260,7 +259,7 @@ class Tower:
     def _constant_rotation(self, q: Rational) -> Rotation:
         self.trace.unwritable = "identities with a part of pi in an angle"
         c, s = sp.cos(q * sp.pi), sp.sin(q * sp.pi)
-        if c.has(*_TRIGONOMETRIC) or s.has(*_TRIGONOMETRIC):
+        if c.has(*TRIGONOMETRIC) or s.has(*TRIGONOMETRIC):
             raise Undecided(f"cos({q}*pi) has no known square-root form")
         return Rotation(self.convert(c), self.convert(s))
 
@@ -534,8 +533,8 @@ class Tower:
 
 
 def converted(problem: Problem, nonnegative: Iterable[Expr]) -> tuple[Tower, list[Fraction]]:
-    entries, guards = entries_of(problem), [guard(g) for g in nonnegative]
-    parts = _subexpressions([*entries, *guards])
+    entries, guards = entries_of(problem), [margin_of(g) for g in nonnegative]
+    parts = subexpressions([*entries, *guards])
     roots = sum(isinstance(e, (sp.Pow, sp.Abs, *_INVERSE)) for e in parts)
     size = 4 + roots + 2 * sum(isinstance(e, _OPAQUE) for e in parts)
     while True:
@@ -544,54 +543,6 @@ def converted(problem: Problem, nonnegative: Iterable[Expr]) -> tuple[Tower, lis
             return tower, [tower.convert(e) for e in entries]
         except _Full:
             size *= 2
-
-
-def sign_of(e: Expr) -> int:
-    """1 or -1 if the assumptions on an expression say that it is not negative or not positive."""
-    return 1 if e.is_nonnegative else -1 if e.is_nonpositive else 0
-
-
-def guard(g: Expr) -> Expr:
-    if isinstance(g, (sp.Ge, sp.Gt)):
-        return g.lhs - g.rhs
-    return g.rhs - g.lhs if isinstance(g, (sp.Le, sp.Lt)) else g
-
-
-def entries_of(problem: Problem) -> list[Expr]:
-    entries: list[Expr] = sp.Matrix([problem]).flat()
-    return entries
-
-
-def _subexpressions(problem: Sequence[Expr]) -> list[Expr]:
-    """Every distinct sub-expression once; raises if one is a float."""
-    found: dict[Expr, None] = {}
-    stack = list(reversed(problem))
-    while stack:
-        e = stack.pop()
-        if e.is_Float:
-            raise InexactNumberError(f"the float {e} in an exact expression; write a Rational")
-        if e not in found:
-            found[e] = None
-            stack.extend(reversed(e.args))
-    return list(found)
-
-
-def _angle_terms(angle: Expr) -> dict[Expr, Rational]:
-    """An angle as a rational combination of atoms."""
-    terms = angle.as_coefficients_dict()
-    if any(atom.is_Add or atom.is_Mul or atom.is_Pow for atom in terms):
-        terms = sp.expand(angle).as_coefficients_dict()
-    return {atom: q for atom, q in terms.items() if q}
-
-
-def _angle_divisors(problem: Sequence[Expr]) -> dict[Expr, int]:
-    """For each atom of an angle, the common denominator of its multiples."""
-    divisors: dict[Expr, int] = {}
-    for e in _subexpressions(problem):
-        if isinstance(e, _TRIGONOMETRIC):
-            for atom, q in _angle_terms(e.args[0]).items():
-                divisors[atom] = lcm(divisors.get(atom, 1), int(q.q))
-    return divisors
 
 
 def _negative(a: Fraction) -> Fraction:
@@ -604,8 +555,3 @@ def content(p: fmpq_mpoly) -> fmpq:
     numerator = gcd(*(int(a.p) for a in coefficients))
     denominator = lcm(*(int(a.q) for a in coefficients))
     return fmpq(numerator if coefficients[0] > 0 else -numerator, denominator)
-
-
-def shortened(e: object, length: int = 200) -> str:
-    text = str(e)
-    return text if len(text) <= length else f"{text[:length]}... ({len(text)} characters)"

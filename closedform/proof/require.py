@@ -9,8 +9,8 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.counterexample import Counterexample
+from closedform.algebra.expressions import shortened
 from closedform.algebra.normal_form import Decision, Undecided, decide
-from closedform.algebra.tower import shortened
 
 
 class ProofError(ValueError):

@@ -33,6 +33,17 @@ def test_small_round(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     assert "| ur_arm | " in "\n".join(table(total))
 
 
+def test_another_unit_of_length_changes_no_angle() -> None:
+    subject = robot("delta")
+    given = np.array([subject.defaults])
+    rng = np.random.default_rng(SEED)
+    lengths, _ = postures._rescaled(rng, subject, given, np.zeros((1, 3)))
+    angles = np.array([f.startswith("alpha") for f in subject.fields])
+    assert (lengths[:, angles] == given[:, angles]).all()
+    assert (lengths[:, ~angles] != given[:, ~angles]).all()
+    assert subject.lengths_of(given).shape == (1, 4)
+
+
 @pytest.mark.skipif(not kernels.available(), reason="gcc and its sanitizers are needed")
 def test_bare_c() -> None:
     outcome = kernels.round(np.random.default_rng(SEED))

@@ -57,7 +57,7 @@ def draw_postures(rng: np.random.Generator, robot: Robot, lengths: Array) -> tup
 
 def _slides(rng: np.random.Generator, robot: Robot, q: Array, lengths: Array) -> Array:
     """Slides are as long as the arm, or much shorter or longer, or zero."""
-    size = np.abs(lengths).sum(axis=1) if lengths.shape[1] else np.ones(len(q))
+    size = robot.lengths_of(lengths).sum(axis=1)
     size = np.where(size > 0, size, 1.0)
     for k in np.flatnonzero(robot.slides):
         factor = np.where(rng.random(len(q)) < 0.5, 1.0, 10.0 ** rng.uniform(-9, 4, len(q)))

@@ -63,7 +63,8 @@ def _rescaled(
 ) -> tuple[Array, Array]:
     """The same postures in other units: all lengths are multiplied by a power of two."""
     power = 2.0 ** float(rng.integers(-900, 900))
-    return lengths * power, np.where(subject.slides, q * power, q)
+    lengths = np.where(subject.turned, lengths, lengths * power)
+    return lengths, np.where(subject.slides, q * power, q)
 
 
 def check(subject: Robot, lengths: Array, q: Array) -> list[tuple[str, int, str]]:
@@ -122,7 +123,7 @@ def _again(subject: Robot, module: Any, lengths: Array, q: Array, reached: Array
     image = module.fk(q.reshape(n * branches, q.shape[2]), params)
     target = np.repeat(reached, branches, axis=0)
     slides = np.abs(np.where(subject.slides, q, 0.0)).sum(axis=2).ravel()
-    size = np.abs(np.repeat(lengths, branches, axis=0)).sum(axis=1) + np.nan_to_num(slides)
+    size = np.repeat(subject.lengths_of(lengths).sum(axis=1), branches) + np.nan_to_num(slides)
     size = np.where(size > 0, size, 1.0)
     if subject.modes:
         error = np.abs(image.p - target[:, None, :])
@@ -167,7 +168,9 @@ def _judged(
     for i in np.flatnonzero(_generic(subject, lengths, q) & ~singular.any(axis=1)):
         away = answers[i] - q[i]
         away = np.where(subject.slides, away, np.remainder(away + np.pi, 2 * np.pi) - np.pi)
-        scale = np.where(subject.slides, max(np.abs(lengths[i]).sum(), np.abs(q[i]).max()), 1.0)
+        scale = np.where(
+            subject.slides, max(subject.lengths_of(lengths[i]).sum(), np.abs(q[i]).max()), 1.0
+        )
         nearest = np.nanmin(np.abs(away / scale).max(axis=1), initial=np.inf)
         if not nearest < 1e-4:
             problems.append(("missing", int(i), f"its own posture is {nearest:.2g} away"))
@@ -179,7 +182,7 @@ def _generic(subject: Robot, lengths: Array, q: Array) -> Array:
     if not len(q) or not lengths.shape[1]:
         return np.zeros(len(q), bool)
     factors = subject.module("c").singularities(q, tuple(lengths.T)).reshape(len(q), -1)
-    sizes = np.abs(np.hstack([lengths, q[:, subject.slides]]))
+    sizes = np.hstack([subject.lengths_of(lengths), np.abs(q[:, subject.slides])])
     with np.errstate(all="ignore"):
         alike = sizes.max(axis=1) < 100 * sizes.min(axis=1)
         median = np.nanmedian(np.abs(factors[alike]), axis=0) if alike.any() else 1.0

@@ -27,6 +27,8 @@ class Robot:
     fields: tuple[str, ...]
     defaults: tuple[float, ...]
     signed: tuple[bool, ...]
+    turned: tuple[bool, ...]
+    """Which parameters are angles."""
     joints: tuple[str, ...]
     slides: tuple[bool, ...]
     positive: tuple[bool, ...]
@@ -39,6 +41,10 @@ class Robot:
 
     def module(self, backend: str) -> ModuleType:
         return importlib.import_module(f"closedform.generated.{backend}.{self.name}")
+
+    def lengths_of(self, parameters: np.ndarray) -> np.ndarray:
+        """The sizes of the parameters that are lengths."""
+        return np.abs(parameters[..., ~np.array(self.turned, bool)])
 
     @property
     def revolute(self) -> np.ndarray:
@@ -67,6 +73,7 @@ def _robot(source: pipeline.Source) -> Robot:
         tuple(p.name for p in d.parameters),
         tuple(float(p.value) for p in d.parameters),
         tuple(not p.nonnegative for p in d.parameters),
+        tuple(p.unit == "rad" for p in d.parameters),
         tuple(s.name for s in actuated),
         tuple(joints[s].kind == "prismatic" for s in actuated),
         tuple(s in inverse.nonnegative for s in actuated),

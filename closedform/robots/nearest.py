@@ -53,37 +53,24 @@ def nearest(
         found.q.shape[:-2], seed.shape[:-1], limits.lower.shape[:-1], limits.upper.shape[:-1]
     )
     branches, n = found.q.shape[-2:]
-    q = np.broadcast_to(found.q, (*lead, branches, n))
-    status = np.broadcast_to(found.status, (*lead, branches))
-    seed = np.broadcast_to(seed, (*lead, n))
+    q, status = _over(found.q, lead, 2), _over(found.status, lead, 1)
+    seed = _over(seed, lead, 1)
     q = at_seed(mechanism, q, status, np.asarray(x, float), seed, limits)
-    chosen = weights_of(mechanism, weights)
-    rows = [
-        np.broadcast_to(a, (*lead, *core)).reshape(-1, *core)
-        for a, core in (
-            (q, (branches, n)),
-            (status, (branches,)),
-            (seed, (n,)),
-            (limits.lower, (n,)),
-            (limits.upper, (n,)),
-            (chosen, (n,)),
-        )
+    sides = (limits.lower, limits.upper, weights_of(mechanism, weights))
+    rows = [q.reshape(-1, branches, n), status.reshape(-1, branches), seed.reshape(-1, n)]
+    rows += [_over(a, lead, 1).reshape(-1, n) for a in sides]
+    blocks = [
+        _of_block(mechanism, *(a[start : start + BLOCK] for a in rows))
+        for start in range(0, max(len(rows[0]), 1), BLOCK)
     ]
-    size = len(rows[0])
-    result = Nearest(
-        np.empty((size, n)),
-        np.empty(size, np.uint8),
-        np.empty(size, np.intp),
-        np.empty(size),
-        np.empty((size, branches, n), bool),
-    )
-    for start in range(0, size, BLOCK):
-        block = slice(start, start + BLOCK)
-        q, status, seed, lower, upper, chosen = (a[block] for a in rows)
-        some = _of_block(mechanism, q, status, seed, Limits(lower, upper), chosen)
-        for whole, part in zip(result, some, strict=True):
-            np.asarray(whole)[block] = part
-    return Nearest(*(a.reshape((*lead, *a.shape[1:]))[()] for a in result))
+    every = blocks[0] if len(blocks) == 1 else map(np.concatenate, zip(*blocks, strict=True))
+    return Nearest(*(a.reshape((*lead, *a.shape[1:]))[()] for a in every))
+
+
+def _over(a: NDArray[Any], lead: tuple[int, ...], core: int) -> NDArray[Any]:
+    """An array with these leading axes, before its last ``core`` ones."""
+    shape = (*lead, *a.shape[a.ndim - core :])
+    return a if a.shape == shape else np.broadcast_to(a, shape)
 
 
 def _of_block(
@@ -91,10 +78,11 @@ def _of_block(
     q: Array,
     status: NDArray[np.uint8],
     seed: Array,
-    limits: Limits,
+    lower: Array,
+    upper: Array,
     weights: Array,
 ) -> Nearest:
-    all_of = candidates(mechanism, q, status, seed, limits, weights)
+    all_of = candidates(mechanism, q, status, seed, Limits(lower, upper), weights)
     branch = first_of_the_nearest(all_of.distance)
     rows = np.arange(len(q))
     distance = all_of.distance[rows, branch]

@@ -112,6 +112,7 @@ def declare(d: Derivation) -> tuple[Dimensions, Joints]:
     d.write("beta", r"\delta_{23}", "half the difference of the absolute angles of the fore-arms")
     d.write("f", meaning="length of a fore-arm, from the elbow to the tip")
     d.write("wrist", "l_W", "length of the wrist")
+    d.write("l_W", "l_W")
     d.write("ahead", r"\Delta_a", "how far the right tip is ahead of the middle of the tips")
     d.write("higher", r"\Delta_h", "how far the right tip is above the middle of the tips")
     d.write("beyond", r"\Delta_z", "half the base line, along the virtual fore-arm")

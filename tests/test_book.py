@@ -146,7 +146,7 @@ def test_a_symbol_without_a_meaning_is_found() -> None:
     assert symbols.undefined(d, page.numbers, page.math) == ["k"]
     d.write("k", meaning="the slope")
     assert symbols.undefined(d, page.numbers, page.math) == []
-    assert ("k", "the slope") in symbols.table(d, page.numbers, page.prose)
+    assert ("k", "the slope") in symbols.table(d, page.numbers, page.prose, page.math)
 
 
 @pytest.mark.parametrize(

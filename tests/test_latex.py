@@ -15,7 +15,15 @@ import sympy as sp
 from closedform.emit.backends.latex.article import Page, decimal, document
 from closedform.emit.backends.latex.claims import derives
 from closedform.emit.backends.latex.formulas import Printer, measure
-from closedform.emit.backends.latex.prose import Prose, escape, loosen, mixed, spaced, symbol_name
+from closedform.emit.backends.latex.prose import (
+    Prose,
+    escape,
+    loosen,
+    mixed,
+    quoted,
+    spaced,
+    symbol_name,
+)
 from closedform.emit.notebook import notebook
 from closedform.emit.render import render
 from closedform.emit.show import show
@@ -133,7 +141,7 @@ def test_every_claim_step_and_function_is_printed(name: str) -> None:
     derivation, proof = derived(name)
     text = article(name)
     for claim in proof.claims:
-        assert escape(claim.label) in text
+        assert quoted(claim.label) in text
         assert mixed(claim.printed) in text
     for step in derivation.steps:
         assert f"\\subsection{{{escape(step.title)}}}" in text
@@ -221,7 +229,7 @@ def test_errors_stand_before_the_claims_with_all_that_was_found() -> None:
         r"\subsection{100 \% of $\displaystyle x_1$ \& more\_}",
         r"Changes a result or a design",
         r"Since $\displaystyle a < b$.",
-        r"\textbf{eq. (2)} (p. 3\_4): x\_1 is one",
+        r"\textbf{eq. (2)} (p. 3\_4): $x_{1}$ is one",
         r"\finding{Read as:}{all of $\displaystyle a_1$}",
         r"\finding{Found:}{at $\displaystyle \theta_1 = \frac{2\pi}{3}$: 1, not 0}",
         r"\finding{Other reading, proved:}{100 \% (\&)}",
@@ -230,7 +238,7 @@ def test_errors_stand_before_the_claims_with_all_that_was_found() -> None:
     ):
         assert part in section, part
     assert r"\detail{Assumption:}{$\displaystyle a > 0$}" in text
-    assert "x\\_1 is one (paraphrased)" in text
+    assert "$x_{1}$ is one (paraphrased)" in text
     page = re.sub(r"\s+", " ", show(*awkward()))
     assert "1. 100 % of $x_1$ & more_ (changes a result or a design): eq. (2)" in page
 

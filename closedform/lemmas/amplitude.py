@@ -76,6 +76,7 @@ class Amplitude:
             2,
             signs=(self.sigma,),
             shape=Shape.LINEAR,
+            roles=(("x", self.x), ("a", self.a), ("b", self.b), ("c", self.c)),
         )
 
 

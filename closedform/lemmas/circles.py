@@ -19,16 +19,21 @@ theorem(
 turned by a right angle to the left, and $d > 0$.  The points $\mathbf x$ at the distance $r_1 >
 0$ from the origin and $r_2 > 0$ from $d\,\mathbf n$ are
 $$\mathbf x = \frac{d^2 + r_1^2 - r_2^2}{2 d}\,\mathbf n + \sigma h\,\mathbf n^\perp, \qquad
-h = \frac{\sqrt{S A B C}}{2 d}, \qquad \sigma = \pm 1,$$
-with $S = r_1 + r_2 + d$, $A = r_1 + r_2 - d$, $B = d + r_1 - r_2$ and $C = d - r_1 + r_2$.  They
-exist if and only if $A$, $B$ and $C$ are not negative, and coincide if and only if one of these
-is zero.""",
+h = \frac{\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C}}{2 d}, \qquad \sigma = \pm 1,$$
+with $\mathcal S = r_1 + r_2 + d$, $\mathcal A = r_1 + r_2 - d$, $\mathcal B = d + r_1 - r_2$ and
+$\mathcal C = d - r_1 + r_2$.  They exist if and only if $\mathcal A$, $\mathcal B$ and $\mathcal C$
+are not negative, and coincide if and only if one of these is zero.  Since $\mathcal B + \mathcal C
+= 2 d$ and $(\mathcal B - \mathcal C)(\mathcal A + d) = 2(r_1^2 - r_2^2)$, the share of $\mathbf n$
+is also
+$$\frac{1}{2}\Bigl(d + \frac{(\mathcal B - \mathcal C)(\mathcal A + d)}{\mathcal B + \mathcal C}
+\Bigr),$$
+which loses no digits where the centres are close to each other.""",
     proof=r"""Write $\mathbf x = s\,\mathbf n + t\,\mathbf n^\perp$.  The distances say $s^2 + t^2
 = r_1^2$ and $(s - d)^2 + t^2 = r_2^2$.  Their difference is linear in $s$ and gives $2 d s = d^2
 + r_1^2 - r_2^2$.  Then $4 d^2 t^2 = (2 d r_1 - 2 d s)(2 d r_1 + 2 d s) = \bigl(r_2^2 - (d -
-r_1)^2\bigr)\bigl((d + r_1)^2 - r_2^2\bigr) = A C\, B S$. Of $A$, $B$ and $C$ at most one is
-negative, because the sum of any two is twice a length.  So the product is not negative if and
-only if none of them is.""",
+r_1)^2\bigr)\bigl((d + r_1)^2 - r_2^2\bigr) = \mathcal A\mathcal C\,\mathcal B\mathcal S$.  Of
+$\mathcal A$, $\mathcal B$ and $\mathcal C$ at most one is negative, because the sum of any two is
+twice a length.  So the product is not negative if and only if none of them is.""",
     exception=r"""If $d = 0$ and $r_1 = r_2$, the circles are the same and $\mathbf x$ is free on
 it; if $d = 0$ and $r_1 \ne r_2$, there is no such point.""",
 )
@@ -89,7 +94,7 @@ def circle_intersection(
         along, height = d / 2, sp.sqrt(S) * sp.sqrt(A) / 2
     else:
         d = distance
-        along, rise = lens(program, radii, d, A, tolerated, "the bars meet", suffix)
+        along, rise, (B, C) = lens(program, radii, d, A, tolerated, "the bars meet", suffix)
         along = choose(flag, first, along)
         height = choose(flag, 0, rise)
     n = (program.let(f"n_1{suffix}", n[0]), program.let(f"n_2{suffix}", n[1]))
@@ -98,7 +103,7 @@ def circle_intersection(
         "circle intersection",
         r"|\mathbf x| = r_1,\ |\mathbf x - \mathbf d| = r_2 \;\Rightarrow\; \mathbf x = "
         r"\frac{d^2 + r_1^2 - r_2^2}{2 d}\,\mathbf n + \sigma h\,\mathbf n^\perp,\quad "
-        r"h = \frac{\sqrt{S A B C}}{2 d}",
+        r"h = \frac{\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C}}{2 d}",
         (
             x**2 + y**2 - first**2,
             (x - centres[0]) ** 2 + (y - centres[1]) ** 2 - second**2,
@@ -106,6 +111,15 @@ def circle_intersection(
         {x: along * n[0] - sigma * height * n[1], y: along * n[1] + sigma * height * n[0]},
         2,
         signs=(sigma,),
+        letters={
+            name: letter
+            for name, letter in zip(
+                (distance, A, height, *((B, C) if first != second else ())),
+                ("d", r"\mathcal A", "h", r"\mathcal B", r"\mathcal C"),
+                strict=False,
+            )
+            if isinstance(name, sp.Symbol) and not suffix
+        },
     ), Chord(n, d, along, height, flag)
 
 

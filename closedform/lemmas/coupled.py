@@ -181,7 +181,7 @@ def _velocity(
     a, b = along.dot(follower.rate), along.dot(driver.rate)
     d.step(
         "Velocity and singular sets",
-        "The derivative of the loop equation, halved, gives A dx = B dq.  B vanishes if the driver "
+        "The derivative of the loop equation, halved, gives A*dx = B*dq.  B vanishes if the driver "
         "moves B1 at right angles to the rod (serial: the driver moves and the follower stands "
         "still).  A vanishes if the follower moves B2 at right angles to the rod (parallel: the "
         "driver stands still and cannot hold the follower).",

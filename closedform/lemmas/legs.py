@@ -22,7 +22,7 @@ from typing import Any, Protocol
 import sympy as sp
 
 from closedform.lemmas.registry import theorem
-from closedform.lemmas.triangle import Triangle
+from closedform.lemmas.triangle import Triangle, indexed
 from closedform.model.functions import Program, choose
 from closedform.model.inverse import Degenerate, Link
 from closedform.model.lemma import Lemma
@@ -37,12 +37,18 @@ Let $a = \mathbf w\cdot\mathbf u$, $b = \mathbf w\cdot\mathbf v$, $R = \sqrt{a^2
 $s = \sqrt{r^2 - p^2}$.  There is a solution if and only if $r \ge p$ and the lengths $l$, $s$ and
 $R$ are those of a triangle.  The solutions are
 $$\theta = \operatorname{atan2}(b, a) - \alpha, \qquad \tan\frac{\alpha}{2} =
-\sigma\frac{\sqrt{A C}}{\sqrt{S B}}, \qquad \sigma = \pm 1,$$
-with $S = l + s + R$, $A = l + s - R$, $B = R + l - s$ and $C = R - l + s$.""",
+\sigma\frac{\sqrt{\mathcal A\mathcal C}}{\sqrt{\mathcal S\mathcal B}}, \qquad \sigma = \pm 1,$$
+with $\mathcal S = l + s + R$, $\mathcal A = l + s - R$, $\mathcal B = R + l - s$ and $\mathcal C =
+R - l + s$.  Without $\alpha$ this is
+$$\theta = \operatorname{atan2}(b\,X - \sigma a\,Y,\ a\,X + \sigma b\,Y), \qquad X = \mathcal
+S\mathcal B - \mathcal A\mathcal C, \qquad Y = 2\sqrt{\mathcal S\mathcal A\mathcal B\mathcal
+C}.$$""",
     proof=r"""The squared distance of the end from $\mathbf w$ is $p^2$ plus that of its projection
 onto the plane.  So the projection is at the distance $s$ from the end of the crank, at $R$ from the
 origin, and the crank joins both: a triangle with the sides $l$, $s$ and $R$, whose angle at the
-origin is $\alpha$.  The lemma of the two-link triangle gives both of its mirror images.""",
+origin is $\alpha$.  The lemma of the two-link triangle gives both of its mirror images.
+The half angle says $(\cos\alpha, \sin\alpha) = (X, \sigma Y)/(\mathcal S\mathcal B + \mathcal
+A\mathcal C)$, and the vector $(a, b)$ is turned by $-\alpha$.""",
     exception=r"""If $R = 0$, every $\theta$ is a solution if $l = s$, and none otherwise; if $l =
 0$, every $\theta$ is one if $s = R$.""",
     rests_on=("two-link triangle",),
@@ -195,12 +201,17 @@ class Crank:
         away = share * cosine * u + share * sine * v
         lemma = Lemma(
             "crank and rod",
-            r"\theta = \operatorname{atan2}(b, a) - \alpha,\quad \tan\frac{\alpha}{2} = "
-            r"\sigma\frac{\sqrt{A C}}{\sqrt{S B}}",
+            r"\theta = \operatorname{atan2}(b, a) - \alpha = "
+            r"\operatorname{atan2}(b X - \sigma a Y, "
+            r"a X + \sigma b Y),\quad X = \mathcal S\mathcal B - \mathcal A\mathcal C,\ Y = "
+            r"2\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C}",
             ((a - l * sp.cos(q)) ** 2 + (b - l * sp.sin(q)) ** 2 + aside**2 - r**2,),
             {q: sp.atan2(sine, cosine)},
             2,
             signs=(sigma,),
+            roles=(("l", l), ("r", r), ("a", a), ("b", b), ("p", sp.Abs(aside)), ("s", s)),
+            letters=triangle.letters
+            | {ahead: indexed("X", chain.tag), beyond: indexed("Y", chain.tag)},
         )
         root = sp.sqrt(r - aside) * sp.sqrt(r + aside)
         cases = (
@@ -256,10 +267,11 @@ class Slide:
         lemma = Lemma(
             "line and sphere",
             r"q = m - \sigma\sqrt{(r - p)(r + p)}",
-            (q**2 - 2 * m * q + m**2 + aside**2 - r**2,),
+            ((m - q) ** 2 + aside**2 - r**2,),
             {q: value},
             2,
             signs=(sigma,),
+            roles=(("m", m), ("r", r), ("p", aside)),
         )
         link = Link((q,), lemma.equations, {}, lemma, tuple(p.body[start:]))
         return Solution(link, value, w - value * s)
@@ -301,6 +313,7 @@ class Stretch:
             {q: value},
             1,
             excluded=1,
+            roles=((r"\mathbf w", sp.Matrix(w)),),
         )
         body = tuple(chain.program.body[start:])
         return Solution(Link((q,), lemma.equations, {}, lemma, body), value, w)

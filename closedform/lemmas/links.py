@@ -149,13 +149,16 @@ def turn(
 theorem(
     "two-link arm",
     statement=r"""Let $u(\theta) = (\cos\theta, \sin\theta)$, $l_1, l_2 > 0$ and $(x, y) \ne 0$.
-With $r = \sqrt{x^2 + y^2}$ and the factors $S$, $A$, $B$ and $C$ of the triangle with the sides
-$l_1$, $l_2$ and $r$, the equation $l_1 u(\theta) + l_2 u(\theta + \varphi) = (x, y)$ has a
-solution if and only if $A$, $B$ and $C$ are not negative.  The solutions are
-$$(\cos\varphi, \sin\varphi) = \frac{(B C - S A,\ 2\sigma\sqrt{S A B C})}{B C + S A}, \qquad
-\theta = \operatorname{atan2}(y, x) - \alpha,$$
-$$(\cos\alpha, \sin\alpha) = \frac{(S B - A C,\ 2\sigma\sqrt{S A B C})}{S B + A C}, \qquad
-\sigma = \pm 1.$$
+With $r = \sqrt{x^2 + y^2}$ and the factors $\mathcal S = l_1 + l_2 + r$, $\mathcal A = l_1 + l_2 -
+r$, $\mathcal B = r + l_1 - l_2$ and $\mathcal C = r - l_1 + l_2$ of the triangle with these sides,
+the equation $l_1 u(\theta) + l_2 u(\theta + \varphi) = (x, y)$ has a solution if and only if
+$\mathcal A$, $\mathcal B$ and $\mathcal C$ are not negative.  The solutions are
+$$(\cos\varphi, \sin\varphi) = \frac{(\mathcal B\mathcal C - \mathcal S\mathcal A,\
+2\sigma\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C})}{\mathcal B\mathcal C + \mathcal S\mathcal
+A}, \qquad \theta = \operatorname{atan2}(y, x) - \alpha,$$
+$$(\cos\alpha, \sin\alpha) = \frac{(\mathcal S\mathcal B - \mathcal A\mathcal C,\
+2\sigma\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C})}{\mathcal S\mathcal B + \mathcal A\mathcal
+C}, \qquad \sigma = \pm 1.$$
 A second link that is cranked, $(b - i a)\, e^{i y}$ instead of $l_2 e^{i y}$ in the complex
 plane, is a straight one of length $\sqrt{a^2 + b^2}$ at the angle $y - \operatorname{atan2}(a,
 b)$.""",
@@ -235,15 +238,28 @@ def two_links(
     lemma = Lemma(
         "two-link arm",
         r"l_1 u(\theta) + l_2 u(\theta + \varphi) = (x, y) \;\Rightarrow\; "
-        r"(\cos\varphi, \sin\varphi) = \frac{(BC - SA,\ 2\sigma\sqrt{SABC})}{BC + SA},\ "
+        r"(\cos\varphi, \sin\varphi) = \frac{(\mathcal B\mathcal C - \mathcal S\mathcal A,\ "
+        r"2\sigma\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C})}"
+        r"{\mathcal B\mathcal C + \mathcal S\mathcal A},\ "
         r"\theta = \operatorname{atan2}(y, x) - \alpha,\quad "
-        r"(\cos\alpha, \sin\alpha) = \frac{(SB - AC,\ 2\sigma\sqrt{SABC})}{SB + AC}",
+        r"(\cos\alpha, \sin\alpha) = \frac{(\mathcal S\mathcal B - \mathcal A\mathcal C,\ "
+        r"2\sigma\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C})}"
+        r"{\mathcal S\mathcal B + \mathcal A\mathcal C}",
         (
             l1 * sp.cos(first) + l2 * sp.cos(first + second) - x,
             l1 * sp.sin(first) + l2 * sp.sin(first + second) - y,
         ),
         {first: lift.angle, second: bend.angle},
         2,
+        roles=(
+            ("l_1", l1),
+            ("l_2", l2),
+            (r"\theta", first),
+            (r"\varphi", second),
+            ("x", x),
+            ("y", y),
+        ),
+        letters=triangle.letters,
     )
     meaning = f"equal links folded onto the axis of {first}, which is free; 0 is returned."
     cases = degenerate(folded, [_folded(x, y, l1, l2)], first, meaning)
@@ -321,6 +337,7 @@ def polar(
         {angle: pair.angle, length: value},
         2 if choice else 1,
         excluded=0 if choice else 1,
+        roles=((r"\rho", length), (r"\theta", angle), ("x", x), ("y", y)),
     )
     meaning = f"the axis of {angle} is met; {angle} is free, 0 is returned."
     cases = degenerate(flag, [vanishing(x, y)], angle, meaning)

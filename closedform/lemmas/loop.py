@@ -9,7 +9,7 @@ them.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -218,6 +218,7 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
         scale=size,
         free=tuple(m.hand),
     )
+    told = replace(found.link, lemma=replace(found.lemma, roles=_roles(m)))
     shape = "circles" if n == 2 else "spheres"
     d.step(
         f"Forward: {m.count} {shape}",
@@ -257,7 +258,7 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
     d.inverses.append(
         Inverse("fk", tuple(m.hand), (sp.S.Zero,) * n, equations, links=(found.link,))
     )
-    tell(d, "fk", found.link)
+    tell(d, "fk", told)
     v = Program(list(f.body), f.taken)
     first = sp.Matrix(
         [v.let(f"A_{m.numbered[turn][0]}{i}", e) for i, e in enumerate(found.first, 1)]
@@ -269,6 +270,18 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
         tuple(first + ends[turn] - end for end in ends),
         found.side,
         found.size,
+    )
+
+
+def _roles(m: _Mechanism) -> tuple[tuple[str, Any], ...]:
+    """What the letters of the lemma stand for that gives the hand."""
+    (first, _), *others = m.numbered
+    apart = [rf"\mathbf b_{k} - \mathbf b_{first}" for k, _ in others]
+    names = [r"d\,\mathbf n"] if len(others) == 1 else [r"\mathbf c_2", r"\mathbf c_3"]
+    return (
+        (r"\mathbf x", rf"\mathbf p - \mathbf b_{first}"),
+        *zip(names, apart, strict=True),
+        *((f"r_{k}", leg.rod) for k, leg in enumerate(m.legs, 1)),
     )
 
 
@@ -351,7 +364,7 @@ def _velocity(m: _Mechanism, at: _Posture, loop: Step) -> None:
     adjugate = a.adjugate()
     d.step(
         "Velocity and singular sets",
-        "The derivatives of the loop equations, halved, give A dp = B dq.  The rows of A are the "
+        "The derivatives of the loop equations, halved, give A*dp = B*dq.  The rows of A are the "
         "vectors along the rods.  B is diagonal, because each leg depends on its own joint alone.  "
         "B is singular if the joint moves the near end of a rod at right angles to it (serial: "
         "the joint moves and the hand stands still).  A is singular if the rods are "

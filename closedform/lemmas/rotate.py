@@ -76,6 +76,7 @@ def rotate(
         ),
         {x: pair.angle},
         1,
+        roles=((r"\theta", x), ("w", sp.Matrix([w1, w2])), ("v", sp.Matrix([v1, v2]))),
     )
     t = real("tau")
     c, s = (1 - t**2) / (1 + t**2), 2 * t / (1 + t**2)

@@ -50,13 +50,14 @@ def linear_pair(x: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Lemma:
     """
     return Lemma(
         "atan2 of a linear pair",
-        r"\sin x\,B - \cos x\,A = 0,\ A\sin x + B\cos x > 0 \;\Rightarrow\; "
+        r"B\sin x - A\cos x = 0,\ A\sin x + B\cos x > 0 \;\Rightarrow\; "
         r"x = \operatorname{atan2}(A, B)",
         (sp.sin(x) * cosine - sp.cos(x) * sine,),
         {x: sp.atan2(sine, cosine)},
         1,
         excluded=1,
         shape=Shape.CONTAINS,
+        roles=(("x", x), ("A", sine), ("B", cosine)),
     )
 
 

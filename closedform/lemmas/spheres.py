@@ -141,6 +141,12 @@ def three_spheres(
         dict(zip(unknowns, found, strict=True)),
         2,
         signs=(sigma,),
+        letters={size_v: r"|\mathbf c_3|", size_u: r"|\mathbf c_2|"},
+        vectors=(
+            r"The algorithm has the entries $E_{1i}$ and $E_{2i}$ of $\mathbf e_1$ and $\mathbf "
+            r"e_2$.  It takes the part along $\mathbf e_1$ out of $\mathbf c_3$ twice, because "
+            r"after the first time rounding leaves some of it if the centres are nearly in line."
+        ),
     )
     rise = sigma * h
     return Meeting(
@@ -196,7 +202,7 @@ def _met_by_unequal(
     # with a quarter of the tolerance, the legs accept the target of what is accepted here
     tolerated = scale / 4
     A = p.bound("slack", r1 + near - D, tolerated, "the spheres meet")
-    along, beside = lens(p, (r1, near), D, A, tolerated, "the spheres meet")
+    along, beside, _ = lens(p, (r1, near), D, A, tolerated, "the spheres meet")
     X = p.let("X", choose(point, 0, along))
     radius = p.let("rho", choose(point, r1, beside), nonnegative=True)
     left = p.let("left", j**2 + (k - X) ** 2 + radius**2 - far**2)
@@ -220,10 +226,11 @@ def lens(
     tolerated: sp.Expr,
     meaning: str,
     suffix: str = "",
-) -> tuple[sp.Expr, sp.Expr]:
+) -> tuple[sp.Expr, sp.Expr, tuple[sp.Symbol, sp.Symbol]]:
     """Where circles or spheres meet: how far along the line of the centres, and beside it.
 
-    ``slack`` is the sum of the ``radii`` less the ``distance``, bounded by zero.
+    ``slack`` is the sum of the ``radii`` less the ``distance``, bounded by zero.  The last result
+    are the other two slacks.
     """
     (first, second), A = radii, slack
     B = program.bound(f"outer{suffix}", distance + first - second, tolerated, meaning)
@@ -234,7 +241,7 @@ def lens(
     share = program.let(f"share{suffix}", 1 / (B + C), nonnegative=True)
     along = (distance + (B - C) * (A + distance) * share) / 2
     S = first + second + distance
-    return along, sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) * share
+    return along, sp.sqrt(S) * sp.sqrt(A) * sp.sqrt(B) * sp.sqrt(C) * share, (B, C)
 
 
 def _beside(e: sp.Matrix) -> tuple[sp.Expr, ...]:

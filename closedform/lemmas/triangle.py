@@ -24,23 +24,32 @@ l_2)^2 - R^2$ and $M = R^2 - (l_1 - l_2)^2$ there is a solution if and only if $
 \ge 0$.  The solutions are
 $$\tan\frac{\theta}{2} = \sigma\frac{\sqrt N}{\sqrt M}, \qquad
 \tan\alpha = \sigma\frac{2 l_2\sqrt{N M}}{(l_1 - l_2) N + (l_1 + l_2) M}, \qquad \sigma = \pm 1.$$
-With the factors of Heron's formula, $S = l_1 + l_2 + R$, $A = l_1 + l_2 - R$, $B = R + l_1 - l_2$
-and $C = R - l_1 + l_2$, the same solutions are
-$$\tan\frac{\theta}{2} = \sigma\frac{\sqrt{S A}}{\sqrt{B C}}, \qquad
-\tan\frac{\alpha}{2} = \sigma\frac{\sqrt{A C}}{\sqrt{S B}}.$$""",
+With the factors of Heron's formula, $\mathcal S = l_1 + l_2 + R$, $\mathcal A = l_1 + l_2 - R$,
+$\mathcal B = R + l_1 - l_2$ and $\mathcal C = R - l_1 + l_2$, the same solutions are
+$$\tan\frac{\theta}{2} = \sigma\frac{\sqrt{\mathcal S\mathcal A}}{\sqrt{\mathcal B\mathcal C}},
+\qquad
+\tan\frac{\alpha}{2} = \sigma\frac{\sqrt{\mathcal A\mathcal C}}{\sqrt{\mathcal S\mathcal B}}.$$""",
     proof=r"""The sum of the squares of both equations is $l_1^2 + l_2^2 + 2 l_1 l_2\cos\theta =
 R^2$.  Since $N + M = 4 l_1 l_2$, this says $\cos\theta = (M - N)/(M + N)$.  Such a $\theta$
 exists if and only if $N$ and $M$ are not negative, because their sum is positive.  Then
 $\tan^2(\theta/2) = (1 - \cos\theta)/(1 + \cos\theta) = N/M$, and $\sigma$ is the sign of
 $\theta$.  Here $\sin\theta = 2\sigma\sqrt{N M}/(N + M)$.  Inserted into both equations, this
 gives $R\cos\alpha$ and $R\sin\alpha$, and $\tan\alpha$ as their quotient.  The first two factors
-of Heron's formula give $N = S A$ and the others $M = B C$.  The law of cosines for the angle at
-the base, $2 R l_1\cos\alpha = R^2 + l_1^2 - l_2^2$, gives $\tan^2(\alpha/2) = (1 - \cos\alpha)/(1
-+ \cos\alpha) = A C/(S B)$ in the same way; $\alpha$ has the sign of $\theta$, because
-$R\sin\alpha = l_2\sin\theta$.""",
+of Heron's formula give $N = \mathcal S\mathcal A$ and the others $M = \mathcal B\mathcal C$.  The
+law of cosines for the angle at the base, $2 R l_1\cos\alpha = R^2 + l_1^2 - l_2^2$, gives
+$\tan^2(\alpha/2) = (1 - \cos\alpha)/(1 + \cos\alpha) = \mathcal A\mathcal C/(\mathcal S\mathcal
+B)$ in the same way; $\alpha$ has the sign of $\theta$, because $R\sin\alpha = l_2\sin\theta$.""",
     exception=r"""If a link has no length, $N + M = 0$ and $\theta$ is free.  If $R = 0$, which
 needs $l_1 = l_2$, the links lie on each other and $\alpha$ is free.""",
 )
+
+
+def indexed(letter: str, tag: str) -> str:
+    """A letter with the tag of a leg or a joint, as in ``_1`` or ``_elbow``, as its index."""
+    index = tag.strip("_")
+    if not index:
+        return letter
+    return rf"{letter}_{{{index}}}" if index.isdigit() else rf"{letter}_{{\mathrm{{{index}}}}}"
 
 
 @dataclass(frozen=True)
@@ -148,6 +157,15 @@ class Triangle:
         return Triangle(self.first, self.second, self.sigma, S * A, B * C, (S, A, B, C))
 
     @property
+    def letters(self) -> dict[sp.Symbol, str]:
+        """How the factors are written: in letters that nothing else has."""
+        return {
+            s: indexed(rf"\mathcal {n}", str(s)[1:])
+            for s, n in zip(self.factors, "SABC", strict=False)
+            if isinstance(s, sp.Symbol)
+        }
+
+    @property
     def elbow(self) -> sp.Expr:
         """The angle between the links; free where a link has no length."""
         return 2 * self.sigma * sp.atan2(sp.sqrt(self.N), sp.sqrt(self.M))
@@ -198,8 +216,9 @@ class Triangle:
         convention; by default those of the triangle.
         """
         statement = (
-            r"\tan\frac{\theta}{2} = \sigma\frac{\sqrt{S A}}{\sqrt{B C}},\quad "
-            r"\tan\frac{\alpha}{2} = \sigma\frac{\sqrt{A C}}{\sqrt{S B}}"
+            r"\tan\frac{\theta}{2} = \sigma\frac{\sqrt{\mathcal S\mathcal A}}"
+            r"{\sqrt{\mathcal B\mathcal C}},\quad \tan\frac{\alpha}{2} = "
+            r"\sigma\frac{\sqrt{\mathcal A\mathcal C}}{\sqrt{\mathcal S\mathcal B}}"
             if self.factors
             else r"N = (l_1 + l_2)^2 - R^2,\ M = R^2 - (l_1 - l_2)^2:\quad "
             r"\tan\frac{\theta}{2} = \sigma\frac{\sqrt N}{\sqrt M},\quad "
@@ -219,6 +238,8 @@ class Triangle:
             },
             2,
             signs=(self.sigma,),
+            roles=(("l_1", self.first), ("l_2", self.second), ("R", reach)),
+            letters=self.letters,
         )
 
     def stretched_without_link(
@@ -248,4 +269,4 @@ class Triangle:
         return self.lemma(angles, reach, elbow, sp.atan2(beyond, ahead)), (ahead, beyond)
 
 
-__all__ = ["FARTHER", "NEARER", "Triangle"]
+__all__ = ["FARTHER", "NEARER", "Triangle", "indexed"]

@@ -205,6 +205,9 @@ class _Arm:
             },
             body=tuple(self.program.body[start:]),
             signs=(self.triangle.sigma,),
+            roles=tuple(
+                zip("xylabrh", (x, y, upper, *self.lengths[1:], r, h), strict=True),
+            ),
         )
 
     def _elbow(self, short: sp.Symbol) -> tuple[Pair, sp.Expr, sp.Expr]:

@@ -91,6 +91,7 @@ def two_sines(
         means={cx: sp.cos(x), sx: sp.sin(x), cy: sp.cos(y), sy: sp.sin(y)},
         body=tuple(program.body[start:]),
         signs=(sigma,),
+        roles=tuple((n, sp.Matrix(e)) for n, e in (("u", u), ("v", v), ("p", p))),
     )
 
 

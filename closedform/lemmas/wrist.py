@@ -71,6 +71,7 @@ def tilt(
         (k * (1 - sp.cos(x)) - 1 + along,),
         {x: pair.angle},
         2,
+        roles=((r"\theta", x), ("k", k), ("v", sp.Matrix([v1, v2, along]))),
     )
     meaning = f"all axes of the wrist are parallel; {x} is free, 0 is returned."
     locus = vanishing(k, v1, v2)

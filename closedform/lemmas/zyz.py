@@ -112,6 +112,7 @@ def zyz_lemma(
             last: rest.angle + flip,
         },
         2,
+        roles=tuple((rf"\theta_{k}", angle) for k, angle in enumerate(angles, 1)),
     )
     return lemma, rest
 

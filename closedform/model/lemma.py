@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Any
 
 import sympy as sp
 
@@ -35,6 +36,11 @@ class Lemma(Shown):
     and sine of an unknown or of a sum, computed without the angle.  ``body`` contains the
     statements that the lemma added to the program.  ``premises`` maps names of earlier statements
     to the values that they must have; the proof of the inverse includes these.
+
+    The rest is for the text.  ``roles`` says what each letter of the ``statement`` stands for here,
+    in the order in which a reader needs them: an expression, a vector or LaTeX.  ``letters`` writes
+    names of the program as the statement does.  A lemma in vectors is told as such, and its
+    coordinates are left to the algorithm; ``vectors`` says how that computes them.
     """
 
     name: str
@@ -49,6 +55,9 @@ class Lemma(Shown):
     signs: tuple[sp.Symbol, ...] = ()
     shape: Shape = Shape.ANY
     kind: str = ""
+    roles: tuple[tuple[str, Any], ...] = ()
+    letters: Mapping[sp.Symbol, str] = field(default_factory=dict)
+    vectors: str = ""
 
     def __getitem__(self, unknown: sp.Symbol) -> sp.Expr:
         return self.solution[unknown]

@@ -143,7 +143,7 @@ def craig_inverse(d: Derivation, puma: Puma) -> None:
     beside = cos(theta1) * py - sin(theta1) * px - d3
 
     claim(
-        "theta_1",
+        "θ_1",
         r"$\theta_1 = \mathrm{Atan2}(p_y, p_x) - \mathrm{Atan2}(d_3, \pm\sqrt{p_x^2 + p_y^2 - "
         r"d_3^2})$",
         lambda f: Every(
@@ -162,7 +162,7 @@ def craig_inverse(d: Derivation, puma: Puma) -> None:
         means=hand | {"K": a3 * cos(theta3) - d4 * sin(theta3)},
     )
     claim(
-        "theta_3",
+        "θ_3",
         r"$\theta_3 = \mathrm{Atan2}(a_3, d_4) - \mathrm{Atan2}(K, \pm\sqrt{a_3^2 + d_4^2 - K^2})$",
         lambda f: Solves(
             {f.left: f.right},
@@ -181,7 +181,7 @@ def craig_inverse(d: Derivation, puma: Puma) -> None:
         return Identity([e.subs(both, theta2 + theta3) for e in along[:2]], [ahead, sp.S.Zero])
 
     claim(
-        "theta_23",
+        "θ_23",
         r"$\theta_{23} = \mathrm{Atan2}[(-a_3 - a_2c_3)p_z - (c_1p_x + s_1p_y)(d_4 - a_2s_3), "
         r"(a_2s_3 - d_4)p_z + (a_3 + a_2c_3)(c_1p_x + s_1p_y)]$",
         direction,
@@ -198,19 +198,19 @@ def craig_inverse(d: Derivation, puma: Puma) -> None:
         )
 
     claim(
-        "theta_4",
+        "θ_4",
         r"$\theta_4 = \mathrm{Atan2}(-r_{13}s_1 + r_{23}c_1, -r_{13}c_1c_{23} - r_{23}s_1c_{23} + "
         r"r_{33}s_{23})$, the arguments being $s_4s_5$ and $c_4s_5$",
         arguments,
         means={r"\mathrm{Atan2}": lambda y, x: sp.Matrix([y, x])},
     )
     claim(
-        "theta_5",
+        "θ_5",
         r"$r_{13}(c_1c_{23}c_4 + s_1s_4) + r_{23}(s_1c_{23}c_4 - c_1s_4) - r_{33}(s_{23}c_4) = "
         r"-s_5$, $r_{13}(-c_1s_{23}) + r_{23}(-s_1s_{23}) + r_{33}(-c_{23}) = c_5$",
     )
     claim(
-        "theta_6",
+        "θ_6",
         r"$s_6 = -r_{11}(c_1c_{23}s_4 - s_1c_4) - r_{21}(s_1c_{23}s_4 + c_1c_4) + "
         r"r_{31}(s_{23}s_4)$, $c_6 = r_{11}[(c_1c_{23}c_4 + s_1s_4)c_5 - c_1s_{23}s_5] + "
         r"r_{21}[(s_1c_{23}c_4 - c_1s_4)c_5 - s_1s_{23}s_5] - r_{31}(s_{23}c_4c_5 + c_{23}s_5)$",

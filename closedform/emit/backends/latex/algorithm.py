@@ -10,12 +10,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations, groupby, permutations
+from itertools import combinations, groupby
 from typing import Any
 
 import sympy as sp
 
 from closedform.emit.backends.latex.formulas import FITS, measure
+from closedform.emit.backends.latex.inequalities import inequalities
+from closedform.emit.backends.latex.listing import Line, merged, unless
 from closedform.emit.backends.latex.names import is_word, program_name
 from closedform.emit.backends.latex.sheet import Sheet
 from closedform.model.functions import (
@@ -45,18 +47,10 @@ STATED = 3
 """A condition with more equations than that is given in words."""
 ANGLES = ("alpha", "gamma", "delta", "eta", "zeta", "mu", "nu", "xi", "chi", "omega")
 """Letters for angles of which a lemma has named the sine and the cosine."""
+FACTORS = "factors"
+"""The result of ``singularities``."""
 LETTERS = "kwgvqm"
 """Letters for quantities whose name is a word; the first that the derivation does not use."""
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line of the algorithm, how deep it stands, and a remark."""
-
-    text: str
-    depth: int = 0
-    remark: str = ""
-    kind: str = ""
 
 
 @dataclass(frozen=True)
@@ -80,6 +74,8 @@ class Algorithm:
     function: Function
     means: Mapping[sp.Symbol, sp.Expr]
     model: Algorithm | None = None
+    letters: Mapping[sp.Symbol, str] = field(default_factory=dict)
+    """Names that are written as the lemma that made them writes them."""
     known: dict[sp.Basic, sp.Basic] = field(default_factory=dict)
     """What is printed in place of a name."""
     names: dict[sp.Symbol, str] = field(default_factory=dict)
@@ -103,6 +99,8 @@ class Algorithm:
             self.known |= self.model.known
             self.names |= self.model.names
             self.printed |= self.model.printed
+        unneeded = self.letters.keys() & self.values.keys() - self.needed
+        self.names |= {s: self.letters[s] for s in unneeded}
         self.page.printer.names |= self.names
         self.means = {**self.means, **self._pairs()}
         for symbol in self.values:
@@ -144,7 +142,9 @@ class Algorithm:
             return {}
         names = {str(s.name): s for s in self.values if s in self.needed}
         joints = {label(j): j for j in inverse.unknowns}
-        letters = iter([g for g in ANGLES if g not in self.page.prose.names])
+        written = {w.latex for w in self.page.derivation.written.values()}
+        used = self.page.prose.names
+        letters = iter([g for g in ANGLES if g not in used and rf"\{g}" not in written])
         found: dict[sp.Symbol, sp.Expr] = {}
         for name, sine in names.items():
             cosine = names.get(f"c{name[1:]}")
@@ -167,7 +167,9 @@ class Algorithm:
         name = str(symbol.name)
         joints = {label(j.symbol) for j in self.page.derivation.joints}
         # an italic s_1 or c_1 beside the sine and the cosine of the joint would be read as these
+        letter = self._free_letter(symbol)
         word = is_word(name) or (name[0] in "sc" and name[1:] in joints)
+        word = word and not letter
         width = self.page.lines.width(value)
         once = self.uses.get(symbol, 0) <= 1 and width <= ONCE
         if bare.is_Atom or (word and (width <= INLINE or once) and not value.has(sp.Piecewise)):
@@ -177,11 +179,22 @@ class Algorithm:
             self.quantities[value] = symbol
         if value.is_Pow and value.exp == sp.S.Half:
             self.quantities[1 / value] = 1 / symbol
-        if word:
+        if letter:
+            self.names[symbol] = letter
+        elif word:
             self.names[symbol] = f"{self._letter}_{{{self._count() + 1}}}"
         elif shown := program_name(symbol, value) or self._shortened(symbol):
             self.names[symbol] = shown
         self.page.printer.names |= self.names
+
+    def _free_letter(self, symbol: sp.Symbol) -> str:
+        """The letter of the lemma for a name, unless something else is written so."""
+        letter = self.letters.get(symbol, "")
+        other = self.page.symbols - {symbol}
+        base = letter.partition("_{")[0]
+        if sum(n.partition("_{")[0] == base for n in self.letters.values()) == 1:
+            letter = base  # one leg needs no index
+        return "" if letter in {*self.names.values(), *map(self.page.math, other)} else letter
 
     @property
     def _letter(self) -> str:
@@ -219,8 +232,20 @@ class Algorithm:
         """The same with the names of quantities that occur in it; signs have the square 1."""
         powers = {p: p.base ** (p.exp % 2) for p in value.atoms(sp.Pow) if p.base in self.signs}
         value = value.xreplace({p: e for p, e in powers.items() if p.exp.is_Integer})
-        value = self.page.lines.tidy(value.xreplace(self._sums_of_angles(value)))
+        value = self._without_detours(value.xreplace(self._sums_of_angles(value)))
+        value = self.page.lines.tidy(value)
         return value.xreplace({e: s for e, s in self.quantities.items() if e != value})
+
+    def _without_detours(self, value: sp.Expr) -> sp.Expr:
+        """A sum without a name that stands beside the same terms with the other sign."""
+        if not value.is_Add:
+            return value
+        for term in value.args:
+            factor, name = term.as_coeff_Mul()
+            other = value - term + factor * self.found.get(name, name)
+            if other != 0 and len(sp.Add.make_args(other)) < len(value.args):
+                value = other
+        return value
 
     def _sums_of_angles(self, value: sp.Expr) -> dict[sp.Basic, sp.Expr]:
         """Sums that are the sine or the cosine of a sum of two joints."""
@@ -255,14 +280,18 @@ class Algorithm:
         branched: set[sp.Basic] = set(self.signs)
         common, each = list[tuple[str, Any, str]](), list[tuple[str, Any, str]]()
         body = self.function.body
+        told = self.model.function.body if self.model else ()
         for statement in body:
             parts = list(self._statement(statement))
+            if statement in told:  # with its conditions
+                parts = [part for part in parts if part[0] == "let"]
             used = {s for e in self._expressions(statement) for s in e.free_symbols}
             if isinstance(statement, Let | Bound) and used & branched:
                 shown = self.known.get(statement.symbol, statement.symbol)
                 branched |= {statement.symbol, *shown.free_symbols}
             (each if used & branched else common).extend(parts)
-        answer = [("let", text, "") for text in self._answers()]
+        kind = "return" if sp.true in self.outputs else "let"
+        answer = [(kind, text, "") for text in self._answers()]
         self.page.lines.room = FITS
         several = self.function.branches is not None and len(self.function.branches) > 1
         if not several:
@@ -292,9 +321,10 @@ class Algorithm:
             replaced = symbol in self.known and not self.is_pair(symbol)
             if fresh and not replaced:
                 self.printed.add(symbol)
-                left = self.known.get(symbol, symbol)
-                for text in self.texts(left, self.value(symbol)):
-                    yield "let", text, ""
+                left, value = self.known.get(symbol, symbol), self.value(symbol)
+                if self.page.math(left) != self.page.math(value):
+                    for text in self.texts(left, value):
+                        yield "let", text, ""
             if isinstance(statement, Bound):
                 yield "bound", symbol, self.page.prose(statement.meaning)
         elif isinstance(statement, Match):
@@ -332,32 +362,10 @@ class Algorithm:
         return self.inequalities([self.bound(s) for s in bounds])
 
     def inequalities(self, values: Sequence[sp.Expr]) -> list[str]:
-        """``|d| <= m <= a`` for m - d, m + d and a - m, and what is left one by one."""
-        math, left = self.page.math, list(dict.fromkeys(values))
-        texts: list[str] = []
-        order = {symbol: k for k, symbol in enumerate(self.values)}
-        pairs = [(*self.magnitude(v, w), v, w) for v, w in combinations(left, 2)]
-        pairs = [p for p in pairs if p[0] in order and p[1] != 0]
-        if pairs:
-            middle, apart, value, other = max(pairs, key=lambda p: order[p[0]])
-            above = next((e + middle for e in left if self.is_above(e, middle)), None)
-            text = rf"{math(sp.Abs(apart, evaluate=False))} \le {math(middle)}"
-            text += rf" \le {math(above)}" if above is not None else ""
-            texts.append(f"${text}$")
-            used = {value, other, *(() if above is None else (above - middle,))}
-            left = [e for e in left if e not in used]
-        for value, other in permutations(left, 2):
-            middle = next((m for m in order if m in value.free_symbols & other.free_symbols), None)
-            if middle and self.is_above(value, middle) and self.is_above(-other, middle):
-                text = rf"{math(middle - other)} \le {math(middle)} \le {math(value + middle)}"
-                texts.append(f"${text}$")
-                left = [e for e in left if e not in (value, other)]
-                break
-        return texts + [self.nonnegative(value) for value in left]
-
-    def is_above(self, value: sp.Expr, middle: sp.Expr) -> bool:
-        """Whether a bound is something without ``middle``, less ``middle``."""
-        return -middle in sp.Add.make_args(value) and not (value + middle).has(middle)
+        """The conditions that values are not negative, those about one name as a chain."""
+        bounds = {s.symbol for s in self.function.body if isinstance(s, Bound)}
+        open_ = [v for v in values if v in bounds or not v.is_nonnegative]
+        return inequalities(self.page, {s: k for k, s in enumerate(self.values)}, open_)
 
     def bound(self, symbol: sp.Symbol) -> sp.Expr:
         """What must not be negative: a short value, or the name of a longer one."""
@@ -366,23 +374,6 @@ class Algorithm:
         if not short and symbol in self.printed and symbol not in self.known:
             return symbol
         return value
-
-    def magnitude(self, value: sp.Expr, other: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-        """m and d of two bounds m - d and m + d; d has a positive term first."""
-        middle, apart = sp.expand((value + other) / 2), sp.expand((other - value) / 2)
-        first = self.page.printer._as_ordered_terms(apart)[0] if apart.is_Add else apart
-        if _is_negative(first):
-            apart = -apart
-        return middle, apart
-
-    def nonnegative(self, value: sp.Expr) -> str:
-        """The condition that a value is not negative: ``a <= b`` for ``b - a``."""
-        math = self.page.math
-        less = [-t for t in sp.Add.make_args(value) if t.as_coeff_Mul()[0].is_negative]
-        more = [t for t in sp.Add.make_args(value) if not t.as_coeff_Mul()[0].is_negative]
-        if less and more:
-            return rf"${math(sp.Add(*less))} \le {math(sp.Add(*more))}$"
-        return rf"${math(value)} \ge 0$"
 
     def texts(self, left: Any, value: Any) -> list[str]:
         """Equations as formulas in the text, each in one piece."""
@@ -402,6 +393,11 @@ class Algorithm:
         rows = []
         for array in self.function.outputs:
             shown = [self.shown(next(entries)) for _ in range(array.size)]
+            if shown == [sp.true]:
+                rows.append(r"\textbf{return} true")
+                continue
+            if array.name == FACTORS:  # the section on the singular set lists them
+                continue
             rows += self.parts_first(whole(self.page.array(array, shown, self.function.entries)))
         return rows
 
@@ -414,17 +410,27 @@ class Algorithm:
                 text = ", ".join(self.conditions([symbol for _, symbol, _ in found]))
                 remarks = dict.fromkeys(remark for *_, remark in found)
                 remark = "; ".join(remarks) if len(remarks) == 1 else ""
-                done.append(Line(unless(text, "unreachable"), depth, remark))
+                if text:
+                    done.append(Line(unless(text, self.otherwise("unreachable")), depth, remark))
                 continue
             for kind, text, remark in group:
+                if kind == "return":
+                    done.append(Line(text, depth))
+                    continue
                 wide = measure(done[-1].text + text) > FITS - 14 - 2 * depth if done else True
                 if kind == "let" and done and done[-1].kind == "let" and not wide:
                     done[-1] = Line(rf"{done[-1].text},\quad {text}", depth, "", "let")
                 elif kind == "let":
                     done.append(Line(text, depth, "", "let"))
                 else:
-                    done.append(Line(unless(text, STATUS[kind]), depth, remark))
+                    done.append(Line(unless(text, self.otherwise(STATUS[kind])), depth, remark))
         return done
+
+    def otherwise(self, status: str) -> str:
+        """What a function answers where a condition fails: a status, no number, or no."""
+        if self.function.has_status:
+            return rf"\textsc{{{status}}}"
+        return r"\textbf{return} false" if sp.true in self.outputs else "NaN"
 
     # Special cases
 
@@ -553,31 +559,6 @@ class Algorithm:
         )
 
 
-def _is_negative(term: sp.Expr) -> bool:
-    return bool(term.as_coeff_Mul()[0].is_negative)
-
-
-def unless(condition: str, status: str) -> str:
-    return rf"\textbf{{unless}} {condition}: \textsc{{{status}}}"
-
-
-def merged(lines: Sequence[tuple[str, Any, str]]) -> list[tuple[str, Any, str]]:
-    """Neighbouring bounds together, behind the names that are made between them."""
-    done: list[tuple[str, Any, str]] = []
-    waiting: list[tuple[str, Any, str]] = []
-    last = max((k for k, line in enumerate(lines) if line[0] == "bound"), default=-1)
-    for k, line in enumerate(lines):
-        if line[0] == "bound":
-            waiting.append(line)
-            bounded = any(other[0] == "bound" for other in lines[k + 1 : k + 3])
-            if k == last or not bounded:
-                done += waiting
-                waiting = []
-        else:
-            done.append(line)
-    return done
-
-
 def whole(equations: Sequence[tuple[str, str]]) -> list[str]:
     """Equations as formulas in the text; what was broken into lines is one formula again."""
     texts: list[str] = []
@@ -591,4 +572,4 @@ def whole(equations: Sequence[tuple[str, str]]) -> list[str]:
 
 STATUS = {"unless": "unreachable", "invalid": "invalid"}
 
-__all__ = ["Algorithm", "Case", "Line", "whole"]
+__all__ = ["Algorithm", "Case", "whole"]

@@ -27,6 +27,7 @@ from closedform.emit.backends.latex.equations import (
     runs,
 )
 from closedform.emit.backends.latex.inverse import Told
+from closedform.emit.backends.latex.listing import room
 from closedform.emit.backends.latex.prose import (
     escape,
     mixed,
@@ -42,10 +43,19 @@ from closedform.proof.prove import Proof
 
 __all__ = ["Page", "document"]
 
-BARE: Mapping[str, Any] = {"blocks": [], "lines": [], "cases": [], "roundings": [], "after": ""}
+BARE: Mapping[str, Any] = {
+    "blocks": [],
+    "lines": [],
+    "room": 0,
+    "cases": [],
+    "roundings": [],
+    "after": "",
+}
 """A function without a listing."""
 LISTED = 3
 """More equations than this that only name a symbol, such as lengths, are a list without numbers."""
+PROPER = re.compile(r"[A-Z]\b|Jacobian|Denavit|[A-Z]{2}")
+"""What keeps its capital in the index: names, and letters of the figure."""
 PARTS = 12
 """The smallest part of half a turn that a default is recognised as."""
 
@@ -67,13 +77,16 @@ class Page(Sheet):
         if function.name not in self.algorithms:
             model = self.model(function)
             means = {n: m for s in self.derivation.solved for n, m in s.lemma.means.items()}
+            own = [s.lemma for s in self.derivation.solved if s.function == function.name]
             for inverse in self.derivation.inverses:
                 if inverse.function == function.name:
                     means |= inverse.rank.meaning
                     for link in inverse.links:
                         means |= link.lemma.means if link.lemma else {}
+                        own += [link.lemma] if link.lemma else []
+            letters = {s: letter for lemma in own for s, letter in lemma.letters.items()}
             earlier = self.algorithm(model) if model else None
-            self.algorithms[function.name] = Algorithm(self, function, means, earlier)
+            self.algorithms[function.name] = Algorithm(self, function, means, earlier, letters)
         algorithm = self.algorithms[function.name]
         self.printer.names |= algorithm.names
         return algorithm
@@ -172,11 +185,13 @@ class Page(Sheet):
     def listing(self, function: Function) -> dict[str, Any]:
         """The lines of a function."""
         algorithm = self.algorithm(function)
+        lines = algorithm.lines()
         return {
             "after": self.after(function, algorithm),
             "roundings": algorithm.roundings(),
             "blocks": [],
-            "lines": algorithm.lines(),
+            "lines": lines,
+            "room": room(lines),
             "cases": algorithm.cases(),
         }
 
@@ -208,9 +223,10 @@ class Page(Sheet):
             return {}
         names = derivation.singularities or ("factor",)
         entries = list(enumerate(e for a in found.outputs for e in a.entries))
+        algorithm = self.algorithm(found) if found.body else None
         rows = {
             kind: [
-                (escape(names[k % len(names)]), formulas([f"{self.math(e)} = 0"]))
+                (self.named_set(names[k % len(names)]), formulas([self.vanishing(e, algorithm)]))
                 for k, e in entries
                 if (names[k % len(names)] in derivation.poles) == poles
             ]
@@ -219,6 +235,17 @@ class Page(Sheet):
         arguments = ", ".join(escape(a.name) for a in found.inputs)
         listing = self.listing(found) if found.body else BARE
         return {**rows, **listing, "name": found.name, "arguments": arguments}
+
+    def named_set(self, name: str) -> str:
+        """The name of a singular set, or nothing if it is the equation itself."""
+        return "" if "=" in name else f"{self.prose(name)}: "
+
+    def vanishing(self, factor: sp.Expr, algorithm: Algorithm | None) -> str:
+        """``B_11 = rho = 0`` for a factor with a name of its own."""
+        shown = self.math(algorithm.shown(factor)) if algorithm else self.math(factor)
+        own = self.math(factor)
+        name = f"{own} = " if factor.is_Symbol and own != shown else ""
+        return f"{name}{shown} = 0"
 
     def outputs(self, function: Function) -> list[Equation]:
         self.lines.clear()
@@ -229,7 +256,10 @@ class Page(Sheet):
 def indexed(title: str) -> str:
     """The entry of a step in the index: ``inverse!the elbow`` for "Inverse: the elbow"."""
     escaped = re.sub(r'(["@|!])', r'"\1', escape(title))
-    return "!".join(part.strip()[:1].lower() + part.strip()[1:] for part in escaped.split(":"))
+    return "!".join(
+        part if PROPER.match(part) else part[:1].lower() + part[1:]
+        for part in map(str.strip, escaped.split(":"))
+    )
 
 
 def default(value: sp.Rational) -> str:
@@ -289,6 +319,6 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
     symbols.require_distinct(derivation, page.math, legend, page.printer.names)
     return context | {
         "legend": ",\\quad ".join(map(" = ".join, legend)),
-        "symbols": symbols.table(derivation, page.numbers, text),
+        "symbols": symbols.table(derivation, page.numbers, text, page.math),
         "theorems": lemmas.context(lemmas.lemmas_of(derivation), {}),
     }

@@ -77,11 +77,12 @@ def context(shares: Sequence[Chapter]) -> dict[str, Any]:
 
 
 def _paper(found: PaperErrata, chapters: Sequence[Chapter]) -> dict[str, Any]:
+    own = [c for c in chapters if c.paper == found.paper]
     return {
         "title": escape(found.paper.title),
         "cited": bibliography.cited(found.paper),
         "verdicts": ", ".join(f"{n} {kind}" for kind, n in found.verdicts().items() if n),
-        "entries": [_entry(e, chapters) for e in found.entries],
+        "entries": [_entry(e, own) for e in found.entries],
     }
 
 

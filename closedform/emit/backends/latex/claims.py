@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from closedform.emit.backends.latex.equations import reference
-from closedform.emit.backends.latex.prose import escape, mixed
+from closedform.emit.backends.latex.prose import escape, mixed, quoted
 from closedform.emit.errata import Entry, gathered, part
 from closedform.model.claims import HOLDS, PROVED_UNDER
 from closedform.model.derivation import Derivation, Step
@@ -57,7 +57,7 @@ class Claims:
         steps = self.derivation.steps
         return {
             "where": escape(claim.where),
-            "label": escape(claim.label),
+            "label": quoted(claim.label),
             "step": next((k for k, s in enumerate(steps, 1) if derives(s, claim.label)), 0),
             "equations": self.equations_of(claim.label),
             "verdict": claim.kind if claim.kind in HOLDS else rf"\textbf{{{claim.kind}}}",

@@ -16,10 +16,12 @@ import sympy as sp
 
 from closedform.algebra.formulas import PRINTED, formula
 from closedform.emit.backends.latex.algorithm import Algorithm, whole
+from closedform.emit.backends.latex.equations import canonical
 from closedform.emit.backends.latex.formulas import FITS, measure
-from closedform.emit.backends.latex.lemmas import label
+from closedform.emit.backends.latex.lemmas import label, titled
+from closedform.emit.backends.latex.listing import room
 from closedform.emit.backends.latex.names import MATRIX_ENTRY
-from closedform.emit.backends.latex.prose import escape, loosen, upright
+from closedform.emit.backends.latex.prose import escape, loosen, mixed, upright
 from closedform.emit.backends.latex.sheet import Sheet, blocks
 from closedform.model.derivation import Solved
 from closedform.model.functions import (
@@ -31,7 +33,7 @@ from closedform.model.functions import (
     real,
     substitute,
 )
-from closedform.model.inverse import Degenerate, Inverse, Link, Rank
+from closedform.model.inverse import Combination, Degenerate, Inverse, Link, Rank
 from closedform.model.lemma import Lemma
 from closedform.proof.inverse import InverseResult
 
@@ -52,7 +54,7 @@ class Solving:
 
 def solvings(inverse: Inverse, solved: Sequence[Solved]) -> list[Solving]:
     """The lemmas of an inverse, in their order."""
-    if isinstance(inverse.glue, Rank):
+    if isinstance(inverse.glue, Rank) or not solved:
         return [
             Solving(link.lemma, link.lemma.equations, tuple(link.lemma.solution), link)
             for link in inverse.links
@@ -93,7 +95,10 @@ class Told:
             "after": self.after,
             "stages": [self.stage(k, s) for k, s in enumerate(self.solvings, 1)],
             "order": self.order(),
+            "several": sum(len(s.unknowns) for s in self.solvings) > 1,
+            "joints": blocks(self.joints()),
             "lines": lines,
+            "room": room(lines),
             "cases": cases,
             "roundings": self.algorithm.roundings(),
             "branches": [
@@ -130,6 +135,14 @@ class Told:
         ]
         return ", then ".join(f"${g}$" for g in groups)
 
+    def joints(self) -> list[tuple[str, str]]:
+        """The joints in the unknowns of the steps, where these are others."""
+        glue = self.inverse.glue if self.inverse else None
+        if not isinstance(glue, Combination):
+            return []
+        found = [(u, self.named(e)) for u, e in glue.joints.items()]
+        return [r for u, e in found if u != e for r in self.page.equations(u, e)]
+
     def stage(self, number: int, solving: Solving) -> dict[str, Any]:
         """One lemma: from which equations, what it gives, where it degenerates."""
         page = self.page
@@ -146,12 +159,14 @@ class Told:
             "unknowns": enumeration([f"${page.math(u)}$" for u in solving.unknowns]),
             "from": self.origin(shown, solving),
             "blocks": blocks(rows),
-            "lemma": page.prose(solving.lemma.name),
+            "lemma": titled(solving.lemma.name),
             "label": label(solving.lemma.name),
             "matrix": self.matrix(shown),
             "statement": [] if earlier else statement(solving.lemma),
+            **self.roles(solving),
             "count": self.count(solving),
-            "solution": blocks(self.solution(solving)),
+            "vectors": mixed(solving.lemma.vectors),
+            "solution": [] if solving.lemma.vectors else blocks(self.solution(solving)),
             "exists": self.exists(solving),
             "degenerate": self.degenerate(solving),
         }
@@ -179,7 +194,7 @@ class Told:
 
     def equation(self, equation: sp.Expr, solving: Solving) -> list[tuple[str, str]]:
         """An equation with the unknowns on its left side."""
-        terms = sp.Add.make_args(self.named(equation))
+        terms = sp.Add.make_args(self.without_detours(self.named(equation)))
         held = set(solving.unknowns)
         unknown = [t for t in terms if t.free_symbols & held]
         rest = [-t for t in terms if not t.free_symbols & held]
@@ -190,6 +205,14 @@ class Told:
         if measure(text) > FITS * 0.6:
             return self.page.equations("0", self.named(equation))
         return self.page.equations(text, self.page.lines.tidy(sp.Add(*rest)))
+
+    def without_detours(self, value: sp.Expr) -> sp.Expr:
+        """The same without a name, such as that of a difference, where it is shorter."""
+        for name in sorted(value.free_symbols & self.algorithm.values.keys(), key=str):
+            other = value.xreplace({name: self.algorithm.value(name)})
+            if self.page.lines.width(other) < self.page.lines.width(value):
+                value = other
+        return value
 
     def named(self, value: sp.Expr) -> sp.Expr:
         """An expression in the names that the algorithm prints."""
@@ -280,7 +303,8 @@ class Told:
         number = NUMBERS[n] if n < len(NUMBERS) else str(n)
         before = self.solvings[: self.solvings.index(solving)]
         used = {s for other in before for s in self.own_symbols(other)}
-        signs = [s for s in self.algorithm.signs if s in self.own_symbols(solving) - used]
+        own = (self.own_symbols(solving) | set(lemma.signs)) - used
+        signs = [s for s in self.algorithm.signs if s in own]
         told = enumeration([rf"${self.page.math(s)} = \pm 1$" for s in signs])
         text = f"There {'are' if n != 1 else 'is'} {number} solution{'s' * (n != 1)}"
         if told and n > 1:
@@ -291,10 +315,9 @@ class Told:
 
     def own_symbols(self, solving: Solving) -> set[sp.Basic]:
         """The symbols of a solution and of the names that the lemma made for it."""
+        made_by = solving.link.body if solving.link else solving.lemma.body
         body = {
-            s.symbol: s.value
-            for s in (solving.link.body if solving.link else solving.lemma.body)
-            if isinstance(s, Let | Bound)
+            s.symbol: s.value for s in made_by or self.function.body if isinstance(s, Let | Bound)
         }
         used = {s for e in solving.lemma.solution.values() for s in e.free_symbols}
         used |= {s for e in solving.lemma.means for s in e.free_symbols}
@@ -302,6 +325,31 @@ class Told:
             if symbol in used:
                 used |= body[symbol].free_symbols
         return used
+
+    def roles(self, solving: Solving) -> dict[str, Any]:
+        """What the letters of the lemma stand for here; what is wide, on lines of its own."""
+        page, inline, rows = self.page, list[str](), list[tuple[str, str]]()
+        values: list[sp.Expr] = []
+        for letter, value in solving.lemma.roles:
+            if isinstance(value, str):
+                text = value
+            elif isinstance(value, sp.MatrixBase):
+                entries = [self.named(e) for e in value]
+                values += entries
+                text = f"({', '.join(map(page.math, entries))})"
+            else:
+                values.append(self.named(sp.sympify(value, strict=True)))
+                text = page.math(values[-1])
+            if canonical(text) == canonical(letter):
+                continue
+            if measure(letter + text) <= FITS / 3:
+                inline.append(f"${letter} = {text}$")
+            else:
+                rows.append((letter, text))
+        return {
+            "roles": enumeration(inline) if inline else "",
+            "role_blocks": blocks([*rows, *self.made_before(values)]),
+        }
 
     def solution(self, solving: Solving) -> list[tuple[str, str]]:
         """What the lemma gives: angles, or their sines and cosines."""
@@ -311,7 +359,7 @@ class Told:
         means = solving.link.means if solving.link else solving.lemma.means
         for unknown in solving.unknowns:
             pair = [s for s in means if isinstance(means[s], sp.sin | sp.cos)]
-            pair = [s for s in pair if means[s].args[0] == unknown and s in self.algorithm.values]
+            pair = [s for s in pair if means[s].args[0] == unknown and s in algorithm.needed]
             if pair:
                 self.told |= set(pair)
                 for s in pair:
@@ -352,7 +400,8 @@ class Told:
 
     def exists(self, solving: Solving) -> str:
         """The conditions under which the lemma has solutions."""
-        own = self.own_symbols(solving)
+        before = self.solvings[: self.solvings.index(solving)]
+        own = self.own_symbols(solving) - {s for o in before for s in self.own_symbols(o)}
         bounds = [s for s in self.function.body if isinstance(s, Bound) and s.symbol in own]
         if solving.link:
             bounds += [s for s in solving.link.body if isinstance(s, Bound) and s not in bounds]

@@ -26,6 +26,12 @@ def label(name: str) -> str:
     return f"lemma:{key(name)}" if name in theorems() else ""
 
 
+def titled(name: str) -> str:
+    """The name of a lemma in a sentence; some are formulas."""
+    theorem = theorems().get(name)
+    return mixed(theorem.title) if theorem and theorem.title else escape(name)
+
+
 def key(name: str) -> str:
     """The name of a lemma in labels: ``two-link-arm``."""
     return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")

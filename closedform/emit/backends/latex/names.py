@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.emit.backends.latex.formulas import Printer, measure
-from closedform.emit.backends.latex.prose import GREEK, symbol_name
+from closedform.emit.backends.latex.prose import GREEK, symbol_name, written_name
 from closedform.model.derivation import Derivation
 from closedform.model.functions import real
 
@@ -124,3 +124,10 @@ def conventional_names(derivation: Derivation) -> dict[sp.Symbol, str]:
     for k, angle in enumerate(dict.fromkeys(angles), 1):
         names[angle] = r"\varphi" if len(angles) == 1 else rf"\varphi_{{{k}}}"
     return names
+
+
+def coordinate_name(derivation: Derivation, coordinate: str) -> str:
+    """The LaTeX of a coordinate of the task, which is also that of the target for it."""
+    targets = conventional_names(derivation)
+    found = (n for s, n in targets.items() if s.name == f"x_{coordinate}")
+    return next(found, written_name(derivation, coordinate))

@@ -62,9 +62,16 @@ TOKEN = re.compile(
     r"|(\+/-|<=|>=|!=|[*<>×])|(.)"
 )
 SIGNS = {"+/-": r"\pm ", "<=": r"\le ", ">=": r"\ge ", "!=": r"\ne ", "*": r"\,", "×": r"\times "}
+ENGLISH = re.compile(rf"(?!(?:{'|'.join(sorted(GREEK))})$)[a-z]{{3,}}")
+"""The name of a symbol that is a word of a sentence."""
 GREEK_NAME = re.compile(rf"(?:{'|'.join(sorted(GREEK))})\d*(?:_\w+)?")
 WORD = r"\\mathrm\{[A-Za-z]{2,}\}(?:_\{(?:[^{}]|\{[^{}]*\})*\})?"
 """A symbol that is a word; as a factor it needs a space."""
+ARTICLE = re.compile(r"\s+(?!(?:of|is|and|has|vanishes)\b)[a-z]")
+"""What follows an article at the start of a sentence, and not the matrix A."""
+STATUS = re.compile(r"\b(?:OK|UNREACHABLE|SINGULAR|INVALID|BRANCHES)\b")
+INDEXED = re.compile(r"(?<![A-Za-z0-9_\\])(\d?[A-Za-zα-ωϕ])_(\{\w+\}|\d+|[a-z])(?![A-Za-z0-9_])")
+"""A letter with an index, in a quotation."""
 VARIABLE = r"\\(?:mathrm|mathit|sigma|theta|alpha|beta|psi|kappa|sqrt|frac|sin|cos)\b"
 
 
@@ -130,8 +137,22 @@ def mixed(text: str) -> str:
             stiff = True
         formula = rf"$\displaystyle {formula if stiff else loosen(formula)}$"
         formula = rf"\fit{{{formula}}}" if stiff else formula
-        parts[i] = formula if i % 2 else escape(part)
+        parts[i] = formula if i % 2 else quoted(part)
     return "".join(parts)
+
+
+def quoted(text: str) -> str:
+    """Plain text in which a letter with an index, as in ``theta_2``, is a formula."""
+    parts = INDEXED.split(text)
+    letters = [
+        "".join(f"{UNICODE[c]} " if c in UNICODE else c for c in part.strip("{}")).strip()
+        for part in parts
+    ]
+    return "".join(
+        f"${letters[i]}_{{{letters[i + 1]}}}$" if i % 3 else escape(part)
+        for i, part in enumerate(parts)
+        if i % 3 != 2
+    )
 
 
 STIFF = 36
@@ -168,16 +189,17 @@ class Prose:
         names = self.names = {str(s) for s in symbols} | set(derivation.task)
         self.derivation = derivation
         self.known = GREEK | set(SYMBOL_NAMES)
-        self.known |= set(derivation.written)
+        # in a sentence, "elbow" and "wrist" are words, also where a symbol has this name
+        self.known |= {n for n in derivation.written if not ENGLISH.fullmatch(n)}
         self.known |= {n for n in names - {"a", "A", "I"} if len(n) < 3 or re.search(r"\d|_", n)}
 
     def __call__(self, text: str) -> str:
         parts = PROSE.split(text)
         for i, part in enumerate(parts):
             if i % 2 == 0:
-                parts[i] = escape(part)
-            elif part == "A" and not re.search(r"(^|[.;?!]\s+)$", "".join(parts[:i])):
-                parts[i] = "$A$"  # the article would be at the start of a sentence
+                parts[i] = STATUS.sub(_status, escape(part))
+            elif part == "A" and not (starts(parts[:i]) and ARTICLE.match("".join(parts[i + 1 :]))):
+                parts[i] = "$A$"
             else:
                 parts[i] = self._part(part)
         return "".join(parts)
@@ -186,12 +208,16 @@ class Prose:
         """A formula, or text; parentheses with words in them may contain formulas."""
         if self._is_formula(text):
             return f"${self.formula(text)}$"
-        return f"({self(text[1:-1])})" if re.fullmatch(PAREN, text) else escape(text)
+        if re.fullmatch(PAREN, text):
+            return f"({self(text[1:-1])})"
+        return STATUS.sub(_status, escape(text))
 
     def _is_symbol(self, name: str) -> bool:
         return name in self.known or bool(GREEK_NAME.fullmatch(name))
 
     def _is_formula(self, text: str) -> bool:
+        if re.fullmatch(r"\d+(\.\d+)?e[+-]?\d+", text):
+            return True
         names = re.findall(rf"(?<![\w.]){NAME}", text)
         words = [n for n in names if len(n) > 1 and n[1] != "_" and not self._is_symbol(n)]
         if re.fullmatch(PAREN, text) and any(not re.fullmatch(FUNCTIONS, n) for n in words):
@@ -215,13 +241,25 @@ class Prose:
                 inner = self.formula(re.sub(r"^[({](.*)[)}]$", r"\1", power))
                 done.append(f"^{{{inner}}}")
             elif number:
-                done.append(re.sub(r"e\+?(-?)0*(\d+)", r"\\cdot 10^{\1\2}", number))
+                power_of_ten = re.sub(r"e\+?(-?)0*(\d+)", r"\\cdot 10^{\1\2}", number)
+                done.append(power_of_ten.removeprefix(r"1\cdot "))
             elif name:
                 short = self._is_symbol(name) or len(name) == 1 or name[1] == "_"
+                short = short or name in self.derivation.written
                 done.append(written_name(self.derivation, name) if short else rf"\mathrm{{{name}}}")
             else:
                 done.append(SIGNS.get(sign, sign) or IN_FORMULA.get(other, other))
         return "".join(done)
+
+
+def starts(before: list[str]) -> bool:
+    """Whether a sentence starts after what was written."""
+    return re.search(r"(^|[.;?!]\s+)$", "".join(before)) is not None
+
+
+def _status(found: re.Match[str]) -> str:
+    word = found[0]
+    return rf"\texttt{{{word}}}" if word == "BRANCHES" else rf"\textsc{{{word.lower()}}}"
 
 
 def symbols_declared(derivation: Derivation) -> list[sp.Symbol]:

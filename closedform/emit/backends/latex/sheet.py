@@ -10,7 +10,12 @@ import sympy as sp
 
 from closedform.emit.backends.latex.equations import Numbered
 from closedform.emit.backends.latex.formulas import FITS, Printer, measure
-from closedform.emit.backends.latex.names import Quantities, conventional_names, element
+from closedform.emit.backends.latex.names import (
+    Quantities,
+    conventional_names,
+    coordinate_name,
+    element,
+)
 from closedform.emit.backends.latex.prose import Prose, upright, written_name
 from closedform.emit.backends.latex.wide import Equation, Lines
 from closedform.model.derivation import Derivation
@@ -72,6 +77,8 @@ class Sheet:
         name = self.written(array.name)
         if len(array.shape) > 1:
             shape = array.shape[-2:]
+            if array.size == 1:  # a number needs no brackets
+                return self.equations(name, entries[0]) if self.math(entries[0]) != name else []
             parts = sp.Matrix(array.size // sp.prod(shape), sp.prod(shape), entries)
             marks = [f"^{{({k + 1})}}" if len(array.shape) > 2 else "" for k in range(parts.rows)]
             return [
@@ -79,12 +86,33 @@ class Sheet:
                 for k, mark in enumerate(marks)
                 for equation in self.equations(name + mark, parts.row(k).reshape(*shape))
             ]
-        left = [element(name, str(k + 1)) if array.shape else name for k in range(array.size)]
-        for known, coordinates in (("q", self.derivation.actuated), ("x", self.derivation.task)):
-            if array.name == known and len(coordinates) == array.size:
-                left = [self.written(str(j)) for j in coordinates]
-        left = [self.math(n) for n in names] or left
-        return [e for n, v in zip(left, entries, strict=True) for e in self.equations(n, v)]
+        left = [self.math(n) for n in names] or self.coordinates(array, name)
+        return [
+            e
+            for n, v in zip(left, entries, strict=True)
+            if self.math(v) != n  # a name that is returned needs no line
+            for e in self.equations(n, v)
+        ]
+
+    def coordinates(self, array: Array, name: str) -> list[str]:
+        """What the entries of a vector are called: joints, coordinates, entries of a matrix."""
+        task = [coordinate_name(self.derivation, t) for t in self.derivation.task]
+        joints = [self.written(str(j)) for j in self.derivation.actuated]
+        for known, names in (("q", joints), ("x", task), ("p", task)):
+            if array.name == known and len(names) == array.size:
+                return names
+        arguments = (a for f in self.derivation.functions for a in f.inputs)
+        alike = (a for a in arguments if (a.name, a.shape) == (array.name, array.shape))
+        if array.shape and (same := next(alike, None)):
+            return [self.math(e) for e in same.entries]
+        if array.name == "det":
+            return [r"\det J"]
+        whole = {left: value for step in self.derivation.steps for left, value in step.shown}
+        if not array.shape or (array.size == 1 and name in whole):
+            return [name]
+        diagonal = f"{name}_{{11}}" in whole or isinstance(whole.get(name), sp.MatrixBase)
+        indices = [f"{k}{k}" if diagonal else str(k) for k in range(1, array.size + 1)]
+        return [element(name, k) for k in indices]
 
     def equations(self, lhs: Any, value: Any) -> list[Equation]:
         """A value as one equation or, if it is too wide, as several."""

@@ -22,6 +22,7 @@ from closedform.emit.backends.latex.equations import (
     skeleton,
     without_power,
 )
+from closedform.emit.backends.latex.names import coordinate_name
 from closedform.emit.backends.latex.prose import (
     Prose,
     symbols_declared,
@@ -125,7 +126,7 @@ def undefined(derivation: Derivation, numbers: Numbers, math: Printed) -> list[s
 
     ``math`` prints the sine and the cosine of a joint that was solved as such.
     """
-    rows = table(derivation, numbers, Prose(derivation))
+    rows = table(derivation, numbers, Prose(derivation), math)
     known = set(numbers.defined) | {canonical(form) for form, _ in rows}
     known |= {_form(derivation, s.name) for s in symbols_declared(derivation)}
     known |= {_form(derivation, str(s)) for f in derivation.functions for s in f.symbols}
@@ -137,14 +138,16 @@ def undefined(derivation: Derivation, numbers: Numbers, math: Printed) -> list[s
     )
 
 
-def table(derivation: Derivation, numbers: Numbers, prose: Prose) -> list[tuple[str, str]]:
+def table(
+    derivation: Derivation, numbers: Numbers, prose: Prose, math: Printed
+) -> list[tuple[str, str]]:
     """Symbols other than parameters and joints, with their meaning; not the entries of a matrix."""
     declared = {s.name for s in symbols_declared(derivation)}
     rows: dict[str, list[str]] = {}
     for name, written in derivation.written.items():
         if name not in declared:
             rows.setdefault(_form(derivation, name), []).append(prose(written.meaning))
-    for form, meaning in (*_inputs(derivation), *_signs(derivation)):
+    for form, meaning in (*_inputs(derivation, math), *_signs(derivation)):
         if form not in rows:
             rows[form] = [meaning]
     taken = {_form(derivation, name) for name in declared}
@@ -170,13 +173,13 @@ def _form(derivation: Derivation, name: str) -> str:
     return without_power(canonical(written_name(derivation, name)))
 
 
-def _inputs(derivation: Derivation) -> Iterator[tuple[str, str]]:
+def _inputs(derivation: Derivation, math: Printed) -> Iterator[tuple[str, str]]:
     """The coordinates of the task, and the entries of the targets."""
     matrices = [a for f in derivation.functions for a in f.inputs if len(a.shape) > 1]
     entries = {str(e) for a in matrices for e in a.entries}
     for name in derivation.task:
         if name not in entries:
-            yield _form(derivation, name), "task coordinate"
+            yield canonical(coordinate_name(derivation, name)), "task coordinate"
     for function in derivation.functions:
         joints = {j.symbol for j in derivation.joints}
         for array in function.inputs:
@@ -188,7 +191,7 @@ def _inputs(derivation: Derivation) -> Iterator[tuple[str, str]]:
                 continue
             of = "the target" if function.has_status else f"${whole}$"
             for entry in array.entries:
-                form = _form(derivation, str(entry))
+                form = without_power(canonical(math(entry)))
                 yield form, f"coordinate of {of}" if form != whole else "argument"
 
 
@@ -197,7 +200,8 @@ def _summaries(derivation: Derivation) -> Iterator[tuple[str, str]]:
     for function in reversed(derivation.functions):
         for array in function.outputs:
             name = canonical(function.equation) or _form(derivation, array.name)
-            yield name, function.summary.partition(". ")[0].partition(";")[0].rstrip(".")
+            sentence = re.split(r"\. |;(?![^(]*\))", function.summary)[0]
+            yield name, sentence.rstrip(".")
 
 
 def _signs(derivation: Derivation) -> Iterator[tuple[str, str]]:

@@ -1,0 +1,49 @@
+"""The lines of an algorithm on a page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+UNBROKEN = 12
+"""An algorithm with more lines than this may begin at the end of a page."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the algorithm, how deep it stands, and a remark."""
+
+    text: str
+    depth: int = 0
+    remark: str = ""
+    kind: str = ""
+
+
+def room(lines: Sequence[Line]) -> int:
+    """How many lines of a page an algorithm needs, so that only a long one is broken."""
+    return 2 * min(len(lines), UNBROKEN) + 3
+
+
+def unless(condition: str, status: str) -> str:
+    return rf"\textbf{{unless}} {condition}: {status}"
+
+
+def merged(lines: Sequence[tuple[str, Any, str]]) -> list[tuple[str, Any, str]]:
+    """Neighbouring bounds together, behind the names that are made between them."""
+    done: list[tuple[str, Any, str]] = []
+    waiting: list[tuple[str, Any, str]] = []
+    last = max((k for k, line in enumerate(lines) if line[0] == "bound"), default=-1)
+    for k, line in enumerate(lines):
+        if line[0] == "bound":
+            waiting.append(line)
+            bounded = any(other[0] == "bound" for other in lines[k + 1 : k + 3])
+            if k == last or not bounded:
+                done += waiting
+                waiting = []
+        else:
+            done.append(line)
+    return done
+
+
+__all__ = ["Line", "merged", "room", "unless"]

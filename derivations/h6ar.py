@@ -2,7 +2,7 @@
 
 import sympy as sp
 from closedform.derivations.claims.h6ar import state
-from closedform.derivations.h6ar_free_turn import free_turn, turn_step, turned_by
+from closedform.derivations.h6ar_free_turn import as_published, free_turn, turn_step, turned_by
 from closedform.derivations.h6ar_mechanism import (
     ACCURACY,
     ELBOW,
@@ -137,8 +137,8 @@ d.step(
     "The paper gives this point twice: as the middle of the tips in (6), and by the averages of "
     "the angles in (7).  This model uses (7).  In (6) the links are shortened by the cosines of "
     "the half differences.  The difference of the two points is one side of a triangle with the "
-    "other sides e1 and e2 (f is the length of a fore-arm).  So it is at most e1 + e2, which is of "
-    "second order.",
+    "other sides e_1 and e_2 (f is the length of a fore-arm).  So it is at most e_1 + e_2, which "
+    "is of second order.",
     {
         "(r, h)_I": invariant,
         "(r, h)_6": ((right + left) / 2).xreplace(halves),
@@ -147,8 +147,8 @@ d.step(
     },
     published=("(6)", "(7)"),
     proves=(
-        "The middle of the tips is (r, h)_6; the squared distance of both points is that of a "
-        "triangle with the sides e1 and e2; and the cosine of the angle between these sides is "
+        "The middle of the tips is that of (6); the squared distance of both points is that of a "
+        "triangle with the sides e_1 and e_2; and the cosine of the angle between these sides is "
         "the one used."
     ),
     equal=[
@@ -408,6 +408,7 @@ d.function(
 # Inverse
 
 turn_step(d, m)
+as_published(d, m)
 p = Program()
 length, base = wrist_given(p, m, cos(psi))
 p.determined(length, m.al, "the wrist links are stretched")

@@ -17,7 +17,7 @@ from closedform.derivations.h6ar_mechanism import (
 )
 from sympy import Rational, sqrt
 
-from closedform import Derivation, Program, choose, sign_of, used_up
+from closedform import Derivation, Program, choose, real, sign_of, used_up
 
 
 class Easing(NamedTuple):
@@ -174,4 +174,35 @@ def turn_step(d: Derivation, m: Dimensions) -> None:
         {r"\mathrm{drawn}": drawn, r"\mathrm{tilt}": tilt},
         proves="The rate of the tip, with the wrist turned along, is tilt along the upper arm.",
         equal=[(rate, tilt * pair(theta2A).unit)],
+    )
+
+
+def as_published(d: Derivation, m: Dimensions) -> None:
+    """Add the step with the paper's way to the elbow, and why the code takes another."""
+    d.write("theta3A", r"\theta_3^A", "angle of the virtual fore-arm against its upper arm")
+    d.write("L_3A", "L_{3A}")
+    elbow, L_3A = real("theta3A"), real("L_3A")
+    end = reach(m, pair(theta2A), pair(theta23A), L_2W, a_3W)
+    fore = sp.sqrt(L_2W**2 + a_3W**2)
+    cosines = 2 * m.L1 * (L_2W * sp.sin(elbow) + a_3W * sp.cos(elbow))
+    d.step(
+        "Inverse: the law of cosines",
+        "The virtual arm is a triangle too.  Its reach, squared, less the squares of its links is "
+        "L_3A, which holds the elbow alone.  The paper solves this by two arcsines, and takes the "
+        "shoulder from a quotient, eq. (14).  An arcsine has one value where there are two "
+        "elbows, and half its digits are lost where the arm is straight; a quotient does not tell "
+        "opposite directions apart.  So the code takes the lemma of the two-link arm instead: all "
+        "signs, and arctangents.",
+        {
+            "L_{3A}": cosines,
+            r"\theta_3^A": sp.asin(L_3A / (2 * m.L1 * fore)) - sp.asin(a_3W / fore),
+        },
+        published=("(13)",),
+        proves="The square of the reach is that of the links and L_3A.",
+        equal=[
+            (
+                end.dot(end) - m.L1**2 - L_2W**2 - a_3W**2,
+                cosines.xreplace({elbow: theta23A - theta2A}),
+            )
+        ],
     )

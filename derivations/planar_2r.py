@@ -195,23 +195,39 @@ d.solved += [
         - cos(theta1) * (py * (l1 + l2 * cos(theta2)) - px * l2 * sin(theta2)),
     ),
 ]
+r, D = real("r"), real("D")
+cosine = (r**2 - l1**2 - l2**2) / (2 * l1 * l2)
+by_the_law_of_cosines = d.step(
+    "Inverse: the law of cosines",
+    "The links and the line from the base to the hand form a triangle with the sides l1, l2 and "
+    "r.  The sum of the squares of x and y is l1^2 + l2^2 + 2 l1 l2 cos(theta2), which gives the "
+    "cosine of theta2.  The sine follows up to its sign, one for each elbow, and the angle from "
+    "both.  The paper stops here.",
+    {"r^2": px**2 + py**2, "D": cosine, r"\theta_2": atan2(sigma * sqrt(1 - D**2), D)},
+    published=("(3)",),
+    proves=(
+        "The square of the position is that of the law of cosines, and D is the cosine of theta2."
+    ),
+    equal=[
+        (position.dot(position), l1**2 + l2**2 + 2 * l1 * l2 * cos(theta2)),
+        (cosine.xreplace({r: sqrt(position.dot(position))}), cos(theta2)),
+    ],
+    uses=[by_geometry],
+)
 N, M = real("N", nonnegative=True), real("M", nonnegative=True)
+outer, inner = (l1 + l2) ** 2 - r**2, r**2 - (l1 - l2) ** 2
 with_names = Triangle(l1, l2, sigma, N, M)
 d.step(
     "Inverse: the elbow",
-    "The links and the line from the base to the hand form a triangle with the sides l1, l2 and "
-    "r.  N and M measure how far the hand is from the two boundaries of the workspace.  Near a "
-    "boundary the arctangent of their roots keeps the hand in place up to rounding, but the "
-    "textbook's sqrt(1 - D^2) loses half its digits or is not real.",
-    {
-        "r^2": px**2 + py**2,
-        "N": (l1 + l2) ** 2 - real("r") ** 2,
-        "M": real("r") ** 2 - (l1 - l2) ** 2,
-        r"\theta_2": with_names.elbow,
-        r"\alpha": with_names.base,
-    },
-    published=("(3)",),
-    uses=[by_geometry],
+    "The code takes another way, because near a boundary of the workspace D is nearly 1 or -1: "
+    "then 1 - D^2 has lost half the digits of the sine, or is negative by a rounding error.  N and "
+    "M measure how far the hand is from both boundaries.  They are 1 - D and 1 + D up to a common "
+    "factor, so the ratio of their roots is the tangent of half the angle, and it keeps the hand "
+    "in place up to rounding.",
+    {"N": outer, "M": inner, r"\theta_2": with_names.elbow, r"\alpha": with_names.base},
+    proves="N and M are 1 - D and 1 + D, each times twice the product of the lengths.",
+    equal=[(outer, 2 * l1 * l2 * (1 - cosine)), (inner, 2 * l1 * l2 * (1 + cosine))],
+    uses=[by_the_law_of_cosines],
 )
 d.step(
     "Inverse: the shoulder",

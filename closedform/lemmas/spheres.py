@@ -141,7 +141,7 @@ def three_spheres(
         dict(zip(unknowns, found, strict=True)),
         2,
         signs=(sigma,),
-        letters={size_v: r"|\mathbf c_3|", size_u: r"|\mathbf c_2|"},
+        letters={size_v: r"|\mathbf c_3|"},
         vectors=(
             r"The algorithm has the entries $E_{1i}$ and $E_{2i}$ of $\mathbf e_1$ and $\mathbf "
             r"e_2$.  It takes the part along $\mathbf e_1$ out of $\mathbf c_3$ twice, because "

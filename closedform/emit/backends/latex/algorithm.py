@@ -549,6 +549,8 @@ class Algorithm:
         # TeX breaks no line between two factors by itself
         product = self.page.math(scale).replace(r" \bigl(", r" \allowbreak \bigl(")
         where = rf"${first} \ll {product}$"
+        if scale == 0:  # a posture without rounding does not come here
+            where = "a limit, up to rounding"
         if rest:
             where += f", with {', '.join(rest)}"
         return Case(

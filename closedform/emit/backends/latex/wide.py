@@ -243,7 +243,8 @@ class Lines:
             widest, i, j = max(
                 (measure(c), -i, -j) for i, row in enumerate(cells) for j, c in enumerate(row)
             )
-            name = element(base, f"{1 - i}{1 - j}")
+            column = len(cells[0]) == 1
+            name = element(base, f"{1 - i}" if column else f"{1 - i}{1 - j}")
             if widest <= measure(name):
                 break
             named.append((-i, -j, name))

@@ -9,6 +9,7 @@ from closedform import (
     Chain,
     Derivation,
     Notation,
+    determinant,
     from_dh,
     polar,
     real,
@@ -55,8 +56,8 @@ d.step(
     "wrist.  It vanishes where the boom is vertical (shoulder), where it is drawn in so that the "
     "wrist is on the axis of the shoulder (boom), and where the axes 4 and 6 coincide (wrist).",
     {
-        r"\det J_{11}": arm.geometric[:3, :3].det(),
-        r"\det J_{22}": arm.geometric[3:, 3:].det(),
+        r"\det J_{11}": determinant(arm.geometric[:3, :3]),
+        r"\det J_{22}": determinant(arm.geometric[3:, 3:]),
     },
     proves=(
         "The last three joints do not move the centre of the wrist: their columns of the first "

@@ -193,6 +193,19 @@ def test_wrong_postures_are_explained() -> None:
         plot.mechanism(np)
 
 
+def test_links_of_a_spherical_mechanism_are_arcs_about_its_centre() -> None:
+    robot = import_module("closedform.generated.numpy.spherical_five_bar")
+    axes = plot.mechanism(robot, [1.9, 1.2], about="A0", labels=False, axes=False)
+    rods = [np.array(line.get_data_3d()) for line in axes.lines if line.get_linewidth() == 2.6]
+    assert len(rods) == 5  # two cranks, two rods and the strut, which is straight
+    curved = [rod for rod in rods if rod.shape[1] > 2]
+    assert len(curved) == 4
+    for rod in curved:
+        assert np.allclose(np.linalg.norm(rod, axis=0), 1, atol=1e-12)
+        plane = np.cross(rod[:, 0], rod[:, -1])
+        assert np.allclose(plane @ rod, 0, atol=1e-12)
+
+
 def test_a_hand_on_a_surface_has_no_section() -> None:
     robot = import_module("closedform.generated.numpy.spherical_five_bar")
     assert fits(robot, "conditioning")

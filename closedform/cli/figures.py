@@ -59,8 +59,8 @@ def thumbnail(name: str, robot: Any) -> Any:
     view = drawings().view(name)
     spatial = plot.mechanism(robot).name == "3d"
     return plot.mechanism(
-        robot, view.general, mode=view.mode, faint=view.faint, labels=False, axes=False,
-        ax=plot.new_axes(spatial, (1.6, 1.4)),
+        robot, view.general, mode=view.mode, faint=view.faint, about=view.about,
+        labels=False, axes=False, ax=plot.new_axes(spatial, (1.6, 1.4)),
     )  # fmt: skip
 
 

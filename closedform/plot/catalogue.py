@@ -50,6 +50,8 @@ class View:
     general: Sequence[float] | None = None
     mode: int = 0
     faint: Collection[str] = ()
+    about: str = ""
+    """The centre of a spherical mechanism, whose links are arcs."""
     plane: tuple[str, str] | None = None
     at: Sequence[float] | None = None
     """A target, for the other coordinates of the section."""
@@ -72,7 +74,7 @@ def standard(view: View) -> list[Figure]:
         Figure(
             "branches",
             "All postures that reach one target, one for each branch of the inverse.",
-            lambda robot: branches(robot, faint=view.faint),
+            lambda robot: branches(robot, faint=view.faint, about=view.about),
         ),
         Figure(
             "workspace",
@@ -113,7 +115,7 @@ def _both(robot: ModuleType, view: View) -> Any:
     home = np.zeros(len(robot.JOINTS)) if view.home is None else view.home
     general = r.posture() if view.general is None else view.general
     for ax, q in zip(panels, (home, general), strict=True):
-        mechanism(robot, q, mode=view.mode, ax=ax, faint=view.faint)
+        mechanism(robot, q, mode=view.mode, ax=ax, faint=view.faint, about=view.about)
     return panels[0]
 
 

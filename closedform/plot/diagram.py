@@ -169,8 +169,11 @@ class Diagram:
         note = self.ax.text(*here, text, color=shade, fontsize=size, zorder=9)
         labels.add(self.ax, note, here)
 
-    def clean(self, drawn: Sequence[Array], margin: float = 0.06) -> None:
-        """Show exactly what is drawn, at equal scales and without the axes of a plot."""
+    def clean(self, drawn: Sequence[Array], margin: float = 0.06, zoom: float = 1.15) -> None:
+        """Show exactly what is drawn, at equal scales and without the axes of a plot.
+
+        A drawing in space is enlarged by ``zoom``, over the edge of the axes if it is tall.
+        """
         everything = np.vstack([self._here(d) for d in drawn])
         low, high = np.nanmin(everything, axis=0), np.nanmax(everything, axis=0)
         low, high = low - margin * self.size, high + margin * self.size
@@ -178,7 +181,7 @@ class Diagram:
         if self.spatial:
             for k, name in enumerate("xyz"):
                 getattr(self.ax, f"set_{name}lim")(low[k], high[k])
-            self.ax.set_box_aspect(high - low, zoom=1.15)
+            self.ax.set_box_aspect(high - low, zoom=zoom)
         else:
             self.ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
             self.ax.set_aspect("equal")

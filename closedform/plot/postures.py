@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
+from itertools import pairwise
 from types import ModuleType
 from typing import Any
 
@@ -21,6 +22,8 @@ SMALL = 0.03
 """An arm of a joint that is shorter than this part of the drawing is too short for an arc."""
 WRIST = 3
 """If branches look alike, they differ in the axes of these last joints."""
+UNDER_A_TITLE = 0.9
+"""How much a drawing in space is enlarged below a title, so that it does not reach into it."""
 OVERLAID = 2
 """More branches than this are drawn side by side."""
 
@@ -36,6 +39,7 @@ def mechanism(
     labels: bool = True,
     axes: bool = True,
     faint: Collection[str] = (),
+    about: str = "",
 ) -> Any:
     """Draw a mechanism in one posture, with the axes of its joints, its lengths and angles.
 
@@ -57,6 +61,9 @@ def mechanism(
         whether the axes of joints in space are shown
     faint
         links that are drawn thinner, such as those of an equivalent mechanism
+    about
+        the point that is the centre of a spherical mechanism, whose links are drawn as arcs of
+        great circles about it
     """
     r = Robot.of(robot, params)
     joints = r.posture() if q is None else np.asarray(q, dtype=float)
@@ -70,14 +77,15 @@ def mechanism(
             f"modes that exist there: {', '.join(modes) or 'none'}"
         )
     ax = new_axes(not r.flat) if ax is None else ax
+    points = on_sphere(r, points, about)
     diagram = Diagram(ax, extent([points]))
     along = joint_axes(robot, joints, params=r.params, mode=mode)
-    draw(diagram, r, points, colour(0), along=along if axes else {}, faint=faint)
+    draw(diagram, r, points, colour(0), along=along if axes else {}, faint=faint, about=about)
     shown = [points]
     if axes and diagram.spatial:
         shown += _show_axes(diagram, along)
     if labels:
-        _name(diagram, r, joints, mode, along)
+        _name(diagram, r, joints, points, mode, along)
         shown.append(_base_frame(diagram, r, points))
     diagram.clean(shown)
     _settle(ax)
@@ -104,6 +112,7 @@ def branches(
     params: Any = None,
     ax: Any = None,
     faint: Collection[str] = (),
+    about: str = "",
 ) -> Any:
     """Draw all postures that reach a target, one colour a branch.
 
@@ -113,7 +122,7 @@ def branches(
         a generated module with an inverse
     x
         the target, as ``ik`` takes it; by default one that most branches reach
-    params, faint
+    params, faint, about
         as in :func:`mechanism`
     ax
         the axes to draw all branches on; by default more than two are drawn side by side, with
@@ -127,7 +136,7 @@ def branches(
     if status.shape != (len(robot.BRANCHES),):
         raise ValueError(f"x must be one target of {r.name}, not {np.shape(x)}")
     found = {
-        name: r.points(q[k])[r.mode_that_reaches(q[k], x)]
+        name: on_sphere(r, r.points(q[k])[r.mode_that_reaches(q[k], x)], about)
         for k, name in enumerate(robot.BRANCHES)
         if status[k] == OK
     }
@@ -143,7 +152,7 @@ def branches(
         diagram = Diagram(ax, extent(frame))
         for name, points in found.items():
             shade = colour(names.index(name))
-            draw(diagram, r, points, shade, label=spoken(name), faint=faint)
+            draw(diagram, r, points, shade, label=spoken(name), faint=faint, about=about)
         diagram.clean([*frame, _base_frame(diagram, r, frame[0])])
         ax.figure.legend(loc="outside lower center", ncols=min(len(found), 4))
         _settle(ax)
@@ -156,19 +165,50 @@ def branches(
     for panel, name in zip(panels, found, strict=False):
         diagram = Diagram(panel, extent(frame))
         others = [points for other, points in found.items() if other != name]
-        diagram.link(_outlines(r, others), "#dddddd", linewidth=1.0)
+        diagram.link(_outlines(r, others, about), "#dddddd", linewidth=1.0)
         along = joint_axes(robot, q[names.index(name)], params=r.params) if alike else {}
         along = dict(list(along.items())[-WRIST:])
         draw(
-            diagram, r, found[name], colour(names.index(name)), width=2.2, faint=faint, along=along
-        )
+            diagram, r, found[name], colour(names.index(name)), width=2.2, faint=faint,
+            along=along, about=about,
+        )  # fmt: skip
         ends = _show_axes(diagram, along)
-        diagram.clean([*frame, *ends], margin=0.02)
+        diagram.clean([*frame, *ends], margin=0.02, zoom=UNDER_A_TITLE)
         panel.set_title(spoken(name), fontsize=9, y=1.0)
     return panels[0]
 
 
-def _outlines(r: Robot, postures: list[Array]) -> Array:
+def on_sphere(r: Robot, points: Array, about: str) -> Array:
+    """The points moved along their radii to one sphere about one of them; without it, as is."""
+    if not about:
+        return points
+    centre = points[r.module.SKELETON.points.index(about)]
+    ways = points - centre
+    far = np.linalg.norm(ways, axis=1, keepdims=True)
+    moved = centre + far.max() * ways / np.where(far > 0, far, 1)
+    return np.asarray(moved)
+
+
+def way_through(place: Mapping[str, Array], link: Sequence[str], about: str) -> Array:
+    """The line of a link: straight, or arcs of great circles about the centre."""
+    points = [place[p] for p in link]
+    if not about:
+        return np.array(points)
+    centre, parts = place[about], [points[:1]]
+    for a, b in pairwise(points):
+        u, v = a - centre, b - centre
+        size = float(np.linalg.norm(u) * np.linalg.norm(v))
+        angle = float(np.arccos(np.clip(u @ v / size, -1, 1))) if size else 0.0
+        if angle < 1e-6 or angle > np.pi - 1e-6:
+            parts.append([b])
+            continue
+        s = np.linspace(0, 1, max(3, int(angle * 24)))[1:, None]
+        arc = (np.sin((1 - s) * angle) * u + np.sin(s * angle) * v) / np.sin(angle)
+        parts.append(list(centre + arc))
+    return np.vstack(parts)
+
+
+def _outlines(r: Robot, postures: list[Array], about: str) -> Array:
     """The links of several postures as one line, with gaps between them."""
     names = r.module.SKELETON.points
     gap = np.full((1, 3), np.nan)
@@ -178,7 +218,7 @@ def _outlines(r: Robot, postures: list[Array]) -> Array:
         part
         for points in postures
         for way in ways
-        for part in (points[[names.index(p) for p in way]], gap)
+        for part in (way_through(dict(zip(names, points, strict=True)), way, about), gap)
     ]
     return np.vstack(parts)
 
@@ -216,6 +256,7 @@ def draw(
     label: str = "",
     width: float = 2.6,
     faint: Collection[str] = (),
+    about: str = "",
 ) -> None:
     """The links, the joints and the hand of one posture."""
     skeleton = r.module.SKELETON
@@ -230,7 +271,7 @@ def draw(
         elif named:
             style |= named
             named = {}
-        diagram.link([place[p] for p in link], **style)
+        diagram.link(way_through(place, link, about), **style)
     for joint in skeleton.joints.values():
         ends = np.array([place[p] for p in joint.points])
         if joint.kind == "prismatic":
@@ -270,10 +311,14 @@ def _show_axes(diagram: Diagram, along: Mapping[str, tuple[Array, Array]]) -> li
 
 
 def _name(
-    diagram: Diagram, r: Robot, q: Array, mode: int, along: Mapping[str, tuple[Array, Array]]
+    diagram: Diagram,
+    r: Robot,
+    q: Array,
+    points: Array,
+    mode: int,
+    along: Mapping[str, tuple[Array, Array]],
 ) -> None:
     """Lengths at their segments, and angles as arcs, or as arrows about their axes."""
-    points = r.points(q)[mode]
     skeleton = r.module.SKELETON
     place = dict(zip(skeleton.points, points, strict=True))
     for field, pair in lengths(r, q, mode).items():

@@ -47,7 +47,11 @@ VIEWS = {
         home=(1, 1, 1), general=(1.15, 0.9, 0.8), plane=("x", "y"), at=(0, 0, 0), mode=1
     ),
     "spherical_five_bar": View(
-        home=degrees(110, 70), general=degrees(130, 60), measured=("theta1", "theta2")
+        home=degrees(110, 70),
+        general=degrees(130, 60),
+        measured=("theta1", "theta2"),
+        about="A0",
+        faint=("rod0",),
     ),
     "four_bar": View(home=degrees(90), general=degrees(50)),
     "slider_crank": View(home=degrees(90), general=degrees(50)),

@@ -16,7 +16,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.emit.backends.latex.formulas import FITS, measure
-from closedform.emit.backends.latex.inequalities import inequalities
+from closedform.emit.backends.latex.inequalities import equality, inequalities
 from closedform.emit.backends.latex.listing import Line, merged, unless
 from closedform.emit.backends.latex.names import is_word, program_name
 from closedform.emit.backends.latex.sheet import Sheet
@@ -296,6 +296,8 @@ class Algorithm:
         several = self.function.branches is not None and len(self.function.branches) > 1
         if not several:
             return self.joined([*common, *each, *answer], 0)
+        if not each and not answer:
+            return self.joined(common, 0)
         head = Line(rf"\textbf{{for each}} {self._choice()}:")
         return [*self.joined(common, 0), head, *self.joined([*each, *answer], 1)]
 
@@ -331,7 +333,7 @@ class Algorithm:
             value = self.full(statement.value)
             if value != 0:  # what is compared only in a special case
                 meaning = self.page.prose(statement.meaning)
-                yield "unless", f"${self.page.math(value)} = 0$", meaning
+                yield "unless", equality(self.page, value), meaning
         elif isinstance(statement, Require):
             yield "invalid", self._requirement(statement), ""
 
@@ -535,7 +537,7 @@ class Algorithm:
         if len(parts) > 1 and all(isinstance(t, sp.Abs) for t in parts):
             inner = [rf"{self.page.math(self.page.lines.tidy(t.args[0]))} = 0" for t in parts]
             return ", ".join(f"${t}$" for t in inner)
-        return f"${self.page.math(value)} = 0$"
+        return equality(self.page, value)
 
     def _determined(self, statement: Determined) -> Case:
         rest: list[str] = []

@@ -211,7 +211,7 @@ class Printer(LatexPrinter):  # type: ignore[misc]
 
     def math(self, expr: Any) -> str:
         """An expression that TeX can break between its terms."""
-        return spaced(loosen(self.doprint(expr)))
+        return spaced(loosen(SQUARED.sub(r"\1", self.doprint(expr))))
 
 
 # The same sums and angles are printed again and again, to find the narrowest form.
@@ -276,6 +276,8 @@ def stacked(rows: Sequence[str]) -> str:
 
 
 INNERMOST = re.compile(r"\\begin\{(\w+)\}((?:(?!\\begin|\\end).)*)\\end\{\1\}", re.DOTALL)
+SQUARED = re.compile(r"\\sqrt\{([A-Za-z])\^(?:2|\{2\})\}")
+"""The root of a name that is written as a square, and whose root is not negative."""
 FRACTION = re.compile(r"\\frac\{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\}\{((?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*)\}")  # fmt: skip  # noqa: E501
 
 

@@ -61,8 +61,18 @@ def nonnegative(page: Sheet, value: sp.Expr) -> str:
     return rf"${math(value)} \ge 0$"
 
 
+def equality(page: Sheet, value: sp.Expr) -> str:
+    """The condition that a value is zero: ``a = b`` for ``a - b``."""
+    terms = sp.Add.make_args(value)
+    less = [-t for t in terms if t.as_coeff_Mul()[0].is_negative]
+    more = [t for t in terms if not t.as_coeff_Mul()[0].is_negative]
+    if less and more:
+        return f"${page.math(sp.Add(*more))} = {page.math(sp.Add(*less))}$"
+    return f"${page.math(value)} = 0$"
+
+
 def _is_negative(term: sp.Expr) -> bool:
     return bool(term.as_coeff_Mul()[0].is_negative)
 
 
-__all__ = ["inequalities"]
+__all__ = ["equality", "inequalities"]

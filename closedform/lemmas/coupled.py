@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from closedform.lemmas.carried import in_space, square
 from closedform.lemmas.legs import Crank, Naming, Slide
 from closedform.lemmas.loop import (
     NO_MODE,
@@ -17,9 +18,7 @@ from closedform.lemmas.loop import (
     Exported,
     bounds_of,
     export,
-    in_space,
     size_of,
-    square,
     tell,
     where_free,
 )

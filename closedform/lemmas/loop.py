@@ -10,15 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 
 import sympy as sp
 
-from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.carried import Carried, in_space, square
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.conditioning import conditioning
-from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, Strut, vector
+from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, Strut
 from closedform.lemmas.spheres import three_spheres
 from closedform.mechanics.frames import merge_angles
 from closedform.mechanics.loops import velocity_matrices
@@ -71,7 +70,7 @@ def parallel(
         the angles of the rods from the x axis, for a mechanism in a plane; with them
         ``passive_angles`` is exported
     """
-    mechanism = _Mechanism(d, sp.Matrix(hand), tuple(legs))
+    mechanism = Carried(d, sp.Matrix(hand), tuple(legs))
     meet = "rods in line" if len(legs) == 2 else "rods in one plane"
     if not d.singularities:
         d.singularities = (*(f"leg {k}" for k, _ in mechanism.driven), meet)
@@ -83,100 +82,6 @@ def parallel(
     _draw(mechanism, posture)
     _velocity(mechanism, posture, loop)
     _inverse(mechanism, loop)
-
-
-@dataclass(frozen=True)
-class _Mechanism:
-    """A hand that does not turn, and its legs."""
-
-    d: Derivation
-    hand: sp.Matrix
-    legs: tuple[Leg, ...]
-
-    def __post_init__(self) -> None:
-        n = len(self.hand)
-        if n not in (2, 3) or len(self.legs) != n:
-            raise ShapeError(
-                f"{self.d.name}: {len(self.legs)} legs for {n} coordinates; a hand that does not "
-                f"turn has two legs in a plane or three in space"
-            )
-        if any(isinstance(leg, Strut) for leg in self.legs[0 if n == 2 else 1 :]):
-            raise ShapeError(
-                f"{self.d.name}: a strut must be the first of three legs in space; then two driven "
-                f"legs move the hand on a sphere"
-            )
-        joints = tuple(leg.joint for _, leg in self.driven)
-        if joints != self.d.actuated:
-            raise ShapeError(
-                f"{self.d.name}: the legs are driven by {_listed(joints)}, but the joints of the "
-                f"derivation are {_listed(self.d.actuated)}; give the legs in this order"
-            )
-
-    @property
-    def joints(self) -> tuple[sp.Symbol, ...]:
-        return self.d.actuated
-
-    @cached_property
-    def numbered(self) -> list[tuple[int, Leg]]:
-        """The legs, driven ones from 1 on; a strut, which is the first, is 0."""
-        return [*enumerate(self.legs, 0 if isinstance(self.legs[0], Strut) else 1)]
-
-    @cached_property
-    def driven(self) -> list[tuple[int, Leg]]:
-        return [(k, leg) for k, leg in self.numbered if not isinstance(leg, Strut)]
-
-    @property
-    def count(self) -> str:
-        return {2: "two", 3: "three"}[len(self.legs)]
-
-    def place(self, leg: Leg) -> sp.Matrix:
-        """Where the rod of a leg ends on the hand."""
-        return vector(leg.on_hand or [0] * len(self.hand))
-
-    def rates(self, rods: Sequence[sp.Matrix]) -> list[sp.Expr]:
-        """The diagonal of B, from the vectors along all rods."""
-        legs = zip(self.legs, rods, strict=True)
-        return [rate_of(leg, rod) for leg, rod in legs if not isinstance(leg, Strut)]
-
-    def onto_struts(self) -> sp.Matrix:
-        """The hand, moved towards the near end of a strut or away from it to the strut's length."""
-        hand = self.hand
-        for leg in self.legs:
-            if isinstance(leg, Strut):
-                w = hand + self.place(leg) - leg.base
-                hand = leg.rod / sp.sqrt(square(w)) * w - self.place(leg) + leg.base
-        return hand
-
-    @cached_property
-    def centres(self) -> list[sp.Matrix]:
-        """The near ends of the rods, less the places of their far ends on the hand."""
-        return [leg.end() - self.place(leg) for leg in self.legs]
-
-    @cached_property
-    def loop(self) -> tuple[sp.Expr, ...]:
-        """The equations of the loop: each rod keeps its length."""
-        ends = zip(self.legs, self.centres, strict=True)
-        return tuple(
-            square(self.hand - c) - sp.sympify(leg.rod, strict=True) ** 2 for leg, c in ends
-        )
-
-    def state_loop(self) -> Step:
-        placed = list(zip(self.numbered, self.centres, strict=True))
-        shown = {rf"\mathbf b_{k}": c for (k, _), c in placed}
-        shown |= {
-            rf"|\mathbf p - \mathbf b_{k}|": sp.sympify(leg.rod, strict=True)
-            for k, leg in self.numbered
-        }
-        carried = any(leg.on_hand for leg in self.legs)
-        less = ", less the place of its far end on the hand," if carried else ""
-        strut = "  The near end of the strut stands still." * (len(self.driven) < len(self.legs))
-        return self.d.step(
-            "The loop",
-            f"The hand p hangs on {self.count} rods.  The near end of each rod{less} is b, which "
-            f"the joint of its leg determines.  The hand is at the length of the rod from it."
-            f"{strut}",
-            shown,
-        )
 
 
 @dataclass(frozen=True)
@@ -193,7 +98,7 @@ class _Posture:
     """The sign and the size of the determinant of the matrix that has them as rows."""
 
 
-def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
+def _forward(m: Carried, choice: Choice, loop: Step) -> _Posture:
     d, n, f = m.d, len(m.legs), m.d.program()
     sigma = real("sigma_assembly")
     modes = branches((sigma, choice))
@@ -207,17 +112,9 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
     ]
     radii = [named_in(f, f"r_{k}", sp.sympify(leg.rod, strict=True)) for k, leg in m.numbered]
     meet = two_circles if n == 2 else three_spheres
-    # a strut, the longest of the three, comes last; the turned order keeps the sign of the mode
-    turn = 1 if isinstance(m.legs[0], Strut) else 0
-    found = meet(
-        f,
-        [*ends[turn:], *ends[:turn]],
-        [*radii[turn:], *radii[:turn]],
-        tuple(m.hand),
-        sigma,
-        scale=size,
-        free=tuple(m.hand),
-    )
+    near = m.in_lemma(ends)
+    found = meet(f, near, m.in_lemma(radii), tuple(m.hand), sigma, scale=size, free=tuple(m.hand))
+    ((first, _), start), *others = m.in_lemma(list(zip(m.numbered, m.centres, strict=True)))
     told = replace(found.link, lemma=replace(found.lemma, roles=_roles(m)))
     shape = "circles" if n == 2 else "spheres"
     d.step(
@@ -227,10 +124,8 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
         f"{'line' if n == 2 else 'plane'} of their centres: these are the two assembly modes.  The "
         f"determinant of the vectors along the rods has the sign of the mode.",
         {
-            rf"\mathbf b_{k} - \mathbf b_{m.numbered[0][0]}": (c - m.centres[0]).applyfunc(
-                merge_angles
-            )
-            for (k, _), c in zip(m.numbered[1:], m.centres[1:], strict=True)
+            rf"\mathbf b_{k} - \mathbf b_{first}": (c - start).applyfunc(merge_angles)
+            for (k, _), c in others
         },
         proves=(
             "The determinant of the vectors along the rods, in the frame of the lemma, is the sign "
@@ -254,38 +149,36 @@ def _forward(m: _Mechanism, choice: Choice, loop: Step) -> _Posture:
             "Ill-conditioned near the parallel singularities, where both modes meet.",
         ),
     )
-    equations = (*m.loop[turn:], *m.loop[:turn])
+    equations = tuple(m.in_lemma(m.loop))
     d.inverses.append(
         Inverse("fk", tuple(m.hand), (sp.S.Zero,) * n, equations, links=(found.link,))
     )
     tell(d, "fk", told)
     v = Program(list(f.body), f.taken)
-    first = sp.Matrix(
-        [v.let(f"A_{m.numbered[turn][0]}{i}", e) for i, e in enumerate(found.first, 1)]
-    )
+    rod = sp.Matrix([v.let(f"A_{first}{i}", e) for i, e in enumerate(found.first, 1)])
     return _Posture(
         v,
         modes,
-        ends[turn] + first,
-        tuple(first + ends[turn] - end for end in ends),
+        near[0] + rod,
+        tuple(rod + near[0] - end for end in ends),
         found.side,
         found.size,
     )
 
 
-def _roles(m: _Mechanism) -> tuple[tuple[str, Any], ...]:
+def _roles(m: Carried) -> tuple[tuple[str, Any], ...]:
     """What the letters of the lemma stand for that gives the hand."""
-    (first, _), *others = m.numbered
+    (first, _), *others = m.in_lemma(m.numbered)
     apart = [rf"\mathbf b_{k} - \mathbf b_{first}" for k, _ in others]
     names = [r"d\,\mathbf n"] if len(others) == 1 else [r"\mathbf c_2", r"\mathbf c_3"]
     return (
         (r"\mathbf x", rf"\mathbf p - \mathbf b_{first}"),
         *zip(names, apart, strict=True),
-        *((f"r_{k}", leg.rod) for k, leg in enumerate(m.legs, 1)),
+        *((f"r_{k}", leg.rod) for k, leg in enumerate(m.in_lemma(m.legs), 1)),
     )
 
 
-def _passive_angles(m: _Mechanism, at: _Posture, passive: Sequence[sp.Symbol]) -> None:
+def _passive_angles(m: Carried, at: _Posture, passive: Sequence[sp.Symbol]) -> None:
     m.d.function(
         "passive_angles",
         "Angles of the rods from the x axis in both assembly modes.",
@@ -298,7 +191,7 @@ def _passive_angles(m: _Mechanism, at: _Posture, passive: Sequence[sp.Symbol]) -
     )
 
 
-def _draw(m: _Mechanism, at: _Posture) -> None:
+def _draw(m: Carried, at: _Posture) -> None:
     links: dict[str, tuple[str, ...]] = {}
     lengths: dict[tuple[str, str], sp.Expr] = {}
     closing: dict[tuple[str, str], sp.Expr] = {}
@@ -340,7 +233,7 @@ def _draw(m: _Mechanism, at: _Posture) -> None:
     )
 
 
-def _points(m: _Mechanism, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
+def _points(m: Carried, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
     """The points of the skeleton: the base A, the near end B and the far end C of each leg."""
     points: dict[str, Sequence[sp.Expr]] = {}
     for k, leg in m.numbered:
@@ -352,7 +245,7 @@ def _points(m: _Mechanism, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
     return points | {"P": in_space(hand)}
 
 
-def _velocity(m: _Mechanism, at: _Posture, loop: Step) -> None:
+def _velocity(m: Carried, at: _Posture, loop: Step) -> None:
     d, n = m.d, len(m.legs)
     A, B = velocity_matrices(m.loop, tuple(m.hand), m.joints)
     rods = [m.hand - c for c in m.centres]
@@ -456,12 +349,7 @@ def where_free(found: Solution) -> list[str]:
     ]
 
 
-def rate_of(leg: Leg, rod: sp.Matrix) -> sp.Expr:
-    """The entry of B of a leg, from the vector along its rod."""
-    return leg.joint if isinstance(leg, Stretch) else rod.dot(leg.rate)
-
-
-def _inverse(m: _Mechanism, loop: Step) -> None:
+def _inverse(m: Carried, loop: Step) -> None:
     d, n, g = m.d, len(m.legs), m.d.program()
     choices: list[tuple[sp.Symbol, Choice]] = []
     slides = any(isinstance(leg, Slide) for leg in m.legs)
@@ -581,18 +469,6 @@ def named_in(p: Program, name: str, value: sp.Expr) -> sp.Symbol:
     return value if value.is_Symbol or value == 0 else p.let(name, value)
 
 
-def square(v: sp.Matrix) -> sp.Expr:
-    return v.dot(v)
-
-
-def in_space(place: sp.Matrix) -> list[sp.Expr]:
-    return [*place, *[sp.S.Zero] * (3 - len(place))]
-
-
-def _listed(symbols: Sequence[sp.Symbol]) -> str:
-    return ", ".join(map(str, symbols))
-
-
 __all__ = [
     "NO_MODE",
     "SIGN",
@@ -600,11 +476,8 @@ __all__ = [
     "Exported",
     "bounds_of",
     "export",
-    "in_space",
     "parallel",
-    "rate_of",
     "size_of",
-    "square",
     "tell",
     "where_free",
 ]

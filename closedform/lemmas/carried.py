@@ -1,0 +1,136 @@
+"""A hand that does not turn, and the legs that carry it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeVar
+
+import sympy as sp
+
+from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.legs import Leg, Stretch, Strut, vector
+from closedform.model.derivation import Derivation, Step
+
+_Item = TypeVar("_Item")
+
+
+@dataclass(frozen=True)
+class Carried:
+    """A hand that does not turn, and its legs."""
+
+    d: Derivation
+    hand: sp.Matrix
+    legs: tuple[Leg, ...]
+
+    def __post_init__(self) -> None:
+        n = len(self.hand)
+        if n not in (2, 3) or len(self.legs) != n:
+            raise ShapeError(
+                f"{self.d.name}: {len(self.legs)} legs for {n} coordinates; a hand that does not "
+                f"turn has two legs in a plane or three in space"
+            )
+        if any(isinstance(leg, Strut) for leg in self.legs[0 if n == 2 else 1 :]):
+            raise ShapeError(
+                f"{self.d.name}: a strut must be the first of three legs in space; then two driven "
+                f"legs move the hand on a sphere"
+            )
+        joints = tuple(leg.joint for _, leg in self.driven)
+        if joints != self.d.actuated:
+            raise ShapeError(
+                f"{self.d.name}: the legs are driven by {_listed(joints)}, but the joints of the "
+                f"derivation are {_listed(self.d.actuated)}; give the legs in this order"
+            )
+
+    @property
+    def joints(self) -> tuple[sp.Symbol, ...]:
+        return self.d.actuated
+
+    @cached_property
+    def numbered(self) -> list[tuple[int, Leg]]:
+        """The legs, driven ones from 1 on; a strut, which is the first, is 0."""
+        return [*enumerate(self.legs, 0 if isinstance(self.legs[0], Strut) else 1)]
+
+    @cached_property
+    def driven(self) -> list[tuple[int, Leg]]:
+        return [(k, leg) for k, leg in self.numbered if not isinstance(leg, Strut)]
+
+    def in_lemma(self, items: Sequence[_Item]) -> list[_Item]:
+        """What belongs to the legs, in the order in which the lemma for the hand takes them.
+
+        A strut, the longest of three rods, is the last one.  A turned order does not change the
+        sign of the determinant of the rods.
+        """
+        turn = 1 if isinstance(self.legs[0], Strut) else 0
+        return [*items[turn:], *items[:turn]]
+
+    @property
+    def count(self) -> str:
+        return {2: "two", 3: "three"}[len(self.legs)]
+
+    def place(self, leg: Leg) -> sp.Matrix:
+        """Where the rod of a leg ends on the hand."""
+        return vector(leg.on_hand or [0] * len(self.hand))
+
+    def rates(self, rods: Sequence[sp.Matrix]) -> list[sp.Expr]:
+        """The diagonal of B, from the vectors along all rods."""
+        legs = zip(self.legs, rods, strict=True)
+        return [rate_of(leg, rod) for leg, rod in legs if not isinstance(leg, Strut)]
+
+    def onto_struts(self) -> sp.Matrix:
+        """The hand, moved towards the near end of a strut or away from it to the strut's length."""
+        hand = self.hand
+        for leg in self.legs:
+            if isinstance(leg, Strut):
+                w = hand + self.place(leg) - leg.base
+                hand = leg.rod / sp.sqrt(square(w)) * w - self.place(leg) + leg.base
+        return hand
+
+    @cached_property
+    def centres(self) -> list[sp.Matrix]:
+        """The near ends of the rods, less the places of their far ends on the hand."""
+        return [leg.end() - self.place(leg) for leg in self.legs]
+
+    @cached_property
+    def loop(self) -> tuple[sp.Expr, ...]:
+        """The equations of the loop: each rod keeps its length."""
+        ends = zip(self.legs, self.centres, strict=True)
+        return tuple(
+            square(self.hand - c) - sp.sympify(leg.rod, strict=True) ** 2 for leg, c in ends
+        )
+
+    def state_loop(self) -> Step:
+        placed = list(zip(self.numbered, self.centres, strict=True))
+        shown = {rf"\mathbf b_{k}": c for (k, _), c in placed}
+        shown |= {
+            rf"|\mathbf p - \mathbf b_{k}|": sp.sympify(leg.rod, strict=True)
+            for k, leg in self.numbered
+        }
+        carried = any(leg.on_hand for leg in self.legs)
+        less = ", less the place of its far end on the hand," if carried else ""
+        strut = "  The near end of the strut stands still." * (len(self.driven) < len(self.legs))
+        return self.d.step(
+            "The loop",
+            f"The hand p hangs on {self.count} rods.  The near end of each rod{less} is b, which "
+            f"the joint of its leg determines.  The hand is at the length of the rod from it."
+            f"{strut}",
+            shown,
+        )
+
+
+def rate_of(leg: Leg, rod: sp.Matrix) -> sp.Expr:
+    """The entry of B of a leg, from the vector along its rod."""
+    return leg.joint if isinstance(leg, Stretch) else rod.dot(leg.rate)
+
+
+def square(v: sp.Matrix) -> sp.Expr:
+    return v.dot(v)
+
+
+def in_space(place: sp.Matrix) -> list[sp.Expr]:
+    return [*place, *[sp.S.Zero] * (3 - len(place))]
+
+
+def _listed(symbols: Sequence[sp.Symbol]) -> str:
+    return ", ".join(map(str, symbols))

@@ -82,14 +82,14 @@ class Enumeration(Check):
 
 
 def _in_words(value: Any) -> str:
-    """A number, or a list of names without the signs of the programming language."""
+    """A number, yes or no, or a list of names without the signs of the programming language."""
     if isinstance(value, list | tuple | set | frozenset):
         parts = list(value) if isinstance(value, list | tuple) else sorted(value, key=str)
         several = (
             f"({_in_words(p)})" if isinstance(p, list | tuple) else _in_words(p) for p in parts
         )
         return ", ".join(several) or "none"
-    return str(value)
+    return {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)
 
 
 @dataclass(frozen=True)

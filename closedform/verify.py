@@ -13,9 +13,9 @@ from itertools import combinations, product
 from math import prod
 from typing import Any, TypeAlias
 
-from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpz_mat
+from flint import Ordering, arb, arb_mat, ctx, fmpq, fmpq_mpoly_ctx, fmpz_mat
 
-FORMAT = 1
+FORMAT = 2
 INVERSES = ("atan2", "atan", "acos", "asin")
 PAIRS = ("angle", "circle")
 ROOTS = ("root", "abs")
@@ -50,7 +50,7 @@ def check(document: dict[str, Any]) -> None:
         "identity": check_identity,
         "count": check_count,
         "inverse": check_inverse,
-        "regular": check_regular,
+        "point": check_point,
     }
     for k, certificate in enumerate(document["certificates"]):
         try:
@@ -85,22 +85,44 @@ def check_inverse(document: dict[str, Any], certificate: dict[str, Any]) -> None
     require(counts and total == branches > 0, f"{total} solutions are counted")
 
 
-def check_regular(document: dict[str, Any], certificate: dict[str, Any]) -> None:
-    """The determinant of a matrix differs from zero at a point, so at almost all points."""
-    rows = matrix_of(document["nodes"], certificate)
-    require(rows and fmpq_mat(rows).det() != 0, "the determinant is zero")
+def check_point(document: dict[str, Any], certificate: dict[str, Any]) -> None:
+    """At a point, the determinant of a matrix is not zero; for one entry, the entry is not."""
+    with ctx.workprec(300):
+        rows = matrix_of(document["nodes"], certificate)
+        require(rows and not arb_mat(rows).det().contains(0), "the determinant may be zero")
 
 
-def matrix_of(nodes: list[Any], certificate: dict[str, Any]) -> list[list[fmpq]]:
-    """A matrix at a point, which is given by numbers and by tangents of half angles."""
-    field = Field(nodes, [], ())
-    for node, value in certificate["names"]:
-        require(fmpq(value) * nodes[node][2] >= 0, "the point is not in the domain")
-        field.values[node] = field.number(value)
-    for node, value in certificate["angles"]:
-        field.turns[node] = 1, field.half_turn(field.number(value).num)
-    values = [[field.value(k).num for k in row] for row in certificate["matrix"]]
-    return [[p.leading_coefficient() if p != 0 else fmpq(0) for p in row] for row in values]
+def matrix_of(nodes: list[Any], certificate: dict[str, Any]) -> list[list[arb]]:
+    """Enclosures of the entries of a matrix at a point at which all assumptions hold."""
+    balls: dict[int, arb] = {}
+    for name, k in certificate["at"]:
+        named = nodes[name][0] == "name" and name not in balls
+        require(named, "only a name has a value, and only one")
+        balls[name] = enclosed(nodes, balls, k)
+        require(balls[name] * nodes[name][2] >= 0, "the point is not in the domain")
+    for k in certificate["assumed"]:
+        require(enclosed(nodes, balls, k) >= 0, "an assumption does not hold at the point")
+    return [[enclosed(nodes, balls, k) for k in row] for row in certificate["matrix"]]
+
+
+def enclosed(nodes: list[Any], balls: dict[int, arb], k: int) -> arb:
+    """A ball that contains the value of a node; ``balls`` has those of names, and remembers."""
+    if k not in balls:
+        op, *args = nodes[k] if isinstance(nodes[k], list) else ("number", nodes[k])
+        require(op != "name", "a name has no value")
+        if op == "number":
+            return arb(fmpq(args[0]))
+        x = [enclosed(nodes, balls, a) for a in (args[:1] if op == "^" else args)]
+        require(op != "atan2" or not all(v.contains(0) for v in x), "there is no direction")
+        if op in ("+", "*"):
+            balls[k] = sum(x, arb(0)) if op == "+" else prod(x, start=arb(1))
+        elif op in ("^", "abs"):
+            balls[k] = x[0] ** args[1] if op == "^" else abs(x[0])
+        else:
+            require(op in (*INVERSES, "pi", "sqrt", "sin", "cos", "tan"), f"{op} has no value")
+            balls[k] = getattr(arb, op)(*x)
+        require(balls[k].is_finite(), "a value is not defined")
+    return balls[k]
 
 
 def check_count(document: dict[str, Any], certificate: dict[str, Any]) -> None:

@@ -18,7 +18,7 @@ from derivations_for_tests import SLIDER
 from sympy import Abs, acos, asin, atan, atan2, cos, pi, sin, sqrt, tan
 
 from closedform import verify
-from closedform.algebra.certificates import add_inverse, recording
+from closedform.algebra.certificates import add_inverse, point, recording
 from closedform.algebra.normal_form import decide
 from closedform.algebra.solutions import InfinitelyManyError, count_solutions
 from closedform.cli.commands import main
@@ -339,7 +339,7 @@ FORGERIES: dict[str, Document] = {
     ),
     "x/x = 0, because of a circle of nodes": certificate([["*", 0, 0]], zero=[0]),
     "a node that holds a later one": certificate([["*", 1, 1], "0"], zero=[0]),
-    "another format": {**certificate(["0"], zero=[0]), "format": 2},
+    "another format": {**certificate(["0"], zero=[0]), "format": verify.FORMAT + 1},
     "branches that are counted by the inverse itself": certificate(
         ["0"], kind="inverse", counts=[[0, 0]], branches=2, count=2, **{"per branch": 1}
     ),
@@ -443,10 +443,45 @@ FORGERIES: dict[str, Document] = {
         count=1,
     ),
     "a singular matrix": certificate(
-        [X, "0"], kind="regular", matrix=[[0, 1], [0, 1]], names=[[0, "1"]], angles=[]
+        [X, "0", "1"], kind="point", matrix=[[0, 1], [0, 1]], at=[[0, 2]]
     ),
-    "a point outside of the domain": certificate(
-        [["name", "l", 1]], kind="regular", matrix=[[0]], names=[[0, "-1"]], angles=[]
+    "no matrix": certificate([X, "1"], kind="point", matrix=[], at=[[0, 1]]),
+    "a length that is negative": certificate(
+        [["name", "l", 1], "-1"], kind="point", matrix=[[0]], at=[[0, 1]]
+    ),
+    "x without a value": certificate([X], kind="point", matrix=[[0]], at=[]),
+    "x with two values": certificate(
+        [X, "1", "0"], kind="point", matrix=[[0]], at=[[0, 2], [0, 1]]
+    ),
+    "0 = 1, because an expression is given a value": certificate(
+        ["0", "1"], kind="point", matrix=[[0]], at=[[0, 1]]
+    ),
+    "x + 1 = 0 differs from zero, because a sum is given a value": certificate(
+        [X, "1", ["+", 0, 1]], kind="point", matrix=[[2]], at=[[2, 1]]
+    ),
+    "(1/0)**0 differs from zero": certificate(
+        ["0", ["^", 0, -1], ["^", 1, 0]], kind="point", matrix=[[2]], at=[]
+    ),
+    "a point at which an assumption does not hold": certificate(
+        [X, "-1"], kind="point", matrix=[[0]], at=[[0, 1]], assumed=[0]
+    ),
+    "1 + 0/0 differs from zero": certificate(
+        [X, "0", ["^", 0, -1], ["*", 2, 0], "1", ["+", 3, 4]],
+        kind="point",
+        matrix=[[5]],
+        at=[[0, 1]],
+    ),
+    "1 + 0*sqrt(-1) differs from zero": certificate(
+        ["-1", "0", "1", ["sqrt", 0], ["*", 1, 3], ["+", 2, 4]],
+        kind="point",
+        matrix=[[5]],
+        at=[],
+    ),
+    "1 + atan2(0, 0) differs from zero": certificate(
+        ["0", "1", ["atan2", 0, 0], ["+", 1, 2]], kind="point", matrix=[[3]], at=[]
+    ),
+    "cos(pi/2) differs from zero": certificate(
+        ["1/2", ["pi"], ["*", 0, 1], ["cos", 2]], kind="point", matrix=[[3]], at=[]
     ),
 }
 
@@ -457,11 +492,50 @@ def test_a_forgery_is_refused(name: str) -> None:
         verify.check(FORGERIES[name])
 
 
-def test_the_point_of_a_matrix_is_checked_exactly() -> None:
-    regular = FORGERIES["a singular matrix"]
-    verify.check(with_certificate(regular, 0, matrix=[[0]]))
-    with pytest.raises(verify.Refused):
-        verify.check(with_certificate(regular, 0, matrix=[[0]], names=[[0, "0"]]))
+def refutation() -> None:
+    """An identity with a wrong sign, in an angle, a length, a root and an inverse function."""
+    wrong = l1 * sin(t1) - sqrt(l1**2 + 1) * atan2(l2, l1) + tan(t1) ** 2
+    assert not decide(wrong, (l1 - l2,)).holds
+
+
+def test_a_refutation_is_a_point_that_is_evaluated() -> None:
+    document = written(refutation)
+    (refuted,) = document["certificates"]
+    assert refuted["kind"] == "point" and len(refuted["matrix"]) == 1
+    assert len(refuted["at"]) == 3 and len(refuted["assumed"]) == 1
+    verify.check(document)
+
+
+def test_the_point_of_a_refutation_cannot_be_tampered_with() -> None:
+    """A value left out, of another sign or of no name; another node that vanishes; no matrix."""
+    document = written(refutation)
+    (refuted,) = document["certificates"]
+    zero, negative = len(document["nodes"]), len(document["nodes"]) + 1
+    document["nodes"] += ["0", "-7"]
+    lengths = [k for k, (name, _) in enumerate(refuted["at"]) if document["nodes"][name][2] > 0]
+    assert len(lengths) == 2
+    at = refuted["at"]
+    for k, (name, value) in enumerate(at):
+        for other in ([], [[value, value]], [[name, value], [name, value]], [[name, zero + 9]]):
+            content = [*at[:k], *other, *at[k + 1 :]]
+            assert not accepted(with_certificate(document, 0, at=content)), content
+        if k in lengths:
+            content = [*at[:k], [name, negative], *at[k + 1 :]]
+            assert not accepted(with_certificate(document, 0, at=content)), content
+    for matrix in ([], [[]], [[zero]], [[zero + 9]], [refuted["matrix"][0] * 2]):
+        assert not accepted(with_certificate(document, 0, matrix=matrix)), matrix
+    for assumed in ([negative], [zero + 9]):
+        assert not accepted(with_certificate(document, 0, assumed=assumed)), assumed
+
+
+def test_the_rows_of_a_rank_are_chosen_so_that_they_are_independent() -> None:
+    with recording() as record:
+        point([[x, y], [2 * x, 2 * y], [0, sqrt(x)]], {x: sp.Rational(1, 3), y: sp.S(2)}, "rank")
+    assert not record.missing and len(record.certificates[0]["matrix"]) == 2
+    verify.check(json.loads(record.text("test", "digest")))
+    with recording() as record:
+        point([[x, y], [2 * x, 2 * y]], {x: sp.S(1), y: sp.S(2)}, "rank")
+    assert not record.certificates and record.missing == {"rank": 1}
 
 
 # The checker itself

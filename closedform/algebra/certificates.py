@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import sympy as sp
-from flint import fmpq_mat
+from flint import ctx
 from sympy.core.function import AppliedUndef
 
 from closedform.algebra.basis import TooLargeError, logged_basis
@@ -173,30 +173,32 @@ class Record:
             **{"per branch": each},
         )
 
-    def regular(self, rows: Sequence[Sequence[Expr]], point: Mapping[Expr, Expr]) -> bool:
-        """A matrix has full column rank at a point; the values of angles are tangents of halves.
+    def point(
+        self, rows: Sequence[Sequence[Expr]], at: Mapping[Expr, Expr], assumed: Iterable[Expr] = ()
+    ) -> bool:
+        """A matrix has full column rank at a point at which nothing in ``assumed`` is negative.
 
         The result says whether that is so and can be certified.
         """
         self.proofs += 1
-        parts = [_apart(sp.sympify(e, strict=True)) for row in rows for e in row]
-        plain = {s for outside, _ in parts for s in outside}
-        turning = {s for _, inside in parts for s in inside}
+        rows = [[sp.sympify(e, strict=True) for e in row] for row in rows]
+        conditions = [sp.sympify(e, strict=True) for e in assumed]
+        used = {s for e in (*conditions, *(e for row in rows for e in row)) for s in e.free_symbols}
         try:
+            values = [[self.node(s), self.node(sp.sympify(at[s]))] for s in at if s in used]
             content: dict[str, Any] = {
-                "names": [[self.node(s), str(v)] for s, v in point.items() if s in plain],
-                "angles": [[self.node(s), str(v)] for s, v in point.items() if s in turning],
-                "matrix": [[self.node(sp.sympify(e, strict=True)) for e in row] for row in rows],
+                "at": values,
+                "assumed": [self.node(e) for e in conditions],
+                "matrix": [[self.node(e) for e in row] for row in rows],
             }
-            values = fmpq_mat(matrix_of(self.nodes, content))
+            with ctx.workprec(300):
+                chosen = _pivot_rows(matrix_of(self.nodes, content))
         except (_Unwritable, Refused, LookupError):
             return False
-        echelon, rank = values.transpose().rref()
-        if plain & turning or rank < values.ncols():
+        if len(chosen) < len(rows[0]):
             return False
-        chosen = [next(j for j in range(values.nrows()) if echelon[i, j]) for i in range(rank)]
         content["matrix"] = [content["matrix"][j] for j in chosen]
-        self._add(kind="regular", **content)
+        self._add(kind="point", **content)
         return True
 
     def _system(self, system: System) -> dict[str, Any]:
@@ -264,6 +266,21 @@ class Record:
         raise _Unwritable(f"expressions with {type(e).__name__}")
 
 
+def _pivot_rows(rows: list[list[Any]]) -> list[int]:
+    """The rows of a matrix of balls that are certainly independent, by Gaussian elimination."""
+    left, chosen = dict(enumerate(rows)), list[int]()
+    for column in range(len(rows[0])):
+        certain = [j for j, row in left.items() if not row[column].contains(0)]
+        if certain:
+            best = max(certain, key=lambda j: abs(float(left[j][column].mid())))
+            pivot = left.pop(best)
+            for j, row in left.items():
+                scale = row[column] / pivot[column]
+                left[j] = [a - b * scale for a, b in zip(row, pivot, strict=True)]
+            chosen.append(best)
+    return sorted(chosen)
+
+
 def _apart(e: Expr) -> tuple[set[Expr], set[Expr]]:
     """The symbols of an expression outside of sines and cosines, and those inside of them."""
     turned = {f: sp.Dummy() for f in e.atoms(sp.sin, sp.cos, sp.tan, *_RECIPROCALS)}
@@ -302,9 +319,14 @@ def add_inverse(
         record.inverse(function, branches, counts, each)
 
 
-def regular(rows: Sequence[Sequence[Expr]], point: Mapping[Expr, Expr], what: str) -> None:
+def point(
+    rows: Sequence[Sequence[Expr]],
+    at: Mapping[Expr, Expr],
+    what: str,
+    assumed: Iterable[Expr] = (),
+) -> None:
     """Record that a matrix has full column rank at a point; ``what`` it shows, if that fails."""
-    if (record := open_record()) and not record.regular(rows, point):
+    if (record := open_record()) and not record.point(rows, at, assumed):
         record.missing[what] += 1
 
 

@@ -12,7 +12,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from closedform.algebra.certificates import lack, open_record
+from closedform.algebra.certificates import open_record, point
 from closedform.algebra.counterexample import Counterexample, find_counterexample
 from closedform.algebra.expressions import Expr, Problem, entries_of, margin_of, shortened
 from closedform.algebra.tower import Fraction, Tower, Undecided, content, converted
@@ -161,7 +161,8 @@ def decide(
         sp.Matrix(entries_of(problem)), conditions=[g >= 0 for g in guards], seed=seed, sides=sides
     )
     if witness:
-        lack("refutations by a counterexample")
+        entry = sp.sympify(entries_of(problem)[witness.entry], strict=True)
+        point([[entry]], witness.point, "refutations by a counterexample", guards)
         return Decision(False, "refuted", tuple(guards), result, witness)
     if result is not None:
         entry = result.nonzero[0]

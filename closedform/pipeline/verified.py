@@ -21,6 +21,8 @@ class Verified:
     name: str
     identities: int = 0
     completeness: int = 0
+    points: int = 0
+    """Refutations and ranks: what differs from zero at a point."""
     missing: Mapping[str, int] = field(default_factory=dict)
     """Reasons why proofs have no certificate, with their number."""
     failure: str = ""
@@ -31,7 +33,8 @@ class Verified:
             return f"{name}FAILED: {self.failure}"
         reasons = ", ".join(f"{n} {reason}" for reason, n in self.missing.items())
         return (
-            f"{name}{self.identities:3} identities, {self.completeness:2} completeness proofs"
+            f"{name}{self.identities:3} identities, {self.completeness:2} completeness proofs, "
+            f"{self.points:2} refutations and ranks"
             f"; not exported: {reasons or 'none'}"
         )
 
@@ -58,10 +61,10 @@ def verify(source: Source, store: Store, report: Report) -> Verified:
     except (LookupError, TypeError, ValueError) as error:
         return Verified(source.name, failure=str(error))
     kinds = Counter(certificate["kind"] for certificate in document["certificates"])
-    identities = kinds.pop("identity", 0)
+    identities, points = kinds.pop("identity", 0), kinds.pop("point", 0)
     missing = {**document["not exported"]}
     missing |= {f"inverse ({f})": 1 for f in document["inverses not exported"]}
-    return Verified(source.name, identities, kinds.total(), missing)
+    return Verified(source.name, identities, kinds.total(), points, missing)
 
 
 def _require_all(document: Mapping[str, Any], name: str, proof: Mapping[str, Any]) -> None:

@@ -101,7 +101,7 @@ def _has_full_rank(rows: Sequence[Sequence[Expr]], width: int, draw: random.Rand
     balls = Evaluator(list(point), entries)(list(point.values()))
     full = _certain_rank([balls[i : i + width] for i in range(0, len(balls), width)]) == width
     if full:
-        certificates.regular(rows, point, "ranks of a matrix at a posture")
+        certificates.point(rows, point, "ranks of a matrix at a posture")
     return full
 
 

@@ -110,9 +110,7 @@ class _Chain:
                 continue
             value = self.posture(statement.value).xreplace(dict.fromkeys(self.signs, sp.S.One))
             point = random_posture(draw, list(value.free_symbols))
-            certificates.regular(
-                [[value**2]], point, "quantities that differ from zero at a posture"
-            )
+            certificates.point([[value**2]], point, "quantities that differ from zero at a posture")
             (ball,) = Evaluator(list(point), [value])(list(point.values()))
             if ball.contains(0):
                 raise ProofError(
@@ -245,7 +243,7 @@ class _Combined:
             s: sp.Rational(k, 7) for k, s in enumerate(sorted(matrix.free_symbols, key=str), 8)
         }
         what = "matrices that combine the equations of lemmas"
-        certificates.regular(matrix.tolist(), point, what)
+        certificates.point(matrix.tolist(), point, what)
         if not normal(matrix.det()).is_nonzero:
             raise ProofError(
                 f"{self.where}: the matrix that combines the lemmas' equations is singular"

@@ -32,7 +32,13 @@ from .cases import CASES, Case, NotApplicableError, check
 MILLION = 1_000_000
 SETTLED = 0.1
 """Seconds to wait before timing a batch, because JAX frees its arrays in the background."""
-PACKAGES = {"sympy.cse": "sympy", "lambdify": "sympy"}
+PACKAGES = {
+    "sympy.cse": "sympy",
+    "lambdify": "sympy",
+    "array, jax.jit": "jax",
+    "array, torch": "torch",
+    "array, NumPy": "array-api-compat",
+}
 TABLES = ("c", "batch", "single", "inverse")
 ASIDE = ("array", "threads")
 """Only if they are asked for; for threads, the other tables of the run have all cores too."""
@@ -160,7 +166,8 @@ def with_threads(cores: int) -> dict[str, batches.Peer]:
 
 def versions() -> str:
     names = dict.fromkeys(
-        PACKAGES.get(n, n) for n in (*native.SOURCES, *batches.PEERS, *inverses.PEERS)
+        PACKAGES.get(n, n)
+        for n in (*native.SOURCES, *batches.PEERS, *libraries.PEERS, *inverses.PEERS)
     )
     found = []
     for name in ("numpy", *names):

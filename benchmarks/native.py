@@ -9,7 +9,7 @@ import logging
 import platform
 import subprocess
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,10 @@ GENERATED = HERE.parent / "generated" / "c"
 FLAGS = ["-O3", "-fno-math-errno", "-fno-trapping-math", "-ffp-contract=fast"]
 LIBRARY = ["-fPIC", "-shared", "-fno-semantic-interposition"]
 TARGETS = {"AVX-512": "x86-64-v4", "AVX2": "x86-64-v3"}
+
+
+MOST = 24
+"""Arctangents, or angles brought into range, in one kernel that is written by hand."""
 
 
 def widest() -> str:
@@ -86,7 +90,8 @@ def by_hand(case: Case) -> str:
 def limit(case: Case) -> str:
     """A hand-written kernel for one posture, with one eight-lane sincos."""
     return f"""
-#define ARCTANGENTS cf_atan2_lanes
+#define ARCTANGENTS(n, lanes, y, x, angle) cf_atan2_lanes(lanes, y, x, angle)
+#define WRAPPED(n, lanes, angle) for (int k = 0; k < lanes; ++k) angle[k] = cf_wrap(angle[k])
 {by_hand(case)}
 __attribute__((noinline)) void evaluate(const double *in, double *out)
 {{
@@ -97,6 +102,16 @@ __attribute__((noinline)) void evaluate(const double *in, double *out)
     body(in, s, c, out);
 }}
 """
+
+
+def each(macro: str, statements: Iterable[str]) -> str:
+    """Macros that do the first statement, the first two, ..."""
+    done: list[str] = []
+    lines: list[str] = []
+    for n, statement in enumerate(statements, 1):
+        done.append(statement)
+        lines.append(f"#define {macro.format(n=n)} {', '.join(done)}\n")
+    return "".join(lines)
 
 
 def limit_of_planes(case: Case) -> str:
@@ -110,12 +125,18 @@ def limit_of_planes(case: Case) -> str:
     one_by_one = width > 16
     place = "r[{k}][i]" if one_by_one else "y[{k} * ys + at + i]"
     stores = " ".join(f"{place.format(k=k)} = out[{k}];" for k in range(width))
+    # one by one, because compilers do not vectorise a loop around loops
+    arctangents = (f"angle[{k}] = cf_atan2(y[{k}], x[{k}])" for k in range(MOST))
+    wrapped = (f"angle[{k}] = cf_wrap(angle[{k}])" for k in range(MOST))
+    unrolled = each("ARCTANGENTS_{n}(y, x, angle)", arctangents)
+    unrolled += each("WRAPPED_{n}(angle)", wrapped)
     copies = (
         f"for (int k = 0; k < {width}; ++k) memcpy(y + k * ys + at, r[k], length * sizeof **r);"
     )
     return f"""
-#define ONE(k, y, x, angle) angle[k] = cf_atan2(y[k], x[k])
-#define ARCTANGENTS(n, y, x, angle) ONE(0, y, x, angle), ONE(1, y, x, angle), ONE(2, y, x, angle)
+{unrolled}
+#define ARCTANGENTS(n, lanes, y, x, angle) ARCTANGENTS_##n(y, x, angle)
+#define WRAPPED(n, lanes, angle) WRAPPED_##n(angle)
 {by_hand(case)}
 void evaluate(size_t n, const double *p, const double *x, size_t xs, double *y, size_t ys)
 {{

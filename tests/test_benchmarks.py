@@ -6,12 +6,14 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import libraries
 import numpy as np
 import pytest
 from closedform.generated.numpy import puma560
 from flint import arb
 
-from benchmarks import accuracy, inverses, solvers
+from benchmarks import accuracy, batches, inverses, native, solvers
+from benchmarks.cases import CASES, check
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -31,6 +33,26 @@ def test_poses_are_singular(kind, near):
     least = np.nanmin(abs(factors), axis=-1)
     assert least.max() < 2e-6
     assert (least > 1e-13).any() or not near
+
+
+BY_HAND = [case for case in CASES if Path(native.HERE, "limits", f"{case.full}.c").exists()]
+
+
+@pytest.mark.skipif(not libraries.compiles(), reason="needs gcc for x86-64")
+@pytest.mark.parametrize("case", BY_HAND, ids=lambda case: case.full)
+def test_kernels_by_hand_agree(tmp_path, case):
+    """With the printed NumPy, one posture at a time and as planes, in blocks that are not full."""
+    inputs = case.inputs(1000)
+    expected = case.values(inputs)
+    _, values = native.timer("limit", case, "x86-64", tmp_path, inputs)
+    assert np.isfinite(expected).any() and values.shape == expected.shape
+    check(case, values, expected)
+    _, planes = batches.of_planes(native.limit_of_planes, case, "planes", inputs)
+    check(case, planes(), expected)
+
+
+def test_all_functions_have_a_kernel_by_hand():
+    assert BY_HAND == CASES
 
 
 def test_our_inverse_passes():

@@ -13,7 +13,7 @@ static inline void body(const double *in, const double *s, const double *c, doub
     const double k = cf_sqrt((a + b + r) * cf_max(r + a - b, 0.0));
     const double ys[4] = { y, w, u, 0.0 }, xs[4] = { x, k, v, 1.0 };
     double t[4];
-    ARCTANGENTS(4, ys, xs, t);
+    ARCTANGENTS(3, 4, ys, xs, t);
     out[0] = cf_wrap(t[0] - 2 * t[1]);
     out[1] = 2 * t[2];
     out[2] = cf_wrap(t[0] + 2 * t[1]);

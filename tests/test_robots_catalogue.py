@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -58,6 +59,34 @@ def test_a_universal_robot_is_that_of_the_makers_table(name: str) -> None:
         for row, angle in zip(csv.DictReader(lines, skipinitialspace=True), q, strict=True)
     ]
     assert np.abs(robots.load(name).fk(q) - dh(rows)).max() < 1e-12
+
+
+def turn(axis: np.ndarray, angle: float) -> np.ndarray:
+    x, y, z = axis
+    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + math.sin(angle) * K + (1 - math.cos(angle)) * K @ K
+
+
+def numbers(joint: ElementTree.Element, part: str, key: str) -> np.ndarray:
+    found = joint.find(part)
+    assert found is not None
+    return np.array([float(value) for value in found.get(key, "0 0 0").split()])
+
+
+@pytest.mark.parametrize("path", sorted(ARMS.glob("ur*.urdf")), ids=lambda path: path.stem)
+def test_a_universal_robot_is_that_of_its_urdf(path: Path) -> None:
+    q = [0.3, -1.2, 1.5, 0.4, -0.7, 2.1]
+    R, p, angles = turn(np.array([0, 0, 1.0]), math.pi), np.zeros(3), iter(q)  # x the other way
+    for joint in ElementTree.parse(path).getroot().iter("joint"):
+        p = p + R @ numbers(joint, "origin", "xyz")
+        roll, pitch, yaw = numbers(joint, "origin", "rpy")
+        for axis, angle in zip(np.eye(3)[::-1], (yaw, pitch, roll), strict=True):
+            R = R @ turn(axis, angle)
+        if joint.get("type") == "revolute":
+            R = R @ turn(numbers(joint, "axis", "xyz"), next(angles))
+    T = robots.load(path.stem).fk(q)
+    assert np.abs(T[:3, 3] - p).max() < 1e-12
+    assert np.abs(T[:3, 2] - R[:, 2]).max() < 1e-7  # the axis of the tool; angles have nine digits
 
 
 def test_the_robots_of_the_robotics_toolbox_have_its_poses() -> None:

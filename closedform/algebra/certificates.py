@@ -185,7 +185,7 @@ class Record:
         conditions = [sp.sympify(e, strict=True) for e in assumed]
         used = {s for e in (*conditions, *(e for row in rows for e in row)) for s in e.free_symbols}
         try:
-            values = [[self.node(s), self.node(sp.sympify(at[s]))] for s in at if s in used]
+            values = [[self.node(s), self.node(sp.sympify(at[s], strict=True))] for s in at if s in used]
             content: dict[str, Any] = {
                 "at": values,
                 "assumed": [self.node(e) for e in conditions],

@@ -90,7 +90,7 @@ def declare(d: Derivation) -> tuple[Dimensions, Joints]:
         "d1": (500, "height of the shoulders"),
         "d": (100, "distance of each arm from the mid-plane"),
         "gs": (20, "half the distance of the gears of the wrist, g_s"),
-        "al": (120, "length of the links of the wrist, which the paper writes as alpha l"),
+        "al": (120, "length of the links of the wrist, which the paper writes as a product"),
         "loff": (50, "distance from the gears to the pitch joint"),
         "lp": (100, "distance from the pitch joint to the tip"),
     }

@@ -148,7 +148,7 @@ Parameters.a3.__doc__ = 'offset of the fore-arms at the elbow, in m; default 0.0
 Parameters.d1.__doc__ = 'height of the shoulders, in m; default 0.5 (example; the paper gives no dimensions)'
 Parameters.d.__doc__ = 'distance of each arm from the mid-plane, in m; default 0.1 (example; the paper gives no dimensions)'
 Parameters.gs.__doc__ = 'half the distance of the gears of the wrist, g_s, in m; default 0.02 (example; the paper gives no dimensions)'
-Parameters.al.__doc__ = 'length of the links of the wrist, which the paper writes as alpha l, in m; default 0.12 (example; the paper gives no dimensions)'
+Parameters.al.__doc__ = 'length of the links of the wrist, which the paper writes as a product, in m; default 0.12 (example; the paper gives no dimensions)'
 Parameters.loff.__doc__ = 'distance from the gears to the pitch joint, in m; default 0.05 (example; the paper gives no dimensions)'
 Parameters.lp.__doc__ = 'distance from the pitch joint to the tip, in m; default 0.1 (example; the paper gives no dimensions)'
 

@@ -179,7 +179,7 @@ d.step(
     "Tip",
     "The wrist is a serial chain on the virtual fore-arm: roll about the fore-arm, yaw about the "
     "rolled x axis, the wrist, pitch about the y axis, and the last link.  So the rotation of the "
-    "tip in (9) is R03 Rz(phi) Rx(psi) Ry(theta).",
+    "tip in (9) is that of the fore-arm, then phi about z, psi about x and theta about y.",
     {"(x, y, z)_T": T, r"(L_\theta, L_{2W}, a_{3W})": sp.Matrix(extended(m, posture))},
     published=("(9)",),
     proves="Position and rotation of the tip are those of the serial chain with the virtual arm.",
@@ -271,7 +271,7 @@ d.function(
 p = Program()
 d.function(
     "pose",
-    "Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).",
+    "Pose of the tip: turned as the fore-arm, then by phi about z, psi about x, theta about y.",
     {"q": q},
     {"T": pose_matrix(m, p, stand(p)[0])},
     program=p,

@@ -279,7 +279,7 @@ d.function(
 p = Program()
 d.function(
     "pose",
-    "Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).",
+    "Pose of the tip: turned as the fore-arm, then by phi about z, psi about x, theta about y.",
     {"q": q},
     {"T": pose_matrix(m, p, stand(p))},
     program=p,

@@ -572,7 +572,7 @@ _POSE = _runtime.Kernel(
 
 
 def pose(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).
+    """Pose of the tip: turned as the fore-arm, then by phi about z, psi about x, theta about y.
 
     Source: eq. (9) and its frames.
 

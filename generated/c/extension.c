@@ -4930,7 +4930,7 @@ const cf_function cf_functions[] = {
       1, h6ar_fk_in, 1, h6ar_fk_out,
       h6ar_fk_one, h6ar_fk_many },
     { "h6ar.pose",
-      "Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).\n"
+      "Pose of the tip: turned as the fore-arm, then by phi about z, psi about x, theta about y.\n"
       "\n"
       "Source: eq. (9) and its frames.\n"
       "\n"
@@ -5354,7 +5354,7 @@ const cf_function cf_functions[] = {
       1, h6ar_loop_closed_fk_in, 1, h6ar_loop_closed_fk_out,
       h6ar_loop_closed_fk_one, h6ar_loop_closed_fk_many },
     { "h6ar_loop_closed.pose",
-      "Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).\n"
+      "Pose of the tip: turned as the fore-arm, then by phi about z, psi about x, theta about y.\n"
       "\n"
       "Source: eq. (9) and its frames.\n"
       "\n"

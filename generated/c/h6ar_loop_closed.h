@@ -82,7 +82,7 @@ void h6ar_loop_closed_fk_batch(size_t n, const h6ar_loop_closed_params *params,
     real_t *x, size_t x_stride);
 
 /*
- * Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).
+ * Pose of the tip: turned as the fore-arm, then by phi about z, psi about x, theta about y.
  *
  * Source: eq. (9) and its frames.
  *

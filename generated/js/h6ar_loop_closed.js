@@ -547,7 +547,7 @@ const _POSE = _runtime.kernel({
 });
 
 /**
- * Pose of the tip, R03 Rz(phi) Rx(psi) Ry(theta).
+ * Pose of the tip: turned as the fore-arm, then by phi about z, psi about x, theta about y.
  *
  * Source: eq. (9) and its frames.
  *

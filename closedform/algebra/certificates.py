@@ -185,9 +185,9 @@ class Record:
         conditions = [sp.sympify(e, strict=True) for e in assumed]
         used = {s for e in (*conditions, *(e for row in rows for e in row)) for s in e.free_symbols}
         try:
-            values = [[self.node(s), self.node(sp.sympify(at[s], strict=True))] for s in at if s in used]
+            given = {s: sp.sympify(value, strict=True) for s, value in at.items() if s in used}
             content: dict[str, Any] = {
-                "at": values,
+                "at": [[self.node(s), self.node(value)] for s, value in given.items()],
                 "assumed": [self.node(e) for e in conditions],
                 "matrix": [[self.node(e) for e in row] for row in rows],
             }

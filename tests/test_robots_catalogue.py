@@ -89,6 +89,24 @@ def test_a_universal_robot_is_that_of_its_urdf(path: Path) -> None:
     assert np.abs(T[:3, 2] - R[:, 2]).max() < 1e-7  # the axis of the tool; angles have nine digits
 
 
+def test_the_motors_of_the_irb_2400_move_the_chain_of_its_urdf() -> None:
+    m = [0.3, -0.4, 0.5, 0.6, -0.7, 0.8]
+    chain = [
+        ((0, 0, 0), "z", m[0]),
+        ((0.1, 0, 0.615), "y", m[1]),
+        ((0, 0, 0.705), "y", m[2] - m[1]),
+        ((0.258, 0, 0.135), "x", m[3]),
+        ((0.497, 0, 0), "y", m[4]),
+        ((0.085, 0, 0), "x", m[5]),
+    ]
+    R, p = np.eye(3), np.zeros(3)
+    for place, axis, angle in chain:
+        p, R = p + R @ place, R @ turn(np.eye(3)["xyz".index(axis)], angle)
+    T = robots.load("irb2400").fk(m)
+    assert np.abs(T[:3, 3] - p).max() < 1e-12
+    assert np.abs(T[:3, 2] - R[:, 0]).max() < 1e-12  # the tool points along x of that model
+
+
 def test_the_robots_of_the_robotics_toolbox_have_its_poses() -> None:
     q1, q2, q3, q4, q5, q6 = q = [0.3, -0.5, 0.6, 0.4, -0.7, 2.1]
     right = math.pi / 2

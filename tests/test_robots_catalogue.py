@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -73,17 +75,28 @@ def numbers(joint: ElementTree.Element, part: str, key: str) -> np.ndarray:
     return np.array([float(value) for value in found.get(key, "0 0 0").split()])
 
 
+X, Y, Z = np.eye(3)
+
+
+def walked(chain: Iterable[tuple[Any, np.ndarray, float]]) -> tuple[np.ndarray, np.ndarray]:
+    """Rotation and position at the end of steps, each a shift and then a turn about an axis."""
+    R, p = np.eye(3), np.zeros(3)
+    for shift, axis, angle in chain:
+        p, R = p + R @ shift, R @ turn(axis, angle)
+    return R, p
+
+
 @pytest.mark.parametrize("path", sorted(ARMS.glob("ur*.urdf")), ids=lambda path: path.stem)
 def test_a_universal_robot_is_that_of_its_urdf(path: Path) -> None:
     q = [0.3, -1.2, 1.5, 0.4, -0.7, 2.1]
-    R, p, angles = turn(np.array([0, 0, 1.0]), math.pi), np.zeros(3), iter(q)  # x the other way
+    chain: list[tuple[Any, np.ndarray, float]] = [(0 * X, Z, math.pi)]  # x is the other way
+    angles = iter(q)
     for joint in ElementTree.parse(path).getroot().iter("joint"):
-        p = p + R @ numbers(joint, "origin", "xyz")
         roll, pitch, yaw = numbers(joint, "origin", "rpy")
-        for axis, angle in zip(np.eye(3)[::-1], (yaw, pitch, roll), strict=True):
-            R = R @ turn(axis, angle)
+        chain += [(numbers(joint, "origin", "xyz"), Z, yaw), (0 * X, Y, pitch), (0 * X, X, roll)]
         if joint.get("type") == "revolute":
-            R = R @ turn(numbers(joint, "axis", "xyz"), next(angles))
+            chain.append((0 * X, numbers(joint, "axis", "xyz"), next(angles)))
+    R, p = walked(chain)
     T = robots.load(path.stem).fk(q)
     assert np.abs(T[:3, 3] - p).max() < 1e-12
     assert np.abs(T[:3, 2] - R[:, 2]).max() < 1e-7  # the axis of the tool; angles have nine digits
@@ -91,17 +104,16 @@ def test_a_universal_robot_is_that_of_its_urdf(path: Path) -> None:
 
 def test_the_motors_of_the_irb_2400_move_the_chain_of_its_urdf() -> None:
     m = [0.3, -0.4, 0.5, 0.6, -0.7, 0.8]
-    chain = [
-        ((0, 0, 0), "z", m[0]),
-        ((0.1, 0, 0.615), "y", m[1]),
-        ((0, 0, 0.705), "y", m[2] - m[1]),
-        ((0.258, 0, 0.135), "x", m[3]),
-        ((0.497, 0, 0), "y", m[4]),
-        ((0.085, 0, 0), "x", m[5]),
-    ]
-    R, p = np.eye(3), np.zeros(3)
-    for place, axis, angle in chain:
-        p, R = p + R @ place, R @ turn(np.eye(3)["xyz".index(axis)], angle)
+    R, p = walked(
+        [
+            ((0, 0, 0), Z, m[0]),
+            ((0.1, 0, 0.615), Y, m[1]),
+            ((0, 0, 0.705), Y, m[2] - m[1]),
+            ((0.258, 0, 0.135), X, m[3]),
+            ((0.497, 0, 0), Y, m[4]),
+            ((0.085, 0, 0), X, m[5]),
+        ]
+    )
     T = robots.load("irb2400").fk(m)
     assert np.abs(T[:3, 3] - p).max() < 1e-12
     assert np.abs(T[:3, 2] - R[:, 0]).max() < 1e-12  # the tool points along x of that model

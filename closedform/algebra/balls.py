@@ -461,6 +461,23 @@ _FUNCTIONS: dict[type, Callable[..., arb]] = {
     sp.Max: lambda *xs: reduce(arb.max, xs),
     sp.Min: lambda *xs: reduce(arb.min, xs),
 }
+
+
+def pivot_rows(rows: Sequence[Sequence[Any]]) -> list[int]:
+    """The rows of a matrix of balls that are certainly independent, by Gaussian elimination."""
+    left, chosen = dict(enumerate(map(list, rows))), list[int]()
+    for column in range(len(rows[0])):
+        certain = [j for j, row in left.items() if not row[column].contains(0)]
+        if certain:
+            best = max(certain, key=lambda j: abs(float(left[j][column].mid())))
+            pivot = left.pop(best)
+            for j, row in left.items():
+                scale = row[column] / pivot[column]
+                left[j] = [a - b * scale for a, b in zip(row, pivot, strict=True)]
+            chosen.append(best)
+    return sorted(chosen)
+
+
 _TRIGONOMETRIC: dict[type, tuple[Callable[[arb], arb], Callable[[fmpq], arb]]] = {
     sp.sin: (arb.sin, arb.sin_pi_fmpq),
     sp.cos: (arb.cos, arb.cos_pi_fmpq),

@@ -19,6 +19,7 @@ import sympy as sp
 from flint import ctx
 from sympy.core.function import AppliedUndef
 
+from closedform.algebra.balls import pivot_rows
 from closedform.algebra.basis import TooLargeError, logged_basis
 from closedform.algebra.expressions import entries_of, sign_of
 from closedform.algebra.tower import Tower
@@ -192,7 +193,7 @@ class Record:
                 "matrix": [[self.node(e) for e in row] for row in rows],
             }
             with ctx.workprec(300):
-                chosen = _pivot_rows(matrix_of(self.nodes, content))
+                chosen = pivot_rows(matrix_of(self.nodes, content))
         except (_Unwritable, Refused, LookupError):
             return False
         if len(chosen) < len(rows[0]):
@@ -264,21 +265,6 @@ class Record:
             uses = self._names[str(e)]
             return ["name", f"{e}#{uses}" if uses > 1 else str(e), sign_of(e)]
         raise _Unwritable(f"expressions with {type(e).__name__}")
-
-
-def _pivot_rows(rows: list[list[Any]]) -> list[int]:
-    """The rows of a matrix of balls that are certainly independent, by Gaussian elimination."""
-    left, chosen = dict(enumerate(rows)), list[int]()
-    for column in range(len(rows[0])):
-        certain = [j for j, row in left.items() if not row[column].contains(0)]
-        if certain:
-            best = max(certain, key=lambda j: abs(float(left[j][column].mid())))
-            pivot = left.pop(best)
-            for j, row in left.items():
-                scale = row[column] / pivot[column]
-                left[j] = [a - b * scale for a, b in zip(row, pivot, strict=True)]
-            chosen.append(best)
-    return sorted(chosen)
 
 
 def _apart(e: Expr) -> tuple[set[Expr], set[Expr]]:

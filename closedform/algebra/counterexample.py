@@ -15,10 +15,10 @@ from sympy import Rational, Symbol
 from sympy.core.relational import Relational
 
 from closedform.algebra.balls import Evaluator, Undetermined
+from closedform.algebra.expressions import TRIGONOMETRIC
 
 Expr: TypeAlias = Any  # SymPy's annotations are partial
 
-_TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc)
 _LENGTHS = tuple(map(Rational, (1, 2, 3)))
 _NUMBERS = tuple(map(Rational, (0, 1, -1, 2, -2, 3, -3)))
 _ANGLES = tuple(
@@ -136,7 +136,7 @@ def _angles(entries: Sequence[Expr]) -> set[Symbol]:
     return {
         atom
         for e in entries
-        for trigonometric in e.atoms(*_TRIGONOMETRIC)
+        for trigonometric in e.atoms(*TRIGONOMETRIC)
         for atom in sp.expand(trigonometric.args[0]).as_coefficients_dict()
         if atom.is_Symbol
     }

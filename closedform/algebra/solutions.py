@@ -23,12 +23,11 @@ from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing
 
 from closedform.algebra.certificates import System, open_record
+from closedform.algebra.expressions import TRIGONOMETRIC
 
 Expr: TypeAlias = Any  # SymPy's annotations are partial
 Monomial: TypeAlias = tuple[int, ...]
 Method: TypeAlias = Literal["generic", "specialised"]
-
-_TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc)
 
 
 class InfinitelyManyError(ValueError):
@@ -239,7 +238,7 @@ def _absolute_angles(
     The change is invertible over the integers, so it keeps the number of solutions. It is chosen
     among the arguments of the sines and cosines, to minimise the sum of all multiples.
     """
-    functions = {f for e in equations for f in e.atoms(*_TRIGONOMETRIC)}
+    functions = {f for e in equations for f in e.atoms(*TRIGONOMETRIC)}
     terms = [sp.expand(f.args[0]).as_coefficients_dict() for f in functions]
     angles = [u for u in unknowns if any(u in t for t in terms)]
     if any(t[u] % 1 for t in terms for u in angles):

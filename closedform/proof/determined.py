@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra import certificates
-from closedform.algebra.balls import Evaluator
+from closedform.algebra.balls import Evaluator, pivot_rows
 from closedform.model.inverse import Inverse
 from closedform.proof.posture import Posture
 
@@ -99,7 +99,7 @@ def _has_full_rank(rows: Sequence[Sequence[Expr]], width: int, draw: random.Rand
     entries = [slope for row in rows for slope in row]
     point = random_posture(draw, list({s for e in entries for s in e.free_symbols}))
     balls = Evaluator(list(point), entries)(list(point.values()))
-    full = _certain_rank([balls[i : i + width] for i in range(0, len(balls), width)]) == width
+    full = len(pivot_rows([balls[i : i + width] for i in range(0, len(balls), width)])) == width
     if full:
         certificates.point(rows, point, "ranks of a matrix at a posture")
     return full
@@ -114,23 +114,6 @@ def _parts(rows: Sequence[Sequence[Expr]], width: int) -> list[list[int]]:
         parts = [part for part in parts if not part & touched]
         parts.append(touched.union(*joined))
     return [sorted(part) for part in parts]
-
-
-def _certain_rank(rows: list[list[Any]]) -> int:
-    """The rank of a matrix of balls; only pivots that certainly differ from zero count."""
-    rank = 0
-    for column in range(len(rows[0])):
-        certain = [row for row in rows[rank:] if not row[column].contains(0)]
-        if not certain:
-            continue
-        pivot = max(certain, key=lambda row: abs(float(row[column].mid())))
-        rows = [*rows[:rank], pivot, *(row for row in rows[rank:] if row is not pivot)]
-        rows[rank + 1 :] = [
-            [a - b * (row[column] / pivot[column]) for a, b in zip(row, pivot, strict=True)]
-            for row in rows[rank + 1 :]
-        ]
-        rank += 1
-    return rank
 
 
 __all__ = ["random_posture", "undetermined"]

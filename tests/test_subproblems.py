@@ -68,9 +68,9 @@ def test_a_joint_of_seven_can_be_chosen(franka: tuple[Derivation, Serial]) -> No
 
 
 def test_a_degree_is_named() -> None:
-    """Three skew axes under a spherical wrist: a quartic, which no lemma solves."""
-    rows = [(1, pi / 2, 0), (1, pi / 3, 1), (1, pi / 2, ROOM), *WRIST]
-    with pytest.raises(NoChainError, match="degree 4; use ssik") as e:
+    """Three parallel axes, and no two of the others that meet."""
+    rows = [(1, 0, 0), (1, 0, 0), (1, pi / 3, 1), (1, pi / 2, 1), (1, pi / 3, 1), (1, 0, 1)]
+    with pytest.raises(NoChainError, match="an equation of degree 4 is left") as e:
         propose(arm(rows)[1])
     assert e.value.degree == 4
     rows = [(1, pi / 2, 0)] * 6

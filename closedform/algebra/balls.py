@@ -24,6 +24,8 @@ import sympy as sp
 from flint import arb, fmpq
 from sympy import Symbol
 
+from closedform.algebra.resolvent import Resolvent, enclosed
+
 Expr: TypeAlias = Any  # SymPy's annotations are partial
 Value: TypeAlias = Any  # int, Fraction, float, or an exact SymPy number such as pi/3
 Registers: TypeAlias = "list[arb]"
@@ -460,6 +462,7 @@ _FUNCTIONS: dict[type, Callable[..., arb]] = {
     sp.sign: _sign,
     sp.Max: lambda *xs: reduce(arb.max, xs),
     sp.Min: lambda *xs: reduce(arb.min, xs),
+    Resolvent: enclosed,
 }
 
 

@@ -372,7 +372,7 @@ class _Batch:
         self.finding.compared += int(counted.sum())
         answers, given = solutions[row, branch].astype(float), self.sample.values[row]
         bounds = self.truth.residual_bounds(answers, given, parameters)
-        allowed = self.backend.tolerances.round_trip
+        allowed = self.backend.tolerances.violated(float(self.truth.amplified(*parameters)))
         for k in np.argsort(-bounds):
             worse = counted[k] and bounds[k] > self.finding.worst * eps
             if not (worse or bounds[k] > allowed):

@@ -15,6 +15,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from closedform.algebra.balls import Evaluator, Undetermined, to_float
+from closedform.algebra.resolvent import Resolvent, cubic, slope
 
 Array = NDArray[Any]
 WIDE = np.longdouble
@@ -310,6 +311,35 @@ def _combined(decisive: bool) -> Callable[..., Truth]:
     return combine
 
 
+def _resolvent(a: Ball, b: Ball, e: Ball) -> Ball:
+    """The root of a resolvent; open unless the cubic changes its sign for certain beside it."""
+    point = a[0], b[0], e[0]
+    right = cubic(e[0] / 3, *point) >= 0
+    u = np.where(right, WIDE(1), WIDE(-1))
+    low, high = np.full_like(u, -1), np.full_like(u, 1)
+    for _ in range(2 * np.finfo(WIDE).nmant):
+        value = cubic(u, *point)
+        low, high = np.where(value >= 0, u, low), np.where(value >= 0, high, u)
+        after = u - value / slope(u, *point)
+        u = np.where((after >= low) & (after <= high), after, (low + high) / 2)
+    (value, error), rate = _cubic((u, WIDE(0)), a, b, e), abs(slope(u, *point))
+    radius = 4 * (abs(value) + error) / rate + ROUNDING
+    (above, s), (below, r) = (_cubic((u + d, WIDE(0)), a, b, e) for d in (-radius, radius))
+    certain = ((above > s) | (u - radius <= -1)) & ((below < -r) | (u + radius >= 1))
+    return u, np.where(certain, radius, OPEN)
+
+
+def _cubic(u: Ball, a: Ball, b: Ball, e: Ball) -> Ball:
+    one: Ball = WIDE(1), WIDE(0)
+    left, right = _sum(one, _minus(u)), _sum(one, u)
+    middle = _product(left, right, _sum(u, _minus(e)))
+    return _sum(middle, _product(a, a, left), _minus(_product(b, b, right)))
+
+
+def _minus(a: Ball) -> Ball:
+    return -a[0], a[1]
+
+
 def _chosen(*parts: Any) -> Ball:
     """The branch of the first condition that holds."""
     middle: Any = WIDE("nan")
@@ -334,6 +364,7 @@ _FUNCTIONS: dict[Any, Callable[..., Any]] = {
     sp.sign: _sign,
     sp.Max: _extreme(np.maximum),
     sp.Min: _extreme(np.minimum),
+    Resolvent: _resolvent,
     sp.Ge: _comparison(np.greater_equal),
     sp.Gt: _comparison(np.greater),
     sp.Le: _comparison(np.less_equal),

@@ -54,6 +54,12 @@ $(-\pi, \pi]$.""",
 )
 
 
+AMPLIFIED = (
+    "OK answers hold to 1e-12 of the size of the arm, the sum of its lengths, or to 3.5e-14 of it "
+    "times the size over the distance of the skew axes, if that is more."
+)
+
+
 @dataclass
 class Chain:
     """Collects the links of an inverse.
@@ -79,6 +85,8 @@ class Chain:
     units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = field(default_factory=list)
     halves: dict[sp.Symbol, tuple[Pair, sp.Expr]] = field(default_factory=dict)
     directions: dict[sp.Expr, Pair] = field(default_factory=dict)
+    held: list[sp.Symbol] = field(default_factory=list)
+    condition: sp.Expr = sp.S.Zero
     coefficients: set[sp.Symbol] = field(default_factory=set)
     """Names of the coefficients of lemmas, which are proved for all values of them."""
 
@@ -225,6 +233,24 @@ class Chain:
         self.meaning |= {named.s: y / sp.sqrt(x**2 + y**2), named.c: x / sp.sqrt(x**2 + y**2)}
         self.directions[sp.atan2(y, x)] = named
         return named
+
+    def coordinate(self, name: str, value: sp.Expr) -> sp.Symbol:
+        """A name for what the target determines, as the square of a distance.
+
+        It counts as another coordinate of the target: equations that are linear in all of them
+        determine it from the joints, so that it need not be linear in the others.
+        """
+        symbol = self.program.let(name, value)
+        self.held.append(symbol)
+        return symbol
+
+    def amplified_over(self, length: sp.Expr) -> sp.Expr:
+        """Say that roundings of the size of the arm are divided by a ``length``, as by a lever.
+
+        Returns what an answer may miss on the scale of the tolerances, half the size or more.
+        """
+        self.condition = 5 * self._sum_of_lengths() / (2 * length)
+        return self.let("play", self.size * sp.Max(1, self.size / (16 * length)) / 2)
 
     def angle(self, name: str, value: sp.Expr) -> sp.Symbol:
         """An auxiliary angle: a sum of joints with integer coefficients, and a constant."""
@@ -447,6 +473,8 @@ class Chain:
         if self.name == "ik":
             d.branches = choices.labels
         said = self.notes if singular is None else [f"SINGULAR: {text}" for text in singular]
+        if self.condition != 0:
+            said = [*said, AMPLIFIED]
         d.function(
             self.name,
             summary,
@@ -474,7 +502,14 @@ class Chain:
             parametrisation=self._rotations() if self.is_pose else (),
             angles=tuple(real(f"x_{n}") for n in self.angles),
             links=tuple(self.links),
-            glue=Rank({**self.meaning}, {**self.defined}, {**self.lengths}, tuple(self.units)),
+            condition=self.condition,
+            glue=Rank(
+                {**self.meaning},
+                {**self.defined},
+                {**self.lengths},
+                tuple(self.units),
+                tuple(self.held),
+            ),
         )
         d.inverses.append(inverse)
         return inverse

@@ -13,7 +13,9 @@ from functools import reduce
 
 import sympy as sp
 
+from closedform.algebra.resolvent import Resolvent
 from closedform.lower.graph import Graph, Node
+from closedform.lower.resolvent import root_between
 from closedform.model.functions import reject_floats
 
 RELATIONS = {
@@ -74,6 +76,8 @@ class Builder:
             if not bottom.is_nonnegative:
                 top, bottom = expr.args[0], sp.S.One
             return graph.atan2(self(top), self(bottom))
+        if isinstance(expr, Resolvent):
+            return root_between(graph, *map(self, expr.args))
         if isinstance(expr, sp.Abs):
             return graph.even("abs", self(expr.args[0]))
         if isinstance(expr, (sp.Max, sp.Min)):

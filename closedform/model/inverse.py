@@ -51,12 +51,14 @@ class Relation:
     """What the coefficients of a lemma have to satisfy: ``value`` is zero.
 
     It is the sum of the equations of earlier links, each times a factor; each term is the first
-    unknown of the link, and the factors of its first equations.  ``meaning`` is for messages.
+    unknown of the link, and the factors of its first equations.  ``meaning`` is for messages.  Or
+    there are no terms, and it vanishes because ``root`` is by definition a root of it.
     """
 
     value: sp.Expr
     terms: tuple[tuple[sp.Symbol, tuple[sp.Expr, ...]], ...]
     meaning: str
+    root: sp.Symbol | None = None
 
 
 @dataclass(frozen=True)
@@ -112,6 +114,8 @@ class Rank:
     """Auxiliary lengths, at a posture."""
     units: tuple[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]], ...] = ()
     """Sine and cosine of angles that may be chosen freely, and the names that are free in them."""
+    held: tuple[sp.Symbol, ...] = ()
+    """Names of what the target determines, which count as further coordinates of it."""
 
 
 @dataclass(frozen=True)

@@ -69,6 +69,10 @@ class Tolerances:
         """
         return max(self.forward, 16 * self.vanishing * condition)
 
+    def violated(self, condition: float) -> float:
+        """The largest violation of its equations by an answer of such an inverse."""
+        return max(self.round_trip, 16 * self.vanishing * condition)
+
     def sizes(self, degree: int) -> tuple[float, float]:
         """The smallest and largest size whose powers up to ``degree`` stay in the range."""
         return 2.0 ** -(-self.least_exponent // degree), 2.0 ** (self.most_exponent // degree)

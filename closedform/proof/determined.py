@@ -30,7 +30,8 @@ def undetermined(inverse: Inverse, posture: Posture, equations: Sequence[Expr]) 
     draw = random.Random(2)
     columns, circle = _columns(inverse, posture)
     constant = [x - f for x, f in zip(inverse.targets, inverse.forward, strict=True) if f.is_number]
-    left = [sp.expand_trig(posture.named(e)).xreplace(circle) for e in (*equations, *constant)]
+    named = map(posture.in_coordinates, (*equations, *constant))
+    left = [sp.expand_trig(e).xreplace(circle) for e in named]
     known: dict[Expr, Expr] = {}
     while True:
         open_columns = [x for x in columns if x not in known]
@@ -44,7 +45,7 @@ def undetermined(inverse: Inverse, posture: Posture, equations: Sequence[Expr]) 
 
 
 def _columns(inverse: Inverse, posture: Posture) -> tuple[dict[Expr, Expr], dict[Expr, Expr]]:
-    """The coordinates of the target and the auxiliary lengths, with their values at a posture.
+    """The coordinates of the target, what counts as one, and the auxiliary lengths, at a posture.
 
     An angle has two, its cosine and its sine.
     """
@@ -58,6 +59,7 @@ def _columns(inverse: Inverse, posture: Posture) -> tuple[dict[Expr, Expr], dict
             columns |= {c: sp.cos(value), s: sp.sin(value)}
         else:
             columns[x] = value
+    columns |= {s: posture(s) for s in posture.held}
     return columns | posture.lengths, circle
 
 
@@ -110,6 +112,8 @@ def _parts(rows: Sequence[Sequence[Expr]], width: int) -> list[list[int]]:
     parts: list[set[int]] = []
     for row in rows:
         touched = {j for j in range(width) if row[j] != 0}
+        if not touched:
+            continue
         joined = [part for part in parts if part & touched]
         parts = [part for part in parts if not part & touched]
         parts.append(touched.union(*joined))

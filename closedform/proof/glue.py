@@ -33,6 +33,7 @@ import sympy as sp
 from closedform.algebra import certificates
 from closedform.algebra.balls import Evaluator
 from closedform.algebra.normal_form import normal
+from closedform.algebra.resolvent import Resolvent
 from closedform.model.functions import Function, Match, Vanishes, explicit, substitute
 from closedform.model.inverse import Combination, Degenerate, Inverse, Link, Rank
 from closedform.proof.determined import random_posture, undetermined
@@ -159,6 +160,9 @@ class _Chain:
         for link in self.inverse.links:
             for relation in link.relations:
                 place = f"{self.where}: {relation.meaning}, which {_title(link)} requires"
+                if relation.root is not None:
+                    self._is_root(relation.root, relation.value, place)
+                    continue
                 unknown = [u for u, _ in relation.terms if u not in solved]
                 if unknown or not relation.terms:
                     missing = f": no earlier lemma solves for {unknown[0]}" if unknown else ""
@@ -174,6 +178,13 @@ class _Chain:
                 difference = self.posture.named(relation.value - total)
                 require(substitute(difference, rotation), (), f"{place}, does not follow so")
             solved[link.unknowns[0]] = link.equations
+
+    def _is_root(self, root: Expr, value: Expr, place: str) -> None:
+        """Prove that an expression is what the definition of a root says vanishes."""
+        made = self.posture.made[root]
+        if not isinstance(made, Resolvent):
+            raise ProofError(f"{place}, does not follow: {root} is not defined as a root")
+        require(value - made.law(root), (), f"{place}, is not how it is defined")
 
     def _determines_target(self) -> None:
         """Prove that the equations have no other solution for the target than the image."""

@@ -70,7 +70,7 @@ def prove_inverse(derivation: Derivation, inverse: Inverse) -> InverseResult:
         [(counted.certificate, excluded) for counted, excluded in counts],
         each,
     )
-    cases = [case for link in inverse.links for case in link.degenerate]
+    cases = [case for link in inverse.links for case in link.degenerate if case.free]
     return InverseResult(
         function.name,
         branches,

@@ -28,6 +28,7 @@ class Posture:
                 taken.add(held[-1])
                 (self.sums[held[-1]],) = sp.solve(value - symbol, held[-1])
         self.names: dict[Expr, Expr] = {}
+        self.held = glue.held
         self.meaning = glue.meaning
         self.made = {s.symbol: s.value for s in function.body if isinstance(s, (Let, Bound))}
         self.targets = {
@@ -42,13 +43,17 @@ class Posture:
 
     def named(self, e: Expr) -> Expr:
         """An expression in terms of the unknowns and the target only."""
-        return self.in_sums(self._written_out(e))
+        return self.in_sums(self._written_out(e, self.names))
 
-    def _written_out(self, e: Expr) -> Expr:
+    def in_coordinates(self, e: Expr) -> Expr:
+        """The same, with names that count as coordinates of the target."""
+        return self.in_sums(self._written_out(e, {s: s for s in self.held}))
+
+    def _written_out(self, e: Expr, names: dict[Expr, Expr]) -> Expr:
         for s in e.free_symbols:
-            if s not in self.names and (s in self.meaning or s in self.made):
-                self.names[s] = self._written_out(self.meaning.get(s, self.made.get(s)))
-        return substitute(e, self.names)
+            if s not in names and (s in self.meaning or s in self.made):
+                names[s] = self._written_out(self.meaning.get(s, self.made.get(s)), names)
+        return substitute(e, names)
 
     def __call__(self, e: Expr) -> Expr:
         """The value of an expression at a posture, with its image as the target."""

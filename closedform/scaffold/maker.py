@@ -38,6 +38,8 @@ class Maker:
     used: list[str] = field(default_factory=list)
     count: int = 0
     branches: int = 1
+    degree: int = 2
+    """The highest degree of an equation that may be left: a chain without a quartic is shorter."""
     pairs: tuple[str, str] = ("", "")
 
     def add(self, line: str) -> None:

@@ -38,15 +38,21 @@ def propose(
             f"{given} cannot be given",
             "Of an arm of seven joints one can be given, by its name in the table.",
         )
-    for name, maker, structure in _candidates(arm, given):
-        progress(f"trying {name}")
-        try:
-            found = structure()
-        except NoChainError as error:
-            tried.append(Tried(name, error))
-            continue
-        lemmas = tuple(dict.fromkeys(maker.used))
-        return Proposal(found, tuple(maker.lines), lemmas, maker.branches, tuple(tried))
+    for degree in (2, 4):
+        left = {t.name for t in tried if t.error.degree == degree}
+        for name, maker, structure in _candidates(arm, given):
+            if degree > 2 and name not in left:
+                continue
+            progress(f"trying {name}")
+            maker.degree = degree
+            try:
+                found = structure()
+            except NoChainError as error:
+                tried = [*(t for t in tried if t.name != name), Tried(name, error)]
+                continue
+            tried = [t for t in tried if t.name != name]
+            lemmas = tuple(dict.fromkeys(maker.used))
+            return Proposal(found, tuple(maker.lines), lemmas, maker.branches, tuple(tried))
     raise _refusal(arm, tried)
 
 

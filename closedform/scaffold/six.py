@@ -66,7 +66,7 @@ class SixMaker(SubproblemMaker):
             raise NoChainError(
                 "axes {0} and {1}, and {1} and {2}, do not meet".format(*numbers),
                 "Beside three parallel axes two neighbours have to meet; otherwise an equation of "
-                "degree 4 is left, for which there is no lemma.",
+                "degree 4 is left, which no known chain solves.",
                 degree=4,
             )
         one, two, three, four, five, six = found.joints
@@ -221,7 +221,7 @@ class SixMaker(SubproblemMaker):
             raise NoChainError(
                 f"axes {one} and {two} do not meet",
                 "Beside the three axes two neighbours have to meet; otherwise an equation of "
-                "degree 4 is left, for which there is no lemma.",
+                "degree 4 is left, which no known chain solves.",
                 degree=4,
             )
         return found

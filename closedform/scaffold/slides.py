@@ -167,7 +167,7 @@ class Slides:
                 f"its slide is not normal to axis {two.number}, nor do axes {one.number} and "
                 f"{two.number} meet",
                 "A turret with a slide needs one of the two; otherwise an equation of degree 4 is "
-                "left, for which there is no lemma.",
+                "left, which no known chain solves.",
                 degree=4,
             )
         turned = [(first, one.end), (second, two.end), ("", three.end)]

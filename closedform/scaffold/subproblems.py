@@ -19,6 +19,7 @@ import sympy as sp
 from closedform.mechanics.arm import Group, Row
 from closedform.mechanics.frames import rotation
 from closedform.scaffold.chainlinks import Single, Singles, parallel
+from closedform.scaffold.ellipse import Ellipse
 from closedform.scaffold.maker import Maker, Solved, Z, norm, point, times, turning
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.slides import Slides
@@ -239,12 +240,7 @@ class SubproblemMaker(Maker):
             return self._meeting_last(one, two, three)
         if one.end == sp.eye(3) and not parallel(two):
             return self._parallel_first(one, two, three)
-        raise NoChainError(
-            f"no two neighbours among axes {one.number}, {two.number} and {three.number} are "
-            f"parallel or meet: the tangent of half an angle has an equation of degree 4",
-            "No lemma solves an equation of degree 4; use ssik for a numeric inverse.",
-            degree=4,
-        )
+        return self._skew(one, two, three)
 
     def _parallel_last(self, one: Single, two: Single, three: Single) -> Solved:
         u, v = two.shift, three.shift
@@ -346,6 +342,72 @@ class SubproblemMaker(Maker):
             f"axes {one.number} and {two.number} parallel",
             [(first, one.end), (second, two.end), (third, three.end)],
         )
+
+    def _skew(self, one: Single, two: Single, three: Single) -> Solved:
+        """Three joints of which no two neighbours meet or are parallel: an equation of degree 4.
+
+        Seen across the first axis, the third joint moves the point along an ellipse, see
+        :mod:`closedform.scaffold.ellipse`; the target is on a circle around this axis.
+        """
+        if self.degree < 4:
+            raise NoChainError(
+                f"no two neighbours among axes {one.number}, {two.number} and {three.number} are "
+                f"parallel or meet",
+                "Otherwise they leave an equation of degree 4.",
+                degree=4,
+            )
+        square, p = sp.Symbol("square"), point("p")
+        g, s, t, u = one.end * Z, one.shift, two.shift, three.shift
+        self.add("square = ik.coordinate('square', p.dot(p))")
+        ellipse = Ellipse.of((one, two, three), square, p[2])
+        self.add(f"along, aside = {source(ellipse.along)}, {source(ellipse.aside)}")
+        self.vector("centre", source(ellipse.centre))
+        self.add("radius = ik.let('radius', sqrt(p[0]**2 + p[1]**2))")
+        third, factor = self._met_by_circle(three, ellipse)
+        self.vector("seen", f"centre + along*{third}.c + aside*{third}.s", "across")
+        first = self._rotate(one, "seen", "p", f"{{{self.unknowns[three.number]}: {factor}}}")
+        inside = times(two.end, f"(turned({third}) * {source(u)})")
+        self.vector("carried", f"{source(t)} + {inside}")
+        self.vector("beyond", times(one.end.T, f"(turned({first}).T * p - {source(s)})"))
+        short = sp.Abs(sp.simplify(Z.dot((one.end * Z).cross(one.shift))))
+        self.add(f"play = ik.amplified_over({source(short)})")
+        meaning = "'the point is one of the arm'"
+        for n in ("beyond", "carried"):
+            self.add(f"long_{n} = ik.let('long_{n}', sqrt({n}[0]**2 + {n}[1]**2))")
+        for miss in ("beyond[2] - carried[2]", "long_beyond - long_carried"):
+            self.add(f"ik.program.match({miss}, play, {meaning})")
+        both = f"2*{source(s)} + (beyond[2] + carried[2])*{source(g)}"
+        self.vector("lever", f"turned({first}) * ({both})")
+        because = f"{{{self.unknowns[one.number]}: (-lever[0], -lever[1])}}"
+        second = self._rotate(two, "carried", "beyond", because)
+        return Solved(
+            f"axes {one.number}, {two.number} and {three.number} neither meet nor are parallel",
+            [(first, one.end), (second, two.end), (third, three.end)],
+        )
+
+    def _met_by_circle(self, joint: Single, ellipse: Ellipse) -> tuple[str, str]:
+        """Solve for where an ellipse meets the circle around the first axis.
+
+        Returns the pair, and the factor by which the equation is the difference of both squares.
+        """
+        p, q = ellipse.double
+        square = "centre.dot(centre) + (along.dot(along) + aside.dot(aside))/2 - radius**2"
+        if (p, q) == (0, 0):
+            a, b, c = (sp.Symbol(n) for n in ("sine", "cosine", "rest"))
+            self.add("sine, cosine = centre.dot(aside), centre.dot(along)")
+            self.add(f"rest = -({square})/2")
+            pair = self._turn(joint, (a, b, c), scale="radius + ik.size/2**44", by_size=True)
+            return pair, "2*ik.size"
+        self.add("on_circle = OnCircle(lambda pair: centre + along*pair.c + aside*pair.s, radius)")
+        pair, double = f"pair{joint.number}", f"({source(p)}, {source(q)})"
+        arguments = f"{self.unknown(joint)}, {double}, (centre.dot(along), centre.dot(aside))"
+        self.solve(
+            "quartic",
+            f"{arguments}, {square}, {LINE}, {SIDE}, on_circle",
+            pair,
+            4,
+        )
+        return pair, "1"
 
     def _by_distance(self, joint: Single, e: Any, u: Any, c: Any, scale: str) -> str:
         """Solve ``e . Rz(x) u`` by a distance; the equation is divided by the size of the arm."""
@@ -492,6 +554,7 @@ class SubproblemMaker(Maker):
         return x, pair
 
 
+LINE = "{+1: 'first', -1: 'second'}"
 SIDE = "{+1: 'left', -1: 'right'}"
 FLIP = "{+1: 'noflip', -1: 'flip'}"
 ELBOW = "{+1: 'up', -1: 'down'}"

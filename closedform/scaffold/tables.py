@@ -43,15 +43,16 @@ DIGITS = re.compile(r"[-+0-9./eE]+")
 IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "atan2")
 CHAIN = ("Reaching", "sign_of", "turned", *chain_lemmas())
 AUTHOR = (
-    "Chain", "Derivation", "Links", "LinksAndWrist", "LinksAtHeight", "Pair", "Paper", "from_dh",
-    "from_screws", "real",
+    "Chain", "Derivation", "Links", "LinksAndWrist", "LinksAtHeight", "OnCircle", "Pair", "Paper",
+    "from_dh", "from_screws", "real",
 )  # fmt: skip
 SCRIPT = {"arm", "coupling", "d", "forward", "links", "motors", "pair"}
 LINES = {
     "M", "ahead", "ik", "p", "q", "reaching", "turn1", "turn2", "wx", "wy", "x", "y", "yaw", "z",
     "rho", "given", "back", "far", "carried", "seen", "beyond", "left", "onward",
     "onto", "over", "axis", "before", "end",
-    "tool", "side", "both", "pointed",
+    "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
+    "sine", "cosine", "rest", "play", "long_beyond", "long_carried", "lever",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

@@ -185,6 +185,9 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         y, x = map(self._print, expr.args)
         return rf"\operatorname{{atan2}}({y},\ {x})"
 
+    def _print_Resolvent(self, expr: sp.Expr) -> str:
+        return rf"\operatorname{{root}}({', '.join(map(self._print, expr.args))})"
+
     def _print_Abs(self, expr: sp.Expr, exp: str | None = None) -> str:
         power = f"^{{{exp}}}" if exp else ""
         return rf"\left|{self._print(expr.args[0])}\right|{power}"

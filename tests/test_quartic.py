@@ -1,0 +1,225 @@
+"""The lemma of degree four: its proof, its numbers, and the arms that need it."""
+
+import itertools
+import random
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import flint
+import mpmath
+import numpy as np
+import pytest
+import sympy as sp
+from chains import arm, solved
+from flint import arb
+from numpy.typing import NDArray
+from sympy import cos, pi, sin
+
+from closedform.algebra.balls import Evaluator, to_float
+from closedform.algebra.resolvent import Resolvent, cubic, enclosed
+from closedform.check.rows import RowEvaluator
+from closedform.check.runners.python import module
+from closedform.emit.backend import Mechanism
+from closedform.emit.backends import numpy
+from closedform.lemmas.chain import Chain
+from closedform.lemmas.quartic import OnCircle, quartic
+from closedform.model.derivation import Derivation, Paper
+from closedform.pipeline.run import write
+from closedform.proof.prove import Proof, prove
+from closedform.proof.require import ProofError
+from closedform.scaffold.propose import propose
+
+LINE, SIDE = {+1: "first", -1: "second"}, {+1: "left", -1: "right"}
+A, B, E = sp.symbols("a b e", real=True)
+
+
+def coefficients(angles: NDArray[Any]) -> NDArray[Any]:
+    """Those of ``cos 2x + 2 a cos x + 2 b sin x + e`` with these roots, whose sum is a turn.
+
+    In ``z = exp(i x)`` twice the expression times z^2 is the monic polynomial with the roots z.
+    """
+    z = np.exp(1j * angles)
+    one = z.sum(axis=0)
+    pairs = sum(z[i] * z[j] for i, j in itertools.combinations(range(4), 2))
+    return np.array([-one.real / 2, -one.imag / 2, pairs.real / 2]).T
+
+
+def near_roots(count: int) -> NDArray[Any]:
+    """Coefficients with four, two close, twice two close, and three close real roots."""
+    rng = np.random.default_rng(7)
+    x, gap = rng.uniform(-3, 3, (3, count)), 10.0 ** rng.uniform(-9, 0, (2, count))
+    kinds = [x, (x[0], x[0] + gap[0], x[1]), (x[0], x[0] + gap[0], gap[1] - x[0])]
+    kinds.append((x[0], x[0] + gap[0], x[0] + gap[1]))
+    found = [np.array(k) for k in kinds]
+    return np.concatenate([coefficients(np.vstack([k, -k.sum(axis=0)])) for k in found])
+
+
+def test_the_root_of_a_resolvent_is_alone_and_enclosed() -> None:
+    """Against the roots of mpmath: in the interval, and farther from the middle one."""
+    evaluator = Evaluator((A, B, E), [Resolvent(A, B, E)])
+    for a, b, e in near_roots(25):
+        exact = [mpmath.mpf(v) for v in (a, b, e)]
+        with mpmath.workdps(60):
+            p, q, r = exact
+            roots = mpmath.polyroots(
+                [-1, r, 1 - p * p - q * q, p * p - q * q - r], maxsteps=500, extraprec=600
+            )
+            real = sorted(mpmath.re(z) for z in roots if abs(mpmath.im(z)) < 1e-25)
+        (ball,) = evaluator([a, b, e])
+        found = to_float(ball)
+        assert -1 <= found <= 1
+        nearest = min(real, key=lambda z: abs(z - found))
+        assert abs(float(nearest) - found) < 1e-13
+        if len(real) == 3 and min(real[1] - real[0], real[2] - real[1]) > 1e-12:
+            assert nearest != real[1]
+
+
+def test_a_ball_of_coefficients_encloses_the_roots_of_all() -> None:
+    draw = random.Random(3)
+    for _ in range(50):
+        middle = [draw.uniform(-2, 2) for _ in range(3)]
+        wide = enclosed(*(arb(m, 1e-6) for m in middle))
+        for _ in range(5):
+            inside = [m + draw.uniform(-1e-6, 1e-6) for m in middle]
+            sharp = enclosed(*map(arb, inside))
+            assert wide.overlaps(sharp)
+    with flint.ctx.workprec(200):
+        assert enclosed(arb(0), arb(1), arb(0)).rel_accuracy_bits() > 150
+
+
+def test_rows_of_balls_contain_a_root() -> None:
+    """In fractions the cubic falls through zero within each radius."""
+    rows = near_roots(200)
+    middle, radius = RowEvaluator((A, B, E), [Resolvent(A, B, E)]).balls(rows)
+    settled = np.flatnonzero(np.isfinite(radius[:, 0].astype(float)))
+    assert len(settled) > 500
+    for k in settled:
+        at, wide = (Fraction(*x.as_integer_ratio()) for x in (middle[k, 0], radius[k, 0]))
+        given = [Fraction(v) for v in rows[k]]
+        assert at - wide <= -1 or cubic(at - wide, *given) >= 0
+        assert at + wide >= 1 or cubic(at + wide, *given) <= 0
+
+
+def test_the_lowered_root_solves_the_cubic(tmp_path: Path) -> None:
+    """A program of the four languages: its value leaves no more of the cubic than rounding."""
+    d = Derivation("cubic", "Cubic", Paper("toy", "Toys", ("A.",)), "A cubic.", task=["a"])
+    d.joint("t1")
+    rows = near_roots(20000)
+    d.function("root", "The root.", {"x": (A, B, E)}, {"u": Resolvent(A, B, E)})
+    u = printed(d, tmp_path).root(rows)
+    a, b, e = rows.T
+    scale = np.maximum.reduce([np.ones_like(a), a * a, b * b, abs(e)])
+    assert (abs(u) <= 1).all()
+    assert (abs(cubic(u, a, b, e)) / scale).max() < 2e-15
+
+
+def printed(d: Derivation, folder: Path) -> Any:
+    """The NumPy module of a derivation."""
+    pages = numpy.BACKEND.pages(Mechanism(d, Proof(d.name, "own", (), 0, ()))).files
+    write(folder, {**pages, **numpy.BACKEND.shared([])})
+    return module(folder / "numpy", d.name)
+
+
+def toy(shift: int = 0) -> tuple[Derivation, Chain]:
+    """A joint of which an expression of degree four is the task."""
+    d = Derivation("four", "Four", Paper("toy", "Toys", ("A.",)), "Degree four.", task=["y"])
+    x = d.joint("t1")
+    c = sp.Matrix([3, 1])
+    long, wide = sp.Matrix([2, 0]), sp.Matrix([0, 1])
+    at = c + long * cos(x) + wide * sin(x)
+    ik = Chain(d, [at.dot(at)])
+    (y,) = ik.x
+    # |c + long cos x + wide sin x|^2 = 10 + 5/2 + 3/2 cos 2x + 12 cos x + 2 sin x
+    circle = OnCircle(lambda pair: c + long * pair.c + wide * pair.s, sp.sqrt(y))
+    rest = sp.Rational(25, 2) + shift - y
+    ik.solve(quartic, x, (sp.Rational(3, 2), 0), (6, 1), rest, LINE, SIDE, circle)
+    ik.finish("All four.")
+    return d, ik
+
+
+def test_the_lemma_is_proved_for_any_coefficients() -> None:
+    d, ik = toy()
+    (inverse,) = prove(d).inverses
+    assert inverse.branches == inverse.solutions == 4
+    assert inverse.lemmas == ("quartic in one angle",)
+    (link,) = ik.links
+    assert len(link.degenerate) == 3  # every way in which the parts of a line are computed
+
+
+def test_a_wrong_coefficient_is_noticed() -> None:
+    d, _ = toy(shift=1)
+    with pytest.raises(ProofError, match="does not follow from the forward map"):
+        prove(d)
+
+
+TILTED = [(1, pi / 2, 3), (4, pi / 3, 1), (sp.Rational(1, 2), -pi / 2, sp.Rational(1, 5))]
+WRIST = [(0, pi / 2, 4), (0, -pi / 2, 0), (0, 0, sp.Rational(4, 5))]
+SHOULDER = [(0, pi / 2, 3), (0, -pi / 2, 0), (0, pi / 2, 4), (1, pi / 3, 1), (2, -pi / 4, 1),
+            (sp.Rational(1, 2), pi / 2, 1)]  # fmt: skip
+BEHIND = [(-1, pi / 2, -10), (14, pi / 2, 4), (-14, -pi / 2, 11)]
+"""A short distance between skew axes: the ellipse is ten times as large as the arm."""
+
+
+@pytest.mark.parametrize(
+    ("rows", "joint"), [(TILTED + WRIST, 2), (SHOULDER, 3), (BEHIND + WRIST, 2)]
+)
+def test_an_arm_with_skew_axes_gets_all_its_postures(rows: Any, joint: int, tmp_path: Path) -> None:
+    """Random postures, and postures at which two solutions meet, are among the answers."""
+    d, serial = arm(rows)
+    found = propose(serial)
+    assert "quartic" in found.lemmas
+    assert found.branches == 8
+    solved(d, serial, found.source)
+    (inverse,) = prove(d).inverses
+    assert inverse.branches == inverse.solutions == 8
+    serial.export(d)
+    code = printed(d, tmp_path)
+    rng = np.random.default_rng(11)
+    q = rng.uniform(-np.pi, np.pi, (20000, 6))
+    _is_found(code, q, 1e-5)
+    _is_found(code, singular(code, q, joint), 1e-2)  # where three meet, a cube root of rounding
+
+
+def singular(code: Any, q: NDArray[Any], joint: int) -> NDArray[Any]:
+    """Postures at which a factor of the determinant changes its sign, by bisection."""
+    low, high = q.copy(), q.copy()
+    high[:, joint] += np.random.default_rng(12).uniform(0.05, 1, len(q))
+    start, end = (np.sign(code.singularities(x)) for x in (low, high))
+    factor = (start != end).sum(axis=0).argmax()
+    changes = start[:, factor] != end[:, factor]
+    low, high, start = low[changes], high[changes], start[changes, factor]
+    for _ in range(60):
+        middle = (low + high) / 2
+        same = np.sign(code.singularities(middle)[:, factor]) == start
+        low, high = np.where(same[:, None], middle, low), np.where(same[:, None], high, middle)
+    assert len(low) > 500
+    return low
+
+
+def _is_found(code: Any, q: NDArray[Any], gap: float) -> None:
+    target = code.fk(q)
+    answers, status = code.ik(target)
+    missed = abs(code.fk(np.nan_to_num(answers)) - target[:, None]).max(axis=(2, 3))
+    size = abs(target[:, :3, 3]).max()
+    assert (missed[status == code.Status.OK] / size).max() < 2e-12
+    away = abs((answers - q[:, None] + np.pi) % (2 * np.pi) - np.pi).max(axis=-1)
+    free = (status == code.Status.SINGULAR).any(axis=1)
+    assert np.nan_to_num(away, nan=9).min(axis=1)[~free].max() < gap
+
+
+def test_a_chain_without_a_quartic_goes_first() -> None:
+    """Of a Franka arm the seventh joint is given, though the third would do with a quartic."""
+    rows = [(0, -pi / 2, 0), (0, pi / 2, 0), (1, pi / 2, 2), (-1, -pi / 2, 0),
+            (0, pi / 2, 2), (sp.Rational(1, 2), pi / 2, 0), (0, 0, 1)]  # fmt: skip
+    assert "quartic" not in propose(arm(rows)[1]).lemmas
+
+
+def test_an_ellipse_that_is_a_circle_needs_no_quartic() -> None:
+    """Equal half axes: the equation is linear in the sine and the cosine."""
+    rows = [(1, pi / 2, 0), (1, pi / 2, 0), (0, pi / 2, 0), *WRIST]
+    d, serial = arm(rows)
+    found = propose(serial)
+    solved(d, serial, found.source)
+    (inverse,) = prove(d).inverses
+    assert inverse.branches == found.branches

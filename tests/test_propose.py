@@ -69,6 +69,12 @@ KNOWN = {
         "t1 t2 t3", 4,
         lambda a, b, c, e, f, g, t1, t2, t3: [(a, pi / 2, b, t1), (c, 0, e, t2), (f, 0, 0, t3)],
     ),
+    "axes 1, 2 and 3 neither meet nor are parallel": (
+        "t1 t2 t3", 4,
+        lambda a, b, c, e, f, g, t1, t2, t3: [
+            (a, pi / 3, 0, t1), (b, pi / 3, e, t2), (c, 0, 0, t3),
+        ],
+    ),
     "turret, a joint and a slide (polar arm)": (
         "t1 t2 d3", 4,
         lambda a, b, c, e, f, g, t1, t2, d3: [
@@ -200,15 +206,6 @@ def test_a_modified_table_and_screws_are_recognised_alike() -> None:
                 *((b, 0, 0, x) for x in t[4:]),
             ],
             "axes 5 and 6 are parallel",
-        ),
-        (
-            "t1 t2 t3",
-            lambda a, b, c, e, f, g, t1, t2, t3: [
-                (a, pi / 3, 0, t1),
-                (b, pi / 3, 0, t2),
-                (c, 0, 0, t3),
-            ],
-            "no two neighbours among axes 1, 2 and 3 are parallel or meet",
         ),
         (
             "t1 t2 t3 t4 t5",

@@ -28,7 +28,7 @@ from closedform.model.derivation import Derivation, Paper
 from closedform.pipeline.run import write
 from closedform.proof.prove import Proof, prove
 from closedform.proof.require import ProofError
-from closedform.scaffold.propose import propose
+from closedform.scaffold.propose import NoChainError, propose
 
 LINE, SIDE = {+1: "first", -1: "second"}, {+1: "left", -1: "right"}
 A, B, E = sp.symbols("a b e", real=True)
@@ -155,6 +155,7 @@ def test_a_wrong_coefficient_is_noticed() -> None:
 
 TILTED = [(1, pi / 2, 3), (4, pi / 3, 1), (sp.Rational(1, 2), -pi / 2, sp.Rational(1, 5))]
 WRIST = [(0, pi / 2, 4), (0, -pi / 2, 0), (0, 0, sp.Rational(4, 5))]
+NEAR = (0, pi / 2, 1)
 SHOULDER = [(0, pi / 2, 3), (0, -pi / 2, 0), (0, pi / 2, 4), (1, pi / 3, 1), (2, -pi / 4, 1),
             (sp.Rational(1, 2), pi / 2, 1)]  # fmt: skip
 BEHIND = [(-1, pi / 2, -10), (14, pi / 2, 4), (-14, -pi / 2, 11)]
@@ -215,11 +216,15 @@ def test_a_chain_without_a_quartic_goes_first() -> None:
     assert "quartic" not in propose(arm(rows)[1]).lemmas
 
 
-def test_an_ellipse_that_is_a_circle_needs_no_quartic() -> None:
-    """Equal half axes: the equation is linear in the sine and the cosine."""
-    rows = [(1, pi / 2, 0), (1, pi / 2, 0), (0, pi / 2, 0), *WRIST]
-    d, serial = arm(rows)
-    found = propose(serial)
-    solved(d, serial, found.source)
-    (inverse,) = prove(d).inverses
-    assert inverse.branches == found.branches
+@pytest.mark.parametrize(
+    ("rows", "why"),
+    [
+        ([(4, pi / 2, 3), (4, pi / 2, 0), (2, pi / 2, 0), NEAR, *WRIST[1:]], "on a circle"),
+        ([(1, pi / 3, 0), (2, pi / 3, 0), (2, pi / 2, 0), (0, pi / 2, 0), *WRIST[1:]], "to axis 2"),
+    ],
+)
+def test_what_the_chain_cannot_do_well_is_refused(rows: Any, why: str) -> None:
+    """A circle instead of an ellipse, and equal links that fold onto an axis."""
+    with pytest.raises(NoChainError, match=why) as e:
+        propose(arm(rows)[1])
+    assert e.value.degree == 4

@@ -113,9 +113,9 @@ def quartic(
     cosine, m, at_a = _part(chain, A, upper, B**2 / lower + 2 * (E - u), u, f"a_{tag}")
     sine, d, at_b = _part(chain, B, lower, A**2 / upper - 2 * (E - u), -u, f"b_{tag}")
     n = program.let(f"n_{tag}", (m - tau * d) / 2)
-    # what e is rounded to
+    # much more than what e is rounded to, which small parts amplify: in the end the circle decides
     terms = sp.Abs(e) + size + 2 * sp.sqrt(a**2 + b**2)
-    missed = program.let(f"missed_{tag}", 8 * terms / size / (2 + sp.Abs(m + tau * d)))
+    missed = program.let(f"missed_{tag}", 2**16 * terms / size / (2 + sp.Abs(m + tau * d)))
     meaning = "the line meets the unit circle"
     below = program.bound(f"below_{tag}", 1 - n, missed, meaning)
     above = program.bound(f"above_{tag}", 1 + n, missed, meaning)

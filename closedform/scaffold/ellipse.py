@@ -10,6 +10,7 @@ third joint has an equation of degree four.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +18,10 @@ import sympy as sp
 
 from closedform.scaffold.chainlinks import Single
 from closedform.scaffold.maker import Z
+
+SAMPLES = 1000
+NEAR = 1 / 128
+"""More than what a point moves by from one sample to the next."""
 
 
 @dataclass(frozen=True)
@@ -57,4 +62,25 @@ class Ellipse:
         return sp.simplify(a.dot(a) - b.dot(b)) / 2, sp.simplify(a.dot(b))
 
 
-__all__ = ["Ellipse"]
+def folds(two: Single, three: Single) -> bool:
+    """Whether the third joint can bring its end to the axis of the second, or very close.
+
+    There the second joint is nearly free, three solutions meet, and squares of lengths tell little.
+    Parameters count as different numbers.
+    """
+    lengths = [*two.shift, *(two.end * three.shift)]
+    symbols = sorted({s for e in lengths for s in e.free_symbols}, key=str)
+    numbers = {s: 1 + sp.Rational(k * 37 % 101, 101) for k, s in enumerate(symbols, 1)}
+
+    def across(v: sp.Matrix) -> complex:
+        return complex(*(float(e.xreplace(numbers)) for e in (two.end * v)[:2, 0]))
+
+    x, y, z = three.shift
+    still = across(sp.Matrix([0, 0, z])) + complex(*map(float, two.shift[:2, 0].xreplace(numbers)))
+    along, aside = across(sp.Matrix([x, y, 0])), across(sp.Matrix([-y, x, 0]))
+    angles = (2 * math.pi * k / SAMPLES for k in range(SAMPLES))
+    nearest = min(abs(still + along * math.cos(t) + aside * math.sin(t)) for t in angles)
+    return nearest < NEAR * (abs(still) + abs(along) + abs(aside))
+
+
+__all__ = ["Ellipse", "folds"]

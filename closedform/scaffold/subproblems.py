@@ -19,7 +19,7 @@ import sympy as sp
 from closedform.mechanics.arm import Group, Row
 from closedform.mechanics.frames import rotation
 from closedform.scaffold.chainlinks import Single, Singles, parallel
-from closedform.scaffold.ellipse import Ellipse
+from closedform.scaffold.ellipse import Ellipse, folds
 from closedform.scaffold.maker import Maker, Solved, Z, norm, point, times, turning
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.slides import Slides
@@ -356,16 +356,23 @@ class SubproblemMaker(Maker):
                 "Otherwise they leave an equation of degree 4.",
                 degree=4,
             )
+        needed = "The known chain loses digits there; use ssik for a numeric inverse."
+        if folds(two, three):
+            found = f"its wrist can come to axis {two.number}, where three solutions meet"
+            raise NoChainError(found, needed, degree=4)
         square, p = sp.Symbol("square"), point("p")
         g, s, t, u = one.end * Z, one.shift, two.shift, three.shift
         self.add("square = ik.coordinate('square', p.dot(p))")
         ellipse = Ellipse.of((one, two, three), square, p[2])
+        if ellipse.double == (0, 0):
+            found = f"its wrist moves on a circle, seen from joint {two.number} along its axis"
+            raise NoChainError(found, needed, degree=4)
         self.add(f"along, aside = {source(ellipse.along)}, {source(ellipse.aside)}")
         self.vector("centre", source(ellipse.centre))
         self.add("radius = ik.let('radius', sqrt(p[0]**2 + p[1]**2))")
-        third, factor = self._met_by_circle(three, ellipse)
+        third = self._met_by_circle(three, ellipse)
         self.vector("seen", f"centre + along*{third}.c + aside*{third}.s", "across")
-        first = self._rotate(one, "seen", "p", f"{{{self.unknowns[three.number]}: {factor}}}")
+        first = self._rotate(one, "seen", "p", f"{{{self.unknowns[three.number]}: 1}}")
         inside = times(two.end, f"(turned({third}) * {source(u)})")
         self.vector("carried", f"{source(t)} + {inside}")
         self.vector("beyond", times(one.end.T, f"(turned({first}).T * p - {source(s)})"))
@@ -385,29 +392,18 @@ class SubproblemMaker(Maker):
             [(first, one.end), (second, two.end), (third, three.end)],
         )
 
-    def _met_by_circle(self, joint: Single, ellipse: Ellipse) -> tuple[str, str]:
-        """Solve for where an ellipse meets the circle around the first axis.
+    def _met_by_circle(self, joint: Single, ellipse: Ellipse) -> str:
+        """Solve for where an ellipse meets the circle around the first axis; returns the pair.
 
-        Returns the pair, and the factor by which the equation is the difference of both squares.
+        The equation is the difference of the squares of both distances from the axis.
         """
         p, q = ellipse.double
         square = "centre.dot(centre) + (along.dot(along) + aside.dot(aside))/2 - radius**2"
-        if (p, q) == (0, 0):
-            a, b, c = (sp.Symbol(n) for n in ("sine", "cosine", "rest"))
-            self.add("sine, cosine = centre.dot(aside), centre.dot(along)")
-            self.add(f"rest = -({square})/2")
-            pair = self._turn(joint, (a, b, c), scale="radius + ik.size/2**44", by_size=True)
-            return pair, "2*ik.size"
         self.add("on_circle = OnCircle(lambda pair: centre + along*pair.c + aside*pair.s, radius)")
         pair, double = f"pair{joint.number}", f"({source(p)}, {source(q)})"
         arguments = f"{self.unknown(joint)}, {double}, (centre.dot(along), centre.dot(aside))"
-        self.solve(
-            "quartic",
-            f"{arguments}, {square}, {LINE}, {SIDE}, on_circle",
-            pair,
-            4,
-        )
-        return pair, "1"
+        self.solve("quartic", f"{arguments}, {square}, {LINE}, {SIDE}, on_circle", pair, 4)
+        return pair
 
     def _by_distance(self, joint: Single, e: Any, u: Any, c: Any, scale: str) -> str:
         """Solve ``e . Rz(x) u`` by a distance; the equation is divided by the size of the arm."""

@@ -52,7 +52,7 @@ LINES = {
     "rho", "given", "back", "far", "carried", "seen", "beyond", "left", "onward",
     "onto", "over", "axis", "before", "end",
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
-    "sine", "cosine", "rest", "play", "long_beyond", "long_carried", "lever",
+    "play", "long_beyond", "long_carried", "lever",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

@@ -15,14 +15,14 @@ from closedform.model.lemma import Lemma, Shape
 
 theorem(
     "atan2 of a linear pair",
-    statement=r"""Let $A$ and $B$ be real numbers that are not both zero.  In $(-\pi, \pi]$ the
-equation $B\sin x - A\cos x = 0$ with $A\sin x + B\cos x > 0$ has exactly one solution, $x =
-\operatorname{atan2}(A, B)$.""",
-    proof=r"""By the equation the vectors $(\cos x, \sin x)$ and $(B, A)$ are parallel, and by the
-inequality they point the same way.  So $(\cos x, \sin x) = (B, A)/\sqrt{A^2 + B^2}$, and
-$\operatorname{atan2}(A, B)$ is the angle of this vector.  The inequality excludes one of the two
+    statement=r"""Let $f$ and $g$ be real numbers that are not both zero.  In $(-\pi, \pi]$ the
+equation $g\sin x - f\cos x = 0$ with $f\sin x + g\cos x > 0$ has exactly one solution, $x =
+\operatorname{atan2}(f, g)$.""",
+    proof=r"""By the equation the vectors $(\cos x, \sin x)$ and $(g, f)$ are parallel, and by the
+inequality they point the same way.  So $(\cos x, \sin x) = (g, f)/\sqrt{f^2 + g^2}$, and
+$\operatorname{atan2}(f, g)$ is the angle of this vector.  The inequality excludes one of the two
 solutions of the equation, the one that differs by half a turn.""",
-    exception=r"""If $A = B = 0$, every $x$ solves the equation: the joint is free.""",
+    exception=r"""If $f = g = 0$, every $x$ solves the equation: the joint is free.""",
 )
 theorem(
     "a sin x + b cos x = c",
@@ -50,14 +50,14 @@ def linear_pair(x: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Lemma:
     """
     return Lemma(
         "atan2 of a linear pair",
-        r"B\sin x - A\cos x = 0,\ A\sin x + B\cos x > 0 \;\Rightarrow\; "
-        r"x = \operatorname{atan2}(A, B)",
+        r"g\sin x - f\cos x = 0,\ f\sin x + g\cos x > 0 \;\Rightarrow\; "
+        r"x = \operatorname{atan2}(f, g)",
         (sp.sin(x) * cosine - sp.cos(x) * sine,),
         {x: sp.atan2(sine, cosine)},
         1,
         excluded=1,
         shape=Shape.CONTAINS,
-        roles=(("x", x), ("A", sine), ("B", cosine)),
+        roles=(("x", x), ("f", sine), ("g", cosine)),
     )
 
 

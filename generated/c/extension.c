@@ -11,6 +11,7 @@
 #include "irb2400.h"
 #include "irb260.h"
 #include "linear_delta.h"
+#include "opw_arm.h"
 #include "orthoglide.h"
 #include "planar_2r.h"
 #include "puma560.h"
@@ -2080,6 +2081,181 @@ static const cf_array linear_delta_workspace_contains_in[] = {
 
 static const cf_array linear_delta_workspace_contains_out[] = {
     { "inside", 0, { 0 }, 1, CF_BOOL },
+};
+
+static const char *const opw_arm_fields[] = { "a1", "a2", "b", "c1", "c2", "c3", "c4" };
+static const double opw_arm_values[] = OPW_ARM_DEFAULTS;
+
+static void opw_arm_pose_one(const double *params, const double *const *in, void *const *out)
+{
+    opw_arm_pose((const opw_arm_params *)params, in[0], out[0]);
+}
+
+static void opw_arm_pose_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    opw_arm_pose_batch(n, (const opw_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array opw_arm_pose_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array opw_arm_pose_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void opw_arm_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    opw_arm_skeleton((const opw_arm_params *)params, in[0], out[0]);
+}
+
+static void opw_arm_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    opw_arm_skeleton_batch(n, (const opw_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array opw_arm_skeleton_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array opw_arm_skeleton_out[] = {
+    { "points", 2, { 8, 3 }, 24, CF_REAL },
+};
+
+static void opw_arm_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    opw_arm_fk((const opw_arm_params *)params, in[0], out[0]);
+}
+
+static void opw_arm_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    opw_arm_fk_batch(n, (const opw_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array opw_arm_fk_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array opw_arm_fk_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void opw_arm_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    opw_arm_jacobian((const opw_arm_params *)params, in[0], out[0]);
+}
+
+static void opw_arm_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    opw_arm_jacobian_batch(n, (const opw_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array opw_arm_jacobian_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array opw_arm_jacobian_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void opw_arm_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    opw_arm_determinant((const opw_arm_params *)params, in[0], out[0]);
+}
+
+static void opw_arm_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    opw_arm_determinant_batch(n, (const opw_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array opw_arm_determinant_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array opw_arm_determinant_out[] = {
+    { "det", 0, { 0 }, 1, CF_REAL },
+};
+
+static void opw_arm_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    opw_arm_singularities((const opw_arm_params *)params, in[0], out[0]);
+}
+
+static void opw_arm_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    opw_arm_singularities_batch(n, (const opw_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array opw_arm_singularities_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array opw_arm_singularities_out[] = {
+    { "factors", 1, { 3 }, 3, CF_REAL },
+};
+
+static void opw_arm_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    opw_arm_jacobian_space((const opw_arm_params *)params, in[0], out[0]);
+}
+
+static void opw_arm_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    opw_arm_jacobian_space_batch(n, (const opw_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array opw_arm_jacobian_space_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array opw_arm_jacobian_space_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void opw_arm_jacobian_body_one(const double *params, const double *const *in, void *const *out)
+{
+    opw_arm_jacobian_body((const opw_arm_params *)params, in[0], out[0]);
+}
+
+static void opw_arm_jacobian_body_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    opw_arm_jacobian_body_batch(n, (const opw_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array opw_arm_jacobian_body_in[] = {
+    { "q", 1, { 6 }, 6, CF_REAL },
+};
+
+static const cf_array opw_arm_jacobian_body_out[] = {
+    { "J", 2, { 6, 6 }, 36, CF_REAL },
+};
+
+static void opw_arm_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    opw_arm_ik((const opw_arm_params *)params, in[0], out[0], out[1]);
+}
+
+static void opw_arm_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    opw_arm_ik_batch(n, (const opw_arm_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array opw_arm_ik_in[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static const cf_array opw_arm_ik_out[] = {
+    { "q", 2, { 8, 6 }, 48, CF_REAL },
+    { "status", 1, { 8 }, 8, CF_STATUS },
 };
 
 static const char *const orthoglide_fields[] = { "L" };
@@ -7328,6 +7504,272 @@ const cf_function cf_functions[] = {
       3, linear_delta_values, linear_delta_fields,
       1, linear_delta_workspace_contains_in, 1, linear_delta_workspace_contains_out,
       linear_delta_workspace_contains_one, linear_delta_workspace_contains_many },
+    { "opw_arm.pose",
+      "Pose of the tool in the base frame.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "T : ndarray of float64, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, opw_arm_values, opw_arm_fields,
+      1, opw_arm_pose_in, 1, opw_arm_pose_out,
+      opw_arm_pose_one, opw_arm_pose_many },
+    { "opw_arm.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 8, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, opw_arm_values, opw_arm_fields,
+      1, opw_arm_skeleton_in, 1, opw_arm_skeleton_out,
+      opw_arm_skeleton_one, opw_arm_skeleton_many },
+    { "opw_arm.fk",
+      "Pose of the tool in the base frame.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "T : ndarray of float64, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, opw_arm_values, opw_arm_fields,
+      1, opw_arm_fk_in, 1, opw_arm_fk_out,
+      opw_arm_fk_one, opw_arm_fk_many },
+    { "opw_arm.jacobian",
+      "Velocity of the tool over its angular velocity, in base axes, per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 6)\n"
+      "    One column for each of theta1 to theta6.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The geometric Jacobian: rows (v; omega), v of the origin of the tool.\n"
+      ,
+      7, opw_arm_values, opw_arm_fields,
+      1, opw_arm_jacobian_in, 1, opw_arm_jacobian_out,
+      opw_arm_jacobian_one, opw_arm_jacobian_many },
+    { "opw_arm.determinant",
+      "Determinant of the Jacobian.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "det : ndarray of float64, shape (...)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, opw_arm_values, opw_arm_fields,
+      1, opw_arm_determinant_in, 1, opw_arm_determinant_out,
+      opw_arm_determinant_one, opw_arm_determinant_many },
+    { "opw_arm.singularities",
+      "The factors of the determinant that hold a joint.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "factors : ndarray of float64, shape (..., 3)\n"
+      "    One factor for each singular set: shoulder; elbow; wrist.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, opw_arm_values, opw_arm_fields,
+      1, opw_arm_singularities_in, 1, opw_arm_singularities_out,
+      opw_arm_singularities_one, opw_arm_singularities_many },
+    { "opw_arm.jacobian_space",
+      "Twist (v; omega) of the tool in the base frame per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 6)\n"
+      "    One column for each of theta1 to theta6.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, opw_arm_values, opw_arm_fields,
+      1, opw_arm_jacobian_space_in, 1, opw_arm_jacobian_space_out,
+      opw_arm_jacobian_space_one, opw_arm_jacobian_space_many },
+    { "opw_arm.jacobian_body",
+      "Twist (v; omega) of the tool in its own frame per joint rate.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 6)\n"
+      "    theta1 to theta6 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 6, 6)\n"
+      "    One column for each of theta1 to theta6.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      7, opw_arm_values, opw_arm_fields,
+      1, opw_arm_jacobian_body_in, 1, opw_arm_jacobian_body_out,
+      opw_arm_jacobian_body_one, opw_arm_jacobian_body_many },
+    { "opw_arm.ik",
+      "All eight postures of a pose.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "T : array_like, shape (..., 4, 4)\n"
+      "    A homogeneous transform with a proper rotation.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : tuple of ndarray, optional\n"
+      "    Arrays to write the results to; they are returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "q : ndarray of float64, shape (..., 8, 6)\n"
+      "    theta1 to theta6 in rad, in (-pi, pi].\n"
+      "status : ndarray of uint8, shape (..., 8)\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `BRANCHES`: facing_up_noflip, facing_up_flip, facing_down_noflip,\n"
+      "  facing_down_flip, backward_up_noflip, backward_up_flip, backward_down_noflip,\n"
+      "  backward_down_flip.\n"
+      "- facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the\n"
+      "  wrist; down: below; the other way round where X is between 0 and a1.\n"
+      "- noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.\n"
+      "- Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the\n"
+      "  digits, the pose does not.\n"
+      "- INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.\n"
+      "- SINGULAR: the centre of the wrist on the first axis (b = 0), theta1 = 0 is returned; equal\n"
+      "  links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without\n"
+      "  length, theta3 is free.\n"
+      "- SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.\n"
+      ,
+      7, opw_arm_values, opw_arm_fields,
+      1, opw_arm_ik_in, 2, opw_arm_ik_out,
+      opw_arm_ik_one, opw_arm_ik_many },
     { "orthoglide.fk",
       "Position of the hand in both assembly modes.\n"
       "\n"

@@ -1,6 +1,7 @@
 """Industrial six-axis arms: a turret, two parallel joints and a spherical wrist, with offsets."""
 
 import sympy as sp
+from closedform.derivations.claims.opw_arm import state
 from closedform.derivations.papers.ortho_parallel import ORTHO_PARALLEL
 from closedform.derivations.wrist_of_an_arm import aligned_wrist, wrist_step
 from sympy import atan2, cos, pi, sin, sqrt
@@ -159,3 +160,7 @@ ik.finish(
         "the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.",
     ),
 )
+
+# Claims
+
+state(d, (a1, a2, b, c1, c2, c3, c4), q, arm.pose, centre)

@@ -21,7 +21,7 @@ from closedform import (
 
 d = Derivation(
     "opw_arm",
-    "Industrial arm with an ortho-parallel basis and a spherical wrist",
+    "Six-axis arm of industry (OPW)",
     ORTHO_PARALLEL,
     "theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal and parallel, "
     "and a spherical wrist (theta4, theta5, theta6) carries the tool.  At zero angles the upper "

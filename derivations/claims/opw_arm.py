@@ -20,8 +20,8 @@ def state(
     centre: sp.Matrix,
 ) -> None:
     """Transcribe the claims; ``centre`` is that of the wrist."""
-    a1, a2, b, c1, c2, c3, c4 = lengths
-    theta1, theta2, theta3, theta4, theta5, theta6 = q
+    a1, a2, b, c1, c2, c3, _ = lengths
+    theta1, _, theta3, _, theta5, _ = q
     in_plane = centre.subs(theta1, 0)
     names = Notation(
         dict(zip(("a_1", "a_2", "b", "c_1", "c_2", "c_3", "c_4"), lengths, strict=True))
@@ -51,8 +51,8 @@ def state(
     )
     forward(
         "axis of the tool",
-        r"$e_{13}\cos\theta_1 + e_{23}\sin\theta_1 = \cos(\theta_2 + \theta_3)\cos\theta_4\sin\theta_5"
-        r" + \sin(\theta_2 + \theta_3)\cos\theta_5$, "
+        r"$e_{13}\cos\theta_1 + e_{23}\sin\theta_1 = \cos(\theta_2 + \theta_3)\cos\theta_4"
+        r"\sin\theta_5 + \sin(\theta_2 + \theta_3)\cos\theta_5$, "
         r"$e_{33} = -\sin(\theta_2 + \theta_3)\cos\theta_4\sin\theta_5 "
         r"+ \cos(\theta_2 + \theta_3)\cos\theta_5$",
     )
@@ -64,11 +64,11 @@ def state(
     def turret(*formulas: Relation) -> Check:
         """Both angles put the wrist b beside the first axis; the first faces it."""
         found = {}
-        for f in formulas:
+        for name, f in zip(("the first", "the second"), formulas, strict=True):
             c, s = cos(f.right), sin(f.right)
             seen = sp.Matrix([x * c + y * s, y * c - x * s]).subs(root, ahead - a1)
             side = {facing: ahead, backward: -ahead}[f.left]
-            found[str(f.left)] = Identity(seen, sp.Matrix([side, b]))
+            found[name] = Identity(seen, sp.Matrix([side, b]))
         return Every(found)
 
     inverse(
@@ -105,8 +105,8 @@ def state(
     inverse(
         "θ_4",
         r"$\theta_4 = \mathrm{atan2}(e_{23}\cos\theta_1 - e_{13}\sin\theta_1, "
-        r"e_{13}\cos(\theta_2 + \theta_3)\cos\theta_1 + e_{23}\cos(\theta_2 + \theta_3)\sin\theta_1 "
-        r"- e_{33}\sin(\theta_2 + \theta_3))$",
+        r"e_{13}\cos(\theta_2 + \theta_3)\cos\theta_1 + e_{23}\cos(\theta_2 + \theta_3)"
+        r"\sin\theta_1 - e_{33}\sin(\theta_2 + \theta_3))$",
         direction,
         means={r"\mathrm{atan2}": lambda y, x: sp.Matrix([y, x])},
     )
@@ -114,8 +114,8 @@ def state(
         "θ_6",
         r"$\theta_6 = \mathrm{atan2}(e_{12}\sin(\theta_2 + \theta_3)\cos\theta_1 + "
         r"e_{22}\sin(\theta_2 + \theta_3)\sin\theta_1 + e_{32}\cos(\theta_2 + \theta_3), "
-        r"-e_{11}\sin(\theta_2 + \theta_3)\cos\theta_1 - e_{21}\sin(\theta_2 + \theta_3)\sin\theta_1 "
-        r"- e_{31}\cos(\theta_2 + \theta_3))$",
+        r"-e_{11}\sin(\theta_2 + \theta_3)\cos\theta_1 - e_{21}\sin(\theta_2 + \theta_3)"
+        r"\sin\theta_1 - e_{31}\cos(\theta_2 + \theta_3))$",
         direction,
         means={r"\mathrm{atan2}": lambda y, x: sp.Matrix([y, x])},
     )

@@ -1,5 +1,5 @@
 /*
- * Industrial arm with an ortho-parallel basis and a spherical wrist: the C of opw_arm.h for C++20, printed by closedform. Header only; every
+ * Six-axis arm of industry (OPW): the C of opw_arm.h for C++20, printed by closedform. Header only; every
  * function is one call of the C, with std::span for what it reads and std::array for what it returns.
  * Do not edit: change the template and run make.
  */

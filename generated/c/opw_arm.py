@@ -1,4 +1,4 @@
-"""Industrial arm with an ortho-parallel basis and a spherical wrist: the generated C, with the names and the meaning of the NumPy module."""
+"""Six-axis arm of industry (OPW): the generated C, with the names and the meaning of the NumPy module."""
 
 from closedform.generated.numpy.opw_arm import (
     ASSEMBLY_MODES,

@@ -1,5 +1,5 @@
 /*
- * Industrial arm with an ortho-parallel basis and a spherical wrist: the posture nearest to a seed, printed by closedform.
+ * Six-axis arm of industry (OPW): the posture nearest to a seed, printed by closedform.
  * Do not edit: change the template and run make.
  */
 #ifndef CLOSEDFORM_OPW_ARM_NEAREST_H

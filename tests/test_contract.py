@@ -111,6 +111,21 @@ ROBOTS = {
         },
         "branches": 8,
     },
+    "opw_arm": {
+        "fields": ("a1", "a2", "b", "c1", "c2", "c3", "c4"),
+        "joints": tuple(f"theta{i}" for i in range(1, 7)),
+        "task": tuple(f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)),
+        "shapes": {
+            "fk": (4, 4),
+            "pose": (4, 4),
+            "jacobian": (6, 6),
+            "jacobian_space": (6, 6),
+            "jacobian_body": (6, 6),
+            "determinant": (),
+            "singularities": (3,),
+        },
+        "branches": 8,
+    },
     "stanford_arm": {
         "fields": ("d2",),
         "joints": ("theta1", "theta2", "d3", "theta4", "theta5", "theta6"),

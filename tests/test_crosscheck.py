@@ -35,6 +35,7 @@ ROBOTS = (
     "irb2400",
     "irb260",
     "linear_delta",
+    "opw_arm",
     "orthoglide",
     "planar_2r",
     "puma560",

@@ -10,7 +10,7 @@ from closedform.lower.degrees import degrees
 from closedform.lower.graph import Graph
 from closedform.model.tolerances import DOUBLE, FLOAT, HIGHEST_DEGREE
 
-ROBOTS = [*LENGTHS, "four_bar", "irb2400", "puma560", "ur_arm", "spherical_wrist"]
+ROBOTS = [*LENGTHS, "four_bar", "irb2400", "opw_arm", "puma560", "ur_arm", "spherical_wrist"]
 ANGLES = ("alpha", "beta", "gamma")
 """How the names of parameters begin that are angles."""
 EXPONENTS = (-900, -700, -300, -100, 8, 100, 300, 700, 1000)

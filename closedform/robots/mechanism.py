@@ -124,6 +124,11 @@ class Mechanism:
                 "are in radians, and np.radians converts degrees"
             )
 
+    @property
+    def counts_as_model(self) -> bool:
+        """Whether the joints are those that the generated module takes."""
+        return self._zero is None
+
     # The functions of the module
 
     @property
@@ -147,9 +152,13 @@ class Mechanism:
             return found._replace(p=self._mounting.outside(found.p))
         return self._mounting.outside(found)
 
+    def inside(self, x: ArrayLike) -> Any:
+        """The target of the module, of one for the mounted tool."""
+        return self._mounting.inside(x)
+
     def ik(self, x: ArrayLike) -> Any:
         """All branches: ``Solutions(q, status)`` as in the module; the joints are the maker's."""
-        found = self.call("ik", self._mounting.inside(x))
+        found = self.call("ik", self.inside(x))
         return found if self._zero is None else found._replace(q=self.from_model(found.q))
 
     def pose(self, q: ArrayLike) -> Array:
@@ -199,7 +208,13 @@ class Mechanism:
     @property
     def task_axes(self) -> int:
         """The number of axes of a target: 2 for a matrix, 1 for coordinates."""
-        return 2 if len(self.module.TASK) in (9, 16) else 1
+        return len(self.task_shape)
+
+    @property
+    def task_shape(self) -> tuple[int, ...]:
+        """The shape of a target."""
+        entries = len(self.module.TASK)
+        return {16: (4, 4), 9: (3, 3)}.get(entries, (entries,))
 
 
 def _parameters(module: ModuleType, given: Any) -> Any:

@@ -48,6 +48,9 @@ def nearest(
 ) -> Nearest:
     """The solution with the least weighted distance from ``q_seed`` within the limits."""
     seed = mechanism.as_joints(q_seed, "q_seed")
+    single = _compiled(mechanism, x, seed, limits, weights)
+    if single is not None:
+        return single
     found = mechanism.ik(x)
     lead = np.broadcast_shapes(
         found.q.shape[:-2], seed.shape[:-1], limits.lower.shape[:-1], limits.upper.shape[:-1]
@@ -65,6 +68,27 @@ def nearest(
     ]
     every = blocks[0] if len(blocks) == 1 else map(np.concatenate, zip(*blocks, strict=True))
     return Nearest(*(a.reshape((*lead, *a.shape[1:]))[()] for a in every))
+
+
+def _compiled(
+    mechanism: Mechanism, x: ArrayLike, seed: Array, limits: Limits, weights: Any
+) -> Nearest | None:
+    """One posture by the compiled module; None if it is not, or there is more to decide."""
+    call = getattr(mechanism.module, "_nearest", None)
+    axes = {seed.ndim, limits.lower.ndim, limits.upper.ndim}
+    if call is None or axes != {1} or not mechanism.counts_as_model:
+        return None
+    if any(map(np.ndim, mechanism.parameters)):
+        return None
+    target, weight = mechanism.inside(x), weights_of(mechanism, weights)
+    if np.shape(target) != mechanism.task_shape or weight.ndim > 1:
+        return None
+    q, status, branch, distance, outside = call(
+        target, seed, np.array(limits), weight, params=mechanism.parameters
+    )
+    if status not in (OK, UNREACHABLE) or (status == OK and not distance < np.inf):
+        return None
+    return Nearest(q, status, np.array(branch, np.intp)[()], distance, outside)
 
 
 def _over(a: NDArray[Any], lead: tuple[int, ...], core: int) -> NDArray[Any]:

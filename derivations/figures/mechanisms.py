@@ -39,6 +39,7 @@ VIEWS = {
         home=(0, 0, 0.2, 0), general=(*degrees(-20, 60), 0.2, *degrees(40)), plane=("x", "y")
     ),
     "irb2400": View(general=degrees(-30, 25, -20, 30, 40, 20), limits=((-1.8, 1.8), (-0.9, 2.4))),
+    "opw_arm": View(general=degrees(-30, 15, 70, 30, 40, 20), limits=((-0.8, 0.8), (-0.2, 1.2))),
     "ur_arm": View(),
     "five_bar": View(home=degrees(110, 70), general=degrees(140, 65)),
     "delta": View(home=degrees(30, 30, 30), general=degrees(20, 35, 50), plane=("x", "z")),

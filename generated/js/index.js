@@ -10,6 +10,7 @@ export * as hybrid_five_bar from "./hybrid_five_bar.js";
 export * as irb2400 from "./irb2400.js";
 export * as irb260 from "./irb260.js";
 export * as linear_delta from "./linear_delta.js";
+export * as opw_arm from "./opw_arm.js";
 export * as orthoglide from "./orthoglide.js";
 export * as planar_2r from "./planar_2r.js";
 export * as puma560 from "./puma560.js";

@@ -25,13 +25,13 @@ class C(Backend):
     def pages(self, mechanism: Mechanism) -> Pages:
         context = robot(mechanism.derivation, mechanism.lowered)
         name = mechanism.derivation.name
+        found = nearest(mechanism.derivation, context["functions"])
+        context = {**context, "nearest": found}
         printed = {
             Path("c", f"{name}.h"): render("c/robot.h.jinja", context),
             Path("c", f"{name}.c"): render("c/robot.c.jinja", context),
             Path("c", f"{name}.py"): render("c/module.py.jinja", context),
         }
-        found = nearest(mechanism.derivation, context["functions"])
-        context = {**context, "nearest": found}
         if found is not None:
             printed[Path("c", f"{name}_nearest.h")] = render("c/nearest.h.jinja", context)
         printed[Path("c", f"{name}.hpp")] = render("c/robot.hpp.jinja", context)

@@ -229,7 +229,7 @@ class CProgram:
     narrow: tuple[str, ...]
 
 
-def _array(name: str, shape: Sequence[int], kind: str, const: str = "") -> CArray:
+def c_array(name: str, shape: Sequence[int], kind: str, const: str = "") -> CArray:
     kinds = {"real": "CF_REAL", "status": "CF_STATUS", "bool": "CF_BOOL"}
     dims = "{ " + (", ".join(map(str, shape)) or "0") + " }"
     ctype = "real_t" if kind == "real" else "uint8_t"
@@ -267,8 +267,8 @@ class Emission:
     ):
         self.derivation, self.function, self.program = derivation, function, program
         self.full = full
-        self.inputs = tuple(_array(a.name, a.shape, "real", "const ") for a in program.inputs)
-        self.outputs = tuple(_array(r.name, r.shape, r.kind) for r in program.results)
+        self.inputs = tuple(c_array(a.name, a.shape, "real", "const ") for a in program.inputs)
+        self.outputs = tuple(c_array(r.name, r.shape, r.kind) for r in program.results)
         self.places = {
             str(entry): (argument, k)
             for argument, a in zip(self.inputs, program.inputs, strict=True)

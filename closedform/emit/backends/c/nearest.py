@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from closedform.emit.backends.c.kernel import CArray, c_array
 from closedform.emit.backends.c.robot import CFunction
 from closedform.model.derivation import Derivation
 
@@ -32,6 +33,9 @@ class CNearest:
     joint_names: str
     limits: str
     """The numbers of an array; empty if no joint has limits."""
+    inputs: tuple[CArray, ...]
+    outputs: tuple[CArray, ...]
+    """The arrays of one call from Python."""
 
 
 def nearest(derivation: Derivation, functions: Sequence[CFunction]) -> CNearest | None:
@@ -65,6 +69,19 @@ def nearest(derivation: Derivation, functions: Sequence[CFunction]) -> CNearest 
         fk_status=modes if len(fk.outputs) > 1 else 0,
         joint_names=", ".join(j.name for j in joints),
         limits=", ".join(_number(v) for side in derivation.limits or () for v in side),
+        inputs=(
+            ik.inputs[0],
+            c_array("q_seed", (len(joints),), "real", "const "),
+            c_array("limits", (2, len(joints)), "real", "const "),
+            c_array("weights", (len(joints),), "real", "const "),
+        ),
+        outputs=(
+            c_array("q", (len(joints),), "real"),
+            c_array("status", (), "status"),
+            c_array("branch", (), "real"),
+            c_array("distance", (), "real"),
+            c_array("outside", (ik.outputs[0].size // len(joints), len(joints)), "bool"),
+        ),
     )
 
 

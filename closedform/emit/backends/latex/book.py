@@ -20,6 +20,7 @@ COURSE = (
     "puma560",
     "stanford_arm",
     "irb2400",
+    "opw_arm",
     "ur_arm",
     "slider_crank",
     "four_bar",

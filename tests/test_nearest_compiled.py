@@ -1,0 +1,99 @@
+"""One call of `Robot.nearest` of a compiled module: the answers and the errors of the NumPy one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from closedform import robots
+from closedform.robots import Robot
+
+NAMES = ("ur5e", "puma560", "cobra600", "irb260", "rx160", "stanford_arm")
+TOOL = np.array([[0, 0, 1, 0.1], [0, 1, 0, -0.05], [-1, 0, 0, 0.2], [0, 0, 0, 1.0]])
+
+
+def pair(name: str, **options: object) -> tuple[Robot, Robot]:
+    return robots.load(name, **options), robots.load(name, compiled=True, **options)
+
+
+def agree(plain: Robot, compiled: Robot, x: np.ndarray, seed: np.ndarray, **options) -> int:
+    a, b = plain.nearest(x, seed, **options), compiled.nearest(x, seed, **options)
+    assert [np.shape(v) for v in a] == [np.shape(v) for v in b]
+    assert [np.asarray(v).dtype for v in a] == [np.asarray(v).dtype for v in b]
+    assert a.status == b.status and a.branch == b.branch
+    np.testing.assert_allclose(b.q, a.q, atol=1e-9)
+    np.testing.assert_allclose(b.distance, a.distance, atol=1e-9)
+    np.testing.assert_array_equal(b.outside, a.outside)
+    return int(a.status)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_answers_are_those_of_numpy(name: str) -> None:
+    random = np.random.default_rng(3)
+    plain, compiled = pair(name)
+    n = len(plain.joints)
+    tight = (np.full(n, -1.5), np.full(n, 1.5))
+    seen = set()
+    for _ in range(60):
+        q, seed = random.uniform(-1.5, 1.5, (2, n))
+        x = plain.fk(q)
+        agree(plain, compiled, x, seed)
+        weights = random.uniform(0, 3, n)
+        seen.add(agree(plain, compiled, x, seed, limits=tight, weights=weights))
+        seen.add(agree(plain, compiled, x, seed, limits=([-0.5] * n, [0.5] * n)))
+        agree(plain, compiled, x, seed * np.nan)
+    assert {0, 1} <= seen
+
+
+@pytest.mark.parametrize("options", [{"tool": TOOL}, {"base": TOOL}, {"base": TOOL, "tool": TOOL}])
+def test_base_and_tool_are_honoured(options: dict[str, np.ndarray]) -> None:
+    plain, compiled = pair("ur5e", **options)
+    q = np.array([0.3, -1.2, 1.5, 0.4, -0.7, 2.1])
+    agree(plain, compiled, plain.fk(q), q + 0.1)
+    assert np.abs(compiled.nearest(plain.fk(q), q + 0.1).q - q).max() < 1e-9
+
+
+def test_a_free_joint_keeps_its_value() -> None:
+    plain, compiled = pair("puma560")
+    q = np.array([0.3, -0.5, 0.6, 0.4, 0.0, 2.1])
+    assert agree(plain, compiled, plain.fk(q), q + 0.1) == 2
+
+
+def test_many_postures_and_many_dimensions_are_taken_as_before() -> None:
+    plain, compiled = pair("ur5e")
+    q = np.random.default_rng(2).uniform(-1.5, 1.5, (7, 6))
+    found = compiled.nearest(plain.fk(q), q[0])
+    np.testing.assert_allclose(found.q, plain.nearest(plain.fk(q), q[0]).q, atol=1e-9)
+    d1 = np.array([0.1, 0.2])
+    wide = compiled.replace(parameters=compiled.parameters._replace(d1=d1))
+    assert wide.nearest(plain.fk(q[0]), q[0]).q.shape == (2, 6)
+
+
+@pytest.mark.parametrize(
+    ("x", "seed", "options", "error"),
+    [
+        (np.eye(3), np.zeros(6), {}, ValueError),
+        ("far", np.zeros(6), {}, TypeError),
+        (np.eye(4), np.zeros(5), {}, ValueError),
+        (np.eye(4), np.full(6, 90.0), {}, ValueError),
+        (np.eye(4), np.zeros(6), {"weights": [-1.0] * 6}, ValueError),
+    ],
+)
+def test_errors_are_those_of_numpy(x, seed, options, error) -> None:
+    messages = []
+    for arm in pair("ur5e"):
+        with pytest.raises(error) as caught:
+            arm.nearest(x, seed, **options)
+        messages.append(str(caught.value))
+    assert messages[0] == messages[1]
+    bad = np.eye(4)
+    bad[0, 0] = -1
+    assert {arm.nearest(bad, np.zeros(6)).status for arm in pair("ur5e")} == {3}
+
+
+def test_one_call_takes_the_compiled_function(monkeypatch: pytest.MonkeyPatch) -> None:
+    compiled = robots.load("ur5e", compiled=True)
+    q = np.array([0.3, -1.2, 1.5, 0.4, -0.7, 2.1])
+    x = compiled.fk(q)
+    monkeypatch.setattr(compiled.module, "ik", None)
+    assert np.abs(compiled.nearest(x, q).q - q).max() < 1e-9

@@ -53,6 +53,22 @@ def test_the_pose_is_that_of_the_table(arm):
 
 
 @pytest.mark.parametrize("arm", ARMS)
+def test_the_jacobians_are_the_differences_of_the_pose(arm):
+    q, h = postures(200, 4), 1e-5
+    T = frames(q, arm)[7]
+    inverse = np.linalg.inv(T)
+    for j, step in enumerate(h * np.eye(7)):
+        rate = (frames(q + step, arm)[7] - frames(q - step, arm)[7]) / (2 * h)
+        for twist, found in (
+            (rate @ inverse, seven_joints.jacobian_space(q, arm)),
+            (inverse @ rate, seven_joints.jacobian_body(q, arm)),
+        ):
+            assert np.abs(twist[:, :3, 3] - found[:, :3, j]).max() < 1e-8
+            omega = np.stack([twist[:, 2, 1], twist[:, 0, 2], twist[:, 1, 0]], axis=-1)
+            assert np.abs(omega - found[:, 3:, j]).max() < 1e-8
+
+
+@pytest.mark.parametrize("arm", ARMS)
 def test_the_arm_angle_turns_the_elbow_about_the_line_to_the_wrist(arm):
     q = np.random.default_rng(2).uniform(-3, 3, (1000, 7))
     found = frames(q, arm)

@@ -86,6 +86,36 @@ def fk(q: ArrayLike, params: Parameters = LBR_IIWA_7) -> Floats:
     return T
 
 
+def jacobian_space(q: ArrayLike, params: Parameters = LBR_IIWA_7) -> Floats:
+    """Twist (v; omega) of the flange per joint rate in the base frame, (..., 6, 7).
+
+    ``q`` are the joints, (..., 7), in radians.  v is the velocity of the point of the flange that
+    is now at the origin of the base.
+    """
+    joints = _joints(q)
+    shoulder = spherical_wrist.fk(joints[..., _SHOULDER])
+    forearm = shoulder @ _about_y(-joints[..., 3])
+    first = spherical_wrist.jacobian_space(joints[..., _SHOULDER])
+    last = forearm @ spherical_wrist.jacobian_space(joints[..., _WRIST])
+    axes = np.concatenate([first, -shoulder[..., 1:2], last], axis=-1)
+    points = np.zeros_like(axes)
+    points[..., 2, :] = params.d_bs
+    points[..., 3:] += params.d_se * shoulder[..., 2:]
+    points[..., 4:] += params.d_ew * forearm[..., 2:]
+    return np.concatenate([np.cross(points, axes, axis=-2), axes], axis=-2)
+
+
+def jacobian_body(q: ArrayLike, params: Parameters = LBR_IIWA_7) -> Floats:
+    """Twist (v; omega) of the flange per joint rate in its own frame, (..., 6, 7).
+
+    ``q`` are the joints, (..., 7), in radians.  v is the velocity of the flange.
+    """
+    T, space = fk(q, params), jacobian_space(q, params)
+    back, omega = np.swapaxes(T[..., :3, :3], -1, -2), space[..., 3:, :]
+    v = space[..., :3, :] - np.cross(T[..., :3, 3:], omega, axis=-2)
+    return np.concatenate([back @ v, back @ omega], axis=-2)
+
+
 def arm_angle(q: ArrayLike, params: Parameters = LBR_IIWA_7) -> Floats:
     """The arm angle psi, (...), in (-pi, pi], of the joints ``q``, (..., 7), in radians.
 

@@ -1,5 +1,7 @@
 """The hybrid manipulator of Chablat, Wenger and Angeles: a five-bar linkage on a revolute."""
 
+from dataclasses import replace
+
 import sympy as sp
 from closedform.derivations import hybrid_five_bar_design as design
 from closedform.derivations.claims.five_bar_postures import FiveBar
@@ -566,12 +568,15 @@ def toward(theta: sp.Symbol, along: sp.Expr, passive_angle: sp.Symbol) -> sp.Exp
     )
 
 
+between_c, between_d = theta4 - theta2, theta5 - theta3
+told_c, told_d = (
+    replace(lemma, roles=(*lemma.roles, (r"\theta", angle)))
+    for lemma, angle in ((triangle_c, between_c), (triangle_d, between_d))
+)
 d.solved += [
     Solved("ik", theta1, turn, k.dot(p), leg_c),
-    Solved("ik", theta4, triangle_c, cosine_rule(x**2 + y**2 + z**2, theta4 - theta2), leg_c),
-    Solved(
-        "ik", theta5, triangle_d, cosine_rule(x**2 + (y - L0) ** 2 + z**2, theta5 - theta3), leg_d
-    ),
+    Solved("ik", theta4, told_c, cosine_rule(x**2 + y**2 + z**2, between_c), leg_c),
+    Solved("ik", theta5, told_d, cosine_rule(x**2 + (y - L0) ** 2 + z**2, between_d), leg_d),
     Solved("ik", theta2, bearing_c, toward(theta2, y, theta4), leg_c),
     Solved("ik", theta3, bearing_d, toward(theta3, y - L0, theta5), leg_d),
 ]

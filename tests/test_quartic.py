@@ -216,6 +216,16 @@ def test_a_chain_without_a_quartic_goes_first() -> None:
     assert "quartic" not in propose(arm(rows)[1]).lemmas
 
 
+def test_a_twist_may_be_a_parameter() -> None:
+    """Its tangent, which scripts do not know, is not written."""
+    alpha = sp.Symbol("alpha", real=True)
+    rows = [(1, alpha, 3), (4, alpha, 1), (sp.Rational(1, 2), -alpha, 1), *WRIST]
+    d, serial = arm(rows, alpha="7/20")
+    found = propose(serial)
+    assert found.lemmas[0] == "quartic"
+    solved(d, serial, found.source)
+
+
 @pytest.mark.parametrize(
     ("rows", "why"),
     [

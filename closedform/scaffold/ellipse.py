@@ -45,7 +45,7 @@ class Ellipse:
 
         def seen(v: sp.Matrix, fixed: sp.Matrix) -> sp.Matrix:
             """What a part v of the point, seen from the second joint, adds to the ellipse."""
-            return (seen_by * (sp.Matrix([v[2], -t.dot(v)]) + fixed)).applyfunc(sp.simplify)
+            return (seen_by * (sp.Matrix([v[2], -t.dot(v)]) + fixed)).applyfunc(_simple)
 
         lengths = (square + s.dot(s) - t.dot(t) - u.dot(u)) / 2
         fixed = sp.Matrix([t[2] + g.dot(s) - g[2] * height, lengths - s[2] * height])
@@ -59,7 +59,12 @@ class Ellipse:
     def double(self) -> tuple[Any, Any]:
         """The coefficients of cos 2x and sin 2x in the square of the distance from the axis."""
         a, b = self.along, self.aside
-        return sp.simplify(a.dot(a) - b.dot(b)) / 2, sp.simplify(a.dot(b))
+        return _simple(a.dot(a) - b.dot(b)) / 2, _simple(a.dot(b))
+
+
+def _simple(e: sp.Expr) -> sp.Expr:
+    """Simplified, in the functions that a script knows."""
+    return sp.simplify(e).replace(sp.tan, lambda angle: sp.sin(angle) / sp.cos(angle))
 
 
 def folds(two: Single, three: Single) -> bool:

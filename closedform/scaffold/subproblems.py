@@ -376,7 +376,7 @@ class SubproblemMaker(Maker):
         inside = times(two.end, f"(turned({third}) * {source(u)})")
         self.vector("carried", f"{source(t)} + {inside}")
         self.vector("beyond", times(one.end.T, f"(turned({first}).T * p - {source(s)})"))
-        short = sp.Abs(sp.simplify(Z.dot((one.end * Z).cross(one.shift))))
+        short = sp.Abs(Z.dot((one.end * Z).cross(one.shift)))
         self.add(f"play = ik.amplified_over({source(short)})")
         meaning = "'the point is one of the arm'"
         for n in ("beyond", "carried"):

@@ -297,9 +297,10 @@ for (let k = 0; k < {n}; ++k) {{
 
 
 def compile_c(sources: list[Path], *flags: str) -> None:
-    headers = Path(__file__).parents[1] / "closedform" / "runtime" / "extension"
+    runtime = Path(__file__).parents[1] / "closedform" / "runtime"
+    headers = [f"-I{runtime / name}" for name in ("extension", "c")]
     command = [compiler(), "-std=c99", "-fsyntax-only", "-Wall", "-Wextra", "-Wcomment"]
-    command += ["-Wtrigraphs", "-Wshadow", "-Werror", f"-I{headers}", *flags]
+    command += ["-Wtrigraphs", "-Wshadow", "-Werror", *headers, *flags]
     run = subprocess.run([*command, *map(str, sources)], capture_output=True, text=True)
     assert run.returncode == 0, run.stderr[:3000]
 

@@ -95,7 +95,7 @@ def postures(robot: str, n: int) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize(("robot", "name"), kernels())
 def test_generated(robot: str, name: str) -> None:
-    for q, most in zip(postures(robot, 4000), (0.01, 1), strict=True):
+    for q, most in zip(postures(robot, 4000), (0.02, 1), strict=True):
         arguments, kernel = planes(robot, name, q)
         with np.errstate(all="ignore"):
             whole = kernel.compute(*arguments)

@@ -93,7 +93,7 @@ def test_an_arm_of_unknown_structure_has_a_place_for_the_inverse(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     arm = derived(tmp_path, "skew", "dh", SKEW, monkeypatch)
-    because = "no inverse, because no two neighbours among axes 1, 2 and 3 are parallel or meet"
+    because = "no inverse, because its wrist can come to axis 2, where three solutions meet"
     first, summary, last = capsys.readouterr().out.splitlines()
     assert because in first and first.endswith(f"next: closedform derive {tmp_path}/skew.py -o out")
     assert because in summary
@@ -104,8 +104,8 @@ def test_an_arm_of_unknown_structure_has_a_place_for_the_inverse(
     assert not hasattr(arm, "ik")
     np.testing.assert_allclose(arm.determinant(q), np.linalg.det(arm.jacobian(q)), atol=1e-14)
     text = (tmp_path / "skew.py").read_text("utf-8")
-    assert "# No inverse is proposed, because no two neighbours among axes 1, 2 and 3" in text
-    assert 'd.no_inverse("no two neighbours among axes 1, 2 and 3 are parallel or meet' in text
+    assert "# No inverse is proposed, because its wrist can come to axis 2, where three" in text
+    assert 'd.no_inverse("its wrist can come to axis 2, where three solutions meet' in text
     assert "# Write it here, lemma by lemma" in text
 
 

@@ -153,7 +153,7 @@ def test_a_wrong_coefficient_is_noticed() -> None:
         prove(d)
 
 
-TILTED = [(1, pi / 2, 3), (4, pi / 3, 1), (sp.Rational(1, 2), -pi / 2, sp.Rational(1, 5))]
+TILTED = [(1, pi / 2, 3), (3, pi / 3, 1), (sp.Rational(1, 2), -pi / 2, sp.Rational(1, 5))]
 WRIST = [(0, pi / 2, 4), (0, -pi / 2, 0), (0, 0, sp.Rational(4, 5))]
 NEAR = (0, pi / 2, 1)
 SHOULDER = [(0, pi / 2, 3), (0, -pi / 2, 0), (0, pi / 2, 4), (1, pi / 3, 1), (2, -pi / 4, 1),
@@ -219,7 +219,7 @@ def test_a_chain_without_a_quartic_goes_first() -> None:
 def test_a_twist_may_be_a_parameter() -> None:
     """Its tangent, which scripts do not know, is not written."""
     alpha = sp.Symbol("alpha", real=True)
-    rows = [(1, alpha, 3), (4, alpha, 1), (sp.Rational(1, 2), -alpha, 1), *WRIST]
+    rows = [(1, alpha, 3), (3, alpha, 1), (sp.Rational(1, 2), -alpha, 1), *WRIST]
     d, serial = arm(rows, alpha="7/20")
     found = propose(serial)
     assert found.lemmas[0] == "quartic"

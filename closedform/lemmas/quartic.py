@@ -110,8 +110,11 @@ def quartic(
     meaning = "the root of the resolvent is between -1 and 1"
     upper = program.bound(f"upper_{tag}", (1 + u) / 2, sp.S.One, meaning)
     lower = program.bound(f"lower_{tag}", (1 - u) / 2, sp.S.One, meaning)
-    cosine, m, at_a = _part(chain, A, upper, B**2 / lower + 2 * (E - u), u, f"a_{tag}")
-    sine, d, at_b = _part(chain, B, lower, A**2 / upper - 2 * (E - u), -u, f"b_{tag}")
+    left = program.vanishes(f"left_{tag}", u, 0, "the root of the resolvent is not positive")
+    rest_a = choose(left, B**2 / lower, 0) + 2 * (E - u)
+    rest_b = choose(left, 0, A**2 / upper) - 2 * (E - u)
+    cosine, m, at_a = _part(chain, A, upper, rest_a, u, f"a_{tag}")
+    sine, d, at_b = _part(chain, B, lower, rest_b, -u, f"b_{tag}")
     n = program.let(f"n_{tag}", (m - tau * d) / 2)
     # much more than what e is rounded to, which small parts amplify: in the end the circle decides
     terms = sp.Abs(e) + size + 2 * sp.sqrt(a**2 + b**2)
@@ -139,11 +142,13 @@ def quartic(
     )
     given = _in_free_symbols((p, q, a, b, e), u)
     t = real("rho")
-    cases = [(behind, given, "half of the angle is beyond a quarter turn")]
-    for flag, at in ((at_a, 2 * t**2 - 1), (at_b, 1 - 2 * t**2)):
+    cases: list[tuple[tuple[sp.Symbol, ...], dict[sp.Symbol, sp.Expr], str]] = [
+        ((behind,), given, "half of the angle is beyond a quarter turn")
+    ]
+    for flags, at in (((at_a, left), 2 * t**2 - 1), ((at_b,), 1 - 2 * t**2)):
         locus = {n: value.xreplace({u: at}) for n, value in {**given, u: u}.items()}
-        cases.append((flag, locus, "the lines are nearly parallel to an axis"))
-    degenerate = tuple(Degenerate((flag,), locus, None, text) for flag, locus, text in cases)
+        cases.append((flags, locus, "the lines are nearly parallel to an axis"))
+    degenerate = tuple(Degenerate(flags, locus, None, text) for flags, locus, text in cases)
     relation = Relation(Resolvent(A, B, E).law(u), (), f"that {u} is a root", root=u)
     return Applied(lemma, pair, names, given, degenerate, relations=(relation,))
 

@@ -24,6 +24,7 @@ from closedform.emit.backend import Mechanism
 from closedform.emit.backends import numpy
 from closedform.lemmas.chain import Chain
 from closedform.lemmas.quartic import OnCircle, quartic
+from closedform.mechanics.arm import from_dh
 from closedform.model.derivation import Derivation, Paper
 from closedform.pipeline.run import write
 from closedform.proof.prove import Proof, prove
@@ -224,6 +225,21 @@ def test_a_twist_may_be_a_parameter() -> None:
     found = propose(serial)
     assert found.lemmas[0] == "quartic"
     solved(d, serial, found.source)
+
+
+def test_skew_axes_that_meet_are_invalid(tmp_path: Path) -> None:
+    """The chain divides by their distance, a parameter."""
+    d = Derivation("arm", "Arm", Paper("toy", "Toys", ("A.",)), "An arm.")
+    a1 = d.parameter("a1", value=1, unit="m", meaning="between the first two axes")
+    rows = [(a1, *TILTED[0][1:]), *TILTED[1:], *WRIST]
+    serial = from_dh(d, [(*row, d.joint(f"t{k}")) for k, row in enumerate(rows, 1)])
+    solved(d, serial, propose(serial).source)
+    serial.export(d)
+    code = printed(d, tmp_path)
+    q = np.array([0.3, 0.5, -0.7, 0.2, 0.9, 0.1])
+    status = [code.ik(code.fk(q, (a,)), (a,)).status for a in (0.0, 1.0)]
+    assert (status[0] == code.Status.INVALID).all()
+    assert (status[1] == code.Status.OK).any()
 
 
 @pytest.mark.parametrize(

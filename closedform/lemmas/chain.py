@@ -35,6 +35,7 @@ from closedform.model.functions import (
     Statement,
     Vanishes,
     branches,
+    choose,
     real,
     substitute,
 )
@@ -248,8 +249,13 @@ class Chain:
         """Say that roundings of the size of the arm are divided by a ``length``, as by a lever.
 
         Returns what an answer may miss on the scale of the tolerances, half the size or more.
+        If a length of parameters vanishes, the status is INVALID.
         """
         self.condition = 5 * self._sum_of_lengths() / (2 * length)
+        if length.free_symbols:
+            meaning = "the distance between skew axes is not zero"
+            none = self.program.vanishes("no_distance", length, self.size, meaning)
+            self.program.require([choose(none, 1, 0)], sp.S.One, meaning)
         return self.let("play", self.size * sp.Max(1, self.size / (16 * length)) / 2)
 
     def angle(self, name: str, value: sp.Expr) -> sp.Symbol:

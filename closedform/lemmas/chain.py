@@ -245,12 +245,13 @@ class Chain:
         self.held.append(symbol)
         return symbol
 
-    def amplified_over(self, length: sp.Expr) -> sp.Expr:
+    def amplified_over(self, length: sp.Expr | int) -> sp.Expr:
         """Say that roundings of the size of the arm are divided by a ``length``, as by a lever.
 
         Returns what an answer may miss on the scale of the tolerances, half the size or more.
         If a length of parameters vanishes, the status is INVALID.
         """
+        length = sp.sympify(length, strict=True)
         self.condition = 5 * self._sum_of_lengths() / (2 * length)
         if length.free_symbols:
             meaning = "the distance between skew axes is not zero"

@@ -11,7 +11,6 @@ import argparse
 import os
 import platform
 import re
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -28,6 +27,7 @@ from closedform.pipeline.disk import replace
 
 from . import batches, inverses, libraries, native
 from .cases import CASES, Case, NotApplicableError, check
+from .turns import medians
 
 MILLION = 1_000_000
 SETTLED = 0.1
@@ -60,13 +60,9 @@ class Report:
     def table(self, title: str, unit: str, competitors: Competitors, rounds: int) -> None:
         """Time all competitors in turns; the ratios are to the first one."""
         self.write(f"\n| {title} | median, {unit} | times closedform |\n|---|---:|---:|")
-        times: dict[str, list[float]] = {name: [] for name in competitors}
-        for _ in range(rounds):
-            for name, run in competitors.items():
-                times[name].append(run())
-        medians = {name: statistics.median(t) for name, t in times.items()}
-        best = next(iter(medians.values()), 1.0)
-        for name, median in medians.items():
+        found = medians(competitors, rounds)
+        best = next(iter(found.values()), 1.0)
+        for name, median in found.items():
             self.write(f"| {name} | {median:.4g} | {median / best:.2f} |")
 
 

@@ -13,9 +13,12 @@ from closedform.algebra.normal_form import positive_form as positive_form
 from closedform.algebra.solutions import count_solutions as count_solutions
 from closedform.algebra.solutions import rotation_parametrisation as rotation_parametrisation
 from closedform.lemmas.applied import Applied as Applied
+from closedform.lemmas.arm_plane import arm_angle as arm_angle
+from closedform.lemmas.arm_plane import arm_plane as arm_plane
 from closedform.lemmas.chain import Chain as Chain
 from closedform.lemmas.circles import circle_intersection as circle_intersection
 from closedform.lemmas.coupled import coupled as coupled
+from closedform.lemmas.law_of_cosines import law_of_cosines as law_of_cosines
 from closedform.lemmas.legs import Crank as Crank
 from closedform.lemmas.legs import Slide as Slide
 from closedform.lemmas.legs import Stretch as Stretch

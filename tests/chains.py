@@ -1,12 +1,20 @@
 """Arms from tables, and the chains that are proposed for them, as the tests build them."""
 
+from pathlib import Path
+from typing import Any
+
 import sympy as sp
 
 import closedform
+from closedform.check.runners.python import module
+from closedform.emit.backend import Mechanism
+from closedform.emit.backends import numpy
 from closedform.lazy import homes
 from closedform.lemmas.chain import Chain
 from closedform.mechanics.arm import Serial, from_dh
 from closedform.model.derivation import Derivation, Paper
+from closedform.pipeline.run import write
+from closedform.proof.prove import Proof
 
 
 def arm(rows: list, joints: str = "t1 t2 t3 t4 t5 t6 t7", **angles: str) -> tuple:
@@ -39,3 +47,10 @@ def solved(d: Derivation, serial: Serial, lines: str) -> Chain:
     )
     ik.finish("All.")
     return ik
+
+
+def printed(d: Derivation, folder: Path) -> Any:
+    """The NumPy module of a derivation."""
+    pages = numpy.BACKEND.pages(Mechanism(d, Proof(d.name, "own", (), 0, ()))).files
+    write(folder, {**pages, **numpy.BACKEND.shared([])})
+    return module(folder / "numpy", d.name)

@@ -337,6 +337,7 @@ def test_a_derivation_that_is_stopped_stops_its_processes(tmp_path: Path, kind: 
     process = subprocess.Popen(
         [*command, "-o", str(tmp_path / "out"), "-j", "2"],
         start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -11,7 +11,7 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from chains import arm, solved
+from chains import arm, printed, solved
 from flint import arb
 from numpy.typing import NDArray
 from sympy import cos, pi, sin
@@ -19,15 +19,11 @@ from sympy import cos, pi, sin
 from closedform.algebra.balls import Evaluator, to_float
 from closedform.algebra.resolvent import Resolvent, cubic, enclosed
 from closedform.check.rows import RowEvaluator
-from closedform.check.runners.python import module
-from closedform.emit.backend import Mechanism
-from closedform.emit.backends import numpy
 from closedform.lemmas.chain import Chain
 from closedform.lemmas.quartic import OnCircle, quartic
 from closedform.mechanics.arm import from_dh
 from closedform.model.derivation import Derivation, Paper
-from closedform.pipeline.run import write
-from closedform.proof.prove import Proof, prove
+from closedform.proof.prove import prove
 from closedform.proof.require import ProofError
 from closedform.scaffold.propose import NoChainError, propose
 
@@ -113,13 +109,6 @@ def test_the_lowered_root_solves_the_cubic(tmp_path: Path) -> None:
     scale = np.maximum.reduce([np.ones_like(a), a * a, b * b, abs(e)])
     assert (abs(u) <= 1).all()
     assert (abs(cubic(u, a, b, e)) / scale).max() < 2e-15
-
-
-def printed(d: Derivation, folder: Path) -> Any:
-    """The NumPy module of a derivation."""
-    pages = numpy.BACKEND.pages(Mechanism(d, Proof(d.name, "own", (), 0, ()))).files
-    write(folder, {**pages, **numpy.BACKEND.shared([])})
-    return module(folder / "numpy", d.name)
 
 
 def toy(shift: int = 0) -> tuple[Derivation, Chain]:

@@ -9,17 +9,19 @@ from __future__ import annotations
 
 import argparse
 import importlib
-import statistics
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from importlib import metadata
 from pathlib import Path
+from timeit import timeit
 from typing import Any
 
 from closedform.pipeline.disk import replace
 
 from .. import native
+from ..turns import medians
 from . import ours
 from .page import HEAD, INTRODUCTIONS, TAIL, TITLES
 from .tasks import TASKS, DisagreementError, Ways, judged
@@ -79,7 +81,7 @@ def words(seconds: float) -> str:
 
 def compared(task: str, found: list[Competitor], rounds: int) -> list[str]:
     """The rows of a task: the answers are checked once, then all run in turns."""
-    runs: dict[str, Callable[[], Any]] = {}
+    runs: dict[str, Callable[[], float]] = {}
     results: dict[str, str] = {}
     mine = found[0].ways[task]
     expected = mine.read(mine.run()) if mine.run else None
@@ -89,23 +91,17 @@ def compared(task: str, found: list[Competitor], rounds: int) -> list[str]:
             continue
         try:
             results[competitor.name] = judged(task, way, way.read(way.run()), expected)
-            runs[competitor.name] = way.run
+            runs[competitor.name] = partial(timeit, way.run, number=1)
         except DisagreementError as error:
             results[competitor.name] = f"differs: {error}"
     results[found[0].name] = ""
-    times: dict[str, list[float]] = {name: [] for name in runs}
-    for _ in range(rounds):
-        for name, run in runs.items():
-            start = time.perf_counter()
-            run()
-            times[name].append(time.perf_counter() - start)
+    times = medians(runs, rounds)
     rows = []
     for competitor in found:
         way = competitor.ways.get(task)
         if way is None:
             continue
-        taken = times.get(competitor.name)
-        told = words(statistics.median(taken) / way.units) if taken else ""
+        told = words(times[competitor.name] / way.units) if competitor.name in times else ""
         result = results.get(competitor.name, "")
         rows.append(f"| {competitor.name} | {way.call} | {result} | {told} |")
     return rows

@@ -56,6 +56,7 @@ class Values:
         self.exprs = [e for s in signs for e in function.values(s)]
         self.entries = len(self.exprs) // len(signs)
         """Of one case."""
+        self.angles = np.array([isinstance(e, sp.atan2) for e in self.exprs])
         symbols = symbols_of(derivation, function)
         self.exact = RowEvaluator(symbols, self.exprs)
         self.scales = Magnitudes(symbols, self.exprs)
@@ -130,6 +131,8 @@ class Solutions:
         slides = {j.symbol for j in derivation.joints if j.kind == "prismatic"}
         self._sliding = np.array([u in slides for u in inverse.unknowns])
         self._turns = np.array([x in inverse.angles for x in function.symbols])
+        weights = [inverse.weights.get(x, sp.S.One) for x in function.symbols]
+        self._weights = RowEvaluator(posture, weights)
         sized = {*parameters, *slides}
         places = (3, 7, 11) if function.inputs[0].shape == (4, 4) else ()
         self._sized = [
@@ -180,8 +183,9 @@ class Solutions:
     ) -> NDArray[np.float64]:
         """How far the image in the nearest assembly mode is from the target.
 
-        Lengths are counted in the sum of those of links and slides, angles as they are.
+        Lengths are counted in the sum of those of links and slides, angles by their weights.
         """
+        counted = self._weights.values(with_parameters(solutions.astype(float), parameters))
         fixed = np.abs(parameters).sum() + self._in_numbers
         size = fixed + np.abs(solutions * self._sliding).sum(axis=-1)
         apart = []
@@ -189,7 +193,7 @@ class Solutions:
             difference = (image - given).astype(float)
             turned = np.abs(np.angle(np.exp(1j * difference)))
             by_size = np.abs(difference) / np.where(sized, size[:, None], 1.0)
-            apart.append(np.where(self._turns, turned, by_size).max(axis=-1))
+            apart.append((counted * np.where(self._turns, turned, by_size)).max(axis=-1))
         return np.asarray(np.fmin.reduce([*apart, np.full(len(given), np.inf)]))
 
     def exact_miss(

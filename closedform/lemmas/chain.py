@@ -88,6 +88,7 @@ class Chain:
     directions: dict[sp.Expr, Pair] = field(default_factory=dict)
     held: list[sp.Symbol] = field(default_factory=list)
     condition: sp.Expr = sp.S.Zero
+    weights: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     coefficients: set[sp.Symbol] = field(default_factory=set)
     """Names of the coefficients of lemmas, which are proved for all values of them."""
 
@@ -112,14 +113,15 @@ class Chain:
     def size(self) -> sp.Expr:
         """Of the arm, named in the program."""
         if self._size is None:
-            self.size = self._sum_of_lengths()
+            self.size = self.sum_of_lengths()
         return self._size
 
     @size.setter
     def size(self, value: sp.Expr) -> None:
         self._size = self.let("size", value)
 
-    def _sum_of_lengths(self) -> sp.Expr:
+    def sum_of_lengths(self) -> sp.Expr:
+        """The size of the arm, in its parameters and numbers."""
         lengths = [p for p in self.d.parameters if p.nonnegative or p.unit != "rad"]
         sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
         places = self.forward[:3, 3] if self.is_pose else self.forward
@@ -127,14 +129,9 @@ class Chain:
 
     def given(self, joint: sp.Symbol) -> Pair:
         """Take a joint as an input of the inverse, beside the pose; returns its pair."""
-        symbol = real(f"x_{joint.name}")
-        if not self.is_pose or any(
-            j.symbol == joint and j.kind != "revolute" for j in self.d.joints
-        ):
-            raise ShapeError(f"{self.d.name}: only a joint that turns can be given, beside a pose")
-        self.inputs[str(joint)] = symbol
-        self.targets, self.images = (*self.targets, symbol), (*self.images, joint)
-        self.angles = (*self.angles, joint.name)
+        if any(j.symbol == joint and j.kind != "revolute" for j in self.d.joints):
+            raise ShapeError(f"{self.d.name}: only a joint that turns can be given")
+        symbol = self.given_angle(joint.name, joint)
 
         def given(chain: Chain) -> Applied:
             pair = Pair(sp.sin(symbol), sp.cos(symbol)).known_as(chain.program, f"_{joint.name}")
@@ -149,6 +146,22 @@ class Chain:
 
         found: Pair = self.solve(given)
         return found
+
+    def given_angle(self, name: str, image: sp.Expr, weight: sp.Expr = sp.S.One) -> sp.Symbol:
+        """Take an angle of the posture as an input of the inverse, beside the pose.
+
+        ``image`` is the angle in the joints.  Where it is undefined at some postures, answers keep
+        it as well as the ``weight``, which vanishes there, allows.
+        """
+        if not self.is_pose:
+            raise ShapeError(f"{self.d.name}: an angle can only be given beside a pose")
+        symbol = real(f"x_{name}")
+        self.inputs[name] = symbol
+        self.targets, self.images = (*self.targets, symbol), (*self.images, image)
+        self.angles = (*self.angles, name)
+        if weight != 1:
+            self.weights[symbol] = weight
+        return symbol
 
     def reached(self, rest: sp.Matrix | None = None) -> None:
         """Compare the pose of the solved joints with the target, for arms that not every pose fits.
@@ -252,7 +265,7 @@ class Chain:
         If a length of parameters vanishes, the status is INVALID.
         """
         length = sp.sympify(length, strict=True)
-        self.condition = 5 * self._sum_of_lengths() / (2 * length)
+        self.condition = 5 * self.sum_of_lengths() / (2 * length)
         if length.free_symbols:
             meaning = "the distance between skew axes is not zero"
             none = self.program.vanishes("no_distance", length, self.size, meaning)
@@ -509,6 +522,7 @@ class Chain:
             parametrisation=self._rotations() if self.is_pose else (),
             angles=tuple(real(f"x_{n}") for n in self.angles),
             links=tuple(self.links),
+            weights=self.weights,
             condition=self.condition,
             glue=Rank(
                 {**self.meaning},

@@ -51,8 +51,9 @@ class Relation:
     """What the coefficients of a lemma have to satisfy: ``value`` is zero.
 
     It is the sum of the equations of earlier links, each times a factor; each term is the first
-    unknown of the link, and the factors of its first equations.  ``meaning`` is for messages.  Or
-    there are no terms, and it vanishes because ``root`` is by definition a root of it.
+    unknown of the link, and the factors of its first equations.  ``meaning`` is for messages.
+    Without terms it vanishes by the definitions of its names, or because ``root`` is by definition
+    a root of it.
     """
 
     value: sp.Expr
@@ -166,6 +167,8 @@ class Inverse:
     glue: Rank | Combination | None = None
     nonnegative: tuple[sp.Symbol, ...] = ()
     """Unknowns that are lengths: two solutions that differ only in their sign count as one."""
+    weights: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """By how much the angle of a target counts, in the unknowns, where it is undefined at some."""
     condition: sp.Expr = sp.S.Zero
     """By how much the mechanism amplifies roundings, in its parameters; see ``promised``."""
 
@@ -177,7 +180,7 @@ class Inverse:
     def equations(self) -> tuple[sp.Expr, ...]:
         """The expressions that vanish at a solution."""
         return tuple(
-            equation
+            self.weights.get(x, sp.S.One) * equation
             for f, x in zip(self.forward, self.targets, strict=True)
             for equation in (
                 (sp.cos(f) - sp.cos(x), sp.sin(f) - sp.sin(x)) if x in self.angles else (f - x,)

@@ -22,21 +22,30 @@ def random_posture(draw: random.Random, symbols: Sequence[Expr]) -> dict[Expr, E
     }
 
 
-def undetermined(inverse: Inverse, posture: Posture, equations: Sequence[Expr]) -> list[str]:
+def undetermined(
+    inverse: Inverse, posture: Posture, systems: Sequence[Sequence[Expr]]
+) -> list[str]:
     """The coordinates of the target that the equations leave open, given the joints.
 
-    Equations that are linear in what is not known yet determine more of it, until nothing is added.
+    Equations that are linear in what is not known yet determine more of it, all together or those
+    of one system, until nothing is added.
     """
     draw = random.Random(2)
     columns, circle = _columns(inverse, posture)
     constant = [x - f for x, f in zip(inverse.targets, inverse.forward, strict=True) if f.is_number]
-    named = map(posture.in_coordinates, (*equations, *constant))
-    left = [sp.expand_trig(e).xreplace(circle) for e in named]
+    left = [
+        [sp.expand_trig(posture.in_coordinates(e)).xreplace(circle) for e in system]
+        for system in (*systems, constant)
+    ]
     known: dict[Expr, Expr] = {}
     while True:
         open_columns = [x for x in columns if x not in known]
-        rows, nonlinear = _linear_rows(left, open_columns, known)
-        found = _determined(rows, open_columns, draw)
+        parts = [_linear_rows(system, open_columns, known) for system in left]
+        nonlinear = any(others for _, others in parts)
+        found = _determined([row for rows, _ in parts for row in rows], open_columns, draw)
+        if len(found) < len(open_columns):
+            alone = {x for rows, _ in parts for x in _determined(rows, open_columns, draw)}
+            found = [x for x in open_columns if x in alone.union(found)]
         if len(found) == len(open_columns):
             return []
         if not found or not nonlinear:

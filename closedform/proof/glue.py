@@ -163,11 +163,11 @@ class _Chain:
                 if relation.root is not None:
                     self._is_root(relation.root, relation.value, place)
                     continue
+                fault = "does not follow from earlier equations"
                 unknown = [u for u, _ in relation.terms if u not in solved]
-                if unknown or not relation.terms:
-                    missing = f": no earlier lemma solves for {unknown[0]}" if unknown else ""
+                if unknown:
                     raise ProofError(
-                        f"{place}, does not follow from earlier equations{missing}; say with "
+                        f"{place}, {fault}: no earlier lemma solves for {unknown[0]}; say with "
                         f"because= from which"
                     )
                 total = sum(
@@ -176,7 +176,8 @@ class _Chain:
                     for factor, equation in zip(factors, solved[u], strict=False)
                 )
                 difference = self.posture.named(relation.value - total)
-                require(substitute(difference, rotation), (), f"{place}, does not follow so")
+                why = "does not follow so" if relation.terms else f"{fault}; say with because="
+                require(substitute(difference, rotation), (), f"{place}, {why}")
             solved[link.unknowns[0]] = link.equations
 
     def _is_root(self, root: Expr, value: Expr, place: str) -> None:
@@ -197,8 +198,8 @@ class _Chain:
             )
 
     def _undetermined(self, links: Sequence[Link]) -> list[str]:
-        equations = [e for link in links for e in link.equations]
-        return undetermined(self.inverse, self.posture, [*equations, *self.matches])
+        systems = [link.equations for link in links]
+        return undetermined(self.inverse, self.posture, [*systems, self.matches])
 
 
 class _Combined:

@@ -14,6 +14,7 @@ from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.source import source
 
 Z = sp.Matrix([0, 0, 1])
+FLIP = "{+1: 'noflip', -1: 'flip'}"
 
 
 @dataclass(frozen=True)
@@ -84,14 +85,17 @@ class Maker:
         a = self.angle(first + at[0])
         b = self.angle(second + at[1] - at[0])
         more = f", scale={source(sum(lengths))}" if (x, y) == ("x", "y") and alone else ""
-        names = []
-        for i, value in enumerate(lengths, 1):
-            if not value.is_Symbol:
-                self.add(f"link{i} = ik.program.let('link{i}', {source(value)}, nonnegative=True)")
-            names.append(source(value) if value.is_Symbol else f"link{i}")
+        names = [self.length_of(f"link{i}", value) for i, value in enumerate(lengths, 1)]
         arguments = f"{a}, {b}, {x}, {y}, {', '.join(names)}"
         self.solve("two_links", f"{arguments}, {{+1: 'up', -1: 'down'}}{more}", f"{a}_, {b}_", 2)
         self.pairs = (f"{a}_", f"{b}_")
+
+    def length_of(self, name: str, value: Any) -> str:
+        """The length of a link, under a ``name`` unless it is a parameter."""
+        if value.is_Symbol:
+            return source(value)
+        self.add(f"{name} = ik.program.let('{name}', {source(value)}, nonnegative=True)")
+        return name
 
     def angle(self, value: Any) -> str:
         """A joint, or a name for a joint with an offset or a sign."""
@@ -129,6 +133,7 @@ class Maker:
         after: sp.Matrix,
         numbers: Sequence[int] = (4, 5, 6),
         more: str = "",
+        choice: str = FLIP,
     ) -> tuple[str, Any]:
         """Solve ``lift`` and the two joints after it, with their offsets, as ZYZ angles.
 
@@ -153,7 +158,7 @@ class Maker:
             self.angle(sense * turns[0] + tau),
             self.angle(turns[1] + omega),
         )
-        arguments = f"{M}, {', '.join(names)}, {{+1: 'noflip', -1: 'flip'}}{more}"
+        arguments = f"{M}, {', '.join(names)}, {choice}{more}"
         self.solve("zyz", arguments, f"{names[0]}_", 2)
         return f"{names[0]}_", epsilon
 
@@ -167,6 +172,10 @@ def times(R: sp.Matrix, value: str) -> str:
     return value if (R - sp.eye(3)).is_zero_matrix else f"{source(R)} * {value}"
 
 
+def followed(value: str, R: sp.Matrix) -> str:
+    return value if sp.eye(3) == R else f"{value} * {source(R)}"
+
+
 def norm(v: sp.Matrix) -> Any:
     """The length of a vector in the plane."""
 
@@ -178,4 +187,4 @@ def turning(w: Any, v: Any) -> tuple[Any, Any]:
     return w[0] * v[1] - w[1] * v[0], w[0] * v[0] + w[1] * v[1]
 
 
-__all__ = ["Maker", "Solved", "Z", "norm", "point", "times", "turning"]
+__all__ = ["Maker", "Solved", "Z", "followed", "norm", "point", "times", "turning"]

@@ -15,6 +15,8 @@ import sympy as sp
 
 from closedform.mechanics.arm import Serial
 from closedform.mechanics.frames import rotation
+from closedform.scaffold import arm_angle
+from closedform.scaffold.arm_angle import ArmAngleMaker
 from closedform.scaffold.chainlinks import Single, Singles, singles
 from closedform.scaffold.known import KnownMaker
 from closedform.scaffold.maker import Maker
@@ -30,13 +32,15 @@ def propose(
 ) -> Proposal:
     """The chain for an arm; raises :class:`NoChainError` if none is known.
 
-    Of an arm of seven joints one is ``given``, by default one that makes the chain short.
+    Of an arm of seven joints one is ``given``, by default one that makes the chain short, or
+    ``arm_angle``.
     """
     tried: list[Tried] = []
-    if given and (len(arm.joints) != 7 or given not in {j.name for j in arm.joints}):
+    names = {arm_angle.NAME, *(j.name for j in arm.joints)}
+    if given and (len(arm.joints) != 7 or given not in names):
         raise NoChainError(
             f"{given} cannot be given",
-            "Of an arm of seven joints one can be given, by its name in the table.",
+            "Of an arm of seven joints one can be given, by its name in the table, or arm_angle.",
         )
     for degree in (2, 4):
         left = {t.name for t in tried if t.error.degree == degree}
@@ -82,7 +86,10 @@ def _candidates(arm: Serial, given: str) -> Iterator[tuple[str, Maker, Callable[
         return
     whole = singles(arm)
     task = arm.coordinates()
-    if n == 7:
+    if n == 7 and given == arm_angle.NAME:
+        angled = ArmAngleMaker(arm)
+        yield "the arm angle", angled, partial(angled.solved_by_arm_angle, whole)
+    elif n == 7:
         for single in (whole.joints[k] for k in (2, 6, 4, 0, 3, 1, 5)):
             if given in ("", single.joint.name):
                 yield from _six(arm, whole, f", with {single.joint} given", single)

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from closedform.scaffold.chainlinks import Single, Singles, parallel
-from closedform.scaffold.maker import Z, norm, point, times, turning
+from closedform.scaffold.maker import Z, followed, norm, point, times, turning
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.source import source
 from closedform.scaffold.subproblems import SubproblemMaker
@@ -36,12 +36,12 @@ class SixMaker(SubproblemMaker):
             f"axes {one.number} and {two.number} or {four.number} and {five.number} are parallel",
             "Three parallel axes need others that are not parallel to them.",
         )
-        R = self._centre(arm)
+        R = self.centre(arm)
         w = four.shift
         q, pair = self._seen_in_plane(one, two.shift[2] + three.shift[2] + w[2])
         inside = f"(turned({pair}).T * {times(arm.lead[:3, :3].T, R)})"
         self.add(f"left1 = ik.matrix('left1', {times(one.end.T, inside)})")
-        M = self._without_tool(arm.tool[:3, :3], "left1")
+        M = self.without_tool(arm.tool[:3, :3], "left1")
         lift = replace(four, turn=two.turn + three.turn + four.turn)
         self._reach([lift, five, six], w, [q, pair], two.shift, three.shift)
         self.orientation([lift, five, six], M)
@@ -72,15 +72,15 @@ class SixMaker(SubproblemMaker):
         one, two, three, four, five, six = found.joints
         height = sum((s.shift[2] for s in (one, two, three)), sp.S.Zero)
         lift = replace(three, turn=one.turn + two.turn + three.turn)
-        R = self._centre(found)
+        R = self.centre(found)
         p = point("p")
-        M = self._without_tool(found.tool[:3, :3], times(found.lead[:3, :3].T, R))
+        M = self.without_tool(found.tool[:3, :3], times(found.lead[:3, :3].T, R))
         if at_end is not None:
             s, g = four.shift, three.end.T * Z
             a, b = turning(s, g)
             fourth = self._turn(four, (a, b, p[2] - height - g[2] * s[2]))
             self.add(f"before = {times(three.end, f'turned({fourth})')}")
-            self.wrist_about(lift, five, six, M, _followed("before", four.end))
+            self.wrist_about(lift, five, six, M, followed("before", four.end))
             self.vector("end", f"{source(three.shift)} + before * {source(s)}")
         else:
             self.add(f"M = ik.matrix('M', {M})")
@@ -89,7 +89,7 @@ class SixMaker(SubproblemMaker):
             a, b = turning(u, t)
             sixth = self._turn(six, (a, b, p[2] - height - t[2] * u[2]))
             self.vector("p", f"p - M * turned({sixth}).T * {source(t)}", "p3")
-            left = _followed(f"M * turned({sixth}).T", five.end.T)
+            left = followed(f"M * turned({sixth}).T", five.end.T)
             self.add(f"left1 = ik.matrix('left1', {left})")
             links = one.shift, two.shift
             self._reach([lift, four, five], three.shift, ["p", sixth], *links)
@@ -145,8 +145,8 @@ class SixMaker(SubproblemMaker):
         )
         fifth = self._rotate(five, "beyond", source(w[:2, 0]), because)
         middle = times(one.end.T, f"(turned({first}).T * M)") + f" * turned({sixth}).T"
-        middle = f"{_followed(middle, five.end.T)} * turned({fifth}).T"
-        return _followed(middle, four.end.T)
+        middle = f"{followed(middle, five.end.T)} * turned({fifth}).T"
+        return followed(middle, four.end.T)
 
     def _between_parallel(self, found: Singles) -> str:
         """The same where axes 5 and 6 are parallel: the component along them gives joint 1."""
@@ -165,7 +165,7 @@ class SixMaker(SubproblemMaker):
         self.two_links(turns, [u[:2, 0], t[:2, 0]], "seen[0]", "seen[1]")
         both = f"turned({self.pairs[0]} + {self.less(self.pairs[1], t[:2, 0])})"
         middle = times(one.end.T, f"(turned({first}).T * M)")
-        return _followed(f"{middle} * {both}", four.end.T)
+        return followed(f"{middle} * {both}", four.end.T)
 
     def _reach(
         self,
@@ -196,8 +196,8 @@ class SixMaker(SubproblemMaker):
 
     def _seen_from_tool(self, found: Singles) -> None:
         """Name the point ``p`` of the last axes, and the rotation ``M`` after the last joint."""
-        R = self._centre(found)
-        M = self._without_tool(found.tool[:3, :3], times(found.lead[:3, :3].T, R))
+        R = self.centre(found)
+        M = self.without_tool(found.tool[:3, :3], times(found.lead[:3, :3].T, R))
         self.add(f"M = ik.matrix('M', {M})")
 
     def _require_parallel(self, arm: Singles, start: int) -> None:
@@ -225,10 +225,6 @@ class SixMaker(SubproblemMaker):
                 degree=4,
             )
         return found
-
-
-def _followed(value: str, R: sp.Matrix) -> str:
-    return value if sp.eye(3) == R else f"{value} * {source(R)}"
 
 
 __all__ = ["SixMaker"]

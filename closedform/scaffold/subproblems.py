@@ -20,7 +20,7 @@ from closedform.mechanics.arm import Group, Row
 from closedform.mechanics.frames import rotation
 from closedform.scaffold.chainlinks import Single, Singles, parallel
 from closedform.scaffold.ellipse import Ellipse, folds
-from closedform.scaffold.maker import Maker, Solved, Z, norm, point, times, turning
+from closedform.scaffold.maker import FLIP, Maker, Solved, Z, norm, point, times, turning
 from closedform.scaffold.proposal import NoChainError
 from closedform.scaffold.slides import Slides
 from closedform.scaffold.source import source
@@ -55,7 +55,7 @@ class SubproblemMaker(Maker):
         """
         n = len(arm.joints)
         before, ends = arm.joints[: n - wrist], arm.joints[n - wrist :]
-        R = self._centre(arm)
+        R = self.centre(arm)
         self._see_the_last_axis(arm, R)
         solved = self.position(before)
         M = times(arm.lead[:3, :3].T, R)
@@ -65,7 +65,7 @@ class SubproblemMaker(Maker):
             inside = f"(turned({pair}).T * {M})" if pair else M
             self.add(f"left{k} = ik.matrix('left{k}', {times(end.T, inside)})")
             M = f"left{k}"
-        M = self._without_tool(arm.tool[:3, :3], M)
+        M = self.without_tool(arm.tool[:3, :3], M)
         self.orientation(ends, M)
         if len(self.arm.joints) < 6:
             self.add(f"ik.reached({solved.rest if wrist == 3 else ''})")
@@ -112,13 +112,13 @@ class SubproblemMaker(Maker):
             "axes 2, 3 and 4 are not parallel, or axis 1 or 5 is parallel to them",
             "Known are five joints of which the middle three are parallel.",
         )
-        R = self._centre(arm)
+        R = self.centre(arm)
         self._see_the_last_axis(arm, R)
         w = four.shift
         q, pair = self._seen_in_plane(one, two.shift[2] + three.shift[2] + w[2])
         M = f"{times(one.end.T, f'(turned({pair}).T * {times(arm.lead[:3, :3].T, R)})')}"
         self.add(f"left1 = ik.matrix('left1', {M})")
-        M = self._without_tool(arm.tool[:3, :3], "left1")
+        M = self.without_tool(arm.tool[:3, :3], "left1")
         lift = replace(four, turn=two.turn + three.turn + four.turn)
         self.orientation([lift, five], M)
         turn = f"pair{four.number}"
@@ -128,13 +128,13 @@ class SubproblemMaker(Maker):
         self.add("ik.reached()")
         return "turret, three parallel joints and one more"
 
-    def _without_tool(self, after: sp.Matrix, M: str) -> str:
+    def without_tool(self, after: sp.Matrix, M: str) -> str:
         if (after - sp.eye(3)).is_zero_matrix:
             return M
         self.add(f"left = ik.matrix('left', {M} * {source(after.T)})")
         return "left"
 
-    def _centre(self, arm: Singles) -> str:
+    def centre(self, arm: Singles) -> str:
         """Name the point ``p`` where the last axes meet, and return the name of the rotation."""
         R, p = ("ik.R", "ik.p")
         if arm.inverted:
@@ -283,7 +283,7 @@ class SubproblemMaker(Maker):
         self.add("far = ik.let('far', sqrt(p.dot(p)))")
         far = sp.Symbol("far")
         c = (far**2 - sp.simplify(t.dot(t) + u.dot(u))) / 2 - sp.simplify(e[2] * u[2])
-        third = self._by_distance(three, e, u, c, "(far + ik.size/2**44)/2")
+        third = self.by_distance(three, e, u, c, "(far + ik.size/2**44)/2")
         inside = times(two.end, f"(turned({third}) * {source(u)})")
         self.vector("carried", f"{source(t)} + {inside}")
         v = point("carried")
@@ -405,7 +405,7 @@ class SubproblemMaker(Maker):
         self.solve("quartic", f"{arguments}, {square}, {LINE}, {SIDE}, on_circle", pair, 4)
         return pair
 
-    def _by_distance(self, joint: Single, e: Any, u: Any, c: Any, scale: str) -> str:
+    def by_distance(self, joint: Single, e: Any, u: Any, c: Any, scale: str) -> str:
         """Solve ``e . Rz(x) u`` by a distance; the equation is divided by the size of the arm."""
         a, b = map(sp.simplify, turning(u, e))
         self.require(
@@ -470,13 +470,20 @@ class SubproblemMaker(Maker):
     def _wrist(self, joints: Sequence[Single], M: str) -> None:
         first, middle, last = joints
         if self.is_normal(joints):
-            groups = [Group((Row(1, j.turn, (sp.S.Zero,) * 3, False),), j.end) for j in joints]
-            groups[-1] = Group(groups[-1].rows, sp.eye(3))
-            numbers = [j.number for j in joints]
-            pair, epsilon = self.wrist(first.turn, groups, M, sp.eye(3), numbers, self.more)
-            self.lifted = self._less_by_angle(pair, epsilon)
+            self.normal_wrist(joints, M, self.more)
             return
         self.wrist_about(first, middle, last, M, "")
+
+    def normal_wrist(
+        self, joints: Sequence[Single], M: str, more: str = "", choice: str = FLIP
+    ) -> None:
+        """Solve three joints, neighbours at right angles, for the rotation that is left to them."""
+        groups = [Group((Row(1, j.turn, (sp.S.Zero,) * 3, False),), j.end) for j in joints]
+        groups[-1] = Group(groups[-1].rows, sp.eye(3))
+        numbers = [j.number for j in joints]
+        turn = joints[0].turn
+        pair, epsilon = self.wrist(turn, groups, M, sp.eye(3), numbers, more, choice)
+        self.lifted = self._less_by_angle(pair, epsilon)
 
     def is_normal(self, wrist: Sequence[Single]) -> bool:
         """Whether the neighbours among three axes are at right angles."""
@@ -552,7 +559,6 @@ class SubproblemMaker(Maker):
 
 LINE = "{+1: 'first', -1: 'second'}"
 SIDE = "{+1: 'left', -1: 'right'}"
-FLIP = "{+1: 'noflip', -1: 'flip'}"
 ELBOW = "{+1: 'up', -1: 'down'}"
 """Where a distance decides, the joint bends an elbow."""
 

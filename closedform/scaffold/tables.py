@@ -41,7 +41,7 @@ JOINTS = 16
 ROWS = 32
 DIGITS = re.compile(r"[-+0-9./eE]+")
 IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "atan2")
-CHAIN = ("Reaching", "sign_of", "turned", *chain_lemmas())
+CHAIN = ("Reaching", "arm_angle", "rotation", "sign_of", "turned", *chain_lemmas())
 AUTHOR = (
     "Chain", "Derivation", "Links", "LinksAndWrist", "LinksAtHeight", "OnCircle", "Pair", "Paper",
     "from_dh", "from_screws", "real",
@@ -52,7 +52,7 @@ LINES = {
     "rho", "given", "back", "far", "carried", "seen", "beyond", "left", "onward",
     "onto", "over", "axis", "before", "end",
     "tool", "side", "both", "pointed", "square", "along", "aside", "centre", "radius", "on_circle",
-    "play", "long_beyond", "long_carried", "lever",
+    "play", "long_beyond", "long_carried", "lever", "carrying", "reached",
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""

@@ -1,0 +1,89 @@
+"""An elbow whose links end at a known distance: the law of cosines, without loss of digits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy as sp
+
+from closedform.lemmas.applied import Applied
+from closedform.lemmas.chain import Chain, Choice
+from closedform.lemmas.links import degenerate, differs_from_zero, named
+from closedform.lemmas.registry import chain_lemma, theorem
+from closedform.lemmas.triangle import Triangle
+from closedform.model.functions import choose
+from closedform.model.lemma import Lemma
+from closedform.model.pair import Pair
+
+theorem(
+    "law of cosines",
+    statement=r"""Let $l_1, l_2 > 0$ and $r \ge 0$.  With the factors $\mathcal S = l_1 + l_2 + r$,
+$\mathcal A = l_1 + l_2 - r$, $\mathcal B = r + l_1 - l_2$ and $\mathcal C = r - l_1 + l_2$, the
+equation $l_1^2 + l_2^2 + 2 l_1 l_2 \cos\theta = r^2$ has a solution if and only if $\mathcal A$,
+$\mathcal B$ and $\mathcal C$ are not negative.  The solutions are
+$$(\cos\theta, \sin\theta) = \frac{(\mathcal B\mathcal C - \mathcal S\mathcal A,\ 2\sigma\sqrt{
+\mathcal S\mathcal A\mathcal B\mathcal C})}{\mathcal B\mathcal C + \mathcal S\mathcal A},\qquad
+\sigma = \pm 1.$$""",
+    proof=r"""The products are $\mathcal B\mathcal C = r^2 - (l_1 - l_2)^2$ and
+$\mathcal S\mathcal A = (l_1 + l_2)^2 - r^2$.  So the equation says $2 l_1 l_2\,(1 + \cos\theta) =
+\mathcal B\mathcal C$ and $2 l_1 l_2\,(1 - \cos\theta) = \mathcal S\mathcal A$.  The sum of both is
+$4 l_1 l_2 = \mathcal B\mathcal C + \mathcal S\mathcal A$, and the difference gives $\cos\theta$.
+There is such an angle if and only if neither product is negative: since $\mathcal S > 0$, and
+$\mathcal B + \mathcal C = 2r$ is not negative, this means that no factor is.  The product of both
+is $4 l_1^2 l_2^2 \sin^2\theta = \mathcal S\mathcal A\mathcal B\mathcal C$, and either sign of the
+sine gives an angle.""",
+    exception=r"""If a link has no length, $\theta$ is free where there is a solution, and a
+stretched arm is returned.""",
+)
+
+
+@chain_lemma("l1^2 + l2^2 + 2 l1 l2 cos x = r^2", "the pair of x")
+def law_of_cosines(
+    chain: Chain,
+    x: sp.Symbol,
+    l1: sp.Expr,
+    l2: sp.Expr,
+    r: sp.Expr,
+    choice: Choice,
+    *,
+    name: str = "elbow",
+) -> Applied:
+    """The elbow of two links whose ends are r apart: two solutions.
+
+    It is free, and 0, where a link has no length.
+    """
+    p = chain.program
+    sigma = chain.sign(name, choice)
+    l1, l2 = (
+        chain.coefficient(f"l{i}_{name}", e, nonnegative=True) for i, e in enumerate((l1, l2), 1)
+    )
+    r = chain.named(f"r_{name}", r, nonnegative=True)
+    # half: what is clamped stays well within the round trip that is promised
+    triangle = Triangle.from_reach(p, (l1, l2), r, sigma, scale=chain.size / 2, suffix=f"_{name}")
+    flag: Any = sp.false
+    if not differs_from_zero(chain, l1 * l2, (l1 + l2) ** 2):
+        flag = p.vanishes(
+            f"no_link_{name}", l1 * l2, (l1 + l2) ** 2, "a link has no length", free=(x,)
+        )
+    twice = p.let(f"area_{name}", 2 * triangle.root, nonnegative=True)
+    whole = p.let(f"sum_{name}", triangle.whole, nonnegative=True)
+    bent = triangle.elbow_pair(twice, whole)
+    pair, means = named(chain, x, Pair(choose(flag, 0, bent.s), choose(flag, 1, bent.c)))
+    lemma = Lemma(
+        "law of cosines",
+        r"l_1^2 + l_2^2 + 2 l_1 l_2 \cos\theta = r^2 \;\Rightarrow\; (\cos\theta, \sin\theta) = "
+        r"\frac{(\mathcal B\mathcal C - \mathcal S\mathcal A,\ "
+        r"2\sigma\sqrt{\mathcal S\mathcal A\mathcal B\mathcal C})}"
+        r"{\mathcal B\mathcal C + \mathcal S\mathcal A}",
+        (l1**2 + l2**2 + 2 * l1 * l2 * sp.cos(x) - r**2,),
+        {x: pair.angle},
+        2,
+        roles=((r"\theta", x), ("l_1", l1), ("l_2", l2), ("r", r)),
+        letters=triangle.letters,
+    )
+    loci = [{gone: sp.S.Zero, r: other} for gone, other in ((l1, l2), (l2, l1)) if gone.is_Symbol]
+    cases = degenerate(flag, loci, x, f"a link without length: {x} is free; 0.")
+    return Applied(lemma, pair, means, {}, cases)
+
+
+__all__ = ["law_of_cosines"]

@@ -1,0 +1,97 @@
+"""Writes the chain of an arm of seven joints whose arm angle is an input of the inverse."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+from closedform.mechanics.frames import rotation
+from closedform.scaffold.chainlinks import Single, Singles
+from closedform.scaffold.maker import followed, norm, times
+from closedform.scaffold.source import source
+from closedform.scaffold.subproblems import ELBOW, SubproblemMaker
+
+NAME = "arm_angle"
+SIDES = "{+1: 'front', -1: 'back'}"
+
+
+class ArmAngleMaker(SubproblemMaker):
+    """Writes the lines for a spherical shoulder, an elbow and a spherical wrist."""
+
+    def solved_by_arm_angle(self, arm: Singles) -> str:
+        """Solve the elbow by a distance, then the shoulder in its plane, then the wrist."""
+        wrist = arm.met(4, 3)
+        found = wrist.met(0, 3) if wrist else None
+        self.require(
+            found is not None,
+            "its first three axes, or its last three, do not meet in a point",
+            "An arm angle needs a spherical shoulder and a spherical wrist.",
+        )
+        assert found is not None
+        *shoulder, elbow = found.joints[:4]
+        for three in (shoulder, found.joints[4:]):
+            self.require_right_angles(three)
+        first = found.joints[2]
+        e, u = (first.end.T * first.shift).applyfunc(sp.simplify), elbow.shift
+        self.require(
+            sp.simplify(e[2] + u[2]) == 0,
+            "the line from its shoulder to its wrist is not normal to axis 4",
+            "An arm angle needs both in a plane that is normal to the axis of the elbow.",
+        )
+        R = self.centre(found)
+        turned = [followed(f"rotation('z', {source(j.turn)})", j.end) for j in shoulder]
+        sense = self._sense(shoulder)
+        self.add(f"carrying = {' * '.join(turned)}")
+        self.add(f"reached = {source(e)} + rotation('z', {source(elbow.turn)}) * {source(u)}")
+        self.add(f"given = arm_angle(ik, carrying, reached[:2, 0]{sense})")
+        self.add("far = ik.let('far', sqrt(p.dot(p)))")
+        pair = self._elbow(elbow, e, u)
+        self.vector("carried", f"{source(e)} + turned({pair}) * {source(u)}")
+        because = f"because={{{self.unknowns[elbow.number]}: 1}}"
+        arguments = f"given, carrying, carried[:2, 0], p, {because}{sense}"
+        self.solve("arm_plane", arguments, "M")
+        self.add(f"left1 = ik.matrix('left1', M * {source(first.end.T)})")
+        self.normal_wrist(shoulder, "left1", ", name='shoulder'", SIDES)
+        inside = f"(turned({pair}).T * (M.T * {times(found.lead[:3, :3].T, R)}))"
+        self.add(f"left2 = ik.matrix('left2', {times(elbow.end.T, inside)})")
+        ends = found.joints[4:]
+        self.normal_wrist(ends, self.without_tool(found.tool[:3, :3], "left2"))
+        return "spherical shoulder, elbow and spherical wrist, with the arm angle given"
+
+    def _elbow(self, joint: Single, e: sp.Matrix, u: sp.Matrix) -> str:
+        """Solve the elbow between the links ``e`` and ``u`` by the distance; returns its pair."""
+        lengths = [norm(w[:2, 0]) for w in (e, u)]
+        self.require(
+            0 not in lengths,
+            f"its shoulder or its wrist is on axis {joint.number}",
+            "An elbow needs two links.",
+        )
+        links = [self.length_of(f"link{k}", w) for k, w in enumerate(lengths, 1)]
+        between = sp.Matrix([e.dot(u), e[0] * u[1] - e[1] * u[0]])
+        offset = sp.atan2(between[1], between[0])
+        x = self.unknowns[joint.number] = self.angle(joint.turn + offset)
+        pair = f"pair{joint.number}"
+        self.solve("law_of_cosines", f"{x}, {', '.join(links)}, far, {ELBOW}", pair, 2)
+        turn = self.less(pair, between)
+        if turn != pair:
+            self.add(f"{pair} = {turn}.known_as(ik.program, '_{pair}')")
+        return pair
+
+    def require_right_angles(self, joints: Sequence[Single]) -> None:
+        numbers = [j.number for j in joints]
+        self.require(
+            self.is_normal(joints),
+            "axes {}, {} and {} are not at right angles".format(*numbers),
+            "An arm angle needs neighbours at right angles in its shoulder and its wrist.",
+        )
+
+    def _sense(self, shoulder: Sequence[Single]) -> str:
+        """An argument that counts the arm angle from where axis 4 points as axis 2, if it may."""
+        _, second, third = shoulder
+        home = rotation("z", third.turn.xreplace({third.joint: sp.S.Zero}))
+        along = (second.end * home * third.end)[2, 2]
+        return ", sense=-1" if sp.simplify(along).is_negative else ""
+
+
+__all__ = ["NAME", "ArmAngleMaker"]

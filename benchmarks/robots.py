@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import tempfile
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
@@ -21,7 +22,8 @@ from closedform.emit.pages import pages, shared_files
 from closedform.model.derivation import Derivation
 from closedform.pipeline import run as pipeline
 from closedform.proof.prove import prove
-from closedform.scaffold.new import Script, new
+from closedform.scaffold.arm_angle import NAME as ARM_ANGLE
+from closedform.scaffold.new import Script, Search, new
 
 from .native import LOOP, compiled, processor, running
 
@@ -37,7 +39,7 @@ The lengths are nominal; compare them with the linked source before you rely on 
 numbers here, so what is proved is proved for these numbers; the derivations `puma560`, `ur_arm`,
 `stanford_arm` and `scara` have the lengths as parameters, and their proofs hold for any lengths. A
 robot that was calibrated has other lengths, and its axes are not exactly parallel. A joint that is
-given is an input of the inverse.
+given is an input of the inverse, and so is an arm angle (`--given arm_angle`).
 
 The seconds are those of one core for reading the file, proposing the chain and proving the inverse,
 without printing. The nanoseconds are those of one call of the printed C with all branches, on one
@@ -77,16 +79,26 @@ class Robot:
                 said[key] = value
         return cls(path, said["robot"], said["source"], said.get("convention") == "modified")
 
-    def script(self) -> Script:
+    def script(self, given: str = "") -> Script:
         kind = "urdf" if self.path.suffix == ".urdf" else "dh"
-        return new(self.path.stem, kind, self.path, modified=self.modified)
+        search = Search(given=given)
+        return new(self.path.stem, kind, self.path, modified=self.modified, search=search)
 
 
-def row(robot: Robot) -> str:
-    """A line of the table."""
-    name = f"[{robot.title}]({robot.source})"
+def rows(robot: Robot) -> Iterator[str]:
+    """The lines of the table: a second one if the arm angle can be an input."""
     start = time.process_time()
     script = robot.script()
+    yield row(robot, script, start)
+    start = time.process_time()
+    script = robot.script(ARM_ANGLE)
+    if script.structure:
+        yield row(robot, script, start)
+
+
+def row(robot: Robot, script: Script, start: float) -> str:
+    """A line of the table; the time counts from ``start``."""
+    name = f"[{robot.title}]({robot.source})"
     if not script.structure:
         return f"| {name} | {script.inverse} | | | | |"
     with tempfile.TemporaryDirectory() as folder:
@@ -121,22 +133,23 @@ def nanoseconds(d: Derivation, folder: Path) -> str:
     loop.write_text(LOOP, "utf-8")
     library = compiled(["gcc", "-std=gnu99"], folder / "calls.c", code, "native", loop)
     run = running(library)
-    rows = np.zeros((POSTURES, entries + len(joints)))
-    rows[:, entries:] = np.random.default_rng(1).uniform(-3, 3, (POSTURES, len(joints)))
-    for row in rows:
-        library.reach(np.ctypeslib.as_ctypes(row[entries:]), np.ctypeslib.as_ctypes(row))
+    values = np.zeros((POSTURES, entries + len(joints)))
+    values[:, entries:] = np.random.default_rng(1).uniform(-3, 3, (POSTURES, len(joints)))
+    for posture in values:
+        library.reach(np.ctypeslib.as_ctypes(posture[entries:]), np.ctypeslib.as_ctypes(posture))
     out = np.empty((POSTURES, answers + branches))
-    sizes = (rows.shape[1], out.shape[1], POSTURES, 1)
-    return f"{median(run(rows, out, *sizes) for _ in range(ROUNDS)):.0f}"
+    sizes = (values.shape[1], out.shape[1], POSTURES, 1)
+    return f"{median(run(values, out, *sizes) for _ in range(ROUNDS)):.0f}"
 
 
 def page(paths: list[Path]) -> str:
-    rows = []
+    lines = []
     for robot in sorted(map(Robot.read, paths), key=lambda r: r.title.lower()):
         sp.core.cache.clear_cache()
-        rows.append(row(robot))
-        print(rows[-1], flush=True)
-    return HEAD.format(machine=processor()) + "\n".join(rows) + "\n"
+        for line in rows(robot):
+            lines.append(line)
+            print(line, flush=True)
+    return HEAD.format(machine=processor()) + "\n".join(lines) + "\n"
 
 
 def main() -> None:

@@ -16,7 +16,7 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from flint import arb
+from flint import arb, ctx
 from numpy.typing import NDArray
 
 from closedform.algebra.balls import to_float
@@ -30,7 +30,7 @@ from closedform.model.tolerances import DOUBLE, FLOAT, Tolerances
 
 WELL_CONDITIONED = 3.0
 """A larger error, in ulps, is compared with how far the value moves if the inputs do."""
-CUT, TURN = 3.0, 2 * math.pi
+CUT, TURN, HIGH = 3.0, 2 * math.pi, 200
 
 SUSPECTS = 5
 """The number of worst answers on and near the singular set that are evaluated in Arb."""
@@ -189,12 +189,17 @@ def _compare(
             largest[row] = max([*sizes, *lengths], default=1.0)
         most = NESTED * largest[row]
         scale = min(scales[row, k], most) if math.isfinite(scales[row, k]) else math.inf
-        exact = exacts[k] + (2 * arb.pi() if turned[row, k] else 0)
+        exact = _turned(exacts[k]) if turned[row, k] else exacts[k]
         error = _ulps(computed[row, k], exact, scale, backend)
         if error > WELL_CONDITIONED:
             scale += _variation(values, int(k), rows[row], exacts[k], backend) / backend.eps
             error = _ulps(computed[row, k], exact, scale, backend)
         finding.see(error, lambda: f"{sample.name}, entry {k} at {rows[row].tolist()}")  # noqa: B023
+
+
+def _turned(angle: arb) -> arb:
+    with ctx.workprec(HIGH):
+        return angle + 2 * arb.pi()
 
 
 def _ulp_bounds(

@@ -7,7 +7,7 @@ rests on a rounding.  Where the widest type is double, more is left open: slower
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property, reduce
+from functools import cached_property, lru_cache, reduce
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -70,13 +70,21 @@ class RowEvaluator:
         return found
 
     def balls(self, rows: Array) -> tuple[Array, Array]:
-        """Midpoints and radii, a row a point; a radius that is not finite leaves all open."""
+        """Midpoints and radii, a row a point; a radius that is not finite leaves all open.
+
+        They must not be written to: what was asked last is kept, for the next back end.
+        """
+        rows = np.asarray(rows)
+        return _kept(self, rows.tobytes(), rows.shape, rows.dtype.str)
+
+    def _balls(self, rows: Array) -> tuple[Array, Array]:
         shape = (len(rows), len(self.exprs))
         middle, radius = np.empty(shape, WIDE), np.empty(shape, WIDE)
         with np.errstate(all="ignore"):
             for k, (x, r) in enumerate(self._program.run(rows)):
                 middle[:, k], radius[:, k] = x, r
         radius[~(np.isfinite(middle) & np.isfinite(radius))] = OPEN
+        middle.flags.writeable = radius.flags.writeable = False
         return middle, radius
 
     def values(self, rows: Array) -> Array:
@@ -91,6 +99,7 @@ class RowEvaluator:
         If they need not be ``defined`` everywhere, a row that Arb cannot settle is NaN.
         """
         middle, radius = self.balls(rows)
+        middle = middle.copy()
         for row in np.flatnonzero(doubtful(middle, radius).any(axis=1)):
             try:
                 middle[row] = [to_float(b) for b in self.exactly(rows[row])]
@@ -99,6 +108,14 @@ class RowEvaluator:
                     raise
                 middle[row] = np.nan
         return middle
+
+
+@lru_cache(4096)
+def _kept(
+    evaluator: RowEvaluator, rows: bytes, shape: tuple[int, ...], dtype: str
+) -> tuple[Array, Array]:
+    """The balls of an evaluator: the back ends of a robot are compared at the same points."""
+    return evaluator._balls(np.frombuffer(rows, dtype).reshape(shape))
 
 
 def beside(*limits: float) -> Callable[[Array, Array], Array]:

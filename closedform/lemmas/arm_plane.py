@@ -18,6 +18,10 @@ from closedform.model.pair import Pair
 
 UPRIGHT = "the wrist is above or below the shoulder"
 FOLDED = "the wrist is on the shoulder"
+KEPT = (
+    "OK answers keep the arm angle to 1e-12 of the size of the arm over the distance of the wrist "
+    "from the line through the shoulder along z."
+)
 UNDEFINED = f"{UPRIGHT}; the arm angle is counted from the plane of x and z."
 
 theorem(
@@ -51,6 +55,7 @@ def arm_angle(chain: Chain, shoulder: sp.Matrix, v: Sequence[sp.Expr], *, sense:
     sine, cosine = sense * length * up[2], sense * (up[0] * v[1] - up[1] * v[0])
     aside = sp.sqrt(sine**2 + cosine**2)
     symbol = chain.given_angle("arm_angle", sp.atan2(sine, cosine), aside / chain.sum_of_lengths())
+    chain.notes.append(KEPT)
     p = d.program()
     y, x = p.let("sine", sine), p.let("cosine", cosine)
     size = p.let("aside", sp.sqrt(x**2 + y**2), nonnegative=True)

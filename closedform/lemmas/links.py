@@ -443,7 +443,7 @@ def zyz(
             flags,
             dict(zip(R, turned, strict=True)) | unit,
             free if flags == (aligned,) else None,
-            f"the first and the last axis of the wrist are parallel; {free} is free.",
+            f"the first and the last axis of the {name} are parallel; {free} is free.",
         )
         for flags in filter(None, ((aligned,), near))
         for turned in _aligned(real("psi"))

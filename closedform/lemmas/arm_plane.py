@@ -56,6 +56,7 @@ def arm_angle(chain: Chain, shoulder: sp.Matrix, v: Sequence[sp.Expr], *, sense:
     aside = sp.sqrt(sine**2 + cosine**2)
     symbol = chain.given_angle("arm_angle", sp.atan2(sine, cosine), aside / chain.sum_of_lengths())
     chain.notes.append(KEPT)
+    d.write(symbol.name, r"\psi", "arm angle")
     p = d.program()
     y, x = p.let("sine", sine), p.let("cosine", cosine)
     size = p.let("aside", sp.sqrt(x**2 + y**2), nonnegative=True)
@@ -127,7 +128,15 @@ def arm_plane(
         equations,
         dict(zip(unknown, M, strict=True)),
         1,
-        roles=(("v", sp.Matrix([v1, v2, 0])), ("w", sp.Matrix([w1, w2, w3]))),
+        roles=(
+            ("v", sp.Matrix([v1, v2, 0])),
+            ("w", sp.Matrix([w1, w2, w3])),
+            (r"\sigma", sp.sympify(sense, strict=True)),
+        ),
+        vectors=(
+            r"The algorithm has the polar coordinates of $w$ and $v$, and the vectors $f_i$ by the "
+            r"sines and cosines of these."
+        ),
     )
     (v_c, v_s), (w_c, w_s), (a_s, a_c), (c_, s_) = (_circle(f"tau{k}") for k in range(1, 5))
     at = {v1: far * v_c, v2: far * v_s, c: c_, s: s_}

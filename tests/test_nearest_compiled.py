@@ -8,7 +8,7 @@ import pytest
 from closedform import robots
 from closedform.robots import Robot
 
-NAMES = ("ur5e", "puma560", "cobra600", "irb260", "rx160", "stanford_arm")
+NAMES = tuple(robots.names())
 TOOL = np.array([[0, 0, 1, 0.1], [0, 1, 0, -0.05], [-1, 0, 0, 0.2], [0, 0, 0, 1.0]])
 
 
@@ -91,9 +91,22 @@ def test_errors_are_those_of_numpy(x, seed, options, error) -> None:
     assert {arm.nearest(bad, np.zeros(6)).status for arm in pair("ur5e")} == {3}
 
 
-def test_one_call_takes_the_compiled_function(monkeypatch: pytest.MonkeyPatch) -> None:
-    compiled = robots.load("ur5e", compiled=True)
+@pytest.mark.parametrize("name", ["ur5e", "kr6_r700", "irb120"])
+def test_one_call_takes_the_compiled_function(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where the maker counts the joints from other zeros and in other directions."""
+    compiled = robots.load(name, compiled=True)
     q = np.array([0.3, -1.2, 1.5, 0.4, -0.7, 2.1])
     x = compiled.fk(q)
     monkeypatch.setattr(compiled.module, "ik", None)
-    assert np.abs(compiled.nearest(x, q).q - q).max() < 1e-9
+    assert np.abs(compiled.nearest(x, q, limits=None).q - q).max() < 1e-9
+
+
+def test_of_two_turns_the_lower_is_taken_in_joints_of_the_maker() -> None:
+    plain, compiled = pair("kr6_r700")
+    q = np.array([0.3, -1.2, 1.5, 0.4, -0.7, 2.1])
+    x = plain.fk(q)
+    branch = plain.nearest(x, q, limits=None).q
+    for k in range(6):
+        for half in (-np.pi, np.pi):
+            seed = branch + half * (np.arange(6) == k)
+            agree(plain, compiled, x, seed, limits=None, weights=1.0 - (np.arange(6) == k))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from dataclasses import replace
+from functools import cached_property
 from types import ModuleType
 from typing import Any, NamedTuple, Self
 
@@ -128,6 +129,14 @@ class Mechanism:
     def counts_as_model(self) -> bool:
         """Whether the joints are those that the generated module takes."""
         return self._zero is None
+
+    @cached_property
+    def one_by_one(self) -> tuple[Array, Array] | None:
+        """Joints of the model as ``signs * q + offsets``; None if a motor moves several of them."""
+        if self._zero is None:
+            return np.ones(len(self.joints)), np.zeros(len(self.joints))
+        signs = np.diag(self._zero.matrix)
+        return None if np.any(self._zero.matrix != np.diag(signs)) else (signs, self._zero.offsets)
 
     # The functions of the module
 

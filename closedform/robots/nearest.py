@@ -76,16 +76,31 @@ def _compiled(
     """One posture by the compiled module; None if it is not, or there is more to decide."""
     call = getattr(mechanism.module, "_nearest", None)
     axes = {seed.ndim, limits.lower.ndim, limits.upper.ndim}
-    if call is None or axes != {1} or not mechanism.counts_as_model:
+    if call is None or axes != {1} or mechanism.one_by_one is None:
         return None
     if any(map(np.ndim, mechanism.parameters)):
         return None
     target, weight = mechanism.inside(x), weights_of(mechanism, weights)
     if np.shape(target) != mechanism.task_shape or weight.ndim > 1:
         return None
-    q, status, branch, distance, outside = call(
-        target, seed, np.array(limits), weight, params=mechanism.parameters
-    )
+    options = weight, mechanism.parameters
+    if mechanism.counts_as_model:
+        return _one(call, target, seed, np.array(limits), *options)
+    signs, offsets = mechanism.one_by_one
+    start = signs * seed + offsets
+    sides = np.sort(signs * limits + offsets, axis=0)
+    found = _one(call, target, start, sides, *options)
+    # of two turns the lower one is taken, which the opposite sign would exchange
+    if found is None or (abs(abs(found.q - start) - np.pi) < TIE)[signs < 0].any():
+        return None
+    return found._replace(q=signs * (found.q - offsets))
+
+
+def _one(
+    call: Any, target: Any, seed: Array, limits: Array, weights: Array, parameters: Any
+) -> Nearest | None:
+    """The answer of the compiled module, in its joints; None if Python has to decide."""
+    q, status, branch, distance, outside = call(target, seed, limits, weights, params=parameters)
     if status not in (OK, UNREACHABLE) or (status == OK and not distance < np.inf):
         return None
     return Nearest(q, status, np.array(branch, np.intp)[()], distance, outside)

@@ -264,7 +264,7 @@ def results(d: Derivation, arm: Arm, known: Notation) -> None:
     d.erratum(
         "rounding",
         "The last digits of the positions in the examples are wrong",
-        Gravity.RESULT,
+        Gravity.STATEMENT,
         why="The exact position is $x = 4 + 5\\sqrt{3} = [x]$, $y = 5 + 4\\sqrt{3} = [y]$.  In A, "
         "$x$ is cut instead of rounded.  In B, both values are too small by more "
         "than one unit of the last digit, so they differ from those of A for the same arm at the "

@@ -112,7 +112,7 @@ def convention(d: Derivation, wrist: Wrist, known: Notation) -> None:
         ("eq. (15)", EQ15, pose[:3, :3], "(R_6^3)_{12}"),
     ):
         if label == "eq. (15)":
-            form_of_eq14(claim, d, pose)
+            form_of_eq14(claim, pose)
         claim(
             label,
             f"${text}$",
@@ -137,41 +137,27 @@ def as_derived(derived: sp.Matrix, printed: sp.Matrix, relation: Relation) -> Ch
     return Identity(matrix, derived)
 
 
-def form_of_eq14(claim: partial[None], d: Derivation, pose: sp.Matrix) -> None:
-    """What eq. (14) has in common with eqs. (6) and (7)."""
-    R = sp.Matrix(3, 3, lambda i, j: real(f"R{i + 1}{j + 1}"))
-    eq7 = homogeneous(R, tuple(real(f"p{i + 1}") for i in range(3)))
+def form_of_eq14(claim: partial[None], pose: sp.Matrix) -> None:
+    """What eq. (14) has in common with eq. (6), the matrix of one link."""
     eq6 = convention_notation().read(EQ6)[0].right
+    eq9 = eq6.copy()
+    eq9[3, :] = sp.Matrix([[0, 0, 1, 0]])  # as its second factor is printed
 
     def form(matrix: sp.Matrix) -> Check:
         constant = [e if e.is_number else own for e, own in zip(matrix, pose, strict=True)]
         return Identity(pose, sp.Matrix(4, 4, constant), names=("eq. (14)", "the form"))
 
-    d.erratum(
-        "number-of-equation",
-        "The form of eq. (14) is that of eq. (7), not of eq. (6)",
-        Gravity.MISPRINT,
-        why="Eq. (6) is the matrix of one link; its entry (3,1) is 0, and that of eq. (14) is "
-        "$-s_5 c_6$.  Eq. (7) shows the blocks from which the rotation matrix is read off.",
-        use="Nothing: the rotation matrix that follows is the upper left block.",
-    )
-    text = (
-        "“The above 4*4 homogeneous transformation matrix is in the form of {%s}, so the rotation "
-        "matrix from the above equation is”"
-    )
     claim(
         "form of eq. (14)",
-        text % "eq. (6)",
-        form,
-        phrases=[{"eq. (6)": eq6, "eq. (7)": eq7}],
-        corrected=text % "eq. (7)",
-        erratum="number-of-equation",
+        "“The above 4*4 homogeneous transformation matrix is in the form of {eq. (6)}, so the "
+        "rotation matrix from the above equation is”",
+        lambda matrix: Identity([*pose[3, :]], [*matrix[3, :]]),
+        phrases=[{"eq. (6)": eq6, "eq. (9)": eq9}],
         readings=[
-            Reading("the constant entries of the one are entries of the other"),
             Reading(
-                "both are homogeneous transformations, with the rotation in the upper left block",
-                check=lambda matrix: Identity([*pose[3, :]], [*matrix[3, :]]),
+                "both are homogeneous transformations, with the rotation in the upper left block"
             ),
+            Reading("the constant entries of the one are entries of the other", check=form),
         ],
     )
 

@@ -15,14 +15,14 @@ from typing import Any, TypeAlias
 
 from flint import Ordering, arb, arb_mat, ctx, fmpq, fmpq_mpoly_ctx, fmpz_mat
 
-FORMAT = 2
-INVERSES = ("atan2", "atan", "acos", "asin")
+FORMAT = 3
 PAIRS = ("angle", "circle")
 ROOTS = ("root", "abs")
 
 Polynomial: TypeAlias = Any  # fmpq_mpoly, whose annotations are partial
 Monomial: TypeAlias = "tuple[int, ...]"
 Lead: TypeAlias = "tuple[Monomial, Polynomial, Polynomial]"
+Rotation: TypeAlias = "tuple[Fraction, Fraction]"  # the cosine and the sine of an angle
 
 
 class Refused(ValueError):  # noqa: N818
@@ -37,15 +37,12 @@ def require(condition: Any, fault: str) -> None:
 def check(document: dict[str, Any]) -> None:
     """Check all certificates of a mechanism; raise :class:`Refused` for the first bad one."""
     require(document["format"] == FORMAT, "the format is unknown")
-    names = set()
-    for k, node in enumerate(document["nodes"]):
-        op, *args = node if isinstance(node, list) else ("number",)
-        if op == "name":
-            require(args[0] not in names and args[1] in (-1, 0, 1), "a name has two meanings")
-            names.add(args[0])
-        else:
-            operands = args[:1] if op == "^" else args
-            require(all(a in range(k) for a in operands), "a node holds later ones")
+    nodes = document["nodes"]
+    names = [node[1:] for node in nodes if node[0] == "name"]
+    require(len(names) == len({name for name, _ in names}), "a name has two meanings")
+    require(all(sign in (-1, 0, 1) for _, sign in names), "a name has an unknown sign")
+    for k, node in enumerate(nodes):
+        require(all(a in range(k) for a in operands(node)), "a node holds later ones")
     kinds = {
         "identity": check_identity,
         "count": check_count,
@@ -57,6 +54,11 @@ def check(document: dict[str, Any]) -> None:
             kinds[certificate["kind"]](document, certificate)
         except Exception as error:  # whatever goes wrong, nothing is proved
             raise Refused(f"certificate {k} ({certificate['of']}): {error!r}") from error
+
+
+def operands(node: list[Any]) -> list[int]:
+    op, *args = node
+    return args[: {"number": 0, "name": 0, "^": 1}.get(op)]
 
 
 def check_identity(document: dict[str, Any], certificate: dict[str, Any]) -> None:
@@ -108,18 +110,17 @@ def matrix_of(nodes: list[Any], certificate: dict[str, Any]) -> list[list[arb]]:
 def enclosed(nodes: list[Any], balls: dict[int, arb], k: int) -> arb:
     """A ball that contains the value of a node; ``balls`` has those of names, and remembers."""
     if k not in balls:
-        op, *args = nodes[k] if isinstance(nodes[k], list) else ("number", nodes[k])
-        require(op != "name", "a name has no value")
-        if op == "number":
-            return arb(fmpq(args[0]))
-        x = [enclosed(nodes, balls, a) for a in (args[:1] if op == "^" else args)]
+        op, *args = nodes[k]
+        x = [enclosed(nodes, balls, a) for a in operands(nodes[k])]
         require(op != "atan2" or not all(v.contains(0) for v in x), "there is no direction")
-        if op in ("+", "*"):
+        if op == "number":
+            balls[k] = arb(fmpq(args[0]))
+        elif op in ("+", "*"):
             balls[k] = sum(x, arb(0)) if op == "+" else prod(x, start=arb(1))
         elif op in ("^", "abs"):
             balls[k] = x[0] ** args[1] if op == "^" else abs(x[0])
         else:
-            require(op in (*INVERSES, "pi", "sqrt", "sin", "cos", "tan"), f"{op} has no value")
+            require(op in ("pi", "sqrt", "sin", "cos", "atan2"), f"{op} has no value")
             balls[k] = getattr(arb, op)(*x)
         require(balls[k].is_finite(), "a value is not defined")
     return balls[k]
@@ -127,8 +128,7 @@ def enclosed(nodes: list[Any], balls: dict[int, arb], k: int) -> arb:
 
 def check_count(document: dict[str, Any], certificate: dict[str, Any]) -> None:
     """A system has so many solutions, with multiplicity, for generic parameters."""
-    field, system, nonzero = system_of(document["nodes"], certificate)
-    system += [g * p - 1 for g, p in zip(field.inverses, nonzero, strict=True)]
+    field, system = system_of(document["nodes"], certificate)
     elements = list(system)
     for multiplier, element, combination in certificate["steps"]:
         m, p = field.polynomial(multiplier), field.polynomial(element)
@@ -144,24 +144,23 @@ def check_count(document: dict[str, Any], certificate: dict[str, Any]) -> None:
         require(remainder(field, p, basis) == 0, "it is not a Groebner basis of the system")
 
 
-def system_of(nodes: list[Any], certificate: dict[str, Any]) -> tuple[Field, list[Any], list[Any]]:
-    """The polynomials of a system, and those that must not vanish."""
-    allowed = ("name", "half", "unknown", "circle", "inverse")
-    field = Field(nodes, certificate["generators"], allowed)
-    rows = [row for _, row in certificate["angles"]]
+def system_of(nodes: list[Any], certificate: dict[str, Any]) -> tuple[Field, list[Polynomial]]:
+    """The polynomials of a system, with the relations of the cosines and sines of its angles."""
+    field = Field(nodes, certificate["generators"], ("name", "unknown", "circle"))
+    angles, circles = certificate["angles"], [turn for _, turn in field.turns.values()]
+    named = [k for k, *_ in (*field.values.items(), *angles, *certificate["given"])]
+    require(all(nodes[k][0] == "name" for k in named), "only a name can be given a value")
+    require(len(named) == len(set(named)), "a name has two values")
+    rows = [row for _, row in angles]
     require(not rows or abs(fmpz_mat(rows).det()) == 1, "the change of angles is not invertible")
-    require(2 * len(rows) == field.kinds.count("circle"), "an angle is not used")
-    for node, row in certificate["angles"]:
-        field.angles[node] = {("circle", j): fmpq(k) for j, k in enumerate(row)}
-    given = {name: field.value(node) for name, node in certificate["given"]}
-    require(all(nodes[k][0] == "name" for k in given), "only a name can be given a value")
-    field.values = {k: v for k, v in field.values.items() if nodes[k][0] == "name"} | given
+    require(len(rows) == len(circles), "an angle is not used")
+    for k, row in angles:
+        field.turns[k] = 1, reduce(turned, map(times, circles, row))
+    field.given = dict(certificate["given"])
     system = [field.value(k).num for k in certificate["equations"]]
-    nonzero = [field.value(k).num for k in certificate["nonzero"]]
-    nonzero += [p for p in field.inverted if any(field.leading(p)[0])]
-    system += field.relations.values()
-    nonzero = [p for i, p in enumerate(nonzero) if p not in nonzero[:i]]
-    return field, [p for p in system if p != 0], nonzero
+    leads = [field.leading(p)[0] for p in field.inverted]
+    require(not any(map(any, leads)), "a denominator has an unknown")
+    return field, [p for p in (*system, *field.relations.values()) if p != 0]
 
 
 def staircase(leads: list[Monomial], size: int) -> int | None:
@@ -229,20 +228,13 @@ class Fraction:
         return bool(self.field.reduced(self.num * other.den - other.num * self.den) == 0)
 
 
-class Rotation:
-    """The cosine and the sine of an angle."""
+def turned(a: Rotation, b: Rotation) -> Rotation:
+    return a[0] * b[0] + -(a[1] * b[1]), a[1] * b[0] + a[0] * b[1]
 
-    def __init__(self, cos: Fraction, sin: Fraction):
-        self.cos, self.sin = cos, sin
 
-    def __mul__(self, other: Rotation) -> Rotation:
-        c, s, C, S = self.cos, self.sin, other.cos, other.sin
-        return Rotation(c * C + -(s * S), s * C + c * S)
-
-    def times(self, n: int) -> Rotation:
-        one = self.cos.field.number(1)
-        turn = self if n > 0 else Rotation(self.cos, -self.sin)
-        return reduce(Rotation.__mul__, [turn] * abs(n), Rotation(one, one + -one))
+def times(turn: Rotation, n: int) -> Rotation:
+    one = turn[0].field.number(1)
+    return reduce(turned, [turn if n > 0 else (turn[0], -turn[1])] * abs(n), (one, one + -one))
 
 
 class Field:
@@ -255,14 +247,12 @@ class Field:
         names = [f"g{i}" for i in reversed(range(len(self.kinds)))]
         self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)  # a later generator is larger
         self.generators = self.context.gens()[::-1]
-        hidden = ("unknown", "circle", "inverse")
-        self.unknowns = [i for i, kind in enumerate(self.kinds) if kind in hidden]
-        self.inverses = [self.generators[i] for i in self.unknowns if self.kinds[i] == "inverse"]
+        self.unknowns = [i for i, kind in enumerate(self.kinds) if kind in ("unknown", "circle")]
         self.signs = [1 if kind in ROOTS else 0 for kind in self.kinds]
         self.relations: dict[int, Polynomial] = {}
         self.squares: dict[int, Polynomial] = {}
         self.values: dict[int, Fraction] = {}
-        self.angles: dict[int, dict[Any, fmpq]] = {}
+        self.given: dict[int, int] = {}
         self.turns: dict[Any, tuple[int, Rotation]] = {}
         self.roots: list[tuple[Fraction, Fraction, list[tuple[Polynomial, int]]]] = []
         self.inverted: list[Polynomial] = []
@@ -277,25 +267,19 @@ class Field:
         g, one = self.generators[i], self.context.constant(1)
         if kind in PAIRS:
             s = self.generators[i + 1]
-            (key,) = self.terms(about) if kind == "angle" else [("circle", len(self.relations))]
+            key = about if kind == "angle" else ("circle", i)
             require(divisor > 0, "an angle is divided by zero")
-            self.turns[key] = divisor, Rotation(Fraction(self, g, one), Fraction(self, s, one))
+            self.turns[key] = divisor, (Fraction(self, g, one), Fraction(self, s, one))
             self.relations[i + 1] = s * s + g * g - 1
-        elif kind == "half":
-            self.turns[about] = 1, self.half_turn(g)
         elif kind in ROOTS:
             p = self.polynomial(about)
             require(not any(p.degrees()[: len(self.kinds) - i]), "a relation has later generators")
             self.squares[i] = p if kind == "root" else self.reduced(p * p)
             self.relations[i] = g * g - self.squares[i]
-        elif kind != "inverse":
+        else:
             op, *name = self.nodes[about]
             self.values[about] = Fraction(self, g, one)
             self.signs[i] = name[1] if op == "name" else int(op == "pi")
-
-    def half_turn(self, t: Polynomial) -> Rotation:
-        """The rotation by an angle, from the tangent of half of it."""
-        return Rotation(Fraction(self, 1 - t * t, 1 + t * t), Fraction(self, 2 * t, 1 + t * t))
 
     def polynomial(self, terms: list[Any]) -> Polynomial:
         """From a list of terms: each a coefficient, then generators, each with its power."""
@@ -346,73 +330,44 @@ class Field:
 
     def value(self, k: int) -> Fraction:
         """The value of a node."""
+        if k in self.given:
+            return self.value(self.given[k])
         if k not in self.values:
-            self.values[k] = self._value(k)
+            op, *args = self.nodes[k]
+            if op == "number":
+                self.values[k] = self.number(args[0])
+            elif op in ("+", "*"):
+                join = Fraction.__add__ if op == "+" else Fraction.__mul__
+                self.values[k] = reduce(join, map(self.value, args))
+            elif op == "^":
+                self.values[k] = self.value(args[0]) ** args[1]
+            elif op in ("sqrt", "abs"):
+                self.values[k] = self.root(self.value(args[0]) ** (1 if op == "sqrt" else 2))
+            else:
+                require(op in ("sin", "cos"), f"{op} is not a generator")
+                self.values[k] = self.rotation(args[0], fmpq(1))[op == "sin"]
         return self.values[k]
 
-    def _value(self, k: int) -> Fraction:
-        if isinstance(self.nodes[k], str):
-            return self.number(self.nodes[k])
+    def rotation(self, k: int, q: fmpq) -> Rotation:
+        """The cosine and the sine of a rational multiple of a node."""
+        if k in self.given:
+            return self.rotation(self.given[k], q)
+        if k in self.turns:
+            divisor, turn = self.turns[k]
+            require((q * divisor).q == 1, "an angle is divided too finely")
+            return times(turn, int(q * divisor))
         op, *args = self.nodes[k]
-        if op in ("+", "*"):
-            return reduce(
-                Fraction.__add__ if op == "+" else Fraction.__mul__, map(self.value, args)
-            )
-        if op == "^":
-            return Fraction.__pow__(self.value(args[0]), args[1])
-        if op in ("sqrt", "abs"):
-            return self.root(self.value(args[0]) ** (1 if op == "sqrt" else 2))
-        require(op in ("sin", "cos", "tan"), f"{self.nodes[k]} is not a generator")
-        turn = self.rotation(args[0])
-        return turn.sin if op == "sin" else turn.cos if op == "cos" else turn.sin * turn.cos**-1
-
-    def rotation(self, k: int) -> Rotation:
-        start = Rotation(self.number(1), self.number(0))
-        return reduce(Rotation.__mul__, (self.turn(a, q) for a, q in self.terms(k).items()), start)
-
-    def terms(self, k: int) -> dict[Any, fmpq]:
-        """An angle as a rational combination of names, pi and inverse functions."""
-        if k in self.angles:
-            return self.angles[k]
-        op, *args = self.nodes[k]
-        if op not in ("+", "*"):
-            return {k: fmpq(1)} if self.nodes[k] != "0" else {}
-        numbers = [fmpq(self.nodes[a]) for a in args if isinstance(self.nodes[a], str)]
-        others = [a for a in args if not isinstance(self.nodes[a], str)]
-        require(op == "*" or not numbers, "a number is not an angle")
-        if op == "*" and len(others) > 1:
-            return {tuple(sorted(others)): prod(numbers, start=fmpq(1))}
-        found: dict[Any, fmpq] = {}
-        for atom, q in (item for a in others for item in self.terms(a).items()):
-            found[atom] = found.get(atom, fmpq(0)) + q * prod(numbers, start=fmpq(1))
-        return found
-
-    def turn(self, atom: Any, q: fmpq) -> Rotation:
-        """The rotation by a rational multiple of an atom."""
-        op = self.nodes[atom][0] if isinstance(atom, int) else ""
-        if op in INVERSES:
-            return self.direction(atom, q)
-        divisor, base = self.turns[atom]
-        require((q * divisor).q == 1, "an angle is divided too finely")
-        return base.times(int(q * divisor))
-
-    def direction(self, atom: int, q: fmpq) -> Rotation:
-        """The rotation by a multiple of an inverse function, from a vector in its direction."""
-        op, *args = self.nodes[atom]
-        x, one = self.value(args[0]), self.number(1)
-        require(q.q == 1, "an inverse function is divided")
-        if op in ("acos", "asin"):
-            other = self.root(one + -(x * x))
-            turn = Rotation(x, other) if op == "acos" else Rotation(other, x)
-        else:
-            c = self.value(args[1]) if op == "atan2" else one
-            norm = c * c + x * x
-            if q.p % 2 == 0:  # twice the angle needs no root
-                turn, scale = Rotation(c, x) * Rotation(c, x), norm**-1
-                return Rotation(turn.cos * scale, turn.sin * scale).times(int(q.p) // 2)
-            scale = self.root(norm) ** -1
-            turn = Rotation(c * scale, x * scale)
-        return turn.times(int(q.p))
+        if op == "+":
+            return reduce(turned, (self.rotation(a, q) for a in args))
+        if op == "*":
+            require(len(args) == 2 and self.nodes[args[0]][0] == "number", "this is no multiple")
+            return self.rotation(args[1], q * fmpq(self.nodes[args[0]][1]))
+        require(op == "atan2" and q.q == 1, "an angle is not a generator")
+        y, x, n = self.value(args[0]), self.value(args[1]), int(abs(q))
+        norm = x * x + y * y  # an even multiple needs no root
+        scale = norm ** -(n // 2) * (self.root(norm) ** -1 if n % 2 else self.number(1))
+        cos, sin = times((x, y), int(q))
+        return cos * scale, sin * scale
 
     def root_of(self, pairs: list[Any]) -> tuple[Fraction, Fraction, list[Any]]:
         """The value that a certificate gives to a root, its square and its factors."""

@@ -299,6 +299,7 @@ class Tower:
         if isinstance(atom, sp.atan):
             return Rotation(self.one, x), False
         other = self._sqrt(self._add(self.one, _negative(self._mul(x, x))))
+        self.trace.roots.append([])  # the length of the vector is 1
         return (Rotation(x, other) if isinstance(atom, sp.acos) else Rotation(other, x)), True
 
     # Square roots

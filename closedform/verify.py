@@ -7,7 +7,6 @@ docs/certificates.md describes the format.  This module imports nothing of close
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import reduce
 from itertools import combinations, product
 from math import prod
@@ -16,8 +15,7 @@ from typing import Any, TypeAlias
 from flint import Ordering, arb, arb_mat, ctx, fmpq, fmpq_mpoly_ctx, fmpz_mat
 
 FORMAT = 3
-PAIRS = ("angle", "circle")
-ROOTS = ("root", "abs")
+SIZES = {"name": 1, "unknown": 1, "root": 1, "angle": 2, "circle": 2, "known": 0, "value": 0}
 
 Polynomial: TypeAlias = Any  # fmpq_mpoly, whose annotations are partial
 Monomial: TypeAlias = "tuple[int, ...]"
@@ -63,19 +61,21 @@ def operands(node: list[Any]) -> list[int]:
 
 def check_identity(document: dict[str, Any], certificate: dict[str, Any]) -> None:
     """The listed expressions vanish wherever they are real and no denominator vanishes."""
-    field = Field(document["nodes"], certificate["generators"], ("name", *ROOTS, "angle"))
-    field.roots = [field.root_of(factors) for factors in certificate["roots"]]
-    for node, constant, factors in certificate["assumed"]:
-        field.assume(node, field.number(constant), field.factors(factors))
-    require(certificate["zero"], "nothing is stated")
-    for node in certificate["zero"]:
-        require(field.value(node).num == 0, f"node {node} does not vanish")
+    field = Field(document["nodes"], certificate)
     listed = [field.polynomial(p) for p in certificate["nonzero"]]
-    for p in field.inverted:
+    for p in inverted_in(field, certificate["zero"]):
         for f in (f for f in listed if not f.is_constant()):
             while (division := divmod(p, f))[1] == 0:
                 p = division[0]
-        require(field.is_number(p), "a denominator is not listed")
+        require(p.is_constant(), "a denominator is not listed")
+
+
+def inverted_in(field: Field, zero: list[int]) -> list[Polynomial]:
+    """Whatever is a denominator in expressions that vanish."""
+    require(zero, "nothing is stated")
+    for k in zero:
+        require(field.value(k).num == 0, f"node {k} does not vanish")
+    return field.inverted
 
 
 def check_inverse(document: dict[str, Any], certificate: dict[str, Any]) -> None:
@@ -146,7 +146,8 @@ def check_count(document: dict[str, Any], certificate: dict[str, Any]) -> None:
 
 def system_of(nodes: list[Any], certificate: dict[str, Any]) -> tuple[Field, list[Polynomial]]:
     """The polynomials of a system, with the relations of the cosines and sines of its angles."""
-    field = Field(nodes, certificate["generators"], ("name", "unknown", "circle"))
+    field = Field(nodes, certificate)
+    require({*field.kinds} <= {"name", "unknown", "circle"}, "a generator has the wrong kind")
     angles, circles = certificate["angles"], [turn for _, turn in field.turns.values()]
     named = [k for k, *_ in (*field.values.items(), *angles, *certificate["given"])]
     require(all(nodes[k][0] == "name" for k in named), "only a name can be given a value")
@@ -217,15 +218,14 @@ class Fraction:
         return Fraction(self.field, self.num * other.num, self.den * other.den)
 
     def __pow__(self, n: int) -> Fraction:
-        base = self if n >= 0 else self.field.inverse(self)
-        return reduce(Fraction.__mul__, [base] * abs(n), self.field.number(1))
+        power = reduce(Fraction.__mul__, [self] * abs(n), self.field.number(1))
+        if n >= 0:
+            return power
+        self.field.inverted.append(power.num)
+        return Fraction(self.field, power.den, power.num)
 
     def __neg__(self) -> Fraction:
         return Fraction(self.field, -self.num, self.den)
-
-    def __eq__(self, other: object) -> bool:
-        assert isinstance(other, Fraction)
-        return bool(self.field.reduced(self.num * other.den - other.num * self.den) == 0)
 
 
 def turned(a: Rotation, b: Rotation) -> Rotation:
@@ -238,85 +238,119 @@ def times(turn: Rotation, n: int) -> Rotation:
 
 
 class Field:
-    """The generators of a certificate and their relations, each monic in a generator of its own."""
+    """The generators of a certificate, each with at most one relation, which is monic in it."""
 
-    def __init__(self, nodes: list[Any], generators: list[Any], allowed: Iterable[str]):
-        self.nodes = nodes
-        self.kinds = [g[0] for g in generators for _ in range(2 if g[0] in PAIRS else 1)]
-        require(set(self.kinds) <= set(allowed), "a generator has the wrong kind")
+    def __init__(self, nodes: list[Any], certificate: dict[str, Any]):
+        steps = certificate["field"]
+        self.nodes, self.assumed = nodes, certificate.get("assumed", [])
+        self.stated = {*certificate.get("zero", []), *self.assumed}  # with all their parts
+        for k in reversed(range(len(nodes))):
+            self.stated |= set(operands(nodes[k])) if k in self.stated else set()
+        self.kinds = [kind for kind, *_ in steps for _ in range(SIZES[kind])]
         names = [f"g{i}" for i in reversed(range(len(self.kinds)))]
         self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)  # a later generator is larger
         self.generators = self.context.gens()[::-1]
         self.unknowns = [i for i, kind in enumerate(self.kinds) if kind in ("unknown", "circle")]
-        self.signs = [1 if kind in ROOTS else 0 for kind in self.kinds]
+        self.signs = [0] * len(self.kinds)
         self.relations: dict[int, Polynomial] = {}
-        self.squares: dict[int, Polynomial] = {}
         self.values: dict[int, Fraction] = {}
-        self.given: dict[int, int] = {}
+        self.lengths: dict[int, Fraction] = {}
         self.turns: dict[Any, tuple[int, Rotation]] = {}
-        self.roots: list[tuple[Fraction, Fraction, list[tuple[Polynomial, int]]]] = []
+        self.given: dict[int, int] = {}
+        self.known: list[Polynomial] = []
         self.inverted: list[Polynomial] = []
-        self.nonnegative: list[Polynomial] = []
-        self.real: set[int] = set()
-        i = 0
-        for kind, *about in generators:
-            self._declare(i, kind, *about)
-            i += 2 if kind in PAIRS else 1
+        self.size = 0  # the number of generators so far
+        for kind, *about in steps:
+            size = self.size + SIZES[kind]
+            getattr(self, f"add_{kind}")(*self.generators[self.size : size], *about)
+            self.size = size
 
-    def _declare(self, i: int, kind: str, about: Any = None, divisor: int = 1) -> None:
-        g, one = self.generators[i], self.context.constant(1)
-        if kind in PAIRS:
-            s = self.generators[i + 1]
-            key = about if kind == "angle" else ("circle", i)
-            require(divisor > 0, "an angle is divided by zero")
-            self.turns[key] = divisor, (Fraction(self, g, one), Fraction(self, s, one))
-            self.relations[i + 1] = s * s + g * g - 1
-        elif kind in ROOTS:
-            p = self.polynomial(about)
-            require(not any(p.degrees()[: len(self.kinds) - i]), "a relation has later generators")
-            self.squares[i] = p if kind == "root" else self.reduced(p * p)
-            self.relations[i] = g * g - self.squares[i]
-        else:
-            op, *name = self.nodes[about]
-            self.values[about] = Fraction(self, g, one)
-            self.signs[i] = name[1] if op == "name" else int(op == "pi")
+    def add_name(self, g: Polynomial, k: int) -> None:
+        """A node that may have any value, within the sign of its name."""
+        op, *about = self.nodes[k]
+        self.values[k] = self.fraction(g)
+        self.signs[self.size] = about[1] if op == "name" else int(op == "pi")
+
+    add_unknown = add_name
+
+    def add_angle(self, c: Polynomial, s: Polynomial, k: Any, divisor: int) -> None:
+        """The cosine and the sine of a node that is divided by a number."""
+        require(divisor > 0, "an angle is divided by zero")
+        self.turns[k] = divisor, (self.fraction(c), self.fraction(s))
+        self.relations[self.size + 1] = s * s + c * c - 1
+
+    def add_circle(self, c: Polynomial, s: Polynomial) -> None:
+        """The cosine and the sine of a new unknown angle."""
+        self.add_angle(c, s, ("circle", self.size), 1)
+
+    def add_root(self, g: Polynomial, p: list[Any], n: int) -> None:
+        """The root of a power that is not negative."""
+        square = self.product([[p, n]])
+        require(square.den.is_one(), "a relation has a denominator")
+        self.relations[self.size], self.signs[self.size] = g * g - square.num, 1
+
+    def add_known(self, k: int, p: list[Any], factors: list[Any]) -> None:
+        """A polynomial is not negative, because such factors make it a radicand."""
+        quotient, radicand = self.polynomial(p), self.radicand(k)
+        difference = self.fraction(quotient) * self.product(factors) + -radicand
+        require(difference.num == 0 != radicand.num, "a radicand has other factors")
+        self.known.append(quotient)
+        self.inverted += [self.polynomial(f) for f, _ in factors]
+
+    def add_value(self, k: int, factors: list[Any]) -> None:
+        """The root of a radicand, or the length of a vector: its square is right."""
+        value = self.product(factors)
+        require((value * value + -self.radicand(k)).num == 0, "a root has another square")
+        (self.lengths if self.nodes[k][0] == "atan2" else self.values)[k] = value
+
+    def radicand(self, k: int) -> Fraction:
+        """What is not negative wherever the statement is real."""
+        require(k in self.stated, "a root is not in the statement")
+        op, *args = self.nodes[k]
+        if op in ("atan2", "abs"):
+            return reduce(Fraction.__add__, (self.value(a) ** 2 for a in args))
+        require(op == "sqrt" or k in self.assumed, "a node may be negative")
+        return self.value(args[0] if op == "sqrt" else k)
+
+    def fraction(self, p: Polynomial) -> Fraction:
+        return Fraction(self, p, self.context.constant(1))
 
     def polynomial(self, terms: list[Any]) -> Polynomial:
         """From a list of terms: each a coefficient, then generators, each with its power."""
         total = self.context.constant(0)
         for coefficient, *powers in terms:
+            require(all(i in range(self.size) for i in powers[::2]), "there is no such generator")
             factors = zip(powers[::2], powers[1::2], strict=True)
             total += prod((self.generators[i] ** n for i, n in factors), start=fmpq(coefficient))
         return total
 
-    def factors(self, pairs: list[Any]) -> list[tuple[Polynomial, int]]:
-        return [(self.polynomial(p), n) for p, n in pairs]
+    def product(self, pairs: list[Any]) -> Fraction:
+        """Of powers of polynomials; none with an odd power is negative."""
+        factors = [(self.polynomial(p), n) for p, n in pairs]
+        require(all(n % 2 == 0 or self.nonnegative(p) for p, n in factors), "it may be negative")
+        return reduce(Fraction.__mul__, (self.fraction(p) ** n for p, n in factors), self.number(1))
+
+    def nonnegative(self, p: Polynomial) -> bool:
+        """Whether this is known or follows from its terms; no cosine or sine is beyond 1."""
+        positive, slack = fmpq(0), fmpq(0)
+        for exponents, a in p.terms():
+            powers = {i: n for i, n in enumerate(reversed(exponents)) if n}
+            if prod((self.signs[i] for i, n in powers.items() if n % 2), start=a) > 0:
+                positive += 0 if powers else a
+            elif all(self.kinds[i] == "angle" for i in powers):
+                slack += abs(a)
+            else:
+                return p in self.known
+        return positive >= slack or p in self.known
 
     def number(self, value: int | str) -> Fraction:
-        return Fraction(self, self.context.constant(fmpq(value)), self.context.constant(1))
+        return self.fraction(self.context.constant(fmpq(value)))
 
     def reduced(self, p: Polynomial) -> Polynomial:
         for i in reversed(self.relations):
             if p.degrees()[-1 - i] > 1:
                 p = divmod(p, self.relations[i])[1]
         return p
-
-    def is_number(self, p: Polynomial) -> bool:
-        """Whether a polynomial, of roots of numbers at most, has a norm that differs from zero."""
-        for i in reversed(self.squares):
-            slot = -1 - i
-            other = {m: -a if m[slot] % 2 else a for m, a in p.terms()}
-            p = self.reduced(p * self.context.from_dict(other)) if p.degrees()[slot] else p
-        return bool(p.is_constant() and p != 0)
-
-    def inverse(self, a: Fraction) -> Fraction:
-        """A root that divides the denominator moves to the numerator: ``1/w = w/w**2``."""
-        num, den = a.den, a.num
-        self.inverted.append(den)
-        for g in (self.generators[i] for i in self.squares):
-            if den != 0 and divmod(den, g)[1] == 0:
-                num, den = num * g, den * g
-        return Fraction(self, num, den)
 
     def leading(self, p: Polynomial) -> tuple[Monomial, Polynomial]:
         """The largest monomial of the unknowns (graded reverse lexicographic), its coefficient."""
@@ -341,10 +375,8 @@ class Field:
                 self.values[k] = reduce(join, map(self.value, args))
             elif op == "^":
                 self.values[k] = self.value(args[0]) ** args[1]
-            elif op in ("sqrt", "abs"):
-                self.values[k] = self.root(self.value(args[0]) ** (1 if op == "sqrt" else 2))
             else:
-                require(op in ("sin", "cos"), f"{op} is not a generator")
+                require(op in ("sin", "cos"), f"{op} has no value")
                 self.values[k] = self.rotation(args[0], fmpq(1))[op == "sin"]
         return self.values[k]
 
@@ -364,77 +396,7 @@ class Field:
             return self.rotation(args[1], q * fmpq(self.nodes[args[0]][1]))
         require(op == "atan2" and q.q == 1, "an angle is not a generator")
         y, x, n = self.value(args[0]), self.value(args[1]), int(abs(q))
-        norm = x * x + y * y  # an even multiple needs no root
-        scale = norm ** -(n // 2) * (self.root(norm) ** -1 if n % 2 else self.number(1))
+        length = self.lengths[k] if n % 2 else self.number(1)  # an even multiple needs no root
+        scale = (x * x + y * y) ** -(n // 2) * length**-1
         cos, sin = times((x, y), int(q))
         return cos * scale, sin * scale
-
-    def root_of(self, pairs: list[Any]) -> tuple[Fraction, Fraction, list[Any]]:
-        """The value that a certificate gives to a root, its square and its factors."""
-        factors = self.factors(pairs)
-        value = self.product(factors)
-        return value, value * value, factors
-
-    def product(self, factors: list[tuple[Polynomial, int]]) -> Fraction:
-        one = self.number(1)
-        return reduce(Fraction.__mul__, (Fraction(self, p, one.den) ** n for p, n in factors), one)
-
-    def root(self, a: Fraction) -> Fraction:
-        """The value of a root: its square is right, it is real, and no factor is negative."""
-        if a.num == 0:
-            return a
-        known = [(value, factors) for value, square, factors in self.roots if square == a]
-        require(known, "a root has no value")
-        value, factors = known[0]
-        self.require_real(factors)
-        require(all(n % 2 == 0 or self.sign(p) > 0 for p, n in factors), "a root may be negative")
-        return value
-
-    def require_real(self, factors: list[tuple[Polynomial, int]]) -> None:
-        """The radicands of all generators in these factors of a root are not negative.
-
-        One of unknown sign is not, because it is a simple factor of a radicand in the statement.
-        """
-        doubtful = self.roots_in(p for p, _ in factors) - self.real
-        for i in doubtful:
-            if self.kinds[i] == "abs" or self.sign(self.squares[i]) > 0:
-                self.real.add(i)
-        for i in doubtful - self.real:
-            others = [p for p, n in factors if (p, n) != (self.generators[i], 1)]
-            if len(others) == len(factors) - 1 and self.roots_in(others) <= self.real:
-                self.real.add(i)
-        require(doubtful <= self.real, "a root may be imaginary")
-
-    def roots_in(self, polynomials: Iterable[Polynomial]) -> set[int]:
-        """The roots in polynomials and in the radicands of these roots."""
-        found = {i for p in polynomials for i in self.squares if p.degrees()[-1 - i]}
-        return found | self.roots_in(self.squares[i] for i in found) if found else found
-
-    def sign(self, p: Polynomial) -> int:
-        """1 or -1 if a polynomial is certainly not negative or not positive, else 0."""
-        for q in self.nonnegative:
-            ratio, rest = divmod(p, q)
-            if rest == 0 and ratio.is_constant():
-                return 1 if ratio.leading_coefficient() > 0 else -1
-        signs, constant, slack = set[int](), fmpq(0), fmpq(0)
-        for exponents, a in p.terms():
-            powers = {i: n for i, n in enumerate(reversed(exponents)) if n}
-            odd = [self.signs[i] for i, n in powers.items() if n % 2]
-            if all(odd):
-                signs.add(prod(odd) * (1 if a > 0 else -1))
-                constant += 0 if powers else a
-            elif all(self.kinds[i] == "angle" for i in powers):  # cosines and sines are at most 1
-                slack += abs(a)
-            else:
-                return 0
-        return signs.pop() if len(signs) == 1 and abs(constant) >= slack else 0
-
-    def assume(self, k: int, constant: Fraction, factors: list[tuple[Polynomial, int]]) -> None:
-        """Node k is not negative; without factors of known sign, it is a product that is not."""
-        require(self.value(k).num != 0, "it is zero that is not negative")
-        require(constant * self.product(factors) == self.value(k), "a guard has other factors")
-        self.require_real(factors)
-        odd = [p for p, n in factors if n % 2]
-        known = [*filter(None, map(self.sign, [constant.num, *odd]))]
-        rest = prod((p for p in odd if not self.sign(p)), start=prod(known) * self.number(1).num)
-        self.nonnegative.append(self.reduced(rest))

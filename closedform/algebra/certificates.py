@@ -30,7 +30,7 @@ from closedform.algebra.expressions import (
 )
 from closedform.algebra.tower import Tower
 from closedform.algebra.trace import factors_of, terms_of
-from closedform.verify import FORMAT, ROOTS, Refused, matrix_of, staircase, system_of
+from closedform.verify import FORMAT, Field, Refused, inverted_in, matrix_of, staircase, system_of
 
 Expr: TypeAlias = Any  # SymPy's annotations are partial
 
@@ -103,30 +103,31 @@ class Record:
             return
         try:
             zero = sorted({self.node(e) for e in entries_of(problem)})
-            generators = [
-                [kind, terms_of(about)] if kind in ROOTS else [kind, self.node(about), *n]
-                for kind, about, *n in trace.generators
+            assumed = {g for g, rooted in trace.guards.items() if rooted} | {*assumptions}
+            steps = [
+                [kind, *self._step(kind, *about)]
+                for kind, *about in trace.steps
+                if kind != "known" or about[0] in assumed or about[0] not in trace.guards
             ]
-            assumed = [
-                [self.node(a), str(trace.guards[a][0]), factors_of(trace.guards[a][1])]
-                for a in assumptions
-            ]
-        except _Unwritable as reason:
+            content: dict[str, Any] = {
+                "zero": zero,
+                "assumed": [self.node(g) for g in trace.guards if g in assumed],
+                "field": _first(steps),
+            }
+            inverted = inverted_in(Field(self.nodes, content), zero)
+        except (_Unwritable, Refused, LookupError) as reason:
             self.missing[str(reason)] += 1
             return
-        slots = [kind for kind, *_ in generators for _ in range(2 if kind == "angle" else 1)]
-        roots = [[[[["1", i, 1]], 1]] for i, kind in enumerate(slots) if kind in ROOTS]
-        roots += [
-            factors_of((p, n) for p, n in factors if not p.is_one()) for factors in trace.roots
-        ]
-        self._add(
-            kind="identity",
-            zero=zero,
-            assumed=assumed,
-            generators=generators,
-            roots=[r for i, r in enumerate(roots) if r not in roots[:i]],
-            nonzero=[terms_of(p) for p in tower.inverted()],
-        )
+        factors = {str(f): f for p in inverted for f, _ in p.factor()[1]}
+        self._add(kind="identity", **content, nonzero=[terms_of(f) for f in factors.values()])
+
+    def _step(self, kind: str, about: Any, *rest: Any) -> list[Any]:
+        """A step of a conversion as plain data."""
+        if kind == "root":
+            return [terms_of(about), *rest]
+        if kind == "known":
+            return [self.node(about), terms_of(rest[0]), factors_of(rest[1])]
+        return [self.node(about), *(map(factors_of, rest) if kind == "value" else rest)]
 
     def count(self, system: System) -> int | None:
         """The number of solutions of a system; the result is the number of the certificate."""
@@ -214,7 +215,7 @@ class Record:
             "equations": [self.node(e) for e in numerators],
             "given": given,
             "angles": [[self.node(a), row[::-1]] for a, row in system.angles.items()],
-            "generators": [
+            "field": [
                 *(["name", self.node(s)] for s in sorted(plain, key=str)),
                 *(["name", self.node(t)] for t in halves.values()),
                 *(["unknown", self.node(s)] for s in inverses),
@@ -291,6 +292,14 @@ class Record:
             for atom, q in angle_terms(e).items()
         ]
         return terms[0] if len(terms) == 1 else self._entry("+", *terms)
+
+
+def _first(steps: Iterable[list[Any]]) -> list[list[Any]]:
+    """Steps without those that lead to the same: one reason is enough for what is known."""
+    found: dict[str, list[Any]] = {}
+    for step in steps:
+        found.setdefault(json.dumps(step[2] if step[0] == "known" else step), step)
+    return list(found.values())
 
 
 def _quotient(e: Expr, unknown: set[Expr]) -> tuple[Expr, list[Expr]]:

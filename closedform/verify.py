@@ -7,7 +7,6 @@ docs/certificates.md describes the format.  This module imports nothing of close
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import reduce
 from itertools import combinations, product
 from math import prod
@@ -15,14 +14,13 @@ from typing import Any, TypeAlias
 
 from flint import Ordering, arb, arb_mat, ctx, fmpq, fmpq_mpoly_ctx, fmpz_mat
 
-FORMAT = 2
-INVERSES = ("atan2", "atan", "acos", "asin")
-PAIRS = ("angle", "circle")
-ROOTS = ("root", "abs")
+FORMAT = 3
+SIZES = {"name": 1, "unknown": 1, "root": 1, "angle": 2, "circle": 2, "known": 0, "value": 0}
 
 Polynomial: TypeAlias = Any  # fmpq_mpoly, whose annotations are partial
 Monomial: TypeAlias = "tuple[int, ...]"
 Lead: TypeAlias = "tuple[Monomial, Polynomial, Polynomial]"
+Rotation: TypeAlias = "tuple[Fraction, Fraction]"  # the cosine and the sine of an angle
 
 
 class Refused(ValueError):  # noqa: N818
@@ -37,15 +35,12 @@ def require(condition: Any, fault: str) -> None:
 def check(document: dict[str, Any]) -> None:
     """Check all certificates of a mechanism; raise :class:`Refused` for the first bad one."""
     require(document["format"] == FORMAT, "the format is unknown")
-    names = set()
-    for k, node in enumerate(document["nodes"]):
-        op, *args = node if isinstance(node, list) else ("number",)
-        if op == "name":
-            require(args[0] not in names and args[1] in (-1, 0, 1), "a name has two meanings")
-            names.add(args[0])
-        else:
-            operands = args[:1] if op == "^" else args
-            require(all(a in range(k) for a in operands), "a node holds later ones")
+    nodes = document["nodes"]
+    names = [node[1:] for node in nodes if node[0] == "name"]
+    require(len(names) == len({name for name, _ in names}), "a name has two meanings")
+    require(all(sign in (-1, 0, 1) for _, sign in names), "a name has an unknown sign")
+    for k, node in enumerate(nodes):
+        require(all(a in range(k) for a in operands(node)), "a node holds later ones")
     kinds = {
         "identity": check_identity,
         "count": check_count,
@@ -59,21 +54,28 @@ def check(document: dict[str, Any]) -> None:
             raise Refused(f"certificate {k} ({certificate['of']}): {error!r}") from error
 
 
+def operands(node: list[Any]) -> list[int]:
+    op, *args = node
+    return args[: {"number": 0, "name": 0, "^": 1}.get(op)]
+
+
 def check_identity(document: dict[str, Any], certificate: dict[str, Any]) -> None:
     """The listed expressions vanish wherever they are real and no denominator vanishes."""
-    field = Field(document["nodes"], certificate["generators"], ("name", *ROOTS, "angle"))
-    field.roots = [field.root_of(factors) for factors in certificate["roots"]]
-    for node, constant, factors in certificate["assumed"]:
-        field.assume(node, field.number(constant), field.factors(factors))
-    require(certificate["zero"], "nothing is stated")
-    for node in certificate["zero"]:
-        require(field.value(node).num == 0, f"node {node} does not vanish")
+    field = Field(document["nodes"], certificate)
     listed = [field.polynomial(p) for p in certificate["nonzero"]]
-    for p in field.inverted:
+    for p in inverted_in(field, certificate["zero"]):
         for f in (f for f in listed if not f.is_constant()):
             while (division := divmod(p, f))[1] == 0:
                 p = division[0]
-        require(field.is_number(p), "a denominator is not listed")
+        require(p.is_constant(), "a denominator is not listed")
+
+
+def inverted_in(field: Field, zero: list[int]) -> list[Polynomial]:
+    """Whatever is a denominator in expressions that vanish."""
+    require(zero, "nothing is stated")
+    for k in zero:
+        require(field.value(k).num == 0, f"node {k} does not vanish")
+    return field.inverted
 
 
 def check_inverse(document: dict[str, Any], certificate: dict[str, Any]) -> None:
@@ -108,18 +110,17 @@ def matrix_of(nodes: list[Any], certificate: dict[str, Any]) -> list[list[arb]]:
 def enclosed(nodes: list[Any], balls: dict[int, arb], k: int) -> arb:
     """A ball that contains the value of a node; ``balls`` has those of names, and remembers."""
     if k not in balls:
-        op, *args = nodes[k] if isinstance(nodes[k], list) else ("number", nodes[k])
-        require(op != "name", "a name has no value")
-        if op == "number":
-            return arb(fmpq(args[0]))
-        x = [enclosed(nodes, balls, a) for a in (args[:1] if op == "^" else args)]
+        op, *args = nodes[k]
+        x = [enclosed(nodes, balls, a) for a in operands(nodes[k])]
         require(op != "atan2" or not all(v.contains(0) for v in x), "there is no direction")
-        if op in ("+", "*"):
+        if op == "number":
+            balls[k] = arb(fmpq(args[0]))
+        elif op in ("+", "*"):
             balls[k] = sum(x, arb(0)) if op == "+" else prod(x, start=arb(1))
         elif op in ("^", "abs"):
             balls[k] = x[0] ** args[1] if op == "^" else abs(x[0])
         else:
-            require(op in (*INVERSES, "pi", "sqrt", "sin", "cos", "tan"), f"{op} has no value")
+            require(op in ("pi", "sqrt", "sin", "cos", "atan2"), f"{op} has no value")
             balls[k] = getattr(arb, op)(*x)
         require(balls[k].is_finite(), "a value is not defined")
     return balls[k]
@@ -127,8 +128,7 @@ def enclosed(nodes: list[Any], balls: dict[int, arb], k: int) -> arb:
 
 def check_count(document: dict[str, Any], certificate: dict[str, Any]) -> None:
     """A system has so many solutions, with multiplicity, for generic parameters."""
-    field, system, nonzero = system_of(document["nodes"], certificate)
-    system += [g * p - 1 for g, p in zip(field.inverses, nonzero, strict=True)]
+    field, system = system_of(document["nodes"], certificate)
     elements = list(system)
     for multiplier, element, combination in certificate["steps"]:
         m, p = field.polynomial(multiplier), field.polynomial(element)
@@ -144,24 +144,24 @@ def check_count(document: dict[str, Any], certificate: dict[str, Any]) -> None:
         require(remainder(field, p, basis) == 0, "it is not a Groebner basis of the system")
 
 
-def system_of(nodes: list[Any], certificate: dict[str, Any]) -> tuple[Field, list[Any], list[Any]]:
-    """The polynomials of a system, and those that must not vanish."""
-    allowed = ("name", "half", "unknown", "circle", "inverse")
-    field = Field(nodes, certificate["generators"], allowed)
-    rows = [row for _, row in certificate["angles"]]
+def system_of(nodes: list[Any], certificate: dict[str, Any]) -> tuple[Field, list[Polynomial]]:
+    """The polynomials of a system, with the relations of the cosines and sines of its angles."""
+    field = Field(nodes, certificate)
+    require({*field.kinds} <= {"name", "unknown", "circle"}, "a generator has the wrong kind")
+    angles, circles = certificate["angles"], [turn for _, turn in field.turns.values()]
+    named = [k for k, *_ in (*field.values.items(), *angles, *certificate["given"])]
+    require(all(nodes[k][0] == "name" for k in named), "only a name can be given a value")
+    require(len(named) == len(set(named)), "a name has two values")
+    rows = [row for _, row in angles]
     require(not rows or abs(fmpz_mat(rows).det()) == 1, "the change of angles is not invertible")
-    require(2 * len(rows) == field.kinds.count("circle"), "an angle is not used")
-    for node, row in certificate["angles"]:
-        field.angles[node] = {("circle", j): fmpq(k) for j, k in enumerate(row)}
-    given = {name: field.value(node) for name, node in certificate["given"]}
-    require(all(nodes[k][0] == "name" for k in given), "only a name can be given a value")
-    field.values = {k: v for k, v in field.values.items() if nodes[k][0] == "name"} | given
+    require(len(rows) == len(circles), "an angle is not used")
+    for k, row in angles:
+        field.turns[k] = 1, reduce(turned, map(times, circles, row))
+    field.given = dict(certificate["given"])
     system = [field.value(k).num for k in certificate["equations"]]
-    nonzero = [field.value(k).num for k in certificate["nonzero"]]
-    nonzero += [p for p in field.inverted if any(field.leading(p)[0])]
-    system += field.relations.values()
-    nonzero = [p for i, p in enumerate(nonzero) if p not in nonzero[:i]]
-    return field, [p for p in system if p != 0], nonzero
+    leads = [field.leading(p)[0] for p in field.inverted]
+    require(not any(map(any, leads)), "a denominator has an unknown")
+    return field, [p for p in (*system, *field.relations.values()) if p != 0]
 
 
 def staircase(leads: list[Monomial], size: int) -> int | None:
@@ -218,121 +218,139 @@ class Fraction:
         return Fraction(self.field, self.num * other.num, self.den * other.den)
 
     def __pow__(self, n: int) -> Fraction:
-        base = self if n >= 0 else self.field.inverse(self)
-        return reduce(Fraction.__mul__, [base] * abs(n), self.field.number(1))
+        power = reduce(Fraction.__mul__, [self] * abs(n), self.field.number(1))
+        if n >= 0:
+            return power
+        self.field.inverted.append(power.num)
+        return Fraction(self.field, power.den, power.num)
 
     def __neg__(self) -> Fraction:
         return Fraction(self.field, -self.num, self.den)
 
-    def __eq__(self, other: object) -> bool:
-        assert isinstance(other, Fraction)
-        return bool(self.field.reduced(self.num * other.den - other.num * self.den) == 0)
+
+def turned(a: Rotation, b: Rotation) -> Rotation:
+    return a[0] * b[0] + -(a[1] * b[1]), a[1] * b[0] + a[0] * b[1]
 
 
-class Rotation:
-    """The cosine and the sine of an angle."""
-
-    def __init__(self, cos: Fraction, sin: Fraction):
-        self.cos, self.sin = cos, sin
-
-    def __mul__(self, other: Rotation) -> Rotation:
-        c, s, C, S = self.cos, self.sin, other.cos, other.sin
-        return Rotation(c * C + -(s * S), s * C + c * S)
-
-    def times(self, n: int) -> Rotation:
-        one = self.cos.field.number(1)
-        turn = self if n > 0 else Rotation(self.cos, -self.sin)
-        return reduce(Rotation.__mul__, [turn] * abs(n), Rotation(one, one + -one))
+def times(turn: Rotation, n: int) -> Rotation:
+    one = turn[0].field.number(1)
+    return reduce(turned, [turn if n > 0 else (turn[0], -turn[1])] * abs(n), (one, one + -one))
 
 
 class Field:
-    """The generators of a certificate and their relations, each monic in a generator of its own."""
+    """The generators of a certificate, each with at most one relation, which is monic in it."""
 
-    def __init__(self, nodes: list[Any], generators: list[Any], allowed: Iterable[str]):
-        self.nodes = nodes
-        self.kinds = [g[0] for g in generators for _ in range(2 if g[0] in PAIRS else 1)]
-        require(set(self.kinds) <= set(allowed), "a generator has the wrong kind")
+    def __init__(self, nodes: list[Any], certificate: dict[str, Any]):
+        steps = certificate["field"]
+        self.nodes, self.assumed = nodes, certificate.get("assumed", [])
+        self.stated = {*certificate.get("zero", []), *self.assumed}  # with all their parts
+        for k in reversed(range(len(nodes))):
+            self.stated |= set(operands(nodes[k])) if k in self.stated else set()
+        self.kinds = [kind for kind, *_ in steps for _ in range(SIZES[kind])]
         names = [f"g{i}" for i in reversed(range(len(self.kinds)))]
         self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)  # a later generator is larger
         self.generators = self.context.gens()[::-1]
-        hidden = ("unknown", "circle", "inverse")
-        self.unknowns = [i for i, kind in enumerate(self.kinds) if kind in hidden]
-        self.inverses = [self.generators[i] for i in self.unknowns if self.kinds[i] == "inverse"]
-        self.signs = [1 if kind in ROOTS else 0 for kind in self.kinds]
+        self.unknowns = [i for i, kind in enumerate(self.kinds) if kind in ("unknown", "circle")]
+        self.signs = [0] * len(self.kinds)
         self.relations: dict[int, Polynomial] = {}
-        self.squares: dict[int, Polynomial] = {}
         self.values: dict[int, Fraction] = {}
-        self.angles: dict[int, dict[Any, fmpq]] = {}
+        self.lengths: dict[int, Fraction] = {}
         self.turns: dict[Any, tuple[int, Rotation]] = {}
-        self.roots: list[tuple[Fraction, Fraction, list[tuple[Polynomial, int]]]] = []
+        self.given: dict[int, int] = {}
+        self.known: list[Polynomial] = []
         self.inverted: list[Polynomial] = []
-        self.nonnegative: list[Polynomial] = []
-        self.real: set[int] = set()
-        i = 0
-        for kind, *about in generators:
-            self._declare(i, kind, *about)
-            i += 2 if kind in PAIRS else 1
+        self.size = 0  # the number of generators so far
+        for kind, *about in steps:
+            size = self.size + SIZES[kind]
+            getattr(self, f"add_{kind}")(*self.generators[self.size : size], *about)
+            self.size = size
 
-    def _declare(self, i: int, kind: str, about: Any = None, divisor: int = 1) -> None:
-        g, one = self.generators[i], self.context.constant(1)
-        if kind in PAIRS:
-            s = self.generators[i + 1]
-            (key,) = self.terms(about) if kind == "angle" else [("circle", len(self.relations))]
-            require(divisor > 0, "an angle is divided by zero")
-            self.turns[key] = divisor, Rotation(Fraction(self, g, one), Fraction(self, s, one))
-            self.relations[i + 1] = s * s + g * g - 1
-        elif kind == "half":
-            self.turns[about] = 1, self.half_turn(g)
-        elif kind in ROOTS:
-            p = self.polynomial(about)
-            require(not any(p.degrees()[: len(self.kinds) - i]), "a relation has later generators")
-            self.squares[i] = p if kind == "root" else self.reduced(p * p)
-            self.relations[i] = g * g - self.squares[i]
-        elif kind != "inverse":
-            op, *name = self.nodes[about]
-            self.values[about] = Fraction(self, g, one)
-            self.signs[i] = name[1] if op == "name" else int(op == "pi")
+    def add_name(self, g: Polynomial, k: int) -> None:
+        """A node that may have any value, within the sign of its name."""
+        op, *about = self.nodes[k]
+        self.values[k] = self.fraction(g)
+        self.signs[self.size] = about[1] if op == "name" else int(op == "pi")
 
-    def half_turn(self, t: Polynomial) -> Rotation:
-        """The rotation by an angle, from the tangent of half of it."""
-        return Rotation(Fraction(self, 1 - t * t, 1 + t * t), Fraction(self, 2 * t, 1 + t * t))
+    add_unknown = add_name
+
+    def add_angle(self, c: Polynomial, s: Polynomial, k: Any, divisor: int) -> None:
+        """The cosine and the sine of a node that is divided by a number."""
+        require(divisor > 0, "an angle is divided by zero")
+        self.turns[k] = divisor, (self.fraction(c), self.fraction(s))
+        self.relations[self.size + 1] = s * s + c * c - 1
+
+    def add_circle(self, c: Polynomial, s: Polynomial) -> None:
+        """The cosine and the sine of a new unknown angle."""
+        self.add_angle(c, s, ("circle", self.size), 1)
+
+    def add_root(self, g: Polynomial, p: list[Any], n: int) -> None:
+        """The root of a power that is not negative."""
+        square = self.product([[p, n]])
+        require(square.den.is_one(), "a relation has a denominator")
+        self.relations[self.size], self.signs[self.size] = g * g - square.num, 1
+
+    def add_known(self, k: int, p: list[Any], factors: list[Any]) -> None:
+        """A polynomial is not negative, because such factors make it a radicand."""
+        quotient, radicand = self.polynomial(p), self.radicand(k)
+        difference = self.fraction(quotient) * self.product(factors) + -radicand
+        require(difference.num == 0 != radicand.num, "a radicand has other factors")
+        self.known.append(quotient)
+        self.inverted += [self.polynomial(f) for f, _ in factors]
+
+    def add_value(self, k: int, factors: list[Any]) -> None:
+        """The root of a radicand, or the length of a vector: its square is right."""
+        value = self.product(factors)
+        require((value * value + -self.radicand(k)).num == 0, "a root has another square")
+        (self.lengths if self.nodes[k][0] == "atan2" else self.values)[k] = value
+
+    def radicand(self, k: int) -> Fraction:
+        """What is not negative wherever the statement is real."""
+        require(k in self.stated, "a root is not in the statement")
+        op, *args = self.nodes[k]
+        if op in ("atan2", "abs"):
+            return reduce(Fraction.__add__, (self.value(a) ** 2 for a in args))
+        require(op == "sqrt" or k in self.assumed, "a node may be negative")
+        return self.value(args[0] if op == "sqrt" else k)
+
+    def fraction(self, p: Polynomial) -> Fraction:
+        return Fraction(self, p, self.context.constant(1))
 
     def polynomial(self, terms: list[Any]) -> Polynomial:
         """From a list of terms: each a coefficient, then generators, each with its power."""
         total = self.context.constant(0)
         for coefficient, *powers in terms:
+            require(all(i in range(self.size) for i in powers[::2]), "there is no such generator")
             factors = zip(powers[::2], powers[1::2], strict=True)
             total += prod((self.generators[i] ** n for i, n in factors), start=fmpq(coefficient))
         return total
 
-    def factors(self, pairs: list[Any]) -> list[tuple[Polynomial, int]]:
-        return [(self.polynomial(p), n) for p, n in pairs]
+    def product(self, pairs: list[Any]) -> Fraction:
+        """Of powers of polynomials; none with an odd power is negative."""
+        factors = [(self.polynomial(p), n) for p, n in pairs]
+        require(all(n % 2 == 0 or self.nonnegative(p) for p, n in factors), "it may be negative")
+        return reduce(Fraction.__mul__, (self.fraction(p) ** n for p, n in factors), self.number(1))
+
+    def nonnegative(self, p: Polynomial) -> bool:
+        """Whether this is known or follows from its terms; no cosine or sine is beyond 1."""
+        positive, slack = fmpq(0), fmpq(0)
+        for exponents, a in p.terms():
+            powers = {i: n for i, n in enumerate(reversed(exponents)) if n}
+            if prod((self.signs[i] for i, n in powers.items() if n % 2), start=a) > 0:
+                positive += 0 if powers else a
+            elif all(self.kinds[i] == "angle" for i in powers):
+                slack += abs(a)
+            else:
+                return p in self.known
+        return positive >= slack or p in self.known
 
     def number(self, value: int | str) -> Fraction:
-        return Fraction(self, self.context.constant(fmpq(value)), self.context.constant(1))
+        return self.fraction(self.context.constant(fmpq(value)))
 
     def reduced(self, p: Polynomial) -> Polynomial:
         for i in reversed(self.relations):
             if p.degrees()[-1 - i] > 1:
                 p = divmod(p, self.relations[i])[1]
         return p
-
-    def is_number(self, p: Polynomial) -> bool:
-        """Whether a polynomial, of roots of numbers at most, has a norm that differs from zero."""
-        for i in reversed(self.squares):
-            slot = -1 - i
-            other = {m: -a if m[slot] % 2 else a for m, a in p.terms()}
-            p = self.reduced(p * self.context.from_dict(other)) if p.degrees()[slot] else p
-        return bool(p.is_constant() and p != 0)
-
-    def inverse(self, a: Fraction) -> Fraction:
-        """A root that divides the denominator moves to the numerator: ``1/w = w/w**2``."""
-        num, den = a.den, a.num
-        self.inverted.append(den)
-        for g in (self.generators[i] for i in self.squares):
-            if den != 0 and divmod(den, g)[1] == 0:
-                num, den = num * g, den * g
-        return Fraction(self, num, den)
 
     def leading(self, p: Polynomial) -> tuple[Monomial, Polynomial]:
         """The largest monomial of the unknowns (graded reverse lexicographic), its coefficient."""
@@ -346,140 +364,39 @@ class Field:
 
     def value(self, k: int) -> Fraction:
         """The value of a node."""
+        if k in self.given:
+            return self.value(self.given[k])
         if k not in self.values:
-            self.values[k] = self._value(k)
+            op, *args = self.nodes[k]
+            if op == "number":
+                self.values[k] = self.number(args[0])
+            elif op in ("+", "*"):
+                join = Fraction.__add__ if op == "+" else Fraction.__mul__
+                self.values[k] = reduce(join, map(self.value, args))
+            elif op == "^":
+                self.values[k] = self.value(args[0]) ** args[1]
+            else:
+                require(op in ("sin", "cos"), f"{op} has no value")
+                self.values[k] = self.rotation(args[0], fmpq(1))[op == "sin"]
         return self.values[k]
 
-    def _value(self, k: int) -> Fraction:
-        if isinstance(self.nodes[k], str):
-            return self.number(self.nodes[k])
+    def rotation(self, k: int, q: fmpq) -> Rotation:
+        """The cosine and the sine of a rational multiple of a node."""
+        if k in self.given:
+            return self.rotation(self.given[k], q)
+        if k in self.turns:
+            divisor, turn = self.turns[k]
+            require((q * divisor).q == 1, "an angle is divided too finely")
+            return times(turn, int(q * divisor))
         op, *args = self.nodes[k]
-        if op in ("+", "*"):
-            return reduce(
-                Fraction.__add__ if op == "+" else Fraction.__mul__, map(self.value, args)
-            )
-        if op == "^":
-            return Fraction.__pow__(self.value(args[0]), args[1])
-        if op in ("sqrt", "abs"):
-            return self.root(self.value(args[0]) ** (1 if op == "sqrt" else 2))
-        require(op in ("sin", "cos", "tan"), f"{self.nodes[k]} is not a generator")
-        turn = self.rotation(args[0])
-        return turn.sin if op == "sin" else turn.cos if op == "cos" else turn.sin * turn.cos**-1
-
-    def rotation(self, k: int) -> Rotation:
-        start = Rotation(self.number(1), self.number(0))
-        return reduce(Rotation.__mul__, (self.turn(a, q) for a, q in self.terms(k).items()), start)
-
-    def terms(self, k: int) -> dict[Any, fmpq]:
-        """An angle as a rational combination of names, pi and inverse functions."""
-        if k in self.angles:
-            return self.angles[k]
-        op, *args = self.nodes[k]
-        if op not in ("+", "*"):
-            return {k: fmpq(1)} if self.nodes[k] != "0" else {}
-        numbers = [fmpq(self.nodes[a]) for a in args if isinstance(self.nodes[a], str)]
-        others = [a for a in args if not isinstance(self.nodes[a], str)]
-        require(op == "*" or not numbers, "a number is not an angle")
-        if op == "*" and len(others) > 1:
-            return {tuple(sorted(others)): prod(numbers, start=fmpq(1))}
-        found: dict[Any, fmpq] = {}
-        for atom, q in (item for a in others for item in self.terms(a).items()):
-            found[atom] = found.get(atom, fmpq(0)) + q * prod(numbers, start=fmpq(1))
-        return found
-
-    def turn(self, atom: Any, q: fmpq) -> Rotation:
-        """The rotation by a rational multiple of an atom."""
-        op = self.nodes[atom][0] if isinstance(atom, int) else ""
-        if op in INVERSES:
-            return self.direction(atom, q)
-        divisor, base = self.turns[atom]
-        require((q * divisor).q == 1, "an angle is divided too finely")
-        return base.times(int(q * divisor))
-
-    def direction(self, atom: int, q: fmpq) -> Rotation:
-        """The rotation by a multiple of an inverse function, from a vector in its direction."""
-        op, *args = self.nodes[atom]
-        x, one = self.value(args[0]), self.number(1)
-        require(q.q == 1, "an inverse function is divided")
-        if op in ("acos", "asin"):
-            other = self.root(one + -(x * x))
-            turn = Rotation(x, other) if op == "acos" else Rotation(other, x)
-        else:
-            c = self.value(args[1]) if op == "atan2" else one
-            norm = c * c + x * x
-            if q.p % 2 == 0:  # twice the angle needs no root
-                turn, scale = Rotation(c, x) * Rotation(c, x), norm**-1
-                return Rotation(turn.cos * scale, turn.sin * scale).times(int(q.p) // 2)
-            scale = self.root(norm) ** -1
-            turn = Rotation(c * scale, x * scale)
-        return turn.times(int(q.p))
-
-    def root_of(self, pairs: list[Any]) -> tuple[Fraction, Fraction, list[Any]]:
-        """The value that a certificate gives to a root, its square and its factors."""
-        factors = self.factors(pairs)
-        value = self.product(factors)
-        return value, value * value, factors
-
-    def product(self, factors: list[tuple[Polynomial, int]]) -> Fraction:
-        one = self.number(1)
-        return reduce(Fraction.__mul__, (Fraction(self, p, one.den) ** n for p, n in factors), one)
-
-    def root(self, a: Fraction) -> Fraction:
-        """The value of a root: its square is right, it is real, and no factor is negative."""
-        if a.num == 0:
-            return a
-        known = [(value, factors) for value, square, factors in self.roots if square == a]
-        require(known, "a root has no value")
-        value, factors = known[0]
-        self.require_real(factors)
-        require(all(n % 2 == 0 or self.sign(p) > 0 for p, n in factors), "a root may be negative")
-        return value
-
-    def require_real(self, factors: list[tuple[Polynomial, int]]) -> None:
-        """The radicands of all generators in these factors of a root are not negative.
-
-        One of unknown sign is not, because it is a simple factor of a radicand in the statement.
-        """
-        doubtful = self.roots_in(p for p, _ in factors) - self.real
-        for i in doubtful:
-            if self.kinds[i] == "abs" or self.sign(self.squares[i]) > 0:
-                self.real.add(i)
-        for i in doubtful - self.real:
-            others = [p for p, n in factors if (p, n) != (self.generators[i], 1)]
-            if len(others) == len(factors) - 1 and self.roots_in(others) <= self.real:
-                self.real.add(i)
-        require(doubtful <= self.real, "a root may be imaginary")
-
-    def roots_in(self, polynomials: Iterable[Polynomial]) -> set[int]:
-        """The roots in polynomials and in the radicands of these roots."""
-        found = {i for p in polynomials for i in self.squares if p.degrees()[-1 - i]}
-        return found | self.roots_in(self.squares[i] for i in found) if found else found
-
-    def sign(self, p: Polynomial) -> int:
-        """1 or -1 if a polynomial is certainly not negative or not positive, else 0."""
-        for q in self.nonnegative:
-            ratio, rest = divmod(p, q)
-            if rest == 0 and ratio.is_constant():
-                return 1 if ratio.leading_coefficient() > 0 else -1
-        signs, constant, slack = set[int](), fmpq(0), fmpq(0)
-        for exponents, a in p.terms():
-            powers = {i: n for i, n in enumerate(reversed(exponents)) if n}
-            odd = [self.signs[i] for i, n in powers.items() if n % 2]
-            if all(odd):
-                signs.add(prod(odd) * (1 if a > 0 else -1))
-                constant += 0 if powers else a
-            elif all(self.kinds[i] == "angle" for i in powers):  # cosines and sines are at most 1
-                slack += abs(a)
-            else:
-                return 0
-        return signs.pop() if len(signs) == 1 and abs(constant) >= slack else 0
-
-    def assume(self, k: int, constant: Fraction, factors: list[tuple[Polynomial, int]]) -> None:
-        """Node k is not negative; without factors of known sign, it is a product that is not."""
-        require(self.value(k).num != 0, "it is zero that is not negative")
-        require(constant * self.product(factors) == self.value(k), "a guard has other factors")
-        self.require_real(factors)
-        odd = [p for p, n in factors if n % 2]
-        known = [*filter(None, map(self.sign, [constant.num, *odd]))]
-        rest = prod((p for p in odd if not self.sign(p)), start=prod(known) * self.number(1).num)
-        self.nonnegative.append(self.reduced(rest))
+        if op == "+":
+            return reduce(turned, (self.rotation(a, q) for a in args))
+        if op == "*":
+            require(len(args) == 2 and self.nodes[args[0]][0] == "number", "this is no multiple")
+            return self.rotation(args[1], q * fmpq(self.nodes[args[0]][1]))
+        require(op == "atan2" and q.q == 1, "an angle is not a generator")
+        y, x, n = self.value(args[0]), self.value(args[1]), int(abs(q))
+        length = self.lengths[k] if n % 2 else self.number(1)  # an even multiple needs no root
+        scale = (x * x + y * y) ** -(n // 2) * length**-1
+        cos, sin = times((x, y), int(q))
+        return cos * scale, sin * scale

@@ -156,6 +156,10 @@ def with_certificate(document: Document, k: int, **content: Any) -> Document:
     return {**document, "certificates": certificates}
 
 
+def with_node(document: Document, k: int, node: list[Any]) -> Document:
+    return {**document, "nodes": [*document["nodes"][:k], node, *document["nodes"][k + 1 :]]}
+
+
 def intersection() -> None:
     counted = count_solutions([u**2 + v**2 - x, u * v - y], [u, v])
     add_inverse("ik", 4, [(counted.certificate, 0)])
@@ -185,9 +189,9 @@ def test_the_unknown_angles_cannot_be_changed() -> None:
         for other in changes(row):
             angles = [*certificate["angles"][:k], [node, other], *certificate["angles"][k + 1 :]]
             assert not accepted(with_certificate(document, 0, angles=angles)), angles
-    for kind in ("name", "half", "unknown", "inverse"):
-        generators = [[kind, *g[1:]] if g == ["circle"] else g for g in certificate["generators"]]
-        assert not accepted(with_certificate(document, 0, generators=generators)), kind
+    for kind in ("name", "unknown", "angle"):
+        generators = [[kind, *g[1:]] if g == ["circle"] else g for g in certificate["field"]]
+        assert not accepted(with_certificate(document, 0, field=generators)), kind
 
 
 @pytest.mark.parametrize("name", ["root", "nested root", "modulus", "assumption"])
@@ -196,15 +200,20 @@ def test_no_number_of_an_identity_can_be_changed(name: str) -> None:
     problem, assumed = IDENTITIES[name]
     document = written(lambda: decide(problem, assumed))
     (certificate,) = document["certificates"]
-    for part in ("generators", "roots", "assumed"):
-        for k, item in enumerate(certificate[part]):
-            if item[0] in ("name", "abs"):
-                continue  # another name for the same; the modulus of -f is that of f
-            kept = [*certificate[part][:k], *certificate[part][k + 1 :]]
-            assert not accepted(with_certificate(document, 0, **{part: kept})), part
-            for other in changes(item):
-                content = [*certificate[part][:k], other, *certificate[part][k + 1 :]]
-                assert not accepted(with_certificate(document, 0, **{part: content})), content
+    steps = certificate["field"]
+    for k, step in enumerate(steps):
+        if step[0] == "name":
+            continue  # another order of the names of a statement is as good
+        kept = [*steps[:k], *steps[k + 1 :]]
+        assert not accepted(with_certificate(document, 0, field=kept)), step
+        for other in changes(step):
+            if other == ["root", [["-1", 0, 1, 1, 1]], 2]:
+                continue  # the modulus of -f is that of f
+            content = [*steps[:k], other, *steps[k + 1 :]]
+            assert not accepted(with_certificate(document, 0, field=content)), other
+    for k in range(len(certificate["assumed"])):
+        kept = [*certificate["assumed"][:k], *certificate["assumed"][k + 1 :]]
+        assert not accepted(with_certificate(document, 0, assumed=kept))
     for k in range(len(certificate["nonzero"])):
         kept = [*certificate["nonzero"][:k], *certificate["nonzero"][k + 1 :]]
         assert not accepted(with_certificate(document, 0, nonzero=kept))
@@ -219,8 +228,8 @@ def test_another_statement_is_refused(name: str) -> None:
     op, *operands = document["nodes"][zero]
     for k in range(len(operands)):
         shorter = [op, *operands[:k], *operands[k + 1 :]]
-        assert not accepted({**document, "nodes": [*document["nodes"][:zero], shorter]})
-    assert not accepted({**document, "nodes": [*document["nodes"][:zero], ["*", *operands]]})
+        assert not accepted(with_node(document, zero, shorter))
+    assert not accepted(with_node(document, zero, ["*", *operands]))
     assert not accepted(with_certificate(document, 0, zero=[]))
 
 
@@ -228,62 +237,94 @@ def test_another_statement_is_refused(name: str) -> None:
 
 
 def certificate(nodes: list[Any], **content: Any) -> Document:
-    empty: Document = {"assumed": [], "generators": [], "roots": [], "nonzero": []}
+    empty: Document = {"assumed": [], "field": [], "nonzero": []}
     one = {"of": "a forgery", "kind": "identity", **empty, **content}
-    return {"format": verify.FORMAT, "nodes": nodes, "certificates": [one]}
+    written = [["number", node] if isinstance(node, str) else node for node in nodes]
+    return {"format": verify.FORMAT, "nodes": written, "certificates": [one]}
 
 
 X, Y = ["name", "x", 0], ["name", "y", 0]
+PLUS_X, MINUS_X = [["1", 0, 1]], [["-1", 0, 1]]
 ROOT_PLUS_X = [X, "2", ["^", 0, 2], ["sqrt", 2], ["+", 3, 0]]
+ROOT_MINUS_X = [X, "-1", ["^", 0, 2], ["sqrt", 2], ["*", 1, 0], ["+", 3, 4]]
 COSINE = [["name", "theta", 0], X, "-1", ["cos", 0], ["*", 2, 1], ["+", 3, 4]]
 FORGERIES: dict[str, Document] = {
     "sqrt(x**2) = -x, because a root has the wrong sign": certificate(
-        ROOT_PLUS_X, zero=[4], generators=[["name", 0]], roots=[[[[["-1", 0, 1]], 1]]]
+        ROOT_PLUS_X, zero=[4], field=[["name", 0], ["value", 3, [[MINUS_X, 1]]]]
     ),
     "sqrt(x**2) = x, because x has no sign": certificate(
-        [X, "-1", ["^", 0, 2], ["sqrt", 2], ["*", 1, 0], ["+", 3, 4]],
-        zero=[5],
-        generators=[["name", 0]],
-        roots=[[[[["1", 0, 1]], 1]]],
+        ROOT_MINUS_X, zero=[5], field=[["name", 0], ["value", 3, [[PLUS_X, 1]]]]
     ),
     "sqrt(x**2) = -x, because x is assumed not to be negative": certificate(
         ROOT_PLUS_X,
         zero=[4],
-        generators=[["name", 0]],
-        roots=[[[[["-1", 0, 1]], 1]]],
-        assumed=[[0, "1", [[[["1", 0, 1]], 1]]]],
+        assumed=[0],
+        field=[["name", 0], ["known", 0, PLUS_X, []], ["value", 3, [[MINUS_X, 1]]]],
+    ),
+    "sqrt(x**2) = x, because x is said to be assumed": certificate(
+        ROOT_MINUS_X,
+        zero=[5],
+        field=[["name", 0], ["known", 0, PLUS_X, []], ["value", 3, [[PLUS_X, 1]]]],
+    ),
+    "sqrt(x**2) = x, because x is the radicand of a root elsewhere": certificate(
+        [*ROOT_MINUS_X, ["sqrt", 0]],
+        zero=[5],
+        field=[["name", 0], ["known", 6, PLUS_X, []], ["value", 3, [[PLUS_X, 1]]]],
+    ),
+    "sqrt(x**2) = x, because x**2 = x*x and x is not negative": certificate(
+        ROOT_MINUS_X,
+        zero=[5],
+        field=[["name", 0], ["known", 3, PLUS_X, [[PLUS_X, 1]]], ["value", 3, [[PLUS_X, 1]]]],
+        nonzero=[PLUS_X],
+    ),
+    "sqrt(x**2) = x, because x is a factor of another power": certificate(
+        ROOT_MINUS_X,
+        zero=[5],
+        field=[["name", 0], ["known", 3, PLUS_X, [[PLUS_X, 2]]], ["value", 3, [[PLUS_X, 1]]]],
+        nonzero=[PLUS_X],
+    ),
+    "abs(x) = 1, because a root has another square": certificate(
+        [X, ["abs", 0], "-1", ["+", 1, 2]], zero=[3], field=[["name", 0], ["value", 1, []]]
     ),
     "abs(x*y) = x*y, because x**2*y is assumed not to be negative": certificate(
         [X, Y, ["^", 0, 2], ["*", 2, 1], ["*", 0, 1], ["abs", 4], "-1", ["*", 6, 4], ["+", 5, 7]],
         zero=[8],
-        generators=[["name", 0], ["name", 1]],
-        roots=[[[[["1", 0, 1, 1, 1]], 1]]],
-        assumed=[[3, "1", [[[["1", 0, 1]], 2], [[["1", 1, 1]], 1]]]],
+        assumed=[3],
+        field=[
+            ["name", 0],
+            ["name", 1],
+            ["known", 3, [["1", 1, 1]], [[PLUS_X, 2]]],
+            ["value", 5, [[[["1", 0, 1, 1, 1]], 1]]],
+        ],
+        nonzero=[PLUS_X],
+    ),
+    "abs(y) = y, also where x = 0, because x**2*y is assumed not to be negative": certificate(
+        [X, Y, ["^", 0, 2], ["*", 2, 1], ["abs", 1], "-1", ["*", 5, 1], ["+", 4, 6]],
+        zero=[7],
+        assumed=[3],
+        field=[
+            ["name", 0],
+            ["name", 1],
+            ["known", 3, [["1", 1, 1]], [[PLUS_X, 2]]],
+            ["value", 4, [[[["1", 1, 1]], 1]]],
+        ],
     ),
     "sqrt(x**2) = -x, because another root is imaginary": certificate(
         ROOT_PLUS_X,
         zero=[4],
-        generators=[["name", 0], ["root", [["-1", 0, 1]]]],
-        roots=[[[[["1", 1, 1]], 2]]],
+        field=[["name", 0], ["root", MINUS_X, 1], ["value", 3, [[[["1", 1, 1]], 2]]]],
     ),
     "sqrt(x**2) = -x, because x is assumed not to be positive where 0 >= 0": certificate(
         [*ROOT_PLUS_X, "0"],
         zero=[4],
-        generators=[["name", 0]],
-        roots=[[[[["-1", 0, 1]], 1]]],
-        assumed=[[5, "0", [[[["-1", 0, 1]], 1]]]],
+        assumed=[5],
+        field=[["name", 0], ["known", 5, MINUS_X, [[[], 2]]], ["value", 3, [[MINUS_X, 1]]]],
     ),
-    "sqrt(x**2) = -x, because an imaginary root is there twice": certificate(
-        ROOT_PLUS_X,
-        zero=[4],
-        generators=[["name", 0], ["root", [["-1", 0, 1]]]],
-        roots=[[[[["1", 1, 1]], 1], [[["1", 1, 1]], 1]]],
-    ),
-    "sqrt(x**2) = -x, because an imaginary root is in another factor": certificate(
-        ROOT_PLUS_X,
-        zero=[4],
-        generators=[["name", 0], ["root", [["-1", 0, 1]]]],
-        roots=[[[[["1", 1, 1]], 1], [[["2", 1, 1]], 1], [[["1/2"]], 1]]],
+    "cos(atan2(0, x)) = 1, because a length is negative": certificate(
+        [X, "0", ["atan2", 1, 0], ["cos", 2], "-1", ["+", 3, 4]],
+        zero=[5],
+        field=[["name", 0], ["value", 2, [[PLUS_X, 1]]]],
+        nonzero=[PLUS_X],
     ),
     "sqrt((1 + 2*sin(x))**2) = 1 + 2*sin(x)": certificate(
         [
@@ -299,37 +340,75 @@ FORGERIES: dict[str, Document] = {
             ["+", 6, 8],
         ],
         zero=[9],
-        generators=[["angle", 0, 1]],
-        roots=[[[[["1"], ["2", 1, 1]], 1]]],
+        field=[["angle", 0, 1], ["value", 5, [[[["1"], ["2", 1, 1]], 1]]]],
     ),
     "cos(x) = 1, because the angle is divided by zero": certificate(
-        [X, "-1", ["cos", 0], ["+", 2, 1]], zero=[3], generators=[["angle", 0, 0]]
+        [X, "-1", ["cos", 0], ["+", 2, 1]], zero=[3], field=[["angle", 0, 0]]
     ),
     "x = 0, because of a relation of its own": certificate(
-        [X], zero=[0], generators=[["name", 0], ["root", [["1", 0, 1], ["-1", 1, 1]]]]
+        [X], zero=[0], field=[["name", 0], ["root", [["1", 0, 1], ["-1", 1, 1]], 1]]
     ),
-    "atan2(x, x) = tan(x), because an inverse function has no generator": certificate(
-        [X, ["atan2", 0, 0], ["tan", 0], "-1", ["*", 3, 2], ["+", 1, 4]],
+    "atan2(x, x) = sin(x), because an inverse function has no generator": certificate(
+        [X, ["atan2", 0, 0], ["sin", 0], "-1", ["*", 3, 2], ["+", 1, 4]],
         zero=[5],
-        generators=[["angle", 0, 1]],
+        field=[["name", 0], ["angle", 0, 1]],
         nonzero=[[["1", 0, 1]]],
     ),
     "sin(x + 2) = sin(2*x), because a number is an angle": certificate(
         [X, "2", ["+", 0, 1], ["sin", 2], ["*", 1, 0], ["sin", 4], "-1", ["*", 6, 5], ["+", 3, 7]],
         zero=[8],
-        generators=[["angle", 0, 1]],
+        field=[["angle", 0, 1]],
     ),
     "cos(x/2) = 1, because the angle is not divided enough": certificate(
         [X, "1/2", ["*", 1, 0], ["cos", 2], "-1", ["+", 3, 4]],
         zero=[5],
-        generators=[["angle", 0, 1]],
+        field=[["angle", 0, 1]],
     ),
-    "cos(acos(x)/2) = x, because half an arc is a whole one": certificate(
-        [X, "1/2", ["acos", 0], ["*", 1, 2], ["cos", 3], "-1", ["*", 5, 0], ["+", 4, 6]],
-        zero=[7],
-        generators=[["name", 0], ["root", [["1"], ["-1", 0, 2]]]],
-        roots=[[[[["1", 1, 1]], 1]]],
+    "cos(atan2(0, -x**2)/2) = 1, because half an angle is none": certificate(
+        [
+            X,
+            "-1",
+            "1/2",
+            "0",
+            ["^", 0, 2],
+            ["*", 1, 4],
+            ["atan2", 3, 5],
+            ["*", 2, 6],
+            ["cos", 7],
+            ["+", 8, 1],
+        ],
+        zero=[9],
+        field=[["name", 0]],
     ),
+    "cos(2*x*y) = cos(2*x), because a factor is dropped": certificate(
+        [
+            X,
+            Y,
+            "2",
+            ["*", 2, 0, 1],
+            ["cos", 3],
+            ["*", 2, 0],
+            ["cos", 5],
+            "-1",
+            ["*", 7, 6],
+            ["+", 4, 8],
+        ],
+        zero=[9],
+        field=[["angle", 0, 1]],
+    ),
+    "tan(x) = cos(x), because every function is one": certificate(
+        [X, ["tan", 0], ["cos", 0], "-1", ["*", 3, 2], ["+", 1, 4]],
+        zero=[5],
+        field=[["angle", 0, 1]],
+    ),
+    "sqrt(1) = -1, because a relation has a denominator": certificate(
+        [["name", "x", -1], "1", ["sqrt", 1], ["+", 2, 1]],
+        zero=[3],
+        field=[["name", 0], ["root", MINUS_X, -1], ["value", 2, [[[["1", 1, 1]], 2]]]],
+        nonzero=[PLUS_X],
+    ),
+    "a sign that is none": certificate([["name", "x", 2], "0"], zero=[1]),
+    "a function that is none": certificate(["1", ["exp", 0]], kind="point", matrix=[[1]], at=[]),
     "x/x = 0, because of a circle of nodes": certificate([["*", 0, 0]], zero=[0]),
     "a node that holds a later one": certificate([["*", 1, 1], "0"], zero=[0]),
     "another format": {**certificate(["0"], zero=[0]), "format": verify.FORMAT + 1},
@@ -343,7 +422,7 @@ FORGERIES: dict[str, Document] = {
         equations=[3],
         given=[],
         angles=[],
-        generators=[["unknown", 0], ["root", [["2"]]]],
+        field=[["unknown", 0], ["root", [["2"]], 1]],
         steps=[],
         basis=[1],
         count=0,
@@ -355,7 +434,7 @@ FORGERIES: dict[str, Document] = {
         equations=[3],
         given=[],
         angles=[],
-        generators=[["unknown", 0]],
+        field=[["unknown", 0]],
         steps=[[[["1"]], [], []]],
         basis=[1],
         count=0,
@@ -366,7 +445,7 @@ FORGERIES: dict[str, Document] = {
         equations=[3],
         given=[],
         angles=[],
-        generators=[["unknown", 0]],
+        field=[["unknown", 0]],
         steps=[[[["1", 0, 1]], [["1", 0, 1], ["1"]], [[0, [["1"]]]]]],
         basis=[1],
         count=1,
@@ -377,7 +456,7 @@ FORGERIES: dict[str, Document] = {
         equations=[3, 4],
         given=[],
         angles=[],
-        generators=[["unknown", 0]],
+        field=[["unknown", 0]],
         steps=[],
         basis=[0],
         count=2,
@@ -397,7 +476,7 @@ FORGERIES: dict[str, Document] = {
         equations=[6, 7, 5],
         given=[],
         angles=[],
-        generators=[["unknown", 0], ["unknown", 1]],
+        field=[["unknown", 0], ["unknown", 1]],
         steps=[],
         basis=[0, 1, 2],
         count=3,
@@ -408,7 +487,7 @@ FORGERIES: dict[str, Document] = {
         equations=[5],
         given=[],
         angles=[[0, [2]]],
-        generators=[["name", 1], ["circle"]],
+        field=[["name", 1], ["circle"]],
         steps=[],
         basis=[0, 1],
         count=4,
@@ -419,10 +498,54 @@ FORGERIES: dict[str, Document] = {
         equations=[5],
         given=[],
         angles=[[0, [1]]],
-        generators=[["name", 1], ["circle"], ["circle"]],
+        field=[["name", 1], ["circle"], ["circle"]],
         steps=[],
         basis=[0, 1, 2],
         count=None,
+    ),
+    "infinitely many angles, because one angle is given two values": certificate(
+        [*COSINE, ["name", "phi", 0]],
+        kind="count",
+        equations=[5],
+        given=[],
+        angles=[[0, [1, 0]], [0, [0, 1]]],
+        field=[["name", 1], ["circle"], ["circle"]],
+        steps=[],
+        basis=[0, 1, 2],
+        count=None,
+    ),
+    "two angles of one cosine, because twice the angle is the unknown": certificate(
+        [X, "-1", Y, "2", ["*", 3, 2], ["cos", 4], ["*", 1, 0], ["+", 5, 6]],
+        kind="count",
+        equations=[7],
+        given=[],
+        angles=[[4, [1]]],
+        field=[["name", 0], ["circle"]],
+        steps=[],
+        basis=[0, 1],
+        count=2,
+    ),
+    "u = 0 and u = 1 from u**2/u - u**3/u**2 = 0, because a denominator is dropped": certificate(
+        [X, ["^", 0, 2], ["^", 0, 3], ["^", 0, -1], "-1", ["*", 1, 4], ["+", 2, 5], ["*", 6, 3]],
+        kind="count",
+        equations=[7],
+        given=[],
+        angles=[],
+        field=[["unknown", 0]],
+        steps=[],
+        basis=[0],
+        count=2,
+    ),
+    "a name that is given itself": certificate(
+        [X],
+        kind="count",
+        equations=[0],
+        given=[[0, 0]],
+        angles=[],
+        field=[],
+        steps=[],
+        basis=[],
+        count=1,
     ),
     "one solution, because the equation is given another value": certificate(
         [X, ["^", 0, 2], "-1", ["+", 1, 2]],
@@ -430,7 +553,7 @@ FORGERIES: dict[str, Document] = {
         equations=[3],
         given=[[3, 0]],
         angles=[],
-        generators=[["unknown", 0]],
+        field=[["unknown", 0]],
         steps=[],
         basis=[0],
         count=1,

@@ -21,24 +21,18 @@ from sympy.core.function import AppliedUndef
 
 from closedform.algebra.balls import pivot_rows
 from closedform.algebra.basis import TooLargeError, logged_basis
-from closedform.algebra.expressions import entries_of, sign_of
+from closedform.algebra.expressions import (
+    QUOTIENTS,
+    TRIGONOMETRIC,
+    angle_terms,
+    entries_of,
+    sign_of,
+)
 from closedform.algebra.tower import Tower
 from closedform.algebra.trace import factors_of, terms_of
-from closedform.verify import FORMAT, ROOTS, Refused, matrix_of, staircase, system_of
+from closedform.verify import FORMAT, Field, Refused, inverted_in, matrix_of, staircase, system_of
 
 Expr: TypeAlias = Any  # SymPy's annotations are partial
-
-_FUNCTIONS = {
-    sp.sin: "sin",
-    sp.cos: "cos",
-    sp.tan: "tan",
-    sp.atan: "atan",
-    sp.acos: "acos",
-    sp.asin: "asin",
-    sp.atan2: "atan2",
-    sp.Abs: "abs",
-}
-_RECIPROCALS = {sp.sec: sp.cos, sp.csc: sp.sin, sp.cot: sp.tan}
 
 
 class _Unwritable(ValueError):  # noqa: N818
@@ -73,7 +67,7 @@ class Record:
         """The number of identities and counts so far, with those that are repeated."""
         self.uncounted: list[str] = []
         """The inverses of which a count has no certificate."""
-        self._known: dict[Expr, int] = {}
+        self._known: dict[Any, int] = {}
         self._names: Counter[str] = Counter()
         self._written: dict[str, int] = {}
 
@@ -109,43 +103,41 @@ class Record:
             return
         try:
             zero = sorted({self.node(e) for e in entries_of(problem)})
-            generators = [
-                [kind, terms_of(about)] if kind in ROOTS else [kind, self.node(about), *n]
-                for kind, about, *n in trace.generators
+            assumed = {g for g, rooted in trace.guards.items() if rooted} | {*assumptions}
+            steps = [
+                [kind, *self._step(kind, *about)]
+                for kind, *about in trace.steps
+                if kind != "known" or about[0] in assumed or about[0] not in trace.guards
             ]
-            assumed = [
-                [self.node(a), str(trace.guards[a][0]), factors_of(trace.guards[a][1])]
-                for a in assumptions
-            ]
-        except _Unwritable as reason:
+            content: dict[str, Any] = {
+                "zero": zero,
+                "assumed": [self.node(g) for g in trace.guards if g in assumed],
+                "field": _first(steps),
+            }
+            inverted = inverted_in(Field(self.nodes, content), zero)
+        except (_Unwritable, Refused, LookupError) as reason:
             self.missing[str(reason)] += 1
             return
-        slots = [kind for kind, *_ in generators for _ in range(2 if kind == "angle" else 1)]
-        roots = [[[[["1", i, 1]], 1]] for i, kind in enumerate(slots) if kind in ROOTS]
-        roots += [
-            factors_of((p, n) for p, n in factors if not p.is_one()) for factors in trace.roots
-        ]
-        self._add(
-            kind="identity",
-            zero=zero,
-            assumed=assumed,
-            generators=generators,
-            roots=[r for i, r in enumerate(roots) if r not in roots[:i]],
-            nonzero=[terms_of(p) for p in tower.inverted()],
-        )
+        factors = {str(f): f for p in inverted for f, _ in p.factor()[1]}
+        self._add(kind="identity", **content, nonzero=[terms_of(f) for f in factors.values()])
+
+    def _step(self, kind: str, about: Any, *rest: Any) -> list[Any]:
+        """A step of a conversion as plain data."""
+        if kind == "root":
+            return [terms_of(about), *rest]
+        if kind == "known":
+            return [self.node(about), terms_of(rest[0]), factors_of(rest[1])]
+        return [self.node(about), *(map(factors_of, rest) if kind == "value" else rest)]
 
     def count(self, system: System) -> int | None:
         """The number of solutions of a system; the result is the number of the certificate."""
         self.proofs += 1
         try:
             content = self._system(system)
-            field, _, nonzero = system_of(self.nodes, content)
+            field, polynomials = system_of(self.nodes, content)
         except (_Unwritable, Refused, LookupError) as reason:
             self.missing[f"counts of solutions ({reason})"] += 1
             return None
-        content["generators"] = [["inverse"]] * len(nonzero) + content["generators"]
-        field, polynomials, nonzero = system_of(self.nodes, content)
-        polynomials += [g * p - 1 for g, p in zip(field.inverses, nonzero, strict=True)]
         try:
             steps, basis, leads = logged_basis(field, polynomials)
         except TooLargeError:
@@ -204,20 +196,29 @@ class Record:
 
     def _system(self, system: System) -> dict[str, Any]:
         """The equations of a system, their unknowns and their parameters."""
+        unknown = {*system.unknowns, *system.angles}
+        equations = [sp.sympify(e, strict=True) for e in system.equations]
+        inverses: list[sp.Symbol] = []
+        numerators, denominators = zip(*(_quotient(e, unknown) for e in equations), strict=True)
+        for factor in dict.fromkeys([*system.nonzero, *(f for d in denominators for f in d)]):
+            inverses.append(sp.Symbol(f"1/({factor})", real=True))
+            numerators += (inverses[-1] * factor - 1,)
         given = [[self.node(x), self.node(e)] for x, e in system.given.items()]
-        everything = [*system.equations, *system.nonzero, *system.given.values()]
-        apart = [_apart(sp.sympify(e, strict=True)) for e in everything]
+        apart = [_apart(sp.sympify(e, strict=True)) for e in (*numerators, *system.given.values())]
         plain = {s for outside, _ in apart for s in outside}
         turning = {s for _, inside in apart for s in inside}
-        unknown = {*system.unknowns, *system.angles, *system.given}
+        plain -= {*unknown, *inverses, *system.given}
+        turning -= {*unknown, *system.given}
+        halves = {s: sp.Symbol(f"tan({s}/2)", real=True) for s in sorted(turning, key=str)}
+        given += [[self.node(s), self.node(2 * sp.atan(t))] for s, t in halves.items()]
         return {
-            "equations": [self.node(e) for e in system.equations],
-            "nonzero": [self.node(e) for e in system.nonzero],
+            "equations": [self.node(e) for e in numerators],
             "given": given,
             "angles": [[self.node(a), row[::-1]] for a, row in system.angles.items()],
-            "generators": [
-                *(["name", self.node(s)] for s in sorted(plain - unknown, key=str)),
-                *(["half", self.node(s)] for s in sorted(turning - unknown, key=str)),
+            "field": [
+                *(["name", self.node(s)] for s in sorted(plain, key=str)),
+                *(["name", self.node(t)] for t in halves.values()),
+                *(["unknown", self.node(s)] for s in inverses),
                 *(["unknown", self.node(s)] for s in reversed(system.unknowns)),
                 *(["circle"] for _ in system.angles),
             ],
@@ -236,40 +237,85 @@ class Record:
     def node(self, e: Expr) -> int:
         """The index of an expression in the table of nodes."""
         if e not in self._known:
-            node = self._node(e)
-            self._known[e] = len(self.nodes)
-            self.nodes.append(node)
+            self._known[e] = self._node(e)
         return self._known[e]
 
-    def _node(self, e: Expr) -> Any:
+    def _entry(self, op: str, *args: Any) -> int:
+        """The index of a node."""
+        node = [op, *args]
+        key = tuple(node)
+        if key not in self._known:
+            self._known[key] = len(self.nodes)
+            self.nodes.append(node)
+        return self._known[key]
+
+    def _node(self, e: Expr) -> int:
+        """The format has few functions: others are written with the help of these."""
         if e.is_Rational:
-            return str(e)
+            return self._entry("number", str(e))
         if e.is_Add or e.is_Mul:
-            return ["+" if e.is_Add else "*", *map(self.node, e.args)]
+            return self._entry("+" if e.is_Add else "*", *map(self.node, e.args))
         if e.is_Pow:
-            base, exponent = e.args
-            if exponent.is_Integer:
-                return ["^", self.node(base), int(exponent)]
-            if exponent == sp.Rational(1, 2):
-                return ["sqrt", self.node(base)]
-            if exponent.is_Rational and exponent.q == 2:
-                return ["^", self.node(sp.Pow(base, sp.Rational(1, 2))), int(exponent.p)]
-        if e.func in _FUNCTIONS:
-            return [_FUNCTIONS[e.func], *map(self.node, e.args)]
-        if e.func in _RECIPROCALS:
-            return ["^", self.node(_RECIPROCALS[e.func](*e.args)), -1]
+            return self._power(*e.args)
+        if isinstance(e, sp.sin | sp.cos):
+            return self._entry("sin" if isinstance(e, sp.sin) else "cos", self._angle(e.args[0]))
+        if isinstance(e, TRIGONOMETRIC):
+            return self.node(QUOTIENTS[e.func](e.args[0]))
+        if isinstance(e, sp.Abs):
+            return self._entry("abs", self.node(e.args[0]))
+        if isinstance(e, sp.atan2 | sp.atan):
+            y, x = e.args if isinstance(e, sp.atan2) else (e.args[0], sp.S.One)
+            return self._entry("atan2", self.node(y), self.node(x))
+        if isinstance(e, sp.acos | sp.asin):
+            x, other = self.node(e.args[0]), self._power(1 - e.args[0] ** 2, sp.S.Half)
+            return self._entry("atan2", *((other, x) if isinstance(e, sp.acos) else (x, other)))
         if e == sp.pi:
-            return ["pi"]
+            return self._entry("pi")
         if isinstance(e, sp.Symbol | AppliedUndef | sp.Derivative):
             self._names[str(e)] += 1
             uses = self._names[str(e)]
-            return ["name", f"{e}#{uses}" if uses > 1 else str(e), sign_of(e)]
+            return self._entry("name", f"{e}#{uses}" if uses > 1 else str(e), sign_of(e))
         raise _Unwritable(f"expressions with {type(e).__name__}")
+
+    def _power(self, base: Expr, exponent: Expr) -> int:
+        if exponent.is_Rational and exponent.q == 2:
+            root = self._entry("sqrt", self.node(base))
+            return root if exponent.p == 1 else self._entry("^", root, int(exponent.p))
+        if exponent.is_Integer:
+            return self._entry("^", self.node(base), int(exponent))
+        raise _Unwritable("expressions with other powers")
+
+    def _angle(self, e: Expr) -> int:
+        """A sum of multiples; no term is the multiple of another one."""
+        terms = [
+            self.node(atom) if q == 1 else self._entry("*", self.node(q), self.node(atom))
+            for atom, q in angle_terms(e).items()
+        ]
+        return terms[0] if len(terms) == 1 else self._entry("+", *terms)
+
+
+def _first(steps: Iterable[list[Any]]) -> list[list[Any]]:
+    """Steps without those that lead to the same: one reason is enough for what is known."""
+    found: dict[str, list[Any]] = {}
+    for step in steps:
+        found.setdefault(json.dumps(step[2] if step[0] == "known" else step), step)
+    return list(found.values())
+
+
+def _quotient(e: Expr, unknown: set[Expr]) -> tuple[Expr, list[Expr]]:
+    """An expression without its denominators that contain an unknown, and these denominators."""
+    e = e.replace(lambda f: isinstance(f, tuple(QUOTIENTS)), lambda f: QUOTIENTS[f.func](*f.args))
+    powers = (f for f in e.atoms(sp.Pow) if f.exp.could_extract_minus_sign())
+    if not any(f.free_symbols & unknown for f in powers):
+        return e, []
+    numerator, denominator = sp.fraction(sp.together(e))
+    factors = (f.as_base_exp()[0] for f in sp.Mul.make_args(denominator))
+    return numerator, [f for f in factors if f.free_symbols & unknown]
 
 
 def _apart(e: Expr) -> tuple[set[Expr], set[Expr]]:
     """The symbols of an expression outside of sines and cosines, and those inside of them."""
-    turned = {f: sp.Dummy() for f in e.atoms(sp.sin, sp.cos, sp.tan, *_RECIPROCALS)}
+    turned = {f: sp.Dummy() for f in e.atoms(*TRIGONOMETRIC)}
     outside = e.xreplace(turned).free_symbols - set(turned.values())
     return outside, {s for f in turned for s in f.free_symbols}
 

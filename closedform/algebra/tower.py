@@ -45,7 +45,7 @@ from closedform.algebra.expressions import (
     subexpressions,
 )
 from closedform.algebra.integers import long_factors, smooth_factors
-from closedform.algebra.trace import Trace
+from closedform.algebra.trace import Factors, Trace
 
 _INVERSE = (sp.atan2, sp.acos, sp.asin, sp.atan)
 _OPAQUE = (sp.Symbol, sp.NumberSymbol, AppliedUndef, sp.Derivative, *_INVERSE)
@@ -85,6 +85,7 @@ class Tower:
         self._relations: dict[int, fmpq_mpoly] = {}
         self._pairs: dict[int, int] = {}  # slot of the sine -> slot of the cosine
         self._memo: dict[Expr, Fraction] = {}
+        self._roots: dict[Expr, Fraction] = {}
         self._rotations: dict[Expr, Rotation] = {}
         self._long: list[fmpz] = []
         self._licences: dict[frozenset[str], tuple[int, Expr]] = {}
@@ -120,9 +121,9 @@ class Tower:
             return self.convert(QUOTIENTS[e.func](e.args[0]))
         if isinstance(e, sp.Abs):
             x = self.convert(e.args[0])
-            return self._sqrt(self._mul(x, x))
+            return self._sqrt(self._mul(x, x), e)
         if isinstance(e, _OPAQUE):
-            self.trace.generators.append(("name", e))
+            self.trace.steps.append(("name", e))
             return self._polynomial(self._generator(e, sign_of(e)))
         raise Undecided(
             f"{shortened(e)} has no algebraic normal form ({type(e).__name__}); "
@@ -195,7 +196,7 @@ class Tower:
         if exponent.is_Integer:
             return self._power(self.convert(base), int(exponent))
         if exponent.is_Rational and exponent.q == 2:
-            return self._power(self._sqrt(self.convert(base)), int(exponent.p))
+            return self._power(self._root_of(base), int(exponent.p))
         raise Undecided(f"{e} is neither an integer power nor a square root: rewrite it as such")
 
     def sum(self, a: Fraction, b: Fraction) -> Fraction:
@@ -248,7 +249,7 @@ class Tower:
             return self._inverse_rotation(atom, q)
         base = atom / self._divisor[atom]
         if base not in self._rotations:
-            self.trace.generators.append(("angle", atom, self._divisor[atom]))
+            self.trace.steps.append(("angle", atom, self._divisor[atom]))
             c = self._generator(sp.cos(base), 0)
             cosine = self._unused
             s = self._quadratic(sp.sin(base), 1 - c * c, 0)
@@ -275,7 +276,7 @@ class Tower:
         if n % 2 == 0:
             double = self._compose(direction, direction)
             return self._turned(double if unit else self._scaled(double, norm), n // 2)
-        principal = direction if unit else self._scaled(direction, self._sqrt(norm))
+        principal = direction if unit else self._scaled(direction, self._sqrt(norm, atom))
         for _ in range(halvings):
             principal = self._halved(principal)
         return self._turned(principal, n)
@@ -288,7 +289,7 @@ class Tower:
         """Half of an angle in (-pi, pi); its cosine is therefore positive."""
         self.trace.unwritable = "identities with half the value of an inverse function"
         half = self._constant(fmpq(1, 2))
-        c = self._sqrt(self._mul(self._add(self.one, a.cos), half))
+        c = self._sqrt(self._mul(self._add(self.one, a.cos), half), None)
         return Rotation(c, self._mul(self._mul(a.sin, half), self._inverse(c)))
 
     def _direction(self, atom: Expr) -> tuple[Rotation, bool]:
@@ -298,16 +299,25 @@ class Tower:
             return Rotation(self.convert(atom.args[1]), x), False
         if isinstance(atom, sp.atan):
             return Rotation(self.one, x), False
-        other = self._sqrt(self._add(self.one, _negative(self._mul(x, x))))
+        other = self._root_of(1 - atom.args[0] ** 2)
+        self.trace.steps.append(("value", atom, []))  # the length of the vector is 1
         return (Rotation(x, other) if isinstance(atom, sp.acos) else Rotation(other, x)), True
 
     # Square roots
 
-    def _sqrt(self, a: Fraction) -> Fraction:
-        """A root: square factors leave it, factors of known sign get one each, the rest one."""
+    def _root_of(self, e: Expr) -> Fraction:
+        return self._sqrt(self.convert(e), sp.Pow(e, sp.S.Half, evaluate=False))
+
+    def _sqrt(self, a: Fraction, e: Expr) -> Fraction:
+        """A root: square factors leave it, factors of known sign get one each, the rest one.
+
+        ``e`` is what has this root, for the trace.
+        """
         if a.num.is_zero():
+            self.trace.steps.append(("value", e, [(a.num, 1)]))
             return self.zero
         constant, powers = self._factored(a)
+        outside: Factors = [(f, power - power % 2) for f, power in powers if power // 2]
         parts, rest = list[tuple[Fraction, int]](), dict[str, fmpq_mpoly]()
         for f, power in powers:
             half, odd = divmod(power, 2)
@@ -318,19 +328,25 @@ class Tower:
             modulus = self._polynomial(positive) if plain else self._modulus(f)
             parts.append((modulus, half))
             if odd and sign:
+                outside.append((positive, 1))
                 parts.append((self._root(positive), 1))
             elif odd:
                 rest[str(f)] = f
         for group, sign in self._licensed_groups(rest):
             constant *= sign
+            outside.append((group * sign, 1))
             parts.append((self._root(group * sign), 1))
         remaining = reduce(lambda p, f: p * f, rest.values(), self.one.num)
         if not rest and constant < 0:
             raise Undecided("a square root of a negative quantity: the expression is not real")
         if rest:
-            parts.append((self._root(remaining if constant > 0 else -remaining), 1))
+            remaining = remaining if constant > 0 else -remaining
+            outside.append((self._ctx.constant(abs(constant)), 1))
+            self.trace.steps.append(("known", e, remaining, outside))
+            parts.append((self._root(remaining), 1))
         parts += self._rational_root(abs(constant))
-        self.trace.roots.append([(part.num, power) for part, power in parts if power])
+        factors = [(part.num, power) for part, power in parts if power]
+        self.trace.steps.append(("value", e, factors))
         return reduce(self._mul, (self._power(part, power) for part, power in parts))
 
     def _rational_root(self, value: fmpq) -> Iterator[tuple[Fraction, int]]:
@@ -366,19 +382,19 @@ class Tower:
 
     def _root(self, radicand: fmpq_mpoly) -> Fraction:
         meaning = sp.sqrt(self.expression(radicand))
-        return self._nonnegative(meaning, radicand, ("root", self._reduced(radicand)))
+        return self._nonnegative(meaning, radicand, ("root", radicand, 1))
 
     def _modulus(self, f: fmpq_mpoly) -> Fraction:
-        return self._nonnegative(sp.Abs(self.expression(f)), f * f, ("abs", f))
+        return self._nonnegative(sp.Abs(self.expression(f)), f * f, ("root", f, 2))
 
     def _nonnegative(
-        self, meaning: Expr, square: fmpq_mpoly, declared: tuple[str, fmpq_mpoly]
+        self, meaning: Expr, square: fmpq_mpoly, declared: tuple[str, fmpq_mpoly, int]
     ) -> Fraction:
-        if meaning not in self._memo:
-            self.trace.generators.append(declared)
+        if meaning not in self._roots:
+            self.trace.steps.append(declared)
             root = self._quadratic(meaning, self._reduced(square), 1)
-            self._memo[meaning] = self._polynomial(root)
-        return self._memo[meaning]
+            self._roots[meaning] = self._polynomial(root)
+        return self._roots[meaning]
 
     def _factored(self, a: Fraction) -> tuple[fmpq, list[tuple[fmpq_mpoly, int]]]:
         """The constant and the primitive irreducible factors of a fraction."""
@@ -473,19 +489,25 @@ class Tower:
         return signs.pop() if len(signs) == 1 else 0
 
     def _license(self, guard: Expr) -> None:
+        before = len(self.trace.steps)
         value = self.convert(guard)
+        self.trace.guards[guard] = any(s[0] == "value" for s in self.trace.steps[before:])
         if value.num.is_zero():
             return
         constant, powers = self._factored(value)
-        self.trace.guards[guard] = constant, powers
-        sign, unknown = 1 if constant > 0 else -1, []
+        sign, unknown = 1 if constant > 0 else -1, dict[str, fmpq_mpoly]()
+        outside: Factors = [(self._ctx.constant(abs(constant)), 1)]
         for f, power in powers:
-            if power % 2:
-                known = self._evident_sign(f)
-                sign *= known or 1
-                unknown += [] if known else [str(f)]
+            outside += [(f, power - power % 2)] if power // 2 else []
+            if power % 2 and (known := self._evident_sign(f)):
+                sign *= known
+                outside.append((f * known, 1))
+            elif power % 2:
+                unknown[str(f)] = f
         if unknown:
             self._licences[frozenset(unknown)] = (sign, guard)
+            product = reduce(lambda p, key: p * unknown[key], sorted(unknown), self.one.num)
+            self.trace.steps.append(("known", guard, product * sign, outside))
 
     def _licensed_groups(self, rest: dict[str, fmpq_mpoly]) -> Iterator[tuple[fmpq_mpoly, int]]:
         for keys, (sign, guard) in self._licences.items():

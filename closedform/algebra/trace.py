@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
-from flint import fmpq, fmpq_mpoly
+from flint import fmpq_mpoly
 
 Expr: TypeAlias = Any  # SymPy's annotations are partial
 Factors: TypeAlias = "list[tuple[fmpq_mpoly, int]]"
@@ -16,12 +16,12 @@ Factors: TypeAlias = "list[tuple[fmpq_mpoly, int]]"
 class Trace:
     """What a checker needs to repeat the conversion; see :mod:`closedform.algebra.certificates`."""
 
-    generators: list[tuple[Any, ...]] = field(default_factory=list)
-    """In order: a name, an angle with its divisor, a radicand, the inside of a modulus."""
-    roots: list[Factors] = field(default_factory=list)
-    """Every root that was taken, as a product of powers."""
-    guards: dict[Expr, tuple[fmpq, Factors]] = field(default_factory=dict)
-    """The constant and the factors of every assumption."""
+    steps: list[tuple[Any, ...]] = field(default_factory=list)
+    """In order: a name; an angle with its divisor; a root with its radicand; a polynomial that is
+    known not to be negative, with the expression and the factors that show it; a root that was
+    taken, as an expression and as a product."""
+    guards: dict[Expr, bool] = field(default_factory=dict)
+    """The assumptions, and whether they contain roots."""
     unwritable: str = ""
     """Why the format cannot express the conversion, if it cannot."""
 
@@ -38,5 +38,5 @@ def terms_of(p: fmpq_mpoly) -> list[list[Any]]:
 
 
 def factors_of(factors: Iterable[tuple[fmpq_mpoly, int]]) -> list[list[Any]]:
-    """Polynomials, each with its power."""
-    return [[terms_of(p), int(n)] for p, n in factors]
+    """Polynomials, each with its power; a factor of one is left out."""
+    return [[terms_of(p), int(n)] for p, n in factors if not p.is_one()]

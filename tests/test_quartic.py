@@ -19,6 +19,7 @@ from sympy import cos, pi, sin
 from closedform.algebra.balls import Evaluator, to_float
 from closedform.algebra.resolvent import Resolvent, cubic, enclosed
 from closedform.check.rows import RowEvaluator
+from closedform.emit.backends.latex.article import Page
 from closedform.lemmas.chain import Chain
 from closedform.lemmas.quartic import OnCircle, quartic
 from closedform.mechanics.arm import from_dh
@@ -243,3 +244,12 @@ def test_what_the_chain_cannot_do_well_is_refused(rows: Any, why: str) -> None:
     with pytest.raises(NoChainError, match=why) as e:
         propose(arm(rows)[1])
     assert e.value.degree == 4
+
+
+def test_an_article_writes_the_coefficients_as_letters() -> None:
+    d, serial = arm(SHOULDER)
+    solved(d, serial, propose(serial).source)
+    page = Page(d, Proof(d.name, d.paper.key, (), 0, ()))
+    text = " ".join(line.text for line in page.algorithm(d["ik"]).lines())
+    assert "quartic" not in text
+    assert all(rf"\bar{{{letter}}}" in text for letter in "qae")

@@ -139,6 +139,10 @@ def quartic(
         {x: pair.angle},
         4,
         roles=(("x", x), ("p", p), ("q", q), ("a", a), ("b", b), ("e", e)),
+        letters={
+            symbol: rf"\bar{{{letter}}}_{{{sp.latex(sp.Symbol(tag))}}}"
+            for letter, symbol in zip("pqabe", (p, q, a, b, e), strict=True)
+        },
     )
     given = _in_free_symbols((p, q, a, b, e), u)
     t = real("rho")

@@ -23,7 +23,8 @@ The file is TOML::
 A body has named points; two bodies meet in a point that both have, or that a joint names.  The
 points of the ground, and of a body that a driven joint moves, are where they are when the joint is
 zero; those of the hand are seen from the point of the hand.  A rod has a ``length`` instead of
-points.  The loops are cut at the rods: each keeps the distance of its ends.
+points.  The loops are cut at the rods: each keeps the distance of its ends.  A rod between the
+ground and the hand is a strut, which has no driven joint.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ from closedform.scaffold.tables import (
 
 GROUND = "ground"
 KINDS = ("revolute", "prismatic", "spherical", "universal")
-USED = {"d", "pi", "real", "coupled", "parallel", "Crank", "Slide", "Stretch"}
+USED = {"d", "pi", "real", "coupled", "parallel", "Crank", "Slide", "Stretch", "Strut"}
 USED |= {"Derivation", "Paper", "Rational", "cos", "sin", "sqrt"}
 """Names that the written script uses itself."""
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
@@ -275,6 +276,30 @@ class _Legs:
             raise loop.error("no joint is driven; set driven = true")
         return [self.leg(j) for j in driven]
 
+    def struts(self) -> list[LoopLeg]:
+        """The rods from the ground to the hand, which no joint drives."""
+        loop = self.loop
+        found: list[LoopLeg] = []
+        for joint in loop.of(GROUND):
+            rod = joint.other(GROUND)
+            if joint.driven or rod not in loop.rods:
+                continue
+            if loop.dimensions == 2 or found:
+                raise loop.error(
+                    f"the rod {rod} leads from the ground to the hand; only one may, and only in "
+                    f"space, beside two driven joints"
+                )
+            length, place = source(loop.rods[rod]), self.place_on_hand(rod, joint)
+            base = self.point(GROUND, joint)
+            found.append(
+                LoopLeg(
+                    joint,
+                    f"Strut({length}, {_tuple(base)}{_on_hand(place)})",
+                    f"a strut of length {loop.rods[rod]} leads from the ground to the hand",
+                )
+            )
+        return found
+
     def leg(self, joint: Joint) -> LoopLeg:
         loop = self.loop
         if GROUND not in joint.between:
@@ -294,7 +319,7 @@ class _Legs:
         place = self.place_on_hand(rod, near)
         end = self.point(body, near)
         length = source(loop.rods[rod])
-        tail = f", on_hand={_tuple(place)}" if any(place) else ""
+        tail = _on_hand(place)
         name = joint.name
         if joint.kind == "prismatic":
             if joint.axis is None:
@@ -355,7 +380,7 @@ class _Legs:
             raise loop.error(f"one half of the leg of {joint.name} must be joined to the ground")
         base = self.point(GROUND, ends[True])
         place = self.place_of(ends[False])
-        tail = f", on_hand={_tuple(place)}" if any(place) else ""
+        tail = _on_hand(place)
         return LoopLeg(
             joint,
             f"Stretch({joint.name}, {_tuple(base)}{tail})",
@@ -394,6 +419,11 @@ def _tuple(v: sp.Matrix) -> str:
     return f"({', '.join(map(source, v))})"
 
 
+def _on_hand(place: sp.Matrix) -> str:
+    """The last argument of a leg, which is left out if its rod ends in the point of the hand."""
+    return f", on_hand={_tuple(place)}" if any(place) else ""
+
+
 # The script
 
 
@@ -410,12 +440,14 @@ def loop_script(name: str, loop: Loop, origin: str) -> str:
             raise loop.error(
                 f"hand = {loop.hand!r} is neither a point nor a joint that is not driven"
             )
-        legs, task = found.legs(), list(AXES[: loop.dimensions])
+        driven, struts = found.legs(), found.struts()
+        legs, task = [*struts, *driven], list(AXES[: loop.dimensions])
         if len(legs) != loop.dimensions:
-            known = NO_CLOSED_FORM.get((loop.dimensions, len(legs)), "")
+            known = NO_CLOSED_FORM.get((loop.dimensions, len(driven)), "")
+            on_sphere = " beside its strut" if struts else ""
             raise loop.error(
-                f"{len(legs)} joints are driven, but a hand that does not turn needs "
-                f"{loop.dimensions}" + (f"; {known}" if known else "")
+                f"{len(driven)} joints are driven, but a hand that does not turn needs "
+                f"{loop.dimensions - len(struts)}{on_sphere}" + (f"; {known}" if known else "")
             )
     table = Table()
     for leg in legs:

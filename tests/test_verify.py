@@ -233,6 +233,45 @@ def test_another_statement_is_refused(name: str) -> None:
     assert not accepted(with_certificate(document, 0, zero=[]))
 
 
+HARMLESS = {
+    "of": "the name of the certificate, which only a fault repeats",
+    "function": "the name of the inverse; its counts are checked, whatever it is called",
+}
+TAMPERED: dict[str, Callable[[], Any]] = {
+    "intersection": intersection,
+    "two links": two_links,
+    **{n: lambda n=n: decide(*IDENTITIES[n]) for n in ("nested root", "modulus", "assumption")},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", TAMPERED)
+def test_no_field_of_a_record_can_be_changed_or_dropped(name: str) -> None:
+    """Every field that a record has, so that a new one cannot be forgotten here."""
+    document = written(TAMPERED[name])
+    for k, record in enumerate(document["certificates"]):
+        for part in record.keys() - HARMLESS:
+            for other in changes(record[part]):
+                if multiple(part, record[part], other):
+                    continue  # a multiple of a denominator vanishes where it does
+                assert not accepted(with_certificate(document, k, **{part: other})), (part, other)
+            others = {p: value for p, value in record.items() if p != part}
+            certificates = [*document["certificates"][:k], others]
+            certificates += document["certificates"][k + 1 :]
+            assert not accepted({**document, "certificates": certificates}), part
+
+
+def multiple(part: str, old: Any, new: Any) -> bool:
+    """Whether the only change is the coefficient of a denominator of one term."""
+    if part != "nonzero" or len(old) != len(new):
+        return False
+    (changed,) = [(a, b) for a, b in zip(old, new, strict=True) if a != b]
+    return isinstance(changed[0], list) and (
+        [term[1:] for term in changed[0]] == [term[1:] for term in changed[1]]
+        and len(changed[0]) == 1
+        and changed[1][0][0] != "0"
+    )
+
+
 # Certificates of what is false: each was accepted by a checker without the rule that refuses it
 
 

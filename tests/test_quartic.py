@@ -24,7 +24,7 @@ from closedform.lemmas.chain import Chain
 from closedform.lemmas.quartic import OnCircle, quartic
 from closedform.mechanics.arm import from_dh
 from closedform.model.derivation import Derivation, Paper
-from closedform.proof.prove import prove
+from closedform.proof.prove import Proof, prove
 from closedform.proof.require import ProofError
 from closedform.scaffold.propose import NoChainError, propose
 

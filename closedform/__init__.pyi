@@ -46,6 +46,7 @@ from closedform.lemmas.spheres import three_spheres as three_spheres
 from closedform.lemmas.tangent import Links as Links
 from closedform.lemmas.tangent import LinksAndWrist as LinksAndWrist
 from closedform.lemmas.tangent import LinksAtHeight as LinksAtHeight
+from closedform.lemmas.three_planes import axes_in_three_planes as axes_in_three_planes
 from closedform.lemmas.triangle import Triangle as Triangle
 from closedform.lemmas.two_link import elbow_squares as elbow_squares
 from closedform.lemmas.two_link import two_link_arm as two_link_arm

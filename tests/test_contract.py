@@ -241,6 +241,23 @@ ROBOTS = {
         "branches": 4,
         "assembly_modes": 2,
     },
+    "agile_wrist": {
+        "fields": ("r",),
+        "joints": ("theta1", "theta2", "theta3"),
+        "task": tuple(f"R{i}{j}" for i in range(1, 4) for j in range(1, 4)),
+        "hand": (3, 3),
+        "shapes": {
+            "passive_angles": (4, 3),
+            "jacobian_parallel": (4, 3, 3),
+            "jacobian_serial": (4, 3),
+            "jacobian_space": (4, 3, 3),
+            "determinant": (4,),
+            "condition_number": (4,),
+            "singularities": (4, 4),
+        },
+        "branches": 8,
+        "assembly_modes": 4,
+    },
     "four_bar": {
         "fields": ("L1", "L2", "L3", "L4"),
         "joints": ("theta",),
@@ -285,7 +302,7 @@ def load(backend: str, robot: str):
 def image(module, q) -> np.ndarray:
     """The task coordinates, of a closed loop in its first assembly mode."""
     x = module.fk(q)
-    return x.p[..., 0, :] if isinstance(x, tuple) else x
+    return np.take(x.p, 0, axis=np.ndim(q) - 1) if isinstance(x, tuple) else x
 
 
 @pytest.fixture(params=BACKENDS)
@@ -350,7 +367,8 @@ def test_names_and_shapes(robot: str, backend: str) -> None:
             assert np.shape(getattr(module, name)(q)) == (*lead, *shape), name
         if modes:
             p, status = module.fk(q)
-            assert p.shape == (*lead, modes, len(module.TASK)) and status.shape == (*lead, modes)
+            hand = expected.get("hand", (len(module.TASK),))
+            assert p.shape == (*lead, modes, *hand) and status.shape == (*lead, modes)
             assert status.dtype == np.uint8
         q_all, status = module.ik(image(module, q))
         assert q_all.shape == (*lead, expected["branches"], n)

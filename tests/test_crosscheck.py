@@ -26,6 +26,7 @@ from closedform.model.derivation import Derivation
 from closedform.model.tolerances import DOUBLE
 
 ROBOTS = (
+    "agile_wrist",
     "delta",
     "five_bar",
     "four_bar",

@@ -24,7 +24,13 @@ ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
 NAMES = [s.name for s in pipeline.sources()]
 HEAVIEST = 1_000_000
 """Bytes of a page with all that it loads, but the figures."""
-WITHOUT_SECTION = ("four_bar", "slider_crank", "spherical_five_bar", "spherical_wrist")
+WITHOUT_SECTION = (
+    "agile_wrist",
+    "four_bar",
+    "slider_crank",
+    "spherical_five_bar",
+    "spherical_wrist",
+)
 """Their hand does not follow the pointer through a plane or space."""
 STEPS = 6
 """Of the pointer along each part of a path."""

@@ -44,6 +44,7 @@ THRESHOLDS = {
     "ur_arm": [near(4, (0.0, np.pi)), near_edges],
     "hybrid_five_bar": [near(1, (0.0, np.pi)), near(2, (0.0, np.pi))],
     "irb2400": [near(4, (0.0, np.pi)), near(2, (np.arctan2(0.755, 0.135) - np.pi,))],
+    "agile_wrist": [near(1, (-np.pi / 2, np.pi / 2))],
     "opw_arm": [near(4, (0.0, np.pi)), near(2, (-np.arctan2(-0.035, 0.365),))],
 }
 

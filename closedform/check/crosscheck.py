@@ -136,8 +136,11 @@ def _call(backend: Backend, function: Function, sample: Sample) -> tuple[NDArray
         inputs.append(part.reshape((len(part), *argument.shape)))
         column += argument.size
     result = backend.function(function.name)(*inputs, sample.parameters)
-    parts = result if isinstance(result, tuple) else (result,)
-    return tuple(np.asarray(p) for p in parts)
+    parts = [np.asarray(p) for p in (result if isinstance(result, tuple) else (result,))]
+    if function.has_status:  # the entries of a matrix are the unknowns of a solution
+        answers, status = parts
+        return answers.reshape(*status.shape, -1), status
+    return tuple(parts)
 
 
 def check_forward(derivation: Derivation, function: Function, backend: Backend) -> Finding:

@@ -54,6 +54,7 @@ VIEWS = {
         about="A0",
         faint=("rod0",),
     ),
+    "agile_wrist": View(home=degrees(0, 0, 0), general=degrees(20, -15, 25)),
     "four_bar": View(home=degrees(90), general=degrees(50)),
     "slider_crank": View(home=degrees(90), general=degrees(50)),
     "rpr_planar": View(home=(0.8, 0.8), general=(0.9, 0.6), limits=((-0.7, 1.7), (-1.1, 1.1))),

@@ -1,8 +1,10 @@
 """Loops of common structure, which no single paper publishes."""
 
 from closedform.derivations.papers.textbooks import (
+    BONEV_CHABLAT_WENGER,
     CLAVEL,
     FREUDENSTEIN,
+    GOSSELIN_HAMEL,
     MERLET,
     OUERFELLI_KUMAR,
     WENGER_CHABLAT,
@@ -21,4 +23,10 @@ SPHERICAL_LOOPS = Paper(
     "Loops on a sphere, solved leg by leg",
     ("The closedform authors",),
     works=(MERLET, OUERFELLI_KUMAR),
+)
+WRIST_LOOPS = Paper(
+    "wrist-loops",
+    "Three legs that turn a hand about a point",
+    ("The closedform authors",),
+    works=(MERLET, GOSSELIN_HAMEL, BONEV_CHABLAT_WENGER),
 )

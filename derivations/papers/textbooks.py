@@ -2,6 +2,13 @@
 
 from closedform import Work
 
+BONEV_CHABLAT_WENGER = Work(
+    "bonev-chablat-wenger",
+    ("Ilian A. Bonev", "Damien Chablat", "Philippe Wenger"),
+    "Working and Assembly Modes of the Agile Eye",
+    "IEEE International Conference on Robotics and Automation, 2317–2322",
+    "2006",
+)
 CLAVEL = Work(
     "clavel",
     ("Reymond Clavel",),
@@ -29,6 +36,13 @@ FREUDENSTEIN = Work(
     "Approximate Synthesis of Four-Bar Linkages",
     "Transactions of the ASME, 77(6), 853–861",
     "1955",
+)
+GOSSELIN_HAMEL = Work(
+    "gosselin-hamel",
+    ("Clément M. Gosselin", "Jean-François Hamel"),
+    "The Agile Eye: A High-Performance Three-Degree-of-Freedom Camera-Orienting Device",
+    "IEEE International Conference on Robotics and Automation, 781–786",
+    "1994",
 )
 LEE_ZIEGLER = Work(
     "lee-ziegler",

@@ -3,6 +3,7 @@
  */
 #include "closedform_module.h"
 #include "closedform_nearest_row.h"
+#include "agile_wrist_nearest.h"
 #include "delta_nearest.h"
 #include "five_bar_nearest.h"
 #include "four_bar_nearest.h"
@@ -23,6 +24,231 @@
 #include "spherical_wrist_nearest.h"
 #include "stanford_arm_nearest.h"
 #include "ur_arm_nearest.h"
+
+static const char *const agile_wrist_fields[] = { "r" };
+static const double agile_wrist_values[] = AGILE_WRIST_DEFAULTS;
+
+static void agile_wrist_fk_one(const double *params, const double *const *in, void *const *out)
+{
+    agile_wrist_fk((const agile_wrist_params *)params, in[0], out[0], out[1]);
+}
+
+static void agile_wrist_fk_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    agile_wrist_fk_batch(n, (const agile_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array agile_wrist_fk_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array agile_wrist_fk_out[] = {
+    { "p", 3, { 4, 3, 3 }, 36, CF_REAL },
+    { "status", 1, { 4 }, 4, CF_STATUS },
+};
+
+static void agile_wrist_jacobian_parallel_one(const double *params, const double *const *in, void *const *out)
+{
+    agile_wrist_jacobian_parallel((const agile_wrist_params *)params, in[0], out[0]);
+}
+
+static void agile_wrist_jacobian_parallel_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    agile_wrist_jacobian_parallel_batch(n, (const agile_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array agile_wrist_jacobian_parallel_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array agile_wrist_jacobian_parallel_out[] = {
+    { "A", 3, { 4, 3, 3 }, 36, CF_REAL },
+};
+
+static void agile_wrist_jacobian_serial_one(const double *params, const double *const *in, void *const *out)
+{
+    agile_wrist_jacobian_serial((const agile_wrist_params *)params, in[0], out[0]);
+}
+
+static void agile_wrist_jacobian_serial_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    agile_wrist_jacobian_serial_batch(n, (const agile_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array agile_wrist_jacobian_serial_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array agile_wrist_jacobian_serial_out[] = {
+    { "B", 2, { 4, 3 }, 12, CF_REAL },
+};
+
+static void agile_wrist_jacobian_space_one(const double *params, const double *const *in, void *const *out)
+{
+    agile_wrist_jacobian_space((const agile_wrist_params *)params, in[0], out[0]);
+}
+
+static void agile_wrist_jacobian_space_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    agile_wrist_jacobian_space_batch(n, (const agile_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array agile_wrist_jacobian_space_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array agile_wrist_jacobian_space_out[] = {
+    { "J", 3, { 4, 3, 3 }, 36, CF_REAL },
+};
+
+static void agile_wrist_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    agile_wrist_determinant((const agile_wrist_params *)params, in[0], out[0]);
+}
+
+static void agile_wrist_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    agile_wrist_determinant_batch(n, (const agile_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array agile_wrist_determinant_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array agile_wrist_determinant_out[] = {
+    { "det", 1, { 4 }, 4, CF_REAL },
+};
+
+static void agile_wrist_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    agile_wrist_singularities((const agile_wrist_params *)params, in[0], out[0]);
+}
+
+static void agile_wrist_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    agile_wrist_singularities_batch(n, (const agile_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array agile_wrist_singularities_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array agile_wrist_singularities_out[] = {
+    { "factors", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void agile_wrist_condition_number_one(const double *params, const double *const *in, void *const *out)
+{
+    agile_wrist_condition_number((const agile_wrist_params *)params, in[0], out[0]);
+}
+
+static void agile_wrist_condition_number_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    agile_wrist_condition_number_batch(n, (const agile_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array agile_wrist_condition_number_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array agile_wrist_condition_number_out[] = {
+    { "kappa", 1, { 4 }, 4, CF_REAL },
+};
+
+static void agile_wrist_passive_angles_one(const double *params, const double *const *in, void *const *out)
+{
+    agile_wrist_passive_angles((const agile_wrist_params *)params, in[0], out[0]);
+}
+
+static void agile_wrist_passive_angles_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    agile_wrist_passive_angles_batch(n, (const agile_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array agile_wrist_passive_angles_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array agile_wrist_passive_angles_out[] = {
+    { "phi", 2, { 4, 3 }, 12, CF_REAL },
+};
+
+static void agile_wrist_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    agile_wrist_skeleton((const agile_wrist_params *)params, in[0], out[0]);
+}
+
+static void agile_wrist_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    agile_wrist_skeleton_batch(n, (const agile_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array agile_wrist_skeleton_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array agile_wrist_skeleton_out[] = {
+    { "points", 3, { 4, 10, 3 }, 120, CF_REAL },
+};
+
+static void agile_wrist_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    agile_wrist_ik((const agile_wrist_params *)params, in[0], out[0], out[1]);
+}
+
+static void agile_wrist_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    agile_wrist_ik_batch(n, (const agile_wrist_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array agile_wrist_ik_in[] = {
+    { "R", 2, { 3, 3 }, 9, CF_REAL },
+};
+
+static const cf_array agile_wrist_ik_out[] = {
+    { "q", 2, { 8, 3 }, 24, CF_REAL },
+    { "status", 1, { 8 }, 8, CF_STATUS },
+};
+
+static void agile_wrist_nearest_one(const double *params, const double *const *in, void *const *out)
+{
+    uint32_t outside[8];
+    const int branch = agile_wrist_nearest(
+        (const agile_wrist_params *)params, in[0], in[1], in[2], in[3], out[0], out[1], outside);
+    cf_nearest_told(3, 8, branch, outside, in, out);
+}
+
+static void agile_wrist_nearest_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    cf_nearest_each(9, 3, 8, agile_wrist_nearest_one,
+        n, params, in, in_stride, out, out_stride);
+}
+
+static const cf_array agile_wrist_nearest_in[] = {
+    { "R", 2, { 3, 3 }, 9, CF_REAL },
+    { "q_seed", 1, { 3 }, 3, CF_REAL },
+    { "limits", 2, { 2, 3 }, 6, CF_REAL },
+    { "weights", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array agile_wrist_nearest_out[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+    { "status", 0, { 0 }, 1, CF_STATUS },
+    { "branch", 0, { 0 }, 1, CF_REAL },
+    { "distance", 0, { 0 }, 1, CF_REAL },
+    { "outside", 2, { 8, 3 }, 24, CF_BOOL },
+};
 
 static const char *const delta_fields[] = { "f", "e", "L", "l", "alpha1", "alpha2", "alpha3" };
 static const double delta_values[] = DELTA_DEFAULTS;
@@ -4670,6 +4896,343 @@ static const cf_array ur_arm_nearest_out[] = {
 };
 
 const cf_function cf_functions[] = {
+    { "agile_wrist.fk",
+      "Orientation of the hand in the four assembly modes.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    theta1, theta2, theta3 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : tuple of ndarray, optional\n"
+      "    Arrays to write the results to; they are returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "p : ndarray of float64, shape (..., 4, 3, 3)\n"
+      "    A proper rotation.\n"
+      "status : ndarray of uint8, shape (..., 4)\n"
+      "    A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.\n"
+      "- The modes are named by the signs of B_11 and B_22, each times that of det A.\n"
+      "- SINGULAR: the middle axes of two legs are parallel, and the hand is free to turn about\n"
+      "  them; one of its orientations is returned.\n"
+      "- Not returned: the four orientations in which the last axis of each leg is along the first\n"
+      "  one. All joints are free there, and none of them moves the hand.\n"
+      ,
+      1, agile_wrist_values, agile_wrist_fields,
+      1, agile_wrist_fk_in, 2, agile_wrist_fk_out,
+      agile_wrist_fk_one, agile_wrist_fk_many },
+    { "agile_wrist.jacobian_parallel",
+      "A of A*omega = B*dq; its rows are the cross products of w and v.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    theta1, theta2, theta3 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "A : ndarray of float64, shape (..., 4, 3, 3)\n"
+      "    A proper rotation.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.\n"
+      ,
+      1, agile_wrist_values, agile_wrist_fields,
+      1, agile_wrist_jacobian_parallel_in, 1, agile_wrist_jacobian_parallel_out,
+      agile_wrist_jacobian_parallel_one, agile_wrist_jacobian_parallel_many },
+    { "agile_wrist.jacobian_serial",
+      "The diagonal of B of A*omega = B*dq.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    theta1, theta2, theta3 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "B : ndarray of float64, shape (..., 4, 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.\n"
+      "- Its signs distinguish the working modes; BRANCHES lists them in the same order.\n"
+      ,
+      1, agile_wrist_values, agile_wrist_fields,
+      1, agile_wrist_jacobian_serial_in, 1, agile_wrist_jacobian_serial_out,
+      agile_wrist_jacobian_serial_one, agile_wrist_jacobian_serial_many },
+    { "agile_wrist.jacobian_space",
+      "Angular velocity of the hand in the base frame per joint rate: A^-1*B.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    theta1, theta2, theta3 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 4, 3, 3)\n"
+      "    A proper rotation.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.\n"
+      "- Not finite where the middle axes of two legs are parallel.\n"
+      ,
+      1, agile_wrist_values, agile_wrist_fields,
+      1, agile_wrist_jacobian_space_in, 1, agile_wrist_jacobian_space_out,
+      agile_wrist_jacobian_space_one, agile_wrist_jacobian_space_many },
+    { "agile_wrist.determinant",
+      "Determinant of jacobian_space.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    theta1, theta2, theta3 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "det : ndarray of float64, shape (..., 4)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.\n"
+      "- Not finite where the middle axes of two legs are parallel.\n"
+      ,
+      1, agile_wrist_values, agile_wrist_fields,
+      1, agile_wrist_determinant_in, 1, agile_wrist_determinant_out,
+      agile_wrist_determinant_one, agile_wrist_determinant_many },
+    { "agile_wrist.singularities",
+      "The diagonal of B and the determinant of A.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    theta1, theta2, theta3 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "factors : ndarray of float64, shape (..., 4, 4)\n"
+      "    One factor for each singular set: leg 1; leg 2; leg 3; all legs.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.\n"
+      ,
+      1, agile_wrist_values, agile_wrist_fields,
+      1, agile_wrist_singularities_in, 1, agile_wrist_singularities_out,
+      agile_wrist_singularities_one, agile_wrist_singularities_many },
+    { "agile_wrist.condition_number",
+      "Condition number of A in the Frobenius norm, divided by 3: 1 if its rows are at right\n"
+      "angles.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    theta1, theta2, theta3 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "kappa : ndarray of float64, shape (..., 4)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.\n"
+      "- Infinite where the determinant of A vanishes.\n"
+      ,
+      1, agile_wrist_values, agile_wrist_fields,
+      1, agile_wrist_condition_number_in, 1, agile_wrist_condition_number_out,
+      agile_wrist_condition_number_one, agile_wrist_condition_number_many },
+    { "agile_wrist.passive_angles",
+      "Angles of the middle joints: from u to v, about w.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    theta1, theta2, theta3 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "phi : ndarray of float64, shape (..., 4, 3)\n"
+      "    Angles in rad, in (-pi, pi].\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.\n"
+      ,
+      1, agile_wrist_values, agile_wrist_fields,
+      1, agile_wrist_passive_angles_in, 1, agile_wrist_passive_angles_out,
+      agile_wrist_passive_angles_one, agile_wrist_passive_angles_many },
+    { "agile_wrist.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    theta1, theta2, theta3 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 4, 10, 3)\n"
+      "    One column for each of theta1, theta2, theta3.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.\n"
+      ,
+      1, agile_wrist_values, agile_wrist_fields,
+      1, agile_wrist_skeleton_in, 1, agile_wrist_skeleton_out,
+      agile_wrist_skeleton_one, agile_wrist_skeleton_many },
+    { "agile_wrist.ik",
+      "The driven joints of all working modes.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "R : array_like, shape (..., 3, 3)\n"
+      "    A proper rotation.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : tuple of ndarray, optional\n"
+      "    Arrays to write the results to; they are returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "q : ndarray of float64, shape (..., 8, 3)\n"
+      "    theta1, theta2, theta3 in rad, in (-pi, pi].\n"
+      "status : ndarray of uint8, shape (..., 8)\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,\n"
+      "  plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.\n"
+      "- SINGULAR: the last axis of a leg is along its first one; its joint is free, and 0 is\n"
+      "  returned.\n"
+      "- SINGULAR also near it, where det A is less than 2^-10: the loop closes, but one ulp of the\n"
+      "  joints moves the hand by more than 1e-12.\n"
+      "- INVALID: the matrix is not a proper rotation.\n"
+      ,
+      1, agile_wrist_values, agile_wrist_fields,
+      1, agile_wrist_ik_in, 2, agile_wrist_ik_out,
+      agile_wrist_ik_one, agile_wrist_ik_many },
+    { "agile_wrist.nearest", "The posture nearest to a seed; see agile_wrist_nearest.h.",
+      1, agile_wrist_values, agile_wrist_fields,
+      4, agile_wrist_nearest_in, 5, agile_wrist_nearest_out,
+      agile_wrist_nearest_one, agile_wrist_nearest_many },
     { "delta.fk",
       "Position of the hand in both assembly modes.\n"
       "\n"

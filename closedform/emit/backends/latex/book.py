@@ -30,6 +30,7 @@ COURSE = (
     "delta",
     "orthoglide",
     "spherical_five_bar",
+    "agile_wrist",
     "hybrid_five_bar",
     "irb260",
     "h6ar",

@@ -134,14 +134,14 @@ d.step(
     "Velocity and singular sets",
     "The derivatives of the loop equations give A*omega = B*dq for the angular velocity omega of "
     "the hand.  The rows of A are the cross products a of w and v.  B is diagonal, because each "
-    "leg depends on its own joint alone; its entries are sines of the angles between u and v.  In all "
-    "assembly modes the determinant of A is C - S, where C is the product of the cosines of the "
-    "joints and S that of their sines, and the entry of B of a leg is plus or minus C - S over the "
-    "sines of the angles between its middle axis and the others.  So A and B are singular "
-    "together.  If no two middle axes are parallel, every v is then u or -u: the hand is in one of "
-    "the four orientations in which the legs turn freely, and the Jacobian is finite.  It is not "
-    "where two middle axes are parallel: there the hand turns about them while the joints "
-    "stand still.",
+    "leg depends on its own joint alone; its entries are sines of the angles between u and v.  In "
+    "all assembly modes the determinant of A is C - S, where C is the product of the cosines of "
+    "the joints and S that of their sines, and the entry of B of a leg is plus or minus C - S "
+    "over the sines of the angles between its middle axis and the others.  So A and B are "
+    "singular together.  If no two middle axes are parallel, every v is then u or -u: the hand is "
+    "in one of the four orientations in which the legs turn freely, and the Jacobian is finite.  "
+    "It is not where two middle axes are parallel: there the hand turns about them while the "
+    "joints stand still.",
     {
         **{rf"\mathbf a_{k + 1}": rows[k] for k in range(3)},
         **{rf"B_{{{k + 1}{k + 1}}}": rates[k] for k in range(3)},
@@ -218,6 +218,7 @@ at = V.xreplace(place)
 points = {f"U{k + 1}": r * u[k] for k in range(3)}
 points |= {f"W{k + 1}": r * w[k] for k in range(3)}
 points |= {f"V{k + 1}": r * at[:, k] for k in range(3)}
+points["O"] = Matrix([0, 0, 0])
 points["P"] = r * (at[:, 0] + at[:, 1] + at[:, 2]) / 3
 skeleton(
     d,
@@ -229,7 +230,7 @@ skeleton(
         "hand": ("V1", "V2", "V3", "V1"),
         **{f"hand{k}": ("P", f"V{k}") for k in (1, 2, 3)},
     },
-    joints={x: (f"U{k}",) for k, x in enumerate(q, 1)},
+    joints={x: ("O", f"U{k}") for k, x in enumerate(q, 1)},
     hand="P",
     ground=("U1", "U2", "U3"),
     lengths={
@@ -280,7 +281,7 @@ g.determined(
     Min(Abs(gap), *heights),
     1,
     "the cross products of w and v are in one plane",
-    name=r"\min(|\det A|, |B_{11}|, |B_{22}|, |B_{33}|)",
+    name=r"\min(|\det A|, |B_{kk}|)",
 )
 working = branches(*((sign, SIGN) for sign in signs))
 d.branches = working.labels
@@ -306,8 +307,8 @@ d.function(
     notes=(
         "SINGULAR: the last axis of a leg is along its first one; its joint is free, and 0 is "
         "returned.",
-        "SINGULAR also near it, where det A or B_kk is less than 2^-10: the loop closes, but one ulp "
-        "of the joints moves the hand by more than 1e-12.",
+        "SINGULAR also near it, where det A or B_kk is less than 2^-10: the loop closes, but one "
+        "ulp of the joints moves the hand by more than 1e-12.",
         "INVALID: the matrix is not a proper rotation.",
     ),
 )

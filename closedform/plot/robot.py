@@ -131,7 +131,10 @@ class Robot:
         """The assembly mode of each posture that is nearest to its target."""
         if not self.modes:
             return np.zeros(q.shape[:-1], dtype=np.intp)
-        gap = np.abs(self.task(q) - np.asarray(x)[..., None, :]).max(-1)
+        images, target = self.task(q), np.asarray(x)
+        core = images.shape[q.ndim :]  # of a vector or of a matrix
+        target = target.reshape(*target.shape[: target.ndim - len(core)], 1, *core)
+        gap = np.abs(images - target).max(tuple(range(q.ndim, images.ndim)))
         return np.asarray(np.argmin(np.where(np.isfinite(gap), gap, np.inf), axis=-1))
 
 

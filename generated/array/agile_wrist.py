@@ -11,7 +11,7 @@
 #   condition_number: 19 compare and select, 27 add, 16 divide, 64 multiply, 3 sincos, 7 sqrt
 #   passive_angles: 9 add, 6 atan2, 6 divide, 24 compare and select, 27 multiply, 3 sincos, 6 sqrt
 #   skeleton: 27 add, 18 divide, 18 compare and select, 60 multiply, 3 sincos, 6 sqrt
-#   ik: 107 compare and select, 23 add, 6 atan2, 6 divide, 44 multiply, 6 sqrt
+#   ik: 117 compare and select, 23 add, 6 atan2, 6 divide, 44 multiply, 6 sqrt
 """Agile wrist.
 
 Three equal legs join a hand to the base, and the axes of all nine joints meet in the centre O.
@@ -51,6 +51,7 @@ SKELETON = Skeleton(
         "V1",
         "V2",
         "V3",
+        "O",
         "P",
     ),
     links={
@@ -67,9 +68,9 @@ SKELETON = Skeleton(
         "hand3": ('P', 'V3'),
     },
     joints={
-        "theta1": SkeletonJoint("revolute", ('U1',)),
-        "theta2": SkeletonJoint("revolute", ('U2',)),
-        "theta3": SkeletonJoint("revolute", ('U3',)),
+        "theta1": SkeletonJoint("revolute", ('O', 'U1')),
+        "theta2": SkeletonJoint("revolute", ('O', 'U2')),
+        "theta3": SkeletonJoint("revolute", ('O', 'U3')),
     },
     hand="P",
     ground=('U1', 'U2', 'U3'),
@@ -1093,6 +1094,9 @@ def _skeleton(ops, theta1, theta2, theta3, r):
         -t31,
         t32,
         t33,
+        0.0,
+        0.0,
+        0.0,
         -(r * (t34 - t36) / 3.0),
         -(r * (t37 - t39) / 3.0),
         -(r * (t40 - t42) / 3.0),
@@ -1123,6 +1127,9 @@ def _skeleton(ops, theta1, theta2, theta3, r):
         t31,
         -t32,
         -t33,
+        0.0,
+        0.0,
+        0.0,
         r * (t34 + t43) / 3.0,
         -(r * (t37 + t39) / 3.0),
         r * (t40 - t44) / 3.0,
@@ -1153,6 +1160,9 @@ def _skeleton(ops, theta1, theta2, theta3, r):
         t31,
         -t32,
         -t33,
+        0.0,
+        0.0,
+        0.0,
         r * (t34 - t43) / 3.0,
         r * (t37 + t45) / 3.0,
         -(r * (t40 + t42) / 3.0),
@@ -1183,6 +1193,9 @@ def _skeleton(ops, theta1, theta2, theta3, r):
         -t31,
         t32,
         t33,
+        0.0,
+        0.0,
+        0.0,
         -(r * (t34 + t36) / 3.0),
         r * (t37 - t45) / 3.0,
         r * (t40 + t44) / 3.0,
@@ -1193,7 +1206,7 @@ _SKELETON = _runtime.Kernel(
     "agile_wrist.skeleton",
     _skeleton,
     (_runtime.Spec("q", (3,)),),
-    (_runtime.Spec("points", (4, 10, 3)),),
+    (_runtime.Spec("points", (4, 11, 3)),),
     Parameters._fields,
     ('r',),
 )
@@ -1211,7 +1224,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Returns
     -------
-    points : array, shape (..., 4, 10, 3)
+    points : array, shape (..., 4, 11, 3)
         One column for each of theta1, theta2, theta3.
 
     Raises
@@ -1243,7 +1256,7 @@ def _ik(ops, R11, R12, R13, R21, R22, R23, R31, R32, R33, r):
     invalid = ops.opposite(t10)
     t11 = R23 * R23 + R33 * R33
     h1 = ops.sqrt(t11)
-    t12 = ops.vanishing * 4.0
+    t12 = ops.vanishing * 7.888609052210118e-31
     free1 = h1 <= t12
     t13 = t10 & ops.opposite(free1)
     t14 = ops.select(t13, ops.sqrt(ops.select(t13, t11, 1.0)), 1.0)
@@ -1283,36 +1296,41 @@ def _ik(ops, R11, R12, R13, R21, R22, R23, R31, R32, R33, r):
     t41 = ops.wrap_cut(ops.atan2(s1_minus_plus_plus, t40))
     t42 = ops.select(invalid, ops.nan, t41)
     t43 = free1 | free2 | free3
-    t44 = 1.0 / h1
-    t45 = 1.0 / h2
-    t46 = ops.select(free1, 0.0, R23 * t44) * ops.select(free2, 0.0, R31 * t45)
-    t47 = 1.0 / h3
-    t48 = t46 * ops.select(free3, 0.0, R12 * t47)
-    t49 = R22 * t47
-    c3 = ops.select(free3, 1.0, t49)
-    t50 = R33 * t44
-    c1 = ops.select(free1, 1.0, t50)
-    t51 = R11 * t45
-    c2 = ops.select(free2, 1.0, t51)
-    t52 = c1 * c2
-    t53 = t43 | (ops.abs(t48 + c3 * t52) <= ops.determined)
-    c3_plus_plus_minus = ops.select(free3, 1.0, -t49)
-    t54 = ops.abs(t48 - c3_plus_plus_minus * t52) <= ops.determined
+    t44 = ops.min(ops.min(h1, h2), h3)
+    t45 = 1.0 / h1
+    t46 = 1.0 / h2
+    t47 = ops.select(free1, 0.0, R23 * t45) * ops.select(free2, 0.0, R31 * t46)
+    t48 = 1.0 / h3
+    t49 = t47 * ops.select(free3, 0.0, R12 * t48)
+    t50 = R22 * t48
+    c3 = ops.select(free3, 1.0, t50)
+    t51 = R33 * t45
+    c1 = ops.select(free1, 1.0, t51)
+    t52 = R11 * t46
+    c2 = ops.select(free2, 1.0, t52)
+    t53 = c1 * c2
+    t54 = ops.min(t44, ops.abs(t49 + c3 * t53)) <= ops.determined
     t55 = ops.status(invalid, ops.truth(False), t43 | t54)
-    c2_plus_minus_plus = ops.select(free2, 1.0, -t51)
-    t56 = c1 * c2_plus_minus_plus
-    t57 = t43 | (ops.abs(t48 - c3 * t56) <= ops.determined)
-    t58 = ops.abs(t48 + c3_plus_plus_minus * t56) <= ops.determined
-    t59 = ops.status(invalid, ops.truth(False), t43 | t58)
-    c1_minus_plus_plus = ops.select(free1, 1.0, -t50)
-    t60 = c2 * c1_minus_plus_plus
-    t61 = t43 | (ops.abs(t48 - c3 * t60) <= ops.determined)
-    t62 = ops.abs(t48 + c3_plus_plus_minus * t60) <= ops.determined
-    t63 = ops.status(invalid, ops.truth(False), t43 | t62)
-    t64 = c2_plus_minus_plus * c1_minus_plus_plus
-    t65 = t43 | (ops.abs(t48 + c3 * t64) <= ops.determined)
-    t66 = ops.abs(t48 - c3_plus_plus_minus * t64) <= ops.determined
-    t67 = ops.status(invalid, ops.truth(False), t43 | t66)
+    c3_plus_plus_minus = ops.select(free3, 1.0, -t50)
+    t56 = ops.min(t44, ops.abs(t49 - c3_plus_plus_minus * t53))
+    t57 = ops.status(invalid, ops.truth(False), t43 | (t56 <= ops.determined))
+    c2_plus_minus_plus = ops.select(free2, 1.0, -t52)
+    t58 = c1 * c2_plus_minus_plus
+    t59 = ops.min(t44, ops.abs(t49 - c3 * t58)) <= ops.determined
+    t60 = ops.status(invalid, ops.truth(False), t43 | t59)
+    t61 = ops.min(t44, ops.abs(t49 + c3_plus_plus_minus * t58))
+    t62 = ops.status(invalid, ops.truth(False), t43 | (t61 <= ops.determined))
+    c1_minus_plus_plus = ops.select(free1, 1.0, -t51)
+    t63 = c2 * c1_minus_plus_plus
+    t64 = ops.min(t44, ops.abs(t49 - c3 * t63)) <= ops.determined
+    t65 = ops.status(invalid, ops.truth(False), t43 | t64)
+    t66 = ops.min(t44, ops.abs(t49 + c3_plus_plus_minus * t63))
+    t67 = ops.status(invalid, ops.truth(False), t43 | (t66 <= ops.determined))
+    t68 = c2_plus_minus_plus * c1_minus_plus_plus
+    t69 = ops.min(t44, ops.abs(t49 + c3 * t68)) <= ops.determined
+    t70 = ops.status(invalid, ops.truth(False), t43 | t69)
+    t71 = ops.min(t44, ops.abs(t49 - c3_plus_plus_minus * t68))
+    t72 = ops.status(invalid, ops.truth(False), t43 | (t71 <= ops.determined))
     return (
         t19,
         t26,
@@ -1338,14 +1356,14 @@ def _ik(ops, R11, R12, R13, R21, R22, R23, R31, R32, R33, r):
         t42,
         t39,
         t36,
-        ops.status(invalid, ops.truth(False), t53),
         t55,
-        ops.status(invalid, ops.truth(False), t57),
-        t59,
-        ops.status(invalid, ops.truth(False), t61),
-        t63,
-        ops.status(invalid, ops.truth(False), t65),
+        t57,
+        t60,
+        t62,
+        t65,
         t67,
+        t70,
+        t72,
     )
 
 
@@ -1392,8 +1410,8 @@ def ik(R: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
       plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
     - SINGULAR: the last axis of a leg is along its first one; its joint is free, and 0 is
       returned.
-    - SINGULAR also near it, where det A is less than 2^-10: the loop closes, but one ulp of the
-      joints moves the hand by more than 1e-12.
+    - SINGULAR also near it, where det A or B_kk is less than 2^-10: the loop closes, but one
+      ulp of the joints moves the hand by more than 1e-12.
     - INVALID: the matrix is not a proper rotation.
     """
     result = _runtime.evaluate(_IK, (R,), params)

@@ -12,8 +12,8 @@
  *   condition_number: 10 compare and select, 27 add, 16 divide, 64 multiply, 3 sincos, 4 sqrt
  *   passive_angles: 9 add, 6 atan2, 6 divide, 15 compare and select, 27 multiply, 3 sincos, 3 sqrt
  *   skeleton: 27 add, 18 divide, 9 compare and select, 60 multiply, 3 sincos, 3 sqrt
- *   ik: 75 compare and select, 29 add, 6 atan2, 3 divide, 38 multiply, 3 sqrt
- *   ik where nothing vanishes: 37 compare and select, 22 add, 6 atan2, 3 divide, 28 multiply, 3
+ *   ik: 85 compare and select, 29 add, 6 atan2, 3 divide, 38 multiply, 3 sqrt
+ *   ik where nothing vanishes: 40 compare and select, 22 add, 6 atan2, 3 divide, 28 multiply, 3
  *     sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
@@ -245,7 +245,7 @@ void agile_wrist_passive_angles_batch(size_t n, const agile_wrist_params *params
  *
  * Outputs
  * -------
- * points : real_t[120], shape (4, 10, 3)
+ * points : real_t[132], shape (4, 11, 3)
  *     One column for each of theta1, theta2, theta3.
  *
  * Notes
@@ -253,7 +253,7 @@ void agile_wrist_passive_angles_batch(size_t n, const agile_wrist_params *params
  * - Branches in this order: plus_plus, plus_minus, minus_plus, minus_minus.
  */
 void agile_wrist_skeleton(const agile_wrist_params *params, const real_t q[3],
-    real_t points[120]);
+    real_t points[132]);
 void agile_wrist_skeleton_batch(size_t n, const agile_wrist_params *params,
     const real_t *q, size_t q_stride,
     real_t *points, size_t points_stride);
@@ -282,8 +282,8 @@ void agile_wrist_skeleton_batch(size_t n, const agile_wrist_params *params,
  *   minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - SINGULAR: the last axis of a leg is along its first one; its joint is free, and 0 is
  *   returned.
- * - SINGULAR also near it, where det A is less than 2^-10: the loop closes, but one ulp of the
- *   joints moves the hand by more than 1e-12.
+ * - SINGULAR also near it, where det A or B_kk is less than 2^-10: the loop closes, but one ulp
+ *   of the joints moves the hand by more than 1e-12.
  * - INVALID: the matrix is not a proper rotation.
  */
 void agile_wrist_ik(const agile_wrist_params *params, const real_t R[9],

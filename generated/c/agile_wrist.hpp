@@ -81,7 +81,7 @@ struct FkResult {
 
 [[nodiscard]] inline auto skeleton(std::span<const real_t, 3> q, const Parameters &parameters = defaults) noexcept
 {
-    std::array<real_t, 120> result;
+    std::array<real_t, 132> result;
     agile_wrist_skeleton(&parameters, q.data(), result.data());
     return result;
 }

@@ -197,7 +197,7 @@ static const cf_array agile_wrist_skeleton_in[] = {
 };
 
 static const cf_array agile_wrist_skeleton_out[] = {
-    { "points", 3, { 4, 10, 3 }, 120, CF_REAL },
+    { "points", 3, { 4, 11, 3 }, 132, CF_REAL },
 };
 
 static void agile_wrist_ik_one(const double *params, const double *const *in, void *const *out)
@@ -5170,7 +5170,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Returns\n"
       "-------\n"
-      "points : ndarray of float64, shape (..., 4, 10, 3)\n"
+      "points : ndarray of float64, shape (..., 4, 11, 3)\n"
       "    One column for each of theta1, theta2, theta3.\n"
       "\n"
       "Raises\n"
@@ -5222,8 +5222,8 @@ const cf_function cf_functions[] = {
       "  plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.\n"
       "- SINGULAR: the last axis of a leg is along its first one; its joint is free, and 0 is\n"
       "  returned.\n"
-      "- SINGULAR also near it, where det A is less than 2^-10: the loop closes, but one ulp of the\n"
-      "  joints moves the hand by more than 1e-12.\n"
+      "- SINGULAR also near it, where det A or B_kk is less than 2^-10: the loop closes, but one\n"
+      "  ulp of the joints moves the hand by more than 1e-12.\n"
       "- INVALID: the matrix is not a proper rotation.\n"
       ,
       1, agile_wrist_values, agile_wrist_fields,

@@ -11,8 +11,8 @@
 //   condition_number: 10 compare and select, 27 add, 16 divide, 64 multiply, 3 sincos, 4 sqrt
 //   passive_angles: 9 add, 6 atan2, 6 divide, 15 compare and select, 27 multiply, 3 sincos, 3 sqrt
 //   skeleton: 27 add, 18 divide, 9 compare and select, 60 multiply, 3 sincos, 3 sqrt
-//   ik: 75 compare and select, 29 add, 6 atan2, 3 divide, 38 multiply, 3 sqrt
-//   ik where nothing vanishes: 37 compare and select, 22 add, 6 atan2, 3 divide, 28 multiply, 3
+//   ik: 85 compare and select, 29 add, 6 atan2, 3 divide, 38 multiply, 3 sqrt
+//   ik where nothing vanishes: 40 compare and select, 22 add, 6 atan2, 3 divide, 28 multiply, 3
 //     sqrt
 
 /**
@@ -53,6 +53,7 @@ export const SKELETON = Object.freeze(/** @type {const} */ ({
         "V1",
         "V2",
         "V3",
+        "O",
         "P",
     ],
     links: {
@@ -69,9 +70,9 @@ export const SKELETON = Object.freeze(/** @type {const} */ ({
         hand3: ["P", "V3"],
     },
     joints: {
-        theta1: { kind: "revolute", points: ["U1"] },
-        theta2: { kind: "revolute", points: ["U2"] },
-        theta3: { kind: "revolute", points: ["U3"] },
+        theta1: { kind: "revolute", points: ["O", "U1"] },
+        theta2: { kind: "revolute", points: ["O", "U2"] },
+        theta3: { kind: "revolute", points: ["O", "U3"] },
     },
     hand: "P",
     ground: ["U1", "U2", "U3"],
@@ -1104,99 +1105,111 @@ function _skeleton(v, o) {
     o[24] = -t22;
     o[25] = t23;
     o[26] = t24;
-    o[27] = -(r * (t25 - t27) / 3.0);
-    o[28] = -(r * (t28 - t30) / 3.0);
-    o[29] = -(r * (t31 - t33) / 3.0);
-    o[30] = r;
-    o[31] = 0.0;
-    o[32] = 0.0;
-    o[33] = 0.0;
-    o[34] = r;
+    o[27] = 0.0;
+    o[28] = 0.0;
+    o[29] = 0.0;
+    o[30] = -(r * (t25 - t27) / 3.0);
+    o[31] = -(r * (t28 - t30) / 3.0);
+    o[32] = -(r * (t31 - t33) / 3.0);
+    o[33] = r;
+    o[34] = 0.0;
     o[35] = 0.0;
     o[36] = 0.0;
-    o[37] = 0.0;
-    o[38] = r;
+    o[37] = r;
+    o[38] = 0.0;
     o[39] = 0.0;
-    o[40] = t1;
-    o[41] = t2;
-    o[42] = t3;
-    o[43] = 0.0;
-    o[44] = t4;
-    o[45] = t5;
-    o[46] = t6;
-    o[47] = 0.0;
-    o[48] = t12;
-    o[49] = -t13;
-    o[50] = t14;
-    o[51] = -t17;
-    o[52] = -t18;
-    o[53] = t19;
-    o[54] = t22;
-    o[55] = -t23;
-    o[56] = -t24;
-    o[57] = r * (t25 + t34) / 3.0;
-    o[58] = -(r * (t28 + t30) / 3.0);
-    o[59] = r * (t31 - t35) / 3.0;
-    o[60] = r;
+    o[40] = 0.0;
+    o[41] = r;
+    o[42] = 0.0;
+    o[43] = t1;
+    o[44] = t2;
+    o[45] = t3;
+    o[46] = 0.0;
+    o[47] = t4;
+    o[48] = t5;
+    o[49] = t6;
+    o[50] = 0.0;
+    o[51] = t12;
+    o[52] = -t13;
+    o[53] = t14;
+    o[54] = -t17;
+    o[55] = -t18;
+    o[56] = t19;
+    o[57] = t22;
+    o[58] = -t23;
+    o[59] = -t24;
+    o[60] = 0.0;
     o[61] = 0.0;
     o[62] = 0.0;
-    o[63] = 0.0;
-    o[64] = r;
-    o[65] = 0.0;
-    o[66] = 0.0;
+    o[63] = r * (t25 + t34) / 3.0;
+    o[64] = -(r * (t28 + t30) / 3.0);
+    o[65] = r * (t31 - t35) / 3.0;
+    o[66] = r;
     o[67] = 0.0;
-    o[68] = r;
+    o[68] = 0.0;
     o[69] = 0.0;
-    o[70] = t1;
-    o[71] = t2;
-    o[72] = t3;
+    o[70] = r;
+    o[71] = 0.0;
+    o[72] = 0.0;
     o[73] = 0.0;
-    o[74] = t4;
-    o[75] = t5;
-    o[76] = t6;
-    o[77] = 0.0;
-    o[78] = -t12;
-    o[79] = t13;
-    o[80] = -t14;
-    o[81] = t17;
-    o[82] = t18;
-    o[83] = -t19;
-    o[84] = t22;
-    o[85] = -t23;
-    o[86] = -t24;
-    o[87] = r * (t25 - t34) / 3.0;
-    o[88] = r * (t28 + t36) / 3.0;
-    o[89] = -(r * (t31 + t33) / 3.0);
-    o[90] = r;
-    o[91] = 0.0;
-    o[92] = 0.0;
+    o[74] = r;
+    o[75] = 0.0;
+    o[76] = t1;
+    o[77] = t2;
+    o[78] = t3;
+    o[79] = 0.0;
+    o[80] = t4;
+    o[81] = t5;
+    o[82] = t6;
+    o[83] = 0.0;
+    o[84] = -t12;
+    o[85] = t13;
+    o[86] = -t14;
+    o[87] = t17;
+    o[88] = t18;
+    o[89] = -t19;
+    o[90] = t22;
+    o[91] = -t23;
+    o[92] = -t24;
     o[93] = 0.0;
-    o[94] = r;
+    o[94] = 0.0;
     o[95] = 0.0;
-    o[96] = 0.0;
-    o[97] = 0.0;
-    o[98] = r;
-    o[99] = 0.0;
-    o[100] = t1;
-    o[101] = t2;
-    o[102] = t3;
-    o[103] = 0.0;
-    o[104] = t4;
-    o[105] = t5;
-    o[106] = t6;
-    o[107] = 0.0;
-    o[108] = -t12;
-    o[109] = t13;
-    o[110] = -t14;
-    o[111] = -t17;
-    o[112] = -t18;
-    o[113] = t19;
-    o[114] = -t22;
-    o[115] = t23;
-    o[116] = t24;
-    o[117] = -(r * (t25 + t27) / 3.0);
-    o[118] = r * (t28 - t36) / 3.0;
-    o[119] = r * (t31 + t35) / 3.0;
+    o[96] = r * (t25 - t34) / 3.0;
+    o[97] = r * (t28 + t36) / 3.0;
+    o[98] = -(r * (t31 + t33) / 3.0);
+    o[99] = r;
+    o[100] = 0.0;
+    o[101] = 0.0;
+    o[102] = 0.0;
+    o[103] = r;
+    o[104] = 0.0;
+    o[105] = 0.0;
+    o[106] = 0.0;
+    o[107] = r;
+    o[108] = 0.0;
+    o[109] = t1;
+    o[110] = t2;
+    o[111] = t3;
+    o[112] = 0.0;
+    o[113] = t4;
+    o[114] = t5;
+    o[115] = t6;
+    o[116] = 0.0;
+    o[117] = -t12;
+    o[118] = t13;
+    o[119] = -t14;
+    o[120] = -t17;
+    o[121] = -t18;
+    o[122] = t19;
+    o[123] = -t22;
+    o[124] = t23;
+    o[125] = t24;
+    o[126] = 0.0;
+    o[127] = 0.0;
+    o[128] = 0.0;
+    o[129] = -(r * (t25 + t27) / 3.0);
+    o[130] = r * (t28 - t36) / 3.0;
+    o[131] = r * (t31 + t35) / 3.0;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -1207,7 +1220,7 @@ const _SKELETON = _runtime.kernel({
         { name: "q", shape: [3], branches: 0, kind: "real" },
     ],
     outputs: [
-        { name: "points", shape: [10, 3], branches: 4, kind: "real" },
+        { name: "points", shape: [11, 3], branches: 4, kind: "real" },
     ],
     used: ["r"],
     defaults: DEFAULTS,
@@ -1221,7 +1234,7 @@ const _SKELETON = _runtime.kernel({
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 4 branches of 30 numbers (10 x 3 in row order). One column for each of
+ * @returns {number[][]} 4 branches of 33 numbers (11 x 3 in row order). One column for each of
  *     theta1, theta2, theta3.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has another length.
@@ -1235,7 +1248,7 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [points] 120 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 132 n numbers, written to; made if there is none
  * @param {Parameters} [parameters] the same for all postures
  * @returns {Float64Array} what was written to
  */
@@ -1256,7 +1269,7 @@ function _ik(v, o) {
     const R33 = v[8];
     const r = v[9];
     const h1 = Math.sqrt(R23 * R23 + R33 * R33);
-    const t1 = _runtime.VANISHING * 4.0;
+    const t1 = _runtime.VANISHING * 7.888609052210118e-31;
     const free1 = h1 <= t1;
     const t2 = 1.0 / h1;
     const s1_minus_plus_plus = free1 ? 0.0 : R23 * t2;
@@ -1301,19 +1314,24 @@ function _ik(v, o) {
     const t28 = Math.atan2(s1_minus_plus_plus, c1_minus_plus_plus);
     const t29 = (t28 <= -Math.PI ? Math.PI : t28) + t14;
     const t30 = free1 || free2 || free3;
-    const t31 = s1_minus_plus_plus * s2_plus_minus_plus * s3_plus_plus_minus;
-    const t32 = c1 * c2;
-    const t33 = Math.abs(t31 + c3 * t32) <= _runtime.DETERMINED;
-    const t34 = Math.abs(t31 - c3_plus_plus_minus * t32) <= _runtime.DETERMINED;
-    const t35 = c1 * c2_plus_minus_plus;
-    const t36 = Math.abs(t31 - c3 * t35) <= _runtime.DETERMINED;
-    const t37 = Math.abs(t31 + c3_plus_plus_minus * t35) <= _runtime.DETERMINED;
-    const t38 = c2 * c1_minus_plus_plus;
-    const t39 = Math.abs(t31 - c3 * t38) <= _runtime.DETERMINED;
-    const t40 = Math.abs(t31 + c3_plus_plus_minus * t38) <= _runtime.DETERMINED;
-    const t41 = c2_plus_minus_plus * c1_minus_plus_plus;
-    const t42 = Math.abs(t31 + c3 * t41) <= _runtime.DETERMINED;
-    const t43 = Math.abs(t31 - c3_plus_plus_minus * t41) <= _runtime.DETERMINED;
+    const t31 = Math.min(Math.min(h1, h2), h3);
+    const t32 = s1_minus_plus_plus * s2_plus_minus_plus * s3_plus_plus_minus;
+    const t33 = c1 * c2;
+    const t34 = Math.min(t31, Math.abs(t32 + c3 * t33)) <= _runtime.DETERMINED;
+    const t35 = Math.min(t31, Math.abs(t32 - c3_plus_plus_minus * t33));
+    const t36 = invalid ? 3 : false ? 1 : t30 || t35 <= _runtime.DETERMINED ? 2 : 0;
+    const t37 = c1 * c2_plus_minus_plus;
+    const t38 = Math.min(t31, Math.abs(t32 - c3 * t37)) <= _runtime.DETERMINED;
+    const t39 = Math.min(t31, Math.abs(t32 + c3_plus_plus_minus * t37));
+    const t40 = invalid ? 3 : false ? 1 : t30 || t39 <= _runtime.DETERMINED ? 2 : 0;
+    const t41 = c2 * c1_minus_plus_plus;
+    const t42 = Math.min(t31, Math.abs(t32 - c3 * t41)) <= _runtime.DETERMINED;
+    const t43 = Math.min(t31, Math.abs(t32 + c3_plus_plus_minus * t41));
+    const t44 = invalid ? 3 : false ? 1 : t30 || t43 <= _runtime.DETERMINED ? 2 : 0;
+    const t45 = c2_plus_minus_plus * c1_minus_plus_plus;
+    const t46 = Math.min(t31, Math.abs(t32 + c3 * t45)) <= _runtime.DETERMINED;
+    const t47 = Math.min(t31, Math.abs(t32 - c3_plus_plus_minus * t45));
+    const t48 = invalid ? 3 : false ? 1 : t30 || t47 <= _runtime.DETERMINED ? 2 : 0;
     o[0] = t15;
     o[1] = t19;
     o[2] = t23;
@@ -1338,14 +1356,14 @@ function _ik(v, o) {
     o[21] = t29;
     o[22] = t27;
     o[23] = t25;
-    o[24] = invalid ? 3 : false ? 1 : t30 || t33 ? 2 : 0;
-    o[25] = invalid ? 3 : false ? 1 : t30 || t34 ? 2 : 0;
-    o[26] = invalid ? 3 : false ? 1 : t30 || t36 ? 2 : 0;
-    o[27] = invalid ? 3 : false ? 1 : t30 || t37 ? 2 : 0;
-    o[28] = invalid ? 3 : false ? 1 : t30 || t39 ? 2 : 0;
-    o[29] = invalid ? 3 : false ? 1 : t30 || t40 ? 2 : 0;
-    o[30] = invalid ? 3 : false ? 1 : t30 || t42 ? 2 : 0;
-    o[31] = invalid ? 3 : false ? 1 : t30 || t43 ? 2 : 0;
+    o[24] = invalid ? 3 : false ? 1 : t30 || t34 ? 2 : 0;
+    o[25] = t36;
+    o[26] = invalid ? 3 : false ? 1 : t30 || t38 ? 2 : 0;
+    o[27] = t40;
+    o[28] = invalid ? 3 : false ? 1 : t30 || t42 ? 2 : 0;
+    o[29] = t44;
+    o[30] = invalid ? 3 : false ? 1 : t30 || t46 ? 2 : 0;
+    o[31] = t48;
 }
 
 /** @type {_runtime.Compute} */
@@ -1384,14 +1402,15 @@ function _ik_common(v, o) {
     const t21 = Math.atan2(R23, -R33);
     const t22 = (t21 <= -Math.PI ? Math.PI : t21) + t11;
     const h1 = Math.sqrt(R23 * R23 + R33 * R33);
-    const t23 = 1.0 / h1;
     const h2 = Math.sqrt(t6);
-    const t24 = 1.0 / h2;
     const h3 = Math.sqrt(t8);
+    const t23 = 1.0 / h1;
+    const t24 = 1.0 / h2;
     const t25 = 1.0 / h3;
     const gap = R33 * t23 * (R11 * t24) * (R22 * t25) + R23 * t23 * (R31 * t24) * (R12 * t25);
-    const t26 = invalid ? 3 : false ? 1 : Math.abs(gap) <= _runtime.DETERMINED ? 2 : 0;
-    const t27 = _runtime.VANISHING * 4.0;
+    const t26 = Math.min(Math.min(Math.min(h1, h2), h3), Math.abs(gap));
+    const t27 = invalid ? 3 : false ? 1 : t26 <= _runtime.DETERMINED ? 2 : 0;
+    const t28 = _runtime.VANISHING * 7.888609052210118e-31;
     o[0] = t12;
     o[1] = t14;
     o[2] = t16;
@@ -1416,15 +1435,15 @@ function _ik_common(v, o) {
     o[21] = t22;
     o[22] = t20;
     o[23] = t18;
-    o[24] = t26;
-    o[25] = t26;
-    o[26] = t26;
-    o[27] = t26;
-    o[28] = t26;
-    o[29] = t26;
-    o[30] = t26;
-    o[31] = t26;
-    o[32] = (h1 <= t27 || h2 <= t27 || h3 <= t27) ? 1 : 0;
+    o[24] = t27;
+    o[25] = t27;
+    o[26] = t27;
+    o[27] = t27;
+    o[28] = t27;
+    o[29] = t27;
+    o[30] = t27;
+    o[31] = t27;
+    o[32] = (h1 <= t28 || h2 <= t28 || h3 <= t28) ? 1 : 0;
 }
 
 const _IK = _runtime.kernel({
@@ -1450,8 +1469,8 @@ const _IK = _runtime.kernel({
  *   plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - SINGULAR: the last axis of a leg is along its first one; its joint is free, and 0 is
  *   returned.
- * - SINGULAR also near it, where det A is less than 2^-10: the loop closes, but one ulp of the
- *   joints moves the hand by more than 1e-12.
+ * - SINGULAR also near it, where det A or B_kk is less than 2^-10: the loop closes, but one ulp
+ *   of the joints moves the hand by more than 1e-12.
  * - INVALID: the matrix is not a proper rotation.
  *
  * @param {ArrayLike<number>} R 9 numbers (3 x 3 in row order). A proper rotation.

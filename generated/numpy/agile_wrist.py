@@ -11,8 +11,8 @@
 #   condition_number: 10 compare and select, 27 add, 16 divide, 64 multiply, 3 sincos, 4 sqrt
 #   passive_angles: 9 add, 6 atan2, 6 divide, 15 compare and select, 27 multiply, 3 sincos, 3 sqrt
 #   skeleton: 27 add, 18 divide, 9 compare and select, 60 multiply, 3 sincos, 3 sqrt
-#   ik: 75 compare and select, 29 add, 6 atan2, 3 divide, 38 multiply, 3 sqrt
-#   ik where nothing vanishes: 37 compare and select, 22 add, 6 atan2, 3 divide, 28 multiply, 3
+#   ik: 85 compare and select, 29 add, 6 atan2, 3 divide, 38 multiply, 3 sqrt
+#   ik where nothing vanishes: 40 compare and select, 22 add, 6 atan2, 3 divide, 28 multiply, 3
 #     sqrt
 """Agile wrist.
 
@@ -51,6 +51,7 @@ SKELETON = Skeleton(
         "V1",
         "V2",
         "V3",
+        "O",
         "P",
     ),
     links={
@@ -67,9 +68,9 @@ SKELETON = Skeleton(
         "hand3": ('P', 'V3'),
     },
     joints={
-        "theta1": SkeletonJoint("revolute", ('U1',)),
-        "theta2": SkeletonJoint("revolute", ('U2',)),
-        "theta3": SkeletonJoint("revolute", ('U3',)),
+        "theta1": SkeletonJoint("revolute", ('O', 'U1')),
+        "theta2": SkeletonJoint("revolute", ('O', 'U2')),
+        "theta3": SkeletonJoint("revolute", ('O', 'U3')),
     },
     hand="P",
     ground=('U1', 'U2', 'U3'),
@@ -1188,6 +1189,9 @@ def _skeleton(theta1, theta2, theta3, r):
         -t22,
         t23,
         t24,
+        0.0,
+        0.0,
+        0.0,
         -(r * (t25 - t27) / 3.0),
         -(r * (t28 - t30) / 3.0),
         -(r * (t31 - t33) / 3.0),
@@ -1218,6 +1222,9 @@ def _skeleton(theta1, theta2, theta3, r):
         t22,
         -t23,
         -t24,
+        0.0,
+        0.0,
+        0.0,
         r * (t25 + t34) / 3.0,
         -(r * (t28 + t30) / 3.0),
         r * (t31 - t35) / 3.0,
@@ -1248,6 +1255,9 @@ def _skeleton(theta1, theta2, theta3, r):
         t22,
         -t23,
         -t24,
+        0.0,
+        0.0,
+        0.0,
         r * (t25 - t34) / 3.0,
         r * (t28 + t36) / 3.0,
         -(r * (t31 + t33) / 3.0),
@@ -1278,6 +1288,9 @@ def _skeleton(theta1, theta2, theta3, r):
         -t22,
         t23,
         t24,
+        0.0,
+        0.0,
+        0.0,
         -(r * (t25 + t27) / 3.0),
         r * (t28 - t36) / 3.0,
         r * (t31 + t35) / 3.0,
@@ -1288,7 +1301,7 @@ _SKELETON = _runtime.Kernel(
     "agile_wrist.skeleton",
     _skeleton,
     (_runtime.Array("q", (3,)),),
-    (_runtime.Array("points", (4, 10, 3)),),
+    (_runtime.Array("points", (4, 11, 3)),),
     Parameters._fields,
     ('r',),
 )
@@ -1308,7 +1321,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Returns
     -------
-    points : ndarray of float64, shape (..., 4, 10, 3)
+    points : ndarray of float64, shape (..., 4, 11, 3)
         One column for each of theta1, theta2, theta3.
 
     Raises
@@ -1328,10 +1341,9 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
 def _ik(R11, R12, R13, R21, R22, R23, R31, R32, R33, r):
     h1 = np.sqrt(R23 * R23 + R33 * R33)
-    t1 = _runtime.VANISHING * 4.0
+    t1 = _runtime.VANISHING * 7.888609052210118e-31
     free1 = h1 <= t1
     t2 = 1.0 / h1
-    del h1
     s1_minus_plus_plus = _runtime.select(free1, 0.0, R23 * t2)
     t3 = R33 * t2
     del t2
@@ -1356,7 +1368,6 @@ def _ik(R11, R12, R13, R21, R22, R23, R31, R32, R33, r):
     del t8
     free2 = h2 <= t1
     t16 = 1.0 / h2
-    del h2
     s2_plus_minus_plus = _runtime.select(free2, 0.0, R31 * t16)
     t17 = R11 * t16
     del t16
@@ -1369,7 +1380,6 @@ def _ik(R11, R12, R13, R21, R22, R23, R31, R32, R33, r):
     free3 = h3 <= t1
     del t1
     t20 = 1.0 / h3
-    del h3
     s3_plus_plus_minus = _runtime.select(free3, 0.0, R12 * t20)
     t21 = R22 * t20
     del t20
@@ -1394,44 +1404,46 @@ def _ik(R11, R12, R13, R21, R22, R23, R31, R32, R33, r):
     del t14, t28
     t30 = free1 | free2 | free3
     del free1, free2, free3
-    t31 = s1_minus_plus_plus * s2_plus_minus_plus * s3_plus_plus_minus
+    t31 = np.minimum(np.minimum(h1, h2), h3)
+    del h1, h2, h3
+    t32 = s1_minus_plus_plus * s2_plus_minus_plus * s3_plus_plus_minus
     del s1_minus_plus_plus, s2_plus_minus_plus, s3_plus_plus_minus
-    t32 = c1 * c2
-    t33 = np.abs(t31 + c3 * t32) <= _runtime.DETERMINED
-    t34 = _runtime.status(invalid, np.False_, t30 | t33)
+    t33 = c1 * c2
+    t34 = np.minimum(t31, np.abs(t32 + c3 * t33)) <= _runtime.DETERMINED
+    t35 = _runtime.status(invalid, np.False_, t30 | t34)
+    del t34
+    t36 = np.minimum(t31, np.abs(t32 - c3_plus_plus_minus * t33))
     del t33
-    t35 = np.abs(t31 - c3_plus_plus_minus * t32) <= _runtime.DETERMINED
-    del t32
-    t36 = _runtime.status(invalid, np.False_, t30 | t35)
-    del t35
-    t37 = c1 * c2_plus_minus_plus
+    t37 = _runtime.status(invalid, np.False_, t30 | (t36 <= _runtime.DETERMINED))
+    del t36
+    t38 = c1 * c2_plus_minus_plus
     del c1
-    t38 = np.abs(t31 - c3 * t37) <= _runtime.DETERMINED
-    t39 = _runtime.status(invalid, np.False_, t30 | t38)
+    t39 = np.minimum(t31, np.abs(t32 - c3 * t38)) <= _runtime.DETERMINED
+    t40 = _runtime.status(invalid, np.False_, t30 | t39)
+    del t39
+    t41 = np.minimum(t31, np.abs(t32 + c3_plus_plus_minus * t38))
     del t38
-    t40 = np.abs(t31 + c3_plus_plus_minus * t37) <= _runtime.DETERMINED
-    del t37
-    t41 = _runtime.status(invalid, np.False_, t30 | t40)
-    del t40
-    t42 = c2 * c1_minus_plus_plus
+    t42 = _runtime.status(invalid, np.False_, t30 | (t41 <= _runtime.DETERMINED))
+    del t41
+    t43 = c2 * c1_minus_plus_plus
     del c2
-    t43 = np.abs(t31 - c3 * t42) <= _runtime.DETERMINED
-    t44 = _runtime.status(invalid, np.False_, t30 | t43)
+    t44 = np.minimum(t31, np.abs(t32 - c3 * t43)) <= _runtime.DETERMINED
+    t45 = _runtime.status(invalid, np.False_, t30 | t44)
+    del t44
+    t46 = np.minimum(t31, np.abs(t32 + c3_plus_plus_minus * t43))
     del t43
-    t45 = np.abs(t31 + c3_plus_plus_minus * t42) <= _runtime.DETERMINED
-    del t42
-    t46 = _runtime.status(invalid, np.False_, t30 | t45)
-    del t45
-    t47 = c2_plus_minus_plus * c1_minus_plus_plus
+    t47 = _runtime.status(invalid, np.False_, t30 | (t46 <= _runtime.DETERMINED))
+    del t46
+    t48 = c2_plus_minus_plus * c1_minus_plus_plus
     del c1_minus_plus_plus, c2_plus_minus_plus
-    t48 = np.abs(t31 + c3 * t47) <= _runtime.DETERMINED
+    t49 = np.minimum(t31, np.abs(t32 + c3 * t48)) <= _runtime.DETERMINED
     del c3
-    t49 = _runtime.status(invalid, np.False_, t30 | t48)
-    del t48
-    t50 = np.abs(t31 - c3_plus_plus_minus * t47) <= _runtime.DETERMINED
-    del c3_plus_plus_minus, t31, t47
-    t51 = _runtime.status(invalid, np.False_, t30 | t50)
-    del invalid, t30, t50
+    t50 = _runtime.status(invalid, np.False_, t30 | t49)
+    del t49
+    t51 = np.minimum(t31, np.abs(t32 - c3_plus_plus_minus * t48))
+    del c3_plus_plus_minus, t31, t32, t48
+    t52 = _runtime.status(invalid, np.False_, t30 | (t51 <= _runtime.DETERMINED))
+    del invalid, t30, t51
     return (
         t15,
         t19,
@@ -1457,14 +1469,14 @@ def _ik(R11, R12, R13, R21, R22, R23, R31, R32, R33, r):
         t29,
         t27,
         t25,
-        t34,
-        t36,
-        t39,
-        t41,
-        t44,
-        t46,
-        t49,
-        t51,
+        t35,
+        t37,
+        t40,
+        t42,
+        t45,
+        t47,
+        t50,
+        t52,
     )
 
 
@@ -1491,18 +1503,20 @@ def _ik_common(R11, R12, R13, R21, R22, R23, R31, R32, R33, r):
     t16 = _runtime.wrap_cut(np.arctan2(R23, -R33)) + t10
     del t10
     h1 = np.sqrt(R23 * R23 + R33 * R33)
-    t17 = 1.0 / h1
     h2 = np.sqrt(t4)
     del t4
-    t18 = 1.0 / h2
     h3 = np.sqrt(t7)
     del t7
+    t17 = 1.0 / h1
+    t18 = 1.0 / h2
     t19 = 1.0 / h3
     gap = R33 * t17 * (R11 * t18) * (R22 * t19) + R23 * t17 * (R31 * t18) * (R12 * t19)
     del t17, t18, t19
-    t20 = _runtime.status(invalid, np.False_, np.abs(gap) <= _runtime.DETERMINED)
-    del gap, invalid
-    t21 = _runtime.VANISHING * 4.0
+    t20 = np.minimum(np.minimum(np.minimum(h1, h2), h3), np.abs(gap))
+    del gap
+    t21 = _runtime.status(invalid, np.False_, t20 <= _runtime.DETERMINED)
+    del invalid, t20
+    t22 = _runtime.VANISHING * 7.888609052210118e-31
     return (
         t11,
         t12,
@@ -1528,15 +1542,15 @@ def _ik_common(R11, R12, R13, R21, R22, R23, R31, R32, R33, r):
         t16,
         t15,
         t14,
-        t20,
-        t20,
-        t20,
-        t20,
-        t20,
-        t20,
-        t20,
-        t20,
-        (h1 <= t21) | (h2 <= t21) | (h3 <= t21),
+        t21,
+        t21,
+        t21,
+        t21,
+        t21,
+        t21,
+        t21,
+        t21,
+        (h1 <= t22) | (h2 <= t22) | (h3 <= t22),
     )
 
 
@@ -1586,8 +1600,8 @@ def ik(R: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
       plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
     - SINGULAR: the last axis of a leg is along its first one; its joint is free, and 0 is
       returned.
-    - SINGULAR also near it, where det A is less than 2^-10: the loop closes, but one ulp of the
-      joints moves the hand by more than 1e-12.
+    - SINGULAR also near it, where det A or B_kk is less than 2^-10: the loop closes, but one
+      ulp of the joints moves the hand by more than 1e-12.
     - INVALID: the matrix is not a proper rotation.
     """
     result = _runtime.evaluate(_IK, (R,), params, out)

@@ -302,4 +302,5 @@ def inverse_orientation(d: Derivation, wrist: Wrist, known: Notation) -> None:
         "case.  With the usual a tan 2(0, 0) = 0 both angles come out as 0, so the hand is turned "
         "about its axis by a wrong angle unless the rotation is the identity.",
     )
-    inverse_claim(claim, wrist, wrist.R, "eq. (13)", (EULER[0], EULER[2]), "φ")
+    outer = EULER[0], EULER[2]
+    inverse_claim(claim, wrist, wrist.R, "eq. (13)", outer, EULER[1], "φ")

@@ -125,7 +125,8 @@ def convention(d: Derivation, wrist: Wrist, known: Notation) -> None:
         f"${MIDDLE % JOINTS[1]}$",
         partial(middle_angle, wrist),
     )
-    inverse_claim(claim, wrist, pose[:3, :3], "eq. (16)", (JOINTS[0], JOINTS[2]), "θ_4")
+    outer = JOINTS[0], JOINTS[2]
+    inverse_claim(claim, wrist, pose[:3, :3], "eq. (16)", outer, JOINTS[1], "θ_4")
 
 
 def as_derived(derived: sp.Matrix, printed: sp.Matrix, relation: Relation) -> Check:

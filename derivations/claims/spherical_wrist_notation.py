@@ -136,17 +136,21 @@ def inverse_claim(
     forward: sp.Matrix,
     label: str,
     outer: tuple[str, str],
+    middle: str,
     free: str,
 ) -> None:
-    """The outer angles, which the paper prints twice, under their condition."""
+    """The outer angles, which the paper prints twice, under a condition on the ``middle`` one.
+
+    It writes theta in the condition both times.
+    """
     first, last = outer
-    regular = rf"If $\sin \theta \neq 0$, we have ${FIRST % first}$ [...] ${LAST % last}$"
+    formulas = rf"we have ${FIRST % first}$ [...] ${LAST % last}$"
     claim(
         label,
-        f"“{regular}”",
+        rf"“If $\sin \theta \neq 0$, {formulas}”",
         partial(by_cases, wrist, forward),
-        corrected=rf"“{regular}; if $\sin \theta = 0$, we have ${ALIGNED % (last, first)}$ for any "
-        f"{free}”",
+        corrected=rf"“If $\sin {middle} \neq 0$, {formulas}; if $\sin {middle} = 0$, we have "
+        rf"${ALIGNED % (last, first)}$ for any {free}”",
         erratum="aligned-axes",
         readings=[
             Reading("the upper signs of all formulas belong together, and so do the lower ones"),

@@ -109,7 +109,8 @@ def _reached(
     if subject.modes:
         modes = image.p.shape[1]
         exists = (image.status == OK).ravel()
-        reached, rows = image.p.reshape(len(q) * modes, -1), np.repeat(rows, modes)
+        reached = image.p.reshape(len(q) * modes, *image.p.shape[2:])
+        rows = np.repeat(rows, modes)
     else:
         reached = image
         exists = np.isfinite(image.reshape(len(q), -1)).all(axis=1)
@@ -126,8 +127,10 @@ def _again(subject: Robot, module: Any, lengths: Array, q: Array, reached: Array
     size = np.repeat(subject.lengths_of(lengths).sum(axis=1), branches) + np.nan_to_num(slides)
     size = np.where(size > 0, size, 1.0)
     if subject.modes:
-        error = np.abs(image.p - target[:, None, :])
-        miss = _relative(subject, error, size[:, None, None]).max(axis=2)
+        error = np.abs(image.p - target[:, None])
+        if target.ndim == 2:
+            error = _relative(subject, error, size[:, None, None])
+        miss = error.reshape(*error.shape[:2], -1).max(axis=2)
         return np.asarray(np.where(np.isnan(miss), np.inf, miss).min(axis=1).reshape(n, branches))
     error = np.abs(image - target)
     if target.ndim == 2:

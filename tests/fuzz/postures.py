@@ -130,7 +130,7 @@ def _again(subject: Robot, module: Any, lengths: Array, q: Array, reached: Array
         error = np.abs(image.p - target[:, None])
         if target.ndim == 2:
             error = _relative(subject, error, size[:, None, None])
-        miss = error.reshape(*error.shape[:2], -1).max(axis=2)
+        miss = error.max(axis=tuple(range(2, error.ndim)))
         return np.asarray(np.where(np.isnan(miss), np.inf, miss).min(axis=1).reshape(n, branches))
     error = np.abs(image - target)
     if target.ndim == 2:

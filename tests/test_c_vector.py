@@ -60,7 +60,7 @@ def planes_of(arguments: str, real: type, known: dict[str, np.ndarray]) -> list[
     ):
         planes = np.zeros((int(size), POSTURES), real if kind == "real_t" else np.uint8)
         if const:
-            image = known.get(name, known.get("p") if name == "x" else None)
+            image = known.get(name, known.get("p") if name in ("x", "R") else None)
             planes[:] = random.uniform(-3, 3, planes.shape)
             if image is not None:  # there is none if the loop does not close
                 image = image[: len(planes)]

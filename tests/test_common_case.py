@@ -64,7 +64,8 @@ def arguments_at(module: ModuleType, name: str, q: np.ndarray) -> np.ndarray:
     (argument,) = getattr(module, name).inputs
     if argument.name == "q":
         return q
-    return module.pose(q) if argument.shape == (4, 4) else module.fk(q)
+    image = module.pose(q) if argument.shape == (4, 4) else module.fk(q)
+    return image.p[:, 0] if hasattr(image, "p") else image
 
 
 def planes(robot: str, name: str, q: np.ndarray) -> tuple[list[np.ndarray], object]:
@@ -100,11 +101,12 @@ def test_generated(robot: str, name: str) -> None:
         with np.errstate(all="ignore"):
             whole = kernel.compute(*arguments)
             *common, rare = kernel.common(*arguments)
-        assert rare.mean() <= most and (most < 1 or rare.any())
+        left_out = robot == "agile_wrist"  # its forward map gives no orientation that is rare
+        assert rare.mean() <= most and (most < 1 or rare.any() or left_out)
         whole, common = ([np.asarray(v) for v in values] for values in (whole, common))
         statuses = [v for v in whole if v.dtype == np.uint8]
-        # of an H6AR, SINGULAR also where joints do not determine it
-        if statuses and not robot.startswith("h6ar"):
+        # of some loops, SINGULAR also where joints do not determine the posture
+        if statuses and not robot.startswith(("h6ar", "agile_wrist")):
             assert rare[(np.array(statuses) == SINGULAR).any(axis=0)].all()
         for a, b in zip(common, whole, strict=True):
             kept = np.broadcast_to(a, rare.shape)[~rare]

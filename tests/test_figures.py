@@ -67,8 +67,10 @@ def test_the_axis_of_a_joint_is_what_its_link_turns_about(name: str) -> None:
             continue
         moved = q + step * np.eye(len(q))[robot.JOINTS.index(joint)]
         there = r.points(moved)[0]
-        foot = robot.SKELETON.joints[joint].points[0]
-        for link in robot.SKELETON.links.values():
+        links = robot.SKELETON.links.values()
+        points = robot.SKELETON.joints[joint].points
+        foot = next((p for p in points if any(p in link for link in links)), points[0])
+        for link in links:
             for k in [robot.SKELETON.points.index(p) for p in link if foot in link]:
                 if np.linalg.norm(there[k] - here[k]) > 1e-6 * r.size:
                     np.testing.assert_allclose(

@@ -22,6 +22,7 @@ MODULES = generated() / "js"
 ROBOTS = sorted(path.stem for path in (generated() / "numpy").glob("[a-z]*.py"))
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 EXPECTED = {
+    "agile_wrist": {OK, SINGULAR, INVALID},
     "rpr_planar": {OK, SINGULAR},
     "spherical_wrist": {OK, SINGULAR, INVALID},
 }

@@ -16,7 +16,7 @@ ERRATA = {
         ),
         "rows-lost": (Gravity.OMISSION, {"list of eq. (10)": "incomplete"}),
         "rounding": (
-            Gravity.RESULT,
+            Gravity.STATEMENT,
             {"Results A, x": "refuted", "Results B, x": "refuted", "Results B, y": "refuted"},
         ),
         "quadrant": (Gravity.OMISSION, {"use of eqs. (3) and (4)": "incomplete"}),
@@ -30,7 +30,6 @@ ERRATA = {
             Gravity.MOTION,
             {"eq. (14)": "refuted", "eq. (15)": "refuted", "same matrix": "refuted"},
         ),
-        "number-of-equation": (Gravity.MISPRINT, {"form of eq. (14)": "refuted"}),
         "second-solution": (
             Gravity.OMISSION,
             {"Results C, Euler angles": "incomplete", "Results C, D-H angles": "incomplete"},

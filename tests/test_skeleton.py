@@ -79,6 +79,8 @@ def test_hand_is_where_the_forward_map_says(robot: Any) -> None:
     else:
         found = robot.fk(q)
         expected = found.p if hasattr(found, "p") else found
+    if len(robot.TASK) == 9 and expected.ndim == 4:  # of a wrist, the middle of its three axes
+        expected = robot.Parameters().r * expected.sum(axis=-1) / 3
     if robot.TASK == ("psi",):  # the angle of a rocker, whose end is the hand
         base = robot.skeleton(q)[..., robot.SKELETON.points.index("A2"), :]
         arm = robot.Parameters().L4 * np.stack([np.cos(expected), np.sin(expected)], -1)[..., 0, :]

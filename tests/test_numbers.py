@@ -1,19 +1,18 @@
 """Arms whose lengths are plain numbers: derived as with symbols, and checked as strictly."""
 
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
+from chains import printed
 
 import closedform.check.crosscheck
 from closedform.check.crosscheck import check_forward, check_inverse, module_backend
 from closedform.check.runners.python import module
 from closedform.check.samples import Sample
-from closedform.emit.pages import pages, shared_files
 from closedform.model.derivation import Derivation
 from closedform.pipeline import run as pipeline
-from closedform.proof.prove import Proof, prove
+from closedform.proof.prove import prove
 from closedform.scaffold.new import new
 
 UNREACHABLE = 1
@@ -40,13 +39,6 @@ def derivation(folder: Path, text: str, name: str = "arm", kind: str = "dh") -> 
     return pipeline.load(pipeline.find([str(script)])[0])
 
 
-def printed(folder: Path, d: Derivation) -> ModuleType:
-    """The NumPy module of a derivation, unproved."""
-    done = pages(d, Proof(d.name, "own", (), 0, ()), ["numpy"])
-    pipeline.write(folder, {**done.files, **shared_files([done.share], ["numpy"])})
-    return module(folder / "numpy", d.name)
-
-
 @pytest.mark.parametrize(
     ("table", "branches"),
     [
@@ -65,7 +57,7 @@ def test_an_arm_in_numbers_is_proved(table: str, branches: int, tmp_path: Path) 
 
 def test_nearer_to_the_axis_than_an_offset_there_is_no_answer(tmp_path: Path) -> None:
     """If the coefficients of a sine and a cosine vanish, the number beside them does not."""
-    arm = printed(tmp_path, derivation(tmp_path, HEADER + ELBOW))
+    arm = printed(derivation(tmp_path, HEADER + ELBOW), tmp_path)
     q, status = arm.ik([[0.0, 0.0, 0.6], [1e-13, 0.0, 0.6], [0.05, 0.0, 0.6]])
     assert (status == UNREACHABLE).all() and np.isnan(q).all()
 
@@ -83,7 +75,7 @@ def test_the_point_of_an_axis_may_be_any_on_it(tmp_path: Path) -> None:
     text = "".join(AXIS.format(i, w, p) for i, (w, p) in enumerate(axes, 1))
     text += "[home]\nposition = [0.817, 0.191, -0.006]\n"
     text += "rotation = [[-1, 0, 0], [0, 0, 1], [0, 1, 0]]\n"
-    arm = printed(tmp_path, derivation(tmp_path, text, kind="screws"))
+    arm = printed(derivation(tmp_path, text, kind="screws"), tmp_path)
     q = np.random.default_rng(5).uniform(-3, 3, (40, 6))
     found = arm.ik(arm.pose(q))
     gaps = np.abs(np.angle(np.exp(1j * (found.q - q[:, None])))).max(-1)
@@ -97,7 +89,7 @@ def findings(
     d = derivation(folder, table)
     other = folder / "other"
     other.mkdir()
-    module = printed(other, derivation(other, printed_from) if printed_from else d)
+    module = printed(derivation(other, printed_from) if printed_from else d, other)
     backend = module_backend("numpy", module)
     return [x for f in functions for x in check_forward(d, d[f], backend).failures]
 
@@ -126,7 +118,7 @@ def test_a_posture_at_two_limits_at_once_is_not_lost(
     posture = np.array([[1e-6 - np.pi, -np.pi - e, -quarter, np.pi, e - np.pi, 0.1 - quarter]])
     sample = Sample("two limits", posture, ())
     monkeypatch.setattr(closedform.check.crosscheck, "inverse_postures", lambda *_: [sample])
-    backend = module_backend("numpy", printed(tmp_path, d))
+    backend = module_backend("numpy", printed(d, tmp_path))
     (inverse,) = d.inverses
     assert check_inverse(d, d["ik"], inverse, backend).failures == []
     quarters = Sample("elsewhere", np.array([[0.3, 1.0, 0.7, 0.4, 0.9, 0.2]]), ())

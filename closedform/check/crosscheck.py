@@ -31,6 +31,7 @@ from closedform.model.tolerances import DOUBLE, FLOAT, Tolerances
 WELL_CONDITIONED = 3.0
 """A larger error, in ulps, is compared with how far the value moves if the inputs do."""
 CUT, TURN, HIGH = 3.0, 2 * math.pi, 200
+"""An angle beyond the first is beside the cut at pi; a turn; the bits with which one is added."""
 
 SUSPECTS = 5
 """The number of worst answers on and near the singular set that are evaluated in Arb."""

@@ -168,7 +168,10 @@ def parser() -> argparse.ArgumentParser:
         "--modified", action="store_true", help="the dh table is in Craig's (proximal) convention"
     )
     new.add_argument(
-        "--given", metavar="JOINT", default="", help="of 7 joints, the one that the inverse takes"
+        "--given",
+        metavar="JOINT",
+        default="",
+        help="of 7 joints, the one that the inverse takes, or arm_angle",
     )
     new.add_argument(
         "--explain", action="store_true", help="say what was recognised and which chains were tried"

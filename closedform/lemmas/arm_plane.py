@@ -8,10 +8,9 @@ import sympy as sp
 
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain
-from closedform.lemmas.pairs import direction
+from closedform.lemmas.pairs import any_pair, direction
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.lemmas.rotate import Because, terms
-from closedform.model.functions import real
 from closedform.model.inverse import Degenerate, Relation
 from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
@@ -69,7 +68,7 @@ def arm_angle(chain: Chain, shoulder: sp.Matrix, v: Sequence[sp.Expr], *, sense:
         program=p,
         notes=(f"It is undefined, and 0, where {UPRIGHT}.",),
     )
-    return Pair(sp.sin(symbol), sp.cos(symbol))
+    return Pair.of(symbol)
 
 
 @chain_lemma("M v = w, at the arm angle", "the rotation M")
@@ -138,9 +137,10 @@ def arm_plane(
             r"sines and cosines of these."
         ),
     )
-    (v_c, v_s), (w_c, w_s), (a_s, a_c), (c_, s_) = (_circle(f"tau{k}") for k in range(1, 5))
-    at = {v1: far * v_c, v2: far * v_s, c: c_, s: s_}
-    given = at | {w1: far * a_s * w_c, w2: far * a_s * w_s, aside: far * a_s, w3: far * a_c}
+    beta, phi, chi, angle = (any_pair(f"tau{k}") for k in range(1, 5))
+    at = {v1: far * beta.c, v2: far * beta.s, c: angle.c, s: angle.s}
+    given = at | {aside: far * chi.s, w3: far * chi.c}
+    given |= {w1: given[aside] * phi.c, w2: given[aside] * phi.s}
     zero = dict.fromkeys((w1, w2, aside), sp.S.Zero)
     nothing = dict.fromkeys((far, v1, v2, w3), sp.S.Zero)
     cases = (
@@ -156,12 +156,6 @@ def arm_plane(
     )
     means = dict(zip(M, unknown, strict=True))
     return Applied(lemma, M, means, given, cases, relations=relations)
-
-
-def _circle(name: str) -> tuple[sp.Expr, sp.Expr]:
-    """A point of the unit circle, in a free symbol."""
-    t = real(name)
-    return (1 - t**2) / (1 + t**2), 2 * t / (1 + t**2)
 
 
 __all__ = ["arm_angle", "arm_plane"]

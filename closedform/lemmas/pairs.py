@@ -10,10 +10,16 @@ from __future__ import annotations
 
 import sympy as sp
 
-from closedform.model.functions import choose
+from closedform.model.functions import choose, real
 from closedform.model.pair import Pair
 
 
 def direction(y: sp.Expr, x: sp.Expr, length: sp.Expr, undefined: sp.Basic = sp.false) -> Pair:
     """The pair of ``atan2(y, x)`` for a vector of the given length; zero where it is undefined."""
     return Pair(choose(undefined, 0, y / length), choose(undefined, 1, x / length))
+
+
+def any_pair(name: str) -> Pair:
+    """The pair of any angle but a half turn, in a free symbol."""
+    t = real(name)
+    return Pair(2 * t / (1 + t**2), (1 - t**2) / (1 + t**2))

@@ -11,6 +11,7 @@ from closedform.algebra.resolvent import Resolvent
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.links import named
+from closedform.lemmas.pairs import any_pair
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.model.functions import choose, real, sign_of
 from closedform.model.inverse import Degenerate, Relation
@@ -172,8 +173,9 @@ def _half(
 def _in_free_symbols(coefficients: Sequence[sp.Symbol], u: sp.Symbol) -> dict[sp.Symbol, sp.Expr]:
     """The coefficients whose resolvent has the root u, for any size and half of an angle."""
     p, q, a, b, e = coefficients
-    size, t = sp.Symbol("kappa", positive=True), real("tau")
-    c, s = (1 - t**2) / (1 + t**2), 2 * t / (1 + t**2)
+    size = sp.Symbol("kappa", positive=True)
+    turn = any_pair("tau")
+    s, c = turn.s, turn.c
     A, B = a * c + b * s, b * c - a * s
     rest = size * u + (A**2 / (1 + u) - B**2 / (1 - u)) / size
     return {p: size * (c**2 - s**2), q: 2 * size * s * c, e: rest}

@@ -10,9 +10,8 @@ import sympy as sp
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain
 from closedform.lemmas.links import degenerate, differs_from_zero, named, vanishing
-from closedform.lemmas.pairs import direction
+from closedform.lemmas.pairs import any_pair, direction
 from closedform.lemmas.registry import chain_lemma, theorem
-from closedform.model.functions import real
 from closedform.model.inverse import Relation
 from closedform.model.lemma import Lemma, label
 
@@ -78,8 +77,8 @@ def rotate(
         1,
         roles=((r"\theta", x), ("w", sp.Matrix([w1, w2])), ("v", sp.Matrix([v1, v2]))),
     )
-    t = real("tau")
-    c, s = (1 - t**2) / (1 + t**2), 2 * t / (1 + t**2)
+    turn = any_pair("tau")
+    s, c = turn.s, turn.c
     given = {v1: w1 * c - w2 * s, v2: w1 * s + w2 * c}
     meaning = f"the axis of {x} is met; {x} is free, 0 is returned."
     cases = degenerate(flag, [vanishing(w1, w2, v1, v2)], x, meaning)

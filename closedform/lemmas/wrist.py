@@ -10,7 +10,7 @@ import sympy as sp
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.chain import Chain, Choice
 from closedform.lemmas.links import degenerate, differs_from_zero, named, vanishing
-from closedform.lemmas.pairs import direction
+from closedform.lemmas.pairs import any_pair, direction
 from closedform.lemmas.registry import chain_lemma, theorem
 from closedform.lemmas.rotate import Because, terms
 from closedform.model.functions import real
@@ -119,8 +119,8 @@ def spin(
         {x: pair.angle},
         1,
     )
-    t = real("tau")
-    c, s = (1 - t**2) / (1 + t**2), 2 * t / (1 + t**2)
+    turn = any_pair("tau")
+    s, c = turn.s, turn.c
     about_z = dict(zip(N[:, :2], (c, -s, s, c, sp.S.Zero, sp.S.Zero), strict=True))
     relations = tuple(
         Relation(N[i, 2], terms(factors), "that a rotation is one about z")

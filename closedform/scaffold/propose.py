@@ -15,7 +15,7 @@ import sympy as sp
 
 from closedform.mechanics.arm import Serial
 from closedform.mechanics.frames import rotation
-from closedform.scaffold import arm_angle
+from closedform.scaffold.arm_angle import NAME as ARM_ANGLE
 from closedform.scaffold.arm_angle import ArmAngleMaker
 from closedform.scaffold.chainlinks import Single, Singles, singles
 from closedform.scaffold.known import KnownMaker
@@ -36,7 +36,7 @@ def propose(
     ``arm_angle``.
     """
     tried: list[Tried] = []
-    names = {arm_angle.NAME, *(j.name for j in arm.joints)}
+    names = {ARM_ANGLE, *(j.name for j in arm.joints)}
     if given and (len(arm.joints) != 7 or given not in names):
         raise NoChainError(
             f"{given} cannot be given",
@@ -86,7 +86,7 @@ def _candidates(arm: Serial, given: str) -> Iterator[tuple[str, Maker, Callable[
         return
     whole = singles(arm)
     task = arm.coordinates()
-    if n == 7 and given == arm_angle.NAME:
+    if n == 7 and given == ARM_ANGLE:
         angled = ArmAngleMaker(arm)
         yield "the arm angle", angled, partial(angled.solved_by_arm_angle, whole)
     elif n == 7:

@@ -283,7 +283,7 @@ class SubproblemMaker(Maker):
         self.add("far = ik.let('far', sqrt(p.dot(p)))")
         far = sp.Symbol("far")
         c = (far**2 - sp.simplify(t.dot(t) + u.dot(u))) / 2 - sp.simplify(e[2] * u[2])
-        third = self.by_distance(three, e, u, c, "(far + ik.size/2**44)/2")
+        third = self._by_distance(three, e, u, c, "(far + ik.size/2**44)/2")
         inside = times(two.end, f"(turned({third}) * {source(u)})")
         self.vector("carried", f"{source(t)} + {inside}")
         v = point("carried")
@@ -405,7 +405,7 @@ class SubproblemMaker(Maker):
         self.solve("quartic", f"{arguments}, {square}, {LINE}, {SIDE}, on_circle", pair, 4)
         return pair
 
-    def by_distance(self, joint: Single, e: Any, u: Any, c: Any, scale: str) -> str:
+    def _by_distance(self, joint: Single, e: Any, u: Any, c: Any, scale: str) -> str:
         """Solve ``e . Rz(x) u`` by a distance; the equation is divided by the size of the arm."""
         a, b = map(sp.simplify, turning(u, e))
         self.require(

@@ -190,6 +190,9 @@ FORGERIES: dict[str, Document] = {
     "branches that are counted by the inverse itself": certificate(
         ["0"], kind="inverse", counts=[[0, 0]], branches=2, count=2, **{"per branch": 1}
     ),
+    "one branch, because nothing is counted": certificate(
+        ["0"], kind="inverse", counts=[], branches=1, **{"per branch": 1}
+    ),
     "x/0 = 0": certificate(["0", ["^", 0, -1], ["*", 0, 1]], zero=[2]),
     "no solutions, because a relation is one of an identity": certificate(
         [X, ["^", 0, 2], "-1", ["+", 1, 2]],

@@ -115,8 +115,7 @@ def condition_number(d: Derivation, bar: FiveBar) -> None:
     form = sp.expand((sp.Matrix([[u, w]]) * M * M.T * sp.Matrix([u, w]))[0])
     claim(
         "positive-semidefinite",
-        "“the square roots of the nonnegative eigenvalues of the {positive}-semidefinite m "
-        "× m matrix”",
+        "“the square roots of the nonnegative eigenvalues of the {positive}-semidefinite … matrix”",
         lambda sign: Identity(form, sign * sum(e**2 for e in sp.Matrix([[u, w]]) * M)),
         phrases=[{"positive": 1, "negative": -1}],
         readings=[Reading("shown for a matrix of 2 rows and 3 columns")],

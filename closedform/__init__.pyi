@@ -34,6 +34,7 @@ from closedform.lemmas.links import two_links as two_links
 from closedform.lemmas.links import zyz as zyz
 from closedform.lemmas.loop import parallel as parallel
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
+from closedform.lemmas.platform import platform as platform
 from closedform.lemmas.quartic import OnCircle as OnCircle
 from closedform.lemmas.quartic import quartic as quartic
 from closedform.lemmas.registry import chain_lemma as chain_lemma

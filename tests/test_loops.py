@@ -558,30 +558,3 @@ def test_the_name_of_a_file_stays_a_text(tmp_path: Path) -> None:
     path.write_text(FIVE_BAR, "utf-8")
     script = new("arm", "loop", path).text
     assert not [n for n in ast.walk(ast.parse(script)) if isinstance(n, ast.Raise)]
-
-
-def test_three_legs_of_a_body_that_turns_have_no_closed_form(tmp_path: Path) -> None:
-    """The degree is said."""
-    legs = "".join(
-        f"""
-[bodies.rod{k}]
-length = "l"
-[joints.q{k}]
-between = ["ground", "crank{k}"]
-at = "A{k}"
-driven = true
-[joints.b{k}]
-between = ["crank{k}", "rod{k}"]
-at = "B{k}"
-[joints.c{k}]
-between = ["rod{k}", "hand"]
-at = "C{k}"
-[bodies.crank{k}]
-B{k} = [{k}, "L"]
-"""
-        for k in (1, 2, 3)
-    )
-    ground = "[bodies.ground]\n" + "".join(f"A{k} = [{k}, 0]\n" for k in (1, 2, 3))
-    hand = "[bodies.hand]\nP = [0, 0]\n" + "".join(f"C{k} = [{k}, 1]\n" for k in (1, 2, 3))
-    with pytest.raises(TableError, match="degree 6"):
-        written('hand = "P"\n' + ground + hand + legs, tmp_path)

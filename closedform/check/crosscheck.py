@@ -19,7 +19,7 @@ import numpy as np
 from flint import arb, ctx
 from numpy.typing import NDArray
 
-from closedform.algebra.balls import to_float
+from closedform.algebra.balls import Undetermined, to_float
 from closedform.check.samples import Sample, inverse_postures, joint_samples, perturbed
 from closedform.check.singular import singular_samples
 from closedform.check.truth import Solutions, Values, condition_of, kept, solutions_of, values_of
@@ -37,8 +37,9 @@ SUSPECTS = 5
 """The number of worst answers on and near the singular set that are evaluated in Arb."""
 
 NESTED = 64.0
-"""The natural scale is at most this many times the largest value, parameter or numerical length.
-In a long chain of steps it grows with every step and says nothing any more."""
+"""The natural scale is at most this many times the largest value, parameter or numerical length (of
+a product of lengths beside a pose, a power of the largest).  In a long chain of steps it grows with
+every step and says nothing any more."""
 
 MENTIONED = 5
 """So many failures of a function are written down; then there is nothing left to find out."""
@@ -176,29 +177,43 @@ def _compare(
     rows, computed, exists = rows[defined], computed[defined], exists[defined]
     lengths = [abs(p) for p in (*sample.parameters, *values.lengths)]
     scales = values.scales(rows, backend.dtype)
+    powers = values.powers(rows)
     middle, radius = values.exact.balls(rows)
     # an angle just above -pi may be rounded to -pi, which is returned as pi
     turned = values.angles & (computed > CUT) & (middle < -CUT)
-    bounds = _ulp_bounds(computed, middle + TURN * turned, radius, scales, lengths, backend)
+    bounds = _ulp_bounds(computed, middle + TURN * turned, radius, scales, lengths, powers, backend)
     bounds[exists <= 0] = 0.0
     finding.compared += int((exists > 0).sum())
     largest: dict[Any, float] = {}
+    unsettled: set[Any] = set()
     for place in np.argsort(-bounds, axis=None):
         row, k = np.unravel_index(place, bounds.shape)
         if not bounds[row, k] > finding.worst:
             break
-        exacts = values.exact.exactly(rows[row])
+        if row in unsettled:
+            continue
+        try:
+            exacts = values.exact.exactly(rows[row])
+        except Undetermined:  # whether it is at a pole, where irrational numbers cancel
+            unsettled.add(row)
+            continue
         if row not in largest:
             sizes = [abs(to_float(e)) for e in exacts if e.is_finite()]
             largest[row] = max([*sizes, *lengths], default=1.0)
-        most = NESTED * largest[row]
-        scale = min(scales[row, k], most) if math.isfinite(scales[row, k]) else math.inf
+        most = NESTED * max(largest[row], powers[row, k])
+        scale = float(min(scales[row, k], most)) if math.isfinite(scales[row, k]) else math.inf
         exact = _turned(exacts[k]) if turned[row, k] else exacts[k]
         error = _ulps(computed[row, k], exact, scale, backend)
         if error > WELL_CONDITIONED:
-            scale += _variation(values, int(k), rows[row], exacts[k], backend) / backend.eps
+            scale += float(_variation(values, int(k), rows[row], exacts[k], backend)) / backend.eps
             error = _ulps(computed[row, k], exact, scale, backend)
+        if error > WELL_CONDITIONED and values.beside_pose:
+            amplified = float(values.amplified(rows[row : row + 1], backend.dtype)[0, k])
+            if backend.eps * amplified >= scales[row, k]:  # a divisor is a rounding
+                continue
+            error = _ulps(computed[row, k], exact, scale + amplified, backend)
         finding.see(error, lambda: f"{sample.name}, entry {k} at {rows[row].tolist()}")  # noqa: B023
+    finding.compared -= int((exists[[*unsettled]] > 0).sum())
 
 
 def _turned(angle: arb) -> arb:
@@ -212,6 +227,7 @@ def _ulp_bounds(
     radius: NDArray[Any],
     scales: NDArray[Any],
     lengths: Sequence[float],
+    powers: NDArray[Any],
     backend: Backend,
 ) -> NDArray[np.float64]:
     """What no error exceeds, in the same units; infinite where nothing is known."""
@@ -219,7 +235,8 @@ def _ulp_bounds(
         sizes = np.where(np.isfinite(radius), np.maximum(abs(middle) - radius, 0), 0)
         most = NESTED * sizes.max(axis=1, initial=max(lengths, default=0.0))
         tiny = float(np.finfo(backend.dtype).tiny)
-        size = np.maximum(np.maximum(np.minimum(scales, most[:, None]), sizes), tiny)
+        most = np.maximum(most[:, None], NESTED * powers)
+        size = np.maximum(np.maximum(np.minimum(scales, most), sizes), tiny)
         unit = np.ldexp(backend.eps, np.frexp(size)[1] - 1)
         bounds = (abs(computed - middle) + radius) / np.maximum(unit, 5e-324)
         bounds[~np.isfinite(bounds)] = np.inf

@@ -60,7 +60,7 @@ def parameter_sets(derivation: Derivation, rng: np.random.Generator) -> Iterator
 
 
 def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> list[Sample]:
-    """Inputs of a function of joint values (or of any free real numbers)."""
+    """Inputs of a function of joint values (or of any free real numbers, or of a pose)."""
     rng = np.random.default_rng(seed)
     n = len(function.symbols)
     if n == 0:
@@ -73,6 +73,16 @@ def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> 
         "tiny": rng.choice(TINY, (8, n)) * rng.choice((-1, 1), (8, n)),
         "huge": rng.choice(HUGE, (24, n)) * rng.uniform(-1, 1, (24, n)),
     }
+    if len(function.inputs) > 1:  # a pose and the joints that belong to it differ less in size
+        lengths = Degrees([e for _, signs in function.cases() for e in function.values(signs)])
+        sized = np.array([s in lengths.symbols for s in function.symbols])
+        rows["huge"][:, sized] = rng.uniform(-np.pi, np.pi, (24, sized.sum()))
+    column = 0
+    for argument in function.inputs:
+        if argument.shape == (4, 4):
+            for values in rows.values():
+                values[:, column : column + 16] = _poses(values[:, column : column + 6])
+        column += argument.size
     return [
         Sample(
             name,
@@ -82,6 +92,20 @@ def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> 
         for parameters in parameter_sets(derivation, rng)
         for name, values in rows.items()
     ]
+
+
+def _poses(values: Array) -> Array:
+    """A pose for each row of three angles about x, y and z, and a position."""
+    turned = np.eye(3)
+    for k, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
+        about = np.tile(np.eye(3), (len(values), 1, 1))
+        about[:, i, i] = about[:, j, j] = np.cos(values[:, k])
+        about[:, j, i] = np.sin(values[:, k])
+        about[:, i, j] = -about[:, j, i]
+        turned = turned @ about
+    poses = np.tile(np.eye(4), (len(values), 1, 1))
+    poses[:, :3, :3], poses[:, :3, 3] = turned, values[:, 3:6]
+    return poses.reshape(len(values), 16)
 
 
 def inverse_postures(
@@ -139,14 +163,49 @@ def _one_singular(rng: np.random.Generator, n: int) -> Array:
     return np.array(rows)
 
 
+class Degrees:
+    """The degrees of expressions in lengths, at most, and which symbols count as lengths.
+
+    A sine or a cosine has none, a product those of its factors together.
+    """
+
+    def __init__(self, exprs: Sequence[sp.Expr]):
+        self.symbols: set[sp.Basic] = set()
+        self._known: dict[sp.Basic, float] = {}
+        self.degrees = [self._of(sp.sympify(e, strict=True)) for e in exprs]
+
+    def _of(self, e: sp.Basic) -> float:
+        if e not in self._known:
+            self._known[e] = self._found(e)
+        return self._known[e]
+
+    def _found(self, e: sp.Basic) -> float:
+        if e.is_Symbol:
+            self.symbols.add(e)
+            return 1.0
+        if isinstance(e, sp.Mul):
+            return sum(map(self._of, e.args))
+        if isinstance(e, sp.Pow) and e.exp.is_Number:
+            return float(e.exp) * self._of(e.base)
+        if isinstance(e, sp.Piecewise):
+            return max(self._of(branch) for branch, _ in e.args)
+        if isinstance(e, (sp.Add, sp.Abs, sp.Max, sp.Min)):
+            return max(map(self._of, e.args))
+        return 0.0
+
+
 class Magnitudes:
     """The natural scales of values: all signs positive, sines and cosines at their largest.
 
-    Divisors keep their value.  Each part of a nested expression is visited once, because as a tree
-    it would be far too large.
+    Divisors keep their value.  If they are ``amplified``, a quotient counts as often as the natural
+    scale of its divisor is larger than the divisor.  Each part of a nested expression is visited
+    once, because as a tree it would be far too large.
     """
 
-    def __init__(self, symbols: Sequence[sp.Symbol], exprs: Sequence[sp.Expr]):
+    def __init__(
+        self, symbols: Sequence[sp.Symbol], exprs: Sequence[sp.Expr], *, amplified: bool = False
+    ):
+        self._amplified = amplified
         self._places = {s: k for k, s in enumerate(symbols)}
         self._steps: list[Callable[[list[Any], Sequence[Any]], Any]] = []
         self._known: dict[sp.Basic, int] = {}
@@ -156,7 +215,7 @@ class Magnitudes:
 
     def __call__(self, rows: Array, dtype: type = float) -> Array:
         """A row a point: infinite where the float type overflows, zero where no value exists."""
-        found = self._evaluate.settled(rows, inaccurate(bits=40))
+        found = self._evaluate.settled(rows, inaccurate(bits=40), defined=False)
         with np.errstate(all="ignore"):
             given = list(abs(np.concatenate([rows, found], axis=1)).astype(dtype).T)
             done: list[Any] = []
@@ -194,4 +253,9 @@ class Magnitudes:
             return lambda done, given: np.power(done[base], power)
         self._divisors.append(e)
         place = len(self._places) + len(self._divisors) - 1
+        if self._amplified and isinstance(e, sp.Pow) and e.exp.is_Number:
+            inner, power = self._place(e.base), float(e.exp)
+            return lambda done, given: (
+                given[place] * np.maximum(1.0, done[inner] / given[place] ** (1 / power))
+            )
         return lambda done, given: given[place]

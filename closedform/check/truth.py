@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any, TypeVar
 
 import numpy as np
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from closedform.algebra.balls import Undetermined, free_symbols, to_float
 from closedform.check.rows import RowEvaluator, beside
-from closedform.check.samples import Magnitudes, Sample, with_parameters
+from closedform.check.samples import Degrees, Magnitudes, Sample, with_parameters
 from closedform.lemmas.chain import numbers_of_tool
 from closedform.lower import lower
 from closedform.model.derivation import Derivation
@@ -60,10 +60,28 @@ class Values:
         symbols = symbols_of(derivation, function)
         self.exact = RowEvaluator(symbols, self.exprs)
         self.scales = Magnitudes(symbols, self.exprs)
+        self._symbols = symbols
+        self.beside_pose = len(function.inputs) > 1
+        """Whether it takes a pose and joints: samples of these do not close the loop, so factors
+        that belong together cancel less well."""
         self.lengths = numbers_of_tool(derivation)
+        degrees = Degrees(self.exprs if self.beside_pose else ())
+        self._degrees = np.array(degrees.degrees or [0.0] * len(self.exprs))
+        self._sized = [k for k, s in enumerate(symbols) if s in degrees.symbols]
         self.operations = sum(lower(function, derivation).operations().values())
         self._bounds = [_margins(function, symbols, s) for s in signs]
         self._flags = [_margins(function, symbols, s, Vanishes) for s in signs]
+
+    @cached_property
+    def amplified(self) -> Magnitudes:
+        """The scales with what divisors that nearly cancel amplify."""
+        return Magnitudes(self._symbols, self.exprs, amplified=True)
+
+    def powers(self, rows: Array) -> Array:
+        """Of each entry, the largest length to the power of its degree; 0 if that is at most 1."""
+        longest = abs(rows[:, self._sized]).max(axis=1, initial=0.0)[:, None]
+        with np.errstate(over="ignore"):
+            return np.where(self._degrees > 1, longest ** np.maximum(self._degrees, 1.0), 0.0)
 
     def existence(self, rows: Array, slack: float) -> Array:
         """Of each entry: 1 where it exists, -1 where not, 0 within ``slack`` of the boundary."""

@@ -39,8 +39,8 @@ class Carried:
         joints = tuple(leg.joint for _, leg in self.driven)
         if joints != self.d.actuated:
             raise ShapeError(
-                f"{self.d.name}: the legs are driven by {_listed(joints)}, but the joints of the "
-                f"derivation are {_listed(self.d.actuated)}; give the legs in this order"
+                f"{self.d.name}: the legs are driven by {listed(joints)}, but the joints of the "
+                f"derivation are {listed(self.d.actuated)}; give the legs in this order"
             )
 
     @property
@@ -132,5 +132,5 @@ def in_space(place: sp.Matrix) -> list[sp.Expr]:
     return [*place, *[sp.S.Zero] * (3 - len(place))]
 
 
-def _listed(symbols: Sequence[sp.Symbol]) -> str:
+def listed(symbols: Sequence[sp.Symbol]) -> str:
     return ", ".join(map(str, symbols))

@@ -112,7 +112,7 @@ class Determined:
     Both are nonnegative, and the forward map amplifies rounding errors by up to ``scale / value``;
     with ``squares`` they are squares of such quantities.  If this amplification is too large for
     the round trip, the status is SINGULAR; the answer does not change.  The article prints the
-    value as ``name``, which is LaTeX, if it has one.
+    value as ``name`` and the scale as ``scale_name``, which are LaTeX, if it has them.
     """
 
     value: sp.Expr
@@ -120,6 +120,7 @@ class Determined:
     meaning: str
     squares: bool = False
     name: str = ""
+    scale_name: str = ""
 
 
 @dataclass(frozen=True)
@@ -420,8 +421,10 @@ class Program:
         *,
         squares: bool = False,
         name: str = "",
+        scale_name: str = "",
     ) -> None:
-        self.body.append(Determined(value, sp.sympify(scale, strict=True), meaning, squares, name))
+        exact = sp.sympify(scale, strict=True)
+        self.body.append(Determined(value, exact, meaning, squares, name, scale_name))
 
     def require(self, values: Sequence[sp.Expr], scale: Number, meaning: str) -> None:
         self.body.append(Require(tuple(values), sp.sympify(scale, strict=True), meaning))

@@ -24,7 +24,9 @@ A body has named points; two bodies meet in a point that both have, or that a jo
 points of the ground, and of a body that a driven joint moves, are where they are when the joint is
 zero; those of the hand are seen from the point of the hand.  A rod has a ``length`` instead of
 points.  The loops are cut at the rods: each keeps the distance of its ends.  A rod between the
-ground and the hand is a strut, which has no driven joint.
+ground and the hand is a strut, which has no driven joint.  A hand that may turn, because its rods
+end in several points and are not parallelograms, needs three driven joints in a plane and six in
+space.
 """
 
 from __future__ import annotations
@@ -55,17 +57,27 @@ from closedform.scaffold.tables import (
 
 GROUND = "ground"
 KINDS = ("revolute", "prismatic", "spherical", "universal")
-USED = {"d", "pi", "real", "coupled", "parallel", "Crank", "Slide", "Stretch", "Strut"}
-USED |= {"Derivation", "Paper", "Rational", "cos", "sin", "sqrt"}
+USED = {"d", "pi", "real", "coupled", "parallel", "platform"}
+USED |= {
+    "Crank",
+    "Slide",
+    "Stretch",
+    "Strut",
+    "Derivation",
+    "Paper",
+    "Rational",
+    "cos",
+    "sin",
+    "sqrt",
+}
 """Names that the written script uses itself."""
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 """Bodies and points."""
 AXES = "xyz"
+TASK = (*AXES, "yaw")
 UNSAID = "say what it measures"
-NO_CLOSED_FORM = {
-    (2, 3): "three legs of a body that turns in a plane lead to an equation of degree 6",
-    (3, 6): "six legs of a body that turns in space lead to an equation of degree 40",
-}
+TURNING = {2: 3, 3: 6}
+"""The number of driven joints of a hand that turns, in a plane and in space."""
 
 
 @dataclass(frozen=True)
@@ -144,6 +156,13 @@ def read_loop(path: Path) -> Loop:
 
 def _check_names(loop: Loop) -> None:
     """Refuse names that clash, because joints and parameters become variables of the script."""
+    if loop.hand not in loop.joints:
+        for name in TASK:
+            if name in loop.joints or name in loop.symbols | set(loop.parameters):
+                kind = "joint" if name in loop.joints else "parameter"
+                raise loop.error(
+                    f"{name} is a coordinate of the hand; give the {kind} another name"
+                )
     for name in sorted(loop.symbols - set(loop.parameters)):
         loop.parameters[name] = {}
     for name, given in loop.parameters.items():
@@ -151,8 +170,6 @@ def _check_names(loop: Loop) -> None:
         check_text(f"{loop.file}: {name}", given.get("meaning", ""), given.get("unit", ""))
         if name in loop.joints:
             raise loop.error(f"{name} is a joint and a parameter; rename one of them")
-        if name in AXES and loop.hand not in loop.joints:
-            raise loop.error(f"{name} is a coordinate of the hand; give the parameter another name")
 
 
 def _dimensions(bodies: Any, file: str) -> int:
@@ -252,6 +269,8 @@ class _Legs:
 
     def __init__(self, loop: Loop):
         self.loop = loop
+        self.turning = ""
+        """The body that is the hand, if it may turn."""
         angles = [n for n, given in loop.parameters.items() if given.get("unit") == "rad"]
         self.positive = {
             sp.Symbol(n, real=True): sp.Symbol(n, positive=True) for n in loop.symbols - set(angles)
@@ -401,18 +420,9 @@ class _Legs:
         body = next((b for b in far.between if b != rod and loop.hand in loop.bodies[b]), "")
         if not body or far.at not in loop.bodies[body]:
             raise loop.error(f"{far.name} does not lead to the hand {loop.hand}")
-        if rod and rod not in loop.parallelograms:
-            self.refuse_turning(body)
+        if rod not in loop.parallelograms:
+            self.turning = body
         return loop.bodies[body][far.at] - loop.bodies[body][loop.hand]
-
-    def refuse_turning(self, body: str) -> None:
-        n = len(self.driven())
-        known = NO_CLOSED_FORM.get((self.loop.dimensions, n))
-        why = f"; {known}, so there is no closed form" if known else ""
-        raise self.loop.error(
-            f"{body} may turn{why}.  If the rods are parallelograms, which keep it from turning, "
-            f"say so: parallelogram = true"
-        )
 
 
 def _tuple(v: sp.Matrix) -> str:
@@ -442,12 +452,14 @@ def loop_script(name: str, loop: Loop, origin: str) -> str:
             )
         driven, struts = found.legs(), found.struts()
         legs, task = [*struts, *driven], list(AXES[: loop.dimensions])
-        if len(legs) != loop.dimensions:
-            known = NO_CLOSED_FORM.get((loop.dimensions, len(driven)), "")
+        if found.turning:
+            _check_turning(found, len(driven), struts)
+            task = []
+        elif len(legs) != loop.dimensions:
             on_sphere = " beside its strut" if struts else ""
             raise loop.error(
                 f"{len(driven)} joints are driven, but a hand that does not turn needs "
-                f"{loop.dimensions - len(struts)}{on_sphere}" + (f"; {known}" if known else "")
+                f"{loop.dimensions - len(struts)}{on_sphere}"
             )
     table = Table()
     for leg in legs:
@@ -455,6 +467,23 @@ def loop_script(name: str, loop: Loop, origin: str) -> str:
             kind = "prismatic" if leg.joint.kind == "prismatic" else "revolute"
             add_joint(table, leg.joint.name, kind, loop.file)
     return "\n".join([*_head(name, loop, legs, task, origin), *_body(table, legs, task)]) + "\n"
+
+
+def _check_turning(found: _Legs, driven: int, struts: Sequence[LoopLeg]) -> None:
+    """Refuse a hand that may turn with too few driven joints, or too many."""
+    loop, body = found.loop, found.turning
+    if loop.parallelograms:
+        raise loop.error(
+            f"{body} may turn; either all of its rods have to be parallelograms, or none"
+        )
+    needed, where = TURNING[loop.dimensions], "a plane" if loop.dimensions == 2 else "space"
+    if struts or driven != needed:
+        instead = "a strut carries it" if struts else f"there are {driven}"
+        raise loop.error(
+            f"{body} may turn, so it needs {needed} driven joints in {where}, and {instead}.  "
+            f"If the rods are parallelograms, which keep it from turning, say so: "
+            f"parallelogram = true"
+        )
 
 
 def _coupled(found: _Legs, follower: Joint) -> list[LoopLeg]:
@@ -483,10 +512,10 @@ def _head(
     name: str, loop: Loop, legs: Sequence[LoopLeg], task: Sequence[str], origin: str
 ) -> list[str]:
     title = name.replace("_", " ").capitalize()
-    coupled = len(legs) == 2 and not legs[1].joint.driven
+    way = "platform" if not task else "coupled" if len(task) == 1 else "parallel"
     words = "  ".join(f"{leg.words[0].upper()}{leg.words[1:]}." for leg in legs)
     calls = sorted({leg.call.partition("(")[0] for leg in legs})
-    names = sorted([*calls, "Derivation", "Paper", "coupled" if coupled else "parallel", "real"])
+    names = sorted([*calls, "Derivation", "Paper", way, *["real"] * bool(task)])
     fractions = [number(given.get("value") or "1") for given in loop.parameters.values()]
     used = " ".join(leg.call for leg in legs) + "Rational(" * any(
         f.denominator != 1 for f in fractions
@@ -504,7 +533,7 @@ def _head(
         f'    "{title}",',
         f'    Paper("{name}", "{title}", ("the maker of the mechanism",)),',
         *wrapped_literal(words),
-        f"    task=[{', '.join(literal(x) for x in task)}],",
+        *([f"    task=[{', '.join(literal(x) for x in task)}],"] if task else []),
         ")",
     ]
     for symbol, given in loop.parameters.items():
@@ -536,6 +565,16 @@ def _body(table: Table, legs: Sequence[LoopLeg], task: Sequence[str]) -> list[st
         lines += [f'{x} = real("{x}")', "coupled(", "    d,"]
         return [*lines, *(f"    {leg.call}," for leg in legs), ")"]
     hand = ", ".join(f'real("{x}")' for x in task)
+    if not task:
+        return [
+            *lines,
+            "platform(",
+            "    d,",
+            "    [",
+            *(f"        {leg.call}," for leg in legs),
+            "    ],",
+            ")",
+        ]
     lines += ["parallel(", "    d,", f"    ({hand}),", "    ["]
     return [*lines, *(f"        {leg.call}," for leg in legs), "    ],", ")"]
 

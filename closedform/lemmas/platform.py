@@ -1,0 +1,482 @@
+"""A hand that turns and that legs carry: three of them in a plane, or six in space.
+
+:func:`platform` derives what has a closed form: the inverse with all working modes, the velocity
+and the singular sets.  The forward problem leads to an equation of a degree above four, so there is
+no ``fk``.  What depends on the posture is a function of the pose and of the joints.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from typing import Any
+
+import sympy as sp
+
+from closedform.algebra.shapes import ShapeError
+from closedform.algebra.solutions import count_solutions
+from closedform.lemmas.carried import listed, rate_of, square
+from closedform.lemmas.legs import Leg, Naming, Slide, Solution, Stretch, Strut, vector
+from closedform.lemmas.loop import SIGN, Choice, bounds_of, named_in, size_of, tell, where_free
+from closedform.mechanics.frames import hat, require_pose
+from closedform.model.derivation import Derivation, Step
+from closedform.model.functions import SINGLE, Program, branches, real
+from closedform.model.inverse import Inverse
+
+DEGREE_IN_SPACE = 40
+"""Of six points of a body that are at given distances from six points of the ground."""
+
+
+def platform(d: Derivation, legs: Sequence[Leg]) -> None:
+    """Derive and export a hand with three legs in a plane, or six in space.
+
+    Parameters
+    ----------
+    d
+        the derivation, with its parameters and joints; the legs are in the order of the joints.
+        Its task becomes ``x, y, yaw`` in a plane and the pose in space.  If it has no
+        ``singularities``, they are named after the legs
+    legs
+        see :mod:`closedform.lemmas.legs`; ``on_hand`` is seen in the frame of the hand
+
+    It exports ``ik``, ``jacobian_parallel`` (A), ``jacobian_serial`` (the diagonal of B),
+    ``jacobian_inverse`` (B^-1*A), ``singularities``, in a plane ``jacobian`` and ``determinant``,
+    and ``workspace_contains`` where the reach of the legs is limited.
+    """
+    m = Platform(d, tuple(legs))
+    if not d.singularities:
+        d.singularities = (*(f"leg {k}" for k, _ in m.numbered), "all legs")
+    loop = m.state_loop()
+    degree = _forward(m, loop)
+    _velocity(m, loop)
+    _export(m)
+    _inverse(m, loop, degree)
+
+
+@dataclass(frozen=True)
+class Platform:
+    """A hand that turns, and its legs."""
+
+    d: Derivation
+    legs: tuple[Leg, ...]
+
+    def __post_init__(self) -> None:
+        name, n = self.d.name, len(self.legs)
+        if n != {2: 3, 3: 6}.get(self.dimensions):
+            raise ShapeError(
+                f"{name}: {n} legs in {self.dimensions} dimensions; a hand that turns has three "
+                f"legs in a plane or six in space"
+            )
+        if any(isinstance(leg, Strut) for leg in self.legs):
+            raise ShapeError(f"{name}: a strut cannot carry a hand that turns")
+        joints = tuple(leg.joint for leg in self.legs)
+        if joints != self.d.actuated:
+            raise ShapeError(
+                f"{name}: the legs are driven by {listed(joints)}, but the joints of the "
+                f"derivation are {listed(self.d.actuated)}; give the legs in this order"
+            )
+        task = [str(e) for e in self.pose] if self.dimensions == 3 else ["x", "y", "yaw"]
+        if list(self.d.task) not in ([], task):
+            raise ShapeError(f"{name}: the task of this hand is {', '.join(task)}")
+        self.d.task = task
+        if self.spread == 0:
+            raise ShapeError(f"{name}: all legs end in the same point of the hand; it turns freely")
+
+    @property
+    def dimensions(self) -> int:
+        return len(self.legs[0].base)
+
+    @property
+    def meet(self) -> str:
+        """What the rods do where A is singular."""
+        if self.dimensions == 3:
+            return "the rods belong to one linear complex"
+        return "the rods pass through one point or are parallel"
+
+    @property
+    def numbered(self) -> list[tuple[int, Leg]]:
+        return [*enumerate(self.legs, 1)]
+
+    @cached_property
+    def pose(self) -> sp.Matrix:
+        """The target: x, y and yaw, or a homogeneous transform."""
+        if self.dimensions == 2:
+            return sp.Matrix([real("x"), real("y"), real("yaw")])
+        return sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
+
+    @property
+    def target(self) -> dict[str, Any]:
+        """The input that is the target, under its name."""
+        return {"x": tuple(self.pose)} if self.dimensions == 2 else {"T": self.pose}
+
+    @property
+    def position(self) -> sp.Matrix:
+        return self.pose[:2, 0] if self.dimensions == 2 else self.pose[:3, 3]
+
+    @property
+    def rotation(self) -> sp.Matrix:
+        if self.dimensions == 3:
+            return self.pose[:3, :3]
+        c, s = sp.cos(self.pose[2]), sp.sin(self.pose[2])
+        return sp.Matrix([[c, -s], [s, c]])
+
+    @cached_property
+    def places(self) -> list[sp.Matrix]:
+        """Where the rods end, in the frame of the hand."""
+        return [vector(leg.on_hand or [0] * self.dimensions) for leg in self.legs]
+
+    @property
+    def spread(self) -> sp.Expr:
+        """The mean squared distance of these ends from their centre."""
+        n = len(self.places)
+        centre = sum(self.places, sp.zeros(self.dimensions, 1)) / n
+        return sp.factor(sp.expand(sum(square(place - centre) for place in self.places) / n))
+
+    @cached_property
+    def arms(self) -> list[sp.Matrix]:
+        """The same, from the point that is the hand, in the frame of the base."""
+        return [self.rotation * place for place in self.places]
+
+    @cached_property
+    def rods(self) -> list[sp.Matrix]:
+        """The vectors along the rods, from their near ends to the hand."""
+        legs = zip(self.legs, self.arms, strict=True)
+        return [self.position + arm - leg.end() for leg, arm in legs]
+
+    @cached_property
+    def loop(self) -> tuple[sp.Expr, ...]:
+        """The equations of the loop: each rod keeps its length."""
+        return tuple(
+            square(rod) - sp.sympify(leg.rod, strict=True) ** 2
+            for leg, rod in zip(self.legs, self.rods, strict=True)
+        )
+
+    def state_loop(self) -> Step:
+        placed = zip(self.numbered, self.places, strict=True)
+        near_ends = {k: leg.end().T for k, leg in self.numbered}
+        return self.d.step(
+            "The loop",
+            f"{'Three' if self.dimensions == 2 else 'Six'} rods carry the hand.  Its pose is the "
+            "position p of one of its points, and R, by which it is turned.  The near end of rod i "
+            "is b, which the joint of its leg determines.  The far end is e in the frame of the "
+            "hand.  The rod keeps the distance of its ends: |p + R*e - b| is its length.",
+            {},
+            rows=[
+                ("i", "b", "e", "length of the rod"),
+                *(
+                    (str(k), near_ends[k], place.T, sp.sympify(leg.rod, strict=True))
+                    for (k, leg), place in placed
+                ),
+            ],
+        )
+
+
+def _forward(m: Platform, loop: Step) -> int:
+    """The degree of the forward problem, which has no closed form."""
+    if m.dimensions == 3:
+        degree = DEGREE_IN_SPACE
+        found = f"For points in general position it is {degree}, and it is never more."
+    else:
+        degree = degree_in_plane(m)
+        found = "It was counted with a Groebner basis, at lengths and joints drawn at random."
+    m.d.step(
+        f"Forward: an equation of degree {degree}",
+        "If the joints are given, the equations of the loop are to be solved for the pose.  All "
+        "legs move it together, so that no coordinate follows from fewer of them.  The number of "
+        f"complex solutions is the degree of the equation that remains.  {found}  No formula is "
+        "derived for it, so there is no fk.",
+        {},
+        uses=[loop],
+    )
+    return degree
+
+
+def degree_in_plane(m: Platform) -> int:
+    """The number of complex poses for the same joints, at generic lengths and joints.
+
+    A square root in the drawing is one more unknown, whose two values have as many poses each.
+    """
+    x, y, yaw = m.pose
+    ends = [sp.Matrix([real(f"b{k}_{i}") for i in "xy"]) for k, _ in m.numbered]
+    hand = [m.position + arm - end for arm, end in zip(m.arms, ends, strict=True)]
+    equations = [square(e) - real(f"r{k}") for k, e in enumerate(hand)]
+    roots = {e for f in equations for e in f.atoms(sp.Pow) if e.exp == sp.Rational(1, 2)}
+    names = {e: real(f"root{k}") for k, e in enumerate(sorted(roots, key=str))}
+    equations = [e.xreplace(names) for e in equations]
+    equations += [name**2 - e.base for e, name in names.items()]
+    unknowns = (x, y, yaw, *names.values())
+    found = int(count_solutions(equations, unknowns, method="specialised").count)
+    return found // int(2 ** len(names))
+
+
+def _moment(arm: sp.Matrix, vector: sp.Matrix) -> sp.Matrix:
+    """The moment about the point that is the hand of a vector at the end of an arm."""
+    if len(arm) == 3:
+        return arm.cross(vector)
+    return sp.Matrix([arm[0] * vector[1] - arm[1] * vector[0]])
+
+
+def _velocity(m: Platform, loop: Step) -> None:
+    d = m.d
+    rows = [rod.col_join(_moment(arm, rod)).T for arm, rod in zip(m.arms, m.rods, strict=True)]
+    rates = [rate_of(leg, rod) for leg, rod in zip(m.legs, m.rods, strict=True)]
+    v, omega = [real(f"v_{i}") for i in "xyz"[: m.dimensions]], [real("omega")]
+    if m.dimensions == 3:
+        omega = [real(f"omega_{i}") for i in "xyz"]
+    twist = sp.Matrix([*v, *omega])
+    turning = (
+        hat(sp.Matrix(omega)) if m.dimensions == 3 else sp.Matrix([[0, -omega[0]], [omega[0], 0]])
+    )
+    moved = [sp.Matrix(v) + turning * arm for arm in m.arms]
+    axes = range(1, m.dimensions + 1)
+    rod, arm = ([_component(d, letter, "i", i) for i in axes] for letter in "rh")
+    shown = {r"\mathbf a_i": sp.Matrix([[*rod, *_moment(sp.Matrix(arm), sp.Matrix(rod))]])}
+    for k, leg in m.numbered:
+        along = sp.Matrix([_component(d, "r", str(k), i) for i in axes])
+        entry = rate_of(leg, along)
+        shown[f"B_{{{k}{k}}}"] = entry
+    d.step(
+        "Velocity and singular sets",
+        "The derivatives of the loop equations, halved, give A*t = B*dq for the twist t of the "
+        "hand: the velocity of its point p and its angular velocity.  Row i of A is the vector r "
+        "along rod i, which is p + R*e - b, and its moment about p, at the end of the arm h, which "
+        "is R*e.  B is diagonal, because each leg depends on its own "
+        "joint alone.  B is singular if the joint moves the near end of a rod at right angles to "
+        "it (serial: the joint moves and the hand stands still).  A is singular if "
+        f"{m.meet} (parallel: the hand can move while the joints stand still).",
+        shown,
+        proves="The derivative of each loop equation along a twist and a joint rate is twice the "
+        "row of A times the twist, less twice the entry of B times the rate.  The determinant that "
+        "is computed is that of any matrix"
+        f"{', and the adjugate gives J with A*J = B' if m.dimensions == 2 else ''}.",
+        equal=[
+            *_of_any_matrix(len(m.legs)),
+            *(
+                pair
+                for leg, rod, row, rate, by, e in zip(
+                    m.legs, m.rods, rows, rates, moved, m.loop, strict=True
+                )
+                for pair in ((rod.dot(by), (row * twist)[0]), (e.diff(leg.joint), -2 * rate))
+            ),
+        ],
+        uses=[loop],
+    )
+
+
+def _export(m: Platform) -> None:
+    """The functions of a pose and the joints that belong to it."""
+    d, p = m.d, m.d.program()
+    ends = [
+        sp.Matrix([named_in(p, f"b_{k}{i}", e) for i, e in enumerate(leg.end(), 1)])
+        for k, leg in m.numbered
+    ]
+    arms = _named_arms(m, p)
+    placed = _named_rows(p, arms, [m.position - end for end in ends])
+    rods = [row[0, : m.dimensions].T for row in placed]
+    driven = [
+        p.let(f"B_{k}{k}", rate_of(leg, rod))
+        for (k, leg), rod in zip(m.numbered, rods, strict=True)
+    ]
+    volume = p.let("Delta", determinant(p, placed))
+    A = sp.Matrix.vstack(*placed)
+    serial = "Not finite at a serial singularity."
+    functions: list[tuple[str, str, dict[str, Any], tuple[str, ...]]] = [
+        (
+            "jacobian_parallel",
+            "A of A*t = B*dq; a row is the vector along a rod and its moment about the hand.",
+            {"A": A},
+            (),
+        ),
+        (
+            "jacobian_serial",
+            "The diagonal of B of A*t = B*dq.",
+            {"B": driven},
+            ("Its signs distinguish the working modes; BRANCHES lists them in the same order.",)
+            if all(leg.signs == 2 for leg in m.legs)
+            else (),
+        ),
+        (
+            "jacobian_inverse",
+            "B^-1*A: joint rates per velocity and angular velocity of the hand.",
+            {"K": sp.Matrix.vstack(*(row / b for row, b in zip(placed, driven, strict=True)))},
+            (serial,),
+        ),
+        (
+            "singularities",
+            "The diagonal of B (serial) and the determinant of A (parallel).",
+            {"factors": [*driven, volume]},
+            (),
+        ),
+    ]
+    if m.dimensions == 2:
+        pole = ("Not finite at a parallel singularity.",)
+        J = A.adjugate() * sp.diag(*driven) / volume
+        det = sp.Mul(*driven) / volume
+        functions += [
+            ("jacobian", "Derivative of x, y and yaw with respect to q: A^-1*B.", {"J": J}, pole),
+            ("determinant", "Determinant of the Jacobian.", {"det": det}, pole),
+        ]
+    for name, summary, outputs, notes in functions:
+        d.function(
+            name,
+            summary,
+            {**m.target, "q": d.actuated},
+            outputs,
+            program=p,
+            notes=("The pose and the joints have to belong together, as ik gives them.", *notes),
+        )
+
+
+def _of_any_matrix(n: int) -> list[tuple[Any, Any]]:
+    """That the determinant is the one it should be, and for three rows the adjugate as well."""
+    a = sp.Matrix(n, n, lambda i, j: real(f"a{i + 1}{j + 1}"))
+    p = Program()
+    value = p.explicit(determinant(p, [a.row(i) for i in range(n)]))
+    adjugate = [(a * a.adjugate(), value * sp.eye(n))] if n == 3 else []
+    return [(value, a.det(method="berkowitz")), *adjugate]
+
+
+def _component(d: Derivation, letter: str, leg: str, axis: int) -> sp.Symbol:
+    """A symbol for a component of the vector along a rod, r, or of the arm of its moment, h."""
+    name = f"{letter}{leg}_{axis}"
+    if name not in d.written:
+        vector = "vector along rod" if letter == "r" else "arm of rod"
+        d.write(name, f"{letter}_{{{leg}{axis}}}", f"component {axis} of the {vector} {leg}")
+    return real(name)
+
+
+def _named_arms(m: Platform, p: Program) -> list[sp.Matrix]:
+    return [
+        sp.Matrix([named_in(p, f"h_{k}{i}", e) for i, e in enumerate(arm, 1)])
+        for k, arm in enumerate(m.arms, 1)
+    ]
+
+
+def _named_rows(
+    p: Program, arms: Sequence[sp.Matrix], spans: Sequence[sp.Matrix]
+) -> list[sp.Matrix]:
+    """The rows of A, their entries under names.
+
+    The ``spans`` lead from the near ends of the rods to the point that is the hand.  A rod is a
+    span and an arm, and the arm has no moment, so the moment is that of the span.
+    """
+    found = []
+    for k, (arm, span) in enumerate(zip(arms, spans, strict=True), 1):
+        entries = enumerate([*(span + arm), *_moment(arm, span)], 1)
+        found.append(sp.Matrix([[named_in(p, f"A_{k}{i}", e) for i, e in entries]]))
+    return found
+
+
+def determinant(p: Program, rows: Sequence[sp.Matrix]) -> sp.Expr:
+    """The determinant of three or six rows; six are expanded by the minors of two halves."""
+    n = len(rows)
+    if n == 3:
+        return sp.Matrix.vstack(*rows).det()
+    every, terms = range(n), []
+    for some in combinations(every, 3):
+        others = [k for k in every if k not in some]
+        sign = (-1) ** (sum(some) - 3)
+        minors = [
+            p.let(
+                f"{letter}_{''.join(str(k + 1) for k in chosen)}",
+                sp.Matrix.vstack(*(rows[k][0, columns] for k in chosen)).det(),
+            )
+            for letter, chosen, columns in (
+                ("N", some, slice(0, 3)),
+                ("M", others, slice(3, 6)),
+            )
+        ]
+        terms.append(sign * sp.Mul(*minors))
+    return sp.Add(*terms)
+
+
+def _inverse(m: Platform, loop: Step, degree: int) -> None:
+    d, g = m.d, m.d.program()
+    if m.dimensions == 3:
+        require_pose(g, m.pose)
+    slides = any(isinstance(leg, Slide) for leg in m.legs)
+    size = g.let("size", size_of(d, tuple(m.position) if slides else ()))
+    arms = _named_arms(m, g)
+    choices: list[tuple[sp.Symbol, Choice]] = []
+    found: list[Solution] = []
+    for (k, leg), arm in zip(m.numbered, arms, strict=True):
+        sigma = real(f"sigma_leg{k}")
+        if leg.signs == 2:
+            choices.append((sigma, SIGN))
+        found.append(leg.solve(Naming(g, size, f"_{k}"), m.position + arm - leg.base, sigma))
+    inside = bounds_of(g)
+    stretched = {s.link.unknowns[0]: s.value for s in found}
+    lengths = [
+        stretched[leg.joint] if isinstance(leg, Stretch) else sp.sympify(leg.rod, strict=True)
+        for leg in m.legs
+    ]
+    rows = _named_rows(g, arms, [s.rod - arm for s, arm in zip(found, arms, strict=True)])
+    volume = g.let("Delta", determinant(g, rows))
+    lever = g.let("lever", sp.sqrt(m.spread), nonnegative=True)
+    # six legs lose more digits in their determinant than in the pose that they determine
+    power, share = (1, "2^-10") if m.dimensions == 2 else (3, "2^-20")
+    least = sp.Mul(*lengths) * lever**power
+    g.determined(
+        sp.Abs(volume),
+        least if power == 1 else least / 2**10,
+        m.meet,
+        name=r"|\det A|",
+        scale_name=r"\lambda \prod_i |\mathbf r_i|"
+        if power == 1
+        else r"2^{-10} \lambda^3 \prod_i |\mathbf r_i|",
+    )
+    working = branches(*choices) if choices else SINGLE
+    d.branches = working.labels
+    signs = "The signs of its two solutions are those of the diagonal of B.  "
+    d.step(
+        "Inverse: leg by leg",
+        f"Each leg is solved alone.  {signs if choices else ''}Near a parallel singularity rounded "
+        "joints do not determine the hand.  The status is SINGULAR if the determinant of A is "
+        f"less than {share} of the product of the lengths of the rods and"
+        f"{'' if power == 1 else ' the third power of'} lambda, the root mean square distance "
+        "of the ends of the rods on the hand from their centre.",
+        {},
+        uses=[loop],
+    )
+    d.function(
+        "ik",
+        f"The driven joints of {'all working modes' if choices else 'the only working mode'}.",
+        m.target,
+        {"q": [s.value for s in found]},
+        program=g,
+        branches=working,
+        result="Solutions",
+        notes=(
+            *(["UNREACHABLE: a rod does not reach."] if inside.body else []),
+            *(note for s in found for note in where_free(s)),
+            f"SINGULAR also near a parallel singularity, where {m.meet}: the loop "
+            "closes, but the joints do not determine the hand.",
+            *(["INVALID: the matrix is not a pose."] if m.dimensions == 3 else []),
+            f"There is no fk: the forward problem is an equation of degree {degree}.",
+        ),
+    )
+    if inside.body:
+        d.function(
+            "workspace_contains",
+            "Whether the hand can be reached.",
+            m.target,
+            {"inside": sp.true},
+            program=inside,
+            boolean=True,
+        )
+    for s in found:
+        tell(d, "ik", s.link)
+    d.inverses.append(
+        Inverse(
+            "ik",
+            d.actuated,
+            (sp.S.Zero,) * len(m.legs),
+            m.loop,
+            links=tuple(s.link for s in found),
+        )
+    )
+
+
+__all__ = ["Platform", "platform"]

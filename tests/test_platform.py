@@ -9,12 +9,13 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from closedform import Crank, Derivation, Paper, Slide, Stretch, Strut, platform, prove
+from closedform import Crank, Derivation, Paper, Slide, Stretch, Strut, platform, plot, prove
 from closedform.algebra.shapes import ShapeError
 from closedform.check.crosscheck import Backend, check_forward, module_backend
 from closedform.cli.commands import main
 from closedform.lemmas.platform import Platform, degree_in_plane
 from closedform.model.tolerances import DOUBLE
+from closedform.robots import Robot
 from closedform.scaffold.loops import loop_script, read_loop
 from closedform.scaffold.tables import TableError
 
@@ -329,3 +330,60 @@ def test_an_array_of_lengths(stage: ModuleType) -> None:
     for k, r in enumerate(rods):
         alone = stage.ik([0.01, 0.0, 0.1], stage.Parameters()._replace(r=r))
         assert np.array_equal(whole.q[k], alone.q)
+
+
+# After the import
+
+
+def test_the_skeleton_keeps_its_lengths(stage: ModuleType) -> None:
+    x = np.array([0.02, -0.03, 0.2])
+    q = stage.ik(x).q
+    points = dict(zip(stage.SKELETON.points, np.moveaxis(stage.skeleton(x, q), -2, 0), strict=True))
+    near, far = ends(stage, x, q)
+    assert np.allclose(points["P"], [*x[:2], 0])
+    for k in range(3):
+        assert np.allclose(
+            points[f"B{k + 1}"][..., 0] + 1j * points[f"B{k + 1}"][..., 1], near[:, k]
+        )
+        assert np.allclose(
+            points[f"C{k + 1}"][..., 0] + 1j * points[f"C{k + 1}"][..., 1], far[..., k]
+        )
+    assert set(stage.SKELETON.joints) == {"theta1", "theta2", "theta3"}
+
+
+def test_the_nearest_posture_of_a_hand_that_turns(stage: ModuleType, hexapod: ModuleType) -> None:
+    """Also where the joints do not determine the hand."""
+    x = [0.02, -0.03, 0.2]
+    q = stage.ik(x).q
+    assert [int(Robot(stage).nearest(x, row + 0.01).branch) for row in q] == [*range(8)]
+    T = np.eye(4)
+    T[:2, :2], T[2, 3] = [[0, -1], [1, 0]], 0.7
+    found = Robot(hexapod).nearest(T, np.ones(6))
+    assert found.status == SINGULAR
+    assert np.array_equal(found.q, hexapod.ik(T).q[0])
+    with pytest.raises(ValueError, match="hexapod has no function fk"):
+        Robot(hexapod).fk(np.ones(6))
+
+
+def test_a_path_keeps_its_working_mode(stage: ModuleType) -> None:
+    s = np.linspace(0, 1, 50)
+    xs = np.stack([0.04 * np.cos(6 * s), 0.04 * np.sin(6 * s), 0.3 * s], 1)
+    for k, q in enumerate(stage.ik(xs[0]).q):
+        found = Robot(stage).track(xs, q)
+        assert (found.status == OK).all()
+        assert (found.branch == k).all()
+        assert np.abs(np.diff(found.q, axis=0)).max() < 0.05
+
+
+def test_it_can_be_drawn(stage: ModuleType, hexapod: ModuleType) -> None:
+    assert len(plot.branches(stage).figure.axes) == 8
+    assert plot.branches(hexapod).figure is not None
+    x = np.array([0.02, -0.03, 0.2])
+    ax = plot.mechanism(stage, stage.ik(x).q[3], x=x)
+    drawn = np.vstack([line.get_xydata() for line in ax.get_lines()])
+    for point in stage.skeleton(x, stage.ik(x).q[3])[:, :2]:
+        assert np.min(np.linalg.norm(drawn - point, axis=1)) < 1e-9
+    with pytest.raises(ValueError, match="in no branch"):
+        plot.mechanism(stage, x=[9, 9, 0])
+    with pytest.raises(ValueError, match="stage has no fk; its mechanism and its branches"):
+        plot.workspace(stage)

@@ -10,23 +10,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import Any
 
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import count_solutions
-from closedform.lemmas.carried import listed, rate_of, square
-from closedform.lemmas.legs import Leg, Naming, Slide, Solution, Stretch, Strut, vector
+from closedform.lemmas.carried import in_space, listed, rate_of, square
+from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, Strut, vector
 from closedform.lemmas.loop import SIGN, Choice, bounds_of, named_in, size_of, tell, where_free
 from closedform.mechanics.frames import hat, require_pose
+from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation, Step
 from closedform.model.functions import SINGLE, Program, branches, real
 from closedform.model.inverse import Inverse
 
 DEGREE_IN_SPACE = 40
 """Of six points of a body that are at given distances from six points of the ground."""
+
+TOGETHER = "The pose and the joints have to belong together, as ik gives them."
 
 
 def platform(d: Derivation, legs: Sequence[Leg]) -> None:
@@ -42,8 +45,8 @@ def platform(d: Derivation, legs: Sequence[Leg]) -> None:
         see :mod:`closedform.lemmas.legs`; ``on_hand`` is seen in the frame of the hand
 
     It exports ``ik``, ``jacobian_parallel`` (A), ``jacobian_serial`` (the diagonal of B),
-    ``jacobian_inverse`` (B^-1*A), ``singularities``, in a plane ``jacobian`` and ``determinant``,
-    and ``workspace_contains`` where the reach of the legs is limited.
+    ``jacobian_inverse`` (B^-1*A), ``singularities``, ``skeleton``, in a plane ``jacobian`` and
+    ``determinant``, and ``workspace_contains`` where the reach of the legs is limited.
     """
     m = Platform(d, tuple(legs))
     if not d.singularities:
@@ -52,6 +55,7 @@ def platform(d: Derivation, legs: Sequence[Leg]) -> None:
     degree = _forward(m, loop)
     _velocity(m, loop)
     _export(m)
+    _draw(m)
     _inverse(m, loop, degree)
 
 
@@ -325,7 +329,7 @@ def _export(m: Platform) -> None:
             {**m.target, "q": d.actuated},
             outputs,
             program=p,
-            notes=("The pose and the joints have to belong together, as ik gives them.", *notes),
+            notes=(TOGETHER, *notes),
         )
 
 
@@ -390,6 +394,55 @@ def determinant(p: Program, rows: Sequence[sp.Matrix]) -> sp.Expr:
         ]
         terms.append(sign * sp.Mul(*minors))
     return sp.Add(*terms)
+
+
+def _draw(m: Platform) -> None:
+    """The skeleton: bases A, near ends B and far ends C of the rods, and P, the hand."""
+    far = [next(k for k, e in enumerate(m.places, 1) if e == place) for place in m.places]
+    ends = ["P" if e.is_zero_matrix else f"C{k}" for k, e in zip(far, m.places, strict=True)]
+    at = dict(zip(ends, (m.position + arm for arm in m.arms), strict=True))
+    points = {"P": in_space(m.position), **{name: in_space(e) for name, e in at.items()}}
+    links: dict[str, tuple[str, ...]] = {}
+    lengths: dict[tuple[str, str], sp.Expr] = {}
+    closing: dict[tuple[str, str], sp.Expr] = {}
+    joints: dict[sp.Symbol, tuple[str, ...]] = {}
+    for (k, leg), end, equation in zip(m.numbered, ends, m.loop, strict=True):
+        base, near = f"A{k}", f"A{k}" if isinstance(leg, Stretch) else f"B{k}"
+        points |= {base: in_space(leg.base), near: in_space(leg.end())}
+        lengths[near, end], closing[near, end] = sp.sympify(leg.rod, strict=True), equation
+        joints[leg.joint] = (base,) if isinstance(leg, Crank) else (base, near)
+        if isinstance(leg, Stretch):
+            joints[leg.joint] = (base, end)
+            continue
+        links[f"rod{k}"] = (near, end)
+        lengths[base, near] = leg.joint
+        if isinstance(leg, Crank):
+            links[f"crank{k}"] = (base, near)
+            lengths[base, near] = sp.sympify(leg.length, strict=True)
+    corners = list(dict.fromkeys(ends))
+    links["hand"] = tuple([*corners, *corners[:1]] if len(corners) > 2 else corners)
+    if "P" not in corners:
+        links["hand0"] = ("P", corners[0])
+    places = dict(zip(ends, m.places, strict=True)) | {"P": sp.zeros(m.dimensions, 1)}
+    for pair in [*pairwise(links["hand"]), *pairwise(links.get("hand0", ()))]:
+        gap = places[pair[1]] - places[pair[0]]
+        lengths[pair] = sp.sqrt(sp.factor(sp.expand(square(gap))))
+        closing[pair] = sp.expand(square(m.rotation * gap) - square(gap))
+    ground = tuple(f"A{k}" for k, _ in m.numbered)
+    skeleton(
+        m.d,
+        points,
+        links={"ground": (*ground, ground[0]), **links},
+        joints=joints,
+        hand="P",
+        hand_at=in_space(m.position),
+        ground=ground,
+        lengths=lengths,
+        pose=m.target,
+        notes=(TOGETHER,),
+        at_posture=[points],
+        closing={pair: e for pair, e in closing.items() if sp.trigsimp(e) != 0},
+    )
 
 
 def _inverse(m: Platform, loop: Step, degree: int) -> None:

@@ -31,6 +31,7 @@ def skeleton(
     ground: Sequence[str] = ("base",),
     lengths: Mapping[tuple[str, str], sp.Expr] | None = None,
     inputs: Sequence[sp.Symbol] | None = None,
+    pose: Mapping[str, Any] | None = None,
     program: Program | None = None,
     branches: Branches | None = None,
     notes: Sequence[str] = (),
@@ -53,6 +54,8 @@ def skeleton(
         points that are fixed to the base
     lengths
         the distance of two points: of a link where it is not plain, or of a slide
+    pose
+        the pose of the hand, an input before the joints, if no forward map gives it
     branches
         the assembly modes, if there are any
     at_posture
@@ -75,13 +78,14 @@ def skeleton(
     function = d.function(
         "skeleton",
         "Points of the mechanism in the base frame, in the order of SKELETON.points.",
-        {"q": d.actuated if inputs is None else tuple(inputs)},
+        {**(pose or {}), "q": d.actuated if inputs is None else tuple(inputs)},
         {"points": sp.Matrix([list(at) for at in places.values()])},
         program=program,
         branches=branches,
         notes=notes,
     )
     d.skeleton = drawn
+    where_from = "it is to be" if pose else "the forward map says"
     own, rest = dict(lengths or {}), dict(closing or {})
     pairs = list(dict.fromkeys([*_segments(drawn), *own]))
     equal: list[tuple[Any, Any]] = []
@@ -104,12 +108,12 @@ def skeleton(
     d.step(
         "Skeleton",
         "The points through which the links are drawn.  No link changes its length when the joints "
-        f"move, and the hand is where the forward map says.{closed}",
+        f"move, and the hand is where {where_from}.{closed}",
         shown,
         proves=(
             "The squared distance of each pair of neighbouring points is that of the length"
             f"{', plus the equation of the loop for a rod that closes it' if rest else ''}, and "
-            "the hand is at the position of the forward map."
+            f"the hand is at the position {'that is given' if pose else 'of the forward map'}."
         ),
         equal=equal,
         nonnegative=bounds,

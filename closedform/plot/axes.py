@@ -17,7 +17,7 @@ EXACT = 1e-9
 
 
 def joint_axes(
-    robot: ModuleType, q: ArrayLike, *, params: Any = None, mode: int = 0
+    robot: ModuleType | Robot, q: ArrayLike, *, params: Any = None, mode: int = 0
 ) -> dict[str, tuple[Array, Array]]:
     """A point and a unit vector along the axis of each joint of the skeleton, in one posture.
 
@@ -27,13 +27,14 @@ def joint_axes(
     r = Robot.of(robot, params)
     joints = np.asarray(q, dtype=float)
     points = r.points(joints)[mode]
-    place = dict(zip(robot.SKELETON.points, points, strict=True))
+    skeleton, driven = r.module.SKELETON, r.module.JOINTS
+    place = dict(zip(skeleton.points, points, strict=True))
     found: dict[str, tuple[Array, Array]] = {}
-    for name, joint in robot.SKELETON.joints.items():
-        at = place[joint.points[-1]] if name in robot.JOINTS else place[joint.points[0]]
+    for name, joint in skeleton.joints.items():
+        at = place[joint.points[-1]] if name in driven else place[joint.points[0]]
         if joint.kind == "prismatic" or len(joint.points) == 2:
             along = place[joint.points[1]] - place[joint.points[0]]
-        elif name in robot.JOINTS:
+        elif name in driven:
             along = _turning(r, joints, mode, name)
         else:
             along = _normal(r, place, joint.points[0])

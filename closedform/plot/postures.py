@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from types import ModuleType
 from typing import Any
@@ -33,6 +34,7 @@ def mechanism(
     robot: ModuleType,
     q: ArrayLike | None = None,
     *,
+    x: ArrayLike | None = None,
     params: Any = None,
     mode: int = 0,
     ax: Any = None,
@@ -49,6 +51,8 @@ def mechanism(
         a generated module
     q
         the joints, (joints,); by default a posture that is far from singular
+    x
+        the pose of the hand, only for a mechanism without a forward map
     params
         the dimensions; by default those of the example
     mode
@@ -65,8 +69,8 @@ def mechanism(
         the point that is the centre of a spherical mechanism, whose links are drawn as arcs of
         great circles about it
     """
-    r = Robot.of(robot, params)
-    joints = r.posture() if q is None else np.asarray(q, dtype=float)
+    r = _posed(Robot.of(robot, params), x)
+    joints = _first(r) if q is None else np.asarray(q, dtype=float)
     if joints.shape != (len(robot.JOINTS),):
         raise ValueError(f"q must have the shape ({len(robot.JOINTS)},), not {joints.shape}")
     points = r.points(joints)[mode]
@@ -79,7 +83,7 @@ def mechanism(
     ax = new_axes(not r.flat) if ax is None else ax
     points = on_sphere(r, points, about)
     diagram = Diagram(ax, extent([points]))
-    along = joint_axes(robot, joints, params=r.params, mode=mode)
+    along = joint_axes(r, joints, mode=mode)
     draw(diagram, r, points, colour(0), along=along if axes else {}, faint=faint, about=about)
     shown = [points]
     if axes and diagram.spatial:
@@ -90,6 +94,23 @@ def mechanism(
     diagram.clean(shown)
     _settle(ax)
     return ax
+
+
+def _posed(r: Robot, x: ArrayLike | None) -> Robot:
+    """The same with the pose of its hand, if there is no forward map that gives it."""
+    if r.has_forward_map:
+        return r
+    return replace(r, target=regular_target(r) if x is None else np.asarray(x, dtype=float))
+
+
+def _first(r: Robot) -> Array:
+    """A posture that is far from singular, or the first one for the pose of the hand."""
+    if r.has_forward_map:
+        return r.posture()
+    q, status = r.branches(r.target)
+    if not (status == OK).any():
+        raise ValueError(f"{r.name} reaches the target {r.target.tolist()} in no branch")
+    return np.asarray(q[np.argmax(status == OK)])
 
 
 def _settle(ax: Any) -> None:
@@ -132,6 +153,7 @@ def branches(
     r.require("ik")
     if x is None:
         x = regular_target(r)
+    r = _posed(r, x)
     q, status = r.branches(x)
     if status.shape != (len(robot.BRANCHES),):
         raise ValueError(f"x must be one target of {r.name}, not {np.shape(x)}")
@@ -166,7 +188,7 @@ def branches(
         diagram = Diagram(panel, extent(frame))
         others = [points for other, points in found.items() if other != name]
         diagram.link(_outlines(r, others, about), "#dddddd", linewidth=1.0)
-        along = joint_axes(robot, q[names.index(name)], params=r.params) if alike else {}
+        along = joint_axes(r, q[names.index(name)]) if alike else {}
         along = dict(list(along.items())[-WRIST:])
         draw(
             diagram, r, found[name], colour(names.index(name)), width=2.2, faint=faint,
@@ -237,6 +259,13 @@ def extent(drawn: list[Array]) -> float:
 
 def regular_target(r: Robot) -> Array:
     """The image of a posture: of those drawn, one that the most branches reach."""
+    if not r.has_forward_map:
+        x = r.poses(200)
+        q, status = r.branches(x)
+        reached = (status == OK).sum(-1)
+        x, q = x[reached == reached.max()], q[reached == reached.max()]
+        far = np.abs(np.asarray(r.call("singularities", x[:, None], q))[..., -1]).max(-1)
+        return np.asarray(x[np.argmax(np.where(np.isfinite(far), far, 0.0))])
     q = np.vstack([r.posture(), r.draw(60, seed=1)])
     x = r.task(q)
     x = x[:, 0] if r.modes else x

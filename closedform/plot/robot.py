@@ -22,6 +22,8 @@ SEEN = np.array(
 )
 """The directions to the right and upwards in such a drawing."""
 FLAT = 1e-12
+PLANAR = 3
+"""The coordinates of a pose in a plane."""
 
 POSE = {"x": 3, "y": 7, "z": 11}
 """The places of the position among the 16 entries of a pose."""
@@ -33,9 +35,13 @@ class Robot:
 
     module: ModuleType
     params: Any
+    target: Any = None
+    """The pose of the hand, if no forward map gives it."""
 
     @classmethod
-    def of(cls, module: ModuleType, params: Any = None) -> Robot:
+    def of(cls, module: ModuleType | Robot, params: Any = None) -> Robot:
+        if isinstance(module, Robot):
+            return module
         if not hasattr(module, "JOINTS") or not hasattr(module, "Parameters"):
             raise TypeError(f"{module!r} is not a generated module, such as closedform.planar_2r")
         return cls(module, module.Parameters() if params is None else params)
@@ -62,8 +68,16 @@ class Robot:
 
     def points(self, q: ArrayLike) -> Array:
         """The points of the skeleton, an axis for the assembly mode first, even for one mode."""
-        found = np.asarray(self.call("skeleton", q))
+        if not self.has_forward_map and self.target is None:
+            raise ValueError(f"{self.name} has no fk; its mechanism and its branches can be drawn")
+        given = [] if self.has_forward_map else [self.target]
+        found = np.asarray(self.call("skeleton", *given, q))
         return found if self.modes else found[..., None, :, :]
+
+    @property
+    def has_forward_map(self) -> bool:
+        """Whether the joints determine the hand, by a formula."""
+        return self.has("fk")
 
     @property
     def modes(self) -> tuple[str, ...]:
@@ -90,6 +104,24 @@ class Robot:
             if name.endswith("L") and twin in names:
                 q[:, k] = q[:, names.index(twin)] + 0.02 * q[:, k]
         return q
+
+    def poses(self, n: int, seed: int = 0) -> Array:
+        """Random poses of a hand that no forward map gives: not far off, and not turned far."""
+        rng = np.random.default_rng(seed)
+        place, turn = rng.uniform(-1, 1, (2, n, 3))
+        if len(self.module.TASK) == PLANAR:
+            found = place * self.size / 4
+            found[:, 2] = turn[:, 2]
+            return np.asarray(found)
+        found = np.tile(np.eye(4), (n, 1, 1))
+        x, y, z = 0.2 * turn.T
+        o = 0 * x
+        skew = np.array([[o, -z, y], [z, o, -x], [-y, x, o]]).transpose(2, 0, 1)
+        half = np.eye(3) + skew
+        found[:, :3, :3] = np.linalg.solve(half.transpose(0, 2, 1), half)  # Cayley
+        found[:, :3, 3] = place * np.array([0.1, 0.1, 0.25]) * self.size
+        found[:, 2, 3] += 0.35 * self.size
+        return found
 
     def posture(self) -> Array:
         """A posture that can be assembled and is far from singular, the same on every run."""
@@ -119,6 +151,8 @@ class Robot:
     @property
     def flat(self) -> bool:
         """Whether the mechanism stays in the plane of x and y."""
+        if not self.has_forward_map:
+            return len(self.module.TASK) == PLANAR
         z = self.points(self.draw(20))[..., 2]
         return bool(np.nanmax(np.abs(z)) <= FLAT * self.size)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -36,7 +37,7 @@ def lengths(r: Robot, q: Array, mode: int) -> dict[str, tuple[str, str]]:
     possible = {(k, pair) for k in range(len(base)) for pair in segments}
     for _ in range(2):
         changed = base * rng.uniform(0.97, 1.03, len(base))
-        points = Robot(r.module, r.module.Parameters(*changed)).points(q)[mode]
+        points = replace(r, params=r.module.Parameters(*changed)).points(q)[mode]
         place = dict(zip(names, points, strict=True))
         possible = {
             (k, pair)

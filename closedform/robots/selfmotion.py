@@ -41,9 +41,10 @@ def at_seed(
     ``q`` has the shape (..., branches, joints).  The joint that is free is the one that the inverse
     has set to zero; if there is none among those that take part, the one that moves most, and of
     several the first.  If it cannot have its value in the seed within the limits, it goes as far as
-    the self-motion leads.  Where no joint is free, nothing moves.
+    the self-motion leads.  Where no joint is free, nothing moves; nor does a mechanism without a
+    forward map, whose answers are those of the inverse.
     """
-    if not (status == SINGULAR).any():
+    if not (status == SINGULAR).any() or not mechanism.has("fk"):
         return q
     lead, (branches, n) = status.shape[:-1], q.shape[-2:]
     core = x.shape[x.ndim - mechanism.task_axes :]

@@ -37,6 +37,7 @@ from closedform.lemmas.parallelogram import parallelogram as parallelogram
 from closedform.lemmas.platform import platform as platform
 from closedform.lemmas.quartic import OnCircle as OnCircle
 from closedform.lemmas.quartic import quartic as quartic
+from closedform.lemmas.rails import Rail as Rail
 from closedform.lemmas.registry import chain_lemma as chain_lemma
 from closedform.lemmas.registry import theorem as theorem
 from closedform.lemmas.root import root as root

@@ -27,7 +27,8 @@ from closedform.lemmas.spheres import three_spheres
 from closedform.model.functions import Program
 from closedform.proof.links import prove_lemma
 from closedform.proof.require import ProofError
-from closedform.scaffold.loops import loop_script, read_loop
+from closedform.scaffold.loop_script import loop_script
+from closedform.scaffold.loops import read_loop
 from closedform.scaffold.new import new
 from closedform.scaffold.tables import TableError
 

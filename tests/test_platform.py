@@ -16,7 +16,8 @@ from closedform.cli.commands import main
 from closedform.lemmas.platform import Platform, degree_in_plane
 from closedform.model.tolerances import DOUBLE
 from closedform.robots import Robot
-from closedform.scaffold.loops import loop_script, read_loop
+from closedform.scaffold.loop_script import loop_script
+from closedform.scaffold.loops import read_loop
 from closedform.scaffold.tables import TableError
 
 GUIDE = (Path(__file__).parents[1] / "docs" / "adding-a-mechanism.md").read_text("utf-8")

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from closedform.cli.commands import main
-from closedform.scaffold.loops import loop_script, read_loop
+from closedform.scaffold.loop_script import loop_script
+from closedform.scaffold.loops import read_loop
 from closedform.scaffold.tables import TableError
 
 GUIDE = Path(__file__).parents[1] / "docs" / "adding-a-mechanism.md"

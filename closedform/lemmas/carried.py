@@ -11,6 +11,7 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import Leg, Stretch, Strut, vector
+from closedform.lemmas.rails import Rail
 from closedform.model.derivation import Derivation, Step
 
 _Item = TypeVar("_Item")
@@ -36,6 +37,8 @@ class Carried:
                 f"{self.d.name}: a strut must be the first of three legs in space; then two driven "
                 f"legs move the hand on a sphere"
             )
+        if n == 3 and self.rails:
+            raise ShapeError(f"{self.d.name}: a rail carries a hand in a plane only")
         joints = tuple(leg.joint for _, leg in self.driven)
         if joints != self.d.actuated:
             raise ShapeError(
@@ -55,6 +58,18 @@ class Carried:
     @cached_property
     def driven(self) -> list[tuple[int, Leg]]:
         return [(k, leg) for k, leg in self.numbered if not isinstance(leg, Strut)]
+
+    @property
+    def rails(self) -> list[Rail]:
+        return [leg for leg in self.legs if isinstance(leg, Rail)]
+
+    @property
+    def meet(self) -> str:
+        """What makes A singular."""
+        if self.rails:
+            parallel = len(self.rails) == len(self.legs)
+            return "the rails are parallel" if parallel else "the rod is across the rail"
+        return f"the rods are in {'line' if len(self.hand) == 2 else 'one plane'}"
 
     def in_lemma(self, items: Sequence[_Item]) -> list[_Item]:
         """What belongs to the legs, in the order in which the lemma for the hand takes them.
@@ -94,22 +109,39 @@ class Carried:
 
     @cached_property
     def loop(self) -> tuple[sp.Expr, ...]:
-        """The equations of the loop: each rod keeps its length."""
+        """The equations of the loop: each rod keeps its length, and the hand is on each rail."""
         ends = zip(self.legs, self.centres, strict=True)
         return tuple(
-            square(self.hand - c) - sp.sympify(leg.rod, strict=True) ** 2 for leg, c in ends
+            leg.normal.dot(self.hand - c)
+            if isinstance(leg, Rail)
+            else square(self.hand - c) - sp.sympify(leg.rod, strict=True) ** 2
+            for leg, c in ends
         )
+
+    def rows(self, spans: Sequence[sp.Matrix]) -> list[sp.Matrix]:
+        """The rows of A, from the vectors from the near ends of the legs to their far ends."""
+        legs = zip(self.legs, spans, strict=True)
+        return [leg.normal if isinstance(leg, Rail) else span for leg, span in legs]
 
     def state_loop(self) -> Step:
         placed = list(zip(self.numbered, self.centres, strict=True))
         shown = {rf"\mathbf b_{k}": c for (k, _), c in placed}
-        shown |= {
-            rf"|\mathbf p - \mathbf b_{k}|": sp.sympify(leg.rod, strict=True)
-            for k, leg in self.numbered
-        }
+        for k, leg in self.numbered:
+            if isinstance(leg, Rail):
+                shown[rf"\mathbf n_{k}"] = leg.normal
+            else:
+                shown[rf"|\mathbf p - \mathbf b_{k}|"] = sp.sympify(leg.rod, strict=True)
         carried = any(leg.on_hand for leg in self.legs)
         less = ", less the place of its far end on the hand," if carried else ""
         strut = "  The near end of the strut stands still." * (len(self.driven) < len(self.legs))
+        if self.rails:
+            return self.d.step(
+                "The loop",
+                "The joint of each leg determines a point b.  A rod keeps its length from b to the "
+                "hand p.  The rail of a leg passes through b, and n is its normal: the hand is on "
+                "the rail if n is at right angles to p - b.",
+                shown,
+            )
         return self.d.step(
             "The loop",
             f"The hand p hangs on {self.count} rods.  The near end of each rod{less} is b, which "

@@ -18,7 +18,8 @@ from closedform.lemmas.carried import Carried, in_space, square
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.conditioning import conditioning
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, Strut
-from closedform.lemmas.spheres import three_spheres
+from closedform.lemmas.rails import Rail, rail_and_circle, two_rails
+from closedform.lemmas.spheres import Meeting, three_spheres
 from closedform.mechanics.frames import merge_angles
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
@@ -72,6 +73,8 @@ def parallel(
     """
     mechanism = Carried(d, sp.Matrix(hand), tuple(legs))
     meet = "rods in line" if len(legs) == 2 else "rods in one plane"
+    if mechanism.rails:
+        meet = "rails parallel" if len(mechanism.rails) == 2 else "rod across the rail"
     if not d.singularities:
         d.singularities = (*(f"leg {k}" for k, _ in mechanism.driven), meet)
         d.poles = (meet,)
@@ -93,7 +96,7 @@ class _Posture:
     hand: sp.Matrix
     rods: tuple[sp.Matrix, ...]
     """The vectors along the rods, from their near ends to their far ends."""
-    side: sp.Symbol
+    side: sp.Expr
     size: sp.Expr
     """The sign and the size of the determinant of the matrix that has them as rows."""
 
@@ -101,23 +104,82 @@ class _Posture:
 def _forward(m: Carried, choice: Choice, loop: Step) -> _Posture:
     d, n, f = m.d, len(m.legs), m.d.program()
     sigma = real("sigma_assembly")
-    modes = branches((sigma, choice))
+    modes = branches((sigma, choice)) if len(m.rails) < n else SINGLE
     d.assembly_modes = modes.labels
     stretched = [leg.joint for leg in m.legs if isinstance(leg, Stretch)]
-    slid = [leg.joint for leg in m.legs if isinstance(leg, Slide)]
+    slid = [leg.joint for leg in m.legs if isinstance(leg, Slide | Rail)]
+    # the size has to be positive where a leg has a negative length, which does not reach a rail
+    stretched = [sp.Abs(q) if m.rails else q for q in stretched]
     size = f.let("size", size_of(d, slid) + sp.Add(*stretched))
     ends = [
         sp.Matrix([named_in(f, f"c{k}_{i}", e) for i, e in zip(AXES, c, strict=False)])
         for (k, _), c in zip(m.numbered, m.centres, strict=True)
     ]
+    near = m.in_lemma(ends)
+    meet = _on_rails if m.rails else _on_rods
+    found, told = meet(m, f, near, size, sigma, loop)
+    d.function(
+        "fk",
+        f"Position of the hand in {'both assembly modes' if len(modes) > 1 else 'its only mode'}.",
+        {"q": m.joints},
+        {"p": [found.lemma[x] for x in m.hand]},
+        program=f,
+        branches=modes,
+        result="Positions",
+        notes=_NOTES[len(m.rails)],
+    )
+    equations = tuple(m.in_lemma(m.loop))
+    d.inverses.append(
+        Inverse("fk", tuple(m.hand), (sp.S.Zero,) * n, equations, links=(found.link,))
+    )
+    tell(d, "fk", told)
+    v = Program(list(f.body), f.taken)
+    (first, _), *_ = m.in_lemma(m.numbered)
+    name = f"span_{first}" if m.rails else f"A_{first}"
+    rod = sp.Matrix([v.let(f"{name}{i}", e) for i, e in enumerate(found.first, 1)])
+    return _Posture(
+        v,
+        modes,
+        near[0] + rod,
+        tuple(rod + near[0] - end for end in ends),
+        found.side,
+        found.size,
+    )
+
+
+_NOTES = {
+    0: (
+        "UNREACHABLE: the rods do not meet.",
+        "SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of "
+        "its points is returned.",
+        "Ill-conditioned near the parallel singularities, where both modes meet.",
+    ),
+    1: (
+        "UNREACHABLE: the rod does not reach the rail.",
+        "Ill-conditioned near the parallel singularities, where both modes meet.",
+    ),
+    2: (),
+}
+"""Notes on the forward map, by the number of rails."""
+
+
+def _on_rods(
+    m: Carried,
+    f: Program,
+    near: Sequence[sp.Matrix],
+    size: sp.Expr,
+    sigma: sp.Symbol,
+    loop: Step,
+) -> tuple[Meeting, Link]:
+    """Where rods meet, and the link as the article tells it."""
+    n = len(m.legs)
     radii = [named_in(f, f"r_{k}", sp.sympify(leg.rod, strict=True)) for k, leg in m.numbered]
     meet = two_circles if n == 2 else three_spheres
-    near = m.in_lemma(ends)
     found = meet(f, near, m.in_lemma(radii), tuple(m.hand), sigma, scale=size, free=tuple(m.hand))
     ((first, _), start), *others = m.in_lemma(list(zip(m.numbered, m.centres, strict=True)))
     told = replace(found.link, lemma=replace(found.lemma, roles=_roles(m)))
     shape = "circles" if n == 2 else "spheres"
-    d.step(
+    m.d.step(
         f"Forward: {m.count} {shape}",
         f"The hand is where {m.count} {shape} about the points b meet, whose radii are the "
         f"lengths of the rods.  They meet twice, on both sides of the "
@@ -134,36 +196,39 @@ def _forward(m: Carried, choice: Choice, loop: Step) -> _Posture:
         equal=[(found.rows.det(), found.volume)],
         uses=[loop],
     )
-    d.function(
-        "fk",
-        "Position of the hand in both assembly modes.",
-        {"q": m.joints},
-        {"p": [found.lemma[x] for x in m.hand]},
-        program=f,
-        branches=modes,
-        result="Positions",
-        notes=(
-            "UNREACHABLE: the rods do not meet.",
-            "SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of "
-            "its points is returned.",
-            "Ill-conditioned near the parallel singularities, where both modes meet.",
-        ),
+    return found, told
+
+
+def _on_rails(
+    m: Carried,
+    f: Program,
+    near: Sequence[sp.Matrix],
+    size: sp.Expr,
+    sigma: sp.Symbol,
+    loop: Step,
+) -> tuple[Meeting, Link]:
+    """Where a rail meets a rod or another rail."""
+    if len(m.rails) == 2:
+        found = two_rails(f, near, m.rails, m.hand)
+        title, reason = "Forward: two lines", "The hand is where the two rails meet."
+    else:
+        found = rail_and_circle(f, near, m.legs, m.hand, sigma, scale=size)
+        title = "Forward: line and circle"
+        reason = (
+            "The hand is where the rail meets a circle about the near end of the rod.  They meet "
+            "twice, on both sides of the normal to the rail through this point: these are the two "
+            "assembly modes.  The determinant of A has the sign of the mode."
+        )
+    m.d.step(
+        title,
+        reason,
+        {},
+        proves="The determinant of the rows of A, in the frame of the rail, is the sign of the "
+        "mode times a length; of two rails, it is a number.",
+        equal=[(found.rows.det(), found.volume)],
+        uses=[loop],
     )
-    equations = tuple(m.in_lemma(m.loop))
-    d.inverses.append(
-        Inverse("fk", tuple(m.hand), (sp.S.Zero,) * n, equations, links=(found.link,))
-    )
-    tell(d, "fk", told)
-    v = Program(list(f.body), f.taken)
-    rod = sp.Matrix([v.let(f"A_{first}{i}", e) for i, e in enumerate(found.first, 1)])
-    return _Posture(
-        v,
-        modes,
-        near[0] + rod,
-        tuple(rod + near[0] - end for end in ends),
-        found.side,
-        found.size,
-    )
+    return found, found.link
 
 
 def _roles(m: Carried) -> tuple[tuple[str, Any], ...]:
@@ -200,10 +265,16 @@ def _draw(m: Carried, at: _Posture) -> None:
         base, end, place = f"A{k}", f"B{k}", m.place(leg)
         far = "P" if place.is_zero_matrix else f"C{k}"
         near = base if isinstance(leg, Stretch | Strut) else end
-        lengths[near, far], closing[near, far] = sp.sympify(leg.rod, strict=True), equation
         if far != "P":
             links[f"hand{k}"] = ("P", far)
             lengths["P", far] = sp.sqrt(sp.factor(sp.trigsimp(square(place))))
+        if isinstance(leg, Rail):
+            span = m.hand - m.centres[k - 1]
+            joints |= {leg.joint: (base, end), leg.slide: (end, far)}
+            lengths |= {(base, end): leg.joint, (end, far): leg.way.dot(span)}
+            closing[end, far] = equation**2
+            continue
+        lengths[near, far], closing[near, far] = sp.sympify(leg.rod, strict=True), equation
         if isinstance(leg, Stretch):
             joints[leg.joint] = (base, far)
         else:
@@ -245,11 +316,23 @@ def _points(m: Carried, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
     return points | {"P": in_space(hand)}
 
 
+def _of_rods(m: Carried, text: str) -> str:
+    """A text about rods, with what is said of rails instead."""
+    instead = {
+        "halved": "those of rods halved",
+        "vectors along the rods": "vectors along the rods and the normals of the rails",
+        "half of the derivatives": "the derivatives, of a rod half of them",
+    }
+    return instead[text] if m.rails else text
+
+
 def _velocity(m: Carried, at: _Posture, loop: Step) -> None:
     d, n = m.d, len(m.legs)
     A, B = velocity_matrices(m.loop, tuple(m.hand), m.joints)
-    rods = [m.hand - c for c in m.centres]
+    spans = [m.hand - c for c in m.centres]
+    rods = m.rows(spans)
     rates = m.rates(rods)
+    halves = [1 if isinstance(leg, Rail) else 2 for leg in m.legs]
     labels = [k for k, _ in m.driven]
     still = sp.zeros(n - len(rates), len(rates))
     strut = "  A strut has no joint, so its row of B is zero." * still.rows
@@ -257,20 +340,21 @@ def _velocity(m: Carried, at: _Posture, loop: Step) -> None:
     adjugate = a.adjugate()
     d.step(
         "Velocity and singular sets",
-        "The derivatives of the loop equations, halved, give A*dp = B*dq.  The rows of A are the "
-        "vectors along the rods.  B is diagonal, because each leg depends on its own joint alone.  "
+        f"The derivatives of the loop equations, {_of_rods(m, 'halved')}, give A*dp = B*dq.  The "
+        f"rows of A are the {_of_rods(m, 'vectors along the rods')}.  B is diagonal, because each "
+        "leg depends on its own joint alone.  "
         "B is singular if the joint moves the near end of a rod at right angles to it (serial: "
-        "the joint moves and the hand stands still).  A is singular if the rods are "
-        f"{'in line' if n == 2 else 'in one plane'} (parallel: the hand can move while the joints "
-        f"stand still).{strut}",
+        f"the joint moves and the hand stands still).  A is singular if {m.meet} (parallel: the "
+        f"hand can move while the joints stand still).{strut}",
         {
             "A": sp.Matrix.vstack(*(r.T for r in rods)),
             **{f"B_{{{k}{k}}}": e for k, e in zip(labels, rates, strict=True)},
         },
-        proves="A and B are half of the derivatives, and the adjugate of A gives J with A*J = B.",
+        proves=f"A and B are {_of_rods(m, 'half of the derivatives')}, and the adjugate of A gives "
+        "J with A*J = B.",
         equal=[
-            (A / 2, sp.Matrix.vstack(*(r.T for r in rods))),
-            (B / 2, still.col_join(sp.diag(*rates))),
+            (A, sp.diag(*halves) * sp.Matrix.vstack(*(r.T for r in rods))),
+            (B, sp.diag(*halves) * still.col_join(sp.diag(*rates))),
             (a * adjugate, a.det() * sp.eye(n)),
         ],
         uses=[loop],
@@ -278,13 +362,13 @@ def _velocity(m: Carried, at: _Posture, loop: Step) -> None:
     v = Program(list(at.program.body), at.program.taken)
     placed = {
         e: named_in(v, f"A_{k}{i}", value)
-        for (k, _), row, rod in zip(m.numbered, a.tolist(), at.rods, strict=True)
+        for (k, _), row, rod in zip(m.numbered, a.tolist(), m.rows(at.rods), strict=True)
         for i, (e, value) in enumerate(zip(row, rod, strict=True), 1)
     }
     vectors = [sp.Matrix([placed[e] for e in row]) for row in a.tolist()]
     turned = m.rates(vectors)
     driven = [v.let(f"B_{k}{k}", e) for k, e in zip(labels, turned, strict=True)]
-    size = v.let("Delta", at.size, nonnegative=True)
+    size = at.size if at.size.is_number else v.let("Delta", at.size, nonnegative=True)
     side = at.side * size
     J = adjugate.xreplace(placed) * still.col_join(sp.diag(*driven)) / side
     A_at = a.xreplace(placed)
@@ -316,8 +400,11 @@ def _velocity(m: Carried, at: _Posture, loop: Step) -> None:
             {"factors": [*driven, side]},
             (),
         ),
-        ("condition_number", *conditioning(v, vectors, size, on_sphere=bool(still))),
     ]
+    if not m.rails:  # a normal is a unit vector, and a rod has a length
+        functions.append(
+            ("condition_number", *conditioning(v, vectors, size, on_sphere=bool(still)))
+        )
     export(d, v, at.modes, functions)
 
 
@@ -350,9 +437,9 @@ def where_free(found: Solution) -> list[str]:
 
 
 def _inverse(m: Carried, loop: Step) -> None:
-    d, n, g = m.d, len(m.legs), m.d.program()
+    d, g = m.d, m.d.program()
     choices: list[tuple[sp.Symbol, Choice]] = []
-    slides = any(isinstance(leg, Slide) for leg in m.legs)
+    slides = any(isinstance(leg, Slide | Rail) for leg in m.legs)
     size = g.let("size", size_of(d, tuple(m.hand) if slides else ()))
     found: list[Solution] = []
     straight: list[sp.Matrix] = []
@@ -370,7 +457,7 @@ def _inverse(m: Carried, loop: Step) -> None:
     inside = bounds_of(g)
     # a determinant does not change if a row is subtracted from the others; the hand cancels there
     first, *others = [*straight, *(s.rod for s in found)]
-    rows = [first, *(sp.expand(rod - first) for rod in others)]
+    rows = [first, *(rod if m.rails else sp.expand(rod - first) for rod in others)]
     apart = [
         sp.Matrix([named_in(g, f"A_{k}{i}", e) for i, e in enumerate(row, 1)])
         for (k, _), row in zip(m.numbered, rows, strict=True)
@@ -380,13 +467,12 @@ def _inverse(m: Carried, loop: Step) -> None:
         stretched[leg.joint] if isinstance(leg, Stretch) else sp.sympify(leg.rod, strict=True)
         for leg in m.legs
     ]
-    meet = "in line" if n == 2 else "in one plane"
     volume = g.let("Delta", sp.Matrix.hstack(*apart).det())
     # lengths that the sum of all lengths does not contain, such as those of an arc, round as well
     links = [e for leg in m.legs for e in (leg.rod, getattr(leg, "length", sp.S.Zero))]
     beyond = sp.Add(*(e for e in links if not sp.sympify(e, strict=True).is_Atom)) / size
     scale = sp.Mul(*lengths) * (1 + beyond)
-    g.determined(sp.Abs(volume), scale, f"the rods are {meet}", name=r"|\det A|")
+    g.determined(sp.Abs(volume), scale, m.meet, name=r"|\det A|")
     working = branches(*choices) if choices else SINGLE
     d.branches = working.labels
     signs = "The signs of its two solutions are those of the diagonal of B.  "
@@ -413,7 +499,7 @@ def _inverse(m: Carried, loop: Step) -> None:
         notes=(
             f"UNREACHABLE: a rod does not reach{off_sphere}.",
             *(note for s in found for note in where_free(s)),
-            f"SINGULAR also near a parallel singularity, where the rods are {meet}: the loop "
+            f"SINGULAR also near a parallel singularity, where {m.meet}: the loop "
             "closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.",
         ),
     )
@@ -466,7 +552,7 @@ def bounds_of(g: Program) -> Program:
 
 
 def named_in(p: Program, name: str, value: sp.Expr) -> sp.Symbol:
-    return value if value.is_Symbol or value == 0 else p.let(name, value)
+    return value if value.is_Symbol or value.is_number else p.let(name, value)
 
 
 __all__ = [

@@ -20,6 +20,7 @@ from closedform.algebra.solutions import count_solutions
 from closedform.lemmas.carried import in_space, listed, rate_of, square
 from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, Strut, vector
 from closedform.lemmas.loop import SIGN, Choice, bounds_of, named_in, size_of, tell, where_free
+from closedform.lemmas.rails import Rail
 from closedform.mechanics.frames import hat, require_pose
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation, Step
@@ -73,8 +74,10 @@ class Platform:
                 f"{name}: {n} legs in {self.dimensions} dimensions; a hand that turns has three "
                 f"legs in a plane or six in space"
             )
-        if any(isinstance(leg, Strut) for leg in self.legs):
-            raise ShapeError(f"{name}: a strut cannot carry a hand that turns")
+        for leg in self.legs:
+            if isinstance(leg, Strut | Rail):
+                kind = type(leg).__name__.lower()
+                raise ShapeError(f"{name}: a {kind} cannot carry a hand that turns")
         joints = tuple(leg.joint for leg in self.legs)
         if joints != self.d.actuated:
             raise ShapeError(

@@ -46,7 +46,7 @@ class Meeting:
 
     link: Link
     first: tuple[sp.Expr, ...]
-    side: sp.Symbol
+    side: sp.Expr
     size: sp.Expr
     rows: sp.Matrix
 

@@ -32,7 +32,6 @@ space.
 from __future__ import annotations
 
 import re
-import textwrap
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -41,13 +40,10 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.algebra.formulas import number
 from closedform.model.names import check_text
-from closedform.scaffold.source import file_name, literal, source
+from closedform.scaffold.source import source
 from closedform.scaffold.tables import (
-    Table,
     TableError,
-    add_joint,
     check_keys,
     check_variable,
     expression,
@@ -75,7 +71,6 @@ NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 """Bodies and points."""
 AXES = "xyz"
 TASK = (*AXES, "yaw")
-UNSAID = "say what it measures"
 TURNING = {2: 3, 3: 6}
 """The number of driven joints of a hand that turns, in a plane and in space."""
 
@@ -130,6 +125,8 @@ class LoopLeg:
     joint: Joint
     call: str
     words: str
+    passive: str = ""
+    """The passive slide of a rail."""
 
 
 def read_loop(path: Path) -> Loop:
@@ -264,7 +261,7 @@ def _unit(v: sp.Matrix, where: str) -> sp.Matrix:
 # Recognising the legs
 
 
-class _Legs:
+class Legs:
     """Finds the legs of a loop, from the ground to the hand."""
 
     def __init__(self, loop: Loop):
@@ -329,10 +326,13 @@ class _Legs:
             for j in loop.of(body)
             if j is not joint and j.other(body) in loop.rods
         ]
+        slides = [j for j in loop.of(body) if j.kind == "prismatic" and j is not joint]
+        if joint.kind == "prismatic" and len(slides) == 1 and not rods:
+            return self.rail(joint, body, slides[0])
         if len(rods) != 1:
             raise loop.error(
-                f"{joint.name} moves {body}, which must carry one rod, a body with a length; it "
-                f"carries {len(rods)}"
+                f"{joint.name} moves {body}, which must carry one rod, a body with a length, or "
+                f"one passive slide; it carries {len(rods)} rods"
             )
         (near, rod) = rods[0]
         place = self.place_on_hand(rod, near)
@@ -372,6 +372,34 @@ class _Legs:
             f"{_tuple(across)}{tail})",
             f"{name} turns a crank of length {crank}, which a rod of length {loop.rods[rod]} "
             f"joins to the hand",
+        )
+
+    def rail(self, joint: Joint, body: str, slide: Joint) -> LoopLeg:
+        """A slider with a rail, along which a body slides that has the point of the hand."""
+        loop, far = self.loop, slide.other(body)
+        if loop.dimensions == 3 or slide.driven:
+            raise loop.error(f"{slide.name} slides on {body}; this is known for a passive slide "
+                             f"in a plane only")  # fmt: skip
+        for j in (joint, slide):
+            if j.axis is None:
+                raise loop.error(f"{j.name} slides; say in which direction with axis")
+            if not all(e.is_number for e in j.axis):
+                raise loop.error(f"{j.name} has a direction with parameters; use numbers")
+        assert joint.axis is not None
+        assert slide.axis is not None
+        if joint.axis[0] * slide.axis[1] == joint.axis[1] * slide.axis[0]:
+            raise loop.error(f"{joint.name} and {slide.name} slide in the same direction")
+        points, place = loop.bodies[far], sp.zeros(2, 1)
+        if loop.hand in points:
+            place = points.get(slide.at, points[loop.hand]) - points[loop.hand]
+        elif not any(j.at == loop.hand for j in loop.of(far)):
+            raise loop.error(f"{slide.name} does not lead to the hand {loop.hand}")
+        return LoopLeg(
+            joint,
+            f"Rail({joint.name}, {slide.name}, {_tuple(self.point(body, slide))}, "
+            f"{_tuple(joint.axis)}, {_tuple(slide.axis)}{_on_hand(place)})",
+            f"{joint.name} moves a slider with a rail, along which the hand slides",
+            slide.name,
         )
 
     def point(self, body: str, joint: Joint) -> sp.Matrix:
@@ -434,149 +462,4 @@ def _on_hand(place: sp.Matrix) -> str:
     return f", on_hand={_tuple(place)}" if any(place) else ""
 
 
-# The script
-
-
-def loop_script(name: str, loop: Loop, origin: str) -> str:
-    """The derivation of a loop, as Python."""
-    origin = file_name(origin)
-    found = _Legs(loop)
-    follower = loop.joints.get(loop.hand)
-    if follower and not follower.driven:
-        legs, task = _coupled(found, follower), [loop.hand]
-    else:
-        points = {j.at for j in loop.joints.values()}.union(*loop.bodies.values())
-        if loop.hand not in points:
-            raise loop.error(
-                f"hand = {loop.hand!r} is neither a point nor a joint that is not driven"
-            )
-        driven, struts = found.legs(), found.struts()
-        legs, task = [*struts, *driven], list(AXES[: loop.dimensions])
-        if found.turning:
-            _check_turning(found, len(driven), struts)
-            task = []
-        elif len(legs) != loop.dimensions:
-            on_sphere = " beside its strut" if struts else ""
-            raise loop.error(
-                f"{len(driven)} joints are driven, but a hand that does not turn needs "
-                f"{loop.dimensions - len(struts)}{on_sphere}"
-            )
-    table = Table()
-    for leg in legs:
-        if leg.joint.driven:
-            kind = "prismatic" if leg.joint.kind == "prismatic" else "revolute"
-            add_joint(table, leg.joint.name, kind, loop.file)
-    return "\n".join([*_head(name, loop, legs, task, origin), *_body(table, legs, task)]) + "\n"
-
-
-def _check_turning(found: _Legs, driven: int, struts: Sequence[LoopLeg]) -> None:
-    """Refuse a hand that may turn with too few driven joints, or too many."""
-    loop, body = found.loop, found.turning
-    if loop.parallelograms:
-        raise loop.error(
-            f"{body} may turn; either all of its rods have to be parallelograms, or none"
-        )
-    needed, where = TURNING[loop.dimensions], "a plane" if loop.dimensions == 2 else "space"
-    if struts or driven != needed:
-        instead = "a strut carries it" if struts else f"there are {driven}"
-        raise loop.error(
-            f"{body} may turn, so it needs {needed} driven joints in {where}, and {instead}.  "
-            f"If the rods are parallelograms, which keep it from turning, say so: "
-            f"parallelogram = true"
-        )
-
-
-def _coupled(found: _Legs, follower: Joint) -> list[LoopLeg]:
-    """The driver and the follower of a single loop."""
-    loop = found.loop
-    drivers = found.driven()
-    if len(drivers) != 1 or GROUND not in follower.between:
-        raise loop.error("a loop with one driven joint needs a follower that is on the ground")
-    driver, ends = drivers[0], []
-    for joint in (driver, follower):
-        body = joint.other(GROUND)
-        near = next((j for j in loop.of(body) if j is not joint), None)
-        if near is None:
-            raise loop.error(f"{body} is joined to the ground alone")
-        ends.append((joint, near))
-    hand = loop.hand
-    loop.hand = ends[1][1].at
-    first = found.leg(driver)
-    loop.hand = ends[0][1].at
-    second = found.leg(follower)
-    loop.hand = hand
-    return [first, second]
-
-
-def _head(
-    name: str, loop: Loop, legs: Sequence[LoopLeg], task: Sequence[str], origin: str
-) -> list[str]:
-    title = name.replace("_", " ").capitalize()
-    way = "platform" if not task else "coupled" if len(task) == 1 else "parallel"
-    words = "  ".join(f"{leg.words[0].upper()}{leg.words[1:]}." for leg in legs)
-    calls = sorted({leg.call.partition("(")[0] for leg in legs})
-    names = sorted([*calls, "Derivation", "Paper", way, *["real"] * bool(task)])
-    fractions = [number(given.get("value") or "1") for given in loop.parameters.values()]
-    used = " ".join(leg.call for leg in legs) + "Rational(" * any(
-        f.denominator != 1 for f in fractions
-    )
-    functions = [f for f in ("Rational", "cos", "sin", "sqrt") if f"{f}(" in used]
-    functions += ["pi"] * bool(re.search(r"\bpi\b", used))
-    lines = [
-        f'"""{title}: a derivation from {origin}."""',
-        "",
-        *([f"from sympy import {', '.join(sorted(functions))}", ""] if functions else []),
-        f"from closedform import {', '.join(names)}",
-        "",
-        "d = Derivation(",
-        f'    "{name}",',
-        f'    "{title}",',
-        f'    Paper("{name}", "{title}", ("the maker of the mechanism",)),',
-        *wrapped_literal(words),
-        *([f"    task=[{', '.join(literal(x) for x in task)}],"] if task else []),
-        ")",
-    ]
-    for symbol, given in loop.parameters.items():
-        value = number(given.get("value") or "1")
-        exact = f"{value.numerator}" if value.denominator == 1 else f'Rational("{value}")'
-        angle = given.get("unit") == "rad" or (given.get("value") or "1").startswith("-")
-        sign = ", nonnegative=False" if angle else ""
-        lines.append(
-            f'{symbol} = d.parameter("{symbol}", value={exact}, '
-            f"unit={literal(given.get('unit') or 'm')}, "
-            f'meaning={literal(given.get("meaning") or UNSAID)}, source="{origin}"{sign})'
-        )
-    return lines
-
-
-def wrapped_literal(text: str) -> list[str]:
-    """A text as an argument in several lines, each a literal."""
-    rows = textwrap.wrap(text, 88, drop_whitespace=False)
-    return [f"    {literal(row)}{',' * (row is rows[-1])}" for row in rows]
-
-
-def _body(table: Table, legs: Sequence[LoopLeg], task: Sequence[str]) -> list[str]:
-    lines = []
-    for joint, kind in table.joints.items():
-        argument = ', "prismatic"' if kind == "prismatic" else ""
-        lines.append(f'{joint} = d.joint("{joint}"{argument})')
-    if len(task) == 1:
-        (x,) = task
-        lines += [f'{x} = real("{x}")', "coupled(", "    d,"]
-        return [*lines, *(f"    {leg.call}," for leg in legs), ")"]
-    hand = ", ".join(f'real("{x}")' for x in task)
-    if not task:
-        return [
-            *lines,
-            "platform(",
-            "    d,",
-            "    [",
-            *(f"        {leg.call}," for leg in legs),
-            "    ],",
-            ")",
-        ]
-    lines += ["parallel(", "    d,", f"    ({hand}),", "    ["]
-    return [*lines, *(f"        {leg.call}," for leg in legs), "    ],", ")"]
-
-
-__all__ = ["Loop", "loop_script", "read_loop"]
+__all__ = ["AXES", "GROUND", "TURNING", "Joint", "Legs", "Loop", "LoopLeg", "read_loop"]

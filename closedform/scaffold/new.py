@@ -21,7 +21,8 @@ from closedform.model.derivation import Derivation
 from closedform.model.names import check_robot, check_text
 from closedform.model.paper import Paper
 from closedform.scaffold.limit import LimitError, bounded
-from closedform.scaffold.loops import loop_script, read_loop
+from closedform.scaffold.loop_script import loop_script
+from closedform.scaffold.loops import read_loop
 from closedform.scaffold.mjcf import read_mjcf
 from closedform.scaffold.propose import NoChainError, propose
 from closedform.scaffold.recognise import recognised

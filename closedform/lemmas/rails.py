@@ -1,0 +1,178 @@
+"""Legs of two slides in a plane: a slider carries a rail, along which the hand slides."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.legs import Naming, Solution, vector
+from closedform.lemmas.registry import theorem
+from closedform.lemmas.spheres import Meeting
+from closedform.model.functions import Program
+from closedform.model.inverse import Link
+from closedform.model.lemma import Lemma
+
+theorem(
+    "oblique coordinates",
+    statement=r"""Let $\mathbf s$ and $\mathbf t$ be vectors of a plane with $D = s_1 t_2 - s_2 t_1
+\ne 0$.  For each vector $\mathbf w$ there is exactly one pair of numbers with $\mathbf w =
+q\,\mathbf s + \lambda\,\mathbf t$, and
+$$q = \frac{w_1 t_2 - w_2 t_1}{D}, \qquad \lambda = \frac{s_1 w_2 - s_2 w_1}{D}.$$""",
+    proof=r"""These are two linear equations with the determinant $D$, and Cramer's rule solves
+them.""",
+)
+
+
+@dataclass(frozen=True)
+class Rail:
+    """A slider that carries a rail, along which the hand slides; in a plane.
+
+    The joint moves the slider from ``start`` along the unit vector ``direction``, and the rail has
+    the direction of the unit vector ``along``; both are numbers.  ``slide`` is the passive joint:
+    how far the point ``on_hand``, as seen from the point that is the hand, is along the rail.
+    """
+
+    joint: sp.Symbol
+    slide: sp.Symbol
+    start: Sequence[Any]
+    direction: Sequence[Any]
+    along: Sequence[Any]
+    on_hand: Sequence[Any] = ()
+    signs: int = 1
+    rod: int = 1
+    """What stands for the length of a rod: the normal of the rail is a unit vector."""
+
+    def __post_init__(self) -> None:
+        if not (len(self.start) == len(self.direction) == len(self.along) == 2):
+            raise ShapeError(f"{self.joint}: a rail is in a plane, so its vectors have 2 entries")
+        cross = sp.simplify(_cross(self.rate, self.way))
+        if not cross.is_number or cross == 0:
+            raise ShapeError(
+                f"{self.joint}: the directions of a slider and of the rail on it are two different "
+                f"directions, in numbers"
+            )
+
+    @property
+    def base(self) -> sp.Matrix:
+        return vector(self.start)
+
+    @property
+    def rate(self) -> sp.Matrix:
+        return vector(self.direction)
+
+    @property
+    def way(self) -> sp.Matrix:
+        """The direction of the rail."""
+        return vector(self.along)
+
+    @property
+    def normal(self) -> sp.Matrix:
+        """The direction of the rail, turned by a right angle to the left."""
+        return sp.Matrix([-self.way[1], self.way[0]])
+
+    def end(self) -> sp.Matrix:
+        return self.base + self.joint * self.rate
+
+    def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
+        q, cross = self.joint, sp.simplify(_cross(self.rate, self.way))
+        off = chain.let("off", _cross(w, self.way))
+        lemma = Lemma(
+            "oblique coordinates",
+            r"q = \frac{w_1 t_2 - w_2 t_1}{D}",
+            (q * cross - off,),
+            {q: off / cross},
+            1,
+            roles=((r"\mathbf w", sp.Matrix(w)), (r"\mathbf t", self.way), ("D", cross)),
+        )
+        return Solution(Link((q,), lemma.equations, {}, lemma), lemma[q], self.normal)
+
+
+def _cross(a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def two_rails(
+    program: Program, ends: Sequence[sp.Matrix], rails: Sequence[Rail], hand: sp.Matrix
+) -> Meeting:
+    """The point that two rails share; ``ends`` are points of them."""
+    a, b = rails
+    across = sp.simplify(_cross(a.way, b.way))
+    if across == 0:
+        raise ShapeError(f"the rails of {a.joint} and {b.joint} are parallel")
+    if not across.is_number:
+        raise ShapeError(f"the rails of {a.joint} and {b.joint} have directions in parameters")
+    start = len(program.body)
+    far = program.let("along", _cross(ends[1] - ends[0], b.way) / across)
+    found = ends[0] + far * a.way
+    lemma = Lemma(
+        "oblique coordinates",
+        r"\lambda = \frac{w_1 t_2 - w_2 t_1}{D}",
+        tuple(r.normal.dot(hand - e) for r, e in zip(rails, ends, strict=True)),
+        dict(zip(hand, found, strict=True)),
+        1,
+        roles=((r"\mathbf w", ends[1] - ends[0]), (r"\mathbf t", b.way), ("D", across)),
+    )
+    return Meeting(
+        Link(tuple(hand), lemma.equations, {}, lemma, tuple(program.body[start:])),
+        tuple(far * a.way),
+        sp.sign(across),
+        abs(across),
+        sp.Matrix.vstack(a.normal.T, b.normal.T),
+    )
+
+
+def rail_and_circle(
+    program: Program,
+    ends: Sequence[sp.Matrix],
+    legs: Sequence[Any],
+    hand: sp.Matrix,
+    sigma: sp.Symbol,
+    *,
+    scale: sp.Expr,
+) -> Meeting:
+    """The points of a rail at the length of a rod from the near end of the rod.
+
+    Of the two ``legs``, one is a rail.  ``ends`` are a point of it and the near end of the rod, in
+    the order of the legs.
+    """
+    p, k = program, 0 if isinstance(legs[0], Rail) else 1
+    rail, rod, at, centre = legs[k], legs[1 - k], ends[k], ends[1 - k]
+    w = sp.Matrix([p.let(f"w_{i}", e) for i, e in zip("xy", centre - at, strict=True)])
+    r = sp.sympify(rod.rod, strict=True)
+    r = r if r.is_Symbol else p.let("r", r, nonnegative=True)
+    start = len(p.body)
+    m, off = p.let("m", w.dot(rail.way)), p.let("aside", w.dot(rail.normal))
+    # with three quarters of the tolerance, the legs accept the target of what is accepted here
+    tolerated, meaning = 3 * scale / 4, "the rod reaches the rail"
+    over = p.bound("over", r - off, tolerated, meaning)
+    under = p.bound("under", r + off, tolerated, meaning)
+    root = p.let("root", sp.sqrt(over) * sp.sqrt(under), nonnegative=True)
+    side = -sigma if k == 0 else sigma
+    far = p.let("along", m + side * root)
+    found = at + far * rail.way
+    equations = (rail.normal.dot(hand - at), (hand - at - w).dot(hand - at - w) - r**2)
+    lemma = Lemma(
+        "line and sphere",
+        rf"q = m {'-' if k == 0 else '+'} \sigma\sqrt{{(r - p)(r + p)}}",
+        equations if k == 0 else equations[::-1],
+        dict(zip(hand, found, strict=True)),
+        2,
+        signs=(sigma,),
+        roles=(("q", far), ("m", m), ("r", r), ("p", sp.Abs(off))),
+    )
+    rows = [sp.Matrix([[0, 1]]), sp.Matrix([[side * root, -off]])]
+    span = far * rail.way
+    return Meeting(
+        Link(tuple(hand), lemma.equations, {}, lemma, tuple(p.body[start:])),
+        tuple(span if k == 0 else span - w),
+        sigma,
+        root,
+        sp.Matrix.vstack(*(rows if k == 0 else rows[::-1])),
+    )
+
+
+__all__ = ["Rail", "rail_and_circle", "two_rails"]

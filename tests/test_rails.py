@@ -1,0 +1,236 @@
+"""PPR legs: a slider with a rail, along which the hand slides, beside each other kind of leg."""
+
+import importlib
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from sympy import Rational
+
+from closedform import (
+    Crank,
+    Derivation,
+    Paper,
+    Rail,
+    Slide,
+    Stretch,
+    parallel,
+    platform,
+    plot,
+    prove,
+    real,
+)
+from closedform.algebra.shapes import ShapeError
+from closedform.check.crosscheck import crosscheck, module_backend
+from closedform.cli.commands import main
+from closedform.scaffold.loop_script import loop_script
+from closedform.scaffold.loops import read_loop
+from closedform.scaffold.tables import TableError
+
+OK, UNREACHABLE, SINGULAR, INVALID = range(4)
+L, H = 2.0, 1.0
+WAY = np.array([0.6, 0.8])
+START = np.array([0.2, -0.1])
+KINDS = ("slide", "crank", "stretch", "rail")
+
+GANTRY = """
+hand = "P"
+[parameters]
+h = {value = "0.4", meaning = "height of the second slider"}
+l = {value = "0.5", meaning = "rod"}
+[bodies]
+ground = {O = [0, 0], A = [0, "h"]}
+carriage = {O = [0, 0]}
+post = {P = [0, 0]}
+slider = {S = [0, "h"]}
+rod = {length = "l"}
+[joints]
+q1 = {between = ["ground", "carriage"], at = "O", kind = "prismatic", axis = [1, 0], driven = true}
+s1 = {between = ["carriage", "post"], at = "O", kind = "prismatic", axis = [0, 1]}
+q2 = {between = ["ground", "slider"], at = "A", kind = "prismatic", axis = [1, 0], driven = true}
+b2 = {between = ["slider", "rod"], at = "S"}
+p = {between = ["rod", "post"], at = "P"}
+"""
+
+
+def derivation(kind: str, *, last: bool = False) -> Derivation:
+    """A rail and another leg; the rail is the ``last`` one if asked for."""
+    d = Derivation("gantry", "Gantry", Paper("toy", "Toys", ("A. Nonymous",)), "Legs.")
+    d.task = ["x", "y"]
+    l, h = (d.parameter(n, value=v, unit="m", meaning=n) for n, v in (("L", 2), ("h", 1)))
+    slides = ["q1", "q2"] if kind != "crank" else ["q2"] if last else ["q1"]
+    q = [d.joint(n, "prismatic" if n in slides else "revolute") for n in ("q1", "q2")]
+    s = d.joint("s", "prismatic", passive=True)
+    a, b = q[::-1] if last else q
+    start = (Rational("0.2"), Rational("-0.1"))
+    rail = Rail(a, s, start, (1, 0), (Rational(3, 5), Rational(4, 5)))
+    if kind == "rail":
+        other = Rail(b, d.joint("t", "prismatic", passive=True), (h, 0), (0, 1), (1, 0))
+    elif kind == "slide":
+        other = Slide(b, l, (0, h), (0, 1))
+    elif kind == "crank":
+        other = Crank(b, h, l, (l, 0), (1, 0), (0, 1))
+    else:
+        other = Stretch(b, (l, h))
+    parallel(d, (real("x"), real("y")), [other, rail] if last else [rail, other])
+    return d
+
+
+@pytest.fixture(scope="module")
+def robots(tmp_path_factory: pytest.TempPathFactory) -> dict[str, ModuleType]:
+    folder = tmp_path_factory.mktemp("rails")
+    (folder / "rails_script.py").write_text(Path(__file__).read_text("utf-8"), "utf-8")
+    found = {}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(folder)
+        for kind in KINDS:
+            script = folder / f"gantry_{kind}.py"
+            script.write_text(
+                f"from rails_script import derivation\nd = derivation({kind!r})\n"
+                f"d.name = 'gantry_{kind}'\n",
+                "utf-8",
+            )
+            out = folder / f"out_{kind}"
+            derive = ["derive", str(script), "-o", str(out), "--backend", "numpy"]
+            assert main([*derive, "--no-crosscheck"]) == 0
+            found[kind] = importlib.import_module(f"out_{kind}.numpy.gantry_{kind}")
+    return found
+
+
+def drawn(kind: str, rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Random hands, and joints that belong to them, both found from the drawing."""
+    if kind == "crank":
+        q = np.stack([rng.uniform(-3, 3, n), rng.uniform(-np.pi, np.pi, n)], 1)
+        near = np.array([L, 0]) + H * np.stack([np.cos(q[:, 1]), np.sin(q[:, 1])], 1)
+        turn = rng.uniform(-np.pi, np.pi, n)
+        p = near + L * np.stack([np.cos(turn), np.sin(turn)], 1)
+    else:
+        p = rng.uniform(-3, 3, (n, 2))
+        q = np.zeros((n, 2))
+        if kind == "slide":
+            p[:, 0] = rng.uniform(-L, L, n)
+            q[:, 1] = p[:, 1] - H + rng.choice([-1, 1], n) * np.sqrt(L**2 - p[:, 0] ** 2)
+        elif kind == "stretch":
+            q[:, 1] = np.linalg.norm(p - [L, H], axis=1)
+        else:
+            q[:, 1] = p[:, 1]
+    # the rail leads from (q1, 0) + START to the hand
+    q[:, 0] = p[:, 0] - START[0] - (p[:, 1] - START[1]) * WAY[0] / WAY[1]
+    return p, q
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_posture_is_lost(robots: dict[str, ModuleType], kind: str) -> None:
+    robot = robots[kind]
+    p, q = drawn(kind, np.random.default_rng(1), 100_000)
+    answers = robot.ik(p)
+    turns = np.array([robot.SKELETON.joints[n].kind == "revolute" for n in robot.JOINTS])
+    gap = answers.q - q[:, None]
+    gap = np.abs(np.where(turns, np.angle(np.exp(1j * gap)), gap)).max(-1)
+    assert np.nanmin(gap, axis=1).max() < 1e-6
+    hands = robot.fk(q)
+    assert np.nanmin(np.abs(hands.p - p[:, None]).max(-1), axis=1).max() < 1e-6
+    back = robot.fk(answers.q)
+    missed = np.nanmin(np.abs(back.p - p[:, None, None]).max(-1), axis=-1)
+    assert missed[answers.status == OK].max() < 1e-12 * (L + H + np.abs(q).max())
+    assert (answers.status == OK).mean() > 0.9
+    # joints at random: what the hand is, is on the rail and keeps the rod
+    q = np.random.default_rng(2).uniform(-4, 4, (20_000, 2))
+    hands = robot.fk(q)
+    reached = hands.status == OK
+    off = hands.p - START - np.stack([q[:, :1], 0 * q[:, :1]], -1)
+    assert np.abs((off @ [-WAY[1], WAY[0]])[reached]).max() < 1e-13
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_jacobian_is_the_derivative(robots: dict[str, ModuleType], kind: str) -> None:
+    robot, h = robots[kind], 1e-6
+    _, q = drawn(kind, np.random.default_rng(3), 500)
+    J = robot.jacobian(q)
+    rates = [(robot.fk(q + s).p - robot.fk(q - s).p) / (2 * h) for s in h * np.eye(2)]
+    off = np.abs(np.stack(rates, -1) - J)
+    far = np.abs(robot.singularities(q)[..., -1]) > 0.05
+    assert far.mean() > 0.5
+    assert np.nanmax(off[far]) < 1e-5
+    A, B = robot.jacobian_parallel(q), robot.jacobian_serial(q)
+    assert np.allclose((A @ J)[far], (B[..., None] * np.eye(2))[far], atol=1e-12)
+
+
+@pytest.mark.parametrize("last", [False, True])
+@pytest.mark.parametrize("kind", KINDS)
+def test_modes_are_proved_in_either_order(kind: str, last: bool) -> None:
+    modes = {"slide": (2, 2), "crank": (2, 2), "stretch": (2, 1), "rail": (1, 1)}[kind]
+    proof = prove(derivation(kind, last=last))
+    assert tuple(i.solutions for i in proof.inverses) == modes
+
+
+def test_the_sign_of_the_mode_is_that_of_the_determinant(robots: dict[str, ModuleType]) -> None:
+    for kind in ("slide", "crank", "stretch"):
+        _, q = drawn(kind, np.random.default_rng(4), 300)
+        value = np.linalg.det(robots[kind].jacobian_parallel(q))
+        assert (np.sign(value) * [1, -1] > 0).mean() > 0.99
+        assert robots[kind].ASSEMBLY_MODES == ("plus", "minus")
+
+
+def test_the_crosscheck_of_a_file(tmp_path: Path) -> None:
+    path = tmp_path / "gantry.toml"
+    path.write_text(GANTRY, "utf-8")
+    script = tmp_path / "my_gantry.py"
+    script.write_text(loop_script("my_gantry", read_loop(path), path.name), "utf-8")
+    out = tmp_path / "gantry_out"
+    derive = ["derive", str(script), "-o", str(out), "--backend", "numpy", "--no-crosscheck"]
+    assert main(derive) == 0
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(tmp_path)
+        robot = importlib.import_module("gantry_out.numpy.my_gantry")
+        d = importlib.import_module("my_gantry").d
+    found = crosscheck(d, module_backend("numpy", robot))
+    assert not [failure for f in found for failure in f.failures]
+    q, status = robot.ik([0.1, 0.2])
+    assert (status == OK).all()
+    assert np.allclose(q, [[0.1, 0.1 - s * np.sqrt(0.5**2 - 0.2**2)] for s in (1, -1)])
+    assert plot.branches(robot).figure is not None
+
+
+@pytest.mark.parametrize(
+    ("old", "other", "message"),
+    [
+        ("axis = [0, 1]", "axis = [1, 0]", "q1 and s1 slide in the same direction"),
+        ("axis = [0, 1]}", 'axis = ["h", 1]}', "s1 has a direction with parameters"),
+        (', axis = [0, 1]}', "}", "s1 slides; say in which direction"),
+        ('["carriage", "post"]', '["carriage", "slider"]', "s1 does not lead to the hand P"),
+        ("axis = [0, 1]}", "axis = [0, 1], driven = true}", "passive slide"),
+    ],
+)  # fmt: skip
+def test_a_file_that_does_not_fit_says_why(
+    old: str, other: str, message: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "gantry.toml"
+    path.write_text(GANTRY.replace(old, other), "utf-8")
+    with pytest.raises(TableError, match=message):
+        loop_script("my_gantry", read_loop(path), path.name)
+
+
+def test_rails_that_cannot_be_say_why() -> None:
+    q, s = real("q"), real("s")
+    with pytest.raises(ShapeError, match="two different directions"):
+        Rail(q, s, (0, 0), (1, 0), (1, 0))
+    with pytest.raises(ShapeError, match="two different directions, in numbers"):
+        Rail(q, s, (0, 0), (1, 0), (real("a"), real("b")))
+    with pytest.raises(ShapeError, match="in a plane"):
+        Rail(q, s, (0, 0, 0), (1, 0, 0), (0, 1, 0))
+    d = Derivation("toy", "Toy", Paper("toy", "Toys", ("A. Nonymous",)), "Legs.")
+    joints = [d.joint(f"q{k}", "prismatic") for k in range(3)]
+    with pytest.raises(ShapeError, match="a rail cannot carry a hand that turns"):
+        platform(d, [Rail(q, s, (0, 0), (1, 0), (0, 1), on_hand=(k, 1)) for k, q in
+                     enumerate(joints)])  # fmt: skip
+    d = Derivation("toy", "Toy", Paper("toy", "Toys", ("A. Nonymous",)), "Legs.")
+    d.task = ["x", "y"]
+    pair = [d.joint(f"q{k}", "prismatic") for k in (1, 2)]
+    with pytest.raises(ShapeError, match="are parallel"):
+        parallel(
+            d,
+            (real("x"), real("y")),
+            [Rail(q, s, (0, k), (1, 0), (0, 1)) for k, q in enumerate(pair)],
+        )

@@ -68,7 +68,9 @@ class Carried:
         """What makes A singular."""
         if self.rails:
             parallel = len(self.rails) == len(self.legs)
-            return "the rails are parallel" if parallel else "the rod is across the rail"
+            return (
+                "the rails are parallel" if parallel else "the rod is at right angles to the rail"
+            )
         return f"the rods are in {'line' if len(self.hand) == 2 else 'one plane'}"
 
     def in_lemma(self, items: Sequence[_Item]) -> list[_Item]:

@@ -74,7 +74,7 @@ def parallel(
     mechanism = Carried(d, sp.Matrix(hand), tuple(legs))
     meet = "rods in line" if len(legs) == 2 else "rods in one plane"
     if mechanism.rails:
-        meet = "rails parallel" if len(mechanism.rails) == 2 else "rod across the rail"
+        meet = "rails parallel" if len(mechanism.rails) == 2 else "rod at right angles to the rail"
     if not d.singularities:
         d.singularities = (*(f"leg {k}" for k, _ in mechanism.driven), meet)
         d.poles = (meet,)
@@ -316,16 +316,6 @@ def _points(m: Carried, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
     return points | {"P": in_space(hand)}
 
 
-def _of_rods(m: Carried, text: str) -> str:
-    """A text about rods, with what is said of rails instead."""
-    instead = {
-        "halved": "those of rods halved",
-        "vectors along the rods": "vectors along the rods and the normals of the rails",
-        "half of the derivatives": "the derivatives, of a rod half of them",
-    }
-    return instead[text] if m.rails else text
-
-
 def _velocity(m: Carried, at: _Posture, loop: Step) -> None:
     d, n = m.d, len(m.legs)
     A, B = velocity_matrices(m.loop, tuple(m.hand), m.joints)
@@ -336,12 +326,16 @@ def _velocity(m: Carried, at: _Posture, loop: Step) -> None:
     labels = [k for k, _ in m.driven]
     still = sp.zeros(n - len(rates), len(rates))
     strut = "  A strut has no joint, so its row of B is zero." * still.rows
+    halved, vectors, half = "halved", "vectors along the rods", "half of the derivatives"
+    if m.rails:
+        halved, half = "those of rods halved", "the derivatives, of a rod half of them"
+        vectors += " and the normals of the rails"
     a = sp.Matrix(n, n, lambda i, j: real(f"a{i + 1}{j + 1}"))
     adjugate = a.adjugate()
     d.step(
         "Velocity and singular sets",
-        f"The derivatives of the loop equations, {_of_rods(m, 'halved')}, give A*dp = B*dq.  The "
-        f"rows of A are the {_of_rods(m, 'vectors along the rods')}.  B is diagonal, because each "
+        f"The derivatives of the loop equations, {halved}, give A*dp = B*dq.  The "
+        f"rows of A are the {vectors}.  B is diagonal, because each "
         "leg depends on its own joint alone.  "
         "B is singular if the joint moves the near end of a rod at right angles to it (serial: "
         f"the joint moves and the hand stands still).  A is singular if {m.meet} (parallel: the "
@@ -350,8 +344,7 @@ def _velocity(m: Carried, at: _Posture, loop: Step) -> None:
             "A": sp.Matrix.vstack(*(r.T for r in rods)),
             **{f"B_{{{k}{k}}}": e for k, e in zip(labels, rates, strict=True)},
         },
-        proves=f"A and B are {_of_rods(m, 'half of the derivatives')}, and the adjugate of A gives "
-        "J with A*J = B.",
+        proves=f"A and B are {half}, and the adjugate of A gives J with A*J = B.",
         equal=[
             (A, sp.diag(*halves) * sp.Matrix.vstack(*(r.T for r in rods))),
             (B, sp.diag(*halves) * still.col_join(sp.diag(*rates))),
@@ -365,8 +358,8 @@ def _velocity(m: Carried, at: _Posture, loop: Step) -> None:
         for (k, _), row, rod in zip(m.numbered, a.tolist(), m.rows(at.rods), strict=True)
         for i, (e, value) in enumerate(zip(row, rod, strict=True), 1)
     }
-    vectors = [sp.Matrix([placed[e] for e in row]) for row in a.tolist()]
-    turned = m.rates(vectors)
+    along = [sp.Matrix([placed[e] for e in row]) for row in a.tolist()]
+    turned = m.rates(along)
     driven = [v.let(f"B_{k}{k}", e) for k, e in zip(labels, turned, strict=True)]
     size = at.size if at.size.is_number else v.let("Delta", at.size, nonnegative=True)
     side = at.side * size
@@ -402,9 +395,7 @@ def _velocity(m: Carried, at: _Posture, loop: Step) -> None:
         ),
     ]
     if not m.rails:  # a normal is a unit vector, and a rod has a length
-        functions.append(
-            ("condition_number", *conditioning(v, vectors, size, on_sphere=bool(still)))
-        )
+        functions.append(("condition_number", *conditioning(v, along, size, on_sphere=bool(still))))
     export(d, v, at.modes, functions)
 
 
@@ -497,7 +488,7 @@ def _inverse(m: Carried, loop: Step) -> None:
         branches=working,
         result="Solutions",
         notes=(
-            f"UNREACHABLE: a rod does not reach{off_sphere}.",
+            *([f"UNREACHABLE: a rod does not reach{off_sphere}."] if inside.body else []),
             *(note for s in found for note in where_free(s)),
             f"SINGULAR also near a parallel singularity, where {m.meet}: the loop "
             "closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.",

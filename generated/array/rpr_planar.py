@@ -890,7 +890,6 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
 
     Notes
     -----
-    - UNREACHABLE: a rod does not reach.
     - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes,
       but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
     """

@@ -10234,7 +10234,6 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- UNREACHABLE: a rod does not reach.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in line: the loop closes,\n"
       "  but one ulp of the joints moves the hand by more than 1e-12 of the lengths.\n"
       ,

@@ -281,7 +281,6 @@ void rpr_planar_condition_number_batch(size_t n, const rpr_planar_params *params
  *
  * Notes
  * -----
- * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes, but
  *   one ulp of the joints moves the hand by more than 1e-12 of the lengths.
  */

@@ -883,7 +883,6 @@ const _IK = _runtime.kernel({
 /**
  * The driven joints of the only working mode.
  *
- * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel singularity, where the rods are in line: the loop closes, but
  *   one ulp of the joints moves the hand by more than 1e-12 of the lengths.
  *

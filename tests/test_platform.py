@@ -11,7 +11,7 @@ import pytest
 
 from closedform import Crank, Derivation, Paper, Slide, Stretch, Strut, platform, plot, prove
 from closedform.algebra.shapes import ShapeError
-from closedform.check.crosscheck import Backend, check_forward, module_backend
+from closedform.check.crosscheck import Backend, check_forward, crosscheck, module_backend
 from closedform.cli.commands import main
 from closedform.lemmas.platform import Platform, degree_in_plane
 from closedform.model.tolerances import DOUBLE
@@ -184,6 +184,43 @@ def test_a_wrong_value_is_found(stage: ModuleType, tmp_path: Path, name: str) ->
 
     assert not check_forward(d, d[name], module_backend("numpy", stage)).failures
     assert check_forward(d, d[name], Backend("broken", lookup, np.float64, DOUBLE)).failures
+
+
+MIXED = """
+from sympy import Rational
+from closedform import Crank, Derivation, Paper, Slide, Stretch, platform
+d = Derivation("mixed", "Mixed", Paper("toy", "Toys", ("A. Nonymous",)), "Three kinds of legs.")
+r = d.parameter("r", value=2, unit="m", meaning="rod", source="an example")
+q = d.joint("q1"), d.joint("q2", "prismatic"), d.joint("q3", "prismatic")
+u, v = (Rational(3, 5), Rational(4, 5)), (Rational(-4, 5), Rational(3, 5))
+a = Rational("0.7"), Rational("-0.2")
+platform(
+    d,
+    [
+        Crank(q[0], Rational("0.8"), r, (0, 0), u, v, on_hand=a),
+        Slide(q[1], r, (1, Rational("0.1")), u, on_hand=(Rational("-0.3"), Rational("0.4"))),
+        Stretch(q[2], (Rational("-0.5"), 2), on_hand=(Rational("0.1"), Rational("0.9"))),
+    ],
+)
+"""
+SLIDERS = re.sub(
+    r'crank(\d) = {B\d = \["\S+ [-+] \S+", (\S+)\]}',
+    r'crank\1 = {B\1 = ["\1*l", \2]}',
+    STAGE.replace('", driven', '", kind = "prismatic", axis = [0, 1], driven'),
+)
+
+
+@pytest.mark.parametrize("name", ["mixed", "sliders"])
+def test_the_crosscheck_of_other_legs(name: str, tmp_path: Path) -> None:
+    script = (
+        MIXED if name == "mixed" else script_of(SLIDERS, tmp_path).replace('"stage"', '"sliders"')
+    )
+    robot = derived(tmp_path, name, script)
+    space: dict = {}
+    exec(compile(script, f"{name}.py", "exec"), space)
+    found = crosscheck(space["d"], module_backend("numpy", robot))
+    assert not [failure for f in found for failure in f.failures]
+    assert len(robot.BRANCHES) == {"mixed": 4, "sliders": 8}[name]
 
 
 # In space

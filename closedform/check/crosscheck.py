@@ -186,6 +186,7 @@ def _compare(
     finding.compared += int((exists > 0).sum())
     largest: dict[Any, float] = {}
     unsettled: set[Any] = set()
+    amplified: dict[Any, NDArray[Any]] = {}
     for place in np.argsort(-bounds, axis=None):
         row, k = np.unravel_index(place, bounds.shape)
         if not bounds[row, k] > finding.worst:
@@ -208,10 +209,12 @@ def _compare(
             scale += float(_variation(values, int(k), rows[row], exacts[k], backend)) / backend.eps
             error = _ulps(computed[row, k], exact, scale, backend)
         if error > WELL_CONDITIONED and values.beside_pose:
-            amplified = float(values.amplified(rows[row : row + 1], backend.dtype)[0, k])
-            if backend.eps * amplified >= scales[row, k]:  # a divisor is a rounding
+            if row not in amplified:
+                amplified[row] = values.amplified(rows[row : row + 1], backend.dtype)[0]
+            grown = float(amplified[row][k])
+            if backend.eps * grown >= scales[row, k]:  # a divisor is a rounding
                 continue
-            error = _ulps(computed[row, k], exact, scale + amplified, backend)
+            error = _ulps(computed[row, k], exact, scale + grown, backend)
         finding.see(error, lambda: f"{sample.name}, entry {k} at {rows[row].tolist()}")  # noqa: B023
     finding.compared -= int((exists[[*unsettled]] > 0).sum())
 

@@ -77,6 +77,8 @@ def joint_samples(derivation: Derivation, function: Function, seed: int = 1) -> 
         lengths = Degrees([e for _, signs in function.cases() for e in function.values(signs)])
         sized = np.array([s in lengths.symbols for s in function.symbols])
         rows["huge"][:, sized] = rng.uniform(-np.pi, np.pi, (24, sized.sum()))
+        small = rows["tiny"][:, sized]
+        rows["tiny"][:, sized] = np.copysign(np.maximum(abs(small), TINY[2]), small)
     column = 0
     for argument in function.inputs:
         if argument.shape == (4, 4):
@@ -223,7 +225,7 @@ class Magnitudes:
                 done.append(step(done, given))
             scales = [np.broadcast_to(done[k], len(rows)).astype(float) for k in self._results]
         shaped = np.stack(scales, axis=-1) if scales else np.empty((len(rows), 0))
-        return np.where(np.isnan(shaped), 0.0, shaped)
+        return np.where(np.isnan(shaped), np.inf if self._amplified else 0.0, shaped)
 
     def _place(self, e: sp.Basic) -> int:
         if e not in self._known:

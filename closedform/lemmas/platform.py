@@ -283,7 +283,7 @@ def _export(m: Platform) -> None:
     placed = _named_rows(p, arms, [m.position - end for end in ends])
     rods = [row[0, : m.dimensions].T for row in placed]
     driven = [
-        p.let(f"B_{k}{k}", rate_of(leg, rod))
+        named_in(p, f"B_{k}{k}", rate_of(leg, rod))
         for (k, leg), rod in zip(m.numbered, rods, strict=True)
     ]
     volume = p.let("Delta", determinant(p, placed))
@@ -430,7 +430,8 @@ def _draw(m: Platform) -> None:
     for pair in [*pairwise(links["hand"]), *pairwise(links.get("hand0", ()))]:
         gap = places[pair[1]] - places[pair[0]]
         lengths[pair] = sp.sqrt(sp.factor(sp.expand(square(gap))))
-        closing[pair] = sp.expand(square(m.rotation * gap) - square(gap))
+        if m.dimensions == 3:  # in a plane, that of cosine and sine is known
+            closing[pair] = sp.expand(square(m.rotation * gap) - square(gap))
     ground = tuple(f"A{k}" for k, _ in m.numbered)
     skeleton(
         m.d,
@@ -444,7 +445,7 @@ def _draw(m: Platform) -> None:
         pose=m.target,
         notes=(TOGETHER,),
         at_posture=[points],
-        closing={pair: e for pair, e in closing.items() if sp.trigsimp(e) != 0},
+        closing=closing,
     )
 
 

@@ -36,6 +36,10 @@ TOGETHER = "The pose and the joints have to belong together, as ik gives them."
 def platform(d: Derivation, legs: Sequence[Leg]) -> None:
     """Derive and export a hand with three legs in a plane, or six in space.
 
+    It exports ``ik``, ``jacobian_parallel`` (A), ``jacobian_serial`` (the diagonal of B),
+    ``jacobian_inverse`` (B^-1*A), ``singularities``, ``skeleton``, in a plane ``jacobian`` and
+    ``determinant``, and ``workspace_contains`` where the reach of the legs is limited.
+
     Parameters
     ----------
     d
@@ -44,10 +48,6 @@ def platform(d: Derivation, legs: Sequence[Leg]) -> None:
         ``singularities``, they are named after the legs
     legs
         see :mod:`closedform.lemmas.legs`; ``on_hand`` is seen in the frame of the hand
-
-    It exports ``ik``, ``jacobian_parallel`` (A), ``jacobian_serial`` (the diagonal of B),
-    ``jacobian_inverse`` (B^-1*A), ``singularities``, ``skeleton``, in a plane ``jacobian`` and
-    ``determinant``, and ``workspace_contains`` where the reach of the legs is limited.
     """
     m = Platform(d, tuple(legs))
     if not d.singularities:

@@ -1,5 +1,7 @@
 """The names and shapes of the contract, robot by robot."""
 
+from typing import Any
+
 SINGLE_LOOP = {
     "jacobian_parallel": (2, 1, 1),
     "jacobian_serial": (2, 1),
@@ -7,6 +9,26 @@ SINGLE_LOOP = {
     "determinant": (2,),
     "singularities": (2, 2),
 }
+
+
+def six(*fields: str, third: str = "theta3", **more: tuple[int, ...]) -> dict[str, Any]:
+    """An arm of six joints with eight postures."""
+    return {
+        "fields": fields,
+        "joints": ("theta1", "theta2", third, "theta4", "theta5", "theta6"),
+        "task": tuple(f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)),
+        "shapes": {
+            "fk": (4, 4),
+            "pose": (4, 4),
+            "jacobian": (6, 6),
+            "jacobian_space": (6, 6),
+            "jacobian_body": (6, 6),
+            "determinant": (),
+            "singularities": (3,),
+            **more,
+        },
+        "branches": 8,
+    }
 
 
 def legs(n: int) -> dict[str, tuple[int, ...]]:
@@ -69,68 +91,12 @@ ROBOTS = {
         },
         "branches": 4,
     },
-    "puma560": {
-        "fields": ("a2", "a3", "d3", "d4"),
-        "joints": tuple(f"theta{i}" for i in range(1, 7)),
-        "task": tuple(f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)),
-        "shapes": {
-            "fk": (4, 4),
-            "pose": (4, 4),
-            "jacobian": (6, 6),
-            "jacobian_space": (6, 6),
-            "jacobian_body": (6, 6),
-            "determinant": (),
-            "singularities": (3,),
-        },
-        "branches": 8,
-    },
-    "irb2400": {
-        "fields": ("a1", "d1", "a2", "a3", "d4", "d6"),
-        "joints": tuple(f"theta{i}" for i in range(1, 7)),
-        "task": tuple(f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)),
-        "shapes": {
-            "fk": (4, 4),
-            "pose": (4, 4),
-            "motors_from_joints": (6,),
-            "joints_from_motors": (6,),
-            "jacobian": (6, 6),
-            "jacobian_space": (6, 6),
-            "jacobian_body": (6, 6),
-            "determinant": (),
-            "singularities": (3,),
-        },
-        "branches": 8,
-    },
-    "opw_arm": {
-        "fields": ("a1", "a2", "b", "c1", "c2", "c3", "c4"),
-        "joints": tuple(f"theta{i}" for i in range(1, 7)),
-        "task": tuple(f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)),
-        "shapes": {
-            "fk": (4, 4),
-            "pose": (4, 4),
-            "jacobian": (6, 6),
-            "jacobian_space": (6, 6),
-            "jacobian_body": (6, 6),
-            "determinant": (),
-            "singularities": (3,),
-        },
-        "branches": 8,
-    },
-    "stanford_arm": {
-        "fields": ("d2",),
-        "joints": ("theta1", "theta2", "d3", "theta4", "theta5", "theta6"),
-        "task": tuple(f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)),
-        "shapes": {
-            "fk": (4, 4),
-            "pose": (4, 4),
-            "jacobian": (6, 6),
-            "jacobian_space": (6, 6),
-            "jacobian_body": (6, 6),
-            "determinant": (),
-            "singularities": (3,),
-        },
-        "branches": 8,
-    },
+    "puma560": six("a2", "a3", "d3", "d4"),
+    "irb2400": six(
+        "a1", "d1", "a2", "a3", "d4", "d6", motors_from_joints=(6,), joints_from_motors=(6,)
+    ),
+    "opw_arm": six("a1", "a2", "b", "c1", "c2", "c3", "c4"),
+    "stanford_arm": six("d2", third="d3"),
     "hybrid_five_bar": {
         "fields": ("L0", "L1", "L2"),
         "joints": ("theta1", "theta2", "theta3"),
@@ -162,21 +128,7 @@ ROBOTS = {
         },
         "branches": 2,
     },
-    "ur_arm": {
-        "fields": ("d1", "L2", "L3", "d4", "d5", "d6"),
-        "joints": tuple(f"theta{i}" for i in range(1, 7)),
-        "task": tuple(f"T{i}{j}" for i in range(1, 5) for j in range(1, 5)),
-        "shapes": {
-            "fk": (4, 4),
-            "pose": (4, 4),
-            "jacobian": (6, 6),
-            "jacobian_space": (6, 6),
-            "jacobian_body": (6, 6),
-            "determinant": (),
-            "singularities": (3,),
-        },
-        "branches": 8,
-    },
+    "ur_arm": six("d1", "L2", "L3", "d4", "d5", "d6"),
     "rpr_planar": {
         "fields": ("b",),
         "joints": ("rho1", "rho2"),

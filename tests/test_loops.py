@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import sympy as sp
+from loop_files import read_script, script_of
 
 from closedform import (
     Crank,
@@ -27,8 +28,6 @@ from closedform.lemmas.spheres import three_spheres
 from closedform.model.functions import Program
 from closedform.proof.links import prove_lemma
 from closedform.proof.require import ProofError
-from closedform.scaffold.loop_script import loop_script
-from closedform.scaffold.loops import read_loop
 from closedform.scaffold.new import new
 from closedform.scaffold.tables import TableError
 
@@ -428,12 +427,7 @@ at = "P"
 
 
 def written(text: str, tmp_path: Path) -> Derivation:
-    path = tmp_path / "loop.toml"
-    path.write_text(text, "utf-8")
-    script = loop_script("my_loop", read_loop(path), path.name)
-    space: dict = {}
-    exec(compile(script, "my_loop.py", "exec"), space)
-    return space["d"]
+    return read_script(script_of("loop", text, tmp_path))
 
 
 def test_a_loop_from_a_file_is_the_one_from_legs(tmp_path: Path) -> None:
@@ -542,6 +536,7 @@ def test_a_file_that_cannot_be_read_says_why(
     [
         ("L0; import os", "is not a name"),
         ("Crank", "uses the name Crank itself"),
+        ("Rail", "uses the name Rail itself"),
         ("lambda", "lambda"),
         ("theta1", "is a joint and a parameter"),
         ("x", "is a coordinate of the hand"),

@@ -1,6 +1,5 @@
 """Hands that turn: the stage and the hexapod of the guide, against their drawings."""
 
-import importlib
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -8,16 +7,14 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from loop_files import derived, read_script, script_of
 
 from closedform import Crank, Derivation, Paper, Slide, Stretch, Strut, platform, plot, prove
 from closedform.algebra.shapes import ShapeError
 from closedform.check.crosscheck import Backend, check_forward, crosscheck, module_backend
-from closedform.cli.commands import main
 from closedform.lemmas.platform import Platform, degree_in_plane
 from closedform.model.tolerances import DOUBLE
 from closedform.robots import Robot
-from closedform.scaffold.loop_script import loop_script
-from closedform.scaffold.loops import read_loop
 from closedform.scaffold.tables import TableError
 
 GUIDE = (Path(__file__).parents[1] / "docs" / "adding-a-mechanism.md").read_text("utf-8")
@@ -27,37 +24,15 @@ OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 SIDES = np.exp(2j * np.pi / 3 * np.arange(3))
 
 
-def derived(folder: Path, name: str, script: str) -> ModuleType:
-    (folder / f"{name}.py").write_text(script, "utf-8")
-    out = folder / f"{name}_out"
-    derive = ["derive", str(folder / f"{name}.py"), "-o", str(out), "--backend", "numpy"]
-    assert main([*derive, "--no-crosscheck"]) == 0
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(folder)
-        return importlib.import_module(f"{name}_out.numpy.{name}")
-
-
-def script_of(text: str, folder: Path) -> str:
-    path = folder / "stage.toml"
-    path.write_text(text, "utf-8")
-    return loop_script("stage", read_loop(path), path.name)
-
-
-def load_script(folder: Path) -> Derivation:
-    space: dict = {}
-    exec(compile(script_of(STAGE, folder), "stage.py", "exec"), space)
-    return space["d"]
-
-
 @pytest.fixture(scope="module")
 def stage(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
     folder = tmp_path_factory.mktemp("stage")
-    return derived(folder, "stage", script_of(STAGE, folder))
+    return derived("stage", script_of("stage", STAGE, folder), folder)
 
 
 @pytest.fixture(scope="module")
 def hexapod(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
-    return derived(tmp_path_factory.mktemp("hexapod"), "hexapod", HEXAPOD)
+    return derived("hexapod", HEXAPOD, tmp_path_factory.mktemp("hexapod"))
 
 
 # In a plane, in complex numbers
@@ -176,7 +151,7 @@ def test_rods_through_one_point_are_singular(stage: ModuleType) -> None:
 )
 def test_a_wrong_value_is_found(stage: ModuleType, tmp_path: Path, name: str) -> None:
     """Also where poses and joints that are drawn apart come close to a pole."""
-    d = load_script(tmp_path)
+    d = read_script(script_of("stage", STAGE, tmp_path))
 
     def lookup(asked: str) -> Callable:
         original = getattr(stage, asked)
@@ -212,13 +187,9 @@ SLIDERS = re.sub(
 
 @pytest.mark.parametrize("name", ["mixed", "sliders"])
 def test_the_crosscheck_of_other_legs(name: str, tmp_path: Path) -> None:
-    script = (
-        MIXED if name == "mixed" else script_of(SLIDERS, tmp_path).replace('"stage"', '"sliders"')
-    )
-    robot = derived(tmp_path, name, script)
-    space: dict = {}
-    exec(compile(script, f"{name}.py", "exec"), space)
-    found = crosscheck(space["d"], module_backend("numpy", robot))
+    script = MIXED if name == "mixed" else script_of("sliders", SLIDERS, tmp_path)
+    robot = derived(name, script, tmp_path)
+    found = crosscheck(read_script(script), module_backend("numpy", robot))
     assert not [failure for f in found for failure in f.failures]
     assert len(robot.BRANCHES) == {"mixed": 4, "sliders": 8}[name]
 
@@ -357,9 +328,8 @@ def test_legs_that_do_not_fit_say_why() -> None:
 def test_a_file_that_does_not_fit_says_why(
     old: str, other: str, message: str, tmp_path: Path
 ) -> None:
-    text = STAGE.replace(old, other)
     with pytest.raises(TableError, match=message):
-        script_of(text, tmp_path)
+        script_of("stage", STAGE.replace(old, other), tmp_path)
 
 
 def test_an_array_of_lengths(stage: ModuleType) -> None:

@@ -1,11 +1,11 @@
 """PPR legs: a slider with a rail, along which the hand slides, beside each other kind of leg."""
 
-import importlib
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
+from loop_files import derived, read_script, script_of
 from sympy import Rational
 
 from closedform import (
@@ -23,9 +23,6 @@ from closedform import (
 )
 from closedform.algebra.shapes import ShapeError
 from closedform.check.crosscheck import crosscheck, module_backend
-from closedform.cli.commands import main
-from closedform.scaffold.loop_script import loop_script
-from closedform.scaffold.loops import read_loop
 from closedform.scaffold.tables import TableError
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
@@ -81,21 +78,17 @@ def derivation(kind: str, *, last: bool = False) -> Derivation:
 def robots(tmp_path_factory: pytest.TempPathFactory) -> dict[str, ModuleType]:
     folder = tmp_path_factory.mktemp("rails")
     (folder / "rails_script.py").write_text(Path(__file__).read_text("utf-8"), "utf-8")
-    found = {}
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(folder)
-        for kind in KINDS:
-            script = folder / f"gantry_{kind}.py"
-            script.write_text(
+        return {
+            kind: derived(
+                f"gantry_{kind}",
                 f"from rails_script import derivation\nd = derivation({kind!r})\n"
                 f"d.name = 'gantry_{kind}'\n",
-                "utf-8",
+                folder,
             )
-            out = folder / f"out_{kind}"
-            derive = ["derive", str(script), "-o", str(out), "--backend", "numpy"]
-            assert main([*derive, "--no-crosscheck"]) == 0
-            found[kind] = importlib.import_module(f"out_{kind}.numpy.gantry_{kind}")
-    return found
+            for kind in KINDS
+        }
 
 
 def drawn(kind: str, rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
@@ -174,18 +167,9 @@ def test_the_sign_of_the_mode_is_that_of_the_determinant(robots: dict[str, Modul
 
 
 def test_the_crosscheck_of_a_file(tmp_path: Path) -> None:
-    path = tmp_path / "gantry.toml"
-    path.write_text(GANTRY, "utf-8")
-    script = tmp_path / "my_gantry.py"
-    script.write_text(loop_script("my_gantry", read_loop(path), path.name), "utf-8")
-    out = tmp_path / "gantry_out"
-    derive = ["derive", str(script), "-o", str(out), "--backend", "numpy", "--no-crosscheck"]
-    assert main(derive) == 0
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(tmp_path)
-        robot = importlib.import_module("gantry_out.numpy.my_gantry")
-        d = importlib.import_module("my_gantry").d
-    found = crosscheck(d, module_backend("numpy", robot))
+    script = script_of("my_gantry", GANTRY, tmp_path)
+    robot = derived("my_gantry", script, tmp_path)
+    found = crosscheck(read_script(script), module_backend("numpy", robot))
     assert not [failure for f in found for failure in f.failures]
     q, status = robot.ik([0.1, 0.2])
     assert (status == OK).all()
@@ -206,10 +190,8 @@ def test_the_crosscheck_of_a_file(tmp_path: Path) -> None:
 def test_a_file_that_does_not_fit_says_why(
     old: str, other: str, message: str, tmp_path: Path
 ) -> None:
-    path = tmp_path / "gantry.toml"
-    path.write_text(GANTRY.replace(old, other), "utf-8")
     with pytest.raises(TableError, match=message):
-        loop_script("my_gantry", read_loop(path), path.name)
+        script_of("gantry", GANTRY.replace(old, other), tmp_path)
 
 
 def test_rails_that_cannot_be_say_why() -> None:

@@ -1,16 +1,13 @@
 """A strut in a file of bodies and joints: the tracker of the guide, against its drawing."""
 
-import importlib
 import re
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
+from loop_files import derived, script_of
 
-from closedform.cli.commands import main
-from closedform.scaffold.loop_script import loop_script
-from closedform.scaffold.loops import read_loop
 from closedform.scaffold.tables import TableError
 
 GUIDE = Path(__file__).parents[1] / "docs" / "adding-a-mechanism.md"
@@ -22,16 +19,7 @@ OK, UNREACHABLE, SINGULAR = range(3)
 @pytest.fixture(scope="module")
 def tracker(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
     folder = tmp_path_factory.mktemp("tracker")
-    path = folder / "tracker.toml"
-    path.write_text(TRACKER, "utf-8")
-    script = folder / "tracker.py"
-    script.write_text(loop_script("tracker", read_loop(path), path.name), "utf-8")
-    out = folder / "tracker_out"
-    derive = ["derive", str(script), "-o", str(out), "--backend", "numpy", "--no-crosscheck"]
-    assert main(derive) == 0
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(folder)
-        return importlib.import_module("tracker_out.numpy.tracker")
+    return derived("tracker", script_of("tracker", TRACKER, folder), folder)
 
 
 def missed(p: np.ndarray, q: np.ndarray) -> np.ndarray:
@@ -108,7 +96,5 @@ def test_a_target_off_the_sphere_is_unreachable(tracker: ModuleType) -> None:
 def test_a_strut_that_cannot_be_says_why(
     old: str, other: str, message: str, tmp_path: Path
 ) -> None:
-    path = tmp_path / "tracker.toml"
-    path.write_text(TRACKER.replace(old, other), "utf-8")
     with pytest.raises(TableError, match=message):
-        loop_script("tracker", read_loop(path), path.name)
+        script_of("tracker", TRACKER.replace(old, other), tmp_path)

@@ -39,12 +39,7 @@ class Carried:
             )
         if n == 3 and self.rails:
             raise ShapeError(f"{self.d.name}: a rail carries a hand in a plane only")
-        joints = tuple(leg.joint for _, leg in self.driven)
-        if joints != self.d.actuated:
-            raise ShapeError(
-                f"{self.d.name}: the legs are driven by {listed(joints)}, but the joints of the "
-                f"derivation are {listed(self.d.actuated)}; give the legs in this order"
-            )
+        check_order(self.d, [leg for _, leg in self.driven])
 
     @property
     def joints(self) -> tuple[sp.Symbol, ...]:
@@ -64,14 +59,24 @@ class Carried:
         return [leg for leg in self.legs if isinstance(leg, Rail)]
 
     @property
+    def _singular(self) -> tuple[str, str, str]:
+        """What makes A singular: legs that are somehow."""
+        if not self.rails:
+            return "rods", "are", "in line" if len(self.hand) == 2 else "in one plane"
+        if len(self.rails) == 2:
+            return "rails", "are", "parallel"
+        return "rod", "is", "at right angles to the rail"
+
+    @property
+    def pole(self) -> str:
+        """The name of the factor that vanishes where A is singular."""
+        legs, _, how = self._singular
+        return f"{legs} {how}"
+
+    @property
     def meet(self) -> str:
-        """What makes A singular."""
-        if self.rails:
-            parallel = len(self.rails) == len(self.legs)
-            return (
-                "the rails are parallel" if parallel else "the rod is at right angles to the rail"
-            )
-        return f"the rods are in {'line' if len(self.hand) == 2 else 'one plane'}"
+        """The same as a clause."""
+        return f"the {' '.join(self._singular)}"
 
     def in_lemma(self, items: Sequence[_Item]) -> list[_Item]:
         """What belongs to the legs, in the order in which the lemma for the hand takes them.
@@ -133,9 +138,6 @@ class Carried:
                 shown[rf"\mathbf n_{k}"] = leg.normal
             else:
                 shown[rf"|\mathbf p - \mathbf b_{k}|"] = sp.sympify(leg.rod, strict=True)
-        carried = any(leg.on_hand for leg in self.legs)
-        less = ", less the place of its far end on the hand," if carried else ""
-        strut = "  The near end of the strut stands still." * (len(self.driven) < len(self.legs))
         if self.rails:
             return self.d.step(
                 "The loop",
@@ -144,6 +146,9 @@ class Carried:
                 "the rail if n is at right angles to p - b.",
                 shown,
             )
+        carried = any(leg.on_hand for leg in self.legs)
+        less = ", less the place of its far end on the hand," if carried else ""
+        strut = "  The near end of the strut stands still." * (len(self.driven) < len(self.legs))
         return self.d.step(
             "The loop",
             f"The hand p hangs on {self.count} rods.  The near end of each rod{less} is b, which "
@@ -166,5 +171,15 @@ def in_space(place: sp.Matrix) -> list[sp.Expr]:
     return [*place, *[sp.S.Zero] * (3 - len(place))]
 
 
-def listed(symbols: Sequence[sp.Symbol]) -> str:
+def check_order(d: Derivation, driven: Sequence[Leg]) -> None:
+    """Refuse legs that are not in the order of the joints."""
+    joints = tuple(leg.joint for leg in driven)
+    if joints != d.actuated:
+        raise ShapeError(
+            f"{d.name}: the legs are driven by {_listed(joints)}, but the joints of the "
+            f"derivation are {_listed(d.actuated)}; give the legs in this order"
+        )
+
+
+def _listed(symbols: Sequence[sp.Symbol]) -> str:
     return ", ".join(map(str, symbols))

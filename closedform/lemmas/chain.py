@@ -24,7 +24,7 @@ from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.applied import Applied
 from closedform.lemmas.pairs import direction
 from closedform.lemmas.registry import theorem
-from closedform.mechanics.frames import require_pose
+from closedform.mechanics.frames import pose_symbols, require_pose
 from closedform.model.derivation import Derivation, Solved
 from closedform.model.functions import (
     SINGLE,
@@ -98,7 +98,7 @@ class Chain:
         self.is_pose = isinstance(self.forward, sp.MatrixBase) and self.forward.shape == (4, 4)
         self._size: sp.Expr | None = None
         if self.is_pose:
-            self.T = sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
+            self.T = pose_symbols()
             self.R, self.p = self.T[:3, :3], self.T[:3, 3]
             require_pose(self.program, self.T)
             self.targets: tuple[sp.Symbol, ...] = tuple(self.T)

@@ -10,18 +10,9 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.lemmas.carried import in_space, square
+from closedform.lemmas.leg_by_leg import SIGN, Choice, bounds_of, size_of, tell, where_free
 from closedform.lemmas.legs import Crank, Naming, Slide
-from closedform.lemmas.loop import (
-    NO_MODE,
-    SIGN,
-    Choice,
-    Exported,
-    bounds_of,
-    export,
-    size_of,
-    tell,
-    where_free,
-)
+from closedform.lemmas.loop import NO_MODE, Exported, export
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation, Step

@@ -109,6 +109,10 @@ def vector(entries: Sequence[Any]) -> sp.Matrix:
     return sp.Matrix([sp.sympify(e, strict=True) for e in entries])
 
 
+def cross_in_plane(a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
+    return a[0] * b[1] - a[1] * b[0]
+
+
 @dataclass(frozen=True)
 class Naming:
     """Names the quantities of one leg in a program; ``size`` is the sum of all lengths."""
@@ -127,6 +131,12 @@ class Naming:
 
     def bound(self, name: str, value: sp.Expr, meaning: str) -> sp.Symbol:
         return self.program.bound(f"{name}{self.tag}", value, self.size / 2, meaning)
+
+    def half_chord(self, name: str, r: sp.Expr, aside: sp.Expr, meaning: str) -> sp.Symbol:
+        """The root of ``r**2 - aside**2``, if ``r`` is long enough, which ``meaning`` says."""
+        over = self.bound("over", r - aside, meaning)
+        under = self.bound("under", r + aside, meaning)
+        return self.let(name, sp.sqrt(over) * sp.sqrt(under), nonnegative=True)
 
     def vanishes(self, name: str, value: sp.Expr, meaning: str, free: sp.Symbol) -> sp.Symbol:
         return self.program.vanishes(f"{name}{self.tag}", value, self.size, meaning, (free,))
@@ -180,10 +190,7 @@ class Crank:
         s: sp.Expr = r
         scale = chain.size / 2
         if aside != 0:
-            meaning = "the rod reaches the plane of the crank"
-            over = chain.bound("over", r - aside, meaning)
-            under = chain.bound("under", r + aside, meaning)
-            s = chain.let("fore", sp.sqrt(over) * sp.sqrt(under), nonnegative=True)
+            s = chain.half_chord("fore", r, aside, "the rod reaches the plane of the crank")
             # where the rod is nearly at right angles to the plane, s has lost digits that r has
             scale = chain.let("slack", scale + scale * r / (s + chain.size / 2**22))
         R = chain.let("R", sp.sqrt(a**2 + b**2), nonnegative=True)
@@ -254,15 +261,12 @@ class Slide:
         p, q, s = chain.program, self.joint, self.rate
         r = chain.coefficient("r", self.rod, nonnegative=True)
         m = chain.let("m", w.dot(s))
-        off = w.cross(s) if len(w) == 3 else sp.Matrix([w[0] * s[1] - w[1] * s[0]])
+        off = w.cross(s) if len(w) == 3 else sp.Matrix([cross_in_plane(w, s)])
         parts = [e for e in off if e != 0]
         size = sp.sqrt(sum(e**2 for e in parts)) if len(parts) > 1 else parts[0]
         aside = chain.let("aside", size, nonnegative=len(parts) > 1)
         start = len(p.body)
-        meaning = "the rod reaches the line of the slider"
-        over = chain.bound("over", r - aside, meaning)
-        under = chain.bound("under", r + aside, meaning)
-        root = chain.let("root", sp.sqrt(over) * sp.sqrt(under), nonnegative=True)
+        root = chain.half_chord("root", r, aside, "the rod reaches the line of the slider")
         value = chain.let("slide", m - sigma * root)
         lemma = Lemma(
             "line and sphere",

@@ -8,38 +8,40 @@ them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
 from closedform.lemmas.carried import Carried, in_space, square
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.conditioning import conditioning
-from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, Strut
+from closedform.lemmas.leg_by_leg import (
+    SIGN,
+    Choice,
+    LegByLeg,
+    named_in,
+    signs_of_modes,
+    size_of,
+    tell,
+)
+from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut
 from closedform.lemmas.rails import Rail, rail_and_circle, two_rails
 from closedform.lemmas.spheres import Meeting, three_spheres
 from closedform.mechanics.frames import merge_angles
 from closedform.mechanics.loops import velocity_matrices
 from closedform.mechanics.skeleton import skeleton
-from closedform.model.derivation import Derivation, Solved, Step
+from closedform.model.derivation import Derivation, Step
 from closedform.model.functions import (
     SINGLE,
-    Bound,
     Branches,
-    Let,
-    Match,
     Program,
-    Statement,
-    Vanishes,
     branches,
     real,
 )
 from closedform.model.inverse import Inverse, Link
 
-Choice = Mapping[int, str]
-SIGN = {+1: "plus", -1: "minus"}
 AXES = "xyz"
 NO_MODE = "NaN for an assembly mode that does not exist."
 Exported = tuple[str, str, dict[str, Any], tuple[str, ...]]
@@ -72,12 +74,9 @@ def parallel(
         ``passive_angles`` is exported
     """
     mechanism = Carried(d, sp.Matrix(hand), tuple(legs))
-    meet = "rods in line" if len(legs) == 2 else "rods in one plane"
-    if mechanism.rails:
-        meet = "rails parallel" if len(mechanism.rails) == 2 else "rod at right angles to the rail"
     if not d.singularities:
-        d.singularities = (*(f"leg {k}" for k, _ in mechanism.driven), meet)
-        d.poles = (meet,)
+        d.singularities = (*(f"leg {k}" for k, _ in mechanism.driven), mechanism.pole)
+        d.poles = (mechanism.pole,)
     loop = mechanism.state_loop()
     posture = _forward(mechanism, modes, loop)
     if passive:
@@ -116,8 +115,16 @@ def _forward(m: Carried, choice: Choice, loop: Step) -> _Posture:
         for (k, _), c in zip(m.numbered, m.centres, strict=True)
     ]
     near = m.in_lemma(ends)
-    meet = _on_rails if m.rails else _on_rods
-    found, told = meet(m, f, near, size, sigma, loop)
+    met = (_on_rails if m.rails else _on_rods)(m, f, near, size, sigma)
+    found = met.found
+    d.step(
+        f"Forward: {met.title}",
+        met.reason,
+        met.shown,
+        proves=met.proves,
+        equal=[(found.rows.det(), found.volume)],
+        uses=[loop],
+    )
     d.function(
         "fk",
         f"Position of the hand in {'both assembly modes' if len(modes) > 1 else 'its only mode'}.",
@@ -126,13 +133,13 @@ def _forward(m: Carried, choice: Choice, loop: Step) -> _Posture:
         program=f,
         branches=modes,
         result="Positions",
-        notes=_NOTES[len(m.rails)],
+        notes=met.notes,
     )
     equations = tuple(m.in_lemma(m.loop))
     d.inverses.append(
         Inverse("fk", tuple(m.hand), (sp.S.Zero,) * n, equations, links=(found.link,))
     )
-    tell(d, "fk", told)
+    tell(d, "fk", met.told)
     v = Program(list(f.body), f.taken)
     (first, _), *_ = m.in_lemma(m.numbered)
     name = f"span_{first}" if m.rails else f"A_{first}"
@@ -147,40 +154,34 @@ def _forward(m: Carried, choice: Choice, loop: Step) -> _Posture:
     )
 
 
-_NOTES = {
-    0: (
-        "UNREACHABLE: the rods do not meet.",
-        "SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of "
-        "its points is returned.",
-        "Ill-conditioned near the parallel singularities, where both modes meet.",
-    ),
-    1: (
-        "UNREACHABLE: the rod does not reach the rail.",
-        "Ill-conditioned near the parallel singularities, where both modes meet.",
-    ),
-    2: (),
-}
-"""Notes on the forward map, by the number of rails."""
+class _Met(NamedTuple):
+    """The hand where legs meet, and what the article and the docstring say of it."""
+
+    found: Meeting
+    told: Link
+    title: str
+    reason: str
+    shown: dict[str, Any]
+    proves: str
+    notes: tuple[str, ...]
+
+
+NEAR = "Ill-conditioned near the parallel singularities, where both modes meet."
 
 
 def _on_rods(
-    m: Carried,
-    f: Program,
-    near: Sequence[sp.Matrix],
-    size: sp.Expr,
-    sigma: sp.Symbol,
-    loop: Step,
-) -> tuple[Meeting, Link]:
-    """Where rods meet, and the link as the article tells it."""
+    m: Carried, f: Program, near: Sequence[sp.Matrix], size: sp.Expr, sigma: sp.Symbol
+) -> _Met:
     n = len(m.legs)
     radii = [named_in(f, f"r_{k}", sp.sympify(leg.rod, strict=True)) for k, leg in m.numbered]
     meet = two_circles if n == 2 else three_spheres
     found = meet(f, near, m.in_lemma(radii), tuple(m.hand), sigma, scale=size, free=tuple(m.hand))
     ((first, _), start), *others = m.in_lemma(list(zip(m.numbered, m.centres, strict=True)))
-    told = replace(found.link, lemma=replace(found.lemma, roles=_roles(m)))
     shape = "circles" if n == 2 else "spheres"
-    m.d.step(
-        f"Forward: {m.count} {shape}",
+    return _Met(
+        found,
+        replace(found.link, lemma=replace(found.lemma, roles=_roles(m))),
+        f"{m.count} {shape}",
         f"The hand is where {m.count} {shape} about the points b meet, whose radii are the "
         f"lengths of the rods.  They meet twice, on both sides of the "
         f"{'line' if n == 2 else 'plane'} of their centres: these are the two assembly modes.  The "
@@ -189,46 +190,37 @@ def _on_rods(
             rf"\mathbf b_{k} - \mathbf b_{first}": (c - start).applyfunc(merge_angles)
             for (k, _), c in others
         },
-        proves=(
-            "The determinant of the vectors along the rods, in the frame of the lemma, is the sign "
-            "of the mode times a product of lengths."
+        "The determinant of the vectors along the rods, in the frame of the lemma, is the sign "
+        "of the mode times a product of lengths.",
+        (
+            "UNREACHABLE: the rods do not meet.",
+            "SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of "
+            "its points is returned.",
+            NEAR,
         ),
-        equal=[(found.rows.det(), found.volume)],
-        uses=[loop],
     )
-    return found, told
 
 
 def _on_rails(
-    m: Carried,
-    f: Program,
-    near: Sequence[sp.Matrix],
-    size: sp.Expr,
-    sigma: sp.Symbol,
-    loop: Step,
-) -> tuple[Meeting, Link]:
-    """Where a rail meets a rod or another rail."""
+    m: Carried, f: Program, near: Sequence[sp.Matrix], size: sp.Expr, sigma: sp.Symbol
+) -> _Met:
+    notes: tuple[str, ...] = ()
     if len(m.rails) == 2:
-        found = two_rails(f, near, m.rails, m.hand)
-        title, reason = "Forward: two lines", "The hand is where the two rails meet."
+        found, title = two_rails(f, near, m.rails, m.hand), "two lines"
+        reason = "The hand is where the two rails meet."
     else:
         found = rail_and_circle(f, near, m.legs, m.hand, sigma, scale=size)
-        title = "Forward: line and circle"
+        title, notes = "line and circle", ("UNREACHABLE: the rod does not reach the rail.", NEAR)
         reason = (
             "The hand is where the rail meets a circle about the near end of the rod.  They meet "
             "twice, on both sides of the normal to the rail through this point: these are the two "
             "assembly modes.  The determinant of A has the sign of the mode."
         )
-    m.d.step(
-        title,
-        reason,
-        {},
-        proves="The determinant of the rows of A, in the frame of the rail, is the sign of the "
-        "mode times a length; of two rails, it is a number.",
-        equal=[(found.rows.det(), found.volume)],
-        uses=[loop],
+    proves = (
+        "The determinant of the rows of A, in the frame of the rail, is the sign of the mode times "
+        "a length; of two rails, it is a number."
     )
-    return found, found.link
+    return _Met(found, found.link, title, reason, {}, proves, notes)
 
 
 def _roles(m: Carried) -> tuple[tuple[str, Any], ...]:
@@ -377,9 +369,7 @@ def _velocity(m: Carried, at: _Posture, loop: Step) -> None:
             "jacobian_serial",
             "The diagonal of B of A*dp = B*dq.",
             {"B": driven},
-            ("Its signs distinguish the working modes; BRANCHES lists them in the same order.",)
-            if all(leg.signs == 2 for _, leg in m.driven)
-            else (),
+            signs_of_modes([leg for _, leg in m.driven]),
         ),
         ("jacobian", "Derivative of p with respect to q: A^-1*B.", {"J": J}, (pole,)),
     ]
@@ -413,63 +403,35 @@ def export(d: Derivation, program: Program, modes: Branches, functions: Sequence
         )
 
 
-def tell(d: Derivation, function: str, link: Link) -> None:
-    """Record the lemma of a link for the article."""
-    assert link.lemma is not None
-    d.solved.append(Solved(function, link.unknowns[0], link.lemma, link.lemma.equations[0]))
-
-
-def where_free(found: Solution) -> list[str]:
-    """Notes on where the joint of a leg is free."""
-    return [
-        f"SINGULAR: {case.meaning}; {case.free} is free, 0 is returned."
-        for case in found.link.degenerate
-    ]
-
-
 def _inverse(m: Carried, loop: Step) -> None:
     d, g = m.d, m.d.program()
-    choices: list[tuple[sp.Symbol, Choice]] = []
     slides = any(isinstance(leg, Slide | Rail) for leg in m.legs)
-    size = g.let("size", size_of(d, tuple(m.hand) if slides else ()))
-    found: list[Solution] = []
+    solved = LegByLeg(d, g, g.let("size", size_of(d, tuple(m.hand) if slides else ())))
     straight: list[sp.Matrix] = []
     hand = m.hand
     for k, leg in m.numbered:
         w = hand + m.place(leg) - leg.base
         if isinstance(leg, Strut):
-            straight.append(leg.onto(Naming(g, size, f"_{k}"), w))
+            straight.append(leg.onto(solved.naming(k), w))
             hand = straight[0] - m.place(leg) + leg.base
-            continue
-        sigma = real(f"sigma_leg{k}")
-        if leg.signs == 2:
-            choices.append((sigma, SIGN))
-        found.append(leg.solve(Naming(g, size, f"_{k}"), w, sigma))
-    inside = bounds_of(g)
+        else:
+            solved.solve(k, leg, w)
     # a determinant does not change if a row is subtracted from the others; the hand cancels there
-    first, *others = [*straight, *(s.rod for s in found)]
+    first, *others = [*straight, *(s.rod for s in solved.found)]
     rows = [first, *(rod if m.rails else sp.expand(rod - first) for rod in others)]
     apart = [
         sp.Matrix([named_in(g, f"A_{k}{i}", e) for i, e in enumerate(row, 1)])
         for (k, _), row in zip(m.numbered, rows, strict=True)
     ]
-    stretched = {s.link.unknowns[0]: s.value for s in found}
-    lengths = [
-        stretched[leg.joint] if isinstance(leg, Stretch) else sp.sympify(leg.rod, strict=True)
-        for leg in m.legs
-    ]
     volume = g.let("Delta", sp.Matrix.hstack(*apart).det())
     # lengths that the sum of all lengths does not contain, such as those of an arc, round as well
     links = [e for leg in m.legs for e in (leg.rod, getattr(leg, "length", sp.S.Zero))]
-    beyond = sp.Add(*(e for e in links if not sp.sympify(e, strict=True).is_Atom)) / size
-    scale = sp.Mul(*lengths) * (1 + beyond)
+    beyond = sp.Add(*(e for e in links if not sp.sympify(e, strict=True).is_Atom)) / solved.size
+    scale = solved.lengths(m.legs) * (1 + beyond)
     g.determined(sp.Abs(volume), scale, m.meet, name=r"|\det A|")
-    working = branches(*choices) if choices else SINGLE
-    d.branches = working.labels
-    signs = "The signs of its two solutions are those of the diagonal of B.  "
     d.step(
         "Inverse: leg by leg",
-        f"Each leg is solved alone.  {signs if choices else ''}"
+        f"Each leg is solved alone.  {solved.told_apart}"
         "Rounded joints miss the lengths of the rods by a few units in the last place.  The "
         "error of the hand is this error times up to the product of the lengths of the rods over "
         "the determinant of A.  So near a parallel singularity the joints do not determine the "
@@ -479,82 +441,19 @@ def _inverse(m: Carried, loop: Step) -> None:
         uses=[loop],
     )
     off_sphere = ", or the target is not on the sphere" * bool(straight)
-    d.function(
-        "ik",
-        f"The driven joints of {'all working modes' if choices else 'the only working mode'}.",
+    solved.export(
         {"x": tuple(m.hand)},
-        {"q": [s.value for s in found]},
-        program=g,
-        branches=working,
-        result="Solutions",
-        notes=(
-            *([f"UNREACHABLE: a rod does not reach{off_sphere}."] if inside.body else []),
-            *(note for s in found for note in where_free(s)),
+        {"p": tuple(m.hand)},
+        f"UNREACHABLE: a rod does not reach{off_sphere}.",
+        [
             f"SINGULAR also near a parallel singularity, where {m.meet}: the loop "
-            "closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.",
-        ),
+            "closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths."
+        ],
     )
-    if inside.body:
-        d.function(
-            "workspace_contains",
-            "Whether the hand can be reached.",
-            {"p": tuple(m.hand)},
-            {"inside": sp.true},
-            program=inside,
-            boolean=True,
-        )
-    for s in found:
-        tell(d, "ik", s.link)
     at = dict(zip(m.hand, m.onto_struts(), strict=True))
     ends = zip(m.legs, m.loop, strict=True)
     turning = [e.xreplace(at) for leg, e in ends if not isinstance(leg, Strut)]
-    d.inverses.append(
-        Inverse(
-            "ik",
-            m.joints,
-            (sp.S.Zero,) * len(turning),
-            tuple(turning),
-            images="fk",
-            links=tuple(s.link for s in found),
-        )
-    )
+    solved.certify(turning, images="fk")
 
 
-def size_of(d: Derivation, moved: Sequence[sp.Expr] = ()) -> sp.Expr:
-    """The sum of the lengths of a mechanism, and of what its slides have moved."""
-    lengths = [p for p in d.parameters if p.unit != "rad"]
-    sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
-    return sp.Add(*sized, *map(sp.Abs, moved))
-
-
-def bounds_of(g: Program) -> Program:
-    """What decides whether there is a solution."""
-    kept: list[Statement] = []
-    needed: set[sp.Basic] = set()
-    for statement in reversed(g.body):
-        if isinstance(statement, Bound | Match) or (
-            isinstance(statement, Let | Vanishes) and statement.symbol in needed
-        ):
-            needed |= statement.value.free_symbols
-            if not isinstance(statement, Let):
-                needed |= statement.scale.free_symbols
-            kept.insert(0, statement)
-    return Program([*kept], g.taken)
-
-
-def named_in(p: Program, name: str, value: sp.Expr) -> sp.Symbol:
-    return value if value.is_Symbol or value.is_number else p.let(name, value)
-
-
-__all__ = [
-    "NO_MODE",
-    "SIGN",
-    "Choice",
-    "Exported",
-    "bounds_of",
-    "export",
-    "parallel",
-    "size_of",
-    "tell",
-    "where_free",
-]
+__all__ = ["NO_MODE", "Exported", "export", "parallel"]

@@ -1,8 +1,9 @@
 """A hand that turns and that legs carry: three of them in a plane, or six in space.
 
 :func:`platform` derives what has a closed form: the inverse with all working modes, the velocity
-and the singular sets.  The forward problem leads to an equation of a degree above four, so there is
-no ``fk``.  What depends on the posture is a function of the pose and of the joints.
+and the singular sets.  The forward problem leads to an equation of degree 6 in a plane, or 40 in
+space, and no ``fk`` is derived.  What depends on the posture is a function of the pose and of the
+joints.
 """
 
 from __future__ import annotations
@@ -17,15 +18,14 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import count_solutions
-from closedform.lemmas.carried import in_space, listed, rate_of, square
-from closedform.lemmas.legs import Crank, Leg, Naming, Slide, Solution, Stretch, Strut, vector
-from closedform.lemmas.loop import SIGN, Choice, bounds_of, named_in, size_of, tell, where_free
+from closedform.lemmas.carried import check_order, in_space, rate_of, square
+from closedform.lemmas.leg_by_leg import LegByLeg, named_in, signs_of_modes, size_of
+from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut, cross_in_plane, vector
 from closedform.lemmas.rails import Rail
-from closedform.mechanics.frames import hat, require_pose
+from closedform.mechanics.frames import hat, pose_symbols, require_pose, rotation
 from closedform.mechanics.skeleton import skeleton
 from closedform.model.derivation import Derivation, Step
-from closedform.model.functions import SINGLE, Program, branches, real
-from closedform.model.inverse import Inverse
+from closedform.model.functions import Program, real
 
 DEGREE_IN_SPACE = 40
 """Of six points of a body that are at given distances from six points of the ground."""
@@ -78,12 +78,7 @@ class Platform:
             if isinstance(leg, Strut | Rail):
                 kind = type(leg).__name__.lower()
                 raise ShapeError(f"{name}: a {kind} cannot carry a hand that turns")
-        joints = tuple(leg.joint for leg in self.legs)
-        if joints != self.d.actuated:
-            raise ShapeError(
-                f"{name}: the legs are driven by {listed(joints)}, but the joints of the "
-                f"derivation are {listed(self.d.actuated)}; give the legs in this order"
-            )
+        check_order(self.d, self.legs)
         task = [str(e) for e in self.pose] if self.dimensions == 3 else ["x", "y", "yaw"]
         if list(self.d.task) not in ([], task):
             raise ShapeError(f"{name}: the task of this hand is {', '.join(task)}")
@@ -111,7 +106,7 @@ class Platform:
         """The target: x, y and yaw, or a homogeneous transform."""
         if self.dimensions == 2:
             return sp.Matrix([real("x"), real("y"), real("yaw")])
-        return sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
+        return pose_symbols()
 
     @property
     def target(self) -> dict[str, Any]:
@@ -126,8 +121,7 @@ class Platform:
     def rotation(self) -> sp.Matrix:
         if self.dimensions == 3:
             return self.pose[:3, :3]
-        c, s = sp.cos(self.pose[2]), sp.sin(self.pose[2])
-        return sp.Matrix([[c, -s], [s, c]])
+        return rotation("z", self.pose[2])[:2, :2]
 
     @cached_property
     def places(self) -> list[sp.Matrix]:
@@ -161,8 +155,6 @@ class Platform:
         )
 
     def state_loop(self) -> Step:
-        placed = zip(self.numbered, self.places, strict=True)
-        near_ends = {k: leg.end().T for k, leg in self.numbered}
         return self.d.step(
             "The loop",
             f"{'Three' if self.dimensions == 2 else 'Six'} rods carry the hand.  Its pose is the "
@@ -173,8 +165,8 @@ class Platform:
             rows=[
                 ("i", "b", "e", "length of the rod"),
                 *(
-                    (str(k), near_ends[k], place.T, sp.sympify(leg.rod, strict=True))
-                    for (k, leg), place in placed
+                    (str(k), leg.end().T, place.T, sp.sympify(leg.rod, strict=True))
+                    for (k, leg), place in zip(self.numbered, self.places, strict=True)
                 ),
             ],
         )
@@ -193,7 +185,7 @@ def _forward(m: Platform, loop: Step) -> int:
         "If the joints are given, the equations of the loop are to be solved for the pose.  All "
         "legs move it together, so that no coordinate follows from fewer of them.  The number of "
         f"complex solutions is the degree of the equation that remains.  {found}  No formula is "
-        "derived for it, so there is no fk.",
+        "derived for it.",
         {},
         uses=[loop],
     )
@@ -215,35 +207,32 @@ def degree_in_plane(m: Platform) -> int:
     equations += [name**2 - e.base for e, name in names.items()]
     unknowns = (x, y, yaw, *names.values())
     found = int(count_solutions(equations, unknowns, method="specialised").count)
-    return found // int(2 ** len(names))
+    return found // (1 << len(names))
 
 
 def _moment(arm: sp.Matrix, vector: sp.Matrix) -> sp.Matrix:
     """The moment about the point that is the hand of a vector at the end of an arm."""
     if len(arm) == 3:
         return arm.cross(vector)
-    return sp.Matrix([arm[0] * vector[1] - arm[1] * vector[0]])
+    return sp.Matrix([cross_in_plane(arm, vector)])
 
 
 def _velocity(m: Platform, loop: Step) -> None:
     d = m.d
     rows = [rod.col_join(_moment(arm, rod)).T for arm, rod in zip(m.arms, m.rods, strict=True)]
     rates = [rate_of(leg, rod) for leg, rod in zip(m.legs, m.rods, strict=True)]
-    v, omega = [real(f"v_{i}") for i in "xyz"[: m.dimensions]], [real("omega")]
-    if m.dimensions == 3:
-        omega = [real(f"omega_{i}") for i in "xyz"]
-    twist = sp.Matrix([*v, *omega])
-    turning = (
-        hat(sp.Matrix(omega)) if m.dimensions == 3 else sp.Matrix([[0, -omega[0]], [omega[0], 0]])
-    )
-    moved = [sp.Matrix(v) + turning * arm for arm in m.arms]
-    axes = range(1, m.dimensions + 1)
+    n = m.dimensions
+    v, omega = (sp.Matrix([real(f"{name}_{i}") for i in "xyz"]) for name in ("v", "omega"))
+    omega = omega if n == 3 else sp.Matrix([0, 0, omega[2]])
+    v, turning = v[:n, 0], hat(omega)[:n, :n]
+    twist = sp.Matrix([*v, *(e for e in omega if e != 0)])
+    moved = [v + turning * arm for arm in m.arms]
+    axes = range(1, n + 1)
     rod, arm = ([_component(d, letter, "i", i) for i in axes] for letter in "rh")
     shown = {r"\mathbf a_i": sp.Matrix([[*rod, *_moment(sp.Matrix(arm), sp.Matrix(rod))]])}
     for k, leg in m.numbered:
         along = sp.Matrix([_component(d, "r", str(k), i) for i in axes])
-        entry = rate_of(leg, along)
-        shown[f"B_{{{k}{k}}}"] = entry
+        shown[f"B_{{{k}{k}}}"] = rate_of(leg, along)
     d.step(
         "Velocity and singular sets",
         "The derivatives of the loop equations, halved, give A*t = B*dq for the twist t of the "
@@ -300,9 +289,7 @@ def _export(m: Platform) -> None:
             "jacobian_serial",
             "The diagonal of B of A*t = B*dq.",
             {"B": driven},
-            ("Its signs distinguish the working modes; BRANCHES lists them in the same order.",)
-            if all(leg.signs == 2 for leg in m.legs)
-            else (),
+            signs_of_modes(m.legs),
         ),
         (
             "jacobian_inverse",
@@ -454,27 +441,17 @@ def _inverse(m: Platform, loop: Step, degree: int) -> None:
     if m.dimensions == 3:
         require_pose(g, m.pose)
     slides = any(isinstance(leg, Slide) for leg in m.legs)
-    size = g.let("size", size_of(d, tuple(m.position) if slides else ()))
+    solved = LegByLeg(d, g, g.let("size", size_of(d, tuple(m.position) if slides else ())))
     arms = _named_arms(m, g)
-    choices: list[tuple[sp.Symbol, Choice]] = []
-    found: list[Solution] = []
     for (k, leg), arm in zip(m.numbered, arms, strict=True):
-        sigma = real(f"sigma_leg{k}")
-        if leg.signs == 2:
-            choices.append((sigma, SIGN))
-        found.append(leg.solve(Naming(g, size, f"_{k}"), m.position + arm - leg.base, sigma))
-    inside = bounds_of(g)
-    stretched = {s.link.unknowns[0]: s.value for s in found}
-    lengths = [
-        stretched[leg.joint] if isinstance(leg, Stretch) else sp.sympify(leg.rod, strict=True)
-        for leg in m.legs
-    ]
-    rows = _named_rows(g, arms, [s.rod - arm for s, arm in zip(found, arms, strict=True)])
+        solved.solve(k, leg, m.position + arm - leg.base)
+    spans = [s.rod - arm for s, arm in zip(solved.found, arms, strict=True)]
+    rows = _named_rows(g, arms, spans)
     volume = g.let("Delta", determinant(g, rows))
     lever = g.let("lever", sp.sqrt(m.spread), nonnegative=True)
     # six legs lose more digits in their determinant than in the pose that they determine
     power, share = (1, "2^-10") if m.dimensions == 2 else (3, "2^-20")
-    least = sp.Mul(*lengths) * lever**power
+    least = solved.lengths(m.legs) * lever**power
     g.determined(
         sp.Abs(volume),
         least if power == 1 else least / 2**10,
@@ -484,12 +461,9 @@ def _inverse(m: Platform, loop: Step, degree: int) -> None:
         if power == 1
         else r"2^{-10} \lambda^3 \prod_i |\mathbf r_i|",
     )
-    working = branches(*choices) if choices else SINGLE
-    d.branches = working.labels
-    signs = "The signs of its two solutions are those of the diagonal of B.  "
     d.step(
         "Inverse: leg by leg",
-        f"Each leg is solved alone.  {signs if choices else ''}Near a parallel singularity rounded "
+        f"Each leg is solved alone.  {solved.told_apart}Near a parallel singularity rounded "
         "joints do not determine the hand.  The status is SINGULAR if the determinant of A is "
         f"less than {share} of the product of the lengths of the rods and"
         f"{'' if power == 1 else ' the third power of'} lambda, the root mean square distance "
@@ -497,43 +471,18 @@ def _inverse(m: Platform, loop: Step, degree: int) -> None:
         {},
         uses=[loop],
     )
-    d.function(
-        "ik",
-        f"The driven joints of {'all working modes' if choices else 'the only working mode'}.",
+    solved.export(
         m.target,
-        {"q": [s.value for s in found]},
-        program=g,
-        branches=working,
-        result="Solutions",
-        notes=(
-            *(["UNREACHABLE: a rod does not reach."] if inside.body else []),
-            *(note for s in found for note in where_free(s)),
+        m.target,
+        "UNREACHABLE: a rod does not reach.",
+        [
             f"SINGULAR also near a parallel singularity, where {m.meet}: the loop "
             "closes, but the joints do not determine the hand.",
             *(["INVALID: the matrix is not a pose."] if m.dimensions == 3 else []),
-            f"There is no fk: the forward problem is an equation of degree {degree}.",
-        ),
+            f"fk is not derived: the forward problem is an equation of degree {degree}.",
+        ],
     )
-    if inside.body:
-        d.function(
-            "workspace_contains",
-            "Whether the hand can be reached.",
-            m.target,
-            {"inside": sp.true},
-            program=inside,
-            boolean=True,
-        )
-    for s in found:
-        tell(d, "ik", s.link)
-    d.inverses.append(
-        Inverse(
-            "ik",
-            d.actuated,
-            (sp.S.Zero,) * len(m.legs),
-            m.loop,
-            links=tuple(s.link for s in found),
-        )
-    )
+    solved.certify(m.loop)
 
 
 __all__ = ["Platform", "platform"]

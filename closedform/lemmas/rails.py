@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import Naming, Solution, vector
+from closedform.lemmas.legs import Naming, Solution, cross_in_plane, vector
 from closedform.lemmas.registry import theorem
 from closedform.lemmas.spheres import Meeting
 from closedform.model.functions import Program
@@ -49,7 +49,7 @@ class Rail:
     def __post_init__(self) -> None:
         if not (len(self.start) == len(self.direction) == len(self.along) == 2):
             raise ShapeError(f"{self.joint}: a rail is in a plane, so its vectors have 2 entries")
-        cross = sp.simplify(_cross(self.rate, self.way))
+        cross = sp.simplify(cross_in_plane(self.rate, self.way))
         if not cross.is_number or cross == 0:
             raise ShapeError(
                 f"{self.joint}: the directions of a slider and of the rail on it are two different "
@@ -78,8 +78,8 @@ class Rail:
         return self.base + self.joint * self.rate
 
     def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
-        q, cross = self.joint, sp.simplify(_cross(self.rate, self.way))
-        off = chain.let("off", _cross(w, self.way))
+        q, cross = self.joint, sp.simplify(cross_in_plane(self.rate, self.way))
+        off = chain.let("off", cross_in_plane(w, self.way))
         lemma = Lemma(
             "oblique coordinates",
             r"q = \frac{w_1 t_2 - w_2 t_1}{D}",
@@ -91,22 +91,18 @@ class Rail:
         return Solution(Link((q,), lemma.equations, {}, lemma), lemma[q], self.normal)
 
 
-def _cross(a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
-    return a[0] * b[1] - a[1] * b[0]
-
-
 def two_rails(
     program: Program, ends: Sequence[sp.Matrix], rails: Sequence[Rail], hand: sp.Matrix
 ) -> Meeting:
     """The point that two rails share; ``ends`` are points of them."""
     a, b = rails
-    across = sp.simplify(_cross(a.way, b.way))
+    across = sp.simplify(cross_in_plane(a.way, b.way))
     if across == 0:
         raise ShapeError(f"the rails of {a.joint} and {b.joint} are parallel")
     if not across.is_number:
         raise ShapeError(f"the rails of {a.joint} and {b.joint} have directions in parameters")
     start = len(program.body)
-    far = program.let("along", _cross(ends[1] - ends[0], b.way) / across)
+    far = program.let("along", cross_in_plane(ends[1] - ends[0], b.way) / across)
     found = ends[0] + far * a.way
     lemma = Lemma(
         "oblique coordinates",
@@ -141,16 +137,13 @@ def rail_and_circle(
     """
     p, k = program, 0 if isinstance(legs[0], Rail) else 1
     rail, rod, at, centre = legs[k], legs[1 - k], ends[k], ends[1 - k]
+    # with three quarters of the tolerance, the legs accept the target of what is accepted here
+    names = Naming(p, 3 * scale / 2, "")
     w = sp.Matrix([p.let(f"w_{i}", e) for i, e in zip("xy", centre - at, strict=True)])
-    r = sp.sympify(rod.rod, strict=True)
-    r = r if r.is_Symbol else p.let("r", r, nonnegative=True)
+    r = names.coefficient("r", rod.rod, nonnegative=True)
     start = len(p.body)
     m, off = p.let("m", w.dot(rail.way)), p.let("aside", w.dot(rail.normal))
-    # with three quarters of the tolerance, the legs accept the target of what is accepted here
-    tolerated, meaning = 3 * scale / 4, "the rod reaches the rail"
-    over = p.bound("over", r - off, tolerated, meaning)
-    under = p.bound("under", r + off, tolerated, meaning)
-    root = p.let("root", sp.sqrt(over) * sp.sqrt(under), nonnegative=True)
+    root = names.half_chord("root", r, off, "the rod reaches the rail")
     side = -sigma if k == 0 else sigma
     far = p.let("along", m + side * root)
     found = at + far * rail.way

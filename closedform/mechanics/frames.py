@@ -12,7 +12,7 @@ from itertools import combinations
 import sympy as sp
 
 from closedform.algebra.normal_form import normal
-from closedform.model.functions import Program
+from closedform.model.functions import Program, real
 
 
 def rotation(axis: str, angle: sp.Expr) -> sp.Matrix:
@@ -35,6 +35,11 @@ def homogeneous(R: sp.Matrix, p: Sequence[sp.Expr] = (0, 0, 0)) -> sp.Matrix:
 def require_rotation(program: Program, R: sp.Matrix) -> None:
     """Demand of the input R that it is a proper rotation."""
     program.require(_rotation_residues(R), 1, "a proper rotation")
+
+
+def pose_symbols() -> sp.Matrix:
+    """A homogeneous transform as an input: 16 symbols, T11 to T44."""
+    return sp.Matrix(4, 4, lambda i, j: real(f"T{i + 1}{j + 1}"))
 
 
 def require_pose(program: Program, T: sp.Matrix) -> None:

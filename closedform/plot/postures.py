@@ -97,7 +97,7 @@ def mechanism(
 
 
 def _posed(r: Robot, x: ArrayLike | None) -> Robot:
-    """The same with the pose of its hand, if there is no forward map that gives it."""
+    """The same with the pose of its hand, unless a forward map gives it."""
     if r.has_forward_map:
         return r
     return replace(r, target=regular_target(r) if x is None else np.asarray(x, dtype=float))

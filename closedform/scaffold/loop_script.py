@@ -89,14 +89,18 @@ def _coupled(found: Legs, follower: Joint) -> list[LoopLeg]:
     return [first, second]
 
 
+def _way(task: Sequence[str]) -> str:
+    """What derives the loop: a platform sets its task itself."""
+    return {0: "platform", 1: "coupled"}.get(len(task), "parallel")
+
+
 def _head(
     name: str, loop: Loop, legs: Sequence[LoopLeg], task: Sequence[str], origin: str
 ) -> list[str]:
     title = name.replace("_", " ").capitalize()
-    way = "platform" if not task else "coupled" if len(task) == 1 else "parallel"
     words = "  ".join(f"{leg.words[0].upper()}{leg.words[1:]}." for leg in legs)
     calls = sorted({leg.call.partition("(")[0] for leg in legs})
-    names = sorted([*calls, "Derivation", "Paper", way, *["real"] * bool(task)])
+    names = sorted([*calls, "Derivation", "Paper", _way(task), *["real"] * bool(task)])
     fractions = [number(given.get("value") or "1") for given in loop.parameters.values()]
     used = " ".join(leg.call for leg in legs) + "Rational(" * any(
         f.denominator != 1 for f in fractions
@@ -146,20 +150,10 @@ def _body(table: Table, legs: Sequence[LoopLeg], task: Sequence[str]) -> list[st
             lines.append(f'{leg.passive} = d.joint("{leg.passive}", "prismatic", passive=True)')
     if len(task) == 1:
         (x,) = task
-        lines += [f'{x} = real("{x}")', "coupled(", "    d,"]
+        lines += [f'{x} = real("{x}")', f"{_way(task)}(", "    d,"]
         return [*lines, *(f"    {leg.call}," for leg in legs), ")"]
-    hand = ", ".join(f'real("{x}")' for x in task)
-    if not task:
-        return [
-            *lines,
-            "platform(",
-            "    d,",
-            "    [",
-            *(f"        {leg.call}," for leg in legs),
-            "    ],",
-            ")",
-        ]
-    lines += ["parallel(", "    d,", f"    ({hand}),", "    ["]
+    hand = [f"    ({', '.join(f'real({literal(x)})' for x in task)}),"] if task else []
+    lines += [f"{_way(task)}(", "    d,", *hand, "    ["]
     return [*lines, *(f"        {leg.call}," for leg in legs), "    ],", ")"]
 
 

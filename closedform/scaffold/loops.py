@@ -53,19 +53,8 @@ from closedform.scaffold.tables import (
 
 GROUND = "ground"
 KINDS = ("revolute", "prismatic", "spherical", "universal")
-USED = {"d", "pi", "real", "coupled", "parallel", "platform"}
-USED |= {
-    "Crank",
-    "Slide",
-    "Stretch",
-    "Strut",
-    "Derivation",
-    "Paper",
-    "Rational",
-    "cos",
-    "sin",
-    "sqrt",
-}
+USED = {"d", "pi", "real", "coupled", "parallel", "platform", "Derivation", "Paper"}
+USED |= {"Crank", "Rail", "Slide", "Stretch", "Strut", "Rational", "cos", "sin", "sqrt"}
 """Names that the written script uses itself."""
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 """Bodies and points."""

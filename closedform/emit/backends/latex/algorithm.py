@@ -549,8 +549,9 @@ class Algorithm:
             rows = self.page.equations("", value)
             first, rest = rows[0][1], [f"${a} = {b}$" for a, b in rows[1:]]
         # TeX breaks no line between two factors by itself
-        product = self.page.math(scale).replace(r" \bigl(", r" \allowbreak \bigl(")
-        product = statement.scale_name or product
+        product = statement.scale_name or self.page.math(scale).replace(
+            r" \bigl(", r" \allowbreak \bigl("
+        )
         where = rf"${first} \ll {product}$"
         if scale == 0:  # a posture without rounding does not come here
             where = "a limit, up to rounding"

@@ -1,0 +1,175 @@
+"""The inverse of a hand on legs, each of which is solved alone, and what loops share beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from closedform.lemmas.legs import Leg, Naming, Solution, Stretch
+from closedform.model.derivation import Derivation, Solved
+from closedform.model.functions import (
+    SINGLE,
+    Bound,
+    Let,
+    Match,
+    Program,
+    Statement,
+    Vanishes,
+    branches,
+    real,
+)
+from closedform.model.inverse import Inverse, Link
+
+Choice = Mapping[int, str]
+SIGN = {+1: "plus", -1: "minus"}
+
+
+@dataclass
+class LegByLeg:
+    """The legs of a hand, as they are solved in a program; ``size`` is the sum of all lengths."""
+
+    d: Derivation
+    program: Program
+    size: sp.Expr
+    found: list[Solution] = field(default_factory=list)
+    choices: list[tuple[sp.Symbol, Choice]] = field(default_factory=list)
+
+    def naming(self, k: int) -> Naming:
+        return Naming(self.program, self.size, f"_{k}")
+
+    def solve(self, k: int, leg: Leg, w: sp.Matrix) -> None:
+        """Solve leg ``k``, if ``w`` leads from its base to the far end of its rod."""
+        sigma = real(f"sigma_leg{k}")
+        if leg.signs == 2:
+            self.choices.append((sigma, SIGN))
+        self.found.append(leg.solve(self.naming(k), w, sigma))
+
+    def lengths(self, legs: Sequence[Leg]) -> sp.Expr:
+        """The product of the lengths of the rods, as they are in the answer."""
+        stretched = {s.link.unknowns[0]: s.value for s in self.found}
+        return sp.Mul(
+            *(
+                stretched[leg.joint]
+                if isinstance(leg, Stretch)
+                else sp.sympify(leg.rod, strict=True)
+                for leg in legs
+            )
+        )
+
+    @property
+    def told_apart(self) -> str:
+        """A sentence on the working modes; empty if there is only one."""
+        said = "The signs of its two solutions are those of the diagonal of B.  "
+        return said if self.choices else ""
+
+    def export(
+        self,
+        target: Mapping[str, Any],
+        contained: Mapping[str, Any],
+        unreachable: str,
+        notes: Sequence[str],
+    ) -> None:
+        """Export ``ik`` and, if the reach is limited, ``workspace_contains``.
+
+        These are their inputs, the note on what is UNREACHABLE, and the further notes of ``ik``.
+        """
+        d, inside = self.d, bounds_of(self.program)
+        working = branches(*self.choices) if self.choices else SINGLE
+        d.branches = working.labels
+        modes = "all working modes" if self.choices else "the only working mode"
+        d.function(
+            "ik",
+            f"The driven joints of {modes}.",
+            target,
+            {"q": [s.value for s in self.found]},
+            program=self.program,
+            branches=working,
+            result="Solutions",
+            notes=(
+                *([unreachable] if inside.body else []),
+                *(note for s in self.found for note in where_free(s)),
+                *notes,
+            ),
+        )
+        if inside.body:
+            d.function(
+                "workspace_contains",
+                "Whether the hand can be reached.",
+                contained,
+                {"inside": sp.true},
+                program=inside,
+                boolean=True,
+            )
+        for s in self.found:
+            tell(d, "ik", s.link)
+
+    def certify(self, equations: Sequence[sp.Expr], images: str = "") -> None:
+        """Record the equations that the joints satisfy; see :class:`Inverse` for ``images``."""
+        zeros, links = (sp.S.Zero,) * len(equations), tuple(s.link for s in self.found)
+        joints = self.d.actuated
+        self.d.inverses.append(
+            Inverse("ik", joints, zeros, tuple(equations), images=images, links=links)
+        )
+
+
+def signs_of_modes(legs: Sequence[Leg]) -> tuple[str, ...]:
+    """A note on the diagonal of B, if each leg has two working modes."""
+    if all(leg.signs == 2 for leg in legs):
+        return ("Its signs distinguish the working modes; BRANCHES lists them in the same order.",)
+    return ()
+
+
+def tell(d: Derivation, function: str, link: Link) -> None:
+    """Record the lemma of a link for the article."""
+    assert link.lemma is not None
+    d.solved.append(Solved(function, link.unknowns[0], link.lemma, link.lemma.equations[0]))
+
+
+def where_free(found: Solution) -> list[str]:
+    """Notes on where the joint of a leg is free."""
+    return [
+        f"SINGULAR: {case.meaning}; {case.free} is free, 0 is returned."
+        for case in found.link.degenerate
+    ]
+
+
+def size_of(d: Derivation, moved: Sequence[sp.Expr] = ()) -> sp.Expr:
+    """The sum of the lengths of a mechanism, and of what its slides have moved."""
+    lengths = [p for p in d.parameters if p.unit != "rad"]
+    sized = [p.symbol if p.nonnegative else sp.Abs(p.symbol) for p in lengths]
+    return sp.Add(*sized, *map(sp.Abs, moved))
+
+
+def bounds_of(g: Program) -> Program:
+    """What decides whether there is a solution."""
+    kept: list[Statement] = []
+    needed: set[sp.Basic] = set()
+    for statement in reversed(g.body):
+        if isinstance(statement, Bound | Match) or (
+            isinstance(statement, Let | Vanishes) and statement.symbol in needed
+        ):
+            needed |= statement.value.free_symbols
+            if not isinstance(statement, Let):
+                needed |= statement.scale.free_symbols
+            kept.insert(0, statement)
+    return Program([*kept], g.taken)
+
+
+def named_in(p: Program, name: str, value: sp.Expr) -> sp.Symbol:
+    return value if value.is_Symbol or value.is_number else p.let(name, value)
+
+
+__all__ = [
+    "SIGN",
+    "Choice",
+    "LegByLeg",
+    "bounds_of",
+    "named_in",
+    "signs_of_modes",
+    "size_of",
+    "tell",
+    "where_free",
+]

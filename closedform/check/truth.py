@@ -61,9 +61,10 @@ class Values:
         self.exact = RowEvaluator(symbols, self.exprs)
         self.scales = Magnitudes(symbols, self.exprs)
         self._symbols = symbols
-        self.beside_pose = len(function.inputs) > 1
-        """Whether it takes a pose and joints: samples of these do not close the loop, so factors
-        that belong together cancel less well."""
+        target = {str(s) for s in function.symbols} == set(derivation.task)
+        self.beside_pose = len(function.inputs) > 1 or target
+        """Whether it takes a target: alone, where the legs may not hold it, or beside joints, of
+        which samples do not close the loop, so that what belongs together cancels less well."""
         self.lengths = numbers_of_tool(derivation)
         degrees = Degrees(self.exprs if self.beside_pose else ())
         self._degrees = np.array(degrees.degrees or [0.0] * len(self.exprs))
@@ -89,19 +90,8 @@ class Values:
         return np.repeat((least > slack) * 1 - (least < -slack), self.entries, axis=1)
 
     def flagged(self, rows: Array, limit: float) -> Array:
-        """Where a flag is raised, and so the value a convention.
-
-        A flag may be defined only where an earlier one is not raised: then each is seen alone.
-        """
-        found = np.zeros(len(rows), bool)
-        for flags in self._flags:
-            values = flags.settled(rows, beside(limit), defined=False)
-            found |= (values < limit).any(axis=1)
-            unsettled = np.flatnonzero(np.isnan(values).any(axis=1))
-            for flag in flags.apart if len(unsettled) else ():
-                alone = flag.settled(rows[unsettled], beside(limit), defined=False)
-                found[unsettled] |= alone[:, 0] < limit
-        return found
+        """Where a flag is raised, and so the value a convention."""
+        return _flagged(self._flags, rows, limit)
 
 
 class Condition:
@@ -111,14 +101,16 @@ class Condition:
         symbols = symbols_of(derivation, function)
         (entry,) = (e for a in function.outputs for e in a.entries)
         self._bounds = _margins(function, symbols, {}, (Bound, Match))
+        self._flags = [_margins(function, symbols, {}, Vanishes)]
         self._holds = RowEvaluator(symbols, [sp.Piecewise((1, entry), (0, True))])
 
     def __call__(self, rows: Array, slack: float) -> tuple[Array, Array]:
-        """The truth, and where no bound is within ``slack`` of zero."""
+        """The truth, and where no bound is within ``slack`` of zero and rests on no convention."""
         margins = self._bounds.settled(rows, beside(slack, -slack))
         holds = self._holds.settled(rows, beside(0.5))[:, 0] == 1
         expected = np.asarray(holds & (margins > 0).all(axis=1))
-        return expected, np.asarray(~(abs(margins) <= slack).any(axis=1))
+        open_ = (abs(margins) <= slack).any(axis=1) | _flagged(self._flags, rows, slack)
+        return expected, np.asarray(~open_)
 
 
 class Solutions:
@@ -325,6 +317,22 @@ def _least(bounds: RowEvaluator, rows: Array, *limits: float) -> Array:
     if not bounds.exprs:
         return np.ones(len(rows))
     return np.asarray(np.fmin.reduce(bounds.settled(rows, doubtful, defined=False), axis=1))
+
+
+def _flagged(flags_of_cases: Sequence[RowEvaluator], rows: Array, limit: float) -> Array:
+    """Where a flag is raised.
+
+    A flag may be defined only where an earlier one is not raised: then each is seen alone.
+    """
+    found = np.zeros(len(rows), bool)
+    for flags in flags_of_cases:
+        values = flags.settled(rows, beside(limit), defined=False)
+        found |= (values < limit).any(axis=1)
+        unsettled = np.flatnonzero(np.isnan(values).any(axis=1))
+        for flag in flags.apart if len(unsettled) else ():
+            alone = flag.settled(rows[unsettled], beside(limit), defined=False)
+            found[unsettled] |= alone[:, 0] < limit
+    return found
 
 
 def _margins(

@@ -96,7 +96,7 @@ class Placed:
     program: Program
     turn: tuple[sp.Expr, sp.Expr]
     """The cosine and the sine of the twist."""
-    rho: sp.Expr
+    delta: sp.Expr
     rotation: sp.Matrix
     position: sp.Matrix
     arms: tuple[sp.Matrix, ...]
@@ -191,10 +191,10 @@ class Tripod:
         side = sp.Integer(self.side)
         f = p.let("f", side * self.balance(turned=False))
         g = p.let("g", side * self.balance(turned=True))
-        rho = p.let("rho", sp.sqrt(f**2 + g**2), nonnegative=True)
-        cosine, sine = g / rho, -f / rho
+        delta = p.let("delta", sp.sqrt(f**2 + g**2), nonnegative=True)
+        cosine, sine = g / delta, -f / delta
         if guarded:
-            free = p.vanishes("upside_down", rho, self.size, "the twist of the hand is free")
+            free = p.vanishes("upside_down", delta, self.size, "the twist of the hand is free")
             cosine, sine = choose(free, 1, cosine), choose(free, 0, sine)
         c, s = p.let("c", cosine), p.let("s", sine)
         first, second, third = (self.tilted.col(k) for k in range(3))
@@ -210,7 +210,7 @@ class Tripod:
         across = self.weights[2]
         x = named_in(p, "px", (n[0][1] * off[1] - n[1][1] * off[0]) / across)
         y = named_in(p, "py", (n[1][0] * off[0] - n[0][0] * off[1]) / across)
-        return Placed(p, (c, s), rho, R, sp.Matrix([x, y, self.target[0]]), tuple(arms))
+        return Placed(p, (c, s), delta, R, sp.Matrix([x, y, self.target[0]]), tuple(arms))
 
     @cached_property
     def posture(self) -> Placed:
@@ -232,12 +232,12 @@ class Tripod:
         f, g = (self.side * self.balance(turned) for turned in (False, True))
         return f * c + g * s
 
-    def rows(self, placed: Placed, rods: Sequence[sp.Matrix], rho: sp.Expr) -> list[sp.Matrix]:
-        """The rows of A, from the vectors along the rods; ``rho`` is what divides."""
+    def rows(self, placed: Placed, rods: Sequence[sp.Matrix], delta: sp.Expr) -> list[sp.Matrix]:
+        """The rows of A, from the vectors along the rods; ``delta`` is what divides."""
         p, at, psi, tilts = placed.program, self.posture, real("psi"), self.target[1:]
         held = dict(zip(at.turn, placed.turn, strict=True))
         follows = [
-            named_in(p, f"twist_{t}", -self.twisting.diff(t).xreplace(held) / rho) for t in tilts
+            named_in(p, f"twist_{t}", -self.twisting.diff(t).xreplace(held) / delta) for t in tilts
         ]
         rows = []
         for k, (leg, rod) in enumerate(zip(self.legs, rods, strict=True)):
@@ -281,8 +281,8 @@ def _place(m: Tripod) -> Step:
             r"R\,R_z(\psi)^{-1}": m.tilted,
             "f": f,
             "g": g,
-            r"\cos\psi": sp.Symbol("g") / sp.Symbol("rho"),
-            r"\sin\psi": -sp.Symbol("f") / sp.Symbol("rho"),
+            r"\cos\psi": sp.Symbol("g") / sp.Symbol("delta"),
+            r"\sin\psi": -sp.Symbol("f") / sp.Symbol("delta"),
         },
         proves="The weighted normals add up to zero.  The corners of two legs are in their planes, "
         "and for that of the third the distance from its plane, times its weight, is "
@@ -344,7 +344,7 @@ def _velocity(m: Tripod, loop: Step) -> None:
         near = sp.Matrix([named_in(p, f"b_{number}{i}", e) for i, e in enumerate(leg.leg.end(), 1)])
         rod = placed.corner(leg, k) - near
         rods.append(sp.Matrix([named_in(p, f"r_{number}{i}", e) for i, e in enumerate(rod, 1)]))
-    rows = m.rows(placed, rods, placed.rho)
+    rows = m.rows(placed, rods, placed.delta)
     driven = [
         named_in(p, f"B_{number}{number}", rate_of(leg.leg, rod))
         for (number, leg), rod in zip(m.numbered, rods, strict=True)
@@ -358,18 +358,19 @@ def _velocity(m: Tripod, loop: Step) -> None:
         "Velocity and singular sets",
         "The derivatives of the loop equations, halved, give A*dx = B*dq for the rates of the "
         "target and of the joints.  Row i of A is the vector r along rod i times the derivatives "
-        "of its far end.  These take into account that the twist follows the tilts: the "
-        "derivative of f*cos(psi) + g*sin(psi) vanishes.  B is diagonal, because each leg depends "
+        "of its far end.  These take into account that the twist follows the tilts.  F_k is the "
+        "derivative of f*cos(psi) + g*sin(psi) with respect to entry k of the target; that with "
+        "respect to psi is delta.  B is diagonal, because each leg depends "
         "on its own joint alone.  B is singular if the joint moves the near end of a rod at right "
         "angles to it (serial: the joint moves and the hand stands still).  A is singular if the "
         "rods do not hold the hand (parallel), and where tilt_x is a right angle: there "
-        "tilt_y turns the hand about its own axis, as the twist does.  Where rho, the root of "
+        "tilt_y turns the hand about its own axis, as the twist does.  Where delta, the root of "
         "f^2 + g^2, vanishes, the planes do not hold the twist (constraint).",
         {
-            r"\frac{\partial\psi}{\partial x_k}": -sp.Symbol("F_k") / sp.Symbol("rho"),
+            r"\frac{\partial\psi}{\partial x_k}": -sp.Symbol("F_k") / sp.Symbol("delta"),
         },
         proves="The derivative of f*cos(psi) + g*sin(psi) with respect to psi is g*cos(psi) - "
-        "f*sin(psi), which is rho.  The derivative of each loop equation is twice the row of A "
+        "f*sin(psi), which is delta.  The derivative of each loop equation is twice the row of A "
         "with respect to the target, and less twice the entry of B with respect to the joint.",
         equal=[
             (
@@ -411,8 +412,8 @@ def _velocity(m: Tripod, loop: Step) -> None:
         ("determinant", "Determinant of the Jacobian.", {"det": sp.Mul(*driven) / volume}, (pole,)),
         (
             "singularities",
-            "The diagonal of B (serial), the determinant of A (parallel) and rho (constraint).",
-            {"factors": [*driven, volume, placed.rho]},
+            "The diagonal of B (serial), the determinant of A (parallel) and delta (constraint).",
+            {"factors": [*driven, volume, placed.delta]},
             (),
         ),
     ]
@@ -485,16 +486,16 @@ def _inverse(m: Tripod, loop: Step) -> None:
         corner = placed.corner(leg, k)
         solved.solve(number, leg.leg, corner - leg.leg.base)
     free = next(s.symbol for s in g.body if isinstance(s, Vanishes))
-    rows = m.rows(placed, [s.rod for s in solved.found], choose(free, 1, placed.rho))
+    rows = m.rows(placed, [s.rod for s in solved.found], choose(free, 1, placed.delta))
     volume = g.let("Delta", sp.Matrix.vstack(*rows).det())
     spread = sp.Add(*(square(vector(leg.corner)) for leg in m.legs)) / 3
     least = g.let("least", solved.lengths(legs) * spread, nonnegative=True)
     meet = "the rods or the planes of the legs do not hold the hand"
     g.determined(
-        sp.Min(sp.Abs(volume) * m.size, placed.rho * least),
+        sp.Min(sp.Abs(volume) * m.size, placed.delta * least),
         m.size * least,
         meet,
-        name=r"\min(|\det A|\,e,\ \rho\,\Lambda)",
+        name=r"\min(|\det A|\,e,\ \delta\,\Lambda)",
         scale_name=r"e\,\Lambda",
     )
     d.step(
@@ -503,7 +504,7 @@ def _inverse(m: Tripod, loop: Step) -> None:
         "parallel or a constraint singularity rounded joints do not determine the hand.  The "
         "status is SINGULAR if the determinant of A is less than 2^-10 of Lambda, the product of "
         "the lengths of the rods and the mean square distance of the corners from the centre of "
-        "the hand, or if rho is less than 2^-10 of e, the sum of the coordinates of the corners.",
+        "the hand, or if delta is less than 2^-10 of e, the sum of the coordinates of the corners.",
         {},
         uses=[loop],
     )

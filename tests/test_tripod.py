@@ -239,7 +239,7 @@ def test_nearest_and_pictures(sprint: ModuleType) -> None:
     q = sprint.ik(x).q[5]
     assert np.allclose(robot.nearest(x, q + 0.01).q, q)
     assert len(plot.branches(sprint, x).get_lines()) > 8
-    plot.mechanism(sprint, q, x=x)
+    assert plot.mechanism(sprint, q, x=x).name == plot.mechanism(sprint).name == "3d"
 
 
 @pytest.mark.parametrize(

@@ -22,8 +22,8 @@ SEEN = np.array(
 )
 """The directions to the right and upwards in such a drawing."""
 FLAT = 1e-12
-PLANAR = 3
-"""The coordinates of a pose in a plane."""
+POSITION = "xyz"
+"""The coordinates of a task that are lengths, if no forward map gives it."""
 
 POSE = {"x": 3, "y": 7, "z": 11}
 """The places of the position among the 16 entries of a pose."""
@@ -109,10 +109,11 @@ class Robot:
         """Random poses of a hand that no forward map gives: not far off, and not turned far."""
         rng = np.random.default_rng(seed)
         place, turn = rng.uniform(-1, 1, (2, n, 3))
-        if len(self.module.TASK) == PLANAR:
-            found = place * self.size / 4
-            found[:, 2] = turn[:, 2]
-            return np.asarray(found)
+        task = self.module.TASK
+        if set(task) & set(POSITION):
+            lengths = np.array([name in POSITION for name in task])
+            raised = np.array([name == "z" for name in task])
+            return np.asarray(np.where(lengths, (place / 4 + 0.35 * raised) * self.size, turn))
         found = np.tile(np.eye(4), (n, 1, 1))
         x, y, z = 0.2 * turn.T
         o = 0 * x
@@ -152,7 +153,7 @@ class Robot:
     def flat(self) -> bool:
         """Whether the mechanism stays in the plane of x and y."""
         if not self.has_forward_map:
-            return len(self.module.TASK) == PLANAR
+            return set(self.module.TASK) & set(POSITION) == {"x", "y"}
         z = self.points(self.draw(20))[..., 2]
         return bool(np.nanmax(np.abs(z)) <= FLAT * self.size)
 

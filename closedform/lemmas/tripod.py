@@ -120,8 +120,10 @@ class Tripod:
         if len(self.legs) != 3:
             raise ShapeError(f"{name}: a tripod has three legs, not {len(self.legs)}")
         for upright in self.legs:
-            sizes = map(len, (upright.heading, upright.corner, upright.leg.base))
-            if not isinstance(upright.leg, Crank | Slide | Stretch) or set(sizes) != {2}:
+            leg = upright.leg
+            if not isinstance(leg, Crank | Slide | Stretch) or not all(
+                len(v) == 2 for v in (upright.heading, upright.corner, leg.base, leg.rate)
+            ):
                 raise ShapeError(
                     f"{name}: a leg of a tripod is a crank, a slide or a stretching leg in a "
                     f"plane, so its vectors have 2 entries"

@@ -196,7 +196,7 @@ class Tripod:
         delta = p.let("delta", sp.sqrt(f**2 + g**2), nonnegative=True)
         cosine, sine = g / delta, -f / delta
         if guarded:
-            free = p.vanishes("upside_down", delta, self.size, "the twist of the hand is free")
+            free = p.vanishes("untwisted", delta, self.size, "the twist of the hand is free")
             cosine, sine = choose(free, 1, cosine), choose(free, 0, sine)
         c, s = p.let("c", cosine), p.let("s", sine)
         first, second, third = (self.tilted.col(k) for k in range(3))
@@ -278,7 +278,7 @@ def _place(m: Tripod) -> Step:
         "f*cos(psi) + g*sin(psi) = 0, and gives the twist.  Then two of the equations are "
         "linear in the x and y of p.  The other solution, half a turn on, is left out: it is that "
         "of a hand whose corners are on the other side of its centre.  If f and g both vanish, "
-        "the hand is upside down and its twist is free.",
+        "the twist is free; on three equal legs, the hand is upside down there.",
         {
             r"R\,R_z(\psi)^{-1}": m.tilted,
             "f": f,
@@ -308,7 +308,7 @@ def _place(m: Tripod) -> Step:
             )
         },
         program=p,
-        notes=("Not finite where the hand is upside down and its twist is free.",),
+        notes=("Not finite where the twist is free: on three equal legs, upside down.",),
     )
     return step
 
@@ -517,8 +517,8 @@ def _inverse(m: Tripod, loop: Step) -> None:
         [
             f"SINGULAR also near a parallel or a constraint singularity, where {meet}: the loop "
             "closes, but the joints do not determine the hand.",
-            "Where the hand is exactly upside down its twist is free and taken as 0.  A rod that "
-            "does not reach then might with another twist.",
+            "Where the twist of the hand is free (on three equal legs, upside down) it is taken as "
+            "0.  A rod that does not reach then might with another twist.",
             "Left out: the postures in which the hand is twisted half a turn more.",
             f"fk is not derived: the forward problem is an equation of degree {DEGREE}.",
         ],

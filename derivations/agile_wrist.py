@@ -124,12 +124,17 @@ def jacobian(a: Matrix, widths: Sequence[Expr], signs: Sequence[Expr]) -> Matrix
     )
 
 
+def volume(m: Matrix) -> Expr:
+    """The determinant; ``Matrix.det`` also simplifies it, which takes seconds."""
+    return m.col(0).dot(m.col(1).cross(m.col(2)))
+
+
 identities = []
 for _, signs in fk.cases():
     a, b, held = (fk.explicit(e, signs)[0] for e in ([*A], y, [found.gap, *rho]))
     (gap, *widths), a = held, Matrix(3, 3, a)
     J = jacobian(a, widths, [e.xreplace(signs) for e in tau])
-    identities += [(a.det(), gap), (a * J, diag(*b)), (J.det(), gap**2 / Mul(*widths) ** 2)]
+    identities += [(volume(a), gap), (a * J, diag(*b)), (volume(J), gap**2 / Mul(*widths) ** 2)]
 d.step(
     "Velocity and singular sets",
     "The derivatives of the loop equations give A*omega = B*dq for the angular velocity omega of "

@@ -7,6 +7,13 @@ endif
 BIN := .venv/bin
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
+# If the environment forbids bytecode beside the sources, it is kept in build/.  Without any, each
+# process that starts compiles SymPy again, which takes longer than most tests.
+ifdef PYTHONDONTWRITEBYTECODE
+unexport PYTHONDONTWRITEBYTECODE
+export PYTHONPYCACHEPREFIX := $(CURDIR)/build/bytecode
+endif
+
 DERIVING := $(shell find closedform derivations templates -name '*.py' -o -name '*.jinja' \
 	-o -path 'closedform/runtime/*' -type f ! -name '*.pyc')
 PRINTED := $(shell find generated -type f ! -name '*.so' ! -path '*/__pycache__/*')

@@ -228,6 +228,18 @@ def test_two_makes_take_turns(tree: Path) -> None:
 
 
 @needs_make
+@pytest.mark.parametrize("forbidden", [True, False])
+def test_bytecode_is_kept_in_the_build_where_it_may_not_stand_beside_the_sources(
+    tree: Path, monkeypatch: pytest.MonkeyPatch, forbidden: bool
+) -> None:
+    monkeypatch.delenv("PYTHONPYCACHEPREFIX", raising=False)
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1" if forbidden else "")
+    shown = 'show: ; @python="$$PYTHONDONTWRITEBYTECODE $$PYTHONPYCACHEPREFIX"; echo "$$python"'
+    done = make(tree, "--eval", shown, "show")
+    assert done.stdout.strip() == (f"{tree / 'build' / 'bytecode'}" if forbidden else "")
+
+
+@needs_make
 def test_check_does_not_first_mend_what_it_should_find(tree: Path) -> None:
     (tree / ".venv").mkdir()
     (tree / ".venv" / "installed.stamp").touch()

@@ -76,8 +76,9 @@ build/derived.txt: .venv/installed.stamp $(DERIVING) $(PRINTED)
 native: build/derived.txt
 	@$(LOCKED) $(BIN)/python setup.py --quiet build_ext --inplace
 
+# One process more than there are cores: tests of the site, of Dask and of several builds wait.
 test: all  ## run the tests on all cores; ARGS="-k NAME" selects some
-	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
+	$(BIN)/python -m pytest -n $$(($$(getconf _NPROCESSORS_ONLN) + 1)) --dist worksteal $(ARGS)
 
 verify: all  ## check the certificates of all proofs, without the prover
 	@$(BIN)/closedform verify

@@ -62,6 +62,11 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return shared(tmp_path_factory, "site", build) / "site"
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The tests of the site come first, so that none waits at the end until it is built."""
+    items.sort(key=lambda item: "site" not in getattr(item, "fixturenames", ()))
+
+
 @pytest.fixture
 def compiled_quickly(
     tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -17,11 +18,14 @@ import pytest
 from closedform.generated.c import hybrid_five_bar as bar
 
 psutil = pytest.importorskip("psutil", reason="distributed, which brings psutil, is missing")
-pytest.importorskip("distributed", reason="the extra closedform[sweep] is not installed")
-xr = pytest.importorskip("xarray", reason="the extra closedform[sweep] is not installed")
-zarr = pytest.importorskip("zarr", reason="the extra closedform[sweep] is not installed")
 
-pytestmark = pytest.mark.skipif(os.name != "posix", reason="kills processes as POSIX does")
+pytestmark = [
+    pytest.mark.skipif(os.name != "posix", reason="kills processes as POSIX does"),
+    pytest.mark.skipif(  # each worker of the tests would import them to collect this file
+        not all(map(find_spec, ("distributed", "xarray", "zarr"))),
+        reason="the extra closedform[sweep] is not installed",
+    ),
+]
 
 PAGE = (Path(__file__).parents[1] / "docs" / "large-sweeps.md").read_text("utf-8")
 SIZES = '{"base": 100, "crank": 25, "radius": 80, "height": 50}'
@@ -111,6 +115,8 @@ def kill_all(run: subprocess.Popen[str]) -> bool:
 
 def check(folder: Path) -> None:
     """What is stored is what the module gives in one call, bit for bit."""
+    import zarr
+
     stored = zarr.open_group(folder / "five-bar.zarr", mode="r")
     radius, height = np.meshgrid(stored["radius"][:], stored["height"][:], indexing="ij")
     p = np.stack([radius, height, np.zeros_like(radius)], axis=-1)

@@ -314,7 +314,10 @@ def _place(m: Tripod) -> Step:
 
 
 def _close(m: Tripod, placed: Step) -> Step:
-    ends = ((str(k), sp.Matrix(u.leg.end()).T, sp.sympify(u.leg.rod)) for k, u in m.numbered)
+    ends = (
+        (str(k), sp.Matrix(u.leg.end()).T, sp.sympify(u.leg.rod, strict=True))
+        for k, u in m.numbered
+    )
     loop = m.d.step(
         "The loop",
         "In the plane of leg i, with the distance from the z axis and the height as coordinates, "

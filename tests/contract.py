@@ -233,3 +233,21 @@ H6AR = {
     "twins": True,
 }
 ROBOTS |= {"h6ar": {**H6AR, "branches": 4}, "h6ar_loop_closed": {**H6AR, "branches": 8}}
+WITHOUT_FORWARD_MAP = {
+    "three_prs": {
+        "fields": ("b", "a", "l"),
+        "joints": ("rho1", "rho2", "rho3"),
+        "task": ("z", "tilt_x", "tilt_y"),
+        "posture": {
+            "jacobian_parallel": (3, 3),
+            "jacobian_serial": (3,),
+            "jacobian_inverse": (3, 3),
+            "jacobian": (3, 3),
+            "determinant": (),
+            "singularities": (5,),
+        },
+        "target": {"hand_pose": (4, 4), "workspace_contains": ()},
+        "branches": 8,
+    },
+}
+"""What takes a target and joints that belong together, and what takes a target."""

@@ -13,6 +13,7 @@ LENGTHS = {
     "delta": {"x": [0, 1, 2], "p": [0, 1, 2]},
     "linear_delta": {"x": [0, 1, 2], "q": [0, 1, 2], "p": [0, 1, 2]},
     "orthoglide": {"x": [0, 1, 2], "q": [0, 1, 2], "p": [0, 1, 2]},
+    "three_prs": {"x": [0], "q": [0, 1, 2]},
     "spherical_five_bar": {"x": [0, 1, 2], "p": [0, 1, 2]},
     "slider_crank": {"x": [0], "p": [0]},
     "scara": {"x": [0, 1, 2], "q": [2]},
@@ -48,5 +49,5 @@ def powers(larger: np.ndarray, values: np.ndarray) -> np.ndarray:
         found = np.log2(larger / values) / 4
     plain = np.isnan(values) | np.isinf(values) | (values == 0)
     np.testing.assert_array_equal(np.isnan(larger), np.isnan(values))
-    assert np.isin(found[~plain], range(-1, 4)).all()
+    assert np.isin(found[~plain], range(-3, 6)).all()
     return np.where(plain, 0, found).astype(np.int32)

@@ -6,7 +6,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
-from libraries import ROBOTS, C, compiles, library, runs
+from libraries import FORWARD, ROBOTS, C, compiles, library, runs
 from sizes import ANGLES, lengths, powers, resized, scaled
 
 TYPES = (np.float64, np.float32)
@@ -94,7 +94,9 @@ def test_batch_and_single_call_agree(robot, real, build):
     params = dimensions_of(robot, header, real)[1]
     # A long chain of steps enlarges what a fused multiplication rounds differently, without bound
     # where the virtual arm of the H6AR is folded, or where the assembly modes of a loop meet.
-    long_chain = robot.startswith("h6ar") or robot in ("delta", "four_bar", "spherical_five_bar")
+    long_chain = robot.startswith("h6ar") or robot in (
+        "delta", "four_bar", "spherical_five_bar", "three_prs",
+    )  # fmt: skip
     few_ulps = (128 if long_chain else 16) * np.finfo(real).eps
 
     functions = re.findall(rf"void ({robot}_\w+)\(([^()]*)\);", header)
@@ -121,7 +123,8 @@ def test_batch_and_single_call_agree(robot, real, build):
             assert np.nanmax(apart) < np.sqrt(few_ulps), name
             assert np.nanquantile(apart, 0.98) < few_ulps, name
         if inverse:
-            assert np.mean((batch[-1] == 0).any(axis=0)) > 0.5, name
+            least = 0.5 if robot in FORWARD else 0.1  # targets of fk, or random ones
+            assert np.mean((batch[-1] == 0).any(axis=0)) > least, name
 
 
 @pytest.mark.skipif(not runs(), reason="a processor without AVX2")
@@ -138,6 +141,8 @@ def test_a_mechanism_of_any_size(robot, real, build):
             continue
         names = re.findall(r"(?:real_t|uint8_t) (\w+)\[", arguments)
         plain = [np.ascontiguousarray(a[:, :60]) for a in planes_of(arguments, real, known)]
+        if robot not in FORWARD:  # a length that is NaN has no size, and some entries do not use it
+            plain = [np.nan_to_num(a) for a in plain]
         n_in = arguments.count("const real_t")
         n = plain[-1].shape[1]
 

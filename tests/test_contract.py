@@ -3,10 +3,11 @@
 import importlib
 import inspect
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
-from contract import ROBOTS
+from contract import ROBOTS, WITHOUT_FORWARD_MAP
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -95,6 +96,49 @@ def test_names_and_shapes(robot: str, backend: str) -> None:
         assert status.shape == (*lead, expected["branches"])
         assert status.dtype == np.uint8
         assert len(module.singularities(q).T) == len(module.SINGULARITIES)
+
+
+def test_every_module_is_in_the_contract() -> None:
+    generated = importlib.import_module("closedform.generated.numpy").__path__[0]
+    names = {path.stem for path in Path(generated).glob("[a-z]*.py")}
+    assert names == ROBOTS.keys() | WITHOUT_FORWARD_MAP.keys()
+
+
+@pytest.mark.parametrize("robot", WITHOUT_FORWARD_MAP)
+def test_names_and_shapes_without_a_forward_map(robot: str, backend: str) -> None:
+    module, expected = load(backend, robot), WITHOUT_FORWARD_MAP[robot]
+    n = len(expected["joints"])
+    assert not hasattr(module, "fk")
+    assert module.Parameters._fields == expected["fields"]
+    assert expected["joints"] == module.JOINTS
+    assert expected["task"] == module.TASK
+    assert len(module.BRANCHES) == expected["branches"]
+    for lead in [(), (1,), (5,), (2, 3), (0,), (3, 0, 2)]:
+        x = np.random.default_rng(0).uniform(-0.3, 0.3, (*lead, len(module.TASK)))
+        q, status = module.ik(x)
+        assert q.shape == (*lead, expected["branches"], n)
+        assert status.shape == (*lead, expected["branches"])
+        assert status.dtype == np.uint8
+        for name, shape in expected["target"].items():
+            assert np.shape(getattr(module, name)(x)) == (*lead, *shape), name
+        for name, shape in expected["posture"].items():
+            assert np.shape(getattr(module, name)(x, q[..., 0, :])) == (*lead, *shape), name
+        points = module.skeleton(x, q[..., 0, :])
+        assert points.shape == (*lead, len(module.SKELETON.points), 3)
+
+
+@pytest.mark.parametrize("robot", WITHOUT_FORWARD_MAP)
+def test_back_ends_agree_without_a_forward_map(robot: str) -> None:
+    numpy, c = load("numpy", robot), load("c", robot)
+    x = np.random.default_rng(1).uniform(-1, 1, (500, len(numpy.TASK)))
+    a, b = numpy.ik(x), c.ik(x)
+    np.testing.assert_array_equal(a.status, b.status)
+    np.testing.assert_allclose(a.q, b.q, rtol=0, atol=1e-13)
+    kept = a.status[:, 0] == OK
+    assert kept.any()
+    for name in WITHOUT_FORWARD_MAP[robot]["posture"]:
+        u, v = (getattr(m, name)(x[kept], a.q[kept, 0]) for m in (numpy, c))
+        np.testing.assert_allclose(u, v, rtol=1e-11, atol=1e-13)
 
 
 @pytest.mark.parametrize("robot", ROBOTS)

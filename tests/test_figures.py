@@ -23,7 +23,7 @@ from closedform.derivations.figures import (
     view,
 )
 from closedform.derivations.figures import figures as figures_of
-from libraries import ROBOTS
+from libraries import FORWARD
 from matplotlib import pyplot as plt
 
 from closedform import hybrid_five_bar, irb260, plot, puma560, ur_arm
@@ -54,7 +54,7 @@ def turned(vector: np.ndarray, axis: np.ndarray, angle: float) -> np.ndarray:
     return vector + np.sin(angle) * across + (1 - np.cos(angle)) * np.cross(axis, across)
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", FORWARD)
 def test_the_axis_of_a_joint_is_what_its_link_turns_about(name: str) -> None:
     robot, step = module(name), 0.3
     r = Robot.of(robot)
@@ -142,7 +142,7 @@ def test_headings_are_those_of_the_papers() -> None:
         assert paper.heading.endswith(f": {record.title}")
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", FORWARD)
 def test_a_mechanism_has_each_figure_once(name: str) -> None:
     found = [f.name for f in figures_of(name)]
     assert len(found) == len(set(found))

@@ -10,7 +10,7 @@ mpl.use("Agg")
 
 import numpy as np
 import pytest
-from libraries import ROBOTS
+from libraries import FORWARD
 from matplotlib import pyplot as plt
 
 import closedform
@@ -38,7 +38,7 @@ def lines(ax: Any) -> list[np.ndarray]:
     return [np.array(d).T for d in data]
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", FORWARD)
 def test_every_link_is_drawn_through_its_points(name: str) -> None:
     robot = module(name)
     q = plot.posture(robot)

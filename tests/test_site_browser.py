@@ -12,8 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-from closedform.pipeline import run as pipeline
+from libraries import FORWARD
 
 playwright = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
 
@@ -21,7 +20,8 @@ CHROMIUM = (
     shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 )
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
-NAMES = [s.name for s in pipeline.sources()]
+NAMES = FORWARD
+"""The mechanisms that have an explorer."""
 HEAVIEST = 1_000_000
 """Bytes of a page with all that it loads, but the figures."""
 WITHOUT_SECTION = (

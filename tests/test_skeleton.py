@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from libraries import ROBOTS
+from libraries import FORWARD
 
 from closedform.mechanics.arm import from_dh
 from closedform.mechanics.skeleton import skeleton
@@ -35,7 +35,7 @@ def size(robot: Any) -> float:
     return float(np.sum(np.abs(robot.Parameters()))) + 5
 
 
-@pytest.fixture(params=ROBOTS)
+@pytest.fixture(params=FORWARD)
 def robot(request: pytest.FixtureRequest) -> Any:
     return import_module(f"closedform.generated.numpy.{request.param}")
 

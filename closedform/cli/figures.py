@@ -55,13 +55,12 @@ def draw_documentation(docs: Path, chosen: list[str]) -> Iterator[str]:
 def thumbnail(name: str, robot: Any) -> Any:
     """A small drawing without labels."""
     from closedform import plot
+    from closedform.plot.catalogue import pictured
 
     view = drawings().view(name)
     spatial = plot.mechanism(robot).name == "3d"
-    return plot.mechanism(
-        robot, view.general, mode=view.mode, faint=view.faint, about=view.about,
-        labels=False, axes=False, ax=plot.new_axes(spatial, (1.6, 1.4)),
-    )  # fmt: skip
+    small = plot.new_axes(spatial, (1.6, 1.4))
+    return pictured(robot, view, view.general, labels=False, axes=False, ax=small)
 
 
 def shown() -> set[tuple[str, str]]:

@@ -260,6 +260,11 @@ class Derivation(Shown):
     def actuated(self) -> tuple[sp.Symbol, ...]:
         return tuple(j.symbol for j in self.joints if not j.passive and j.coupling is None)
 
+    @property
+    def has_forward_map(self) -> bool:
+        """Whether the joints give the hand by a formula."""
+        return any(f.name == "fk" for f in self.functions)
+
     def program(self) -> Program:
         """A program whose names differ from those of the joints and the parameters."""
         symbols = [p.symbol for p in self.parameters] + [j.symbol for j in self.joints]

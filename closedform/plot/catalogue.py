@@ -8,6 +8,7 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from closedform.plot.maps import Limits, workspace
 from closedform.plot.maps import field as field_map
@@ -44,7 +45,10 @@ class PaperFigures:
 
 @dataclass(frozen=True)
 class View:
-    """How to show a mechanism; angles in radians."""
+    """How to show a mechanism; angles in radians.
+
+    ``home`` and ``general`` are joints, or targets if there is no forward map.
+    """
 
     home: Sequence[float] | None = None
     general: Sequence[float] | None = None
@@ -97,13 +101,16 @@ def standard(view: View) -> list[Figure]:
 def fits(robot: ModuleType, figure: str) -> bool:
     """Whether a figure makes sense for a mechanism.
 
-    A map needs two joints, and a workspace a position in the task that no surface holds.
+    A map needs two joints and a forward map, and a workspace a position in the task that no surface
+    holds.
     """
-    if figure in ("workspace", "conditioning") and len(robot.JOINTS) < 2:
-        return False
-    if figure != "workspace":
-        return True
     r = Robot.of(robot)
+    if figure not in ("workspace", "conditioning"):
+        return True
+    if len(robot.JOINTS) < 2 or not r.has_forward_map:
+        return False
+    if figure == "conditioning":
+        return True
     image = r.task(r.posture())
     return 0 < len(positions(r, image[0] if r.modes else image)) <= len(robot.JOINTS)
 
@@ -112,11 +119,19 @@ def fits(robot: ModuleType, figure: str) -> bool:
 def _both(robot: ModuleType, view: View) -> Any:
     r = Robot.of(robot)
     panels = new_panels(1, 2, spatial=not r.flat, size=(7.4, 3.7))
-    home = np.zeros(len(robot.JOINTS)) if view.home is None else view.home
-    general = r.posture() if view.general is None else view.general
-    for ax, q in zip(panels, (home, general), strict=True):
-        mechanism(robot, q, mode=view.mode, ax=ax, faint=view.faint, about=view.about)
+    at_zero = np.zeros(len(robot.JOINTS)) if r.has_forward_map else None
+    postures = (at_zero if view.home is None else view.home, view.general)
+    for ax, posture in zip(panels, postures, strict=True):
+        pictured(robot, view, posture, ax=ax)
     return panels[0]
+
+
+def pictured(robot: ModuleType, view: View, posture: ArrayLike | None, **style: Any) -> Any:
+    """Draw one of the postures of a view; by default a posture that is far from singular."""
+    style |= {"mode": view.mode, "faint": view.faint, "about": view.about}
+    if Robot.of(robot).has_forward_map:
+        return mechanism(robot, posture, **style)
+    return mechanism(robot, x=posture, **style)
 
 
 __all__ = ["Figure", "PaperFigures", "View", "fits", "spoken", "standard"]

@@ -125,7 +125,7 @@ def page(mechanism: Mechanism) -> str:
         "link": md.section,
         "anchor": anchor,
         "plain": plain,
-        "explorer": explorer(info(derivation)),
+        "explorer": explorer(info(derivation)) if derivation.has_forward_map else "",
         "graph": fenced("graph", rests_on(derivation, proof)),
         "operations": {n: describe_operations(p) for n, p in mechanism.lowered.items()},
         "parameter_rows": [

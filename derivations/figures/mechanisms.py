@@ -47,6 +47,7 @@ VIEWS = {
     "orthoglide": View(
         home=(1, 1, 1), general=(1.15, 0.9, 0.8), plane=("x", "y"), at=(0, 0, 0), mode=1
     ),
+    "three_prs": View(home=(0.5, 0, 0), general=(0.45, *degrees(20, -25))),
     "spherical_five_bar": View(
         home=degrees(110, 70),
         general=degrees(130, 60),

@@ -2,6 +2,7 @@
 
 from closedform.derivations.papers.textbooks import (
     BONEV_CHABLAT_WENGER,
+    CARRETERO_PODHORODESKI_NAHON_GOSSELIN,
     CLAVEL,
     FREUDENSTEIN,
     GOSSELIN_HAMEL,
@@ -29,4 +30,10 @@ WRIST_LOOPS = Paper(
     "Three legs that turn a hand about a point",
     ("The closedform authors",),
     works=(MERLET, GOSSELIN_HAMEL, BONEV_CHABLAT_WENGER),
+)
+TRIPODS = Paper(
+    "tripods",
+    "Three legs in upright planes that lift and tilt a hand",
+    ("The closedform authors",),
+    works=(MERLET, CARRETERO_PODHORODESKI_NAHON_GOSSELIN),
 )

@@ -9,6 +9,14 @@ BONEV_CHABLAT_WENGER = Work(
     "IEEE International Conference on Robotics and Automation, 2317–2322",
     "2006",
 )
+CARRETERO_PODHORODESKI_NAHON_GOSSELIN = Work(
+    "carretero-podhorodeski-nahon-gosselin",
+    ("Juan A. Carretero", "Ron P. Podhorodeski", "Meyer A. Nahon", "Clément M. Gosselin"),
+    "Kinematic Analysis and Optimization of a New Three Degree-of-Freedom Spatial Parallel "
+    "Manipulator",
+    "Journal of Mechanical Design, 122(1), 17–24",
+    "2000",
+)
 CLAVEL = Work(
     "clavel",
     ("Reymond Clavel",),

@@ -23,6 +23,7 @@
 #include "spherical_five_bar_nearest.h"
 #include "spherical_wrist_nearest.h"
 #include "stanford_arm_nearest.h"
+#include "three_prs.h"
 #include "ur_arm_nearest.h"
 
 static const char *const agile_wrist_fields[] = { "r" };
@@ -4688,6 +4689,207 @@ static const cf_array stanford_arm_nearest_out[] = {
     { "branch", 0, { 0 }, 1, CF_REAL },
     { "distance", 0, { 0 }, 1, CF_REAL },
     { "outside", 2, { 8, 6 }, 48, CF_BOOL },
+};
+
+static const char *const three_prs_fields[] = { "b", "a", "l" };
+static const double three_prs_values[] = THREE_PRS_DEFAULTS;
+
+static void three_prs_hand_pose_one(const double *params, const double *const *in, void *const *out)
+{
+    three_prs_hand_pose((const three_prs_params *)params, in[0], out[0]);
+}
+
+static void three_prs_hand_pose_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    three_prs_hand_pose_batch(n, (const three_prs_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array three_prs_hand_pose_in[] = {
+    { "x", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array three_prs_hand_pose_out[] = {
+    { "T", 2, { 4, 4 }, 16, CF_REAL },
+};
+
+static void three_prs_jacobian_parallel_one(const double *params, const double *const *in, void *const *out)
+{
+    three_prs_jacobian_parallel((const three_prs_params *)params, in[0], in[1], out[0]);
+}
+
+static void three_prs_jacobian_parallel_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    three_prs_jacobian_parallel_batch(n, (const three_prs_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0]);
+}
+
+static const cf_array three_prs_jacobian_parallel_in[] = {
+    { "x", 1, { 3 }, 3, CF_REAL },
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array three_prs_jacobian_parallel_out[] = {
+    { "A", 2, { 3, 3 }, 9, CF_REAL },
+};
+
+static void three_prs_jacobian_serial_one(const double *params, const double *const *in, void *const *out)
+{
+    three_prs_jacobian_serial((const three_prs_params *)params, in[0], in[1], out[0]);
+}
+
+static void three_prs_jacobian_serial_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    three_prs_jacobian_serial_batch(n, (const three_prs_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0]);
+}
+
+static const cf_array three_prs_jacobian_serial_in[] = {
+    { "x", 1, { 3 }, 3, CF_REAL },
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array three_prs_jacobian_serial_out[] = {
+    { "B", 1, { 3 }, 3, CF_REAL },
+};
+
+static void three_prs_jacobian_inverse_one(const double *params, const double *const *in, void *const *out)
+{
+    three_prs_jacobian_inverse((const three_prs_params *)params, in[0], in[1], out[0]);
+}
+
+static void three_prs_jacobian_inverse_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    three_prs_jacobian_inverse_batch(n, (const three_prs_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0]);
+}
+
+static const cf_array three_prs_jacobian_inverse_in[] = {
+    { "x", 1, { 3 }, 3, CF_REAL },
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array three_prs_jacobian_inverse_out[] = {
+    { "K", 2, { 3, 3 }, 9, CF_REAL },
+};
+
+static void three_prs_jacobian_one(const double *params, const double *const *in, void *const *out)
+{
+    three_prs_jacobian((const three_prs_params *)params, in[0], in[1], out[0]);
+}
+
+static void three_prs_jacobian_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    three_prs_jacobian_batch(n, (const three_prs_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0]);
+}
+
+static const cf_array three_prs_jacobian_in[] = {
+    { "x", 1, { 3 }, 3, CF_REAL },
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array three_prs_jacobian_out[] = {
+    { "J", 2, { 3, 3 }, 9, CF_REAL },
+};
+
+static void three_prs_determinant_one(const double *params, const double *const *in, void *const *out)
+{
+    three_prs_determinant((const three_prs_params *)params, in[0], in[1], out[0]);
+}
+
+static void three_prs_determinant_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    three_prs_determinant_batch(n, (const three_prs_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0]);
+}
+
+static const cf_array three_prs_determinant_in[] = {
+    { "x", 1, { 3 }, 3, CF_REAL },
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array three_prs_determinant_out[] = {
+    { "det", 0, { 0 }, 1, CF_REAL },
+};
+
+static void three_prs_singularities_one(const double *params, const double *const *in, void *const *out)
+{
+    three_prs_singularities((const three_prs_params *)params, in[0], in[1], out[0]);
+}
+
+static void three_prs_singularities_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    three_prs_singularities_batch(n, (const three_prs_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0]);
+}
+
+static const cf_array three_prs_singularities_in[] = {
+    { "x", 1, { 3 }, 3, CF_REAL },
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array three_prs_singularities_out[] = {
+    { "factors", 1, { 5 }, 5, CF_REAL },
+};
+
+static void three_prs_skeleton_one(const double *params, const double *const *in, void *const *out)
+{
+    three_prs_skeleton((const three_prs_params *)params, in[0], in[1], out[0]);
+}
+
+static void three_prs_skeleton_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    three_prs_skeleton_batch(n, (const three_prs_params *)params, in[0], in_stride[0], in[1], in_stride[1], out[0], out_stride[0]);
+}
+
+static const cf_array three_prs_skeleton_in[] = {
+    { "x", 1, { 3 }, 3, CF_REAL },
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array three_prs_skeleton_out[] = {
+    { "points", 2, { 10, 3 }, 30, CF_REAL },
+};
+
+static void three_prs_ik_one(const double *params, const double *const *in, void *const *out)
+{
+    three_prs_ik((const three_prs_params *)params, in[0], out[0], out[1]);
+}
+
+static void three_prs_ik_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    three_prs_ik_batch(n, (const three_prs_params *)params, in[0], in_stride[0], out[0], out_stride[0], out[1], out_stride[1]);
+}
+
+static const cf_array three_prs_ik_in[] = {
+    { "x", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array three_prs_ik_out[] = {
+    { "q", 2, { 8, 3 }, 24, CF_REAL },
+    { "status", 1, { 8 }, 8, CF_STATUS },
+};
+
+static void three_prs_workspace_contains_one(const double *params, const double *const *in, void *const *out)
+{
+    three_prs_workspace_contains((const three_prs_params *)params, in[0], out[0]);
+}
+
+static void three_prs_workspace_contains_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    three_prs_workspace_contains_batch(n, (const three_prs_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array three_prs_workspace_contains_in[] = {
+    { "x", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array three_prs_workspace_contains_out[] = {
+    { "inside", 0, { 0 }, 1, CF_BOOL },
 };
 
 static const char *const ur_arm_fields[] = { "d1", "L2", "L3", "d4", "d5", "d6" };
@@ -11617,6 +11819,340 @@ const cf_function cf_functions[] = {
       1, stanford_arm_values, stanford_arm_fields,
       4, stanford_arm_nearest_in, 5, stanford_arm_nearest_out,
       stanford_arm_nearest_one, stanford_arm_nearest_many },
+    { "three_prs.hand_pose",
+      "Pose of the hand: its twist and its sideways motion follow from the target.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "x : array_like, shape (..., 3)\n"
+      "    z in the unit of the parameters; tilt_x, tilt_y in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "T : ndarray of float64, shape (..., 4, 4)\n"
+      "    A homogeneous transform.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Not finite where the twist is free: on three equal legs, upside down.\n"
+      ,
+      3, three_prs_values, three_prs_fields,
+      1, three_prs_hand_pose_in, 1, three_prs_hand_pose_out,
+      three_prs_hand_pose_one, three_prs_hand_pose_many },
+    { "three_prs.jacobian_parallel",
+      "A of A*dx = B*dq.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "x : array_like, shape (..., 3)\n"
+      "    z in the unit of the parameters; tilt_x, tilt_y in rad.\n"
+      "q : array_like, shape (..., 3)\n"
+      "    rho1, rho2, rho3 in the unit of the parameters.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "A : ndarray of float64, shape (..., 3, 3)\n"
+      "    One column for each of rho1, rho2, rho3.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The target and the joints have to belong together, as ik gives them.\n"
+      ,
+      3, three_prs_values, three_prs_fields,
+      2, three_prs_jacobian_parallel_in, 1, three_prs_jacobian_parallel_out,
+      three_prs_jacobian_parallel_one, three_prs_jacobian_parallel_many },
+    { "three_prs.jacobian_serial",
+      "The diagonal of B of A*dx = B*dq.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "x : array_like, shape (..., 3)\n"
+      "    z in the unit of the parameters; tilt_x, tilt_y in rad.\n"
+      "q : array_like, shape (..., 3)\n"
+      "    rho1, rho2, rho3 in the unit of the parameters.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "B : ndarray of float64, shape (..., 3)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The target and the joints have to belong together, as ik gives them.\n"
+      "- Its signs distinguish the working modes; BRANCHES lists them in the same order.\n"
+      ,
+      3, three_prs_values, three_prs_fields,
+      2, three_prs_jacobian_serial_in, 1, three_prs_jacobian_serial_out,
+      three_prs_jacobian_serial_one, three_prs_jacobian_serial_many },
+    { "three_prs.jacobian_inverse",
+      "B^-1*A: joint rates per rate of the target.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "x : array_like, shape (..., 3)\n"
+      "    z in the unit of the parameters; tilt_x, tilt_y in rad.\n"
+      "q : array_like, shape (..., 3)\n"
+      "    rho1, rho2, rho3 in the unit of the parameters.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "K : ndarray of float64, shape (..., 3, 3)\n"
+      "    One column for each of rho1, rho2, rho3.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The target and the joints have to belong together, as ik gives them.\n"
+      "- Not finite at a serial singularity.\n"
+      ,
+      3, three_prs_values, three_prs_fields,
+      2, three_prs_jacobian_inverse_in, 1, three_prs_jacobian_inverse_out,
+      three_prs_jacobian_inverse_one, three_prs_jacobian_inverse_many },
+    { "three_prs.jacobian",
+      "Derivative of the target with respect to q: A^-1*B.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "x : array_like, shape (..., 3)\n"
+      "    z in the unit of the parameters; tilt_x, tilt_y in rad.\n"
+      "q : array_like, shape (..., 3)\n"
+      "    rho1, rho2, rho3 in the unit of the parameters.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "J : ndarray of float64, shape (..., 3, 3)\n"
+      "    One column for each of rho1, rho2, rho3.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The target and the joints have to belong together, as ik gives them.\n"
+      "- Not finite at a parallel singularity.\n"
+      ,
+      3, three_prs_values, three_prs_fields,
+      2, three_prs_jacobian_in, 1, three_prs_jacobian_out,
+      three_prs_jacobian_one, three_prs_jacobian_many },
+    { "three_prs.determinant",
+      "Determinant of the Jacobian.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "x : array_like, shape (..., 3)\n"
+      "    z in the unit of the parameters; tilt_x, tilt_y in rad.\n"
+      "q : array_like, shape (..., 3)\n"
+      "    rho1, rho2, rho3 in the unit of the parameters.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "det : ndarray of float64, shape (...)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The target and the joints have to belong together, as ik gives them.\n"
+      "- Not finite at a parallel singularity.\n"
+      ,
+      3, three_prs_values, three_prs_fields,
+      2, three_prs_determinant_in, 1, three_prs_determinant_out,
+      three_prs_determinant_one, three_prs_determinant_many },
+    { "three_prs.singularities",
+      "The diagonal of B (serial), the determinant of A (parallel) and delta (constraint).\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "x : array_like, shape (..., 3)\n"
+      "    z in the unit of the parameters; tilt_x, tilt_y in rad.\n"
+      "q : array_like, shape (..., 3)\n"
+      "    rho1, rho2, rho3 in the unit of the parameters.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "factors : ndarray of float64, shape (..., 5)\n"
+      "    One factor for each singular set: leg 1; leg 2; leg 3; all legs; twist.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The target and the joints have to belong together, as ik gives them.\n"
+      ,
+      3, three_prs_values, three_prs_fields,
+      2, three_prs_singularities_in, 1, three_prs_singularities_out,
+      three_prs_singularities_one, three_prs_singularities_many },
+    { "three_prs.skeleton",
+      "Points of the mechanism in the base frame, in the order of SKELETON.points.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "x : array_like, shape (..., 3)\n"
+      "    z in the unit of the parameters; tilt_x, tilt_y in rad.\n"
+      "q : array_like, shape (..., 3)\n"
+      "    rho1, rho2, rho3 in the unit of the parameters.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "points : ndarray of float64, shape (..., 10, 3)\n"
+      "    One column for each of rho1, rho2, rho3.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The target and the joints have to belong together, as ik gives them.\n"
+      ,
+      3, three_prs_values, three_prs_fields,
+      2, three_prs_skeleton_in, 1, three_prs_skeleton_out,
+      three_prs_skeleton_one, three_prs_skeleton_many },
+    { "three_prs.ik",
+      "The driven joints of all working modes.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "x : array_like, shape (..., 3)\n"
+      "    z in the unit of the parameters; tilt_x, tilt_y in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : tuple of ndarray, optional\n"
+      "    Arrays to write the results to; they are returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "q : ndarray of float64, shape (..., 8, 3)\n"
+      "    rho1, rho2, rho3 in the unit of the parameters.\n"
+      "status : ndarray of uint8, shape (..., 8)\n"
+      "    A `Status` of each branch: OK (0) if `q` is a solution, UNREACHABLE (1) if there is no\n"
+      "    solution, SINGULAR (2) if `q` is one of infinitely many solutions or poorly determined\n"
+      "    (see the notes), and INVALID (3) if an input is not finite or not possible. `q` is NaN\n"
+      "    if the status is UNREACHABLE or INVALID.\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,\n"
+      "  plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.\n"
+      "- UNREACHABLE: a rod does not reach.\n"
+      "- SINGULAR also near a parallel or a constraint singularity, where the rods or the planes of\n"
+      "  the legs do not hold the hand: the loop closes, but the joints do not determine the hand.\n"
+      "- Where the twist of the hand is free (on three equal legs, upside down) it is taken as 0. A\n"
+      "  rod that does not reach then might with another twist.\n"
+      "- Left out: the postures in which the hand is twisted half a turn more.\n"
+      "- fk is not derived: the forward problem is an equation of degree 16.\n"
+      ,
+      3, three_prs_values, three_prs_fields,
+      1, three_prs_ik_in, 2, three_prs_ik_out,
+      three_prs_ik_one, three_prs_ik_many },
+    { "three_prs.workspace_contains",
+      "Whether the hand can be reached.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "x : array_like, shape (..., 3)\n"
+      "    z in the unit of the parameters; tilt_x, tilt_y in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "inside : ndarray of bool, shape (...)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      ,
+      3, three_prs_values, three_prs_fields,
+      1, three_prs_workspace_contains_in, 1, three_prs_workspace_contains_out,
+      three_prs_workspace_contains_one, three_prs_workspace_contains_many },
     { "ur_arm.pose",
       "Pose of the tool in the base frame.\n"
       "\n"

@@ -21,4 +21,5 @@ export * as slider_crank from "./slider_crank.js";
 export * as spherical_five_bar from "./spherical_five_bar.js";
 export * as spherical_wrist from "./spherical_wrist.js";
 export * as stanford_arm from "./stanford_arm.js";
+export * as three_prs from "./three_prs.js";
 export * as ur_arm from "./ur_arm.js";

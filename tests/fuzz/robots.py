@@ -54,7 +54,7 @@ class Robot:
 @cache
 def robots() -> tuple[Robot, ...]:
     """Every mechanism that has a forward map ``fk`` and an inverse ``ik``."""
-    return tuple(_robot(source) for source in pipeline.sources())
+    return tuple(_robot(s) for s in pipeline.sources() if pipeline.load(s).has_forward_map)
 
 
 @cache

@@ -29,6 +29,7 @@ COURSE = (
     "linear_delta",
     "delta",
     "orthoglide",
+    "three_prs",
     "spherical_five_bar",
     "agile_wrist",
     "hybrid_five_bar",

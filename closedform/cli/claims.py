@@ -17,12 +17,17 @@ if TYPE_CHECKING:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     parser.add_argument("name", metavar="NAME", help="a derivation or the path of a script")
-    parser.add_argument("--only", metavar="TEXT", default="", help="claims with TEXT in the label")
+    parser.add_argument(
+        "--only", metavar="TEXT", default="", help="only claims with TEXT in the label"
+    )
     parser.add_argument(
         "--mutate", action="store_true", help="change each printed text and judge it again"
     )
     parser.add_argument(
-        "--paper", type=Path, metavar="FILE", help="print what of the paper's text is not covered"
+        "--paper",
+        type=Path,
+        metavar="FILE",
+        help="print the text of the paper that no claim covers",
     )
 
 

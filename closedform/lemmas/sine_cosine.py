@@ -46,7 +46,7 @@ the joint is free.""",
 def linear_pair(x: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Lemma:
     """``cos x : sin x = cosine : sine``, both known up to a common positive factor.
 
-    Of the two directions of the line only one has the right sign; x is free where both vanish.
+    Only one of the two directions of the line has the right sign; x is free where both vanish.
     """
     return Lemma(
         "atan2 of a linear pair",

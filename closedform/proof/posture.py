@@ -46,7 +46,7 @@ class Posture:
         return self.in_sums(self._written_out(e, self.names))
 
     def in_coordinates(self, e: Expr) -> Expr:
-        """The same, with names that count as coordinates of the target."""
+        """The same, with the names that count as coordinates of the target."""
         return self.in_sums(self._written_out(e, {s: s for s in self.held}))
 
     def _written_out(self, e: Expr, names: dict[Expr, Expr]) -> Expr:

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from closedform.algebra.balls import Undetermined, to_float
 from closedform.check.samples import Sample, inverse_postures, joint_samples, perturbed
 from closedform.check.singular import singular_samples
-from closedform.check.truth import Solutions, Values, condition_of, kept, solutions_of, values_of
+from closedform.check.truth import Solutions, Values, cached, condition_of, solutions_of, values_of
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
 from closedform.model.inverse import Inverse
@@ -100,7 +100,7 @@ class Finding:
             self.failures.append(message)
 
 
-_singular_samples = kept(singular_samples)
+_singular_samples = cached(singular_samples)
 
 
 def crosscheck(derivation: Derivation, backend: Backend) -> list[Finding]:
@@ -417,7 +417,7 @@ class _Batch:
             # where a joint is free, another turn of it may reach what the generic one does not
             given, parameters = self.sample.values[row], self.sample.parameters
             missed = self.truth.residual(solution, given, parameters)
-            allowed = self.backend.tolerances.round_trip + self.truth.unfit(given, parameters)
+            allowed = self.backend.tolerances.round_trip + self.truth.violation(given, parameters)
             return "" if missed <= allowed else problem
         return problem
 

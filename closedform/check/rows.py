@@ -76,7 +76,7 @@ class RowEvaluator:
         Do not write to the arrays: the last result is kept for the next back end.
         """
         rows = np.asarray(rows)
-        return _kept(self, rows.tobytes(), rows.shape, rows.dtype.str)
+        return _cached_balls(self, rows.tobytes(), rows.shape, rows.dtype.str)
 
     def _balls(self, rows: Array) -> tuple[Array, Array]:
         shape = (len(rows), len(self.exprs))
@@ -93,15 +93,15 @@ class RowEvaluator:
         return self.balls(rows)[0]
 
     def settled(
-        self, rows: Array, doubtful: Callable[[Array, Array], Array], *, defined: bool = True
+        self, rows: Array, undecided: Callable[[Array, Array], Array], *, defined: bool = True
     ) -> Array:
-        """The values; rows for which ``doubtful(middle, radius)`` holds are evaluated in Arb.
+        """The values; rows for which ``undecided(middle, radius)`` holds are evaluated in Arb.
 
         Unless they must be ``defined`` everywhere, a row that Arb cannot decide is NaN.
         """
         middle, radius = self.balls(rows)
         middle = middle.copy()
-        for row in np.flatnonzero(doubtful(middle, radius).any(axis=1)):
+        for row in np.flatnonzero(undecided(middle, radius).any(axis=1)):
             try:
                 middle[row] = [to_float(b) for b in self.exactly(rows[row])]
             except Undetermined:
@@ -112,30 +112,30 @@ class RowEvaluator:
 
 
 @lru_cache(4096)
-def _kept(
+def _cached_balls(
     evaluator: RowEvaluator, rows: bytes, shape: tuple[int, ...], dtype: str
 ) -> tuple[Array, Array]:
     """The balls of an evaluator, kept because all back ends of a robot use the same points."""
     return evaluator._balls(np.frombuffer(rows, dtype).reshape(shape))
 
 
-def beside(*limits: float) -> Callable[[Array, Array], Array]:
+def crosses(*limits: float) -> Callable[[Array, Array], Array]:
     """A test for values that may be on either side of one of the limits."""
 
-    def doubtful(middle: Array, radius: Array) -> Array:
+    def undecided(middle: Array, radius: Array) -> Array:
         with np.errstate(invalid="ignore"):
             return np.asarray(~np.logical_and.reduce([abs(middle - x) > radius for x in limits]))
 
-    return doubtful
+    return undecided
 
 
 def inaccurate(bits: int) -> Callable[[Array, Array], Array]:
     """A test for values with fewer significant bits."""
 
-    def doubtful(middle: Array, radius: Array) -> Array:
+    def undecided(middle: Array, radius: Array) -> Array:
         return np.asarray(~(radius <= abs(middle) * 2.0**-bits))
 
-    return doubtful
+    return undecided
 
 
 class _Program:
@@ -395,4 +395,4 @@ _FUNCTIONS: dict[Any, Callable[..., Any]] = {
 }
 _RECIPROCAL = {sp.cot: sp.tan, sp.sec: sp.cos, sp.csc: sp.sin}
 
-__all__ = ["RowEvaluator", "beside", "inaccurate"]
+__all__ = ["RowEvaluator", "crosses", "inaccurate"]

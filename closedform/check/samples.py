@@ -178,10 +178,10 @@ class Degrees:
 
     def _of(self, e: sp.Basic) -> float:
         if e not in self._known:
-            self._known[e] = self._found(e)
+            self._known[e] = self._computed(e)
         return self._known[e]
 
-    def _found(self, e: sp.Basic) -> float:
+    def _computed(self, e: sp.Basic) -> float:
         if e.is_Symbol:
             self.symbols.add(e)
             return 1.0

@@ -17,7 +17,7 @@ from flint import arb
 from numpy.typing import NDArray
 
 from closedform.algebra.balls import Undetermined, free_symbols, to_float
-from closedform.check.rows import RowEvaluator, beside
+from closedform.check.rows import RowEvaluator, crosses
 from closedform.check.samples import Degrees, Magnitudes, Sample, with_parameters
 from closedform.lemmas.chain import numbers_of_tool
 from closedform.lower import lower
@@ -31,10 +31,10 @@ T = TypeVar("T")
 CLOSE = 1e-10
 """Below this singular value of the forward map, an ulp of the target turns a joint by 1e-6."""
 KEPT = 32
-"""The number of functions whose exact values are kept for the next back end."""
+"""The number of functions whose exact values are cached for the next back end."""
 
 
-def kept(make: Callable[..., T]) -> Callable[..., T]:
+def cached(make: Callable[..., T]) -> Callable[..., T]:
     """Make something once for the same objects, which need not be hashable."""
     made: dict[tuple[int, ...], tuple[tuple[Any, ...], T]] = {}
 
@@ -107,8 +107,8 @@ class Condition:
 
     def __call__(self, rows: Array, slack: float) -> tuple[Array, Array]:
         """The truth values, and where they are certain: no bound is within ``slack`` of zero."""
-        margins = self._bounds.settled(rows, beside(slack, -slack))
-        holds = self._holds.settled(rows, beside(0.5))[:, 0] == 1
+        margins = self._bounds.settled(rows, crosses(slack, -slack))
+        holds = self._holds.settled(rows, crosses(0.5))[:, 0] == 1
         expected = np.asarray(holds & (margins > 0).all(axis=1))
         open_ = (abs(margins) <= slack).any(axis=1) | _flagged(self._flags, rows, slack)
         return expected, np.asarray(~open_)
@@ -263,7 +263,7 @@ class Solutions:
         )
         return np.where(missed >= -matched, least, np.fmin(least, missed))
 
-    def unfit(self, given: NDArray[Any], parameters: Sequence[float]) -> float:
+    def violation(self, given: NDArray[Any], parameters: Sequence[float]) -> float:
         """How far an input violates its requirement, such as that a matrix is a rotation."""
         missed = self._required.exactly([*map(float, given), *parameters])
         return max((abs(to_float(m)) for m in missed), default=0.0)
@@ -310,14 +310,14 @@ def _least(bounds: RowEvaluator, rows: Array, *limits: float) -> Array:
     below all limits, the others are not evaluated: they may depend on its root.
     """
 
-    def doubtful(middle: Array, radius: Array) -> Array:
+    def undecided(middle: Array, radius: Array) -> Array:
         with np.errstate(invalid="ignore"):
             below = (middle + radius < min(limits)).any(axis=1, keepdims=True)
-        return beside(*limits)(middle, radius) & ~below
+        return crosses(*limits)(middle, radius) & ~below
 
     if not bounds.exprs:
         return np.ones(len(rows))
-    return np.asarray(np.fmin.reduce(bounds.settled(rows, doubtful, defined=False), axis=1))
+    return np.asarray(np.fmin.reduce(bounds.settled(rows, undecided, defined=False), axis=1))
 
 
 def _flagged(flags_of_cases: Sequence[RowEvaluator], rows: Array, limit: float) -> Array:
@@ -327,11 +327,11 @@ def _flagged(flags_of_cases: Sequence[RowEvaluator], rows: Array, limit: float) 
     """
     found = np.zeros(len(rows), bool)
     for flags in flags_of_cases:
-        values = flags.settled(rows, beside(limit), defined=False)
+        values = flags.settled(rows, crosses(limit), defined=False)
         found |= (values < limit).any(axis=1)
         unsettled = np.flatnonzero(np.isnan(values).any(axis=1))
         for flag in flags.separately if len(unsettled) else ():
-            alone = flag.settled(rows[unsettled], beside(limit), defined=False)
+            alone = flag.settled(rows[unsettled], crosses(limit), defined=False)
             found[unsettled] |= alone[:, 0] < limit
     return found
 
@@ -382,10 +382,10 @@ def symbols_of(derivation: Derivation, function: Function) -> tuple[sp.Symbol, .
     return (*function.symbols, *(p.symbol for p in derivation.parameters))
 
 
-values_of, condition_of = kept(Values), kept(Condition)
+values_of, condition_of = cached(Values), cached(Condition)
 
 
-@kept
+@cached
 def solutions_of(derivation: Derivation, function: Function, inverse: Inverse) -> Solutions:
     """The exact equations of an inverse; of a reduced one, those of its forward map."""
     if isinstance(inverse.glue, Combination):
@@ -393,4 +393,12 @@ def solutions_of(derivation: Derivation, function: Function, inverse: Inverse) -
     return Solutions(derivation, function, inverse)
 
 
-__all__ = ["Condition", "Solutions", "Values", "condition_of", "kept", "solutions_of", "values_of"]
+__all__ = [
+    "Condition",
+    "Solutions",
+    "Values",
+    "cached",
+    "condition_of",
+    "solutions_of",
+    "values_of",
+]

@@ -86,7 +86,7 @@ class Chain:
     units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = field(default_factory=list)
     halves: dict[sp.Symbol, tuple[Pair, sp.Expr]] = field(default_factory=dict)
     directions: dict[sp.Expr, Pair] = field(default_factory=dict)
-    held: list[sp.Symbol] = field(default_factory=list)
+    extra_coordinates: list[sp.Symbol] = field(default_factory=list)
     condition: sp.Expr = sp.S.Zero
     weights: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     coefficients: set[sp.Symbol] = field(default_factory=set)
@@ -255,7 +255,7 @@ class Chain:
         coordinates determine it from the joints, so it need not be linear in the others.
         """
         symbol = self.program.let(name, value)
-        self.held.append(symbol)
+        self.extra_coordinates.append(symbol)
         return symbol
 
     def amplified_over(self, length: sp.Expr | int) -> sp.Expr:
@@ -531,7 +531,7 @@ class Chain:
                 {**self.defined},
                 {**self.lengths},
                 tuple(self.units),
-                tuple(self.held),
+                tuple(self.extra_coordinates),
             ),
         )
         d.inverses.append(inverse)

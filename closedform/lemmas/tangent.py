@@ -190,27 +190,29 @@ class LinksAtHeight:
     height: sp.Expr
     preferred: Sequence[sp.Symbol] = ()
 
-    def held(self, program: Program, at: Amplitude, scale: sp.Expr, suffix: str) -> sp.Symbol:
+    def square_in_reach(
+        self, program: Program, at: Amplitude, scale: sp.Expr, suffix: str
+    ) -> sp.Symbol:
         """The square of the root, brought within reach if rounding puts it out of reach."""
         square = at.below * at.above
         farthest = (self.l1 + self.l2) ** 2 - self.height**2
         nearest = (self.l1 - self.l2) ** 2 - self.height**2
         wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
         rounding = 2 * at.h * scale / 2**44
-        held = sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True))
+        result = sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True))
         for root in reversed(self.preferred):
             other = program.let(f"{root}_squared{suffix}", root**2)
             near = sp.Abs(other - square) <= 8 * rounding
-            held = sp.Piecewise((other, near), *held.args)
-        return program.let(f"held{suffix}", held, nonnegative=True)
+            result = sp.Piecewise((other, near), *result.args)
+        return program.let(f"held{suffix}", result, nonnegative=True)
 
     def reached(self, turn: Tangency) -> Reached:
         """The pair of the turn, from the root within reach that is nearest to the computed one."""
         p, at, suffix = turn.chain.program, turn.at, turn.suffix
         tangent = nearly_tangent(p, turn.root, at.h, suffix)
-        held = self.held(p, at, turn.chain.size, suffix)
-        whole = sp.sqrt(4 * held + (at.above - at.below) ** 2)
-        root = choose(tangent, sp.sqrt(held), turn.root)
+        square = self.square_in_reach(p, at, turn.chain.size, suffix)
+        whole = sp.sqrt(4 * square + (at.above - at.below) ** 2)
+        root = choose(tangent, sp.sqrt(square), turn.root)
         root = p.let(f"kept{suffix}", root, nonnegative=True)
         width = p.let(f"span{suffix}", choose(tangent, whole, turn.width), nonnegative=True)
         return Reached(turn.pair(root, width), root)

@@ -115,7 +115,7 @@ class Rank:
     """Auxiliary lengths, at a posture."""
     units: tuple[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]], ...] = ()
     """Pairs of angles that may be chosen freely, and the names that are free in them."""
-    held: tuple[sp.Symbol, ...] = ()
+    extra_coordinates: tuple[sp.Symbol, ...] = ()
     """Names of quantities that the target determines; they count as further coordinates of it."""
 
 

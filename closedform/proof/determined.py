@@ -68,7 +68,7 @@ def _columns(inverse: Inverse, posture: Posture) -> tuple[dict[Expr, Expr], dict
             columns |= {c: sp.cos(value), s: sp.sin(value)}
         else:
             columns[x] = value
-    columns |= {s: posture(s) for s in posture.held}
+    columns |= {s: posture(s) for s in posture.extra_coordinates}
     return columns | posture.lengths, circle
 
 

@@ -94,6 +94,6 @@ def _coverage(derivation: Derivation, path: Path) -> Iterator[str]:
     yield (
         f"{paper.key}: {100 * covered.quoted / total:.1f} % of the characters are quoted by "
         f"claims, {100 * covered.out_of_scope / total:.1f} % are out of scope, "
-        f"{100 * covered.left / total:.1f} % are left; {len(covered.gaps)} passages are not "
-        f"covered, {len(covered.unfound)} quotations were not found"
+        f"{100 * covered.left / total:.1f} % are left; passages not covered: "
+        f"{len(covered.gaps)}, quotations not found: {len(covered.unfound)}"
     )

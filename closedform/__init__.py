@@ -34,7 +34,7 @@ def __dir__() -> list[str]:
 
 
 def _mechanisms() -> set[str]:
-    """The printed mechanisms, except those that have a name of the toolkit."""
+    """The printed mechanisms, except those that share a name with the toolkit."""
     from importlib import import_module
 
     from closedform.lazy import submodules
@@ -44,7 +44,7 @@ def _mechanisms() -> set[str]:
 
 
 def _authors_names() -> dict[str, str]:
-    """The names that an author imports, each with its module."""
+    """The names that a derivation imports, each with its module."""
     from closedform.lazy import homes
 
     return homes(__path__)

@@ -1,4 +1,4 @@
-"""Modules and names that are imported when they are asked for."""
+"""Modules and names that are imported on first use."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def attach(
 
 
 def homes(path: Iterable[str]) -> dict[str, str]:
-    """The names that the stub of a package hands on, each with the module that defines it."""
+    """The names that the stub of a package re-exports, each with the module that defines it."""
     return _homes(Path(next(iter(path))) / "__init__.pyi")
 
 

@@ -27,7 +27,7 @@ d = Derivation(
     "and a spherical wrist (theta4, theta5, theta6) carries the tool.  At zero angles the upper "
     "arm, the forearm and the tool point upwards; the shoulder is a1 forward of the first axis, "
     "the axis of the forearm a2 forward of the elbow, and the arm b to the left of the first "
-    "axis.  Most industrial arms are of this kind, by other zeros and signs of their joints.",
+    "axis.  Most industrial arms are of this kind, up to the zeros and signs of their joints.",
 )
 
 
@@ -151,7 +151,7 @@ ik.finish(
         "noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.",
         "Ill-conditioned near the shoulder and elbow singularities, where the angles lose half "
         "the digits, the pose does not.",
-        "INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.",
+        "INVALID: the matrix is not a homogeneous transform with a proper rotation.",
     ),
     singular=(
         "the centre of the wrist on the first axis (b = 0), theta1 = 0 is returned; equal links "

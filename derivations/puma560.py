@@ -164,7 +164,7 @@ ik.finish(
         "noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.",
         "Ill-conditioned near the shoulder and elbow singularities, where the angles lose half "
         "the digits, the pose does not.",
-        "INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.",
+        "INVALID: the matrix is not a homogeneous transform with a proper rotation.",
     ),
     singular=(
         "the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal links "

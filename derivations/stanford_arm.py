@@ -100,7 +100,7 @@ ik.finish(
     notes=(
         "right: X >= 0, the arm faces the wrist; left: X <= 0.  out: d3 >= 0; back: d3 <= 0.",
         "noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.",
-        "INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.",
+        "INVALID: the matrix is not a homogeneous transform with a proper rotation.",
     ),
     singular=(
         "the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the boom drawn "

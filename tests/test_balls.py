@@ -7,7 +7,7 @@ import sympy as sp
 from flint import arb
 
 from closedform.algebra.balls import Undetermined, to_float
-from closedform.check.rows import WIDE, RowEvaluator, beside, inaccurate
+from closedform.check.rows import WIDE, RowEvaluator, crosses, inaccurate
 
 x, y, z = sp.symbols("x y z", real=True)
 EXPRESSIONS = {
@@ -72,7 +72,7 @@ def test_what_is_open_is_settled_in_arb() -> None:
     evaluator = RowEvaluator((x, y), [x + y - x])
     rows = np.array([[1e30, 1e-3], [1e30, -1e-3], [0.5, 2.0]])
     np.testing.assert_array_equal(
-        evaluator.settled(rows, beside(0.0)).astype(float)[:, 0] > 0, [True, False, True]
+        evaluator.settled(rows, crosses(0.0)).astype(float)[:, 0] > 0, [True, False, True]
     )
     sine = RowEvaluator((x,), [sp.sin(x) ** 2 + sp.cos(x) ** 2 - 1 + x / 2**90])
     rows = np.array([[3.0], [-3.0]])
@@ -87,4 +87,4 @@ def test_what_no_precision_settles_is_an_error() -> None:
         (x,), [sp.Piecewise((1, sp.sin(x) ** 2 > 1 - sp.cos(x) ** 2), (0, True))]
     )
     with pytest.raises(Undetermined):
-        evaluator.settled(np.array([[1.0]]), beside(0.5))
+        evaluator.settled(np.array([[1.0]]), crosses(0.5))

@@ -283,7 +283,7 @@ def test_claims_beside_the_text_of_the_paper(
     assert main(["claims", str(slider), "--paper", str(paper)]) == 0
     told = capsys.readouterr().out
     assert "line 3: The slider moves along the axis of x." in told
-    assert "1 passages are not covered, 0 quotations were not found" in told
+    assert "passages not covered: 1, quotations not found: 0" in told
 
 
 def test_an_output_folder_that_cannot_be_made(

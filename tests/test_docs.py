@@ -51,6 +51,24 @@ def test_the_architecture_names_every_package() -> None:
     assert rows == [name for name in re.findall(r'"(\w+)"', layers[1]) if name in packages]
 
 
+def test_the_architecture_names_files_that_exist() -> None:
+    """A path is below closedform/ or the root; a bare name is in the folder of the path before."""
+    text = (ROOT / "docs" / "architecture.md").read_text("utf-8")
+    rows = [line for line in text.splitlines() if line.startswith("| ") and "`" in line]
+    found = 0
+    for row in rows:
+        folder = ROOT
+        for name in re.findall(r"`([\w./-]+(?:\.(?:py|js|h|jinja)|/))`", row):
+            if "NAME" in name:
+                continue
+            places = [ROOT / name, ROOT / "closedform" / name] if "/" in name else [folder / name]
+            path = next((p for p in places if p.exists()), None)
+            assert path, f"{name} in {row}"
+            folder = path if path.is_dir() else path.parent
+            found += 1
+    assert found > 100
+
+
 def test_a_name_for_authors_is_the_one_of_its_module() -> None:
     for name, home in homes(closedform.__path__).items():
         assert getattr(closedform, name) is getattr(importlib.import_module(home), name)

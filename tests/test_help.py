@@ -147,6 +147,29 @@ def test_inverses_tell_units_statuses_and_branches(robot: str) -> None:
     assert "T11" not in text and "R11" not in text
 
 
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_what_is_said_of_a_matrix_holds(robot: str) -> None:
+    """What is called a rotation is one, and the columns of a Jacobian have the right names."""
+    m = module("numpy", robot)
+    q = np.random.default_rng(5).uniform(0.2, 0.9, (50, len(m.JOINTS)))
+    for name in functions(m):
+        f = getattr(m, name)
+        said = " ".join(sections(inspect.getdoc(f))["Returns"].split())
+        if "proper rotation" in said:
+            assert name in ("fk", "pose")
+            result = f(q)
+            R = (result.p if isinstance(result, m.Positions) else result)[..., :3, :3]
+            R = R[np.isfinite(R).all((-1, -2))]
+            assert len(R) and np.allclose(np.swapaxes(R, -1, -2) @ R, np.eye(3))
+            assert np.allclose(np.linalg.det(R), 1)
+        if columns := re.search(r"One column for (?:each of )?([^.]*)\.", said):
+            names = m.TASK if name in ("jacobian_parallel", "jacobian_inverse") else m.JOINTS
+            assert name.startswith("jacobian")
+            assert columns[1] in (", ".join(names), f"{names[0]} to {names[-1]}")
+        if name == "skeleton":
+            assert said.endswith("Coordinates x, y, z of each point.")
+
+
 def test_a_docstring_as_it_is_read() -> None:
     """A complete docstring, for a person to judge."""
     assert inspect.getdoc(module("numpy", "scara").fk) == DOCSTRING

@@ -68,7 +68,9 @@ def test_derive_gives_up_the_inverse_and_prints_the_rest(
     script.write_text(written(tmp_path, PLANAR).text, "utf-8")
     monkeypatch.setattr(prove_module, "prove_inverse", endless)
     (source,) = find([str(script)])
-    printed = print_robot(source, ("numpy",), Store(None), True, lambda *_: None, timeout=4)
+    printed = print_robot(
+        source, ("numpy",), store=Store(None), report=lambda *_: None, fresh=True, timeout=4
+    )
     assert printed.given_up and "proving" in printed.proof.without_inverse
     (text,) = (t for path, t in printed.files.items() if path.name == "two.py")
     assert "def pose(" in text and "def ik(" not in text

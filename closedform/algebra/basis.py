@@ -24,12 +24,12 @@ def logged_basis(
 ) -> tuple[list[Any], list[int], list[Monomial]]:
     """A Groebner basis of a system, by Buchberger's algorithm.
 
-    The elements are numbered: first those of the system, then one for each step.  A step is a
-    multiplier without unknowns, the new element, and the combination of earlier elements that is
-    their product.  The second result lists the elements that are the basis, the third their leading
-    monomials.
+    The elements are numbered: first those of the system, then one for each step.  A step consists
+    of a multiplier without unknowns, the new element, and the combination of earlier elements that
+    equals their product.  The second result lists the elements of the basis, the third their
+    leading monomials.
 
-    Raises :class:`TooLargeError` if that is too expensive.
+    Raises :class:`TooLargeError` if the computation is too expensive.
     """
     buchberger = _Buchberger(field, system)
     buchberger.run()

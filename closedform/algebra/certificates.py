@@ -36,7 +36,7 @@ Expr: TypeAlias = Any  # SymPy's annotations are partial
 
 
 class _Unwritable(ValueError):  # noqa: N818
-    """The format has no words for an expression."""
+    """An expression that the format cannot express."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class Record:
         return "{\n" + ",\n".join(f'"{key}": {written(v)}' for key, v in content) + "\n}\n"
 
     def identity(self, problem: Expr, assumptions: Iterable[Expr], tower: Tower) -> None:
-        """The entries of a problem vanish."""
+        """Certify that the entries of a problem vanish."""
         self.proofs += 1
         trace = tower.trace
         if trace.unwritable:
@@ -130,7 +130,7 @@ class Record:
         return [self.node(about), *(map(factors_of, rest) if kind == "value" else rest)]
 
     def count(self, system: System) -> int | None:
-        """The number of solutions of a system; the result is the number of the certificate."""
+        """Certify the number of solutions of a system; returns the number of the certificate."""
         self.proofs += 1
         try:
             content = self._system(system)
@@ -154,7 +154,7 @@ class Record:
     def inverse(
         self, function: str, branches: int, counts: Sequence[tuple[int | None, int]], each: int
     ) -> None:
-        """The counts of the steps of an inverse multiply to its branches."""
+        """Certify that the counts of the steps of an inverse multiply to its branches."""
         if any(count is None for count, _ in counts):
             self.uncounted.append(function)
             return
@@ -169,9 +169,9 @@ class Record:
     def point(
         self, rows: Sequence[Sequence[Expr]], at: Mapping[Expr, Expr], assumed: Iterable[Expr] = ()
     ) -> bool:
-        """A matrix has full column rank at a point at which nothing in ``assumed`` is negative.
+        """Certify that a matrix has full column rank at a point.
 
-        The result says whether that is so and can be certified.
+        Nothing in ``assumed`` is negative there.  Returns whether a certificate could be written.
         """
         self.proofs += 1
         rows = [[sp.sympify(e, strict=True) for e in row] for row in rows]
@@ -204,9 +204,12 @@ class Record:
             inverses.append(sp.Symbol(f"1/({factor})", real=True))
             numerators += (inverses[-1] * factor - 1,)
         given = [[self.node(x), self.node(e)] for x, e in system.given.items()]
-        apart = [_apart(sp.sympify(e, strict=True)) for e in (*numerators, *system.given.values())]
-        plain = {s for outside, _ in apart for s in outside}
-        turning = {s for _, inside in apart for s in inside}
+        split = [
+            _split_symbols(sp.sympify(e, strict=True))
+            for e in (*numerators, *system.given.values())
+        ]
+        plain = {s for outside, _ in split for s in outside}
+        turning = {s for _, inside in split for s in inside}
         plain -= {*unknown, *inverses, *system.given}
         turning -= {*unknown, *system.given}
         halves = {s: sp.Symbol(f"tan({s}/2)", real=True) for s in sorted(turning, key=str)}
@@ -250,7 +253,7 @@ class Record:
         return self._known[key]
 
     def _node(self, e: Expr) -> int:
-        """The format has few functions: others are written with the help of these."""
+        """The index of an expression; functions that the format lacks are rewritten."""
         if e.is_Rational:
             return self._entry("number", str(e))
         if e.is_Add or e.is_Mul:
@@ -286,7 +289,7 @@ class Record:
         raise _Unwritable("expressions with other powers")
 
     def _angle(self, e: Expr) -> int:
-        """A sum of multiples; no term is the multiple of another one."""
+        """A sum of multiples of angles; no term is a multiple of another."""
         terms = [
             self.node(atom) if q == 1 else self._entry("*", self.node(q), self.node(atom))
             for atom, q in angle_terms(e).items()
@@ -295,7 +298,7 @@ class Record:
 
 
 def _first(steps: Iterable[list[Any]]) -> list[list[Any]]:
-    """Steps without those that lead to the same: one reason is enough for what is known."""
+    """The steps without repetitions: a fact needs only one reason."""
     found: dict[str, list[Any]] = {}
     for step in steps:
         found.setdefault(json.dumps(step[2] if step[0] == "known" else step), step)
@@ -313,7 +316,7 @@ def _quotient(e: Expr, unknown: set[Expr]) -> tuple[Expr, list[Expr]]:
     return numerator, [f for f in factors if f.free_symbols & unknown]
 
 
-def _apart(e: Expr) -> tuple[set[Expr], set[Expr]]:
+def _split_symbols(e: Expr) -> tuple[set[Expr], set[Expr]]:
     """The symbols of an expression outside of sines and cosines, and those inside of them."""
     turned = {f: sp.Dummy() for f in e.atoms(*TRIGONOMETRIC)}
     outside = e.xreplace(turned).free_symbols - set(turned.values())
@@ -325,7 +328,7 @@ _open: ContextVar[Record | None] = ContextVar("record", default=None)
 
 @contextlib.contextmanager
 def recording() -> Iterator[Record]:
-    """Collect the certificates of everything that is proved meanwhile."""
+    """Collect the certificates of everything that is proved in the body."""
     record = Record()
     token = _open.set(record)
     try:
@@ -357,13 +360,13 @@ def point(
     what: str,
     assumed: Iterable[Expr] = (),
 ) -> None:
-    """Record that a matrix has full column rank at a point; ``what`` it shows, if that fails."""
+    """Record that a matrix has full column rank at a point; ``what`` describes it in messages."""
     if (record := open_record()) and not record.point(rows, at, assumed):
         record.missing[what] += 1
 
 
 def lack(what: str) -> None:
-    """Record that a proof leaves no certificate: what it shows, in words for a list."""
+    """Record that a proof has no certificate; ``what`` describes what it shows."""
     if record := open_record():
         record.missing[what] += 1
 
@@ -375,6 +378,6 @@ def proofs() -> int:
 
 
 def place(text: str) -> None:
-    """Say what is being proved."""
+    """Say what is being proved; the certificates repeat it."""
     if record := open_record():
         record.place = text

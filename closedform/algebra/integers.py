@@ -21,7 +21,8 @@ def smooth_factors(number: fmpz) -> tuple[list[tuple[fmpz, int]], fmpz]:
 def long_factors(number: fmpz) -> list[tuple[fmpz, int]]:
     """Factors of a number without short ones, with their powers; a long number is one factor.
 
-    To factor a number of a hundred digits may take any time; lengths in decimals lead to such.
+    Factoring a number of a hundred digits can take very long, and lengths in decimals lead to such
+    numbers.
     """
     return number.factor() if number.bit_length() <= SHORT else [(number, 1)]
 

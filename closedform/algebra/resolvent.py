@@ -1,10 +1,10 @@
 """A root of the cubic that splits two conics into lines: exact, in balls, and over arrays.
 
-Of ``cos 2x + 2 a cos x + 2 b sin x + e = 0`` the cubic
+The equation ``cos 2x + 2 a cos x + 2 b sin x + e = 0`` has the resolvent
 
-    (1 - u^2) (u - e) + a^2 (1 - u) - b^2 (1 + u)
+    (1 - u^2) (u - e) + a^2 (1 - u) - b^2 (1 + u).
 
-is the resolvent.  It is not negative at -1 and not positive at 1, so it has a root between them.
+It is not negative at -1 and not positive at 1, so it has a root between them.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ Expr = Any
 class Resolvent(sp.Function):  # type: ignore[misc]  # SymPy has no annotations
     """A root of the resolvent of a, b and e, between -1 and 1.
 
-    At the root the cubic falls.  If all three roots are real, it is the one that is farther from
-    the one in the middle.
+    The cubic decreases at this root.  If all three roots are real, it is the outer root that is
+    farther from the middle one.
     """
 
     nargs = 3
@@ -31,7 +31,7 @@ class Resolvent(sp.Function):  # type: ignore[misc]  # SymPy has no annotations
         return True
 
     def law(self, u: Expr) -> Expr:
-        """What vanishes if u is the root."""
+        """The expression that vanishes if u is the root."""
         return cubic(u, *self.args)
 
 
@@ -48,8 +48,8 @@ def slope(u: Any, a: Any, b: Any, e: Any) -> Any:
 def enclosed(a: arb, b: arb, e: arb) -> arb:
     """The root in a ball, at the current precision.
 
-    Newton's method from the end on whose side the root is, with bisection where a step leaves the
-    bracket; then the ball grows until the sign of the cubic changes for certain.
+    Newton's method starts from the end of the interval on the side of the root, and bisects when a
+    step leaves the bracket.  Then the ball grows until the cubic provably changes its sign in it.
     """
     point = tuple(map(_middle, (a, b, e)))
     least = arb(2) ** (8 - flint.ctx.prec)

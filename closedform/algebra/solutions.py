@@ -188,7 +188,7 @@ class _System:
                     break
 
     def merged(self, stated: set[Symbol]) -> dict[Symbol, Expr]:
-        """One symbol of each merged sum, as the sum, which is a new parameter, less the others."""
+        """Of each merged sum, one symbol as the new parameter (the sum) minus the other symbols."""
         return {
             a: e
             for a, e in self._merged.items()

@@ -309,9 +309,10 @@ class Tower:
         return self._sqrt(self.convert(e), sp.Pow(e, sp.S.Half, evaluate=False))
 
     def _sqrt(self, a: Fraction, e: Expr) -> Fraction:
-        """A root: square factors leave it, factors of known sign get one each, the rest one.
+        """The square root of a fraction, as a product.
 
-        ``e`` is what has this root, for the trace.
+        Square factors leave the root, each factor of known sign gets a root of its own, and the
+        rest one together.  ``e`` is the expression that has this root, for the trace.
         """
         if a.num.is_zero():
             self.trace.steps.append(("value", e, [(a.num, 1)]))
@@ -370,7 +371,7 @@ class Tower:
             yield self._root(self._ctx.constant(number)), 1
 
     def _long_root(self, number: fmpz) -> Iterator[tuple[Fraction, int]]:
-        """The root of a number without known factors: no root is a multiple of another one."""
+        """The root of a number without known factors; no such root is a multiple of another."""
         known = next((n for n in self._long if (n * number).is_square()), None)
         if known is not None:
             yield self._constant(fmpq((known * number).isqrt(), known)), 1

@@ -1,4 +1,4 @@
-"""What a conversion to the normal form leaves for a certificate."""
+"""What a conversion to the normal form records for a certificate."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Trace:
     guards: dict[Expr, bool] = field(default_factory=dict)
     """The assumptions, and whether they contain roots."""
     unwritable: str = ""
-    """Why the format cannot express the conversion, if it cannot."""
+    """Why the format cannot express the conversion; empty if it can."""
 
 
 def terms_of(p: fmpq_mpoly) -> list[list[Any]]:

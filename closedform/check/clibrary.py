@@ -29,13 +29,13 @@ def compiler() -> str:
 
 
 class CompileError(FailedError):
-    """The C compiler refuses a file, and the first thing it says about it."""
+    """The C compiler rejected a file; the message is the first thing that it said."""
 
 
 class CLibrary:
     """The C of one robot as a shared library, called through its ``_batch`` functions.
 
-    It is compiled into ``scratch``, unless there is one that was ``built`` before.
+    It is compiled into ``scratch``, unless ``built`` contains one from before.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""Sets the text of a paper beside the claims that quote it: what is covered by neither?
+"""Finds the passages of a paper that no claim quotes.
 
 A passage is covered if a claim quotes it, or if the paper lists it as out of scope.  The comparison
 ignores spaces, braces, and the kinds of quotation marks and dashes.
@@ -30,7 +30,7 @@ class Gap:
 
 @dataclass(frozen=True)
 class Coverage:
-    """What of a paper is covered: characters quoted, out of scope and left."""
+    """How much of a paper is covered: characters quoted, out of scope, and left over."""
 
     quoted: int
     out_of_scope: int
@@ -50,7 +50,7 @@ class _Text:
         self.marks = [""] * len(self.plain)
 
     def mark(self, fragment: str, kind: str) -> bool:
-        """Mark every place of a fragment; whether there is one."""
+        """Mark every occurrence of a fragment; returns whether there is one."""
         wanted, start, found = _plain(fragment), 0, False
         while wanted and (at := self.plain.find(wanted, start)) >= 0:
             self.put(at, at + len(wanted), kind)
@@ -76,7 +76,7 @@ class _Text:
 
 
 def cover(paper: Paper, claims: Iterable[Claim], text: str) -> Coverage:
-    """What the claims and the passages out of scope cover of a text."""
+    """The coverage of a text by claims and by passages out of scope."""
     whole, unfound = _Text(text), []
     for claim in claims:
         found = [whole.mark(f, "quoted") for f in fragments(claim.text)]

@@ -22,27 +22,29 @@ from numpy.typing import NDArray
 from closedform.algebra.balls import Undetermined, to_float
 from closedform.check.samples import Sample, inverse_postures, joint_samples, perturbed
 from closedform.check.singular import singular_samples
-from closedform.check.truth import Solutions, Values, condition_of, kept, solutions_of, values_of
+from closedform.check.truth import Solutions, Values, cached, condition_of, solutions_of, values_of
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
 from closedform.model.inverse import Inverse
 from closedform.model.tolerances import DOUBLE, FLOAT, Tolerances
 
 WELL_CONDITIONED = 3.0
-"""A larger error, in ulps, is compared with how far the value moves if the inputs do."""
+"""Larger errors, in ulps, are compared with the change of the value if the inputs change."""
 CUT, TURN, HIGH = 3.0, 2 * math.pi, 200
-"""An angle beyond the first is beside the cut at pi; a turn; the bits with which one is added."""
+"""Angles beyond the first value are next to the cut at pi; a whole turn; bits for adding one."""
 
 SUSPECTS = 5
 """The number of worst answers on and near the singular set that are evaluated in Arb."""
 
 NESTED = 64.0
-"""The natural scale is at most this many times the largest value, parameter or numerical length (of
-a product of lengths beside a pose, a power of the largest).  In a long chain of steps it grows with
-every step and says nothing any more."""
+"""The natural scale is at most this many times the largest value, parameter or numerical length.
+
+(For a product of lengths beside a pose, it is a power of the largest length.)  In a long chain of
+steps the natural scale grows with every step, and would soon allow any error.
+"""
 
 MENTIONED = 5
-"""So many failures of a function are written down; then there is nothing left to find out."""
+"""The number of failures of a function that are reported."""
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 
@@ -73,7 +75,7 @@ def float_backend(call: Callable[[str], Callable[..., Any]]) -> Backend:
 
 @dataclass
 class Finding:
-    """The worst error of one function in one backend, and its place; no ``failures`` if right."""
+    """The worst error of one function in one backend, and where; no ``failures`` if it is right."""
 
     robot: str
     function: str
@@ -86,7 +88,7 @@ class Finding:
 
     @property
     def full(self) -> bool:
-        """Whether further failures are not written down."""
+        """Whether further failures are left out of the report."""
         return len(self.failures) >= MENTIONED
 
     def see(self, error: float, where: Callable[[], str]) -> None:
@@ -98,7 +100,7 @@ class Finding:
             self.failures.append(message)
 
 
-_singular_samples = kept(singular_samples)
+_singular_samples = cached(singular_samples)
 
 
 def crosscheck(derivation: Derivation, backend: Backend) -> list[Finding]:
@@ -166,7 +168,7 @@ def _compare(
     sample: Sample,
     outputs: Sequence[NDArray[Any]],
 ) -> None:
-    """See the worst error of a sample: only what may exceed the worst so far needs Arb."""
+    """Record the worst error of a sample; only what may exceed the worst so far needs Arb."""
     rows = sample.rows
     computed = np.concatenate([o.reshape(len(rows), -1) for o in outputs], axis=1).astype(float)
     exists = values.existence(rows, 2 * backend.tolerances.feasibility)
@@ -175,48 +177,85 @@ def _compare(
         finding.fail(f"a value out of bounds, entry {k} at {rows[row].tolist()}")
     defined = (exists > 0).any(axis=1)
     rows, computed, exists = rows[defined], computed[defined], exists[defined]
-    lengths = [abs(p) for p in (*sample.parameters, *values.lengths)]
-    scales = values.scales(rows, backend.dtype)
-    powers = values.powers(rows)
-    middle, radius = values.exact.balls(rows)
-    # an angle just above -pi may be rounded to -pi, which is returned as pi
-    turned = values.angles & (computed > CUT) & (middle < -CUT)
-    bounds = _ulp_bounds(computed, middle + TURN * turned, radius, scales, lengths, powers, backend)
+    errors = _Errors(values, backend, rows, computed, [abs(p) for p in sample.parameters])
+    bounds = errors.bounds()
     bounds[exists <= 0] = 0.0
     finding.compared += int((exists > 0).sum())
-    largest: dict[Any, float] = {}
-    unsettled: set[Any] = set()
-    amplified: dict[Any, NDArray[Any]] = {}
     for place in np.argsort(-bounds, axis=None):
-        row, k = np.unravel_index(place, bounds.shape)
+        row, k = map(int, np.unravel_index(place, bounds.shape))
         if not bounds[row, k] > finding.worst:
             break
-        if row in unsettled:
-            continue
+        if (error := errors.at(row, k)) is not None:
+            finding.see(error, lambda: f"{sample.name}, entry {k} at {rows[row].tolist()}")  # noqa: B023
+    finding.compared -= int((exists[[*errors.unsettled]] > 0).sum())
+
+
+class _Errors:
+    """The errors of computed values in ulps of their natural scales, evaluated in Arb on demand."""
+
+    def __init__(
+        self,
+        values: Values,
+        backend: Backend,
+        rows: NDArray[np.float64],
+        computed: NDArray[np.float64],
+        parameters: Sequence[float],
+    ):
+        self.values, self.backend, self.rows, self.computed = values, backend, rows, computed
+        self.lengths = [*parameters, *map(abs, values.lengths)]
+        self.scales = values.scales(rows, backend.dtype)
+        self.powers = values.powers(rows)
+        self.middle, self.radius = values.exact.balls(rows)
+        # an angle just above -pi may be rounded to -pi, which is returned as pi
+        self.turned = values.angles & (computed > CUT) & (self.middle < -CUT)
+        self.unsettled: set[int] = set()
+        self._largest: dict[int, float] = {}
+        self._amplified: dict[int, NDArray[Any]] = {}
+
+    def bounds(self) -> NDArray[np.float64]:
+        """Upper bounds of all errors."""
+        exact = self.middle + TURN * self.turned
+        return _ulp_bounds(
+            self.computed, exact, self.radius, self.scales, self.lengths, self.powers, self.backend
+        )
+
+    def at(self, row: int, k: int) -> float | None:
+        """The error of an entry; None where Arb cannot settle it, or it means nothing."""
+        if row in self.unsettled:
+            return None
         try:
-            exacts = values.exact.exactly(rows[row])
+            exacts = self.values.exact.exactly(self.rows[row])
         except Undetermined:  # whether it is at a pole, where irrational numbers cancel
-            unsettled.add(row)
-            continue
-        if row not in largest:
-            sizes = [abs(to_float(e)) for e in exacts if e.is_finite()]
-            largest[row] = max([*sizes, *lengths], default=1.0)
-        most = NESTED * max(largest[row], powers[row, k])
-        scale = float(min(scales[row, k], most)) if math.isfinite(scales[row, k]) else math.inf
-        exact = _turned(exacts[k]) if turned[row, k] else exacts[k]
-        error = _ulps(computed[row, k], exact, scale, backend)
+            self.unsettled.add(row)
+            return None
+        scale = self._scale(row, k, exacts)
+        exact = _turned(exacts[k]) if self.turned[row, k] else exacts[k]
+        error = _ulps(self.computed[row, k], exact, scale, self.backend)
         if error > WELL_CONDITIONED:
-            scale += float(_variation(values, int(k), rows[row], exacts[k], backend)) / backend.eps
-            error = _ulps(computed[row, k], exact, scale, backend)
-        if error > WELL_CONDITIONED and values.beside_pose:
-            if row not in amplified:
-                amplified[row] = values.amplified(rows[row : row + 1], backend.dtype)[0]
-            grown = float(amplified[row][k])
-            if backend.eps * grown >= scales[row, k]:  # a divisor is a rounding
-                continue
-            error = _ulps(computed[row, k], exact, scale + grown, backend)
-        finding.see(error, lambda: f"{sample.name}, entry {k} at {rows[row].tolist()}")  # noqa: B023
-    finding.compared -= int((exists[[*unsettled]] > 0).sum())
+            moved = float(_variation(self.values, k, self.rows[row], exacts[k], self.backend))
+            scale += moved / self.backend.eps
+            error = _ulps(self.computed[row, k], exact, scale, self.backend)
+        if error > WELL_CONDITIONED and self.values.beside_pose:
+            grown = float(self._amplified_scales(row)[k])
+            if self.backend.eps * grown >= self.scales[row, k]:  # a divisor is a rounding
+                return None
+            error = _ulps(self.computed[row, k], exact, scale + grown, self.backend)
+        return error
+
+    def _scale(self, row: int, k: int, exacts: Sequence[arb]) -> float:
+        """The natural scale of an entry, at most :data:`NESTED` times the largest value there."""
+        if row not in self._largest:
+            sizes = [abs(to_float(e)) for e in exacts if e.is_finite()]
+            self._largest[row] = max([*sizes, *self.lengths], default=1.0)
+        most = NESTED * max(self._largest[row], self.powers[row, k])
+        scale = self.scales[row, k]
+        return float(min(scale, most)) if math.isfinite(scale) else math.inf
+
+    def _amplified_scales(self, row: int) -> NDArray[Any]:
+        if row not in self._amplified:
+            one = self.rows[row : row + 1]
+            self._amplified[row] = self.values.amplified(one, self.backend.dtype)[0]
+        return self._amplified[row]
 
 
 def _turned(angle: arb) -> arb:
@@ -233,7 +272,7 @@ def _ulp_bounds(
     powers: NDArray[Any],
     backend: Backend,
 ) -> NDArray[np.float64]:
-    """What no error exceeds, in the same units; infinite where nothing is known."""
+    """Bounds on the errors, in the same units; infinite where nothing is known."""
     with np.errstate(all="ignore"):
         sizes = np.where(np.isfinite(radius), np.maximum(abs(middle) - radius, 0), 0)
         most = NESTED * sizes.max(axis=1, initial=max(lengths, default=0.0))
@@ -266,7 +305,7 @@ def check_boolean(derivation: Derivation, function: Function, backend: Backend) 
 def _variation(
     values: Values, k: int, row: NDArray[np.float64], exact: arb, backend: Backend
 ) -> float:
-    """How far the exact value moves when every input moves by an ulp: near a singularity, far."""
+    """How far the exact value moves if every input moves by an ulp: far, near a singularity."""
     nearby = row + np.diag(row * (1 + backend.eps) - row)
     moved = (abs(to_float(values.exact.exactly(at)[k] - exact)) for at in nearby)
     return sum(m for m in moved if math.isfinite(m))
@@ -313,7 +352,7 @@ def check_inverse(
 
 @dataclass(frozen=True)
 class _Batch:
-    """A batch of targets, which is compared with the exact equations.
+    """A batch of targets whose answers are compared with the exact equations.
 
     With ``exact`` the targets are images of postures, so they can be reached.
     """
@@ -325,7 +364,7 @@ class _Batch:
     exact: bool
 
     def check(self, known: NDArray[Any] | None) -> None:
-        """Compare; only what may be wrong, or worse than the worst so far, needs Arb.
+        """Compare all answers; only what may be wrong, or worse than the worst so far, needs Arb.
 
         The ``known`` postures must be among the answers.
         """
@@ -363,7 +402,7 @@ class _Batch:
     def _suspicious(
         self, solutions: NDArray[Any], status: NDArray[Any], feasible: NDArray[Any]
     ) -> NDArray[np.bool_]:
-        """What :meth:`_contradiction` says something about."""
+        """The answers in which :meth:`_contradiction` finds something."""
         empty, whole = np.isnan(solutions).all(axis=-1), np.isfinite(solutions).all(axis=-1)
         with np.errstate(invalid="ignore"):
             turned = abs(solutions[..., self.truth.angular]) > np.pi * (1 + self.backend.eps)
@@ -372,13 +411,13 @@ class _Batch:
         return np.asarray(np.where(np.isin(status, (UNREACHABLE, INVALID)), refused, accepted))
 
     def _problem(self, row: Any, solution: NDArray[Any], code: int, feasible: float) -> str:
-        """What is wrong with an answer, unless a free joint explains it; empty if nothing is."""
+        """What is wrong with an answer; empty if nothing is, or if a free joint explains it."""
         problem = self._contradiction(solution, code, feasible)
         if problem and feasible < 0 and code in (OK, SINGULAR):
             # where a joint is free, another turn of it may reach what the generic one does not
             given, parameters = self.sample.values[row], self.sample.parameters
             missed = self.truth.residual(solution, given, parameters)
-            allowed = self.backend.tolerances.round_trip + self.truth.unfit(given, parameters)
+            allowed = self.backend.tolerances.round_trip + self.truth.violation(given, parameters)
             return "" if missed <= allowed else problem
         return problem
 
@@ -398,7 +437,7 @@ class _Batch:
     def _see_residuals(
         self, solutions: NDArray[Any], margins: NDArray[Any], answered: NDArray[np.intp]
     ) -> None:
-        """By how much the answers violate the equations."""
+        """Record by how much the answers violate the equations."""
         row, branch = answered.T
         eps, parameters = self.backend.eps, self.sample.parameters
         # where it is out of reach, an answer misses by that

@@ -1,9 +1,9 @@
-"""Why printed code is not run."""
+"""The errors that say why printed code cannot be run."""
 
 
 class UnavailableError(Exception):
-    """What is needed to run code of this kind is not installed."""
+    """Something that is needed to run code of this kind is not installed."""
 
 
 class FailedError(Exception):
-    """Code cannot be run: the first thing that its compiler or its interpreter says about it."""
+    """Code cannot be run; the message is the first thing that its compiler or interpreter said."""

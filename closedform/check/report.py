@@ -17,7 +17,7 @@ from closedform.model.derivation import Derivation
 def report(derivation: Derivation, root: Path, backends: Sequence[str]) -> tuple[str, list[str]]:
     """The page, and the errors above the tolerances.
 
-    ``root`` is the folder that everything was printed to, each back end below its own name.  What
+    ``root`` is the folder with the printed files, each back end in a folder of its own.  Code that
     cannot be run here is left out, and the page says so.
     """
     findings: list[Finding] = []

@@ -1,7 +1,8 @@
-"""Balls over arrays: many points at once, in the widest float type, each with a bound of its error.
+"""Ball arithmetic over arrays: many points at once, each value with a bound on its error.
 
-What such a ball leaves open is evaluated in Arb, point by point, so that nothing that is decided
-rests on a rounding.  Where the widest type is double, more is left open: slower, and as right.
+The midpoints have the widest float type.  Where a ball is too wide to decide something, the point
+is evaluated again in Arb, so no decision rests on a rounding error.  If the widest type is double,
+Arb is needed more often: the results are the same, but slower.
 """
 
 from __future__ import annotations
@@ -23,16 +24,16 @@ Ball: TypeAlias = "tuple[Any, Any]"  # midpoints and radii
 Truth: TypeAlias = "tuple[Any, Any]"  # whether a condition holds, and whether that is certain
 
 ROUNDING = WIDE(np.finfo(WIDE).eps)
-"""Twice the error of an operation that is rounded correctly, so that those of radii are covered."""
+"""Twice the error of a correctly rounded operation, which also covers those of the radii."""
 LIBRARY = 16 * ROUNDING
-"""The same for sines, cosines and arctangents: of those of libm three units are documented."""
+"""The same for sines, cosines and arctangents, of which libm documents errors of three units."""
 LEAST = np.sqrt(WIDE(np.finfo(WIDE).tiny))
-"""Of what is smaller an error is not relative any more."""
+"""Below this size, rounding errors are no longer relative."""
 OPEN = WIDE("inf")
 
 
 class RowEvaluator:
-    """Expressions at many points: fast, with bounds of the errors, and in Arb where asked for."""
+    """Expressions at many points: fast, with bounds on the errors, and in Arb on request."""
 
     def __init__(
         self,
@@ -45,11 +46,11 @@ class RowEvaluator:
         self._named = dict(named or {})
         self._program = _Program(self.symbols, self.exprs, self._named)
         self._exact: dict[tuple[float, ...], list[Any] | str] = {}
-        """The balls of Arb at each point that was asked for, or why there are none."""
+        """The Arb balls at each point so far, or the reason why there are none."""
 
     @cached_property
-    def apart(self) -> list[RowEvaluator]:
-        """The same for each expression alone."""
+    def separately(self) -> list[RowEvaluator]:
+        """An evaluator for each expression alone."""
         return [RowEvaluator(self.symbols, [e], self._named) for e in self.exprs]
 
     @cached_property
@@ -57,7 +58,7 @@ class RowEvaluator:
         return Evaluator(self.symbols, self.exprs, named=self._named)
 
     def exactly(self, row: Sequence[float]) -> list[Any]:
-        """The balls of Arb at one point."""
+        """The Arb balls at one point."""
         point = tuple(map(float, row))
         if point not in self._exact:
             try:
@@ -70,12 +71,12 @@ class RowEvaluator:
         return found
 
     def balls(self, rows: Array) -> tuple[Array, Array]:
-        """Midpoints and radii, a row a point; a radius that is not finite leaves all open.
+        """Midpoints and radii, one row for each point; a radius that is not finite leaves all open.
 
-        They must not be written to: what was asked last is kept, for the next back end.
+        Do not write to the arrays: the last result is kept for the next back end.
         """
         rows = np.asarray(rows)
-        return _kept(self, rows.tobytes(), rows.shape, rows.dtype.str)
+        return _cached_balls(self, rows.tobytes(), rows.shape, rows.dtype.str)
 
     def _balls(self, rows: Array) -> tuple[Array, Array]:
         shape = (len(rows), len(self.exprs))
@@ -88,19 +89,19 @@ class RowEvaluator:
         return middle, radius
 
     def values(self, rows: Array) -> Array:
-        """The midpoints alone, for what only chooses points: nothing may be decided by them."""
+        """The midpoints alone, to choose points with; do not decide anything by them."""
         return self.balls(rows)[0]
 
     def settled(
-        self, rows: Array, doubtful: Callable[[Array, Array], Array], *, defined: bool = True
+        self, rows: Array, undecided: Callable[[Array, Array], Array], *, defined: bool = True
     ) -> Array:
-        """The values; those of the rows that are ``doubtful(middle, radius)`` are those of Arb.
+        """The values; rows for which ``undecided(middle, radius)`` holds are evaluated in Arb.
 
-        If they need not be ``defined`` everywhere, a row that Arb cannot settle is NaN.
+        Unless they must be ``defined`` everywhere, a row that Arb cannot decide is NaN.
         """
         middle, radius = self.balls(rows)
         middle = middle.copy()
-        for row in np.flatnonzero(doubtful(middle, radius).any(axis=1)):
+        for row in np.flatnonzero(undecided(middle, radius).any(axis=1)):
             try:
                 middle[row] = [to_float(b) for b in self.exactly(rows[row])]
             except Undetermined:
@@ -111,34 +112,34 @@ class RowEvaluator:
 
 
 @lru_cache(4096)
-def _kept(
+def _cached_balls(
     evaluator: RowEvaluator, rows: bytes, shape: tuple[int, ...], dtype: str
 ) -> tuple[Array, Array]:
-    """The balls of an evaluator: the back ends of a robot are compared at the same points."""
+    """The balls of an evaluator, kept because all back ends of a robot use the same points."""
     return evaluator._balls(np.frombuffer(rows, dtype).reshape(shape))
 
 
-def beside(*limits: float) -> Callable[[Array, Array], Array]:
-    """Doubtful is on which side of one of the limits a value is."""
+def crosses(*limits: float) -> Callable[[Array, Array], Array]:
+    """A test for values that may be on either side of one of the limits."""
 
-    def doubtful(middle: Array, radius: Array) -> Array:
+    def undecided(middle: Array, radius: Array) -> Array:
         with np.errstate(invalid="ignore"):
             return np.asarray(~np.logical_and.reduce([abs(middle - x) > radius for x in limits]))
 
-    return doubtful
+    return undecided
 
 
 def inaccurate(bits: int) -> Callable[[Array, Array], Array]:
-    """Doubtful is what has fewer significant bits."""
+    """A test for values with fewer significant bits."""
 
-    def doubtful(middle: Array, radius: Array) -> Array:
+    def undecided(middle: Array, radius: Array) -> Array:
         return np.asarray(~(radius <= abs(middle) * 2.0**-bits))
 
-    return doubtful
+    return undecided
 
 
 class _Program:
-    """One step for each distinct part of the expressions, over lists of what is known so far."""
+    """One step for each distinct subexpression, over lists of the values so far."""
 
     def __init__(
         self, symbols: Sequence[sp.Symbol], exprs: Sequence[Any], named: Mapping[sp.Symbol, Any]
@@ -247,7 +248,7 @@ def _power(e: Any) -> Callable[[Ball], Ball]:
 
 
 def _periodic(function: Callable[[Any], Any]) -> Callable[[Ball], Ball]:
-    """A sine or a cosine; of an angle that is not known nothing is."""
+    """A sine or a cosine; open if the angle is."""
 
     def bounded(a: Ball) -> Ball:
         x, r = a
@@ -261,7 +262,7 @@ def _tangent(a: Ball) -> Ball:
 
 
 def _monotone(function: Callable[[Any], Any]) -> Callable[[Ball], Ball]:
-    """NaN, and so open, where the ball reaches beyond the domain."""
+    """A monotone function; NaN, and so open, where the ball reaches beyond the domain."""
 
     def bounded(a: Ball) -> Ball:
         x, r = a
@@ -301,7 +302,7 @@ def _extreme(choose: Callable[[Any, Any], Any]) -> Callable[..., Ball]:
 
 
 def _comparison(holds: Callable[[Any, Any], Any]) -> Callable[[Ball, Ball], Truth]:
-    """Certain where the balls are apart, or are points."""
+    """A comparison; it is certain where the balls do not overlap, or are points."""
 
     def compare(a: Ball, b: Ball) -> Truth:
         (x, r), (y, s) = a, b
@@ -317,7 +318,7 @@ def _not(a: Truth) -> Truth:
 
 
 def _combined(decisive: bool) -> Callable[..., Truth]:
-    """``Or`` is decided by one True, ``And`` by one False."""
+    """A conjunction or disjunction: one True decides ``Or``, one False decides ``And``."""
 
     def combine(*truths: Truth) -> Truth:
         join = np.logical_or if decisive else np.logical_and
@@ -329,7 +330,7 @@ def _combined(decisive: bool) -> Callable[..., Truth]:
 
 
 def _resolvent(a: Ball, b: Ball, e: Ball) -> Ball:
-    """The root of a resolvent; open unless the cubic changes its sign for certain beside it."""
+    """The root of a resolvent; open unless the cubic provably changes its sign around it."""
     point = a[0], b[0], e[0]
     right = cubic(e[0] / 3, *point) >= 0
     u = np.where(right, WIDE(1), WIDE(-1))
@@ -394,4 +395,4 @@ _FUNCTIONS: dict[Any, Callable[..., Any]] = {
 }
 _RECIPROCAL = {sp.cot: sp.tan, sp.sec: sp.cos, sp.csc: sp.sin}
 
-__all__ = ["RowEvaluator", "beside", "inaccurate"]
+__all__ = ["RowEvaluator", "crosses", "inaccurate"]

@@ -1,4 +1,4 @@
-"""The postures and dimensions at which generated code is compared: those at which it may break.
+"""The postures and dimensions at which generated code is tested: those at which it may break.
 
 They are home, multiples of a right angle approached to 1e-15, huge angles, denormals, merging
 branches, the boundary of the workspace, and random ones.  All are ordinary arrays of doubles, the
@@ -129,7 +129,7 @@ def inverse_postures(
 
 
 def drawn_beside(derivation: Derivation, symbols: Sequence[sp.Symbol], values: Array) -> Array:
-    """Move each joint that stays beside another close to it."""
+    """Move each joint that stays close to another one near that joint."""
     values = values.copy()
     for joint in derivation.joints:
         if joint.beside is not None and joint.symbol in symbols:
@@ -166,9 +166,9 @@ def _one_singular(rng: np.random.Generator, n: int) -> Array:
 
 
 class Degrees:
-    """The degrees of expressions in lengths, at most, and which symbols count as lengths.
+    """Upper bounds for the degrees of expressions in lengths, and which symbols are lengths.
 
-    A sine or a cosine has none, a product those of its factors together.
+    A sine or a cosine has degree 0; the degree of a product is the sum over its factors.
     """
 
     def __init__(self, exprs: Sequence[sp.Expr]):
@@ -178,10 +178,10 @@ class Degrees:
 
     def _of(self, e: sp.Basic) -> float:
         if e not in self._known:
-            self._known[e] = self._found(e)
+            self._known[e] = self._computed(e)
         return self._known[e]
 
-    def _found(self, e: sp.Basic) -> float:
+    def _computed(self, e: sp.Basic) -> float:
         if e.is_Symbol:
             self.symbols.add(e)
             return 1.0
@@ -199,9 +199,9 @@ class Degrees:
 class Magnitudes:
     """The natural scales of values: all signs positive, sines and cosines at their largest.
 
-    Divisors keep their value.  If they are ``amplified``, a quotient counts as often as the natural
-    scale of its divisor is larger than the divisor.  Each part of a nested expression is visited
-    once, because as a tree it would be far too large.
+    Divisors keep their value.  With ``amplified``, a quotient is multiplied by the natural scale of
+    its divisor over the divisor.  Each subexpression is visited once, because the full tree would
+    be far too large.
     """
 
     def __init__(
@@ -216,7 +216,7 @@ class Magnitudes:
         self._evaluate = RowEvaluator(symbols, self._divisors)
 
     def __call__(self, rows: Array, dtype: type = float) -> Array:
-        """A row a point: infinite where the float type overflows, zero where no value exists."""
+        """A row for each point: infinite where the float type overflows, zero where undefined."""
         found = self._evaluate.settled(rows, inaccurate(bits=40), defined=False)
         with np.errstate(all="ignore"):
             given = list(abs(np.concatenate([rows, found], axis=1)).astype(dtype).T)

@@ -25,7 +25,7 @@ STEPS = 40
 SHARES = (1.0, 0.5, 0.25)
 """Shares of a Newton step: half a step is right if a factor is a root, as at the end of a reach."""
 CLOSE = 1e-7
-"""How small a factor gets on the singular set: if it is a root, the root of a rounding."""
+"""How small a factor becomes on the singular set; for a root, the root of a rounding error."""
 STARTS, RANDOM = 8, 600
 
 

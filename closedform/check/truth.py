@@ -1,6 +1,7 @@
-"""The symbolic source of a function, ready to be evaluated: what generated code is compared with.
+"""The exact values of a function, with which generated code is compared.
 
-Many points are evaluated at once, in balls over arrays; what those leave open is settled in Arb.
+Many points are evaluated at once, in balls over arrays; points that these leave open are evaluated
+in Arb.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from flint import arb
 from numpy.typing import NDArray
 
 from closedform.algebra.balls import Undetermined, free_symbols, to_float
-from closedform.check.rows import RowEvaluator, beside
+from closedform.check.rows import RowEvaluator, crosses
 from closedform.check.samples import Degrees, Magnitudes, Sample, with_parameters
 from closedform.lemmas.chain import numbers_of_tool
 from closedform.lower import lower
@@ -28,12 +29,12 @@ Array = NDArray[Any]
 T = TypeVar("T")
 
 CLOSE = 1e-10
-"""With a smaller singular value of the forward map, an ulp of the target turns a joint by 1e-6."""
+"""Below this singular value of the forward map, an ulp of the target turns a joint by 1e-6."""
 KEPT = 32
-"""So many functions are kept ready to be evaluated, for the next back end."""
+"""The number of functions whose exact values are cached for the next back end."""
 
 
-def kept(make: Callable[..., T]) -> Callable[..., T]:
+def cached(make: Callable[..., T]) -> Callable[..., T]:
     """Make something once for the same objects, which need not be hashable."""
     made: dict[tuple[int, ...], tuple[tuple[Any, ...], T]] = {}
 
@@ -75,22 +76,22 @@ class Values:
 
     @cached_property
     def amplified(self) -> Magnitudes:
-        """The scales with what divisors that nearly cancel amplify."""
+        """The natural scales, enlarged where divisors nearly cancel."""
         return Magnitudes(self._symbols, self.exprs, amplified=True)
 
     def powers(self, rows: Array) -> Array:
-        """Of each entry, the largest length to the power of its degree; 0 if that is at most 1."""
+        """For each entry, the largest length to the power of its degree; 0 for degrees up to 1."""
         longest = abs(rows[:, self._sized]).max(axis=1, initial=0.0)[:, None]
         with np.errstate(over="ignore"):
             return np.where(self._degrees > 1, longest ** np.maximum(self._degrees, 1.0), 0.0)
 
     def existence(self, rows: Array, slack: float) -> Array:
-        """Of each entry: 1 where it exists, -1 where not, 0 within ``slack`` of the boundary."""
+        """For each entry: 1 where it exists, -1 where not, 0 within ``slack`` of the boundary."""
         least = np.stack([_least(b, rows, slack, -slack) for b in self._bounds], axis=1)
         return np.repeat((least > slack) * 1 - (least < -slack), self.entries, axis=1)
 
     def flagged(self, rows: Array, limit: float) -> Array:
-        """Where a flag is raised, and so the value a convention."""
+        """Where a flag is raised, so that the value is a convention."""
         return _flagged(self._flags, rows, limit)
 
 
@@ -105,9 +106,9 @@ class Condition:
         self._holds = RowEvaluator(symbols, [sp.Piecewise((1, entry), (0, True))])
 
     def __call__(self, rows: Array, slack: float) -> tuple[Array, Array]:
-        """The truth, and where no bound is within ``slack`` of zero and rests on no convention."""
-        margins = self._bounds.settled(rows, beside(slack, -slack))
-        holds = self._holds.settled(rows, beside(0.5))[:, 0] == 1
+        """The truth values, and where they are certain: no bound is within ``slack`` of zero."""
+        margins = self._bounds.settled(rows, crosses(slack, -slack))
+        holds = self._holds.settled(rows, crosses(0.5))[:, 0] == 1
         expected = np.asarray(holds & (margins > 0).all(axis=1))
         open_ = (abs(margins) <= slack).any(axis=1) | _flagged(self._flags, rows, slack)
         return expected, np.asarray(~open_)
@@ -162,9 +163,9 @@ class Solutions:
         self._factors = RowEvaluator(posture, entries)
 
     def images(self, sample: Sample) -> tuple[Array, Array]:
-        """What the postures are taken to, in each assembly mode they have, and the postures.
+        """The images of postures in each assembly mode that they have, and the postures.
 
-        Those where a flag of the forward map leaves the target free have none.
+        Postures at which a flag of the forward map leaves the target free have no image.
         """
         rows, postures = [], []
         for forward in self._maps:
@@ -180,7 +181,7 @@ class Solutions:
         return np.array(rows).reshape(shape), np.array(postures).reshape(-1, len(self.angular))
 
     def wide_images(self, postures: NDArray[Any], parameters: Sequence[float]) -> NDArray[Any]:
-        """What postures are taken to in each assembly mode, NaN where it does not exist."""
+        """The images of postures in each assembly mode; NaN where the mode does not exist."""
         rows = with_parameters(postures, parameters)
         return np.stack([forward.values(rows) for forward in self._maps])
 
@@ -193,7 +194,7 @@ class Solutions:
     ) -> NDArray[np.float64]:
         """How far the image in the nearest assembly mode is from the target.
 
-        Lengths are counted in the sum of those of links and slides, angles by their weights.
+        Lengths are relative to the sum of the links and slides, angles to their weights.
         """
         counted = self._weights.values(with_parameters(solutions.astype(float), parameters))
         fixed = np.abs(parameters).sum() + self._in_numbers
@@ -226,7 +227,7 @@ class Solutions:
     def residual(
         self, solution: NDArray[Any], given: NDArray[Any], parameters: Sequence[float]
     ) -> float:
-        """The largest violation of an equation, over the largest natural scale.
+        """The largest violation of an equation, relative to the largest natural scale.
 
         The sine and the cosine of an angle have a scale of their own, which is 1.
         """
@@ -238,7 +239,7 @@ class Solutions:
         return max(e / (1.0 if t else scale) for e, t in zip(errors, self._is_turn, strict=True))
 
     def residual_bounds(self, answers: Array, given: Array, parameters: Sequence[float]) -> Array:
-        """What the residual of each answer does not exceed."""
+        """An upper bound for the residual of each answer."""
         points = with_parameters(np.concatenate([answers, given], axis=1), parameters)
         scale = self._scales(points).max(axis=1, initial=0.0)
         scale[scale == 0] = 1.0
@@ -250,10 +251,10 @@ class Solutions:
     def margins(
         self, given: Array, parameters: Sequence[float], *limits: float, matched: float
     ) -> Array:
-        """The smallest bound of each branch over its scale, negative where the branch is none.
+        """The smallest bound of each branch over its scale; negative where there is no branch.
 
-        It is decided on which side of each of the ``limits`` it is.  What must match, and misses by
-        no more than ``matched``, does not count.
+        It is decided exactly on which side of each of the ``limits`` a bound is.  A quantity that
+        must match does not count if it misses by no more than ``matched``.
         """
         rows = with_parameters(given, parameters)
         least, missed = (
@@ -262,8 +263,8 @@ class Solutions:
         )
         return np.where(missed >= -matched, least, np.fmin(least, missed))
 
-    def unfit(self, given: NDArray[Any], parameters: Sequence[float]) -> float:
-        """How far an input misses what is required of it, as that its matrix is a rotation."""
+    def violation(self, given: NDArray[Any], parameters: Sequence[float]) -> float:
+        """How far an input violates its requirement, such as that a matrix is a rotation."""
         missed = self._required.exactly([*map(float, given), *parameters])
         return max((abs(to_float(m)) for m in missed), default=0.0)
 
@@ -280,8 +281,8 @@ class Solutions:
     def undetermined(self, posture: NDArray[Any], parameters: Sequence[float]) -> bool:
         """Whether a posture is so close to a singularity that its target does not determine it.
 
-        Where two singularities meet, the rounding at one turns the joint of the other: the answers
-        are right, but far from the posture.  For arms with factors, their size decides.
+        Where two singularities meet, rounding at one turns the joint of the other: the answers are
+        right, but far from the posture.  For arms with factors, the size of the factors decides.
         """
         if self._factors.exprs:
             return False
@@ -303,34 +304,34 @@ class Solutions:
 
 
 def _least(bounds: RowEvaluator, rows: Array, *limits: float) -> Array:
-    """The least of some bounds at each point; 1 where there are none.
+    """The smallest of some bounds at each point; 1 if there are none.
 
-    It is NaN where they are defined only for a case that a flag excludes.  Where one is provably
-    below all limits, the others are not looked at: they may rest on its root.
+    It is NaN where the bounds are defined only for a case that a flag excludes.  If one is provably
+    below all limits, the others are not evaluated: they may depend on its root.
     """
 
-    def doubtful(middle: Array, radius: Array) -> Array:
+    def undecided(middle: Array, radius: Array) -> Array:
         with np.errstate(invalid="ignore"):
             below = (middle + radius < min(limits)).any(axis=1, keepdims=True)
-        return beside(*limits)(middle, radius) & ~below
+        return crosses(*limits)(middle, radius) & ~below
 
     if not bounds.exprs:
         return np.ones(len(rows))
-    return np.asarray(np.fmin.reduce(bounds.settled(rows, doubtful, defined=False), axis=1))
+    return np.asarray(np.fmin.reduce(bounds.settled(rows, undecided, defined=False), axis=1))
 
 
 def _flagged(flags_of_cases: Sequence[RowEvaluator], rows: Array, limit: float) -> Array:
     """Where a flag is raised.
 
-    A flag may be defined only where an earlier one is not raised: then each is seen alone.
+    A flag may be defined only where an earlier one is not raised; then each is evaluated alone.
     """
     found = np.zeros(len(rows), bool)
     for flags in flags_of_cases:
-        values = flags.settled(rows, beside(limit), defined=False)
+        values = flags.settled(rows, crosses(limit), defined=False)
         found |= (values < limit).any(axis=1)
         unsettled = np.flatnonzero(np.isnan(values).any(axis=1))
-        for flag in flags.apart if len(unsettled) else ():
-            alone = flag.settled(rows[unsettled], beside(limit), defined=False)
+        for flag in flags.separately if len(unsettled) else ():
+            alone = flag.settled(rows[unsettled], crosses(limit), defined=False)
             found[unsettled] |= alone[:, 0] < limit
     return found
 
@@ -341,11 +342,11 @@ def _margins(
     signs: Mapping[sp.Symbol, int],
     kind: type | tuple[type, ...] = Bound,
 ) -> RowEvaluator:
-    """The bounds of a branch (or what flags look at, or what must match) over their scales.
+    """The bounds of a branch (or the values of flags and matches) over their scales.
 
-    Of what must match it is the opposite of the size, which is never positive.
+    For a match this is minus its size, which is never positive.
 
-    No flag holds, and what is chosen only where one does is left out.
+    All flags are taken as false, and values that are chosen only where one holds are left out.
     """
     named: dict[sp.Symbol, sp.Basic] = {s: sp.Integer(v) for s, v in signs.items()}
     lowered: dict[sp.Basic, sp.Basic] = {}
@@ -372,19 +373,19 @@ def _shared(
     exprs: tuple[sp.Expr, ...],
     named: tuple[tuple[sp.Symbol, sp.Basic], ...],
 ) -> RowEvaluator:
-    """One evaluator for all functions with the same expressions: it keeps what Arb has settled."""
+    """One evaluator for all functions with the same expressions, which keeps the Arb results."""
     return RowEvaluator(symbols, exprs, dict(named))
 
 
 def symbols_of(derivation: Derivation, function: Function) -> tuple[sp.Symbol, ...]:
-    """What the values of a function depend on, in the order of a row."""
+    """The symbols on which the values of a function depend, in the order of a row."""
     return (*function.symbols, *(p.symbol for p in derivation.parameters))
 
 
-values_of, condition_of = kept(Values), kept(Condition)
+values_of, condition_of = cached(Values), cached(Condition)
 
 
-@kept
+@cached
 def solutions_of(derivation: Derivation, function: Function, inverse: Inverse) -> Solutions:
     """The exact equations of an inverse; of a reduced one, those of its forward map."""
     if isinstance(inverse.glue, Combination):
@@ -392,4 +393,12 @@ def solutions_of(derivation: Derivation, function: Function, inverse: Inverse) -
     return Solutions(derivation, function, inverse)
 
 
-__all__ = ["Condition", "Solutions", "Values", "condition_of", "kept", "solutions_of", "values_of"]
+__all__ = [
+    "Condition",
+    "Solutions",
+    "Values",
+    "cached",
+    "condition_of",
+    "solutions_of",
+    "values_of",
+]

@@ -17,12 +17,17 @@ if TYPE_CHECKING:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """The options of the command."""
     parser.add_argument("name", metavar="NAME", help="a derivation or the path of a script")
-    parser.add_argument("--only", metavar="TEXT", default="", help="claims with TEXT in the label")
+    parser.add_argument(
+        "--only", metavar="TEXT", default="", help="only claims with TEXT in the label"
+    )
     parser.add_argument(
         "--mutate", action="store_true", help="change each printed text and judge it again"
     )
     parser.add_argument(
-        "--paper", type=Path, metavar="FILE", help="print what of the paper's text is not covered"
+        "--paper",
+        type=Path,
+        metavar="FILE",
+        help="print the text of the paper that no claim covers",
     )
 
 
@@ -89,6 +94,6 @@ def _coverage(derivation: Derivation, path: Path) -> Iterator[str]:
     yield (
         f"{paper.key}: {100 * covered.quoted / total:.1f} % of the characters are quoted by "
         f"claims, {100 * covered.out_of_scope / total:.1f} % are out of scope, "
-        f"{100 * covered.left / total:.1f} % are left; {len(covered.gaps)} passages are not "
-        f"covered, {len(covered.unfound)} quotations were not found"
+        f"{100 * covered.left / total:.1f} % are left; passages not covered: "
+        f"{len(covered.gaps)}, quotations not found: {len(covered.unfound)}"
     )

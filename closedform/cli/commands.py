@@ -31,7 +31,7 @@ PATIENCE = 120.0
 NAMED = 4
 """At most this many changed files are named."""
 FILES = ("dh TABLE.csv", "screws FILE.toml", "urdf FILE.urdf", "mjcf FILE.xml", "loop FILE.toml")
-"""What `new` reads: kinds and files."""
+"""The kinds of files that `new` reads."""
 READ = f"{', '.join(FILES[:-1])} or {FILES[-1]}"
 PRETTY = "─│⎡⎣√θ₁"
 """Characters that draw a formula in two dimensions; a terminal without them gets ASCII."""
@@ -108,10 +108,10 @@ def parser() -> argparse.ArgumentParser:
 
     listed = command("list", list_command)
     listed.add_argument(
-        "--robots", action="store_true", help="the ready robots and their families instead"
+        "--robots", action="store_true", help="list the ready robots and their families"
     )
     listed.add_argument(
-        "--sources", action="store_true", help="with --robots, where the numbers are from"
+        "--sources", action="store_true", help="with --robots, also list where the numbers are from"
     )
     show = command("show", show_command)
     show.add_argument("name", metavar="NAME", help="a derivation or the path of a script")
@@ -119,7 +119,7 @@ def parser() -> argparse.ArgumentParser:
     derive = command("derive", derive_command)
     derive.add_argument("names", metavar="NAME", nargs="*", help="default: all derivations")
     derive.add_argument(
-        "-o", "--output", metavar="DIR", type=Path, help="folder to write; default: generated/"
+        "-o", "--output", metavar="DIR", type=Path, help="folder to write to; default: generated/"
     )
     derive.add_argument(
         "--backend",
@@ -137,7 +137,8 @@ def parser() -> argparse.ArgumentParser:
         metavar="SECONDS",
         type=_seconds,
         default=0.0,
-        help="of computing for each; then print without an inverse; 0: no limit; default: 0",
+        help="computing time for each derivation, after which it is printed without an inverse; "
+        "default: 0, no limit",
     )
     check = command("check", check_command)
     verify = command("verify", verify_command)
@@ -159,10 +160,13 @@ def parser() -> argparse.ArgumentParser:
         help=READ,
     )
     new.add_argument(
-        "--base", metavar="LINK", default="", help="of a URDF or MJCF file; default: root"
+        "--base",
+        metavar="LINK",
+        default="",
+        help="first link of a URDF or MJCF file; default: root",
     )
     new.add_argument(
-        "--tool", metavar="LINK", default="", help="of such a file; default: the only end"
+        "--tool", metavar="LINK", default="", help="last link of such a file; default: the only end"
     )
     new.add_argument(
         "--modified", action="store_true", help="the dh table is in Craig's (proximal) convention"
@@ -171,7 +175,7 @@ def parser() -> argparse.ArgumentParser:
         "--given",
         metavar="JOINT",
         default="",
-        help="of 7 joints, the one that the inverse takes, or arm_angle",
+        help="for 7 joints: the joint that is an input of the inverse, or arm_angle",
     )
     new.add_argument(
         "--explain", action="store_true", help="say what was recognised and which chains were tried"
@@ -181,7 +185,8 @@ def parser() -> argparse.ArgumentParser:
         metavar="SECONDS",
         type=_seconds,
         default=60.0,
-        help="of computing, then write what was found; 0: no limit; default: 60",
+        help="computing time, after which the script is written with what was found; 0: no limit; "
+        "default: 60",
     )
     new.add_argument(
         "-o", "--output", metavar="DIR", type=Path, default=Path(), help="default: current folder"
@@ -195,7 +200,10 @@ def parser() -> argparse.ArgumentParser:
         help="for pdf files and their captions; default: build/figures",
     )  # fmt: skip
     drawn.add_argument(
-        "--docs", metavar="DIR", type=Path, help="also the page figures.md and what it shows"
+        "--docs",
+        metavar="DIR",
+        type=Path,
+        help="also write the page figures.md and its drawings here",
     )
     errata = command("errata", errata_command)
     errata.add_argument(
@@ -347,7 +355,7 @@ def check_command(options: argparse.Namespace) -> None:
 
 
 def verify_command(options: argparse.Namespace) -> None:
-    """Check the certificates of the proofs, by polynomial arithmetic and without the prover."""
+    """Check the certificates of the proofs with a program that is independent of the prover."""
     from closedform.pipeline.verified import verify_all
 
     chosen, store = _find(options.names), pipeline.default_store()

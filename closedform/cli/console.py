@@ -77,7 +77,7 @@ def say(text: str) -> None:
 
 
 def has(characters: str) -> bool:
-    """Whether the standard output can show these characters as they are."""
+    """Whether the standard output can show these characters."""
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     try:
         characters.encode(encoding)
@@ -119,7 +119,7 @@ def _plain(character: str) -> str:
 
 
 class Progress:
-    """Says what is going on once it takes long, on one line of a terminal that is overwritten.
+    """Shows what is going on, on one line of a terminal, once it takes long.
 
     It says nothing unless both stdout and stderr are terminals.
     """

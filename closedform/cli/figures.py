@@ -89,11 +89,11 @@ def page() -> str:
         "dimensions; unless the caption says otherwise, the drawings use the default parameters,",
         "whose docstrings name their source.",
         "",
-        "## Of every mechanism",
+        "## Figures of every mechanism",
         "",
         *_of_mechanisms(),
         "",
-        "## Of the papers",
+        "## Figures of the papers",
     ]
     for paper in drawings().PAPERS:
         lines += ["", *_of_paper(paper)]
@@ -109,7 +109,7 @@ def _of_mechanisms() -> Iterator[str]:
     }
     for name, more in extra.items():
         if more:
-            yield f"- only of `{name}`: {', '.join(f'`{m}`' for m in more)}"
+            yield f"- `{name}` only: {', '.join(f'`{m}`' for m in more)}"
 
 
 def _of_paper(paper: Any) -> Iterator[str]:

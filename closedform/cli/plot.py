@@ -106,7 +106,7 @@ def figures(
     branch: str | None = None,
     function: str = "manipulability",
 ) -> dict[str, Callable[[], Any]]:
-    """What draws each kind of figure."""
+    """The function that draws each kind of figure."""
     from closedform import plot
 
     return {

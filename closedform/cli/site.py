@@ -23,10 +23,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--work", metavar="DIR", type=Path, default=Path("build/site-work"),
-        help="for what is made on the way; default: build/site-work",
+        help="for intermediate files; default: build/site-work",
     )  # fmt: skip
     parser.add_argument(
-        "--no-figures", action="store_true", help="only the drawings in docs/figures"
+        "--no-figures", action="store_true", help="use only the drawings in docs/figures"
     )
 
 

@@ -36,9 +36,9 @@ class Mechanism:
 
 @dataclass(frozen=True)
 class Pages:
-    """The files of one mechanism, and its share of those that all mechanisms have in common.
+    """The files of one mechanism, and its contribution to the files that all mechanisms share.
 
-    The share is handed to another process: plain strings, numbers and containers of them.
+    The share is sent to another process: plain strings, numbers and containers of them.
     """
 
     files: Files = field(default_factory=dict)
@@ -56,11 +56,11 @@ class Backend(ABC):
         """Print one mechanism."""
 
     def shared(self, shares: Sequence[Any]) -> Files:
-        """The files that all mechanisms have in common, from the share of each."""
+        """The files that all mechanisms share, from the contribution of each."""
         return {}
 
     def works_alone(self, path: Path) -> bool:
-        """Whether a file is of use outside of the Python package, in a folder of the user's."""
+        """Whether a file is useful outside of the Python package, in a folder of the user."""
         return True
 
     def first_file(self, robot: str) -> Path | None:
@@ -71,8 +71,8 @@ class Backend(ABC):
 def runtime(path: str, numbers: Sequence[str]) -> str:
     """A file of ``closedform/runtime``, which is printed as it is.
 
-    It repeats numbers that are kept elsewhere, and is refused unless all these texts, each a number
-    among the code around it, are in it.
+    It repeats numbers that are kept elsewhere.  Each of the ``expected`` texts, a number with the
+    code around it, must occur in the file; otherwise it is refused.
     """
     text = (files("closedform") / "runtime" / path).read_text("utf-8")
     for expected in numbers:

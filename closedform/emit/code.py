@@ -64,7 +64,7 @@ class Names:
 
 
 def trig_names(names: Names, angle: Node) -> tuple[str, str]:
-    """Names for the sine and cosine of an angle: ``s1, c1`` of theta1, ``s_psi, c_psi`` of psi."""
+    """Names for a sine and a cosine: ``s1, c1`` for theta1, ``s_psi, c_psi`` for psi."""
     half = ""
     if angle.op == "div":
         half = "_half" if angle.args[1].payload == 2 else f"_{angle.args[1].payload}th"

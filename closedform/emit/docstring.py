@@ -28,6 +28,12 @@ STATUSES = (
     "INVALID (3) if an input is not finite or not possible. {values} is NaN if the status is "
     "UNREACHABLE or INVALID."
 )
+TARGETS = ("fk", "pose")
+"""Functions whose result is a target of the inverse."""
+BY_JOINTS = ("jacobian", "jacobian_space", "jacobian_body")
+"""Functions whose result is a matrix with a column for each joint."""
+BY_TASK = ("jacobian_parallel", "jacobian_inverse")
+"""Functions whose result is a matrix with a column for each coordinate of the task."""
 RAISES = (
     ("TypeError", "If an argument does not hold real numbers."),
     ("ValueError", "If an argument has the wrong shape, or leading axes do not broadcast."),
@@ -86,7 +92,7 @@ PYTHON = Wording(
 def docstring(
     derivation: Derivation, function: Function, width: int, wording: Wording = PYTHON
 ) -> list[str]:
-    """The lines of a docstring of Python."""
+    """The lines of a Python docstring."""
     dimensions = Item(
         "params",
         "Parameters, optional",
@@ -139,8 +145,9 @@ def notes(
     listed = [" ".join(n.split()) for n in function.notes]
     if len(labels) > 1:
         constant = _labels_name(derivation, function)
-        known = f", `{constant}`" if constant and wording.constants else ""
-        listed.insert(0, f"Branches in this order{known}: {', '.join(labels)}.")
+        order = f"in the order of `{constant}`" if constant and wording.constants else "in order"
+        kind = "assembly modes" if labels == derivation.assembly_modes else "branches"
+        listed.insert(0, f"The {kind}, {order}: {', '.join(labels)}.")
     if listed:
         yield from ("", "Notes", "-----")
     for note in listed:
@@ -158,7 +165,7 @@ def _labels_name(derivation: Derivation, function: Function) -> str:
 
 
 def inputs_of(derivation: Derivation, function: Function, wording: Wording) -> list[Item]:
-    """The arguments but for the parameters."""
+    """The arguments without the parameters."""
     return [
         Item(a.name, wording.kind(wording.given, 0, a.shape), _input_text(derivation, function, a))
         for a in function.inputs
@@ -167,7 +174,7 @@ def inputs_of(derivation: Derivation, function: Function, wording: Wording) -> l
 
 def _input_text(derivation: Derivation, function: Function, array: Array) -> str:
     if len(array.shape) > 1:
-        return _matrix_text(derivation, array.entries, array.shape)
+        return _requirement(derivation, array)
     names = [str(e) for e in array.entries]
     if function.result == "Solutions" and len(names) == len(derivation.task):
         names = list(derivation.task)
@@ -187,7 +194,8 @@ def results_of(derivation: Derivation, function: Function, wording: Wording) -> 
         for a in function.outputs
     ]
     if function.result:
-        each = " of each branch" if branches > 1 else ""
+        kind = "assembly mode" if function.result == "Positions" else "branch"
+        each = f" of each {kind}" if branches > 1 else ""
         values = f"{wording.quote}{items[0].name}{wording.quote}"
         text = f"{wording.status}{each}{STATUSES.format(values=values)}"
         items.append(Item("status", wording.kind(wording.small, branches, ()), text))
@@ -198,7 +206,7 @@ def _output_text(derivation: Derivation, function: Function, array: Array) -> st
     if function.name == "singularities":
         return f"One factor for each singular set: {'; '.join(derivation.singularities)}."
     if len(array.shape) > 1:
-        return _matrix_text(derivation, array.entries, array.shape)
+        return _matrix_text(derivation, function, array)
     joints = [s.name for s in derivation.actuated]
     inverse = next((i for i in derivation.inverses if i.function == function.name), None)
     names: Sequence[str] = ()
@@ -215,20 +223,36 @@ def _output_text(derivation: Derivation, function: Function, array: Array) -> st
     return ""
 
 
-def _matrix_text(derivation: Derivation, entries: Sequence[sp.Expr], shape: Sequence[int]) -> str:
-    """A sentence about a matrix: the requirement of an inverse for this shape, or its columns."""
+def _requirement(derivation: Derivation, array: Array) -> str:
+    """What functions of the mechanism require of an input of this shape, as a sentence."""
     for function in derivation.functions:
         for statement in function.body:
             if isinstance(statement, Require) and any(
-                a.shape == shape
+                a.shape == array.shape
                 and {*a.entries} >= {s for v in statement.values for s in v.free_symbols}
                 for a in function.inputs
             ):
                 return f"{statement.meaning[:1].upper()}{statement.meaning[1:]}."
-    if len(shape) == 2 and list(entries[-4:]) == [0, 0, 0, 1] and tuple(shape) == (4, 4):
+    return ""
+
+
+def _matrix_text(derivation: Derivation, function: Function, array: Array) -> str:
+    """A sentence about a matrix that is returned: what it is, or what its columns belong to."""
+    if function.name == "skeleton":
+        return "Coordinates x, y, z of each point."
+    if function.name in TARGETS and (target := _requirement(derivation, array)):
+        return target
+    if array.shape == (4, 4) and list(array.entries[-4:]) == [0, 0, 0, 1]:
         return "A homogeneous transform."
     joints = [s.name for s in derivation.actuated]
-    return f"One column for each of {_span(joints)}." if shape[-1] == len(joints) else ""
+    columns: Sequence[str] = ()
+    if function.name in BY_JOINTS:
+        columns = joints
+    elif function.name in BY_TASK:
+        columns = derivation.task
+    if len(columns) != array.shape[-1]:
+        return ""
+    return f"One column for {'each of ' if len(columns) > 1 else ''}{_span(columns)}."
 
 
 def _listed(
@@ -281,5 +305,5 @@ def _units(derivation: Derivation) -> dict[str, str]:
 
 @cache
 def _in_circular_functions(expr: sp.Basic) -> frozenset[sp.Symbol]:
-    """The symbols in the arguments of sines, cosines and tangents; asked for each docstring."""
+    """The symbols in the arguments of sines, cosines and tangents."""
     return frozenset(s for t in expr.atoms(sp.sin, sp.cos, sp.tan) for s in t.free_symbols)

@@ -34,7 +34,7 @@ MEANINGS = {
     REFUTED: "it does not hold; a counterexample shows this",
     NOT_DECIDABLE: "a figure, a measurement or a judgement of value, which algebra cannot decide",
 }
-"""What each verdict says."""
+"""The meaning of each verdict."""
 
 KINDS = {
     "Errors": (Gravity.MOTION, Gravity.RESULT, Gravity.STATEMENT),
@@ -47,7 +47,7 @@ KINDS = {
 
 @dataclass(frozen=True)
 class Part:
-    """What one mechanism adds to the errata of its paper."""
+    """The contribution of one mechanism to the errata of its paper."""
 
     paper: Paper
     robot: str

@@ -50,7 +50,7 @@ def python_string(text: str) -> str:
 
 
 def javascript_comment(text: str) -> str:
-    """Text inside ``/** */`` or behind ``//``: a space parts what would end it."""
+    """Text inside ``/** */`` or after ``//``; a space breaks anything that would end it."""
     return re.sub(r"(?<=\*)(?=/)", " ", text)
 
 

@@ -57,7 +57,7 @@ def erratum(erratum: Erratum) -> str:
 
 @prints(Step, "markdown")
 def step(step: Step) -> str:
-    """A step: its reason, its equations, and what of them is proved."""
+    """A step: its reason, its equations, and what is proved of them."""
     rows = [(left, _math(value)) for left, value in step.shown]
     parts = [f"**{step.title}.** {step.reason}", _aligned(rows)]
     if step.proves:
@@ -67,7 +67,7 @@ def step(step: Step) -> str:
 
 @prints(Lemma, "markdown")
 def lemma(lemma: Lemma) -> str:
-    """What a lemma was applied to, and the closed forms that it gave."""
+    """The equations to which a lemma was applied, and the closed forms that it gave."""
     count = "one solution" if lemma.branches == 1 else f"{lemma.branches} solutions"
     return "\n\n".join(
         (

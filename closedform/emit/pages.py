@@ -12,12 +12,12 @@ from closedform.model.derivation import Derivation
 from closedform.proof.prove import Proof
 
 Share = Mapping[str, Any]
-"""What one mechanism adds to the files that all share, by back end."""
+"""The contribution of one mechanism to the shared files, by back end."""
 
 
 @dataclass(frozen=True)
 class Printed:
-    """The files of one mechanism, and its share of others."""
+    """The files of one mechanism, and its contribution to shared files."""
 
     files: Files
     share: Share

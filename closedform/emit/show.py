@@ -13,7 +13,7 @@ from sympy.printing.pretty.pretty_symbology import pretty_use_unicode
 
 from closedform.emit.errata import gathered, part
 from closedform.emit.text import citation
-from closedform.model.derivation import Derivation
+from closedform.model.derivation import Derivation, Step
 from closedform.model.functions import Bound, Determined, Function, Let, Match, Statement, Vanishes
 from closedform.proof.prove import Proof
 
@@ -41,6 +41,23 @@ def show(
 
 
 def _lines(derivation: Derivation, proof: Proof | None, pretty: bool) -> Iterator[str]:
+    yield from _head(derivation)
+    yield from _heading("Steps")
+    for number, step in enumerate(derivation.steps, 1):
+        proved = proof is not None and step.title in proof.steps
+        yield from _step(number, step, proved=proved, pretty=pretty)
+    yield from _heading("Functions")
+    for function in derivation.functions:
+        yield from _function(derivation, function, proof)
+    if derivation.singularities:
+        yield from _heading("Singular set")
+        yield from _wrap(", ".join(derivation.singularities), 2)
+    if proof:
+        yield from _findings(derivation, proof)
+
+
+def _head(derivation: Derivation) -> Iterator[str]:
+    """The mechanism, its parameters and its joints."""
     yield from (derivation.title, "=" * len(derivation.title), "")
     yield from _wrap(derivation.mechanism)
     yield from _wrap(f"Source: {citation(derivation)}.")
@@ -51,33 +68,30 @@ def _lines(derivation: Derivation, proof: Proof | None, pretty: bool) -> Iterato
     for j in derivation.joints:
         role = "passive" if j.passive else "actuated" if j.coupling is None else f"= {j.coupling}"
         yield f"  {j.name}: {j.kind}, {role}"
-    yield from _heading("Steps")
-    for number, step in enumerate(derivation.steps, 1):
-        published = f"  [paper: {', '.join(step.published)}]" if step.published else ""
-        yield from ("", f"{number}. {step.title}{published}")
-        yield from textwrap.wrap(
-            step.reason, WIDTH, initial_indent=3 * " ", subsequent_indent=3 * " "
-        )
-        for lhs, value in step.shown:
-            yield from _equation(plain(lhs), value, pretty)
-        for row in step.rows:
-            yield from _wrap("  |  ".join(map(_cell, row)), 3)
-        if step.vanishes and proof and step.title in proof.steps:
-            yield f"   [identities proved: {len(step.vanishes)}]"
-    yield from _heading("Functions")
-    for function in derivation.functions:
-        yield from _function(derivation, function, proof)
-    if derivation.singularities:
-        yield from _heading("Singular set")
-        yield from _wrap(", ".join(derivation.singularities), 2)
-    if proof and proof.errata:
+
+
+def _step(number: int, step: Step, *, proved: bool, pretty: bool) -> Iterator[str]:
+    published = f"  [paper: {', '.join(step.published)}]" if step.published else ""
+    yield from ("", f"{number}. {step.title}{published}")
+    yield from textwrap.wrap(step.reason, WIDTH, initial_indent=3 * " ", subsequent_indent=3 * " ")
+    for lhs, value in step.shown:
+        yield from _equation(plain(lhs), value, pretty)
+    for row in step.rows:
+        yield from _wrap("  |  ".join(map(_cell, row)), 3)
+    if step.vanishes and proved:
+        yield f"   [identities proved: {len(step.vanishes)}]"
+
+
+def _findings(derivation: Derivation, proof: Proof) -> Iterator[str]:
+    """The errata of the paper, and its claims by verdict."""
+    if proof.errata:
         yield from _heading("Errata of the paper")
         for paper in gathered([part(derivation, proof)]):
             for entry in paper.entries:
                 labels = ", ".join(c.label for c in entry.claims)
                 about = f"{entry.erratum.title} ({entry.gravity.value}): {labels}"
                 yield from _wrap(f"{entry.number}. {about}", 2)
-    if proof and proof.claims:
+    if proof.claims:
         yield from _heading("Claims of the paper")
         for kind, n in proof.verdicts().items():
             labels = ", ".join(c.label for c in proof.claims if c.kind == kind)
@@ -135,7 +149,7 @@ def _statement(statement: Statement) -> str:
 
 
 def _text(value: sp.Expr) -> str:
-    """An expression as text; a choice is written as a person would write it."""
+    """An expression as text; cases are written with "if" and "else"."""
     if isinstance(value, sp.Piecewise):
         return ", ".join(f"else {e}" if c == sp.true else f"{e} if {c}" for e, c in value.args)
     return str(value)

@@ -1,4 +1,4 @@
-"""What a back end tells its runtime of the size of a mechanism."""
+"""The size of a mechanism, as a back end passes it to its runtime."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from closedform.model.tolerances import DOUBLE
 
 @dataclass(frozen=True)
 class Size:
-    """How the values of a program go with the size of a mechanism, its largest length.
+    """How the values of a program scale with the size of a mechanism, its largest length.
 
-    ``lengths`` are the places of the inputs, and of the parameters behind them, that are lengths;
-    ``degrees`` are the places of the results that go with a power of the size, and the power.  In
-    double precision sizes from ``least`` to ``most`` have powers that stay in the range.
+    ``lengths`` are the indices of the inputs (and then the parameters) that are lengths;
+    ``degrees`` are the indices of the results that scale with a power of the size, and the power.
+    In double precision the powers of sizes from ``least`` to ``most`` stay in the range.
     """
 
     lengths: tuple[int, ...]
@@ -24,7 +24,7 @@ class Size:
 
     @classmethod
     def of(cls, program: Lowered) -> Size | None:
-        """None where no power of the size can leave the range."""
+        """The scaling of a program; None if no power of the size can leave the range."""
         if program.degrees is None or not program.is_scaled:
             return None
         lengths = program.degrees.lengths
@@ -37,5 +37,5 @@ class Size:
 
 
 def arguments(program: Lowered) -> list[str]:
-    """What a kernel takes: the entries of the inputs, then the parameters that it uses."""
+    """The arguments of a kernel: the entries of the inputs, then the parameters that it uses."""
     return [str(e) for a in program.inputs for e in a.entries] + list(program.parameters)

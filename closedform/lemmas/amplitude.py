@@ -42,7 +42,7 @@ class Amplitude:
     ) -> Amplitude:
         """The equation with the coefficients a, b and c.
 
-        ``scale`` gives the scale of what c may be missed by, from h; by default it is h.
+        ``scale`` maps h to the scale of the error that is allowed in c; by default it is h itself.
         """
         a, b, c = coefficients
         h = program.let(f"h{suffix}", sp.sqrt(a**2 + b**2), nonnegative=True)
@@ -81,8 +81,9 @@ class Amplitude:
 
 
 def nearly_tangent(program: Program, lever: sp.Expr, scale: sp.Expr, suffix: str = "") -> sp.Symbol:
-    """A flag that the ``lever`` of a turn is so short that rounding may decide what is in reach.
+    """A flag for a turn whose ``lever`` is so short that rounding may decide what is in reach.
 
-    It is 2^-8 of the ``scale``; for a longer one the tolerance of a reach covers the rounding.
+    It is raised below 2^-8 of the ``scale``; for a longer lever the tolerance of a reach covers the
+    rounding.
     """
     return program.vanishes(f"tangent{suffix}", lever - scale / 2**8, scale, "the turn is tangent")

@@ -1,4 +1,4 @@
-"""What a lemma that was applied to a chain hands on."""
+"""The result of a lemma that was applied to a chain."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from closedform.model.pair import Pair
 
 @dataclass(frozen=True)
 class Applied:
-    """A lemma applied: what it hands on, and what the names it made stand for."""
+    """A lemma that was applied: its result, and the meanings of the names that it made."""
 
     lemma: Lemma
     result: Any
@@ -23,5 +23,5 @@ class Applied:
     given: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     degenerate: tuple[Degenerate, ...] = ()
     halves: Mapping[sp.Symbol, tuple[Pair, sp.Expr]] = field(default_factory=dict)
-    """Angles as that of a pair, the same in every branch, and none or half a turn."""
+    """Angles as the angle of a pair, the same in every branch, plus zero or half a turn."""
     relations: tuple[Relation, ...] = ()

@@ -42,11 +42,11 @@ $\psi$.  If $r = 0$, every rotation that takes $\sigma e_3$ to the right vector 
 def arm_angle(chain: Chain, shoulder: sp.Matrix, v: Sequence[sp.Expr], *, sense: int = 1) -> Pair:
     """Take the arm angle as an input of the inverse, beside the pose; returns its pair.
 
-    ``shoulder`` is the rotation to a frame whose third axis is that of the elbow, and ``v`` the
-    line from the shoulder to the centre of the wrist in this frame, both in the joints; v has no
-    third component.  The arm angle is zero where this axis, or with ``sense=-1`` its opposite, is
-    horizontal, and the wrist to its right, seen along it with z upwards.  The function
-    ``arm_angle`` is exported.
+    ``shoulder`` is the rotation to a frame whose third axis is that of the elbow, and ``v`` is the
+    line from the shoulder to the centre of the wrist in this frame; both depend on the joints, and
+    v has no third component.  At the arm angle zero the axis of the elbow (with ``sense=-1``, its
+    opposite) is horizontal, and the wrist is to its right, seen along the axis with z upwards.  The
+    function ``arm_angle`` is exported.
     """
     d = chain.d
     up = shoulder[2, :]
@@ -85,9 +85,9 @@ def arm_plane(
     """``M v = w`` for the rotation M of a shoulder, at the arm angle whose pair is ``psi``.
 
     ``shoulder`` is M at a posture; v has no third component, and names the line to the wrist, see
-    :func:`arm_angle`.  That v and w are equally long follows from the equations that were solved
-    for the unknowns in ``because``.  Where w is along z, the plane of x and z is taken for that of
-    w and z.
+    :func:`arm_angle`.  The lengths of v and w are equal by the equations that were solved for the
+    unknowns in ``because``.  If w is along z, the plane of x and z takes the place of that of w and
+    z.
     """
     p, joint = chain.program, chain.joints[0]
     v, w = ([sp.sympify(e, strict=True) for e in vector] for vector in (v, w))

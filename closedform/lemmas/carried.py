@@ -60,7 +60,7 @@ class Carried:
 
     @property
     def _singular(self) -> tuple[str, str, str]:
-        """What makes A singular: legs that are somehow."""
+        """A clause that says where A is singular; the rods or legs have some position."""
         if not self.rails:
             return "rods", "are", "in line" if len(self.hand) == 2 else "in one plane"
         if len(self.rails) == 2:
@@ -79,10 +79,10 @@ class Carried:
         return f"the {' '.join(self._singular)}"
 
     def in_lemma(self, items: Sequence[_Item]) -> list[_Item]:
-        """What belongs to the legs, in the order in which the lemma for the hand takes them.
+        """The values of the legs, in the order in which the lemma for the hand takes them.
 
-        A strut, the longest of three rods, is the last one.  A turned order does not change the
-        sign of the determinant of the rods.
+        A strut is the longest of the three rods, and comes last.  A cyclic change of the order does
+        not change the sign of the determinant of the rods.
         """
         turn = 1 if isinstance(self.legs[0], Strut) else 0
         return [*items[turn:], *items[:turn]]

@@ -1,9 +1,9 @@
 """An inverse as a chain of lemmas, each applied to what the earlier ones have left.
 
-A :class:`Chain` is built like the inverse is explained: *solve the first joint from this equation,
-turn the target into its frame, solve the next*.  Each lemma hands its joint on as a sine-cosine
-pair.  The chain knows what every name stands for at a posture, so that the proof is the same for
-every robot (see :mod:`closedform.proof.glue`):
+A :class:`Chain` is built as one would explain the inverse: *solve the first joint from this
+equation, turn the target into its frame, solve the next*.  Each lemma returns its joint as a
+sine-cosine pair.  The chain knows what every name stands for at a posture, so that the proof is the
+same for every robot (see :mod:`closedform.proof.glue`):
 
 - each lemma, for the coefficients it is applied to as free symbols, is sound and gives all
   solutions of its equations;
@@ -86,7 +86,7 @@ class Chain:
     units: list[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]]] = field(default_factory=list)
     halves: dict[sp.Symbol, tuple[Pair, sp.Expr]] = field(default_factory=dict)
     directions: dict[sp.Expr, Pair] = field(default_factory=dict)
-    held: list[sp.Symbol] = field(default_factory=list)
+    extra_coordinates: list[sp.Symbol] = field(default_factory=list)
     condition: sp.Expr = sp.S.Zero
     weights: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     coefficients: set[sp.Symbol] = field(default_factory=set)
@@ -111,7 +111,7 @@ class Chain:
 
     @property
     def size(self) -> sp.Expr:
-        """Of the arm, named in the program."""
+        """The size of the arm, named in the program."""
         if self._size is None:
             self.size = self.sum_of_lengths()
         return self._size
@@ -150,8 +150,8 @@ class Chain:
     def given_angle(self, name: str, image: sp.Expr, weight: sp.Expr = sp.S.One) -> sp.Symbol:
         """Take an angle of the posture as an input of the inverse, beside the pose.
 
-        ``image`` is the angle in the joints.  Where it is undefined at some postures, answers keep
-        it as well as the ``weight``, which vanishes there, allows.
+        ``image`` is the angle as a function of the joints.  It may be undefined at some postures;
+        near them, answers keep it only as well as the ``weight`` allows, which vanishes there.
         """
         if not self.is_pose:
             raise ShapeError(f"{self.d.name}: an angle can only be given beside a pose")
@@ -164,11 +164,11 @@ class Chain:
         return symbol
 
     def reached(self, rest: sp.Matrix | None = None) -> None:
-        """Compare the pose of the solved joints with the target, for arms that not every pose fits.
+        """Compare the pose of the joints with the target, for arms that do not reach every pose.
 
-        With fewer than six joints the lemmas use a part of the target; UNREACHABLE says that the
-        rest does not match.  If a lemma has used the whole rotation, ``rest`` is what the joints
-        leave of the position, which must be zero.
+        With fewer than six joints the lemmas use only a part of the target; the status is
+        UNREACHABLE if the rest does not match.  If a lemma has used the whole rotation, ``rest`` is
+        what the joints leave of the position, which must be zero.
         """
         meaning, place = "the pose is one of the arm's", self.forward
         if rest is not None:
@@ -207,7 +207,7 @@ class Chain:
     # Names
 
     def let(self, name: str, value: Any) -> sp.Expr:
-        """Name a coefficient; what is a symbol or a number already keeps its name."""
+        """Name a coefficient; a symbol or a number keeps its own name."""
         value = sp.sympify(value, strict=True)
         if value.is_Symbol or value.is_number:
             return value
@@ -239,7 +239,7 @@ class Chain:
         )
 
     def direction(self, name: str, x: sp.Expr, y: sp.Expr) -> Pair:
-        """The pair of ``atan2(y, x)`` for a vector of parameters; where both are 0, that of 0."""
+        """The pair of ``atan2(y, x)`` for a vector of parameters; the pair of 0 if both vanish."""
         p = self.program
         length = p.let(f"size_{name}", sp.sqrt(x**2 + y**2), nonnegative=True)
         nothing = p.vanishes(f"no_{name}", length, 0, "it has no direction")
@@ -249,20 +249,20 @@ class Chain:
         return named
 
     def coordinate(self, name: str, value: sp.Expr) -> sp.Symbol:
-        """A name for what the target determines, as the square of a distance.
+        """A name for a quantity that the target determines, such as the square of a distance.
 
-        It counts as another coordinate of the target: equations that are linear in all of them
-        determine it from the joints, so that it need not be linear in the others.
+        It counts as another coordinate of the target.  The equations that are linear in all
+        coordinates determine it from the joints, so it need not be linear in the others.
         """
         symbol = self.program.let(name, value)
-        self.held.append(symbol)
+        self.extra_coordinates.append(symbol)
         return symbol
 
     def amplified_over(self, length: sp.Expr | int) -> sp.Expr:
-        """Say that roundings of the size of the arm are divided by a ``length``, as by a lever.
+        """Declare that rounding of the size of the arm is divided by a ``length``, as by a lever.
 
-        Returns what an answer may miss on the scale of the tolerances, half the size or more.
-        If a length of parameters vanishes, the status is INVALID.
+        Returns the error that is allowed in an answer, on the scale of the tolerances: half the
+        size of the arm or more.  If a length of parameters vanishes, the status is INVALID.
         """
         length = sp.sympify(length, strict=True)
         self.condition = 5 * self.sum_of_lengths() / (2 * length)
@@ -293,7 +293,7 @@ class Chain:
     # Lemmas
 
     def solve(self, lemma: Any, *arguments: Any, **options: Any) -> Any:
-        """Apply a lemma of :mod:`closedform.lemmas.links`; returns what it hands on."""
+        """Apply a lemma, such as those of :mod:`closedform.lemmas.links`; returns its result."""
         start = len(self.program.body)
         applied: Applied = lemma(
             self, *map(_exact, arguments), **{key: _exact(value) for key, value in options.items()}
@@ -326,7 +326,7 @@ class Chain:
         return applied.result
 
     def _written_out(self, relation: Relation) -> Relation:
-        """A relation without names, some of which the program does not keep."""
+        """A relation with the names replaced that the program does not keep."""
         made = {s.symbol: s.value for s in self.program.body if isinstance(s, (Let, Bound))}
         made |= self.meaning
         known: dict[sp.Basic, sp.Basic] = {}
@@ -374,8 +374,9 @@ class Chain:
     def pair_of(self, total: sp.Expr, known: Mapping[sp.Expr, Pair] | None = None) -> Pair | None:
         """The sine and the cosine of a sum of angles that have pairs, of the target or solved.
 
-        An angle that is read from them needs no reduction: a sum of angles may need several turns.
-        None if an angle has no pair, or stands there more than once.  Pairs in ``known`` go before.
+        An angle that is read from them needs no reduction, whereas a sum of angles may need several
+        turns. None if an angle has no pair or occurs more than once.  Pairs in ``known`` take
+        precedence.
         """
         known = {**self.directions, **(known or {})}
         pairs: dict[sp.Basic, dict[type, sp.Expr]] = {}
@@ -399,7 +400,7 @@ class Chain:
         return result
 
     def by_angles(self, total: sp.Expr) -> sp.Expr:
-        """A sum in solved unknowns: a joint by the solved auxiliary angle that holds it alone."""
+        """A sum in solved unknowns: a joint is replaced by the auxiliary angle that contains it."""
         found = {}
         for symbol, value in self.defined.items():
             held = [j for j in self.joints if value.has(j)]
@@ -413,7 +414,7 @@ class Chain:
     # The end
 
     def _solve_sums(self) -> None:
-        """Joints that stand in auxiliary angles of which all else is known."""
+        """Solve for joints in auxiliary angles whose other terms are known."""
         progress = True
         while progress:
             progress = False
@@ -426,7 +427,7 @@ class Chain:
                     progress = True
 
     def _angle_of(self, total: sp.Expr) -> sp.Expr:
-        """A sum of solved angles, with the half turns that some of them have in some branches."""
+        """A sum of solved angles, with half turns that some of them have in some branches."""
         half = [self.halves[s] for s in total.free_symbols if s in self.halves]
         pair = self.pair_of(total, {s: found for s, (found, _) in self.halves.items()})
         if pair is None:
@@ -434,7 +435,7 @@ class Chain:
         return pair.angle + sp.Add(*(flip for _, flip in half))
 
     def _leave_out_unused(self) -> None:
-        """Names that a lemma hands on, and nobody takes."""
+        """Remove names that a lemma returned and nothing uses."""
         needed = {s for j in self.joints for s in self.values[j].free_symbols}
         needed |= {s for link in self.links for e in link.equations for s in e.free_symbols}
         needed |= {s for pair in self.units for e in pair[:2] for s in e.free_symbols}
@@ -458,9 +459,10 @@ class Chain:
         ]
 
     def continuum(self, free: sp.Symbol, locus: Mapping[sp.Symbol, Any], relation: str) -> None:
-        """Where a joint is free: values of the target and the parameters, and what others keep.
+        """State where a joint is free: values of the target and the parameters, and a relation.
 
-        The locus may be written in joints that were solved before.  The relation is LaTeX.
+        The locus may be written in joints that were solved before.  The relation between the other
+        joints is LaTeX.
         """
         flags = [s.symbol for s in self.program.body if isinstance(s, Vanishes) and free in s.free]
         if not flags:
@@ -478,7 +480,7 @@ class Chain:
     ) -> Inverse:
         """Export the inverse.
 
-        ``singular`` says where which joint is free, instead of what the lemmas say of it.
+        ``singular`` says where which joint is free, in place of the words of the lemmas.
         """
         d = self.d
         self._solve_sums()
@@ -529,7 +531,7 @@ class Chain:
                 {**self.defined},
                 {**self.lengths},
                 tuple(self.units),
-                tuple(self.held),
+                tuple(self.extra_coordinates),
             ),
         )
         d.inverses.append(inverse)
@@ -547,9 +549,9 @@ def _exact(argument: Any) -> Any:
 
 
 def lengths_in_numbers(place: sp.Expr, names: Mapping[sp.Basic, sp.Expr] | None = None) -> sp.Expr:
-    """The lengths in a coordinate that are numbers, not parameters: 3 of 3 cos(theta).
+    """The lengths in a coordinate that are numbers, not parameters: 3 in 3 cos(theta).
 
-    ``names`` are those of values of which the same is known.
+    ``names`` are those of values for which the same is known.
     """
     names = names or {}
     total = sp.S.Zero
@@ -562,7 +564,7 @@ def lengths_in_numbers(place: sp.Expr, names: Mapping[sp.Basic, sp.Expr] | None 
 
 
 def numbers_of_tool(derivation: Derivation) -> list[float]:
-    """Of each coordinate of the tool: a number in the place of a parameter is as large as one."""
+    """For each coordinate of the tool, the lengths in it that are numbers."""
     found = []
     for pose in (f for f in derivation.functions if f.name == "pose"):
         names: dict[sp.Basic, sp.Expr] = {}

@@ -69,10 +69,11 @@ def circle_intersection(
 
     ``centres`` is the vector from the first to the second, and ``unknowns`` the vector from the
     first to the point.  With the factors of Heron's formula the height of the triangle is
-    ``sqrt(S A B C) / (2 d)``.  ``scale`` is the size of the coordinates, whose rounding decides
-    what counts as zero.  Where the radii are equal and the centres coincide, the point is free on
-    a circle; for one radius the convention is that of centres which are parted along the first
-    axis, for two it is the point on this axis.  Circles that touch meet in one point.
+    ``sqrt(S*A*B*C)/(2*d)``. ``scale`` is the size of the coordinates, whose rounding decides what
+    counts as zero.  If the radii are equal and the centres coincide, the point is free on a circle.
+    By convention, the answer is then that for centres that differ along the first axis if both
+    radii are one symbol, and otherwise the point on this axis.  Circles that touch meet in one
+    point.
     """
     (x, y), (first, second) = unknowns, radii
     distance = program.let(

@@ -1,4 +1,4 @@
-"""How well the driven legs of a closed loop move its hand: the condition number of A."""
+"""The condition number of A: how well the driven legs of a closed loop move its hand."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An elbow whose links end at a known distance: the law of cosines, without loss of digits."""
+"""The elbow of two links whose ends have a known distance, without loss of digits."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def law_of_cosines(
 ) -> Applied:
     """The elbow of two links whose ends are r apart: two solutions.
 
-    It is free, and 0, where a link has no length.
+    It is free if a link has no length; 0 is returned then.
     """
     p = chain.program
     sigma = chain.sign(name, choice)

@@ -33,10 +33,12 @@ from closedform.model.pair import Pair
 from closedform.model.tolerances import FLOAT
 
 _ROUNDINGS = 16
-"""How much rounding an arm puts on the rotation it leaves to its wrist, in units of that of the
-target.  A wrist within it counts as aligned, which turns the hand by 3e-14 at most; 98 of 100
-random postures of a Puma whose wrist is aligned exactly are seen as such, of the others the angles
-that come back are right as well."""
+"""How far a wrist may be from aligned to count as such, in units of the rounding of the target.
+
+This covers the rounding that an arm adds to the rotation of its wrist, and it turns the hand by
+3e-14 at most.  Of random postures of a Puma whose wrist is exactly aligned, 98 of 100 are
+recognised; in the others the returned angles are right as well.
+"""
 
 ANYWHERE = Anywhere()
 
@@ -47,15 +49,15 @@ def turned(pair: Pair) -> sp.Matrix:
 
 
 def named(chain: Chain, angle: sp.Symbol, pair: Pair) -> tuple[Pair, dict[sp.Symbol, sp.Expr]]:
-    """The pair, named ``s`` and ``c`` with the number of the joint, and what the names mean."""
+    """The pair under the names ``s`` and ``c`` with the number of the joint, and their meanings."""
     names = pair.known_as(chain.program, label(angle))
     return names, {names.s: sp.sin(angle), names.c: sp.cos(angle)}
 
 
 def differs_from_zero(chain: Chain, value: sp.Expr, scale: sp.Expr) -> bool:
-    """Whether a value is a number that no tolerance takes for zero on its scale, a number as well.
+    """Whether a value is a number that no tolerance takes for zero on its scale, also a number.
 
-    Where the scale holds a parameter, a number may be as small beside it as one likes.
+    If the scale contains a parameter, a number may be arbitrarily small beside it.
     """
     numbers = {
         s.symbol: s.value for s in chain.program.body if isinstance(s, Let) and s.value.is_number
@@ -70,7 +72,7 @@ def differs_from_zero(chain: Chain, value: sp.Expr, scale: sp.Expr) -> bool:
 
 
 def vanishing(*coefficients: sp.Expr) -> dict[sp.Symbol, sp.Expr] | None:
-    """Where all coefficients vanish; None where one is a number other than zero."""
+    """A flag that all coefficients vanish; None if one is a nonzero number."""
     if any(e.is_number and e != 0 for e in coefficients):
         return None
     return {s: sp.S.Zero for e in coefficients for s in e.free_symbols}
@@ -82,7 +84,7 @@ def degenerate(
     free: sp.Symbol | None,
     meaning: str,
 ) -> tuple[Degenerate, ...]:
-    """The cases of a flag to prove: none where there is no flag, or the case cannot occur."""
+    """The degenerate cases of a flag; none if there is no flag or the case cannot occur."""
     if not isinstance(flag, sp.Symbol):
         return ()
     return tuple(Degenerate((flag,), locus, free, meaning) for locus in loci if locus is not None)
@@ -114,9 +116,9 @@ def turn(
 ) -> Applied:
     """``a sin x + b cos x = c``: both solutions.  x is free where ``a = b = c = 0``.
 
-    Where both solutions nearly meet, rounding of the target turns x by a multiple.  ``toward`` says
-    what later joints have to reach; there x is turned to where they do.  ``scale`` is what a
-    clamped c is measured by, by default half the size of the arm.
+    Where both solutions nearly meet, a rounding of the target turns x by a multiple of it.
+    ``toward`` says what later joints have to reach; there, x is turned such that they do.
+    ``scale`` is the scale of the error that is allowed in c, by default half the size of the arm.
     """
     p, tag = chain.program, name or label(x)
     sigma = chain.sign(tag, choice)
@@ -195,9 +197,10 @@ def two_links(
 
         (cos, sin)(second) = (BC - SA, 2 sigma sqrt(SABC)) / (BC + SA),
 
-    and first is the direction of (x, y) less the angle at the base of the triangle.  ``scale`` is
-    the size of what x and y are differences of, by default that of the whole arm.  ``mirrored`` is
-    a sign that the elbow's is multiplied by: that of a turn before, say, which mirrors the plane.
+    and first is the direction of (x, y) minus the angle at the base of the triangle.  ``scale`` is
+    the size of the terms whose differences x and y are, by default that of the whole arm.
+    ``mirrored`` is a sign that multiplies that of the elbow, for example the side of an earlier
+    turn, which mirrors the plane.
     """
     p, scale = chain.program, chain.size if scale is None else scale
     sigma = mirrored * chain.sign(name, choice)
@@ -271,7 +274,7 @@ def two_links(
 def _folded(
     x: sp.Symbol, y: sp.Symbol, l1: sp.Expr, l2: sp.Expr
 ) -> dict[sp.Symbol, sp.Expr] | None:
-    """Equal links that end where they begin; None where numbers make them unequal."""
+    """The case of equal links that end where they begin; None where numbers make them unequal."""
     end = {x: sp.S.Zero, y: sp.S.Zero}
     if l1 == l2:
         return end
@@ -283,7 +286,7 @@ def _folded(
 def _stretched(
     x: sp.Symbol, y: sp.Symbol, l1: sp.Expr, l2: sp.Expr
 ) -> list[dict[sp.Symbol, sp.Expr]]:
-    """Either link without length, and the other in any direction."""
+    """The case of either link without length, and the other in any direction."""
     u = real("beta")
     return [
         {x: (l1 + l2 - gone) * sp.cos(u), y: (l1 + l2 - gone) * sp.sin(u), gone: sp.S.Zero}
@@ -375,7 +378,7 @@ $(-\pi, \pi]$.""",
 def remainder(chain: Chain, joint: sp.Symbol, total: sp.Expr) -> Applied:
     """``joint = total``, an angle: what the earlier joints leave of an angle of the target.
 
-    It is read from the sine and the cosine of the sum, which needs no reduction.
+    It is read from the sine and the cosine of the sum, so that it needs no reduction.
     """
     total = chain.by_angles(total)
     pair = chain.pair_of(total)
@@ -496,8 +499,8 @@ def _aligned(psi: sp.Symbol) -> tuple[sp.Matrix, sp.Matrix]:
 class Reaching:
     """Directions u for which ``(x, y) - offset u`` is within reach of two links.
 
-    Where the target does not determine u, or only as far as rounding goes, the reach decides:
-    else a pose at a singular wrist could come back without a solution although it has one.
+    If the target does not determine u, or only up to rounding, the reach decides.  Otherwise a pose
+    at a singular wrist could come back without a solution although it has one.
     """
 
     chain: Chain
@@ -509,7 +512,7 @@ class Reaching:
     ahead: Pair
     """How far u is turned ahead of the angle that is solved for."""
     lever: sp.Expr
-    """That of the turn before, over which a rounding of the target turns the wrist."""
+    """The lever of the turn before, over which a rounding of the target turns the wrist."""
 
     def _at(self, reach: sp.Expr, side: sp.Expr, name: str) -> Pair:
         def vanishes(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Symbol:
@@ -526,7 +529,7 @@ class Reaching:
         return self.chain.program.let("r_hub", sp.sqrt(self.x**2 + self.y**2), nonnegative=True)
 
     def middle(self) -> Pair:
-        """Of the distances that the turning offset allows, the middle of those in reach."""
+        """The middle of those distances within reach that turning the offset allows."""
         p, r = self.chain.program, self._r
         nearest = p.let("nearest", sp.Max(sp.Abs(self.l1 - self.l2), sp.Abs(r - self.offset)))
         farthest = p.let("farthest", sp.Min(self.l1 + self.l2, r + self.offset))

@@ -1,9 +1,9 @@
 """An angle by its direction, as a sine and a cosine.
 
-A joint after the first is found in a frame that the earlier joints have turned.  Only the sines
-and cosines of these are needed for it; the angles themselves are taken once, for the output.  Every
-pair is normalised by its own numbers, so that it lies on the unit circle to rounding even where a
-bound was clamped, and what is built on it stays a rotation.
+A joint after the first is found in a frame that the earlier joints have turned.  For this only
+their sines and cosines are needed; the angles themselves are computed once, for the output.  Every
+pair is normalised by its own numbers.  So it lies on the unit circle up to rounding, even where a
+bound was clamped, and rotations that are built from it stay rotations.
 """
 
 from __future__ import annotations

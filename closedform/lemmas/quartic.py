@@ -19,7 +19,7 @@ from closedform.model.lemma import Lemma, label
 from closedform.model.pair import Pair
 
 POLISHED = 2
-"""So many steps take out the rounding of a root."""
+"""The number of steps that remove the rounding of a root."""
 
 theorem(
     "resolvent",
@@ -71,7 +71,7 @@ class OnCircle:
     radius: sp.Expr
 
     def distance(self, chain: Chain, pair: Pair, tag: str) -> sp.Symbol:
-        """How far the point is from the origin."""
+        """The distance of the point from the origin."""
         x, y = (
             chain.program.let(f"{n}_{tag}", e)
             for n, e in zip("xy", self.point(pair)[:2], strict=True)
@@ -94,9 +94,10 @@ def quartic(
 ) -> Applied:
     """``p cos 2x + q sin 2x + 2 a cos x + 2 b sin x + e = 0``: up to four solutions, on two lines.
 
-    ``double`` are p and q, which must not both vanish, and ``single`` are a and b.  The equation
-    ``means`` that a point is on a circle.  Where two solutions nearly meet, a target that is missed
-    by more than rounding is accepted too: compare with it what the chain makes of the answer.
+    ``double`` are p and q, which must not both vanish, and ``single`` are a and b.  ``means`` is
+    the meaning of the equation: a point is on a circle.  Where two solutions nearly meet, a target
+    that is missed by more than rounding is accepted too; compare the target with the result of the
+    chain.
     """
     program, tag = chain.program, name or label(x)
     tau, sigma = chain.sign(f"line_{tag}", line), chain.sign(tag, side)
@@ -184,11 +185,11 @@ def _in_free_symbols(coefficients: Sequence[sp.Symbol], u: sp.Symbol) -> dict[sp
 def _part(
     chain: Chain, a: sp.Symbol, square: sp.Symbol, rest: sp.Expr, near: sp.Expr, tag: str
 ) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
-    """The root of ``square``, a over it, whose square is ``rest``, and a flag.
+    """The root of ``square``, a divided by it (whose square is ``rest``), and a flag.
 
-    The root of the resolvent says little of a small square.  Where it is the smaller of the two, it
-    follows from the other, and the flag is true; ``near`` is not positive if the square is below
-    1/2.
+    The root of the resolvent determines a small square only poorly.  If it is the smaller of the
+    two, it follows from the other, and the flag is true; ``near`` is not positive if the square is
+    below 1/2.
     """
     p = chain.program
     rest = p.let(f"rest_{tag}", rest)
@@ -210,10 +211,10 @@ def _polished(
     equation: tuple[tuple[sp.Symbol, ...], OnCircle],
     tag: str,
 ) -> Pair:
-    """The pair after a step that takes out the rounding of a root, if it brings the point closer.
+    """The pair after a step that removes the rounding of a root, if it brings the point closer.
 
-    The step solves the equation up to second order, which is right also where two roots nearly
-    meet: of these, ``falls`` is 1 for the one at which the point comes from outside.
+    The step solves the equation up to second order, which is also right where two roots nearly
+    meet: ``falls`` is 1 for the one of them at which the point comes from outside.
     """
     program, ((p, q, a, b), means) = chain.program, equation
     s, c = found.s, found.c

@@ -1,4 +1,4 @@
-"""Legs of two slides in a plane: a slider carries a rail, along which the hand slides."""
+"""Legs of two slides in a plane: a driven slider carries a rail, along which the hand slides."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Rail:
     on_hand: Sequence[Any] = ()
     signs: int = 1
     rod: int = 1
-    """What stands for the length of a rod: the normal of the rail is a unit vector."""
+    """The length of the rod in formulas for any leg: the normal of the rail is a unit vector."""
 
     def __post_init__(self) -> None:
         if not (len(self.start) == len(self.direction) == len(self.along) == 2):

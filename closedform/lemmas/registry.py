@@ -1,9 +1,8 @@
 """The lemmas, found by looking through the modules of this folder.
 
-What solves for a joint in a chain registers itself with the decorator :func:`chain_lemma`;
-``closedform new`` and the guide read the list.  What a lemma says, and why it is true, is
-registered by :func:`theorem`; the book reads that list.  ``docs/adding-a-lemma.md`` says how to
-write one.
+A lemma that a chain can use registers itself with the decorator :func:`chain_lemma`; ``closedform
+new`` and the guide read the list.  The statement and the proof of a lemma are registered by
+:func:`theorem`; the book reads that list.  ``docs/adding-a-lemma.md`` says how to write one.
 """
 
 from __future__ import annotations
@@ -26,9 +25,9 @@ class ChainLemma:
 
     name: str
     equation: str
-    """What it solves, as the guide prints it: ``a sin x + b cos x = c``."""
+    """The equation that it solves, as the guide prints it: ``a sin x + b cos x = c``."""
     result: str
-    """What ``solve`` returns: ``the pair of x``."""
+    """The result of ``solve``: ``the pair of x``."""
     apply: Callable[..., Any]
 
 
@@ -58,7 +57,7 @@ def theorem(
     rests_on: Sequence[str] = (),
     title: str = "",
 ) -> Theorem:
-    """Register what the lemma of this name says, and its proof; see :class:`Theorem`."""
+    """Register the statement of the lemma of this name, and its proof; see :class:`Theorem`."""
     found = Theorem(name, statement, proof, exception, tuple(rests_on), title)
     _theorems[name] = found
     return found
@@ -71,7 +70,7 @@ def chain_lemmas() -> dict[str, ChainLemma]:
 
 
 def theorems() -> dict[str, Theorem]:
-    """What every lemma says, by name; what a proof uses comes before it."""
+    """The statement of every lemma, by name; a lemma comes after those that its proof uses."""
     _look_through_the_folder()
     ordered: dict[str, Theorem] = {}
 

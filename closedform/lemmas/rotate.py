@@ -45,8 +45,8 @@ def rotate(
 ) -> Applied:
     """``Rz(x) w = v`` for vectors of the plane of equal length: one solution.
 
-    x is free where both vanish.  That their lengths are equal follows from the equations that were
-    solved for the unknowns in ``because``: w.w - v.v is their sum, each times the factor given.
+    x is free where both vanish.  The lengths are equal by the equations that were solved for the
+    unknowns in ``because``: w.w - v.v is the sum of these equations, each times the factor given.
     ``scale`` is that of the vectors, by default the size of the arm.
     """
     p, tag = chain.program, name or label(x)

@@ -46,7 +46,7 @@ the joint is free.""",
 def linear_pair(x: sp.Symbol, sine: sp.Expr, cosine: sp.Expr) -> Lemma:
     """``cos x : sin x = cosine : sine``, both known up to a common positive factor.
 
-    Of the two directions of the line only one has the right sign; x is free where both vanish.
+    Only one of the two directions of the line has the right sign; x is free where both vanish.
     """
     return Lemma(
         "atan2 of a linear pair",
@@ -98,9 +98,9 @@ def sine_cosine(
         size = missed_by(found.h)
         lever = 4 * root * (toward.l1 + toward.l2)
         tangent = nearly_tangent(program, lever, found.h * size, suffix)
-        held = sp.sqrt(toward.held(program, found, size, suffix))
-        turn = choose(tangent, sp.atan2(held, (found.above - found.below) / 2), turn)
-        root = program.let(f"in_reach{suffix}", choose(tangent, held, root), nonnegative=True)
+        reached = sp.sqrt(toward.square_in_reach(program, found, size, suffix))
+        turn = choose(tangent, sp.atan2(reached, (found.above - found.below) / 2), turn)
+        root = program.let(f"in_reach{suffix}", choose(tangent, reached, root), nonnegative=True)
     onward = program.let(f"onward{suffix}", sigma * root)
     direction = sp.atan2(found.a, found.b) + sigma * turn
     if free:

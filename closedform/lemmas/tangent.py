@@ -1,8 +1,8 @@
 """Turns whose two solutions nearly meet, within the reach of the joints that follow.
 
-There a rounding of the target turns the joint by a multiple of it, and what is left for the later
-joints may seem beyond their limit although the target is the image of a posture.  Of the turns that
-the target does not tell apart, one is taken that leaves them within reach.
+There a rounding of the target turns the joint by a multiple of it, and the rest may seem to be out
+of reach of the later joints although the target is the image of a posture.  Of the turns that the
+target does not distinguish, one is taken for which the rest is within reach.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class Turn:
         )
 
     def by(self, sine: sp.Expr, cosine: sp.Expr, unless: sp.Basic = sp.false) -> Pair:
-        """Turned further, where the target does not tell the difference."""
+        """The pair turned further, by an angle that the target does not distinguish."""
         versine = sine**2 / (1 + sp.Abs(cosine))
         cost = self.let("cost", sp.Abs(self.lever * sine) + sp.Abs(self.beside) * versine)
         size = self.let("whole", self.chain.size * ROUNDING)
@@ -107,9 +107,9 @@ class Turn:
         return self.pair + Pair(s, c)
 
     def least(self, goal: Within) -> Pair:
-        """Turned as little as brings a point within reach, up to rounding of the target.
+        """The smallest turn that brings a point within reach, up to rounding of the target.
 
-        A quarter turn or more is never little.
+        A quarter turn or more does not count as small.
         """
         (x, y), (dx, dy) = goal.point, goal.rate
         square = self.let("square", x**2 + y**2)
@@ -163,14 +163,14 @@ class Reached:
 
 
 class Goal(Protocol):
-    """What later joints have to reach; it chooses among turns that rounding does not tell apart."""
+    """A point that later joints must reach; it chooses among turns that differ by rounding."""
 
     def reached(self, turn: Tangency) -> Reached:
         """The turn within reach that is nearest to the computed one."""
 
 
 class Anywhere:
-    """No goal: the turn is as it was computed."""
+    """No goal: the turn stays as it was computed."""
 
     def reached(self, turn: Tangency) -> Reached:
         return Reached(turn.pair(turn.root, turn.width), turn.root)
@@ -190,27 +190,29 @@ class LinksAtHeight:
     height: sp.Expr
     preferred: Sequence[sp.Symbol] = ()
 
-    def held(self, program: Program, at: Amplitude, scale: sp.Expr, suffix: str) -> sp.Symbol:
+    def square_in_reach(
+        self, program: Program, at: Amplitude, scale: sp.Expr, suffix: str
+    ) -> sp.Symbol:
         """The square of the root, brought within reach if rounding puts it out of reach."""
         square = at.below * at.above
         farthest = (self.l1 + self.l2) ** 2 - self.height**2
         nearest = (self.l1 - self.l2) ** 2 - self.height**2
         wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
         rounding = 2 * at.h * scale / 2**44
-        held = sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True))
+        result = sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True))
         for root in reversed(self.preferred):
             other = program.let(f"{root}_squared{suffix}", root**2)
             near = sp.Abs(other - square) <= 8 * rounding
-            held = sp.Piecewise((other, near), *held.args)
-        return program.let(f"held{suffix}", held, nonnegative=True)
+            result = sp.Piecewise((other, near), *result.args)
+        return program.let(f"held{suffix}", result, nonnegative=True)
 
     def reached(self, turn: Tangency) -> Reached:
         """The pair of the turn, from the root within reach that is nearest to the computed one."""
         p, at, suffix = turn.chain.program, turn.at, turn.suffix
         tangent = nearly_tangent(p, turn.root, at.h, suffix)
-        held = self.held(p, at, turn.chain.size, suffix)
-        whole = sp.sqrt(4 * held + (at.above - at.below) ** 2)
-        root = choose(tangent, sp.sqrt(held), turn.root)
+        square = self.square_in_reach(p, at, turn.chain.size, suffix)
+        whole = sp.sqrt(4 * square + (at.above - at.below) ** 2)
+        root = choose(tangent, sp.sqrt(square), turn.root)
         root = p.let(f"kept{suffix}", root, nonnegative=True)
         width = p.let(f"span{suffix}", choose(tangent, whole, turn.width), nonnegative=True)
         return Reached(turn.pair(root, width), root)
@@ -244,9 +246,10 @@ class Links:
 
 @dataclass(frozen=True)
 class LinksAndWrist(Links):
-    """They reach q less an offset; a wrist turns it, whose ``axis`` is linear in the pair too.
+    """Two links that reach q minus an offset, which a wrist turns.
 
-    The offset is turned ``ahead`` of the direction of that axis, or with ``sigma`` of its opposite.
+    The ``axis`` of the wrist is linear in the pair too.  The offset is turned ``ahead`` of the
+    direction of that axis, or with ``sigma`` of its opposite.
     """
 
     axis: Callable[[Pair], sp.Matrix]
@@ -273,7 +276,7 @@ class LinksAndWrist(Links):
         return h, turn.let("us", u.s), turn.let("uc", u.c)
 
     def goal(self, turn: Turn, lever: sp.Expr) -> Within:
-        """Where rounding over a ``lever`` turns the wrist by any angle, so it does the offset."""
+        """The goal where rounding over a ``lever`` may turn the wrist and the offset anywhere."""
         (qx, qy), (dqx, dqy) = turn.linear("q", self.q)
         (ax, ay), (dax, day) = turn.linear("axis", self.axis)
         h, us, uc = self.wrist(turn, ax, ay)
@@ -347,7 +350,7 @@ class LinksAndWrist(Links):
 
 
 def plain(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Basic:
-    """A condition that a value vanishes, for what is computed only where a turn is tangent."""
+    """A condition that a value vanishes, for values that only the tangent case computes."""
     return value <= scale * LAST
 
 

@@ -13,7 +13,7 @@ from closedform.model.lemma import Lemma
 from closedform.model.pair import Pair
 
 NEARER, FARTHER = "nearer than full stretch", "farther than the fold"
-"""What the bounds of a triangle mean: it exists where both hold."""
+"""The meanings of the bounds of a triangle, which exists if both hold."""
 
 theorem(
     "two-link triangle",
@@ -45,7 +45,7 @@ needs $l_1 = l_2$, the links lie on each other and $\alpha$ is free.""",
 
 
 def indexed(letter: str, tag: str) -> str:
-    """A letter with the tag of a leg or a joint, as in ``_1`` or ``_elbow``, as its index."""
+    """A letter with the tag of a leg or a joint as its index: ``_1`` or ``_elbow``."""
     index = tag.strip("_")
     if not index:
         return letter
@@ -158,7 +158,7 @@ class Triangle:
 
     @property
     def letters(self) -> dict[sp.Symbol, str]:
-        """How the factors are written: in letters that nothing else has."""
+        """The letters of the factors, which stand for nothing else."""
         return {
             s: indexed(rf"\mathcal {n}", str(s)[1:])
             for s, n in zip(self.factors, "SABC", strict=False)
@@ -171,7 +171,7 @@ class Triangle:
         return 2 * self.sigma * sp.atan2(sp.sqrt(self.N), sp.sqrt(self.M))
 
     def elbow_pair(self, twice: sp.Expr, whole: sp.Expr) -> Pair:
-        """Its pair, from names for twice the :attr:`root` and the :attr:`whole`."""
+        """The pair of the elbow, from names for twice the :attr:`root` and the :attr:`whole`."""
         return Pair(self.sigma * twice / whole, (self.M - self.N) / whole)
 
     @property
@@ -251,10 +251,10 @@ class Triangle:
         free: Sequence[sp.Symbol] = (),
         suffix: str = "",
     ) -> tuple[Lemma, tuple[sp.Symbol, sp.Symbol]]:
-        """The lemma, and names for :attr:`ahead` and :attr:`beyond`, for what turns with the base.
+        """The lemma, and names for :attr:`ahead` and :attr:`beyond`, which turn with the base.
 
-        The elbow is free where a link has no length: then a stretched one is returned, and the
-        ``free`` joints get the status for it.
+        The elbow is free if a link has no length.  The stretched one is returned then, and the
+        ``free`` joints get the status.
         """
         no_link = program.vanishes(
             f"no_link{suffix}",

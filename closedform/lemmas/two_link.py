@@ -1,4 +1,4 @@
-"""The planar arm of two links with an offset at the fore-arm: alone, and beside another arm."""
+"""The planar arm of two links with an offset at the forearm: alone, and beside another arm."""
 
 from __future__ import annotations
 

@@ -45,8 +45,9 @@ def tilt(
 ) -> Applied:
     """``k (1 - cos x) = 1 - sense v3`` for a column v of a rotation: both solutions.
 
-    This is ``a sin x + b cos x = c`` for a wrist whose first and last axis can be aligned.  There
-    the difference of c and its largest value is small, and v1 and v2 know it better.
+    This is ``a sin x + b cos x = c`` for a wrist whose first and last axis can be aligned.  Near
+    alignment the difference between c and its largest value is small, and v1 and v2 determine it
+    more accurately.
     """
     p, tag = chain.program, name or label(x)
     sigma = chain.sign(tag, choice)
@@ -104,9 +105,8 @@ def spin(
 ) -> Applied:
     """``Rz(x) = N`` for a rotation that the earlier joints leave.
 
-    That it is one about z follows from the equations that were solved for the unknowns in
-    ``because``: the first two entries of its third column are their sums, each times the factor
-    given.
+    N is a rotation about z by the equations that were solved for the unknowns in ``because``: the
+    first two entries of its third column are sums of these equations, each times the factor given.
     """
     tag = name or label(x)
     length = chain.program.let(f"unit_{tag}", sp.sqrt(N[0, 0] ** 2 + N[1, 0] ** 2))

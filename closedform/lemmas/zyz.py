@@ -36,7 +36,7 @@ $\theta_1 + \theta_3$ is determined, for $R_{33} = -1$ only $\theta_1 - \theta_3
 
 @dataclass(frozen=True)
 class Zyz:
-    """The lemma, and the outer angles: those of pairs, and no or half a turn more by the branch."""
+    """The lemma, and the outer angles: those of pairs, plus half a turn in some branches."""
 
     lemma: Lemma
     first: Pair

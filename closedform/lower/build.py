@@ -51,47 +51,56 @@ class Builder:
         return self.memo[expr]
 
     def _translate(self, expr: sp.Basic) -> Node:
-        graph = self.graph
         if isinstance(expr, sp.logic.boolalg.Boolean):
             return self._condition(expr)
         if expr is sp.nan:
-            return graph.node("nan")
+            return self.graph.node("nan")
         if expr.is_number:
             reject_floats(expr, "lowering")
-            return graph.const(expr)
-        if isinstance(expr, sp.Add):
-            return graph.sum(self(t) for t in expr.as_ordered_terms())
-        if isinstance(expr, sp.Mul):
-            return self._product(expr)
-        if isinstance(expr, sp.Pow):
-            return self._power(expr)
-        if isinstance(expr, (sp.sin, sp.cos)):
-            sine, cosine = self._sine_cosine(expr.args[0])
-            return sine if isinstance(expr, sp.sin) else cosine
-        if isinstance(expr, sp.atan2):
-            turned = self._principal_value(*expr.args)
-            return turned or graph.atan2(*map(self, expr.args))
-        if isinstance(expr, sp.atan):  # SymPy's form of atan2(y, x) if x is positive
-            top, bottom = sp.fraction(expr.args[0])
-            if not bottom.is_nonnegative:
-                top, bottom = expr.args[0], sp.S.One
-            return graph.atan2(self(top), self(bottom))
-        if isinstance(expr, Resolvent):
-            return root_between(graph, *map(self, expr.args))
-        if isinstance(expr, sp.Abs):
-            return graph.even("abs", self(expr.args[0]))
-        if isinstance(expr, (sp.Max, sp.Min)):
-            op = "max" if isinstance(expr, sp.Max) else "min"
-            ordered = sorted(expr.args, key=sp.default_sort_key)
-            nodes = [self(e) for e in ordered]
-            return reduce(lambda a, b: graph.node(op, a, b), nodes)
-        if isinstance(expr, sp.Piecewise):
-            *cases, (last, _) = expr.args
-            result = self(last)
-            for value, condition in reversed(cases):
-                result = graph.select(self(condition), self(value), result)
-            return result
+            return self.graph.const(expr)
+        match expr:
+            case sp.Add():
+                return self.graph.sum(self(t) for t in expr.as_ordered_terms())
+            case sp.Mul():
+                return self._product(expr)
+            case sp.Pow():
+                return self._power(expr)
+            case sp.sin():
+                return self._sine_cosine(expr.args[0])[0]
+            case sp.cos():
+                return self._sine_cosine(expr.args[0])[1]
+            case sp.Piecewise():
+                return self._cases(expr)
+            case _:
+                return self._function(expr)
+
+    def _function(self, expr: sp.Basic) -> Node:
+        graph = self.graph
+        match expr:
+            case sp.atan2():
+                turned = self._principal_value(*expr.args)
+                return turned or graph.atan2(*map(self, expr.args))
+            case sp.atan():  # SymPy's form of atan2(y, x) if x is positive
+                top, bottom = sp.fraction(expr.args[0])
+                if not bottom.is_nonnegative:
+                    top, bottom = expr.args[0], sp.S.One
+                return graph.atan2(self(top), self(bottom))
+            case Resolvent():
+                return root_between(graph, *map(self, expr.args))
+            case sp.Abs():
+                return graph.even("abs", self(expr.args[0]))
+            case sp.Max() | sp.Min():
+                op = "max" if isinstance(expr, sp.Max) else "min"
+                nodes = [self(e) for e in sorted(expr.args, key=sp.default_sort_key)]
+                return reduce(lambda a, b: graph.node(op, a, b), nodes)
         raise TypeError(f"no lowering for {type(expr).__name__}: {expr}")
+
+    def _cases(self, expr: sp.Piecewise) -> Node:
+        *cases, (last, _) = expr.args
+        result = self(last)
+        for value, condition in reversed(cases):
+            result = self.graph.select(self(condition), self(value), result)
+        return result
 
     def _condition(self, expr: sp.Basic) -> Node:
         graph = self.graph
@@ -190,7 +199,7 @@ class Builder:
         return (result[0] if multiple > 0 else graph.neg(result[0])), result[1]
 
     def _suggest_names(self, angle: sp.Add, sine: Node, cosine: Node) -> None:
-        """``s12`` and ``c12`` for the sine and the cosine of theta1 + theta2."""
+        """Suggest ``s12`` and ``c12`` for the sine and the cosine of theta1 + theta2."""
         terms = [str(t) for t in angle.as_ordered_terms()]
         if all(t.startswith("theta") and t.isalnum() for t in terms):
             label = "".join(t.removeprefix("theta") for t in terms)

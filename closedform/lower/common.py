@@ -19,7 +19,7 @@ from closedform.lower.share import same
 def common_case(
     graph: Graph, roots: Sequence[Node], names: Mapping[int, str]
 ) -> tuple[list[Node], Node, dict[int, str]]:
-    """The remaining ``roots``, the condition that a quantity vanishes, and the names of nodes."""
+    """The roots of the common case, the condition that a quantity vanishes, and node names."""
     raised: list[Node] = []
     kept: dict[int, str] = {}
     within = _within_rare_conditions(roots)

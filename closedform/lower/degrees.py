@@ -19,6 +19,15 @@ from closedform.lower.operators import BOOLEAN
 NUMBERS = frozenset({"", "-", "1", "deg", "degree", "degrees", "rad", "radian", "radians"})
 """The units of parameters that are not lengths."""
 
+EQUAL_DEGREES = frozenset({"add", "sub", "max", "min", "neg", "abs"})
+"""Operators whose operands and value all have one degree."""
+COMPARISONS = frozenset({"lt", "le", "eq"})
+"""Conditions whose operands have one degree."""
+OF_ANGLES = frozenset({"sin", "cos", "principal", "wrap", "wrap_cut"})
+"""Operators of an angle, whose degree is 0."""
+WITHOUT_DEGREE = OF_ANGLES | {"atan2", "tolerance", "sign", "status"}
+"""Operators whose value has the degree 0."""
+
 Degree: TypeAlias = "dict[str, Fraction]"
 """A sum of the unknown degrees of inputs; the name ``""`` stands for the number 1."""
 
@@ -34,8 +43,8 @@ class Degrees:
     """The inputs that are lengths, the degree of every entry of the results, and the highest.
 
     The highest is the largest absolute value of a degree, intermediate values included.  A length
-    that is only added to lengths of its own kind, as a height, and never meets one that is
-    multiplied by others, has degree 0: it may be of any size.
+    has degree 0 if it is only added to lengths of its own kind, such as heights, and these are
+    never combined with lengths that are multiplied: it may be of any size.
     """
 
     lengths: frozenset[str]
@@ -59,7 +68,9 @@ def degrees(
         for name in inputs:
             if name in known:
                 system.equate({name: ONE}, {"": Fraction(known[name])})
-        found = _of_nodes(nodes, system)
+        degree_of = _NodeDegrees(system)
+        for node in nodes:
+            degree_of.add(node)
     except MixedError:
         return None
     for name in [name for name in preferred if name in inputs]:
@@ -67,11 +78,12 @@ def degrees(
     for name in inputs:
         system.prefer(name, 0)
     taken = {name: system.value({name: ONE}) for name in inputs}
-    listed = [[system.value(found[n.id]) for n in row] for row in results]
-    apart = _apart(nodes, {i: system.value(d) for i, d in found.items()})
-    taken |= {str(n.payload): Fraction(0) for n in nodes if n.op == "input" and n.id in apart}
+    listed = [[system.value(degree_of[n]) for n in row] for row in results]
+    values = {i: system.value(d) for i, d in degree_of.found.items()}
+    unscaled = _unscaled(nodes, values)
+    taken |= {str(n.payload): Fraction(0) for n in nodes if n.op == "input" and n.id in unscaled}
     listed = [
-        [Fraction(0) if n.id in apart else d for n, d in zip(nodes_of, row, strict=True)]
+        [Fraction(0) if n.id in unscaled else d for n, d in zip(nodes_of, row, strict=True)]
         for nodes_of, row in zip(results, listed, strict=True)
     ]
     if any(d not in (0, 1) for d in taken.values()) or any(
@@ -81,12 +93,12 @@ def degrees(
     return Degrees(
         frozenset(name for name, d in taken.items() if d == 1),
         tuple(tuple(int(d) for d in row) for row in listed),
-        ceil(max((abs(system.value(d)) for d in found.values()), default=0)),
+        ceil(max(map(abs, values.values()), default=0)),
     )
 
 
-def _apart(nodes: Sequence[Node], degree: Mapping[int, Fraction]) -> set[int]:
-    """Nodes of a degree that is not 0, in groups that meet each other and have no powers."""
+def _unscaled(nodes: Sequence[Node], degree: Mapping[int, Fraction]) -> set[int]:
+    """Nodes that only meet values of their own degree and have no powers: any size will do."""
     group = {n.id: n.id for n in nodes if degree[n.id]}
 
     def find(i: int) -> int:
@@ -146,50 +158,57 @@ def _combined(a: Degree, b: Degree, factor: int) -> Degree:
     return {name: f for name, f in total.items() if f}
 
 
-def _of_nodes(nodes: Iterable[Node], system: _System) -> dict[int, Degree | None]:
-    """The degree of every node; None for zero and NaN, which may have any degree."""
-    found: dict[int, Degree | None] = {}
+class _NodeDegrees:
+    """The degree of every node so far; None for zero and NaN, which may have any degree."""
 
-    def one_degree(args: Iterable[Node]) -> Degree | None:
-        listed = [d for n in args if (d := found[n.id]) is not None]
-        for other in listed[1:]:
-            system.equate(listed[0], other)
-        return listed[0] if listed else None
+    def __init__(self, system: _System) -> None:
+        self.system = system
+        self.found: dict[int, Degree | None] = {}
 
-    for node in nodes:
-        args = node.args
-        degree: Degree | None = None
-        match node.op:
+    def __getitem__(self, node: Node) -> Degree | None:
+        return self.found[node.id]
+
+    def add(self, node: Node) -> None:
+        """Derive the degree of a node from those of its operands."""
+        self.found[node.id] = self._degree(node)
+
+    def _degree(self, node: Node) -> Degree | None:
+        op, args = node.op, node.args
+        if op in EQUAL_DEGREES:
+            return self._equal(args)
+        if op in BOOLEAN:
+            if op in COMPARISONS:
+                self._equal(args)
+            return None
+        if op in WITHOUT_DEGREE:
+            if op == "atan2":
+                self._equal(args)
+            elif op in OF_ANGLES and (angle := self[args[0]]) is not None:
+                self.system.equate(angle, {})
+            return {}
+        match op:
             case "const":
-                degree = None if node.payload == 0 else {}
+                return None if node.payload == 0 else {}
             case "nan" | "poison":
-                pass
+                return None
             case "input":
-                degree = {str(node.payload): ONE}
-            case "add" | "sub" | "max" | "min" | "neg" | "abs":
-                degree = one_degree(args)
-            case "lt" | "le" | "eq":
-                one_degree(args)
+                return {str(node.payload): ONE}
             case "mul" | "div":
-                a, b = (found[n.id] for n in args)
-                if a is not None and b is not None:
-                    degree = _combined(a, b, 1 if node.op == "mul" else -1)
+                a, b = self[args[0]], self[args[1]]
+                if a is None or b is None:
+                    return None
+                return _combined(a, b, 1 if op == "mul" else -1)
             case "sqrt":
-                if (a := found[args[0].id]) is not None:
-                    degree = {name: f / 2 for name, f in a.items()}
+                square = self[args[0]]
+                return square and {name: f / 2 for name, f in square.items()}
             case "select":
                 # A constant instead of a length selects a direction if every direction is valid.
-                degree = one_degree([n for n in args[1:] if constant_of(n) is None] or args[1:])
-            case "atan2":
-                one_degree(args)
-                degree = {}
-            case "sin" | "cos" | "principal" | "wrap" | "wrap_cut":
-                if (a := found[args[0].id]) is not None:
-                    system.equate(a, {})
-                degree = {}
-            case "tolerance" | "sign" | "status":
-                degree = {}
-            case op if op not in BOOLEAN:
-                raise TypeError(f"the degree of {op} is not known")
-        found[node.id] = degree
-    return found
+                return self._equal([n for n in args[1:] if constant_of(n) is None] or args[1:])
+        raise TypeError(f"the degree of {op} is not known")
+
+    def _equal(self, args: Iterable[Node]) -> Degree | None:
+        """The degree that all of these have."""
+        listed = [d for n in args if (d := self[n]) is not None]
+        for other in listed[1:]:
+            self.system.equate(listed[0], other)
+        return listed[0] if listed else None

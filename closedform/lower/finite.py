@@ -75,7 +75,7 @@ def _selected(graph: Graph, args: Sequence[Node]) -> Node | None:
 
 
 def _with_safe_operands(graph: Graph, roots: Sequence[Node]) -> dict[int, Node]:
-    """The image of every value that a result depends on."""
+    """The images of all values that a result depends on."""
     matters = _Matters(graph, roots)
     image: dict[int, Node] = {}
 
@@ -100,7 +100,7 @@ def _carries(node: Node, operand: Node) -> bool:
 
 
 class _Matters:
-    """For every value to which a derivative passes, the number of the cases where it matters."""
+    """For every value that a derivative reaches, the number of the cases in which it matters."""
 
     def __init__(self, graph: Graph, roots: Sequence[Node]):
         self.graph = graph
@@ -143,7 +143,7 @@ class _Matters:
         return self._numbers[cases]
 
     def _any(self, numbers: Iterable[int]) -> int:
-        """All these cases together; both sides of a selection are all of it."""
+        """All these cases together; both sides of a selection make the whole of it."""
         kept: set[Case] = set()
         waiting = list(numbers)
         while waiting:

@@ -16,9 +16,10 @@ COMPARED = "compare and select"
 class Operator:
     """An operator.
 
-    ``arity`` is None if it takes any number of operands.  A leaf is no work by itself: a number, an
-    input, or what is computed before all else.  ``group`` says under which words the banner counts
-    it, empty if it is not counted.  What is not printed is replaced before a program is finished.
+    ``arity`` is None if it takes any number of operands.  A leaf costs nothing by itself: a number,
+    an input, or a value that is computed before all others.  ``group`` names the group in which the
+    banner counts it, empty if it is not counted.  Operators that are not printed are replaced
+    before a program is finished.
     """
 
     name: str
@@ -30,7 +31,7 @@ class Operator:
 
     @property
     def method(self) -> str:
-        """The name of the method that prints it; words of Python have an underscore behind them."""
+        """The name of the method that prints it; words of Python get an underscore at the end."""
         return f"{self.name}_" if keyword.iskeyword(self.name) else self.name
 
 
@@ -79,7 +80,7 @@ OPERATORS = {operator.name: operator for operator in _TABLE}
 BOOLEAN = frozenset(o.name for o in _TABLE if o.boolean)
 LEAVES = frozenset(o.name for o in _TABLE if o.leaf)
 COUNTED = frozenset(o.name for o in _TABLE if o.group and not o.leaf)
-"""What is counted wherever it stands; sines, cosines and principal values are counted by angle."""
+"""Operators that are counted wherever they occur; sines and the like are counted by angle."""
 PRINTED = tuple(o for o in _TABLE if o.printed)
 GROUPS = {**{o.name: o.group for o in _TABLE}, "sincos": "sincos"}
-"""The words under which an operation is counted; a sine and a cosine of one angle are one."""
+"""The groups in which operations are counted; a sine and a cosine of one angle count once."""

@@ -3,43 +3,34 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
 
 import sympy as sp
 
+from closedform.lower.branch import Branch, UnboundedAngleError, expressions_of, is_guarded
 from closedform.lower.build import Builder, angle_divisors
 from closedform.lower.common import common_case
 from closedform.lower.degrees import NUMBERS, Degrees, degrees
 from closedform.lower.graph import Graph, Node, reachable
 from closedform.lower.operators import COUNTED, LEAVES
-from closedform.lower.ranges import Ranges, UnboundedError
+from closedform.lower.ranges import Ranges
 from closedform.lower.roots import fewer_roots
 from closedform.lower.share import share
 from closedform.lower.turns import Turns
 from closedform.model.derivation import Derivation
 from closedform.model.functions import (
     Array,
-    Bound,
-    Determined,
     Function,
-    Let,
-    Match,
-    Require,
-    Vanishes,
 )
 from closedform.model.tolerances import HIGHEST_DEGREE
 
-SPARED = 0.15
+SAVING_OF_COMMON_CASE = 0.15
 """The fraction of the operations that a common case must save to get a separate program."""
-ALONE = 0.6
+LENGTH_OF_BRANCH = 0.6
 """The largest fraction of the operations of all branches for which one branch gets a program."""
-
-
-class UnboundedAngleError(TypeError):
-    """An output is an angle whose size is not known."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +116,7 @@ def lower(function: Function, derivation: Derivation) -> Lowered:
     whole = _with_common(*_lower(function, derivation, entries, list(function.cases())))
     if whole.common is not None and function.branches:
         branch = _one_branch(function, derivation, entries)
-        short = branch is not None and branch.length < ALONE * whole.common.length
+        short = branch is not None and branch.length < LENGTH_OF_BRANCH * whole.common.length
         whole = replace(whole, branch=branch if short else None)
     return _with_degrees(whole, derivation)
 
@@ -141,7 +132,7 @@ def lower_branch(function: Function, derivation: Derivation, branch: int) -> Low
 
 def _with_common(whole: Lowered, common: Lowered) -> Lowered:
     """The whole program with its common case, if that is much shorter."""
-    if common.length > (1 - SPARED) * whole.length:
+    if common.length > (1 - SAVING_OF_COMMON_CASE) * whole.length:
         return whole
     return replace(whole, common=replace(common, parameters=whole.parameters))
 
@@ -186,15 +177,14 @@ def _lower(
     graph = Graph()
     parameters = [p.symbol for p in derivation.parameters]
     leaves = {s: graph.input(s.name) for s in (*function.symbols, *parameters)}
-    divisors = angle_divisors([*_expressions(function), *(e for e, _ in entries)])
+    divisors = angle_divisors([*expressions_of(function), *(e for e, _ in entries)])
     names: dict[int, str] = {}
     rows = []
     ranges = _ranges(function, derivation, signs)
     for label, chosen in cases:
-        branch = _Branch(
-            function, derivation, graph, leaves, divisors, chosen, signs, entries, ranges
-        )
-        rows.append(branch.run(names, label))
+        build = Builder(graph, leaves, divisors)
+        branch = Branch(function, derivation, build, names, label, signs, ranges)
+        rows.append(branch.lowered(chosen, entries))
     results = []
     for k, output in enumerate(function.outputs):
         nodes = tuple(n for row in rows for n in row[0][k])
@@ -259,161 +249,8 @@ def _share_named(
     return body, {new.id: names[images[old].id] for new, old in found if new.id in alive}
 
 
-def _guarded(function: Function) -> bool:
-    """Whether a failure must be reported, by a status or by NaN for a missing branch."""
-    return function.has_status or any(isinstance(s, (Bound, Match)) for s in function.body)
-
-
 def _ranges(function: Function, derivation: Derivation, signs: Sequence[sp.Symbol]) -> Ranges:
     """The ranges of the values; lengths count as nonnegative if negative ones are reported."""
-    marked = _guarded(function)
+    marked = is_guarded(function)
     lengths = [p.name for p in derivation.parameters if marked and p.nonnegative]
     return Ranges(lengths, [s.name for s in signs])
-
-
-def _expressions(function: Function) -> Iterable[sp.Basic]:
-    for statement in function.body:
-        if isinstance(statement, Require):
-            yield from statement.values
-        else:
-            yield statement.value
-    for output in function.outputs:
-        yield from output.entries
-
-
-@dataclass
-class _Branch:
-    """Lowers one branch: statements first, then outputs and the status."""
-
-    function: Function
-    derivation: Derivation
-    graph: Graph
-    leaves: Mapping[sp.Basic, Node]
-    divisors: Mapping[sp.Basic, int]
-    chosen: Mapping[sp.Symbol, int]
-    signs: Sequence[sp.Symbol]
-    entries: Sequence[tuple[sp.Expr, bool]]
-    ranges: Ranges
-
-    def run(self, names: dict[int, str], label: str) -> tuple[list[list[Node]], Node]:
-        graph = self.graph
-        build = Builder(graph, self.leaves, self.divisors)
-        for symbol, sign in self.chosen.items():
-            build.define(symbol, graph.const(sign))
-        build.names = names
-        valid, reachable, singular = self._valid_input(), [], []
-
-        def limit(name: str, scale: sp.Expr) -> Node:
-            return graph.product(
-                [graph.node("tolerance", payload=name), build(sp.sympify(scale, strict=True))]
-            )
-
-        for statement in self.function.body:
-            if isinstance(statement, Let):
-                self._name(names, build, statement.symbol, build(statement.value), label)
-            elif isinstance(statement, Bound):
-                raw = build(statement.value)
-                allowed = graph.neg(limit("feasibility", statement.scale))
-                reachable.append(graph.node("le", allowed, raw))
-                least = graph.const(0)
-                if (scale := statement.above) is not None:
-                    # the square of an angle of four times the tolerance
-                    least = graph.product([limit("vanishing", 16 * scale), limit("vanishing", 1)])
-                clamped = graph.node("max", raw, least)
-                self._name(names, build, statement.symbol, clamped, label)
-            elif isinstance(statement, Match):
-                size = graph.even("abs", build(statement.value))
-                reachable.append(graph.node("le", size, limit("feasibility", statement.scale)))
-            elif isinstance(statement, Vanishes):
-                flag = graph.node("le", build(statement.value), limit("vanishing", statement.scale))
-                self._name(names, build, statement.symbol, flag, label)
-                if statement.free:
-                    singular.append(flag)
-            elif isinstance(statement, Determined):
-                tolerance = graph.node("tolerance", payload="determined")
-                powers = [tolerance] * (2 if statement.squares else 1)
-                least = graph.product([*powers, build(statement.scale)])
-                singular.append(graph.node("le", build(statement.value), least))
-            else:
-                sizes = [graph.even("abs", build(v)) for v in statement.values]
-                allowed = limit("rotation", statement.scale)
-                valid += [graph.node("le", size, allowed) for size in sizes]
-
-        # In this form a comparison with NaN, after an overflow, counts as a failure.
-        bad_input = graph.negate(graph.every(valid))
-        out_of_reach = graph.negate(graph.every(reachable))
-        failed = (
-            graph.any([bad_input, out_of_reach]) if _guarded(self.function) else graph.node("false")
-        )
-        for node, name in (
-            (bad_input, "invalid"),
-            (out_of_reach, "unreachable"),
-            (failed, "failed"),
-        ):
-            names.setdefault(node.id, name)
-        nodes = iter([self._output(build, failed, e, angle) for e, angle in self.entries])
-        outputs = [list(islice(nodes, output.size)) for output in self.function.outputs]
-        return outputs, self._status(bad_input, out_of_reach, graph.any(singular))
-
-    def _output(self, build: Builder, failed: Node, entry: sp.Expr, angle: bool) -> Node:
-        """The value of an entry; NaN is added if the branch fails, with one selection for all."""
-        node = build(entry)
-        if self.function.boolean:
-            return self.graph.every([self.graph.negate(failed), node])
-        if angle:
-            try:
-                node = self.ranges.wrapped(self.graph, node)
-            except UnboundedError:
-                raise UnboundedAngleError(
-                    f"{self.function.name}: the size of the angle {entry} is not known, so it "
-                    f"cannot be moved to (-pi, pi]; write it as atan2(sin, cos)"
-                ) from None
-        if failed.op == "false":
-            return node
-        return self.graph.node("add", node, self.graph.node("poison", failed))
-
-    def _status(self, invalid: Node, unreachable: Node, singular: Node) -> Node:
-        return self.graph.node("status", invalid, unreachable, singular)
-
-    def _valid_input(self) -> list[Node]:
-        """The conditions that every input and parameter is finite and no length is negative.
-
-        A function with a status also tests parameters that it does not use, because impossible
-        dimensions are an error for the whole robot.  An input in a requirement needs no test here:
-        the requirement fails if it is not finite.
-        """
-        graph = self.graph
-        used = {s for e in _expressions(self.function) for s in e.free_symbols}
-        judged = self.function.has_status
-        parameters = [p for p in self.derivation.parameters if judged or p.symbol in used]
-        required = {
-            s
-            for statement in self.function.body
-            if isinstance(statement, Require)
-            for e in statement.values
-            for s in e.free_symbols
-        }
-
-        def finite(symbols: Iterable[sp.Symbol]) -> list[Node]:
-            tested = [self.leaves[s] for s in symbols if s not in required]
-            return [graph.node("finite", *tested)] if tested else []
-
-        # Parameters come first: if all postures share them, a batch tests them only once.
-        return [
-            *finite(p.symbol for p in parameters),
-            *(
-                graph.node("le", graph.const(0), self.leaves[p.symbol])
-                for p in parameters
-                if p.nonnegative
-            ),
-            *finite(s for s in self.function.symbols if s not in self.signs),
-        ]
-
-    def _name(
-        self, names: dict[int, str], build: Builder, symbol: sp.Symbol, node: Node, label: str
-    ) -> None:
-        build.define(symbol, node)
-        depends = self.function.branches and len(self.function.branches) > 1
-        if node.op not in LEAVES and node.id not in names:
-            taken = symbol.name in names.values() and depends
-            names[node.id] = f"{symbol.name}_{label}" if taken else symbol.name

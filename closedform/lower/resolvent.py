@@ -1,10 +1,10 @@
-"""The root of a resolvent as a program: Laguerre's method, from the end on whose side the root is.
+"""The root of a resolvent as a program: Laguerre's method, from the end on the side of the root.
 
-Of three real roots the sign of the cubic at the mean tells on which side one is alone.  From the
-end of the interval on that side the method does not pass the root, and near a root it triples the
-digits with each step.  A step that leaves the bracket becomes a bisection; the first one goes to
-the other end, near which the root then mostly is.  The result is the
-argument with the smallest value, since near a multiple root the last steps only follow rounding.
+If there are three real roots, the sign of the cubic at their mean tells on which side one of them
+is alone.  Started from the end of the interval on that side, the method does not pass the root, and
+near a root each step triples the digits.  A step that leaves the bracket becomes a bisection; the
+first one goes to the other end, near which the root then usually is.  The result is the argument
+with the smallest value, because near a multiple root the last steps only follow rounding.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from __future__ import annotations
 from closedform.lower.graph import Graph, Node
 
 STEPS = 8
-"""Four to six are enough for most coefficients; more are needed near a triple root."""
+"""The number of steps: four to six are usually enough, more are needed near a triple root."""
 
 
 class _Arithmetic:

@@ -73,7 +73,7 @@ def _half(node: Node) -> sp.Expr | None:
 
 
 def _undivided(graph: Graph, ranges: Ranges, y: Node, x: Node) -> Node | None:
-    """The angle of a pair of quotients with the same divisor, which is not negative."""
+    """The angle of two quotients with the same divisor, which is not negative."""
     quotients = [strip_sign(n) for n in (y, x)]
     if any(q.op != "div" for q in quotients):
         return None

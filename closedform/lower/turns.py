@@ -85,7 +85,7 @@ class Turns:
         return sp.Add(sp.atan2(sp.sin(total), sp.cos(total)), *kept)
 
     def _holds_input(self, e: Expr) -> bool:
-        """Whether a term of a sum is a coordinate of the input, also through names of the body."""
+        """Whether a term of a sum is a coordinate of the input, also by names of the body."""
         if e in self.lets:
             parts = sp.Add.make_args(self.lets[e])
             return any(self._holds_input(a.as_coeff_Mul()[1]) for a in parts)

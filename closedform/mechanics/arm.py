@@ -99,11 +99,11 @@ class Serial:
 
     @property
     def links(self) -> list[linkwise.Link]:
-        """What stands between the base and the tool, joints with parallel axes as one."""
+        """The groups of links between the base and the tool, joints with parallel axes together."""
         return linkwise.links_of(self.groups, self.joints, self.lead, self.last)
 
     def determinant(self) -> sp.Expr:
-        """Of either Jacobian of an arm of six joints, factored.
+        """The factored determinant of either Jacobian of an arm of six joints.
 
         A change of frame does not change it, so it is taken where the twists are shortest.
         """
@@ -120,9 +120,9 @@ class Serial:
             raise singular_everywhere(name, J, self.joints)
 
     def coordinates(self) -> Coordinates | None:
-        """As many task coordinates as joints: of x, y, z and the yaw those that the joints move.
+        """As many task coordinates as joints: those of x, y, z and the yaw that the joints move.
 
-        None where the whole pose is the task, or where no such choice is plain.
+        None if the whole pose is the task, or if no such choice is evident.
         """
         n = len(self.joints)
         if n > 4:  # more than x, y, z and the yaw
@@ -140,7 +140,7 @@ class Serial:
         return Coordinates(names, tuple(rows), sp.Matrix(values), J)
 
     def _turning_rank(self) -> int:
-        """The rank of what the joints turn."""
+        """The rank of the angular velocities."""
         return dependent_joints(self.geometric[3:, :], self.joints)[0]
 
     def _yaw(self) -> sp.Expr:
@@ -368,10 +368,10 @@ def from_dh(
 ) -> Serial:
     """The chain of a Denavit-Hartenberg table with rows ``(a, alpha, d, theta)``.
 
-    The variable of a row is the joint that stands in it, with either sign: in ``theta`` for a
-    revolute joint, in ``d`` for a prismatic one.  A row without a joint is a fixed transform, such
-    as a base or a tool.  ``modified`` rows are Craig's (proximal).  ``tool`` is the pose of the
-    tool in the last frame.
+    The variable of a row is the joint in it, with either sign: in ``theta`` for a revolute joint,
+    in ``d`` for a prismatic one.  A row without a joint is a fixed transform, such as a base or a
+    tool. ``modified`` rows are Craig's (proximal).  ``tool`` is the pose of the tool in the last
+    frame.
     """
     moves, lead = [], sp.eye(4)
     links: list[Link] = []
@@ -402,7 +402,7 @@ def from_dh(
 
 
 def _dh_row(d: Derivation, row: Sequence[Any], where: str) -> list[sp.Expr]:
-    """The exact entries of a row, in which only parameters and joints stand."""
+    """The exact entries of a row, which contain only parameters and joints."""
     if len(row) != 4:
         raise RowError(
             f"{where} has {len(row)} entries ({', '.join(map(str, row))}); it needs 4: a, alpha, "
@@ -419,7 +419,7 @@ def _dh_row(d: Derivation, row: Sequence[Any], where: str) -> list[sp.Expr]:
 
 
 def _motion(d: Derivation, entries: Sequence[sp.Expr], where: str) -> Motion | None:
-    """What the joint of a row moves; None where it holds no joint."""
+    """The motion of the joint of a row; None if the row has no joint."""
     joints = {j.symbol: j.kind for j in d.joints}
     held = sorted({s for e in entries for s in e.free_symbols if s in joints}, key=str)
     if not held:
@@ -459,10 +459,10 @@ def _followed(lead: sp.Matrix, links: list[Link], step: sp.Matrix) -> sp.Matrix:
 def from_screws(
     d: Derivation, axes: Sequence[tuple[sp.Symbol, Sequence[Any], Sequence[Any]]], home: Any
 ) -> Serial:
-    """The chain of axes at home: ``(joint, direction, point)``, and the ``home`` pose of the tool.
+    """The chain of axes ``(joint, direction, point)`` at home; ``home`` is the pose of the tool.
 
-    A direction is a unit vector; the point of a prismatic joint does not matter.  What is no axis
-    or no pose raises :class:`RowError`.
+    A direction is a unit vector; the point of a prismatic joint does not matter.  Raises
+    :class:`RowError` if something is not an axis or not a pose.
     """
     if not axes:
         raise RowError(f"{d.name}: there are no axes")

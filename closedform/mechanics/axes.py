@@ -10,9 +10,9 @@ Z = sp.Matrix([0, 0, 1])
 
 
 def met(before: Group, after: Group) -> list[Group]:
-    """The groups, with the origin of the second moved along its axis to where the first is met.
+    """The groups, with the origin of the second moved along its axis to the meeting point.
 
-    The point that a table of screws names is any on the axis.
+    A table of screws may name any point of an axis.
     """
     *others, last = before.rows
     direction, shift = before.end * Z, sp.Matrix(last.shift)

@@ -15,7 +15,7 @@ class RowError(ValueError):
 
 
 def constant(d: Derivation, entries: Any, where: str) -> sp.Matrix:
-    """Exact entries in which only parameters stand."""
+    """Exact entries that contain only parameters."""
     reject_text(entries, where)
     matrix = sp.Matrix(entries)
     matrix = sp.Matrix(*matrix.shape, [exact(e, where) for e in matrix])
@@ -47,7 +47,7 @@ def check_unit(w: sp.Matrix, where: str) -> None:
 
 
 def rigid(d: Derivation, pose: Any, what: str) -> sp.Matrix:
-    """A constant pose, 4x4, whose rotation is one."""
+    """A constant 4x4 pose with a proper rotation."""
     where = f"{d.name}: {what}"
     T = constant(d, pose, where)
     if T.shape != (4, 4) or T.row(3) != sp.Matrix([[0, 0, 0, 1]]):

@@ -9,14 +9,14 @@ from closedform.mechanics.frames import merge_angles
 
 
 def factored_determinant(J: sp.Matrix) -> sp.Expr:
-    """Over the polynomials in sines and cosines, reduced on their circles, factored."""
+    """A determinant as a polynomial in sines and cosines, reduced on their circles and factored."""
     reduced = determinant(J)
     found = min((sp.factor(f) for f in (reduced, merge_angles(reduced))), key=sp.count_ops)
     return _in_decimals(found)
 
 
 def _in_decimals(product: sp.Expr) -> sp.Expr:
-    """Sums whose coefficients were made whole numbers, by factoring, over a power of ten again.
+    """Sums whose coefficients were made integers by factoring, divided by a power of ten again.
 
     A factor then has the size of the lengths that are numbers in it, not a million times that.
     """

@@ -33,7 +33,7 @@ def homogeneous(R: sp.Matrix, p: Sequence[sp.Expr] = (0, 0, 0)) -> sp.Matrix:
 
 
 def require_rotation(program: Program, R: sp.Matrix) -> None:
-    """Demand of the input R that it is a proper rotation."""
+    """Require that the input R is a proper rotation."""
     program.require(_rotation_residues(R), 1, "a proper rotation")
 
 
@@ -43,7 +43,7 @@ def pose_symbols() -> sp.Matrix:
 
 
 def require_pose(program: Program, T: sp.Matrix) -> None:
-    """Demand of the input T that it is a homogeneous transform with a proper rotation."""
+    """Require that the input T is a homogeneous transform with a proper rotation."""
     bottom = [*T[3, :3], T[3, 3] - 1]
     program.require(
         [*_rotation_residues(T[:3, :3]), *bottom],
@@ -53,7 +53,7 @@ def require_pose(program: Program, T: sp.Matrix) -> None:
 
 
 def _rotation_residues(R: sp.Matrix) -> list[sp.Expr]:
-    """What vanishes if the columns are unit vectors at right angles, and right-handed."""
+    """Expressions that vanish if the columns are orthonormal and right-handed."""
     n, o, a = (R[:, j] for j in range(3))
     return [*(n.cross(o) - a), n.dot(n) - 1, o.dot(o) - 1, n.dot(o)]
 
@@ -205,7 +205,7 @@ def _merged(value: sp.Expr) -> sp.Expr:
 
 
 def _angles_together(expr: sp.Expr) -> list[set[sp.Expr]]:
-    """The angles of each term: only such as meet in a product can be merged."""
+    """The angles of each term; only angles that meet in a product can be merged."""
     return [{f.args[0] for f in t.atoms(sp.sin, sp.cos)} for t in sp.Add.make_args(expr)]
 
 

@@ -23,9 +23,9 @@ Columns = dict[sp.Symbol, sp.Matrix]
 class Link:
     """A rigid motion from frame to frame, and the joints that move it: those of a group, or none.
 
-    ``twists``, ``(v; omega)``, are in the frame where the link starts, ``twists_at_end`` in that
-    where it ends.  ``spans`` lead from each axis to where the link ends, in the frame where it
-    starts.
+    ``twists``, ``(v; omega)``, are in the frame where the link starts, ``twists_at_end`` in the
+    frame where it ends.  ``spans`` lead from each axis to the end of the link, in the frame where
+    it starts.
     """
 
     transform: sp.Matrix

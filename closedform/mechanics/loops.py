@@ -26,7 +26,7 @@ def velocity_matrices(
 
 @dataclass(frozen=True)
 class Eliminated:
-    """What is left when unknowns are eliminated: irreducible factors over the rationals."""
+    """The result of an elimination: irreducible factors over the rationals."""
 
     factors: tuple[tuple[sp.Expr, int], ...]
 

@@ -11,11 +11,14 @@ from closedform.mechanics.links import Group
 
 POSTURES = 3
 ZERO = 1e-9
-"""Of the largest singular value.  Whether it is zero indeed, the determinant proves."""
+"""A singular value below this share of the largest counts as zero.
+
+Whether it really is zero is proved by the determinant.
+"""
 
 
 class SingularEverywhereError(ValueError):
-    """An arm whose Jacobian has no full rank at any posture."""
+    """An arm whose Jacobian does not have full rank at any posture."""
 
 
 def dependent_joints(J: sp.Matrix, joints: Sequence[sp.Symbol]) -> tuple[int, list[sp.Symbol]]:
@@ -28,7 +31,7 @@ def dependent_joints(J: sp.Matrix, joints: Sequence[sp.Symbol]) -> tuple[int, li
 def dependent_in_chain(
     groups: Sequence[Group], joints: Sequence[sp.Symbol]
 ) -> tuple[int, list[sp.Symbol]]:
-    """The same of a serial chain, whose twists are not written out for it."""
+    """The same for a serial chain, without writing out its twists."""
     parts = [
         sp.Matrix.hstack(
             group.transform(),

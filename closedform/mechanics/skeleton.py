@@ -1,7 +1,7 @@
-"""The skeleton of a mechanism: what to draw, exported as a function and proved.
+"""The skeleton of a mechanism: the points and links to draw, exported as a function and proved.
 
-The proof: no link changes its length when the joints move, and the hand is where the forward map
-says.
+The proof shows that no link changes its length when the joints move, and that the hand is where the
+forward map says.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ def skeleton(
 
 
 def _segments(drawn: Skeleton) -> list[tuple[str, str]]:
-    """Points that follow each other in a link; they keep their distance."""
+    """Neighbouring points of each link, which keep their distance."""
     return list(dict.fromkeys(pair for link in drawn.links.values() for pair in pairwise(link)))
 
 
@@ -242,7 +242,7 @@ class _Serial:
         }
 
     def _to(self, name: str, at: sp.Matrix, length: sp.Expr) -> None:
-        """Draw the link on to a point, unless that is where it is."""
+        """Continue the link to a point, unless it is already there."""
         if length == 0:
             return
         self.points[name] = at

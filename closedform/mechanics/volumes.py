@@ -6,7 +6,7 @@ import sympy as sp
 
 
 def lens(first: sp.Expr, second: sp.Expr, distance: sp.Expr) -> sp.Expr:
-    """The volume that two balls share whose surfaces meet: two caps, by integration."""
+    """The volume that two intersecting balls share: two caps, by integration."""
     t = sp.Dummy("t", real=True)
     plane = (distance**2 + first**2 - second**2) / (2 * distance)
     caps = ((first, plane), (second, distance - plane))

@@ -73,7 +73,7 @@ class Joint:
     beside: sp.Symbol | None = None
     """A joint that this one stays close to, as in a twin arm; samples respect this."""
     limits: tuple[float, float] | None = None
-    """The least and the largest value; nothing in a derivation depends on them."""
+    """The smallest and the largest value; nothing in a derivation depends on them."""
 
     @property
     def name(self) -> str:
@@ -97,14 +97,14 @@ class Step(Shown):
     """The rows of a table; the first is its head.  A cell is a sentence, an expression or an
     increasing chain of expressions, such as ``(0, x, 1)`` for 0 <= x <= 1."""
     proves: str = ""
-    """What the differences say that vanish: sentences."""
+    """What the vanishing differences mean, in sentences."""
     uses: tuple[Step, ...] = ()
     """Earlier steps whose equations this one rests on."""
 
 
 @dataclass(frozen=True)
 class Written:
-    """How formulas write a symbol, and what it means: plain text."""
+    """How a symbol is written in formulas, and what it means (plain text)."""
 
     latex: str
     meaning: str
@@ -172,7 +172,7 @@ class Derivation(Shown):
     written: dict[str, Written] = field(default_factory=dict)
     """Symbols that are not written as their name says, or whose meaning no equation gives."""
     without_inverse: str = ""
-    """Why there is no inverse, as a clause; empty if there is one, or if no reason is given."""
+    """Why there is no inverse, as a clause; empty if there is one or no reason was given."""
 
     def parameter(
         self,
@@ -266,7 +266,7 @@ class Derivation(Shown):
         return any(f.name == "fk" for f in self.functions)
 
     def program(self) -> Program:
-        """A program whose names differ from those of the joints and the parameters."""
+        """A program whose names differ from those of joints and parameters."""
         symbols = [p.symbol for p in self.parameters] + [j.symbol for j in self.joints]
         return Program(taken=frozenset(map(str, symbols)))
 

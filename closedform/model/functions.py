@@ -87,7 +87,7 @@ class Bound:
 
 @dataclass(frozen=True)
 class Match:
-    """``value`` must be zero, or the target is out of reach."""
+    """``value`` must be zero; otherwise the target is out of reach."""
 
     value: sp.Expr
     scale: sp.Expr
@@ -223,7 +223,7 @@ class Function:
     equation: str = ""
     """The left-hand side, as a step shows it, of the equation that this function evaluates."""
     entries: tuple[sp.Symbol, ...] = ()
-    """What the entries of the result are called, if that does not follow from its name."""
+    """Names of the entries of the result, if they do not follow from its own name."""
 
     def __post_init__(self) -> None:
         known: set[sp.Basic] = set()
@@ -368,7 +368,7 @@ class Program:
 
     body: list[Statement] = field(default_factory=list)
     taken: frozenset[str] = frozenset()
-    """Names that mean something else; what would be called so gets a longer name."""
+    """Names that are taken; a statement that would use one gets a longer name."""
 
     def _symbol(self, name: str, **assumptions: bool) -> sp.Symbol:
         while name in self.taken:
@@ -440,7 +440,7 @@ class Program:
         return substitute(value, known)
 
     def needed_for(self, values: Iterable[sp.Expr]) -> Program:
-        """The names that these expressions need, and no others; for a program of names alone."""
+        """The names that some expressions need, and no others; for a program of names alone."""
         needed = {s for e in values for s in e.free_symbols}
         kept: list[Statement] = []
         for statement in reversed(self.body):

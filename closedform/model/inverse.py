@@ -48,12 +48,12 @@ class Degenerate:
 
 @dataclass(frozen=True)
 class Relation:
-    """What the coefficients of a lemma have to satisfy: ``value`` is zero.
+    """A relation that the coefficients of a lemma satisfy: ``value`` is zero.
 
-    It is the sum of the equations of earlier links, each times a factor; each term is the first
+    It is the sum of the equations of earlier links, each times a factor; a term gives the first
     unknown of the link, and the factors of its first equations.  ``meaning`` is for messages.
-    Without terms it vanishes by the definitions of its names, or because ``root`` is by definition
-    a root of it.
+    Without terms, the value vanishes by the definitions of its names, or because ``root`` is
+    defined as a root of it.
     """
 
     value: sp.Expr
@@ -66,14 +66,14 @@ class Relation:
 class Link:
     """Some of the unknowns, and the equations that are solved for them.
 
-    The equations may contain the unknowns of earlier links.  ``given`` writes what their other
-    symbols depend on in free symbols, or in earlier unknowns: then every equation of an earlier
-    link whose unknowns occur here holds identically.
+    The equations may contain the unknowns of earlier links.  ``given`` writes their other symbols
+    in free symbols or in earlier unknowns, such that every earlier equation whose unknowns occur
+    here holds identically.
 
     A ``lemma`` gives the solutions.  ``body`` contains the statements that it added, ``means`` the
-    names that it handed on, with their values in the unknowns, and ``degenerate`` its own flagged
-    cases.  ``relations`` say why coefficients that ``given`` writes in free symbols depend on each
-    other.  Without a lemma, the solutions are those that the function returns.
+    names that it returned, with their values in the unknowns, and ``degenerate`` its own flagged
+    cases. ``relations`` say why coefficients that ``given`` writes in free symbols depend on each
+    other. Without a lemma, the solutions are those that the function returns.
     """
 
     unknowns: tuple[sp.Symbol, ...]
@@ -87,7 +87,7 @@ class Link:
 
     @classmethod
     def of(cls, lemma: Lemma, given: Mapping[sp.Symbol, sp.Expr] | None = None) -> Link:
-        """The link of a lemma that has its own statements; its premises are taken for granted."""
+        """The link of a lemma with its own statements; its premises are proved with the inverse."""
         premises = (Bound(name, value, sp.S.One, "") for name, value in lemma.premises.items())
         return cls(
             tuple(lemma.solution),
@@ -103,8 +103,8 @@ class Link:
 class Rank:
     """The equations of the links follow from the forward map, and determine the target.
 
-    Those that are linear in the target and in auxiliary ``lengths``, in what others determine, have
-    matrices of full rank.
+    Those that are linear in the target and in auxiliary ``lengths``, given what other equations
+    determine, have matrices of full rank.
     """
 
     meaning: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
@@ -114,9 +114,9 @@ class Rank:
     lengths: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     """Auxiliary lengths, at a posture."""
     units: tuple[tuple[sp.Expr, sp.Expr, tuple[sp.Expr, ...]], ...] = ()
-    """Sine and cosine of angles that may be chosen freely, and the names that are free in them."""
-    held: tuple[sp.Symbol, ...] = ()
-    """Names of what the target determines, which count as further coordinates of it."""
+    """Pairs of angles that may be chosen freely, and the names that are free in them."""
+    extra_coordinates: tuple[sp.Symbol, ...] = ()
+    """Names of quantities that the target determines; they count as further coordinates of it."""
 
 
 @dataclass(frozen=True)
@@ -168,9 +168,9 @@ class Inverse:
     nonnegative: tuple[sp.Symbol, ...] = ()
     """Unknowns that are lengths: two solutions that differ only in their sign count as one."""
     weights: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    """By how much the angle of a target counts, in the unknowns, where it is undefined at some."""
+    """The weight of the angle of a target, in the unknowns, if it is undefined somewhere."""
     condition: sp.Expr = sp.S.Zero
-    """By how much the mechanism amplifies roundings, in its parameters; see ``promised``."""
+    """The factor by which the mechanism amplifies rounding, in its parameters; see ``promised``."""
 
     def posed(self, inputs: tuple[sp.Symbol, ...], image: tuple[sp.Expr, ...]) -> Inverse:
         """The same inverse with the forward map ``image`` as its equations."""
@@ -189,7 +189,7 @@ class Inverse:
 
     @property
     def rank(self) -> Rank:
-        """The glue if it is a rank; otherwise one that means nothing."""
+        """The glue if it is a rank; otherwise an empty one."""
         return self.glue if isinstance(self.glue, Rank) else Rank()
 
     @property

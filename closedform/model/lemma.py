@@ -16,7 +16,7 @@ from closedform.model.pair import Pair
 
 
 class Shape(Enum):
-    """What the equation that a lemma solves looks like in its unknown x."""
+    """The form of the equation that a lemma solves, in its unknown x."""
 
     ANY = "any"
     LINEAR = "linear in sin(x) and cos(x)"

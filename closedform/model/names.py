@@ -108,7 +108,7 @@ def in_javascript(name: str) -> bool:
 
 
 MEANINGS = {"Python": in_python, "C": in_c, "JavaScript": in_javascript}
-"""Of each language, what tells whether a name has a meaning of its own there."""
+"""For each language, a test whether a name already has a meaning in it."""
 
 
 def check_identifier(name: str, where: str) -> None:

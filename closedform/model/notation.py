@@ -192,7 +192,7 @@ class _Reader:
         self.decimals = 0
         self.pieces: list[Piece] = []
         self.bars = 0
-        """How many absolute values are open: a bar then closes one."""
+        """The number of absolute values that are open: if any, a bar closes one."""
 
     def relations(self) -> tuple[Relation, ...]:
         found = []
@@ -333,7 +333,7 @@ class _Reader:
         return meaning(*self.arguments())
 
     def arguments(self) -> list[Value]:
-        """What a function is applied to: a list in brackets, or one factor."""
+        """The arguments of a function: a list in brackets, or one factor."""
         if self.peek in ("(", "["):
             closing = CLOSING[self.take()]
             found = [self.sum()]

@@ -40,7 +40,7 @@ class Pair:
         return sp.Matrix([self.c, self.s])
 
     def known_as(self, program: Program, label: str) -> Pair:
-        """The same pair, named ``s<label>`` and ``c<label>`` in the program."""
+        """The same pair under the names ``s<label>`` and ``c<label>`` in the program."""
         return Pair(program.let(f"s{label}", self.s), program.let(f"c{label}", self.c))
 
 

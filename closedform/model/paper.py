@@ -32,11 +32,11 @@ class Paper:
     authors: tuple[str, ...]
     reference: str = ""
     source: str = ""
-    """How the text was read, and which claims a mistake of the reading may touch."""
+    """How the text was obtained, and which claims a reading error may affect."""
     out_of_scope: tuple[tuple[str, str, str], ...] = ()
-    """What the claims leave out: the first and the last words of a passage, and the reason."""
+    """What the claims leave out: the first and last words of each passage, and the reason."""
     year: str = ""
-    """When it was published, or what is known of that."""
+    """The date of publication, or what is known of it."""
     works: tuple[Work, ...] = ()
     """The books and papers that this source stands for, if it is a collection of them."""
 

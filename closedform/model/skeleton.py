@@ -1,4 +1,4 @@
-"""What a mechanism looks like: named points, links through them, and joints at them."""
+"""The shape of a mechanism: named points, links through them, and joints at them."""
 
 from __future__ import annotations
 

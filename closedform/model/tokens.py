@@ -24,7 +24,7 @@ class Token(NamedTuple):
 SPACES = (
     r"\,", r"\;", r"\:", r"\!", r"\ ", r"\quad", r"\qquad", "~", r"\displaystyle", r"\limits",
 )  # fmt: skip
-"""What changes only the look of a formula."""
+"""Commands that change only the look of a formula."""
 SIZES = (
     r"\left", r"\right", r"\bigl", r"\bigr", r"\Bigl", r"\Bigr", r"\big", r"\Big",
 )  # fmt: skip

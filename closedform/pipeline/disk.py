@@ -49,7 +49,7 @@ def locked(path: Path, patience: float = math.inf) -> Iterator[None]:
 
 
 def _taken(file: IO[str], how: int) -> bool:
-    """Whether there is the lock now, or cannot be one."""
+    """Whether the lock was taken, or the system cannot lock."""
     import fcntl
 
     try:

@@ -338,9 +338,10 @@ def _digest(paths: Iterable[Path], lines: Iterable[str] = ()) -> str:
 def print_robot(
     source: Source,
     backends: Sequence[str],
+    *,
     store: Store,
-    fresh: bool,
     report: Report,
+    fresh: bool = False,
     timeout: float = 0,
 ) -> Printed:
     """Prove one robot, unless its stored proof is still valid, and print its files.
@@ -381,7 +382,7 @@ def _printed(
     report: Report,
     given_up: str,
 ) -> Printed:
-    """Print one robot; if there is a reason why its inverse is ``given_up``, without it."""
+    """Print one robot; without its inverse if that was ``given_up`` for a reason."""
     from closedform.emit.pages import pages
 
     report(source.name, "deriving")

@@ -16,7 +16,7 @@ from closedform.pipeline.workers import each
 
 @dataclass(frozen=True)
 class Verified:
-    """What was checked of one mechanism; ``failure`` is empty if every certificate is right."""
+    """The result for one mechanism; ``failure`` is empty if every certificate is right."""
 
     name: str
     identities: int = 0

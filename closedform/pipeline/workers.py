@@ -1,7 +1,7 @@
 """Processes that work through a list, each with a pipe of its own.
 
-There is no lock, queue or thread that processes share: one that dies leaves nothing behind that the
-others, or the one that started them, could wait for.
+They share no lock, queue or thread, so a process that dies leaves nothing behind that the others,
+or the one that started them, could wait for.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class WorkerError(Exception):
 def each(
     job: Callable[..., Any], items: Sequence[Any], jobs: int, report: Report
 ) -> Iterator[tuple[Any, Any]]:
-    """``job(item, report=report)`` for all items, in processes: each item with what comes of it.
+    """Run ``job(item, report=report)`` for all items in processes; yields each item and its result.
 
     An exception that a job raises is its result.
     """
@@ -66,7 +66,7 @@ class _Worker:
         theirs.close()  # so that the end of the process is the end of the pipe
 
     def take(self, waiting: list[Any]) -> bool:
-        """Begin with what is next, if anything is left."""
+        """Start the next item, if one is left."""
         if waiting:
             self.item = waiting.pop()
             with contextlib.suppress(OSError):  # one that has died is found when it is read
@@ -89,7 +89,7 @@ class _Worker:
         self.process.join(GRACE)
 
     def end(self) -> None:
-        """At once, whatever it is doing."""
+        """End the process at once, whatever it is doing."""
         self.connection.close()
         for stop in (self.process.terminate, self.process.kill):
             if self.process.is_alive():
@@ -98,7 +98,7 @@ class _Worker:
 
 
 def _work(connection: Connection, job: Callable[..., Any]) -> None:
-    """In the process: it ends with the one that started it, however that ends."""
+    """The main loop of a process; it ends with its parent, however that ends."""
     parent = multiprocessing.parent_process()
     assert parent is not None
     threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
@@ -122,7 +122,7 @@ def _end_with(parent: Any) -> None:
 
 @contextlib.contextmanager
 def _uninterrupted() -> Iterator[None]:
-    """Processes that are started here do not see Ctrl-C: it is up to us to end them."""
+    """Keep Ctrl-C from processes that are started here; the parent ends them."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

@@ -1,4 +1,4 @@
-"""Maps over a plane of the task or of two joints: what is reached, and how well."""
+"""Maps over a plane of the task or of two joints: what can be reached, and how well."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ NEAR_EDGE = 0.2
 """A factor below this part of its usual size beside the border counts as zero on it."""
 BLUES = mpl.colormaps["Blues"]
 DEEP = 1.9
-"""The number of branches that has the deepest blue, in units of all: curves stay visible."""
+"""The share of all branches that gets the deepest blue, so that curves stay visible."""
 FEW = 0.002
-"""A number of branches that fewer points than this part of the map have is left out."""
+"""A number of branches that occurs at a smaller share of the points is left out."""
 WIDE = 30
 """Where a line of a legend is broken, in letters."""
 SHORT = 25

@@ -1,4 +1,4 @@
-"""What the figures ask of a generated module: postures, targets, and the points to draw."""
+"""A generated module as the figures use it: postures, targets, and the points to draw."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ class Robot:
         return q
 
     def poses(self, n: int, seed: int = 0) -> Array:
-        """Random poses of a hand that no forward map gives: not far off, and not turned far."""
+        """Random poses near the base, for a hand without a forward map."""
         rng = np.random.default_rng(seed)
         place, turn = rng.uniform(-1, 1, (2, n, 3))
         task = self.module.TASK

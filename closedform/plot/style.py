@@ -108,7 +108,7 @@ def save(ax: Any, target: str | Path) -> None:
 
 
 def _shortened(svg: str) -> str:
-    """The same picture: coordinates to four digits, a tenth of a point at worst, and no indents."""
+    """The same picture with coordinates of four digits, off by a tenth of a point, no indents."""
 
     def rounded(number: re.Match[str]) -> str:
         return f"{float(number[0]):.4g}"

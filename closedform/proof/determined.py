@@ -25,10 +25,10 @@ def random_posture(draw: random.Random, symbols: Sequence[Expr]) -> dict[Expr, E
 def undetermined(
     inverse: Inverse, posture: Posture, systems: Sequence[Sequence[Expr]]
 ) -> list[str]:
-    """The coordinates of the target that the equations leave open, given the joints.
+    """The coordinates of the target that the equations do not determine, given the joints.
 
-    Equations that are linear in what is not known yet determine more of it, all together or those
-    of one system, until nothing is added.
+    Equations that are linear in the coordinates not known yet determine more of them, all together
+    or those of one system, until nothing is added.
     """
     draw = random.Random(2)
     columns, circle = _columns(inverse, posture)
@@ -54,9 +54,9 @@ def undetermined(
 
 
 def _columns(inverse: Inverse, posture: Posture) -> tuple[dict[Expr, Expr], dict[Expr, Expr]]:
-    """The coordinates of the target, what counts as one, and the auxiliary lengths, at a posture.
+    """The coordinates of the target, names that count as such, and auxiliary lengths, at a posture.
 
-    An angle has two, its cosine and its sine.
+    An angle has two coordinates, its cosine and its sine.
     """
     columns: dict[Expr, Expr] = {}
     circle: dict[Expr, Expr] = {}
@@ -68,14 +68,14 @@ def _columns(inverse: Inverse, posture: Posture) -> tuple[dict[Expr, Expr], dict
             columns |= {c: sp.cos(value), s: sp.sin(value)}
         else:
             columns[x] = value
-    columns |= {s: posture(s) for s in posture.held}
+    columns |= {s: posture(s) for s in posture.extra_coordinates}
     return columns | posture.lengths, circle
 
 
 def _linear_rows(
     equations: Sequence[Expr], columns: Sequence[Expr], known: Mapping[Expr, Expr]
 ) -> tuple[list[list[Expr]], bool]:
-    """The coefficients of the linear equations, and whether there are others."""
+    """The coefficients of the linear equations, and whether there are nonlinear ones."""
     rows, nonlinear = [], False
     for e in equations:
         slopes = [e.diff(x) if e.has(x) else sp.S.Zero for x in columns]
@@ -89,7 +89,7 @@ def _linear_rows(
 def _determined(
     rows: Sequence[Sequence[Expr]], columns: Sequence[Expr], draw: random.Random
 ) -> list[Expr]:
-    """The columns of a matrix if it has full rank, or those of its parts that have.
+    """The columns of a matrix if it has full rank, otherwise those of its parts of full rank.
 
     Parts share no row and no column.
     """
@@ -117,7 +117,7 @@ def _has_full_rank(rows: Sequence[Sequence[Expr]], width: int, draw: random.Rand
 
 
 def _parts(rows: Sequence[Sequence[Expr]], width: int) -> list[list[int]]:
-    """The columns, those together that a row connects; without columns of zeros."""
+    """The columns in groups that rows connect; columns of zeros are left out."""
     parts: list[set[int]] = []
     for row in rows:
         touched = {j for j in range(width) if row[j] != 0}

@@ -121,7 +121,10 @@ class _Chain:
                 )
 
     def _flags_hold(self, case: Degenerate) -> None:
-        """On the locus of a case; what then is returned is proved of the lemma's own case."""
+        """Prove that the flags of a case hold on its locus.
+
+        The answer there is proved with the lemma's own case.
+        """
         for flag in case.flags:
             (value,) = (
                 s.value for s in self.function.body if isinstance(s, Vanishes) and s.symbol == flag
@@ -143,7 +146,7 @@ class _Chain:
                 require(square, (), f"{self.where}: ({c}, {s}) is not a unit vector")
 
     def _matches_follow(self) -> None:
-        """Prove that no posture is refused because its image does not match."""
+        """Prove that no posture is rejected because its image does not match."""
         place = f"{self.where}: what the target is compared with differs from the forward map"
         if self.matches:
             require(sp.Matrix([self.posture(e) for e in self.matches]), (), place)
@@ -154,7 +157,7 @@ class _Chain:
         return bool(self.matches) and not self._undetermined(links)
 
     def _relations_hold(self) -> None:
-        """Prove that the coefficients of each lemma satisfy what it requires of them."""
+        """Prove that the coefficients of each lemma satisfy its relations."""
         solved: dict[Expr, tuple[Expr, ...]] = {}
         rotation = dict(zip(self.inverse.targets, self.inverse.parametrisation, strict=False))
         for link in self.inverse.links:
@@ -181,7 +184,7 @@ class _Chain:
             solved[link.unknowns[0]] = link.equations
 
     def _is_root(self, root: Expr, value: Expr, place: str) -> None:
-        """Prove that an expression is what the definition of a root says vanishes."""
+        """Prove that a relation vanishes because its root is defined as a root of it."""
         made = self.posture.made[root]
         if not isinstance(made, Resolvent):
             raise ProofError(f"{place}, does not follow: {root} is not defined as a root")
@@ -217,7 +220,7 @@ class _Combined:
         self._composes_answers()
 
     def _premises_hold(self, link: Link) -> None:
-        """Prove what a lemma takes for granted of names that earlier statements have made."""
+        """Prove the premises of a lemma about names that earlier statements have made."""
         lemma = link.lemma
         if lemma is None:
             return

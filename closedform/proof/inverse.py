@@ -33,7 +33,7 @@ class InverseResult:
     solutions: int
     method: str
     assumptions: tuple[str, ...]
-    """Bounds in inputs and parameters; none where lemmas have theirs in names."""
+    """Bounds in inputs and parameters; none if the bounds of lemmas are in names."""
     lemmas: tuple[str, ...]
 
 
@@ -93,9 +93,9 @@ def _method(inverse: Inverse, counts: Sequence[SolutionCount]) -> str:
 
 
 def _require_all_branches(derivation: Derivation, inverse: Inverse, count: int, each: int) -> int:
-    """The number of branches; raises if they do not have ``count`` solutions, ``each`` as many.
+    """The number of branches; raises if their solutions are not ``count``, ``each`` for a branch.
 
-    The error tells a posture that is not covered.
+    The error names a posture that no branch reaches.
     """
     function = derivation[inverse.function]
     branches = len(function.branches) if function.branches else 1

@@ -35,7 +35,7 @@ class Answers:
 
     @classmethod
     def of_lemma(cls, link: Link, signs: Sequence[Expr]) -> Answers:
-        """Those of a lemma; the ``signs`` in its coefficients stay symbols."""
+        """The solutions of a lemma; the ``signs`` in its coefficients stay symbols."""
         assert link.lemma is not None
         own = dict.fromkeys([*link.lemma.signs, *signs])
         used = {s for e in (*link.lemma.solution.values(), *link.means) for s in e.free_symbols}
@@ -47,7 +47,7 @@ class Answers:
 
     @classmethod
     def of_function(cls, function: Function, unknowns: Sequence[Expr]) -> Answers:
-        """Those that a function returns for its ``unknowns``."""
+        """The solutions that a function returns for its ``unknowns``."""
         outputs = [e for a in function.outputs for e in a.entries]
         solution = dict(zip(unknowns, outputs, strict=True))
         branches = tuple((label or "only", signs) for label, signs in function.cases())
@@ -141,7 +141,7 @@ _counted: dict[Any, SolutionCount] = {}
 
 
 def forget_counts() -> None:
-    """Count everything anew, so that the certificates of a mechanism are complete."""
+    """Forget all counts, so that the certificates of a mechanism are complete."""
     _counted.clear()
 
 
@@ -156,7 +156,7 @@ def _count(link: Link) -> SolutionCount:
 
 
 def prove_system(function: Function, inverse: Inverse, where: str) -> list[Expr]:
-    """Prove that what a function returns satisfies all equations of the links without a lemma."""
+    """Prove that the answers of a function satisfy all equations of the links without a lemma."""
     alone = [link for link in inverse.chained if link.lemma is None]
     given = alone[0].given if len(alone) == 1 else {}
     return prove_sound(
@@ -213,7 +213,7 @@ def _has(equations: Sequence[Expr], unknowns: Sequence[Expr]) -> bool:
 def _require_earlier(
     equations: Sequence[Expr], given: Mapping[Expr, Expr], links: Sequence[Link], where: str
 ) -> None:
-    """Prove that what a link is given satisfies the earlier links that its equations depend on."""
+    """Prove that the given expressions of a link satisfy the earlier links it depends on."""
     for other in links:
         if _has(equations, other.unknowns):
             earlier = sp.Matrix([substitute(e, given) for e in other.equations])
@@ -224,7 +224,7 @@ def _require_earlier(
 def _in_squares(
     equations: Sequence[Expr], lengths: Sequence[Expr], where: str
 ) -> tuple[list[Expr], list[Expr]]:
-    """Equations in the squares of lengths, whose signs do not count, and the squares."""
+    """Equations in the squares of lengths, whose signs do not count, and these squares."""
     roots = {u: sp.sqrt(real(f"{u}_squared")) for u in lengths}
     squared = {u**2: s**2 for u, s in roots.items()}
     found = [sp.expand(e).xreplace(squared) for e in equations]

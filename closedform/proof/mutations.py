@@ -34,7 +34,7 @@ class Mutation:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a changed text: its verdict, or the error that its check raised."""
+    """The outcome for a changed text: its verdict, or the error that its check raised."""
 
     mutation: Mutation
     kind: str

@@ -28,7 +28,7 @@ class Posture:
                 taken.add(held[-1])
                 (self.sums[held[-1]],) = sp.solve(value - symbol, held[-1])
         self.names: dict[Expr, Expr] = {}
-        self.held = glue.held
+        self.extra_coordinates = glue.extra_coordinates
         self.meaning = glue.meaning
         self.made = {s.symbol: s.value for s in function.body if isinstance(s, (Let, Bound))}
         self.targets = {
@@ -46,8 +46,8 @@ class Posture:
         return self.in_sums(self._written_out(e, self.names))
 
     def in_coordinates(self, e: Expr) -> Expr:
-        """The same, with names that count as coordinates of the target."""
-        return self.in_sums(self._written_out(e, {s: s for s in self.held}))
+        """The same, with the names that count as coordinates of the target."""
+        return self.in_sums(self._written_out(e, {s: s for s in self.extra_coordinates}))
 
     def _written_out(self, e: Expr, names: dict[Expr, Expr]) -> Expr:
         for s in e.free_symbols:

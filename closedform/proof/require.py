@@ -24,7 +24,7 @@ def _decide(difference: sp.ImmutableMatrix, nonnegative: tuple[sp.Expr, ...]) ->
 
 
 def forget_decisions() -> None:
-    """Decide everything anew, so that the certificates of a mechanism are complete."""
+    """Forget all decisions, so that the certificates of a mechanism are complete."""
     _decide.cache_clear()
 
 

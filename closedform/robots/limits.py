@@ -14,7 +14,7 @@ SLACK = 1e-9
 rounding of a target that was computed from joints at their limits."""
 
 HALFWAY = 1e-9
-"""In turns: a seed so near to the middle of two turns is at the same distance from both."""
+"""In turns: a seed this close to the middle of two turns is equally far from both."""
 
 
 class Limits(NamedTuple):

@@ -1,9 +1,9 @@
-"""Where a joint is free: the posture in which it keeps the value of a seed.
+"""The posture at a singular target in which a free joint keeps the value of a seed.
 
 At a singular target the inverse returns one of infinitely many postures, with a conventional value
 of the free joint.  The others form a curve through it, on which the hand does not move.  Its
-tangent is the null direction of the Jacobian; followed until the free joint has the value of the
-seed, it leads to the posture that is wanted.
+tangent is the null direction of the Jacobian.  Following it until the free joint has the value of
+the seed leads to the wanted posture.
 """
 
 from __future__ import annotations

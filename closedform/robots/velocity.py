@@ -17,10 +17,10 @@ AXES = {"all": slice(0, 6), "trans": slice(0, 3), "rot": slice(3, 6)}
 
 
 class Rates(NamedTuple):
-    """Joint rates, and how well they give the velocity that was asked for.
+    """Joint rates, and how well they give the requested velocity.
 
-    ``error``, of the shape of the velocity, is what is missing of it.  ``status`` is OK, SINGULAR
-    if the Jacobian loses rank there, or INVALID if it is not finite; ``qdot`` is then NaN.
+    ``error``, of the shape of the velocity, is the part that is missing.  ``status`` is OK,
+    SINGULAR if the Jacobian loses rank there, or INVALID if it is not finite; ``qdot`` is then NaN.
     """
 
     qdot: Array

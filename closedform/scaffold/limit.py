@@ -25,8 +25,8 @@ class LimitError(BaseException):
 def limited(seconds: float) -> Iterator[None]:
     """Raise :class:`LimitError` in the body after so many seconds of computing; 0 means no limit.
 
-    They are those of this process, so that a busy machine does not decide what is found.  A system
-    without such timers, and a thread, have no limit.
+    The seconds are CPU time of this process, so a busy machine does not decide what is found.
+    There is no limit on a system without such timers, or in a thread.
     """
     main = threading.current_thread() is threading.main_thread()
     if not (seconds > 0 and main and hasattr(signal, "setitimer")):
@@ -46,10 +46,11 @@ def limited(seconds: float) -> Iterator[None]:
 
 
 def bounded(seconds: float, work: Callable[[Say], Result], say: Say) -> Result:
-    """What ``work`` returns; :class:`LimitError` after so many seconds of computing.
+    """The result of ``work``; :class:`LimitError` after so many seconds of computing.
 
-    The work is done in a process of its own, which the system ends: a product of long integers
-    hears no signal.  It tells ``say`` what it is doing.  An exception in it is raised here.
+    The work is done in a process of its own, which the system can end: a product of long integers
+    does not react to a signal.  It reports to ``say`` what it is doing.  An exception in it is
+    raised here.
     """
     main = threading.current_thread() is threading.main_thread()
     forks = "fork" in multiprocessing.get_all_start_methods()

@@ -90,7 +90,7 @@ def _coupled(found: Legs, follower: Joint) -> list[LoopLeg]:
 
 
 def _way(task: Sequence[str]) -> str:
-    """What derives the loop: a platform sets its task itself."""
+    """The call that derives the loop; a platform sets its task itself."""
     return {0: "platform", 1: "coupled"}.get(len(task), "parallel")
 
 

@@ -19,10 +19,10 @@ FLIP = "{+1: 'noflip', -1: 'flip'}"
 
 @dataclass(frozen=True)
 class Solved:
-    """How the joints that carry a point were solved.
+    """The solution of the joints that carry a point.
 
-    ``turned`` are their rotations: a pair about z, and the constant rotation after it.  ``rest`` is
-    what fewer than three leave of the point, zero if it can be reached.
+    ``turned`` are their rotations: a pair about z, and the constant rotation after it.  With fewer
+    than three joints, ``rest`` is what they leave of the point, which is zero if it can be reached.
     """
 
     structure: str
@@ -70,7 +70,7 @@ class Maker:
     ) -> None:
         """Solve two joints, given with their signs and link vectors, to reach the point x, y.
 
-        With ``alone`` x and y are target coordinates, so the links set the scale of rounding.
+        With ``alone``, x and y are target coordinates, so the links set the scale of rounding.
         """
         (first, second), (u, v) = joints, vectors
         lengths = [norm(w) for w in (u, v)]

@@ -1,4 +1,4 @@
-"""Reads a serial arm from an MJCF file, with MuJoCo: defaults, frames and units are resolved by it.
+"""Reads a serial arm from an MJCF file, with MuJoCo, which resolves defaults, frames and units.
 
 Only bodies, joints and sites are used, so the meshes of the model need not be there.
 """
@@ -49,7 +49,7 @@ def read_mjcf(path: Path, *, base: str = "", tool: str = "") -> Table:
 
 
 def _model(path: Path) -> Any:
-    """The compiled model, without anything that has to be loaded or may fail."""
+    """The compiled model, without parts that have to be loaded or may fail."""
     try:
         import mujoco
     except ModuleNotFoundError as error:

@@ -63,7 +63,7 @@ class Script:
     inverse: str
     notes: tuple[str, ...] = ()
     explained: tuple[str, ...] = ()
-    """What was recognised of the axes, and which chains were tried."""
+    """What was recognised about the axes, and which chains were tried."""
     advice: str = ""
     """What to do if no inverse is proposed."""
     structure: str = ""
@@ -73,9 +73,9 @@ class Script:
 
 @dataclass
 class Search:
-    """How an inverse is looked for: the joint that is ``given``, and a limit of time in seconds.
+    """How to search for an inverse: the joint that is ``given``, and a limit of time in seconds.
 
-    ``say`` is told what is being done.
+    ``say`` is called with a description of each step.
     """
 
     given: str = ""

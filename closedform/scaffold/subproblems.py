@@ -34,9 +34,9 @@ class SubproblemMaker(Maker):
     lifted: str = ""
     """The pair of the first joint of a wrist."""
     more: str = ""
-    """What the lemma of a wrist is told beside its angles."""
+    """Further arguments of the lemma of a wrist, besides its angles."""
     tool: str = ""
-    """The direction of the last axis, if it tells of the first joint."""
+    """The direction of the last axis, if it determines the first joint."""
     along: sp.Expr = sp.S.Zero
     """Its component along the parallel axes in between."""
 
@@ -560,7 +560,7 @@ class SubproblemMaker(Maker):
 LINE = "{+1: 'first', -1: 'second'}"
 SIDE = "{+1: 'left', -1: 'right'}"
 ELBOW = "{+1: 'up', -1: 'down'}"
-"""Where a distance decides, the joint bends an elbow."""
+"""A branch of a joint that a distance determines is an elbow."""
 
 
 __all__ = ["SubproblemMaker"]

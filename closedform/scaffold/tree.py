@@ -1,7 +1,7 @@
-"""A tree of links, as files that describe robots have it: the chain from a base to a tool.
+"""A tree of links, as in files that describe robots, and the chain from a base to a tool.
 
-Such files hold rounded numbers.  Angles that were rounded, such as 1.5708, become the fraction of
-pi that they stand for, and lengths and axes lose what the arithmetic of an exporter added to them;
+Such files contain rounded numbers.  Rounded angles, such as 1.5708, become the fraction of pi that
+they stand for, and noise that the arithmetic of an exporter added to lengths and axes is removed;
 the notes say so.
 """
 
@@ -29,7 +29,7 @@ LARGEST = 2_000_000
 NOISE = sp.Rational(1, 10**9)
 """Angles and coordinates of axes below this are the rounding of an exporter, not meant."""
 MEANT = ((0, sp.Rational(1, 10**5)), (4, sp.Rational(1, 10**6)), (9, sp.Rational(1, 10**9)))
-"""A length this close to one with so few decimals stands for it; at last, to the nanometre."""
+"""A length this close to a number with this many decimals stands for it; finally, nanometres."""
 ALONG = 2e-5
 """A direction this close to an axis of coordinates, in radians, stands for it."""
 NEAR = sp.Rational(1, 2000)

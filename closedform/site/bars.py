@@ -1,4 +1,4 @@
-"""The tables of the benchmarks as bars: what each competitor needs, the shortest best."""
+"""The tables of the benchmarks as bar charts; shorter is better."""
 
 from __future__ import annotations
 

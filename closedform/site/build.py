@@ -26,7 +26,7 @@ DOCUMENTS = (
     "CHANGELOG.md",
     "CONTRIBUTING.md",
 )
-"""What the site takes as it is, at the same places as in the repository, so that links hold."""
+"""Documents that are copied to the same places as in the repository, so that links work."""
 
 SHARED = ("Solutions", "Positions", "Status", "Skeleton", "SkeletonJoint")
 """What all generated modules have in common."""
@@ -171,7 +171,7 @@ def compared() -> dict[str, str]:
 
 
 def _digest(paths: Iterable[Path]) -> str:
-    """With other code all pages are read again."""
+    """A digest of the code; if it changes, all pages are read again."""
     return hashlib.sha256(b"".join(p.read_bytes() for p in sorted(paths))).hexdigest()
 
 

@@ -1,4 +1,4 @@
-"""What the pages need of Sphinx: formulas as MathML, and directives for what is not text."""
+"""The Sphinx extension of the pages: formulas as MathML, and directives for what is not text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What rests on what: the steps of a derivation, the inverses and the claims, as a graph."""
+"""The graph of dependencies between the steps of a derivation, the inverses and the claims."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the maps of an explorer compute, printed for one branch or one assembly mode at a time.
+"""The functions behind the maps of an explorer, printed for one branch or assembly mode at a time.
 
 A map shows one branch, and the inverse of the JavaScript module computes all of them.
 """
@@ -24,9 +24,9 @@ def module(derivation: Derivation) -> str:
 
 
 def has_section(derivation: Derivation) -> bool:
-    """Whether the hand fills a part of a plane or of space: then its workspace has a section.
+    """Whether the hand moves in a part of a plane or of space, so that its workspace has a section.
 
-    A hand that fewer joints than coordinates move stays on a surface.
+    A hand with fewer joints than coordinates stays on a surface.
     """
     task = derivation.task
     return len(task) == POSE or 1 < sum(axis in task for axis in "xyz") <= len(derivation.actuated)

@@ -38,7 +38,7 @@ class MarkupError(ValueError):
 
 @dataclass(frozen=True)
 class Place:
-    """What a label names: the page and the mark on it, and how a sentence calls it."""
+    """The target of a label: the page, the anchor on it, and how a sentence refers to it."""
 
     address: str
     title: str
@@ -69,40 +69,33 @@ class Markdown:
         done: list[str] = []
         at = 0
         while at < len(text):
-            token = TOKEN.match(text, at)
-            assert token is not None
-            at = token.end()
-            part = token[0]
-            if part == "$":
-                end = closing_dollar(text, at)
-                done.append(inline(text[at:end]))
-                at = end + 1
-            elif part == r"\[":
-                end = text.index(r"\]", at)
-                done.append(displayed(text[at:end]))
-                at = end + 2
-            elif part in self.commands:
-                inner, at = argument(text, at)
-                done.append(self.commands[part](inner))
-            elif part == r"\hyperref":
-                label, at = argument(text, at, ("[", "]"))
-                inner, at = argument(text, at)
-                done.append(self.link(label, self(inner)))
-            elif part == r"\texorpdfstring":
-                inner, at = argument(text, at)
-                _, at = argument(text, at)
-                done.append(self(inner))
-            elif part in CHARACTERS:
-                done.append(escaped(CHARACTERS[part]))
-            elif part in ACCENTS:
-                done.append(ACCENTS[part])
-            elif part.startswith("\\") and len(part) == 2 and not part[1].isalpha():
-                done.append(escaped(part[1]))
-            elif part.startswith("\\"):
-                raise MarkupError(f"the site does not know the command {part} in {text!r}")
-            elif part not in "{}":
-                done.append(escaped(part))
+            piece, at = self._piece(text, at)
+            done.append(piece)
         return "".join(done)
+
+    def _piece(self, text: str, start: int) -> tuple[str, int]:
+        """The translation of the token that starts here with its arguments, and where they end."""
+        token = TOKEN.match(text, start)
+        assert token is not None
+        part, at = token[0], token.end()
+        if part == "$":
+            end = closing_dollar(text, at)
+            return inline(text[at:end]), end + 1
+        if part == r"\[":
+            end = text.index(r"\]", at)
+            return displayed(text[at:end]), end + 2
+        if part in self.commands:
+            inner, at = argument(text, at)
+            return self.commands[part](inner), at
+        if part == r"\hyperref":
+            label, at = argument(text, at, ("[", "]"))
+            inner, at = argument(text, at)
+            return self.link(label, self(inner)), at
+        if part == r"\texorpdfstring":
+            inner, at = argument(text, at)
+            _, at = argument(text, at)
+            return self(inner), at
+        return _plain_token(part, text), at
 
     def place(self, label: str) -> Place:
         if label not in self.places:
@@ -160,6 +153,19 @@ def displayed(formula: str, label: str = "") -> str:
 
 def tidy(formula: str) -> str:
     return formula.strip().replace("`", "'")
+
+
+def _plain_token(token: str, text: str) -> str:
+    """A token without arguments: a character, an accent, or plain text; braces vanish."""
+    if token in CHARACTERS:
+        return escaped(CHARACTERS[token])
+    if token in ACCENTS:
+        return ACCENTS[token]
+    if token.startswith("\\") and len(token) == 2 and not token[1].isalpha():
+        return escaped(token[1])
+    if token.startswith("\\"):
+        raise MarkupError(f"the site does not know the command {token} in {text!r}")
+    return "" if token in "{}" else escaped(token)
 
 
 def escaped(text: str) -> str:

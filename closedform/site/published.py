@@ -1,8 +1,8 @@
-"""Joints that a paper's formulas give, as JavaScript: what the explorer sets beside the right ones.
+"""The joints that formulas of a paper give, as JavaScript, for comparison in the explorer.
 
 A case is a claim that does not hold and gives joints: formulas for some of them, or all of them as
-numbers.  Formulas get the quantities that they need from a posture that is right, so what they give
-is compared with it at the same target.
+numbers.  The inputs of the formulas are taken from a correct posture, so that the results can be
+compared with it at the same target.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ DIGITS = 17
 
 @dataclass(frozen=True)
 class Case:
-    """What the explorer switches to: a name, where it is explained, and the code."""
+    """A case that the explorer can show: a name, where it is explained, and the code."""
 
     label: str
     verdict: str
     erratum: str
     body: Sequence[str]
     at: Sequence[str] = ()
-    """The joints that are right, where the paper gives numbers for one target."""
+    """The correct joints, if the paper gives numbers for one target."""
 
 
 def cases(derivation: Derivation, proof: Proof) -> list[Case]:

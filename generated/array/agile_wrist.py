@@ -256,10 +256,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
     p : array, shape (..., 4, 3, 3)
         A proper rotation.
     status : array of uint8, shape (..., 4)
-        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
-        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
-        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
-        if the status is UNREACHABLE or INVALID.
+        A `Status` of each assembly mode: OK (0) if `p` is a solution, UNREACHABLE (1) if there
+        is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly
+        determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+        `p` is NaN if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
@@ -270,7 +270,8 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     - The modes are named by the signs of B_11 and B_22, each times that of det A.
     - SINGULAR: the middle axes of two legs are parallel, and the hand is free to turn about
       them; one of its orientations is returned.
@@ -390,7 +391,6 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     A : array, shape (..., 4, 3, 3)
-        A proper rotation.
 
     Raises
     ------
@@ -401,7 +401,8 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params)
     return result
@@ -487,7 +488,8 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     - Its signs distinguish the working modes; BRANCHES lists them in the same order.
     """
     result = _runtime.evaluate(_JACOBIAN_SERIAL, (q,), params)
@@ -615,7 +617,7 @@ def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     J : array, shape (..., 4, 3, 3)
-        A proper rotation.
+        One column for each of theta1, theta2, theta3.
 
     Raises
     ------
@@ -626,7 +628,8 @@ def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     - Not finite where the middle axes of two legs are parallel.
     """
     result = _runtime.evaluate(_JACOBIAN_SPACE, (q,), params)
@@ -690,7 +693,8 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     - Not finite where the middle axes of two legs are parallel.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params)
@@ -783,7 +787,8 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params)
     return result
@@ -890,7 +895,8 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     - Infinite where the determinant of A vanishes.
     """
     result = _runtime.evaluate(_CONDITION_NUMBER, (q,), params)
@@ -993,7 +999,8 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params)
     return result
@@ -1225,7 +1232,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     points : array, shape (..., 4, 11, 3)
-        One column for each of theta1, theta2, theta3.
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -1236,7 +1243,8 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params)
     return result
@@ -1406,8 +1414,9 @@ def ik(R: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
-      plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
+    - The branches, in the order of `BRANCHES`: plus_plus_plus, plus_plus_minus,
+      plus_minus_plus, plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus,
+      minus_minus_minus.
     - SINGULAR: the last axis of a leg is along its first one; its joint is free, and 0 is
       returned.
     - SINGULAR also near it, where det A or B_kk is less than 2^-10: the loop closes, but one

@@ -267,10 +267,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
     p : array, shape (..., 2, 3)
         x, y, z in the unit of the parameters.
     status : array of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
-        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
-        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
-        if the status is UNREACHABLE or INVALID.
+        A `Status` of each assembly mode: OK (0) if `p` is a solution, UNREACHABLE (1) if there
+        is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly
+        determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+        `p` is NaN if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
@@ -281,7 +281,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - UNREACHABLE: the rods do not meet.
     - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
       points is returned.
@@ -523,7 +523,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     points : array, shape (..., 2, 10, 3)
-        One column for each of theta1, theta2, theta3.
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -534,7 +534,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params)
@@ -698,7 +698,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     A : array, shape (..., 2, 3, 3)
-        One column for each of theta1, theta2, theta3.
+        One column for each of x, y, z.
 
     Raises
     ------
@@ -709,7 +709,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params)
@@ -882,7 +882,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     - Its signs distinguish the working modes; BRANCHES lists them in the same order.
     """
@@ -1099,7 +1099,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -1270,7 +1270,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -1447,7 +1447,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params)
@@ -1644,7 +1644,7 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     - Infinite at a parallel singularity.
     """
@@ -2006,8 +2006,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
-      plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
+    - The branches, in the order of `BRANCHES`: plus_plus_plus, plus_plus_minus,
+      plus_minus_plus, plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus,
+      minus_minus_minus.
     - UNREACHABLE: a rod does not reach.
     - SINGULAR: the rod ends on the axis of theta1; theta1 is free, 0 is returned.
     - SINGULAR: no crank; theta1 is free, 0 is returned.

@@ -196,10 +196,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
     p : array, shape (..., 2, 2)
         x, y in the unit of the parameters.
     status : array of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
-        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
-        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
-        if the status is UNREACHABLE or INVALID.
+        A `Status` of each assembly mode: OK (0) if `p` is a solution, UNREACHABLE (1) if there
+        is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly
+        determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+        `p` is NaN if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
@@ -210,7 +210,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - UNREACHABLE: the rods do not meet.
     - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
       points is returned.
@@ -317,7 +317,7 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params)
@@ -439,6 +439,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     points : array, shape (..., 2, 5, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -449,7 +450,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params)
@@ -539,7 +540,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     A : array, shape (..., 2, 2, 2)
-        One column for each of theta1, theta2.
+        One column for each of x, y.
 
     Raises
     ------
@@ -550,7 +551,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params)
@@ -654,7 +655,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Its signs distinguish the working modes; BRANCHES lists them in the same order.
     """
@@ -775,7 +776,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -876,7 +877,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -984,7 +985,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params)
@@ -1094,7 +1095,7 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Infinite at a parallel singularity.
     """
@@ -1263,7 +1264,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The branches, in the order of `BRANCHES`: plus_plus, plus_minus, minus_plus, minus_minus.
     - UNREACHABLE: a rod does not reach.
     - SINGULAR: the rod ends on the axis of theta1; theta1 is free, 0 is returned.
     - SINGULAR: no crank; theta1 is free, 0 is returned.

@@ -173,10 +173,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
     p : array, shape (..., 2, 1)
         psi in rad, in (-pi, pi].
     status : array of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
-        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
-        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
-        if the status is UNREACHABLE or INVALID.
+        A `Status` of each assembly mode: OK (0) if `p` is a solution, UNREACHABLE (1) if there
+        is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly
+        determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+        `p` is NaN if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
@@ -187,7 +187,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - UNREACHABLE: the rod does not reach, so the loop cannot close.
     - SINGULAR: the rod ends on the axis of psi; psi is free, 0 is returned.
     - SINGULAR: no crank; psi is free, 0 is returned.
@@ -289,6 +289,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     points : array, shape (..., 2, 4, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -299,7 +300,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params)
@@ -372,7 +373,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     A : array, shape (..., 2, 1, 1)
-        One column for each of theta.
+        One column for psi.
 
     Raises
     ------
@@ -383,7 +384,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params)
@@ -467,7 +468,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Its sign distinguishes the working modes.
     """
@@ -544,7 +545,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     J : array, shape (..., 2, 1, 1)
-        One column for each of theta.
+        One column for theta.
 
     Raises
     ------
@@ -555,7 +556,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -642,7 +643,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -732,7 +733,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params)
@@ -842,7 +843,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: plus, minus.
+    - The branches, in the order of `BRANCHES`: plus, minus.
     - UNREACHABLE: the rod does not reach.
     - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
     - SINGULAR: no crank; theta is free, 0 is returned.

@@ -286,6 +286,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     points : array, shape (..., 7, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -1452,9 +1453,9 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: facing_up_noflip, facing_up_flip, facing_down_noflip,
-      facing_down_flip, backward_up_noflip, backward_up_flip, backward_down_noflip,
-      backward_down_flip.
+    - The branches, in the order of `BRANCHES`: facing_up_noflip, facing_up_flip,
+      facing_down_noflip, facing_down_flip, backward_up_noflip, backward_up_flip,
+      backward_down_noflip, backward_down_flip.
     - motors_from_joints takes them to the motors.
     - facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the
       wrist; down: below; the other way round where X is between 0 and a1.

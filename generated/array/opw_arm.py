@@ -19,7 +19,7 @@ theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal a
 a spherical wrist (theta4, theta5, theta6) carries the tool.  At zero angles the upper arm, the
 forearm and the tool point upwards; the shoulder is a1 forward of the first axis, the axis of
 the forearm a2 forward of the elbow, and the arm b to the left of the first axis.  Most
-industrial arms are of this kind, by other zeros and signs of their joints.
+industrial arms are of this kind, up to the zeros and signs of their joints.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Arrays of any library that follows the array API standard go in, and arrays of the same library,
@@ -295,6 +295,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     points : array, shape (..., 8, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -1495,15 +1496,15 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: facing_up_noflip, facing_up_flip, facing_down_noflip,
-      facing_down_flip, backward_up_noflip, backward_up_flip, backward_down_noflip,
-      backward_down_flip.
+    - The branches, in the order of `BRANCHES`: facing_up_noflip, facing_up_flip,
+      facing_down_noflip, facing_down_flip, backward_up_noflip, backward_up_flip,
+      backward_down_noflip, backward_down_flip.
     - facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the
       wrist; down: below; the other way round where X is between 0 and a1.
     - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
     - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
       digits, the pose does not.
-    - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
+    - INVALID: the matrix is not a homogeneous transform with a proper rotation.
     - SINGULAR: the centre of the wrist on the first axis (b = 0), theta1 = 0 is returned; equal
       links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without
       length, theta3 is free.

@@ -162,10 +162,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
     p : array, shape (..., 2, 2)
         x, y in the unit of the parameters.
     status : array of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
-        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
-        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
-        if the status is UNREACHABLE or INVALID.
+        A `Status` of each assembly mode: OK (0) if `p` is a solution, UNREACHABLE (1) if there
+        is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly
+        determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+        `p` is NaN if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
@@ -176,7 +176,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - UNREACHABLE: the rods do not meet.
     - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
       points is returned.
@@ -264,7 +264,7 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params)
@@ -348,6 +348,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     points : array, shape (..., 2, 3, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -358,7 +359,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params)
@@ -434,7 +435,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     A : array, shape (..., 2, 2, 2)
-        One column for each of rho1, rho2.
+        One column for each of x, y.
 
     Raises
     ------
@@ -445,7 +446,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params)
@@ -502,7 +503,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_SERIAL, (q,), params)
@@ -590,7 +591,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -661,7 +662,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -739,7 +740,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params)
@@ -824,7 +825,7 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Infinite at a parallel singularity.
     """

@@ -263,7 +263,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     points : array, shape (..., 2, 3)
-        One column for each of theta4, theta5, theta6.
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -317,7 +317,7 @@ def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     J : array, shape (..., 3, 3)
-        A proper rotation.
+        One column for each of theta4, theta5, theta6.
 
     Raises
     ------
@@ -371,7 +371,7 @@ def jacobian_body(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     Returns
     -------
     J : array, shape (..., 3, 3)
-        A proper rotation.
+        One column for each of theta4, theta5, theta6.
 
     Raises
     ------
@@ -550,7 +550,7 @@ def ik(R: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: theta5_positive, theta5_negative.
+    - The branches, in the order of `BRANCHES`: theta5_positive, theta5_negative.
     - SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, and
       theta4 = 0 is returned.
     - INVALID: the matrix is not a proper rotation, for example a reflection.

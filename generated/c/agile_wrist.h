@@ -17,7 +17,7 @@
  *     sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -52,14 +52,14 @@ typedef struct {
  * p : real_t[36], shape (4, 3, 3)
  *     A proper rotation.
  * status : uint8_t[4]
- *     A CLOSEDFORM_ status of each branch: OK (0) if p is a solution, UNREACHABLE (1) if there
- *     is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
+ *     A CLOSEDFORM_ status of each assembly mode: OK (0) if p is a solution, UNREACHABLE (1) if
+ *     there is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
  *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. p
  *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in order: plus_plus, plus_minus, minus_plus, minus_minus.
  * - The modes are named by the signs of B_11 and B_22, each times that of det A.
  * - SINGULAR: the middle axes of two legs are parallel, and the hand is free to turn about
  *   them; one of its orientations is returned.
@@ -84,11 +84,10 @@ void agile_wrist_fk_batch(size_t n, const agile_wrist_params *params,
  * Outputs
  * -------
  * A : real_t[36], shape (4, 3, 3)
- *     A proper rotation.
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in order: plus_plus, plus_minus, minus_plus, minus_minus.
  */
 void agile_wrist_jacobian_parallel(const agile_wrist_params *params, const real_t q[3],
     real_t A[36]);
@@ -110,7 +109,7 @@ void agile_wrist_jacobian_parallel_batch(size_t n, const agile_wrist_params *par
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in order: plus_plus, plus_minus, minus_plus, minus_minus.
  * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  */
 void agile_wrist_jacobian_serial(const agile_wrist_params *params, const real_t q[3],
@@ -130,11 +129,11 @@ void agile_wrist_jacobian_serial_batch(size_t n, const agile_wrist_params *param
  * Outputs
  * -------
  * J : real_t[36], shape (4, 3, 3)
- *     A proper rotation.
+ *     One column for each of theta1, theta2, theta3.
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in order: plus_plus, plus_minus, minus_plus, minus_minus.
  * - Not finite where the middle axes of two legs are parallel.
  */
 void agile_wrist_jacobian_space(const agile_wrist_params *params, const real_t q[3],
@@ -157,7 +156,7 @@ void agile_wrist_jacobian_space_batch(size_t n, const agile_wrist_params *params
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in order: plus_plus, plus_minus, minus_plus, minus_minus.
  * - Not finite where the middle axes of two legs are parallel.
  */
 void agile_wrist_determinant(const agile_wrist_params *params, const real_t q[3],
@@ -181,7 +180,7 @@ void agile_wrist_determinant_batch(size_t n, const agile_wrist_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in order: plus_plus, plus_minus, minus_plus, minus_minus.
  */
 void agile_wrist_singularities(const agile_wrist_params *params, const real_t q[3],
     real_t factors[16]);
@@ -203,7 +202,7 @@ void agile_wrist_singularities_batch(size_t n, const agile_wrist_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in order: plus_plus, plus_minus, minus_plus, minus_minus.
  * - Infinite where the determinant of A vanishes.
  */
 void agile_wrist_condition_number(const agile_wrist_params *params, const real_t q[3],
@@ -227,7 +226,7 @@ void agile_wrist_condition_number_batch(size_t n, const agile_wrist_params *para
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in order: plus_plus, plus_minus, minus_plus, minus_minus.
  */
 void agile_wrist_passive_angles(const agile_wrist_params *params, const real_t q[3],
     real_t phi[12]);
@@ -246,11 +245,11 @@ void agile_wrist_passive_angles_batch(size_t n, const agile_wrist_params *params
  * Outputs
  * -------
  * points : real_t[132], shape (4, 11, 3)
- *     One column for each of theta1, theta2, theta3.
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in order: plus_plus, plus_minus, minus_plus, minus_minus.
  */
 void agile_wrist_skeleton(const agile_wrist_params *params, const real_t q[3],
     real_t points[132]);
@@ -278,7 +277,7 @@ void agile_wrist_skeleton_batch(size_t n, const agile_wrist_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
+ * - The branches, in order: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
  *   minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - SINGULAR: the last axis of a leg is along its first one; its joint is free, and 0 is
  *   returned.

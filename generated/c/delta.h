@@ -15,7 +15,7 @@
  *   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -56,14 +56,14 @@ typedef struct {
  * p : real_t[6], shape (2, 3)
  *     x, y, z in the unit of the parameters.
  * status : uint8_t[2]
- *     A CLOSEDFORM_ status of each branch: OK (0) if p is a solution, UNREACHABLE (1) if there
- *     is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
+ *     A CLOSEDFORM_ status of each assembly mode: OK (0) if p is a solution, UNREACHABLE (1) if
+ *     there is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
  *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. p
  *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - UNREACHABLE: the rods do not meet.
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
@@ -87,11 +87,11 @@ void delta_fk_batch(size_t n, const delta_params *params,
  * Outputs
  * -------
  * points : real_t[60], shape (2, 10, 3)
- *     One column for each of theta1, theta2, theta3.
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  */
 void delta_skeleton(const delta_params *params, const real_t q[3],
@@ -111,11 +111,11 @@ void delta_skeleton_batch(size_t n, const delta_params *params,
  * Outputs
  * -------
  * A : real_t[18], shape (2, 3, 3)
- *     One column for each of theta1, theta2, theta3.
+ *     One column for each of x, y, z.
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  */
 void delta_jacobian_parallel(const delta_params *params, const real_t q[3],
@@ -138,7 +138,7 @@ void delta_jacobian_parallel_batch(size_t n, const delta_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  */
@@ -163,7 +163,7 @@ void delta_jacobian_serial_batch(size_t n, const delta_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -187,7 +187,7 @@ void delta_jacobian_batch(size_t n, const delta_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -212,7 +212,7 @@ void delta_determinant_batch(size_t n, const delta_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  */
 void delta_singularities(const delta_params *params, const real_t q[3],
@@ -236,7 +236,7 @@ void delta_singularities_batch(size_t n, const delta_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Infinite at a parallel singularity.
  */
@@ -266,7 +266,7 @@ void delta_condition_number_batch(size_t n, const delta_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
+ * - The branches, in order: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
  *   minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR: the rod ends on the axis of theta1; theta1 is free, 0 is returned.

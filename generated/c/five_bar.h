@@ -17,7 +17,7 @@
  *   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -56,14 +56,14 @@ typedef struct {
  * p : real_t[4], shape (2, 2)
  *     x, y in the unit of the parameters.
  * status : uint8_t[2]
- *     A CLOSEDFORM_ status of each branch: OK (0) if p is a solution, UNREACHABLE (1) if there
- *     is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
+ *     A CLOSEDFORM_ status of each assembly mode: OK (0) if p is a solution, UNREACHABLE (1) if
+ *     there is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
  *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. p
  *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - UNREACHABLE: the rods do not meet.
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
@@ -91,7 +91,7 @@ void five_bar_fk_batch(size_t n, const five_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  */
 void five_bar_passive_angles(const five_bar_params *params, const real_t q[2],
@@ -111,10 +111,11 @@ void five_bar_passive_angles_batch(size_t n, const five_bar_params *params,
  * Outputs
  * -------
  * points : real_t[30], shape (2, 5, 3)
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  */
 void five_bar_skeleton(const five_bar_params *params, const real_t q[2],
@@ -134,11 +135,11 @@ void five_bar_skeleton_batch(size_t n, const five_bar_params *params,
  * Outputs
  * -------
  * A : real_t[8], shape (2, 2, 2)
- *     One column for each of theta1, theta2.
+ *     One column for each of x, y.
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  */
 void five_bar_jacobian_parallel(const five_bar_params *params, const real_t q[2],
@@ -161,7 +162,7 @@ void five_bar_jacobian_parallel_batch(size_t n, const five_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  */
@@ -186,7 +187,7 @@ void five_bar_jacobian_serial_batch(size_t n, const five_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -210,7 +211,7 @@ void five_bar_jacobian_batch(size_t n, const five_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -235,7 +236,7 @@ void five_bar_determinant_batch(size_t n, const five_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  */
 void five_bar_singularities(const five_bar_params *params, const real_t q[2],
@@ -258,7 +259,7 @@ void five_bar_singularities_batch(size_t n, const five_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Infinite at a parallel singularity.
  */
@@ -288,7 +289,7 @@ void five_bar_condition_number_batch(size_t n, const five_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The branches, in order: plus_plus, plus_minus, minus_plus, minus_minus.
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR: the rod ends on the axis of theta1; theta1 is free, 0 is returned.
  * - SINGULAR: no crank; theta1 is free, 0 is returned.

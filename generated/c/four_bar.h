@@ -14,7 +14,7 @@
  *   workspace_contains: 9 add, 20 compare and select, 1 divide, 5 multiply, 1 sincos, 1 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -52,14 +52,14 @@ typedef struct {
  * p : real_t[2], shape (2, 1)
  *     psi in rad, in (-pi, pi].
  * status : uint8_t[2]
- *     A CLOSEDFORM_ status of each branch: OK (0) if p is a solution, UNREACHABLE (1) if there
- *     is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
+ *     A CLOSEDFORM_ status of each assembly mode: OK (0) if p is a solution, UNREACHABLE (1) if
+ *     there is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
  *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. p
  *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - UNREACHABLE: the rod does not reach, so the loop cannot close.
  * - SINGULAR: the rod ends on the axis of psi; psi is free, 0 is returned.
  * - SINGULAR: no crank; psi is free, 0 is returned.
@@ -83,10 +83,11 @@ void four_bar_fk_batch(size_t n, const four_bar_params *params,
  * Outputs
  * -------
  * points : real_t[24], shape (2, 4, 3)
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  */
 void four_bar_skeleton(const four_bar_params *params, const real_t q[1],
@@ -106,11 +107,11 @@ void four_bar_skeleton_batch(size_t n, const four_bar_params *params,
  * Outputs
  * -------
  * A : real_t[2], shape (2, 1, 1)
- *     One column for each of theta.
+ *     One column for psi.
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  */
 void four_bar_jacobian_parallel(const four_bar_params *params, const real_t q[1],
@@ -133,7 +134,7 @@ void four_bar_jacobian_parallel_batch(size_t n, const four_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Its sign distinguishes the working modes.
  */
@@ -154,11 +155,11 @@ void four_bar_jacobian_serial_batch(size_t n, const four_bar_params *params,
  * Outputs
  * -------
  * J : real_t[2], shape (2, 1, 1)
- *     One column for each of theta.
+ *     One column for theta.
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -182,7 +183,7 @@ void four_bar_jacobian_batch(size_t n, const four_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -207,7 +208,7 @@ void four_bar_determinant_batch(size_t n, const four_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  */
 void four_bar_singularities(const four_bar_params *params, const real_t q[1],
@@ -236,7 +237,7 @@ void four_bar_singularities_batch(size_t n, const four_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - The branches, in order: plus, minus.
  * - UNREACHABLE: the rod does not reach.
  * - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
  * - SINGULAR: no crank; theta is free, 0 is returned.

@@ -23,7 +23,7 @@
  *   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -134,6 +134,7 @@ void h6ar_arm_tips_batch(size_t n, const h6ar_params *params,
  * Outputs
  * -------
  * points : real_t[60], shape (20, 3)
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
@@ -262,7 +263,7 @@ void h6ar_singularities_batch(size_t n, const h6ar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: front_elbow_up, front_elbow_down, rear_elbow_up, rear_elbow_down.
+ * - The branches, in order: front_elbow_up, front_elbow_down, rear_elbow_up, rear_elbow_down.
  * - UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist axis
  *   than L_theta, the virtual arm cannot reach the tip, or the tips of the arms cannot be so
  *   far apart.

@@ -23,7 +23,7 @@
  *   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -120,6 +120,7 @@ void h6ar_loop_closed_pose_batch(size_t n, const h6ar_loop_closed_params *params
  * Outputs
  * -------
  * points : real_t[54], shape (18, 3)
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
@@ -280,7 +281,7 @@ void h6ar_loop_closed_singularities_batch(size_t n, const h6ar_loop_closed_param
  *
  * Notes
  * -----
- * - Branches in this order: front_elbow_up_alike, front_elbow_up_mixed, front_elbow_down_alike,
+ * - The branches, in order: front_elbow_up_alike, front_elbow_up_mixed, front_elbow_down_alike,
  *   front_elbow_down_mixed, rear_elbow_up_alike, rear_elbow_up_mixed, rear_elbow_down_alike,
  *   rear_elbow_down_mixed.
  * - UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist

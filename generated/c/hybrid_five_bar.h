@@ -19,7 +19,7 @@
  *   workspace_volume: 15 add, 27 compare and select, 4 divide, 29 multiply
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -58,14 +58,14 @@ typedef struct {
  * p : real_t[6], shape (2, 3)
  *     x, y, z in the unit of the parameters.
  * status : uint8_t[2]
- *     A CLOSEDFORM_ status of each branch: OK (0) if p is a solution, UNREACHABLE (1) if there
- *     is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
+ *     A CLOSEDFORM_ status of each assembly mode: OK (0) if p is a solution, UNREACHABLE (1) if
+ *     there is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
  *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. p
  *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
- * - Branches in this order: left_of_CD, right_of_CD.
+ * - The assembly modes, in order: left_of_CD, right_of_CD.
  * - UNREACHABLE: C and D are more than 2*L2 apart, so the loop cannot close.
  * - SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point
  *   at theta4 = theta5 = +90 or -90 degrees is returned.
@@ -93,7 +93,7 @@ void hybrid_five_bar_fk_batch(size_t n, const hybrid_five_bar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: left_of_CD, right_of_CD.
+ * - The assembly modes, in order: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  * - If C and D coincide, both angles are free but equal: +90 or -90 degrees is returned.
  */
@@ -114,11 +114,11 @@ void hybrid_five_bar_passive_angles_batch(size_t n, const hybrid_five_bar_params
  * Outputs
  * -------
  * points : real_t[30], shape (2, 5, 3)
- *     One column for each of theta1, theta2, theta3.
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
- * - Branches in this order: left_of_CD, right_of_CD.
+ * - The assembly modes, in order: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  */
 void hybrid_five_bar_skeleton(const hybrid_five_bar_params *params,
@@ -138,11 +138,11 @@ void hybrid_five_bar_skeleton_batch(size_t n, const hybrid_five_bar_params *para
  * Outputs
  * -------
  * A : real_t[18], shape (2, 3, 3)
- *     One column for each of theta1, theta2, theta3.
+ *     One column for each of x, y, z.
  *
  * Notes
  * -----
- * - Branches in this order: left_of_CD, right_of_CD.
+ * - The assembly modes, in order: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  */
 void hybrid_five_bar_jacobian_parallel(const hybrid_five_bar_params *params,
@@ -166,7 +166,7 @@ void hybrid_five_bar_jacobian_parallel_batch(size_t n, const hybrid_five_bar_par
  *
  * Notes
  * -----
- * - Branches in this order: left_of_CD, right_of_CD.
+ * - The assembly modes, in order: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  */
@@ -191,7 +191,7 @@ void hybrid_five_bar_jacobian_serial_batch(size_t n, const hybrid_five_bar_param
  *
  * Notes
  * -----
- * - Branches in this order: left_of_CD, right_of_CD.
+ * - The assembly modes, in order: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -215,7 +215,7 @@ void hybrid_five_bar_jacobian_batch(size_t n, const hybrid_five_bar_params *para
  *
  * Notes
  * -----
- * - Branches in this order: left_of_CD, right_of_CD.
+ * - The assembly modes, in order: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -242,7 +242,7 @@ void hybrid_five_bar_determinant_batch(size_t n, const hybrid_five_bar_params *p
  *
  * Notes
  * -----
- * - Branches in this order: left_of_CD, right_of_CD.
+ * - The assembly modes, in order: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  */
 void hybrid_five_bar_singularities(const hybrid_five_bar_params *params,
@@ -265,7 +265,7 @@ void hybrid_five_bar_singularities_batch(size_t n, const hybrid_five_bar_params 
  *
  * Notes
  * -----
- * - Branches in this order: left_of_CD, right_of_CD.
+ * - The assembly modes, in order: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  * - Infinite at a parallel singularity. It does not depend on theta1 and is the same for both
  *   modes.
@@ -298,7 +298,7 @@ void hybrid_five_bar_condition_number_batch(size_t n, const hybrid_five_bar_para
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
+ * - The branches, in order: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
  *   minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly
  *   modes.

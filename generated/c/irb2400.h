@@ -16,7 +16,7 @@
  *   ik: 153 compare and select, 159 add, 22 atan2, 13 divide, 184 multiply, 11 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -73,6 +73,7 @@ void irb2400_pose_batch(size_t n, const irb2400_params *params,
  * Outputs
  * -------
  * points : real_t[21], shape (7, 3)
+ *     Coordinates x, y, z of each point.
  */
 void irb2400_skeleton(const irb2400_params *params, const real_t q[6],
     real_t points[21]);
@@ -254,7 +255,7 @@ void irb2400_motors_from_joints_batch(size_t n, const irb2400_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: facing_up_noflip, facing_up_flip, facing_down_noflip,
+ * - The branches, in order: facing_up_noflip, facing_up_flip, facing_down_noflip,
  *   facing_down_flip, backward_up_noflip, backward_up_flip, backward_down_noflip,
  *   backward_down_flip.
  * - motors_from_joints takes them to the motors.

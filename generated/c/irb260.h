@@ -23,7 +23,7 @@
  *   workspace_contains: 24 compare and select, 17 add, 6 multiply, 3 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -173,6 +173,7 @@ void irb260_pose_batch(size_t n, const irb260_params *params,
  * Outputs
  * -------
  * points : real_t[33], shape (11, 3)
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
@@ -256,7 +257,6 @@ void irb260_jacobian_body_batch(size_t n, const irb260_params *params,
  * Outputs
  * -------
  * J : real_t[16], shape (4, 4)
- *     One column for each of theta1, theta2, theta3, theta5.
  */
 void irb260_jacobian_motors(const irb260_params *params, const real_t q[4],
     real_t J[16]);
@@ -346,7 +346,7 @@ void irb260_point_velocity_batch(size_t n, const irb260_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: front_elbow_up, front_elbow_down, back_elbow_up, back_elbow_down.
+ * - The branches, in order: front_elbow_up, front_elbow_down, back_elbow_up, back_elbow_down.
  * - front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0,
  *   with rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;
  *   elbow_down: cos(theta3) <= 0.

@@ -15,7 +15,7 @@
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -52,14 +52,14 @@ typedef struct {
  * p : real_t[6], shape (2, 3)
  *     x, y, z in the unit of the parameters.
  * status : uint8_t[2]
- *     A CLOSEDFORM_ status of each branch: OK (0) if p is a solution, UNREACHABLE (1) if there
- *     is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
+ *     A CLOSEDFORM_ status of each assembly mode: OK (0) if p is a solution, UNREACHABLE (1) if
+ *     there is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
  *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. p
  *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - UNREACHABLE: the rods do not meet.
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
@@ -83,11 +83,11 @@ void linear_delta_fk_batch(size_t n, const linear_delta_params *params,
  * Outputs
  * -------
  * points : real_t[60], shape (2, 10, 3)
- *     One column for each of rho1, rho2, rho3.
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  */
 void linear_delta_skeleton(const linear_delta_params *params,
@@ -107,11 +107,11 @@ void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
  * Outputs
  * -------
  * A : real_t[18], shape (2, 3, 3)
- *     One column for each of rho1, rho2, rho3.
+ *     One column for each of x, y, z.
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  */
 void linear_delta_jacobian_parallel(const linear_delta_params *params,
@@ -134,7 +134,7 @@ void linear_delta_jacobian_parallel_batch(size_t n, const linear_delta_params *p
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  */
@@ -159,7 +159,7 @@ void linear_delta_jacobian_serial_batch(size_t n, const linear_delta_params *par
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -183,7 +183,7 @@ void linear_delta_jacobian_batch(size_t n, const linear_delta_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -208,7 +208,7 @@ void linear_delta_determinant_batch(size_t n, const linear_delta_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  */
 void linear_delta_singularities(const linear_delta_params *params,
@@ -232,7 +232,7 @@ void linear_delta_singularities_batch(size_t n, const linear_delta_params *param
  *
  * Notes
  * -----
- * - Branches in this order: below, above.
+ * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Infinite at a parallel singularity.
  */
@@ -262,7 +262,7 @@ void linear_delta_condition_number_batch(size_t n, const linear_delta_params *pa
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
+ * - The branches, in order: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
  *   minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop

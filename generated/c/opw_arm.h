@@ -18,7 +18,7 @@
  *     11 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -76,6 +76,7 @@ void opw_arm_pose_batch(size_t n, const opw_arm_params *params,
  * Outputs
  * -------
  * points : real_t[24], shape (8, 3)
+ *     Coordinates x, y, z of each point.
  */
 void opw_arm_skeleton(const opw_arm_params *params, const real_t q[6],
     real_t points[24]);
@@ -220,7 +221,7 @@ void opw_arm_jacobian_body_batch(size_t n, const opw_arm_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: facing_up_noflip, facing_up_flip, facing_down_noflip,
+ * - The branches, in order: facing_up_noflip, facing_up_flip, facing_down_noflip,
  *   facing_down_flip, backward_up_noflip, backward_up_flip, backward_down_noflip,
  *   backward_down_flip.
  * - facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the
@@ -228,7 +229,7 @@ void opw_arm_jacobian_body_batch(size_t n, const opw_arm_params *params,
  * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
  *   digits, the pose does not.
- * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
+ * - INVALID: the matrix is not a homogeneous transform with a proper rotation.
  * - SINGULAR: the centre of the wrist on the first axis (b = 0), theta1 = 0 is returned; equal
  *   links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without
  *   length, theta3 is free.

@@ -28,7 +28,7 @@
  *   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -63,14 +63,14 @@ typedef struct {
  * p : real_t[6], shape (2, 3)
  *     x, y, z in the unit of the parameters.
  * status : uint8_t[2]
- *     A CLOSEDFORM_ status of each branch: OK (0) if p is a solution, UNREACHABLE (1) if there
- *     is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
+ *     A CLOSEDFORM_ status of each assembly mode: OK (0) if p is a solution, UNREACHABLE (1) if
+ *     there is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
  *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. p
  *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
- * - Branches in this order: outer, inner.
+ * - The assembly modes, in order: outer, inner.
  * - UNREACHABLE: the rods do not meet.
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
@@ -94,11 +94,11 @@ void orthoglide_fk_batch(size_t n, const orthoglide_params *params,
  * Outputs
  * -------
  * points : real_t[42], shape (2, 7, 3)
- *     One column for each of rho1, rho2, rho3.
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
- * - Branches in this order: outer, inner.
+ * - The assembly modes, in order: outer, inner.
  * - NaN for an assembly mode that does not exist.
  */
 void orthoglide_skeleton(const orthoglide_params *params, const real_t q[3],
@@ -118,11 +118,11 @@ void orthoglide_skeleton_batch(size_t n, const orthoglide_params *params,
  * Outputs
  * -------
  * A : real_t[18], shape (2, 3, 3)
- *     One column for each of rho1, rho2, rho3.
+ *     One column for each of x, y, z.
  *
  * Notes
  * -----
- * - Branches in this order: outer, inner.
+ * - The assembly modes, in order: outer, inner.
  * - NaN for an assembly mode that does not exist.
  */
 void orthoglide_jacobian_parallel(const orthoglide_params *params, const real_t q[3],
@@ -145,7 +145,7 @@ void orthoglide_jacobian_parallel_batch(size_t n, const orthoglide_params *param
  *
  * Notes
  * -----
- * - Branches in this order: outer, inner.
+ * - The assembly modes, in order: outer, inner.
  * - NaN for an assembly mode that does not exist.
  * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  */
@@ -170,7 +170,7 @@ void orthoglide_jacobian_serial_batch(size_t n, const orthoglide_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: outer, inner.
+ * - The assembly modes, in order: outer, inner.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -194,7 +194,7 @@ void orthoglide_jacobian_batch(size_t n, const orthoglide_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: outer, inner.
+ * - The assembly modes, in order: outer, inner.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -219,7 +219,7 @@ void orthoglide_determinant_batch(size_t n, const orthoglide_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: outer, inner.
+ * - The assembly modes, in order: outer, inner.
  * - NaN for an assembly mode that does not exist.
  */
 void orthoglide_singularities(const orthoglide_params *params, const real_t q[3],
@@ -243,7 +243,7 @@ void orthoglide_singularities_batch(size_t n, const orthoglide_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: outer, inner.
+ * - The assembly modes, in order: outer, inner.
  * - NaN for an assembly mode that does not exist.
  * - Infinite at a parallel singularity.
  */
@@ -273,7 +273,7 @@ void orthoglide_condition_number_batch(size_t n, const orthoglide_params *params
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
+ * - The branches, in order: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
  *   minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop

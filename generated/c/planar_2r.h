@@ -17,7 +17,7 @@
  *   workspace_radii: 1 compare and select, 2 add
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -114,6 +114,7 @@ void planar_2r_orientation_batch(size_t n, const planar_2r_params *params,
  * Outputs
  * -------
  * points : real_t[9], shape (3, 3)
+ *     Coordinates x, y, z of each point.
  */
 void planar_2r_skeleton(const planar_2r_params *params, const real_t q[2],
     real_t points[9]);
@@ -219,7 +220,7 @@ void planar_2r_singularities_batch(size_t n, const planar_2r_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: elbow_down, elbow_up.
+ * - The branches, in order: elbow_down, elbow_up.
  * - SINGULAR: if l1 = l2 and the hand is on the base axis, theta1 is free and 0 is returned; if
  *   a link has no length, its angle is free.
  * - Ill-conditioned near the stretched and the folded arm: the angles lose half their digits,

@@ -15,7 +15,7 @@
  *   ik: 141 compare and select, 146 add, 20 atan2, 11 divide, 178 multiply, 11 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -70,6 +70,7 @@ void puma560_pose_batch(size_t n, const puma560_params *params,
  * Outputs
  * -------
  * points : real_t[15], shape (5, 3)
+ *     Coordinates x, y, z of each point.
  */
 void puma560_skeleton(const puma560_params *params, const real_t q[6],
     real_t points[15]);
@@ -214,14 +215,14 @@ void puma560_jacobian_body_batch(size_t n, const puma560_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: right_up_noflip, right_up_flip, right_down_noflip, right_down_flip,
+ * - The branches, in order: right_up_noflip, right_up_flip, right_down_noflip, right_down_flip,
  *   left_up_noflip, left_up_flip, left_down_noflip, left_down_flip.
  * - right: X >= 0, the arm faces the wrist; left: X <= 0. up: the elbow is above the line from
  *   the shoulder to the wrist; down: below.
  * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
  *   digits, the pose does not.
- * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
+ * - INVALID: the matrix is not a homogeneous transform with a proper rotation.
  * - SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal
  *   links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without
  *   length, theta3 is free.

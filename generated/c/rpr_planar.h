@@ -15,7 +15,7 @@
  *   ik: 10 compare and select, 5 add, 6 multiply, 2 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -50,14 +50,14 @@ typedef struct {
  * p : real_t[4], shape (2, 2)
  *     x, y in the unit of the parameters.
  * status : uint8_t[2]
- *     A CLOSEDFORM_ status of each branch: OK (0) if p is a solution, UNREACHABLE (1) if there
- *     is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
+ *     A CLOSEDFORM_ status of each assembly mode: OK (0) if p is a solution, UNREACHABLE (1) if
+ *     there is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
  *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. p
  *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - UNREACHABLE: the rods do not meet.
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
@@ -85,7 +85,7 @@ void rpr_planar_fk_batch(size_t n, const rpr_planar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  */
 void rpr_planar_passive_angles(const rpr_planar_params *params, const real_t q[2],
@@ -105,10 +105,11 @@ void rpr_planar_passive_angles_batch(size_t n, const rpr_planar_params *params,
  * Outputs
  * -------
  * points : real_t[18], shape (2, 3, 3)
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  */
 void rpr_planar_skeleton(const rpr_planar_params *params, const real_t q[2],
@@ -128,11 +129,11 @@ void rpr_planar_skeleton_batch(size_t n, const rpr_planar_params *params,
  * Outputs
  * -------
  * A : real_t[8], shape (2, 2, 2)
- *     One column for each of rho1, rho2.
+ *     One column for each of x, y.
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  */
 void rpr_planar_jacobian_parallel(const rpr_planar_params *params, const real_t q[2],
@@ -155,7 +156,7 @@ void rpr_planar_jacobian_parallel_batch(size_t n, const rpr_planar_params *param
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  */
 void rpr_planar_jacobian_serial(const rpr_planar_params *params, const real_t q[2],
@@ -179,7 +180,7 @@ void rpr_planar_jacobian_serial_batch(size_t n, const rpr_planar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -203,7 +204,7 @@ void rpr_planar_jacobian_batch(size_t n, const rpr_planar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -228,7 +229,7 @@ void rpr_planar_determinant_batch(size_t n, const rpr_planar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  */
 void rpr_planar_singularities(const rpr_planar_params *params, const real_t q[2],
@@ -251,7 +252,7 @@ void rpr_planar_singularities_batch(size_t n, const rpr_planar_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Infinite at a parallel singularity.
  */

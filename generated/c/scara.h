@@ -14,7 +14,7 @@
  *   ik: 32 add, 38 compare and select, 5 atan2, 5 divide, 39 multiply, 1 sincos, 2 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -68,6 +68,7 @@ void scara_pose_batch(size_t n, const scara_params *params,
  * Outputs
  * -------
  * points : real_t[15], shape (5, 3)
+ *     Coordinates x, y, z of each point.
  */
 void scara_skeleton(const scara_params *params, const real_t q[4],
     real_t points[15]);
@@ -213,7 +214,7 @@ void scara_jacobian_body_batch(size_t n, const scara_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: left, right.
+ * - The branches, in order: left, right.
  * - SINGULAR: equal links folded onto the axis of theta1, which is free; 0 is returned.
  * - SINGULAR: a link without length: theta2 is free; 0.
  */

@@ -14,7 +14,7 @@
  *   workspace_contains: 18 compare and select, 8 add, 1 divide, 3 multiply, 1 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -51,14 +51,14 @@ typedef struct {
  * p : real_t[2], shape (2, 1)
  *     x in the unit of the parameters.
  * status : uint8_t[2]
- *     A CLOSEDFORM_ status of each branch: OK (0) if p is a solution, UNREACHABLE (1) if there
- *     is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
+ *     A CLOSEDFORM_ status of each assembly mode: OK (0) if p is a solution, UNREACHABLE (1) if
+ *     there is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
  *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. p
  *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - UNREACHABLE: the rod does not reach, so the loop cannot close.
  * - Ill-conditioned near the parallel singularity, where both modes meet.
  */
@@ -80,10 +80,11 @@ void slider_crank_fk_batch(size_t n, const slider_crank_params *params,
  * Outputs
  * -------
  * points : real_t[24], shape (2, 4, 3)
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  */
 void slider_crank_skeleton(const slider_crank_params *params,
@@ -103,11 +104,11 @@ void slider_crank_skeleton_batch(size_t n, const slider_crank_params *params,
  * Outputs
  * -------
  * A : real_t[2], shape (2, 1, 1)
- *     One column for each of theta.
+ *     One column for x.
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  */
 void slider_crank_jacobian_parallel(const slider_crank_params *params,
@@ -130,7 +131,7 @@ void slider_crank_jacobian_parallel_batch(size_t n, const slider_crank_params *p
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Its sign distinguishes the working modes.
  */
@@ -151,11 +152,11 @@ void slider_crank_jacobian_serial_batch(size_t n, const slider_crank_params *par
  * Outputs
  * -------
  * J : real_t[2], shape (2, 1, 1)
- *     One column for each of theta.
+ *     One column for theta.
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -179,7 +180,7 @@ void slider_crank_jacobian_batch(size_t n, const slider_crank_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -204,7 +205,7 @@ void slider_crank_determinant_batch(size_t n, const slider_crank_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: positive, negative.
+ * - The assembly modes, in order: positive, negative.
  * - NaN for an assembly mode that does not exist.
  */
 void slider_crank_singularities(const slider_crank_params *params,
@@ -233,7 +234,7 @@ void slider_crank_singularities_batch(size_t n, const slider_crank_params *param
  *
  * Notes
  * -----
- * - Branches in this order: plus, minus.
+ * - The branches, in order: plus, minus.
  * - UNREACHABLE: the rod does not reach.
  * - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
  * - SINGULAR: no crank; theta is free, 0 is returned.

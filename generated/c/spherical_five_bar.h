@@ -14,7 +14,7 @@
  *   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -54,14 +54,14 @@ typedef struct {
  * p : real_t[6], shape (2, 3)
  *     x, y, z in the unit of the parameters.
  * status : uint8_t[2]
- *     A CLOSEDFORM_ status of each branch: OK (0) if p is a solution, UNREACHABLE (1) if there
- *     is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
+ *     A CLOSEDFORM_ status of each assembly mode: OK (0) if p is a solution, UNREACHABLE (1) if
+ *     there is no solution, SINGULAR (2) if p is one of infinitely many solutions or poorly
  *     determined (see the notes), and INVALID (3) if an input is not finite or not possible. p
  *     is NaN if the status is UNREACHABLE or INVALID.
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - UNREACHABLE: the rods do not meet.
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
@@ -85,10 +85,11 @@ void spherical_five_bar_fk_batch(size_t n, const spherical_five_bar_params *para
  * Outputs
  * -------
  * points : real_t[36], shape (2, 6, 3)
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  */
 void spherical_five_bar_skeleton(const spherical_five_bar_params *params,
@@ -108,10 +109,11 @@ void spherical_five_bar_skeleton_batch(size_t n, const spherical_five_bar_params
  * Outputs
  * -------
  * A : real_t[18], shape (2, 3, 3)
+ *     One column for each of x, y, z.
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  */
 void spherical_five_bar_jacobian_parallel(const spherical_five_bar_params *params,
@@ -134,7 +136,7 @@ void spherical_five_bar_jacobian_parallel_batch(size_t n, const spherical_five_b
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  */
@@ -159,7 +161,7 @@ void spherical_five_bar_jacobian_serial_batch(size_t n, const spherical_five_bar
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  */
@@ -184,7 +186,7 @@ void spherical_five_bar_jacobian_batch(size_t n, const spherical_five_bar_params
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  */
 void spherical_five_bar_singularities(const spherical_five_bar_params *params,
@@ -208,7 +210,7 @@ void spherical_five_bar_singularities_batch(size_t n, const spherical_five_bar_p
  *
  * Notes
  * -----
- * - Branches in this order: above, below.
+ * - The assembly modes, in order: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Infinite at a parallel singularity.
  */
@@ -238,7 +240,7 @@ void spherical_five_bar_condition_number_batch(size_t n, const spherical_five_ba
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The branches, in order: plus_plus, plus_minus, minus_plus, minus_minus.
  * - UNREACHABLE: a rod does not reach, or the target is not on the sphere.
  * - SINGULAR: the rod ends on the axis of theta1; theta1 is free, 0 is returned.
  * - SINGULAR: no crank; theta1 is free, 0 is returned.

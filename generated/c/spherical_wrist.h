@@ -14,7 +14,7 @@
  *   ik: 32 compare and select, 26 add, 3 atan2, 1 divide, 25 multiply, 1 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -89,7 +89,7 @@ void spherical_wrist_pose_batch(size_t n, const spherical_wrist_params *params,
  * Outputs
  * -------
  * points : real_t[6], shape (2, 3)
- *     One column for each of theta4, theta5, theta6.
+ *     Coordinates x, y, z of each point.
  */
 void spherical_wrist_skeleton(const spherical_wrist_params *params,
     const real_t q[3], real_t points[6]);
@@ -108,7 +108,7 @@ void spherical_wrist_skeleton_batch(size_t n, const spherical_wrist_params *para
  * Outputs
  * -------
  * J : real_t[9], shape (3, 3)
- *     A proper rotation.
+ *     One column for each of theta4, theta5, theta6.
  */
 void spherical_wrist_jacobian_space(const spherical_wrist_params *params,
     const real_t q[3], real_t J[9]);
@@ -127,7 +127,7 @@ void spherical_wrist_jacobian_space_batch(size_t n, const spherical_wrist_params
  * Outputs
  * -------
  * J : real_t[9], shape (3, 3)
- *     A proper rotation.
+ *     One column for each of theta4, theta5, theta6.
  */
 void spherical_wrist_jacobian_body(const spherical_wrist_params *params,
     const real_t q[3], real_t J[9]);
@@ -194,7 +194,7 @@ void spherical_wrist_singularities_batch(size_t n, const spherical_wrist_params 
  *
  * Notes
  * -----
- * - Branches in this order: theta5_positive, theta5_negative.
+ * - The branches, in order: theta5_positive, theta5_negative.
  * - SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, and
  *   theta4 = 0 is returned.
  * - INVALID: the matrix is not a proper rotation, for example a reflection.

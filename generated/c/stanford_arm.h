@@ -17,7 +17,7 @@
  *     sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -69,6 +69,7 @@ void stanford_arm_pose_batch(size_t n, const stanford_arm_params *params,
  * Outputs
  * -------
  * points : real_t[9], shape (3, 3)
+ *     Coordinates x, y, z of each point.
  */
 void stanford_arm_skeleton(const stanford_arm_params *params,
     const real_t q[6], real_t points[9]);
@@ -214,11 +215,11 @@ void stanford_arm_jacobian_body_batch(size_t n, const stanford_arm_params *param
  *
  * Notes
  * -----
- * - Branches in this order: right_out_noflip, right_out_flip, right_back_noflip,
+ * - The branches, in order: right_out_noflip, right_out_flip, right_back_noflip,
  *   right_back_flip, left_out_noflip, left_out_flip, left_back_noflip, left_back_flip.
  * - right: X >= 0, the arm faces the wrist; left: X <= 0. out: d3 >= 0; back: d3 <= 0.
  * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
- * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
+ * - INVALID: the matrix is not a homogeneous transform with a proper rotation.
  * - SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the
  *   boom drawn in, d3 = 0, theta2 = 0 is returned.
  * - SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.

@@ -16,7 +16,7 @@
  *     12 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -73,6 +73,7 @@ void ur_arm_pose_batch(size_t n, const ur_arm_params *params,
  * Outputs
  * -------
  * points : real_t[21], shape (7, 3)
+ *     Coordinates x, y, z of each point.
  */
 void ur_arm_skeleton(const ur_arm_params *params, const real_t q[6],
     real_t points[21]);
@@ -217,7 +218,7 @@ void ur_arm_jacobian_body_batch(size_t n, const ur_arm_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: left_noflip_up, left_noflip_down, left_flip_up, left_flip_down,
+ * - The branches, in order: left_noflip_up, left_noflip_down, left_flip_up, left_flip_down,
  *   right_noflip_up, right_noflip_down, right_flip_up, right_flip_down.
  * - SINGULAR: all coefficients of the equation for theta1 vanish; theta1 is free, 0 is
  *   returned.

@@ -224,7 +224,8 @@ const _FK = _runtime.kernel({
 /**
  * Orientation of the hand in the four assembly modes.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+ *   minus_minus.
  * - The modes are named by the signs of B_11 and B_22, each times that of det A.
  * - SINGULAR: the middle axes of two legs are parallel, and the hand is free to turn about
  *   them; one of its orientations is returned.
@@ -234,12 +235,12 @@ const _FK = _runtime.kernel({
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ p: number[][], status: number[] }} `p`: 4 branches of 9 numbers (3 x 3 in row
- *     order). A proper rotation. `status`: A `Status` of each branch: OK (0) if `p` is a
+ *     order). A proper rotation. `status`: A `Status` of each assembly mode: OK (0) if `p` is a
  *     solution, UNREACHABLE (1) if there is no solution, SINGULAR (2) if `p` is one of
  *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
  *     input is not finite or not possible. `p` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -250,10 +251,10 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [p] 36 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [p] 36 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ p: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ p: Float64Array, status: Uint8Array }} the results
  */
 export function fk_batch(n, q, p, status, parameters) {
     return _runtime.batch(_FK, n, [q], [p, status], parameters);
@@ -362,13 +363,14 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
 /**
  * A of A*omega = B*dq; its rows are the cross products of w and v.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+ *   minus_minus.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 4 branches of 9 numbers (3 x 3 in row order). A proper rotation.
+ * @returns {number[][]} 4 branches of 9 numbers (3 x 3 in row order).
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_parallel(q, parameters) {
     return _runtime.single(_JACOBIAN_PARALLEL, [q], parameters);
@@ -379,9 +381,9 @@ export function jacobian_parallel(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [A] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [A] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_parallel_batch(n, q, A, parameters) {
     return _runtime.batch(_JACOBIAN_PARALLEL, n, [q], [A], parameters);
@@ -451,14 +453,15 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
 /**
  * The diagonal of B of A*omega = B*dq.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+ *   minus_minus.
  * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 4 branches of 3 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_serial(q, parameters) {
     return _runtime.single(_JACOBIAN_SERIAL, [q], parameters);
@@ -469,9 +472,9 @@ export function jacobian_serial(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [B] 12 n numbers, written to; made if there is none
+ * @param {Float64Array} [B] 12 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_serial_batch(n, q, B, parameters) {
     return _runtime.batch(_JACOBIAN_SERIAL, n, [q], [B], parameters);
@@ -595,14 +598,16 @@ const _JACOBIAN_SPACE = _runtime.kernel({
 /**
  * Angular velocity of the hand in the base frame per joint rate: A^-1*B.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+ *   minus_minus.
  * - Not finite where the middle axes of two legs are parallel.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 4 branches of 9 numbers (3 x 3 in row order). A proper rotation.
+ * @returns {number[][]} 4 branches of 9 numbers (3 x 3 in row order). One column for each of
+ *     theta1, theta2, theta3.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_space(q, parameters) {
     return _runtime.single(_JACOBIAN_SPACE, [q], parameters);
@@ -613,9 +618,9 @@ export function jacobian_space(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [J] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_space_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_SPACE, n, [q], [J], parameters);
@@ -668,14 +673,15 @@ const _DETERMINANT = _runtime.kernel({
 /**
  * Determinant of jacobian_space.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+ *   minus_minus.
  * - Not finite where the middle axes of two legs are parallel.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} One number for each of 4 branches.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -686,9 +692,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [det] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [det] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -763,14 +769,15 @@ const _SINGULARITIES = _runtime.kernel({
 /**
  * The diagonal of B and the determinant of A.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+ *   minus_minus.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 4 branches of 4 numbers. One factor for each singular set: leg 1; leg
  *     2; leg 3; all legs.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -781,9 +788,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [factors] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -873,14 +880,15 @@ const _CONDITION_NUMBER = _runtime.kernel({
 /**
  * Condition number of A in the Frobenius norm, divided by 3: 1 if its rows are at right angles.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+ *   minus_minus.
  * - Infinite where the determinant of A vanishes.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} One number for each of 4 branches.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function condition_number(q, parameters) {
     return _runtime.single(_CONDITION_NUMBER, [q], parameters);
@@ -891,9 +899,9 @@ export function condition_number(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [kappa] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [kappa] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function condition_number_batch(n, q, kappa, parameters) {
     return _runtime.batch(_CONDITION_NUMBER, n, [q], [kappa], parameters);
@@ -984,13 +992,14 @@ const _PASSIVE_ANGLES = _runtime.kernel({
 /**
  * Angles of the middle joints: from u to v, about w.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+ *   minus_minus.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 4 branches of 3 numbers. Angles in rad, in (-pi, pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function passive_angles(q, parameters) {
     return _runtime.single(_PASSIVE_ANGLES, [q], parameters);
@@ -1001,9 +1010,9 @@ export function passive_angles(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [phi] 12 n numbers, written to; made if there is none
+ * @param {Float64Array} [phi] 12 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function passive_angles_batch(n, q, phi, parameters) {
     return _runtime.batch(_PASSIVE_ANGLES, n, [q], [phi], parameters);
@@ -1230,14 +1239,15 @@ const _SKELETON = _runtime.kernel({
 /**
  * Points of the mechanism in the base frame, in the order of SKELETON.points.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+ *   minus_minus.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 4 branches of 33 numbers (11 x 3 in row order). One column for each of
- *     theta1, theta2, theta3.
+ * @returns {number[][]} 4 branches of 33 numbers (11 x 3 in row order). Coordinates x, y, z of
+ *     each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -1248,9 +1258,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [points] 132 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 132 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -1465,7 +1475,7 @@ const _IK = _runtime.kernel({
 /**
  * The driven joints of all working modes.
  *
- * - Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
+ * - The branches, in the order of `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
  *   plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - SINGULAR: the last axis of a leg is along its first one; its joint is free, and 0 is
  *   returned.
@@ -1481,7 +1491,7 @@ const _IK = _runtime.kernel({
  *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
  *     input is not finite or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(R, parameters) {
     return _runtime.single(_IK, [R], parameters);
@@ -1492,10 +1502,10 @@ export function ik(R, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} R 9 n numbers
- * @param {Float64Array} [q] 24 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 24 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, R, q, status, parameters) {
     return _runtime.batch(_IK, n, [R], [q, status], parameters);

@@ -229,7 +229,7 @@ const _FK = _runtime.kernel({
 /**
  * Position of the hand in both assembly modes.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - UNREACHABLE: the rods do not meet.
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
@@ -238,12 +238,12 @@ const _FK = _runtime.kernel({
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ p: number[][], status: number[] }} `p`: 2 branches of 3 numbers. x, y, z in the
- *     unit of the parameters. `status`: A `Status` of each branch: OK (0) if `p` is a solution,
- *     UNREACHABLE (1) if there is no solution, SINGULAR (2) if `p` is one of infinitely many
- *     solutions or poorly determined (see the notes), and INVALID (3) if an input is not finite
- *     or not possible. `p` is NaN if the status is UNREACHABLE or INVALID.
+ *     unit of the parameters. `status`: A `Status` of each assembly mode: OK (0) if `p` is a
+ *     solution, UNREACHABLE (1) if there is no solution, SINGULAR (2) if `p` is one of
+ *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
+ *     input is not finite or not possible. `p` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -254,10 +254,10 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [p] 6 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [p] 6 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ p: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ p: Float64Array, status: Uint8Array }} the results
  */
 export function fk_batch(n, q, p, status, parameters) {
     return _runtime.batch(_FK, n, [q], [p, status], parameters);
@@ -485,15 +485,15 @@ const _SKELETON = _runtime.kernel({
 /**
  * Points of the mechanism in the base frame, in the order of SKELETON.points.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 30 numbers (10 x 3 in row order). One column for each of
- *     theta1, theta2, theta3.
+ * @returns {number[][]} 2 branches of 30 numbers (10 x 3 in row order). Coordinates x, y, z of
+ *     each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -504,9 +504,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [points] 60 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 60 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -656,15 +656,15 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
 /**
  * A of A*dp = B*dq; its rows are the vectors along the rods.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order). One column for each of
- *     theta1, theta2, theta3.
+ * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order). One column for each of x,
+ *     y, z.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_parallel(q, parameters) {
     return _runtime.single(_JACOBIAN_PARALLEL, [q], parameters);
@@ -675,9 +675,9 @@ export function jacobian_parallel(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [A] 18 n numbers, written to; made if there is none
+ * @param {Float64Array} [A] 18 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_parallel_batch(n, q, A, parameters) {
     return _runtime.batch(_JACOBIAN_PARALLEL, n, [q], [A], parameters);
@@ -828,7 +828,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
 /**
  * The diagonal of B of A*dp = B*dq.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  *
@@ -836,7 +836,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 2 branches of 3 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_serial(q, parameters) {
     return _runtime.single(_JACOBIAN_SERIAL, [q], parameters);
@@ -847,9 +847,9 @@ export function jacobian_serial(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [B] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [B] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_serial_batch(n, q, B, parameters) {
     return _runtime.batch(_JACOBIAN_SERIAL, n, [q], [B], parameters);
@@ -1039,7 +1039,7 @@ const _JACOBIAN = _runtime.kernel({
 /**
  * Derivative of p with respect to q: A^-1*B.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -1048,7 +1048,7 @@ const _JACOBIAN = _runtime.kernel({
  * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order). One column for each of
  *     theta1, theta2, theta3.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -1059,9 +1059,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [J] 18 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 18 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -1210,7 +1210,7 @@ const _DETERMINANT = _runtime.kernel({
 /**
  * Determinant of the Jacobian.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -1218,7 +1218,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} One number for each of 2 branches.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -1229,9 +1229,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [det] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [det] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -1385,7 +1385,7 @@ const _SINGULARITIES = _runtime.kernel({
 /**
  * The diagonal of B (serial) and the determinant of A (parallel).
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
@@ -1393,7 +1393,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @returns {number[][]} 2 branches of 4 numbers. One factor for each singular set: leg 1; leg
  *     2; leg 3; rods in one plane.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -1404,9 +1404,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [factors] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -1581,7 +1581,7 @@ const _CONDITION_NUMBER = _runtime.kernel({
  * Condition number of A in the Frobenius norm, divided by 3: 1 if the rods are equally long and
  * at right angles.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Infinite at a parallel singularity.
  *
@@ -1589,7 +1589,7 @@ const _CONDITION_NUMBER = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} One number for each of 2 branches.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function condition_number(q, parameters) {
     return _runtime.single(_CONDITION_NUMBER, [q], parameters);
@@ -1600,9 +1600,9 @@ export function condition_number(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [kappa] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [kappa] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function condition_number_batch(n, q, kappa, parameters) {
     return _runtime.batch(_CONDITION_NUMBER, n, [q], [kappa], parameters);
@@ -1915,7 +1915,7 @@ const _IK = _runtime.kernel({
 /**
  * The driven joints of all working modes.
  *
- * - Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
+ * - The branches, in the order of `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
  *   plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR: the rod ends on the axis of theta1; theta1 is free, 0 is returned.
@@ -1935,7 +1935,7 @@ const _IK = _runtime.kernel({
  *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
  *     input is not finite or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(x, parameters) {
     return _runtime.single(_IK, [x], parameters);
@@ -1946,10 +1946,10 @@ export function ik(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
- * @param {Float64Array} [q] 24 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 24 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
@@ -2053,7 +2053,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {boolean}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function workspace_contains(p, parameters) {
     return _runtime.single(_WORKSPACE_CONTAINS, [p], parameters);
@@ -2064,9 +2064,9 @@ export function workspace_contains(p, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} p 3 n numbers
- * @param {Uint8Array} [inside] n numbers, written to; made if there is none
+ * @param {Uint8Array} [inside] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Uint8Array} what was written to
+ * @returns {Uint8Array} the results
  */
 export function workspace_contains_batch(n, p, inside, parameters) {
     return _runtime.batch(_WORKSPACE_CONTAINS, n, [p], [inside], parameters);

@@ -145,7 +145,7 @@ const _FK = _runtime.kernel({
 /**
  * psi in both assembly modes.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
  * - UNREACHABLE: the rod does not reach, so the loop cannot close.
  * - SINGULAR: the rod ends on the axis of psi; psi is free, 0 is returned.
  * - SINGULAR: no crank; psi is free, 0 is returned.
@@ -154,12 +154,12 @@ const _FK = _runtime.kernel({
  * @param {ArrayLike<number>} q 1 number. theta in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ p: number[][], status: number[] }} `p`: 2 branches of 1 number. psi in rad, in
- *     (-pi, pi]. `status`: A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE
- *     (1) if there is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or
- *     poorly determined (see the notes), and INVALID (3) if an input is not finite or not
- *     possible. `p` is NaN if the status is UNREACHABLE or INVALID.
+ *     (-pi, pi]. `status`: A `Status` of each assembly mode: OK (0) if `p` is a solution,
+ *     UNREACHABLE (1) if there is no solution, SINGULAR (2) if `p` is one of infinitely many
+ *     solutions or poorly determined (see the notes), and INVALID (3) if an input is not finite
+ *     or not possible. `p` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -170,10 +170,10 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q n numbers
- * @param {Float64Array} [p] 2 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [p] 2 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ p: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ p: Float64Array, status: Uint8Array }} the results
  */
 export function fk_batch(n, q, p, status, parameters) {
     return _runtime.batch(_FK, n, [q], [p, status], parameters);
@@ -273,14 +273,15 @@ const _SKELETON = _runtime.kernel({
 /**
  * Points of the mechanism in the base frame, in the order of SKELETON.points.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 1 number. theta in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 12 numbers (4 x 3 in row order).
+ * @returns {number[][]} 2 branches of 12 numbers (4 x 3 in row order). Coordinates x, y, z of
+ *     each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -291,9 +292,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q n numbers
- * @param {Float64Array} [points] 24 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 24 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -368,15 +369,14 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
 /**
  * A of A*dx = B*dq.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 1 number. theta in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 1 number (1 x 1 in row order). One column for each of
- *     theta.
+ * @returns {number[][]} 2 branches of 1 number (1 x 1 in row order). One column for psi.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_parallel(q, parameters) {
     return _runtime.single(_JACOBIAN_PARALLEL, [q], parameters);
@@ -387,9 +387,9 @@ export function jacobian_parallel(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q n numbers
- * @param {Float64Array} [A] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [A] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_parallel_batch(n, q, A, parameters) {
     return _runtime.batch(_JACOBIAN_PARALLEL, n, [q], [A], parameters);
@@ -463,7 +463,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
 /**
  * B of A*dx = B*dq.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Its sign distinguishes the working modes.
  *
@@ -471,7 +471,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 2 branches of 1 number.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_serial(q, parameters) {
     return _runtime.single(_JACOBIAN_SERIAL, [q], parameters);
@@ -482,9 +482,9 @@ export function jacobian_serial(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q n numbers
- * @param {Float64Array} [B] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [B] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_serial_batch(n, q, B, parameters) {
     return _runtime.batch(_JACOBIAN_SERIAL, n, [q], [B], parameters);
@@ -561,16 +561,15 @@ const _JACOBIAN = _runtime.kernel({
 /**
  * Derivative of x with respect to q: B/A.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
  * @param {ArrayLike<number>} q 1 number. theta in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 1 number (1 x 1 in row order). One column for each of
- *     theta.
+ * @returns {number[][]} 2 branches of 1 number (1 x 1 in row order). One column for theta.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -581,9 +580,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q n numbers
- * @param {Float64Array} [J] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -660,7 +659,7 @@ const _DETERMINANT = _runtime.kernel({
 /**
  * The same as a number.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -668,7 +667,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} One number for each of 2 branches.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -679,9 +678,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q n numbers
- * @param {Float64Array} [det] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [det] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -759,7 +758,7 @@ const _SINGULARITIES = _runtime.kernel({
 /**
  * B (serial) and A (parallel).
  *
- * - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 1 number. theta in rad.
@@ -767,7 +766,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @returns {number[][]} 2 branches of 2 numbers. One factor for each singular set: driver;
  *     follower.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -778,9 +777,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q n numbers
- * @param {Float64Array} [factors] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -865,7 +864,7 @@ const _IK = _runtime.kernel({
 /**
  * The driven joint in both working modes.
  *
- * - Branches in this order, `BRANCHES`: plus, minus.
+ * - The branches, in the order of `BRANCHES`: plus, minus.
  * - UNREACHABLE: the rod does not reach.
  * - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
  * - SINGULAR: no crank; theta is free, 0 is returned.
@@ -881,7 +880,7 @@ const _IK = _runtime.kernel({
  *     poorly determined (see the notes), and INVALID (3) if an input is not finite or not
  *     possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(x, parameters) {
     return _runtime.single(_IK, [x], parameters);
@@ -892,10 +891,10 @@ export function ik(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x n numbers
- * @param {Float64Array} [q] 2 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 2 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
@@ -951,7 +950,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {boolean}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function workspace_contains(p, parameters) {
     return _runtime.single(_WORKSPACE_CONTAINS, [p], parameters);
@@ -962,9 +961,9 @@ export function workspace_contains(p, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} p n numbers
- * @param {Uint8Array} [inside] n numbers, written to; made if there is none
+ * @param {Uint8Array} [inside] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Uint8Array} what was written to
+ * @returns {Uint8Array} the results
  */
 export function workspace_contains_batch(n, p, inside, parameters) {
     return _runtime.batch(_WORKSPACE_CONTAINS, n, [p], [inside], parameters);

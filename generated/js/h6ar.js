@@ -259,7 +259,7 @@ const _FK = _runtime.kernel({
  * @returns {number[]} 6 numbers. x, y, z in the unit of the parameters; psi, phi, theta in rad,
  *     in (-pi, pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -270,9 +270,9 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [x] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [x] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function fk_batch(n, q, x, parameters) {
     return _runtime.batch(_FK, n, [q], [x], parameters);
@@ -438,7 +438,7 @@ const _POSE = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function pose(q, parameters) {
     return _runtime.single(_POSE, [q], parameters);
@@ -449,9 +449,9 @@ export function pose(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [T] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
@@ -525,7 +525,7 @@ const _ARM_TIPS = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 6 numbers (2 x 3 in row order).
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function arm_tips(q, parameters) {
     return _runtime.single(_ARM_TIPS, [q], parameters);
@@ -536,9 +536,9 @@ export function arm_tips(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [tips] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [tips] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function arm_tips_batch(n, q, tips, parameters) {
     return _runtime.batch(_ARM_TIPS, n, [q], [tips], parameters);
@@ -793,9 +793,9 @@ const _SKELETON = _runtime.kernel({
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 60 numbers (20 x 3 in row order).
+ * @returns {number[]} 60 numbers (20 x 3 in row order). Coordinates x, y, z of each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -806,9 +806,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [points] 60 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 60 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -890,7 +890,7 @@ const _INVARIANT_POINT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 3 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function invariant_point(q, parameters) {
     return _runtime.single(_INVARIANT_POINT, [q], parameters);
@@ -901,9 +901,9 @@ export function invariant_point(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [p] 3 n numbers, written to; made if there is none
+ * @param {Float64Array} [p] 3 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function invariant_point_batch(n, q, p, parameters) {
     return _runtime.batch(_INVARIANT_POINT, n, [q], [p], parameters);
@@ -1143,7 +1143,7 @@ const _JACOBIAN = _runtime.kernel({
  * @returns {number[]} 36 numbers (6 x 6 in row order). One column for each of theta1, theta2R,
  *     theta3R, theta2L, theta3L, theta.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -1154,9 +1154,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [J] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -1284,7 +1284,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -1295,9 +1295,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [det] n numbers, written to; made if there is none
+ * @param {Float64Array} [det] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -1428,7 +1428,7 @@ const _SINGULARITIES = _runtime.kernel({
  *     folded; upper arms half a turn apart; fore-arms half a turn apart; wrist links stretched
  *     along the base line.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -1439,9 +1439,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [factors] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -2744,7 +2744,7 @@ const _IK = _runtime.kernel({
  *
  * Source: eqs. (11), (13) and (14), with the exact half differences.
  *
- * - Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, rear_elbow_up,
+ * - The branches, in the order of `BRANCHES`: front_elbow_up, front_elbow_down, rear_elbow_up,
  *   rear_elbow_down.
  * - UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist axis
  *   than L_theta, the virtual arm cannot reach the tip, or the tips of the arms cannot be so
@@ -2771,7 +2771,7 @@ const _IK = _runtime.kernel({
  *     INVALID (3) if an input is not finite or not possible. `q` is NaN if the status is
  *     UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(x, parameters) {
     return _runtime.single(_IK, [x], parameters);
@@ -2782,10 +2782,10 @@ export function ik(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x 6 n numbers
- * @param {Float64Array} [q] 24 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 24 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
@@ -2845,7 +2845,7 @@ const _WRIST_LENGTH = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function wrist_length(psi, phi, parameters) {
     return _runtime.single(_WRIST_LENGTH, [psi, phi], parameters);
@@ -2857,9 +2857,9 @@ export function wrist_length(psi, phi, parameters) {
  * @param {number} n
  * @param {Float64Array} psi n numbers
  * @param {Float64Array} phi n numbers
- * @param {Float64Array} [l_W] n numbers, written to; made if there is none
+ * @param {Float64Array} [l_W] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function wrist_length_batch(n, psi, phi, l_W, parameters) {
     return _runtime.batch(_WRIST_LENGTH, n, [psi, phi], [l_W], parameters);
@@ -2906,7 +2906,7 @@ const _MINIMUM_LINK_LENGTH = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function minimum_link_length(psi_max, phi_max, beta_min, parameters) {
     return _runtime.single(_MINIMUM_LINK_LENGTH, [psi_max, phi_max, beta_min], parameters);
@@ -2920,9 +2920,9 @@ export function minimum_link_length(psi_max, phi_max, beta_min, parameters) {
  * @param {Float64Array} psi_max n numbers
  * @param {Float64Array} phi_max n numbers
  * @param {Float64Array} beta_min n numbers
- * @param {Float64Array} [al] n numbers, written to; made if there is none
+ * @param {Float64Array} [al] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function minimum_link_length_batch(n, psi_max, phi_max, beta_min, al, parameters) {
     return _runtime.batch(_MINIMUM_LINK_LENGTH, n, [psi_max, phi_max, beta_min], [al], parameters);
@@ -2971,7 +2971,7 @@ const _LARGEST_YAW = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number} Angle in rad, in (-pi, pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function largest_yaw(phi, beta_min, parameters) {
     return _runtime.single(_LARGEST_YAW, [phi, beta_min], parameters);
@@ -2983,9 +2983,9 @@ export function largest_yaw(phi, beta_min, parameters) {
  * @param {number} n
  * @param {Float64Array} phi n numbers
  * @param {Float64Array} beta_min n numbers
- * @param {Float64Array} [psi] n numbers, written to; made if there is none
+ * @param {Float64Array} [psi] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function largest_yaw_batch(n, phi, beta_min, psi, parameters) {
     return _runtime.batch(_LARGEST_YAW, n, [phi, beta_min], [psi], parameters);
@@ -3030,7 +3030,7 @@ const _LARGEST_ANGLE = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number} Angle in rad, in (-pi, pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function largest_angle(beta_min, parameters) {
     return _runtime.single(_LARGEST_ANGLE, [beta_min], parameters);
@@ -3041,9 +3041,9 @@ export function largest_angle(beta_min, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} beta_min n numbers
- * @param {Float64Array} [angle] n numbers, written to; made if there is none
+ * @param {Float64Array} [angle] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function largest_angle_batch(n, beta_min, angle, parameters) {
     return _runtime.batch(_LARGEST_ANGLE, n, [beta_min], [angle], parameters);

@@ -318,7 +318,7 @@ const _FK = _runtime.kernel({
  * @returns {number[]} 6 numbers. x, y, z in the unit of the parameters; psi, phi, theta in rad,
  *     in (-pi, pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -329,9 +329,9 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [x] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [x] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function fk_batch(n, q, x, parameters) {
     return _runtime.batch(_FK, n, [q], [x], parameters);
@@ -561,7 +561,7 @@ const _POSE = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function pose(q, parameters) {
     return _runtime.single(_POSE, [q], parameters);
@@ -572,9 +572,9 @@ export function pose(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [T] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
@@ -867,9 +867,9 @@ const _SKELETON = _runtime.kernel({
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2R, theta3R, theta2L, theta3L, theta in
  *     rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 54 numbers (18 x 3 in row order).
+ * @returns {number[]} 54 numbers (18 x 3 in row order). Coordinates x, y, z of each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -880,9 +880,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [points] 54 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 54 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -956,7 +956,7 @@ const _ARM_TIPS = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 6 numbers (2 x 3 in row order).
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function arm_tips(q, parameters) {
     return _runtime.single(_ARM_TIPS, [q], parameters);
@@ -967,9 +967,9 @@ export function arm_tips(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [tips] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [tips] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function arm_tips_batch(n, q, tips, parameters) {
     return _runtime.batch(_ARM_TIPS, n, [q], [tips], parameters);
@@ -1050,7 +1050,7 @@ const _INVARIANT_POINT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 3 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function invariant_point(q, parameters) {
     return _runtime.single(_INVARIANT_POINT, [q], parameters);
@@ -1061,9 +1061,9 @@ export function invariant_point(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [p] 3 n numbers, written to; made if there is none
+ * @param {Float64Array} [p] 3 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function invariant_point_batch(n, q, p, parameters) {
     return _runtime.batch(_INVARIANT_POINT, n, [q], [p], parameters);
@@ -1393,7 +1393,7 @@ const _JACOBIAN = _runtime.kernel({
  * @returns {number[]} 36 numbers (6 x 6 in row order). One column for each of theta1, theta2R,
  *     theta3R, theta2L, theta3L, theta.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -1404,9 +1404,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [J] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -1599,7 +1599,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -1610,9 +1610,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [det] n numbers, written to; made if there is none
+ * @param {Float64Array} [det] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -1811,7 +1811,7 @@ const _SINGULARITIES = _runtime.kernel({
  *     folded; left arm straight or folded; virtual arm straight or folded (a pole of the
  *     determinant); wrist links stretched along the base line.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -1822,9 +1822,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [factors] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -3853,7 +3853,7 @@ const _IK = _runtime.kernel({
  *
  * Source: eqs. (11), (13) and (14), then each arm separately.
  *
- * - Branches in this order, `BRANCHES`: front_elbow_up_alike, front_elbow_up_mixed,
+ * - The branches, in the order of `BRANCHES`: front_elbow_up_alike, front_elbow_up_mixed,
  *   front_elbow_down_alike, front_elbow_down_mixed, rear_elbow_up_alike, rear_elbow_up_mixed,
  *   rear_elbow_down_alike, rear_elbow_down_mixed.
  * - UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the waist
@@ -3881,7 +3881,7 @@ const _IK = _runtime.kernel({
  *     INVALID (3) if an input is not finite or not possible. `q` is NaN if the status is
  *     UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(x, parameters) {
     return _runtime.single(_IK, [x], parameters);
@@ -3892,10 +3892,10 @@ export function ik(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x 6 n numbers
- * @param {Float64Array} [q] 48 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 48 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
@@ -3956,7 +3956,7 @@ const _WRIST_LENGTH = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function wrist_length(psi, phi, parameters) {
     return _runtime.single(_WRIST_LENGTH, [psi, phi], parameters);
@@ -3968,9 +3968,9 @@ export function wrist_length(psi, phi, parameters) {
  * @param {number} n
  * @param {Float64Array} psi n numbers
  * @param {Float64Array} phi n numbers
- * @param {Float64Array} [l_W] n numbers, written to; made if there is none
+ * @param {Float64Array} [l_W] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function wrist_length_batch(n, psi, phi, l_W, parameters) {
     return _runtime.batch(_WRIST_LENGTH, n, [psi, phi], [l_W], parameters);
@@ -4021,7 +4021,7 @@ const _MINIMUM_LINK_LENGTH = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function minimum_link_length(psi_max, phi_max, beta_min, parameters) {
     return _runtime.single(_MINIMUM_LINK_LENGTH, [psi_max, phi_max, beta_min], parameters);
@@ -4035,9 +4035,9 @@ export function minimum_link_length(psi_max, phi_max, beta_min, parameters) {
  * @param {Float64Array} psi_max n numbers
  * @param {Float64Array} phi_max n numbers
  * @param {Float64Array} beta_min n numbers
- * @param {Float64Array} [al] n numbers, written to; made if there is none
+ * @param {Float64Array} [al] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function minimum_link_length_batch(n, psi_max, phi_max, beta_min, al, parameters) {
     return _runtime.batch(_MINIMUM_LINK_LENGTH, n, [psi_max, phi_max, beta_min], [al], parameters);
@@ -4088,7 +4088,7 @@ const _LARGEST_YAW = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number} Angle in rad, in (-pi, pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function largest_yaw(phi, beta_min, parameters) {
     return _runtime.single(_LARGEST_YAW, [phi, beta_min], parameters);
@@ -4100,9 +4100,9 @@ export function largest_yaw(phi, beta_min, parameters) {
  * @param {number} n
  * @param {Float64Array} phi n numbers
  * @param {Float64Array} beta_min n numbers
- * @param {Float64Array} [psi] n numbers, written to; made if there is none
+ * @param {Float64Array} [psi] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function largest_yaw_batch(n, phi, beta_min, psi, parameters) {
     return _runtime.batch(_LARGEST_YAW, n, [phi, beta_min], [psi], parameters);
@@ -4147,7 +4147,7 @@ const _LARGEST_ANGLE = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number} Angle in rad, in (-pi, pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function largest_angle(beta_min, parameters) {
     return _runtime.single(_LARGEST_ANGLE, [beta_min], parameters);
@@ -4158,9 +4158,9 @@ export function largest_angle(beta_min, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} beta_min n numbers
- * @param {Float64Array} [angle] n numbers, written to; made if there is none
+ * @param {Float64Array} [angle] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function largest_angle_batch(n, beta_min, angle, parameters) {
     return _runtime.batch(_LARGEST_ANGLE, n, [beta_min], [angle], parameters);

@@ -167,7 +167,7 @@ const _FK = _runtime.kernel({
  *
  * Source: the loop closure of section 2.3.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - UNREACHABLE: C and D are more than 2*L2 apart, so the loop cannot close.
  * - SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point
  *   at theta4 = theta5 = +90 or -90 degrees is returned.
@@ -176,12 +176,12 @@ const _FK = _runtime.kernel({
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ p: number[][], status: number[] }} `p`: 2 branches of 3 numbers. x, y, z in the
- *     unit of the parameters. `status`: A `Status` of each branch: OK (0) if `p` is a solution,
- *     UNREACHABLE (1) if there is no solution, SINGULAR (2) if `p` is one of infinitely many
- *     solutions or poorly determined (see the notes), and INVALID (3) if an input is not finite
- *     or not possible. `p` is NaN if the status is UNREACHABLE or INVALID.
+ *     unit of the parameters. `status`: A `Status` of each assembly mode: OK (0) if `p` is a
+ *     solution, UNREACHABLE (1) if there is no solution, SINGULAR (2) if `p` is one of
+ *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
+ *     input is not finite or not possible. `p` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -192,10 +192,10 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [p] 6 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [p] 6 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ p: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ p: Float64Array, status: Uint8Array }} the results
  */
 export function fk_batch(n, q, p, status, parameters) {
     return _runtime.batch(_FK, n, [q], [p, status], parameters);
@@ -274,7 +274,7 @@ const _PASSIVE_ANGLES = _runtime.kernel({
 /**
  * Angles theta4 and theta5 of CP and DP in both assembly modes.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  * - If C and D coincide, both angles are free but equal: +90 or -90 degrees is returned.
  *
@@ -282,7 +282,7 @@ const _PASSIVE_ANGLES = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 2 branches of 2 numbers. Angles in rad, in (-pi, pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function passive_angles(q, parameters) {
     return _runtime.single(_PASSIVE_ANGLES, [q], parameters);
@@ -293,9 +293,9 @@ export function passive_angles(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [theta] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [theta] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function passive_angles_batch(n, q, theta, parameters) {
     return _runtime.batch(_PASSIVE_ANGLES, n, [q], [theta], parameters);
@@ -408,15 +408,15 @@ const _SKELETON = _runtime.kernel({
 /**
  * Points of the mechanism in the base frame, in the order of SKELETON.points.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 15 numbers (5 x 3 in row order). One column for each of
- *     theta1, theta2, theta3.
+ * @returns {number[][]} 2 branches of 15 numbers (5 x 3 in row order). Coordinates x, y, z of
+ *     each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -427,9 +427,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [points] 30 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 30 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -527,15 +527,15 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
 /**
  * A of A*dp = B*dq; its rows are L2*k, p - c and p - d.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order). One column for each of
- *     theta1, theta2, theta3.
+ * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order). One column for each of x,
+ *     y, z.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_parallel(q, parameters) {
     return _runtime.single(_JACOBIAN_PARALLEL, [q], parameters);
@@ -546,9 +546,9 @@ export function jacobian_parallel(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [A] 18 n numbers, written to; made if there is none
+ * @param {Float64Array} [A] 18 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_parallel_batch(n, q, A, parameters) {
     return _runtime.batch(_JACOBIAN_PARALLEL, n, [q], [A], parameters);
@@ -630,7 +630,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
  * The diagonal of B of A*dp = B*dq: L2*rho, L1*L2*sin(theta4 - theta2) and L1*L2*sin(theta5 -
  * theta3).
  *
- * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  *
@@ -638,7 +638,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 2 branches of 3 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_serial(q, parameters) {
     return _runtime.single(_JACOBIAN_SERIAL, [q], parameters);
@@ -649,9 +649,9 @@ export function jacobian_serial(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [B] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [B] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_serial_batch(n, q, B, parameters) {
     return _runtime.batch(_JACOBIAN_SERIAL, n, [q], [B], parameters);
@@ -759,7 +759,7 @@ const _JACOBIAN = _runtime.kernel({
 /**
  * Derivative of p with respect to q: A^-1*B.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -768,7 +768,7 @@ const _JACOBIAN = _runtime.kernel({
  * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order). One column for each of
  *     theta1, theta2, theta3.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -779,9 +779,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [J] 18 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 18 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -863,7 +863,7 @@ const _DETERMINANT = _runtime.kernel({
 /**
  * Determinant of the Jacobian.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -871,7 +871,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} One number for each of 2 branches.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -882,9 +882,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [det] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [det] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -969,7 +969,7 @@ const _SINGULARITIES = _runtime.kernel({
  * Factors that vanish exactly on the singular sets: rho, L1*L2*sin(theta4 - theta2) and
  * L1*L2*sin(theta5 - theta3) (serial), and L2^2*sin(theta5 - theta4) (parallel).
  *
- * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
@@ -977,7 +977,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @returns {number[][]} 2 branches of 4 numbers. One factor for each singular set: P on AB; A,
  *     C, P in line; B, D, P in line; C, D, P in line.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -988,9 +988,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [factors] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -1054,7 +1054,7 @@ const _CONDITION_NUMBER = _runtime.kernel({
 /**
  * Ratio of the largest to the smallest singular value of A.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
  * - NaN for an assembly mode that does not exist.
  * - Infinite at a parallel singularity. It does not depend on theta1 and is the same for both
  *   modes.
@@ -1063,7 +1063,7 @@ const _CONDITION_NUMBER = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} One number for each of 2 branches.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function condition_number(q, parameters) {
     return _runtime.single(_CONDITION_NUMBER, [q], parameters);
@@ -1074,9 +1074,9 @@ export function condition_number(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [kappa] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [kappa] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function condition_number_batch(n, q, kappa, parameters) {
     return _runtime.batch(_CONDITION_NUMBER, n, [q], [kappa], parameters);
@@ -1236,7 +1236,7 @@ const _IK = _runtime.kernel({
  *
  * Source: the working modes of section 2.4.
  *
- * - Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
+ * - The branches, in the order of `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
  *   plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly
  *   modes.
@@ -1259,7 +1259,7 @@ const _IK = _runtime.kernel({
  *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
  *     input is not finite or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(x, parameters) {
     return _runtime.single(_IK, [x], parameters);
@@ -1270,10 +1270,10 @@ export function ik(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
- * @param {Float64Array} [q] 24 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 24 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
@@ -1335,7 +1335,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {boolean}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function workspace_contains(p, parameters) {
     return _runtime.single(_WORKSPACE_CONTAINS, [p], parameters);
@@ -1346,9 +1346,9 @@ export function workspace_contains(p, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} p 3 n numbers
- * @param {Uint8Array} [inside] n numbers, written to; made if there is none
+ * @param {Uint8Array} [inside] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Uint8Array} what was written to
+ * @returns {Uint8Array} the results
  */
 export function workspace_contains_batch(n, p, inside, parameters) {
     return _runtime.batch(_WORKSPACE_CONTAINS, n, [p], [inside], parameters);
@@ -1415,7 +1415,7 @@ const _WORKSPACE_VOLUME = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function workspace_volume(parameters) {
     return _runtime.single(_WORKSPACE_VOLUME, [], parameters);
@@ -1425,9 +1425,9 @@ export function workspace_volume(parameters) {
  * `workspace_volume` of n postures, as planes: number k of posture i is at `volume[k * n + i]`.
  *
  * @param {number} n
- * @param {Float64Array} [volume] n numbers, written to; made if there is none
+ * @param {Float64Array} [volume] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function workspace_volume_batch(n, volume, parameters) {
     return _runtime.batch(_WORKSPACE_VOLUME, n, [], [volume], parameters);

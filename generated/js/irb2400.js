@@ -184,7 +184,7 @@ const _POSE = _runtime.kernel({
  * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform with a proper
  *     rotation.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function pose(q, parameters) {
     return _runtime.single(_POSE, [q], parameters);
@@ -195,9 +195,9 @@ export function pose(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [T] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
@@ -291,9 +291,9 @@ const _SKELETON = _runtime.kernel({
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 21 numbers (7 x 3 in row order).
+ * @returns {number[]} 21 numbers (7 x 3 in row order). Coordinates x, y, z of each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -304,9 +304,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [points] 21 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 21 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -406,7 +406,7 @@ const _FK = _runtime.kernel({
  * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform with a proper
  *     rotation.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -417,9 +417,9 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [T] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function fk_batch(n, q, T, parameters) {
     return _runtime.batch(_FK, n, [q], [T], parameters);
@@ -533,7 +533,7 @@ const _JACOBIAN = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 36 numbers (6 x 6 in row order). One column for each of theta1 to theta6.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -544,9 +544,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [J] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -600,7 +600,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -611,9 +611,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [det] n numbers, written to; made if there is none
+ * @param {Float64Array} [det] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -664,7 +664,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 3 numbers. One factor for each singular set: shoulder; elbow; wrist.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -675,9 +675,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [factors] 3 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 3 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -806,7 +806,7 @@ const _JACOBIAN_SPACE = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 36 numbers (6 x 6 in row order). One column for each of theta1 to theta6.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_space(q, parameters) {
     return _runtime.single(_JACOBIAN_SPACE, [q], parameters);
@@ -817,9 +817,9 @@ export function jacobian_space(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [J] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_space_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_SPACE, n, [q], [J], parameters);
@@ -936,7 +936,7 @@ const _JACOBIAN_BODY = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 36 numbers (6 x 6 in row order). One column for each of theta1 to theta6.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_body(q, parameters) {
     return _runtime.single(_JACOBIAN_BODY, [q], parameters);
@@ -947,9 +947,9 @@ export function jacobian_body(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [J] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_body_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_BODY, n, [q], [J], parameters);
@@ -993,7 +993,7 @@ const _JOINTS_FROM_MOTORS = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 6 numbers. theta1 to theta6 in rad, in (-pi, pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function joints_from_motors(motors, parameters) {
     return _runtime.single(_JOINTS_FROM_MOTORS, [motors], parameters);
@@ -1005,9 +1005,9 @@ export function joints_from_motors(motors, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} motors 6 n numbers
- * @param {Float64Array} [q] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function joints_from_motors_batch(n, motors, q, parameters) {
     return _runtime.batch(_JOINTS_FROM_MOTORS, n, [motors], [q], parameters);
@@ -1051,7 +1051,7 @@ const _MOTORS_FROM_JOINTS = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 6 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function motors_from_joints(q, parameters) {
     return _runtime.single(_MOTORS_FROM_JOINTS, [q], parameters);
@@ -1062,9 +1062,9 @@ export function motors_from_joints(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [motors] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [motors] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function motors_from_joints_batch(n, q, motors, parameters) {
     return _runtime.batch(_MOTORS_FROM_JOINTS, n, [q], [motors], parameters);
@@ -1449,9 +1449,9 @@ const _IK = _runtime.kernel({
 /**
  * All eight postures of a pose, as angles of the joints.
  *
- * - Branches in this order, `BRANCHES`: facing_up_noflip, facing_up_flip, facing_down_noflip,
- *   facing_down_flip, backward_up_noflip, backward_up_flip, backward_down_noflip,
- *   backward_down_flip.
+ * - The branches, in the order of `BRANCHES`: facing_up_noflip, facing_up_flip,
+ *   facing_down_noflip, facing_down_flip, backward_up_noflip, backward_up_flip,
+ *   backward_down_noflip, backward_down_flip.
  * - motors_from_joints takes them to the motors.
  * - facing: X >= 0; backward: X <= 0. up: the elbow is above the line from the shoulder to the
  *   wrist; down: below; the other way round where X is between 0 and a1.
@@ -1469,7 +1469,7 @@ const _IK = _runtime.kernel({
  *     solutions or poorly determined (see the notes), and INVALID (3) if an input is not finite
  *     or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(T, parameters) {
     return _runtime.single(_IK, [T], parameters);
@@ -1480,10 +1480,10 @@ export function ik(T, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} T 16 n numbers
- * @param {Float64Array} [q] 48 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 48 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, T, q, status, parameters) {
     return _runtime.batch(_IK, n, [T], [q, status], parameters);

@@ -138,7 +138,7 @@ const _JOINT4 = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number} Angle in rad, in (-pi, pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function joint4(q, parameters) {
     return _runtime.single(_JOINT4, [q], parameters);
@@ -149,9 +149,9 @@ export function joint4(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [theta4] n numbers, written to; made if there is none
+ * @param {Float64Array} [theta4] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function joint4_batch(n, q, theta4, parameters) {
     return _runtime.batch(_JOINT4, n, [q], [theta4], parameters);
@@ -193,7 +193,7 @@ const _JOINTS_FROM_MOTORS = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 4 numbers. theta1, theta2, theta3, theta5 in rad, in (-pi, pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function joints_from_motors(motors, parameters) {
     return _runtime.single(_JOINTS_FROM_MOTORS, [motors], parameters);
@@ -205,9 +205,9 @@ export function joints_from_motors(motors, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} motors 4 n numbers
- * @param {Float64Array} [q] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function joints_from_motors_batch(n, motors, q, parameters) {
     return _runtime.batch(_JOINTS_FROM_MOTORS, n, [motors], [q], parameters);
@@ -249,7 +249,7 @@ const _MOTORS_FROM_JOINTS = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 4 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function motors_from_joints(q, parameters) {
     return _runtime.single(_MOTORS_FROM_JOINTS, [q], parameters);
@@ -260,9 +260,9 @@ export function motors_from_joints(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [motors] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [motors] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function motors_from_joints_batch(n, q, motors, parameters) {
     return _runtime.batch(_MOTORS_FROM_JOINTS, n, [q], [motors], parameters);
@@ -325,7 +325,7 @@ const _FK = _runtime.kernel({
  * @returns {number[]} 4 numbers. x, y, z in the unit of the parameters; yaw in rad, in (-pi,
  *     pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -336,9 +336,9 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [x] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [x] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function fk_batch(n, q, x, parameters) {
     return _runtime.batch(_FK, n, [q], [x], parameters);
@@ -413,7 +413,7 @@ const _POSE = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function pose(q, parameters) {
     return _runtime.single(_POSE, [q], parameters);
@@ -424,9 +424,9 @@ export function pose(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [T] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
@@ -525,9 +525,9 @@ const _SKELETON = _runtime.kernel({
  *
  * @param {ArrayLike<number>} q 4 numbers. theta1, theta2, theta3, theta5 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 33 numbers (11 x 3 in row order).
+ * @returns {number[]} 33 numbers (11 x 3 in row order). Coordinates x, y, z of each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -538,9 +538,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [points] 33 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 33 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -612,7 +612,7 @@ const _JACOBIAN = _runtime.kernel({
  * @returns {number[]} 16 numbers (4 x 4 in row order). One column for each of theta1, theta2,
  *     theta3, theta5.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -623,9 +623,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [J] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -705,7 +705,7 @@ const _JACOBIAN_SPACE = _runtime.kernel({
  * @returns {number[]} 24 numbers (6 x 4 in row order). One column for each of theta1, theta2,
  *     theta3, theta5.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_space(q, parameters) {
     return _runtime.single(_JACOBIAN_SPACE, [q], parameters);
@@ -716,9 +716,9 @@ export function jacobian_space(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [J] 24 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 24 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_space_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_SPACE, n, [q], [J], parameters);
@@ -796,7 +796,7 @@ const _JACOBIAN_BODY = _runtime.kernel({
  * @returns {number[]} 24 numbers (6 x 4 in row order). One column for each of theta1, theta2,
  *     theta3, theta5.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_body(q, parameters) {
     return _runtime.single(_JACOBIAN_BODY, [q], parameters);
@@ -807,9 +807,9 @@ export function jacobian_body(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [J] 24 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 24 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_body_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_BODY, n, [q], [J], parameters);
@@ -876,10 +876,9 @@ const _JACOBIAN_MOTORS = _runtime.kernel({
  *
  * @param {ArrayLike<number>} q 4 numbers. theta1, theta2, theta3, theta5 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 16 numbers (4 x 4 in row order). One column for each of theta1, theta2,
- *     theta3, theta5.
+ * @returns {number[]} 16 numbers (4 x 4 in row order).
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_motors(q, parameters) {
     return _runtime.single(_JACOBIAN_MOTORS, [q], parameters);
@@ -890,9 +889,9 @@ export function jacobian_motors(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [J] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_motors_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_MOTORS, n, [q], [J], parameters);
@@ -943,7 +942,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -954,9 +953,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [det] n numbers, written to; made if there is none
+ * @param {Float64Array} [det] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -1002,7 +1001,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 2 numbers. One factor for each singular set: base axis; elbow.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -1013,9 +1012,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [factors] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -1080,7 +1079,7 @@ const _POINT_VELOCITY = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 3 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function point_velocity(q, qdot, parameters) {
     return _runtime.single(_POINT_VELOCITY, [q, qdot], parameters);
@@ -1092,9 +1091,9 @@ export function point_velocity(q, qdot, parameters) {
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
  * @param {Float64Array} qdot 4 n numbers
- * @param {Float64Array} [v] 3 n numbers, written to; made if there is none
+ * @param {Float64Array} [v] 3 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function point_velocity_batch(n, q, qdot, v, parameters) {
     return _runtime.batch(_POINT_VELOCITY, n, [q, qdot], [v], parameters);
@@ -1246,7 +1245,7 @@ const _IK = _runtime.kernel({
  *
  * Source: solved from eq. (13); the paper does not give the inverse.
  *
- * - Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, back_elbow_up,
+ * - The branches, in the order of `BRANCHES`: front_elbow_up, front_elbow_down, back_elbow_up,
  *   back_elbow_down.
  * - front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0,
  *   with rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;
@@ -1266,7 +1265,7 @@ const _IK = _runtime.kernel({
  *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
  *     input is not finite or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(x, parameters) {
     return _runtime.single(_IK, [x], parameters);
@@ -1277,10 +1276,10 @@ export function ik(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x 4 n numbers
- * @param {Float64Array} [q] 16 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 16 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
@@ -1322,7 +1321,7 @@ const _WORKSPACE_SECTION = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 4 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function workspace_section(parameters) {
     return _runtime.single(_WORKSPACE_SECTION, [], parameters);
@@ -1333,9 +1332,9 @@ export function workspace_section(parameters) {
  * i]`.
  *
  * @param {number} n
- * @param {Float64Array} [section] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [section] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function workspace_section_batch(n, section, parameters) {
     return _runtime.batch(_WORKSPACE_SECTION, n, [], [section], parameters);
@@ -1394,7 +1393,7 @@ const _WORKSPACE_MARGIN = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function workspace_margin(p, parameters) {
     return _runtime.single(_WORKSPACE_MARGIN, [p], parameters);
@@ -1405,9 +1404,9 @@ export function workspace_margin(p, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} p 3 n numbers
- * @param {Float64Array} [margin] n numbers, written to; made if there is none
+ * @param {Float64Array} [margin] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function workspace_margin_batch(n, p, margin, parameters) {
     return _runtime.batch(_WORKSPACE_MARGIN, n, [p], [margin], parameters);
@@ -1474,7 +1473,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {boolean}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function workspace_contains(p, parameters) {
     return _runtime.single(_WORKSPACE_CONTAINS, [p], parameters);
@@ -1485,9 +1484,9 @@ export function workspace_contains(p, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} p 3 n numbers
- * @param {Uint8Array} [inside] n numbers, written to; made if there is none
+ * @param {Uint8Array} [inside] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Uint8Array} what was written to
+ * @returns {Uint8Array} the results
  */
 export function workspace_contains_batch(n, p, inside, parameters) {
     return _runtime.batch(_WORKSPACE_CONTAINS, n, [p], [inside], parameters);

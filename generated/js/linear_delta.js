@@ -185,7 +185,7 @@ const _FK = _runtime.kernel({
 /**
  * Position of the hand in both assembly modes.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - UNREACHABLE: the rods do not meet.
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
@@ -194,12 +194,12 @@ const _FK = _runtime.kernel({
  * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ p: number[][], status: number[] }} `p`: 2 branches of 3 numbers. x, y, z in the
- *     unit of the parameters. `status`: A `Status` of each branch: OK (0) if `p` is a solution,
- *     UNREACHABLE (1) if there is no solution, SINGULAR (2) if `p` is one of infinitely many
- *     solutions or poorly determined (see the notes), and INVALID (3) if an input is not finite
- *     or not possible. `p` is NaN if the status is UNREACHABLE or INVALID.
+ *     unit of the parameters. `status`: A `Status` of each assembly mode: OK (0) if `p` is a
+ *     solution, UNREACHABLE (1) if there is no solution, SINGULAR (2) if `p` is one of
+ *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
+ *     input is not finite or not possible. `p` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -210,10 +210,10 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [p] 6 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [p] 6 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ p: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ p: Float64Array, status: Uint8Array }} the results
  */
 export function fk_batch(n, q, p, status, parameters) {
     return _runtime.batch(_FK, n, [q], [p, status], parameters);
@@ -389,15 +389,15 @@ const _SKELETON = _runtime.kernel({
 /**
  * Points of the mechanism in the base frame, in the order of SKELETON.points.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 30 numbers (10 x 3 in row order). One column for each of
- *     rho1, rho2, rho3.
+ * @returns {number[][]} 2 branches of 30 numbers (10 x 3 in row order). Coordinates x, y, z of
+ *     each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -408,9 +408,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [points] 60 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 60 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -529,15 +529,15 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
 /**
  * A of A*dp = B*dq; its rows are the vectors along the rods.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order). One column for each of
- *     rho1, rho2, rho3.
+ * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order). One column for each of x,
+ *     y, z.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_parallel(q, parameters) {
     return _runtime.single(_JACOBIAN_PARALLEL, [q], parameters);
@@ -548,9 +548,9 @@ export function jacobian_parallel(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [A] 18 n numbers, written to; made if there is none
+ * @param {Float64Array} [A] 18 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_parallel_batch(n, q, A, parameters) {
     return _runtime.batch(_JACOBIAN_PARALLEL, n, [q], [A], parameters);
@@ -646,7 +646,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
 /**
  * The diagonal of B of A*dp = B*dq.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  *
@@ -654,7 +654,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 2 branches of 3 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_serial(q, parameters) {
     return _runtime.single(_JACOBIAN_SERIAL, [q], parameters);
@@ -665,9 +665,9 @@ export function jacobian_serial(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [B] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [B] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_serial_batch(n, q, B, parameters) {
     return _runtime.batch(_JACOBIAN_SERIAL, n, [q], [B], parameters);
@@ -813,7 +813,7 @@ const _JACOBIAN = _runtime.kernel({
 /**
  * Derivative of p with respect to q: A^-1*B.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -822,7 +822,7 @@ const _JACOBIAN = _runtime.kernel({
  * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order). One column for each of
  *     rho1, rho2, rho3.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -833,9 +833,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [J] 18 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 18 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -929,7 +929,7 @@ const _DETERMINANT = _runtime.kernel({
 /**
  * Determinant of the Jacobian.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -937,7 +937,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} One number for each of 2 branches.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -948,9 +948,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [det] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [det] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -1049,7 +1049,7 @@ const _SINGULARITIES = _runtime.kernel({
 /**
  * The diagonal of B (serial) and the determinant of A (parallel).
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
@@ -1057,7 +1057,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @returns {number[][]} 2 branches of 4 numbers. One factor for each singular set: leg 1; leg
  *     2; leg 3; rods in one plane.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -1068,9 +1068,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [factors] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -1217,7 +1217,7 @@ const _CONDITION_NUMBER = _runtime.kernel({
  * Condition number of A in the Frobenius norm, divided by 3: 1 if the rods are equally long and
  * at right angles.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: below, above.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
  * - Infinite at a parallel singularity.
  *
@@ -1225,7 +1225,7 @@ const _CONDITION_NUMBER = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} One number for each of 2 branches.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function condition_number(q, parameters) {
     return _runtime.single(_CONDITION_NUMBER, [q], parameters);
@@ -1236,9 +1236,9 @@ export function condition_number(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [kappa] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [kappa] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function condition_number_batch(n, q, kappa, parameters) {
     return _runtime.batch(_CONDITION_NUMBER, n, [q], [kappa], parameters);
@@ -1382,7 +1382,7 @@ const _IK = _runtime.kernel({
 /**
  * The driven joints of all working modes.
  *
- * - Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
+ * - The branches, in the order of `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
  *   plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
@@ -1396,7 +1396,7 @@ const _IK = _runtime.kernel({
  *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
  *     input is not finite or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(x, parameters) {
     return _runtime.single(_IK, [x], parameters);
@@ -1407,10 +1407,10 @@ export function ik(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
- * @param {Float64Array} [q] 24 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 24 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
@@ -1470,7 +1470,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {boolean}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function workspace_contains(p, parameters) {
     return _runtime.single(_WORKSPACE_CONTAINS, [p], parameters);
@@ -1481,9 +1481,9 @@ export function workspace_contains(p, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} p 3 n numbers
- * @param {Uint8Array} [inside] n numbers, written to; made if there is none
+ * @param {Uint8Array} [inside] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Uint8Array} what was written to
+ * @returns {Uint8Array} the results
  */
 export function workspace_contains_batch(n, p, inside, parameters) {
     return _runtime.batch(_WORKSPACE_CONTAINS, n, [p], [inside], parameters);

@@ -111,7 +111,7 @@ const _FK = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 2 numbers. x, y in the unit of the parameters.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -122,9 +122,9 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [x] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [x] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function fk_batch(n, q, x, parameters) {
     return _runtime.batch(_FK, n, [q], [x], parameters);
@@ -187,7 +187,7 @@ const _POSE = _runtime.kernel({
  * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform with a proper
  *     rotation.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function pose(q, parameters) {
     return _runtime.single(_POSE, [q], parameters);
@@ -198,9 +198,9 @@ export function pose(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [T] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
@@ -239,7 +239,7 @@ const _ORIENTATION = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number} Angle in rad, in (-pi, pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function orientation(q, parameters) {
     return _runtime.single(_ORIENTATION, [q], parameters);
@@ -250,9 +250,9 @@ export function orientation(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [phi] n numbers, written to; made if there is none
+ * @param {Float64Array} [phi] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function orientation_batch(n, q, phi, parameters) {
     return _runtime.batch(_ORIENTATION, n, [q], [phi], parameters);
@@ -303,9 +303,9 @@ const _SKELETON = _runtime.kernel({
  *
  * @param {ArrayLike<number>} q 2 numbers. theta1, theta2 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 9 numbers (3 x 3 in row order).
+ * @returns {number[]} 9 numbers (3 x 3 in row order). Coordinates x, y, z of each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -316,9 +316,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [points] 9 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 9 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -370,7 +370,7 @@ const _JACOBIAN = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 6 numbers (3 x 2 in row order). One column for each of theta1, theta2.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -381,9 +381,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [J] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -426,7 +426,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -437,9 +437,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [det] n numbers, written to; made if there is none
+ * @param {Float64Array} [det] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -482,7 +482,7 @@ const _MANIPULABILITY = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function manipulability(q, parameters) {
     return _runtime.single(_MANIPULABILITY, [q], parameters);
@@ -493,9 +493,9 @@ export function manipulability(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [w] n numbers, written to; made if there is none
+ * @param {Float64Array} [w] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function manipulability_batch(n, q, w, parameters) {
     return _runtime.batch(_MANIPULABILITY, n, [q], [w], parameters);
@@ -531,7 +531,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 1 number. One factor for each singular set: elbow.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -542,9 +542,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [factors] n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -621,7 +621,7 @@ const _IK = _runtime.kernel({
  *
  * Source: eqs. (3) and (4), by arctangents.
  *
- * - Branches in this order, `BRANCHES`: elbow_down, elbow_up.
+ * - The branches, in the order of `BRANCHES`: elbow_down, elbow_up.
  * - SINGULAR: if l1 = l2 and the hand is on the base axis, theta1 is free and 0 is returned; if
  *   a link has no length, its angle is free.
  * - Ill-conditioned near the stretched and the folded arm: the angles lose half their digits,
@@ -635,7 +635,7 @@ const _IK = _runtime.kernel({
  *     solutions or poorly determined (see the notes), and INVALID (3) if an input is not finite
  *     or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(x, parameters) {
     return _runtime.single(_IK, [x], parameters);
@@ -646,10 +646,10 @@ export function ik(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x 2 n numbers
- * @param {Float64Array} [q] 4 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 4 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
@@ -749,7 +749,7 @@ const _IK_POSE = _runtime.kernel({
  *     determined (see the notes), and INVALID (3) if an input is not finite or not possible.
  *     `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik_pose(T, parameters) {
     return _runtime.single(_IK_POSE, [T], parameters);
@@ -760,10 +760,10 @@ export function ik_pose(T, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} T 16 n numbers
- * @param {Float64Array} [q] 2 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 2 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_pose_batch(n, T, q, status, parameters) {
     return _runtime.batch(_IK_POSE, n, [T], [q, status], parameters);
@@ -797,7 +797,7 @@ const _WORKSPACE_RADII = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 2 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function workspace_radii(parameters) {
     return _runtime.single(_WORKSPACE_RADII, [], parameters);
@@ -807,9 +807,9 @@ export function workspace_radii(parameters) {
  * `workspace_radii` of n postures, as planes: number k of posture i is at `radii[k * n + i]`.
  *
  * @param {number} n
- * @param {Float64Array} [radii] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [radii] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function workspace_radii_batch(n, radii, parameters) {
     return _runtime.batch(_WORKSPACE_RADII, n, [], [radii], parameters);

@@ -168,7 +168,7 @@ const _POSE = _runtime.kernel({
  * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform with a proper
  *     rotation.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function pose(q, parameters) {
     return _runtime.single(_POSE, [q], parameters);
@@ -179,9 +179,9 @@ export function pose(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [T] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
@@ -254,9 +254,9 @@ const _SKELETON = _runtime.kernel({
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 15 numbers (5 x 3 in row order).
+ * @returns {number[]} 15 numbers (5 x 3 in row order). Coordinates x, y, z of each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -267,9 +267,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [points] 15 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 15 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -362,7 +362,7 @@ const _FK = _runtime.kernel({
  * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform with a proper
  *     rotation.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -373,9 +373,9 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [T] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function fk_batch(n, q, T, parameters) {
     return _runtime.batch(_FK, n, [q], [T], parameters);
@@ -479,7 +479,7 @@ const _JACOBIAN = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 36 numbers (6 x 6 in row order). One column for each of theta1 to theta6.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -490,9 +490,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [J] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -545,7 +545,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -556,9 +556,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [det] n numbers, written to; made if there is none
+ * @param {Float64Array} [det] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -608,7 +608,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 3 numbers. One factor for each singular set: shoulder; elbow; wrist.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -619,9 +619,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [factors] 3 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 3 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -735,7 +735,7 @@ const _JACOBIAN_SPACE = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 36 numbers (6 x 6 in row order). One column for each of theta1 to theta6.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_space(q, parameters) {
     return _runtime.single(_JACOBIAN_SPACE, [q], parameters);
@@ -746,9 +746,9 @@ export function jacobian_space(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [J] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_space_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_SPACE, n, [q], [J], parameters);
@@ -863,7 +863,7 @@ const _JACOBIAN_BODY = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 36 numbers (6 x 6 in row order). One column for each of theta1 to theta6.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_body(q, parameters) {
     return _runtime.single(_JACOBIAN_BODY, [q], parameters);
@@ -874,9 +874,9 @@ export function jacobian_body(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [J] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_body_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_BODY, n, [q], [J], parameters);
@@ -1214,14 +1214,15 @@ const _IK = _runtime.kernel({
 /**
  * All 8 configurations of a pose.
  *
- * - Branches in this order, `BRANCHES`: right_up_noflip, right_up_flip, right_down_noflip,
- *   right_down_flip, left_up_noflip, left_up_flip, left_down_noflip, left_down_flip.
+ * - The branches, in the order of `BRANCHES`: right_up_noflip, right_up_flip,
+ *   right_down_noflip, right_down_flip, left_up_noflip, left_up_flip, left_down_noflip,
+ *   left_down_flip.
  * - right: X >= 0, the arm faces the wrist; left: X <= 0. up: the elbow is above the line from
  *   the shoulder to the wrist; down: below.
  * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
  * - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
  *   digits, the pose does not.
- * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
+ * - INVALID: the matrix is not a homogeneous transform with a proper rotation.
  * - SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal
  *   links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without
  *   length, theta3 is free.
@@ -1236,7 +1237,7 @@ const _IK = _runtime.kernel({
  *     solutions or poorly determined (see the notes), and INVALID (3) if an input is not finite
  *     or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(T, parameters) {
     return _runtime.single(_IK, [T], parameters);
@@ -1247,10 +1248,10 @@ export function ik(T, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} T 16 n numbers
- * @param {Float64Array} [q] 48 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 48 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, T, q, status, parameters) {
     return _runtime.batch(_IK, n, [T], [q, status], parameters);

@@ -126,7 +126,7 @@ const _FK = _runtime.kernel({
 /**
  * Position of the hand in both assembly modes.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - UNREACHABLE: the rods do not meet.
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
@@ -135,12 +135,12 @@ const _FK = _runtime.kernel({
  * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ p: number[][], status: number[] }} `p`: 2 branches of 2 numbers. x, y in the unit
- *     of the parameters. `status`: A `Status` of each branch: OK (0) if `p` is a solution,
- *     UNREACHABLE (1) if there is no solution, SINGULAR (2) if `p` is one of infinitely many
- *     solutions or poorly determined (see the notes), and INVALID (3) if an input is not finite
- *     or not possible. `p` is NaN if the status is UNREACHABLE or INVALID.
+ *     of the parameters. `status`: A `Status` of each assembly mode: OK (0) if `p` is a
+ *     solution, UNREACHABLE (1) if there is no solution, SINGULAR (2) if `p` is one of
+ *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
+ *     input is not finite or not possible. `p` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -151,10 +151,10 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [p] 4 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [p] 4 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ p: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ p: Float64Array, status: Uint8Array }} the results
  */
 export function fk_batch(n, q, p, status, parameters) {
     return _runtime.batch(_FK, n, [q], [p, status], parameters);
@@ -220,14 +220,14 @@ const _PASSIVE_ANGLES = _runtime.kernel({
 /**
  * Angles of the rods from the x axis in both assembly modes.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 2 branches of 2 numbers. Angles in rad, in (-pi, pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function passive_angles(q, parameters) {
     return _runtime.single(_PASSIVE_ANGLES, [q], parameters);
@@ -238,9 +238,9 @@ export function passive_angles(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [theta] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [theta] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function passive_angles_batch(n, q, theta, parameters) {
     return _runtime.batch(_PASSIVE_ANGLES, n, [q], [theta], parameters);
@@ -318,14 +318,15 @@ const _SKELETON = _runtime.kernel({
 /**
  * Points of the mechanism in the base frame, in the order of SKELETON.points.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order).
+ * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order). Coordinates x, y, z of
+ *     each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -336,9 +337,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [points] 18 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 18 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -408,15 +409,15 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
 /**
  * A of A*dp = B*dq; its rows are the vectors along the rods.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 4 numbers (2 x 2 in row order). One column for each of
- *     rho1, rho2.
+ * @returns {number[][]} 2 branches of 4 numbers (2 x 2 in row order). One column for each of x,
+ *     y.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_parallel(q, parameters) {
     return _runtime.single(_JACOBIAN_PARALLEL, [q], parameters);
@@ -427,9 +428,9 @@ export function jacobian_parallel(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [A] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [A] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_parallel_batch(n, q, A, parameters) {
     return _runtime.batch(_JACOBIAN_PARALLEL, n, [q], [A], parameters);
@@ -473,14 +474,14 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
 /**
  * The diagonal of B of A*dp = B*dq.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 2 branches of 2 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_serial(q, parameters) {
     return _runtime.single(_JACOBIAN_SERIAL, [q], parameters);
@@ -491,9 +492,9 @@ export function jacobian_serial(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [B] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [B] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_serial_batch(n, q, B, parameters) {
     return _runtime.batch(_JACOBIAN_SERIAL, n, [q], [B], parameters);
@@ -565,7 +566,7 @@ const _JACOBIAN = _runtime.kernel({
 /**
  * Derivative of p with respect to q: A^-1*B.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -574,7 +575,7 @@ const _JACOBIAN = _runtime.kernel({
  * @returns {number[][]} 2 branches of 4 numbers (2 x 2 in row order). One column for each of
  *     rho1, rho2.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -585,9 +586,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [J] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -643,7 +644,7 @@ const _DETERMINANT = _runtime.kernel({
 /**
  * Determinant of the Jacobian.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -651,7 +652,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} One number for each of 2 branches.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -662,9 +663,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [det] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [det] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -725,7 +726,7 @@ const _SINGULARITIES = _runtime.kernel({
 /**
  * The diagonal of B (serial) and the determinant of A (parallel).
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 2 numbers. rho1, rho2 in the unit of the parameters.
@@ -733,7 +734,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @returns {number[][]} 2 branches of 3 numbers. One factor for each singular set: leg 1; leg
  *     2; flat.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -744,9 +745,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [factors] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -814,7 +815,7 @@ const _CONDITION_NUMBER = _runtime.kernel({
 /**
  * Ratio of the largest to the smallest singular value of A.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Infinite at a parallel singularity.
  *
@@ -822,7 +823,7 @@ const _CONDITION_NUMBER = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} One number for each of 2 branches.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function condition_number(q, parameters) {
     return _runtime.single(_CONDITION_NUMBER, [q], parameters);
@@ -833,9 +834,9 @@ export function condition_number(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [kappa] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [kappa] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function condition_number_batch(n, q, kappa, parameters) {
     return _runtime.batch(_CONDITION_NUMBER, n, [q], [kappa], parameters);
@@ -894,7 +895,7 @@ const _IK = _runtime.kernel({
  *     poorly determined (see the notes), and INVALID (3) if an input is not finite or not
  *     possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(x, parameters) {
     return _runtime.single(_IK, [x], parameters);
@@ -905,10 +906,10 @@ export function ik(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x 2 n numbers
- * @param {Float64Array} [q] 2 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 2 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);

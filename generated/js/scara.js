@@ -136,7 +136,7 @@ const _POSE = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function pose(q, parameters) {
     return _runtime.single(_POSE, [q], parameters);
@@ -147,9 +147,9 @@ export function pose(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [T] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
@@ -211,9 +211,9 @@ const _SKELETON = _runtime.kernel({
  * @param {ArrayLike<number>} q 4 numbers. theta1, theta2 in rad; d3 in the unit of the
  *     parameters; theta4 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 15 numbers (5 x 3 in row order).
+ * @returns {number[]} 15 numbers (5 x 3 in row order). Coordinates x, y, z of each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -224,9 +224,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [points] 15 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 15 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -283,7 +283,7 @@ const _FK = _runtime.kernel({
  * @returns {number[]} 4 numbers. x, y, z in the unit of the parameters; yaw in rad, in (-pi,
  *     pi].
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -294,9 +294,9 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [x] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [x] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function fk_batch(n, q, x, parameters) {
     return _runtime.batch(_FK, n, [q], [x], parameters);
@@ -358,7 +358,7 @@ const _JACOBIAN = _runtime.kernel({
  * @returns {number[]} 16 numbers (4 x 4 in row order). One column for each of theta1, theta2,
  *     d3, theta4.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -369,9 +369,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [J] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -415,7 +415,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -426,9 +426,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [det] n numbers, written to; made if there is none
+ * @param {Float64Array} [det] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -465,7 +465,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 1 number. One factor for each singular set: sin(theta2) = 0.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -476,9 +476,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [factors] n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -548,7 +548,7 @@ const _JACOBIAN_SPACE = _runtime.kernel({
  * @returns {number[]} 24 numbers (6 x 4 in row order). One column for each of theta1, theta2,
  *     d3, theta4.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_space(q, parameters) {
     return _runtime.single(_JACOBIAN_SPACE, [q], parameters);
@@ -559,9 +559,9 @@ export function jacobian_space(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [J] 24 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 24 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_space_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_SPACE, n, [q], [J], parameters);
@@ -631,7 +631,7 @@ const _JACOBIAN_BODY = _runtime.kernel({
  * @returns {number[]} 24 numbers (6 x 4 in row order). One column for each of theta1, theta2,
  *     d3, theta4.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_body(q, parameters) {
     return _runtime.single(_JACOBIAN_BODY, [q], parameters);
@@ -642,9 +642,9 @@ export function jacobian_body(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 4 n numbers
- * @param {Float64Array} [J] 24 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 24 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_body_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_BODY, n, [q], [J], parameters);
@@ -755,7 +755,7 @@ const _IK = _runtime.kernel({
 /**
  * Both elbow configurations for a position and a yaw.
  *
- * - Branches in this order, `BRANCHES`: left, right.
+ * - The branches, in the order of `BRANCHES`: left, right.
  * - SINGULAR: equal links folded onto the axis of theta1, which is free; 0 is returned.
  * - SINGULAR: a link without length: theta2 is free; 0.
  *
@@ -768,7 +768,7 @@ const _IK = _runtime.kernel({
  *     determined (see the notes), and INVALID (3) if an input is not finite or not possible.
  *     `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(x, parameters) {
     return _runtime.single(_IK, [x], parameters);
@@ -779,10 +779,10 @@ export function ik(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x 4 n numbers
- * @param {Float64Array} [q] 8 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 8 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);

@@ -16,10 +16,10 @@
  * Spherical five-bar linkage.
  *
  * All axes meet in the centre O, and all links are arcs of great circles of a sphere of radius r
- * about it.  The first crank turns about the x axis, the second about the axis in the plane x y at
- * the angle gamma from it.  The cranks have the arcs alpha1 and alpha2, the rods beta1 and beta2;
- * the rods carry the point P.  At 0 a crank lies in the plane x y and leads on in the direction
- * from the first axis to the second; at 90 degrees it rises along z.
+ * about it.  The first crank turns about the x axis, the second about the axis in the plane of x
+ * and y at the angle gamma from it.  The cranks have the arcs alpha1 and alpha2, the rods beta1
+ * and beta2; the rods carry the point P.  At 0 a crank lies in the plane of x and y, on the side
+ * that leads from the first axis to the second; at 90 degrees it rises along z.
  *
  * Angles are in radians. Vectors and matrices are flat arrays in row order.
  * Derived from The closedform authors: Loops on a sphere, solved leg by leg.
@@ -238,7 +238,7 @@ const _FK = _runtime.kernel({
 /**
  * Position of the hand in both assembly modes.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - UNREACHABLE: the rods do not meet.
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
@@ -247,12 +247,12 @@ const _FK = _runtime.kernel({
  * @param {ArrayLike<number>} q 2 numbers. theta1, theta2 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {{ p: number[][], status: number[] }} `p`: 2 branches of 3 numbers. x, y, z in the
- *     unit of the parameters. `status`: A `Status` of each branch: OK (0) if `p` is a solution,
- *     UNREACHABLE (1) if there is no solution, SINGULAR (2) if `p` is one of infinitely many
- *     solutions or poorly determined (see the notes), and INVALID (3) if an input is not finite
- *     or not possible. `p` is NaN if the status is UNREACHABLE or INVALID.
+ *     unit of the parameters. `status`: A `Status` of each assembly mode: OK (0) if `p` is a
+ *     solution, UNREACHABLE (1) if there is no solution, SINGULAR (2) if `p` is one of
+ *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
+ *     input is not finite or not possible. `p` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -263,10 +263,10 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [p] 6 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [p] 6 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ p: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ p: Float64Array, status: Uint8Array }} the results
  */
 export function fk_batch(n, q, p, status, parameters) {
     return _runtime.batch(_FK, n, [q], [p, status], parameters);
@@ -460,14 +460,15 @@ const _SKELETON = _runtime.kernel({
 /**
  * Points of the mechanism in the base frame, in the order of SKELETON.points.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 2 numbers. theta1, theta2 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 18 numbers (6 x 3 in row order).
+ * @returns {number[][]} 2 branches of 18 numbers (6 x 3 in row order). Coordinates x, y, z of
+ *     each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -478,9 +479,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [points] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -648,14 +649,15 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
 /**
  * A of A*dp = B*dq; its rows are the vectors along the rods.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 2 numbers. theta1, theta2 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order).
+ * @returns {number[][]} 2 branches of 9 numbers (3 x 3 in row order). One column for each of x,
+ *     y, z.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_parallel(q, parameters) {
     return _runtime.single(_JACOBIAN_PARALLEL, [q], parameters);
@@ -666,9 +668,9 @@ export function jacobian_parallel(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [A] 18 n numbers, written to; made if there is none
+ * @param {Float64Array} [A] 18 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_parallel_batch(n, q, A, parameters) {
     return _runtime.batch(_JACOBIAN_PARALLEL, n, [q], [A], parameters);
@@ -825,7 +827,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
 /**
  * The diagonal of B of A*dp = B*dq.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Its signs distinguish the working modes; BRANCHES lists them in the same order.
  *
@@ -833,7 +835,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[][]} 2 branches of 2 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_serial(q, parameters) {
     return _runtime.single(_JACOBIAN_SERIAL, [q], parameters);
@@ -844,9 +846,9 @@ export function jacobian_serial(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [B] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [B] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_serial_batch(n, q, B, parameters) {
     return _runtime.batch(_JACOBIAN_SERIAL, n, [q], [B], parameters);
@@ -1040,7 +1042,7 @@ const _JACOBIAN = _runtime.kernel({
 /**
  * Derivative of p with respect to q: A^-1*B.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Not finite at a parallel singularity.
  *
@@ -1049,7 +1051,7 @@ const _JACOBIAN = _runtime.kernel({
  * @returns {number[][]} 2 branches of 6 numbers (3 x 2 in row order). One column for each of
  *     theta1, theta2.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -1060,9 +1062,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [J] 12 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 12 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -1222,7 +1224,7 @@ const _SINGULARITIES = _runtime.kernel({
 /**
  * The diagonal of B (serial) and the determinant of A (parallel).
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  *
  * @param {ArrayLike<number>} q 2 numbers. theta1, theta2 in rad.
@@ -1230,7 +1232,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @returns {number[][]} 2 branches of 3 numbers. One factor for each singular set: leg 1; leg
  *     2; rods in one plane.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -1241,9 +1243,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [factors] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -1447,7 +1449,7 @@ const _CONDITION_NUMBER = _runtime.kernel({
  * Ratio of the largest to the smallest singular value of the rods of the driven legs, as they
  * are seen along the strut.
  *
- * - Branches in this order, `ASSEMBLY_MODES`: above, below.
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
  * - NaN for an assembly mode that does not exist.
  * - Infinite at a parallel singularity.
  *
@@ -1455,7 +1457,7 @@ const _CONDITION_NUMBER = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} One number for each of 2 branches.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function condition_number(q, parameters) {
     return _runtime.single(_CONDITION_NUMBER, [q], parameters);
@@ -1466,9 +1468,9 @@ export function condition_number(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 2 n numbers
- * @param {Float64Array} [kappa] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [kappa] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function condition_number_batch(n, q, kappa, parameters) {
     return _runtime.batch(_CONDITION_NUMBER, n, [q], [kappa], parameters);
@@ -1667,7 +1669,7 @@ const _IK = _runtime.kernel({
 /**
  * The driven joints of all working modes.
  *
- * - Branches in this order, `BRANCHES`: plus_plus, plus_minus, minus_plus, minus_minus.
+ * - The branches, in the order of `BRANCHES`: plus_plus, plus_minus, minus_plus, minus_minus.
  * - UNREACHABLE: a rod does not reach, or the target is not on the sphere.
  * - SINGULAR: the rod ends on the axis of theta1; theta1 is free, 0 is returned.
  * - SINGULAR: no crank; theta1 is free, 0 is returned.
@@ -1684,7 +1686,7 @@ const _IK = _runtime.kernel({
  *     solutions or poorly determined (see the notes), and INVALID (3) if an input is not finite
  *     or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(x, parameters) {
     return _runtime.single(_IK, [x], parameters);
@@ -1695,10 +1697,10 @@ export function ik(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
- * @param {Float64Array} [q] 8 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 4 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 8 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 4 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
@@ -1800,7 +1802,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {boolean}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function workspace_contains(p, parameters) {
     return _runtime.single(_WORKSPACE_CONTAINS, [p], parameters);
@@ -1811,9 +1813,9 @@ export function workspace_contains(p, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} p 3 n numbers
- * @param {Uint8Array} [inside] n numbers, written to; made if there is none
+ * @param {Uint8Array} [inside] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Uint8Array} what was written to
+ * @returns {Uint8Array} the results
  */
 export function workspace_contains_batch(n, p, inside, parameters) {
     return _runtime.batch(_WORKSPACE_CONTAINS, n, [p], [inside], parameters);

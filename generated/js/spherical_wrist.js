@@ -118,7 +118,7 @@ const _FK = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 9 numbers (3 x 3 in row order). A proper rotation.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -129,9 +129,9 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [R] 9 n numbers, written to; made if there is none
+ * @param {Float64Array} [R] 9 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function fk_batch(n, q, R, parameters) {
     return _runtime.batch(_FK, n, [q], [R], parameters);
@@ -199,7 +199,7 @@ const _POSE = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function pose(q, parameters) {
     return _runtime.single(_POSE, [q], parameters);
@@ -210,9 +210,9 @@ export function pose(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [T] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
@@ -258,10 +258,9 @@ const _SKELETON = _runtime.kernel({
  *
  * @param {ArrayLike<number>} q 3 numbers. theta4, theta5, theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 6 numbers (2 x 3 in row order). One column for each of theta4, theta5,
- *     theta6.
+ * @returns {number[]} 6 numbers (2 x 3 in row order). Coordinates x, y, z of each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -272,9 +271,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [points] 6 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 6 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -321,9 +320,10 @@ const _JACOBIAN_SPACE = _runtime.kernel({
  *
  * @param {ArrayLike<number>} q 3 numbers. theta4, theta5, theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 9 numbers (3 x 3 in row order). A proper rotation.
+ * @returns {number[]} 9 numbers (3 x 3 in row order). One column for each of theta4, theta5,
+ *     theta6.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_space(q, parameters) {
     return _runtime.single(_JACOBIAN_SPACE, [q], parameters);
@@ -334,9 +334,9 @@ export function jacobian_space(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [J] 9 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 9 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_space_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_SPACE, n, [q], [J], parameters);
@@ -383,9 +383,10 @@ const _JACOBIAN_BODY = _runtime.kernel({
  *
  * @param {ArrayLike<number>} q 3 numbers. theta4, theta5, theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 9 numbers (3 x 3 in row order). A proper rotation.
+ * @returns {number[]} 9 numbers (3 x 3 in row order). One column for each of theta4, theta5,
+ *     theta6.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_body(q, parameters) {
     return _runtime.single(_JACOBIAN_BODY, [q], parameters);
@@ -396,9 +397,9 @@ export function jacobian_body(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [J] 9 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 9 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_body_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_BODY, n, [q], [J], parameters);
@@ -434,7 +435,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -445,9 +446,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [det] n numbers, written to; made if there is none
+ * @param {Float64Array} [det] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -483,7 +484,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 1 number. One factor for each singular set: axes 4 and 6 coincide.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -494,9 +495,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [factors] n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -566,7 +567,7 @@ const _IK = _runtime.kernel({
  *
  * Source: eqs. (13) and (16), with theta6 from the remaining rotation.
  *
- * - Branches in this order, `BRANCHES`: theta5_positive, theta5_negative.
+ * - The branches, in the order of `BRANCHES`: theta5_positive, theta5_negative.
  * - SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, and
  *   theta4 = 0 is returned.
  * - INVALID: the matrix is not a proper rotation, for example a reflection.
@@ -581,7 +582,7 @@ const _IK = _runtime.kernel({
  *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
  *     input is not finite or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(R, parameters) {
     return _runtime.single(_IK, [R], parameters);
@@ -592,10 +593,10 @@ export function ik(R, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} R 9 n numbers
- * @param {Float64Array} [q] 6 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 2 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 6 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 2 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, R, q, status, parameters) {
     return _runtime.batch(_IK, n, [R], [q, status], parameters);

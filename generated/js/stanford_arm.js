@@ -152,7 +152,7 @@ const _POSE = _runtime.kernel({
  * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform with a proper
  *     rotation.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function pose(q, parameters) {
     return _runtime.single(_POSE, [q], parameters);
@@ -163,9 +163,9 @@ export function pose(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [T] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function pose_batch(n, q, T, parameters) {
     return _runtime.batch(_POSE, n, [q], [T], parameters);
@@ -217,9 +217,9 @@ const _SKELETON = _runtime.kernel({
  * @param {ArrayLike<number>} q 6 numbers. theta1, theta2 in rad; d3 in the unit of the
  *     parameters; theta4, theta5, theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 9 numbers (3 x 3 in row order).
+ * @returns {number[]} 9 numbers (3 x 3 in row order). Coordinates x, y, z of each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(q, parameters) {
     return _runtime.single(_SKELETON, [q], parameters);
@@ -230,9 +230,9 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [points] 9 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 9 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [q], [points], parameters);
@@ -318,7 +318,7 @@ const _FK = _runtime.kernel({
  * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform with a proper
  *     rotation.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function fk(q, parameters) {
     return _runtime.single(_FK, [q], parameters);
@@ -329,9 +329,9 @@ export function fk(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [T] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function fk_batch(n, q, T, parameters) {
     return _runtime.batch(_FK, n, [q], [T], parameters);
@@ -429,7 +429,7 @@ const _JACOBIAN = _runtime.kernel({
  * @returns {number[]} 36 numbers (6 x 6 in row order). One column for each of theta1, theta2,
  *     d3, theta4, theta5, theta6.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(q, parameters) {
     return _runtime.single(_JACOBIAN, [q], parameters);
@@ -440,9 +440,9 @@ export function jacobian(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [J] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [q], [J], parameters);
@@ -488,7 +488,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(q, parameters) {
     return _runtime.single(_DETERMINANT, [q], parameters);
@@ -499,9 +499,9 @@ export function determinant(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [det] n numbers, written to; made if there is none
+ * @param {Float64Array} [det] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [q], [det], parameters);
@@ -544,7 +544,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 3 numbers. One factor for each singular set: shoulder; boom; wrist.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(q, parameters) {
     return _runtime.single(_SINGULARITIES, [q], parameters);
@@ -555,9 +555,9 @@ export function singularities(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [factors] 3 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 3 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [q], [factors], parameters);
@@ -660,7 +660,7 @@ const _JACOBIAN_SPACE = _runtime.kernel({
  * @returns {number[]} 36 numbers (6 x 6 in row order). One column for each of theta1, theta2,
  *     d3, theta4, theta5, theta6.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_space(q, parameters) {
     return _runtime.single(_JACOBIAN_SPACE, [q], parameters);
@@ -671,9 +671,9 @@ export function jacobian_space(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [J] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_space_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_SPACE, n, [q], [J], parameters);
@@ -776,7 +776,7 @@ const _JACOBIAN_BODY = _runtime.kernel({
  * @returns {number[]} 36 numbers (6 x 6 in row order). One column for each of theta1, theta2,
  *     d3, theta4, theta5, theta6.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_body(q, parameters) {
     return _runtime.single(_JACOBIAN_BODY, [q], parameters);
@@ -787,9 +787,9 @@ export function jacobian_body(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 6 n numbers
- * @param {Float64Array} [J] 36 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 36 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_body_batch(n, q, J, parameters) {
     return _runtime.batch(_JACOBIAN_BODY, n, [q], [J], parameters);
@@ -1250,11 +1250,12 @@ const _IK = _runtime.kernel({
 /**
  * All 8 configurations of a pose.
  *
- * - Branches in this order, `BRANCHES`: right_out_noflip, right_out_flip, right_back_noflip,
- *   right_back_flip, left_out_noflip, left_out_flip, left_back_noflip, left_back_flip.
+ * - The branches, in the order of `BRANCHES`: right_out_noflip, right_out_flip,
+ *   right_back_noflip, right_back_flip, left_out_noflip, left_out_flip, left_back_noflip,
+ *   left_back_flip.
  * - right: X >= 0, the arm faces the wrist; left: X <= 0. out: d3 >= 0; back: d3 <= 0.
  * - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
- * - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
+ * - INVALID: the matrix is not a homogeneous transform with a proper rotation.
  * - SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the
  *   boom drawn in, d3 = 0, theta2 = 0 is returned.
  * - SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.
@@ -1269,7 +1270,7 @@ const _IK = _runtime.kernel({
  *     poorly determined (see the notes), and INVALID (3) if an input is not finite or not
  *     possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(T, parameters) {
     return _runtime.single(_IK, [T], parameters);
@@ -1280,10 +1281,10 @@ export function ik(T, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} T 16 n numbers
- * @param {Float64Array} [q] 48 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 48 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, T, q, status, parameters) {
     return _runtime.batch(_IK, n, [T], [q, status], parameters);

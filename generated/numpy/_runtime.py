@@ -276,7 +276,7 @@ def select(rare: Any, a: Any, b: Any) -> Any:
 
 
 def poison(failed: Any) -> Any:
-    """NaN if ``failed``, else zero: added to an answer, it is one selection for all entries."""
+    """NaN if ``failed``, else zero; added to each entry of an answer, it needs one selection."""
     return 0.0 / np.logical_not(failed) if np.count_nonzero(failed) else 0.0
 
 

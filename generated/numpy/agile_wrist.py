@@ -278,10 +278,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     p : ndarray of float64, shape (..., 4, 3, 3)
         A proper rotation.
     status : ndarray of uint8, shape (..., 4)
-        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
-        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
-        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
-        if the status is UNREACHABLE or INVALID.
+        A `Status` of each assembly mode: OK (0) if `p` is a solution, UNREACHABLE (1) if there
+        is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly
+        determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+        `p` is NaN if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
@@ -292,7 +292,8 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     - The modes are named by the signs of B_11 and B_22, each times that of det A.
     - SINGULAR: the middle axes of two legs are parallel, and the hand is free to turn about
       them; one of its orientations is returned.
@@ -421,7 +422,6 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
     Returns
     -------
     A : ndarray of float64, shape (..., 4, 3, 3)
-        A proper rotation.
 
     Raises
     ------
@@ -432,7 +432,8 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params, out)
     return result
@@ -519,7 +520,8 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     - Its signs distinguish the working modes; BRANCHES lists them in the same order.
     """
     result = _runtime.evaluate(_JACOBIAN_SERIAL, (q,), params, out)
@@ -668,7 +670,7 @@ def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
     Returns
     -------
     J : ndarray of float64, shape (..., 4, 3, 3)
-        A proper rotation.
+        One column for each of theta1, theta2, theta3.
 
     Raises
     ------
@@ -679,7 +681,8 @@ def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     - Not finite where the middle axes of two legs are parallel.
     """
     result = _runtime.evaluate(_JACOBIAN_SPACE, (q,), params, out)
@@ -750,7 +753,8 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     - Not finite where the middle axes of two legs are parallel.
     """
     result = _runtime.evaluate(_DETERMINANT, (q,), params, out)
@@ -844,7 +848,8 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
     return result
@@ -965,7 +970,8 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     - Infinite where the determinant of A vanishes.
     """
     result = _runtime.evaluate(_CONDITION_NUMBER, (q,), params, out)
@@ -1077,7 +1083,8 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params, out)
     return result
@@ -1322,7 +1329,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 4, 11, 3)
-        One column for each of theta1, theta2, theta3.
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -1333,7 +1340,8 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: plus_plus, plus_minus, minus_plus,
+      minus_minus.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
@@ -1596,8 +1604,9 @@ def ik(R: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
-      plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
+    - The branches, in the order of `BRANCHES`: plus_plus_plus, plus_plus_minus,
+      plus_minus_plus, plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus,
+      minus_minus_minus.
     - SINGULAR: the last axis of a leg is along its first one; its joint is free, and 0 is
       returned.
     - SINGULAR also near it, where det A or B_kk is less than 2^-10: the loop closes, but one

@@ -206,10 +206,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     p : ndarray of float64, shape (..., 2, 2)
         x, y in the unit of the parameters.
     status : ndarray of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
-        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
-        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
-        if the status is UNREACHABLE or INVALID.
+        A `Status` of each assembly mode: OK (0) if `p` is a solution, UNREACHABLE (1) if there
+        is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly
+        determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+        `p` is NaN if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
@@ -220,7 +220,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - UNREACHABLE: the rods do not meet.
     - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
       points is returned.
@@ -334,7 +334,7 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params, out)
@@ -467,6 +467,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 2, 5, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -477,7 +478,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
@@ -575,7 +576,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
     Returns
     -------
     A : ndarray of float64, shape (..., 2, 2, 2)
-        One column for each of theta1, theta2.
+        One column for each of x, y.
 
     Raises
     ------
@@ -586,7 +587,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params, out)
@@ -697,7 +698,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Its signs distinguish the working modes; BRANCHES lists them in the same order.
     """
@@ -827,7 +828,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -942,7 +943,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -1059,7 +1060,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
@@ -1183,7 +1184,7 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Infinite at a parallel singularity.
     """
@@ -1381,7 +1382,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The branches, in the order of `BRANCHES`: plus_plus, plus_minus, minus_plus, minus_minus.
     - UNREACHABLE: a rod does not reach.
     - SINGULAR: the rod ends on the axis of theta1; theta1 is free, 0 is returned.
     - SINGULAR: no crank; theta1 is free, 0 is returned.

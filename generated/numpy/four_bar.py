@@ -180,10 +180,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     p : ndarray of float64, shape (..., 2, 1)
         psi in rad, in (-pi, pi].
     status : ndarray of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
-        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
-        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
-        if the status is UNREACHABLE or INVALID.
+        A `Status` of each assembly mode: OK (0) if `p` is a solution, UNREACHABLE (1) if there
+        is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly
+        determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+        `p` is NaN if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
@@ -194,7 +194,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - UNREACHABLE: the rod does not reach, so the loop cannot close.
     - SINGULAR: the rod ends on the axis of psi; psi is free, 0 is returned.
     - SINGULAR: no crank; psi is free, 0 is returned.
@@ -312,6 +312,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 2, 4, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -322,7 +323,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
@@ -421,7 +422,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
     Returns
     -------
     A : ndarray of float64, shape (..., 2, 1, 1)
-        One column for each of theta.
+        One column for psi.
 
     Raises
     ------
@@ -432,7 +433,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params, out)
@@ -534,7 +535,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Its sign distinguishes the working modes.
     """
@@ -637,7 +638,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     J : ndarray of float64, shape (..., 2, 1, 1)
-        One column for each of theta.
+        One column for theta.
 
     Raises
     ------
@@ -648,7 +649,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -761,7 +762,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -874,7 +875,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
@@ -989,7 +990,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: plus, minus.
+    - The branches, in the order of `BRANCHES`: plus, minus.
     - UNREACHABLE: the rod does not reach.
     - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
     - SINGULAR: no crank; theta is free, 0 is returned.

@@ -818,6 +818,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 20, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -3362,7 +3363,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, rear_elbow_up,
+    - The branches, in the order of `BRANCHES`: front_elbow_up, front_elbow_down, rear_elbow_up,
       rear_elbow_down.
     - UNREACHABLE: the wrist links are too short for the yaw, the tip is nearer to the waist
       axis than L_theta, the virtual arm cannot reach the tip, or the tips of the arms cannot be

@@ -987,6 +987,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 18, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -4952,7 +4953,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: front_elbow_up_alike, front_elbow_up_mixed,
+    - The branches, in the order of `BRANCHES`: front_elbow_up_alike, front_elbow_up_mixed,
       front_elbow_down_alike, front_elbow_down_mixed, rear_elbow_up_alike, rear_elbow_up_mixed,
       rear_elbow_down_alike, rear_elbow_down_mixed.
     - UNREACHABLE: the wrist links are too short for yaw and roll, the tip is nearer to the

@@ -203,10 +203,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     p : ndarray of float64, shape (..., 2, 3)
         x, y, z in the unit of the parameters.
     status : ndarray of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
-        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
-        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
-        if the status is UNREACHABLE or INVALID.
+        A `Status` of each assembly mode: OK (0) if `p` is a solution, UNREACHABLE (1) if there
+        is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly
+        determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+        `p` is NaN if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
@@ -217,7 +217,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
     - UNREACHABLE: C and D are more than 2*L2 apart, so the loop cannot close.
     - SINGULAR: C and D coincide; P is free on the circle of radius L2 about them, and the point
       at theta4 = theta5 = +90 or -90 degrees is returned.
@@ -319,7 +319,7 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
     - NaN for an assembly mode that does not exist.
     - If C and D coincide, both angles are free but equal: +90 or -90 degrees is returned.
     """
@@ -443,7 +443,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 2, 5, 3)
-        One column for each of theta1, theta2, theta3.
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -454,7 +454,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
@@ -562,7 +562,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
     Returns
     -------
     A : ndarray of float64, shape (..., 2, 3, 3)
-        One column for each of theta1, theta2, theta3.
+        One column for each of x, y, z.
 
     Raises
     ------
@@ -573,7 +573,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params, out)
@@ -674,7 +674,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
     - NaN for an assembly mode that does not exist.
     - Its signs distinguish the working modes; BRANCHES lists them in the same order.
     """
@@ -804,7 +804,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -910,7 +910,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -1018,7 +1018,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
@@ -1097,7 +1097,7 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: left_of_CD, right_of_CD.
     - NaN for an assembly mode that does not exist.
     - Infinite at a parallel singularity. It does not depend on theta1 and is the same for both
       modes.
@@ -1308,8 +1308,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
-      plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
+    - The branches, in the order of `BRANCHES`: plus_plus_plus, plus_plus_minus,
+      plus_minus_plus, plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus,
+      minus_minus_minus.
     - BRANCHES name the signs of the diagonal of B; each posture is in one of the two assembly
       modes.
     - UNREACHABLE: the distance of P from A or from B is more than L1 + L2 or less than |L1 -

@@ -504,6 +504,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 11, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -802,7 +803,6 @@ def jacobian_motors(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
     Returns
     -------
     J : ndarray of float64, shape (..., 4, 4)
-        One column for each of theta1, theta2, theta3, theta5.
 
     Raises
     ------
@@ -1164,7 +1164,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: front_elbow_up, front_elbow_down, back_elbow_up,
+    - The branches, in the order of `BRANCHES`: front_elbow_up, front_elbow_down, back_elbow_up,
       back_elbow_down.
     - front: the arm faces the hand, rho >= 0; back: it reaches over the base axis, rho <= 0,
       with rho = y*cos(theta1) - x*sin(theta1). elbow_up: cos(theta3) >= 0, as at home;

@@ -239,10 +239,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     p : ndarray of float64, shape (..., 2, 3)
         x, y, z in the unit of the parameters.
     status : ndarray of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
-        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
-        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
-        if the status is UNREACHABLE or INVALID.
+        A `Status` of each assembly mode: OK (0) if `p` is a solution, UNREACHABLE (1) if there
+        is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly
+        determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+        `p` is NaN if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
@@ -253,7 +253,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - UNREACHABLE: the rods do not meet.
     - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
       points is returned.
@@ -460,7 +460,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 2, 10, 3)
-        One column for each of rho1, rho2, rho3.
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -471,7 +471,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
@@ -613,7 +613,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
     Returns
     -------
     A : ndarray of float64, shape (..., 2, 3, 3)
-        One column for each of rho1, rho2, rho3.
+        One column for each of x, y, z.
 
     Raises
     ------
@@ -624,7 +624,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params, out)
@@ -752,7 +752,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     - Its signs distinguish the working modes; BRANCHES lists them in the same order.
     """
@@ -942,7 +942,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -1071,7 +1071,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -1205,7 +1205,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
@@ -1404,7 +1404,7 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: below, above.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
     - Infinite at a parallel singularity.
     """
@@ -1606,8 +1606,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
-      plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
+    - The branches, in the order of `BRANCHES`: plus_plus_plus, plus_plus_minus,
+      plus_minus_plus, plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus,
+      minus_minus_minus.
     - UNREACHABLE: a rod does not reach.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
       closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.

@@ -305,6 +305,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 3, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -604,7 +605,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: elbow_down, elbow_up.
+    - The branches, in the order of `BRANCHES`: elbow_down, elbow_up.
     - SINGULAR: if l1 = l2 and the hand is on the base axis, theta1 is free and 0 is returned;
       if a link has no length, its angle is free.
     - Ill-conditioned near the stretched and the folded arm: the angles lose half their digits,

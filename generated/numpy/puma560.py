@@ -258,6 +258,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 5, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -1202,14 +1203,15 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: right_up_noflip, right_up_flip, right_down_noflip,
-      right_down_flip, left_up_noflip, left_up_flip, left_down_noflip, left_down_flip.
+    - The branches, in the order of `BRANCHES`: right_up_noflip, right_up_flip,
+      right_down_noflip, right_down_flip, left_up_noflip, left_up_flip, left_down_noflip,
+      left_down_flip.
     - right: X >= 0, the arm faces the wrist; left: X <= 0. up: the elbow is above the line from
       the shoulder to the wrist; down: below.
     - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
     - Ill-conditioned near the shoulder and elbow singularities, where the angles lose half the
       digits, the pose does not.
-    - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
+    - INVALID: the matrix is not a homogeneous transform with a proper rotation.
     - SINGULAR: the centre of the wrist on the base axis (d3 = 0), theta1 = 0 is returned; equal
       links folded with the wrist on the shoulder, theta2 = 0 is returned; or a link without
       length, theta3 is free.

@@ -165,10 +165,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     p : ndarray of float64, shape (..., 2, 2)
         x, y in the unit of the parameters.
     status : ndarray of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
-        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
-        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
-        if the status is UNREACHABLE or INVALID.
+        A `Status` of each assembly mode: OK (0) if `p` is a solution, UNREACHABLE (1) if there
+        is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly
+        determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+        `p` is NaN if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
@@ -179,7 +179,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - UNREACHABLE: the rods do not meet.
     - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
       points is returned.
@@ -269,7 +269,7 @@ def passive_angles(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_PASSIVE_ANGLES, (q,), params, out)
@@ -360,6 +360,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 2, 3, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -370,7 +371,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
@@ -452,7 +453,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
     Returns
     -------
     A : ndarray of float64, shape (..., 2, 2, 2)
-        One column for each of rho1, rho2.
+        One column for each of x, y.
 
     Raises
     ------
@@ -463,7 +464,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params, out)
@@ -525,7 +526,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_SERIAL, (q,), params, out)
@@ -620,7 +621,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -696,7 +697,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -781,7 +782,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
@@ -874,7 +875,7 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Infinite at a parallel singularity.
     """

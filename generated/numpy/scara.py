@@ -219,6 +219,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 5, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -716,7 +717,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: left, right.
+    - The branches, in the order of `BRANCHES`: left, right.
     - SINGULAR: equal links folded onto the axis of theta1, which is free; 0 is returned.
     - SINGULAR: a link without length: theta2 is free; 0.
     """

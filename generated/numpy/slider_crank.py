@@ -153,10 +153,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     p : ndarray of float64, shape (..., 2, 1)
         x in the unit of the parameters.
     status : ndarray of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
-        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
-        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
-        if the status is UNREACHABLE or INVALID.
+        A `Status` of each assembly mode: OK (0) if `p` is a solution, UNREACHABLE (1) if there
+        is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly
+        determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+        `p` is NaN if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
@@ -167,7 +167,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - UNREACHABLE: the rod does not reach, so the loop cannot close.
     - Ill-conditioned near the parallel singularity, where both modes meet.
     """
@@ -254,6 +254,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 2, 4, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -264,7 +265,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
@@ -321,7 +322,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
     Returns
     -------
     A : ndarray of float64, shape (..., 2, 1, 1)
-        One column for each of theta.
+        One column for x.
 
     Raises
     ------
@@ -332,7 +333,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params, out)
@@ -401,7 +402,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Its sign distinguishes the working modes.
     """
@@ -464,7 +465,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     J : ndarray of float64, shape (..., 2, 1, 1)
-        One column for each of theta.
+        One column for theta.
 
     Raises
     ------
@@ -475,7 +476,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -548,7 +549,7 @@ def determinant(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = N
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -624,7 +625,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: positive, negative.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: positive, negative.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
@@ -727,7 +728,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: plus, minus.
+    - The branches, in the order of `BRANCHES`: plus, minus.
     - UNREACHABLE: the rod does not reach.
     - SINGULAR: the rod ends on the axis of theta; theta is free, 0 is returned.
     - SINGULAR: no crank; theta is free, 0 is returned.

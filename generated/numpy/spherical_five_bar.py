@@ -14,10 +14,10 @@
 """Spherical five-bar linkage.
 
 All axes meet in the centre O, and all links are arcs of great circles of a sphere of radius r
-about it.  The first crank turns about the x axis, the second about the axis in the plane x y at
-the angle gamma from it.  The cranks have the arcs alpha1 and alpha2, the rods beta1 and beta2;
-the rods carry the point P.  At 0 a crank lies in the plane x y and leads on in the direction
-from the first axis to the second; at 90 degrees it rises along z.
+about it.  The first crank turns about the x axis, the second about the axis in the plane of x
+and y at the angle gamma from it.  The cranks have the arcs alpha1 and alpha2, the rods beta1
+and beta2; the rods carry the point P.  At 0 a crank lies in the plane of x and y, on the side
+that leads from the first axis to the second; at 90 degrees it rises along z.
 
 Angles are in radians. The last axes hold coordinates, all leading axes broadcast.
 Derived from The closedform authors: Loops on a sphere, solved leg by leg.
@@ -300,10 +300,10 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     p : ndarray of float64, shape (..., 2, 3)
         x, y, z in the unit of the parameters.
     status : ndarray of uint8, shape (..., 2)
-        A `Status` of each branch: OK (0) if `p` is a solution, UNREACHABLE (1) if there is no
-        solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly determined
-        (see the notes), and INVALID (3) if an input is not finite or not possible. `p` is NaN
-        if the status is UNREACHABLE or INVALID.
+        A `Status` of each assembly mode: OK (0) if `p` is a solution, UNREACHABLE (1) if there
+        is no solution, SINGULAR (2) if `p` is one of infinitely many solutions or poorly
+        determined (see the notes), and INVALID (3) if an input is not finite or not possible.
+        `p` is NaN if the status is UNREACHABLE or INVALID.
 
     Raises
     ------
@@ -314,7 +314,7 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - UNREACHABLE: the rods do not meet.
     - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
       points is returned.
@@ -549,6 +549,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 2, 6, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -559,7 +560,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
@@ -757,6 +758,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
     Returns
     -------
     A : ndarray of float64, shape (..., 2, 3, 3)
+        One column for each of x, y, z.
 
     Raises
     ------
@@ -767,7 +769,7 @@ def jacobian_parallel(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: A
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_JACOBIAN_PARALLEL, (q,), params, out)
@@ -966,7 +968,7 @@ def jacobian_serial(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Its signs distinguish the working modes; BRANCHES lists them in the same order.
     """
@@ -1218,7 +1220,7 @@ def jacobian(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Not finite at a parallel singularity.
     """
@@ -1422,7 +1424,7 @@ def singularities(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     """
     result = _runtime.evaluate(_SINGULARITIES, (q,), params, out)
@@ -1697,7 +1699,7 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
 
     Notes
     -----
-    - Branches in this order, `ASSEMBLY_MODES`: above, below.
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: above, below.
     - NaN for an assembly mode that does not exist.
     - Infinite at a parallel singularity.
     """
@@ -1972,7 +1974,7 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: plus_plus, plus_minus, minus_plus, minus_minus.
+    - The branches, in the order of `BRANCHES`: plus_plus, plus_minus, minus_plus, minus_minus.
     - UNREACHABLE: a rod does not reach, or the target is not on the sphere.
     - SINGULAR: the rod ends on the axis of theta1; theta1 is free, 0 is returned.
     - SINGULAR: no crank; theta1 is free, 0 is returned.

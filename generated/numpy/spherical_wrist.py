@@ -260,7 +260,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 2, 3)
-        One column for each of theta4, theta5, theta6.
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -314,7 +314,7 @@ def jacobian_space(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any 
     Returns
     -------
     J : ndarray of float64, shape (..., 3, 3)
-        A proper rotation.
+        One column for each of theta4, theta5, theta6.
 
     Raises
     ------
@@ -368,7 +368,7 @@ def jacobian_body(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any =
     Returns
     -------
     J : ndarray of float64, shape (..., 3, 3)
-        A proper rotation.
+        One column for each of theta4, theta5, theta6.
 
     Raises
     ------
@@ -551,7 +551,7 @@ def ik(R: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: theta5_positive, theta5_negative.
+    - The branches, in the order of `BRANCHES`: theta5_positive, theta5_negative.
     - SINGULAR: theta5 = 0 or pi; only theta4 + theta6 or theta4 - theta6 is determined, and
       theta4 = 0 is returned.
     - INVALID: the matrix is not a proper rotation, for example a reflection.

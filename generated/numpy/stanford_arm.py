@@ -224,6 +224,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 3, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -1224,11 +1225,12 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: right_out_noflip, right_out_flip, right_back_noflip,
-      right_back_flip, left_out_noflip, left_out_flip, left_back_noflip, left_back_flip.
+    - The branches, in the order of `BRANCHES`: right_out_noflip, right_out_flip,
+      right_back_noflip, right_back_flip, left_out_noflip, left_out_flip, left_back_noflip,
+      left_back_flip.
     - right: X >= 0, the arm faces the wrist; left: X <= 0. out: d3 >= 0; back: d3 <= 0.
     - noflip: sin(theta5) >= 0; flip: sin(theta5) <= 0.
-    - INVALID: a matrix that is no homogeneous transform, a mirrored rotation included.
+    - INVALID: the matrix is not a homogeneous transform with a proper rotation.
     - SINGULAR: the centre of the wrist on the base axis (d2 = 0), theta1 = 0 is returned; the
       boom drawn in, d3 = 0, theta2 = 0 is returned.
     - SINGULAR: the wrist is aligned, sin(theta5) = 0, and theta4 = 0 is returned.

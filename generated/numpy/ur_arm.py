@@ -275,6 +275,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     Returns
     -------
     points : ndarray of float64, shape (..., 7, 3)
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -3649,7 +3650,7 @@ def ik(T: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: left_noflip_up, left_noflip_down, left_flip_up,
+    - The branches, in the order of `BRANCHES`: left_noflip_up, left_noflip_down, left_flip_up,
       left_flip_down, right_noflip_up, right_noflip_down, right_flip_up, right_flip_down.
     - SINGULAR: all coefficients of the equation for theta1 vanish; theta1 is free, 0 is
       returned.

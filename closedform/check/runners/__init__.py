@@ -1,4 +1,4 @@
-"""How printed code is run: one module a kind, found by the name that a back end gives.
+"""How printed code is run: one module for each kind, named by the back ends.
 
 A runner has a function ``run(name, derivation, folder, scratch)``, which yields a
 :class:`closedform.check.crosscheck.Backend` for each way to call what the back end ``name`` printed

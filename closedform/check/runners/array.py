@@ -1,7 +1,7 @@
 """Modules for any array library: with NumPy in both float types, and with others if installed.
 
-JAX compiles every operation for every shape of its operands.  So its batches are filled up to a few
-lengths, and it is taken in double precision only.
+JAX compiles every operation for every shape of its operands.  Its batches are therefore padded to a
+few lengths, and it is tested in double precision only.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""JavaScript, called in one process of Node a robot."""
+"""JavaScript, called in one Node process for each robot."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def run(name: str, derivation: Derivation, folder: Path, scratch: Path) -> Itera
 
 
 def _called(node: Node, function: Function, fields: Sequence[str], *arguments: Any) -> Any:
-    """A function of arrays, and at last the parameters."""
+    """A function that takes arrays and then the parameters."""
     *inputs, params = arguments
     planes = [
         np.asarray(x, float).reshape(-1, a.size).T
@@ -71,7 +71,7 @@ class Node:
     def batch(
         self, function: str, inputs: Sequence[NDArray[Any]], parameters: Mapping[str, float]
     ) -> list[NDArray[Any]]:
-        """The results, each with a row a number and a column a posture, as the inputs have."""
+        """The results like the inputs: a row for each number, a column for each posture."""
         n = inputs[0].shape[1] if inputs else 1
         header = {
             "function": function,

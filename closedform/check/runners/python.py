@@ -19,7 +19,7 @@ def run(name: str, derivation: Derivation, folder: Path, scratch: Path) -> Itera
 
 
 def module(folder: Path, robot: str) -> ModuleType:
-    """The module that was just printed, whatever else is called so."""
+    """The module that was just printed, even if another one has the same name."""
     for loaded in [m for m in sys.modules if m.partition(".")[0] == _PACKAGE]:
         del sys.modules[loaded]
     package = ModuleType(_PACKAGE)

@@ -1,4 +1,4 @@
-"""Any array library: a module a robot, against the array API standard, and their runtime."""
+"""Any array library: a module for each robot, by the array API standard, and their runtime."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from closedform.emit import sines
 from closedform.emit.backend import Backend, Files, Mechanism, Pages, runtime
 from closedform.emit.code import ATOM, Printer, Text, call, word
 from closedform.emit.docstring import Wording, docstring, python_kind
+from closedform.emit.python import argument_list, kernel_arguments, tuple_code
 from closedform.emit.render import render
-from closedform.emit.sizes import Size, arguments
+from closedform.emit.sizes import Size
 from closedform.emit.text import WIDTH, banner, interface
 from closedform.lower import Lowered
 from closedform.lower.finite import finite_derivatives
@@ -100,18 +101,18 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> A
     for angle, name in printer.turned:
         lines.append(f"{name} = {OPERATIONS}.principal({printer.text[angle.id].code})")
     lines += [f"{line.name} = {line.code}" for line in printer.lines]
-    listed = [OPERATIONS, *_planes(printer, program)]
+    names = [OPERATIONS, *kernel_arguments(printer, program)]
     size = Size.of(program)
     return ArrayFunction(
         function.name,
         "".join(f'{a.name}: "ArrayLike", ' for a in function.inputs),
-        _tuple(a.name for a in function.inputs),
+        tuple_code(a.name for a in function.inputs),
         f'"{function.result}"' if function.result else "Any",
         f"{function.result}(*result)" if function.result else "result",
         textwrap.indent(
             "\n".join(docstring(derivation, function, WIDTH - 4, WORDS)), "    "
         ).strip(),
-        _wrapped(", ".join(listed), f"def _{function.name}():"),
+        argument_list(names, f"_{function.name}", WIDTH),
         tuple(lines),
         tuple(v for result in results for v in result),
         _specs((a.name, a.shape, "real") for a in function.inputs),
@@ -126,28 +127,9 @@ def _highest(program: Lowered) -> int:
     return program.degrees.highest if program.degrees else 0
 
 
-def _planes(printer: Printer, program: Lowered) -> list[str]:
-    """The names of what a kernel takes; what it does not use has an underscore in front."""
-    used = program.used_inputs()
-    return [printer.inputs[e] if e in used else f"_{e}" for e in arguments(program)]
-
-
-def _wrapped(arguments: str, around: str) -> str:
-    """An argument list, on separate lines if it is too long."""
-    if len(arguments) + len(around) <= WIDTH:
-        return arguments
-    return "\n" + textwrap.indent(textwrap.fill(arguments, WIDTH - 4), "    ") + "\n"
-
-
 def _specs(specs: Iterable[tuple[str, tuple[int, ...], str]]) -> str:
     kinds = {"real": "", "status": ', "status"', "bool": ', "bool"'}
-    return _tuple(f'_runtime.Spec("{n}", {shape!r}{kinds[kind]})' for n, shape, kind in specs)
-
-
-def _tuple(items: Iterable[str]) -> str:
-    """The Python code of a tuple, on one line."""
-    listed = list(items)
-    return f"({listed[0]},)" if len(listed) == 1 else f"({', '.join(listed)})"
+    return tuple_code(f'_runtime.Spec("{n}", {shape!r}{kinds[kind]})' for n, shape, kind in specs)
 
 
 class AnyArray(Backend):

@@ -1,10 +1,10 @@
-"""NumPy: a module a robot, and the runtime that all share."""
+"""NumPy: a module for each robot, and the runtime that they share."""
 
 from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,8 +13,9 @@ from closedform.emit import sines
 from closedform.emit.backend import Backend, Files, Mechanism, Pages, runtime
 from closedform.emit.code import ATOM, LOGIC, Printer, Text, call, word
 from closedform.emit.docstring import docstring
+from closedform.emit.python import argument_list, kernel_arguments, tuple_code
 from closedform.emit.render import render
-from closedform.emit.sizes import Size, arguments
+from closedform.emit.sizes import Size
 from closedform.emit.text import WIDTH, banner, call_signature, interface
 from closedform.lower import Lowered
 from closedform.lower.graph import Node
@@ -161,12 +162,10 @@ def _kernel(name: str, comment: str, program: Lowered) -> NumpyKernel:
         lines.append(f"{principal} = _runtime.principal({printer.text[angle.id].code})")
     lines += [f"{line.name} = {line.code}" for line in printer.lines]
     values = [v for result in results for v in result]
-    used = program.used_inputs()
-    listed = ", ".join(printer.inputs[e] if e in used else f"_{e}" for e in arguments(program))
     return NumpyKernel(
         name,
         comment,
-        _wrapped(listed, f"def {name}():"),
+        argument_list(kernel_arguments(printer, program), name, WIDTH),
         tuple(_until_last_use(lines, values)),
         tuple(values),
     )
@@ -191,25 +190,12 @@ def _until_last_use(lines: Sequence[str], values: Sequence[str]) -> Iterator[str
             yield f"del {', '.join(names)}"
 
 
-def _wrapped(arguments: str, around: str) -> str:
-    """An argument list, on separate lines if it is too long."""
-    if len(arguments) + len(around) <= WIDTH:
-        return arguments
-    return "\n" + textwrap.indent(textwrap.fill(arguments, WIDTH - 4), "    ") + "\n"
-
-
 def _arrays(specs: Any) -> str:
     items = []
     for name, shape, kind in specs:
         dtype = "" if kind == "real" else f", {DTYPES[kind]}"
         items.append(f'_runtime.Array("{name}", {shape!r}{dtype})')
     return tuple_code(items)
-
-
-def tuple_code(items: Iterable[str]) -> str:
-    """The Python code of a tuple, on one line."""
-    listed = list(items)
-    return f"({listed[0]},)" if len(listed) == 1 else f"({', '.join(listed)})"
 
 
 class Numpy(Backend):

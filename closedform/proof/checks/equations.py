@@ -40,7 +40,7 @@ from closedform.proof.checks.evidence import (
 )
 
 _DEGREE = 6
-"""The degree from which on the terms of an error are not looked at."""
+"""From this degree on, the terms of an error are not considered."""
 _SHORT = 40
 """The longest printed side, in characters, that is repeated in the evidence."""
 
@@ -165,7 +165,7 @@ class Equal(Check):
         return worst(self._compare(first, name, side, text) for side, text in others)
 
     def _for_each(self, relation: Relation, indices: Sequence[int]) -> Verdict:
-        """The first fault, if there is one: it is the simplest to check by hand."""
+        """The verdict for each value of the index; the first fault is the simplest to check."""
         for k in indices:
             here = replace(relation, sides=tuple(at_index(s, k) for s in relation.sides))
             verdict = replace(self, relation=here).judge()
@@ -287,7 +287,7 @@ def worst(verdicts: Iterable[Verdict]) -> Verdict:
 
 
 LISTED = 12
-"""Evidence of more parts than that, all of them proved, is their number."""
+"""If more parts than this are all proved, the evidence is only their number."""
 
 
 @dataclass(frozen=True)

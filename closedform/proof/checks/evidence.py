@@ -1,4 +1,4 @@
-"""What the checks share: exact entries, values at a point, and signs of constants."""
+"""Helpers of the checks: exact entries, values at a point, and signs of constants."""
 
 # mypy: allow-untyped-calls
 # SymPy is only partly annotated.

@@ -27,10 +27,10 @@ from closedform.proof.checks.equations import Every
 from closedform.proof.checks.evidence import Expr, at, cases, shown
 
 SAMPLES = 100_000
-"""The number of postures of which a share is given."""
+"""The number of sampled postures, of which a share is given."""
 _CLOSE = 1e-6
 _SIMPLE = 2000
-"""The number of postures among which a simple one is sought."""
+"""The number of postures that are searched for a simple one."""
 _ANGLES = (
     0,
     sp.pi / 6,
@@ -96,9 +96,9 @@ def forget_solutions() -> None:
 class Postures:
     """Sampled postures: joints, in ranges, and the dimensions at which they are sampled.
 
-    ``inputs`` gives what a formula takes as functions of the joints.  ``groups`` names parts of the
-    postures, of which the share is given too.  ``virtual`` gives joints that the mechanism does not
-    have, in those that it has, for a picture of what the formulas lead to.
+    ``inputs`` gives the inputs of a formula as functions of the joints.  ``groups`` names parts of
+    the postures whose share is also given.  ``virtual`` gives joints that the mechanism does not
+    have, in those that it has, for a picture of the result of the formulas.
     """
 
     inputs: Mapping[sp.Symbol, Expr]
@@ -118,7 +118,7 @@ class Postures:
         return drawn | {s: values(e, drawn) for s, e in self.inputs.items()}
 
     def drawn(self) -> list[Any]:
-        """From where the joints are drawn, in words."""
+        """The ranges of the joints, in words."""
         several: dict[str, list[sp.Symbol]] = {}
         for q in self.joints:
             low, high = (f"{np.degrees(a):.0f}^\\circ" for a in self.ranges.get(q, (-np.pi, np.pi)))
@@ -138,7 +138,7 @@ class Postures:
 
 
 def _ranked(length: int) -> Iterator[tuple[int, ...]]:
-    """The ranks of so many angles among the simple ones, those with the least sum first."""
+    """The ranks of this many angles among the simple ones, those with the least sum first."""
     last = len(_ANGLES) - 1
     for total in range(length * last + 1):
         yield from _with_sum(total, length, last)

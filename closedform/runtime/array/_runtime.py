@@ -1,7 +1,7 @@
 """Statuses, result types and the evaluation of kernels, for arrays of any library.
 
-Only functions of the array API standard are called, and nothing depends on values but through
-selections.  So functions can be traced, compiled, mapped and differentiated by the library.
+Only functions of the array API standard are called, and control flow does not depend on values.  So
+functions can be traced, compiled, mapped and differentiated by the library.
 """
 
 from __future__ import annotations
@@ -178,7 +178,7 @@ class Operations:
         self.nan = math.nan
 
     def number(self, value: Any) -> Array:
-        """An array: of a number, which was written into the code, or the array that is given."""
+        """The array of a number in the code, or the array itself."""
         if not isinstance(value, float):
             return value
         key = value if value == value else None
@@ -248,7 +248,7 @@ class Operations:
     def wrap_cut(self, angle: Array) -> Array:
         """An angle in [-pi, pi], the range of ``atan2``, moved to (-pi, pi].
 
-        A turn is added instead of a constant selected: so the derivative stays.
+        A turn is added, rather than a constant selected, so that the derivative is kept.
         """
         turn = self.precision.turn
         return angle + self.select(angle <= -0.5 * turn, turn, 0.0)
@@ -264,7 +264,7 @@ class Operations:
         return self.select(failed, math.nan, 0.0)
 
     def status(self, invalid: Array, unreachable: Array, singular: Array) -> Array:
-        """The status of a branch: INVALID goes before UNREACHABLE, and that before SINGULAR."""
+        """The status of a branch: INVALID comes before UNREACHABLE, and that before SINGULAR."""
         reached = self.xp.where(singular, self.code(Status.SINGULAR), self.code(Status.OK))
         valid = self.xp.where(unreachable, self.code(Status.UNREACHABLE), reached)
         return self.xp.where(invalid, self.code(Status.INVALID), valid)
@@ -455,8 +455,8 @@ def _indices(shape: tuple[int, ...]) -> Iterator[tuple[int, ...]]:
 def _values(ops: Operations, kernel: Kernel, planes: Sequence[Array]) -> Sequence[Any]:
     """The planes of the results, for mechanisms of any size.
 
-    Where an input is not finite, a function with a status is evaluated elsewhere: NaN among the
-    values of one posture would become NaN in the derivative by dimensions that others share.
+    If an input is not finite, a function with a status is evaluated at another point: NaN in one
+    posture would otherwise become NaN in the derivative by dimensions that others share.
     """
     kinds = [spec.kind for spec in kernel.outputs for _ in _indices(spec.shape)]
     if "status" not in kinds:

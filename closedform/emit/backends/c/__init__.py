@@ -1,4 +1,4 @@
-"""C99 and C++20: headers and a source a robot, headers that all share, and the table for Python."""
+"""C99 and C++20: a source and headers for each robot, shared headers, a table for Python."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class C(Backend):
         return {**headers, **printed}
 
     def works_alone(self, path: Path) -> bool:
-        """All but the binding to Python."""
+        """Everything but the binding to Python works alone."""
         return path.suffix != ".py" and path.name != "extension.c"
 
     def first_file(self, name: str) -> Path:

@@ -1,4 +1,4 @@
-"""What the C header says of a function."""
+"""The comment on a function in the C header."""
 
 from __future__ import annotations
 

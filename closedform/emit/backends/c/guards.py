@@ -13,7 +13,7 @@ from closedform.lower.graph import Node, constant_of, reachable, strip_sign
 
 
 def unused_where(schedule: Sequence[Node], roots: Sequence[Node]) -> dict[int, tuple[Node, ...]]:
-    """The quotients that are not used if any of some conditions holds, which are known before."""
+    """The quotients that are unused if one of some conditions holds that are known before."""
     place = {node.id: k for k, node in enumerate(schedule)}
     away: dict[int, frozenset[int]] = {root.id: frozenset() for root in roots}
     for node in reversed(schedule):
@@ -34,8 +34,8 @@ def unused_where(schedule: Sequence[Node], roots: Sequence[Node]) -> dict[int, t
 def given_up_where(lowered: Lowered) -> Iterator[tuple[int, tuple[Node, ...]]]:
     """For quotients of a common case, the conditions that a factor of their divisor counts as zero.
 
-    If one holds, the whole program is evaluated instead.  Of the conditions that are already known,
-    it is for each factor the one whose value is nearest to it.
+    If one holds, the whole program is evaluated instead.  For each factor it is, among the
+    conditions that are already known, the one whose value is nearest to the factor.
     """
     if lowered.results[-1].name != "rare":
         return

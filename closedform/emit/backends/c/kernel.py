@@ -31,7 +31,7 @@ from closedform.model.names import C_LOCALS, in_c
 
 LANES = 8
 FEW = 2
-"""Up to this many quotients by one divisor get a jump each, to be infinite if it is zero."""
+"""Up to this many quotients by one divisor get a jump each, and are infinite if it is zero."""
 
 
 class CPrinter(Printer):
@@ -69,7 +69,7 @@ class CPrinter(Printer):
         return node.op == "atan2" and all(a.id in self._arguments for a in node.args)
 
     def schedule(self) -> list[Node]:
-        """First the arguments of the joint ``atan2``, then these, then the nodes that need them.
+        """First the arguments of the shared ``atan2``, then these, then the nodes that need them.
 
         A quotient comes after the condition under which nothing uses it.
         """
@@ -126,7 +126,7 @@ class CPrinter(Printer):
     def select(self, node: Node, condition: Text, a: Text, b: Text) -> Text:
         arguments = f"{condition.code}, {a.code}, {b.code}"
         rarely = f"cf_rarely(single, {arguments})"
-        return Text(rarely if self._spares(node) else f"cf_select({arguments})")
+        return Text(rarely if self._is_worth_a_jump(node) else f"cf_select({arguments})")
 
     def poison(self, node: Node, failed: Text) -> Text:
         return Text(f"cf_poison(single, {failed.code})")
@@ -135,9 +135,8 @@ class CPrinter(Printer):
         return Text(f"cf_status(single, {invalid.code}, {unreachable.code}, {singular.code})")
 
     def _quotient(self, node: Node, dividend: Text, divisor: Text) -> Text:
-        """Divides by 1 where nothing uses the quotient: its divisor may vanish there.
+        """A quotient, which divides by 1 where nothing uses it: its divisor may vanish there.
 
-        If nothing uses the quotient, its divisor may vanish, and the divisor is replaced by 1.
         Otherwise a division by zero is avoided.  The value is infinite, as in IEEE arithmetic, if
         no further operation uses it.  It is NaN if one does, or if there are many quotients by one
         divisor, each of which would need a jump.  The loop over branches is part of a single call.
@@ -166,7 +165,7 @@ class CPrinter(Printer):
         return self._tested[divisor.id]
 
     @staticmethod
-    def _spares(select: Node) -> bool:
+    def _is_worth_a_jump(select: Node) -> bool:
         """Whether a jump avoids the computation of a value that is hardly ever selected."""
         condition, value, _ = select.args
         return hardly_ever(condition) and strip_sign(value).op not in LEAVES

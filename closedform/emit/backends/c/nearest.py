@@ -1,4 +1,4 @@
-"""The header of a robot with the posture nearest to a seed: what the shared one needs to know."""
+"""The header for the posture nearest to a seed: what the shared code needs of a robot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The C code for mechanisms of any size: it computes them at a size near 1.
+"""The C code for mechanisms of any size, which computes them at a size near 1.
 
 The size is the largest length of a posture and its mechanism.  If powers of it might leave the
 range of the type, all lengths are first multiplied by a power of two, which is exact.  The results

@@ -1,4 +1,4 @@
-"""JavaScript: an ES module a robot, the runtime that all share, and a package for npm."""
+"""JavaScript: an ES module for each robot, the shared runtime, and a package for npm."""
 
 from __future__ import annotations
 

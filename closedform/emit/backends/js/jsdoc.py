@@ -1,4 +1,4 @@
-"""What a JavaScript module says of its functions, with their types."""
+"""The documentation of functions in a JavaScript module, with their types."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from closedform.model.functions import Function
 
 RAISES = (
     ("TypeError", "If an argument does not hold numbers, or a parameter is not known."),
-    ("RangeError", "If an argument has another length."),
+    ("RangeError", "If an argument has the wrong length."),
 )
 
 
@@ -80,10 +80,10 @@ def batch_doc(function: Function, program: Lowered, width: int) -> Iterator[str]
     for name, size in inputs:
         yield f"@param {{Float64Array}} {name} {_times_n(size)}"
     for name, size, dtype in outputs:
-        yield f"@param {{{dtype}}} [{name}] {_times_n(size)}, written to; made if there is none"
+        yield f"@param {{{dtype}}} [{name}] {_times_n(size)}, to write to; allocated if omitted"
     yield "@param {Parameters} [parameters] the same for all postures"
     items = [Item(name, dtype, "") for name, _, dtype in outputs]
-    yield f"@returns {{{_record(items)}}} what was written to"
+    yield f"@returns {{{_record(items)}}} the results"
 
 
 def _record(items: Sequence[Item]) -> str:
@@ -97,7 +97,7 @@ def _shape(shape: Sequence[int], branches: int = 0) -> str:
     """How many numbers there are, in words that go before a sentence."""
     each = f"{branches} branch{'es' if branches > 1 else ''}" if branches else ""
     if not shape:
-        return f"One number for each of {each}. " if each else ""
+        return f"One number for each of {each}. " if branches > 1 else ""
     n = int(prod(shape))
     size = f"{n} number{'s' if n > 1 else ''}"
     if len(shape) > 1:

@@ -1,4 +1,4 @@
-"""What the templates of a JavaScript module are filled with."""
+"""The context of the templates of a JavaScript module."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Compute:
 
 @dataclass(frozen=True)
 class Kernel:
-    """The plain strings of a program with its common case, and what the runtime knows of it."""
+    """The plain strings of a program with its common case, and its data for the runtime."""
 
     name: str
     constant: str
@@ -90,7 +90,7 @@ def _function(derivation: Derivation, function: Function, program: Lowered) -> M
 
 
 def kernel(name: str, program: Lowered, branches: int = 0) -> Kernel:
-    """What ``js/kernel.js.jinja`` prints of a program whose results have so many branches."""
+    """The context of ``js/kernel.js.jinja`` for a program with so many branches."""
     programs = [_compute(f"_{name}", program)]
     if program.common is not None:
         programs.append(_compute(f"_{name}_common", program.common))

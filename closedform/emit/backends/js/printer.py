@@ -55,6 +55,6 @@ class JavaScriptPrinter(Printer):
         return Text(f"{failed.at(LOGIC)} ? NaN : 0", CHOICE)
 
     def status(self, node: Node, invalid: Text, unreachable: Text, singular: Text) -> Text:
-        """The status of a branch; an invalid input outweighs all, a free joint nothing."""
+        """The status of a branch: INVALID comes before UNREACHABLE, and that before SINGULAR."""
         first, second, third = (a.at(LOGIC) for a in (invalid, unreachable, singular))
         return Text(f"{first} ? 3 : {second} ? 1 : {third} ? 2 : 0", CHOICE)

@@ -255,7 +255,8 @@ def solves_shoulder(r: Robot, v: Virtual, formula: Relation) -> Solves:
         {formula.left: formula.right},
         equations,
         replace(v.postures, groups=directions(r.A23)),
-        (sp.expand(across_bend**2 + along_bend**2),),
+        # the wrist makes the fore-arm longer, as yaw and pitch are at most a right angle
+        (sp.expand(across_bend**2 + along_bend**2), along - r.m.L2),
         v.reached,
     )
 

@@ -7,6 +7,7 @@ docs/certificates.md describes the format.  This module imports nothing of close
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import reduce
 from itertools import combinations, product
 from math import prod
@@ -17,6 +18,7 @@ from flint import Ordering, arb, arb_mat, ctx, fmpq, fmpq_mpoly_ctx, fmpz_mat
 FORMAT = 3
 SIZES = {"name": 1, "unknown": 1, "root": 1, "angle": 2, "circle": 2, "known": 0, "value": 0}
 
+Nodes: TypeAlias = "Mapping[int, list[Any]]"
 Polynomial: TypeAlias = Any  # fmpq_mpoly, whose annotations are partial
 Monomial: TypeAlias = "tuple[int, ...]"
 Lead: TypeAlias = "tuple[Monomial, Polynomial, Polynomial]"
@@ -35,11 +37,12 @@ def require(condition: Any, fault: str) -> None:
 def check(document: dict[str, Any]) -> None:
     """Check all certificates of a mechanism; raise :class:`Refused` for the first bad one."""
     require(document["format"] == FORMAT, "the format is unknown")
-    nodes = document["nodes"]
-    names = [node[1:] for node in nodes if node[0] == "name"]
+    # As dictionaries they have no negative indices, which would be second numbers of an entry.
+    nodes, certificates = (dict(enumerate(document[part])) for part in ("nodes", "certificates"))
+    names = [node[1:] for node in nodes.values() if node[0] == "name"]
     require(len(names) == len({name for name, _ in names}), "a name has two meanings")
     require(all(sign in (-1, 0, 1) for _, sign in names), "a name has an unknown sign")
-    for k, node in enumerate(nodes):
+    for k, node in nodes.items():
         require(all(a in range(k) for a in operands(node)), "a node holds later ones")
     kinds = {
         "identity": check_identity,
@@ -47,9 +50,9 @@ def check(document: dict[str, Any]) -> None:
         "inverse": check_inverse,
         "point": check_point,
     }
-    for k, certificate in enumerate(document["certificates"]):
+    for k, certificate in certificates.items():
         try:
-            kinds[certificate["kind"]](document, certificate)
+            kinds[certificate["kind"]]({"nodes": nodes, "certificates": certificates}, certificate)
         except Exception as error:  # whatever goes wrong, nothing is proved
             raise Refused(f"certificate {k} ({certificate['of']}): {error!r}") from error
 
@@ -82,9 +85,11 @@ def check_inverse(document: dict[str, Any], certificate: dict[str, Any]) -> None
     """The counts of the steps of an inverse multiply to the number of its branches."""
     counts = [(document["certificates"][k], less) for k, less in certificate["counts"]]
     require(all(c["kind"] == "count" for c, _ in counts), "this is not a count")
-    total = prod(c["count"] - less for c, less in counts)
-    branches = certificate["branches"] * certificate["per branch"]
-    require(counts and total == branches > 0, f"{total} solutions are counted")
+    require(all(less in range(c["count"]) for c, less in counts), "so many are not counted")
+    require(len({k for k, _ in certificate["counts"]}) == len(counts), "a count is used twice")
+    total, branches = prod(c["count"] - less for c, less in counts), certificate["branches"]
+    require(counts and branches in range(1, total + 1), "there are not so many branches")
+    require(total == branches * certificate["per branch"], f"{total} solutions are counted")
 
 
 def check_point(document: dict[str, Any], certificate: dict[str, Any]) -> None:
@@ -94,7 +99,7 @@ def check_point(document: dict[str, Any], certificate: dict[str, Any]) -> None:
         require(rows and not arb_mat(rows).det().contains(0), "the determinant may be zero")
 
 
-def matrix_of(nodes: list[Any], certificate: dict[str, Any]) -> list[list[arb]]:
+def matrix_of(nodes: Nodes, certificate: dict[str, Any]) -> list[list[arb]]:
     """Enclosures of the entries of a matrix at a point at which all assumptions hold."""
     balls: dict[int, arb] = {}
     for name, k in certificate["at"]:
@@ -107,7 +112,7 @@ def matrix_of(nodes: list[Any], certificate: dict[str, Any]) -> list[list[arb]]:
     return [[enclosed(nodes, balls, k) for k in row] for row in certificate["matrix"]]
 
 
-def enclosed(nodes: list[Any], balls: dict[int, arb], k: int) -> arb:
+def enclosed(nodes: Nodes, balls: dict[int, arb], k: int) -> arb:
     """A ball that contains the value of a node; ``balls`` has those of names, and remembers."""
     if k not in balls:
         op, *args = nodes[k]
@@ -144,10 +149,11 @@ def check_count(document: dict[str, Any], certificate: dict[str, Any]) -> None:
         require(remainder(field, p, basis) == 0, "it is not a Groebner basis of the system")
 
 
-def system_of(nodes: list[Any], certificate: dict[str, Any]) -> tuple[Field, list[Polynomial]]:
+def system_of(nodes: Nodes, certificate: dict[str, Any]) -> tuple[Field, list[Polynomial]]:
     """The polynomials of a system, with the relations of the cosines and sines of its angles."""
     field = Field(nodes, certificate)
-    require({*field.kinds} <= {"name", "unknown", "circle"}, "a generator has the wrong kind")
+    kinds = {kind for kind, *_ in certificate["field"]}
+    require(kinds <= {"name", "unknown", "circle"}, "a generator has the wrong kind")
     angles, circles = certificate["angles"], [turn for _, turn in field.turns.values()]
     named = [k for k, *_ in (*field.values.items(), *angles, *certificate["given"])]
     require(all(nodes[k][0] == "name" for k in named), "only a name can be given a value")
@@ -157,7 +163,7 @@ def system_of(nodes: list[Any], certificate: dict[str, Any]) -> tuple[Field, lis
     require(len(rows) == len(circles), "an angle is not used")
     for k, row in angles:
         field.turns[k] = 1, reduce(turned, map(times, circles, row))
-    field.given = dict(certificate["given"])
+    field.nodes = {**nodes, **{k: ["+", given] for k, given in certificate["given"]}}
     system = [field.value(k).num for k in certificate["equations"]]
     leads = [field.leading(p)[0] for p in field.inverted]
     require(not any(map(any, leads)), "a denominator has an unknown")
@@ -240,7 +246,7 @@ def times(turn: Rotation, n: int) -> Rotation:
 class Field:
     """The generators of a certificate, each with at most one relation, which is monic in it."""
 
-    def __init__(self, nodes: list[Any], certificate: dict[str, Any]):
+    def __init__(self, nodes: Nodes, certificate: dict[str, Any]):
         steps = certificate["field"]
         self.nodes, self.assumed = nodes, certificate.get("assumed", [])
         self.stated = {*certificate.get("zero", []), *self.assumed}  # with all their parts
@@ -256,7 +262,6 @@ class Field:
         self.values: dict[int, Fraction] = {}
         self.lengths: dict[int, Fraction] = {}
         self.turns: dict[Any, tuple[int, Rotation]] = {}
-        self.given: dict[int, int] = {}
         self.known: list[Polynomial] = []
         self.inverted: list[Polynomial] = []
         self.size = 0  # the number of generators so far
@@ -267,6 +272,7 @@ class Field:
 
     def add_name(self, g: Polynomial, k: int) -> None:
         """A node that may have any value, within the sign of its name."""
+        require(k not in self.values, "a node has two generators")
         op, *about = self.nodes[k]
         self.values[k] = self.fraction(g)
         self.signs[self.size] = about[1] if op == "name" else int(op == "pi")
@@ -295,7 +301,7 @@ class Field:
         difference = self.fraction(quotient) * self.product(factors) + -radicand
         require(difference.num == 0 != radicand.num, "a radicand has other factors")
         self.known.append(quotient)
-        self.inverted += [self.polynomial(f) for f, _ in factors]
+        self.inverted += [self.polynomial(f) for f, n in factors if n]
 
     def add_value(self, k: int, factors: list[Any]) -> None:
         """The root of a radicand, or the length of a vector: its square is right."""
@@ -364,8 +370,6 @@ class Field:
 
     def value(self, k: int) -> Fraction:
         """The value of a node."""
-        if k in self.given:
-            return self.value(self.given[k])
         if k not in self.values:
             op, *args = self.nodes[k]
             if op == "number":
@@ -382,8 +386,6 @@ class Field:
 
     def rotation(self, k: int, q: fmpq) -> Rotation:
         """The cosine and the sine of a rational multiple of a node."""
-        if k in self.given:
-            return self.rotation(self.given[k], q)
         if k in self.turns:
             divisor, turn = self.turns[k]
             require((q * divisor).q == 1, "an angle is divided too finely")

@@ -145,6 +145,16 @@ class TestIdentity:
         with pytest.raises(Undecided):
             Identity(sqrt(3 + 2 * sqrt(2)), 1 + sqrt(2)).judge()  # true, but it cannot prove it
 
+    def test_only_a_posture_can_refute(self) -> None:
+        """Where symbols depend on each other, other points say nothing."""
+        postures = [{x: sp.S.One, y: sp.S.One}, {x: sp.Integer(2), y: sp.S.Zero}]
+        verdict = Identity(x, y, postures=postures).judge()
+        assert (verdict.kind, verdict.evidence[1]) == (REFUTED, postures[1])
+        equal = Equal(one("x = y"), postures=postures).judge()
+        assert (equal.kind, equal.evidence[1]) == (REFUTED, postures[1])
+        with pytest.raises(Undecided):
+            Identity(x, y, postures=postures[:1]).judge()
+
 
 class TestEqual:
     @pytest.mark.parametrize(
@@ -418,6 +428,21 @@ class TestRounded:
         verdict = Rounded(one(text), exact).judge()
         assert verdict.kind == REFUTED
         assert verdict.evidence[0].startswith(how)
+
+    @pytest.mark.parametrize(
+        ("text", "exact", "kind"),
+        [
+            ("x = 3.1415", pi, PROVED),
+            ("x = -3.1415", -pi, PROVED),
+            ("x = 3.1416", pi, REFUTED),
+            ("x = 3.1414", pi, REFUTED),
+            ("x = -3.1416", -pi, REFUTED),
+            ("x = 1.10", sp.Rational(11, 10), PROVED),
+            ("x = 1.09", sp.Rational(11, 10), REFUTED),
+        ],
+    )
+    def test_cut(self, text: str, exact: sp.Expr, kind: str) -> None:
+        assert Rounded(one(text), exact, cut=True).judge().kind == kind
 
     def test_unit(self) -> None:
         angle = atan(sp.Rational(1, 2))

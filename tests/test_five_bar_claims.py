@@ -5,12 +5,14 @@ The corrections are read from their texts and compared with numbers of the gener
 
 import importlib
 from collections import Counter, defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 import claimed
 import numpy as np
 import pytest
 import sympy as sp
+from closedform.derivations.claims import five_bar_postures
 
 from closedform.model.claims import FAULTS, Claim, Reading
 from closedform.model.notation import Relation
@@ -19,7 +21,7 @@ from closedform.proof.claims import judged
 ERRATA = {
     "sign-of-B": {"eq. (4)"},
     "half-turns": {"k(π/2), after eq. (6)"},
-    "on-the-axis": {"serial singularities at the boundary", "all singularities at the border"},
+    "on-the-axis": {"serial singularities at the boundary"},
     "radius": {"hollow spheres"},
     "C-meets-D": {"C and D apart", "no parallel singularity"},
     "never-smaller": {"not avoidable", "always smaller"},
@@ -64,8 +66,8 @@ def test_the_distinct_errors_and_their_places() -> None:
 
 def test_how_many_claims_have_which_verdict() -> None:
     assert Counter(r.kind for r in results().values()) == {
-        "proved": 48,
-        "refuted": 21,
+        "proved": 49,
+        "refuted": 20,
         "incomplete": 1,
         "proved under assumption": 2,
         "not decidable here": 9,
@@ -83,6 +85,38 @@ def test_figures_without_lengths_refute_nothing() -> None:
     twice = results()["twice as large"]
     assert [r.kind for r in twice.readings] == ["not decidable here", "refuted", "refuted"]
     assert twice.kind == "not decidable here"
+
+
+def test_singularities_at_the_border_are_those_of_the_plane_linkage() -> None:
+    """Of the three joints the axis AB is another place of singularities, inside the workspace."""
+    found = results()["all singularities at the border"]
+    assert [r.kind for r in found.readings] == ["proved", "refuted"]
+
+
+def points(evidence: Sequence[object]) -> Iterator[dict[str, complex]]:
+    for piece in evidence:
+        if isinstance(piece, Mapping):
+            yield {str(s): complex(value) for s, value in piece.items()}
+
+
+@pytest.mark.parametrize(
+    "label", sorted({*ERRATA["old-index"], *ERRATA["sign-of-B"], *ERRATA["half-turns"]})
+)
+def test_a_posture_that_refutes_can_be_taken(label: str) -> None:
+    """Its loop is closed: both legs lead to the same point, by complex numbers."""
+    found = list(points(judged(claim(label), claim(label).printed).evidence))
+    assert found
+    for at in found:
+        end = {f"theta{i}": np.exp(1j * at[f"theta{i}"]) for i in (2, 3, 4, 5)}
+        over_c = at["L1"] * end["theta2"] + at["L2"] * end["theta4"]
+        over_d = at["L0"] + at["L1"] * end["theta3"] + at["L2"] * end["theta5"]
+        assert abs(over_c - over_d) < 1e-12
+
+
+def test_a_posture_whose_loop_is_open_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(five_bar_postures, "CLOSED", ((1, 1, 1, 0, 0, 0, sp.pi),))
+    with pytest.raises(ValueError, match="the loop is not closed"):
+        judged(claim("eq. (4)"), claim("eq. (4)").printed)
 
 
 @pytest.mark.parametrize(
@@ -205,9 +239,10 @@ def test_some_dimensions_have_no_isotropic_posture() -> None:
     theta = np.stack([0 * grid()[0], *grid()], axis=-1).reshape(-1, 3)
     least = {
         lengths: np.nanmin(arm.condition_number(theta, lengths))
-        for lengths in ((1, 1, 3), DIMENSIONS)
+        for lengths in ((1, 1, 3), (3.5, 1, 1), DIMENSIONS)
     }
     assert least[1, 1, 3] > 1.5
+    assert 1.1 < least[3.5, 1, 1] < np.inf  # the loop closes
     assert least[DIMENSIONS] < 1.01
 
 

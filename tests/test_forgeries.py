@@ -325,6 +325,28 @@ FORGERIES: dict[str, Document] = {
         basis=[],
         count=1,
     ),
+    "two solutions of t*x**2 + x = 1 at t = 0, because t has a second number": certificate(
+        [["name", "t", 0], X, ["^", 1, 2], ["*", 0, 2], "-1", ["+", 3, 1, 4], "0"],
+        kind="count",
+        equations=[5],
+        given=[[-7, 6]],
+        angles=[],
+        field=[["name", 0], ["unknown", 1]],
+        steps=[],
+        basis=[0],
+        count=2,
+    ),
+    "infinitely many solutions of x = 1, because x has two generators": certificate(
+        [X, "-1", ["+", 0, 1]],
+        kind="count",
+        equations=[2],
+        given=[],
+        angles=[],
+        field=[["unknown", 0], ["unknown", 0]],
+        steps=[],
+        basis=[0],
+        count=None,
+    ),
     "one solution, because the equation is given another value": certificate(
         [X, ["^", 0, 2], "-1", ["+", 1, 2]],
         kind="count",
@@ -378,6 +400,62 @@ FORGERIES: dict[str, Document] = {
         ["1/2", ["pi"], ["*", 0, 1], ["cos", 2]], kind="point", matrix=[[3]], at=[]
     ),
 }
+INVERSES: dict[str, Document] = {
+    "four branches, because a count is used twice": {"branches": 4, "counts": [[0, 0], [0, 0]]},
+    "four branches, because a count has a second number": {
+        "branches": 4,
+        "counts": [[0, 0], [-2, 0]],
+    },
+    "four branches, because less than nothing is excluded": {"branches": 4, "counts": [[0, -2]]},
+    "one branch, because half a solution is excluded": {
+        "branches": 1,
+        "counts": [[0, 0.5]],
+        "per branch": 1.5,
+    },
+    "four branches, each of half a solution": {
+        "branches": 4,
+        "counts": [[0, 0]],
+        "per branch": 0.5,
+    },
+    "a negative number of branches": {"branches": -2, "counts": [[0, 0]], "per branch": -1},
+    "no branch, because all solutions are excluded": {"branches": 0, "counts": [[0, 2]]},
+    "one branch, because nothing is counted": {"branches": 1, "counts": []},
+}
+"""Inverses of a system with two solutions."""
+
+
+@pytest.mark.parametrize("name", INVERSES)
+def test_an_inverse_needs_its_counts(name: str) -> None:
+    document = certificate(
+        [X, ["^", 0, 2], "-1", ["+", 1, 2]],
+        kind="count",
+        equations=[3],
+        given=[],
+        angles=[],
+        field=[["unknown", 0]],
+        steps=[],
+        basis=[0],
+        count=2,
+    )
+    inverse: Document = {"kind": "inverse", "of": "ik", "function": "ik", "per branch": 1}
+    right = {"branches": 2, "counts": [[0, 0]]}
+    verify.check({**document, "certificates": [*document["certificates"], inverse | right]})
+    forged = {**document, "certificates": [*document["certificates"], inverse | INVERSES[name]]}
+    with pytest.raises(verify.Refused):
+        verify.check(forged)
+
+
+def test_a_factor_that_does_not_occur_is_no_denominator() -> None:
+    """The power 0 of zero is 1: the checker must not divide by this zero for ever."""
+    verify.check(
+        certificate(
+            [X, "-1", ["*", 1, 0], ["+", 0, 2]],
+            zero=[3],
+            assumed=[0],
+            field=[["name", 0], ["known", 0, PLUS_X, [[[], 0]]]],
+            nonzero=[PLUS_X],
+        )
+    )
 
 
 @pytest.mark.parametrize("name", FORGERIES)

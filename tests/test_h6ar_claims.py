@@ -1,5 +1,7 @@
 """The claims about the H6AR: their verdicts, and the checks that they needed."""
 
+import claimed
+import numpy as np
 import pytest
 import sympy as sp
 from claimed import claims, result
@@ -23,6 +25,7 @@ from closedform.model.claims import (
     PROVED,
     PROVED_UNDER,
     REFUTED,
+    Gravity,
 )
 from closedform.proof.claims import judged
 
@@ -48,6 +51,38 @@ k, t, u = real("k"), real("t"), real("u")
 def test_verdicts(label: str, verdict: str, erratum: str) -> None:
     found = result("h6ar", label)
     assert (found.kind, found.erratum) == (verdict, erratum)
+
+
+def half_line(psi: np.ndarray, phi: np.ndarray) -> np.ndarray:
+    """Half the distance of the tips for d = 1: the y axis after yaw and roll, by complex numbers.
+
+    Its part across the mid-plane is 1.
+    """
+    yawed = np.exp(1j * (np.pi / 2 + psi))  # in the plane of the fore-arm's axis and y
+    return 1 / (yawed.imag * np.exp(1j * phi).real)
+
+
+@pytest.mark.parametrize(("roll", "enough"), [(False, False), (True, True)])
+def test_the_length_of_the_wrist_links_by_numbers(roll: bool, enough: bool) -> None:
+    """Links as short as the printed (10) reach for yaw alone; with roll, the corrected one does."""
+    rng = np.random.default_rng(2)
+    limit, beta = rng.uniform(0.1, 1.2, (2, 20_000))
+    psi, phi = limit * rng.uniform(-1, 1, (2, 20_000))
+    gears = rng.uniform(0, 1, 20_000)
+    line = half_line(psi, phi * roll)
+    printed = (1 - gears * np.cos(limit)) / (np.cos(limit) * np.cos(beta))
+    corrected = (1 - gears * np.cos(limit) ** 2) / (np.cos(limit) ** 2 * np.cos(beta))
+    assert (line - gears < (corrected if enough else printed)).all()
+    if roll:
+        assert (line - gears > printed).any()
+
+
+def test_the_gravest_errors_come_first() -> None:
+    """First what misses every target of a kind, then what is off by a distance."""
+    grave = [e.key for e in claimed.derivation("h6ar").errata if e.gravity is Gravity.MOTION]
+    assert grave == [
+        "waist-rear", "quadrant", "roll-sign", "yaw-roll-axes", "roll-in-wrist", "averages",
+    ]  # fmt: skip
 
 
 def test_the_waist_formula_gives_no_posture_with_the_target_in_front() -> None:

@@ -59,7 +59,7 @@ class Record:
     def __init__(self) -> None:
         self.place = ""
         """What is being proved; every certificate says it."""
-        self.nodes: list[Any] = []
+        self.nodes: dict[int, list[Any]] = {}
         self.certificates: list[dict[str, Any]] = []
         self.missing: Counter[str] = Counter()
         """Why a proof has no certificate, and how many have none."""
@@ -79,7 +79,7 @@ class Record:
             "digest": digest,
             "not exported": dict(sorted(self.missing.items())),
             "inverses not exported": self.uncounted,
-            "nodes": self.nodes,
+            "nodes": [*self.nodes.values()],
             "certificates": self.certificates,
         }
 
@@ -249,7 +249,7 @@ class Record:
         key = tuple(node)
         if key not in self._known:
             self._known[key] = len(self.nodes)
-            self.nodes.append(node)
+            self.nodes[len(self.nodes)] = node
         return self._known[key]
 
     def _node(self, e: Expr) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from typing import Any, TypeAlias
@@ -58,6 +58,7 @@ def find_counterexample(
     conditions: Sequence[Relational] = (),
     seed: int = 0,
     sides: Sequence[Sequence[Expr]] = (),
+    postures: Sequence[Mapping[Symbol, Expr]] = (),
 ) -> Counterexample | None:
     """The simplest point at which some entry provably differs from zero.
 
@@ -68,16 +69,27 @@ def find_counterexample(
 
     ``sides`` contains, for each entry, the expressions of which it is the difference. They have
     values at the point, so the point also gives values for symbols that cancel.
+
+    If symbols depend on each other, ``postures`` lists points at which they agree; no other point
+    is tried then.
     """
     entries: list[Expr] = sp.Matrix([difference]).flat()
     gaps = [_gap(c) for c in conditions]
     free = {s for e in [*entries, *(g for g, _ in gaps)] for s in e.free_symbols}
-    names = sorted(free | set(symbols or ()), key=str) if symbols is None else list(symbols)
+    if postures:
+        names = list(postures[0])
+    else:
+        names = sorted(free, key=str) if symbols is None else list(symbols)
     evaluator = Evaluator(
         names, [*entries, *(g for g, _ in gaps)], rel_bits=_BITS, max_bits=4 * _BITS
     )
     completions = [cache(partial(_Completion, names, exprs, seed)) for exprs in sides]
-    for values in _points(names, _angles(entries), random.Random(seed)):
+    tried: Iterable[tuple[Expr, ...]] = (
+        (tuple(at[s] for s in names) for at in postures)
+        if postures
+        else _points(names, _angles(entries), random.Random(seed))
+    )
+    for values in tried:
         try:
             balls = evaluator(values)
         except Undetermined:

@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 
@@ -141,11 +141,13 @@ def decide(
     seed: int = 0,
     *,
     sides: Sequence[Sequence[Expr]] = (),
+    postures: Sequence[Mapping[sp.Symbol, Expr]] = (),
 ) -> Decision:
     """Prove that every entry is zero, or refute it at a point at which the assumptions hold.
 
     ``sides`` contains, for each entry, the expressions of which it is the difference; the
-    counterexample is a point at which they have values too.
+    counterexample is a point at which they have values too.  If symbols depend on each other, only
+    points of ``postures`` can refute.
     """
     guards = [margin_of(g) for g in nonnegative]
     try:
@@ -158,7 +160,11 @@ def decide(
         verdict = "proved under assumption" if result.assumptions else "proved"
         return Decision(True, verdict, result.assumptions, result, None)
     witness = find_counterexample(
-        sp.Matrix(entries_of(problem)), conditions=[g >= 0 for g in guards], seed=seed, sides=sides
+        sp.Matrix(entries_of(problem)),
+        conditions=[g >= 0 for g in guards],
+        seed=seed,
+        sides=sides,
+        postures=postures,
     )
     if witness:
         entry = sp.sympify(entries_of(problem)[witness.entry], strict=True)

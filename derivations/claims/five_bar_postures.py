@@ -1,9 +1,9 @@
 """The five-bar linkage for the claims: its graph, exact postures, and what bounds its lengths."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import product
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import sympy as sp
 from closedform.derivations import hybrid_five_bar_design as design
@@ -24,9 +24,21 @@ from closedform import (
 
 DEFAULT = (7, 8, 5)
 NO_LENGTHS = "a figure for lengths that the paper does not give"
+Point: TypeAlias = "dict[sp.Symbol, sp.Expr]"
 NO_MODEL = "the paper gives no masses, no stiffness and no tolerances"
 Eq, Ne, Lt, Gt = (partial(relation, evaluate=False) for relation in (sp.Eq, sp.Ne, sp.Lt, sp.Gt))
 J = sp.Matrix([0, 1, 0])
+
+CLOSED = (
+    (1, 1, 1, pi / 2, pi / 2, pi / 3, 2 * pi / 3),  # a square with an equilateral triangle on it
+    (2, 2, 2, pi / 2, pi / 2, pi / 3, 2 * pi / 3),
+    (2, 1, 1, pi / 2, pi, sp.S.Zero, pi / 2),  # C = (0, 1), D = (1, 0), P = (1, 1)
+    (2, 1, 1, pi / 2, pi / 2, sp.S.Zero, pi),  # C = (0, 1), P = (1, 1), D = (2, 1)
+    (sqrt(3) - 1, 1, 1, pi / 6, pi / 2, pi, 7 * pi / 6),
+    (sqrt(3), 1, 1, pi / 2, pi / 2, pi / 6, 5 * pi / 6),  # CP and DP at an obtuse angle
+    (2, 1, sqrt(2), pi / 2, pi / 2, -pi / 4, -3 * pi / 4),  # at a right one, with P on AB
+)
+"""L0, L1, L2 and theta2 to theta5 of postures that a person can check by hand."""
 
 JOINTS = {
     "theta1": ("base", "AB"),
@@ -109,6 +121,20 @@ class FiveBar(NamedTuple):
         if any(e.subs(posture) != 0 for e in gap):
             raise ValueError("the loop is not closed")
         return len(angles) - gap.jacobian(list(angles)).subs(posture).rank()
+
+    def postures(self, at: Mapping[sp.Symbol, sp.Expr] | None = None) -> list[Point]:
+        """Those of ``CLOSED`` in which angles have the given values, up to full turns."""
+        names = (*self.lengths, *self.angles[1:])
+        found = []
+        for several in CLOSED:
+            posture = dict(zip(names, map(sp.sympify, several), strict=True))
+            posture[self.angles[0]] = sp.S.Zero
+            if any(sp.simplify(e) != 0 for e in (self.by_legs[0] - self.by_legs[1]).subs(posture)):
+                raise ValueError(f"the loop is not closed at {posture}")
+            gaps = ((angle - value).subs(posture) for angle, value in (at or {}).items())
+            if all((gap / (2 * pi)).is_integer for gap in gaps):
+                found.append(posture)
+        return found
 
     def turned_by(self, bar: sp.Matrix, other: sp.Matrix) -> sp.Expr:
         """The cross product of two bars, about the normal of the plane."""
@@ -308,12 +334,20 @@ def relations(formula: Relation | tuple[Relation, ...]) -> list[sp.Expr]:
     ]
 
 
-def implies(printed: Sequence[sp.Expr], wanted: sp.Expr, lengths: Sequence[sp.Symbol]) -> Check:
+def implies(
+    printed: Sequence[sp.Expr],
+    wanted: sp.Expr,
+    lengths: Sequence[sp.Symbol],
+    among: Sequence[Point] = (),
+) -> Check:
     """Inequalities between lengths imply another one, which is linear in them too.
 
     Each printed inequality says that a gap is positive.  If one of them is solved for a length, and
-    then all coefficients of the wanted gap are positive, the implication is proved.
+    then all coefficients of the wanted gap are positive, the implication is proved.  Only lengths
+    with which the loop can close refute it; those of ``among`` are tried first.
     """
+    L0, L1, L2 = lengths
+    closes = sp.Le(L0, 2 * (L1 + L2))
     for r in printed:
         if isinstance(r, sp.Ne):
             continue
@@ -324,7 +358,7 @@ def implies(printed: Sequence[sp.Expr], wanted: sp.Expr, lengths: Sequence[sp.Sy
             form = sp.expand((wanted.gts - wanted.lts).subs(slack))
             if form.is_positive or (form.is_nonnegative and not isinstance(wanted, sp.Gt | sp.Lt)):
                 return ForAll(wanted, where=printed, slack=slack)
-    return ForAll(wanted, where=printed)
+    return ForAll(wanted, where=[*printed, closes], among=among)
 
 
 def closed_and(posture: Plane, **more: sp.Expr) -> Holds:

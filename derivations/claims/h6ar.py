@@ -37,6 +37,11 @@ def state(d: Derivation, m: Dimensions, q: Joints) -> None:
     """Transcribe the claims, in the order of the paper."""
     r = Robot(m, q, {p.symbol: p.value for p in d.parameters})
     printed = notation(r)
+    # the errata, the gravest first
+    h6ar_inverse.errors(d)
+    h6ar_forward.wrong_frames(d, r)
+    h6ar_wrist.error(d, r)
+    h6ar_forward.wrong_averages(d, r)
     overview(d, r, printed)
     description(d, r, printed)
     mobility(d, printed)

@@ -43,7 +43,6 @@ GENERAL = (
 def state(d: Derivation, r: Robot, printed: Notation) -> None:
     """Sections 3.2 and 3.3, up to the length of the wrist."""
     symmetric_motions(d, r, printed)
-    errors(d, r)
     point_from_tips(d, r, printed)
     averages(d, r, printed)
 
@@ -120,8 +119,29 @@ def off_the_middle(r: Robot, yaw: sp.Expr) -> sp.Expr:
     return (lost[0] * along[0] + lost[1] * along[1]).norm()
 
 
-def errors(d: Derivation, r: Robot) -> None:
-    """What is wrong in sections 3.2 and 3.3."""
+def wrong_averages(d: Derivation, r: Robot) -> None:
+    """What is wrong in (7)."""
+    d.erratum(
+        "averages",
+        "The averages of the joint angles do not give the middle of the tips",
+        Gravity.MOTION,
+        why=r"By (6) the invariant point is the middle of the tips.  If the arms differ, the links "
+        r"to that point are shortened: $L_1$ by the cosine of half the difference of the shoulder "
+        r"angles, $L_2$ and $a_3$ by that of half the difference of the $\theta_{23}$.  So (7), "
+        "and the left arm computed from the averages, hold only approximately.",
+        use="The error is of second order in the differences of the arms.  For $L_1 = [L1]$ m, "
+        r"$L_2 = [L2]$ m, $a_3 = [a3]$ m, $d = [d]$ m, $\theta_2^A = 60^\circ$ and a level "
+        "fore-arm it is [some] mm at 15 degrees of yaw, and [more] mm at 30 degrees.",
+        numbers={
+            **{name: (r.example[getattr(r.m, name)], 2) for name in ("L1", "L2", "a3", "d")},
+            "some": (1000 * off_the_middle(r, pi / 12), 1),
+            "more": (1000 * off_the_middle(r, pi / 6), 1),
+        },
+    )
+
+
+def wrong_frames(d: Derivation, r: Robot) -> None:
+    """What is wrong in (3) to (5)."""
     d.erratum(
         "roll-sign",
         "The roll of (3) has the opposite sign of the roll of (9)",
@@ -137,31 +157,14 @@ def errors(d: Derivation, r: Robot) -> None:
         "Yaw and roll are measured against the base in (3) to (5), but against the fore-arm in (9)",
         Gravity.MOTION,
         why="Eqs. (3) to (5) are read from Fig. 3, which shows pure yaw and pure roll in the "
-        "planes of the base.  Eq. (9) turns the wrist about the axes of the fore-arm.  The two "
-        "agree only if the fore-arm is level and only one of the angles differs from zero; the "
-        "inverse uses (3) and (4) for all postures.",
+        "planes of the base.  Eq. (9) turns the wrist about the axes of the fore-arm.  If yaw or "
+        "roll differs from zero, the two agree only if the other one is zero and the fore-arm is "
+        "level; the inverse uses (3) and (4) for all postures.",
         use=r"For $d = [d]$ m, 10 degrees of yaw and a fore-arm at $\theta_{23} = 45^\circ$, (4) "
         "puts the right tip [gap] mm from where (9) has it; the distance grows with yaw and roll.",
         numbers={
             "d": (r.example[r.m.d], 2),
             "gap": (1000 * r.example[r.m.d] * sp.tan(pi / 18) * 2 * sp.sin(pi / 8), 0),
-        },
-    )
-    d.erratum(
-        "averages",
-        "The averages of the joint angles do not give the middle of the tips",
-        Gravity.MOTION,
-        why=r"By (6) the invariant point is the middle of the tips.  If the arms differ, the links "
-        r"to that point are shortened: $L_1$ by the cosine of half the difference of the shoulder "
-        r"angles, $L_2$ and $a_3$ by that of half the difference of the $\theta_{23}$.  So (7), "
-        "and the left arm computed from the averages, hold only approximately.",
-        use="The error is of second order in the differences of the arms.  For $L_1 = [L1]$ m, "
-        r"$L_2 = [L2]$ m, $d = [d]$ m, $\theta_2^A = 60^\circ$ and a level fore-arm it is "
-        "[some] mm at 15 degrees of yaw, and [more] mm at 30 degrees.",
-        numbers={
-            **{name: (r.example[getattr(r.m, name)], 2) for name in ("L1", "L2", "d")},
-            "some": (1000 * off_the_middle(r, pi / 12), 1),
-            "more": (1000 * off_the_middle(r, pi / 6), 1),
         },
     )
 

@@ -97,7 +97,6 @@ def both_elbows(sines: tuple[str, str]) -> str:
 
 def state(d: Derivation, r: Robot, printed: Notation) -> None:
     """Section 4."""
-    errors(d)
     given = {f"{axis}_T": real(f"{axis}_T") for axis in "xyz"}
     lengths = {n: real(n.replace("\\", "")) for n in (r"L_\theta", "L_{2W}", "a_{3W}", "L_{3A}")}
     names = printed.extended(
@@ -132,17 +131,6 @@ class Virtual(NamedTuple):
 def errors(d: Derivation) -> None:
     """What is wrong in section 4."""
     d.erratum(
-        "quadrant",
-        "The shoulder is taken from a quotient, so half of the directions of the fore-arm are lost",
-        Gravity.MOTION,
-        why=r"The principal value of $\tan^{-1}$ lies between $-90^\circ$ and $90^\circ$, where "
-        r"the fore-arm hangs down.  The denominator has the sign of $\cos\theta_{23}$: it is "
-        "negative if the fore-arm points above the horizontal, and zero if it is level.",
-        use=r"For a fore-arm above the horizontal the formula is off by $180^\circ$: the shoulder "
-        "turns half round, and the hand misses its target.  For a level fore-arm it divides by "
-        "zero.  A function of numerator and denominator, such as atan2, gives the right angle.",
-    )
-    d.erratum(
         "waist-rear",
         "The waist formula gives only the posture in which the robot turns its back to the target",
         Gravity.MOTION,
@@ -153,6 +141,17 @@ def errors(d: Derivation) -> None:
         "the waist axis, where the formula divides by zero, is not mentioned.",
         use="A robot that uses the formula turns its back to every target and reaches over its "
         "head, if it can at all.",
+    )
+    d.erratum(
+        "quadrant",
+        "The shoulder is taken from a quotient, so half of the directions of the fore-arm are lost",
+        Gravity.MOTION,
+        why=r"The principal value of $\tan^{-1}$ lies between $-90^\circ$ and $90^\circ$, where "
+        r"the fore-arm hangs down.  The denominator has the sign of $\cos\theta_{23}$: it is "
+        "negative if the fore-arm points above the horizontal, and zero if it is level.",
+        use=r"For a fore-arm above the horizontal the formula is off by $180^\circ$: the shoulder "
+        "turns half round, and the hand misses its target.  For a level fore-arm it divides by "
+        "zero.  A function of numerator and denominator, such as atan2, gives the right angle.",
     )
     d.erratum(
         "one-elbow",
@@ -256,7 +255,8 @@ def solves_shoulder(r: Robot, v: Virtual, formula: Relation) -> Solves:
         {formula.left: formula.right},
         equations,
         replace(v.postures, groups=directions(r.A23)),
-        (sp.expand(across_bend**2 + along_bend**2),),
+        # the wrist makes the fore-arm longer, as yaw and pitch are at most a right angle
+        (sp.expand(across_bend**2 + along_bend**2), along - r.m.L2),
         v.reached,
     )
 

@@ -1,12 +1,15 @@
 """Claims of Rao and Raju about the wrist: its length, the tip, and its design."""
 
+from collections.abc import Callable
 from functools import partial
+from typing import NamedTuple
 
 import sympy as sp
 from closedform.derivations.claims.h6ar_forward import SERIAL
 from closedform.derivations.claims.h6ar_robot import Robot
 from closedform.derivations.h6ar_mechanism import arm_frames, product
 from sympy import Rational, cos, pi, sqrt
+from sympy.core.relational import Relational
 
 from closedform import (
     Check,
@@ -37,26 +40,37 @@ LENGTH = (
 
 def state(d: Derivation, r: Robot, printed: Notation) -> None:
     """The end of section 3.3, and section 3.4."""
+    length(d, r, printed)
+    tip(d, r, printed)
+    design(d, r, printed)
+
+
+def error(d: Derivation, r: Robot) -> None:
+    """What is wrong in (8) and (10)."""
     yawed = wrist_length(r).subs(r.example).subs(r.psi, pi / 6)
+    half_line = (r.half_base - r.m.gs).subs(r.example).subs(r.psi, pi / 6)
+    flat, steep = (half_line.subs(r.phi, roll) for roll in (0, pi / 6))
     d.erratum(
         "roll-in-wrist",
         "The wrist is computed and designed for pure yaw; roll makes its base line longer",
         Gravity.MOTION,
         why=r"The tips are $2d/\cos\psi$ apart if the robot yaws, but "
         r"$2d/(\cos\psi\cos\phi)$ if it also rolls.  The wrist links then lie flatter: $l_W$ in "
-        "(8) is too long, and the links that (10) asks for are too short.",
+        "(8) is too long, and the links that (10) asks for are too short.  For $d = 1$, "
+        "$g_s = 1/2$ and 60 degrees of yaw, of roll and of the smallest separation angle, (10) "
+        "admits $\\alpha l = 3$; but half the line between the tips is "
+        r"$d/(\cos\psi\cos\phi) = 4$, so a link has to be longer than $4 - g_s = 3.5$.",
         use="The tip is misplaced whenever the robot rolls.  At 30 degrees of yaw and roll the "
         "wrist of the example ($d = [d]$ m, $\\alpha l = [al]$ m) is [gap] mm shorter than (8) has "
-        "it.  Wrist links as short as (10) allows reach their singular configuration, or do "
-        "not reach from tip to tip, before both angles are at their limits.",
+        "it.  Wrist links as short as (10) allows reach their singular configuration before both "
+        r"angles are at their limits, unless $\beta_{\min}$ is large: for limits of 30 degrees and "
+        "$g_s = [gs]$ m, if it is below [enough] degrees.",
         numbers={
-            **{name: (r.example[getattr(r.m, name)], 2) for name in ("d", "al")},
+            **{name: (r.example[getattr(r.m, name)], 2) for name in ("d", "al", "gs")},
+            "enough": (sp.acos(flat / steep) * 180 / pi, 1),
             "gap": (1000 * (yawed.subs(r.phi, 0) - yawed.subs(r.phi, pi / 6)), 0),
         },
     )
-    length(d, r, printed)
-    tip(d, r, printed)
-    design(d, r, printed)
 
 
 def wrist_length(r: Robot) -> sp.Expr:
@@ -171,7 +185,7 @@ def tip(d: Derivation, r: Robot, printed: Notation) -> None:
 def design(d: Derivation, r: Robot, printed: Notation) -> None:
     """Eq. (10), and what the paper says around it."""
     m = r.m
-    yaw, roll, least = real("psi_max"), real("phi_max"), real("beta_min")
+    yaw, roll = real("psi_max"), real("phi_max")
     narrow = real("k", positive=True)
     """The cosine of the smallest separation angle."""
     claim = partial(
@@ -180,10 +194,7 @@ def design(d: Derivation, r: Robot, printed: Notation) -> None:
         notation=printed.extended(
             {
                 r"\psi_{\max}": yaw,
-                r"\phi_{\max}": roll,
-                r"\phi_{\text{max}}": roll,
                 r"\cos(\beta_{\min})": narrow,
-                r"\beta_{\min}": least,
             }
         ),
     )
@@ -257,7 +268,7 @@ def design(d: Derivation, r: Robot, printed: Notation) -> None:
 
     claim(
         "eq. (10)",
-        r"$\alpha l \ge \frac{d - g_s \cos(\psi_{\max})}{\cos(\psi_{\max}) \cos(\beta_{\min})}$",
+        EQ10,
         keeps,
         readings=[
             Reading("for yaw alone, from (8); the next sentence takes the roll up", keeps),
@@ -274,50 +285,110 @@ def design(d: Derivation, r: Robot, printed: Notation) -> None:
         lambda: Undecidable("a choice of design: the paper gives no ranges of these joints"),
         fixed="the sentence states a choice",
     )
-    claim(
-        "no singular wrist",
-        "“then, the wrist does {not} assume the singular configuration.”",
-        # a link of that length has the smallest separation angle at the largest yaw
-        lambda judged: judged(
-            Identity(
-                (needed(yaw, sp.S.Zero) * narrow) ** 2,
-                (r.half_base.subs({r.psi: yaw, r.phi: 0}) - m.gs) ** 2,
-            )
-        ),
-        phrases=[{"not": lambda check: check, "always": Not}],
-    )
+    keeps_apart(claim, r, printed)
 
-    def any_roll(domain: Relation) -> Check:
-        bound = needed(r.psi, sp.S.Zero)
-        if domain.signs == ("=",):
-            return ForAll(sp.Le(needed(r.psi, r.phi), bound), on={domain.left: domain.right})
+
+class Secants(NamedTuple):
+    """Of angles of the wrist below a right angle: they grow with the sizes of the angles."""
+
+    yaw: sp.Symbol = real("sec_psi", positive=True)
+    largest_yaw: sp.Symbol = real("sec_psi_max", positive=True)
+    roll: sp.Symbol = real("sec_phi", positive=True)
+    largest_roll: sp.Symbol = real("sec_phi_max", positive=True)
+    least: sp.Symbol = real("sec_beta_min", positive=True)
+    """Of the smallest separation angle."""
+
+
+EQ10 = r"$\alpha l \ge \frac{d - g_s \cos(\psi_{\max})}{\cos(\psi_{\max}) \cos(\beta_{\min})}$"
+BOTH = r"\cos(\psi_{\max}) \cos(\phi_{\max})"
+WITH_ROLL = rf"$\alpha l \ge \frac{{d - g_s {BOTH}}}{{{BOTH} \cos(\beta_{{\min}})}}$"
+
+
+def keeps_apart(claim: Callable[..., None], r: Robot, printed: Notation) -> None:
+    """What follows from (10): for which yaw and roll are the wrist links never in line?
+
+    A link is in line with the tips if half of the line between them, less half the distance of the
+    gears, is as long as the link.
+    """
+    m, sec = r.m, Secants()
+    roll, limit = real("phi"), real("phi_max")
+    names = {
+        r"\cos(\psi_{\max})": 1 / sec.largest_yaw,
+        r"\cos(\phi_{\max})": 1 / sec.largest_roll,
+        r"\cos(\beta_{\min})": 1 / sec.least,
+        r"\phi": roll,
+        r"\phi_{\text{max}}": limit,
+        r"\sec\psi": sec.yaw,
+        r"\sec\phi": sec.roll,
+        r"\sec\psi_{\max}": sec.largest_yaw,
+        r"\sec\phi_{\max}": sec.largest_roll,
+        r"\sec\beta_{\min}": sec.least,
+    }
+    named = printed.extended(names)
+    half_line = r.half_base.subs({cos(r.psi): 1 / sec.yaw, cos(r.phi): 1 / sec.roll})
+    # 60 degrees of yaw, roll and separation
+    steep = dict.fromkeys(sec, sp.Integer(2))
+    steep |= {m.d: sp.S.One, m.gs: Rational(1, 2), m.al: sp.Integer(3)}
+
+    def never_in_line(bound: Relation, rolls: Relation | None) -> Check:
+        """For all yaws up to the largest, and for these rolls; without them, for no roll."""
+        level = {sec.roll: sp.S.One} if rolls is None else {}
+        where = [
+            (m.al, bound.relational),
+            (sec.largest_yaw, sp.Le(sec.yaw, sec.largest_yaw)),
+            (sec.yaw, sp.Ge(sec.yaw, 1)),
+            (sec.roll, sp.Ge(sec.roll, 1)),
+            (sec.least, sp.Gt(sec.least, 1)),
+            (m.d, sp.Gt(m.d, m.gs)),
+        ]
+        if rolls is not None:
+            angles = {sp.Abs(roll): sec.roll, limit: sec.largest_roll}
+            where.insert(1, (sec.largest_roll, rolls.relational.subs(angles)))
         return ForAll(
-            sp.Le(needed(r.psi, r.phi), bound),
-            where=[domain.relational, sp.Lt(roll, pi / 2), sp.Lt(sp.Abs(r.psi), pi / 2)],
+            sp.Gt(m.al, half_line.subs(level) - m.gs),
+            where=[relation for _, relation in where],
+            slack=[slack(symbol, relation, k) for k, (symbol, relation) in enumerate(where)],
+            among=[steep],
         )
 
+    claim = partial(claim, notation=named)
+    claim(
+        "no singular wrist",
+        f"“{EQ10}” “then, the wrist does {{not}} assume the singular configuration.”",
+        lambda bound, judged: judged(never_in_line(bound, None)),
+        phrases=[{"not": lambda check: check, "always": Not}],
+        readings=[Reading("for yaw alone, as in (8); the next sentence takes the roll up")],
+    )
+    also = r"“This result also holds for any roll angle $|\phi| \leq \phi_{\text{max}}$.”"
     claim(
         "any roll",
-        "“This result also holds for {any} roll angle "
-        r"$|\phi| \leq \phi_{\text{max}}$.”",
-        lambda _, domain: any_roll(domain),
-        phrases=[{"any": None, "the": None}],
-        corrected=r"“This result also holds for {the} roll angle $\phi = 0$ only.”",
+        f"“{EQ10}” [...] {also}",
+        never_in_line,
+        corrected=f"{WITH_ROLL} [...] {also}",
         erratum="roll-in-wrist",
     )
-    both, yaw_only = "roll and yaw angles", "yaw angles"
-    d.claim(
+    (bound,) = named.read(EQ10.strip("$"))
+    (any_roll,) = named.read(r"|\phi| \leq \phi_{\text{max}}")
+    text = (
+        "“The parameters αl and β are designed so that the wrist {does not assume} a singular "
+        "configuration for the allowed {%s}.”"
+    )
+    claim(
         "design of the wrist",
-        "“The parameters αl and β are designed so that the wrist {does not assume} a "
-        "singular configuration for the allowed {roll and yaw angles}.”",
-        lambda largest: ForAll(
-            sp.Le(needed(r.psi, largest), needed(r.psi, sp.S.Zero)),
-            where=[sp.Lt(sp.Abs(r.psi), pi / 2), sp.Lt(sp.Abs(r.phi), pi / 2)],
-        ),
+        text % "roll and yaw angles",
+        lambda rolls: never_in_line(bound, rolls),
         where="2 Description of the H6AR",
-        phrases=[{both: r.phi, yaw_only: sp.S.Zero}],
+        phrases=[{"roll and yaw angles": any_roll, "yaw angles": None}],
         opposites={"does not assume": "assumes"},
-        corrected="“The parameters αl and β are designed so that the wrist {does not assume} a "
-        "singular configuration for the allowed {yaw angles}.”",
+        readings=[Reading("by (10), the procedure to which the paper refers")],
+        corrected=text % "yaw angles",
         erratum="roll-in-wrist",
     )
+
+
+def slack(symbol: sp.Symbol, relation: Relational, k: int) -> tuple[sp.Symbol, sp.Expr]:
+    """The symbol by how much an inequality is satisfied."""
+    strict = isinstance(relation, sp.Gt | sp.Lt)
+    gap = real(f"gap_{k}", positive=True) if strict else real(f"gap_{k}", nonnegative=True)
+    (value,) = sp.solve(relation.gts - relation.lts - gap, symbol)
+    return symbol, value

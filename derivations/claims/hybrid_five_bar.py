@@ -339,7 +339,7 @@ def kinematics(d: Derivation, bar: FiveBar) -> None:
         if name.left != definition.left:
             raise ValueError("another name is defined")
         sides = tuple(side.subs(definition.left, definition.right) for side in matrix.sides)
-        return Equal(Relation(sides, matrix.signs, matrix.texts))
+        return Equal(Relation(sides, matrix.signs, matrix.texts), postures=bar.postures())
 
     d.erratum(
         "sign-of-B",
@@ -349,8 +349,8 @@ def kinematics(d: Derivation, bar: FiveBar) -> None:
         "\\mathbf{k} \\cdot (\\mathbf{c} \\times (\\mathbf{p} - \\mathbf{c}))$, if A is the "
         "origin, and that is $L_1 L_2 \\sin(\\theta_4 - \\theta_2) \\dot{\\theta}_2$.  With "
         "the rows of (3), (4) has $\\sin(\\theta_2 - \\theta_4)$ and $\\sin(\\theta_3 - "
-        "\\theta_5)$ instead.  The first entry has the right sign, so a change of the sign of "
-        "$\\mathbf{A}$ does not help.",
+        "\\theta_5)$ instead.  The first entry has the right sign if $\\mathbf{j}$ points from A "
+        "to B; if it points from B to A, this entry has the wrong sign too.",
         use="A controller that uses (2) to (4) turns the joints 2 and 3 the wrong way for a wanted "
         "velocity of P.  The singularities, where an entry vanishes, and the working modes do not "
         "change.",
@@ -368,6 +368,13 @@ def kinematics(d: Derivation, bar: FiveBar) -> None:
         printed,
         by_ratio,
         means={r"\mathbf{B}": bar.B, r"\lambda_1": ratio},
+        readings=[
+            Reading(r"$\mathbf{j}$ points from A to B, and the angles are counted from there"),
+            Reading(
+                r"$\mathbf{j}$ points from B to A",
+                means={r"\mathbf{B}": sp.diag(-bar.B[0, 0], bar.B[1, 1], bar.B[2, 2])},
+            ),
+        ],
         corrected=right,
         erratum="sign-of-B",
     )

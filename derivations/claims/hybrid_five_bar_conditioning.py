@@ -78,8 +78,9 @@ def errata(d: Derivation) -> None:
         "its passive angles are $\\theta_3$ and $\\theta_4$; since the revolute about AB was "
         "added, these are $\\theta_4$ and $\\theta_5$.",
         use="The condition numbers, isotropic postures and singularities of section 3.4 are those "
-        "of other postures: for $\\theta_3 = 0$, $\\theta_4 = \\pi$, $\\theta_5 = \\pi/2$ the "
-        "matrix is isotropic, and the paper calls it singular.",
+        "of other postures.  For $L_0 = 2$, $L_1 = L_2 = 1$ and C, D, P at (0, 1), (1, 0), (1, 1), "
+        "with AB as the first axis, the matrix is isotropic: CP and DP are at right angles.  There "
+        "$\\theta_3 = \\pi$, $\\theta_4 = 0$, and the paper calls it singular.",
     )
     d.erratum(
         "obtuse",
@@ -120,15 +121,21 @@ def condition_number(d: Derivation, bar: FiveBar) -> None:
         phrases=[{"positive": 1, "negative": -1}],
         readings=[Reading("shown for a matrix of 2 rows and 3 columns")],
     )
+    closed = bar.postures()
+
+    def equal(formula: Relation) -> Check:
+        return Equal(formula, postures=closed)
+
     scaled, sound = (rf"$\alpha_{i} = {form}$" for i, form in ((2, "1"), (2, "L_2^2")))
     for i, sign in ((1, "-"), (3, "+")):
         claim(
             f"eigenvalue α{i}",
             rf"$\alpha_{i} = 1 {sign} |\cos(\theta_4 - \theta_3)|$",
+            equal,
             corrected=rf"$\alpha_{i} = L_2^2 (1 {sign} |\cos(\theta_4 - \theta_5)|)$",
             erratum=INDEX,
         )
-    claim("eigenvalue α2", scaled, corrected=sound, erratum="eigenvalue-scale")
+    claim("eigenvalue α2", scaled, equal, corrected=sound, erratum="eigenvalue-scale")
     size = real("size", nonnegative=True)
 
     def ordered(chain: Relation) -> Check:
@@ -142,12 +149,12 @@ def condition_number(d: Derivation, bar: FiveBar) -> None:
 
     claim("order of the eigenvalues", r"$\alpha_1 \leq \alpha_2 \leq \alpha_3$", ordered)
     printed = KAPPA + r"\frac{1}{|\tan((\theta_4 - \theta_3) / 2)|}$"
-    claim("eq. (8)", printed, corrected=BY_COSINE, erratum=INDEX)
+    claim("eq. (8)", printed, equal, corrected=BY_COSINE, erratum=INDEX)
     t5 = bar.angles[4]
     claim(
         "eq. (8), obtuse angles",
         printed,
-        Equal,
+        equal,
         readings=[
             Reading("with the angle of DP in the place of the third one", means={r"\theta_3": t5})
         ],
@@ -190,13 +197,16 @@ def extremes(d: Derivation, bar: FiveBar) -> None:
         at = placed(angle)
         ratio = (least.left / kappa.left) ** 2
         again = {t4: at[t4] + period.left}
+        there, then = bar.postures(at), bar.postures(again)
         return Every(
             {
-                "its value there": Identity(ratio.subs(at), sp.S.One, names=NAMES),
-                "after one more period": Identity(ratio.subs(again), sp.S.One, names=NAMES),
+                "its value there": Identity(ratio.subs(at), sp.S.One, names=NAMES, postures=there),
+                "after one more period": Identity(
+                    ratio.subs(again), sp.S.One, names=NAMES, postures=then
+                ),
                 "no value is smaller": ForAll(sp.Ge(1 + size, least.left**2 * (1 - size))),
                 "all singular values are equal": Identity(
-                    (matrix.left * matrix.left.T).subs(at), L2**2 * sp.eye(3)
+                    (matrix.left * matrix.left.T).subs(at), L2**2 * sp.eye(3), postures=there
                 ),
             }
         )
@@ -209,12 +219,14 @@ def extremes(d: Derivation, bar: FiveBar) -> None:
     claim("minimum of 1", text % "3", minimum, corrected=text % "5", erratum=INDEX)
     text = (
         "“At the other end of the spectrum, $\\kappa(\\mathbf{A})$ tends to infinity when "
-        "$\\theta_%s - \\theta_4 = k\\pi$, for k = 1, 2,”"
+        "$\\theta_%s - \\theta_4 = k\\pi$, for k = 1, 2, …”"
     )
     claim(
         "infinity",
         text % "3",
-        lambda kappa, angle: at_multiples((1 / kappa.left**2).subs(placed(angle)), "$1/\\kappa^2$"),
+        lambda kappa, angle: at_multiples(
+            bar, 1 / kappa.left**2, placed(angle)[t4], "$1/\\kappa^2$"
+        ),
         corrected=text % "5",
         erratum=INDEX,
     )
@@ -244,7 +256,12 @@ def extremes(d: Derivation, bar: FiveBar) -> None:
     claim(
         "most accurate",
         text % "3",
-        lambda angle: Identity((1 / bar.kappa**2).subs(placed(angle)), sp.S.One, names=NAMES),
+        lambda angle: Identity(
+            (1 / bar.kappa**2).subs(placed(angle)),
+            sp.S.One,
+            names=NAMES,
+            postures=bar.postures(placed(angle)),
+        ),
         readings=[Reading("the condition number has its least value, 1")],
         corrected=text % "5",
         erratum=INDEX,
@@ -257,7 +274,7 @@ def extremes(d: Derivation, bar: FiveBar) -> None:
         "singular postures",
         text % "3",
         lambda angle, matrix: at_multiples(
-            normal(matrix.left.det()).subs(placed(angle)), "$\\det \\mathbf{A}$"
+            bar, normal(matrix.left.det()), placed(angle)[t4], "$\\det \\mathbf{A}$"
         ),
         corrected=text % "5",
         erratum=INDEX,
@@ -353,11 +370,14 @@ def loci(d: Derivation, bar: FiveBar) -> None:
         Gravity.RESULT,
         why="Isotropy needs CP and DP at right angles, so $CD = \\sqrt{2} L_2$.  But CD is at most "
         "$L_0 + 2L_1$ and at least $L_0 - 2L_1$.  For $L_0 = L_1 = 1$, $L_2 = 3$ CD is at "
-        "most 3 and would have to be $3\\sqrt{2}$.",
-        use="A linkage with long following bars has no isotropic posture.  Its best condition "
-        "number belongs to the longest or the shortest CD.",
+        "most 3 and would have to be $3\\sqrt{2}$.  For $L_0 = 7/2$, $L_1 = L_2 = 1$ it is at "
+        "least 3/2 and would have to be $\\sqrt{2}$.",
+        use="A linkage with long following bars, or with pivots far apart, has no isotropic "
+        "posture.  Its best condition number belongs to the longest or the shortest CD.",
     )
     apart = (bar.bars[2] - bar.bars[3]).dot(bar.bars[2] - bar.bars[3])
+
+    one = sp.S.One
 
     def possible(printed: Relation | tuple[Relation, ...]) -> Check:
         given = relations(printed)
@@ -367,7 +387,9 @@ def loci(d: Derivation, bar: FiveBar) -> None:
                 "CD by the angle of CP and DP": Identity(apart, 2 * L2**2 - 2 * bar.gram[1, 2]),
                 **range_of_CD(bar),
                 "CD can be as long": implies(given, wanted[1], bar.lengths),
-                "CD can be as short": implies(given, wanted[0], bar.lengths),
+                "CD can be as short": implies(
+                    given, wanted[0], bar.lengths, [{L0: sp.Rational(7, 2), L1: one, L2: one}]
+                ),
             }
         )
 

@@ -24,12 +24,11 @@ from closedform.derivations.claims.five_bar_postures import (
     sign_patterns,
 )
 from closedform.derivations.claims.hybrid_five_bar_singularities import (
-    AXIS_TOO,
-    by_path_planning,
-    notation,
+    by_design as designs,
 )
 from closedform.derivations.claims.hybrid_five_bar_singularities import (
-    by_design as designs,
+    by_path_planning,
+    notation,
 )
 from closedform.derivations.hybrid_five_bar_design import decrease
 from sympy import cos, pi, sin
@@ -216,20 +215,23 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
     AP = y**2 + rho**2
     border = AP * (4 * L1**2 - AP)
     mirrored = modes((sp.S.Zero, L1, L1), sp.Matrix([y, rho]))[1]
-    factors = mirrored.cross**2 * sp.prod(e**2 for e in mirrored.diagonal)
+    off_axis, *legs = mirrored.diagonal
+    bounds = {
+        "AP = 2 L1": {y: 2 * L1 * cos(angle), rho: 2 * L1 * sin(angle)},
+        "P = A": {y: sp.S.Zero, rho: sp.S.Zero},
+    }
 
-    def lie_on(place: sp.Expr) -> Check:
-        on = {
-            "P on AB": {rho: sp.S.Zero},
-            "AP = 2 L1": {y: 2 * L1 * cos(angle), rho: 2 * L1 * sin(angle)},
-            "P = A": {y: sp.S.Zero, rho: sp.S.Zero},
-        }
+    def lie_on(place: sp.Expr, turning: bool = False) -> Check:
+        """Of the plane linkage, or also of the revolute that turns it about AB."""
+        factors, form = mirrored.cross**2 * sp.prod(e**2 for e in legs), (border / 4) ** 3
+        on = bounds
+        if turning:
+            factors, form = factors * off_axis**2, form * L1**2 * rho**2
+            on = {"P on AB": {rho: sp.S.Zero}, **bounds}
         names = ("the product that vanishes there", "its value")
         return Every(
             {
-                "det A or det B vanishes with these": Identity(
-                    factors, L1**2 * rho**2 * (border / 4) ** 3
-                ),
+                "det A or det B vanishes with these": Identity(factors, form),
                 **{n: Identity(place.subs(at), sp.S.Zero, names=names) for n, at in on.items()},
             }
         )
@@ -239,21 +241,14 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
         "“Thus, {all} singularities of this mechanism lie {at the border of the workspace}.”",
         lie_on,
         opposites={"all": "not all"},
-        phrases=[
-            {
-                "at the border of the workspace": border,
-                "at the border of the workspace or on the axis AB": rho * border,
-            }
-        ],
+        phrases=[{"at the border of the workspace": border, "on the axis AB": rho}],
         readings=[
             Reading(
-                "this mechanism is the optimum manipulator with its three joints, and A, the limit "
-                "of the inner sphere, counts as border"
-            )
+                "this mechanism is the linkage in its plane, whose four working modes the sentence "
+                "before counts, and A, the limit of the inner sphere, counts as border"
+            ),
+            Reading("the manipulator with its three joints", partial(lie_on, turning=True)),
         ],
-        corrected="“Thus, {all} singularities of this mechanism lie {at the border of the "
-        "workspace or on the axis AB}.”",
-        erratum=AXIS_TOO,
     )
 
 

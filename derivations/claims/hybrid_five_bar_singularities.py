@@ -105,12 +105,11 @@ def parallel(d: Derivation, bar: FiveBar) -> None:
     )
 
     def singular_at(formula: Relation) -> Check:
-        apart = formula.left - formula.right
-        given = {t4: sp.solve(apart, t4)[0]}
+        at = sp.solve(formula.left - formula.right, t4)[0]
         turns = {sp.Mod(formula.right.subs(K, i), 2 * pi) for i in range(-4, 5)}
         return Every(
             {
-                "for an integer k": at_multiples(det.subs(given), "$\\det \\mathbf{A}$"),
+                "for an integer k": at_multiples(bar, det, at, "$\\det \\mathbf{A}$"),
                 "and nowhere else": Enumeration(
                     set(), lambda: {sp.S.Zero, pi} - turns, "zeros of the sine that are left out"
                 ),
@@ -218,14 +217,16 @@ def by_path_planning() -> Check:
 K = sp.Symbol("k", integer=True)
 
 
-def at_multiples(value: sp.Expr, name: str) -> Check:
-    """An expression in the sine and cosine of an angle vanishes for every integer k.
+def at_multiples(bar: FiveBar, value: sp.Expr, angle: sp.Expr, name: str) -> Check:
+    """An expression vanishes if theta4 has a value that depends on k, for every integer k.
 
-    The angle is a multiple of k, so four values of k stand for all of them.
+    The value is a multiple of k, so four values of k stand for all of them.
     """
-    several = [value.subs(K, k) for k in (1, 2, 3, 4)]
+    theta4 = bar.angles[3]
+    several = [value.subs(theta4, angle.subs(K, k)) for k in (1, 2, 3, 4)]
     names = (f"the list of {name} for k = 1, 2, 3, 4", "that of singular matrices")
-    return Identity(several, [sp.S.Zero] * 4, names=names)
+    postures = bar.postures({theta4: angle.subs(K, 1)})
+    return Identity(several, [sp.S.Zero] * 4, names=names, postures=postures)
 
 
 AXIS_TOO = "on-the-axis"
@@ -274,7 +275,8 @@ def serial(d: Derivation, bar: FiveBar) -> None:
         "\\sin(\\theta_4)$ of P from the line AB.  If P is on AB, $\\mathbf{B}$ is singular, "
         "and P cannot move at right angles to the plane of the linkage.  AB passes through "
         "the workspace: for $L_0 = 7$, $L_1 = 8$, $L_2 = 5$ the point with AP = BP = 7/2 is "
-        "inside.",
+        "inside.  So the sentence of section 3.1 that all singularities lie at the border is right "
+        "for the linkage in its plane only.",
         use="A path inside the workspace that meets AB needs an unbounded rate of $\\theta_1$ near "
         "it, unless it keeps to the plane of the linkage.  A planner that guards the boundary only "
         "does not notice.",

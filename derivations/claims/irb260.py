@@ -72,11 +72,12 @@ def errata(d: Derivation) -> None:
         "assembly",
         "Where the parallelograms may become flat is not said",
         Gravity.OMISSION,
-        why="A loop with equal opposite sides has two assemblies: the parallelogram, whose coupler "
-        "does not turn, and the antiparallelogram, whose coupler does. It can change from one to "
-        r"the other where it is flat. The virtual constraint $\theta_4 = -(\theta_2 + \theta_3)$ "
-        "and all that follows hold in the first only; the paper gives no ranges of the angles that "
-        "keep the loops from becoming flat.",
+        why="Section II says that the links of a loop constitute a parallelogram, whose coupler "
+        "does not turn no matter the angle of the input link. But where a parallelogram is flat, "
+        "it can become an antiparallelogram, which has the same sides and whose coupler turns. The "
+        r"virtual constraint $\theta_4 = -(\theta_2 + \theta_3)$ and all that follows hold for "
+        "parallelograms only; the paper gives no ranges of the angles that keep the loops from "
+        "becoming flat.",
         use="Nothing changes if stops keep the loops from becoming flat. A simulation, or a design "
         "with other ranges, has to check this itself: after a flat posture the hand may tilt.",
     )

@@ -17,8 +17,8 @@ JACOBIAN = "IV. KINEMATICS, B. Spatial Jacobian"
 VERIFICATION = "V. VERIFICATION"
 CONCLUSIONS = "CONCLUSIONS"
 ASSEMBLY = (
-    "both loops are assembled as parallelograms and stay so; each has one other assembly, the "
-    "antiparallelogram, which it can enter where it is flat"
+    "the loops, which are parallelograms, stay so where they are flat: there each can enter its "
+    "other assembly, the antiparallelogram"
 )
 FIVE = (1, 2, 3, 4, 5)
 VERTICAL = sp.Matrix([0, 0, 1])

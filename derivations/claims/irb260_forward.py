@@ -23,13 +23,11 @@ from closedform import (
     Enumeration,
     Equal,
     Every,
-    Gravity,
     Identity,
     Not,
     Notation,
     Reading,
     Relation,
-    Under,
     equal,
     exponential,
     homogeneous,
@@ -73,18 +71,6 @@ def names(arm: Palletiser) -> Notation:
 
 def forward(d: Derivation, arm: Palletiser) -> None:
     """Eqs. (1) to (13)."""
-    d.erratum(
-        "revolute-only",
-        "Eqs. (9) and (10) leave out sliding joints and axes that are not unit vectors",
-        Gravity.OMISSION,
-        why=r"Eq. (7) admits every $v$ and every $\hat{\omega}$. The $v = -\omega \times q$ that "
-        r"follows is that of a joint without pitch, and eq. (10) is the exponential only if "
-        r"$\omega$ has unit length. For a sliding joint, $\omega = 0$, eq. (10) gives the identity "
-        r"instead of the translation $v\theta$.",
-        use="This robot has revolute joints with unit axes only, so nothing changes here. For a "
-        r"slide use $e^{\hat{\xi}\theta} = \begin{bmatrix} I & v\theta \\ 0 & 1 \end{bmatrix}$; "
-        "with eq. (10) as printed the slide would not move.",
-    )
     screws(d, arm)
     axes(d, arm)
     groups(d, arm)
@@ -303,12 +289,11 @@ def coordinates(d: Derivation, arm: Palletiser) -> None:
         r"“where $v = -\omega \times q$”",
         readings=[
             Reading(
-                "of the twist of a revolute joint; the paper has just introduced zero-pitch screws",
-                check=lambda f: Under(Equal(f), "the joint is revolute: its screw has no pitch"),
+                "of the twist of a revolute joint, whose zero-pitch screw the paper has just "
+                "introduced"
             ),
             Reading("of every element of eq. (7)", means={"v": vector("v")}),
         ],
-        erratum="revolute-only",
     )
     claim(
         "eq. (8)",
@@ -370,10 +355,7 @@ def exponentials(d: Derivation, arm: Palletiser) -> None:
         readings=[
             Reading(
                 r"for a unit axis $\omega$, as the paper introduces it, and every $v$",
-                check=lambda f: Under(
-                    exponential_of(f, sp.Matrix([*v, *w])),
-                    r"$\omega$ has unit length",
-                ),
+                check=lambda f: exponential_of(f, sp.Matrix([*v, *w])),
             ),
             Reading(
                 r"for every twist of eq. (7), such as that of a slide, $\omega = 0$",
@@ -385,7 +367,6 @@ def exponentials(d: Derivation, arm: Palletiser) -> None:
                 check=lambda f: exponential_of(f, sp.Matrix([*v, 0, 0, 0])),
             ),
         ],
-        erratum="revolute-only",
     )
     p = vector("q")
     start = homogeneous(euler_angles("alpha"), vector("p"))

@@ -435,7 +435,7 @@ def point(d: Derivation, arm: Palletiser, moved: list[sp.Matrix]) -> None:
         why=r"In eq. (5) $q_5$ is a constant, the place of the origin of the end-effector at home. "
         r"In eq. (23) $q_5$ is this origin itself, which moves with the arm: "
         r"$q_5^s = g_{st}(\theta) (0, 0, 0, 1)^T$, the last column of eq. (13). The two are equal "
-        "at home only.",
+        "only while the end-effector is at its place at home.",
         use="With the point of eq. (5), eq. (23) gives the velocity of the point of the moving "
         r"body that passes the home place of the end-effector. At $\theta_1 = 90^\circ$ with a "
         "turning turret this is a velocity along $x$ instead of $y$.",

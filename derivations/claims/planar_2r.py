@@ -263,12 +263,12 @@ def results(d: Derivation, arm: Arm, known: Notation) -> None:
     in_B = [known.extended({"x": real("x"), "y": real("y")}).read(text)[0] for text in IN_B]
     d.erratum(
         "rounding",
-        "The last digits of the positions in the examples are wrong",
+        "The last digits of the position in example B are wrong",
         Gravity.STATEMENT,
-        why="The exact position is $x = 4 + 5\\sqrt{3} = [x]$, $y = 5 + 4\\sqrt{3} = [y]$.  In A, "
-        "$x$ is cut instead of rounded.  In B, both values are too small by more "
-        "than one unit of the last digit, so they differ from those of A for the same arm at the "
-        "same angles.",
+        why="The exact position is $x = 4 + 5\\sqrt{3} = [x]$, $y = 5 + 4\\sqrt{3} = [y]$.  In A "
+        "the digits after the fourth are cut off.  In B both values are too small by more than one "
+        "unit of the last digit, so they are neither cut nor rounded, and they differ from those "
+        "of A for the same arm at the same angles.",
         use="The hand is off by [off] cm at most.  Both methods give the same position: the "
         "different digits do not come from the methods.",
         numbers={
@@ -280,15 +280,30 @@ def results(d: Derivation, arm: Arm, known: Notation) -> None:
     claim(
         "Results A, x",
         f"${IN_A[0]}$",
-        lambda x: rounded_coordinate(arm, x, example),
-        corrected=r"$x = 12.6603 \text{ cm}$",
-        erratum="rounding",
+        readings=[
+            Reading(
+                "the digits after the fourth are cut off, as both values of A allow",
+                lambda x: rounded_coordinate(arm, x, example, cut=True),
+            ),
+            Reading("rounded", lambda x: rounded_coordinate(arm, x, example)),
+        ],
     )
     claim(
         "Results A, y",
         f"“Let us consider the link lengths and joint angles as follows ${LENGTHS}$ ${ANGLES}$ "
         f"from eq. (1) and (2), we get forward kinematic solution as below [...] ${IN_A[1]}$”",
-        lambda lengths, angles, y: rounded_coordinate(arm, y, given(lengths, angles)),
+        readings=[
+            Reading(
+                "the digits after the fourth are cut off",
+                lambda lengths, angles, y: rounded_coordinate(
+                    arm, y, given(lengths, angles), cut=True
+                ),
+            ),
+            Reading(
+                "rounded",
+                lambda lengths, angles, y: rounded_coordinate(arm, y, given(lengths, angles)),
+            ),
+        ],
     )
     d.erratum(
         "quadrant",

@@ -418,17 +418,24 @@ def example(d: Derivation, arm: Arm, known: Notation) -> None:
         notation=known.extended({"x": real("x"), "y": real("y")}),
     )
     values = example_of(arm)
+    rounded_or_cut = [
+        Reading("rounded", lambda printed: rounded_coordinate(arm, printed, values)),
+        Reading(
+            "the digits after the fourth are cut off",
+            lambda printed: rounded_coordinate(arm, printed, values, cut=True),
+        ),
+    ]
     claim(
         "Results B, x",
         f"“The forward kinematic result obtained from eq. (8) is ${IN_B[0]}$”",
-        lambda printed: rounded_coordinate(arm, printed, values),
+        readings=rounded_or_cut,
         corrected=r"$x = 12.6603 \text{ cm}$",
         erratum="rounding",
     )
     claim(
         "Results B, y",
         f"${IN_B[1]}$",
-        lambda printed: rounded_coordinate(arm, printed, values),
+        readings=rounded_or_cut,
         corrected=r"$y = 11.9282 \text{ cm}$",
         erratum="rounding",
     )

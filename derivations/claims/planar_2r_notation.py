@@ -66,10 +66,12 @@ def lengths_of_example(arm: Arm) -> dict[sp.Symbol, sp.Expr]:
     return given(notation(arm).read(LENGTHS))
 
 
-def rounded_coordinate(arm: Arm, printed: Relation, example: dict[sp.Symbol, sp.Expr]) -> Rounded:
+def rounded_coordinate(
+    arm: Arm, printed: Relation, example: dict[sp.Symbol, sp.Expr], *, cut: bool = False
+) -> Rounded:
     """A printed coordinate of the hand; a name to which the paper gives no value counts as 0."""
     exact = dict(zip((real("x"), real("y")), arm.position, strict=True)).get(
         printed.left, sp.S.Zero
     )
     rest = dict.fromkeys((arm.l1, arm.l2, arm.theta1, arm.theta2), 0)
-    return Rounded(printed, exact.subs(example).subs(rest), "cm")
+    return Rounded(printed, exact.subs(example).subs(rest), "cm", cut=cut)

@@ -337,7 +337,7 @@ def singularities(d: Derivation, puma: Puma) -> None:
 
 def configurations(d: Derivation, puma: Puma) -> None:
     """The number of solutions."""
-    claim = partial(d.claim, where=LEE)
+    claim = partial(d.claim, where=LEE, paraphrase=True)
     p = [real(n) for n in ("p_x", "p_y", "p_z")]
     R = rotation_parametrisation()
     position = [a - b for a, b in zip(puma.position, p, strict=True)]

@@ -49,10 +49,11 @@ _SHORT = 40
 class Identity(Check):
     """``printed`` equals ``derived`` for all values of the symbols.
 
-    ``nonnegative`` lists expressions that may be assumed to be nonnegative; ``given`` replaces
-    symbols that depend on each other.  ``small`` is a symbol that tends to zero, or several that do
-    so together: a refuted equation whose error vanishes with them is an approximation, and its
-    order is derived.  ``names`` are the texts of the two sides, for the evidence.
+    ``nonnegative`` lists expressions that may be assumed to be nonnegative.  ``small`` is a symbol
+    that tends to zero, or several that do so together: a refuted equation whose error vanishes with
+    them is an approximation, and its order is derived.  ``names`` are the texts of the two sides,
+    for the evidence.  If the symbols depend on each other, as the angles of a closed loop do,
+    ``postures`` lists points at which they agree: only such a point can refute.
     """
 
     printed: Exact
@@ -60,11 +61,12 @@ class Identity(Check):
     nonnegative: tuple[Expr, ...] = ()
     small: sp.Symbol | tuple[sp.Symbol, ...] | None = None
     names: tuple[str, str] = ("the printed form", "the derived one")
+    postures: Sequence[Point] = ()
 
     def judge(self) -> Verdict:
         sides = list(zip(entries(self.printed), entries(self.derived), strict=True))
         gap = difference(self.printed, self.derived)
-        decision = decide(gap, self.nonnegative, sides=sides)
+        decision = decide(gap, self.nonnegative, sides=sides, postures=self.postures)
         if decision.holds:
             assumed = [piece for a in decision.assumptions for piece in (", ", a, r" $\ge 0$")]
             kind = PROVED_UNDER if decision.assumptions else PROVED
@@ -135,7 +137,8 @@ class Equal(Check):
     A formula with ``\pm`` states that each posture satisfies it with one of the signs.  A formula
     with a free index states that it holds for each value of the index; one with cases has to hold
     in each of them, and they have to leave no gap.  ``on`` replaces symbols, for example by their
-    values at a posture; ``defines`` is a side that only names the others.
+    values at a posture; ``defines`` is a side that only names the others.  ``postures`` is that of
+    :class:`Identity`.
     """
 
     relation: Relation | tuple[Relation, ...]
@@ -143,12 +146,12 @@ class Equal(Check):
     small: sp.Symbol | tuple[sp.Symbol, ...] | None = None
     on: Mapping[sp.Symbol, Expr] | None = None
     defines: Any = None
+    postures: Sequence[Point] = ()
 
     def judge(self) -> Verdict:
         several = self.relation if isinstance(self.relation, tuple) else (self.relation,)
         if len(several) > 1:
-            parts = (Equal(r, self.nonnegative, self.small, self.on, self.defines) for r in several)
-            return worst(part.judge() for part in parts)
+            return worst(replace(self, relation=r).judge() for r in several)
         (relation,) = several
         if not relation.signs or set(relation.signs) != {"="}:
             raise ValueError(f"{' '.join(relation.texts)} is not an equation")
@@ -200,7 +203,7 @@ class Equal(Check):
             point = next((p for p in verdict.evidence if isinstance(p, Mapping)), {})
             sentence = ("neither sign of $\\pm$ makes ", names[0], " equal ", names[1])
             return Verdict(REFUTED, (*at(point), *sentence))
-        return Identity(first, side, self.nonnegative, self.small, names).judge()
+        return Identity(first, side, self.nonnegative, self.small, names, self.postures).judge()
 
     def _in_cases(self, left: list[Expr], right: list[Expr], names: tuple[str, str]) -> Verdict:
         """The worst verdict of the cases, each under its conditions."""

@@ -40,13 +40,14 @@ class Rounded(Check):
 
     ``relation`` is the printed formula; its last side is the decimal.  If the value is halfway
     between two decimals, both are right.  ``scale`` is the unit of the decimal in units of the
-    value, such as ``pi/180`` for degrees.
+    value, such as ``pi/180`` for degrees.  With ``cut``, the further digits are cut off instead.
     """
 
     relation: Relation
     exact: Expr
     unit: str = ""
     scale: Expr = sp.S.One
+    cut: bool = False
 
     def judge(self) -> Verdict:
         if not set(self.relation.signs) <= {"="}:  # "60 or -60" has an alternative without a sign
@@ -57,9 +58,9 @@ class Rounded(Check):
         units = scaled - constant(self.relation.right) / self.scale * 10**digits
         shown = evaluate([value], {})[0].str(digits + 6, radius=False)
         exact = f"the exact value is ${shown}$" + (f" {self.unit}" if self.unit else "")
-        if sign(sp.Abs(units) - sp.Rational(1, 2)) <= 0:
+        cut = sign(sp.Abs(units) - 1) < 0 and sign(units) in (0, sign(scaled))
+        if cut if self.cut else sign(sp.Abs(units) - sp.Rational(1, 2)) <= 0:
             return Verdict(PROVED, (exact,))
-        cut = sign(sp.Abs(units) - 1) < 0 and sign(units) == sign(scaled)
         off = fixed(nearest(100 * sp.Abs(units)), 2)
         how = "truncated, not rounded" if cut else f"off by {off} units of the last place"
         return Verdict(REFUTED, (f"{how}: {exact}",))

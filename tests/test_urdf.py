@@ -192,6 +192,12 @@ BRANCHED = UR5.replace(
 )
 
 
+def test_an_expanded_file_may_mention_macros_in_its_comments(ur5: Path) -> None:
+    mentioned = '<robot xmlns:xacro="http://w" name="ur5"><!-- <xacro:arg name="x"/> -->'
+    ur5.write_text(UR5.replace('<robot name="ur5">', mentioned), "utf-8")
+    assert len(read_urdf(ur5).joints) == 6
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

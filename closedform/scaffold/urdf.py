@@ -5,6 +5,7 @@ A URDF file is data: entities and other declarations are refused, and every numb
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
@@ -25,6 +26,9 @@ from closedform.scaffold.tree import (
     table_of,
 )
 
+COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+"""A file that was expanded may mention macros in its comments."""
+
 
 def read_urdf(path: Path, *, base: str = "", tool: str = "") -> Table:
     """The chain from the link ``base`` to the link ``tool``; by default from root to end."""
@@ -43,7 +47,7 @@ def _root(path: Path) -> ElementTree.Element:
         raise TableError(f"{path.name} is not valid XML: {error}") from error
     if root.tag != "robot":
         raise TableError(f"{path.name}: the file is not URDF, which begins with <robot>")
-    if b"xmlns:xacro" in content and b"<xacro:" in content:
+    if b"xmlns:xacro" in content and b"<xacro:" in COMMENT.sub(b"", content):
         raise TableError(f"{path.name}: expand it first: xacro {path.name} > robot.urdf")
     return root
 

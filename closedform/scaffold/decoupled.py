@@ -1,7 +1,7 @@
 """Writes the chain of an arm whose slides come first: gantries and machine tools.
 
-The joints that turn follow from the orientation alone, wherever their axes are.  What they then leave
-of the position is linear in the slides.
+The joints that turn follow from the orientation alone, wherever their axes are.  What they then
+leave of the position is linear in the slides.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class DecoupledMaker(SubproblemMaker):
         return f"{NAMES[count]}, and {turns} the tool, apart from each other"
 
     def _carried(self, turning: Sequence[Single]) -> str:
-        """Where the joints that turn carry the last axis, in the rotation ``M`` and their first pair.
+        """Where the joints that turn carry the last axis, in ``M`` and the pair of the first.
 
         The shift from the second of three axes to the third is taken along both and across them,
         because only the directions of the axes are known, not the turn of the second joint.

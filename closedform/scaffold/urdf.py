@@ -15,8 +15,10 @@ import sympy as sp
 from closedform.algebra.formulas import FormulaError, number, shown
 from closedform.scaffold.tables import Table, TableError, content_of, shown_name
 from closedform.scaffold.tree import (
+    DEFAULT,
     LARGEST,
     MOVING,
+    Choice,
     Joint,
     meant_angle,
     meant_axis,
@@ -30,11 +32,11 @@ COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
 """A file that was expanded may mention macros in its comments."""
 
 
-def read_urdf(path: Path, *, base: str = "", tool: str = "") -> Table:
-    """The chain from the link ``base`` to the link ``tool``; by default from root to end."""
+def read_urdf(path: Path, choice: Choice = DEFAULT) -> Table:
+    """The chain of the ``choice``; by default from root to end."""
     notes: list[str] = []
     joints = [_joint(element, path.name, notes) for element in _root(path).findall("joint")]
-    return table_of(joints, path.name, notes, base=base, tool=tool)
+    return table_of(joints, path.name, notes, choice)
 
 
 def _root(path: Path) -> ElementTree.Element:

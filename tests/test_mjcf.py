@@ -12,6 +12,7 @@ from closedform.cli.commands import main
 from closedform.scaffold.mjcf import read_mjcf
 from closedform.scaffold.new import new
 from closedform.scaffold.tables import TableError
+from closedform.scaffold.tree import Choice
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed")
 
@@ -74,7 +75,7 @@ def simulated(text: str, q: np.ndarray, body: str, site: str = "") -> np.ndarray
 def test_the_poses_are_those_of_the_simulator(scara: Path, tool: str, site: str) -> None:
     exact = SCARA.replace("0.3000004", "0.3")
     scara.write_text(exact, "utf-8")
-    arm = arm_of(scara, read_mjcf, tool=tool)
+    arm = arm_of(scara, read_mjcf, Choice(tool=tool))
     pose = sp.lambdify(arm.joints, arm.pose, "numpy")
     for q in np.random.default_rng(3).uniform(-1, 1, (10, 4)):
         np.testing.assert_allclose(pose(*q), simulated(exact, q, "hand", site), atol=1e-12)

@@ -13,6 +13,7 @@ from closedform.mechanics.arm import Serial, from_screws
 from closedform.model.derivation import Derivation, Paper
 from closedform.scaffold.new import new
 from closedform.scaffold.tables import Table, TableError
+from closedform.scaffold.tree import Choice
 from closedform.scaffold.urdf import read_urdf
 
 UR5 = """
@@ -93,8 +94,8 @@ def forward(text: str, q: np.ndarray) -> np.ndarray:
     return T
 
 
-def arm_of(path: Path, read: Callable[..., Table] = read_urdf, **options: str) -> Serial:
-    table = read(path, **options)
+def arm_of(path: Path, read: Callable[..., Table] = read_urdf, *choice: Choice) -> Serial:
+    table = read(path, *choice)
     d = Derivation("arm", "Arm", Paper("p", "P", ("A",)), "An arm.")
     for name, kind in table.joints.items():
         d.joint(name, kind)  # type: ignore[arg-type]
@@ -166,7 +167,7 @@ def test_what_was_not_taken_literally_is_said(ur5: Path) -> None:
 
 
 def test_base_and_tool_choose_the_chain(ur5: Path) -> None:
-    table = read_urdf(ur5, base="shoulder", tool="w1")
+    table = read_urdf(ur5, Choice("shoulder", "w1"))
     assert list(table.joints) == ["lift", "elbow", "wrist_1"]
     assert sp.Matrix(table.axes[0][2]) == sp.Matrix([0, sp.Rational("0.13585"), 0])
 
@@ -177,7 +178,30 @@ def test_the_command(ur5: Path, tmp_path: Path, capsys: pytest.CaptureFixture[st
     found = capsys.readouterr()
     assert "8 branches" in found.out and "taken for pi/2" in found.err
     assert main(["new", "b", "--from", "dh", str(ur5), "--tool", "w1"]) == 2
-    assert "--base and --tool name links of a URDF or MJCF file" in capsys.readouterr().err
+    assert "--base, --tool and --ignore are for a URDF or MJCF file" in capsys.readouterr().err
+
+
+def test_short_lengths_are_named_and_left_out_if_wanted(
+    ur5: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Axes that pass each other by little, as in files of calibrated or exported arms."""
+    drifted = UR5.replace('xyz="0 0 0.09465"', 'xyz="0.0003 0 0.09465"')
+    drifted = drifted.replace('xyz="0 0.0823 0"', 'xyz="0 0.0823 -0.0004"')
+    ur5.write_text(drifted, "utf-8")
+    command = ["new", "drifted", "--from", "urdf", str(ur5), "-o"]
+    assert main([*command, str(tmp_path)]) == 0
+    said = capsys.readouterr()
+    assert "no inverse" in said.out and "lengths such as 0.0004, of the joint flange" in said.err
+    assert "--ignore 0.0004" in said.err
+    assert main([*command, str(tmp_path / "near"), "--ignore", "0.0004"]) == 0
+    said = capsys.readouterr()
+    assert "8 branches" in said.out and "at most 0.0007 from where the file has it" in said.err
+    arm = arm_of(ur5, read_urdf, Choice(ignore=0.0004))
+    pose = sp.lambdify(arm.joints, arm.pose, "numpy")
+    for q in np.random.default_rng(1).uniform(-3, 3, (20, 6)):
+        away = pose(*q) - forward(drifted, q)
+        assert 5e-5 < np.linalg.norm(away[:3, 3]) < 0.0007 + 2e-5
+        np.testing.assert_allclose(away[:3, :3], 0, atol=2e-5)
 
 
 def edited(old: str, new: str) -> str:
@@ -190,6 +214,12 @@ BRANCHED = UR5.replace(
     '<joint name="finger" type="prismatic"><parent link="w3"/><child link="finger"/></joint>'
     '<joint name="thumb" type="prismatic"><parent link="w3"/><child link="thumb"/></joint></robot>',
 )
+
+
+def test_an_expanded_file_may_mention_macros_in_its_comments(ur5: Path) -> None:
+    mentioned = '<robot xmlns:xacro="http://w" name="ur5"><!-- <xacro:arg name="x"/> -->'
+    ur5.write_text(UR5.replace('<robot name="ur5">', mentioned), "utf-8")
+    assert len(read_urdf(ur5).joints) == 6
 
 
 @pytest.mark.parametrize(
@@ -221,6 +251,6 @@ def test_what_cannot_be_read_is_explained(text: str, message: str, ur5: Path) ->
 
 def test_links_that_are_not_there_are_named(ur5: Path) -> None:
     with pytest.raises(TableError, match="there is no link wrist for the tool; the links"):
-        read_urdf(ur5, tool="wrist")
+        read_urdf(ur5, Choice(tool="wrist"))
     with pytest.raises(TableError, match="w1 is not carried by tool0; its root is base"):
-        read_urdf(ur5, base="tool0", tool="w1")
+        read_urdf(ur5, Choice("tool0", "w1"))

@@ -135,7 +135,7 @@ def parser() -> argparse.ArgumentParser:
     derive.add_argument(
         "--timeout",
         metavar="SECONDS",
-        type=_seconds,
+        type=_amount,
         default=0.0,
         help="computing time for each derivation, after which it is printed without an inverse; "
         "default: 0, no limit",
@@ -169,6 +169,13 @@ def parser() -> argparse.ArgumentParser:
         "--tool", metavar="LINK", default="", help="last link of such a file; default: the only end"
     )
     new.add_argument(
+        "--ignore",
+        metavar="LENGTH",
+        type=_amount,
+        default=0.0,
+        help="of such a file, the longest length that is taken for 0",
+    )
+    new.add_argument(
         "--modified", action="store_true", help="the dh table is in Craig's (proximal) convention"
     )
     new.add_argument(
@@ -183,7 +190,7 @@ def parser() -> argparse.ArgumentParser:
     new.add_argument(
         "--timeout",
         metavar="SECONDS",
-        type=_seconds,
+        type=_amount,
         default=60.0,
         help="computing time, after which the script is written with what was found; 0: no limit; "
         "default: 60",
@@ -219,7 +226,7 @@ def _positive(text: str) -> int:
     return value
 
 
-def _seconds(text: str) -> float:
+def _amount(text: str) -> float:
     value = float(text)
     if not 0 <= value < math.inf:
         raise ValueError
@@ -380,10 +387,11 @@ def new_command(options: argparse.Namespace) -> None:
         raise CommandError(problem, 2)
     if options.modified and kind != "dh":
         raise CommandError("--modified needs --from dh; axes have no convention", 2)
-    if (options.base or options.tool) and kind not in ("urdf", "mjcf"):
-        raise CommandError("--base and --tool name links of a URDF or MJCF file", 2)
+    if (options.base or options.tool or options.ignore) and kind not in ("urdf", "mjcf"):
+        raise CommandError("--base, --tool and --ignore are for a URDF or MJCF file", 2)
     _require_extra()
     from closedform.scaffold.new import Search, check_name, new
+    from closedform.scaffold.tree import Choice
 
     try:
         check_name(options.name)
@@ -398,8 +406,7 @@ def new_command(options: argparse.Namespace) -> None:
                 kind,
                 path,
                 modified=options.modified,
-                base=options.base,
-                tool=options.tool,
+                choice=Choice(options.base, options.tool, options.ignore),
                 search=search,
             )
     except (ValueError, TypeError) as error:

@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 
 from closedform.scaffold.tables import Table, TableError, content_of, shown_name
 from closedform.scaffold.tree import (
+    DEFAULT,
     LARGEST,
+    Choice,
     Joint,
     meant_angle,
     meant_axis,
@@ -36,16 +38,16 @@ UNUSED = (
 """What a model has besides bodies, joints and sites."""
 
 
-def read_mjcf(path: Path, *, base: str = "", tool: str = "") -> Table:
-    """The chain from the body ``base`` to the body or site ``tool``; by default to the end."""
+def read_mjcf(path: Path, choice: Choice = DEFAULT) -> Table:
+    """The chain of the ``choice``, whose tool is a body or a site; by default to the end."""
     if b"<mujoco" not in content_of(path, LARGEST, "an MJCF file"):
         raise TableError(f"{path.name}: the file is not MJCF, which begins with <mujoco>")
     model = _model(path)
     notes: list[str] = []
     joints = [j for k in range(1, model.nbody) for j in _body(model, k, path.name, notes)]
-    if tool and tool not in {j.child for j in joints}:
+    if choice.tool and choice.tool not in {j.child for j in joints}:
         joints += [j for k in range(model.nsite) if (j := _site(model, k, path.name, notes))]
-    return table_of(joints, path.name, notes, base=base, tool=tool)
+    return table_of(joints, path.name, notes, choice)
 
 
 def _model(path: Path) -> Any:

@@ -38,6 +38,7 @@ from closedform.scaffold.tables import (
     read_dh,
     read_screws,
 )
+from closedform.scaffold.tree import DEFAULT, Choice
 from closedform.scaffold.urdf import read_urdf
 
 LINE = 100
@@ -102,14 +103,13 @@ def new(
     path: Path,
     *,
     modified: bool = False,
-    base: str = "",
-    tool: str = "",
+    choice: Choice = DEFAULT,
     search: Search | None = None,
 ) -> Script:
     """A derivation called ``name``, from a table of the given kind.
 
     ``kind`` is ``"dh"`` (with ``modified``, in Craig's convention), ``"screws"``, ``"urdf"`` or
-    ``"mjcf"`` (with the links between which the chain is read) or ``"loop"`` (bodies and joints).
+    ``"mjcf"`` (of which the ``choice`` takes a chain) or ``"loop"`` (bodies and joints).
     Raises ``ValueError`` if the name or the table cannot be used; it says where and how to correct
     it.
     """
@@ -122,7 +122,7 @@ def new(
     if kind == "dh":
         table = read_dh(path, modified=modified)
     elif kind in ("urdf", "mjcf"):
-        table = (read_urdf if kind == "urdf" else read_mjcf)(path, base=base, tool=tool)
+        table = (read_urdf if kind == "urdf" else read_mjcf)(path, choice)
     else:
         table = read_screws(path)
     check_names(table, path.name)
@@ -169,6 +169,7 @@ def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
     except LimitError:
         reason = f"the limit of {search.timeout:g} s was reached while {search.doing}"
         inverse = _without_inverse(reason, LONGER, "ik = Chain(d, forward)")
+    advice = f"{inverse.advice}  {table.doubt}".strip() if inverse.advice else ""
     title = name.replace("_", " ").capitalize()
     lines = [
         f'"""{title}: a derivation from {origin}."""',
@@ -209,7 +210,7 @@ def skeleton(name: str, table: Table, origin: str, search: Search) -> Script:
         inverse.outcome,
         tuple(table.notes),
         tuple(inverse.explained),
-        inverse.advice,
+        advice,
         inverse.structure,
         inverse.lemmas,
     )

@@ -18,6 +18,7 @@ from closedform.mechanics.frames import rotation
 from closedform.scaffold.arm_angle import NAME as ARM_ANGLE
 from closedform.scaffold.arm_angle import ArmAngleMaker
 from closedform.scaffold.chainlinks import Single, Singles, singles
+from closedform.scaffold.decoupled import DecoupledMaker
 from closedform.scaffold.known import KnownMaker
 from closedform.scaffold.maker import Maker
 from closedform.scaffold.proposal import NoChainError, Proposal, Tried
@@ -118,6 +119,10 @@ def _candidates(arm: Serial, given: str) -> Iterator[tuple[str, Maker, Callable[
             maker = SubproblemMaker(arm)
             met = _met(whole, ((3, 2),))
             yield "three parallel joints", maker, partial(maker.solved_in_plane, met)
+    if slides and task is None:
+        for seen, view in (("", whole), (", from the tool", whole.reversed())):
+            apart = DecoupledMaker(arm)
+            yield f"slides apart from turns{seen}", apart, partial(apart.decoupled, view)
 
 
 def _met(whole: Singles, pairs: Sequence[tuple[int, int]]) -> Singles:

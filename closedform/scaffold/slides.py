@@ -80,7 +80,7 @@ class Slides:
 
     def _ppp(self, one: Single, two: Single, three: Single) -> Solved:
         G = _simple(one.end * two.end)
-        self._linear("p", one.shift + one.end * two.shift + G * three.shift, (
+        self.linear("p", one.shift + one.end * two.shift + G * three.shift, (
             (one, Z), (two, one.end * Z), (three, G * Z),
         ))  # fmt: skip
         return Solved("gantry", [("", j.end) for j in self.joints])
@@ -92,7 +92,7 @@ class Slides:
         self._require_turning(n, one, "its two slides are normal to its first axis")
         pair = self._turn(one, n, "p", n.dot(c))
         self._vector("q", f"turned({pair}).T * p")
-        self._linear("q", c, ((two, a), (three, b)))
+        self.linear("q", c, ((two, a), (three, b)))
         return Solved("a turret and two slides", [(pair, one.end), ("", two.end), ("", three.end)])
 
     def _ppr(self, one: Single, two: Single, three: Single) -> Solved:
@@ -104,7 +104,7 @@ class Slides:
         pair = self._turned_by(three, three.shift, g, value)
         carried = times(G, f"(turned({pair}) * {source(three.shift)})")
         self._vector("q", f"p - {carried}")
-        self._linear("q", c, ((one, a), (two, b)))
+        self.linear("q", c, ((one, a), (two, b)))
         return Solved("two slides and a turn", [("", one.end), ("", two.end), (pair, three.end)])
 
     def _prp(self, one: Single, two: Single, three: Single) -> Solved:
@@ -246,7 +246,7 @@ class Slides:
         arguments = f"{joint.joint}, {source(e)}, {r}, {h}, {REACH}"
         self.maker.solve("root", arguments, f"{joint.joint}_", 2)
 
-    def _linear(self, q: str, c: sp.Matrix, slides: Sequence[tuple[Single, sp.Matrix]]) -> None:
+    def linear(self, q: str, c: sp.Matrix, slides: Sequence[tuple[Single, sp.Matrix]]) -> None:
         """Solve slides along given directions for what the point ``q`` leaves after ``c``."""
         A = sp.Matrix.hstack(*(direction for _, direction in slides))
         square = _simple(A.T * A)

@@ -80,6 +80,8 @@ class Table:
     """Joints that several motors drive: each as a sum of motors with integer coefficients."""
     notes: list[str] = field(default_factory=list)
     """Entries that were not taken literally, in words for the author of the table."""
+    doubt: str = ""
+    """A sentence on entries that may not be meant, for an arm without an inverse."""
 
 
 def check_names(table: Table, where: str) -> None:

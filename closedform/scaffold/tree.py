@@ -7,9 +7,10 @@ the notes say so.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -34,6 +35,8 @@ ALONG = 2e-5
 """A direction this close to an axis of coordinates, in radians, stands for it."""
 NEAR = sp.Rational(1, 2000)
 """An angle this close to a multiple of pi/12 stands for it."""
+SHORT = 1 / 200
+"""Of the longest length of a chain: a shorter one is named if no inverse is found."""
 MOVING = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic"}
 
 
@@ -51,17 +54,29 @@ class Joint:
     mimics: str = ""
 
 
-def table_of(
-    joints: Sequence[Joint], file: str, notes: Sequence[str], *, base: str = "", tool: str = ""
-) -> Table:
-    """The chain from the link ``base`` to the link ``tool``, as axes at home.
+@dataclass(frozen=True)
+class Choice:
+    """The links between which the chain is read; ``ignore`` is a length that counts as 0.
 
-    By default this is the chain from the root to the only end that has joints before it.
+    By default the chain leads from the root to the only end that has joints before it.
     """
+
+    base: str = ""
+    tool: str = ""
+    ignore: float = 0.0
+
+
+DEFAULT = Choice()
+
+
+def table_of(joints: Sequence[Joint], file: str, notes: Sequence[str], choice: Choice) -> Table:
+    """The chain of a file, as axes at home."""
     if not joints:
         raise TableError(f"{file}: there are no joints")
-    chain = _chain(joints, base, tool, file)
+    chain = _chain(joints, choice.base, choice.tool, file)
     table = Table(notes=[*notes])
+    chain = _without_short(chain, choice.ignore, file, table.notes)
+    table.doubt = _doubt(chain)
     place = sp.eye(4)
     for joint in chain:
         where = f"{file}, joint {shown_name(joint.name)}"
@@ -90,6 +105,51 @@ def table_of(
     )
     use_exact(table, file)
     return table
+
+
+def _without_short(
+    chain: Sequence[Joint], ignore: float, file: str, notes: list[str]
+) -> list[Joint]:
+    """The chain with lengths of at most ``ignore`` as 0; the notes say how far that is from it."""
+    kept, away = [], 0.0
+    for joint in chain:
+        place = joint.origin.copy()
+        short = [i for i in range(3) if 0 < abs(float(place[i, 3])) <= ignore]
+        if short:
+            lengths = [float(place[i, 3]) for i in short]
+            away += math.hypot(*lengths)
+            notes.append(
+                f"{file}, joint {shown_name(joint.name)}: {', '.join(f'{e:.6g}' for e in lengths)} "
+                f"is taken for 0, because of --ignore"
+            )
+            for i in short:
+                place[i, 3] = sp.S.Zero
+        kept.append(replace(joint, origin=place))
+    if away:
+        notes.append(
+            f"{file}: without these lengths the tool is at most {_rounded_up(away)} from where the "
+            f"file has it, and turned as there"
+        )
+    return kept
+
+
+def _rounded_up(length: float) -> str:
+    step = 10.0 ** (math.floor(math.log10(length)) - 1)
+    return f"{math.ceil(length / step) * step:.2g}"
+
+
+def _doubt(chain: Sequence[Joint]) -> str:
+    """What to try if no inverse is found: a sentence on lengths that may not be meant, or none."""
+    sizes = [(abs(float(e)), joint.name) for joint in chain for e in joint.origin[:3, 3] if e != 0]
+    longest = max(sizes, default=(0.0, ""))[0]
+    short = [found for found in sizes if found[0] < SHORT * longest]
+    if not short:
+        return ""
+    length, name = max(short)
+    return (
+        f"The file has lengths such as {length:.6g}, of the joint {shown_name(name)}; if they are "
+        f"not meant, leave them out with --ignore {_rounded_up(length)}."
+    )
 
 
 def placed(xyz: Sequence[sp.Expr], rpy: Sequence[sp.Expr]) -> sp.Matrix:

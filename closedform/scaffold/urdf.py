@@ -5,6 +5,7 @@ A URDF file is data: entities and other declarations are refused, and every numb
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
@@ -14,8 +15,10 @@ import sympy as sp
 from closedform.algebra.formulas import FormulaError, number, shown
 from closedform.scaffold.tables import Table, TableError, content_of, shown_name
 from closedform.scaffold.tree import (
+    DEFAULT,
     LARGEST,
     MOVING,
+    Choice,
     Joint,
     meant_angle,
     meant_axis,
@@ -25,12 +28,15 @@ from closedform.scaffold.tree import (
     table_of,
 )
 
+COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+"""A file that was expanded may mention macros in its comments."""
 
-def read_urdf(path: Path, *, base: str = "", tool: str = "") -> Table:
-    """The chain from the link ``base`` to the link ``tool``; by default from root to end."""
+
+def read_urdf(path: Path, choice: Choice = DEFAULT) -> Table:
+    """The chain of the ``choice``; by default from root to end."""
     notes: list[str] = []
     joints = [_joint(element, path.name, notes) for element in _root(path).findall("joint")]
-    return table_of(joints, path.name, notes, base=base, tool=tool)
+    return table_of(joints, path.name, notes, choice)
 
 
 def _root(path: Path) -> ElementTree.Element:
@@ -43,7 +49,7 @@ def _root(path: Path) -> ElementTree.Element:
         raise TableError(f"{path.name} is not valid XML: {error}") from error
     if root.tag != "robot":
         raise TableError(f"{path.name}: the file is not URDF, which begins with <robot>")
-    if b"xmlns:xacro" in content and b"<xacro:" in content:
+    if b"xmlns:xacro" in content and b"<xacro:" in COMMENT.sub(b"", content):
         raise TableError(f"{path.name}: expand it first: xacro {path.name} > robot.urdf")
     return root
 

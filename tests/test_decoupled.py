@@ -1,0 +1,77 @@
+"""Arms whose slides come before or after the joints that turn: gantries and machine tools."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sympy as sp
+from arms import OK, SINGULAR, UNREACHABLE, link, misses
+from chains import arm, printed, solved
+from sympy import pi
+
+from closedform.proof.prove import prove
+from closedform.scaffold.propose import NoChainError, propose
+
+H = sp.Rational(1, 2)
+GANTRY = [(0, pi / 2, None, pi / 2), (0, pi / 2, None, pi / 2), (0, 0, None, 0)]
+APART = {
+    "offset wrist": ([*GANTRY, (H, -pi / 2, 1), (1, pi / 2, H), (0, 0, 1)], "d1 d2 d3 t4 t5 t6"),
+    "oblique wrist": ([*GANTRY, (H, pi / 3, 1), (1, pi / 3, H), (0, 0, 1)], "d1 d2 d3 t4 t5 t6"),
+    "five axes": ([*GANTRY, (H, -pi / 2, 1), (1, 0, H)], "d1 d2 d3 t4 t5"),
+    "slides at the tool": (
+        [(H, -pi / 2, 1), (1, pi / 2, H), (0, 0, 1), *GANTRY], "t1 t2 t3 d4 d5 d6",
+    ),
+}  # fmt: skip
+
+
+def forward(rows: list, q: np.ndarray) -> np.ndarray:
+    """The product of the motions of a table, in plain numbers."""
+    T = np.eye(4)
+    for k, (a, alpha, d, *theta) in enumerate(rows):
+        motion = link(float(a), float(alpha), 0.0, theta[0] * np.ones(len(q)) if theta else q[:, k])
+        motion[..., 2, 3] = q[:, k] if theta else float(d)
+        T = T @ motion
+    return T
+
+
+@pytest.mark.parametrize("name", APART)
+def test_the_joints_that_turn_come_from_the_rotation_alone(name: str, tmp_path: Path) -> None:
+    rows, joints = APART[name]
+    d, serial = arm(rows, joints)
+    found = propose(serial)
+    assert found.structure.endswith("the tool, apart from each other")
+    solved(d, serial, found.source)
+    assert prove(d).inverses[0].branches == found.branches
+    serial.export(d)
+    robot = printed(d, tmp_path)
+    q = np.random.default_rng(3).uniform(-3, 3, (400, len(rows)))
+    q[:100, -2:] = np.round(q[:100, -2:])
+    q[100:200, len(rows) - 2] = q[200:300, 1] = 0
+    T = forward([[float(e) if e is not None else e for e in row] for row in rows], q)
+    answers, status = robot.ik(T)
+    assert np.isin(status, (OK, SINGULAR)).any(axis=1).all()
+    away, turned = misses(robot.pose(answers), T, status)
+    assert max(away, turned) < 1e-12 * 40
+    turns = [j.startswith("t") for j in joints.split()]
+    off = np.where(turns, np.angle(np.exp(1j * (answers - q[:, None]))), answers - q[:, None])
+    near = np.nanmin(np.abs(off).max(axis=-1), axis=1)
+    assert (near[300:] < 1e-8).all()
+    if len(rows) < 6:
+        turned = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0], [0.48, 0.64, 0.6]])
+        T[:, :3, :3] = T[:, :3, :3] @ turned
+        assert np.isin(robot.ik(T).status[300:], UNREACHABLE).all()
+
+
+def test_two_slides_do_not_reach_what_a_singular_wrist_leaves() -> None:
+    rows = [GANTRY[0], GANTRY[2], (H, -pi / 2, 1), (1, pi / 2, H), (0, 0, 1)]
+    with pytest.raises(NoChainError) as caught:
+        propose(arm(rows, "d1 d2 t3 t4 t5")[1])
+    (error,) = [t.error for t in caught.value.tried if t.name == "slides apart from turns"]
+    assert error.found == "it has fewer than three slides and three joints that turn"
+
+
+def test_why_slides_among_joints_that_turn_are_refused() -> None:
+    rows = [(H, -pi / 2, 1), *GANTRY[:2], (1, pi / 3, H), (H, pi / 3, 1), (H, 0, 1)]
+    with pytest.raises(NoChainError) as caught:
+        propose(arm(rows, "t1 d2 d3 t4 t5 t6")[1])
+    assert "slides apart from turns" in [t.name for t in caught.value.tried]

@@ -90,6 +90,7 @@ from closedform.model.claims import Gravity as Gravity
 from closedform.model.claims import Reading as Reading
 from closedform.model.derivation import Derivation as Derivation
 from closedform.model.derivation import Solved as Solved
+from closedform.model.derivation import Step as Step
 from closedform.model.derivation import Table as Table
 from closedform.model.functions import SINGLE as SINGLE
 from closedform.model.functions import Bound as Bound

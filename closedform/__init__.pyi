@@ -18,6 +18,7 @@ from closedform.lemmas.arm_plane import arm_plane as arm_plane
 from closedform.lemmas.chain import Chain as Chain
 from closedform.lemmas.circles import circle_intersection as circle_intersection
 from closedform.lemmas.coupled import coupled as coupled
+from closedform.lemmas.drives import parallelogram_drive as parallelogram_drive
 from closedform.lemmas.law_of_cosines import law_of_cosines as law_of_cosines
 from closedform.lemmas.legs import Crank as Crank
 from closedform.lemmas.legs import Slide as Slide
@@ -33,6 +34,7 @@ from closedform.lemmas.links import turned as turned
 from closedform.lemmas.links import two_links as two_links
 from closedform.lemmas.links import zyz as zyz
 from closedform.lemmas.loop import parallel as parallel
+from closedform.lemmas.parallelogram import Parallelogram as Parallelogram
 from closedform.lemmas.parallelogram import parallelogram as parallelogram
 from closedform.lemmas.platform import platform as platform
 from closedform.lemmas.quartic import OnCircle as OnCircle
@@ -90,6 +92,7 @@ from closedform.model.claims import Gravity as Gravity
 from closedform.model.claims import Reading as Reading
 from closedform.model.derivation import Derivation as Derivation
 from closedform.model.derivation import Solved as Solved
+from closedform.model.derivation import Step as Step
 from closedform.model.derivation import Table as Table
 from closedform.model.functions import SINGLE as SINGLE
 from closedform.model.functions import Bound as Bound

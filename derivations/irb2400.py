@@ -9,8 +9,7 @@ from closedform import (
     Chain,
     Derivation,
     from_dh,
-    parallelogram,
-    real,
+    parallelogram_drive,
     rotation,
     turn,
     turned,
@@ -92,45 +91,7 @@ d.step(
 
 # The parallelogram and the motors
 
-m = m1, m2, m3, m4, m5, m6 = [real(f"m{i}") for i in range(1, 7)]
-crank, direction, phi, beta = real("r", positive=True), real("gamma"), real("phi"), real("beta")
-sigma = real("sigma")
-loop = parallelogram((a2, crank), (theta2, direction + m3), (phi, beta), sigma)
-M = sp.Matrix([m1, m2, loop[phi].subs(sigma, 1) + m3 - m2, m4, m5, m6]).jacobian(m)
-d.step(
-    "The parallelogram and the motors",
-    "Motor 3 turns a crank of length r on the turret.  A rod as long as the upper arm leads from "
-    "it to the forearm, r from the elbow.  In the parallelogram the forearm does not turn against "
-    "the crank, phi = 0, so motor 3 gives theta2 + theta3, the turn of the forearm against the "
-    "turret.  The crossed assembly is left out: the two meet only where crank and upper arm are "
-    "in line, which the stops of the machine do not let them reach.  The wrist has motors of its "
-    "own.",
-    {
-        "0": sp.Matrix(loop.equations),
-        r"\theta_2 + \theta_3 - m_3": loop[phi].subs(sigma, 1),
-        r"M = \partial(\theta_1, \ldots, \theta_6) / \partial m": M,
-    },
-    proves="Both assemblies close the loop, and M takes the motors to the joints.",
-    equal=[
-        *(
-            (sp.Matrix(loop.equations).subs(loop.solution).subs(sigma, sign), sp.zeros(2, 1))
-            for sign in (1, -1)
-        ),
-        (M * sp.Matrix(m), sp.Matrix([m1, m2, m3 - m2, m4, m5, m6])),
-    ],
-)
-d.function(
-    "joints_from_motors",
-    "Joint angles of motor angles.",
-    {"motors": sp.Matrix(m)},
-    {"q": M * sp.Matrix(m)},
-)
-d.function(
-    "motors_from_joints",
-    "Motor angles of joint angles.",
-    {"q": sp.Matrix(q)},
-    {"motors": M.inv() * sp.Matrix(q)},
-)
+parallelogram_drive(d, {theta3: (theta2, a2)})
 
 # Inverse kinematics
 

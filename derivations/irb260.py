@@ -18,6 +18,7 @@ from closedform import (
     exponential,
     homogeneous,
     inverse,
+    parallelogram_drive,
     real,
     revolute_twist,
     simplest,
@@ -83,13 +84,12 @@ d.step(
     ],
 )
 
-for i, loop in ((1, "lower"), (2, "upper"), (3, "driving")):
+for i, loop in ((1, "lower"), (2, "upper")):
     d.write(f"a{i}", meaning=f"distance of the joints on the coupler of the {loop} loop")
     d.write(f"gamma{i}", meaning=f"direction of the fixed link of the {loop} loop")
     d.write(f"phi{i}", meaning=f"turn of the coupler of the {loop} loop")
     d.write(f"beta{i}", meaning=f"angle of the rod of the {loop} loop")
 for i in (1, 2, 3, 5):
-    d.write(f"m{i}", meaning=f"angle of motor {i}")
     d.write(f"theta{i}_dot", meaning=f"rate of joint {i}")
 d.write("lambda", meaning="polar angle of an axis")
 d.write("mu", meaning="azimuth of an axis")
@@ -119,9 +119,7 @@ d.step(
 
 # The mechanism behind the virtual joint, and its motors
 
-lower, upper, M = double_parallelogram(d, l3, l4, theta2, theta3)
-motors = sp.Matrix([real(f"m{i}") for i in (1, 2, 3, 5)])
-turns = ("The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].",)
+lower, upper = double_parallelogram(d, l3, l4, theta2, theta3)
 d.function(
     "joint4",
     "Angle theta4 of the virtual joint, which keeps the wrist bracket level.",
@@ -129,20 +127,8 @@ d.function(
     {"theta4": atan2(-sin(theta2 + theta3), cos(theta2 + theta3))},
     source="the virtual constraint, section III",
 )
-d.function(
-    "joints_from_motors",
-    "Joint angles from motor angles: theta3 = m3 - m2.",
-    {"motors": motors},
-    {"q": M * motors},
-    notes=turns,
-)
-d.function(
-    "motors_from_joints",
-    "Motor angles from joint angles: m3 = theta2 + theta3.",
-    {"q": q},
-    {"motors": M.inv() * sp.Matrix(q)},
-    notes=turns,
-)
+# Motor 3 drives the upper arm through a third parallelogram, which the paper does not mention.
+M = parallelogram_drive(d, {theta3: (theta2, l3)})
 
 # Forward kinematics
 

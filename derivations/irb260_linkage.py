@@ -1,4 +1,4 @@
-"""The double parallelogram of the IRB 260, the source of its virtual joint, and the motors."""
+"""The double parallelogram of the IRB 260, the source of its virtual joint."""
 
 import sympy as sp
 from sympy import cos, pi, sin
@@ -8,21 +8,19 @@ from closedform import Derivation, Lemma, parallelogram, real
 
 def double_parallelogram(
     d: Derivation, l3: sp.Symbol, l4: sp.Symbol, theta2: sp.Symbol, theta3: sp.Symbol
-) -> tuple[Lemma, Lemma, sp.Matrix]:
-    """Derive theta4; return the lower and the upper loop and the map from motors to joints."""
+) -> tuple[Lemma, Lemma]:
+    """Derive theta4; return the lower and the upper loop."""
     sigma = real("sigma")
-    m1, m2, m3, m5 = motors = [real(f"m{i}") for i in (1, 2, 3, 5)]
-    a1, a2, a3 = (real(f"a{i}", positive=True) for i in (1, 2, 3))
-    gamma1, gamma2, gamma3 = (real(f"gamma{i}") for i in (1, 2, 3))
-    phi1, phi2, phi3 = (real(f"phi{i}") for i in (1, 2, 3))
-    beta1, beta2, beta3 = (real(f"beta{i}") for i in (1, 2, 3))
+    a1, a2 = (real(f"a{i}", positive=True) for i in (1, 2))
+    gamma1, gamma2, phi1, phi2, beta1, beta2 = (
+        real(f"{name}{i}") for name in ("gamma", "phi", "beta") for i in (1, 2)
+    )
     forearm = theta2 + theta3 + pi / 2
     lower = parallelogram((l3, a1), (theta2, gamma1), (phi1, beta1), sigma)
     upper = parallelogram((l4, a2), (forearm - phi1, gamma2), (phi2, beta2), sigma)
-    drive = parallelogram((l3, a3), (theta2, gamma3 + m3), (phi3, beta3), sigma)
     closed = [
         sp.Matrix(loop.equations).subs(loop.solution).subs(sigma, sign)
-        for loop in (lower, upper, drive)
+        for loop in (lower, upper)
         for sign in (1, -1)
     ]
     crossed = lower[phi1].subs(sigma, -1)
@@ -81,25 +79,7 @@ def double_parallelogram(
             (1 - cos(crossed), meet),
         ],
     )
-    upper_arm = drive[phi3].subs(sigma, 1) + m3  # theta2 + theta3, by the third parallelogram
-    M = sp.Matrix([m1, m2, upper_arm - m2, m5]).jacobian(motors)
-    d.step(
-        "Motors",
-        "Motor 3 is on the turret, like motor 2.  Its crank of length a3 drives the upper arm "
-        "through a rod as long as the lower arm.  They form a third parallelogram, whose fixed "
-        "link is the crank.  The upper arm does not turn against the crank, phi3 = 0, so the angle "
-        "of the motor is theta2 + theta3.  The paper does not mention this; its theta3 is the "
-        "angle against the lower arm.",
-        {
-            "0": sp.Matrix(drive.equations),
-            r"\theta_2 + \theta_3 - m_3 = \phi_3": upper_arm - m3,
-            r"M = \partial(\theta_1, \theta_2, \theta_3, \theta_5) / \partial m": M,
-            r"M^{-1}": M.inv(),
-        },
-        proves="M takes the motors to the joints.",
-        equal=[(M * sp.Matrix(motors), sp.Matrix([m1, m2, m3 - m2, m5]))],
-    )
-    return lower, upper, M
+    return lower, upper
 
 
 def assemblies_meet(link: sp.Expr, coupler: sp.Expr, bend: sp.Expr) -> sp.Expr:

@@ -3,7 +3,7 @@
 from closedform.derivations.papers.textbook_loops import TEXTBOOK_LOOPS
 from sympy import Rational, sqrt
 
-from closedform import Derivation, Slide, parallel, real
+from closedform import Derivation, Parallelogram, Slide, parallel, real
 
 d = Derivation(
     "linear_delta",
@@ -28,5 +28,6 @@ legs = []
 for k, (x, y) in enumerate([(1, 0), (-half, sqrt(3) / 2), (-half, -sqrt(3) / 2)], 1):
     start, corner = ([size * x, size * y, 0] for size in (f, e))
     slider = d.joint(f"rho{k}", "prismatic")
-    legs.append(Slide(slider, l, start, (0, 0, 1), on_hand=corner))
+    rod = Parallelogram(l, bar=(-y, x, 0), width=e)
+    legs.append(Slide(slider, rod, start, (0, 0, 1), on_hand=corner))
 parallel(d, (real("x"), real("y"), real("z")), legs, {-1: "below", +1: "above"})

@@ -2,7 +2,7 @@
 
 from closedform.derivations.papers.textbook_loops import TEXTBOOK_LOOPS
 
-from closedform import Derivation, Slide, parallel, real
+from closedform import Derivation, Parallelogram, Slide, parallel, real
 
 d = Derivation(
     "orthoglide",
@@ -16,6 +16,7 @@ d = Derivation(
 L = d.parameter("L", value=1, unit="m", meaning="length of the legs", source="the unit of length")
 axes = [(1, 0, 0), (0, 1, 0), (0, 0, 1)]
 legs = [
-    Slide(d.joint(f"rho{k}", "prismatic"), L, (0, 0, 0), axis) for k, axis in enumerate(axes, 1)
+    Slide(d.joint(f"rho{k}", "prismatic"), Parallelogram(L, axes[k % 3], L / 8), (0, 0, 0), axis)
+    for k, axis in enumerate(axes, 1)
 ]
 parallel(d, (real("x"), real("y"), real("z")), legs, {+1: "outer", -1: "inner"})

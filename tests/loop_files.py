@@ -1,9 +1,11 @@
 """Mechanisms that tests derive from a file of bodies and joints, or from a script."""
 
 import importlib
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
 
 from closedform import Derivation
@@ -35,3 +37,16 @@ def derived(name: str, script: str, folder: Path) -> ModuleType:
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(folder)
         return importlib.import_module(f"{name}_out.numpy.{name}")
+
+
+def newton(f: Callable[[np.ndarray], np.ndarray], x: np.ndarray) -> np.ndarray | None:
+    """A zero of ``f`` that is found from a start, if any is."""
+    for _ in range(60):
+        here = f(x)
+        if np.abs(here).max() < 1e-13:
+            return x
+        steps = 1e-7 * np.eye(len(x))
+        rates = np.array([(f(x + s) - f(x - s)) / 2e-7 for s in steps]).T
+        step = np.linalg.lstsq(rates, here)[0]
+        x = x - step / max(1.0, np.abs(step).max())
+    return None

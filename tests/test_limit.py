@@ -95,8 +95,10 @@ def test_it_explains(tmp_path: Path) -> None:
 
 def test_coupled_joints_get_functions_between_motors_and_joints(tmp_path: Path) -> None:
     text = written(tmp_path, COUPLED).text
+    assert 'parallelogram_drive(d, {theta3: (theta2, 2)}, ["m_theta1", "m2", "m3"])' in text
+    text = written(tmp_path, COUPLED.replace("m3 - m2", "m2 + m3")).text
     assert 'motors = Matrix([real("m_theta1"), real("m2"), real("m3")])' in text
-    assert "coupling = Matrix([[1, 0, 0], [0, 1, 0], [0, -1, 1]])" in text
+    assert "coupling = Matrix([[1, 0, 0], [0, 1, 0], [0, 1, 1]])" in text
     assert '"joints_from_motors"' in text and '"motors_from_joints"' in text
 
 

@@ -1,12 +1,13 @@
 """PPR legs: a slider with a rail, along which the hand slides, beside each other kind of leg."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 from loop_files import derived, read_script, script_of
-from sympy import Rational
+from sympy import Rational, Symbol
 
 from closedform import (
     Crank,
@@ -23,6 +24,7 @@ from closedform import (
 )
 from closedform.algebra.shapes import ShapeError
 from closedform.check.crosscheck import crosscheck, module_backend
+from closedform.scaffold.loop_script import DEGREES
 from closedform.scaffold.tables import TableError
 
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
@@ -185,6 +187,7 @@ def test_the_crosscheck_of_a_file(tmp_path: Path) -> None:
         (', axis = [0, 1]}', "}", "s1 slides; say in which direction"),
         ('["carriage", "post"]', '["carriage", "slider"]', "s1 does not lead to the hand P"),
         ("axis = [0, 1]}", "axis = [0, 1], driven = true}", "passive slide"),
+        ('"carriage"], at = "O", kind = "prismatic"', '"carriage"], at = "O"', "on a driven crank"),
     ],
 )  # fmt: skip
 def test_a_file_that_does_not_fit_says_why(
@@ -192,6 +195,31 @@ def test_a_file_that_does_not_fit_says_why(
 ) -> None:
     with pytest.raises(TableError, match=message):
         script_of("gantry", GANTRY.replace(old, other), tmp_path)
+
+
+SLANTED = (Rational(3, 5), Rational(4, 5))
+
+
+def three_rails(joints: Sequence[Symbol]) -> list[Rail]:
+    ways = [((0, 1), (1, 0), (1, 2)), ((1, 0), (0, 1), (2, 0)), (SLANTED, (1, 0), (0, 3))]
+    return [
+        Rail(q, real("s"), (0, 0), other, way, on_hand=place)
+        for q, (way, other, place) in zip(joints, ways, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("rails", [1, 2, 3])
+def test_the_degree_of_a_hand_that_turns_on_rails(rails: int) -> None:
+    """The number that the message of a file gives is counted."""
+    d = Derivation("toy", "Toy", Paper("toy", "Toys", ("A. Nonymous",)), "Legs.")
+    joints = [d.joint(f"q{k}", "prismatic") for k in range(3)]
+    rods = [
+        Slide(joints[0], 3, (0, 0), (1, 0), on_hand=(1, 2)),
+        Slide(joints[1], 4, (5, 1), (0, 1), on_hand=(2, 0)),
+    ]
+    legs = [*rods[: 3 - rails], *three_rails(joints)[3 - rails :]]
+    with pytest.raises(ShapeError, match=f"of degree {DEGREES[rails]}, and no formula"):
+        platform(d, legs)
 
 
 def test_rails_that_cannot_be_say_why() -> None:
@@ -204,9 +232,8 @@ def test_rails_that_cannot_be_say_why() -> None:
         Rail(q, s, (0, 0, 0), (1, 0, 0), (0, 1, 0))
     d = Derivation("toy", "Toy", Paper("toy", "Toys", ("A. Nonymous",)), "Legs.")
     joints = [d.joint(f"q{k}", "prismatic") for k in range(3)]
-    with pytest.raises(ShapeError, match="a rail cannot carry a hand that turns"):
-        platform(d, [Rail(q, s, (0, 0), (1, 0), (0, 1), on_hand=(k, 1)) for k, q in
-                     enumerate(joints)])  # fmt: skip
+    with pytest.raises(ShapeError, match=r"a rail .* the forward problem is of degree 2,"):
+        platform(d, three_rails(joints))
     d = Derivation("toy", "Toy", Paper("toy", "Toys", ("A. Nonymous",)), "Legs.")
     d.task = ["x", "y"]
     pair = [d.joint(f"q{k}", "prismatic") for k in (1, 2)]

@@ -6,14 +6,17 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from loop_files import derived, read_script
+import sympy as sp
+from loop_files import derived, read_script, script_of
 
 from closedform import plot
 from closedform.algebra.shapes import ShapeError
 from closedform.cli.commands import main
 from closedform.robots import Robot
+from closedform.scaffold.tables import TableError
 
 GUIDE = (Path(__file__).parents[1] / "docs" / "adding-a-mechanism.md").read_text("utf-8")
+[FROM_FILE] = re.findall(r"```toml head.toml\n(.*?)```", GUIDE, re.DOTALL)
 [SPRINT] = re.findall(r"```python sprint.py\n(.*?)```", GUIDE, re.DOTALL)
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 UNEVEN = """
@@ -258,3 +261,61 @@ def test_refusals(old: str, new: str, said: str) -> None:
     assert old in UNEVEN
     with pytest.raises(ShapeError, match=said):
         read_script(UNEVEN.replace(old, new))
+
+
+UNEVEN_FILE = """
+hand = "P"
+[bodies]
+ground = {A = ["b", 0, 0], B = [0, "b", 0], C = ["-3/5*b", "-4/5*b", 0]}
+arm = {E = ["b + l", 0, 0]}
+rod1 = {length = "r"}
+slider = {E = [0, "b", 0]}
+rod2 = {length = "r"}
+tube = {}
+piston = {}
+hand = {P = [0, 0, 0], C1 = ["a", 0, 0], C2 = [0, "a", 0], C3 = ["-c", "-c", 0]}
+[joints]
+theta1 = {between = ["ground", "arm"], at = "A", axis = [0, -1, 0], driven = true}
+rho2.between = ["ground", "slider"]
+rho2.at = "B"
+rho2.kind = "prismatic"
+rho2.axis = [0, 3, 4]
+rho2.driven = true
+q3 = {between = ["tube", "piston"], at = "C", kind = "prismatic", driven = true}
+h1 = {between = ["arm", "rod1"], at = "E", axis = [0, 1, 0]}
+h2 = {between = ["slider", "rod2"], at = "E", axis = [1, 0, 0]}
+h3 = {between = ["ground", "tube"], at = "C", axis = [4, -3, 0]}
+c1 = {between = ["rod1", "hand"], at = "C1", kind = "spherical"}
+c2 = {between = ["rod2", "hand"], at = "C2", kind = "spherical"}
+c3 = {between = ["piston", "hand"], at = "C3", kind = "spherical"}
+"""
+
+
+@pytest.mark.parametrize(("text", "original"), [(FROM_FILE, SPRINT), (UNEVEN_FILE, UNEVEN)])
+def test_a_tripod_from_a_file_is_the_one_from_legs(
+    text: str, original: str, tmp_path: Path
+) -> None:
+    """Equation by equation; only the parameters have other assumptions."""
+    own, given = (read_script(s) for s in (script_of("loop", text, tmp_path), original))
+    assert [f.name for f in own.functions] == [f.name for f in given.functions]
+    names = {p.symbol: sp.Symbol(p.name) for d in (own, given) for p in d.parameters}
+    first, second = ([e.xreplace(names) for e in d.inverses[0].forward] for d in (own, given))
+    assert all(sp.simplify(a - b) == 0 for a, b in zip(first, second, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("old", "other", "said"),
+    [
+        ("axis = [0, 1, 0]}", 'kind = "spherical"}', "it needs 6 driven joints in space"),
+        ("axis = [0, 1, 0]}", "axis = [0, 1, 1]}", "h1 keeps .* its axis is horizontal"),
+        ("axis = [0, -1, 0], d", "axis = [0, -1, 1], d", "of theta1 and h1 have to be parallel"),
+        ('"b + l", 0, 0', '"b + l", "l", 0', "has to contain the z axis"),
+        ('C2 = [0, "a", 0]', 'C2 = [0, "a", "a"]', "at the height of P in its frame"),
+    ],
+)
+def test_a_file_that_is_not_a_tripod_says_why(
+    old: str, other: str, said: str, tmp_path: Path
+) -> None:
+    assert old in UNEVEN_FILE
+    with pytest.raises(TableError, match=said):
+        script_of("loop", UNEVEN_FILE.replace(old, other), tmp_path)

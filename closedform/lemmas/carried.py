@@ -11,6 +11,7 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.legs import Leg, Stretch, Strut, vector
+from closedform.lemmas.parallelogram import Parallelogram
 from closedform.lemmas.rails import Rail
 from closedform.model.derivation import Derivation, Step
 
@@ -57,6 +58,11 @@ class Carried:
     @property
     def rails(self) -> list[Rail]:
         return [leg for leg in self.legs if isinstance(leg, Rail)]
+
+    @property
+    def held(self) -> list[tuple[int, Leg]]:
+        """The legs whose rods are parallelograms."""
+        return [(k, leg) for k, leg in self.numbered if isinstance(leg.rod, Parallelogram)]
 
     @property
     def _singular(self) -> tuple[str, str, str]:
@@ -106,7 +112,8 @@ class Carried:
         for leg in self.legs:
             if isinstance(leg, Strut):
                 w = hand + self.place(leg) - leg.base
-                hand = leg.rod / sp.sqrt(square(w)) * w - self.place(leg) + leg.base
+                rod = sp.sympify(leg.rod, strict=True)
+                hand = rod / sp.sqrt(square(w)) * w - self.place(leg) + leg.base
         return hand
 
     @cached_property
@@ -178,6 +185,16 @@ def check_order(d: Derivation, driven: Sequence[Leg]) -> None:
         raise ShapeError(
             f"{d.name}: the legs are driven by {_listed(joints)}, but the joints of the "
             f"derivation are {_listed(d.actuated)}; give the legs in this order"
+        )
+
+
+def check_plain(d: Derivation, legs: Sequence[Leg]) -> None:
+    """Refuse parallelograms, of a mechanism whose parts turn."""
+    parts = [part for leg in legs for part in (leg.rod, getattr(leg, "length", None))]
+    if any(isinstance(part, Parallelogram) for part in parts):
+        raise ShapeError(
+            f"{d.name}: a Parallelogram keeps the hand from turning, which is known of parallel "
+            f"alone; take plain rods"
         )
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from closedform.lemmas.carried import in_space, square
+from closedform.lemmas.carried import check_plain, in_space, square
 from closedform.lemmas.leg_by_leg import SIGN, Choice, bounds_of, size_of, tell, where_free
 from closedform.lemmas.legs import Crank, Naming, Slide
 from closedform.lemmas.loop import NO_MODE, Exported, export
@@ -41,6 +41,7 @@ def coupled(
     modes
         the names of the assembly modes, by the sign of the determinant of ``jacobian_parallel``
     """
+    check_plain(d, (driver, follower))
     if driver.rod != follower.rod:
         raise ValueError(f"{d.name}: the driver and the follower must have the same rod")
     d.singularities, d.poles = ("driver", "follower"), ("follower",)

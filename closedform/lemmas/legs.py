@@ -148,7 +148,8 @@ class Crank:
 
     Both are unit vectors, at right angles: the crank points along the first at 0 and along the
     second at 90 degrees.  The rod leads from its end to the point ``on_hand``, as seen from the
-    point that is the hand.
+    point that is the hand.  Both lengths may be a
+    :class:`~closedform.lemmas.parallelogram.Parallelogram`.
     """
 
     joint: sp.Symbol
@@ -174,7 +175,8 @@ class Crank:
         return crank.dot(u) * v - crank.dot(v) * u
 
     def _turned(self, pair: Pair) -> sp.Matrix:
-        return self.length * (pair.c * vector(self.along) + pair.s * vector(self.across))
+        length = sp.sympify(self.length, strict=True)
+        return length * (pair.c * vector(self.along) + pair.s * vector(self.across))
 
     def end(self) -> sp.Matrix:
         return self.base + self._turned(Pair(sp.sin(self.joint), sp.cos(self.joint)))
@@ -233,7 +235,8 @@ class Crank:
 class Slide:
     """A slider that moves from ``start`` along the unit vector ``direction``, at one end of a rod.
 
-    The rod leads to the point ``on_hand``, as seen from the point that is the hand.
+    The rod leads to the point ``on_hand``, as seen from the point that is the hand.  It may be a
+    :class:`~closedform.lemmas.parallelogram.Parallelogram`.
     """
 
     joint: sp.Symbol
@@ -346,11 +349,11 @@ class Strut:
 
         So what the check tolerates does not add to what the rods of other legs miss.
         """
-        p = chain.program
+        p, rod = chain.program, sp.sympify(self.rod, strict=True)
         length = chain.let("strut", sp.sqrt(sum(e**2 for e in w)), nonnegative=True)
         none = chain.program.vanishes(f"none{chain.tag}", length, chain.size, "no direction")
-        p.match(length - self.rod, chain.size / 2, "the hand is on the sphere of the strut")
-        share = chain.let("share", choose(none, 1, self.rod / length), nonnegative=True)
+        p.match(length - rod, chain.size / 2, "the hand is on the sphere of the strut")
+        share = chain.let("share", choose(none, 1, rod / length), nonnegative=True)
         return sp.Matrix([chain.let(f"p{i}", share * e) for i, e in zip("xyz", w, strict=True)])
 
 

@@ -17,6 +17,7 @@ import sympy as sp
 from closedform.lemmas.carried import Carried, in_space, square
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.conditioning import conditioning
+from closedform.lemmas.held import LEFT_OUT, bars_of, check_held, constraint, state_held
 from closedform.lemmas.leg_by_leg import (
     SIGN,
     Choice,
@@ -27,6 +28,7 @@ from closedform.lemmas.leg_by_leg import (
     tell,
 )
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut
+from closedform.lemmas.parallelogram import Parallelogram
 from closedform.lemmas.rails import Rail, rail_and_circle, two_rails
 from closedform.lemmas.spheres import Meeting, three_spheres
 from closedform.mechanics.frames import merge_angles
@@ -74,10 +76,12 @@ def parallel(
         ``passive_angles`` is exported
     """
     mechanism = Carried(d, sp.Matrix(hand), tuple(legs))
+    check_held(mechanism)
     if not d.singularities:
         d.singularities = (*(f"leg {k}" for k, _ in mechanism.driven), mechanism.pole)
         d.poles = (mechanism.pole,)
     loop = mechanism.state_loop()
+    state_held(mechanism, loop)
     posture = _forward(mechanism, modes, loop)
     if passive:
         _passive_angles(mechanism, posture, passive)
@@ -133,7 +137,7 @@ def _forward(m: Carried, choice: Choice, loop: Step) -> _Posture:
         program=f,
         branches=modes,
         result="Positions",
-        notes=met.notes,
+        notes=(*met.notes, *left_out(m)),
     )
     equations = tuple(m.in_lemma(m.loop))
     d.inverses.append(
@@ -223,6 +227,11 @@ def _on_rails(
     return _Met(found, found.link, title, reason, {}, proves, notes)
 
 
+def left_out(m: Carried) -> tuple[str, ...]:
+    """A note on the mode of parallelograms that is left out."""
+    return (LEFT_OUT,) if m.held else ()
+
+
 def _roles(m: Carried) -> tuple[tuple[str, Any], ...]:
     """What the letters of the lemma stand for that gives the hand."""
     (first, _), *others = m.in_lemma(m.numbered)
@@ -231,7 +240,10 @@ def _roles(m: Carried) -> tuple[tuple[str, Any], ...]:
     return (
         (r"\mathbf x", rf"\mathbf p - \mathbf b_{first}"),
         *zip(names, apart, strict=True),
-        *((f"r_{k}", leg.rod) for k, leg in enumerate(m.in_lemma(m.legs), 1)),
+        *(
+            (f"r_{k}", sp.sympify(leg.rod, strict=True))
+            for k, leg in enumerate(m.in_lemma(m.legs), 1)
+        ),
     )
 
 
@@ -266,18 +278,31 @@ def _draw(m: Carried, at: _Posture) -> None:
             lengths |= {(base, end): leg.joint, (end, far): leg.way.dot(span)}
             closing[end, far] = equation**2
             continue
+        bars = bars_of(k, leg, far)
         lengths[near, far], closing[near, far] = sp.sympify(leg.rod, strict=True), equation
         if isinstance(leg, Stretch):
             joints[leg.joint] = (base, far)
-        else:
+        elif not isinstance(leg.rod, Parallelogram):
             links[f"rod{k}"] = (near, far)
         if isinstance(leg, Crank):
-            links[f"crank{k}"] = (base, end)
+            if not isinstance(leg.length, Parallelogram):
+                links[f"crank{k}"] = (base, end)
             lengths[base, end] = sp.sympify(leg.length, strict=True)
             joints[leg.joint] = (base,)
         elif isinstance(leg, Slide):
             lengths[base, end] = leg.joint
             joints[leg.joint] = (base, end)
+        for pair in bars:
+            whole = "rod" if pair.far == far else "crank"
+            for ends in zip(pair.ends(pair.near), pair.ends(pair.far), strict=True):
+                links[f"{whole}{k}{ends[0][-1]}"] = ends
+                lengths[ends] = sp.sympify(pair.given, strict=True)
+                if whole == "rod":
+                    closing[ends] = equation
+            for middle in (pair.near, pair.far):
+                first, second = pair.ends(middle)
+                links[f"bar_{first}"] = (first, middle, second)
+                lengths |= {(first, middle): pair.given.half, (middle, second): pair.given.half}
     ground = tuple(f"A{k}" for k, _ in m.numbered)
     skeleton(
         m.d,
@@ -290,7 +315,7 @@ def _draw(m: Carried, at: _Posture) -> None:
         lengths=lengths,
         program=at.program,
         branches=at.modes,
-        notes=(NO_MODE,),
+        notes=(NO_MODE, *["The width of a parallelogram matters here alone."] * bool(m.held)),
         at_posture=[_points(m, m.hand)],
         closing=closing,
     )
@@ -303,8 +328,15 @@ def _points(m: Carried, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
         points[f"A{k}"] = in_space(leg.base)
         if not isinstance(leg, Stretch | Strut):
             points[f"B{k}"] = in_space(leg.end())
-        if not m.place(leg).is_zero_matrix:
-            points[f"C{k}"] = in_space(hand + m.place(leg))
+        place, far = m.place(leg), "P"
+        if not place.is_zero_matrix:
+            far = f"C{k}"
+            points[far] = in_space(hand + place)
+        at = {f"A{k}": leg.base, f"B{k}": leg.end(), far: hand + place}
+        for pair in bars_of(k, leg, far):
+            for middle in (pair.near, pair.far):
+                ends = pair.around(middle, at[middle])
+                points |= {name: in_space(end) for name, end in ends.items()}
     return points | {"P": in_space(hand)}
 
 
@@ -386,6 +418,15 @@ def _velocity(m: Carried, at: _Posture, loop: Step) -> None:
     ]
     if not m.rails:  # a normal is a unit vector, and a rod has a length
         functions.append(("condition_number", *conditioning(v, along, size, on_sphere=bool(still))))
+    if factors := constraint(m, along):
+        summary = "What vanishes where the parallelograms do not keep the hand from turning."
+        how = (
+            "The determinant of the normals of the parallelograms (a unit vector along the bars "
+            "times the vector along the rods)."
+            if len(m.hand) == 3
+            else "One factor for each leg with a parallelogram; the hand can turn if all vanish."
+        )
+        functions.append(("constraint", summary, {"factors": factors}, (how,)))
     export(d, v, at.modes, functions)
 
 
@@ -425,8 +466,9 @@ def _inverse(m: Carried, loop: Step) -> None:
     ]
     volume = g.let("Delta", sp.Matrix.hstack(*apart).det())
     # lengths that the sum of all lengths does not contain, such as those of an arc, round as well
-    links = [e for leg in m.legs for e in (leg.rod, getattr(leg, "length", sp.S.Zero))]
-    beyond = sp.Add(*(e for e in links if not sp.sympify(e, strict=True).is_Atom)) / solved.size
+    given = [e for leg in m.legs for e in (leg.rod, getattr(leg, "length", sp.S.Zero))]
+    links = [sp.sympify(e, strict=True) for e in given]
+    beyond = sp.Add(*(e for e in links if not e.is_Atom)) / solved.size
     scale = solved.lengths(m.legs) * (1 + beyond)
     g.determined(sp.Abs(volume), scale, m.meet, name=r"|\det A|")
     d.step(
@@ -447,7 +489,8 @@ def _inverse(m: Carried, loop: Step) -> None:
         f"UNREACHABLE: a rod does not reach{off_sphere}.",
         [
             f"SINGULAR also near a parallel singularity, where {m.meet}: the loop "
-            "closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths."
+            "closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.",
+            *left_out(m),
         ],
     )
     at = dict(zip(m.hand, m.onto_struts(), strict=True))

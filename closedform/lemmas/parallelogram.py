@@ -1,6 +1,10 @@
-"""A parallelogram linkage."""
+"""Parallelogram linkages: in a plane, and the pair of rods that carries a hand in space."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import sympy as sp
 
@@ -30,6 +34,58 @@ line with the origin.""",
 $\varphi$ is free.""",
     rests_on=("circle intersection",),
 )
+
+theorem(
+    "parallelogram in space",
+    statement=r"""Two rods of length $l > 0$ join the ends of two bars of length $2h > 0$ by ball
+joints.  The bars have the directions $\mathbf u$ and $\mathbf v$, both unit vectors, and $\mathbf
+r$ leads from the middle of the first to the middle of the second.  The rods fit if and only if
+$$\mathbf r\cdot(\mathbf v - \mathbf u) = 0 \quad\text{and}\quad |\mathbf r|^2 + h^2 |\mathbf v -
+\mathbf u|^2 = l^2.$$ If $\mathbf v = \mathbf u$, this is a parallelogram, and $|\mathbf r| = l$.
+Let three of them join a hand to bars whose directions $\mathbf u_k$ do not turn, and let $\mathbf
+v_k = R\,\mathbf u_k$, if the hand is turned by $R$.  Where the normals $\mathbf n_k = \mathbf
+u_k\times\mathbf r_k$ of the parallelograms are not in one plane, no motion leads out of $R =
+I$.""",
+    proof=r"""The rods are $\mathbf r\pm h(\mathbf v - \mathbf u)$.  Half of the sum of their
+squares is $|\mathbf r|^2 + h^2|\mathbf v - \mathbf u|^2$, and the difference is $4h\,\mathbf
+r\cdot(\mathbf v - \mathbf u)$.  The equations $f_k = \mathbf r_k\cdot(R\,\mathbf u_k - \mathbf
+u_k) = 0$ hold if $R = I$, wherever the hand is.  There the derivative of $f_k$, while the hand
+turns with the rate $\boldsymbol\omega$ and moves in any way, is $\mathbf
+r_k\cdot(\boldsymbol\omega\times\mathbf u_k) = \boldsymbol\omega\cdot\mathbf n_k$.  If the normals
+are not in one plane, these three are zero for $\boldsymbol\omega = 0$ alone.  Then $R = I$ is the
+only solution in a neighbourhood, by the theorem of implicit functions.""",
+    exception=r"""If the normals are in one plane, the hand can begin to turn: a constraint
+singularity.  The other solutions, $\mathbf v\ne\mathbf u$, are crossed or twisted.""",
+)
+
+
+@dataclass(frozen=True)
+class Parallelogram:
+    """Two equal rods between two equal bars, instead of one rod: what it carries does not turn.
+
+    It takes the place of the ``rod`` of a leg or of the ``length`` of a crank, and stands for that
+    ``length``.  ``bar`` is the direction of the bars, a unit vector, and ``width`` is their length.
+    It drops out of all equations, so it matters for the drawing alone.
+
+    The crossed linkage with the same rods and bars, the antiparallelogram, is left out, and so are
+    twisted ones in space.
+    """
+
+    length: Any
+    bar: Sequence[Any]
+    width: Any
+
+    def _sympy_(self) -> sp.Expr:
+        return sp.sympify(self.length, strict=True)
+
+    @property
+    def direction(self) -> sp.Matrix:
+        return sp.Matrix([sp.sympify(e, strict=True) for e in self.bar])
+
+    @property
+    def half(self) -> sp.Expr:
+        """Half of the width."""
+        return sp.sympify(self.width, strict=True) / 2
 
 
 def parallelogram(

@@ -18,7 +18,7 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import count_solutions
-from closedform.lemmas.carried import check_order, in_space, rate_of, square
+from closedform.lemmas.carried import check_order, check_plain, in_space, rate_of, square
 from closedform.lemmas.leg_by_leg import LegByLeg, named_in, signs_of_modes, size_of
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut, cross_in_plane, vector
 from closedform.lemmas.rails import Rail
@@ -75,16 +75,21 @@ class Platform:
                 f"legs in a plane or six in space"
             )
         for leg in self.legs:
-            if isinstance(leg, Strut | Rail):
-                kind = type(leg).__name__.lower()
-                raise ShapeError(f"{name}: a {kind} cannot carry a hand that turns")
+            if isinstance(leg, Strut):
+                raise ShapeError(f"{name}: a strut cannot carry a hand that turns")
         check_order(self.d, self.legs)
+        check_plain(self.d, self.legs)
         task = [str(e) for e in self.pose] if self.dimensions == 3 else ["x", "y", "yaw"]
         if list(self.d.task) not in ([], task):
             raise ShapeError(f"{name}: the task of this hand is {', '.join(task)}")
         self.d.task = task
         if self.spread == 0:
             raise ShapeError(f"{name}: all legs end in the same point of the hand; it turns freely")
+        if any(isinstance(leg, Rail) for leg in self.legs):
+            raise ShapeError(
+                f"{name}: a rail cannot carry a hand that turns; the forward problem is of degree "
+                f"{degree_in_plane(self)}, and no formula is derived for it"
+            )
 
     @property
     def dimensions(self) -> int:
@@ -200,7 +205,10 @@ def degree_in_plane(m: Platform) -> int:
     x, y, yaw = m.pose
     ends = [sp.Matrix([real(f"b{k}_{i}") for i in "xy"]) for k, _ in m.numbered]
     hand = [m.position + arm - end for arm, end in zip(m.arms, ends, strict=True)]
-    equations = [square(e) - real(f"r{k}") for k, e in enumerate(hand)]
+    equations = [
+        (leg.normal.dot(e) if isinstance(leg, Rail) else square(e)) - real(f"r{k}")
+        for (k, leg), e in zip(m.numbered, hand, strict=True)
+    ]
     roots = {e for f in equations for e in f.atoms(sp.Pow) if e.exp == sp.Rational(1, 2)}
     names = {e: real(f"root{k}") for k, e in enumerate(sorted(roots, key=str))}
     equations = [e.xreplace(names) for e in equations]

@@ -19,7 +19,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.carried import check_order, rate_of, square
+from closedform.lemmas.carried import check_order, check_plain, rate_of, square
 from closedform.lemmas.leg_by_leg import LegByLeg, named_in, signs_of_modes, size_of
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, cross_in_plane, vector
 from closedform.mechanics.frames import rotation
@@ -131,6 +131,7 @@ class Tripod:
             if not square(upright.along).is_number or sp.simplify(square(upright.along) - 1) != 0:
                 raise ShapeError(f"{name}: a heading is a unit vector, in numbers")
         check_order(self.d, [upright.leg for upright in self.legs])
+        check_plain(self.d, [upright.leg for upright in self.legs])
         if any(weight == 0 for weight in self.weights):
             raise ShapeError(f"{name}: two legs are in the same plane")
         if list(self.d.task) not in ([], list(TASK)):

@@ -10,8 +10,13 @@ from closedform.algebra.formulas import number
 from closedform.scaffold.loops import AXES, GROUND, TURNING, Joint, Legs, Loop, LoopLeg
 from closedform.scaffold.source import file_name, literal
 from closedform.scaffold.tables import Table, add_joint
+from closedform.scaffold.uprights import HINGED, uprights
 
 UNSAID = "say what it measures"
+DEGREES = {1: 6, 2: 4, 3: 2}
+"""Of the forward problem of a hand that turns in a plane, by the number of its rails."""
+FUNCTIONS = {"Rational", "Abs"}
+"""What a leg calls of SymPy that begins with a capital letter."""
 
 
 def loop_script(name: str, loop: Loop, origin: str) -> str:
@@ -30,8 +35,10 @@ def loop_script(name: str, loop: Loop, origin: str) -> str:
         driven, struts = found.legs(), found.struts()
         legs, task = [*struts, *driven], list(AXES[: loop.dimensions])
         if found.turning:
-            _check_turning(found, driven, struts)
-            task = []
+            upright = [] if struts or loop.parallelograms else uprights(found)
+            if not upright:
+                _check_turning(found, driven, struts)
+            legs, task = upright or legs, []
         elif len(legs) != loop.dimensions:
             on_sphere = " beside its strut" if struts else ""
             raise loop.error(
@@ -50,18 +57,24 @@ def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLe
     """Refuse a hand that may turn with too few driven joints, or too many."""
     loop, body = found.loop, found.turning
     if any(leg.passive for leg in legs):
-        raise loop.error(f"{body} may turn; this is not known for a hand on a rail")
+        rails = sum(bool(leg.passive) for leg in legs)
+        degree = DEGREES.get(rails) if len(legs) == TURNING[2] else None
+        raise loop.error(
+            f"{body} may turn; this is not known for a hand on a rail"
+            + f", and leads to an equation of degree {degree}" * (degree is not None)
+        )
     if loop.parallelograms:
         raise loop.error(
             f"{body} may turn; either all of its rods have to be parallelograms, or none"
         )
+    hinged = f"  {HINGED}" if loop.dimensions == 3 and len(legs) == 3 else ""
     needed, where = TURNING[loop.dimensions], "a plane" if loop.dimensions == 2 else "space"
     if struts or len(legs) != needed:
         instead = "a strut carries it" if struts else f"there are {len(legs)}"
         raise loop.error(
             f"{body} may turn, so it needs {needed} driven joints in {where}, and {instead}.  "
-            f"If the rods are parallelograms, which keep it from turning, say so: "
-            f"parallelogram = true"
+            f"If the rods are parallelograms, which keep it from turning, give each "
+            f"parallelogram = [...], a vector along its short sides.{hinged}"
         )
 
 
@@ -89,8 +102,10 @@ def _coupled(found: Legs, follower: Joint) -> list[LoopLeg]:
     return [first, second]
 
 
-def _way(task: Sequence[str]) -> str:
-    """The call that derives the loop; a platform sets its task itself."""
+def _way(legs: Sequence[LoopLeg], task: Sequence[str]) -> str:
+    """The call that derives the loop; a hand that turns sets its task itself."""
+    if legs[0].call.startswith("Upright"):
+        return "tripod"
     return {0: "platform", 1: "coupled"}.get(len(task), "parallel")
 
 
@@ -99,8 +114,8 @@ def _head(
 ) -> list[str]:
     title = name.replace("_", " ").capitalize()
     words = "  ".join(f"{leg.words[0].upper()}{leg.words[1:]}." for leg in legs)
-    calls = sorted({leg.call.partition("(")[0] for leg in legs})
-    names = sorted([*calls, "Derivation", "Paper", _way(task), *["real"] * bool(task)])
+    calls = sorted({c for leg in legs for c in re.findall(r"([A-Z]\w+)\(", leg.call)} - FUNCTIONS)
+    names = sorted([*calls, "Derivation", "Paper", _way(legs, task), *["real"] * bool(task)])
     fractions = [number(given.get("value") or "1") for given in loop.parameters.values()]
     used = " ".join(leg.call for leg in legs) + "Rational(" * any(
         f.denominator != 1 for f in fractions
@@ -150,10 +165,10 @@ def _body(table: Table, legs: Sequence[LoopLeg], task: Sequence[str]) -> list[st
             lines.append(f'{leg.passive} = d.joint("{leg.passive}", "prismatic", passive=True)')
     if len(task) == 1:
         (x,) = task
-        lines += [f'{x} = real("{x}")', f"{_way(task)}(", "    d,"]
+        lines += [f'{x} = real("{x}")', f"{_way(legs, task)}(", "    d,"]
         return [*lines, *(f"    {leg.call}," for leg in legs), ")"]
     hand = [f"    ({', '.join(f'real({literal(x)})' for x in task)}),"] if task else []
-    lines += [f"{_way(task)}(", "    d,", *hand, "    ["]
+    lines += [f"{_way(legs, task)}(", "    d,", *hand, "    ["]
     return [*lines, *(f"        {leg.call}," for leg in legs), "    ],", ")"]
 
 

@@ -33,7 +33,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -53,8 +53,9 @@ from closedform.scaffold.tables import (
 
 GROUND = "ground"
 KINDS = ("revolute", "prismatic", "spherical", "universal")
-USED = {"d", "pi", "real", "coupled", "parallel", "platform", "Derivation", "Paper"}
-USED |= {"Crank", "Rail", "Slide", "Stretch", "Strut", "Rational", "cos", "sin", "sqrt"}
+USED = {"d", "pi", "real", "coupled", "parallel", "platform", "tripod", "Derivation", "Paper"}
+USED |= {"Crank", "Parallelogram", "Rail", "Slide", "Stretch", "Strut", "Upright"}
+USED |= {"Rational", "cos", "sin", "sqrt"}
 """Names that the written script uses itself."""
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 """Bodies and points."""
@@ -88,7 +89,8 @@ class Loop:
     hand: str
     bodies: dict[str, dict[str, sp.Matrix]] = field(default_factory=dict)
     rods: dict[str, sp.Expr] = field(default_factory=dict)
-    parallelograms: set[str] = field(default_factory=set)
+    parallelograms: dict[str, sp.Matrix] = field(default_factory=dict)
+    """The rods and cranks that are parallelograms, with a vector along their short sides."""
     joints: dict[str, Joint] = field(default_factory=dict)
     parameters: dict[str, dict[str, str]] = field(default_factory=dict)
 
@@ -100,6 +102,7 @@ class Loop:
         """The names in the expressions."""
         entries = [e for body in self.bodies.values() for at in body.values() for e in at]
         entries += self.rods.values()
+        entries += [e for bar in self.parallelograms.values() for e in bar]
         entries += [e for j in self.joints.values() if j.axis is not None for e in j.axis]
         return {s.name for e in entries for s in e.free_symbols}
 
@@ -114,6 +117,8 @@ class LoopLeg:
     joint: Joint
     call: str
     words: str
+    place: sp.Matrix
+    """Where it ends, as seen from the point that is the hand."""
     passive: str = ""
     """The passive slide of a rail."""
 
@@ -185,9 +190,12 @@ def _read_bodies(loop: Loop, bodies: Mapping[str, Any]) -> None:
             if key == "length":
                 loop.rods[name] = expression(given, where)
             elif key == "parallelogram":
-                if given is not True:
-                    raise TableError(f"{where}: parallelogram must be true, or be left out")
-                loop.parallelograms.add(name)
+                if not isinstance(given, list) or len(given) != loop.dimensions:
+                    raise TableError(
+                        f"{where}: parallelogram is a vector along its short sides, from one end "
+                        f"to the other, with {loop.dimensions} coordinates"
+                    )
+                loop.parallelograms[name] = sp.Matrix([expression(e, where) for e in given])
             elif isinstance(given, list):
                 points[_named(key, f"{where}: a point")] = sp.Matrix(
                     [expression(e, f"{where}, {key}") for e in given]
@@ -257,6 +265,8 @@ class Legs:
         self.loop = loop
         self.turning = ""
         """The body that is the hand, if it may turn."""
+        self.upright: Callable[[sp.Matrix], sp.Matrix] | None = None
+        """Coordinates in the plane of a leg, while the leg of a tripod is written."""
         angles = [n for n, given in loop.parameters.items() if given.get("unit") == "rad"]
         self.positive = {
             sp.Symbol(n, real=True): sp.Symbol(n, positive=True) for n in loop.symbols - set(angles)
@@ -267,6 +277,25 @@ class Legs:
         square = sp.trigsimp(sp.expand(v.dot(v)).xreplace(self.positive))
         found = sp.sqrt(sp.factor(square))
         return found.xreplace({b: a for a, b in self.positive.items()})
+
+    def at(self, v: sp.Matrix) -> str:
+        """A point or a direction as it is written."""
+        return _tuple(self.upright(v) if self.upright else v)
+
+    def tail(self, place: sp.Matrix) -> str:
+        """The last argument of a leg, left out if its rod ends in the point of the hand."""
+        return "" if self.upright or not any(place) else f", on_hand={_tuple(place)}"
+
+    def bar(self, body: str, length: sp.Expr) -> str:
+        """The length of a rod or a crank, or the parallelogram that it is."""
+        side = self.loop.parallelograms.get(body)
+        if side is None:
+            return source(length)
+        width = self.length(side)
+        if width == 0:
+            raise self.loop.error(f"{body}: the short sides of a parallelogram need a length")
+        way = _tuple(self.direction(side, width))
+        return f"Parallelogram({source(length)}, {way}, {source(width)})"
 
     def direction(self, v: sp.Matrix, length: sp.Expr) -> sp.Matrix:
         return (v / length).applyfunc(sp.simplify)
@@ -294,13 +323,14 @@ class Legs:
                     f"the rod {rod} leads from the ground to the hand; only one may, and only in "
                     f"space, beside two driven joints"
                 )
-            length, place = source(loop.rods[rod]), self.place_on_hand(rod, joint)
+            length, place = self.bar(rod, loop.rods[rod]), self.place_on_hand(rod, joint)
             base = self.point(GROUND, joint)
             found.append(
                 LoopLeg(
                     joint,
-                    f"Strut({length}, {_tuple(base)}{_on_hand(place)})",
+                    f"Strut({length}, {self.at(base)}{self.tail(place)})",
                     f"a strut of length {loop.rods[rod]} leads from the ground to the hand",
+                    place,
                 )
             )
         return found
@@ -318,6 +348,12 @@ class Legs:
         slides = [j for j in loop.of(body) if j.kind == "prismatic" and j is not joint]
         if joint.kind == "prismatic" and len(slides) == 1 and not rods:
             return self.rail(joint, body, slides[0])
+        if joint.kind == "revolute" and slides and not rods:
+            raise loop.error(
+                f"{joint.name} turns {body}, on which {slides[0].name} slides; a passive slide on "
+                f"a driven crank is not known (its line meets that of a like leg once, and a "
+                f"circle twice)"
+            )
         if len(rods) != 1:
             raise loop.error(
                 f"{joint.name} moves {body}, which must carry one rod, a body with a length, or "
@@ -326,16 +362,16 @@ class Legs:
         (near, rod) = rods[0]
         place = self.place_on_hand(rod, near)
         end = self.point(body, near)
-        length = source(loop.rods[rod])
-        tail = _on_hand(place)
+        length, tail = self.bar(rod, loop.rods[rod]), self.tail(place)
         name = joint.name
         if joint.kind == "prismatic":
             if joint.axis is None:
                 raise loop.error(f"{name} slides; say in which direction with axis")
             return LoopLeg(
                 joint,
-                f"Slide({name}, {length}, {_tuple(end)}, {_tuple(joint.axis)}{tail})",
+                f"Slide({name}, {length}, {self.at(end)}, {self.at(joint.axis)}{tail})",
                 f"{name} moves a slider, which a rod of length {loop.rods[rod]} joins to the hand",
+                place,
             )
         if joint.kind != "revolute":
             raise loop.error(f"{name} is driven, so it must be revolute or prismatic")
@@ -357,10 +393,11 @@ class Legs:
         )
         return LoopLeg(
             joint,
-            f"Crank({name}, {source(crank)}, {length}, {_tuple(start)}, {_tuple(along)}, "
-            f"{_tuple(across)}{tail})",
+            f"Crank({name}, {self.bar(body, crank)}, {length}, {self.at(start)}, "
+            f"{self.at(along)}, {self.at(across)}{tail})",
             f"{name} turns a crank of length {crank}, which a rod of length {loop.rods[rod]} "
             f"joins to the hand",
+            place,
         )
 
     def rail(self, joint: Joint, body: str, slide: Joint) -> LoopLeg:
@@ -385,9 +422,10 @@ class Legs:
             raise loop.error(f"{slide.name} does not lead to the hand {loop.hand}")
         return LoopLeg(
             joint,
-            f"Rail({joint.name}, {slide.name}, {_tuple(self.point(body, slide))}, "
-            f"{_tuple(joint.axis)}, {_tuple(slide.axis)}{_on_hand(place)})",
+            f"Rail({joint.name}, {slide.name}, {self.at(self.point(body, slide))}, "
+            f"{self.at(joint.axis)}, {self.at(slide.axis)}{self.tail(place)})",
             f"{joint.name} moves a slider with a rail, along which the hand slides",
+            place,
             slide.name,
         )
 
@@ -416,11 +454,11 @@ class Legs:
             raise loop.error(f"one half of the leg of {joint.name} must be joined to the ground")
         base = self.point(GROUND, ends[True])
         place = self.place_of(ends[False])
-        tail = _on_hand(place)
         return LoopLeg(
             joint,
-            f"Stretch({joint.name}, {_tuple(base)}{tail})",
+            f"Stretch({joint.name}, {self.at(base)}{self.tail(place)})",
             f"{joint.name} is the length of a leg from the ground to the hand",
+            place,
         )
 
     def place_on_hand(self, rod: str, near: Joint) -> sp.Matrix:
@@ -444,11 +482,6 @@ class Legs:
 
 def _tuple(v: sp.Matrix) -> str:
     return f"({', '.join(map(source, v))})"
-
-
-def _on_hand(place: sp.Matrix) -> str:
-    """The last argument of a leg, which is left out if its rod ends in the point of the hand."""
-    return f", on_hand={_tuple(place)}" if any(place) else ""
 
 
 __all__ = ["AXES", "GROUND", "TURNING", "Joint", "Legs", "Loop", "LoopLeg", "read_loop"]

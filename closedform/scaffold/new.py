@@ -11,6 +11,7 @@ import sys
 import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from closedform.algebra.formulas import number
 from closedform.mechanics.arm import RowError, Serial, from_dh, from_screws
 from closedform.mechanics.mobility import SingularEverywhereError
 from closedform.model.derivation import Derivation
+from closedform.model.functions import real
 from closedform.model.names import check_robot, check_text
 from closedform.model.paper import Paper
 from closedform.scaffold.limit import LimitError, bounded
@@ -253,6 +255,10 @@ def _motor_lines(table: Table, origin: str) -> list[str]:
     if not table.couplings:
         return []
     names, matrix = motors_of(table, origin)
+    if through := _through_parallelograms(table):
+        driven = ", ".join(f"{q}: ({before}, {source(a)})" for q, (before, a) in through.items())
+        motors = ", ".join(f'"{name}"' for name in names)
+        return ["", f"parallelogram_drive(d, {{{driven}}}, [{motors}])"]
     joints = ", ".join(table.joints)
     symbols = ", ".join(f'real("{name}")' for name in names)
     return [
@@ -273,6 +279,27 @@ def _motor_lines(table: Table, origin: str) -> list[str]:
         f'    {{"motors": coupling.inv() * Matrix([{joints}])}},',
         ")",
     ]
+
+
+def _through_parallelograms(table: Table) -> dict[str, tuple[str, Any]]:
+    """The joint before each joint that a parallelogram drives, and the length of the link between.
+
+    Empty unless each coupling is the difference of two motors, and the axes of both joints are
+    parallel.
+    """
+    through: dict[str, tuple[str, Any]] = {}
+    own = {q: table.couplings.get(q, real(f"m_{q}")) for q in table.joints}
+    rows = {str(s): k for k, row in enumerate(table.rows) for s in row[-1].free_symbols}
+    for before, q in pairwise(table.joints):
+        if own[q].is_Symbol:
+            continue
+        a, alpha = table.rows[rows[before]][:2] if before in rows else (0, 0)
+        beside = rows.get(q) == rows.get(before, -2) + 1 and alpha == 0 and a != 0
+        motor = own[q] + own[before]
+        if table.modified or not beside or not (own[before].is_Symbol and motor.is_Symbol):
+            return {}
+        through[q] = (before, a)
+    return through
 
 
 @dataclass(frozen=True)

@@ -44,7 +44,7 @@ IMPORTED = ("Abs", "cos", "pi", "sin", "sqrt", "Matrix", "Rational", "atan", "at
 CHAIN = ("Reaching", "arm_angle", "rotation", "sign_of", "turned", *chain_lemmas())
 AUTHOR = (
     "Chain", "Derivation", "Links", "LinksAndWrist", "LinksAtHeight", "OnCircle", "Pair", "Paper",
-    "from_dh", "from_screws", "real",
+    "from_dh", "from_screws", "parallelogram_drive", "real",
 )  # fmt: skip
 SCRIPT = {"arm", "coupling", "d", "forward", "links", "motors", "pair"}
 LINES = {

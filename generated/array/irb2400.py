@@ -853,7 +853,7 @@ _JOINTS_FROM_MOTORS = _runtime.Kernel(
 
 
 def joints_from_motors(motors: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Joint angles of motor angles.
+    """Joint angles from motor angles: theta3 = m3 - m2.
 
     Parameters
     ----------
@@ -873,6 +873,10 @@ def joints_from_motors(motors: "ArrayLike", params: "Parameters" = _DEFAULT) -> 
         If an argument does not hold real numbers.
     ValueError
         If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
     """
     result = _runtime.evaluate(_JOINTS_FROM_MOTORS, (motors,), params)
     return result
@@ -900,7 +904,7 @@ _MOTORS_FROM_JOINTS = _runtime.Kernel(
 
 
 def motors_from_joints(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
-    """Motor angles of joint angles.
+    """Motor angles from joint angles: m3 = theta2 + theta3.
 
     Parameters
     ----------
@@ -919,6 +923,10 @@ def motors_from_joints(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
         If an argument does not hold real numbers.
     ValueError
         If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
     """
     result = _runtime.evaluate(_MOTORS_FROM_JOINTS, (q,), params)
     return result

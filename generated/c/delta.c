@@ -4,13 +4,14 @@
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 43 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
- *   skeleton: 42 compare and select, 112 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
+ *   skeleton: 42 compare and select, 184 add, 16 divide, 75 multiply, 6 sincos, 5 sqrt
  *   jacobian_parallel: 42 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
  *   jacobian_serial: 42 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
  *   jacobian: 42 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
  *   determinant: 42 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
  *   singularities: 42 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
  *   condition_number: 42 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
+ *   constraint: 42 compare and select, 96 add, 10 divide, 137 multiply, 6 sincos, 5 sqrt
  *   ik: 121 compare and select, 160 add, 6 atan2, 8 divide, 166 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
  */
@@ -246,7 +247,7 @@ void delta_fk_batch(size_t n, const delta_params *params,
 
 CF_INLINE void delta_skeleton_kernel(const int single, const delta_params *params,
     const real_t q[3], const real_t *sines,
-    const real_t *cosines, real_t points[60])
+    const real_t *cosines, real_t points[132])
 {
     const real_t f = params->f;
     const real_t e = params->e;
@@ -360,92 +361,194 @@ CF_INLINE void delta_skeleton_kernel(const int single, const delta_params *param
     const real_t h = cf_select(slack <= t25, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
     const real_t t67 = (t39 * E_23 - E_13 * E_22) * h;
     const real_t t68 = t11 - (t65 - t67);
-    const real_t t69 = t39 * X + t52 * E_22;
-    const real_t t70 = h * (E_11 * E_23 - E_13 * E_21);
-    const real_t t71 = t20 - (t69 + t70);
-    const real_t t72 = E_13 * X + t52 * E_23;
-    const real_t t73 = h * (E_11 * E_22 - t39 * E_21);
-    const real_t t74 = t72 - t73 - t6 + t55;
-    const real_t t75 = t13 + t55;
-    const real_t t76 = t22 + t55;
-    const real_t t77 = t15 + t55;
-    const real_t t78 = t23 + t55;
-    const real_t t79 = -t7 + t55;
-    const real_t t80 = t27 + t55;
-    const real_t t81 = t34 + t55;
-    const real_t t82 = t29 + t55;
-    const real_t t83 = t35 + t55;
-    const real_t t84 = -t32 + t55;
-    const real_t t85 = t11 - (t65 + t67);
-    const real_t t86 = t20 - (t69 - t70);
-    const real_t t87 = t72 + t73 - t6 + t55;
+    const real_t t69 = t8 - t68;
+    const real_t t70 = t39 * X + t52 * E_22;
+    const real_t t71 = h * (E_11 * E_23 - E_13 * E_21);
+    const real_t t72 = t20 - (t70 + t71);
+    const real_t t73 = t17 - t72;
+    const real_t t74 = E_13 * X + t52 * E_23;
+    const real_t t75 = h * (E_11 * E_22 - t39 * E_21);
+    const real_t t76 = t74 - t75 - t6 + t55;
+    const real_t t77 = t17 * CLOSEDFORM_C(0.5);
+    const real_t t78 = t10 - t77 + t55;
+    const real_t t79 = t8 * CLOSEDFORM_C(0.5);
+    const real_t t80 = t79 + t19 + t55;
+    const real_t t81 = t77 + t10 + t55;
+    const real_t t82 = t19 - t79 + t55;
+    const real_t t83 = t13 + t55;
+    const real_t t84 = t22 + t55;
+    const real_t t85 = t15 + t55;
+    const real_t t86 = t23 + t55;
+    const real_t t87 = -t7 + t55;
+    const real_t t88 = t12 - t68;
+    const real_t t89 = t21 - t72;
+    const real_t t90 = t21 * CLOSEDFORM_C(0.5);
+    const real_t t91 = t15 - t90 + t55;
+    const real_t t92 = t12 * CLOSEDFORM_C(0.5);
+    const real_t t93 = t92 + t23 + t55;
+    const real_t t94 = t90 + t15 + t55;
+    const real_t t95 = t23 - t92 + t55;
+    const real_t t96 = t27 + t55;
+    const real_t t97 = t34 + t55;
+    const real_t t98 = t29 + t55;
+    const real_t t99 = t35 + t55;
+    const real_t t100 = -t32 + t55;
+    const real_t t101 = t26 - t68;
+    const real_t t102 = t33 - t72;
+    const real_t t103 = t33 * CLOSEDFORM_C(0.5);
+    const real_t t104 = t29 - t103 + t55;
+    const real_t t105 = t26 * CLOSEDFORM_C(0.5);
+    const real_t t106 = t105 + t35 + t55;
+    const real_t t107 = t103 + t29 + t55;
+    const real_t t108 = t35 - t105 + t55;
+    const real_t t109 = t11 - (t65 + t67);
+    const real_t t110 = t8 - t109;
+    const real_t t111 = t20 - (t70 - t71);
+    const real_t t112 = t17 - t111;
+    const real_t t113 = t74 + t75 - t6 + t55;
+    const real_t t114 = t12 - t109;
+    const real_t t115 = t21 - t111;
+    const real_t t116 = t26 - t109;
+    const real_t t117 = t33 - t111;
     points[0] = t56;
     points[1] = t57;
     points[2] = t58;
     points[3] = t59;
     points[4] = t60;
     points[5] = t61;
-    points[6] = t8 - t68 + t55;
-    points[7] = t17 - t71 + t55;
-    points[8] = t74;
-    points[9] = t75;
-    points[10] = t76;
-    points[11] = t58;
-    points[12] = t77;
-    points[13] = t78;
-    points[14] = t79;
-    points[15] = t12 - t68 + t55;
-    points[16] = t21 - t71 + t55;
-    points[17] = t74;
-    points[18] = t80;
-    points[19] = t81;
-    points[20] = t58;
-    points[21] = t82;
-    points[22] = t83;
-    points[23] = t84;
-    points[24] = t26 - t68 + t55;
-    points[25] = t33 - t71 + t55;
-    points[26] = t74;
-    points[27] = -t68 + t55;
-    points[28] = -t71 + t55;
-    points[29] = t74;
-    points[30] = t56;
-    points[31] = t57;
-    points[32] = t58;
-    points[33] = t59;
-    points[34] = t60;
-    points[35] = t61;
-    points[36] = t8 - t85 + t55;
-    points[37] = t17 - t86 + t55;
-    points[38] = t87;
-    points[39] = t75;
-    points[40] = t76;
-    points[41] = t58;
-    points[42] = t77;
-    points[43] = t78;
-    points[44] = t79;
-    points[45] = t12 - t85 + t55;
-    points[46] = t21 - t86 + t55;
-    points[47] = t87;
-    points[48] = t80;
-    points[49] = t81;
-    points[50] = t58;
-    points[51] = t82;
-    points[52] = t83;
-    points[53] = t84;
-    points[54] = t26 - t85 + t55;
-    points[55] = t33 - t86 + t55;
-    points[56] = t87;
-    points[57] = -t85 + t55;
-    points[58] = -t86 + t55;
-    points[59] = t87;
+    points[6] = t69 + t55;
+    points[7] = t73 + t55;
+    points[8] = t76;
+    points[9] = t78;
+    points[10] = t80;
+    points[11] = t61;
+    points[12] = t81;
+    points[13] = t82;
+    points[14] = t61;
+    points[15] = t69 - t77 + t55;
+    points[16] = t79 + t73 + t55;
+    points[17] = t76;
+    points[18] = t77 + t69 + t55;
+    points[19] = t73 - t79 + t55;
+    points[20] = t76;
+    points[21] = t83;
+    points[22] = t84;
+    points[23] = t58;
+    points[24] = t85;
+    points[25] = t86;
+    points[26] = t87;
+    points[27] = t88 + t55;
+    points[28] = t89 + t55;
+    points[29] = t76;
+    points[30] = t91;
+    points[31] = t93;
+    points[32] = t87;
+    points[33] = t94;
+    points[34] = t95;
+    points[35] = t87;
+    points[36] = t88 - t90 + t55;
+    points[37] = t92 + t89 + t55;
+    points[38] = t76;
+    points[39] = t90 + t88 + t55;
+    points[40] = t89 - t92 + t55;
+    points[41] = t76;
+    points[42] = t96;
+    points[43] = t97;
+    points[44] = t58;
+    points[45] = t98;
+    points[46] = t99;
+    points[47] = t100;
+    points[48] = t101 + t55;
+    points[49] = t102 + t55;
+    points[50] = t76;
+    points[51] = t104;
+    points[52] = t106;
+    points[53] = t100;
+    points[54] = t107;
+    points[55] = t108;
+    points[56] = t100;
+    points[57] = t101 - t103 + t55;
+    points[58] = t105 + t102 + t55;
+    points[59] = t76;
+    points[60] = t103 + t101 + t55;
+    points[61] = t102 - t105 + t55;
+    points[62] = t76;
+    points[63] = -t68 + t55;
+    points[64] = -t72 + t55;
+    points[65] = t76;
+    points[66] = t56;
+    points[67] = t57;
+    points[68] = t58;
+    points[69] = t59;
+    points[70] = t60;
+    points[71] = t61;
+    points[72] = t110 + t55;
+    points[73] = t112 + t55;
+    points[74] = t113;
+    points[75] = t78;
+    points[76] = t80;
+    points[77] = t61;
+    points[78] = t81;
+    points[79] = t82;
+    points[80] = t61;
+    points[81] = t110 - t77 + t55;
+    points[82] = t79 + t112 + t55;
+    points[83] = t113;
+    points[84] = t77 + t110 + t55;
+    points[85] = t112 - t79 + t55;
+    points[86] = t113;
+    points[87] = t83;
+    points[88] = t84;
+    points[89] = t58;
+    points[90] = t85;
+    points[91] = t86;
+    points[92] = t87;
+    points[93] = t114 + t55;
+    points[94] = t115 + t55;
+    points[95] = t113;
+    points[96] = t91;
+    points[97] = t93;
+    points[98] = t87;
+    points[99] = t94;
+    points[100] = t95;
+    points[101] = t87;
+    points[102] = t114 - t90 + t55;
+    points[103] = t92 + t115 + t55;
+    points[104] = t113;
+    points[105] = t90 + t114 + t55;
+    points[106] = t115 - t92 + t55;
+    points[107] = t113;
+    points[108] = t96;
+    points[109] = t97;
+    points[110] = t58;
+    points[111] = t98;
+    points[112] = t99;
+    points[113] = t100;
+    points[114] = t116 + t55;
+    points[115] = t117 + t55;
+    points[116] = t113;
+    points[117] = t104;
+    points[118] = t106;
+    points[119] = t100;
+    points[120] = t107;
+    points[121] = t108;
+    points[122] = t100;
+    points[123] = t116 - t103 + t55;
+    points[124] = t105 + t117 + t55;
+    points[125] = t113;
+    points[126] = t103 + t116 + t55;
+    points[127] = t117 - t105 + t55;
+    points[128] = t113;
+    points[129] = -t109 + t55;
+    points[130] = -t111 + t55;
+    points[131] = t113;
 }
 
 CLOSEDFORM_DISPATCHED
 void delta_skeleton(const delta_params *params, const real_t q[3],
-    real_t points[60])
+    real_t points[132])
 {
-    static const signed char points_degrees[60] = { 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    static const signed char points_degrees[132] = { 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
     delta_params params_scaled;
     int exponent = 0;
     const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
@@ -463,7 +566,7 @@ void delta_skeleton(const delta_params *params, const real_t q[3],
     cf_sincos_lanes(8, lanes, sines, cosines);
     delta_skeleton_kernel(1, params, q, sines, cosines, points);
     if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(60, points_degrees, exponent, points, points);
+        cf_rescale(132, points_degrees, exponent, points, points);
     }
 }
 
@@ -474,9 +577,9 @@ CF_RARE void delta_skeleton_other_sizes(size_t n, const delta_params *params,
     for (size_t i = 0; i < n; ++i) {
         real_t q_i[3];
         for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t points_i[60];
+        real_t points_i[132];
         delta_skeleton(params, q_i, points_i);
-        for (size_t k = 0; k < 60; ++k) points[k * points_stride + i] = points_i[k];
+        for (size_t k = 0; k < 132; ++k) points[k * points_stride + i] = points_i[k];
 
     }
 }
@@ -515,7 +618,7 @@ void delta_skeleton_batch(size_t n, const delta_params *params,
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
             const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
             const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
-            real_t points_i[60];
+            real_t points_i[132];
             delta_skeleton_kernel(0, &local, q_i, sines_i, cosines_i, points_i);
             points[start + i] = points_i[0];
             points[points_stride + start + i] = points_i[1];
@@ -577,6 +680,78 @@ void delta_skeleton_batch(size_t n, const delta_params *params,
             points[57 * points_stride + start + i] = points_i[57];
             points[58 * points_stride + start + i] = points_i[58];
             points[59 * points_stride + start + i] = points_i[59];
+            points[60 * points_stride + start + i] = points_i[60];
+            points[61 * points_stride + start + i] = points_i[61];
+            points[62 * points_stride + start + i] = points_i[62];
+            points[63 * points_stride + start + i] = points_i[63];
+            points[64 * points_stride + start + i] = points_i[64];
+            points[65 * points_stride + start + i] = points_i[65];
+            points[66 * points_stride + start + i] = points_i[66];
+            points[67 * points_stride + start + i] = points_i[67];
+            points[68 * points_stride + start + i] = points_i[68];
+            points[69 * points_stride + start + i] = points_i[69];
+            points[70 * points_stride + start + i] = points_i[70];
+            points[71 * points_stride + start + i] = points_i[71];
+            points[72 * points_stride + start + i] = points_i[72];
+            points[73 * points_stride + start + i] = points_i[73];
+            points[74 * points_stride + start + i] = points_i[74];
+            points[75 * points_stride + start + i] = points_i[75];
+            points[76 * points_stride + start + i] = points_i[76];
+            points[77 * points_stride + start + i] = points_i[77];
+            points[78 * points_stride + start + i] = points_i[78];
+            points[79 * points_stride + start + i] = points_i[79];
+            points[80 * points_stride + start + i] = points_i[80];
+            points[81 * points_stride + start + i] = points_i[81];
+            points[82 * points_stride + start + i] = points_i[82];
+            points[83 * points_stride + start + i] = points_i[83];
+            points[84 * points_stride + start + i] = points_i[84];
+            points[85 * points_stride + start + i] = points_i[85];
+            points[86 * points_stride + start + i] = points_i[86];
+            points[87 * points_stride + start + i] = points_i[87];
+            points[88 * points_stride + start + i] = points_i[88];
+            points[89 * points_stride + start + i] = points_i[89];
+            points[90 * points_stride + start + i] = points_i[90];
+            points[91 * points_stride + start + i] = points_i[91];
+            points[92 * points_stride + start + i] = points_i[92];
+            points[93 * points_stride + start + i] = points_i[93];
+            points[94 * points_stride + start + i] = points_i[94];
+            points[95 * points_stride + start + i] = points_i[95];
+            points[96 * points_stride + start + i] = points_i[96];
+            points[97 * points_stride + start + i] = points_i[97];
+            points[98 * points_stride + start + i] = points_i[98];
+            points[99 * points_stride + start + i] = points_i[99];
+            points[100 * points_stride + start + i] = points_i[100];
+            points[101 * points_stride + start + i] = points_i[101];
+            points[102 * points_stride + start + i] = points_i[102];
+            points[103 * points_stride + start + i] = points_i[103];
+            points[104 * points_stride + start + i] = points_i[104];
+            points[105 * points_stride + start + i] = points_i[105];
+            points[106 * points_stride + start + i] = points_i[106];
+            points[107 * points_stride + start + i] = points_i[107];
+            points[108 * points_stride + start + i] = points_i[108];
+            points[109 * points_stride + start + i] = points_i[109];
+            points[110 * points_stride + start + i] = points_i[110];
+            points[111 * points_stride + start + i] = points_i[111];
+            points[112 * points_stride + start + i] = points_i[112];
+            points[113 * points_stride + start + i] = points_i[113];
+            points[114 * points_stride + start + i] = points_i[114];
+            points[115 * points_stride + start + i] = points_i[115];
+            points[116 * points_stride + start + i] = points_i[116];
+            points[117 * points_stride + start + i] = points_i[117];
+            points[118 * points_stride + start + i] = points_i[118];
+            points[119 * points_stride + start + i] = points_i[119];
+            points[120 * points_stride + start + i] = points_i[120];
+            points[121 * points_stride + start + i] = points_i[121];
+            points[122 * points_stride + start + i] = points_i[122];
+            points[123 * points_stride + start + i] = points_i[123];
+            points[124 * points_stride + start + i] = points_i[124];
+            points[125 * points_stride + start + i] = points_i[125];
+            points[126 * points_stride + start + i] = points_i[126];
+            points[127 * points_stride + start + i] = points_i[127];
+            points[128 * points_stride + start + i] = points_i[128];
+            points[129 * points_stride + start + i] = points_i[129];
+            points[130 * points_stride + start + i] = points_i[130];
+            points[131 * points_stride + start + i] = points_i[131];
         }
     }
 }
@@ -1886,6 +2061,231 @@ void delta_condition_number_batch(size_t n, const delta_params *params,
             delta_condition_number_kernel(0, &local, q_i, sines_i, cosines_i, kappa_i);
             kappa[start + i] = kappa_i[0];
             kappa[kappa_stride + start + i] = kappa_i[1];
+        }
+    }
+}
+
+CF_INLINE void delta_constraint_kernel(const int single, const delta_params *params,
+    const real_t q[3], const real_t *sines,
+    const real_t *cosines, real_t factors[2])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t L = params->L;
+    const real_t l = params->l;
+    const real_t alpha1 = params->alpha1;
+    const real_t alpha2 = params->alpha2;
+    const real_t alpha3 = params->alpha3;
+    const real_t theta1 = q[0];
+    const real_t theta2 = q[1];
+    const real_t theta3 = q[2];
+    const real_t s_alpha1 = sines[0];
+    const real_t c_alpha1 = cosines[0];
+    const real_t s_alpha2 = sines[1];
+    const real_t c_alpha2 = cosines[1];
+    const real_t s_alpha3 = sines[2];
+    const real_t c_alpha3 = cosines[2];
+    const real_t s1 = sines[3];
+    const real_t c1 = cosines[3];
+    const real_t s2 = sines[4];
+    const real_t c2 = cosines[4];
+    const real_t s3 = sines[5];
+    const real_t c3 = cosines[5];
+    const real_t t1 = c_alpha1 * s_alpha2;
+    const real_t t2 = L * s1;
+    const real_t u_z = t2 - L * s2;
+    const real_t t3 = L * c1;
+    const real_t t4 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t3;
+    const real_t t5 = L * c2;
+    const real_t t6 = t4 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t5);
+    const real_t t7 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t3;
+    const real_t t8 = t7 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t5);
+    const real_t size_u = cf_sqrt(u_z * u_z + t6 * t6 + t8 * t8);
+    const real_t v_z = t2 - L * s3;
+    const real_t t9 = L * c3;
+    const real_t t10 = t4 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t9);
+    const real_t t11 = t7 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9);
+    const real_t size_v = cf_sqrt(v_z * v_z + t10 * t10 + t11 * t11);
+    const real_t size = f + e + L + l;
+    const real_t t12 = size * CLOSEDFORM_VANISHING;
+    const int all_same = size_u + size_v <= t12;
+    const int same = size_u <= t12;
+    const real_t D = cf_rarely(single, same, size_v, size_u);
+    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
+    const real_t t13 = cf_rarely(single, same, t6, t10);
+    const real_t t14 = cf_rarely(single, same, t10, t6);
+    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), t14 / cf_divisor(single, all_same, D));
+    const real_t t15 = cf_rarely(single, same, t11, t8);
+    const real_t t16 = cf_select(all_same, CLOSEDFORM_C(0.0), t15 / cf_divisor(single, all_same, D));
+    const real_t t17 = cf_rarely(single, same, t8, t11);
+    const real_t t18 = cf_rarely(single, same, v_z, u_z);
+    const real_t E_13 = cf_select(all_same, CLOSEDFORM_C(0.0), t18 / cf_divisor(single, all_same, D));
+    const real_t t19 = cf_rarely(single, same, u_z, v_z);
+    const real_t t20 = E_11 * t13 + t16 * t17 + E_13 * t19;
+    const real_t t21 = t13 - E_11 * t20;
+    const real_t t22 = t17 - t16 * t20;
+    const real_t m_z = t19 - E_13 * t20;
+    const real_t t23 = E_11 * t21 + t16 * t22 + E_13 * m_z;
+    const real_t t24 = t21 - E_11 * t23;
+    const real_t t25 = t22 - t16 * t23;
+    const real_t n_z = m_z - E_13 * t23;
+    const real_t j = cf_sqrt(t24 * t24 + t25 * t25 + n_z * n_z);
+    const int in_line = j <= t12;
+    const real_t t26 = t13 * (t14 - t13) + t17 * (t15 - t17) + t19 * (t18 - t19);
+    const real_t t27 = t26 / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
+    const real_t t28 = cf_select(in_line, CLOSEDFORM_C(0.0), t27);
+    const real_t rho = cf_sqrt(X * X + t28 * t28);
+    const real_t t29 = l - rho;
+    const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t12, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
+    const real_t t30 = cf_sign(E_13);
+    const real_t t31 = E_11 * t30;
+    const real_t t32 = E_13 + t30;
+    const real_t t33 = cf_nonzero(single, t32);
+    const real_t E_22 = cf_rarely(single, in_line, -(t16 * t31 / t33), t25 / cf_divisor(single, in_line, j));
+    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t30 / t33, t24 / cf_divisor(single, in_line, j));
+    const real_t t34 = h * (E_11 * E_22 - t16 * E_21);
+    const real_t E_23 = cf_rarely(single, in_line, -t31, n_z / cf_divisor(single, in_line, j));
+    const real_t t35 = X * E_13 - t28 * E_23;
+    const real_t t36 = t34 - t35;
+    const real_t t37 = s_alpha3 * t36;
+    const real_t t38 = t1 * t37;
+    const real_t t39 = u_z + t36;
+    const real_t t40 = h * (E_11 * E_23 - E_13 * E_21);
+    const real_t t41 = X * t16 - t28 * E_22;
+    const real_t A_12 = t40 + t41;
+    const real_t t42 = t39 * (t11 - A_12);
+    const real_t t43 = c_alpha3 * t1;
+    const real_t t44 = (t16 * E_23 - E_13 * E_22) * h;
+    const real_t t45 = E_11 * X - E_21 * t28;
+    const real_t t46 = t44 - t45;
+    const real_t t47 = v_z + t36;
+    const real_t t48 = t39 * t47;
+    const real_t t49 = t46 * t48;
+    const real_t t50 = c_alpha1 * c_alpha2;
+    const real_t t51 = s_alpha3 * t50;
+    const real_t t52 = s_alpha1 * s_alpha2;
+    const real_t t53 = c_alpha3 * t52;
+    const real_t t54 = t48 * A_12;
+    const real_t t55 = s_alpha1 * c_alpha2;
+    const real_t t56 = s_alpha3 * t55;
+    const real_t t57 = t43 * t49 - t51 * t49 - t53 * t54 + t56 * t54;
+    const real_t t58 = c_alpha3 * t36;
+    const real_t t59 = t55 * t58;
+    const real_t t60 = t47 * (t6 + t46);
+    const real_t t61 = t47 * (t8 - A_12);
+    const real_t t62 = t57 - t59 * t60 + t50 * t60 * t37 - t52 * t58 * t61;
+    const real_t t63 = t39 * (t10 + t46);
+    const real_t t64 = t62 + t61 * t38 + t59 * t63 - t1 * t58 * t63 + t55 * t37 * t42;
+    const int t65 = cf_nought(f) + cf_nought(e) + cf_nought(L) + cf_nought(l) + cf_nought(alpha1) + cf_nought(alpha2) + cf_nought(alpha3) == 0;
+    const int t66 = t65 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t67 = t66 & (CLOSEDFORM_C(0.0) <= L) & (CLOSEDFORM_C(0.0) <= l);
+    const int t68 = cf_nought(theta1) + cf_nought(theta2) + cf_nought(theta3) == 0;
+    const real_t t69 = cf_rarely(single, in_line, -t26, CLOSEDFORM_C(0.0));
+    const int t70 = cf_abs(t69) <= CLOSEDFORM_FEASIBILITY * (size * size);
+    const int t71 = t70 & (-(size * CLOSEDFORM_FEASIBILITY) <= t29);
+    const real_t t72 = cf_poison(single, (!(t67 & t68)) | (!t71));
+    const real_t A_11_above = t44 + t45;
+    const real_t A_13_above = t34 + t35;
+    const real_t t73 = u_z - A_13_above;
+    const real_t t74 = v_z - A_13_above;
+    const real_t t75 = t73 * t74;
+    const real_t t76 = A_11_above * t75;
+    const real_t t77 = t40 - t41;
+    const real_t t78 = t75 * t77;
+    const real_t t79 = t43 * t76 - t51 * t76 - t53 * t78 + t56 * t78;
+    const real_t t80 = c_alpha3 * A_13_above;
+    const real_t t81 = t55 * t80;
+    const real_t t82 = t74 * (t6 - A_11_above);
+    const real_t t83 = s_alpha3 * A_13_above;
+    const real_t t84 = t74 * (t8 + t77);
+    const real_t t85 = t79 - t81 * t82 + t50 * t82 * t83 - t52 * t80 * t84;
+    const real_t t86 = t1 * t83;
+    const real_t t87 = t73 * (t10 - A_11_above);
+    const real_t t88 = t73 * (t11 + t77);
+    const real_t t89 = t85 + t84 * t86 + t81 * t87 - t1 * t80 * t87 + t55 * t83 * t88;
+    factors[0] = t38 * t42 - t64 + t72;
+    factors[1] = t89 - t86 * t88 + t72;
+}
+
+CLOSEDFORM_DISPATCHED
+void delta_constraint(const delta_params *params, const real_t q[3],
+    real_t factors[2])
+{
+    static const signed char factors_degrees[2] = { 3, 3 };
+    delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+    }
+    real_t sines[8], cosines[8];
+    const real_t lanes[8] = { params->alpha1, params->alpha2, params->alpha3, q[0], q[1], q[2] };
+    cf_sincos_lanes(8, lanes, sines, cosines);
+    delta_constraint_kernel(1, params, q, sines, cosines, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(2, factors_degrees, exponent, factors, factors);
+    }
+}
+
+CF_RARE void delta_constraint_other_sizes(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[2];
+        delta_constraint(params, q_i, factors_i);
+        for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void delta_constraint_batch(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    const delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->L), cf_abs(params->l)));
+    if (CF_UNLIKELY((cf_size_excess(dimensions, CF_SIZES_3) & CF_SIGN) != 0)) {
+        delta_constraint_other_sizes(n, params, q, q_stride, factors, factors_stride);
+        return;
+    }
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t sines[6][CLOSEDFORM_BLOCK], cosines[6][CLOSEDFORM_BLOCK];
+        real_t angle_0[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_0[i] = params->alpha1;
+        cf_sincos_block(length, angle_0, sines[0], cosines[0]);
+        real_t angle_1[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_1[i] = params->alpha2;
+        cf_sincos_block(length, angle_1, sines[1], cosines[1]);
+        real_t angle_2[CLOSEDFORM_BLOCK];
+        for (size_t i = 0; i < length; ++i)
+            angle_2[i] = params->alpha3;
+        cf_sincos_block(length, angle_2, sines[2], cosines[2]);
+        cf_sincos_block(length, q + start, sines[3], cosines[3]);
+        cf_sincos_block(length, q + q_stride + start, sines[4], cosines[4]);
+        cf_sincos_block(length, q + 2 * q_stride + start, sines[5], cosines[5]);
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            const real_t sines_i[6] = { sines[0][i], sines[1][i], sines[2][i], sines[3][i], sines[4][i], sines[5][i] };
+            const real_t cosines_i[6] = { cosines[0][i], cosines[1][i], cosines[2][i], cosines[3][i], cosines[4][i], cosines[5][i] };
+            real_t factors_i[2];
+            delta_constraint_kernel(0, &local, q_i, sines_i, cosines_i, factors_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
         }
     }
 }

@@ -38,6 +38,7 @@ __all__ = [
     "determinant",
     "singularities",
     "condition_number",
+    "constraint",
     "ik",
     "workspace_contains",
 ]
@@ -50,6 +51,7 @@ jacobian = _native.function("delta.jacobian")
 determinant = _native.function("delta.determinant")
 singularities = _native.function("delta.singularities")
 condition_number = _native.function("delta.condition_number")
+constraint = _native.function("delta.constraint")
 ik = _native.function("delta.ik", Solutions)
 workspace_contains = _native.function("delta.workspace_contains")
 _nearest = _native.function("delta.nearest")

@@ -199,7 +199,7 @@ void irb2400_jacobian_body_batch(size_t n, const irb2400_params *params,
     real_t *J, size_t J_stride);
 
 /*
- * Joint angles of motor angles.
+ * Joint angles from motor angles: theta3 = m3 - m2.
  *
  * Inputs
  * ------
@@ -210,6 +210,10 @@ void irb2400_jacobian_body_batch(size_t n, const irb2400_params *params,
  * -------
  * q : real_t[6]
  *     theta1 to theta6 in rad, in (-pi, pi].
+ *
+ * Notes
+ * -----
+ * - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
  */
 void irb2400_joints_from_motors(const irb2400_params *params,
     const real_t motors[6], real_t q[6]);
@@ -218,7 +222,7 @@ void irb2400_joints_from_motors_batch(size_t n, const irb2400_params *params,
     real_t *q, size_t q_stride);
 
 /*
- * Motor angles of joint angles.
+ * Motor angles from joint angles: m3 = theta2 + theta3.
  *
  * Inputs
  * ------
@@ -228,6 +232,10 @@ void irb2400_joints_from_motors_batch(size_t n, const irb2400_params *params,
  * Outputs
  * -------
  * motors : real_t[6]
+ *
+ * Notes
+ * -----
+ * - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
  */
 void irb2400_motors_from_joints(const irb2400_params *params, const real_t q[6],
     real_t motors[6]);

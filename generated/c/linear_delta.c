@@ -4,13 +4,14 @@
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 42 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
- *   skeleton: 41 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
+ *   skeleton: 41 compare and select, 129 add, 16 divide, 50 multiply, 5 sqrt
  *   jacobian_parallel: 41 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
  *   jacobian_serial: 41 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
  *   jacobian: 41 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
  *   determinant: 41 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
  *   singularities: 41 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
  *   condition_number: 41 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
+ *   constraint: 41 compare and select, 67 add, 20 divide, 74 multiply, 5 sqrt
  *   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  */
@@ -203,7 +204,7 @@ void linear_delta_fk_batch(size_t n, const linear_delta_params *params,
 }
 
 CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta_params *params,
-    const real_t q[3], real_t points[60])
+    const real_t q[3], real_t points[132])
 {
     const real_t f = params->f;
     const real_t e = params->e;
@@ -219,147 +220,244 @@ CF_INLINE void linear_delta_skeleton_kernel(const int single, const linear_delta
     const real_t t5 = f * CLOSEDFORM_C(0.5);
     const real_t t6 = c1_x - (t4 - t5);
     const real_t t7 = rho1 - rho2;
-    const real_t t8 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t t9 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
-    const real_t c3_y = t8 - t9;
-    const real_t t10 = t6 * t6 + c3_y * c3_y;
-    const real_t size_u = cf_sqrt(t7 * t7 + t10);
-    const real_t t11 = rho1 - rho3;
-    const real_t size_v = cf_sqrt(t11 * t11 + t10);
+    const real_t t8 = e * CLOSEDFORM_C(1.7320508075688772);
+    const real_t t9 = t8 * CLOSEDFORM_C(0.5);
+    const real_t t10 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t9 - t10;
+    const real_t t11 = t6 * t6 + c3_y * c3_y;
+    const real_t size_u = cf_sqrt(t7 * t7 + t11);
+    const real_t t12 = rho1 - rho3;
+    const real_t size_v = cf_sqrt(t12 * t12 + t11);
     const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
-    const real_t t12 = size * CLOSEDFORM_VANISHING;
-    const int all_same = size_u + size_v <= t12;
-    const int same = size_u <= t12;
+    const real_t t13 = size * CLOSEDFORM_VANISHING;
+    const int all_same = size_u + size_v <= t13;
+    const int same = size_u <= t13;
     const real_t D = cf_rarely(single, same, size_v, size_u);
     const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(t6 / cf_divisor(single, all_same, D)));
-    const real_t t13 = cf_rarely(single, same, c3_y, -c3_y);
-    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t13 / cf_divisor(single, all_same, D));
-    const real_t t14 = cf_rarely(single, same, -c3_y, c3_y);
-    const real_t t15 = cf_rarely(single, same, t11, t7);
-    const real_t t16 = cf_select(all_same, CLOSEDFORM_C(0.0), t15 / cf_divisor(single, all_same, D));
-    const real_t t17 = cf_rarely(single, same, t7, t11);
-    const real_t t18 = t6 * E_11 - E_12 * t14 - t16 * t17;
-    const real_t t19 = t6 - E_11 * t18;
-    const real_t m_y = t14 + E_12 * t18;
-    const real_t t20 = t17 + t16 * t18;
-    const real_t t21 = E_11 * t19 - E_12 * m_y - t16 * t20;
-    const real_t t22 = t19 - E_11 * t21;
-    const real_t n_y = m_y + E_12 * t21;
-    const real_t t23 = t20 + t16 * t21;
-    const real_t j = cf_sqrt(t22 * t22 + n_y * n_y + t23 * t23);
-    const int in_line = j <= t12;
-    const real_t t24 = t14 * (t13 - t14) + t17 * (t15 - t17);
-    const real_t t25 = cf_rarely(single, in_line, -t24, CLOSEDFORM_C(0.0));
-    const int t26 = cf_abs(t25) <= CLOSEDFORM_FEASIBILITY * (size * size);
+    const real_t t14 = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t14 / cf_divisor(single, all_same, D));
+    const real_t t15 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t16 = cf_rarely(single, same, t12, t7);
+    const real_t t17 = cf_select(all_same, CLOSEDFORM_C(0.0), t16 / cf_divisor(single, all_same, D));
+    const real_t t18 = cf_rarely(single, same, t7, t12);
+    const real_t t19 = t6 * E_11 - E_12 * t15 - t17 * t18;
+    const real_t t20 = t6 - E_11 * t19;
+    const real_t m_y = t15 + E_12 * t19;
+    const real_t t21 = t18 + t17 * t19;
+    const real_t t22 = E_11 * t20 - E_12 * m_y - t17 * t21;
+    const real_t t23 = t20 - E_11 * t22;
+    const real_t n_y = m_y + E_12 * t22;
+    const real_t t24 = t21 + t17 * t22;
+    const real_t j = cf_sqrt(t23 * t23 + n_y * n_y + t24 * t24);
+    const int in_line = j <= t13;
+    const real_t t25 = t15 * (t14 - t15) + t18 * (t16 - t18);
+    const real_t t26 = cf_rarely(single, in_line, -t25, CLOSEDFORM_C(0.0));
+    const int t27 = cf_abs(t26) <= CLOSEDFORM_FEASIBILITY * (size * size);
     const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
-    const real_t t27 = t24 / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
-    const real_t t28 = cf_select(in_line, CLOSEDFORM_C(0.0), t27);
-    const real_t rho = cf_sqrt(X * X + t28 * t28);
-    const real_t t29 = l - rho;
-    const int t30 = t26 & (-(size * CLOSEDFORM_FEASIBILITY) <= t29);
-    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | (!t30);
-    const real_t t31 = cf_poison(single, failed);
-    const real_t t32 = f + t31;
-    const real_t t33 = CLOSEDFORM_C(0.0) + t31;
-    const real_t t34 = rho1 + t31;
-    const real_t t35 = cf_sign(-t16);
-    const real_t t36 = t16 - t35;
-    const real_t t37 = cf_nonzero(single, t36);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t35 / t37, -(t22 / cf_divisor(single, in_line, j)));
-    const real_t t38 = E_11 * X - t28 * E_21;
-    const real_t slack = cf_max(t29, CLOSEDFORM_C(0.0));
-    const real_t h = cf_select(slack <= t12, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
-    const real_t t39 = E_11 * t35;
-    const real_t t40 = cf_rarely(single, in_line, t39, t23 / cf_divisor(single, in_line, j));
-    const real_t E_22 = cf_rarely(single, in_line, E_12 * t39 / t37, n_y / cf_divisor(single, in_line, j));
-    const real_t t41 = h * (E_12 * t40 - t16 * E_22);
-    const real_t t42 = c1_x + (t38 + t41);
-    const real_t t43 = E_12 * X - t28 * E_22;
-    const real_t t44 = h * (E_11 * t40 - t16 * E_21);
-    const real_t A_12 = t43 - t44;
-    const real_t t45 = A_12 + t31;
-    const real_t t46 = t16 * X - t28 * t40;
-    const real_t t47 = h * (E_12 * E_21 - E_11 * E_22);
-    const real_t t48 = rho1 - (t46 - t47) + t31;
-    const real_t t49 = -t5 + t31;
-    const real_t t50 = t9 + t31;
-    const real_t t51 = rho2 + t31;
-    const real_t t52 = t42 - t4 + t31;
-    const real_t t53 = -t9 + t31;
-    const real_t t54 = rho3 + t31;
-    const real_t t55 = c1_x + (t38 - t41);
-    const real_t A_12_above = t43 + t44;
-    const real_t t56 = A_12_above + t31;
-    const real_t t57 = rho1 - (t46 + t47) + t31;
-    const real_t t58 = t55 - t4 + t31;
-    points[0] = t32;
-    points[1] = t33;
-    points[2] = t33;
-    points[3] = t32;
-    points[4] = t33;
-    points[5] = t34;
-    points[6] = e + t42 + t31;
-    points[7] = t45;
-    points[8] = t48;
-    points[9] = t49;
-    points[10] = t50;
-    points[11] = t33;
-    points[12] = t49;
-    points[13] = t50;
-    points[14] = t51;
-    points[15] = t52;
-    points[16] = t8 + A_12 + t31;
-    points[17] = t48;
-    points[18] = t49;
-    points[19] = t53;
-    points[20] = t33;
-    points[21] = t49;
-    points[22] = t53;
-    points[23] = t54;
-    points[24] = t52;
-    points[25] = A_12 - t8 + t31;
-    points[26] = t48;
-    points[27] = t42 + t31;
-    points[28] = t45;
-    points[29] = t48;
-    points[30] = t32;
-    points[31] = t33;
-    points[32] = t33;
-    points[33] = t32;
-    points[34] = t33;
-    points[35] = t34;
-    points[36] = e + t55 + t31;
-    points[37] = t56;
-    points[38] = t57;
-    points[39] = t49;
-    points[40] = t50;
-    points[41] = t33;
-    points[42] = t49;
-    points[43] = t50;
-    points[44] = t51;
-    points[45] = t58;
-    points[46] = t8 + A_12_above + t31;
-    points[47] = t57;
-    points[48] = t49;
-    points[49] = t53;
-    points[50] = t33;
-    points[51] = t49;
-    points[52] = t53;
-    points[53] = t54;
-    points[54] = t58;
-    points[55] = A_12_above - t8 + t31;
-    points[56] = t57;
-    points[57] = t55 + t31;
-    points[58] = t56;
-    points[59] = t57;
+    const real_t t28 = t25 / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
+    const real_t t29 = cf_select(in_line, CLOSEDFORM_C(0.0), t28);
+    const real_t rho = cf_sqrt(X * X + t29 * t29);
+    const real_t t30 = l - rho;
+    const int t31 = t27 & (-(size * CLOSEDFORM_FEASIBILITY) <= t30);
+    const int failed = (!(t2 & (CLOSEDFORM_C(0.0) <= l) & t3)) | (!t31);
+    const real_t t32 = cf_poison(single, failed);
+    const real_t t33 = f + t32;
+    const real_t t34 = CLOSEDFORM_C(0.0) + t32;
+    const real_t t35 = rho1 + t32;
+    const real_t t36 = e + c1_x;
+    const real_t t37 = cf_sign(-t17);
+    const real_t t38 = t17 - t37;
+    const real_t t39 = cf_nonzero(single, t38);
+    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t37 / t39, -(t23 / cf_divisor(single, in_line, j)));
+    const real_t t40 = E_11 * X - t29 * E_21;
+    const real_t slack = cf_max(t30, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t13, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
+    const real_t t41 = E_11 * t37;
+    const real_t t42 = cf_rarely(single, in_line, t41, t24 / cf_divisor(single, in_line, j));
+    const real_t E_22 = cf_rarely(single, in_line, E_12 * t41 / t39, n_y / cf_divisor(single, in_line, j));
+    const real_t t43 = h * (E_12 * t42 - t17 * E_22);
+    const real_t A_11 = t40 + t43;
+    const real_t t44 = t36 + A_11 + t32;
+    const real_t t45 = E_12 * X - t29 * E_22;
+    const real_t t46 = h * (E_11 * t42 - t17 * E_21);
+    const real_t A_12 = t45 - t46;
+    const real_t t47 = A_12 + t32;
+    const real_t t48 = t17 * X - t29 * t42;
+    const real_t t49 = h * (E_12 * E_21 - E_11 * E_22);
+    const real_t t50 = rho1 - (t48 - t49) + t32;
+    const real_t t51 = t4 + t32;
+    const real_t t52 = -t4 + t32;
+    const real_t t53 = -t5 + t32;
+    const real_t t54 = t10 + t32;
+    const real_t t55 = rho2 + t32;
+    const real_t t56 = c1_x - t4;
+    const real_t t57 = t56 + A_11;
+    const real_t t58 = t57 + t32;
+    const real_t t59 = t8 * CLOSEDFORM_C(0.25);
+    const real_t t60 = -(t5 + t59) + t32;
+    const real_t t61 = e * CLOSEDFORM_C(0.25);
+    const real_t t62 = t10 - t61;
+    const real_t t63 = t62 + t32;
+    const real_t t64 = t59 - t5 + t32;
+    const real_t t65 = t10 + t61;
+    const real_t t66 = t65 + t32;
+    const real_t t67 = t57 - t59 + t32;
+    const real_t t68 = t9 - t61;
+    const real_t t69 = t59 + t57 + t32;
+    const real_t t70 = t9 + t61;
+    const real_t t71 = -t10 + t32;
+    const real_t t72 = rho3 + t32;
+    const real_t t73 = -t65 + t32;
+    const real_t t74 = -t62 + t32;
+    const real_t A_11_above = t40 - t43;
+    const real_t t75 = t36 + A_11_above + t32;
+    const real_t A_12_above = t45 + t46;
+    const real_t t76 = A_12_above + t32;
+    const real_t t77 = rho1 - (t48 + t49) + t32;
+    const real_t t78 = t56 + A_11_above;
+    const real_t t79 = t78 + t32;
+    const real_t t80 = t78 - t59 + t32;
+    const real_t t81 = t59 + t78 + t32;
+    points[0] = t33;
+    points[1] = t34;
+    points[2] = t34;
+    points[3] = t33;
+    points[4] = t34;
+    points[5] = t35;
+    points[6] = t44;
+    points[7] = t47;
+    points[8] = t50;
+    points[9] = t33;
+    points[10] = t51;
+    points[11] = t35;
+    points[12] = t33;
+    points[13] = t52;
+    points[14] = t35;
+    points[15] = t44;
+    points[16] = t4 + A_12 + t32;
+    points[17] = t50;
+    points[18] = t44;
+    points[19] = A_12 - t4 + t32;
+    points[20] = t50;
+    points[21] = t53;
+    points[22] = t54;
+    points[23] = t34;
+    points[24] = t53;
+    points[25] = t54;
+    points[26] = t55;
+    points[27] = t58;
+    points[28] = t9 + A_12 + t32;
+    points[29] = t50;
+    points[30] = t60;
+    points[31] = t63;
+    points[32] = t55;
+    points[33] = t64;
+    points[34] = t66;
+    points[35] = t55;
+    points[36] = t67;
+    points[37] = t68 + A_12 + t32;
+    points[38] = t50;
+    points[39] = t69;
+    points[40] = t70 + A_12 + t32;
+    points[41] = t50;
+    points[42] = t53;
+    points[43] = t71;
+    points[44] = t34;
+    points[45] = t53;
+    points[46] = t71;
+    points[47] = t72;
+    points[48] = t58;
+    points[49] = A_12 - t9 + t32;
+    points[50] = t50;
+    points[51] = t64;
+    points[52] = t73;
+    points[53] = t72;
+    points[54] = t60;
+    points[55] = t74;
+    points[56] = t72;
+    points[57] = t69;
+    points[58] = A_12 - t70 + t32;
+    points[59] = t50;
+    points[60] = t67;
+    points[61] = A_12 - t68 + t32;
+    points[62] = t50;
+    points[63] = c1_x + A_11 + t32;
+    points[64] = t47;
+    points[65] = t50;
+    points[66] = t33;
+    points[67] = t34;
+    points[68] = t34;
+    points[69] = t33;
+    points[70] = t34;
+    points[71] = t35;
+    points[72] = t75;
+    points[73] = t76;
+    points[74] = t77;
+    points[75] = t33;
+    points[76] = t51;
+    points[77] = t35;
+    points[78] = t33;
+    points[79] = t52;
+    points[80] = t35;
+    points[81] = t75;
+    points[82] = t4 + A_12_above + t32;
+    points[83] = t77;
+    points[84] = t75;
+    points[85] = A_12_above - t4 + t32;
+    points[86] = t77;
+    points[87] = t53;
+    points[88] = t54;
+    points[89] = t34;
+    points[90] = t53;
+    points[91] = t54;
+    points[92] = t55;
+    points[93] = t79;
+    points[94] = t9 + A_12_above + t32;
+    points[95] = t77;
+    points[96] = t60;
+    points[97] = t63;
+    points[98] = t55;
+    points[99] = t64;
+    points[100] = t66;
+    points[101] = t55;
+    points[102] = t80;
+    points[103] = t68 + A_12_above + t32;
+    points[104] = t77;
+    points[105] = t81;
+    points[106] = t70 + A_12_above + t32;
+    points[107] = t77;
+    points[108] = t53;
+    points[109] = t71;
+    points[110] = t34;
+    points[111] = t53;
+    points[112] = t71;
+    points[113] = t72;
+    points[114] = t79;
+    points[115] = A_12_above - t9 + t32;
+    points[116] = t77;
+    points[117] = t64;
+    points[118] = t73;
+    points[119] = t72;
+    points[120] = t60;
+    points[121] = t74;
+    points[122] = t72;
+    points[123] = t81;
+    points[124] = A_12_above - t70 + t32;
+    points[125] = t77;
+    points[126] = t80;
+    points[127] = A_12_above - t68 + t32;
+    points[128] = t77;
+    points[129] = c1_x + A_11_above + t32;
+    points[130] = t76;
+    points[131] = t77;
 }
 
 CLOSEDFORM_DISPATCHED
 void linear_delta_skeleton(const linear_delta_params *params,
-    const real_t q[3], real_t points[60])
+    const real_t q[3], real_t points[132])
 {
     static const signed char q_degrees[3] = { 1, 1, 1 };
-    static const signed char points_degrees[60] = { 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
+    static const signed char points_degrees[132] = { 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
     real_t q_scaled[3];
     linear_delta_params params_scaled;
     int exponent = 0;
@@ -376,7 +474,7 @@ void linear_delta_skeleton(const linear_delta_params *params,
     }
     linear_delta_skeleton_kernel(1, params, q, points);
     if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(60, points_degrees, exponent, points, points);
+        cf_rescale(132, points_degrees, exponent, points, points);
     }
 }
 
@@ -396,9 +494,9 @@ CF_RARE void linear_delta_skeleton_other_sizes(size_t n, const real_t dimensions
         if (!(linear_delta_skeleton_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
         real_t q_i[3];
         for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t points_i[60];
+        real_t points_i[132];
         linear_delta_skeleton(params, q_i, points_i);
-        for (size_t k = 0; k < 60; ++k) points[k * points_stride + i] = points_i[k];
+        for (size_t k = 0; k < 132; ++k) points[k * points_stride + i] = points_i[k];
 
     }
 }
@@ -415,7 +513,7 @@ void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            real_t points_i[60];
+            real_t points_i[132];
             linear_delta_skeleton_kernel(0, &local, q_i, points_i);
             points[start + i] = points_i[0];
             points[points_stride + start + i] = points_i[1];
@@ -477,6 +575,78 @@ void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
             points[57 * points_stride + start + i] = points_i[57];
             points[58 * points_stride + start + i] = points_i[58];
             points[59 * points_stride + start + i] = points_i[59];
+            points[60 * points_stride + start + i] = points_i[60];
+            points[61 * points_stride + start + i] = points_i[61];
+            points[62 * points_stride + start + i] = points_i[62];
+            points[63 * points_stride + start + i] = points_i[63];
+            points[64 * points_stride + start + i] = points_i[64];
+            points[65 * points_stride + start + i] = points_i[65];
+            points[66 * points_stride + start + i] = points_i[66];
+            points[67 * points_stride + start + i] = points_i[67];
+            points[68 * points_stride + start + i] = points_i[68];
+            points[69 * points_stride + start + i] = points_i[69];
+            points[70 * points_stride + start + i] = points_i[70];
+            points[71 * points_stride + start + i] = points_i[71];
+            points[72 * points_stride + start + i] = points_i[72];
+            points[73 * points_stride + start + i] = points_i[73];
+            points[74 * points_stride + start + i] = points_i[74];
+            points[75 * points_stride + start + i] = points_i[75];
+            points[76 * points_stride + start + i] = points_i[76];
+            points[77 * points_stride + start + i] = points_i[77];
+            points[78 * points_stride + start + i] = points_i[78];
+            points[79 * points_stride + start + i] = points_i[79];
+            points[80 * points_stride + start + i] = points_i[80];
+            points[81 * points_stride + start + i] = points_i[81];
+            points[82 * points_stride + start + i] = points_i[82];
+            points[83 * points_stride + start + i] = points_i[83];
+            points[84 * points_stride + start + i] = points_i[84];
+            points[85 * points_stride + start + i] = points_i[85];
+            points[86 * points_stride + start + i] = points_i[86];
+            points[87 * points_stride + start + i] = points_i[87];
+            points[88 * points_stride + start + i] = points_i[88];
+            points[89 * points_stride + start + i] = points_i[89];
+            points[90 * points_stride + start + i] = points_i[90];
+            points[91 * points_stride + start + i] = points_i[91];
+            points[92 * points_stride + start + i] = points_i[92];
+            points[93 * points_stride + start + i] = points_i[93];
+            points[94 * points_stride + start + i] = points_i[94];
+            points[95 * points_stride + start + i] = points_i[95];
+            points[96 * points_stride + start + i] = points_i[96];
+            points[97 * points_stride + start + i] = points_i[97];
+            points[98 * points_stride + start + i] = points_i[98];
+            points[99 * points_stride + start + i] = points_i[99];
+            points[100 * points_stride + start + i] = points_i[100];
+            points[101 * points_stride + start + i] = points_i[101];
+            points[102 * points_stride + start + i] = points_i[102];
+            points[103 * points_stride + start + i] = points_i[103];
+            points[104 * points_stride + start + i] = points_i[104];
+            points[105 * points_stride + start + i] = points_i[105];
+            points[106 * points_stride + start + i] = points_i[106];
+            points[107 * points_stride + start + i] = points_i[107];
+            points[108 * points_stride + start + i] = points_i[108];
+            points[109 * points_stride + start + i] = points_i[109];
+            points[110 * points_stride + start + i] = points_i[110];
+            points[111 * points_stride + start + i] = points_i[111];
+            points[112 * points_stride + start + i] = points_i[112];
+            points[113 * points_stride + start + i] = points_i[113];
+            points[114 * points_stride + start + i] = points_i[114];
+            points[115 * points_stride + start + i] = points_i[115];
+            points[116 * points_stride + start + i] = points_i[116];
+            points[117 * points_stride + start + i] = points_i[117];
+            points[118 * points_stride + start + i] = points_i[118];
+            points[119 * points_stride + start + i] = points_i[119];
+            points[120 * points_stride + start + i] = points_i[120];
+            points[121 * points_stride + start + i] = points_i[121];
+            points[122 * points_stride + start + i] = points_i[122];
+            points[123 * points_stride + start + i] = points_i[123];
+            points[124 * points_stride + start + i] = points_i[124];
+            points[125 * points_stride + start + i] = points_i[125];
+            points[126 * points_stride + start + i] = points_i[126];
+            points[127 * points_stride + start + i] = points_i[127];
+            points[128 * points_stride + start + i] = points_i[128];
+            points[129 * points_stride + start + i] = points_i[129];
+            points[130 * points_stride + start + i] = points_i[130];
+            points[131 * points_stride + start + i] = points_i[131];
         }
         cf_word excess = 0;
         for (size_t i = 0; i < length; ++i)
@@ -1538,6 +1708,175 @@ void linear_delta_condition_number_batch(size_t n, const linear_delta_params *pa
             excess |= linear_delta_condition_number_excess(dimensions, q + start, q_stride, i);
         if (CF_UNLIKELY((excess & CF_SIGN) != 0))
             linear_delta_condition_number_other_sizes(length, dimensions, params, q + start, q_stride, kappa + start, kappa_stride);
+    }
+}
+
+CF_INLINE void linear_delta_constraint_kernel(const int single, const linear_delta_params *params,
+    const real_t q[3], real_t factors[2])
+{
+    const real_t f = params->f;
+    const real_t e = params->e;
+    const real_t l = params->l;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t rho3 = q[2];
+    const real_t t1 = rho1 - rho2;
+    const real_t c2_x = e * CLOSEDFORM_C(0.5) - f * CLOSEDFORM_C(0.5);
+    const real_t t2 = f - e - c2_x;
+    const real_t t3 = e * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t t4 = f * CLOSEDFORM_C(1.7320508075688772) * CLOSEDFORM_C(0.5);
+    const real_t c3_y = t3 - t4;
+    const real_t t5 = t2 * t2 + c3_y * c3_y;
+    const real_t size_u = cf_sqrt(t1 * t1 + t5);
+    const real_t t6 = rho1 - rho3;
+    const real_t size_v = cf_sqrt(t6 * t6 + t5);
+    const real_t size = f + e + l + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
+    const real_t t7 = size * CLOSEDFORM_VANISHING;
+    const int all_same = size_u + size_v <= t7;
+    const int same = size_u <= t7;
+    const real_t D = cf_rarely(single, same, size_v, size_u);
+    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
+    const real_t t8 = cf_rarely(single, same, t6, t1);
+    const real_t t9 = cf_select(all_same, CLOSEDFORM_C(0.0), t8 / cf_divisor(single, all_same, D));
+    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(t2 / cf_divisor(single, all_same, D)));
+    const real_t t10 = cf_rarely(single, same, c3_y, -c3_y);
+    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t10 / cf_divisor(single, all_same, D));
+    const real_t t11 = cf_rarely(single, same, -c3_y, c3_y);
+    const real_t t12 = cf_rarely(single, same, t1, t6);
+    const real_t t13 = t2 * E_11 - E_12 * t11 - t9 * t12;
+    const real_t t14 = t2 - E_11 * t13;
+    const real_t m_y = t11 + E_12 * t13;
+    const real_t t15 = t12 + t9 * t13;
+    const real_t t16 = E_11 * t14 - E_12 * m_y - t9 * t15;
+    const real_t t17 = t14 - E_11 * t16;
+    const real_t n_y = m_y + E_12 * t16;
+    const real_t t18 = t15 + t9 * t16;
+    const real_t j = cf_sqrt(t17 * t17 + n_y * n_y + t18 * t18);
+    const int in_line = j <= t7;
+    const real_t t19 = t11 * (t10 - t11) + t12 * (t8 - t12);
+    const real_t t20 = t19 / cf_divisor(single, in_line, CLOSEDFORM_C(2.0) * j);
+    const real_t t21 = cf_select(in_line, CLOSEDFORM_C(0.0), t20);
+    const real_t t22 = cf_sign(-t9);
+    const real_t t23 = E_11 * t22;
+    const real_t t24 = cf_rarely(single, in_line, t23, t18 / cf_divisor(single, in_line, j));
+    const real_t t25 = X * t9 - t21 * t24;
+    const real_t rho = cf_sqrt(X * X + t21 * t21);
+    const real_t t26 = l - rho;
+    const real_t slack = cf_max(t26, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t7, CLOSEDFORM_C(0.0), cf_root(single, slack * (l + rho)));
+    const real_t t27 = t9 - t22;
+    const real_t t28 = cf_nonzero(single, t27);
+    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) + E_11 * E_11 * t22 / t28, -(t17 / cf_divisor(single, in_line, j)));
+    const real_t E_22 = cf_rarely(single, in_line, E_12 * t23 / t28, n_y / cf_divisor(single, in_line, j));
+    const real_t t29 = h * (E_12 * E_21 - E_11 * E_22);
+    const real_t t30 = t25 - t29;
+    const real_t A_23 = t1 - t30;
+    const real_t t31 = CLOSEDFORM_C(0.75) * t30;
+    const real_t t32 = X * E_12 - t21 * E_22;
+    const real_t t33 = h * (E_11 * t24 - t9 * E_21);
+    const real_t A_12 = t32 - t33;
+    const real_t t34 = E_11 * X - E_21 * t21;
+    const real_t t35 = h * (E_12 * t24 - t9 * E_22);
+    const real_t A_11 = t34 + t35;
+    const real_t t36 = CLOSEDFORM_C(1.7320508075688772) * A_11 * A_23;
+    const real_t A_33 = t6 - t30;
+    const real_t t37 = (t2 + A_11) * (CLOSEDFORM_C(1.7320508075688772) * t30);
+    const real_t t38 = t36 * A_33 * CLOSEDFORM_C(0.5) + A_33 * t37 * CLOSEDFORM_C(0.25);
+    const real_t t39 = t38 - A_33 * t31 * (c3_y + A_12) + A_23 * t37 * CLOSEDFORM_C(0.25);
+    const int t40 = cf_nought(f) + cf_nought(e) + cf_nought(l) == 0;
+    const int t41 = t40 & (CLOSEDFORM_C(0.0) <= f) & (CLOSEDFORM_C(0.0) <= e);
+    const int t42 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t43 = cf_rarely(single, in_line, -t19, CLOSEDFORM_C(0.0));
+    const int t44 = cf_abs(t43) <= CLOSEDFORM_FEASIBILITY * (size * size);
+    const int t45 = t44 & (-(size * CLOSEDFORM_FEASIBILITY) <= t26);
+    const int failed = (!(t41 & (CLOSEDFORM_C(0.0) <= l) & t42)) | (!t45);
+    const real_t t46 = cf_poison(single, failed);
+    const real_t t47 = t25 + t29;
+    const real_t A_23_above = t1 - t47;
+    const real_t t48 = CLOSEDFORM_C(0.75) * t47;
+    const real_t A_12_above = t32 + t33;
+    const real_t A_11_above = t34 - t35;
+    const real_t t49 = CLOSEDFORM_C(1.7320508075688772) * A_11_above;
+    const real_t A_33_above = t6 - t47;
+    const real_t t50 = t49 * A_23_above * A_33_above * CLOSEDFORM_C(0.5);
+    const real_t t51 = (t2 + A_11_above) * (CLOSEDFORM_C(1.7320508075688772) * t47);
+    const real_t t52 = t50 + A_33_above * t51 * CLOSEDFORM_C(0.25) - A_33_above * t48 * (c3_y + A_12_above);
+    const real_t t53 = A_23_above * t48 * (c3_y - A_12_above) - (t52 + A_23_above * t51 * CLOSEDFORM_C(0.25));
+    factors[0] = A_23 * t31 * (c3_y - A_12) - t39 + t46;
+    factors[1] = t53 + t46;
+}
+
+CLOSEDFORM_DISPATCHED
+void linear_delta_constraint(const linear_delta_params *params,
+    const real_t q[3], real_t factors[2])
+{
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char factors_degrees[2] = { 3, 3 };
+    real_t q_scaled[3];
+    linear_delta_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_max(cf_abs(params->l), cf_abs(q[0]))), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.f = CF_LIBM(ldexp)(params->f, -exponent);
+        params_scaled.e = CF_LIBM(ldexp)(params->e, -exponent);
+        params_scaled.l = CF_LIBM(ldexp)(params->l, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
+    linear_delta_constraint_kernel(1, params, q, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(2, factors_degrees, exponent, factors, factors);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word linear_delta_constraint_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_3);
+}
+
+CF_RARE void linear_delta_constraint_other_sizes(size_t n, const real_t dimensions,
+    const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(linear_delta_constraint_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[2];
+        linear_delta_constraint(params, q_i, factors_i);
+        for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void linear_delta_constraint_batch(size_t n, const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    const linear_delta_params local = *params;
+    const real_t dimensions = cf_max(cf_max(cf_abs(params->f), cf_abs(params->e)), cf_abs(params->l));
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            real_t factors_i[2];
+            linear_delta_constraint_kernel(0, &local, q_i, factors_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
+        }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= linear_delta_constraint_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            linear_delta_constraint_other_sizes(length, dimensions, params, q + start, q_stride, factors + start, factors_stride);
     }
 }
 

@@ -32,7 +32,7 @@ struct FkResult {
 
 [[nodiscard]] inline auto skeleton(std::span<const real_t, 3> q, const Parameters &parameters = defaults) noexcept
 {
-    std::array<real_t, 60> result;
+    std::array<real_t, 132> result;
     linear_delta_skeleton(&parameters, q.data(), result.data());
     return result;
 }
@@ -76,6 +76,13 @@ struct FkResult {
 {
     std::array<real_t, 2> result;
     linear_delta_condition_number(&parameters, q.data(), result.data());
+    return result;
+}
+
+[[nodiscard]] inline auto constraint(std::span<const real_t, 3> q, const Parameters &parameters = defaults) noexcept
+{
+    std::array<real_t, 2> result;
+    linear_delta_constraint(&parameters, q.data(), result.data());
     return result;
 }
 

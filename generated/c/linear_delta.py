@@ -38,6 +38,7 @@ __all__ = [
     "determinant",
     "singularities",
     "condition_number",
+    "constraint",
     "ik",
     "workspace_contains",
 ]
@@ -50,6 +51,7 @@ jacobian = _native.function("linear_delta.jacobian")
 determinant = _native.function("linear_delta.determinant")
 singularities = _native.function("linear_delta.singularities")
 condition_number = _native.function("linear_delta.condition_number")
+constraint = _native.function("linear_delta.constraint")
 ik = _native.function("linear_delta.ik", Solutions)
 workspace_contains = _native.function("linear_delta.workspace_contains")
 _nearest = _native.function("linear_delta.nearest")

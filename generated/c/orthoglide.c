@@ -5,8 +5,8 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 38 compare and select, 45 add, 5 divide, 55 multiply, 5 sqrt
  *   fk where nothing vanishes: 25 compare and select, 31 add, 4 divide, 37 multiply, 5 sqrt
- *   skeleton: 37 compare and select, 50 add, 10 divide, 47 multiply, 5 sqrt
- *   skeleton where nothing vanishes: 24 compare and select, 36 add, 7 divide, 32 multiply, 5 sqrt
+ *   skeleton: 37 compare and select, 76 add, 11 divide, 47 multiply, 5 sqrt
+ *   skeleton where nothing vanishes: 24 compare and select, 62 add, 8 divide, 32 multiply, 5 sqrt
  *   jacobian_parallel: 37 compare and select, 56 add, 10 divide, 47 multiply, 5 sqrt
  *   jacobian_parallel where nothing vanishes: 24 compare and select, 42 add, 7 divide, 32
  *     multiply, 5 sqrt
@@ -24,6 +24,9 @@
  *   condition_number: 37 compare and select, 96 add, 12 divide, 106 multiply, 7 sqrt
  *   condition_number where nothing vanishes: 24 compare and select, 82 add, 9 divide, 91 multiply,
  *     7 sqrt
+ *   constraint: 37 compare and select, 48 add, 10 divide, 55 multiply, 5 sqrt
+ *   constraint where nothing vanishes: 24 compare and select, 34 add, 7 divide, 40 multiply, 5
+ *     sqrt
  *   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
  *   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
  */
@@ -321,7 +324,7 @@ void orthoglide_fk_batch(size_t n, const orthoglide_params *params,
 
 /* Every case. */
 CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthoglide_params *params,
-    const real_t q[3], real_t points[42])
+    const real_t q[3], real_t points[114])
 {
     const real_t L = params->L;
     const real_t rho1 = q[0];
@@ -367,70 +370,157 @@ CF_INLINE void orthoglide_skeleton_whole_kernel(const int single, const orthogli
     const real_t t20 = cf_poison(single, failed);
     const real_t t21 = CLOSEDFORM_C(0.0) + t20;
     const real_t t22 = rho1 + t20;
-    const real_t t23 = rho2 + t20;
-    const real_t t24 = rho3 + t20;
+    const real_t t23 = L * CLOSEDFORM_C(0.0625);
+    const real_t t24 = t23 + t20;
+    const real_t t25 = -t23 + t20;
     const real_t slack = cf_max(t18, CLOSEDFORM_C(0.0));
     const real_t h = cf_select(slack <= t4, CLOSEDFORM_C(0.0), cf_root(single, slack * (L + rho)));
-    const real_t t25 = cf_sign(E_13);
-    const real_t t26 = E_11 * t25;
-    const real_t E_23 = cf_rarely(single, in_line, -t26, n_z / cf_divisor(single, in_line, j));
-    const real_t t27 = E_13 + t25;
-    const real_t t28 = cf_nonzero(single, t27);
-    const real_t E_22 = cf_rarely(single, in_line, -(E_12 * t26 / t28), n_y / cf_divisor(single, in_line, j));
-    const real_t t29 = h * (E_12 * E_23 - E_13 * E_22);
-    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t25 / t28, -(t12 / cf_divisor(single, in_line, j)));
-    const real_t t30 = E_11 * X - E_21 * t17;
-    const real_t t31 = E_12 * X - t17 * E_22;
-    const real_t t32 = (E_11 * E_23 - E_13 * E_21) * h;
-    const real_t t33 = E_13 * X - E_23 * t17;
-    const real_t t34 = h * (E_12 * E_21 - E_11 * E_22);
+    const real_t t26 = cf_sign(E_13);
+    const real_t t27 = E_11 * t26;
+    const real_t E_23 = cf_rarely(single, in_line, -t27, n_z / cf_divisor(single, in_line, j));
+    const real_t t28 = E_13 + t26;
+    const real_t t29 = cf_nonzero(single, t28);
+    const real_t E_22 = cf_rarely(single, in_line, -(E_12 * t27 / t29), n_y / cf_divisor(single, in_line, j));
+    const real_t t30 = h * (E_12 * E_23 - E_13 * E_22);
+    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t26 / t29, -(t12 / cf_divisor(single, in_line, j)));
+    const real_t t31 = E_11 * X - E_21 * t17;
+    const real_t t32 = rho1 + (t30 + t31);
+    const real_t t33 = t32 + t20;
+    const real_t t34 = (E_11 * E_23 - E_13 * E_21) * h;
+    const real_t t35 = E_12 * X - t17 * E_22;
+    const real_t t36 = t34 - t35;
+    const real_t t37 = h * (E_12 * E_21 - E_11 * E_22);
+    const real_t t38 = E_13 * X - E_23 * t17;
+    const real_t t39 = t37 - t38;
+    const real_t t40 = -t39 + t20;
+    const real_t t41 = rho2 + t20;
+    const real_t t42 = -t36 + t20;
+    const real_t t43 = rho3 + t20;
+    const real_t t44 = rho1 - (t30 - t31);
+    const real_t t45 = t44 + t20;
+    const real_t A_12_inner = t34 + t35;
+    const real_t A_13_inner = t37 + t38;
+    const real_t t46 = A_13_inner + t20;
+    const real_t t47 = A_12_inner + t20;
     points[0] = t21;
     points[1] = t21;
     points[2] = t21;
     points[3] = t22;
     points[4] = t21;
     points[5] = t21;
-    points[6] = t21;
-    points[7] = t21;
+    points[6] = t22;
+    points[7] = t24;
     points[8] = t21;
-    points[9] = t21;
-    points[10] = t23;
+    points[9] = t22;
+    points[10] = t25;
     points[11] = t21;
-    points[12] = t21;
-    points[13] = t21;
-    points[14] = t21;
-    points[15] = t21;
-    points[16] = t21;
-    points[17] = t24;
-    points[18] = rho1 + (t29 + t30) + t20;
-    points[19] = t31 - t32 + t20;
-    points[20] = t33 - t34 + t20;
+    points[12] = t33;
+    points[13] = t23 - t36 + t20;
+    points[14] = t40;
+    points[15] = t33;
+    points[16] = -(t23 + t36) + t20;
+    points[17] = t40;
+    points[18] = t21;
+    points[19] = t21;
+    points[20] = t21;
     points[21] = t21;
-    points[22] = t21;
+    points[22] = t41;
     points[23] = t21;
-    points[24] = t22;
-    points[25] = t21;
-    points[26] = t21;
+    points[24] = t21;
+    points[25] = t41;
+    points[26] = t24;
     points[27] = t21;
-    points[28] = t21;
-    points[29] = t21;
-    points[30] = t21;
-    points[31] = t23;
-    points[32] = t21;
-    points[33] = t21;
-    points[34] = t21;
-    points[35] = t21;
+    points[28] = t41;
+    points[29] = t25;
+    points[30] = t33;
+    points[31] = t42;
+    points[32] = t23 - t39 + t20;
+    points[33] = t33;
+    points[34] = t42;
+    points[35] = -(t23 + t39) + t20;
     points[36] = t21;
     points[37] = t21;
-    points[38] = t24;
-    points[39] = rho1 - (t29 - t30) + t20;
-    points[40] = t32 + t31 + t20;
-    points[41] = t34 + t33 + t20;
+    points[38] = t21;
+    points[39] = t21;
+    points[40] = t21;
+    points[41] = t43;
+    points[42] = t24;
+    points[43] = t21;
+    points[44] = t43;
+    points[45] = t25;
+    points[46] = t21;
+    points[47] = t43;
+    points[48] = t23 + t32 + t20;
+    points[49] = t42;
+    points[50] = t40;
+    points[51] = t32 - t23 + t20;
+    points[52] = t42;
+    points[53] = t40;
+    points[54] = t33;
+    points[55] = t42;
+    points[56] = t40;
+    points[57] = t21;
+    points[58] = t21;
+    points[59] = t21;
+    points[60] = t22;
+    points[61] = t21;
+    points[62] = t21;
+    points[63] = t22;
+    points[64] = t24;
+    points[65] = t21;
+    points[66] = t22;
+    points[67] = t25;
+    points[68] = t21;
+    points[69] = t45;
+    points[70] = t23 + A_12_inner + t20;
+    points[71] = t46;
+    points[72] = t45;
+    points[73] = A_12_inner - t23 + t20;
+    points[74] = t46;
+    points[75] = t21;
+    points[76] = t21;
+    points[77] = t21;
+    points[78] = t21;
+    points[79] = t41;
+    points[80] = t21;
+    points[81] = t21;
+    points[82] = t41;
+    points[83] = t24;
+    points[84] = t21;
+    points[85] = t41;
+    points[86] = t25;
+    points[87] = t45;
+    points[88] = t47;
+    points[89] = t23 + A_13_inner + t20;
+    points[90] = t45;
+    points[91] = t47;
+    points[92] = A_13_inner - t23 + t20;
+    points[93] = t21;
+    points[94] = t21;
+    points[95] = t21;
+    points[96] = t21;
+    points[97] = t21;
+    points[98] = t43;
+    points[99] = t24;
+    points[100] = t21;
+    points[101] = t43;
+    points[102] = t25;
+    points[103] = t21;
+    points[104] = t43;
+    points[105] = t23 + t44 + t20;
+    points[106] = t47;
+    points[107] = t46;
+    points[108] = t44 - t23 + t20;
+    points[109] = t47;
+    points[110] = t46;
+    points[111] = t45;
+    points[112] = t47;
+    points[113] = t46;
 }
 
 CLOSEDFORM_DISPATCHED
 CF_APART void orthoglide_skeleton_whole(const orthoglide_params *params, const real_t q[3],
-    real_t points[42])
+    real_t points[114])
 {
     orthoglide_skeleton_whole_kernel(1, params, q, points);
 }
@@ -438,7 +528,7 @@ CF_APART void orthoglide_skeleton_whole(const orthoglide_params *params, const r
 /* Where nothing vanishes; rare is whether something does. */
 CF_INLINE void orthoglide_skeleton_common_kernel(const int single, const real_t one,
     const orthoglide_params *params, const real_t q[3],
-    real_t points[42], real_t rare[1])
+    real_t points[114], real_t rare[1])
 {
     const real_t L = params->L;
     const real_t rho1 = q[0];
@@ -472,64 +562,151 @@ CF_INLINE void orthoglide_skeleton_common_kernel(const int single, const real_t 
     const real_t t19 = cf_poison(single, failed);
     const real_t t20 = CLOSEDFORM_C(0.0) + t19;
     const real_t t21 = rho1 + t19;
-    const real_t t22 = rho2 + t19;
-    const real_t t23 = rho3 + t19;
+    const real_t t22 = L * CLOSEDFORM_C(0.0625);
+    const real_t t23 = t22 + t19;
+    const real_t t24 = -t22 + t19;
     const real_t E_23 = rho3 / cf_divisor(single, j <= t6, j);
     const real_t slack = cf_max(t17, CLOSEDFORM_C(0.0));
     const real_t h = cf_root(single, slack * (L + rho));
-    const real_t t24 = E_12 * E_23 * h;
-    const real_t t25 = t12 / cf_divisor(single, j <= t6, j);
-    const real_t t26 = t7 * X + t15 * t25;
-    const real_t t27 = t7 * E_23 * h;
-    const real_t t28 = t13 / cf_divisor(single, j <= t6, j);
-    const real_t t29 = E_12 * X - t15 * t28;
-    const real_t t30 = t15 * E_23;
-    const real_t t31 = (t7 * t28 + E_12 * t25) * h;
+    const real_t t25 = E_12 * E_23 * h;
+    const real_t t26 = t12 / cf_divisor(single, j <= t6, j);
+    const real_t t27 = t7 * X + t15 * t26;
+    const real_t t28 = rho1 + (t25 - t27);
+    const real_t t29 = t28 + t19;
+    const real_t t30 = t7 * E_23 * h;
+    const real_t t31 = t13 / cf_divisor(single, j <= t6, j);
+    const real_t t32 = E_12 * X - t15 * t31;
+    const real_t A_12 = t30 + t32;
+    const real_t t33 = t15 * E_23;
+    const real_t t34 = (t7 * t31 + E_12 * t26) * h;
+    const real_t A_13 = t33 + t34;
+    const real_t t35 = A_13 + t19;
+    const real_t t36 = rho2 + t19;
+    const real_t t37 = A_12 + t19;
+    const real_t t38 = rho3 + t19;
+    const real_t t39 = rho1 - (t25 + t27);
+    const real_t t40 = t39 + t19;
+    const real_t t41 = t30 - t32;
+    const real_t A_13_inner = t33 - t34;
+    const real_t t42 = A_13_inner + t19;
+    const real_t t43 = -t41 + t19;
     const int all_same = size_u + cf_sqrt(t4 + t5) <= t6;
-    const int t32 = (size_u <= t6) | all_same | (j <= t6) | (slack <= t6);
+    const int t44 = (size_u <= t6) | all_same | (j <= t6) | (slack <= t6);
     points[0] = t20;
     points[1] = t20;
     points[2] = t20;
     points[3] = t21;
     points[4] = t20;
     points[5] = t20;
-    points[6] = t20;
-    points[7] = t20;
+    points[6] = t21;
+    points[7] = t23;
     points[8] = t20;
-    points[9] = t20;
-    points[10] = t22;
+    points[9] = t21;
+    points[10] = t24;
     points[11] = t20;
-    points[12] = t20;
-    points[13] = t20;
-    points[14] = t20;
-    points[15] = t20;
-    points[16] = t20;
-    points[17] = t23;
-    points[18] = rho1 + (t24 - t26) + t19;
-    points[19] = t27 + t29 + t19;
-    points[20] = t30 + t31 + t19;
+    points[12] = t29;
+    points[13] = t22 + A_12 + t19;
+    points[14] = t35;
+    points[15] = t29;
+    points[16] = A_12 - t22 + t19;
+    points[17] = t35;
+    points[18] = t20;
+    points[19] = t20;
+    points[20] = t20;
     points[21] = t20;
-    points[22] = t20;
+    points[22] = t36;
     points[23] = t20;
-    points[24] = t21;
-    points[25] = t20;
-    points[26] = t20;
+    points[24] = t20;
+    points[25] = t36;
+    points[26] = t23;
     points[27] = t20;
-    points[28] = t20;
-    points[29] = t20;
-    points[30] = t20;
-    points[31] = t22;
-    points[32] = t20;
-    points[33] = t20;
-    points[34] = t20;
-    points[35] = t20;
+    points[28] = t36;
+    points[29] = t24;
+    points[30] = t29;
+    points[31] = t37;
+    points[32] = t22 + A_13 + t19;
+    points[33] = t29;
+    points[34] = t37;
+    points[35] = A_13 - t22 + t19;
     points[36] = t20;
     points[37] = t20;
-    points[38] = t23;
-    points[39] = rho1 - (t24 + t26) + t19;
-    points[40] = t29 - t27 + t19;
-    points[41] = t30 - t31 + t19;
-    rare[0] = (t32) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+    points[38] = t20;
+    points[39] = t20;
+    points[40] = t20;
+    points[41] = t38;
+    points[42] = t23;
+    points[43] = t20;
+    points[44] = t38;
+    points[45] = t24;
+    points[46] = t20;
+    points[47] = t38;
+    points[48] = t22 + t28 + t19;
+    points[49] = t37;
+    points[50] = t35;
+    points[51] = t28 - t22 + t19;
+    points[52] = t37;
+    points[53] = t35;
+    points[54] = t29;
+    points[55] = t37;
+    points[56] = t35;
+    points[57] = t20;
+    points[58] = t20;
+    points[59] = t20;
+    points[60] = t21;
+    points[61] = t20;
+    points[62] = t20;
+    points[63] = t21;
+    points[64] = t23;
+    points[65] = t20;
+    points[66] = t21;
+    points[67] = t24;
+    points[68] = t20;
+    points[69] = t40;
+    points[70] = t22 - t41 + t19;
+    points[71] = t42;
+    points[72] = t40;
+    points[73] = -(t22 + t41) + t19;
+    points[74] = t42;
+    points[75] = t20;
+    points[76] = t20;
+    points[77] = t20;
+    points[78] = t20;
+    points[79] = t36;
+    points[80] = t20;
+    points[81] = t20;
+    points[82] = t36;
+    points[83] = t23;
+    points[84] = t20;
+    points[85] = t36;
+    points[86] = t24;
+    points[87] = t40;
+    points[88] = t43;
+    points[89] = t22 + A_13_inner + t19;
+    points[90] = t40;
+    points[91] = t43;
+    points[92] = A_13_inner - t22 + t19;
+    points[93] = t20;
+    points[94] = t20;
+    points[95] = t20;
+    points[96] = t20;
+    points[97] = t20;
+    points[98] = t38;
+    points[99] = t23;
+    points[100] = t20;
+    points[101] = t38;
+    points[102] = t24;
+    points[103] = t20;
+    points[104] = t38;
+    points[105] = t22 + t39 + t19;
+    points[106] = t43;
+    points[107] = t42;
+    points[108] = t39 - t22 + t19;
+    points[109] = t43;
+    points[110] = t42;
+    points[111] = t40;
+    points[112] = t43;
+    points[113] = t42;
+    rare[0] = (t44) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
 }
 
 CF_INLINE void orthoglide_skeleton_common_batch(size_t n, const orthoglide_params *params,
@@ -546,7 +723,7 @@ CF_INLINE void orthoglide_skeleton_common_batch(size_t n, const orthoglide_param
         CF_INDEPENDENT
         for (size_t i = 0; i < length; ++i) {
             const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
-            real_t points_i[42];
+            real_t points_i[114];
             real_t rare_i[1];
             orthoglide_skeleton_common_kernel(0, one, &local, q_i, points_i, rare_i);
             points[start + i] = points_i[0];
@@ -591,6 +768,78 @@ CF_INLINE void orthoglide_skeleton_common_batch(size_t n, const orthoglide_param
             points[39 * points_stride + start + i] = points_i[39];
             points[40 * points_stride + start + i] = points_i[40];
             points[41 * points_stride + start + i] = points_i[41];
+            points[42 * points_stride + start + i] = points_i[42];
+            points[43 * points_stride + start + i] = points_i[43];
+            points[44 * points_stride + start + i] = points_i[44];
+            points[45 * points_stride + start + i] = points_i[45];
+            points[46 * points_stride + start + i] = points_i[46];
+            points[47 * points_stride + start + i] = points_i[47];
+            points[48 * points_stride + start + i] = points_i[48];
+            points[49 * points_stride + start + i] = points_i[49];
+            points[50 * points_stride + start + i] = points_i[50];
+            points[51 * points_stride + start + i] = points_i[51];
+            points[52 * points_stride + start + i] = points_i[52];
+            points[53 * points_stride + start + i] = points_i[53];
+            points[54 * points_stride + start + i] = points_i[54];
+            points[55 * points_stride + start + i] = points_i[55];
+            points[56 * points_stride + start + i] = points_i[56];
+            points[57 * points_stride + start + i] = points_i[57];
+            points[58 * points_stride + start + i] = points_i[58];
+            points[59 * points_stride + start + i] = points_i[59];
+            points[60 * points_stride + start + i] = points_i[60];
+            points[61 * points_stride + start + i] = points_i[61];
+            points[62 * points_stride + start + i] = points_i[62];
+            points[63 * points_stride + start + i] = points_i[63];
+            points[64 * points_stride + start + i] = points_i[64];
+            points[65 * points_stride + start + i] = points_i[65];
+            points[66 * points_stride + start + i] = points_i[66];
+            points[67 * points_stride + start + i] = points_i[67];
+            points[68 * points_stride + start + i] = points_i[68];
+            points[69 * points_stride + start + i] = points_i[69];
+            points[70 * points_stride + start + i] = points_i[70];
+            points[71 * points_stride + start + i] = points_i[71];
+            points[72 * points_stride + start + i] = points_i[72];
+            points[73 * points_stride + start + i] = points_i[73];
+            points[74 * points_stride + start + i] = points_i[74];
+            points[75 * points_stride + start + i] = points_i[75];
+            points[76 * points_stride + start + i] = points_i[76];
+            points[77 * points_stride + start + i] = points_i[77];
+            points[78 * points_stride + start + i] = points_i[78];
+            points[79 * points_stride + start + i] = points_i[79];
+            points[80 * points_stride + start + i] = points_i[80];
+            points[81 * points_stride + start + i] = points_i[81];
+            points[82 * points_stride + start + i] = points_i[82];
+            points[83 * points_stride + start + i] = points_i[83];
+            points[84 * points_stride + start + i] = points_i[84];
+            points[85 * points_stride + start + i] = points_i[85];
+            points[86 * points_stride + start + i] = points_i[86];
+            points[87 * points_stride + start + i] = points_i[87];
+            points[88 * points_stride + start + i] = points_i[88];
+            points[89 * points_stride + start + i] = points_i[89];
+            points[90 * points_stride + start + i] = points_i[90];
+            points[91 * points_stride + start + i] = points_i[91];
+            points[92 * points_stride + start + i] = points_i[92];
+            points[93 * points_stride + start + i] = points_i[93];
+            points[94 * points_stride + start + i] = points_i[94];
+            points[95 * points_stride + start + i] = points_i[95];
+            points[96 * points_stride + start + i] = points_i[96];
+            points[97 * points_stride + start + i] = points_i[97];
+            points[98 * points_stride + start + i] = points_i[98];
+            points[99 * points_stride + start + i] = points_i[99];
+            points[100 * points_stride + start + i] = points_i[100];
+            points[101 * points_stride + start + i] = points_i[101];
+            points[102 * points_stride + start + i] = points_i[102];
+            points[103 * points_stride + start + i] = points_i[103];
+            points[104 * points_stride + start + i] = points_i[104];
+            points[105 * points_stride + start + i] = points_i[105];
+            points[106 * points_stride + start + i] = points_i[106];
+            points[107 * points_stride + start + i] = points_i[107];
+            points[108 * points_stride + start + i] = points_i[108];
+            points[109 * points_stride + start + i] = points_i[109];
+            points[110 * points_stride + start + i] = points_i[110];
+            points[111 * points_stride + start + i] = points_i[111];
+            points[112 * points_stride + start + i] = points_i[112];
+            points[113 * points_stride + start + i] = points_i[113];
             rare_real[0][i] = rare_i[0];
         }
         CF_INDEPENDENT
@@ -600,7 +849,7 @@ CF_INLINE void orthoglide_skeleton_common_batch(size_t n, const orthoglide_param
 }
 
 CF_INLINE void orthoglide_skeleton_common(const orthoglide_params *params, const real_t q[3],
-    real_t points[42], uint8_t rare[1])
+    real_t points[114], uint8_t rare[1])
 {
     const real_t one = cf_one();
     real_t rare_real[1];
@@ -611,10 +860,10 @@ CF_INLINE void orthoglide_skeleton_common(const orthoglide_params *params, const
 
 CLOSEDFORM_DISPATCHED
 void orthoglide_skeleton(const orthoglide_params *params, const real_t q[3],
-    real_t points[42])
+    real_t points[114])
 {
     static const signed char q_degrees[3] = { 1, 1, 1 };
-    static const signed char points_degrees[42] = { 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1 };
+    static const signed char points_degrees[114] = { 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 };
     real_t q_scaled[3];
     orthoglide_params params_scaled;
     int exponent = 0;
@@ -631,7 +880,7 @@ void orthoglide_skeleton(const orthoglide_params *params, const real_t q[3],
     orthoglide_skeleton_common(params, q, points, rare);
     if (CF_UNLIKELY(rare[0])) orthoglide_skeleton_whole(params, q, points);
     if (CF_UNLIKELY(exponent != 0)) {
-        cf_rescale(42, points_degrees, exponent, points, points);
+        cf_rescale(114, points_degrees, exponent, points, points);
     }
 }
 
@@ -651,9 +900,9 @@ CF_RARE void orthoglide_skeleton_other_sizes(size_t n, const real_t dimensions,
         if (!(orthoglide_skeleton_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
         real_t q_i[3];
         for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-        real_t points_i[42];
+        real_t points_i[114];
         orthoglide_skeleton(params, q_i, points_i);
-        for (size_t k = 0; k < 42; ++k) points[k * points_stride + i] = points_i[k];
+        for (size_t k = 0; k < 114; ++k) points[k * points_stride + i] = points_i[k];
 
     }
 }
@@ -672,9 +921,9 @@ void orthoglide_skeleton_batch(size_t n, const orthoglide_params *params,
             if (!CF_UNLIKELY(rare[i - start])) continue;
             real_t q_i[3];
             for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
-            real_t points_i[42];
+            real_t points_i[114];
             orthoglide_skeleton_whole(params, q_i, points_i);
-            for (size_t k = 0; k < 42; ++k) points[k * points_stride + i] = points_i[k];
+            for (size_t k = 0; k < 114; ++k) points[k * points_stride + i] = points_i[k];
 
         }
         cf_word excess = 0;
@@ -2419,6 +2668,261 @@ void orthoglide_condition_number_batch(size_t n, const orthoglide_params *params
             excess |= orthoglide_condition_number_excess(dimensions, q + start, q_stride, i);
         if (CF_UNLIKELY((excess & CF_SIGN) != 0))
             orthoglide_condition_number_other_sizes(length, dimensions, params, q + start, q_stride, kappa + start, kappa_stride);
+    }
+}
+
+/* Every case. */
+CF_INLINE void orthoglide_constraint_whole_kernel(const int single, const orthoglide_params *params,
+    const real_t q[3], real_t factors[2])
+{
+    const real_t L = params->L;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t rho3 = q[2];
+    const real_t t1 = rho1 * rho1;
+    const real_t size_u = cf_sqrt(t1 + rho2 * rho2);
+    const real_t size_v = cf_sqrt(t1 + rho3 * rho3);
+    const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
+    const real_t t2 = size * CLOSEDFORM_VANISHING;
+    const int all_same = size_u + size_v <= t2;
+    const int same = size_u <= t2;
+    const real_t D = cf_rarely(single, same, size_v, size_u);
+    const real_t E_11 = cf_select(all_same, CLOSEDFORM_C(1.0), -(rho1 / cf_divisor(single, all_same, D)));
+    const real_t t3 = cf_select(same, CLOSEDFORM_C(0.0), rho2);
+    const real_t E_12 = cf_select(all_same, CLOSEDFORM_C(0.0), t3 / cf_divisor(single, all_same, D));
+    const real_t t4 = cf_select(same, rho2, CLOSEDFORM_C(0.0));
+    const real_t t5 = cf_select(same, rho3, CLOSEDFORM_C(0.0));
+    const real_t E_13 = cf_select(all_same, CLOSEDFORM_C(0.0), t5 / cf_divisor(single, all_same, D));
+    const real_t t6 = cf_select(same, CLOSEDFORM_C(0.0), rho3);
+    const real_t t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6;
+    const real_t t8 = rho1 - E_11 * t7;
+    const real_t m_y = t4 + E_12 * t7;
+    const real_t m_z = t6 + E_13 * t7;
+    const real_t t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z;
+    const real_t t10 = t8 - E_11 * t9;
+    const real_t n_y = m_y + E_12 * t9;
+    const real_t n_z = m_z + E_13 * t9;
+    const real_t j = cf_sqrt(t10 * t10 + n_y * n_y + n_z * n_z);
+    const int in_line = j <= t2;
+    const real_t t11 = cf_sign(E_13);
+    const real_t t12 = E_11 * t11;
+    const real_t E_23 = cf_rarely(single, in_line, -t12, n_z / cf_divisor(single, in_line, j));
+    const real_t t13 = E_13 + t11;
+    const real_t t14 = cf_nonzero(single, t13);
+    const real_t E_21 = cf_rarely(single, in_line, CLOSEDFORM_C(1.0) - E_11 * E_11 * t11 / t14, -(t10 / cf_divisor(single, in_line, j)));
+    const real_t X = cf_select(all_same, CLOSEDFORM_C(0.0), D * CLOSEDFORM_C(0.5));
+    const real_t t15 = t4 * (t3 - t4) + t6 * (t5 - t6);
+    const real_t t16 = t15 / cf_divisor(single, in_line, j * CLOSEDFORM_C(2.0));
+    const real_t t17 = cf_select(in_line, CLOSEDFORM_C(0.0), t16);
+    const real_t rho = cf_sqrt(X * X + t17 * t17);
+    const real_t t18 = L - rho;
+    const real_t slack = cf_max(t18, CLOSEDFORM_C(0.0));
+    const real_t h = cf_select(slack <= t2, CLOSEDFORM_C(0.0), cf_root(single, slack * (L + rho)));
+    const real_t t19 = (E_11 * E_23 - E_13 * E_21) * h;
+    const real_t E_22 = cf_rarely(single, in_line, -(E_12 * t12 / t14), n_y / cf_divisor(single, in_line, j));
+    const real_t t20 = E_12 * X - t17 * E_22;
+    const real_t t21 = t19 - t20;
+    const real_t t22 = h * (E_12 * E_21 - E_11 * E_22);
+    const real_t t23 = E_13 * X - E_23 * t17;
+    const real_t t24 = t22 - t23;
+    const real_t t25 = h * (E_12 * E_23 - E_13 * E_22);
+    const real_t t26 = E_11 * X - E_21 * t17;
+    const real_t A_11 = t25 + t26;
+    const real_t t27 = t21 * t24 * (rho1 + A_11) - A_11 * (rho2 + t21) * (rho3 + t24);
+    const int t28 = cf_nought(L) == 0;
+    const int t29 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const real_t t30 = cf_rarely(single, in_line, -t15, CLOSEDFORM_C(0.0));
+    const int t31 = cf_abs(t30) <= CLOSEDFORM_FEASIBILITY * (size * size);
+    const int t32 = t31 & (-(size * CLOSEDFORM_FEASIBILITY) <= t18);
+    const int failed = (!(t28 & (CLOSEDFORM_C(0.0) <= L) & t29)) | (!t32);
+    const real_t t33 = cf_poison(single, failed);
+    const real_t t34 = t25 - t26;
+    const real_t A_12_inner = t19 + t20;
+    const real_t A_13_inner = t22 + t23;
+    const real_t t35 = t34 * (rho2 - A_12_inner) * (rho3 - A_13_inner);
+    const real_t t36 = t35 + A_12_inner * A_13_inner * (rho1 - t34) + t33;
+    factors[0] = t27 + t33;
+    factors[1] = t36;
+}
+
+CLOSEDFORM_DISPATCHED
+CF_APART void orthoglide_constraint_whole(const orthoglide_params *params, const real_t q[3],
+    real_t factors[2])
+{
+    orthoglide_constraint_whole_kernel(1, params, q, factors);
+}
+
+/* Where nothing vanishes; rare is whether something does. */
+CF_INLINE void orthoglide_constraint_common_kernel(const int single, const real_t one,
+    const orthoglide_params *params, const real_t q[3],
+    real_t factors[2], real_t rare[1])
+{
+    const real_t L = params->L;
+    const real_t rho1 = q[0];
+    const real_t rho2 = q[1];
+    const real_t rho3 = q[2];
+    const real_t t1 = cf_rounded(single, one, rho3 * rho3);
+    const real_t t2 = cf_rounded(single, one, rho1 * rho1);
+    const real_t size_u = cf_sqrt(t2 + cf_rounded(single, one, rho2 * rho2));
+    const real_t size = L + cf_abs(rho1) + cf_abs(rho2) + cf_abs(rho3);
+    const real_t t3 = size * CLOSEDFORM_VANISHING;
+    const real_t t4 = rho1 / cf_divisor(single, size_u <= t3, size_u);
+    const real_t t5 = rho1 * t4;
+    const real_t t6 = rho1 - cf_rounded(single, one, t4 * t5);
+    const real_t E_12 = rho2 / cf_divisor(single, size_u <= t3, size_u);
+    const real_t t7 = cf_rounded(single, one, t5 * E_12);
+    const real_t t8 = cf_rounded(single, one, t4 * t6) - cf_rounded(single, one, E_12 * t7);
+    const real_t t9 = t6 - cf_rounded(single, one, t4 * t8);
+    const real_t t10 = t7 + cf_rounded(single, one, E_12 * t8);
+    const real_t t11 = t1 + cf_rounded(single, one, t9 * t9) + cf_rounded(single, one, t10 * t10);
+    const real_t j = cf_sqrt(t11);
+    const real_t t12 = t1 / cf_divisor(single, j <= t3, CLOSEDFORM_C(2.0) * j);
+    const real_t E_23 = rho3 / cf_divisor(single, j <= t3, j);
+    const real_t t13 = t12 * E_23;
+    const real_t t14 = t10 / cf_divisor(single, j <= t3, j);
+    const real_t t15 = t9 / cf_divisor(single, j <= t3, j);
+    const real_t X = size_u * CLOSEDFORM_C(0.5);
+    const real_t t16 = cf_rounded(single, one, X * X) + cf_rounded(single, one, t12 * t12);
+    const real_t rho = cf_sqrt(t16);
+    const real_t t17 = L - rho;
+    const real_t slack = cf_max(t17, CLOSEDFORM_C(0.0));
+    const real_t h = cf_root(single, slack * (L + rho));
+    const real_t t18 = (t4 * t14 + E_12 * t15) * h;
+    const real_t A_13 = t13 + t18;
+    const real_t t19 = t4 * E_23 * h;
+    const real_t t20 = X * E_12 - t12 * t14;
+    const real_t A_12 = t19 + t20;
+    const real_t t21 = E_12 * E_23 * h;
+    const real_t t22 = t4 * X + t15 * t12;
+    const real_t A_11 = t21 - t22;
+    const real_t t23 = A_13 * A_12 * (rho1 + A_11) - (rho3 - A_13) * A_11 * (rho2 - A_12);
+    const int t24 = cf_nought(L) == 0;
+    const int t25 = cf_nought(rho1) + cf_nought(rho2) + cf_nought(rho3) == 0;
+    const int t26 = cf_abs(CLOSEDFORM_C(0.0)) <= CLOSEDFORM_FEASIBILITY * (size * size);
+    const int t27 = t26 & (-(size * CLOSEDFORM_FEASIBILITY) <= t17);
+    const int failed = (!(t24 & (CLOSEDFORM_C(0.0) <= L) & t25)) | (!t27);
+    const real_t t28 = cf_poison(single, failed);
+    const real_t A_13_inner = t13 - t18;
+    const real_t t29 = t21 + t22;
+    const real_t t30 = t19 - t20;
+    const real_t t31 = (rho3 - A_13_inner) * t29 * (rho2 + t30) - A_13_inner * t30 * (rho1 - t29);
+    const int all_same = size_u + cf_sqrt(t2 + t1) <= t3;
+    const int t32 = (size_u <= t3) | all_same | (j <= t3) | (slack <= t3);
+    factors[0] = t23 + t28;
+    factors[1] = t31 + t28;
+    rare[0] = (t32) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0);
+}
+
+CF_INLINE void orthoglide_constraint_common_batch(size_t n, const orthoglide_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride,
+    uint8_t *rare, size_t rare_stride)
+{
+    (void)rare_stride;
+    const orthoglide_params local = *params;
+    const real_t one = cf_one();
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        real_t rare_real[1][CLOSEDFORM_BLOCK];
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i) {
+            const real_t q_i[3] = { q[start + i], q[q_stride + start + i], q[2 * q_stride + start + i] };
+            real_t factors_i[2];
+            real_t rare_i[1];
+            orthoglide_constraint_common_kernel(0, one, &local, q_i, factors_i, rare_i);
+            factors[start + i] = factors_i[0];
+            factors[factors_stride + start + i] = factors_i[1];
+            rare_real[0][i] = rare_i[0];
+        }
+        CF_INDEPENDENT
+        for (size_t i = 0; i < length; ++i)
+            rare[start + i] = (uint8_t)rare_real[0][i];
+    }
+}
+
+CF_INLINE void orthoglide_constraint_common(const orthoglide_params *params, const real_t q[3],
+    real_t factors[2], uint8_t rare[1])
+{
+    const real_t one = cf_one();
+    real_t rare_real[1];
+    orthoglide_constraint_common_kernel(1, one, params, q, factors, rare_real);
+    for (size_t i = 0; i < 1; ++i)
+        rare[i] = (uint8_t)rare_real[i];
+}
+
+CLOSEDFORM_DISPATCHED
+void orthoglide_constraint(const orthoglide_params *params, const real_t q[3],
+    real_t factors[2])
+{
+    static const signed char q_degrees[3] = { 1, 1, 1 };
+    static const signed char factors_degrees[2] = { 3, 3 };
+    real_t q_scaled[3];
+    orthoglide_params params_scaled;
+    int exponent = 0;
+    const real_t size = cf_max(cf_max(cf_abs(params->L), cf_abs(q[0])), cf_max(cf_abs(q[1]), cf_abs(q[2])));
+    if (CF_UNLIKELY((cf_size_excess(size, CF_SIZES_3) & CF_SIGN) != 0)) {
+        exponent = cf_exponent(size);
+        params_scaled = *params;
+        params_scaled.L = CF_LIBM(ldexp)(params->L, -exponent);
+        params = &params_scaled;
+        cf_rescale(3, q_degrees, -exponent, q, q_scaled);
+        q = q_scaled;
+    }
+    uint8_t rare[1];
+    orthoglide_constraint_common(params, q, factors, rare);
+    if (CF_UNLIKELY(rare[0])) orthoglide_constraint_whole(params, q, factors);
+    if (CF_UNLIKELY(exponent != 0)) {
+        cf_rescale(2, factors_degrees, exponent, factors, factors);
+    }
+}
+
+/* Has its sign bit set where powers of the size of a posture may leave the range. */
+CF_INLINE cf_word orthoglide_constraint_excess(const real_t dimensions,
+    const real_t *q, size_t q_stride, size_t i)
+{
+    return cf_size_excess(cf_max(cf_max(dimensions, cf_abs(q[i])), cf_max(cf_abs(q[q_stride + i]), cf_abs(q[2 * q_stride + i]))), CF_SIZES_3);
+}
+
+CF_RARE void orthoglide_constraint_other_sizes(size_t n, const real_t dimensions,
+    const orthoglide_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    for (size_t i = 0; i < n; ++i) {
+        if (!(orthoglide_constraint_excess(dimensions, q, q_stride, i) & CF_SIGN)) continue;
+        real_t q_i[3];
+        for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+        real_t factors_i[2];
+        orthoglide_constraint(params, q_i, factors_i);
+        for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+    }
+}
+
+CLOSEDFORM_DISPATCHED
+void orthoglide_constraint_batch(size_t n, const orthoglide_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride)
+{
+    const real_t dimensions = cf_abs(params->L);
+    for (size_t start = 0; start < n; start += CLOSEDFORM_BLOCK) {
+        const size_t length = n - start < CLOSEDFORM_BLOCK ? n - start : CLOSEDFORM_BLOCK;
+        uint8_t rare[CLOSEDFORM_BLOCK];
+        orthoglide_constraint_common_batch(length, params, q + start, q_stride, factors + start, factors_stride, rare, CLOSEDFORM_BLOCK);
+        for (size_t i = start; i < start + length; ++i) {
+            if (!CF_UNLIKELY(rare[i - start])) continue;
+            real_t q_i[3];
+            for (size_t k = 0; k < 3; ++k) q_i[k] = q[k * q_stride + i];
+            real_t factors_i[2];
+            orthoglide_constraint_whole(params, q_i, factors_i);
+            for (size_t k = 0; k < 2; ++k) factors[k * factors_stride + i] = factors_i[k];
+
+        }
+        cf_word excess = 0;
+        for (size_t i = 0; i < length; ++i)
+            excess |= orthoglide_constraint_excess(dimensions, q + start, q_stride, i);
+        if (CF_UNLIKELY((excess & CF_SIGN) != 0))
+            orthoglide_constraint_other_sizes(length, dimensions, params, q + start, q_stride, factors + start, factors_stride);
     }
 }
 

@@ -38,6 +38,7 @@ __all__ = [
     "determinant",
     "singularities",
     "condition_number",
+    "constraint",
     "ik",
     "workspace_contains",
 ]
@@ -50,6 +51,7 @@ jacobian = _native.function("orthoglide.jacobian")
 determinant = _native.function("orthoglide.determinant")
 singularities = _native.function("orthoglide.singularities")
 condition_number = _native.function("orthoglide.condition_number")
+constraint = _native.function("orthoglide.constraint")
 ik = _native.function("orthoglide.ik", Solutions)
 workspace_contains = _native.function("orthoglide.workspace_contains")
 _nearest = _native.function("orthoglide.nearest")

@@ -987,7 +987,9 @@ const _JOINTS_FROM_MOTORS = _runtime.kernel({
 });
 
 /**
- * Joint angles of motor angles.
+ * Joint angles from motor angles: theta3 = m3 - m2.
+ *
+ * - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
  *
  * @param {ArrayLike<number>} motors 6 numbers. m1 to m6.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -1045,7 +1047,9 @@ const _MOTORS_FROM_JOINTS = _runtime.kernel({
 });
 
 /**
- * Motor angles of joint angles.
+ * Motor angles from joint angles: m3 = theta2 + theta3.
+ *
+ * - The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].
  *
  * @param {ArrayLike<number>} q 6 numbers. theta1 to theta6 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

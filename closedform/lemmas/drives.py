@@ -1,0 +1,119 @@
+"""Joints that a parallelogram drives: motor and crank stand beside the motor of the link before."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from string import ascii_letters
+from typing import Any
+
+import sympy as sp
+
+from closedform.algebra.shapes import ShapeError
+from closedform.lemmas.parallelogram import parallelogram
+from closedform.model.derivation import Derivation
+from closedform.model.functions import real
+
+KEEPS_TURNS = "The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi]."
+
+
+def parallelogram_drive(
+    d: Derivation,
+    through: Mapping[sp.Symbol, tuple[sp.Symbol, Any]],
+    motors: Sequence[str] = (),
+) -> sp.Matrix:
+    """Derive the joints from the motors of an arm, some of whose links parallelograms drive.
+
+    Exports ``joints_from_motors`` and ``motors_from_joints``, and returns the matrix that takes the
+    motors to the joints.
+
+    Parameters
+    ----------
+    d
+        the derivation, with its joints
+    through
+        for each joint that a parallelogram drives: the joint before it, whose axis is parallel, and
+        the length of the link between both axes.  Its motor stands on the same body as that of the
+        joint before
+    motors
+        the names of the motors, in the order of the joints; by default ``m3`` for ``theta3``
+    """
+    joints = d.actuated
+    names = [*(motors or (f"m{_tag(q)}" for q in joints))]
+    if len(set(names)) != len(joints) or not set(through) <= set(joints):
+        raise ShapeError(f"{d.name}: each joint has one motor, and a parallelogram drives a joint")
+    turned = dict(zip(joints, map(real, names), strict=True))
+    for q, name in zip(joints, names, strict=True):
+        d.write(name, meaning=f"angle of the motor of {q}")
+    rows = [turned[q] - turned[through[q][0]] if q in through else turned[q] for q in joints]
+    angles = sp.Matrix([turned[q] for q in joints])
+    M = sp.Matrix(rows).jacobian(angles)
+    for q, (before, link) in through.items():
+        _state(d, q, before, link, turned[q])
+    d.step(
+        "Motors",
+        "M takes the angles of the motors to those of the joints.  The other motors turn their "
+        "joints directly.",
+        {
+            rf"M = \partial({', '.join(map(sp.latex, joints))}) / \partial m": M,
+            "M^{-1}": M.inv(),
+        },
+        proves="M takes the motors to the joints.",
+        equal=[(M * angles, sp.Matrix(rows))],
+    )
+    coupled = ", ".join(f"{q} = {turned[q]} - {turned[through[q][0]]}" for q in through)
+    back = ", ".join(f"{turned[q]} = {through[q][0]} + {q}" for q in through)
+    for name, summary, given, found in (
+        ("joints_from_motors", f"Joint angles from motor angles: {coupled}.", angles, M * angles),
+        (
+            "motors_from_joints",
+            f"Motor angles from joint angles: {back}.",
+            joints,
+            M.inv() * sp.Matrix(joints),
+        ),
+    ):
+        inputs, outputs = ("motors", "q") if given is angles else ("q", "motors")
+        d.function(name, summary, {inputs: given}, {outputs: found}, notes=(KEEPS_TURNS,))
+    return M
+
+
+def _tag(q: sp.Symbol) -> str:
+    """The number of a joint, or its name if it has no number."""
+    return str(q).lstrip(ascii_letters + "_") or f"_{q}"
+
+
+def _state(d: Derivation, q: sp.Symbol, before: sp.Symbol, link: Any, motor: sp.Symbol) -> None:
+    """The step on one parallelogram."""
+    tag = _tag(q)
+    r, gamma = real(f"r{tag}", positive=True), real(f"gamma{tag}")
+    phi, beta, sigma = real(f"phi{tag}"), real(f"beta{tag}"), real("sigma")
+    for symbol, meaning in (
+        (r, "length of the crank"),
+        (gamma, "direction of the crank at rest"),
+        (phi, "turn of the driven link against the crank"),
+        (beta, "angle of the rod"),
+    ):
+        d.write(str(symbol), meaning=f"{meaning}, of the parallelogram of {q}")
+    loop = parallelogram((link, r), (before, gamma + motor), (phi, beta), sigma)
+    closed = sp.Matrix(loop.equations).subs(loop.solution)
+    d.step(
+        "The parallelogram and its motor",
+        f"The motor of {q} stands on the same body as that of {before}.  It turns a crank of "
+        f"length {r}.  A rod as long as the link between both axes, {link}, leads from it to the "
+        f"driven link, {r} from its axis.  The loop equations have two solutions for the turn of "
+        f"the driven link against the crank.  In the parallelogram it is 0, so the motor gives "
+        f"{before} + {q}, the turn of the driven link against the body of the motors, whatever the "
+        f"crank.  The crossed one, an antiparallelogram, is left out: the two meet only where "
+        f"crank and link are in line.",
+        {
+            "0": sp.Matrix(loop.equations),
+            sp.latex(before + q - motor, order="none"): loop[phi].subs(sigma, 1),
+        },
+        proves="Both solutions close the loop, and in the first one the link turns as the crank.",
+        equal=[
+            *((closed.subs(sigma, sign), sp.zeros(2, 1)) for sign in (1, -1)),
+            (loop[phi].subs(sigma, 1), sp.S.Zero),
+        ],
+    )
+
+
+__all__ = ["parallelogram_drive"]

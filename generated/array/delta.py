@@ -3,13 +3,14 @@
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 75 compare and select, 77 add, 8 divide, 104 multiply, 6 sincos, 9 sqrt
-#   skeleton: 102 compare and select, 92 add, 15 divide, 93 multiply, 6 sincos, 9 sqrt
+#   skeleton: 138 compare and select, 128 add, 21 divide, 93 multiply, 6 sincos, 9 sqrt
 #   jacobian_parallel: 86 compare and select, 86 add, 15 divide, 93 multiply, 6 sincos, 9 sqrt
 #   jacobian_serial: 74 compare and select, 98 add, 15 divide, 117 multiply, 6 sincos, 9 sqrt
 #   jacobian: 87 compare and select, 116 add, 33 divide, 173 multiply, 6 sincos, 9 sqrt
 #   determinant: 71 compare and select, 98 add, 17 divide, 123 multiply, 6 sincos, 9 sqrt
 #   singularities: 76 compare and select, 98 add, 15 divide, 119 multiply, 6 sincos, 9 sqrt
 #   condition_number: 73 compare and select, 136 add, 17 divide, 170 multiply, 6 sincos, 11 sqrt
+#   constraint: 70 compare and select, 108 add, 15 divide, 155 multiply, 6 sincos, 9 sqrt
 #   ik: 169 compare and select, 187 add, 6 atan2, 8 divide, 190 multiply, 3 sincos, 18 sqrt
 #   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -43,25 +44,46 @@ SKELETON = Skeleton(
         "A1",
         "B1",
         "C1",
+        "B1a",
+        "B1b",
+        "C1a",
+        "C1b",
         "A2",
         "B2",
         "C2",
+        "B2a",
+        "B2b",
+        "C2a",
+        "C2b",
         "A3",
         "B3",
         "C3",
+        "B3a",
+        "B3b",
+        "C3a",
+        "C3b",
         "P",
     ),
     links={
         "ground": ('A1', 'A2', 'A3', 'A1'),
         "hand1": ('P', 'C1'),
-        "rod1": ('B1', 'C1'),
         "crank1": ('A1', 'B1'),
+        "rod1a": ('B1a', 'C1a'),
+        "rod1b": ('B1b', 'C1b'),
+        "bar_B1a": ('B1a', 'B1', 'B1b'),
+        "bar_C1a": ('C1a', 'C1', 'C1b'),
         "hand2": ('P', 'C2'),
-        "rod2": ('B2', 'C2'),
         "crank2": ('A2', 'B2'),
+        "rod2a": ('B2a', 'C2a'),
+        "rod2b": ('B2b', 'C2b'),
+        "bar_B2a": ('B2a', 'B2', 'B2b'),
+        "bar_C2a": ('C2a', 'C2', 'C2b'),
         "hand3": ('P', 'C3'),
-        "rod3": ('B3', 'C3'),
         "crank3": ('A3', 'B3'),
+        "rod3a": ('B3a', 'C3a'),
+        "rod3b": ('B3b', 'C3b'),
+        "bar_B3a": ('B3a', 'B3', 'B3b'),
+        "bar_C3a": ('C3a', 'C3', 'C3b'),
     },
     joints={
         "theta1": SkeletonJoint("revolute", ('A1',)),
@@ -93,6 +115,7 @@ __all__ = [
     "determinant",
     "singularities",
     "condition_number",
+    "constraint",
     "ik",
     "workspace_contains",
 ]
@@ -286,6 +309,8 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
     - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
       points is returned.
     - Ill-conditioned near the parallel singularities, where both modes meet.
+    - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+      which the hand is turned.
     """
     result = _runtime.evaluate(_FK, (q,), params)
     return Positions(*result)
@@ -416,25 +441,55 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     h = ops.select(touching, 0.0, ops.sqrt(t78))
     t79 = (t63 * E_23 - E_13_2 * E_22) * h
     t80 = t9 - (t75 - t79)
-    t81 = t63 * X_2 + t71 * E_22
-    t82 = h * (E_11_2 * E_23 - E_13_2 * E_21)
-    t83 = t18 - (t81 + t82)
-    t84 = E_13_2 * X_2 + t71 * E_23
-    t85 = h * (E_11_2 * E_22 - t63 * E_21)
-    t86 = ops.select(failed, ops.nan, t84 - t85 - t3)
-    t87 = ops.select(failed, ops.nan, t11)
-    t88 = ops.select(failed, ops.nan, t20)
-    t89 = ops.select(failed, ops.nan, t13)
-    t90 = ops.select(failed, ops.nan, t21)
-    t91 = ops.select(failed, ops.nan, -t4)
-    t92 = ops.select(failed, ops.nan, t26)
-    t93 = ops.select(failed, ops.nan, t33)
-    t94 = ops.select(failed, ops.nan, t28)
-    t95 = ops.select(failed, ops.nan, t34)
-    t96 = ops.select(failed, ops.nan, -t31)
-    t97 = t9 - (t75 + t79)
-    t98 = t18 - (t81 - t82)
-    t99 = ops.select(failed, ops.nan, t84 + t85 - t3)
+    t81 = t5 - t80
+    t82 = t63 * X_2 + t71 * E_22
+    t83 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t84 = t18 - (t82 + t83)
+    t85 = t15 - t84
+    t86 = E_13_2 * X_2 + t71 * E_23
+    t87 = h * (E_11_2 * E_22 - t63 * E_21)
+    t88 = ops.select(failed, ops.nan, t86 - t87 - t3)
+    t89 = t15 * 0.5
+    t90 = ops.select(failed, ops.nan, t8 - t89)
+    t91 = t5 * 0.5
+    t92 = ops.select(failed, ops.nan, t91 + t17)
+    t93 = ops.select(failed, ops.nan, t89 + t8)
+    t94 = ops.select(failed, ops.nan, t17 - t91)
+    t95 = ops.select(failed, ops.nan, t11)
+    t96 = ops.select(failed, ops.nan, t20)
+    t97 = ops.select(failed, ops.nan, t13)
+    t98 = ops.select(failed, ops.nan, t21)
+    t99 = ops.select(failed, ops.nan, -t4)
+    t100 = t10 - t80
+    t101 = t19 - t84
+    t102 = t19 * 0.5
+    t103 = ops.select(failed, ops.nan, t13 - t102)
+    t104 = t10 * 0.5
+    t105 = ops.select(failed, ops.nan, t104 + t21)
+    t106 = ops.select(failed, ops.nan, t102 + t13)
+    t107 = ops.select(failed, ops.nan, t21 - t104)
+    t108 = ops.select(failed, ops.nan, t26)
+    t109 = ops.select(failed, ops.nan, t33)
+    t110 = ops.select(failed, ops.nan, t28)
+    t111 = ops.select(failed, ops.nan, t34)
+    t112 = ops.select(failed, ops.nan, -t31)
+    t113 = t25 - t80
+    t114 = t32 - t84
+    t115 = t32 * 0.5
+    t116 = ops.select(failed, ops.nan, t28 - t115)
+    t117 = t25 * 0.5
+    t118 = ops.select(failed, ops.nan, t117 + t34)
+    t119 = ops.select(failed, ops.nan, t115 + t28)
+    t120 = ops.select(failed, ops.nan, t34 - t117)
+    t121 = t9 - (t75 + t79)
+    t122 = t5 - t121
+    t123 = t18 - (t82 - t83)
+    t124 = t15 - t123
+    t125 = ops.select(failed, ops.nan, t86 + t87 - t3)
+    t126 = t10 - t121
+    t127 = t19 - t123
+    t128 = t25 - t121
+    t129 = t32 - t123
     return (
         t52,
         t53,
@@ -442,60 +497,132 @@ def _skeleton(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
         t55,
         t56,
         t57,
-        ops.select(failed, ops.nan, t5 - t80),
-        ops.select(failed, ops.nan, t15 - t83),
-        t86,
-        t87,
+        ops.select(failed, ops.nan, t81),
+        ops.select(failed, ops.nan, t85),
         t88,
-        t54,
-        t89,
         t90,
-        t91,
-        ops.select(failed, ops.nan, t10 - t80),
-        ops.select(failed, ops.nan, t19 - t83),
-        t86,
         t92,
+        t57,
         t93,
-        t54,
         t94,
+        t57,
+        ops.select(failed, ops.nan, t81 - t89),
+        ops.select(failed, ops.nan, t91 + t85),
+        t88,
+        ops.select(failed, ops.nan, t89 + t81),
+        ops.select(failed, ops.nan, t85 - t91),
+        t88,
         t95,
         t96,
-        ops.select(failed, ops.nan, t25 - t80),
-        ops.select(failed, ops.nan, t32 - t83),
-        t86,
+        t54,
+        t97,
+        t98,
+        t99,
+        ops.select(failed, ops.nan, t100),
+        ops.select(failed, ops.nan, t101),
+        t88,
+        t103,
+        t105,
+        t99,
+        t106,
+        t107,
+        t99,
+        ops.select(failed, ops.nan, t100 - t102),
+        ops.select(failed, ops.nan, t104 + t101),
+        t88,
+        ops.select(failed, ops.nan, t102 + t100),
+        ops.select(failed, ops.nan, t101 - t104),
+        t88,
+        t108,
+        t109,
+        t54,
+        t110,
+        t111,
+        t112,
+        ops.select(failed, ops.nan, t113),
+        ops.select(failed, ops.nan, t114),
+        t88,
+        t116,
+        t118,
+        t112,
+        t119,
+        t120,
+        t112,
+        ops.select(failed, ops.nan, t113 - t115),
+        ops.select(failed, ops.nan, t117 + t114),
+        t88,
+        ops.select(failed, ops.nan, t115 + t113),
+        ops.select(failed, ops.nan, t114 - t117),
+        t88,
         ops.select(failed, ops.nan, -t80),
-        ops.select(failed, ops.nan, -t83),
-        t86,
+        ops.select(failed, ops.nan, -t84),
+        t88,
         t52,
         t53,
         t54,
         t55,
         t56,
         t57,
-        ops.select(failed, ops.nan, t5 - t97),
-        ops.select(failed, ops.nan, t15 - t98),
-        t99,
-        t87,
-        t88,
-        t54,
-        t89,
+        ops.select(failed, ops.nan, t122),
+        ops.select(failed, ops.nan, t124),
+        t125,
         t90,
-        t91,
-        ops.select(failed, ops.nan, t10 - t97),
-        ops.select(failed, ops.nan, t19 - t98),
-        t99,
         t92,
+        t57,
         t93,
-        t54,
         t94,
+        t57,
+        ops.select(failed, ops.nan, t122 - t89),
+        ops.select(failed, ops.nan, t91 + t124),
+        t125,
+        ops.select(failed, ops.nan, t89 + t122),
+        ops.select(failed, ops.nan, t124 - t91),
+        t125,
         t95,
         t96,
-        ops.select(failed, ops.nan, t25 - t97),
-        ops.select(failed, ops.nan, t32 - t98),
+        t54,
+        t97,
+        t98,
         t99,
-        ops.select(failed, ops.nan, -t97),
-        ops.select(failed, ops.nan, -t98),
+        ops.select(failed, ops.nan, t126),
+        ops.select(failed, ops.nan, t127),
+        t125,
+        t103,
+        t105,
         t99,
+        t106,
+        t107,
+        t99,
+        ops.select(failed, ops.nan, t126 - t102),
+        ops.select(failed, ops.nan, t104 + t127),
+        t125,
+        ops.select(failed, ops.nan, t102 + t126),
+        ops.select(failed, ops.nan, t127 - t104),
+        t125,
+        t108,
+        t109,
+        t54,
+        t110,
+        t111,
+        t112,
+        ops.select(failed, ops.nan, t128),
+        ops.select(failed, ops.nan, t129),
+        t125,
+        t116,
+        t118,
+        t112,
+        t119,
+        t120,
+        t112,
+        ops.select(failed, ops.nan, t128 - t115),
+        ops.select(failed, ops.nan, t117 + t129),
+        t125,
+        ops.select(failed, ops.nan, t115 + t128),
+        ops.select(failed, ops.nan, t129 - t117),
+        t125,
+        ops.select(failed, ops.nan, -t121),
+        ops.select(failed, ops.nan, -t123),
+        t125,
     )
 
 
@@ -503,10 +630,10 @@ _SKELETON = _runtime.Kernel(
     "delta.skeleton",
     _skeleton,
     (_runtime.Spec("q", (3,)),),
-    (_runtime.Spec("points", (2, 10, 3)),),
+    (_runtime.Spec("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1)), 2),
+    _runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 2),
 )
 
 
@@ -522,7 +649,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Returns
     -------
-    points : array, shape (..., 2, 10, 3)
+    points : array, shape (..., 2, 22, 3)
         Coordinates x, y, z of each point.
 
     Raises
@@ -536,6 +663,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     -----
     - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
+    - The width of a parallelogram matters here alone.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params)
     return result
@@ -1652,6 +1780,205 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     return result
 
 
+def _constraint(ops, theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    s_alpha1 = ops.sin(alpha1)
+    c_alpha1 = ops.cos(alpha1)
+    s_alpha2 = ops.sin(alpha2)
+    c_alpha2 = ops.cos(alpha2)
+    s_alpha3 = ops.sin(alpha3)
+    c_alpha3 = ops.cos(alpha3)
+    s1 = ops.sin(theta1)
+    c1 = ops.cos(theta1)
+    s2 = ops.sin(theta2)
+    c2 = ops.cos(theta2)
+    s3 = ops.sin(theta3)
+    c3 = ops.cos(theta3)
+    t1 = ops.finite(f, e, L, l, alpha1, alpha2, alpha3)
+    t2 = t1 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    invalid = ops.opposite(t2 & ops.finite(theta1, theta2, theta3))
+    t3 = L * s1
+    u_z = t3 - L * s2
+    t4 = L * c1
+    t5 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t4
+    t6 = L * c2
+    t7 = t5 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t6)
+    t8 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t4
+    t9 = t8 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t6)
+    t10 = u_z * u_z + t7 * t7 + t9 * t9
+    size_u = ops.sqrt(t10)
+    size = f + e + L + l
+    t11 = size * ops.vanishing
+    same = size_u <= t11
+    t12 = L * c3
+    t13 = t5 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t12)
+    t14 = ops.select(same, t7, t13)
+    v_z = t3 - L * s3
+    t15 = t8 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t12)
+    t16 = v_z * v_z + t13 * t13 + t15 * t15
+    size_v = ops.sqrt(t16)
+    all_same = size_u + size_v <= t11
+    t17 = ops.select(same, t13, t7)
+    D = ops.select(same, size_v, size_u)
+    E_11 = ops.select(all_same, 1.0, t17 / D)
+    t18 = ops.select(same, t15, t9)
+    t19 = ops.select(all_same, 0.0, t18 / D)
+    t20 = ops.select(same, t9, t15)
+    t21 = ops.select(same, v_z, u_z)
+    E_13 = ops.select(all_same, 0.0, t21 / D)
+    t22 = ops.select(same, u_z, v_z)
+    t23 = E_11 * t14 + t19 * t20 + E_13 * t22
+    t24 = t14 - E_11 * t23
+    t25 = t20 - t19 * t23
+    m_z = t22 - E_13 * t23
+    t26 = E_11 * t24 + t19 * t25 + E_13 * m_z
+    t27 = t24 - E_11 * t26
+    t28 = t25 - t19 * t26
+    n_z = m_z - E_13 * t26
+    j = ops.sqrt(t27 * t27 + t28 * t28 + n_z * n_z)
+    in_line = j <= t11
+    t29 = t14 * (t17 - t14) + t20 * (t18 - t20) + t22 * (t21 - t22)
+    t30 = ops.abs(ops.select(in_line, -t29, 0.0)) <= ops.feasibility * (size * size)
+    X = ops.select(all_same, 0.0, D * 0.5)
+    t31 = ops.select(in_line, 0.0, t29 / (2.0 * j))
+    t32 = l - ops.sqrt(X * X + t31 * t31)
+    unreachable = ops.opposite(t30 & (-(size * ops.feasibility) <= t32))
+    failed = invalid | unreachable
+    t33 = c_alpha1 * s_alpha2
+    touching = ops.max(t32, 0.0) <= t11
+    t34 = ops.opposite(failed)
+    t35 = t34 & ops.opposite(touching)
+    t36 = t34 & ops.opposite(all_same)
+    t37 = ops.select(t36 & ops.opposite(same), t10, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t36 & same, t16, 1.0)), ops.sqrt(t37))
+    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
+    t38 = t34 & ops.opposite(in_line)
+    t39 = ops.select(t36, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, t17 / t39)
+    t40 = ops.select(all_same, 0.0, t18 / t39)
+    E_13_2 = ops.select(all_same, 0.0, t21 / t39)
+    t41 = E_11_2 * t14 + t40 * t20 + E_13_2 * t22
+    t42 = t14 - E_11_2 * t41
+    t43 = t20 - t40 * t41
+    m_z_2 = t22 - E_13_2 * t41
+    t44 = E_11_2 * t42 + t40 * t43 + E_13_2 * m_z_2
+    t45 = t42 - E_11_2 * t44
+    t46 = t43 - t40 * t44
+    n_z_2 = m_z_2 - E_13_2 * t44
+    t47 = ops.select(t38, t45 * t45 + t46 * t46 + n_z_2 * n_z_2, 1.0)
+    j_2 = ops.sqrt(t47)
+    t48 = ops.select(in_line, 0.0, t29 / ops.select(t38, 2.0 * j_2, 1.0))
+    rho = ops.sqrt(ops.select(t35, X_2 * X_2 + t48 * t48, 1.0))
+    t49 = ops.select(t35, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t49))
+    t50 = ops.sign(E_13)
+    t51 = E_11_2 * t50
+    t52 = ops.select(t34 & in_line, E_13_2 + t50, 1.0)
+    t53 = ops.select(t38, j_2, 1.0)
+    E_22 = ops.select(in_line, -(t40 * t51 / t52), t46 / t53)
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t50 / t52, t45 / t53)
+    t54 = h * (E_11_2 * E_22 - t40 * E_21)
+    E_23 = ops.select(in_line, -t51, n_z_2 / t53)
+    t55 = X_2 * E_13_2 - t48 * E_23
+    t56 = t54 - t55
+    t57 = s_alpha3 * t56
+    t58 = t33 * t57
+    t59 = u_z + t56
+    t60 = h * (E_11_2 * E_23 - E_13_2 * E_21)
+    t61 = X_2 * t40 - t48 * E_22
+    A_12 = t60 + t61
+    t62 = t59 * (t15 - A_12)
+    t63 = c_alpha3 * t33
+    t64 = (t40 * E_23 - E_13_2 * E_22) * h
+    t65 = E_11_2 * X_2 - E_21 * t48
+    t66 = t64 - t65
+    t67 = v_z + t56
+    t68 = t59 * t67
+    t69 = t66 * t68
+    t70 = c_alpha1 * c_alpha2
+    t71 = s_alpha3 * t70
+    t72 = s_alpha1 * s_alpha2
+    t73 = c_alpha3 * t72
+    t74 = t68 * A_12
+    t75 = s_alpha1 * c_alpha2
+    t76 = s_alpha3 * t75
+    t77 = t63 * t69 - t71 * t69 - t73 * t74 + t76 * t74
+    t78 = c_alpha3 * t56
+    t79 = t75 * t78
+    t80 = t67 * (t7 + t66)
+    t81 = t67 * (t9 - A_12)
+    t82 = t77 - t79 * t80 + t70 * t80 * t57 - t72 * t78 * t81
+    t83 = t59 * (t13 + t66)
+    t84 = t82 + t81 * t58 + t79 * t83 - t33 * t78 * t83
+    t85 = ops.select(failed, ops.nan, t58 * t62 - (t84 + t75 * t57 * t62))
+    A_11_above = t64 + t65
+    A_13_above = t54 + t55
+    t86 = u_z - A_13_above
+    t87 = v_z - A_13_above
+    t88 = t86 * t87
+    t89 = A_11_above * t88
+    t90 = t60 - t61
+    t91 = t88 * t90
+    t92 = t63 * t89 - t71 * t89 - t73 * t91 + t76 * t91
+    t93 = c_alpha3 * A_13_above
+    t94 = t75 * t93
+    t95 = t87 * (t7 - A_11_above)
+    t96 = s_alpha3 * A_13_above
+    t97 = t87 * (t9 + t90)
+    t98 = t92 - t94 * t95 + t70 * t95 * t96 - t72 * t93 * t97
+    t99 = t33 * t96
+    t100 = t86 * (t13 - A_11_above)
+    t101 = t98 + t97 * t99 + t94 * t100 - t33 * t93 * t100
+    t102 = t86 * (t15 + t90)
+    t103 = ops.select(failed, ops.nan, t101 + t75 * t96 * t102 - t99 * t102)
+    return (
+        t85,
+        t103,
+    )
+
+
+_CONSTRAINT = _runtime.Kernel(
+    "delta.constraint",
+    _constraint,
+    (_runtime.Spec("q", (3,)),),
+    (_runtime.Spec("factors", (2, 1)),),
+    Parameters._fields,
+    ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    _runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 3),
+)
+
+
+def constraint(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
+    """What vanishes where the parallelograms do not keep the hand from turning.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta1, theta2, theta3 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+
+    Returns
+    -------
+    factors : array, shape (..., 2, 1)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
+    - NaN for an assembly mode that does not exist.
+    - The determinant of the normals of the parallelograms (a unit vector along the bars times
+      the vector along the rods).
+    """
+    result = _runtime.evaluate(_CONSTRAINT, (q,), params)
+    return result
+
+
 def _ik(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     s_alpha1 = ops.sin(alpha1)
     c_alpha1 = ops.cos(alpha1)
@@ -2018,6 +2345,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
     - SINGULAR: no crank; theta3 is free, 0 is returned.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
       closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+    - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+      which the hand is turned.
     """
     result = _runtime.evaluate(_IK, (x,), params)
     return Solutions(*result)

@@ -3,13 +3,14 @@
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 74 compare and select, 63 add, 12 divide, 79 multiply, 9 sqrt
-#   skeleton: 89 compare and select, 73 add, 19 divide, 68 multiply, 9 sqrt
+#   skeleton: 113 compare and select, 97 add, 21 divide, 68 multiply, 9 sqrt
 #   jacobian_parallel: 83 compare and select, 71 add, 19 divide, 68 multiply, 9 sqrt
 #   jacobian_serial: 73 compare and select, 57 add, 19 divide, 58 multiply, 9 sqrt
 #   jacobian: 86 compare and select, 89 add, 37 divide, 120 multiply, 9 sqrt
 #   determinant: 70 compare and select, 57 add, 21 divide, 64 multiply, 9 sqrt
 #   singularities: 75 compare and select, 57 add, 19 divide, 60 multiply, 9 sqrt
 #   condition_number: 72 compare and select, 121 add, 21 divide, 139 multiply, 11 sqrt
+#   constraint: 69 compare and select, 79 add, 25 divide, 92 multiply, 9 sqrt
 #   ik: 75 compare and select, 72 add, 5 divide, 40 multiply, 12 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -42,22 +43,43 @@ SKELETON = Skeleton(
         "A1",
         "B1",
         "C1",
+        "B1a",
+        "B1b",
+        "C1a",
+        "C1b",
         "A2",
         "B2",
         "C2",
+        "B2a",
+        "B2b",
+        "C2a",
+        "C2b",
         "A3",
         "B3",
         "C3",
+        "B3a",
+        "B3b",
+        "C3a",
+        "C3b",
         "P",
     ),
     links={
         "ground": ('A1', 'A2', 'A3', 'A1'),
         "hand1": ('P', 'C1'),
-        "rod1": ('B1', 'C1'),
+        "rod1a": ('B1a', 'C1a'),
+        "rod1b": ('B1b', 'C1b'),
+        "bar_B1a": ('B1a', 'B1', 'B1b'),
+        "bar_C1a": ('C1a', 'C1', 'C1b'),
         "hand2": ('P', 'C2'),
-        "rod2": ('B2', 'C2'),
+        "rod2a": ('B2a', 'C2a'),
+        "rod2b": ('B2b', 'C2b'),
+        "bar_B2a": ('B2a', 'B2', 'B2b'),
+        "bar_C2a": ('C2a', 'C2', 'C2b'),
         "hand3": ('P', 'C3'),
-        "rod3": ('B3', 'C3'),
+        "rod3a": ('B3a', 'C3a'),
+        "rod3b": ('B3b', 'C3b'),
+        "bar_B3a": ('B3a', 'B3', 'B3b'),
+        "bar_C3a": ('C3a', 'C3', 'C3b'),
     },
     joints={
         "rho1": SkeletonJoint("prismatic", ('A1', 'B1')),
@@ -89,6 +111,7 @@ __all__ = [
     "determinant",
     "singularities",
     "condition_number",
+    "constraint",
     "ik",
     "workspace_contains",
 ]
@@ -254,6 +277,8 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
     - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
       points is returned.
     - Ill-conditioned near the parallel singularities, where both modes meet.
+    - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+      which the hand is turned.
     """
     result = _runtime.evaluate(_FK, (q,), params)
     return Positions(*result)
@@ -267,162 +292,264 @@ def _skeleton(ops, rho1, rho2, rho3, f, e, l):
     t4 = f * 0.5
     t5 = c1_x - (t3 - t4)
     t6 = rho1 - rho2
-    t7 = e * 1.7320508075688772 * 0.5
-    t8 = f * 1.7320508075688772 * 0.5
-    c3_y = t7 - t8
-    t9 = t5 * t5 + c3_y * c3_y
-    t10 = t6 * t6 + t9
-    size_u = ops.sqrt(t10)
-    t11 = rho1 - rho3
-    t12 = t11 * t11 + t9
-    size_v = ops.sqrt(t12)
+    t7 = e * 1.7320508075688772
+    t8 = t7 * 0.5
+    t9 = f * 1.7320508075688772 * 0.5
+    c3_y = t8 - t9
+    t10 = t5 * t5 + c3_y * c3_y
+    t11 = t6 * t6 + t10
+    size_u = ops.sqrt(t11)
+    t12 = rho1 - rho3
+    t13 = t12 * t12 + t10
+    size_v = ops.sqrt(t13)
     size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
-    t13 = size * ops.vanishing
-    all_same = size_u + size_v <= t13
-    same = size_u <= t13
+    t14 = size * ops.vanishing
+    all_same = size_u + size_v <= t14
+    same = size_u <= t14
     D = ops.select(same, size_v, size_u)
     E_11 = ops.select(all_same, 1.0, -(t5 / D))
-    t14 = ops.select(same, c3_y, -c3_y)
-    E_12 = ops.select(all_same, 0.0, t14 / D)
-    t15 = ops.select(same, -c3_y, c3_y)
-    t16 = ops.select(same, t11, t6)
-    t17 = ops.select(all_same, 0.0, t16 / D)
-    t18 = ops.select(same, t6, t11)
-    t19 = t5 * E_11 - E_12 * t15 - t17 * t18
-    t20 = t5 - E_11 * t19
-    m_y = t15 + E_12 * t19
-    t21 = t18 + t17 * t19
-    t22 = E_11 * t20 - E_12 * m_y - t17 * t21
-    t23 = t20 - E_11 * t22
-    n_y = m_y + E_12 * t22
-    t24 = t21 + t17 * t22
-    j = ops.sqrt(t23 * t23 + n_y * n_y + t24 * t24)
-    in_line = j <= t13
-    t25 = t15 * (t14 - t15) + t18 * (t16 - t18)
-    t26 = ops.abs(ops.select(in_line, -t25, 0.0)) <= ops.feasibility * (size * size)
+    t15 = ops.select(same, c3_y, -c3_y)
+    E_12 = ops.select(all_same, 0.0, t15 / D)
+    t16 = ops.select(same, -c3_y, c3_y)
+    t17 = ops.select(same, t12, t6)
+    t18 = ops.select(all_same, 0.0, t17 / D)
+    t19 = ops.select(same, t6, t12)
+    t20 = t5 * E_11 - E_12 * t16 - t18 * t19
+    t21 = t5 - E_11 * t20
+    m_y = t16 + E_12 * t20
+    t22 = t19 + t18 * t20
+    t23 = E_11 * t21 - E_12 * m_y - t18 * t22
+    t24 = t21 - E_11 * t23
+    n_y = m_y + E_12 * t23
+    t25 = t22 + t18 * t23
+    j = ops.sqrt(t24 * t24 + n_y * n_y + t25 * t25)
+    in_line = j <= t14
+    t26 = t16 * (t15 - t16) + t19 * (t17 - t19)
+    t27 = ops.abs(ops.select(in_line, -t26, 0.0)) <= ops.feasibility * (size * size)
     X = ops.select(all_same, 0.0, D * 0.5)
-    t27 = ops.select(in_line, 0.0, t25 / (2.0 * j))
-    t28 = l - ops.sqrt(X * X + t27 * t27)
-    unreachable = ops.opposite(t26 & (-(size * ops.feasibility) <= t28))
+    t28 = ops.select(in_line, 0.0, t26 / (2.0 * j))
+    t29 = l - ops.sqrt(X * X + t28 * t28)
+    unreachable = ops.opposite(t27 & (-(size * ops.feasibility) <= t29))
     failed = ops.opposite(t2) | unreachable
-    t29 = ops.select(failed, ops.nan, f)
-    t30 = ops.select(failed, ops.nan, 0.0)
-    t31 = ops.select(failed, ops.nan, rho1)
-    t32 = ops.opposite(failed)
-    t33 = t32 & ops.opposite(all_same)
-    t34 = ops.select(t33 & ops.opposite(same), t10, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t33 & same, t12, 1.0)), ops.sqrt(t34))
-    t35 = ops.select(t33, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(t5 / t35))
+    t30 = ops.select(failed, ops.nan, f)
+    t31 = ops.select(failed, ops.nan, 0.0)
+    t32 = ops.select(failed, ops.nan, rho1)
+    t33 = e + c1_x
+    t34 = ops.opposite(failed)
+    t35 = t34 & ops.opposite(all_same)
+    t36 = ops.select(t35 & ops.opposite(same), t11, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t35 & same, t13, 1.0)), ops.sqrt(t36))
+    t37 = ops.select(t35, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(t5 / t37))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t36 = t32 & ops.opposite(in_line)
-    E_12_2 = ops.select(all_same, 0.0, t14 / t35)
-    t37 = ops.select(all_same, 0.0, t16 / t35)
-    t38 = t5 * E_11_2 - E_12_2 * t15 - t37 * t18
-    t39 = t5 - E_11_2 * t38
-    m_y_2 = t15 + E_12_2 * t38
-    t40 = t18 + t37 * t38
-    t41 = E_11_2 * t39 - E_12_2 * m_y_2 - t37 * t40
-    t42 = t39 - E_11_2 * t41
-    n_y_2 = m_y_2 + E_12_2 * t41
-    t43 = t40 + t37 * t41
-    t44 = ops.select(t36, t42 * t42 + n_y_2 * n_y_2 + t43 * t43, 1.0)
-    j_2 = ops.sqrt(t44)
-    t45 = ops.select(in_line, 0.0, t25 / ops.select(t36, 2.0 * j_2, 1.0))
-    t46 = ops.sign(-t17)
-    t47 = ops.select(t32 & in_line, t37 - t46, 1.0)
-    t48 = ops.select(t36, j_2, 1.0)
-    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t46 / t47, -(t42 / t48))
-    t49 = E_11_2 * X_2 - t45 * E_21
-    touching = ops.max(t28, 0.0) <= t13
-    t50 = t32 & ops.opposite(touching)
-    rho = ops.sqrt(ops.select(t50, X_2 * X_2 + t45 * t45, 1.0))
-    t51 = ops.select(t50, ops.max(l - rho, 0.0) * (l + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t51))
-    t52 = E_11_2 * t46
-    t53 = ops.select(in_line, t52, t43 / t48)
-    E_22 = ops.select(in_line, E_12_2 * t52 / t47, n_y_2 / t48)
-    t54 = h * (E_12_2 * t53 - t37 * E_22)
-    t55 = c1_x + (t49 + t54)
-    t56 = E_12_2 * X_2 - t45 * E_22
-    t57 = h * (E_11_2 * t53 - t37 * E_21)
-    A_12 = t56 - t57
-    t58 = ops.select(failed, ops.nan, A_12)
-    t59 = t37 * X_2 - t45 * t53
-    t60 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t61 = ops.select(failed, ops.nan, rho1 - (t59 - t60))
-    t62 = ops.select(failed, ops.nan, -t4)
-    t63 = ops.select(failed, ops.nan, t8)
-    t64 = ops.select(failed, ops.nan, rho2)
-    t65 = ops.select(failed, ops.nan, t55 - t3)
-    t66 = ops.select(failed, ops.nan, -t8)
-    t67 = ops.select(failed, ops.nan, rho3)
-    t68 = c1_x + (t49 - t54)
-    A_12_above = t56 + t57
-    t69 = ops.select(failed, ops.nan, A_12_above)
-    t70 = ops.select(failed, ops.nan, rho1 - (t59 + t60))
-    t71 = ops.select(failed, ops.nan, t68 - t3)
+    t38 = t34 & ops.opposite(in_line)
+    E_12_2 = ops.select(all_same, 0.0, t15 / t37)
+    t39 = ops.select(all_same, 0.0, t17 / t37)
+    t40 = t5 * E_11_2 - E_12_2 * t16 - t39 * t19
+    t41 = t5 - E_11_2 * t40
+    m_y_2 = t16 + E_12_2 * t40
+    t42 = t19 + t39 * t40
+    t43 = E_11_2 * t41 - E_12_2 * m_y_2 - t39 * t42
+    t44 = t41 - E_11_2 * t43
+    n_y_2 = m_y_2 + E_12_2 * t43
+    t45 = t42 + t39 * t43
+    t46 = ops.select(t38, t44 * t44 + n_y_2 * n_y_2 + t45 * t45, 1.0)
+    j_2 = ops.sqrt(t46)
+    t47 = ops.select(in_line, 0.0, t26 / ops.select(t38, 2.0 * j_2, 1.0))
+    t48 = ops.sign(-t18)
+    t49 = ops.select(t34 & in_line, t39 - t48, 1.0)
+    t50 = ops.select(t38, j_2, 1.0)
+    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t48 / t49, -(t44 / t50))
+    t51 = E_11_2 * X_2 - t47 * E_21
+    touching = ops.max(t29, 0.0) <= t14
+    t52 = t34 & ops.opposite(touching)
+    rho = ops.sqrt(ops.select(t52, X_2 * X_2 + t47 * t47, 1.0))
+    t53 = ops.select(t52, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t53))
+    t54 = E_11_2 * t48
+    t55 = ops.select(in_line, t54, t45 / t50)
+    E_22 = ops.select(in_line, E_12_2 * t54 / t49, n_y_2 / t50)
+    t56 = h * (E_12_2 * t55 - t39 * E_22)
+    A_11 = t51 + t56
+    t57 = ops.select(failed, ops.nan, t33 + A_11)
+    t58 = E_12_2 * X_2 - t47 * E_22
+    t59 = h * (E_11_2 * t55 - t39 * E_21)
+    A_12 = t58 - t59
+    t60 = ops.select(failed, ops.nan, A_12)
+    t61 = t39 * X_2 - t47 * t55
+    t62 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t63 = ops.select(failed, ops.nan, rho1 - (t61 - t62))
+    t64 = ops.select(failed, ops.nan, t3)
+    t65 = ops.select(failed, ops.nan, -t3)
+    t66 = ops.select(failed, ops.nan, -t4)
+    t67 = ops.select(failed, ops.nan, t9)
+    t68 = ops.select(failed, ops.nan, rho2)
+    t69 = c1_x - t3
+    t70 = t69 + A_11
+    t71 = ops.select(failed, ops.nan, t70)
+    t72 = t7 * 0.25
+    t73 = ops.select(failed, ops.nan, -(t4 + t72))
+    t74 = e * 0.25
+    t75 = t9 - t74
+    t76 = ops.select(failed, ops.nan, t75)
+    t77 = ops.select(failed, ops.nan, t72 - t4)
+    t78 = t9 + t74
+    t79 = ops.select(failed, ops.nan, t78)
+    t80 = ops.select(failed, ops.nan, t70 - t72)
+    t81 = t8 - t74
+    t82 = ops.select(failed, ops.nan, t72 + t70)
+    t83 = t8 + t74
+    t84 = ops.select(failed, ops.nan, -t9)
+    t85 = ops.select(failed, ops.nan, rho3)
+    t86 = ops.select(failed, ops.nan, -t78)
+    t87 = ops.select(failed, ops.nan, -t75)
+    A_11_above = t51 - t56
+    t88 = ops.select(failed, ops.nan, t33 + A_11_above)
+    A_12_above = t58 + t59
+    t89 = ops.select(failed, ops.nan, A_12_above)
+    t90 = ops.select(failed, ops.nan, rho1 - (t61 + t62))
+    t91 = t69 + A_11_above
+    t92 = ops.select(failed, ops.nan, t91)
+    t93 = ops.select(failed, ops.nan, t91 - t72)
+    t94 = ops.select(failed, ops.nan, t81 + A_12_above)
+    t95 = ops.select(failed, ops.nan, t72 + t91)
+    t96 = ops.select(failed, ops.nan, t83 + A_12_above)
+    t97 = ops.select(failed, ops.nan, A_12_above - t83)
+    t98 = ops.select(failed, ops.nan, A_12_above - t81)
+    t99 = ops.select(failed, ops.nan, c1_x + A_11_above)
     return (
-        t29,
-        t30,
-        t30,
-        t29,
         t30,
         t31,
-        ops.select(failed, ops.nan, e + t55),
-        t58,
-        t61,
-        t62,
-        t63,
-        t30,
-        t62,
-        t63,
-        t64,
-        t65,
-        ops.select(failed, ops.nan, t7 + A_12),
-        t61,
-        t62,
-        t66,
-        t30,
-        t62,
-        t66,
-        t67,
-        t65,
-        ops.select(failed, ops.nan, A_12 - t7),
-        t61,
-        ops.select(failed, ops.nan, t55),
-        t58,
-        t61,
-        t29,
-        t30,
-        t30,
-        t29,
+        t31,
         t30,
         t31,
-        ops.select(failed, ops.nan, e + t68),
-        t69,
-        t70,
-        t62,
+        t32,
+        t57,
+        t60,
         t63,
         t30,
-        t62,
-        t63,
         t64,
-        t71,
-        ops.select(failed, ops.nan, t7 + A_12_above),
-        t70,
-        t62,
-        t66,
+        t32,
         t30,
-        t62,
+        t65,
+        t32,
+        t57,
+        ops.select(failed, ops.nan, t3 + A_12),
+        t63,
+        t57,
+        ops.select(failed, ops.nan, A_12 - t3),
+        t63,
         t66,
         t67,
+        t31,
+        t66,
+        t67,
+        t68,
         t71,
-        ops.select(failed, ops.nan, A_12_above - t7),
-        t70,
-        ops.select(failed, ops.nan, t68),
-        t69,
-        t70,
+        ops.select(failed, ops.nan, t8 + A_12),
+        t63,
+        t73,
+        t76,
+        t68,
+        t77,
+        t79,
+        t68,
+        t80,
+        ops.select(failed, ops.nan, t81 + A_12),
+        t63,
+        t82,
+        ops.select(failed, ops.nan, t83 + A_12),
+        t63,
+        t66,
+        t84,
+        t31,
+        t66,
+        t84,
+        t85,
+        t71,
+        ops.select(failed, ops.nan, A_12 - t8),
+        t63,
+        t77,
+        t86,
+        t85,
+        t73,
+        t87,
+        t85,
+        t82,
+        ops.select(failed, ops.nan, A_12 - t83),
+        t63,
+        t80,
+        ops.select(failed, ops.nan, A_12 - t81),
+        t63,
+        ops.select(failed, ops.nan, c1_x + A_11),
+        t60,
+        t63,
+        t30,
+        t31,
+        t31,
+        t30,
+        t31,
+        t32,
+        t88,
+        t89,
+        t90,
+        t30,
+        t64,
+        t32,
+        t30,
+        t65,
+        t32,
+        t88,
+        ops.select(failed, ops.nan, t3 + A_12_above),
+        t90,
+        t88,
+        ops.select(failed, ops.nan, A_12_above - t3),
+        t90,
+        t66,
+        t67,
+        t31,
+        t66,
+        t67,
+        t68,
+        t92,
+        ops.select(failed, ops.nan, t8 + A_12_above),
+        t90,
+        t73,
+        t76,
+        t68,
+        t77,
+        t79,
+        t68,
+        t93,
+        t94,
+        t90,
+        t95,
+        t96,
+        t90,
+        t66,
+        t84,
+        t31,
+        t66,
+        t84,
+        t85,
+        t92,
+        ops.select(failed, ops.nan, A_12_above - t8),
+        t90,
+        t77,
+        t86,
+        t85,
+        t73,
+        t87,
+        t85,
+        t95,
+        t97,
+        t90,
+        t93,
+        t98,
+        t90,
+        t99,
+        t89,
+        t90,
     )
 
 
@@ -430,10 +557,10 @@ _SKELETON = _runtime.Kernel(
     "linear_delta.skeleton",
     _skeleton,
     (_runtime.Spec("q", (3,)),),
-    (_runtime.Spec("points", (2, 10, 3)),),
+    (_runtime.Spec("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (33, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1)), 2),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (69, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 2),
 )
 
 
@@ -449,7 +576,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Returns
     -------
-    points : array, shape (..., 2, 10, 3)
+    points : array, shape (..., 2, 22, 3)
         Coordinates x, y, z of each point.
 
     Raises
@@ -463,6 +590,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     -----
     - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
+    - The width of a parallelogram matters here alone.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params)
     return result
@@ -1372,6 +1500,155 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     return result
 
 
+def _constraint(ops, rho1, rho2, rho3, f, e, l):
+    t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
+    t2 = t1 & (0.0 <= l) & ops.finite(rho1, rho2, rho3)
+    t3 = f - e - (e * 0.5 - f * 0.5)
+    t4 = rho1 - rho2
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t5 = t3 * t3 + c3_y * c3_y
+    t6 = t4 * t4 + t5
+    size_u = ops.sqrt(t6)
+    t7 = rho1 - rho3
+    t8 = t7 * t7 + t5
+    size_v = ops.sqrt(t8)
+    size = f + e + l + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
+    t9 = size * ops.vanishing
+    all_same = size_u + size_v <= t9
+    same = size_u <= t9
+    D = ops.select(same, size_v, size_u)
+    E_11 = ops.select(all_same, 1.0, -(t3 / D))
+    t10 = ops.select(same, c3_y, -c3_y)
+    E_12 = ops.select(all_same, 0.0, t10 / D)
+    t11 = ops.select(same, -c3_y, c3_y)
+    t12 = ops.select(same, t7, t4)
+    t13 = ops.select(all_same, 0.0, t12 / D)
+    t14 = ops.select(same, t4, t7)
+    t15 = t3 * E_11 - E_12 * t11 - t13 * t14
+    t16 = t3 - E_11 * t15
+    m_y = t11 + E_12 * t15
+    t17 = t14 + t13 * t15
+    t18 = E_11 * t16 - E_12 * m_y - t13 * t17
+    t19 = t16 - E_11 * t18
+    n_y = m_y + E_12 * t18
+    t20 = t17 + t13 * t18
+    j = ops.sqrt(t19 * t19 + n_y * n_y + t20 * t20)
+    in_line = j <= t9
+    t21 = t11 * (t10 - t11) + t14 * (t12 - t14)
+    t22 = ops.abs(ops.select(in_line, -t21, 0.0)) <= ops.feasibility * (size * size)
+    X = ops.select(all_same, 0.0, D * 0.5)
+    t23 = ops.select(in_line, 0.0, t21 / (2.0 * j))
+    t24 = l - ops.sqrt(X * X + t23 * t23)
+    unreachable = ops.opposite(t22 & (-(size * ops.feasibility) <= t24))
+    failed = ops.opposite(t2) | unreachable
+    t25 = ops.opposite(failed)
+    t26 = t25 & ops.opposite(all_same)
+    t27 = ops.select(t26 & ops.opposite(same), t6, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t26 & same, t8, 1.0)), ops.sqrt(t27))
+    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
+    t28 = ops.select(t26, D_2, 1.0)
+    t29 = ops.select(all_same, 0.0, t12 / t28)
+    t30 = t25 & ops.opposite(in_line)
+    E_11_2 = ops.select(all_same, 1.0, -(t3 / t28))
+    E_12_2 = ops.select(all_same, 0.0, t10 / t28)
+    t31 = t3 * E_11_2 - E_12_2 * t11 - t29 * t14
+    t32 = t3 - E_11_2 * t31
+    m_y_2 = t11 + E_12_2 * t31
+    t33 = t14 + t29 * t31
+    t34 = E_11_2 * t32 - E_12_2 * m_y_2 - t29 * t33
+    t35 = t32 - E_11_2 * t34
+    n_y_2 = m_y_2 + E_12_2 * t34
+    t36 = t33 + t29 * t34
+    t37 = ops.select(t30, t35 * t35 + n_y_2 * n_y_2 + t36 * t36, 1.0)
+    j_2 = ops.sqrt(t37)
+    t38 = ops.select(in_line, 0.0, t21 / ops.select(t30, 2.0 * j_2, 1.0))
+    t39 = ops.sign(-t13)
+    t40 = E_11_2 * t39
+    t41 = ops.select(t30, j_2, 1.0)
+    t42 = ops.select(in_line, t40, t36 / t41)
+    t43 = X_2 * t29 - t38 * t42
+    touching = ops.max(t24, 0.0) <= t9
+    t44 = t25 & ops.opposite(touching)
+    rho = ops.sqrt(ops.select(t44, X_2 * X_2 + t38 * t38, 1.0))
+    t45 = ops.select(t44, ops.max(l - rho, 0.0) * (l + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t45))
+    t46 = ops.select(t25 & in_line, t29 - t39, 1.0)
+    E_21 = ops.select(in_line, 1.0 + E_11_2 * E_11_2 * t39 / t46, -(t35 / t41))
+    E_22 = ops.select(in_line, E_12_2 * t40 / t46, n_y_2 / t41)
+    t47 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t48 = t43 - t47
+    A_23 = t4 - t48
+    t49 = 0.75 * t48
+    t50 = X_2 * E_12_2 - t38 * E_22
+    t51 = h * (E_11_2 * t42 - t29 * E_21)
+    A_12 = t50 - t51
+    t52 = E_11_2 * X_2 - E_21 * t38
+    t53 = h * (E_12_2 * t42 - t29 * E_22)
+    A_11 = t52 + t53
+    A_33 = t7 - t48
+    t54 = 1.7320508075688772 * A_11 * A_23 * A_33 * 0.5
+    t55 = (t3 + A_11) * (1.7320508075688772 * t48)
+    t56 = t54 + A_33 * t55 * 0.25 - A_33 * t49 * (c3_y + A_12)
+    t57 = A_23 * t49 * (c3_y - A_12) - (t56 + A_23 * t55 * 0.25)
+    t58 = t43 + t47
+    A_23_above = t4 - t58
+    t59 = 0.75 * t58
+    A_12_above = t50 + t51
+    A_11_above = t52 - t53
+    A_33_above = t7 - t58
+    t60 = 1.7320508075688772 * A_11_above * A_23_above * A_33_above
+    t61 = (t3 + A_11_above) * (1.7320508075688772 * t58)
+    t62 = t60 * 0.5 + A_33_above * t61 * 0.25 - A_33_above * t59 * (c3_y + A_12_above)
+    t63 = A_23_above * t59 * (c3_y - A_12_above) - (t62 + A_23_above * t61 * 0.25)
+    return (
+        ops.select(failed, ops.nan, t57),
+        ops.select(failed, ops.nan, t63),
+    )
+
+
+_CONSTRAINT = _runtime.Kernel(
+    "linear_delta.constraint",
+    _constraint,
+    (_runtime.Spec("q", (3,)),),
+    (_runtime.Spec("factors", (2, 1)),),
+    Parameters._fields,
+    ('f', 'e', 'l'),
+    _runtime.Size((0, 1, 2, 3, 4, 5), ((0, 3), (1, 3)), 3),
+)
+
+
+def constraint(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
+    """What vanishes where the parallelograms do not keep the hand from turning.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        rho1, rho2, rho3 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+
+    Returns
+    -------
+    factors : array, shape (..., 2, 1)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
+    - NaN for an assembly mode that does not exist.
+    - The determinant of the normals of the parallelograms (a unit vector along the bars times
+      the vector along the rods).
+    """
+    result = _runtime.evaluate(_CONSTRAINT, (q,), params)
+    return result
+
+
 def _ik(ops, x, y, z, f, e, l):
     t1 = ops.finite(f, e, l) & (0.0 <= f) & (0.0 <= e)
     invalid = ops.opposite(t1 & (0.0 <= l) & ops.finite(x, y, z))
@@ -1539,6 +1816,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
     - UNREACHABLE: a rod does not reach.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
       closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+    - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+      which the hand is turned.
     """
     result = _runtime.evaluate(_IK, (x,), params)
     return Solutions(*result)

@@ -3,13 +3,14 @@
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 70 compare and select, 53 add, 8 divide, 76 multiply, 9 sqrt
-#   skeleton: 73 compare and select, 54 add, 15 divide, 65 multiply, 9 sqrt
+#   skeleton: 87 compare and select, 66 add, 16 divide, 65 multiply, 9 sqrt
 #   jacobian_parallel: 75 compare and select, 58 add, 15 divide, 65 multiply, 9 sqrt
 #   jacobian_serial: 69 compare and select, 56 add, 15 divide, 65 multiply, 9 sqrt
 #   jacobian: 82 compare and select, 76 add, 33 divide, 109 multiply, 9 sqrt
 #   determinant: 66 compare and select, 56 add, 17 divide, 71 multiply, 9 sqrt
 #   singularities: 71 compare and select, 56 add, 15 divide, 67 multiply, 9 sqrt
 #   condition_number: 68 compare and select, 108 add, 17 divide, 124 multiply, 11 sqrt
+#   constraint: 65 compare and select, 60 add, 15 divide, 73 multiply, 9 sqrt
 #   ik: 71 compare and select, 48 add, 1 divide, 37 multiply, 12 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 """Orthoglide.
@@ -41,17 +42,38 @@ SKELETON = Skeleton(
     points=(
         "A1",
         "B1",
+        "B1a",
+        "B1b",
+        "C1a",
+        "C1b",
         "A2",
         "B2",
+        "B2a",
+        "B2b",
+        "C2a",
+        "C2b",
         "A3",
         "B3",
+        "B3a",
+        "B3b",
+        "C3a",
+        "C3b",
         "P",
     ),
     links={
         "ground": ('A1', 'A2', 'A3', 'A1'),
-        "rod1": ('B1', 'P'),
-        "rod2": ('B2', 'P'),
-        "rod3": ('B3', 'P'),
+        "rod1a": ('B1a', 'C1a'),
+        "rod1b": ('B1b', 'C1b'),
+        "bar_B1a": ('B1a', 'B1', 'B1b'),
+        "bar_C1a": ('C1a', 'P', 'C1b'),
+        "rod2a": ('B2a', 'C2a'),
+        "rod2b": ('B2b', 'C2b'),
+        "bar_B2a": ('B2a', 'B2', 'B2b'),
+        "bar_C2a": ('C2a', 'P', 'C2b'),
+        "rod3a": ('B3a', 'C3a'),
+        "rod3b": ('B3b', 'C3b'),
+        "bar_B3a": ('B3a', 'B3', 'B3b'),
+        "bar_C3a": ('C3a', 'P', 'C3b'),
     },
     joints={
         "rho1": SkeletonJoint("prismatic", ('A1', 'B1')),
@@ -83,6 +105,7 @@ __all__ = [
     "determinant",
     "singularities",
     "condition_number",
+    "constraint",
     "ik",
     "workspace_contains",
 ]
@@ -238,6 +261,8 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Positions":
     - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
       points is returned.
     - Ill-conditioned near the parallel singularities, where both modes meet.
+    - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+      which the hand is turned.
     """
     result = _runtime.evaluate(_FK, (q,), params)
     return Positions(*result)
@@ -281,49 +306,66 @@ def _skeleton(ops, rho1, rho2, rho3, L):
     failed = ops.opposite(t1) | unreachable
     t18 = ops.select(failed, ops.nan, 0.0)
     t19 = ops.select(failed, ops.nan, rho1)
-    t20 = ops.select(failed, ops.nan, rho2)
-    t21 = ops.select(failed, ops.nan, rho3)
+    t20 = L * 0.0625
+    t21 = ops.select(failed, ops.nan, t20)
+    t22 = ops.select(failed, ops.nan, -t20)
     touching = ops.max(t17, 0.0) <= t5
-    t22 = ops.opposite(failed)
-    t23 = t22 & ops.opposite(touching)
-    t24 = t22 & ops.opposite(all_same)
-    t25 = ops.select(t24 & ops.opposite(same), t3, 1.0)
-    D_2 = ops.select(same, ops.sqrt(ops.select(t24 & same, t4, 1.0)), ops.sqrt(t25))
+    t23 = ops.opposite(failed)
+    t24 = t23 & ops.opposite(touching)
+    t25 = t23 & ops.opposite(all_same)
+    t26 = ops.select(t25 & ops.opposite(same), t3, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t25 & same, t4, 1.0)), ops.sqrt(t26))
     X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
-    t26 = t22 & ops.opposite(in_line)
-    t27 = ops.select(t24, D_2, 1.0)
-    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t27))
-    E_12_2 = ops.select(all_same, 0.0, t6 / t27)
-    E_13_2 = ops.select(all_same, 0.0, t8 / t27)
-    t28 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
-    t29 = rho1 - E_11_2 * t28
-    m_y_2 = t7 + E_12_2 * t28
-    m_z_2 = t9 + E_13_2 * t28
-    t30 = E_11_2 * t29 - E_12_2 * m_y_2 - E_13_2 * m_z_2
-    t31 = t29 - E_11_2 * t30
-    n_y_2 = m_y_2 + E_12_2 * t30
-    n_z_2 = m_z_2 + E_13_2 * t30
-    t32 = ops.select(t26, t31 * t31 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
-    j_2 = ops.sqrt(t32)
-    t33 = ops.select(in_line, 0.0, t14 / ops.select(t26, j_2 * 2.0, 1.0))
-    rho = ops.sqrt(ops.select(t23, X_2 * X_2 + t33 * t33, 1.0))
-    t34 = ops.select(t23, ops.max(L - rho, 0.0) * (L + rho), 1.0)
-    h = ops.select(touching, 0.0, ops.sqrt(t34))
-    t35 = ops.sign(E_13)
-    t36 = E_11_2 * t35
-    t37 = ops.select(t26, j_2, 1.0)
-    E_23 = ops.select(in_line, -t36, n_z_2 / t37)
-    t38 = ops.select(t22 & in_line, E_13_2 + t35, 1.0)
-    E_22 = ops.select(in_line, -(E_12_2 * t36 / t38), n_y_2 / t37)
-    t39 = h * (E_12_2 * E_23 - E_13_2 * E_22)
-    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t35 / t38, -(t31 / t37))
-    t40 = E_11_2 * X_2 - E_21 * t33
-    t41 = ops.select(failed, ops.nan, rho1 + (t39 + t40))
-    t42 = E_12_2 * X_2 - t33 * E_22
-    t43 = (E_11_2 * E_23 - E_13_2 * E_21) * h
-    t44 = E_13_2 * X_2 - E_23 * t33
-    t45 = h * (E_12_2 * E_21 - E_11_2 * E_22)
-    t46 = ops.select(failed, ops.nan, rho1 - (t39 - t40))
+    t27 = t23 & ops.opposite(in_line)
+    t28 = ops.select(t25, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t28))
+    E_12_2 = ops.select(all_same, 0.0, t6 / t28)
+    E_13_2 = ops.select(all_same, 0.0, t8 / t28)
+    t29 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
+    t30 = rho1 - E_11_2 * t29
+    m_y_2 = t7 + E_12_2 * t29
+    m_z_2 = t9 + E_13_2 * t29
+    t31 = E_11_2 * t30 - E_12_2 * m_y_2 - E_13_2 * m_z_2
+    t32 = t30 - E_11_2 * t31
+    n_y_2 = m_y_2 + E_12_2 * t31
+    n_z_2 = m_z_2 + E_13_2 * t31
+    t33 = ops.select(t27, t32 * t32 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
+    j_2 = ops.sqrt(t33)
+    t34 = ops.select(in_line, 0.0, t14 / ops.select(t27, j_2 * 2.0, 1.0))
+    rho = ops.sqrt(ops.select(t24, X_2 * X_2 + t34 * t34, 1.0))
+    t35 = ops.select(t24, ops.max(L - rho, 0.0) * (L + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t35))
+    t36 = ops.sign(E_13)
+    t37 = E_11_2 * t36
+    t38 = ops.select(t27, j_2, 1.0)
+    E_23 = ops.select(in_line, -t37, n_z_2 / t38)
+    t39 = ops.select(t23 & in_line, E_13_2 + t36, 1.0)
+    E_22 = ops.select(in_line, -(E_12_2 * t37 / t39), n_y_2 / t38)
+    t40 = h * (E_12_2 * E_23 - E_13_2 * E_22)
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t36 / t39, -(t32 / t38))
+    t41 = E_11_2 * X_2 - E_21 * t34
+    t42 = rho1 + (t40 + t41)
+    t43 = ops.select(failed, ops.nan, t42)
+    t44 = (E_11_2 * E_23 - E_13_2 * E_21) * h
+    t45 = E_12_2 * X_2 - t34 * E_22
+    t46 = t44 - t45
+    t47 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t48 = E_13_2 * X_2 - E_23 * t34
+    t49 = t47 - t48
+    t50 = ops.select(failed, ops.nan, -t49)
+    t51 = ops.select(failed, ops.nan, rho2)
+    t52 = ops.select(failed, ops.nan, -t46)
+    t53 = ops.select(failed, ops.nan, rho3)
+    t54 = rho1 - (t40 - t41)
+    t55 = ops.select(failed, ops.nan, t54)
+    A_12_inner = t44 + t45
+    t56 = ops.select(failed, ops.nan, t20 + A_12_inner)
+    A_13_inner = t47 + t48
+    t57 = ops.select(failed, ops.nan, A_13_inner)
+    t58 = ops.select(failed, ops.nan, A_12_inner - t20)
+    t59 = ops.select(failed, ops.nan, A_12_inner)
+    t60 = ops.select(failed, ops.nan, t20 + A_13_inner)
+    t61 = ops.select(failed, ops.nan, A_13_inner - t20)
     return (
         t18,
         t18,
@@ -331,42 +373,114 @@ def _skeleton(ops, rho1, rho2, rho3, L):
         t19,
         t18,
         t18,
-        t18,
-        t18,
-        t18,
-        t18,
-        t20,
-        t18,
-        t18,
-        t18,
-        t18,
-        t18,
-        t18,
+        t19,
         t21,
-        t41,
-        ops.select(failed, ops.nan, t42 - t43),
-        ops.select(failed, ops.nan, t44 - t45),
+        t18,
+        t19,
+        t22,
+        t18,
+        t43,
+        ops.select(failed, ops.nan, t20 - t46),
+        t50,
+        t43,
+        ops.select(failed, ops.nan, -(t20 + t46)),
+        t50,
+        t18,
+        t18,
+        t18,
+        t18,
+        t51,
+        t18,
+        t18,
+        t51,
+        t21,
+        t18,
+        t51,
+        t22,
+        t43,
+        t52,
+        ops.select(failed, ops.nan, t20 - t49),
+        t43,
+        t52,
+        ops.select(failed, ops.nan, -(t20 + t49)),
+        t18,
+        t18,
+        t18,
+        t18,
+        t18,
+        t53,
+        t21,
+        t18,
+        t53,
+        t22,
+        t18,
+        t53,
+        ops.select(failed, ops.nan, t20 + t42),
+        t52,
+        t50,
+        ops.select(failed, ops.nan, t42 - t20),
+        t52,
+        t50,
+        t43,
+        t52,
+        t50,
         t18,
         t18,
         t18,
         t19,
         t18,
         t18,
-        t18,
-        t18,
-        t18,
-        t18,
-        t20,
-        t18,
-        t18,
-        t18,
-        t18,
-        t18,
-        t18,
+        t19,
         t21,
-        t46,
-        ops.select(failed, ops.nan, t43 + t42),
-        ops.select(failed, ops.nan, t45 + t44),
+        t18,
+        t19,
+        t22,
+        t18,
+        t55,
+        t56,
+        t57,
+        t55,
+        t58,
+        t57,
+        t18,
+        t18,
+        t18,
+        t18,
+        t51,
+        t18,
+        t18,
+        t51,
+        t21,
+        t18,
+        t51,
+        t22,
+        t55,
+        t59,
+        t60,
+        t55,
+        t59,
+        t61,
+        t18,
+        t18,
+        t18,
+        t18,
+        t18,
+        t53,
+        t21,
+        t18,
+        t53,
+        t22,
+        t18,
+        t53,
+        ops.select(failed, ops.nan, t20 + t54),
+        t59,
+        t57,
+        ops.select(failed, ops.nan, t54 - t20),
+        t59,
+        t57,
+        t55,
+        t59,
+        t57,
     )
 
 
@@ -374,10 +488,10 @@ _SKELETON = _runtime.Kernel(
     "orthoglide.skeleton",
     _skeleton,
     (_runtime.Spec("q", (3,)),),
-    (_runtime.Spec("points", (2, 7, 3)),),
+    (_runtime.Spec("points", (2, 19, 3)),),
     Parameters._fields,
     ('L',),
-    _runtime.Size((0, 1, 2, 3), ((3, 1), (10, 1), (17, 1), (18, 1), (19, 1), (20, 1), (24, 1), (31, 1), (38, 1), (39, 1), (40, 1), (41, 1)), 2),
+    _runtime.Size((0, 1, 2, 3), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (22, 1), (25, 1), (26, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (41, 1), (42, 1), (44, 1), (45, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (60, 1), (63, 1), (64, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (79, 1), (82, 1), (83, 1), (85, 1), (86, 1), (87, 1), (88, 1), (89, 1), (90, 1), (91, 1), (92, 1), (98, 1), (99, 1), (101, 1), (102, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (110, 1), (111, 1), (112, 1), (113, 1)), 2),
 )
 
 
@@ -393,7 +507,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
 
     Returns
     -------
-    points : array, shape (..., 2, 7, 3)
+    points : array, shape (..., 2, 19, 3)
         Coordinates x, y, z of each point.
 
     Raises
@@ -407,6 +521,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     -----
     - The assembly modes, in the order of `ASSEMBLY_MODES`: outer, inner.
     - NaN for an assembly mode that does not exist.
+    - The width of a parallelogram matters here alone.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params)
     return result
@@ -1306,6 +1421,139 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
     return result
 
 
+def _constraint(ops, rho1, rho2, rho3, L):
+    t1 = ops.finite(L) & (0.0 <= L) & ops.finite(rho1, rho2, rho3)
+    t2 = rho1 * rho1
+    t3 = t2 + rho2 * rho2
+    size_u = ops.sqrt(t3)
+    t4 = t2 + rho3 * rho3
+    size_v = ops.sqrt(t4)
+    size = L + ops.abs(rho1) + ops.abs(rho2) + ops.abs(rho3)
+    t5 = size * ops.vanishing
+    all_same = size_u + size_v <= t5
+    same = size_u <= t5
+    D = ops.select(same, size_v, size_u)
+    E_11 = ops.select(all_same, 1.0, -(rho1 / D))
+    t6 = ops.select(same, 0.0, rho2)
+    E_12 = ops.select(all_same, 0.0, t6 / D)
+    t7 = ops.select(same, rho2, 0.0)
+    t8 = ops.select(same, rho3, 0.0)
+    E_13 = ops.select(all_same, 0.0, t8 / D)
+    t9 = ops.select(same, 0.0, rho3)
+    t10 = rho1 * E_11 - E_12 * t7 - E_13 * t9
+    t11 = rho1 - E_11 * t10
+    m_y = t7 + E_12 * t10
+    m_z = t9 + E_13 * t10
+    t12 = E_11 * t11 - E_12 * m_y - E_13 * m_z
+    t13 = t11 - E_11 * t12
+    n_y = m_y + E_12 * t12
+    n_z = m_z + E_13 * t12
+    j = ops.sqrt(t13 * t13 + n_y * n_y + n_z * n_z)
+    in_line = j <= t5
+    t14 = t7 * (t6 - t7) + t9 * (t8 - t9)
+    t15 = ops.abs(ops.select(in_line, -t14, 0.0)) <= ops.feasibility * (size * size)
+    X = ops.select(all_same, 0.0, D * 0.5)
+    t16 = ops.select(in_line, 0.0, t14 / (j * 2.0))
+    t17 = L - ops.sqrt(X * X + t16 * t16)
+    unreachable = ops.opposite(t15 & (-(size * ops.feasibility) <= t17))
+    failed = ops.opposite(t1) | unreachable
+    t18 = ops.opposite(failed)
+    t19 = t18 & ops.opposite(all_same)
+    t20 = ops.select(t19 & ops.opposite(same), t3, 1.0)
+    D_2 = ops.select(same, ops.sqrt(ops.select(t19 & same, t4, 1.0)), ops.sqrt(t20))
+    t21 = ops.select(t19, D_2, 1.0)
+    E_11_2 = ops.select(all_same, 1.0, -(rho1 / t21))
+    t22 = ops.sign(E_13)
+    t23 = E_11_2 * t22
+    E_13_2 = ops.select(all_same, 0.0, t8 / t21)
+    E_12_2 = ops.select(all_same, 0.0, t6 / t21)
+    t24 = rho1 * E_11_2 - E_12_2 * t7 - E_13_2 * t9
+    m_z_2 = t9 + E_13_2 * t24
+    t25 = rho1 - E_11_2 * t24
+    m_y_2 = t7 + E_12_2 * t24
+    t26 = E_11_2 * t25 - E_12_2 * m_y_2 - E_13_2 * m_z_2
+    n_z_2 = m_z_2 + E_13_2 * t26
+    t27 = t18 & ops.opposite(in_line)
+    t28 = t25 - E_11_2 * t26
+    n_y_2 = m_y_2 + E_12_2 * t26
+    t29 = ops.select(t27, t28 * t28 + n_y_2 * n_y_2 + n_z_2 * n_z_2, 1.0)
+    j_2 = ops.sqrt(t29)
+    t30 = ops.select(t27, j_2, 1.0)
+    E_23 = ops.select(in_line, -t23, n_z_2 / t30)
+    t31 = ops.select(t18 & in_line, E_13_2 + t22, 1.0)
+    E_21 = ops.select(in_line, 1.0 - E_11_2 * E_11_2 * t22 / t31, -(t28 / t30))
+    touching = ops.max(t17, 0.0) <= t5
+    t32 = t18 & ops.opposite(touching)
+    X_2 = ops.select(all_same, 0.0, D_2 * 0.5)
+    t33 = ops.select(in_line, 0.0, t14 / ops.select(t27, j_2 * 2.0, 1.0))
+    rho = ops.sqrt(ops.select(t32, X_2 * X_2 + t33 * t33, 1.0))
+    t34 = ops.select(t32, ops.max(L - rho, 0.0) * (L + rho), 1.0)
+    h = ops.select(touching, 0.0, ops.sqrt(t34))
+    t35 = (E_11_2 * E_23 - E_13_2 * E_21) * h
+    E_22 = ops.select(in_line, -(E_12_2 * t23 / t31), n_y_2 / t30)
+    t36 = E_12_2 * X_2 - t33 * E_22
+    t37 = t35 - t36
+    t38 = h * (E_12_2 * E_21 - E_11_2 * E_22)
+    t39 = E_13_2 * X_2 - E_23 * t33
+    t40 = t38 - t39
+    t41 = h * (E_12_2 * E_23 - E_13_2 * E_22)
+    t42 = E_11_2 * X_2 - E_21 * t33
+    A_11 = t41 + t42
+    t43 = t37 * t40 * (rho1 + A_11) - A_11 * (rho2 + t37) * (rho3 + t40)
+    t44 = t41 - t42
+    A_12_inner = t35 + t36
+    A_13_inner = t38 + t39
+    t45 = t44 * (rho2 - A_12_inner) * (rho3 - A_13_inner)
+    t46 = ops.select(failed, ops.nan, t45 + A_12_inner * A_13_inner * (rho1 - t44))
+    return (
+        ops.select(failed, ops.nan, t43),
+        t46,
+    )
+
+
+_CONSTRAINT = _runtime.Kernel(
+    "orthoglide.constraint",
+    _constraint,
+    (_runtime.Spec("q", (3,)),),
+    (_runtime.Spec("factors", (2, 1)),),
+    Parameters._fields,
+    ('L',),
+    _runtime.Size((0, 1, 2, 3), ((0, 3), (1, 3)), 3),
+)
+
+
+def constraint(q: "ArrayLike", params: "Parameters" = _DEFAULT) -> Any:
+    """What vanishes where the parallelograms do not keep the hand from turning.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        rho1, rho2, rho3 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+
+    Returns
+    -------
+    factors : array, shape (..., 2, 1)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: outer, inner.
+    - NaN for an assembly mode that does not exist.
+    - The determinant of the normals of the parallelograms (a unit vector along the bars times
+      the vector along the rods).
+    """
+    result = _runtime.evaluate(_CONSTRAINT, (q,), params)
+    return result
+
+
 def _ik(ops, x, y, z, L):
     t1 = ops.finite(L) & (0.0 <= L) & ops.finite(x, y, z)
     invalid = ops.opposite(t1)
@@ -1463,6 +1711,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT) -> "Solutions":
     - UNREACHABLE: a rod does not reach.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
       closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+    - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+      which the hand is turned.
     """
     result = _runtime.evaluate(_IK, (x,), params)
     return Solutions(*result)

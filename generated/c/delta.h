@@ -4,13 +4,14 @@
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 43 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
- *   skeleton: 42 compare and select, 112 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
+ *   skeleton: 42 compare and select, 184 add, 16 divide, 75 multiply, 6 sincos, 5 sqrt
  *   jacobian_parallel: 42 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
  *   jacobian_serial: 42 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
  *   jacobian: 42 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
  *   determinant: 42 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
  *   singularities: 42 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
  *   condition_number: 42 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
+ *   constraint: 42 compare and select, 96 add, 10 divide, 137 multiply, 6 sincos, 5 sqrt
  *   ik: 121 compare and select, 160 add, 6 atan2, 8 divide, 166 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
  *
@@ -68,6 +69,8 @@ typedef struct {
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
  * - Ill-conditioned near the parallel singularities, where both modes meet.
+ * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+ *   which the hand is turned.
  */
 void delta_fk(const delta_params *params, const real_t q[3],
     real_t p[6], uint8_t status[2]);
@@ -86,16 +89,17 @@ void delta_fk_batch(size_t n, const delta_params *params,
  *
  * Outputs
  * -------
- * points : real_t[60], shape (2, 10, 3)
+ * points : real_t[132], shape (2, 22, 3)
  *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
  * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
+ * - The width of a parallelogram matters here alone.
  */
 void delta_skeleton(const delta_params *params, const real_t q[3],
-    real_t points[60]);
+    real_t points[132]);
 void delta_skeleton_batch(size_t n, const delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *points, size_t points_stride);
@@ -247,6 +251,31 @@ void delta_condition_number_batch(size_t n, const delta_params *params,
     real_t *kappa, size_t kappa_stride);
 
 /*
+ * What vanishes where the parallelograms do not keep the hand from turning.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     theta1, theta2, theta3 in rad.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[2], shape (2, 1)
+ *
+ * Notes
+ * -----
+ * - The assembly modes, in order: below, above.
+ * - NaN for an assembly mode that does not exist.
+ * - The determinant of the normals of the parallelograms (a unit vector along the bars times
+ *   the vector along the rods).
+ */
+void delta_constraint(const delta_params *params, const real_t q[3],
+    real_t factors[2]);
+void delta_constraint_batch(size_t n, const delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
+
+/*
  * The driven joints of all working modes.
  *
  * Inputs
@@ -277,6 +306,8 @@ void delta_condition_number_batch(size_t n, const delta_params *params,
  * - SINGULAR: no crank; theta3 is free, 0 is returned.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
  *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+ *   which the hand is turned.
  */
 void delta_ik(const delta_params *params, const real_t x[3],
     real_t q[24], uint8_t status[8]);

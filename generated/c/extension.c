@@ -290,7 +290,7 @@ static const cf_array delta_skeleton_in[] = {
 };
 
 static const cf_array delta_skeleton_out[] = {
-    { "points", 3, { 2, 10, 3 }, 60, CF_REAL },
+    { "points", 3, { 2, 22, 3 }, 132, CF_REAL },
 };
 
 static void delta_jacobian_parallel_one(const double *params, const double *const *in, void *const *out)
@@ -405,6 +405,25 @@ static const cf_array delta_condition_number_in[] = {
 
 static const cf_array delta_condition_number_out[] = {
     { "kappa", 1, { 2 }, 2, CF_REAL },
+};
+
+static void delta_constraint_one(const double *params, const double *const *in, void *const *out)
+{
+    delta_constraint((const delta_params *)params, in[0], out[0]);
+}
+
+static void delta_constraint_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    delta_constraint_batch(n, (const delta_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array delta_constraint_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array delta_constraint_out[] = {
+    { "factors", 2, { 2, 1 }, 2, CF_REAL },
 };
 
 static void delta_ik_one(const double *params, const double *const *in, void *const *out)
@@ -2395,7 +2414,7 @@ static const cf_array linear_delta_skeleton_in[] = {
 };
 
 static const cf_array linear_delta_skeleton_out[] = {
-    { "points", 3, { 2, 10, 3 }, 60, CF_REAL },
+    { "points", 3, { 2, 22, 3 }, 132, CF_REAL },
 };
 
 static void linear_delta_jacobian_parallel_one(const double *params, const double *const *in, void *const *out)
@@ -2510,6 +2529,25 @@ static const cf_array linear_delta_condition_number_in[] = {
 
 static const cf_array linear_delta_condition_number_out[] = {
     { "kappa", 1, { 2 }, 2, CF_REAL },
+};
+
+static void linear_delta_constraint_one(const double *params, const double *const *in, void *const *out)
+{
+    linear_delta_constraint((const linear_delta_params *)params, in[0], out[0]);
+}
+
+static void linear_delta_constraint_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    linear_delta_constraint_batch(n, (const linear_delta_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array linear_delta_constraint_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array linear_delta_constraint_out[] = {
+    { "factors", 2, { 2, 1 }, 2, CF_REAL },
 };
 
 static void linear_delta_ik_one(const double *params, const double *const *in, void *const *out)
@@ -2825,7 +2863,7 @@ static const cf_array orthoglide_skeleton_in[] = {
 };
 
 static const cf_array orthoglide_skeleton_out[] = {
-    { "points", 3, { 2, 7, 3 }, 42, CF_REAL },
+    { "points", 3, { 2, 19, 3 }, 114, CF_REAL },
 };
 
 static void orthoglide_jacobian_parallel_one(const double *params, const double *const *in, void *const *out)
@@ -2940,6 +2978,25 @@ static const cf_array orthoglide_condition_number_in[] = {
 
 static const cf_array orthoglide_condition_number_out[] = {
     { "kappa", 1, { 2 }, 2, CF_REAL },
+};
+
+static void orthoglide_constraint_one(const double *params, const double *const *in, void *const *out)
+{
+    orthoglide_constraint((const orthoglide_params *)params, in[0], out[0]);
+}
+
+static void orthoglide_constraint_many(size_t n, const double *params, const double *const *in,
+    const size_t *in_stride, void *const *out, const size_t *out_stride)
+{
+    orthoglide_constraint_batch(n, (const orthoglide_params *)params, in[0], in_stride[0], out[0], out_stride[0]);
+}
+
+static const cf_array orthoglide_constraint_in[] = {
+    { "q", 1, { 3 }, 3, CF_REAL },
+};
+
+static const cf_array orthoglide_constraint_out[] = {
+    { "factors", 2, { 2, 1 }, 2, CF_REAL },
 };
 
 static void orthoglide_ik_one(const double *params, const double *const *in, void *const *out)
@@ -5480,6 +5537,8 @@ const cf_function cf_functions[] = {
       "- SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its\n"
       "  points is returned.\n"
       "- Ill-conditioned near the parallel singularities, where both modes meet.\n"
+      "- Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in\n"
+      "  which the hand is turned.\n"
       ,
       7, delta_values, delta_fields,
       1, delta_fk_in, 2, delta_fk_out,
@@ -5498,7 +5557,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Returns\n"
       "-------\n"
-      "points : ndarray of float64, shape (..., 2, 10, 3)\n"
+      "points : ndarray of float64, shape (..., 2, 22, 3)\n"
       "    Coordinates x, y, z of each point.\n"
       "\n"
       "Raises\n"
@@ -5512,6 +5571,7 @@ const cf_function cf_functions[] = {
       "-----\n"
       "- The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.\n"
       "- NaN for an assembly mode that does not exist.\n"
+      "- The width of a parallelogram matters here alone.\n"
       ,
       7, delta_values, delta_fields,
       1, delta_skeleton_in, 1, delta_skeleton_out,
@@ -5710,6 +5770,39 @@ const cf_function cf_functions[] = {
       7, delta_values, delta_fields,
       1, delta_condition_number_in, 1, delta_condition_number_out,
       delta_condition_number_one, delta_condition_number_many },
+    { "delta.constraint",
+      "What vanishes where the parallelograms do not keep the hand from turning.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    theta1, theta2, theta3 in rad.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "factors : ndarray of float64, shape (..., 2, 1)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.\n"
+      "- NaN for an assembly mode that does not exist.\n"
+      "- The determinant of the normals of the parallelograms (a unit vector along the bars times\n"
+      "  the vector along the rods).\n"
+      ,
+      7, delta_values, delta_fields,
+      1, delta_constraint_in, 1, delta_constraint_out,
+      delta_constraint_one, delta_constraint_many },
     { "delta.ik",
       "The driven joints of all working modes.\n"
       "\n"
@@ -5753,6 +5846,8 @@ const cf_function cf_functions[] = {
       "- SINGULAR: no crank; theta3 is free, 0 is returned.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in one plane: the loop\n"
       "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.\n"
+      "- Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in\n"
+      "  which the hand is turned.\n"
       ,
       7, delta_values, delta_fields,
       1, delta_ik_in, 2, delta_ik_out,
@@ -7972,7 +8067,7 @@ const cf_function cf_functions[] = {
       1, irb2400_jacobian_body_in, 1, irb2400_jacobian_body_out,
       irb2400_jacobian_body_one, irb2400_jacobian_body_many },
     { "irb2400.joints_from_motors",
-      "Joint angles of motor angles.\n"
+      "Joint angles from motor angles: theta3 = m3 - m2.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -7994,12 +8089,16 @@ const cf_function cf_functions[] = {
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
       "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].\n"
       ,
       6, irb2400_values, irb2400_fields,
       1, irb2400_joints_from_motors_in, 1, irb2400_joints_from_motors_out,
       irb2400_joints_from_motors_one, irb2400_joints_from_motors_many },
     { "irb2400.motors_from_joints",
-      "Motor angles of joint angles.\n"
+      "Motor angles from joint angles: m3 = theta2 + theta3.\n"
       "\n"
       "Parameters\n"
       "----------\n"
@@ -8020,6 +8119,10 @@ const cf_function cf_functions[] = {
       "    If an argument does not hold real numbers.\n"
       "ValueError\n"
       "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The map is linear and keeps whole turns: its angles are not reduced to (-pi, pi].\n"
       ,
       6, irb2400_values, irb2400_fields,
       1, irb2400_motors_from_joints_in, 1, irb2400_motors_from_joints_out,
@@ -8622,6 +8725,8 @@ const cf_function cf_functions[] = {
       "- SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its\n"
       "  points is returned.\n"
       "- Ill-conditioned near the parallel singularities, where both modes meet.\n"
+      "- Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in\n"
+      "  which the hand is turned.\n"
       ,
       3, linear_delta_values, linear_delta_fields,
       1, linear_delta_fk_in, 2, linear_delta_fk_out,
@@ -8640,7 +8745,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Returns\n"
       "-------\n"
-      "points : ndarray of float64, shape (..., 2, 10, 3)\n"
+      "points : ndarray of float64, shape (..., 2, 22, 3)\n"
       "    Coordinates x, y, z of each point.\n"
       "\n"
       "Raises\n"
@@ -8654,6 +8759,7 @@ const cf_function cf_functions[] = {
       "-----\n"
       "- The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.\n"
       "- NaN for an assembly mode that does not exist.\n"
+      "- The width of a parallelogram matters here alone.\n"
       ,
       3, linear_delta_values, linear_delta_fields,
       1, linear_delta_skeleton_in, 1, linear_delta_skeleton_out,
@@ -8852,6 +8958,39 @@ const cf_function cf_functions[] = {
       3, linear_delta_values, linear_delta_fields,
       1, linear_delta_condition_number_in, 1, linear_delta_condition_number_out,
       linear_delta_condition_number_one, linear_delta_condition_number_many },
+    { "linear_delta.constraint",
+      "What vanishes where the parallelograms do not keep the hand from turning.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    rho1, rho2, rho3 in the unit of the parameters.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "factors : ndarray of float64, shape (..., 2, 1)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.\n"
+      "- NaN for an assembly mode that does not exist.\n"
+      "- The determinant of the normals of the parallelograms (a unit vector along the bars times\n"
+      "  the vector along the rods).\n"
+      ,
+      3, linear_delta_values, linear_delta_fields,
+      1, linear_delta_constraint_in, 1, linear_delta_constraint_out,
+      linear_delta_constraint_one, linear_delta_constraint_many },
     { "linear_delta.ik",
       "The driven joints of all working modes.\n"
       "\n"
@@ -8889,6 +9028,8 @@ const cf_function cf_functions[] = {
       "- UNREACHABLE: a rod does not reach.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in one plane: the loop\n"
       "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.\n"
+      "- Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in\n"
+      "  which the hand is turned.\n"
       ,
       3, linear_delta_values, linear_delta_fields,
       1, linear_delta_ik_in, 2, linear_delta_ik_out,
@@ -9230,6 +9371,8 @@ const cf_function cf_functions[] = {
       "- SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its\n"
       "  points is returned.\n"
       "- Ill-conditioned near the parallel singularities, where both modes meet.\n"
+      "- Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in\n"
+      "  which the hand is turned.\n"
       ,
       1, orthoglide_values, orthoglide_fields,
       1, orthoglide_fk_in, 2, orthoglide_fk_out,
@@ -9248,7 +9391,7 @@ const cf_function cf_functions[] = {
       "\n"
       "Returns\n"
       "-------\n"
-      "points : ndarray of float64, shape (..., 2, 7, 3)\n"
+      "points : ndarray of float64, shape (..., 2, 19, 3)\n"
       "    Coordinates x, y, z of each point.\n"
       "\n"
       "Raises\n"
@@ -9262,6 +9405,7 @@ const cf_function cf_functions[] = {
       "-----\n"
       "- The assembly modes, in the order of `ASSEMBLY_MODES`: outer, inner.\n"
       "- NaN for an assembly mode that does not exist.\n"
+      "- The width of a parallelogram matters here alone.\n"
       ,
       1, orthoglide_values, orthoglide_fields,
       1, orthoglide_skeleton_in, 1, orthoglide_skeleton_out,
@@ -9460,6 +9604,39 @@ const cf_function cf_functions[] = {
       1, orthoglide_values, orthoglide_fields,
       1, orthoglide_condition_number_in, 1, orthoglide_condition_number_out,
       orthoglide_condition_number_one, orthoglide_condition_number_many },
+    { "orthoglide.constraint",
+      "What vanishes where the parallelograms do not keep the hand from turning.\n"
+      "\n"
+      "Parameters\n"
+      "----------\n"
+      "q : array_like, shape (..., 3)\n"
+      "    rho1, rho2, rho3 in the unit of the parameters.\n"
+      "params : Parameters, optional\n"
+      "    The dimensions. Each may be an array that broadcasts with the leading axes.\n"
+      "out : ndarray, optional\n"
+      "    An array to write the result to; it is returned.\n"
+      "\n"
+      "Returns\n"
+      "-------\n"
+      "factors : ndarray of float64, shape (..., 2, 1)\n"
+      "\n"
+      "Raises\n"
+      "------\n"
+      "TypeError\n"
+      "    If an argument does not hold real numbers.\n"
+      "ValueError\n"
+      "    If an argument has the wrong shape, or leading axes do not broadcast.\n"
+      "\n"
+      "Notes\n"
+      "-----\n"
+      "- The assembly modes, in the order of `ASSEMBLY_MODES`: outer, inner.\n"
+      "- NaN for an assembly mode that does not exist.\n"
+      "- The determinant of the normals of the parallelograms (a unit vector along the bars times\n"
+      "  the vector along the rods).\n"
+      ,
+      1, orthoglide_values, orthoglide_fields,
+      1, orthoglide_constraint_in, 1, orthoglide_constraint_out,
+      orthoglide_constraint_one, orthoglide_constraint_many },
     { "orthoglide.ik",
       "The driven joints of all working modes.\n"
       "\n"
@@ -9497,6 +9674,8 @@ const cf_function cf_functions[] = {
       "- UNREACHABLE: a rod does not reach.\n"
       "- SINGULAR also near a parallel singularity, where the rods are in one plane: the loop\n"
       "  closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.\n"
+      "- Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in\n"
+      "  which the hand is turned.\n"
       ,
       1, orthoglide_values, orthoglide_fields,
       1, orthoglide_ik_in, 2, orthoglide_ik_out,
@@ -11896,7 +12075,7 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "A : ndarray of float64, shape (..., 3, 3)\n"
-      "    One column for each of rho1, rho2, rho3.\n"
+      "    One column for each of z, tilt_x, tilt_y.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -11962,7 +12141,7 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "K : ndarray of float64, shape (..., 3, 3)\n"
-      "    One column for each of rho1, rho2, rho3.\n"
+      "    One column for each of z, tilt_x, tilt_y.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -12096,7 +12275,7 @@ const cf_function cf_functions[] = {
       "Returns\n"
       "-------\n"
       "points : ndarray of float64, shape (..., 10, 3)\n"
-      "    One column for each of rho1, rho2, rho3.\n"
+      "    Coordinates x, y, z of each point.\n"
       "\n"
       "Raises\n"
       "------\n"
@@ -12143,8 +12322,9 @@ const cf_function cf_functions[] = {
       "\n"
       "Notes\n"
       "-----\n"
-      "- Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,\n"
-      "  plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.\n"
+      "- The branches, in the order of `BRANCHES`: plus_plus_plus, plus_plus_minus,\n"
+      "  plus_minus_plus, plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus,\n"
+      "  minus_minus_minus.\n"
       "- UNREACHABLE: a rod does not reach.\n"
       "- SINGULAR also near a parallel or a constraint singularity, where the rods or the planes of\n"
       "  the legs do not hold the hand: the loop closes, but the joints do not determine the hand.\n"

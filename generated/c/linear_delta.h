@@ -4,13 +4,14 @@
  * Source: The closedform authors: Loops of common structure, solved leg by leg.
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 42 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
- *   skeleton: 41 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
+ *   skeleton: 41 compare and select, 129 add, 16 divide, 50 multiply, 5 sqrt
  *   jacobian_parallel: 41 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
  *   jacobian_serial: 41 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
  *   jacobian: 41 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
  *   determinant: 41 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
  *   singularities: 41 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
  *   condition_number: 41 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
+ *   constraint: 41 compare and select, 67 add, 20 divide, 74 multiply, 5 sqrt
  *   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  *
@@ -64,6 +65,8 @@ typedef struct {
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
  * - Ill-conditioned near the parallel singularities, where both modes meet.
+ * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+ *   which the hand is turned.
  */
 void linear_delta_fk(const linear_delta_params *params,
     const real_t q[3], real_t p[6], uint8_t status[2]);
@@ -82,16 +85,17 @@ void linear_delta_fk_batch(size_t n, const linear_delta_params *params,
  *
  * Outputs
  * -------
- * points : real_t[60], shape (2, 10, 3)
+ * points : real_t[132], shape (2, 22, 3)
  *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
  * - The assembly modes, in order: below, above.
  * - NaN for an assembly mode that does not exist.
+ * - The width of a parallelogram matters here alone.
  */
 void linear_delta_skeleton(const linear_delta_params *params,
-    const real_t q[3], real_t points[60]);
+    const real_t q[3], real_t points[132]);
 void linear_delta_skeleton_batch(size_t n, const linear_delta_params *params,
     const real_t *q, size_t q_stride,
     real_t *points, size_t points_stride);
@@ -243,6 +247,31 @@ void linear_delta_condition_number_batch(size_t n, const linear_delta_params *pa
     real_t *kappa, size_t kappa_stride);
 
 /*
+ * What vanishes where the parallelograms do not keep the hand from turning.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     rho1, rho2, rho3 in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[2], shape (2, 1)
+ *
+ * Notes
+ * -----
+ * - The assembly modes, in order: below, above.
+ * - NaN for an assembly mode that does not exist.
+ * - The determinant of the normals of the parallelograms (a unit vector along the bars times
+ *   the vector along the rods).
+ */
+void linear_delta_constraint(const linear_delta_params *params,
+    const real_t q[3], real_t factors[2]);
+void linear_delta_constraint_batch(size_t n, const linear_delta_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
+
+/*
  * The driven joints of all working modes.
  *
  * Inputs
@@ -267,6 +296,8 @@ void linear_delta_condition_number_batch(size_t n, const linear_delta_params *pa
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
  *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+ *   which the hand is turned.
  */
 void linear_delta_ik(const linear_delta_params *params,
     const real_t x[3], real_t q[24], uint8_t status[8]);

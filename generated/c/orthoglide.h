@@ -5,8 +5,8 @@
  * Operations of one evaluation (a sincos is a sine and a cosine of one angle):
  *   fk: 38 compare and select, 45 add, 5 divide, 55 multiply, 5 sqrt
  *   fk where nothing vanishes: 25 compare and select, 31 add, 4 divide, 37 multiply, 5 sqrt
- *   skeleton: 37 compare and select, 50 add, 10 divide, 47 multiply, 5 sqrt
- *   skeleton where nothing vanishes: 24 compare and select, 36 add, 7 divide, 32 multiply, 5 sqrt
+ *   skeleton: 37 compare and select, 76 add, 11 divide, 47 multiply, 5 sqrt
+ *   skeleton where nothing vanishes: 24 compare and select, 62 add, 8 divide, 32 multiply, 5 sqrt
  *   jacobian_parallel: 37 compare and select, 56 add, 10 divide, 47 multiply, 5 sqrt
  *   jacobian_parallel where nothing vanishes: 24 compare and select, 42 add, 7 divide, 32
  *     multiply, 5 sqrt
@@ -24,6 +24,9 @@
  *   condition_number: 37 compare and select, 96 add, 12 divide, 106 multiply, 7 sqrt
  *   condition_number where nothing vanishes: 24 compare and select, 82 add, 9 divide, 91 multiply,
  *     7 sqrt
+ *   constraint: 37 compare and select, 48 add, 10 divide, 55 multiply, 5 sqrt
+ *   constraint where nothing vanishes: 24 compare and select, 34 add, 7 divide, 40 multiply, 5
+ *     sqrt
  *   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
  *   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
  *
@@ -75,6 +78,8 @@ typedef struct {
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
  * - Ill-conditioned near the parallel singularities, where both modes meet.
+ * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+ *   which the hand is turned.
  */
 void orthoglide_fk(const orthoglide_params *params, const real_t q[3],
     real_t p[6], uint8_t status[2]);
@@ -93,16 +98,17 @@ void orthoglide_fk_batch(size_t n, const orthoglide_params *params,
  *
  * Outputs
  * -------
- * points : real_t[42], shape (2, 7, 3)
+ * points : real_t[114], shape (2, 19, 3)
  *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
  * - The assembly modes, in order: outer, inner.
  * - NaN for an assembly mode that does not exist.
+ * - The width of a parallelogram matters here alone.
  */
 void orthoglide_skeleton(const orthoglide_params *params, const real_t q[3],
-    real_t points[42]);
+    real_t points[114]);
 void orthoglide_skeleton_batch(size_t n, const orthoglide_params *params,
     const real_t *q, size_t q_stride,
     real_t *points, size_t points_stride);
@@ -254,6 +260,31 @@ void orthoglide_condition_number_batch(size_t n, const orthoglide_params *params
     real_t *kappa, size_t kappa_stride);
 
 /*
+ * What vanishes where the parallelograms do not keep the hand from turning.
+ *
+ * Inputs
+ * ------
+ * q : const real_t[3]
+ *     rho1, rho2, rho3 in the unit of the parameters.
+ *
+ * Outputs
+ * -------
+ * factors : real_t[2], shape (2, 1)
+ *
+ * Notes
+ * -----
+ * - The assembly modes, in order: outer, inner.
+ * - NaN for an assembly mode that does not exist.
+ * - The determinant of the normals of the parallelograms (a unit vector along the bars times
+ *   the vector along the rods).
+ */
+void orthoglide_constraint(const orthoglide_params *params, const real_t q[3],
+    real_t factors[2]);
+void orthoglide_constraint_batch(size_t n, const orthoglide_params *params,
+    const real_t *q, size_t q_stride,
+    real_t *factors, size_t factors_stride);
+
+/*
  * The driven joints of all working modes.
  *
  * Inputs
@@ -278,6 +309,8 @@ void orthoglide_condition_number_batch(size_t n, const orthoglide_params *params
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
  *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+ *   which the hand is turned.
  */
 void orthoglide_ik(const orthoglide_params *params, const real_t x[3],
     real_t q[24], uint8_t status[8]);

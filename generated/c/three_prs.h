@@ -15,7 +15,7 @@
  *   workspace_contains: 28 compare and select, 29 add, 14 divide, 25 multiply, 2 sincos, 1 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a
- * structure of arrays: coordinate j of posture i stands at x[j * x_stride + i]. Outputs must not
+ * structure of arrays: coordinate j of posture i is at x[j * x_stride + i]. Outputs must not
  * overlap inputs. A plane stride that is a multiple of 4096 bytes halves the speed; planes that are
  * not aligned to 64 bytes cost up to half as much again with AVX-512.
  */
@@ -75,7 +75,7 @@ void three_prs_hand_pose_batch(size_t n, const three_prs_params *params,
  * Outputs
  * -------
  * A : real_t[9], shape (3, 3)
- *     One column for each of rho1, rho2, rho3.
+ *     One column for each of z, tilt_x, tilt_y.
  *
  * Notes
  * -----
@@ -127,7 +127,7 @@ void three_prs_jacobian_serial_batch(size_t n, const three_prs_params *params,
  * Outputs
  * -------
  * K : real_t[9], shape (3, 3)
- *     One column for each of rho1, rho2, rho3.
+ *     One column for each of z, tilt_x, tilt_y.
  *
  * Notes
  * -----
@@ -233,7 +233,7 @@ void three_prs_singularities_batch(size_t n, const three_prs_params *params,
  * Outputs
  * -------
  * points : real_t[30], shape (10, 3)
- *     One column for each of rho1, rho2, rho3.
+ *     Coordinates x, y, z of each point.
  *
  * Notes
  * -----
@@ -266,7 +266,7 @@ void three_prs_skeleton_batch(size_t n, const three_prs_params *params,
  *
  * Notes
  * -----
- * - Branches in this order: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
+ * - The branches, in order: plus_plus_plus, plus_plus_minus, plus_minus_plus, plus_minus_minus,
  *   minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel or a constraint singularity, where the rods or the planes of

@@ -3,13 +3,14 @@
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   fk: 43 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
-//   skeleton: 42 compare and select, 112 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
+//   skeleton: 42 compare and select, 184 add, 16 divide, 75 multiply, 6 sincos, 5 sqrt
 //   jacobian_parallel: 42 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
 //   jacobian_serial: 42 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
 //   jacobian: 42 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
 //   determinant: 42 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
 //   singularities: 42 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
 //   condition_number: 42 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
+//   constraint: 42 compare and select, 96 add, 10 divide, 137 multiply, 6 sincos, 5 sqrt
 //   ik: 121 compare and select, 160 add, 6 atan2, 8 divide, 166 multiply, 3 sincos, 9 sqrt
 //   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
 
@@ -43,25 +44,46 @@ export const SKELETON = Object.freeze(/** @type {const} */ ({
         "A1",
         "B1",
         "C1",
+        "B1a",
+        "B1b",
+        "C1a",
+        "C1b",
         "A2",
         "B2",
         "C2",
+        "B2a",
+        "B2b",
+        "C2a",
+        "C2b",
         "A3",
         "B3",
         "C3",
+        "B3a",
+        "B3b",
+        "C3a",
+        "C3b",
         "P",
     ],
     links: {
         ground: ["A1", "A2", "A3", "A1"],
         hand1: ["P", "C1"],
-        rod1: ["B1", "C1"],
         crank1: ["A1", "B1"],
+        rod1a: ["B1a", "C1a"],
+        rod1b: ["B1b", "C1b"],
+        bar_B1a: ["B1a", "B1", "B1b"],
+        bar_C1a: ["C1a", "C1", "C1b"],
         hand2: ["P", "C2"],
-        rod2: ["B2", "C2"],
         crank2: ["A2", "B2"],
+        rod2a: ["B2a", "C2a"],
+        rod2b: ["B2b", "C2b"],
+        bar_B2a: ["B2a", "B2", "B2b"],
+        bar_C2a: ["C2a", "C2", "C2b"],
         hand3: ["P", "C3"],
-        rod3: ["B3", "C3"],
         crank3: ["A3", "B3"],
+        rod3a: ["B3a", "C3a"],
+        rod3b: ["B3b", "C3b"],
+        bar_B3a: ["B3a", "B3", "B3b"],
+        bar_C3a: ["C3a", "C3", "C3b"],
     },
     joints: {
         theta1: { kind: "revolute", points: ["A1"] },
@@ -234,6 +256,8 @@ const _FK = _runtime.kernel({
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
  * - Ill-conditioned near the parallel singularities, where both modes meet.
+ * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+ *   which the hand is turned.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -381,85 +405,187 @@ function _skeleton(v, o) {
     const h = slack <= t24 ? 0.0 : Math.sqrt(slack * (l + rho));
     const t62 = (t38 * E_23 - E_13 * E_22) * h;
     const t63 = t10 - (t60 - t62);
-    const t64 = t38 * X + t49 * E_22;
-    const t65 = h * (E_11 * E_23 - E_13 * E_21);
-    const t66 = t19 - (t64 + t65);
-    const t67 = E_13 * X + t49 * E_23;
-    const t68 = h * (E_11 * E_22 - t38 * E_21);
-    const t69 = t67 - t68 - t5 + t51;
-    const t70 = t12 + t51;
-    const t71 = t21 + t51;
-    const t72 = t14 + t51;
-    const t73 = t22 + t51;
-    const t74 = -t6 + t51;
-    const t75 = t26 + t51;
-    const t76 = t33 + t51;
-    const t77 = t28 + t51;
-    const t78 = t34 + t51;
-    const t79 = -t31 + t51;
-    const t80 = t10 - (t60 + t62);
-    const t81 = t19 - (t64 - t65);
-    const t82 = t67 + t68 - t5 + t51;
+    const t64 = t7 - t63;
+    const t65 = t38 * X + t49 * E_22;
+    const t66 = h * (E_11 * E_23 - E_13 * E_21);
+    const t67 = t19 - (t65 + t66);
+    const t68 = t16 - t67;
+    const t69 = E_13 * X + t49 * E_23;
+    const t70 = h * (E_11 * E_22 - t38 * E_21);
+    const t71 = t69 - t70 - t5 + t51;
+    const t72 = t16 * 0.5;
+    const t73 = t9 - t72 + t51;
+    const t74 = t7 * 0.5;
+    const t75 = t74 + t18 + t51;
+    const t76 = t72 + t9 + t51;
+    const t77 = t18 - t74 + t51;
+    const t78 = t12 + t51;
+    const t79 = t21 + t51;
+    const t80 = t14 + t51;
+    const t81 = t22 + t51;
+    const t82 = -t6 + t51;
+    const t83 = t11 - t63;
+    const t84 = t20 - t67;
+    const t85 = t20 * 0.5;
+    const t86 = t14 - t85 + t51;
+    const t87 = t11 * 0.5;
+    const t88 = t87 + t22 + t51;
+    const t89 = t85 + t14 + t51;
+    const t90 = t22 - t87 + t51;
+    const t91 = t26 + t51;
+    const t92 = t33 + t51;
+    const t93 = t28 + t51;
+    const t94 = t34 + t51;
+    const t95 = -t31 + t51;
+    const t96 = t25 - t63;
+    const t97 = t32 - t67;
+    const t98 = t32 * 0.5;
+    const t99 = t28 - t98 + t51;
+    const t100 = t25 * 0.5;
+    const t101 = t100 + t34 + t51;
+    const t102 = t98 + t28 + t51;
+    const t103 = t34 - t100 + t51;
+    const t104 = t10 - (t60 + t62);
+    const t105 = t7 - t104;
+    const t106 = t19 - (t65 - t66);
+    const t107 = t16 - t106;
+    const t108 = t69 + t70 - t5 + t51;
+    const t109 = t11 - t104;
+    const t110 = t20 - t106;
+    const t111 = t25 - t104;
+    const t112 = t32 - t106;
     o[0] = t52;
     o[1] = t53;
     o[2] = t54;
     o[3] = t55;
     o[4] = t56;
     o[5] = t57;
-    o[6] = t7 - t63 + t51;
-    o[7] = t16 - t66 + t51;
-    o[8] = t69;
-    o[9] = t70;
-    o[10] = t71;
-    o[11] = t54;
-    o[12] = t72;
-    o[13] = t73;
-    o[14] = t74;
-    o[15] = t11 - t63 + t51;
-    o[16] = t20 - t66 + t51;
-    o[17] = t69;
-    o[18] = t75;
-    o[19] = t76;
-    o[20] = t54;
-    o[21] = t77;
-    o[22] = t78;
-    o[23] = t79;
-    o[24] = t25 - t63 + t51;
-    o[25] = t32 - t66 + t51;
-    o[26] = t69;
-    o[27] = -t63 + t51;
-    o[28] = -t66 + t51;
-    o[29] = t69;
-    o[30] = t52;
-    o[31] = t53;
-    o[32] = t54;
-    o[33] = t55;
-    o[34] = t56;
-    o[35] = t57;
-    o[36] = t7 - t80 + t51;
-    o[37] = t16 - t81 + t51;
-    o[38] = t82;
-    o[39] = t70;
-    o[40] = t71;
-    o[41] = t54;
-    o[42] = t72;
-    o[43] = t73;
-    o[44] = t74;
-    o[45] = t11 - t80 + t51;
-    o[46] = t20 - t81 + t51;
-    o[47] = t82;
-    o[48] = t75;
-    o[49] = t76;
-    o[50] = t54;
-    o[51] = t77;
-    o[52] = t78;
-    o[53] = t79;
-    o[54] = t25 - t80 + t51;
-    o[55] = t32 - t81 + t51;
-    o[56] = t82;
-    o[57] = -t80 + t51;
-    o[58] = -t81 + t51;
-    o[59] = t82;
+    o[6] = t64 + t51;
+    o[7] = t68 + t51;
+    o[8] = t71;
+    o[9] = t73;
+    o[10] = t75;
+    o[11] = t57;
+    o[12] = t76;
+    o[13] = t77;
+    o[14] = t57;
+    o[15] = t64 - t72 + t51;
+    o[16] = t74 + t68 + t51;
+    o[17] = t71;
+    o[18] = t72 + t64 + t51;
+    o[19] = t68 - t74 + t51;
+    o[20] = t71;
+    o[21] = t78;
+    o[22] = t79;
+    o[23] = t54;
+    o[24] = t80;
+    o[25] = t81;
+    o[26] = t82;
+    o[27] = t83 + t51;
+    o[28] = t84 + t51;
+    o[29] = t71;
+    o[30] = t86;
+    o[31] = t88;
+    o[32] = t82;
+    o[33] = t89;
+    o[34] = t90;
+    o[35] = t82;
+    o[36] = t83 - t85 + t51;
+    o[37] = t87 + t84 + t51;
+    o[38] = t71;
+    o[39] = t85 + t83 + t51;
+    o[40] = t84 - t87 + t51;
+    o[41] = t71;
+    o[42] = t91;
+    o[43] = t92;
+    o[44] = t54;
+    o[45] = t93;
+    o[46] = t94;
+    o[47] = t95;
+    o[48] = t96 + t51;
+    o[49] = t97 + t51;
+    o[50] = t71;
+    o[51] = t99;
+    o[52] = t101;
+    o[53] = t95;
+    o[54] = t102;
+    o[55] = t103;
+    o[56] = t95;
+    o[57] = t96 - t98 + t51;
+    o[58] = t100 + t97 + t51;
+    o[59] = t71;
+    o[60] = t98 + t96 + t51;
+    o[61] = t97 - t100 + t51;
+    o[62] = t71;
+    o[63] = -t63 + t51;
+    o[64] = -t67 + t51;
+    o[65] = t71;
+    o[66] = t52;
+    o[67] = t53;
+    o[68] = t54;
+    o[69] = t55;
+    o[70] = t56;
+    o[71] = t57;
+    o[72] = t105 + t51;
+    o[73] = t107 + t51;
+    o[74] = t108;
+    o[75] = t73;
+    o[76] = t75;
+    o[77] = t57;
+    o[78] = t76;
+    o[79] = t77;
+    o[80] = t57;
+    o[81] = t105 - t72 + t51;
+    o[82] = t74 + t107 + t51;
+    o[83] = t108;
+    o[84] = t72 + t105 + t51;
+    o[85] = t107 - t74 + t51;
+    o[86] = t108;
+    o[87] = t78;
+    o[88] = t79;
+    o[89] = t54;
+    o[90] = t80;
+    o[91] = t81;
+    o[92] = t82;
+    o[93] = t109 + t51;
+    o[94] = t110 + t51;
+    o[95] = t108;
+    o[96] = t86;
+    o[97] = t88;
+    o[98] = t82;
+    o[99] = t89;
+    o[100] = t90;
+    o[101] = t82;
+    o[102] = t109 - t85 + t51;
+    o[103] = t87 + t110 + t51;
+    o[104] = t108;
+    o[105] = t85 + t109 + t51;
+    o[106] = t110 - t87 + t51;
+    o[107] = t108;
+    o[108] = t91;
+    o[109] = t92;
+    o[110] = t54;
+    o[111] = t93;
+    o[112] = t94;
+    o[113] = t95;
+    o[114] = t111 + t51;
+    o[115] = t112 + t51;
+    o[116] = t108;
+    o[117] = t99;
+    o[118] = t101;
+    o[119] = t95;
+    o[120] = t102;
+    o[121] = t103;
+    o[122] = t95;
+    o[123] = t111 - t98 + t51;
+    o[124] = t100 + t112 + t51;
+    o[125] = t108;
+    o[126] = t98 + t111 + t51;
+    o[127] = t112 - t100 + t51;
+    o[128] = t108;
+    o[129] = -t104 + t51;
+    o[130] = -t106 + t51;
+    o[131] = t108;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -470,13 +596,13 @@ const _SKELETON = _runtime.kernel({
         { name: "q", shape: [3], branches: 0, kind: "real" },
     ],
     outputs: [
-        { name: "points", shape: [10, 3], branches: 2, kind: "real" },
+        { name: "points", shape: [22, 3], branches: 2, kind: "real" },
     ],
     used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
     defaults: DEFAULTS,
     size: {
         lengths: [3, 4, 5, 6],
-        degrees: [[0, 1], [1, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [21, 1], [22, 1], [23, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [29, 1], [30, 1], [31, 1], [33, 1], [34, 1], [35, 1], [36, 1], [37, 1], [38, 1], [39, 1], [40, 1], [42, 1], [43, 1], [44, 1], [45, 1], [46, 1], [47, 1], [48, 1], [49, 1], [51, 1], [52, 1], [53, 1], [54, 1], [55, 1], [56, 1], [57, 1], [58, 1], [59, 1]],
+        degrees: [[0, 1], [1, 1], [3, 1], [4, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [20, 1], [21, 1], [22, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [29, 1], [30, 1], [31, 1], [32, 1], [33, 1], [34, 1], [35, 1], [36, 1], [37, 1], [38, 1], [39, 1], [40, 1], [41, 1], [42, 1], [43, 1], [45, 1], [46, 1], [47, 1], [48, 1], [49, 1], [50, 1], [51, 1], [52, 1], [53, 1], [54, 1], [55, 1], [56, 1], [57, 1], [58, 1], [59, 1], [60, 1], [61, 1], [62, 1], [63, 1], [64, 1], [65, 1], [66, 1], [67, 1], [69, 1], [70, 1], [71, 1], [72, 1], [73, 1], [74, 1], [75, 1], [76, 1], [77, 1], [78, 1], [79, 1], [80, 1], [81, 1], [82, 1], [83, 1], [84, 1], [85, 1], [86, 1], [87, 1], [88, 1], [90, 1], [91, 1], [92, 1], [93, 1], [94, 1], [95, 1], [96, 1], [97, 1], [98, 1], [99, 1], [100, 1], [101, 1], [102, 1], [103, 1], [104, 1], [105, 1], [106, 1], [107, 1], [108, 1], [109, 1], [111, 1], [112, 1], [113, 1], [114, 1], [115, 1], [116, 1], [117, 1], [118, 1], [119, 1], [120, 1], [121, 1], [122, 1], [123, 1], [124, 1], [125, 1], [126, 1], [127, 1], [128, 1], [129, 1], [130, 1], [131, 1]],
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
@@ -487,10 +613,11 @@ const _SKELETON = _runtime.kernel({
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
+ * - The width of a parallelogram matters here alone.
  *
  * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 30 numbers (10 x 3 in row order). Coordinates x, y, z of
+ * @returns {number[][]} 2 branches of 66 numbers (22 x 3 in row order). Coordinates x, y, z of
  *     each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
@@ -504,7 +631,7 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [points] 60 n numbers, to write to; allocated if omitted
+ * @param {Float64Array} [points] 132 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
  * @returns {Float64Array} the results
  */
@@ -1609,6 +1736,202 @@ export function condition_number_batch(n, q, kappa, parameters) {
 }
 
 /** @type {_runtime.Compute} */
+function _constraint(v, o) {
+    const theta1 = v[0];
+    const theta2 = v[1];
+    const theta3 = v[2];
+    const f = v[3];
+    const e = v[4];
+    const L = v[5];
+    const l = v[6];
+    const alpha1 = v[7];
+    const alpha2 = v[8];
+    const alpha3 = v[9];
+    _runtime.sincos(alpha1);
+    const s_alpha1 = _runtime.found[0];
+    const c_alpha1 = _runtime.found[1];
+    _runtime.sincos(alpha2);
+    const s_alpha2 = _runtime.found[0];
+    const c_alpha2 = _runtime.found[1];
+    _runtime.sincos(alpha3);
+    const s_alpha3 = _runtime.found[0];
+    const c_alpha3 = _runtime.found[1];
+    _runtime.sincos(theta1);
+    const s1 = _runtime.found[0];
+    const c1 = _runtime.found[1];
+    _runtime.sincos(theta2);
+    const s2 = _runtime.found[0];
+    const c2 = _runtime.found[1];
+    _runtime.sincos(theta3);
+    const s3 = _runtime.found[0];
+    const c3 = _runtime.found[1];
+    const t1 = c_alpha1 * s_alpha2;
+    const t2 = L * s1;
+    const u_z = t2 - L * s2;
+    const t3 = L * c1;
+    const t4 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t3;
+    const t5 = L * c2;
+    const t6 = t4 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t5);
+    const t7 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t3;
+    const t8 = t7 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t5);
+    const size_u = Math.sqrt(u_z * u_z + t6 * t6 + t8 * t8);
+    const v_z = t2 - L * s3;
+    const t9 = L * c3;
+    const t10 = t4 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t9);
+    const t11 = t7 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9);
+    const size_v = Math.sqrt(v_z * v_z + t10 * t10 + t11 * t11);
+    const size = f + e + L + l;
+    const t12 = size * _runtime.VANISHING;
+    const all_same = size_u + size_v <= t12;
+    const same = size_u <= t12;
+    const D = same ? size_v : size_u;
+    const X = all_same ? 0.0 : D * 0.5;
+    const t13 = same ? t6 : t10;
+    const t14 = same ? t10 : t6;
+    const E_11 = all_same ? 1.0 : t14 / D;
+    const t15 = same ? t11 : t8;
+    const t16 = all_same ? 0.0 : t15 / D;
+    const t17 = same ? t8 : t11;
+    const t18 = same ? v_z : u_z;
+    const E_13 = all_same ? 0.0 : t18 / D;
+    const t19 = same ? u_z : v_z;
+    const t20 = E_11 * t13 + t16 * t17 + E_13 * t19;
+    const t21 = t13 - E_11 * t20;
+    const t22 = t17 - t16 * t20;
+    const m_z = t19 - E_13 * t20;
+    const t23 = E_11 * t21 + t16 * t22 + E_13 * m_z;
+    const t24 = t21 - E_11 * t23;
+    const t25 = t22 - t16 * t23;
+    const n_z = m_z - E_13 * t23;
+    const j = Math.sqrt(t24 * t24 + t25 * t25 + n_z * n_z);
+    const in_line = j <= t12;
+    const t26 = t13 * (t14 - t13) + t17 * (t15 - t17) + t19 * (t18 - t19);
+    const t27 = in_line ? 0.0 : t26 / (2.0 * j);
+    const rho = Math.sqrt(X * X + t27 * t27);
+    const t28 = l - rho;
+    const slack = Math.max(t28, 0.0);
+    const h = slack <= t12 ? 0.0 : Math.sqrt(slack * (l + rho));
+    const t29 = E_13 < 0 ? -1 : 1;
+    const t30 = E_11 * t29;
+    const t31 = E_13 + t29;
+    const E_22 = in_line ? -(t16 * t30 / t31) : t25 / j;
+    const E_21 = in_line ? 1.0 - E_11 * E_11 * t29 / t31 : t24 / j;
+    const t32 = h * (E_11 * E_22 - t16 * E_21);
+    const E_23 = in_line ? -t30 : n_z / j;
+    const t33 = X * E_13 - t27 * E_23;
+    const t34 = t32 - t33;
+    const t35 = s_alpha3 * t34;
+    const t36 = t1 * t35;
+    const t37 = u_z + t34;
+    const t38 = h * (E_11 * E_23 - E_13 * E_21);
+    const t39 = X * t16 - t27 * E_22;
+    const A_12 = t38 + t39;
+    const t40 = t37 * (t11 - A_12);
+    const t41 = c_alpha3 * t1;
+    const t42 = (t16 * E_23 - E_13 * E_22) * h;
+    const t43 = E_11 * X - E_21 * t27;
+    const t44 = t42 - t43;
+    const t45 = v_z + t34;
+    const t46 = t37 * t45;
+    const t47 = t44 * t46;
+    const t48 = c_alpha1 * c_alpha2;
+    const t49 = s_alpha3 * t48;
+    const t50 = s_alpha1 * s_alpha2;
+    const t51 = c_alpha3 * t50;
+    const t52 = t46 * A_12;
+    const t53 = s_alpha1 * c_alpha2;
+    const t54 = s_alpha3 * t53;
+    const t55 = t41 * t47 - t49 * t47 - t51 * t52 + t54 * t52;
+    const t56 = c_alpha3 * t34;
+    const t57 = t53 * t56;
+    const t58 = t45 * (t6 + t44);
+    const t59 = t45 * (t8 - A_12);
+    const t60 = t55 - t57 * t58 + t48 * t58 * t35 - t50 * t56 * t59;
+    const t61 = t37 * (t10 + t44);
+    const t62 = t60 + t59 * t36 + t57 * t61 - t1 * t56 * t61 + t53 * t35 * t40;
+    const t63 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(L) &&
+        Number.isFinite(l) && Number.isFinite(alpha1) && Number.isFinite(alpha2) &&
+        Number.isFinite(alpha3);
+    const t64 = t63 && 0.0 <= f && 0.0 <= e && 0.0 <= L && 0.0 <= l;
+    const t65 = Number.isFinite(theta1) && Number.isFinite(theta2) && Number.isFinite(theta3);
+    const t66 = Math.abs(in_line ? -t26 : 0.0) <= _runtime.FEASIBILITY * (size * size);
+    const unreachable = !(t66 && -(size * _runtime.FEASIBILITY) <= t28);
+    const t67 = !(t64 && t65) || unreachable ? NaN : 0;
+    const A_11_above = t42 + t43;
+    const A_13_above = t32 + t33;
+    const t68 = u_z - A_13_above;
+    const t69 = v_z - A_13_above;
+    const t70 = t68 * t69;
+    const t71 = A_11_above * t70;
+    const t72 = t38 - t39;
+    const t73 = t70 * t72;
+    const t74 = t41 * t71 - t49 * t71 - t51 * t73 + t54 * t73;
+    const t75 = c_alpha3 * A_13_above;
+    const t76 = t53 * t75;
+    const t77 = t69 * (t6 - A_11_above);
+    const t78 = s_alpha3 * A_13_above;
+    const t79 = t69 * (t8 + t72);
+    const t80 = t74 - t76 * t77 + t48 * t77 * t78 - t50 * t75 * t79;
+    const t81 = t1 * t78;
+    const t82 = t68 * (t10 - A_11_above);
+    const t83 = t68 * (t11 + t72);
+    const t84 = t80 + t79 * t81 + t76 * t82 - t1 * t75 * t82 + t53 * t78 * t83;
+    o[0] = t36 * t40 - t62 + t67;
+    o[1] = t84 - t81 * t83 + t67;
+}
+
+const _CONSTRAINT = _runtime.kernel({
+    name: "delta.constraint",
+    compute: _constraint,
+    common: null,
+    inputs: [
+        { name: "q", shape: [3], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "factors", shape: [1], branches: 2, kind: "real" },
+    ],
+    used: ["f", "e", "L", "l", "alpha1", "alpha2", "alpha3"],
+    defaults: DEFAULTS,
+    size: {
+        lengths: [3, 4, 5, 6],
+        degrees: [[0, 3], [1, 3]],
+        least: 6.681911775230489e-52,
+        most: 1.7498005798264095e+100,
+    },
+});
+
+/**
+ * What vanishes where the parallelograms do not keep the hand from turning.
+ *
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
+ * - NaN for an assembly mode that does not exist.
+ * - The determinant of the normals of the parallelograms (a unit vector along the bars times
+ *   the vector along the rods).
+ *
+ * @param {ArrayLike<number>} q 3 numbers. theta1, theta2, theta3 in rad.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[][]} 2 branches of 1 number.
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has the wrong length.
+ */
+export function constraint(q, parameters) {
+    return _runtime.single(_CONSTRAINT, [q], parameters);
+}
+
+/**
+ * `constraint` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 3 n numbers
+ * @param {Float64Array} [factors] 2 n numbers, to write to; allocated if omitted
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} the results
+ */
+export function constraint_batch(n, q, factors, parameters) {
+    return _runtime.batch(_CONSTRAINT, n, [q], [factors], parameters);
+}
+
+/** @type {_runtime.Compute} */
 function _ik(v, o) {
     const x = v[0];
     const y = v[1];
@@ -1926,6 +2249,8 @@ const _IK = _runtime.kernel({
  * - SINGULAR: no crank; theta3 is free, 0 is returned.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
  *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+ *   which the hand is turned.
  *
  * @param {ArrayLike<number>} x 3 numbers. x, y, z in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

@@ -3,13 +3,14 @@
 // Source: The closedform authors: Loops of common structure, solved leg by leg.
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   fk: 42 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
-//   skeleton: 41 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
+//   skeleton: 41 compare and select, 129 add, 16 divide, 50 multiply, 5 sqrt
 //   jacobian_parallel: 41 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
 //   jacobian_serial: 41 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
 //   jacobian: 41 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
 //   determinant: 41 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
 //   singularities: 41 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
 //   condition_number: 41 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
+//   constraint: 41 compare and select, 67 add, 20 divide, 74 multiply, 5 sqrt
 //   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
 //   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 
@@ -42,22 +43,43 @@ export const SKELETON = Object.freeze(/** @type {const} */ ({
         "A1",
         "B1",
         "C1",
+        "B1a",
+        "B1b",
+        "C1a",
+        "C1b",
         "A2",
         "B2",
         "C2",
+        "B2a",
+        "B2b",
+        "C2a",
+        "C2b",
         "A3",
         "B3",
         "C3",
+        "B3a",
+        "B3b",
+        "C3a",
+        "C3b",
         "P",
     ],
     links: {
         ground: ["A1", "A2", "A3", "A1"],
         hand1: ["P", "C1"],
-        rod1: ["B1", "C1"],
+        rod1a: ["B1a", "C1a"],
+        rod1b: ["B1b", "C1b"],
+        bar_B1a: ["B1a", "B1", "B1b"],
+        bar_C1a: ["C1a", "C1", "C1b"],
         hand2: ["P", "C2"],
-        rod2: ["B2", "C2"],
+        rod2a: ["B2a", "C2a"],
+        rod2b: ["B2b", "C2b"],
+        bar_B2a: ["B2a", "B2", "B2b"],
+        bar_C2a: ["C2a", "C2", "C2b"],
         hand3: ["P", "C3"],
-        rod3: ["B3", "C3"],
+        rod3a: ["B3a", "C3a"],
+        rod3b: ["B3b", "C3b"],
+        bar_B3a: ["B3a", "B3", "B3b"],
+        bar_C3a: ["C3a", "C3", "C3b"],
     },
     joints: {
         rho1: { kind: "prismatic", points: ["A1", "B1"] },
@@ -190,6 +212,8 @@ const _FK = _runtime.kernel({
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
  * - Ill-conditioned near the parallel singularities, where both modes meet.
+ * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+ *   which the hand is turned.
  *
  * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -235,135 +259,232 @@ function _skeleton(v, o) {
     const t4 = f * 0.5;
     const t5 = c1_x - (t3 - t4);
     const t6 = rho1 - rho2;
-    const t7 = e * 1.7320508075688772 * 0.5;
-    const t8 = f * 1.7320508075688772 * 0.5;
-    const c3_y = t7 - t8;
-    const t9 = t5 * t5 + c3_y * c3_y;
-    const size_u = Math.sqrt(t6 * t6 + t9);
-    const t10 = rho1 - rho3;
-    const size_v = Math.sqrt(t10 * t10 + t9);
+    const t7 = e * 1.7320508075688772;
+    const t8 = t7 * 0.5;
+    const t9 = f * 1.7320508075688772 * 0.5;
+    const c3_y = t8 - t9;
+    const t10 = t5 * t5 + c3_y * c3_y;
+    const size_u = Math.sqrt(t6 * t6 + t10);
+    const t11 = rho1 - rho3;
+    const size_v = Math.sqrt(t11 * t11 + t10);
     const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
-    const t11 = size * _runtime.VANISHING;
-    const all_same = size_u + size_v <= t11;
-    const same = size_u <= t11;
+    const t12 = size * _runtime.VANISHING;
+    const all_same = size_u + size_v <= t12;
+    const same = size_u <= t12;
     const D = same ? size_v : size_u;
     const E_11 = all_same ? 1.0 : -(t5 / D);
-    const t12 = same ? c3_y : -c3_y;
-    const E_12 = all_same ? 0.0 : t12 / D;
-    const t13 = same ? -c3_y : c3_y;
-    const t14 = same ? t10 : t6;
-    const t15 = all_same ? 0.0 : t14 / D;
-    const t16 = same ? t6 : t10;
-    const t17 = t5 * E_11 - E_12 * t13 - t15 * t16;
-    const t18 = t5 - E_11 * t17;
-    const m_y = t13 + E_12 * t17;
-    const t19 = t16 + t15 * t17;
-    const t20 = E_11 * t18 - E_12 * m_y - t15 * t19;
-    const t21 = t18 - E_11 * t20;
-    const n_y = m_y + E_12 * t20;
-    const t22 = t19 + t15 * t20;
-    const j = Math.sqrt(t21 * t21 + n_y * n_y + t22 * t22);
-    const in_line = j <= t11;
-    const t23 = t13 * (t12 - t13) + t16 * (t14 - t16);
-    const t24 = Math.abs(in_line ? -t23 : 0.0) <= _runtime.FEASIBILITY * (size * size);
+    const t13 = same ? c3_y : -c3_y;
+    const E_12 = all_same ? 0.0 : t13 / D;
+    const t14 = same ? -c3_y : c3_y;
+    const t15 = same ? t11 : t6;
+    const t16 = all_same ? 0.0 : t15 / D;
+    const t17 = same ? t6 : t11;
+    const t18 = t5 * E_11 - E_12 * t14 - t16 * t17;
+    const t19 = t5 - E_11 * t18;
+    const m_y = t14 + E_12 * t18;
+    const t20 = t17 + t16 * t18;
+    const t21 = E_11 * t19 - E_12 * m_y - t16 * t20;
+    const t22 = t19 - E_11 * t21;
+    const n_y = m_y + E_12 * t21;
+    const t23 = t20 + t16 * t21;
+    const j = Math.sqrt(t22 * t22 + n_y * n_y + t23 * t23);
+    const in_line = j <= t12;
+    const t24 = t14 * (t13 - t14) + t17 * (t15 - t17);
+    const t25 = Math.abs(in_line ? -t24 : 0.0) <= _runtime.FEASIBILITY * (size * size);
     const X = all_same ? 0.0 : D * 0.5;
-    const t25 = in_line ? 0.0 : t23 / (2.0 * j);
-    const rho = Math.sqrt(X * X + t25 * t25);
-    const t26 = l - rho;
-    const unreachable = !(t24 && -(size * _runtime.FEASIBILITY) <= t26);
-    const t27 = invalid || unreachable ? NaN : 0;
-    const t28 = f + t27;
-    const t29 = 0.0 + t27;
-    const t30 = rho1 + t27;
-    const t31 = -t15 < 0 ? -1 : 1;
-    const t32 = t15 - t31;
-    const E_21 = in_line ? 1.0 + E_11 * E_11 * t31 / t32 : -(t21 / j);
-    const t33 = E_11 * X - t25 * E_21;
-    const slack = Math.max(t26, 0.0);
-    const h = slack <= t11 ? 0.0 : Math.sqrt(slack * (l + rho));
-    const t34 = E_11 * t31;
-    const t35 = in_line ? t34 : t22 / j;
-    const E_22 = in_line ? E_12 * t34 / t32 : n_y / j;
-    const t36 = h * (E_12 * t35 - t15 * E_22);
-    const t37 = c1_x + (t33 + t36);
-    const t38 = E_12 * X - t25 * E_22;
-    const t39 = h * (E_11 * t35 - t15 * E_21);
-    const A_12 = t38 - t39;
-    const t40 = A_12 + t27;
-    const t41 = t15 * X - t25 * t35;
-    const t42 = h * (E_12 * E_21 - E_11 * E_22);
-    const t43 = rho1 - (t41 - t42) + t27;
-    const t44 = -t4 + t27;
-    const t45 = t8 + t27;
-    const t46 = rho2 + t27;
-    const t47 = t37 - t3 + t27;
-    const t48 = -t8 + t27;
-    const t49 = rho3 + t27;
-    const t50 = c1_x + (t33 - t36);
-    const A_12_above = t38 + t39;
-    const t51 = A_12_above + t27;
-    const t52 = rho1 - (t41 + t42) + t27;
-    const t53 = t50 - t3 + t27;
-    o[0] = t28;
-    o[1] = t29;
-    o[2] = t29;
-    o[3] = t28;
-    o[4] = t29;
-    o[5] = t30;
-    o[6] = e + t37 + t27;
-    o[7] = t40;
-    o[8] = t43;
-    o[9] = t44;
-    o[10] = t45;
-    o[11] = t29;
-    o[12] = t44;
-    o[13] = t45;
-    o[14] = t46;
-    o[15] = t47;
-    o[16] = t7 + A_12 + t27;
-    o[17] = t43;
-    o[18] = t44;
-    o[19] = t48;
-    o[20] = t29;
-    o[21] = t44;
-    o[22] = t48;
-    o[23] = t49;
-    o[24] = t47;
-    o[25] = A_12 - t7 + t27;
-    o[26] = t43;
-    o[27] = t37 + t27;
-    o[28] = t40;
-    o[29] = t43;
-    o[30] = t28;
-    o[31] = t29;
-    o[32] = t29;
-    o[33] = t28;
-    o[34] = t29;
-    o[35] = t30;
-    o[36] = e + t50 + t27;
-    o[37] = t51;
-    o[38] = t52;
-    o[39] = t44;
-    o[40] = t45;
-    o[41] = t29;
-    o[42] = t44;
-    o[43] = t45;
-    o[44] = t46;
-    o[45] = t53;
-    o[46] = t7 + A_12_above + t27;
-    o[47] = t52;
-    o[48] = t44;
-    o[49] = t48;
-    o[50] = t29;
-    o[51] = t44;
-    o[52] = t48;
-    o[53] = t49;
-    o[54] = t53;
-    o[55] = A_12_above - t7 + t27;
-    o[56] = t52;
-    o[57] = t50 + t27;
-    o[58] = t51;
-    o[59] = t52;
+    const t26 = in_line ? 0.0 : t24 / (2.0 * j);
+    const rho = Math.sqrt(X * X + t26 * t26);
+    const t27 = l - rho;
+    const unreachable = !(t25 && -(size * _runtime.FEASIBILITY) <= t27);
+    const t28 = invalid || unreachable ? NaN : 0;
+    const t29 = f + t28;
+    const t30 = 0.0 + t28;
+    const t31 = rho1 + t28;
+    const t32 = e + c1_x;
+    const t33 = -t16 < 0 ? -1 : 1;
+    const t34 = t16 - t33;
+    const E_21 = in_line ? 1.0 + E_11 * E_11 * t33 / t34 : -(t22 / j);
+    const t35 = E_11 * X - t26 * E_21;
+    const slack = Math.max(t27, 0.0);
+    const h = slack <= t12 ? 0.0 : Math.sqrt(slack * (l + rho));
+    const t36 = E_11 * t33;
+    const t37 = in_line ? t36 : t23 / j;
+    const E_22 = in_line ? E_12 * t36 / t34 : n_y / j;
+    const t38 = h * (E_12 * t37 - t16 * E_22);
+    const A_11 = t35 + t38;
+    const t39 = t32 + A_11 + t28;
+    const t40 = E_12 * X - t26 * E_22;
+    const t41 = h * (E_11 * t37 - t16 * E_21);
+    const A_12 = t40 - t41;
+    const t42 = A_12 + t28;
+    const t43 = t16 * X - t26 * t37;
+    const t44 = h * (E_12 * E_21 - E_11 * E_22);
+    const t45 = rho1 - (t43 - t44) + t28;
+    const t46 = t3 + t28;
+    const t47 = -t3 + t28;
+    const t48 = -t4 + t28;
+    const t49 = t9 + t28;
+    const t50 = rho2 + t28;
+    const t51 = c1_x - t3;
+    const t52 = t51 + A_11;
+    const t53 = t52 + t28;
+    const t54 = t7 * 0.25;
+    const t55 = -(t4 + t54) + t28;
+    const t56 = e * 0.25;
+    const t57 = t9 - t56;
+    const t58 = t57 + t28;
+    const t59 = t54 - t4 + t28;
+    const t60 = t9 + t56;
+    const t61 = t60 + t28;
+    const t62 = t52 - t54 + t28;
+    const t63 = t8 - t56;
+    const t64 = t54 + t52 + t28;
+    const t65 = t8 + t56;
+    const t66 = -t9 + t28;
+    const t67 = rho3 + t28;
+    const t68 = -t60 + t28;
+    const t69 = -t57 + t28;
+    const A_11_above = t35 - t38;
+    const t70 = t32 + A_11_above + t28;
+    const A_12_above = t40 + t41;
+    const t71 = A_12_above + t28;
+    const t72 = rho1 - (t43 + t44) + t28;
+    const t73 = t51 + A_11_above;
+    const t74 = t73 + t28;
+    const t75 = t73 - t54 + t28;
+    const t76 = t54 + t73 + t28;
+    o[0] = t29;
+    o[1] = t30;
+    o[2] = t30;
+    o[3] = t29;
+    o[4] = t30;
+    o[5] = t31;
+    o[6] = t39;
+    o[7] = t42;
+    o[8] = t45;
+    o[9] = t29;
+    o[10] = t46;
+    o[11] = t31;
+    o[12] = t29;
+    o[13] = t47;
+    o[14] = t31;
+    o[15] = t39;
+    o[16] = t3 + A_12 + t28;
+    o[17] = t45;
+    o[18] = t39;
+    o[19] = A_12 - t3 + t28;
+    o[20] = t45;
+    o[21] = t48;
+    o[22] = t49;
+    o[23] = t30;
+    o[24] = t48;
+    o[25] = t49;
+    o[26] = t50;
+    o[27] = t53;
+    o[28] = t8 + A_12 + t28;
+    o[29] = t45;
+    o[30] = t55;
+    o[31] = t58;
+    o[32] = t50;
+    o[33] = t59;
+    o[34] = t61;
+    o[35] = t50;
+    o[36] = t62;
+    o[37] = t63 + A_12 + t28;
+    o[38] = t45;
+    o[39] = t64;
+    o[40] = t65 + A_12 + t28;
+    o[41] = t45;
+    o[42] = t48;
+    o[43] = t66;
+    o[44] = t30;
+    o[45] = t48;
+    o[46] = t66;
+    o[47] = t67;
+    o[48] = t53;
+    o[49] = A_12 - t8 + t28;
+    o[50] = t45;
+    o[51] = t59;
+    o[52] = t68;
+    o[53] = t67;
+    o[54] = t55;
+    o[55] = t69;
+    o[56] = t67;
+    o[57] = t64;
+    o[58] = A_12 - t65 + t28;
+    o[59] = t45;
+    o[60] = t62;
+    o[61] = A_12 - t63 + t28;
+    o[62] = t45;
+    o[63] = c1_x + A_11 + t28;
+    o[64] = t42;
+    o[65] = t45;
+    o[66] = t29;
+    o[67] = t30;
+    o[68] = t30;
+    o[69] = t29;
+    o[70] = t30;
+    o[71] = t31;
+    o[72] = t70;
+    o[73] = t71;
+    o[74] = t72;
+    o[75] = t29;
+    o[76] = t46;
+    o[77] = t31;
+    o[78] = t29;
+    o[79] = t47;
+    o[80] = t31;
+    o[81] = t70;
+    o[82] = t3 + A_12_above + t28;
+    o[83] = t72;
+    o[84] = t70;
+    o[85] = A_12_above - t3 + t28;
+    o[86] = t72;
+    o[87] = t48;
+    o[88] = t49;
+    o[89] = t30;
+    o[90] = t48;
+    o[91] = t49;
+    o[92] = t50;
+    o[93] = t74;
+    o[94] = t8 + A_12_above + t28;
+    o[95] = t72;
+    o[96] = t55;
+    o[97] = t58;
+    o[98] = t50;
+    o[99] = t59;
+    o[100] = t61;
+    o[101] = t50;
+    o[102] = t75;
+    o[103] = t63 + A_12_above + t28;
+    o[104] = t72;
+    o[105] = t76;
+    o[106] = t65 + A_12_above + t28;
+    o[107] = t72;
+    o[108] = t48;
+    o[109] = t66;
+    o[110] = t30;
+    o[111] = t48;
+    o[112] = t66;
+    o[113] = t67;
+    o[114] = t74;
+    o[115] = A_12_above - t8 + t28;
+    o[116] = t72;
+    o[117] = t59;
+    o[118] = t68;
+    o[119] = t67;
+    o[120] = t55;
+    o[121] = t69;
+    o[122] = t67;
+    o[123] = t76;
+    o[124] = A_12_above - t65 + t28;
+    o[125] = t72;
+    o[126] = t75;
+    o[127] = A_12_above - t63 + t28;
+    o[128] = t72;
+    o[129] = c1_x + A_11_above + t28;
+    o[130] = t71;
+    o[131] = t72;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -374,13 +495,13 @@ const _SKELETON = _runtime.kernel({
         { name: "q", shape: [3], branches: 0, kind: "real" },
     ],
     outputs: [
-        { name: "points", shape: [10, 3], branches: 2, kind: "real" },
+        { name: "points", shape: [22, 3], branches: 2, kind: "real" },
     ],
     used: ["f", "e", "l"],
     defaults: DEFAULTS,
     size: {
         lengths: [0, 1, 2, 3, 4, 5],
-        degrees: [[0, 1], [3, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [21, 1], [22, 1], [23, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [29, 1], [30, 1], [33, 1], [35, 1], [36, 1], [37, 1], [38, 1], [39, 1], [40, 1], [42, 1], [43, 1], [44, 1], [45, 1], [46, 1], [47, 1], [48, 1], [49, 1], [51, 1], [52, 1], [53, 1], [54, 1], [55, 1], [56, 1], [57, 1], [58, 1], [59, 1]],
+        degrees: [[0, 1], [3, 1], [5, 1], [6, 1], [7, 1], [8, 1], [9, 1], [10, 1], [11, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [18, 1], [19, 1], [20, 1], [21, 1], [22, 1], [24, 1], [25, 1], [26, 1], [27, 1], [28, 1], [29, 1], [30, 1], [31, 1], [32, 1], [33, 1], [34, 1], [35, 1], [36, 1], [37, 1], [38, 1], [39, 1], [40, 1], [41, 1], [42, 1], [43, 1], [45, 1], [46, 1], [47, 1], [48, 1], [49, 1], [50, 1], [51, 1], [52, 1], [53, 1], [54, 1], [55, 1], [56, 1], [57, 1], [58, 1], [59, 1], [60, 1], [61, 1], [62, 1], [63, 1], [64, 1], [65, 1], [66, 1], [69, 1], [71, 1], [72, 1], [73, 1], [74, 1], [75, 1], [76, 1], [77, 1], [78, 1], [79, 1], [80, 1], [81, 1], [82, 1], [83, 1], [84, 1], [85, 1], [86, 1], [87, 1], [88, 1], [90, 1], [91, 1], [92, 1], [93, 1], [94, 1], [95, 1], [96, 1], [97, 1], [98, 1], [99, 1], [100, 1], [101, 1], [102, 1], [103, 1], [104, 1], [105, 1], [106, 1], [107, 1], [108, 1], [109, 1], [111, 1], [112, 1], [113, 1], [114, 1], [115, 1], [116, 1], [117, 1], [118, 1], [119, 1], [120, 1], [121, 1], [122, 1], [123, 1], [124, 1], [125, 1], [126, 1], [127, 1], [128, 1], [129, 1], [130, 1], [131, 1]],
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
@@ -391,10 +512,11 @@ const _SKELETON = _runtime.kernel({
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
  * - NaN for an assembly mode that does not exist.
+ * - The width of a parallelogram matters here alone.
  *
  * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 30 numbers (10 x 3 in row order). Coordinates x, y, z of
+ * @returns {number[][]} 2 branches of 66 numbers (22 x 3 in row order). Coordinates x, y, z of
  *     each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
@@ -408,7 +530,7 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [points] 60 n numbers, to write to; allocated if omitted
+ * @param {Float64Array} [points] 132 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
  * @returns {Float64Array} the results
  */
@@ -1245,6 +1367,143 @@ export function condition_number_batch(n, q, kappa, parameters) {
 }
 
 /** @type {_runtime.Compute} */
+function _constraint(v, o) {
+    const rho1 = v[0];
+    const rho2 = v[1];
+    const rho3 = v[2];
+    const f = v[3];
+    const e = v[4];
+    const l = v[5];
+    const t1 = rho1 - rho2;
+    const t2 = f - e - (e * 0.5 - f * 0.5);
+    const c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5;
+    const t3 = t2 * t2 + c3_y * c3_y;
+    const size_u = Math.sqrt(t1 * t1 + t3);
+    const t4 = rho1 - rho3;
+    const size_v = Math.sqrt(t4 * t4 + t3);
+    const size = f + e + l + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
+    const t5 = size * _runtime.VANISHING;
+    const all_same = size_u + size_v <= t5;
+    const same = size_u <= t5;
+    const D = same ? size_v : size_u;
+    const X = all_same ? 0.0 : D * 0.5;
+    const t6 = same ? t4 : t1;
+    const t7 = all_same ? 0.0 : t6 / D;
+    const E_11 = all_same ? 1.0 : -(t2 / D);
+    const t8 = same ? c3_y : -c3_y;
+    const E_12 = all_same ? 0.0 : t8 / D;
+    const t9 = same ? -c3_y : c3_y;
+    const t10 = same ? t1 : t4;
+    const t11 = t2 * E_11 - E_12 * t9 - t7 * t10;
+    const t12 = t2 - E_11 * t11;
+    const m_y = t9 + E_12 * t11;
+    const t13 = t10 + t7 * t11;
+    const t14 = E_11 * t12 - E_12 * m_y - t7 * t13;
+    const t15 = t12 - E_11 * t14;
+    const n_y = m_y + E_12 * t14;
+    const t16 = t13 + t7 * t14;
+    const j = Math.sqrt(t15 * t15 + n_y * n_y + t16 * t16);
+    const in_line = j <= t5;
+    const t17 = t9 * (t8 - t9) + t10 * (t6 - t10);
+    const t18 = in_line ? 0.0 : t17 / (2.0 * j);
+    const t19 = -t7 < 0 ? -1 : 1;
+    const t20 = E_11 * t19;
+    const t21 = in_line ? t20 : t16 / j;
+    const t22 = X * t7 - t18 * t21;
+    const rho = Math.sqrt(X * X + t18 * t18);
+    const t23 = l - rho;
+    const slack = Math.max(t23, 0.0);
+    const h = slack <= t5 ? 0.0 : Math.sqrt(slack * (l + rho));
+    const t24 = t7 - t19;
+    const E_21 = in_line ? 1.0 + E_11 * E_11 * t19 / t24 : -(t15 / j);
+    const E_22 = in_line ? E_12 * t20 / t24 : n_y / j;
+    const t25 = h * (E_12 * E_21 - E_11 * E_22);
+    const t26 = t22 - t25;
+    const A_23 = t1 - t26;
+    const t27 = 0.75 * t26;
+    const t28 = X * E_12 - t18 * E_22;
+    const t29 = h * (E_11 * t21 - t7 * E_21);
+    const A_12 = t28 - t29;
+    const t30 = E_11 * X - E_21 * t18;
+    const t31 = h * (E_12 * t21 - t7 * E_22);
+    const A_11 = t30 + t31;
+    const A_33 = t4 - t26;
+    const t32 = 1.7320508075688772 * A_11 * A_23 * A_33 * 0.5;
+    const t33 = (t2 + A_11) * (1.7320508075688772 * t26);
+    const t34 = t32 + A_33 * t33 * 0.25 - A_33 * t27 * (c3_y + A_12);
+    const t35 = A_23 * t27 * (c3_y - A_12) - (t34 + A_23 * t33 * 0.25);
+    const t36 = Number.isFinite(f) && Number.isFinite(e) && Number.isFinite(l);
+    const t37 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t38 = t36 && 0.0 <= f && 0.0 <= e && 0.0 <= l && t37;
+    const t39 = Math.abs(in_line ? -t17 : 0.0) <= _runtime.FEASIBILITY * (size * size);
+    const unreachable = !(t39 && -(size * _runtime.FEASIBILITY) <= t23);
+    const t40 = !t38 || unreachable ? NaN : 0;
+    const t41 = t22 + t25;
+    const A_23_above = t1 - t41;
+    const t42 = 0.75 * t41;
+    const A_12_above = t28 + t29;
+    const A_11_above = t30 - t31;
+    const A_33_above = t4 - t41;
+    const t43 = 1.7320508075688772 * A_11_above * A_23_above * A_33_above;
+    const t44 = (t2 + A_11_above) * (1.7320508075688772 * t41);
+    const t45 = t43 * 0.5 + A_33_above * t44 * 0.25 - A_33_above * t42 * (c3_y + A_12_above);
+    const t46 = A_23_above * t42 * (c3_y - A_12_above) - (t45 + A_23_above * t44 * 0.25);
+    o[0] = t35 + t40;
+    o[1] = t46 + t40;
+}
+
+const _CONSTRAINT = _runtime.kernel({
+    name: "linear_delta.constraint",
+    compute: _constraint,
+    common: null,
+    inputs: [
+        { name: "q", shape: [3], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "factors", shape: [1], branches: 2, kind: "real" },
+    ],
+    used: ["f", "e", "l"],
+    defaults: DEFAULTS,
+    size: {
+        lengths: [0, 1, 2, 3, 4, 5],
+        degrees: [[0, 3], [1, 3]],
+        least: 6.681911775230489e-52,
+        most: 1.7498005798264095e+100,
+    },
+});
+
+/**
+ * What vanishes where the parallelograms do not keep the hand from turning.
+ *
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
+ * - NaN for an assembly mode that does not exist.
+ * - The determinant of the normals of the parallelograms (a unit vector along the bars times
+ *   the vector along the rods).
+ *
+ * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[][]} 2 branches of 1 number.
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has the wrong length.
+ */
+export function constraint(q, parameters) {
+    return _runtime.single(_CONSTRAINT, [q], parameters);
+}
+
+/**
+ * `constraint` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 3 n numbers
+ * @param {Float64Array} [factors] 2 n numbers, to write to; allocated if omitted
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} the results
+ */
+export function constraint_batch(n, q, factors, parameters) {
+    return _runtime.batch(_CONSTRAINT, n, [q], [factors], parameters);
+}
+
+/** @type {_runtime.Compute} */
 function _ik(v, o) {
     const x = v[0];
     const y = v[1];
@@ -1387,6 +1646,8 @@ const _IK = _runtime.kernel({
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
  *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+ *   which the hand is turned.
  *
  * @param {ArrayLike<number>} x 3 numbers. x, y, z in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

@@ -4,8 +4,8 @@
 // Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 //   fk: 38 compare and select, 45 add, 5 divide, 55 multiply, 5 sqrt
 //   fk where nothing vanishes: 25 compare and select, 31 add, 4 divide, 37 multiply, 5 sqrt
-//   skeleton: 37 compare and select, 50 add, 10 divide, 47 multiply, 5 sqrt
-//   skeleton where nothing vanishes: 24 compare and select, 36 add, 7 divide, 32 multiply, 5 sqrt
+//   skeleton: 37 compare and select, 76 add, 11 divide, 47 multiply, 5 sqrt
+//   skeleton where nothing vanishes: 24 compare and select, 62 add, 8 divide, 32 multiply, 5 sqrt
 //   jacobian_parallel: 37 compare and select, 56 add, 10 divide, 47 multiply, 5 sqrt
 //   jacobian_parallel where nothing vanishes: 24 compare and select, 42 add, 7 divide, 32
 //     multiply, 5 sqrt
@@ -23,6 +23,9 @@
 //   condition_number: 37 compare and select, 96 add, 12 divide, 106 multiply, 7 sqrt
 //   condition_number where nothing vanishes: 24 compare and select, 82 add, 9 divide, 91 multiply,
 //     7 sqrt
+//   constraint: 37 compare and select, 48 add, 10 divide, 55 multiply, 5 sqrt
+//   constraint where nothing vanishes: 24 compare and select, 34 add, 7 divide, 40 multiply, 5
+//     sqrt
 //   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
 //   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 
@@ -54,17 +57,38 @@ export const SKELETON = Object.freeze(/** @type {const} */ ({
     points: [
         "A1",
         "B1",
+        "B1a",
+        "B1b",
+        "C1a",
+        "C1b",
         "A2",
         "B2",
+        "B2a",
+        "B2b",
+        "C2a",
+        "C2b",
         "A3",
         "B3",
+        "B3a",
+        "B3b",
+        "C3a",
+        "C3b",
         "P",
     ],
     links: {
         ground: ["A1", "A2", "A3", "A1"],
-        rod1: ["B1", "P"],
-        rod2: ["B2", "P"],
-        rod3: ["B3", "P"],
+        rod1a: ["B1a", "C1a"],
+        rod1b: ["B1b", "C1b"],
+        bar_B1a: ["B1a", "B1", "B1b"],
+        bar_C1a: ["C1a", "P", "C1b"],
+        rod2a: ["B2a", "C2a"],
+        rod2b: ["B2b", "C2b"],
+        bar_B2a: ["B2a", "B2", "B2b"],
+        bar_C2a: ["C2a", "P", "C2b"],
+        rod3a: ["B3a", "C3a"],
+        rod3b: ["B3b", "C3b"],
+        bar_B3a: ["B3a", "B3", "B3b"],
+        bar_C3a: ["C3a", "P", "C3b"],
     },
     joints: {
         rho1: { kind: "prismatic", points: ["A1", "B1"] },
@@ -239,6 +263,8 @@ const _FK = _runtime.kernel({
  * - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
  *   points is returned.
  * - Ill-conditioned near the parallel singularities, where both modes meet.
+ * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+ *   which the hand is turned.
  *
  * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
@@ -311,64 +337,151 @@ function _skeleton(v, o) {
     const t16 = failed ? NaN : 0;
     const t17 = 0.0 + t16;
     const t18 = rho1 + t16;
-    const t19 = rho2 + t16;
-    const t20 = rho3 + t16;
+    const t19 = L * 0.0625;
+    const t20 = t19 + t16;
+    const t21 = -t19 + t16;
     const slack = Math.max(t15, 0.0);
     const h = slack <= t3 ? 0.0 : Math.sqrt(slack * (L + rho));
-    const t21 = E_13 < 0 ? -1 : 1;
-    const t22 = E_11 * t21;
-    const E_23 = in_line ? -t22 : n_z / j;
-    const t23 = E_13 + t21;
-    const E_22 = in_line ? -(E_12 * t22 / t23) : n_y / j;
-    const t24 = h * (E_12 * E_23 - E_13 * E_22);
-    const E_21 = in_line ? 1.0 - E_11 * E_11 * t21 / t23 : -(t11 / j);
-    const t25 = E_11 * X - E_21 * t14;
-    const t26 = E_12 * X - t14 * E_22;
-    const t27 = (E_11 * E_23 - E_13 * E_21) * h;
-    const t28 = E_13 * X - E_23 * t14;
-    const t29 = h * (E_12 * E_21 - E_11 * E_22);
+    const t22 = E_13 < 0 ? -1 : 1;
+    const t23 = E_11 * t22;
+    const E_23 = in_line ? -t23 : n_z / j;
+    const t24 = E_13 + t22;
+    const E_22 = in_line ? -(E_12 * t23 / t24) : n_y / j;
+    const t25 = h * (E_12 * E_23 - E_13 * E_22);
+    const E_21 = in_line ? 1.0 - E_11 * E_11 * t22 / t24 : -(t11 / j);
+    const t26 = E_11 * X - E_21 * t14;
+    const t27 = rho1 + (t25 + t26);
+    const t28 = t27 + t16;
+    const t29 = (E_11 * E_23 - E_13 * E_21) * h;
+    const t30 = E_12 * X - t14 * E_22;
+    const t31 = t29 - t30;
+    const t32 = h * (E_12 * E_21 - E_11 * E_22);
+    const t33 = E_13 * X - E_23 * t14;
+    const t34 = t32 - t33;
+    const t35 = -t34 + t16;
+    const t36 = rho2 + t16;
+    const t37 = -t31 + t16;
+    const t38 = rho3 + t16;
+    const t39 = rho1 - (t25 - t26);
+    const t40 = t39 + t16;
+    const A_12_inner = t29 + t30;
+    const A_13_inner = t32 + t33;
+    const t41 = A_13_inner + t16;
+    const t42 = A_12_inner + t16;
     o[0] = t17;
     o[1] = t17;
     o[2] = t17;
     o[3] = t18;
     o[4] = t17;
     o[5] = t17;
-    o[6] = t17;
-    o[7] = t17;
+    o[6] = t18;
+    o[7] = t20;
     o[8] = t17;
-    o[9] = t17;
-    o[10] = t19;
+    o[9] = t18;
+    o[10] = t21;
     o[11] = t17;
-    o[12] = t17;
-    o[13] = t17;
-    o[14] = t17;
-    o[15] = t17;
-    o[16] = t17;
-    o[17] = t20;
-    o[18] = rho1 + (t24 + t25) + t16;
-    o[19] = t26 - t27 + t16;
-    o[20] = t28 - t29 + t16;
+    o[12] = t28;
+    o[13] = t19 - t31 + t16;
+    o[14] = t35;
+    o[15] = t28;
+    o[16] = -(t19 + t31) + t16;
+    o[17] = t35;
+    o[18] = t17;
+    o[19] = t17;
+    o[20] = t17;
     o[21] = t17;
-    o[22] = t17;
+    o[22] = t36;
     o[23] = t17;
-    o[24] = t18;
-    o[25] = t17;
-    o[26] = t17;
+    o[24] = t17;
+    o[25] = t36;
+    o[26] = t20;
     o[27] = t17;
-    o[28] = t17;
-    o[29] = t17;
-    o[30] = t17;
-    o[31] = t19;
-    o[32] = t17;
-    o[33] = t17;
-    o[34] = t17;
-    o[35] = t17;
+    o[28] = t36;
+    o[29] = t21;
+    o[30] = t28;
+    o[31] = t37;
+    o[32] = t19 - t34 + t16;
+    o[33] = t28;
+    o[34] = t37;
+    o[35] = -(t19 + t34) + t16;
     o[36] = t17;
     o[37] = t17;
-    o[38] = t20;
-    o[39] = rho1 - (t24 - t25) + t16;
-    o[40] = t27 + t26 + t16;
-    o[41] = t29 + t28 + t16;
+    o[38] = t17;
+    o[39] = t17;
+    o[40] = t17;
+    o[41] = t38;
+    o[42] = t20;
+    o[43] = t17;
+    o[44] = t38;
+    o[45] = t21;
+    o[46] = t17;
+    o[47] = t38;
+    o[48] = t19 + t27 + t16;
+    o[49] = t37;
+    o[50] = t35;
+    o[51] = t27 - t19 + t16;
+    o[52] = t37;
+    o[53] = t35;
+    o[54] = t28;
+    o[55] = t37;
+    o[56] = t35;
+    o[57] = t17;
+    o[58] = t17;
+    o[59] = t17;
+    o[60] = t18;
+    o[61] = t17;
+    o[62] = t17;
+    o[63] = t18;
+    o[64] = t20;
+    o[65] = t17;
+    o[66] = t18;
+    o[67] = t21;
+    o[68] = t17;
+    o[69] = t40;
+    o[70] = t19 + A_12_inner + t16;
+    o[71] = t41;
+    o[72] = t40;
+    o[73] = A_12_inner - t19 + t16;
+    o[74] = t41;
+    o[75] = t17;
+    o[76] = t17;
+    o[77] = t17;
+    o[78] = t17;
+    o[79] = t36;
+    o[80] = t17;
+    o[81] = t17;
+    o[82] = t36;
+    o[83] = t20;
+    o[84] = t17;
+    o[85] = t36;
+    o[86] = t21;
+    o[87] = t40;
+    o[88] = t42;
+    o[89] = t19 + A_13_inner + t16;
+    o[90] = t40;
+    o[91] = t42;
+    o[92] = A_13_inner - t19 + t16;
+    o[93] = t17;
+    o[94] = t17;
+    o[95] = t17;
+    o[96] = t17;
+    o[97] = t17;
+    o[98] = t38;
+    o[99] = t20;
+    o[100] = t17;
+    o[101] = t38;
+    o[102] = t21;
+    o[103] = t17;
+    o[104] = t38;
+    o[105] = t19 + t39 + t16;
+    o[106] = t42;
+    o[107] = t41;
+    o[108] = t39 - t19 + t16;
+    o[109] = t42;
+    o[110] = t41;
+    o[111] = t40;
+    o[112] = t42;
+    o[113] = t41;
 }
 
 /** @type {_runtime.Compute} */
@@ -401,64 +514,151 @@ function _skeleton_common(v, o) {
     const t14 = failed ? NaN : 0;
     const t15 = 0.0 + t14;
     const t16 = rho1 + t14;
-    const t17 = rho2 + t14;
-    const t18 = rho3 + t14;
+    const t17 = L * 0.0625;
+    const t18 = t17 + t14;
+    const t19 = -t17 + t14;
     const E_23 = rho3 / j;
     const slack = Math.max(t13, 0.0);
     const h = Math.sqrt(slack * (L + rho));
-    const t19 = E_12 * E_23 * h;
-    const t20 = t10 / j;
-    const t21 = t5 * X + t12 * t20;
-    const t22 = t5 * E_23 * h;
-    const t23 = t11 / j;
-    const t24 = E_12 * X - t12 * t23;
-    const t25 = t12 * E_23;
-    const t26 = (t5 * t23 + E_12 * t20) * h;
-    const t27 = size * _runtime.VANISHING;
-    const t28 = size_u <= t27 || size_u + Math.sqrt(t3 + t4) <= t27;
+    const t20 = E_12 * E_23 * h;
+    const t21 = t10 / j;
+    const t22 = t5 * X + t12 * t21;
+    const t23 = rho1 + (t20 - t22);
+    const t24 = t23 + t14;
+    const t25 = t5 * E_23 * h;
+    const t26 = t11 / j;
+    const t27 = E_12 * X - t12 * t26;
+    const A_12 = t25 + t27;
+    const t28 = t12 * E_23;
+    const t29 = (t5 * t26 + E_12 * t21) * h;
+    const A_13 = t28 + t29;
+    const t30 = A_13 + t14;
+    const t31 = rho2 + t14;
+    const t32 = A_12 + t14;
+    const t33 = rho3 + t14;
+    const t34 = rho1 - (t20 + t22);
+    const t35 = t34 + t14;
+    const t36 = t25 - t27;
+    const A_13_inner = t28 - t29;
+    const t37 = A_13_inner + t14;
+    const t38 = -t36 + t14;
+    const t39 = size * _runtime.VANISHING;
+    const t40 = size_u <= t39 || size_u + Math.sqrt(t3 + t4) <= t39;
     o[0] = t15;
     o[1] = t15;
     o[2] = t15;
     o[3] = t16;
     o[4] = t15;
     o[5] = t15;
-    o[6] = t15;
-    o[7] = t15;
+    o[6] = t16;
+    o[7] = t18;
     o[8] = t15;
-    o[9] = t15;
-    o[10] = t17;
+    o[9] = t16;
+    o[10] = t19;
     o[11] = t15;
-    o[12] = t15;
-    o[13] = t15;
-    o[14] = t15;
-    o[15] = t15;
-    o[16] = t15;
-    o[17] = t18;
-    o[18] = rho1 + (t19 - t21) + t14;
-    o[19] = t22 + t24 + t14;
-    o[20] = t25 + t26 + t14;
+    o[12] = t24;
+    o[13] = t17 + A_12 + t14;
+    o[14] = t30;
+    o[15] = t24;
+    o[16] = A_12 - t17 + t14;
+    o[17] = t30;
+    o[18] = t15;
+    o[19] = t15;
+    o[20] = t15;
     o[21] = t15;
-    o[22] = t15;
+    o[22] = t31;
     o[23] = t15;
-    o[24] = t16;
-    o[25] = t15;
-    o[26] = t15;
+    o[24] = t15;
+    o[25] = t31;
+    o[26] = t18;
     o[27] = t15;
-    o[28] = t15;
-    o[29] = t15;
-    o[30] = t15;
-    o[31] = t17;
-    o[32] = t15;
-    o[33] = t15;
-    o[34] = t15;
-    o[35] = t15;
+    o[28] = t31;
+    o[29] = t19;
+    o[30] = t24;
+    o[31] = t32;
+    o[32] = t17 + A_13 + t14;
+    o[33] = t24;
+    o[34] = t32;
+    o[35] = A_13 - t17 + t14;
     o[36] = t15;
     o[37] = t15;
-    o[38] = t18;
-    o[39] = rho1 - (t19 + t21) + t14;
-    o[40] = t24 - t22 + t14;
-    o[41] = t25 - t26 + t14;
-    o[42] = (t28 || j <= t27 || slack <= t27) ? 1 : 0;
+    o[38] = t15;
+    o[39] = t15;
+    o[40] = t15;
+    o[41] = t33;
+    o[42] = t18;
+    o[43] = t15;
+    o[44] = t33;
+    o[45] = t19;
+    o[46] = t15;
+    o[47] = t33;
+    o[48] = t17 + t23 + t14;
+    o[49] = t32;
+    o[50] = t30;
+    o[51] = t23 - t17 + t14;
+    o[52] = t32;
+    o[53] = t30;
+    o[54] = t24;
+    o[55] = t32;
+    o[56] = t30;
+    o[57] = t15;
+    o[58] = t15;
+    o[59] = t15;
+    o[60] = t16;
+    o[61] = t15;
+    o[62] = t15;
+    o[63] = t16;
+    o[64] = t18;
+    o[65] = t15;
+    o[66] = t16;
+    o[67] = t19;
+    o[68] = t15;
+    o[69] = t35;
+    o[70] = t17 - t36 + t14;
+    o[71] = t37;
+    o[72] = t35;
+    o[73] = -(t17 + t36) + t14;
+    o[74] = t37;
+    o[75] = t15;
+    o[76] = t15;
+    o[77] = t15;
+    o[78] = t15;
+    o[79] = t31;
+    o[80] = t15;
+    o[81] = t15;
+    o[82] = t31;
+    o[83] = t18;
+    o[84] = t15;
+    o[85] = t31;
+    o[86] = t19;
+    o[87] = t35;
+    o[88] = t38;
+    o[89] = t17 + A_13_inner + t14;
+    o[90] = t35;
+    o[91] = t38;
+    o[92] = A_13_inner - t17 + t14;
+    o[93] = t15;
+    o[94] = t15;
+    o[95] = t15;
+    o[96] = t15;
+    o[97] = t15;
+    o[98] = t33;
+    o[99] = t18;
+    o[100] = t15;
+    o[101] = t33;
+    o[102] = t19;
+    o[103] = t15;
+    o[104] = t33;
+    o[105] = t17 + t34 + t14;
+    o[106] = t38;
+    o[107] = t37;
+    o[108] = t34 - t17 + t14;
+    o[109] = t38;
+    o[110] = t37;
+    o[111] = t35;
+    o[112] = t38;
+    o[113] = t37;
+    o[114] = (t40 || j <= t39 || slack <= t39) ? 1 : 0;
 }
 
 const _SKELETON = _runtime.kernel({
@@ -469,13 +669,13 @@ const _SKELETON = _runtime.kernel({
         { name: "q", shape: [3], branches: 0, kind: "real" },
     ],
     outputs: [
-        { name: "points", shape: [7, 3], branches: 2, kind: "real" },
+        { name: "points", shape: [19, 3], branches: 2, kind: "real" },
     ],
     used: ["L"],
     defaults: DEFAULTS,
     size: {
         lengths: [0, 1, 2, 3],
-        degrees: [[3, 1], [10, 1], [17, 1], [18, 1], [19, 1], [20, 1], [24, 1], [31, 1], [38, 1], [39, 1], [40, 1], [41, 1]],
+        degrees: [[3, 1], [6, 1], [7, 1], [9, 1], [10, 1], [12, 1], [13, 1], [14, 1], [15, 1], [16, 1], [17, 1], [22, 1], [25, 1], [26, 1], [28, 1], [29, 1], [30, 1], [31, 1], [32, 1], [33, 1], [34, 1], [35, 1], [41, 1], [42, 1], [44, 1], [45, 1], [47, 1], [48, 1], [49, 1], [50, 1], [51, 1], [52, 1], [53, 1], [54, 1], [55, 1], [56, 1], [60, 1], [63, 1], [64, 1], [66, 1], [67, 1], [69, 1], [70, 1], [71, 1], [72, 1], [73, 1], [74, 1], [79, 1], [82, 1], [83, 1], [85, 1], [86, 1], [87, 1], [88, 1], [89, 1], [90, 1], [91, 1], [92, 1], [98, 1], [99, 1], [101, 1], [102, 1], [104, 1], [105, 1], [106, 1], [107, 1], [108, 1], [109, 1], [110, 1], [111, 1], [112, 1], [113, 1]],
         least: 8.636168555094445e-78,
         most: 3.273390607896142e+150,
     },
@@ -486,10 +686,11 @@ const _SKELETON = _runtime.kernel({
  *
  * - The assembly modes, in the order of `ASSEMBLY_MODES`: outer, inner.
  * - NaN for an assembly mode that does not exist.
+ * - The width of a parallelogram matters here alone.
  *
  * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[][]} 2 branches of 21 numbers (7 x 3 in row order). Coordinates x, y, z of
+ * @returns {number[][]} 2 branches of 57 numbers (19 x 3 in row order). Coordinates x, y, z of
  *     each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
  * @throws {RangeError} If an argument has the wrong length.
@@ -503,7 +704,7 @@ export function skeleton(q, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [points] 42 n numbers, to write to; allocated if omitted
+ * @param {Float64Array} [points] 114 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
  * @returns {Float64Array} the results
  */
@@ -1702,6 +1903,179 @@ export function condition_number_batch(n, q, kappa, parameters) {
 }
 
 /** @type {_runtime.Compute} */
+function _constraint(v, o) {
+    const rho1 = v[0];
+    const rho2 = v[1];
+    const rho3 = v[2];
+    const L = v[3];
+    const t1 = rho1 * rho1;
+    const size_u = Math.sqrt(t1 + rho2 * rho2);
+    const size_v = Math.sqrt(t1 + rho3 * rho3);
+    const size = L + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
+    const t2 = size * _runtime.VANISHING;
+    const all_same = size_u + size_v <= t2;
+    const same = size_u <= t2;
+    const D = same ? size_v : size_u;
+    const E_11 = all_same ? 1.0 : -(rho1 / D);
+    const t3 = same ? 0.0 : rho2;
+    const E_12 = all_same ? 0.0 : t3 / D;
+    const t4 = same ? rho2 : 0.0;
+    const t5 = same ? rho3 : 0.0;
+    const E_13 = all_same ? 0.0 : t5 / D;
+    const t6 = same ? 0.0 : rho3;
+    const t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6;
+    const t8 = rho1 - E_11 * t7;
+    const m_y = t4 + E_12 * t7;
+    const m_z = t6 + E_13 * t7;
+    const t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z;
+    const t10 = t8 - E_11 * t9;
+    const n_y = m_y + E_12 * t9;
+    const n_z = m_z + E_13 * t9;
+    const j = Math.sqrt(t10 * t10 + n_y * n_y + n_z * n_z);
+    const in_line = j <= t2;
+    const t11 = E_13 < 0 ? -1 : 1;
+    const t12 = E_11 * t11;
+    const E_23 = in_line ? -t12 : n_z / j;
+    const t13 = E_13 + t11;
+    const E_21 = in_line ? 1.0 - E_11 * E_11 * t11 / t13 : -(t10 / j);
+    const X = all_same ? 0.0 : D * 0.5;
+    const t14 = t4 * (t3 - t4) + t6 * (t5 - t6);
+    const t15 = in_line ? 0.0 : t14 / (j * 2.0);
+    const rho = Math.sqrt(X * X + t15 * t15);
+    const t16 = L - rho;
+    const slack = Math.max(t16, 0.0);
+    const h = slack <= t2 ? 0.0 : Math.sqrt(slack * (L + rho));
+    const t17 = (E_11 * E_23 - E_13 * E_21) * h;
+    const E_22 = in_line ? -(E_12 * t12 / t13) : n_y / j;
+    const t18 = E_12 * X - t15 * E_22;
+    const t19 = t17 - t18;
+    const t20 = h * (E_12 * E_21 - E_11 * E_22);
+    const t21 = E_13 * X - E_23 * t15;
+    const t22 = t20 - t21;
+    const t23 = h * (E_12 * E_23 - E_13 * E_22);
+    const t24 = E_11 * X - E_21 * t15;
+    const A_11 = t23 + t24;
+    const t25 = t19 * t22 * (rho1 + A_11) - A_11 * (rho2 + t19) * (rho3 + t22);
+    const t26 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const t27 = Math.abs(in_line ? -t14 : 0.0) <= _runtime.FEASIBILITY * (size * size);
+    const unreachable = !(t27 && -(size * _runtime.FEASIBILITY) <= t16);
+    const failed = !(Number.isFinite(L) && 0.0 <= L && t26) || unreachable;
+    const t28 = failed ? NaN : 0;
+    const t29 = t23 - t24;
+    const A_12_inner = t17 + t18;
+    const A_13_inner = t20 + t21;
+    const t30 = t29 * (rho2 - A_12_inner) * (rho3 - A_13_inner);
+    const t31 = t30 + A_12_inner * A_13_inner * (rho1 - t29) + t28;
+    o[0] = t25 + t28;
+    o[1] = t31;
+}
+
+/** @type {_runtime.Compute} */
+function _constraint_common(v, o) {
+    const rho1 = v[0];
+    const rho2 = v[1];
+    const rho3 = v[2];
+    const L = v[3];
+    const t1 = rho3 * rho3;
+    const t2 = rho1 * rho1;
+    const size_u = Math.sqrt(t2 + rho2 * rho2);
+    const t3 = rho1 / size_u;
+    const t4 = rho1 * t3;
+    const t5 = rho1 - t3 * t4;
+    const E_12 = rho2 / size_u;
+    const t6 = t4 * E_12;
+    const t7 = t3 * t5 - E_12 * t6;
+    const t8 = t5 - t3 * t7;
+    const t9 = t6 + E_12 * t7;
+    const j = Math.sqrt(t1 + t8 * t8 + t9 * t9);
+    const t10 = t1 / (2.0 * j);
+    const E_23 = rho3 / j;
+    const t11 = t10 * E_23;
+    const t12 = t9 / j;
+    const t13 = t8 / j;
+    const X = size_u * 0.5;
+    const rho = Math.sqrt(X * X + t10 * t10);
+    const t14 = L - rho;
+    const slack = Math.max(t14, 0.0);
+    const h = Math.sqrt(slack * (L + rho));
+    const t15 = (t3 * t12 + E_12 * t13) * h;
+    const A_13 = t11 + t15;
+    const t16 = t3 * E_23 * h;
+    const t17 = X * E_12 - t10 * t12;
+    const A_12 = t16 + t17;
+    const t18 = E_12 * E_23 * h;
+    const t19 = t3 * X + t13 * t10;
+    const A_11 = t18 - t19;
+    const t20 = A_13 * A_12 * (rho1 + A_11) - (rho3 - A_13) * A_11 * (rho2 - A_12);
+    const t21 = Number.isFinite(rho1) && Number.isFinite(rho2) && Number.isFinite(rho3);
+    const size = L + Math.abs(rho1) + Math.abs(rho2) + Math.abs(rho3);
+    const t22 = Math.abs(0.0) <= _runtime.FEASIBILITY * (size * size);
+    const unreachable = !(t22 && -(size * _runtime.FEASIBILITY) <= t14);
+    const failed = !(Number.isFinite(L) && 0.0 <= L && t21) || unreachable;
+    const t23 = failed ? NaN : 0;
+    const A_13_inner = t11 - t15;
+    const t24 = t18 + t19;
+    const t25 = t16 - t17;
+    const t26 = (rho3 - A_13_inner) * t24 * (rho2 + t25) - A_13_inner * t25 * (rho1 - t24);
+    const t27 = size * _runtime.VANISHING;
+    const t28 = size_u <= t27 || size_u + Math.sqrt(t2 + t1) <= t27;
+    o[0] = t20 + t23;
+    o[1] = t26 + t23;
+    o[2] = (t28 || j <= t27 || slack <= t27) ? 1 : 0;
+}
+
+const _CONSTRAINT = _runtime.kernel({
+    name: "orthoglide.constraint",
+    compute: _constraint,
+    common: _constraint_common,
+    inputs: [
+        { name: "q", shape: [3], branches: 0, kind: "real" },
+    ],
+    outputs: [
+        { name: "factors", shape: [1], branches: 2, kind: "real" },
+    ],
+    used: ["L"],
+    defaults: DEFAULTS,
+    size: {
+        lengths: [0, 1, 2, 3],
+        degrees: [[0, 3], [1, 3]],
+        least: 6.681911775230489e-52,
+        most: 1.7498005798264095e+100,
+    },
+});
+
+/**
+ * What vanishes where the parallelograms do not keep the hand from turning.
+ *
+ * - The assembly modes, in the order of `ASSEMBLY_MODES`: outer, inner.
+ * - NaN for an assembly mode that does not exist.
+ * - The determinant of the normals of the parallelograms (a unit vector along the bars times
+ *   the vector along the rods).
+ *
+ * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
+ * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
+ * @returns {number[][]} 2 branches of 1 number.
+ * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
+ * @throws {RangeError} If an argument has the wrong length.
+ */
+export function constraint(q, parameters) {
+    return _runtime.single(_CONSTRAINT, [q], parameters);
+}
+
+/**
+ * `constraint` of n postures, as planes: number k of posture i is at `q[k * n + i]`.
+ *
+ * @param {number} n
+ * @param {Float64Array} q 3 n numbers
+ * @param {Float64Array} [factors] 2 n numbers, to write to; allocated if omitted
+ * @param {Parameters} [parameters] the same for all postures
+ * @returns {Float64Array} the results
+ */
+export function constraint_batch(n, q, factors, parameters) {
+    return _runtime.batch(_CONSTRAINT, n, [q], [factors], parameters);
+}
+
+/** @type {_runtime.Compute} */
 function _ik(v, o) {
     const x = v[0];
     const y = v[1];
@@ -1835,6 +2209,8 @@ const _IK = _runtime.kernel({
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
  *   closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+ * - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+ *   which the hand is turned.
  *
  * @param {ArrayLike<number>} x 3 numbers. x, y, z in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.

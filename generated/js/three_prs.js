@@ -163,7 +163,7 @@ const _HAND_POSE = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 16 numbers (4 x 4 in row order). A homogeneous transform.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function hand_pose(x, parameters) {
     return _runtime.single(_HAND_POSE, [x], parameters);
@@ -174,9 +174,9 @@ export function hand_pose(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
- * @param {Float64Array} [T] 16 n numbers, written to; made if there is none
+ * @param {Float64Array} [T] 16 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function hand_pose_batch(n, x, T, parameters) {
     return _runtime.batch(_HAND_POSE, n, [x], [T], parameters);
@@ -322,9 +322,9 @@ const _JACOBIAN_PARALLEL = _runtime.kernel({
  *     rad.
  * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 9 numbers (3 x 3 in row order). One column for each of rho1, rho2, rho3.
+ * @returns {number[]} 9 numbers (3 x 3 in row order). One column for each of z, tilt_x, tilt_y.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_parallel(x, q, parameters) {
     return _runtime.single(_JACOBIAN_PARALLEL, [x, q], parameters);
@@ -336,9 +336,9 @@ export function jacobian_parallel(x, q, parameters) {
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [A] 9 n numbers, written to; made if there is none
+ * @param {Float64Array} [A] 9 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_parallel_batch(n, x, q, A, parameters) {
     return _runtime.batch(_JACOBIAN_PARALLEL, n, [x, q], [A], parameters);
@@ -408,7 +408,7 @@ const _JACOBIAN_SERIAL = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 3 numbers.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_serial(x, q, parameters) {
     return _runtime.single(_JACOBIAN_SERIAL, [x, q], parameters);
@@ -420,9 +420,9 @@ export function jacobian_serial(x, q, parameters) {
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [B] 3 n numbers, written to; made if there is none
+ * @param {Float64Array} [B] 3 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_serial_batch(n, x, q, B, parameters) {
     return _runtime.batch(_JACOBIAN_SERIAL, n, [x, q], [B], parameters);
@@ -570,9 +570,9 @@ const _JACOBIAN_INVERSE = _runtime.kernel({
  *     rad.
  * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 9 numbers (3 x 3 in row order). One column for each of rho1, rho2, rho3.
+ * @returns {number[]} 9 numbers (3 x 3 in row order). One column for each of z, tilt_x, tilt_y.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian_inverse(x, q, parameters) {
     return _runtime.single(_JACOBIAN_INVERSE, [x, q], parameters);
@@ -584,9 +584,9 @@ export function jacobian_inverse(x, q, parameters) {
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [K] 9 n numbers, written to; made if there is none
+ * @param {Float64Array} [K] 9 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_inverse_batch(n, x, q, K, parameters) {
     return _runtime.batch(_JACOBIAN_INVERSE, n, [x, q], [K], parameters);
@@ -744,7 +744,7 @@ const _JACOBIAN = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number[]} 9 numbers (3 x 3 in row order). One column for each of rho1, rho2, rho3.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function jacobian(x, q, parameters) {
     return _runtime.single(_JACOBIAN, [x, q], parameters);
@@ -756,9 +756,9 @@ export function jacobian(x, q, parameters) {
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [J] 9 n numbers, written to; made if there is none
+ * @param {Float64Array} [J] 9 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function jacobian_batch(n, x, q, J, parameters) {
     return _runtime.batch(_JACOBIAN, n, [x, q], [J], parameters);
@@ -902,7 +902,7 @@ const _DETERMINANT = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {number}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function determinant(x, q, parameters) {
     return _runtime.single(_DETERMINANT, [x, q], parameters);
@@ -914,9 +914,9 @@ export function determinant(x, q, parameters) {
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [det] n numbers, written to; made if there is none
+ * @param {Float64Array} [det] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function determinant_batch(n, x, q, det, parameters) {
     return _runtime.batch(_DETERMINANT, n, [x, q], [det], parameters);
@@ -1064,7 +1064,7 @@ const _SINGULARITIES = _runtime.kernel({
  * @returns {number[]} 5 numbers. One factor for each singular set: leg 1; leg 2; leg 3; all
  *     legs; twist.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function singularities(x, q, parameters) {
     return _runtime.single(_SINGULARITIES, [x, q], parameters);
@@ -1076,9 +1076,9 @@ export function singularities(x, q, parameters) {
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [factors] 5 n numbers, written to; made if there is none
+ * @param {Float64Array} [factors] 5 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function singularities_batch(n, x, q, factors, parameters) {
     return _runtime.batch(_SINGULARITIES, n, [x, q], [factors], parameters);
@@ -1186,10 +1186,9 @@ const _SKELETON = _runtime.kernel({
  *     rad.
  * @param {ArrayLike<number>} q 3 numbers. rho1, rho2, rho3 in the unit of the parameters.
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
- * @returns {number[]} 30 numbers (10 x 3 in row order). One column for each of rho1, rho2,
- *     rho3.
+ * @returns {number[]} 30 numbers (10 x 3 in row order). Coordinates x, y, z of each point.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function skeleton(x, q, parameters) {
     return _runtime.single(_SKELETON, [x, q], parameters);
@@ -1201,9 +1200,9 @@ export function skeleton(x, q, parameters) {
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
  * @param {Float64Array} q 3 n numbers
- * @param {Float64Array} [points] 30 n numbers, written to; made if there is none
+ * @param {Float64Array} [points] 30 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Float64Array} what was written to
+ * @returns {Float64Array} the results
  */
 export function skeleton_batch(n, x, q, points, parameters) {
     return _runtime.batch(_SKELETON, n, [x, q], [points], parameters);
@@ -1504,7 +1503,7 @@ const _IK = _runtime.kernel({
 /**
  * The driven joints of all working modes.
  *
- * - Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
+ * - The branches, in the order of `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
  *   plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
  * - UNREACHABLE: a rod does not reach.
  * - SINGULAR also near a parallel or a constraint singularity, where the rods or the planes of
@@ -1523,7 +1522,7 @@ const _IK = _runtime.kernel({
  *     infinitely many solutions or poorly determined (see the notes), and INVALID (3) if an
  *     input is not finite or not possible. `q` is NaN if the status is UNREACHABLE or INVALID.
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function ik(x, parameters) {
     return _runtime.single(_IK, [x], parameters);
@@ -1534,10 +1533,10 @@ export function ik(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
- * @param {Float64Array} [q] 24 n numbers, written to; made if there is none
- * @param {Uint8Array} [status] 8 n numbers, written to; made if there is none
+ * @param {Float64Array} [q] 24 n numbers, to write to; allocated if omitted
+ * @param {Uint8Array} [status] 8 n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {{ q: Float64Array, status: Uint8Array }} what was written to
+ * @returns {{ q: Float64Array, status: Uint8Array }} the results
  */
 export function ik_batch(n, x, q, status, parameters) {
     return _runtime.batch(_IK, n, [x], [q, status], parameters);
@@ -1619,7 +1618,7 @@ const _WORKSPACE_CONTAINS = _runtime.kernel({
  * @param {Parameters} [parameters] The dimensions; one that is missing has its default.
  * @returns {boolean}
  * @throws {TypeError} If an argument does not hold numbers, or a parameter is not known.
- * @throws {RangeError} If an argument has another length.
+ * @throws {RangeError} If an argument has the wrong length.
  */
 export function workspace_contains(x, parameters) {
     return _runtime.single(_WORKSPACE_CONTAINS, [x], parameters);
@@ -1630,9 +1629,9 @@ export function workspace_contains(x, parameters) {
  *
  * @param {number} n
  * @param {Float64Array} x 3 n numbers
- * @param {Uint8Array} [inside] n numbers, written to; made if there is none
+ * @param {Uint8Array} [inside] n numbers, to write to; allocated if omitted
  * @param {Parameters} [parameters] the same for all postures
- * @returns {Uint8Array} what was written to
+ * @returns {Uint8Array} the results
  */
 export function workspace_contains_batch(n, x, inside, parameters) {
     return _runtime.batch(_WORKSPACE_CONTAINS, n, [x], [inside], parameters);

@@ -3,13 +3,14 @@
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 43 compare and select, 69 add, 5 divide, 83 multiply, 6 sincos, 5 sqrt
-#   skeleton: 42 compare and select, 112 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
+#   skeleton: 42 compare and select, 184 add, 16 divide, 75 multiply, 6 sincos, 5 sqrt
 #   jacobian_parallel: 42 compare and select, 90 add, 10 divide, 75 multiply, 6 sincos, 5 sqrt
 #   jacobian_serial: 42 compare and select, 90 add, 10 divide, 99 multiply, 6 sincos, 5 sqrt
 #   jacobian: 42 compare and select, 120 add, 28 divide, 155 multiply, 6 sincos, 5 sqrt
 #   determinant: 42 compare and select, 86 add, 12 divide, 105 multiply, 6 sincos, 5 sqrt
 #   singularities: 42 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
 #   condition_number: 42 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
+#   constraint: 42 compare and select, 96 add, 10 divide, 137 multiply, 6 sincos, 5 sqrt
 #   ik: 121 compare and select, 160 add, 6 atan2, 8 divide, 166 multiply, 3 sincos, 9 sqrt
 #   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
@@ -41,25 +42,46 @@ SKELETON = Skeleton(
         "A1",
         "B1",
         "C1",
+        "B1a",
+        "B1b",
+        "C1a",
+        "C1b",
         "A2",
         "B2",
         "C2",
+        "B2a",
+        "B2b",
+        "C2a",
+        "C2b",
         "A3",
         "B3",
         "C3",
+        "B3a",
+        "B3b",
+        "C3a",
+        "C3b",
         "P",
     ),
     links={
         "ground": ('A1', 'A2', 'A3', 'A1'),
         "hand1": ('P', 'C1'),
-        "rod1": ('B1', 'C1'),
         "crank1": ('A1', 'B1'),
+        "rod1a": ('B1a', 'C1a'),
+        "rod1b": ('B1b', 'C1b'),
+        "bar_B1a": ('B1a', 'B1', 'B1b'),
+        "bar_C1a": ('C1a', 'C1', 'C1b'),
         "hand2": ('P', 'C2'),
-        "rod2": ('B2', 'C2'),
         "crank2": ('A2', 'B2'),
+        "rod2a": ('B2a', 'C2a'),
+        "rod2b": ('B2b', 'C2b'),
+        "bar_B2a": ('B2a', 'B2', 'B2b'),
+        "bar_C2a": ('C2a', 'C2', 'C2b'),
         "hand3": ('P', 'C3'),
-        "rod3": ('B3', 'C3'),
         "crank3": ('A3', 'B3'),
+        "rod3a": ('B3a', 'C3a'),
+        "rod3b": ('B3b', 'C3b'),
+        "bar_B3a": ('B3a', 'B3', 'B3b'),
+        "bar_C3a": ('C3a', 'C3', 'C3b'),
     },
     joints={
         "theta1": SkeletonJoint("revolute", ('A1',)),
@@ -91,6 +113,7 @@ __all__ = [
     "determinant",
     "singularities",
     "condition_number",
+    "constraint",
     "ik",
     "workspace_contains",
 ]
@@ -295,6 +318,8 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
       points is returned.
     - Ill-conditioned near the parallel singularities, where both modes meet.
+    - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+      which the hand is turned.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return Positions(*result)
@@ -410,9 +435,7 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del t17
     t55 = 0.0 + t52
     t56 = t9 + t52
-    del t9
     t57 = t18 + t52
-    del t18
     t58 = -t5 + t52
     t59 = _runtime.sign(E_13)
     t60 = E_13 + t59
@@ -431,40 +454,78 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
     del rho, slack, t24
     t63 = (t38 * E_23 - E_13 * E_22) * h
     t64 = t10 - (t61 - t63)
-    t65 = t38 * X + t49 * E_22
-    t66 = h * (E_11 * E_23 - E_13 * E_21)
-    t67 = t19 - (t65 + t66)
-    t68 = E_13 * X + t49 * E_23
+    t65 = t7 - t64
+    t66 = t38 * X + t49 * E_22
+    t67 = h * (E_11 * E_23 - E_13 * E_21)
+    t68 = t19 - (t66 + t67)
+    t69 = t16 - t68
+    t70 = E_13 * X + t49 * E_23
     del E_13, E_23, X, t49
-    t69 = h * (E_11 * E_22 - t38 * E_21)
+    t71 = h * (E_11 * E_22 - t38 * E_21)
     del E_11, E_21, E_22, h, t38
-    t70 = t68 - t69 - t5 + t52
-    t71 = t12 + t52
+    t72 = t70 - t71 - t5 + t52
+    t73 = t16 * 0.5
+    t74 = t9 - t73 + t52
+    t75 = t7 * 0.5
+    t76 = t75 + t18 + t52
+    t77 = t73 + t9 + t52
+    del t9
+    t78 = t18 - t75 + t52
+    del t18
+    t79 = t12 + t52
     del t12
-    t72 = t21 + t52
+    t80 = t21 + t52
     del t21
-    t73 = t14 + t52
-    del t14
-    t74 = t22 + t52
-    del t22
-    t75 = -t6 + t52
+    t81 = t14 + t52
+    t82 = t22 + t52
+    t83 = -t6 + t52
     del t6
-    t76 = t26 + t52
+    t84 = t11 - t64
+    t85 = t20 - t68
+    t86 = t20 * 0.5
+    t87 = t14 - t86 + t52
+    t88 = t11 * 0.5
+    t89 = t88 + t22 + t52
+    t90 = t86 + t14 + t52
+    del t14
+    t91 = t22 - t88 + t52
+    del t22
+    t92 = t26 + t52
     del t26
-    t77 = t33 + t52
+    t93 = t33 + t52
     del t33
-    t78 = t28 + t52
-    del t28
-    t79 = t34 + t52
-    del t34
-    t80 = -t31 + t52
+    t94 = t28 + t52
+    t95 = t34 + t52
+    t96 = -t31 + t52
     del t31
-    t81 = t10 - (t61 + t63)
+    t97 = t25 - t64
+    t98 = t32 - t68
+    t99 = t32 * 0.5
+    t100 = t28 - t99 + t52
+    t101 = t25 * 0.5
+    t102 = t101 + t34 + t52
+    t103 = t99 + t28 + t52
+    del t28
+    t104 = t34 - t101 + t52
+    del t34
+    t105 = t10 - (t61 + t63)
     del t10, t61, t63
-    t82 = t19 - (t65 - t66)
-    del t19, t65, t66
-    t83 = t68 + t69 - t5 + t52
-    del t5, t68, t69
+    t106 = t7 - t105
+    del t7
+    t107 = t19 - (t66 - t67)
+    del t19, t66, t67
+    t108 = t16 - t107
+    del t16
+    t109 = t70 + t71 - t5 + t52
+    del t5, t70, t71
+    t110 = t11 - t105
+    del t11
+    t111 = t20 - t107
+    del t20
+    t112 = t25 - t105
+    del t25
+    t113 = t32 - t107
+    del t32
     return (
         t53,
         t54,
@@ -472,60 +533,132 @@ def _skeleton(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
         t56,
         t57,
         t58,
-        t7 - t64 + t52,
-        t16 - t67 + t52,
-        t70,
-        t71,
+        t65 + t52,
+        t69 + t52,
         t72,
-        t55,
-        t73,
         t74,
-        t75,
-        t11 - t64 + t52,
-        t20 - t67 + t52,
-        t70,
         t76,
+        t58,
         t77,
-        t55,
         t78,
+        t58,
+        t65 - t73 + t52,
+        t75 + t69 + t52,
+        t72,
+        t73 + t65 + t52,
+        t69 - t75 + t52,
+        t72,
         t79,
         t80,
-        t25 - t64 + t52,
-        t32 - t67 + t52,
-        t70,
+        t55,
+        t81,
+        t82,
+        t83,
+        t84 + t52,
+        t85 + t52,
+        t72,
+        t87,
+        t89,
+        t83,
+        t90,
+        t91,
+        t83,
+        t84 - t86 + t52,
+        t88 + t85 + t52,
+        t72,
+        t86 + t84 + t52,
+        t85 - t88 + t52,
+        t72,
+        t92,
+        t93,
+        t55,
+        t94,
+        t95,
+        t96,
+        t97 + t52,
+        t98 + t52,
+        t72,
+        t100,
+        t102,
+        t96,
+        t103,
+        t104,
+        t96,
+        t97 - t99 + t52,
+        t101 + t98 + t52,
+        t72,
+        t99 + t97 + t52,
+        t98 - t101 + t52,
+        t72,
         -t64 + t52,
-        -t67 + t52,
-        t70,
+        -t68 + t52,
+        t72,
         t53,
         t54,
         t55,
         t56,
         t57,
         t58,
-        t7 - t81 + t52,
-        t16 - t82 + t52,
-        t83,
-        t71,
-        t72,
-        t55,
-        t73,
+        t106 + t52,
+        t108 + t52,
+        t109,
         t74,
-        t75,
-        t11 - t81 + t52,
-        t20 - t82 + t52,
-        t83,
         t76,
+        t58,
         t77,
-        t55,
         t78,
+        t58,
+        t106 - t73 + t52,
+        t75 + t108 + t52,
+        t109,
+        t73 + t106 + t52,
+        t108 - t75 + t52,
+        t109,
         t79,
         t80,
-        t25 - t81 + t52,
-        t32 - t82 + t52,
+        t55,
+        t81,
+        t82,
         t83,
-        -t81 + t52,
-        -t82 + t52,
+        t110 + t52,
+        t111 + t52,
+        t109,
+        t87,
+        t89,
         t83,
+        t90,
+        t91,
+        t83,
+        t110 - t86 + t52,
+        t88 + t111 + t52,
+        t109,
+        t86 + t110 + t52,
+        t111 - t88 + t52,
+        t109,
+        t92,
+        t93,
+        t55,
+        t94,
+        t95,
+        t96,
+        t112 + t52,
+        t113 + t52,
+        t109,
+        t100,
+        t102,
+        t96,
+        t103,
+        t104,
+        t96,
+        t112 - t99 + t52,
+        t101 + t113 + t52,
+        t109,
+        t99 + t112 + t52,
+        t113 - t101 + t52,
+        t109,
+        -t105 + t52,
+        -t107 + t52,
+        t109,
     )
 
 
@@ -533,10 +666,10 @@ _SKELETON = _runtime.Kernel(
     "delta.skeleton",
     _skeleton,
     (_runtime.Array("q", (3,)),),
-    (_runtime.Array("points", (2, 10, 3)),),
+    (_runtime.Array("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
-    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 1), (1, 1), (3, 1), (4, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -554,7 +687,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Returns
     -------
-    points : ndarray of float64, shape (..., 2, 10, 3)
+    points : ndarray of float64, shape (..., 2, 22, 3)
         Coordinates x, y, z of each point.
 
     Raises
@@ -568,6 +701,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     -----
     - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
+    - The width of a parallelogram matters here alone.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
@@ -1758,6 +1892,228 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
     return result
 
 
+def _constraint(theta1, theta2, theta3, f, e, L, l, alpha1, alpha2, alpha3):
+    s_alpha1, c_alpha1 = _runtime.sincos(alpha1)
+    s_alpha2, c_alpha2 = _runtime.sincos(alpha2)
+    s_alpha3, c_alpha3 = _runtime.sincos(alpha3)
+    s1, c1 = _runtime.sincos(theta1)
+    s2, c2 = _runtime.sincos(theta2)
+    s3, c3 = _runtime.sincos(theta3)
+    t1 = c_alpha1 * s_alpha2
+    t2 = L * s1
+    del s1
+    u_z = t2 - L * s2
+    del s2
+    t3 = L * c1
+    del c1
+    t4 = e * c_alpha1 - f * c_alpha1 - c_alpha1 * t3
+    t5 = L * c2
+    del c2
+    t6 = t4 - (e * c_alpha2 - f * c_alpha2 - c_alpha2 * t5)
+    t7 = e * s_alpha1 - f * s_alpha1 - s_alpha1 * t3
+    del t3
+    t8 = t7 - (e * s_alpha2 - f * s_alpha2 - s_alpha2 * t5)
+    del t5
+    size_u = np.sqrt(u_z * u_z + t6 * t6 + t8 * t8)
+    v_z = t2 - L * s3
+    del s3, t2
+    t9 = L * c3
+    del c3
+    t10 = t4 - (e * c_alpha3 - f * c_alpha3 - c_alpha3 * t9)
+    del t4
+    t11 = t7 - (e * s_alpha3 - f * s_alpha3 - s_alpha3 * t9)
+    del t7, t9
+    size_v = np.sqrt(v_z * v_z + t10 * t10 + t11 * t11)
+    size = f + e + L + l
+    t12 = size * _runtime.VANISHING
+    all_same = size_u + size_v <= t12
+    same = size_u <= t12
+    D = _runtime.select(same, size_v, size_u)
+    del size_u, size_v
+    X = _runtime.select(all_same, 0.0, D * 0.5)
+    t13 = _runtime.select(same, t6, t10)
+    t14 = _runtime.select(same, t10, t6)
+    E_11 = _runtime.select(all_same, 1.0, t14 / D)
+    t15 = _runtime.select(same, t11, t8)
+    t16 = _runtime.select(all_same, 0.0, t15 / D)
+    t17 = _runtime.select(same, t8, t11)
+    t18 = _runtime.select(same, v_z, u_z)
+    E_13 = _runtime.select(all_same, 0.0, t18 / D)
+    del D, all_same
+    t19 = _runtime.select(same, u_z, v_z)
+    del same
+    t20 = E_11 * t13 + t16 * t17 + E_13 * t19
+    t21 = t13 - E_11 * t20
+    t22 = t17 - t16 * t20
+    m_z = t19 - E_13 * t20
+    del t20
+    t23 = E_11 * t21 + t16 * t22 + E_13 * m_z
+    t24 = t21 - E_11 * t23
+    del t21
+    t25 = t22 - t16 * t23
+    del t22
+    n_z = m_z - E_13 * t23
+    del m_z, t23
+    j = np.sqrt(t24 * t24 + t25 * t25 + n_z * n_z)
+    in_line = j <= t12
+    t26 = t13 * (t14 - t13) + t17 * (t15 - t17) + t19 * (t18 - t19)
+    del t13, t14, t15, t17, t18, t19
+    t27 = _runtime.select(in_line, 0.0, t26 / (2.0 * j))
+    rho = np.sqrt(X * X + t27 * t27)
+    t28 = l - rho
+    slack = np.maximum(t28, 0.0)
+    h = _runtime.select(slack <= t12, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t12
+    t29 = _runtime.sign(E_13)
+    t30 = E_11 * t29
+    t31 = E_13 + t29
+    E_22 = _runtime.select(in_line, -(t16 * t30 / t31), t25 / j)
+    del t25
+    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t29 / t31, t24 / j)
+    del t24, t29, t31
+    t32 = h * (E_11 * E_22 - t16 * E_21)
+    E_23 = _runtime.select(in_line, -t30, n_z / j)
+    del j, n_z, t30
+    t33 = X * E_13 - t27 * E_23
+    t34 = t32 - t33
+    t35 = s_alpha3 * t34
+    t36 = t1 * t35
+    t37 = u_z + t34
+    t38 = h * (E_11 * E_23 - E_13 * E_21)
+    t39 = X * t16 - t27 * E_22
+    A_12 = t38 + t39
+    t40 = t37 * (t11 - A_12)
+    t41 = c_alpha3 * t1
+    t42 = (t16 * E_23 - E_13 * E_22) * h
+    del E_13, E_22, E_23, h, t16
+    t43 = E_11 * X - E_21 * t27
+    del E_11, E_21, X, t27
+    t44 = t42 - t43
+    t45 = v_z + t34
+    t46 = t37 * t45
+    t47 = t44 * t46
+    t48 = c_alpha1 * c_alpha2
+    del c_alpha1
+    t49 = s_alpha3 * t48
+    t50 = s_alpha1 * s_alpha2
+    del s_alpha2
+    t51 = c_alpha3 * t50
+    t52 = t46 * A_12
+    del t46
+    t53 = s_alpha1 * c_alpha2
+    del c_alpha2, s_alpha1
+    t54 = s_alpha3 * t53
+    t55 = t41 * t47 - t49 * t47 - t51 * t52 + t54 * t52
+    del t47, t52
+    t56 = c_alpha3 * t34
+    del t34
+    t57 = t53 * t56
+    t58 = t45 * (t6 + t44)
+    t59 = t45 * (t8 - A_12)
+    del A_12, t45
+    t60 = t55 - t57 * t58 + t48 * t58 * t35 - t50 * t56 * t59
+    del t55, t58
+    t61 = t37 * (t10 + t44)
+    del t37, t44
+    t62 = t60 + t59 * t36 + t57 * t61 - t1 * t56 * t61 + t53 * t35 * t40
+    del t35, t56, t57, t59, t60, t61
+    t63 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
+    t64 = t63 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
+    del t63
+    t65 = np.isfinite(theta1) & np.isfinite(theta2) & np.isfinite(theta3)
+    t66 = np.abs(_runtime.select(in_line, -t26, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    del in_line, t26
+    t67 = t66 & (-(size * _runtime.FEASIBILITY) <= t28)
+    del size, t28, t66
+    failed = np.logical_not(t64 & t65) | np.logical_not(t67)
+    del t64, t65, t67
+    t68 = _runtime.poison(failed)
+    del failed
+    A_11_above = t42 + t43
+    del t42, t43
+    A_13_above = t32 + t33
+    del t32, t33
+    t69 = u_z - A_13_above
+    del u_z
+    t70 = v_z - A_13_above
+    del v_z
+    t71 = t69 * t70
+    t72 = A_11_above * t71
+    t73 = t38 - t39
+    del t38, t39
+    t74 = t71 * t73
+    del t71
+    t75 = t41 * t72 - t49 * t72 - t51 * t74 + t54 * t74
+    del t41, t49, t51, t54, t72, t74
+    t76 = c_alpha3 * A_13_above
+    del c_alpha3
+    t77 = t53 * t76
+    t78 = t70 * (t6 - A_11_above)
+    del t6
+    t79 = s_alpha3 * A_13_above
+    del A_13_above, s_alpha3
+    t80 = t70 * (t8 + t73)
+    del t70, t8
+    t81 = t75 - t77 * t78 + t48 * t78 * t79 - t50 * t76 * t80
+    del t48, t50, t75, t78
+    t82 = t1 * t79
+    t83 = t69 * (t10 - A_11_above)
+    del A_11_above, t10
+    t84 = t69 * (t11 + t73)
+    del t11, t69, t73
+    t85 = t81 + t80 * t82 + t77 * t83 - t1 * t76 * t83 + t53 * t79 * t84
+    del t1, t53, t76, t77, t79, t80, t81, t83
+    return (
+        t36 * t40 - t62 + t68,
+        t85 - t82 * t84 + t68,
+    )
+
+
+_CONSTRAINT = _runtime.Kernel(
+    "delta.constraint",
+    _constraint,
+    (_runtime.Array("q", (3,)),),
+    (_runtime.Array("factors", (2, 1)),),
+    Parameters._fields,
+    ('f', 'e', 'L', 'l', 'alpha1', 'alpha2', 'alpha3'),
+    size=_runtime.Size((3, 4, 5, 6), ((0, 3), (1, 3)), 6.681911775230489e-52, 1.7498005798264095e+100),
+)
+
+
+def constraint(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """What vanishes where the parallelograms do not keep the hand from turning.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        theta1, theta2, theta3 in rad.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 2, 1)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
+    - NaN for an assembly mode that does not exist.
+    - The determinant of the normals of the parallelograms (a unit vector along the bars times
+      the vector along the rods).
+    """
+    result = _runtime.evaluate(_CONSTRAINT, (q,), params, out)
+    return result
+
+
 def _ik(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     s_alpha1, c_alpha1 = _runtime.sincos_as_in_c(alpha1)
     s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
@@ -2197,6 +2553,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - SINGULAR: no crank; theta3 is free, 0 is returned.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
       closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+    - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+      which the hand is turned.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return Solutions(*result)

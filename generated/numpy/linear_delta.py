@@ -3,13 +3,14 @@
 # Source: The closedform authors: Loops of common structure, solved leg by leg.
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 42 compare and select, 55 add, 9 divide, 58 multiply, 5 sqrt
-#   skeleton: 41 compare and select, 81 add, 14 divide, 50 multiply, 5 sqrt
+#   skeleton: 41 compare and select, 129 add, 16 divide, 50 multiply, 5 sqrt
 #   jacobian_parallel: 41 compare and select, 73 add, 14 divide, 50 multiply, 5 sqrt
 #   jacobian_serial: 41 compare and select, 49 add, 14 divide, 40 multiply, 5 sqrt
 #   jacobian: 41 compare and select, 93 add, 32 divide, 102 multiply, 5 sqrt
 #   determinant: 41 compare and select, 45 add, 16 divide, 46 multiply, 5 sqrt
 #   singularities: 41 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
 #   condition_number: 41 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
+#   constraint: 41 compare and select, 67 add, 20 divide, 74 multiply, 5 sqrt
 #   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
@@ -40,22 +41,43 @@ SKELETON = Skeleton(
         "A1",
         "B1",
         "C1",
+        "B1a",
+        "B1b",
+        "C1a",
+        "C1b",
         "A2",
         "B2",
         "C2",
+        "B2a",
+        "B2b",
+        "C2a",
+        "C2b",
         "A3",
         "B3",
         "C3",
+        "B3a",
+        "B3b",
+        "C3a",
+        "C3b",
         "P",
     ),
     links={
         "ground": ('A1', 'A2', 'A3', 'A1'),
         "hand1": ('P', 'C1'),
-        "rod1": ('B1', 'C1'),
+        "rod1a": ('B1a', 'C1a'),
+        "rod1b": ('B1b', 'C1b'),
+        "bar_B1a": ('B1a', 'B1', 'B1b'),
+        "bar_C1a": ('C1a', 'C1', 'C1b'),
         "hand2": ('P', 'C2'),
-        "rod2": ('B2', 'C2'),
+        "rod2a": ('B2a', 'C2a'),
+        "rod2b": ('B2b', 'C2b'),
+        "bar_B2a": ('B2a', 'B2', 'B2b'),
+        "bar_C2a": ('C2a', 'C2', 'C2b'),
         "hand3": ('P', 'C3'),
-        "rod3": ('B3', 'C3'),
+        "rod3a": ('B3a', 'C3a'),
+        "rod3b": ('B3b', 'C3b'),
+        "bar_B3a": ('B3a', 'B3', 'B3b'),
+        "bar_C3a": ('C3a', 'C3', 'C3b'),
     },
     joints={
         "rho1": SkeletonJoint("prismatic", ('A1', 'B1')),
@@ -87,6 +109,7 @@ __all__ = [
     "determinant",
     "singularities",
     "condition_number",
+    "constraint",
     "ik",
     "workspace_contains",
 ]
@@ -258,6 +281,8 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
       points is returned.
     - Ill-conditioned near the parallel singularities, where both modes meet.
+    - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+      which the hand is turned.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return Positions(*result)
@@ -273,164 +298,268 @@ def _skeleton(rho1, rho2, rho3, f, e, l):
     t5 = f * 0.5
     t6 = c1_x - (t4 - t5)
     t7 = rho1 - rho2
-    t8 = e * 1.7320508075688772 * 0.5
-    t9 = f * 1.7320508075688772 * 0.5
-    c3_y = t8 - t9
-    t10 = t6 * t6 + c3_y * c3_y
-    size_u = np.sqrt(t7 * t7 + t10)
-    t11 = rho1 - rho3
-    size_v = np.sqrt(t11 * t11 + t10)
-    del t10
+    t8 = e * 1.7320508075688772
+    t9 = t8 * 0.5
+    t10 = f * 1.7320508075688772 * 0.5
+    c3_y = t9 - t10
+    t11 = t6 * t6 + c3_y * c3_y
+    size_u = np.sqrt(t7 * t7 + t11)
+    t12 = rho1 - rho3
+    size_v = np.sqrt(t12 * t12 + t11)
+    del t11
     size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
-    t12 = size * _runtime.VANISHING
-    all_same = size_u + size_v <= t12
-    same = size_u <= t12
+    t13 = size * _runtime.VANISHING
+    all_same = size_u + size_v <= t13
+    same = size_u <= t13
     D = _runtime.select(same, size_v, size_u)
     del size_u, size_v
     E_11 = _runtime.select(all_same, 1.0, -(t6 / D))
-    t13 = _runtime.select(same, c3_y, -c3_y)
-    E_12 = _runtime.select(all_same, 0.0, t13 / D)
-    t14 = _runtime.select(same, -c3_y, c3_y)
+    t14 = _runtime.select(same, c3_y, -c3_y)
+    E_12 = _runtime.select(all_same, 0.0, t14 / D)
+    t15 = _runtime.select(same, -c3_y, c3_y)
     del c3_y
-    t15 = _runtime.select(same, t11, t7)
-    t16 = _runtime.select(all_same, 0.0, t15 / D)
-    t17 = _runtime.select(same, t7, t11)
-    del same, t11, t7
-    t18 = t6 * E_11 - E_12 * t14 - t16 * t17
-    t19 = t6 - E_11 * t18
+    t16 = _runtime.select(same, t12, t7)
+    t17 = _runtime.select(all_same, 0.0, t16 / D)
+    t18 = _runtime.select(same, t7, t12)
+    del same, t12, t7
+    t19 = t6 * E_11 - E_12 * t15 - t17 * t18
+    t20 = t6 - E_11 * t19
     del t6
-    m_y = t14 + E_12 * t18
-    t20 = t17 + t16 * t18
-    del t18
-    t21 = E_11 * t19 - E_12 * m_y - t16 * t20
-    t22 = t19 - E_11 * t21
+    m_y = t15 + E_12 * t19
+    t21 = t18 + t17 * t19
     del t19
-    n_y = m_y + E_12 * t21
+    t22 = E_11 * t20 - E_12 * m_y - t17 * t21
+    t23 = t20 - E_11 * t22
+    del t20
+    n_y = m_y + E_12 * t22
     del m_y
-    t23 = t20 + t16 * t21
-    del t20, t21
-    j = np.sqrt(t22 * t22 + n_y * n_y + t23 * t23)
-    in_line = j <= t12
-    t24 = t14 * (t13 - t14) + t17 * (t15 - t17)
-    del t13, t14, t15, t17
-    t25 = np.abs(_runtime.select(in_line, -t24, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    t24 = t21 + t17 * t22
+    del t21, t22
+    j = np.sqrt(t23 * t23 + n_y * n_y + t24 * t24)
+    in_line = j <= t13
+    t25 = t15 * (t14 - t15) + t18 * (t16 - t18)
+    del t14, t15, t16, t18
+    t26 = np.abs(_runtime.select(in_line, -t25, 0.0)) <= _runtime.FEASIBILITY * (size * size)
     X = _runtime.select(all_same, 0.0, D * 0.5)
     del D, all_same
-    t26 = _runtime.select(in_line, 0.0, t24 / (2.0 * j))
-    del t24
-    rho = np.sqrt(X * X + t26 * t26)
-    t27 = l - rho
-    t28 = t25 & (-(size * _runtime.FEASIBILITY) <= t27)
-    del size, t25
-    t29 = _runtime.poison(np.logical_not(t3) | np.logical_not(t28))
-    del t28, t3
-    t30 = f + t29
-    t31 = 0.0 + t29
-    t32 = rho1 + t29
-    t33 = _runtime.sign(-t16)
-    t34 = t16 - t33
-    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t33 / t34, -(t22 / j))
-    del t22
-    t35 = E_11 * X - t26 * E_21
-    slack = np.maximum(t27, 0.0)
-    del t27
-    h = _runtime.select(slack <= t12, 0.0, np.sqrt(slack * (l + rho)))
-    del rho, slack, t12
-    t36 = E_11 * t33
-    del t33
-    t37 = _runtime.select(in_line, t36, t23 / j)
+    t27 = _runtime.select(in_line, 0.0, t25 / (2.0 * j))
+    del t25
+    rho = np.sqrt(X * X + t27 * t27)
+    t28 = l - rho
+    t29 = t26 & (-(size * _runtime.FEASIBILITY) <= t28)
+    del size, t26
+    t30 = _runtime.poison(np.logical_not(t3) | np.logical_not(t29))
+    del t29, t3
+    t31 = f + t30
+    t32 = 0.0 + t30
+    t33 = rho1 + t30
+    t34 = e + c1_x
+    t35 = _runtime.sign(-t17)
+    t36 = t17 - t35
+    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t35 / t36, -(t23 / j))
     del t23
-    E_22 = _runtime.select(in_line, E_12 * t36 / t34, n_y / j)
-    del in_line, j, n_y, t34, t36
-    t38 = h * (E_12 * t37 - t16 * E_22)
-    t39 = c1_x + (t35 + t38)
-    t40 = E_12 * X - t26 * E_22
-    t41 = h * (E_11 * t37 - t16 * E_21)
-    A_12 = t40 - t41
-    t42 = A_12 + t29
-    t43 = t16 * X - t26 * t37
-    del X, t16, t26, t37
-    t44 = h * (E_12 * E_21 - E_11 * E_22)
+    t37 = E_11 * X - t27 * E_21
+    slack = np.maximum(t28, 0.0)
+    del t28
+    h = _runtime.select(slack <= t13, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t13
+    t38 = E_11 * t35
+    del t35
+    t39 = _runtime.select(in_line, t38, t24 / j)
+    del t24
+    E_22 = _runtime.select(in_line, E_12 * t38 / t36, n_y / j)
+    del in_line, j, n_y, t36, t38
+    t40 = h * (E_12 * t39 - t17 * E_22)
+    A_11 = t37 + t40
+    t41 = t34 + A_11 + t30
+    t42 = E_12 * X - t27 * E_22
+    t43 = h * (E_11 * t39 - t17 * E_21)
+    A_12 = t42 - t43
+    t44 = A_12 + t30
+    t45 = t17 * X - t27 * t39
+    del X, t17, t27, t39
+    t46 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22, h
-    t45 = rho1 - (t43 - t44) + t29
-    t46 = -t5 + t29
+    t47 = rho1 - (t45 - t46) + t30
+    t48 = t4 + t30
+    t49 = -t4 + t30
+    t50 = -t5 + t30
+    t51 = t10 + t30
+    t52 = rho2 + t30
+    t53 = c1_x - t4
+    t54 = t53 + A_11
+    t55 = t54 + t30
+    t56 = t8 * 0.25
+    del t8
+    t57 = -(t5 + t56) + t30
+    t58 = e * 0.25
+    t59 = t10 - t58
+    t60 = t59 + t30
+    t61 = t56 - t5 + t30
     del t5
-    t47 = t9 + t29
-    t48 = rho2 + t29
-    t49 = t39 - t4 + t29
-    t50 = -t9 + t29
-    del t9
-    t51 = rho3 + t29
-    t52 = c1_x + (t35 - t38)
-    del c1_x, t35, t38
-    A_12_above = t40 + t41
-    del t40, t41
-    t53 = A_12_above + t29
-    t54 = rho1 - (t43 + t44) + t29
-    del t43, t44
-    t55 = t52 - t4 + t29
-    del t4
+    t62 = t10 + t58
+    t63 = t62 + t30
+    t64 = t54 - t56 + t30
+    t65 = t9 - t58
+    t66 = t56 + t54 + t30
+    del t54
+    t67 = t9 + t58
+    del t58
+    t68 = -t10 + t30
+    del t10
+    t69 = rho3 + t30
+    t70 = -t62 + t30
+    del t62
+    t71 = -t59 + t30
+    del t59
+    A_11_above = t37 - t40
+    del t37, t40
+    t72 = t34 + A_11_above + t30
+    del t34
+    A_12_above = t42 + t43
+    del t42, t43
+    t73 = A_12_above + t30
+    t74 = rho1 - (t45 + t46) + t30
+    del t45, t46
+    t75 = t53 + A_11_above
+    del t53
+    t76 = t75 + t30
+    t77 = t75 - t56 + t30
+    t78 = t56 + t75 + t30
+    del t56, t75
     return (
-        t30,
-        t31,
-        t31,
-        t30,
         t31,
         t32,
-        e + t39 + t29,
-        t42,
-        t45,
-        t46,
-        t47,
-        t31,
-        t46,
-        t47,
-        t48,
-        t49,
-        t8 + A_12 + t29,
-        t45,
-        t46,
-        t50,
-        t31,
-        t46,
-        t50,
-        t51,
-        t49,
-        A_12 - t8 + t29,
-        t45,
-        t39 + t29,
-        t42,
-        t45,
-        t30,
-        t31,
-        t31,
-        t30,
+        t32,
         t31,
         t32,
-        e + t52 + t29,
-        t53,
-        t54,
-        t46,
+        t33,
+        t41,
+        t44,
         t47,
         t31,
-        t46,
-        t47,
         t48,
-        t55,
-        t8 + A_12_above + t29,
-        t54,
-        t46,
-        t50,
+        t33,
         t31,
-        t46,
+        t49,
+        t33,
+        t41,
+        t4 + A_12 + t30,
+        t47,
+        t41,
+        A_12 - t4 + t30,
+        t47,
         t50,
         t51,
+        t32,
+        t50,
+        t51,
+        t52,
         t55,
-        A_12_above - t8 + t29,
-        t54,
-        t52 + t29,
-        t53,
-        t54,
+        t9 + A_12 + t30,
+        t47,
+        t57,
+        t60,
+        t52,
+        t61,
+        t63,
+        t52,
+        t64,
+        t65 + A_12 + t30,
+        t47,
+        t66,
+        t67 + A_12 + t30,
+        t47,
+        t50,
+        t68,
+        t32,
+        t50,
+        t68,
+        t69,
+        t55,
+        A_12 - t9 + t30,
+        t47,
+        t61,
+        t70,
+        t69,
+        t57,
+        t71,
+        t69,
+        t66,
+        A_12 - t67 + t30,
+        t47,
+        t64,
+        A_12 - t65 + t30,
+        t47,
+        c1_x + A_11 + t30,
+        t44,
+        t47,
+        t31,
+        t32,
+        t32,
+        t31,
+        t32,
+        t33,
+        t72,
+        t73,
+        t74,
+        t31,
+        t48,
+        t33,
+        t31,
+        t49,
+        t33,
+        t72,
+        t4 + A_12_above + t30,
+        t74,
+        t72,
+        A_12_above - t4 + t30,
+        t74,
+        t50,
+        t51,
+        t32,
+        t50,
+        t51,
+        t52,
+        t76,
+        t9 + A_12_above + t30,
+        t74,
+        t57,
+        t60,
+        t52,
+        t61,
+        t63,
+        t52,
+        t77,
+        t65 + A_12_above + t30,
+        t74,
+        t78,
+        t67 + A_12_above + t30,
+        t74,
+        t50,
+        t68,
+        t32,
+        t50,
+        t68,
+        t69,
+        t76,
+        A_12_above - t9 + t30,
+        t74,
+        t61,
+        t70,
+        t69,
+        t57,
+        t71,
+        t69,
+        t78,
+        A_12_above - t67 + t30,
+        t74,
+        t77,
+        A_12_above - t65 + t30,
+        t74,
+        c1_x + A_11_above + t30,
+        t73,
+        t74,
     )
 
 
@@ -438,10 +567,10 @@ _SKELETON = _runtime.Kernel(
     "linear_delta.skeleton",
     _skeleton,
     (_runtime.Array("q", (3,)),),
-    (_runtime.Array("points", (2, 10, 3)),),
+    (_runtime.Array("points", (2, 22, 3)),),
     Parameters._fields,
     ('f', 'e', 'l'),
-    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (21, 1), (22, 1), (23, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (33, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (42, 1), (43, 1), (44, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 1), (3, 1), (5, 1), (6, 1), (7, 1), (8, 1), (9, 1), (10, 1), (11, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (18, 1), (19, 1), (20, 1), (21, 1), (22, 1), (24, 1), (25, 1), (26, 1), (27, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (36, 1), (37, 1), (38, 1), (39, 1), (40, 1), (41, 1), (42, 1), (43, 1), (45, 1), (46, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (57, 1), (58, 1), (59, 1), (60, 1), (61, 1), (62, 1), (63, 1), (64, 1), (65, 1), (66, 1), (69, 1), (71, 1), (72, 1), (73, 1), (74, 1), (75, 1), (76, 1), (77, 1), (78, 1), (79, 1), (80, 1), (81, 1), (82, 1), (83, 1), (84, 1), (85, 1), (86, 1), (87, 1), (88, 1), (90, 1), (91, 1), (92, 1), (93, 1), (94, 1), (95, 1), (96, 1), (97, 1), (98, 1), (99, 1), (100, 1), (101, 1), (102, 1), (103, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (111, 1), (112, 1), (113, 1), (114, 1), (115, 1), (116, 1), (117, 1), (118, 1), (119, 1), (120, 1), (121, 1), (122, 1), (123, 1), (124, 1), (125, 1), (126, 1), (127, 1), (128, 1), (129, 1), (130, 1), (131, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -459,7 +588,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Returns
     -------
-    points : ndarray of float64, shape (..., 2, 10, 3)
+    points : ndarray of float64, shape (..., 2, 22, 3)
         Coordinates x, y, z of each point.
 
     Raises
@@ -473,6 +602,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     -----
     - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
     - NaN for an assembly mode that does not exist.
+    - The width of a parallelogram matters here alone.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
@@ -1412,6 +1542,162 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
     return result
 
 
+def _constraint(rho1, rho2, rho3, f, e, l):
+    t1 = rho1 - rho2
+    t2 = f - e - (e * 0.5 - f * 0.5)
+    c3_y = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    t3 = t2 * t2 + c3_y * c3_y
+    size_u = np.sqrt(t1 * t1 + t3)
+    t4 = rho1 - rho3
+    size_v = np.sqrt(t4 * t4 + t3)
+    del t3
+    size = f + e + l + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t5 = size * _runtime.VANISHING
+    all_same = size_u + size_v <= t5
+    same = size_u <= t5
+    D = _runtime.select(same, size_v, size_u)
+    del size_u, size_v
+    X = _runtime.select(all_same, 0.0, D * 0.5)
+    t6 = _runtime.select(same, t4, t1)
+    t7 = _runtime.select(all_same, 0.0, t6 / D)
+    E_11 = _runtime.select(all_same, 1.0, -(t2 / D))
+    t8 = _runtime.select(same, c3_y, -c3_y)
+    E_12 = _runtime.select(all_same, 0.0, t8 / D)
+    del D, all_same
+    t9 = _runtime.select(same, -c3_y, c3_y)
+    t10 = _runtime.select(same, t1, t4)
+    del same
+    t11 = t2 * E_11 - E_12 * t9 - t7 * t10
+    t12 = t2 - E_11 * t11
+    m_y = t9 + E_12 * t11
+    t13 = t10 + t7 * t11
+    del t11
+    t14 = E_11 * t12 - E_12 * m_y - t7 * t13
+    t15 = t12 - E_11 * t14
+    del t12
+    n_y = m_y + E_12 * t14
+    del m_y
+    t16 = t13 + t7 * t14
+    del t13, t14
+    j = np.sqrt(t15 * t15 + n_y * n_y + t16 * t16)
+    in_line = j <= t5
+    t17 = t9 * (t8 - t9) + t10 * (t6 - t10)
+    del t10, t6, t8, t9
+    t18 = _runtime.select(in_line, 0.0, t17 / (2.0 * j))
+    t19 = _runtime.sign(-t7)
+    t20 = E_11 * t19
+    t21 = _runtime.select(in_line, t20, t16 / j)
+    del t16
+    t22 = X * t7 - t18 * t21
+    rho = np.sqrt(X * X + t18 * t18)
+    t23 = l - rho
+    slack = np.maximum(t23, 0.0)
+    h = _runtime.select(slack <= t5, 0.0, np.sqrt(slack * (l + rho)))
+    del rho, slack, t5
+    t24 = t7 - t19
+    E_21 = _runtime.select(in_line, 1.0 + E_11 * E_11 * t19 / t24, -(t15 / j))
+    del t15, t19
+    E_22 = _runtime.select(in_line, E_12 * t20 / t24, n_y / j)
+    del j, n_y, t20, t24
+    t25 = h * (E_12 * E_21 - E_11 * E_22)
+    t26 = t22 - t25
+    A_23 = t1 - t26
+    t27 = 0.75 * t26
+    t28 = X * E_12 - t18 * E_22
+    t29 = h * (E_11 * t21 - t7 * E_21)
+    A_12 = t28 - t29
+    t30 = E_11 * X - E_21 * t18
+    del E_11, E_21, X, t18
+    t31 = h * (E_12 * t21 - t7 * E_22)
+    del E_12, E_22, h, t21, t7
+    A_11 = t30 + t31
+    A_33 = t4 - t26
+    t32 = 1.7320508075688772 * A_11 * A_23 * A_33 * 0.5
+    t33 = (t2 + A_11) * (1.7320508075688772 * t26)
+    del A_11, t26
+    t34 = t32 + A_33 * t33 * 0.25 - A_33 * t27 * (c3_y + A_12)
+    del A_33, t32
+    t35 = A_23 * t27 * (c3_y - A_12) - (t34 + A_23 * t33 * 0.25)
+    del A_12, A_23, t27, t33, t34
+    t36 = np.isfinite(f) & np.isfinite(e) & np.isfinite(l)
+    t37 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    t38 = t36 & (0.0 <= f) & (0.0 <= e) & (0.0 <= l) & t37
+    del t36, t37
+    t39 = np.abs(_runtime.select(in_line, -t17, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    del in_line, t17
+    t40 = t39 & (-(size * _runtime.FEASIBILITY) <= t23)
+    del size, t23, t39
+    t41 = _runtime.poison(np.logical_not(t38) | np.logical_not(t40))
+    del t38, t40
+    t42 = t22 + t25
+    del t22, t25
+    A_23_above = t1 - t42
+    del t1
+    t43 = 0.75 * t42
+    A_12_above = t28 + t29
+    del t28, t29
+    A_11_above = t30 - t31
+    del t30, t31
+    A_33_above = t4 - t42
+    del t4
+    t44 = 1.7320508075688772 * A_11_above * A_23_above * A_33_above
+    t45 = (t2 + A_11_above) * (1.7320508075688772 * t42)
+    del A_11_above, t2, t42
+    t46 = t44 * 0.5 + A_33_above * t45 * 0.25 - A_33_above * t43 * (c3_y + A_12_above)
+    del A_33_above, t44
+    t47 = A_23_above * t43 * (c3_y - A_12_above) - (t46 + A_23_above * t45 * 0.25)
+    del A_12_above, A_23_above, c3_y, t43, t45, t46
+    return (
+        t35 + t41,
+        t47 + t41,
+    )
+
+
+_CONSTRAINT = _runtime.Kernel(
+    "linear_delta.constraint",
+    _constraint,
+    (_runtime.Array("q", (3,)),),
+    (_runtime.Array("factors", (2, 1)),),
+    Parameters._fields,
+    ('f', 'e', 'l'),
+    size=_runtime.Size((0, 1, 2, 3, 4, 5), ((0, 3), (1, 3)), 6.681911775230489e-52, 1.7498005798264095e+100),
+)
+
+
+def constraint(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """What vanishes where the parallelograms do not keep the hand from turning.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        rho1, rho2, rho3 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 2, 1)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: below, above.
+    - NaN for an assembly mode that does not exist.
+    - The determinant of the normals of the parallelograms (a unit vector along the bars times
+      the vector along the rods).
+    """
+    result = _runtime.evaluate(_CONSTRAINT, (q,), params, out)
+    return result
+
+
 def _ik(x, y, z, f, e, l):
     A_11 = x - f + e
     aside_1 = np.sqrt(y * y + A_11 * A_11)
@@ -1612,6 +1898,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - UNREACHABLE: a rod does not reach.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
       closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+    - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+      which the hand is turned.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return Solutions(*result)

@@ -4,8 +4,8 @@
 # Operations of one evaluation (a sincos is a sine and a cosine of one angle):
 #   fk: 38 compare and select, 45 add, 5 divide, 55 multiply, 5 sqrt
 #   fk where nothing vanishes: 25 compare and select, 31 add, 4 divide, 37 multiply, 5 sqrt
-#   skeleton: 37 compare and select, 50 add, 10 divide, 47 multiply, 5 sqrt
-#   skeleton where nothing vanishes: 24 compare and select, 36 add, 7 divide, 32 multiply, 5 sqrt
+#   skeleton: 37 compare and select, 76 add, 11 divide, 47 multiply, 5 sqrt
+#   skeleton where nothing vanishes: 24 compare and select, 62 add, 8 divide, 32 multiply, 5 sqrt
 #   jacobian_parallel: 37 compare and select, 56 add, 10 divide, 47 multiply, 5 sqrt
 #   jacobian_parallel where nothing vanishes: 24 compare and select, 42 add, 7 divide, 32
 #     multiply, 5 sqrt
@@ -23,6 +23,9 @@
 #   condition_number: 37 compare and select, 96 add, 12 divide, 106 multiply, 7 sqrt
 #   condition_number where nothing vanishes: 24 compare and select, 82 add, 9 divide, 91 multiply,
 #     7 sqrt
+#   constraint: 37 compare and select, 48 add, 10 divide, 55 multiply, 5 sqrt
+#   constraint where nothing vanishes: 24 compare and select, 34 add, 7 divide, 40 multiply, 5
+#     sqrt
 #   ik: 53 compare and select, 42 add, 1 divide, 34 multiply, 6 sqrt
 #   workspace_contains: 23 compare and select, 12 add, 1 divide, 4 multiply, 3 sqrt
 """Orthoglide.
@@ -52,17 +55,38 @@ SKELETON = Skeleton(
     points=(
         "A1",
         "B1",
+        "B1a",
+        "B1b",
+        "C1a",
+        "C1b",
         "A2",
         "B2",
+        "B2a",
+        "B2b",
+        "C2a",
+        "C2b",
         "A3",
         "B3",
+        "B3a",
+        "B3b",
+        "C3a",
+        "C3b",
         "P",
     ),
     links={
         "ground": ('A1', 'A2', 'A3', 'A1'),
-        "rod1": ('B1', 'P'),
-        "rod2": ('B2', 'P'),
-        "rod3": ('B3', 'P'),
+        "rod1a": ('B1a', 'C1a'),
+        "rod1b": ('B1b', 'C1b'),
+        "bar_B1a": ('B1a', 'B1', 'B1b'),
+        "bar_C1a": ('C1a', 'P', 'C1b'),
+        "rod2a": ('B2a', 'C2a'),
+        "rod2b": ('B2b', 'C2b'),
+        "bar_B2a": ('B2a', 'B2', 'B2b'),
+        "bar_C2a": ('C2a', 'P', 'C2b'),
+        "rod3a": ('B3a', 'C3a'),
+        "rod3b": ('B3b', 'C3b'),
+        "bar_B3a": ('B3a', 'B3', 'B3b'),
+        "bar_C3a": ('C3a', 'P', 'C3b'),
     },
     joints={
         "rho1": SkeletonJoint("prismatic", ('A1', 'B1')),
@@ -94,6 +118,7 @@ __all__ = [
     "determinant",
     "singularities",
     "condition_number",
+    "constraint",
     "ik",
     "workspace_contains",
 ]
@@ -320,6 +345,8 @@ def fk(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - SINGULAR: centres coincide or are in line, and the hand is free on a circle; one of its
       points is returned.
     - Ill-conditioned near the parallel singularities, where both modes meet.
+    - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+      which the hand is turned.
     """
     result = _runtime.evaluate(_FK, (q,), params, out)
     return Positions(*result)
@@ -376,29 +403,47 @@ def _skeleton(rho1, rho2, rho3, L):
     del invalid, t16
     t18 = 0.0 + t17
     t19 = rho1 + t17
-    t20 = rho2 + t17
-    t21 = rho3 + t17
+    t20 = L * 0.0625
+    t21 = t20 + t17
+    t22 = -t20 + t17
     slack = np.maximum(t15, 0.0)
     del t15
     h = _runtime.select(slack <= t3, 0.0, np.sqrt(slack * (L + rho)))
     del rho, slack, t3
-    t22 = _runtime.sign(E_13)
-    t23 = E_11 * t22
-    E_23 = _runtime.select(in_line, -t23, n_z / j)
+    t23 = _runtime.sign(E_13)
+    t24 = E_11 * t23
+    E_23 = _runtime.select(in_line, -t24, n_z / j)
     del n_z
-    t24 = E_13 + t22
-    E_22 = _runtime.select(in_line, -(E_12 * t23 / t24), n_y / j)
-    del n_y, t23
-    t25 = h * (E_12 * E_23 - E_13 * E_22)
-    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t22 / t24, -(t11 / j))
-    del in_line, j, t11, t22, t24
-    t26 = E_11 * X - E_21 * t14
-    t27 = E_12 * X - t14 * E_22
-    t28 = (E_11 * E_23 - E_13 * E_21) * h
-    t29 = E_13 * X - E_23 * t14
-    del E_13, E_23, X, t14
-    t30 = h * (E_12 * E_21 - E_11 * E_22)
+    t25 = E_13 + t23
+    E_22 = _runtime.select(in_line, -(E_12 * t24 / t25), n_y / j)
+    del n_y, t24
+    t26 = h * (E_12 * E_23 - E_13 * E_22)
+    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t23 / t25, -(t11 / j))
+    del in_line, j, t11, t23, t25
+    t27 = E_11 * X - E_21 * t14
+    t28 = rho1 + (t26 + t27)
+    t29 = t28 + t17
+    t30 = (E_11 * E_23 - E_13 * E_21) * h
+    t31 = E_12 * X - t14 * E_22
+    t32 = t30 - t31
+    t33 = h * (E_12 * E_21 - E_11 * E_22)
     del E_11, E_12, E_21, E_22, h
+    t34 = E_13 * X - E_23 * t14
+    del E_13, E_23, X, t14
+    t35 = t33 - t34
+    t36 = -t35 + t17
+    t37 = rho2 + t17
+    t38 = -t32 + t17
+    t39 = rho3 + t17
+    t40 = rho1 - (t26 - t27)
+    del t26, t27
+    t41 = t40 + t17
+    A_12_inner = t30 + t31
+    del t30, t31
+    A_13_inner = t33 + t34
+    del t33, t34
+    t42 = A_13_inner + t17
+    t43 = A_12_inner + t17
     return (
         t18,
         t18,
@@ -406,42 +451,114 @@ def _skeleton(rho1, rho2, rho3, L):
         t19,
         t18,
         t18,
-        t18,
-        t18,
-        t18,
-        t18,
-        t20,
-        t18,
-        t18,
-        t18,
-        t18,
-        t18,
-        t18,
+        t19,
         t21,
-        rho1 + (t25 + t26) + t17,
-        t27 - t28 + t17,
-        t29 - t30 + t17,
+        t18,
+        t19,
+        t22,
+        t18,
+        t29,
+        t20 - t32 + t17,
+        t36,
+        t29,
+        -(t20 + t32) + t17,
+        t36,
+        t18,
+        t18,
+        t18,
+        t18,
+        t37,
+        t18,
+        t18,
+        t37,
+        t21,
+        t18,
+        t37,
+        t22,
+        t29,
+        t38,
+        t20 - t35 + t17,
+        t29,
+        t38,
+        -(t20 + t35) + t17,
+        t18,
+        t18,
+        t18,
+        t18,
+        t18,
+        t39,
+        t21,
+        t18,
+        t39,
+        t22,
+        t18,
+        t39,
+        t20 + t28 + t17,
+        t38,
+        t36,
+        t28 - t20 + t17,
+        t38,
+        t36,
+        t29,
+        t38,
+        t36,
         t18,
         t18,
         t18,
         t19,
         t18,
         t18,
-        t18,
-        t18,
-        t18,
-        t18,
-        t20,
-        t18,
-        t18,
-        t18,
-        t18,
-        t18,
-        t18,
+        t19,
         t21,
-        rho1 - (t25 - t26) + t17,
-        t28 + t27 + t17,
-        t30 + t29 + t17,
+        t18,
+        t19,
+        t22,
+        t18,
+        t41,
+        t20 + A_12_inner + t17,
+        t42,
+        t41,
+        A_12_inner - t20 + t17,
+        t42,
+        t18,
+        t18,
+        t18,
+        t18,
+        t37,
+        t18,
+        t18,
+        t37,
+        t21,
+        t18,
+        t37,
+        t22,
+        t41,
+        t43,
+        t20 + A_13_inner + t17,
+        t41,
+        t43,
+        A_13_inner - t20 + t17,
+        t18,
+        t18,
+        t18,
+        t18,
+        t18,
+        t39,
+        t21,
+        t18,
+        t39,
+        t22,
+        t18,
+        t39,
+        t20 + t40 + t17,
+        t43,
+        t42,
+        t40 - t20 + t17,
+        t43,
+        t42,
+        t41,
+        t43,
+        t42,
     )
 
 
@@ -477,29 +594,47 @@ def _skeleton_common(rho1, rho2, rho3, L):
     del invalid, unreachable
     t15 = 0.0 + t14
     t16 = rho1 + t14
-    t17 = rho2 + t14
-    t18 = rho3 + t14
+    t17 = L * 0.0625
+    t18 = t17 + t14
+    t19 = -t17 + t14
     E_23 = rho3 / j
     slack = np.maximum(t13, 0.0)
     del t13
     h = np.sqrt(slack * (L + rho))
     del rho
-    t19 = E_12 * E_23 * h
-    t20 = t10 / j
+    t20 = E_12 * E_23 * h
+    t21 = t10 / j
     del t10
-    t21 = t5 * X + t12 * t20
-    t22 = t5 * E_23 * h
-    t23 = t11 / j
+    t22 = t5 * X + t12 * t21
+    t23 = rho1 + (t20 - t22)
+    t24 = t23 + t14
+    t25 = t5 * E_23 * h
+    t26 = t11 / j
     del t11
-    t24 = E_12 * X - t12 * t23
+    t27 = E_12 * X - t12 * t26
     del X
-    t25 = t12 * E_23
+    A_12 = t25 + t27
+    t28 = t12 * E_23
     del E_23, t12
-    t26 = (t5 * t23 + E_12 * t20) * h
-    del E_12, h, t20, t23, t5
-    t27 = size * _runtime.VANISHING
+    t29 = (t5 * t26 + E_12 * t21) * h
+    del E_12, h, t21, t26, t5
+    A_13 = t28 + t29
+    t30 = A_13 + t14
+    t31 = rho2 + t14
+    t32 = A_12 + t14
+    t33 = rho3 + t14
+    t34 = rho1 - (t20 + t22)
+    del t20, t22
+    t35 = t34 + t14
+    t36 = t25 - t27
+    del t25, t27
+    A_13_inner = t28 - t29
+    del t28, t29
+    t37 = A_13_inner + t14
+    t38 = -t36 + t14
+    t39 = size * _runtime.VANISHING
     del size
-    t28 = (size_u <= t27) | (size_u + np.sqrt(t3 + t4) <= t27)
+    t40 = (size_u <= t39) | (size_u + np.sqrt(t3 + t4) <= t39)
     del size_u, t3, t4
     return (
         t15,
@@ -508,43 +643,115 @@ def _skeleton_common(rho1, rho2, rho3, L):
         t16,
         t15,
         t15,
-        t15,
-        t15,
-        t15,
-        t15,
-        t17,
-        t15,
-        t15,
-        t15,
-        t15,
-        t15,
-        t15,
+        t16,
         t18,
-        rho1 + (t19 - t21) + t14,
-        t22 + t24 + t14,
-        t25 + t26 + t14,
+        t15,
+        t16,
+        t19,
+        t15,
+        t24,
+        t17 + A_12 + t14,
+        t30,
+        t24,
+        A_12 - t17 + t14,
+        t30,
+        t15,
+        t15,
+        t15,
+        t15,
+        t31,
+        t15,
+        t15,
+        t31,
+        t18,
+        t15,
+        t31,
+        t19,
+        t24,
+        t32,
+        t17 + A_13 + t14,
+        t24,
+        t32,
+        A_13 - t17 + t14,
+        t15,
+        t15,
+        t15,
+        t15,
+        t15,
+        t33,
+        t18,
+        t15,
+        t33,
+        t19,
+        t15,
+        t33,
+        t17 + t23 + t14,
+        t32,
+        t30,
+        t23 - t17 + t14,
+        t32,
+        t30,
+        t24,
+        t32,
+        t30,
         t15,
         t15,
         t15,
         t16,
         t15,
         t15,
-        t15,
-        t15,
-        t15,
-        t15,
-        t17,
-        t15,
-        t15,
-        t15,
-        t15,
-        t15,
-        t15,
+        t16,
         t18,
-        rho1 - (t19 + t21) + t14,
-        t24 - t22 + t14,
-        t25 - t26 + t14,
-        t28 | (j <= t27) | (slack <= t27),
+        t15,
+        t16,
+        t19,
+        t15,
+        t35,
+        t17 - t36 + t14,
+        t37,
+        t35,
+        -(t17 + t36) + t14,
+        t37,
+        t15,
+        t15,
+        t15,
+        t15,
+        t31,
+        t15,
+        t15,
+        t31,
+        t18,
+        t15,
+        t31,
+        t19,
+        t35,
+        t38,
+        t17 + A_13_inner + t14,
+        t35,
+        t38,
+        A_13_inner - t17 + t14,
+        t15,
+        t15,
+        t15,
+        t15,
+        t15,
+        t33,
+        t18,
+        t15,
+        t33,
+        t19,
+        t15,
+        t33,
+        t17 + t34 + t14,
+        t38,
+        t37,
+        t34 - t17 + t14,
+        t38,
+        t37,
+        t35,
+        t38,
+        t37,
+        t40 | (j <= t39) | (slack <= t39),
     )
 
 
@@ -552,11 +759,11 @@ _SKELETON = _runtime.Kernel(
     "orthoglide.skeleton",
     _skeleton,
     (_runtime.Array("q", (3,)),),
-    (_runtime.Array("points", (2, 7, 3)),),
+    (_runtime.Array("points", (2, 19, 3)),),
     Parameters._fields,
     ('L',),
     common=_skeleton_common,
-    size=_runtime.Size((0, 1, 2, 3), ((3, 1), (10, 1), (17, 1), (18, 1), (19, 1), (20, 1), (24, 1), (31, 1), (38, 1), (39, 1), (40, 1), (41, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
+    size=_runtime.Size((0, 1, 2, 3), ((3, 1), (6, 1), (7, 1), (9, 1), (10, 1), (12, 1), (13, 1), (14, 1), (15, 1), (16, 1), (17, 1), (22, 1), (25, 1), (26, 1), (28, 1), (29, 1), (30, 1), (31, 1), (32, 1), (33, 1), (34, 1), (35, 1), (41, 1), (42, 1), (44, 1), (45, 1), (47, 1), (48, 1), (49, 1), (50, 1), (51, 1), (52, 1), (53, 1), (54, 1), (55, 1), (56, 1), (60, 1), (63, 1), (64, 1), (66, 1), (67, 1), (69, 1), (70, 1), (71, 1), (72, 1), (73, 1), (74, 1), (79, 1), (82, 1), (83, 1), (85, 1), (86, 1), (87, 1), (88, 1), (89, 1), (90, 1), (91, 1), (92, 1), (98, 1), (99, 1), (101, 1), (102, 1), (104, 1), (105, 1), (106, 1), (107, 1), (108, 1), (109, 1), (110, 1), (111, 1), (112, 1), (113, 1)), 8.636168555094445e-78, 3.273390607896142e+150),
 )
 
 
@@ -574,7 +781,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
 
     Returns
     -------
-    points : ndarray of float64, shape (..., 2, 7, 3)
+    points : ndarray of float64, shape (..., 2, 19, 3)
         Coordinates x, y, z of each point.
 
     Raises
@@ -588,6 +795,7 @@ def skeleton(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None
     -----
     - The assembly modes, in the order of `ASSEMBLY_MODES`: outer, inner.
     - NaN for an assembly mode that does not exist.
+    - The width of a parallelogram matters here alone.
     """
     result = _runtime.evaluate(_SKELETON, (q,), params, out)
     return result
@@ -1985,6 +2193,212 @@ def condition_number(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: An
     return result
 
 
+def _constraint(rho1, rho2, rho3, L):
+    t1 = rho1 * rho1
+    size_u = np.sqrt(t1 + rho2 * rho2)
+    size_v = np.sqrt(t1 + rho3 * rho3)
+    del t1
+    size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t2 = size * _runtime.VANISHING
+    all_same = size_u + size_v <= t2
+    same = size_u <= t2
+    D = _runtime.select(same, size_v, size_u)
+    del size_u, size_v
+    E_11 = _runtime.select(all_same, 1.0, -(rho1 / D))
+    t3 = _runtime.select(same, 0.0, rho2)
+    E_12 = _runtime.select(all_same, 0.0, t3 / D)
+    t4 = _runtime.select(same, rho2, 0.0)
+    t5 = _runtime.select(same, rho3, 0.0)
+    E_13 = _runtime.select(all_same, 0.0, t5 / D)
+    t6 = _runtime.select(same, 0.0, rho3)
+    del same
+    t7 = rho1 * E_11 - E_12 * t4 - E_13 * t6
+    t8 = rho1 - E_11 * t7
+    m_y = t4 + E_12 * t7
+    m_z = t6 + E_13 * t7
+    del t7
+    t9 = E_11 * t8 - E_12 * m_y - E_13 * m_z
+    t10 = t8 - E_11 * t9
+    del t8
+    n_y = m_y + E_12 * t9
+    del m_y
+    n_z = m_z + E_13 * t9
+    del m_z, t9
+    j = np.sqrt(t10 * t10 + n_y * n_y + n_z * n_z)
+    in_line = j <= t2
+    t11 = _runtime.sign(E_13)
+    t12 = E_11 * t11
+    E_23 = _runtime.select(in_line, -t12, n_z / j)
+    del n_z
+    t13 = E_13 + t11
+    E_21 = _runtime.select(in_line, 1.0 - E_11 * E_11 * t11 / t13, -(t10 / j))
+    del t10, t11
+    X = _runtime.select(all_same, 0.0, D * 0.5)
+    del D, all_same
+    t14 = t4 * (t3 - t4) + t6 * (t5 - t6)
+    del t3, t4, t5, t6
+    t15 = _runtime.select(in_line, 0.0, t14 / (j * 2.0))
+    rho = np.sqrt(X * X + t15 * t15)
+    t16 = L - rho
+    slack = np.maximum(t16, 0.0)
+    h = _runtime.select(slack <= t2, 0.0, np.sqrt(slack * (L + rho)))
+    del rho, slack, t2
+    t17 = (E_11 * E_23 - E_13 * E_21) * h
+    E_22 = _runtime.select(in_line, -(E_12 * t12 / t13), n_y / j)
+    del j, n_y, t12, t13
+    t18 = E_12 * X - t15 * E_22
+    t19 = t17 - t18
+    t20 = h * (E_12 * E_21 - E_11 * E_22)
+    t21 = E_13 * X - E_23 * t15
+    t22 = t20 - t21
+    t23 = h * (E_12 * E_23 - E_13 * E_22)
+    del E_12, E_13, E_22, E_23, h
+    t24 = E_11 * X - E_21 * t15
+    del E_11, E_21, X, t15
+    A_11 = t23 + t24
+    t25 = t19 * t22 * (rho1 + A_11) - A_11 * (rho2 + t19) * (rho3 + t22)
+    del A_11, t19, t22
+    t26 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t26)
+    del t26
+    t27 = np.abs(_runtime.select(in_line, -t14, 0.0)) <= _runtime.FEASIBILITY * (size * size)
+    del in_line, t14
+    t28 = t27 & (-(size * _runtime.FEASIBILITY) <= t16)
+    del size, t16, t27
+    t29 = _runtime.poison(invalid | np.logical_not(t28))
+    del invalid, t28
+    t30 = t23 - t24
+    del t23, t24
+    A_12_inner = t17 + t18
+    del t17, t18
+    A_13_inner = t20 + t21
+    del t20, t21
+    t31 = t30 * (rho2 - A_12_inner) * (rho3 - A_13_inner)
+    t32 = t31 + A_12_inner * A_13_inner * (rho1 - t30) + t29
+    del A_12_inner, A_13_inner, t30, t31
+    return (
+        t25 + t29,
+        t32,
+    )
+
+
+def _constraint_common(rho1, rho2, rho3, L):
+    # Where nothing vanishes; last, whether something does.
+    t1 = rho3 * rho3
+    t2 = rho1 * rho1
+    size_u = np.sqrt(t2 + rho2 * rho2)
+    t3 = rho1 / size_u
+    t4 = rho1 * t3
+    t5 = rho1 - t3 * t4
+    E_12 = rho2 / size_u
+    t6 = t4 * E_12
+    del t4
+    t7 = t3 * t5 - E_12 * t6
+    t8 = t5 - t3 * t7
+    del t5
+    t9 = t6 + E_12 * t7
+    del t6, t7
+    j = np.sqrt(t1 + t8 * t8 + t9 * t9)
+    t10 = t1 / (2.0 * j)
+    E_23 = rho3 / j
+    t11 = t10 * E_23
+    t12 = t9 / j
+    del t9
+    t13 = t8 / j
+    del t8
+    X = size_u * 0.5
+    rho = np.sqrt(X * X + t10 * t10)
+    t14 = L - rho
+    slack = np.maximum(t14, 0.0)
+    h = np.sqrt(slack * (L + rho))
+    del rho
+    t15 = (t3 * t12 + E_12 * t13) * h
+    A_13 = t11 + t15
+    t16 = t3 * E_23 * h
+    t17 = X * E_12 - t10 * t12
+    del t12
+    A_12 = t16 + t17
+    t18 = E_12 * E_23 * h
+    del E_12, E_23, h
+    t19 = t3 * X + t13 * t10
+    del X, t10, t13, t3
+    A_11 = t18 - t19
+    t20 = A_13 * A_12 * (rho1 + A_11) - (rho3 - A_13) * A_11 * (rho2 - A_12)
+    del A_11, A_12, A_13
+    t21 = np.isfinite(rho1) & np.isfinite(rho2) & np.isfinite(rho3)
+    invalid = np.logical_not(np.isfinite(L) & (0.0 <= L) & t21)
+    del t21
+    size = L + np.abs(rho1) + np.abs(rho2) + np.abs(rho3)
+    t22 = np.abs(0.0) <= _runtime.FEASIBILITY * (size * size)
+    t23 = t22 & (-(size * _runtime.FEASIBILITY) <= t14)
+    del t14, t22
+    t24 = _runtime.poison(invalid | np.logical_not(t23))
+    del invalid, t23
+    A_13_inner = t11 - t15
+    del t11, t15
+    t25 = t18 + t19
+    del t18, t19
+    t26 = t16 - t17
+    del t16, t17
+    t27 = (rho3 - A_13_inner) * t25 * (rho2 + t26) - A_13_inner * t26 * (rho1 - t25)
+    del A_13_inner, t25, t26
+    t28 = size * _runtime.VANISHING
+    del size
+    t29 = (size_u <= t28) | (size_u + np.sqrt(t2 + t1) <= t28)
+    del size_u, t1, t2
+    return (
+        t20 + t24,
+        t27 + t24,
+        t29 | (j <= t28) | (slack <= t28),
+    )
+
+
+_CONSTRAINT = _runtime.Kernel(
+    "orthoglide.constraint",
+    _constraint,
+    (_runtime.Array("q", (3,)),),
+    (_runtime.Array("factors", (2, 1)),),
+    Parameters._fields,
+    ('L',),
+    common=_constraint_common,
+    size=_runtime.Size((0, 1, 2, 3), ((0, 3), (1, 3)), 6.681911775230489e-52, 1.7498005798264095e+100),
+)
+
+
+def constraint(q: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> Any:
+    """What vanishes where the parallelograms do not keep the hand from turning.
+
+    Parameters
+    ----------
+    q : array_like, shape (..., 3)
+        rho1, rho2, rho3 in the unit of the parameters.
+    params : Parameters, optional
+        The dimensions. Each may be an array that broadcasts with the leading axes.
+    out : ndarray, optional
+        An array to write the result to; it is returned.
+
+    Returns
+    -------
+    factors : ndarray of float64, shape (..., 2, 1)
+
+    Raises
+    ------
+    TypeError
+        If an argument does not hold real numbers.
+    ValueError
+        If an argument has the wrong shape, or leading axes do not broadcast.
+
+    Notes
+    -----
+    - The assembly modes, in the order of `ASSEMBLY_MODES`: outer, inner.
+    - NaN for an assembly mode that does not exist.
+    - The determinant of the normals of the parallelograms (a unit vector along the bars times
+      the vector along the rods).
+    """
+    result = _runtime.evaluate(_CONSTRAINT, (q,), params, out)
+    return result
+
+
 def _ik(x, y, z, L):
     t1 = y * y
     t2 = z * z
@@ -2169,6 +2583,8 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
     - UNREACHABLE: a rod does not reach.
     - SINGULAR also near a parallel singularity, where the rods are in one plane: the loop
       closes, but one ulp of the joints moves the hand by more than 1e-12 of the lengths.
+    - Left out: postures with a crossed parallelogram (antiparallelogram) or a twisted one, in
+      which the hand is turned.
     """
     result = _runtime.evaluate(_IK, (x,), params, out)
     return Solutions(*result)

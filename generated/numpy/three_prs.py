@@ -368,7 +368,7 @@ def jacobian_parallel(x: "ArrayLike", q: "ArrayLike", params: "Parameters" = _DE
     Returns
     -------
     A : ndarray of float64, shape (..., 3, 3)
-        One column for each of rho1, rho2, rho3.
+        One column for each of z, tilt_x, tilt_y.
 
     Raises
     ------
@@ -629,7 +629,7 @@ def jacobian_inverse(x: "ArrayLike", q: "ArrayLike", params: "Parameters" = _DEF
     Returns
     -------
     K : ndarray of float64, shape (..., 3, 3)
-        One column for each of rho1, rho2, rho3.
+        One column for each of z, tilt_x, tilt_y.
 
     Raises
     ------
@@ -1301,7 +1301,7 @@ def skeleton(x: "ArrayLike", q: "ArrayLike", params: "Parameters" = _DEFAULT, *,
     Returns
     -------
     points : ndarray of float64, shape (..., 10, 3)
-        One column for each of rho1, rho2, rho3.
+        Coordinates x, y, z of each point.
 
     Raises
     ------
@@ -1733,8 +1733,9 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
     Notes
     -----
-    - Branches in this order, `BRANCHES`: plus_plus_plus, plus_plus_minus, plus_minus_plus,
-      plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus, minus_minus_minus.
+    - The branches, in the order of `BRANCHES`: plus_plus_plus, plus_plus_minus,
+      plus_minus_plus, plus_minus_minus, minus_plus_plus, minus_plus_minus, minus_minus_plus,
+      minus_minus_minus.
     - UNREACHABLE: a rod does not reach.
     - SINGULAR also near a parallel or a constraint singularity, where the rods or the planes of
       the legs do not hold the hand: the loop closes, but the joints do not determine the hand.

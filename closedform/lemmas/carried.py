@@ -10,7 +10,7 @@ from typing import TypeVar
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.legs import Leg, Stretch, Strut, vector
+from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut, vector
 from closedform.lemmas.parallelogram import Parallelogram
 from closedform.lemmas.rails import Rail
 from closedform.model.derivation import Derivation, Step
@@ -188,7 +188,7 @@ def check_order(d: Derivation, driven: Sequence[Leg]) -> None:
         )
 
 
-def check_plain(d: Derivation, legs: Sequence[Leg]) -> None:
+def check_plain(d: Derivation, legs: Sequence[Leg | Crank | Slide]) -> None:
     """Refuse parallelograms, of a mechanism whose parts turn."""
     parts = [part for leg in legs for part in (leg.rod, getattr(leg, "length", None))]
     if any(isinstance(part, Parallelogram) for part in parts):

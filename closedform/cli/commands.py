@@ -1,4 +1,4 @@
-"""The command line: one function for each command, and the options of each.
+"""The command line: one function for each command.
 
 Results go to stdout, progress and errors to stderr.  The exit code is 0 on success, 1 if a proof or
 a comparison failed, and 2 if the command was called wrongly.
@@ -10,7 +10,6 @@ import argparse
 import contextlib
 import difflib
 import importlib.util
-import math
 import os
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
@@ -18,7 +17,7 @@ from pathlib import Path
 
 from closedform import robots
 from closedform._version import __version__
-from closedform.cli import claims, console, figures, plot, site
+from closedform.cli import claims, console, figures, parsers, plot, site
 from closedform.cli.console import Progress
 from closedform.pipeline import run as pipeline
 from closedform.pipeline import versions
@@ -30,9 +29,6 @@ PATIENCE = 120.0
 """Seconds to wait for another process that writes to the generated package, which takes one."""
 NAMED = 4
 """At most this many changed files are named."""
-FILES = ("dh TABLE.csv", "screws FILE.toml", "urdf FILE.urdf", "mjcf FILE.xml", "loop FILE.toml")
-"""The kinds of files that `new` reads."""
-READ = f"{', '.join(FILES[:-1])} or {FILES[-1]}"
 PRETTY = "─│⎡⎣√θ₁"
 """Characters that draw a formula in two dimensions; a terminal without them gets ASCII."""
 
@@ -106,131 +102,20 @@ def parser() -> argparse.ArgumentParser:
         added.set_defaults(command=function)
         return added
 
-    listed = command("list", list_command)
-    listed.add_argument(
-        "--robots", action="store_true", help="list the ready robots and their families"
-    )
-    listed.add_argument(
-        "--sources", action="store_true", help="with --robots, also list where the numbers are from"
-    )
-    show = command("show", show_command)
-    show.add_argument("name", metavar="NAME", help="a derivation or the path of a script")
-    show.add_argument("--format", choices=("text", "latex"), default="text", help="default: text")
-    derive = command("derive", derive_command)
-    derive.add_argument("names", metavar="NAME", nargs="*", help="default: all derivations")
-    derive.add_argument(
-        "-o", "--output", metavar="DIR", type=Path, help="folder to write to; default: generated/"
-    )
-    derive.add_argument(
-        "--backend",
-        action="append",
-        choices=pipeline.BACKENDS,
-        help="can be repeated; default: all",
-    )
-    derive.add_argument(
-        "--no-crosscheck",
-        action="store_true",
-        help="with -o, do not compare the printed code with the symbolic source",
-    )
-    derive.add_argument(
-        "--timeout",
-        metavar="SECONDS",
-        type=_amount,
-        default=0.0,
-        help="computing time for each derivation, after which it is printed without an inverse; "
-        "default: 0, no limit",
-    )
-    check = command("check", check_command)
-    verify = command("verify", verify_command)
-    verify.add_argument("names", metavar="NAME", nargs="*", help="default: all derivations")
+    parsers.list_options(command("list", list_command))
+    parsers.show_options(command("show", show_command))
+    parsers.derive_options(command("derive", derive_command))
+    parsers.check_options(command("check", check_command))
+    parsers.verify_options(command("verify", verify_command))
     built = command("site", site_command)
     site.add_options(built)
-    for added in (derive, check, verify, built):
-        added.add_argument("-j", "--jobs", type=_positive, metavar="N", help="number of processes")
-    for added in (derive, check):
-        added.add_argument("--fresh", action="store_true", help="ignore stored proofs")
-    new = command("new", new_command)
-    new.add_argument("name", metavar="NAME", help="name of the mechanism and of the script")
-    new.add_argument(
-        "--from",
-        dest="table",
-        nargs=2,
-        required=True,
-        metavar=("KIND", "FILE"),
-        help=READ,
-    )
-    new.add_argument(
-        "--base",
-        metavar="LINK",
-        default="",
-        help="first link of a URDF or MJCF file; default: root",
-    )
-    new.add_argument(
-        "--tool", metavar="LINK", default="", help="last link of such a file; default: the only end"
-    )
-    new.add_argument(
-        "--ignore",
-        metavar="LENGTH",
-        type=_amount,
-        default=0.0,
-        help="of such a file, the longest length that is taken for 0",
-    )
-    new.add_argument(
-        "--modified", action="store_true", help="the dh table is in Craig's (proximal) convention"
-    )
-    new.add_argument(
-        "--given",
-        metavar="JOINT",
-        default="",
-        help="for 7 joints: the joint that is an input of the inverse, or arm_angle",
-    )
-    new.add_argument(
-        "--explain", action="store_true", help="say what was recognised and which chains were tried"
-    )
-    new.add_argument(
-        "--timeout",
-        metavar="SECONDS",
-        type=_amount,
-        default=60.0,
-        help="computing time, after which the script is written with what was found; 0: no limit; "
-        "default: 60",
-    )
-    new.add_argument(
-        "-o", "--output", metavar="DIR", type=Path, default=Path(), help="default: current folder"
-    )
+    parsers.jobs_option(built)
+    parsers.new_options(command("new", new_command))
     claims.add_options(command("claims", claims_command))
     plot.add_options(command("plot", plot_command))
-    drawn = command("figures", figures_command)
-    drawn.add_argument("names", metavar="NAME", nargs="*", help="default: all mechanisms")
-    drawn.add_argument(
-        "-o", "--output", metavar="DIR", type=Path, default=Path("build/figures"),
-        help="for pdf files and their captions; default: build/figures",
-    )  # fmt: skip
-    drawn.add_argument(
-        "--docs",
-        metavar="DIR",
-        type=Path,
-        help="also write the page figures.md and its drawings here",
-    )
-    errata = command("errata", errata_command)
-    errata.add_argument(
-        "paper", metavar="PAPER", nargs="?", help="the key of a paper; default: all papers"
-    )
+    parsers.figures_options(command("figures", figures_command))
+    parsers.errata_options(command("errata", errata_command))
     return top
-
-
-def _positive(text: str) -> int:
-    value = int(text)
-    if value < 1:
-        raise ValueError
-    return value
-
-
-def _amount(text: str) -> float:
-    value = float(text)
-    if not 0 <= value < math.inf:
-        raise ValueError
-    return value
 
 
 def robots_listed(sources: bool) -> str:
@@ -380,8 +265,8 @@ def verify_command(options: argparse.Namespace) -> None:
 def new_command(options: argparse.Namespace) -> None:
     """Write the skeleton of a derivation, with pose, Jacobians and a proposed inverse."""
     kind, path = options.table[0], Path(options.table[1])
-    if kind not in {given.split()[0] for given in FILES}:
-        raise CommandError(f"--from takes {READ}, not {kind}", 2)
+    if kind not in {given.split()[0] for given in parsers.FILES}:
+        raise CommandError(f"--from takes {parsers.READ}, not {kind}", 2)
     if not path.is_file():
         problem = f"{path} is not a file" if path.exists() else f"there is no file {path}"
         raise CommandError(problem, 2)

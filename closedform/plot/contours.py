@@ -30,11 +30,19 @@ def curves(ax: Any, x: Array, y: Array, values: Any, level: float, **style: Any)
     return len(drawn)
 
 
-def region(ax: Any, x: Array, y: Array, values: Any, low: float, high: float, **style: Any) -> None:
-    """Fill where values on a grid are between two levels."""
+def region(
+    ax: Any,
+    x: Array,
+    y: Array,
+    values: Any,
+    *,
+    levels: tuple[float, float] = (0.5, 1.5),
+    **style: Any,
+) -> None:
+    """Fill where values on a grid are between two levels, by default where truth values hold."""
     numbers = np.ma.masked_invalid(np.asarray(values, dtype=float))
     generator = contour_generator(x, y, numbers, fill_type="OuterOffset")
-    filled: Any = generator.filled(low, high)
+    filled: Any = generator.filled(*levels)
     points, offsets = filled
     for outline, ends in zip(points, offsets, strict=True):
         rings = [np.asarray(outline)[a:b] for a, b in pairwise(ends)]

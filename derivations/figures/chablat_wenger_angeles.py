@@ -244,14 +244,14 @@ def cartesian(
     x = section(y, away[:, None])
     reached = robot.workspace_contains(x, params)
     if regular is None:
-        region(ax, y, away, reached, 0.5, 1.5, color=PALE)
+        region(ax, y, away, reached, color=PALE)
     else:
         q, mode = in_mode(robot, x, regular, params)
         det = of_mode(robot.singularities(q, params), mode)[..., 3]
         with np.errstate(invalid="ignore"):
             positive = reached & (det > 0)
-        region(ax, y, away, reached, 0.5, 1.5, color="#ededed")
-        region(ax, y, away, positive, 0.5, 1.5, color=PALE)
+        region(ax, y, away, reached, color="#ededed")
+        region(ax, y, away, positive, color=PALE)
     curves(ax, y, away, reached, 0.5, color="#222222", linewidth=1.0)
     for k, branch in enumerate(branches):
         q, mode = in_mode(robot, x, branch, params)
@@ -276,7 +276,7 @@ def joint_space(robot: ModuleType, params: Any, ax: Any) -> list[Any]:
     q = np.stack([np.zeros((GRID, GRID)), *np.broadcast_arrays(t, t[:, None])], axis=-1)
     found = robot.fk(q, params)
     there = found.status[..., 0] != robot.Status.UNREACHABLE
-    region(ax, t, t, there, 0.5, 1.5, color=PALE)
+    region(ax, t, t, there, color=PALE)
     curves(ax, t, t, there, 0.5, color=colour(1), linewidth=1.4)
     factors = robot.singularities(q, params)
     for mode, style in ((0, "-"), (1, "--")):
@@ -429,7 +429,7 @@ def conditioning(robot: ModuleType) -> Any:
         with np.errstate(divide="ignore", invalid="ignore"):
             inverse = np.ma.masked_invalid(1 / kappa)
         for low, high, shade in zip([0, *levels], [*levels, 1.001], shades, strict=True):
-            region(ax, y, away, inverse, low, high, color=shade)
+            region(ax, y, away, inverse, levels=(low, high), color=shade)
         curves(ax, y, away, det, 0.0, color=colour(1), linewidth=1.4)
         dot = of_mode(_bend(robot, q, params)[..., None], mode)[..., 0]
         curves(ax, y, away, dot, 0.0, color="#222222", linewidth=1.4)

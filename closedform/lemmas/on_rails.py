@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import cast
 
 import sympy as sp
 
@@ -12,7 +13,7 @@ from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.amplitude import Amplitude
 from closedform.lemmas.carried import check_order, in_space, square
 from closedform.lemmas.leg_by_leg import SIGN, Choice, LegByLeg, named_in, size_of, tell
-from closedform.lemmas.legs import cross_in_plane, vector
+from closedform.lemmas.legs import Leg, cross_in_plane, vector
 from closedform.lemmas.loop import NO_MODE, export
 from closedform.lemmas.rails import Rail, named_number
 from closedform.mechanics.loops import velocity_matrices
@@ -37,7 +38,7 @@ class OnRails:
 
     def __post_init__(self) -> None:
         name = self.d.name
-        check_order(self.d, self.legs)
+        check_order(self.d, [leg for _, leg in self.driven])
         if list(self.d.task) not in ([], list(TASK)):
             raise ShapeError(f"{name}: the task of this hand is {', '.join(TASK)}")
         self.d.task = list(TASK)
@@ -57,6 +58,11 @@ class OnRails:
     @property
     def numbered(self) -> list[tuple[int, Rail]]:
         return [*enumerate(self.legs, 1)]
+
+    @property
+    def driven(self) -> list[tuple[int, Leg]]:
+        """The same, as legs of any kind."""
+        return [(k, cast("Leg", leg)) for k, leg in self.numbered]
 
     @cached_property
     def weights(self) -> tuple[sp.Expr, ...]:
@@ -346,7 +352,7 @@ def _draw(m: OnRails, at: _Posture) -> None:
 def _inverse(m: OnRails, loop: Step) -> None:
     d, g = m.d, m.d.program()
     solved = LegByLeg(d, g, g.let("size", size_of(d, m.target[:2])))
-    for (k, leg), arm in zip(m.numbered, m.turned, strict=True):
+    for (k, leg), arm in zip(m.driven, m.turned, strict=True):
         solved.solve(k, leg, m.hand + arm - leg.base)
     a, b, _ = m.coefficients
     yaw = m.target[2]

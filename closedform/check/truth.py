@@ -388,7 +388,7 @@ values_of, condition_of = cached(Values), cached(Condition)
 @cached
 def solutions_of(derivation: Derivation, function: Function, inverse: Inverse) -> Solutions:
     """The exact equations of an inverse; of a reduced one, those of its forward map."""
-    if isinstance(inverse.glue, Combination):
+    if isinstance(inverse.glue, Combination) and inverse.images:
         inverse = inverse.posed(function.symbols, derivation[inverse.images].values({}))
     return Solutions(derivation, function, inverse)
 

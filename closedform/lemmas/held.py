@@ -110,9 +110,9 @@ def _in_space(m: Carried, loop: Step) -> None:
     h, difference = real("h"), v - u
     rods = r + h * difference, r - h * difference
     all_three = (
-        "Each parallelogram takes one freedom of turning from the hand: the rate omega with which "
-        "it turns is at right angles to the normal n of the parallelogram.  So the hand cannot "
-        "turn, unless the three normals are in one plane (constraint singularity)."
+        "  Each parallelogram takes one freedom of turning from the hand: the rate omega with "
+        "which it turns is at right angles to the normal n of the parallelogram.  So the hand "
+        "cannot turn, unless the three normals are in one plane (constraint singularity)."
     )
     m.d.step(
         "The parallelograms",

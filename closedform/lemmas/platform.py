@@ -21,6 +21,7 @@ from closedform.algebra.solutions import count_solutions
 from closedform.lemmas.carried import check_order, check_plain, in_space, rate_of, square
 from closedform.lemmas.leg_by_leg import LegByLeg, named_in, signs_of_modes, size_of
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut, cross_in_plane, vector
+from closedform.lemmas.on_rails import on_rails
 from closedform.lemmas.rails import Rail
 from closedform.mechanics.frames import hat, pose_symbols, require_pose, rotation
 from closedform.mechanics.skeleton import skeleton
@@ -30,6 +31,8 @@ from closedform.model.functions import Program, real
 DEGREE_IN_SPACE = 40
 """Of six points of a body that are at given distances from six points of the ground."""
 
+TASK_IN_PLANE = 3
+"""The number of coordinates of a hand that turns in a plane."""
 TOGETHER = "The pose and the joints have to belong together, as ik gives them."
 
 
@@ -38,7 +41,8 @@ def platform(d: Derivation, legs: Sequence[Leg]) -> None:
 
     It exports ``ik``, ``jacobian_parallel`` (A), ``jacobian_serial`` (the diagonal of B),
     ``jacobian_inverse`` (B^-1*A), ``singularities``, ``skeleton``, in a plane ``jacobian`` and
-    ``determinant``, and ``workspace_contains`` where the reach of the legs is limited.
+    ``determinant``, and ``workspace_contains`` where the reach of the legs is limited.  On three
+    rails in a plane there is also ``fk``, with two assembly modes.
 
     Parameters
     ----------
@@ -49,6 +53,10 @@ def platform(d: Derivation, legs: Sequence[Leg]) -> None:
     legs
         see :mod:`closedform.lemmas.legs`; ``on_hand`` is seen in the frame of the hand
     """
+    rails = [leg for leg in legs if isinstance(leg, Rail)]
+    if len(rails) == len(legs) == len(d.actuated) == TASK_IN_PLANE:
+        on_rails(d, rails)
+        return
     m = Platform(d, tuple(legs))
     if not d.singularities:
         d.singularities = (*(f"leg {k}" for k, _ in m.numbered), "all legs")

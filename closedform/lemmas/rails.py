@@ -80,15 +80,21 @@ class Rail:
     def solve(self, chain: Naming, w: sp.Matrix, sigma: sp.Symbol) -> Solution:
         q, cross = self.joint, sp.simplify(cross_in_plane(self.rate, self.way))
         off = chain.let("off", cross_in_plane(w, self.way))
+        named = named_number(chain.program, f"cross{chain.tag}", cross)
         lemma = Lemma(
             "oblique coordinates",
             r"q = \frac{w_1 t_2 - w_2 t_1}{D}",
-            (q * cross - off,),
-            {q: off / cross},
+            (q * named - off,),
+            {q: off / named},
             1,
             roles=((r"\mathbf w", sp.Matrix(w)), (r"\mathbf t", self.way), ("D", cross)),
         )
         return Solution(Link((q,), lemma.equations, {}, lemma), lemma[q], self.normal)
+
+
+def named_number(program: Program, name: str, number: sp.Expr) -> sp.Expr:
+    """A rational number as it is; any other under a name, for all of whose values a lemma holds."""
+    return number if number.is_Rational else program.let(name, number)
 
 
 def two_rails(
@@ -101,20 +107,24 @@ def two_rails(
         raise ShapeError(f"the rails of {a.joint} and {b.joint} are parallel")
     if not across.is_number:
         raise ShapeError(f"the rails of {a.joint} and {b.joint} have directions in parameters")
+    s, t = (
+        sp.Matrix([named_number(program, f"{n}_{i}", e) for i, e in zip("xy", r.way, strict=True)])
+        for n, r in zip("st", rails, strict=True)
+    )
     start = len(program.body)
-    far = program.let("along", cross_in_plane(ends[1] - ends[0], b.way) / across)
-    found = ends[0] + far * a.way
+    far = program.let("along", cross_in_plane(ends[1] - ends[0], t) / cross_in_plane(s, t))
+    found = ends[0] + far * s
     lemma = Lemma(
         "oblique coordinates",
         r"\lambda = \frac{w_1 t_2 - w_2 t_1}{D}",
-        tuple(r.normal.dot(hand - e) for r, e in zip(rails, ends, strict=True)),
+        tuple(cross_in_plane(way, hand - e) for way, e in zip((s, t), ends, strict=True)),
         dict(zip(hand, found, strict=True)),
         1,
         roles=((r"\mathbf w", ends[1] - ends[0]), (r"\mathbf t", b.way), ("D", across)),
     )
     return Meeting(
         Link(tuple(hand), lemma.equations, {}, lemma, tuple(program.body[start:])),
-        tuple(far * a.way),
+        tuple(far * s),
         sp.sign(across),
         abs(across),
         sp.Matrix.vstack(a.normal.T, b.normal.T),
@@ -168,4 +178,4 @@ def rail_and_circle(
     )
 
 
-__all__ = ["Rail", "rail_and_circle", "two_rails"]
+__all__ = ["Rail", "named_number", "rail_and_circle", "two_rails"]

@@ -13,8 +13,8 @@ from closedform.scaffold.tables import Table, add_joint
 from closedform.scaffold.uprights import HINGED, uprights
 
 UNSAID = "say what it measures"
-DEGREES = {1: 6, 2: 4, 3: 2}
-"""Of the forward problem of a hand that turns in a plane, by the number of its rails."""
+DEGREES = {1: 6, 2: 4}
+"""Of the forward problem of a hand that turns in a plane, if some of its three legs are rails."""
 FUNCTIONS = {"Rational", "Abs"}
 """What a leg calls of SymPy that begins with a capital letter."""
 
@@ -56,8 +56,8 @@ def loop_script(name: str, loop: Loop, origin: str) -> str:
 def _check_turning(found: Legs, legs: Sequence[LoopLeg], struts: Sequence[LoopLeg]) -> None:
     """Refuse a hand that may turn with too few driven joints, or too many."""
     loop, body = found.loop, found.turning
-    if any(leg.passive for leg in legs):
-        rails = sum(bool(leg.passive) for leg in legs)
+    rails = sum(bool(leg.passive) for leg in legs)
+    if rails and not rails == len(legs) == TURNING[2]:
         degree = DEGREES.get(rails) if len(legs) == TURNING[2] else None
         raise loop.error(
             f"{body} may turn; this is not known for a hand on a rail"

@@ -418,8 +418,16 @@ class Legs:
         points, place = loop.bodies[far], sp.zeros(2, 1)
         if loop.hand in points:
             place = points.get(slide.at, points[loop.hand]) - points[loop.hand]
-        elif not any(j.at == loop.hand for j in loop.of(far)):
-            raise loop.error(f"{slide.name} does not lead to the hand {loop.hand}")
+        else:
+            pins = [
+                j
+                for j in loop.of(far)
+                if j is not slide
+                and (j.at == loop.hand or any(loop.hand in loop.bodies[b] for b in j.between))
+            ]
+            if not pins:
+                raise loop.error(f"{slide.name} does not lead to the hand {loop.hand}")
+            place = self.place_of(pins[0], far)
         return LoopLeg(
             joint,
             f"Rail({joint.name}, {slide.name}, {self.at(self.point(body, slide))}, "

@@ -60,7 +60,11 @@ for axis in "xyz":
 d.step(
     "Denavit-Hartenberg table",
     "Standard (distal) frames.  The axes 2 and 3 are parallel, so their angles add.",
-    {r"(a_i, \alpha_i, d_i, \theta_i)": sp.Matrix(rows)},
+    {},
+    rows=[
+        ("Link", "a_i", "alpha_i", "d_i", "theta_i"),
+        *((sp.Integer(i), *map(sp.sympify, row)) for i, row in enumerate(rows, 1)),
+    ],
 )
 arm = from_dh(d, rows)
 forearm_turn = theta2 + theta3

@@ -33,6 +33,8 @@ d = Derivation(
 
 def length(name: str, millimetres: int, meaning: str, *, nonnegative: bool = True) -> sp.Symbol:
     value, source = sp.Rational(millimetres, 1000), "KUKA KR 6 R700 sixx, as in opw_kinematics"
+    if name.startswith("c"):  # upright, it would be a cosine
+        d.write(name, rf"\ell_{name[1:]}")
     return d.parameter(
         name, value=value, unit="m", meaning=meaning, source=source, nonnegative=nonnegative
     )
@@ -63,8 +65,13 @@ for axis in "xyz":
     d.write(f"w_{axis}", meaning=f"component {axis} of the centre of the wrist")
 d.step(
     "Denavit-Hartenberg table",
-    "Standard (distal) frames.  The axes 2 and 3 are parallel, so their angles add.",
-    {r"(a_i, \alpha_i, d_i, \theta_i)": sp.Matrix(rows)},
+    "Standard (distal) frames.  The axes 2 and 3 are parallel, so their angles add.  The lengths "
+    "that the paper calls c with an index are an l here, because such a c is a cosine.",
+    {},
+    rows=[
+        ("Link", "a_i", "alpha_i", "d_i", "theta_i"),
+        *((sp.Integer(i), *map(sp.sympify, row)) for i, row in enumerate(rows, 1)),
+    ],
 )
 arm = from_dh(d, rows)
 forearm_turn = theta2 + theta3

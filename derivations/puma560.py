@@ -64,7 +64,11 @@ d.write("elbow", r"\eta", "angle at the elbow, of the triangle of the arm")
 d.step(
     "Denavit-Hartenberg table",
     "Standard (distal) frames.  The axes 2 and 3 are parallel, so their angles add.",
-    {r"(a_i, \alpha_i, d_i, \theta_i)": sp.Matrix(rows)},
+    {},
+    rows=[
+        ("Link", "a_i", "alpha_i", "d_i", "theta_i"),
+        *((sp.Integer(i), *map(sp.sympify, row)) for i, row in enumerate(rows, 1)),
+    ],
 )
 arm = from_dh(d, rows)
 X = a2 * cos(theta2) + a3 * cos(theta2 + theta3) - d4 * sin(theta2 + theta3)

@@ -2,7 +2,7 @@
 
 import sympy as sp
 from closedform.derivations.papers.textbook import TEXTBOOK
-from sympy import pi
+from sympy import cos, pi, sin
 
 from closedform import (
     Chain,
@@ -79,7 +79,7 @@ d.step(
     "Inverse: the shoulder",
     "The wrist, which is d6 behind the tool, is d4 beside the plane of the arm.  Two shoulders put "
     "it there; nearer to the first axis than d4 there is none.",
-    {"w": sp.Matrix(wrist).T, r"w_x \sin\theta_1 - w_y \cos\theta_1": d4},
+    {"w": ik.p - d6 * ik.R[:, 2], r"w_x \sin\theta_1 - w_y \cos\theta_1": d4},
 )
 first = in_plane(shoulder)
 M = ik.matrix("M", first * ik.R)
@@ -91,10 +91,10 @@ reaching = Reaching(ik, across, upward, d5, L2, L3, quarter_back, shoulder.lever
 lifted = ik.solve(zyz, M, lift, beta, theta6, {+1: "noflip", -1: "flip"}, reaching=reaching)
 d.step(
     "Inverse: the wrist",
-    "Seen from the plane of the arm the tool is turned by Rz(phi) Ry(-theta5) Rz(theta6), where "
-    "phi = theta2 + theta3 + theta4 is what the parallel axes turn together.  Where sin(theta5) "
-    "vanishes, four axes are parallel, and phi is free within the reach of the elbow: we return "
-    "one that puts the wrist in the middle of this reach, so that no pose is lost.",
+    "Seen from the plane of the arm, the tool is turned about z, y and z, by phi, -theta5 and "
+    "theta6, where phi = theta2 + theta3 + theta4 is what the parallel axes turn together.  Where "
+    "sin(theta5) vanishes, four axes are parallel, and phi is free within the reach of the elbow: "
+    "we return one that puts the wrist in the middle of this reach, so that no pose is lost.",
     {"R_z(\\phi) R_y(-\\theta_5) R_z(\\theta_6)": first * ik.R},
 )
 ex = ik.let("ex", d5 * lifted.s - across)
@@ -104,7 +104,8 @@ d.step(
     "Inverse: the elbow",
     "What is left is a planar two-link arm of the lengths L2 and L3, and theta4 from the sum phi.",
     {
-        r"L_2 u(\theta_2) + L_3 u(\theta_2 + \theta_3)": sp.Matrix([ex, ey]).T,
+        "e_x": L2 * cos(theta2) + L3 * cos(theta2 + theta3),
+        "e_y": L2 * sin(theta2) + L3 * sin(theta2 + theta3),
         r"\theta_4": lift - theta2 - theta3,
     },
 )

@@ -16,21 +16,21 @@ from closedform.model.pair import Pair
 theorem(
     "ZYZ angles",
     statement=r"""Let $R$ be a rotation with $h = \sqrt{R_{13}^2 + R_{23}^2} > 0$.  The equation
-$R_z(\theta_1)\, R_y(\theta_2)\, R_z(\theta_3) = R$ has two solutions with angles in $(-\pi,
-\pi]$. For $\sigma = \pm 1$, the sign of $\sin\theta_2$, they are
-$$(\cos\theta_1, \sin\theta_1) = (c_1, s_1) = \frac{\sigma}{h}(R_{13}, R_{23}), \qquad
-\theta_2 = \operatorname{atan2}(c_1 R_{13} + s_1 R_{23},\ R_{33}),$$
-$$\theta_3 = \operatorname{atan2}(c_1 R_{21} - s_1 R_{11},\ c_1 R_{22} - s_1 R_{12}).$$""",
-    proof=r"""The third column of the product is $(\cos\theta_1\sin\theta_2,\
-\sin\theta_1\sin\theta_2,\ \cos\theta_2)$.  So $|\sin\theta_2| = h \ne 0$; if $\sigma$ is its
-sign, $c_1$ and $s_1$ are as stated, and $\sin\theta_2 = c_1 R_{13} + s_1 R_{23}$.  The equation
-leaves $R_z(\theta_1)^T R = R_y(\theta_2)\, R_z(\theta_3)$, whose second row is $(\sin\theta_3,
-\cos\theta_3, 0)$; this gives $\theta_3$.  Conversely, for these $\theta_1$ and $\theta_2$ the
-third column of $R_z(\theta_1)^T R$ is $(\sigma h, 0, R_{33})$, which is that of $R_y(\theta_2)$.
-So $R_y(\theta_2)^T R_z(\theta_1)^T R$ is a rotation about the $z$ axis.  $R_y$ does not change
-second rows, so its angle is $\theta_3$.""",
+$R_z(\lambda)\, R_y(\mu)\, R_z(\nu) = R$ has two solutions with angles in $(-\pi, \pi]$.  For
+$\sigma = \pm 1$, the sign of $\sin\mu$, they are
+$$(\cos\lambda, \sin\lambda) = \frac{\sigma}{h}(R_{13}, R_{23}), \qquad
+\mu = \operatorname{atan2}(R_{13}\cos\lambda + R_{23}\sin\lambda,\ R_{33}),$$
+$$\nu = \operatorname{atan2}(R_{21}\cos\lambda - R_{11}\sin\lambda,\
+R_{22}\cos\lambda - R_{12}\sin\lambda).$$""",
+    proof=r"""The third column of the product is $(\cos\lambda\sin\mu,\ \sin\lambda\sin\mu,\
+\cos\mu)$.  So $|\sin\mu| = h \ne 0$; if $\sigma$ is its sign, $\cos\lambda$ and $\sin\lambda$ are
+as stated, and $\sin\mu = R_{13}\cos\lambda + R_{23}\sin\lambda$.  The equation leaves
+$R_z(\lambda)^T R = R_y(\mu)\, R_z(\nu)$, whose second row is $(\sin\nu, \cos\nu, 0)$; this gives
+$\nu$.  Conversely, for these $\lambda$ and $\mu$ the third column of $R_z(\lambda)^T R$ is
+$(\sigma h, 0, R_{33})$, which is that of $R_y(\mu)$.  So $R_y(\mu)^T R_z(\lambda)^T R$ is a
+rotation about the $z$ axis.  $R_y$ does not change second rows, so its angle is $\nu$.""",
     exception=r"""If $h = 0$, the first and the last axis coincide.  For $R_{33} = 1$ only
-$\theta_1 + \theta_3$ is determined, for $R_{33} = -1$ only $\theta_1 - \theta_3$.""",
+$\lambda + \nu$ is determined, for $R_{33} = -1$ only $\lambda - \nu$.""",
 )
 
 
@@ -102,9 +102,10 @@ def zyz_lemma(
     right = sp.Matrix([[cm * cl, -cm * sl, sm], [sl, cl, 0], [-sm * cl, sm * sl, cm]])
     lemma = Lemma(
         "ZYZ angles",
-        r"(c_1, s_1) = \sigma (R_{13}, R_{23})/h,\ h = \sqrt{R_{13}^2 + R_{23}^2};\quad "
-        r"\theta_2 = \operatorname{atan2}(c_1 R_{13} + s_1 R_{23}, R_{33});\quad "
-        r"\theta_3 = \operatorname{atan2}(c_1 R_{21} - s_1 R_{11}, c_1 R_{22} - s_1 R_{12})",
+        r"(\cos\lambda, \sin\lambda) = \sigma (R_{13}, R_{23})/h,\ h = \sqrt{R_{13}^2 + R_{23}^2},"
+        r"\quad \mu = \operatorname{atan2}(R_{13}\cos\lambda + R_{23}\sin\lambda,\ R_{33}),\quad "
+        r"\nu = \operatorname{atan2}(R_{21}\cos\lambda - R_{11}\sin\lambda,\ "
+        r"R_{22}\cos\lambda - R_{12}\sin\lambda)",
         tuple(left - right),
         {
             first: pair.angle + flip,
@@ -112,7 +113,7 @@ def zyz_lemma(
             last: rest.angle + flip,
         },
         2,
-        roles=tuple((rf"\theta_{k}", angle) for k, angle in enumerate(angles, 1)),
+        roles=tuple(zip((r"\lambda", r"\mu", r"\nu"), angles, strict=True)),
     )
     return lemma, rest
 

@@ -19,6 +19,7 @@ from closedform.mechanics.factored import factored_determinant
 from closedform.mechanics.frames import (
     denavit_hartenberg,
     exponential,
+    hat,
     homogeneous,
     reduce_circle,
     rotation,
@@ -30,6 +31,16 @@ from closedform.mechanics.linkwise import Named
 from closedform.mechanics.mobility import dependent_in_chain, dependent_joints, singular_everywhere
 from closedform.mechanics.skeleton import serial_skeleton, skeleton
 from closedform.model.derivation import Derivation
+
+SPELLED = 120
+"""The most operations of a Jacobian that is written out; a longer one is told by the geometric."""
+SHIFT = r"\begin{bmatrix} 1 & [p]_\times \\ 0 & 1 \end{bmatrix} J"
+TURN = r"\begin{bmatrix} R^T & 0 \\ 0 & R^T \end{bmatrix} J"
+TURNED = (
+    "  The velocity in J is that of the tool.  J_s has that of the point that passes the origin of "
+    "the base, and J_b has the axes of the tool: p is the position in T, R its rotation, and "
+    "[p]_× the matrix of the cross product with p."
+)
 
 
 @dataclass(frozen=True)
@@ -178,18 +189,23 @@ class Serial:
         geometric = linkwise.geometric_jacobian(d.program(), links, q)
         space = linkwise.space_jacobian(d.program(), links, q)
         body = linkwise.body_jacobian(d.program(), links, q)
+        spelled = max(sp.count_ops(self.space), sp.count_ops(self.body)) <= SPELLED
         d.step(
             "Jacobians",
             "The columns are the twists (v; omega) of the joints as they stand: that of a revolute "
-            "joint is its axis w and the velocity -w x p that it gives to the origin, that of a "
-            "prismatic joint its direction.  Differentiating the pose gives the same.",
-            {"J": self.geometric, "J_s": self.space, "J_b": self.body},
+            "joint is its axis w and the velocity -w × p that it gives to the origin, that of a "
+            "prismatic joint its direction.  Differentiating the pose gives the same."
+            + ("" if spelled else TURNED),
+            {"J": self.geometric, "J_s": self.space, "J_b": self.body}
+            if spelled
+            else {"J": self.geometric, "J_s": SHIFT, "J_b": TURN},
             proves=(
                 "J is the derivative of the position with the axes below it; the derivative of T "
                 "by each joint is its column of J_s, as a matrix, times T, and T times its "
-                "column of J_b."
+                "column of J_b." + ("" if spelled else "  Both follow from J as stated.")
             ),
             equal=[
+                *([] if spelled else self._from_geometric()),
                 (self.geometric[:3, :], self.position.jacobian(q)),
                 (self.geometric[3:, :], self.space[3:, :]),
                 (geometric.explicit, self.geometric),
@@ -216,6 +232,16 @@ class Serial:
             summary = f"Twist (v; omega) of the tool in {frame} per joint rate."
             _export(d, name, summary, q, "J", found, equation=equation)
         return self.pose if task is None else task.values
+
+    def _from_geometric(self) -> list[tuple[sp.Matrix, sp.Matrix]]:
+        """The Jacobians of the twists and the forms in which they follow from the geometric one."""
+        v, w, R = self.geometric[:3, :], self.geometric[3:, :], self.pose[:3, :3]
+        return [
+            (self.space[:3, :], v + hat(self.position) * w),
+            (self.space[3:, :], w),
+            (self.body[:3, :], R.T * v),
+            (self.body[3:, :], R.T * w),
+        ]
 
     def _export_pose_task(
         self, d: Derivation, pose: Named, geometric: Named, singular: Mapping[str, sp.Expr] | None

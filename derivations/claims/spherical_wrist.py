@@ -295,11 +295,11 @@ def inverse_orientation(d: Derivation, wrist: Wrist, known: Notation) -> None:
         "The inverse of the wrist has no case for $\\sin\\theta = 0$",
         Gravity.OMISSION,
         why="If $\\sin\\theta = 0$, then $R_{13} = R_{23} = R_{31} = R_{32} = 0$, and eqs. (13) "
-        "and (16) contain a tan 2(0, 0).  These rotations can be reached: the first and the last "
+        "and (16) contain atan2(0, 0).  These rotations can be reached: the first and the last "
         "axis coincide, and only the sum or the difference of their angles is determined.  One of "
         "the two may be chosen.",
         use="The home position of the wrist, $\\theta_4 = \\theta_5 = \\theta_6 = 0$, is such a "
-        "case.  With the usual a tan 2(0, 0) = 0 both angles come out as 0, so the hand is turned "
+        "case.  With the usual atan2(0, 0) = 0 both angles come out as 0, so the hand is turned "
         "about its axis by a wrong angle unless the rotation is the identity.",
     )
     outer = EULER[0], EULER[2]

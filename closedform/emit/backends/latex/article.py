@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import sympy as sp
+from sympy.logic.boolalg import Boolean
 
 from closedform.emit.backends.latex import bibliography, lemmas, symbols
 from closedform.emit.backends.latex.algorithm import Algorithm
@@ -102,10 +103,12 @@ class Page(Sheet):
         return self.math(joint.symbol), escape(joint.name), joint.kind, role
 
     def step(self, step: Step) -> dict[str, Any]:
-        self.lines.clear()
+        self.lines.clear(spend=True)
         shown: list[Equation] = []
         for lhs, value in step.shown:
             left = upright(lhs)
+            if isinstance(value, Boolean) and not value.is_Symbol:
+                left += ":"  # what the condition is called
             shown += self.equations(left, self.quantities(value))
             self.quantities.define(left, value)
         fresh = [run for run in runs(shown) if not self.numbers.is_shown(run)]
@@ -250,7 +253,12 @@ class Page(Sheet):
     def outputs(self, function: Function) -> list[Equation]:
         self.lines.clear()
         names = function.entries
-        return [e for a in function.outputs for e in self.array(a, names=names)]
+        rows = list[Equation]()
+        for array in function.outputs:
+            own = [self.math(n) for n in names] or self.named(array)
+            entries = [self.quantities.of_a_function(e, own) for e in array.entries]
+            rows += self.array(array, entries, names)
+        return rows
 
 
 def indexed(title: str) -> str:
@@ -318,7 +326,7 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
     legend = page.legend()
     symbols.require_distinct(derivation, page.math, legend, page.printer.names)
     return context | {
-        "legend": ",\\quad ".join(map(" = ".join, legend)),
-        "symbols": symbols.table(derivation, page.numbers, text, page.math),
+        "legend": ",\\quad ".join(rf"\mbox{{${short} = {full}$}}" for short, full in legend),
+        "symbols": symbols.joined(symbols.table(derivation, page.numbers, text, page.math)),
         "theorems": lemmas.context(lemmas.lemmas_of(derivation), {}),
     }

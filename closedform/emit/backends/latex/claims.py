@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from closedform.emit.backends.latex.equations import reference
-from closedform.emit.backends.latex.prose import escape, mixed, quoted
+from closedform.emit.backends.latex.prose import Prose, escape, mixed, quoted
 from closedform.emit.errata import Entry, gathered, part
 from closedform.model.claims import HOLDS, PROVED_UNDER
 from closedform.model.derivation import Derivation, Step
 from closedform.proof.claims import ClaimResult
 from closedform.proof.prove import Proof
+
+FLAT = re.compile(r"\\frac\{((?:[^{}+-]|\{[^{}+-]*\})*)\}\{(\d+)\}")
+"""A fraction that can stand in a line."""
+TERM = r"\|?(?:\d+ )?[A-Z]+\d?(?: [-+] (?:\d+ )?[A-Z]+\d?)*\|?"
+COMPARED = rf"{TERM}(?: (?:<=|>=|=|<|>) {TERM})+"
+"""A comparison of distances in plain text: ``CD <= L0 + 2 L1``."""
 
 
 @dataclass(frozen=True)
@@ -22,6 +30,10 @@ class Claims:
     derivation: Derivation
     proof: Proof
     labels: Sequence[Sequence[str]] = ()
+
+    @cached_property
+    def prose(self) -> Prose:
+        return Prose(self.derivation)
 
     def judged(self, published: str) -> int:
         """The number of the first claim about an equation of the paper, or 0."""
@@ -64,13 +76,22 @@ class Claims:
             "printed": mixed(claim.printed),
             "paraphrase": claim.paraphrase,
             "found": "Assumption:" if claim.kind == PROVED_UNDER else "Found:",
-            "evidence": mixed(claim.evidence),
+            "evidence": self.told(claim.evidence),
             "reading": mixed(claim.readings[0].text) if claim.readings else "",
-            "others": [(mixed(r.text), r.kind, mixed(r.evidence)) for r in claim.readings[1:]],
+            "others": [(mixed(r.text), r.kind, self.told(r.evidence)) for r in claim.readings[1:]],
             "corrected": mixed(claim.corrected),
             "erratum": claim.erratum,
             "title": titles.get(claim.erratum, ""),
         }
+
+    def told(self, evidence: str) -> str:
+        """What was found, in a line: fractions are flat, comparisons and joints are formulas."""
+        parts = FLAT.sub(r"\1/\2", evidence).split("$")
+        joints = [rf"\b{j.name}\b" for j in self.derivation.joints if re.search(r"\d", j.name)]
+        formula = "|".join([COMPARED, *joints])
+        for i in range(0, len(parts), 2):
+            parts[i] = re.sub(formula, lambda m: f"${self.prose.formula(m[0])}$", parts[i])
+        return mixed("$".join(parts))
 
     def equations_of(self, label: str) -> str:
         """The equations that derive those of a claim."""

@@ -52,8 +52,14 @@ class Numbered:
     numbered: bool = False
 
     @property
+    def called(self) -> bool:
+        """Whether the left side is what the formula is called: ``psi = 0:``."""
+        return self.left.endswith(":")
+
+    @property
     def text(self) -> str:
-        return f"{self.left} = {self.right}" if self.left else self.right
+        sign = r"\quad" if self.called else "="
+        return f"{self.left} {sign} {self.right}" if self.left else self.right
 
 
 def runs(lines: Iterable[Line]) -> list[list[Line]]:
@@ -95,7 +101,8 @@ class Numbers:
         content = self._content(run)
         self.values.setdefault(content, label)
         self.right.setdefault(content[1], label)
-        for part in run[0][0].split("="):
+        left = run[0][0]
+        for part in [] if left.endswith(":") else left.split("="):
             if is_name(part.strip()):
                 self.defined.setdefault(without_power(canonical(part)), label)
         for k, (left, right) in enumerate(run, 1):

@@ -36,13 +36,15 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         super().__init__({"long_frac_ratio": 20})
         self.joints, self.legend = joints, dict[str, str]()
         self.names = dict(names or {})
+        self.kept = frozenset[str]()
+        """Names of parameters: a length ``c1`` is not the cosine of ``theta1``."""
         self.written: dict[str, str] = {}
         """What the derivation says of how symbols are written, by their names."""
 
     def _print_Symbol(self, expr: sp.Symbol, style: str = "plain") -> str:
         if known := self.written.get(expr.name) or self.names.get(expr):
             return known
-        pair = re.fullmatch(r"([cs])(\d)", expr.name)
+        pair = None if expr.name in self.kept else re.fullmatch(r"([cs])(\d)(?:_0)?", expr.name)
         joint = next((j for j in self.joints if pair and j.name == f"theta{pair[2]}"), None)
         if pair and joint is not None:  # the cosine or the sine of a joint that was solved
             return str(self._print(sp.cos(joint) if pair[1] == "c" else sp.sin(joint)))
@@ -170,20 +172,22 @@ class Printer(LatexPrinter):  # type: ignore[misc]
         if angle.is_Add and under.is_Integer and under != 1:
             full = rf"\frac{{{self._print(over)}}}{{{under}}}"
         else:
-            full = self._print(angle) if angle.is_Symbol else f"({self._print(angle)})"
+            full = self._print(angle)
+            if not angle.is_Symbol and not FRACTION.fullmatch(full):
+                full = rf"\left({full}\right)"
         if all(numbers):
             index = sorted(n[1] + (rf"\mathrm{{{n[2]}}}" if n[2] else "") for n in numbers if n)
             short = rf"\mathrm{{{function[0]}}}_{{{''.join(index)}}}"
-            self.legend[short] = rf"\{function} {full}"
+            self.legend[short] = loosen(rf"\{function} {full}")
             return short + power
         return rf"\{function}{power} {full}"
 
     def _print_atan(self, expr: sp.Expr, exp: str | None = None) -> str:
-        return rf"\arctan({self._print(expr.args[0])})"
+        return rf"\arctan\left({self._print(expr.args[0])}\right)"
 
     def _print_atan2(self, expr: sp.Expr) -> str:
         y, x = map(self._print, expr.args)
-        return rf"\operatorname{{atan2}}({y},\ {x})"
+        return rf"\operatorname{{atan2}}\left({y},\ {x}\right)"
 
     def _print_Resolvent(self, expr: sp.Expr) -> str:
         return rf"\operatorname{{root}}({', '.join(map(self._print, expr.args))})"

@@ -342,7 +342,7 @@ class Told:
                 text = page.math(values[-1])
             if canonical(text) == canonical(letter):
                 continue
-            if measure(letter + text) <= FITS / 3:
+            if measure(letter + text) <= FITS / 3 and r"\frac" not in text:
                 inline.append(f"${letter} = {text}$")
             else:
                 rows.append((letter, text))
@@ -517,7 +517,33 @@ class Told:
 def statement(lemma: Lemma) -> list[str]:
     """The statement of a lemma: what it solves, and the solution on a line of its own."""
     problem, arrow, solution = loosen(lemma.statement).partition(r"\;\Rightarrow\;")
-    return [problem.strip(), rf"\Rightarrow\quad {solution.strip()}"] if arrow else [problem]
+    if not arrow:
+        return packed("", clauses(problem))
+    return [problem.strip(), *packed(r"\Rightarrow\quad ", clauses(solution))]
+
+
+def clauses(text: str) -> list[str]:
+    """The formulas of a list, each with the sign behind it; a space in TeX separates them."""
+    parts, depth, start = list[str](), 0, 0
+    for found in re.finditer(r"[({[]|[])}]|([,;:]?)\\(?:quad|(?<=,\\) )", text):
+        if found[0] in "({[":
+            depth += 1
+        elif found[0] in "])}":
+            depth -= 1
+        elif depth == 0:
+            parts.append(text[start : found.start()].strip() + found[1])
+            start = found.end()
+    return [*parts, text[start:].strip()]
+
+
+def packed(lead: str, texts: Sequence[str]) -> list[str]:
+    """Formulas beside each other as far as they fit; later lines start below the first formula."""
+    rows = [lead]
+    for text in texts:
+        if rows[-1] not in (lead, "") and measure(rf"{rows[-1]} {text}") > FITS:
+            rows.append(rf"\phantom{{{lead.strip()}}}" if lead else "")
+        rows[-1] += text if rows[-1] in (lead, "") else rf"\quad {text}"
+    return rows
 
 
 def block(array: Array) -> list[sp.Expr]:

@@ -22,8 +22,14 @@ NARROWEST = 9.0
 MATRIX_ENTRY = re.compile(r"([A-Z])(\d)_(\d)(\d)")
 
 
+TUPLE = re.compile(r"\(([^()]+)\)_\{?([^{}]+)\}?")
+"""A vector that is called by its coordinates: ``(x, y, z)_T``."""
+
+
 def element(base: str, index: str) -> str:
-    """The name of an entry of a matrix or a vector."""
+    """The name of an entry of a matrix or a vector: ``x_{T}`` of ``(x, y, z)_T``."""
+    if called := TUPLE.fullmatch(base):
+        return f"{called[1].split(',')[int(index) - 1].strip()}_{{{called[2]}}}"
     if subscript := re.fullmatch(r"(.+?)_\{?([^{}]+)\}?", base):
         return f"{subscript[1]}_{{{subscript[2]},{index}}}"
     return f"{base}_{{{index}}}" if " " not in base else f"({base})_{{{index}}}"
@@ -32,31 +38,43 @@ def element(base: str, index: str) -> str:
 class Quantities:
     """Quantities that an equation has defined: later formulas contain their names.
 
-    A name that is defined again has its new meaning from there on.  ``kept`` are the left sides
-    that define nothing: joints, and what the mechanism is to reach.
+    A name that is defined again, as the same quantity of the target, has its new meaning from there
+    on; the functions that follow the steps are of the joints, and ``former`` meanings serve there.
+    ``kept`` are the left sides that define nothing: joints, and what the mechanism is to reach.
     """
 
     def __init__(self, printer: Printer, kept: Iterable[str]):
         self.printer, self.kept = printer, frozenset(kept)
         self.known: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
+        self.former: dict[str, tuple[sp.Expr, sp.Symbol]] = {}
 
     def define(self, left: str, value: Any) -> None:
         if not NAME.fullmatch(left) or left in self.kept:
             return
-        self.known.pop(left, None)
+        if left in self.known:
+            self.former[left] = self.known.pop(left)
         named = isinstance(value, sp.Add) or (isinstance(value, sp.Pow) and value.base.is_Add)
         if named and measure(self.printer.math(value)) >= NARROWEST:
             symbol = real(f"{left} ")  # a space: it is nobody else's name
             self.printer.names[symbol] = left
             self.known[left] = value, symbol
+            self.former.pop(left, None)
+
+    def of_a_function(self, value: sp.Expr, without: Iterable[str]) -> Any:
+        """A result in names that the steps have defined, ``without`` its own."""
+        known = {**self.former, **self.known}
+        return self._named(value, [k for left, k in known.items() if left not in without])
 
     def __call__(self, value: Any) -> Any:
         """A value with the names of the quantities that occur in it."""
         if isinstance(value, sp.MatrixBase):
             return value.applyfunc(self)
+        return self._named(value, self.known.values())
+
+    def _named(self, value: Any, known: Iterable[tuple[sp.Expr, sp.Symbol]]) -> Any:
         if not isinstance(value, sp.Expr) or value.is_Atom or sp.count_ops(value) > LARGEST:
             return value
-        known = sorted(self.known.values(), key=lambda k: (-sp.count_ops(k[0]), str(k[1])))
+        known = sorted(known, key=lambda k: (-sp.count_ops(k[0]), str(k[1])))
         for expr, symbol in known:
             if expr.free_symbols <= value.free_symbols:
                 whole = value.xreplace({expr: symbol, -expr: -symbol})

@@ -72,6 +72,10 @@ ARTICLE = re.compile(r"\s+(?!(?:of|is|and|has|vanishes)\b)[a-z]")
 STATUS = re.compile(r"\b(?:OK|UNREACHABLE|SINGULAR|INVALID|BRANCHES)\b")
 INDEXED = re.compile(r"(?<![A-Za-z0-9_\\])(\d?[A-Za-zα-ωϕ])_(\{\w+\}|\d+|[a-z])(?![A-Za-z0-9_])")
 """A letter with an index, in a quotation."""
+CODE = re.compile(r"[a-z]{2,}(?:_[a-z]{2,})+")
+"""A name of the code in a sentence."""
+POINT = re.compile(r"\\mathbf ?\{?([A-Z])\}?_\{?(\d)\}?")
+"""A point of a drawing, as in ``\\mathbf B_1``."""
 VARIABLE = r"\\(?:mathrm|mathit|sigma|theta|alpha|beta|psi|kappa|sqrt|frac|sin|cos)\b"
 
 
@@ -193,7 +197,21 @@ class Prose:
         self.known |= {n for n in derivation.written if not ENGLISH.fullmatch(n)}
         self.known |= {n for n in names - {"a", "A", "I"} if len(n) < 3 or re.search(r"\d|_", n)}
 
+        self.angles: dict[str, str] = {}
+        """Angles of an inverse whose names are words, in LaTeX."""
+        self.code = {f.name for f in functions if f.has_status} - self.known
+        shown = [left for step in derivation.steps for left, _ in step.shown]
+        self.points = {m[1] + m[2] for left in shown if (m := POINT.fullmatch(left))}
+
     def __call__(self, text: str) -> str:
+        words = "|".join(map(re.escape, self.angles))
+        pieces = re.split(rf"(?<=the axis of )({words})\b", text) if words else [text]
+        return "".join(
+            f"${self.angles[piece]}$" if i % 2 else self._sentences(piece)
+            for i, piece in enumerate(pieces)
+        )
+
+    def _sentences(self, text: str) -> str:
         parts = PROSE.split(text)
         for i, part in enumerate(parts):
             if i % 2 == 0:
@@ -206,6 +224,10 @@ class Prose:
 
     def _part(self, text: str) -> str:
         """A formula, or text; parentheses with words in them may contain formulas."""
+        if text in self.points:
+            return rf"$\mathbf{{{text[0]}}}_{{{text[1:]}}}$"
+        if not self._is_symbol(text) and (text in self.code or CODE.fullmatch(text)):
+            return rf"\texttt{{{escape(text)}}}"
         if self._is_formula(text):
             return f"${self.formula(text)}$"
         if re.fullmatch(PAREN, text):
@@ -294,11 +316,13 @@ def loosen(text: str) -> str:
             j, left = opened.pop()
             inside = "".join(parts[j + 1 : i])
             if left[5:] in "([" and r"\begin" not in inside:
-                size = r"\bigl", r"\bigr"
-                if r"\frac" not in inside and r"\sqrt" not in inside:
-                    size = "", ""
+                large = "Big" if r"\frac" in inside else "big" if r"\sqrt" in inside else ""
+                before = "".join(parts[:j])
+                small = before.count("{") > before.count("}") or r"\begin" in before
+                large = large.lower() if small else large
+                size = (rf"\{large}l", rf"\{large}r") if large else ("", "")
                 parts[j], parts[i] = size[0] + left[5:], size[1] + part[6:]
-    return re.sub(r"(?<![\s\\]) (?=(?:\\bigr)?[)\]])", "", "".join(parts))
+    return re.sub(r"(?<![\s\\]) (?=(?:\\[bB]igr)?[)\]])", "", "".join(parts))
 
 
 def spaced(text: str) -> str:

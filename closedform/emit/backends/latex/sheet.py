@@ -15,6 +15,7 @@ from closedform.emit.backends.latex.names import (
     conventional_names,
     coordinate_name,
     element,
+    is_word,
 )
 from closedform.emit.backends.latex.prose import Prose, upright, written_name
 from closedform.emit.backends.latex.wide import Equation, Lines
@@ -32,6 +33,7 @@ class Sheet:
         self.derivation = derivation
         self.printer = Printer({j.symbol for j in derivation.joints})
         self.printer.written |= {n: w.latex for n, w in derivation.written.items() if w.latex}
+        self.printer.kept = frozenset(p.name for p in derivation.parameters)
         self.math, self.prose = self.printer.math, Prose(derivation)
         self.lines = Lines(self.printer, self.prose.known)
         kept = [self.written(n) for n in (*derivation.task, *(j.name for j in derivation.joints))]
@@ -39,6 +41,8 @@ class Sheet:
         self.symbols = {p.symbol for p in derivation.parameters}
         self.symbols |= {s for f in derivation.functions for s in f.symbols}
         self.printer.names |= conventional_names(derivation)
+        defined = [a for i in derivation.inverses for a in i.rank.defined]
+        self.prose.angles = {a.name: self.math(a) for a in defined if is_word(a.name)}
 
     def written(self, name: str) -> str:
         """The LaTeX of a symbol that is known by its name."""
@@ -94,6 +98,10 @@ class Sheet:
             for e in self.equations(n, v)
         ]
 
+    def named(self, array: Array) -> list[str]:
+        """What stands on the left of the equations of a vector."""
+        return self.coordinates(array, self.written(array.name)) if len(array.shape) < 2 else []
+
     def coordinates(self, array: Array, name: str) -> list[str]:
         """What the entries of a vector are called: joints, coordinates, entries of a matrix."""
         task = [coordinate_name(self.derivation, t) for t in self.derivation.task]
@@ -136,7 +144,10 @@ class Block:
 
     def aligned(self, mark: Callable[[str], str]) -> str:
         """The rows as an environment of LaTeX; ``mark`` writes their labels."""
-        rows = " \\\\\n".join(aligned(row, mark) for row in self.rows)
+        rows = "".join(
+            aligned(row, mark) + (f" {gap(row, after)}\n" if after else "")
+            for row, after in zip(self.rows, (*self.rows[1:], None), strict=True)
+        )
         kind = "align" if self.rows[0].numbered else "align*"
         return f"\\begin{{{kind}}}\n{rows}\n\\end{{{kind}}}"
 
@@ -173,10 +184,20 @@ def labelled(label: str) -> str:
     return rf"\label{{{label}}}"
 
 
+def gap(above: Numbered, below: Numbered) -> str:
+    """The end of a line: tall neighbours need more space between them."""
+    both = above.right + below.right
+    if r"\\" in both:  # rows of a matrix or cases
+        return r"\\[4pt]"
+    return r"\\[2pt]" if r"\frac" in both else r"\\"
+
+
 def aligned(equation: Numbered, mark: Callable[[str], str]) -> str:
     """A line of an aligned block; what goes on from the line before has nothing on the left."""
     left, right = equation.left, equation.right
     text = f"{left} &= {right}" if left else rf"&\quad {right}"
+    if equation.called:
+        text = rf"{left} \quad &\ {right}"
     if equation.label:
         return f"{text} {mark(equation.label)}"
     return rf"{text} \notag" if equation.numbered else text

@@ -212,4 +212,40 @@ def _signs(derivation: Derivation) -> Iterator[tuple[str, str]]:
                 yield _form(derivation, str(sign)), r"branch sign, $+1$ or $-1$"
 
 
-__all__ = ["clashes", "require_distinct", "table", "undefined"]
+def joined(rows: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Neighbours with one meaning in one row, and so those that follow each other by number."""
+    done: list[tuple[list[str], str, list[str]]] = []
+    for form, meaning in rows:
+        label = re.fullmatch(r"see (\\eqref\{(.*):(\d+)\})", meaning)
+        stem = re.fullmatch(r"(.+)_\{(\d+)\}", form)
+        if done:
+            forms, common, labels = done[-1]
+            last = re.fullmatch(r"(.+)_\{(\d+)\}", forms[-1])
+            if not label and meaning == common:
+                forms.append(form)
+                continue
+            follows = stem and last and (stem[1], int(stem[2])) == (last[1], int(last[2]) + 1)
+            if label and labels and follows:
+                forms.append(form)
+                labels.append(label[1])
+                continue
+        done.append(([form], meaning, [label[1]] if label else []))
+    return [_joined(forms, meaning, labels) for forms, meaning, labels in done]
+
+
+def _joined(forms: list[str], meaning: str, labels: list[str]) -> tuple[str, str]:
+    if len(forms) == 1:
+        return forms[0], meaning
+    if not labels:
+        return r",\ ".join(forms), _plural(meaning)
+    if len(forms) == 2:
+        return r",\ ".join(forms), f"see {labels[0]} and {labels[1]}"
+    return rf"{forms[0]},\ \ldots,\ {forms[-1]}", f"see {labels[0]}--{labels[-1]}"
+
+
+def _plural(meaning: str) -> str:
+    """``branch signs``: what several symbols are, where one is a ``branch sign``."""
+    return re.sub(r"^(task coordinate|branch sign|coordinate)\b", r"\1s", meaning)
+
+
+__all__ = ["clashes", "joined", "require_distinct", "table", "undefined"]

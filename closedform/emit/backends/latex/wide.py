@@ -16,7 +16,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.emit.backends.latex.formulas import FITS, Printer, measure, stacked
-from closedform.emit.backends.latex.names import element
+from closedform.emit.backends.latex.names import TUPLE, element
 from closedform.model.functions import real
 
 Equation = tuple[str, str]
@@ -34,6 +34,8 @@ TERMS = 8
 """A polynomial with fewer terms is printed as it is."""
 SHORT = 16.0
 """The widest coefficient of a polynomial that stands in it."""
+NUMBER = 3.0
+"""The room that is kept beside a matrix for the number of its equation."""
 NAMED = 13.0
 """The narrowest sum that is worth a name."""
 
@@ -45,10 +47,15 @@ class Lines:
         self.printer, self.taken = printer, frozenset(taken)
         self.room = FITS
         self.parts: dict[sp.Basic, sp.Symbol] = {}
+        self.spent = set[str]()
+        """Names of parts that have been printed and may not get another meaning."""
         self._widths: dict[Any, float] = {}
         self._tidied: dict[sp.Basic, sp.Basic] = {}
 
-    def clear(self) -> None:
+    def clear(self, *, spend: bool = False) -> None:
+        """Forget the parts; their names are not given again if they are spent."""
+        if spend:
+            self.spent |= {s.name for s in self.parts.values()}
         self.parts.clear()
         self._widths.clear()
 
@@ -130,7 +137,7 @@ class Lines:
         return rest if known else rest + self.equations(self.printer.math(name), inner)
 
     def _new_name(self) -> sp.Symbol:
-        taken = self.taken | {s.name for s in self.parts.values()}
+        taken = self.taken | self.spent | {s.name for s in self.parts.values()}
         return real(next(n for n in map("u{}".format, count(1)) if n not in taken))
 
     def _unbreakable(self, value: sp.Basic) -> sp.Basic | None:
@@ -232,7 +239,7 @@ class Lines:
         """
         matrix = matrix.applyfunc(lambda e: self.tidy(e) if isinstance(e, sp.Expr) else e)
         cells = self._cells(matrix)
-        room = self.room - measure(left)
+        room = self.room - measure(left) - (NUMBER if matrix.rows > 1 else 0)
         if _width(cells) > room and (factor := _common(matrix)) != 1:
             before = self.printer.math(factor)
             inner = self._cells(matrix.applyfunc(lambda e: e / factor))
@@ -250,7 +257,9 @@ class Lines:
             named.append((-i, -j, name))
             cells[-i][-j] = name
         entries = (self.equations(name, matrix[i, j]) for i, j, name in sorted(named))
-        return [(left, _bracketed(cells)), *(row for entry in entries for row in entry)]
+        rows = [row for entry in entries for row in entry]
+        listed = len(named) == matrix.rows and TUPLE.fullmatch(left)
+        return rows if listed else [(left, _bracketed(cells)), *rows]
 
     def _cells(self, matrix: sp.MatrixBase) -> list[list[str]]:
         return [[self.printer.math(e) for e in matrix.row(i)] for i in range(matrix.rows)]

@@ -151,7 +151,10 @@ class Robot(Mechanism):
         return velocity.twist(self, q, qdot, frame)
 
     def joint_torques(self, q: ArrayLike, wrench: ArrayLike, frame: str = "tip") -> Array:
-        """The joint torques with which the tool exerts a wrench (f; m), in the frames of twist."""
+        """The joint torques with which the tool exerts a wrench (f; m), in the frames of twist.
+
+        Of a mechanism without a twist, ``wrench`` holds the forces along its task coordinates.
+        """
         return velocity.joint_torques(self, q, wrench, frame)
 
     def manipulability(self, q: ArrayLike, axes: str = "all") -> Array:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sharing import shared
 from sympy import pi
 
+from closedform import robots
 from closedform.check.crosscheck import check_forward, check_inverse, module_backend
 from closedform.check.runners.python import module
 from closedform.check.truth import Solutions
@@ -135,7 +136,7 @@ def test_it_is_the_arm_angle_of_the_ready_arms(kuka: ModuleType) -> None:
     """Composed of other modules, those give the same postures in another order."""
     code = kuka
     q = np.random.default_rng(4).uniform(-np.pi, np.pi, (2000, 7))
-    ready = seven_joints.LBR_IIWA_14
+    ready = robots.load("iiwa14").parameters
     T, psi = code.fk(q), code.arm_angle(q)
     assert abs(T - seven_joints.fk(q, ready)).max() < 1e-14
     assert away(psi, seven_joints.arm_angle(q, ready)).max() < 1e-10

@@ -265,7 +265,7 @@ def test_under_address_sanitizer() -> None:
     if not all(os.path.isabs(path) for path in libraries):
         pytest.skip("gcc has no sanitizers")
     environment = os.environ | {
-        "CLOSEDFORM_TEST_SANITIZE": "1",
+        "CLOSEDFORM_TEST_SANITIZE": "address",
         "CC": gcc,
         "LD_PRELOAD": " ".join(libraries),
         "ASAN_OPTIONS": "detect_leaks=0",

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import inspect
 import os
+import shutil
+import subprocess
+import sys
 import threading
 import time
 from importlib import import_module
@@ -101,7 +104,64 @@ def test_no_thread_stays(native: Any) -> None:
     pytest.fail("threads are left")
 
 
-@pytest.mark.skipif(SANITIZED, reason="the toy is what is sanitized")
+RACE = """
+#include <pthread.h>
+static int shared;
+static void *add(void *unused) { for (int i = 0; i < 1000; ++i) ++shared; return unused; }
+void race(void)
+{
+    pthread_t a, b;
+    pthread_create(&a, 0, add, 0);
+    pthread_create(&b, 0, add, 0);
+    pthread_join(a, 0);
+    pthread_join(b, 0);
+}
+"""
+
+
+def sanitizer() -> dict[str, str]:
+    """The environment in which ThreadSanitizer watches Python; skips where there is none."""
+    gcc = shutil.which("gcc")
+    if gcc is None or sys.platform != "linux":
+        pytest.skip("needs gcc on Linux")
+    asked = [gcc, "-print-file-name=libtsan.so"]
+    library = subprocess.run(asked, capture_output=True, text=True).stdout.strip()
+    if not os.path.isabs(library):
+        pytest.skip("gcc has no ThreadSanitizer")
+    environment = {"LD_PRELOAD": library, "TSAN_OPTIONS": "exitcode=66", "CC": gcc}
+    found = {**os.environ, **environment, "CLOSEDFORM_TEST_SANITIZE": "thread"}
+    started = subprocess.run([sys.executable, "-c", "print(1)"], env=found, capture_output=True)
+    if started.returncode:
+        pytest.skip("ThreadSanitizer does not run here")
+    return found
+
+
+@pytest.mark.skipif(bool(SANITIZED), reason="is the sanitized run")
+def test_under_thread_sanitizer(tmp_path: Path) -> None:
+    """No two threads touch a place at once, neither those of a batch nor several callers."""
+    environment = sanitizer()
+    (tmp_path / "race.c").write_text(RACE)
+    race = tmp_path / "race.so"
+    build = [environment["CC"], "-O1", "-fPIC", "-shared", "-fsanitize=thread", "-pthread"]
+    subprocess.run([*build, str(tmp_path / "race.c"), "-o", str(race)], check=True)
+    racing = f"import ctypes; ctypes.CDLL({str(race)!r}).race()"
+    tests = Path(__file__).parent
+    pytest_here = ["-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", __file__]
+    runs = {
+        "a race": (["-c", racing], 66),
+        "batches": ([*pytest_here, "-k", "not every_mechanism"], 0),
+        "callers": ([str(tests / "portability" / "threads.py"), str(tmp_path)], 0),
+    }
+    for name, (arguments, expected) in runs.items():
+        run = subprocess.run(
+            [sys.executable, *arguments], env=environment, cwd=tests, capture_output=True, text=True
+        )
+        said = run.stdout[-3000:] + run.stderr[-3000:]
+        assert run.returncode == expected, f"{name}: {said}"
+        assert ("data race" in run.stderr) == (name == "a race"), f"{name}: {said}"
+
+
+@pytest.mark.skipif(bool(SANITIZED), reason="the toy is what is sanitized")
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_every_mechanism(robot: str) -> None:
     module = import_module(f"closedform.generated.c.{robot}")

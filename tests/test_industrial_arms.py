@@ -30,6 +30,26 @@ class Read(NamedTuple):
     upper: list[float]
 
 
+# Joints of files that are not in benchmarks/arms: the shift before each, and after the last one.
+ABB, FANUC, KUKA = ("z y y x y x", "z y -y -x -y -x", "-z y y -x y -x")
+JOINTS = {
+    "irb1200_5_90": (ABB, "0 0 0.3991, 0 0 0, 0 0 0.448, 0 0 0.042, 0.451 0 0, 0.082 0 0, 0 0 0"),
+    "irb4600_60_205": (ABB, "0 0 0.495, 0.175 0 0, 0 0 0.9, 0 0 0.175, 0.96 0 0, 0.135 0 0, 0 0 0"),
+    "lrmate200id7l": (
+        FANUC,
+        "0 0 0.330, 0.050 0 0, 0 0 0.440, 0 0 0.035, 0.420 0 0, 0.080 0 0, 0 0 0",
+    ),
+    "m10ia": (
+        FANUC,
+        "0 0 0, 0.15 -0.04 0.45, 0 -0.0225 0.6, 0.1805 0.0625 0.2, 0.4595 -0.0565 0, "
+        "0.1 0.0565 0, 0 0 0",
+    ),
+    "m20ia": (FANUC, "0 0 0.525, 0.150 0 0, 0 0 0.790, 0 0 0.250, 0.835 0 0, 0.100 0 0, 0 0 0"),
+    "kr10_r1100": (KUKA, "0 0 0.4, 0.025 0 0, 0.56 0 0, 0 0 0.035, 0.515 0 0, 0.08 0 0, 0 0 0"),
+    "kr16_2": (KUKA, "0 0 0.675, 0.26 0 0, 0.68 0 0, 0.67 0 -0.035, 0 0 0, 0 0 0, 0.158 0 0"),
+}
+
+
 def read(name: str) -> Read:
     found = Read([], [], [], [])
     for joint in ElementTree.parse(ARMS / f"{name}.urdf").getroot().iter("joint"):
@@ -89,6 +109,20 @@ def test_an_arm_is_that_of_its_urdf(name: str) -> None:
     assert np.abs(arm.limits.upper - source.upper).max() < 1e-3
 
 
+@pytest.mark.parametrize("name", JOINTS)
+def test_an_arm_has_the_joints_of_its_file(name: str) -> None:
+    axes, shifts = JOINTS[name]
+    units = dict(zip(("x", "y", "z"), np.eye(3), strict=True))
+    units |= {f"-{axis}": -unit for axis, unit in units.items()}
+    *before, after = (np.array(shift.split(), float) for shift in shifts.split(","))
+    source = Read(before, [units[axis] for axis in axes.split()], [], [])
+    between = same_hand(
+        robots.load(name).fk(POSTURES), np.array([end(source, q) for q in POSTURES])
+    )
+    assert np.abs(between[:3, 3] + between[:3, :3] @ after).max() < 1e-12
+    assert np.abs(np.abs(between[:3, :3] @ source.axes[-1]) - [0, 0, 1]).max() < 1e-12
+
+
 def test_the_irb_140_is_that_of_its_table() -> None:
     there = np.array([table("irb140", q) for q in POSTURES])
     assert np.abs(robots.load("irb140").fk(POSTURES) - there).max() < 1e-12
@@ -114,4 +148,5 @@ def test_the_kr_6_r700_is_that_of_its_source() -> None:
 
 
 def test_all_urdfs_of_the_family_were_compared() -> None:
-    assert len(FROM_URDF) == 13 and set(FAMILY) - set(FROM_URDF) == {"irb140", "kr5", "kr6_r700"}
+    others = {"irb140", "kr5", "kr6_r700", *JOINTS}
+    assert len(FROM_URDF) == 13 and set(FAMILY) - set(FROM_URDF) == others

@@ -107,3 +107,13 @@ def test_what_is_not_a_target() -> None:
     assert (found["branch"], found["status"]) == (-1, 1) and found["q"] == [None, None]
     with pytest.raises(AssertionError, match="nearest: seed has length 3, expected 2"):
         answers([{**far, "seed": [0, 0, 0]}])
+
+
+def test_rounding_of_a_singular_target_does_not_turn_the_wrist() -> None:
+    arm = robot("puma560")
+    q = np.random.default_rng(3).uniform(-2.5, 2.5, (20000, 6)) * [1, 1, 1, 1, 0, 1]
+    others = np.abs(arm.singularities(q)[:, :2]).min(-1)
+    q = q[(others > 1e-3) & (others < 0.03)]
+    found = answers([case(arm, x, seed, np.ones(6)) for x, seed in zip(arm.fk(q), q, strict=True)])
+    assert {one["status"] for one in found} == {0, 2}
+    assert np.abs(np.array([one["q"] for one in found]) - q).max() < 1e-5

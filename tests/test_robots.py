@@ -11,6 +11,7 @@ import pytest
 from closedform.generated.c import puma560 as compiled_puma560
 
 import closedform
+from closedform import robots
 from closedform.robots import Robot
 
 PI, TURN = math.pi, 2 * math.pi
@@ -314,6 +315,31 @@ def test_a_path_along_singular_points_keeps_the_free_joint() -> None:
     path = arm.track(arm.fk(q), q[0])
     assert (path.status == SINGULAR).all() and not path.jump.any() and not path.changed.any()
     assert np.abs(path.q - q).max() < 1e-9
+
+
+@pytest.mark.parametrize("name", ["puma560", "kr6_r700"])
+@pytest.mark.parametrize("mounted", [False, True])
+def test_rounding_of_a_singular_target_does_not_turn_the_wrist(name: str, mounted: bool) -> None:
+    """Near another singularity the inverse of some of these targets is OK, with any theta4."""
+    tool = np.array([[0.6, -0.8, 0, 0.1], [0.8, 0.6, 0, 0], [0, 0, 1, 0.2], [0, 0, 0, 1]])
+    arm = robots.load(name, tool=tool if mounted else None).replace(limits=None)
+    q = np.random.default_rng(11).uniform(-2.5, 2.5, (20000, 6)) * [1, 1, 1, 1, 0, 1]
+    others = np.abs(arm.singularities(q)[:, :2]).min(-1)
+    q = q[(others > 1e-3) & (others < 0.03)]
+    found = arm.nearest(arm.fk(q), q)
+    assert set(found.status) == {OK, SINGULAR}
+    assert np.abs(found.q - q).max() < 1e-5
+    assert gap(arm, found.q, arm.fk(q)) < 1e-12
+
+
+def test_a_path_along_an_aligned_wrist_does_not_jump_by_rounding() -> None:
+    arm = robots.load("puma560", tool=[0, 0.1, 0.2])
+    start, end = [0.3, 0.8, 1.61, 0.6, 0, 0.2], [1.0, 1.4, 1.61, 0.6, 0, 1.0]
+    q = line(start, end, 3000)  # the arm is nearly stretched
+    assert 1e-3 < np.abs(arm.singularities(q)[:, :2]).min() < 1e-2
+    path = arm.track(arm.fk(q), q[0], limits=None)
+    assert set(path.status) == {OK, SINGULAR}
+    assert not path.jump.any() and np.abs(path.q - q).max() < 1e-5
 
 
 def test_limits_make_a_path_jump_and_say_so() -> None:

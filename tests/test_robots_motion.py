@@ -193,6 +193,47 @@ def test_torques_do_the_work_of_the_wrench() -> None:
         arm.twist(q, qdot, "world")
 
 
+def test_a_planar_arm_has_frames_of_its_links() -> None:
+    arm = Robot(closedform.planar_2r)
+    q = np.random.default_rng(5).uniform(-3, 3, (10, 2))
+    frames, points = arm.frames(q), arm.skeleton(q)
+    assert np.abs(frames[:, -1] - arm.pose(q)).max() < 1e-13
+    elbow = closedform.planar_2r.SKELETON.joints["theta2"].points[0]
+    at = points[:, closedform.planar_2r.SKELETON.points.index(elbow)]
+    assert np.abs(frames[:, 2, :3, 3] - at).max() < 1e-13
+    assert np.abs(frames[:, 1:3, 2, 2] - 1).max() == 0
+
+
+@pytest.mark.parametrize("name", ["delta", "hybrid_five_bar", "orthoglide", "planar_2r", "h6ar"])
+def test_torques_of_a_mechanism_without_a_twist(name: str) -> None:
+    """By virtual work: the force along the task coordinates times their change."""
+    arm = Robot(getattr(closedform, name))
+    rng = np.random.default_rng(4)
+    q = 0.3 + 0.1 * rng.random(len(arm.joints))
+    at, force = arm.fk(q), rng.normal(size=len(arm.module.TASK))
+
+    def place(q: np.ndarray) -> np.ndarray:
+        found = arm.fk(q)
+        return found.p if hasattr(found, "p") else found
+
+    work = [(place(q + e) - place(q - e)) @ force / (2 * STEP) for e in STEP * np.eye(len(q))]
+    assert arm.joint_torques(q, force) == pytest.approx(np.array(work).T, abs=1e-7)
+    assert not hasattr(at, "p") or len(arm.joint_torques(q, force)) == len(
+        arm.module.ASSEMBLY_MODES
+    )
+    with pytest.raises(ValueError, match="wrench has shape"):
+        arm.joint_torques(q, np.ones(len(force) + 1))
+
+
+def test_what_a_mechanism_does_not_have_is_said_plainly() -> None:
+    hand = Robot(closedform.agile_wrist)
+    with pytest.raises(ValueError, match="not a serial chain"):
+        hand.frames(np.zeros(3))
+    with pytest.raises(ValueError, match="agile_wrist has no twist"):
+        hand.twist(np.zeros(3), np.ones(3))
+    assert np.isfinite(hand.joint_torques([0.1, 0.2, 0.3], [1.0, 0, 0])).any()
+
+
 def test_measures_of_dexterity() -> None:
     arm = Robot(closedform.puma560)
     q = postures(arm, 5)

@@ -3,14 +3,18 @@
 import doctest
 import re
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
+from closedform import robots
 from closedform.robots import seven_joints
-from closedform.robots.seven_joints import LBR_IIWA_7, LBR_IIWA_14, Parameters, arm_angle, fk, ik
+from closedform.robots.seven_joints import Parameters, arm_angle, fk, ik
 
-ARMS = [LBR_IIWA_7, LBR_IIWA_14, Parameters(-0.1, 0.5, 0.2, 0.0)]
+IIWA_7, IIWA_14 = (robots.load(name).parameters for name in ("iiwa7", "iiwa14"))
+ARMS = [IIWA_7, IIWA_14, Parameters(-0.1, 0.5, 0.2, 0.0)]
+FOLDER = Path(__file__).parents[1] / "benchmarks" / "arms"
 OK, UNREACHABLE, SINGULAR, INVALID = range(4)
 
 
@@ -144,12 +148,12 @@ def test_statuses_and_errors():
     mirrored[:3, 0] *= -1
     projective = T.copy()
     projective[3, 0] = 1
-    impossible = LBR_IIWA_7._replace(d_se=-0.4)
+    impossible = IIWA_7._replace(d_se=-0.4)
     for pose, psi, arm in (
-        (mirrored, 0, LBR_IIWA_7),
-        (projective, 0, LBR_IIWA_7),
-        (T * np.nan, 0, LBR_IIWA_7),
-        (T, np.inf, LBR_IIWA_7),
+        (mirrored, 0, IIWA_7),
+        (projective, 0, IIWA_7),
+        (T * np.nan, 0, IIWA_7),
+        (T, np.inf, IIWA_7),
         (T, 0, impossible),
     ):
         found = ik(pose, psi, arm)
@@ -177,18 +181,29 @@ def test_the_examples_run_as_printed():
     assert 0 < names["inside"].sum() < names["inside"].size
 
 
-@pytest.mark.parametrize("arm", [LBR_IIWA_7, LBR_IIWA_14])
-def test_the_arms_are_those_of_their_public_files(arm):
-    """The URDF of the iiwa 7, with its limits, and the table of the iiwa 14."""
-    folder = Path(__file__).parents[1] / "benchmarks" / "arms"
-    if arm == LBR_IIWA_14:
-        rows = (folder / "iiwa14.csv").read_text("utf-8").splitlines()[3:]
-        lengths = [float(row.split(",")[2]) for row in rows]
-        assert lengths == [arm.d_bs, 0, arm.d_se, 0, arm.d_ew, 0, arm.d_wf]
-        return
-    text = (folder / "iiwa7.urdf").read_text("utf-8")
-    heights = [float(z) for z in re.findall(r'<origin xyz="\S+ \S+ (\S+)"', text)]
-    sums = np.add.reduceat(heights, [0, 2, 4, 6])
-    assert np.allclose(sums, arm, atol=1e-12)
-    upper = [float(u) for u in re.findall(r'upper="(\S+)"', text)]
-    assert np.allclose(upper, seven_joints.LBR_LIMITS, atol=1e-8)
+def test_the_iiwa_14_is_that_of_its_table():
+    rows = (FOLDER / "iiwa14.csv").read_text("utf-8").splitlines()[3:]
+    lengths = [float(row.split(",")[2]) for row in rows]
+    assert lengths == [IIWA_14.d_bs, 0, IIWA_14.d_se, 0, IIWA_14.d_ew, 0, IIWA_14.d_wf]
+
+
+@pytest.mark.parametrize("name", ["iiwa7", "xmatepro7"])
+def test_the_arms_are_those_of_their_urdfs(name):
+    """By the product of the joints; the file of the iiwa ends with a fixed frame."""
+    arm, moved = robots.load(name), np.random.default_rng(5).uniform(-2, 2, (10, 7))
+    there = np.broadcast_to(np.eye(4), (10, 4, 4))
+    limits, k = [], 0
+    for joint in ElementTree.parse(FOLDER / f"{name}.urdf").getroot().iter("joint"):
+        step = np.tile(np.eye(4), (10, 1, 1))
+        step[:, :3, 3] = np.array(joint.find("origin").get("xyz").split(), float)
+        if joint.get("type") == "revolute":
+            axis = np.array(joint.find("axis").get("xyz").split(), float)
+            K = np.cross(axis, np.eye(3)).T
+            s, c = np.sin(moved[:, k, None, None]), np.cos(moved[:, k, None, None])
+            step[:, :3, :3] += s * K + (1 - c) * K @ K
+            bounds = joint.find("limit")
+            limits.append([float(bounds.get("lower")), float(bounds.get("upper"))])
+            k += 1
+        there = there @ step
+    assert np.abs(arm.fk(moved) - there).max() < 1e-12
+    assert np.abs(np.array(limits).T - arm.limits).max() < 1e-3

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from closedform.robots.mechanism import Array, Mechanism
-from closedform.robots.mounting import or_identity
+from closedform.robots.mounting import inverse_transform, or_identity
 
 AGREES = 1e-9
 _NO_CHAIN = "{} is not a serial chain of its joints, so its links have no frames"
@@ -42,10 +42,11 @@ def _frames(mechanism: Mechanism, q: Array, screws: Array, home: Array, end: Arr
 def _at_home(mechanism: Mechanism) -> tuple[Array, Array, Array]:
     """The screws of the bare mechanism, the frames of its joints and its hand, at zero joints."""
     zero = np.zeros(len(mechanism.joints))
-    J = np.asarray(mechanism.call("jacobian_space", zero))
-    if J.ndim != 2 or any(np.ndim(p) for p in mechanism.parameters):
+    if not mechanism.has("pose"):
+        raise ValueError(_NO_CHAIN.format(mechanism.name))
+    if any(np.ndim(p) for p in mechanism.parameters):
         raise ValueError("frames: the dimensions must be numbers, not arrays")
-    screws = J if len(J) == 6 else np.concatenate([np.zeros_like(J), J])
+    screws = _screws(mechanism)
     points = np.asarray(mechanism.call("skeleton", zero))
     names = mechanism.module.SKELETON.points
     home = np.tile(np.eye(4), (len(zero), 1, 1))
@@ -57,6 +58,22 @@ def _at_home(mechanism: Mechanism) -> tuple[Array, Array, Array]:
             raise ValueError(_NO_CHAIN.format(mechanism.name))
         home[k, :3, :3] = _with_z_along(axis)
     return screws, home, np.asarray(mechanism.call("pose", zero))
+
+
+def _screws(mechanism: Mechanism) -> Array:
+    """The screws (v; omega) at zero joints, one a column, from poses with one joint moved."""
+    moves = np.diag(np.where(mechanism.revolute, np.pi / 2, 1.0))
+    poses = np.asarray(mechanism.call("pose", np.concatenate([moves, np.zeros((1, len(moves)))])))
+    found = np.zeros((6, len(moves)))
+    for k, T in enumerate(poses[:-1] @ inverse_transform(poses[-1])):
+        W = (T[:3, :3] - T[:3, :3].T) / 2
+        found[3:, k] = W[2, 1], W[0, 2], W[1, 0]
+        if mechanism.revolute[k]:  # the sine is 1 and the cosine 0
+            turned = moves[k, k] * np.eye(3) + W + (moves[k, k] - 1) * W @ W
+            found[:3, k] = np.linalg.solve(turned, T[:3, 3])
+        else:
+            found[:3, k] = T[:3, 3]
+    return found
 
 
 def _require_chain(mechanism: Mechanism, screws: Array, end: Array) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import inspect
 from dataclasses import replace
 from functools import cached_property
 from types import ModuleType
@@ -73,6 +74,7 @@ class Mechanism:
         self.revolute = np.array([kinds[name].kind == "revolute" for name in self.joints])
         self.base, self.tool = rigid(base, "base"), rigid(tool, "tool")
         self._zero = Zero.of(len(self.joints), signs, offsets, coupling)
+        self.given = _given(module)
         self._mounting = Mounting.of(module, self.parameters, self.base, self.tool)
 
     def part(self, lead: tuple[int, ...], rows: Any) -> Self:
@@ -86,6 +88,14 @@ class Mechanism:
         values = (np.broadcast_to(np.asarray(p, float), lead).ravel() for p in self.parameters)
         chosen.parameters = self.module.Parameters(*(value[rows] for value in values))
         chosen._mounting = replace(self._mounting, parameters=chosen.parameters)
+        return chosen
+
+    def of_branches(self, lead: tuple[int, ...]) -> Self:
+        """The same mechanism for joints of shape (postures, branches, joints)."""
+        if all(np.ndim(value) == 0 for value in self.parameters):
+            return self
+        chosen = self.part(lead, slice(None))
+        chosen.parameters = self.module.Parameters(*(p[:, None] for p in chosen.parameters))
         return chosen
 
     # Joints of the maker and of the model
@@ -165,10 +175,38 @@ class Mechanism:
         """The target of the module, of one for the mounted tool."""
         return self._mounting.inside(x)
 
-    def ik(self, x: ArrayLike) -> Any:
-        """All branches: ``Solutions(q, status)`` as in the module; the joints are the maker's."""
-        found = self.call("ik", self.inside(x))
+    def ik(self, x: ArrayLike, given: ArrayLike | None = None) -> Any:
+        """All branches: ``Solutions(q, status)`` as in the module; the joints are the maker's.
+
+        ``given`` is the input that an arm of seven joints needs beside the target, see ``given``.
+        """
+        found = self.call("ik", self.inside(x), *self._to_give(given))
         return found if self._zero is None else found._replace(q=self.from_model(found.q))
+
+    def given_at(self, q: ArrayLike) -> Array:
+        """What ``ik`` needs beside the target, at joints: the arm angle, or the joint itself."""
+        values = self.as_joints(q)
+        if self.given is None:
+            raise ValueError(f"{self.name}: the inverse needs the target alone")
+        if self.given in self.joints:
+            return np.asarray(values[..., self.joints.index(self.given)])
+        return np.asarray(self.call(self.given, self.to_model(values)))
+
+    def _to_give(self, given: ArrayLike | None) -> tuple[ArrayLike, ...]:
+        """The inputs of the module's inverse beside the target."""
+        if self.given is None:
+            if given is not None:
+                raise ValueError(f"{self.name}: the inverse needs the target alone, nothing given")
+            return ()
+        if given is None:
+            raise ValueError(f"{self.name}: the inverse also needs given={self.given}")
+        if self.given not in self.joints or self._zero is None:
+            return (given,)
+        if self.one_by_one is None:
+            raise ValueError(f"{self.name}: motors are coupled, so {self.given} cannot be given")
+        k = self.joints.index(self.given)
+        signs, offsets = self.one_by_one
+        return (np.asarray(given, dtype=float) * signs[k] + offsets[k],)
 
     def pose(self, q: ArrayLike) -> Array:
         """The pose of the tool in the world, of shape (..., 4, 4)."""
@@ -224,6 +262,15 @@ class Mechanism:
         """The shape of a target."""
         entries = len(self.module.TASK)
         return {16: (4, 4), 9: (3, 3)}.get(entries, (entries,))
+
+
+def _given(module: ModuleType) -> str | None:
+    """The input of the inverse beside the target, such as ``"arm_angle"``."""
+    if "ik" not in module.__all__:
+        return None
+    inputs = list(inspect.signature(module.ik).parameters)
+    inputs = inputs[1 : inputs.index("params")]
+    return inputs[0] if inputs else None
 
 
 def _parameters(module: ModuleType, given: Any) -> Any:

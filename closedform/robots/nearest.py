@@ -44,21 +44,28 @@ class Candidates(NamedTuple):
 
 
 def nearest(
-    mechanism: Mechanism, x: ArrayLike, q_seed: ArrayLike, limits: Limits, weights: Any = None
+    mechanism: Mechanism,
+    x: ArrayLike,
+    q_seed: ArrayLike,
+    limits: Limits,
+    weights: Any = None,
+    given: ArrayLike | None = None,
 ) -> Nearest:
     """The solution with the least weighted distance from ``q_seed`` within the limits."""
     seed = mechanism.as_joints(q_seed, "q_seed")
     single = _compiled(mechanism, x, seed, limits, weights)
     if single is not None:
         return single
-    found = mechanism.ik(x)
+    if given is None and mechanism.given is not None:
+        given = mechanism.given_at(seed)
+    found = mechanism.ik(x, given)
     lead = np.broadcast_shapes(
         found.q.shape[:-2], seed.shape[:-1], limits.lower.shape[:-1], limits.upper.shape[:-1]
     )
     branches, n = found.q.shape[-2:]
     q, status = _over(found.q, lead, 2), _over(found.status, lead, 1)
     seed = _over(seed, lead, 1)
-    q = at_seed(mechanism, q, status, np.asarray(x, float), seed, limits)
+    q = at_seed(mechanism, q, status, np.asarray(x, float), seed, limits, given)
     sides = (limits.lower, limits.upper, weights_of(mechanism, weights))
     rows = [q.reshape(-1, branches, n), status.reshape(-1, branches), seed.reshape(-1, n)]
     rows += [_over(a, lead, 1).reshape(-1, n) for a in sides]

@@ -89,6 +89,7 @@ class Robot(Mechanism):
         *,
         weights: ArrayLike | None = None,
         limits: Any = _STORED,
+        given: ArrayLike | None = None,
     ) -> Nearest:
         """Of all branches and turns within the limits, the posture nearest to a seed.
 
@@ -96,8 +97,11 @@ class Robot(Mechanism):
         and the dimensions broadcast.  Of branches at the same distance the first is taken, and of
         two turns the lower angle.  Where a joint is free (SINGULAR), it keeps the value of the
         seed, as far as its limits allow, and the other joints reach ``x`` with it.
+
+        An arm of seven joints keeps the arm angle, or the joint, that its inverse needs beside the
+        target, at its value in the seed; ``given`` is another value, and broadcasts too.
         """
-        return nearest.nearest(self, x, q_seed, self._limits(limits), weights)
+        return nearest.nearest(self, x, q_seed, self._limits(limits), weights, given)
 
     def track(
         self,
@@ -107,15 +111,17 @@ class Robot(Mechanism):
         weights: ArrayLike | None = None,
         limits: Any = _STORED,
         max_step: ArrayLike | None = None,
+        given: ArrayLike | None = None,
     ) -> Path:
         """The joints along the path ``xs``, from the posture nearest to ``q0``.
 
         The branch is kept until it ends, leaves the limits, or would move a joint by more than
         ``max_step`` (0.5 rad; slides: no bound) between two points; then the nearest posture is
         taken.  A free joint keeps its value.  The result says where the branch changes and where a
-        joint jumps.
+        joint jumps.  ``given`` is as of ``nearest``: one value, by default that of ``q0``, or one
+        for each point.
         """
-        return track.track(self, xs, q0, self._limits(limits), weights, max_step)
+        return track.track(self, xs, q0, self._limits(limits), weights, max_step, given)
 
     def outside(self, q: ArrayLike, limits: Any = _STORED) -> NDArray[np.bool_]:
         """Which joints of ``q``, of any leading axes, have no turn within their limits."""
@@ -145,7 +151,10 @@ class Robot(Mechanism):
         return velocity.twist(self, q, qdot, frame)
 
     def joint_torques(self, q: ArrayLike, wrench: ArrayLike, frame: str = "tip") -> Array:
-        """The joint torques with which the tool exerts a wrench (f; m), in the frames of twist."""
+        """The joint torques with which the tool exerts a wrench (f; m), in the frames of twist.
+
+        Of a mechanism without a twist, ``wrench`` holds the forces along its task coordinates.
+        """
         return velocity.joint_torques(self, q, wrench, frame)
 
     def manipulability(self, q: ArrayLike, axes: str = "all") -> Array:

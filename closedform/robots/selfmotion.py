@@ -8,10 +8,10 @@ the seed leads to the wanted posture.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from closedform.robots.limits import Limits
 from closedform.robots.mechanism import NAMES_OF_ANGLES, TURN, Array, Mechanism
@@ -24,17 +24,29 @@ STEPS = 24
 LONGEST = 0.5
 """A step on the curve that moves a joint further is not taken: the free joint turns back there."""
 STRAIGHT = 1e-9
+BOWED = 1e-6
+"""The same where rounding spoils the direction of the line; what is left is corrected."""
 CORRECTIONS, APPROACH = 3, 8
 """Steps of Newton's method from a posture on the curve, and from a seed."""
 CLOSE_BY = 1e-4
 ROUNDING = 1e-14
-SINGULAR = 2
+DIFFERENCE = 1e-3
+"""The step of differences of fourth order; their rounding is that of a posture over it."""
+NEARLY = 1e-12
+"""A determinant without units below this is nearly zero; rounding of a target leaves 1e-15."""
+OK, SINGULAR = 0, 2
 REACHED = 1e-12
 """The largest error of a posture that is returned, relative to the size of the mechanism."""
 
 
 def at_seed(
-    mechanism: Mechanism, q: Array, status: Array, x: Array, seed: Array, limits: Limits
+    mechanism: Mechanism,
+    q: Array,
+    status: Array,
+    x: Array,
+    seed: Array,
+    limits: Limits,
+    given: ArrayLike | None = None,
 ) -> Array:
     """The branches of an inverse, with the free joint of a singular one at its value in the seed.
 
@@ -42,21 +54,28 @@ def at_seed(
     has set to zero; if there is none among those that take part, the one that moves most, and of
     several the first.  If it cannot have its value in the seed within the limits, it goes as far as
     the self-motion leads.  Where no joint is free, nothing moves; nor does a mechanism without a
-    forward map, whose answers are those of the inverse.
+    forward map, whose answers are those of the inverse.  What was given beside the target is kept,
+    where it is defined.
+
+    Rounding of a target may hide that it is singular: the branch is OK then, with any value of the
+    joint that is nearly free.  It is moved too, where that is a motion in a straight line.
     """
-    if not (status == SINGULAR).any() or not mechanism.has("fk"):
+    loose = loose_branches(mechanism, q, status, x, given)
+    if not loose.any():
         return q
     lead, (branches, n) = status.shape[:-1], q.shape[-2:]
     core = x.shape[x.ndim - mechanism.task_axes :]
     found = np.array(q).reshape(-1, branches, n)
     wanted = np.broadcast_to(np.clip(seed, limits.lower, limits.upper), (*lead, n)).reshape(-1, n)
     targets = np.broadcast_to(x, (*lead, *core)).reshape(-1, *core)
-    at, branch = np.nonzero(status.reshape(-1, branches) == SINGULAR)
-    task = Task(mechanism.part(lead, at), targets[at])
-    found[at, branch], doubtful = _released(task, found[at, branch], wanted[at])
+    at, branch = np.nonzero(loose.reshape(-1, branches))
+    rounded = status.reshape(-1, branches)[at, branch] != SINGULAR
+    whole = Task(mechanism, targets, _of_each(given, lead))
+    task = whole.part(at, lead).keeping(found[at, branch])
+    found[at, branch], doubtful = _released(task, found[at, branch], wanted[at], rounded)
     if not doubtful.any():
         return found.reshape(q.shape)
-    near, branch, posture = _near(mechanism, lead, targets, wanted, np.unique(at[doubtful]))
+    near, branch, posture = _near(whole, lead, wanted, np.unique(at[doubtful]))
     singular = status.reshape(-1, branches)[near, branch] == SINGULAR
     near, branch, posture = near[singular], branch[singular], posture[singular]
     better = _distance(mechanism, posture, wanted[near]) < _distance(
@@ -64,6 +83,46 @@ def at_seed(
     )
     found[near[better], branch[better]] = posture[better]
     return found.reshape(q.shape)
+
+
+def loose_branches(
+    mechanism: Mechanism, q: Array, status: Array, x: Array, given: ArrayLike | None = None
+) -> NDArray[np.bool_]:
+    """Which branches are singular, or so nearly that rounding decides; none if there is no fk.
+
+    Targets and what was given have the leading axes of the branches, or none.
+    """
+    singular = np.asarray(status == SINGULAR)
+    if not mechanism.has("fk"):
+        return np.zeros_like(singular)
+    if not mechanism.has("determinant") and given is None:
+        return singular
+    lead, (branches, n) = status.shape[:-1], q.shape[-2:]
+    core = x.shape[x.ndim - mechanism.task_axes :]
+    targets = np.broadcast_to(x, (*lead, *core)).reshape(-1, *core)
+    size = np.broadcast_to(Task(mechanism, targets).size, len(targets))[:, None]
+    if given is None:
+        every = mechanism.of_branches(lead)
+        found = np.abs(every.call("determinant", every.to_model(q.reshape(-1, branches, n))))
+        if mechanism.module.ASSEMBLY_MODES:
+            found = np.fmin.reduce(found, axis=-1)
+        small = np.asarray(found <= NEARLY * size ** _lengths(mechanism))
+    else:
+        rows = np.repeat(np.arange(len(targets)), branches)
+        task = Task(mechanism, targets, _of_each(given, lead)).part(rows, lead)
+        J = task.jacobian(np.nan_to_num(q).reshape(-1, n))
+        small = np.abs(np.linalg.det(J)).reshape(-1, branches) <= NEARLY / DIFFERENCE
+    return np.asarray(singular | small.reshape(status.shape) & (status == OK))
+
+
+def _lengths(mechanism: Mechanism) -> int:
+    """The power of a length in the determinant of the Jacobian."""
+    named = sum(name not in NAMES_OF_ANGLES for name in mechanism.module.TASK)
+    return {16: 3, 9: 0}.get(len(mechanism.module.TASK), named) - int((~mechanism.revolute).sum())
+
+
+def _of_each(given: ArrayLike | None, lead: tuple[int, ...]) -> Array | None:
+    return None if given is None else np.broadcast_to(np.asarray(given, float), lead).ravel()
 
 
 def _distance(mechanism: Mechanism, q: Array, seed: Array) -> Array:
@@ -75,18 +134,14 @@ def _distance(mechanism: Mechanism, q: Array, seed: Array) -> Array:
 
 
 def _near(
-    mechanism: Mechanism,
-    lead: tuple[int, ...],
-    targets: Array,
-    wanted: Array,
-    rows: NDArray[np.intp],
+    whole: Task, lead: tuple[int, ...], wanted: Array, rows: NDArray[np.intp]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], Array]:
     """Singular postures near the seeds: for which target, on which branch, and the joints.
 
     A curve that turns back may reach the seed only on its other side.  Newton's method, from the
     seed, finds that side.  The branch is the one of a regular posture close by.
     """
-    task = Task(mechanism.part(lead, rows), targets[rows])
+    mechanism, task = whole.mechanism, whole.part(rows, lead)
     around = mechanism.revolute & (np.abs(wanted[rows]) > np.pi)
     start = np.where(around, wanted[rows] - TURN * np.rint(wanted[rows] / TURN), wanted[rows])
     q = _polished(task, start, None)
@@ -103,7 +158,8 @@ def _near(
     moved = np.asarray(regular.fk(q + nudge)) if not mechanism.module.ASSEMBLY_MODES else None
     if moved is None or not len(rows):
         return rows[:0], rows[:0], q[:0]
-    found = regular.ik(moved).q
+    beside = None if mechanism.given is None else regular.given_at(q + nudge)
+    found = regular.ik(moved, beside).q
     gap = _distance(mechanism, found, (q + nudge)[:, None])
     return rows, np.where(np.isfinite(gap), gap, np.inf).argmin(-1), q
 
@@ -115,11 +171,14 @@ def _largest(null: Array) -> tuple[NDArray[np.intp], Array]:
     return largest, shares[np.arange(len(null)), largest]
 
 
-def _released(task: Task, q: Array, wanted: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _released(
+    task: Task, q: Array, wanted: Array, rounded: NDArray[np.bool_]
+) -> tuple[Array, NDArray[np.bool_]]:
     """Singular postures ``q`` (n, joints) moved to where the free joint has its wanted value.
 
-    Also returns for which of them another side of the curve may be nearer: it is bent, and the
-    joint that is free did not get its value, or is one of several.
+    Those that are ``rounded`` are moved only in a straight line.  Also returns for which of the
+    others another side of the curve may be nearer: it is bent, and the joint that is free did not
+    get its value, or is one of several.
     """
     revolute = task.mechanism.revolute
     null = _null_projector(task.jacobian(q))
@@ -135,7 +194,9 @@ def _released(task: Task, q: Array, wanted: Array) -> tuple[Array, NDArray[np.bo
     found = q + moved[:, None] * _tangent(null, free)
     found[rows, free] = q[rows, free] + moved
     straight = task.size_of_error(found) <= STRAIGHT
-    bent = np.flatnonzero(~straight & (moved != 0))
+    bowed = task.size_of_error(found) > BOWED
+    found = np.where((rounded & bowed)[:, None], q, found)
+    bent = np.flatnonzero(~straight & ~rounded & (moved != 0))
     if len(bent):
         found[bent] = _followed(task.part(bent), q[bent], free[bent], moved[bent])
     rough = np.flatnonzero(task.size_of_error(found) > ROUNDING)
@@ -209,9 +270,40 @@ class Task:
 
     mechanism: Mechanism
     x: Array
+    given: Array | None = None
+    """What the inverse was given beside the targets; NaN where it does not count."""
 
-    def part(self, rows: NDArray[np.intp]) -> Task:
-        return Task(self.mechanism.part((len(self.x),), rows), self.x[rows])
+    def part(self, rows: NDArray[np.intp], lead: tuple[int, ...] | None = None) -> Task:
+        """Some of the targets; dimensions have the axes ``lead``, or one for the targets."""
+        given = None if self.given is None else self.given[rows]
+        lead = (len(self.x),) if lead is None else lead
+        return Task(self.mechanism.part(lead, rows), self.x[rows], given)
+
+    def keeping(self, q: Array) -> Task:
+        """The same, but what was given counts only where the answers ``q`` have it.
+
+        Others are where it is undefined, such as the arm angle of a wrist above the shoulder.
+        """
+        if self.given is None:
+            return self
+        kept = np.abs(self._beside(q, self.given)) <= STRAIGHT
+        return replace(self, given=np.where(kept, self.given, np.nan))
+
+    def _beside(self, q: Array, given: Array) -> Array:
+        gap = given - self.mechanism.given_at(q)
+        return np.asarray(np.where(np.isnan(gap), 0.0, gap - TURN * np.rint(gap / TURN)))
+
+    def _beside_row(self, q: Array, given: Array) -> Array:
+        """The derivatives of what was given, by central differences: (n, 1, joints)."""
+        value = self.mechanism.given_at
+
+        def central(times: int) -> Array:
+            steps = times * DIFFERENCE * np.eye(q.shape[-1])
+            gap = np.stack([value(q + step) - value(q - step) for step in steps], axis=-1)
+            return np.asarray(gap - TURN * np.rint(gap / TURN)) / (2 * times * DIFFERENCE)
+
+        row = (4 * central(1) - central(2)) / 3
+        return np.where(np.isnan(given)[:, None], 0.0, row)[:, None]
 
     @property
     def size(self) -> Array:
@@ -230,7 +322,13 @@ class Task:
         return self.x.shape[1:] == (3, 3)
 
     def error(self, q: Array) -> Array:
-        """The twist, or the change of coordinates, that leads to the target."""
+        """The twist, or the change of coordinates, that leads to the target, and what was given."""
+        found = self._error(q)
+        if self.given is None:
+            return found
+        return np.concatenate([found, self._beside(q, self.given)[:, None]], axis=-1)
+
+    def _error(self, q: Array) -> Array:
         at = self.mechanism.fk(q)
         if self._is_rotation:
             return _rotation_vector(self.x @ np.swapaxes(at, -1, -2))
@@ -250,6 +348,12 @@ class Task:
 
     def jacobian(self, q: Array) -> Array:
         """The derivative of the way to the target, with the sign of the motion of the hand."""
+        found = self._jacobian(q)
+        if self.given is None:
+            return found
+        return np.concatenate([found, self._beside_row(q, self.given)], axis=-2)
+
+    def _jacobian(self, q: Array) -> Array:
         if self._is_rotation:
             return self.mechanism.jacobian_space(q)
         if self._is_pose:

@@ -1,14 +1,15 @@
-"""Arms of seven joints with a spherical shoulder, an elbow and a spherical wrist, as the KUKA LBR.
+"""Arms of seven joints with a spherical shoulder and wrist, by the arm angle: the KUKA LBR iiwa.
 
-    >>> import numpy as np
+    >>> from closedform import robots
     >>> from closedform.robots import seven_joints
-    >>> arm = seven_joints.LBR_IIWA_7
+    >>> arm = robots.load("iiwa7").parameters
     >>> q = [0.3, 0.8, -0.4, 1.1, 0.5, -0.7, 0.2]
     >>> T, psi = seven_joints.fk(q, arm), seven_joints.arm_angle(q, arm)
     >>> found = seven_joints.ik(T, psi, arm)
     >>> bool(np.isclose(found.q, q).all(-1).any())
     True
 
+The names are those of a generated module, so that a `Robot` takes it as one.
 At zero the arm points up along z.  The joints 1, 3, 5 and 7 turn about z, the joints 2 and 6 about
 y, and joint 4 about -y.  The inverse needs the pose and the arm angle.  It is composed of modules
 that are proved: ``planar_2r`` gives the elbow, ``spherical_wrist`` the shoulder and the wrist.
@@ -32,11 +33,31 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from closedform.generated.numpy import planar_2r, spherical_wrist
-from closedform.generated.numpy._runtime import Solutions, Status
+from closedform.generated.numpy._runtime import Skeleton, SkeletonJoint, Solutions, Status
 
 Floats = NDArray[np.float64]
 
+__all__ = [
+    "ASSEMBLY_MODES",
+    "BRANCHES",
+    "JOINTS",
+    "SKELETON",
+    "TASK",
+    "Parameters",
+    "Solutions",
+    "Status",
+    "arm_angle",
+    "fk",
+    "ik",
+    "jacobian_body",
+    "jacobian_space",
+    "pose",
+    "skeleton",
+]
+
 JOINTS = tuple(f"theta{i}" for i in range(1, 8))
+TASK = tuple(f"T{i}{j}" for i in range(1, 5) for j in range(1, 5))
+ASSEMBLY_MODES = ()
 BRANCHES = tuple(
     f"{elbow}_{shoulder}_{wrist}"
     for elbow in ("elbow_negative", "elbow_positive")
@@ -51,26 +72,41 @@ the pose already leave this much."""
 
 
 class Parameters(NamedTuple):
-    """The lengths of an arm, in m."""
+    """The lengths of an arm, in m, by default those of the LBR iiwa 7 R800."""
 
-    d_bs: float
+    d_bs: float = 0.34
     """From the base up to the shoulder."""
-    d_se: float
+    d_se: float = 0.4
     """From the shoulder to the elbow."""
-    d_ew: float
+    d_ew: float = 0.4
     """From the elbow to the wrist."""
-    d_wf: float
+    d_wf: float = 0.126
     """From the wrist to the flange."""
 
 
-# https://github.com/IFL-CAMP/iiwa_stack (iiwa_description)
-LBR_IIWA_7 = Parameters(0.34, 0.4, 0.4, 0.126)
-LBR_IIWA_14 = Parameters(0.36, 0.42, 0.4, 0.126)
-LBR_LIMITS = np.radians([170.0, 120, 170, 120, 170, 120, 175])
-"""Largest angles of the joints of both arms, to either side."""
+_DEFAULT = Parameters()
+SKELETON = Skeleton(
+    points=("base", "shoulder", "elbow", "wrist", "flange"),
+    links={
+        "column": ("base", "shoulder"),
+        "upper_arm": ("shoulder", "elbow"),
+        "forearm": ("elbow", "wrist"),
+        "hand": ("wrist", "flange"),
+    },
+    joints={
+        name: SkeletonJoint("revolute", (point,))
+        for name, point in zip(
+            JOINTS,
+            ("base", "shoulder", "shoulder", "elbow", "elbow", "wrist", "wrist"),
+            strict=True,
+        )
+    },
+    hand="flange",
+    ground=("base", "shoulder"),
+)
 
 
-def fk(q: ArrayLike, params: Parameters = LBR_IIWA_7) -> Floats:
+def fk(q: ArrayLike, params: Parameters = _DEFAULT) -> Floats:
     """Pose of the flange, (..., 4, 4), of the joints ``q``, (..., 7), in radians."""
     joints = _joints(q)
     shoulder, wrist = (spherical_wrist.fk(joints[..., part]) for part in (_SHOULDER, _WRIST))
@@ -86,7 +122,25 @@ def fk(q: ArrayLike, params: Parameters = LBR_IIWA_7) -> Floats:
     return T
 
 
-def jacobian_space(q: ArrayLike, params: Parameters = LBR_IIWA_7) -> Floats:
+def pose(q: ArrayLike, params: Parameters = _DEFAULT) -> Floats:
+    """Pose of the flange, as ``fk``."""
+    return fk(q, params)
+
+
+def skeleton(q: ArrayLike, params: Parameters = _DEFAULT) -> Floats:
+    """The points of ``SKELETON`` in the base frame, (..., 5, 3), of the joints ``q``, (..., 7)."""
+    joints = _joints(q)
+    upper = spherical_wrist.fk(joints[..., _SHOULDER])
+    forearm = upper @ _about_y(-joints[..., 3])
+    points = np.zeros((*joints.shape[:-1], 5, 3))
+    points[..., 1:, 2] = params.d_bs
+    points[..., 2:, :] += params.d_se * upper[..., None, :, 2]
+    points[..., 3:, :] += params.d_ew * forearm[..., None, :, 2]
+    points[..., 4, :] = fk(joints, params)[..., :3, 3]
+    return points
+
+
+def jacobian_space(q: ArrayLike, params: Parameters = _DEFAULT) -> Floats:
     """Twist (v; omega) of the flange per joint rate in the base frame, (..., 6, 7).
 
     ``q`` are the joints, (..., 7), in radians.  v is the velocity of the point of the flange that
@@ -105,7 +159,7 @@ def jacobian_space(q: ArrayLike, params: Parameters = LBR_IIWA_7) -> Floats:
     return np.concatenate([np.cross(points, axes, axis=-2), axes], axis=-2)
 
 
-def jacobian_body(q: ArrayLike, params: Parameters = LBR_IIWA_7) -> Floats:
+def jacobian_body(q: ArrayLike, params: Parameters = _DEFAULT) -> Floats:
     """Twist (v; omega) of the flange per joint rate in its own frame, (..., 6, 7).
 
     ``q`` are the joints, (..., 7), in radians.  v is the velocity of the flange.
@@ -116,7 +170,7 @@ def jacobian_body(q: ArrayLike, params: Parameters = LBR_IIWA_7) -> Floats:
     return np.concatenate([back @ v, back @ omega], axis=-2)
 
 
-def arm_angle(q: ArrayLike, params: Parameters = LBR_IIWA_7) -> Floats:
+def arm_angle(q: ArrayLike, params: Parameters = _DEFAULT) -> Floats:
     """The arm angle psi, (...), in (-pi, pi], of the joints ``q``, (..., 7), in radians.
 
     If w is along z the plane of x and z is the reference.
@@ -132,8 +186,8 @@ def arm_angle(q: ArrayLike, params: Parameters = LBR_IIWA_7) -> Floats:
     return angle
 
 
-def ik(T: ArrayLike, psi: ArrayLike, params: Parameters = LBR_IIWA_7) -> Solutions:
-    """All 8 postures of a pose ``T``, (..., 4, 4), with the arm angle ``psi``, (...), in radians.
+def ik(T: ArrayLike, arm_angle: ArrayLike, params: Parameters = _DEFAULT) -> Solutions:
+    """All 8 postures of a pose ``T``, (..., 4, 4), at the arm angle, (...), in radians.
 
     Returns ``Solutions``: ``q`` (..., 8, 7) in (-pi, pi] and ``status`` (..., 8), in the order of
     ``BRANCHES``.
@@ -142,10 +196,10 @@ def ik(T: ArrayLike, psi: ArrayLike, params: Parameters = LBR_IIWA_7) -> Solutio
     SINGULAR: w is along z; the arm is folded so that the wrist is on the shoulder, and w = z is
     taken; the axes 1 and 3 coincide, theta1 = 0 is returned; the axes 5 and 7 coincide, theta5 = 0
     is returned.  The answers reach the pose.
-    INVALID: ``T`` is not a homogeneous transform, ``psi`` is not finite, or ``d_se`` or ``d_ew`` is
-    negative.
+    INVALID: ``T`` is not a homogeneous transform, the arm angle is not finite, or ``d_se`` or
+    ``d_ew`` is negative.
     """
-    pose, angle = np.asarray(T, dtype=float), np.asarray(psi, dtype=float)
+    pose, angle = np.asarray(T, dtype=float), np.asarray(arm_angle, dtype=float)
     if pose.shape[-2:] != (4, 4):
         raise ValueError(f"T has the shape {pose.shape}; expected (..., 4, 4)")
     leading = np.broadcast_shapes(pose.shape[:-2], angle.shape)

@@ -18,7 +18,7 @@ from closedform.robots.nearest import (
     first_of_the_nearest,
     weights_of,
 )
-from closedform.robots.selfmotion import SINGULAR, at_seed
+from closedform.robots.selfmotion import SINGULAR, at_seed, loose_branches
 
 MAX_STEP = 0.5
 """The largest step of an angle from point to point that is not a jump, in rad."""
@@ -50,6 +50,7 @@ def track(
     limits: Limits,
     weights: Any = None,
     max_step: ArrayLike | None = None,
+    given: ArrayLike | None = None,
 ) -> Path:
     """The joints along ``xs``, from the solution that is nearest to ``q0``."""
     targets = np.asarray(xs, dtype=float)
@@ -60,20 +61,29 @@ def track(
         raise ValueError(f"q0 has shape {seed.shape}, expected ({len(mechanism.joints)},)")
     if max_step is None:
         max_step = np.where(mechanism.revolute, MAX_STEP, np.inf)
-    return _Tracker(mechanism, targets, limits, weights, np.asarray(max_step, dtype=float)).run(
-        seed
-    )
+    if given is None and mechanism.given is not None:
+        given = mechanism.given_at(seed)
+    if given is not None:
+        given = np.broadcast_to(np.asarray(given, dtype=float), len(targets))
+    steps = np.asarray(max_step, dtype=float)
+    return _Tracker(mechanism, targets, limits, weights, steps, given).run(seed)
 
 
 class _Tracker:
     """One path; loops over what happens on it, and computes the points between at once."""
 
     def __init__(
-        self, mechanism: Mechanism, xs: Array, limits: Limits, weights: Any, max_step: Array
+        self,
+        mechanism: Mechanism,
+        xs: Array,
+        limits: Limits,
+        weights: Any,
+        max_step: Array,
+        given: Array | None,
     ):
-        self.mechanism, self.xs, self.limits = mechanism, xs, limits
+        self.mechanism, self.xs, self.limits, self.given = mechanism, xs, limits, given
         self.weights, self.max_step = weights_of(mechanism, weights), max_step
-        found = mechanism.ik(xs)
+        found = mechanism.ik(xs, given)
         self.q, self.statuses = np.array(found.q), np.asarray(found.status)
         self.solved = (self.statuses == OK) | (self.statuses == SINGULAR)
         points, _, joints = self.q.shape
@@ -85,7 +95,8 @@ class _Tracker:
 
     def run(self, seed: Array) -> Path:
         points = len(self.xs)
-        singular = (self.statuses == SINGULAR).any(-1)
+        loose = loose_branches(self.mechanism, self.q, self.statuses, self.xs, self.given)
+        singular = np.asarray(loose.any(-1))
         edges = np.flatnonzero(np.diff(singular)) + 1
         last, before = seed, -1
         for start, end in pairwise([0, *edges.tolist(), points] if points else []):
@@ -118,7 +129,8 @@ class _Tracker:
         part = self.mechanism.part((len(self.xs),), np.arange(start, end))
         seeds = np.broadcast_to(seed, (end - start, len(seed)))
         q, status = self.q[start:end], self.statuses[start:end]
-        self.q[start:end] = at_seed(part, q, status, self.xs[start:end], seeds, self.limits)
+        given = None if self.given is None else self.given[start:end]
+        self.q[start:end] = at_seed(part, q, status, self.xs[start:end], seeds, self.limits, given)
         self.outside[start:end] = self._outside(start, end)
 
     def _follow(self, start: int, end: int, last: Array, before: int) -> tuple[Array, int]:

@@ -37,7 +37,7 @@ def twist_jacobian(mechanism: Mechanism, q: ArrayLike, frame: str = "tip") -> Ar
     """
     if frame not in FRAMES:
         raise ValueError(f"frame must be one of {', '.join(FRAMES)}, not {frame!r}")
-    if not mechanism.has("jacobian_space"):
+    if not _has_twist(mechanism):
         raise ValueError(f"{mechanism.name} has no twist; jacobian gives the rates of its task")
     if frame == "body" and _has_six_rows(mechanism):
         return mechanism.jacobian_body(q)
@@ -55,6 +55,10 @@ def twist_jacobian(mechanism: Mechanism, q: ArrayLike, frame: str = "tip") -> Ar
         R = np.swapaxes(T[..., :3, :3], -1, -2)
         v, omega = R @ v, R @ omega
     return np.concatenate([v, omega], axis=-2)
+
+
+def _has_twist(mechanism: Mechanism) -> bool:
+    return mechanism.has("jacobian_space") and mechanism.has("pose")
 
 
 def _has_six_rows(mechanism: Mechanism) -> bool:
@@ -75,8 +79,15 @@ def twist(mechanism: Mechanism, q: ArrayLike, qdot: ArrayLike, frame: str = "tip
 def joint_torques(
     mechanism: Mechanism, q: ArrayLike, wrench: ArrayLike, frame: str = "tip"
 ) -> Array:
-    """The joint torques that hold a wrench (f; m) which the tool exerts: ``J.T @ wrench``."""
-    J = twist_jacobian(mechanism, q, frame)
+    """The joint torques that hold a wrench (f; m) which the tool exerts: ``J.T @ wrench``.
+
+    A mechanism without a twist takes the forces along its task coordinates, as ``joint_rates``
+    takes their rates.
+    """
+    twisted = _has_twist(mechanism)
+    J = twist_jacobian(mechanism, q, frame) if twisted else rate_jacobian(mechanism, q)
+    if np.shape(wrench)[-1:] != J.shape[-2:-1]:
+        raise ValueError(f"wrench has shape {np.shape(wrench)}, expected (..., {J.shape[-2]})")
     force = np.asarray(wrench, dtype=float)[..., None]
     return np.asarray((np.swapaxes(J, -1, -2) @ force)[..., 0])
 

@@ -17,8 +17,12 @@ from .toy import ROWS
 ROOT = Path(__file__).parents[2]
 RUNTIME = ROOT / "closedform" / "runtime" / "extension"
 TOY = Path(__file__).parent / "toy.c"
-SANITIZED = bool(os.environ.get("CLOSEDFORM_TEST_SANITIZE"))
-SANITIZE = ["-fsanitize=address,undefined", "-fno-sanitize-recover=undefined", "-O1"]
+SANITIZERS = {
+    "": [],
+    "address": ["-fsanitize=address,undefined", "-fno-sanitize-recover=undefined", "-O1"],
+    "thread": ["-fsanitize=thread", "-O1"],
+}
+SANITIZED = os.environ.get("CLOSEDFORM_TEST_SANITIZE", "")
 INCLUDES = [
     f"-I{RUNTIME}",
     "-isystem",
@@ -35,7 +39,7 @@ def _target(folder: Path) -> Path:
 def compile_toy(folder: Path) -> None:
     command = [os.environ.get("CC", "cc"), "-std=c99", "-O2", "-fPIC", "-shared"]
     command += ["-fno-math-errno", "-fno-trapping-math", "-DCF_MODULE_NAME=toy_native"]
-    command += SANITIZE if SANITIZED else []
+    command += SANITIZERS[SANITIZED]
     command += [*INCLUDES, *map(str, sorted(RUNTIME.glob("*.c"))), str(TOY), "-lm"]
     compiled(command, _target(folder))
 

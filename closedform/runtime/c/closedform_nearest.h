@@ -18,12 +18,14 @@
 #define CF_STRAIGHT CLOSEDFORM_C(1e-4) /* ... of a posture on the way to it */
 #define CF_FREE CLOSEDFORM_C(1e-3)     /* the target does not move */
 #define CF_DAMPING CLOSEDFORM_C(1e-6)
+#define CF_NEARLY CLOSEDFORM_C(1e-5) /* a determinant that only rounding keeps from zero */
 #define CF_SLACK CLOSEDFORM_C(1e-5)
 #else
 #define CF_REACHED CLOSEDFORM_C(1e-12)
 #define CF_STRAIGHT CLOSEDFORM_C(1e-9)
 #define CF_FREE CLOSEDFORM_C(1e-6)
 #define CF_DAMPING CLOSEDFORM_C(1e-13)
+#define CF_NEARLY CLOSEDFORM_C(1e-12)
 #define CF_SLACK CLOSEDFORM_C(1e-9) /* how far a joint may pass a limit, in rad */
 #endif
 #define CF_INFINITE CLOSEDFORM_C(HUGE_VAL)
@@ -31,6 +33,7 @@
 #define CF_SHARE CLOSEDFORM_C(1e-3)
 #define CF_LONGEST CLOSEDFORM_C(0.5) /* rad; a step along a self-motion */
 #define CF_STEPS 24
+#define CF_CLOSE CLOSEDFORM_C(1e-2) /* rad; an answer so near to the seed is no jump */
 
 /* The functions and the sizes of one robot. task: 16 for a pose, 9 for a rotation, or the number of
  * coordinates; angles and revolute have a bit for each coordinate and each joint. */
@@ -257,9 +260,34 @@ static inline size_t cf_free_joint(
     return found;
 }
 
-/* Move a singular posture along its self-motion until the free joint has the value of the seed.
- * Returns whether another side of the curve may be nearer. */
-static inline int cf_release(const cf_task *t, const real_t *seed, real_t *q)
+/* Whether the Jacobian has no rank but by rounding. */
+static inline int cf_nearly_singular(const cf_task *t, const real_t *q)
+{
+    const size_t n = t->robot->joints;
+    real_t J[CF_MOST_ROWS * CF_MOST_JOINTS], product = 1;
+    if (t->robot->rows != n || !cf_task_jacobian(t, q, J)) return 0;
+    for (size_t k = 0; k < n; ++k) {
+        size_t pivot = k;
+        for (size_t i = k + 1; i < n; ++i)
+            if (CF_LIBM(fabs)(J[i * n + k]) > CF_LIBM(fabs)(J[pivot * n + k])) pivot = i;
+        product *= CF_LIBM(fabs)(J[pivot * n + k]);
+        if (!(product > 0)) return 1;
+        for (size_t j = 0; j < n; ++j) {
+            const real_t kept = J[pivot * n + j];
+            J[pivot * n + j] = J[k * n + j];
+            J[k * n + j] = kept;
+        }
+        for (size_t i = k + 1; i < n; ++i) {
+            const real_t share = J[i * n + k] / J[k * n + k];
+            for (size_t j = k; j < n; ++j) J[i * n + j] -= share * J[k * n + j];
+        }
+    }
+    return product <= CF_NEARLY;
+}
+
+/* Move a singular posture along its self-motion until the free joint has the value of the seed, or
+ * only if that is a straight line. Returns whether another side of the curve may be nearer. */
+static inline int cf_release(const cf_task *t, const real_t *seed, int only_straight, real_t *q)
 {
     const size_t n = t->robot->joints;
     real_t e[CF_MOST_ROWS], J[CF_MOST_ROWS * CF_MOST_JOINTS], rates[CF_MOST_JOINTS], at[CF_MOST_JOINTS];
@@ -273,6 +301,9 @@ static inline int cf_release(const cf_task *t, const real_t *seed, real_t *q)
     cf_tangent(t, J, joint, rates);
     for (size_t j = 0; j < n; ++j) at[j] = q[j] + moved * rates[j];
     straight = cf_error(t, at, e) <= CF_STRAIGHT;
+    /* Rounding spoils the direction of such a line; what is left is corrected. */
+    if (only_straight) straight = cf_error(t, at, e) <= 1000 * CF_STRAIGHT;
+    if (!straight && only_straight) return 0;
     if (!straight) {
         memcpy(at, q, n * sizeof *q);
         for (int k = 0; k < CF_STEPS && reached; ++k) {
@@ -357,42 +388,19 @@ static inline int cf_turn_within(int revolute, real_t seed, real_t lower, real_t
     return 1;
 }
 
-/* As described in the header of a robot. */
-static inline int cf_nearest_posture(const cf_robot *robot, const void *params, const real_t *x,
-    const real_t *q_seed, const real_t *limits, const real_t *weights, real_t *q, uint8_t *status,
-    uint32_t *outside)
+/* Turn the joints of all branches to where they are nearest to the seed. Returns the nearest branch
+ * within the limits, or -1. */
+static inline int cf_best(const cf_robot *robot, const real_t *q_seed, const real_t *limits,
+    const real_t *weights, const uint8_t *statuses, real_t *every, uint32_t *outside)
 {
     const size_t n = robot->joints;
-    real_t every[CF_MOST_BRANCHES * CF_MOST_JOINTS], wanted[CF_MOST_JOINTS], near[CF_MOST_JOINTS];
-    uint8_t statuses[CF_MOST_BRANCHES];
     real_t least = CF_INFINITE;
-    int best = -1, invalid = 1, other = 0, finite = 1;
-    cf_task task = { robot, params, x, 0 };
-    robot->ik(params, x, every, statuses);
-    for (size_t j = 0; j < n; ++j) {
-        finite = finite && q_seed[j] - q_seed[j] == 0;
-        wanted[j] = q_seed[j];
-        if (limits != NULL && finite)
-            wanted[j] = cf_min(cf_max(wanted[j], limits[j]), limits[n + j]);
-    }
-    for (size_t k = 0; k < robot->fields; ++k)
-        task.size += CF_LIBM(fabs)(((const real_t *)params)[k]);
-    if (!(task.size > 0)) task.size = 1;
-    for (size_t b = 0; b < robot->branches && finite; ++b)
-        if (statuses[b] == CLOSEDFORM_SINGULAR) other |= cf_release(&task, wanted, every + b * n);
-    if (other) {
-        const int b = cf_near(&task, wanted, near);
-        if (b >= 0 && statuses[b] == CLOSEDFORM_SINGULAR &&
-            cf_squares(robot, near, wanted) < cf_squares(robot, every + (size_t)b * n, wanted))
-            memcpy(every + (size_t)b * n, near, n * sizeof *q);
-    }
+    int best = -1;
     for (size_t b = 0; b < robot->branches; ++b) {
         uint32_t beyond = 0;
         real_t distance = 0;
         if (outside != NULL) outside[b] = 0;
-        invalid = invalid && statuses[b] == CLOSEDFORM_INVALID;
-        if (statuses[b] == CLOSEDFORM_UNREACHABLE || statuses[b] == CLOSEDFORM_INVALID || !finite)
-            continue;
+        if (statuses[b] == CLOSEDFORM_UNREACHABLE || statuses[b] == CLOSEDFORM_INVALID) continue;
         for (size_t j = 0; j < n; ++j) {
             real_t *const value = every + b * n + j;
             const real_t lower = limits != NULL ? limits[j] : -CF_INFINITE;
@@ -409,6 +417,51 @@ static inline int cf_nearest_posture(const cf_robot *robot, const void *params, 
             least = distance;
             best = (int)b;
         }
+    }
+    return best;
+}
+
+/* As described in the header of a robot. */
+static inline int cf_nearest_posture(const cf_robot *robot, const void *params, const real_t *x,
+    const real_t *q_seed, const real_t *limits, const real_t *weights, real_t *q, uint8_t *status,
+    uint32_t *outside)
+{
+    const size_t n = robot->joints;
+    real_t every[CF_MOST_BRANCHES * CF_MOST_JOINTS], wanted[CF_MOST_JOINTS], near[CF_MOST_JOINTS];
+    uint8_t statuses[CF_MOST_BRANCHES];
+    int best = -1, invalid = 1, other = 0, finite = 1;
+    cf_task task = { robot, params, x, 0 };
+    robot->ik(params, x, every, statuses);
+    for (size_t j = 0; j < n; ++j) {
+        finite = finite && q_seed[j] - q_seed[j] == 0;
+        wanted[j] = q_seed[j];
+        if (limits != NULL && finite)
+            wanted[j] = cf_min(cf_max(wanted[j], limits[j]), limits[n + j]);
+    }
+    for (size_t k = 0; k < robot->fields; ++k)
+        task.size += CF_LIBM(fabs)(((const real_t *)params)[k]);
+    if (!(task.size > 0)) task.size = 1;
+    for (size_t b = 0; b < robot->branches; ++b) {
+        invalid = invalid && statuses[b] == CLOSEDFORM_INVALID;
+        if (!finite) statuses[b] = CLOSEDFORM_INVALID;
+        if (statuses[b] == CLOSEDFORM_SINGULAR) other |= cf_release(&task, wanted, 0, every + b * n);
+    }
+    if (other) {
+        const int b = cf_near(&task, wanted, near);
+        if (b >= 0 && statuses[b] == CLOSEDFORM_SINGULAR &&
+            cf_squares(robot, near, wanted) < cf_squares(robot, every + (size_t)b * n, wanted))
+            memcpy(every + (size_t)b * n, near, n * sizeof *q);
+    }
+    best = cf_best(robot, q_seed, limits, weights, statuses, every, outside);
+    if (best < 0 || cf_squares(robot, every + (size_t)best * n, wanted) > CF_CLOSE) {
+        /* Rounding of the target may hide that it is singular. */
+        int moved = 0;
+        for (size_t b = 0; b < robot->branches; ++b) {
+            if (statuses[b] != CLOSEDFORM_OK || !cf_nearly_singular(&task, every + b * n)) continue;
+            cf_release(&task, wanted, 1, every + b * n);
+            moved = 1;
+        }
+        if (moved) best = cf_best(robot, q_seed, limits, weights, statuses, every, outside);
     }
     for (size_t j = 0; j < n; ++j) q[j] = best < 0 ? CLOSEDFORM_NAN : every[(size_t)best * n + j];
     *status = best >= 0 ? statuses[best]

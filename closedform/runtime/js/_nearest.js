@@ -12,6 +12,8 @@ const FREE = 1e-6; // the target does not move
 const SHARE = 1e-3;
 const DAMPING = 1e-13;
 const SLACK = 1e-9; // how far a joint may pass a limit, in rad
+const NEARLY = 1e-12; // a determinant that only rounding keeps from zero
+const CLOSE = 1e-2; // rad; an answer so near to the seed is no jump
 const LONGEST = 0.5; // rad; a step along a self-motion
 const STEPS = 24;
 const ANGLES = ["yaw", "pitch", "roll", "psi", "phi", "theta"];
@@ -61,27 +63,78 @@ export function nearest(robot, x, seed, options = {}, parameters = {}) {
     const wanted = q0.map((v, j) => Math.min(Math.max(v, lower[j]), upper[j]));
     const task = new Task(robot, Array.from(x), parameters);
     if (finite && solutions.status.includes(SINGULAR)) release(task, wanted, every, solutions.status);
-    /** @type {Nearest} */
-    const found = { q: new Array(n).fill(NaN), status: UNREACHABLE, branch: -1, distance: Infinity, outside: [] };
-    for (let b = 0; b < every.length; ++b) {
-        const solved = finite && (solutions.status[b] === OK || solutions.status[b] === SINGULAR);
-        const beyond = new Array(n).fill(false);
-        found.outside.push(beyond);
-        if (!solved) continue;
-        let squares = 0;
-        for (let j = 0; j < n; ++j) {
-            const value = turnWithin(task.revolute[j], every[b][j], q0[j], lower[j], upper[j]);
-            beyond[j] = value === undefined;
-            if (value !== undefined) every[b][j] = value;
-            squares += weight[j] * (every[b][j] - q0[j]) ** 2;
-        }
-        const distance = Math.sqrt(squares);
-        if (beyond.includes(true) || !(distance < found.distance * (1 - 1e-9) - 1e-18 || found.branch < 0)) continue;
-        Object.assign(found, { q: every[b], status: solutions.status[b], branch: b, distance });
+    const bounds = { lower, upper, weight };
+    const statuses = solutions.status.map((/** @type {number} */ status) => (finite ? status : INVALID));
+    let found = best(task, every, statuses, q0, bounds);
+    if (found.branch < 0 || apart(task, found.q, wanted) > CLOSE) { // rounding may hide that the target is singular
+        let moved = false;
+        statuses.forEach((/** @type {number} */ status, /** @type {number} */ b) => {
+            if (status !== OK || !nearlySingular(task, every[b])) return;
+            every[b] = moveTo(task, wanted, every[b], true).q;
+            moved = true;
+        });
+        if (moved) found = best(task, every, statuses, q0, bounds);
     }
     const invalid = !finite || solutions.status.every((/** @type {number} */ s) => s === INVALID);
     if (found.branch < 0 && invalid) found.status = INVALID;
     return found;
+}
+
+/**
+ * Turns the joints of all branches to where they are nearest to the seed, and takes the nearest.
+ *
+ * @param {Task} task
+ * @param {number[][]} every
+ * @param {readonly number[]} statuses
+ * @param {readonly number[]} seed
+ * @param {{ lower: number[], upper: number[], weight: number[] }} bounds
+ * @returns {Nearest}
+ */
+function best(task, every, statuses, seed, { lower, upper, weight }) {
+    const n = seed.length;
+    /** @type {Nearest} */
+    const found = { q: new Array(n).fill(NaN), status: UNREACHABLE, branch: -1, distance: Infinity, outside: [] };
+    for (let b = 0; b < every.length; ++b) {
+        const beyond = new Array(n).fill(false);
+        found.outside.push(beyond);
+        if (statuses[b] !== OK && statuses[b] !== SINGULAR) continue;
+        let squares = 0;
+        for (let j = 0; j < n; ++j) {
+            const value = turnWithin(task.revolute[j], every[b][j], seed[j], lower[j], upper[j]);
+            beyond[j] = value === undefined;
+            if (value !== undefined) every[b][j] = value;
+            squares += weight[j] * (every[b][j] - seed[j]) ** 2;
+        }
+        const distance = Math.sqrt(squares);
+        if (beyond.includes(true) || !(distance < found.distance * (1 - 1e-9) - 1e-18 || found.branch < 0)) continue;
+        Object.assign(found, { q: every[b].slice(), status: statuses[b], branch: b, distance });
+    }
+    return found;
+}
+
+/**
+ * Whether the Jacobian has no rank but by rounding.
+ *
+ * @param {Task} task
+ * @param {readonly number[]} q
+ */
+function nearlySingular(task, q) {
+    const J = task.jacobian(q);
+    const n = task.n;
+    if (J === undefined || J.length !== n) return false;
+    let product = 1;
+    for (let k = 0; k < n; ++k) {
+        const column = J.map((row, i) => (i < k ? -1 : Math.abs(row[k])));
+        const pivot = column.indexOf(Math.max(...column));
+        product *= column[pivot];
+        if (!(product > 0)) return true;
+        [J[k], J[pivot]] = [J[pivot], J[k]];
+        for (let i = k + 1; i < n; ++i) {
+            const share = J[i][k] / J[k][k];
+            J[i] = J[i].map((v, j) => v - share * J[k][j]);
+        }
+    }
+    return product <= NEARLY;
 }
 
 /**
@@ -327,7 +380,7 @@ function release(task, seed, every, statuses) {
     let other = false;
     for (let b = 0; b < every.length; ++b) {
         if (statuses[b] !== SINGULAR) continue;
-        const moved = moveTo(task, seed, every[b]);
+        const moved = moveTo(task, seed, every[b], false);
         every[b] = moved.q;
         other ||= moved.doubtful;
     }
@@ -342,8 +395,9 @@ function release(task, seed, every, statuses) {
  * @param {Task} task
  * @param {readonly number[]} seed
  * @param {number[]} q
+ * @param {boolean} onlyStraight
  */
-function moveTo(task, seed, q) {
+function moveTo(task, seed, q, onlyStraight) {
     const J = task.jacobian(q);
     const { joint, conventional } = J === undefined ? { joint: -1, conventional: false } : freeJoint(q, J, true);
     const first = J === undefined || joint < 0 ? undefined : tangent(J, task.n, joint);
@@ -351,8 +405,10 @@ function moveTo(task, seed, q) {
     const gap = seed[joint] - q[joint];
     const moved = task.revolute[joint] ? lessTurns(gap) : gap;
     let at = q.map((v, j) => v + moved * first.rates[j]);
-    const straight = task.largest(at) <= STRAIGHT;
+    // Where only rounding hides a singularity, it spoils the direction of the line; what is left is corrected.
+    const straight = task.largest(at) <= (onlyStraight ? 1000 * STRAIGHT : STRAIGHT);
     let reached = true;
+    if (!straight && onlyStraight) return { q, doubtful: false };
     if (!straight) {
         at = q;
         for (let k = 0; k < STEPS && reached; ++k) {

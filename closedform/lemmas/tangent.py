@@ -7,6 +7,7 @@ the target does not tell apart, one is taken that leaves them within reach.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -266,20 +267,20 @@ class LinksAndWrist(Links):
         Steps that keep the direction of the axis, or nearly so, do not get there where a small turn
         reverses it; then detours lead first to where it points.  Of all ends the nearest counts.
         """
-        count = 1
+        numbers = itertools.count(2)
+
+        def moved(place: _Place, pair: Pair) -> _Place:
+            return place.moved(pair, f"{turn.name}_{next(numbers)}")
 
         def follow(place: _Place, steps: Sequence[Callable[[_Place], Pair]]) -> _Place:
-            nonlocal count
             for step in steps:
-                count += 1
-                place = place.moved(step(place), f"{turn.name}_{count}")
+                place = moved(place, step(place))
             return place
 
         best = follow(_Place(self, turn), [_Place.closer] * 3)
         for detour in _DETOURS:
             other = follow(best, detour)
-            nearer = other.miss < best.miss
-            best = follow(best, [lambda place, o=other, n=nearer: place.unless(n, o)])
+            best = moved(best, best.unless(other.miss < best.miss, other))
         return best.turn.pair
 
 

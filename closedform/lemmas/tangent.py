@@ -7,8 +7,10 @@ target does not distinguish, one is taken for which the rest is within reach.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Protocol
 
 import sympy as sp
@@ -50,6 +52,13 @@ class Within:
     bend: sp.Expr
     low: sp.Expr
     high: sp.Expr
+
+    @property
+    def miss(self) -> sp.Expr:
+        """How far the point is out of reach."""
+        x, y = self.point
+        r = sp.sqrt(x**2 + y**2)
+        return sp.Max(0, self.low - r, r - self.high)
 
 
 @dataclass(frozen=True)
@@ -94,12 +103,13 @@ class Turn:
             (self.let(f"d{name}x", rate(x)), self.let(f"d{name}y", rate(y))),
         )
 
-    def by(self, sine: sp.Expr, cosine: sp.Expr, unless: sp.Basic = sp.false) -> Pair:
+    def by(self, sine: sp.Expr, cosine: sp.Expr) -> Pair:
         """The pair turned further, by an angle that the target does not distinguish."""
-        versine = sine**2 / (1 + sp.Abs(cosine))
+        small = sine**2 / (1 + sp.Abs(cosine))
+        versine = self.let("versine", sp.Piecewise((small, cosine > 0), (1 - cosine, True)))
         cost = self.let("cost", sp.Abs(self.lever * sine) + sp.Abs(self.beside) * versine)
         size = self.let("whole", self.chain.size * ROUNDING)
-        allowed = sp.And(cost <= size, sp.Not(unless), cosine > 0)
+        allowed = cost <= size
         s, c = (
             self.let(n, sp.Piecewise((value, allowed), (sp.Integer(k), True)))
             for n, value, k in (("sine", sine, 0), ("cosine", cosine, 1))
@@ -107,10 +117,7 @@ class Turn:
         return self.pair + Pair(s, c)
 
     def least(self, goal: Within) -> Pair:
-        """The smallest turn that brings a point within reach, up to rounding of the target.
-
-        A quarter turn or more does not count as small.
-        """
+        """The smallest turn that brings a point within reach, up to rounding of the target."""
         (x, y), (dx, dy) = goal.point, goal.rate
         square = self.let("square", x**2 + y**2)
         play = self.chain.size * ROUNDING
@@ -258,95 +265,165 @@ class LinksAndWrist(Links):
     sigma: sp.Symbol = real("sigma_wrist")  # noqa: RUF009
 
     def nearest(self, turn: Turn) -> Pair:
-        found = turn.least(self.goal(turn, sp.Max(turn.lever, turn.chain.size / 2**22)))
-        turn = turn.renamed(found, f"{turn.name}_2")
-        found = self.aligned(turn)
-        for step in ("3", "4"):
-            turn = turn.renamed(found, f"{turn.name}_{step}")
-            found = turn.least(self.goal(turn, turn.chain.size))
-        return found
+        """The pair of the turn, changed by no more than rounding, with the rest within reach.
 
-    def wrist(self, turn: Turn, ax: sp.Expr, ay: sp.Expr) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+        Steps that keep the direction of the axis, or nearly so, do not get there where a small turn
+        reverses it; then detours lead first to where it points.  Of all ends the nearest counts.
+        """
+        numbers = itertools.count(2)
+
+        def moved(place: _Place, pair: Pair) -> _Place:
+            return place.moved(pair, f"{turn.name}_{next(numbers)}")
+
+        def follow(place: _Place, steps: Sequence[Callable[[_Place], Pair]]) -> _Place:
+            for step in steps:
+                place = moved(place, step(place))
+            return place
+
+        best = follow(_Place(self, turn), [_Place.closer] * 3)
+        for detour in _DETOURS:
+            other = follow(best, detour)
+            best = moved(best, best.unless(other.miss < best.miss, other))
+        return best.turn.pair
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Two links and a wrist, where a turn has brought them."""
+
+    goal: LinksAndWrist
+    turn: Turn
+
+    def moved(self, pair: Pair, name: str) -> _Place:
+        return _Place(self.goal, self.turn.renamed(pair, name))
+
+    def unless(self, better: sp.Basic, other: _Place) -> Pair:
+        """The pair of this place, or of the other one if it is better."""
+        there, here = other.turn.pair, self.turn.pair
+        return Pair(
+            sp.Piecewise((there.s, better), (here.s, True)),
+            sp.Piecewise((there.c, better), (here.c, True)),
+        )
+
+    def closer(self) -> Pair:
+        """Turned as little as brings the links within reach, if the axis does not turn far."""
+        return self.turn.least(self.within)
+
+    @cached_property
+    def miss(self) -> sp.Symbol:
+        return self.turn.let("missed", self.within.miss)
+
+    @cached_property
+    def q(self) -> tuple[tuple[sp.Expr, sp.Expr], tuple[sp.Expr, sp.Expr]]:
+        return self.turn.linear("q", self.goal.q)
+
+    @cached_property
+    def axis(self) -> tuple[tuple[sp.Expr, sp.Expr], tuple[sp.Expr, sp.Expr]]:
+        return self.turn.linear("axis", self.goal.axis)
+
+    @cached_property
+    def wrist(self) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
         """The sine between the axis and the normal of the plane, and the direction of the offset.
 
         It has none where the axis is normal to the plane.
         """
+        (ax, ay), _ = self.axis
+        turn, sigma = self.turn, self.goal.sigma
         h = turn.let("h", sp.sqrt(ax**2 + ay**2))
-        u = direction(self.sigma * ay, self.sigma * ax, h, sp.Eq(h, 0)) + self.ahead
+        u = direction(sigma * ay, sigma * ax, h, sp.Eq(h, 0)) + self.goal.ahead
         return h, turn.let("us", u.s), turn.let("uc", u.c)
 
-    def goal(self, turn: Turn, lever: sp.Expr) -> Within:
-        """The goal where rounding over a ``lever`` may turn the wrist and the offset anywhere."""
-        (qx, qy), (dqx, dqy) = turn.linear("q", self.q)
-        (ax, ay), (dax, day) = turn.linear("axis", self.axis)
-        h, us, uc = self.wrist(turn, ax, ay)
-        least = turn.let("fold", sp.Abs(self.l1 - self.l2))
-        most = turn.let("full", self.l1 + self.l2)
-        size = turn.let("size", turn.chain.size)
-        loose = h * lever <= size / 2**46
+    @cached_property
+    def within(self) -> Within:
+        """The goal where rounding may turn the wrist and the offset anywhere."""
+        turn, offset = self.turn, self.goal.offset
+        (qx, qy), (dqx, dqy) = self.q
+        (ax, ay), (dax, day) = self.axis
+        h, us, uc = self.wrist
+        least = turn.let("fold", sp.Abs(self.goal.l1 - self.goal.l2))
+        most = turn.let("full", self.goal.l1 + self.goal.l2)
+        loose = h <= sp.Rational(1, 2**46)
         spin = turn.let("spin", choose(loose, 0, (ax * day - ay * dax) / h**2))
-        rate = turn.let("rate", self.offset * spin)
+        rate = turn.let("rate", offset * spin)
         # u only turns: the square of its length has no part in the bend
         straight = turn.let("straight", dqx**2 + dqy**2)
         bent = straight + rate * (spin * (qx * uc + qy * us) + 2 * (dqx * us - dqy * uc))
-        apart = turn.let("apart", sp.Max(least - self.offset, self.offset - most))
+        apart = turn.let("apart", sp.Max(least - offset, offset - most))
         x, y, dx, dy, bend, low, high = (
             turn.let(n, sp.Piecewise((a, loose), (b, True)))
             for n, a, b in (
-                ("x", qx, qx - self.offset * uc),
-                ("y", qy, qy - self.offset * us),
+                ("x", qx, qx - offset * uc),
+                ("y", qy, qy - offset * us),
                 ("dx", dqx, dqx + rate * us),
                 ("dy", dqy, dqy - rate * uc),
                 ("bends", straight, bent),
                 ("nearest", sp.Max(0, apart), least),
-                ("farthest", most + self.offset, most),
+                ("farthest", most + offset, most),
             )
         )
         return Within((x, y), (dx, dy), bend, low, high)
 
-    def aligned(self, turn: Turn) -> Pair:
+    def aligned(self) -> Pair:
+        """Turned so that the axis is as near to the normal of the plane as it gets."""
+        return self.across(sp.S.Zero)
+
+    def across(self, wanted: sp.Expr) -> Pair:
+        """Turned so that the first coordinate of the axis, the one that changes, is as wanted."""
+        turn = self.turn
+        (ax, _), (dax, _) = self.axis
+        room = turn.let("room", sp.Max(0, (self.most - wanted) * (self.most + wanted)))
+        rest = turn.let("rest", sign_of(dax) * sp.sqrt(room))
+        fixed = self.most <= LAST  # the axis is that of the turn
+        return turn.by(
+            turn.let("by_s", choose(fixed, 0, (dax * wanted - ax * rest) / self.most**2)),
+            turn.let("by_c", choose(fixed, 1, (ax * wanted + dax * rest) / self.most**2)),
+        )
+
+    @cached_property
+    def most(self) -> sp.Symbol:
+        (ax, _), (dax, _) = self.axis
+        return self.turn.let("most", sp.sqrt(ax**2 + dax**2))
+
+    def directed(self) -> Pair:
         """Turned so that the axis of the wrist has the nearest direction that is within reach.
 
         A turn changes one coordinate of the axis alone; where the other is zero as well as rounding
         goes, the wrist is aligned.
         """
-        chain = turn.chain
-        (qx, qy), _ = turn.linear("q", self.q)
-        (ax, ay), (dax, _) = turn.linear("axis", self.axis)
-        _, us, uc = self.wrist(turn, ax, ay)
+        goal, turn, chain = self.goal, self.turn, self.turn.chain
+        (qx, qy), _ = self.q
+        (_, ay), _ = self.axis
+        _, us, uc = self.wrist
         there = turn.let(
-            "there", sp.sqrt((qx - self.offset * uc) ** 2 + (qy - self.offset * us) ** 2)
+            "there", sp.sqrt((qx - goal.offset * uc) ** 2 + (qy - goal.offset * us) ** 2)
         )
-        nearest, farthest = sp.Abs(self.l1 - self.l2), self.l1 + self.l2
-        reach = turn.let("goal", sp.Min(sp.Max(there, nearest), farthest))
+        reach = turn.let(
+            "goal", sp.Min(sp.Max(there, sp.Abs(goal.l1 - goal.l2)), goal.l1 + goal.l2)
+        )
         side = turn.let("side", sign_of(qx * us - qy * uc))
         r = turn.let("r", sp.sqrt(qx**2 + qy**2))
-        past = Offset((qx, qy), r, self.offset)
-        back = -self.ahead
+        past = Offset((qx, qy), r, goal.offset)
+        back = -goal.ahead
         (vs, vc), (ws, wc) = (
             (turn.let(f"{n}s", v.s), turn.let(f"{n}c", v.c))
             for n, sign in (("v", 1), ("w", -1))
             for v in [past.leaving(chain, reach, sign * side, f"{n}_{turn.name}")[0] + back]
         )
-        other = turn.let("other", self.sigma * ay * vs) < 0  # the turn does not change ay
+        other = turn.let("other", goal.sigma * ay * vs) < 0  # the turn does not change ay
         vs, vc = (
             turn.let(n, sp.Piecewise((w, other), (v, True)))
             for n, v, w in (("to_s", vs, ws), ("to_c", vc, wc))
         )
-        most = turn.let("most", sp.sqrt(ax**2 + dax**2))
         across = turn.let("across", choose(sp.Abs(ay) <= 16 * LAST, 0, ay * vc * sign_of(vs)))
-        beyond = sp.Abs(across) >= most * sp.Abs(vs)
-        limited = choose(beyond, most * sign_of(across), across / sp.Abs(vs))
-        wanted = turn.let("wanted", choose(sp.Eq(across, 0), 0, limited))
-        room = turn.let("room", sp.Max(0, (most - wanted) * (most + wanted)))
-        rest = turn.let("rest", sign_of(dax) * sp.sqrt(room))
-        inside = sp.Abs(reach - there) <= chain.size * ROUNDING
-        fixed = most <= LAST  # the axis is that of the turn
-        return turn.by(
-            turn.let("by_s", choose(fixed, 0, (dax * wanted - ax * rest) / most**2)),
-            turn.let("by_c", choose(fixed, 1, (ax * wanted + dax * rest) / most**2)),
-            unless=inside,
-        )
+        beyond = sp.Abs(across) >= self.most * sp.Abs(vs)
+        limited = choose(beyond, self.most * sign_of(across), across / sp.Abs(vs))
+        return self.across(turn.let("wanted", choose(sp.Eq(across, 0), 0, limited)))
+
+
+_DETOURS = (
+    (_Place.directed, _Place.closer, _Place.closer),
+    (_Place.aligned, *[_Place.directed] * 2, *[_Place.closer] * 5),
+)
 
 
 def plain(name: str, value: sp.Expr, scale: sp.Expr) -> sp.Basic:

@@ -12,7 +12,7 @@
 #   singularities: 6 add, 9 multiply, 3 sincos
 #   jacobian_space: 49 add, 90 multiply, 5 sincos
 #   jacobian_body: 33 add, 70 multiply, 5 sincos
-#   ik: 385 compare and select, 256 add, 22 atan2, 33 divide, 385 multiply, 26 sqrt
+#   ik: 385 compare and select, 258 add, 22 atan2, 33 divide, 385 multiply, 26 sqrt
 """Six-axis arm of industry (OPW).
 
 theta1 turns about the vertical.  The axes of theta2 and theta3 are horizontal and parallel, and
@@ -919,540 +919,542 @@ def _ik(
     t43 = 1.0 / (1.0 + t42)
     t44 = 2.0 * t41 * t43
     by_c_1_1 = t43 * (1.0 - t42)
-    t45 = t12 * (t44 * t44) / (1.0 + ops.abs(by_c_1_1))
-    t46 = (t45 + root1 * ops.abs(t44) <= whole_1_1) & (0.0 < by_c_1_1)
-    cosine_1_1 = ops.select(t46, by_c_1_1, 1.0)
-    sine_1_1 = ops.select(t46, -t44, 0.0)
+    versine_1_1 = ops.select(0.0 < by_c_1_1, t44 * t44 / (1.0 + ops.abs(by_c_1_1)), 1.0 - by_c_1_1)
+    t45 = root1 * ops.abs(t44) + t12 * versine_1_1 <= whole_1_1
+    cosine_1_1 = ops.select(t45, by_c_1_1, 1.0)
+    sine_1_1 = ops.select(t45, -t44, 0.0)
     c1_0 = ops.select(tangent1, c_1_1 * cosine_1_1 + t30 * sine_1_1, c_1_1)
     s1 = ops.select(tangent1, c_1_1 * sine_1_1 - t30 * cosine_1_1, -t30)
-    t47 = a1 - (w_x * c1_0 + w_y * s1)
-    r_elbow = ops.sqrt(t21 + t47 * t47)
-    t48 = t20 - r_elbow
-    t49 = t33 + r_elbow
-    t50 = r_elbow - t33
-    t51 = t18 & (t14 <= t48) & (t14 <= t49) & (t14 <= t50)
-    unreachable = ops.opposite(t51)
+    t46 = a1 - (w_x * c1_0 + w_y * s1)
+    r_elbow = ops.sqrt(t21 + t46 * t46)
+    t47 = t20 - r_elbow
+    t48 = t33 + r_elbow
+    t49 = r_elbow - t33
+    t50 = t18 & (t14 <= t47) & (t14 <= t48) & (t14 <= t49)
+    unreachable = ops.opposite(t50)
     failed = invalid | unreachable
     c_1_1_backward_up_noflip = ops.select(free1, 1.0, t25 - t27)
-    t52 = ops.select(free1, 0.0, t28 + t29)
-    t53 = a1 - w_x * c_1_1_backward_up_noflip + w_y * t52
-    dqx_1_1_backward_up_noflip = w_y * c_1_1_backward_up_noflip + w_x * t52
-    t54 = t53 * dqx_1_1_backward_up_noflip
+    t51 = ops.select(free1, 0.0, t28 + t29)
+    t52 = a1 - w_x * c_1_1_backward_up_noflip + w_y * t51
+    dqx_1_1_backward_up_noflip = w_y * c_1_1_backward_up_noflip + w_x * t51
+    t53 = t52 * dqx_1_1_backward_up_noflip
     bend_1_1_backward_up_noflip = dqx_1_1_backward_up_noflip * dqx_1_1_backward_up_noflip
-    square_1_1_backward_up_noflip = t21 + t53 * t53
-    t55 = ops.min(high_1_1, square_1_1_backward_up_noflip)
-    miss_1_1_backward_up_noflip = square_1_1_backward_up_noflip - ops.max(low_1_1, t55)
-    t56 = bend_1_1_backward_up_noflip * miss_1_1_backward_up_noflip
-    inner_1_1_backward_up_noflip = t54 * t54 - t56
-    t57 = inner_1_1_backward_up_noflip < 0.0
-    t58 = ops.sign(-t54)
-    t59 = ops.sqrt(ops.max(0.0, inner_1_1_backward_up_noflip))
-    below_1_1_backward_up_noflip = ops.select(t57, 2.0 * bend_1_1_backward_up_noflip, -(2.0 * (t54 - t58 * t59)))
-    above_1_1_backward_up_noflip = ops.select(t57, -t54, miss_1_1_backward_up_noflip)
-    t60 = ops.abs(below_1_1_backward_up_noflip) <= ops.abs(above_1_1_backward_up_noflip)
-    t61 = above_1_1_backward_up_noflip / below_1_1_backward_up_noflip
-    t62 = ops.select(t60, 0.0, t61)
-    t63 = t62 * t62
-    t64 = 1.0 / (1.0 + t63)
-    t65 = 2.0 * t62 * t64
-    by_c_1_1_backward_up_noflip = t64 * (1.0 - t63)
-    t66 = t12 * (t65 * t65) / (1.0 + ops.abs(by_c_1_1_backward_up_noflip))
-    t67 = (t66 + root1 * ops.abs(t65) <= whole_1_1) & (0.0 < by_c_1_1_backward_up_noflip)
-    cosine_1_1_backward_up_noflip = ops.select(t67, by_c_1_1_backward_up_noflip, 1.0)
-    t68 = c_1_1_backward_up_noflip * cosine_1_1_backward_up_noflip
-    sine_1_1_backward_up_noflip = ops.select(t67, -t65, 0.0)
-    c1_0_backward_up_noflip = ops.select(tangent1, t68 + t52 * sine_1_1_backward_up_noflip, c_1_1_backward_up_noflip)
-    t69 = c_1_1_backward_up_noflip * sine_1_1_backward_up_noflip
-    s1_backward_up_noflip = ops.select(tangent1, t69 - t52 * cosine_1_1_backward_up_noflip, -t52)
+    square_1_1_backward_up_noflip = t21 + t52 * t52
+    t54 = ops.min(high_1_1, square_1_1_backward_up_noflip)
+    miss_1_1_backward_up_noflip = square_1_1_backward_up_noflip - ops.max(low_1_1, t54)
+    t55 = bend_1_1_backward_up_noflip * miss_1_1_backward_up_noflip
+    inner_1_1_backward_up_noflip = t53 * t53 - t55
+    t56 = inner_1_1_backward_up_noflip < 0.0
+    t57 = ops.sign(-t53)
+    t58 = ops.sqrt(ops.max(0.0, inner_1_1_backward_up_noflip))
+    below_1_1_backward_up_noflip = ops.select(t56, 2.0 * bend_1_1_backward_up_noflip, -(2.0 * (t53 - t57 * t58)))
+    above_1_1_backward_up_noflip = ops.select(t56, -t53, miss_1_1_backward_up_noflip)
+    t59 = ops.abs(below_1_1_backward_up_noflip) <= ops.abs(above_1_1_backward_up_noflip)
+    t60 = above_1_1_backward_up_noflip / below_1_1_backward_up_noflip
+    t61 = ops.select(t59, 0.0, t60)
+    t62 = t61 * t61
+    t63 = 1.0 / (1.0 + t62)
+    t64 = 2.0 * t61 * t63
+    by_c_1_1_backward_up_noflip = t63 * (1.0 - t62)
+    t65 = t64 * t64 / (1.0 + ops.abs(by_c_1_1_backward_up_noflip))
+    versine_1_1_backward_up_noflip = ops.select(0.0 < by_c_1_1_backward_up_noflip, t65, 1.0 - by_c_1_1_backward_up_noflip)
+    cost_1_1_backward_up_noflip = root1 * ops.abs(t64) + t12 * versine_1_1_backward_up_noflip
+    t66 = cost_1_1_backward_up_noflip <= whole_1_1
+    cosine_1_1_backward_up_noflip = ops.select(t66, by_c_1_1_backward_up_noflip, 1.0)
+    t67 = c_1_1_backward_up_noflip * cosine_1_1_backward_up_noflip
+    sine_1_1_backward_up_noflip = ops.select(t66, -t64, 0.0)
+    c1_0_backward_up_noflip = ops.select(tangent1, t67 + t51 * sine_1_1_backward_up_noflip, c_1_1_backward_up_noflip)
+    t68 = c_1_1_backward_up_noflip * sine_1_1_backward_up_noflip
+    s1_backward_up_noflip = ops.select(tangent1, t68 - t51 * cosine_1_1_backward_up_noflip, -t51)
     ahead1_backward_up_noflip = w_x * c1_0_backward_up_noflip + w_y * s1_backward_up_noflip
-    t70 = a1 - ahead1_backward_up_noflip
-    r_elbow_backward_up_noflip = ops.sqrt(t21 + t70 * t70)
-    t71 = t20 - r_elbow_backward_up_noflip
-    t72 = t33 + r_elbow_backward_up_noflip
-    t73 = r_elbow_backward_up_noflip - t33
-    t74 = t18 & (t14 <= t71) & (t14 <= t72) & (t14 <= t73)
-    unreachable_2 = ops.opposite(t74)
+    t69 = a1 - ahead1_backward_up_noflip
+    r_elbow_backward_up_noflip = ops.sqrt(t21 + t69 * t69)
+    t70 = t20 - r_elbow_backward_up_noflip
+    t71 = t33 + r_elbow_backward_up_noflip
+    t72 = r_elbow_backward_up_noflip - t33
+    t73 = t18 & (t14 <= t70) & (t14 <= t71) & (t14 <= t72)
+    unreachable_2 = ops.opposite(t73)
     failed_2 = invalid | unreachable_2
-    t75 = ops.opposite(failed_2)
-    t76 = t75 & tangent1 & t67
-    t77 = t76 & ops.opposite(t60)
-    t78 = ops.opposite(free1)
-    t79 = ops.opposite(failed)
-    t80 = t79 & tangent1 & t46
-    t81 = t80 & ops.opposite(t40)
-    t82 = ((t75 | t77) & t78) | ((t79 | t81) & t78)
-    h1_2 = ops.sqrt(ops.select(t82, t15, 1.0))
+    t74 = ops.opposite(failed_2)
+    t75 = t74 & tangent1 & t66
+    t76 = t75 & ops.opposite(t59)
+    t77 = ops.opposite(free1)
+    t78 = ops.opposite(failed)
+    t79 = t78 & tangent1 & t45
+    t80 = t79 & ops.opposite(t40)
+    t81 = ((t74 | t76) & t77) | ((t78 | t80) & t77)
+    h1_2 = ops.sqrt(ops.select(t81, t15, 1.0))
     below1_2 = ops.max(b + h1_2, 0.0)
     above1_2 = ops.max(h1_2 - b, 0.0)
-    t83 = below1_2 - above1_2
-    t84 = ops.select(t82, h1_2 * (below1_2 + above1_2), 1.0)
-    t85 = 1.0 / t84
-    t86 = w_y * t83 * t85
-    root1_2 = ops.sqrt(ops.select(t82, below1_2 * above1_2, 1.0))
-    t87 = 2.0 * root1_2
-    t88 = t85 * (w_x * t87)
-    c_1_1_2 = ops.select(free1, 1.0, t86 + t88)
-    t89 = w_x * t83 * t85
-    t90 = t85 * (w_y * t87)
-    t91 = ops.select(free1, 0.0, t89 - t90)
-    t92 = a1 - w_x * c_1_1_2 + w_y * t91
-    dqx_1_1_2 = w_y * c_1_1_2 + w_x * t91
-    t93 = t92 * dqx_1_1_2
-    square_1_1_2 = t21 + t92 * t92
+    t82 = below1_2 - above1_2
+    t83 = ops.select(t81, h1_2 * (below1_2 + above1_2), 1.0)
+    t84 = 1.0 / t83
+    t85 = w_y * t82 * t84
+    root1_2 = ops.sqrt(ops.select(t81, below1_2 * above1_2, 1.0))
+    t86 = 2.0 * root1_2
+    t87 = t84 * (w_x * t86)
+    c_1_1_2 = ops.select(free1, 1.0, t85 + t87)
+    t88 = w_x * t82 * t84
+    t89 = t84 * (w_y * t86)
+    t90 = ops.select(free1, 0.0, t88 - t89)
+    t91 = a1 - w_x * c_1_1_2 + w_y * t90
+    dqx_1_1_2 = w_y * c_1_1_2 + w_x * t90
+    t92 = t91 * dqx_1_1_2
+    square_1_1_2 = t21 + t91 * t91
     no_link_elbow = c2 * f <= ops.vanishing * (t20 * t20)
-    t94 = ops.opposite(no_link_elbow)
-    t95 = t75 & t94
+    t93 = ops.opposite(no_link_elbow)
+    t94 = t74 & t93
     folded_elbow_backward_up_noflip = r_elbow_backward_up_noflip <= t22
-    t96 = folded_elbow_backward_up_noflip | no_link_elbow
-    t97 = t75 & ops.opposite(t96)
-    t98 = t95 | t97
-    t99 = t77 & ops.opposite(t57)
-    t100 = t79 & t94
+    t95 = folded_elbow_backward_up_noflip | no_link_elbow
+    t96 = t74 & ops.opposite(t95)
+    t97 = t94 | t96
+    t98 = t76 & ops.opposite(t56)
+    t99 = t78 & t93
     folded_elbow = r_elbow <= t22
-    t101 = folded_elbow | no_link_elbow
-    t102 = t79 & ops.opposite(t101)
+    t100 = folded_elbow | no_link_elbow
+    t101 = t78 & ops.opposite(t100)
     no_forearm = f <= 0.0
-    t103 = (t79 | t75) & ops.opposite(no_forearm)
-    t104 = t81 & ops.opposite(t37)
-    t105 = ops.select(t98 | t99 | t100 | t102 | t103 | t104, t19, 1.0)
-    f_2 = ops.sqrt(t105)
-    t106 = c2 - f_2
-    t107 = ops.max(0.0, ops.abs(t106) - whole_1_1)
-    low_1_1_2 = t107 * t107
-    t108 = c2 + f_2
-    t109 = whole_1_1 + t108
-    high_1_1_2 = t109 * t109
-    t110 = ops.max(low_1_1_2, ops.min(high_1_1_2, square_1_1_2))
-    miss_1_1_2 = square_1_1_2 - t110
+    t102 = (t78 | t74) & ops.opposite(no_forearm)
+    t103 = t80 & ops.opposite(t37)
+    t104 = ops.select(t97 | t98 | t99 | t101 | t102 | t103, t19, 1.0)
+    f_2 = ops.sqrt(t104)
+    t105 = c2 - f_2
+    t106 = ops.max(0.0, ops.abs(t105) - whole_1_1)
+    low_1_1_2 = t106 * t106
+    t107 = c2 + f_2
+    t108 = whole_1_1 + t107
+    high_1_1_2 = t108 * t108
+    t109 = ops.max(low_1_1_2, ops.min(high_1_1_2, square_1_1_2))
+    miss_1_1_2 = square_1_1_2 - t109
     bend_1_1_2 = dqx_1_1_2 * dqx_1_1_2
-    t111 = ops.max(0.0, t93 * t93 - bend_1_1_2 * miss_1_1_2)
-    t112 = t93 - t38 * ops.sqrt(ops.select(t104, t111, 1.0))
-    below_1_1_2 = ops.select(t37, 2.0 * bend_1_1_2, -(2.0 * t112))
-    t113 = ops.select(t37, -t93, miss_1_1_2) / ops.select(t81, below_1_1_2, 1.0)
-    t114 = ops.select(t40, 0.0, t113)
-    t115 = t114 * t114
-    t116 = 1.0 / ops.select(t80, 1.0 + t115, 1.0)
-    sine_1_1_2 = ops.select(t46, -(2.0 * t114 * t116), 0.0)
-    cosine_1_1_2 = ops.select(t46, t116 * (1.0 - t115), 1.0)
-    s1_2 = ops.select(tangent1, c_1_1_2 * sine_1_1_2 - t91 * cosine_1_1_2, -t91)
-    c1_0_2 = ops.select(tangent1, c_1_1_2 * cosine_1_1_2 + t91 * sine_1_1_2, c_1_1_2)
-    t117 = ops.atan2(s1_2, ops.select(t79, c1_0_2, 1.0))
-    t118 = ops.select(failed, ops.nan, ops.wrap_cut(t117))
-    t119 = t79 & ops.opposite(folded_elbow)
-    t120 = a1 - (w_x * c1_0_2 + w_y * s1_2)
-    t121 = ops.select(t119 | t100 | t102, t21 + t120 * t120, 1.0)
-    r_elbow_2 = ops.sqrt(t121)
-    A_elbow = ops.max(t108 - r_elbow_2, 0.0)
-    C_elbow = ops.max(r_elbow_2 - t106, 0.0)
-    t122 = A_elbow * C_elbow
-    S_elbow = t108 + r_elbow_2
-    B_elbow = ops.max(t106 + r_elbow_2, 0.0)
-    t123 = S_elbow * B_elbow
-    t124 = 1.0 / ops.select(t102, t122 + t123, 1.0)
-    c_base_elbow = ops.select(t101, 1.0, -((t122 - t123) * t124))
-    t125 = 1.0 / ops.select(t119, r_elbow_2, 1.0)
-    t126 = ops.select(folded_elbow, 1.0, -(t120 * t125))
-    t127 = c_base_elbow * t126
-    t128 = ops.sqrt(ops.select(t100 | t102, t122 * t123, 1.0))
-    area_elbow = 2.0 * t128
-    s_base_elbow = ops.select(t101, 0.0, t124 * area_elbow)
-    t129 = ops.select(folded_elbow, 0.0, y_elbow * t125)
-    t130 = s_base_elbow * t129
-    clower = t127 + t130
-    t131 = c_base_elbow * t129
-    t132 = t126 * s_base_elbow
-    slower = t131 - t132
-    t133 = ops.atan2(clower, ops.select(t79, -slower, 1.0))
-    t134 = ops.select(failed, ops.nan, ops.wrap_cut(t133))
-    t135 = 1.0 / ops.select(t103, f_2, 1.0)
-    c_forearm = ops.select(no_forearm, 1.0, c3 * t135)
-    t136 = A_elbow * S_elbow
-    t137 = C_elbow * B_elbow
-    t138 = 1.0 / ops.select(t100, t136 + t137, 1.0)
-    selbow = ops.select(no_link_elbow, 0.0, area_elbow * t138)
-    t139 = c_forearm * selbow
-    s_forearm = ops.select(no_forearm, 0.0, a2 * t135)
-    celbow = ops.select(no_link_elbow, 1.0, -(t138 * (t136 - t137)))
-    t140 = s_forearm * celbow
-    s3 = t139 - t140
-    t141 = c_forearm * celbow
-    t142 = s_forearm * selbow
-    c3_0 = t141 + t142
-    t143 = ops.wrap_cut(ops.atan2(s3, ops.select(t79, c3_0, 1.0)))
-    t144 = ops.select(failed, ops.nan, t143)
-    t145 = T13 * s1 - T23 * c1_0
-    t146 = t145 * t145
+    t110 = ops.max(0.0, t92 * t92 - bend_1_1_2 * miss_1_1_2)
+    t111 = t92 - t38 * ops.sqrt(ops.select(t103, t110, 1.0))
+    below_1_1_2 = ops.select(t37, 2.0 * bend_1_1_2, -(2.0 * t111))
+    t112 = ops.select(t37, -t92, miss_1_1_2) / ops.select(t80, below_1_1_2, 1.0)
+    t113 = ops.select(t40, 0.0, t112)
+    t114 = t113 * t113
+    t115 = 1.0 / ops.select(t79, 1.0 + t114, 1.0)
+    sine_1_1_2 = ops.select(t45, -(2.0 * t113 * t115), 0.0)
+    cosine_1_1_2 = ops.select(t45, t115 * (1.0 - t114), 1.0)
+    s1_2 = ops.select(tangent1, c_1_1_2 * sine_1_1_2 - t90 * cosine_1_1_2, -t90)
+    c1_0_2 = ops.select(tangent1, c_1_1_2 * cosine_1_1_2 + t90 * sine_1_1_2, c_1_1_2)
+    t116 = ops.atan2(s1_2, ops.select(t78, c1_0_2, 1.0))
+    t117 = ops.select(failed, ops.nan, ops.wrap_cut(t116))
+    t118 = t78 & ops.opposite(folded_elbow)
+    t119 = a1 - (w_x * c1_0_2 + w_y * s1_2)
+    t120 = ops.select(t118 | t99 | t101, t21 + t119 * t119, 1.0)
+    r_elbow_2 = ops.sqrt(t120)
+    A_elbow = ops.max(t107 - r_elbow_2, 0.0)
+    C_elbow = ops.max(r_elbow_2 - t105, 0.0)
+    t121 = A_elbow * C_elbow
+    S_elbow = t107 + r_elbow_2
+    B_elbow = ops.max(t105 + r_elbow_2, 0.0)
+    t122 = S_elbow * B_elbow
+    t123 = 1.0 / ops.select(t101, t121 + t122, 1.0)
+    c_base_elbow = ops.select(t100, 1.0, -((t121 - t122) * t123))
+    t124 = 1.0 / ops.select(t118, r_elbow_2, 1.0)
+    t125 = ops.select(folded_elbow, 1.0, -(t119 * t124))
+    t126 = c_base_elbow * t125
+    t127 = ops.sqrt(ops.select(t99 | t101, t121 * t122, 1.0))
+    area_elbow = 2.0 * t127
+    s_base_elbow = ops.select(t100, 0.0, t123 * area_elbow)
+    t128 = ops.select(folded_elbow, 0.0, y_elbow * t124)
+    t129 = s_base_elbow * t128
+    clower = t126 + t129
+    t130 = c_base_elbow * t128
+    t131 = t125 * s_base_elbow
+    slower = t130 - t131
+    t132 = ops.atan2(clower, ops.select(t78, -slower, 1.0))
+    t133 = ops.select(failed, ops.nan, ops.wrap_cut(t132))
+    t134 = 1.0 / ops.select(t102, f_2, 1.0)
+    c_forearm = ops.select(no_forearm, 1.0, c3 * t134)
+    t135 = A_elbow * S_elbow
+    t136 = C_elbow * B_elbow
+    t137 = 1.0 / ops.select(t99, t135 + t136, 1.0)
+    selbow = ops.select(no_link_elbow, 0.0, area_elbow * t137)
+    t138 = c_forearm * selbow
+    s_forearm = ops.select(no_forearm, 0.0, a2 * t134)
+    celbow = ops.select(no_link_elbow, 1.0, -(t137 * (t135 - t136)))
+    t139 = s_forearm * celbow
+    s3 = t138 - t139
+    t140 = c_forearm * celbow
+    t141 = s_forearm * selbow
+    c3_0 = t140 + t141
+    t142 = ops.wrap_cut(ops.atan2(s3, ops.select(t78, c3_0, 1.0)))
+    t143 = ops.select(failed, ops.nan, t142)
+    t144 = T13 * s1 - T23 * c1_0
+    t145 = t144 * t144
     R1_13 = T13 * c1_0 + T23 * s1
-    A_elbow_2 = ops.max(t48, 0.0)
-    C_elbow_2 = ops.max(t50, 0.0)
-    t147 = A_elbow_2 * C_elbow_2
+    A_elbow_2 = ops.max(t47, 0.0)
+    C_elbow_2 = ops.max(t49, 0.0)
+    t146 = A_elbow_2 * C_elbow_2
     S_elbow_2 = t20 + r_elbow
-    B_elbow_2 = ops.max(t49, 0.0)
-    t148 = S_elbow_2 * B_elbow_2
-    t149 = 1.0 / (t147 + t148)
-    c_base_elbow_2 = ops.select(t101, 1.0, -((t147 - t148) * t149))
-    t150 = 1.0 / r_elbow
-    t151 = ops.select(folded_elbow, 0.0, y_elbow * t150)
-    t152 = c_base_elbow_2 * t151
-    t153 = ops.select(folded_elbow, 1.0, -(t47 * t150))
-    area_elbow_2 = 2.0 * ops.sqrt(t147 * t148)
-    s_base_elbow_2 = ops.select(t101, 0.0, t149 * area_elbow_2)
-    t154 = t153 * s_base_elbow_2
-    slower_2 = t152 - t154
-    t155 = 1.0 / f
-    c_forearm_2 = ops.select(no_forearm, 1.0, c3 * t155)
-    t156 = A_elbow_2 * S_elbow_2
-    t157 = C_elbow_2 * B_elbow_2
-    t158 = 1.0 / (t156 + t157)
-    celbow_2 = ops.select(no_link_elbow, 1.0, -(t158 * (t156 - t157)))
-    t159 = c_forearm_2 * celbow_2
-    s_forearm_2 = ops.select(no_forearm, 0.0, a2 * t155)
-    selbow_2 = ops.select(no_link_elbow, 0.0, area_elbow_2 * t158)
-    t160 = s_forearm_2 * selbow_2
-    c3_0_2 = t159 + t160
-    t161 = c_base_elbow_2 * t153
-    t162 = s_base_elbow_2 * t151
-    clower_2 = t161 + t162
-    t163 = c_forearm_2 * selbow_2
-    t164 = s_forearm_2 * celbow_2
-    s3_2 = t163 - t164
-    t165 = R1_13 * (slower_2 * c3_0_2 + clower_2 * s3_2)
-    t166 = t165 + T33 * (clower_2 * c3_0_2 - slower_2 * s3_2)
-    t167 = ops.vanishing * 16.0
-    aligned_wrist = ops.sqrt(t146 + t166 * t166) <= t167
-    t168 = T13 * s1_2 - T23 * c1_0_2
-    t169 = t79 & ops.opposite(aligned_wrist)
-    t170 = t168 * t168
+    B_elbow_2 = ops.max(t48, 0.0)
+    t147 = S_elbow_2 * B_elbow_2
+    t148 = 1.0 / (t146 + t147)
+    c_base_elbow_2 = ops.select(t100, 1.0, -((t146 - t147) * t148))
+    t149 = 1.0 / r_elbow
+    t150 = ops.select(folded_elbow, 0.0, y_elbow * t149)
+    t151 = c_base_elbow_2 * t150
+    t152 = ops.select(folded_elbow, 1.0, -(t46 * t149))
+    area_elbow_2 = 2.0 * ops.sqrt(t146 * t147)
+    s_base_elbow_2 = ops.select(t100, 0.0, t148 * area_elbow_2)
+    t153 = t152 * s_base_elbow_2
+    slower_2 = t151 - t153
+    t154 = 1.0 / f
+    c_forearm_2 = ops.select(no_forearm, 1.0, c3 * t154)
+    t155 = A_elbow_2 * S_elbow_2
+    t156 = C_elbow_2 * B_elbow_2
+    t157 = 1.0 / (t155 + t156)
+    celbow_2 = ops.select(no_link_elbow, 1.0, -(t157 * (t155 - t156)))
+    t158 = c_forearm_2 * celbow_2
+    s_forearm_2 = ops.select(no_forearm, 0.0, a2 * t154)
+    selbow_2 = ops.select(no_link_elbow, 0.0, area_elbow_2 * t157)
+    t159 = s_forearm_2 * selbow_2
+    c3_0_2 = t158 + t159
+    t160 = c_base_elbow_2 * t152
+    t161 = s_base_elbow_2 * t150
+    clower_2 = t160 + t161
+    t162 = c_forearm_2 * selbow_2
+    t163 = s_forearm_2 * celbow_2
+    s3_2 = t162 - t163
+    t164 = R1_13 * (slower_2 * c3_0_2 + clower_2 * s3_2)
+    t165 = t164 + T33 * (clower_2 * c3_0_2 - slower_2 * s3_2)
+    t166 = ops.vanishing * 16.0
+    aligned_wrist = ops.sqrt(t145 + t165 * t165) <= t166
+    t167 = T13 * s1_2 - T23 * c1_0_2
+    t168 = t78 & ops.opposite(aligned_wrist)
+    t169 = t167 * t167
     R1_13_2 = T13 * c1_0_2 + T23 * s1_2
-    t171 = slower * c3_0 + clower * s3
-    t172 = clower * c3_0 - slower * s3
-    t173 = R1_13_2 * t171 + T33 * t172
-    h_wrist = ops.sqrt(ops.select(t169, t170 + t173 * t173, 1.0))
-    t174 = 1.0 / ops.select(t169, h_wrist, 1.0)
-    t175 = ops.select(aligned_wrist, 0.0, t168 * t174)
-    c_wrist = ops.select(aligned_wrist, 1.0, -(t173 * t174))
-    t176 = ops.atan2(t175, ops.select(t79, c_wrist, 1.0))
-    t177 = ops.select(failed, ops.nan, ops.wrap_cut(-t176))
-    t178 = ops.select(t79, R1_13_2 * t172 - T33 * t171, 1.0)
-    t179 = ops.atan2(t168 * t175 - t173 * c_wrist, t178)
-    t180 = ops.select(failed, ops.nan, ops.wrap_cut(t179))
-    t181 = T11 * s1_2 - T21 * c1_0_2
+    t170 = slower * c3_0 + clower * s3
+    t171 = clower * c3_0 - slower * s3
+    t172 = R1_13_2 * t170 + T33 * t171
+    h_wrist = ops.sqrt(ops.select(t168, t169 + t172 * t172, 1.0))
+    t173 = 1.0 / ops.select(t168, h_wrist, 1.0)
+    t174 = ops.select(aligned_wrist, 0.0, t167 * t173)
+    c_wrist = ops.select(aligned_wrist, 1.0, -(t172 * t173))
+    t175 = ops.atan2(t174, ops.select(t78, c_wrist, 1.0))
+    t176 = ops.select(failed, ops.nan, ops.wrap_cut(-t175))
+    t177 = ops.select(t78, R1_13_2 * t171 - T33 * t170, 1.0)
+    t178 = ops.atan2(t167 * t174 - t172 * c_wrist, t177)
+    t179 = ops.select(failed, ops.nan, ops.wrap_cut(t178))
+    t180 = T11 * s1_2 - T21 * c1_0_2
     R1_11 = T11 * c1_0_2 + T21 * s1_2
-    t182 = c_wrist * t181 + t175 * (t171 * R1_11 + T31 * t172)
-    t183 = T12 * s1_2 - T22 * c1_0_2
+    t181 = c_wrist * t180 + t174 * (t170 * R1_11 + T31 * t171)
+    t182 = T12 * s1_2 - T22 * c1_0_2
     R1_12 = T12 * c1_0_2 + T22 * s1_2
-    t184 = c_wrist * t183 + t175 * (t171 * R1_12 + T32 * t172)
-    t185 = ops.atan2(t182, ops.select(t79, -t184, 1.0))
-    t186 = ops.select(failed, ops.nan, ops.wrap_cut(-t185))
+    t183 = c_wrist * t182 + t174 * (t170 * R1_12 + T32 * t171)
+    t184 = ops.atan2(t181, ops.select(t78, -t183, 1.0))
+    t185 = ops.select(failed, ops.nan, ops.wrap_cut(-t184))
     flip_wrist = ops.select(aligned_wrist, 0.0, 3.141592653589793)
-    t187 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t176))
-    t188 = ops.select(failed, ops.nan, ops.wrap_cut(-t179))
-    t189 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t185))
-    clower_facing_down_noflip = t127 - t130
-    slower_facing_down_noflip = t131 + t132
-    t190 = ops.select(t79, -slower_facing_down_noflip, 1.0)
-    t191 = ops.wrap_cut(ops.atan2(clower_facing_down_noflip, t190))
-    t192 = ops.select(failed, ops.nan, t191)
-    t193 = t139 + t140
-    c3_0_facing_down_noflip = t141 - t142
-    t194 = ops.select(t79, c3_0_facing_down_noflip, 1.0)
-    t195 = ops.select(failed, ops.nan, ops.wrap_cut(-ops.atan2(t193, t194)))
-    slower_facing_down_noflip_2 = t152 + t154
-    c3_0_facing_down_noflip_2 = t159 - t160
-    t196 = slower_facing_down_noflip_2 * c3_0_facing_down_noflip_2
-    clower_facing_down_noflip_2 = t161 - t162
-    t197 = t163 + t164
-    t198 = R1_13 * (t196 - clower_facing_down_noflip_2 * t197)
-    t199 = clower_facing_down_noflip_2 * c3_0_facing_down_noflip_2
-    t200 = T33 * (t199 + slower_facing_down_noflip_2 * t197)
-    t201 = t198 + t200
-    aligned_wrist_facing_down_noflip = ops.sqrt(t146 + t201 * t201) <= t167
-    t202 = ops.opposite(aligned_wrist_facing_down_noflip)
-    t203 = t79 & t202
-    t204 = slower_facing_down_noflip * c3_0_facing_down_noflip
-    t205 = t204 - clower_facing_down_noflip * t193
-    t206 = clower_facing_down_noflip * c3_0_facing_down_noflip
-    t207 = t206 + slower_facing_down_noflip * t193
-    t208 = R1_13_2 * t205 + T33 * t207
-    h_wrist_facing_down_noflip = ops.sqrt(ops.select(t203, t170 + t208 * t208, 1.0))
-    t209 = ops.select(t203, h_wrist_facing_down_noflip, 1.0)
-    t210 = 1.0 / t209
-    t211 = ops.select(aligned_wrist_facing_down_noflip, 0.0, t168 * t210)
-    c_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 1.0, -(t208 * t210))
-    t212 = ops.select(t79, c_wrist_facing_down_noflip, 1.0)
-    t213 = ops.atan2(t211, t212)
-    t214 = ops.select(failed, ops.nan, ops.wrap_cut(-t213))
-    t215 = t168 * t211 - t208 * c_wrist_facing_down_noflip
-    t216 = ops.select(t79, R1_13_2 * t207 - T33 * t205, 1.0)
-    t217 = ops.atan2(t215, t216)
-    t218 = ops.select(failed, ops.nan, ops.wrap_cut(t217))
-    t219 = t181 * c_wrist_facing_down_noflip + t211 * (R1_11 * t205 + T31 * t207)
-    t220 = t183 * c_wrist_facing_down_noflip + t211 * (R1_12 * t205 + T32 * t207)
-    t221 = ops.atan2(t219, ops.select(t79, -t220, 1.0))
-    t222 = ops.select(failed, ops.nan, ops.wrap_cut(-t221))
+    t186 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t175))
+    t187 = ops.select(failed, ops.nan, ops.wrap_cut(-t178))
+    t188 = ops.select(failed, ops.nan, ops.wrap(flip_wrist - t184))
+    clower_facing_down_noflip = t126 - t129
+    slower_facing_down_noflip = t130 + t131
+    t189 = ops.select(t78, -slower_facing_down_noflip, 1.0)
+    t190 = ops.wrap_cut(ops.atan2(clower_facing_down_noflip, t189))
+    t191 = ops.select(failed, ops.nan, t190)
+    t192 = t138 + t139
+    c3_0_facing_down_noflip = t140 - t141
+    t193 = ops.select(t78, c3_0_facing_down_noflip, 1.0)
+    t194 = ops.select(failed, ops.nan, ops.wrap_cut(-ops.atan2(t192, t193)))
+    slower_facing_down_noflip_2 = t151 + t153
+    c3_0_facing_down_noflip_2 = t158 - t159
+    t195 = slower_facing_down_noflip_2 * c3_0_facing_down_noflip_2
+    clower_facing_down_noflip_2 = t160 - t161
+    t196 = t162 + t163
+    t197 = R1_13 * (t195 - clower_facing_down_noflip_2 * t196)
+    t198 = clower_facing_down_noflip_2 * c3_0_facing_down_noflip_2
+    t199 = T33 * (t198 + slower_facing_down_noflip_2 * t196)
+    t200 = t197 + t199
+    aligned_wrist_facing_down_noflip = ops.sqrt(t145 + t200 * t200) <= t166
+    t201 = ops.opposite(aligned_wrist_facing_down_noflip)
+    t202 = t78 & t201
+    t203 = slower_facing_down_noflip * c3_0_facing_down_noflip
+    t204 = t203 - clower_facing_down_noflip * t192
+    t205 = clower_facing_down_noflip * c3_0_facing_down_noflip
+    t206 = t205 + slower_facing_down_noflip * t192
+    t207 = R1_13_2 * t204 + T33 * t206
+    h_wrist_facing_down_noflip = ops.sqrt(ops.select(t202, t169 + t207 * t207, 1.0))
+    t208 = ops.select(t202, h_wrist_facing_down_noflip, 1.0)
+    t209 = 1.0 / t208
+    t210 = ops.select(aligned_wrist_facing_down_noflip, 0.0, t167 * t209)
+    c_wrist_facing_down_noflip = ops.select(aligned_wrist_facing_down_noflip, 1.0, -(t207 * t209))
+    t211 = ops.select(t78, c_wrist_facing_down_noflip, 1.0)
+    t212 = ops.atan2(t210, t211)
+    t213 = ops.select(failed, ops.nan, ops.wrap_cut(-t212))
+    t214 = t167 * t210 - t207 * c_wrist_facing_down_noflip
+    t215 = ops.select(t78, R1_13_2 * t206 - T33 * t204, 1.0)
+    t216 = ops.atan2(t214, t215)
+    t217 = ops.select(failed, ops.nan, ops.wrap_cut(t216))
+    t218 = t180 * c_wrist_facing_down_noflip + t210 * (R1_11 * t204 + T31 * t206)
+    t219 = t182 * c_wrist_facing_down_noflip + t210 * (R1_12 * t204 + T32 * t206)
+    t220 = ops.atan2(t218, ops.select(t78, -t219, 1.0))
+    t221 = ops.select(failed, ops.nan, ops.wrap_cut(-t220))
     flip_wrist_facing_down_flip = ops.select(aligned_wrist_facing_down_noflip, 0.0, 3.141592653589793)
-    t223 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_facing_down_flip - t213))
-    t224 = ops.select(failed, ops.nan, ops.wrap_cut(-t217))
-    t225 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_facing_down_flip - t221))
-    c_1_1_backward_up_noflip_2 = ops.select(free1, 1.0, t86 - t88)
-    t226 = ops.select(free1, 0.0, t89 + t90)
-    t227 = a1 - w_x * c_1_1_backward_up_noflip_2 + w_y * t226
-    dqx_1_1_backward_up_noflip_2 = w_y * c_1_1_backward_up_noflip_2 + w_x * t226
-    t228 = t227 * dqx_1_1_backward_up_noflip_2
-    square_1_1_backward_up_noflip_2 = t21 + t227 * t227
-    t229 = ops.min(high_1_1_2, square_1_1_backward_up_noflip_2)
-    miss_1_1_backward_up_noflip_2 = square_1_1_backward_up_noflip_2 - ops.max(low_1_1_2, t229)
-    above_1_1_backward_up_noflip_2 = ops.select(t57, -t228, miss_1_1_backward_up_noflip_2)
+    t222 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_facing_down_flip - t212))
+    t223 = ops.select(failed, ops.nan, ops.wrap_cut(-t216))
+    t224 = ops.select(failed, ops.nan, ops.wrap(flip_wrist_facing_down_flip - t220))
+    c_1_1_backward_up_noflip_2 = ops.select(free1, 1.0, t85 - t87)
+    t225 = ops.select(free1, 0.0, t88 + t89)
+    t226 = a1 - w_x * c_1_1_backward_up_noflip_2 + w_y * t225
+    dqx_1_1_backward_up_noflip_2 = w_y * c_1_1_backward_up_noflip_2 + w_x * t225
+    t227 = t226 * dqx_1_1_backward_up_noflip_2
+    square_1_1_backward_up_noflip_2 = t21 + t226 * t226
+    t228 = ops.min(high_1_1_2, square_1_1_backward_up_noflip_2)
+    miss_1_1_backward_up_noflip_2 = square_1_1_backward_up_noflip_2 - ops.max(low_1_1_2, t228)
+    above_1_1_backward_up_noflip_2 = ops.select(t56, -t227, miss_1_1_backward_up_noflip_2)
     bend_1_1_backward_up_noflip_2 = dqx_1_1_backward_up_noflip_2 * dqx_1_1_backward_up_noflip_2
-    t230 = bend_1_1_backward_up_noflip_2 * miss_1_1_backward_up_noflip_2
-    t231 = ops.select(t99, ops.max(0.0, t228 * t228 - t230), 1.0)
-    below_1_1_backward_up_noflip_2 = ops.select(t57, 2.0 * bend_1_1_backward_up_noflip_2, -(2.0 * (t228 - t58 * ops.sqrt(t231))))
-    t232 = ops.select(t77, below_1_1_backward_up_noflip_2, 1.0)
-    t233 = ops.select(t60, 0.0, above_1_1_backward_up_noflip_2 / t232)
-    t234 = t233 * t233
-    t235 = 1.0 / ops.select(t76, 1.0 + t234, 1.0)
-    sine_1_1_backward_up_noflip_2 = ops.select(t67, -(2.0 * t233 * t235), 0.0)
-    t236 = c_1_1_backward_up_noflip_2 * sine_1_1_backward_up_noflip_2
-    cosine_1_1_backward_up_noflip_2 = ops.select(t67, t235 * (1.0 - t234), 1.0)
-    t237 = t236 - t226 * cosine_1_1_backward_up_noflip_2
-    s1_backward_up_noflip_2 = ops.select(tangent1, t237, -t226)
-    t238 = c_1_1_backward_up_noflip_2 * cosine_1_1_backward_up_noflip_2
-    c1_0_backward_up_noflip_2 = ops.select(tangent1, t238 + t226 * sine_1_1_backward_up_noflip_2, c_1_1_backward_up_noflip_2)
-    t239 = ops.select(t75, c1_0_backward_up_noflip_2, 1.0)
-    t240 = ops.wrap_cut(ops.atan2(s1_backward_up_noflip_2, t239))
-    t241 = ops.select(failed_2, ops.nan, t240)
-    t242 = ops.opposite(folded_elbow_backward_up_noflip)
-    t243 = t75 & t242
+    t229 = bend_1_1_backward_up_noflip_2 * miss_1_1_backward_up_noflip_2
+    t230 = ops.select(t98, ops.max(0.0, t227 * t227 - t229), 1.0)
+    below_1_1_backward_up_noflip_2 = ops.select(t56, 2.0 * bend_1_1_backward_up_noflip_2, -(2.0 * (t227 - t57 * ops.sqrt(t230))))
+    t231 = ops.select(t76, below_1_1_backward_up_noflip_2, 1.0)
+    t232 = ops.select(t59, 0.0, above_1_1_backward_up_noflip_2 / t231)
+    t233 = t232 * t232
+    t234 = 1.0 / ops.select(t75, 1.0 + t233, 1.0)
+    sine_1_1_backward_up_noflip_2 = ops.select(t66, -(2.0 * t232 * t234), 0.0)
+    t235 = c_1_1_backward_up_noflip_2 * sine_1_1_backward_up_noflip_2
+    cosine_1_1_backward_up_noflip_2 = ops.select(t66, t234 * (1.0 - t233), 1.0)
+    t236 = t235 - t225 * cosine_1_1_backward_up_noflip_2
+    s1_backward_up_noflip_2 = ops.select(tangent1, t236, -t225)
+    t237 = c_1_1_backward_up_noflip_2 * cosine_1_1_backward_up_noflip_2
+    c1_0_backward_up_noflip_2 = ops.select(tangent1, t237 + t225 * sine_1_1_backward_up_noflip_2, c_1_1_backward_up_noflip_2)
+    t238 = ops.select(t74, c1_0_backward_up_noflip_2, 1.0)
+    t239 = ops.wrap_cut(ops.atan2(s1_backward_up_noflip_2, t238))
+    t240 = ops.select(failed_2, ops.nan, t239)
+    t241 = ops.opposite(folded_elbow_backward_up_noflip)
+    t242 = t74 & t241
     ahead1_backward_up_noflip_2 = w_x * c1_0_backward_up_noflip_2 + w_y * s1_backward_up_noflip_2
-    t244 = a1 - ahead1_backward_up_noflip_2
-    t245 = ops.select(t95 | t243 | t97, t21 + t244 * t244, 1.0)
-    r_elbow_backward_up_noflip_2 = ops.sqrt(t245)
-    A_elbow_backward_up_noflip = ops.max(t108 - r_elbow_backward_up_noflip_2, 0.0)
-    C_elbow_backward_up_noflip = ops.max(r_elbow_backward_up_noflip_2 - t106, 0.0)
-    t246 = A_elbow_backward_up_noflip * C_elbow_backward_up_noflip
-    S_elbow_backward_up_noflip = t108 + r_elbow_backward_up_noflip_2
-    B_elbow_backward_up_noflip = ops.max(t106 + r_elbow_backward_up_noflip_2, 0.0)
-    t247 = S_elbow_backward_up_noflip * B_elbow_backward_up_noflip
-    t248 = 1.0 / ops.select(t97, t246 + t247, 1.0)
-    c_base_elbow_backward_up_noflip = ops.select(t96, 1.0, -((t246 - t247) * t248))
-    t249 = ops.select(t243, r_elbow_backward_up_noflip_2, 1.0)
-    t250 = 1.0 / t249
-    t251 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t244 * t250))
-    t252 = c_base_elbow_backward_up_noflip * t251
-    area_elbow_backward_up_noflip = 2.0 * ops.sqrt(ops.select(t98, t246 * t247, 1.0))
-    s_base_elbow_backward_down_noflip = ops.select(t96, 0.0, t248 * area_elbow_backward_up_noflip)
-    t253 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t250)
-    t254 = s_base_elbow_backward_down_noflip * t253
-    clower_backward_up_noflip = t252 - t254
-    t255 = c_base_elbow_backward_up_noflip * t253
-    t256 = t251 * s_base_elbow_backward_down_noflip
-    slower_backward_up_noflip = t255 + t256
-    t257 = ops.select(t75, -slower_backward_up_noflip, 1.0)
-    t258 = ops.wrap_cut(ops.atan2(clower_backward_up_noflip, t257))
-    t259 = ops.select(failed_2, ops.nan, t258)
-    t260 = A_elbow_backward_up_noflip * S_elbow_backward_up_noflip
-    t261 = C_elbow_backward_up_noflip * B_elbow_backward_up_noflip
-    t262 = 1.0 / ops.select(t95, t260 + t261, 1.0)
-    selbow_backward_down_noflip = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip * t262)
-    t263 = c_forearm * selbow_backward_down_noflip
-    celbow_backward_up_noflip = ops.select(no_link_elbow, 1.0, -(t262 * (t260 - t261)))
-    t264 = s_forearm * celbow_backward_up_noflip
-    t265 = t263 + t264
-    t266 = c_forearm * celbow_backward_up_noflip
-    t267 = s_forearm * selbow_backward_down_noflip
-    c3_0_backward_up_noflip = t266 - t267
-    t268 = ops.select(t75, c3_0_backward_up_noflip, 1.0)
-    t269 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t265, t268)))
-    t270 = T13 * s1_backward_up_noflip - T23 * c1_0_backward_up_noflip
-    t271 = t270 * t270
+    t243 = a1 - ahead1_backward_up_noflip_2
+    t244 = ops.select(t94 | t242 | t96, t21 + t243 * t243, 1.0)
+    r_elbow_backward_up_noflip_2 = ops.sqrt(t244)
+    A_elbow_backward_up_noflip = ops.max(t107 - r_elbow_backward_up_noflip_2, 0.0)
+    C_elbow_backward_up_noflip = ops.max(r_elbow_backward_up_noflip_2 - t105, 0.0)
+    t245 = A_elbow_backward_up_noflip * C_elbow_backward_up_noflip
+    S_elbow_backward_up_noflip = t107 + r_elbow_backward_up_noflip_2
+    B_elbow_backward_up_noflip = ops.max(t105 + r_elbow_backward_up_noflip_2, 0.0)
+    t246 = S_elbow_backward_up_noflip * B_elbow_backward_up_noflip
+    t247 = 1.0 / ops.select(t96, t245 + t246, 1.0)
+    c_base_elbow_backward_up_noflip = ops.select(t95, 1.0, -((t245 - t246) * t247))
+    t248 = ops.select(t242, r_elbow_backward_up_noflip_2, 1.0)
+    t249 = 1.0 / t248
+    t250 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t243 * t249))
+    t251 = c_base_elbow_backward_up_noflip * t250
+    area_elbow_backward_up_noflip = 2.0 * ops.sqrt(ops.select(t97, t245 * t246, 1.0))
+    s_base_elbow_backward_down_noflip = ops.select(t95, 0.0, t247 * area_elbow_backward_up_noflip)
+    t252 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t249)
+    t253 = s_base_elbow_backward_down_noflip * t252
+    clower_backward_up_noflip = t251 - t253
+    t254 = c_base_elbow_backward_up_noflip * t252
+    t255 = t250 * s_base_elbow_backward_down_noflip
+    slower_backward_up_noflip = t254 + t255
+    t256 = ops.select(t74, -slower_backward_up_noflip, 1.0)
+    t257 = ops.wrap_cut(ops.atan2(clower_backward_up_noflip, t256))
+    t258 = ops.select(failed_2, ops.nan, t257)
+    t259 = A_elbow_backward_up_noflip * S_elbow_backward_up_noflip
+    t260 = C_elbow_backward_up_noflip * B_elbow_backward_up_noflip
+    t261 = 1.0 / ops.select(t94, t259 + t260, 1.0)
+    selbow_backward_down_noflip = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip * t261)
+    t262 = c_forearm * selbow_backward_down_noflip
+    celbow_backward_up_noflip = ops.select(no_link_elbow, 1.0, -(t261 * (t259 - t260)))
+    t263 = s_forearm * celbow_backward_up_noflip
+    t264 = t262 + t263
+    t265 = c_forearm * celbow_backward_up_noflip
+    t266 = s_forearm * selbow_backward_down_noflip
+    c3_0_backward_up_noflip = t265 - t266
+    t267 = ops.select(t74, c3_0_backward_up_noflip, 1.0)
+    t268 = ops.select(failed_2, ops.nan, ops.wrap_cut(-ops.atan2(t264, t267)))
+    t269 = T13 * s1_backward_up_noflip - T23 * c1_0_backward_up_noflip
+    t270 = t269 * t269
     R1_13_backward_up_noflip = T13 * c1_0_backward_up_noflip + T23 * s1_backward_up_noflip
-    A_elbow_backward_up_noflip_2 = ops.max(t71, 0.0)
-    C_elbow_backward_up_noflip_2 = ops.max(t73, 0.0)
-    t272 = A_elbow_backward_up_noflip_2 * C_elbow_backward_up_noflip_2
+    A_elbow_backward_up_noflip_2 = ops.max(t70, 0.0)
+    C_elbow_backward_up_noflip_2 = ops.max(t72, 0.0)
+    t271 = A_elbow_backward_up_noflip_2 * C_elbow_backward_up_noflip_2
     S_elbow_backward_up_noflip_2 = t20 + r_elbow_backward_up_noflip
-    B_elbow_backward_up_noflip_2 = ops.max(t72, 0.0)
-    t273 = S_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
-    t274 = 1.0 / (t272 + t273)
-    c_base_elbow_backward_up_noflip_2 = ops.select(t96, 1.0, -((t272 - t273) * t274))
-    t275 = 1.0 / r_elbow_backward_up_noflip
-    t276 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t275)
-    t277 = c_base_elbow_backward_up_noflip_2 * t276
-    t278 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t70 * t275))
-    area_elbow_backward_up_noflip_2 = 2.0 * ops.sqrt(t272 * t273)
-    s_base_elbow_backward_down_noflip_2 = ops.select(t96, 0.0, t274 * area_elbow_backward_up_noflip_2)
-    t279 = t278 * s_base_elbow_backward_down_noflip_2
-    slower_backward_up_noflip_2 = t277 + t279
-    t280 = A_elbow_backward_up_noflip_2 * S_elbow_backward_up_noflip_2
-    t281 = C_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
-    t282 = 1.0 / (t280 + t281)
-    celbow_backward_up_noflip_2 = ops.select(no_link_elbow, 1.0, -(t282 * (t280 - t281)))
-    t283 = c_forearm_2 * celbow_backward_up_noflip_2
-    selbow_backward_down_noflip_2 = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip_2 * t282)
-    t284 = s_forearm_2 * selbow_backward_down_noflip_2
-    c3_0_backward_up_noflip_2 = t283 - t284
-    t285 = slower_backward_up_noflip_2 * c3_0_backward_up_noflip_2
-    t286 = c_base_elbow_backward_up_noflip_2 * t278
-    t287 = s_base_elbow_backward_down_noflip_2 * t276
-    clower_backward_up_noflip_2 = t286 - t287
-    t288 = c_forearm_2 * selbow_backward_down_noflip_2
-    t289 = s_forearm_2 * celbow_backward_up_noflip_2
-    t290 = t288 + t289
-    t291 = R1_13_backward_up_noflip * (t285 - clower_backward_up_noflip_2 * t290)
-    t292 = clower_backward_up_noflip_2 * c3_0_backward_up_noflip_2
-    t293 = T33 * (t292 + slower_backward_up_noflip_2 * t290)
-    t294 = t291 + t293
-    aligned_wrist_backward_up_noflip = ops.sqrt(t271 + t294 * t294) <= t167
-    t295 = T13 * s1_backward_up_noflip_2 - T23 * c1_0_backward_up_noflip_2
-    t296 = ops.opposite(aligned_wrist_backward_up_noflip)
-    t297 = t75 & t296
-    t298 = t295 * t295
+    B_elbow_backward_up_noflip_2 = ops.max(t71, 0.0)
+    t272 = S_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
+    t273 = 1.0 / (t271 + t272)
+    c_base_elbow_backward_up_noflip_2 = ops.select(t95, 1.0, -((t271 - t272) * t273))
+    t274 = 1.0 / r_elbow_backward_up_noflip
+    t275 = ops.select(folded_elbow_backward_up_noflip, 0.0, y_elbow * t274)
+    t276 = c_base_elbow_backward_up_noflip_2 * t275
+    t277 = ops.select(folded_elbow_backward_up_noflip, 1.0, -(t69 * t274))
+    area_elbow_backward_up_noflip_2 = 2.0 * ops.sqrt(t271 * t272)
+    s_base_elbow_backward_down_noflip_2 = ops.select(t95, 0.0, t273 * area_elbow_backward_up_noflip_2)
+    t278 = t277 * s_base_elbow_backward_down_noflip_2
+    slower_backward_up_noflip_2 = t276 + t278
+    t279 = A_elbow_backward_up_noflip_2 * S_elbow_backward_up_noflip_2
+    t280 = C_elbow_backward_up_noflip_2 * B_elbow_backward_up_noflip_2
+    t281 = 1.0 / (t279 + t280)
+    celbow_backward_up_noflip_2 = ops.select(no_link_elbow, 1.0, -(t281 * (t279 - t280)))
+    t282 = c_forearm_2 * celbow_backward_up_noflip_2
+    selbow_backward_down_noflip_2 = ops.select(no_link_elbow, 0.0, area_elbow_backward_up_noflip_2 * t281)
+    t283 = s_forearm_2 * selbow_backward_down_noflip_2
+    c3_0_backward_up_noflip_2 = t282 - t283
+    t284 = slower_backward_up_noflip_2 * c3_0_backward_up_noflip_2
+    t285 = c_base_elbow_backward_up_noflip_2 * t277
+    t286 = s_base_elbow_backward_down_noflip_2 * t275
+    clower_backward_up_noflip_2 = t285 - t286
+    t287 = c_forearm_2 * selbow_backward_down_noflip_2
+    t288 = s_forearm_2 * celbow_backward_up_noflip_2
+    t289 = t287 + t288
+    t290 = R1_13_backward_up_noflip * (t284 - clower_backward_up_noflip_2 * t289)
+    t291 = clower_backward_up_noflip_2 * c3_0_backward_up_noflip_2
+    t292 = T33 * (t291 + slower_backward_up_noflip_2 * t289)
+    t293 = t290 + t292
+    aligned_wrist_backward_up_noflip = ops.sqrt(t270 + t293 * t293) <= t166
+    t294 = T13 * s1_backward_up_noflip_2 - T23 * c1_0_backward_up_noflip_2
+    t295 = ops.opposite(aligned_wrist_backward_up_noflip)
+    t296 = t74 & t295
+    t297 = t294 * t294
     R1_13_backward_up_noflip_2 = T13 * c1_0_backward_up_noflip_2 + T23 * s1_backward_up_noflip_2
-    t299 = slower_backward_up_noflip * c3_0_backward_up_noflip
-    t300 = t299 - clower_backward_up_noflip * t265
-    t301 = clower_backward_up_noflip * c3_0_backward_up_noflip
-    t302 = t301 + slower_backward_up_noflip * t265
-    t303 = R1_13_backward_up_noflip_2 * t300 + T33 * t302
-    h_wrist_backward_up_noflip = ops.sqrt(ops.select(t297, t298 + t303 * t303, 1.0))
-    t304 = ops.select(t297, h_wrist_backward_up_noflip, 1.0)
-    t305 = 1.0 / t304
-    t306 = ops.select(aligned_wrist_backward_up_noflip, 0.0, t295 * t305)
-    c_wrist_backward_up_noflip = ops.select(aligned_wrist_backward_up_noflip, 1.0, -(t303 * t305))
-    t307 = ops.select(t75, c_wrist_backward_up_noflip, 1.0)
-    t308 = ops.atan2(t306, t307)
-    t309 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t308))
-    t310 = t295 * t306 - t303 * c_wrist_backward_up_noflip
-    R2_33_backward_up_noflip = R1_13_backward_up_noflip_2 * t302 - T33 * t300
-    t311 = ops.select(t75, R2_33_backward_up_noflip, 1.0)
-    t312 = ops.atan2(t310, t311)
-    t313 = ops.select(failed_2, ops.nan, ops.wrap_cut(t312))
-    t314 = T11 * s1_backward_up_noflip_2 - T21 * c1_0_backward_up_noflip_2
+    t298 = slower_backward_up_noflip * c3_0_backward_up_noflip
+    t299 = t298 - clower_backward_up_noflip * t264
+    t300 = clower_backward_up_noflip * c3_0_backward_up_noflip
+    t301 = t300 + slower_backward_up_noflip * t264
+    t302 = R1_13_backward_up_noflip_2 * t299 + T33 * t301
+    h_wrist_backward_up_noflip = ops.sqrt(ops.select(t296, t297 + t302 * t302, 1.0))
+    t303 = ops.select(t296, h_wrist_backward_up_noflip, 1.0)
+    t304 = 1.0 / t303
+    t305 = ops.select(aligned_wrist_backward_up_noflip, 0.0, t294 * t304)
+    c_wrist_backward_up_noflip = ops.select(aligned_wrist_backward_up_noflip, 1.0, -(t302 * t304))
+    t306 = ops.select(t74, c_wrist_backward_up_noflip, 1.0)
+    t307 = ops.atan2(t305, t306)
+    t308 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t307))
+    t309 = t294 * t305 - t302 * c_wrist_backward_up_noflip
+    R2_33_backward_up_noflip = R1_13_backward_up_noflip_2 * t301 - T33 * t299
+    t310 = ops.select(t74, R2_33_backward_up_noflip, 1.0)
+    t311 = ops.atan2(t309, t310)
+    t312 = ops.select(failed_2, ops.nan, ops.wrap_cut(t311))
+    t313 = T11 * s1_backward_up_noflip_2 - T21 * c1_0_backward_up_noflip_2
     R1_11_backward_up_noflip = T11 * c1_0_backward_up_noflip_2 + T21 * s1_backward_up_noflip_2
-    t315 = t306 * (t300 * R1_11_backward_up_noflip + T31 * t302)
-    t316 = T12 * s1_backward_up_noflip_2 - T22 * c1_0_backward_up_noflip_2
+    t314 = t305 * (t299 * R1_11_backward_up_noflip + T31 * t301)
+    t315 = T12 * s1_backward_up_noflip_2 - T22 * c1_0_backward_up_noflip_2
     R1_12_backward_up_noflip = T12 * c1_0_backward_up_noflip_2 + T22 * s1_backward_up_noflip_2
-    t317 = t306 * (t300 * R1_12_backward_up_noflip + T32 * t302)
-    t318 = ops.select(t75, -(c_wrist_backward_up_noflip * t316 + t317), 1.0)
-    t319 = ops.atan2(c_wrist_backward_up_noflip * t314 + t315, t318)
-    t320 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t319))
+    t316 = t305 * (t299 * R1_12_backward_up_noflip + T32 * t301)
+    t317 = ops.select(t74, -(c_wrist_backward_up_noflip * t315 + t316), 1.0)
+    t318 = ops.atan2(c_wrist_backward_up_noflip * t313 + t314, t317)
+    t319 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t318))
     flip_wrist_backward_up_flip = ops.select(aligned_wrist_backward_up_noflip, 0.0, 3.141592653589793)
-    t321 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_backward_up_flip - t308))
-    t322 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t312))
-    t323 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_backward_up_flip - t319))
-    clower_backward_down_noflip = t252 + t254
-    slower_backward_down_noflip = t255 - t256
-    t324 = ops.select(t75, -slower_backward_down_noflip, 1.0)
-    t325 = ops.wrap_cut(ops.atan2(clower_backward_down_noflip, t324))
-    t326 = ops.select(failed_2, ops.nan, t325)
-    s3_backward_down_noflip = t263 - t264
-    c3_0_backward_down_noflip = t266 + t267
-    t327 = ops.select(t75, c3_0_backward_down_noflip, 1.0)
-    t328 = ops.wrap_cut(ops.atan2(s3_backward_down_noflip, t327))
-    t329 = ops.select(failed_2, ops.nan, t328)
-    slower_backward_down_noflip_2 = t277 - t279
-    c3_0_backward_down_noflip_2 = t283 + t284
-    t330 = slower_backward_down_noflip_2 * c3_0_backward_down_noflip_2
-    clower_backward_down_noflip_2 = t286 + t287
-    s3_backward_down_noflip_2 = t288 - t289
-    t331 = clower_backward_down_noflip_2 * s3_backward_down_noflip_2
-    t332 = clower_backward_down_noflip_2 * c3_0_backward_down_noflip_2
-    t333 = slower_backward_down_noflip_2 * s3_backward_down_noflip_2
-    t334 = R1_13_backward_up_noflip * (t330 + t331) + T33 * (t332 - t333)
-    aligned_wrist_backward_down_noflip = ops.sqrt(t271 + t334 * t334) <= t167
-    t335 = ops.opposite(aligned_wrist_backward_down_noflip)
-    t336 = t75 & t335
-    t337 = slower_backward_down_noflip * c3_0_backward_down_noflip
-    t338 = clower_backward_down_noflip * s3_backward_down_noflip
-    t339 = t337 + t338
-    t340 = clower_backward_down_noflip * c3_0_backward_down_noflip
-    t341 = slower_backward_down_noflip * s3_backward_down_noflip
-    t342 = t340 - t341
-    t343 = R1_13_backward_up_noflip_2 * t339 + T33 * t342
-    h_wrist_backward_down_noflip = ops.sqrt(ops.select(t336, t298 + t343 * t343, 1.0))
-    t344 = ops.select(t336, h_wrist_backward_down_noflip, 1.0)
-    t345 = 1.0 / t344
-    t346 = ops.select(aligned_wrist_backward_down_noflip, 0.0, t295 * t345)
-    c_wrist_backward_down_noflip = ops.select(aligned_wrist_backward_down_noflip, 1.0, -(t343 * t345))
-    t347 = ops.select(t75, c_wrist_backward_down_noflip, 1.0)
-    t348 = ops.atan2(t346, t347)
-    t349 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t348))
-    t350 = t295 * t346 - t343 * c_wrist_backward_down_noflip
-    R2_33_backward_down_noflip = R1_13_backward_up_noflip_2 * t342 - T33 * t339
-    t351 = ops.select(t75, R2_33_backward_down_noflip, 1.0)
-    t352 = ops.atan2(t350, t351)
-    t353 = ops.select(failed_2, ops.nan, ops.wrap_cut(t352))
-    t354 = t346 * (R1_11_backward_up_noflip * t339 + T31 * t342)
-    t355 = t346 * (R1_12_backward_up_noflip * t339 + T32 * t342)
-    t356 = -(t316 * c_wrist_backward_down_noflip + t355)
-    t357 = ops.atan2(t314 * c_wrist_backward_down_noflip + t354, ops.select(t75, t356, 1.0))
-    t358 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t357))
+    t320 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_backward_up_flip - t307))
+    t321 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t311))
+    t322 = ops.select(failed_2, ops.nan, ops.wrap(flip_wrist_backward_up_flip - t318))
+    clower_backward_down_noflip = t251 + t253
+    slower_backward_down_noflip = t254 - t255
+    t323 = ops.select(t74, -slower_backward_down_noflip, 1.0)
+    t324 = ops.wrap_cut(ops.atan2(clower_backward_down_noflip, t323))
+    t325 = ops.select(failed_2, ops.nan, t324)
+    s3_backward_down_noflip = t262 - t263
+    c3_0_backward_down_noflip = t265 + t266
+    t326 = ops.select(t74, c3_0_backward_down_noflip, 1.0)
+    t327 = ops.wrap_cut(ops.atan2(s3_backward_down_noflip, t326))
+    t328 = ops.select(failed_2, ops.nan, t327)
+    slower_backward_down_noflip_2 = t276 - t278
+    c3_0_backward_down_noflip_2 = t282 + t283
+    t329 = slower_backward_down_noflip_2 * c3_0_backward_down_noflip_2
+    clower_backward_down_noflip_2 = t285 + t286
+    s3_backward_down_noflip_2 = t287 - t288
+    t330 = clower_backward_down_noflip_2 * s3_backward_down_noflip_2
+    t331 = clower_backward_down_noflip_2 * c3_0_backward_down_noflip_2
+    t332 = slower_backward_down_noflip_2 * s3_backward_down_noflip_2
+    t333 = R1_13_backward_up_noflip * (t329 + t330) + T33 * (t331 - t332)
+    aligned_wrist_backward_down_noflip = ops.sqrt(t270 + t333 * t333) <= t166
+    t334 = ops.opposite(aligned_wrist_backward_down_noflip)
+    t335 = t74 & t334
+    t336 = slower_backward_down_noflip * c3_0_backward_down_noflip
+    t337 = clower_backward_down_noflip * s3_backward_down_noflip
+    t338 = t336 + t337
+    t339 = clower_backward_down_noflip * c3_0_backward_down_noflip
+    t340 = slower_backward_down_noflip * s3_backward_down_noflip
+    t341 = t339 - t340
+    t342 = R1_13_backward_up_noflip_2 * t338 + T33 * t341
+    h_wrist_backward_down_noflip = ops.sqrt(ops.select(t335, t297 + t342 * t342, 1.0))
+    t343 = ops.select(t335, h_wrist_backward_down_noflip, 1.0)
+    t344 = 1.0 / t343
+    t345 = ops.select(aligned_wrist_backward_down_noflip, 0.0, t294 * t344)
+    c_wrist_backward_down_noflip = ops.select(aligned_wrist_backward_down_noflip, 1.0, -(t342 * t344))
+    t346 = ops.select(t74, c_wrist_backward_down_noflip, 1.0)
+    t347 = ops.atan2(t345, t346)
+    t348 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t347))
+    t349 = t294 * t345 - t342 * c_wrist_backward_down_noflip
+    R2_33_backward_down_noflip = R1_13_backward_up_noflip_2 * t341 - T33 * t338
+    t350 = ops.select(t74, R2_33_backward_down_noflip, 1.0)
+    t351 = ops.atan2(t349, t350)
+    t352 = ops.select(failed_2, ops.nan, ops.wrap_cut(t351))
+    t353 = t345 * (R1_11_backward_up_noflip * t338 + T31 * t341)
+    t354 = t345 * (R1_12_backward_up_noflip * t338 + T32 * t341)
+    t355 = -(t315 * c_wrist_backward_down_noflip + t354)
+    t356 = ops.atan2(t313 * c_wrist_backward_down_noflip + t353, ops.select(t74, t355, 1.0))
+    t357 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t356))
     flip_wrist_backward_down_flip = ops.select(aligned_wrist_backward_down_noflip, 0.0, 3.141592653589793)
-    t359 = ops.wrap(flip_wrist_backward_down_flip - t348)
-    t360 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t352))
-    t361 = ops.wrap(flip_wrist_backward_down_flip - t357)
-    t362 = free1 | no_link_elbow
-    t363 = t362 | folded_elbow
-    t364 = ops.status(invalid, unreachable, t363 | aligned_wrist)
-    t365 = ops.status(invalid, unreachable, t363 | aligned_wrist_facing_down_noflip)
-    t366 = t362 | folded_elbow_backward_up_noflip
-    t367 = ops.status(invalid, unreachable_2, t366 | aligned_wrist_backward_up_noflip)
-    t368 = ops.status(invalid, unreachable_2, t366 | aligned_wrist_backward_down_noflip)
+    t358 = ops.wrap(flip_wrist_backward_down_flip - t347)
+    t359 = ops.select(failed_2, ops.nan, ops.wrap_cut(-t351))
+    t360 = ops.wrap(flip_wrist_backward_down_flip - t356)
+    t361 = free1 | no_link_elbow
+    t362 = t361 | folded_elbow
+    t363 = ops.status(invalid, unreachable, t362 | aligned_wrist)
+    t364 = ops.status(invalid, unreachable, t362 | aligned_wrist_facing_down_noflip)
+    t365 = t361 | folded_elbow_backward_up_noflip
+    t366 = ops.status(invalid, unreachable_2, t365 | aligned_wrist_backward_up_noflip)
+    t367 = ops.status(invalid, unreachable_2, t365 | aligned_wrist_backward_down_noflip)
     return (
-        t118,
-        t134,
-        t144,
-        t177,
-        t180,
+        t117,
+        t133,
+        t143,
+        t176,
+        t179,
+        t185,
+        t117,
+        t133,
+        t143,
         t186,
-        t118,
-        t134,
-        t144,
         t187,
         t188,
-        t189,
-        t118,
-        t192,
-        t195,
-        t214,
-        t218,
+        t117,
+        t191,
+        t194,
+        t213,
+        t217,
+        t221,
+        t117,
+        t191,
+        t194,
         t222,
-        t118,
-        t192,
-        t195,
         t223,
         t224,
-        t225,
-        t241,
-        t259,
-        t269,
-        t309,
-        t313,
+        t240,
+        t258,
+        t268,
+        t308,
+        t312,
+        t319,
+        t240,
+        t258,
+        t268,
         t320,
-        t241,
-        t259,
-        t269,
         t321,
         t322,
-        t323,
-        t241,
-        t326,
-        t329,
-        t349,
-        t353,
-        t358,
-        t241,
-        t326,
-        t329,
-        ops.select(failed_2, ops.nan, t359),
-        t360,
-        ops.select(failed_2, ops.nan, t361),
+        t240,
+        t325,
+        t328,
+        t348,
+        t352,
+        t357,
+        t240,
+        t325,
+        t328,
+        ops.select(failed_2, ops.nan, t358),
+        t359,
+        ops.select(failed_2, ops.nan, t360),
+        t363,
+        t363,
         t364,
         t364,
-        t365,
-        t365,
+        t366,
+        t366,
         t367,
         t367,
-        t368,
-        t368,
     )
 
 

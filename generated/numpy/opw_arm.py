@@ -12,7 +12,7 @@
 #   singularities: 6 add, 9 multiply, 3 sincos
 #   jacobian_space: 49 add, 90 multiply, 5 sincos
 #   jacobian_body: 33 add, 70 multiply, 5 sincos
-#   ik: 201 compare and select, 198 add, 22 atan2, 21 divide, 246 multiply, 13 sqrt
+#   ik: 201 compare and select, 200 add, 22 atan2, 21 divide, 246 multiply, 13 sqrt
 #   ik where nothing vanishes: 128 compare and select, 170 add, 22 atan2, 14 divide, 198 multiply,
 #     11 sqrt
 """Six-axis arm of industry (OPW).
@@ -946,9 +946,9 @@ def _ik(
     del t24
     by_c_1_1 = t26 * (1.0 - t25)
     del t25, t26
-    cost_1_1 = t3 * (t27 * t27) / (1.0 + np.abs(by_c_1_1)) + root1 * np.abs(t27)
-    t28 = (cost_1_1 <= whole_1_1) & (0.0 < by_c_1_1)
-    del cost_1_1
+    versine_1_1 = _runtime.select(0.0 < by_c_1_1, t27 * t27 / (1.0 + np.abs(by_c_1_1)), 1.0 - by_c_1_1)
+    t28 = root1 * np.abs(t27) + t3 * versine_1_1 <= whole_1_1
+    del versine_1_1
     sine_1_1 = _runtime.select(t28, -t27, 0.0)
     del t27
     cosine_1_1 = _runtime.select(t28, by_c_1_1, 1.0)
@@ -1159,10 +1159,13 @@ def _ik(
     del t117
     by_c_1_1_backward_up_noflip = t119 * (1.0 - t118)
     del t118, t119
-    t121 = t3 * (t120 * t120) / (1.0 + np.abs(by_c_1_1_backward_up_noflip))
-    del t3
-    t122 = (t121 + root1 * np.abs(t120) <= whole_1_1) & (0.0 < by_c_1_1_backward_up_noflip)
-    del root1, t121, whole_1_1
+    t121 = t120 * t120 / (1.0 + np.abs(by_c_1_1_backward_up_noflip))
+    versine_1_1_backward_up_noflip = _runtime.select(0.0 < by_c_1_1_backward_up_noflip, t121, 1.0 - by_c_1_1_backward_up_noflip)
+    del t121
+    cost_1_1_backward_up_noflip = root1 * np.abs(t120) + t3 * versine_1_1_backward_up_noflip
+    del root1, t3, versine_1_1_backward_up_noflip
+    t122 = cost_1_1_backward_up_noflip <= whole_1_1
+    del cost_1_1_backward_up_noflip, whole_1_1
     sine_1_1_backward_up_noflip = _runtime.select(t122, -t120, 0.0)
     del t120
     t123 = c_1_1_backward_up_noflip * sine_1_1_backward_up_noflip

@@ -306,7 +306,7 @@ class _Place:
         )
 
     def closer(self) -> Pair:
-        """Turned as little as brings the links within reach, if the axis does not turn far."""
+        """The smallest turn to within reach of the links, if the axis does not turn far."""
         return self.turn.least(self.within)
 
     @cached_property
@@ -335,7 +335,7 @@ class _Place:
 
     @cached_property
     def within(self) -> Within:
-        """The goal where rounding may turn the wrist and the offset anywhere."""
+        """The goal for a small turn; rounding may turn an aligned wrist and its offset anywhere."""
         turn, offset = self.turn, self.goal.offset
         (qx, qy), (dqx, dqy) = self.q
         (ax, ay), (dax, day) = self.axis

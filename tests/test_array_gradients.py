@@ -35,7 +35,19 @@ ROBOTS = (
     "stanford_arm",
     "ur_arm",
 )
-all_robots = pytest.mark.parametrize("robot", ROBOTS)
+NEWER = (
+    "delta",
+    "five_bar",
+    "four_bar",
+    "irb2400",
+    "linear_delta",
+    "opw_arm",
+    "slider_crank",
+)
+all_robots = pytest.mark.parametrize("robot", (*ROBOTS, *NEWER))
+every_robot = pytest.mark.parametrize(
+    "robot", (*ROBOTS, *NEWER, "agile_wrist", "orthoglide", "spherical_five_bar")
+)
 CONDITION = 1e4
 """Derivatives of an inverse are compared where the Jacobian is better conditioned than this."""
 
@@ -173,7 +185,7 @@ def test_derivatives_of_an_inverse_by_dimensions(robot: str) -> None:
         assert count and (abs(by_joints + by_dimension) / (1 + abs(by_joints))).max() < 1e-5
 
 
-@all_robots
+@every_robot
 def test_derivatives_are_finite_wherever_the_status_is_ok(robot: str) -> None:
     """Also by dimensions that all targets share, those that are not OK among them."""
     array, numpy = modules(robot)

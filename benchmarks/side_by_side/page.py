@@ -31,9 +31,9 @@ TITLES = {
 INTRODUCTIONS = {
     "nearest": """\
 The limits leave two turns to all joints but the elbow, so most postures are possible at several
-turns. One call of closedform takes all targets. The second row shows it with one target a call:
-there, the work of NumPy in small pieces makes it slower than ssik and EAIK. The C function
-`ur_arm_nearest` does not have that cost ([in a controller](in-a-controller.md)).""",
+turns. One call of closedform takes all targets. The second row shows it with one target a call,
+most of which is the work of Python around one call of the C function `ur_arm_nearest`
+([in a controller](in-a-controller.md)).""",
     "limits": """\
 All postures within 2.6 rad of zero. closedform drops nothing: it says which joint of which branch
 has no turn within its limits.""",

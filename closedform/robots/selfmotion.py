@@ -24,7 +24,7 @@ STEPS = 24
 LONGEST = 0.5
 """A step on the curve that moves a joint further is not taken: the free joint turns back there."""
 STRAIGHT = 1e-9
-BOWED = 1e-6
+BOWED = 1e-3
 """The same where rounding spoils the direction of the line; what is left is corrected."""
 CORRECTIONS, APPROACH = 3, 8
 """Steps of Newton's method from a posture on the curve, and from a seed."""

@@ -33,6 +33,7 @@
 #define CF_SHARE CLOSEDFORM_C(1e-3)
 #define CF_LONGEST CLOSEDFORM_C(0.5) /* rad; a step along a self-motion */
 #define CF_STEPS 24
+#define CF_BOWED CLOSEDFORM_C(1e-3) /* a line whose direction rounding spoils; what is left is corrected */
 #define CF_CLOSE CLOSEDFORM_C(1e-2) /* rad; an answer so near to the seed is no jump */
 
 /* The functions and the sizes of one robot. task: 16 for a pose, 9 for a rotation, or the number of
@@ -221,7 +222,7 @@ static inline real_t cf_polish(const cf_task *t, size_t kept, int times, real_t 
 static inline real_t cf_tangent(const cf_task *t, const real_t *J, size_t joint, real_t *rates)
 {
     const size_t n = t->robot->joints, rows = t->robot->rows;
-    real_t column[CF_MOST_ROWS], square = 0, largest = 0, left = 0;
+    real_t column[CF_MOST_ROWS] = { 0 }, square = 0, largest = 0, left = 0;
     for (size_t i = 0; i < rows; ++i) {
         column[i] = -J[i * n + joint];
         for (size_t j = 0; j < n; ++j) largest = cf_max(largest, CF_LIBM(fabs)(J[i * n + j]));
@@ -301,8 +302,7 @@ static inline int cf_release(const cf_task *t, const real_t *seed, int only_stra
     cf_tangent(t, J, joint, rates);
     for (size_t j = 0; j < n; ++j) at[j] = q[j] + moved * rates[j];
     straight = cf_error(t, at, e) <= CF_STRAIGHT;
-    /* Rounding spoils the direction of such a line; what is left is corrected. */
-    if (only_straight) straight = cf_error(t, at, e) <= 1000 * CF_STRAIGHT;
+    if (only_straight) straight = cf_error(t, at, e) <= CF_BOWED;
     if (!straight && only_straight) return 0;
     if (!straight) {
         memcpy(at, q, n * sizeof *q);

@@ -8,6 +8,7 @@ const [OK, UNREACHABLE, SINGULAR, INVALID] = [0, 1, 2, 3];
 const TURN = 2 * Math.PI;
 const REACHED = 1e-12; // the error of an answer, relative to the size
 const STRAIGHT = 1e-9; // ... of a posture on the way to it
+const BOWED = 1e-3; // ... on a line whose direction rounding spoils
 const FREE = 1e-6; // the target does not move
 const SHARE = 1e-3;
 const DAMPING = 1e-13;
@@ -405,8 +406,7 @@ function moveTo(task, seed, q, onlyStraight) {
     const gap = seed[joint] - q[joint];
     const moved = task.revolute[joint] ? lessTurns(gap) : gap;
     let at = q.map((v, j) => v + moved * first.rates[j]);
-    // Where only rounding hides a singularity, it spoils the direction of the line; what is left is corrected.
-    const straight = task.largest(at) <= (onlyStraight ? 1000 * STRAIGHT : STRAIGHT);
+    const straight = task.largest(at) <= (onlyStraight ? BOWED : STRAIGHT);
     let reached = true;
     if (!straight && onlyStraight) return { q, doubtful: false };
     if (!straight) {

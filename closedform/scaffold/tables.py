@@ -73,6 +73,8 @@ class Table:
     rows: list[tuple[Any, ...]] = field(default_factory=list)
     axes: list[tuple[Any, Any, Any]] = field(default_factory=list)
     home: Any = None
+    base: Any = None
+    """The pose of the frame from which axes and home are seen, if it is not the identity."""
     modified: bool = False
     limits: dict[str, tuple[str, str]] = field(default_factory=dict)
     """The least and the largest value of a joint, as decimals."""
@@ -452,6 +454,8 @@ def use_exact(table: Table, file: str) -> None:
         for i, (joint, *vectors) in enumerate(axes, 1)
     ]
     table.home = table.home.applyfunc(lambda e: angles.read(e, f"{file}, [home]"))
+    if table.base is not None:
+        table.base = table.base.applyfunc(lambda e: angles.read(e, f"{file}, the mount"))
     _declare(table, angles)
 
 

@@ -33,6 +33,11 @@ def complaint(folder: Path, kind: str, text: str, capsys: pytest.CaptureFixture[
         ("a, alpha, d, theta\n1, 0, 0, t + 22.5\n", "write t + pi/8 instead of t + 22.5"),
         ("a, alpha, d, theta\n0, 0, 0, t1 + t2\n", "line 2: theta has the symbols t1, t2"),
         ("a, alpha, d, theta\n0, 0, 0, t\n0, 0, 0, t\n", "line 3: two joints have the name t"),
+        (
+            "a, alpha, d, theta\n1, 0, 0, u\n1, 0, 0, v - u + pi/2\n",
+            "u is the joint of an earlier row; if motors drive both, through a belt or a "
+            "parallelogram, give this joint a new name and write -u + v in a column motors",
+        ),
         ("a, alpha, d, theta\n(, 0, 0, t\n", "line 2, column a: cannot read '('"),
         ("# L = 1 m: x\na, alpha, d, theta\n0, 0, 0, t\n", "the parameter L is not used"),
         ("", "the table is empty"),
@@ -188,3 +193,18 @@ def test_any_text_may_say_what_a_parameter_is(tmp_path: Path) -> None:
     assert main(["new", "quoted", "--from", "screws", str(table), "-o", str(tmp_path)]) == 0
     (parameter,) = load(find([str(tmp_path / "quoted.py")])[0]).parameters
     assert (parameter.unit, parameter.meaning) == ('k"', 'the "long" one, 5 % of it')
+
+
+def test_a_parameter_without_a_value_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its example value is 1, which nobody gave."""
+    path = tmp_path / "arm.csv"
+    rows = "# r = 0.4 m: reach\na, alpha, d, theta\nr, 0, 0, t1\nb, 0, 0, t2\n"
+    path.write_text(rows, "utf-8")
+    assert main(["new", "two", "--from", "dh", str(path), "-o", str(tmp_path)]) == 0
+    said = capsys.readouterr().err
+    assert "no value is given for b, so 1 is taken; write one in a line '# b = 0.1 m" in said
+    path.write_text(f"# b = 0.3 m: second\n{rows}", "utf-8")
+    assert main(["new", "both", "--from", "dh", str(path), "-o", str(tmp_path)]) == 0
+    assert "no value" not in capsys.readouterr().err

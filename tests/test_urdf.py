@@ -13,7 +13,7 @@ from closedform.mechanics.arm import Serial, from_screws
 from closedform.model.derivation import Derivation, Paper
 from closedform.scaffold.new import new
 from closedform.scaffold.tables import Table, TableError
-from closedform.scaffold.tree import Choice
+from closedform.scaffold.tree import Choice, meant_angle
 from closedform.scaffold.urdf import read_urdf
 
 UR5 = """
@@ -179,6 +179,40 @@ def test_the_command(ur5: Path, tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert "8 branches" in found.out and "taken for pi/2" in found.err
     assert main(["new", "b", "--from", "dh", str(ur5), "--tool", "w1"]) == 2
     assert "--base, --tool and --ignore are for a URDF or MJCF file" in capsys.readouterr().err
+
+
+def test_a_tilted_mount_stays_apart_from_the_arm(ur5: Path) -> None:
+    """Arms of humanoids: the tilt is in the base alone, and the axes are those of a level arm."""
+    level = read_urdf(ur5, Choice("base"))
+    tilted = UR5.replace(
+        'xyz="0 0 0.089159" rpy="0 0 0"', 'xyz="0 0.1 0.9" rpy="-2.0679 0 -1.2217"'
+    )
+    ur5.write_text(tilted, "utf-8")
+    table = read_urdf(ur5)
+    assert [w for _, w, _ in table.axes] == [w for _, w, _ in level.axes]
+    assert not {s for _, w, p in table.axes for e in (*w, *p) for s in e.free_symbols}
+    values = {sp.Symbol(n, real=True): float(sp.Rational(p["value"])) for n, p in
+              table.parameters.items()}  # fmt: skip
+    d = Derivation("arm", "Arm", Paper("p", "P", ("A",)), "An arm.")
+    for name in table.parameters:
+        d.parameter(name, value=1, unit="rad", meaning="tilt", nonnegative=False)
+    for name, kind in table.joints.items():
+        d.joint(name, kind)  # type: ignore[arg-type]
+    arm = from_screws(d, table.axes, table.home, base=table.base)
+    assert sp.prod(arm.moves).free_symbols == arm.pose.free_symbols
+    for pose in (arm.pose, sp.prod(arm.moves)):
+        at = sp.lambdify(arm.joints, pose.xreplace(values), "numpy")
+        for q in np.random.default_rng(2).uniform(-3, 3, (5, 6)):
+            np.testing.assert_allclose(at(*q), forward(tilted, q), atol=2e-5)
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"), [("3.14", "pi"), ("-1.57", "-pi/2"), ("0.26", "0.26"), ("3.1", "3.1")]
+)
+def test_right_angles_may_have_two_decimals(written: str, meant: str) -> None:
+    notes: list[str] = []
+    found = meant_angle(sp.Rational(written), "here", notes)
+    assert found == sp.nsimplify(meant, rational=True) and len(notes) == ("pi" in meant)
 
 
 def test_short_lengths_are_named_and_left_out_if_wanted(

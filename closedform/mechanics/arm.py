@@ -483,12 +483,17 @@ def _followed(lead: sp.Matrix, links: list[Link], step: sp.Matrix) -> sp.Matrix:
 
 
 def from_screws(
-    d: Derivation, axes: Sequence[tuple[sp.Symbol, Sequence[Any], Sequence[Any]]], home: Any
+    d: Derivation,
+    axes: Sequence[tuple[sp.Symbol, Sequence[Any], Sequence[Any]]],
+    home: Any,
+    *,
+    base: Any = None,
 ) -> Serial:
     """The chain of axes ``(joint, direction, point)`` at home; ``home`` is the pose of the tool.
 
-    A direction is a unit vector; the point of a prismatic joint does not matter.  Raises
-    :class:`RowError` if something is not an axis or not a pose.
+    A direction is a unit vector; the point of a prismatic joint does not matter.  All of them are
+    seen from the frame ``base``, such as that of a tilted mount; its pose is the identity by
+    default.  Raises :class:`RowError` if something is not an axis or not a pose.
     """
     if not axes:
         raise RowError(f"{d.name}: there are no axes")
@@ -513,6 +518,10 @@ def from_screws(
     home = rigid(d, home, "the pose at home")
     frame = _frame_along(directions[0])
     lead = homogeneous(frame, tuple(points[0]))
+    if base is not None:
+        mount = rigid(d, base, "the base")
+        lead = reduce_circle((mount * lead).applyfunc(sp.expand))
+        moves.insert(0, mount)
     groups: list[Group] = []
     current: list[Row] = []
     for i, (joint, slides, _) in enumerate(motions):

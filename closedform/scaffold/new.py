@@ -227,7 +227,8 @@ def _arm(d: Derivation, table: Table, known: Mapping[str, Any]) -> Serial:
     if table.rows:
         return from_dh(d, [tuple(map(own, row)) for row in table.rows], modified=table.modified)
     axes = [(own(j), [own(e) for e in w], [own(e) for e in p]) for j, w, p in table.axes]
-    return from_screws(d, axes, table.home.applyfunc(own))
+    base = None if table.base is None else table.base.applyfunc(own)
+    return from_screws(d, axes, table.home.applyfunc(own), base=base)
 
 
 def _table_lines(table: Table) -> list[str]:
@@ -246,6 +247,7 @@ def _table_lines(table: Table) -> list[str]:
         *axes,
         "    ],",
         f"    {source(table.home)},",
+        *([] if table.base is None else [f"    base={source(table.base)},"]),
         ")",
     ]
 

@@ -136,8 +136,9 @@ def _fewer(maker: SubproblemMaker, whole: Singles, wrist: int) -> str:
     start = len(whole.joints) - wrist
     found = whole.met(start, wrist)
     if found is None:
+        which = "first" if whole.inverted else "last"
         raise NoChainError(
-            f"its last {wrist} axes do not meet in a point",
+            f"its {which} {wrist} axes do not meet in a point",
             "Known are arms of up to three joints before others whose axes meet in a point.",
         )
     structure = maker.solved(_met(found, [(k, 2) for k in range(start - 1)]), wrist)

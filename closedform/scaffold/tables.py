@@ -18,7 +18,7 @@ from __future__ import annotations
 import csv
 import re
 import tomllib
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -56,6 +56,11 @@ LINES = {
 }  # fmt: skip
 TAKEN = SCRIPT | LINES | {*IMPORTED, *AUTHOR, *CHAIN}
 """Names that the written script uses itself."""
+EXAMPLE = (
+    "write one in a line '# {} = 0.1 m: what it is'",
+    "write one in [parameters], as {} = 0.1",
+)
+"""How to give a value to a parameter, in CSV and in TOML."""
 NUMBERED = re.compile(r"(alpha|link|pair|left|tilted)\d+_?")
 """Names with a number that the written script uses itself."""
 
@@ -73,6 +78,8 @@ class Table:
     rows: list[tuple[Any, ...]] = field(default_factory=list)
     axes: list[tuple[Any, Any, Any]] = field(default_factory=list)
     home: Any = None
+    base: Any = None
+    """The pose of the frame from which axes and home are seen, if it is not the identity."""
     modified: bool = False
     limits: dict[str, tuple[str, str]] = field(default_factory=dict)
     """The least and the largest value of a joint, as decimals."""
@@ -246,7 +253,7 @@ def _read_row(table: Table, header: Sequence[str], cells: Sequence[str], where: 
     entries = {c: expression(cell[c], f"{where}, column {c}") for c in COLUMNS}
     for column in ("alpha", "theta"):
         _check_angle(entries[column], cell[column], f"{where}, column {column}")
-    found = _joint(cell.get("joint", ""), entries, where, table.parameters)
+    found = _joint(cell.get("joint", ""), entries, where, table)
     if found:
         add_joint(table, *found, where)
     if given := cell.get("motors", ""):
@@ -352,7 +359,7 @@ def _check_angle(angle: Any, text: str, where: str) -> None:
 
 
 def _joint(
-    given: str, entries: Mapping[str, Any], where: str, parameters: Container[str]
+    given: str, entries: Mapping[str, Any], where: str, table: Table
 ) -> tuple[str, str] | None:
     """The joint of a row and its kind, or None if the row has no joint.
 
@@ -360,9 +367,16 @@ def _joint(
     """
     for column, kind in (("theta", "revolute"), ("d", "prismatic")):
         held = sorted(map(str, entries[column].free_symbols))
-        names = [n for n in held if n not in parameters]
+        names = [n for n in held if n not in table.parameters]
         if given in held or (not given and len(names) == 1):
             return given or names[0], kind
+        if not given and (earlier := [n for n in names if n in table.joints]):
+            motors = entries[column].as_independent(*entries[column].free_symbols)[1]
+            raise TableError(
+                f"{where}: {column} has {', '.join(names)}, and {earlier[0]} is the joint of an "
+                f"earlier row; if motors drive both, through a belt or a parallelogram, give this "
+                f"joint a new name and write {motors} in a column motors"
+            )
         if names and not given:
             raise TableError(
                 f"{where}: {column} has the symbols {', '.join(names)}, and only one can be the "
@@ -452,6 +466,8 @@ def use_exact(table: Table, file: str) -> None:
         for i, (joint, *vectors) in enumerate(axes, 1)
     ]
     table.home = table.home.applyfunc(lambda e: angles.read(e, f"{file}, [home]"))
+    if table.base is not None:
+        table.base = table.base.applyfunc(lambda e: angles.read(e, f"{file}, the mount"))
     _declare(table, angles)
 
 
@@ -546,5 +562,10 @@ def _other_symbols(table: Table, entries: Sequence[Any], where: str) -> None:
             if name not in table.joints:
                 table.parameters.setdefault(name, {})
     used = {str(s) for e in entries for s in e.free_symbols}
+    if untold := [n for n, given in table.parameters.items() if "value" not in given]:
+        table.notes.append(
+            f"{where}: no value is given for {', '.join(untold)}, so 1 is taken; "
+            f"{EXAMPLE[where.endswith('.toml')].format(untold[0])}"
+        )
     if unused := [n for n in table.parameters if n not in used]:
         raise TableError(f"{where}: the parameter {shown_name(unused[0])} is not used in the table")

@@ -88,6 +88,8 @@ def table_of(joints: Sequence[Joint], file: str, notes: Sequence[str], choice: C
                 f"{where}: it mimics {shown_name(joint.mimics)}; write the arm as a table of "
                 f"joints and couple the two with d.joint(..., coupling=...)"
             )
+        if not table.axes and not _along_axes(place):
+            table.base, place = place, sp.eye(4)  # what a tilted mount does to all axes stays apart
         name = _symbol(joint.name)
         add_joint(table, name, MOVING[joint.kind], where)
         direction = (place[:3, :3] * joint.axis).applyfunc(sp.expand)
@@ -195,10 +197,14 @@ def _listed(vector: sp.Matrix) -> str:
 
 
 def meant_angle(value: sp.Rational, where: str, notes: list[str]) -> sp.Expr:
-    """The multiple of pi/12 that was rounded to a number, or the number."""
-    steps = sp.Integer(round(float(value) * 12 / 3.141592653589793))
+    """The multiple of pi/12 that was rounded to a number, or the number.
+
+    Right angles are written with two decimals too, as 1.57 and 3.14.
+    """
+    steps = sp.Integer(round(float(value) * 12 / math.pi))
     exact = steps * sp.pi / 12
-    if value == 0 or abs(sp.N(exact - value, 30)) > NEAR:
+    short = steps % 6 == 0 and value == sp.Rational(f"{float(exact):.2f}")
+    if value == 0 or (abs(sp.N(exact - value, 30)) > NEAR and not short):
         return value
     notes.append(f"{where}: the angle {sp.N(value, 8)} is taken for {exact}")
     return exact
@@ -242,6 +248,11 @@ def _chain(joints: Sequence[Joint], base: str, tool: str, file: str) -> list[Joi
             f"{shown_name(link)}"
         )
     return found
+
+
+def _along_axes(place: sp.Matrix) -> bool:
+    """Whether a pose turns the axes of coordinates to each other."""
+    return all(e in (-1, 0, 1) for e in place[:3, :3])
 
 
 def _only_end(above: Mapping[str, Joint], parents: set[str], file: str) -> str:

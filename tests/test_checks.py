@@ -520,6 +520,11 @@ class TestForAll:
         with pytest.raises(Undecided):
             ForAll(x > 0, where=[x > 1]).judge()
 
+    def test_a_point_that_gives_no_value_to_a_symbol_is_left_out(self) -> None:
+        """A misprint may bring in a symbol that the listed points do not have."""
+        verdict = ForAll(sp.Ge(x, y), among=[{x: sp.S.Zero}]).judge()
+        assert (verdict.kind, set(verdict.evidence[1])) == (REFUTED, {x, y})
+
 
 class TestExists:
     def test_verdicts(self) -> None:

@@ -347,7 +347,11 @@ def keeps_apart(claim: Callable[..., None], r: Robot, printed: Notation) -> None
         return ForAll(
             sp.Gt(m.al, half_line.subs(level) - m.gs),
             where=[relation for _, relation in where],
-            slack=[slack(symbol, relation, k) for k, (symbol, relation) in enumerate(where)],
+            slack=[
+                slack(symbol, relation, k)
+                for k, (symbol, relation) in enumerate(where)
+                if relation.has(symbol)
+            ],
             among=[steep],
         )
 

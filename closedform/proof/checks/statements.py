@@ -216,9 +216,10 @@ def _negated(relation: Expr) -> Expr:
 
 
 def _first(relations: Sequence[Expr], among: Iterable[Point]) -> Point | None:
-    """The first of some points at which all relations between constants hold."""
+    """The first of some points that give all symbols a value and at which all relations hold."""
     for point in among:
-        if all(holds(sp.sympify(r, strict=True).subs(point)) for r in relations):
+        placed = [sp.sympify(r, strict=True).subs(point) for r in relations]
+        if not any(r.free_symbols for r in placed) and all(map(holds, placed)):
             return point
     return None
 

@@ -169,8 +169,8 @@ def _dimensions(bodies: Any, file: str) -> int:
         at
         for body in bodies.values()
         if isinstance(body, dict)
-        for at in body.values()
-        if isinstance(at, list)
+        for key, at in body.items()
+        if isinstance(at, list) and key != "parallelogram"
     ]
     sizes = {len(at) for at in places}
     if sizes not in ({2}, {3}):

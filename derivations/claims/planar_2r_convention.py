@@ -312,7 +312,8 @@ def inverse(d: Derivation, arm: Arm, known: Notation) -> None:
         "The last row of the homogeneous transformation is (0, 0, 1, 0)",
         Gravity.MISPRINT,
         why="The last row of every homogeneous transformation is (0, 0, 0, 1), as in eqs. (6) to "
-        "(8).  With the printed row, the columns $a$ and $p$ of the product are not those of $A_2$.",
+        "(8).  With the printed row, the columns $a$ and $p$ of the product are not those of "
+        "$A_2$.",
         use="Eq. (10) uses the first two rows only and is not affected.  A program with the "
         "printed matrix loses the position: its product with $A_1^{-1}$ does not contain $-a_1$.",
     )

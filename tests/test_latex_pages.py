@@ -138,11 +138,17 @@ def test_evidence_stands_in_a_line(evidence: str, text: str) -> None:
     [
         ("irb260", "here elbow_up means", r"here \texttt{elbow\_up} means"),
         ("irb260", "where ik has a branch", r"where \texttt{ik} has a branch"),
+        ("puma560", "and [p]_× the matrix", r"and $[p]_\times$ the matrix"),
         ("slider_crank", "reaches the point B1 with", r"point $\mathbf{B}_{1}$ with"),
     ],
 )
 def test_code_and_points_in_a_sentence(robot: str, text: str, latex: str) -> None:
     assert latex in Prose(derivation(robot))(text)
+
+
+def test_angles_in_a_table_stand_in_a_line() -> None:
+    [table] = [s["rows"] for s in context("puma560")["steps"] if s["rows"]]
+    assert table[1][2] == r"$\displaystyle \pi/2$" and len(table) == 7
 
 
 def test_an_angle_whose_name_is_a_word_is_a_symbol_in_sentences() -> None:

@@ -17,7 +17,7 @@ from sympy.logic.boolalg import Boolean
 
 from closedform.emit.backends.latex import bibliography, lemmas, symbols
 from closedform.emit.backends.latex.algorithm import Algorithm
-from closedform.emit.backends.latex.claims import Claims
+from closedform.emit.backends.latex.claims import Claims, flat
 from closedform.emit.backends.latex.equations import (
     Numbered,
     Numbers,
@@ -158,6 +158,7 @@ class Page(Sheet):
             return "{}" * value.startswith(("*", "[")) + self.prose(value)
         chain = value if isinstance(value, tuple) else (value,)
         text = r" \le ".join(map(self.math, chain))
+        text = text if "(" in text else flat(text)  # 1/2 (a + b) would be misread
         return rf"$\displaystyle {text}$"
 
     def function(self, function: Function) -> dict[str, Any]:

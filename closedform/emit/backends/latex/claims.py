@@ -23,6 +23,11 @@ COMPARED = rf"{TERM}(?: (?:<=|>=|=|<|>) {TERM})+"
 """A comparison of distances in plain text: ``CD <= L0 + 2 L1``."""
 
 
+def flat(text: str) -> str:
+    """The same with fractions that stand in a line, where that can be."""
+    return FLAT.sub(r"\1/\2", text)
+
+
 @dataclass(frozen=True)
 class Claims:
     """The claims of one mechanism; ``labels`` are those of the equations of each step."""
@@ -86,7 +91,7 @@ class Claims:
 
     def told(self, evidence: str) -> str:
         """What was found, in a line: fractions are flat, comparisons and joints are formulas."""
-        parts = FLAT.sub(r"\1/\2", evidence).split("$")
+        parts = flat(evidence).split("$")
         joints = [rf"\b{j.name}\b" for j in self.derivation.joints if re.search(r"\d", j.name)]
         formula = "|".join([COMPARED, *joints])
         for i in range(0, len(parts), 2):

@@ -74,6 +74,9 @@ INDEXED = re.compile(r"(?<![A-Za-z0-9_\\])(\d?[A-Za-zα-ωϕ])_(\{\w+\}|\d+|[a-z
 """A letter with an index, in a quotation."""
 CODE = re.compile(r"[a-z]{2,}(?:_[a-z]{2,})+")
 """A name of the code in a sentence."""
+CROSS = r"\[\w\]_×"
+CROSSED = r"[{}]_\times"
+"""The matrix of the cross product with a vector."""
 POINT = re.compile(r"\\mathbf ?\{?([A-Z])\}?_\{?(\d)\}?")
 """A point of a drawing, as in ``\\mathbf B_1``."""
 VARIABLE = r"\\(?:mathrm|mathit|sigma|theta|alpha|beta|psi|kappa|sqrt|frac|sin|cos)\b"
@@ -205,9 +208,12 @@ class Prose:
 
     def __call__(self, text: str) -> str:
         words = "|".join(map(re.escape, self.angles))
-        pieces = re.split(rf"(?<=the axis of )({words})\b", text) if words else [text]
+        known = rf"(?<=the axis of )(?:{words})\b|{CROSS}" if words else CROSS
+        pieces = re.split(f"({known})", text)
         return "".join(
-            f"${self.angles[piece]}$" if i % 2 else self._sentences(piece)
+            f"${self.angles.get(piece) or CROSSED.format(piece[1])}$"
+            if i % 2
+            else self._sentences(piece)
             for i, piece in enumerate(pieces)
         )
 

@@ -83,7 +83,7 @@ class LegByLeg:
                 below[statement.symbol] = set().union(*found)
 
         def values(entry: sp.Expr) -> int:
-            return 2 ** len(set().union(*(below.get(s, set()) for s in entry.free_symbols)))
+            return 1 << len(set().union(*(below.get(s, set()) for s in entry.free_symbols)))
 
         return sum(values(e) for row in rows for e in row if e != 0)
 

@@ -19,6 +19,8 @@ from closedform.lower.operators import BOOLEAN, LEAVES, OPERATORS
 
 WORTH = 0.3
 """The fraction of the operations that packs have to spare."""
+ENOUGH = 64
+"""The operations that they have to spare at least, or filling the lanes takes longer."""
 
 
 def packed(lowered: Lowered) -> Packing | None:
@@ -26,7 +28,7 @@ def packed(lowered: Lowered) -> Packing | None:
     infinite = final_values(lowered)
     alone = frozenset(n.id for n in lowered.schedule() if n.op == "div" and n.id in infinite)
     packing = Packing(lowered, alone)
-    return packing if packing.spared > WORTH * lowered.length else None
+    return packing if packing.spared > max(ENOUGH, WORTH * lowered.length) else None
 
 
 class LanesPrinter(CPrinter):

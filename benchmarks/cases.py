@@ -174,4 +174,6 @@ CASES = [
     Case("2R inverse, both branches", "planar_2r", "ik"),
     Case("five-bar inverse, all eight", "hybrid_five_bar", "ik"),
     Case("H6AR inverse, all four", "h6ar", "ik"),
+    Case("Delta inverse, all eight", "delta", "ik"),
+    Case("Delta forward, both modes", "delta", "fk"),
 ]

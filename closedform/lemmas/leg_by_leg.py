@@ -59,6 +59,34 @@ class LegByLeg:
             )
         )
 
+    def rows(self, straight: Sequence[sp.Matrix], *, apart: bool) -> list[sp.Matrix]:
+        """Rows with the determinant of A: the ``straight`` ones and the rods of the solved legs.
+
+        A determinant does not change if a row is subtracted from the others.  This is done if they
+        may be taken ``apart`` and if the entries have no more values over all branches then: the
+        hand may cancel, but a difference has two signs.
+        """
+        rows = [*straight, *(s.rod for s in self.found)]
+        if not apart:
+            return rows
+        first, *others = rows
+        differences = [first, *(sp.expand(row - first) for row in others)]
+        return min(differences, rows, key=self._values)
+
+    def _values(self, rows: Sequence[sp.Matrix]) -> int:
+        """How many values the entries have over all branches; a zero has none."""
+        signs = {sigma for sigma, _ in self.choices}
+        below: dict[sp.Basic, set[sp.Basic]] = {sigma: {sigma} for sigma in signs}
+        for statement in self.program.body:
+            if isinstance(statement, Let | Bound):
+                found = (below.get(s, set()) for s in statement.value.free_symbols)
+                below[statement.symbol] = set().union(*found)
+
+        def values(entry: sp.Expr) -> int:
+            return 1 << len(set().union(*(below.get(s, set()) for s in entry.free_symbols)))
+
+        return sum(values(e) for row in rows for e in row if e != 0)
+
     @property
     def told_apart(self) -> str:
         """A sentence on the working modes; empty if there is only one."""

@@ -457,14 +457,15 @@ def _inverse(m: Carried, loop: Step) -> None:
             hand = straight[0] - m.place(leg) + leg.base
         else:
             solved.solve(k, leg, w)
-    # a determinant does not change if a row is subtracted from the others; the hand cancels there
-    first, *others = [*straight, *(s.rod for s in solved.found)]
-    rows = [first, *(rod if m.rails else sp.expand(rod - first) for rod in others)]
-    apart = [
+    rows = solved.rows(straight, apart=not m.rails)
+    along = [
         sp.Matrix([named_in(g, f"A_{k}{i}", e) for i, e in enumerate(row, 1)])
         for (k, _), row in zip(m.numbered, rows, strict=True)
     ]
-    volume = g.let("Delta", sp.Matrix.hstack(*apart).det())
+    # branches that differ in the first leg alone share the cross product
+    first, *others = along
+    across = others[0].cross(others[1]) if len(others) == 2 else None
+    volume = g.let("Delta", first.dot(across) if across else sp.Matrix.hstack(*along).det())
     # lengths that the sum of all lengths does not contain, such as those of an arc, round as well
     given = [e for leg in m.legs for e in (leg.rod, getattr(leg, "length", sp.S.Zero))]
     links = [sp.sympify(e, strict=True) for e in given]

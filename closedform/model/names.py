@@ -68,7 +68,7 @@ JAVASCRIPT_LOCALS = frozenset({"parameters"})
 RESERVED_FUNCTIONS = frozenset({"default", "fields", "params", "runtime", "values"})
 """Names that the printed code uses itself, after the name of the robot or an underscore."""
 FUNCTION_SUFFIXES = frozenset({
-    "batch", "branch", "branches", "common", "in", "kernel", "many", "one", "out", "whole",
+    "batch", "branch", "branches", "common", "in", "kernel", "lanes", "many", "one", "out", "whole",
 })  # fmt: skip
 """Suffixes that the printed code appends to the name of a function."""
 NOT_FINITE = frozenset({"nan", "inf", "infinity", "oo", "zoo"})

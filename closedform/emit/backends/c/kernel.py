@@ -8,174 +8,20 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import prod
 
-from closedform.emit.backends.c.guards import (
-    deciding_products,
-    final_values,
-    given_up_where,
-    not_negative,
-    unused_where,
-)
-from closedform.emit.code import COMPARE, PRODUCT, UNARY, Line, Printer, Text, call, word
+from closedform.emit.backends.c.lanes import LanesPrinter, packed
+from closedform.emit.backends.c.printer import CPrinter
 from closedform.emit.text import WIDTH
 from closedform.lower import Lowered
-from closedform.lower.graph import Node, hardly_ever, reachable, strip_sign
-from closedform.lower.operators import LEAVES
+from closedform.lower.graph import Node
 from closedform.model.derivation import Derivation
 from closedform.model.functions import Function
-from closedform.model.names import C_LOCALS, in_c
+from closedform.model.names import C_LOCALS
 
 LANES = 8
-FEW = 2
-"""Up to this many quotients by one divisor get a jump each, and are infinite if it is zero."""
-
-
-class CPrinter(Printer):
-    """C code of a kernel over scalars.
-
-    All ``atan2`` whose arguments need no other ``atan2`` are computed together, so that one call
-    can evaluate them in one vector.  The lines above ``head`` come first, then ``arctangents``
-    (pairs of y and x), then the rest.
-    """
-
-    has_meaning = staticmethod(in_c)
-
-    def __init__(self, lowered: Lowered, reserved: Iterable[str] = (), *, branch: bool = False):
-        super().__init__(lowered, reserved)
-        self.branch = branch
-        self.arctangents: list[tuple[str, str]] = []
-        self.head = 0
-        self._arguments = self._before_arctangents()
-        self._given_up = dict(given_up_where(lowered))
-        self._unused_where = unused_where(self.schedule(), lowered.roots) | self._given_up
-        self._final = final_values(lowered)
-        self._divided = Counter(n.args[1].id for n in lowered.schedule() if n.op == "div")
-        self._tested: dict[int, str] = {}
-        self._deciding = set(deciding_products(lowered))
-
-    def _before_arctangents(self) -> set[int]:
-        """The nodes that need no ``atan2``."""
-        found: set[int] = set()
-        for node in self.lowered.schedule():
-            if node.op != "atan2" and all(a.id in found for a in node.args):
-                found.add(node.id)
-        return found
-
-    def _together(self, node: Node) -> bool:
-        return node.op == "atan2" and all(a.id in self._arguments for a in node.args)
-
-    def schedule(self) -> list[Node]:
-        """First the arguments of the shared ``atan2``, then these, then the nodes that need them.
-
-        A quotient comes after the condition under which nothing uses it.
-        """
-
-        def operands(node: Node) -> tuple[Node, ...]:
-            return (*node.args, *self._given_up.get(node.id, ()))
-
-        nodes = list(reachable(self.lowered.roots, operands=operands))
-        if sum(map(self._together, nodes)) < 2:
-            self._arguments = set()
-            return nodes
-        return sorted(
-            nodes, key=lambda n: 0 if n.id in self._arguments else 1 if self._together(n) else 2
-        )
-
-    nan, true, false = word("CLOSEDFORM_NAN"), word("1"), word("0")
-    abs, max, min, sign = call("cf_abs"), call("cf_max"), call("cf_min"), call("cf_sign")
-    wrap, wrap_cut = call("cf_wrap"), call("cf_wrap_cut")
-
-    def number(self, text: str) -> Text:
-        return Text(f"CLOSEDFORM_C({text})")
-
-    def tolerance(self, node: Node) -> Text:
-        return Text(f"CLOSEDFORM_{str(node.payload).upper()}")
-
-    def mul(self, node: Node, a: Text, b: Text) -> Text:
-        product = super().mul(node, a, b)
-        if node.id in self._deciding:
-            return Text(f"cf_rounded(single, one, {product.code})")
-        return product
-
-    def div(self, node: Node, a: Text, b: Text) -> Text:
-        return super().div(node, a, b) if node.args[1].op == "const" else self._quotient(node, a, b)
-
-    def sqrt(self, node: Node, a: Text) -> Text:
-        if not_negative(node.args[0]):
-            return Text(f"cf_sqrt({a.code})")
-        return Text(f"cf_root({'1' if self.branch else 'single'}, {a.code})")
-
-    def atan2(self, node: Node, y: Text, x: Text) -> Text:
-        if not self._together(node):
-            return Text(f"cf_atan2({y.code}, {x.code})")
-        if not self.arctangents:
-            self.head = len(self.lines)
-        self.arctangents.append((y.code, x.code))
-        return Text(f"angles[{len(self.arctangents) - 1}]")
-
-    def not_(self, node: Node, a: Text) -> Text:
-        return Text(f"!{a.at(UNARY)}", PRODUCT)  # gcc warns of `!a | b`
-
-    def finite(self, node: Node, *args: Text) -> Text:
-        return Text(f"{' + '.join(f'cf_nought({a.code})' for a in args)} == 0", COMPARE)
-
-    def select(self, node: Node, condition: Text, a: Text, b: Text) -> Text:
-        arguments = f"{condition.code}, {a.code}, {b.code}"
-        rarely = f"cf_rarely(single, {arguments})"
-        return Text(rarely if self._is_worth_a_jump(node) else f"cf_select({arguments})")
-
-    def poison(self, node: Node, failed: Text) -> Text:
-        return Text(f"cf_poison(single, {failed.code})")
-
-    def status(self, node: Node, invalid: Text, unreachable: Text, singular: Text) -> Text:
-        return Text(f"cf_status(single, {invalid.code}, {unreachable.code}, {singular.code})")
-
-    def _quotient(self, node: Node, dividend: Text, divisor: Text) -> Text:
-        """A quotient, which divides by 1 where nothing uses it: its divisor may vanish there.
-
-        Otherwise a division by zero is avoided.  The value is infinite, as in IEEE arithmetic, if
-        no further operation uses it.  It is NaN if one does, or if there are many quotients by one
-        divisor, each of which would need a jump.  The loop over branches is part of a single call.
-        """
-        unused = self._unused_where.get(node.id)
-        if unused is not None:
-            where = "1" if self.branch else "single"
-            texts = [self.text[n.id] for n in unused]
-            either = " | ".join(t.at(UNARY) for t in texts) if len(texts) > 1 else texts[0].code
-            safe = f"cf_divisor({where}, {either}, {divisor.code})"
-            return Text(f"{dividend.at(PRODUCT)} / {safe}", PRODUCT)
-        if self.branch:
-            return super().div(node, dividend, divisor)
-        if node.id in self._final and self._divided[node.args[1].id] <= FEW:
-            return Text(f"cf_quotient(single, {dividend.code}, {divisor.code})")
-        return Text(f"{dividend.at(PRODUCT)} / {self._nonzero(node.args[1])}", PRODUCT)
-
-    def _nonzero(self, divisor: Node) -> str:
-        """The divisor, or NaN if it is zero; tested once for all quotients by it."""
-        code = f"cf_nonzero(single, {self.text[divisor.id].code})"
-        if self._divided[divisor.id] < 2:
-            return code
-        if divisor.id not in self._tested:
-            self._tested[divisor.id] = self.names.fresh()
-            self.lines.append(Line(self._tested[divisor.id], code, False))
-        return self._tested[divisor.id]
-
-    @staticmethod
-    def _is_worth_a_jump(select: Node) -> bool:
-        """Whether a jump avoids the computation of a value that is hardly ever selected."""
-        condition, value, _ = select.args
-        return hardly_ever(condition) and strip_sign(value).op not in LEAVES
-
-    def deserves_name(self, node: Node, text: Text, uses: int) -> bool:
-        """Comparisons of calls get a name, an int, because clang warns about ``&`` between them."""
-        if self._together(node):
-            return False
-        compares_calls = node.op in ("lt", "le", "eq", "finite") and "cf_" in text.code
-        return compares_calls or super().deserves_name(node, text, uses)
 
 
 @dataclass(frozen=True)
@@ -217,6 +63,8 @@ class CProgram:
     batch: str
     kernel: str
     kernel_lines: tuple[str, ...]
+    in_lanes: str
+    lanes_lines: tuple[str, ...]
     kernel_call_single: str
     kernel_call_batch: str
     copies_params: bool
@@ -240,6 +88,11 @@ def folded(arguments: Sequence[str]) -> str:
     whole = ", ".join(a.replace(" ", "\0") for a in arguments)  # no break within an argument
     lines = textwrap.wrap(whole, WIDTH - 44, break_long_words=False)
     return "\n    ".join(lines).replace("\0", " ") or "void"
+
+
+def _declared(line: str) -> str:
+    """The name that ``const real_t name = ...`` declares."""
+    return line.split(" = ", 1)[0].rsplit(" ", 1)[1]
 
 
 def _occurs(name: str, lines: Sequence[str]) -> bool:
@@ -275,7 +128,8 @@ class Emission:
         }
         names = [a.name for a in (*self.inputs, *self.outputs)]
         own = {f"{derivation.name}_params", f"{derivation.name.upper()}_DEFAULTS"}
-        self.printer = CPrinter(program, reserved={*C_LOCALS, *names, *own}, branch=branch)
+        reserved = {*C_LOCALS, *names, *own}
+        self.printer = CPrinter(program, reserved, branch=branch)
         self.values = self.printer.run()
         read = program.used_inputs(below_angles=False)
         self.parameters = [p for p in program.parameters if p in read]
@@ -291,6 +145,8 @@ class Emission:
         self.deciding_angles = program.deciding_angles()
         arrays = ("sines", "cosines", "principals")
         self.trig = [name for name in arrays if _occurs(name, self.kernel_lines)]
+        packing = None if branch else packed(program)
+        self.lanes_lines = self._lanes_lines(LanesPrinter(packing, reserved)) if packing else []
 
     def emit(self) -> CProgram:
         arrays = (*self.inputs, *self.outputs)
@@ -300,6 +156,13 @@ class Emission:
         single, trig = ["const int single"] * self.distinguishes_single, self.trig
         single += ["const real_t one"] * self.takes_one
         names = [o.name for o in self.outputs]
+        taken = (
+            [params] * bool(self.parameters)
+            + [a.single for a in self.raw]
+            + [f"const real_t *{name}" for name in trig]
+            + [f"real_t {o.name}[{o.size}]" for o in self.outputs]
+        )
+        one = ["one"] * _occurs("one", self.lanes_lines)
         return CProgram(
             full=self.full,
             unused_single=tuple(
@@ -327,23 +190,19 @@ class Emission:
             narrowed=narrowed,
             single=folded([params, *(a.single for a in arrays)]),
             batch=folded(["size_t n", params, *(a.batch for a in arrays)]),
-            kernel=folded(
-                single
-                + [params] * bool(self.parameters)
-                + [a.single for a in self.raw]
-                + [f"const real_t *{name}" for name in trig]
-                + [f"real_t {o.name}[{o.size}]" for o in self.outputs]
-            ),
+            kernel=folded([*single, *taken]),
             kernel_lines=tuple(self.kernel_lines),
+            in_lanes=folded([*(f"const real_t {name}" for name in one), *taken]),
+            lanes_lines=tuple(self.lanes_lines),
             kernel_call_single=self.call(
-                "1",
+                one if self.lanes_lines else self.leading("1"),
                 "params",
                 [a.name for a in self.raw],
                 trig,
                 [f"{o.name}_real" if o in narrowed else o.name for o in self.outputs],
             ),
             kernel_call_batch=self.call(
-                "0",
+                self.leading("0"),
                 "&local",
                 [f"{name}_i" for name in (*(a.name for a in self.raw), *trig, *names)],
             ),
@@ -356,24 +215,46 @@ class Emission:
             narrow=tuple(self._narrow()),
         )
 
-    def call(self, single: str, params: str, *arrays: Sequence[str]) -> str:
-        """The arguments of a call of the kernel; the first three only if it takes them."""
-        leading = [single] * self.distinguishes_single + ["one"] * self.takes_one
-        leading += [params] * bool(self.parameters)
-        return ", ".join([*leading, *(name for names in arrays for name in names)])
+    def leading(self, single: str) -> list[str]:
+        return [single] * self.distinguishes_single + ["one"] * self.takes_one
 
-    def _kernel_lines(self) -> list[str]:
-        lines = [f"const real_t {self.printer.inputs[p]} = params->{p};" for p in self.parameters]
+    def call(self, leading: Sequence[str], params: str, *arrays: Sequence[str]) -> str:
+        """The arguments of a call of the kernel; the parameters only if it takes them."""
+        shared = [params] * bool(self.parameters)
+        return ", ".join([*leading, *shared, *(name for names in arrays for name in names)])
+
+    def _inputs_of(self, printer: CPrinter) -> list[str]:
+        """The lines that read what the kernel gets, into the names of a printer."""
+        lines = [f"const real_t {printer.inputs[p]} = params->{p};" for p in self.parameters]
         for entry in self.entries:
             argument, k = self.places[entry]
-            lines.append(f"const real_t {self.printer.inputs[entry]} = {argument.name}[{k}];")
-        needed = {(n.op, n.args[0].id) for n in self.program.schedule() if n.op in ("sin", "cos")}
-        for k, (angle, sine, cosine) in enumerate(self.printer.trig):
+            lines.append(f"const real_t {printer.inputs[entry]} = {argument.name}[{k}];")
+        program = printer.lowered
+        needed = {(n.op, n.args[0].id) for n in program.schedule() if n.op in ("sin", "cos")}
+        for k, (angle, sine, cosine) in enumerate(printer.trig):
             for op, name, array in (("sin", sine, "sines"), ("cos", cosine, "cosines")):
                 if (op, angle.id) in needed:
                     lines.append(f"const real_t {name} = {array}[{k}];")
-        for k, (_, name) in enumerate(self.printer.turned):
+        for k, (_, name) in enumerate(printer.turned):
             lines.append(f"const real_t {name} = principals[{k}];")
+        return lines
+
+    def _outputs_of(self, values: Sequence[Sequence[str]]) -> Iterator[str]:
+        for result, entries in zip(self.program.results, values, strict=True):
+            for k, value in enumerate(entries):
+                if result.kind == "bool":
+                    value = f"({value}) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0)"
+                yield f"{result.name}[{k}] = {value};"
+
+    def _lanes_lines(self, printer: LanesPrinter) -> list[str]:
+        """The kernel of one posture, if operations repeat; it reads only what it uses."""
+        values = printer.run()
+        lines = [*printer.code, *self._outputs_of(values)]
+        read = (line for line in self._inputs_of(printer) if _occurs(_declared(line), lines))
+        return [*read, *lines]
+
+    def _kernel_lines(self) -> list[str]:
+        lines = self._inputs_of(self.printer)
         for k, line in enumerate(self.printer.lines):
             if k == self.printer.head:
                 lines += self._arctangents()
@@ -381,12 +262,7 @@ class Emission:
             lines.append(f"const {ctype} {line.name} = {line.code};")
         if self.printer.head == len(self.printer.lines):
             lines += self._arctangents()
-        for result, values in zip(self.program.results, self.values, strict=True):
-            for k, value in enumerate(values):
-                if result.kind == "bool":
-                    value = f"({value}) ? CLOSEDFORM_C(1.0) : CLOSEDFORM_C(0.0)"
-                lines.append(f"{result.name}[{k}] = {value};")
-        return lines
+        return [*lines, *self._outputs_of(self.values)]
 
     def _arctangents(self) -> list[str]:
         """All arctangents together: one vector for a single posture, one by one in a batch."""

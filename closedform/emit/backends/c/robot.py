@@ -136,7 +136,7 @@ def _branch(derivation: Derivation, function: Function, program: Lowered, full: 
             for k in range(o.size)
         ),
         kernel_call=emission.call(
-            "0",
+            emission.leading("0"),
             "&local",
             read,
             ["signs_i"],

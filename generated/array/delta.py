@@ -11,7 +11,7 @@
 #   singularities: 76 compare and select, 98 add, 15 divide, 119 multiply, 6 sincos, 9 sqrt
 #   condition_number: 73 compare and select, 136 add, 17 divide, 170 multiply, 6 sincos, 11 sqrt
 #   constraint: 70 compare and select, 108 add, 15 divide, 155 multiply, 6 sincos, 9 sqrt
-#   ik: 169 compare and select, 187 add, 6 atan2, 8 divide, 190 multiply, 3 sincos, 18 sqrt
+#   ik: 169 compare and select, 151 add, 6 atan2, 8 divide, 166 multiply, 3 sincos, 18 sqrt
 #   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
 
@@ -1992,68 +1992,62 @@ def _ik(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     size = f + e + L + l
     t3 = size * 0.5
     t4 = -(ops.feasibility * t3)
-    t5 = e * s_alpha1 - f * s_alpha1
-    t6 = y + t5
-    t7 = e * c_alpha1 - f * c_alpha1
-    t8 = x + t7
-    aside_1 = c_alpha1 * t6 - s_alpha1 * t8
-    t9 = l - aside_1
-    t10 = l + aside_1
-    t11 = l * size
-    t12 = size * 2.384185791015625e-07
-    t13 = ops.max(t9, 0.0) * ops.max(t10, 0.0)
-    fore_1 = ops.sqrt(t13)
-    t14 = ops.feasibility * (t3 + t11 / (2.0 * (t12 + fore_1)))
-    t15 = z * z
-    wu_1 = s_alpha1 * t6 + c_alpha1 * t8
-    t16 = t15 + wu_1 * wu_1
+    t5 = f * s_alpha1 - (y + e * s_alpha1)
+    t6 = f * c_alpha1 - (x + e * c_alpha1)
+    t7 = c_alpha1 * t5 - s_alpha1 * t6
+    t8 = l + t7
+    t9 = l - t7
+    t10 = l * size
+    t11 = size * 2.384185791015625e-07
+    t12 = ops.max(t8, 0.0) * ops.max(t9, 0.0)
+    fore_1 = ops.sqrt(t12)
+    t13 = ops.feasibility * (t3 + t10 / (2.0 * (t11 + fore_1)))
+    t14 = z * z
+    t15 = s_alpha1 * t5 + c_alpha1 * t6
+    t16 = t14 + t15 * t15
     R_1 = ops.sqrt(t16)
     t17 = L - R_1
     t18 = t17 + fore_1
     t19 = L + R_1
     t20 = t19 - fore_1
-    t21 = (t4 <= t9) & (t4 <= t10) & (-t14 <= t18) & (-t14 <= t20)
+    t21 = (t4 <= t8) & (t4 <= t9) & (-t13 <= t18) & (-t13 <= t20)
     t22 = fore_1 - t17
-    t23 = e * s_alpha2 - f * s_alpha2
-    t24 = y + t23
-    t25 = e * c_alpha2 - f * c_alpha2
-    t26 = x + t25
-    aside_2 = c_alpha2 * t24 - s_alpha2 * t26
-    t27 = l - aside_2
-    t28 = l + aside_2
-    t29 = t21 & (-t14 <= t22) & (t4 <= t27) & (t4 <= t28)
-    t30 = ops.max(t27, 0.0) * ops.max(t28, 0.0)
-    fore_2 = ops.sqrt(t30)
-    t31 = ops.feasibility * (t3 + t11 / (2.0 * (t12 + fore_2)))
-    wu_2 = s_alpha2 * t24 + c_alpha2 * t26
-    t32 = t15 + wu_2 * wu_2
+    t23 = f * s_alpha2 - (y + e * s_alpha2)
+    t24 = f * c_alpha2 - (x + e * c_alpha2)
+    t25 = c_alpha2 * t23 - s_alpha2 * t24
+    t26 = l + t25
+    t27 = l - t25
+    t28 = t21 & (-t13 <= t22) & (t4 <= t26) & (t4 <= t27)
+    t29 = ops.max(t26, 0.0) * ops.max(t27, 0.0)
+    fore_2 = ops.sqrt(t29)
+    t30 = ops.feasibility * (t3 + t10 / (2.0 * (t11 + fore_2)))
+    t31 = s_alpha2 * t23 + c_alpha2 * t24
+    t32 = t14 + t31 * t31
     R_2 = ops.sqrt(t32)
     t33 = L - R_2
     t34 = fore_2 + t33
     t35 = L + R_2
     t36 = t35 - fore_2
     t37 = fore_2 - t33
-    t38 = t29 & (-t31 <= t34) & (-t31 <= t36) & (-t31 <= t37)
-    t39 = e * s_alpha3 - f * s_alpha3
-    t40 = y + t39
-    t41 = e * c_alpha3 - f * c_alpha3
-    t42 = x + t41
-    aside_3 = c_alpha3 * t40 - s_alpha3 * t42
-    t43 = l - aside_3
-    t44 = l + aside_3
-    t45 = ops.max(t43, 0.0) * ops.max(t44, 0.0)
-    fore_3 = ops.sqrt(t45)
-    t46 = ops.feasibility * (t3 + t11 / (2.0 * (t12 + fore_3)))
-    wu_3 = s_alpha3 * t40 + c_alpha3 * t42
-    t47 = t15 + wu_3 * wu_3
+    t38 = t28 & (-t30 <= t34) & (-t30 <= t36) & (-t30 <= t37)
+    t39 = f * s_alpha3 - (y + e * s_alpha3)
+    t40 = f * c_alpha3 - (x + e * c_alpha3)
+    t41 = c_alpha3 * t39 - s_alpha3 * t40
+    t42 = l + t41
+    t43 = l - t41
+    t44 = ops.max(t42, 0.0) * ops.max(t43, 0.0)
+    fore_3 = ops.sqrt(t44)
+    t45 = ops.feasibility * (t3 + t10 / (2.0 * (t11 + fore_3)))
+    t46 = s_alpha3 * t39 + c_alpha3 * t40
+    t47 = t14 + t46 * t46
     R_3 = ops.sqrt(t47)
     t48 = L - R_3
     t49 = fore_3 + t48
-    t50 = t38 & (t4 <= t43) & (t4 <= t44) & (-t46 <= t49)
+    t50 = t38 & (t4 <= t42) & (t4 <= t43) & (-t45 <= t49)
     t51 = L + R_3
     t52 = t51 - fore_3
     t53 = fore_3 - t48
-    unreachable = ops.opposite(t50 & (-t46 <= t52) & (-t46 <= t53))
+    unreachable = ops.opposite(t50 & (-t45 <= t52) & (-t45 <= t53))
     failed = invalid | unreachable
     t54 = size * ops.vanishing
     no_crank_1 = L <= t54
@@ -2062,23 +2056,23 @@ def _ik(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t57 = t56 & ops.opposite(t55)
     R_1_2 = ops.sqrt(ops.select(t57, t16, 1.0))
     t58 = L - R_1_2
-    fore_1_2 = ops.sqrt(ops.select(t57, t13, 1.0))
+    fore_1_2 = ops.sqrt(ops.select(t57, t12, 1.0))
     t59 = ops.max(t58 + fore_1_2, 0.0) * ops.max(fore_1_2 - t58, 0.0)
     t60 = L + R_1_2
     t61 = (fore_1_2 + t60) * ops.max(t60 - fore_1_2, 0.0)
     t62 = t59 - t61
     t63 = z * t62
     beyond_1 = 2.0 * ops.sqrt(ops.select(t57, t59 * t61, 1.0))
-    t64 = wu_1 * beyond_1
-    t65 = wu_1 * t62
+    t64 = t15 * beyond_1
+    t65 = t15 * t62
     t66 = z * beyond_1
-    t67 = ops.select(t56, ops.select(t55, 1.0, -(t65 + t66)), 1.0)
-    t68 = ops.atan2(ops.select(t55, 0.0, t63 - t64), t67)
+    t67 = ops.select(t56, ops.select(t55, 1.0, t65 - t66), 1.0)
+    t68 = ops.atan2(ops.select(t55, 0.0, t63 + t64), t67)
     t69 = ops.select(failed, ops.nan, ops.wrap_cut(t68))
     met_2 = R_2 <= t54
     t70 = met_2 | no_crank_1
     t71 = t56 & ops.opposite(t70)
-    fore_2_2 = ops.sqrt(ops.select(t71, t30, 1.0))
+    fore_2_2 = ops.sqrt(ops.select(t71, t29, 1.0))
     R_2_2 = ops.sqrt(ops.select(t71, t32, 1.0))
     t72 = L - R_2_2
     t73 = ops.max(fore_2_2 + t72, 0.0) * ops.max(fore_2_2 - t72, 0.0)
@@ -2087,16 +2081,16 @@ def _ik(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t76 = t73 - t75
     t77 = z * t76
     beyond_2 = 2.0 * ops.sqrt(ops.select(t71, t73 * t75, 1.0))
-    t78 = wu_2 * beyond_2
-    t79 = wu_2 * t76
+    t78 = t31 * beyond_2
+    t79 = t31 * t76
     t80 = z * beyond_2
-    t81 = ops.select(t56, ops.select(t70, 1.0, -(t79 + t80)), 1.0)
-    t82 = ops.atan2(ops.select(t70, 0.0, t77 - t78), t81)
+    t81 = ops.select(t56, ops.select(t70, 1.0, t79 - t80), 1.0)
+    t82 = ops.atan2(ops.select(t70, 0.0, t77 + t78), t81)
     t83 = ops.select(failed, ops.nan, ops.wrap_cut(t82))
     met_3 = R_3 <= t54
     t84 = met_3 | no_crank_1
     t85 = t56 & ops.opposite(t84)
-    fore_3_2 = ops.sqrt(ops.select(t85, t45, 1.0))
+    fore_3_2 = ops.sqrt(ops.select(t85, t44, 1.0))
     R_3_2 = ops.sqrt(ops.select(t85, t47, 1.0))
     t86 = L - R_3_2
     t87 = ops.max(fore_3_2 + t86, 0.0) * ops.max(fore_3_2 - t86, 0.0)
@@ -2105,158 +2099,108 @@ def _ik(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t90 = t87 - t89
     t91 = z * t90
     beyond_3 = 2.0 * ops.sqrt(ops.select(t85, t87 * t89, 1.0))
-    t92 = wu_3 * beyond_3
-    t93 = wu_3 * t90
+    t92 = t46 * beyond_3
+    t93 = t46 * t90
     t94 = z * beyond_3
-    t95 = ops.select(t56, ops.select(t84, 1.0, -(t93 + t94)), 1.0)
-    t96 = ops.atan2(ops.select(t84, 0.0, t91 - t92), t95)
+    t95 = ops.select(t56, ops.select(t84, 1.0, t93 - t94), 1.0)
+    t96 = ops.atan2(ops.select(t84, 0.0, t91 + t92), t95)
     t97 = ops.select(failed, ops.nan, ops.wrap_cut(t96))
-    t98 = ops.select(t56, ops.select(t84, 1.0, t94 - t93), 1.0)
-    t99 = ops.atan2(ops.select(t84, 0.0, t91 + t92), t98)
+    t98 = ops.select(t56, ops.select(t84, 1.0, t93 + t94), 1.0)
+    t99 = ops.atan2(ops.select(t84, 0.0, t91 - t92), t98)
     t100 = ops.select(failed, ops.nan, ops.wrap_cut(t99))
-    t101 = ops.select(t56, ops.select(t70, 1.0, t80 - t79), 1.0)
-    t102 = ops.atan2(ops.select(t70, 0.0, t77 + t78), t101)
+    t101 = ops.select(t56, ops.select(t70, 1.0, t79 + t80), 1.0)
+    t102 = ops.atan2(ops.select(t70, 0.0, t77 - t78), t101)
     t103 = ops.select(failed, ops.nan, ops.wrap_cut(t102))
-    t104 = ops.select(t56, ops.select(t55, 1.0, t66 - t65), 1.0)
-    t105 = ops.atan2(ops.select(t55, 0.0, t63 + t64), t104)
+    t104 = ops.select(t56, ops.select(t55, 1.0, t65 + t66), 1.0)
+    t105 = ops.atan2(ops.select(t55, 0.0, t63 - t64), t104)
     t106 = ops.select(failed, ops.nan, ops.wrap_cut(t105))
     t107 = t55 | met_2 | met_3
     t108 = ops.max(t18, 0.0) * ops.max(t22, 0.0)
     t109 = (fore_1 + t19) * ops.max(t20, 0.0)
     t110 = t108 - t109
-    t111 = wu_1 * t110
+    t111 = t15 * t110
     beyond_1_2 = 2.0 * ops.sqrt(t108 * t109)
     t112 = z * beyond_1_2
-    cosine_1 = ops.select(t55, 1.0, -(t111 + t112))
+    cosine_1 = ops.select(t55, 1.0, t111 - t112)
     share_1 = L / ops.select(t55, 1.0, R_1 * (t108 + t109))
     t113 = c_alpha1 * share_1
-    t114 = t7 - cosine_1 * t113
-    t115 = ops.max(t49, 0.0) * ops.max(t53, 0.0)
-    t116 = (fore_3 + t51) * ops.max(t52, 0.0)
+    t114 = t6 + cosine_1 * t113
+    t115 = ops.max(t34, 0.0) * ops.max(t37, 0.0)
+    t116 = (fore_2 + t35) * ops.max(t36, 0.0)
     t117 = t115 - t116
-    t118 = wu_3 * t117
-    beyond_3_2 = 2.0 * ops.sqrt(t115 * t116)
-    t119 = z * beyond_3_2
-    cosine_3 = ops.select(t84, 1.0, -(t118 + t119))
-    share_3 = L / ops.select(t84, 1.0, R_3 * (t115 + t116))
-    t120 = c_alpha3 * share_3
-    t121 = t41 - cosine_3 * t120
-    t122 = t114 - t121
-    t123 = ops.max(t34, 0.0) * ops.max(t37, 0.0)
-    t124 = (fore_2 + t35) * ops.max(t36, 0.0)
-    t125 = t123 - t124
-    t126 = wu_2 * t125
-    beyond_2_2 = 2.0 * ops.sqrt(t123 * t124)
-    t127 = z * beyond_2_2
-    cosine_2 = ops.select(t70, 1.0, -(t126 + t127))
-    share_2 = L / ops.select(t70, 1.0, R_2 * (t123 + t124))
-    t128 = s_alpha2 * share_2
-    t129 = t23 - cosine_2 * t128
-    t130 = s_alpha1 * share_1
-    t131 = t5 - cosine_1 * t130
-    t132 = t129 - t131
-    t133 = z * t110
-    t134 = wu_1 * beyond_1_2
-    t135 = ops.select(t55, 0.0, t133 - t134) * share_1
-    A_13 = z + t135
-    t136 = t132 * A_13
-    A_11 = x + t114
-    t137 = A_11 * t132
-    t138 = z * t117
-    t139 = wu_3 * beyond_3_2
-    t140 = ops.select(t84, 0.0, t138 - t139) * share_3
-    t141 = t135 - t140
-    t142 = z * t125
-    t143 = wu_2 * beyond_2_2
-    t144 = ops.select(t70, 0.0, t142 - t143) * share_2
-    t145 = t135 - t144
-    t146 = A_11 * t145
-    t147 = s_alpha3 * share_3
-    t148 = t39 - cosine_3 * t147
-    t149 = t131 - t148
-    A_12 = y + t131
-    t150 = t141 * A_12
-    t151 = c_alpha2 * share_2
-    t152 = t25 - cosine_2 * t151
-    t153 = t114 - t152
-    t154 = t145 * A_12
-    t155 = t137 * t141 + t146 * t149 + t150 * t153 - t154 * t122
-    t156 = t149 * A_13
-    t157 = ops.determined * (l * l * l)
-    t158 = ops.abs(t122 * t136 - (t155 - t153 * t156)) <= t157
-    t159 = ops.status(invalid, unreachable, t107 | t158)
-    cosine_3_plus_plus_minus = ops.select(t84, 1.0, t119 - t118)
-    t160 = t41 - cosine_3_plus_plus_minus * t120
-    t161 = t114 - t160
-    t162 = ops.select(t84, 0.0, t138 + t139) * share_3
-    t163 = t135 - t162
-    t164 = t39 - cosine_3_plus_plus_minus * t147
-    t165 = t131 - t164
-    t166 = A_12 * t163
-    t167 = t137 * t163 + t146 * t165 + t153 * t166 - t154 * t161
-    t168 = A_13 * t165
-    t169 = ops.abs(t136 * t161 - (t167 - t153 * t168)) <= t157
-    t170 = ops.status(invalid, unreachable, t107 | t169)
-    cosine_2_plus_minus_plus = ops.select(t70, 1.0, t127 - t126)
-    t171 = t23 - cosine_2_plus_minus_plus * t128
-    t172 = t131 - t171
-    t173 = A_11 * t172
-    t174 = ops.select(t70, 0.0, t142 + t143) * share_2
-    t175 = t135 - t174
-    t176 = A_11 * t175
-    t177 = t25 - cosine_2_plus_minus_plus * t151
-    t178 = t114 - t177
-    t179 = A_12 * t175
-    t180 = t141 * t173 - t149 * t176 - t150 * t178 + t122 * t179
-    t181 = A_13 * t172
-    t182 = ops.abs(t180 + t156 * t178 - t122 * t181) <= t157
-    t183 = ops.status(invalid, unreachable, t107 | t182)
-    t184 = t163 * t173 - t165 * t176 - t166 * t178 + t161 * t179
-    t185 = ops.abs(t184 + t168 * t178 - t161 * t181) <= t157
-    t186 = ops.status(invalid, unreachable, t107 | t185)
-    cosine_1_minus_plus_plus = ops.select(t55, 1.0, t112 - t111)
-    t187 = t7 - cosine_1_minus_plus_plus * t113
-    t188 = t121 - t187
-    t189 = t5 - cosine_1_minus_plus_plus * t130
-    t190 = t129 - t189
-    t191 = ops.select(t55, 0.0, t133 + t134) * share_1
-    A_13_minus_plus_plus = z + t191
-    t192 = t190 * A_13_minus_plus_plus
-    A_11_minus_plus_plus = x + t187
-    t193 = A_11_minus_plus_plus * t190
-    A_33_minus_plus_plus = t140 - t191
-    A_23_minus_plus_plus = t144 - t191
-    t194 = A_11_minus_plus_plus * A_23_minus_plus_plus
-    t195 = t148 - t189
-    A_12_minus_plus_plus = y + t189
-    t196 = A_33_minus_plus_plus * A_12_minus_plus_plus
-    t197 = t152 - t187
-    t198 = t193 * A_33_minus_plus_plus - t194 * t195 - t196 * t197
-    t199 = A_23_minus_plus_plus * A_12_minus_plus_plus
-    t200 = t195 * A_13_minus_plus_plus
-    t201 = t188 * t192 - (t198 + t199 * t188 + t197 * t200)
-    t202 = ops.status(invalid, unreachable, t107 | (ops.abs(t201) <= t157))
-    t203 = t160 - t187
-    A_33_minus_plus_minus = t162 - t191
-    t204 = t164 - t189
-    t205 = A_12_minus_plus_plus * A_33_minus_plus_minus
-    t206 = t193 * A_33_minus_plus_minus - t194 * t204 - t197 * t205
-    t207 = A_13_minus_plus_plus * t204
-    t208 = t192 * t203 - (t206 + t199 * t203 + t197 * t207)
-    t209 = ops.status(invalid, unreachable, t107 | (ops.abs(t208) <= t157))
-    t210 = t171 - t189
-    t211 = A_13_minus_plus_plus * t210
-    t212 = A_11_minus_plus_plus * t210
-    A_23_minus_minus_plus = t174 - t191
-    t213 = A_11_minus_plus_plus * A_23_minus_minus_plus
-    t214 = t177 - t187
-    t215 = A_33_minus_plus_plus * t212 - t195 * t213 - t196 * t214
-    t216 = A_12_minus_plus_plus * A_23_minus_minus_plus
-    t217 = t188 * t211 - (t215 + t188 * t216 + t200 * t214)
-    t218 = ops.status(invalid, unreachable, t107 | (ops.abs(t217) <= t157))
-    t219 = A_33_minus_plus_minus * t212 - t204 * t213 - t205 * t214
-    t220 = t203 * t211 - (t219 + t203 * t216 + t207 * t214)
-    t221 = ops.status(invalid, unreachable, t107 | (ops.abs(t220) <= t157))
+    t118 = t31 * t117
+    beyond_2_2 = 2.0 * ops.sqrt(t115 * t116)
+    t119 = z * beyond_2_2
+    cosine_2 = ops.select(t70, 1.0, t118 - t119)
+    share_2 = L / ops.select(t70, 1.0, R_2 * (t115 + t116))
+    t120 = s_alpha2 * share_2
+    t121 = t23 + cosine_2 * t120
+    t122 = ops.max(t49, 0.0) * ops.max(t53, 0.0)
+    t123 = (fore_3 + t51) * ops.max(t52, 0.0)
+    t124 = t122 - t123
+    t125 = z * t124
+    beyond_3_2 = 2.0 * ops.sqrt(t122 * t123)
+    t126 = t46 * beyond_3_2
+    share_3 = L / ops.select(t84, 1.0, R_3 * (t122 + t123))
+    A_33 = z + ops.select(t84, 0.0, t125 + t126) * share_3
+    t127 = z * t117
+    t128 = t31 * beyond_2_2
+    A_23 = z + ops.select(t70, 0.0, t127 + t128) * share_2
+    t129 = t46 * t124
+    t130 = z * beyond_3_2
+    cosine_3 = ops.select(t84, 1.0, t129 - t130)
+    t131 = s_alpha3 * share_3
+    t132 = t39 + cosine_3 * t131
+    t133 = t121 * A_33 - A_23 * t132
+    t134 = s_alpha1 * share_1
+    t135 = t5 + cosine_1 * t134
+    t136 = c_alpha2 * share_2
+    t137 = t24 + cosine_2 * t136
+    t138 = c_alpha3 * share_3
+    t139 = t40 + cosine_3 * t138
+    t140 = A_33 * t137 - A_23 * t139
+    t141 = z * t110
+    t142 = t15 * beyond_1_2
+    A_13 = z + ops.select(t55, 0.0, t141 + t142) * share_1
+    t143 = t132 * t137 - t121 * t139
+    t144 = ops.abs(t114 * t133 - t135 * t140 + A_13 * t143)
+    t145 = ops.determined * (l * l * l)
+    t146 = ops.status(invalid, unreachable, t107 | (t144 <= t145))
+    A_33_plus_plus_minus = z + ops.select(t84, 0.0, t125 - t126) * share_3
+    cosine_3_plus_plus_minus = ops.select(t84, 1.0, t129 + t130)
+    t147 = t39 + cosine_3_plus_plus_minus * t131
+    t148 = t121 * A_33_plus_plus_minus - A_23 * t147
+    t149 = t40 + cosine_3_plus_plus_minus * t138
+    t150 = t137 * A_33_plus_plus_minus - A_23 * t149
+    t151 = t137 * t147 - t121 * t149
+    t152 = ops.abs(t114 * t148 - t135 * t150 + A_13 * t151)
+    t153 = ops.status(invalid, unreachable, t107 | (t152 <= t145))
+    cosine_2_plus_minus_plus = ops.select(t70, 1.0, t118 + t119)
+    t154 = t23 + cosine_2_plus_minus_plus * t120
+    A_23_plus_minus_plus = z + ops.select(t70, 0.0, t127 - t128) * share_2
+    t155 = A_33 * t154 - t132 * A_23_plus_minus_plus
+    t156 = t24 + cosine_2_plus_minus_plus * t136
+    t157 = A_33 * t156 - t139 * A_23_plus_minus_plus
+    t158 = t132 * t156 - t139 * t154
+    t159 = ops.abs(t114 * t155 - t135 * t157 + A_13 * t158)
+    t160 = ops.status(invalid, unreachable, t107 | (t159 <= t145))
+    t161 = A_33_plus_plus_minus * t154 - t147 * A_23_plus_minus_plus
+    t162 = A_33_plus_plus_minus * t156 - t149 * A_23_plus_minus_plus
+    t163 = t147 * t156 - t149 * t154
+    t164 = ops.abs(t114 * t161 - t135 * t162 + A_13 * t163)
+    t165 = ops.status(invalid, unreachable, t107 | (t164 <= t145))
+    cosine_1_minus_plus_plus = ops.select(t55, 1.0, t111 + t112)
+    t166 = t6 + cosine_1_minus_plus_plus * t113
+    t167 = t5 + cosine_1_minus_plus_plus * t134
+    A_13_minus_plus_plus = z + ops.select(t55, 0.0, t141 - t142) * share_1
+    Delta_minus_plus_plus = t133 * t166 - t140 * t167 + t143 * A_13_minus_plus_plus
+    t168 = t107 | (ops.abs(Delta_minus_plus_plus) <= t145)
+    Delta_minus_plus_minus = t148 * t166 - t150 * t167 + t151 * A_13_minus_plus_plus
+    t169 = t107 | (ops.abs(Delta_minus_plus_minus) <= t145)
+    Delta_minus_minus_plus = t155 * t166 - t157 * t167 + t158 * A_13_minus_plus_plus
+    t170 = t107 | (ops.abs(Delta_minus_minus_plus) <= t145)
+    Delta_minus_minus_minus = t161 * t166 - t162 * t167 + t163 * A_13_minus_plus_plus
+    t171 = t107 | (ops.abs(Delta_minus_minus_minus) <= t145)
     return (
         t69,
         t83,
@@ -2282,14 +2226,14 @@ def _ik(ops, x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
         t106,
         t103,
         t100,
-        t159,
-        t170,
-        t183,
-        t186,
-        t202,
-        t209,
-        t218,
-        t221,
+        t146,
+        t153,
+        t160,
+        t165,
+        ops.status(invalid, unreachable, t168),
+        ops.status(invalid, unreachable, t169),
+        ops.status(invalid, unreachable, t170),
+        ops.status(invalid, unreachable, t171),
     )
 
 

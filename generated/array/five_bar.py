@@ -12,7 +12,7 @@
 #   determinant: 32 add, 47 compare and select, 7 divide, 30 multiply, 2 sincos, 3 sqrt
 #   singularities: 32 add, 50 compare and select, 5 divide, 28 multiply, 2 sincos, 3 sqrt
 #   condition_number: 42 add, 49 compare and select, 7 divide, 39 multiply, 2 sincos, 5 sqrt
-#   ik: 102 compare and select, 65 add, 4 atan2, 3 divide, 57 multiply, 8 sqrt
+#   ik: 102 compare and select, 59 add, 4 atan2, 3 divide, 57 multiply, 8 sqrt
 #   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
 """Planar five-bar linkage.
 
@@ -1174,40 +1174,33 @@ def _ik(ops, x, y, L0, L1, L2, L3, L4):
     t54 = t51 - t52
     t55 = x * t54
     share_1 = L1 / ops.select(t19, 1.0, R_1 * (t51 + t52))
-    t56 = ops.select(t19, 1.0, t53 - t55) * share_1
-    A_11 = x - t56
-    t57 = y * t54
-    t58 = x * beyond_1_2
-    t59 = ops.select(t19, 0.0, t57 + t58) * share_1
-    t60 = ops.max(t13, 0.0) * ops.max(t17, 0.0)
-    t61 = (R_2 + t4) * ops.max(t16, 0.0)
-    t62 = t60 - t61
-    t63 = y * t62
-    beyond_2_2 = 2.0 * ops.sqrt(t60 * t61)
-    t64 = wu_2 * beyond_2_2
-    share_2 = L2 / ops.select(t32, 1.0, R_2 * (t60 + t61))
-    t65 = ops.select(t32, 0.0, t63 + t64) * share_2
-    A_12 = y + t59
-    t66 = L0 - t56
-    t67 = y * beyond_2_2
-    t68 = wu_2 * t62
-    t69 = ops.select(t32, 1.0, t67 - t68) * share_2
-    t70 = ops.abs(A_11 * (t59 - t65) - A_12 * (t66 + t69))
-    t71 = ops.determined * (L3 * L4)
-    t72 = ops.status(invalid, unreachable, t50 | (t70 <= t71))
-    t73 = ops.select(t32, 0.0, t63 - t64) * share_2
-    t74 = ops.select(t32, 1.0, -(t68 + t67)) * share_2
-    t75 = ops.abs(A_11 * (t59 - t73) - A_12 * (t66 + t74))
-    t76 = ops.status(invalid, unreachable, t50 | (t75 <= t71))
-    t77 = ops.select(t19, 1.0, -(t55 + t53)) * share_1
-    A_11_minus_plus = x - t77
-    t78 = ops.select(t19, 0.0, t57 - t58) * share_1
-    A_12_minus_plus = y + t78
-    t79 = L0 - t77
-    Delta_minus_plus = A_11_minus_plus * (t65 - t78) + A_12_minus_plus * (t69 + t79)
-    t80 = ops.status(invalid, unreachable, t50 | (ops.abs(Delta_minus_plus) <= t71))
-    Delta_minus_minus = A_11_minus_plus * (t73 - t78) + A_12_minus_plus * (t74 + t79)
-    t81 = ops.status(invalid, unreachable, t50 | (ops.abs(Delta_minus_minus) <= t71))
+    A_11 = x - ops.select(t19, 1.0, t53 - t55) * share_1
+    t56 = ops.max(t13, 0.0) * ops.max(t17, 0.0)
+    t57 = (R_2 + t4) * ops.max(t16, 0.0)
+    t58 = t56 - t57
+    t59 = y * t58
+    beyond_2_2 = 2.0 * ops.sqrt(t56 * t57)
+    t60 = wu_2 * beyond_2_2
+    share_2 = L2 / ops.select(t32, 1.0, R_2 * (t56 + t57))
+    A_22 = y + ops.select(t32, 0.0, t59 + t60) * share_2
+    t61 = y * t54
+    t62 = x * beyond_1_2
+    A_12 = y + ops.select(t19, 0.0, t61 + t62) * share_1
+    t63 = y * beyond_2_2
+    t64 = wu_2 * t58
+    A_21 = wu_2 - ops.select(t32, 1.0, t63 - t64) * share_2
+    t65 = ops.determined * (L3 * L4)
+    t66 = t50 | (ops.abs(A_11 * A_22 - A_12 * A_21) <= t65)
+    A_22_plus_minus = y + ops.select(t32, 0.0, t59 - t60) * share_2
+    A_21_plus_minus = wu_2 - ops.select(t32, 1.0, -(t64 + t63)) * share_2
+    Delta_plus_minus = A_11 * A_22_plus_minus - A_12 * A_21_plus_minus
+    t67 = ops.status(invalid, unreachable, t50 | (ops.abs(Delta_plus_minus) <= t65))
+    A_11_minus_plus = x - ops.select(t19, 1.0, -(t55 + t53)) * share_1
+    A_12_minus_plus = y + ops.select(t19, 0.0, t61 - t62) * share_1
+    Delta_minus_plus = A_22 * A_11_minus_plus - A_21 * A_12_minus_plus
+    t68 = ops.status(invalid, unreachable, t50 | (ops.abs(Delta_minus_plus) <= t65))
+    Delta_minus_minus = A_22_plus_minus * A_11_minus_plus - A_21_plus_minus * A_12_minus_plus
+    t69 = ops.status(invalid, unreachable, t50 | (ops.abs(Delta_minus_minus) <= t65))
     return (
         t31,
         t43,
@@ -1217,10 +1210,10 @@ def _ik(ops, x, y, L0, L1, L2, L3, L4):
         t43,
         t49,
         t46,
-        t72,
-        t76,
-        t80,
-        t81,
+        ops.status(invalid, unreachable, t66),
+        t67,
+        t68,
+        t69,
     )
 
 

@@ -11,7 +11,7 @@
 #   singularities: 75 compare and select, 57 add, 19 divide, 60 multiply, 9 sqrt
 #   condition_number: 72 compare and select, 121 add, 21 divide, 139 multiply, 11 sqrt
 #   constraint: 69 compare and select, 79 add, 25 divide, 92 multiply, 9 sqrt
-#   ik: 75 compare and select, 72 add, 5 divide, 40 multiply, 12 sqrt
+#   ik: 75 compare and select, 66 add, 5 divide, 37 multiply, 12 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
 
@@ -1659,114 +1659,102 @@ def _ik(ops, x, y, z, f, e, l):
     aside_1 = ops.sqrt(t3)
     t4 = l - aside_1
     t5 = l + aside_1
-    t6 = x - e * 0.5 + f * 0.5
-    t7 = t6 * t6
-    A_22 = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t8 = y + A_22
-    t9 = t7 + t8 * t8
-    aside_2 = ops.sqrt(t9)
-    t10 = l - aside_2
-    t11 = l + aside_2
-    t12 = (t2 <= t4) & (t2 <= t5) & (t2 <= t10) & (t2 <= t11)
-    t13 = y - A_22
-    t14 = t7 + t13 * t13
-    aside_3 = ops.sqrt(t14)
-    t15 = l - aside_3
-    t16 = l + aside_3
-    unreachable = ops.opposite(t12 & (t2 <= t15) & (t2 <= t16))
+    A_21 = x - e * 0.5 + f * 0.5
+    t6 = A_21 * A_21
+    t7 = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    A_22 = y + t7
+    t8 = t6 + A_22 * A_22
+    aside_2 = ops.sqrt(t8)
+    t9 = l - aside_2
+    t10 = l + aside_2
+    t11 = (t2 <= t4) & (t2 <= t5) & (t2 <= t9) & (t2 <= t10)
+    A_32 = y - t7
+    t12 = t6 + A_32 * A_32
+    aside_3 = ops.sqrt(t12)
+    t13 = l - aside_3
+    t14 = l + aside_3
+    unreachable = ops.opposite(t11 & (t2 <= t13) & (t2 <= t14))
     failed = invalid | unreachable
-    t17 = ops.opposite(failed)
-    aside_1_2 = ops.sqrt(ops.select(t17, t3, 1.0))
-    t18 = ops.max(l - aside_1_2, 0.0) * ops.max(l + aside_1_2, 0.0)
-    root_1 = ops.sqrt(ops.select(t17, t18, 1.0))
-    t19 = ops.select(failed, ops.nan, z - root_1)
-    aside_2_2 = ops.sqrt(ops.select(t17, t9, 1.0))
-    t20 = ops.max(l - aside_2_2, 0.0) * ops.max(l + aside_2_2, 0.0)
-    root_2 = ops.sqrt(ops.select(t17, t20, 1.0))
-    t21 = ops.select(failed, ops.nan, z - root_2)
-    aside_3_2 = ops.sqrt(ops.select(t17, t14, 1.0))
-    t22 = ops.max(l - aside_3_2, 0.0) * ops.max(l + aside_3_2, 0.0)
-    root_3 = ops.sqrt(ops.select(t17, t22, 1.0))
-    t23 = ops.select(failed, ops.nan, z - root_3)
-    t24 = ops.select(failed, ops.nan, z + root_3)
-    t25 = ops.select(failed, ops.nan, z + root_2)
-    t26 = ops.select(failed, ops.nan, z + root_1)
+    t15 = ops.opposite(failed)
+    aside_1_2 = ops.sqrt(ops.select(t15, t3, 1.0))
+    t16 = ops.max(l - aside_1_2, 0.0) * ops.max(l + aside_1_2, 0.0)
+    root_1 = ops.sqrt(ops.select(t15, t16, 1.0))
+    t17 = ops.select(failed, ops.nan, z - root_1)
+    aside_2_2 = ops.sqrt(ops.select(t15, t8, 1.0))
+    t18 = ops.max(l - aside_2_2, 0.0) * ops.max(l + aside_2_2, 0.0)
+    root_2 = ops.sqrt(ops.select(t15, t18, 1.0))
+    t19 = ops.select(failed, ops.nan, z - root_2)
+    aside_3_2 = ops.sqrt(ops.select(t15, t12, 1.0))
+    t20 = ops.max(l - aside_3_2, 0.0) * ops.max(l + aside_3_2, 0.0)
+    root_3 = ops.sqrt(ops.select(t15, t20, 1.0))
+    t21 = ops.select(failed, ops.nan, z - root_3)
+    t22 = ops.select(failed, ops.nan, z + root_3)
+    t23 = ops.select(failed, ops.nan, z + root_2)
+    t24 = ops.select(failed, ops.nan, z + root_1)
+    root_3_2 = ops.sqrt(ops.max(t13, 0.0) * ops.max(t14, 0.0))
+    A_33 = z - (z - root_3_2)
+    t25 = A_22 * A_33
+    root_2_2 = ops.sqrt(ops.max(t9, 0.0) * ops.max(t10, 0.0))
+    A_23 = z - (z - root_2_2)
+    t26 = A_32 * A_23
+    t27 = A_21 * A_33
+    t28 = A_21 * A_23
+    t29 = A_11 * (t25 - t26) - y * (t27 - t28)
     root_1_2 = ops.sqrt(ops.max(t4, 0.0) * ops.max(t5, 0.0))
-    slide_1 = z - root_1_2
-    t27 = e * 1.5 - f * 1.5
-    t28 = t27 * A_22
-    t29 = (z - slide_1) * t28
-    t30 = t29 + t29
-    t31 = A_11 * A_22
-    root_3_2 = ops.sqrt(ops.max(t15, 0.0) * ops.max(t16, 0.0))
-    slide_3 = z - root_3_2
-    A_33 = slide_1 - slide_3
-    t32 = y * t27
-    t33 = t30 + (t31 * A_33 + t32 * A_33)
-    root_2_2 = ops.sqrt(ops.max(t10, 0.0) * ops.max(t11, 0.0))
-    slide_2 = z - root_2_2
-    A_23 = slide_1 - slide_2
-    t34 = t31 * A_23 - t32 * A_23
-    t35 = ops.determined * (l * l * l)
-    t36 = ops.status(invalid, unreachable, ops.abs(t33 + t34) <= t35)
-    slide_3_plus_plus_minus = z + root_3_2
-    A_33_plus_plus_minus = slide_1 - slide_3_plus_plus_minus
-    t37 = t31 * A_33_plus_plus_minus + t32 * A_33_plus_plus_minus
-    t38 = t30 + t37
-    t39 = ops.status(invalid, unreachable, ops.abs(t34 + t38) <= t35)
-    slide_2_plus_minus_plus = z + root_2_2
-    A_23_plus_minus_plus = slide_1 - slide_2_plus_minus_plus
-    t40 = t31 * A_23_plus_minus_plus - t32 * A_23_plus_minus_plus
-    t41 = ops.status(invalid, unreachable, ops.abs(t33 + t40) <= t35)
-    t42 = ops.status(invalid, unreachable, ops.abs(t38 + t40) <= t35)
-    slide_1_minus_plus_plus = z + root_1_2
-    t43 = (z - slide_1_minus_plus_plus) * t28
-    t44 = t43 + t43
-    t45 = slide_1_minus_plus_plus - slide_3
-    t46 = t44 + (t31 * t45 + t32 * t45)
-    t47 = slide_1_minus_plus_plus - slide_2
-    t48 = t31 * t47 - t32 * t47
-    t49 = ops.status(invalid, unreachable, ops.abs(-(t46 + t48)) <= t35)
-    t50 = slide_1_minus_plus_plus - slide_3_plus_plus_minus
-    t51 = t44 + (t31 * t50 + t32 * t50)
-    t52 = ops.status(invalid, unreachable, ops.abs(-(t48 + t51)) <= t35)
-    t53 = slide_1_minus_plus_plus - slide_2_plus_minus_plus
-    t54 = t31 * t53 - t32 * t53
-    t55 = ops.status(invalid, unreachable, ops.abs(-(t46 + t54)) <= t35)
-    t56 = ops.status(invalid, unreachable, ops.abs(t51 + t54) <= t35)
+    t30 = A_21 * A_32 - A_21 * A_22
+    t31 = (z - (z - root_1_2)) * t30
+    t32 = ops.determined * (l * l * l)
+    t33 = ops.status(invalid, unreachable, ops.abs(t29 + t31) <= t32)
+    A_33_plus_plus_minus = z - (z + root_3_2)
+    t34 = A_22 * A_33_plus_plus_minus
+    t35 = A_21 * A_33_plus_plus_minus
+    t36 = A_11 * (t26 - t34) - y * (t28 - t35)
+    t37 = ops.status(invalid, unreachable, ops.abs(t31 - t36) <= t32)
+    A_23_plus_minus_plus = z - (z + root_2_2)
+    t38 = A_32 * A_23_plus_minus_plus
+    t39 = A_21 * A_23_plus_minus_plus
+    t40 = A_11 * (t25 - t38) - y * (t27 - t39)
+    t41 = ops.status(invalid, unreachable, ops.abs(t31 + t40) <= t32)
+    t42 = A_11 * (t34 - t38) - y * (t35 - t39)
+    t43 = ops.status(invalid, unreachable, ops.abs(t31 + t42) <= t32)
+    t44 = (z - (z + root_1_2)) * t30
+    t45 = ops.status(invalid, unreachable, ops.abs(t29 + t44) <= t32)
+    t46 = ops.status(invalid, unreachable, ops.abs(t36 - t44) <= t32)
+    t47 = ops.status(invalid, unreachable, ops.abs(t40 + t44) <= t32)
+    t48 = ops.status(invalid, unreachable, ops.abs(t42 + t44) <= t32)
     return (
+        t17,
         t19,
         t21,
+        t17,
+        t19,
+        t22,
+        t17,
         t23,
+        t21,
+        t17,
+        t23,
+        t22,
+        t24,
         t19,
         t21,
         t24,
         t19,
-        t25,
-        t23,
-        t19,
-        t25,
+        t22,
         t24,
-        t26,
-        t21,
         t23,
-        t26,
         t21,
         t24,
-        t26,
-        t25,
         t23,
-        t26,
-        t25,
-        t24,
-        t36,
-        t39,
+        t22,
+        t33,
+        t37,
         t41,
-        t42,
-        t49,
-        t52,
-        t55,
-        t56,
+        t43,
+        t45,
+        t46,
+        t47,
+        t48,
     )
 
 

@@ -9,7 +9,7 @@
 #   jacobian: 106 compare and select, 116 add, 36 divide, 153 multiply, 7 sincos, 9 sqrt
 #   singularities: 99 compare and select, 98 add, 24 divide, 117 multiply, 7 sincos, 9 sqrt
 #   condition_number: 102 compare and select, 142 add, 32 divide, 162 multiply, 7 sincos, 13 sqrt
-#   ik: 137 compare and select, 101 add, 4 atan2, 11 divide, 127 multiply, 5 sincos, 14 sqrt
+#   ik: 137 compare and select, 103 add, 4 atan2, 11 divide, 129 multiply, 5 sincos, 14 sqrt
 #   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
 
@@ -1753,60 +1753,53 @@ def _ik(ops, x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     t80 = ops.atan2(ops.select(t39, 0.0, t53 - t54), t79)
     t81 = ops.select(failed, ops.nan, ops.wrap_cut(-t80))
     t82 = t39 | met_2 | no_crank_2
-    t83 = pz_0 * t10
-    t84 = ops.max(t34, 0.0) * ops.max(t38, 0.0)
-    t85 = (R_2 + t32) * ops.max(t37, 0.0)
-    t86 = t84 - t85
-    t87 = t33 * t86
-    beyond_2_2 = 2.0 * ops.sqrt(t84 * t85)
-    t88 = pz_0 * beyond_2_2
-    cosine_2 = ops.select(t42, 1.0, t87 + t88)
-    share_2 = l_2 / ops.select(t42, 1.0, R_2 * (t84 + t85))
-    t89 = c_gamma * share_2
-    t90 = t27 + cosine_2 * t89
-    t91 = py_0 * t10
-    t92 = pz_0 * t86
+    t83 = ops.max(t18, 0.0) * ops.max(t21, 0.0)
+    t84 = (fore_1 + t19) * ops.max(t20, 0.0)
+    beyond_1_2 = 2.0 * ops.sqrt(t83 * t84)
+    t85 = pz_0 * beyond_1_2
+    t86 = t83 - t84
+    t87 = py_0 * t86
+    share_1 = l_1 / ops.select(t39, 1.0, R_1 * (t83 + t84))
+    t88 = ops.select(t39, 1.0, t85 - t87) * share_1
+    t89 = ops.max(t34, 0.0) * ops.max(t38, 0.0)
+    t90 = (R_2 + t32) * ops.max(t37, 0.0)
+    t91 = t89 - t90
+    t92 = pz_0 * t91
+    beyond_2_2 = 2.0 * ops.sqrt(t89 * t90)
     t93 = t33 * beyond_2_2
+    share_2 = l_2 / ops.select(t42, 1.0, R_2 * (t89 + t90))
     A_23 = ops.select(t42, 0.0, t92 - t93) * share_2
-    t94 = t83 * t90 + t91 * A_23
-    t95 = ops.max(t18, 0.0) * ops.max(t21, 0.0)
-    t96 = (fore_1 + t19) * ops.max(t20, 0.0)
-    beyond_1_2 = 2.0 * ops.sqrt(t95 * t96)
-    t97 = pz_0 * beyond_1_2
-    t98 = t95 - t96
-    t99 = py_0 * t98
-    share_1 = l_1 / ops.select(t39, 1.0, R_1 * (t95 + t96))
-    t100 = ops.select(t39, 1.0, t97 - t99) * share_1
-    t101 = pz_0 * t100
-    t102 = s_gamma * share_2
-    t103 = t25 - cosine_2 * t102
-    t104 = px_0 * A_23
-    t105 = py_0 * t103
-    t106 = pz_0 * t98
-    t107 = py_0 * beyond_1_2
-    A_13 = ops.select(t39, 0.0, t106 + t107) * share_1
-    t108 = t94 - t101 * t103 - t100 * t104 - t105 * A_13
-    t109 = px_0 * t90
-    t110 = t7 * t23 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r)
-    t111 = ops.determined * t110
-    t112 = ops.status(invalid, unreachable, t82 | (ops.abs(t108 + A_13 * t109) <= t111))
-    cosine_2_plus_minus = ops.select(t42, 1.0, t87 - t88)
-    t113 = t27 + cosine_2_plus_minus * t89
+    t94 = pz_0 * t86
+    t95 = py_0 * beyond_1_2
+    A_13 = ops.select(t39, 0.0, t94 + t95) * share_1
+    t96 = t33 * t91
+    t97 = pz_0 * beyond_2_2
+    cosine_2 = ops.select(t42, 1.0, t96 + t97)
+    t98 = c_gamma * share_2
+    t99 = t27 + cosine_2 * t98
+    t100 = t10 * A_23
+    t101 = s_gamma * share_2
+    t102 = t25 - cosine_2 * t101
+    t103 = px_0 * (t88 * A_23 - A_13 * t99) - py_0 * (t100 - A_13 * t102)
+    t104 = t10 * t99
+    t105 = t7 * t23 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r)
+    t106 = ops.determined * t105
+    t107 = ops.abs(t103 - pz_0 * (t104 - t88 * t102)) <= t106
     A_23_plus_minus = ops.select(t42, 0.0, t92 + t93) * share_2
-    t114 = t83 * t113 + t91 * A_23_plus_minus
-    t115 = t25 - cosine_2_plus_minus * t102
-    t116 = px_0 * A_23_plus_minus
-    t117 = py_0 * t115
-    t118 = t114 - t101 * t115 - t100 * t116 - A_13 * t117
-    t119 = px_0 * t113
-    t120 = ops.status(invalid, unreachable, t82 | (ops.abs(t118 + A_13 * t119) <= t111))
-    t121 = ops.select(t39, 1.0, -(t99 + t97)) * share_1
-    t122 = pz_0 * t121
-    A_13_minus_plus = ops.select(t39, 0.0, t106 - t107) * share_1
-    t123 = t94 - t103 * t122 - t104 * t121 - t105 * A_13_minus_plus
-    t124 = ops.abs(t123 + t109 * A_13_minus_plus) <= t111
-    t125 = t114 - t115 * t122 - t116 * t121 - t117 * A_13_minus_plus
-    t126 = ops.abs(t125 + t119 * A_13_minus_plus) <= t111
+    cosine_2_plus_minus = ops.select(t42, 1.0, t96 - t97)
+    t108 = t27 + cosine_2_plus_minus * t98
+    t109 = t10 * A_23_plus_minus
+    t110 = t25 - cosine_2_plus_minus * t101
+    t111 = px_0 * (t88 * A_23_plus_minus - A_13 * t108) - py_0 * (t109 - A_13 * t110)
+    t112 = t10 * t108
+    t113 = ops.abs(t111 - pz_0 * (t112 - t88 * t110)) <= t106
+    t114 = ops.select(t39, 1.0, -(t87 + t85)) * share_1
+    A_13_minus_plus = ops.select(t39, 0.0, t94 - t95) * share_1
+    t115 = px_0 * (A_23 * t114 - t99 * A_13_minus_plus) - py_0 * (t100 - t102 * A_13_minus_plus)
+    t116 = ops.abs(t115 - pz_0 * (t104 - t102 * t114)) <= t106
+    t117 = A_23_plus_minus * t114 - t108 * A_13_minus_plus
+    t118 = px_0 * t117 - py_0 * (t109 - t110 * A_13_minus_plus)
+    t119 = ops.abs(t118 - pz_0 * (t112 - t110 * t114)) <= t106
     return (
         t59,
         t75,
@@ -1816,10 +1809,10 @@ def _ik(ops, x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
         t75,
         t81,
         t78,
-        t112,
-        t120,
-        ops.status(invalid, unreachable, t82 | t124),
-        ops.status(invalid, unreachable, t82 | t126),
+        ops.status(invalid, unreachable, t82 | t107),
+        ops.status(invalid, unreachable, t82 | t113),
+        ops.status(invalid, unreachable, t82 | t116),
+        ops.status(invalid, unreachable, t82 | t119),
     )
 
 

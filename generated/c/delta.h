@@ -12,7 +12,7 @@
  *   singularities: 42 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
  *   condition_number: 42 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
  *   constraint: 42 compare and select, 96 add, 10 divide, 137 multiply, 6 sincos, 5 sqrt
- *   ik: 121 compare and select, 160 add, 6 atan2, 8 divide, 166 multiply, 3 sincos, 9 sqrt
+ *   ik: 121 compare and select, 124 add, 6 atan2, 8 divide, 142 multiply, 3 sincos, 9 sqrt
  *   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a

@@ -13,7 +13,7 @@
  *   determinant: 31 add, 32 compare and select, 7 divide, 30 multiply, 2 sincos, 2 sqrt
  *   singularities: 35 add, 32 compare and select, 5 divide, 28 multiply, 2 sincos, 2 sqrt
  *   condition_number: 41 add, 32 compare and select, 7 divide, 39 multiply, 2 sincos, 4 sqrt
- *   ik: 72 compare and select, 51 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
+ *   ik: 72 compare and select, 45 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
  *   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
  */
 #include "five_bar.h"
@@ -1408,37 +1408,34 @@ CF_INLINE void five_bar_ik_kernel(const int single, const real_t one,
     const int t40 = t5 | met_2 | no_crank_2;
     const real_t radius_1 = cf_select(t5, CLOSEDFORM_C(1.0), R_1 * (t9 + t11));
     const real_t share_1 = L1 / cf_nonzero(single, radius_1);
-    const real_t t41 = cf_rounded(single, one, cosine_1 * share_1);
-    const real_t A_11 = x_2 - t41;
-    const real_t t42 = cf_rounded(single, one, t15 * share_1);
+    const real_t A_11 = x_2 - cf_rounded(single, one, cosine_1 * share_1);
     const real_t radius_2 = cf_select(t29, CLOSEDFORM_C(1.0), R_2 * (t30 + t31));
     const real_t share_2 = L2 / cf_nonzero(single, radius_2);
-    const real_t t43 = cf_rounded(single, one, t35 * share_2);
-    const real_t A_12 = y + t42;
-    const real_t t44 = L0 - t41;
-    const real_t t45 = cf_rounded(single, one, cosine_2 * share_2);
-    const real_t t46 = cf_rounded(single, one, A_11 * (t42 - t43)) - cf_rounded(single, one, A_12 * (t44 + t45));
-    const real_t t47 = CLOSEDFORM_DETERMINED * (L3 * L4);
-    const int t48 = cf_abs(t46) <= t47;
-    const real_t t49 = cf_status(single, invalid, unreachable, t40 | t48);
-    const real_t t50 = cf_rounded(single, one, t38 * share_2);
-    const real_t t51 = cf_rounded(single, one, cosine_2_plus_minus * share_2);
-    const real_t t52 = cf_rounded(single, one, A_11 * (t42 - t50)) - cf_rounded(single, one, A_12 * (t44 + t51));
-    const int t53 = cf_abs(t52) <= t47;
-    const real_t t54 = cf_status(single, invalid, unreachable, t40 | t53);
-    const real_t t55 = cf_rounded(single, one, cosine_1_minus_plus * share_1);
-    const real_t A_11_minus_plus = x_2 - t55;
-    const real_t t56 = cf_rounded(single, one, t39 * share_1);
-    const real_t t57 = cf_rounded(single, one, A_11_minus_plus * (t43 - t56));
-    const real_t A_12_minus_plus = y + t56;
-    const real_t t58 = L0 - t55;
-    const real_t t59 = cf_rounded(single, one, A_12_minus_plus * (t45 + t58));
-    const int t60 = cf_abs(t57 + t59) <= t47;
-    const real_t t61 = cf_status(single, invalid, unreachable, t40 | t60);
-    const real_t t62 = cf_rounded(single, one, A_11_minus_plus * (t50 - t56));
-    const real_t t63 = cf_rounded(single, one, A_12_minus_plus * (t51 + t58));
-    const int t64 = cf_abs(t62 + t63) <= t47;
-    const real_t t65 = cf_status(single, invalid, unreachable, t40 | t64);
+    const real_t A_22 = y + cf_rounded(single, one, t35 * share_2);
+    const real_t A_12 = y + cf_rounded(single, one, t15 * share_1);
+    const real_t A_21 = wu_2 - cf_rounded(single, one, cosine_2 * share_2);
+    const real_t Delta = cf_rounded(single, one, A_11 * A_22) - cf_rounded(single, one, A_12 * A_21);
+    const real_t t41 = CLOSEDFORM_DETERMINED * (L3 * L4);
+    const int t42 = cf_abs(Delta) <= t41;
+    const real_t t43 = cf_status(single, invalid, unreachable, t40 | t42);
+    const real_t A_22_plus_minus = y + cf_rounded(single, one, t38 * share_2);
+    const real_t t44 = cf_rounded(single, one, A_11 * A_22_plus_minus);
+    const real_t t45 = cf_rounded(single, one, cosine_2_plus_minus * share_2);
+    const real_t A_21_plus_minus = wu_2 - t45;
+    const real_t t46 = cf_rounded(single, one, A_12 * A_21_plus_minus);
+    const int t47 = cf_abs(t44 - t46) <= t41;
+    const real_t t48 = cf_status(single, invalid, unreachable, t40 | t47);
+    const real_t t49 = cf_rounded(single, one, cosine_1_minus_plus * share_1);
+    const real_t A_11_minus_plus = x_2 - t49;
+    const real_t t50 = cf_rounded(single, one, A_22 * A_11_minus_plus);
+    const real_t A_12_minus_plus = y + cf_rounded(single, one, t39 * share_1);
+    const real_t t51 = cf_rounded(single, one, A_21 * A_12_minus_plus);
+    const int t52 = cf_abs(t50 - t51) <= t41;
+    const real_t t53 = cf_status(single, invalid, unreachable, t40 | t52);
+    const real_t t54 = cf_rounded(single, one, A_22_plus_minus * A_11_minus_plus);
+    const real_t t55 = cf_rounded(single, one, A_21_plus_minus * A_12_minus_plus);
+    const int t56 = cf_abs(t54 - t55) <= t41;
+    const real_t t57 = cf_status(single, invalid, unreachable, t40 | t56);
     const real_t opposite[4] = { t15, t35, t38, t39 };
     const real_t adjacent[4] = { cosine_1, cosine_2, cosine_2_plus_minus, cosine_1_minus_plus };
     real_t angles[4];
@@ -1450,22 +1447,22 @@ CF_INLINE void five_bar_ik_kernel(const int single, const real_t one,
         angles[2] = cf_atan2(opposite[2], adjacent[2]);
         angles[3] = cf_atan2(opposite[3], adjacent[3]);
     }
-    const real_t t66 = cf_wrap_cut(-angles[0]) + t28;
-    const real_t t67 = cf_wrap_cut(-angles[1]) + t28;
-    const real_t t68 = cf_wrap_cut(-angles[2]) + t28;
-    const real_t t69 = cf_wrap_cut(-angles[3]) + t28;
-    q[0] = t66;
-    q[1] = t67;
-    q[2] = t66;
-    q[3] = t68;
-    q[4] = t69;
-    q[5] = t67;
-    q[6] = t69;
-    q[7] = t68;
-    status[0] = t49;
-    status[1] = t54;
-    status[2] = t61;
-    status[3] = t65;
+    const real_t t58 = cf_wrap_cut(-angles[0]) + t28;
+    const real_t t59 = cf_wrap_cut(-angles[1]) + t28;
+    const real_t t60 = cf_wrap_cut(-angles[2]) + t28;
+    const real_t t61 = cf_wrap_cut(-angles[3]) + t28;
+    q[0] = t58;
+    q[1] = t59;
+    q[2] = t58;
+    q[3] = t60;
+    q[4] = t61;
+    q[5] = t59;
+    q[6] = t61;
+    q[7] = t60;
+    status[0] = t43;
+    status[1] = t48;
+    status[2] = t53;
+    status[3] = t57;
 }
 
 CLOSEDFORM_DISPATCHED

@@ -13,7 +13,7 @@
  *   determinant: 31 add, 32 compare and select, 7 divide, 30 multiply, 2 sincos, 2 sqrt
  *   singularities: 35 add, 32 compare and select, 5 divide, 28 multiply, 2 sincos, 2 sqrt
  *   condition_number: 41 add, 32 compare and select, 7 divide, 39 multiply, 2 sincos, 4 sqrt
- *   ik: 72 compare and select, 51 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
+ *   ik: 72 compare and select, 45 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
  *   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a

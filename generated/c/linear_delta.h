@@ -12,7 +12,7 @@
  *   singularities: 41 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
  *   condition_number: 41 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
  *   constraint: 41 compare and select, 67 add, 20 divide, 74 multiply, 5 sqrt
- *   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
+ *   ik: 57 compare and select, 60 add, 5 divide, 34 multiply, 6 sqrt
  *   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a

@@ -10,7 +10,7 @@
  *   jacobian: 62 compare and select, 98 add, 30 divide, 127 multiply, 7 sincos, 5 sqrt
  *   singularities: 62 compare and select, 74 add, 18 divide, 91 multiply, 7 sincos, 5 sqrt
  *   condition_number: 62 compare and select, 114 add, 26 divide, 136 multiply, 7 sincos, 9 sqrt
- *   ik: 95 compare and select, 72 add, 4 atan2, 10 divide, 99 multiply, 5 sincos, 7 sqrt
+ *   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
  */
 #include "spherical_five_bar.h"
@@ -1883,58 +1883,58 @@ CF_INLINE void spherical_five_bar_ik_kernel(const int single, const real_t one,
     const real_t t67 = cf_select(t5, CLOSEDFORM_C(0.0), t20 - t21);
     const real_t cosine_1_minus_plus = cf_select(t5, CLOSEDFORM_C(1.0), -(t24 + t23));
     const int t68 = t5 | met_2 | no_crank_2;
-    const real_t t69 = pz_0 * t8;
-    const real_t radius_2 = cf_select(t57, CLOSEDFORM_C(1.0), R_2 * (t58 + t59));
-    const real_t share_2 = l_2 / cf_nonzero(single, radius_2);
-    const real_t t70 = c_gamma * share_2;
-    const real_t t71 = t41 + cf_rounded(single, one, cosine_2 * t70);
-    const real_t t72 = py_0 * t8;
-    const real_t A_23 = t63 * share_2;
-    const real_t t73 = cf_rounded(single, one, t69 * t71) + cf_rounded(single, one, t72 * A_23);
     const real_t radius_1 = cf_select(t5, CLOSEDFORM_C(1.0), R_1 * (t15 + t18));
     const real_t share_1 = l_1 / cf_nonzero(single, radius_1);
-    const real_t t74 = cosine_1 * share_1;
-    const real_t t75 = pz_0 * t74;
-    const real_t t76 = s_gamma * share_2;
-    const real_t t77 = t39 - cf_rounded(single, one, cosine_2 * t76);
-    const real_t t78 = px_0 * A_23;
-    const real_t t79 = t73 - cf_rounded(single, one, t75 * t77) - cf_rounded(single, one, t74 * t78);
-    const real_t t80 = py_0 * t77;
+    const real_t t69 = cosine_1 * share_1;
+    const real_t radius_2 = cf_select(t57, CLOSEDFORM_C(1.0), R_2 * (t58 + t59));
+    const real_t share_2 = l_2 / cf_nonzero(single, radius_2);
+    const real_t A_23 = t63 * share_2;
     const real_t A_13 = t22 * share_1;
-    const real_t t81 = px_0 * t71;
-    const real_t Delta = t79 - cf_rounded(single, one, t80 * A_13) + cf_rounded(single, one, A_13 * t81);
-    const real_t t82 = (l_1 + l_2 + r_1 + r_2) / cf_nonzero(single, r);
-    const real_t t83 = t6 * t37 * CLOSEDFORM_C(4.0) * (r * r * r) * (CLOSEDFORM_C(1.0) + t82);
-    const real_t t84 = CLOSEDFORM_DETERMINED * t83;
-    const int t85 = cf_abs(Delta) <= t84;
-    const real_t t86 = cf_status(single, invalid, unreachable, t68 | t85);
-    const real_t t87 = cf_rounded(single, one, cosine_2_plus_minus * t70);
-    const real_t t88 = t41 + t87;
+    const real_t t70 = c_gamma * share_2;
+    const real_t t71 = t41 + cf_rounded(single, one, cosine_2 * t70);
+    const real_t t72 = cf_rounded(single, one, t69 * A_23) - cf_rounded(single, one, A_13 * t71);
+    const real_t t73 = cf_rounded(single, one, t8 * A_23);
+    const real_t t74 = s_gamma * share_2;
+    const real_t t75 = t39 - cf_rounded(single, one, cosine_2 * t74);
+    const real_t t76 = cf_rounded(single, one, py_0 * (t73 - cf_rounded(single, one, A_13 * t75)));
+    const real_t t77 = cf_rounded(single, one, t8 * t71);
+    const real_t t78 = cf_rounded(single, one, pz_0 * (t77 - cf_rounded(single, one, t69 * t75)));
+    const real_t t79 = cf_rounded(single, one, px_0 * t72) - t76 - t78;
+    const real_t t80 = (l_1 + l_2 + r_1 + r_2) / cf_nonzero(single, r);
+    const real_t t81 = t6 * t37 * CLOSEDFORM_C(4.0) * (r * r * r) * (CLOSEDFORM_C(1.0) + t80);
+    const real_t t82 = CLOSEDFORM_DETERMINED * t81;
+    const int t83 = cf_abs(t79) <= t82;
+    const real_t t84 = cf_status(single, invalid, unreachable, t68 | t83);
     const real_t A_23_plus_minus = t66 * share_2;
-    const real_t t89 = cf_rounded(single, one, t72 * A_23_plus_minus);
-    const real_t t90 = cf_rounded(single, one, t69 * t88) + t89;
-    const real_t t91 = cf_rounded(single, one, cosine_2_plus_minus * t76);
-    const real_t t92 = t39 - t91;
-    const real_t t93 = px_0 * A_23_plus_minus;
-    const real_t t94 = t90 - cf_rounded(single, one, t75 * t92) - cf_rounded(single, one, t74 * t93);
-    const real_t t95 = py_0 * t92;
-    const real_t t96 = px_0 * t88;
-    const real_t Delta_plus_minus = t94 - cf_rounded(single, one, A_13 * t95) + cf_rounded(single, one, A_13 * t96);
-    const int t97 = cf_abs(Delta_plus_minus) <= t84;
-    const real_t t98 = cf_status(single, invalid, unreachable, t68 | t97);
-    const real_t t99 = cosine_1_minus_plus * share_1;
-    const real_t t100 = pz_0 * t99;
-    const real_t t101 = t73 - cf_rounded(single, one, t77 * t100) - cf_rounded(single, one, t78 * t99);
+    const real_t t85 = cf_rounded(single, one, t69 * A_23_plus_minus);
+    const real_t t86 = cf_rounded(single, one, cosine_2_plus_minus * t70);
+    const real_t t87 = t41 + t86;
+    const real_t t88 = cf_rounded(single, one, px_0 * (t85 - cf_rounded(single, one, A_13 * t87)));
+    const real_t t89 = cf_rounded(single, one, t8 * A_23_plus_minus);
+    const real_t t90 = cf_rounded(single, one, cosine_2_plus_minus * t74);
+    const real_t t91 = t39 - t90;
+    const real_t t92 = cf_rounded(single, one, py_0 * (t89 - cf_rounded(single, one, A_13 * t91)));
+    const real_t t93 = cf_rounded(single, one, t8 * t87);
+    const real_t t94 = cf_rounded(single, one, pz_0 * (t93 - cf_rounded(single, one, t69 * t91)));
+    const int t95 = cf_abs(t88 - t92 - t94) <= t82;
+    const real_t t96 = cf_status(single, invalid, unreachable, t68 | t95);
+    const real_t t97 = cosine_1_minus_plus * share_1;
     const real_t A_13_minus_plus = t67 * share_1;
-    const real_t t102 = cf_rounded(single, one, t80 * A_13_minus_plus);
-    const real_t t103 = cf_rounded(single, one, t81 * A_13_minus_plus);
-    const int t104 = cf_abs(t101 - t102 + t103) <= t84;
-    const real_t t105 = cf_status(single, invalid, unreachable, t68 | t104);
-    const real_t t106 = t90 - cf_rounded(single, one, t92 * t100) - cf_rounded(single, one, t93 * t99);
-    const real_t t107 = cf_rounded(single, one, t95 * A_13_minus_plus);
-    const real_t t108 = cf_rounded(single, one, t96 * A_13_minus_plus);
-    const int t109 = cf_abs(t106 - t107 + t108) <= t84;
-    const real_t t110 = cf_status(single, invalid, unreachable, t68 | t109);
+    const real_t t98 = cf_rounded(single, one, t71 * A_13_minus_plus);
+    const real_t t99 = cf_rounded(single, one, px_0 * (cf_rounded(single, one, A_23 * t97) - t98));
+    const real_t t100 = cf_rounded(single, one, t75 * A_13_minus_plus);
+    const real_t t101 = t99 - cf_rounded(single, one, py_0 * (t73 - t100));
+    const real_t t102 = cf_rounded(single, one, pz_0 * (t77 - cf_rounded(single, one, t75 * t97)));
+    const int t103 = cf_abs(t101 - t102) <= t82;
+    const real_t t104 = cf_status(single, invalid, unreachable, t68 | t103);
+    const real_t t105 = cf_rounded(single, one, A_23_plus_minus * t97);
+    const real_t t106 = cf_rounded(single, one, t87 * A_13_minus_plus);
+    const real_t t107 = cf_rounded(single, one, px_0 * (t105 - t106));
+    const real_t t108 = cf_rounded(single, one, t91 * A_13_minus_plus);
+    const real_t t109 = t107 - cf_rounded(single, one, py_0 * (t89 - t108));
+    const real_t t110 = cf_rounded(single, one, pz_0 * (t93 - cf_rounded(single, one, t91 * t97)));
+    const int t111 = cf_abs(t109 - t110) <= t82;
+    const real_t t112 = cf_status(single, invalid, unreachable, t68 | t111);
     const real_t opposite[4] = { t22, t63, t66, t67 };
     const real_t adjacent[4] = { cosine_1, cosine_2, cosine_2_plus_minus, cosine_1_minus_plus };
     real_t angles[4];
@@ -1946,22 +1946,22 @@ CF_INLINE void spherical_five_bar_ik_kernel(const int single, const real_t one,
         angles[2] = cf_atan2(opposite[2], adjacent[2]);
         angles[3] = cf_atan2(opposite[3], adjacent[3]);
     }
-    const real_t t111 = cf_wrap_cut(-angles[0]) + t56;
-    const real_t t112 = cf_wrap_cut(-angles[1]) + t56;
-    const real_t t113 = cf_wrap_cut(-angles[2]) + t56;
-    const real_t t114 = cf_wrap_cut(-angles[3]) + t56;
-    q[0] = t111;
-    q[1] = t112;
-    q[2] = t111;
-    q[3] = t113;
-    q[4] = t114;
-    q[5] = t112;
-    q[6] = t114;
-    q[7] = t113;
-    status[0] = t86;
-    status[1] = t98;
-    status[2] = t105;
-    status[3] = t110;
+    const real_t t113 = cf_wrap_cut(-angles[0]) + t56;
+    const real_t t114 = cf_wrap_cut(-angles[1]) + t56;
+    const real_t t115 = cf_wrap_cut(-angles[2]) + t56;
+    const real_t t116 = cf_wrap_cut(-angles[3]) + t56;
+    q[0] = t113;
+    q[1] = t114;
+    q[2] = t113;
+    q[3] = t115;
+    q[4] = t116;
+    q[5] = t114;
+    q[6] = t116;
+    q[7] = t115;
+    status[0] = t84;
+    status[1] = t96;
+    status[2] = t104;
+    status[3] = t112;
 }
 
 CLOSEDFORM_DISPATCHED

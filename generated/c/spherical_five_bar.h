@@ -10,7 +10,7 @@
  *   jacobian: 62 compare and select, 98 add, 30 divide, 127 multiply, 7 sincos, 5 sqrt
  *   singularities: 62 compare and select, 74 add, 18 divide, 91 multiply, 7 sincos, 5 sqrt
  *   condition_number: 62 compare and select, 114 add, 26 divide, 136 multiply, 7 sincos, 9 sqrt
- *   ik: 95 compare and select, 72 add, 4 atan2, 10 divide, 99 multiply, 5 sincos, 7 sqrt
+ *   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
  *   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
  *
  * Angles are in radians. Every function reads one posture; its _batch form reads n postures as a

@@ -12,7 +12,7 @@
 //   determinant: 31 add, 32 compare and select, 7 divide, 30 multiply, 2 sincos, 2 sqrt
 //   singularities: 35 add, 32 compare and select, 5 divide, 28 multiply, 2 sincos, 2 sqrt
 //   condition_number: 41 add, 32 compare and select, 7 divide, 39 multiply, 2 sincos, 4 sqrt
-//   ik: 72 compare and select, 51 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
+//   ik: 72 compare and select, 45 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
 //   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
 
 /**
@@ -1216,31 +1216,26 @@ function _ik(v, o) {
     const t46 = (t45 <= -Math.PI ? Math.PI : t45) + t28;
     const t47 = t5 || met_2 || no_crank_2;
     const share_1 = L1 / (t5 ? 1.0 : R_1 * (t9 + t11));
-    const t48 = cosine_1 * share_1;
-    const A_11 = x - t48;
-    const t49 = t15 * share_1;
+    const A_11 = x - cosine_1 * share_1;
     const share_2 = L2 / (t30 ? 1.0 : R_2 * (t31 + t32));
-    const t50 = t36 * share_2;
-    const A_12 = y + t49;
-    const t51 = L0 - t48;
-    const t52 = cosine_2 * share_2;
-    const t53 = Math.abs(A_11 * (t49 - t50) - A_12 * (t51 + t52));
-    const t54 = _runtime.DETERMINED * (L3 * L4);
-    const t55 = invalid ? 3 : unreachable ? 1 : t47 || t53 <= t54 ? 2 : 0;
-    const t56 = t41 * share_2;
-    const t57 = cosine_2_plus_minus * share_2;
-    const t58 = Math.abs(A_11 * (t49 - t56) - A_12 * (t51 + t57));
-    const t59 = invalid ? 3 : unreachable ? 1 : t47 || t58 <= t54 ? 2 : 0;
-    const t60 = cosine_1_minus_plus * share_1;
-    const A_11_minus_plus = x - t60;
-    const t61 = t44 * share_1;
-    const A_12_minus_plus = y + t61;
-    const t62 = L0 - t60;
-    const Delta_minus_plus = A_11_minus_plus * (t50 - t61) + A_12_minus_plus * (t52 + t62);
-    const t63 = invalid ? 3 : unreachable ? 1 : t47 || Math.abs(Delta_minus_plus) <= t54 ? 2 :
+    const A_22 = y + t36 * share_2;
+    const A_12 = y + t15 * share_1;
+    const A_21 = wu_2 - cosine_2 * share_2;
+    const t48 = _runtime.DETERMINED * (L3 * L4);
+    const t49 = t47 || Math.abs(A_11 * A_22 - A_12 * A_21) <= t48;
+    const A_22_plus_minus = y + t41 * share_2;
+    const A_21_plus_minus = wu_2 - cosine_2_plus_minus * share_2;
+    const Delta_plus_minus = A_11 * A_22_plus_minus - A_12 * A_21_plus_minus;
+    const t50 = invalid ? 3 : unreachable ? 1 : t47 || Math.abs(Delta_plus_minus) <= t48 ? 2 :
         0;
-    const Delta_minus_minus = A_11_minus_plus * (t56 - t61) + A_12_minus_plus * (t57 + t62);
-    const t64 = invalid ? 3 : unreachable ? 1 : t47 || Math.abs(Delta_minus_minus) <= t54 ? 2 :
+    const A_11_minus_plus = x - cosine_1_minus_plus * share_1;
+    const A_12_minus_plus = y + t44 * share_1;
+    const Delta_minus_plus = A_22 * A_11_minus_plus - A_21 * A_12_minus_plus;
+    const t51 = invalid ? 3 : unreachable ? 1 : t47 || Math.abs(Delta_minus_plus) <= t48 ? 2 :
+        0;
+    const Delta_minus_minus = A_22_plus_minus * A_11_minus_plus - A_21_plus_minus *
+        A_12_minus_plus;
+    const t52 = invalid ? 3 : unreachable ? 1 : t47 || Math.abs(Delta_minus_minus) <= t48 ? 2 :
         0;
     o[0] = t29;
     o[1] = t40;
@@ -1250,10 +1245,10 @@ function _ik(v, o) {
     o[5] = t40;
     o[6] = t46;
     o[7] = t43;
-    o[8] = t55;
-    o[9] = t59;
-    o[10] = t63;
-    o[11] = t64;
+    o[8] = invalid ? 3 : unreachable ? 1 : t49 ? 2 : 0;
+    o[9] = t50;
+    o[10] = t51;
+    o[11] = t52;
 }
 
 const _IK = _runtime.kernel({

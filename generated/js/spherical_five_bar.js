@@ -9,7 +9,7 @@
 //   jacobian: 62 compare and select, 98 add, 30 divide, 127 multiply, 7 sincos, 5 sqrt
 //   singularities: 62 compare and select, 74 add, 18 divide, 91 multiply, 7 sincos, 5 sqrt
 //   condition_number: 62 compare and select, 114 add, 26 divide, 136 multiply, 7 sincos, 9 sqrt
-//   ik: 95 compare and select, 72 add, 4 atan2, 10 divide, 99 multiply, 5 sincos, 7 sqrt
+//   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
 //   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 
 /**
@@ -1594,43 +1594,40 @@ function _ik(v, o) {
     const t66 = -Math.atan2(t65, cosine_1_minus_plus);
     const t67 = (t66 <= -Math.PI ? Math.PI : t66) + t49;
     const t68 = t3 || met_2 || no_crank_2;
-    const t69 = pz_0 * t6;
+    const share_1 = l_1 / (t3 ? 1.0 : R_1 * (t12 + t15));
+    const t69 = cosine_1 * share_1;
     const share_2 = l_2 / (t51 ? 1.0 : R_2 * (t52 + t53));
+    const A_23 = t57 * share_2;
+    const A_13 = t19 * share_1;
     const t70 = c_gamma * share_2;
     const t71 = t37 + cosine_2 * t70;
-    const t72 = py_0 * t6;
-    const A_23 = t57 * share_2;
-    const t73 = t69 * t71 + t72 * A_23;
-    const share_1 = l_1 / (t3 ? 1.0 : R_1 * (t12 + t15));
-    const t74 = cosine_1 * share_1;
-    const t75 = pz_0 * t74;
-    const t76 = s_gamma * share_2;
-    const t77 = t35 - cosine_2 * t76;
-    const t78 = px_0 * A_23;
-    const t79 = py_0 * t77;
-    const A_13 = t19 * share_1;
-    const t80 = px_0 * t71;
-    const Delta = t73 - t75 * t77 - t74 * t78 - t79 * A_13 + A_13 * t80;
-    const t81 = t4 * t33 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r);
-    const t82 = _runtime.DETERMINED * t81;
-    const t83 = invalid ? 3 : unreachable ? 1 : t68 || Math.abs(Delta) <= t82 ? 2 : 0;
-    const t84 = t37 + cosine_2_plus_minus * t70;
+    const t72 = t6 * A_23;
+    const t73 = s_gamma * share_2;
+    const t74 = t35 - cosine_2 * t73;
+    const t75 = px_0 * (t69 * A_23 - A_13 * t71) - py_0 * (t72 - A_13 * t74);
+    const t76 = t6 * t71;
+    const t77 = t4 * t33 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r);
+    const t78 = _runtime.DETERMINED * t77;
+    const t79 = Math.abs(t75 - pz_0 * (t76 - t69 * t74)) <= t78;
+    const t80 = invalid ? 3 : unreachable ? 1 : t68 || t79 ? 2 : 0;
     const A_23_plus_minus = t62 * share_2;
-    const t85 = t69 * t84 + t72 * A_23_plus_minus;
-    const t86 = t35 - cosine_2_plus_minus * t76;
-    const t87 = px_0 * A_23_plus_minus;
-    const t88 = py_0 * t86;
-    const t89 = px_0 * t84;
-    const Delta_plus_minus = t85 - t75 * t86 - t74 * t87 - A_13 * t88 + A_13 * t89;
-    const t90 = invalid ? 3 : unreachable ? 1 : t68 || Math.abs(Delta_plus_minus) <= t82 ? 2 :
-        0;
-    const t91 = cosine_1_minus_plus * share_1;
-    const t92 = pz_0 * t91;
+    const t81 = t37 + cosine_2_plus_minus * t70;
+    const t82 = t6 * A_23_plus_minus;
+    const t83 = t35 - cosine_2_plus_minus * t73;
+    const t84 = px_0 * (t69 * A_23_plus_minus - A_13 * t81) - py_0 * (t82 - A_13 * t83);
+    const t85 = t6 * t81;
+    const t86 = Math.abs(t84 - pz_0 * (t85 - t69 * t83)) <= t78;
+    const t87 = invalid ? 3 : unreachable ? 1 : t68 || t86 ? 2 : 0;
+    const t88 = cosine_1_minus_plus * share_1;
     const A_13_minus_plus = t65 * share_1;
-    const t93 = t73 - t77 * t92 - t78 * t91 - t79 * A_13_minus_plus;
-    const t94 = t68 || Math.abs(t93 + t80 * A_13_minus_plus) <= t82;
-    const t95 = t85 - t86 * t92 - t87 * t91 - t88 * A_13_minus_plus;
-    const t96 = t68 || Math.abs(t95 + t89 * A_13_minus_plus) <= t82;
+    const t89 = px_0 * (A_23 * t88 - t71 * A_13_minus_plus) - py_0 * (t72 - t74 *
+        A_13_minus_plus);
+    const t90 = Math.abs(t89 - pz_0 * (t76 - t74 * t88)) <= t78;
+    const t91 = invalid ? 3 : unreachable ? 1 : t68 || t90 ? 2 : 0;
+    const t92 = A_23_plus_minus * t88 - t81 * A_13_minus_plus;
+    const t93 = px_0 * t92 - py_0 * (t82 - t83 * A_13_minus_plus);
+    const t94 = Math.abs(t93 - pz_0 * (t85 - t83 * t88)) <= t78;
+    const t95 = invalid ? 3 : unreachable ? 1 : t68 || t94 ? 2 : 0;
     o[0] = t50;
     o[1] = t61;
     o[2] = t50;
@@ -1639,10 +1636,10 @@ function _ik(v, o) {
     o[5] = t61;
     o[6] = t67;
     o[7] = t64;
-    o[8] = t83;
-    o[9] = t90;
-    o[10] = invalid ? 3 : unreachable ? 1 : t94 ? 2 : 0;
-    o[11] = invalid ? 3 : unreachable ? 1 : t96 ? 2 : 0;
+    o[8] = t80;
+    o[9] = t87;
+    o[10] = t91;
+    o[11] = t95;
 }
 
 const _IK = _runtime.kernel({

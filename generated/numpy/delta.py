@@ -11,7 +11,7 @@
 #   singularities: 42 compare and select, 92 add, 10 divide, 101 multiply, 6 sincos, 5 sqrt
 #   condition_number: 42 compare and select, 124 add, 12 divide, 152 multiply, 6 sincos, 7 sqrt
 #   constraint: 42 compare and select, 96 add, 10 divide, 137 multiply, 6 sincos, 5 sqrt
-#   ik: 121 compare and select, 160 add, 6 atan2, 8 divide, 166 multiply, 3 sincos, 9 sqrt
+#   ik: 121 compare and select, 124 add, 6 atan2, 8 divide, 142 multiply, 3 sincos, 9 sqrt
 #   workspace_contains: 51 add, 50 compare and select, 5 divide, 39 multiply, 3 sincos, 6 sqrt
 """Delta robot with rotary drives.
 
@@ -2119,26 +2119,23 @@ def _ik(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     s_alpha2, c_alpha2 = _runtime.sincos_as_in_c(alpha2)
     s_alpha3, c_alpha3 = _runtime.sincos_as_in_c(alpha3)
     t1 = z * z
-    t2 = e * s_alpha1 - f * s_alpha1
-    t3 = y + t2
-    t4 = e * c_alpha1 - f * c_alpha1
-    t5 = x + t4
-    wu_1 = s_alpha1 * t3 + c_alpha1 * t5
-    R_1 = np.sqrt(t1 + wu_1 * wu_1)
+    t2 = f * s_alpha1 - (y + e * s_alpha1)
+    t3 = f * c_alpha1 - (x + e * c_alpha1)
+    t4 = s_alpha1 * t2 + c_alpha1 * t3
+    R_1 = np.sqrt(t1 + t4 * t4)
     size = f + e + L + l
-    t6 = size * _runtime.VANISHING
-    no_crank_1 = L <= t6
-    t7 = (R_1 <= t6) | no_crank_1
-    t8 = L - R_1
-    aside_1 = c_alpha1 * t3 - s_alpha1 * t5
-    del t3, t5
-    t9 = l - aside_1
-    t10 = l + aside_1
-    del aside_1
-    fore_1 = np.sqrt(np.maximum(t9, 0.0) * np.maximum(t10, 0.0))
-    t11 = t8 + fore_1
-    t12 = fore_1 - t8
+    t5 = size * _runtime.VANISHING
+    no_crank_1 = L <= t5
+    t6 = (R_1 <= t5) | no_crank_1
+    t7 = L - R_1
+    t8 = c_alpha1 * t2 - s_alpha1 * t3
+    t9 = l + t8
+    t10 = l - t8
     del t8
+    fore_1 = np.sqrt(np.maximum(t9, 0.0) * np.maximum(t10, 0.0))
+    t11 = t7 + fore_1
+    t12 = fore_1 - t7
+    del t7
     t13 = np.maximum(t11, 0.0) * np.maximum(t12, 0.0)
     t14 = L + R_1
     t15 = t14 - fore_1
@@ -2147,13 +2144,13 @@ def _ik(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t17 = t13 - t16
     t18 = z * t17
     beyond_1 = 2.0 * np.sqrt(t13 * t16)
-    t19 = wu_1 * beyond_1
-    sine_1 = _runtime.select(t7, 0.0, t18 - t19)
-    t20 = wu_1 * t17
-    del t17, wu_1
+    t19 = t4 * beyond_1
+    sine_1 = _runtime.select(t6, 0.0, t18 + t19)
+    t20 = t4 * t17
+    del t17, t4
     t21 = z * beyond_1
     del beyond_1
-    cosine_1 = _runtime.select(t7, 1.0, -(t20 + t21))
+    cosine_1 = _runtime.select(t6, 1.0, t20 - t21)
     t22 = _runtime.wrap_cut(np.arctan2(sine_1, cosine_1))
     t23 = np.isfinite(f) & np.isfinite(e) & np.isfinite(L) & np.isfinite(l) & np.isfinite(alpha1) & np.isfinite(alpha2) & np.isfinite(alpha3)
     t24 = t23 & (0.0 <= f) & (0.0 <= e) & (0.0 <= L) & (0.0 <= l)
@@ -2170,59 +2167,53 @@ def _ik(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     del fore_1
     t31 = (t27 <= t9) & (t27 <= t10) & (-t30 <= t11) & (-t30 <= t15)
     del t10, t11, t15, t9
-    t32 = e * s_alpha2 - f * s_alpha2
-    t33 = y + t32
-    t34 = e * c_alpha2 - f * c_alpha2
-    t35 = x + t34
-    aside_2 = c_alpha2 * t33 - s_alpha2 * t35
-    t36 = l - aside_2
-    t37 = l + aside_2
-    del aside_2
-    t38 = t31 & (-t30 <= t12) & (t27 <= t36) & (t27 <= t37)
+    t32 = f * s_alpha2 - (y + e * s_alpha2)
+    t33 = f * c_alpha2 - (x + e * c_alpha2)
+    t34 = c_alpha2 * t32 - s_alpha2 * t33
+    t35 = l + t34
+    t36 = l - t34
+    del t34
+    t37 = t31 & (-t30 <= t12) & (t27 <= t35) & (t27 <= t36)
     del t12, t30, t31
-    fore_2 = np.sqrt(np.maximum(t36, 0.0) * np.maximum(t37, 0.0))
-    del t36, t37
-    t39 = _runtime.FEASIBILITY * (t26 + t28 / (2.0 * (t29 + fore_2)))
-    wu_2 = s_alpha2 * t33 + c_alpha2 * t35
-    del t33, t35
-    R_2 = np.sqrt(t1 + wu_2 * wu_2)
+    fore_2 = np.sqrt(np.maximum(t35, 0.0) * np.maximum(t36, 0.0))
+    del t35, t36
+    t38 = _runtime.FEASIBILITY * (t26 + t28 / (2.0 * (t29 + fore_2)))
+    t39 = s_alpha2 * t32 + c_alpha2 * t33
+    R_2 = np.sqrt(t1 + t39 * t39)
     t40 = L - R_2
     t41 = fore_2 + t40
     t42 = L + R_2
     t43 = t42 - fore_2
     t44 = fore_2 - t40
     del t40
-    t45 = t38 & (-t39 <= t41) & (-t39 <= t43) & (-t39 <= t44)
-    del t38, t39
-    t46 = e * s_alpha3 - f * s_alpha3
-    t47 = y + t46
-    t48 = e * c_alpha3 - f * c_alpha3
-    t49 = x + t48
-    aside_3 = c_alpha3 * t47 - s_alpha3 * t49
-    t50 = l - aside_3
-    t51 = l + aside_3
-    del aside_3
-    fore_3 = np.sqrt(np.maximum(t50, 0.0) * np.maximum(t51, 0.0))
-    t52 = _runtime.FEASIBILITY * (t26 + t28 / (2.0 * (t29 + fore_3)))
+    t45 = t37 & (-t38 <= t41) & (-t38 <= t43) & (-t38 <= t44)
+    del t37, t38
+    t46 = f * s_alpha3 - (y + e * s_alpha3)
+    t47 = f * c_alpha3 - (x + e * c_alpha3)
+    t48 = c_alpha3 * t46 - s_alpha3 * t47
+    t49 = l + t48
+    t50 = l - t48
+    del t48
+    fore_3 = np.sqrt(np.maximum(t49, 0.0) * np.maximum(t50, 0.0))
+    t51 = _runtime.FEASIBILITY * (t26 + t28 / (2.0 * (t29 + fore_3)))
     del t26, t28, t29
-    wu_3 = s_alpha3 * t47 + c_alpha3 * t49
-    del t47, t49
-    R_3 = np.sqrt(t1 + wu_3 * wu_3)
+    t52 = s_alpha3 * t46 + c_alpha3 * t47
+    R_3 = np.sqrt(t1 + t52 * t52)
     del t1
     t53 = L - R_3
     t54 = fore_3 + t53
-    t55 = t45 & (t27 <= t50) & (t27 <= t51) & (-t52 <= t54)
-    del t27, t45, t50, t51
+    t55 = t45 & (t27 <= t49) & (t27 <= t50) & (-t51 <= t54)
+    del t27, t45, t49, t50
     t56 = L + R_3
     t57 = t56 - fore_3
     t58 = fore_3 - t53
     del t53
-    unreachable = np.logical_not(t55 & (-t52 <= t57) & (-t52 <= t58))
-    del t52, t55
+    unreachable = np.logical_not(t55 & (-t51 <= t57) & (-t51 <= t58))
+    del t51, t55
     t59 = _runtime.poison(invalid | unreachable)
     t60 = t22 + t59
     del t22
-    met_2 = R_2 <= t6
+    met_2 = R_2 <= t5
     t61 = met_2 | no_crank_1
     t62 = np.maximum(t41, 0.0) * np.maximum(t44, 0.0)
     del t41, t44
@@ -2231,18 +2222,18 @@ def _ik(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t64 = t62 - t63
     t65 = z * t64
     beyond_2 = 2.0 * np.sqrt(t62 * t63)
-    t66 = wu_2 * beyond_2
-    sine_2 = _runtime.select(t61, 0.0, t65 - t66)
-    t67 = wu_2 * t64
-    del t64, wu_2
+    t66 = t39 * beyond_2
+    sine_2 = _runtime.select(t61, 0.0, t65 + t66)
+    t67 = t39 * t64
+    del t39, t64
     t68 = z * beyond_2
     del beyond_2
-    cosine_2 = _runtime.select(t61, 1.0, -(t67 + t68))
+    cosine_2 = _runtime.select(t61, 1.0, t67 - t68)
     t69 = _runtime.wrap_cut(np.arctan2(sine_2, cosine_2))
     t70 = t69 + t59
     del t69
-    met_3 = R_3 <= t6
-    del t6
+    met_3 = R_3 <= t5
+    del t5
     t71 = met_3 | no_crank_1
     del no_crank_1
     t72 = np.maximum(t54, 0.0) * np.maximum(t58, 0.0)
@@ -2252,217 +2243,138 @@ def _ik(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
     t74 = t72 - t73
     t75 = z * t74
     beyond_3 = 2.0 * np.sqrt(t72 * t73)
-    t76 = wu_3 * beyond_3
-    sine_3 = _runtime.select(t71, 0.0, t75 - t76)
-    t77 = wu_3 * t74
-    del t74, wu_3
+    t76 = t52 * beyond_3
+    sine_3 = _runtime.select(t71, 0.0, t75 + t76)
+    t77 = t52 * t74
+    del t52, t74
     t78 = z * beyond_3
     del beyond_3
-    cosine_3 = _runtime.select(t71, 1.0, -(t77 + t78))
+    cosine_3 = _runtime.select(t71, 1.0, t77 - t78)
     t79 = _runtime.wrap_cut(np.arctan2(sine_3, cosine_3))
     t80 = t79 + t59
     del t79
-    sine_3_plus_plus_minus = _runtime.select(t71, 0.0, t75 + t76)
+    sine_3_plus_plus_minus = _runtime.select(t71, 0.0, t75 - t76)
     del t75, t76
-    cosine_3_plus_plus_minus = _runtime.select(t71, 1.0, t78 - t77)
+    cosine_3_plus_plus_minus = _runtime.select(t71, 1.0, t77 + t78)
     del t77, t78
     t81 = np.arctan2(sine_3_plus_plus_minus, cosine_3_plus_plus_minus)
     t82 = _runtime.wrap_cut(t81) + t59
     del t81
-    sine_2_plus_minus_plus = _runtime.select(t61, 0.0, t65 + t66)
+    sine_2_plus_minus_plus = _runtime.select(t61, 0.0, t65 - t66)
     del t65, t66
-    cosine_2_plus_minus_plus = _runtime.select(t61, 1.0, t68 - t67)
+    cosine_2_plus_minus_plus = _runtime.select(t61, 1.0, t67 + t68)
     del t67, t68
     t83 = np.arctan2(sine_2_plus_minus_plus, cosine_2_plus_minus_plus)
     t84 = _runtime.wrap_cut(t83) + t59
     del t83
-    sine_1_minus_plus_plus = _runtime.select(t7, 0.0, t18 + t19)
+    sine_1_minus_plus_plus = _runtime.select(t6, 0.0, t18 - t19)
     del t18, t19
-    cosine_1_minus_plus_plus = _runtime.select(t7, 1.0, t21 - t20)
+    cosine_1_minus_plus_plus = _runtime.select(t6, 1.0, t20 + t21)
     del t20, t21
     t85 = np.arctan2(sine_1_minus_plus_plus, cosine_1_minus_plus_plus)
     t86 = _runtime.wrap_cut(t85) + t59
     del t59, t85
-    t87 = t7 | met_2 | met_3
+    t87 = t6 | met_2 | met_3
     del met_2, met_3
-    share_1 = L / _runtime.select(t7, 1.0, R_1 * (t13 + t16))
-    del R_1, t13, t16, t7
+    share_1 = L / _runtime.select(t6, 1.0, R_1 * (t13 + t16))
+    del R_1, t13, t16, t6
     t88 = c_alpha1 * share_1
     del c_alpha1
-    t89 = t4 - cosine_1 * t88
-    share_3 = L / _runtime.select(t71, 1.0, R_3 * (t72 + t73))
-    del R_3, t71, t72, t73
-    t90 = c_alpha3 * share_3
-    del c_alpha3
-    t91 = t48 - cosine_3 * t90
-    t92 = t89 - t91
+    t89 = t3 + cosine_1 * t88
     share_2 = L / _runtime.select(t61, 1.0, R_2 * (t62 + t63))
     del R_2, t61, t62, t63
-    t93 = s_alpha2 * share_2
+    t90 = s_alpha2 * share_2
     del s_alpha2
-    t94 = t32 - cosine_2 * t93
+    t91 = t32 + cosine_2 * t90
+    share_3 = L / _runtime.select(t71, 1.0, R_3 * (t72 + t73))
+    del R_3, t71, t72, t73
+    A_33 = z + sine_3 * share_3
+    del sine_3
+    A_23 = z + sine_2 * share_2
+    del sine_2
+    t92 = s_alpha3 * share_3
+    del s_alpha3
+    t93 = t46 + cosine_3 * t92
+    t94 = t91 * A_33 - A_23 * t93
     t95 = s_alpha1 * share_1
     del s_alpha1
-    t96 = t2 - cosine_1 * t95
+    t96 = t2 + cosine_1 * t95
     del cosine_1
-    t97 = t94 - t96
-    t98 = sine_1 * share_1
-    del sine_1
-    A_13 = z + t98
-    t99 = t97 * A_13
-    A_11 = x + t89
-    t100 = A_11 * t97
-    del t97
-    t101 = sine_3 * share_3
-    del sine_3
-    t102 = t98 - t101
-    t103 = sine_2 * share_2
-    del sine_2
-    t104 = t98 - t103
-    t105 = A_11 * t104
-    t106 = s_alpha3 * share_3
-    del s_alpha3
-    t107 = t46 - cosine_3 * t106
-    del cosine_3
-    t108 = t96 - t107
-    A_12 = y + t96
-    t109 = t102 * A_12
-    t110 = c_alpha2 * share_2
+    t97 = c_alpha2 * share_2
     del c_alpha2
-    t111 = t34 - cosine_2 * t110
+    t98 = t33 + cosine_2 * t97
     del cosine_2
-    t112 = t89 - t111
-    t113 = t104 * A_12
+    t99 = c_alpha3 * share_3
+    del c_alpha3
+    t100 = t47 + cosine_3 * t99
+    del cosine_3
+    t101 = A_33 * t98 - A_23 * t100
+    A_13 = z + sine_1 * share_1
+    del sine_1
+    t102 = t93 * t98 - t91 * t100
+    t103 = _runtime.DETERMINED * (l * l * l)
+    t104 = np.abs(t89 * t94 - t96 * t101 + A_13 * t102) <= t103
+    t105 = _runtime.status(invalid, unreachable, t87 | t104)
     del t104
-    t114 = t100 * t102 + t105 * t108 + t109 * t112 - t113 * t92
-    t115 = t108 * A_13
-    t116 = _runtime.DETERMINED * (l * l * l)
-    t117 = np.abs(t92 * t99 - (t114 - t112 * t115)) <= t116
-    del t114
-    t118 = _runtime.status(invalid, unreachable, t87 | t117)
-    del t117
-    t119 = t48 - cosine_3_plus_plus_minus * t90
-    del t48, t90
-    t120 = t89 - t119
-    t121 = sine_3_plus_plus_minus * share_3
+    A_33_plus_plus_minus = z + sine_3_plus_plus_minus * share_3
     del share_3, sine_3_plus_plus_minus
-    t122 = t98 - t121
-    t123 = t46 - cosine_3_plus_plus_minus * t106
-    del cosine_3_plus_plus_minus, t106, t46
-    t124 = t96 - t123
-    t125 = A_12 * t122
-    t126 = t100 * t122 + t105 * t124 + t112 * t125 - t113 * t120
-    del t100, t105, t113
-    t127 = A_13 * t124
-    t128 = np.abs(t99 * t120 - (t126 - t112 * t127)) <= t116
-    del t112, t126, t99
-    t129 = _runtime.status(invalid, unreachable, t87 | t128)
-    del t128
-    t130 = t32 - cosine_2_plus_minus_plus * t93
-    del t32, t93
-    t131 = t96 - t130
-    del t96
-    t132 = A_11 * t131
-    t133 = sine_2_plus_minus_plus * share_2
-    del share_2, sine_2_plus_minus_plus
-    t134 = t98 - t133
-    del t98
-    t135 = A_11 * t134
-    del A_11
-    t136 = t34 - cosine_2_plus_minus_plus * t110
-    del cosine_2_plus_minus_plus, t110, t34
-    t137 = t89 - t136
-    del t89
-    t138 = A_12 * t134
-    del A_12, t134
-    t139 = t102 * t132 - t108 * t135 - t109 * t137 + t92 * t138
-    del t102, t108, t109
-    t140 = A_13 * t131
-    del A_13, t131
-    t141 = np.abs(t139 + t115 * t137 - t92 * t140) <= t116
-    del t115, t139, t92
-    t142 = _runtime.status(invalid, unreachable, t87 | t141)
-    del t141
-    t143 = t122 * t132 - t124 * t135 - t125 * t137 + t120 * t138
-    del t122, t124, t125, t132, t135, t138
-    t144 = np.abs(t143 + t127 * t137 - t120 * t140) <= t116
-    del t120, t127, t137, t140, t143
-    t145 = _runtime.status(invalid, unreachable, t87 | t144)
-    del t144
-    t146 = t4 - cosine_1_minus_plus_plus * t88
-    del t4, t88
-    t147 = t91 - t146
-    del t91
-    t148 = t2 - cosine_1_minus_plus_plus * t95
-    del cosine_1_minus_plus_plus, t2, t95
-    t149 = t94 - t148
-    del t94
-    t150 = sine_1_minus_plus_plus * share_1
-    del share_1, sine_1_minus_plus_plus
-    A_13_minus_plus_plus = z + t150
-    t151 = t149 * A_13_minus_plus_plus
-    A_11_minus_plus_plus = x + t146
-    t152 = A_11_minus_plus_plus * t149
-    del t149
-    A_33_minus_plus_plus = t101 - t150
-    del t101
-    A_23_minus_plus_plus = t103 - t150
-    del t103
-    t153 = A_11_minus_plus_plus * A_23_minus_plus_plus
-    t154 = t107 - t148
-    del t107
-    A_12_minus_plus_plus = y + t148
-    t155 = A_33_minus_plus_plus * A_12_minus_plus_plus
-    t156 = t111 - t146
+    t106 = t46 + cosine_3_plus_plus_minus * t92
+    del t46, t92
+    t107 = t91 * A_33_plus_plus_minus - A_23 * t106
+    t108 = t47 + cosine_3_plus_plus_minus * t99
+    del cosine_3_plus_plus_minus, t47, t99
+    t109 = t98 * A_33_plus_plus_minus - A_23 * t108
+    del A_23
+    t110 = t98 * t106 - t91 * t108
+    del t91, t98
+    t111 = np.abs(t89 * t107 - t96 * t109 + A_13 * t110)
+    t112 = _runtime.status(invalid, unreachable, t87 | (t111 <= t103))
     del t111
-    t157 = t152 * A_33_minus_plus_plus - t153 * t154 - t155 * t156
-    t158 = A_23_minus_plus_plus * A_12_minus_plus_plus
-    del A_23_minus_plus_plus
-    t159 = t154 * A_13_minus_plus_plus
-    t160 = t147 * t151 - (t157 + t158 * t147 + t156 * t159)
-    del t157
-    t161 = _runtime.status(invalid, unreachable, t87 | (np.abs(t160) <= t116))
-    del t160
-    t162 = t119 - t146
-    del t119
-    A_33_minus_plus_minus = t121 - t150
-    del t121
-    t163 = t123 - t148
+    t113 = t32 + cosine_2_plus_minus_plus * t90
+    del t32, t90
+    A_23_plus_minus_plus = z + sine_2_plus_minus_plus * share_2
+    del share_2, sine_2_plus_minus_plus
+    t114 = A_33 * t113 - t93 * A_23_plus_minus_plus
+    t115 = t33 + cosine_2_plus_minus_plus * t97
+    del cosine_2_plus_minus_plus, t33, t97
+    t116 = A_33 * t115 - t100 * A_23_plus_minus_plus
+    del A_33
+    t117 = t93 * t115 - t100 * t113
+    del t100, t93
+    t118 = np.abs(t89 * t114 - t96 * t116 + A_13 * t117)
+    t119 = _runtime.status(invalid, unreachable, t87 | (t118 <= t103))
+    del t118
+    t120 = A_33_plus_plus_minus * t113 - t106 * A_23_plus_minus_plus
+    t121 = A_33_plus_plus_minus * t115 - t108 * A_23_plus_minus_plus
+    del A_23_plus_minus_plus, A_33_plus_plus_minus
+    t122 = t106 * t115 - t108 * t113
+    del t106, t108, t113, t115
+    t123 = np.abs(t89 * t120 - t96 * t121 + A_13 * t122)
+    del A_13, t89, t96
+    t124 = _runtime.status(invalid, unreachable, t87 | (t123 <= t103))
     del t123
-    t164 = A_12_minus_plus_plus * A_33_minus_plus_minus
-    t165 = t152 * A_33_minus_plus_minus - t153 * t163 - t156 * t164
-    del t152, t153
-    t166 = A_13_minus_plus_plus * t163
-    t167 = t151 * t162 - (t165 + t158 * t162 + t156 * t166)
-    del t151, t156, t158, t165
-    t168 = _runtime.status(invalid, unreachable, t87 | (np.abs(t167) <= t116))
-    del t167
-    t169 = t130 - t148
-    del t130, t148
-    t170 = A_13_minus_plus_plus * t169
-    del A_13_minus_plus_plus
-    t171 = A_11_minus_plus_plus * t169
-    del t169
-    A_23_minus_minus_plus = t133 - t150
-    del t133, t150
-    t172 = A_11_minus_plus_plus * A_23_minus_minus_plus
-    del A_11_minus_plus_plus
-    t173 = t136 - t146
-    del t136, t146
-    t174 = A_33_minus_plus_plus * t171 - t154 * t172 - t155 * t173
-    del A_33_minus_plus_plus, t154, t155
-    t175 = A_12_minus_plus_plus * A_23_minus_minus_plus
-    del A_12_minus_plus_plus, A_23_minus_minus_plus
-    t176 = t147 * t170 - (t174 + t147 * t175 + t159 * t173)
-    del t147, t159, t174
-    t177 = _runtime.status(invalid, unreachable, t87 | (np.abs(t176) <= t116))
-    del t176
-    t178 = A_33_minus_plus_minus * t171 - t163 * t172 - t164 * t173
-    del A_33_minus_plus_minus, t163, t164, t171, t172
-    t179 = t162 * t170 - (t178 + t162 * t175 + t166 * t173)
-    del t162, t166, t170, t173, t175, t178
-    t180 = _runtime.status(invalid, unreachable, t87 | (np.abs(t179) <= t116))
-    del invalid, t116, t179, t87, unreachable
+    t125 = t3 + cosine_1_minus_plus_plus * t88
+    del t3, t88
+    t126 = t2 + cosine_1_minus_plus_plus * t95
+    del cosine_1_minus_plus_plus, t2, t95
+    A_13_minus_plus_plus = z + sine_1_minus_plus_plus * share_1
+    del share_1, sine_1_minus_plus_plus
+    Delta_minus_plus_plus = t94 * t125 - t101 * t126 + t102 * A_13_minus_plus_plus
+    del t101, t102, t94
+    t127 = t87 | (np.abs(Delta_minus_plus_plus) <= t103)
+    del Delta_minus_plus_plus
+    Delta_minus_plus_minus = t107 * t125 - t109 * t126 + t110 * A_13_minus_plus_plus
+    del t107, t109, t110
+    t128 = t87 | (np.abs(Delta_minus_plus_minus) <= t103)
+    del Delta_minus_plus_minus
+    Delta_minus_minus_plus = t114 * t125 - t116 * t126 + t117 * A_13_minus_plus_plus
+    del t114, t116, t117
+    t129 = t87 | (np.abs(Delta_minus_minus_plus) <= t103)
+    del Delta_minus_minus_plus
+    Delta_minus_minus_minus = t120 * t125 - t121 * t126 + t122 * A_13_minus_plus_plus
+    del A_13_minus_plus_plus, t120, t121, t122, t125, t126
+    t130 = t87 | (np.abs(Delta_minus_minus_minus) <= t103)
+    del Delta_minus_minus_minus, t103, t87
     return (
         t60,
         t70,
@@ -2488,14 +2400,14 @@ def _ik(x, y, z, f, e, L, l, alpha1, alpha2, alpha3):
         t86,
         t84,
         t82,
-        t118,
-        t129,
-        t142,
-        t145,
-        t161,
-        t168,
-        t177,
-        t180,
+        t105,
+        t112,
+        t119,
+        t124,
+        _runtime.status(invalid, unreachable, t127),
+        _runtime.status(invalid, unreachable, t128),
+        _runtime.status(invalid, unreachable, t129),
+        _runtime.status(invalid, unreachable, t130),
     )
 
 

@@ -12,7 +12,7 @@
 #   determinant: 31 add, 32 compare and select, 7 divide, 30 multiply, 2 sincos, 2 sqrt
 #   singularities: 35 add, 32 compare and select, 5 divide, 28 multiply, 2 sincos, 2 sqrt
 #   condition_number: 41 add, 32 compare and select, 7 divide, 39 multiply, 2 sincos, 4 sqrt
-#   ik: 72 compare and select, 51 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
+#   ik: 72 compare and select, 45 add, 4 atan2, 3 divide, 41 multiply, 4 sqrt
 #   workspace_contains: 15 add, 28 compare and select, 1 divide, 4 multiply, 2 sqrt
 """Planar five-bar linkage.
 
@@ -1259,7 +1259,7 @@ def _ik(x, y, L0, L1, L2, L3, L4):
     t37 = y * beyond_2
     del beyond_2
     t38 = wu_2 * t33
-    del t33, wu_2
+    del t33
     cosine_2 = _runtime.select(t30, 1.0, t37 - t38)
     t39 = _runtime.wrap_cut(-np.arctan2(t36, cosine_2))
     t40 = t39 + t28
@@ -1282,48 +1282,38 @@ def _ik(x, y, L0, L1, L2, L3, L4):
     del met_2, no_crank_2
     share_1 = L1 / _runtime.select(t5, 1.0, R_1 * (t9 + t11))
     del R_1, t11, t5, t9
-    t48 = cosine_1 * share_1
+    A_11 = x - cosine_1 * share_1
     del cosine_1
-    A_11 = x - t48
-    t49 = t15 * share_1
-    del t15
     share_2 = L2 / _runtime.select(t30, 1.0, R_2 * (t31 + t32))
     del R_2, t30, t31, t32
-    t50 = t36 * share_2
+    A_22 = y + t36 * share_2
     del t36
-    A_12 = y + t49
-    t51 = L0 - t48
-    del t48
-    t52 = cosine_2 * share_2
+    A_12 = y + t15 * share_1
+    del t15
+    A_21 = wu_2 - cosine_2 * share_2
     del cosine_2
-    t53 = np.abs(A_11 * (t49 - t50) - A_12 * (t51 + t52))
-    t54 = _runtime.DETERMINED * (L3 * L4)
-    t55 = _runtime.status(invalid, unreachable, t47 | (t53 <= t54))
-    del t53
-    t56 = t41 * share_2
+    t48 = _runtime.DETERMINED * (L3 * L4)
+    t49 = t47 | (np.abs(A_11 * A_22 - A_12 * A_21) <= t48)
+    A_22_plus_minus = y + t41 * share_2
     del t41
-    t57 = cosine_2_plus_minus * share_2
-    del cosine_2_plus_minus, share_2
-    t58 = np.abs(A_11 * (t49 - t56) - A_12 * (t51 + t57))
-    del A_11, A_12, t49, t51
-    t59 = _runtime.status(invalid, unreachable, t47 | (t58 <= t54))
-    del t58
-    t60 = cosine_1_minus_plus * share_1
+    A_21_plus_minus = wu_2 - cosine_2_plus_minus * share_2
+    del cosine_2_plus_minus, share_2, wu_2
+    Delta_plus_minus = A_11 * A_22_plus_minus - A_12 * A_21_plus_minus
+    del A_11, A_12
+    t50 = _runtime.status(invalid, unreachable, t47 | (np.abs(Delta_plus_minus) <= t48))
+    del Delta_plus_minus
+    A_11_minus_plus = x - cosine_1_minus_plus * share_1
     del cosine_1_minus_plus
-    A_11_minus_plus = x - t60
-    t61 = t44 * share_1
+    A_12_minus_plus = y + t44 * share_1
     del share_1, t44
-    A_12_minus_plus = y + t61
-    t62 = L0 - t60
-    del t60
-    Delta_minus_plus = A_11_minus_plus * (t50 - t61) + A_12_minus_plus * (t52 + t62)
-    del t50, t52
-    t63 = _runtime.status(invalid, unreachable, t47 | (np.abs(Delta_minus_plus) <= t54))
+    Delta_minus_plus = A_22 * A_11_minus_plus - A_21 * A_12_minus_plus
+    del A_21, A_22
+    t51 = _runtime.status(invalid, unreachable, t47 | (np.abs(Delta_minus_plus) <= t48))
     del Delta_minus_plus
-    Delta_minus_minus = A_11_minus_plus * (t56 - t61) + A_12_minus_plus * (t57 + t62)
-    del A_11_minus_plus, A_12_minus_plus, t56, t57, t61, t62
-    t64 = _runtime.status(invalid, unreachable, t47 | (np.abs(Delta_minus_minus) <= t54))
-    del Delta_minus_minus, invalid, t47, t54, unreachable
+    Delta_minus_minus = A_22_plus_minus * A_11_minus_plus - A_21_plus_minus * A_12_minus_plus
+    del A_11_minus_plus, A_12_minus_plus, A_21_plus_minus, A_22_plus_minus
+    t52 = _runtime.status(invalid, unreachable, t47 | (np.abs(Delta_minus_minus) <= t48))
+    del Delta_minus_minus, t47, t48
     return (
         t29,
         t40,
@@ -1333,10 +1323,10 @@ def _ik(x, y, L0, L1, L2, L3, L4):
         t40,
         t46,
         t43,
-        t55,
-        t59,
-        t63,
-        t64,
+        _runtime.status(invalid, unreachable, t49),
+        t50,
+        t51,
+        t52,
     )
 
 

@@ -11,7 +11,7 @@
 #   singularities: 41 compare and select, 51 add, 14 divide, 42 multiply, 5 sqrt
 #   condition_number: 41 compare and select, 109 add, 16 divide, 121 multiply, 7 sqrt
 #   constraint: 41 compare and select, 67 add, 20 divide, 74 multiply, 5 sqrt
-#   ik: 57 compare and select, 66 add, 5 divide, 37 multiply, 6 sqrt
+#   ik: 57 compare and select, 60 add, 5 divide, 34 multiply, 6 sqrt
 #   workspace_contains: 27 compare and select, 21 add, 5 divide, 8 multiply, 3 sqrt
 """Delta robot with linear drives.
 
@@ -1715,138 +1715,126 @@ def _ik(x, y, z, f, e, l):
     size = f + e + l + np.abs(x) + np.abs(y) + np.abs(z)
     t6 = -(_runtime.FEASIBILITY * (size * 0.5))
     del size
-    t7 = x - e * 0.5 + f * 0.5
-    t8 = t7 * t7
-    del t7
-    A_22 = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
-    t9 = y + A_22
-    aside_2 = np.sqrt(t8 + t9 * t9)
-    del t9
-    t10 = l - aside_2
-    t11 = l + aside_2
+    A_21 = x - e * 0.5 + f * 0.5
+    t7 = A_21 * A_21
+    t8 = e * 1.7320508075688772 * 0.5 - f * 1.7320508075688772 * 0.5
+    A_22 = y + t8
+    aside_2 = np.sqrt(t7 + A_22 * A_22)
+    t9 = l - aside_2
+    t10 = l + aside_2
     del aside_2
-    t12 = (t6 <= t1) & (t6 <= t2) & (t6 <= t10) & (t6 <= t11)
+    t11 = (t6 <= t1) & (t6 <= t2) & (t6 <= t9) & (t6 <= t10)
     del t1, t2
-    t13 = y - A_22
-    aside_3 = np.sqrt(t8 + t13 * t13)
-    del t13, t8
-    t14 = l - aside_3
-    t15 = l + aside_3
+    A_32 = y - t8
+    del t8
+    aside_3 = np.sqrt(t7 + A_32 * A_32)
+    del t7
+    t12 = l - aside_3
+    t13 = l + aside_3
     del aside_3
-    unreachable = np.logical_not(t12 & (t6 <= t14) & (t6 <= t15))
-    del t12, t6
-    t16 = _runtime.poison(invalid | unreachable)
-    t17 = slide_1 + t16
-    root_2 = np.sqrt(np.maximum(t10, 0.0) * np.maximum(t11, 0.0))
-    del t10, t11
+    unreachable = np.logical_not(t11 & (t6 <= t12) & (t6 <= t13))
+    del t11, t6
+    t14 = _runtime.poison(invalid | unreachable)
+    t15 = slide_1 + t14
+    root_2 = np.sqrt(np.maximum(t9, 0.0) * np.maximum(t10, 0.0))
+    del t10, t9
     slide_2 = z - root_2
-    t18 = slide_2 + t16
-    root_3 = np.sqrt(np.maximum(t14, 0.0) * np.maximum(t15, 0.0))
-    del t14, t15
+    t16 = slide_2 + t14
+    root_3 = np.sqrt(np.maximum(t12, 0.0) * np.maximum(t13, 0.0))
+    del t12, t13
     slide_3 = z - root_3
-    t19 = slide_3 + t16
+    t17 = slide_3 + t14
     slide_3_plus_plus_minus = z + root_3
     del root_3
-    t20 = slide_3_plus_plus_minus + t16
+    t18 = slide_3_plus_plus_minus + t14
     slide_2_plus_minus_plus = z + root_2
     del root_2
-    t21 = slide_2_plus_minus_plus + t16
+    t19 = slide_2_plus_minus_plus + t14
     slide_1_minus_plus_plus = z + root_1
     del root_1
-    t22 = slide_1_minus_plus_plus + t16
-    del t16
-    t23 = e * 1.5 - f * 1.5
-    t24 = t23 * A_22
-    t25 = (z - slide_1) * t24
-    t26 = t25 + t25
-    del t25
-    t27 = A_11 * A_22
-    del A_11, A_22
-    A_33 = slide_1 - slide_3
-    t28 = y * t23
-    del t23
-    t29 = t26 + (t27 * A_33 + t28 * A_33)
-    del A_33
-    A_23 = slide_1 - slide_2
-    t30 = t27 * A_23 - t28 * A_23
-    del A_23
-    t31 = _runtime.DETERMINED * (l * l * l)
-    t32 = _runtime.status(invalid, unreachable, np.abs(t29 + t30) <= t31)
-    A_33_plus_plus_minus = slide_1 - slide_3_plus_plus_minus
-    t33 = t27 * A_33_plus_plus_minus + t28 * A_33_plus_plus_minus
-    del A_33_plus_plus_minus
-    t34 = t26 + t33
-    del t26, t33
-    t35 = _runtime.status(invalid, unreachable, np.abs(t30 + t34) <= t31)
-    del t30
-    A_23_plus_minus_plus = slide_1 - slide_2_plus_minus_plus
-    del slide_1
-    t36 = t27 * A_23_plus_minus_plus - t28 * A_23_plus_minus_plus
-    del A_23_plus_minus_plus
-    t37 = _runtime.status(invalid, unreachable, np.abs(t29 + t36) <= t31)
-    del t29
-    t38 = _runtime.status(invalid, unreachable, np.abs(t34 + t36) <= t31)
-    del t34, t36
-    t39 = (z - slide_1_minus_plus_plus) * t24
-    del t24
-    t40 = t39 + t39
-    del t39
-    t41 = slide_1_minus_plus_plus - slide_3
+    t20 = slide_1_minus_plus_plus + t14
+    del t14
+    A_33 = z - slide_3
     del slide_3
-    t42 = t40 + (t27 * t41 + t28 * t41)
-    del t41
-    t43 = slide_1_minus_plus_plus - slide_2
+    t21 = A_22 * A_33
+    A_23 = z - slide_2
     del slide_2
-    t44 = t27 * t43 - t28 * t43
-    del t43
-    t45 = _runtime.status(invalid, unreachable, np.abs(-(t42 + t44)) <= t31)
-    t46 = slide_1_minus_plus_plus - slide_3_plus_plus_minus
+    t22 = A_32 * A_23
+    t23 = A_21 * A_33
+    del A_33
+    t24 = A_21 * A_23
+    del A_23
+    t25 = A_11 * (t21 - t22) - y * (t23 - t24)
+    t26 = A_21 * A_32 - A_21 * A_22
+    t27 = (z - slide_1) * t26
+    del slide_1
+    t28 = _runtime.DETERMINED * (l * l * l)
+    t29 = _runtime.status(invalid, unreachable, np.abs(t25 + t27) <= t28)
+    A_33_plus_plus_minus = z - slide_3_plus_plus_minus
     del slide_3_plus_plus_minus
-    t47 = t40 + (t27 * t46 + t28 * t46)
-    del t40, t46
-    t48 = _runtime.status(invalid, unreachable, np.abs(-(t44 + t47)) <= t31)
-    del t44
-    t49 = slide_1_minus_plus_plus - slide_2_plus_minus_plus
-    del slide_1_minus_plus_plus, slide_2_plus_minus_plus
-    t50 = t27 * t49 - t28 * t49
-    del t27, t28, t49
-    t51 = _runtime.status(invalid, unreachable, np.abs(-(t42 + t50)) <= t31)
-    del t42
-    t52 = _runtime.status(invalid, unreachable, np.abs(t47 + t50) <= t31)
-    del invalid, t31, t47, t50, unreachable
+    t30 = A_22 * A_33_plus_plus_minus
+    del A_22
+    t31 = A_21 * A_33_plus_plus_minus
+    del A_33_plus_plus_minus
+    t32 = A_11 * (t22 - t30) - y * (t24 - t31)
+    del t22, t24
+    t33 = _runtime.status(invalid, unreachable, np.abs(t27 - t32) <= t28)
+    A_23_plus_minus_plus = z - slide_2_plus_minus_plus
+    del slide_2_plus_minus_plus
+    t34 = A_32 * A_23_plus_minus_plus
+    del A_32
+    t35 = A_21 * A_23_plus_minus_plus
+    del A_21, A_23_plus_minus_plus
+    t36 = A_11 * (t21 - t34) - y * (t23 - t35)
+    del t21, t23
+    t37 = _runtime.status(invalid, unreachable, np.abs(t27 + t36) <= t28)
+    t38 = A_11 * (t30 - t34) - y * (t31 - t35)
+    del A_11, t30, t31, t34, t35
+    t39 = _runtime.status(invalid, unreachable, np.abs(t27 + t38) <= t28)
+    del t27
+    t40 = (z - slide_1_minus_plus_plus) * t26
+    del slide_1_minus_plus_plus, t26
+    t41 = _runtime.status(invalid, unreachable, np.abs(t25 + t40) <= t28)
+    del t25
+    t42 = _runtime.status(invalid, unreachable, np.abs(t32 - t40) <= t28)
+    del t32
+    t43 = _runtime.status(invalid, unreachable, np.abs(t36 + t40) <= t28)
+    del t36
+    t44 = _runtime.status(invalid, unreachable, np.abs(t38 + t40) <= t28)
+    del invalid, t28, t38, t40, unreachable
     return (
+        t15,
+        t16,
         t17,
+        t15,
+        t16,
         t18,
+        t15,
         t19,
         t17,
+        t15,
+        t19,
         t18,
         t20,
+        t16,
         t17,
-        t21,
+        t20,
+        t16,
+        t18,
+        t20,
         t19,
         t17,
-        t21,
         t20,
-        t22,
-        t18,
         t19,
-        t22,
         t18,
-        t20,
-        t22,
-        t21,
-        t19,
-        t22,
-        t21,
-        t20,
-        t32,
-        t35,
+        t29,
+        t33,
         t37,
-        t38,
-        t45,
-        t48,
-        t51,
-        t52,
+        t39,
+        t41,
+        t42,
+        t43,
+        t44,
     )
 
 

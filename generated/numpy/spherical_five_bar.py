@@ -9,7 +9,7 @@
 #   jacobian: 62 compare and select, 98 add, 30 divide, 127 multiply, 7 sincos, 5 sqrt
 #   singularities: 62 compare and select, 74 add, 18 divide, 91 multiply, 7 sincos, 5 sqrt
 #   condition_number: 62 compare and select, 114 add, 26 divide, 136 multiply, 7 sincos, 9 sqrt
-#   ik: 95 compare and select, 72 add, 4 atan2, 10 divide, 99 multiply, 5 sincos, 7 sqrt
+#   ik: 95 compare and select, 74 add, 4 atan2, 10 divide, 101 multiply, 5 sincos, 7 sqrt
 #   workspace_contains: 51 compare and select, 28 add, 7 divide, 32 multiply, 5 sincos, 5 sqrt
 """Spherical five-bar linkage.
 
@@ -1850,72 +1850,67 @@ def _ik(x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
     del t49, t66
     t68 = t3 | met_2 | no_crank_2
     del met_2, no_crank_2
-    t69 = pz_0 * t6
+    share_1 = l_1 / _runtime.select(t3, 1.0, R_1 * (t12 + t15))
+    del R_1, t12, t15, t3
+    t69 = cosine_1 * share_1
+    del cosine_1
     share_2 = l_2 / _runtime.select(t51, 1.0, R_2 * (t52 + t53))
     del R_2, t51, t52, t53
+    A_23 = t57 * share_2
+    del t57
+    A_13 = t19 * share_1
+    del t19
     t70 = c_gamma * share_2
     del c_gamma
     t71 = t37 + cosine_2 * t70
-    t72 = py_0 * t6
-    del t6
-    A_23 = t57 * share_2
-    del t57
-    t73 = t69 * t71 + t72 * A_23
-    share_1 = l_1 / _runtime.select(t3, 1.0, R_1 * (t12 + t15))
-    del R_1, t12, t15, t3
-    t74 = cosine_1 * share_1
-    del cosine_1
-    t75 = pz_0 * t74
-    t76 = s_gamma * share_2
+    t72 = t6 * A_23
+    t73 = s_gamma * share_2
     del s_gamma
-    t77 = t35 - cosine_2 * t76
+    t74 = t35 - cosine_2 * t73
     del cosine_2
-    t78 = px_0 * A_23
-    del A_23
-    t79 = py_0 * t77
-    A_13 = t19 * share_1
-    del t19
-    t80 = px_0 * t71
-    del t71
-    Delta = t73 - t75 * t77 - t74 * t78 - t79 * A_13 + A_13 * t80
-    t81 = t4 * t33 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r)
+    t75 = px_0 * (t69 * A_23 - A_13 * t71) - py_0 * (t72 - A_13 * t74)
+    t76 = t6 * t71
+    t77 = t4 * t33 * 4.0 * (r * r * r) * (1.0 + (l_1 + l_2 + r_1 + r_2) / r)
     del l_1, l_2, r_1, r_2, t33, t4
-    t82 = _runtime.DETERMINED * t81
-    del t81
-    t83 = _runtime.status(invalid, unreachable, t68 | (np.abs(Delta) <= t82))
-    del Delta
-    t84 = t37 + cosine_2_plus_minus * t70
-    del t37, t70
+    t78 = _runtime.DETERMINED * t77
+    del t77
+    t79 = np.abs(t75 - pz_0 * (t76 - t69 * t74)) <= t78
+    del t75
+    t80 = _runtime.status(invalid, unreachable, t68 | t79)
+    del t79
     A_23_plus_minus = t62 * share_2
     del share_2, t62
-    t85 = t69 * t84 + t72 * A_23_plus_minus
-    del t69, t72
-    t86 = t35 - cosine_2_plus_minus * t76
-    del cosine_2_plus_minus, t35, t76
-    t87 = px_0 * A_23_plus_minus
-    del A_23_plus_minus
-    t88 = py_0 * t86
-    del py_0
-    t89 = px_0 * t84
-    del px_0, t84
-    Delta_plus_minus = t85 - t75 * t86 - t74 * t87 - A_13 * t88 + A_13 * t89
-    del A_13, t74, t75
-    t90 = _runtime.status(invalid, unreachable, t68 | (np.abs(Delta_plus_minus) <= t82))
-    del Delta_plus_minus
-    t91 = cosine_1_minus_plus * share_1
+    t81 = t37 + cosine_2_plus_minus * t70
+    del t37, t70
+    t82 = t6 * A_23_plus_minus
+    t83 = t35 - cosine_2_plus_minus * t73
+    del cosine_2_plus_minus, t35, t73
+    t84 = px_0 * (t69 * A_23_plus_minus - A_13 * t81) - py_0 * (t82 - A_13 * t83)
+    del A_13
+    t85 = t6 * t81
+    del t6
+    t86 = np.abs(t84 - pz_0 * (t85 - t69 * t83)) <= t78
+    del t69, t84
+    t87 = _runtime.status(invalid, unreachable, t68 | t86)
+    del t86
+    t88 = cosine_1_minus_plus * share_1
     del cosine_1_minus_plus
-    t92 = pz_0 * t91
-    del pz_0
     A_13_minus_plus = t65 * share_1
     del share_1, t65
-    t93 = t73 - t77 * t92 - t78 * t91 - t79 * A_13_minus_plus
-    del t73, t77, t78, t79
-    t94 = t68 | (np.abs(t93 + t80 * A_13_minus_plus) <= t82)
-    del t80, t93
-    t95 = t85 - t86 * t92 - t87 * t91 - t88 * A_13_minus_plus
-    del t85, t86, t87, t88, t91, t92
-    t96 = t68 | (np.abs(t95 + t89 * A_13_minus_plus) <= t82)
-    del A_13_minus_plus, t68, t82, t89, t95
+    t89 = px_0 * (A_23 * t88 - t71 * A_13_minus_plus) - py_0 * (t72 - t74 * A_13_minus_plus)
+    del A_23, t71, t72
+    t90 = np.abs(t89 - pz_0 * (t76 - t74 * t88)) <= t78
+    del t74, t76, t89
+    t91 = _runtime.status(invalid, unreachable, t68 | t90)
+    del t90
+    t92 = A_23_plus_minus * t88 - t81 * A_13_minus_plus
+    del A_23_plus_minus, t81
+    t93 = px_0 * t92 - py_0 * (t82 - t83 * A_13_minus_plus)
+    del A_13_minus_plus, px_0, py_0, t82, t92
+    t94 = np.abs(t93 - pz_0 * (t85 - t83 * t88)) <= t78
+    del pz_0, t78, t83, t85, t88, t93
+    t95 = _runtime.status(invalid, unreachable, t68 | t94)
+    del invalid, t68, t94, unreachable
     return (
         t50,
         t61,
@@ -1925,10 +1920,10 @@ def _ik(x, y, z, r, gamma, alpha1, alpha2, beta1, beta2):
         t61,
         t67,
         t64,
-        t83,
-        t90,
-        _runtime.status(invalid, unreachable, t94),
-        _runtime.status(invalid, unreachable, t96),
+        t80,
+        t87,
+        t91,
+        t95,
     )
 
 

@@ -99,7 +99,7 @@ def arm_of(path: Path, read: Callable[..., Table] = read_urdf, *choice: Choice) 
     d = Derivation("arm", "Arm", Paper("p", "P", ("A",)), "An arm.")
     for name, kind in table.joints.items():
         d.joint(name, kind)  # type: ignore[arg-type]
-    return from_screws(d, table.axes, table.home)
+    return from_screws(d, table.axes, table.home, base=table.base)
 
 
 def test_the_chain_has_the_pose_of_the_file(ur5: Path) -> None:

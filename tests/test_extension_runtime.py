@@ -238,7 +238,7 @@ def test_out_may_be_any_view_whose_elements_are_apart(native: Any) -> None:
 # The sources
 
 
-@pytest.mark.skipif(SANITIZED, reason="needs no second run")
+@pytest.mark.skipif(bool(SANITIZED), reason="needs no second run")
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 def test_sources_compile_without_a_warning(compiler: str) -> None:
     if shutil.which(compiler) is None:
@@ -250,7 +250,7 @@ def test_sources_compile_without_a_warning(compiler: str) -> None:
     subprocess.run([*command, "-pedantic", f"-I{RUNTIME}", *python_free], check=True)
 
 
-@pytest.mark.skipif(SANITIZED, reason="is the sanitized run")
+@pytest.mark.skipif(bool(SANITIZED), reason="is the sanitized run")
 def test_under_address_sanitizer() -> None:
     """The tests of values, shapes, out=, errors and objects again, with every access checked."""
     gcc = shutil.which("gcc")

@@ -355,7 +355,7 @@ def blocks_kept(work: Callable[[], Any], rounds: int = 200) -> int:
     return min(kept)
 
 
-@pytest.mark.skipif(SANITIZED, reason="counts memory by itself")
+@pytest.mark.skipif(bool(SANITIZED), reason="counts memory by itself")
 def test_nothing_leaks(native: Any) -> None:
     functions = {name: function(native, name) for name in ROWS}
     assert blocks_kept(lambda: exercise(functions)) < 100
@@ -363,7 +363,7 @@ def test_nothing_leaks(native: Any) -> None:
     assert blocks_kept(lambda: refused(native)) < 100
 
 
-@pytest.mark.skipif(SANITIZED or sys.platform != "linux", reason="reads the resident size")
+@pytest.mark.skipif(bool(SANITIZED) or sys.platform != "linux", reason="reads the resident size")
 def test_scratch_is_freed(native: Any) -> None:
     def resident() -> int:
         pages = int(Path("/proc/self/statm").read_text().split()[1])

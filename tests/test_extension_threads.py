@@ -129,7 +129,8 @@ def sanitizer() -> dict[str, str]:
     if not os.path.isabs(library):
         pytest.skip("gcc has no ThreadSanitizer")
     environment = {"LD_PRELOAD": library, "TSAN_OPTIONS": "exitcode=66", "CC": gcc}
-    found = {**os.environ, **environment, "CLOSEDFORM_TEST_SANITIZE": "thread"}
+    outside = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST_")}
+    found = {**outside, **environment, "CLOSEDFORM_TEST_SANITIZE": "thread"}
     started = subprocess.run([sys.executable, "-c", "print(1)"], env=found, capture_output=True)
     if started.returncode:
         pytest.skip("ThreadSanitizer does not run here")

@@ -327,7 +327,7 @@ def document(derivation: Derivation, proof: Proof) -> dict[str, Any]:
     legend = page.legend()
     symbols.require_distinct(derivation, page.math, legend, page.printer.names)
     return context | {
-        "legend": ",\\quad ".join(rf"\mbox{{${short} = {full}$}}" for short, full in legend),
+        "legend": [f"{short} = {full}" for short, full in legend],
         "symbols": symbols.joined(symbols.table(derivation, page.numbers, text, page.math)),
         "theorems": lemmas.context(lemmas.lemmas_of(derivation), {}),
     }

@@ -212,6 +212,10 @@ def _signs(derivation: Derivation) -> Iterator[tuple[str, str]]:
                 yield _form(derivation, str(sign)), r"branch sign, $+1$ or $-1$"
 
 
+WIDEST = 20
+"""The letters of the symbols in one row; more are too wide for their column."""
+
+
 def joined(rows: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
     """Neighbours with one meaning in one row, and so those that follow each other by number."""
     done: list[tuple[list[str], str, list[str]]] = []
@@ -221,7 +225,7 @@ def joined(rows: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
         if done:
             forms, common, labels = done[-1]
             last = re.fullmatch(r"(.+)_\{(\d+)\}", forms[-1])
-            if not label and meaning == common:
+            if not label and meaning == common and _letters([*forms, form]) <= WIDEST:
                 forms.append(form)
                 continue
             follows = stem and last and (stem[1], int(stem[2])) == (last[1], int(last[2]) + 1)
@@ -231,6 +235,12 @@ def joined(rows: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
                 continue
         done.append(([form], meaning, [label[1]] if label else []))
     return [_joined(forms, meaning, labels) for forms, meaning, labels in done]
+
+
+def _letters(forms: Iterable[str]) -> int:
+    """The number of letters and digits that are seen; a Greek letter is one."""
+    plain = (re.sub(r"\\(mathrm|mathbf|text|operatorname)\b", "", form) for form in forms)
+    return sum(len(re.findall(r"\\[a-zA-Z]+|[a-zA-Z0-9]", form)) for form in plain)
 
 
 def _joined(forms: list[str], meaning: str, labels: list[str]) -> tuple[str, str]:

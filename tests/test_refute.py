@@ -10,6 +10,7 @@ import pytest
 import sympy as sp
 from sympy import Rational, cos, pi, sin, sqrt
 
+from closedform import Identity
 from closedform.algebra.counterexample import find_counterexample
 
 x, y, theta = sp.symbols("x y theta", real=True)
@@ -85,3 +86,10 @@ def test_same_point_for_every_hash_seed() -> None:
         for seed in ("0", "1")
     }
     assert len(runs) == 1
+
+
+def test_a_symbol_that_cancels_in_the_difference_has_a_value() -> None:
+    verdict = Identity(x + y, x + 2 * y).judge()
+    assert verdict.kind == "refuted"
+    (point,) = (part for part in verdict.evidence if isinstance(part, dict))
+    assert point.keys() == {x, y} and point[y] != 0

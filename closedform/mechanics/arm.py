@@ -19,7 +19,6 @@ from closedform.mechanics.factored import factored_determinant
 from closedform.mechanics.frames import (
     denavit_hartenberg,
     exponential,
-    hat,
     homogeneous,
     reduce_circle,
     rotation,
@@ -30,17 +29,8 @@ from closedform.mechanics.links import Group, Link, Motion, Row, groups_of
 from closedform.mechanics.linkwise import Named
 from closedform.mechanics.mobility import dependent_in_chain, dependent_joints, singular_everywhere
 from closedform.mechanics.skeleton import serial_skeleton, skeleton
+from closedform.mechanics.twists import SHIFT, SPELLED, TURN, TURNED, from_geometric
 from closedform.model.derivation import Derivation
-
-SPELLED = 120
-"""The most operations of a Jacobian that is written out; a longer one is told by the geometric."""
-SHIFT = r"\begin{bmatrix} 1 & [p]_\times \\ 0 & 1 \end{bmatrix} J"
-TURN = r"\begin{bmatrix} R^T & 0 \\ 0 & R^T \end{bmatrix} J"
-TURNED = (
-    "  The velocity in J is that of the tool.  J_s has that of the point that passes the origin of "
-    "the base, and J_b has the axes of the tool: p is the position in T, R its rotation, and "
-    "[p]_× the matrix of the cross product with p."
-)
 
 
 @dataclass(frozen=True)
@@ -205,7 +195,11 @@ class Serial:
                 "column of J_b." + ("" if spelled else "  Both follow from J as stated.")
             ),
             equal=[
-                *([] if spelled else self._from_geometric()),
+                *(
+                    []
+                    if spelled
+                    else from_geometric(self.pose, self.geometric, self.space, self.body)
+                ),
                 (self.geometric[:3, :], self.position.jacobian(q)),
                 (self.geometric[3:, :], self.space[3:, :]),
                 (geometric.explicit, self.geometric),
@@ -232,16 +226,6 @@ class Serial:
             summary = f"Twist (v; omega) of the tool in {frame} per joint rate."
             _export(d, name, summary, q, "J", found, equation=equation)
         return self.pose if task is None else task.values
-
-    def _from_geometric(self) -> list[tuple[sp.Matrix, sp.Matrix]]:
-        """The Jacobians of the twists and the forms in which they follow from the geometric one."""
-        v, w, R = self.geometric[:3, :], self.geometric[3:, :], self.pose[:3, :3]
-        return [
-            (self.space[:3, :], v + hat(self.position) * w),
-            (self.space[3:, :], w),
-            (self.body[:3, :], R.T * v),
-            (self.body[3:, :], R.T * w),
-        ]
 
     def _export_pose_task(
         self, d: Derivation, pose: Named, geometric: Named, singular: Mapping[str, sp.Expr] | None

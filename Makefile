@@ -58,7 +58,7 @@ export LOCK INSTALL
 LOCKED = mkdir -p build && $(PYTHON) -c "$$LOCK" build/make.lock
 
 .PHONY: all native test check verify lint types regenerated warnings analysed \
-	portability $(COMPILERS) format figures mutations pdf book notebooks site bench fuzz accuracy clean distclean help
+	portability $(COMPILERS) format figures pdf book notebooks site bench fuzz accuracy clean distclean help
 .DELETE_ON_ERROR:
 
 all: native  ## derive, prove, generate and build; prints a line for each robot (the default)
@@ -135,9 +135,6 @@ portability: all  ## try installed compilers, processor emulators and Pythons; A
 format: .venv/installed.stamp  ## format the Python that is written by hand
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
-
-mutations: native  ## change every piece of every claim and judge it again; takes half an hour
-	CLOSEDFORM_MUTATIONS=all $(BIN)/python -m pytest -n auto --dist worksteal tests/test_mutations.py
 
 figures: native  ## draw every figure: PDF in build/figures, what the pages show in docs
 	$(BIN)/closedform figures -o build/figures --docs docs

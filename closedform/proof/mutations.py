@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from zlib import crc32
 
 from closedform.model.claims import HOLDS, NUMBERS, PIECE, Claim
 from closedform.model.notation import NotationError
@@ -50,7 +48,7 @@ def outcomes(claim: Claim, *, held: bool | None = None) -> Iterator[Outcome]:
     """
     if held is None:
         held = judged(claim, claim.printed).kind in HOLDS
-    for mutation in _mixed(list(mutations(claim)), claim.label):
+    for mutation in mutations(claim):
         try:
             kind = judged(claim, mutation.text).kind
         except NotationError:
@@ -59,17 +57,6 @@ def outcomes(claim: Claim, *, held: bool | None = None) -> Iterator[Outcome]:
             yield Outcome(mutation, "", f"{type(error).__name__}: {error}")
         else:
             yield Outcome(mutation, kind, changes=(kind in HOLDS) != held)
-
-
-def _mixed(found: list[Mutation], label: str) -> list[Mutation]:
-    """The changes, one of each kind in turn; the label says where to begin."""
-    start = crc32(label.encode()) % max(len(found), 1)
-    seen: Counter[str] = Counter()
-    ranked = []
-    for place, mutation in enumerate([*found[start:], *found[:start]]):
-        seen[mutation.kind] += 1
-        ranked.append((seen[mutation.kind], place, mutation))
-    return [mutation for _, _, mutation in sorted(ranked, key=lambda r: r[:2])]
 
 
 def mutations(claim: Claim) -> Iterator[Mutation]:

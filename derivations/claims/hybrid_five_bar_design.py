@@ -188,7 +188,9 @@ def workspace(d: Derivation, bar: FiveBar) -> None:
 
     def operative(n: int, others: int, first: Relation, second: Relation, times: int = 1) -> Check:
         given = {r.left: r.right for r in (first, second)}
-        four = modes([e.subs(given) for e in bar.lengths], sp.Matrix([y, rho]))
+        # Twice: the right side of one equation may be the left side of the other.
+        lengths = [e.subs(given).subs(given) for e in bar.lengths]
+        four = modes(lengths, sp.Matrix([y, rho]))
         return Every(
             {
                 "modes that are not always singular": Enumeration(

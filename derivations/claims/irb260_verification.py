@@ -94,6 +94,7 @@ def verification(d: Derivation, arm: Palletiser) -> None:
         lambda f, still, v: stated(still, Identity(v.left.subs(f.left, f.right), v.left)),
         means={**speeds, "v_{q_5}^s": (arm.V * arm.pose[:, 3])[:3, :]},
         phrases=[{"no effect": True, "an effect": False}],
+        fixed="a rate that has no effect may have any value; the paper chooses 0",
     )
     for label, printed, reason in (
         (

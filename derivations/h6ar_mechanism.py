@@ -101,7 +101,7 @@ def declare(d: Derivation) -> tuple[Dimensions, Joints]:
         )
     )
     theta1, theta2R, theta3R = d.joint("theta1"), d.joint("theta2R"), d.joint("theta3R")
-    theta2L, theta3L = d.joint("theta2L", beside=theta2R), d.joint("theta3L", beside=theta3R)
+    theta2L, theta3L = d.joint("theta2L", twin_of=theta2R), d.joint("theta3L", twin_of=theta3R)
     for arm, side in (("R", "right"), ("L", "left")):
         for k, link in ((2, "upper arm"), (3, "fore-arm")):
             d.write(f"theta{k}{arm}", rf"\theta_{k}^{arm}", f"angle of the {side} {link}")

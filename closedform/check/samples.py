@@ -132,8 +132,8 @@ def drawn_beside(derivation: Derivation, symbols: Sequence[sp.Symbol], values: A
     """Move each joint that stays close to another one near that joint."""
     values = values.copy()
     for joint in derivation.joints:
-        if joint.beside is not None and joint.symbol in symbols:
-            own, other = symbols.index(joint.symbol), symbols.index(joint.beside)
+        if joint.twin_of is not None and joint.symbol in symbols:
+            own, other = symbols.index(joint.symbol), symbols.index(joint.twin_of)
             for start, fraction in ((0, 8.0), (1, 32.0), (2, 512.0)):
                 rows = values[start::3]
                 values[start::3, own] = rows[:, other] + rows[:, own] / fraction

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from closedform.lemmas.carried import check_plain, in_space, square
-from closedform.lemmas.leg_by_leg import SIGN, Choice, bounds_of, size_of, tell, where_free
+from closedform.lemmas.hand import check_plain, in_space, square
+from closedform.lemmas.leg_by_leg import SIGN, Choice, bounds_of, record_lemma, size_of, where_free
 from closedform.lemmas.legs import Crank, Naming, Slide
 from closedform.lemmas.loop import NO_MODE, Exported, export
 from closedform.mechanics.loops import velocity_matrices
@@ -110,7 +110,7 @@ def _forward(
     )
     x = follower.joint
     d.inverses.append(Inverse("fk", (x,), (sp.S.Zero,), (loop,), links=(found.link,)))
-    tell(d, "fk", found.link)
+    record_lemma(d, "fk", found.link)
     v = Program(list(f.body), f.taken)
     along = sp.Matrix([v.let(f"A_1{i}", -e) for i, e in enumerate(found.rod, 1)])
     return _Rod(v, modes, along)
@@ -249,7 +249,7 @@ def _inverse(
         program=inside,
         boolean=True,
     )
-    tell(d, "ik", found.link)
+    record_lemma(d, "ik", found.link)
     d.inverses.append(
         Inverse(
             "ik",

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.carried import Carried, square
+from closedform.lemmas.hand import Hand, square
 from closedform.lemmas.legs import Crank, Leg, cross_in_plane, vector
 from closedform.lemmas.parallelogram import Parallelogram, parallelogram
 from closedform.model.derivation import Step
@@ -53,7 +53,7 @@ def bars_of(k: int, leg: Leg, far: str) -> list[Bars]:
     return found
 
 
-def check_held(m: Carried) -> None:
+def check_held(m: Hand) -> None:
     """Refuse a hand that could turn, and a parallelogram that would not keep it from turning."""
     name, n = m.d.name, len(m.hand)
     held = [leg for leg in m.legs if isinstance(leg.rod, Parallelogram)]
@@ -84,13 +84,13 @@ def check_held(m: Carried) -> None:
         )
 
 
-def state_held(m: Carried, loop: Step) -> None:
+def state_held(m: Hand, loop: Step) -> None:
     """The step on what keeps the hand from turning, if there are parallelograms."""
     if m.held:
         (_in_plane if len(m.hand) == 2 else _in_space)(m, loop)
 
 
-def constraint(m: Carried, rods: Sequence[sp.Matrix]) -> list[sp.Expr]:
+def constraint(m: Hand, rods: Sequence[sp.Matrix]) -> list[sp.Expr]:
     """What vanishes where the hand can turn, from the vectors along the rods."""
     spans = dict(zip((k for k, _ in m.numbered), rods, strict=True))
     if len(m.hand) == 3:
@@ -105,7 +105,7 @@ def constraint(m: Carried, rods: Sequence[sp.Matrix]) -> list[sp.Expr]:
     return found
 
 
-def _in_space(m: Carried, loop: Step) -> None:
+def _in_space(m: Hand, loop: Step) -> None:
     u, v, r, w = (sp.Matrix([real(f"{n}_{i}") for i in "xyz"]) for n in ("u", "v", "r", "omega"))
     h, difference = real("h"), v - u
     rods = r + h * difference, r - h * difference
@@ -149,7 +149,7 @@ def _in_space(m: Carried, loop: Step) -> None:
     )
 
 
-def _in_plane(m: Carried, loop: Step) -> None:
+def _in_plane(m: Hand, loop: Step) -> None:
     l, a = (real(n, positive=True) for n in ("l", "a"))
     theta, gamma, phi, beta, sigma = (real(n) for n in ("theta", "gamma", "phi", "beta", "sigma"))
     linkage = parallelogram((l, a), (theta, gamma), (phi, beta), sigma)

@@ -88,7 +88,7 @@ class LegByLeg:
         return sum(values(e) for row in rows for e in row if e != 0)
 
     @property
-    def told_apart(self) -> str:
+    def on_modes(self) -> str:
         """A sentence on the working modes; empty if there is only one."""
         said = "The signs of its two solutions are those of the diagonal of B.  "
         return said if self.choices else ""
@@ -132,7 +132,7 @@ class LegByLeg:
                 boolean=True,
             )
         for s in self.found:
-            tell(d, "ik", s.link)
+            record_lemma(d, "ik", s.link)
 
     def certify(self, equations: Sequence[sp.Expr], images: str = "") -> None:
         """Record the equations that the joints satisfy; see :class:`Inverse` for ``images``."""
@@ -150,7 +150,7 @@ def signs_of_modes(legs: Sequence[Leg]) -> tuple[str, ...]:
     return ()
 
 
-def tell(d: Derivation, function: str, link: Link) -> None:
+def record_lemma(d: Derivation, function: str, link: Link) -> None:
     """Record the lemma of a link for the article."""
     assert link.lemma is not None
     d.solved.append(Solved(function, link.unknowns[0], link.lemma, link.lemma.equations[0]))
@@ -196,8 +196,8 @@ __all__ = [
     "LegByLeg",
     "bounds_of",
     "named_in",
+    "record_lemma",
     "signs_of_modes",
     "size_of",
-    "tell",
     "where_free",
 ]

@@ -14,18 +14,18 @@ from typing import Any, NamedTuple
 
 import sympy as sp
 
-from closedform.lemmas.carried import Carried, in_space, square
 from closedform.lemmas.circles import two_circles
 from closedform.lemmas.conditioning import conditioning
+from closedform.lemmas.hand import Hand, in_space, square
 from closedform.lemmas.held import LEFT_OUT, bars_of, check_held, constraint, state_held
 from closedform.lemmas.leg_by_leg import (
     SIGN,
     Choice,
     LegByLeg,
     named_in,
+    record_lemma,
     signs_of_modes,
     size_of,
-    tell,
 )
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut
 from closedform.lemmas.parallelogram import Parallelogram
@@ -75,7 +75,7 @@ def parallel(
         the angles of the rods from the x axis, for a mechanism in a plane; with them
         ``passive_angles`` is exported
     """
-    mechanism = Carried(d, sp.Matrix(hand), tuple(legs))
+    mechanism = Hand(d, sp.Matrix(hand), tuple(legs))
     check_held(mechanism)
     if not d.singularities:
         d.singularities = (*(f"leg {k}" for k, _ in mechanism.driven), mechanism.pole)
@@ -104,7 +104,7 @@ class _Posture:
     """The sign and the size of the determinant of the matrix that has them as rows."""
 
 
-def _forward(m: Carried, choice: Choice, loop: Step) -> _Posture:
+def _forward(m: Hand, choice: Choice, loop: Step) -> _Posture:
     d, n, f = m.d, len(m.legs), m.d.program()
     sigma = real("sigma_assembly")
     modes = branches((sigma, choice)) if len(m.rails) < n else SINGLE
@@ -143,7 +143,7 @@ def _forward(m: Carried, choice: Choice, loop: Step) -> _Posture:
     d.inverses.append(
         Inverse("fk", tuple(m.hand), (sp.S.Zero,) * n, equations, links=(found.link,))
     )
-    tell(d, "fk", met.told)
+    record_lemma(d, "fk", met.link)
     v = Program(list(f.body), f.taken)
     (first, _), *_ = m.in_lemma(m.numbered)
     name = f"span_{first}" if m.rails else f"A_{first}"
@@ -162,7 +162,7 @@ class _Met(NamedTuple):
     """The hand where legs meet, and what the article and the docstring say of it."""
 
     found: Meeting
-    told: Link
+    link: Link
     title: str
     reason: str
     shown: dict[str, Any]
@@ -174,7 +174,7 @@ NEAR = "Ill-conditioned near the parallel singularities, where both modes meet."
 
 
 def _on_rods(
-    m: Carried, f: Program, near: Sequence[sp.Matrix], size: sp.Expr, sigma: sp.Symbol
+    m: Hand, f: Program, near: Sequence[sp.Matrix], size: sp.Expr, sigma: sp.Symbol
 ) -> _Met:
     n = len(m.legs)
     radii = [named_in(f, f"r_{k}", sp.sympify(leg.rod, strict=True)) for k, leg in m.numbered]
@@ -206,7 +206,7 @@ def _on_rods(
 
 
 def _on_rails(
-    m: Carried, f: Program, near: Sequence[sp.Matrix], size: sp.Expr, sigma: sp.Symbol
+    m: Hand, f: Program, near: Sequence[sp.Matrix], size: sp.Expr, sigma: sp.Symbol
 ) -> _Met:
     notes: tuple[str, ...] = ()
     if len(m.rails) == 2:
@@ -227,12 +227,12 @@ def _on_rails(
     return _Met(found, found.link, title, reason, {}, proves, notes)
 
 
-def left_out(m: Carried) -> tuple[str, ...]:
+def left_out(m: Hand) -> tuple[str, ...]:
     """A note on the mode of parallelograms that is left out."""
     return (LEFT_OUT,) if m.held else ()
 
 
-def _roles(m: Carried) -> tuple[tuple[str, Any], ...]:
+def _roles(m: Hand) -> tuple[tuple[str, Any], ...]:
     """What the letters of the lemma stand for that gives the hand."""
     (first, _), *others = m.in_lemma(m.numbered)
     apart = [rf"\mathbf b_{k} - \mathbf b_{first}" for k, _ in others]
@@ -247,7 +247,7 @@ def _roles(m: Carried) -> tuple[tuple[str, Any], ...]:
     )
 
 
-def _passive_angles(m: Carried, at: _Posture, passive: Sequence[sp.Symbol]) -> None:
+def _passive_angles(m: Hand, at: _Posture, passive: Sequence[sp.Symbol]) -> None:
     m.d.function(
         "passive_angles",
         "Angles of the rods from the x axis in both assembly modes.",
@@ -260,7 +260,7 @@ def _passive_angles(m: Carried, at: _Posture, passive: Sequence[sp.Symbol]) -> N
     )
 
 
-def _draw(m: Carried, at: _Posture) -> None:
+def _draw(m: Hand, at: _Posture) -> None:
     links: dict[str, tuple[str, ...]] = {}
     lengths: dict[tuple[str, str], sp.Expr] = {}
     closing: dict[tuple[str, str], sp.Expr] = {}
@@ -321,7 +321,7 @@ def _draw(m: Carried, at: _Posture) -> None:
     )
 
 
-def _points(m: Carried, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
+def _points(m: Hand, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
     """The points of the skeleton: the base A, the near end B and the far end C of each leg."""
     points: dict[str, Sequence[sp.Expr]] = {}
     for k, leg in m.numbered:
@@ -340,7 +340,7 @@ def _points(m: Carried, hand: sp.Matrix) -> dict[str, Sequence[sp.Expr]]:
     return points | {"P": in_space(hand)}
 
 
-def _velocity(m: Carried, at: _Posture, loop: Step) -> None:
+def _velocity(m: Hand, at: _Posture, loop: Step) -> None:
     d, n = m.d, len(m.legs)
     A, B = velocity_matrices(m.loop, tuple(m.hand), m.joints)
     spans = [m.hand - c for c in m.centres]
@@ -444,7 +444,7 @@ def export(d: Derivation, program: Program, modes: Branches, functions: Sequence
         )
 
 
-def _inverse(m: Carried, loop: Step) -> None:
+def _inverse(m: Hand, loop: Step) -> None:
     d, g = m.d, m.d.program()
     slides = any(isinstance(leg, Slide | Rail) for leg in m.legs)
     solved = LegByLeg(d, g, g.let("size", size_of(d, tuple(m.hand) if slides else ())))
@@ -474,7 +474,7 @@ def _inverse(m: Carried, loop: Step) -> None:
     g.determined(sp.Abs(volume), scale, m.meet, name=r"|\det A|")
     d.step(
         "Inverse: leg by leg",
-        f"Each leg is solved alone.  {solved.told_apart}"
+        f"Each leg is solved alone.  {solved.on_modes}"
         "Rounded joints miss the lengths of the rods by a few units in the last place.  The "
         "error of the hand is this error times up to the product of the lengths of the rods over "
         "the determinant of A.  So near a parallel singularity the joints do not determine the "

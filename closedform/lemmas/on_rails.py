@@ -11,8 +11,8 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.lemmas.amplitude import Amplitude
-from closedform.lemmas.carried import check_order, in_space, square
-from closedform.lemmas.leg_by_leg import SIGN, Choice, LegByLeg, named_in, size_of, tell
+from closedform.lemmas.hand import check_order, in_space, square
+from closedform.lemmas.leg_by_leg import SIGN, Choice, LegByLeg, named_in, record_lemma, size_of
 from closedform.lemmas.legs import Leg, cross_in_plane, vector
 from closedform.lemmas.loop import NO_MODE, export
 from closedform.lemmas.rails import Rail, named_number
@@ -216,8 +216,8 @@ def _forward(m: OnRails, choice: Choice, loop: Step) -> _Posture:
             glue=Combination(combined, {u: u for u in m.target}),
         )
     )
-    tell(d, "fk", turn)
-    tell(d, "fk", Link(tuple(m.hand), met.equations, {}, met))
+    record_lemma(d, "fk", turn)
+    record_lemma(d, "fk", Link(tuple(m.hand), met.equations, {}, met))
     v = Program(list(f.body), f.taken)
     at_hand = sp.Matrix([named_in(v, f"p_{i}", e) for i, e in zip("xy", hand, strict=True)])
     return _Posture(v, modes, at_hand, arms, sigma * root)

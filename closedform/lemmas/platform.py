@@ -18,7 +18,7 @@ import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import count_solutions
-from closedform.lemmas.carried import check_order, check_plain, in_space, rate_of, square
+from closedform.lemmas.hand import check_order, check_plain, in_space, rate_of, square
 from closedform.lemmas.leg_by_leg import LegByLeg, named_in, signs_of_modes, size_of
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, Strut, cross_in_plane, vector
 from closedform.lemmas.on_rails import on_rails
@@ -479,7 +479,7 @@ def _inverse(m: Platform, loop: Step, degree: int) -> None:
     )
     d.step(
         "Inverse: leg by leg",
-        f"Each leg is solved alone.  {solved.told_apart}Near a parallel singularity rounded "
+        f"Each leg is solved alone.  {solved.on_modes}Near a parallel singularity rounded "
         "joints do not determine the hand.  The status is SINGULAR if the determinant of A is "
         f"less than {share} of the product of the lengths of the rods and"
         f"{'' if power == 1 else ' the third power of'} lambda, the root mean square distance "

@@ -19,7 +19,7 @@ from typing import Any
 import sympy as sp
 
 from closedform.algebra.shapes import ShapeError
-from closedform.lemmas.carried import check_order, check_plain, rate_of, square
+from closedform.lemmas.hand import check_order, check_plain, rate_of, square
 from closedform.lemmas.leg_by_leg import LegByLeg, named_in, signs_of_modes, size_of
 from closedform.lemmas.legs import Crank, Leg, Slide, Stretch, cross_in_plane, vector
 from closedform.mechanics.frames import rotation
@@ -506,7 +506,7 @@ def _inverse(m: Tripod, loop: Step) -> None:
     )
     d.step(
         "Inverse: leg by leg",
-        f"The target gives the corners, and each leg is solved alone.  {solved.told_apart}Near a "
+        f"The target gives the corners, and each leg is solved alone.  {solved.on_modes}Near a "
         "parallel or a constraint singularity rounded joints do not determine the hand.  The "
         "status is SINGULAR if the determinant of A is less than 2^-10 of Lambda, the product of "
         "the lengths of the rods and the mean square distance of the corners from the centre of "

@@ -70,7 +70,7 @@ class Joint:
     kind: Literal["revolute", "prismatic"]
     passive: bool = False
     coupling: sp.Expr | None = None
-    beside: sp.Symbol | None = None
+    twin_of: sp.Symbol | None = None
     """A joint that this one stays close to, as in a twin arm; samples respect this."""
     limits: tuple[float, float] | None = None
     """The smallest and the largest value; nothing in a derivation depends on them."""
@@ -206,7 +206,7 @@ class Derivation(Shown):
         *,
         passive: bool = False,
         coupling: sp.Expr | None = None,
-        beside: sp.Symbol | None = None,
+        twin_of: sp.Symbol | None = None,
         limits: tuple[Any, Any] | None = None,
     ) -> sp.Symbol:
         """Declare a joint variable.
@@ -221,7 +221,7 @@ class Derivation(Shown):
             raise ValueError(f"{self.name}: {name} must be revolute or prismatic, not {kind!r}")
         symbol = real(name)
         between = None if limits is None else self._limits(name, limits)
-        self.joints.append(Joint(symbol, kind, passive, coupling, beside, between))
+        self.joints.append(Joint(symbol, kind, passive, coupling, twin_of, between))
         return symbol
 
     def _limits(self, name: str, given: tuple[Any, Any]) -> tuple[float, float]:

@@ -358,8 +358,8 @@ def print_robot(
         report(source.name, what)
 
     def attempt(reason: str = "") -> Printed:
-        def work(tell: Callable[[str], None]) -> Printed:
-            return _printed(source, backends, store, fresh, lambda _, what: tell(what), reason)
+        def work(report: Callable[[str], None]) -> Printed:
+            return _printed(source, backends, store, fresh, lambda _, what: report(what), reason)
 
         return bounded(timeout, work, say)
 

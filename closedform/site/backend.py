@@ -115,7 +115,7 @@ def page(mechanism: Mechanism) -> str:
     sheet = Sheet(derivation)
     for shown, step in zip(found["steps"], derivation.steps, strict=True):
         shown["rows"] = [[md(cell) for cell in row] for row in shown["rows"]]
-        shown["identities"] = identities(sheet, step) if shown["mark"] else []
+        shown["identities"] = identities(sheet, step) if shown["counted"] else []
     context = {
         **found,
         "md": md,

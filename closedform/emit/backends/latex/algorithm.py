@@ -276,7 +276,7 @@ class Algorithm:
     def lines(self) -> list[Line]:
         """What is computed, with the conditions; first what all branches share."""
         self.page.lines.clear()
-        self.page.lines.room = FITS - INDENTED
+        self.page.lines.line_width = FITS - INDENTED
         branched: set[sp.Basic] = set(self.signs)
         common, each = list[tuple[str, Any, str]](), list[tuple[str, Any, str]]()
         body = self.function.body
@@ -292,7 +292,7 @@ class Algorithm:
             (each if used & branched else common).extend(parts)
         kind = "return" if sp.true in self.outputs else "let"
         answer = [(kind, text, "") for text in self._answers()]
-        self.page.lines.room = FITS
+        self.page.lines.line_width = FITS
         several = self.function.branches is not None and len(self.function.branches) > 1
         if not several:
             return self.joined([*common, *each, *answer], 0)

@@ -28,7 +28,7 @@ from closedform.emit.backends.latex.equations import (
     runs,
 )
 from closedform.emit.backends.latex.inverse import Told
-from closedform.emit.backends.latex.listing import room
+from closedform.emit.backends.latex.listing import lines_kept
 from closedform.emit.backends.latex.prose import (
     escape,
     mixed,
@@ -47,7 +47,7 @@ __all__ = ["Page", "document"]
 BARE: Mapping[str, Any] = {
     "blocks": [],
     "lines": [],
-    "room": 0,
+    "lines_kept": 0,
     "cases": [],
     "roundings": [],
     "after": "",
@@ -120,9 +120,9 @@ class Page(Sheet):
         )
         self.labels.append([e.label for e in new if e.label] or again)
         n, proved = len(step.vanishes), step.title in self.proof.steps
-        mark = f"{n} {'identity' if n == 1 else 'identities'}" if n and proved else ""
-        if mark and step.nonnegative:
-            mark += ", where " + ", ".join(rf"${self.math(e)} \ge 0$" for e in step.nonnegative)
+        counted = f"{n} {'identity' if n == 1 else 'identities'}" if n and proved else ""
+        if counted and step.nonnegative:
+            counted += ", where " + ", ".join(rf"${self.math(e)} \ge 0$" for e in step.nonnegative)
         return {
             "title": escape(step.title),
             "index": indexed(step.title),
@@ -133,8 +133,8 @@ class Page(Sheet):
             "columns": "l" * len(step.rows[0]) if step.rows else "",
             "rows": [[self.cell(cell) for cell in row] for row in step.rows],
             "published": [(escape(n), self.claims.judged(n)) for n in step.published],
-            "mark": mark,
-            "proves": self.prose(step.proves) if mark else "",
+            "counted": counted,
+            "proves": self.prose(step.proves) if counted else "",
         }
 
     def used(self, step: Step, left: Sequence[str]) -> str:
@@ -195,7 +195,7 @@ class Page(Sheet):
             "roundings": algorithm.roundings(),
             "blocks": [],
             "lines": lines,
-            "room": room(lines),
+            "lines_kept": lines_kept(lines),
             "cases": algorithm.cases(),
         }
 

@@ -19,7 +19,7 @@ from closedform.emit.backends.latex.algorithm import Algorithm, whole
 from closedform.emit.backends.latex.equations import canonical
 from closedform.emit.backends.latex.formulas import FITS, measure
 from closedform.emit.backends.latex.lemmas import label, titled
-from closedform.emit.backends.latex.listing import room
+from closedform.emit.backends.latex.listing import lines_kept
 from closedform.emit.backends.latex.names import MATRIX_ENTRY
 from closedform.emit.backends.latex.prose import escape, loosen, mixed, upright
 from closedform.emit.backends.latex.sheet import Sheet, blocks
@@ -98,7 +98,7 @@ class Told:
             "several": sum(len(s.unknowns) for s in self.solvings) > 1,
             "joints": blocks(self.joints()),
             "lines": lines,
-            "room": room(lines),
+            "lines_kept": lines_kept(lines),
             "cases": cases,
             "roundings": self.algorithm.roundings(),
             "branches": [

@@ -20,7 +20,7 @@ class Line:
     kind: str = ""
 
 
-def room(lines: Sequence[Line]) -> int:
+def lines_kept(lines: Sequence[Line]) -> int:
     """How many lines of a page an algorithm needs, so that only a long one is broken."""
     return 2 * min(len(lines), UNBROKEN) + 3
 
@@ -46,4 +46,4 @@ def merged(lines: Sequence[tuple[str, Any, str]]) -> list[tuple[str, Any, str]]:
     return done
 
 
-__all__ = ["Line", "merged", "room", "unless"]
+__all__ = ["Line", "lines_kept", "merged", "unless"]

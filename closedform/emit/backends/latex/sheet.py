@@ -84,11 +84,11 @@ class Sheet:
             if array.size == 1:  # a number needs no brackets
                 return self.equations(name, entries[0]) if self.math(entries[0]) != name else []
             parts = sp.Matrix(array.size // sp.prod(shape), sp.prod(shape), entries)
-            marks = [f"^{{({k + 1})}}" if len(array.shape) > 2 else "" for k in range(parts.rows)]
+            above = [f"^{{({k + 1})}}" if len(array.shape) > 2 else "" for k in range(parts.rows)]
             return [
                 equation
-                for k, mark in enumerate(marks)
-                for equation in self.equations(name + mark, parts.row(k).reshape(*shape))
+                for k, mode in enumerate(above)
+                for equation in self.equations(name + mode, parts.row(k).reshape(*shape))
             ]
         left = [self.math(n) for n in names] or self.coordinates(array, name)
         return [
@@ -142,10 +142,10 @@ class Block:
             return rf"{command}{{{row.text}}}"
         return f"\\display\n{self.aligned(labelled)}"
 
-    def aligned(self, mark: Callable[[str], str]) -> str:
-        """The rows as an environment of LaTeX; ``mark`` writes their labels."""
+    def aligned(self, label: Callable[[str], str]) -> str:
+        """The rows as an environment of LaTeX; ``label`` writes their labels."""
         rows = "".join(
-            aligned(row, mark) + (f" {gap(row, after)}\n" if after else "")
+            aligned(row, label) + (f" {gap(row, after)}\n" if after else "")
             for row, after in zip(self.rows, (*self.rows[1:], None), strict=True)
         )
         kind = "align" if self.rows[0].numbered else "align*"
@@ -192,14 +192,14 @@ def gap(above: Numbered, below: Numbered) -> str:
     return r"\\[2pt]" if r"\frac" in both else r"\\"
 
 
-def aligned(equation: Numbered, mark: Callable[[str], str]) -> str:
+def aligned(equation: Numbered, label: Callable[[str], str]) -> str:
     """A line of an aligned block; what goes on from the line before has nothing on the left."""
     left, right = equation.left, equation.right
     text = f"{left} &= {right}" if left else rf"&\quad {right}"
     if equation.called:
         text = rf"{left} \quad &\ {right}"
     if equation.label:
-        return f"{text} {mark(equation.label)}"
+        return f"{text} {label(equation.label)}"
     return rf"{text} \notag" if equation.numbered else text
 
 

@@ -45,7 +45,7 @@ class Lines:
 
     def __init__(self, printer: Printer, taken: Iterable[str]):
         self.printer, self.taken = printer, frozenset(taken)
-        self.room = FITS
+        self.line_width = FITS
         self.parts: dict[sp.Basic, sp.Symbol] = {}
         self.spent = set[str]()
         """Names of parts that have been printed and may not get another meaning."""
@@ -80,8 +80,8 @@ class Lines:
         if inner := self._unbreakable(value):
             return self._with_part(left, value, inner)
         text = self.printer.math(value)
-        room = self.room - measure(left) - 4
-        if measure(text) <= room:
+        available = self.line_width - measure(left) - 4
+        if measure(text) <= available:
             return [(left, text)]
         if isinstance(value, sp.Piecewise):
             inner = self._widest_case(value)
@@ -90,7 +90,7 @@ class Lines:
             return self._with_coefficients(left, *parts)
         if inner := self._nested(value):
             return self._with_part(left, value, inner)
-        return self._broken(left, value, room)
+        return self._broken(left, value, available)
 
     def _equation(self, left: str, value: sp.Eq) -> list[Equation]:
         """A value that is an equation itself: its right side stands behind its left."""
@@ -214,14 +214,14 @@ class Lines:
 
     # Lines
 
-    def _broken(self, left: str, value: sp.Expr, room: float) -> list[Equation]:
+    def _broken(self, left: str, value: sp.Expr, available: float) -> list[Equation]:
         """A sum in several lines, each of which starts with the sign of a term."""
         terms = self.printer._as_ordered_terms(value) if value.is_Add else [value]
         lines, line = list[str](), ""
         for term in terms:
             text = self.printer.math(term)
             text = text if (not line and not lines) or text.startswith("-") else f"+ {text}"
-            if line and measure(f"{line} {text}") > room - 3 * bool(lines):
+            if line and measure(f"{line} {text}") > available - 3 * bool(lines):
                 lines.append(line)
                 line = text
             else:
@@ -239,14 +239,14 @@ class Lines:
         """
         matrix = matrix.applyfunc(lambda e: self.tidy(e) if isinstance(e, sp.Expr) else e)
         cells = self._cells(matrix)
-        room = self.room - measure(left) - (NUMBER if matrix.rows > 1 else 0)
-        if _width(cells) > room and (factor := _common(matrix)) != 1:
+        available = self.line_width - measure(left) - (NUMBER if matrix.rows > 1 else 0)
+        if _width(cells) > available and (factor := _common(matrix)) != 1:
             before = self.printer.math(factor)
             inner = self._cells(matrix.applyfunc(lambda e: e / factor))
-            if _width(inner) + measure(before) <= room:
+            if _width(inner) + measure(before) <= available:
                 return [(left, f"{before} {_bracketed(inner)}")]
         base, named = left.partition("=")[0].strip(), []
-        while _width(cells) > room:
+        while _width(cells) > available:
             widest, i, j = max(
                 (measure(c), -i, -j) for i, row in enumerate(cells) for j, c in enumerate(row)
             )

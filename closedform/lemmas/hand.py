@@ -19,7 +19,7 @@ _Item = TypeVar("_Item")
 
 
 @dataclass(frozen=True)
-class Carried:
+class Hand:
     """A hand that does not turn, and its legs."""
 
     d: Derivation

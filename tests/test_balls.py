@@ -67,6 +67,12 @@ def test_balls_hold_what_arb_finds(name: str) -> None:
         assert ordinary.mean() > 0.1 or name in ("on the cut", "of a difference"), name
 
 
+@pytest.mark.parametrize("name", EXPRESSIONS)
+def test_values_are_the_midpoints_of_the_balls(name: str) -> None:
+    evaluator, rows = RowEvaluator((x, y, z), [EXPRESSIONS[name], z]), points()
+    np.testing.assert_array_equal(evaluator.values(rows), evaluator.balls(rows)[0])
+
+
 def test_what_is_open_is_settled_in_arb() -> None:
     """Values beside a limit by less than the rounding of the widest type, on either side of it."""
     evaluator = RowEvaluator((x, y), [x + y - x])

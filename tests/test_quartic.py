@@ -89,7 +89,9 @@ def test_a_ball_of_coefficients_encloses_the_roots_of_all() -> None:
 def test_rows_of_balls_contain_a_root() -> None:
     """In fractions the cubic falls through zero within each radius."""
     rows = near_roots(200)
-    middle, radius = RowEvaluator((A, B, E), [Resolvent(A, B, E)]).balls(rows)
+    evaluator = RowEvaluator((A, B, E), [Resolvent(A, B, E)])
+    middle, radius = evaluator.balls(rows)
+    np.testing.assert_array_equal(evaluator.values(rows), middle)
     settled = np.flatnonzero(np.isfinite(radius[:, 0].astype(float)))
     assert len(settled) > 500
     for k in settled:

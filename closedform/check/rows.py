@@ -8,8 +8,8 @@ Arb is needed more often: the results are the same, but slower.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property, lru_cache, reduce
-from typing import Any, TypeAlias
+from functools import cached_property, lru_cache, partial, reduce
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import sympy as sp
@@ -89,8 +89,20 @@ class RowEvaluator:
         return middle, radius
 
     def values(self, rows: Array) -> Array:
-        """The midpoints alone, to choose points with; do not decide anything by them."""
-        return self.balls(rows)[0]
+        """The midpoints alone, to choose points with; do not decide anything by them.
+
+        They take a quarter of the time of the balls, and are kept like these.
+        """
+        rows = np.asarray(rows)
+        return _cached_values(self, rows.tobytes(), rows.shape, rows.dtype.str)
+
+    def _values(self, rows: Array) -> Array:
+        middle = np.empty((len(rows), len(self.exprs)), WIDE)
+        with np.errstate(all="ignore"):
+            for k, x in enumerate(self._program.middles(rows)):
+                middle[:, k] = x
+        middle.flags.writeable = False
+        return middle
 
     def settled(
         self, rows: Array, undecided: Callable[[Array, Array], Array], *, defined: bool = True
@@ -119,6 +131,13 @@ def _cached_balls(
     return evaluator._balls(np.frombuffer(rows, dtype).reshape(shape))
 
 
+@lru_cache(4096)
+def _cached_values(
+    evaluator: RowEvaluator, rows: bytes, shape: tuple[int, ...], dtype: str
+) -> Array:
+    return evaluator._values(np.frombuffer(rows, dtype).reshape(shape))
+
+
 def crosses(*limits: float) -> Callable[[Array, Array], Array]:
     """A test for values that may be on either side of one of the limits."""
 
@@ -138,13 +157,20 @@ def inaccurate(bits: int) -> Callable[[Array, Array], Array]:
     return undecided
 
 
+class _Step(NamedTuple):
+    """An operation on midpoints alone, and the same on balls."""
+
+    middle: Callable[..., Any]
+    ball: Callable[..., Any]
+
+
 class _Program:
     """One step for each distinct subexpression, over lists of the values so far."""
 
     def __init__(
         self, symbols: Sequence[sp.Symbol], exprs: Sequence[Any], named: Mapping[sp.Symbol, Any]
     ) -> None:
-        self._steps: list[tuple[Callable[..., Any], tuple[int, ...]]] = []
+        self._steps: list[tuple[_Step, tuple[int, ...]]] = []
         self._places: dict[Any, int] = {s: k for k, s in enumerate(symbols)}
         self._width = len(symbols)
         for name, value in named.items():
@@ -154,19 +180,26 @@ class _Program:
     def run(self, rows: Array) -> list[Any]:
         columns = np.asarray(rows, WIDE).T
         known: list[Any] = [(x + WIDE(0), WIDE(0)) for x in columns]  # without a negative zero
-        for function, operands in self._steps:
-            known.append(function(*[known[k] for k in operands]))
+        for step, operands in self._steps:
+            known.append(step.ball(*[known[k] for k in operands]))
+        return [known[k] for k in self._results]
+
+    def middles(self, rows: Array) -> list[Any]:
+        """The midpoints that :meth:`run` finds, without their radii."""
+        known: list[Any] = [x + WIDE(0) for x in np.asarray(rows, WIDE).T]
+        for step, operands in self._steps:
+            known.append(step.middle(*[known[k] for k in operands]))
         return [known[k] for k in self._results]
 
     def _place(self, e: Any) -> int:
         if e not in self._places:
-            function, operands = self._step(e)
+            step, operands = self._step(e)
             places = tuple(map(self._place, operands))
-            self._steps.append((function, places))
+            self._steps.append((step, places))
             self._places[e] = self._width + len(self._steps) - 1
         return self._places[e]
 
-    def _step(self, e: Any) -> tuple[Callable[..., Any], Sequence[Any]]:
+    def _step(self, e: Any) -> tuple[_Step, Sequence[Any]]:
         if e.is_Rational:
             number = WIDE(int(e.p)) / WIDE(int(e.q))
             exact = e.q == 1 and abs(int(e.p)) < 2**53
@@ -178,17 +211,22 @@ class _Program:
         if e.is_Pow:
             return _power(e), [e.base]
         if isinstance(e, sp.Piecewise):
-            return _chosen, [part for branch in e.args for part in branch]
+            return _CHOICE, [part for branch in e.args for part in branch]
         if isinstance(e, sp.cot | sp.sec | sp.csc):
-            return _reciprocal, [_RECIPROCAL[e.func](e.args[0])]
-        function = next((f for kind, f in _FUNCTIONS.items() if isinstance(e, kind)), None)
-        if function is None:
+            return _INVERTED, [_RECIPROCAL[e.func](e.args[0])]
+        step = next((f for kind, f in _FUNCTIONS.items() if isinstance(e, kind)), None)
+        if step is None:
             raise TypeError(f"cannot evaluate {e}: it is of type {type(e).__name__}")
-        return function, e.args
+        return step, e.args
 
 
-def _constant(value: Any, certainty: Any) -> Callable[..., Any]:
-    return lambda: (value, certainty)
+def _constant(value: Any, certainty: Any) -> _Step:
+    return _Step(lambda: value, lambda: (value, certainty))
+
+
+def _folded(function: Callable[[Any, Any], Any]) -> Callable[..., Any]:
+    """A function of any number of values, applied to two at a time."""
+    return lambda *values: reduce(function, values)
 
 
 def _rounded(value: Any, radius: Any, error: Any = ROUNDING) -> Ball:
@@ -232,36 +270,44 @@ def _root(a: Ball) -> Ball:
     return _rounded(value, np.where((x > r) | ((x == 0) & (r == 0)), radius, OPEN))
 
 
-def _power(e: Any) -> Callable[[Ball], Ball]:
+def _power(e: Any) -> _Step:
     """The power with the constant exponent of `e`."""
     if not (e.exp.is_Rational and e.exp.q in (1, 2)):
         raise TypeError(f"cannot evaluate the power {e}")
     times, root, inverted = abs(int(e.exp.p)), e.exp.q == 2, e.exp < 0
 
-    def power(a: Ball) -> Ball:
+    def middle(x: Any) -> Any:
+        base = np.sqrt(x) if root else x
+        return reduce(np.multiply, [1 / base if inverted else base] * times)
+
+    def ball(a: Ball) -> Ball:
         base = _root(a) if root else a
         if inverted:
             base = _reciprocal(base)
         return reduce(_times, [base] * times)
 
-    return power
+    return _Step(middle, ball)
 
 
-def _periodic(function: Callable[[Any], Any]) -> Callable[[Ball], Ball]:
+def _periodic(function: Callable[[Any], Any]) -> _Step:
     """A sine or a cosine; open if the angle is."""
 
     def bounded(a: Ball) -> Ball:
         x, r = a
         return _rounded(function(x), np.where(r < 1, r, OPEN), LIBRARY)
 
-    return bounded
+    return _Step(function, bounded)
 
 
-def _tangent(a: Ball) -> Ball:
-    return _times(_periodic(np.sin)(a), _reciprocal(_periodic(np.cos)(a)))
+def _tangent(x: Any) -> Any:
+    return np.sin(x) * (1 / np.cos(x))
 
 
-def _monotone(function: Callable[[Any], Any]) -> Callable[[Ball], Ball]:
+def _tangent_ball(a: Ball) -> Ball:
+    return _times(_periodic(np.sin).ball(a), _reciprocal(_periodic(np.cos).ball(a)))
+
+
+def _monotone(function: Callable[[Any], Any]) -> _Step:
     """A monotone function; NaN, and so open, where the ball reaches beyond the domain."""
 
     def bounded(a: Ball) -> Ball:
@@ -270,7 +316,11 @@ def _monotone(function: Callable[[Any], Any]) -> Callable[[Ball], Ball]:
         errors = [abs(end - value) + LIBRARY * (abs(end) + abs(value)) for end in ends]
         return value, np.where(np.isfinite(r), np.maximum(*errors), OPEN)
 
-    return bounded
+    return _Step(function, bounded)
+
+
+def _angle(y: Any, x: Any) -> Any:
+    return np.arctan2(y + WIDE(0), x)
 
 
 def _direction(a: Ball, b: Ball) -> Ball:
@@ -279,7 +329,7 @@ def _direction(a: Ball, b: Ball) -> Ball:
     distance, off = np.hypot(x, y) * (1 - ROUNDING), np.hypot(r, s) * (1 + ROUNDING)
     radius = np.where(off > 0, off / (distance - off), 0)
     certain = (distance > off) & (distance > LEAST) & ((x > r) | (abs(y) > s) | (s == 0))
-    return _rounded(np.arctan2(y + WIDE(0), x), np.where(certain, radius, OPEN), LIBRARY)
+    return _rounded(_angle(y, x), np.where(certain, radius, OPEN), LIBRARY)
 
 
 def _absolute(a: Ball) -> Ball:
@@ -291,17 +341,17 @@ def _sign(a: Ball) -> Ball:
     return np.sign(x), np.where((abs(x) > r) | (r == 0), WIDE(0), OPEN)
 
 
-def _extreme(choose: Callable[[Any, Any], Any]) -> Callable[..., Ball]:
+def _extreme(choose: Callable[[Any, Any], Any]) -> _Step:
     def extreme(*balls: Ball) -> Ball:
         def further(a: Ball, b: Ball) -> Ball:
             return choose(a[0], b[0]), np.maximum(a[1], b[1])
 
         return reduce(further, balls)
 
-    return extreme
+    return _Step(_folded(choose), extreme)
 
 
-def _comparison(holds: Callable[[Any, Any], Any]) -> Callable[[Ball, Ball], Truth]:
+def _comparison(holds: Callable[[Any, Any], Any]) -> _Step:
     """A comparison; it is certain where the balls do not overlap, or are points."""
 
     def compare(a: Ball, b: Ball) -> Truth:
@@ -310,29 +360,28 @@ def _comparison(holds: Callable[[Any, Any], Any]) -> Callable[[Ball, Ball], Trut
         known = np.isfinite(x) & np.isfinite(y)
         return holds(x, y), known & (apart | ((r == 0) & (s == 0)))
 
-    return compare
+    return _Step(holds, compare)
 
 
 def _not(a: Truth) -> Truth:
     return np.logical_not(a[0]), a[1]
 
 
-def _combined(decisive: bool) -> Callable[..., Truth]:
+def _combined(decisive: bool) -> _Step:
     """A conjunction or disjunction: one True decides ``Or``, one False decides ``And``."""
+    join = np.logical_or if decisive else np.logical_and
 
     def combine(*truths: Truth) -> Truth:
-        join = np.logical_or if decisive else np.logical_and
         value = reduce(join, [t for t, _ in truths])
         settled = reduce(np.logical_or, [c & (t == decisive) for t, c in truths])
         return value, settled | reduce(np.logical_and, [c for _, c in truths])
 
-    return combine
+    return _Step(_folded(join), combine)
 
 
-def _resolvent(a: Ball, b: Ball, e: Ball) -> Ball:
-    """The root of a resolvent; open unless the cubic provably changes its sign around it."""
-    point = a[0], b[0], e[0]
-    right = cubic(e[0] / 3, *point) >= 0
+def _resolvent(*point: Any) -> Any:
+    """The root of a resolvent, by Newton's method and bisection."""
+    right = cubic(point[2] / 3, *point) >= 0
     u = np.where(right, WIDE(1), WIDE(-1))
     low, high = np.full_like(u, -1), np.full_like(u, 1)
     for _ in range(2 * np.finfo(WIDE).nmant):
@@ -340,6 +389,13 @@ def _resolvent(a: Ball, b: Ball, e: Ball) -> Ball:
         low, high = np.where(value >= 0, u, low), np.where(value >= 0, high, u)
         after = u - value / slope(u, *point)
         u = np.where((after >= low) & (after <= high), after, (low + high) / 2)
+    return u
+
+
+def _resolvent_ball(a: Ball, b: Ball, e: Ball) -> Ball:
+    """It is open unless the cubic provably changes its sign around it."""
+    point = a[0], b[0], e[0]
+    u = _resolvent(*point)
     (value, error), rate = _cubic((u, WIDE(0)), a, b, e), abs(slope(u, *point))
     radius = 4 * (abs(value) + error) / rate + ROUNDING
     (above, s), (below, r) = (_cubic((u + d, WIDE(0)), a, b, e) for d in (-radius, radius))
@@ -358,8 +414,15 @@ def _minus(a: Ball) -> Ball:
     return -a[0], a[1]
 
 
-def _chosen(*parts: Any) -> Ball:
+def _chosen(*parts: Any) -> Any:
     """The branch of the first condition that holds."""
+    middle: Any = WIDE("nan")
+    for x, holds in reversed(list(zip(parts[::2], parts[1::2], strict=True))):
+        middle = np.where(holds, x, middle)
+    return middle
+
+
+def _chosen_ball(*parts: Any) -> Ball:
     middle: Any = WIDE("nan")
     radius: Any = OPEN
     for (x, r), (holds, certain) in reversed(list(zip(parts[::2], parts[1::2], strict=True))):
@@ -368,31 +431,33 @@ def _chosen(*parts: Any) -> Ball:
     return middle, radius
 
 
-_FUNCTIONS: dict[Any, Callable[..., Any]] = {
-    sp.Add: _sum,
-    sp.Mul: _product,
+_FUNCTIONS: dict[Any, _Step] = {
+    sp.Add: _Step(_folded(np.add), _sum),
+    sp.Mul: _Step(_folded(np.multiply), _product),
     sp.sin: _periodic(np.sin),
     sp.cos: _periodic(np.cos),
-    sp.tan: _tangent,
+    sp.tan: _Step(_tangent, _tangent_ball),
     sp.atan: _monotone(np.arctan),
     sp.asin: _monotone(np.arcsin),
     sp.acos: _monotone(np.arccos),
-    sp.atan2: _direction,
-    sp.Abs: _absolute,
-    sp.sign: _sign,
+    sp.atan2: _Step(_angle, _direction),
+    sp.Abs: _Step(np.abs, _absolute),
+    sp.sign: _Step(np.sign, _sign),
     sp.Max: _extreme(np.maximum),
     sp.Min: _extreme(np.minimum),
-    Resolvent: _resolvent,
+    Resolvent: _Step(_resolvent, _resolvent_ball),
     sp.Ge: _comparison(np.greater_equal),
     sp.Gt: _comparison(np.greater),
     sp.Le: _comparison(np.less_equal),
     sp.Lt: _comparison(np.less),
     sp.Eq: _comparison(np.equal),
     sp.Ne: _comparison(np.not_equal),
-    sp.Not: _not,
+    sp.Not: _Step(np.logical_not, _not),
     sp.And: _combined(False),
     sp.Or: _combined(True),
 }
+_CHOICE = _Step(_chosen, _chosen_ball)
+_INVERTED = _Step(partial(np.divide, WIDE(1)), _reciprocal)
 _RECIPROCAL = {sp.cot: sp.tan, sp.sec: sp.cos, sp.csc: sp.sin}
 
 __all__ = ["RowEvaluator", "crosses", "inaccurate"]

@@ -1,5 +1,7 @@
 """Shared by the tests: repeatable examples, the toy extension, the site, the worst errors."""
 
+from __future__ import annotations
+
 import importlib.util
 import os
 import pickle
@@ -7,21 +9,22 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from extension_toy.build import compile_toy, loaded
 from hypothesis import settings
-from sharing import quick_compiler, shared
+from sharing import compile_quickly, shared
 
-from closedform.check.crosscheck import Finding, table
+if TYPE_CHECKING:  # most processes that run pytest need no SymPy for it
+    from closedform.check.crosscheck import Finding
 
 # The same examples on every run: a failure can be repeated, and a build is stable.
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile("repeatable")
 
 ROOT = Path(__file__).parents[1]
-FINDINGS = pytest.StashKey[list[Finding]]()
+FINDINGS = pytest.StashKey["list[Finding]"]()
 
 
 @pytest.fixture(scope="session")
@@ -72,8 +75,7 @@ def compiled_quickly(
     tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What is printed for a test is cross-checked with little optimisation."""
-    if os.name == "posix" and shutil.which("cc"):
-        monkeypatch.setenv("CC", quick_compiler(tmp_path_factory.mktemp("cc")))
+    compile_quickly(monkeypatch, tmp_path_factory.mktemp("cc"))
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
@@ -96,6 +98,8 @@ def pytest_terminal_summary(
 ) -> None:
     found = config.stash.get(FINDINGS, [])
     if found:
+        from closedform.check.crosscheck import table
+
         terminalreporter.section("worst error of each generated function")
         found.sort(key=lambda f: (f.robot, f.function, f.backend))
         for line in table(found):

@@ -1,6 +1,7 @@
 """Things that take long to make are made once for all processes that run the tests."""
 
 import os
+import shutil
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -8,7 +9,6 @@ from pathlib import Path
 import compiling
 import pytest
 
-from closedform.check.clibrary import compiler
 from closedform.pipeline.disk import locked
 
 
@@ -30,7 +30,15 @@ def shared(
 
 def quick_compiler(folder: Path, level: str = "-O0") -> str:
     """The C compiler as a program that does not optimise, for code whose speed is not looked at."""
+    from closedform.check.clibrary import compiler  # with SymPy, which few processes need
+
     return remembering(folder / "cc-quick", f'{compiler()} "$@" {level}')
+
+
+def compile_quickly(patch: pytest.MonkeyPatch, folder: Path) -> None:
+    """Let whatever is cross-checked be compiled by :func:`quick_compiler`, where there is one."""
+    if os.name == "posix" and shutil.which("cc"):
+        patch.setenv("CC", quick_compiler(folder))
 
 
 def remembering(program: Path, command: str = '"$@"') -> str:

@@ -11,6 +11,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 from arms import OK, SINGULAR, link
+from sharing import compile_quickly
 
 from closedform.cli.commands import main
 
@@ -42,28 +43,28 @@ def pose(rows: np.ndarray, q: np.ndarray) -> np.ndarray:
 
 def on_first_axis(rows: np.ndarray, q: np.ndarray) -> np.ndarray:
     """Postures whose origin of the third frame is at most as far from the first axis as NEAR."""
-    q, out = q.copy(), []
     grid = np.linspace(-np.pi, np.pi, 721)
+    turned = pose(rows[:1], q[:, :1])[:, :3, 0]
 
-    def beside(row: np.ndarray, angle: float) -> float:
-        moved = row.copy()
-        moved[1] = angle
-        turned = pose(rows[:1], row[:1])[:3, 0]
-        return float(turned @ pose(rows[:3], moved[:3])[:3, 3])
+    def beside(angles: np.ndarray) -> np.ndarray:
+        """How far it is from the axis, with each row's angles of the second joint."""
+        moved = np.repeat(q[:, None, :3], angles.shape[1], axis=1)
+        moved[..., 1] = angles
+        return np.einsum("ni,nki->nk", turned, pose(rows[:3], moved)[..., :3, 3])
 
-    for row in q:
-        values = np.array([beside(row, a) for a in grid])
-        (crossing,) = np.nonzero(np.sign(values[1:]) * np.sign(values[:-1]) < 0)
-        if not len(crossing):
-            continue
-        low, high = grid[crossing[0]], grid[crossing[0] + 1]
-        for _ in range(60):
-            middle = (low + high) / 2
-            same = np.sign(beside(row, middle)) == np.sign(beside(row, low))
-            low, high = (middle, high) if same else (low, middle)
-        for near in NEAR:
-            out.append([row[0], low + near, *row[2:]])
-    return np.array(out)
+    values = beside(np.tile(grid, (len(q), 1)))
+    crosses = values[:, 1:] * values[:, :-1] < 0
+    first = crosses.argmax(axis=1)[:, None]
+    low, high = grid[first], grid[first + 1]
+    start = np.sign(beside(low))
+    for _ in range(60):
+        middle = (low + high) / 2
+        same = np.sign(beside(middle)) == start
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    found = crosses.any(axis=1)
+    out = np.repeat(q[found, None], len(NEAR), axis=1)
+    out[..., 1] = low[found] + NEAR
+    return out.reshape(-1, q.shape[1])
 
 
 @pytest.fixture(scope="module")
@@ -83,8 +84,9 @@ def derived(request: pytest.FixtureRequest, folder: Path) -> tuple[ModuleType, s
     assert main(["new", name, "--from", "dh", str(table), "-o", str(folder)]) == 0
     backends = ["--backend", "numpy", "--backend", "c"]
     out = ["-o", str(folder / f"out_{name}")]
-    assert main(["derive", str(folder / f"{name}.py"), *out, *backends]) == 0
     patch = pytest.MonkeyPatch()
+    compile_quickly(patch, folder)
+    assert main(["derive", str(folder / f"{name}.py"), *out, *backends]) == 0
     patch.syspath_prepend(str(folder))
     importlib.invalidate_caches()
     module = importlib.import_module(f"out_{name}.numpy.{name}")

@@ -8,6 +8,7 @@ from itertools import islice
 
 import sympy as sp
 
+from closedform.algebra.balls import free_symbols
 from closedform.lower.build import Builder
 from closedform.lower.graph import Graph, Node
 from closedform.lower.operators import LEAVES
@@ -176,7 +177,7 @@ class Branch:
         the requirement fails if it is not finite.
         """
         graph = self.graph
-        used = {s for e in expressions_of(self.function) for s in e.free_symbols}
+        used = free_symbols(expressions_of(self.function))
         judged = self.function.has_status
         parameters = [p for p in self.derivation.parameters if judged or p.symbol in used]
         required = {

@@ -35,13 +35,14 @@ class Graph:
     _nodes: dict[Hashable, Node] = field(default_factory=dict)
 
     def node(self, op: str, *args: Node, payload: Hashable = None) -> Node:
-        key = (op, tuple(a.id for a in args), payload)
-        if key not in self._nodes:
+        key = (op, args, payload)
+        found = self._nodes.get(key)
+        if found is None:
             arity = OPERATORS[op].arity
             if arity is not None and arity != len(args):
                 raise TypeError(f"{op} takes {arity} operands, not {len(args)}")
-            self._nodes[key] = Node(len(self._nodes), op, args, payload)
-        return self._nodes[key]
+            found = self._nodes[key] = Node(len(self._nodes), op, args, payload)
+        return found
 
     def const(self, value: sp.Expr | int) -> Node:
         value = sp.sympify(value, strict=True)
@@ -215,18 +216,23 @@ def reachable(
     The operands of the operators in ``stop`` are not visited.  ``operands`` may replace those of a
     node.
     """
-    seen: set[int] = set()
-    stack: list[tuple[Node, bool]] = [(root, False) for root in reversed(list(roots))]
+    seen: set[Node] = set()
+    waiting: set[Node] = set()  # for their operands, which are above them on the stack
+    stack = list(roots)[::-1]
     while stack:
-        node, expanded = stack.pop()
-        if expanded:
+        node = stack[-1]
+        if node not in seen:
+            seen.add(node)
+            if node.op not in stop:
+                below = [a for a in operands(node)[::-1] if a not in seen]
+                if below:
+                    waiting.add(node)
+                    stack += below
+                    continue
+            yield stack.pop()
+        elif stack.pop() in waiting:
+            waiting.remove(node)
             yield node
-        elif node.id not in seen:
-            seen.add(node.id)
-            stack.append((node, True))
-            if node.op in stop:
-                continue
-            stack.extend((a, False) for a in reversed(operands(node)) if a.id not in seen)
 
 
 def hardly_ever(condition: Node) -> bool:
@@ -248,7 +254,7 @@ def rebuild(
     operands: Callable[[Node], tuple[Node, ...]] = operands_of,
 ) -> list[Node]:
     """The images of ``roots`` after ``change`` has replaced every node, operands first."""
-    image: dict[int, Node] = {}
+    image: dict[Node, Node] = {}
     for node in reachable(roots, operands=operands):
-        image[node.id] = change(node, tuple(image[a.id] for a in operands(node)))
-    return [image[root.id] for root in roots]
+        image[node] = change(node, tuple([image[a] for a in operands(node)]))
+    return [image[root] for root in roots]

@@ -500,8 +500,9 @@ class Algorithm:
 
     def _made_for(self, value: sp.Expr) -> dict[sp.Basic, sp.Expr] | None:
         """The names in a value that no line defines, with their values; None if they are long."""
-        hidden = [s for s in self.values if s in value.free_symbols]
-        hidden = [s for s in hidden if s not in self.needed | self.printed]
+        there = value.free_symbols
+        defined = self.needed | self.printed
+        hidden = [s for s in self.values if s in there and s not in defined]
         made: dict[sp.Basic, sp.Expr] = {s: self.shown(self.values[s]) for s in hidden}
         rest = {s for e in made.values() for s in e.free_symbols & self.values.keys()}
         is_long = any(self.page.lines.width(e) > ONCE for e in made.values())

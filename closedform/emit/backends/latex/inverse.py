@@ -14,6 +14,7 @@ from typing import Any
 
 import sympy as sp
 
+from closedform.algebra.balls import free_symbols
 from closedform.algebra.formulas import PRINTED, formula
 from closedform.emit.backends.latex.algorithm import Algorithm, whole
 from closedform.emit.backends.latex.equations import canonical
@@ -248,7 +249,7 @@ class Told:
         assert self.inverse
         page = self.page
         explicit = [self.explicit(e) for e in equations]
-        held = {s for e in explicit for s in e.free_symbols}
+        held = free_symbols(explicit)
         parts = [s for s in self.function.symbols if s in held]
         rank = self.inverse.rank
         solvable = {*self.inverse.unknowns, *rank.defined, *rank.lengths}
@@ -273,7 +274,7 @@ class Told:
         assert self.inverse
         meaning = self.inverse.rank.meaning
         for _ in range(len(self.algorithm.values) + 1):
-            names = value.free_symbols & {*self.algorithm.values, *meaning}
+            names = free_symbols([value]) & {*self.algorithm.values, *meaning}
             if not names:
                 break
             value = substitute(

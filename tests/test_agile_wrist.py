@@ -18,14 +18,15 @@ STARTS = 60
 
 
 def hat(v: np.ndarray) -> np.ndarray:
-    return np.cross(np.eye(3), v)
+    return np.cross(np.eye(3), v[..., None, :])
 
 
-def turn(axis: np.ndarray, angle: float) -> np.ndarray:
+def turn(axis: np.ndarray, angle: np.ndarray | float) -> np.ndarray:
     """The exponential of hat(axis) * angle, as a series."""
     result, term = np.eye(3), np.eye(3)
+    turned = hat(axis) * np.asarray(angle)[..., None, None]
     for k in range(1, 40):
-        term = term @ hat(axis) * angle / k
+        term = term @ turned / k
         result = result + term
     return result
 
@@ -37,11 +38,11 @@ def middle(q: np.ndarray) -> np.ndarray:
 
 def last(R: np.ndarray) -> np.ndarray:
     """The last axes, as rows, if the hand is turned by R."""
-    return HOME[1] @ R.T
+    return HOME[1] @ R.swapaxes(-1, -2)
 
 
 def missed(q: np.ndarray, R: np.ndarray) -> np.ndarray:
-    return np.einsum("ij,ij->i", middle(q), last(R))
+    return np.einsum("ij,...ij->...i", middle(q), last(R))
 
 
 def random_rotations(rng: np.random.Generator, rows: int) -> np.ndarray:
@@ -59,14 +60,15 @@ def test_newtons_method_finds_these_modes_and_four_that_no_joint_moves() -> None
         if abs(gap(q)) < 0.05:
             continue
         w = middle(q)
+        ends = random_rotations(rng, STARTS)
+        for _ in range(30):
+            A = np.cross(w, last(ends))
+            step = (np.linalg.pinv(A) @ missed(q, ends)[..., None])[..., 0]
+            size = np.linalg.norm(step, axis=-1)
+            ends = turn(step / np.where(size, size, 1)[:, None], np.minimum(size, 1)) @ ends
         solutions: list[np.ndarray] = []
-        for R in random_rotations(rng, STARTS):
-            for _ in range(30):
-                A = np.cross(w, last(R))
-                step = np.linalg.lstsq(A, np.einsum("ij,ij->i", w, last(R)), rcond=None)[0]
-                size = min(1.0, 1 / np.linalg.norm(step)) if step.any() else 1.0
-                R = turn(step * size / (np.linalg.norm(step) or 1), np.linalg.norm(step)) @ R
-            if abs(missed(q, R)).max() < 1e-12 and all(abs(R - s).max() > 1e-6 for s in solutions):
+        for R in ends[abs(missed(q, ends)).max(axis=1) < 1e-12]:
+            if all(abs(R - s).max() > 1e-6 for s in solutions):
                 solutions.append(R)
         assert len(solutions) == 8
         moved = [R for R in solutions if abs(np.diag(last(R))).min() < 1 - 1e-9]

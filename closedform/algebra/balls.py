@@ -25,6 +25,7 @@ from flint import arb, fmpq
 from sympy import Symbol
 
 from closedform.algebra.resolvent import Resolvent, enclosed
+from closedform.model.functions import free_symbols
 
 Expr: TypeAlias = Any  # SymPy's annotations are partial
 Value: TypeAlias = Any  # int, Fraction, float, or an exact SymPy number such as pi/3
@@ -126,18 +127,6 @@ class Evaluator:
             return False
         scales, part = self._program.scales(registers), arb(2) ** -self.rel_bits
         return all(balls[k].rad() <= scales[k] * part for k in wide)
-
-
-def free_symbols(exprs: Iterable[Expr]) -> set[Expr]:
-    """The symbols in expressions; a part that occurs many times is visited once."""
-    seen: set[Expr] = set()
-    pending = list(exprs)
-    while pending:
-        e = pending.pop()
-        if e not in seen:
-            seen.add(e)
-            pending += e.args
-    return {e for e in seen if e.is_Symbol}
 
 
 def to_float(ball: arb) -> float:

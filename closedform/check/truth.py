@@ -16,13 +16,22 @@ import sympy as sp
 from flint import arb
 from numpy.typing import NDArray
 
-from closedform.algebra.balls import Undetermined, free_symbols, to_float
+from closedform.algebra.balls import Undetermined, to_float
 from closedform.check.rows import RowEvaluator, crosses
 from closedform.check.samples import Degrees, Magnitudes, Sample, with_parameters
 from closedform.lemmas.chain import numbers_of_tool
 from closedform.lower import lower
 from closedform.model.derivation import Derivation
-from closedform.model.functions import Bound, Function, Let, Match, Require, Vanishes, substitute
+from closedform.model.functions import (
+    Bound,
+    Function,
+    Let,
+    Match,
+    Require,
+    Vanishes,
+    free_symbols,
+    substitute,
+)
 from closedform.model.inverse import Combination, Inverse
 
 Array = NDArray[Any]

@@ -8,7 +8,6 @@ from itertools import islice
 
 import sympy as sp
 
-from closedform.algebra.balls import free_symbols
 from closedform.lower.build import Builder
 from closedform.lower.graph import Graph, Node
 from closedform.lower.operators import LEAVES
@@ -23,6 +22,7 @@ from closedform.model.functions import (
     Require,
     Statement,
     Vanishes,
+    free_symbols,
 )
 
 

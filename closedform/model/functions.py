@@ -315,10 +315,10 @@ def explicit(
     flags = {s.symbol: known.get(s.symbol, sp.false) for s in body if isinstance(s, Vanishes)}
     exprs = [substitute(e, flags) for e in exprs]
     values = {s.symbol: substitute(s.value, flags) for s in body if isinstance(s, (Let, Bound))}
-    needed = {s for e in exprs for s in e.free_symbols} - known.keys()
+    needed = free_symbols(exprs) - known.keys()
     for symbol, value in reversed(values.items()):
         if symbol in needed:
-            needed |= value.free_symbols - known.keys()
+            needed |= free_symbols([value]) - known.keys()
     bounds = []
     for statement in body:
         if isinstance(statement, (Let, Bound)) and statement.symbol in needed:
@@ -334,28 +334,55 @@ SIMPLE = 50
 """The largest number of nodes of an argument that SymPy may compare with the other arguments."""
 
 
+def parts(exprs: Iterable[sp.Basic]) -> dict[sp.Basic, None]:
+    """All expressions that others consist of, and these; one that occurs many times is there once.
+
+    SymPy visits it as often as it occurs, in a long chain of names thousands of times.
+    """
+    found: dict[sp.Basic, None] = {}
+    pending = list(exprs)
+    while pending:
+        e = pending.pop()
+        if e not in found:
+            found[e] = None
+            pending += e.args
+    return found
+
+
+def free_symbols(exprs: Iterable[sp.Basic]) -> set[Any]:
+    """The symbols in expressions."""
+    return {e for e in parts(exprs) if e.is_Symbol}
+
+
 def substitute(expr: sp.Basic, known: Mapping[sp.Basic, sp.Basic]) -> Any:
-    """Replace symbols simultaneously; SymPy gets only those that occur, which is much faster."""
-    occurring = {s: known[s] for s in expr.free_symbols if s in known}
-    if not occurring:
+    """Replace symbols simultaneously, in each part of the expression once."""
+    inside = parts([expr])
+    images = {e: known[e] for e in inside if e.is_Symbol and e in known}
+    if not images:
         return expr
-    return _rebuilt(expr, occurring) if expr.has(sp.Max, sp.Min) else expr.xreplace(occurring)
+    return _image(expr, images, any(isinstance(e, sp.Max | sp.Min) for e in inside))
 
 
-def _rebuilt(expr: sp.Basic, known: Mapping[sp.Basic, sp.Basic]) -> Any:
-    """The same for an expression with ``Max`` or ``Min``.
+def _image(expr: sp.Basic, images: dict[sp.Basic, Any], extremes: bool) -> Any:
+    """The image of an expression, which is kept with those of its parts.
 
     SymPy factors the arguments of a new ``Max`` or ``Min`` and expands that of a new ``Abs``.  For
-    large arguments this takes a minute and finds nothing.
+    large arguments this takes a minute and finds nothing, so beside ``extremes`` it does not.
     """
-    if expr in known:
-        return known[expr]
-    if not expr.free_symbols & known.keys():
+    if expr in images:
+        return images[expr]
+    if not expr.args:
         return expr
-    args = [_rebuilt(a, known) for a in expr.args]
-    if isinstance(expr, sp.Max | sp.Min | sp.Abs) and not all(map(_is_simple, args)):
-        return expr.func(*args, evaluate=False)
-    return expr.func(*args)
+    args = [_image(a, images, extremes) for a in expr.args]
+    found: Any = expr
+    if any(new is not old for new, old in zip(args, expr.args, strict=True)):
+        unevaluated = extremes and isinstance(expr, sp.Max | sp.Min | sp.Abs)
+        if unevaluated and not all(map(_is_simple, args)):
+            found = expr.func(*args, evaluate=False)
+        else:
+            found = expr.func(*args)
+    images[expr] = found
+    return found
 
 
 def _is_simple(expr: sp.Basic) -> bool:
@@ -492,6 +519,8 @@ __all__ = [
     "branches",
     "choose",
     "explicit",
+    "free_symbols",
+    "parts",
     "real",
     "reject_floats",
     "sign_of",

@@ -7,7 +7,15 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.model.functions import Bound, Function, Let, Vanishes, substitute
+from closedform.model.functions import (
+    Bound,
+    Function,
+    Let,
+    Vanishes,
+    free_symbols,
+    parts,
+    substitute,
+)
 from closedform.model.inverse import Combination, Inverse, Rank
 
 Expr = Any
@@ -82,10 +90,10 @@ def meanings(function: Function, inverse: Inverse, glue: Combination) -> dict[Ex
         for s in function.body
         if isinstance(s, (Let, Bound)) and id(s) not in inside
     }
-    needed = {s for e in roots for s in e.free_symbols}
+    needed = free_symbols(roots)
     for symbol, value in reversed(values.items()):
         if symbol in needed:
-            needed |= value.free_symbols - known.keys()
+            needed |= free_symbols([value]) - known.keys()
     known |= flags
     for symbol in [s for s in values if s in needed]:
         known[symbol] = substitute(values[symbol], known)
@@ -94,7 +102,9 @@ def meanings(function: Function, inverse: Inverse, glue: Combination) -> dict[Ex
 
 def outcomes(expr: Expr) -> Iterator[Expr]:
     """The values of an expression for all outcomes of its choices between sides."""
-    choices = [c for p in expr.atoms(sp.Piecewise) for _, c in p.args if c.is_Relational]
+    inside = parts(expr if isinstance(expr, sp.MatrixBase) else [expr])
+    chosen = (p for p in inside if isinstance(p, sp.Piecewise))
+    choices = [c for p in chosen for _, c in p.args if c.is_Relational]
     if not choices:
         yield expr
         return

@@ -14,7 +14,6 @@ from typing import Any
 
 import sympy as sp
 
-from closedform.algebra.balls import free_symbols
 from closedform.algebra.formulas import PRINTED, formula
 from closedform.emit.backends.latex.algorithm import Algorithm, whole
 from closedform.emit.backends.latex.equations import canonical
@@ -31,6 +30,7 @@ from closedform.model.functions import (
     Function,
     Let,
     Vanishes,
+    free_symbols,
     real,
     substitute,
 )

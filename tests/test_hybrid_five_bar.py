@@ -6,12 +6,11 @@ from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from math import comb
+from types import ModuleType
 
 import numpy as np
 import pytest
 import sympy as sp
-from closedform.derivations import hybrid_five_bar
-from closedform.derivations import hybrid_five_bar_design as design
 
 from closedform.model.inverse import Link
 from closedform.proof.inverse import prove_inverse
@@ -32,6 +31,12 @@ REGIMES = {
 @pytest.fixture(params=("numpy", "c"))
 def arm(request: pytest.FixtureRequest):
     return importlib.import_module(f"closedform.generated.{request.param}.hybrid_five_bar")
+
+
+@pytest.fixture(scope="module")
+def design() -> ModuleType:
+    """Imported by the tests that use it, because SymPy derives it for seconds."""
+    return importlib.import_module("closedform.derivations.hybrid_five_bar_design")
 
 
 @cache
@@ -394,7 +399,7 @@ def test_lengths_as_arrays(arm) -> None:
                     np.testing.assert_allclose(a[:, k], b, rtol=1e-12, atol=1e-12, err_msg=name)
 
 
-def test_every_regime_is_tried() -> None:
+def test_every_regime_is_tried(design) -> None:
     found = design.regimes()
     assert found.keys() == REGIMES.keys()
     for name, cases in REGIMES.items():
@@ -421,7 +426,7 @@ def test_volume_is_continuous_and_falls(arm) -> None:
 
 @pytest.mark.parametrize("kappa", [1.0, 1.5, 4.0])
 @pytest.mark.parametrize("mirrored", [1, -1])
-def test_loci_hold_the_postures_they_describe(arm, kappa: float, mirrored: int) -> None:
+def test_loci_hold_the_postures_they_describe(arm, design, kappa: float, mirrored: int) -> None:
     """Postures with a given angle between CP and DP, built bar by bar, satisfy the polynomial."""
     k = sp.nsimplify(kappa)
     found = design.locus(k**2 - 1, 2 * k * mirrored, k**2 + 1)
@@ -462,7 +467,7 @@ def on_a_line(curve: sp.Poly, at: Fraction, slope: Fraction) -> list[float]:
 
 @pytest.mark.parametrize("psi", [0.0, np.pi, np.pi / 2, -np.pi / 2, 1.0, -2.0])
 @pytest.mark.parametrize("lengths", [(7, 8, 5), (0, 3, 2), (3, 1, 3), (1, 1, 2)])
-def test_real_points_of_the_loci_are_postures(lengths, psi: float) -> None:
+def test_real_points_of_the_loci_are_postures(design, lengths, psi: float) -> None:
     """On random lines: the real roots are postures, made by own circles, with CP turned by psi."""
     L0, L1, L2 = lengths
     curve = design.by_cramer(*map(sp.Rational, (np.cos(psi), np.sin(psi))))
@@ -492,7 +497,7 @@ def test_real_points_of_the_loci_are_postures(lengths, psi: float) -> None:
 
 
 def test_the_inverse_is_counted_step_by_step() -> None:
-    d = hybrid_five_bar.d
+    d = importlib.import_module("closedform.derivations.hybrid_five_bar").d
     inverse = next(i for i in d.inverses if i.function == "ik")
     assert prove_inverse(d, inverse).method == "step by step"
     first, second, third = inverse.links

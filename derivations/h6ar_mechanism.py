@@ -6,6 +6,7 @@ of the real arms' angles, right minus left.
 """
 
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import reduce
 from typing import NamedTuple
 
@@ -17,13 +18,13 @@ from closedform import (
     Lemma,
     LinksAtHeight,
     Pair,
+    Preferred,
     Program,
     denavit_hartenberg,
     homogeneous,
     linear_pair,
     real,
     rotation,
-    sign_of,
     sine_cosine,
     two_link_arm,
 )
@@ -264,10 +265,12 @@ def wrist_length(m: Dimensions, level: sp.Expr) -> sp.Expr:
 def wrist_given(program: Program, m: Dimensions, level: sp.Expr) -> tuple[sp.Symbol, sp.Symbol]:
     """Define l_W and half the base line, d / level; ``level`` is the cosine of its tilt.
 
-    The scale of the bounds is at most ``level / 2`` times that in ``wrist_let``.  So a posture that
-    is within reach here is also within reach there.
+    The scale of the bounds is at most ``level / 2`` times that in ``wrist_let``, so a posture that
+    is within reach here is also within reach there; and what eight units in the last place of yaw
+    and roll change, because near a right angle a posture with a stretched wrist has no better ones.
     """
-    size = (m.al + m.gs) * level * Rational(65, 64)
+    tilt = sum(sp.Abs(level.diff(a)) for a in sorted(level.free_symbols, key=str))
+    size = (m.al + m.gs) * (level * Rational(65, 64) + tilt / 512)
     program.bound("upright", cos(phi), sp.S.One, "the roll is less than a right angle")
     near = (m.al + m.gs) * level - m.d
     near = program.bound("near", near, size, "the wrist links are long enough")
@@ -309,30 +312,43 @@ def along_gap(
     gap: tuple[sp.Expr, sp.Expr],
     fore: tuple[sp.Expr, sp.Expr],
     height: sp.Expr,
-) -> tuple[sp.Symbol, ...]:
+) -> tuple[Preferred, ...]:
     """How far the tip may be from the waist axis if the gap of the tips is across the longer link.
 
     The ``fore`` link, along and across, ends at the tip, at a ``height`` above the shoulder.  At
     the limit of the waist, rounding of the target leaves the distance open.  The gap determines it,
-    if the other link is much shorter: other postures do not have that gap.
+    if the other link is much shorter: other postures do not have that gap.  The longer link may
+    point to either end of the gap, and the other one to either side.  Such a posture exists if the
+    longer link spans the gap; and if the other link is too short for the height that is left, the
+    turn of the longer one that makes up for it must leave the gap within reach of both.
     """
     let = program.let
     along, across = fore
     second, whole = sqrt(m.L2**2 + m.a3**2), sqrt(along**2 + across**2)
     by_fore = second > m.L1
-    size = let("gap_size", sqrt(gap[0] ** 2 + gap[1] ** 2) + (m.L1 + second) / 2**100)
+    gap_size = let("gap_size", sqrt(gap[0] ** 2 + gap[1] ** 2))
+    size = gap_size + (m.L1 + second) / 2**100
     x = sp.Piecewise(((across * m.L2 - along * m.a3) / second, by_fore), (0, True))
     y = sp.Piecewise(((across * m.a3 + along * m.L2) / second, by_fore), (m.L1, True))
     x, y = let("long_x", x / size), let("long_y", -y / size)
     long_r, long_h = let("long_r", x * gap[0] - y * gap[1]), let("long_h", x * gap[1] + y * gap[0])
     shorter = let("shorter", sp.Piecewise((m.L1, by_fore), (whole, True)))
-    across = let("across_gap", sign_of(height * long_h) * long_h)
-    beyond = let("beyond_gap", height - across)
-    short_h = let("short_h", sp.Max(-shorter, sp.Min(shorter, beyond)))
-    square = long_r**2 + (short_h - beyond) * (across + height - short_h)
-    left_r = let("left_r", sqrt(sp.Max(0, square)))
-    short_r = let("short_r", sqrt((shorter - short_h) * (shorter + short_h)))
-    return let("root_same", left_r + short_r), let("root_apart", sp.Abs(left_r - short_r))
+    spans = gap_size <= sp.Max(second, m.L1)
+    # upright, the shorter link has this much to say across the longer one
+    across_long = m.L1 * sp.Abs(gap[1]) / size
+    room = let("across_long", sp.Piecewise((across_long, by_fore), (second, True)))
+    roots = []
+    for name, across in (("_ahead", long_h), ("_behind", -long_h)):
+        beyond = let(f"beyond_gap{name}", height - across)
+        short_h = let(f"short_h{name}", sp.Max(-shorter, sp.Min(shorter, beyond)))
+        square = long_r**2 + (short_h - beyond) * (across + height - short_h)
+        left_r = let(f"left_r{name}", sqrt(sp.Max(0, square)))
+        short_r = let(f"short_r{name}", sqrt((shorter - short_h) * (shorter + short_h)))
+        lacking = (sp.Abs(beyond) - shorter) * gap_size
+        exists = sp.And(spans, lacking <= room * left_r)
+        roots.append(Preferred(let(f"root_same{name}", left_r + short_r), exists))
+        roots.append(Preferred(let(f"root_apart{name}", sp.Abs(left_r - short_r)), exists))
+    return tuple(roots)
 
 
 class MidPlane(NamedTuple):
@@ -371,7 +387,11 @@ def solve_mid_plane(
     aside, along, across = (
         program.let(n, e) for n, e in zip(names, extended(m, known), strict=True)
     )
-    preferred = along_gap(program, m, gap, (along, across), z - m.d1) if gap else ()
+    virtual = LinksAtHeight(m.L1, sqrt(along**2 + across**2), z - m.d1)
+    if gap:
+        roots = along_gap(program, m, gap, (along, across), z - m.d1)
+        # as much as a clamped bound may be missed by: eight units in the last place of yaw and roll
+        virtual = replace(virtual, preferred=roots, rounding=Rational(1, 2**40))
     turn = sine_cosine(
         program,
         q.theta1,
@@ -380,7 +400,7 @@ def solve_mid_plane(
         free=(q.theta1,),
         scale=sum(m),
         slack=slack,
-        toward=LinksAtHeight(m.L1, sqrt(along**2 + across**2), z - m.d1, preferred),
+        toward=virtual,
     )
     outward = turn.known(x * cos(q.theta1) + y * sin(q.theta1))
     sigma_bend = program.let("sigma_bend", -sigma_waist * sigma_elbow)

@@ -11,7 +11,7 @@ import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import sympy as sp
 
@@ -183,19 +183,28 @@ class Anywhere:
         return Reached(turn.pair(turn.root, turn.width), turn.root)
 
 
+class Preferred(NamedTuple):
+    """A root that more than the reach of two links speaks for, and when it exists."""
+
+    root: sp.Symbol
+    exists: sp.Basic
+
+
 @dataclass(frozen=True)
 class LinksAtHeight:
     """Two links that have to reach a point at a ``height``, whose other coordinate a turn gives.
 
     That is the root of the turn.  Where the root is small, rounding changes it by a multiple, and
-    links much shorter than the amplitude might seem too short.  The first of the ``preferred``
-    roots is taken that rounding does not tell from the computed one.
+    links much shorter than the amplitude might seem too short.  Of the ``preferred`` roots that
+    rounding does not tell from the computed one, the nearest is taken.
     """
 
     l1: sp.Expr
     l2: sp.Expr
     height: sp.Expr
-    preferred: Sequence[sp.Symbol] = ()
+    preferred: Sequence[Preferred] = ()
+    rounding: sp.Expr = ROUNDING
+    """What rounding changes the right side of the equation by, in units of its scale."""
 
     def square_in_reach(
         self, program: Program, at: Amplitude, scale: sp.Expr, suffix: str
@@ -205,12 +214,19 @@ class LinksAtHeight:
         farthest = (self.l1 + self.l2) ** 2 - self.height**2
         nearest = (self.l1 - self.l2) ** 2 - self.height**2
         wanted = program.let(f"wanted{suffix}", sp.Max(0, nearest, sp.Min(square, farthest)))
-        rounding = 2 * at.h * scale / 2**44
+        rounding = 2 * at.h * scale * self.rounding
         result = sp.Piecewise((wanted, sp.Abs(wanted - square) <= rounding), (square, True))
-        for root in reversed(self.preferred):
+        least = rounding
+        for root, exists in self.preferred:
             other = program.let(f"{root}_squared{suffix}", root**2)
-            near = sp.Abs(other - square) <= 8 * rounding
-            result = sp.Piecewise((other, near), *result.args)
+            away = program.let(f"{root}_away{suffix}", sp.Abs(other - square))
+            nearer = sp.And(exists, away <= least)
+            result = program.let(
+                f"{root}_held{suffix}", sp.Piecewise((other, nearer), (result, True))
+            )
+            least = program.let(
+                f"{root}_least{suffix}", sp.Piecewise((away, nearer), (least, True))
+            )
         return program.let(f"held{suffix}", result, nonnegative=True)
 
     def reached(self, turn: Tangency) -> Reached:

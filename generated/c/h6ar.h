@@ -13,11 +13,11 @@
  *   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
  *   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
  *   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
- *   ik: 565 compare and select, 447 add, 33 atan2, 148 divide, 554 multiply, 1 reduce to a turn, 3
- *     sincos, 40 sqrt
- *   ik where nothing vanishes: 246 compare and select, 166 add, 17 atan2, 32 divide, 146 multiply,
+ *   ik: 592 compare and select, 459 add, 33 atan2, 150 divide, 561 multiply, 1 reduce to a turn, 3
+ *     sincos, 42 sqrt
+ *   ik where nothing vanishes: 247 compare and select, 167 add, 17 atan2, 33 divide, 147 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
- *   wrist_length: 5 add, 20 compare and select, 1 divide, 5 multiply, 2 sincos, 1 sqrt
+ *   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 2 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
  *   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt

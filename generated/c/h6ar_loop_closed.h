@@ -13,11 +13,11 @@
  *   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
  *   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
  *   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
- *   ik: 861 compare and select, 632 add, 28 atan2, 153 divide, 906 multiply, 1 reduce to a turn, 3
+ *   ik: 863 compare and select, 634 add, 28 atan2, 155 divide, 909 multiply, 1 reduce to a turn, 3
  *     sincos, 41 sqrt
- *   ik where nothing vanishes: 281 compare and select, 260 add, 23 atan2, 33 divide, 334 multiply,
+ *   ik where nothing vanishes: 283 compare and select, 262 add, 23 atan2, 35 divide, 337 multiply,
  *     1 reduce to a turn, 3 sincos, 16 sqrt
- *   wrist_length: 5 add, 20 compare and select, 1 divide, 6 multiply, 2 sincos, 1 sqrt
+ *   wrist_length: 22 compare and select, 7 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
  *   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
  *   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
  *   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt

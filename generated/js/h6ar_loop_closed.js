@@ -12,11 +12,11 @@
 //   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
 //   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
 //   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
-//   ik: 861 compare and select, 632 add, 28 atan2, 153 divide, 906 multiply, 1 reduce to a turn, 3
+//   ik: 863 compare and select, 634 add, 28 atan2, 155 divide, 909 multiply, 1 reduce to a turn, 3
 //     sincos, 41 sqrt
-//   ik where nothing vanishes: 281 compare and select, 260 add, 23 atan2, 33 divide, 334 multiply,
+//   ik where nothing vanishes: 283 compare and select, 262 add, 23 atan2, 35 divide, 337 multiply,
 //     1 reduce to a turn, 3 sincos, 16 sqrt
-//   wrist_length: 5 add, 20 compare and select, 1 divide, 6 multiply, 2 sincos, 1 sqrt
+//   wrist_length: 22 compare and select, 7 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
 //   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 //   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
 //   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt
@@ -1864,88 +1864,88 @@ function _ik(v, o) {
     const nowhere = h <= _runtime.VANISHING * lengths;
     const t3 = Math.atan2(x, y);
     const t4 = lp * s_pitch;
-    const t5 = c_phi * c_psi;
-    const t6 = 1.0 / t5;
-    const t7 = t1 * t5;
-    const t8 = t7 - d;
-    const t9 = d - (gs - al) * t5;
+    const t5 = c_phi * s_psi;
+    const t6 = c_phi * c_psi;
+    const t7 = 1.0 / t6;
+    const t8 = t1 * t6 - d;
+    const t9 = d - (gs - al) * t6;
     const t10 = Math.sqrt(Math.max(t8, 0.0) * Math.max(t9, 0.0));
-    const wrist = t6 * t10;
+    const wrist = t7 * t10;
     const t11 = loff + lp * c_pitch + wrist;
-    const t12 = s_psi * t11;
-    const t13 = s_phi * t4 - c_phi * t12;
-    const t14 = h - t13;
-    const above = Math.max(t14, 0.0);
-    const t15 = h + t13;
-    const below = Math.max(t15, 0.0);
-    const t16 = above * below;
-    const root = Math.sqrt(t16);
+    const t12 = s_phi * t4 - t5 * t11;
+    const t13 = h - t12;
+    const above = Math.max(t13, 0.0);
+    const t14 = h + t12;
+    const below = Math.max(t14, 0.0);
+    const t15 = above * below;
+    const root = Math.sqrt(t15);
     const L_2W = L2 + c_psi * t11;
-    const a_3W = a3 + c_phi * t4 + s_phi * t12;
+    const a_3W = a3 + c_phi * t4 + s_phi * s_psi * t11;
     const fore = Math.sqrt(L_2W * L_2W + a_3W * a_3W);
-    const t17 = L1 + fore;
-    const base = d * t6;
-    const t18 = 1.0 / c_phi;
-    const t_phi = s_phi * t18;
+    const t16 = L1 + fore;
+    const base = d * t7;
+    const t17 = 1.0 / c_phi;
+    const t_phi = s_phi * t17;
     const t_psi = s_psi / c_psi;
     const far_apart = Math.abs(base * t_phi) * 0.001953125 + Math.abs(t_psi * base) *
         0.001953125;
     const slack = far_apart + lengths * 0.25;
-    const t19 = h * slack;
-    const tangent = 4.0 * root * t17 - t19 * 0.00390625 <= _runtime.VANISHING * t19;
-    const t20 = L1 - fore;
-    const t21 = t20 * t20;
-    const t22 = z - d1;
-    const t23 = t22 * t22;
-    const t24 = t17 * t17;
-    const wanted = Math.max(Math.max(0.0, t21 - t23), Math.min(t16, t24 - t23));
-    const t25 = 8796093022208.0 * Math.abs(t16 - wanted) <= t19;
-    const t26 = Math.sqrt(t25 ? wanted : t16);
-    const t27 = tangent ? Math.atan2(t26, above * 0.5 - below * 0.5) : Math.atan2(2.0 * root,
+    const t18 = h * slack;
+    const tangent = 4.0 * root * t16 - t18 * 0.00390625 <= _runtime.VANISHING * t18;
+    const t19 = L1 - fore;
+    const t20 = t19 * t19;
+    const t21 = z - d1;
+    const t22 = t21 * t21;
+    const t23 = t16 * t16;
+    const wanted = Math.max(Math.max(0.0, t20 - t22), Math.min(t15, t23 - t22));
+    const t24 = 8796093022208.0 * Math.abs(t15 - wanted) <= t18;
+    const t25 = Math.sqrt(t24 ? wanted : t15);
+    const t26 = tangent ? Math.atan2(t25, above * 0.5 - below * 0.5) : Math.atan2(2.0 * root,
         above - below);
-    const t28 = _runtime.wrap(-(nowhere ? 0.0 : t3 - t27));
-    const t29 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
+    const t27 = _runtime.wrap(-(nowhere ? 0.0 : t3 - t26));
+    const t28 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d1) && Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al)
         && Number.isFinite(loff) && Number.isFinite(lp);
-    const t30 = t29 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
-    const t31 = t30 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
-    const t32 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z) &&
+    const t29 = t28 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
+    const t30 = t29 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
+    const t31 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z) &&
         Number.isFinite(psi) && Number.isFinite(phi) && Number.isFinite(pitch);
-    const t33 = Math.abs(0.0 < L1 * d * t2 ? 0.0 : 1.0) <= _runtime.ROTATION;
-    const invalid = !(t31 && 0.0 <= lp && t32 && t33);
-    const t34 = -(_runtime.FEASIBILITY * (1.015625 * t7));
-    const t35 = -_runtime.FEASIBILITY <= c_phi && t34 <= t8 && t34 <= t9;
+    const t32 = Math.abs(0.0 < L1 * d * t2 ? 0.0 : 1.0) <= _runtime.ROTATION;
+    const invalid = !(t30 && 0.0 <= lp && t31 && t32);
+    const t33 = Math.abs(s_phi * c_psi) * 0.001953125 + Math.abs(t5) * 0.001953125;
+    const t34 = _runtime.FEASIBILITY * (t1 * (t33 + 1.015625 * t6));
+    const t35 = -_runtime.FEASIBILITY <= c_phi && -t34 <= t8 && -t34 <= t9;
     const t36 = -(_runtime.FEASIBILITY * slack);
     const t37 = L1 * 2.0;
     const t38 = 2.0 * fore;
     const t39 = -(_runtime.FEASIBILITY * ((t37 + t38) * slack));
-    const in_reach = tangent ? t26 : root;
-    const square = t23 + in_reach * in_reach;
-    const t40 = t24 - square;
-    const t41 = t35 && t36 <= t15 && t36 <= t14 && t39 <= t40;
+    const in_reach = tangent ? t25 : root;
+    const square = t22 + in_reach * in_reach;
+    const t40 = t23 - square;
+    const t41 = t35 && t36 <= t14 && t36 <= t13 && t39 <= t40;
     const t42 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13;
-    const t43 = _runtime.FEASIBILITY * ((t42 + 2.0 * Math.abs(t20)) * slack);
-    const t44 = square - t21;
+    const t43 = _runtime.FEASIBILITY * ((t42 + 2.0 * Math.abs(t19)) * slack);
+    const t44 = square - t20;
     const t45 = t41 && -t43 <= t44;
     const fore_arm = Math.sqrt(L2 * L2 + a3 * a3);
     const size = L1 + fore_arm;
     const play = d * 0.25 + far_apart + lengths * 0.00048828125;
     const t46 = size * play;
     const t47 = size * size;
-    const t48 = _runtime.VANISHING * t17;
-    const folded = Math.abs(t22) + Math.abs(in_reach) <= t48;
-    const short = L1 * fore <= _runtime.VANISHING * t24;
+    const t48 = _runtime.VANISHING * t16;
+    const folded = Math.abs(t21) + Math.abs(in_reach) <= t48;
+    const short = L1 * fore <= _runtime.VANISHING * t23;
     const M = Math.max(t44, 0.0);
     const N = Math.max(t40, 0.0);
     const t49 = 1.0 / (M + N);
-    const ahead_1 = short ? t17 : t20 + t38 * M * t49;
-    const t50 = t22 * ahead_1;
+    const ahead_1 = short ? t16 : t19 + t38 * M * t49;
+    const t50 = t21 * ahead_1;
     const s_bend_front_elbow_down_alike = short ? 0.0 : t49 * (2.0 * Math.sqrt(M * N));
     const t51 = fore * s_bend_front_elbow_down_alike;
     const t52 = in_reach * t51;
     const up = t50 + t52;
     const t53 = in_reach * ahead_1;
-    const t54 = t22 * t51;
+    const t54 = t21 * t51;
     const out = t53 - t54;
     const t55 = 1.0 / Math.sqrt(out * out + up * up);
     const stheta2A = folded ? 0.0 : up * t55;
@@ -1966,12 +1966,12 @@ function _ik(v, o) {
     const ctheta23A = ctheta2A * c_relative - stheta2A * s_relative;
     const stheta23A = stheta2A * c_relative + ctheta2A * s_relative;
     const point_21 = elbow_21 - L2 * ctheta23A + a3 * stheta23A;
-    const t62 = t18 * (t_psi * ctheta23A) + t_phi * stheta23A;
+    const t62 = t17 * (t_psi * ctheta23A) + t_phi * stheta23A;
     const t63 = d * t62;
     const h_right_0 = point_21 - t63;
     const elbow_11 = L1 * ctheta2A;
     const point_11 = elbow_11 + L2 * stheta23A + a3 * ctheta23A;
-    const t64 = t_phi * ctheta23A - t18 * (t_psi * stheta23A);
+    const t64 = t_phi * ctheta23A - t17 * (t_psi * stheta23A);
     const t65 = d * t64;
     const r_right_0 = point_11 - t65;
     const t66 = h_right_0 * h_right_0 + r_right_0 * r_right_0;
@@ -2159,7 +2159,7 @@ function _ik(v, o) {
     const t194 = farther_left + change_left;
     const unreachable = !(t188 && t100 <= t193 && t100 <= t194);
     const t195 = invalid || unreachable ? NaN : 0;
-    const t196 = t28 + t195;
+    const t196 = t27 + t195;
     const h_right = t101 ? h_right_0 + more_right_21 : h_right_0;
     const r_right = t101 ? r_right_0 - t184 : r_right_0;
     const t197 = _runtime.VANISHING * (L1 * 64.0 + fore_arm * 64.0);
@@ -2227,7 +2227,7 @@ function _ik(v, o) {
     const t237 = ctheta2A_front_elbow_down_alike * s_relative_front_elbow_down_alike;
     const stheta23A_front_elbow_down_alike = t236 + t237;
     const point_21_front_elbow_down_alike = t235 + a3 * stheta23A_front_elbow_down_alike;
-    const t238 = t18 * (t_psi * ctheta23A_front_elbow_down_alike);
+    const t238 = t17 * (t_psi * ctheta23A_front_elbow_down_alike);
     const t239 = t238 + t_phi * stheta23A_front_elbow_down_alike;
     const t240 = d * t239;
     const h_right_0_front_elbow_down_alike = point_21_front_elbow_down_alike - t240;
@@ -2235,7 +2235,7 @@ function _ik(v, o) {
     const elbow_11_front_elbow_down_alike = L1 * ctheta2A_front_elbow_down_alike;
     const t242 = elbow_11_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike;
     const point_11_front_elbow_down_alike = t242 + a3 * ctheta23A_front_elbow_down_alike;
-    const t243 = t18 * (t_psi * stheta23A_front_elbow_down_alike);
+    const t243 = t17 * (t_psi * stheta23A_front_elbow_down_alike);
     const t244 = t_phi * ctheta23A_front_elbow_down_alike - t243;
     const t245 = d * t244;
     const r_right_0_front_elbow_down_alike = point_11_front_elbow_down_alike - t245;
@@ -2493,7 +2493,7 @@ function _ik(v, o) {
     const t426 = farther_left_front_elbow_down_alike + change_left_front_elbow_down_alike;
     const unreachable_2 = !(t415 && t100 <= t425 && t100 <= t426);
     const t427 = invalid || unreachable_2 ? NaN : 0;
-    const t428 = t28 + t427;
+    const t428 = t27 + t427;
     const t429 = h_right_0_front_elbow_down_alike + more_right_21_front_elbow_down_alike;
     const h_right_front_elbow_down_alike = t291 ? t429 : h_right_0_front_elbow_down_alike;
     const r_right_front_elbow_down_alike = t291 ? r_right_0_front_elbow_down_alike - t405 :
@@ -2557,7 +2557,7 @@ function _ik(v, o) {
     const t466 = t226 + t427;
     const t467 = folded_left_front_elbow_down_alike ? t431 : Math.atan2(t455 + t459, t460 -
         t461);
-    const t468 = _runtime.wrap(-(nowhere ? 0.0 : t3 + t27));
+    const t468 = _runtime.wrap(-(nowhere ? 0.0 : t3 + t26));
     const ctheta2A_rear_elbow_up_alike = folded ? 1.0 : -t56;
     const t469 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike;
     const ctheta23A_rear_elbow_up_alike = t469 - stheta2A * s_relative_front_elbow_down_alike;
@@ -2565,14 +2565,14 @@ function _ik(v, o) {
     const t471 = s_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike;
     const stheta23A_rear_elbow_up_alike = stheta2A * c_relative_front_elbow_down_alike + t471;
     const point_21_rear_elbow_up_alike = t470 + a3 * stheta23A_rear_elbow_up_alike;
-    const t472 = t18 * (t_psi * ctheta23A_rear_elbow_up_alike);
+    const t472 = t17 * (t_psi * ctheta23A_rear_elbow_up_alike);
     const t473 = d * (t472 + t_phi * stheta23A_rear_elbow_up_alike);
     const h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t473;
     const t474 = h_right_0_rear_elbow_up_alike * h_right_0_rear_elbow_up_alike;
     const elbow_11_rear_elbow_up_alike = L1 * ctheta2A_rear_elbow_up_alike;
     const t475 = elbow_11_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike;
     const point_11_rear_elbow_up_alike = t475 + a3 * ctheta23A_rear_elbow_up_alike;
-    const t476 = t18 * (t_psi * stheta23A_rear_elbow_up_alike);
+    const t476 = t17 * (t_psi * stheta23A_rear_elbow_up_alike);
     const t477 = d * (t_phi * ctheta23A_rear_elbow_up_alike - t476);
     const r_right_0_rear_elbow_up_alike = point_11_rear_elbow_up_alike - t477;
     const t478 = r_right_0_rear_elbow_up_alike * r_right_0_rear_elbow_up_alike;
@@ -2860,7 +2860,7 @@ function _ik(v, o) {
     const stheta23A_rear_elbow_down_alike = c_relative * stheta2A_front_elbow_down_alike +
         s_relative * ctheta2A_rear_elbow_down_alike;
     const point_21_rear_elbow_down_alike = t686 + a3 * stheta23A_rear_elbow_down_alike;
-    const t687 = t18 * (t_psi * ctheta23A_rear_elbow_down_alike);
+    const t687 = t17 * (t_psi * ctheta23A_rear_elbow_down_alike);
     const t688 = t687 + t_phi * stheta23A_rear_elbow_down_alike;
     const t689 = d * t688;
     const h_right_0_rear_elbow_down_alike = point_21_rear_elbow_down_alike - t689;
@@ -2868,7 +2868,7 @@ function _ik(v, o) {
     const elbow_11_rear_elbow_down_alike = L1 * ctheta2A_rear_elbow_down_alike;
     const t691 = elbow_11_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike;
     const point_11_rear_elbow_down_alike = t691 + a3 * ctheta23A_rear_elbow_down_alike;
-    const t692 = t18 * (t_psi * stheta23A_rear_elbow_down_alike);
+    const t692 = t17 * (t_psi * stheta23A_rear_elbow_down_alike);
     const t693 = t_phi * ctheta23A_rear_elbow_down_alike - t692;
     const t694 = d * t693;
     const r_right_0_rear_elbow_down_alike = point_11_rear_elbow_down_alike - t694;
@@ -3298,49 +3298,49 @@ function _ik_common(v, o) {
     const principal_pitch = _runtime.principal(pitch);
     const h = Math.sqrt(x * x + y * y);
     const t1 = lp * s_pitch;
-    const t2 = c_phi * c_psi;
-    const t3 = 1.0 / t2;
-    const t4 = gs + al;
-    const t5 = t4 * t2;
-    const t6 = t5 - d;
-    const t7 = d - (gs - al) * t2;
+    const t2 = c_phi * s_psi;
+    const t3 = c_phi * c_psi;
+    const t4 = 1.0 / t3;
+    const t5 = gs + al;
+    const t6 = t5 * t3 - d;
+    const t7 = d - (gs - al) * t3;
     const t8 = Math.sqrt(Math.max(t6, 0.0) * Math.max(t7, 0.0));
-    const wrist = t3 * t8;
+    const wrist = t4 * t8;
     const t9 = loff + lp * c_pitch + wrist;
-    const t10 = s_psi * t9;
-    const t11 = s_phi * t1 - c_phi * t10;
-    const t12 = h - t11;
-    const above = Math.max(t12, 0.0);
-    const t13 = h + t11;
-    const below = Math.max(t13, 0.0);
+    const t10 = s_phi * t1 - t2 * t9;
+    const t11 = h - t10;
+    const above = Math.max(t11, 0.0);
+    const t12 = h + t10;
+    const below = Math.max(t12, 0.0);
     const root = Math.sqrt(above * below);
-    const t14 = Math.atan2(2.0 * root, above - below);
-    const t15 = Math.atan2(x, y);
-    const t16 = _runtime.wrap(t14 - t15);
-    const t17 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
+    const t13 = Math.atan2(2.0 * root, above - below);
+    const t14 = Math.atan2(x, y);
+    const t15 = _runtime.wrap(t13 - t14);
+    const t16 = Number.isFinite(L1) && Number.isFinite(L2) && Number.isFinite(a3) &&
         Number.isFinite(d1) && Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al)
         && Number.isFinite(loff) && Number.isFinite(lp);
-    const t18 = t17 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
-    const t19 = t18 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
-    const t20 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z) &&
+    const t17 = t16 && 0.0 <= L1 && 0.0 <= L2 && 0.0 <= a3 && 0.0 <= d1;
+    const t18 = t17 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && 0.0 <= loff;
+    const t19 = Number.isFinite(x) && Number.isFinite(y) && Number.isFinite(z) &&
         Number.isFinite(psi) && Number.isFinite(phi) && Number.isFinite(pitch);
-    const t21 = L2 + a3;
-    const t22 = Math.abs(0.0 < L1 * d * t21 ? 0.0 : 1.0) <= _runtime.ROTATION;
-    const invalid = !(t19 && 0.0 <= lp && t20 && t22);
-    const t23 = -(_runtime.FEASIBILITY * (1.015625 * t5));
-    const t24 = -_runtime.FEASIBILITY <= c_phi && t23 <= t6 && t23 <= t7;
-    const base = d * t3;
+    const t20 = L2 + a3;
+    const t21 = Math.abs(0.0 < L1 * d * t20 ? 0.0 : 1.0) <= _runtime.ROTATION;
+    const invalid = !(t18 && 0.0 <= lp && t19 && t21);
+    const t22 = Math.abs(s_phi * c_psi) * 0.001953125 + Math.abs(t2) * 0.001953125;
+    const t23 = _runtime.FEASIBILITY * (t5 * (t22 + 1.015625 * t3));
+    const t24 = -_runtime.FEASIBILITY <= c_phi && -t23 <= t6 && -t23 <= t7;
+    const base = d * t4;
     const t25 = 1.0 / c_phi;
     const t_phi = s_phi * t25;
     const t_psi = s_psi / c_psi;
     const far_apart = Math.abs(base * t_phi) * 0.001953125 + Math.abs(t_psi * base) *
         0.001953125;
-    const lengths = L1 + d1 + d + loff + lp + t4 + t21;
+    const lengths = L1 + d1 + d + loff + lp + t5 + t20;
     const slack = far_apart + lengths * 0.25;
     const t26 = -(_runtime.FEASIBILITY * slack);
     const t27 = L1 * 2.0;
     const L_2W = L2 + c_psi * t9;
-    const a_3W = a3 + c_phi * t1 + s_phi * t10;
+    const a_3W = a3 + c_phi * t1 + s_phi * s_psi * t9;
     const fore = Math.sqrt(L_2W * L_2W + a_3W * a_3W);
     const t28 = 2.0 * fore;
     const t29 = -(_runtime.FEASIBILITY * ((t27 + t28) * slack));
@@ -3349,7 +3349,7 @@ function _ik_common(v, o) {
     const t32 = z - d1;
     const square = t32 * t32 + root * root;
     const t33 = t31 - square;
-    const t34 = t24 && t26 <= t13 && t26 <= t12 && t29 <= t33;
+    const t34 = t24 && t26 <= t12 && t26 <= t11 && t29 <= t33;
     const t35 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13;
     const t36 = L1 - fore;
     const t37 = _runtime.FEASIBILITY * ((t35 + 2.0 * Math.abs(t36)) * slack);
@@ -3424,7 +3424,7 @@ function _ik_common(v, o) {
     const t72 = t71 && t40 <= farther_right && t40 <= nearer_left;
     const unreachable = !(t72 && t40 <= farther_left);
     const t73 = invalid || unreachable ? NaN : 0;
-    const t74 = t16 + t73;
+    const t74 = t15 + t73;
     const t75 = 2.0 * fore_arm;
     const t76 = L1 * fore_arm;
     const t77 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t76));
@@ -3519,7 +3519,7 @@ function _ik_common(v, o) {
     const t132 = t131 && t40 <= farther_left_front_elbow_down_alike;
     const unreachable_2 = !t132;
     const t133 = invalid || unreachable_2 ? NaN : 0;
-    const t134 = t16 + t133;
+    const t134 = t15 + t133;
     const M_right_front_elbow_down_alike = Math.max(farther_right_front_elbow_down_alike, t77);
     const N_right_front_elbow_down_alike = Math.max(nearer_right_front_elbow_down_alike, t77);
     const whole_right_front_elbow_down_alike = M_right_front_elbow_down_alike +
@@ -3559,7 +3559,7 @@ function _ik_common(v, o) {
     const t157 = sigma_right_front_elbow_down_alike * Math.atan2(2.0 * t150, t156);
     const t158 = t96 + t133;
     const t159 = Math.atan2(t152 - t148, t153 + t154);
-    const t160 = _runtime.wrap(-(t15 + t14));
+    const t160 = _runtime.wrap(-(t14 + t13));
     const t161 = c_relative_front_elbow_down_alike * t53 - s_relative_front_elbow_down_alike *
         stheta2A;
     const stheta23A_rear_elbow_up_alike = c_relative_front_elbow_down_alike * stheta2A +
@@ -3909,20 +3909,23 @@ function _wrist_length(v, o) {
     const gs = v[3];
     const al = v[4];
     _runtime.sincos(phi);
+    const s_phi = _runtime.found[0];
     const c_phi = _runtime.found[1];
     _runtime.sincos(psi);
+    const s_psi = _runtime.found[0];
     const c_psi = _runtime.found[1];
-    const t1 = c_phi * c_psi;
-    const t2 = (gs + al) * t1;
-    const t3 = t2 - d;
-    const t4 = d - (gs - al) * t1;
+    const t1 = gs + al;
+    const t2 = c_phi * c_psi;
+    const t3 = t1 * t2 - d;
+    const t4 = d - (gs - al) * t2;
     const t5 = Math.sqrt(Math.max(t3, 0.0) * Math.max(t4, 0.0));
     const t6 = Number.isFinite(d) && Number.isFinite(gs) && Number.isFinite(al);
     const t7 = t6 && 0.0 <= d && 0.0 <= gs && 0.0 <= al && (Number.isFinite(psi) &&
         Number.isFinite(phi));
-    const t8 = -(_runtime.FEASIBILITY * (1.015625 * t2));
-    const t9 = -_runtime.FEASIBILITY <= c_phi && t8 <= t3 && t8 <= t4;
-    o[0] = t5 / t1 + (!t7 || !t9 ? NaN : 0);
+    const t8 = Math.abs(s_phi * c_psi) * 0.001953125 + Math.abs(c_phi * s_psi) * 0.001953125;
+    const t9 = _runtime.FEASIBILITY * (t1 * (t8 + 1.015625 * t2));
+    const t10 = -_runtime.FEASIBILITY <= c_phi && -t9 <= t3 && -t9 <= t4;
+    o[0] = t5 / t2 + (!t7 || !t10 ? NaN : 0);
 }
 
 const _WRIST_LENGTH = _runtime.kernel({

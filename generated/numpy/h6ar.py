@@ -12,11 +12,11 @@
 #   jacobian: 133 add, 30 compare and select, 40 divide, 167 multiply, 6 sincos, 3 sqrt
 #   determinant: 32 compare and select, 38 add, 9 divide, 70 multiply, 5 sincos, 3 sqrt
 #   singularities: 32 compare and select, 43 add, 8 divide, 59 multiply, 5 sincos, 3 sqrt
-#   ik: 565 compare and select, 447 add, 33 atan2, 148 divide, 554 multiply, 1 reduce to a turn, 3
-#     sincos, 40 sqrt
-#   ik where nothing vanishes: 246 compare and select, 166 add, 17 atan2, 32 divide, 146 multiply,
+#   ik: 592 compare and select, 459 add, 33 atan2, 150 divide, 561 multiply, 1 reduce to a turn, 3
+#     sincos, 42 sqrt
+#   ik where nothing vanishes: 247 compare and select, 167 add, 17 atan2, 33 divide, 147 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
-#   wrist_length: 5 add, 20 compare and select, 1 divide, 5 multiply, 2 sincos, 1 sqrt
+#   wrist_length: 21 compare and select, 6 add, 2 divide, 6 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 2 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
 #   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 2 sqrt
@@ -1495,1339 +1495,1389 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t3 = np.arctan2(x, y)
     t4 = lp * s_pitch
     del s_pitch
-    t5 = t1 * c_psi
-    del t1
-    t6 = t5 - d
-    t7 = d - c_psi * (gs - al)
-    t8 = np.sqrt(np.maximum(t6, 0.0) * np.maximum(t7, 0.0))
-    t9 = 1.0 / c_psi
-    wrist = t8 * t9
-    del t8
-    t10 = loff + lp * c_pitch + wrist
+    t5 = t1 * c_psi - d
+    t6 = d - c_psi * (gs - al)
+    t7 = np.sqrt(np.maximum(t5, 0.0) * np.maximum(t6, 0.0))
+    t8 = 1.0 / c_psi
+    wrist = t7 * t8
+    del t7
+    t9 = loff + lp * c_pitch + wrist
     del c_pitch
-    t11 = s_psi * t10
-    t12 = s_phi * t4 - c_phi * t11
-    t13 = h - t12
-    above = np.maximum(t13, 0.0)
-    t14 = h + t12
-    del t12
-    below = np.maximum(t14, 0.0)
-    t15 = above * below
-    root = np.sqrt(t15)
-    L_2W = L2 + c_psi * t10
-    del c_psi, t10
-    a_3W = a3 + c_phi * t4 + s_phi * t11
-    del t11, t4
+    t10 = s_psi * t9
+    t11 = s_phi * t4 - c_phi * t10
+    t12 = h - t11
+    above = np.maximum(t12, 0.0)
+    t13 = h + t11
+    del t11
+    below = np.maximum(t13, 0.0)
+    t14 = above * below
+    root = np.sqrt(t14)
+    L_2W = L2 + c_psi * t9
+    del t9
+    a_3W = a3 + c_phi * t4 + s_phi * t10
+    del t10, t4
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t16 = L1 + fore
+    t15 = L1 + fore
     t_phi = s_phi / c_phi
     del s_phi
     higher = d * t_phi
-    t_psi = s_psi * t9
-    del s_psi, t9
+    t_psi = s_psi * t8
+    del t8
     ahead = d * t_psi
     far_apart = np.abs(t_phi * higher) * 0.001953125 + np.abs(t_psi * ahead) * 0.001953125
     slack = far_apart + lengths * 0.25
-    t17 = h * slack
+    t16 = h * slack
     del h
-    tangent = 4.0 * root * t16 - t17 * 0.00390625 <= _runtime.VANISHING * t17
+    tangent = 4.0 * root * t15 - t16 * 0.00390625 <= _runtime.VANISHING * t16
+    gap_size = np.sqrt(higher * higher + ahead * ahead)
     fore_size = np.sqrt(L2 * L2 + a3 * a3)
-    t18 = L1 * 7.888609052210118e-31 + fore_size * 7.888609052210118e-31
-    gap_size = t18 + np.sqrt(higher * higher + ahead * ahead)
-    del t18
-    t19 = 1.0 / gap_size
-    del gap_size
-    t20 = L1 < fore_size
+    t17 = L1 < fore_size
+    shorter = _runtime.select(t17, L1, fore)
+    t18 = z - d1
+    t19 = L1 * 7.888609052210118e-31 + fore_size * 7.888609052210118e-31
+    t20 = 1.0 / (t19 + gap_size)
+    del t19
     t21 = 1.0 / fore_size
-    t22 = _runtime.select(t20, -(t21 * (a3 * L_2W - L2 * a_3W)), 0.0)
-    long_x = t19 * t22
+    t22 = _runtime.select(t17, t21 * (L2 * L_2W + a3 * a_3W), L1)
+    t23 = t20 * t22
     del t22
-    t23 = _runtime.select(t20, t21 * (L2 * L_2W + a3 * a_3W), L1)
+    t24 = _runtime.select(t17, -(t21 * (a3 * L_2W - L2 * a_3W)), 0.0)
     del t21
-    t24 = t19 * t23
-    del t19, t23
-    long_r = ahead * long_x + higher * t24
-    t25 = z - d1
-    t26 = ahead * t24 - higher * long_x
-    del long_x, t24
-    t27 = t26 * _runtime.sign(-(t25 * t26))
+    long_x = t20 * t24
+    del t24
+    t25 = ahead * t23 - higher * long_x
+    beyond_gap_behind = t18 - t25
+    t26 = gap_size * (shorter - np.abs(beyond_gap_behind))
+    t27 = np.abs(higher)
+    across_long = _runtime.select(t17, L1 * t27 * t20, fore_size)
+    del t17, t20
+    long_r = ahead * long_x + higher * t23
+    del long_x, t23
+    t28 = long_r * long_r
+    del long_r
+    short_h_behind = np.maximum(-shorter, np.minimum(beyond_gap_behind, shorter))
+    beyond_gap_ahead = t18 + t25
+    del t25
+    t29 = (beyond_gap_behind - short_h_behind) * (beyond_gap_ahead - short_h_behind)
+    left_r_behind = np.sqrt(np.maximum(0.0, t28 - t29))
+    del t29
+    t30 = -t26 <= across_long * left_r_behind
     del t26
-    beyond_gap = t25 + t27
-    shorter = _runtime.select(t20, L1, fore)
-    del t20
-    short_h = np.maximum(-shorter, np.minimum(beyond_gap, shorter))
-    t28 = (beyond_gap - short_h) * (t25 - t27 - short_h)
-    del beyond_gap, t27
-    left_r = np.sqrt(np.maximum(0.0, long_r * long_r - t28))
-    del long_r, t28
-    short_r = np.sqrt((shorter - short_h) * (shorter + short_h))
-    del short_h, shorter
-    root_same = left_r + short_r
-    root_same_squared = root_same * root_same
-    del root_same
-    t29 = 1099511627776.0 * np.abs(t15 - root_same_squared)
-    root_apart = np.abs(left_r - short_r)
-    del left_r, short_r
-    root_apart_squared = root_apart * root_apart
-    del root_apart
-    t30 = 1099511627776.0 * np.abs(t15 - root_apart_squared)
-    t31 = L1 - fore
-    t32 = t31 * t31
-    t33 = t25 * t25
-    t34 = t16 * t16
-    wanted = np.maximum(np.maximum(0.0, t32 - t33), np.minimum(t15, t34 - t33))
-    t35 = 8796093022208.0 * np.abs(t15 - wanted) <= t17
-    t36 = _runtime.select(t30 <= t17, root_apart_squared, _runtime.select(t35, wanted, t15))
-    del root_apart_squared, t15, t30, t35, wanted
-    held = _runtime.select(t29 <= t17, root_same_squared, t36)
-    del root_same_squared, t17, t29, t36
-    t37 = np.sqrt(held)
-    del held
-    t38 = _runtime.select(tangent, np.arctan2(t37, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
-    del above, below
-    t39 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t38))
-    t40 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t41 = t40 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
-    del t40
-    t42 = t41 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    t31 = gap_size <= np.maximum(L1, fore_size)
+    t32 = (shorter - short_h_behind) * (shorter + short_h_behind)
+    del short_h_behind
+    short_r_behind = np.sqrt(t32)
+    del t32
+    root_apart_behind = np.abs(left_r_behind - short_r_behind)
+    root_apart_behind_squared = root_apart_behind * root_apart_behind
+    del root_apart_behind
+    root_same_behind = left_r_behind + short_r_behind
+    del left_r_behind, short_r_behind
+    root_same_behind_squared = root_same_behind * root_same_behind
+    del root_same_behind
+    root_same_behind_away = np.abs(t14 - root_same_behind_squared)
+    t33 = gap_size * (shorter - np.abs(beyond_gap_ahead))
+    del gap_size
+    short_h_ahead = np.maximum(-shorter, np.minimum(beyond_gap_ahead, shorter))
+    t34 = (beyond_gap_ahead - short_h_ahead) * (beyond_gap_behind - short_h_ahead)
+    del beyond_gap_ahead, beyond_gap_behind
+    left_r_ahead = np.sqrt(np.maximum(0.0, t28 - t34))
+    del t28, t34
+    t35 = (-t33 <= across_long * left_r_ahead) & t31
+    del across_long, t33
+    t36 = (shorter - short_h_ahead) * (shorter + short_h_ahead)
+    del short_h_ahead, shorter
+    short_r_ahead = np.sqrt(t36)
+    del t36
+    root_apart_ahead = np.abs(left_r_ahead - short_r_ahead)
+    root_apart_ahead_squared = root_apart_ahead * root_apart_ahead
+    del root_apart_ahead
+    root_apart_ahead_away = np.abs(t14 - root_apart_ahead_squared)
+    root_same_ahead = left_r_ahead + short_r_ahead
+    del left_r_ahead, short_r_ahead
+    root_same_ahead_squared = root_same_ahead * root_same_ahead
+    del root_same_ahead
+    root_same_ahead_away = np.abs(t14 - root_same_ahead_squared)
+    t37 = t16 * 1.8189894035458565e-12
+    t38 = t35 & (root_same_ahead_away <= t37)
+    root_same_ahead_least = _runtime.select(t38, root_same_ahead_away, t37)
+    del root_same_ahead_away, t37
+    t39 = root_apart_ahead_away <= root_same_ahead_least
+    t40 = t35 & t39
+    del t35, t39
+    root_apart_ahead_least = _runtime.select(t40, root_apart_ahead_away, root_same_ahead_least)
+    del root_apart_ahead_away, root_same_ahead_least
+    t41 = root_same_behind_away <= root_apart_ahead_least
+    t42 = t41 & t30 & t31
     del t41
-    t43 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t44 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
-    del t2
-    t45 = t42 & (0.0 <= loff) & (0.0 <= lp) & t43 & (t44 <= _runtime.ROTATION)
-    del t42, t43, t44
-    invalid = np.logical_not(t45)
-    del t45
-    t46 = -(_runtime.FEASIBILITY * (t5 * 1.015625))
-    del t5
-    t47 = (-_runtime.FEASIBILITY <= c_phi) & (t46 <= t6)
-    del c_phi, t6
-    t48 = -(_runtime.FEASIBILITY * slack)
-    t49 = t47 & (t46 <= t7) & (t48 <= t14) & (t48 <= t13)
-    del t13, t14, t46, t47, t48, t7
-    t50 = 2.0 * fore
-    t51 = _runtime.FEASIBILITY * ((L1 * 2.0 + t50) * slack)
-    in_reach = _runtime.select(tangent, t37, root)
-    del root, t37, tangent
-    square = t33 + in_reach * in_reach
-    del t33
-    t52 = t34 - square
-    t53 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t54 = _runtime.FEASIBILITY * ((t53 + 2.0 * np.abs(t31)) * slack)
-    del t53
-    t55 = square - t32
-    del square, t32
-    t56 = t49 & (-t51 <= t52) & (-t54 <= t55)
-    del t49, t51, t54
-    t57 = d * 0.25 + np.abs(higher) * 0.25 + far_apart + np.abs(ahead) * 0.25
-    del far_apart
-    play = t57 + lengths * 0.00048828125
-    del lengths, t57
-    t58 = fore_size * play
-    t59 = _runtime.VANISHING * t16
-    folded = np.abs(t25) + np.abs(in_reach) <= t59
-    short = L1 * fore <= _runtime.VANISHING * t34
-    del t34
-    M = np.maximum(t55, 0.0)
-    del t55
-    N = np.maximum(t52, 0.0)
+    root_same_behind_least = _runtime.select(t42, root_same_behind_away, root_apart_ahead_least)
+    del root_apart_ahead_least, root_same_behind_away
+    t43 = np.abs(t14 - root_apart_behind_squared) <= root_same_behind_least
+    del root_same_behind_least
+    t44 = L1 - fore
+    t45 = t44 * t44
+    t46 = t18 * t18
+    t47 = t15 * t15
+    wanted = np.maximum(np.maximum(0.0, t45 - t46), np.minimum(t14, t47 - t46))
+    t48 = _runtime.select(549755813888.0 * np.abs(t14 - wanted) <= t16, wanted, t14)
+    del t14, t16, wanted
+    root_same_ahead_held = _runtime.select(t38, root_same_ahead_squared, t48)
+    del root_same_ahead_squared, t38, t48
+    root_apart_ahead_held = _runtime.select(t40, root_apart_ahead_squared, root_same_ahead_held)
+    del root_apart_ahead_squared, root_same_ahead_held, t40
+    root_same_behind_held = _runtime.select(t42, root_same_behind_squared, root_apart_ahead_held)
+    del root_apart_ahead_held, root_same_behind_squared, t42
+    root_apart_behind_held = _runtime.select(t30 & t31 & t43, root_apart_behind_squared, root_same_behind_held)
+    del root_apart_behind_squared, root_same_behind_held, t30, t31, t43
+    t49 = np.sqrt(root_apart_behind_held)
+    del root_apart_behind_held
+    t50 = _runtime.select(tangent, np.arctan2(t49, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    del above, below
+    t51 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t50))
+    t52 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t53 = t52 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
     del t52
-    t60 = 1.0 / (M + N)
-    ahead_1 = _runtime.select(short, t16, t31 + t50 * M * t60)
-    del t16, t31, t50
-    t61 = in_reach * ahead_1
-    t62 = 2.0 * np.sqrt(M * N)
-    s_bend_front_elbow_down = _runtime.select(short, 0.0, t60 * t62)
-    t63 = fore * s_bend_front_elbow_down
-    t64 = t25 * t63
-    out_2 = t61 - t64
-    t65 = t25 * ahead_1
-    del ahead_1, t25
-    t66 = in_reach * t63
-    del in_reach, t63
-    up = t65 + t66
-    t67 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
-    t68 = out_2 * t67
-    ctheta2A = _runtime.select(folded, 1.0, t68)
-    stheta2A = _runtime.select(folded, 0.0, up * t67)
-    del t67
-    t69 = higher * stheta2A
-    p_1 = ahead * ctheta2A + t69
-    bare = fore <= t59
-    del t59
-    t70 = 1.0 / fore
-    s_lag = _runtime.select(bare, 0.0, L_2W * t70)
-    t71 = M - N
+    t54 = t53 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
+    del t53
+    t55 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t56 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
+    del t2
+    t57 = t54 & (0.0 <= loff) & (0.0 <= lp) & t55 & (t56 <= _runtime.ROTATION)
+    del t54, t55, t56
+    invalid = np.logical_not(t57)
+    del t57
+    t58 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
+    del c_psi, s_psi
+    t59 = -(_runtime.FEASIBILITY * (t1 * t58))
+    del t1, t58
+    t60 = (-_runtime.FEASIBILITY <= c_phi) & (t59 <= t5)
+    del c_phi, t5
+    t61 = -(_runtime.FEASIBILITY * slack)
+    t62 = t60 & (t59 <= t6) & (t61 <= t13) & (t61 <= t12)
+    del t12, t13, t59, t6, t60, t61
+    t63 = 2.0 * fore
+    t64 = _runtime.FEASIBILITY * ((L1 * 2.0 + t63) * slack)
+    in_reach = _runtime.select(tangent, t49, root)
+    del root, t49, tangent
+    square = t46 + in_reach * in_reach
+    del t46
+    t65 = t47 - square
+    t66 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
+    t67 = _runtime.FEASIBILITY * ((t66 + 2.0 * np.abs(t44)) * slack)
+    del t66
+    t68 = square - t45
+    del square, t45
+    t69 = t62 & (-t64 <= t65) & (-t67 <= t68)
+    del t62, t64, t67
+    t70 = d * 0.25 + t27 * 0.25 + far_apart + np.abs(ahead) * 0.25
+    del far_apart, t27
+    play = t70 + lengths * 0.00048828125
+    del lengths, t70
+    t71 = fore_size * play
+    t72 = _runtime.VANISHING * t15
+    folded = np.abs(t18) + np.abs(in_reach) <= t72
+    short = L1 * fore <= _runtime.VANISHING * t47
+    del t47
+    M = np.maximum(t68, 0.0)
+    del t68
+    N = np.maximum(t65, 0.0)
+    del t65
+    t73 = 1.0 / (M + N)
+    ahead_1 = _runtime.select(short, t15, t44 + t63 * M * t73)
+    del t15, t44, t63
+    t74 = in_reach * ahead_1
+    t75 = 2.0 * np.sqrt(M * N)
+    s_bend_front_elbow_down = _runtime.select(short, 0.0, t73 * t75)
+    t76 = fore * s_bend_front_elbow_down
+    t77 = t18 * t76
+    out_2 = t74 - t77
+    t78 = t18 * ahead_1
+    del ahead_1, t18
+    t79 = in_reach * t76
+    del in_reach, t76
+    up = t78 + t79
+    t80 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
+    t81 = out_2 * t80
+    ctheta2A = _runtime.select(folded, 1.0, t81)
+    stheta2A = _runtime.select(folded, 0.0, up * t80)
+    del t80
+    t82 = higher * stheta2A
+    p_1 = ahead * ctheta2A + t82
+    bare = fore <= t72
+    del t72
+    t83 = 1.0 / fore
+    s_lag = _runtime.select(bare, 0.0, L_2W * t83)
+    t84 = M - N
     del M, N
-    c_bend = _runtime.select(short, 1.0, t60 * t71)
-    del t60
-    t72 = s_lag * c_bend
-    c_lag = _runtime.select(bare, 1.0, a_3W * t70)
-    del bare, t70
-    t73 = c_lag * s_bend_front_elbow_down
-    s_relative = t72 - t73
-    t74 = c_lag * c_bend
+    c_bend = _runtime.select(short, 1.0, t73 * t84)
+    del t73
+    t85 = s_lag * c_bend
+    c_lag = _runtime.select(bare, 1.0, a_3W * t83)
+    del bare, t83
+    t86 = c_lag * s_bend_front_elbow_down
+    s_relative = t85 - t86
+    t87 = c_lag * c_bend
     del c_bend
-    t75 = s_lag * s_bend_front_elbow_down
+    t88 = s_lag * s_bend_front_elbow_down
     del s_bend_front_elbow_down
-    c_relative = t74 + t75
+    c_relative = t87 + t88
     v_2 = L2 * s_relative + a3 * c_relative
-    t76 = ahead * stheta2A
+    t89 = ahead * stheta2A
     del stheta2A
-    t77 = t76 - higher * ctheta2A
+    t90 = t89 - higher * ctheta2A
     del ctheta2A
     v_1 = L2 * c_relative - a3 * s_relative
-    t78 = p_1 * v_2 + t77 * v_1
+    t91 = p_1 * v_2 + t90 * v_1
     whole_alpha = L1 * v_1
-    t79 = np.abs(whole_alpha)
-    t80 = np.abs(t78) - t79
-    t81 = np.maximum(t80 * 9.094947017729282e-13, -t80)
-    t82 = _runtime.VANISHING * t58
-    spent_alpha = t81 <= t82
-    del t81
-    t83 = v_2 * _runtime.sign(whole_alpha)
+    t92 = np.abs(whole_alpha)
+    t93 = np.abs(t91) - t92
+    t94 = np.maximum(t93 * 9.094947017729282e-13, -t93)
+    t95 = _runtime.VANISHING * t71
+    spent_alpha = t94 <= t95
+    del t94
+    t96 = v_2 * _runtime.sign(whole_alpha)
     del whole_alpha
     drawn = L1 + L_2W * s_relative + a_3W * c_relative
-    t84 = t83 * drawn
-    t85 = _runtime.sign(-t78) * (p_1 * v_1 - v_2 * t77)
-    del t78
-    t86 = t84 - t85
-    del t85
-    t87 = np.abs(t86)
-    t88 = 1.0 / slack
-    t89 = 1.4142135623730951 * np.sqrt(slack)
-    del slack
-    t90 = 1.0 / L1
-    t91 = 1.0 - t90 * drawn
-    t92 = t89 * np.sqrt(fore + L1 * (t91 * t91)) / 2000000.0
+    t97 = t96 * drawn
+    t98 = _runtime.sign(-t91) * (p_1 * v_1 - v_2 * t90)
     del t91
-    t93 = np.abs(L_2W * c_relative - a_3W * s_relative)
+    t99 = t97 - t98
+    del t98
+    t100 = np.abs(t99)
+    t101 = 1.0 / slack
+    t102 = 1.4142135623730951 * np.sqrt(slack)
+    del slack
+    t103 = 1.0 / L1
+    t104 = 1.0 - t103 * drawn
+    t105 = t102 * np.sqrt(fore + L1 * (t104 * t104)) / 2000000.0
+    del t104
+    t106 = np.abs(L_2W * c_relative - a_3W * s_relative)
     del c_relative, s_relative
-    t94 = t88 * (t92 + t93)
-    del t92, t93
-    heavy_0_alpha = _runtime.select(spent_alpha, t94, 1.0)
-    gain_0_alpha = _runtime.select(spent_alpha, t87 / heavy_0_alpha, 0.0)
-    slope_aside_alpha = L1 * t83
-    del t83
-    t95 = np.abs(slope_aside_alpha)
-    t96 = t88 * (L1 + np.sqrt(L1) * t89 / 2000000.0)
-    heavy_1_alpha = _runtime.select(spent_alpha, t96, 1.0)
-    gain_1_alpha = _runtime.select(spent_alpha, t95 / heavy_1_alpha, 0.0)
-    t97 = _runtime.select(spent_alpha, gain_0_alpha + gain_1_alpha, 0.0)
-    t98 = -(_runtime.FEASIBILITY * (t58 + t97)) <= -t80
-    del t97
-    t99 = L1 * play
-    t100 = gain_1_alpha * gain_1_alpha
+    t107 = t101 * (t105 + t106)
+    del t105, t106
+    heavy_0_alpha = _runtime.select(spent_alpha, t107, 1.0)
+    gain_0_alpha = _runtime.select(spent_alpha, t100 / heavy_0_alpha, 0.0)
+    slope_aside_alpha = L1 * t96
+    del t96
+    t108 = np.abs(slope_aside_alpha)
+    t109 = t101 * (L1 + np.sqrt(L1) * t102 / 2000000.0)
+    heavy_1_alpha = _runtime.select(spent_alpha, t109, 1.0)
+    gain_1_alpha = _runtime.select(spent_alpha, t108 / heavy_1_alpha, 0.0)
+    t110 = _runtime.select(spent_alpha, gain_0_alpha + gain_1_alpha, 0.0)
+    t111 = -(_runtime.FEASIBILITY * (t71 + t110)) <= -t93
+    del t110
+    t112 = L1 * play
+    t113 = gain_1_alpha * gain_1_alpha
     del gain_1_alpha
-    t101 = play * play
-    t102 = fore_size * fore_size * t101
+    t114 = play * play
+    t115 = fore_size * fore_size * t114
     del fore_size
-    t103 = t100 / (t100 + t102 + gain_0_alpha * gain_0_alpha)
-    del gain_0_alpha, t100
-    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t80 < 0.0, t103, 0.0), 0.0)
-    del t103
-    t104 = _runtime.sign(slope_aside_alpha)
+    t116 = t113 / (t113 + t115 + gain_0_alpha * gain_0_alpha)
+    del gain_0_alpha, t113
+    share_alpha = _runtime.select(spent_alpha, _runtime.select(-t93 < 0.0, t116, 0.0), 0.0)
+    del t116
+    t117 = _runtime.sign(slope_aside_alpha)
     del slope_aside_alpha
-    t105 = t95 + t58 * heavy_1_alpha * 5.960464477539063e-08
+    t118 = t108 + t71 * heavy_1_alpha * 5.960464477539063e-08
     del heavy_1_alpha
-    aside_alpha = _runtime.select(spent_alpha, t80 * share_alpha * t104 / t105, 0.0)
-    del t105
-    lack_alpha = t80 * (1.0 - share_alpha)
-    del share_alpha, t80
-    t106 = t87 + t58 * heavy_0_alpha * 5.960464477539063e-08
-    del t87
-    t107 = 1.0 / t106
-    del t106
-    t108 = heavy_0_alpha * lack_alpha * t107 <= 9.094947017729282e-13
-    del heavy_0_alpha
-    t109 = lack_alpha * t107
-    del lack_alpha, t107
-    t110 = _runtime.select(t108 & (0.0 < t109), t109, 0.0)
-    del t108, t109
-    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(-t86) * t110, 0.0)
-    del t110, t86
-    t111 = aside_alpha + turn_alpha - t90 * (drawn * turn_alpha)
-    del aside_alpha
-    lean_alpha = _runtime.select(spent_alpha, t111, 0.0)
-    del t111
-    t112 = np.sqrt(1.0 + lean_alpha * lean_alpha)
-    t113 = 1.0 / t112
-    p_1_alpha = _runtime.select(spent_alpha, p_1 * t113 - t77 * lean_alpha * t113, p_1)
-    part_beta = L1 * p_1_alpha
-    t114 = t112 * np.sqrt(1.0 + turn_alpha * turn_alpha)
-    del t112
-    t115 = 1.0 / t114
-    del t114
-    t116 = t115 + t115 * (turn_alpha * lean_alpha)
-    t117 = lean_alpha * t115 - turn_alpha * t115
-    del t115
-    v_1_alpha = _runtime.select(spent_alpha, v_1 * t116 + v_2 * t117, v_1)
-    whole_beta = L1 * v_1_alpha
-    t118 = np.abs(part_beta) - np.abs(whole_beta)
-    t119 = np.maximum(t118 * 9.094947017729282e-13, -t118)
-    t120 = _runtime.VANISHING * t99
-    spent_beta = t119 <= t120
+    aside_alpha = _runtime.select(spent_alpha, t93 * share_alpha * t117 / t118, 0.0)
+    del t118
+    lack_alpha = t93 * (1.0 - share_alpha)
+    del share_alpha, t93
+    t119 = t100 + t71 * heavy_0_alpha * 5.960464477539063e-08
+    del t100
+    t120 = 1.0 / t119
     del t119
-    v_2_alpha = _runtime.select(spent_alpha, v_2 * t116 - v_1 * t117, v_2)
-    del t116, t117
-    t121 = v_2_alpha * _runtime.sign(whole_beta)
-    del whole_beta
-    t122 = _runtime.select(spent_alpha, t113 * (p_1 * lean_alpha) + t77 * t113, t77)
-    del p_1, t113, t77
-    t123 = t122 * _runtime.sign(part_beta)
-    del part_beta
-    t124 = L1 - drawn
-    t125 = drawn * t121 - t123 * t124
-    t126 = np.abs(t125)
-    heavy_0_beta = _runtime.select(spent_beta, t94, 1.0)
-    gain_0_beta = _runtime.select(spent_beta, t126 / heavy_0_beta, 0.0)
-    slope_aside_beta = L1 * (t121 + t123)
-    del t121, t123
-    t127 = np.abs(slope_aside_beta)
-    heavy_1_beta = _runtime.select(spent_beta, t96, 1.0)
-    gain_1_beta = _runtime.select(spent_beta, t127 / heavy_1_beta, 0.0)
-    t128 = _runtime.select(spent_beta, gain_0_beta + gain_1_beta, 0.0)
-    t129 = -(_runtime.FEASIBILITY * (t99 + t128)) <= -t118
+    t121 = heavy_0_alpha * lack_alpha * t120 <= 9.094947017729282e-13
+    del heavy_0_alpha
+    t122 = lack_alpha * t120
+    del lack_alpha, t120
+    t123 = _runtime.select(t121 & (0.0 < t122), t122, 0.0)
+    del t121, t122
+    turn_alpha = _runtime.select(spent_alpha, _runtime.sign(-t99) * t123, 0.0)
+    del t123, t99
+    t124 = aside_alpha + turn_alpha - t103 * (drawn * turn_alpha)
+    del aside_alpha
+    lean_alpha = _runtime.select(spent_alpha, t124, 0.0)
+    del t124
+    t125 = np.sqrt(1.0 + lean_alpha * lean_alpha)
+    t126 = 1.0 / t125
+    p_1_alpha = _runtime.select(spent_alpha, p_1 * t126 - t90 * lean_alpha * t126, p_1)
+    part_beta = L1 * p_1_alpha
+    t127 = t125 * np.sqrt(1.0 + turn_alpha * turn_alpha)
+    del t125
+    t128 = 1.0 / t127
+    del t127
+    t129 = t128 + t128 * (turn_alpha * lean_alpha)
+    t130 = lean_alpha * t128 - turn_alpha * t128
     del t128
-    t130 = -(_runtime.FEASIBILITY * play)
-    t131 = gain_1_beta * gain_1_beta
-    del gain_1_beta
-    t132 = L1 * L1 * t101
-    del t101
-    t133 = t131 / (t131 + t132 + gain_0_beta * gain_0_beta)
-    del gain_0_beta, t131
-    share_beta = _runtime.select(spent_beta, _runtime.select(-t118 < 0.0, t133, 0.0), 0.0)
-    del t133
-    lack_beta = t118 * (1.0 - share_beta)
-    t134 = t126 + t99 * heavy_0_beta * 5.960464477539063e-08
-    del t126
-    t135 = 1.0 / t134
-    del t134
-    t136 = heavy_0_beta * lack_beta * t135 <= 9.094947017729282e-13
-    del heavy_0_beta
-    t137 = lack_beta * t135
-    del lack_beta, t135
-    t138 = _runtime.select(t136 & (0.0 < t137), t137, 0.0)
-    del t136, t137
-    turn_beta = _runtime.select(spent_beta, _runtime.sign(-t125) * t138, 0.0)
-    del t125, t138
-    t139 = t118 * share_beta * _runtime.sign(slope_aside_beta)
-    del share_beta, slope_aside_beta, t118
-    t140 = t127 + t99 * heavy_1_beta * 5.960464477539063e-08
-    del heavy_1_beta, t127
-    aside_beta = _runtime.select(spent_beta, t139 / t140, 0.0)
-    del t139, t140
-    t141 = turn_beta + aside_beta - t90 * (drawn * turn_beta)
-    del aside_beta
-    lean_beta = _runtime.select(spent_beta, t141, 0.0)
+    v_1_alpha = _runtime.select(spent_alpha, v_1 * t129 + v_2 * t130, v_1)
+    whole_beta = L1 * v_1_alpha
+    t131 = np.abs(part_beta) - np.abs(whole_beta)
+    t132 = np.maximum(t131 * 9.094947017729282e-13, -t131)
+    t133 = _runtime.VANISHING * t112
+    spent_beta = t132 <= t133
+    del t132
+    v_2_alpha = _runtime.select(spent_alpha, v_2 * t129 - v_1 * t130, v_2)
+    del t129, t130
+    t134 = v_2_alpha * _runtime.sign(whole_beta)
+    del whole_beta
+    t135 = _runtime.select(spent_alpha, t126 * (p_1 * lean_alpha) + t90 * t126, t90)
+    del p_1, t126, t90
+    t136 = t135 * _runtime.sign(part_beta)
+    del part_beta
+    t137 = L1 - drawn
+    t138 = drawn * t134 - t136 * t137
+    t139 = np.abs(t138)
+    heavy_0_beta = _runtime.select(spent_beta, t107, 1.0)
+    gain_0_beta = _runtime.select(spent_beta, t139 / heavy_0_beta, 0.0)
+    slope_aside_beta = L1 * (t134 + t136)
+    del t134, t136
+    t140 = np.abs(slope_aside_beta)
+    heavy_1_beta = _runtime.select(spent_beta, t109, 1.0)
+    gain_1_beta = _runtime.select(spent_beta, t140 / heavy_1_beta, 0.0)
+    t141 = _runtime.select(spent_beta, gain_0_beta + gain_1_beta, 0.0)
+    t142 = -(_runtime.FEASIBILITY * (t112 + t141)) <= -t131
     del t141
-    t142 = np.sqrt(1.0 + lean_beta * lean_beta)
-    t143 = 1.0 / (t142 * np.sqrt(1.0 + turn_beta * turn_beta))
-    t144 = t143 + t143 * (turn_beta * lean_beta)
-    t145 = lean_beta * t143 - turn_beta * t143
-    del t143
-    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t144 + v_2_alpha * t145, v_1_alpha)
-    sigma_uv = _runtime.sign(-(L1 * v_1_beta))
-    t146 = 1.0 / t142
-    del t142
-    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t146 - t122 * lean_beta * t146, p_1_alpha)
-    t147 = sigma_uv * p_1_beta
-    t148 = v_1_beta * sigma_uv
-    del sigma_uv
-    t149 = t56 & t98 & t129 & (t130 <= t147 - t148) & (t130 <= -(t148 + t147))
-    del t129, t98
-    v_2_beta = _runtime.select(spent_beta, v_2_alpha * t144 - v_1_alpha * t145, v_2_alpha)
-    del t144, t145, v_1_alpha, v_2_alpha
-    t150 = np.abs(v_2_beta)
-    parallel = -t148 <= _runtime.VANISHING * (64.0 * t150)
-    whole_y = _runtime.select(parallel, L1 + t150, -t148)
-    t151 = _runtime.select(spent_beta, t146 * (p_1_alpha * lean_beta) + t122 * t146, t122)
-    del p_1_alpha, t122, t146
-    t152 = _runtime.select(parallel, t151 * _runtime.sign(v_2_beta), t147)
+    t143 = -(_runtime.FEASIBILITY * play)
+    t144 = gain_1_beta * gain_1_beta
+    del gain_1_beta
+    t145 = L1 * L1 * t114
+    del t114
+    t146 = t144 / (t144 + t145 + gain_0_beta * gain_0_beta)
+    del gain_0_beta, t144
+    share_beta = _runtime.select(spent_beta, _runtime.select(-t131 < 0.0, t146, 0.0), 0.0)
+    del t146
+    lack_beta = t131 * (1.0 - share_beta)
+    t147 = t139 + t112 * heavy_0_beta * 5.960464477539063e-08
+    del t139
+    t148 = 1.0 / t147
     del t147
-    t153 = whole_y + t152
-    t154 = whole_y - t152
-    t155 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
-    below_beta_0 = np.maximum(t153, t155)
-    above_beta_0 = np.maximum(t154, t155)
-    t156 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
-    del above_beta_0, below_beta_0
-    t157 = t151 - v_2_beta * t156
+    t149 = heavy_0_beta * lack_beta * t148 <= 9.094947017729282e-13
+    del heavy_0_beta
+    t150 = lack_beta * t148
+    del lack_beta, t148
+    t151 = _runtime.select(t149 & (0.0 < t150), t150, 0.0)
+    del t149, t150
+    turn_beta = _runtime.select(spent_beta, _runtime.sign(-t138) * t151, 0.0)
+    del t138, t151
+    t152 = t131 * share_beta * _runtime.sign(slope_aside_beta)
+    del share_beta, slope_aside_beta, t131
+    t153 = t140 + t112 * heavy_1_beta * 5.960464477539063e-08
+    del heavy_1_beta, t140
+    aside_beta = _runtime.select(spent_beta, t152 / t153, 0.0)
+    del t152, t153
+    t154 = turn_beta + aside_beta - t103 * (drawn * turn_beta)
+    del aside_beta
+    lean_beta = _runtime.select(spent_beta, t154, 0.0)
+    del t154
+    t155 = np.sqrt(1.0 + lean_beta * lean_beta)
+    t156 = 1.0 / (t155 * np.sqrt(1.0 + turn_beta * turn_beta))
+    t157 = t156 + t156 * (turn_beta * lean_beta)
+    t158 = lean_beta * t156 - turn_beta * t156
     del t156
-    left_along = L1 - np.abs(t157)
-    t158 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
-    t159 = _runtime.VANISHING * play
-    spent_along = t158 <= t159
-    del t158
-    t160 = L1 / 1000000000.0
-    t161 = _runtime.select(spent_along, t150 / (t160 - t148), 0.0)
-    del t150
-    t162 = -(_runtime.FEASIBILITY * (play * (1.0 + t161)))
-    del t161
-    t163 = t149 & (t130 <= t153) & (t130 <= t154) & (t162 <= left_along)
-    del t149, t153, t154, t162
-    t164 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
-    del left_along
-    t165 = t164 / (t148 * t148 + v_2_beta * v_2_beta) * _runtime.sign(-t157)
-    del t148, t157, t164
-    t166 = _runtime.select(spent_along, t152 + whole_y * t165, t152)
-    del t152, t165
-    t167 = whole_y + t166
-    t168 = whole_y - t166
-    del t166, whole_y
-    below_beta = np.maximum(t167, t155)
-    above_beta = np.maximum(t168, t155)
-    t169 = below_beta - above_beta
-    t170 = t169 / (below_beta + above_beta)
-    t171 = t151 - v_2_beta * t170
-    del t151, v_2_beta
-    t172 = L1 + t171
-    t173 = t163 & (t130 <= t167) & (t130 <= t168) & (t130 <= t172)
-    del t163, t167, t168
-    t174 = L1 - t171
-    unreachable = np.logical_not(t173 & (t130 <= t174))
-    del t173
-    t175 = _runtime.poison(invalid | unreachable)
-    t176 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
-    t177 = np.arctan2(lean_alpha, 1.0) + np.arctan2(lean_beta, 1.0)
-    del lean_alpha, lean_beta
-    t178 = t176 + t177
-    del t176
-    below_alpha = np.maximum(t172, t155)
-    del t172
-    above_alpha = np.maximum(t174, t155)
+    v_1_beta = _runtime.select(spent_beta, v_1_alpha * t157 + v_2_alpha * t158, v_1_alpha)
+    sigma_uv = _runtime.sign(-(L1 * v_1_beta))
+    t159 = 1.0 / t155
+    del t155
+    p_1_beta = _runtime.select(spent_beta, p_1_alpha * t159 - t135 * lean_beta * t159, p_1_alpha)
+    t160 = sigma_uv * p_1_beta
+    t161 = v_1_beta * sigma_uv
+    del sigma_uv
+    t162 = t69 & t111 & t142 & (t143 <= t160 - t161) & (t143 <= -(t161 + t160))
+    del t111, t142
+    v_2_beta = _runtime.select(spent_beta, v_2_alpha * t157 - v_1_alpha * t158, v_2_alpha)
+    del t157, t158, v_1_alpha, v_2_alpha
+    t163 = np.abs(v_2_beta)
+    parallel = -t161 <= _runtime.VANISHING * (64.0 * t163)
+    whole_y = _runtime.select(parallel, L1 + t163, -t161)
+    t164 = _runtime.select(spent_beta, t159 * (p_1_alpha * lean_beta) + t135 * t159, t135)
+    del p_1_alpha, t135, t159
+    t165 = _runtime.select(parallel, t164 * _runtime.sign(v_2_beta), t160)
+    del t160
+    t166 = whole_y + t165
+    t167 = whole_y - t165
+    t168 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * play))
+    below_beta_0 = np.maximum(t166, t168)
+    above_beta_0 = np.maximum(t167, t168)
+    t169 = (below_beta_0 - above_beta_0) / (below_beta_0 + above_beta_0)
+    del above_beta_0, below_beta_0
+    t170 = t164 - v_2_beta * t169
+    del t169
+    left_along = L1 - np.abs(t170)
+    t171 = np.maximum(-(left_along * 9.094947017729282e-13), left_along)
+    t172 = _runtime.VANISHING * play
+    spent_along = t171 <= t172
+    del t171
+    t173 = L1 / 1000000000.0
+    t174 = _runtime.select(spent_along, t163 / (t173 - t161), 0.0)
+    del t163
+    t175 = -(_runtime.FEASIBILITY * (play * (1.0 + t174)))
     del t174
-    t179 = below_alpha - above_alpha
-    t180 = np.arctan2(t179, 2.0 * np.sqrt(below_alpha * above_alpha))
-    t181 = np.arctan2(turn_alpha, 1.0) + np.arctan2(turn_beta, 1.0)
-    del turn_alpha, turn_beta
-    t182 = np.arctan2(s_lag, c_lag)
-    del c_lag, s_lag
-    t183 = _runtime.select(short, 0.0, np.arctan2(t62, t71))
-    del t62, t71
-    t184 = t182 - t183
-    t185 = t181 - (t177 - t184)
-    del t177, t181
-    t186 = np.arctan2(t169, 2.0 * np.sqrt(below_beta * above_beta))
-    del above_beta, below_beta, t169
-    t187 = t180 - t186
+    t176 = t162 & (t143 <= t166) & (t143 <= t167) & (t175 <= left_along)
+    del t162, t166, t167, t175
+    t177 = v_2_beta * (left_along * 0.5 - np.abs(left_along) * 0.5)
+    del left_along
+    t178 = t177 / (t161 * t161 + v_2_beta * v_2_beta) * _runtime.sign(-t170)
+    del t161, t170, t177
+    t179 = _runtime.select(spent_along, t165 + whole_y * t178, t165)
+    del t165, t178
+    t180 = whole_y + t179
+    t181 = whole_y - t179
+    del t179, whole_y
+    below_beta = np.maximum(t180, t168)
+    above_beta = np.maximum(t181, t168)
+    t182 = below_beta - above_beta
+    t183 = t182 / (below_beta + above_beta)
+    t184 = t164 - v_2_beta * t183
+    del t164, v_2_beta
+    t185 = L1 + t184
+    t186 = t176 & (t143 <= t180) & (t143 <= t181) & (t143 <= t185)
+    del t176, t180, t181
+    t187 = L1 - t184
+    unreachable = np.logical_not(t186 & (t143 <= t187))
     del t186
-    t188 = _runtime.wrap(principal_pitch)
-    del principal_pitch
-    out_front_elbow_down = t61 + t64
-    del t61, t64
-    up_front_elbow_down = t65 - t66
-    del t65, t66
-    t189 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
-    t190 = 1.0 / np.sqrt(t189)
+    t188 = _runtime.poison(invalid | unreachable)
+    t189 = _runtime.select(folded, 0.0, np.arctan2(up, out_2))
+    t190 = np.arctan2(lean_alpha, 1.0) + np.arctan2(lean_beta, 1.0)
+    del lean_alpha, lean_beta
+    t191 = t189 + t190
     del t189
-    t191 = out_front_elbow_down * t190
-    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t191)
-    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t190)
-    del t190
-    t192 = higher * stheta2A_front_elbow_down
-    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t192
-    s_relative_front_elbow_down = t72 + t73
-    del t72, t73
-    c_relative_front_elbow_down = t74 - t75
-    del t74, t75
+    below_alpha = np.maximum(t185, t168)
+    del t185
+    above_alpha = np.maximum(t187, t168)
+    del t187
+    t192 = below_alpha - above_alpha
+    t193 = np.arctan2(t192, 2.0 * np.sqrt(below_alpha * above_alpha))
+    t194 = np.arctan2(turn_alpha, 1.0) + np.arctan2(turn_beta, 1.0)
+    del turn_alpha, turn_beta
+    t195 = np.arctan2(s_lag, c_lag)
+    del c_lag, s_lag
+    t196 = _runtime.select(short, 0.0, np.arctan2(t75, t84))
+    del t75, t84
+    t197 = t195 - t196
+    t198 = t194 - (t190 - t197)
+    del t190, t194
+    t199 = np.arctan2(t182, 2.0 * np.sqrt(below_beta * above_beta))
+    del above_beta, below_beta, t182
+    t200 = t193 - t199
+    del t199
+    t201 = _runtime.wrap(principal_pitch)
+    del principal_pitch
+    out_front_elbow_down = t74 + t77
+    del t74, t77
+    up_front_elbow_down = t78 - t79
+    del t78, t79
+    t202 = out_front_elbow_down * out_front_elbow_down + up_front_elbow_down * up_front_elbow_down
+    t203 = 1.0 / np.sqrt(t202)
+    del t202
+    t204 = out_front_elbow_down * t203
+    ctheta2A_front_elbow_down = _runtime.select(folded, 1.0, t204)
+    stheta2A_front_elbow_down = _runtime.select(folded, 0.0, up_front_elbow_down * t203)
+    del t203
+    t205 = higher * stheta2A_front_elbow_down
+    p_1_front_elbow_down = ahead * ctheta2A_front_elbow_down + t205
+    s_relative_front_elbow_down = t85 + t86
+    del t85, t86
+    c_relative_front_elbow_down = t87 - t88
+    del t87, t88
     v_2_front_elbow_down = L2 * s_relative_front_elbow_down + a3 * c_relative_front_elbow_down
-    t193 = ahead * stheta2A_front_elbow_down
+    t206 = ahead * stheta2A_front_elbow_down
     del stheta2A_front_elbow_down
-    t194 = t193 - higher * ctheta2A_front_elbow_down
+    t207 = t206 - higher * ctheta2A_front_elbow_down
     del ctheta2A_front_elbow_down
     v_1_front_elbow_down = L2 * c_relative_front_elbow_down - a3 * s_relative_front_elbow_down
-    t195 = p_1_front_elbow_down * v_2_front_elbow_down + t194 * v_1_front_elbow_down
+    t208 = p_1_front_elbow_down * v_2_front_elbow_down + t207 * v_1_front_elbow_down
     whole_alpha_front_elbow_down = L1 * v_1_front_elbow_down
-    t196 = np.abs(whole_alpha_front_elbow_down)
-    t197 = np.abs(t195) - t196
-    t198 = np.maximum(t197 * 9.094947017729282e-13, -t197)
-    spent_alpha_front_elbow_down = t198 <= t82
-    del t198
-    t199 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
+    t209 = np.abs(whole_alpha_front_elbow_down)
+    t210 = np.abs(t208) - t209
+    t211 = np.maximum(t210 * 9.094947017729282e-13, -t210)
+    spent_alpha_front_elbow_down = t211 <= t95
+    del t211
+    t212 = v_2_front_elbow_down * _runtime.sign(whole_alpha_front_elbow_down)
     del whole_alpha_front_elbow_down
     drawn_front_elbow_down = L1 + L_2W * s_relative_front_elbow_down + a_3W * c_relative_front_elbow_down
-    t200 = t199 * drawn_front_elbow_down
-    t201 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t194
-    t202 = t200 - _runtime.sign(-t195) * t201
-    del t195, t201
-    t203 = np.abs(t202)
-    t204 = 1.0 - t90 * drawn_front_elbow_down
-    t205 = t89 * np.sqrt(fore + L1 * (t204 * t204)) / 2000000.0
-    del fore, t204, t89
+    t213 = t212 * drawn_front_elbow_down
+    t214 = p_1_front_elbow_down * v_1_front_elbow_down - v_2_front_elbow_down * t207
+    t215 = t213 - _runtime.sign(-t208) * t214
+    del t208, t214
+    t216 = np.abs(t215)
+    t217 = 1.0 - t103 * drawn_front_elbow_down
+    t218 = t102 * np.sqrt(fore + L1 * (t217 * t217)) / 2000000.0
+    del fore, t102, t217
     tilt_front_elbow_down = L_2W * c_relative_front_elbow_down - a_3W * s_relative_front_elbow_down
     del L_2W, a_3W, c_relative_front_elbow_down, s_relative_front_elbow_down
-    t206 = t88 * (t205 + np.abs(tilt_front_elbow_down))
-    del t205, t88, tilt_front_elbow_down
-    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t206, 1.0)
-    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t203 / heavy_0_alpha_front_elbow_down, 0.0)
-    slope_aside_alpha_front_elbow_down = L1 * t199
-    del t199
-    t207 = np.abs(slope_aside_alpha_front_elbow_down)
-    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t96, 1.0)
-    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t207 / heavy_1_alpha_front_elbow_down, 0.0)
-    t208 = gain_0_alpha_front_elbow_down + gain_1_alpha_front_elbow_down
-    t209 = _runtime.select(spent_alpha_front_elbow_down, t208, 0.0)
-    del t208
-    t210 = -(_runtime.FEASIBILITY * (t58 + t209)) <= -t197
-    del t209
-    t211 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
-    del gain_1_alpha_front_elbow_down
-    t212 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
-    del gain_0_alpha_front_elbow_down
-    t213 = _runtime.select(-t197 < 0.0, t211 / (t102 + t211 + t212), 0.0)
-    del t211, t212
-    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t213, 0.0)
-    del t213
-    t214 = _runtime.sign(slope_aside_alpha_front_elbow_down)
-    del slope_aside_alpha_front_elbow_down
-    t215 = t58 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_front_elbow_down
-    t216 = t197 * share_alpha_front_elbow_down * t214 / (t207 + t215)
-    del t215
-    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t216, 0.0)
-    del t216
-    lack_alpha_front_elbow_down = t197 * (1.0 - share_alpha_front_elbow_down)
-    del share_alpha_front_elbow_down, t197
-    t217 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
-    t218 = t58 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
-    del heavy_0_alpha_front_elbow_down
-    t219 = 1.0 / (t203 + t218)
-    del t203, t218
-    t220 = lack_alpha_front_elbow_down * t219
-    del lack_alpha_front_elbow_down
-    t221 = (t217 * t219 <= 9.094947017729282e-13) & (0.0 < t220)
-    del t217, t219
-    t222 = _runtime.sign(-t202) * _runtime.select(t221, t220, 0.0)
-    del t202, t220, t221
-    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t222, 0.0)
+    t219 = t101 * (t218 + np.abs(tilt_front_elbow_down))
+    del t101, t218, tilt_front_elbow_down
+    heavy_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t219, 1.0)
+    gain_0_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t216 / heavy_0_alpha_front_elbow_down, 0.0)
+    slope_aside_alpha_front_elbow_down = L1 * t212
+    del t212
+    t220 = np.abs(slope_aside_alpha_front_elbow_down)
+    heavy_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t109, 1.0)
+    gain_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t220 / heavy_1_alpha_front_elbow_down, 0.0)
+    t221 = gain_0_alpha_front_elbow_down + gain_1_alpha_front_elbow_down
+    t222 = _runtime.select(spent_alpha_front_elbow_down, t221, 0.0)
+    del t221
+    t223 = -(_runtime.FEASIBILITY * (t71 + t222)) <= -t210
     del t222
-    t223 = aside_alpha_front_elbow_down + turn_alpha_front_elbow_down
-    del aside_alpha_front_elbow_down
-    t224 = drawn_front_elbow_down * turn_alpha_front_elbow_down
-    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t223 - t90 * t224, 0.0)
-    del t223, t224
-    t225 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t226 = np.sqrt(1.0 + t225)
-    del t225
-    t227 = 1.0 / t226
-    t228 = p_1_front_elbow_down * t227 - t194 * lean_alpha_front_elbow_down * t227
-    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t228, p_1_front_elbow_down)
+    t224 = gain_1_alpha_front_elbow_down * gain_1_alpha_front_elbow_down
+    del gain_1_alpha_front_elbow_down
+    t225 = gain_0_alpha_front_elbow_down * gain_0_alpha_front_elbow_down
+    del gain_0_alpha_front_elbow_down
+    t226 = _runtime.select(-t210 < 0.0, t224 / (t115 + t224 + t225), 0.0)
+    del t224, t225
+    share_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t226, 0.0)
+    del t226
+    t227 = _runtime.sign(slope_aside_alpha_front_elbow_down)
+    del slope_aside_alpha_front_elbow_down
+    t228 = t71 * heavy_1_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_front_elbow_down
+    t229 = t210 * share_alpha_front_elbow_down * t227 / (t220 + t228)
     del t228
+    aside_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t229, 0.0)
+    del t229
+    lack_alpha_front_elbow_down = t210 * (1.0 - share_alpha_front_elbow_down)
+    del share_alpha_front_elbow_down, t210
+    t230 = heavy_0_alpha_front_elbow_down * lack_alpha_front_elbow_down
+    t231 = t71 * heavy_0_alpha_front_elbow_down * 5.960464477539063e-08
+    del heavy_0_alpha_front_elbow_down
+    t232 = 1.0 / (t216 + t231)
+    del t216, t231
+    t233 = lack_alpha_front_elbow_down * t232
+    del lack_alpha_front_elbow_down
+    t234 = (t230 * t232 <= 9.094947017729282e-13) & (0.0 < t233)
+    del t230, t232
+    t235 = _runtime.sign(-t215) * _runtime.select(t234, t233, 0.0)
+    del t215, t233, t234
+    turn_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t235, 0.0)
+    del t235
+    t236 = aside_alpha_front_elbow_down + turn_alpha_front_elbow_down
+    del aside_alpha_front_elbow_down
+    t237 = drawn_front_elbow_down * turn_alpha_front_elbow_down
+    lean_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t236 - t103 * t237, 0.0)
+    del t236, t237
+    t238 = lean_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t239 = np.sqrt(1.0 + t238)
+    del t238
+    t240 = 1.0 / t239
+    t241 = p_1_front_elbow_down * t240 - t207 * lean_alpha_front_elbow_down * t240
+    p_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t241, p_1_front_elbow_down)
+    del t241
     part_beta_front_elbow_down = L1 * p_1_alpha_front_elbow_down
-    t229 = turn_alpha_front_elbow_down * turn_alpha_front_elbow_down
-    t230 = 1.0 / (t226 * np.sqrt(1.0 + t229))
-    del t226, t229
-    t231 = turn_alpha_front_elbow_down * lean_alpha_front_elbow_down
-    t232 = t230 + t230 * t231
-    del t231
-    t233 = lean_alpha_front_elbow_down * t230 - turn_alpha_front_elbow_down * t230
-    del t230
-    t234 = v_1_front_elbow_down * t232 + v_2_front_elbow_down * t233
-    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t234, v_1_front_elbow_down)
-    del t234
-    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
-    t235 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
-    t236 = np.maximum(t235 * 9.094947017729282e-13, -t235)
-    spent_beta_front_elbow_down = t236 <= t120
-    del t236
-    t237 = v_2_front_elbow_down * t232 - v_1_front_elbow_down * t233
-    del t232, t233
-    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t237, v_2_front_elbow_down)
-    del t237
-    t238 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
-    del whole_beta_front_elbow_down
-    t239 = p_1_front_elbow_down * lean_alpha_front_elbow_down
-    del p_1_front_elbow_down
-    t240 = _runtime.select(spent_alpha_front_elbow_down, t227 * t239 + t194 * t227, t194)
-    del t194, t227, t239
-    t241 = t240 * _runtime.sign(part_beta_front_elbow_down)
-    del part_beta_front_elbow_down
-    t242 = L1 - drawn_front_elbow_down
-    t243 = drawn_front_elbow_down * t238 - t241 * t242
-    t244 = np.abs(t243)
-    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t206, 1.0)
-    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t244 / heavy_0_beta_front_elbow_down, 0.0)
-    slope_aside_beta_front_elbow_down = L1 * (t238 + t241)
-    del t238, t241
-    t245 = np.abs(slope_aside_beta_front_elbow_down)
-    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t96, 1.0)
-    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t245 / heavy_1_beta_front_elbow_down, 0.0)
-    t246 = gain_0_beta_front_elbow_down + gain_1_beta_front_elbow_down
-    t247 = _runtime.select(spent_beta_front_elbow_down, t246, 0.0)
-    del t246
-    t248 = -(_runtime.FEASIBILITY * (t99 + t247)) <= -t235
+    t242 = turn_alpha_front_elbow_down * turn_alpha_front_elbow_down
+    t243 = 1.0 / (t239 * np.sqrt(1.0 + t242))
+    del t239, t242
+    t244 = turn_alpha_front_elbow_down * lean_alpha_front_elbow_down
+    t245 = t243 + t243 * t244
+    del t244
+    t246 = lean_alpha_front_elbow_down * t243 - turn_alpha_front_elbow_down * t243
+    del t243
+    t247 = v_1_front_elbow_down * t245 + v_2_front_elbow_down * t246
+    v_1_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t247, v_1_front_elbow_down)
     del t247
-    t249 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
-    del gain_1_beta_front_elbow_down
-    t250 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
-    del gain_0_beta_front_elbow_down
-    t251 = _runtime.select(-t235 < 0.0, t249 / (t132 + t249 + t250), 0.0)
-    del t249, t250
-    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t251, 0.0)
-    del t251
-    lack_beta_front_elbow_down = t235 * (1.0 - share_beta_front_elbow_down)
-    t252 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
-    t253 = t99 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
-    del heavy_0_beta_front_elbow_down
-    t254 = 1.0 / (t244 + t253)
-    del t244, t253
-    t255 = lack_beta_front_elbow_down * t254
-    del lack_beta_front_elbow_down
-    t256 = (t252 * t254 <= 9.094947017729282e-13) & (0.0 < t255)
-    del t252, t254
-    t257 = _runtime.sign(-t243) * _runtime.select(t256, t255, 0.0)
-    del t243, t255, t256
-    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t257, 0.0)
-    del t257
-    t258 = _runtime.sign(slope_aside_beta_front_elbow_down)
-    del slope_aside_beta_front_elbow_down
-    t259 = t99 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
-    del heavy_1_beta_front_elbow_down
-    t260 = t235 * share_beta_front_elbow_down * t258 / (t245 + t259)
-    del share_beta_front_elbow_down, t235, t245, t258, t259
-    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t260, 0.0)
+    whole_beta_front_elbow_down = L1 * v_1_alpha_front_elbow_down
+    t248 = np.abs(part_beta_front_elbow_down) - np.abs(whole_beta_front_elbow_down)
+    t249 = np.maximum(t248 * 9.094947017729282e-13, -t248)
+    spent_beta_front_elbow_down = t249 <= t133
+    del t249
+    t250 = v_2_front_elbow_down * t245 - v_1_front_elbow_down * t246
+    del t245, t246
+    v_2_alpha_front_elbow_down = _runtime.select(spent_alpha_front_elbow_down, t250, v_2_front_elbow_down)
+    del t250
+    t251 = v_2_alpha_front_elbow_down * _runtime.sign(whole_beta_front_elbow_down)
+    del whole_beta_front_elbow_down
+    t252 = p_1_front_elbow_down * lean_alpha_front_elbow_down
+    del p_1_front_elbow_down
+    t253 = _runtime.select(spent_alpha_front_elbow_down, t240 * t252 + t207 * t240, t207)
+    del t207, t240, t252
+    t254 = t253 * _runtime.sign(part_beta_front_elbow_down)
+    del part_beta_front_elbow_down
+    t255 = L1 - drawn_front_elbow_down
+    t256 = drawn_front_elbow_down * t251 - t254 * t255
+    t257 = np.abs(t256)
+    heavy_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t219, 1.0)
+    gain_0_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t257 / heavy_0_beta_front_elbow_down, 0.0)
+    slope_aside_beta_front_elbow_down = L1 * (t251 + t254)
+    del t251, t254
+    t258 = np.abs(slope_aside_beta_front_elbow_down)
+    heavy_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t109, 1.0)
+    gain_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t258 / heavy_1_beta_front_elbow_down, 0.0)
+    t259 = gain_0_beta_front_elbow_down + gain_1_beta_front_elbow_down
+    t260 = _runtime.select(spent_beta_front_elbow_down, t259, 0.0)
+    del t259
+    t261 = -(_runtime.FEASIBILITY * (t112 + t260)) <= -t248
     del t260
-    t261 = turn_beta_front_elbow_down + aside_beta_front_elbow_down
-    del aside_beta_front_elbow_down
-    t262 = drawn_front_elbow_down * turn_beta_front_elbow_down
-    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t261 - t90 * t262, 0.0)
-    del t261, t262
-    t263 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
-    t264 = np.sqrt(1.0 + t263)
-    del t263
-    t265 = turn_beta_front_elbow_down * turn_beta_front_elbow_down
-    t266 = 1.0 / (t264 * np.sqrt(1.0 + t265))
-    del t265
-    t267 = turn_beta_front_elbow_down * lean_beta_front_elbow_down
-    t268 = t266 + t266 * t267
-    del t267
-    t269 = lean_beta_front_elbow_down * t266 - turn_beta_front_elbow_down * t266
-    del t266
-    t270 = v_1_alpha_front_elbow_down * t268 + v_2_alpha_front_elbow_down * t269
-    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t270, v_1_alpha_front_elbow_down)
-    del t270
-    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
-    t271 = 1.0 / t264
+    t262 = gain_1_beta_front_elbow_down * gain_1_beta_front_elbow_down
+    del gain_1_beta_front_elbow_down
+    t263 = gain_0_beta_front_elbow_down * gain_0_beta_front_elbow_down
+    del gain_0_beta_front_elbow_down
+    t264 = _runtime.select(-t248 < 0.0, t262 / (t145 + t262 + t263), 0.0)
+    del t262, t263
+    share_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t264, 0.0)
     del t264
-    t272 = p_1_alpha_front_elbow_down * t271 - t240 * lean_beta_front_elbow_down * t271
-    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t272, p_1_alpha_front_elbow_down)
-    del t272
-    t273 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
-    t274 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
+    lack_beta_front_elbow_down = t248 * (1.0 - share_beta_front_elbow_down)
+    t265 = heavy_0_beta_front_elbow_down * lack_beta_front_elbow_down
+    t266 = t112 * heavy_0_beta_front_elbow_down * 5.960464477539063e-08
+    del heavy_0_beta_front_elbow_down
+    t267 = 1.0 / (t257 + t266)
+    del t257, t266
+    t268 = lack_beta_front_elbow_down * t267
+    del lack_beta_front_elbow_down
+    t269 = (t265 * t267 <= 9.094947017729282e-13) & (0.0 < t268)
+    del t265, t267
+    t270 = _runtime.sign(-t256) * _runtime.select(t269, t268, 0.0)
+    del t256, t268, t269
+    turn_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t270, 0.0)
+    del t270
+    t271 = _runtime.sign(slope_aside_beta_front_elbow_down)
+    del slope_aside_beta_front_elbow_down
+    t272 = t112 * heavy_1_beta_front_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_front_elbow_down
+    t273 = t248 * share_beta_front_elbow_down * t271 / (t258 + t272)
+    del share_beta_front_elbow_down, t248, t258, t271, t272
+    aside_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t273, 0.0)
+    del t273
+    t274 = turn_beta_front_elbow_down + aside_beta_front_elbow_down
+    del aside_beta_front_elbow_down
+    t275 = drawn_front_elbow_down * turn_beta_front_elbow_down
+    lean_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t274 - t103 * t275, 0.0)
+    del t274, t275
+    t276 = lean_beta_front_elbow_down * lean_beta_front_elbow_down
+    t277 = np.sqrt(1.0 + t276)
+    del t276
+    t278 = turn_beta_front_elbow_down * turn_beta_front_elbow_down
+    t279 = 1.0 / (t277 * np.sqrt(1.0 + t278))
+    del t278
+    t280 = turn_beta_front_elbow_down * lean_beta_front_elbow_down
+    t281 = t279 + t279 * t280
+    del t280
+    t282 = lean_beta_front_elbow_down * t279 - turn_beta_front_elbow_down * t279
+    del t279
+    t283 = v_1_alpha_front_elbow_down * t281 + v_2_alpha_front_elbow_down * t282
+    v_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t283, v_1_alpha_front_elbow_down)
+    del t283
+    sigma_uv_front_elbow_down = _runtime.sign(-(L1 * v_1_beta_front_elbow_down))
+    t284 = 1.0 / t277
+    del t277
+    t285 = p_1_alpha_front_elbow_down * t284 - t253 * lean_beta_front_elbow_down * t284
+    p_1_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t285, p_1_alpha_front_elbow_down)
+    del t285
+    t286 = sigma_uv_front_elbow_down * p_1_beta_front_elbow_down
+    t287 = v_1_beta_front_elbow_down * sigma_uv_front_elbow_down
     del sigma_uv_front_elbow_down
-    t275 = t56 & t210 & t248 & (t130 <= t273 - t274) & (t130 <= -(t274 + t273))
-    del t210, t248
-    t276 = v_2_alpha_front_elbow_down * t268 - v_1_alpha_front_elbow_down * t269
-    del t268, t269, v_1_alpha_front_elbow_down
-    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t276, v_2_alpha_front_elbow_down)
-    del t276, v_2_alpha_front_elbow_down
-    t277 = np.abs(v_2_beta_front_elbow_down)
-    parallel_front_elbow_down = -t274 <= _runtime.VANISHING * (64.0 * t277)
-    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t277, -t274)
-    t278 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
+    t288 = t69 & t223 & t261 & (t143 <= t286 - t287) & (t143 <= -(t287 + t286))
+    del t223, t261
+    t289 = v_2_alpha_front_elbow_down * t281 - v_1_alpha_front_elbow_down * t282
+    del t281, t282, v_1_alpha_front_elbow_down
+    v_2_beta_front_elbow_down = _runtime.select(spent_beta_front_elbow_down, t289, v_2_alpha_front_elbow_down)
+    del t289, v_2_alpha_front_elbow_down
+    t290 = np.abs(v_2_beta_front_elbow_down)
+    parallel_front_elbow_down = -t287 <= _runtime.VANISHING * (64.0 * t290)
+    whole_y_front_elbow_down = _runtime.select(parallel_front_elbow_down, L1 + t290, -t287)
+    t291 = p_1_alpha_front_elbow_down * lean_beta_front_elbow_down
     del p_1_alpha_front_elbow_down
-    t279 = _runtime.select(spent_beta_front_elbow_down, t271 * t278 + t240 * t271, t240)
-    del t240, t271, t278
-    t280 = t279 * _runtime.sign(v_2_beta_front_elbow_down)
-    t281 = _runtime.select(parallel_front_elbow_down, t280, t273)
-    del t273, t280
-    t282 = whole_y_front_elbow_down + t281
-    t283 = whole_y_front_elbow_down - t281
-    below_beta_0_front_elbow_down = np.maximum(t282, t155)
-    above_beta_0_front_elbow_down = np.maximum(t283, t155)
-    t284 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
+    t292 = _runtime.select(spent_beta_front_elbow_down, t284 * t291 + t253 * t284, t253)
+    del t253, t284, t291
+    t293 = t292 * _runtime.sign(v_2_beta_front_elbow_down)
+    t294 = _runtime.select(parallel_front_elbow_down, t293, t286)
+    del t286, t293
+    t295 = whole_y_front_elbow_down + t294
+    t296 = whole_y_front_elbow_down - t294
+    below_beta_0_front_elbow_down = np.maximum(t295, t168)
+    above_beta_0_front_elbow_down = np.maximum(t296, t168)
+    t297 = below_beta_0_front_elbow_down - above_beta_0_front_elbow_down
     total_beta_0_front_elbow_down = below_beta_0_front_elbow_down + above_beta_0_front_elbow_down
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
-    t285 = v_2_beta_front_elbow_down * (t284 / total_beta_0_front_elbow_down)
-    del t284, total_beta_0_front_elbow_down
-    t286 = t279 - t285
-    del t285
-    left_along_front_elbow_down = L1 - np.abs(t286)
-    t287 = left_along_front_elbow_down * 9.094947017729282e-13
-    t288 = np.maximum(-t287, left_along_front_elbow_down)
-    del t287
-    spent_along_front_elbow_down = t288 <= t159
-    del t288
-    t289 = _runtime.select(spent_along_front_elbow_down, t277 / (t160 - t274), 0.0)
-    del t277
-    t290 = -(_runtime.FEASIBILITY * (play * (1.0 + t289)))
-    del t289
-    t291 = t275 & (t130 <= t282) & (t130 <= t283) & (t290 <= left_along_front_elbow_down)
-    del t275, t282, t283, t290
-    t292 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
-    del left_along_front_elbow_down
-    t293 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
-    t294 = v_2_beta_front_elbow_down * t292 / (t274 * t274 + t293)
-    del t274, t292, t293
-    t295 = whole_y_front_elbow_down * (t294 * _runtime.sign(-t286))
-    del t286, t294
-    t296 = _runtime.select(spent_along_front_elbow_down, t281 + t295, t281)
-    del t281, t295
-    t297 = whole_y_front_elbow_down + t296
-    t298 = whole_y_front_elbow_down - t296
-    del t296, whole_y_front_elbow_down
-    below_beta_front_elbow_down = np.maximum(t297, t155)
-    above_beta_front_elbow_down = np.maximum(t298, t155)
-    t299 = below_beta_front_elbow_down - above_beta_front_elbow_down
-    total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
-    t300 = t299 / total_beta_front_elbow_down
-    del total_beta_front_elbow_down
-    t301 = t279 - v_2_beta_front_elbow_down * t300
-    del t279, v_2_beta_front_elbow_down
-    t302 = L1 + t301
-    t303 = t291 & (t130 <= t297) & (t130 <= t298) & (t130 <= t302)
-    del t291, t297, t298
-    t304 = L1 - t301
-    unreachable_2 = np.logical_not(t303 & (t130 <= t304))
-    del t303
-    t305 = _runtime.poison(invalid | unreachable_2)
-    t306 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
-    t307 = np.arctan2(lean_alpha_front_elbow_down, 1.0) + np.arctan2(lean_beta_front_elbow_down, 1.0)
-    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
-    t308 = _runtime.select(folded, 0.0, t306) + t307
-    del t306
-    below_alpha_front_elbow_down = np.maximum(t302, t155)
+    t298 = v_2_beta_front_elbow_down * (t297 / total_beta_0_front_elbow_down)
+    del t297, total_beta_0_front_elbow_down
+    t299 = t292 - t298
+    del t298
+    left_along_front_elbow_down = L1 - np.abs(t299)
+    t300 = left_along_front_elbow_down * 9.094947017729282e-13
+    t301 = np.maximum(-t300, left_along_front_elbow_down)
+    del t300
+    spent_along_front_elbow_down = t301 <= t172
+    del t301
+    t302 = _runtime.select(spent_along_front_elbow_down, t290 / (t173 - t287), 0.0)
+    del t290
+    t303 = -(_runtime.FEASIBILITY * (play * (1.0 + t302)))
     del t302
-    above_alpha_front_elbow_down = np.maximum(t304, t155)
-    del t304
-    t309 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
-    t310 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
-    t311 = np.arctan2(t309, 2.0 * np.sqrt(t310))
-    del t310
-    t312 = np.arctan2(turn_alpha_front_elbow_down, 1.0) + np.arctan2(turn_beta_front_elbow_down, 1.0)
+    t304 = t288 & (t143 <= t295) & (t143 <= t296) & (t303 <= left_along_front_elbow_down)
+    del t288, t295, t296, t303
+    t305 = left_along_front_elbow_down * 0.5 - np.abs(left_along_front_elbow_down) * 0.5
+    del left_along_front_elbow_down
+    t306 = v_2_beta_front_elbow_down * v_2_beta_front_elbow_down
+    t307 = v_2_beta_front_elbow_down * t305 / (t287 * t287 + t306)
+    del t287, t305, t306
+    t308 = whole_y_front_elbow_down * (t307 * _runtime.sign(-t299))
+    del t299, t307
+    t309 = _runtime.select(spent_along_front_elbow_down, t294 + t308, t294)
+    del t294, t308
+    t310 = whole_y_front_elbow_down + t309
+    t311 = whole_y_front_elbow_down - t309
+    del t309, whole_y_front_elbow_down
+    below_beta_front_elbow_down = np.maximum(t310, t168)
+    above_beta_front_elbow_down = np.maximum(t311, t168)
+    t312 = below_beta_front_elbow_down - above_beta_front_elbow_down
+    total_beta_front_elbow_down = below_beta_front_elbow_down + above_beta_front_elbow_down
+    t313 = t312 / total_beta_front_elbow_down
+    del total_beta_front_elbow_down
+    t314 = t292 - v_2_beta_front_elbow_down * t313
+    del t292, v_2_beta_front_elbow_down
+    t315 = L1 + t314
+    t316 = t304 & (t143 <= t310) & (t143 <= t311) & (t143 <= t315)
+    del t304, t310, t311
+    t317 = L1 - t314
+    unreachable_2 = np.logical_not(t316 & (t143 <= t317))
+    del t316
+    t318 = _runtime.poison(invalid | unreachable_2)
+    t319 = np.arctan2(up_front_elbow_down, out_front_elbow_down)
+    t320 = np.arctan2(lean_alpha_front_elbow_down, 1.0) + np.arctan2(lean_beta_front_elbow_down, 1.0)
+    del lean_alpha_front_elbow_down, lean_beta_front_elbow_down
+    t321 = _runtime.select(folded, 0.0, t319) + t320
+    del t319
+    below_alpha_front_elbow_down = np.maximum(t315, t168)
+    del t315
+    above_alpha_front_elbow_down = np.maximum(t317, t168)
+    del t317
+    t322 = below_alpha_front_elbow_down - above_alpha_front_elbow_down
+    t323 = below_alpha_front_elbow_down * above_alpha_front_elbow_down
+    t324 = np.arctan2(t322, 2.0 * np.sqrt(t323))
+    del t323
+    t325 = np.arctan2(turn_alpha_front_elbow_down, 1.0) + np.arctan2(turn_beta_front_elbow_down, 1.0)
     del turn_alpha_front_elbow_down, turn_beta_front_elbow_down
-    t313 = t182 + t183
-    del t182, t183
-    t314 = t312 - (t307 - t313)
-    del t307, t312
-    t315 = below_beta_front_elbow_down * above_beta_front_elbow_down
+    t326 = t195 + t196
+    del t195, t196
+    t327 = t325 - (t320 - t326)
+    del t320, t325
+    t328 = below_beta_front_elbow_down * above_beta_front_elbow_down
     del above_beta_front_elbow_down, below_beta_front_elbow_down
-    t316 = t311 - np.arctan2(t299, 2.0 * np.sqrt(t315))
-    del t299, t315
-    t317 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t38))
-    del t3, t38
-    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t68)
-    del t68
-    p_1_rear_elbow_up = t69 + ahead * ctheta2A_rear_elbow_up
-    del t69
-    t318 = t76 - higher * ctheta2A_rear_elbow_up
-    del ctheta2A_rear_elbow_up, t76
-    t319 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t318
-    room_alpha_rear_elbow_up = t196 - np.abs(t319)
-    del t196
-    t320 = room_alpha_rear_elbow_up * 9.094947017729282e-13
-    spent_alpha_rear_elbow_up = np.maximum(-t320, room_alpha_rear_elbow_up) <= t82
-    del t320
-    t321 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t318
-    t322 = t200 - _runtime.sign(-t319) * t321
-    del t200, t319, t321
-    t323 = np.abs(t322)
-    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t206, 1.0)
-    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t323 / heavy_0_alpha_rear_elbow_up, 0.0)
-    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t96, 1.0)
-    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t207 / heavy_1_alpha_rear_elbow_up, 0.0)
-    t324 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
-    t325 = _runtime.select(spent_alpha_rear_elbow_up, t324, 0.0)
-    del t324
-    t326 = -(_runtime.FEASIBILITY * (t58 + t325)) <= room_alpha_rear_elbow_up
-    del t325
-    t327 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
+    t329 = t324 - np.arctan2(t312, 2.0 * np.sqrt(t328))
+    del t312, t328
+    t330 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t50))
+    del t3, t50
+    ctheta2A_rear_elbow_up = _runtime.select(folded, 1.0, -t81)
+    del t81
+    p_1_rear_elbow_up = t82 + ahead * ctheta2A_rear_elbow_up
+    del t82
+    t331 = t89 - higher * ctheta2A_rear_elbow_up
+    del ctheta2A_rear_elbow_up, t89
+    t332 = v_2_front_elbow_down * p_1_rear_elbow_up + v_1_front_elbow_down * t331
+    room_alpha_rear_elbow_up = t209 - np.abs(t332)
+    del t209
+    t333 = room_alpha_rear_elbow_up * 9.094947017729282e-13
+    spent_alpha_rear_elbow_up = np.maximum(-t333, room_alpha_rear_elbow_up) <= t95
+    del t333
+    t334 = v_1_front_elbow_down * p_1_rear_elbow_up - v_2_front_elbow_down * t331
+    t335 = t213 - _runtime.sign(-t332) * t334
+    del t213, t332, t334
+    t336 = np.abs(t335)
+    heavy_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t219, 1.0)
+    gain_0_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t336 / heavy_0_alpha_rear_elbow_up, 0.0)
+    heavy_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t109, 1.0)
+    gain_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t220 / heavy_1_alpha_rear_elbow_up, 0.0)
+    t337 = gain_0_alpha_rear_elbow_up + gain_1_alpha_rear_elbow_up
+    t338 = _runtime.select(spent_alpha_rear_elbow_up, t337, 0.0)
+    del t337
+    t339 = -(_runtime.FEASIBILITY * (t71 + t338)) <= room_alpha_rear_elbow_up
+    del t338
+    t340 = gain_1_alpha_rear_elbow_up * gain_1_alpha_rear_elbow_up
     del gain_1_alpha_rear_elbow_up
-    t328 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
+    t341 = gain_0_alpha_rear_elbow_up * gain_0_alpha_rear_elbow_up
     del gain_0_alpha_rear_elbow_up
-    t329 = _runtime.select(room_alpha_rear_elbow_up < 0.0, t327 / (t102 + t327 + t328), 0.0)
-    del t327, t328
-    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t329, 0.0)
-    del t329
-    t330 = t214 * room_alpha_rear_elbow_up * share_alpha_rear_elbow_up
-    del t214
-    t331 = t58 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
+    t342 = _runtime.select(room_alpha_rear_elbow_up < 0.0, t340 / (t115 + t340 + t341), 0.0)
+    del t340, t341
+    share_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t342, 0.0)
+    del t342
+    t343 = t227 * room_alpha_rear_elbow_up * share_alpha_rear_elbow_up
+    del t227
+    t344 = t71 * heavy_1_alpha_rear_elbow_up * 5.960464477539063e-08
     del heavy_1_alpha_rear_elbow_up
-    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t330 / (t207 + t331)), 0.0)
-    del t207, t330, t331
-    t332 = room_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
+    aside_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, -(t343 / (t220 + t344)), 0.0)
+    del t220, t343, t344
+    t345 = room_alpha_rear_elbow_up * (1.0 - share_alpha_rear_elbow_up)
     del room_alpha_rear_elbow_up, share_alpha_rear_elbow_up
-    t333 = t58 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
-    t334 = 1.0 / (t323 + t333)
-    del t323, t333
-    t335 = -(heavy_0_alpha_rear_elbow_up * t332 * t334) <= 9.094947017729282e-13
+    t346 = t71 * heavy_0_alpha_rear_elbow_up * 5.960464477539063e-08
+    t347 = 1.0 / (t336 + t346)
+    del t336, t346
+    t348 = -(heavy_0_alpha_rear_elbow_up * t345 * t347) <= 9.094947017729282e-13
     del heavy_0_alpha_rear_elbow_up
-    t336 = -(t332 * t334)
-    del t332, t334
-    t337 = _runtime.select(t335 & (0.0 < t336), t336, 0.0)
-    del t335, t336
-    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t322) * t337, 0.0)
-    del t322, t337
-    t338 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
+    t349 = -(t345 * t347)
+    del t345, t347
+    t350 = _runtime.select(t348 & (0.0 < t349), t349, 0.0)
+    del t348, t349
+    turn_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, _runtime.sign(-t335) * t350, 0.0)
+    del t335, t350
+    t351 = aside_alpha_rear_elbow_up + turn_alpha_rear_elbow_up
     del aside_alpha_rear_elbow_up
-    t339 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
-    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t338 - t90 * t339, 0.0)
-    del t338, t339
-    t340 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t341 = np.sqrt(1.0 + t340)
-    del t340
-    t342 = 1.0 / t341
-    t343 = p_1_rear_elbow_up * t342 - t318 * lean_alpha_rear_elbow_up * t342
-    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t343, p_1_rear_elbow_up)
-    del t343
+    t352 = drawn_front_elbow_down * turn_alpha_rear_elbow_up
+    lean_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t351 - t103 * t352, 0.0)
+    del t351, t352
+    t353 = lean_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t354 = np.sqrt(1.0 + t353)
+    del t353
+    t355 = 1.0 / t354
+    t356 = p_1_rear_elbow_up * t355 - t331 * lean_alpha_rear_elbow_up * t355
+    p_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t356, p_1_rear_elbow_up)
+    del t356
     part_beta_rear_elbow_up = L1 * p_1_alpha_rear_elbow_up
-    t344 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
-    t345 = 1.0 / (t341 * np.sqrt(1.0 + t344))
-    del t341, t344
-    t346 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
-    t347 = t345 + t345 * t346
-    del t346
-    t348 = lean_alpha_rear_elbow_up * t345 - turn_alpha_rear_elbow_up * t345
-    del t345
-    t349 = v_1_front_elbow_down * t347 + v_2_front_elbow_down * t348
-    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t349, v_1_front_elbow_down)
-    del t349
+    t357 = turn_alpha_rear_elbow_up * turn_alpha_rear_elbow_up
+    t358 = 1.0 / (t354 * np.sqrt(1.0 + t357))
+    del t354, t357
+    t359 = turn_alpha_rear_elbow_up * lean_alpha_rear_elbow_up
+    t360 = t358 + t358 * t359
+    del t359
+    t361 = lean_alpha_rear_elbow_up * t358 - turn_alpha_rear_elbow_up * t358
+    del t358
+    t362 = v_1_front_elbow_down * t360 + v_2_front_elbow_down * t361
+    v_1_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t362, v_1_front_elbow_down)
+    del t362
     whole_beta_rear_elbow_up = L1 * v_1_alpha_rear_elbow_up
-    t350 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
-    t351 = np.maximum(t350 * 9.094947017729282e-13, -t350)
-    spent_beta_rear_elbow_up = t351 <= t120
-    del t351
-    t352 = v_2_front_elbow_down * t347 - v_1_front_elbow_down * t348
-    del t347, t348, v_1_front_elbow_down
-    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t352, v_2_front_elbow_down)
-    del t352, v_2_front_elbow_down
-    t353 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
+    t363 = np.abs(part_beta_rear_elbow_up) - np.abs(whole_beta_rear_elbow_up)
+    t364 = np.maximum(t363 * 9.094947017729282e-13, -t363)
+    spent_beta_rear_elbow_up = t364 <= t133
+    del t364
+    t365 = v_2_front_elbow_down * t360 - v_1_front_elbow_down * t361
+    del t360, t361, v_1_front_elbow_down
+    v_2_alpha_rear_elbow_up = _runtime.select(spent_alpha_rear_elbow_up, t365, v_2_front_elbow_down)
+    del t365, v_2_front_elbow_down
+    t366 = v_2_alpha_rear_elbow_up * _runtime.sign(whole_beta_rear_elbow_up)
     del whole_beta_rear_elbow_up
-    t354 = t342 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
+    t367 = t355 * (p_1_rear_elbow_up * lean_alpha_rear_elbow_up)
     del p_1_rear_elbow_up
-    t355 = _runtime.select(spent_alpha_rear_elbow_up, t354 + t318 * t342, t318)
-    del t318, t342, t354
-    t356 = t355 * _runtime.sign(part_beta_rear_elbow_up)
+    t368 = _runtime.select(spent_alpha_rear_elbow_up, t367 + t331 * t355, t331)
+    del t331, t355, t367
+    t369 = t368 * _runtime.sign(part_beta_rear_elbow_up)
     del part_beta_rear_elbow_up
-    t357 = drawn_front_elbow_down * t353 - t242 * t356
-    del t242
-    t358 = np.abs(t357)
-    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t206, 1.0)
-    del t206
-    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t358 / heavy_0_beta_rear_elbow_up, 0.0)
-    slope_aside_beta_rear_elbow_up = L1 * (t353 + t356)
-    del t353, t356
-    t359 = np.abs(slope_aside_beta_rear_elbow_up)
-    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t96, 1.0)
-    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t359 / heavy_1_beta_rear_elbow_up, 0.0)
-    t360 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
-    t361 = _runtime.select(spent_beta_rear_elbow_up, t360, 0.0)
-    del t360
-    t362 = -(_runtime.FEASIBILITY * (t99 + t361)) <= -t350
-    del t361
-    t363 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
-    del gain_1_beta_rear_elbow_up
-    t364 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
-    del gain_0_beta_rear_elbow_up
-    t365 = _runtime.select(-t350 < 0.0, t363 / (t132 + t363 + t364), 0.0)
-    del t363, t364
-    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t365, 0.0)
-    del t365
-    lack_beta_rear_elbow_up = t350 * (1.0 - share_beta_rear_elbow_up)
-    t366 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
-    t367 = t99 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
-    del heavy_0_beta_rear_elbow_up
-    t368 = 1.0 / (t358 + t367)
-    del t358, t367
-    t369 = lack_beta_rear_elbow_up * t368
-    del lack_beta_rear_elbow_up
-    t370 = (t366 * t368 <= 9.094947017729282e-13) & (0.0 < t369)
-    del t366, t368
-    t371 = _runtime.sign(-t357) * _runtime.select(t370, t369, 0.0)
-    del t357, t369, t370
-    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t371, 0.0)
-    del t371
-    t372 = _runtime.sign(slope_aside_beta_rear_elbow_up)
-    del slope_aside_beta_rear_elbow_up
-    t373 = t99 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
-    del heavy_1_beta_rear_elbow_up
-    t374 = t350 * share_beta_rear_elbow_up * t372 / (t359 + t373)
-    del share_beta_rear_elbow_up, t350, t359, t372, t373
-    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t374, 0.0)
+    t370 = drawn_front_elbow_down * t366 - t255 * t369
+    del t255
+    t371 = np.abs(t370)
+    heavy_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t219, 1.0)
+    del t219
+    gain_0_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t371 / heavy_0_beta_rear_elbow_up, 0.0)
+    slope_aside_beta_rear_elbow_up = L1 * (t366 + t369)
+    del t366, t369
+    t372 = np.abs(slope_aside_beta_rear_elbow_up)
+    heavy_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t109, 1.0)
+    gain_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t372 / heavy_1_beta_rear_elbow_up, 0.0)
+    t373 = gain_0_beta_rear_elbow_up + gain_1_beta_rear_elbow_up
+    t374 = _runtime.select(spent_beta_rear_elbow_up, t373, 0.0)
+    del t373
+    t375 = -(_runtime.FEASIBILITY * (t112 + t374)) <= -t363
     del t374
-    t375 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
-    del aside_beta_rear_elbow_up
-    t376 = drawn_front_elbow_down * turn_beta_rear_elbow_up
-    del drawn_front_elbow_down
-    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t375 - t90 * t376, 0.0)
-    del t375, t376
-    t377 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t378 = np.sqrt(1.0 + t377)
-    del t377
-    t379 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
-    t380 = 1.0 / (t378 * np.sqrt(1.0 + t379))
-    del t379
-    t381 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
-    t382 = t380 + t380 * t381
-    del t381
-    t383 = lean_beta_rear_elbow_up * t380 - turn_beta_rear_elbow_up * t380
-    del t380
-    t384 = v_1_alpha_rear_elbow_up * t382 + v_2_alpha_rear_elbow_up * t383
-    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t384, v_1_alpha_rear_elbow_up)
-    del t384
-    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
-    t385 = 1.0 / t378
+    t376 = gain_1_beta_rear_elbow_up * gain_1_beta_rear_elbow_up
+    del gain_1_beta_rear_elbow_up
+    t377 = gain_0_beta_rear_elbow_up * gain_0_beta_rear_elbow_up
+    del gain_0_beta_rear_elbow_up
+    t378 = _runtime.select(-t363 < 0.0, t376 / (t145 + t376 + t377), 0.0)
+    del t376, t377
+    share_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t378, 0.0)
     del t378
-    t386 = p_1_alpha_rear_elbow_up * t385 - t355 * lean_beta_rear_elbow_up * t385
-    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t386, p_1_alpha_rear_elbow_up)
-    del t386
-    t387 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
-    t388 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
-    del sigma_uv_rear_elbow_up
-    t389 = t56 & t326 & t362 & (t130 <= t387 - t388) & (t130 <= -(t388 + t387))
-    del t326, t362
-    t390 = v_2_alpha_rear_elbow_up * t382 - v_1_alpha_rear_elbow_up * t383
-    del t382, t383, v_1_alpha_rear_elbow_up
-    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t390, v_2_alpha_rear_elbow_up)
-    del t390, v_2_alpha_rear_elbow_up
-    t391 = np.abs(v_2_beta_rear_elbow_up)
-    parallel_rear_elbow_up = -t388 <= _runtime.VANISHING * (64.0 * t391)
-    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t391, -t388)
-    t392 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
-    del p_1_alpha_rear_elbow_up
-    t393 = _runtime.select(spent_beta_rear_elbow_up, t385 * t392 + t355 * t385, t355)
-    del t355, t385, t392
-    t394 = _runtime.select(parallel_rear_elbow_up, t393 * _runtime.sign(v_2_beta_rear_elbow_up), t387)
+    lack_beta_rear_elbow_up = t363 * (1.0 - share_beta_rear_elbow_up)
+    t379 = heavy_0_beta_rear_elbow_up * lack_beta_rear_elbow_up
+    t380 = t112 * heavy_0_beta_rear_elbow_up * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_up
+    t381 = 1.0 / (t371 + t380)
+    del t371, t380
+    t382 = lack_beta_rear_elbow_up * t381
+    del lack_beta_rear_elbow_up
+    t383 = (t379 * t381 <= 9.094947017729282e-13) & (0.0 < t382)
+    del t379, t381
+    t384 = _runtime.sign(-t370) * _runtime.select(t383, t382, 0.0)
+    del t370, t382, t383
+    turn_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t384, 0.0)
+    del t384
+    t385 = _runtime.sign(slope_aside_beta_rear_elbow_up)
+    del slope_aside_beta_rear_elbow_up
+    t386 = t112 * heavy_1_beta_rear_elbow_up * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_up
+    t387 = t363 * share_beta_rear_elbow_up * t385 / (t372 + t386)
+    del share_beta_rear_elbow_up, t363, t372, t385, t386
+    aside_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t387, 0.0)
     del t387
-    t395 = whole_y_rear_elbow_up + t394
-    t396 = whole_y_rear_elbow_up - t394
-    below_beta_0_rear_elbow_up = np.maximum(t395, t155)
-    above_beta_0_rear_elbow_up = np.maximum(t396, t155)
-    t397 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
+    t388 = turn_beta_rear_elbow_up + aside_beta_rear_elbow_up
+    del aside_beta_rear_elbow_up
+    t389 = drawn_front_elbow_down * turn_beta_rear_elbow_up
+    del drawn_front_elbow_down
+    lean_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t388 - t103 * t389, 0.0)
+    del t388, t389
+    t390 = lean_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t391 = np.sqrt(1.0 + t390)
+    del t390
+    t392 = turn_beta_rear_elbow_up * turn_beta_rear_elbow_up
+    t393 = 1.0 / (t391 * np.sqrt(1.0 + t392))
+    del t392
+    t394 = turn_beta_rear_elbow_up * lean_beta_rear_elbow_up
+    t395 = t393 + t393 * t394
+    del t394
+    t396 = lean_beta_rear_elbow_up * t393 - turn_beta_rear_elbow_up * t393
+    del t393
+    t397 = v_1_alpha_rear_elbow_up * t395 + v_2_alpha_rear_elbow_up * t396
+    v_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t397, v_1_alpha_rear_elbow_up)
+    del t397
+    sigma_uv_rear_elbow_up = _runtime.sign(-(L1 * v_1_beta_rear_elbow_up))
+    t398 = 1.0 / t391
+    del t391
+    t399 = p_1_alpha_rear_elbow_up * t398 - t368 * lean_beta_rear_elbow_up * t398
+    p_1_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t399, p_1_alpha_rear_elbow_up)
+    del t399
+    t400 = sigma_uv_rear_elbow_up * p_1_beta_rear_elbow_up
+    t401 = v_1_beta_rear_elbow_up * sigma_uv_rear_elbow_up
+    del sigma_uv_rear_elbow_up
+    t402 = t69 & t339 & t375 & (t143 <= t400 - t401) & (t143 <= -(t401 + t400))
+    del t339, t375
+    t403 = v_2_alpha_rear_elbow_up * t395 - v_1_alpha_rear_elbow_up * t396
+    del t395, t396, v_1_alpha_rear_elbow_up
+    v_2_beta_rear_elbow_up = _runtime.select(spent_beta_rear_elbow_up, t403, v_2_alpha_rear_elbow_up)
+    del t403, v_2_alpha_rear_elbow_up
+    t404 = np.abs(v_2_beta_rear_elbow_up)
+    parallel_rear_elbow_up = -t401 <= _runtime.VANISHING * (64.0 * t404)
+    whole_y_rear_elbow_up = _runtime.select(parallel_rear_elbow_up, L1 + t404, -t401)
+    t405 = p_1_alpha_rear_elbow_up * lean_beta_rear_elbow_up
+    del p_1_alpha_rear_elbow_up
+    t406 = _runtime.select(spent_beta_rear_elbow_up, t398 * t405 + t368 * t398, t368)
+    del t368, t398, t405
+    t407 = _runtime.select(parallel_rear_elbow_up, t406 * _runtime.sign(v_2_beta_rear_elbow_up), t400)
+    del t400
+    t408 = whole_y_rear_elbow_up + t407
+    t409 = whole_y_rear_elbow_up - t407
+    below_beta_0_rear_elbow_up = np.maximum(t408, t168)
+    above_beta_0_rear_elbow_up = np.maximum(t409, t168)
+    t410 = below_beta_0_rear_elbow_up - above_beta_0_rear_elbow_up
     total_beta_0_rear_elbow_up = below_beta_0_rear_elbow_up + above_beta_0_rear_elbow_up
     del above_beta_0_rear_elbow_up, below_beta_0_rear_elbow_up
-    t398 = v_2_beta_rear_elbow_up * (t397 / total_beta_0_rear_elbow_up)
-    del t397, total_beta_0_rear_elbow_up
-    t399 = t393 - t398
-    del t398
-    left_along_rear_elbow_up = L1 - np.abs(t399)
-    t400 = left_along_rear_elbow_up * 9.094947017729282e-13
-    spent_along_rear_elbow_up = np.maximum(-t400, left_along_rear_elbow_up) <= t159
-    del t400
-    t401 = _runtime.select(spent_along_rear_elbow_up, t391 / (t160 - t388), 0.0)
-    del t391
-    t402 = -(_runtime.FEASIBILITY * (play * (1.0 + t401)))
-    del t401
-    t403 = t389 & (t130 <= t395) & (t130 <= t396) & (t402 <= left_along_rear_elbow_up)
-    del t389, t395, t396, t402
-    t404 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
-    del left_along_rear_elbow_up
-    t405 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
-    t406 = v_2_beta_rear_elbow_up * t404 / (t388 * t388 + t405)
-    del t388, t404, t405
-    t407 = whole_y_rear_elbow_up * (t406 * _runtime.sign(-t399))
-    del t399, t406
-    t408 = _runtime.select(spent_along_rear_elbow_up, t394 + t407, t394)
-    del t394, t407
-    t409 = whole_y_rear_elbow_up + t408
-    t410 = whole_y_rear_elbow_up - t408
-    del t408, whole_y_rear_elbow_up
-    below_beta_rear_elbow_up = np.maximum(t409, t155)
-    above_beta_rear_elbow_up = np.maximum(t410, t155)
-    t411 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
-    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
-    t412 = t411 / total_beta_rear_elbow_up
-    del total_beta_rear_elbow_up
-    t413 = t393 - v_2_beta_rear_elbow_up * t412
-    del t393, v_2_beta_rear_elbow_up
-    t414 = L1 + t413
-    t415 = t403 & (t130 <= t409) & (t130 <= t410) & (t130 <= t414)
-    del t403, t409, t410
-    t416 = L1 - t413
-    unreachable_3 = np.logical_not(t415 & (t130 <= t416))
-    del t415
-    t417 = _runtime.poison(invalid | unreachable_3)
-    t418 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
-    del out_2, up
-    t419 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
-    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
-    t420 = t418 + t419
-    del t418
-    below_alpha_rear_elbow_up = np.maximum(t414, t155)
+    t411 = v_2_beta_rear_elbow_up * (t410 / total_beta_0_rear_elbow_up)
+    del t410, total_beta_0_rear_elbow_up
+    t412 = t406 - t411
+    del t411
+    left_along_rear_elbow_up = L1 - np.abs(t412)
+    t413 = left_along_rear_elbow_up * 9.094947017729282e-13
+    spent_along_rear_elbow_up = np.maximum(-t413, left_along_rear_elbow_up) <= t172
+    del t413
+    t414 = _runtime.select(spent_along_rear_elbow_up, t404 / (t173 - t401), 0.0)
+    del t404
+    t415 = -(_runtime.FEASIBILITY * (play * (1.0 + t414)))
     del t414
-    above_alpha_rear_elbow_up = np.maximum(t416, t155)
-    del t416
-    t421 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
-    t422 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
-    t423 = np.arctan2(t421, 2.0 * np.sqrt(t422))
-    del t422
-    t424 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
-    del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
-    t425 = t424 + (t313 - t419)
-    del t313, t419, t424
-    t426 = below_beta_rear_elbow_up * above_beta_rear_elbow_up
-    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
-    t427 = t423 - np.arctan2(t411, 2.0 * np.sqrt(t426))
-    del t411, t426
-    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t191)
-    del t191
-    p_1_rear_elbow_down = t192 + ahead * ctheta2A_rear_elbow_down
-    del ahead, t192
-    t428 = t193 - higher * ctheta2A_rear_elbow_down
-    del ctheta2A_rear_elbow_down, higher, t193
-    t429 = v_2 * p_1_rear_elbow_down + v_1 * t428
-    room_alpha_rear_elbow_down = t79 - np.abs(t429)
-    del t79
-    t430 = room_alpha_rear_elbow_down * 9.094947017729282e-13
-    t431 = np.maximum(-t430, room_alpha_rear_elbow_down)
-    del t430
-    spent_alpha_rear_elbow_down = t431 <= t82
-    del t431, t82
-    t432 = _runtime.sign(-t429) * (v_1 * p_1_rear_elbow_down - v_2 * t428)
+    t416 = t402 & (t143 <= t408) & (t143 <= t409) & (t415 <= left_along_rear_elbow_up)
+    del t402, t408, t409, t415
+    t417 = left_along_rear_elbow_up * 0.5 - np.abs(left_along_rear_elbow_up) * 0.5
+    del left_along_rear_elbow_up
+    t418 = v_2_beta_rear_elbow_up * v_2_beta_rear_elbow_up
+    t419 = v_2_beta_rear_elbow_up * t417 / (t401 * t401 + t418)
+    del t401, t417, t418
+    t420 = whole_y_rear_elbow_up * (t419 * _runtime.sign(-t412))
+    del t412, t419
+    t421 = _runtime.select(spent_along_rear_elbow_up, t407 + t420, t407)
+    del t407, t420
+    t422 = whole_y_rear_elbow_up + t421
+    t423 = whole_y_rear_elbow_up - t421
+    del t421, whole_y_rear_elbow_up
+    below_beta_rear_elbow_up = np.maximum(t422, t168)
+    above_beta_rear_elbow_up = np.maximum(t423, t168)
+    t424 = below_beta_rear_elbow_up - above_beta_rear_elbow_up
+    total_beta_rear_elbow_up = below_beta_rear_elbow_up + above_beta_rear_elbow_up
+    t425 = t424 / total_beta_rear_elbow_up
+    del total_beta_rear_elbow_up
+    t426 = t406 - v_2_beta_rear_elbow_up * t425
+    del t406, v_2_beta_rear_elbow_up
+    t427 = L1 + t426
+    t428 = t416 & (t143 <= t422) & (t143 <= t423) & (t143 <= t427)
+    del t416, t422, t423
+    t429 = L1 - t426
+    unreachable_3 = np.logical_not(t428 & (t143 <= t429))
+    del t428
+    t430 = _runtime.poison(invalid | unreachable_3)
+    t431 = _runtime.select(folded, 0.0, np.arctan2(up, -out_2))
+    del out_2, up
+    t432 = np.arctan2(lean_alpha_rear_elbow_up, 1.0) + np.arctan2(lean_beta_rear_elbow_up, 1.0)
+    del lean_alpha_rear_elbow_up, lean_beta_rear_elbow_up
+    t433 = t431 + t432
+    del t431
+    below_alpha_rear_elbow_up = np.maximum(t427, t168)
+    del t427
+    above_alpha_rear_elbow_up = np.maximum(t429, t168)
     del t429
-    t433 = t84 - t432
-    del t432, t84
-    t434 = np.abs(t433)
-    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t94, 1.0)
-    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t434 / heavy_0_alpha_rear_elbow_down, 0.0)
-    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t96, 1.0)
-    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t95 / heavy_1_alpha_rear_elbow_down, 0.0)
-    t435 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
-    t436 = _runtime.select(spent_alpha_rear_elbow_down, t435, 0.0)
+    t434 = below_alpha_rear_elbow_up - above_alpha_rear_elbow_up
+    t435 = below_alpha_rear_elbow_up * above_alpha_rear_elbow_up
+    t436 = np.arctan2(t434, 2.0 * np.sqrt(t435))
     del t435
-    t437 = -(_runtime.FEASIBILITY * (t58 + t436)) <= room_alpha_rear_elbow_down
-    del t436
-    t438 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
-    del gain_1_alpha_rear_elbow_down
-    t439 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
-    del gain_0_alpha_rear_elbow_down
-    t440 = _runtime.select(room_alpha_rear_elbow_down < 0.0, t438 / (t102 + t438 + t439), 0.0)
-    del t102, t438, t439
-    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t440, 0.0)
-    del t440
-    t441 = t104 * room_alpha_rear_elbow_down * share_alpha_rear_elbow_down
-    del t104
-    t442 = t58 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_alpha_rear_elbow_down
-    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t441 / (t95 + t442)), 0.0)
-    del t441, t442, t95
-    t443 = room_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
-    del room_alpha_rear_elbow_down, share_alpha_rear_elbow_down
-    t444 = t58 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
-    del t58
-    t445 = 1.0 / (t434 + t444)
-    del t434, t444
-    t446 = -(heavy_0_alpha_rear_elbow_down * t443 * t445)
-    del heavy_0_alpha_rear_elbow_down
-    t447 = -(t443 * t445)
-    del t443, t445
-    t448 = (t446 <= 9.094947017729282e-13) & (0.0 < t447)
-    del t446
-    t449 = _runtime.sign(-t433) * _runtime.select(t448, t447, 0.0)
-    del t433, t447, t448
-    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t449, 0.0)
+    t437 = np.arctan2(turn_alpha_rear_elbow_up, 1.0) + np.arctan2(turn_beta_rear_elbow_up, 1.0)
+    del turn_alpha_rear_elbow_up, turn_beta_rear_elbow_up
+    t438 = t437 + (t326 - t432)
+    del t326, t432, t437
+    t439 = below_beta_rear_elbow_up * above_beta_rear_elbow_up
+    del above_beta_rear_elbow_up, below_beta_rear_elbow_up
+    t440 = t436 - np.arctan2(t424, 2.0 * np.sqrt(t439))
+    del t424, t439
+    ctheta2A_rear_elbow_down = _runtime.select(folded, 1.0, -t204)
+    del t204
+    p_1_rear_elbow_down = t205 + ahead * ctheta2A_rear_elbow_down
+    del ahead, t205
+    t441 = t206 - higher * ctheta2A_rear_elbow_down
+    del ctheta2A_rear_elbow_down, higher, t206
+    t442 = v_2 * p_1_rear_elbow_down + v_1 * t441
+    room_alpha_rear_elbow_down = t92 - np.abs(t442)
+    del t92
+    t443 = room_alpha_rear_elbow_down * 9.094947017729282e-13
+    t444 = np.maximum(-t443, room_alpha_rear_elbow_down)
+    del t443
+    spent_alpha_rear_elbow_down = t444 <= t95
+    del t444, t95
+    t445 = _runtime.sign(-t442) * (v_1 * p_1_rear_elbow_down - v_2 * t441)
+    del t442
+    t446 = t97 - t445
+    del t445, t97
+    t447 = np.abs(t446)
+    heavy_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t107, 1.0)
+    gain_0_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t447 / heavy_0_alpha_rear_elbow_down, 0.0)
+    heavy_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t109, 1.0)
+    gain_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t108 / heavy_1_alpha_rear_elbow_down, 0.0)
+    t448 = gain_0_alpha_rear_elbow_down + gain_1_alpha_rear_elbow_down
+    t449 = _runtime.select(spent_alpha_rear_elbow_down, t448, 0.0)
+    del t448
+    t450 = -(_runtime.FEASIBILITY * (t71 + t449)) <= room_alpha_rear_elbow_down
     del t449
-    t450 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
+    t451 = gain_1_alpha_rear_elbow_down * gain_1_alpha_rear_elbow_down
+    del gain_1_alpha_rear_elbow_down
+    t452 = gain_0_alpha_rear_elbow_down * gain_0_alpha_rear_elbow_down
+    del gain_0_alpha_rear_elbow_down
+    t453 = _runtime.select(room_alpha_rear_elbow_down < 0.0, t451 / (t115 + t451 + t452), 0.0)
+    del t115, t451, t452
+    share_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t453, 0.0)
+    del t453
+    t454 = t117 * room_alpha_rear_elbow_down * share_alpha_rear_elbow_down
+    del t117
+    t455 = t71 * heavy_1_alpha_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_alpha_rear_elbow_down
+    aside_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, -(t454 / (t108 + t455)), 0.0)
+    del t108, t454, t455
+    t456 = room_alpha_rear_elbow_down * (1.0 - share_alpha_rear_elbow_down)
+    del room_alpha_rear_elbow_down, share_alpha_rear_elbow_down
+    t457 = t71 * heavy_0_alpha_rear_elbow_down * 5.960464477539063e-08
+    del t71
+    t458 = 1.0 / (t447 + t457)
+    del t447, t457
+    t459 = -(heavy_0_alpha_rear_elbow_down * t456 * t458)
+    del heavy_0_alpha_rear_elbow_down
+    t460 = -(t456 * t458)
+    del t456, t458
+    t461 = (t459 <= 9.094947017729282e-13) & (0.0 < t460)
+    del t459
+    t462 = _runtime.sign(-t446) * _runtime.select(t461, t460, 0.0)
+    del t446, t460, t461
+    turn_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t462, 0.0)
+    del t462
+    t463 = aside_alpha_rear_elbow_down + turn_alpha_rear_elbow_down
     del aside_alpha_rear_elbow_down
-    t451 = t450 - t90 * (drawn * turn_alpha_rear_elbow_down)
-    del t450
-    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t451, 0.0)
-    del t451
-    t452 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t453 = np.sqrt(1.0 + t452)
-    del t452
-    t454 = 1.0 / t453
-    t455 = p_1_rear_elbow_down * t454 - t428 * lean_alpha_rear_elbow_down * t454
-    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t455, p_1_rear_elbow_down)
-    del t455
+    t464 = t463 - t103 * (drawn * turn_alpha_rear_elbow_down)
+    del t463
+    lean_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t464, 0.0)
+    del t464
+    t465 = lean_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t466 = np.sqrt(1.0 + t465)
+    del t465
+    t467 = 1.0 / t466
+    t468 = p_1_rear_elbow_down * t467 - t441 * lean_alpha_rear_elbow_down * t467
+    p_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, t468, p_1_rear_elbow_down)
+    del t468
     part_beta_rear_elbow_down = L1 * p_1_alpha_rear_elbow_down
-    t456 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
-    t457 = 1.0 / (t453 * np.sqrt(1.0 + t456))
-    del t453, t456
-    t458 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
-    t459 = t457 + t457 * t458
-    del t458
-    t460 = lean_alpha_rear_elbow_down * t457 - turn_alpha_rear_elbow_down * t457
-    del t457
-    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t459 + v_2 * t460, v_1)
-    whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
-    t461 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
-    t462 = np.maximum(t461 * 9.094947017729282e-13, -t461)
-    spent_beta_rear_elbow_down = t462 <= t120
-    del t120, t462
-    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t459 - v_1 * t460, v_2)
-    del t459, t460, v_1, v_2
-    t463 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
-    del whole_beta_rear_elbow_down
-    t464 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
-    del p_1_rear_elbow_down
-    t465 = _runtime.select(spent_alpha_rear_elbow_down, t454 * t464 + t428 * t454, t428)
-    del t428, t454, t464
-    t466 = t465 * _runtime.sign(part_beta_rear_elbow_down)
-    del part_beta_rear_elbow_down
-    t467 = drawn * t463 - t124 * t466
-    del t124
-    t468 = np.abs(t467)
-    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t94, 1.0)
-    del t94
-    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t468 / heavy_0_beta_rear_elbow_down, 0.0)
-    slope_aside_beta_rear_elbow_down = L1 * (t463 + t466)
-    del t463, t466
-    t469 = np.abs(slope_aside_beta_rear_elbow_down)
-    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t96, 1.0)
-    del t96
-    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t469 / heavy_1_beta_rear_elbow_down, 0.0)
-    t470 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
-    t471 = _runtime.select(spent_beta_rear_elbow_down, t470, 0.0)
-    del t470
-    t472 = -(_runtime.FEASIBILITY * (t99 + t471)) <= -t461
+    t469 = turn_alpha_rear_elbow_down * turn_alpha_rear_elbow_down
+    t470 = 1.0 / (t466 * np.sqrt(1.0 + t469))
+    del t466, t469
+    t471 = turn_alpha_rear_elbow_down * lean_alpha_rear_elbow_down
+    t472 = t470 + t470 * t471
     del t471
-    t473 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
-    del gain_1_beta_rear_elbow_down
-    t474 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
-    del gain_0_beta_rear_elbow_down
-    t475 = _runtime.select(-t461 < 0.0, t473 / (t132 + t473 + t474), 0.0)
-    del t132, t473, t474
-    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t475, 0.0)
-    del t475
-    lack_beta_rear_elbow_down = t461 * (1.0 - share_beta_rear_elbow_down)
-    t476 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
-    t477 = t99 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_0_beta_rear_elbow_down
-    t478 = 1.0 / (t468 + t477)
-    del t468, t477
-    t479 = lack_beta_rear_elbow_down * t478
-    del lack_beta_rear_elbow_down
-    t480 = (t476 * t478 <= 9.094947017729282e-13) & (0.0 < t479)
-    del t476, t478
-    t481 = _runtime.sign(-t467) * _runtime.select(t480, t479, 0.0)
-    del t467, t479, t480
-    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t481, 0.0)
-    del t481
-    t482 = _runtime.sign(slope_aside_beta_rear_elbow_down)
-    del slope_aside_beta_rear_elbow_down
-    t483 = t99 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
-    del heavy_1_beta_rear_elbow_down, t99
-    t484 = t461 * share_beta_rear_elbow_down * t482 / (t469 + t483)
-    del share_beta_rear_elbow_down, t461, t469, t482, t483
-    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t484, 0.0)
+    t473 = lean_alpha_rear_elbow_down * t470 - turn_alpha_rear_elbow_down * t470
+    del t470
+    v_1_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_1 * t472 + v_2 * t473, v_1)
+    whole_beta_rear_elbow_down = L1 * v_1_alpha_rear_elbow_down
+    t474 = np.abs(part_beta_rear_elbow_down) - np.abs(whole_beta_rear_elbow_down)
+    t475 = np.maximum(t474 * 9.094947017729282e-13, -t474)
+    spent_beta_rear_elbow_down = t475 <= t133
+    del t133, t475
+    v_2_alpha_rear_elbow_down = _runtime.select(spent_alpha_rear_elbow_down, v_2 * t472 - v_1 * t473, v_2)
+    del t472, t473, v_1, v_2
+    t476 = v_2_alpha_rear_elbow_down * _runtime.sign(whole_beta_rear_elbow_down)
+    del whole_beta_rear_elbow_down
+    t477 = p_1_rear_elbow_down * lean_alpha_rear_elbow_down
+    del p_1_rear_elbow_down
+    t478 = _runtime.select(spent_alpha_rear_elbow_down, t467 * t477 + t441 * t467, t441)
+    del t441, t467, t477
+    t479 = t478 * _runtime.sign(part_beta_rear_elbow_down)
+    del part_beta_rear_elbow_down
+    t480 = drawn * t476 - t137 * t479
+    del t137
+    t481 = np.abs(t480)
+    heavy_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t107, 1.0)
+    del t107
+    gain_0_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t481 / heavy_0_beta_rear_elbow_down, 0.0)
+    slope_aside_beta_rear_elbow_down = L1 * (t476 + t479)
+    del t476, t479
+    t482 = np.abs(slope_aside_beta_rear_elbow_down)
+    heavy_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t109, 1.0)
+    del t109
+    gain_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t482 / heavy_1_beta_rear_elbow_down, 0.0)
+    t483 = gain_0_beta_rear_elbow_down + gain_1_beta_rear_elbow_down
+    t484 = _runtime.select(spent_beta_rear_elbow_down, t483, 0.0)
+    del t483
+    t485 = -(_runtime.FEASIBILITY * (t112 + t484)) <= -t474
     del t484
-    t485 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
-    del aside_beta_rear_elbow_down
-    t486 = t485 - t90 * (drawn * turn_beta_rear_elbow_down)
-    del drawn, t485, t90
-    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t486, 0.0)
-    del t486
-    t487 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t488 = np.sqrt(1.0 + t487)
-    del t487
-    t489 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
-    t490 = 1.0 / (t488 * np.sqrt(1.0 + t489))
-    del t489
-    t491 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
-    t492 = t490 + t490 * t491
-    del t491
-    t493 = lean_beta_rear_elbow_down * t490 - turn_beta_rear_elbow_down * t490
-    del t490
-    t494 = v_1_alpha_rear_elbow_down * t492 + v_2_alpha_rear_elbow_down * t493
-    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t494, v_1_alpha_rear_elbow_down)
-    del t494
-    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
-    t495 = 1.0 / t488
+    t486 = gain_1_beta_rear_elbow_down * gain_1_beta_rear_elbow_down
+    del gain_1_beta_rear_elbow_down
+    t487 = gain_0_beta_rear_elbow_down * gain_0_beta_rear_elbow_down
+    del gain_0_beta_rear_elbow_down
+    t488 = _runtime.select(-t474 < 0.0, t486 / (t145 + t486 + t487), 0.0)
+    del t145, t486, t487
+    share_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t488, 0.0)
     del t488
-    t496 = p_1_alpha_rear_elbow_down * t495 - t465 * lean_beta_rear_elbow_down * t495
-    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t496, p_1_alpha_rear_elbow_down)
-    del t496
-    t497 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
-    t498 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
+    lack_beta_rear_elbow_down = t474 * (1.0 - share_beta_rear_elbow_down)
+    t489 = heavy_0_beta_rear_elbow_down * lack_beta_rear_elbow_down
+    t490 = t112 * heavy_0_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_0_beta_rear_elbow_down
+    t491 = 1.0 / (t481 + t490)
+    del t481, t490
+    t492 = lack_beta_rear_elbow_down * t491
+    del lack_beta_rear_elbow_down
+    t493 = (t489 * t491 <= 9.094947017729282e-13) & (0.0 < t492)
+    del t489, t491
+    t494 = _runtime.sign(-t480) * _runtime.select(t493, t492, 0.0)
+    del t480, t492, t493
+    turn_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t494, 0.0)
+    del t494
+    t495 = _runtime.sign(slope_aside_beta_rear_elbow_down)
+    del slope_aside_beta_rear_elbow_down
+    t496 = t112 * heavy_1_beta_rear_elbow_down * 5.960464477539063e-08
+    del heavy_1_beta_rear_elbow_down, t112
+    t497 = t474 * share_beta_rear_elbow_down * t495 / (t482 + t496)
+    del share_beta_rear_elbow_down, t474, t482, t495, t496
+    aside_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t497, 0.0)
+    del t497
+    t498 = turn_beta_rear_elbow_down + aside_beta_rear_elbow_down
+    del aside_beta_rear_elbow_down
+    t499 = t498 - t103 * (drawn * turn_beta_rear_elbow_down)
+    del drawn, t103, t498
+    lean_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t499, 0.0)
+    del t499
+    t500 = lean_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t501 = np.sqrt(1.0 + t500)
+    del t500
+    t502 = turn_beta_rear_elbow_down * turn_beta_rear_elbow_down
+    t503 = 1.0 / (t501 * np.sqrt(1.0 + t502))
+    del t502
+    t504 = turn_beta_rear_elbow_down * lean_beta_rear_elbow_down
+    t505 = t503 + t503 * t504
+    del t504
+    t506 = lean_beta_rear_elbow_down * t503 - turn_beta_rear_elbow_down * t503
+    del t503
+    t507 = v_1_alpha_rear_elbow_down * t505 + v_2_alpha_rear_elbow_down * t506
+    v_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t507, v_1_alpha_rear_elbow_down)
+    del t507
+    sigma_uv_rear_elbow_down = _runtime.sign(-(L1 * v_1_beta_rear_elbow_down))
+    t508 = 1.0 / t501
+    del t501
+    t509 = p_1_alpha_rear_elbow_down * t508 - t478 * lean_beta_rear_elbow_down * t508
+    p_1_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t509, p_1_alpha_rear_elbow_down)
+    del t509
+    t510 = sigma_uv_rear_elbow_down * p_1_beta_rear_elbow_down
+    t511 = v_1_beta_rear_elbow_down * sigma_uv_rear_elbow_down
     del sigma_uv_rear_elbow_down
-    t499 = t56 & t437 & t472 & (t130 <= t497 - t498) & (t130 <= -(t498 + t497))
-    del t437, t472, t56
-    t500 = v_2_alpha_rear_elbow_down * t492 - v_1_alpha_rear_elbow_down * t493
-    del t492, t493, v_1_alpha_rear_elbow_down
-    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t500, v_2_alpha_rear_elbow_down)
-    del t500, v_2_alpha_rear_elbow_down
-    t501 = np.abs(v_2_beta_rear_elbow_down)
-    parallel_rear_elbow_down = -t498 <= _runtime.VANISHING * (64.0 * t501)
-    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t501, -t498)
-    t502 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
+    t512 = t69 & t450 & t485 & (t143 <= t510 - t511) & (t143 <= -(t511 + t510))
+    del t450, t485, t69
+    t513 = v_2_alpha_rear_elbow_down * t505 - v_1_alpha_rear_elbow_down * t506
+    del t505, t506, v_1_alpha_rear_elbow_down
+    v_2_beta_rear_elbow_down = _runtime.select(spent_beta_rear_elbow_down, t513, v_2_alpha_rear_elbow_down)
+    del t513, v_2_alpha_rear_elbow_down
+    t514 = np.abs(v_2_beta_rear_elbow_down)
+    parallel_rear_elbow_down = -t511 <= _runtime.VANISHING * (64.0 * t514)
+    whole_y_rear_elbow_down = _runtime.select(parallel_rear_elbow_down, L1 + t514, -t511)
+    t515 = p_1_alpha_rear_elbow_down * lean_beta_rear_elbow_down
     del p_1_alpha_rear_elbow_down
-    t503 = _runtime.select(spent_beta_rear_elbow_down, t495 * t502 + t465 * t495, t465)
-    del t465, t495, t502
-    t504 = t503 * _runtime.sign(v_2_beta_rear_elbow_down)
-    t505 = _runtime.select(parallel_rear_elbow_down, t504, t497)
-    del t497, t504
-    t506 = whole_y_rear_elbow_down + t505
-    t507 = whole_y_rear_elbow_down - t505
-    below_beta_0_rear_elbow_down = np.maximum(t506, t155)
-    above_beta_0_rear_elbow_down = np.maximum(t507, t155)
-    t508 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
+    t516 = _runtime.select(spent_beta_rear_elbow_down, t508 * t515 + t478 * t508, t478)
+    del t478, t508, t515
+    t517 = t516 * _runtime.sign(v_2_beta_rear_elbow_down)
+    t518 = _runtime.select(parallel_rear_elbow_down, t517, t510)
+    del t510, t517
+    t519 = whole_y_rear_elbow_down + t518
+    t520 = whole_y_rear_elbow_down - t518
+    below_beta_0_rear_elbow_down = np.maximum(t519, t168)
+    above_beta_0_rear_elbow_down = np.maximum(t520, t168)
+    t521 = below_beta_0_rear_elbow_down - above_beta_0_rear_elbow_down
     total_beta_0_rear_elbow_down = below_beta_0_rear_elbow_down + above_beta_0_rear_elbow_down
     del above_beta_0_rear_elbow_down, below_beta_0_rear_elbow_down
-    t509 = v_2_beta_rear_elbow_down * (t508 / total_beta_0_rear_elbow_down)
-    del t508, total_beta_0_rear_elbow_down
-    t510 = t503 - t509
-    del t509
-    left_along_rear_elbow_down = L1 - np.abs(t510)
-    t511 = left_along_rear_elbow_down * 9.094947017729282e-13
-    t512 = np.maximum(-t511, left_along_rear_elbow_down)
-    del t511
-    spent_along_rear_elbow_down = t512 <= t159
-    del t159, t512
-    t513 = _runtime.select(spent_along_rear_elbow_down, t501 / (t160 - t498), 0.0)
-    del t160, t501
-    t514 = -(_runtime.FEASIBILITY * (play * (1.0 + t513)))
-    del play, t513
-    t515 = t499 & (t130 <= t506) & (t130 <= t507) & (t514 <= left_along_rear_elbow_down)
-    del t499, t506, t507, t514
-    t516 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
+    t522 = v_2_beta_rear_elbow_down * (t521 / total_beta_0_rear_elbow_down)
+    del t521, total_beta_0_rear_elbow_down
+    t523 = t516 - t522
+    del t522
+    left_along_rear_elbow_down = L1 - np.abs(t523)
+    t524 = left_along_rear_elbow_down * 9.094947017729282e-13
+    t525 = np.maximum(-t524, left_along_rear_elbow_down)
+    del t524
+    spent_along_rear_elbow_down = t525 <= t172
+    del t172, t525
+    t526 = _runtime.select(spent_along_rear_elbow_down, t514 / (t173 - t511), 0.0)
+    del t173, t514
+    t527 = -(_runtime.FEASIBILITY * (play * (1.0 + t526)))
+    del play, t526
+    t528 = t512 & (t143 <= t519) & (t143 <= t520) & (t527 <= left_along_rear_elbow_down)
+    del t512, t519, t520, t527
+    t529 = left_along_rear_elbow_down * 0.5 - np.abs(left_along_rear_elbow_down) * 0.5
     del left_along_rear_elbow_down
-    t517 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
-    t518 = v_2_beta_rear_elbow_down * t516 / (t498 * t498 + t517)
-    del t498, t516, t517
-    t519 = whole_y_rear_elbow_down * (t518 * _runtime.sign(-t510))
-    del t510, t518
-    t520 = _runtime.select(spent_along_rear_elbow_down, t505 + t519, t505)
-    del t505, t519
-    t521 = whole_y_rear_elbow_down + t520
-    t522 = whole_y_rear_elbow_down - t520
-    del t520, whole_y_rear_elbow_down
-    below_beta_rear_elbow_down = np.maximum(t521, t155)
-    above_beta_rear_elbow_down = np.maximum(t522, t155)
-    t523 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
+    t530 = v_2_beta_rear_elbow_down * v_2_beta_rear_elbow_down
+    t531 = v_2_beta_rear_elbow_down * t529 / (t511 * t511 + t530)
+    del t511, t529, t530
+    t532 = whole_y_rear_elbow_down * (t531 * _runtime.sign(-t523))
+    del t523, t531
+    t533 = _runtime.select(spent_along_rear_elbow_down, t518 + t532, t518)
+    del t518, t532
+    t534 = whole_y_rear_elbow_down + t533
+    t535 = whole_y_rear_elbow_down - t533
+    del t533, whole_y_rear_elbow_down
+    below_beta_rear_elbow_down = np.maximum(t534, t168)
+    above_beta_rear_elbow_down = np.maximum(t535, t168)
+    t536 = below_beta_rear_elbow_down - above_beta_rear_elbow_down
     total_beta_rear_elbow_down = below_beta_rear_elbow_down + above_beta_rear_elbow_down
-    t524 = t523 / total_beta_rear_elbow_down
+    t537 = t536 / total_beta_rear_elbow_down
     del total_beta_rear_elbow_down
-    t525 = t503 - v_2_beta_rear_elbow_down * t524
-    del t503, v_2_beta_rear_elbow_down
-    t526 = L1 + t525
-    t527 = t515 & (t130 <= t521) & (t130 <= t522) & (t130 <= t526)
-    del t515, t521, t522
-    t528 = L1 - t525
-    unreachable_4 = np.logical_not(t527 & (t130 <= t528))
-    del t130, t527
-    t529 = _runtime.poison(invalid | unreachable_4)
-    t530 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
+    t538 = t516 - v_2_beta_rear_elbow_down * t537
+    del t516, v_2_beta_rear_elbow_down
+    t539 = L1 + t538
+    t540 = t528 & (t143 <= t534) & (t143 <= t535) & (t143 <= t539)
+    del t528, t534, t535
+    t541 = L1 - t538
+    unreachable_4 = np.logical_not(t540 & (t143 <= t541))
+    del t143, t540
+    t542 = _runtime.poison(invalid | unreachable_4)
+    t543 = np.arctan2(up_front_elbow_down, -out_front_elbow_down)
     del out_front_elbow_down, up_front_elbow_down
-    t531 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
+    t544 = np.arctan2(lean_alpha_rear_elbow_down, 1.0) + np.arctan2(lean_beta_rear_elbow_down, 1.0)
     del lean_alpha_rear_elbow_down, lean_beta_rear_elbow_down
-    t532 = _runtime.select(folded, 0.0, t530) + t531
-    del t530
-    below_alpha_rear_elbow_down = np.maximum(t526, t155)
-    del t526
-    above_alpha_rear_elbow_down = np.maximum(t528, t155)
-    del t155, t528
-    t533 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
-    t534 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
-    t535 = np.arctan2(t533, 2.0 * np.sqrt(t534))
-    del t534
-    t536 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
-    del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
-    t537 = t536 + (t184 - t531)
-    del t184, t531, t536
-    t538 = below_beta_rear_elbow_down * above_beta_rear_elbow_down
-    del above_beta_rear_elbow_down, below_beta_rear_elbow_down
-    t539 = t535 - np.arctan2(t523, 2.0 * np.sqrt(t538))
-    del t523, t538
-    t540 = (wrist <= al * _runtime.DETERMINED) | nowhere
-    del nowhere, wrist
-    t541 = t540 | folded | short
-    del folded, short, t540
-    t542 = spent_along | spent_alpha | spent_beta
-    del spent_along, spent_alpha, spent_beta
-    t543 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
-    t544 = t543 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
+    t545 = _runtime.select(folded, 0.0, t543) + t544
     del t543
-    t545 = t544 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
-    del t544
-    t546 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
+    below_alpha_rear_elbow_down = np.maximum(t539, t168)
+    del t539
+    above_alpha_rear_elbow_down = np.maximum(t541, t168)
+    del t168, t541
+    t546 = below_alpha_rear_elbow_down - above_alpha_rear_elbow_down
+    t547 = below_alpha_rear_elbow_down * above_alpha_rear_elbow_down
+    t548 = np.arctan2(t546, 2.0 * np.sqrt(t547))
+    del t547
+    t549 = np.arctan2(turn_alpha_rear_elbow_down, 1.0) + np.arctan2(turn_beta_rear_elbow_down, 1.0)
+    del turn_alpha_rear_elbow_down, turn_beta_rear_elbow_down
+    t550 = t549 + (t197 - t544)
+    del t197, t544, t549
+    t551 = below_beta_rear_elbow_down * above_beta_rear_elbow_down
+    del above_beta_rear_elbow_down, below_beta_rear_elbow_down
+    t552 = t548 - np.arctan2(t536, 2.0 * np.sqrt(t551))
+    del t536, t551
+    t553 = (wrist <= al * _runtime.DETERMINED) | nowhere
+    del nowhere, wrist
+    t554 = t553 | folded | short
+    del folded, short, t553
+    t555 = spent_along | spent_alpha | spent_beta
+    del spent_along, spent_alpha, spent_beta
+    t556 = L1 * 0.015625 + L2 * 0.015625 + a3 * 0.015625
+    t557 = t556 + al * 0.015625 + d * 1.015625 + d1 * 0.015625
+    del t556
+    t558 = t557 + gs * 0.015625 + loff * 0.015625 + lp * 0.015625
+    del t557
+    t559 = 1.0 + np.minimum(t_phi * t_phi, t_psi * t_psi)
     del t_phi, t_psi
-    t547 = t545 * t546
-    del t545, t546
-    t548 = t171 - L1 * (t179 / (below_alpha + above_alpha))
-    del above_alpha, below_alpha, t171, t179
-    t549 = np.abs(p_1_beta + v_1_beta * t170) + np.abs(t548)
-    del p_1_beta, t170, t548, v_1_beta
-    t550 = 1125899906842624.0 * _runtime.select(t542, t549, 0.0)
-    del t549
-    t551 = _runtime.select(t542, t547, 1.0) <= _runtime.DETERMINED * t550
-    del t542, t550
-    t552 = _runtime.status(invalid, unreachable, t541 | parallel | t551)
-    del parallel, t551, unreachable
-    t553 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
+    t560 = t558 * t559
+    del t558, t559
+    t561 = t184 - L1 * (t192 / (below_alpha + above_alpha))
+    del above_alpha, below_alpha, t184, t192
+    t562 = np.abs(p_1_beta + v_1_beta * t183) + np.abs(t561)
+    del p_1_beta, t183, t561, v_1_beta
+    t563 = 1125899906842624.0 * _runtime.select(t555, t562, 0.0)
+    del t562
+    t564 = _runtime.select(t555, t560, 1.0) <= _runtime.DETERMINED * t563
+    del t555, t563
+    t565 = _runtime.status(invalid, unreachable, t554 | parallel | t564)
+    del parallel, t564, unreachable
+    t566 = spent_along_front_elbow_down | spent_alpha_front_elbow_down
     del spent_along_front_elbow_down, spent_alpha_front_elbow_down
-    t554 = t553 | spent_beta_front_elbow_down
-    del spent_beta_front_elbow_down, t553
-    t555 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t300
-    del p_1_beta_front_elbow_down, t300, v_1_beta_front_elbow_down
+    t567 = t566 | spent_beta_front_elbow_down
+    del spent_beta_front_elbow_down, t566
+    t568 = p_1_beta_front_elbow_down + v_1_beta_front_elbow_down * t313
+    del p_1_beta_front_elbow_down, t313, v_1_beta_front_elbow_down
     total_alpha_front_elbow_down = below_alpha_front_elbow_down + above_alpha_front_elbow_down
     del above_alpha_front_elbow_down, below_alpha_front_elbow_down
-    t556 = t301 - L1 * (t309 / total_alpha_front_elbow_down)
-    del t301, t309, total_alpha_front_elbow_down
-    missed_front_elbow_down = _runtime.select(t554, np.abs(t555) + np.abs(t556), 0.0)
-    del t555, t556
-    t557 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
+    t569 = t314 - L1 * (t322 / total_alpha_front_elbow_down)
+    del t314, t322, total_alpha_front_elbow_down
+    missed_front_elbow_down = _runtime.select(t567, np.abs(t568) + np.abs(t569), 0.0)
+    del t568, t569
+    t570 = _runtime.DETERMINED * (1125899906842624.0 * missed_front_elbow_down)
     del missed_front_elbow_down
-    t558 = t541 | parallel_front_elbow_down | (_runtime.select(t554, t547, 1.0) <= t557)
-    del parallel_front_elbow_down, t554, t557
-    t559 = _runtime.status(invalid, unreachable_2, t558)
-    del t558, unreachable_2
-    t560 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
+    t571 = t554 | parallel_front_elbow_down | (_runtime.select(t567, t560, 1.0) <= t570)
+    del parallel_front_elbow_down, t567, t570
+    t572 = _runtime.status(invalid, unreachable_2, t571)
+    del t571, unreachable_2
+    t573 = spent_along_rear_elbow_up | spent_alpha_rear_elbow_up
     del spent_along_rear_elbow_up, spent_alpha_rear_elbow_up
-    t561 = t560 | spent_beta_rear_elbow_up
-    del spent_beta_rear_elbow_up, t560
-    t562 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t412
-    del p_1_beta_rear_elbow_up, t412, v_1_beta_rear_elbow_up
+    t574 = t573 | spent_beta_rear_elbow_up
+    del spent_beta_rear_elbow_up, t573
+    t575 = p_1_beta_rear_elbow_up + v_1_beta_rear_elbow_up * t425
+    del p_1_beta_rear_elbow_up, t425, v_1_beta_rear_elbow_up
     total_alpha_rear_elbow_up = below_alpha_rear_elbow_up + above_alpha_rear_elbow_up
     del above_alpha_rear_elbow_up, below_alpha_rear_elbow_up
-    t563 = t413 - L1 * (t421 / total_alpha_rear_elbow_up)
-    del t413, t421, total_alpha_rear_elbow_up
-    missed_rear_elbow_up = _runtime.select(t561, np.abs(t562) + np.abs(t563), 0.0)
-    del t562, t563
-    t564 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
+    t576 = t426 - L1 * (t434 / total_alpha_rear_elbow_up)
+    del t426, t434, total_alpha_rear_elbow_up
+    missed_rear_elbow_up = _runtime.select(t574, np.abs(t575) + np.abs(t576), 0.0)
+    del t575, t576
+    t577 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_up)
     del missed_rear_elbow_up
-    t565 = t541 | parallel_rear_elbow_up | (_runtime.select(t561, t547, 1.0) <= t564)
-    del parallel_rear_elbow_up, t561, t564
-    t566 = _runtime.status(invalid, unreachable_3, t565)
-    del t565, unreachable_3
-    t567 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
+    t578 = t554 | parallel_rear_elbow_up | (_runtime.select(t574, t560, 1.0) <= t577)
+    del parallel_rear_elbow_up, t574, t577
+    t579 = _runtime.status(invalid, unreachable_3, t578)
+    del t578, unreachable_3
+    t580 = spent_along_rear_elbow_down | spent_alpha_rear_elbow_down
     del spent_along_rear_elbow_down, spent_alpha_rear_elbow_down
-    t568 = t567 | spent_beta_rear_elbow_down
-    del spent_beta_rear_elbow_down, t567
-    t569 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t524
-    del p_1_beta_rear_elbow_down, t524, v_1_beta_rear_elbow_down
+    t581 = t580 | spent_beta_rear_elbow_down
+    del spent_beta_rear_elbow_down, t580
+    t582 = p_1_beta_rear_elbow_down + v_1_beta_rear_elbow_down * t537
+    del p_1_beta_rear_elbow_down, t537, v_1_beta_rear_elbow_down
     total_alpha_rear_elbow_down = below_alpha_rear_elbow_down + above_alpha_rear_elbow_down
     del above_alpha_rear_elbow_down, below_alpha_rear_elbow_down
-    t570 = t525 - L1 * (t533 / total_alpha_rear_elbow_down)
-    del t525, t533, total_alpha_rear_elbow_down
-    missed_rear_elbow_down = _runtime.select(t568, np.abs(t569) + np.abs(t570), 0.0)
-    del t569, t570
-    t571 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
+    t583 = t538 - L1 * (t546 / total_alpha_rear_elbow_down)
+    del t538, t546, total_alpha_rear_elbow_down
+    missed_rear_elbow_down = _runtime.select(t581, np.abs(t582) + np.abs(t583), 0.0)
+    del t582, t583
+    t584 = _runtime.DETERMINED * (1125899906842624.0 * missed_rear_elbow_down)
     del missed_rear_elbow_down
-    t572 = t541 | parallel_rear_elbow_down | (_runtime.select(t568, t547, 1.0) <= t571)
-    del parallel_rear_elbow_down, t541, t547, t568, t571
-    t573 = _runtime.status(invalid, unreachable_4, t572)
-    del invalid, t572, unreachable_4
+    t585 = t554 | parallel_rear_elbow_down | (_runtime.select(t581, t560, 1.0) <= t584)
+    del parallel_rear_elbow_down, t554, t560, t581, t584
+    t586 = _runtime.status(invalid, unreachable_4, t585)
+    del invalid, t585, unreachable_4
     return (
-        t39 + t175,
-        _runtime.wrap(t178 - t180) + t175,
-        _runtime.wrap(t185 + t187) + t175,
-        _runtime.wrap(t178 + t180) + t175,
-        _runtime.wrap(t185 - t187) + t175,
-        t188 + t175,
-        t39 + t305,
-        _runtime.wrap(t308 - t311) + t305,
-        _runtime.wrap(t314 + t316) + t305,
-        _runtime.wrap(t308 + t311) + t305,
-        _runtime.wrap(t314 - t316) + t305,
-        t188 + t305,
-        t317 + t417,
-        _runtime.wrap(t420 - t423) + t417,
-        _runtime.wrap(t425 + t427) + t417,
-        _runtime.wrap(t420 + t423) + t417,
-        _runtime.wrap(t425 - t427) + t417,
-        t188 + t417,
-        t317 + t529,
-        _runtime.wrap(t532 - t535) + t529,
-        _runtime.wrap(t537 + t539) + t529,
-        _runtime.wrap(t532 + t535) + t529,
-        _runtime.wrap(t537 - t539) + t529,
-        t188 + t529,
-        t552,
-        t559,
-        t566,
-        t573,
+        t51 + t188,
+        _runtime.wrap(t191 - t193) + t188,
+        _runtime.wrap(t198 + t200) + t188,
+        _runtime.wrap(t191 + t193) + t188,
+        _runtime.wrap(t198 - t200) + t188,
+        t201 + t188,
+        t51 + t318,
+        _runtime.wrap(t321 - t324) + t318,
+        _runtime.wrap(t327 + t329) + t318,
+        _runtime.wrap(t321 + t324) + t318,
+        _runtime.wrap(t327 - t329) + t318,
+        t201 + t318,
+        t330 + t430,
+        _runtime.wrap(t433 - t436) + t430,
+        _runtime.wrap(t438 + t440) + t430,
+        _runtime.wrap(t433 + t436) + t430,
+        _runtime.wrap(t438 - t440) + t430,
+        t201 + t430,
+        t330 + t542,
+        _runtime.wrap(t545 - t548) + t542,
+        _runtime.wrap(t550 + t552) + t542,
+        _runtime.wrap(t545 + t548) + t542,
+        _runtime.wrap(t550 - t552) + t542,
+        t201 + t542,
+        t565,
+        t572,
+        t579,
+        t586,
     )
 
 
@@ -2841,60 +2891,60 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t1 = lp * s_pitch
     del s_pitch
     t2 = gs + al
-    t3 = t2 * c_psi
-    t4 = t3 - d
-    t5 = d - c_psi * (gs - al)
-    t6 = np.sqrt(np.maximum(t4, 0.0) * np.maximum(t5, 0.0))
-    t7 = 1.0 / c_psi
-    wrist = t6 * t7
-    del t6
-    t8 = loff + lp * c_pitch + wrist
+    t3 = t2 * c_psi - d
+    t4 = d - c_psi * (gs - al)
+    t5 = np.sqrt(np.maximum(t3, 0.0) * np.maximum(t4, 0.0))
+    t6 = 1.0 / c_psi
+    wrist = t5 * t6
+    del t5
+    t7 = loff + lp * c_pitch + wrist
     del c_pitch
-    t9 = s_psi * t8
-    t10 = s_phi * t1 - c_phi * t9
-    t11 = h - t10
-    above = np.maximum(t11, 0.0)
-    t12 = h + t10
-    del t10
-    below = np.maximum(t12, 0.0)
+    t8 = s_psi * t7
+    t9 = s_phi * t1 - c_phi * t8
+    t10 = h - t9
+    above = np.maximum(t10, 0.0)
+    t11 = h + t9
+    del t9
+    below = np.maximum(t11, 0.0)
     root = np.sqrt(above * below)
-    t13 = np.arctan2(2.0 * root, above - below)
+    t12 = np.arctan2(2.0 * root, above - below)
     del above, below
-    t14 = np.arctan2(x, y)
-    t15 = _runtime.wrap(t13 - t14)
-    t16 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t17 = t16 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t13 = np.arctan2(x, y)
+    t14 = _runtime.wrap(t12 - t13)
+    t15 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t16 = t15 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t15
+    t17 = t16 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
     del t16
-    t18 = t17 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t17
-    t19 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t20 = L2 + a3
-    t21 = _runtime.select(0.0 < L1 * d * t20, 0.0, 1.0)
-    t22 = t18 & (0.0 <= loff) & (0.0 <= lp) & t19 & (np.abs(t21) <= _runtime.ROTATION)
-    del t18, t19, t21
-    invalid = np.logical_not(t22)
+    t18 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t19 = L2 + a3
+    t20 = _runtime.select(0.0 < L1 * d * t19, 0.0, 1.0)
+    t21 = t17 & (0.0 <= loff) & (0.0 <= lp) & t18 & (np.abs(t20) <= _runtime.ROTATION)
+    del t17, t18, t20
+    invalid = np.logical_not(t21)
+    del t21
+    t22 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
+    t23 = -(_runtime.FEASIBILITY * (t2 * t22))
     del t22
-    t23 = -(_runtime.FEASIBILITY * (t3 * 1.015625))
+    t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t3)
     del t3
-    t24 = (-_runtime.FEASIBILITY <= c_phi) & (t23 <= t4)
-    del t4
     t_phi = s_phi / c_phi
     higher = d * t_phi
-    t_psi = s_psi * t7
-    del s_psi, t7
+    t_psi = s_psi * t6
+    del s_psi, t6
     ahead = d * t_psi
     far_apart = np.abs(t_phi * higher) * 0.001953125 + np.abs(t_psi * ahead) * 0.001953125
     del t_phi, t_psi
-    lengths = L1 + d1 + d + loff + lp + t2 + t20
-    del t2, t20
+    lengths = L1 + d1 + d + loff + lp + t2 + t19
+    del t19, t2
     slack = far_apart + lengths * 0.25
     t25 = -(_runtime.FEASIBILITY * slack)
-    t26 = t24 & (t23 <= t5) & (t25 <= t12) & (t25 <= t11)
-    del t11, t12, t23, t24, t25, t5
-    L_2W = L2 + c_psi * t8
-    del c_psi, t8
-    a_3W = a3 + c_phi * t1 + s_phi * t9
-    del c_phi, s_phi, t1, t9
+    t26 = t24 & (t23 <= t4) & (t25 <= t11) & (t25 <= t10)
+    del t10, t11, t23, t24, t25, t4
+    L_2W = L2 + c_psi * t7
+    del c_psi, t7
+    a_3W = a3 + c_phi * t1 + s_phi * t8
+    del c_phi, s_phi, t1, t8
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
     t27 = 2.0 * fore
     t28 = _runtime.FEASIBILITY * ((L1 * 2.0 + t27) * slack)
@@ -3105,8 +3155,8 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del above_beta_0_front_elbow_down, below_beta_0_front_elbow_down
     t120 = t117 - np.arctan2(t107, 2.0 * np.sqrt(t119))
     del t107, t119
-    t121 = _runtime.wrap(-(t14 + t13))
-    del t13, t14
+    t121 = _runtime.wrap(-(t13 + t12))
+    del t12, t13
     t122 = t60 + t61
     del t60, t61
     t123 = t56 - t58
@@ -3286,13 +3336,13 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t198 = np.maximum(-t197, left_along_rear_elbow_down)
     del left_along_rear_elbow_down, t197
     return (
-        t15 + t78,
+        t14 + t78,
         _runtime.wrap(t81 - t82) + t78,
         _runtime.wrap(t84 - t87) + t78,
         _runtime.wrap(t81 + t82) + t78,
         _runtime.wrap(-(t87 + t84)) + t78,
         t88 + t78,
-        t15 + t113,
+        t14 + t113,
         _runtime.wrap(t114 - t117) + t113,
         _runtime.wrap(t118 + t120) + t113,
         _runtime.wrap(t114 + t117) + t113,
@@ -3385,21 +3435,23 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
 
 def _wrist_length(psi, phi, d, gs, al):
-    c_psi = np.cos(psi)
+    s_psi, c_psi = _runtime.sincos(psi)
     c_phi = np.cos(phi)
-    t1 = (gs + al) * c_psi
-    t2 = t1 - d
+    t1 = gs + al
+    t2 = t1 * c_psi - d
     t3 = d - c_psi * (gs - al)
     t4 = np.sqrt(np.maximum(t2, 0.0) * np.maximum(t3, 0.0))
     t5 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
     t6 = t5 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(psi) & np.isfinite(phi))
     del t5
-    t7 = -(_runtime.FEASIBILITY * (t1 * 1.015625))
-    del t1
-    t8 = (-_runtime.FEASIBILITY <= c_phi) & (t7 <= t2)
+    t7 = c_psi * 1.015625 + np.abs(s_psi) * 0.001953125
+    del s_psi
+    t8 = -(_runtime.FEASIBILITY * (t1 * t7))
+    del t1, t7
+    t9 = (-_runtime.FEASIBILITY <= c_phi) & (t8 <= t2)
     del c_phi, t2
-    failed = np.logical_not(t6) | np.logical_not(t8 & (t7 <= t3))
-    del t3, t6, t7, t8
+    failed = np.logical_not(t6) | np.logical_not(t9 & (t8 <= t3))
+    del t3, t6, t8, t9
     return (
         t4 / c_psi + _runtime.poison(failed),
     )

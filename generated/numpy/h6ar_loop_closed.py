@@ -12,11 +12,11 @@
 #   jacobian: 55 compare and select, 208 add, 53 divide, 319 multiply, 6 sincos, 6 sqrt
 #   determinant: 55 compare and select, 86 add, 22 divide, 153 multiply, 5 sincos, 6 sqrt
 #   singularities: 55 compare and select, 91 add, 21 divide, 143 multiply, 5 sincos, 6 sqrt
-#   ik: 861 compare and select, 632 add, 28 atan2, 153 divide, 906 multiply, 1 reduce to a turn, 3
+#   ik: 863 compare and select, 634 add, 28 atan2, 155 divide, 909 multiply, 1 reduce to a turn, 3
 #     sincos, 41 sqrt
-#   ik where nothing vanishes: 281 compare and select, 260 add, 23 atan2, 33 divide, 334 multiply,
+#   ik where nothing vanishes: 283 compare and select, 262 add, 23 atan2, 35 divide, 337 multiply,
 #     1 reduce to a turn, 3 sincos, 16 sqrt
-#   wrist_length: 5 add, 20 compare and select, 1 divide, 6 multiply, 2 sincos, 1 sqrt
+#   wrist_length: 22 compare and select, 7 add, 3 divide, 9 multiply, 2 sincos, 1 sqrt
 #   minimum_link_length: 2 divide, 1 multiply, 3 sincos, 1 add
 #   largest_yaw: 5 add, 16 compare and select, 1 atan2, 4 multiply, 2 sincos, 2 sqrt
 #   largest_angle: 5 add, 16 compare and select, 1 atan2, 3 multiply, 1 sincos, 3 sqrt
@@ -2050,91 +2050,88 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t3 = np.arctan2(x, y)
     t4 = lp * s_pitch
     del s_pitch
-    t5 = c_phi * c_psi
-    t6 = 1.0 / t5
-    t7 = t1 * t5
-    del t1
-    t8 = t7 - d
-    t9 = d - (gs - al) * t5
-    del t5
+    t5 = c_phi * s_psi
+    t6 = c_phi * c_psi
+    t7 = 1.0 / t6
+    t8 = t1 * t6 - d
+    t9 = d - (gs - al) * t6
     t10 = np.sqrt(np.maximum(t8, 0.0) * np.maximum(t9, 0.0))
-    wrist = t6 * t10
+    wrist = t7 * t10
     del t10
     t11 = loff + lp * c_pitch + wrist
     del c_pitch
-    t12 = s_psi * t11
-    t13 = s_phi * t4 - c_phi * t12
-    t14 = h - t13
-    above = np.maximum(t14, 0.0)
-    t15 = h + t13
-    del t13
-    below = np.maximum(t15, 0.0)
-    t16 = above * below
-    root = np.sqrt(t16)
+    t12 = s_phi * t4 - t5 * t11
+    t13 = h - t12
+    above = np.maximum(t13, 0.0)
+    t14 = h + t12
+    del t12
+    below = np.maximum(t14, 0.0)
+    t15 = above * below
+    root = np.sqrt(t15)
     L_2W = L2 + c_psi * t11
-    del t11
-    a_3W = a3 + c_phi * t4 + s_phi * t12
-    del t12, t4
+    a_3W = a3 + c_phi * t4 + s_phi * s_psi * t11
+    del t11, t4
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
-    t17 = L1 + fore
-    base = d * t6
-    del t6
-    t18 = 1.0 / c_phi
-    t_phi = s_phi * t18
-    del s_phi
+    t16 = L1 + fore
+    base = d * t7
+    del t7
+    t17 = 1.0 / c_phi
+    t_phi = s_phi * t17
     t_psi = s_psi / c_psi
-    del c_psi, s_psi
+    del s_psi
     far_apart = np.abs(base * t_phi) * 0.001953125 + np.abs(t_psi * base) * 0.001953125
     del base
     slack = far_apart + lengths * 0.25
-    t19 = h * slack
+    t18 = h * slack
     del h
-    tangent = 4.0 * root * t17 - t19 * 0.00390625 <= _runtime.VANISHING * t19
-    t20 = L1 - fore
-    t21 = t20 * t20
-    t22 = z - d1
-    t23 = t22 * t22
-    t24 = t17 * t17
-    wanted = np.maximum(np.maximum(0.0, t21 - t23), np.minimum(t16, t24 - t23))
-    t25 = 8796093022208.0 * np.abs(t16 - wanted) <= t19
-    del t19
-    t26 = np.sqrt(_runtime.select(t25, wanted, t16))
-    del t16, t25, wanted
-    t27 = _runtime.select(tangent, np.arctan2(t26, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
+    tangent = 4.0 * root * t16 - t18 * 0.00390625 <= _runtime.VANISHING * t18
+    t19 = L1 - fore
+    t20 = t19 * t19
+    t21 = z - d1
+    t22 = t21 * t21
+    t23 = t16 * t16
+    wanted = np.maximum(np.maximum(0.0, t20 - t22), np.minimum(t15, t23 - t22))
+    t24 = 8796093022208.0 * np.abs(t15 - wanted) <= t18
+    del t18
+    t25 = np.sqrt(_runtime.select(t24, wanted, t15))
+    del t15, t24, wanted
+    t26 = _runtime.select(tangent, np.arctan2(t25, above * 0.5 - below * 0.5), np.arctan2(2.0 * root, above - below))
     del above, below
-    t28 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t27))
-    t29 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t30 = t29 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t27 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 - t26))
+    t28 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t29 = t28 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t28
+    t30 = t29 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
     del t29
-    t31 = t30 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t30
-    t32 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t33 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
+    t31 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t32 = np.abs(_runtime.select(0.0 < L1 * d * t2, 0.0, 1.0))
     del t2
-    t34 = t31 & (0.0 <= loff) & (0.0 <= lp) & t32 & (t33 <= _runtime.ROTATION)
-    del t31, t32, t33
-    invalid = np.logical_not(t34)
-    del t34
-    t35 = -(_runtime.FEASIBILITY * (1.015625 * t7))
-    del t7
-    t36 = (-_runtime.FEASIBILITY <= c_phi) & (t35 <= t8)
+    t33 = t30 & (0.0 <= loff) & (0.0 <= lp) & t31 & (t32 <= _runtime.ROTATION)
+    del t30, t31, t32
+    invalid = np.logical_not(t33)
+    del t33
+    t34 = np.abs(s_phi * c_psi) * 0.001953125 + np.abs(t5) * 0.001953125
+    del c_psi, s_phi, t5
+    t35 = _runtime.FEASIBILITY * (t1 * (t34 + 1.015625 * t6))
+    del t1, t34, t6
+    t36 = (-_runtime.FEASIBILITY <= c_phi) & (-t35 <= t8)
     del c_phi, t8
     t37 = -(_runtime.FEASIBILITY * slack)
-    t38 = t36 & (t35 <= t9) & (t37 <= t15) & (t37 <= t14)
-    del t14, t15, t35, t36, t37, t9
+    t38 = t36 & (-t35 <= t9) & (t37 <= t14) & (t37 <= t13)
+    del t13, t14, t35, t36, t37, t9
     t39 = L1 * 2.0
     t40 = 2.0 * fore
     t41 = -(_runtime.FEASIBILITY * ((t39 + t40) * slack))
-    in_reach = _runtime.select(tangent, t26, root)
-    del root, t26, tangent
-    square = t23 + in_reach * in_reach
-    del t23
-    t42 = t24 - square
+    in_reach = _runtime.select(tangent, t25, root)
+    del root, t25, tangent
+    square = t22 + in_reach * in_reach
+    del t22
+    t42 = t23 - square
     t43 = L1 * 1.1368683772161603e-13 + fore * 1.1368683772161603e-13
-    t44 = _runtime.FEASIBILITY * ((t43 + 2.0 * np.abs(t20)) * slack)
+    t44 = _runtime.FEASIBILITY * ((t43 + 2.0 * np.abs(t19)) * slack)
     del t43
-    t45 = square - t21
-    del square, t21
+    t45 = square - t20
+    del square, t20
     t46 = t38 & (t41 <= t42) & (-t44 <= t45)
     del t38, t41, t44
     fore_arm = np.sqrt(L2 * L2 + a3 * a3)
@@ -2143,26 +2140,26 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del far_apart
     t47 = size * play
     t48 = size * size
-    t49 = _runtime.VANISHING * t17
-    folded = np.abs(t22) + np.abs(in_reach) <= t49
-    short = L1 * fore <= _runtime.VANISHING * t24
-    del t24
+    t49 = _runtime.VANISHING * t16
+    folded = np.abs(t21) + np.abs(in_reach) <= t49
+    short = L1 * fore <= _runtime.VANISHING * t23
+    del t23
     M = np.maximum(t45, 0.0)
     del t45
     N = np.maximum(t42, 0.0)
     del t42
     t50 = 1.0 / (M + N)
-    ahead_1 = _runtime.select(short, t17, t20 + t40 * M * t50)
-    del t17, t20, t40
-    t51 = t22 * ahead_1
+    ahead_1 = _runtime.select(short, t16, t19 + t40 * M * t50)
+    del t16, t19, t40
+    t51 = t21 * ahead_1
     s_bend_front_elbow_down_alike = _runtime.select(short, 0.0, t50 * (2.0 * np.sqrt(M * N)))
     t52 = fore * s_bend_front_elbow_down_alike
     t53 = in_reach * t52
     up = t51 + t53
     t54 = in_reach * ahead_1
     del ahead_1, in_reach
-    t55 = t22 * t52
-    del t22, t52
+    t55 = t21 * t52
+    del t21, t52
     out_2 = t54 - t55
     t56 = 1.0 / np.sqrt(out_2 * out_2 + up * up)
     stheta2A = _runtime.select(folded, 0.0, up * t56)
@@ -2190,13 +2187,13 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     ctheta23A = ctheta2A * c_relative - stheta2A * s_relative
     stheta23A = stheta2A * c_relative + ctheta2A * s_relative
     point_21 = elbow_21 - L2 * ctheta23A + a3 * stheta23A
-    t63 = t18 * (t_psi * ctheta23A) + t_phi * stheta23A
+    t63 = t17 * (t_psi * ctheta23A) + t_phi * stheta23A
     t64 = d * t63
     del t63
     h_right_0 = point_21 - t64
     elbow_11 = L1 * ctheta2A
     point_11 = elbow_11 + L2 * stheta23A + a3 * ctheta23A
-    t65 = t_phi * ctheta23A - t18 * (t_psi * stheta23A)
+    t65 = t_phi * ctheta23A - t17 * (t_psi * stheta23A)
     del ctheta23A, stheta23A
     t66 = d * t65
     del t65
@@ -2478,7 +2475,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     unreachable = np.logical_not(t195 & (t102 <= t200) & (t102 <= t201))
     del t195
     t202 = _runtime.poison(invalid | unreachable)
-    t203 = t28 + t202
+    t203 = t27 + t202
     h_right = _runtime.select(t103, h_right_0 + more_right_21, h_right_0)
     del h_right_0, more_right_21
     r_right = _runtime.select(t103, r_right_0 - t191, r_right_0)
@@ -2585,7 +2582,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del t243, t244
     point_21_front_elbow_down_alike = t242 + a3 * stheta23A_front_elbow_down_alike
     del t242
-    t245 = t18 * (t_psi * ctheta23A_front_elbow_down_alike)
+    t245 = t17 * (t_psi * ctheta23A_front_elbow_down_alike)
     t246 = t245 + t_phi * stheta23A_front_elbow_down_alike
     del t245
     t247 = d * t246
@@ -2596,7 +2593,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t249 = elbow_11_front_elbow_down_alike + L2 * stheta23A_front_elbow_down_alike
     point_11_front_elbow_down_alike = t249 + a3 * ctheta23A_front_elbow_down_alike
     del t249
-    t250 = t18 * (t_psi * stheta23A_front_elbow_down_alike)
+    t250 = t17 * (t_psi * stheta23A_front_elbow_down_alike)
     del stheta23A_front_elbow_down_alike
     t251 = t_phi * ctheta23A_front_elbow_down_alike - t250
     del ctheta23A_front_elbow_down_alike, t250
@@ -2965,8 +2962,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     unreachable_2 = np.logical_not(t421 & (t102 <= t431) & (t102 <= t432))
     del t421
     t433 = _runtime.poison(invalid | unreachable_2)
-    t434 = t28 + t433
-    del t28
+    t434 = t27 + t433
+    del t27
     t435 = h_right_0_front_elbow_down_alike + more_right_21_front_elbow_down_alike
     del more_right_21_front_elbow_down_alike
     h_right_front_elbow_down_alike = _runtime.select(t297, t435, h_right_0_front_elbow_down_alike)
@@ -3061,8 +3058,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t472 = t233 + t433
     t473 = _runtime.select(folded_left_front_elbow_down_alike, t437, np.arctan2(t461 + t465, t466 - t467))
     del t437, t461, t465, t466, t467
-    t474 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t27))
-    del t27, t3
+    t474 = _runtime.wrap(-_runtime.select(nowhere, 0.0, t3 + t26))
+    del t26, t3
     ctheta2A_rear_elbow_up_alike = _runtime.select(folded, 1.0, -t57)
     del t57
     t475 = c_relative_front_elbow_down_alike * ctheta2A_rear_elbow_up_alike
@@ -3075,7 +3072,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del c_relative_front_elbow_down_alike, t477
     point_21_rear_elbow_up_alike = t476 + a3 * stheta23A_rear_elbow_up_alike
     del t476
-    t478 = t18 * (t_psi * ctheta23A_rear_elbow_up_alike)
+    t478 = t17 * (t_psi * ctheta23A_rear_elbow_up_alike)
     t479 = d * (t478 + t_phi * stheta23A_rear_elbow_up_alike)
     del t478
     h_right_0_rear_elbow_up_alike = point_21_rear_elbow_up_alike - t479
@@ -3084,7 +3081,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t481 = elbow_11_rear_elbow_up_alike + L2 * stheta23A_rear_elbow_up_alike
     point_11_rear_elbow_up_alike = t481 + a3 * ctheta23A_rear_elbow_up_alike
     del t481
-    t482 = t18 * (t_psi * stheta23A_rear_elbow_up_alike)
+    t482 = t17 * (t_psi * stheta23A_rear_elbow_up_alike)
     del stheta23A_rear_elbow_up_alike
     t483 = d * (t_phi * ctheta23A_rear_elbow_up_alike - t482)
     del ctheta23A_rear_elbow_up_alike, t482
@@ -3535,7 +3532,7 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     del c_relative, s_relative
     point_21_rear_elbow_down_alike = t692 + a3 * stheta23A_rear_elbow_down_alike
     del t692
-    t693 = t18 * (t_psi * ctheta23A_rear_elbow_down_alike)
+    t693 = t17 * (t_psi * ctheta23A_rear_elbow_down_alike)
     t694 = t693 + t_phi * stheta23A_rear_elbow_down_alike
     del t693
     t695 = d * t694
@@ -3546,8 +3543,8 @@ def _ik(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t697 = elbow_11_rear_elbow_down_alike + L2 * stheta23A_rear_elbow_down_alike
     point_11_rear_elbow_down_alike = t697 + a3 * ctheta23A_rear_elbow_down_alike
     del t697
-    t698 = t18 * (t_psi * stheta23A_rear_elbow_down_alike)
-    del stheta23A_rear_elbow_down_alike, t18, t_psi
+    t698 = t17 * (t_psi * stheta23A_rear_elbow_down_alike)
+    del stheta23A_rear_elbow_down_alike, t17, t_psi
     t699 = t_phi * ctheta23A_rear_elbow_down_alike - t698
     del ctheta23A_rear_elbow_down_alike, t698, t_phi
     t700 = d * t699
@@ -4169,65 +4166,64 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     h = np.sqrt(x * x + y * y)
     t1 = lp * s_pitch
     del s_pitch
-    t2 = c_phi * c_psi
-    t3 = 1.0 / t2
-    t4 = gs + al
-    t5 = t4 * t2
-    t6 = t5 - d
-    t7 = d - (gs - al) * t2
-    del t2
+    t2 = c_phi * s_psi
+    t3 = c_phi * c_psi
+    t4 = 1.0 / t3
+    t5 = gs + al
+    t6 = t5 * t3 - d
+    t7 = d - (gs - al) * t3
     t8 = np.sqrt(np.maximum(t6, 0.0) * np.maximum(t7, 0.0))
-    wrist = t3 * t8
+    wrist = t4 * t8
     del t8
     t9 = loff + lp * c_pitch + wrist
     del c_pitch
-    t10 = s_psi * t9
-    t11 = s_phi * t1 - c_phi * t10
-    t12 = h - t11
-    above = np.maximum(t12, 0.0)
-    t13 = h + t11
-    del t11
-    below = np.maximum(t13, 0.0)
+    t10 = s_phi * t1 - t2 * t9
+    t11 = h - t10
+    above = np.maximum(t11, 0.0)
+    t12 = h + t10
+    del t10
+    below = np.maximum(t12, 0.0)
     root = np.sqrt(above * below)
-    t14 = np.arctan2(2.0 * root, above - below)
+    t13 = np.arctan2(2.0 * root, above - below)
     del above, below
-    t15 = np.arctan2(x, y)
-    t16 = _runtime.wrap(t14 - t15)
-    t17 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
-    t18 = t17 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    t14 = np.arctan2(x, y)
+    t15 = _runtime.wrap(t13 - t14)
+    t16 = np.isfinite(L1) & np.isfinite(L2) & np.isfinite(a3) & np.isfinite(d1) & np.isfinite(d) & np.isfinite(gs) & np.isfinite(al) & np.isfinite(loff) & np.isfinite(lp)
+    t17 = t16 & (0.0 <= L1) & (0.0 <= L2) & (0.0 <= a3)
+    del t16
+    t18 = t17 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
     del t17
-    t19 = t18 & (0.0 <= d1) & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al)
-    del t18
-    t20 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
-    t21 = L2 + a3
-    t22 = _runtime.select(0.0 < L1 * d * t21, 0.0, 1.0)
-    t23 = t19 & (0.0 <= loff) & (0.0 <= lp) & t20 & (np.abs(t22) <= _runtime.ROTATION)
-    del t19, t20, t22
-    invalid = np.logical_not(t23)
-    del t23
-    t24 = -(_runtime.FEASIBILITY * (1.015625 * t5))
-    del t5
-    t25 = (-_runtime.FEASIBILITY <= c_phi) & (t24 <= t6)
+    t19 = np.isfinite(x) & np.isfinite(y) & np.isfinite(z) & np.isfinite(psi) & np.isfinite(phi) & np.isfinite(pitch)
+    t20 = L2 + a3
+    t21 = _runtime.select(0.0 < L1 * d * t20, 0.0, 1.0)
+    t22 = t18 & (0.0 <= loff) & (0.0 <= lp) & t19 & (np.abs(t21) <= _runtime.ROTATION)
+    del t18, t19, t21
+    invalid = np.logical_not(t22)
+    del t22
+    t23 = np.abs(s_phi * c_psi) * 0.001953125 + np.abs(t2) * 0.001953125
+    del t2
+    t24 = _runtime.FEASIBILITY * (t5 * (t23 + 1.015625 * t3))
+    del t23, t3
+    t25 = (-_runtime.FEASIBILITY <= c_phi) & (-t24 <= t6)
     del t6
-    base = d * t3
-    del t3
+    base = d * t4
+    del t4
     t26 = 1.0 / c_phi
     t_phi = s_phi * t26
     t_psi = s_psi / c_psi
-    del s_psi
     far_apart = np.abs(base * t_phi) * 0.001953125 + np.abs(t_psi * base) * 0.001953125
     del base
-    lengths = L1 + d1 + d + loff + lp + t4 + t21
-    del t21, t4
+    lengths = L1 + d1 + d + loff + lp + t5 + t20
+    del t20, t5
     slack = far_apart + lengths * 0.25
     t27 = -(_runtime.FEASIBILITY * slack)
-    t28 = t25 & (t24 <= t7) & (t27 <= t13) & (t27 <= t12)
-    del t12, t13, t24, t25, t27, t7
+    t28 = t25 & (-t24 <= t7) & (t27 <= t12) & (t27 <= t11)
+    del t11, t12, t24, t25, t27, t7
     t29 = L1 * 2.0
     L_2W = L2 + c_psi * t9
-    del c_psi, t9
-    a_3W = a3 + c_phi * t1 + s_phi * t10
-    del c_phi, s_phi, t1, t10
+    del c_psi
+    a_3W = a3 + c_phi * t1 + s_phi * s_psi * t9
+    del c_phi, s_phi, s_psi, t1, t9
     fore = np.sqrt(L_2W * L_2W + a_3W * a_3W)
     t30 = 2.0 * fore
     t31 = -(_runtime.FEASIBILITY * ((t29 + t30) * slack))
@@ -4339,7 +4335,7 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     unreachable = np.logical_not(t74)
     del t74
     t75 = _runtime.poison(invalid | unreachable)
-    t76 = t16 + t75
+    t76 = t15 + t75
     t77 = 2.0 * fore_arm
     t78 = L1 * fore_arm
     t79 = _runtime.VANISHING * (_runtime.VANISHING * (16.0 * t78))
@@ -4472,8 +4468,8 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     unreachable_2 = np.logical_not(t133)
     del t133
     t134 = _runtime.poison(invalid | unreachable_2)
-    t135 = t16 + t134
-    del t16
+    t135 = t15 + t134
+    del t15
     M_right_front_elbow_down_alike = np.maximum(farther_right_front_elbow_down_alike, t79)
     del farther_right_front_elbow_down_alike
     N_right_front_elbow_down_alike = np.maximum(nearer_right_front_elbow_down_alike, t79)
@@ -4530,8 +4526,8 @@ def _ik_common(x, y, z, psi, phi, pitch, L1, L2, a3, d1, d, gs, al, loff, lp):
     t159 = t98 + t134
     t160 = _runtime.wrap_cut(np.arctan2(t153 - t149, t154 + t155))
     del t149, t153, t154, t155
-    t161 = _runtime.wrap(-(t15 + t14))
-    del t14, t15
+    t161 = _runtime.wrap(-(t14 + t13))
+    del t13, t14
     t162 = c_relative_front_elbow_down_alike * t54 - s_relative_front_elbow_down_alike * stheta2A
     stheta23A_rear_elbow_up_alike = c_relative_front_elbow_down_alike * stheta2A + s_relative_front_elbow_down_alike * t54
     del c_relative_front_elbow_down_alike, s_relative_front_elbow_down_alike, stheta2A, t54
@@ -4976,25 +4972,26 @@ def ik(x: "ArrayLike", params: "Parameters" = _DEFAULT, *, out: Any = None) -> "
 
 
 def _wrist_length(psi, phi, d, gs, al):
-    c_phi = np.cos(phi)
-    c_psi = np.cos(psi)
-    t1 = c_phi * c_psi
-    del c_psi
-    t2 = (gs + al) * t1
-    t3 = t2 - d
-    t4 = d - (gs - al) * t1
+    s_phi, c_phi = _runtime.sincos(phi)
+    s_psi, c_psi = _runtime.sincos(psi)
+    t1 = gs + al
+    t2 = c_phi * c_psi
+    t3 = t1 * t2 - d
+    t4 = d - (gs - al) * t2
     t5 = np.sqrt(np.maximum(t3, 0.0) * np.maximum(t4, 0.0))
     t6 = np.isfinite(d) & np.isfinite(gs) & np.isfinite(al)
     t7 = t6 & (0.0 <= d) & (0.0 <= gs) & (0.0 <= al) & (np.isfinite(psi) & np.isfinite(phi))
     del t6
-    t8 = -(_runtime.FEASIBILITY * (1.015625 * t2))
-    del t2
-    t9 = (-_runtime.FEASIBILITY <= c_phi) & (t8 <= t3)
+    t8 = np.abs(s_phi * c_psi) * 0.001953125 + np.abs(c_phi * s_psi) * 0.001953125
+    del c_psi, s_phi, s_psi
+    t9 = _runtime.FEASIBILITY * (t1 * (t8 + 1.015625 * t2))
+    del t1, t8
+    t10 = (-_runtime.FEASIBILITY <= c_phi) & (-t9 <= t3)
     del c_phi, t3
-    failed = np.logical_not(t7) | np.logical_not(t9 & (t8 <= t4))
-    del t4, t7, t8, t9
+    failed = np.logical_not(t7) | np.logical_not(t10 & (-t9 <= t4))
+    del t10, t4, t7, t9
     return (
-        t5 / t1 + _runtime.poison(failed),
+        t5 / t2 + _runtime.poison(failed),
     )
 
 

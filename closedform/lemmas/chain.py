@@ -22,6 +22,7 @@ import sympy as sp
 from closedform.algebra.shapes import ShapeError
 from closedform.algebra.solutions import rotation_parametrisation
 from closedform.lemmas.applied import Applied
+from closedform.lemmas.corrected import Corrected, Correction
 from closedform.lemmas.pairs import direction
 from closedform.lemmas.registry import theorem
 from closedform.mechanics.frames import pose_symbols, require_pose
@@ -88,6 +89,7 @@ class Chain:
     directions: dict[sp.Expr, Pair] = field(default_factory=dict)
     extra_coordinates: list[sp.Symbol] = field(default_factory=list)
     condition: sp.Expr = sp.S.Zero
+    corrected: Corrected | None = None
     weights: dict[sp.Symbol, sp.Expr] = field(default_factory=dict)
     coefficients: set[sp.Symbol] = field(default_factory=set)
     """Names of the coefficients of lemmas, which are proved for all values of them."""
@@ -166,9 +168,10 @@ class Chain:
     def reached(self, rest: sp.Matrix | None = None) -> None:
         """Compare the pose of the joints with the target, for arms that do not reach every pose.
 
-        With fewer than six joints the lemmas use only a part of the target; the status is
-        UNREACHABLE if the rest does not match.  If a lemma has used the whole rotation, ``rest`` is
-        what the joints leave of the position, which must be zero.
+        With fewer than six joints the lemmas use only a part of the target.  What rounding makes
+        them miss of the rest is corrected; the status is UNREACHABLE if the rest does not match.
+        If a lemma has used the whole rotation, ``rest`` is what the joints leave of the position,
+        which must be zero.
         """
         meaning, place = "the pose is one of the arm's", self.forward
         if rest is not None:
@@ -177,16 +180,16 @@ class Chain:
             return
         functions = sorted(place.atoms(sp.sin, sp.cos), key=str)
         pairs = {f.args[0]: self._solved_pair(f.args[0]) for f in functions}
-        known = {
-            f: pairs[f.args[0]].s if isinstance(f, sp.sin) else pairs[f.args[0]].c
-            for f in functions
-        }
-        known |= {j: self.values[j] for j in self.joints if j in self.values and j not in pairs}
-        for i in range(3):
-            for j in range(4):
-                scale = self.size if j == 3 else sp.S.One
-                entry = self.T[i, j] - place[i, j].xreplace(known)
-                self.program.match(entry, scale, meaning)
+        slides = {j.symbol: self.values[j.symbol] for j in self.d.joints if j.kind == "prismatic"}
+        place, target = place[:3, :], self.T[:3, :]
+        size = self.size or sp.S.One
+        scales = [size if j == 3 else sp.S.One for _ in range(3) for j in range(4)]
+        self.corrected = Correction(
+            self.program, self.joints, tuple(target), tuple(place), scales, pairs, slides, size
+        ).applied()
+        for entry, scale in zip(self.corrected.missed, scales, strict=True):
+            # half: the size counts a length once for each term of a coordinate that holds it
+            self.program.match(entry, scale / 2, meaning)
 
     def _solved_pair(self, total: sp.Expr) -> Pair:
         """The pair of a sum of solved joints."""
@@ -434,9 +437,20 @@ class Chain:
             return substitute(total, self.values)
         return pair.angle + sp.Add(*(flip for _, flip in half))
 
+    def _answers(self) -> list[sp.Expr]:
+        """The values of the joints, moved together where the lemmas miss some of the target."""
+        values = [self.values[j] for j in self.joints]
+        if self.corrected is None:
+            return values
+        loose, moved = self.corrected.loose, self.corrected.moved
+        return [
+            choose(loose, value + moved[j], value)
+            for j, value in zip(self.joints, values, strict=True)
+        ]
+
     def _leave_out_unused(self) -> None:
         """Remove names that a lemma returned and nothing uses."""
-        needed = {s for j in self.joints for s in self.values[j].free_symbols}
+        needed = {s for answer in self._answers() for s in answer.free_symbols}
         needed |= {s for link in self.links for e in link.equations for s in e.free_symbols}
         needed |= {s for pair in self.units for e in pair[:2] for s in e.free_symbols}
         matches = [s.value for s in self.program.body if isinstance(s, Match)]
@@ -501,7 +515,7 @@ class Chain:
             self.name,
             summary,
             self.inputs,
-            {"q": [self.values[j] for j in self.joints]},
+            {"q": self._answers()},
             program=self.program,
             branches=choices,
             result="Solutions",

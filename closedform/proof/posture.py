@@ -22,7 +22,7 @@ Expr = Any
 
 
 class Posture:
-    """The values of the names of a chain, whose glue is a rank."""
+    """The values of the names of a chain, whose glue is a rank; flags are false."""
 
     def __init__(self, inverse: Inverse, glue: Rank, function: Function):
         self.sums: dict[Expr, Expr] = {}
@@ -39,6 +39,7 @@ class Posture:
         self.extra_coordinates = glue.extra_coordinates
         self.meaning = glue.meaning
         self.made = {s.symbol: s.value for s in function.body if isinstance(s, (Let, Bound))}
+        self.flags = {s.symbol: sp.false for s in function.body if isinstance(s, Vanishes)}
         self.targets = {
             x: self.in_sums(f) for x, f in zip(inverse.targets, inverse.forward, strict=True)
         }
@@ -58,6 +59,7 @@ class Posture:
         return self.in_sums(self._written_out(e, {s: s for s in self.extra_coordinates}))
 
     def _written_out(self, e: Expr, names: dict[Expr, Expr]) -> Expr:
+        e = substitute(e, self.flags)
         for s in e.free_symbols:
             if s not in names and (s in self.meaning or s in self.made):
                 names[s] = self._written_out(self.meaning.get(s, self.made.get(s)), names)

@@ -12,7 +12,7 @@ from closedform.model.tolerances import DOUBLE
 
 from .lengths import draw_lengths, draw_postures
 from .outcome import Failure, Outcome, hexed, unhexed
-from .robots import BACKENDS, Robot, robot, robots
+from .robots import BACKENDS, Robot, robot, robots, without_forward_map
 
 NAME = "postures"
 SIZE = 2000
@@ -50,6 +50,12 @@ def round(rng: np.random.Generator) -> Outcome:
                 case = {"robot": subject.name, "lengths": hexed(lengths[row]), "q": hexed(q[row])}
                 outcome.failures.append(Failure(NAME, f"{subject.name}: {message}", case))
     return outcome
+
+
+def note() -> str:
+    """What the table of this attack leaves out."""
+    names = ", ".join(f"`{name}`" for name in without_forward_map()) or "none"
+    return f"Not tried, because `fk` is needed: {names}."
 
 
 def replay(case: Mapping[str, Any]) -> list[str]:

@@ -58,6 +58,12 @@ def robots() -> tuple[Robot, ...]:
 
 
 @cache
+def without_forward_map() -> tuple[str, ...]:
+    """Every mechanism that has no ``fk``, of whose postures no targets can be made."""
+    return tuple(s.name for s in pipeline.sources() if not pipeline.load(s).has_forward_map)
+
+
+@cache
 def robot(name: str) -> Robot:
     (source,) = pipeline.find([name])
     return _robot(source)
